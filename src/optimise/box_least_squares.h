@@ -1,0 +1,95 @@
+// Local least squares on the unit cube: minimise sum of rho(e_i(x)) over 0 <= x <= 1, where rho(e) = 0.5*e^2 or a
+// robust loss.
+//
+// Levenberg-Marquardt with true bounds: each step solves the damped quadratic *on the box* (box_quadratic.h: walls
+// held, re-solved on the free set), with Marquardt's diagonal as the damping metric and no coordinate moving further
+// than `step_limit`. A step computed as if free and then clipped stops descending; that, and a metric that lets a weak
+// parameter run away, is what fails in a servovalve fit. Every evaluation is a batch: the n points of the Jacobian, and
+// a ladder of dampings tried at once, since lanes of a pack are nearly free.
+//
+// Limits: dense, n up to a few hundred, any number of rows (only J and one block of it are held). The residual must be
+// smooth on the scale of `difference_step`. Finds one local minimum; the genetic algorithm and multi_start.h give the
+// breadth. Why not Ceres' own bounds or its minimiser in a loop: see tests/optimise/ceres_comparison_test.cpp and
+// decisions in box_least_squares.cpp. Source: More (1978), The Levenberg-Marquardt algorithm; Nocedal and Wright
+// (2006), ch. 10 and 16.
+#pragma once
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "optimise/problem.h"
+#include "optimise/robust_loss.h"
+
+namespace servodx {
+
+// J(i, j) = d residual_i / d x_j at a point whose residual is known. False: could not be had here; differences are
+// taken instead.
+using JacobianFunction = std::function<bool(const Point&, const Eigen::VectorXd& residual, Eigen::MatrixXd& jacobian)>;
+
+struct LeastSquaresProblem {
+  int n = 0;
+  BatchEvaluate evaluate;     // priors: append rows (x - mean)/sd
+  JacobianFunction jacobian;  // optional
+};
+
+enum class Difference {
+  forward,              // n points; its error moves the minimum by about difference_step times the curvature
+  central,              // 2n points
+  forward_then_central  // forward until it converges or stalls, then central: the end Jacobian is the better one
+};
+
+struct LeastSquaresProgress {
+  int iteration = 0;
+  long evaluations = 0;
+  double cost = 0;                // with the loss of the pass that runs
+  double projected_gradient = 0;  // see LeastSquaresResult
+  const Point* point = nullptr;
+};
+
+struct LeastSquaresOptions {
+  int max_iterations = 100;       // Jacobians taken, all passes together
+  long max_evaluations = 0;       // 0: no limit. Checked once an iteration, so it may be passed by one batch
+  double step_limit = 0.3;        // of the box, in one iteration
+  double difference_step = 1e-5;  // of the box
+  Difference difference = Difference::forward_then_central;
+  int damping_trials = 8;         // dampings tried at once
+  double first_damping = 1e-1;    // middle of the first ladder, relative to the Marquardt diagonal
+  double cost_tolerance = 1e-8;   // converged when the model promises less than this part of the cost
+  double cost_floor = 1e-20;      // converged when the cost itself, or the promised gain, is below this
+  double step_tolerance = 1e-12;  // of the box; trials shorter than this are a stall
+  double cost_goal = -1;          // stop as soon as the plain misfit 0.5*|e|^2 is at or below this; negative: off
+  RobustLoss loss = RobustLoss::none;
+  double loss_scale = 1.0;
+  bool compressed_first_pass = false;  // first minimise with RobustLoss::compressed to 1e-3, then with `loss`
+  std::function<bool(const LeastSquaresProgress&)> progress;  // false asks to stop; the best so far is returned
+
+  void validate() const;  // throws InputError with the option's name
+};
+
+enum class StopReason { converged, goal, stalled, iteration_limit, evaluation_limit, interrupted, start_failed };
+
+struct LeastSquaresResult {
+  Point point;
+  double cost = 0;    // sum of rho(e_i); infinite when the start failed
+  double misfit = 0;  // 0.5*|residual|^2 without the loss
+  Eigen::VectorXd residual;
+  Eigen::MatrixXd jacobian;  // d residual / d x at `point`, without the loss; a column that could not be had is zero
+  Eigen::VectorXd gradient;  // of the cost
+  double projected_gradient = 0;  // largest |gradient_j| that a wall does not hold, cost per unit of the box
+  double gradient_cosine = 0;     // the same over |J_j||e|: scale-free, 0 at a minimum
+  double promised_gain = 0;       // cost that the undamped model still promises inside the box and the step limit
+  std::vector<int> wall;          // -1 at 0, +1 at 1, 0 free; a wall counts only while the gradient pushes into it
+  long evaluations = 0;           // every point asked for, Jacobian points included
+  long failed_evaluations = 0;
+  int missing_columns = 0;  // Jacobian columns at the end for which both sides failed
+  int iterations = 0;
+  StopReason reason = StopReason::start_failed;
+  std::string stopped;  // the reason in words, with the figures that matter
+};
+
+LeastSquaresResult minimise_least_squares(const LeastSquaresProblem& problem, const Point& start,
+                                          const LeastSquaresOptions& options = {});
+
+const char* name(StopReason reason);
+
+}  // namespace servodx
