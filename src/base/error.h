@@ -14,8 +14,11 @@ struct Place {
 // Thrown by readers and option checks; the program prints what() and exits with code 2.
 class InputError : public std::runtime_error {
  public:
-  InputError(Place where, std::string rule, std::string mend)
-      : std::runtime_error(format(where, rule, mend)), where(std::move(where)), rule(std::move(rule)), mend(std::move(mend)) {}
+  InputError(Place at, std::string broken_rule, std::string how_to_mend)
+      : std::runtime_error(format(at, broken_rule, how_to_mend)),
+        where(std::move(at)),
+        rule(std::move(broken_rule)),
+        mend(std::move(how_to_mend)) {}
   Place where;
   std::string rule;
   std::string mend;

@@ -1,0 +1,24 @@
+#include "effects/registry.h"
+
+namespace servodx {
+namespace {
+template <class... E>
+std::vector<EffectInfo> describe(EffectList<E...>) {
+  int at = n_parameters;
+  std::vector<EffectInfo> all;
+  (
+      [&] {
+        all.push_back({E::name, E::place, E::meaning, at, {E::parameters, E::parameters + E::n_parameters}});
+        at += E::n_parameters;
+      }(),
+      ...);
+  return all;
+}
+}  // namespace
+
+const std::vector<EffectInfo>& effect_list() {
+  static const std::vector<EffectInfo> list = describe(AllEffects{});
+  return list;
+}
+
+}  // namespace servodx

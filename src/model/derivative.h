@@ -1,0 +1,143 @@
+// The identification model: a two-stage flapper-nozzle servovalve with mechanical feedback and its actuator, the stages
+// in order. One right-hand side for double, for a pack of candidates and for duals that carry derivatives.
+//
+// Source: Merritt (1967), chapters 3, 5, 6, 7; edges and smoothing are ours (docs/model.md). Leaves out: fluid inertia
+// of lines, temperature within a log, transient flow force, spool rotation, drain pressure of the pilot stage.
+// Signs: positive current -> flapper closes nozzle 1 -> p1 rises -> spool moves positive -> P to A -> piston extends.
+#pragma once
+#include <tuple>
+
+#include "base/smooth.h"
+#include "model/constants.h"
+#include "model/derived.h"
+#include "model/hooks.h"
+#include "model/state.h"
+
+namespace servodx {
+
+// Turbulent restriction: conductance [m3/s/sqrt(Pa)] times the rounded root of the pressure drop.
+template <class C, class P, class T>
+auto orifice_flow(const C& conductance, const P& dp, const T& transition) {
+  return conductance * signed_sqrt(dp, transition);
+}
+
+// One metering edge. opening [m] (negative: covered by that length), dp [Pa]; flow [m3/s] and open height h [m].
+// Laminar slot, orifice and hose in series: dp = R q + K q|q|, so q = 2 dp / (R + sqrt(R^2 + 4 K |dp|)).
+// R: plane slot of the covered length and creeping flow at the edge; K: Bernoulli at the edge plus the hose.
+template <class X, class P, class T>
+auto metering_edge(const X& opening, const P& dp, const Derived<T>& d, const T* p) {
+  using std::sqrt;
+  namespace c = constants;
+  const auto root = smooth_abs(opening, T(c::edge_rounding));
+  const auto open = (opening + root) * T(0.5);
+  const auto covered = (root - opening) * T(0.5);
+  const auto h2 = open * open + d.clearance2;
+  const auto h = sqrt(h2);
+  const auto r = d.slot_per_length * (h * covered) + d.slot_corner / h;          // [Pa s/m2] per width, times h
+  const auto k = d.edge_loss + d.hose_loss * h2;
+  const auto q = (T(2.0) * p[row::port_width]) * h * dp / (r + sqrt(r * r + k * smooth_abs(dp, T(c::orifice_transition))));
+  return std::make_tuple(q, h);
+}
+
+// Compliance of a chamber [m3/Pa]: oil, free air by the isothermal law, walls of the hose.
+template <class V, class P, class T>
+auto chamber_compliance(const V& volume, const P& pressure, const Derived<T>& d, const T* p) {
+  namespace c = constants;
+  const auto absolute = soft_positive(pressure + T(c::atmospheric_pressure), T(c::pressure_floor));
+  return volume * (d.inverse_bulk + d.air / (absolute * absolute)) + p[row::hose_compliance];
+}
+
+// Derivatives of all states, base states first, then the effects', as a tuple.
+// S: s.get<K>() gives state K. In: Inputs-like with members of dual or plain type.
+template <class Effects, class T, class S, class In>
+inline __attribute__((always_inline)) auto derivative(const S& s, const In& u, const T* p, const Derived<T>& d) {
+  namespace c = constants;
+  const View<Effects, S, In, T> view{s, u, p};
+  const auto x_f = s.template get<s_x_flapper>();
+  const auto v_f = s.template get<s_v_flapper>();
+  const auto p_f = s.template get<s_p_filter>();
+  const auto p_1 = s.template get<s_p_pilot_1>();
+  const auto p_2 = s.template get<s_p_pilot_2>();
+  const auto x_s = s.template get<s_x_spool>();
+  const auto v_s = s.template get<s_v_spool>();
+  const auto p_a = s.template get<s_p_a>();
+  const auto p_b = s.template get<s_p_b>();
+  const auto x_p = s.template get<s_x_piston>();
+  const auto v_p = s.template get<s_v_piston>();
+  const T transition = T(c::orifice_transition);
+
+  // Driver and coil.
+  const auto i = s.template get<s_current>();
+  const auto di = d.driver_rate * (saturate(u.current, p[row::current_limit], T(c::current_rounding)) - i);
+
+  // Torque motor and flapper; the wire pulls through its backlash, the nozzles are the stops.
+  const auto wire = p[row::feedback_wire_stiffness] * dead_zone(x_s + x_f, p[row::valve_glitch] * T(0.5), T(c::backlash_rounding));
+  const auto beyond = soft_positive(x_f - p[row::nozzle_gap], T(c::stop_rounding)) -
+                      soft_positive(-x_f - p[row::nozzle_gap], T(c::stop_rounding));
+  const auto f_flapper = p[row::torque_motor_gain] * i - p[row::flapper_stiffness] * (x_f + T(c::stop_stiffness_ratio) * beyond) -
+                         wire - d.nozzle_area * (p_1 - p_2) + hook_flapper_force(view, Effects{});
+  const auto dv_f = d.flapper_rate2 * f_flapper - d.flapper_damping * v_f;
+
+  // Filter, fixed orifices, nozzles, spool ends.
+  const auto direction = smooth_sign(v_s, T(c::filter_direction_rounding));
+  const auto clear = T(1.0) - T(0.5) * (p[row::filter_blockage_positive] + p[row::filter_blockage_negative]) -
+                     (T(0.5) * (p[row::filter_blockage_positive] - p[row::filter_blockage_negative])) * direction;
+  const auto q_filter = orifice_flow(d.filter_conductance * clear, u.supply_pressure - p_f, transition);
+  const auto q_orifice_1 = orifice_flow(d.orifice_conductance, p_f - p_1, transition);
+  const auto q_orifice_2 = orifice_flow(d.orifice_conductance, p_f - p_2, transition);
+  const auto q_nozzle_1 = orifice_flow(d.nozzle_conductance * soft_positive(p[row::nozzle_gap] - x_f, T(c::nozzle_rounding)),
+                                       p_1 - u.return_pressure, transition);
+  const auto q_nozzle_2 = orifice_flow(d.nozzle_conductance * soft_positive(p[row::nozzle_gap] + x_f, T(c::nozzle_rounding)),
+                                       p_2 - u.return_pressure, transition);
+  const auto dp_f = d.inverse_filter_compliance * (q_filter - q_orifice_1 - q_orifice_2);
+  const auto dp_1 = d.inverse_pilot_compliance * (q_orifice_1 - q_nozzle_1 - d.spool_area * v_s);
+  const auto dp_2 = d.inverse_pilot_compliance * (q_orifice_2 - q_nozzle_2 + d.spool_area * v_s);
+
+  // Metering edges. Flows carry direction: pa from supply to A, at from A to return.
+  const auto [q_pa, h_pa] = metering_edge(x_s - p[row::lap_pa], u.supply_pressure - p_a, d, p);
+  const auto [q_pb, h_pb] = metering_edge(-x_s - p[row::lap_pb], u.supply_pressure - p_b, d, p);
+  const auto [q_at, h_at] = metering_edge(-x_s - p[row::lap_at], p_a - u.return_pressure, d, p);
+  const auto [q_bt, h_bt] = metering_edge(x_s - p[row::lap_bt], p_b - u.return_pressure, d, p);
+
+  // Spool.
+  const auto f_flow = d.flow_force * p[row::port_width] *
+                      (h_pa * (u.supply_pressure - p_a) + h_bt * (p_b - u.return_pressure) -
+                       h_pb * (u.supply_pressure - p_b) - h_at * (p_a - u.return_pressure));
+  const auto v_rel2 = v_s * v_s * T(1.0 / (c::spool_stribeck_velocity * c::spool_stribeck_velocity));
+  const auto f_dry = p[row::spool_friction] * smooth_sign(v_s, T(c::spool_friction_rounding)) *
+                     (T(1.0) + T(c::spool_static_over_coulomb - 1.0) / (T(1.0) + v_rel2));
+  const auto over_spool = soft_positive(x_s - p[row::spool_stop], T(c::spool_stop_rounding));
+  const auto under_spool = soft_positive(-x_s - p[row::spool_stop], T(c::spool_stop_rounding));
+  const auto in_spool_stop = (over_spool + under_spool) / (over_spool + under_spool + T(c::spool_stop_rounding));
+  const auto f_spool = d.spool_area * (p_1 - p_2) - f_flow - f_dry - d.spool_viscous * v_s -
+                       T(c::spool_stop_stiffness) * (over_spool - under_spool) -
+                       T(c::spool_stop_damping) * (in_spool_stop * v_s) + hook_spool_force(view, Effects{});
+  const auto dv_s = d.inverse_spool_mass * f_spool;
+
+  // Chambers. The body may move; volumes and the sensor see the rod relative to it.
+  const auto v_rel = v_p - hook_body_velocity(view, Effects{});
+  const auto q_leak = d.leak * (p_a - p_b);
+  const auto volume_a = p[row::dead_volume_a] + p[row::piston_area_a] * (T(0.5) * p[row::piston_stroke] + x_p);
+  const auto volume_b = p[row::dead_volume_b] + p[row::piston_area_b] * (T(0.5) * p[row::piston_stroke] - x_p);
+  const auto dp_a = (q_pa - q_at - q_leak - p[row::piston_area_a] * v_rel + hook_flow_a(view, Effects{})) /
+                    chamber_compliance(volume_a, p_a, d, p);
+  const auto dp_b = (q_pb - q_bt + q_leak + p[row::piston_area_b] * v_rel + hook_flow_b(view, Effects{})) /
+                    chamber_compliance(volume_b, p_b, d, p);
+
+  // Piston.
+  const auto v_slide2 = v_rel * v_rel * T(1.0 / (c::piston_stribeck_velocity * c::piston_stribeck_velocity));
+  const auto f_friction = d.viscous * v_rel + smooth_sign(v_rel, T(c::piston_friction_rounding)) *
+                          (p[row::piston_coulomb_friction] + p[row::piston_stribeck_friction] / (T(1.0) + v_slide2));
+  const auto over = soft_positive(x_p - T(0.5) * p[row::piston_stroke], T(c::piston_stop_rounding));
+  const auto under = soft_positive(-x_p - T(0.5) * p[row::piston_stroke], T(c::piston_stop_rounding));
+  const auto in_stop = (over + under) / (over + under + T(c::piston_stop_rounding));
+  const auto f_piston = p[row::piston_area_a] * p_a - p[row::piston_area_b] * p_b - u.load_force - f_friction -
+                        T(c::piston_stop_stiffness) * (over - under) - T(c::piston_stop_damping) * (in_stop * v_rel) +
+                        hook_piston_force(view, Effects{});
+  const auto dv_p = d.inverse_mass * f_piston;
+
+  return std::tuple_cat(std::make_tuple(di, v_f, dv_f, dp_f, dp_1, dp_2, v_s, dv_s, dp_a, dp_b, v_rel, dv_p),
+                        effect_derivatives(view, Effects{}));
+}
+
+}  // namespace servodx

@@ -1,0 +1,82 @@
+// What a candidate's rows and a log's oil fix for the whole run, computed once a run.
+#pragma once
+#include <cmath>
+
+#include "model/constants.h"
+#include "model/state.h"
+#include "parameters/list.h"
+
+namespace servodx {
+
+template <class T>
+struct Derived {
+  // first stage
+  T driver_rate;               // [1/s]
+  T flapper_rate2;             // [1/s2] natural frequency squared over stiffness times stiffness
+  T inverse_flapper_stiffness; // [m/N]
+  T flapper_damping;           // [1/s]
+  T nozzle_area;               // [m2] facing the flapper
+  T nozzle_conductance;        // [m3/s/sqrt(Pa)/m] per curtain opening
+  T orifice_conductance;       // [m3/s/sqrt(Pa)]
+  T filter_conductance;        // [m3/s/sqrt(Pa)] clean
+  T inverse_filter_compliance; // [Pa/m3]
+  T inverse_pilot_compliance;  // [Pa/m3]
+  // second stage
+  T spool_area;                // [m2]
+  T inverse_spool_mass;        // [1/kg]
+  T spool_viscous;             // [N s/m] shear in the annulus
+  T flow_force;                // [-] times area and pressure drop
+  T clearance2;                // [m2]
+  T slot_per_length;           // [Pa s/m4 ...] laminar resistance of a covered edge, per length, times opening and width
+  T slot_corner;               // the same for the corner of an open edge
+  T edge_loss;                 // [Pa s2/m4] 4 rho / (2 Cd^2)
+  T hose_loss;                 // 4 hose_resistance width^2
+  // actuator
+  T leak;                      // [m3/s/Pa]
+  T viscous;                   // [N s/m]
+  T inverse_mass;              // [1/kg]
+  T inverse_bulk;              // [1/Pa]
+  T air;                       // [Pa] free air fraction times atmospheric pressure
+};
+
+// p: the 41 rows in SI.
+template <class T>
+Derived<T> derive(const T* p, const Oil& oil) {
+  using std::sqrt;
+  namespace c = constants;
+  Derived<T> d;
+  const T per_root_density = T(std::sqrt(2.0 / oil.density));
+  const T omega = T(2.0 * c::pi) * p[row::torque_motor_frequency];
+  d.driver_rate = T(2.0 * c::pi) * p[row::driver_bandwidth];
+  d.inverse_flapper_stiffness = T(1.0) / p[row::flapper_stiffness];
+  d.flapper_rate2 = omega * omega * d.inverse_flapper_stiffness;
+  d.flapper_damping = T(2.0 * c::flapper_damping_ratio) * omega;
+  const T nozzle_diameter = p[row::hydraulic_amplifier_gain] * T(1.0 / c::pi);
+  d.nozzle_area = T(c::pi / 4.0) * nozzle_diameter * nozzle_diameter;
+  d.nozzle_conductance = T(c::cd_nozzle) * per_root_density * p[row::hydraulic_amplifier_gain];
+  const T orifice_area = T(c::pi / 4.0) * p[row::fixed_orifice_diameter] * p[row::fixed_orifice_diameter];
+  d.orifice_conductance = T(c::cd_orifice) * per_root_density * orifice_area;
+  d.filter_conductance = d.orifice_conductance * T(2.0 * c::clean_filter_area_ratio);
+  d.inverse_filter_compliance = p[row::bulk_modulus] * T(1.0 / c::filter_node_volume);
+  d.spool_area = T(c::pi / 4.0) * p[row::spool_diameter] * p[row::spool_diameter];
+  d.inverse_pilot_compliance = p[row::bulk_modulus] / (d.spool_area * p[row::spool_stop] * T(c::pilot_volume_in_stops));
+  const T spool_length = p[row::spool_diameter] * T(c::spool_length_in_diameters);
+  d.inverse_spool_mass = T(1.0) / (T(c::steel_density) * d.spool_area * spool_length);
+  d.spool_viscous = T(c::pi * oil.dynamic_viscosity) * p[row::spool_diameter] * spool_length / p[row::radial_clearance];
+  d.flow_force = T(c::jet_angle_factor) * p[row::flow_force_coefficient];
+  d.clearance2 = p[row::radial_clearance] * p[row::radial_clearance];
+  // Plane Couette slot: dp = 12 mu L q / (w c^3); an open edge has a creeping-flow length of some openings.
+  const T slot = T(12.0 * oil.dynamic_viscosity);
+  d.slot_per_length = slot / (d.clearance2 * p[row::radial_clearance]);
+  d.slot_corner = slot * T(c::slot_resistance);
+  d.edge_loss = T(4.0 * oil.density / (2.0 * c::cd_metering * c::cd_metering));
+  d.hose_loss = T(4.0) * p[row::hose_resistance] * p[row::port_width] * p[row::port_width];
+  d.leak = p[row::cross_piston_leakage] * T(1.0 / oil.viscosity_ratio);
+  d.viscous = p[row::piston_viscous_friction] * T(std::sqrt(oil.viscosity_ratio));  // mixed lubrication of seals
+  d.inverse_mass = T(1.0) / p[row::moving_mass];
+  d.inverse_bulk = T(1.0) / p[row::bulk_modulus];
+  d.air = p[row::air_fraction] * T(c::atmospheric_pressure);
+  return d;
+}
+
+}  // namespace servodx

@@ -1,0 +1,92 @@
+// Named places of the model that effects fill. The model knows no effect; an effect is a struct with
+//   name, place, parameters (static list), n_states, and any of these members, each taking a view of the run:
+//     struct Memory, drive(memory, command, p)  [A]  applied to the command at each sample, with memory of its past
+//     flapper_force(view)  [N]   added to the torque motor's force
+//     spool_force(view)    [N]   added to the force on the spool
+//     flow_a(view), flow_b(view) [m3/s]  added to the flow into the chamber
+//     piston_force(view)   [N]   added to the force on the piston
+//     body_velocity(view)  [m/s] of the cylinder body; the rod is measured relative to it
+//     derivative(view)     tuple of the derivatives of its own states
+// A place without an effect adds nothing, not even a zero.
+#pragma once
+#include <tuple>
+#include <type_traits>
+
+#include "model/state.h"
+#include "parameters/list.h"
+
+namespace servodx {
+
+struct Nothing {};
+template <class X>
+X operator+(const X& x, Nothing) { return x; }
+template <class X>
+  requires(!std::is_same_v<X, Nothing>)
+X operator+(Nothing, const X& x) { return x; }
+template <class X>
+X operator-(const X& x, Nothing) { return x; }
+
+template <class... E>
+struct EffectList {
+  static constexpr int size = sizeof...(E);
+  static constexpr int n_states = (0 + ... + E::n_states);
+  static constexpr int n_parameters = (0 + ... + E::n_parameters);
+  // Offset of an effect's own states or parameters among all effects'.
+  template <class Wanted>
+  static constexpr int state_offset() {
+    int at = 0;
+    bool found = false;
+    ((found = found || std::is_same_v<E, Wanted>, at += found ? 0 : E::n_states), ...);
+    return at;
+  }
+  template <class Wanted>
+  static constexpr int parameter_offset() {
+    int at = 0;
+    bool found = false;
+    ((found = found || std::is_same_v<E, Wanted>, at += found ? 0 : E::n_parameters), ...);
+    return at;
+  }
+};
+
+// What a hook sees: states, inputs and rows.
+template <class List, class States, class In, class T>
+struct View {
+  const States& s;
+  const In& u;
+  const T* p;  // the 41 rows, then the effects' parameters in the order of the list
+
+  template <int K>
+  auto state() const { return s.template get<K>(); }
+  // j-th parameter of effect E, SI.
+  template <class E>
+  const T& own(int j) const { return p[n_parameters + List::template parameter_offset<E>() + j]; }
+  // J-th state of effect E.
+  template <class E, int J>
+  auto own_state() const { return s.template get<n_base_states + List::template state_offset<E>() + J>(); }
+};
+
+#define SERVODX_HOOK(name)                                                        \
+  template <class V, class... E>                                                  \
+  auto hook_##name(const V& view, EffectList<E...>) {                             \
+    return (Nothing{} + ... + [&](auto effect) {                                  \
+      if constexpr (requires { effect.name(view); }) return effect.name(view);    \
+      else return Nothing{};                                                      \
+    }(E{}));                                                                      \
+  }
+SERVODX_HOOK(flapper_force)
+SERVODX_HOOK(spool_force)
+SERVODX_HOOK(flow_a)
+SERVODX_HOOK(flow_b)
+SERVODX_HOOK(piston_force)
+SERVODX_HOOK(body_velocity)
+#undef SERVODX_HOOK
+
+template <class V, class... E>
+auto effect_derivatives(const V& view, EffectList<E...>) {
+  return std::tuple_cat([&](auto effect) {
+    if constexpr (requires { effect.derivative(view); }) return effect.derivative(view);
+    else return std::tuple<>{};
+  }(E{})...);
+}
+
+}  // namespace servodx

@@ -1,0 +1,21 @@
+#include <cmath>
+
+#include "model/state.h"
+
+namespace servodx {
+
+Oil oil_at(double density_20, double kinematic_viscosity_40, double temperature_kelvin) {
+  // Walther slope: 2.45 is MIL-PRF-5606 between 40 and 100 degC (13.5 and 5.1 mm2/s), 3.6 a mineral oil of viscosity
+  // index 100; polymer-thickened aircraft fluids are the thin ones.
+  const double slope = kinematic_viscosity_40 < 20e-6 ? 2.45 : 3.6;
+  const auto walther = [](double nu) { return std::log10(std::log10(nu * 1e6 + 0.7)); };
+  const double z = walther(kinematic_viscosity_40) - slope * (std::log10(temperature_kelvin) - std::log10(313.15));
+  const double nu = (std::pow(10.0, std::pow(10.0, z)) - 0.7) * 1e-6;
+  Oil oil;
+  oil.density = density_20 * (1.0 - 7e-4 * (temperature_kelvin - 293.15));  // thermal expansion of mineral oils
+  oil.dynamic_viscosity = nu * oil.density;
+  oil.viscosity_ratio = nu / kinematic_viscosity_40;
+  return oil;
+}
+
+}  // namespace servodx

@@ -1,0 +1,272 @@
+// The run of one pack of candidates over one log. Included only by the translation units that instantiate it.
+#pragma once
+#include <array>
+#include <cmath>
+#include <tuple>
+
+#include "base/pack.h"
+#include "base/sparse_dual.h"
+#include "effects/registry.h"
+#include "integrate/rodas3.h"
+#include "model/derivative.h"
+#include "simulate/scenario.h"
+
+namespace servodx {
+
+template <int N, class T>
+struct PlainStates {
+  const std::array<T, N>& y;
+  template <int K>
+  T get() const { return y[K]; }
+};
+template <int N, class T>
+struct DualStates {
+  const std::array<T, N>& y;
+  template <int K>
+  Dual<T, Mask{1} << K> get() const { return seed<K>(y[K], T(1.0)); }
+};
+
+// The model as the stepper sees it. Settling: spool, piston and measured pressures are held, and the current is free
+// and finds the value that holds the spool; its fixed point is the initial state.
+template <class T, class Effects, bool Settling>
+struct System {
+  static constexpr int n = n_base_states + Effects::n_states;
+  static constexpr Mask time_mask = Mask{1} << n;
+  using TimeDual = Dual<T, time_mask>;
+
+  const T* p;
+  const Derived<T>& d;
+  Inputs<T> at, slope;              // at the start of the substep, and per second
+  T hold_spool, hold_pressure, hold_piston, settle_rate;  // settling only: 1 held, 0 free
+
+  template <class S, class In>
+  inline __attribute__((always_inline)) auto evaluate(const S& s, const In& u) const {
+    auto f = derivative<Effects, T>(s, u, p, d);
+    if constexpr (!Settling) {
+      return f;
+    } else {
+      // di/dt = -rate * (net spool force in terms of current) when the spool is held.
+      const auto force = std::get<s_v_spool>(f) * (settle_rate * hold_spool);
+      const T free_spool = T(1.0) - hold_spool, free_pressure = T(1.0) - hold_pressure, free_piston = T(1.0) - hold_piston;
+      auto g = std::make_tuple(
+          std::get<s_current>(f) * free_spool - force, std::get<1>(f), std::get<2>(f), std::get<3>(f), std::get<4>(f),
+          std::get<5>(f), std::get<s_x_spool>(f) * free_spool, std::get<s_v_spool>(f) * free_spool,
+          std::get<s_p_a>(f) * free_pressure, std::get<s_p_b>(f) * free_pressure, std::get<s_x_piston>(f) * free_piston,
+          std::get<s_v_piston>(f) * free_piston);
+      return std::tuple_cat(g, rest(f, std::make_integer_sequence<int, Effects::n_states>{}));
+    }
+  }
+  template <class F, int... I>
+  static auto rest(const F& f, std::integer_sequence<int, I...>) {
+    return std::make_tuple(std::get<n_base_states + I>(f)...);
+  }
+
+  void value(const std::array<T, n>& y, const T& t, std::array<T, n>& f) const {
+    const Inputs<T> u{at.current + slope.current * t, at.supply_pressure + slope.supply_pressure * t,
+                      at.return_pressure + slope.return_pressure * t, at.load_force + slope.load_force * t};
+    const auto g = evaluate(PlainStates<n, T>{y}, u);
+    unroll<n>([&](auto i) { f[i] = std::get<i>(g); });
+  }
+
+  using DualResult = decltype(std::declval<System>().evaluate(std::declval<DualStates<n, T>>(), std::declval<Inputs<TimeDual>>()));
+  template <class X>
+  struct MaskOf { static constexpr Mask value = 0; };
+  template <class U, Mask M>
+  struct MaskOf<Dual<U, M>> { static constexpr Mask value = M; };
+  template <int I>
+  static constexpr Mask mask_of() { return MaskOf<std::tuple_element_t<I, DualResult>>::value; }
+  static constexpr Pattern<n> make_pattern() {
+    Pattern<n> out;
+    [&]<int... I>(std::integer_sequence<int, I...>) {
+      ((out.row[I] = mask_of<I>() & ~time_mask), ...);
+    }(std::make_integer_sequence<int, n>{});
+    return out;
+  }
+  static constexpr Pattern<n> pattern = make_pattern();
+
+  template <class W>
+  void value_and_jacobian(const std::array<T, n>& y, const T&, std::array<T, n>& f, W& w, std::array<T, n>& f_t) const {
+    using Lu = SparseLu<n, pattern>;
+    const Inputs<TimeDual> u{seed<n>(at.current, slope.current), seed<n>(at.supply_pressure, slope.supply_pressure),
+                             seed<n>(at.return_pressure, slope.return_pressure), seed<n>(at.load_force, slope.load_force)};
+    const auto g = evaluate(DualStates<n, T>{y}, u);
+    unroll<n>([&](auto i) {
+      constexpr Mask m = mask_of<i>();
+      const auto& gi = std::get<i>(g);
+      f[i] = gi.v;
+      if constexpr (holds(m, n)) f_t[i] = gi.d[slot(m, n)];
+      else f_t[i] = T(0.0);
+      unroll<n>([&](auto j) {
+        if constexpr (Lu::plan.slot[i][j] >= 0) {
+          if constexpr (holds(m, j)) w[Lu::plan.slot[i][j]] = -gi.d[slot(m, j)];
+          else w[Lu::plan.slot[i][j]] = T(0.0);
+        }
+      });
+    });
+  }
+};
+
+// Current that the torque motor feels at each sample: null added, then the effects' memories in the order of the list.
+template <class T, class Effects>
+struct Drive;
+template <class T, class... E>
+struct Drive<T, EffectList<E...>> {
+  template <class X>
+  static auto memory_of(X) {
+    if constexpr (requires { typename X::template Memory<T>; }) return typename X::template Memory<T>{};
+    else return Nothing{};
+  }
+  std::tuple<decltype(memory_of(E{}))...> memory;
+  void rest(const T& current) {
+    (
+        [&] {
+          if constexpr (requires { typename E::template Memory<T>; })
+            E::rest(std::get<index_of<E>()>(memory), current);
+        }(),
+        ...);
+  }
+  template <class X>
+  static constexpr int index_of() {
+    int at = 0, found = -1;
+    ((found = std::is_same_v<E, X> ? at : found, ++at), ...);
+    return found;
+  }
+  T operator()(T current, const T* p, const T& rated) {
+    (
+        [&] {
+          if constexpr (requires { typename E::template Memory<T>; })
+            current = E::drive(std::get<index_of<E>()>(memory), current,
+                               p + n_parameters + EffectList<E...>::template parameter_offset<E>(), rated);
+        }(),
+        ...);
+    return current;
+  }
+};
+
+// Runs `lanes` candidates (at most the width of T) over the log and writes their trajectories.
+template <class T, class Effects>
+void run_pack(const Scenario& in, const ParameterVector* const* candidates, Trajectory* const* results, int lanes,
+              const SimulateOptions& options) {
+  constexpr int n = System<T, Effects, false>::n;
+  constexpr int width = Lanes<T>::count;
+  const std::size_t samples = in.time.size();
+
+  std::array<T, n_candidate> p;
+  for (int k = 0; k < n_candidate; ++k)
+    for (int lane = 0; lane < width; ++lane) Lanes<T>::set(p[k], lane, (*candidates[lane < lanes ? lane : 0])[k]);
+  if (in.current_measured) p[row::driver_bandwidth] = T(2e4);  // the amplifier is behind us
+  const Derived<T> d = derive<T>(p.data(), in.oil);
+  const T rated = T(in.rated_current), null = p[row::servovalve_null] * rated;
+
+  const auto input = [&](const std::vector<double>& series, std::size_t k, const T& table) {
+    return series.empty() ? table : T(series[k]);
+  };
+  const auto inputs_at = [&](std::size_t k, const T& current) {
+    return Inputs<T>{current, input(in.supply_pressure, k, p[row::supply_pressure]),
+                     input(in.return_pressure, k, p[row::return_pressure]), input(in.load_force, k, T(0.0))};
+  };
+
+  // Initial state.
+  std::array<T, n> y{};
+  Inputs<T> u = inputs_at(0, T(in.command[0]) + null);
+  const T half = T(0.5) * (u.supply_pressure + u.return_pressure);
+  const auto known = [](const std::optional<double>& x, const T& otherwise) { return x ? T(*x) : otherwise; };
+  y[s_p_filter] = u.supply_pressure;
+  y[s_p_pilot_1] = y[s_p_pilot_2] = half;
+  y[s_x_spool] = known(in.spool_start, T(0.0));
+  y[s_p_a] = known(in.pressure_a_start, half);
+  y[s_p_b] = known(in.pressure_b_start, half);
+  y[s_x_piston] = known(in.piston_start, T(0.0)) / p[row::position_sensor_gain];
+  y[s_v_piston] = T(in.piston_velocity_start);
+  y[s_current] = u.current;
+  {
+    System<T, Effects, true> settling{p.data(), d, u, Inputs<T>{T(0.0), T(0.0), T(0.0), T(0.0)},
+                                      T(in.spool_start ? 1.0 : 0.0), T(in.pressure_a_start && in.pressure_b_start ? 1.0 : 0.0),
+                                      T(1.0), T(0.0)};
+    // A spool out of balance by the force that one amp makes settles at this rate; the pilot's own poles are faster.
+    constexpr double rate = 400.0;  // [1/s]
+    const T force_per_amp = p[row::torque_motor_gain] * d.inverse_flapper_stiffness * d.spool_area * half / p[row::nozzle_gap];
+    settling.settle_rate = T(rate) / (d.inverse_spool_mass * force_per_amp);
+    for (int k = 0; k < 60; ++k) rodas3_step<T>(settling, y, k < 20 ? 2e-4 : 1e-3);
+  }
+  Drive<T, Effects> drive;
+  drive.rest(y[s_current]);  // the history that ends at the current which holds the spool
+  T current = drive(T(in.command[0]) + null, p.data(), rated);
+
+  for (int lane = 0; lane < lanes; ++lane) {
+    results[lane]->ok = true;
+    for (int c = 0; c < n_simulated; ++c) {
+      results[lane]->signals[c].clear();
+      if (options.wanted[c]) results[lane]->signals[c].resize(samples);
+    }
+  }
+  const auto report = [&](std::size_t k, const Inputs<T>& now) {
+    std::array<T, n_simulated> out;
+    out[0] = y[s_x_spool];
+    // A first-order lag of a smooth motion: true to first order in lag over period.
+    out[1] = p[row::position_sensor_gain] * (y[s_x_piston] - p[row::position_sensor_lag] * y[s_v_piston]);
+    out[2] = y[s_p_a];
+    out[3] = y[s_p_b];
+    out[4] = y[s_p_pilot_1];
+    out[5] = y[s_p_pilot_2];
+    if (options.wanted[6] || options.wanted[7]) {
+      const auto flow = [&](const T& opening, const T& dp) { return std::get<0>(metering_edge(opening, dp, d, p.data())); };
+      out[6] = flow(y[s_x_spool] - p[row::lap_pa], now.supply_pressure - y[s_p_a]) -
+               flow(-y[s_x_spool] - p[row::lap_at], y[s_p_a] - now.return_pressure);
+      out[7] = flow(-y[s_x_spool] - p[row::lap_pb], now.supply_pressure - y[s_p_b]) -
+               flow(y[s_x_spool] - p[row::lap_bt], y[s_p_b] - now.return_pressure);
+    }
+    bool any = false;
+    for (int lane = 0; lane < lanes; ++lane) {
+      if (!results[lane]->ok) continue;
+      // Beyond 1 m of spool or 1e5 bar the numbers mean nothing.
+      const bool sane = std::abs(Lanes<T>::get(y[s_x_spool], lane)) < 1.0 && std::abs(Lanes<T>::get(y[s_p_a], lane)) < 1e10 &&
+                        std::abs(Lanes<T>::get(y[s_p_b], lane)) < 1e10 && std::abs(Lanes<T>::get(y[s_x_piston], lane)) < 1e3;
+      if (!sane) {
+        results[lane]->ok = false;
+        results[lane]->failed_at = in.time[k];
+        continue;
+      }
+      any = true;
+      for (int c = 0; c < n_simulated; ++c)
+        if (options.wanted[c]) results[lane]->signals[c][k] = Lanes<T>::get(out[c], lane);
+    }
+    return any;
+  };
+
+  System<T, Effects, false> live{p.data(), d, {}, {}, T(0.0), T(0.0), T(0.0), T(0.0)};
+  Inputs<T> now = inputs_at(0, current);
+  if (!report(0, now)) return;
+  for (std::size_t k = 0; k + 1 < samples; ++k) {
+    const double dt = in.time[k + 1] - in.time[k];
+    const int substeps = std::max(1, static_cast<int>(std::ceil(dt / options.step - 1e-6)));
+    const double h = dt / substeps;
+    const T next_current = drive(T(in.command[k + 1]) + null, p.data(), rated);
+    const Inputs<T> next = inputs_at(k + 1, next_current);
+    const T per = T(1.0 / dt);
+    live.slope = {p[nuisance::command_slope] * (next.current - now.current) * per, (next.supply_pressure - now.supply_pressure) * per,
+                  (next.return_pressure - now.return_pressure) * per, (next.load_force - now.load_force) * per};
+    for (int j = 0; j < substeps; ++j) {
+      const T t = T(h * j);
+      live.at = {now.current + live.slope.current * t, now.supply_pressure + live.slope.supply_pressure * t,
+                 now.return_pressure + live.slope.return_pressure * t, now.load_force + live.slope.load_force * t};
+      rodas3_step<T>(live, y, h);
+    }
+    now = next;
+    if (!report(k + 1, now)) return;
+  }
+}
+
+using RunPack = void (*)(const Scenario&, const ParameterVector* const*, Trajectory* const*, int, const SimulateOptions&);
+
+struct Kernels {
+  int width;
+  const char* name;
+  RunPack base, extended;  // without and with effects
+};
+Kernels kernels_scalar();
+Kernels kernels_generic();
+Kernels kernels_avx2();
+Kernels kernels_avx512();
+
+}  // namespace servodx

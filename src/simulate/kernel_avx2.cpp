@@ -1,0 +1,10 @@
+#include "simulate/kernel.h"
+
+namespace servodx {
+
+Kernels kernels_avx2() {
+  using T = Pack<4, 2>;
+  return {T::lanes, "avx2", &run_pack<T, NoEffects>, &run_pack<T, AllEffects>};
+}
+
+}  // namespace servodx

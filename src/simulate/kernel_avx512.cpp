@@ -1,0 +1,10 @@
+#include "simulate/kernel.h"
+
+namespace servodx {
+
+Kernels kernels_avx512() {
+  using T = Pack<8, 5>;
+  return {T::lanes, "avx512", &run_pack<T, NoEffects>, &run_pack<T, AllEffects>};
+}
+
+}  // namespace servodx

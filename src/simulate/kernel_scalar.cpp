@@ -1,0 +1,7 @@
+#include "simulate/kernel.h"
+
+namespace servodx {
+
+Kernels kernels_scalar() { return {1, "scalar", &run_pack<double, NoEffects>, &run_pack<double, AllEffects>}; }
+
+}  // namespace servodx

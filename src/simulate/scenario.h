@@ -1,0 +1,56 @@
+// What a log gives a simulation: inputs at the sample times, where to start, and what to report. SI.
+#pragma once
+#include <array>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "effects/registry.h"
+#include "model/state.h"
+#include "signals/signal.h"
+
+namespace servodx {
+
+// A candidate: the 41 rows, the effects' parameters, then the nuisances of the log. SI.
+using ParameterVector = std::vector<double>;
+namespace nuisance {
+// Command between samples: 0 holds the last sample, 1 runs in a line to the next.
+inline constexpr int command_slope = n_values;
+}  // namespace nuisance
+inline constexpr int n_candidate = n_values + 1;
+
+struct Scenario {
+  std::vector<double> time;             // [s]
+  std::vector<double> command;          // [A]
+  bool current_measured = false;        // `command` is the coil current: it drives the model behind the amplifier
+  std::vector<double> supply_pressure;  // [Pa] empty: the table's
+  std::vector<double> return_pressure;  // [Pa] empty: the table's
+  std::vector<double> load_force;       // [N] empty: none
+  Oil oil;
+  double rated_current = 0.02;          // [A]
+  // Measured at the first sample, where the log has it.
+  std::optional<double> spool_start, pressure_a_start, pressure_b_start, piston_start;
+  double piston_velocity_start = 0.0;   // [m/s]
+};
+
+// Signals that the model can report.
+inline constexpr std::array<Signal, 8> simulated_signals = {
+    Signal::spool_position,   Signal::piston_position, Signal::pressure_a, Signal::pressure_b,
+    Signal::pilot_pressure_1, Signal::pilot_pressure_2, Signal::flow_a,    Signal::flow_b};
+inline constexpr int n_simulated = static_cast<int>(simulated_signals.size());
+// Position in simulated_signals, or -1.
+int simulated_index(Signal s);
+
+struct Trajectory {
+  bool ok = false;
+  double failed_at = 0.0;  // [s] where it left the finite numbers, if not ok
+  std::array<std::vector<double>, n_simulated> signals;  // empty unless asked for
+};
+
+struct SimulateOptions {
+  double step = 1.0e-3 / 3.0;  // [s] largest substep; substeps divide each sample interval evenly
+  std::array<bool, n_simulated> wanted = {true, true, true, true, false, false, false, false};
+  int threads = 0;             // 0: all
+};
+
+}  // namespace servodx

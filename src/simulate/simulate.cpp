@@ -1,0 +1,91 @@
+#include "simulate/simulate.h"
+
+#include <omp.h>
+
+#include <algorithm>
+
+#include "simulate/kernel.h"
+
+namespace servodx {
+namespace {
+
+const Kernels& best_kernels() {
+  static const Kernels chosen = [] {
+#if defined(__x86_64__)
+    if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq")) return kernels_avx512();
+    if (__builtin_cpu_supports("avx2")) return kernels_avx2();
+#endif
+    return kernels_generic();
+  }();
+  return chosen;
+}
+
+// True where every effect is at its off value, so that the base model is the same and cheaper.
+bool effects_off(const ParameterVector& v) {
+  for (const EffectInfo& e : effect_list())
+    if (v[e.first] != e.parameters[0].off) return false;
+  return true;
+}
+
+struct PackOfJobs {
+  std::size_t first = 0;
+  int count = 0;
+  bool off = true;
+};
+
+}  // namespace
+
+int simulated_index(Signal s) {
+  const auto it = std::find(simulated_signals.begin(), simulated_signals.end(), s);
+  return it == simulated_signals.end() ? -1 : static_cast<int>(it - simulated_signals.begin());
+}
+
+void simulate(std::span<const Job> jobs, const SimulateOptions& options) {
+  const Kernels& kernels = best_kernels();
+  std::vector<PackOfJobs> packs;
+  for (std::size_t i = 0; i < jobs.size(); ++i) {
+    const bool off = effects_off(*jobs[i].candidate);
+    if (!packs.empty() && packs.back().count < kernels.width && packs.back().off == off &&
+        jobs[packs.back().first].scenario == jobs[i].scenario)
+      ++packs.back().count;
+    else
+      packs.push_back({i, 1, off});
+  }
+  // Longest logs first, so that no thread ends on a long one; the result does not depend on the order.
+  std::vector<std::size_t> order(packs.size());
+  for (std::size_t k = 0; k < order.size(); ++k) order[k] = k;
+  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+    return jobs[packs[a].first].scenario->time.size() > jobs[packs[b].first].scenario->time.size();
+  });
+  const int threads = options.threads > 0 ? options.threads : omp_get_max_threads();
+  const auto count = static_cast<long>(packs.size());
+#pragma omp parallel for schedule(dynamic, 1) num_threads(threads)
+  for (long k = 0; k < count; ++k) {
+    const PackOfJobs& pack = packs[order[k]];
+    const ParameterVector* candidates[16];
+    Trajectory* results[16];
+    for (int lane = 0; lane < pack.count; ++lane) {
+      candidates[lane] = jobs[pack.first + lane].candidate;
+      results[lane] = jobs[pack.first + lane].result;
+    }
+    const Scenario& scenario = *jobs[pack.first].scenario;
+    if (pack.count == 1) {
+      const Kernels scalar = kernels_scalar();
+      (pack.off ? scalar.base : scalar.extended)(scenario, candidates, results, 1, options);
+    } else {
+      (pack.off ? kernels.base : kernels.extended)(scenario, candidates, results, pack.count, options);
+    }
+  }
+}
+
+Trajectory simulate(const Scenario& scenario, const ParameterVector& candidate, const SimulateOptions& options) {
+  Trajectory t;
+  const Job job{&scenario, &candidate, &t};
+  simulate(std::span(&job, 1), options);
+  return t;
+}
+
+std::string instruction_set() { return best_kernels().name; }
+int pack_width() { return best_kernels().width; }
+
+}  // namespace servodx

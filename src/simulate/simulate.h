@@ -1,0 +1,26 @@
+// Runs candidates against logs: where the model's templates end. One run or many are the same code: candidates fill the
+// lanes of packs, packs are spread over threads, and a lane equals the run alone bit for bit.
+#pragma once
+#include <functional>
+#include <span>
+#include <string>
+
+#include "simulate/scenario.h"
+
+namespace servodx {
+
+struct Job {
+  const Scenario* scenario = nullptr;
+  const ParameterVector* candidate = nullptr;  // n_candidate values
+  Trajectory* result = nullptr;
+};
+
+// Runs all jobs. Neighbouring jobs of one scenario share packs. A candidate that diverges has ok = false; nothing throws.
+void simulate(std::span<const Job> jobs, const SimulateOptions& options = {});
+Trajectory simulate(const Scenario& scenario, const ParameterVector& candidate, const SimulateOptions& options = {});
+
+// Name of the instruction set in use: "avx512", "avx2" or "generic".
+std::string instruction_set();
+int pack_width();
+
+}  // namespace servodx
