@@ -1,0 +1,374 @@
+#include "parameters/table.h"
+
+#include <openssl/evp.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <cstdio>
+#include <fstream>
+#include <iterator>
+#include <map>
+#include <set>
+#include <sstream>
+#include <string_view>
+
+#include "base/error.h"
+
+namespace servodx {
+namespace {
+
+constexpr std::array<std::string_view, 11> required_columns = {
+    "id", "name", "group", "nominal", "lower", "upper", "scale", "estimate", "unit", "description", "source"};
+constexpr std::string_view std_error_column = "std_error";
+constexpr std::string_view effect_prefix = "effect:";
+
+std::string number_text(double value) {
+  char buffer[40];
+  const auto end = std::to_chars(buffer, buffer + sizeof buffer, value).ptr;
+  return {buffer, end};
+}
+
+std::string with_unit(double value, std::string_view unit) {
+  std::string text = number_text(value);
+  if (unit != "-") text.append(" ").append(unit);
+  return text;
+}
+
+std::string trimmed(std::string_view text) {
+  const auto first = text.find_first_not_of(" \t");
+  if (first == std::string_view::npos) return {};
+  return std::string(text.substr(first, text.find_last_not_of(" \t") - first + 1));
+}
+
+std::string sha256_of(std::string_view bytes) {
+  unsigned char digest[EVP_MAX_MD_SIZE];
+  unsigned int length = 0;
+  EVP_Digest(bytes.data(), bytes.size(), digest, &length, EVP_sha256(), nullptr);
+  constexpr char hex[] = "0123456789abcdef";
+  std::string text;
+  for (unsigned int i = 0; i < length; ++i) {
+    text += hex[digest[i] >> 4];
+    text += hex[digest[i] & 15];
+  }
+  return text;
+}
+
+struct Record {
+  long line = 0;  // where it begins
+  std::vector<std::string> cells;
+};
+
+// One record from `pos` on. A quoted cell may hold separators, doubled quotes and line ends.
+Record next_record(std::string_view text, std::size_t& pos, long& line, const std::string& file) {
+  Record record{line, {}};
+  std::string cell;
+  bool was_quoted = false;
+  const auto finish_cell = [&] {
+    record.cells.push_back(was_quoted ? cell : trimmed(cell));
+    cell.clear();
+    was_quoted = false;
+  };
+  while (pos < text.size()) {
+    const char c = text[pos];
+    if (c == '"' && trimmed(cell).empty() && !was_quoted) {
+      cell.clear();
+      was_quoted = true;
+      for (++pos;; ++pos) {
+        if (pos >= text.size())
+          throw InputError({file, record.line, ""}, "a quoted cell is not closed", "add the missing '\"'");
+        if (text[pos] == '\n') ++line;
+        if (text[pos] != '"') {
+          cell += text[pos];
+        } else if (pos + 1 < text.size() && text[pos + 1] == '"') {
+          cell += text[++pos];
+        } else {
+          break;
+        }
+      }
+      ++pos;
+      continue;
+    }
+    ++pos;
+    if (c == ',') {
+      finish_cell();
+    } else if (c == '\n') {
+      ++line;
+      break;
+    } else if (c != '\r') {
+      if (!was_quoted || (c != ' ' && c != '\t')) cell += c;
+    }
+  }
+  finish_cell();
+  return record;
+}
+
+bool blank(const Record& record) { return record.cells.size() == 1 && record.cells[0].empty(); }
+
+class Reader {
+ public:
+  explicit Reader(std::string path) : file_(std::move(path)) {}
+
+  Table read() {
+    std::ifstream stream(file_, std::ios::binary);
+    if (!stream) throw InputError({file_, 0, ""}, "the parameter table cannot be opened", "check the path");
+    const std::string bytes{std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
+    Table table;
+    table.path = file_;
+    table.sha256 = sha256_of(bytes);
+    std::string_view text = bytes;
+    if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);
+
+    std::size_t pos = 0;
+    long line = 1;
+    while (pos < text.size() && (text[pos] == '#' || text[pos] == '\n' || text[pos] == '\r')) {
+      const auto end = std::min(text.find('\n', pos), text.size());
+      std::string_view comment = text.substr(pos, end - pos);
+      if (comment.ends_with('\r')) comment.remove_suffix(1);
+      if (comment.starts_with('#')) table.comments.emplace_back(trimmed(comment.substr(1)));
+      pos = std::min(end + 1, text.size());
+      ++line;
+    }
+    if (pos >= text.size())
+      throw InputError({file_, 0, ""}, "the parameter table has no header row",
+                       "begin with id,name,group,nominal,lower,upper,scale,estimate,unit,description,source");
+    read_header(next_record(text, pos, line, file_));
+    table.has_std_error = column_.contains(std::string(std_error_column));
+
+    std::array<std::optional<Row>, n_parameters> known;
+    std::array<long, n_parameters> known_line{};
+    std::map<std::pair<std::string, std::string>, long> effect_line;
+    std::vector<Row> effects;
+    while (pos < text.size()) {
+      const Record record = next_record(text, pos, line, file_);
+      if (blank(record)) continue;
+      Row row = read_row(record);
+      if (row.id == 0) {
+        const auto [it, is_new] = effect_line.try_emplace({row.group, row.name}, record.line);
+        if (!is_new)
+          fail(record, "name",
+               "row '" + row.name + "' of '" + row.group + "' is here and on line " + std::to_string(it->second),
+               "remove one of the two");
+        effects.push_back(std::move(row));
+      } else {
+        const int i = row.id - 1;
+        if (known[i])
+          fail(record, "id",
+               "row " + std::to_string(row.id) + " '" + row.name + "' is here and on line " +
+                   std::to_string(known_line[i]),
+               "remove one of the two");
+        known_line[i] = record.line;
+        known[i] = std::move(row);
+      }
+    }
+    std::string missing;
+    int n_missing = 0;
+    for (int i = 0; i < n_parameters; ++i) {
+      if (known[i]) continue;
+      ++n_missing;
+      missing +=
+          (missing.empty() ? "" : ", ") + std::to_string(i + 1) + " '" + std::string(parameter_list[i].name) + "'";
+    }
+    if (n_missing > 0)
+      throw InputError({file_, 0, "id"}, "the table lacks " + std::to_string(n_missing) + " of its 41 rows: " + missing,
+                       "add them, for example from params/borello2009.csv");
+    for (auto& row : known) table.rows.push_back(std::move(*row));
+    for (auto& row : effects) table.rows.push_back(std::move(row));
+    return table;
+  }
+
+ private:
+  [[noreturn]] void fail(const Record& record, std::string_view column, std::string rule, std::string mend) const {
+    throw InputError({file_, record.line, std::string(column)}, std::move(rule), std::move(mend));
+  }
+
+  void read_header(const Record& header) {
+    n_columns_ = header.cells.size();
+    for (std::size_t i = 0; i < n_columns_; ++i) {
+      const std::string& cell = header.cells[i];
+      const bool known = cell == std_error_column ||
+                         std::find(required_columns.begin(), required_columns.end(), cell) != required_columns.end();
+      if (!known)
+        fail(header, cell.empty() ? "(" + std::to_string(i + 1) + ")" : cell, "unknown column",
+             "remove it; the columns are id,name,group,nominal,lower,upper,scale,estimate,unit,description,source "
+             "and std_error");
+      if (!column_.try_emplace(cell, i).second) fail(header, cell, "the column appears twice", "remove one of the two");
+    }
+    for (const auto name : required_columns)
+      if (!column_.contains(std::string(name))) fail(header, name, "the column is missing", "add it to the header");
+  }
+
+  const std::string& cell(const Record& record, std::string_view column) const {
+    return record.cells[column_.at(std::string(column))];
+  }
+
+  double number(const Record& record, std::string_view column) const {
+    const std::string& text = cell(record, column);
+    double value = 0;
+    const char* first = text.data() + (text.starts_with('+') ? 1 : 0);
+    const auto [end, status] = std::from_chars(first, text.data() + text.size(), value);
+    if (status != std::errc() || end != text.data() + text.size() || !std::isfinite(value))
+      fail(record, column, "'" + text + "' is not a finite number", "write a number with a decimal point, like 1.4e9");
+    return value;
+  }
+
+  void read_identity(const Record& record, Row& row) const {
+    const std::string& id = cell(record, "id");
+    row.name = cell(record, "name");
+    row.group = cell(record, "group");
+    if (row.name.empty()) fail(record, "name", "the name is empty", "write the parameter's name");
+    const int by_name = find_parameter(row.name);
+    if (id.empty()) {
+      if (!row.group.starts_with(effect_prefix) || row.group.size() == effect_prefix.size())
+        fail(record, "group", "a row without id belongs to an effect, but its group is '" + row.group + "'",
+             by_name >= 0 ? "write id " + std::to_string(by_name + 1) + " for '" + row.name + "'"
+                          : "write effect:NAME, or give the row its id");
+      if (by_name >= 0)
+        fail(record, "name", "'" + row.name + "' is the name of row " + std::to_string(by_name + 1),
+             "give the effect's row a name of its own");
+      return;
+    }
+    const auto [end, status] = std::from_chars(id.data(), id.data() + id.size(), row.id);
+    if (status != std::errc() || end != id.data() + id.size() || row.id < 1 || row.id > n_parameters)
+      fail(record, "id", "'" + id + "' is not a row number from 1 to 41",
+           by_name >= 0 ? "write " + std::to_string(by_name + 1) + " for '" + row.name + "'"
+                        : "write 1..41, or leave it empty for a row of an effect");
+    const ParameterInfo& info = parameter_list[row.id - 1];
+    if (row.name != info.name)
+      fail(record, "name", "row " + id + " is '" + std::string(info.name) + "', not '" + row.name + "'",
+           by_name >= 0 ? "write id " + std::to_string(by_name + 1) + " or name '" + std::string(info.name) + "'"
+                        : "write '" + std::string(info.name) + "'");
+    if (row.group != name_of(info.group))
+      fail(record, "group",
+           "'" + row.name + "' belongs to group '" + std::string(name_of(info.group)) + "', not '" + row.group + "'",
+           "write '" + std::string(name_of(info.group)) + "'");
+  }
+
+  Row read_row(const Record& record) const {
+    if (record.cells.size() != n_columns_)
+      fail(record, "",
+           "the row has " + std::to_string(record.cells.size()) + " cells, the header " + std::to_string(n_columns_),
+           "quote cells that hold a comma, and fill or remove cells");
+    Row row;
+    read_identity(record, row);
+    row.nominal = number(record, "nominal");
+    row.lower = number(record, "lower");
+    row.upper = number(record, "upper");
+
+    row.unit = cell(record, "unit");
+    if (row.id > 0 && row.unit != parameter_list[row.id - 1].unit)
+      fail(record, "unit", "unknown unit '" + row.unit + "' for '" + row.name + "'",
+           "write the values in SI and the unit '" + std::string(parameter_list[row.id - 1].unit) + "'");
+    if (row.unit.empty()) fail(record, "unit", "the unit is empty", "write the SI unit, or '-' for a pure number");
+
+    const std::string& scale = cell(record, "scale");
+    if (scale != "lin" && scale != "log10")
+      fail(record, "scale", "unknown scale '" + scale + "'", "write lin or log10");
+    row.log_scale = scale == "log10";
+    const std::string& estimate = cell(record, "estimate");
+    if (estimate != "0" && estimate != "1")
+      fail(record, "estimate", "'" + estimate + "' is neither 0 nor 1",
+           "write 1 to free the row in a fit, 0 to hold it");
+    row.estimate = estimate == "1";
+
+    const std::string lower = with_unit(row.lower, row.unit), upper = with_unit(row.upper, row.unit);
+    if (row.upper < row.lower)
+      fail(record, "upper", "'" + row.name + "' upper (" + upper + ") is below lower (" + lower + ")",
+           "swap them or widen 'upper'");
+    if (row.nominal < row.lower || row.nominal > row.upper)
+      fail(record, "nominal",
+           "'" + row.name + "' nominal (" + with_unit(row.nominal, row.unit) + ") is outside its bounds (" + lower +
+               " to " + upper + ")",
+           std::string("move it inside or widen '") + (row.nominal < row.lower ? "lower'" : "upper'"));
+    if (row.log_scale && row.lower <= 0)
+      fail(record, "lower", "'" + row.name + "' has scale log10 but its lower bound is " + lower,
+           "write a positive lower bound or scale lin");
+    if (row.estimate && row.lower == row.upper)
+      fail(record, "estimate", "'" + row.name + "' is to be estimated but its bounds are equal (" + lower + ")",
+           "write estimate 0 or widen the bounds");
+
+    row.description = cell(record, "description");
+    row.source = cell(record, "source");
+    if (column_.contains(std::string(std_error_column)) && !cell(record, std_error_column).empty()) {
+      row.std_error = number(record, std_error_column);
+      if (*row.std_error < 0)
+        fail(record, std_error_column, "'" + row.name + "' has a negative standard error",
+             "write a positive number, or leave it empty where it is not known");
+    }
+    return row;
+  }
+
+  std::string file_;
+  std::size_t n_columns_ = 0;
+  std::map<std::string, std::size_t> column_;
+};
+
+std::string quoted(const std::string& text) {
+  const bool padded = !text.empty() && (text.front() == ' ' || text.back() == ' ');
+  if (!padded && text.find_first_of(",\"\r\n\t") == std::string::npos) return text;
+  std::string out = "\"";
+  for (const char c : text) {
+    out += c;
+    if (c == '"') out += '"';
+  }
+  return out + '"';
+}
+
+}  // namespace
+
+int Table::find(const std::string& name) const {
+  for (std::size_t i = 0; i < rows.size(); ++i)
+    if (rows[i].name == name) return static_cast<int>(i);
+  return -1;
+}
+
+Table read_table(const std::string& path) { return Reader(path).read(); }
+
+void write_table(const std::string& path, const Table& table) {
+  std::ostringstream out;
+  for (const auto& comment : table.comments) out << "# " << comment << '\n';
+  for (std::size_t i = 0; i < required_columns.size(); ++i) out << (i ? "," : "") << required_columns[i];
+  if (table.has_std_error) out << ',' << std_error_column;
+  out << '\n';
+  for (const Row& row : table.rows) {
+    if (row.id > 0) out << row.id;
+    out << ',' << quoted(row.name) << ',' << quoted(row.group) << ',' << number_text(row.nominal) << ','
+        << number_text(row.lower) << ',' << number_text(row.upper) << ',' << (row.log_scale ? "log10" : "lin") << ','
+        << (row.estimate ? '1' : '0') << ',' << quoted(row.unit) << ',' << quoted(row.description) << ','
+        << quoted(row.source);
+    if (table.has_std_error) out << ',' << (row.std_error ? number_text(*row.std_error) : "");
+    out << '\n';
+  }
+  const std::string temporary = path + ".part" + std::to_string(getpid());
+  {
+    std::ofstream stream(temporary, std::ios::binary);
+    stream << out.str();
+    stream.flush();
+    if (!stream) {
+      std::remove(temporary.c_str());
+      throw InputError({path, 0, ""}, "the table cannot be written", "check that its folder exists and can be written");
+    }
+  }
+  if (std::rename(temporary.c_str(), path.c_str()) != 0) {
+    std::remove(temporary.c_str());
+    throw InputError({path, 0, ""}, "the table cannot be written", "check that the path is not a folder");
+  }
+}
+
+double to_unit(const Row& row, double value) {
+  const double span = row.log_scale ? std::log10(row.upper / row.lower) : row.upper - row.lower;
+  if (!(span > 0)) return 0.5;
+  const double u = row.log_scale ? std::log10(value / row.lower) / span : (value - row.lower) / span;
+  return std::clamp(u, 0.0, 1.0);
+}
+
+double from_unit(const Row& row, double u) {
+  const double value =
+      row.log_scale ? row.lower * std::pow(row.upper / row.lower, u) : row.lower + u * (row.upper - row.lower);
+  // Rounding must not carry a value past its bound: the table written with it would be refused.
+  return std::clamp(value, row.lower, row.upper);
+}
+
+}  // namespace servodx
