@@ -1,4 +1,7 @@
 // A rig log in SI units, with what its reader noticed.
+//
+// The reader refuses what cannot be trusted (structure, units, order of time, too many gaps) and reads with a note what
+// is merely implausible. It neither resamples nor filters nor corrects: jitter and gaps stay, missing samples are NaN.
 #pragma once
 #include <array>
 #include <string>
@@ -11,8 +14,11 @@ namespace servodx {
 
 struct Channel {
   std::vector<double> value;  // [SI] one a sample; NaN where the sample is missing. Empty: the log lacks this signal
-  std::string unit;           // unit of the header cell, for writing back
+  std::string unit;           // unit of the header cell, for writing back; for volts the unit after the gain
+  double full_scale = 0.0;    // [SI] what 100 % stands for where `unit` is '% of ...'; else 0
   double resolution = 0.0;    // [SI] smallest step between distinct values; 0 unknown
+  std::string column;         // the column's name in the file
+  std::size_t missing = 0;    // samples left out (NaN)
 };
 
 struct Log {
@@ -33,16 +39,26 @@ struct ReadOptions {
   bool require_drive = true;     // command or coil_current
 };
 
-// Reads a CSV log by the contract's rules. Throws InputError (file, line, column, rule, mend); nothing is returned half-read.
+// Largest part of a signal's samples that may be missing.
+inline constexpr double missing_limit = 0.05;
+
+// Reads a CSV log by the contract's rules. Throws InputError (file, line, column, rule, mend); nothing is returned
+// half-read.
 Log read_log(const std::string& path, const RigFile& rig = {}, const ReadOptions& options = {});
 
 struct OutputColumn {
   Signal signal;
   std::string unit;           // written in the header, "name [unit]"
-  std::vector<double> value;  // [SI]
+  std::vector<double> value;  // [SI]; NaN is written as an empty cell
+  double full_scale = 0.0;    // [SI] of 100 % where `unit` is '% of ...'
 };
 
-// Writes a canonical CSV (shortest round-trip digits) to a temporary name and renames it.
-void write_log(const std::string& path, const std::vector<OutputColumn>& columns, const std::vector<std::string>& comments = {});
+// `values` as a column in the log's own unit of that signal (the SI unit where the log lacks it).
+OutputColumn output_column(const Log& log, Signal signal, std::vector<double> values);
+
+// Writes a canonical CSV (shortest round-trip digits) to a temporary name and renames it. A value that was read from a
+// log reads back to the same bits in that log's unit; any value does in an SI unit.
+void write_log(const std::string& path, const std::vector<OutputColumn>& columns,
+               const std::vector<std::string>& comments = {});
 
 }  // namespace servodx

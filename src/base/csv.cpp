@@ -1,0 +1,240 @@
+#include "base/csv.h"
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <charconv>
+#include <cmath>
+#include <cstdlib>
+#include <cstring>
+#include <limits>
+
+namespace servodx {
+namespace {
+
+constexpr double missing_value = std::numeric_limits<double>::quiet_NaN();
+
+char sniff_separator(std::string_view line) {
+  long counts[3] = {};
+  const char candidates[3] = {';', '\t', ','};
+  bool quoted = false;
+  for (char c : line) {
+    if (c == '"') quoted = !quoted;
+    if (quoted) continue;
+    for (int i = 0; i < 3; ++i) counts[i] += c == candidates[i];
+  }
+  const auto best = std::max_element(counts, counts + 3) - counts;
+  return counts[best] > 0 ? candidates[best] : ',';
+}
+
+// A number that std::from_chars did not take whole: sign '+', decimal comma, range. `text` is trimmed.
+Cell parse_cell(std::string_view text, bool decimal_comma, double& value) {
+  char buffer[64];
+  value = missing_value;
+  if (text.empty()) return Cell::missing;
+  if (text.size() >= sizeof buffer) return Cell::text;
+  std::size_t size = 0;
+  bool comma = false;
+  for (char c : text) {
+    if (c == ',' && decimal_comma && !comma) {
+      comma = true;
+      c = '.';
+    } else if (c == ',' || (comma && c == '.')) {
+      return Cell::text;
+    }
+    buffer[size++] = c;
+  }
+  buffer[size] = '\0';
+  const char* first = buffer;
+  if (size > 1 && buffer[0] == '+' && buffer[1] != '-') ++first;
+  const char* const last = buffer + size;
+  auto [end, error] = std::from_chars(first, last, value);
+  if (error == std::errc::result_out_of_range) {
+    value = std::strtod(first, nullptr);
+    if (std::abs(value) >= 1.0) error = std::errc::invalid_argument;  // overflow; an underflow is its nearest double
+  }
+  if (error != std::errc() || end != last || std::isinf(value)) {
+    value = missing_value;
+    return Cell::text;
+  }
+  return std::isnan(value) ? Cell::missing : Cell::number;
+}
+
+}  // namespace
+
+std::string read_file(const std::string& path) {
+  struct Descriptor {
+    int fd;
+    ~Descriptor() {
+      if (fd >= 0) ::close(fd);
+    }
+  } file{::open(path.c_str(), O_RDONLY | O_CLOEXEC)};
+  const auto refuse = [&](const std::string& why) {
+    throw InputError({path, 0, ""}, "cannot be read: " + why, "check the path and its permissions");
+  };
+  struct stat status {};
+  if (file.fd < 0 || ::fstat(file.fd, &status) != 0) refuse(std::strerror(errno));
+  if (S_ISDIR(status.st_mode)) refuse("it is a folder");
+  std::string text;
+  text.resize(S_ISREG(status.st_mode) ? static_cast<std::size_t>(status.st_size) + 1 : std::size_t{1} << 16);
+  std::size_t size = 0;
+  while (true) {
+    if (size == text.size()) text.resize(2 * size);
+    const ssize_t got = ::read(file.fd, text.data() + size, text.size() - size);
+    if (got < 0 && errno == EINTR) continue;
+    if (got < 0) refuse(std::strerror(errno));
+    if (got == 0) break;
+    size += static_cast<std::size_t>(got);
+  }
+  text.resize(size);
+  return text;
+}
+
+CsvCursor::CsvCursor(std::string_view text, std::string path)
+    : path_(std::move(path)), p_(text.data()), end_(text.data() + text.size()) {
+  if (text.starts_with("\xEF\xBB\xBF")) p_ += 3;
+  if (text.starts_with("\xFF\xFE") || text.starts_with("\xFE\xFF"))
+    throw InputError({path_, 1, ""}, "the text is UTF-16", "save the file as UTF-8");
+  while (next_row()) {
+    const char* stop = std::find(p_, end_, '\n');
+    std::string_view line(p_, static_cast<std::size_t>(stop - p_));
+    if (line.starts_with('#')) {
+      if (line.ends_with('\r')) line.remove_suffix(1);
+      line.remove_prefix(1);
+      if (line.starts_with(' ')) line.remove_prefix(1);
+      comments_.emplace_back(line);
+      p_ = stop;
+      more_ = false;
+      continue;
+    }
+    separator_ = sniff_separator(line);
+    header_line_ = line_;
+    for (std::string cell; next_cell(cell);) header_.push_back(cell);
+    return;
+  }
+  throw InputError({path_, 0, ""}, "the file has no header row", "begin it with a row of column names");
+}
+
+void CsvCursor::count_line_ends(const char* from, const char* to) { next_line_ += std::count(from, to, '\n'); }
+
+bool CsvCursor::next_row() {
+  while (in_row_ && more_) skip_cell();
+  in_row_ = false;
+  while (p_ != end_) {
+    const char* q = p_;
+    while (q != end_ && (is_blank(*q) || *q == '\r')) ++q;
+    if (q == end_) break;
+    if (*q != '\n') {
+      line_ = next_line_;
+      in_row_ = more_ = true;
+      return true;
+    }
+    p_ = q + 1;
+    ++next_line_;
+  }
+  p_ = end_;
+  return false;
+}
+
+// At the end of a cell's text: steps over trailing blanks and the separator or the line end.
+void CsvCursor::finish_cell() {
+  if (p_ != end_ && *p_ == separator_) {
+    ++p_;
+    return;
+  }
+  more_ = false;
+  if (p_ != end_ && *p_ == '\r') ++p_;
+  if (p_ != end_ && *p_ == '\n') {
+    ++p_;
+    ++next_line_;
+  }
+}
+
+bool CsvCursor::next_cell(std::string& text) {
+  if (!in_row_ || !more_) return false;
+  while (p_ != end_ && is_blank(*p_)) ++p_;
+  cell_ = p_;
+  if (p_ != end_ && *p_ == '"') {
+    text.clear();
+    for (++p_;; ++p_) {
+      const char* quote = std::find(p_, end_, '"');
+      text.append(p_, quote);
+      count_line_ends(p_, quote);
+      p_ = quote;
+      if (p_ == end_) throw InputError({path_, line_, ""}, "a quoted cell is not closed", "close it with '\"'");
+      ++p_;
+      if (p_ == end_ || *p_ != '"') break;
+      text += '"';
+    }
+    cell_end_ = p_;
+    while (p_ != end_ && is_blank(*p_)) ++p_;
+    if (!at_row_end() && *p_ != separator_)
+      throw InputError({path_, line_, ""}, "text follows a quoted cell", "double the quotes within the cell");
+  } else {
+    while (!at_row_end() && *p_ != separator_) ++p_;
+    cell_end_ = p_;
+    while (cell_end_ != cell_ && is_blank(cell_end_[-1])) --cell_end_;
+    text.assign(cell_, cell_end_);
+  }
+  finish_cell();
+  return true;
+}
+
+bool CsvCursor::skip_cell() {
+  std::string ignored;
+  return next_cell(ignored);
+}
+
+Cell CsvCursor::next_number(double& value) {
+  if (!in_row_ || !more_) return Cell::none;
+  const auto [after, error] = std::from_chars(p_, end_, value);
+  if (error == std::errc() && std::isfinite(value) &&
+      (after == end_ || *after == separator_ || *after == '\n' ||
+       (*after == '\r' && after + 1 != end_ && after[1] == '\n'))) {
+    cell_ = p_;
+    cell_end_ = p_ = after;
+    finish_cell();
+    return Cell::number;
+  }
+  std::string text;
+  next_cell(text);
+  return parse_cell(text, separator_ == ';', value);
+}
+
+bool CsvCursor::row_ended_by_file() const {
+  return p_ == end_ && cell_end_ &&
+         std::find_if(cell_end_, end_, [](char c) { return c == '\n' || c == '\r'; }) == end_;
+}
+
+std::string CsvCursor::last_text() const {
+  constexpr std::size_t longest = 40;
+  std::string text(cell_, cell_end_);
+  if (text.size() > longest) text = text.substr(0, longest) + "...";
+  return text;
+}
+
+void append_number(std::string& to, double value) {
+  char buffer[32];
+  const auto result = std::to_chars(buffer, buffer + sizeof buffer, value);
+  to.append(buffer, result.ptr);
+}
+
+void append_cell(std::string& to, std::string_view cell) {
+  const bool quote = cell.find_first_of(",;\t\"\r\n") != std::string_view::npos || cell.starts_with('#') ||
+                     cell.starts_with(' ') || cell.ends_with(' ');
+  if (!quote) {
+    to += cell;
+    return;
+  }
+  to += '"';
+  for (char c : cell) {
+    if (c == '"') to += '"';
+    to += c;
+  }
+  to += '"';
+}
+
+}  // namespace servodx

@@ -1,0 +1,217 @@
+#include "signals/plausible.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace servodx {
+namespace {
+
+constexpr double spike_over_range = 0.5;  // a lone sample this far off both neighbours, per central range of the signal
+constexpr double spike_over_noise = 30.0;  // and this many times the usual step
+constexpr double frozen_part = 0.1;        // of the log without a change
+constexpr std::size_t frozen_least = 50;   // samples
+constexpr double frozen_drive = 0.05;      // of the drive's range is swept meanwhile
+constexpr double frozen_usual_run = 3.0;   // a live channel repeats a value for fewer samples than this, on average
+constexpr double no_excitation = 0.005;    // drive range per rated current
+constexpr double gap_over_step = 1.5;      // time step per usual step
+
+double quantile(std::vector<double>& x, double q) {
+  const auto at = x.begin() + static_cast<std::ptrdiff_t>(q * static_cast<double>(x.size() - 1));
+  std::nth_element(x.begin(), at, x.end());
+  return *at;
+}
+
+struct Run {
+  std::size_t begin = 0, size = 0;
+};
+
+class Watch {
+ public:
+  Watch(const Log& log, const RigFile& rig) : log_(log), rig_(rig) {}
+
+  std::vector<std::string> notes() {
+    gaps();
+    excitation();
+    for (const SignalInfo& signal : signal_list) {
+      if (signal.signal == Signal::time || !log_.has(signal.signal)) continue;
+      bounds(signal);
+      if (measures_response(signal.signal)) frozen(signal);
+      if (signal.signal != Signal::command && signal.signal != Signal::setpoint) spikes(signal);
+    }
+    return std::move(notes_);
+  }
+
+ private:
+  static bool measures_response(Signal s) {
+    switch (s) {
+      case Signal::coil_current:
+      case Signal::spool_position:
+      case Signal::piston_position:
+      case Signal::pressure_a:
+      case Signal::pressure_b:
+      case Signal::load_pressure:
+      case Signal::flow_a:
+      case Signal::flow_b:
+      case Signal::control_flow:
+        return true;
+      default:
+        return false;
+    }
+  }
+
+  template <class... Args>
+  void note(const SignalInfo& signal, fmt::format_string<Args...> text, Args&&... args) {
+    notes_.push_back(
+        fmt::format("{}: '{}': {}", log_.path, signal.name, fmt::format(text, std::forward<Args>(args)...)));
+  }
+
+  static std::vector<double> present(const std::vector<double>& x) {
+    std::vector<double> some;
+    some.reserve(x.size());
+    for (double v : x)
+      if (!std::isnan(v)) some.push_back(v);
+    return some;
+  }
+
+  static std::pair<double, double> extremes(const std::vector<double>& x, std::size_t begin, std::size_t end) {
+    double low = INFINITY, high = -INFINITY;
+    for (std::size_t i = begin; i < end; ++i) {
+      if (x[i] < low) low = x[i];
+      if (x[i] > high) high = x[i];
+    }
+    return {low, high};
+  }
+
+  void gaps() {
+    const auto& t = log_.time;
+    if (t.size() < 3) return;
+    std::vector<double> steps(t.size() - 1);
+    for (std::size_t i = 1; i < t.size(); ++i) steps[i - 1] = t[i] - t[i - 1];
+    const double longest = *std::max_element(steps.begin(), steps.end());
+    std::vector<double> scratch = steps;
+    const double usual = quantile(scratch, 0.5);
+    const auto count = std::count_if(steps.begin(), steps.end(), [&](double dt) { return dt > gap_over_step * usual; });
+    if (count > 0)
+      notes_.push_back(fmt::format("{}: {} gap{} in time, the longest {:.4g} s at a usual step of {:.4g} s", log_.path,
+                                   count, count == 1 ? "" : "s", longest, usual));
+  }
+
+  const std::vector<double>& drive() const {
+    return log_.has(Signal::coil_current) ? log_[Signal::coil_current] : log_[Signal::command];
+  }
+
+  void excitation() {
+    const auto& x = drive();
+    if (x.empty()) return;
+    const auto [low, high] = extremes(x, 0, x.size());
+    const double limit = no_excitation * rig_.fact("valve.rated_current").value_or(0.0);
+    if (high - low <= limit)
+      note(info(log_.has(Signal::coil_current) ? Signal::coil_current : Signal::command),
+           "no excitation: it stays at {:.4g} A", low);
+  }
+
+  // Outside these limits a wrong unit, gain or offset is likelier than the value.
+  void bounds(const SignalInfo& signal) {
+    double low = -INFINITY, high = INFINITY;
+    const auto symmetric = [&](const char* key, double factor) {
+      if (const auto fact = rig_.fact(key)) {
+        high = factor * *fact;
+        low = -high;
+      }
+    };
+    switch (signal.dimension) {
+      case Dimension::pressure:
+        high = 150e6;
+        low = signal.signal == Signal::load_pressure || signal.signal == Signal::valve_pressure_drop ? -high : -0.2e6;
+        break;
+      case Dimension::temperature:
+        low = 200.0;
+        high = 450.0;
+        break;
+      case Dimension::current:
+        symmetric("valve.rated_current", 2.0);
+        break;
+      default:
+        break;
+    }
+    if (signal.signal == Signal::spool_position) {
+      high = 0.02;
+      low = -high;
+      symmetric("valve.spool_stroke", 2.0);
+      symmetric("valve.spool_stop", 1.2);
+    }
+    if (signal.signal == Signal::piston_position) symmetric("actuator.stroke", 0.55);
+    const auto& x = log_[signal.signal];
+    std::size_t count = 0;
+    double worst = 0.0;
+    for (double v : x) {
+      if (!(v < low || v > high)) continue;
+      ++count;
+      if (std::abs(v) > std::abs(worst)) worst = v;
+    }
+    if (count > 0)
+      note(signal, "{} samples are hardly possible (up to {:.4g} {}): check unit, gain and offset", count, worst,
+           signal.si_unit);
+  }
+
+  void frozen(const SignalInfo& signal) {
+    const auto& x = log_[signal.signal];
+    const auto& u = drive();
+    if (u.empty()) return;
+    const auto [u_low, u_high] = extremes(u, 0, u.size());
+    if (!(u_high > u_low)) return;
+    Run longest;
+    std::size_t runs = 0;
+    for (std::size_t i = 0; i < x.size();) {
+      std::size_t j = i + 1;
+      while (j < x.size() && x[j] == x[i]) ++j;
+      ++runs;
+      if (j - i > longest.size) longest = {i, j - i};
+      i = j;
+    }
+    if (longest.size == x.size()) {
+      note(signal, "never changes: frozen sensor?");
+      return;
+    }
+    const std::size_t least =
+        std::max(frozen_least, static_cast<std::size_t>(frozen_part * static_cast<double>(x.size())));
+    if (longest.size < least || runs < 2) return;
+    const double usual = static_cast<double>(x.size() - longest.size) / static_cast<double>(runs - 1);
+    const auto [low, high] = extremes(u, longest.begin, longest.begin + longest.size);
+    if (usual < frozen_usual_run && high - low > frozen_drive * (u_high - u_low))
+      note(signal, "frozen sensor? It does not change for {:.4g} s from {:.4g} s on",
+           log_.time[longest.begin + longest.size - 1] - log_.time[longest.begin], log_.time[longest.begin]);
+  }
+
+  void spikes(const SignalInfo& signal) {
+    const auto& x = log_[signal.signal];
+    std::vector<double> some = present(x);
+    if (some.size() < 3) return;
+    std::vector<double> steps(some.size() - 1);
+    for (std::size_t i = 1; i < some.size(); ++i) steps[i - 1] = std::abs(some[i] - some[i - 1]);
+    const double step = std::max(quantile(steps, 0.5), log_.channels[index(signal.signal)].resolution);
+    const double high = quantile(some, 0.99);
+    const double range = high - quantile(some, 0.01);
+    const double limit = std::max(spike_over_range * range, spike_over_noise * step);
+    std::size_t count = 0, first = 0;
+    for (std::size_t i = 1; i + 1 < x.size(); ++i) {
+      const double before = x[i] - x[i - 1], after = x[i] - x[i + 1];
+      if (before * after > 0.0 && std::min(std::abs(before), std::abs(after)) > limit && ++count == 1) first = i;
+    }
+    if (count > 0)
+      note(signal, "{} spike{} of a single sample, the first at {:.4g} s", count, count == 1 ? "" : "s",
+           log_.time[first]);
+  }
+
+  const Log& log_;
+  const RigFile& rig_;
+  std::vector<std::string> notes_;
+};
+
+}  // namespace
+
+std::vector<std::string> implausible_values(const Log& log, const RigFile& rig) { return Watch(log, rig).notes(); }
+
+}  // namespace servodx

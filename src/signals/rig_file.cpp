@@ -1,0 +1,323 @@
+#include "signals/rig_file.h"
+
+#include <toml++/toml.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "base/csv.h"
+#include "base/sha256.h"
+
+namespace servodx {
+namespace {
+
+using enum Dimension;
+
+// Typical new oil; a [fluid] section overrides. Density [kg/m3] at 20 degC, viscosity [m2/s] at 40 degC.
+// 5606, 83282: MIL-PRF-5606 (at least 13.2 mm2/s) and MIL-PRF-83282 (at least 14.0 mm2/s), makers' typical densities.
+// AS1241: SAE AS1241 type IV phosphate ester, makers' typical values. ISO VG: ISO 3448 mid-point, typical mineral oil.
+struct Preset {
+  std::string_view name;
+  std::string_view spellings[4];  // upper case, without blanks and dashes
+  double density, kinematic_viscosity;
+};
+constexpr Preset presets[] = {
+    {"MIL-PRF-5606", {"5606", "MILPRF5606", "MILH5606"}, 870.0, 14e-6},
+    {"MIL-PRF-83282", {"83282", "MILPRF83282", "MILH83282"}, 840.0, 14.5e-6},
+    {"AS1241", {"AS1241", "SAEAS1241"}, 1010.0, 11e-6},
+    {"ISO VG 32", {"ISOVG32", "VG32"}, 868.0, 32e-6},
+    {"ISO VG 46", {"ISOVG46", "VG46"}, 873.0, 46e-6},
+};
+
+std::string listed(std::initializer_list<std::string_view> words) {
+  std::string list;
+  for (auto word : words) list += (list.empty() ? "'" : ", '") + std::string(word) + "'";
+  return list;
+}
+
+class Reader {
+ public:
+  explicit Reader(const std::string& path) { rig_.path = path; }
+
+  RigFile read() {
+    const std::string text = read_file(rig_.path);
+    rig_.sha256 = sha256(text);
+    try {
+      root_ = toml::parse(text, rig_.path);
+    } catch (const toml::parse_error& error) {
+      throw InputError({rig_.path, error.source().begin.line, ""}, "is not TOML: " + std::string(error.description()),
+                       "mend the line; every value is a quoted string or a table");
+    }
+    walk(root_, "");
+    check_pairs();
+    derive_areas();
+    settle_fluid();
+    return std::move(rig_);
+  }
+
+ private:
+  Place place(const std::string& key) const { return {rig_.path, rig_.line(key), key}; }
+
+  void walk(const toml::table& table, const std::string& prefix) {
+    for (const auto& [name, node] : table) {
+      const std::string key = prefix + std::string(name.str());
+      rig_.lines[key] = name.source().begin.line;
+      if (key == "columns") {
+        read_columns(section(node, key));
+      } else if (key == "fluid" && node.is_string()) {
+        read_preset(word(node, key));
+      } else if (key == "valve" || key == "actuator" || key == "lines" || key == "supply" || key == "fluid" ||
+                 key == "valve.dither") {
+        walk(section(node, key), key + ".");
+      } else {
+        read_key(key, node);
+      }
+    }
+  }
+
+  void read_key(const std::string& key, const toml::node& node) {
+    if (key == "name") {
+      rig_.name = word(node, key);
+    } else if (key == "serial") {
+      rig_.serial = word(node, key);
+    } else if (key == "ports") {
+      const std::string choice = one_of(node, key, {"actuator", "blocked", "free"});
+      rig_.ports = choice == "blocked" ? Ports::blocked : choice == "free" ? Ports::free : Ports::actuator;
+    } else if (key == "command_hold") {
+      rig_.command_hold = one_of(node, key, {"zero", "linear"}) == "linear" ? CommandHold::linear : CommandHold::zero;
+    } else if (key == "mains_frequency") {
+      rig_.mains_frequency = quantity(node, key, frequency, false);
+    } else if (key == "null_limit") {
+      rig_.null_limit = quantity(node, key, fraction, true);
+    } else if (key == "valve.first_stage") {
+      rig_.words[key] = one_of(node, key, {"flapper_nozzle", "jet_pipe"});
+    } else {
+      for (const RigFact& fact : rig_facts()) {
+        if (fact.key != key) continue;
+        rig_.facts[key] = quantity(node, key, fact.dimension, fact.may_be_zero);
+        return;
+      }
+      refuse_unknown(key);
+    }
+  }
+
+  [[noreturn]] void refuse_unknown(const std::string& key) const {
+    const auto dot = key.rfind('.');
+    const std::string folder = dot == std::string::npos ? "" : key.substr(0, dot + 1);
+    std::string known = folder.empty()
+                            ? "name, serial, ports, command_hold, mains_frequency, null_limit, fluid, [valve], "
+                              "[actuator], [lines], [supply], [fluid], [columns]"
+                            : "";
+    if (folder == "valve.") known = "first_stage, dither";
+    for (const RigFact& fact : rig_facts())
+      if (!folder.empty() && fact.key.starts_with(folder) && fact.key.find('.', folder.size()) == fact.key.npos)
+        known += (known.empty() ? "" : ", ") + std::string(fact.key.substr(folder.size()));
+    throw InputError(place(key), "unknown key", "known here: " + known);
+  }
+
+  const toml::table& section(const toml::node& node, const std::string& key) const {
+    if (!node.is_table()) throw InputError(place(key), "is not a section", "write it as [" + key + "]");
+    return *node.as_table();
+  }
+
+  std::string word(const toml::node& node, const std::string& key) const {
+    if (!node.is_string()) throw InputError(place(key), "is not a string", "put the value in quotes");
+    return node.as_string()->get();
+  }
+
+  std::string one_of(const toml::node& node, const std::string& key,
+                     std::initializer_list<std::string_view> choices) const {
+    const std::string choice = word(node, key);
+    for (auto each : choices)
+      if (each == choice) return choice;
+    throw InputError(place(key), "unknown value '" + choice + "'", "use one of " + listed(choices));
+  }
+
+  double quantity(const toml::node& node, const std::string& key, Dimension dimension, bool may_be_zero) const {
+    if (node.is_number())
+      throw InputError(place(key), "a bare number has no unit",
+                       "write a quoted quantity with one of " + units_of(dimension));
+    const double value = parse_quantity(word(node, key), dimension, place(key)).value;
+    if (value < 0.0 || (value == 0.0 && !may_be_zero))
+      throw InputError(place(key), may_be_zero ? "must not be negative" : "must be positive",
+                       "check the sign, or leave the key out");
+    return value;
+  }
+
+  void read_preset(const std::string& name) {
+    std::string spelling;
+    for (char c : name)
+      if (c != ' ' && c != '-' && c != '_') spelling += static_cast<char>(c >= 'a' && c <= 'z' ? c - 'a' + 'A' : c);
+    for (const Preset& preset : presets) {
+      for (auto each : preset.spellings) {
+        if (each.empty() || each != spelling) continue;
+        rig_.fluid = {preset.density, preset.kinematic_viscosity, true, std::string(preset.name)};
+        return;
+      }
+    }
+    std::string known;
+    for (const Preset& preset : presets) known += std::string(preset.name) + ", ";
+    throw InputError(place("fluid"), "unknown fluid '" + name + "'",
+                     "use one of " + known + "or a [fluid] section with density and kinematic_viscosity");
+  }
+
+  void read_columns(const toml::table& table) {
+    for (const auto& [name, node] : table) {
+      const std::string column(name.str());
+      const std::string key = "columns." + column;
+      rig_.lines[key] = name.source().begin.line;
+      if (!node.is_table())
+        throw InputError(place(key), "is not a mapping", "write { signal = \"...\", unit = \"...\" }");
+      read_mapping(column, key, *node.as_table());
+    }
+  }
+
+  void read_mapping(const std::string& column, const std::string& key, const toml::table& table) {
+    ColumnMapping mapping;
+    mapping.line = rig_.line(key);
+    for (const auto& [name, node] : table) {
+      const std::string field(name.str());
+      rig_.lines[key + "." + field] = name.source().begin.line;
+      if (field != "signal" && field != "unit" && field != "gain" && field != "offset")
+        throw InputError(place(key + "." + field), "unknown key", "known here: signal, unit, gain, offset");
+    }
+    const toml::node* signal_node = table.get("signal");
+    if (!signal_node) throw InputError(place(key), "names no signal", "add signal = \"...\"");
+    mapping.signal = word(*signal_node, key + ".signal");
+    const auto signal = find_signal(mapping.signal);
+    if (!signal)
+      throw InputError(place(key + ".signal"), "unknown signal '" + mapping.signal + "'", "see 'servodx list signals'");
+    const Dimension dimension = info(*signal).dimension;
+
+    if (const toml::node* node = table.get("gain")) {
+      const Place where = place(key + ".gain");
+      const Gain gain = node->is_number() ? parse_gain(number_text(*node->value<double>()), dimension, where)
+                                          : parse_gain(word(*node, key + ".gain"), dimension, where);
+      mapping.gain = gain.value;
+      mapping.gain_has_unit = gain.numerator != nullptr;
+      if (gain.numerator) {
+        mapping.unit = gain.numerator->name;
+        mapping.column_unit = gain.denominator->name;
+      }
+    }
+    if (const toml::node* node = table.get("unit")) {
+      const Place where = place(key + ".unit");
+      const std::string name = word(*node, key + ".unit");
+      const Unit* unit = find_unit(name);
+      if (!unit) throw InputError(where, "unknown unit '" + name + "'", "use one of " + accepted_units(*signal));
+      const auto relative = relative_unit(*signal);
+      if (mapping.gain_has_unit) {
+        if (unit->dimension != find_unit(mapping.column_unit)->dimension)
+          throw InputError(where, "'" + name + "' is not what the gain divides by ('" + mapping.column_unit + "')",
+                           "make unit and gain agree");
+      } else if (unit->dimension == voltage) {
+        throw InputError(where, "volts need a gain", "add gain = \"... " + std::string(info(*signal).si_unit) + "/V\"");
+      } else if (unit->dimension != dimension && !(relative && unit->dimension == relative->dimension)) {
+        throw InputError(where, "'" + name + "' is no unit of '" + mapping.signal + "'",
+                         "use one of " + accepted_units(*signal));
+      }
+      mapping.column_unit = name;
+    }
+    if (const toml::node* node = table.get("offset"))
+      mapping.offset = parse_quantity(word(*node, key + ".offset"), dimension, place(key + ".offset")).value;
+    rig_.columns[column] = mapping;
+  }
+
+  static std::string number_text(double value) {
+    std::string text;
+    append_number(text, value);
+    return text;
+  }
+
+  void check_pairs() const {
+    const auto has = [&](const char* key) { return rig_.facts.contains(key); };
+    if (has("valve.no_load_flow") && has("valve.rated_flow"))
+      throw InputError(place("valve.rated_flow"), "given beside valve.no_load_flow", "keep one of the two");
+    if (has("valve.rated_flow") && !has("valve.rated_pressure_drop"))
+      throw InputError(place("valve.rated_flow"), "needs valve.rated_pressure_drop",
+                       "add the total drop over both edges, such as rated_pressure_drop = \"70 bar\"");
+    if (has("valve.rated_pressure_drop") && !has("valve.rated_flow"))
+      throw InputError(place("valve.rated_pressure_drop"), "given without valve.rated_flow",
+                       "add rated_flow or leave it out");
+    if (has("supply.pressure") && has("supply.return_pressure") &&
+        !(*rig_.fact("supply.return_pressure") < *rig_.fact("supply.pressure")))
+      throw InputError(place("supply.return_pressure"), "is not below supply.pressure", "check both values");
+  }
+
+  void derive_areas() {
+    const auto bore = rig_.fact("actuator.bore_diameter");
+    for (const char side : {'a', 'b'}) {
+      const std::string area_key = std::string("actuator.area_") + side;
+      const std::string rod_key = std::string("actuator.rod_diameter_") + side;
+      const auto rod = rig_.fact(rod_key);
+      if (rod && !bore)
+        throw InputError(place(rod_key), "needs actuator.bore_diameter", "add bore_diameter or give area_a and area_b");
+      if (!bore) continue;
+      if (rig_.fact(area_key))
+        throw InputError(place(area_key), "given beside actuator.bore_diameter", "keep areas or diameters, not both");
+      const double d = rod.value_or(0.0);
+      if (d >= *bore) throw InputError(place(rod_key), "is not below actuator.bore_diameter", "check both diameters");
+      rig_.facts[area_key] = std::numbers::pi / 4.0 * (*bore * *bore - d * d);
+      rig_.lines[area_key] = rig_.line("actuator.bore_diameter");
+    }
+  }
+
+  void settle_fluid() {
+    const auto density = rig_.fact("fluid.density"), viscosity = rig_.fact("fluid.kinematic_viscosity");
+    if (density) rig_.fluid.density = *density;
+    if (viscosity) rig_.fluid.kinematic_viscosity = *viscosity;
+    rig_.fluid.given = rig_.fluid.given || density || viscosity;
+    if (rig_.fluid.name.empty()) return;
+    rig_.facts["fluid.density"] = rig_.fluid.density;
+    rig_.facts["fluid.kinematic_viscosity"] = rig_.fluid.kinematic_viscosity;
+    rig_.lines["fluid.density"] = rig_.lines["fluid.kinematic_viscosity"] = rig_.line("fluid");
+  }
+
+  RigFile rig_;
+  toml::table root_;
+};
+
+}  // namespace
+
+const std::vector<RigFact>& rig_facts() {
+  static const std::vector<RigFact> facts = {
+      {"valve.rated_current", current, false},
+      {"valve.dither.amplitude", current, true},
+      {"valve.dither.frequency", frequency, false},
+      {"valve.spool_stroke", length, false},
+      {"valve.spool_stop", length, false},
+      {"valve.spool_diameter", length, false},
+      {"valve.no_load_flow", flow, false},
+      {"valve.rated_flow", flow, false},
+      {"valve.rated_pressure_drop", pressure, false},
+      {"valve.phase_lag_90_frequency", frequency, false},
+      {"valve.null_leakage", flow, true},
+      {"valve.pilot_leakage", flow, true},
+      {"valve.radial_clearance", length, false},
+      {"valve.nozzle_diameter", length, false},
+      {"valve.fixed_orifice_diameter", length, false},
+      {"valve.nozzle_gap", length, false},
+      {"valve.torque_motor_frequency", frequency, false},
+      {"actuator.area_a", area, false},
+      {"actuator.area_b", area, false},
+      {"actuator.bore_diameter", length, false},
+      {"actuator.rod_diameter_a", length, true},
+      {"actuator.rod_diameter_b", length, true},
+      {"actuator.stroke", length, false},
+      {"actuator.moving_mass", mass, false},
+      {"actuator.dead_volume_a", volume, false},
+      {"actuator.dead_volume_b", volume, false},
+      {"actuator.mount_stiffness", stiffness, false},
+      {"lines.length", length, true},
+      {"lines.bore", length, false},
+      {"supply.pressure", pressure, false},
+      {"supply.return_pressure", pressure, true},
+      {"fluid.density", density, false},
+      {"fluid.kinematic_viscosity", kinematic_viscosity, false},
+  };
+  return facts;
+}
+
+RigFile read_rig_file(const std::string& path) { return Reader(path).read(); }
+
+}  // namespace servodx
