@@ -21,6 +21,9 @@ namespace {
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kLeastDamping = 1e-12;
 constexpr double kMostDamping = 1e12;
+constexpr double kGoodGain = 0.75;   // of what the undamped model promises; below it the trials are bent
+constexpr double kRounding = 1e-12;  // of the cost: a promised gain below this cannot be seen
+constexpr double kBendFrom = 1e-6;   // of the box; shorter steps meet rounding, not curvature
 
 void require(bool good, const char* option, const char* rule) {
   if (!good) throw InputError({}, std::string("option '") + option + "' " + rule, "");
@@ -58,6 +61,7 @@ class Search {
   bool usable(const Evaluation& evaluation) const { return evaluation.ok && evaluation.residual.allFinite(); }
 
   std::vector<Evaluation> evaluate(const std::vector<Point>& points) {
+    if (points.empty()) return {};
     std::vector<Evaluation> values = problem_.evaluate(points);
     if (values.size() != points.size()) throw std::logic_error("BatchEvaluate returned another number of points");
     result_.evaluations += static_cast<long>(points.size());
@@ -208,12 +212,13 @@ class Search {
 
   struct Trial {
     Point point;
+    Eigen::VectorXd scaled_step;
     double promised = 0;
     double length = 0;  // largest coordinate move
     double damping = 0;
   };
 
-  Trial trial(const Model& m, double damping, double radius) const {
+  Trial trial(const Model& m, const Eigen::VectorXd& gradient, double damping, double radius) const {
     const int n = problem_.n;
     Eigen::VectorXd lower(n), upper(n);
     for (int j = 0; j < n; ++j) {
@@ -223,9 +228,10 @@ class Search {
     Eigen::MatrixXd damped = m.hessian;
     damped.diagonal().array() += damping;
     const BoxQuadraticResult step =
-        minimise_box_quadratic(damped, m.gradient, lower.cwiseQuotient(m.scale), upper.cwiseQuotient(m.scale));
+        minimise_box_quadratic(damped, gradient, lower.cwiseQuotient(m.scale), upper.cwiseQuotient(m.scale));
     Trial t;
     t.damping = damping;
+    t.scaled_step = step.step;
     t.point = x_;
     for (int j = 0; j < n; ++j) {
       const double move = step.wall[j] < 0 ? lower[j] : step.wall[j] > 0 ? upper[j] : step.step[j] * m.scale[j];
@@ -239,12 +245,25 @@ class Search {
     return t;
   }
 
+  // The trial turned by the curvature it met: the same subproblem with the part of the residual that the linear model
+  // missed.
+  Trial bend(const Model& m, const Trial& from, const Eigen::VectorXd& met, double radius) const {
+    Eigen::VectorXd weighted = met;
+    if (loss_ != RobustLoss::none) {
+      for (Eigen::Index i = 0; i < met.size(); ++i)
+        weighted[i] = robust(loss_, loss_scale_, residual_[i]).dt * robust(loss_, loss_scale_, met[i]).t;
+    }
+    Eigen::VectorXd gradient = m.scale.cwiseProduct(jacobian_.transpose() * weighted);
+    gradient -= m.hessian * from.scaled_step;
+    return trial(m, gradient, from.damping, radius);
+  }
+
   // Dampings a decade apart from `from` upwards. Steps that hardly differ from the one before are left out.
   std::vector<Trial> ladder(const Model& m, double from, double radius) const {
     std::vector<Trial> trials;
     double damping = std::clamp(from, kLeastDamping, kMostDamping);
     for (int k = 0; k < options_.damping_trials; ++k, damping *= 10) {
-      Trial next = trial(m, damping, radius);
+      Trial next = trial(m, m.gradient, damping, radius);
       if (!trials.empty()) {
         double apart = 0;
         for (int j = 0; j < problem_.n; ++j) apart = std::max(apart, std::abs(next.point[j] - trials.back().point[j]));
@@ -260,6 +279,26 @@ class Search {
 
   enum class Step { accepted, none_better };
 
+  struct Best {
+    int index = -1;
+    double cost = kInfinity;
+  };
+
+  Best choose(const std::vector<Evaluation>& values, Best best) const {
+    for (std::size_t k = 0; k < values.size(); ++k) {
+      if (!values[k].ok) continue;
+      const double cost = cost_of(values[k].residual);
+      if (cost < best.cost) best = {static_cast<int>(k), cost};
+    }
+    return best;
+  }
+
+  static std::vector<Point> points_of(const std::vector<Trial>& trials) {
+    std::vector<Point> points;
+    for (const Trial& t : trials) points.push_back(t.point);
+    return points;
+  }
+
   // Raises the damping and shortens the reach until a trial lowers the cost or the steps vanish.
   Step step(const Model& m) {
     double from = damping_ * 1e-4;
@@ -268,32 +307,34 @@ class Search {
       std::vector<Trial> trials = ladder(m, from, radius);
       if (trials.empty()) return Step::none_better;
       double shortest = kInfinity, longest = 0, most_damping = 0;
-      std::vector<Point> points;
       for (const Trial& t : trials) {
-        points.push_back(t.point);
         shortest = std::min(shortest, t.length);
         longest = std::max(longest, t.length);
         most_damping = std::max(most_damping, t.damping);
       }
-      std::vector<Evaluation> values = evaluate(points);
-      int best = -1;
-      double best_cost = cost_;
-      for (std::size_t k = 0; k < values.size(); ++k) {
-        if (!values[k].ok) continue;
-        const double cost = cost_of(values[k].residual);
-        if (cost < best_cost) {
-          best_cost = cost;
-          best = static_cast<int>(k);
+      Best best{-1, cost_};
+      std::vector<Evaluation> values = evaluate(points_of(trials));
+      best = choose(values, best);
+      const bool disappoints = best.index < 0 || cost_ - best.cost < kGoodGain * result_.promised_gain;
+      if (disappoints && longest > kBendFrom) {
+        std::vector<Trial> bent;
+        for (std::size_t k = 0; k < trials.size(); ++k)
+          if (values[k].ok) bent.push_back(bend(m, trials[k], values[k].residual, radius));
+        std::vector<Evaluation> bent_values = evaluate(points_of(bent));
+        const Best bent_best = choose(bent_values, {-1, best.cost});
+        if (bent_best.index >= 0) {
+          best = bent_best;
+          trials = std::move(bent);
+          values = std::move(bent_values);
         }
       }
-      if (best >= 0) {
-        gain_ = cost_ - best_cost;
-        gain_promised_ = trials[best].promised;
-        damping_ = std::clamp(trials[best].damping, kLeastDamping, kMostDamping);
-        radius_ = std::min(options_.step_limit, std::max(radius, 4 * trials[best].length));
-        x_ = std::move(trials[best].point);
-        residual_ = std::move(values[best].residual);
-        cost_ = best_cost;
+      if (best.index >= 0) {
+        Trial& t = trials[best.index];
+        damping_ = std::clamp(t.damping, kLeastDamping, kMostDamping);
+        radius_ = std::min(options_.step_limit, std::max(radius, 4 * t.length));
+        x_ = std::move(t.point);
+        residual_ = std::move(values[best.index].residual);
+        cost_ = best.cost;
         return Step::accepted;
       }
       if (longest < options_.step_tolerance) return Step::none_better;
@@ -319,7 +360,7 @@ class Search {
     for (;;) {
       take_jacobian(central);
       const Model m = model();
-      result_.promised_gain = trial(m, kLeastDamping, options_.step_limit).promised;
+      result_.promised_gain = trial(m, m.gradient, kLeastDamping, options_.step_limit).promised;
       ++result_.iterations;
       const double misfit = 0.5 * residual_.squaredNorm();
       const std::string state = "cost " + number(cost_) + ", gradient cosine " + number(result_.gradient_cosine) +
@@ -358,6 +399,10 @@ class Search {
         if (may_refine && own_jacobian_ && !central) {
           central = true;
           continue;
+        }
+        if (result_.promised_gain <= kRounding * cost_) {
+          stop(StopReason::converged, "converged to the rounding of the cost; " + state);
+          return true;
         }
         stop(StopReason::stalled,
              "stalled: no step down to " + number(options_.step_tolerance) + " of the box lowers the cost; " + state +
@@ -398,8 +443,6 @@ class Search {
   double cost_ = kInfinity;
   double damping_ = 0;
   double radius_ = 0;
-  double gain_ = 0;
-  double gain_promised_ = 0;
   bool own_jacobian_ = true;
 };
 
