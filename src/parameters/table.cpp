@@ -1,21 +1,16 @@
 #include "parameters/table.h"
 
-#include <openssl/evp.h>
-#include <unistd.h>
-
 #include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>
-#include <cstdio>
-#include <fstream>
-#include <iterator>
 #include <map>
-#include <set>
-#include <sstream>
 #include <string_view>
 
+#include "base/atomic_file.h"
+#include "base/csv.h"
 #include "base/error.h"
+#include "base/sha256.h"
 
 namespace servodx {
 namespace {
@@ -26,9 +21,9 @@ constexpr std::string_view std_error_column = "std_error";
 constexpr std::string_view effect_prefix = "effect:";
 
 std::string number_text(double value) {
-  char buffer[40];
-  const auto end = std::to_chars(buffer, buffer + sizeof buffer, value).ptr;
-  return {buffer, end};
+  std::string text;
+  append_number(text, value);
+  return text;
 }
 
 std::string with_unit(double value, std::string_view unit) {
@@ -37,113 +32,38 @@ std::string with_unit(double value, std::string_view unit) {
   return text;
 }
 
-std::string trimmed(std::string_view text) {
-  const auto first = text.find_first_not_of(" \t");
-  if (first == std::string_view::npos) return {};
-  return std::string(text.substr(first, text.find_last_not_of(" \t") - first + 1));
-}
-
-std::string sha256_of(std::string_view bytes) {
-  unsigned char digest[EVP_MAX_MD_SIZE];
-  unsigned int length = 0;
-  EVP_Digest(bytes.data(), bytes.size(), digest, &length, EVP_sha256(), nullptr);
-  constexpr char hex[] = "0123456789abcdef";
-  std::string text;
-  for (unsigned int i = 0; i < length; ++i) {
-    text += hex[digest[i] >> 4];
-    text += hex[digest[i] & 15];
-  }
-  return text;
-}
-
 struct Record {
   long line = 0;  // where it begins
   std::vector<std::string> cells;
 };
 
-// One record from `pos` on. A quoted cell may hold separators, doubled quotes and line ends.
-Record next_record(std::string_view text, std::size_t& pos, long& line, const std::string& file) {
-  Record record{line, {}};
-  std::string cell;
-  bool was_quoted = false;
-  const auto finish_cell = [&] {
-    record.cells.push_back(was_quoted ? cell : trimmed(cell));
-    cell.clear();
-    was_quoted = false;
-  };
-  while (pos < text.size()) {
-    const char c = text[pos];
-    if (c == '"' && trimmed(cell).empty() && !was_quoted) {
-      cell.clear();
-      was_quoted = true;
-      for (++pos;; ++pos) {
-        if (pos >= text.size())
-          throw InputError({file, record.line, ""}, "a quoted cell is not closed", "add the missing '\"'");
-        if (text[pos] == '\n') ++line;
-        if (text[pos] != '"') {
-          cell += text[pos];
-        } else if (pos + 1 < text.size() && text[pos + 1] == '"') {
-          cell += text[++pos];
-        } else {
-          break;
-        }
-      }
-      ++pos;
-      continue;
-    }
-    ++pos;
-    if (c == ',') {
-      finish_cell();
-    } else if (c == '\n') {
-      ++line;
-      break;
-    } else if (c != '\r') {
-      if (!was_quoted || (c != ' ' && c != '\t')) cell += c;
-    }
-  }
-  finish_cell();
-  return record;
+bool next_record(CsvCursor& csv, Record& record) {
+  record.cells.clear();
+  if (!csv.next_row()) return false;
+  record.line = csv.line();
+  for (std::string cell; csv.next_cell(cell);) record.cells.push_back(cell);
+  return true;
 }
-
-bool blank(const Record& record) { return record.cells.size() == 1 && record.cells[0].empty(); }
 
 class Reader {
  public:
   explicit Reader(std::string path) : file_(std::move(path)) {}
 
   Table read() {
-    std::ifstream stream(file_, std::ios::binary);
-    if (!stream) throw InputError({file_, 0, ""}, "the parameter table cannot be opened", "check the path");
-    const std::string bytes{std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
+    const std::string text = read_file(file_);
+    CsvCursor csv(text, file_);
     Table table;
     table.path = file_;
-    table.sha256 = sha256_of(bytes);
-    std::string_view text = bytes;
-    if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);
-
-    std::size_t pos = 0;
-    long line = 1;
-    while (pos < text.size() && (text[pos] == '#' || text[pos] == '\n' || text[pos] == '\r')) {
-      const auto end = std::min(text.find('\n', pos), text.size());
-      std::string_view comment = text.substr(pos, end - pos);
-      if (comment.ends_with('\r')) comment.remove_suffix(1);
-      if (comment.starts_with('#')) table.comments.emplace_back(trimmed(comment.substr(1)));
-      pos = std::min(end + 1, text.size());
-      ++line;
-    }
-    if (pos >= text.size())
-      throw InputError({file_, 0, ""}, "the parameter table has no header row",
-                       "begin with id,name,group,nominal,lower,upper,scale,estimate,unit,description,source");
-    read_header(next_record(text, pos, line, file_));
+    table.sha256 = sha256(text);
+    table.comments = csv.comments();
+    read_header({csv.header_line(), csv.header()});
     table.has_std_error = column_.contains(std::string(std_error_column));
 
     std::array<std::optional<Row>, n_parameters> known;
     std::array<long, n_parameters> known_line{};
     std::map<std::pair<std::string, std::string>, long> effect_line;
     std::vector<Row> effects;
-    while (pos < text.size()) {
-      const Record record = next_record(text, pos, line, file_);
-      if (blank(record)) continue;
+    for (Record record; next_record(csv, record);) {
       Row row = read_row(record);
       if (row.id == 0) {
         const auto [it, is_new] = effect_line.try_emplace({row.group, row.name}, record.line);
@@ -305,17 +225,6 @@ class Reader {
   std::map<std::string, std::size_t> column_;
 };
 
-std::string quoted(const std::string& text) {
-  const bool padded = !text.empty() && (text.front() == ' ' || text.back() == ' ');
-  if (!padded && text.find_first_of(",\"\r\n\t") == std::string::npos) return text;
-  std::string out = "\"";
-  for (const char c : text) {
-    out += c;
-    if (c == '"') out += '"';
-  }
-  return out + '"';
-}
-
 }  // namespace
 
 int Table::find(const std::string& name) const {
@@ -327,34 +236,43 @@ int Table::find(const std::string& name) const {
 Table read_table(const std::string& path) { return Reader(path).read(); }
 
 void write_table(const std::string& path, const Table& table) {
-  std::ostringstream out;
-  for (const auto& comment : table.comments) out << "# " << comment << '\n';
-  for (std::size_t i = 0; i < required_columns.size(); ++i) out << (i ? "," : "") << required_columns[i];
-  if (table.has_std_error) out << ',' << std_error_column;
-  out << '\n';
+  std::string out;
+  for (const auto& comment : table.comments) out += "# " + comment + "\n";
+  for (std::size_t i = 0; i < required_columns.size(); ++i) {
+    if (i > 0) out += ',';
+    out += required_columns[i];
+  }
+  if (table.has_std_error) out.append(",").append(std_error_column);
+  out += '\n';
+  const auto text = [&](std::string_view cell) {
+    out += ',';
+    append_cell(out, cell);
+  };
+  const auto number = [&](double value) {
+    out += ',';
+    append_number(out, value);
+  };
   for (const Row& row : table.rows) {
-    if (row.id > 0) out << row.id;
-    out << ',' << quoted(row.name) << ',' << quoted(row.group) << ',' << number_text(row.nominal) << ','
-        << number_text(row.lower) << ',' << number_text(row.upper) << ',' << (row.log_scale ? "log10" : "lin") << ','
-        << (row.estimate ? '1' : '0') << ',' << quoted(row.unit) << ',' << quoted(row.description) << ','
-        << quoted(row.source);
-    if (table.has_std_error) out << ',' << (row.std_error ? number_text(*row.std_error) : "");
-    out << '\n';
-  }
-  const std::string temporary = path + ".part" + std::to_string(getpid());
-  {
-    std::ofstream stream(temporary, std::ios::binary);
-    stream << out.str();
-    stream.flush();
-    if (!stream) {
-      std::remove(temporary.c_str());
-      throw InputError({path, 0, ""}, "the table cannot be written", "check that its folder exists and can be written");
+    if (row.id > 0) out += std::to_string(row.id);
+    text(row.name);
+    text(row.group);
+    number(row.nominal);
+    number(row.lower);
+    number(row.upper);
+    out += row.log_scale ? ",log10" : ",lin";
+    out += row.estimate ? ",1" : ",0";
+    text(row.unit);
+    text(row.description);
+    text(row.source);
+    if (table.has_std_error) {
+      if (row.std_error)
+        number(*row.std_error);
+      else
+        out += ',';
     }
+    out += '\n';
   }
-  if (std::rename(temporary.c_str(), path.c_str()) != 0) {
-    std::remove(temporary.c_str());
-    throw InputError({path, 0, ""}, "the table cannot be written", "check that the path is not a folder");
-  }
+  write_file(path, out);
 }
 
 double to_unit(const Row& row, double value) {

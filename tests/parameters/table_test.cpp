@@ -253,9 +253,9 @@ TEST_F(TableFile, HeaderMustBeTheContracts) {
   EXPECT_EQ(refusal(written("id,name,group\n")).rule, "the column is missing");
   EXPECT_EQ(refusal(written("id,name,group,colour\n")).rule, "unknown column");
   EXPECT_EQ(refusal(written("id,name,id\n")).rule, "the column appears twice");
-  EXPECT_EQ(refusal(written("")).rule, "the parameter table has no header row");
+  EXPECT_EQ(refusal(written("")).rule, "the file has no header row");
   EXPECT_EQ(refusal(written("id,\"name")).rule, "a quoted cell is not closed");
-  EXPECT_EQ(refusal(path("absent.csv")).rule, "the parameter table cannot be opened");
+  EXPECT_EQ(refusal(path("absent.csv")).rule, "cannot be read: No such file or directory");
 }
 
 TEST_F(TableFile, RowsOfEffectsAreKeptAfterThe41) {
