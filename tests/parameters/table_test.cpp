@@ -137,7 +137,7 @@ TEST(ShippedTable, ObeysTheStaticsOfItsOwnSources) {
   // loop gain of the wire 80 to 100 Hz
   const double area = std::numbers::pi / 4 * std::pow(v(row::spool_diameter), 2);
   const double gain =
-      0.65 * v(row::hydraulic_amplifier_gain) * std::sqrt(2 * (pilot - v(row::return_pressure)) / density) / area;
+      0.64 * v(row::hydraulic_amplifier_gain) * std::sqrt(2 * (pilot - v(row::return_pressure)) / density) / area;
   const double kw = v(row::feedback_wire_stiffness);
   const double hertz = gain * kw / (kw + v(row::flapper_stiffness)) / (2 * std::numbers::pi);
   EXPECT_GT(hertz, 80);
