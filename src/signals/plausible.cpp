@@ -15,7 +15,9 @@ constexpr std::size_t frozen_least = 50;   // samples
 constexpr double frozen_drive = 0.05;      // of the drive's range is swept meanwhile
 constexpr double frozen_usual_run = 3.0;   // a live channel repeats a value for fewer samples than this, on average
 constexpr double no_excitation = 0.005;    // drive range per rated current
-constexpr double gap_over_step = 1.5;      // time step per usual step
+constexpr double gap_over_step = 1.8;      // time step per usual step
+
+constexpr std::size_t scale_samples = 10000;
 
 double quantile(std::vector<double>& x, double q) {
   const auto at = x.begin() + static_cast<std::ptrdiff_t>(q * static_cast<double>(x.size() - 1));
@@ -65,14 +67,6 @@ class Watch {
   void note(const SignalInfo& signal, fmt::format_string<Args...> text, Args&&... args) {
     notes_.push_back(
         fmt::format("{}: '{}': {}", log_.path, signal.name, fmt::format(text, std::forward<Args>(args)...)));
-  }
-
-  static std::vector<double> present(const std::vector<double>& x) {
-    std::vector<double> some;
-    some.reserve(x.size());
-    for (double v : x)
-      if (!std::isnan(v)) some.push_back(v);
-    return some;
   }
 
   static std::pair<double, double> extremes(const std::vector<double>& x, std::size_t begin, std::size_t end) {
@@ -187,10 +181,14 @@ class Watch {
 
   void spikes(const SignalInfo& signal) {
     const auto& x = log_[signal.signal];
-    std::vector<double> some = present(x);
+    // Scales that a few outliers do not move, from an even sample of the record.
+    std::vector<double> some, steps;
+    for (std::size_t i = 1, stride = x.size() / scale_samples + 1; i < x.size(); i += stride) {
+      if (std::isnan(x[i]) || std::isnan(x[i - 1])) continue;
+      some.push_back(x[i]);
+      steps.push_back(std::abs(x[i] - x[i - 1]));
+    }
     if (some.size() < 3) return;
-    std::vector<double> steps(some.size() - 1);
-    for (std::size_t i = 1; i < some.size(); ++i) steps[i - 1] = std::abs(some[i] - some[i - 1]);
     const double step = std::max(quantile(steps, 0.5), log_.channels[index(signal.signal)].resolution);
     const double high = quantile(some, 0.99);
     const double range = high - quantile(some, 0.01);

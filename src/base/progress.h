@@ -1,0 +1,46 @@
+// One line of progress on standard error: label, part done, evaluations per second, time left.
+//
+// Silent for the first second, and throughout when quiet. A terminal sees one line rewritten; a file or a pipe sees a
+// plain line every ten seconds. update() may be called from any thread and costs a clock reading when nothing is due.
+#pragma once
+#include <chrono>
+#include <cstdio>
+#include <mutex>
+#include <optional>
+#include <string>
+
+namespace servodx {
+
+struct ProgressOptions {
+  bool quiet = false;
+  std::FILE* to = stderr;
+  std::optional<bool> terminal;  // empty: asked of the stream
+  double first_after = 1.0;      // [s]
+  double every_terminal = 0.2;   // [s]
+  double every_plain = 10.0;     // [s]
+};
+
+class Progress {
+ public:
+  explicit Progress(std::string label, ProgressOptions options = {});
+  ~Progress();  // clears the terminal's line
+  Progress(const Progress&) = delete;
+  Progress& operator=(const Progress&) = delete;
+
+  void update(double fraction, long evaluations);  // fraction 0..1 of the work; evaluations so far
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  std::string label_;
+  ProgressOptions options_;
+  bool terminal_;
+  Clock::time_point start_ = Clock::now();
+  Clock::time_point due_;
+  std::mutex mutex_;
+  bool shown_ = false;
+};
+
+// "tune: 42 %, 12000 evaluations/s, 1 min 5 s left"
+std::string progress_line(const std::string& label, double fraction, long evaluations, double elapsed);
+
+}  // namespace servodx
