@@ -1,0 +1,299 @@
+#include "fit/nominal.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "base/csv.h"
+#include "base/error.h"
+
+namespace servodx {
+namespace {
+
+using std::numbers::pi;
+
+// Bounds about a fact, as factors of it: the spread of real parts about the sheet.
+constexpr double geometry = 1.1;        // measured sizes of the actuator, mass
+constexpr double drawing = 1.6;         // bores and gaps of the pilot stage; they also absorb discharge coefficients
+constexpr double catalogue_flow = 1.5;  // 10 % tolerance of no-load flow, and of what the metering coefficient hides
+constexpr double dynamics = 2.0;        // natural frequency
+constexpr double loop = 4.0;            // stiffness from a phase lag: the sheet's amplitude is rarely said
+constexpr double volumes = 3.0;
+
+constexpr double stop_over_stroke = 1.16;    // where a sheet gives the stroke alone
+constexpr double limit_over_rated = 1.5;     // amplifier limit over rated current
+constexpr double loop_over_phase_lag = 0.9;  // loop bandwidth over the frequency of 90 degrees lag
+constexpr double short_tube_cd = 0.8;        // Merritt 1967 ch. 3: fixed orifices are short tubes
+constexpr double darcy_friction = 0.03;      // smooth line, Re 3e3 to 3e4
+constexpr double fitting_losses = 2.0;       // entry, exit and bends, in velocity heads
+constexpr double line_wall_over_bore = 0.1;
+constexpr double steel_modulus = 2.05e11;                       // [Pa]
+constexpr double lapped_fit_min = 2e-6, lapped_fit_max = 5e-6;  // [m]
+
+double disc(double diameter) { return pi / 4 * diameter * diameter; }
+
+std::string text_of(double value, const std::string& unit) {
+  std::string text;
+  append_number(text, value);
+  return unit == "-" ? text : text + " " + unit;
+}
+
+// Rounded to five digits: a formula's last bits are noise in a table that people read.
+double tidy(double value) {
+  if (value == 0 || !std::isfinite(value)) return value;
+  const double scale = std::pow(10.0, 4 - std::floor(std::log10(std::abs(value))));
+  return std::round(value * scale) / scale;
+}
+
+class Facts {
+ public:
+  Facts(Table table, const RigFile& rig, std::vector<std::string>* where_from)
+      : table_(std::move(table)), rig_(rig), where_from_(where_from) {
+    // What the table implies where the rig file is silent.
+    rated_current_ = rig_.fact("valve.rated_current").value_or(value(row::current_limit) / limit_over_rated);
+    stroke_ = rig_.fact("valve.spool_stroke")
+                  .value_or(value(row::torque_motor_gain) * (value(row::current_limit) / limit_over_rated) /
+                            value(row::feedback_wire_stiffness));
+  }
+
+  Table apply() {
+    supply();
+    spool();
+    pilot_stage();
+    loop_gain();
+    drive();
+    metering();
+    actuator();
+    lines();
+    return std::move(table_);
+  }
+
+ private:
+  double value(int row) const { return table_[row].nominal; }
+  std::optional<double> fact(const char* key) const { return rig_.fact(key); }
+  double differential() const { return value(row::supply_pressure) - value(row::return_pressure); }
+
+  [[noreturn]] void refuse(const std::string& key, const std::string& rule, const std::string& mend) const {
+    throw InputError({rig_.path, rig_.line(key), key}, rule, mend);
+  }
+
+  void set(int position, double nominal, double lower, double upper, const std::string& key,
+           const std::string& formula) {
+    Row& row = table_[position];
+    row.nominal = row.log_scale ? tidy(nominal) : nominal;
+    row.lower = std::min(tidy(lower), row.nominal);
+    row.upper = std::max(tidy(upper), row.nominal);
+    row.source = "rig.toml: " + key;
+    if (where_from_)
+      where_from_->push_back(row.name + " = " + text_of(row.nominal, row.unit) + ": " + row.source +
+                             (formula.empty() ? "" : "; " + formula));
+  }
+  void set_within(int position, double nominal, double factor, const std::string& key, const std::string& formula) {
+    set(position, nominal, nominal / factor, nominal * factor, key, formula);
+  }
+
+  void supply() {
+    if (const auto p = fact("supply.pressure"))
+      set(row::supply_pressure, *p, 0.25 * *p, 1.5 * *p, "supply.pressure", "");
+    if (const auto p = fact("supply.return_pressure"))
+      set(row::return_pressure, *p, 0, std::max(5e6, 2 * *p), "supply.return_pressure", "");
+    if (differential() <= 0)
+      refuse(fact("supply.pressure") ? "supply.pressure" : "supply.return_pressure",
+             "the supply (" + text_of(value(row::supply_pressure), "Pa") + ") is not above the return (" +
+                 text_of(value(row::return_pressure), "Pa") + ")",
+             "give both pressures");
+  }
+
+  void spool() {
+    if (const auto d = fact("valve.spool_diameter"))
+      set_within(row::spool_diameter, *d, drawing, "valve.spool_diameter", "");
+    if (const auto stop = fact("valve.spool_stop")) {
+      if (*stop < stroke_)
+        refuse("valve.spool_stop",
+               "the stop (" + text_of(*stop, "m") + ") is nearer than the stroke at rated current (" +
+                   text_of(stroke_, "m") + ")",
+               "correct spool_stop or spool_stroke");
+      set(row::spool_stop, *stop, 0.8 * *stop, 1.4 * *stop, "valve.spool_stop", "");
+    } else if (fact("valve.spool_stroke")) {
+      const double usual = stop_over_stroke * stroke_;
+      set(row::spool_stop, usual, 0.8 * usual, 1.4 * usual, "valve.spool_stroke", "1.16 * stroke");
+    }
+    if (fact("valve.spool_stroke")) {
+      set(row::valve_glitch, 0, 0, 0.2 * stroke_, "valve.spool_stroke", "play up to a fifth of the stroke");
+      for (const int lap : {row::lap_pa, row::lap_pb, row::lap_at, row::lap_bt})
+        set(lap, 0, -0.06 * stroke_, 0.06 * stroke_, "valve.spool_stroke", "critical centre within 6 % of the stroke");
+    }
+  }
+
+  void pilot_stage() {
+    if (const auto f = fact("valve.torque_motor_frequency"))
+      set_within(row::torque_motor_frequency, *f, dynamics, "valve.torque_motor_frequency", "");
+    if (const auto d = fact("valve.nozzle_diameter"))
+      set_within(row::hydraulic_amplifier_gain, pi * *d, drawing, "valve.nozzle_diameter", "pi * nozzle_diameter");
+    if (const auto gap = fact("valve.nozzle_gap")) set_within(row::nozzle_gap, *gap, drawing, "valve.nozzle_gap", "");
+    if (const auto d = fact("valve.fixed_orifice_diameter")) {
+      set_within(row::fixed_orifice_diameter, *d * std::sqrt(short_tube_cd / nominal::cd_orifice), drawing,
+                 "valve.fixed_orifice_diameter", "d * sqrt(0.8 / 0.65): a short tube as the model's orifice");
+    } else if (const auto leak = fact("valve.pilot_leakage"); leak && *leak > 0) {
+      // Half of the leakage through each nozzle gives the pilot pressure; the rest of the supply drops at the orifice.
+      const double half = *leak / 2;
+      const double curtain = value(row::hydraulic_amplifier_gain) * value(row::nozzle_gap);
+      const double p_pilot = std::pow(half / (nominal::cd_nozzle * curtain), 2) * rig_.fluid.density / 2;
+      if (p_pilot > 0.9 * differential())
+        refuse("valve.pilot_leakage",
+               "the leakage asks for " + text_of(std::round(p_pilot / 1e5), "bar") + " at the nozzles, of " +
+                   text_of(std::round(differential() / 1e5), "bar") + " supplied",
+               "correct it, nozzle_diameter or nozzle_gap, or give fixed_orifice_diameter");
+      const double dp_orifice = (differential() - p_pilot) / filter_loss();
+      const double area = half / (nominal::cd_orifice * std::sqrt(2 * dp_orifice / rig_.fluid.density));
+      set_within(row::fixed_orifice_diameter, std::sqrt(4 * area / pi), drawing, "valve.pilot_leakage",
+                 "orifice in series with the nozzle passes half of it");
+    }
+  }
+
+  // Drop at filter and orifice over that at the orifice: the filter passes both orifices' flow.
+  static double filter_loss() { return 1 + 1 / (nominal::clean_filter_area_ratio * nominal::clean_filter_area_ratio); }
+
+  // Spool speed per flapper travel [1/s], the spool free of load.
+  double amplifier_rate() const {
+    const double curtain = nominal::cd_nozzle * value(row::hydraulic_amplifier_gain) * value(row::nozzle_gap);
+    const double orifice = nominal::cd_orifice * disc(value(row::fixed_orifice_diameter));
+    const double p_pilot = differential() / (1 + filter_loss() * std::pow(curtain / orifice, 2));
+    return nominal::cd_nozzle * value(row::hydraulic_amplifier_gain) * std::sqrt(2 * p_pilot / rig_.fluid.density) /
+           disc(value(row::spool_diameter));
+  }
+
+  void loop_gain() {
+    const auto f = fact("valve.phase_lag_90_frequency");
+    if (!f) return;
+    const double wanted = loop_over_phase_lag * 2 * pi * *f;
+    const double available = amplifier_rate();
+    if (available <= wanted)
+      refuse("valve.phase_lag_90_frequency",
+             "the pilot stage moves the spool at " + text_of(std::round(available), "1/s") +
+                 " per flapper travel, less than the loop gain of " + text_of(std::round(wanted), "1/s") +
+                 " that this frequency asks for",
+             "correct it, or give nozzle_diameter, fixed_orifice_diameter and spool_diameter");
+    set_within(row::flapper_stiffness, value(row::feedback_wire_stiffness) * (available / wanted - 1), loop,
+               "valve.phase_lag_90_frequency", "k_f = k_w (G / K_v - 1), K_v = 0.9 * 2 pi f");
+  }
+
+  void drive() {
+    const bool current = fact("valve.rated_current").has_value(), stroke = fact("valve.spool_stroke").has_value();
+    const std::string key = current && stroke ? "valve.rated_current, valve.spool_stroke"
+                            : current         ? "valve.rated_current"
+                                              : "valve.spool_stroke";
+    if (current || stroke) {
+      const double gain = value(row::feedback_wire_stiffness) * stroke_ / rated_current_;
+      // The lower bound is the motor that lost 95 % of its gain.
+      set(row::torque_motor_gain, gain, 0.05 * gain, 2 * gain, key, "k_w * stroke / rated current");
+    }
+    if (current)
+      set(row::current_limit, limit_over_rated * rated_current_, 0.5 * rated_current_, 3 * rated_current_,
+          "valve.rated_current", "1.5 * rated current");
+  }
+
+  void metering() {
+    const double density = rig_.fluid.density;
+    std::optional<double> flow = fact("valve.no_load_flow");
+    std::string key = "valve.no_load_flow";
+    double drop = differential();
+    if (!flow) {
+      flow = fact("valve.rated_flow");
+      key = "valve.rated_flow";
+      drop = fact("valve.rated_pressure_drop").value_or(7e6);  // ISO 10770-1: 70 bar over both edges
+    }
+    // Two equal edges in series: each takes half of the drop.
+    if (flow)
+      set_within(row::port_width, *flow / (nominal::cd_metering * stroke_ * std::sqrt(drop / density)), catalogue_flow,
+                 key, "Q / (0.61 * stroke * sqrt(drop / density)), half of the drop over each edge");
+
+    const auto null_leak = fact("valve.null_leakage");
+    // Open height of an edge at null that passes the leakage which is not the pilot's: laminar and turbulent drop.
+    const double edge_flow = null_leak ? (*null_leak - fact("valve.pilot_leakage").value_or(0.5 * *null_leak)) / 2 : 0;
+    if (null_leak && edge_flow < 0)
+      refuse("valve.null_leakage", "it is less than pilot_leakage, which it includes", "correct one of the two");
+    const double per_width = edge_flow / value(row::port_width);
+    const double viscosity = density * rig_.fluid.kinematic_viscosity;
+    const double height = std::sqrt((12 * viscosity * nominal::slot_resistance * per_width +
+                                     density * std::pow(per_width / nominal::cd_metering, 2) / 2) /
+                                    (differential() / 2));
+    const std::string law = "open height of an edge at null from leakage";
+    if (const auto clearance = fact("valve.radial_clearance")) {
+      // Wear studies reach 10 times; the fit needs room beyond.
+      set(row::radial_clearance, *clearance, *clearance / 3, 12 * *clearance, "valve.radial_clearance", "");
+    } else if (edge_flow > 0) {
+      const double fit = std::clamp(height, lapped_fit_min, lapped_fit_max);
+      set(row::radial_clearance, fit, fit / 3, 12 * fit, "valve.null_leakage",
+          law + ", within 2 to 5 um of lapped fits");
+    }
+    // Leakage that the clearance cannot pass is underlap; a sheet gives the limit, so it widens a bound and no more.
+    const double underlap = std::sqrt(std::max(0.0, height * height - std::pow(value(row::radial_clearance), 2)));
+    for (const int lap : {row::lap_pa, row::lap_pb, row::lap_at, row::lap_bt})
+      if (-2 * underlap < table_[lap].lower)
+        set(lap, value(lap), -2 * underlap, table_[lap].upper, "valve.null_leakage", law + ": twice the underlap");
+  }
+
+  void actuator() {
+    if (const auto a = fact("actuator.area_a"))
+      set_within(row::piston_area_a, *a, geometry, area_key("actuator.area_a"), area_formula("a"));
+    if (const auto a = fact("actuator.area_b"))
+      set_within(row::piston_area_b, *a, geometry, area_key("actuator.area_b"), area_formula("b"));
+    if (const auto s = fact("actuator.stroke")) set_within(row::piston_stroke, *s, geometry, "actuator.stroke", "");
+    if (const auto m = fact("actuator.moving_mass"))
+      set_within(row::moving_mass, *m, 2 * geometry, "actuator.moving_mass", "");
+    if (const auto v = fact("actuator.dead_volume_a"))
+      set_within(row::dead_volume_a, *v, volumes, "actuator.dead_volume_a", "");
+    if (const auto v = fact("actuator.dead_volume_b"))
+      set_within(row::dead_volume_b, *v, volumes, "actuator.dead_volume_b", "");
+    const int mount = table_.find("mount_stiffness");
+    if (const auto k = fact("actuator.mount_stiffness"); k && mount >= 0)
+      set_within(mount, *k, 10, "actuator.mount_stiffness", "");
+  }
+  std::string area_key(const char* key) const {
+    return fact("actuator.bore_diameter") ? "actuator.bore_diameter" : key;
+  }
+  std::string area_formula(const char* side) const {
+    return fact("actuator.bore_diameter") ? std::string("pi/4 (bore^2 - rod_diameter_") + side + "^2)" : "";
+  }
+
+  void lines() {
+    const auto length = fact("lines.length"), bore = fact("lines.bore");
+    if (!length && !bore) return;
+    if (!length) refuse("lines.bore", "a line has a length too", "add [lines] length");
+    if (!bore) refuse("lines.length", "a line has a bore too", "add [lines] bore");
+    const double area = disc(*bore), volume = area * *length;
+    const double resistance =
+        (darcy_friction * *length / *bore + fitting_losses) * rig_.fluid.density / (2 * area * area);
+    set(row::hose_resistance, tidy(resistance), 0, 20 * resistance, "lines.length, lines.bore",
+        "(0.03 L/D + 2) density / (2 area^2)");
+    const double compliance = volume * (1 / value(row::bulk_modulus) + 1 / (line_wall_over_bore * steel_modulus));
+    set(row::hose_compliance, tidy(compliance), 0, 30 * compliance, "lines.length, lines.bore",
+        "volume (1 / bulk_modulus + D / (E wall)), steel, wall D/10; a hose within the bound");
+  }
+
+  Table table_;
+  const RigFile& rig_;
+  std::vector<std::string>* where_from_;
+  double rated_current_ = 0;  // [A]
+  double stroke_ = 0;         // [m] spool travel at rated current
+};
+
+}  // namespace
+
+Table apply_rig_facts(const Table& table, const RigFile& rig, std::vector<std::string>* where_from) {
+  if (const auto it = rig.words.find("valve.first_stage"); it != rig.words.end() && it->second == "jet_pipe")
+    throw InputError(
+        {rig.path, rig.line("valve.first_stage"), "valve.first_stage"},
+        "a jet pipe cannot be fitted: the model's pilot pressures come from two nozzles and a flapper, and "
+        "no setting of rows 3 to 10 recovers a jet's",
+        "use the virtual rig for jet pipes, or leave the key out for a flapper-nozzle valve");
+  if (table.has_std_error) {
+    if (where_from) where_from->push_back(table.path + " is tuned: its values stand, the facts are not applied");
+    return table;
+  }
+  return Facts(table, rig, where_from).apply();
+}
+
+}  // namespace servodx

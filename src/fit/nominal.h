@@ -1,0 +1,31 @@
+// Data-sheet facts of a rig file into a parameter table: each fact sets the nominal value and the bounds of the rows
+// that follow from it, by the formulas of docs/parameters.md.
+//
+// Valid for two-stage flapper-nozzle valves with a feedback wire; a jet pipe is refused. Leaves out: everything that a
+// data sheet does not say (frictions, laps, lags), which keeps the table's values. The bounds that a fact sets are the
+// spread of real parts about a data sheet, widened where a fault moves the row.
+#pragma once
+#include <string>
+#include <vector>
+
+#include "parameters/table.h"
+#include "signals/rig_file.h"
+
+namespace servodx {
+
+// Discharge coefficients behind the formulas; a test holds them equal to the model's.
+namespace nominal {
+inline constexpr double cd_metering = 0.61;
+inline constexpr double cd_orifice = 0.65;
+inline constexpr double cd_nozzle = 0.64;
+inline constexpr double clean_filter_area_ratio = 5.0;
+inline constexpr double slot_resistance = 6.0;
+}  // namespace nominal
+
+// Returns the table with the rows that follow from facts overridden; their `source` becomes "rig.toml: KEY".
+// `where_from` receives one line a row: "port_width = 0.005 m: rig.toml: valve.no_load_flow; formula".
+// A tuned table (with std_error) keeps its values: they were measured, the data sheet only promises.
+// Throws InputError at the fact that cannot hold.
+Table apply_rig_facts(const Table& table, const RigFile& rig, std::vector<std::string>* where_from = nullptr);
+
+}  // namespace servodx
