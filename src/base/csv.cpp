@@ -54,7 +54,7 @@ Cell parse_cell(std::string_view text, bool decimal_comma, double& value) {
   auto [end, error] = std::from_chars(first, last, value);
   if (error == std::errc::result_out_of_range) {
     value = std::strtod(first, nullptr);
-    if (std::abs(value) >= 1.0) error = std::errc::invalid_argument;  // overflow; an underflow is its nearest double
+    error = std::abs(value) < 1.0 ? std::errc() : std::errc::invalid_argument;  // an underflow is its nearest double
   }
   if (error != std::errc() || end != last || std::isinf(value)) {
     value = missing_value;

@@ -14,10 +14,10 @@ namespace servodx {
 struct ProgressOptions {
   bool quiet = false;
   std::FILE* to = stderr;
-  std::optional<bool> terminal;  // empty: asked of the stream
-  double first_after = 1.0;      // [s]
-  double every_terminal = 0.2;   // [s]
-  double every_plain = 10.0;     // [s]
+  std::optional<bool> terminal = {};  // empty: asked of the stream
+  double first_after = 1.0;           // [s]
+  double every_terminal = 0.2;        // [s]
+  double every_plain = 10.0;          // [s]
 };
 
 class Progress {

@@ -333,8 +333,11 @@ double rounded_to_digits(double x, int digits) {
 double number_in_unit(double si, const Unit& unit) {
   if (unit.multiply == 1.0 && unit.divide == 1.0 && unit.offset == 0.0) return si;
   const double x = unit.from_si(si);
-  const double tidy = rounded_to_digits(x, 15);
-  if (unit.to_si(tidy) == si) return tidy;
+  // An offset cancels digits, so fewer may do.
+  for (int digits = unit.offset == 0.0 ? 15 : 12; digits <= 15; ++digits) {
+    const double tidy = rounded_to_digits(x, digits);
+    if (unit.to_si(tidy) == si) return tidy;
+  }
   const double infinity = std::numeric_limits<double>::infinity();
   double below = x, above = x;
   for (int i = 0; i < 4; ++i) {

@@ -1,0 +1,156 @@
+#include "base/csv.h"
+
+#include <gtest/gtest.h>
+
+#include <bit>
+#include <cmath>
+#include <vector>
+
+#include "base/random.h"
+
+namespace servodx {
+namespace {
+
+using Rows = std::vector<std::vector<std::string>>;
+
+Rows rows_of(std::string_view text) {
+  CsvCursor csv(text, "t.csv");
+  Rows rows{csv.header()};
+  while (csv.next_row()) {
+    rows.emplace_back();
+    for (std::string cell; csv.next_cell(cell);) rows.back().push_back(cell);
+  }
+  return rows;
+}
+
+TEST(Csv, SeparatorsLineEndsBomAndBlanksDoNotChangeTheCells) {
+  const Rows expected = {{"a", "b [x]"}, {"1", "2"}, {"3", ""}};
+  for (const char* text : {"a,b [x]\n1,2\n3,\n", "a;b [x]\n1;2\n3;\n", "a\tb [x]\n1\t2\n3\t\n",
+                           "\xEF\xBB\xBF"
+                           "a,b [x]\r\n1,2\r\n3,\r\n",
+                           "# note, with commas; and \"quotes\n\na , b [x] \n\n 1, 2\n3 ,\n\n  \n", "a,b [x]\n1,2\n3,",
+                           "a,b [x]\n\"1\",\"2\"\n3,\"\""})
+    EXPECT_EQ(rows_of(text), expected) << text;
+}
+
+TEST(Csv, QuotedCellsHoldSeparatorsQuotesAndLineEnds) {
+  EXPECT_EQ(rows_of("a,b\n\"x, \"\"y\"\"\",\"two\nlines\"\n"), (Rows{{"a", "b"}, {"x, \"y\"", "two\nlines"}}));
+}
+
+TEST(Csv, ACellWrittenIsTheCellRead) {
+  for (const std::string cell : {"plain", "a,b", "a;b", "say \"x\"", "two\nlines", "#1", " led", "", "\t"}) {
+    std::string text = "a,b\n";
+    append_cell(text, cell);
+    text += ",\n";
+    EXPECT_EQ(rows_of(text).at(1).at(0), cell);
+  }
+}
+
+TEST(Csv, LinesAreCountedThroughCommentsBlanksAndQuotedLineEnds) {
+  CsvCursor csv("# c\n\na,b\n1,\"x\ny\"\n\n2,z\n", "t.csv");
+  EXPECT_EQ(csv.header_line(), 3);
+  EXPECT_EQ(csv.comments(), std::vector<std::string>{"c"});
+  ASSERT_TRUE(csv.next_row());
+  EXPECT_EQ(csv.line(), 4);
+  ASSERT_TRUE(csv.next_row());
+  EXPECT_EQ(csv.line(), 7);
+  EXPECT_FALSE(csv.next_row());
+}
+
+TEST(Csv, NumbersAreNumbersMissingOrText) {
+  const struct {
+    const char* text;
+    Cell kind;
+    double value;
+  } cases[] = {
+      {"1.5", Cell::number, 1.5}, {" -2e-3 ", Cell::number, -2e-3}, {"+7", Cell::number, 7}, {"\"4\"", Cell::number, 4},
+      {".5", Cell::number, 0.5},  {"1e-400", Cell::number, 0},      {"", Cell::missing, 0},  {"  ", Cell::missing, 0},
+      {"NaN", Cell::missing, 0},  {"-nan", Cell::missing, 0},       {"inf", Cell::text, 0},  {"1e400", Cell::text, 0},
+      {"1.5V", Cell::text, 0},    {"1 2", Cell::text, 0},           {"+-1", Cell::text, 0},  {"0x10", Cell::text, 0},
+      {"off", Cell::text, 0},
+  };
+  for (const auto& c : cases) {
+    const std::string text = "a,b\n" + std::string(c.text) + ",9\n";
+    CsvCursor csv(text, "t.csv");
+    ASSERT_TRUE(csv.next_row());
+    double value = 0;
+    EXPECT_EQ(csv.next_number(value), c.kind) << c.text;
+    if (c.kind == Cell::number) {
+      EXPECT_EQ(value, c.value) << c.text;
+    } else {
+      EXPECT_TRUE(std::isnan(value)) << c.text;
+    }
+    EXPECT_EQ(csv.next_number(value), Cell::number) << c.text;
+    EXPECT_EQ(value, 9.0) << c.text;
+    EXPECT_EQ(csv.next_number(value), Cell::none) << c.text;
+  }
+}
+
+TEST(Csv, ADecimalCommaCountsWhereTheSeparatorIsASemicolon) {
+  double value = 0;
+  CsvCursor semicolons("a;b\n-1,25e3;2.5\n1,2,3;1.2,3\n", "t.csv");
+  semicolons.next_row();
+  EXPECT_EQ(semicolons.next_number(value), Cell::number);
+  EXPECT_EQ(value, -1250.0);
+  EXPECT_EQ(semicolons.next_number(value), Cell::number);
+  EXPECT_EQ(value, 2.5);
+  semicolons.next_row();
+  EXPECT_EQ(semicolons.next_number(value), Cell::text);
+  EXPECT_EQ(semicolons.last_text(), "1,2,3");
+  EXPECT_EQ(semicolons.next_number(value), Cell::text);
+  CsvCursor tabs("a\tb\n1,5\t2\n", "t.csv");
+  tabs.next_row();
+  EXPECT_EQ(tabs.next_number(value), Cell::text);
+}
+
+TEST(Csv, AnyDoubleIsWrittenAndReadBackBitForBit) {
+  Random random(1);
+  for (int i = 0; i < 20000; ++i) {
+    const double x = std::bit_cast<double>(random.bits64());
+    if (!std::isfinite(x)) continue;
+    std::string text = "a\n";
+    append_number(text, x);
+    text += '\n';
+    CsvCursor csv(text, "t.csv");
+    csv.next_row();
+    double back = 0;
+    ASSERT_EQ(csv.next_number(back), Cell::number) << text;
+    ASSERT_EQ(std::bit_cast<std::uint64_t>(back), std::bit_cast<std::uint64_t>(x)) << text;
+  }
+}
+
+TEST(Csv, OnlyALastRowWithoutLineEndIsSaidToEndWithTheFile) {
+  const auto ends = [](std::string_view text) {
+    CsvCursor csv(text, "t.csv");
+    csv.next_row();
+    while (csv.skip_cell()) {
+    }
+    return csv.row_ended_by_file();
+  };
+  EXPECT_TRUE(ends("a,b\n1,2"));
+  EXPECT_TRUE(ends("a,b\n1,"));
+  EXPECT_FALSE(ends("a,b\n1,2\n"));
+  EXPECT_FALSE(ends("a,b\n1,2\r\n"));
+  EXPECT_FALSE(ends("a,b\n1,2\n3,4"));
+}
+
+TEST(Csv, EachRefusalSaysRuleAndMend) {
+  const auto refusal = [](std::string_view text) -> std::string {
+    try {
+      rows_of(text);
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "accepted";
+  };
+  EXPECT_EQ(refusal(""), "t.csv: the file has no header row; begin it with a row of column names");
+  EXPECT_EQ(refusal("# only\n\n"), "t.csv: the file has no header row; begin it with a row of column names");
+  EXPECT_EQ(refusal("\xFF\xFE"
+                    "a"),
+            "t.csv:1: the text is UTF-16; save the file as UTF-8");
+  EXPECT_EQ(refusal("a,b\n\"x,1\n"), "t.csv:2: a quoted cell is not closed; close it with '\"'");
+  EXPECT_EQ(refusal("a,b\n\"x\"y,1\n"), "t.csv:2: text follows a quoted cell; double the quotes within the cell");
+}
+
+}  // namespace
+}  // namespace servodx

@@ -1,0 +1,398 @@
+#include "signals/log.h"
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <bit>
+#include <cmath>
+#include <filesystem>
+#include <functional>
+
+#include "base/csv.h"
+#include "base/random.h"
+#include "base/sha256.h"
+#include "temporary_folder.h"
+
+namespace servodx {
+namespace {
+
+const std::string header = "time [s],command [mA],spool_position [mm]\n";
+
+// Rows at 1 kHz whose columns move; `edit` may change the text of row i (0-based).
+std::string rows(int n, const std::function<std::string(int, std::string)>& edit = nullptr) {
+  std::string text;
+  for (int i = 0; i < n; ++i) {
+    std::string row = fmt::format("{},{},{}\n", i * 1e-3, i % 7 - 3, 0.01 * ((i * 5) % 11));
+    text += edit ? edit(i, row) : row;
+  }
+  return text;
+}
+
+std::string replace_row(int which, const std::string& with, int n = 30) {
+  return rows(n, [&](int i, std::string row) { return i == which ? with : row; });
+}
+
+RigFile rig_with(const std::string& toml) {
+  const TemporaryFolder folder;
+  return read_rig_file(folder.write("rig.toml", toml));
+}
+
+Log read(const std::string& text, const RigFile& rig = {}, const ReadOptions& options = {}) {
+  const TemporaryFolder folder;
+  return read_log(folder.write("log.csv", text), rig, options);
+}
+
+// The message without the folder; "accepted" where there is none.
+std::string refusal(const std::string& text, const RigFile& rig = {}, const ReadOptions& options = {}) {
+  const TemporaryFolder folder;
+  const std::string path = folder.write("log.csv", text);
+  try {
+    read_log(path, rig, options);
+  } catch (const InputError& error) {
+    const std::string what = error.what();
+    return what.starts_with(path) ? "log.csv" + what.substr(path.size()) : what;
+  }
+  return "accepted";
+}
+
+bool same_bits(const std::vector<double>& a, const std::vector<double>& b) {
+  if (a.size() != b.size()) return false;
+  for (std::size_t i = 0; i < a.size(); ++i)
+    if (!(std::isnan(a[i]) && std::isnan(b[i])) &&
+        std::bit_cast<std::uint64_t>(a[i]) != std::bit_cast<std::uint64_t>(b[i]))
+      return false;
+  return true;
+}
+
+bool mentions(const Log& log, const std::string& words) {
+  for (const std::string& note : log.notes)
+    if (note.find(words) != std::string::npos) return true;
+  return false;
+}
+
+TEST(Log, ValuesArriveInSi) {
+  const Log log = read(
+      "oil_temperature [degF],time [ms],command [mA],pressure_a [psi],pressure_b [bar],flow_a [gpm],load_force [lbf],"
+      "piston_position [in]\n104,0,20,1000,10,1,1,1\n104,1,-20,1000,10,1,1,1\n",
+      {}, {.minimum_rows = 2});
+  EXPECT_EQ(log.time, (std::vector<double>{0.0, 1e-3}));
+  EXPECT_EQ(log[Signal::command], (std::vector<double>{0.02, -0.02}));
+  EXPECT_NEAR(log[Signal::oil_temperature][0], 313.15, 1e-12 * 313.15);
+  EXPECT_DOUBLE_EQ(log[Signal::pressure_a][0], 1000 * 4.4482216152605 / (0.0254 * 0.0254));
+  EXPECT_EQ(log[Signal::pressure_b][0], 1e6);
+  EXPECT_DOUBLE_EQ(log[Signal::flow_a][0], 3.785411784e-3 / 60);
+  EXPECT_DOUBLE_EQ(log[Signal::load_force][0], 4.4482216152605);
+  EXPECT_DOUBLE_EQ(log[Signal::piston_position][0], 0.0254);
+  EXPECT_FALSE(log.has(Signal::spool_position));
+  EXPECT_EQ(log.channels[index(Signal::pressure_a)].unit, "psi");
+}
+
+TEST(Log, TheHashIsThatOfTheBytes) {
+  const std::string text = header + rows(30);
+  EXPECT_EQ(read(text).sha256, sha256(text));
+}
+
+TEST(Log, SeparatorDecimalCommaBomCrlfAndCommentsReadAlike) {
+  const Log plain = read(header + rows(30));
+  const auto swapped = [&](char separator, bool decimal_comma, const std::string& line_end) {
+    std::string text;
+    for (char c : header + rows(30)) {
+      if (c == ',')
+        text += separator;
+      else if (c == '.' && decimal_comma)
+        text += ',';
+      else if (c == '\n')
+        text += line_end;
+      else
+        text += c;
+    }
+    return text;
+  };
+  for (const std::string& text :
+       {swapped(';', false, "\n"), swapped(';', true, "\n"), swapped('\t', false, "\n"), swapped(',', false, "\r\n"),
+        swapped(';', true, "\r\n"), "\xEF\xBB\xBF" + header + rows(30), "# bench 3\n#, \"; \n" + header + rows(30),
+        "\xEF\xBB\xBF# bench 3\r\n" + swapped('\t', false, "\r\n")}) {
+    const Log log = read(text);
+    EXPECT_TRUE(same_bits(log.time, plain.time)) << text.substr(0, 60);
+    EXPECT_TRUE(same_bits(log[Signal::spool_position], plain[Signal::spool_position])) << text.substr(0, 60);
+    EXPECT_TRUE(log.notes.empty());
+  }
+}
+
+TEST(Log, ColumnOrderIsFree) {
+  const Log log = read("spool_position [mm],time [s],command [mA]\n0.1,0,1\n0.2,1,2\n", {}, {.minimum_rows = 2});
+  EXPECT_EQ(log.time, (std::vector<double>{0, 1}));
+  EXPECT_EQ(log[Signal::command], (std::vector<double>{1e-3, 2e-3}));
+  EXPECT_EQ(log[Signal::spool_position], (std::vector<double>{0.1e-3, 0.2e-3}));
+}
+
+TEST(Log, FurtherColumnsAreIgnoredWithOneNotice) {
+  const Log log = read(
+      "operator,time [s],command [mA],spool_position [mm],mood [furlong],\n\"Smith, J\",0,1,0.1,good,\n,1,2,0.2,bad,\n",
+      {}, {.minimum_rows = 2});
+  ASSERT_EQ(log.notes.size(), 1u);
+  EXPECT_TRUE(mentions(log, "ignored 3 further columns: 'operator', 'mood', ''"));
+}
+
+TEST(Log, WhatIsWrittenInSiReadsBackBitForBit) {
+  const TemporaryFolder folder;
+  Random random(11);
+  std::vector<double> time, x, p;
+  for (int i = 0; i < 500; ++i) {
+    time.push_back(i == 0 ? random.uniform() : time.back() + random.uniform());
+    x.push_back(i % 40 == 7 ? NAN : random.normal() * 1e-4);
+    p.push_back(random.uniform(0, 3e7));
+  }
+  const std::string path = folder / "log.csv";
+  write_log(path, {{Signal::time, "s", time}, {Signal::command, "A", x}, {Signal::load_pressure, "Pa", p}}, {"a", "b"});
+  const Log log = read_log(path);
+  EXPECT_TRUE(same_bits(log.time, time));
+  EXPECT_TRUE(same_bits(log[Signal::command], x));
+  EXPECT_TRUE(same_bits(log[Signal::load_pressure], p));
+  EXPECT_TRUE(read_file(path).starts_with("# a\n# b\ntime [s],command [A],load_pressure [Pa]\n"));
+}
+
+// Whatever the unit: a log read and written again is the same log, and stays tidy.
+TEST(Log, WhatWasReadIsWrittenAndReadBackBitForBit) {
+  const RigFile rig = rig_with("[valve]\nrated_current = \"37 mA\"\nspool_stroke = \"0.47 mm\"\n");
+  Random random(12);
+  for (const SignalInfo& signal : signal_list) {
+    std::vector<std::string> names;
+    const auto relative = relative_unit(signal.signal);
+    for (const Unit& unit : unit_table())
+      if (unit.dimension == signal.dimension || (relative && unit.dimension == relative->dimension))
+        names.emplace_back(unit.name);
+    for (const std::string& name : names) {
+      if (signal.signal == Signal::time) continue;
+      std::string text = fmt::format("time [ms],{} [{}]\n", signal.name, name);
+      for (int i = 0; i < 300; ++i) text += fmt::format("{},{:.{}f}\n", i, random.uniform(-300, 300), i % 7);
+      const ReadOptions any{.require_response = false, .require_drive = false};
+      const Log log = read(text, rig, any);
+      const TemporaryFolder folder;
+      const std::string path = folder / "again.csv";
+      write_log(path,
+                {output_column(log, Signal::time, log.time), output_column(log, signal.signal, log[signal.signal])});
+      const Log again = read_log(path, rig, any);
+      EXPECT_TRUE(same_bits(again.time, log.time)) << name;
+      EXPECT_TRUE(same_bits(again[signal.signal], log[signal.signal])) << signal.name << " " << name;
+      EXPECT_LT(std::filesystem::file_size(path), text.size() + 20) << "untidy digits: " << name;
+    }
+  }
+}
+
+TEST(Log, AWriterRefusesAUnitThatIsNotTheSignals) {
+  EXPECT_THROW(write_log("/dev/null", {{Signal::command, "mm", {}}}), InputError);
+  EXPECT_THROW(write_log("/dev/null", {{Signal::command, "V", {}}}), InputError);
+  EXPECT_THROW(write_log("/dev/null", {{Signal::command, "% of rated", {}}}), InputError);
+}
+
+TEST(Log, RelativeUnitsTakeTheirFactFromTheRigFile) {
+  const RigFile rig = rig_with("[valve]\nrated_current = \"20 mA\"\nspool_stroke = \"0.5 mm\"\n");
+  const std::string text = "time [s],command [% of rated],spool_position [% of stroke]\n0,100,-50\n1,25,10\n";
+  const Log log = read(text, rig, {.minimum_rows = 2});
+  EXPECT_EQ(log[Signal::command], (std::vector<double>{0.02, 0.005}));
+  EXPECT_EQ(log[Signal::spool_position], (std::vector<double>{-0.25e-3, 0.05e-3}));
+}
+
+TEST(Log, ColumnsAreMappedWithGainAndOffset) {
+  const RigFile rig = rig_with(R"([columns]
+"Pos fb" = { signal = "piston_position", unit = "V", gain = "20 mm/V", offset = "-100 mm" }
+"T" = { signal = "oil_temperature", gain = "10 degC/V", offset = "-20 degC" }
+"i" = { signal = "command", unit = "mA", gain = "-1" }
+"control_flow" = { signal = "control_flow", gain = -1 }
+)");
+  const Log log =
+      read("time [s],i,Pos fb [V],T [V],control_flow [l/min]\n0,3,5,4,6\n1,-3,6,5,-6\n", rig, {.minimum_rows = 2});
+  EXPECT_EQ(log[Signal::command], (std::vector<double>{-3e-3, 3e-3}));
+  EXPECT_NEAR(log[Signal::piston_position][0], 0.0, 1e-15);
+  EXPECT_NEAR(log[Signal::piston_position][1], 0.02, 1e-15);
+  EXPECT_NEAR(log[Signal::oil_temperature][0], 293.15, 1e-12);
+  EXPECT_NEAR(log[Signal::oil_temperature][1], 303.15, 1e-12);
+  EXPECT_EQ(log[Signal::control_flow], (std::vector<double>{-1e-4, 1e-4}));
+  EXPECT_EQ(log.channels[index(Signal::piston_position)].unit, "mm");
+  EXPECT_EQ(log.channels[index(Signal::piston_position)].column, "Pos fb");
+}
+
+TEST(Log, EachRefusalNamesPlaceRuleAndMend) {
+  const std::string currents = "A, mA, % of rated, or V with a gain in the rig file";
+  const std::string mapping = ", or map one of yours in [columns] of the rig file";
+  const struct {
+    std::string text, message;
+  } cases[] = {
+      {"", "log.csv: the file has no header row; begin it with a row of column names"},
+      {"Time [s],command [mA],spool_position [mm]\n" + rows(30),
+       "log.csv:1: column 'time': required signal is missing; add a column 'time [s]'" + mapping +
+           " (not known: 'Time')"},
+      {"time [s],spool_position [mm]\n",
+       "log.csv:1: column 'command': required signal is missing, and so is 'coil_current'; add a column 'command [A]'" +
+           mapping},
+      {"# c\n\ntime [s],command [mA],pressure_a [bar],valve_pressure_drop [bar]\n",
+       "log.csv:3: column 'spool_position': no response is logged (spool_position, piston_position, pressure_a with "
+       "pressure_b, load_pressure or a flow); add a column 'spool_position [m]'" +
+           mapping},
+      {"time [s],command,spool_position [mm]\n",
+       "log.csv:1: column 'command': the header cell has no unit; write 'command [A]'; accepted: " + currents},
+      {"time [s],command [],spool_position [mm]\n",
+       "log.csv:1: column 'command': unknown unit ''; accepted: " + currents},
+      {"time [s],command [ma],spool_position [mm]\n",
+       "log.csv:1: column 'command': unknown unit 'ma'; accepted: " + currents},
+      {"time [s],command [bar],spool_position [mm]\n",
+       "log.csv:1: column 'command': 'bar' is a unit of pressure, not of current; accepted: " + currents},
+      {"time [V],command [mA],spool_position [mm]\n",
+       "log.csv:1: column 'time': 'V' is a unit of voltage, not of time; accepted: s, ms, us, min, h"},
+      {"time [s],command [V],spool_position [mm]\n",
+       "log.csv:1: column 'command': volts need a gain; add \"command\" = { signal = \"command\", unit = \"V\", gain = "
+       "\"... "
+       "A/V\" } to [columns] of the rig file (--rig)"},
+      {"time [s],command [% of rated],spool_position [mm]\n",
+       "log.csv:1: column 'command': unit '% of rated' needs valve.rated_current; give it in the rig file (--rig) or "
+       "write "
+       "the column in A, mA"},
+      {"time [s],command [mA],spool_position [% of stroke]\n",
+       "log.csv:1: column 'spool_position': unit '% of stroke' needs valve.spool_stroke; give it in the rig file "
+       "(--rig) or "
+       "write the column in m, cm, mm, um, in"},
+      {"time [s],command [mA],spool_position [mm],command [A]\n",
+       "log.csv:1: column 'command': duplicate column; keep one column of the signal"},
+      {header, "log.csv:1: the log has no rows; write one row a sample below the header"},
+      {header + rows(5), "log.csv:6: the log has 5 rows, at least 20 are needed; record for longer"},
+      {header + replace_row(4, "0.003,1,0.1\n"),
+       "log.csv:6: column 'time': time does not increase: 0.003 s after 0.003 s; sort the rows and remove repeated "
+       "ones"},
+      {header + replace_row(4, "0.002,1,0.1\n"),
+       "log.csv:6: column 'time': time does not increase: 0.002 s after 0.003 s; sort the rows and remove repeated "
+       "ones"},
+      {header + replace_row(4, "0.004,off,0.1\n"),
+       "log.csv:6: column 'command': 'off' is not a number; write a number with a decimal point, or leave the cell "
+       "empty"},
+      {header + replace_row(4, "0.004,inf,0.1\n"),
+       "log.csv:6: column 'command': 'inf' is not a number; write a number with a decimal point, or leave the cell "
+       "empty"},
+      {header + replace_row(4, "0.004,1\n"),
+       "log.csv:6: ragged row: 2 cells, the header has 3; write one cell a column"},
+      {header + replace_row(4, "0,004,1,1\n"),
+       "log.csv:6: ragged row: 4 cells, the header has 3; write one cell a column; a decimal comma needs ';' as "
+       "separator"},
+      {header + replace_row(4, "# pause\n"),
+       "log.csv:6: ragged row: 1 cells, the header has 3; write one cell a column"},
+      {header + rows(30, [](int i, std::string row) { return i < 2 ? fmt::format("{},1,nan\n", i * 1e-3) : row; }),
+       "log.csv:2: column 'spool_position': 2 of 30 samples are missing, more than 5 %; cut the log to where the "
+       "signal is "
+       "complete, or drop the column"},
+      {header + rows(30, [](int i, std::string row) { return i < 2 ? ",1,2\n" : row; }),
+       "log.csv:2: column 'time': 2 of 30 samples are missing, more than 5 %; give every row its time"},
+  };
+  for (const auto& c : cases) EXPECT_EQ(refusal(c.text), c.message);
+}
+
+TEST(Log, EachRefusalOfAMappingNamesPlaceRuleAndMend) {
+  const RigFile rig =
+      rig_with("[columns]\nx = { signal = \"spool_position\", unit = \"mm\" }\ni = { signal = \"command\" }\n");
+  EXPECT_EQ(refusal("time [s],command [mA],x [um]\n", rig),
+            "log.csv:1: column 'x': unit 'um' here, 'mm' in the rig file (line 2); make both agree");
+  EXPECT_EQ(refusal("time [s],command [mA],x,spool_position [mm]\n", rig),
+            "log.csv:1: column 'spool_position': duplicate column: 'x' is 'spool_position' too; keep one column of the "
+            "signal");
+  EXPECT_EQ(refusal("time [s],i,x\n", rig),
+            "log.csv:1: column 'i': the header cell has no unit; write 'i [A]'; accepted: A, mA, % of rated, or V with "
+            "a gain "
+            "in the rig file");
+}
+
+TEST(Log, AnyOneResponseIsEnough) {
+  for (const char* response : {"spool_position [mm]", "piston_position [mm]", "load_pressure [bar]", "flow_a [l/min]",
+                               "flow_b [l/min]", "control_flow [gpm]", "leakage_flow [l/min]"})
+    EXPECT_EQ(refusal(fmt::format("time [s],coil_current [mA],{}\n", response) + rows(30)), "accepted") << response;
+  EXPECT_EQ(
+      refusal("time [s],command [mA],pressure_a [bar],pressure_b [bar]\n0,1,2,3\n1,2,3,4\n", {}, {.minimum_rows = 2}),
+      "accepted");
+}
+
+TEST(Log, MissingSamplesAreLeftOutAndCounted) {
+  const Log log = read(header + replace_row(7, "0.007,nan,\n", 40));
+  EXPECT_TRUE(std::isnan(log[Signal::spool_position][7]));
+  EXPECT_EQ(log.channels[index(Signal::command)].missing, 1u);
+  EXPECT_EQ(log.samples(), 40u);
+  EXPECT_TRUE(mentions(log, "'spool_position': left out 1 of 40 samples"));
+  const Log timeless = read(header + replace_row(7, ",1,2\n", 40));
+  EXPECT_EQ(timeless.samples(), 39u);
+  EXPECT_TRUE(mentions(timeless, "left out 1 of 40 rows without a time"));
+}
+
+TEST(Log, ALastLineWithoutLineEndIsReadIfWhole) {
+  EXPECT_EQ(read(header + rows(30) + "0.03,1,0.25").samples(), 31u);
+  for (const char* cut : {"0.03,1,0.2e", "0.03,1,", "0.03,1", "0.03,-", "0"}) {
+    const Log log = read(header + rows(30) + cut);
+    EXPECT_EQ(log.samples(), 30u) << cut;
+    EXPECT_TRUE(mentions(log, ":32: dropped the last line: it is cut short and has no line end")) << cut;
+    EXPECT_EQ(log.notes.size(), 1u) << cut;
+  }
+}
+
+TEST(Log, ResolutionIsTheSmallestStep) {
+  std::string text = header;
+  Random random(4);
+  for (int i = 0; i < 400; ++i)
+    text += fmt::format("{},{},{:.3f}\n", i * 1e-3, i % 5, std::round(random.normal() * 8) * 0.004);
+  EXPECT_NEAR(read(text).channels[index(Signal::spool_position)].resolution, 4e-6, 1e-12);
+}
+
+std::string noisy(int n, const std::function<double(int, double)>& spool) {
+  Random random(9);
+  std::string text = header;
+  for (int i = 0; i < n; ++i) {
+    const double u = 10 * std::sin(0.05 * i);
+    text += fmt::format("{},{:.4f},{:.5f}\n", i * 1e-3, u, spool(i, 0.025 * u + 0.001 * random.normal()));
+  }
+  return text;
+}
+
+TEST(Log, ImplausibleValuesAreReadAndWarnedOf) {
+  EXPECT_TRUE(read(noisy(1000, [](int, double x) { return x; })).notes.empty());
+  EXPECT_TRUE(
+      mentions(read(noisy(1000, [](int, double) { return 0.1; })), "'spool_position': never changes: frozen sensor?"));
+  EXPECT_TRUE(mentions(read(noisy(1000, [](int i, double x) { return i > 600 ? 0.1 : x; })),
+                       "'spool_position': frozen sensor? It does not change for 0.398 s from 0.601 s on"));
+  EXPECT_TRUE(mentions(read(noisy(1000, [](int i, double x) { return i == 300 || i == 500 ? x + 2 : x; })),
+                       "'spool_position': 2 spikes of a single sample, the first at 0.3 s"));
+  EXPECT_TRUE(mentions(read(noisy(1000, [](int, double x) { return 1000 * x; })), "check unit, gain and offset"));
+  EXPECT_TRUE(mentions(read(header + rows(30, [](int i, std::string) { return fmt::format("{},2,{}\n", i, i % 5); })),
+                       "'command': no excitation: it stays at 0.002 A"));
+  EXPECT_TRUE(mentions(read(header + rows(30) + "0.05,1,0.1\n"),
+                       "1 gap in time, the longest 0.021 s at a usual step of 0.001 s"));
+}
+
+// Logs of a foreign rig; not part of this project.
+TEST(ForeignLogs, OfRigAAllRead) {
+  namespace fs = std::filesystem;
+  const fs::path folder = fs::path(SERVODX_SHARED_DIR) / "data/rig_A";
+  if (!fs::exists(folder / "rig.toml")) GTEST_SKIP() << folder << " is absent";
+  const RigFile rig = read_rig_file(folder / "rig.toml");
+  EXPECT_EQ(rig.fact("valve.rated_current"), 0.02);
+  int logs = 0;
+  for (const auto& entry : fs::recursive_directory_iterator(folder)) {
+    if (entry.path().extension() != ".csv" || entry.path().filename() == "truth.csv") continue;
+    ++logs;
+    const Log log = read_log(entry.path(), rig);
+    EXPECT_GT(log.samples(), 500u) << entry.path();
+    for (Signal s :
+         {Signal::command, Signal::spool_position, Signal::piston_position, Signal::pressure_a, Signal::pressure_b,
+          Signal::supply_pressure, Signal::return_pressure, Signal::load_force, Signal::oil_temperature})
+      EXPECT_EQ(log[s].size(), log.samples()) << entry.path() << info(s).name;
+    EXPECT_LE(log.notes.size(), 1u) << entry.path();
+  }
+  EXPECT_EQ(logs, 252);
+}
+
+TEST(ForeignLogs, OfTheRealServovalveAllRead) {
+  namespace fs = std::filesystem;
+  const fs::path folder = fs::path(SERVODX_SHARED_DIR) / "data/real/servovalve_static";
+  if (!fs::exists(folder)) GTEST_SKIP() << folder << " is absent";
+  for (const auto& entry : fs::recursive_directory_iterator(folder))
+    if (entry.path().extension() == ".csv") {
+      EXPECT_NO_THROW(read_log(entry.path())) << entry.path();
+    }
+}
+
+}  // namespace
+}  // namespace servodx

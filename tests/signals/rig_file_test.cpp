@@ -1,0 +1,222 @@
+#include "signals/rig_file.h"
+
+#include <gtest/gtest.h>
+
+#include <numbers>
+
+#include "temporary_folder.h"
+
+namespace servodx {
+namespace {
+
+RigFile read(const std::string& text) {
+  const TemporaryFolder folder;
+  return read_rig_file(folder.write("rig.toml", text));
+}
+
+std::string refusal(const std::string& text) {
+  const TemporaryFolder folder;
+  const std::string path = folder.write("rig.toml", text);
+  try {
+    read_rig_file(path);
+  } catch (const InputError& error) {
+    const std::string what = error.what();
+    return what.starts_with(path) ? "rig.toml" + what.substr(path.size()) : what;
+  }
+  return "accepted";
+}
+
+// Every key that the documentation shows.
+const std::string whole = R"(name = "bench 3"
+serial = "SN 5329"
+ports = "blocked"
+command_hold = "linear"
+mains_frequency = "50 Hz"
+null_limit = "4 %"
+fluid = "MIL-PRF-5606"
+[valve]
+rated_current = "20 mA"
+dither = { amplitude = "0.2 mA", frequency = "200 Hz" }
+spool_stroke = "0.50 mm"
+spool_stop = "0.58 mm"
+spool_diameter = "6.5 mm"
+rated_flow = "7 l/min"
+rated_pressure_drop = "70 bar"
+phase_lag_90_frequency = "100 Hz"
+null_leakage = "0.8 l/min"
+pilot_leakage = "0.4 l/min"
+radial_clearance = "3 um"
+nozzle_diameter = "0.34 mm"
+fixed_orifice_diameter = "0.2 mm"
+nozzle_gap = "35 um"
+torque_motor_frequency = "750 Hz"
+first_stage = "flapper_nozzle"
+[actuator]
+bore_diameter = "40 mm"
+rod_diameter_a = "20 mm"
+rod_diameter_b = "25 mm"
+stroke = "400 mm"
+moving_mass = "10 kg"
+dead_volume_a = "20 cm3"
+dead_volume_b = "21 cm3"
+mount_stiffness = "3.1e7 N/m"
+[lines]
+length = "0.45 m"
+bore = "10 mm"
+[supply]
+pressure = "207 bar"
+return_pressure = "5 bar"
+[columns]
+"Pos fb" = { signal = "piston_position", unit = "V", gain = "20 mm/V", offset = "-100 mm" }
+)";
+
+TEST(RigFile, EveryKeyIsKeptInSiWithItsLine) {
+  const RigFile rig = read(whole);
+  EXPECT_EQ(rig.name, "bench 3");
+  EXPECT_EQ(rig.serial, "SN 5329");
+  EXPECT_EQ(rig.ports, Ports::blocked);
+  EXPECT_EQ(rig.command_hold, CommandHold::linear);
+  EXPECT_EQ(rig.mains_frequency, 50.0);
+  EXPECT_EQ(rig.null_limit, 0.04);
+  EXPECT_EQ(rig.fact("valve.rated_current"), 0.02);
+  EXPECT_EQ(rig.fact("valve.dither.amplitude"), 0.2e-3);
+  EXPECT_EQ(rig.fact("valve.dither.frequency"), 200.0);
+  EXPECT_EQ(rig.fact("valve.rated_pressure_drop"), 7e6);
+  EXPECT_EQ(rig.fact("actuator.dead_volume_b"), 21e-6);
+  EXPECT_EQ(rig.fact("actuator.mount_stiffness"), 3.1e7);
+  EXPECT_EQ(rig.fact("lines.bore"), 0.01);
+  EXPECT_EQ(rig.words.at("valve.first_stage"), "flapper_nozzle");
+  EXPECT_EQ(rig.line("valve.rated_current"), 9);
+  EXPECT_EQ(rig.line("supply.return_pressure"), 39);
+  const ColumnMapping& column = rig.columns.at("Pos fb");
+  EXPECT_EQ(column.signal, "piston_position");
+  EXPECT_EQ(column.column_unit, "V");
+  EXPECT_EQ(column.unit, "mm");
+  EXPECT_DOUBLE_EQ(column.gain, 0.02);
+  EXPECT_DOUBLE_EQ(column.offset, -0.1);
+}
+
+TEST(RigFile, AnEmptyFileSaysNothing) {
+  const RigFile rig = read("");
+  EXPECT_TRUE(rig.facts.empty());
+  EXPECT_EQ(rig.ports, Ports::actuator);
+  EXPECT_FALSE(rig.command_hold.has_value());
+  EXPECT_FALSE(rig.mains_frequency.has_value());
+  EXPECT_EQ(rig.null_limit, 0.05);
+  EXPECT_FALSE(rig.fluid.given);
+}
+
+TEST(RigFile, BoreAndRodsGiveTheAreas) {
+  const RigFile rig = read(whole);
+  EXPECT_DOUBLE_EQ(*rig.fact("actuator.area_a"), std::numbers::pi / 4 * (0.04 * 0.04 - 0.02 * 0.02));
+  EXPECT_DOUBLE_EQ(*rig.fact("actuator.area_b"), std::numbers::pi / 4 * (0.04 * 0.04 - 0.025 * 0.025));
+  const RigFile single = read("[actuator]\nbore_diameter = \"40 mm\"\nrod_diameter_b = \"25 mm\"\n");
+  EXPECT_DOUBLE_EQ(*single.fact("actuator.area_a"), std::numbers::pi / 4 * 0.04 * 0.04);
+}
+
+TEST(RigFile, AFluidIsAPresetOrItsProperties) {
+  for (const char* name :
+       {"5606", "MIL-PRF-5606", "MIL-H-5606", "83282", "MIL-PRF-83282", "AS1241", "ISO VG 32", "VG 46", "iso vg 46"}) {
+    const RigFile rig = read("fluid = \"" + std::string(name) + "\"\n");
+    EXPECT_TRUE(rig.fluid.given) << name;
+    EXPECT_EQ(rig.fact("fluid.density"), rig.fluid.density) << name;
+    EXPECT_GT(rig.fluid.density, 800.0);
+    EXPECT_LT(rig.fluid.density, 1100.0);
+  }
+  EXPECT_EQ(read("fluid = \"VG 46\"\n").fluid.kinematic_viscosity, 46e-6);
+  const RigFile own = read("[fluid]\ndensity = \"850 kg/m3\"\nkinematic_viscosity = \"15 cSt\"\n");
+  EXPECT_TRUE(own.fluid.given);
+  EXPECT_EQ(own.fluid.density, 850.0);
+  EXPECT_EQ(own.fluid.kinematic_viscosity, 15e-6);
+  EXPECT_EQ(own.fact("fluid.kinematic_viscosity"), 15e-6);
+}
+
+TEST(RigFile, EachRefusalNamesPlaceRuleAndMend) {
+  const std::string lengths = "m, cm, mm, um, in";
+  const struct {
+    std::string text, message;
+  } cases[] = {
+      {"\nnmae = \"x\"\n",
+       "rig.toml:2: column 'nmae': unknown key; known here: name, serial, ports, command_hold, mains_frequency, "
+       "null_limit, "
+       "fluid, [valve], [actuator], [lines], [supply], [fluid], [columns]"},
+      {"[supply]\npresure = \"207 bar\"\n",
+       "rig.toml:2: column 'supply.presure': unknown key; known here: pressure, return_pressure"},
+      {"[valve]\ndither = { amplitude = \"1 mA\", phase = \"0\" }\n",
+       "rig.toml:2: column 'valve.dither.phase': unknown key; known here: amplitude, frequency"},
+      {"[valve]\nrated_current = 20\n",
+       "rig.toml:2: column 'valve.rated_current': a bare number has no unit; write a quoted quantity with one of A, "
+       "mA"},
+      {"[valve]\nrated_current = \"20\"\n",
+       "rig.toml:2: column 'valve.rated_current': '20' has no unit; add one of A, mA"},
+      {"[valve]\nspool_stroke = \"0.5 bar\"\n",
+       "rig.toml:2: column 'valve.spool_stroke': 'bar' is a unit of pressure, not of length; use one of " + lengths},
+      {"[valve]\nspool_stroke = \"-0.5 mm\"\n",
+       "rig.toml:2: column 'valve.spool_stroke': must be positive; check the sign, or leave the key out"},
+      {"[valve]\nno_load_flow = \"14 l/min\"\nrated_flow = \"7 l/min\"\nrated_pressure_drop = \"70 bar\"\n",
+       "rig.toml:3: column 'valve.rated_flow': given beside valve.no_load_flow; keep one of the two"},
+      {"[valve]\nrated_flow = \"7 l/min\"\n",
+       "rig.toml:2: column 'valve.rated_flow': needs valve.rated_pressure_drop; add the total drop over both edges, "
+       "such as "
+       "rated_pressure_drop = \"70 bar\""},
+      {"[valve]\nfirst_stage = \"jet\"\n",
+       "rig.toml:2: column 'valve.first_stage': unknown value 'jet'; use one of 'flapper_nozzle', 'jet_pipe'"},
+      {"ports = \"open\"\n",
+       "rig.toml:1: column 'ports': unknown value 'open'; use one of 'actuator', 'blocked', 'free'"},
+      {"valve = \"x\"\n", "rig.toml:1: column 'valve': is not a section; write it as [valve]"},
+      {"fluid = \"water\"\n",
+       "rig.toml:1: column 'fluid': unknown fluid 'water'; use one of MIL-PRF-5606, MIL-PRF-83282, AS1241, ISO VG 32, "
+       "ISO VG "
+       "46, or a [fluid] section with density and kinematic_viscosity"},
+      {"[actuator]\narea_a = \"1 cm2\"\nbore_diameter = \"40 mm\"\n",
+       "rig.toml:2: column 'actuator.area_a': given beside actuator.bore_diameter; keep areas or diameters, not both"},
+      {"[actuator]\nrod_diameter_a = \"4 mm\"\n",
+       "rig.toml:2: column 'actuator.rod_diameter_a': needs actuator.bore_diameter; add bore_diameter or give area_a "
+       "and area_b"},
+      {"[actuator]\nbore_diameter = \"4 mm\"\nrod_diameter_a = \"4 mm\"\n",
+       "rig.toml:3: column 'actuator.rod_diameter_a': is not below actuator.bore_diameter; check both diameters"},
+      {"[supply]\npressure = \"5 bar\"\nreturn_pressure = \"5 bar\"\n",
+       "rig.toml:3: column 'supply.return_pressure': is not below supply.pressure; check both values"},
+      {"[columns]\nx = { signal = \"spool\" }\n",
+       "rig.toml:2: column 'columns.x.signal': unknown signal 'spool'; see 'servodx list signals'"},
+      {"[columns]\nx = { unit = \"mm\" }\n", "rig.toml:2: column 'columns.x': names no signal; add signal = \"...\""},
+      {"[columns]\nx = { signal = \"spool_position\", units = \"mm\" }\n",
+       "rig.toml:2: column 'columns.x.units': unknown key; known here: signal, unit, gain, offset"},
+      {"[columns]\nx = { signal = \"spool_position\", unit = \"V\" }\n",
+       "rig.toml:2: column 'columns.x.unit': volts need a gain; add gain = \"... m/V\""},
+      {"[columns]\nx = { signal = \"spool_position\", unit = \"V\", gain = \"-1\" }\n",
+       "rig.toml:2: column 'columns.x.unit': volts need a gain; add gain = \"... m/V\""},
+      {"[columns]\nx = { signal = \"spool_position\", unit = \"mm\", gain = \"20 mm/V\" }\n",
+       "rig.toml:2: column 'columns.x.unit': 'mm' is not what the gain divides by ('V'); make unit and gain agree"},
+      {"[columns]\nx = { signal = \"spool_position\", unit = \"bar\" }\n",
+       "rig.toml:2: column 'columns.x.unit': 'bar' is no unit of 'spool_position'; use one of " + lengths +
+           ", % of stroke, or V with a gain in the rig file"},
+      {"[columns]\nx = { signal = \"spool_position\", gain = \"0\" }\n",
+       "rig.toml:2: column 'columns.x.gain': a gain of zero loses the signal; write a number, or a number with a unit "
+       "such as "
+       "'20 m/V'"},
+      {"[columns]\nx = { signal = \"spool_position\", offset = \"1 bar\" }\n",
+       "rig.toml:2: column 'columns.x.offset': 'bar' is a unit of pressure, not of length; use one of " + lengths},
+  };
+  for (const auto& c : cases) EXPECT_EQ(refusal(c.text), c.message);
+}
+
+TEST(RigFile, ABrokenTomlNamesItsLine) {
+  EXPECT_TRUE(refusal("name = \"x\"\nserial = SN\n").starts_with("rig.toml:2: is not TOML: "));
+  EXPECT_TRUE(refusal("name = \"x\"\nname = \"y\"\n").starts_with("rig.toml:2: is not TOML: "));
+}
+
+TEST(Signals, TheTableIsInTheOrderOfTheEnum) {
+  for (int i = 0; i < n_signals; ++i) {
+    EXPECT_EQ(index(signal_list[i].signal), i);
+    EXPECT_EQ(find_signal(signal_list[i].name), signal_list[i].signal);
+    const Unit* unit = find_unit(signal_list[i].si_unit);
+    ASSERT_NE(unit, nullptr);
+    EXPECT_EQ(unit->dimension, signal_list[i].dimension);
+    EXPECT_EQ(unit->to_si(3.0), 3.0);
+  }
+  EXPECT_FALSE(find_signal("spool").has_value());
+}
+
+}  // namespace
+}  // namespace servodx
