@@ -1,0 +1,117 @@
+// Dependencies point one way: who may include whom, directly. A pair that is not in this table is a wrong turn.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <regex>
+#include <set>
+#include <string>
+#include <vector>
+
+namespace {
+
+namespace fs = std::filesystem;
+
+// Every folder may use itself and base. `report` takes the result structs of the folders named.
+const std::map<std::string, std::set<std::string>> allowed = {
+    {"base", {}},
+    {"parameters", {}},
+    {"model", {"parameters"}},
+    {"effects", {"model"}},
+    {"faults", {"model", "effects"}},
+    {"integrate", {}},
+    {"optimise", {}},
+    {"signals", {}},
+    {"valve_maps", {}},
+    {"simulate", {"parameters", "model", "effects", "faults", "integrate", "signals"}},
+    {"rig", {"integrate", "signals"}},
+    {"fit", {"parameters", "simulate", "signals", "optimise"}},
+    {"diagnose", {"parameters", "signals", "simulate", "fit", "faults", "effects"}},
+    {"explain", {"parameters", "signals", "simulate", "fit", "faults", "effects"}},
+    {"prognose", {"parameters", "signals", "fit", "valve_maps", "integrate"}},
+    {"report", {"diagnose", "explain", "prognose", "fit"}},
+};
+
+struct Include {
+  std::string from, to;  // folders
+  std::string file;
+  long line;
+  std::string text;
+};
+
+std::vector<Include> includes_of(const fs::path& file, const fs::path& src) {
+  static const std::regex quoted(R"rx(^\s*#\s*include\s*"([^"]+)")rx");
+  const std::string relative = fs::relative(file, src).generic_string();
+  const std::string from = relative.substr(0, relative.find('/'));
+  std::vector<Include> found;
+  std::ifstream in(file);
+  std::smatch match;
+  long number = 0;
+  for (std::string line; std::getline(in, line);) {
+    ++number;
+    if (!std::regex_search(line, match, quoted)) continue;
+    const std::string path = match[1];
+    const auto slash = path.find('/');
+    found.push_back({from, slash == std::string::npos ? "" : path.substr(0, slash), "src/" + relative, number, path});
+  }
+  return found;
+}
+
+bool is_allowed(const Include& include) {
+  if (include.to == include.from || include.to == "base") return true;
+  const auto row = allowed.find(include.from);
+  return row != allowed.end() && row->second.contains(include.to);
+}
+
+TEST(Layering, DirectIncludesFollowTheTable) {
+  const fs::path src = fs::path(SERVODX_SOURCE_DIR) / "src";
+  int seen = 0;
+  for (const auto& entry : fs::recursive_directory_iterator(src)) {
+    if (!entry.is_regular_file()) continue;
+    for (const Include& include : includes_of(entry.path(), src)) {
+      ++seen;
+      const std::string place = include.file + ":" + std::to_string(include.line) + ": ";
+      EXPECT_FALSE(include.to.empty()) << place << "\"" << include.text << "\" has no folder; write \"" << include.from
+                                       << "/" << include.text << "\"";
+      if (include.to.empty()) continue;
+      EXPECT_TRUE(fs::exists(src / include.text)) << place << "\"" << include.text << "\" is not in src/";
+      EXPECT_TRUE(is_allowed(include)) << place << include.from << " may not include " << include.to << " (\""
+                                       << include.text << "\")";
+    }
+  }
+  EXPECT_GT(seen, 10) << "no includes found under " << src;
+}
+
+TEST(Layering, EveryFolderOfSrcHasARow) {
+  for (const auto& entry : fs::directory_iterator(fs::path(SERVODX_SOURCE_DIR) / "src")) {
+    EXPECT_TRUE(entry.is_directory()) << entry.path() << " stands outside the folders";
+    EXPECT_TRUE(allowed.contains(entry.path().filename().string())) << entry.path() << " has no row in the table";
+  }
+}
+
+TEST(Layering, TheTableItselfHasNoCycle) {
+  // Take away, again and again, the folders that use nothing that is left; a cycle would stay.
+  auto left = allowed;
+  for (bool taken = true; taken;) {
+    taken = false;
+    for (auto row = left.begin(); row != left.end();) {
+      const bool leaf = std::none_of(row->second.begin(), row->second.end(),
+                                     [&](const std::string& used) { return left.contains(used); });
+      if (leaf)
+        row = left.erase(row), taken = true;
+      else
+        ++row;
+    }
+  }
+  EXPECT_TRUE(left.empty()) << "cycle through " << left.begin()->first;
+}
+
+TEST(Layering, TheModelKnowsNoEffectAndTheRigNoModel) {
+  EXPECT_FALSE(allowed.at("model").contains("effects"));
+  EXPECT_FALSE(allowed.at("rig").contains("model"));
+  EXPECT_FALSE(allowed.at("rig").contains("parameters"));
+}
+
+}  // namespace
