@@ -247,9 +247,11 @@ class Facts {
       set_within(row::dead_volume_a, *v, volumes, "actuator.dead_volume_a", "");
     if (const auto v = fact("actuator.dead_volume_b"))
       set_within(row::dead_volume_b, *v, volumes, "actuator.dead_volume_b", "");
-    const int mount = table_.find("mount_stiffness");
+    // An effect's row: only an extended table has it.
+    const int mount = table_.find("mount_compliance");
     if (const auto k = fact("actuator.mount_stiffness"); k && mount >= 0)
-      set_within(mount, *k, 10, "actuator.mount_stiffness", "");
+      set(mount, 1 / *k, table_[mount].lower, std::max(table_[mount].upper, 10 / *k), "actuator.mount_stiffness",
+          "1 / mount_stiffness");
   }
   std::string area_key(const char* key) const {
     return fact("actuator.bore_diameter") ? "actuator.bore_diameter" : key;

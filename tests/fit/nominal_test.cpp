@@ -138,6 +138,19 @@ TEST(RigFacts, HigherPhaseLagFrequencyAsksForASofterFlapper) {
   EXPECT_NEAR((stiffness(60) + kw) * 60, (stiffness(200) + kw) * 200, 1e-3 * (stiffness(60) + kw) * 60);
 }
 
+TEST(RigFacts, MountStiffnessStartsTheEffectOnlyWhereTheTableHasItsRow) {
+  Table table = shipped();
+  const RigFile rig = rig_with({{"actuator.mount_stiffness", 3.1e7}});
+  EXPECT_EQ(apply_rig_facts(table, rig).rows.size(), 41u);
+  Row row;
+  row.name = "mount_compliance";
+  row.group = "effect:mount_compliance";
+  row.unit = "m/N";
+  row.upper = 3e-7;
+  table.rows.push_back(row);
+  EXPECT_NEAR(apply_rig_facts(table, rig)[41].nominal, 1 / 3.1e7, 1e-12);
+}
+
 TEST(RigFacts, EveryResultIsATableThatReadsBack) {
   const Table t = apply_rig_facts(shipped(), rig_with(flight_sheet));
   for (const Row& row : t.rows) {
