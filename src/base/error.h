@@ -27,7 +27,10 @@ class InputError : public std::runtime_error {
   // "file.csv:14: column 'time': rule; mend"
   static std::string format(const Place& where, const std::string& rule, const std::string& mend) {
     std::string text = where.file;
-    if (where.line > 0) text += ":" + std::to_string(where.line);
+    if (where.line > 0) {
+      text += ':';
+      text += std::to_string(where.line);
+    }
     if (!text.empty()) text += ": ";
     if (!where.column.empty()) text += "column '" + where.column + "': ";
     text += rule;

@@ -17,12 +17,11 @@ inline constexpr double flapper_damping_ratio = 0.3;  // eddy currents and squee
 inline constexpr double spool_length_in_diameters = 6.0;  // spool mass = steel cylinder of this length; its mode (kHz) is above any log
 inline constexpr double spool_static_over_coulomb = 1.5;  // breakaway over sliding friction of a lubricated spool
 inline constexpr double spool_stribeck_velocity = 2e-3;   // [m/s]
-inline constexpr double piston_stribeck_velocity = 5e-3;  // [m/s] elastomer seals slide fully from some mm/s
+inline constexpr double piston_stribeck_velocity = 2e-2;  // [m/s] elastomer seals slide fully from some cm/s
 inline constexpr double clean_filter_area_ratio = 5.0;    // clean filter area over both fixed orifices' areas: 4 % of the pilot pressure is lost
 inline constexpr double slot_resistance = 6.0;      // creeping-flow length of an open edge, in openings: moves laminar flow to turbulent near Re 100
 inline constexpr double filter_node_volume = 2e-7;  // [m3] between filter and orifices; a pole near 0.1 ms
 inline constexpr double pilot_volume_in_stops = 4.0;  // spool end volume = end area times this many stop travels
-inline constexpr double stop_stiffness_ratio = 40.0;  // flapper stop over flapper stiffness: penetration 2 % of full force travel
 inline constexpr double spool_stop_stiffness = 2e7;   // [N/m] full pilot force penetrates some 20 um
 inline constexpr double spool_stop_damping = 400.0;   // [N s/m] critical with the stop stiffness at a tenth of a N s2/m
 inline constexpr double piston_stop_stiffness = 2e8;  // [N/m] full actuator force penetrates 0.1 mm
@@ -31,13 +30,13 @@ inline constexpr double piston_stop_damping = 5e4;    // [N s/m] an impact does 
 // Smoothing widths, each with what it must stay small against.
 inline constexpr double backlash_rounding = 5e-7;     // [m] ball contact; a tenth of mild backlash
 inline constexpr double nozzle_rounding = 1e-6;       // [m] flapper at a nozzle: seat roughness; 3 % of the gap
-inline constexpr double stop_rounding = 5e-7;         // [m] flapper stop: a wider one bends the slew
+inline constexpr double stop_rounding = 1e-6;         // [m] flapper stop; a wider one bends the slew
 inline constexpr double edge_rounding = 1e-6;         // [m] corner radius of a new metering edge
 inline constexpr double spool_stop_rounding = 1e-6;   // [m]
 inline constexpr double piston_stop_rounding = 1e-5;  // [m]
 inline constexpr double spool_friction_rounding = 3e-4;   // [m/s] below 1 um per sample interval of creep
 inline constexpr double filter_direction_rounding = 2e-3; // [m/s] spool speed over which rows 1 and 2 hand over
-inline constexpr double piston_friction_rounding = 5e-4;  // [m/s] 0.2 % of no-load speed
+inline constexpr double piston_friction_rounding = 1e-3;  // [m/s] a third of a percent of no-load speed
 inline constexpr double orifice_transition = 1e4;         // [Pa] linear below 0.1 bar
 inline constexpr double pressure_floor = 5e4;             // [Pa] absolute pressure at which the air law is rounded off
 inline constexpr double current_rounding = 1e-5;          // [A] amplifier limit

@@ -53,7 +53,7 @@ template <class Effects, class T, class S, class In>
 inline __attribute__((always_inline)) auto derivative(const S& s, const In& u, const T* p, const Derived<T>& d) {
   namespace c = constants;
   const View<Effects, S, In, T> view{s, u, p};
-  const auto x_f = s.template get<s_x_flapper>();
+  const auto z_f = s.template get<s_x_flapper>();
   const auto v_f = s.template get<s_v_flapper>();
   const auto p_f = s.template get<s_p_filter>();
   const auto p_1 = s.template get<s_p_pilot_1>();
@@ -70,12 +70,13 @@ inline __attribute__((always_inline)) auto derivative(const S& s, const In& u, c
   const auto i = s.template get<s_current>();
   const auto di = d.driver_rate * (saturate(u.current, p[row::current_limit], T(c::current_rounding)) - i);
 
-  // Torque motor and flapper; the wire pulls through its backlash, the nozzles are the stops.
+  // Torque motor and flapper. The wire pulls through its backlash. The nozzles are the stops: s_x_flapper is where the
+  // force would take a free flapper, and the flapper follows it up to the nozzle. That leaves out the impact (a few
+  // tenths of a millisecond) and keeps a wall out of the equations, which no linearly implicit step sees coming.
+  const auto x_f = saturate(z_f, p[row::nozzle_gap], T(c::stop_rounding));
   const auto wire = p[row::feedback_wire_stiffness] * dead_zone(x_s + x_f, p[row::valve_glitch] * T(0.5), T(c::backlash_rounding));
-  const auto beyond = soft_positive(x_f - p[row::nozzle_gap], T(c::stop_rounding)) -
-                      soft_positive(-x_f - p[row::nozzle_gap], T(c::stop_rounding));
-  const auto f_flapper = p[row::torque_motor_gain] * i - p[row::flapper_stiffness] * (x_f + T(c::stop_stiffness_ratio) * beyond) -
-                         wire - d.nozzle_area * (p_1 - p_2) + hook_flapper_force(view, Effects{});
+  const auto f_flapper = p[row::torque_motor_gain] * i - p[row::flapper_stiffness] * z_f - wire - d.nozzle_area * (p_1 - p_2) +
+                         hook_flapper_force(view, Effects{});
   const auto dv_f = d.flapper_rate2 * f_flapper - d.flapper_damping * v_f;
 
   // Filter, fixed orifices, nozzles, spool ends.

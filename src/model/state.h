@@ -6,7 +6,7 @@ namespace servodx {
 // Base states. Effects add theirs behind.
 enum State : int {
   s_current,    // [A] coil current
-  s_x_flapper,  // [m] flapper at the nozzles; positive closes nozzle 1
+  s_x_flapper,  // [m] flapper at the nozzles if nothing stopped it; positive closes nozzle 1
   s_v_flapper,  // [m/s]
   s_p_filter,   // [Pa] between filter and fixed orifices
   s_p_pilot_1,  // [Pa] spool end 1; drives the spool positive

@@ -16,8 +16,12 @@ using ParameterVector = std::vector<double>;
 namespace nuisance {
 // Command between samples: 0 holds the last sample, 1 runs in a line to the next.
 inline constexpr int command_slope = n_values;
+// Offsets of the sensors, indicated less true. [m], [Pa]
+inline constexpr int spool_offset = n_values + 1;
+inline constexpr int pressure_a_offset = n_values + 2;
+inline constexpr int pressure_b_offset = n_values + 3;
 }  // namespace nuisance
-inline constexpr int n_candidate = n_values + 1;
+inline constexpr int n_candidate = n_values + 4;
 
 struct Scenario {
   std::vector<double> time;             // [s]
@@ -48,7 +52,8 @@ struct Trajectory {
 };
 
 struct SimulateOptions {
-  double step = 1.0e-3 / 3.0;  // [s] largest substep; substeps divide each sample interval evenly
+  double step = 1.0e-3 / 3.0;        // [s] largest substep; substeps divide each sample interval evenly
+  double impact_step = 1.0e-3 / 12;  // [s] while the flapper may cross its gap: after a jump of the command
   std::array<bool, n_simulated> wanted = {true, true, true, true, false, false, false, false};
   int threads = 0;             // 0: all
 };

@@ -1,0 +1,18 @@
+// Clogged pilot filter: both rows of the blockage together. Pilot pressure falls, and with it the slew of the spool;
+// the fixed orifices set the pilot flow until about half of the area is gone, so a mild one shows only in fast moves.
+#pragma once
+#include "faults/fault.h"
+
+namespace servodx {
+
+inline const Fault clogged_filter{
+    .name = "clogged_filter",
+    .meaning = "dirt in the pilot filter starves the first stage",
+    .unit = "blocked fraction of the filter area",
+    .healthy = 0.0, .worst = 0.98, .log_scale = false, .least = 0.15,
+    .starts = {0.5, 0.8},
+    .test = "full-amplitude steps at the coldest oil: the spool's slew falls, its static gain does not",
+    .action = "critical: stop the machine",
+    .apply = [](double* v, double s) { v[row::filter_blockage_positive] = v[row::filter_blockage_negative] = s; }};
+
+}  // namespace servodx

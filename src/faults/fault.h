@@ -1,0 +1,26 @@
+// A fault: a name, the rows that it moves, and one number, its severity, that is at `healthy` when it is absent.
+#pragma once
+#include <string_view>
+#include <vector>
+
+#include "effects/registry.h"
+#include "parameters/list.h"
+
+namespace servodx {
+
+struct Fault {
+  std::string_view name;     // label of the verdict
+  std::string_view meaning;
+  std::string_view unit;     // of the severity
+  double healthy;            // severity at which nothing moves
+  double worst;              // end of the range that is searched
+  bool log_scale;            // severity searched in log
+  double least;              // the mildest severity that is called a fault; nearer to healthy is wear in tolerance
+  std::vector<double> starts;        // failure mode identifiers: severities from which a search begins
+  std::string_view test;     // input that shows this fault best, for "what would separate these"
+  std::string_view action;   // critical: stop the machine; abnormal: call service; abuse: change mode (GA paper)
+  // Moves the rows of a candidate (SI) to the severity.
+  void (*apply)(double* candidate, double severity);
+};
+
+}  // namespace servodx

@@ -1,0 +1,17 @@
+// Worn ball of the feedback wire: the spool moves through a clearance before the wire pulls.
+#pragma once
+#include "faults/fault.h"
+
+namespace servodx {
+
+inline const Fault feedback_wire_backlash{
+    .name = "feedback_wire_backlash",
+    .meaning = "clearance between the ball of the feedback wire and the spool",
+    .unit = "m",
+    .healthy = 0.0, .worst = 1e-4, .log_scale = false, .least = 3e-6,
+    .starts = {6e-6, 2e-5},
+    .test = "small sine about null: the spool jumps through the clearance at each reversal, whatever the rate",
+    .action = "abnormal: call service",
+    .apply = [](double* v, double s) { v[row::valve_glitch] += s; }};
+
+}  // namespace servodx

@@ -1,0 +1,18 @@
+// Worn spool and sleeve: a larger radial clearance leaks at null, the pressure gain falls. Shows in chamber pressures
+// and piston, hardly in the spool.
+#pragma once
+#include "faults/fault.h"
+
+namespace servodx {
+
+inline const Fault radial_clearance_wear{
+    .name = "radial_clearance_wear",
+    .meaning = "clearance between spool and sleeve has grown",
+    .unit = "times the tuned clearance",
+    .healthy = 1.0, .worst = 15.0, .log_scale = true, .least = 1.8,
+    .starts = {3.0, 8.0},
+    .test = "small sine about null with ports loaded: pressure gain falls and leakage rises, more in hot oil",
+    .action = "abnormal: call service",
+    .apply = [](double* v, double s) { v[row::radial_clearance] *= s; }};
+
+}  // namespace servodx

@@ -1,0 +1,13 @@
+// The visible list of faults: one file and one line each.
+#pragma once
+#include <string_view>
+#include <vector>
+
+#include "faults/fault.h"
+
+namespace servodx {
+
+const std::vector<const Fault*>& fault_list();
+const Fault* find_fault(std::string_view name);  // nullptr where unknown
+
+}  // namespace servodx

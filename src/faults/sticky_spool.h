@@ -1,0 +1,17 @@
+// Sticky spool: silt or lacquer multiplies the friction between spool and sleeve.
+#pragma once
+#include "faults/fault.h"
+
+namespace servodx {
+
+inline const Fault sticky_spool{
+    .name = "sticky_spool",
+    .meaning = "friction between spool and sleeve",
+    .unit = "times the tuned friction",
+    .healthy = 1.0, .worst = 60.0, .log_scale = true, .least = 2.5,
+    .starts = {4.0, 20.0},
+    .test = "slow small sine: the spool stands still at each reversal, longer the slower; backlash does not care for rate",
+    .action = "abnormal: call service",
+    .apply = [](double* v, double s) { v[row::spool_friction] *= s; }};
+
+}  // namespace servodx

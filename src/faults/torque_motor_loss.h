@@ -1,0 +1,17 @@
+// Loss of torque gain: shorted turns or weakened magnets. The spool's static gain and its slew fall together.
+#pragma once
+#include "faults/fault.h"
+
+namespace servodx {
+
+inline const Fault torque_motor_loss{
+    .name = "torque_motor_loss",
+    .meaning = "the torque motor makes less torque per current",
+    .unit = "fraction of the torque gain left",
+    .healthy = 1.0, .worst = 0.05, .log_scale = true, .least = 0.9,
+    .starts = {0.8, 0.3},
+    .test = "small and full steps: static gain and slew fall together, where a soft wire raises the gain",
+    .action = "abnormal: call service",
+    .apply = [](double* v, double s) { v[row::torque_motor_gain] *= s; }};
+
+}  // namespace servodx

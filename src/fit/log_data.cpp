@@ -1,0 +1,120 @@
+#include "fit/log_data.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace servodx {
+namespace {
+
+// Missing input samples are bridged in a line; the ends hold.
+std::vector<double> bridged(const std::vector<double>& t, std::vector<double> x) {
+  const std::size_t n = x.size();
+  std::size_t last = n;  // last present sample
+  for (std::size_t k = 0; k < n; ++k) {
+    if (std::isnan(x[k])) continue;
+    if (last == n) {
+      for (std::size_t j = 0; j < k; ++j) x[j] = x[k];
+    } else {
+      for (std::size_t j = last + 1; j < k; ++j)
+        x[j] = x[last] + (x[k] - x[last]) * (t[j] - t[last]) / (t[k] - t[last]);
+    }
+    last = k;
+  }
+  if (last < n)
+    for (std::size_t j = last + 1; j < n; ++j) x[j] = x[last];
+  return x;
+}
+
+double mean_of_present(const std::vector<double>& x) {
+  double sum = 0;
+  long n = 0;
+  for (double v : x)
+    if (!std::isnan(v)) sum += v, ++n;
+  return n ? sum / static_cast<double>(n) : std::nan("");
+}
+
+std::optional<double> first_present(const std::vector<double>& x) {
+  for (double v : x)
+    if (!std::isnan(v)) return v;
+  return std::nullopt;
+}
+
+// Slope of the first samples, least squares over at most 10 ms.
+double starting_slope(const std::vector<double>& t, const std::vector<double>& x) {
+  double st = 0, sx = 0, stt = 0, stx = 0;
+  int n = 0;
+  for (std::size_t k = 0; k < x.size() && t[k] - t[0] < 0.0101; ++k) {
+    if (std::isnan(x[k])) continue;
+    const double s = t[k] - t[0];
+    st += s, sx += x[k], stt += s * s, stx += s * x[k], ++n;
+  }
+  const double spread = n * stt - st * st;
+  return n >= 3 && spread > 0 ? (n * stx - st * sx) / spread : 0.0;
+}
+
+}  // namespace
+
+double noise_of(const std::vector<double>& x, double resolution) {
+  std::vector<double> d;
+  for (std::size_t k = 1; k + 1 < x.size(); ++k) {
+    const double v = x[k - 1] - 2 * x[k] + x[k + 1];
+    if (!std::isnan(v)) d.push_back(std::abs(v));
+  }
+  const double quantisation = resolution / std::sqrt(12.0);
+  if (d.empty()) return quantisation;
+  std::nth_element(d.begin(), d.begin() + static_cast<long>(d.size() / 2), d.end());
+  // Median of |N(0,1)| is 0.6745; the second difference of white noise has variance 6.
+  return std::max(d[d.size() / 2] / (0.6745 * std::sqrt(6.0)), quantisation);
+}
+
+LogData prepare(const Log& log, const RigFile& rig) {
+  LogData out;
+  out.path = log.path;
+  out.sha256 = log.sha256;
+  out.notes = log.notes;
+  Scenario& s = out.scenario;
+  s.time = log.time;
+  s.current_measured = log.has(Signal::coil_current);
+  s.command = bridged(log.time, log[s.current_measured ? Signal::coil_current : Signal::command]);
+  const auto input = [&](Signal which) {
+    return log.has(which) ? bridged(log.time, log[which]) : std::vector<double>{};
+  };
+  s.supply_pressure = input(Signal::supply_pressure);
+  s.return_pressure = input(Signal::return_pressure);
+  s.load_force = input(Signal::load_force);
+  s.rated_current = rig.fact("valve.rated_current").value_or(0.02);
+  constexpr double reference_temperature = 313.15;  // [K] where the table's values hold
+  const double temperature = log.has(Signal::oil_temperature) ? mean_of_present(log[Signal::oil_temperature]) : reference_temperature;
+  s.oil = oil_at(rig.fluid.density, rig.fluid.kinematic_viscosity, temperature);
+  if (log.has(Signal::spool_position)) s.spool_start = first_present(log[Signal::spool_position]);
+  if (log.has(Signal::pressure_a)) s.pressure_a_start = first_present(log[Signal::pressure_a]);
+  if (log.has(Signal::pressure_b)) s.pressure_b_start = first_present(log[Signal::pressure_b]);
+  if (log.has(Signal::piston_position)) {
+    s.piston_start = first_present(log[Signal::piston_position]);
+    s.piston_velocity_start = starting_slope(log.time, log[Signal::piston_position]);
+  }
+  for (Signal which : simulated_signals) {
+    if (!log.has(which)) continue;
+    FitChannel c;
+    c.signal = which;
+    c.simulated = simulated_index(which);
+    c.measured = log[which];
+    c.noise = noise_of(c.measured, log.channels[index(which)].resolution);
+    if (which == Signal::piston_position) c.high_pass = piston_high_pass;
+    out.channels.push_back(std::move(c));
+  }
+  return out;
+}
+
+ParameterVector candidate_of(const Table& table) {
+  ParameterVector v(n_candidate, 0.0);
+  for (int i = 0; i < n_parameters; ++i) v[i] = table[i].nominal;
+  for (const EffectInfo& e : effect_list())
+    for (std::size_t j = 0; j < e.parameters.size(); ++j) {
+      const int at = table.find(e.parameters[j].name);
+      v[e.first + static_cast<int>(j)] = at >= 0 ? table[at].nominal : e.parameters[j].off;
+    }
+  return v;
+}
+
+}  // namespace servodx

@@ -1,0 +1,39 @@
+// A log made ready to be fitted: its inputs as a scenario, its measured channels with noise and weight.
+#pragma once
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "parameters/table.h"
+#include "signals/log.h"
+#include "simulate/scenario.h"
+
+namespace servodx {
+
+struct FitChannel {
+  Signal signal;
+  int simulated = -1;              // position in simulated_signals
+  std::vector<double> measured;    // [SI] NaN where missing
+  double noise = 0;                // [SI] rms of the sensor noise, from second differences, at least the quantisation's
+  double high_pass = 0;            // [Hz] 0: none. Applied to measurement and simulation alike
+};
+
+struct LogData {
+  std::string path, sha256;
+  Scenario scenario;
+  std::vector<FitChannel> channels;
+  std::vector<std::string> notes;
+};
+
+// The piston integrates every null error, so its slow drift tells little: the corner below which it is left out.
+inline constexpr double piston_high_pass = 0.3;  // [Hz]
+
+LogData prepare(const Log& log, const RigFile& rig);
+
+// Noise rms of a series, robust against motion: median absolute second difference over that of white noise.
+double noise_of(const std::vector<double>& x, double resolution);
+
+// The table's nominal values as a candidate: effects without a row at their off value, nuisances at zero.
+ParameterVector candidate_of(const Table& table);
+
+}  // namespace servodx

@@ -1,0 +1,76 @@
+// The misfit of the model to logs as least squares over the unit cube: shared parameters and, log by log, nuisances.
+//
+// residual = high-passed (measured - simulated) / sigma, channel by channel, then the priors. All lanes of all logs are
+// filled in one batch; a nuisance's column costs only its own log's simulation.
+#pragma once
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "fit/log_data.h"
+#include "optimise/box_least_squares.h"
+#include "optimise/problem.h"
+#include "simulate/simulate.h"
+
+namespace servodx {
+
+// A free number: which entry of a candidate, and how the unit interval maps onto it.
+struct FreeValue {
+  std::string name;
+  int at = 0;                // position in a candidate
+  double lower = 0, upper = 1;  // [SI]
+  bool log_scale = false;
+  double start = 0;          // [SI]
+  double prior_sd = std::numeric_limits<double>::infinity();  // [of the unit interval] around `start`; infinite: none
+  int log = -1;              // index of the log it belongs to, or -1: shared by all
+
+  double to_unit(double value) const;
+  double from_unit(double u) const;
+};
+
+class FitProblem {
+ public:
+  // sigma[log][channel]: [SI] rms that whitens the channel's residual; a vector entry a sample is allowed through `scale`.
+  FitProblem(std::vector<const LogData*> logs, ParameterVector base, std::vector<FreeValue> free, SimulateOptions options = {});
+
+  int n() const { return static_cast<int>(free_.size()); }
+  const std::vector<FreeValue>& free() const { return free_; }
+  const std::vector<const LogData*>& logs() const { return logs_; }
+  Point start() const;
+  // The candidate of a log at a point.
+  ParameterVector candidate(const Point& x, int log) const;
+
+  // Whitening: sigma of (log, channel), the same at every sample, or sample by sample.
+  void set_sigma(int log, int channel, double sigma);
+  void set_sigma(int log, int channel, std::vector<double> sigma);
+  const std::vector<double>& sigma(int log, int channel) const { return sigma_[log][channel]; }
+
+  std::vector<Evaluation> evaluate(std::span<const Point> points) const;
+  bool jacobian(const Point& x, const Eigen::VectorXd& residual, Eigen::MatrixXd& j) const;
+  LeastSquaresProblem least_squares() const;
+
+  // Raw residual (measured - simulated, high-passed where the channel is) of a log's channel. [SI] NaN where missing.
+  std::vector<double> raw_residual(int log, int channel, const Trajectory& t) const;
+  std::vector<Trajectory> trajectories(const Point& x) const;
+  // Rows of the residual that belong to (log, channel): first row and count.
+  std::pair<long, long> rows(int log, int channel) const { return {offset_[log][channel], static_cast<long>(logs_[log]->scenario.time.size())}; }
+  long data_rows() const { return data_rows_; }
+  long simulations() const { return simulations_; }
+  long failed_simulations() const { return failed_; }
+
+ private:
+  void fill(const Point& x, int log, const Trajectory& t, Eigen::Ref<Eigen::VectorXd> out) const;
+  std::vector<const LogData*> logs_;
+  ParameterVector base_;
+  std::vector<FreeValue> free_;
+  SimulateOptions options_;
+  std::vector<std::vector<std::vector<double>>> sigma_;
+  std::vector<std::vector<long>> offset_;
+  long data_rows_ = 0, total_rows_ = 0;
+  mutable long simulations_ = 0, failed_ = 0;
+};
+
+// y_k = a (y_{k-1} + x_k - x_{k-1}): first-order high-pass on uneven time stamps, starting at rest at the first sample.
+std::vector<double> high_passed(const std::vector<double>& time, const std::vector<double>& x, double corner_hz);
+
+}  // namespace servodx
