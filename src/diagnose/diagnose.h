@@ -1,0 +1,88 @@
+// `baseline` and `diagnose`: is this log like the fault-free ones, and if not, which fault, how large, since when.
+#pragma once
+#include <atomic>
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "fit/error_model.h"
+#include "fit/tune.h"
+#include "parameters/table.h"
+#include "signals/log.h"
+
+namespace servodx {
+
+struct DiagnoseOptions {
+  std::uint64_t seed = 1;
+  int threads = 0;
+  bool quiet = false;
+  const std::atomic<bool>* stop = nullptr;
+};
+
+struct HypothesisResult {
+  std::string name;        // "healthy" or a fault's label
+  double misfit = 0;       // penalised -2 log likelihood
+  double gain = 0;         // misfit of healthy less this one
+  double probability = 0;
+  double severity = 0, severity_lower = 0, severity_upper = 0;  // 95 %
+  std::string unit;
+  double adequacy = 0;     // whitened rms of the worst channel, 1 when like the healthy logs
+  std::vector<std::string> stops;  // how each start ended
+};
+
+// What a log says before any threshold.
+struct Assessment {
+  std::string log, sha256;
+  double score = 0;        // detection statistic
+  std::vector<HypothesisResult> hypotheses;  // healthy first, then by misfit
+  std::string gross;       // non-empty: seen without a fit (spool on its stop, no response)
+  std::optional<double> onset;  // [s] change point where one stands out
+  double null = 0;         // [fraction of rated] healthy hypothesis
+  std::vector<ParameterResult> parameters;  // what moved under the best hypothesis, and the nuisances
+  std::vector<std::string> notes;
+  long simulations = 0, failed_simulations = 0;
+};
+
+Assessment assess(const Log& log, const Table& tuned, const RigFile& rig, const DiagnoseOptions& options);
+
+struct Baseline {
+  double threshold = 0;
+  double asked = 0.01, promised = 0, promised_95 = 0;  // false-alarm rates
+  int logs = 0, logs_needed = 0;
+  std::string statement;
+  struct Score {
+    std::string log, sha256;
+    double score = 0, adequacy = 0;
+  };
+  std::vector<Score> scores;
+  double adequacy_limit = 0;   // largest adequacy of a healthy log
+  double null_limit = 0.05;
+  std::string tuned_sha256;    // of the table it was made with
+};
+
+// Refuses logs that tuned the table (by hash) and fewer than three logs.
+Baseline make_baseline(const std::vector<Log>& logs, const Table& tuned, const RigFile& rig, double false_alarm,
+                       const DiagnoseOptions& options, long* simulations = nullptr, long* failed = nullptr);
+
+struct Diagnosis {
+  std::string log;
+  std::string verdict;                // healthy | fault | unknown
+  double error = 0, threshold = 0, p_value = 1;
+  std::optional<std::string> fault;   // label
+  std::map<std::string, double> probabilities;
+  std::vector<std::string> ambiguous_with;
+  std::string separating_test;
+  std::string action;
+  struct {
+    double value = 0, lower = 0, upper = 0;
+    std::string unit;
+  } severity;
+  std::optional<double> onset;  // [s]
+  Assessment assessment;
+};
+
+Diagnosis judge(Assessment assessment, const Baseline& baseline);
+
+}  // namespace servodx

@@ -1,0 +1,47 @@
+// How wrong the tuned model is, channel by channel, beyond the sensor's noise.
+//
+// sigma(t)^2 = noise^2 + floor^2 + (per_activity * activity(t))^2, where activity is how far the simulated channel
+// moves in a millisecond, averaged over the last 20 ms: a model is wrong in timing and gain, so it errs where things
+// move. Learnt from fault-free logs; in every likelihood it stands for the model's own error. Residuals are
+// correlated in time: `effective` is the fraction of samples that count as independent.
+#pragma once
+#include <string>
+#include <vector>
+
+#include "fit/problem.h"
+
+namespace servodx {
+
+struct ChannelError {
+  Signal signal;
+  double floor = 0;         // [SI]
+  double per_activity = 0;  // [-] channel movement per millisecond to error
+  double effective = 0.05;  // [-] 0..1
+};
+
+struct ErrorModel {
+  std::vector<ChannelError> channels;
+  const ChannelError* find(Signal s) const;
+};
+
+// [SI per ms] see above; one entry a sample.
+std::vector<double> activity(const std::vector<double>& time, const std::vector<double>& simulated);
+
+// sigma(t) [SI] of a channel with sensor noise `noise`. `error` may be null: noise alone.
+std::vector<double> sigma_of(const ChannelError* error, double noise, const std::vector<double>& activity);
+
+// Fraction of independent samples of a whitened series: 1 over the integrated autocorrelation time (initial positive
+// sequence, Geyer 1992).
+double effective_fraction(const std::vector<double>& whitened);
+
+// Maximum-likelihood floor and slope from the residuals of the problem's logs at x, pooled by signal.
+ErrorModel learn_error_model(const FitProblem& problem, const Point& x);
+
+// Sets the problem's whitening from the model at x: sigma(t) / sqrt(effective), so that 0.5 |residual|^2 is a log-likelihood.
+void apply_error_model(FitProblem& problem, const ErrorModel& model, const Point& x);
+
+// As comment lines of a tuned table, and back.
+std::vector<std::string> to_comments(const ErrorModel& model);
+ErrorModel error_model_of(const Table& table);
+
+}  // namespace servodx

@@ -1,0 +1,70 @@
+// `tune`: nominal parameters from fault-free logs, pooled.
+#pragma once
+#include <atomic>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "fit/error_model.h"
+#include "parameters/table.h"
+#include "signals/log.h"
+#include "signals/rig_file.h"
+
+namespace servodx {
+
+struct ParameterResult {
+  int id = 0;  // 0 for an effect's parameter
+  std::string name, unit;
+  double nominal = 0, estimate = 0;  // [unit]
+  double std_error = 0;              // [unit]; NaN where there is none
+  // bounded | one_sided | flat | at_bound | confounded | frozen
+  std::string verdict;
+  std::vector<std::string> confounded_with;
+  double effect_at_lower = 0, effect_at_upper = 0;  // whitened rms change of the simulation at the row's bounds, in sigmas
+};
+
+struct ChannelResult {
+  Signal signal;
+  std::string unit;  // as in the log
+  double rms = 0, noise_rms = 0, heldout_rms = 0;  // [SI] over all logs; held out: the last part of each log, before the final fit
+};
+
+struct LogResult {
+  std::string path;
+  std::vector<ChannelResult> channels;
+  double null = 0;  // [fraction of rated]
+};
+
+struct TuneOptions {
+  std::uint64_t seed = 1;
+  int threads = 0;
+  bool quiet = false;
+  int population = 50;
+  int generations = 30;
+  double heldout = 0.2;            // last part of every log, kept out of the first fit
+  std::vector<std::string> effects = {"magnetic_hysteresis", "mount_compliance"};  // freed beside the table's rows
+  std::string checkpoint;          // file saved every generation; empty: none
+  bool resume = false;
+  const std::atomic<bool>* stop = nullptr;  // set: finish with the best so far
+};
+
+struct TuneResult {
+  Table table;  // the tuned table
+  ErrorModel error;
+  std::vector<ChannelResult> channels;
+  std::vector<LogResult> logs;
+  std::vector<ParameterResult> parameters;
+  std::vector<double> starts;  // final costs of all local starts
+  int reached_best = 0;
+  std::vector<std::string> notes;
+  long simulations = 0, failed_simulations = 0;
+  bool interrupted = false;
+};
+
+// Throws InputError where the logs cannot be used.
+TuneResult tune(const std::vector<Log>& logs, const Table& nominal, const RigFile& rig, const TuneOptions& options);
+
+// Hashes of the logs that tuned a table.
+std::vector<std::string> tuned_by(const Table& table);
+
+}  // namespace servodx
