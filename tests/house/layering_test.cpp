@@ -5,9 +5,9 @@
 #include <filesystem>
 #include <fstream>
 #include <map>
-#include <regex>
 #include <set>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace {
@@ -41,18 +41,24 @@ struct Include {
   std::string text;
 };
 
+// The path of an `#include "..."` line, or nothing.
+std::string quoted_include(std::string line) {
+  std::erase_if(line, [](char c) { return c == ' ' || c == '\t'; });
+  constexpr std::string_view start = "#include\"";
+  if (!line.starts_with(start)) return {};
+  return line.substr(start.size(), line.find('"', start.size()) - start.size());
+}
+
 std::vector<Include> includes_of(const fs::path& file, const fs::path& src) {
-  static const std::regex quoted(R"rx(^\s*#\s*include\s*"([^"]+)")rx");
   const std::string relative = fs::relative(file, src).generic_string();
   const std::string from = relative.substr(0, relative.find('/'));
   std::vector<Include> found;
   std::ifstream in(file);
-  std::smatch match;
   long number = 0;
   for (std::string line; std::getline(in, line);) {
     ++number;
-    if (!std::regex_search(line, match, quoted)) continue;
-    const std::string path = match[1];
+    const std::string path = quoted_include(line);
+    if (path.empty()) continue;
     const auto slash = path.find('/');
     found.push_back({from, slash == std::string::npos ? "" : path.substr(0, slash), "src/" + relative, number, path});
   }
