@@ -1,0 +1,207 @@
+#include "rig/excitations.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "base/error.h"
+#include "base/random.h"
+
+namespace servodx::rig {
+namespace {
+
+constexpr double centring = 0.05;  // [A/m] = 0.05 mA/mm
+constexpr double two_pi = 2.0 * std::numbers::pi;
+using Wave = std::function<double(double)>;  // time [s] -> fraction of rated current
+
+Stimulus open_loop(const RigModel& m, Wave wave) {
+  const double rated = m.driver_rated_current;
+  return {.command = [=](double t, double x) { return rated * wave(t) - centring * x; }, .setpoint = {}, .load = {}};
+}
+
+double or_else(double value, double otherwise) { return value > 0.0 ? value : otherwise; }
+
+// Steps held from `start` on. Signs are random, but turn back once the steps alone would have carried a piston of
+// 0.3 m/s at full current further than 50 mm.
+struct Steps {
+  std::vector<double> end, level;
+  double at(double t) const {
+    const auto i = std::upper_bound(end.begin(), end.end(), t) - end.begin();
+    return i < static_cast<long>(level.size()) ? level[i] : 0.0;
+  }
+};
+Steps random_steps(Random random, double start, double stop, const std::vector<double>& sizes, double shortest,
+                   double longest) {
+  Steps steps{{start}, {0.0}};
+  double t = start, travel = 0.0;
+  while (t < stop) {
+    const double dwell = random.uniform(shortest, longest);
+    const double size = sizes[random.below(static_cast<std::uint32_t>(sizes.size()))];
+    double sign = random.below(2) ? 1.0 : -1.0;
+    if (std::fabs(travel) > 0.05) sign = travel > 0.0 ? -1.0 : 1.0;
+    const double held = std::min(dwell, 0.08 / (0.3 * size));  // no single step longer than 80 mm
+    t += held;
+    travel += 0.3 * sign * size * held;
+    steps.end.push_back(t);
+    steps.level.push_back(sign * size);
+  }
+  return steps;
+}
+
+Wave steps_wave(const Shape& s, std::vector<double> sizes, double shortest, double longest) {
+  if (s.amplitude > 0.0) {
+    const double largest = *std::max_element(sizes.begin(), sizes.end());
+    for (double& size : sizes) size *= s.amplitude / largest;
+  }
+  const Steps steps = random_steps(Random(s.seed, 11), 0.1, s.duration, sizes, shortest, longest);
+  return [steps](double t) { return steps.at(t); };
+}
+
+// 40 lines, logarithmic from `low` to `high`, random phases, flat up to 10 Hz and then falling with the root of
+// frequency; rms = amplitude.
+Wave multisine_wave(Random random, double low, double high, double rms) {
+  constexpr int lines = 40;
+  std::vector<double> frequency(lines), gain(lines), phase(lines);
+  double power = 0.0;
+  for (int k = 0; k < lines; ++k) {
+    frequency[k] = low * std::pow(high / low, k / (lines - 1.0));
+    gain[k] = 1.0 / std::sqrt(std::max(1.0, frequency[k] / 10.0));
+    phase[k] = two_pi * random.uniform();
+    power += 0.5 * gain[k] * gain[k];
+  }
+  for (double& g : gain) g *= rms / std::sqrt(power);
+  return [=](double t) {
+    double sum = 0.0;
+    for (int k = 0; k < lines; ++k) sum += gain[k] * std::sin(two_pi * frequency[k] * t + phase[k]);
+    return sum;
+  };
+}
+
+Stimulus steps_large(const RigModel& m, const Shape& s) {
+  return open_loop(m, steps_wave(s, {0.10, 0.25, 0.50, 0.75, 1.0}, 0.12, 0.4));
+}
+Stimulus steps_small(const RigModel& m, const Shape& s) {
+  return open_loop(m, steps_wave(s, {0.01, 0.02, 0.03, 0.05}, 0.08, 0.25));
+}
+Stimulus sine(const RigModel& m, const Shape& s) {
+  const double a = or_else(s.amplitude, 0.3), f = or_else(s.frequency, 2.0);
+  return open_loop(m, [=](double t) { return a * std::sin(two_pi * f * t); });
+}
+Stimulus multisine(const RigModel& m, const Shape& s) {
+  return open_loop(m, multisine_wave(Random(s.seed, 12), 1.0, 100.0, or_else(s.amplitude, 0.12)));
+}
+Stimulus prbs(const RigModel& m, const Shape& s) {
+  constexpr double bit = 6e-3;  // [s] flat to about 70 Hz
+  const double a = or_else(s.amplitude, 0.15);
+  Random random(s.seed, 13);
+  std::vector<double> level(static_cast<std::size_t>(s.duration / bit) + 2);
+  for (double& x : level) x = random.below(2) ? a : -a;
+  return open_loop(
+      m, [=](double t) { return level[std::min(static_cast<std::size_t>(t / bit + 1e-9), level.size() - 1)]; });
+}
+Stimulus sweep(const RigModel& m, const Shape& s) {
+  const double a = or_else(s.amplitude, 0.15), low = 1.0, high = 150.0, rate = std::log(high / low) / s.duration;
+  return open_loop(m, [=](double t) { return a * std::sin(two_pi * low * (std::exp(rate * t) - 1.0) / rate); });
+}
+Stimulus triangle(const RigModel& m, const Shape& s) {
+  const double a = or_else(s.amplitude, 1.0), f = or_else(s.frequency, 0.5);
+  return open_loop(m, [=](double t) {
+    const double turn = t * f + 0.25;
+    return a * (1.0 - 4.0 * std::fabs(turn - std::floor(turn) - 0.5));
+  });
+}
+// Borello's two preflight checks in one log: rest, small step out and back, rest, small slow sine.
+Stimulus preflight(const RigModel& m, const Shape& s) {
+  const double a = or_else(s.amplitude, 0.04), f = or_else(s.frequency, 5.0);
+  return open_loop(m, [=](double t) {
+    if (t < 0.1) return 0.0;
+    if (t < 0.25) return 0.10;
+    if (t < 0.4) return 0.0;
+    return a * std::sin(two_pi * f * (t - 0.4));
+  });
+}
+Stimulus mixed(const RigModel& m, const Shape& s) {
+  const double half = 0.25 + 0.5 * (s.duration - 0.25);
+  const Steps steps = random_steps(Random(s.seed, 14), 0.4, half, {0.02, 0.05, 0.10, 0.25, 0.5}, 0.08, 0.3);
+  const Wave lines = multisine_wave(Random(s.seed, 15), 1.0, 100.0, or_else(s.amplitude, 0.12));
+  return open_loop(m, [=](double t) {
+    if (t < 0.1) return 0.0;
+    if (t < 0.25) return 0.10;
+    return t < half ? steps.at(t) : lines(t - half);
+  });
+}
+
+// Turbulence: white noise through a first-order filter (Dryden's longitudinal spectrum), 2 Hz corner.
+Wave turbulence(Random random, double duration, double limit) {
+  constexpr double tick = 5e-3, corner = 2.0;
+  const double keep = std::exp(-two_pi * corner * tick);
+  std::vector<double> value(static_cast<std::size_t>(duration / tick) + 3);
+  double x = 0.0;
+  for (double& v : value) {
+    x = keep * x + std::sqrt(1.0 - keep * keep) * random.normal();
+    v = std::clamp(x * limit / 2.5, -limit, limit);
+  }
+  return [=](double t) {
+    const double at = std::clamp(t / tick, 0.0, static_cast<double>(value.size()) - 2.0);
+    const auto k = static_cast<std::size_t>(at);
+    return value[k] + (at - static_cast<double>(k)) * (value[k + 1] - value[k]);
+  };
+}
+
+Stimulus flight(const RigModel& m, const Shape& s) {
+  Random random(s.seed, 16);
+  const double half = 0.5 * m.actuator_stroke, largest = or_else(s.amplitude, 0.9) * half;
+  const double interval = std::min(20.0, s.duration / 2.5);
+  std::vector<double> end{0.1}, level{0.0};
+  double t = 0.1;
+  while (t < s.duration) {
+    const double length = std::min(2.0, interval) * random.uniform(0.2, 1.0);
+    const double rest = std::max(0.0, interval * random.uniform() - length);
+    end.push_back(t + length);
+    level.push_back(random.uniform(-largest, largest));
+    end.push_back(t += length + rest);
+    level.push_back(0.0);
+  }
+  const Steps steps{end, level};
+  const double stall = m.piston_area() * m.supply_pressure;
+  const Wave gusts = turbulence(Random(s.seed, 17), s.duration, 0.2 * stall);
+  const double gain = 50.0 * m.driver_rated_current;  // [A/m] rated current at 20 mm error: about 15 1/s
+  const double rated = m.driver_rated_current;
+  return {.command = [=](double now, double x) { return std::clamp(gain * (steps.at(now) - x), -rated, rated); },
+          .setpoint = [=](double now) { return steps.at(now); },
+          .load =
+              [=](double now) {
+                return Load{gusts(now), 0.4 * stall / half};
+              }};
+}
+
+}  // namespace
+
+const std::vector<ExcitationInfo>& excitations() {
+  static const std::vector<ExcitationInfo> list{
+      {"steps_large", "open loop: random steps of 10 to 100 % of rated current", steps_large},
+      {"steps_small", "open loop: random steps of 1 to 5 % of rated current", steps_small},
+      {"sine", "open loop: one sine, 30 % of rated current at 2 Hz unless told", sine},
+      {"multisine", "open loop: 40 sines from 1 to 100 Hz with random phases, 12 % of rated current rms", multisine},
+      {"prbs", "open loop: random binary current of 15 % of rated, 6 ms a bit", prbs},
+      {"sweep", "open loop: logarithmic sine sweep from 1 to 150 Hz, 15 % of rated current", sweep},
+      {"triangle", "open loop: triangle to full rated current, 0.5 Hz", triangle},
+      {"preflight", "open loop: small step out and back, then a sine of 4 % of rated current at 5 Hz", preflight},
+      {"flight", "closed loop: random position steps against spring and turbulence loads", flight},
+      {"mixed", "open loop: preflight step, steps of 2 to 50 %, then a multisine", mixed},
+  };
+  return list;
+}
+
+Stimulus make_stimulus(const std::string& name, const RigModel& model, const Shape& shape) {
+  std::string names;
+  for (const auto& e : excitations()) {
+    if (e.name == name) return e.make(model, shape);
+    names += (names.empty() ? "" : ", ") + e.name;
+  }
+  throw InputError({"", 0, "--excitation"}, fmt::format("unknown excitation '{}'", name), "known are " + names);
+}
+
+}  // namespace servodx::rig

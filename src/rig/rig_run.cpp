@@ -1,0 +1,201 @@
+#include "rig/rig_run.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/error.h"
+#include "base/random.h"
+#include "rig/sensors.h"
+
+namespace servodx::rig {
+namespace {
+
+constexpr double settling = 0.3;  // [s] before the log, held centred by a slow loop
+
+// Logged unless the run names its channels. Pilot pressures and coil current are there for those who ask.
+const std::vector<std::string> usual{"spool_position",  "piston_position", "pressure_a", "pressure_b",
+                                     "supply_pressure", "return_pressure", "load_force", "oil_temperature"};
+
+void check(const RigRun& run) {
+  const auto range = [](const char* option, double value, double low, double high, const char* unit) {
+    if (!(value >= low && value <= high)) {
+      throw InputError({"", 0, option}, fmt::format("{} is outside {} to {} {}", value, low, high, unit),
+                       "give a value within");
+    }
+  };
+  range("--duration", run.duration, 0.01, 1e5, "s");
+  range("--rate", run.rate, 10.0, 5e4, "Hz");
+  range("--temperature", run.temperature - zero_celsius, -40.0, 100.0, "degC");
+  range("--air", run.air, 0.0, 0.2, "(fraction)");
+  range("--amplitude", run.amplitude, 0.0, 1.2, "(fraction)");
+  range("--frequency", run.frequency, 0.0, 500.0, "Hz");
+  range("--jitter", run.jitter, 0.0, 0.25 / run.rate, "s");
+  if (run.step != 0.0) range("step", run.step, 1e-7, 1e-4, "s");
+}
+
+std::vector<SensorChain> chosen_sensors(const RigModel& model, const RigRun& run) {
+  const auto& wanted = run.channels.empty() ? usual : run.channels;
+  std::vector<SensorChain> chains;
+  std::string names;
+  std::size_t found = 0;
+  for (Sensor sensor : model.sensors) {
+    names += (names.empty() ? "" : ", ") + sensor.signal;
+    if (std::find(wanted.begin(), wanted.end(), sensor.signal) == wanted.end()) continue;
+    ++found;
+    if (!run.noise) sensor = {.signal = sensor.signal, .unit = sensor.unit};
+    chains.emplace_back(sensor, run.seed, 100 + static_cast<std::uint32_t>(index(*find_signal(sensor.signal))));
+  }
+  if (!run.channels.empty() && found != wanted.size()) {
+    throw InputError({"", 0, "--channels"}, "a channel is unknown or named twice", "the rig measures " + names);
+  }
+  return chains;
+}
+
+nlohmann::json truth_of(const RigModel& model, const RigRun& run, double h) {
+  nlohmann::json faults = nlohmann::json::array();
+  for (const auto& [name, value] : run.faults) faults.push_back({{"label", name}, {"severity", value}});
+  nlohmann::json truth{
+      {"tool", "servodx"},
+      {"command", "rig"},
+      {"rig", model.name},
+      {"seed", run.seed},
+      {"excitation", run.excitation},
+      {"duration", run.duration},
+      {"rate", run.rate},
+      {"temperature", run.temperature - zero_celsius},
+      {"air", run.air},
+      {"faults", faults},
+      {"label", run.faults.empty() ? "healthy" : run.faults.begin()->first},
+      {"onset_time", nullptr},
+      {"null", model.armature_null + model.armature_null_drift * (run.temperature - zero_celsius - 40.0)},
+      {"step", h}};
+  if (run.onset >= 0.0 && !run.faults.empty()) truth["onset_time"] = run.onset;
+  if (run.amplitude > 0.0) truth["amplitude"] = run.amplitude;
+  if (run.frequency > 0.0) truth["frequency"] = run.frequency;
+  if (run.jitter > 0.0) truth["jitter"] = run.jitter;
+  return truth;
+}
+
+// The recording of one run: the rig, its sensors and the loop of the control computer around them.
+class Recorder {
+ public:
+  Recorder(const RigModel& model, const RigRun& run, const Stimulus& stimulus)
+      : run_(run),
+        stimulus_(stimulus),
+        faulty_(wear_of(run.faults)),
+        rig_(model, {run.temperature, run.air, run.onset < 0.0 ? faulty_ : Wear{}}),
+        sensors_(chosen_sensors(model, run)),
+        loop_sensor_(Sensor{"piston_position", "mm"}, run.seed, 99),
+        unit_(find_unit("mA")) {
+    for (const auto& sensor : model.sensors) {
+      if (sensor.signal == "piston_position" && run.noise) loop_sensor_ = SensorChain(sensor, run.seed, 99);
+    }
+    const double tick = 1.0 / run.rate, largest = run.step > 0.0 ? run.step : model.solver_step;
+    steps_ = static_cast<int>(std::ceil(tick / largest - 1e-9));
+    h_ = tick / steps_;
+  }
+
+  double step_size() const { return h_; }
+
+  RigLog record(const Observer& observe) {
+    settle();
+    const auto rows = static_cast<std::size_t>(std::floor(run_.duration * run_.rate + 1e-9));
+    std::vector<double> time(rows), command(rows), setpoint;
+    std::vector<std::vector<double>> columns(sensors_.size(), std::vector<double>(rows));
+    Random jitter(run_.seed, 98);
+    for (std::size_t k = 0; k < rows; ++k) {
+      const double tick = static_cast<double>(k) / run_.rate;
+      const double u = quantised(stimulus_.command(tick, loop_sensor_.read()));
+      if (stimulus_.setpoint) setpoint.push_back(stimulus_.setpoint(tick));
+      int late = 0;  // steps after the tick at which the row is taken
+      if (run_.jitter > 0.0) {
+        late = static_cast<int>(std::lround(std::fabs(jitter.normal()) * run_.jitter / h_));
+        late = std::min(late, steps_ - 1);
+      }
+      for (int i = 0; i <= steps_; ++i) {
+        if (i == late) {
+          time[k] = tick + late * h_;
+          command[k] = u;
+          for (std::size_t c = 0; c < sensors_.size(); ++c) columns[c][k] = sensors_[c].read();
+          if (observe) observe(time[k], u, rig_);
+        }
+        if (i < steps_) advance(tick + i * h_, u);
+      }
+    }
+    RigLog log;
+    log.columns.push_back({Signal::time, "s", std::move(time)});
+    log.columns.push_back({Signal::command, "mA", std::move(command)});
+    if (!setpoint.empty()) {
+      for (double& x : setpoint) x = find_unit("mm")->to_si(rounded(x * 1e3, 0.01));
+      log.columns.push_back({Signal::setpoint, "mm", std::move(setpoint)});
+    }
+    for (std::size_t c = 0; c < sensors_.size(); ++c) {
+      log.columns.push_back({sensors_[c].signal(), sensors_[c].unit(), std::move(columns[c])});
+    }
+    return log;
+  }
+
+ private:
+  // The control computer itself counts in converter steps, so the log shows what was sent.
+  double quantised(double command) const {
+    return unit_->to_si(rounded(unit_->from_si(command), rig_.model().driver_quantum * 1e3));
+  }
+
+  Seen seen(const Load& load) const {
+    return {load.force + load.stiffness * rig_.state()[x_surface], run_.temperature};
+  }
+
+  void settle() {
+    const auto steps = static_cast<long>(std::ceil(settling / h_));
+    const Load load = stimulus_.load ? stimulus_.load(0.0) : Load{};
+    for (long i = 0; i < steps; ++i) {
+      rig_.step(-0.5 * rig_.piston_position(), load.force, load.stiffness, h_);
+    }
+    for (auto& sensor : sensors_) sensor.reset(rig_, seen(load));
+    loop_sensor_.reset(rig_, seen(load));
+  }
+
+  void advance(double time, double command) {
+    if (run_.onset >= 0.0 && !stepped_in_ && time >= run_.onset - 0.5 * h_) {
+      rig_.set_wear(faulty_);
+      stepped_in_ = true;
+    }
+    const Load load = stimulus_.load ? stimulus_.load(time) : Load{};
+    rig_.step(command, load.force, load.stiffness, h_);
+    const Seen now = seen(load);
+    for (auto& sensor : sensors_) sensor.follow(rig_, now, h_);
+    loop_sensor_.follow(rig_, now, h_);
+  }
+
+  RigRun run_;
+  Stimulus stimulus_;
+  Wear faulty_;
+  VirtualRig rig_;
+  std::vector<SensorChain> sensors_;
+  SensorChain loop_sensor_;
+  const Unit* unit_;
+  int steps_ = 1;
+  double h_ = 0.0;
+  bool stepped_in_ = false;
+};
+
+}  // namespace
+
+RigLog run_rig(const RigModel& model, const RigRun& run, const Stimulus& stimulus, const Observer& observe) {
+  check(run);
+  Recorder recorder(model, run, stimulus);
+  RigLog log = recorder.record(observe);
+  log.truth = truth_of(model, run, recorder.step_size());
+  log.comments.push_back(fmt::format("virtual rig '{}', excitation {}, seed {}", model.name, run.excitation, run.seed));
+  return log;
+}
+
+RigLog run_rig(const RigModel& model, const RigRun& run, const Observer& observe) {
+  check(run);
+  const Shape shape{run.duration, run.amplitude, run.frequency, run.seed};
+  return run_rig(model, run, make_stimulus(run.excitation, model, shape), observe);
+}
+
+}  // namespace servodx::rig

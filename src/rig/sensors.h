@@ -1,0 +1,40 @@
+// Measuring chains of a rig: first-order lag, gain, offset, white noise, rounding to the quantum of the log column.
+// Limits: noise is white to half the sample rate; no mains pick-up and no drift yet.
+#pragma once
+#include <cstdint>
+
+#include "base/random.h"
+#include "base/units.h"
+#include "rig/virtual_rig.h"
+#include "signals/log.h"
+
+namespace servodx::rig {
+
+// What the sensors see beside the rig's state.
+struct Seen {
+  double load_force = 0.0;   // [N]
+  double temperature = 0.0;  // [K]
+};
+
+class SensorChain {
+ public:
+  // `stream` separates the sensors' noise; `signal` must be one the rig can measure, else InputError.
+  SensorChain(const Sensor& sensor, std::uint64_t seed, std::uint32_t stream);
+  void reset(const VirtualRig& rig, const Seen& seen);             // lag settled
+  void follow(const VirtualRig& rig, const Seen& seen, double h);  // after each step
+  double read();                                                   // [SI] the next sample, as the log shows it
+  Signal signal() const { return signal_; }
+  const std::string& unit() const { return sensor_.unit; }
+
+ private:
+  double truth(const VirtualRig& rig, const Seen& seen) const;
+  Sensor sensor_;
+  Signal signal_;
+  const Unit* unit_;
+  Random random_;
+  double input_ = 0.0, output_ = 0.0, h_ = 0.0, keep_ = 0.0;
+};
+
+double rounded(double shown, double quantum);  // to a multiple of the quantum, with the quantum's decimals
+
+}  // namespace servodx::rig

@@ -1,0 +1,167 @@
+// Each fault starts from nothing and moves what physics says it moves.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "base/error.h"
+#include "rig_test_support.h"
+
+namespace servodx::rig {
+namespace {
+
+constexpr double rated = 0.020;
+
+// [s] from a step of current to 63 % of its spool travel
+double rise_time(const Conditions& conditions, double command) {
+  VirtualRig rig = settled(conditions);
+  VirtualRig end = rig;
+  hold(end, command, 0.2);
+  const double start = rig.state()[x_spool], goal = start + 0.63 * (end.state()[x_spool] - start);
+  const double h = rig.model().solver_step;
+  double t = 0.0;
+  while (rig.state()[x_spool] < goal && t < 0.2) {
+    rig.step(command, 0.0, 0.0, h);
+    t += h;
+  }
+  return t;
+}
+
+double spool_after(const Conditions& conditions, double command, double seconds = 0.1) {
+  VirtualRig rig = settled(conditions);
+  hold(rig, command, seconds);
+  return rig.state()[x_spool];
+}
+
+// Spool position difference between coming from above and from below, at the same current.
+double branch_difference(const Conditions& conditions) {
+  VirtualRig up = settled(conditions), down = settled(conditions);
+  hold(up, -0.2 * rated, 0.1);
+  hold(down, 0.2 * rated, 0.1);
+  const double h = up.model().solver_step;
+  for (int i = 0; i < 50000; ++i) {
+    const double u = 0.2 * rated * (1.0 - i / 50000.0);
+    up.step(-u, 0.0, 0.0, h);
+    down.step(u, 0.0, 0.0, h);
+  }
+  hold(up, 0.0, 0.05);
+  hold(down, 0.0, 0.05);
+  return down.state()[x_spool] - up.state()[x_spool];
+}
+
+TEST(RigFaults, HealthySeverityIsBitForBitNoFault) {
+  const RigRun healthy{.excitation = "mixed", .duration = 0.3};
+  const auto expected = run_rig(flight_rig(), healthy);
+  for (const auto& fault : rig_faults()) {
+    for (const double onset : {-1.0, 0.1}) {
+      RigRun run = healthy;
+      run.faults[fault.name] = fault.healthy;
+      run.onset = onset;
+      const auto log = run_rig(flight_rig(), run);
+      for (std::size_t c = 0; c < log.columns.size(); ++c) {
+        EXPECT_EQ(log.columns[c].value, expected.columns[c].value) << fault.name << " column " << c;
+      }
+    }
+  }
+}
+
+TEST(RigFaults, ASmallFaultChangesLittleAndALargerOneMore) {
+  const auto spool = [](const FaultSet& faults) {
+    return run_rig(flight_rig(), {.excitation = "mixed", .duration = 0.6, .faults = faults, .noise = false})
+        .columns[2]
+        .value;
+  };
+  const auto healthy = spool({});
+  const auto distance = [&](const std::vector<double>& x) {
+    double sum = 0.0;
+    for (std::size_t k = 0; k < x.size(); ++k) sum += (x[k] - healthy[k]) * (x[k] - healthy[k]);
+    return std::sqrt(sum / static_cast<double>(x.size()));
+  };
+  for (const auto& fault : rig_faults()) {
+    const double tiny = distance(spool({{fault.name, fault.healthy + 0.01 * (fault.severity[0] - fault.healthy)}}));
+    const double mild = distance(spool({{fault.name, fault.severity[0]}}));
+    const double severe = distance(spool({{fault.name, fault.severity[2]}}));
+    EXPECT_LT(tiny, 0.3 * mild + 1e-7) << fault.name;
+    EXPECT_LT(mild, severe) << fault.name;
+    EXPECT_GT(severe, 0.0) << fault.name;
+  }
+}
+
+TEST(RigFaults, CloggedFilterLowersPilotPressureAndSlowsTheSpool) {
+  const VirtualRig healthy = settled(), clogged = settled(with_fault("clogged_filter=severe"));
+  EXPECT_LT(clogged.state()[p_pilot_1], 0.9 * healthy.state()[p_pilot_1]);
+  EXPECT_LT(clogged.state()[p_pilot_2], 0.9 * healthy.state()[p_pilot_2]);
+  EXPECT_GT(rise_time(with_fault("clogged_filter=severe"), rated), 1.05 * rise_time({}, rated));
+}
+
+TEST(RigFaults, TorqueMotorLossShrinksTheSpoolTravelByTheGainLost) {
+  const double healthy = spool_after({}, 0.8 * rated) - spool_after({}, 0.0);
+  const auto half = with_fault("torque_motor_loss=0.5");
+  EXPECT_NEAR((spool_after(half, 0.8 * rated) - spool_after(half, 0.0)) / healthy, 0.5, 0.03);
+}
+
+TEST(RigFaults, BacklashWidensHysteresisByItsClearance) {
+  const double healthy = branch_difference({});
+  EXPECT_NEAR(branch_difference(with_fault("feedback_wire_backlash=20e-6")) - healthy, 20e-6, 4e-6);
+}
+
+TEST(RigFaults, LostFeedbackDrivesTheSpoolToItsStop) {
+  // A fifth of rated current: far less is held by flow force before the stop, and none at all by friction near null.
+  const double stop = flight_rig().spool_stop;
+  EXPECT_NEAR(spool_after(with_fault("feedback_wire_lost=0"), 0.2 * rated), stop, 0.02 * stop);
+  EXPECT_NEAR(spool_after(with_fault("feedback_wire_lost=0"), -0.2 * rated), -stop, 0.02 * stop);
+}
+
+TEST(RigFaults, HalfAWireDoublesTheSpoolTravel) {
+  const auto half = with_fault("feedback_wire_lost=0.5");
+  const double healthy = spool_after({}, 0.2 * rated) - spool_after({}, 0.0);
+  EXPECT_NEAR((spool_after(half, 0.2 * rated) - spool_after(half, 0.0)) / healthy, 2.0, 0.15);
+}
+
+TEST(RigFaults, StickySpoolWidensTheThreshold) {
+  EXPECT_GT(branch_difference(with_fault("sticky_spool=severe")), branch_difference({}) + 5e-6);
+}
+
+TEST(RigFaults, WornClearanceLeaksMoreAtNull) {
+  const VirtualRig healthy = settled(), worn = settled(with_fault("radial_clearance_wear=severe"));
+  EXPECT_GT(worn.flows().q_pa + worn.flows().q_pb, 5.0 * (healthy.flows().q_pa + healthy.flows().q_pb));
+}
+
+TEST(RigFaults, NullShiftMovesTheSpoolByThatMuchCurrent) {
+  const double shifted = spool_after(with_fault("null_shift=0.12"), 0.0);
+  EXPECT_NEAR(shifted, spool_after({}, 0.12 * rated), 3e-6);
+}
+
+TEST(RigFaults, OnsetLeavesTheLogBeforeItUntouched) {
+  const RigRun healthy{.excitation = "mixed", .duration = 0.4};
+  RigRun late = healthy;
+  late.faults = {{"torque_motor_loss", 0.5}};
+  late.onset = 0.2;
+  const auto a = run_rig(flight_rig(), healthy), b = run_rig(flight_rig(), late);
+  const auto &x = a.columns[2].value, &y = b.columns[2].value;
+  EXPECT_TRUE(std::equal(x.begin(), x.begin() + 200, y.begin()));
+  EXPECT_NE(x.back(), y.back());
+  EXPECT_EQ(b.truth["onset_time"], 0.2);
+}
+
+std::string refusal(const auto& call) {
+  try {
+    call();
+  } catch (const InputError& e) {
+    return e.what();
+  }
+  return "";
+}
+
+TEST(RigFaults, UnknownNamesAreRefusedWithTheListOfNames) {
+  FaultSet faults;
+  const auto fault = refusal([&] { add_fault("rusty_spool=1", faults); });
+  EXPECT_NE(fault.find("clogged_filter, torque_motor_loss, feedback_wire_backlash"), std::string::npos) << fault;
+  const auto excitation = refusal([] { run_rig(flight_rig(), {.excitation = "noise"}); });
+  EXPECT_NE(excitation.find("steps_large, steps_small, sine"), std::string::npos) << excitation;
+  EXPECT_NE(refusal([&] { add_fault("clogged_filter=2", faults); }).find("outside 0 to 0.999"), std::string::npos);
+  EXPECT_NE(refusal([&] { add_fault("clogged_filter", faults); }).find("mild, medium or severe"), std::string::npos);
+  EXPECT_NE(refusal([] { run_rig(flight_rig(), {.channels = {"flow_a"}}); }).find("--channels"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace servodx::rig

@@ -1,0 +1,155 @@
+// Laws the rig obeys whatever its numbers: balance, dissipation, convergence, determinism.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "rig_test_support.h"
+#include "signals/log.h"
+
+namespace servodx::rig {
+namespace {
+
+TEST(RigLaws, StoredOilEqualsFlowInMinusFlowOut) {
+  for (const double celsius : {-30.0, 40.0, 70.0}) {
+    VirtualRig rig = settled({.temperature = celsius + zero_celsius, .air = 0.02});
+    const State start = rig.state();
+    const double before = rig.plant().stored_oil(start);
+    const double h = rig.model().solver_step;
+    for (int i = 0; i < 100000; ++i) rig.step(i % 40000 < 20000 ? 0.02 : -0.02, i > 50000 ? 6000.0 : 0.0, 0.0, h);
+    const State& end = rig.state();
+    const double gained = (end[oil_in] - start[oil_in]) - (end[oil_out] - start[oil_out]);
+    const double moved = end[oil_in] - start[oil_in];
+    EXPECT_NEAR(rig.plant().stored_oil(end) - before, gained, 1e-7 * moved) << celsius;
+  }
+}
+
+TEST(RigLaws, HalvingTheStepMovesNoChannelAboveItsNoise) {
+  for (const char* excitation : {"steps_large", "steps_small", "mixed", "flight"}) {
+    std::vector<std::vector<double>> coarse, fine;
+    const auto record = [&](double step, std::vector<std::vector<double>>& to) {
+      RigRun run{.excitation = excitation, .duration = 0.8, .noise = false, .step = step};
+      for (auto& column : run_rig(flight_rig(), run).columns) to.push_back(std::move(column.value));
+    };
+    record(4e-6, coarse);
+    record(2e-6, fine);
+    const auto log = run_rig(flight_rig(), {.excitation = excitation, .duration = 0.01});
+    for (std::size_t c = 0; c < coarse.size(); ++c) {
+      const std::string name(info(log.columns[c].signal).name);
+      const auto sensor = std::find_if(flight_rig().sensors.begin(), flight_rig().sensors.end(),
+                                       [&](const Sensor& s) { return s.signal == name; });
+      // time and command: one step of the converter at most
+      const double noise = sensor != flight_rig().sensors.end() ? sensor->noise : 1.01e-5;
+      double worst = 0.0;
+      for (std::size_t k = 0; k < coarse[c].size(); ++k) worst = std::max(worst, std::fabs(coarse[c][k] - fine[c][k]));
+      EXPECT_LE(worst, noise) << excitation << ' ' << name;
+    }
+  }
+}
+
+TEST(RigLaws, PistonAgainstItsStopUnderFullPressureIsStable) {
+  // The stiffest state: smallest chamber, edge wide open, no pressure across it, hot oil without air.
+  VirtualRig rig = settled({.temperature = 70.0 + zero_celsius, .air = 0.0}, 0.19);
+  hold(rig, 0.02, 0.4);
+  EXPECT_NEAR(rig.piston_position(), 0.2, 1e-3);
+  double low = 1e9, high = 0.0;
+  for (int i = 0; i < 5000; ++i) {
+    rig.step(0.02, 0.0, 0.0, rig.model().solver_step);
+    low = std::min(low, rig.state()[p_b]);
+    high = std::max(high, rig.state()[p_b]);
+  }
+  EXPECT_LT(high - low, 1e4);
+}
+
+TEST(RigLaws, SameSeedSameBitsAndOtherSeedOtherNoise) {
+  const RigRun run{.excitation = "prbs", .duration = 0.1, .seed = 7};
+  RigRun other = run;
+  other.seed = 8;
+  const auto a = run_rig(flight_rig(), run), b = run_rig(flight_rig(), run), c = run_rig(flight_rig(), other);
+  for (std::size_t i = 0; i < a.columns.size(); ++i) EXPECT_EQ(a.columns[i].value, b.columns[i].value);
+  EXPECT_NE(a.columns[3].value, c.columns[3].value);
+}
+
+TEST(RigLaws, NoiseOfASensorDoesNotDependOnWhichOthersAreLogged) {
+  RigRun run{.excitation = "sine", .duration = 0.1};
+  const auto all = run_rig(flight_rig(), run);
+  run.channels = {"spool_position"};
+  const auto one = run_rig(flight_rig(), run);
+  ASSERT_EQ(one.columns.size(), 3u);
+  EXPECT_EQ(one.columns[2].value, all.columns[2].value);
+}
+
+// data/ is what scripts/make_data writes today. Within noise, because another C library may change last digits.
+TEST(RigLaws, CommittedLogIsWhatTheRigWrites) {
+  const Log committed = read_log(std::string(SERVODX_SOURCE_DIR) + "/data/healthy/h09_preflight_hot.csv");
+  const auto log = run_rig(
+      flight_rig(),
+      {.excitation = "preflight", .duration = 2.4, .temperature = 65.0 + zero_celsius, .air = 0.010, .seed = 109});
+  for (const auto& column : log.columns) {
+    if (column.signal == Signal::time) continue;
+    const auto& expected = committed[column.signal];
+    ASSERT_EQ(expected.size(), column.value.size());
+    const std::string name(info(column.signal).name);
+    const auto sensor = std::find_if(flight_rig().sensors.begin(), flight_rig().sensors.end(),
+                                     [&](const Sensor& s) { return s.signal == name; });
+    const double noise = sensor != flight_rig().sensors.end() ? sensor->noise : 1e-5;
+    double worst = 0.0;
+    for (std::size_t k = 0; k < expected.size(); ++k) worst = std::max(worst, std::fabs(expected[k] - column.value[k]));
+    EXPECT_LE(worst, 2.0 * noise) << name;
+  }
+}
+
+TEST(RigLaws, MagneticHysteresisNeverGivesEnergyBack) {
+  Hysteresis iron(0.3, 3.4e-6);
+  double flux = 0.0, work = 0.0, least = 0.0;
+  for (int i = 0; i < 20000; ++i) {
+    const double next = 4e-6 * std::sin(0.01 * i) * std::exp(-1e-4 * i);
+    const double before = iron.mmf(0.0);
+    iron.commit(next - flux);
+    work += 0.5 * (before + iron.mmf(0.0)) * (next - flux);
+    flux = next;
+    least = std::min(least, work);
+  }
+  EXPECT_GE(least, -1e-12);
+  EXPECT_GT(work, 0.0);
+}
+
+TEST(RigLaws, BristleFrictionDissipatesOverEveryCycle) {
+  const Friction friction{1.5, 2.2, 5e-3, 1e6, 60.0, 0.0};
+  for (const double speed : {1e-4, 1e-3, 1e-2, 1e-1}) {
+    double z = 0.0, work = 0.0;
+    const double h = 1e-6, frequency = 20.0;
+    for (int i = 0; i < 100000; ++i) {
+      const double v = speed * std::sin(6.283185307179586 * frequency * i * h);
+      const auto r = friction.at(v, z);
+      work += r.force * v * h;
+      z += h * r.rate;
+    }
+    EXPECT_GT(work, 0.0) << speed;
+  }
+}
+
+TEST(RigLaws, PassageFlowIsOddAndRisesWithPressure) {
+  const Fluid oil(flight_rig(), 313.15, 0.005);
+  const Edge edge(flight_rig(), oil, 1.0);
+  for (const double opening : {-5e-4, -1e-5, 0.0, 1e-5, 5e-4}) {
+    double last = 0.0;
+    for (const double dp : {1e2, 1e4, 1e6, 2e7}) {
+      const double q = edge.flow(opening, dp).q;
+      EXPECT_EQ(edge.flow(opening, -dp).q, -q);
+      EXPECT_GT(q, last);
+      last = q;
+    }
+  }
+}
+
+TEST(RigLaws, ReadsAsAContractLog) {
+  const auto log = run_rig(flight_rig(), {.excitation = "steps_small", .duration = 0.1, .rate = 2000.0});
+  ASSERT_EQ(log.columns.size(), 10u);
+  EXPECT_EQ(log.columns[0].value.size(), 200u);
+  EXPECT_EQ(log.columns[0].signal, Signal::time);
+  EXPECT_EQ(log.columns[1].signal, Signal::command);
+  EXPECT_EQ(log.truth["label"], "healthy");
+}
+
+}  // namespace
+}  // namespace servodx::rig
