@@ -1,0 +1,359 @@
+#include "optimise/genetic.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+
+#include "base/error.h"
+#include "optimise/genetic_variation.h"
+
+namespace servodx {
+namespace {
+
+constexpr double kWorst = 1e300;  // what a failed point costs; finite, so that a saved state can hold it
+constexpr int kLeastIsland = 6;
+constexpr int kMemory = 6;
+constexpr double kForget = 0.9;  // of the variations' counts, a generation
+// Streams are Random(seed, generation, individual, purpose).
+constexpr std::uint32_t kChild = 0, kCloud = 1, kSpread = 2;
+
+void require(bool good, const char* option, const std::string& rule) {
+  if (!good) throw InputError({}, std::string("option '") + option + "' " + rule, "");
+}
+
+double distance(const Point& a, const Point& b) {
+  double sum = 0;
+  for (std::size_t j = 0; j < a.size(); ++j) sum += (a[j] - b[j]) * (a[j] - b[j]);
+  return std::sqrt(sum / static_cast<double>(a.size()));
+}
+
+class Genetic {
+ public:
+  Genetic(int n, const BatchCost& cost, const GeneticOptions& options, const std::vector<std::vector<Point>>& seeds,
+          const GeneticHooks& hooks)
+      : cost_(cost), options_(options), seeds_(seeds), hooks_(hooks) {
+    state_.n = n;
+    state_.seed = options.seed;
+  }
+
+  void take(const GeneticState& saved) {
+    if (saved.n != state_.n || saved.seed != state_.seed || saved.islands.size() != islands())
+      throw InputError({}, "the saved genetic search has other dimensions, another seed or other islands",
+                       "resume with the options it was started with");
+    state_ = saved;
+  }
+
+  GeneticResult run(bool resumed) {
+    if (!resumed) {
+      begin();
+      if (!told()) return {std::move(state_), GeneticStop::interrupted};
+    }
+    for (;;) {
+      if (state_.best.cost <= options_.cost_goal) return {std::move(state_), GeneticStop::goal};
+      if (state_.generation >= options_.generations) return {std::move(state_), GeneticStop::generations};
+      if (options_.max_evaluations > 0 && state_.evaluations + options_.population > options_.max_evaluations)
+        return {std::move(state_), GeneticStop::evaluation_limit};
+      step();
+      if (!told()) return {std::move(state_), GeneticStop::interrupted};
+    }
+  }
+
+ private:
+  std::size_t islands() const { return std::max<std::size_t>(1, seeds_.size()); }
+  int island_size(std::size_t i) const {
+    const int count = static_cast<int>(islands());
+    return options_.population / count + (static_cast<int>(i) < options_.population % count ? 1 : 0);
+  }
+
+  int first_slot(std::size_t island) const {
+    int first = 0;
+    for (std::size_t i = 0; i < island; ++i) first += island_size(i);
+    return first;
+  }
+
+  bool told() const { return !hooks_.generation || hooks_.generation(state_); }
+
+  std::vector<double> evaluate(const std::vector<Point>& points) {
+    std::vector<double> costs = cost_(points);
+    if (costs.size() != points.size()) throw std::logic_error("BatchCost returned another number of costs");
+    state_.evaluations += static_cast<long>(points.size());
+    for (double& cost : costs) {
+      if (std::isfinite(cost) && cost < options_.failure_cost) continue;
+      ++state_.failed;
+      cost = kWorst;
+    }
+    return costs;
+  }
+
+  // Points of a fresh island: seeds, a cloud about them, and a Latin hypercube over the box.
+  std::vector<Point> fresh(std::size_t island, int size, bool with_seeds) const {
+    const int n = state_.n;
+    const auto generation = static_cast<std::uint32_t>(state_.generation);
+    const auto first = static_cast<std::uint32_t>(first_slot(island));
+    std::vector<Point> points;
+    if (with_seeds && island < seeds_.size() && !seeds_[island].empty()) {
+      const auto& seeds = seeds_[island];
+      const int seeded =
+          std::min(size, std::max(static_cast<int>(seeds.size()), static_cast<int>(options_.seeded_part * size)));
+      for (int k = 0; k < seeded; ++k) {
+        Point point = seeds[k % seeds.size()];
+        Random random(state_.seed, generation, first + static_cast<std::uint32_t>(k), kCloud);
+        for (double& v : point)
+          v = reflect(k < static_cast<int>(seeds.size()) ? v : v + options_.seed_spread * random.normal());
+        points.push_back(std::move(point));
+      }
+    }
+    const int rest = size - static_cast<int>(points.size());
+    std::vector<Point> spread(rest, Point(n));
+    Random random(state_.seed, generation, first, kSpread);
+    for (int j = 0; j < n; ++j) {
+      std::vector<int> cell(rest);
+      for (int k = 0; k < rest; ++k) {
+        const int other = static_cast<int>(random.below(static_cast<std::uint32_t>(k + 1)));  // inside-out shuffle
+        cell[k] = cell[other];
+        cell[other] = k;
+      }
+      for (int k = 0; k < rest; ++k) spread[k][j] = (cell[k] + random.uniform()) / rest;
+    }
+    points.insert(points.end(), spread.begin(), spread.end());
+    return points;
+  }
+
+  void fill(Island& island, const std::vector<Point>& points, const double* costs) {
+    island = Island{};
+    island.reach.assign(kMemory, 0.5);
+    island.mixing.assign(kMemory, 0.5);
+    island.best_since_start = kWorst;
+    for (std::size_t k = 0; k < points.size(); ++k) {
+      island.population.push_back({points[k], costs[k]});
+      island.best_since_start = std::min(island.best_since_start, costs[k]);
+      remember(island.population.back());
+    }
+    island.mark = island.best_since_start;
+  }
+
+  void begin() {
+    state_.islands.resize(islands());
+    state_.best.cost = kWorst;
+    std::vector<Point> all;
+    for (std::size_t i = 0; i < islands(); ++i) {
+      const std::vector<Point> points = fresh(i, island_size(i), true);
+      all.insert(all.end(), points.begin(), points.end());
+    }
+    const std::vector<double> costs = evaluate(all);
+    std::size_t at = 0;
+    for (std::size_t i = 0; i < islands(); ++i) {
+      const auto size = static_cast<std::size_t>(island_size(i));
+      fill(state_.islands[i], {all.begin() + at, all.begin() + at + size}, costs.data() + at);
+      at += size;
+    }
+  }
+
+  // Best and archive: the archive keeps the better of two points that are closer than archive_distance.
+  void remember(const Individual& one) {
+    if (one.cost >= kWorst) return;
+    if (one.cost < state_.best.cost || state_.best.point.empty()) state_.best = one;
+    auto& archive = state_.archive;
+    if (static_cast<int>(archive.size()) >= options_.archive && one.cost >= archive.back().cost) return;
+    for (const Individual& kept : archive)
+      if (kept.cost <= one.cost && distance(kept.point, one.point) < options_.archive_distance) return;
+    std::erase_if(archive,
+                  [&](const Individual& kept) { return distance(kept.point, one.point) < options_.archive_distance; });
+    const auto place = std::upper_bound(archive.begin(), archive.end(), one.cost,
+                                        [](double cost, const Individual& kept) { return cost < kept.cost; });
+    archive.insert(place, one);
+    if (static_cast<int>(archive.size()) > options_.archive) archive.pop_back();
+  }
+
+  bool is_done(const Island& island) const {
+    if (options_.stagnation > 0 && island.stagnant >= options_.stagnation) return true;
+    double width = 0;
+    for (int j = 0; j < state_.n; ++j) {
+      double low = 1, high = 0;
+      for (const Individual& one : island.population) {
+        low = std::min(low, one.point[j]);
+        high = std::max(high, one.point[j]);
+      }
+      width = std::max(width, high - low);
+    }
+    return width <= options_.collapse;
+  }
+
+  void step() {
+    ++state_.generation;
+    std::vector<Point> points;
+    std::vector<std::vector<Child>> broods(state_.islands.size());  // empty: a fresh start
+    std::uint32_t individual = 0;
+    for (std::size_t i = 0; i < state_.islands.size(); ++i) {
+      const Island& island = state_.islands[i];
+      const int size = static_cast<int>(island.population.size());
+      if (is_done(island)) {
+        const std::vector<Point> start = fresh(i, size, false);
+        points.insert(points.end(), start.begin(), start.end());
+        individual += static_cast<std::uint32_t>(size);
+        continue;
+      }
+      const Brood brood = look_at(island, options_.tournament);
+      for (int slot = 0; slot < size; ++slot) {
+        Random random(state_.seed, static_cast<std::uint32_t>(state_.generation), individual++, kChild);
+        broods[i].push_back(make_child(brood, slot, random));
+        points.push_back(broods[i].back().point);
+      }
+    }
+    const std::vector<double> costs = evaluate(points);
+    std::size_t at = 0;
+    for (std::size_t i = 0; i < state_.islands.size(); ++i) {
+      Island& island = state_.islands[i];
+      const std::size_t size = island.population.size();
+      if (broods[i].empty()) {
+        ++state_.restarts;
+        fill(island, {points.begin() + at, points.begin() + at + size}, costs.data() + at);
+      } else {
+        select(island, broods[i], costs.data() + at);
+      }
+      at += size;
+    }
+    migrate();
+    if (hooks_.refine && hooks_.refine_every > 0 && state_.generation % hooks_.refine_every == 0) admit();
+  }
+
+  void select(Island& island, std::vector<Child>& children, const double* costs) {
+    for (int v = 0; v < kVariations; ++v) {
+      island.tries[v] *= kForget;
+      island.wins[v] *= kForget;
+    }
+    double weight = 0, reach = 0, reach2 = 0, mixing = 0;
+    for (std::size_t k = 0; k < children.size(); ++k) {
+      Child& child = children[k];
+      Individual& parent = island.population[k];
+      island.tries[child.variation] += 1;
+      if (costs[k] > parent.cost || costs[k] >= kWorst) continue;
+      if (costs[k] < parent.cost) {
+        island.wins[child.variation] += 1;
+        if (child.variation == 2 || child.variation == 3) {
+          const double gain = std::min(parent.cost, 1e100) - std::min(costs[k], 1e100);
+          weight += gain;
+          reach += gain * child.reach;
+          reach2 += gain * child.reach * child.reach;
+          mixing += gain * child.mixing;
+        }
+      }
+      parent = {std::move(child.point), costs[k]};
+      remember(parent);
+      island.best_since_start = std::min(island.best_since_start, costs[k]);
+    }
+    if (weight > 0 && reach > 0) {
+      island.reach[island.memory_at] = reach2 / reach;  // Lehmer mean: leans to the larger
+      island.mixing[island.memory_at] = mixing / weight;
+      island.memory_at = (island.memory_at + 1) % kMemory;
+    }
+    if (island.best_since_start < island.mark - options_.stagnation_gain * std::abs(island.mark)) {
+      island.mark = island.best_since_start;
+      island.stagnant = 0;
+    } else {
+      ++island.stagnant;
+    }
+  }
+
+  static Individual& worst(Island& island) {
+    return *std::max_element(island.population.begin(), island.population.end(),
+                             [](const Individual& a, const Individual& b) { return a.cost < b.cost; });
+  }
+
+  void migrate() {
+    if (options_.migrate_every <= 0 || state_.islands.size() < 2 || state_.generation % options_.migrate_every != 0)
+      return;
+    std::vector<Individual> best;
+    for (const Island& island : state_.islands)
+      best.push_back(*std::min_element(island.population.begin(), island.population.end(),
+                                       [](const Individual& a, const Individual& b) { return a.cost < b.cost; }));
+    for (std::size_t i = 0; i < state_.islands.size(); ++i)
+      settle(state_.islands[(i + 1) % state_.islands.size()], best[i]);
+  }
+
+  void settle(Island& island, const Individual& guest) {
+    Individual& place = worst(island);
+    if (guest.cost >= place.cost) return;
+    place = guest;
+    island.best_since_start = std::min(island.best_since_start, guest.cost);
+  }
+
+  void admit() {
+    for (Individual& guest : hooks_.refine(state_)) {
+      if (static_cast<int>(guest.point.size()) != state_.n)
+        throw std::logic_error("a refined point has the wrong length");
+      if (!std::isfinite(guest.cost) || guest.cost >= options_.failure_cost) continue;
+      Island* home = &state_.islands.front();
+      double nearest = std::numeric_limits<double>::infinity();
+      for (Island& island : state_.islands) {
+        for (const Individual& one : island.population) {
+          const double apart = distance(one.point, guest.point);
+          if (apart < nearest) {
+            nearest = apart;
+            home = &island;
+          }
+        }
+      }
+      settle(*home, guest);
+      remember(guest);
+    }
+  }
+
+  const BatchCost& cost_;
+  const GeneticOptions& options_;
+  const std::vector<std::vector<Point>>& seeds_;
+  const GeneticHooks& hooks_;
+  GeneticState state_;
+};
+
+}  // namespace
+
+void GeneticOptions::validate() const {
+  require(population >= kLeastIsland, "population", "must be at least 6");
+  require(generations >= 0, "generations", "must not be negative");
+  require(tournament >= 1, "tournament", "must be at least 1");
+  require(seed_spread >= 0 && std::isfinite(seed_spread), "seed_spread", "must not be negative");
+  require(seeded_part >= 0 && seeded_part <= 1, "seeded_part", "must be 0 to 1");
+  require(migrate_every >= 0, "migrate_every", "must not be negative (0 means never)");
+  require(stagnation >= 0, "stagnation", "must not be negative (0 means never)");
+  require(stagnation_gain >= 0 && stagnation_gain < 1, "stagnation_gain", "must be at least 0 and below 1");
+  require(collapse >= 0 && collapse < 1, "collapse", "must be at least 0 and below 1");
+  require(archive >= 1, "archive", "must be at least 1");
+  require(archive_distance >= 0 && archive_distance <= 1, "archive_distance", "must be 0 to 1");
+  require(failure_cost > 0 && failure_cost <= kWorst, "failure_cost", "must be above 0 and at most 1e300");
+  require(max_evaluations >= 0, "max_evaluations", "must not be negative (0 means no limit)");
+  require(!std::isnan(cost_goal), "cost_goal", "must be a number");
+}
+
+const char* name(GeneticStop stop) {
+  switch (stop) {
+    case GeneticStop::generations:
+      return "generations";
+    case GeneticStop::evaluation_limit:
+      return "evaluation_limit";
+    case GeneticStop::goal:
+      return "goal";
+    case GeneticStop::interrupted:
+      return "interrupted";
+  }
+  return "unknown";
+}
+
+GeneticResult minimise_genetic(int n, const BatchCost& cost, const GeneticOptions& options,
+                               const std::vector<std::vector<Point>>& seeds, const GeneticHooks& hooks,
+                               const GeneticState* resume) {
+  options.validate();
+  require(n >= 1, "n", "must be at least 1");
+  const int islands = std::max(1, static_cast<int>(seeds.size()));
+  require(options.population / islands >= kLeastIsland, "population",
+          "must give each of the " + std::to_string(islands) + " islands at least 6 individuals");
+  for (const auto& set : seeds)
+    for (const Point& point : set)
+      if (static_cast<int>(point.size()) != n) throw std::logic_error("a seed point has the wrong length");
+  Genetic genetic(n, cost, options, seeds, hooks);
+  if (resume) genetic.take(*resume);
+  return genetic.run(resume != nullptr);
+}
+
+}  // namespace servodx

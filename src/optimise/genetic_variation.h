@@ -1,0 +1,41 @@
+// How one child is made from an island. Five variations, shared out by how often each has won lately (never below a
+// floor):
+//   0 crossover            simulated binary crossover with a tournament winner, coordinate by coordinate, then
+//   polynomial mutation 1 crossover_turned     the same along the principal axes of the population, for costs whose
+//   valleys lie across the axes 2 difference           parent + F (one of the best - parent) + F (a - b), mixed into
+//   the parent by coordinate at a learnt rate 3 difference_turned    the same along the principal axes 4 ensemble a
+//   draw about the centre of the better half, spread by its own members (rotation needs no axes)
+// Each child competes with the parent whose slot it was made for, which keeps diversity; points outside the box are
+// reflected into it. Sources: Deb and Agrawal (1995) SBX; Deb and Goyal (1996) polynomial mutation; Tanabe and Fukunaga
+// (2013) success-history memory; Guo and Yang (2015) eigenvector crossover; Akimoto et al. (2009) REX.
+#pragma once
+#include <Eigen/Dense>
+
+#include "base/random.h"
+#include "optimise/genetic_state.h"
+
+namespace servodx {
+
+struct Child {
+  Point point;
+  int variation = 0;
+  double reach = 0, mixing = 0;  // of a difference; remembered if it wins
+};
+
+// The island as the variations see it, made once a generation.
+struct Brood {
+  const Island* island = nullptr;
+  std::vector<int> by_cost;  // slots, best first
+  Eigen::MatrixXd axes;      // columns: principal axes of the population
+  Eigen::VectorXd centre;    // weighted, of the better half
+  Eigen::VectorXd mean;      // of all
+  std::array<double, kVariations> share{};
+  int tournament = 2;
+};
+
+Brood look_at(const Island& island, int tournament);
+Child make_child(const Brood& brood, int slot, Random& random);
+
+double reflect(double x);  // folds any finite number into [0, 1]
+
+}  // namespace servodx
