@@ -1,0 +1,181 @@
+#include "fit/error_model.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+
+namespace servodx {
+namespace {
+
+constexpr double activity_time = 20e-3;  // [s] memory of the activity
+constexpr const char* comment_key = "model error";
+
+double square(double x) { return x * x; }
+
+}  // namespace
+
+const ChannelError* ErrorModel::find(Signal s) const {
+  for (const ChannelError& c : channels)
+    if (c.signal == s) return &c;
+  return nullptr;
+}
+
+std::vector<double> activity(const std::vector<double>& time, const std::vector<double>& simulated) {
+  std::vector<double> a(simulated.size(), 0.0);
+  double memory = 0;
+  for (std::size_t k = 1; k < simulated.size(); ++k) {
+    const double dt = time[k] - time[k - 1];
+    const double keep = std::exp(-dt / activity_time);
+    const double speed = std::abs(simulated[k] - simulated[k - 1]) / dt * 1e-3;
+    memory = std::sqrt(keep * memory * memory + (1.0 - keep) * speed * speed);
+    a[k] = memory;
+  }
+  return a;
+}
+
+std::vector<double> sigma_of(const ChannelError* error, double noise, const std::vector<double>& act) {
+  std::vector<double> s(act.size(), noise);
+  if (error)
+    for (std::size_t k = 0; k < s.size(); ++k)
+      s[k] = std::sqrt(square(noise) + square(error->floor) + square(error->per_activity * act[k]));
+  return s;
+}
+
+double effective_fraction(const std::vector<double>& w) {
+  std::vector<double> x;
+  for (double v : w)
+    if (!std::isnan(v)) x.push_back(v);
+  const std::size_t n = x.size();
+  if (n < 8) return 1.0;
+  double c0 = 0;
+  for (double v : x) c0 += v * v;
+  if (c0 <= 0) return 1.0;
+  double tau = 1.0;
+  // Sums of neighbouring pairs stay positive for a reversible chain; the first negative one ends the sum.
+  for (std::size_t lag = 1; lag + 1 < n / 2; lag += 2) {
+    double c = 0;
+    for (std::size_t k = 0; k + lag < n; ++k) c += x[k] * x[k + lag];
+    for (std::size_t k = 0; k + lag + 1 < n; ++k) c += x[k] * x[k + lag + 1];
+    if (c <= 0) break;
+    tau += 2.0 * c / c0;
+  }
+  return std::clamp(1.0 / tau, 1.0 / static_cast<double>(n), 1.0);
+}
+
+ErrorModel learn_error_model(const FitProblem& problem, const Point& x) {
+  const std::vector<Trajectory> t = problem.trajectories(x);
+  ErrorModel model;
+  for (Signal signal : simulated_signals) {
+    // Pool the logs that have this channel.
+    std::vector<std::vector<double>> residuals, activities;
+    std::vector<double> noises;
+    for (std::size_t l = 0; l < t.size(); ++l) {
+      if (!t[l].ok) continue;
+      const auto& channels = problem.logs()[l]->channels;
+      for (std::size_t c = 0; c < channels.size(); ++c)
+        if (channels[c].signal == signal) {
+          residuals.push_back(problem.raw_residual(static_cast<int>(l), static_cast<int>(c), t[l]));
+          activities.push_back(activity(problem.logs()[l]->scenario.time, t[l].signals[channels[c].simulated]));
+          noises.push_back(channels[c].noise);
+        }
+    }
+    if (residuals.empty()) continue;
+    double sum_r2 = 0, sum_a2 = 0, n = 0;
+    for (std::size_t i = 0; i < residuals.size(); ++i)
+      for (std::size_t k = 0; k < residuals[i].size(); ++k)
+        if (!std::isnan(residuals[i][k])) sum_r2 += square(residuals[i][k]), sum_a2 += square(activities[i][k]), ++n;
+    const double rms = std::sqrt(sum_r2 / n), rms_activity = std::sqrt(sum_a2 / n);
+    // Each log weighs the same in the likelihood: a long quiet one must not drown a short lively one.
+    const auto cost = [&](double floor, double slope) {
+      double total = 0;
+      for (std::size_t i = 0; i < residuals.size(); ++i) {
+        double one = 0;
+        long count = 0;
+        for (std::size_t k = 0; k < residuals[i].size(); ++k) {
+          if (std::isnan(residuals[i][k])) continue;
+          const double s2 = square(noises[i]) + square(floor) + square(slope * activities[i][k]);
+          one += std::log(s2) + square(residuals[i][k]) / s2;
+          ++count;
+        }
+        total += one / static_cast<double>(std::max(1L, count));
+      }
+      return total;
+    };
+    // Two numbers, a smooth bowl in their logs: coarse grid, then halving.
+    double lf = std::log(std::max(rms, 1e-300)), ls = std::log(rms / std::max(rms_activity, 1e-300));
+    double best = cost(std::exp(lf), std::exp(ls));
+    for (double step = 1.6; step > 0.05; step *= 0.5)
+      for (bool moved = true; moved;) {
+        moved = false;
+        for (const auto& [df, ds] : {std::pair{step, 0.0}, {-step, 0.0}, {0.0, step}, {0.0, -step}}) {
+          const double trial = cost(std::exp(lf + df), std::exp(ls + ds));
+          if (trial < best - 1e-9 && lf + df > std::log(rms) - 12 && ls + ds > std::log(rms / rms_activity) - 12)
+            best = trial, lf += df, ls += ds, moved = true;
+        }
+      }
+    ChannelError error{signal, std::exp(lf), std::exp(ls), 1.0};
+    double fraction = 0;
+    for (std::size_t i = 0; i < residuals.size(); ++i) {
+      const std::vector<double> sigma = sigma_of(&error, noises[i], activities[i]);
+      std::vector<double> whitened(residuals[i].size());
+      for (std::size_t k = 0; k < whitened.size(); ++k) whitened[k] = residuals[i][k] / sigma[k];
+      fraction += effective_fraction(whitened);
+    }
+    error.effective = fraction / static_cast<double>(residuals.size());
+    model.channels.push_back(error);
+  }
+  return model;
+}
+
+void apply_error_model(FitProblem& problem, const ErrorModel& model, const Point& x) {
+  const std::vector<Trajectory> t = problem.trajectories(x);
+  for (std::size_t l = 0; l < t.size(); ++l) {
+    const LogData& log = *problem.logs()[l];
+    for (std::size_t c = 0; c < log.channels.size(); ++c) {
+      const FitChannel& channel = log.channels[c];
+      const ChannelError* error = model.find(channel.signal);
+      // The measured channel stands in where the simulation failed.
+      const std::vector<double>& moved = t[l].ok ? t[l].signals[channel.simulated] : channel.measured;
+      std::vector<double> act = activity(log.scenario.time, moved);
+      for (double& a : act)
+        if (std::isnan(a)) a = 0;
+      std::vector<double> sigma = sigma_of(error, channel.noise, act);
+      const double scale = 1.0 / std::sqrt(error ? error->effective : 0.1);
+      for (double& s : sigma) s *= scale;
+      problem.set_sigma(static_cast<int>(l), static_cast<int>(c), std::move(sigma));
+    }
+  }
+}
+
+std::vector<std::string> to_comments(const ErrorModel& model) {
+  std::vector<std::string> lines;
+  for (const ChannelError& c : model.channels)
+    lines.push_back(fmt::format("{} {}: floor {} {}, per activity {}, effective fraction {}", comment_key, info(c.signal).name,
+                                c.floor, info(c.signal).si_unit, c.per_activity, c.effective));
+  return lines;
+}
+
+ErrorModel error_model_of(const Table& table) {
+  ErrorModel model;
+  for (const std::string& line : table.comments) {
+    const std::size_t at = line.find(comment_key);
+    if (at == std::string::npos) continue;
+    const std::size_t colon = line.find(':', at);
+    if (colon == std::string::npos) continue;
+    std::istringstream name(line.substr(at + std::string(comment_key).size(), colon - at - std::string(comment_key).size()));
+    std::string word;
+    name >> word;
+    const auto signal = find_signal(word);
+    const auto number_after = [&](const std::string& key) {
+      const std::size_t k = line.find(key, colon);
+      return k == std::string::npos ? std::nan("") : std::strtod(line.c_str() + k + key.size(), nullptr);
+    };
+    ChannelError c{signal.value_or(Signal::time), number_after("floor "), number_after("per activity "), number_after("effective fraction ")};
+    if (signal && std::isfinite(c.floor) && std::isfinite(c.per_activity) && c.effective > 0) model.channels.push_back(c);
+  }
+  return model;
+}
+
+}  // namespace servodx

@@ -1,0 +1,83 @@
+#include "fit/free_values.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/error.h"
+
+namespace servodx {
+namespace {
+
+// Position of a table row in a candidate.
+int candidate_position(const Table& table, int row) {
+  if (row < n_parameters) return row;
+  for (const EffectInfo& e : effect_list())
+    for (std::size_t j = 0; j < e.parameters.size(); ++j)
+      if (table[row].name == e.parameters[j].name) return e.first + static_cast<int>(j);
+  return -1;
+}
+
+bool log_nuisance(int position) { return position == row::servovalve_null || position == row::air_fraction; }
+
+}  // namespace
+
+std::vector<FreeValue> shared_values(const Table& table) {
+  constexpr double prior_sd = 0.5;  // of the row's range: weak
+  std::vector<FreeValue> out;
+  for (std::size_t i = 0; i < table.rows.size(); ++i) {
+    const Row& r = table.rows[i];
+    const int at = candidate_position(table, static_cast<int>(i));
+    if (!r.estimate || at < 0 || log_nuisance(at) || !(r.upper > r.lower)) continue;
+    out.push_back({r.name, at, r.lower, r.upper, r.log_scale, r.nominal, prior_sd, -1});
+  }
+  return out;
+}
+
+std::vector<FreeValue> nuisance_values(const LogData& log, int l, const ParameterVector& base, double null_limit) {
+  std::vector<FreeValue> out;
+  const auto has = [&](Signal s) {
+    return std::any_of(log.channels.begin(), log.channels.end(), [&](const FitChannel& c) { return c.signal == s; });
+  };
+  const bool pressures = has(Signal::pressure_a) && has(Signal::pressure_b);
+  // Valves are delivered nulled within 2 % and move by some per cent with temperature.
+  out.push_back({"servovalve_null", row::servovalve_null, -null_limit, null_limit, false,
+                 std::clamp(base[row::servovalve_null], -null_limit, null_limit), 0.02 / (2 * null_limit), l});
+  out.push_back({"command_slope", nuisance::command_slope, 0.0, 1.0, false, 0.5, 1.0, l});
+  if (pressures) out.push_back({"air_fraction", row::air_fraction, 2e-4, 0.08, true, 0.005, 0.2, l});
+  // Offset of the spool sensor against the hydraulic null: 1 % of a stroke bounds it; its spread is a tenth of that.
+  if (has(Signal::spool_position)) out.push_back({"spool_offset", nuisance::spool_offset, -5e-6, 5e-6, false, 0.0, 0.1, l});
+  // Pressure sensors: a quarter per cent of a 400 bar range.
+  if (pressures) {
+    out.push_back({"pressure_a_offset", nuisance::pressure_a_offset, -3e5, 3e5, false, 0.0, 0.15, l});
+    out.push_back({"pressure_b_offset", nuisance::pressure_b_offset, -3e5, 3e5, false, 0.0, 0.15, l});
+  }
+  return out;
+}
+
+void add_effect_rows(Table& table, const std::vector<std::string>& effects) {
+  for (const std::string& name : effects) {
+    const auto& list = effect_list();
+    const auto it = std::find_if(list.begin(), list.end(), [&](const EffectInfo& e) { return e.name == name; });
+    if (it == list.end()) {
+      std::string known;
+      for (const EffectInfo& e : list) known += (known.empty() ? "" : ", ") + e.name;
+      throw InputError({"--effects"}, "'" + name + "' is not an effect that can be freed", "use one of: " + known + ", or none");
+    }
+    for (const EffectParameter& p : it->parameters) {
+      if (table.find(p.name) >= 0) continue;
+      Row r;
+      r.name = p.name;
+      r.group = "effect:" + name;
+      r.nominal = p.start;
+      r.lower = p.lower;
+      r.upper = p.upper;
+      r.estimate = true;
+      r.unit = p.unit;
+      r.description = p.meaning;
+      r.source = "typical size";
+      table.rows.push_back(r);
+    }
+  }
+}
+
+}  // namespace servodx

@@ -1,0 +1,22 @@
+// The free numbers of a fit: the table's rows to estimate, the effects asked for, and each log's nuisances.
+#pragma once
+#include <string>
+#include <vector>
+
+#include "fit/problem.h"
+#include "parameters/table.h"
+
+namespace servodx {
+
+// Rows with estimate = 1 that all logs share (row 41 and the air are nuisances of each log), with a prior of half the
+// row's range around its nominal: a datasheet's bounds already say what is likely.
+std::vector<FreeValue> shared_values(const Table& table);
+
+// A log's own: null, free air, command between samples, offsets of spool and pressure sensors; only those that the log
+// can show. `null_limit` [fraction of rated] bounds the null. Prior widths: docs/model.md, "Nuisances".
+std::vector<FreeValue> nuisance_values(const LogData& log, int log_index, const ParameterVector& base, double null_limit);
+
+// Appends rows for effects that the table lacks, at their typical size and free. Throws InputError for an unknown name.
+void add_effect_rows(Table& table, const std::vector<std::string>& effects);
+
+}  // namespace servodx

@@ -1,0 +1,26 @@
+// Which free numbers the data can tell apart, from the local sensitivities (Brun, Reichert, Kuensch 2001: collinearity).
+#pragma once
+#include <string>
+#include <vector>
+
+#include <Eigen/Dense>
+
+namespace servodx {
+
+struct Identifiability {
+  // free | flat (no effect on any channel) | confounded (its effect is that of others within the noise)
+  std::vector<std::string> verdict;
+  std::vector<std::vector<int>> confounded_with;  // columns that together do what this one does
+  std::vector<double> norm;                       // of the column, in sigmas per unit interval
+};
+
+// jacobian: rows in sigmas of independent samples, columns per unit interval; `candidates` marks columns that may be
+// frozen (nuisances are not). Greedy: strongest first; a column whose part that the kept ones do not span is shorter
+// than its norm over `collinearity_limit`, or than one sigma over the whole interval, is frozen.
+Identifiability identify(const Eigen::MatrixXd& jacobian, const std::vector<char>& candidates, double collinearity_limit = 15.0,
+                         double flat_limit = 1.0);
+
+// Covariance of the free columns (inverse of J^T J); rows and columns of frozen ones are zero.
+Eigen::MatrixXd covariance_of(const Eigen::MatrixXd& jacobian, const std::vector<char>& kept);
+
+}  // namespace servodx

@@ -1,0 +1,404 @@
+#include "fit/tune.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <numeric>
+#include <sstream>
+
+#include "base/atomic_file.h"
+#include "base/error.h"
+#include "base/progress.h"
+#include "fit/free_values.h"
+#include "fit/identifiability.h"
+#include "fit/nominal.h"
+#include "fit/problem.h"
+#include "optimise/genetic.h"
+
+namespace servodx {
+namespace {
+
+constexpr double tuning_null_limit = 0.1;  // fault-free logs: a null may sit anywhere that calibration allows
+constexpr const char* hash_key = "tuned by";
+
+double rms_of(const std::vector<double>& r, std::size_t from, std::size_t to) {
+  double sum = 0;
+  long n = 0;
+  for (std::size_t k = from; k < to && k < r.size(); ++k)
+    if (!std::isnan(r[k])) sum += r[k] * r[k], ++n;
+  return n ? std::sqrt(sum / static_cast<double>(n)) : 0.0;
+}
+
+// Everything a run of `tune` carries from step to step.
+struct Tuning {
+  const TuneOptions& options;
+  Progress progress;
+  std::vector<LogData> data;
+  std::vector<const LogData*> logs;
+  Table table;
+  ParameterVector base;
+  std::vector<FreeValue> shared, nuisances;
+  long simulations = 0, failed = 0;
+  std::vector<std::string> notes;
+
+  bool stopped() const { return options.stop && options.stop->load(); }
+  SimulateOptions simulate_options() const {
+    SimulateOptions s;
+    s.threads = options.threads;
+    return s;
+  }
+  std::vector<FreeValue> all() const {
+    std::vector<FreeValue> free = shared;
+    free.insert(free.end(), nuisances.begin(), nuisances.end());
+    return free;
+  }
+};
+
+// Whitening before anything is known: the residual's own size, a few tens of independent samples a second.
+void first_whitening(FitProblem& problem, const Point& x) {
+  constexpr double independent_rate = 40.0;  // [1/s]
+  const std::vector<Trajectory> t = problem.trajectories(x);
+  for (std::size_t l = 0; l < t.size(); ++l) {
+    const LogData& log = *problem.logs()[l];
+    const double span = log.scenario.time.back() - log.scenario.time.front();
+    const double correlated = static_cast<double>(log.scenario.time.size()) / std::max(1.0, span * independent_rate);
+    for (std::size_t c = 0; c < log.channels.size(); ++c) {
+      const int li = static_cast<int>(l), ci = static_cast<int>(c);
+      const double r = t[l].ok ? rms_of(problem.raw_residual(li, ci, t[l]), 0, log.scenario.time.size()) : 100 * log.channels[c].noise;
+      problem.set_sigma(li, ci, std::max(2 * log.channels[c].noise, 0.7 * r) * std::sqrt(std::max(1.0, correlated)));
+    }
+  }
+}
+
+// Leaves the last part of each log out of the misfit.
+void hold_out(FitProblem& problem, double part) {
+  constexpr double ignored = 1e30;
+  for (std::size_t l = 0; l < problem.logs().size(); ++l)
+    for (std::size_t c = 0; c < problem.logs()[l]->channels.size(); ++c) {
+      std::vector<double> s = problem.sigma(static_cast<int>(l), static_cast<int>(c));
+      for (std::size_t k = static_cast<std::size_t>((1.0 - part) * static_cast<double>(s.size())); k < s.size(); ++k) s[k] *= ignored;
+      problem.set_sigma(static_cast<int>(l), static_cast<int>(c), std::move(s));
+    }
+}
+
+LeastSquaresResult local(Tuning& run, FitProblem& problem, const Point& x, int iterations, bool first, const char* label, double from,
+                         double to) {
+  LeastSquaresOptions o;
+  o.max_iterations = iterations;
+  o.difference = Difference::forward;
+  o.cost_tolerance = 1e-6;
+  o.compressed_first_pass = first;
+  (void)label;
+  o.progress = [&](const LeastSquaresProgress& p) {
+    run.progress.update(from + (to - from) * p.iteration / iterations, run.simulations + problem.simulations());
+    return !run.stopped();
+  };
+  return minimise_least_squares(problem.least_squares(), x, o);
+}
+
+// The logs' liveliest stretches, for the global search: at most `seconds` of each.
+std::vector<LogData> excerpts(const std::vector<LogData>& logs, double seconds) {
+  std::vector<LogData> out;
+  for (const LogData& log : logs) {
+    LogData e = log;
+    const auto& t = log.scenario.time;
+    const auto n = static_cast<std::size_t>(std::lower_bound(t.begin(), t.end(), t.front() + seconds) - t.begin());
+    const auto cut = [&](std::vector<double>& v) {
+      if (v.size() > n) v.resize(n);
+    };
+    cut(e.scenario.time), cut(e.scenario.command), cut(e.scenario.supply_pressure), cut(e.scenario.return_pressure), cut(e.scenario.load_force);
+    for (FitChannel& c : e.channels) cut(c.measured);
+    out.push_back(std::move(e));
+  }
+  return out;
+}
+
+// Genetic search over the shared values with the nuisances held; returns the best distinct points, best first.
+std::vector<Point> breadth(Tuning& run, const Point& start) {
+  constexpr double seconds = 1.5;
+  const std::vector<LogData> parts = excerpts(run.data, seconds);
+  std::vector<const LogData*> logs;
+  for (const LogData& p : parts) logs.push_back(&p);
+  FitProblem problem(logs, run.base, run.all(), run.simulate_options());
+  first_whitening(problem, start);
+  const auto n = run.shared.size();
+  const auto full = [&](const Point& s) {
+    Point x = start;
+    std::copy(s.begin(), s.end(), x.begin());
+    return x;
+  };
+  const BatchCost cost = [&](std::span<const Point> points) {
+    std::vector<Point> xs;
+    for (const Point& p : points) xs.push_back(full(p));
+    std::vector<double> c;
+    for (const Evaluation& e : problem.evaluate(xs)) {
+      if (!e.ok) {
+        c.push_back(1e30);
+        continue;
+      }
+      // Compressed residuals: one channel far off must not hide the rest.
+      double sum = 0;
+      for (double r : e.residual) sum += r * r / (1.0 + std::abs(r) / 3.0);
+      c.push_back(0.5 * sum);
+    }
+    return c;
+  };
+  // Failure mode identifiers of a fault-free valve: as the table says; a slow first stage; much friction; worn edges.
+  const Point nominal(start.begin(), start.begin() + static_cast<long>(n));
+  const auto moved = [&](std::initializer_list<std::pair<int, double>> moves) {
+    Point p = nominal;
+    for (std::size_t j = 0; j < n; ++j)
+      for (const auto& [at, factor] : moves)
+        if (run.shared[j].at == at) p[j] = run.shared[j].to_unit(run.shared[j].from_unit(p[j]) * factor);
+    return p;
+  };
+  const std::vector<std::vector<Point>> seeds = {
+      {nominal},
+      {moved({{row::driver_bandwidth, 0.4}, {row::torque_motor_frequency, 0.7}, {row::fixed_orifice_diameter, 0.8}})},
+      {moved({{row::spool_friction, 5.0}, {row::piston_coulomb_friction, 3.0}})},
+      {moved({{row::radial_clearance, 2.0}, {row::hydraulic_amplifier_gain, 1.3}})}};
+  GeneticOptions o;
+  o.population = run.options.population;
+  o.generations = run.options.generations;
+  o.seed = run.options.seed;
+  o.archive = 4;
+  GeneticHooks hooks;
+  hooks.generation = [&](const GeneticState& s) {
+    if (!run.options.checkpoint.empty()) write_file(run.options.checkpoint, to_json(s));
+    run.progress.update(0.1 + 0.25 * s.generation / o.generations, run.simulations + problem.simulations());
+    return !run.stopped();
+  };
+  std::optional<GeneticState> saved;
+  if (run.options.resume && !run.options.checkpoint.empty() && std::filesystem::exists(run.options.checkpoint)) {
+    std::ifstream file(run.options.checkpoint);
+    std::stringstream text;
+    text << file.rdbuf();
+    saved = genetic_state_from_json(text.str());
+  }
+  const GeneticResult found = minimise_genetic(static_cast<int>(n), cost, o, seeds, hooks, saved ? &*saved : nullptr);
+  run.simulations += problem.simulations();
+  run.failed += problem.failed_simulations();
+  std::vector<Point> out = {full(found.state.best.point)};
+  for (const Individual& i : found.state.archive) out.push_back(full(i.point));
+  return out;
+}
+
+// Alternates fit and error model until the weights settle.
+LeastSquaresResult refine(Tuning& run, FitProblem& problem, Point x, ErrorModel& error, double held, int rounds, double from, double to) {
+  LeastSquaresResult r;
+  for (int round = 0; round < rounds; ++round) {
+    error = learn_error_model(problem, x);
+    apply_error_model(problem, error, x);
+    if (held > 0) hold_out(problem, held);
+    const double a = from + (to - from) * round / rounds, b = from + (to - from) * (round + 1) / rounds;
+    r = local(run, problem, x, 12, false, "refine", a, b);
+    x = r.point;
+    if (run.stopped()) break;
+  }
+  return r;
+}
+
+}  // namespace
+
+std::vector<std::string> tuned_by(const Table& table) {
+  std::vector<std::string> out;
+  for (const std::string& line : table.comments) {
+    const std::size_t at = line.find(hash_key);
+    if (at == std::string::npos) continue;
+    std::istringstream words(line.substr(at + std::string(hash_key).size()));
+    std::string hash;
+    words >> hash;
+    out.push_back(hash);
+  }
+  return out;
+}
+
+TuneResult tune(const std::vector<Log>& logs, const Table& nominal, const RigFile& rig, const TuneOptions& options) {
+  Tuning run{options, Progress("tune", {.quiet = options.quiet}), {}, {}, nominal, {}, {}, {}, 0, 0, {}};
+  TuneResult out;
+
+  // 1. What is fitted to what.
+  for (const Log& log : logs) run.data.push_back(prepare(log, rig));
+  for (const LogData& d : run.data) run.logs.push_back(&d);
+  add_effect_rows(run.table, options.effects);
+  run.table = apply_rig_facts(run.table, rig);
+  run.base = candidate_of(run.table);
+  run.shared = shared_values(run.table);
+  for (std::size_t l = 0; l < run.data.size(); ++l)
+    for (FreeValue& f : nuisance_values(run.data[l], static_cast<int>(l), run.base, tuning_null_limit)) run.nuisances.push_back(std::move(f));
+  FitProblem problem(run.logs, run.base, run.all(), run.simulate_options());
+  Point x = problem.start();
+
+  // 2. Sensitivities at nominal: each row driven to its bounds, and what the data cannot tell apart is frozen.
+  first_whitening(problem, x);
+  Evaluation at_nominal = problem.evaluate(std::span(&x, 1)).front();
+  if (!at_nominal.ok) throw InputError({nominal.path}, "the simulation fails at the table's nominal values", "check the table against the rig's data sheet");
+  const std::size_t n_shared = run.shared.size();
+  std::vector<Point> extremes;
+  for (std::size_t j = 0; j < n_shared; ++j)
+    for (double end : {0.0, 1.0}) {
+      Point p = x;
+      p[j] = end;
+      extremes.push_back(p);
+    }
+  std::vector<std::array<double, 2>> effect(n_shared, {std::nan(""), std::nan("")});
+  for (std::size_t i = 0; i < extremes.size(); ++i) {
+    const Evaluation e = problem.evaluate(std::span(&extremes[i], 1)).front();
+    if (e.ok) effect[i / 2][i % 2] = (e.residual - at_nominal.residual).head(problem.data_rows()).norm();
+    run.progress.update(0.05 * static_cast<double>(i) / static_cast<double>(extremes.size()), problem.simulations());
+  }
+  Eigen::MatrixXd jacobian;
+  std::vector<FreeValue> all_shared = run.shared;
+  std::vector<std::string> verdict(n_shared, "bounded");
+  std::vector<std::vector<std::string>> confounded(n_shared);
+  if (problem.jacobian(x, at_nominal.residual, jacobian)) {
+    std::vector<char> candidates(static_cast<std::size_t>(problem.n()), 0);
+    std::fill(candidates.begin(), candidates.begin() + static_cast<long>(n_shared), 1);
+    const Identifiability id = identify(jacobian.topRows(problem.data_rows()), candidates);
+    std::vector<FreeValue> kept;
+    for (std::size_t j = 0; j < n_shared; ++j) {
+      // Far from nominal a row may matter that does not here: only what moves nothing anywhere is frozen as flat.
+      const bool matters = effect[j][0] > 2.0 || effect[j][1] > 2.0 || std::isnan(effect[j][0]) || std::isnan(effect[j][1]);
+      if (id.verdict[j] == "flat" && !matters) verdict[j] = "flat";
+      if (id.verdict[j] == "confounded") {
+        verdict[j] = "confounded";
+        for (int k : id.confounded_with[j]) confounded[j].push_back(problem.free()[static_cast<std::size_t>(k)].name);
+      }
+      if (verdict[j] == "bounded") kept.push_back(run.shared[j]);
+    }
+    run.shared = kept;
+  }
+  run.simulations += problem.simulations();
+  run.failed += problem.failed_simulations();
+
+  // 3. Breadth: genetic search, then the local stage from the best distinct points and from nominal.
+  FitProblem fit(run.logs, run.base, run.all(), run.simulate_options());
+  x = fit.start();
+  first_whitening(fit, x);
+  std::vector<Point> starts = {x};
+  if (options.generations > 0 && !run.stopped())
+    for (Point& p : breadth(run, x)) starts.push_back(std::move(p));
+  hold_out(fit, options.heldout);
+  std::vector<LeastSquaresResult> ends;
+  for (std::size_t s = 0; s < starts.size() && !(run.stopped() && s > 0); ++s) {
+    const double a = 0.35 + 0.35 * static_cast<double>(s) / static_cast<double>(starts.size());
+    ends.push_back(local(run, fit, starts[s], 15, true, "start", a, a + 0.35 / static_cast<double>(starts.size())));
+    out.starts.push_back(ends.back().cost);
+  }
+  const std::size_t best = static_cast<std::size_t>(std::min_element(out.starts.begin(), out.starts.end()) - out.starts.begin());
+  for (double c : out.starts) out.reached_best += c <= 1.05 * out.starts[best];
+  x = ends[best].point;
+
+  // 4. Weights from the model's own error, alternating with the fit; held-out part still held out.
+  LeastSquaresResult end = ends[best];
+  if (!run.stopped()) end = refine(run, fit, x, out.error, options.heldout, 2, 0.7, 0.85);
+  x = end.point;
+  const std::vector<Trajectory> heldout_run = fit.trajectories(x);
+
+  // 5. Final fit on everything.
+  if (!run.stopped()) end = refine(run, fit, x, out.error, 0.0, 2, 0.85, 1.0);
+  x = end.point;
+  out.error = learn_error_model(fit, x);
+  apply_error_model(fit, out.error, x);
+  const Evaluation final_point = fit.evaluate(std::span(&x, 1)).front();
+  if (fit.jacobian(x, final_point.residual, jacobian)) end.jacobian = jacobian;
+  const std::vector<Trajectory> final_run = fit.trajectories(x);
+
+  // 6. Uncertainty, and the tuned table.
+  std::vector<char> kept(static_cast<std::size_t>(fit.n()), 1);
+  for (int j = 0; j < fit.n(); ++j) kept[static_cast<std::size_t>(j)] = x[static_cast<std::size_t>(j)] > 1e-6 && x[static_cast<std::size_t>(j)] < 1 - 1e-6;
+  const Eigen::MatrixXd covariance = covariance_of(end.jacobian, kept);
+  out.table = run.table;
+  out.table.has_std_error = true;
+  const auto derivative = [](const FreeValue& f, double u) {
+    return f.log_scale ? f.from_unit(u) * std::log(f.upper / f.lower) : f.upper - f.lower;
+  };
+  for (std::size_t i = 0; i < run.table.rows.size(); ++i) {
+    Row& row = out.table.rows[i];
+    const auto free = std::find_if(fit.free().begin(), fit.free().end(), [&](const FreeValue& f) { return f.log < 0 && f.name == row.name; });
+    const auto listed = std::find_if(all_shared.begin(), all_shared.end(), [&](const FreeValue& f) { return f.name == row.name; });
+    if (listed == all_shared.end()) continue;
+    ParameterResult p;
+    p.id = row.id;
+    p.name = row.name;
+    p.unit = row.unit;
+    p.nominal = p.estimate = row.nominal;
+    p.std_error = std::nan("");
+    const auto l = static_cast<std::size_t>(listed - all_shared.begin());
+    p.effect_at_lower = effect[l][0];
+    p.effect_at_upper = effect[l][1];
+    p.confounded_with = confounded[l];
+    p.verdict = verdict[l];
+    if (free != fit.free().end()) {
+      const auto j = static_cast<std::size_t>(free - fit.free().begin());
+      p.estimate = free->from_unit(x[j]);
+      const double se = std::sqrt(std::max(0.0, covariance(static_cast<long>(j), static_cast<long>(j)))) * derivative(*free, x[j]);
+      if (!kept[j]) {
+        p.verdict = "at_bound";
+      } else {
+        p.std_error = se;
+        const double u_se = std::sqrt(covariance(static_cast<long>(j), static_cast<long>(j)));
+        if (u_se > 0.25) p.verdict = "flat";
+        else if (x[j] - 2 * u_se < 0 || x[j] + 2 * u_se > 1) p.verdict = "one_sided";
+        row.std_error = se;
+      }
+      row.nominal = p.estimate;
+      row.source = "tuned; before: " + run.table.rows[i].source;
+    }
+    out.parameters.push_back(p);
+  }
+
+  // 7. What is left, log by log and pooled.
+  std::vector<ChannelResult> pooled;
+  std::vector<double> nulls, airs;
+  for (std::size_t l = 0; l < run.data.size(); ++l) {
+    const ParameterVector v = fit.candidate(x, static_cast<int>(l));
+    nulls.push_back(v[row::servovalve_null]);
+    airs.push_back(v[row::air_fraction]);
+    LogResult lr{run.data[l].path, {}, nulls.back()};
+    for (std::size_t c = 0; c < run.data[l].channels.size(); ++c) {
+      const FitChannel& channel = run.data[l].channels[c];
+      const auto n = channel.measured.size();
+      const auto from = static_cast<std::size_t>((1.0 - options.heldout) * static_cast<double>(n));
+      ChannelResult r{channel.signal, logs[l].channels[index(channel.signal)].unit, 0, channel.noise, 0};
+      if (final_run[l].ok) r.rms = rms_of(fit.raw_residual(static_cast<int>(l), static_cast<int>(c), final_run[l]), 0, n);
+      if (heldout_run[l].ok) r.heldout_rms = rms_of(fit.raw_residual(static_cast<int>(l), static_cast<int>(c), heldout_run[l]), from, n);
+      lr.channels.push_back(r);
+      auto it = std::find_if(pooled.begin(), pooled.end(), [&](const ChannelResult& p) { return p.signal == r.signal; });
+      if (it == pooled.end()) it = pooled.insert(pooled.end(), {r.signal, r.unit, 0, 0, 0});
+      it->rms += r.rms * r.rms;
+      it->noise_rms += r.noise_rms * r.noise_rms;
+      it->heldout_rms += r.heldout_rms * r.heldout_rms;
+    }
+    out.logs.push_back(std::move(lr));
+  }
+  for (ChannelResult& p : pooled) {
+    long n = 0;
+    for (const LogResult& l : out.logs)
+      for (const ChannelResult& c : l.channels) n += c.signal == p.signal;
+    for (double* v : {&p.rms, &p.noise_rms, &p.heldout_rms}) *v = std::sqrt(*v / static_cast<double>(n));
+  }
+  out.channels = std::move(pooled);
+  // Nulls and air belong to the logs; the table keeps their medians.
+  const auto median = [](std::vector<double> v) {
+    std::nth_element(v.begin(), v.begin() + static_cast<long>(v.size() / 2), v.end());
+    return v[v.size() / 2];
+  };
+  out.table[row::servovalve_null].nominal = median(nulls);
+  out.table[row::air_fraction].nominal = std::clamp(median(airs), out.table[row::air_fraction].lower, out.table[row::air_fraction].upper);
+  out.table.comments = nominal.comments;
+  for (const std::string& line : to_comments(out.error)) out.table.comments.push_back(line);
+  for (const LogData& d : run.data)
+    out.table.comments.push_back(fmt::format("{} {} {}", hash_key, d.sha256, std::filesystem::path(d.path).filename().string()));
+  out.notes = run.notes;
+  out.notes.push_back("local stage: " + end.stopped);
+  out.simulations = run.simulations + fit.simulations();
+  out.failed_simulations = run.failed + fit.failed_simulations();
+  out.interrupted = run.stopped();
+  return out;
+}
+
+}  // namespace servodx
