@@ -86,11 +86,9 @@ Eigen::VectorXd difference(const Brood& brood, int slot, bool turned, Child& chi
 
 Eigen::VectorXd ensemble(const Brood& brood, Random& random) {
   const auto& population = brood.island->population;
-  const int half = static_cast<int>(population.size()) / 2;
-  const double scale = std::exp(0.4 * random.normal()) / std::sqrt(static_cast<double>(half));
+  const double scale = std::exp(0.4 * random.normal()) / std::sqrt(static_cast<double>(population.size()));
   Eigen::VectorXd x = brood.centre;
-  for (int k = 0; k < half; ++k)
-    x += (scale * random.normal()) * (vector(population[brood.by_cost[k]].point) - brood.mean);
+  for (const Individual& one : population) x += (scale * random.normal()) * (vector(one.point) - brood.mean);
   return x;
 }
 

@@ -1,13 +1,15 @@
 // How one child is made from an island. Five variations, shared out by how often each has won lately (never below a
 // floor):
-//   0 crossover            simulated binary crossover with a tournament winner, coordinate by coordinate, then
-//   polynomial mutation 1 crossover_turned     the same along the principal axes of the population, for costs whose
-//   valleys lie across the axes 2 difference           parent + F (one of the best - parent) + F (a - b), mixed into
-//   the parent by coordinate at a learnt rate 3 difference_turned    the same along the principal axes 4 ensemble a
-//   draw about the centre of the better half, spread by its own members (rotation needs no axes)
+// - 0, crossover: simulated binary crossover with a tournament winner, by coordinate, then polynomial mutation
+// - 1, turned crossover: the same along the principal axes of the population, for valleys that lie across the axes
+// - 2, difference: parent + F (one of the best - parent + a - b), mixed into the parent by coordinate at a learnt rate
+// - 3, turned difference: the same along the principal axes
+// - 4, ensemble: a draw about the centre of the better half, spread as all members are (rotation needs no axes)
+//
 // Each child competes with the parent whose slot it was made for, which keeps diversity; points outside the box are
-// reflected into it. Sources: Deb and Agrawal (1995) SBX; Deb and Goyal (1996) polynomial mutation; Tanabe and Fukunaga
-// (2013) success-history memory; Guo and Yang (2015) eigenvector crossover; Akimoto et al. (2009) REX.
+// reflected into it.
+// Sources: Deb and Agrawal (1995), SBX; Deb and Goyal (1996), polynomial mutation; Tanabe and Fukunaga (2013),
+// success-history memory; Guo and Yang (2015), eigenvector crossover; Akimoto et al. (2009), REX.
 #pragma once
 #include <Eigen/Dense>
 

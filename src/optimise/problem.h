@@ -1,18 +1,18 @@
 // What an optimiser sees: a unit cube and numbers. No hydraulics here.
 #pragma once
+#include <Eigen/Dense>
 #include <cstdint>
 #include <functional>
 #include <span>
 #include <string>
 #include <vector>
 
-#include <Eigen/Dense>
-
 namespace servodx {
 
 using Point = std::vector<double>;  // in the unit cube, one entry a free parameter
 
-// Residuals of many points at once; the caller packs them into lanes and threads. A failed point has `ok` false and an empty residual.
+// Residuals of many points at once; the caller packs them into lanes and threads. A failed point has `ok` false and an
+// empty residual.
 struct Evaluation {
   bool ok = true;
   Eigen::VectorXd residual;  // whitened; 0.5*|residual|^2 is the misfit

@@ -1,10 +1,10 @@
 // Robust losses as a change of each residual: rho(e) = 0.5*t(e)^2, so that Gauss-Newton on t(e) has the exact gradient
-// of the robust cost and a Hessian that stays positive semidefinite. For small e every t(e) is e. `scale` is the
-// residual size (in noise standard deviations once whitened) from which a row begins to count less.
-//   soft_l1     t^2 = 2a^2 (sqrt(1 + (e/a)^2) - 1)      grows like |e|: for stray samples
-//   cauchy      t^2 = a^2 log(1 + (e/a)^2)              grows like log|e|: for gross outliers; makes false minima far
-//   from the data compressed  t = e / sqrt(1 + |e|/a), a = 3          for the first pass: keeps a bad start's large
-//   residuals from ruling the step
+// of the robust cost and a Hessian that stays positive semidefinite. For small e every t(e) is e. `scale`, a below, is
+// the residual size (in noise standard deviations once whitened) from which a row begins to count less.
+// - soft_l1: t^2 = 2a^2 (sqrt(1 + (e/a)^2) - 1). Grows like |e|: for stray samples.
+// - cauchy: t^2 = a^2 log(1 + (e/a)^2). Grows like log|e|: for gross outliers; makes false minima far from the data.
+// - compressed: t = e / sqrt(1 + |e|/a), a = 3. For the first pass: keeps a bad start's large residuals from ruling.
+//
 // Source: Triggs et al., Bundle adjustment (2000), sec. 4.3, and Ceres loss_function.h for the first two.
 #pragma once
 #include <cmath>
