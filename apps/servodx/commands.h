@@ -1,0 +1,16 @@
+// The subcommands. Each adds itself with its options; its callback does the work and sets the exit code.
+#pragma once
+
+namespace CLI {
+class App;
+}
+
+namespace servodx {
+
+void add_simulate_command(CLI::App& app);
+void add_tune_command(CLI::App& app, int& exit_code);
+void add_baseline_command(CLI::App& app, int& exit_code);
+void add_diagnose_command(CLI::App& app, int& exit_code);
+void add_list_command(CLI::App& app);
+
+}  // namespace servodx

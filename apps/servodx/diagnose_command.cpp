@@ -1,0 +1,85 @@
+// `servodx diagnose LOG...`: detect, classify, size. Each log alone.
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <memory>
+
+#include "base/error.h"
+#include "commands.h"
+#include "diagnose/diagnose.h"
+#include "invocation.h"
+#include "report/baseline_file.h"
+#include "report/text.h"
+
+namespace servodx {
+namespace {
+
+struct Options {
+  CommonOptions common;
+  std::vector<std::string> logs;
+  std::string params, baseline;
+  bool exit_code = false, pool = false;
+};
+
+int code_of(const Diagnosis& diagnosis) {
+  return diagnosis.verdict == "unknown" ? found_unknown : diagnosis.verdict == "fault" ? found_fault : ran;
+}
+
+int run(const Options& options) {
+  require_option(!options.pool, "--pool", "logs cannot be pooled yet", "leave it out: each log is judged alone");
+  Invocation invocation("diagnose", options.common);
+  auto inputs = options.logs;
+  inputs.insert(inputs.end(), {options.params, options.baseline});
+  invocation.check_files(inputs, {});
+  const RigFile rig = invocation.rig();
+  const Table tuned = invocation.tuned_table(options.params);
+  const report::BaselineFile file = report::read_baseline(options.baseline);
+  report::require_same_table(file.baseline, options.baseline, tuned.path, tuned.sha256);
+  std::vector<Log> logs;
+  for (const std::string& path : options.logs) logs.push_back(invocation.log(path, rig));
+  report::Header& header = invocation.header();
+  header.inputs.push_back({options.baseline, file.sha256});
+
+  const std::atomic<bool>& stop = stop_on_interrupt();
+  std::vector<Diagnosis> results;
+  std::string text;
+  int worst = ran;
+  for (const Log& log : logs) {
+    if (stop) break;
+    results.push_back(judge(assess(log, tuned, rig,
+                                   {.seed = options.common.seed,
+                                    .threads = options.common.threads,
+                                    .quiet = options.common.quiet,
+                                    .stop = &stop}),
+                            file.baseline));
+    const Diagnosis& d = results.back();
+    header.simulations += d.assessment.simulations;
+    header.failed_simulations += d.assessment.failed_simulations;
+    invocation.note(log.notes);
+    invocation.note(d.assessment.notes);
+    text += (text.empty() ? "" : "\n") + report::text_of(d, {.colour = colour_wanted(), .written_to = ""});
+    worst = std::max(worst, code_of(d));
+  }
+  if (stop)
+    header.notes.push_back(
+        "interrupted: the last verdict rests on what was found so far, further logs were not judged");
+  header.settings = {{"false_alarm", file.baseline.asked}};
+  invocation.finish(text, report::diagnose_json(results));
+  return stop ? interrupted : options.exit_code ? worst : ran;
+}
+
+}  // namespace
+
+void add_diagnose_command(CLI::App& app, int& exit_code) {
+  auto options = std::make_shared<Options>();
+  CLI::App* command = app.add_subcommand("diagnose", "Detect, name and size a fault; each log alone");
+  command->add_option("LOG", options->logs, "rig logs, CSV")->required();
+  command->add_option("--params", options->params, "tuned table")->required()->type_name("TUNED");
+  command->add_option("--baseline", options->baseline, "its baseline")->required()->type_name("BASE.json");
+  command->add_flag("--exit-code", options->exit_code,
+                    "end with 10 for a fault, 11 for unknown: the highest of the logs");
+  command->add_flag("--pool", options->pool, "the logs are of one valve in one state: judge them together");
+  add_common_options(*command, options->common);
+  command->callback([options, &exit_code] { exit_code = run(*options); });
+}
+
+}  // namespace servodx

@@ -1,0 +1,178 @@
+#include "invocation.h"
+
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <csignal>
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <stdexcept>
+
+#include "base/atomic_file.h"
+#include "base/error.h"
+
+namespace servodx {
+namespace fs = std::filesystem;
+namespace {
+
+std::atomic<bool> stop{false};
+static_assert(std::atomic<bool>::is_always_lock_free, "a signal handler may store it");
+
+void on_interrupt(int) {
+  stop.store(true);
+  std::signal(SIGINT, SIG_DFL);
+}
+
+// CLI11 would wrap a negative seed round.
+CLI::Validator whole_number() {
+  const auto check = [](const std::string& text) -> std::string {
+    const bool digits = !text.empty() && text.find_first_not_of("0123456789") == std::string::npos;
+    return digits ? "" : "'" + text + "' is not a whole number from 0 up";
+  };
+  return {check, "", "whole number"};
+}
+
+void print(const std::string& text) {
+  if (std::fwrite(text.data(), 1, text.size(), stdout) != text.size() || std::fflush(stdout) != 0)
+    throw std::runtime_error("standard output cannot be written");
+}
+
+void check_output(const std::string& path, const std::vector<std::string>& inputs) {
+  std::error_code ignored;
+  const fs::path folder = fs::path(path).has_parent_path() ? fs::path(path).parent_path() : fs::path(".");
+  if (!fs::is_directory(folder, ignored))
+    throw InputError({path, 0, ""}, "cannot be written: there is no folder '" + folder.string() + "'",
+                     "make the folder or name another");
+  if (fs::is_directory(path, ignored))
+    throw InputError({path, 0, ""}, "cannot be written: it is a folder", "name a file");
+  if (!fs::exists(path, ignored)) {
+    if (::access(folder.c_str(), W_OK) != 0)
+      throw InputError({path, 0, ""}, "cannot be written: the folder may not be written", "name another folder");
+    return;
+  }
+  if (::access(path.c_str(), W_OK) != 0)
+    throw InputError({path, 0, ""}, "cannot be written: the file is write-protected", "name another file");
+  for (const std::string& input : inputs)
+    if (fs::is_regular_file(path, ignored) && fs::equivalent(path, input, ignored))
+      throw InputError({path, 0, ""}, "is an input of this call and would be overwritten", "name another output");
+}
+
+}  // namespace
+
+void add_common_options(CLI::App& command, CommonOptions& options) {
+  command.add_option("--json", options.json, "write the result as JSON to FILE; '-': to standard output, without text")
+      ->type_name("FILE")
+      ->group("Common");
+  command.add_option("--rig", options.rig, "rig file: data-sheet facts and names of columns")
+      ->type_name("RIG.toml")
+      ->group("Common");
+  command.add_option("--threads", options.threads, "threads to use, 0: all; the result does not depend on it")
+      ->check(whole_number())
+      ->type_name("N")
+      ->group("Common")
+      ->capture_default_str();
+  command.add_option("--seed", options.seed, "of everything random")
+      ->check(whole_number())
+      ->type_name("S")
+      ->group("Common")
+      ->capture_default_str();
+  command.add_flag("--quiet", options.quiet, "no progress and no notices")->group("Common");
+}
+
+void require_option(bool holds, const std::string& option, const std::string& rule, const std::string& mend) {
+  if (!holds) throw InputError({option, 0, ""}, rule, mend);
+}
+
+const std::atomic<bool>& stop_on_interrupt() {
+  std::signal(SIGINT, on_interrupt);
+  return stop;
+}
+
+bool colour_wanted() { return ::isatty(STDOUT_FILENO) == 1 && !std::getenv("NO_COLOR"); }
+
+Invocation::Invocation(std::string command, CommonOptions options) : options_(std::move(options)) {
+  header_.version = SERVODX_VERSION;
+  header_.command = std::move(command);
+  header_.seed = options_.seed;
+}
+
+void Invocation::check_files(const std::vector<std::string>& inputs, const std::vector<std::string>& outputs) const {
+  std::vector<std::string> all_inputs = inputs;
+  if (!options_.rig.empty()) all_inputs.push_back(options_.rig);
+  std::vector<std::string> all_outputs = outputs;
+  if (options_.json != "-") all_outputs.push_back(options_.json);
+  std::vector<fs::path> seen;
+  for (const std::string& output : all_outputs) {
+    if (output.empty()) continue;
+    check_output(output, all_inputs);
+    std::error_code ignored;
+    const fs::path resolved = fs::weakly_canonical(fs::absolute(output), ignored);
+    const bool special = fs::exists(resolved, ignored) && !fs::is_regular_file(resolved, ignored);  // /dev/null
+    for (const fs::path& other : seen)
+      if (!special && other == resolved)
+        throw InputError({output, 0, ""}, "is named for two outputs", "give each output its own file");
+    seen.push_back(resolved);
+  }
+}
+
+RigFile Invocation::rig() {
+  if (options_.rig.empty()) return {};
+  RigFile rig = read_rig_file(options_.rig);
+  header_.inputs.push_back({rig.path, rig.sha256});
+  return rig;
+}
+
+Log Invocation::log(const std::string& path, const RigFile& rig) {
+  Log log = read_log(path, rig);
+  header_.inputs.push_back({log.path, log.sha256});
+  return log;
+}
+
+std::vector<Log> Invocation::logs(const std::vector<std::string>& paths, const RigFile& rig) {
+  std::vector<Log> all;
+  for (const std::string& path : paths) {
+    all.push_back(log(path, rig));
+    for (std::size_t i = 0; i + 1 < all.size(); ++i)
+      if (all[i].sha256 == all.back().sha256)
+        throw InputError({path, 0, ""}, "is the same log as " + all[i].path, "name each log once");
+  }
+  return all;
+}
+
+Table Invocation::table(const std::string& path) {
+  Table table = read_table(path);
+  header_.inputs.push_back({table.path, table.sha256});
+  return table;
+}
+
+Table Invocation::tuned_table(const std::string& path) {
+  Table tuned = table(path);
+  if (!tuned.has_std_error)
+    throw InputError({path, 0, "std_error"}, "the table is not tuned: it has no such column",
+                     "tune it with 'servodx tune LOG... --params " + path + " -o TUNED.csv' and give TUNED.csv");
+  return tuned;
+}
+
+void Invocation::note(const std::vector<std::string>& notices) {
+  for (const std::string& notice : notices)
+    if (std::find(header_.notes.begin(), header_.notes.end(), notice) == header_.notes.end())
+      header_.notes.push_back(notice);
+}
+
+std::string Invocation::result(const report::Json& body) {
+  header_.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+  return report::dump(header_, body);
+}
+
+void Invocation::finish(const std::string& text, const report::Json& body) {
+  if (options_.json == "-") return print(result(body));
+  if (!options_.json.empty()) write_file(options_.json, result(body));
+  std::string all = text;
+  if (!options_.quiet)
+    for (const std::string& note : header_.notes) all += "note: " + note + "\n";
+  print(all);
+}
+
+}  // namespace servodx

@@ -1,0 +1,70 @@
+// One call of the program: the options every command has, the files it read, and how it ends.
+#pragma once
+#include <atomic>
+#include <chrono>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "parameters/table.h"
+#include "report/json.h"
+#include "signals/log.h"
+#include "signals/rig_file.h"
+
+namespace CLI {
+class App;
+}
+
+namespace servodx {
+
+enum ExitCode { ran = 0, failed_inside = 1, refused = 2, found_fault = 10, found_unknown = 11, interrupted = 130 };
+
+struct CommonOptions {
+  std::string json;  // result file; "-": standard output, and no text there; empty: none
+  std::string rig;   // rig.toml; empty: none
+  int threads = 0;   // 0: all
+  std::uint64_t seed = 1;
+  bool quiet = false;
+};
+void add_common_options(CLI::App& command, CommonOptions& options);
+
+// Throws InputError naming the option, unless `holds`.
+void require_option(bool holds, const std::string& option, const std::string& rule, const std::string& mend);
+
+// Set by the first SIGINT from now on; a second one ends the program at once.
+const std::atomic<bool>& stop_on_interrupt();
+
+class Invocation {
+ public:
+  Invocation(std::string command, CommonOptions options);
+
+  // Before any work: refuses outputs whose folder is missing or closed, that are a folder, an input, or the same file
+  // twice. The --json file is among the outputs. Empty names are passed over.
+  void check_files(const std::vector<std::string>& inputs, const std::vector<std::string>& outputs) const;
+
+  // Readers that note what they read among the result's inputs.
+  RigFile rig();
+  Log log(const std::string& path, const RigFile& rig);
+  std::vector<Log> logs(const std::vector<std::string>& paths, const RigFile& rig);  // refuses the same log twice
+  Table table(const std::string& path);                                              // as the file says
+  Table tuned_table(const std::string& path);                                        // refuses one that is not tuned
+
+  // Notices for the end of the result; one that is there already is not repeated.
+  void note(const std::vector<std::string>& notices);
+  report::Header& header() { return header_; }
+  const CommonOptions& options() const { return options_; }
+
+  // Header and body as a result file's bytes; the time so far is filled in.
+  std::string result(const report::Json& body);
+  // The result to --json and the text to standard output, each where it is asked for; then the notes.
+  void finish(const std::string& text, const report::Json& body);
+
+ private:
+  CommonOptions options_;
+  report::Header header_;
+  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+};
+
+bool colour_wanted();  // standard output is a terminal and NO_COLOR is not set
+
+}  // namespace servodx

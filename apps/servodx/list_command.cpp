@@ -1,0 +1,206 @@
+// `servodx list KIND`: what there is, from the registries that own it.
+#include <CLI/CLI.hpp>
+#include <array>
+#include <memory>
+
+#include "base/error.h"
+#include "commands.h"
+#include "effects/registry.h"
+#include "faults/registry.h"
+#include "fit/nominal.h"
+#include "invocation.h"
+#include "model/state.h"
+#include "report/columns.h"
+#include "report/handy.h"
+#include "rig/excitations.h"
+#include "simulate/simulate.h"
+
+namespace servodx {
+namespace {
+
+using report::Columns;
+using report::Json;
+
+struct Options {
+  CommonOptions common;
+  std::string kind, params;
+};
+
+struct Listing {
+  std::string text;
+  Json items = Json::array();
+};
+
+Listing faults(const Options&, Invocation&) {
+  Listing out;
+  Columns table("lll");
+  table.row({"fault", "severity", "meaning"});
+  for (const Fault* fault : fault_list()) {
+    table.row({std::string(fault->name), std::string(fault->unit), std::string(fault->meaning)});
+    out.items.push_back({{"name", fault->name},
+                         {"unit", fault->unit},
+                         {"meaning", fault->meaning},
+                         {"healthy", fault->healthy},
+                         {"least", fault->least},
+                         {"worst", fault->worst},
+                         {"separating_test", fault->test},
+                         {"action", fault->action}});
+  }
+  out.text = table.text();
+  return out;
+}
+
+Listing effects(const Options&, Invocation&) {
+  Listing out;
+  Columns table("llll");
+  table.row({"effect", "where", "rows", "meaning"});
+  for (const EffectInfo& effect : effect_list()) {
+    std::vector<std::string> names;
+    Json rows = Json::array();
+    for (const EffectParameter& p : effect.parameters) {
+      names.emplace_back(p.name);
+      rows.push_back({{"name", p.name},
+                      {"unit", p.unit},
+                      {"off", p.off},
+                      {"lower", p.lower},
+                      {"upper", p.upper},
+                      {"start", p.start},
+                      {"meaning", p.meaning}});
+    }
+    table.row({effect.name, effect.place, report::join(names), effect.meaning});
+    out.items.push_back(
+        {{"name", effect.name}, {"where", effect.place}, {"meaning", effect.meaning}, {"parameters", rows}});
+  }
+  out.text = table.text();
+  return out;
+}
+
+// The rows of a table with the rig's facts, each with the source of its value; without a table, what the rows mean.
+Listing params(const Options& options, Invocation& invocation) {
+  require_option(!options.params.empty() || options.common.rig.empty(), "--rig", "the facts need a table to apply to",
+                 "add --params P");
+  Listing out;
+  if (options.params.empty()) {
+    Columns table("rllll");
+    table.row({"id", "name", "group", "unit", "meaning"});
+    for (const ParameterInfo& p : parameter_list) {
+      table.row({std::to_string(p.id), std::string(p.name), std::string(name_of(p.group)), std::string(p.unit),
+                 std::string(p.meaning)});
+      out.items.push_back(
+          {{"id", p.id}, {"name", p.name}, {"group", name_of(p.group)}, {"unit", p.unit}, {"meaning", p.meaning}});
+    }
+    out.text = table.text();
+    return out;
+  }
+  const RigFile rig = invocation.rig();
+  const Table rows = apply_rig_facts(invocation.table(options.params), rig);
+  if (rows.has_std_error && !rig.path.empty())
+    invocation.header().notes.push_back(options.params + " is tuned: its values stand, the facts are not applied");
+  Columns table("rlrrrlll");
+  table.row({"id", "name", "nominal", "lower", "upper", "unit", "free", "source"});
+  for (const Row& row : rows.rows) {
+    table.row({row.id > 0 ? std::to_string(row.id) : "", row.name, report::digits(row.nominal, 5),
+               report::digits(row.lower, 4), report::digits(row.upper, 4), row.unit, row.estimate ? "yes" : "no",
+               row.source});
+    out.items.push_back({{"id", row.id > 0 ? Json(row.id) : Json(nullptr)},
+                         {"name", row.name},
+                         {"group", row.group},
+                         {"nominal", row.nominal},
+                         {"lower", row.lower},
+                         {"upper", row.upper},
+                         {"scale", row.log_scale ? "log10" : "lin"},
+                         {"estimate", row.estimate},
+                         {"unit", row.unit},
+                         {"std_error", row.std_error ? Json(*row.std_error) : Json(nullptr)},
+                         {"source", row.source}});
+  }
+  out.text = table.text();
+  return out;
+}
+
+Listing models(const Options&, Invocation&) {
+  Listing out;
+  constexpr const char* meaning =
+      "two-stage flapper-nozzle valve with feedback wire, lines and actuator; what logs are fitted with";
+  Columns table("lrrll");
+  table.row({"model", "states", "rows", "kernel", "meaning"});
+  table.row(
+      {"identification", std::to_string(n_base_states), std::to_string(n_parameters), instruction_set(), meaning});
+  out.items.push_back({{"name", "identification"},
+                       {"states", n_base_states},
+                       {"rows", n_parameters},
+                       {"kernel", instruction_set()},
+                       {"meaning", meaning}});
+  out.text = table.text();
+  return out;
+}
+
+Listing signals(const Options&, Invocation&) {
+  Listing out;
+  Columns table("llll");
+  table.row({"signal", "inside", "accepted units", "meaning"});
+  for (const SignalInfo& signal : signal_list) {
+    table.row({std::string(signal.name), std::string(signal.si_unit), accepted_units(signal.signal),
+               std::string(signal.description)});
+    out.items.push_back({{"name", signal.name},
+                         {"si_unit", signal.si_unit},
+                         {"accepted_units", accepted_units(signal.signal)},
+                         {"simulated", simulated_index(signal.signal) >= 0},
+                         {"meaning", signal.description}});
+  }
+  out.text = table.text();
+  return out;
+}
+
+Listing excitations(const Options&, Invocation&) {
+  Listing out;
+  Columns table("ll");
+  table.row({"excitation", "meaning"});
+  for (const rig::ExcitationInfo& excitation : rig::excitations()) {
+    table.row({excitation.name, excitation.description});
+    out.items.push_back({{"name", excitation.name}, {"meaning", excitation.description}});
+  }
+  out.text = table.text();
+  return out;
+}
+
+struct Kind {
+  const char* name;
+  Listing (*make)(const Options&, Invocation&);
+};
+constexpr std::array<Kind, 6> kinds = {{{"faults", faults},
+                                        {"effects", effects},
+                                        {"params", params},
+                                        {"models", models},
+                                        {"signals", signals},
+                                        {"excitations", excitations}}};
+
+void run(const Options& options) {
+  std::vector<std::string> names;
+  for (const Kind& kind : kinds) {
+    names.emplace_back(kind.name);
+    if (options.kind != kind.name) continue;
+    Invocation invocation("list", options.common);
+    invocation.check_files({options.params}, {});
+    const Listing listing = kind.make(options, invocation);
+    invocation.header().settings = {{"kind", options.kind}};
+    invocation.finish(listing.text, {{options.kind, listing.items}});
+    return;
+  }
+  throw InputError({}, "there is no list of '" + options.kind + "'", "use one of " + report::join(names));
+}
+
+}  // namespace
+
+void add_list_command(CLI::App& app) {
+  auto options = std::make_shared<Options>();
+  CLI::App* command =
+      app.add_subcommand("list", "What there is: faults, effects, params, models, signals, excitations");
+  command->add_option("KIND", options->kind, "faults, effects, params, models, signals or excitations")->required();
+  command->add_option("--params", options->params, "with 'params': the values of this table and where they come from")
+      ->type_name("P");
+  add_common_options(*command, options->common);
+  command->callback([options] { run(*options); });
+}
+
+}  // namespace servodx

@@ -1,0 +1,47 @@
+// servodx: fault diagnosis of electrohydraulic servovalves from rig logs.
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <exception>
+
+#include "base/error.h"
+#include "commands.h"
+#include "invocation.h"
+#include "rig_command.h"
+
+namespace {
+
+// "servodx tune: --params is required; 'servodx tune --help' lists the options"
+std::string refusal(const CLI::App* app, const CLI::Error& error) {
+  std::string call = app->get_name();
+  for (const CLI::App* command : app->get_subcommands()) call += " " + command->get_name();
+  return call + ": " + error.what() + "; '" + call + " --help' lists what there is\n";
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  using namespace servodx;
+  CLI::App app("Fault diagnosis of electrohydraulic servovalves from rig logs", "servodx");
+  app.set_version_flag("--version", "servodx " SERVODX_VERSION);
+  app.require_subcommand(1);
+  app.failure_message(refusal);
+  int exit_code = ran;
+  add_simulate_command(app);
+  add_tune_command(app, exit_code);
+  add_baseline_command(app, exit_code);
+  add_diagnose_command(app, exit_code);
+  add_list_command(app);
+  add_rig_command(app);
+  try {
+    app.parse(argc, argv);
+    return exit_code;
+  } catch (const CLI::Error& call) {  // --help and --version come this way too
+    return app.exit(call) == 0 ? ran : refused;
+  } catch (const InputError& input) {
+    std::fprintf(stderr, "servodx: %s\n", input.what());
+    return refused;
+  } catch (const std::exception& failure) {
+    std::fprintf(stderr, "servodx: failed inside: %s\n", failure.what());
+    return failed_inside;
+  }
+}

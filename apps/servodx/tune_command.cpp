@@ -1,0 +1,97 @@
+// `servodx tune LOG...`: nominal parameters from fault-free logs, pooled.
+#include <CLI/CLI.hpp>
+#include <filesystem>
+#include <memory>
+
+#include "commands.h"
+#include "effects/registry.h"
+#include "fit/tune.h"
+#include "invocation.h"
+#include "report/columns.h"
+#include "report/text.h"
+
+namespace servodx {
+namespace {
+
+struct Options {
+  CommonOptions common;
+  std::vector<std::string> logs;
+  std::string params, output;
+  std::string effects = report::join(TuneOptions{}.effects, ",");  // or "none"
+  TuneOptions tune;
+};
+
+std::vector<std::string> effects_of(const std::string& list) {
+  std::vector<std::string> names;
+  if (list != "none") names = CLI::detail::split(list, ',');
+  std::vector<std::string> known = {"none"};
+  for (const EffectInfo& effect : effect_list()) known.push_back(effect.name);
+  for (const std::string& name : names)
+    require_option(std::find(known.begin() + 1, known.end(), name) != known.end(), "--effects",
+                   "unknown effect '" + name + "'", "use " + report::join(known) + ", with commas between");
+  return names;
+}
+
+int run(const Options& options) {
+  TuneOptions tune_options = options.tune;
+  tune_options.effects = effects_of(options.effects);
+  require_option(!tune_options.resume || !tune_options.checkpoint.empty(), "--resume",
+                 "there is nothing to resume from", "add --checkpoint FILE");
+  require_option(!tune_options.resume || std::filesystem::exists(tune_options.checkpoint), "--checkpoint",
+                 "'" + tune_options.checkpoint + "' is not there to resume from", "leave out --resume to begin");
+  require_option(tune_options.population >= 24, "--population", "must be at least 24", "four islands of six each");
+  require_option(tune_options.generations >= 0, "--generations", "must not be negative",
+                 "0 leaves the genetic search out");
+  tune_options.seed = options.common.seed;
+  tune_options.threads = options.common.threads;
+  tune_options.quiet = options.common.quiet;
+
+  Invocation invocation("tune", options.common);
+  auto inputs = options.logs;
+  inputs.push_back(options.params);
+  invocation.check_files(inputs, {options.output, tune_options.checkpoint});
+  const RigFile rig = invocation.rig();
+  const Table nominal = invocation.table(options.params);  // tune() applies the facts, effects' rows included
+  const std::vector<Log> logs = invocation.logs(options.logs, rig);
+
+  tune_options.stop = &stop_on_interrupt();
+  const TuneResult result = tune(logs, nominal, rig, tune_options);
+  write_table(options.output, result.table);
+
+  report::Header& header = invocation.header();
+  header.simulations = result.simulations;
+  header.failed_simulations = result.failed_simulations;
+  for (const Log& log : logs) invocation.note(log.notes);
+  invocation.note(result.notes);
+  header.settings = {{"population", tune_options.population},
+                     {"generations", tune_options.generations},
+                     {"heldout", tune_options.heldout},
+                     {"effects", tune_options.effects}};
+  invocation.finish(report::text_of(result, {.colour = colour_wanted(), .written_to = options.output}),
+                    report::tune_json(result));
+  return result.interrupted ? interrupted : ran;
+}
+
+}  // namespace
+
+void add_tune_command(CLI::App& app, int& exit_code) {
+  auto options = std::make_shared<Options>();
+  TuneOptions& tune = options->tune;
+  CLI::App* command = app.add_subcommand("tune", "Nominal parameters from fault-free logs, pooled");
+  command->add_option("LOG", options->logs, "fault-free rig logs, CSV")->required();
+  command->add_option("--params", options->params, "parameter table to begin from, CSV")->required()->type_name("P");
+  command->add_option("-o,--output", options->output, "the tuned table")->required()->type_name("TUNED.csv");
+  command->add_option("--population", tune.population, "of the genetic search")->type_name("N")->capture_default_str();
+  command->add_option("--generations", tune.generations, "of the genetic search")
+      ->type_name("N")
+      ->capture_default_str();
+  command->add_option("--effects", options->effects, "effects freed beside the table's rows, or 'none'")
+      ->type_name("A,B")
+      ->capture_default_str();
+  command->add_option("--checkpoint", tune.checkpoint, "save the search to FILE every generation")->type_name("FILE");
+  command->add_flag("--resume", tune.resume, "go on from the checkpoint");
+  add_common_options(*command, options->common);
+  command->callback([options, &exit_code] { exit_code = run(*options); });
+}
+
+}  // namespace servodx

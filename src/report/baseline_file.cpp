@@ -1,0 +1,102 @@
+#include "report/baseline_file.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/csv.h"
+#include "base/error.h"
+#include "base/sha256.h"
+
+namespace servodx::report {
+namespace {
+
+constexpr const char* make_again = "make it again with 'servodx baseline'";
+
+class Reader {
+ public:
+  explicit Reader(const std::string& path) : path_(path) {}
+
+  Json parse(const std::string& text) const {
+    try {
+      return Json::parse(text);
+    } catch (const Json::parse_error& error) {
+      const auto end = text.begin() + static_cast<long>(std::min(error.byte, text.size()));
+      const long line = 1 + std::count(text.begin(), end, '\n');
+      throw InputError({path_, line, ""}, "is not JSON", make_again);
+    }
+  }
+  // The value under a dotted key; `inside` is the object that holds its last part.
+  const Json& at(const Json& inside, const std::string& key) const {
+    const std::string last = key.substr(key.rfind('.') + 1);
+    if (!inside.is_object()) refuse(key, "is not in an object");
+    const auto found = inside.find(last);
+    if (found == inside.end()) refuse(key, "is missing");
+    return *found;
+  }
+  double number(const Json& inside, const std::string& key, double lower, double upper) const {
+    const Json& value = at(inside, key);
+    if (!value.is_number()) refuse(key, "is not a number");
+    const auto x = value.get<double>();
+    if (!(x >= lower && x <= upper)) refuse(key, "is out of range: " + value.dump());
+    return x;
+  }
+  int count(const Json& inside, const std::string& key) const {
+    const Json& value = at(inside, key);
+    if (!value.is_number_integer()) refuse(key, "is not a whole number");
+    const auto n = value.get<long>();
+    if (n < 0 || n > 1'000'000'000) refuse(key, "is out of range: " + value.dump());
+    return static_cast<int>(n);
+  }
+  std::string text(const Json& inside, const std::string& key) const {
+    const Json& value = at(inside, key);
+    if (!value.is_string()) refuse(key, "is not a text");
+    return value.get<std::string>();
+  }
+  [[noreturn]] void refuse(const std::string& key, const std::string& rule) const {
+    throw InputError({path_, 0, key}, rule, make_again);
+  }
+
+ private:
+  std::string path_;
+};
+
+}  // namespace
+
+BaselineFile read_baseline(const std::string& path) {
+  const std::string bytes = read_file(path);
+  const Reader read(path);
+  const Json file = read.parse(bytes);
+  if (!file.is_object()) throw InputError({path, 0, ""}, "is no object", make_again);
+  if (const std::string command = read.text(file, "command"); command != "baseline")
+    throw InputError({path, 0, "command"}, "is the result of '" + command + "', not of 'baseline'",
+                     "name the file that 'servodx baseline -o' wrote");
+
+  constexpr double any = HUGE_VAL;
+  Baseline b;
+  b.threshold = read.number(file, "threshold", 0, any);
+  const Json& rate = read.at(file, "false_alarm");
+  b.asked = read.number(rate, "false_alarm.asked", 0, 1);
+  b.promised = read.number(rate, "false_alarm.promised", 0, 1);
+  b.promised_95 = read.number(rate, "false_alarm.promised_95", 0, 1);
+  b.logs = read.count(rate, "false_alarm.logs");
+  b.logs_needed = read.count(rate, "false_alarm.logs_needed");
+  b.statement = read.text(rate, "false_alarm.statement");
+  const Json& scores = read.at(file, "scores");
+  if (!scores.is_array() || scores.empty()) read.refuse("scores", "holds no scores");
+  for (const Json& s : scores)
+    b.scores.push_back({read.text(s, "scores.log"), read.text(s, "scores.sha256"),
+                        read.number(s, "scores.score", -any, any), read.number(s, "scores.adequacy", 0, any)});
+  b.adequacy_limit = read.number(file, "adequacy_limit", 0, any);
+  b.null_limit = read.number(file, "null_limit", 0, 1);
+  b.tuned_sha256 = read.text(file, "tuned_sha256");
+  return {std::move(b), sha256(bytes)};
+}
+
+void require_same_table(const Baseline& baseline, const std::string& baseline_path, const std::string& table_path,
+                        const std::string& table_sha256) {
+  if (baseline.tuned_sha256 == table_sha256) return;
+  throw InputError({baseline_path, 0, "tuned_sha256"}, "was made with another table than " + table_path,
+                   "give the table it was made with, or make a baseline with this one");
+}
+
+}  // namespace servodx::report

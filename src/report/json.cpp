@@ -1,0 +1,136 @@
+#include "report/json.h"
+
+#include <cmath>
+
+#include "report/handy.h"
+
+namespace servodx::report {
+namespace {
+
+Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
+
+template <class Results>
+Json array_of(const Results& results) {
+  Json array = Json::array();
+  for (const auto& result : results) array.push_back(to_json(result));
+  return array;
+}
+
+}  // namespace
+
+Json to_json(const Header& header) {
+  Json inputs = Json::array();
+  for (const InputFile& file : header.inputs) inputs.push_back({{"path", file.path}, {"sha256", file.sha256}});
+  return {{"tool", "servodx"},
+          {"version", header.version},
+          {"command", header.command},
+          {"seed", header.seed},
+          {"settings", header.settings},
+          {"inputs", inputs},
+          {"seconds", number(header.seconds)},
+          {"simulations", header.simulations},
+          {"failed_simulations", header.failed_simulations},
+          {"notes", header.notes}};
+}
+
+Json to_json(const ParameterResult& p) {
+  return {{"id", p.id > 0 ? Json(p.id) : Json(nullptr)},
+          {"name", p.name},
+          {"unit", p.unit},
+          {"nominal", number(p.nominal)},
+          {"estimate", number(p.estimate)},
+          {"std_error", number(p.std_error)},
+          {"verdict", p.verdict},
+          {"confounded_with", p.confounded_with},
+          {"effect_at_lower", number(p.effect_at_lower)},
+          {"effect_at_upper", number(p.effect_at_upper)}};
+}
+
+Json to_json(const ChannelResult& channel) {
+  const ChannelFigures f = figures(channel);
+  return {{"signal", info(channel.signal).name},
+          {"unit", f.unit},
+          {"rms", number(f.rms)},
+          {"noise_rms", number(f.noise_rms)},
+          {"heldout_rms", number(f.heldout_rms)}};
+}
+
+Json tune_json(const TuneResult& result) {
+  Json logs = Json::array();
+  for (const LogResult& log : result.logs)
+    logs.push_back({{"path", log.path}, {"null", number(log.null)}, {"channels", array_of(log.channels)}});
+  Json starts = Json::array();
+  for (double cost : result.starts) starts.push_back(number(cost));
+  return {{"channels", array_of(result.channels)}, {"parameters", array_of(result.parameters)}, {"starts", starts},
+          {"reached_best", result.reached_best},   {"interrupted", result.interrupted},         {"logs", logs}};
+}
+
+Json baseline_json(const Baseline& b) {
+  Json scores = Json::array();
+  for (const Baseline::Score& s : b.scores)
+    scores.push_back(
+        {{"log", s.log}, {"sha256", s.sha256}, {"score", number(s.score)}, {"adequacy", number(s.adequacy)}});
+  return {{"threshold", number(b.threshold)},
+          {"false_alarm",
+           {{"asked", number(b.asked)},
+            {"promised", number(b.promised)},
+            {"logs", b.logs},
+            {"statement", b.statement},
+            {"promised_95", number(b.promised_95)},
+            {"logs_needed", b.logs_needed}}},
+          {"scores", scores},
+          {"adequacy_limit", number(b.adequacy_limit)},
+          {"null_limit", number(b.null_limit)},
+          {"tuned_sha256", b.tuned_sha256}};
+}
+
+Json to_json(const HypothesisResult& h) {
+  return {{"name", h.name},
+          {"probability", number(h.probability)},
+          {"misfit", number(h.misfit)},
+          {"gain", number(h.gain)},
+          {"adequacy", number(h.adequacy)},
+          {"severity",
+           {{"value", number(h.severity)},
+            {"lower", number(h.severity_lower)},
+            {"upper", number(h.severity_upper)},
+            {"unit", h.unit}}},
+          {"stops", h.stops}};
+}
+
+Json to_json(const Diagnosis& d) {
+  Json probabilities = Json::object();
+  for (const auto& [label, p] : d.probabilities) probabilities[label] = number(p);
+  const bool sized = d.fault.has_value();
+  return {{"log", d.log},
+          {"verdict", d.verdict},
+          {"error", number(d.error)},
+          {"threshold", number(d.threshold)},
+          {"p_value", number(d.p_value)},
+          {"fault", d.fault ? Json(*d.fault) : Json(nullptr)},
+          {"probabilities", probabilities},
+          {"ambiguous_with", d.ambiguous_with},
+          {"separating_test", d.separating_test},
+          {"severity",
+           {{"value", sized ? number(d.severity.value) : Json(nullptr)},
+            {"lower", sized ? number(d.severity.lower) : Json(nullptr)},
+            {"upper", sized ? number(d.severity.upper) : Json(nullptr)},
+            {"unit", d.severity.unit}}},
+          {"onset_time", d.onset ? number(*d.onset) : Json(nullptr)},
+          {"parameters", array_of(d.assessment.parameters)},
+          {"action", d.action},
+          {"gross", d.assessment.gross},
+          {"null", number(d.assessment.null)},
+          {"hypotheses", array_of(d.assessment.hypotheses)},
+          {"notes", d.assessment.notes}};
+}
+
+Json diagnose_json(const std::vector<Diagnosis>& results) { return {{"results", array_of(results)}}; }
+
+std::string dump(const Header& header, const Json& body) {
+  Json all = to_json(header);
+  all.update(body);
+  return all.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+}  // namespace servodx::report

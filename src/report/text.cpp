@@ -1,0 +1,164 @@
+#include "report/text.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "report/columns.h"
+#include "report/handy.h"
+
+namespace servodx::report {
+namespace {
+
+// A held row has no error of its own; one on a bound was fitted and has none either.
+bool was_fitted(const ParameterResult& p) { return std::isfinite(p.std_error) || p.verdict == "at_bound"; }
+
+std::string plural(long n, const std::string& thing) { return fmt::format("{} {}{}", n, thing, n == 1 ? "" : "s"); }
+
+// "12 um +- 0.5" in the unit that suits the estimate.
+struct InHandyUnit {
+  explicit InHandyUnit(const ParameterResult& p)
+      : unit(handy_unit(p.unit, std::max(std::abs(p.nominal), std::abs(p.estimate)))) {}
+  std::string operator()(double value, int significant = 4) const { return digits(value * unit.factor, significant); }
+  HandyUnit unit;
+};
+
+// Changes in standard errors: what moved most comes first.
+double moved(const ParameterResult& p) {
+  const double change = std::abs(p.estimate - p.nominal);
+  return p.std_error > 0 ? change / p.std_error : change > 0 ? HUGE_VAL : 0.0;
+}
+
+std::string in_colour(const std::string& word, const std::string& verdict, bool colour) {
+  if (!colour) return word;
+  const char* code = verdict == "healthy" ? "32" : verdict == "fault" ? "31" : "33";
+  return fmt::format("\033[1;{}m{}\033[0m", code, word);
+}
+
+std::string channels_table(const std::vector<ChannelResult>& channels) {
+  Columns table("lrrrl", 2);
+  table.row({"channel", "rms error", "noise", "held out", "unit"});
+  for (const ChannelResult& c : channels) {
+    const ChannelFigures f = figures(c);
+    table.row({std::string(info(c.signal).name), digits(f.rms), digits(f.noise_rms), digits(f.heldout_rms), f.unit});
+  }
+  return table.text();
+}
+
+std::string parameters_table(const std::vector<ParameterResult>& parameters) {
+  Columns table("rlrrrll", 2);
+  table.row({"id", "parameter", "nominal", "estimate", "+-", "unit", "verdict"});
+  for (const ParameterResult& p : parameters) {
+    if (!was_fitted(p)) continue;
+    const InHandyUnit in(p);
+    table.row({p.id > 0 ? std::to_string(p.id) : "", p.name, in(p.nominal), in(p.estimate), in(p.std_error, 2),
+               in.unit.name.empty() ? "-" : in.unit.name, p.verdict});
+  }
+  return table.text();
+}
+
+// Why a row that could be free was held: what the logs cannot tell.
+std::string held_rows(const std::vector<ParameterResult>& parameters) {
+  Columns table("ll", 2);
+  for (const ParameterResult& p : parameters) {
+    if (was_fitted(p)) continue;
+    std::vector<std::string> others;
+    for (const std::string& name : p.confounded_with)
+      if (std::find(others.begin(), others.end(), name) == others.end()) others.push_back(name);
+    const std::string reason = p.verdict == "flat"         ? "the logs do not show it"
+                               : p.verdict == "confounded" ? "the logs show it only together with " + join(others)
+                                                           : p.verdict;
+    table.row({"held: " + p.name, reason});
+  }
+  return table.text();
+}
+
+}  // namespace
+
+std::string text_of(const TuneResult& result, const TextOptions& options) {
+  const auto fitted = std::count_if(result.parameters.begin(), result.parameters.end(), was_fitted);
+  std::string text = fmt::format("{}tuned {} from {}", result.interrupted ? "interrupted, the best so far: " : "",
+                                 plural(fitted, "parameter"), plural(static_cast<long>(result.logs.size()), "log"));
+  text += options.written_to.empty() ? "\n" : ": " + options.written_to + "\n";
+  text += channels_table(result.channels) + "\n" + parameters_table(result.parameters);
+  text += held_rows(result.parameters) + "\n";
+  if (!result.starts.empty()) {
+    auto costs = result.starts;
+    std::sort(costs.begin(), costs.end());
+    text += fmt::format("  {} of {} reached the best basin; final costs {}{}\n", result.reached_best,
+                        plural(static_cast<long>(costs.size()), "start"), digits(costs.front(), 4),
+                        costs.size() > 1 ? " to " + digits(costs.back(), 4) : "");
+  }
+  Columns nulls("lr", 2);
+  for (const LogResult& log : result.logs) nulls.row({"null of " + log.path, percent(log.null) + " of rated"});
+  return text + nulls.text();
+}
+
+std::string text_of(const Baseline& b, const TextOptions& options) {
+  std::string text = fmt::format("threshold {} from {}", digits(b.threshold, 4), plural(b.logs, "fault-free log"));
+  text += options.written_to.empty() ? "\n" : ": " + options.written_to + "\n";
+  text += fmt::format("  {}\n", b.statement);
+  text += fmt::format("  false alarms: asked {}, promised {} (with 95 % confidence below {})\n", percent(b.asked),
+                      percent(b.promised), percent(b.promised_95));
+  if (b.logs_needed > b.logs)
+    text +=
+        fmt::format("  the rate asked for needs {}: {} more\n", plural(b.logs_needed, "log"), b.logs_needed - b.logs);
+  Columns table("lrr", 2);
+  table.row({"log", "score", "adequacy"});
+  for (const Baseline::Score& s : b.scores) table.row({s.log, digits(s.score, 4), digits(s.adequacy)});
+  return text + table.text();
+}
+
+std::string text_of(const Diagnosis& d, const TextOptions& options) {
+  std::string first = d.log + ": ";
+  if (d.verdict == "fault")
+    first += in_colour("FAULT", d.verdict, options.colour) + " " + d.fault.value_or("");
+  else
+    first += in_colour(d.verdict == "unknown" ? "UNKNOWN" : d.verdict, d.verdict, options.colour);
+  if (d.fault && std::isfinite(d.severity.value))
+    first += ", " + handy_interval(d.severity.value, d.severity.lower, d.severity.upper, d.severity.unit);
+  if (d.verdict == "unknown") first += ": not like the fault-free logs, and no known fault explains it";
+
+  Columns table("ll", 2);
+  const std::string chosen = d.fault.value_or(d.verdict == "healthy" ? "healthy" : "");
+  std::vector<std::pair<double, std::string>> others;
+  for (const auto& [label, p] : d.probabilities)
+    if (label != chosen) others.emplace_back(p, label);
+  std::stable_sort(others.begin(), others.end(), [](const auto& a, const auto& b) { return a.first > b.first; });
+  if (others.size() > 2) others.resize(2);
+  std::vector<std::string> runners_up;
+  for (const auto& [p, label] : others) runners_up.push_back(label + " " + percent(p));
+  if (const auto own = d.probabilities.find(chosen); own != d.probabilities.end())
+    table.row({"probability", percent(own->second) + (runners_up.empty() ? "" : "; then " + join(runners_up))});
+  else if (!runners_up.empty())
+    table.row({"nearest", join(runners_up)});
+  table.row(
+      {"error", fmt::format("{}, threshold {}; p = {}", digits(d.error), digits(d.threshold), digits(d.p_value, 2))});
+  if (!d.assessment.gross.empty()) table.row({"seen at once", d.assessment.gross});
+  if (d.onset) table.row({"since", digits(*d.onset, 4) + " s"});
+  if (!d.ambiguous_with.empty()) table.row({"or else", join(d.ambiguous_with)});
+  if (!d.separating_test.empty()) table.row({"to separate", d.separating_test});
+  if (!d.action.empty()) table.row({"action", d.action});
+  table.row({"null", percent(d.assessment.null) + " of rated"});
+
+  auto parameters = d.assessment.parameters;
+  std::erase_if(parameters, [](const ParameterResult& p) { return !was_fitted(p) || moved(p) == 0.0; });
+  std::stable_sort(parameters.begin(), parameters.end(),
+                   [](const auto& a, const auto& b) { return moved(a) > moved(b); });
+  constexpr std::size_t most = 5;
+  if (parameters.size() > most) parameters.resize(most);
+  std::string text = first + "\n" + table.text();
+  if (!parameters.empty()) {
+    Columns moves("lrlrrrl", 4);
+    for (const ParameterResult& p : parameters) {
+      const InHandyUnit in(p);
+      moves.row({p.name, in(p.nominal), "->", in(p.estimate), std::isfinite(p.std_error) ? "+-" : "",
+                 std::isfinite(p.std_error) ? in(p.std_error, 2) : "", in.unit.name});
+    }
+    text += "  moved\n" + moves.text();
+  }
+  return text;
+}
+
+}  // namespace servodx::report

@@ -1,0 +1,20 @@
+// Results as text that a person reads in ten seconds: the verdict first, then what it rests on.
+#pragma once
+#include <string>
+#include <vector>
+
+#include "diagnose/diagnose.h"
+#include "fit/tune.h"
+
+namespace servodx::report {
+
+struct TextOptions {
+  bool colour = false;     // the verdict's word, for a terminal
+  std::string written_to;  // the command's output file, if any
+};
+
+std::string text_of(const TuneResult& result, const TextOptions& options);
+std::string text_of(const Baseline& baseline, const TextOptions& options);
+std::string text_of(const Diagnosis& diagnosis, const TextOptions& options);
+
+}  // namespace servodx::report

@@ -1,0 +1,78 @@
+// `servodx list`, --version and --help.
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "program.h"
+
+namespace servodx {
+namespace {
+
+std::set<std::string> names_in(const std::string& kind) {
+  const Desk desk;
+  const Ended ended = desk.run("list " + kind + " --json -");
+  EXPECT_EQ(ended.code, 0) << ended.err;
+  std::set<std::string> names;
+  const auto json = nlohmann::json::parse(ended.out);
+  for (const auto& item : json.at(kind)) names.insert(item.at("name"));
+  return names;
+}
+
+TEST(List, EveryKindIsPrinted) {
+  const Desk desk;
+  for (const char* kind : {"faults", "effects", "params", "models", "signals", "excitations"}) {
+    const Ended ended = desk.run(std::string("list ") + kind);
+    EXPECT_EQ(ended.code, 0) << ended.err;
+    EXPECT_GE(std::count(ended.out.begin(), ended.out.end(), '\n'), 2) << ended.out;
+    EXPECT_FALSE(names_in(kind).empty()) << kind;
+  }
+}
+
+TEST(List, FaultsHaveTheContractsLabels) {
+  const auto names = names_in("faults");
+  for (const char* label : {"clogged_filter", "torque_motor_loss", "feedback_wire_backlash", "feedback_wire_lost",
+                            "sticky_spool", "radial_clearance_wear", "null_shift"})
+    EXPECT_TRUE(names.contains(label)) << label;
+}
+
+TEST(List, ThereAre41Parameters) { EXPECT_EQ(names_in("params").size(), 41u); }
+
+TEST(List, ParametersOfARigSayWhereTheyComeFrom) {
+  const Desk desk;
+  desk.write("table.csv", shipped_table());
+  desk.write("rig.toml", "[valve]\nspool_diameter = \"7 mm\"\n");
+  const Ended ended = desk.run("list params --params table.csv --rig rig.toml --json -");
+  ASSERT_EQ(ended.code, 0) << ended.err;
+  const auto json = nlohmann::json::parse(ended.out);
+  for (const auto& row : json.at("params")) {
+    EXPECT_FALSE(row.at("source").get<std::string>().empty()) << row;
+    if (row.at("name") != "spool_diameter") continue;
+    EXPECT_EQ(row.at("nominal"), 0.007);
+    EXPECT_EQ(row.at("source"), "rig.toml: valve.spool_diameter");
+  }
+}
+
+TEST(Program, TellsItsVersionAndHelps) {
+  const Desk desk;
+  const Ended version = desk.run("--version");
+  EXPECT_EQ(version.code, 0);
+  EXPECT_TRUE(version.out.starts_with("servodx ")) << version.out;
+  for (const char* command : {"", "simulate ", "tune ", "baseline ", "diagnose ", "list ", "rig "}) {
+    const Ended help = desk.run(std::string(command) + "--help");
+    EXPECT_EQ(help.code, 0) << command;
+    EXPECT_NE(help.out.find("Usage: servodx"), std::string::npos) << help.out;
+  }
+}
+
+TEST(Program, EveryCommandTakesTheCommonOptions) {
+  const Desk desk;
+  for (const char* command : {"simulate", "tune", "baseline", "diagnose", "list"}) {
+    const std::string help = desk.run(std::string(command) + " --help").out;
+    for (const char* option : {"--json", "--threads", "--seed", "--quiet", "--rig"})
+      EXPECT_NE(help.find(option), std::string::npos) << command << " " << option;
+  }
+}
+
+}  // namespace
+}  // namespace servodx

@@ -1,0 +1,198 @@
+// What is refused names the place, the rule and the mend on standard error, ends with code 2, and writes nothing.
+#include <gtest/gtest.h>
+
+#include <functional>
+
+#include "program.h"
+
+namespace servodx {
+namespace {
+
+const std::string simulate = "simulate log.csv --params table.csv -o sim.csv";
+
+struct Refusal {
+  std::string name;
+  std::function<void(const Desk&)> prepare;  // on a desk with log.csv, table.csv, rig.toml and a folder `folder`
+  std::string call;
+  std::vector<std::string> says;  // place, rule, mend, in this order on standard error
+};
+
+void PrintTo(const Refusal& refusal, std::ostream* to) { *to << refusal.call; }
+
+void no_change(const Desk&) {}
+
+const std::vector<Refusal>& refusals() {
+  static const std::vector<Refusal> list = {
+      // Logs
+      {"LogWithoutSuchAFile",
+       no_change,
+       "simulate gone.csv --params table.csv -o sim.csv",
+       {"gone.csv: ", "cannot be read", "check the path"}},
+      {"LogWithTimeGoingBack",
+       [](const Desk& d) { d.write("log.csv", with_line(small_log(), 102, "4,98,1,100,0.1,10,207")); },
+       simulate,
+       {"log.csv:102: column 'time': ", "; "}},
+      {"LogWithTextInANumericColumn",
+       [](const Desk& d) { d.write("log.csv", with_line(small_log(), 7, "0,5,broken,100,0.1,10,207")); },
+       simulate,
+       {"log.csv:7: column 'spool_position': ", "broken", "; "}},
+      {"LogWithARaggedRow",
+       [](const Desk& d) { d.write("log.csv", with_line(small_log(), 9, "0,7,1,100,0.1")); },
+       simulate,
+       {"log.csv:9: ", "ragged row: 5 cells, the header has 7", "; "}},
+      {"LogWithAnUnknownUnit",
+       [](const Desk& d) { d.write("log.csv", replaced(small_log(), "[bar]", "[barr]")); },
+       simulate,
+       {"log.csv:1: column 'pressure_b': ", "unknown unit 'barr'", "accepted: "}},
+      {"LogWithoutADrive",
+       [](const Desk& d) { d.write("log.csv", replaced(small_log(), "command", "demand")); },
+       simulate,
+       {"log.csv:1: ", "; "}},
+      {"LogWithoutRows",
+       [](const Desk& d) { d.write("log.csv", "time [s],command [mA],spool_position [mm]\n"); },
+       simulate,
+       {"log.csv:1: ", "the log has no rows", "; "}},
+      {"LogWithTooFewRows",
+       [](const Desk& d) { d.write("log.csv", small_log(5)); },
+       simulate,
+       {"log.csv:6: ", "5 rows", "; "}},
+      // Tables
+      {"TableWithSwappedBounds",
+       [](const Desk& d) { d.write("table.csv", replaced(shipped_table(), "750,375,1500", "750,1500,375")); },
+       simulate,
+       {"table.csv:9: column '", "; "}},
+      {"TableWithoutARow",
+       [](const Desk& d) { d.write("table.csv", replaced(shipped_table(), "\n41,", "\n#41,")); },
+       simulate,
+       {"table.csv", "; "}},
+      {"TableWithAnUnknownColumn",
+       [](const Desk& d) { d.write("table.csv", replaced(shipped_table(), "id,name", "id,nickname")); },
+       simulate,
+       {"table.csv:4: column 'nickname': ", "; "}},
+      {"TableNotTuned",
+       [](const Desk& d) { d.write("base.json", "{}"); },
+       "diagnose log.csv --params table.csv --baseline base.json --json result.json",
+       {"table.csv: column 'std_error': ", "not tuned", "servodx tune"}},
+      {"BaselineOfATableNotTuned",
+       no_change,
+       "baseline log.csv --params table.csv -o base.json",
+       {"table.csv", "not tuned", "servodx tune"}},
+      // Rig files
+      {"RigFileWithAnUnknownKey",
+       [](const Desk& d) { d.write("rig.toml", "[valve]\nrated_currant = \"20 mA\"\n"); },
+       simulate + " --rig rig.toml",
+       {"rig.toml:2: column 'valve.rated_currant': ", "unknown key", "known here: "}},
+      {"RigFileWithABareNumber",
+       [](const Desk& d) { d.write("rig.toml", "name = \"x\"\n[supply]\npressure = 207\n"); },
+       simulate + " --rig rig.toml",
+       {"rig.toml:3: column 'supply.pressure': ", "has no unit", "; "}},
+      {"RigFileOfAJetPipe",
+       [](const Desk& d) { d.write("rig.toml", "[valve]\nfirst_stage = \"jet_pipe\"\n"); },
+       simulate + " --rig rig.toml",
+       {"rig.toml:2: column 'valve.first_stage': ", "jet pipe", "; "}},
+      // Options
+      {"NoCommand", no_change, "", {"servodx: ", "subcommand is required", "--help"}},
+      {"UnknownCommand", no_change, "symulate log.csv", {"servodx: ", "; ", "--help"}},
+      {"UnknownOption",
+       no_change,
+       simulate + " --stepp 1e-4",
+       {"servodx simulate: ", "--stepp", "servodx simulate --help"}},
+      {"MissingOption",
+       no_change,
+       "simulate log.csv -o sim.csv",
+       {"servodx simulate: ", "--params is required", "--help"}},
+      {"NegativeSeed", no_change, simulate + " --seed -1", {"--seed", "'-1' is not a whole number", "--help"}},
+      {"NegativeThreads", no_change, simulate + " --threads -2", {"--threads", "'-2' is not a whole number", "--help"}},
+      {"StepOfNoSize", no_change, simulate + " --step 0", {"--step: ", "between 0 and 0.1 s", "; "}},
+      {"StepAndReference", no_change, simulate + " --step 1e-4 --reference", {"--reference: ", "; "}},
+      {"UnknownEffect",
+       no_change,
+       "tune log.csv --params table.csv -o tuned.csv --effects magnetic_hysteresis,voodoo",
+       {"--effects: ", "unknown effect 'voodoo'", "use none, magnetic_hysteresis"}},
+      {"ResumeFromNothing",
+       no_change,
+       "tune log.csv --params table.csv -o tuned.csv --resume",
+       {"--resume: ", "add --checkpoint"}},
+      {"FalseAlarmAboveOne",
+       no_change,
+       "baseline log.csv --params table.csv -o base.json --false-alarm 5",
+       {"--false-alarm: ", "between 0 and 1", "; "}},
+      {"PoolIsNotThereYet",
+       no_change,
+       "diagnose log.csv --params table.csv --baseline base.json --pool",
+       {"--pool: ", "yet", "leave it out"}},
+      {"UnknownList", no_change, "list falts", {"there is no list of 'falts'", "faults, effects"}},
+      {"RigFactsWithoutATable", no_change, "list params --rig rig.toml", {"--rig: ", "add --params"}},
+      {"SameLogTwice",
+       [](const Desk& d) { d.write("copy.csv", small_log()); },
+       "tune log.csv copy.csv --params table.csv -o tuned.csv",
+       {"copy.csv: ", "same log as log.csv", "name each log once"}},
+      // Outputs
+      {"OutputInNoFolder",
+       no_change,
+       "simulate log.csv --params table.csv -o gone/sim.csv",
+       {"gone/sim.csv: ", "no folder 'gone'", "; "}},
+      {"OutputIsAFolder",
+       no_change,
+       "simulate log.csv --params table.csv -o folder",
+       {"folder: ", "is a folder", "name a file"}},
+      {"OutputIsTheLog",
+       no_change,
+       "simulate log.csv --params table.csv -o ./log.csv",
+       {"./log.csv: ", "is an input", "another output"}},
+      {"OutputIsTheTableThroughALink",
+       [](const Desk& d) { std::filesystem::create_symlink("table.csv", d.path / "link.csv"); },
+       "tune log.csv --params table.csv -o link.csv",
+       {"link.csv: ", "is an input", "another output"}},
+      {"JsonIsTheRigFile",
+       no_change,
+       simulate + " --rig rig.toml --json rig.toml",
+       {"rig.toml: ", "is an input", "another output"}},
+      {"TwoOutputsInOneFile",
+       no_change,
+       simulate + " --json folder/../sim.csv",
+       {"sim.csv: ", "two outputs", "its own file"}},
+      {"JsonInNoFolder", no_change, simulate + " --json gone/result.json", {"gone/result.json: ", "no folder", "; "}},
+  };
+  return list;
+}
+
+class Refusals : public testing::TestWithParam<Refusal> {};
+
+TEST_P(Refusals, NamePlaceRuleAndMendAndWriteNothing) {
+  const Refusal& refusal = GetParam();
+  Desk desk;
+  desk.write("log.csv", small_log());
+  desk.write("table.csv", shipped_table());
+  desk.write("rig.toml", "name = \"bench\"\n");
+  std::filesystem::create_directory(desk.path / "folder");
+  refusal.prepare(desk);
+  const auto before = desk.contents();
+
+  const Ended ended = desk.run(refusal.call);
+  EXPECT_EQ(ended.code, 2) << ended.err;
+  EXPECT_EQ(ended.out, "");
+  std::size_t from = 0;
+  for (const std::string& words : refusal.says) {
+    const auto at = ended.err.find(words, from);
+    EXPECT_NE(at, std::string::npos) << "'" << words << "' is not (in this order) in: " << ended.err;
+    if (at != std::string::npos) from = at + words.size();
+  }
+  EXPECT_EQ(std::count(ended.err.begin(), ended.err.end(), '\n'), 1) << ended.err;
+  EXPECT_EQ(desk.contents(), before);
+}
+
+INSTANTIATE_TEST_SUITE_P(Cli, Refusals, testing::ValuesIn(refusals()),
+                         [](const auto& test) { return test.param.name; });
+
+TEST(CliRefusals, TheControlOfTheTableRuns) {
+  Desk desk;
+  desk.write("log.csv", small_log());
+  desk.write("table.csv", shipped_table());
+  desk.write("rig.toml", "name = \"bench\"\n");
+  const Ended ended = desk.run(simulate + " --rig rig.toml");
+  EXPECT_EQ(ended.code, 0) << ended.err;
+}
+
+}  // namespace
+}  // namespace servodx

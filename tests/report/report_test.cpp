@@ -1,0 +1,261 @@
+// What a person reads and what a program reads say the same as the result struct.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "report/baseline_file.h"
+#include "report/columns.h"
+#include "report/handy.h"
+#include "report/json.h"
+#include "report/text.h"
+#include "temporary_folder.h"
+
+namespace servodx::report {
+namespace {
+
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+
+Baseline some_baseline() {
+  Baseline b;
+  b.threshold = 3.1000000000000001;
+  b.asked = 0.01;
+  b.promised = 1.0 / 9.0;
+  b.promised_95 = 0.3123456789012345;
+  b.logs = 8;
+  b.logs_needed = 99;
+  b.statement = "8 logs promise at most one false alarm in 9";
+  for (int i = 0; i < 8; ++i)
+    b.scores.push_back({fmt::format("h{}.csv", i), std::string(64, 'a'), 0.1 * i, 1.0 / (1 + i)});
+  b.adequacy_limit = 1.2345678901234567;
+  b.null_limit = 0.05;
+  b.tuned_sha256 = std::string(64, 'b');
+  return b;
+}
+
+Diagnosis some_diagnosis() {
+  Diagnosis d;
+  d.log = "suspect.csv";
+  d.verdict = "fault";
+  d.error = 12.3;
+  d.threshold = 3.1;
+  d.p_value = 4e-4;
+  d.fault = "feedback_wire_backlash";
+  d.probabilities = {{"feedback_wire_backlash", 0.9}, {"sticky_spool", 0.06}, {"null_shift", 0.03}, {"healthy", 0.01}};
+  d.ambiguous_with = {"sticky_spool"};
+  d.separating_test = "slow small sine";
+  d.action = "abnormal: call service";
+  d.severity = {12e-6, 9e-6, 15e-6, "m"};
+  d.onset = 2.3125;
+  ParameterResult moved;
+  moved.id = 9;
+  moved.name = "valve_glitch";
+  moved.unit = "m";
+  moved.estimate = 12e-6;
+  moved.std_error = 1.5e-6;
+  moved.verdict = "bounded";
+  d.assessment.parameters = {moved};
+  return d;
+}
+
+TEST(Handy, UnitsBringNumbersNearOne) {
+  EXPECT_EQ(handy(12e-6, "m"), "12 um");
+  EXPECT_EQ(handy(0.4, "m"), "400 mm");
+  EXPECT_EQ(handy(207e5, "Pa"), "207 bar");
+  EXPECT_EQ(handy(0.02, "A"), "20 mA");
+  EXPECT_EQ(handy(14.0 / 6e4, "m3/s"), "14 l/min");
+  EXPECT_EQ(handy(0.52, "blocked fraction of the filter area"), "52 % of the filter area blocked");
+  EXPECT_EQ(handy(0.2, "fraction of the torque gain left"), "20 % of the torque gain left");
+  EXPECT_EQ(handy(6.03, "times the tuned clearance"), "6.03 times the tuned clearance");
+  EXPECT_EQ(handy(0.5, "-"), "0.5");
+  EXPECT_EQ(handy_interval(12e-6, 9e-6, 15.4e-6, "m"), "12 um (9 to 15.4, 95 %)");
+  EXPECT_EQ(handy_interval(12e-6, nan, nan, "m"), "12 um");
+}
+
+TEST(Handy, DigitsAreFewAndHonest) {
+  EXPECT_EQ(digits(0), "0");
+  EXPECT_EQ(digits(-0.012345), "-0.0123");
+  EXPECT_EQ(digits(1234.5), "1234");
+  EXPECT_EQ(digits(9.999), "10");
+  EXPECT_EQ(digits(nan), "-");
+  EXPECT_EQ(duration(192), "3 min 12 s");
+}
+
+TEST(Handy, ChannelFiguresAreInTheLogsUnitOrSi) {
+  ChannelResult c{Signal::pressure_a, "bar", 1e5, 2e4, nan};
+  EXPECT_EQ(figures(c).unit, "bar");
+  EXPECT_DOUBLE_EQ(figures(c).rms, 1.0);
+  c = {Signal::oil_temperature, "degC", 1.5, 0, 0};  // a difference: no offset
+  EXPECT_DOUBLE_EQ(figures(c).rms, 1.5);
+  c = {Signal::spool_position, "% of stroke", 2e-6, 0, 0};  // says nothing without the stroke
+  EXPECT_EQ(figures(c).unit, "m");
+  EXPECT_DOUBLE_EQ(figures(c).rms, 2e-6);
+}
+
+TEST(Columns, AlignWhateverTheWidths) {
+  Columns table("lr", 1);
+  table.row({"a", "1000"});
+  table.row({"b\u00b5b", "1"});
+  table.row({"", ""});
+  EXPECT_EQ(table.text(), " a    1000\n b\u00b5b     1\n\n");
+}
+
+TEST(BaselineFile, ReadsBackToTheSameBits) {
+  const TemporaryFolder folder;
+  const Baseline b = some_baseline();
+  Header header;
+  header.command = "baseline";
+  const Baseline back = read_baseline(folder.write("base.json", dump(header, baseline_json(b)))).baseline;
+  EXPECT_EQ(back.threshold, b.threshold);
+  EXPECT_EQ(back.asked, b.asked);
+  EXPECT_EQ(back.promised, b.promised);
+  EXPECT_EQ(back.promised_95, b.promised_95);
+  EXPECT_EQ(back.logs, b.logs);
+  EXPECT_EQ(back.logs_needed, b.logs_needed);
+  EXPECT_EQ(back.statement, b.statement);
+  EXPECT_EQ(back.adequacy_limit, b.adequacy_limit);
+  EXPECT_EQ(back.null_limit, b.null_limit);
+  EXPECT_EQ(back.tuned_sha256, b.tuned_sha256);
+  ASSERT_EQ(back.scores.size(), b.scores.size());
+  for (std::size_t i = 0; i < b.scores.size(); ++i) {
+    EXPECT_EQ(back.scores[i].log, b.scores[i].log);
+    EXPECT_EQ(back.scores[i].sha256, b.scores[i].sha256);
+    EXPECT_EQ(back.scores[i].score, b.scores[i].score);
+    EXPECT_EQ(back.scores[i].adequacy, b.scores[i].adequacy);
+  }
+}
+
+TEST(BaselineFile, RefusalsNameFileKeyAndMend) {
+  const TemporaryFolder folder;
+  Header header;
+  header.command = "baseline";
+  const Json good = Json::parse(dump(header, baseline_json(some_baseline())));
+  const auto refusal = [&](const std::string& text) -> std::string {
+    try {
+      read_baseline(folder.write("base.json", text));
+    } catch (const InputError& error) {
+      return std::string(error.what()).substr((folder / "").size());
+    }
+    return "accepted";
+  };
+  const auto edited = [&](auto&& edit) {
+    Json json = good;
+    edit(json);
+    return refusal(json.dump());
+  };
+  const std::string mend = "; make it again with 'servodx baseline'";
+  EXPECT_EQ(refusal(good.dump()), "accepted");
+  EXPECT_EQ(refusal("{\n\"threshold\": oops"), "base.json:2: is not JSON" + mend);
+  EXPECT_EQ(refusal("[1]"), "base.json: is no object" + mend);
+  EXPECT_EQ(refusal("{}"), "base.json: column 'command': is missing" + mend);
+  EXPECT_EQ(edited([](Json& j) { j.erase("threshold"); }), "base.json: column 'threshold': is missing" + mend);
+  EXPECT_EQ(edited([](Json& j) { j["threshold"] = nullptr; }), "base.json: column 'threshold': is not a number" + mend);
+  EXPECT_EQ(edited([](Json& j) { j["false_alarm"]["promised"] = 2; }),
+            "base.json: column 'false_alarm.promised': is out of range: 2" + mend);
+  EXPECT_EQ(edited([](Json& j) { j["false_alarm"] = 3; }),
+            "base.json: column 'false_alarm.asked': is not in an object" + mend);
+  EXPECT_EQ(edited([](Json& j) { j["scores"] = Json::array(); }), "base.json: column 'scores': holds no scores" + mend);
+  EXPECT_EQ(edited([](Json& j) { j["scores"][0].erase("score"); }),
+            "base.json: column 'scores.score': is missing" + mend);
+  EXPECT_EQ(
+      edited([](Json& j) { j["command"] = "tune"; }),
+      "base.json: column 'command': is the result of 'tune', not of 'baseline'; name the file that 'servodx baseline "
+      "-o' wrote");
+}
+
+TEST(BaselineFile, OfAnotherTableIsRefused) {
+  const Baseline b = some_baseline();
+  EXPECT_NO_THROW(require_same_table(b, "base.json", "tuned.csv", b.tuned_sha256));
+  EXPECT_THROW(require_same_table(b, "base.json", "tuned.csv", std::string(64, 'c')), InputError);
+}
+
+TEST(DiagnoseJson, HasTheContractsKeys) {
+  const Json json = diagnose_json({some_diagnosis()});
+  const Json& r = json.at("results").at(0);
+  for (const char* key : {"log", "verdict", "error", "threshold", "p_value", "fault", "probabilities", "ambiguous_with",
+                          "separating_test", "severity", "onset_time", "parameters"})
+    EXPECT_TRUE(r.contains(key)) << key;
+  for (const char* key : {"value", "lower", "upper", "unit"}) EXPECT_TRUE(r["severity"].contains(key)) << key;
+  for (const char* key : {"id", "name", "nominal", "estimate", "std_error", "verdict", "confounded_with"})
+    EXPECT_TRUE(r["parameters"][0].contains(key)) << key;
+  EXPECT_EQ(r["severity"]["value"], 12e-6);
+  EXPECT_EQ(r["onset_time"], 2.3125);
+}
+
+TEST(DiagnoseJson, WhatIsAbsentOrNotFiniteIsNull) {
+  Diagnosis d = some_diagnosis();
+  d.verdict = "unknown";
+  d.fault.reset();
+  d.onset.reset();
+  d.error = INFINITY;
+  d.assessment.parameters[0].std_error = nan;
+  const Json r = Json::parse(dump({}, diagnose_json({d}))).at("results").at(0);
+  EXPECT_TRUE(r["fault"].is_null());
+  EXPECT_TRUE(r["onset_time"].is_null());
+  EXPECT_TRUE(r["error"].is_null());
+  EXPECT_TRUE(r["severity"]["value"].is_null());
+  EXPECT_TRUE(r["parameters"][0]["std_error"].is_null());
+}
+
+TEST(DiagnoseText, TheFirstLineIsTheVerdictWithItsSize) {
+  const std::string text = text_of(some_diagnosis(), {});
+  EXPECT_EQ(text.substr(0, text.find('\n')), "suspect.csv: FAULT feedback_wire_backlash, 12 um (9 to 15, 95 %)");
+  EXPECT_NE(text.find("90 %; then sticky_spool 6 %, null_shift 3 %\n"), std::string::npos) << text;
+  EXPECT_EQ(text.find("healthy"), std::string::npos) << "two runners-up only: " << text;
+  for (const char* words : {"2.312 s", "slow small sine", "call service", "valve_glitch", "p = 0.0004"})
+    EXPECT_NE(text.find(words), std::string::npos) << words << " is not in:\n" << text;
+  EXPECT_EQ(text.find('\033'), std::string::npos);
+  EXPECT_NE(text_of(some_diagnosis(), {.colour = true, .written_to = ""}).find('\033'), std::string::npos);
+}
+
+TEST(DiagnoseText, AHealthyLogSaysSoFirst) {
+  Diagnosis d;
+  d.log = "good.csv";
+  d.verdict = "healthy";
+  d.probabilities = {{"healthy", 0.97}, {"null_shift", 0.02}, {"sticky_spool", 0.01}};
+  const std::string text = text_of(d, {});
+  EXPECT_TRUE(text.starts_with("good.csv: healthy\n")) << text;
+  EXPECT_NE(text.find("97 %; then null_shift 2 %, sticky_spool 1 %"), std::string::npos) << text;
+}
+
+TEST(BaselineText, SaysHowManyLogsAreMissing) {
+  const std::string text = text_of(some_baseline(), {.colour = false, .written_to = "base.json"});
+  EXPECT_TRUE(text.starts_with("threshold 3.1 from 8 fault-free logs: base.json\n")) << text;
+  EXPECT_NE(text.find("needs 99 logs: 91 more"), std::string::npos) << text;
+}
+
+TEST(TuneReport, HeldRowsSayWhyAndFittedOnesHaveErrors) {
+  TuneResult result;
+  result.channels = {{Signal::spool_position, "um", 1e-6, 5e-7, 2e-6}};
+  ParameterResult fitted, held;
+  fitted.id = 3;
+  fitted.name = "torque_motor_gain";
+  fitted.unit = "N/A";
+  fitted.nominal = 100;
+  fitted.estimate = 104.25;
+  fitted.std_error = 0.5;
+  fitted.verdict = "bounded";
+  held.id = 7;
+  held.name = "nozzle_gap";
+  held.unit = "m";
+  held.std_error = nan;
+  held.verdict = "confounded";
+  held.confounded_with = {"flapper_stiffness", "spool_offset", "spool_offset"};
+  result.parameters = {fitted, held};
+  result.logs = {{"h.csv", result.channels, 0.01}};
+  result.starts = {2.0, 1.0};
+  result.reached_best = 1;
+  const std::string text = text_of(result, {});
+  for (const char* words : {"tuned 1 parameter from 1 log\n", "104.2", "held: nozzle_gap",
+                            "together with flapper_stiffness, spool_offset\n", "1 of 2 starts", "1 to 2"})
+    EXPECT_NE(text.find(words), std::string::npos) << words << " is not in:\n" << text;
+  const Json json = tune_json(result);
+  for (const char* key : {"channels", "parameters", "starts"}) EXPECT_TRUE(json.contains(key)) << key;
+  EXPECT_EQ(json["channels"][0]["unit"], "um");
+  EXPECT_DOUBLE_EQ(json["channels"][0]["heldout_rms"].get<double>(), 2.0);
+  EXPECT_EQ(json["starts"].size(), 2u);
+}
+
+}  // namespace
+}  // namespace servodx::report
