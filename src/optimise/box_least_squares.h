@@ -1,5 +1,5 @@
-// Local least squares on the unit cube: minimise sum of rho(e_i(x)) over 0 <= x <= 1, where rho(e) = 0.5*e^2 or a
-// robust loss.
+// Local least squares on the unit cube: minimise the sum of rho(e_i(x)) over 0 <= x <= 1, rho(e) = 0.5*e^2 or a robust
+// loss.
 //
 // Levenberg-Marquardt with true bounds: each step solves the damped quadratic *on the box* (box_quadratic.h: walls
 // held, re-solved on the free set), with Marquardt's diagonal as the damping metric and no coordinate moving further
@@ -7,11 +7,12 @@
 // parameter run away, is what fails in a servovalve fit. Every evaluation is a batch: the n points of the Jacobian, and
 // a ladder of dampings tried at once, since lanes of a pack are nearly free.
 //
-// Limits: dense, n up to a few hundred, any number of rows (only J and one block of it are held). The residual must be
-// smooth on the scale of `difference_step`. Finds one local minimum; the genetic algorithm and multi_start.h give the
-// breadth. Why not Ceres' own bounds or its minimiser in a loop: see tests/optimise/ceres_comparison_test.cpp and
-// decisions in box_least_squares.cpp. Source: More (1978), The Levenberg-Marquardt algorithm; Nocedal and Wright
-// (2006), ch. 10 and 16.
+// Limits: dense, n up to a few hundred, any number of rows (J, one block of it and the residuals of one ladder are
+// held). The residual must be smooth on the scale of `difference_step`. Finds one local minimum; genetic.h and
+// multi_start.h give the breadth. Why not Ceres' minimiser: decisions in box_least_squares.cpp.
+//
+// Source: More (1978), The Levenberg-Marquardt algorithm; Nocedal and Wright (2006), ch. 10 and 16; Transtrum and
+// Sethna (2012), Improvements to the Levenberg-Marquardt algorithm (bending a step by the curvature it meets).
 #pragma once
 #include <functional>
 #include <string>

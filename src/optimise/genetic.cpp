@@ -131,6 +131,7 @@ class Genetic {
       remember(island.population.back());
     }
     island.mark = island.best_since_start;
+    island.median_mark = median(island);
   }
 
   void begin() {
@@ -248,12 +249,24 @@ class Genetic {
       island.mixing[island.memory_at] = mixing / weight;
       island.memory_at = (island.memory_at + 1) % kMemory;
     }
-    if (island.best_since_start < island.mark - options_.stagnation_gain * std::abs(island.mark)) {
-      island.mark = island.best_since_start;
-      island.stagnant = 0;
-    } else {
+    const auto gained = [&](double now, double mark) { return now < mark - options_.stagnation_gain * std::abs(mark); };
+    const double middle = median(island);
+    const bool progress = gained(island.best_since_start, island.mark) || gained(middle, island.median_mark);
+    if (!progress) {
       ++island.stagnant;
+      return;
     }
+    island.mark = island.best_since_start;
+    island.median_mark = middle;
+    island.stagnant = 0;
+  }
+
+  static double median(const Island& island) {
+    std::vector<double> costs;
+    for (const Individual& one : island.population) costs.push_back(one.cost);
+    const auto middle = costs.begin() + static_cast<std::ptrdiff_t>(costs.size() / 2);
+    std::nth_element(costs.begin(), middle, costs.end());
+    return *middle;
   }
 
   static Individual& worst(Island& island) {
@@ -284,18 +297,23 @@ class Genetic {
       if (static_cast<int>(guest.point.size()) != state_.n)
         throw std::logic_error("a refined point has the wrong length");
       if (!std::isfinite(guest.cost) || guest.cost >= options_.failure_cost) continue;
-      Island* home = &state_.islands.front();
-      double nearest = std::numeric_limits<double>::infinity();
+      Island* home = nullptr;
+      Individual* nearest = nullptr;
+      double least = std::numeric_limits<double>::infinity();
       for (Island& island : state_.islands) {
-        for (const Individual& one : island.population) {
+        for (Individual& one : island.population) {
           const double apart = distance(one.point, guest.point);
-          if (apart < nearest) {
-            nearest = apart;
+          if (apart < least) {
+            least = apart;
+            nearest = &one;
             home = &island;
           }
         }
       }
-      settle(*home, guest);
+      if (nearest && guest.cost < nearest->cost) {
+        *nearest = guest;
+        home->best_since_start = std::min(home->best_since_start, guest.cost);
+      }
       remember(guest);
     }
   }

@@ -1,8 +1,8 @@
 // Genetic algorithm on the unit cube, for breadth: which structure, which basin. It is real-coded and elitist (a slot
 // only ever gets better), keeps its children in the box by reflection, and asks for a whole generation of all islands
 // as one batch. Each island may start from its own seed points (the fit passes one island per Failure-Mode Identifier).
-// An island whose best stops improving, or whose members have drawn together, gives its best to the archive and starts
-// afresh. The archive holds the best points that are apart: the starts of the local stage.
+// An island whose best and median stop improving, or whose members have drawn together, gives its best to the archive
+// and starts afresh. The archive holds the best points that are apart: the starts of the local stage.
 //
 // Limits: it does not polish. In 41 dimensions 5,000 evaluations find a basin, not a minimum; box_least_squares.h does
 // the rest, at the end or, through `refine`, while it runs. Costs must be finite or are taken as failures; a failed
@@ -24,8 +24,8 @@ struct GeneticOptions {
   double seed_spread = 0.1;       // standard deviation of the cloud about each seed point, of the box
   double seeded_part = 0.5;       // of an island, seed points included; the rest is spread over the whole box
   int migrate_every = 20;         // generations; the best of each island visits the next one. 0: never
-  int stagnation = 40;            // generations without `stagnation_gain` before an island starts afresh. 0: never
-  double stagnation_gain = 1e-3;  // of the island's best cost
+  int stagnation = 40;            // generations without `stagnation_gain`, then an island starts afresh. 0: never
+  double stagnation_gain = 1e-3;  // of the island's best cost or of its median
   double collapse = 1e-9;         // an island no wider than this (of the box, every coordinate) starts afresh
   int archive = 10;
   double archive_distance = 0.05;  // root mean square over the coordinates, of the box
@@ -42,9 +42,10 @@ const char* name(GeneticStop stop);
 struct GeneticHooks {
   // After every generation, when the state is whole: save it, show progress. False asks to stop.
   std::function<bool(const GeneticState&)> generation;
-  // Improved points with their costs, for example from a short local search on the archive; each takes the worst slot
-  // of the island that holds the nearest member. Must be a pure function of the state for a resumed run to end the
-  // same. Its evaluations are the caller's to count.
+  // Improved points with their costs, for example from a short local search on the archive. Each takes the place of the
+  // member nearest to it, if it is better: to put the same polished point in the worst slots would draw the island
+  // together. Must be a pure function of the state for a resumed run to end the same; its evaluations are the caller's
+  // to count.
   std::function<std::vector<Individual>(const GeneticState&)> refine;
   int refine_every = 10;
 };

@@ -45,6 +45,7 @@ std::string to_json(const GeneticState& state) {
                             {"memory_at", island.memory_at},
                             {"best_since_start", island.best_since_start},
                             {"mark", island.mark},
+                            {"median_mark", island.median_mark},
                             {"stagnant", island.stagnant}});
   }
   return j.dump();
@@ -73,6 +74,7 @@ GeneticState genetic_state_from_json(const std::string& text) {
       item.at("memory_at").get_to(island.memory_at);
       item.at("best_since_start").get_to(island.best_since_start);
       item.at("mark").get_to(island.mark);
+      item.at("median_mark").get_to(island.median_mark);
       item.at("stagnant").get_to(island.stagnant);
       state.islands.push_back(std::move(island));
     }

@@ -25,6 +25,7 @@ struct Island {
   int memory_at = 0;
   double best_since_start = 0;  // of this restart
   double mark = 0;              // the best when progress was last seen
+  double median_mark = 0;       // and the median then
   int stagnant = 0;             // generations since
 };
 

@@ -1,0 +1,252 @@
+// The genetic algorithm on functions whose answer is known, and its promises: determinism, resumption, honest counts.
+#include "optimise/genetic.h"
+
+#include <gtest/gtest.h>
+#include <omp.h>
+
+#include "base/error.h"
+#include "functions.h"
+#include "optimise/multi_start.h"
+
+namespace servodx::test {
+namespace {
+
+GeneticOptions long_run(std::uint64_t seed, long evaluations) {
+  GeneticOptions options;
+  options.seed = seed;
+  options.generations = 1'000'000;
+  options.max_evaluations = evaluations;
+  options.cost_goal = 1e-8;
+  return options;
+}
+
+struct Count {
+  int solved = 0;
+  long evaluations = 0;  // of the solved runs, mean
+};
+
+Count count_solved(const Function& function, int n, long limit, int seeds) {
+  Count count;
+  for (int seed = 1; seed <= seeds; ++seed) {
+    const GeneticResult result =
+        minimise_genetic(n, cost_of(function), long_run(static_cast<std::uint64_t>(seed), limit));
+    EXPECT_LE(result.state.evaluations, limit);
+    if (result.state.best.cost > 1e-8) continue;
+    ++count.solved;
+    count.evaluations += result.state.evaluations;
+  }
+  if (count.solved > 0) count.evaluations /= count.solved;
+  std::printf("%-10s n %2d: %d of %d to 1e-8, mean %ld evaluations\n", function.name, n, count.solved, seeds,
+              count.evaluations);
+  return count;
+}
+
+TEST(Genetic, SolvesTenDimensionsAlone) {
+  EXPECT_EQ(count_solved(sphere(10), 10, 10'000, 10).solved, 10);
+  EXPECT_GE(count_solved(rosenbrock(10), 10, 60'000, 10).solved, 7);
+  EXPECT_GE(count_solved(rastrigin(10), 10, 60'000, 10).solved, 7);
+  EXPECT_GE(count_solved(ellipsoid(10), 10, 60'000, 10).solved, 2);
+}
+
+TEST(Genetic, SolvesTheSphereInFortyOneDimensions) { EXPECT_EQ(count_solved(sphere(41), 41, 60'000, 3).solved, 3); }
+
+// Alone at this budget the genetic algorithm ends far off; its archive holds starts from which the local stage arrives.
+TEST(Genetic, WithTheLocalStageSolvesWhatItCannotAlone) {
+  constexpr int n = 41;
+  for (const Function& function : {ellipsoid(n), rosenbrock(n)}) {
+    int alone = 0, together = 0;
+    long evaluations = 0;
+    for (std::uint64_t seed = 1; seed <= 5; ++seed) {
+      GeneticOptions options;
+      options.seed = seed;
+      const GeneticResult genetic = minimise_genetic(n, cost_of(function), options);
+      if (genetic.state.best.cost < 1e-8) ++alone;
+      std::vector<Point> starts;
+      for (const Individual& one : genetic.state.archive)
+        if (starts.size() < 3) starts.push_back(one.point);
+      MultiStartOptions local;
+      local.local.cost_tolerance = 1e-12;
+      local.local.max_iterations = 300;
+      const MultiStartResult result = minimise_from_starts({n, residuals_of(function), {}}, starts, local);
+      if (2 * result.best.misfit < 1e-8) ++together;
+      evaluations += genetic.state.evaluations + result.evaluations;
+    }
+    std::printf("%-10s n %d: alone %d of 5, with the local stage %d of 5, mean %ld evaluations\n", function.name, n,
+                alone, together, evaluations / 5);
+    EXPECT_EQ(alone, 0) << function.name;
+    EXPECT_GE(together, 4) << function.name;
+  }
+}
+
+// On Rastrigin the local stage inside the search polishes each basin, so that the search compares basins, not slopes.
+TEST(Genetic, RefinedAsItRunsFindsRastriginsBasinInTwentyDimensions) {
+  constexpr int n = 20;
+  constexpr long kLimit = 40'000;
+  const Function function = rastrigin(n);
+  int alone = 0, refined = 0;
+  for (std::uint64_t seed = 1; seed <= 5; ++seed) {
+    if (minimise_genetic(n, cost_of(function), long_run(seed, kLimit)).state.best.cost <= 1e-8) ++alone;
+    long local_evaluations = 0;
+    GeneticHooks hooks;
+    hooks.refine = [&](const GeneticState& state) {
+      LeastSquaresOptions local;
+      local.step_limit = 0.02;
+      const LeastSquaresResult result =
+          minimise_least_squares({n, residuals_of(function), {}}, state.best.point, local);
+      local_evaluations += result.evaluations;
+      return std::vector<Individual>{{result.point, 2 * result.misfit}};
+    };
+    hooks.refine_every = 40;
+    hooks.generation = [&](const GeneticState& state) { return state.evaluations + local_evaluations < kLimit; };
+    const GeneticResult result = minimise_genetic(n, cost_of(function), long_run(seed, kLimit), {}, hooks);
+    if (result.state.best.cost <= 1e-8) ++refined;
+  }
+  std::printf("rastrigin  n %d, %ld evaluations: alone %d of 5, refined %d of 5\n", n, kLimit, alone, refined);
+  EXPECT_GE(refined, 3);
+  EXPECT_GE(refined, alone);
+}
+
+TEST(Genetic, SeedPointsStartIslandsAndTheBestSeedIsNeverLost) {
+  constexpr int n = 8;
+  const Function function = ellipsoid(n);
+  const Eigen::VectorXd at = minimiser(n);
+  Point near(at.data(), at.data() + n);
+  near[0] += 1e-3;
+  const double seed_cost = cost_of(function)(std::vector<Point>{near})[0];
+  GeneticOptions options;
+  options.generations = 5;
+  const GeneticResult result = minimise_genetic(n, cost_of(function), options, {{Point(n, 0.5)}, {near}});
+  EXPECT_EQ(result.state.islands.size(), 2u);
+  EXPECT_LE(result.state.best.cost, seed_cost);
+}
+
+TEST(Genetic, ArchiveHoldsDistinctPointsBestFirst) {
+  constexpr int n = 5;
+  GeneticOptions options;
+  const GeneticResult result = minimise_genetic(n, cost_of(rastrigin(n)), options);
+  const auto& archive = result.state.archive;
+  ASSERT_GE(archive.size(), 3u);
+  EXPECT_EQ(archive.front().cost, result.state.best.cost);
+  for (std::size_t a = 0; a < archive.size(); ++a) {
+    for (std::size_t b = a + 1; b < archive.size(); ++b) {
+      EXPECT_LE(archive[a].cost, archive[b].cost);
+      const double apart = (as_vector(archive[a].point) - as_vector(archive[b].point)).norm() / std::sqrt(1.0 * n);
+      EXPECT_GE(apart, options.archive_distance);
+    }
+  }
+}
+
+TEST(Genetic, NeverLeavesTheBoxEvenWithTheMinimumInACorner) {
+  bool inside = true;
+  const BatchCost corner = [&](std::span<const Point> points) {
+    std::vector<double> costs;
+    for (const Point& p : points) {
+      for (double v : p) inside = inside && v >= 0 && v <= 1;
+      costs.push_back(as_vector(p).sum());
+    }
+    return costs;
+  };
+  const GeneticResult result = minimise_genetic(6, corner, {});
+  EXPECT_TRUE(inside);
+  EXPECT_LT(result.state.best.cost, 1e-2);
+}
+
+std::string run_with_threads(int threads, std::uint64_t seed) {
+  const Function function = rastrigin(9);
+  const BatchCost parallel = [&](std::span<const Point> points) {
+    std::vector<double> costs(points.size());
+#pragma omp parallel for schedule(dynamic, 1) num_threads(threads)
+    for (std::size_t k = 0; k < points.size(); ++k) costs[k] = function.residual(as_vector(points[k])).squaredNorm();
+    return costs;
+  };
+  GeneticOptions options;
+  options.seed = seed;
+  options.stagnation = 8;  // so that fresh starts are part of it
+  return to_json(minimise_genetic(9, parallel, options, {{Point(9, 0.2)}, {}, {Point(9, 0.8)}}).state);
+}
+
+TEST(Genetic, SameSeedSameBitsForAnyNumberOfThreads) {
+  const std::string one = run_with_threads(1, 5);
+  EXPECT_EQ(one, run_with_threads(2, 5));
+  EXPECT_EQ(one, run_with_threads(7, 5));
+  EXPECT_NE(one, run_with_threads(1, 6));
+}
+
+TEST(Genetic, ResumedRunEndsAsTheUninterruptedOne) {
+  constexpr int n = 7;
+  const BatchCost cost = cost_of(rastrigin(n));
+  const std::vector<std::vector<Point>> seeds{{Point(n, 0.1)}, {Point(n, 0.9)}};
+  GeneticOptions options;
+  options.stagnation = 10;
+  const std::string whole = to_json(minimise_genetic(n, cost, options, seeds).state);
+  for (const int stop_at : {0, 1, 19, 20, 57, 99}) {
+    GeneticHooks hooks;
+    std::string saved;
+    hooks.generation = [&](const GeneticState& state) {
+      saved = to_json(state);
+      return state.generation < stop_at;
+    };
+    const GeneticResult first = minimise_genetic(n, cost, options, seeds, hooks);
+    EXPECT_EQ(first.reason, GeneticStop::interrupted);
+    const GeneticState state = genetic_state_from_json(saved);
+    EXPECT_EQ(state.generation, stop_at);
+    EXPECT_EQ(to_json(minimise_genetic(n, cost, options, seeds, {}, &state).state), whole) << stop_at;
+  }
+}
+
+TEST(Genetic, DamagedOrForeignStateIsRefusedInWords) {
+  EXPECT_THROW(genetic_state_from_json("{\"format\": 3"), InputError);
+  EXPECT_THROW(genetic_state_from_json("{}"), InputError);
+  EXPECT_THROW(genetic_state_from_json("[1, 2]"), InputError);
+  GeneticOptions options;
+  options.generations = 1;
+  const GeneticState other = minimise_genetic(3, cost_of(sphere(3)), options).state;
+  EXPECT_THROW(minimise_genetic(4, cost_of(sphere(4)), options, {}, {}, &other), InputError);
+}
+
+TEST(Genetic, FailedPointsAreCountedAndSurvived) {
+  constexpr int n = 5;
+  const Function function = sphere(n);
+  long asked = 0, failed = 0;
+  const BatchCost brittle = [&](std::span<const Point> points) {
+    std::vector<double> costs;
+    for (const Point& p : points) {
+      ++asked;
+      const bool fails = std::fmod(1000 * (p[0] + p[1]), 1.0) < 0.3;
+      if (fails) ++failed;
+      costs.push_back(fails ? (failed % 2 ? std::nan("") : 1e30) : function.residual(as_vector(p)).squaredNorm());
+    }
+    return costs;
+  };
+  const GeneticResult result = minimise_genetic(n, brittle, {});
+  EXPECT_EQ(result.state.evaluations, asked);
+  EXPECT_EQ(result.state.failed, failed);
+  EXPECT_GT(failed, 100);
+  EXPECT_LT(result.state.best.cost, 1e-2);
+}
+
+TEST(Genetic, AllPointsFailingIsSurvived) {
+  GeneticOptions options;
+  options.generations = 3;
+  const BatchCost hopeless = [](std::span<const Point> points) {
+    return std::vector<double>(points.size(), std::numeric_limits<double>::infinity());
+  };
+  const GeneticResult result = minimise_genetic(3, hopeless, options);
+  EXPECT_EQ(result.state.failed, 200);
+  EXPECT_TRUE(result.state.archive.empty());
+  EXPECT_EQ(to_json(genetic_state_from_json(to_json(result.state))), to_json(result.state));
+}
+
+TEST(Genetic, WrongOptionIsNamed) {
+  GeneticOptions options;
+  options.seeded_part = 1.5;
+  try {
+    minimise_genetic(3, cost_of(sphere(3)), options);
+    FAIL();
+  } catch (const InputError& error) {
+    EXPECT_NE(std::string(error.what()).find("seeded_part"), std::string::npos);
+  }
+}
+
+}  // namespace
+}  // namespace servodx::test
