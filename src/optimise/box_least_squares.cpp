@@ -1,15 +1,14 @@
 // Decisions.
-// - Not Ceres' minimiser. Its bounds are met by projecting a step that was solved as if free, and it asks for residuals
+// - Not Ceres' minimiser. It meets bounds by projecting a step that was solved as if free, and it asks for residuals
 // one
 //   point at a time, which would leave seven of eight lanes empty. On weakly identified problems with walls (8 to 25
 //   parameters, tests/optimise/ceres_comparison_test.cpp) all three reach the floor in 24 of 24 runs, in a mean of 237
-//   evaluations here, 1779 with Ceres' bounds, 1186 with Ceres and the parameters at walls held constant between short
-//   solves. On servovalve traces Ceres' bounds also failed to arrive (design notes: 3 of 8 runs against 8 of 8).
-// - The normal equations are formed block by block and scaled to a unit diagonal before they are factored: with 100,000
-//   rows and 40 columns a QR costs twice as much and gains nothing once damping and noise are counted.
+//   evaluations here, 1779 with Ceres' bounds, 1186 with Ceres and the parameters at walls held constant between
+//   short solves. On servovalve traces Ceres' bounds also failed to arrive (3 of 8 runs against 8 of 8).
+// - The normal equations are formed block by block and scaled to a unit diagonal before they are factored: a QR of J
+//   takes twice the arithmetic, and the digits it saves are below the damping and the noise.
 // - Curved valleys: when the best trial yields less than the undamped model promises, every trial is bent by the
-// curvature
-//   it met (a second-order correction, one more batch). NIST's Misra1a: 16 Jacobians in place of 58; MGH10: 80 for 549.
+//   curvature it met, one more batch. NIST's Misra1a takes 16 Jacobians in place of 58, MGH10 80 in place of 549.
 #include "optimise/box_least_squares.h"
 
 #include <algorithm>
