@@ -16,7 +16,7 @@ struct MountCompliance {
   static constexpr int n_parameters = 2;
   static constexpr EffectParameter parameters[n_parameters] = {
       {"mount_compliance", "m/N", 0.0, 0.0, 3e-7, 3e-8, "travel of the body per force"},
-      {"mount_relaxation", "s", 2e-4, 2e-5, 5e-3, 2e-4, "damping over stiffness of the mount"},
+      {"mount_relaxation", "s", 2e-4, 2e-5, 5e-3, 2e-4, "damping over stiffness of the mount", false},
   };
 
   // Velocity of the body: it relaxes towards the travel that the hydraulic force asks for.

@@ -6,13 +6,15 @@
 #include "effects/effect.h"
 #include "effects/magnetic_hysteresis.h"
 #include "effects/mount_compliance.h"
+#include "effects/nozzle_plugging.h"
 #include "model/hooks.h"
 
 namespace servodx {
 
 using NoEffects = EffectList<>;
 using AllEffects = EffectList<MagneticHysteresis,  //
-                              MountCompliance>;
+                              MountCompliance,     //
+                              NozzlePlugging>;
 inline constexpr int n_values = n_parameters + AllEffects::n_parameters;  // length of a parameter vector
 
 struct EffectInfo {
@@ -21,5 +23,9 @@ struct EffectInfo {
   std::vector<EffectParameter> parameters;
 };
 const std::vector<EffectInfo>& effect_list();
+
+// Position of effect E's j-th parameter in a parameter vector.
+template <class E>
+constexpr int effect_row(int j) { return n_parameters + AllEffects::parameter_offset<E>() + j; }
 
 }  // namespace servodx

@@ -4,7 +4,6 @@
 #include <vector>
 
 #include "effects/registry.h"
-#include "parameters/list.h"
 
 namespace servodx {
 

@@ -5,6 +5,7 @@
 #include "faults/feedback_wire_backlash.h"
 #include "faults/feedback_wire_lost.h"
 #include "faults/null_shift.h"
+#include "faults/plugged_nozzle.h"
 #include "faults/radial_clearance_wear.h"
 #include "faults/sensor_fault.h"
 #include "faults/sticky_spool.h"
@@ -21,6 +22,7 @@ const std::vector<const Fault*>& fault_list() {
       &sticky_spool,            //
       &radial_clearance_wear,   //
       &null_shift,              //
+      &plugged_nozzle,          //
       &sensor_fault,            //
       &cylinder_leakage,        //
   };

@@ -43,7 +43,7 @@ Identifiability identify(const Eigen::MatrixXd& jacobian, const std::vector<char
       rest2 -= b.dot(weights);
     }
     const double rest = std::sqrt(std::max(0.0, rest2));
-    if (candidates[j] && out.verdict[j] == "free" && (rest < out.norm[j] / collinearity_limit || rest < flat_limit)) {
+    if (candidates[j] && out.verdict[j] == "free" && rest < out.norm[j] / collinearity_limit) {
       out.verdict[j] = "confounded";
       std::vector<std::pair<double, int>> strongest;
       for (long r = 0; r < weights.size(); ++r) strongest.push_back({-std::abs(weights[r]), static_cast<int>(kept[r])});

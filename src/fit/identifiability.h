@@ -16,7 +16,8 @@ struct Identifiability {
 
 // jacobian: rows in sigmas of independent samples, columns per unit interval; `candidates` marks columns that may be
 // frozen (nuisances are not). Greedy: strongest first; a column whose part that the kept ones do not span is shorter
-// than its norm over `collinearity_limit`, or than one sigma over the whole interval, is frozen.
+// than its norm over `collinearity_limit` is confounded; one that moves no channel by `flat_limit` sigmas over the whole
+// interval is flat.
 Identifiability identify(const Eigen::MatrixXd& jacobian, const std::vector<char>& candidates, double collinearity_limit = 15.0,
                          double flat_limit = 1.0);
 

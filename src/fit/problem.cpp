@@ -58,7 +58,9 @@ Point FitProblem::start() const {
 ParameterVector FitProblem::candidate(const Point& x, int log) const {
   ParameterVector v = base_;
   for (std::size_t j = 0; j < free_.size(); ++j)
-    if (free_[j].log < 0 || free_[j].log == log) v[free_[j].at] = free_[j].from_unit(x[j]);
+    if ((free_[j].log < 0 || free_[j].log == log) && !free_[j].apply) v[free_[j].at] = free_[j].from_unit(x[j]);
+  for (std::size_t j = 0; j < free_.size(); ++j)
+    if ((free_[j].log < 0 || free_[j].log == log) && free_[j].apply) free_[j].apply(v.data(), free_[j].from_unit(x[j]));
   return v;
 }
 

@@ -285,7 +285,7 @@ TuneResult tune(const std::vector<Log>& logs, const Table& nominal, const RigFil
   std::vector<LeastSquaresResult> ends;
   for (std::size_t s = 0; s < starts.size() && !(run.stopped() && s > 0); ++s) {
     const double a = 0.35 + 0.35 * static_cast<double>(s) / static_cast<double>(starts.size());
-    ends.push_back(local(run, fit, starts[s], 15, true, "start", a, a + 0.35 / static_cast<double>(starts.size())));
+    ends.push_back(local(run, fit, starts[s], 8, true, "start", a, a + 0.35 / static_cast<double>(starts.size())));
     out.starts.push_back(ends.back().cost);
   }
   const std::size_t best = static_cast<std::size_t>(std::min_element(out.starts.begin(), out.starts.end()) - out.starts.begin());

@@ -86,9 +86,11 @@ inline __attribute__((always_inline)) auto derivative(const S& s, const In& u, c
   const auto q_filter = orifice_flow(d.filter_conductance * clear, u.supply_pressure - p_f, transition);
   const auto q_orifice_1 = orifice_flow(d.orifice_conductance, p_f - p_1, transition);
   const auto q_orifice_2 = orifice_flow(d.orifice_conductance, p_f - p_2, transition);
-  const auto q_nozzle_1 = orifice_flow(d.nozzle_conductance * soft_positive(p[row::nozzle_gap] - x_f, T(c::nozzle_rounding)),
+  const auto gap_1 = soft_positive(p[row::nozzle_gap] - x_f, T(c::nozzle_rounding));
+  const auto gap_2 = soft_positive(p[row::nozzle_gap] + x_f, T(c::nozzle_rounding));
+  const auto q_nozzle_1 = orifice_flow(d.nozzle_conductance * (gap_1 + hook_nozzle_1_opening(view, Effects{}, gap_1)),
                                        p_1 - u.return_pressure, transition);
-  const auto q_nozzle_2 = orifice_flow(d.nozzle_conductance * soft_positive(p[row::nozzle_gap] + x_f, T(c::nozzle_rounding)),
+  const auto q_nozzle_2 = orifice_flow(d.nozzle_conductance * (gap_2 + hook_nozzle_2_opening(view, Effects{}, gap_2)),
                                        p_2 - u.return_pressure, transition);
   const auto dp_f = d.inverse_filter_compliance * (q_filter - q_orifice_1 - q_orifice_2);
   const auto dp_1 = d.inverse_pilot_compliance * (q_orifice_1 - q_nozzle_1 - d.spool_area * v_s);

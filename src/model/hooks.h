@@ -2,6 +2,7 @@
 //   name, place, parameters (static list), n_states, and any of these members, each taking a view of the run:
 //     struct Memory, drive(memory, command, p)  [A]  applied to the command at each sample, with memory of its past
 //     flapper_force(view)  [N]   added to the torque motor's force
+//     nozzle_1_opening(view, open), nozzle_2_opening(view, open)  [m]  added to the open gap of a nozzle
 //     spool_force(view)    [N]   added to the force on the spool
 //     flow_a(view), flow_b(view) [m3/s]  added to the flow into the chamber
 //     piston_force(view)   [N]   added to the force on the piston
@@ -65,20 +66,32 @@ struct View {
   auto own_state() const { return s.template get<n_base_states + List::template state_offset<E>() + J>(); }
 };
 
-#define SERVODX_HOOK(name)                                                        \
-  template <class V, class... E>                                                  \
-  auto hook_##name(const V& view, EffectList<E...>) {                             \
-    return (Nothing{} + ... + [&](auto effect) {                                  \
-      if constexpr (requires { effect.name(view); }) return effect.name(view);    \
-      else return Nothing{};                                                      \
-    }(E{}));                                                                      \
+#define SERVODX_HOOK(name)                                                     \
+  template <class V, class... E>                                               \
+  auto hook_##name(const V& view, EffectList<E...>) {                          \
+    return (Nothing{} + ... + [&](auto effect) {                               \
+      if constexpr (requires { effect.name(view); }) return effect.name(view); \
+      else return Nothing{};                                                   \
+    }(E{}));                                                                   \
+  }
+// The same for a hook that is told what it adds to.
+#define SERVODX_HOOK_TO(name)                                                      \
+  template <class V, class... E, class X>                                          \
+  auto hook_##name(const V& view, EffectList<E...>, const X& x) {                  \
+    return (Nothing{} + ... + [&](auto effect) {                                   \
+      if constexpr (requires { effect.name(view, x); }) return effect.name(view, x); \
+      else return Nothing{};                                                       \
+    }(E{}));                                                                       \
   }
 SERVODX_HOOK(flapper_force)
+SERVODX_HOOK_TO(nozzle_1_opening)
+SERVODX_HOOK_TO(nozzle_2_opening)
 SERVODX_HOOK(spool_force)
 SERVODX_HOOK(flow_a)
 SERVODX_HOOK(flow_b)
 SERVODX_HOOK(piston_force)
 SERVODX_HOOK(body_velocity)
+#undef SERVODX_HOOK_TO
 #undef SERVODX_HOOK
 
 template <class V, class... E>

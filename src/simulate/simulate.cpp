@@ -23,7 +23,8 @@ const Kernels& best_kernels() {
 // True where every effect is at its off value, so that the base model is the same and cheaper.
 bool effects_off(const ParameterVector& v) {
   for (const EffectInfo& e : effect_list())
-    if (v[e.first] != e.parameters[0].off) return false;
+    for (std::size_t j = 0; j < e.parameters.size(); ++j)
+      if (e.parameters[j].switches && v[e.first + static_cast<int>(j)] != e.parameters[j].off) return false;
   return true;
 }
 

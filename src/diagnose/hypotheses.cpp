@@ -1,0 +1,170 @@
+#include "diagnose/hypotheses.h"
+
+#include <omp.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "fit/free_values.h"
+#include "fit/identifiability.h"
+
+namespace servodx {
+namespace {
+
+constexpr double unlearnt_effective = 0.05;  // for a channel that the tuning logs lacked
+
+// Severity as a free number, from the mildest that is called a fault to the worst, on the side of the start.
+FreeValue severity_value(const Fault& fault, double start, double null_limit) {
+  FreeValue f;
+  f.name = "severity";
+  f.apply = fault.apply;
+  f.log_scale = fault.log_scale;
+  double least = fault.name == "null_shift" ? null_limit : fault.least, worst = fault.worst;
+  if (start < 0) least = -least, worst = -worst;
+  f.lower = std::min(least, worst);
+  f.upper = std::max(least, worst);
+  f.start = std::clamp(start, f.lower, f.upper);
+  return f;
+}
+
+// The same severity within its tolerance. Where the healthy value is an end of the scale (nothing is less than clean),
+// the tolerance has one side.
+FreeValue tolerance_value(const Fault& fault) {
+  FreeValue f;
+  f.name = std::string("tolerance of ") + std::string(fault.name);
+  f.apply = fault.apply;
+  f.log_scale = fault.log_scale;
+  f.start = fault.healthy;
+  f.log = 0;
+  if (fault.log_scale) {
+    f.lower = std::min(fault.least, fault.healthy * fault.healthy / fault.least);
+    f.upper = std::max(fault.least, fault.healthy * fault.healthy / fault.least);
+    f.prior_sd = 0.25;
+  } else if (fault.healthy != 0) {
+    const double width = std::abs(fault.least - fault.healthy);
+    f.lower = fault.healthy - width, f.upper = fault.healthy + width;
+    f.prior_sd = 0.25;
+  } else {
+    f.lower = 0, f.upper = fault.least;
+    f.prior_sd = 0.5;
+  }
+  return f;
+}
+
+std::vector<FreeValue> free_values(const LogData& log, const ParameterVector& base, const Fault* fault, double start, double null_limit) {
+  std::vector<FreeValue> free;
+  if (fault) free.push_back(severity_value(*fault, start, null_limit));
+  for (FreeValue& f : nuisance_values(log, 0, base, null_limit))
+    if (!(fault && fault->name == "null_shift" && f.at == row::servovalve_null)) free.push_back(std::move(f));
+  // A null within its limit is a nuisance already, and a nozzle mildly blocked looks just like it.
+  for (const Fault* other : fault_list())
+    if (other != fault && other->name != "null_shift" && other->name != "plugged_nozzle") free.push_back(tolerance_value(*other));
+  return free;
+}
+
+void whiten(FitProblem& problem, const ErrorModel& error, const Trajectory& reference) {
+  const LogData& log = *problem.logs().front();
+  for (std::size_t c = 0; c < log.channels.size(); ++c) {
+    const FitChannel& channel = log.channels[c];
+    const ChannelError* e = error.find(channel.signal);
+    std::vector<double> act = activity(log.scenario.time, reference.ok ? reference.signals[channel.simulated] : channel.measured);
+    for (double& a : act)
+      if (std::isnan(a)) a = 0;
+    std::vector<double> sigma = sigma_of(e, channel.noise, act);
+    const double scale = 1.0 / std::sqrt(e ? e->effective : unlearnt_effective);
+    for (double& s : sigma) s *= scale;
+    problem.set_sigma(0, static_cast<int>(c), std::move(sigma));
+  }
+}
+
+struct Attempt {
+  const Fault* fault = nullptr;
+  double start = 0;
+  HypothesisFit fit;
+  std::vector<double> square;
+  long simulations = 0, failed = 0;
+};
+
+void run(Attempt& a, const LogData& log, const ParameterVector& base, const ErrorModel& error, const Trajectory& reference,
+         const HypothesisSettings& settings) {
+  SimulateOptions simulate_options;
+  simulate_options.threads = 1;
+  HypothesisFit& fit = a.fit;
+  fit.fault = a.fault;
+  fit.free = free_values(log, base, a.fault, a.start, settings.null_limit);
+  FitProblem problem({&log}, base, fit.free, simulate_options);
+  whiten(problem, error, reference);
+  LeastSquaresOptions o;
+  o.max_iterations = settings.iterations;
+  o.difference = Difference::forward;
+  o.cost_tolerance = 1e-4;
+  const LeastSquaresResult r = minimise_least_squares(problem.least_squares(), problem.start(), o);
+  a.simulations = problem.simulations();
+  a.failed = problem.failed_simulations();
+  fit.stops = {r.stopped};
+  if (r.reason == StopReason::start_failed) return;
+  fit.ok = true;
+  fit.misfit = 2 * r.misfit;
+  fit.point = r.point;
+  std::vector<char> kept(fit.free.size());
+  for (std::size_t j = 0; j < kept.size(); ++j) kept[j] = (a.fault && j == 0) || (r.point[j] > 1e-6 && r.point[j] < 1 - 1e-6);
+  const Eigen::MatrixXd covariance = covariance_of(r.jacobian, kept);
+  for (std::size_t j = 0; j < kept.size(); ++j)
+    fit.standard_error.push_back(std::sqrt(std::max(0.0, covariance(static_cast<long>(j), static_cast<long>(j)))));
+  const std::size_t samples = log.scenario.time.size();
+  a.square.assign(samples, 0.0);
+  for (std::size_t c = 0; c < log.channels.size(); ++c) {
+    const auto [at, n] = problem.rows(0, static_cast<int>(c));
+    const ChannelError* e = error.find(log.channels[c].signal);
+    const double effective = e ? e->effective : unlearnt_effective;
+    fit.channel_adequacy.push_back(std::sqrt(r.residual.segment(at, n).squaredNorm() / static_cast<double>(n) / effective));
+    for (std::size_t k = 0; k < samples; ++k)
+      a.square[k] += r.residual[at + static_cast<long>(k)] * r.residual[at + static_cast<long>(k)] / effective / static_cast<double>(log.channels.size());
+  }
+  if (a.fault) {
+    // The curvature at the end, inflated where the model does not fit as well as it should.
+    const double worst = *std::max_element(fit.channel_adequacy.begin(), fit.channel_adequacy.end());
+    const double half = 1.96 * fit.standard_error[0] * std::max(1.0, worst);
+    fit.severity = fit.free[0].from_unit(r.point[0]);
+    fit.severity_lower = fit.free[0].from_unit(std::clamp(r.point[0] - half, 0.0, 1.0));
+    fit.severity_upper = fit.free[0].from_unit(std::clamp(r.point[0] + half, 0.0, 1.0));
+  }
+}
+
+}  // namespace
+
+HypothesisFits fit_hypotheses(const LogData& log, const ParameterVector& base, const ErrorModel& error, const HypothesisSettings& settings) {
+  HypothesisFits out;
+  // Health first: its trajectory says where things move, and so where the model may err, for all alike.
+  SimulateOptions options;
+  options.threads = settings.threads;
+  const Trajectory reference = simulate(log.scenario, base, options);
+  std::vector<Attempt> attempts(1);
+  for (const Fault* fault : fault_list())
+    for (double start : fault->starts) attempts.push_back({fault, start, {}, {}, 0, 0});
+  const int threads = settings.threads > 0 ? settings.threads : omp_get_max_threads();
+  const auto count = static_cast<long>(attempts.size());
+#pragma omp parallel for schedule(dynamic, 1) num_threads(threads)
+  for (long i = 0; i < count; ++i) run(attempts[static_cast<std::size_t>(i)], log, base, error, reference, settings);
+  for (Attempt& a : attempts) {
+    out.simulations += a.simulations;
+    out.failed += a.failed;
+    const auto it = std::find_if(out.fits.begin(), out.fits.end(), [&](const HypothesisFit& f) { return f.fault == a.fault; });
+    if (!a.fault) out.healthy_square = std::move(a.square);
+    if (it == out.fits.end()) {
+      out.fits.push_back(std::move(a.fit));
+      continue;
+    }
+    std::vector<std::string> stops = it->stops;
+    stops.insert(stops.end(), a.fit.stops.begin(), a.fit.stops.end());
+    if (a.fit.ok && a.fit.misfit < it->misfit) *it = std::move(a.fit);
+    it->stops = std::move(stops);
+  }
+  for (const FitChannel& c : log.channels) {
+    const ChannelError* e = error.find(c.signal);
+    out.degrees += static_cast<double>(c.measured.size()) * (e ? e->effective : unlearnt_effective);
+  }
+  return out;
+}
+
+}  // namespace servodx

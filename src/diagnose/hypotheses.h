@@ -1,0 +1,46 @@
+// The hypotheses about one log, each fitted to the same data with the same whitening.
+//
+// Healthy is not a point: every fault's severity may wander within its tolerance (up to `least`, with a prior of half of
+// that), the null within its limit. A fault's hypothesis lets its own severity run from `least` to the worst, all else as
+// in health. So a gain of a fault over health is what only a fault explains.
+#pragma once
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "faults/registry.h"
+#include "fit/error_model.h"
+#include "fit/problem.h"
+
+namespace servodx {
+
+struct HypothesisFit {
+  const Fault* fault = nullptr;  // null: healthy
+  bool ok = false;
+  double misfit = 1e300;         // -2 log likelihood, priors included
+  double severity = 0;           // in the fault's unit
+  double severity_lower = 0, severity_upper = 0;  // 95 %, from the curvature, cut at the range that was searched
+  Point point;
+  std::vector<FreeValue> free;
+  std::vector<double> standard_error;    // of each free value, of the unit interval
+  std::vector<double> channel_adequacy;  // whitened rms of a channel; 1 when as wrong as on the tuning logs
+  std::vector<std::string> stops;        // how each start ended
+};
+
+struct HypothesisSettings {
+  double null_limit = 0.05;  // [fraction of rated]
+  int threads = 0;
+  int iterations = 12;
+};
+
+struct HypothesisFits {
+  std::vector<HypothesisFit> fits;  // healthy first, then the faults in the order of the registry
+  double degrees = 0;               // independent samples of all channels
+  std::vector<double> healthy_square;  // a sample: mean over the channels of the squared whitened residual under health
+  long simulations = 0, failed = 0;
+};
+
+HypothesisFits fit_hypotheses(const LogData& log, const ParameterVector& base, const ErrorModel& error,
+                              const HypothesisSettings& settings);
+
+}  // namespace servodx
