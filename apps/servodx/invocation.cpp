@@ -102,10 +102,10 @@ void Invocation::check_files(const std::vector<std::string>& inputs, const std::
   std::vector<std::string> all_inputs = inputs;
   if (!options_.rig.empty()) all_inputs.push_back(options_.rig);
   std::vector<std::string> all_outputs = outputs;
-  if (options_.json != "-") all_outputs.push_back(options_.json);
+  if (!options_.json.empty() && options_.json != "-") all_outputs.push_back(options_.json);
   std::vector<fs::path> seen;
   for (const std::string& output : all_outputs) {
-    if (output.empty()) continue;
+    require_option(!output.empty(), "--output", "the name is empty", "name a file");
     check_output(output, all_inputs);
     std::error_code ignored;
     const fs::path resolved = fs::weakly_canonical(fs::absolute(output), ignored);

@@ -39,7 +39,7 @@ class Invocation {
   Invocation(std::string command, CommonOptions options);
 
   // Before any work: refuses outputs whose folder is missing or closed, that are a folder, an input, or the same file
-  // twice. The --json file is among the outputs. Empty names are passed over.
+  // twice. The --json file is among the outputs.
   void check_files(const std::vector<std::string>& inputs, const std::vector<std::string>& outputs) const;
 
   // Readers that note what they read among the result's inputs.

@@ -39,6 +39,15 @@ SimulateOptions simulate_options(const Options& options, const LogData& data) {
   return to;
 }
 
+// Responses of the rig that the log holds and the model does not report.
+std::vector<std::string> left_out(const Log& log) {
+  std::vector<std::string> notes;
+  for (Signal s : {Signal::load_pressure, Signal::valve_pressure_drop, Signal::control_flow, Signal::leakage_flow})
+    if (log.has(s))
+      notes.push_back(fmt::format("{}: '{}' is left out: the model does not report it", log.path, info(s).name));
+  return notes;
+}
+
 void run(const Options& options) {
   require_option(options.step > 0 && options.step <= 0.1, "--step", "must lie between 0 and 0.1 s",
                  "give it in seconds: 1e-4");
@@ -73,6 +82,7 @@ void run(const Options& options) {
   report::Header& header = invocation.header();
   header.simulations = 1;
   invocation.note(data.notes);
+  invocation.note(left_out(log));
   header.settings = {{"step", how.step}, {"impact_step", how.impact_step}};
   report::Json signals = report::Json::array();
   for (const OutputColumn& c : columns) signals.push_back({{"signal", info(c.signal).name}, {"unit", c.unit}});

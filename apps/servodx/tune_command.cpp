@@ -49,7 +49,9 @@ int run(const Options& options) {
   Invocation invocation("tune", options.common);
   auto inputs = options.logs;
   inputs.push_back(options.params);
-  invocation.check_files(inputs, {options.output, tune_options.checkpoint});
+  std::vector<std::string> outputs = {options.output};
+  if (!tune_options.checkpoint.empty()) outputs.push_back(tune_options.checkpoint);
+  invocation.check_files(inputs, outputs);
   const RigFile rig = invocation.rig();
   const Table nominal = invocation.table(options.params);  // tune() applies the facts, effects' rows included
   const std::vector<Log> logs = invocation.logs(options.logs, rig);

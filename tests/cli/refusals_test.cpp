@@ -128,6 +128,10 @@ const std::vector<Refusal>& refusals() {
        "tune log.csv copy.csv --params table.csv -o tuned.csv",
        {"copy.csv: ", "same log as log.csv", "name each log once"}},
       // Outputs
+      {"OutputWithoutAName",
+       no_change,
+       "simulate log.csv --params table.csv -o ''",
+       {"--output: ", "empty", "name a file"}},
       {"OutputInNoFolder",
        no_change,
        "simulate log.csv --params table.csv -o gone/sim.csv",
