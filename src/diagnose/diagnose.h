@@ -37,6 +37,7 @@ struct Assessment {
   std::string log, sha256;
   double score = 0;        // detection statistic
   std::vector<HypothesisResult> hypotheses;  // healthy first, then by misfit
+  std::vector<ChannelResult> channels;  // replay under health: rms beside noise
   std::string gross;       // non-empty: seen without a fit (spool on its stop, no response)
   std::optional<double> onset;  // [s] change point where one stands out
   double null = 0;         // [fraction of rated] healthy hypothesis

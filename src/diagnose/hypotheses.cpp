@@ -118,6 +118,12 @@ void run(Attempt& a, const LogData& log, const ParameterVector& base, const Erro
     const ChannelError* e = error.find(log.channels[c].signal);
     const double effective = e ? e->effective : unlearnt_effective;
     fit.channel_adequacy.push_back(std::sqrt(r.residual.segment(at, n).squaredNorm() / static_cast<double>(n) / effective));
+    double raw = 0;
+    for (std::size_t k = 0; k < samples; ++k) {
+      const double v = r.residual[at + static_cast<long>(k)] * problem.sigma(0, static_cast<int>(c))[k];
+      raw += v * v;
+    }
+    fit.channel_rms.push_back(std::sqrt(raw / static_cast<double>(samples)));
     for (std::size_t k = 0; k < samples; ++k)
       a.square[k] += r.residual[at + static_cast<long>(k)] * r.residual[at + static_cast<long>(k)] / effective / static_cast<double>(log.channels.size());
   }

@@ -24,6 +24,7 @@ struct HypothesisFit {
   std::vector<FreeValue> free;
   std::vector<double> standard_error;    // of each free value, of the unit interval
   std::vector<double> channel_adequacy;  // whitened rms of a channel; 1 when as wrong as on the tuning logs
+  std::vector<double> channel_rms;       // [SI] of the residual, high-passed where the channel is
   std::vector<std::string> stops;        // how each start ended
 };
 

@@ -52,6 +52,20 @@ double starting_slope(const std::vector<double>& t, const std::vector<double>& x
   return n >= 3 && spread > 0 ? (n * stx - st * sx) / spread : 0.0;
 }
 
+// Where the simulation starts: what is measured first.
+void take_start(LogData& log) {
+  Scenario& s = log.scenario;
+  for (const FitChannel& c : log.channels) {
+    if (c.signal == Signal::spool_position) s.spool_start = first_present(c.measured);
+    if (c.signal == Signal::pressure_a) s.pressure_a_start = first_present(c.measured);
+    if (c.signal == Signal::pressure_b) s.pressure_b_start = first_present(c.measured);
+    if (c.signal == Signal::piston_position) {
+      s.piston_start = first_present(c.measured);
+      s.piston_velocity_start = starting_slope(s.time, c.measured);
+    }
+  }
+}
+
 }  // namespace
 
 double noise_of(const std::vector<double>& x, double resolution) {
@@ -86,13 +100,6 @@ LogData prepare(const Log& log, const RigFile& rig) {
   constexpr double reference_temperature = 313.15;  // [K] where the table's values hold
   const double temperature = log.has(Signal::oil_temperature) ? mean_of_present(log[Signal::oil_temperature]) : reference_temperature;
   s.oil = oil_at(rig.fluid.density, rig.fluid.kinematic_viscosity, temperature);
-  if (log.has(Signal::spool_position)) s.spool_start = first_present(log[Signal::spool_position]);
-  if (log.has(Signal::pressure_a)) s.pressure_a_start = first_present(log[Signal::pressure_a]);
-  if (log.has(Signal::pressure_b)) s.pressure_b_start = first_present(log[Signal::pressure_b]);
-  if (log.has(Signal::piston_position)) {
-    s.piston_start = first_present(log[Signal::piston_position]);
-    s.piston_velocity_start = starting_slope(log.time, log[Signal::piston_position]);
-  }
   for (Signal which : simulated_signals) {
     if (!log.has(which)) continue;
     FitChannel c;
@@ -103,6 +110,21 @@ LogData prepare(const Log& log, const RigFile& rig) {
     if (which == Signal::piston_position) c.high_pass = piston_high_pass;
     out.channels.push_back(std::move(c));
   }
+  take_start(out);
+  return out;
+}
+
+LogData slice(const LogData& log, std::size_t from, std::size_t to) {
+  LogData out = log;
+  const auto cut = [&](std::vector<double>& v) {
+    if (v.empty()) return;
+    v.resize(to);
+    v.erase(v.begin(), v.begin() + static_cast<long>(from));
+  };
+  Scenario& s = out.scenario;
+  for (auto* v : {&s.time, &s.command, &s.supply_pressure, &s.return_pressure, &s.load_force}) cut(*v);
+  for (FitChannel& c : out.channels) cut(c.measured);
+  take_start(out);
   return out;
 }
 

@@ -30,6 +30,9 @@ inline constexpr double piston_high_pass = 0.3;  // [Hz]
 
 LogData prepare(const Log& log, const RigFile& rig);
 
+// Samples [from, to) as a log of their own, started from what is measured at `from`.
+LogData slice(const LogData& log, std::size_t from, std::size_t to);
+
 // Noise rms of a series, robust against motion: median absolute second difference over that of white noise.
 double noise_of(const std::vector<double>& x, double resolution);
 

@@ -99,19 +99,12 @@ LeastSquaresResult local(Tuning& run, FitProblem& problem, const Point& x, int i
   return minimise_least_squares(problem.least_squares(), x, o);
 }
 
-// The logs' liveliest stretches, for the global search: at most `seconds` of each.
+// The first seconds of each log, for the global search.
 std::vector<LogData> excerpts(const std::vector<LogData>& logs, double seconds) {
   std::vector<LogData> out;
   for (const LogData& log : logs) {
-    LogData e = log;
     const auto& t = log.scenario.time;
-    const auto n = static_cast<std::size_t>(std::lower_bound(t.begin(), t.end(), t.front() + seconds) - t.begin());
-    const auto cut = [&](std::vector<double>& v) {
-      if (v.size() > n) v.resize(n);
-    };
-    cut(e.scenario.time), cut(e.scenario.command), cut(e.scenario.supply_pressure), cut(e.scenario.return_pressure), cut(e.scenario.load_force);
-    for (FitChannel& c : e.channels) cut(c.measured);
-    out.push_back(std::move(e));
+    out.push_back(slice(log, 0, static_cast<std::size_t>(std::lower_bound(t.begin(), t.end(), t.front() + seconds) - t.begin())));
   }
   return out;
 }

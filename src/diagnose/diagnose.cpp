@@ -1,0 +1,258 @@
+#include "diagnose/diagnose.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/error.h"
+#include "base/progress.h"
+#include "diagnose/hypotheses.h"
+#include "fit/nominal.h"
+
+namespace servodx {
+namespace {
+
+// How the two ways of being unlike health are brought to one scale: the root of a likelihood gain is a normal deviate;
+// the log of the worst channel's adequacy scatters by about this much among healthy logs of different excitation.
+constexpr double adequacy_spread = 0.3;
+
+double worst_adequacy(const HypothesisFit& f) {
+  return f.channel_adequacy.empty() ? 1e3 : *std::max_element(f.channel_adequacy.begin(), f.channel_adequacy.end());
+}
+
+std::string_view label(const HypothesisFit& f) { return f.fault ? f.fault->name : std::string_view("healthy"); }
+
+struct ChangePoint {
+  std::size_t at = 0;
+  bool found = false;
+};
+
+// One change of variance of the healthy residual: quiet before, at least twice as large (rms) after.
+ChangePoint change_point(const std::vector<double>& square, double degrees) {
+  const std::size_t n = square.size();
+  std::vector<double> sum(n + 1, 0.0);
+  for (std::size_t k = 0; k < n; ++k) sum[k + 1] = sum[k] + square[k];
+  const auto margin = std::max<std::size_t>(50, n / 20);
+  if (n < 4 * margin || sum[n] <= 0) return {};
+  ChangePoint best;
+  double best_cost = static_cast<double>(n) * std::log(sum[n] / static_cast<double>(n)), whole = best_cost;
+  for (std::size_t k = margin; k + margin <= n; ++k) {
+    const double before = sum[k] / static_cast<double>(k), after = (sum[n] - sum[k]) / static_cast<double>(n - k);
+    if (after < 4 * before || before <= 0) continue;
+    const double cost = static_cast<double>(k) * std::log(before) + static_cast<double>(n - k) * std::log(after);
+    if (cost < best_cost) best_cost = cost, best = {k, true};
+  }
+  // Scaled to independent samples; 30 is far beyond what a healthy log's own restlessness makes.
+  best.found = best.found && (whole - best_cost) * degrees / static_cast<double>(n) / 4.0 > 30.0;
+  return best;
+}
+
+// The wire holds the spool against the torque; without it the spool runs to its stops, both of them, at any current.
+std::string gross_finding(const LogData& log, const ParameterVector& base) {
+  const auto spool = std::find_if(log.channels.begin(), log.channels.end(), [](const FitChannel& c) { return c.signal == Signal::spool_position; });
+  if (spool == log.channels.end()) return "";
+  const double stop = 0.95 * base[row::spool_stop], small = 0.5 * log.scenario.rated_current;
+  long up = 0, down = 0, n = 0, quiet = 0;
+  double lowest = 1e300, highest = -1e300, command_low = 1e300, command_high = -1e300;
+  for (std::size_t k = 0; k < spool->measured.size(); ++k) {
+    const double x = spool->measured[k], i = log.scenario.command[k] + base[row::servovalve_null] * log.scenario.rated_current;
+    if (std::isnan(x)) continue;
+    ++n;
+    lowest = std::min(lowest, x), highest = std::max(highest, x);
+    command_low = std::min(command_low, i), command_high = std::max(command_high, i);
+    if (std::abs(i) > small) continue;
+    ++quiet;
+    up += x > stop;
+    down += x < -stop;
+  }
+  if (n == 0) return "";
+  if (up > quiet / 50 && down > quiet / 50) return "spool on both stops at small current";
+  if (up > quiet / 4 || down > quiet / 4) return "spool on one stop at small current";
+  const double asked = (command_high - command_low) / log.scenario.rated_current * base[row::spool_stop];
+  if (asked > 0.05 * base[row::spool_stop] && highest - lowest < 0.02 * asked) return "the spool does not respond";
+  return "";
+}
+
+}  // namespace
+
+Assessment assess(const Log& log, const Table& tuned, const RigFile& rig, const DiagnoseOptions& options) {
+  Assessment out;
+  out.log = log.path;
+  out.sha256 = log.sha256;
+  out.notes = log.notes;
+  const LogData data = prepare(log, rig);
+  const ErrorModel error = error_model_of(tuned);
+  if (error.channels.empty())
+    throw InputError({tuned.path}, "the table does not say how wrong its model is", "make it with 'servodx tune'; its header carries the lines 'model error ...'");
+  const ParameterVector base = candidate_of(tuned);
+  HypothesisSettings settings;
+  settings.null_limit = rig.null_limit;
+  settings.threads = options.threads;
+  HypothesisFits h = fit_hypotheses(data, base, error, settings);
+  out.simulations = h.simulations;
+  out.failed_simulations = h.failed;
+  out.gross = gross_finding(data, base);
+  for (std::size_t c = 0; c < data.channels.size() && c < h.fits.front().channel_rms.size(); ++c)
+    out.channels.push_back({data.channels[c].signal, log.channels[index(data.channels[c].signal)].unit, h.fits.front().channel_rms[c], data.channels[c].noise, h.fits.front().channel_rms[c]});
+
+  // A fault that steps in: before it the log is healthy, after it the hypotheses are judged on what is left.
+  const ChangePoint change = change_point(h.healthy_square, h.degrees);
+  const auto best_misfit = [](const HypothesisFits& f) {
+    double m = 1e300;
+    for (const HypothesisFit& fit : f.fits) m = std::min(m, fit.misfit);
+    return m;
+  };
+  if (change.found) {
+    HypothesisFits before = fit_hypotheses(slice(data, 0, change.at), base, error, settings);
+    HypothesisFits after = fit_hypotheses(slice(data, change.at, data.scenario.time.size()), base, error, settings);
+    out.simulations += before.simulations + after.simulations;
+    out.failed_simulations += before.failed + after.failed;
+    const double whole = best_misfit(h), split = before.fits.front().misfit + best_misfit(after);
+    const double scale = std::max(1.0, split / h.degrees);
+    // A second set of nuisances and a time were bought: they must pay for themselves.
+    if ((whole - split) / scale > 25.0) {
+      out.onset = data.scenario.time[change.at];
+      h = std::move(after);
+    }
+  }
+
+  const HypothesisFit& healthy = h.fits.front();
+  const double smallest = best_misfit(h);
+  const double scale = std::max(1.0, smallest / h.degrees);
+  double total = 0, best_gain = 0;
+  for (const HypothesisFit& f : h.fits) total += std::exp(-0.5 * (f.misfit - smallest) / scale);
+  for (const HypothesisFit& f : h.fits) {
+    HypothesisResult r;
+    r.name = label(f);
+    r.misfit = f.misfit;
+    r.gain = (healthy.misfit - f.misfit) / scale;
+    r.probability = std::exp(-0.5 * (f.misfit - smallest) / scale) / total;
+    r.severity = f.severity;
+    r.severity_lower = std::min(f.severity_lower, f.severity_upper);
+    r.severity_upper = std::max(f.severity_lower, f.severity_upper);
+    r.unit = f.fault ? std::string(f.fault->unit) : "";
+    r.adequacy = worst_adequacy(f);
+    r.stops = f.stops;
+    best_gain = std::max(best_gain, f.ok ? r.gain : 0.0);
+    out.hypotheses.push_back(std::move(r));
+  }
+  std::stable_sort(out.hypotheses.begin() + 1, out.hypotheses.end(), [](const auto& a, const auto& b) { return a.misfit < b.misfit; });
+  out.score = std::max(std::sqrt(best_gain), std::log(std::max(1.0, worst_adequacy(healthy))) / adequacy_spread);
+  if (!out.gross.empty()) out.score = std::max(out.score, 1e3);
+
+  // What moved under the best hypothesis.
+  const auto best = std::min_element(h.fits.begin(), h.fits.end(), [](const auto& a, const auto& b) { return a.misfit < b.misfit; });
+  if (best->ok) {
+    const FitProblem view({&data}, base, best->free);
+    const ParameterVector moved = view.candidate(best->point, 0);
+    out.null = moved[row::servovalve_null];
+    for (std::size_t i = 0; i < tuned.rows.size() && i < static_cast<std::size_t>(n_parameters); ++i) {
+      if (moved[i] == base[i]) continue;
+      ParameterResult p{tuned[static_cast<int>(i)].id, tuned[static_cast<int>(i)].name, tuned[static_cast<int>(i)].unit, base[i], moved[i], std::nan(""), "bounded", {}, 0, 0};
+      for (std::size_t j = 0; j < best->free.size(); ++j)
+        if (!best->free[j].apply && best->free[j].at == static_cast<int>(i) && !best->free[j].log_scale)
+          p.std_error = best->standard_error[j] * (best->free[j].upper - best->free[j].lower);
+      out.parameters.push_back(std::move(p));
+    }
+  }
+  return out;
+}
+
+Baseline make_baseline(const std::vector<Log>& logs, const Table& tuned, const RigFile& rig, double false_alarm, const DiagnoseOptions& options,
+                       long* simulations, long* failed) {
+  if (!(false_alarm > 0 && false_alarm < 1)) throw InputError({"--false-alarm"}, fmt::format("{} is not a rate", false_alarm), "give a number between 0 and 1, such as 0.01");
+  const std::vector<std::string> used = tuned_by(tuned);
+  for (std::size_t i = 0; i < logs.size(); ++i) {
+    if (std::find(used.begin(), used.end(), logs[i].sha256) != used.end())
+      throw InputError({logs[i].path}, "this log tuned " + tuned.path + ": its residual is smaller than a new log's", "give fault-free logs that the fit has not seen");
+    for (std::size_t j = 0; j < i; ++j)
+      if (logs[j].sha256 == logs[i].sha256) throw InputError({logs[i].path}, "the same log as " + logs[j].path, "give each log once: the rate counts independent logs");
+  }
+  if (logs.size() < 3) throw InputError({}, fmt::format("{} logs cannot set a threshold", logs.size()), "give at least 3 fault-free logs; the rate that can be promised is 1/(n+1)");
+  Baseline b;
+  b.asked = false_alarm;
+  b.logs = static_cast<int>(logs.size());
+  b.null_limit = rig.null_limit;
+  b.tuned_sha256 = tuned.sha256;
+  Progress progress("baseline", {.quiet = options.quiet});
+  long total = 0;
+  for (std::size_t i = 0; i < logs.size(); ++i) {
+    const Assessment a = assess(logs[i], tuned, rig, options);
+    b.scores.push_back({a.log, a.sha256, a.score, a.hypotheses.front().adequacy});
+    b.adequacy_limit = std::max(b.adequacy_limit, a.hypotheses.front().adequacy);
+    total += a.simulations;
+    if (simulations) *simulations += a.simulations;
+    if (failed) *failed += a.failed_simulations;
+    progress.update(static_cast<double>(i + 1) / static_cast<double>(logs.size()), total);
+    if (options.stop && options.stop->load()) break;
+  }
+  b.logs = static_cast<int>(b.scores.size());
+  std::vector<double> sorted;
+  for (const Baseline::Score& s : b.scores) sorted.push_back(s.score);
+  std::sort(sorted.begin(), sorted.end());
+  const auto n = static_cast<double>(sorted.size());
+  // A new log exchangeable with n healthy ones exceeds the k-th smallest with probability (n + 1 - k) / (n + 1).
+  const auto k = static_cast<std::size_t>(std::min(n, std::ceil((1.0 - false_alarm) * (n + 1.0) - 1e-9)));
+  b.threshold = sorted[k - 1];
+  b.promised = (n + 1.0 - static_cast<double>(k)) / (n + 1.0);
+  b.promised_95 = 1.0 - std::pow(0.05, 1.0 / n);
+  b.logs_needed = static_cast<int>(std::ceil(1.0 / false_alarm - 1e-9)) - 1;
+  b.statement = fmt::format("{} fault-free logs promise a false-alarm rate of {:.1f} % on average over baselines (below {:.0f} % with 95 % confidence)", sorted.size(),
+                            100 * b.promised, 100 * b.promised_95);
+  if (b.promised > false_alarm + 1e-12)
+    b.statement += fmt::format("; {:.3g} % takes {} logs, {} more", 100 * false_alarm, b.logs_needed, b.logs_needed - static_cast<int>(sorted.size()));
+  return b;
+}
+
+Diagnosis judge(Assessment a, const Baseline& baseline) {
+  constexpr double ambiguous_probability = 0.05;
+  // A fault is known less well than health: its hypothesis may leave twice the worst error that healthy logs show.
+  constexpr double fault_allowance = 2.0;
+  Diagnosis d;
+  d.log = a.log;
+  d.error = a.score;
+  d.threshold = baseline.threshold;
+  d.onset = a.onset;
+  long above = 1;
+  for (const Baseline::Score& s : baseline.scores) above += s.score >= a.score;
+  d.p_value = static_cast<double>(above) / static_cast<double>(baseline.scores.size() + 1);
+  for (const HypothesisResult& h : a.hypotheses) d.probabilities[h.name] = h.probability;
+  if (a.score <= baseline.threshold) {
+    d.verdict = "healthy";
+  } else {
+    const HypothesisResult& best = *std::min_element(a.hypotheses.begin(), a.hypotheses.end(), [](const auto& x, const auto& y) { return x.misfit < y.misfit; });
+    const bool wire = a.gross == "spool on both stops at small current";
+    const bool adequate = best.adequacy <= fault_allowance * std::max(1.0, baseline.adequacy_limit);
+    const HypothesisResult* named = nullptr;
+    if (wire) {
+      for (const HypothesisResult& h : a.hypotheses)
+        if (h.name == "feedback_wire_lost") named = &h;
+      for (auto& [name, p] : d.probabilities) p = name == "feedback_wire_lost" ? 1.0 : 0.0;
+    } else if (adequate && best.name != "healthy") {
+      named = &best;
+    }
+    if (!named) {
+      d.verdict = "unknown";
+      d.probabilities["unknown"] = 1.0;
+      for (auto& [name, p] : d.probabilities)
+        if (name != "unknown") p = 0.0;
+    } else {
+      d.verdict = "fault";
+      d.fault = named->name;
+      d.severity.value = wire ? 0.0 : named->severity;
+      d.severity.lower = wire ? 0.0 : named->severity_lower;
+      d.severity.upper = wire ? std::max(0.1, named->severity_upper) : named->severity_upper;
+      d.severity.unit = named->unit;
+      for (const auto& [name, p] : d.probabilities)
+        if (name != *d.fault && p > ambiguous_probability) d.ambiguous_with.push_back(name);
+      const Fault* fault = find_fault(*d.fault);
+      if (fault) d.action = fault->action;
+      if (fault && !d.ambiguous_with.empty()) d.separating_test = fault->test;
+    }
+  }
+  d.assessment = std::move(a);
+  return d;
+}
+
+}  // namespace servodx
