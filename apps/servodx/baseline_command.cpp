@@ -1,4 +1,6 @@
 // `servodx baseline LOG...`: what fault-free logs score, and the threshold that promises a false-alarm rate.
+#include <fmt/format.h>
+
 #include <CLI/CLI.hpp>
 #include <memory>
 
@@ -36,6 +38,8 @@ int run(const Options& options) {
       {.seed = options.common.seed, .threads = options.common.threads, .quiet = options.common.quiet, .stop = &stop},
       &header.simulations, &header.failed_simulations);
   for (const Log& log : logs) invocation.note(log.notes);
+  if (baseline.scores.size() < logs.size())
+    invocation.note({fmt::format("interrupted: rests on {} of {} logs", baseline.scores.size(), logs.size())});
   header.settings = {{"false_alarm", options.false_alarm}};
   const report::Json body = report::baseline_json(baseline);
   write_file(options.output, invocation.result(body));

@@ -1,9 +1,12 @@
 // `servodx diagnose LOG...`: detect, classify, size. Each log alone.
+#include <fmt/format.h>
+
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <memory>
 
 #include "base/error.h"
+#include "base/progress.h"
 #include "commands.h"
 #include "diagnose/diagnose.h"
 #include "invocation.h"
@@ -24,6 +27,20 @@ int code_of(const Diagnosis& diagnosis) {
   return diagnosis.verdict == "unknown" ? found_unknown : diagnosis.verdict == "fault" ? found_fault : ran;
 }
 
+std::vector<Diagnosis> judge_each(const std::vector<Log>& logs, const Table& tuned, const RigFile& rig,
+                                  const Baseline& baseline, const DiagnoseOptions& options) {
+  Progress progress("diagnose", {.quiet = options.quiet});
+  std::vector<Diagnosis> results;
+  long simulations = 0;
+  for (const Log& log : logs) {
+    if (*options.stop) break;
+    results.push_back(judge(assess(log, tuned, rig, options), baseline));
+    simulations += results.back().assessment.simulations;
+    progress.update(static_cast<double>(results.size()) / static_cast<double>(logs.size()), simulations);
+  }
+  return results;
+}
+
 int run(const Options& options) {
   require_option(!options.pool, "--pool", "logs cannot be pooled yet", "leave it out: each log is judged alone");
   Invocation invocation("diagnose", options.common);
@@ -40,28 +57,20 @@ int run(const Options& options) {
   header.inputs.push_back({options.baseline, file.sha256});
 
   const std::atomic<bool>& stop = stop_on_interrupt();
-  std::vector<Diagnosis> results;
+  const std::vector<Diagnosis> results = judge_each(
+      logs, tuned, rig, file.baseline,
+      {.seed = options.common.seed, .threads = options.common.threads, .quiet = options.common.quiet, .stop = &stop});
   std::string text;
   int worst = ran;
-  for (const Log& log : logs) {
-    if (stop) break;
-    results.push_back(judge(assess(log, tuned, rig,
-                                   {.seed = options.common.seed,
-                                    .threads = options.common.threads,
-                                    .quiet = options.common.quiet,
-                                    .stop = &stop}),
-                            file.baseline));
-    const Diagnosis& d = results.back();
+  for (const Diagnosis& d : results) {
     header.simulations += d.assessment.simulations;
     header.failed_simulations += d.assessment.failed_simulations;
-    invocation.note(log.notes);
     invocation.note(d.assessment.notes);
     text += (text.empty() ? "" : "\n") + report::text_of(d, {.colour = colour_wanted(), .written_to = ""});
     worst = std::max(worst, code_of(d));
   }
-  if (stop)
-    header.notes.push_back(
-        "interrupted: the last verdict rests on what was found so far, further logs were not judged");
+  if (results.size() < logs.size())
+    invocation.note({fmt::format("interrupted: {} of {} logs were judged", results.size(), logs.size())});
   header.settings = {{"false_alarm", file.baseline.asked}};
   invocation.finish(text, report::diagnose_json(results));
   return stop ? interrupted : options.exit_code ? worst : ran;

@@ -64,9 +64,10 @@ HandyUnit handy_unit(const std::string& unit, double magnitude) {
   constexpr std::string_view word = "fraction";
   if (const auto at = unit.find(word); at != std::string::npos) {
     std::string before = unit.substr(0, at);
-    const std::string after = unit.substr(at + word.size());
+    std::string after = unit.substr(at + word.size());
     while (before.ends_with(' ')) before.pop_back();
-    return {"%" + after + (before.empty() ? "" : " " + before), 100.0};
+    if (!before.empty()) after.insert(std::min(after.find(','), after.size()), " " + before);
+    return {"%" + after, 100.0};
   }
   return {unit, 1.0};
 }
@@ -85,6 +86,12 @@ std::string handy_interval(double value, double lower, double upper, const std::
 }
 
 std::string percent(double fraction) { return digits(100.0 * fraction, fraction < 0.1 ? 2 : 3) + " %"; }
+
+std::string chance(double probability) {
+  if (probability > 0.999) return "over 99.9 %";
+  if (probability < 0.001) return "under 0.1 %";
+  return percent(probability);
+}
 
 std::string duration(double seconds) {
   if (seconds < 60) return digits(seconds, seconds < 10 ? 2 : 3) + " s";

@@ -121,6 +121,7 @@ Json to_json(const Diagnosis& d) {
           {"action", d.action},
           {"gross", d.assessment.gross},
           {"null", number(d.assessment.null)},
+          {"channels", array_of(d.assessment.channels)},
           {"hypotheses", array_of(d.assessment.hypotheses)},
           {"notes", d.assessment.notes}};
 }

@@ -24,10 +24,10 @@ struct InHandyUnit {
   HandyUnit unit;
 };
 
-// Changes in standard errors: what moved most comes first.
+// Change over size: what moved most comes first.
 double moved(const ParameterResult& p) {
   const double change = std::abs(p.estimate - p.nominal);
-  return p.std_error > 0 ? change / p.std_error : change > 0 ? HUGE_VAL : 0.0;
+  return change > 0 ? change / std::max(std::abs(p.nominal), std::abs(p.estimate)) : 0.0;
 }
 
 std::string in_colour(const std::string& word, const std::string& verdict, bool colour) {
@@ -74,6 +74,24 @@ std::string held_rows(const std::vector<ParameterResult>& parameters) {
   return table.text();
 }
 
+// How the hypotheses stand: a named fault with its two runners-up, or the three that come nearest.
+std::pair<std::string, std::string> standing(const Diagnosis& d) {
+  std::vector<std::pair<double, std::string>> order;
+  if (d.verdict == "unknown")  // its probabilities say only that
+    for (const HypothesisResult& h : d.assessment.hypotheses) order.emplace_back(h.probability, h.name);
+  else
+    for (const auto& [label, p] : d.probabilities) order.emplace_back(p, label);
+  std::stable_sort(order.begin(), order.end(), [&](const auto& a, const auto& b) {
+    return std::pair(a.second == d.fault, a.first) > std::pair(b.second == d.fault, b.first);
+  });
+  if (order.size() > 3) order.resize(3);
+  std::vector<std::string> words;
+  for (const auto& [p, label] : order) words.push_back(label + " " + chance(p));
+  if (!d.fault || words.empty()) return {"nearest", join(words)};
+  words.erase(words.begin());
+  return {"probability", chance(order.front().first) + (words.empty() ? "" : "; then " + join(words))};
+}
+
 }  // namespace
 
 std::string text_of(const TuneResult& result, const TextOptions& options) {
@@ -99,11 +117,6 @@ std::string text_of(const Baseline& b, const TextOptions& options) {
   std::string text = fmt::format("threshold {} from {}", digits(b.threshold, 4), plural(b.logs, "fault-free log"));
   text += options.written_to.empty() ? "\n" : ": " + options.written_to + "\n";
   text += fmt::format("  {}\n", b.statement);
-  text += fmt::format("  false alarms: asked {}, promised {} (with 95 % confidence below {})\n", percent(b.asked),
-                      percent(b.promised), percent(b.promised_95));
-  if (b.logs_needed > b.logs)
-    text +=
-        fmt::format("  the rate asked for needs {}: {} more\n", plural(b.logs_needed, "log"), b.logs_needed - b.logs);
   Columns table("lrr", 2);
   table.row({"log", "score", "adequacy"});
   for (const Baseline::Score& s : b.scores) table.row({s.log, digits(s.score, 4), digits(s.adequacy)});
@@ -121,18 +134,8 @@ std::string text_of(const Diagnosis& d, const TextOptions& options) {
   if (d.verdict == "unknown") first += ": not like the fault-free logs, and no known fault explains it";
 
   Columns table("ll", 2);
-  const std::string chosen = d.fault.value_or(d.verdict == "healthy" ? "healthy" : "");
-  std::vector<std::pair<double, std::string>> others;
-  for (const auto& [label, p] : d.probabilities)
-    if (label != chosen) others.emplace_back(p, label);
-  std::stable_sort(others.begin(), others.end(), [](const auto& a, const auto& b) { return a.first > b.first; });
-  if (others.size() > 2) others.resize(2);
-  std::vector<std::string> runners_up;
-  for (const auto& [p, label] : others) runners_up.push_back(label + " " + percent(p));
-  if (const auto own = d.probabilities.find(chosen); own != d.probabilities.end())
-    table.row({"probability", percent(own->second) + (runners_up.empty() ? "" : "; then " + join(runners_up))});
-  else if (!runners_up.empty())
-    table.row({"nearest", join(runners_up)});
+  const auto [word, hypotheses] = standing(d);
+  table.row({word, hypotheses});
   table.row(
       {"error", fmt::format("{}, threshold {}; p = {}", digits(d.error), digits(d.threshold), digits(d.p_value, 2))});
   if (!d.assessment.gross.empty()) table.row({"seen at once", d.assessment.gross});
@@ -143,7 +146,9 @@ std::string text_of(const Diagnosis& d, const TextOptions& options) {
   table.row({"null", percent(d.assessment.null) + " of rated"});
 
   auto parameters = d.assessment.parameters;
-  std::erase_if(parameters, [](const ParameterResult& p) { return !was_fitted(p) || moved(p) == 0.0; });
+  std::erase_if(parameters, [](const ParameterResult& p) {
+    return moved(p) == 0.0 || p.name == "servovalve_null";  // the null has a line of its own
+  });
   std::stable_sort(parameters.begin(), parameters.end(),
                    [](const auto& a, const auto& b) { return moved(a) > moved(b); });
   constexpr std::size_t most = 5;

@@ -37,11 +37,8 @@ void expect_header(const Json& json, const std::string& command) {
 
 const std::string tune_call =
     "tune t1.csv t2.csv --params table.csv --rig rig.toml --generations 0 --effects none --quiet ";
-const std::string baseline_call = "baseline b1.csv b2.csv b3.csv --params tuned.csv --rig rig.toml --quiet ";
-const std::string diagnose_call =
-    "diagnose s1.csv b1.csv --params tuned.csv --rig rig.toml --baseline base.json --quiet ";
 
-// Each stage runs once, and only for the tests that need it: under ctest every test is a process of its own.
+// The table is tuned once, and only for the tests that need it: under ctest every test is a process of its own.
 class MainJob : public testing::Test {
  protected:
   static const Desk& desk() {
@@ -51,10 +48,10 @@ class MainJob : public testing::Test {
       desk->write("rig.toml", bytes_of(std::filesystem::path(SERVODX_SOURCE_DIR) / "data" / "rig.toml"));
       desk->write("t1.csv", excerpt("healthy/h12_mixed.csv", 700));
       desk->write("t2.csv", excerpt("healthy/h01_steps_large.csv", 700));
-      desk->write("b1.csv", excerpt("healthy/h15_no_supply_signals.csv", 700));
-      desk->write("b2.csv", excerpt("healthy/h04_multisine.csv", 700));
-      desk->write("b3.csv", excerpt("healthy/h03_sine_2hz.csv", 700));
-      desk->write("s1.csv", excerpt("fault/f02_clogged_filter_severe.csv", 700));
+      desk->write("b1.csv", excerpt("healthy/h15_no_supply_signals.csv", 300));
+      desk->write("b2.csv", excerpt("healthy/h04_multisine.csv", 300));
+      desk->write("b3.csv", excerpt("healthy/h03_sine_2hz.csv", 300));
+      desk->write("s1.csv", excerpt("fault/f02_clogged_filter_severe.csv", 300));
       return desk;
     }();
     return *made;
@@ -63,17 +60,6 @@ class MainJob : public testing::Test {
     static const Ended ended = desk().run(tune_call + "-o tuned.csv --json tuned.json");
     return ended;
   }
-  static const Ended& based() {
-    tuned();
-    static const Ended ended = desk().run(baseline_call + "-o base.json --false-alarm 0.3");
-    return ended;
-  }
-  static const Ended& diagnosed() {
-    based();
-    static const Ended ended = desk().run(diagnose_call + "--exit-code --json verdict.json");
-    return ended;
-  }
-
   static Json json(const std::string& name) { return Json::parse(bytes_of(desk() / name)); }
   static void expect_refused(const Ended& ended, const std::string& words) {
     EXPECT_EQ(ended.code, 2) << ended.err;
@@ -96,10 +82,8 @@ TEST_F(MainJob, TuneWritesTheTableAndTheContractsKeys) {
   const Json inputs = result["inputs"];
   EXPECT_EQ(inputs.size(), 4u);  // rig, table, two logs
   EXPECT_EQ(desk().run("list params --params tuned.csv").code, 0);
-}
 
-TEST_F(MainJob, TuneDoesNotDependOnTheNumberOfThreads) {
-  ASSERT_EQ(tuned().code, 0) << tuned().err;
+  // The number of threads changes no bit.
   ASSERT_EQ(desk().run(tune_call + "-o one.csv --threads 1").code, 0);
   EXPECT_EQ(bytes_of(desk() / "one.csv"), bytes_of(desk() / "tuned.csv"));
 }
@@ -117,30 +101,42 @@ TEST_F(MainJob, AnInterruptedTuneWritesTheBestSoFar) {
   EXPECT_NE(bytes_of(streams / "out").find("interrupted"), std::string::npos);
 }
 
-TEST_F(MainJob, BaselineWritesTheContractsKeys) {
-  ASSERT_EQ(based().code, 0) << based().err;
-  EXPECT_TRUE(based().out.starts_with("threshold ")) << based().out;
-  const Json result = json("base.json");
-  expect_header(result, "baseline");
-  expect_keys(result, {"threshold", "false_alarm", "scores"});
-  expect_keys(result["false_alarm"], {"asked", "promised", "logs", "statement"});
-  EXPECT_EQ(result["scores"].size(), 3u);
-  EXPECT_EQ(result["false_alarm"]["asked"], 0.3);
-}
-
-TEST_F(MainJob, BaselineRefusesLogsThatTunedTheTable) {
+TEST_F(MainJob, BaselineRefusesLogsThatTunedTheTableAndTooFewLogs) {
   ASSERT_EQ(tuned().code, 0) << tuned().err;
-  expect_refused(desk().run("baseline t1.csv b2.csv b3.csv --params tuned.csv --rig rig.toml -o other.json"), "t1.csv");
-  EXPECT_FALSE(std::filesystem::exists(desk() / "other.json"));
+  expect_refused(desk().run("baseline t1.csv b2.csv b3.csv --params tuned.csv --rig rig.toml -o base.json"),
+                 "t1.csv: ");
+  expect_refused(desk().run("baseline b1.csv b2.csv --params tuned.csv --rig rig.toml -o base.json"), "at least 3");
+  EXPECT_FALSE(std::filesystem::exists(desk() / "base.json"));
 }
 
-TEST_F(MainJob, BaselineRefusesFewerThanThreeLogs) {
+TEST_F(MainJob, DiagnoseRefusesABaselineThatDoesNotServe) {
   ASSERT_EQ(tuned().code, 0) << tuned().err;
-  expect_refused(desk().run("baseline b1.csv b2.csv --params tuned.csv --rig rig.toml -o other.json"), "three");
+  desk().write("other.json",
+               R"({"command": "baseline", "threshold": 3, "adequacy_limit": 1, "null_limit": 0.05, "tuned_sha256": "0",
+                   "false_alarm": {"asked": 0.1, "promised": 0.25, "promised_95": 0.6, "logs": 3, "logs_needed": 9,
+                   "statement": ""}, "scores": [{"log": "h.csv", "sha256": "1", "score": 1, "adequacy": 1}]})");
+  const std::string call = "diagnose s1.csv --params tuned.csv --rig rig.toml --baseline ";
+  expect_refused(desk().run(call + "other.json"),
+                 "other.json: column 'tuned_sha256': was made with another table than tuned.csv");
+  desk().write("cut.json", bytes_of(desk() / "other.json").substr(0, 300));
+  expect_refused(desk().run(call + "cut.json"), "cut.json:3: is not JSON");
 }
 
-TEST_F(MainJob, DiagnoseGivesEachLogAResultWithTheContractsKeys) {
-  diagnosed();
+TEST_F(MainJob, BaselineAndDiagnoseWriteTheContractsKeys) {
+  ASSERT_EQ(tuned().code, 0) << tuned().err;
+  const Ended based = desk().run(
+      "baseline b1.csv b2.csv b3.csv --params tuned.csv --rig rig.toml --quiet -o base.json --false-alarm 0.3");
+  ASSERT_EQ(based.code, 0) << based.err;
+  EXPECT_TRUE(based.out.starts_with("threshold ")) << based.out;
+  const Json base = json("base.json");
+  expect_header(base, "baseline");
+  expect_keys(base, {"threshold", "false_alarm", "scores"});
+  expect_keys(base["false_alarm"], {"asked", "promised", "logs", "statement"});
+  EXPECT_EQ(base["scores"].size(), 3u);
+  EXPECT_EQ(base["false_alarm"]["asked"], 0.3);
+
+  const std::string call = "diagnose s1.csv b1.csv --params tuned.csv --rig rig.toml --baseline base.json --quiet ";
+  const Ended diagnosed = desk().run(call + "--exit-code --json verdict.json");
   const Json result = json("verdict.json");
   expect_header(result, "diagnose");
   ASSERT_EQ(result["results"].size(), 2u);
@@ -153,24 +149,15 @@ TEST_F(MainJob, DiagnoseGivesEachLogAResultWithTheContractsKeys) {
     worst = std::max(worst, verdict == "fault" ? 10 : verdict == "unknown" ? 11 : 0);
   }
   EXPECT_EQ(result["results"][0]["log"], "s1.csv");
-  EXPECT_EQ(diagnosed().code, worst) << diagnosed().err;
-  EXPECT_TRUE(diagnosed().out.starts_with("s1.csv: ")) << diagnosed().out;
+  EXPECT_EQ(diagnosed.code, worst) << diagnosed.err;
+  EXPECT_TRUE(diagnosed.out.starts_with("s1.csv: ")) << diagnosed.out;
 
   // Without --exit-code a verdict is no failure, and the number of threads changes nothing.
-  const Ended ended = desk().run(diagnose_call + "--json - --threads 1");
+  const Ended ended = desk().run(call + "--json - --threads 1");
   EXPECT_EQ(ended.code, 0) << ended.err;
-  Json again = Json::parse(ended.out), before = json("verdict.json");
+  Json again = Json::parse(ended.out), before = result;
   again.erase("seconds"), before.erase("seconds");
   EXPECT_EQ(again, before);
-}
-
-TEST_F(MainJob, ABaselineThatDoesNotServeIsRefused) {
-  ASSERT_EQ(based().code, 0) << based().err;
-  desk().write("copy.csv", bytes_of(desk() / "tuned.csv") + "\n");
-  expect_refused(desk().run("diagnose s1.csv --params copy.csv --rig rig.toml --baseline base.json"),
-                 "base.json: column 'tuned_sha256': was made with another table than copy.csv");
-  desk().write("cut.json", bytes_of(desk() / "base.json").substr(0, 300));
-  expect_refused(desk().run("diagnose s1.csv --params tuned.csv --rig rig.toml --baseline cut.json"), "is not JSON");
 }
 
 }  // namespace

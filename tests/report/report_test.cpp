@@ -66,6 +66,8 @@ TEST(Handy, UnitsBringNumbersNearOne) {
   EXPECT_EQ(handy(0.02, "A"), "20 mA");
   EXPECT_EQ(handy(14.0 / 6e4, "m3/s"), "14 l/min");
   EXPECT_EQ(handy(0.52, "blocked fraction of the filter area"), "52 % of the filter area blocked");
+  EXPECT_EQ(handy(-0.5, "blocked fraction of one nozzle, negative for nozzle 2"),
+            "-50 % of one nozzle blocked, negative for nozzle 2");
   EXPECT_EQ(handy(0.2, "fraction of the torque gain left"), "20 % of the torque gain left");
   EXPECT_EQ(handy(6.03, "times the tuned clearance"), "6.03 times the tuned clearance");
   EXPECT_EQ(handy(0.5, "-"), "0.5");
@@ -216,13 +218,28 @@ TEST(DiagnoseText, AHealthyLogSaysSoFirst) {
   d.probabilities = {{"healthy", 0.97}, {"null_shift", 0.02}, {"sticky_spool", 0.01}};
   const std::string text = text_of(d, {});
   EXPECT_TRUE(text.starts_with("good.csv: healthy\n")) << text;
-  EXPECT_NE(text.find("97 %; then null_shift 2 %, sticky_spool 1 %"), std::string::npos) << text;
+  EXPECT_NE(text.find("healthy 97 %, null_shift 2 %, sticky_spool 1 %"), std::string::npos) << text;
 }
 
-TEST(BaselineText, SaysHowManyLogsAreMissing) {
+TEST(DiagnoseText, AnUnknownStateNamesWhatComesNearest) {
+  Diagnosis d;
+  d.log = "odd.csv";
+  d.verdict = "unknown";
+  d.probabilities = {{"unknown", 1.0}, {"healthy", 0.0}, {"sticky_spool", 0.0}};
+  d.assessment.hypotheses.resize(2);
+  d.assessment.hypotheses[0].name = "healthy";
+  d.assessment.hypotheses[0].probability = 1e-200;
+  d.assessment.hypotheses[1].name = "sticky_spool";
+  d.assessment.hypotheses[1].probability = 0.9999;
+  const std::string text = text_of(d, {});
+  EXPECT_TRUE(text.starts_with("odd.csv: UNKNOWN: ")) << text;
+  EXPECT_NE(text.find("sticky_spool over 99.9 %, healthy under 0.1 %"), std::string::npos) << text;
+}
+
+TEST(BaselineText, SaysWhatIsPromised) {
   const std::string text = text_of(some_baseline(), {.colour = false, .written_to = "base.json"});
   EXPECT_TRUE(text.starts_with("threshold 3.1 from 8 fault-free logs: base.json\n")) << text;
-  EXPECT_NE(text.find("needs 99 logs: 91 more"), std::string::npos) << text;
+  EXPECT_NE(text.find("8 logs promise at most one false alarm in 9\n"), std::string::npos) << text;
 }
 
 TEST(TuneReport, HeldRowsSayWhyAndFittedOnesHaveErrors) {
