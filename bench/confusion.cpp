@@ -122,7 +122,7 @@ int main(int argc, char** argv) {
       for (const std::string& a : d.ambiguous_with) ambiguous += " " + a;
       fmt::print("  {:28s} {:26s} {:7s} {:8.3g} -> {:22s} score {:8.2f} severity {:.3g} [{:.3g}, {:.3g}] adequacy {:.1f}{}{}{}\n", t.path, label_of(t.label), t.severity, t.value,
                  verdict, d.error, d.severity.value, d.severity.lower, d.severity.upper,
-                 std::min_element(d.assessment.hypotheses.begin(), d.assessment.hypotheses.end(), [](auto& a, auto& b) { return a.misfit < b.misfit; })->adequacy,
+                 std::min_element(d.assessment.hypotheses.begin(), d.assessment.hypotheses.end(), [](auto& x, auto& y) { return x.probability > y.probability; })->adequacy,
                  ambiguous.empty() ? "" : " ambiguous with" + ambiguous, d.onset ? fmt::format(" onset {:.3f} (true {:.3f})", *d.onset, t.onset) : "",
                  d.assessment.gross.empty() ? "" : " [" + d.assessment.gross + "]");
       if (t.set == "healthy") {

@@ -6,9 +6,9 @@
 namespace servodx {
 
 struct Place {
-  std::string file;
-  long line = 0;        // 1-based; 0 where no line applies
-  std::string column;   // header name or key; empty where none applies
+  std::string file = {};
+  long line = 0;            // 1-based; 0 where no line applies
+  std::string column = {};  // header name or key; empty where none applies
 };
 
 // Thrown by readers and option checks; the program prints what() and exits with code 2.

@@ -23,6 +23,16 @@ double worst_adequacy(const HypothesisFit& f) {
 
 std::string_view label(const HypothesisFit& f) { return f.fault ? f.fault->name : std::string_view("healthy"); }
 
+// A fault's model is a textbook model too: its own error is some tenth of its effect. Two hypotheses that both explain a
+// large effect to within that are not told apart by what is left.
+constexpr double effect_error = 0.1;
+
+// What one unit of misfit is worth: 1 where the best hypothesis fits as well as on the tuning logs, more where it does
+// not, or where the effect to be explained is large.
+double misfit_scale(double healthy, double best, double degrees) {
+  return std::max(1.0, best / degrees) + effect_error * effect_error * std::max(0.0, healthy - best) / degrees;
+}
+
 struct ChangePoint {
   std::size_t at = 0;
   bool found = false;
@@ -84,7 +94,7 @@ Assessment assess(const Log& log, const Table& tuned, const RigFile& rig, const 
   const LogData data = prepare(log, rig);
   const ErrorModel error = error_model_of(tuned);
   if (error.channels.empty())
-    throw InputError({tuned.path}, "the table does not say how wrong its model is", "make it with 'servodx tune'; its header carries the lines 'model error ...'");
+    throw InputError({.file = tuned.path}, "the table does not say how wrong its model is", "make it with 'servodx tune'; its header carries the lines 'model error ...'");
   const ParameterVector base = candidate_of(tuned);
   HypothesisSettings settings;
   settings.null_limit = rig.null_limit;
@@ -111,7 +121,9 @@ Assessment assess(const Log& log, const Table& tuned, const RigFile& rig, const 
     const double whole = best_misfit(h), split = before.fits.front().misfit + best_misfit(after);
     const double scale = std::max(1.0, split / h.degrees);
     // A second set of nuisances and a time were bought: they must pay for themselves.
-    if ((whole - split) / scale > 25.0) {
+    // And what stood before must be health, not the same fault fitted badly.
+    const bool was_healthy = (before.fits.front().misfit - best_misfit(before)) / scale < 10.0;
+    if (was_healthy && (whole - split) / scale > 25.0) {
       out.onset = data.scenario.time[change.at];
       h = std::move(after);
     }
@@ -120,14 +132,16 @@ Assessment assess(const Log& log, const Table& tuned, const RigFile& rig, const 
   const HypothesisFit& healthy = h.fits.front();
   const double smallest = best_misfit(h);
   const double scale = std::max(1.0, smallest / h.degrees);
+  const double separation = misfit_scale(healthy.misfit, smallest, h.degrees);
+  const auto weight = [&](const HypothesisFit& f) { return (f.fault ? f.fault->prior : 1.0) * std::exp(-0.5 * (f.misfit - smallest) / separation); };
   double total = 0, best_gain = 0;
-  for (const HypothesisFit& f : h.fits) total += std::exp(-0.5 * (f.misfit - smallest) / scale);
+  for (const HypothesisFit& f : h.fits) total += weight(f);
   for (const HypothesisFit& f : h.fits) {
     HypothesisResult r;
     r.name = label(f);
     r.misfit = f.misfit;
     r.gain = (healthy.misfit - f.misfit) / scale;
-    r.probability = std::exp(-0.5 * (f.misfit - smallest) / scale) / total;
+    r.probability = weight(f) / total;
     r.severity = f.severity;
     r.severity_lower = std::min(f.severity_lower, f.severity_upper);
     r.severity_upper = std::max(f.severity_lower, f.severity_upper);
@@ -137,12 +151,12 @@ Assessment assess(const Log& log, const Table& tuned, const RigFile& rig, const 
     best_gain = std::max(best_gain, f.ok ? r.gain : 0.0);
     out.hypotheses.push_back(std::move(r));
   }
-  std::stable_sort(out.hypotheses.begin() + 1, out.hypotheses.end(), [](const auto& a, const auto& b) { return a.misfit < b.misfit; });
+  std::stable_sort(out.hypotheses.begin() + 1, out.hypotheses.end(), [](const auto& a, const auto& b) { return a.probability > b.probability; });
   out.score = std::max(std::sqrt(best_gain), std::log(std::max(1.0, worst_adequacy(healthy))) / adequacy_spread);
   if (!out.gross.empty()) out.score = std::max(out.score, 1e3);
 
   // What moved under the best hypothesis.
-  const auto best = std::min_element(h.fits.begin(), h.fits.end(), [](const auto& a, const auto& b) { return a.misfit < b.misfit; });
+  const auto best = std::max_element(h.fits.begin(), h.fits.end(), [&](const auto& a, const auto& b) { return weight(a) < weight(b); });
   if (best->ok) {
     const FitProblem view({&data}, base, best->free);
     const ParameterVector moved = view.candidate(best->point, 0);
@@ -161,13 +175,13 @@ Assessment assess(const Log& log, const Table& tuned, const RigFile& rig, const 
 
 Baseline make_baseline(const std::vector<Log>& logs, const Table& tuned, const RigFile& rig, double false_alarm, const DiagnoseOptions& options,
                        long* simulations, long* failed) {
-  if (!(false_alarm > 0 && false_alarm < 1)) throw InputError({"--false-alarm"}, fmt::format("{} is not a rate", false_alarm), "give a number between 0 and 1, such as 0.01");
+  if (!(false_alarm > 0 && false_alarm < 1)) throw InputError({.file = "--false-alarm"}, fmt::format("{} is not a rate", false_alarm), "give a number between 0 and 1, such as 0.01");
   const std::vector<std::string> used = tuned_by(tuned);
   for (std::size_t i = 0; i < logs.size(); ++i) {
     if (std::find(used.begin(), used.end(), logs[i].sha256) != used.end())
-      throw InputError({logs[i].path}, "this log tuned " + tuned.path + ": its residual is smaller than a new log's", "give fault-free logs that the fit has not seen");
+      throw InputError({.file = logs[i].path}, "this log tuned " + tuned.path + ": its residual is smaller than a new log's", "give fault-free logs that the fit has not seen");
     for (std::size_t j = 0; j < i; ++j)
-      if (logs[j].sha256 == logs[i].sha256) throw InputError({logs[i].path}, "the same log as " + logs[j].path, "give each log once: the rate counts independent logs");
+      if (logs[j].sha256 == logs[i].sha256) throw InputError({.file = logs[i].path}, "the same log as " + logs[j].path, "give each log once: the rate counts independent logs");
   }
   if (logs.size() < 3) throw InputError({}, fmt::format("{} logs cannot set a threshold", logs.size()), "give at least 3 fault-free logs; the rate that can be promised is 1/(n+1)");
   Baseline b;
@@ -221,7 +235,7 @@ Diagnosis judge(Assessment a, const Baseline& baseline) {
   if (a.score <= baseline.threshold) {
     d.verdict = "healthy";
   } else {
-    const HypothesisResult& best = *std::min_element(a.hypotheses.begin(), a.hypotheses.end(), [](const auto& x, const auto& y) { return x.misfit < y.misfit; });
+    const HypothesisResult& best = *std::max_element(a.hypotheses.begin(), a.hypotheses.end(), [](const auto& x, const auto& y) { return x.probability < y.probability; });
     const bool wire = a.gross == "spool on both stops at small current";
     const bool adequate = best.adequacy <= fault_allowance * std::max(1.0, baseline.adequacy_limit);
     const HypothesisResult* named = nullptr;

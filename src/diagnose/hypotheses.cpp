@@ -93,6 +93,7 @@ void run(Attempt& a, const LogData& log, const ParameterVector& base, const Erro
   fit.fault = a.fault;
   fit.free = free_values(log, base, a.fault, a.start, settings.null_limit);
   FitProblem problem({&log}, base, fit.free, simulate_options);
+  problem.difference_step = 1e-3;  // a severity runs through contacts; its scale is the whole range
   whiten(problem, error, reference);
   LeastSquaresOptions o;
   o.max_iterations = settings.iterations;
@@ -128,9 +129,10 @@ void run(Attempt& a, const LogData& log, const ParameterVector& base, const Erro
       a.square[k] += r.residual[at + static_cast<long>(k)] * r.residual[at + static_cast<long>(k)] / effective / static_cast<double>(log.channels.size());
   }
   if (a.fault) {
-    // The curvature at the end, inflated where the model does not fit as well as it should.
+    // The curvature at the end, inflated where the model does not fit as well as it should, and the fault's own spread.
     const double worst = *std::max_element(fit.channel_adequacy.begin(), fit.channel_adequacy.end());
-    const double half = 1.96 * fit.standard_error[0] * std::max(1.0, worst);
+    const double range = a.fault->log_scale ? std::log(fit.free[0].upper / fit.free[0].lower) : fit.free[0].upper - fit.free[0].lower;
+    const double half = 1.96 * std::hypot(fit.standard_error[0] * std::max(1.0, worst), a.fault->spread / range);
     fit.severity = fit.free[0].from_unit(r.point[0]);
     fit.severity_lower = fit.free[0].from_unit(std::clamp(r.point[0] - half, 0.0, 1.0));
     fit.severity_upper = fit.free[0].from_unit(std::clamp(r.point[0] + half, 0.0, 1.0));

@@ -31,7 +31,7 @@ struct HypothesisFit {
 struct HypothesisSettings {
   double null_limit = 0.05;  // [fraction of rated]
   int threads = 0;
-  int iterations = 12;
+  int iterations = 20;
 };
 
 struct HypothesisFits {

@@ -10,7 +10,8 @@ inline const Fault feedback_wire_lost{
     .meaning = "the feedback wire is cracked or broken",
     .unit = "fraction of the wire stiffness left",
     .healthy = 1.0, .worst = 0.0, .log_scale = false, .least = 0.9,
-    .starts = {0.6, 0.1, 0.0},
+    .spread = 0.03,
+    .starts = {0.8, 0.5, 0.1},
     .test = "small steps: the static gain rises as the stiffness falls; without a wire the spool does not stop",
     .action = "critical: stop the machine",
     .apply = [](double* v, double s) { v[row::feedback_wire_stiffness] *= s; }};

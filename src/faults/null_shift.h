@@ -9,7 +9,8 @@ inline const Fault null_shift{
     .meaning = "the current at which the spool is centred has moved, against the fault-free logs, beyond the limit",
     .unit = "fraction of rated current",
     .healthy = 0.0, .worst = 0.35, .log_scale = false, .least = 0.05,
-    .starts = {0.12, -0.12},
+    .spread = 0.005,  // hysteresis
+    .starts = {0.1, 0.2, -0.1, -0.2},
     .test = "rest at zero command and read the spool",
     .action = "abuse: recalibrate the null",
     .apply = [](double* v, double s) { v[row::servovalve_null] += s; }};

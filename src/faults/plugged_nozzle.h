@@ -11,7 +11,8 @@ inline const Fault plugged_nozzle{
     .name = "plugged_nozzle",
     .meaning = "one nozzle of the first stage is partly blocked",
     .unit = "blocked fraction of one nozzle, negative for nozzle 2",
-    .healthy = 0.0, .worst = 0.98, .log_scale = false, .least = 0.03,
+    .healthy = 0.0, .worst = 0.98, .log_scale = false, .prior = 0.1, .least = 0.03,
+    .spread = 0.15,  // traded against the null
     .starts = {0.1, 0.7, -0.1, -0.7},
     .test = "full steps both ways: the slew differs by direction, where a shifted null moves both alike",
     .action = "critical: stop the machine",

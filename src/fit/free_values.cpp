@@ -61,7 +61,7 @@ void add_effect_rows(Table& table, const std::vector<std::string>& effects) {
     if (it == list.end()) {
       std::string known;
       for (const EffectInfo& e : list) known += (known.empty() ? "" : ", ") + e.name;
-      throw InputError({"--effects"}, "'" + name + "' is not an effect that can be freed", "use one of: " + known + ", or none");
+      throw InputError({.file = "--effects"}, "'" + name + "' is not an effect that can be freed", "use one of: " + known + ", or none");
     }
     for (const EffectParameter& p : it->parameters) {
       if (table.find(p.name) >= 0) continue;

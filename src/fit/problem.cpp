@@ -127,7 +127,7 @@ std::vector<Evaluation> FitProblem::evaluate(std::span<const Point> points) cons
 }
 
 bool FitProblem::jacobian(const Point& x, const Eigen::VectorXd& residual, Eigen::MatrixXd& jac) const {
-  constexpr double step = 1e-5;  // of the unit interval: five digits of the derivative
+  const double step = difference_step;
   struct Column {
     int j, log;
     double dx;

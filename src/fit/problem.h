@@ -41,6 +41,9 @@ class FitProblem {
   // The candidate of a log at a point.
   ParameterVector candidate(const Point& x, int log) const;
 
+  // Step of the batched differences, of the unit interval. Wider where contacts and friction roughen the response.
+  double difference_step = 1e-4;
+
   // Whitening: sigma of (log, channel), the same at every sample, or sample by sample.
   void set_sigma(int log, int channel, double sigma);
   void set_sigma(int log, int channel, std::vector<double> sigma);

@@ -84,14 +84,12 @@ void hold_out(FitProblem& problem, double part) {
     }
 }
 
-LeastSquaresResult local(Tuning& run, FitProblem& problem, const Point& x, int iterations, bool first, const char* label, double from,
-                         double to) {
+LeastSquaresResult local(Tuning& run, FitProblem& problem, const Point& x, int iterations, bool first, double from, double to) {
   LeastSquaresOptions o;
   o.max_iterations = iterations;
   o.difference = Difference::forward;
   o.cost_tolerance = 1e-6;
   o.compressed_first_pass = first;
-  (void)label;
   o.progress = [&](const LeastSquaresProgress& p) {
     run.progress.update(from + (to - from) * p.iteration / iterations, run.simulations + problem.simulations());
     return !run.stopped();
@@ -157,7 +155,7 @@ std::vector<Point> breadth(Tuning& run, const Point& start) {
   o.population = run.options.population;
   o.generations = run.options.generations;
   o.seed = run.options.seed;
-  o.archive = 4;
+  o.archive = 3;
   GeneticHooks hooks;
   hooks.generation = [&](const GeneticState& s) {
     if (!run.options.checkpoint.empty()) write_file(run.options.checkpoint, to_json(s));
@@ -174,8 +172,9 @@ std::vector<Point> breadth(Tuning& run, const Point& start) {
   const GeneticResult found = minimise_genetic(static_cast<int>(n), cost, o, seeds, hooks, saved ? &*saved : nullptr);
   run.simulations += problem.simulations();
   run.failed += problem.failed_simulations();
-  std::vector<Point> out = {full(found.state.best.point)};
+  std::vector<Point> out;
   for (const Individual& i : found.state.archive) out.push_back(full(i.point));
+  if (out.empty()) out.push_back(full(found.state.best.point));
   return out;
 }
 
@@ -187,7 +186,7 @@ LeastSquaresResult refine(Tuning& run, FitProblem& problem, Point x, ErrorModel&
     apply_error_model(problem, error, x);
     if (held > 0) hold_out(problem, held);
     const double a = from + (to - from) * round / rounds, b = from + (to - from) * (round + 1) / rounds;
-    r = local(run, problem, x, 12, false, "refine", a, b);
+    r = local(run, problem, x, 12, false, a, b);
     x = r.point;
     if (run.stopped()) break;
   }
@@ -228,7 +227,7 @@ TuneResult tune(const std::vector<Log>& logs, const Table& nominal, const RigFil
   // 2. Sensitivities at nominal: each row driven to its bounds, and what the data cannot tell apart is frozen.
   first_whitening(problem, x);
   Evaluation at_nominal = problem.evaluate(std::span(&x, 1)).front();
-  if (!at_nominal.ok) throw InputError({nominal.path}, "the simulation fails at the table's nominal values", "check the table against the rig's data sheet");
+  if (!at_nominal.ok) throw InputError({.file = nominal.path}, "the simulation fails at the table's nominal values", "check the table against the rig's data sheet");
   const std::size_t n_shared = run.shared.size();
   std::vector<Point> extremes;
   for (std::size_t j = 0; j < n_shared; ++j)
@@ -238,10 +237,12 @@ TuneResult tune(const std::vector<Log>& logs, const Table& nominal, const RigFil
       extremes.push_back(p);
     }
   std::vector<std::array<double, 2>> effect(n_shared, {std::nan(""), std::nan("")});
-  for (std::size_t i = 0; i < extremes.size(); ++i) {
-    const Evaluation e = problem.evaluate(std::span(&extremes[i], 1)).front();
-    if (e.ok) effect[i / 2][i % 2] = (e.residual - at_nominal.residual).head(problem.data_rows()).norm();
-    run.progress.update(0.05 * static_cast<double>(i) / static_cast<double>(extremes.size()), problem.simulations());
+  for (std::size_t first = 0; first < extremes.size(); first += 16) {
+    const std::size_t n = std::min<std::size_t>(16, extremes.size() - first);
+    const std::vector<Evaluation> e = problem.evaluate(std::span(&extremes[first], n));
+    for (std::size_t i = 0; i < n; ++i)
+      if (e[i].ok) effect[(first + i) / 2][(first + i) % 2] = (e[i].residual - at_nominal.residual).head(problem.data_rows()).norm();
+    run.progress.update(0.05 * static_cast<double>(first) / static_cast<double>(extremes.size()), problem.simulations());
   }
   Eigen::MatrixXd jacobian;
   std::vector<FreeValue> all_shared = run.shared;
@@ -278,7 +279,7 @@ TuneResult tune(const std::vector<Log>& logs, const Table& nominal, const RigFil
   std::vector<LeastSquaresResult> ends;
   for (std::size_t s = 0; s < starts.size() && !(run.stopped() && s > 0); ++s) {
     const double a = 0.35 + 0.35 * static_cast<double>(s) / static_cast<double>(starts.size());
-    ends.push_back(local(run, fit, starts[s], 8, true, "start", a, a + 0.35 / static_cast<double>(starts.size())));
+    ends.push_back(local(run, fit, starts[s], 6, true, a, a + 0.35 / static_cast<double>(starts.size())));
     out.starts.push_back(ends.back().cost);
   }
   const std::size_t best = static_cast<std::size_t>(std::min_element(out.starts.begin(), out.starts.end()) - out.starts.begin());
@@ -287,12 +288,12 @@ TuneResult tune(const std::vector<Log>& logs, const Table& nominal, const RigFil
 
   // 4. Weights from the model's own error, alternating with the fit; held-out part still held out.
   LeastSquaresResult end = ends[best];
-  if (!run.stopped()) end = refine(run, fit, x, out.error, options.heldout, 2, 0.7, 0.85);
+  if (!run.stopped()) end = refine(run, fit, x, out.error, options.heldout, 1, 0.7, 0.8);
   x = end.point;
   const std::vector<Trajectory> heldout_run = fit.trajectories(x);
 
   // 5. Final fit on everything.
-  if (!run.stopped()) end = refine(run, fit, x, out.error, 0.0, 2, 0.85, 1.0);
+  if (!run.stopped()) end = refine(run, fit, x, out.error, 0.0, 2, 0.8, 1.0);
   x = end.point;
   out.error = learn_error_model(fit, x);
   apply_error_model(fit, out.error, x);

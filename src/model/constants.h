@@ -16,14 +16,14 @@ inline constexpr double jet_angle_factor = 0.43;    // 2 Cd Cv cos(69 deg): flow
 inline constexpr double flapper_damping_ratio = 0.3;  // eddy currents and squeeze film; at 1 kHz not separable from driver_bandwidth
 inline constexpr double spool_length_in_diameters = 6.0;  // spool mass = steel cylinder of this length; its mode (kHz) is above any log
 inline constexpr double spool_static_over_coulomb = 1.2;  // breakaway over sliding friction of a lubricated spool
-inline constexpr double spool_stribeck_velocity = 1e-2;    // [m/s] the lubricated film carries from some cm/s
+inline constexpr double spool_stribeck_velocity = 5e-2;    // [m/s] a steeper fall makes the spool chatter, which no log at 1 kHz could hold
 inline constexpr double piston_stribeck_velocity = 2e-2;  // [m/s] elastomer seals slide fully from some cm/s
 inline constexpr double clean_filter_area_ratio = 5.0;    // clean filter area over both fixed orifices' areas: 4 % of the pilot pressure is lost
 inline constexpr double slot_resistance = 6.0;      // creeping-flow length of an open edge, in openings: moves laminar flow to turbulent near Re 100
 inline constexpr double filter_node_volume = 2e-7;  // [m3] between filter and orifices; a pole near 0.1 ms
 inline constexpr double pilot_volume_in_stops = 4.0;  // spool end volume = end area times this many stop travels
 inline constexpr double spool_stop_stiffness = 2e7;   // [N/m] full pilot force penetrates some 20 um
-inline constexpr double spool_stop_damping = 400.0;   // [N s/m] critical with the stop stiffness at a tenth of a N s2/m
+inline constexpr double spool_stop_damping = 3000.0;  // [N s/m] oil squeezed out between spool end and cap: no rebound
 inline constexpr double piston_stop_stiffness = 2e8;  // [N/m] full actuator force penetrates 0.1 mm
 inline constexpr double piston_stop_damping = 5e4;    // [N s/m] an impact does not rebound
 
@@ -32,9 +32,9 @@ inline constexpr double backlash_rounding = 5e-7;     // [m] ball contact; a ten
 inline constexpr double nozzle_rounding = 1e-6;       // [m] flapper at a nozzle: seat roughness; 3 % of the gap
 inline constexpr double stop_rounding = 1e-6;         // [m] flapper stop; a wider one bends the slew
 inline constexpr double edge_rounding = 1e-6;         // [m] corner radius of a new metering edge
-inline constexpr double spool_stop_rounding = 1e-6;   // [m]
+inline constexpr double spool_stop_rounding = 1e-5;   // [m] a slewing spool must feel its stop a step ahead
 inline constexpr double piston_stop_rounding = 1e-5;  // [m]
-inline constexpr double spool_friction_rounding = 5e-5;   // [m/s] a stuck spool creeps under 0.05 um in a millisecond: below any sensor
+inline constexpr double spool_friction_rounding = 2e-4;   // [m/s] a stuck spool creeps by under 0.2 um in a millisecond, below a sensor's noise; sharper, differences fail
 inline constexpr double filter_direction_rounding = 2e-3; // [m/s] spool speed over which rows 1 and 2 hand over
 inline constexpr double piston_friction_rounding = 1e-3;  // [m/s] a third of a percent of no-load speed
 inline constexpr double orifice_transition = 1e4;         // [Pa] linear below 0.1 bar
