@@ -34,7 +34,9 @@ std::vector<Diagnosis> judge_each(const std::vector<Log>& logs, const Table& tun
   long simulations = 0;
   for (const Log& log : logs) {
     if (*options.stop) break;
-    results.push_back(judge(assess(log, tuned, rig, options), baseline));
+    Assessment assessment = assess(log, tuned, rig, options);
+    if (*options.stop) break;
+    results.push_back(judge(std::move(assessment), baseline));
     simulations += results.back().assessment.simulations;
     progress.update(static_cast<double>(results.size()) / static_cast<double>(logs.size()), simulations);
   }

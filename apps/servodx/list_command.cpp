@@ -50,28 +50,74 @@ Listing faults(const Options&, Invocation&) {
   return out;
 }
 
+// Effects that the base model has already: rows of the table, which a rig may hold at their off value.
+struct RowEffect {
+  const char *name, *where, *meaning;
+  double off;  // [SI] of every row
+  std::vector<int> rows;
+};
+const std::vector<RowEffect>& row_effects() {
+  static const std::vector<RowEffect> list = {
+      {"stribeck_friction",
+       "piston_force",
+       "breakaway friction of the piston above sliding friction",
+       0.0,
+       {row::piston_stribeck_friction}},
+      {"asymmetric_lap",
+       "metering",
+       "overlap of each metering edge of its own",
+       0.0,
+       {row::lap_pa, row::lap_pb, row::lap_at, row::lap_bt}},
+      {"hose_compliance", "flow_a, flow_b", "lines that widen under pressure", 0.0, {row::hose_compliance}},
+      {"air_entrainment", "flow_a, flow_b", "free air in the oil", 0.0, {row::air_fraction}},
+      {"cross_piston_leakage", "flow_a, flow_b", "oil that passes the piston seal", 0.0, {row::cross_piston_leakage}},
+      {"sensor_lag", "sensor:piston_position", "lag of the piston position sensor", 0.0, {row::position_sensor_lag}},
+      {"sensor_gain_error",
+       "sensor:piston_position",
+       "gain error of the piston position sensor",
+       1.0,
+       {row::position_sensor_gain}},
+      {"flow_force", "spool", "steady flow force on the spool", 0.0, {row::flow_force_coefficient}},
+  };
+  return list;
+}
+
 Listing effects(const Options&, Invocation&) {
   Listing out;
-  Columns table("llll");
-  table.row({"effect", "where", "rows", "meaning"});
-  for (const EffectInfo& effect : effect_list()) {
+  Columns table("lllll");
+  table.row({"effect", "kind", "where", "frees the rows", "meaning"});
+  const auto add = [&](const std::string& name, const char* kind, const std::string& where, const std::string& meaning,
+                       const Json& parameters) {
     std::vector<std::string> names;
-    Json rows = Json::array();
-    for (const EffectParameter& p : effect.parameters) {
-      names.emplace_back(p.name);
-      rows.push_back({{"name", p.name},
-                      {"unit", p.unit},
-                      {"off", p.off},
-                      {"lower", p.lower},
-                      {"upper", p.upper},
-                      {"start", p.start},
-                      {"meaning", p.meaning}});
-    }
-    table.row({effect.name, effect.place, report::join(names), effect.meaning});
+    for (const Json& p : parameters) names.push_back(p.at("name"));
+    table.row({name, kind, where, report::join(names), meaning});
     out.items.push_back(
-        {{"name", effect.name}, {"where", effect.place}, {"meaning", effect.meaning}, {"parameters", rows}});
+        {{"name", name}, {"kind", kind}, {"where", where}, {"meaning", meaning}, {"parameters", parameters}});
+  };
+  for (const EffectInfo& effect : effect_list()) {
+    Json parameters = Json::array();
+    for (const EffectParameter& p : effect.parameters)
+      parameters.push_back({{"name", p.name},
+                            {"unit", p.unit},
+                            {"off", p.off},
+                            {"lower", p.lower},
+                            {"upper", p.upper},
+                            {"start", p.start},
+                            {"meaning", p.meaning}});
+    add(effect.name, "file", effect.place, effect.meaning, parameters);
   }
-  out.text = table.text();
+  for (const RowEffect& effect : row_effects()) {
+    Json parameters = Json::array();
+    for (const int at : effect.rows) {
+      const ParameterInfo& p = parameter_list[static_cast<std::size_t>(at)];
+      parameters.push_back(
+          {{"id", p.id}, {"name", p.name}, {"unit", p.unit}, {"off", effect.off}, {"meaning", p.meaning}});
+    }
+    add(effect.name, "table", effect.where, effect.meaning, parameters);
+  }
+  out.text = table.text() +
+             "file: physics of its own, src/effects/; 'tune --effects A,B' adds its rows and frees them\n"
+             "table: rows among the 41; 'estimate' 1 frees one, 0 holds it at its nominal value\n";
   return out;
 }
 

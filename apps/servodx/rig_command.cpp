@@ -1,13 +1,15 @@
 #include "rig_command.h"
 
+#include <fmt/format.h>
+
 #include <CLI/CLI.hpp>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
 
 #include "base/atomic_file.h"
-#include "base/error.h"
 #include "base/sha256.h"
+#include "invocation.h"
 #include "rig/rig_run.h"
 #include "signals/log.h"
 
@@ -15,6 +17,7 @@ namespace servodx {
 namespace {
 
 struct Options {
+  CommonOptions common;
   std::string model = "params/rigs/borello2009.toml";
   std::string output;
   double celsius = 40.0;
@@ -31,16 +34,36 @@ std::string truth_path(const std::string& log) {
 }
 
 void run(Options& options) {
+  require_option(options.common.rig.empty(), "--rig", "is a data sheet, and the virtual rig is not made from one",
+                 "name the rig's definition with --rig-model");
+  options.run.seed = options.common.seed;
   options.run.temperature = options.celsius + rig::zero_celsius;
   options.run.faults.clear();
   for (const auto& fault : options.faults) rig::add_fault(fault, options.run.faults);
+  Invocation invocation("rig", options.common);
+  const std::string truth = truth_path(options.output);
+  invocation.check_files({options.model}, {options.output, truth});
   const rig::RigModel model = rig::read_rig_model(options.model);
+  const std::string model_sha256 = sha256_of_file(options.model);
+
   rig::RigLog log = rig::run_rig(model, options.run);
   log.truth["version"] = SERVODX_VERSION;
-  log.truth["inputs"] = {{{"path", options.model}, {"sha256", sha256_of_file(options.model)}}};
+  log.truth["inputs"] = {{{"path", options.model}, {"sha256", model_sha256}}};
   write_log(options.output, log.columns, log.comments);
   log.truth["sha256"] = sha256_of_file(options.output);
-  write_file(truth_path(options.output), log.truth.dump(2) + "\n");
+  write_file(truth, log.truth.dump(2) + "\n");
+
+  report::Header& header = invocation.header();
+  header.inputs.push_back({options.model, model_sha256});
+  header.simulations = 1;
+  header.settings = {{"excitation", options.run.excitation},
+                     {"duration", options.run.duration},
+                     {"rate", options.run.rate},
+                     {"temperature", options.celsius},
+                     {"faults", options.faults}};
+  const std::size_t samples = log.columns.front().value.size();
+  invocation.finish(fmt::format("wrote {} ({} samples) and {}\n", options.output, samples, truth),
+                    {{"output", options.output}, {"truth_file", truth}, {"samples", samples}, {"truth", log.truth}});
 }
 
 std::string names() {
@@ -68,8 +91,10 @@ void add_rig_command(CLI::App& app) {
   command->add_option("--onset", options->run.onset, "time at which the faults step in [s]; without: from the start");
   command->add_option("--jitter", options->run.jitter, "rms of the sampling instants [s]");
   command->add_option("--channels", options->run.channels, "signals to log beside time and command")->delimiter(',');
-  command->add_option("--seed", options->run.seed, "of noise and random commands")->capture_default_str();
-  command->add_option("-o,--output", options->output, "the log, CSV")->required();
+  command->add_option("-o,--output", options->output, "the log, CSV; the truth goes beside it")
+      ->required()
+      ->type_name("LOG.csv");
+  add_common_options(*command, options->common);
   command->footer(names());
   command->callback([options] { run(*options); });
 }

@@ -62,8 +62,7 @@ void run(const Options& options) {
   if (data.channels.empty())
     throw InputError({options.log, 0, ""}, "holds no signal that the model reports",
                      "log spool or piston position, both chamber pressures or a flow");
-  ParameterVector candidate = candidate_of(table);
-  if (rig.command_hold == CommandHold::linear) candidate[nuisance::command_slope] = 1.0;
+  const ParameterVector candidate = candidate_of(table);
   const SimulateOptions how = simulate_options(options, data);
   Trajectory simulated = simulate(data.scenario, candidate, how);
   if (!simulated.ok)

@@ -99,9 +99,11 @@ Assessment assess(const Log& log, const Table& tuned, const RigFile& rig, const 
   HypothesisSettings settings;
   settings.null_limit = rig.null_limit;
   settings.threads = options.threads;
+  settings.stop = options.stop;
   HypothesisFits h = fit_hypotheses(data, base, error, settings);
   out.simulations = h.simulations;
   out.failed_simulations = h.failed;
+  if (options.stop && options.stop->load()) return out;
   out.gross = gross_finding(data, base);
   for (std::size_t c = 0; c < data.channels.size() && c < h.fits.front().channel_rms.size(); ++c)
     out.channels.push_back({data.channels[c].signal, log.channels[index(data.channels[c].signal)].unit, h.fits.front().channel_rms[c], data.channels[c].noise, h.fits.front().channel_rms[c]});
@@ -193,15 +195,16 @@ Baseline make_baseline(const std::vector<Log>& logs, const Table& tuned, const R
   long total = 0;
   for (std::size_t i = 0; i < logs.size(); ++i) {
     const Assessment a = assess(logs[i], tuned, rig, options);
+    if (options.stop && options.stop->load()) break;
     b.scores.push_back({a.log, a.sha256, a.score, a.hypotheses.front().adequacy});
     b.adequacy_limit = std::max(b.adequacy_limit, a.hypotheses.front().adequacy);
     total += a.simulations;
     if (simulations) *simulations += a.simulations;
     if (failed) *failed += a.failed_simulations;
     progress.update(static_cast<double>(i + 1) / static_cast<double>(logs.size()), total);
-    if (options.stop && options.stop->load()) break;
   }
   b.logs = static_cast<int>(b.scores.size());
+  if (b.scores.empty()) return b;
   std::vector<double> sorted;
   for (const Baseline::Score& s : b.scores) sorted.push_back(s.score);
   std::sort(sorted.begin(), sorted.end());

@@ -46,6 +46,7 @@ struct Assessment {
   long simulations = 0, failed_simulations = 0;
 };
 
+// Interrupted through options.stop, it returns at once with an assessment to be thrown away.
 Assessment assess(const Log& log, const Table& tuned, const RigFile& rig, const DiagnoseOptions& options);
 
 struct Baseline {

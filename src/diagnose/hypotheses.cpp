@@ -85,8 +85,22 @@ struct Attempt {
   long simulations = 0, failed = 0;
 };
 
+// The point to begin at: where this attempt got to before, else the severity's start and, for the rest, what health
+// came to.
+Point starting_point(const Attempt& a, const FitProblem& problem, const HypothesisFit* healthy) {
+  if (a.fit.ok) return a.fit.point;
+  Point x = problem.start();
+  if (healthy && healthy->ok)
+    for (std::size_t j = 0; j < x.size(); ++j)
+      for (std::size_t k = 0; k < healthy->free.size(); ++k)
+        if (problem.free()[j].name == healthy->free[k].name) x[j] = healthy->point[k];
+  return x;
+}
+
 void run(Attempt& a, const LogData& log, const ParameterVector& base, const ErrorModel& error, const Trajectory& reference,
-         const HypothesisSettings& settings) {
+         const HypothesisFit* healthy, int iterations, const HypothesisSettings& settings) {
+  const auto stopped = [&] { return settings.stop && settings.stop->load(); };
+  if (stopped()) return;
   SimulateOptions simulate_options;
   simulate_options.threads = 1;
   HypothesisFit& fit = a.fit;
@@ -96,13 +110,15 @@ void run(Attempt& a, const LogData& log, const ParameterVector& base, const Erro
   problem.difference_step = 1e-3;  // a severity runs through contacts; its scale is the whole range
   whiten(problem, error, reference);
   LeastSquaresOptions o;
-  o.max_iterations = settings.iterations;
+  o.max_iterations = iterations;
   o.difference = Difference::forward;
   o.cost_tolerance = 1e-4;
-  const LeastSquaresResult r = minimise_least_squares(problem.least_squares(), problem.start(), o);
-  a.simulations = problem.simulations();
-  a.failed = problem.failed_simulations();
+  o.progress = [&](const LeastSquaresProgress&) { return !stopped(); };
+  const LeastSquaresResult r = minimise_least_squares(problem.least_squares(), starting_point(a, problem, healthy), o);
+  a.simulations += problem.simulations();
+  a.failed += problem.failed_simulations();
   fit.stops = {r.stopped};
+  fit.standard_error.clear(), fit.channel_adequacy.clear(), fit.channel_rms.clear();
   if (r.reason == StopReason::start_failed) return;
   fit.ok = true;
   fit.misfit = 2 * r.misfit;
@@ -147,26 +163,41 @@ HypothesisFits fit_hypotheses(const LogData& log, const ParameterVector& base, c
   SimulateOptions options;
   options.threads = settings.threads;
   const Trajectory reference = simulate(log.scenario, base, options);
-  std::vector<Attempt> attempts(1);
+  Attempt health;
+  run(health, log, base, error, reference, nullptr, settings.iterations, settings);
+  std::vector<Attempt> attempts;
   for (const Fault* fault : fault_list())
     for (double start : fault->starts) attempts.push_back({fault, start, {}, {}, 0, 0});
   const int threads = settings.threads > 0 ? settings.threads : omp_get_max_threads();
-  const auto count = static_cast<long>(attempts.size());
+  const auto all = [&](int iterations) {
+    const auto count = static_cast<long>(attempts.size());
 #pragma omp parallel for schedule(dynamic, 1) num_threads(threads)
-  for (long i = 0; i < count; ++i) run(attempts[static_cast<std::size_t>(i)], log, base, error, reference, settings);
+    for (long i = 0; i < count; ++i)
+      run(attempts[static_cast<std::size_t>(i)], log, base, error, reference, &health.fit, iterations, settings);
+  };
+  // Every start gets a few steps; the best of each fault goes on.
+  constexpr int few = 5;
+  all(few);
+  out.simulations = health.simulations, out.failed = health.failed;
+  std::vector<Attempt> best;
+  for (Attempt& a : attempts) {
+    if (best.empty() || best.back().fault != a.fault) {
+      best.push_back(std::move(a));
+      continue;
+    }
+    Attempt& b = best.back();
+    const long simulations = a.simulations + b.simulations, failed = a.failed + b.failed;
+    if (a.fit.ok && a.fit.misfit < b.fit.misfit) b = std::move(a);
+    b.simulations = simulations, b.failed = failed;
+  }
+  attempts = std::move(best);
+  all(settings.iterations - few);
+  out.healthy_square = std::move(health.square);
+  out.fits.push_back(std::move(health.fit));
   for (Attempt& a : attempts) {
     out.simulations += a.simulations;
     out.failed += a.failed;
-    const auto it = std::find_if(out.fits.begin(), out.fits.end(), [&](const HypothesisFit& f) { return f.fault == a.fault; });
-    if (!a.fault) out.healthy_square = std::move(a.square);
-    if (it == out.fits.end()) {
-      out.fits.push_back(std::move(a.fit));
-      continue;
-    }
-    std::vector<std::string> stops = it->stops;
-    stops.insert(stops.end(), a.fit.stops.begin(), a.fit.stops.end());
-    if (a.fit.ok && a.fit.misfit < it->misfit) *it = std::move(a.fit);
-    it->stops = std::move(stops);
+    out.fits.push_back(std::move(a.fit));
   }
   for (const FitChannel& c : log.channels) {
     const ChannelError* e = error.find(c.signal);

@@ -4,6 +4,7 @@
 // that), the null within its limit. A fault's hypothesis lets its own severity run from `least` to the worst, all else as
 // in health. So a gain of a fault over health is what only a fault explains.
 #pragma once
+#include <atomic>
 #include <optional>
 #include <string>
 #include <vector>
@@ -32,6 +33,7 @@ struct HypothesisSettings {
   double null_limit = 0.05;  // [fraction of rated]
   int threads = 0;
   int iterations = 20;
+  const std::atomic<bool>* stop = nullptr;  // set: give up; what comes back is worthless
 };
 
 struct HypothesisFits {

@@ -42,7 +42,7 @@ std::vector<FreeValue> nuisance_values(const LogData& log, int l, const Paramete
   // Valves are delivered nulled within 2 % and move by some per cent with temperature.
   const double null = base[row::servovalve_null];
   out.push_back({"servovalve_null", row::servovalve_null, null - null_limit, null + null_limit, false, null, 0.02 / (2 * null_limit), l});
-  out.push_back({"command_slope", nuisance::command_slope, 0.0, 1.0, false, 0.5, 1.0, l});
+  if (!log.scenario.command_slope) out.push_back({"command_slope", nuisance::command_slope, 0.0, 1.0, false, 0.5, 1.0, l});
   if (pressures) out.push_back({"air_fraction", row::air_fraction, 2e-4, 0.08, true, 0.005, 0.2, l});
   // Offset of the spool sensor against the hydraulic null: 1 % of a stroke bounds it; its spread is a tenth of that.
   if (has(Signal::spool_position)) out.push_back({"spool_offset", nuisance::spool_offset, -5e-6, 5e-6, false, 0.0, 0.1, l});

@@ -97,6 +97,7 @@ LogData prepare(const Log& log, const RigFile& rig) {
   s.return_pressure = input(Signal::return_pressure);
   s.load_force = input(Signal::load_force);
   s.rated_current = rig.fact("valve.rated_current").value_or(0.02);
+  if (rig.command_hold) s.command_slope = *rig.command_hold == CommandHold::linear ? 1.0 : 0.0;
   constexpr double reference_temperature = 313.15;  // [K] where the table's values hold
   const double temperature = log.has(Signal::oil_temperature) ? mean_of_present(log[Signal::oil_temperature]) : reference_temperature;
   s.oil = oil_at(rig.fluid.density, rig.fluid.kinematic_viscosity, temperature);

@@ -117,7 +117,7 @@ struct Drive<T, EffectList<E...>> {
     else return Nothing{};
   }
   std::tuple<decltype(memory_of(E{}))...> memory;
-  void rest(const T& current) {
+  void rest([[maybe_unused]] const T& current) {
     (
         [&] {
           if constexpr (requires { typename E::template Memory<T>; })
@@ -131,7 +131,7 @@ struct Drive<T, EffectList<E...>> {
     ((found = std::is_same_v<E, X> ? at : found, ++at), ...);
     return found;
   }
-  T operator()(T current, const T* p, const T& rated) {
+  T operator()(T current, [[maybe_unused]] const T* p, [[maybe_unused]] const T& rated) {
     (
         [&] {
           if constexpr (requires { typename E::template Memory<T>; })
@@ -154,6 +154,7 @@ void run_pack(const Scenario& in, const ParameterVector* const* candidates, Traj
   std::array<T, n_candidate> p;
   for (int k = 0; k < n_candidate; ++k)
     for (int lane = 0; lane < width; ++lane) Lanes<T>::set(p[k], lane, (*candidates[lane < lanes ? lane : 0])[k]);
+  if (in.command_slope) p[nuisance::command_slope] = T(*in.command_slope);
   if (in.current_measured) p[row::driver_bandwidth] = T(2e4);  // the amplifier is behind us
   const Derived<T> d = derive<T>(p.data(), in.oil);
   const T rated = T(in.rated_current), null = p[row::servovalve_null] * rated;
@@ -200,7 +201,7 @@ void run_pack(const Scenario& in, const ParameterVector* const* candidates, Traj
     }
   }
   const auto report = [&](std::size_t k, const Inputs<T>& now) {
-    std::array<T, n_simulated> out;
+    std::array<T, n_simulated> out{};
     out[0] = y[s_x_spool] + p[nuisance::spool_offset];
     // A first-order lag of a smooth motion: true to first order in lag over period.
     out[1] = p[row::position_sensor_gain] * (y[s_x_piston] - p[row::position_sensor_lag] * y[s_v_piston]);
@@ -233,8 +234,8 @@ void run_pack(const Scenario& in, const ParameterVector* const* candidates, Traj
     return any;
   };
 
-  System<T, Effects, false> live{p.data(), d, {}, {}, T(0.0), T(0.0), T(0.0), T(0.0)};
   Inputs<T> now = inputs_at(0, current);
+  System<T, Effects, false> live{p.data(), d, now, now, T(0.0), T(0.0), T(0.0), T(0.0)};
   if (!report(0, now)) return;
   // A linearly implicit step does not see a stop that it has not reached. After a jump the flapper crosses its gap in a
   // tenth of a millisecond, so the steps are short until the spool has answered. The schedule comes from the log alone:

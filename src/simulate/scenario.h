@@ -32,6 +32,7 @@ struct Scenario {
   std::vector<double> load_force;       // [N] empty: none
   Oil oil;
   double rated_current = 0.02;          // [A]
+  std::optional<double> command_slope;  // what the rig file says of the command between samples; empty: the candidate's
   // Measured at the first sample, where the log has it.
   std::optional<double> spool_start, pressure_a_start, pressure_b_start, piston_start;
   double piston_velocity_start = 0.0;   // [m/s]
