@@ -38,7 +38,7 @@ constexpr Pattern<n> diagonal_only() { return {}; }
 
 using Dense = std::vector<std::vector<double>>;
 
-// Gauss with full row exchange, nothing of the pattern used.
+// Gauss with row exchange; knows nothing of the pattern.
 std::vector<double> dense_solve(Dense a, std::vector<double> b) {
   const std::size_t m = b.size();
   for (std::size_t k = 0; k < m; ++k) {
