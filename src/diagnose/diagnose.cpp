@@ -224,8 +224,10 @@ Baseline make_baseline(const std::vector<Log>& logs, const Table& tuned, const R
 
 Diagnosis judge(Assessment a, const Baseline& baseline) {
   constexpr double ambiguous_probability = 0.05;
-  // A fault is known less well than health: its hypothesis may leave twice the worst error that healthy logs show.
+  // A fault is known less well than health: its hypothesis may leave twice the worst error that healthy logs show, and a
+  // quarter of what it has to explain.
   constexpr double fault_allowance = 2.0;
+  constexpr double unexplained_part = 0.25;
   Diagnosis d;
   d.log = a.log;
   d.error = a.score;
@@ -240,7 +242,8 @@ Diagnosis judge(Assessment a, const Baseline& baseline) {
   } else {
     const HypothesisResult& best = *std::max_element(a.hypotheses.begin(), a.hypotheses.end(), [](const auto& x, const auto& y) { return x.probability < y.probability; });
     const bool wire = a.gross == "spool on both stops at small current";
-    const bool adequate = best.adequacy <= fault_allowance * std::max(1.0, baseline.adequacy_limit);
+    const double to_explain = a.hypotheses.front().adequacy;  // healthy comes first
+    const bool adequate = best.adequacy <= std::hypot(fault_allowance * std::max(1.0, baseline.adequacy_limit), unexplained_part * to_explain);
     const HypothesisResult* named = nullptr;
     if (wire) {
       for (const HypothesisResult& h : a.hypotheses)

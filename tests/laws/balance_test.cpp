@@ -1,0 +1,228 @@
+// What the equations must keep whatever the numbers: oil, symmetry, dissipation.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "laws/bench.h"
+
+namespace servodx {
+namespace {
+
+template <class Effects>
+void stored_rates_balance(const ParameterVector& v) {
+  const Bench<Effects> bench(v);
+  const Derived<double>& d = bench.derived();
+  const double* p = bench.p();
+  for (unsigned trial = 0; trial < 200; ++trial) {
+    Random random(11, trial);
+    const auto y = bench.state(random);
+    const auto u = bench.inputs(random);
+    const auto f = bench.rate(y, u);
+    // Chambers: what the edges let in either is stored or makes room for the piston; the leak across it cancels.
+    const double v_rel = f[s_x_piston];
+    const double volume_a = p[row::dead_volume_a] + p[row::piston_area_a] * (p[row::piston_stroke] / 2 + y[s_x_piston]);
+    const double volume_b = p[row::dead_volume_b] + p[row::piston_area_b] * (p[row::piston_stroke] / 2 - y[s_x_piston]);
+    const double stored_a = chamber_compliance(volume_a, y[s_p_a], d, p) * f[s_p_a] + p[row::piston_area_a] * v_rel;
+    const double stored_b = chamber_compliance(volume_b, y[s_p_b], d, p) * f[s_p_b] - p[row::piston_area_b] * v_rel;
+    const auto edge = [&](double opening, double dp) { return std::get<0>(metering_edge(opening, dp, d, p)); };
+    const double in = edge(y[s_x_spool] - p[row::lap_pa], u.supply_pressure - y[s_p_a]) +
+                      edge(-y[s_x_spool] - p[row::lap_pb], u.supply_pressure - y[s_p_b]);
+    const double out = edge(-y[s_x_spool] - p[row::lap_at], y[s_p_a] - u.return_pressure) +
+                       edge(y[s_x_spool] - p[row::lap_bt], y[s_p_b] - u.return_pressure);
+    EXPECT_NEAR(stored_a + stored_b, in - out, 1e-9 * (std::abs(in) + std::abs(out) + std::abs(stored_a))) << trial;
+
+    // Pilot stage: what the spool pushes out of one end it takes in at the other. So the rate at which the three nodes
+    // store oil does not depend on the spool's speed, and grows by no more than what passes the filter.
+    const auto stored_pilot = [&](const auto& rate) {
+      return rate[s_p_filter] / d.inverse_filter_compliance +
+             (rate[s_p_pilot_1] + rate[s_p_pilot_2]) / d.inverse_pilot_compliance;
+    };
+    auto faster = y;
+    faster[s_v_spool] += 0.1;
+    const double moved = 0.1 * d.spool_area;
+    EXPECT_NEAR(stored_pilot(bench.rate(faster, u)), stored_pilot(f), 1e-6 * moved) << trial;
+    auto closed = u;  // no drop over the filter: the nodes only lose, through the nozzles
+    closed.supply_pressure = y[s_p_filter];
+    EXPECT_LT(stored_pilot(bench.rate(y, closed)), 0.0) << trial;
+  }
+}
+
+TEST(Balance, StoredOilEqualsFlowInMinusFlowOut) {
+  stored_rates_balance<NoEffects>(nominal_candidate());
+  stored_rates_balance<AllEffects>(with_effects(nominal_candidate()));
+}
+
+TEST(Balance, OilStoredOverARunEqualsTheFlowsOfTheRun) {
+  ParameterVector v = nominal_candidate();
+  v[row::position_sensor_lag] = 0;  // the reported position is the piston's
+  v[row::cross_piston_leakage] = 1e-12;
+  v[row::air_fraction] = 0.01;
+  const Scenario s = made(
+      0.6, 5e-5, [](double t) { return 0.012 * std::sin(2 * std::numbers::pi * 5 * t); },
+      [](double t) { return 3000 * std::sin(2 * std::numbers::pi * 3 * t); });
+  SimulateOptions o = all_signals();
+  o.step = 5e-5;
+  const Trajectory t = simulate(s, v, o);
+  ASSERT_TRUE(t.ok);
+  const Derived<double> d = derive<double>(v.data(), s.oil);
+  const auto& a = of(t, Signal::pressure_a);
+  const auto& b = of(t, Signal::pressure_b);
+  const auto& x = of(t, Signal::piston_position);
+  double stored_a = 0, stored_b = 0, in_a = 0, in_b = 0, passed = 0;
+  for (std::size_t k = 1; k < s.time.size(); ++k) {
+    const auto mean = [&](Signal c) { return 0.5 * (of(t, c)[k] + of(t, c)[k - 1]); };
+    const double dt = s.time[k] - s.time[k - 1], travel = 0.5 * (x[k] + x[k - 1]);
+    const double volume_a = v[row::dead_volume_a] + v[row::piston_area_a] * (v[row::piston_stroke] / 2 + travel);
+    const double volume_b = v[row::dead_volume_b] + v[row::piston_area_b] * (v[row::piston_stroke] / 2 - travel);
+    stored_a += chamber_compliance(volume_a, mean(Signal::pressure_a), d, v.data()) * (a[k] - a[k - 1]) +
+                v[row::piston_area_a] * (x[k] - x[k - 1]);
+    stored_b += chamber_compliance(volume_b, mean(Signal::pressure_b), d, v.data()) * (b[k] - b[k - 1]) -
+                v[row::piston_area_b] * (x[k] - x[k - 1]);
+    const double leak = d.leak * (mean(Signal::pressure_a) - mean(Signal::pressure_b));
+    in_a += dt * (mean(Signal::flow_a) - leak);
+    in_b += dt * (mean(Signal::flow_b) + leak);
+    passed += dt * std::abs(mean(Signal::flow_a));
+  }
+  std::printf("oil of the run: A stored %.6g of %.6g m3, B %.6g of %.6g, passed %.6g\n", stored_a, in_a, stored_b, in_b,
+              passed);
+  EXPECT_GT(passed, 1e-6);
+  // Trapezoids of 50 us.
+  EXPECT_NEAR(stored_a, in_a, 1e-4 * passed);
+  EXPECT_NEAR(stored_b, in_b, 1e-4 * passed);
+}
+
+TEST(Balance, MirroredCurrentMirrorsMotion) {
+  for (const bool effects : {false, true}) {
+    ParameterVector v = nominal_candidate();
+    if (effects) v = with_effects(v);  // both nozzles alike, so symmetric too
+    v[row::lap_pa] = v[row::lap_pb] = 3e-6;
+    v[row::lap_at] = v[row::lap_bt] = -2e-6;
+    v[row::piston_area_b] = v[row::piston_area_a];
+    v[row::dead_volume_b] = v[row::dead_volume_a];
+    v[row::filter_blockage_positive] = 0.7, v[row::filter_blockage_negative] = 0.4;
+    v[row::servovalve_null] = 0.02;
+    ParameterVector mirror = v;
+    mirror[row::filter_blockage_positive] = 0.4, mirror[row::filter_blockage_negative] = 0.7;
+    mirror[row::servovalve_null] = -0.02;
+    const auto command = [](double t) { return t < 0.01 ? 0.0 : t < 0.2 ? 0.015 : -0.02 * std::sin(40 * t); };
+    const auto load = [](double t) { return 4000 * std::sin(25 * t) + 500; };
+    const Scenario s = made(0.5, 1e-3, command, load);
+    const Scenario m = made(
+        0.5, 1e-3, [&](double t) { return -command(t); }, [&](double t) { return -load(t); });
+    const Trajectory a = simulate(s, v, all_signals()), b = simulate(m, mirror, all_signals());
+    ASSERT_TRUE(a.ok && b.ok);
+    const auto mirrors = [&](Signal of_a, Signal of_b, double sign) {
+      double largest = 0, worst = 0;
+      for (std::size_t k = 0; k < s.time.size(); ++k) {
+        largest = std::max(largest, std::abs(of(a, of_a)[k]));
+        worst = std::max(worst, std::abs(of(a, of_a)[k] - sign * of(b, of_b)[k]));
+      }
+      // Sums of a and b are taken in another order: rounding, grown along the run.
+      EXPECT_LT(worst, 1e-7 * largest) << info(of_a).name;
+    };
+    mirrors(Signal::spool_position, Signal::spool_position, -1);
+    mirrors(Signal::piston_position, Signal::piston_position, -1);
+    mirrors(Signal::pressure_a, Signal::pressure_b, 1);
+    mirrors(Signal::pilot_pressure_1, Signal::pilot_pressure_2, 1);
+    mirrors(Signal::flow_a, Signal::flow_b, 1);
+  }
+}
+
+// Power that a velocity's own forces draw: (f(v) - f(0)) v, everything else held. Never above zero.
+template <class Effects>
+void friction_takes_power(const ParameterVector& v) {
+  const Bench<Effects> bench(v);
+  for (unsigned trial = 0; trial < 500; ++trial) {
+    Random random(13, trial);
+    const auto y = bench.state(random);
+    const auto u = bench.inputs(random);
+    auto spool = y, piston = y;
+    spool[s_v_spool] = 0;
+    piston[s_v_piston] -= bench.rate(y, u)[s_x_piston];  // no slip between rod and body
+    for (const double scale : {1.0, 1e-2, 1e-4}) {       // through the Stribeck range and the rounding
+      auto moving = y;
+      moving[s_v_spool] = scale * y[s_v_spool];
+      EXPECT_LE((bench.rate(moving, u)[s_v_spool] - bench.rate(spool, u)[s_v_spool]) * moving[s_v_spool], 0.0) << trial;
+      moving = piston;
+      const double slip = scale * y[s_v_piston];
+      moving[s_v_piston] += slip;
+      EXPECT_LE((bench.rate(moving, u)[s_v_piston] - bench.rate(piston, u)[s_v_piston]) * slip, 0.0) << trial;
+    }
+  }
+}
+
+TEST(Balance, FrictionNeverAddsEnergy) {
+  ParameterVector v = nominal_candidate();
+  v[row::piston_stribeck_friction] = 800;
+  friction_takes_power<NoEffects>(v);
+  friction_takes_power<AllEffects>(with_effects(v));
+  // Friction alone, and each sort of it: nothing here may rest on another term that hides it.
+  for (int only : {row::spool_friction, row::piston_viscous_friction, row::piston_coulomb_friction,
+                   row::piston_stribeck_friction}) {
+    ParameterVector w = v;
+    for (int r : {row::spool_friction, row::piston_viscous_friction, row::piston_coulomb_friction,
+                  row::piston_stribeck_friction})
+      if (r != only) w[r] = 0;
+    friction_takes_power<NoEffects>(w);
+    ParameterVector none = w;
+    none[only] = 0;
+    const Bench<NoEffects> with(w), without(none);
+    Random random(17);
+    const auto y = with.state(random);
+    const auto u = with.inputs(random);
+    const int at = only == row::spool_friction ? s_v_spool : s_v_piston;
+    EXPECT_LT((with.rate(y, u)[at] - without.rate(y, u)[at]) * y[at], 0.0) << parameter_list[only].name;
+  }
+}
+
+TEST(Balance, SettledStateStandsStill) {
+  // Equal areas and no load: with constant inputs at rest everything is in balance, whatever the null.
+  for (const double null : {0.0, 0.01}) {
+    ParameterVector v = nominal_candidate();
+    v[row::servovalve_null] = null;
+    const auto command = [&](double) { return -null * 0.02; };
+    const Scenario s = made(1.0, 1e-3, command);
+    const Trajectory first = simulate(s, v, all_signals());
+    ASSERT_TRUE(first.ok);
+    // And again from what a log of that rest would have measured.
+    Scenario again = s;
+    again.spool_start = of(first, Signal::spool_position).back();
+    again.pressure_a_start = of(first, Signal::pressure_a).back();
+    again.pressure_b_start = of(first, Signal::pressure_b).back();
+    again.piston_start = of(first, Signal::piston_position).back();
+    for (const Trajectory& t : {first, simulate(again, v, all_signals())})
+      for (int c = 0; c < n_simulated; ++c) {
+        const auto [low, high] = std::minmax_element(t.signals[c].begin(), t.signals[c].end());
+        // Below any sensor: 0.01 um of spool, 1 um of piston, 0.01 bar, 0.001 l/min.
+        const Signal signal = simulated_signals[c];
+        const double limit = signal == Signal::spool_position    ? 1e-8
+                             : signal == Signal::piston_position ? 1e-6
+                             : c < 6                             ? 1e3
+                                                                 : 0.001 / 60e3;
+        EXPECT_LT(*high - *low, limit) << info(signal).name << " null " << null;
+      }
+  }
+}
+
+TEST(Balance, SpoolStandsStillUnderAConstantCommandFromItsMeasuredPosition) {
+  const ParameterVector v = nominal_candidate();
+  const Scenario s = made(0.3, 1e-3, [](double) { return 0.004; });
+  const Trajectory first = simulate(s, v, all_signals());
+  ASSERT_TRUE(first.ok);
+  Scenario again = s;
+  again.spool_start = of(first, Signal::spool_position).back();
+  again.pressure_a_start = of(first, Signal::pressure_a).back();
+  again.pressure_b_start = of(first, Signal::pressure_b).back();
+  again.piston_velocity_start =
+      (of(first, Signal::piston_position).back() - *(of(first, Signal::piston_position).end() - 2)) / 1e-3;
+  const Trajectory t = simulate(again, v, all_signals());
+  ASSERT_TRUE(t.ok);
+  const auto& x = of(t, Signal::spool_position);
+  const auto [low, high] = std::minmax_element(x.begin(), x.end());
+  EXPECT_GT(*low, 0.1 * v[row::spool_stop]);
+  EXPECT_LT(*high - *low, 1e-6);
+}
+
+}  // namespace
+}  // namespace servodx

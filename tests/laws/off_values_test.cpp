@@ -1,0 +1,167 @@
+// What is absent changes nothing, to the bit; and a lane of a batch is the run alone, to the bit.
+#include <gtest/gtest.h>
+
+#include <bit>
+#include <cstdint>
+#include <cstring>
+
+#include "faults/registry.h"
+#include "laws/bench.h"
+
+namespace servodx {
+namespace {
+
+bool same_bits(const std::vector<double>& a, const std::vector<double>& b) {
+  return a.size() == b.size() && (a.empty() || std::memcmp(a.data(), b.data(), a.size() * sizeof(double)) == 0);
+}
+bool same_bits(const Trajectory& a, const Trajectory& b) {
+  if (a.ok != b.ok || a.failed_at != b.failed_at) return false;
+  for (int c = 0; c < n_simulated; ++c)
+    if (!same_bits(a.signals[c], b.signals[c])) return false;
+  return true;
+}
+
+// A lively piece of each sort of log, with measured supply and without.
+std::vector<LogData> pieces() {
+  std::vector<LogData> out;
+  for (const char* name : {"healthy/h12_mixed", "healthy/h15_no_supply_signals", "healthy/h10_flight"})
+    out.push_back(slice(shipped_data(name), 200, 700));
+  return out;
+}
+
+Trajectory run(RunPack kernel, const Scenario& s, const ParameterVector& v) {
+  Trajectory t;
+  const ParameterVector* candidates[] = {&v};
+  Trajectory* results[] = {&t};
+  kernel(s, candidates, results, 1, all_signals());
+  return t;
+}
+
+TEST(OffValues, EveryEffectAtItsOffValueChangesNoBit) {
+  const ParameterVector off = nominal_candidate();
+  for (const LogData& log : pieces()) {
+    const Trajectory base = run(kernels_scalar().base, log.scenario, off);
+    ASSERT_TRUE(base.ok);
+    EXPECT_TRUE(same_bits(base, run(kernels_scalar().extended, log.scenario, off))) << "all effects off";
+    for (const EffectInfo& e : effect_list()) {
+      // What only shapes an effect may take any value while the effect is off.
+      ParameterVector shaped = off, on = off;
+      bool shapes = false;
+      for (std::size_t j = 0; j < e.parameters.size(); ++j) {
+        on[e.first + static_cast<int>(j)] = e.parameters[j].start;
+        if (e.parameters[j].switches) continue;
+        shapes = true;
+        shaped[e.first + static_cast<int>(j)] = e.parameters[j].upper;
+      }
+      EXPECT_TRUE(!shapes || same_bits(base, run(kernels_scalar().extended, log.scenario, shaped))) << e.name;
+      EXPECT_FALSE(same_bits(base, run(kernels_scalar().extended, log.scenario, on))) << e.name << " does nothing";
+    }
+  }
+}
+
+TEST(OffValues, EveryFaultAtItsHealthySeverityChangesNoBit) {
+  const ParameterVector healthy = nominal_candidate();
+  const std::vector<LogData> logs = pieces();
+  for (const Fault* fault : fault_list()) {
+    ParameterVector absent = healthy, worst = healthy;
+    fault->apply(absent.data(), fault->healthy);
+    fault->apply(worst.data(), fault->worst);
+    EXPECT_TRUE(same_bits(healthy, absent)) << fault->name;
+    bool shows = false;
+    for (const LogData& log : logs) {
+      const Trajectory base = simulate(log.scenario, healthy, all_signals());
+      EXPECT_TRUE(same_bits(base, simulate(log.scenario, absent, all_signals()))) << fault->name;
+      shows = shows || !same_bits(base, simulate(log.scenario, worst, all_signals()));
+    }
+    EXPECT_TRUE(shows) << fault->name << " at its worst does nothing";
+  }
+}
+
+// Candidates that differ, some with effects on, so that packs of both kernels and part-filled packs occur.
+std::vector<ParameterVector> candidates(int count) {
+  const Table table = shipped_table();
+  std::vector<ParameterVector> out;
+  for (int i = 0; i < count; ++i) {
+    Random random(19, static_cast<std::uint32_t>(i));
+    ParameterVector v = candidate_of(table);
+    for (int r = 0; r < n_parameters; ++r) {
+      const double u = to_unit(table[r], table[r].nominal) + random.uniform(-0.1, 0.1);
+      v[r] = from_unit(table[r], std::clamp(u, 0.0, 1.0));
+    }
+    v[nuisance::command_slope] = random.uniform();
+    v[nuisance::spool_offset] = random.uniform(-2e-6, 2e-6);
+    if (i % 7 > 4)
+      for (const EffectInfo& e : effect_list())
+        for (std::size_t j = 0; j < e.parameters.size(); ++j)
+          v[e.first + static_cast<int>(j)] = e.parameters[j].start * random.uniform(0.5, 1.5);
+    out.push_back(std::move(v));
+  }
+  return out;
+}
+
+TEST(Batch, LaneEqualsScalarBitForBitAtAnyThreadCount) {
+  const std::vector<ParameterVector> v = candidates(29);
+  const std::vector<LogData> logs = pieces();
+  const auto batch = [&](int threads) {
+    std::vector<Trajectory> t(v.size() * logs.size());
+    std::vector<Job> jobs;
+    for (std::size_t l = 0; l < logs.size(); ++l)
+      for (std::size_t i = 0; i < v.size(); ++i) jobs.push_back({&logs[l].scenario, &v[i], &t[l * v.size() + i]});
+    SimulateOptions o = all_signals();
+    o.threads = threads;
+    simulate(jobs, o);
+    return t;
+  };
+  const std::vector<Trajectory> one = batch(1), two = batch(2);
+  std::printf("kernel in use: %s, %d lanes\n", instruction_set().c_str(), pack_width());
+  EXPECT_GT(pack_width(), 1);
+  for (std::size_t l = 0; l < logs.size(); ++l)
+    for (std::size_t i = 0; i < v.size(); ++i) {
+      const Trajectory alone = simulate(logs[l].scenario, v[i], all_signals());
+      EXPECT_TRUE(alone.ok) << i;
+      EXPECT_TRUE(same_bits(alone, one[l * v.size() + i])) << "log " << l << ", candidate " << i;
+      EXPECT_TRUE(same_bits(alone, two[l * v.size() + i])) << "log " << l << ", candidate " << i << ", two threads";
+    }
+}
+
+TEST(Batch, EveryInstructionSetComputesTheSameBits) {
+  std::vector<Kernels> kernels = {kernels_generic()};
+#if defined(__x86_64__)
+  if (__builtin_cpu_supports("avx2")) kernels.push_back(kernels_avx2());
+  if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq")) kernels.push_back(kernels_avx512());
+#endif
+  const std::vector<ParameterVector> v = candidates(8);
+  const LogData log = pieces().front();
+  for (const Kernels& k : kernels) {
+    std::vector<Trajectory> t(static_cast<std::size_t>(k.width));
+    std::vector<const ParameterVector*> in;
+    std::vector<Trajectory*> out;
+    for (int i = 0; i < k.width; ++i) in.push_back(&v[i]), out.push_back(&t[i]);
+    k.extended(log.scenario, in.data(), out.data(), k.width, all_signals());
+    std::printf("%s: %d lanes compared\n", k.name, k.width);
+    for (int i = 0; i < k.width; ++i)
+      EXPECT_TRUE(same_bits(t[i], run(kernels_scalar().extended, log.scenario, v[i]))) << k.name << ' ' << i;
+  }
+}
+
+TEST(Batch, FailingNeighbourLeavesALaneAlone) {
+  const LogData log = pieces().front();
+  const ParameterVector good = nominal_candidate();
+  ParameterVector bad = good;
+  bad[row::bulk_modulus] = std::nan("");
+  std::vector<Trajectory> t(4);
+  const std::vector<Job> jobs = {{&log.scenario, &good, &t[0]},
+                                 {&log.scenario, &bad, &t[1]},
+                                 {&log.scenario, &good, &t[2]},
+                                 {&log.scenario, &bad, &t[3]}};
+  simulate(jobs, all_signals());
+  EXPECT_FALSE(t[1].ok);
+  EXPECT_FALSE(t[3].ok);
+  const Trajectory alone = simulate(log.scenario, good, all_signals());
+  EXPECT_TRUE(alone.ok);
+  EXPECT_TRUE(same_bits(t[0], alone));
+  EXPECT_TRUE(same_bits(t[2], alone));
+}
+
+}  // namespace
+}  // namespace servodx

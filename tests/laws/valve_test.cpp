@@ -1,0 +1,98 @@
+// What a servovalve does, healthy and not; on the nominal table.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "faults/registry.h"
+#include "laws/bench.h"
+
+namespace servodx {
+namespace {
+
+double at_rest(const ParameterVector& v, Signal s) {
+  const Trajectory t = simulate(made(0.2, 1e-3, [](double) { return 0.0; }), v, all_signals());
+  EXPECT_TRUE(t.ok);
+  return of(t, s).back();
+}
+
+TEST(Valve, PilotPressureBetweenHalfAndTwoThirdsOfSupply) {
+  const ParameterVector tables[] = {candidate_of(read_table(shipped("params/borello2009.csv"))), nominal_candidate()};
+  for (const ParameterVector& v : tables) {
+    const double supply = v[row::supply_pressure] - v[row::return_pressure];
+    for (Signal s : {Signal::pilot_pressure_1, Signal::pilot_pressure_2}) {
+      const double ratio = (at_rest(v, s) - v[row::return_pressure]) / supply;
+      std::printf("%s over supply, both above return: %.3f\n", std::string(info(s).name).c_str(), ratio);
+      EXPECT_GT(ratio, 0.5);
+      EXPECT_LT(ratio, 2.0 / 3.0);
+    }
+  }
+}
+
+TEST(Valve, PilotPressureFallsWhenTheFilterClogs) {
+  double last = 1e300;
+  for (double blocked : {0.0, 0.2, 0.4, 0.6, 0.8, 0.9, 0.95, 0.98}) {
+    ParameterVector v = nominal_candidate();
+    find_fault("clogged_filter")->apply(v.data(), blocked);
+    const double pressure = at_rest(v, Signal::pilot_pressure_1);
+    EXPECT_LT(pressure, last) << blocked;
+    last = pressure;
+  }
+  // At the last one the screen passes a tenth of the orifices' conductance: most of the pressure is lost.
+  EXPECT_LT(last, 0.2 * at_rest(nominal_candidate(), Signal::pilot_pressure_1));
+}
+
+TEST(Valve, FilterClogsInOneDirectionSlowTheSpoolInThatDirection) {
+  const auto slew = [](const ParameterVector& v, double sign) {
+    const Trajectory t =
+        simulate(made(0.05, 2.5e-4, [&](double s) { return s < 0.005 ? 0.0 : sign * 0.02; }), v, all_signals());
+    double fastest = 0;
+    const auto& x = of(t, Signal::spool_position);
+    for (std::size_t k = 1; k < x.size(); ++k) fastest = std::max(fastest, sign * (x[k] - x[k - 1]));
+    return fastest;
+  };
+  ParameterVector v = nominal_candidate();
+  const double healthy = slew(v, 1);
+  v[row::filter_blockage_positive] = 0.9;
+  EXPECT_LT(slew(v, 1), 0.8 * healthy);
+  EXPECT_GT(slew(v, -1), 0.95 * healthy);
+}
+
+TEST(Valve, FeedbackLostDrivesSpoolToItsStopAndRaisesPilotPressureDifference) {
+  const ParameterVector healthy = nominal_candidate();
+  ParameterVector lost = healthy;
+  find_fault("feedback_wire_lost")->apply(lost.data(), 0.0);
+  for (double sign : {1.0, -1.0}) {
+    const Scenario s = made(0.4, 1e-3, [&](double t) { return t < 0.01 ? 0.0 : sign * 0.004; });
+    const Trajectory with = simulate(s, healthy, all_signals()), without = simulate(s, lost, all_signals());
+    ASSERT_TRUE(with.ok && without.ok);
+    const auto end = [&](const Trajectory& t, Signal c) { return sign * of(t, c).back(); };
+    const auto dp = [&](const Trajectory& t) {
+      return end(t, Signal::pilot_pressure_1) - end(t, Signal::pilot_pressure_2);
+    };
+    EXPECT_LT(end(with, Signal::spool_position), 0.3 * healthy[row::spool_stop]);
+    EXPECT_GT(end(without, Signal::spool_position), 0.98 * healthy[row::spool_stop]);
+    EXPECT_LT(end(without, Signal::spool_position), 1.1 * healthy[row::spool_stop]) << "the stop must hold";
+    EXPECT_GT(dp(without), 3 * std::abs(dp(with)));
+  }
+}
+
+TEST(Valve, SpoolFollowsTheCurrentByTorqueGainOverWireStiffness) {
+  const ParameterVector v = nominal_candidate();
+  const double current = 0.25 * 0.02;
+  const Trajectory t = simulate(made(0.3, 1e-3, [&](double) { return current; }), v, all_signals());
+  const double wire_only = v[row::torque_motor_gain] * current / v[row::feedback_wire_stiffness];
+  // Flow forces and the flapper's spring take some per cent.
+  EXPECT_NEAR(of(t, Signal::spool_position).back(), wire_only, 0.08 * wire_only);
+}
+
+TEST(Valve, FlowRisesWithPortWidthAndPressureWithBulkModulus) {
+  ParameterVector v = nominal_candidate();
+  const Scenario s = made(0.2, 1e-3, [](double t) { return t < 0.01 ? 0.0 : 0.01; });
+  const auto travel = [&] { return of(simulate(s, v, all_signals()), Signal::piston_position).back(); };
+  const double before = travel();
+  v[row::port_width] *= 1.2;
+  EXPECT_GT(travel(), 1.15 * before);
+}
+
+}  // namespace
+}  // namespace servodx
