@@ -41,7 +41,7 @@ TEST(Valve, PilotPressureFallsWhenTheFilterClogs) {
   EXPECT_LT(last, 0.2 * at_rest(nominal_candidate(), Signal::pilot_pressure_1));
 }
 
-TEST(Valve, FilterClogsInOneDirectionSlowTheSpoolInThatDirection) {
+TEST(Valve, FilterBlockedInOneDirectionSlowsTheSpoolInThatDirection) {
   const auto slew = [](const ParameterVector& v, double sign) {
     const Trajectory t =
         simulate(made(0.05, 2.5e-4, [&](double s) { return s < 0.005 ? 0.0 : sign * 0.02; }), v, all_signals());
@@ -85,7 +85,7 @@ TEST(Valve, SpoolFollowsTheCurrentByTorqueGainOverWireStiffness) {
   EXPECT_NEAR(of(t, Signal::spool_position).back(), wire_only, 0.08 * wire_only);
 }
 
-TEST(Valve, FlowRisesWithPortWidthAndPressureWithBulkModulus) {
+TEST(Valve, FlowRisesWithPortWidth) {
   ParameterVector v = nominal_candidate();
   const Scenario s = made(0.2, 1e-3, [](double t) { return t < 0.01 ? 0.0 : 0.01; });
   const auto travel = [&] { return of(simulate(s, v, all_signals()), Signal::piston_position).back(); };
