@@ -68,6 +68,7 @@ int run(const Options& options) {
   header.settings = {{"population", tune_options.population},
                      {"generations", tune_options.generations},
                      {"heldout", tune_options.heldout},
+                     {"moving_average", tune_options.moving_average},
                      {"effects", tune_options.effects}};
   invocation.finish(report::text_of(result, {.colour = colour_wanted(), .written_to = options.output}),
                     report::tune_json(result));
@@ -85,6 +86,11 @@ void add_tune_command(CLI::App& app, int& exit_code) {
   command->add_option("-o,--output", options->output, "the tuned table")->required()->type_name("TUNED.csv");
   command->add_option("--population", tune.population, "of the genetic search")->type_name("N")->capture_default_str();
   command->add_option("--generations", tune.generations, "of the genetic search")
+      ->type_name("N")
+      ->capture_default_str();
+  command
+      ->add_option("--moving-average", tune.moving_average,
+                   "smooth measurement and simulation alike, odd number of samples; later commands follow")
       ->type_name("N")
       ->capture_default_str();
   command->add_option("--effects", options->effects, "effects freed beside the table's rows, or 'none'")

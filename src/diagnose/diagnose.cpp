@@ -91,7 +91,7 @@ Assessment assess(const Log& log, const Table& tuned, const RigFile& rig, const 
   out.log = log.path;
   out.sha256 = log.sha256;
   out.notes = log.notes;
-  const LogData data = prepare(log, rig);
+  const LogData data = prepare(log, rig, moving_average_of(tuned));
   const ErrorModel error = error_model_of(tuned);
   if (error.channels.empty())
     throw InputError({.file = tuned.path}, "the table does not say how wrong its model is", "make it with 'servodx tune'; its header carries the lines 'model error ...'");

@@ -81,7 +81,7 @@ double noise_of(const std::vector<double>& x, double resolution) {
   return std::max(d[d.size() / 2] / (0.6745 * std::sqrt(6.0)), quantisation);
 }
 
-LogData prepare(const Log& log, const RigFile& rig) {
+LogData prepare(const Log& log, const RigFile& rig, int window) {
   LogData out;
   out.path = log.path;
   out.sha256 = log.sha256;
@@ -107,8 +107,10 @@ LogData prepare(const Log& log, const RigFile& rig) {
     c.signal = which;
     c.simulated = simulated_index(which);
     c.measured = log[which];
-    c.noise = noise_of(c.measured, log.channels[index(which)].resolution);
-    if (which == Signal::piston_position) c.high_pass = piston_high_pass;
+    c.noise = noise_of(c.measured, log.channels[index(which)].resolution) / std::sqrt(static_cast<double>(window));
+    c.filter.window = window;
+    c.filter.mains = rig.mains_frequency.value_or(0.0);
+    if (which == Signal::piston_position) c.filter.drift = piston_high_pass;
     out.channels.push_back(std::move(c));
   }
   take_start(out);

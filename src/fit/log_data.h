@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "parameters/table.h"
+#include "signals/filters.h"
 #include "signals/log.h"
 #include "simulate/scenario.h"
 
@@ -15,7 +16,7 @@ struct FitChannel {
   int simulated = -1;              // position in simulated_signals
   std::vector<double> measured;    // [SI] NaN where missing
   double noise = 0;                // [SI] rms of the sensor noise, from second differences, at least the quantisation's
-  double high_pass = 0;            // [Hz] 0: none. Applied to measurement and simulation alike
+  Filter filter;                   // applied to measurement and simulation alike, that is, to their difference
 };
 
 struct LogData {
@@ -28,7 +29,8 @@ struct LogData {
 // The piston integrates every null error, so its slow drift tells little: the corner below which it is left out.
 inline constexpr double piston_high_pass = 0.3;  // [Hz]
 
-LogData prepare(const Log& log, const RigFile& rig);
+// `window` [samples]: moving average of every channel, 1 for none. The rig file's mains frequency is notched out.
+LogData prepare(const Log& log, const RigFile& rig, int window = 1);
 
 // Samples [from, to) as a log of their own, started from what is measured at `from`.
 LogData slice(const LogData& log, std::size_t from, std::size_t to);

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 namespace servodx {
 
@@ -12,22 +11,6 @@ double FreeValue::to_unit(double value) const {
 }
 double FreeValue::from_unit(double u) const {
   return log_scale ? lower * std::pow(upper / lower, u) : lower + u * (upper - lower);
-}
-
-std::vector<double> high_passed(const std::vector<double>& time, const std::vector<double>& x, double corner_hz) {
-  std::vector<double> y(x.size());
-  const double rate = 2.0 * std::numbers::pi * corner_hz;
-  double last_x = std::nan(""), last_y = 0, last_t = 0;
-  for (std::size_t k = 0; k < x.size(); ++k) {
-    if (std::isnan(x[k])) {
-      y[k] = x[k];
-      continue;
-    }
-    if (!std::isnan(last_x)) last_y = (last_y + x[k] - last_x) / (1.0 + rate * (time[k] - last_t));
-    last_x = x[k], last_t = time[k];
-    y[k] = last_y;
-  }
-  return y;
 }
 
 FitProblem::FitProblem(std::vector<const LogData*> logs, ParameterVector base, std::vector<FreeValue> free, SimulateOptions options)
@@ -74,7 +57,7 @@ std::vector<double> FitProblem::raw_residual(int log, int channel, const Traject
   const std::vector<double>& simulated = t.signals[c.simulated];
   std::vector<double> r(c.measured.size());
   for (std::size_t k = 0; k < r.size(); ++k) r[k] = c.measured[k] - simulated[k];
-  return c.high_pass > 0 ? high_passed(logs_[log]->scenario.time, r, c.high_pass) : r;
+  return c.filter(logs_[log]->scenario.time, r);
 }
 
 void FitProblem::fill(const Point&, int log, const Trajectory& t, Eigen::Ref<Eigen::VectorXd> out) const {

@@ -1,6 +1,6 @@
 // The misfit of the model to logs as least squares over the unit cube: shared parameters and, log by log, nuisances.
 //
-// residual = high-passed (measured - simulated) / sigma, channel by channel, then the priors. All lanes of all logs are
+// residual = filtered (measured - simulated) / sigma, channel by channel, then the priors. All lanes of all logs are
 // filled in one batch; a nuisance's column costs only its own log's simulation.
 #pragma once
 #include <limits>
@@ -53,7 +53,7 @@ class FitProblem {
   bool jacobian(const Point& x, const Eigen::VectorXd& residual, Eigen::MatrixXd& j) const;
   LeastSquaresProblem least_squares() const;
 
-  // Raw residual (measured - simulated, high-passed where the channel is) of a log's channel. [SI] NaN where missing.
+  // Raw residual (measured - simulated, filtered as the channel is) of a log's channel. [SI] NaN where missing.
   std::vector<double> raw_residual(int log, int channel, const Trajectory& t) const;
   std::vector<Trajectory> trajectories(const Point& x) const;
   // Rows of the residual that belong to (log, channel): first row and count.
@@ -73,8 +73,5 @@ class FitProblem {
   long data_rows_ = 0, total_rows_ = 0;
   mutable long simulations_ = 0, failed_ = 0;
 };
-
-// y_k = a (y_{k-1} + x_k - x_{k-1}): first-order high-pass on uneven time stamps, starting at rest at the first sample.
-std::vector<double> high_passed(const std::vector<double>& time, const std::vector<double>& x, double corner_hz);
 
 }  // namespace servodx

@@ -23,6 +23,7 @@ namespace {
 
 constexpr double tuning_null_limit = 0.1;  // fault-free logs: a null may sit anywhere that calibration allows
 constexpr const char* hash_key = "tuned by";
+constexpr const char* average_key = "moving average";
 
 double rms_of(const std::vector<double>& r, std::size_t from, std::size_t to) {
   double sum = 0;
@@ -195,6 +196,13 @@ LeastSquaresResult refine(Tuning& run, FitProblem& problem, Point x, ErrorModel&
 
 }  // namespace
 
+int moving_average_of(const Table& table) {
+  for (const std::string& line : table.comments)
+    if (const std::size_t at = line.find(average_key); at != std::string::npos)
+      return std::max(1, static_cast<int>(std::strtol(line.c_str() + at + std::string(average_key).size() + 1, nullptr, 10)));
+  return 1;
+}
+
 std::vector<std::string> tuned_by(const Table& table) {
   std::vector<std::string> out;
   for (const std::string& line : table.comments) {
@@ -211,9 +219,11 @@ std::vector<std::string> tuned_by(const Table& table) {
 TuneResult tune(const std::vector<Log>& logs, const Table& nominal, const RigFile& rig, const TuneOptions& options) {
   Tuning run{options, Progress("tune", {.quiet = options.quiet}), {}, {}, nominal, {}, {}, {}, 0, 0, {}};
   TuneResult out;
+  if (options.moving_average < 1 || options.moving_average % 2 == 0)
+    throw InputError({.file = "--moving-average"}, fmt::format("{} is not an odd number of samples", options.moving_average), "give 1 for none, or 3, 5, ...");
 
   // 1. What is fitted to what.
-  for (const Log& log : logs) run.data.push_back(prepare(log, rig));
+  for (const Log& log : logs) run.data.push_back(prepare(log, rig, options.moving_average));
   for (const LogData& d : run.data) run.logs.push_back(&d);
   add_effect_rows(run.table, options.effects);
   run.table = apply_rig_facts(run.table, rig);
@@ -352,7 +362,7 @@ TuneResult tune(const std::vector<Log>& logs, const Table& nominal, const RigFil
     const ParameterVector v = fit.candidate(x, static_cast<int>(l));
     nulls.push_back(v[row::servovalve_null]);
     airs.push_back(v[row::air_fraction]);
-    LogResult lr{run.data[l].path, {}, nulls.back()};
+    LogResult lr{run.data[l].path, {}, nulls.back(), run.data[l].scenario.command_slope.value_or(v[nuisance::command_slope])};
     for (std::size_t c = 0; c < run.data[l].channels.size(); ++c) {
       const FitChannel& channel = run.data[l].channels[c];
       const auto n = channel.measured.size();
@@ -384,11 +394,16 @@ TuneResult tune(const std::vector<Log>& logs, const Table& nominal, const RigFil
   out.table[row::servovalve_null].nominal = median(nulls);
   out.table[row::air_fraction].nominal = std::clamp(median(airs), out.table[row::air_fraction].lower, out.table[row::air_fraction].upper);
   out.table.comments = nominal.comments;
+  if (options.moving_average > 1) out.table.comments.push_back(fmt::format("{}: {} samples", average_key, options.moving_average));
   for (const std::string& line : to_comments(out.error)) out.table.comments.push_back(line);
   for (const LogData& d : run.data)
     out.table.comments.push_back(fmt::format("{} {} {}", hash_key, d.sha256, std::filesystem::path(d.path).filename().string()));
   out.notes = run.notes;
   out.notes.push_back("local stage: " + end.stopped);
+  std::string slopes;
+  for (const LogResult& l : out.logs)
+    slopes += fmt::format("{}{} {:.2f}", slopes.empty() ? "" : ", ", std::filesystem::path(l.path).filename().string(), l.command_slope);
+  out.notes.push_back("command between samples, 0 held to 1 in a line" + std::string(rig.command_hold ? ", from the rig file: " : ", estimated log by log: ") + slopes);
   out.simulations = run.simulations + fit.simulations();
   out.failed_simulations = run.failed + fit.failed_simulations();
   out.interrupted = run.stopped();

@@ -32,7 +32,8 @@ struct ChannelResult {
 struct LogResult {
   std::string path;
   std::vector<ChannelResult> channels;
-  double null = 0;  // [fraction of rated]
+  double null = 0;           // [fraction of rated]
+  double command_slope = 0;  // command between samples: 0 held, 1 in a line to the next
 };
 
 struct TuneOptions {
@@ -43,6 +44,7 @@ struct TuneOptions {
   int generations = 30;
   double heldout = 0.2;            // last part of every log, kept out of the first fit
   std::vector<std::string> effects = {"magnetic_hysteresis", "mount_compliance"};  // freed beside the table's rows
+  int moving_average = 1;          // [samples] odd; smooths measurement and simulation alike, also in later commands
   std::string checkpoint;          // file saved every generation; empty: none
   bool resume = false;
   const std::atomic<bool>* stop = nullptr;  // set: finish with the best so far
@@ -63,6 +65,9 @@ struct TuneResult {
 
 // Throws InputError where the logs cannot be used.
 TuneResult tune(const std::vector<Log>& logs, const Table& nominal, const RigFile& rig, const TuneOptions& options);
+
+// Moving average that a table was tuned with. [samples]
+int moving_average_of(const Table& table);
 
 // Hashes of the logs that tuned a table.
 std::vector<std::string> tuned_by(const Table& table);
