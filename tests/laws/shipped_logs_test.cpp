@@ -6,7 +6,6 @@
 #include <cmath>
 
 #include "faults/registry.h"
-#include "fit/problem.h"
 #include "laws/bench.h"
 
 namespace servodx {
@@ -80,17 +79,16 @@ TEST(ShippedLogs, HalvingTheStepConverges) {
       const auto rms = [&](const Trajectory& t) {
         std::vector<double> e(c.measured.size());
         for (std::size_t k = 0; k < e.size(); ++k) e[k] = t.signals[c.simulated][k] - exact.signals[c.simulated][k];
-        if (c.high_pass > 0) e = high_passed(log.scenario.time, e, c.high_pass);
         double sum = 0;
         for (double x : e) sum += x * x;
         return std::sqrt(sum / static_cast<double>(e.size())) / c.noise;
       };
       const double at_default = rms(a), at_half = rms(b);
       std::printf("  %s %.2f -> %.2f", std::string(info(c.signal).name).c_str(), at_default, at_half);
-      // In noises of one sample. The model's own error on a healthy log is some ten of them (cf. `tune`), so an
-      // integration error of this size is not what limits a fit.
-      EXPECT_LT(at_default, 3.0) << name << ' ' << info(c.signal).name;
-      EXPECT_LT(at_half, std::max(0.75 * at_default, 0.2)) << name << ' ' << info(c.signal).name;
+      // In noises of one sample: an integration error of half the sensor's noise is lost in any fit. The default
+      // step is far from the limit of small steps in the pilot stage, so of order 3 only order 1 is asked.
+      EXPECT_LT(at_default, 0.5) << name << ' ' << info(c.signal).name;
+      EXPECT_LT(at_half, std::max(0.5 * at_default, 0.02)) << name << ' ' << info(c.signal).name;
     }
     std::printf(" noises\n");
   }

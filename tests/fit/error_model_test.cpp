@@ -1,0 +1,112 @@
+#include "fit/error_model.h"
+
+#include <gtest/gtest.h>
+
+#include "fit/support.h"
+
+namespace servodx {
+namespace {
+
+std::vector<double> white(std::size_t n, unsigned seed) {
+  Random random(seed);
+  std::vector<double> x(n);
+  for (double& v : x) v = random.normal();
+  return x;
+}
+
+TEST(ErrorModel, CommentsOfATableReadBackToTheSameBits) {
+  ErrorModel model;
+  model.channels = {{Signal::spool_position, 1.0 / 3e6, 0.7123456789012345, 0.0123456789},
+                    {Signal::pressure_a, 2e5 / 3, 0.0, 1.0},
+                    {Signal::piston_position, 0.0, 1e-300, 5e-5}};
+  Table table = shipped_table();
+  table.comments = {"written by something else", "model errors are not this line"};
+  for (const std::string& line : to_comments(model)) table.comments.push_back(line);
+  // As the file keeps them.
+  const ErrorModel read = error_model_of(table);
+  ASSERT_EQ(read.channels.size(), model.channels.size());
+  for (std::size_t i = 0; i < model.channels.size(); ++i) {
+    EXPECT_EQ(read.channels[i].signal, model.channels[i].signal);
+    EXPECT_EQ(read.channels[i].floor, model.channels[i].floor);
+    EXPECT_EQ(read.channels[i].per_activity, model.channels[i].per_activity);
+    EXPECT_EQ(read.channels[i].effective, model.channels[i].effective);
+  }
+  EXPECT_EQ(read.find(Signal::pressure_b), nullptr);
+  EXPECT_EQ(error_model_of(shipped_table()).channels.size(), 0u);
+}
+
+TEST(ErrorModel, WhiteNoiseIsIndependentSampleBySample) {
+  for (unsigned seed = 0; seed < 10; ++seed) {
+    const double fraction = effective_fraction(white(4000, seed));
+    // The sum over lags ends at the first negative pair; of white noise it holds a few that are positive by chance.
+    EXPECT_GT(fraction, 0.8) << seed;
+    EXPECT_LE(fraction, 1.0) << seed;
+  }
+}
+
+TEST(ErrorModel, EffectiveFractionOfAutoregressionIsItsTheory) {
+  // x_k = a x_(k-1) + e_k: integrated autocorrelation time (1 + a) / (1 - a).
+  for (double a : {0.5, 0.9, 0.97}) {
+    double mean = 0;
+    constexpr int seeds = 20;
+    for (unsigned seed = 0; seed < seeds; ++seed) {
+      std::vector<double> x = white(8000, 100 + seed);
+      for (std::size_t k = 1; k < x.size(); ++k) x[k] += a * x[k - 1];
+      mean += effective_fraction(x) / seeds;
+    }
+    const double theory = (1 - a) / (1 + a);
+    std::printf("AR(1) %.2f: effective fraction %.4f, theory %.4f\n", a, mean, theory);
+    EXPECT_NEAR(mean, theory, 0.2 * theory) << a;
+  }
+}
+
+TEST(ErrorModel, MissingSamplesAndScaleDoNotCount) {
+  std::vector<double> x = white(2000, 5);
+  for (std::size_t k = 1; k < x.size(); ++k) x[k] += 0.8 * x[k - 1];
+  const double fraction = effective_fraction(x);
+  std::vector<double> scaled = x, with_gaps;
+  for (double& v : scaled) v *= 1024;
+  for (double v : x) with_gaps.push_back(v), with_gaps.push_back(std::nan(""));
+  EXPECT_EQ(effective_fraction(scaled), fraction);
+  EXPECT_EQ(effective_fraction(with_gaps), fraction);
+}
+
+TEST(ErrorModel, ActivityOfARampIsItsTravelInAMillisecond) {
+  std::vector<double> time, x, still;
+  for (int k = 0; k < 400; ++k) time.push_back(1e-3 * k), x.push_back(0.02 * k), still.push_back(7.0);
+  EXPECT_NEAR(activity(time, x).back(), 0.02, 1e-6);
+  EXPECT_EQ(activity(time, still).back(), 0.0);
+  // The same motion sampled twice as densely is as lively.
+  std::vector<double> dense_time, dense;
+  for (int k = 0; k < 800; ++k) dense_time.push_back(0.5e-3 * k), dense.push_back(0.01 * k);
+  EXPECT_NEAR(activity(dense_time, dense).back(), 0.02, 1e-6);
+}
+
+TEST(ErrorModel, SigmaIsTheRootOfTheSumOfSquares) {
+  const ChannelError error{Signal::spool_position, 4.0, 6.0, 1.0};
+  EXPECT_EQ(sigma_of(&error, 3.0, {0.0, 2.0}), (std::vector<double>{5.0, 13.0}));
+  EXPECT_EQ(sigma_of(nullptr, 3.0, {0.0, 2.0}), (std::vector<double>{3.0, 3.0}));
+}
+
+TEST(ErrorModel, LearnsTheFloorThatWasAdded) {
+  // The model writes the log, and white noise of four times what the log's second differences would say is added as
+  // the model's own error: floor^2 + noise^2 = (4 noise)^2 + noise^2.
+  const Table table = shipped_table();
+  const ParameterVector truth = candidate_of(table);
+  const LogData shipped = slice(shipped_data("healthy/h12_mixed"), 0, 2000);
+  LogData log = written_by_model(shipped, truth, 3, std::sqrt(17.0));
+  for (FitChannel& c : log.channels) c.noise /= std::sqrt(17.0);
+  const FitProblem problem({&log}, truth, {free_row(table, row::driver_bandwidth)});
+  const ErrorModel model = learn_error_model(problem, problem.start());
+  ASSERT_EQ(model.channels.size(), log.channels.size());
+  for (const FitChannel& c : log.channels) {
+    const ChannelError* e = model.find(c.signal);
+    ASSERT_NE(e, nullptr);
+    EXPECT_NEAR(e->floor / c.noise, 4.0, 0.4) << info(c.signal).name;
+    // White, but for the piston: its filter drags the noise of the first sample along.
+    EXPECT_TRUE(e->effective > 0.7 || c.signal == Signal::piston_position) << info(c.signal).name;
+  }
+}
+
+}  // namespace
+}  // namespace servodx

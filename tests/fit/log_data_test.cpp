@@ -1,0 +1,108 @@
+#include "fit/log_data.h"
+
+#include <gtest/gtest.h>
+
+#include "fit/support.h"
+
+namespace servodx {
+namespace {
+
+const FitChannel& channel(const LogData& log, Signal s) {
+  return *std::find_if(log.channels.begin(), log.channels.end(), [&](const FitChannel& c) { return c.signal == s; });
+}
+
+TEST(Noise, OfWhiteNoiseIsItsDeviation) {
+  for (unsigned seed = 0; seed < 5; ++seed) {
+    Random random(seed);
+    std::vector<double> x(4000);
+    for (double& v : x) v = random.normal(3.0, 0.02);
+    EXPECT_NEAR(noise_of(x, 0.0), 0.02, 0.002) << seed;
+  }
+}
+
+TEST(Noise, MotionAndStepsDoNotCount) {
+  Random random(9);
+  std::vector<double> x(4000);
+  for (std::size_t k = 0; k < x.size(); ++k)
+    x[k] = random.normal(0.0, 0.01) + 2.0 * std::sin(1e-2 * static_cast<double>(k)) + (k / 200 % 2 ? 5.0 : 0.0);
+  EXPECT_NEAR(noise_of(x, 0.0), 0.01, 0.0015);
+}
+
+TEST(Noise, IsAtLeastThatOfTheQuantisation) {
+  EXPECT_DOUBLE_EQ(noise_of(std::vector<double>(100, 1.0), 0.12), 0.12 / std::sqrt(12.0));
+  EXPECT_DOUBLE_EQ(noise_of({}, 0.12), 0.12 / std::sqrt(12.0));
+}
+
+TEST(LogData, SliceStartsFromWhatIsMeasuredThere) {
+  const LogData whole = shipped_data("healthy/h12_mixed");
+  constexpr std::size_t from = 1234, to = 2000;
+  const LogData part = slice(whole, from, to);
+  ASSERT_EQ(part.scenario.time.size(), to - from);
+  EXPECT_EQ(part.scenario.time.front(), whole.scenario.time[from]);
+  EXPECT_EQ(part.scenario.command.back(), whole.scenario.command[to - 1]);
+  EXPECT_EQ(part.scenario.load_force.front(), whole.scenario.load_force[from]);
+  for (std::size_t c = 0; c < part.channels.size(); ++c)
+    EXPECT_EQ(part.channels[c].measured.front(), whole.channels[c].measured[from]);
+  EXPECT_EQ(*part.scenario.spool_start, channel(whole, Signal::spool_position).measured[from]);
+  EXPECT_EQ(*part.scenario.pressure_a_start, channel(whole, Signal::pressure_a).measured[from]);
+  EXPECT_EQ(*part.scenario.pressure_b_start, channel(whole, Signal::pressure_b).measured[from]);
+  EXPECT_EQ(*part.scenario.piston_start, channel(whole, Signal::piston_position).measured[from]);
+
+  SimulateOptions o;
+  o.wanted.fill(true);
+  const Trajectory t = simulate(part.scenario, candidate_of(shipped_table()), o);
+  ASSERT_TRUE(t.ok);
+  for (const FitChannel& c : part.channels) {
+    const double start = c.measured.front(), simulated = t.signals[c.simulated].front();
+    // The sensor's lag shifts the piston by lag times velocity; all else starts where it was measured.
+    const double allowed = c.signal == Signal::piston_position
+                               ? std::abs(0.001 * part.scenario.piston_velocity_start) + 1e-9
+                               : 1e-6 * std::abs(start);
+    EXPECT_NEAR(simulated, start, allowed) << info(c.signal).name;
+  }
+}
+
+TEST(LogData, SliceStartsAtTheFirstSampleThatIsThere) {
+  LogData log = shipped_data("healthy/h12_mixed");
+  for (FitChannel& c : log.channels)
+    if (c.signal == Signal::spool_position) c.measured[100] = c.measured[101] = std::nan("");
+  EXPECT_EQ(*slice(log, 100, 300).scenario.spool_start, channel(log, Signal::spool_position).measured[102]);
+}
+
+TEST(LogData, VelocityAtTheStartIsThatOfTheMeasuredPiston) {
+  LogData log = shipped_data("healthy/h12_mixed");
+  for (FitChannel& c : log.channels)
+    if (c.signal == Signal::piston_position)
+      for (std::size_t k = 0; k < c.measured.size(); ++k) c.measured[k] = 0.01 - 0.12 * log.scenario.time[k];
+  EXPECT_NEAR(slice(log, 500, 900).scenario.piston_velocity_start, -0.12, 1e-9);
+}
+
+TEST(LogData, InputThatIsMissingIsBridgedInALine) {
+  Log log = shipped_log("healthy/h12_mixed");
+  std::vector<double>& supply = log.channels[index(Signal::supply_pressure)].value;
+  const double left = supply[10], right = supply[14];
+  for (int k = 11; k < 14; ++k) supply[k] = std::nan("");
+  supply.front() = supply.back() = std::nan("");
+  const LogData data = prepare(log, shipped_rig());
+  EXPECT_DOUBLE_EQ(data.scenario.supply_pressure[12], 0.5 * (left + right));
+  EXPECT_EQ(data.scenario.supply_pressure.front(), supply[1]);
+  EXPECT_EQ(data.scenario.supply_pressure.back(), supply[supply.size() - 2]);
+}
+
+TEST(LogData, MeasuredCurrentDrivesInPlaceOfTheCommand) {
+  Log log = shipped_log("healthy/h12_mixed");
+  Channel& coil = log.channels[index(Signal::coil_current)];
+  coil.value = log[Signal::command];
+  for (double& i : coil.value) i *= 0.5;
+  const LogData data = prepare(log, shipped_rig());
+  EXPECT_TRUE(data.scenario.current_measured);
+  EXPECT_EQ(data.scenario.command, coil.value);
+}
+
+TEST(LogData, LogWithoutSupplyTakesTheTables) {
+  EXPECT_TRUE(shipped_data("healthy/h15_no_supply_signals").scenario.supply_pressure.empty());
+  EXPECT_FALSE(shipped_data("healthy/h12_mixed").scenario.supply_pressure.empty());
+}
+
+}  // namespace
+}  // namespace servodx

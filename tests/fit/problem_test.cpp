@@ -1,0 +1,256 @@
+#include "fit/problem.h"
+
+#include <gtest/gtest.h>
+
+#include "fit/error_model.h"
+#include "fit/free_values.h"
+#include "fit/identifiability.h"
+#include "fit/support.h"
+
+namespace servodx {
+namespace {
+
+TEST(FreeValue, UnitIntervalAndValueAreInverses) {
+  for (const bool log_scale : {false, true}) {
+    const FreeValue f{.name = "value", .lower = 0.02, .upper = 5.0, .log_scale = log_scale};
+    EXPECT_DOUBLE_EQ(f.from_unit(0.0), 0.02);
+    EXPECT_DOUBLE_EQ(f.from_unit(1.0), 5.0);
+    for (double u : {0.1, 0.5, 0.9}) EXPECT_NEAR(f.to_unit(f.from_unit(u)), u, 1e-14);
+    EXPECT_EQ(f.to_unit(-1.0), 0.0);
+    EXPECT_EQ(f.to_unit(9.0), 1.0);
+  }
+}
+
+// Two logs, shared rows and nuisances of each.
+struct TwoLogs {
+  Table table = shipped_table();
+  ParameterVector truth = candidate_of(table);
+  LogData a = written_by_model(slice(shipped_data("healthy/h12_mixed"), 0, 500), truth, 1);
+  LogData b = written_by_model(slice(shipped_data("healthy/h10_flight"), 0, 400), truth, 2);
+  std::vector<FreeValue> free() const {
+    std::vector<FreeValue> f = {free_row(table, row::torque_motor_gain), free_row(table, row::piston_viscous_friction),
+                                free_row(table, row::hose_compliance)};
+    const LogData* logs[] = {&a, &b};
+    for (int l : {0, 1})
+      for (FreeValue& v : nuisance_values(*logs[l], l, truth, 0.05)) f.push_back(v);
+    return f;
+  }
+};
+
+TEST(FitProblem, JacobianEqualsCentralDifferences) {
+  const TwoLogs logs;
+  FitProblem problem({&logs.a, &logs.b}, logs.truth, logs.free());
+  problem.difference_step = 1e-5;
+  Point x = problem.start();
+  for (std::size_t j = 0; j < x.size(); ++j) x[j] = 0.8 * x[j] + 0.05 + 0.01 * static_cast<double>(j % 7);
+  const Evaluation at = problem.evaluate(std::span(&x, 1)).front();
+  ASSERT_TRUE(at.ok);
+  Eigen::MatrixXd jacobian;
+  ASSERT_TRUE(problem.jacobian(x, at.residual, jacobian));
+  ASSERT_EQ(jacobian.cols(), problem.n());
+  ASSERT_EQ(jacobian.rows(), at.residual.size());
+  for (int j = 0; j < problem.n(); ++j) {
+    constexpr double h = 1e-5;
+    std::vector<Point> sides = {x, x};
+    sides[0][j] += h, sides[1][j] -= h;
+    const std::vector<Evaluation> e = problem.evaluate(sides);
+    ASSERT_TRUE(e[0].ok && e[1].ok);
+    const Eigen::VectorXd central = (e[0].residual - e[1].residual) / (2 * h);
+    ASSERT_GT(central.norm(), 0.0) << problem.free()[j].name;
+    EXPECT_LT((jacobian.col(j) - central).norm(), 1e-2 * central.norm()) << problem.free()[j].name;
+  }
+}
+
+TEST(FitProblem, NuisanceOfALogMovesNoOtherLog) {
+  const TwoLogs logs;
+  const FitProblem problem({&logs.a, &logs.b}, logs.truth, logs.free());
+  const Point x = problem.start();
+  const Evaluation at = problem.evaluate(std::span(&x, 1)).front();
+  Eigen::MatrixXd jacobian;
+  ASSERT_TRUE(problem.jacobian(x, at.residual, jacobian));
+  const auto rows = [&](int log) {
+    const auto channels = static_cast<int>(problem.logs()[log]->channels.size());
+    const auto [first, n] = problem.rows(log, 0);
+    return std::pair{first, channels * n};
+  };
+  for (int j = 0; j < problem.n(); ++j) {
+    const int log = problem.free()[j].log;
+    for (int l : {0, 1}) {
+      const auto [first, n] = rows(l);
+      const double moved = jacobian.col(j).segment(first, n).norm();
+      if (log >= 0 && log != l)
+        EXPECT_EQ(moved, 0.0) << problem.free()[j].name;
+      else
+        EXPECT_GT(moved, 0.0) << problem.free()[j].name << " on log " << l;
+    }
+  }
+}
+
+TEST(FitProblem, PriorIsARowOfTheResidual) {
+  const TwoLogs logs;
+  FreeValue with = free_row(logs.table, row::torque_motor_gain);
+  with.prior_sd = 0.25;
+  const FitProblem problem({&logs.a}, logs.truth, {with, free_row(logs.table, row::driver_bandwidth)});
+  Point x = problem.start();
+  x[0] += 0.1;
+  const Evaluation e = problem.evaluate(std::span(&x, 1)).front();
+  EXPECT_EQ(e.residual.size(), problem.data_rows() + 1);
+  EXPECT_NEAR(e.residual[problem.data_rows()], 0.1 / 0.25, 1e-12);
+  Eigen::MatrixXd jacobian;
+  ASSERT_TRUE(problem.jacobian(x, e.residual, jacobian));
+  EXPECT_DOUBLE_EQ(jacobian(problem.data_rows(), 0), 1 / 0.25);
+  EXPECT_EQ(jacobian(problem.data_rows(), 1), 0.0);
+}
+
+TEST(FitProblem, PistonsOffsetIsLeftOutAndItsStepIsNot) {
+  const TwoLogs logs;
+  const FitProblem problem({&logs.a}, logs.truth, {free_row(logs.table, row::driver_bandwidth)});
+  const Trajectory t = problem.trajectories(problem.start()).front();
+  ASSERT_TRUE(t.ok);
+  for (int c = 0; c < static_cast<int>(logs.a.channels.size()); ++c) {
+    const FitChannel& channel = logs.a.channels[c];
+    const auto change = [&](auto added) {
+      Trajectory moved = t;
+      std::vector<double>& x = moved.signals[channel.simulated];
+      for (std::size_t k = 0; k < x.size(); ++k) x[k] -= added(k);
+      std::vector<double> r = problem.raw_residual(0, c, moved);
+      const std::vector<double> before = problem.raw_residual(0, c, t);
+      for (std::size_t k = 0; k < r.size(); ++k) r[k] -= before[k];
+      return r;
+    };
+    const double size = 100 * channel.noise;
+    const std::vector<double> offset = change([&](std::size_t) { return size; });
+    const std::vector<double> step = change([&](std::size_t k) { return k < 200 ? 0.0 : size; });
+    EXPECT_NEAR(step[200], size, 0.01 * size) << info(channel.signal).name;
+    if (channel.signal == Signal::piston_position) {
+      EXPECT_NEAR(offset.back(), 0.0, 1e-9 * size);
+      EXPECT_LT(step.back(), 0.7 * size);  // 0.3 s later it has begun to fade
+    } else {
+      EXPECT_NEAR(offset.back(), size, 1e-9 * size) << info(channel.signal).name;
+    }
+  }
+}
+
+TEST(FitProblem, MissingSampleWeighsNothing) {
+  TwoLogs logs;
+  FitProblem problem({&logs.a}, logs.truth, {free_row(logs.table, row::driver_bandwidth)});
+  const auto [first, n] = problem.rows(0, 0);
+  logs.a.channels[0].measured[37] = std::nan("");
+  const Point x = problem.start();
+  const Evaluation e = problem.evaluate(std::span(&x, 1)).front();
+  ASSERT_TRUE(e.ok);
+  EXPECT_EQ(e.residual[first + 37], 0.0);
+  EXPECT_TRUE(e.residual.allFinite());
+}
+
+TEST(FitProblem, FailedSimulationIsCountedAndNotOk) {
+  const TwoLogs logs;
+  FreeValue broken{.name = "broken", .at = row::bulk_modulus, .lower = 0, .upper = 1, .start = 0.5};
+  broken.apply = [](double* v, double value) { v[row::bulk_modulus] = value > 0.9 ? std::nan("") : 1.4e9; };
+  const FitProblem problem({&logs.a}, logs.truth, {broken});
+  const std::vector<Point> points = {{0.5}, {0.95}, {0.2}};
+  const std::vector<Evaluation> e = problem.evaluate(points);
+  EXPECT_TRUE(e[0].ok);
+  EXPECT_FALSE(e[1].ok);
+  EXPECT_TRUE(e[2].ok);
+  EXPECT_EQ(problem.failed_simulations(), 1);
+  EXPECT_EQ(problem.simulations(), 3);
+}
+
+// Twin experiments: the model writes the log, its noise is known, and the fit must find the values within what it says
+// of its own uncertainty.
+struct TwinCount {
+  int total = 0, within_one = 0, within_two = 0, within_four = 0;
+  double mean_square = 0;
+};
+
+// Rows of each block of the model that the log below tells apart.
+const std::vector<int> twin_rows = {
+    row::torque_motor_gain,       row::fixed_orifice_diameter, row::driver_bandwidth,      row::port_width,
+    row::piston_viscous_friction, row::cross_piston_leakage,   row::flow_force_coefficient};
+
+// `fit` takes the problem and returns the end of the fit, whitened as it sees fit.
+template <class Write, class Fit>
+TwinCount twins(unsigned seeds, const std::vector<int>& rows, Write write, Fit fit) {
+  const Table table = shipped_table();
+  TwinCount count;
+  for (unsigned seed = 0; seed < seeds; ++seed) {
+    Random random(50 + seed);
+    std::vector<FreeValue> free;
+    ParameterVector truth = candidate_of(table);
+    Point hidden;
+    for (int r : rows) {
+      free.push_back(free_row(table, r));
+      hidden.push_back(random.uniform(0.3, 0.7));
+      truth[r] = free.back().from_unit(hidden.back());
+    }
+    const LogData log = write(truth, 70 + seed);
+    FitProblem problem({&log}, candidate_of(table), free);
+    const LeastSquaresResult r = fit(problem);
+    const Eigen::MatrixXd covariance = covariance_of(r.jacobian, std::vector<char>(rows.size(), 1));
+    for (std::size_t j = 0; j < rows.size(); ++j) {
+      const double z = (r.point[j] - hidden[j]) / std::sqrt(covariance(static_cast<long>(j), static_cast<long>(j)));
+      count.mean_square += z * z;
+      ++count.total;
+      count.within_one += std::abs(z) < 1, count.within_two += std::abs(z) < 2, count.within_four += std::abs(z) < 4;
+      if (std::abs(z) >= 2) std::printf("  seed %u: %s off by %.2f deviations\n", seed, free[j].name.c_str(), z);
+    }
+  }
+  count.mean_square /= count.total;
+  std::printf("twins of %u seeds: %d of %d within one deviation, %d within two, %d within four; mean square %.2f\n",
+              seeds, count.within_one, count.total, count.within_two, count.within_four, count.mean_square);
+  return count;
+}
+
+LeastSquaresOptions twin_options() {
+  LeastSquaresOptions o;
+  o.max_iterations = 40;
+  return o;
+}
+
+TEST(Twin, ValuesAreRecoveredWithinTheirStatedUncertaintyUnderWhiteNoise) {
+  // Without the piston, whose filter colours its noise, the noise is white and its size known: all is exact.
+  LogData inputs = slice(shipped_data("healthy/h01_steps_large"), 0, 1500);
+  std::erase_if(inputs.channels, [](const FitChannel& c) { return c.signal == Signal::piston_position; });
+  const TwinCount c = twins(
+      5, twin_rows, [&](const ParameterVector& truth, unsigned seed) { return written_by_model(inputs, truth, seed); },
+      [](FitProblem& problem) {
+        const LeastSquaresResult r = minimise_least_squares(problem.least_squares(), problem.start(), twin_options());
+        // As many squares as samples, to five deviations of such a sum.
+        const auto n = static_cast<double>(problem.data_rows());
+        EXPECT_NEAR(2 * r.misfit / n, 1.0, 5 * std::sqrt(2 / n)) << r.stopped;
+        return r;
+      });
+  EXPECT_EQ(c.within_four, c.total);
+  EXPECT_GE(c.within_two, c.total * 8 / 10);  // 95 % expected
+  // 35 squares of unit normals have mean 1 with deviation 0.24.
+  EXPECT_GT(c.mean_square, 0.3);
+  EXPECT_LT(c.mean_square, 2.0);
+}
+
+TEST(Twin, ValuesAreRecoveredWithinTheirStatedUncertaintyAsTuneWorks) {
+  // All channels, started from noisy samples; weights learnt from the residual, with its correlation.
+  const LogData inputs = slice(shipped_data("healthy/h01_steps_large"), 0, 1500);
+  std::vector<int> rows = twin_rows;
+  rows.push_back(row::position_sensor_lag);
+  const TwinCount c = twins(
+      5, rows,
+      [&](const ParameterVector& truth, unsigned seed) {
+        const LogData log = written_by_model(inputs, truth, seed);
+        return slice(log, 0, log.scenario.time.size());  // takes its start from what is measured
+      },
+      [](FitProblem& problem) {
+        LeastSquaresResult r = minimise_least_squares(problem.least_squares(), problem.start(), twin_options());
+        for (int round = 0; round < 2; ++round) {
+          apply_error_model(problem, learn_error_model(problem, r.point), r.point);
+          r = minimise_least_squares(problem.least_squares(), r.point, twin_options());
+        }
+        return r;
+      });
+  EXPECT_EQ(c.within_four, c.total);
+  EXPECT_GE(c.within_two, c.total * 8 / 10);
+  EXPECT_LT(c.mean_square, 2.5);  // the weights are learnt from the same data
+}
+
+}  // namespace
+}  // namespace servodx
