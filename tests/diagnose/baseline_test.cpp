@@ -1,0 +1,125 @@
+// What a baseline refuses and promises; determinism of an assessment. On short pieces of the committed logs.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/error.h"
+#include "diagnose/diagnose.h"
+#include "shipped_data.h"
+
+namespace servodx {
+namespace {
+
+// The first `samples` of a log, as a log.
+Log cut(Log log, std::size_t samples) {
+  samples = std::min(samples, log.samples());
+  log.time.resize(samples);
+  for (Channel& c : log.channels)
+    if (!c.value.empty()) c.value.resize(samples);
+  return log;
+}
+std::vector<Log> cut_logs(const std::vector<std::string>& names, std::size_t samples) {
+  std::vector<Log> out;
+  for (const std::string& name : names) out.push_back(cut(shipped_log(name), samples));
+  return out;
+}
+
+DiagnoseOptions quiet() {
+  DiagnoseOptions o;
+  o.quiet = true;
+  return o;
+}
+
+// A table as `tune` would leave it, without the work: an error model, and the hash of a log.
+Table as_tuned(const std::string& by) {
+  Table t = shipped_table();
+  t.path = "tuned.csv";
+  ErrorModel error;
+  for (Signal s : {Signal::spool_position, Signal::piston_position, Signal::pressure_a, Signal::pressure_b})
+    error.channels.push_back({s, 0.0, 0.2, 0.05});
+  t.comments = to_comments(error);
+  t.comments.push_back("tuned by " + by + " log.csv");
+  t.has_std_error = true;
+  return t;
+}
+
+// The words of the refusal; empty if there was none.
+template <class F>
+std::string refusal(F f) {
+  try {
+    f();
+  } catch (const InputError& e) {
+    return e.what();
+  }
+  return "";
+}
+
+TEST(Baseline, RefusesALogThatTunedTheTable) {
+  const std::vector<Log> logs = cut_logs({"healthy/h03_sine_2hz", "healthy/h12_mixed", "healthy/h05_prbs"}, 100);
+  const Table tuned = as_tuned(logs[1].sha256);
+  const std::string said = refusal([&] { make_baseline(logs, tuned, shipped_rig(), 0.01, quiet()); });
+  EXPECT_NE(said.find("h12_mixed"), std::string::npos) << said;
+  EXPECT_NE(said.find("tuned"), std::string::npos) << said;
+}
+
+TEST(Baseline, RefusesTheSameLogTwice) {
+  const std::vector<Log> logs =
+      cut_logs({"healthy/h03_sine_2hz", "healthy/h05_prbs", "healthy/h12_mixed", "healthy/h05_prbs"}, 100);
+  const std::string said = refusal([&] { make_baseline(logs, as_tuned("0"), shipped_rig(), 0.01, quiet()); });
+  EXPECT_NE(said.find("same log"), std::string::npos) << said;
+}
+
+TEST(Baseline, RefusesTwoLogsAndARateThatIsNone) {
+  const std::vector<Log> two = cut_logs({"healthy/h03_sine_2hz", "healthy/h05_prbs"}, 100);
+  const std::string said = refusal([&] { make_baseline(two, as_tuned("0"), shipped_rig(), 0.01, quiet()); });
+  EXPECT_NE(said.find("2 logs"), std::string::npos) << said;
+  for (double rate : {0.0, 1.0, -0.1})
+    EXPECT_NE(refusal([&] { make_baseline(two, as_tuned("0"), shipped_rig(), rate, quiet()); }), "") << rate;
+}
+
+TEST(Baseline, RefusesATableThatDoesNotSayHowWrongItIs) {
+  Table tuned = as_tuned("0");
+  tuned.comments.clear();
+  const std::vector<Log> logs = cut_logs({"healthy/h03_sine_2hz", "healthy/h12_mixed", "healthy/h05_prbs"}, 100);
+  EXPECT_NE(refusal([&] { make_baseline(logs, tuned, shipped_rig(), 0.01, quiet()); }), "");
+}
+
+TEST(Baseline, PromisesTheRatesThatItsNumberOfLogsAllows) {
+  const std::vector<Log> logs = cut_logs({"healthy/h02_steps_small", "healthy/h03_sine_2hz", "healthy/h12_mixed"}, 100);
+  const Baseline low = make_baseline(logs, as_tuned("0"), shipped_rig(), 0.01, quiet());
+  EXPECT_EQ(low.logs, 3);
+  ASSERT_EQ(low.scores.size(), 3u);
+  std::vector<double> scores;
+  for (const Baseline::Score& s : low.scores) scores.push_back(s.score);
+  std::sort(scores.begin(), scores.end());
+  EXPECT_DOUBLE_EQ(low.promised, 1.0 / (3 + 1));
+  EXPECT_DOUBLE_EQ(low.promised_95, 1 - std::pow(0.05, 1.0 / 3));
+  EXPECT_EQ(low.threshold, scores[2]);
+  // One in a hundred takes 99 logs: 96 more.
+  EXPECT_EQ(low.logs_needed, 99);
+  EXPECT_NE(low.statement.find("96 more"), std::string::npos) << low.statement;
+  // A rate that three logs allow: two of four may lie above, so the threshold is the second score.
+  const Baseline high = make_baseline(logs, as_tuned("0"), shipped_rig(), 0.5, quiet());
+  EXPECT_DOUBLE_EQ(high.promised, 2.0 / 4);
+  EXPECT_EQ(high.threshold, scores[1]);
+  EXPECT_EQ(high.statement.find("more"), std::string::npos) << high.statement;
+}
+
+TEST(Assess, SameResultAtAnyThreadCount) {
+  const Log log = cut(shipped_log("fault/f02_clogged_filter_severe"), 250);
+  DiagnoseOptions one = quiet(), two = quiet();
+  one.threads = 1, two.threads = 2;
+  const Assessment a = assess(log, as_tuned("0"), shipped_rig(), one);
+  const Assessment b = assess(log, as_tuned("0"), shipped_rig(), two);
+  EXPECT_EQ(a.score, b.score);
+  ASSERT_EQ(a.hypotheses.size(), b.hypotheses.size());
+  for (std::size_t i = 0; i < a.hypotheses.size(); ++i) {
+    EXPECT_EQ(a.hypotheses[i].name, b.hypotheses[i].name);
+    EXPECT_EQ(a.hypotheses[i].misfit, b.hypotheses[i].misfit);
+    EXPECT_EQ(a.hypotheses[i].severity, b.hypotheses[i].severity);
+  }
+}
+
+}  // namespace
+}  // namespace servodx

@@ -1,0 +1,134 @@
+// The verdict from assessments made by hand: no simulation here.
+#include <gtest/gtest.h>
+
+#include "diagnose/diagnose.h"
+#include "faults/registry.h"
+
+namespace servodx {
+namespace {
+
+HypothesisResult hypothesis(const std::string& name, double probability, double adequacy = 1.0) {
+  HypothesisResult h;
+  h.name = name;
+  h.probability = probability;
+  h.adequacy = adequacy;
+  h.severity = 0.6, h.severity_lower = 0.5, h.severity_upper = 0.7;
+  h.unit = "unit of " + name;
+  return h;
+}
+
+Assessment assessment(double score, std::vector<HypothesisResult> hypotheses) {
+  Assessment a;
+  a.log = "log.csv";
+  a.score = score;
+  a.hypotheses = std::move(hypotheses);
+  return a;
+}
+
+// Scores 1, 2, 3 and so a threshold of 3.
+Baseline baseline() {
+  Baseline b;
+  b.threshold = 3.0;
+  b.adequacy_limit = 1.5;
+  b.scores = {{"a", "1", 1.0, 1.2}, {"b", "2", 2.0, 1.5}, {"c", "3", 3.0, 1.0}};
+  return b;
+}
+
+TEST(Judge, ScoreAtTheThresholdIsHealthyWhateverTheHypothesesSay) {
+  for (double score : {0.0, 2.9, 3.0}) {
+    const Diagnosis d =
+        judge(assessment(score, {hypothesis("healthy", 0.01), hypothesis("clogged_filter", 0.99)}), baseline());
+    EXPECT_EQ(d.verdict, "healthy") << score;
+    EXPECT_FALSE(d.fault.has_value());
+    EXPECT_EQ(d.error, score);
+    EXPECT_EQ(d.threshold, 3.0);
+  }
+}
+
+TEST(Judge, ScoreAboveItNamesTheMostProbableFaultWithItsSize) {
+  const Diagnosis d = judge(assessment(3.001, {hypothesis("healthy", 0.001), hypothesis("sticky_spool", 0.001),
+                                               hypothesis("clogged_filter", 0.998)}),
+                            baseline());
+  EXPECT_EQ(d.verdict, "fault");
+  ASSERT_TRUE(d.fault.has_value());
+  EXPECT_EQ(*d.fault, "clogged_filter");
+  EXPECT_EQ(d.severity.value, 0.6);
+  EXPECT_EQ(d.severity.lower, 0.5);
+  EXPECT_EQ(d.severity.upper, 0.7);
+  EXPECT_EQ(d.severity.unit, "unit of clogged_filter");
+  EXPECT_EQ(d.action, find_fault("clogged_filter")->action);
+  EXPECT_TRUE(d.ambiguous_with.empty());
+  EXPECT_TRUE(d.separating_test.empty());
+  EXPECT_EQ(d.probabilities.at("clogged_filter"), 0.998);
+}
+
+TEST(Judge, PValueIsTheRankAmongTheHealthyLogs) {
+  // (1 + healthy logs at or above) / (n + 1)
+  for (const auto& [score, p] : {std::pair{0.5, 1.0}, {1.5, 0.75}, {2.5, 0.5}, {3.0, 0.5}, {9.0, 0.25}})
+    EXPECT_DOUBLE_EQ(judge(assessment(score, {hypothesis("healthy", 1.0)}), baseline()).p_value, p) << score;
+}
+
+TEST(Judge, UnknownWhenTheBestHypothesisExplainsTooLittle) {
+  // The best leaves as much as health does, ten times what healthy logs leave.
+  const Diagnosis d =
+      judge(assessment(20.0, {hypothesis("healthy", 0.0, 15.0), hypothesis("clogged_filter", 1.0, 14.0)}), baseline());
+  EXPECT_EQ(d.verdict, "unknown");
+  EXPECT_FALSE(d.fault.has_value());
+  EXPECT_EQ(d.probabilities.at("unknown"), 1.0);
+  EXPECT_EQ(d.probabilities.at("clogged_filter"), 0.0);
+  EXPECT_TRUE(d.action.empty());
+}
+
+TEST(Judge, FaultThatLeavesNoMoreThanHealthyLogsDoIsNamedHoweverLarge) {
+  const Diagnosis d =
+      judge(assessment(500.0, {hypothesis("healthy", 0.0, 300.0), hypothesis("sticky_spool", 1.0, 1.5)}), baseline());
+  EXPECT_EQ(d.verdict, "fault");
+}
+
+TEST(Judge, UnknownWhenHealthIsStillTheBestHypothesis) {
+  const Diagnosis d =
+      judge(assessment(5.0, {hypothesis("healthy", 0.9, 4.0), hypothesis("sticky_spool", 0.1, 3.9)}), baseline());
+  EXPECT_EQ(d.verdict, "unknown");
+}
+
+TEST(Judge, HypothesisThatCannotBeRuledOutIsListedWithTheTestThatSeparates) {
+  const Diagnosis d =
+      judge(assessment(9.0, {hypothesis("healthy", 0.0), hypothesis("sticky_spool", 0.6),
+                             hypothesis("feedback_wire_backlash", 0.39), hypothesis("null_shift", 0.01)}),
+            baseline());
+  EXPECT_EQ(*d.fault, "sticky_spool");
+  EXPECT_EQ(d.ambiguous_with, std::vector<std::string>{"feedback_wire_backlash"});
+  EXPECT_EQ(d.separating_test, find_fault("sticky_spool")->test);
+}
+
+TEST(Judge, SpoolOnBothStopsIsALostWireWhateverTheFitsSay) {
+  Assessment a = assessment(1e3, {hypothesis("healthy", 0.5, 80.0), hypothesis("torque_motor_loss", 0.5, 70.0),
+                                  hypothesis("feedback_wire_lost", 0.0, 90.0)});
+  a.gross = "spool on both stops at small current";
+  const Diagnosis d = judge(a, baseline());
+  EXPECT_EQ(d.verdict, "fault");
+  EXPECT_EQ(*d.fault, "feedback_wire_lost");
+  EXPECT_EQ(d.severity.value, 0.0);  // nothing left of it
+  EXPECT_EQ(d.severity.lower, 0.0);
+  EXPECT_EQ(d.probabilities.at("feedback_wire_lost"), 1.0);
+  EXPECT_EQ(d.probabilities.at("torque_motor_loss"), 0.0);
+  EXPECT_TRUE(d.ambiguous_with.empty());
+}
+
+TEST(Judge, OtherGrossFindingsNameNothingByThemselves) {
+  for (const char* gross : {"spool on one stop at small current", "the spool does not respond"}) {
+    Assessment a = assessment(1e3, {hypothesis("healthy", 0.5, 80.0), hypothesis("torque_motor_loss", 0.5, 70.0),
+                                    hypothesis("feedback_wire_lost", 0.0, 90.0)});
+    a.gross = gross;
+    EXPECT_EQ(judge(a, baseline()).verdict, "unknown") << gross;
+  }
+}
+
+TEST(Judge, OnsetIsHandedOn) {
+  Assessment a = assessment(9.0, {hypothesis("healthy", 0.0), hypothesis("sticky_spool", 1.0)});
+  a.onset = 1.25;
+  EXPECT_EQ(judge(a, baseline()).onset, 1.25);
+}
+
+}  // namespace
+}  // namespace servodx
