@@ -1,0 +1,85 @@
+// Tune, baseline, diagnose on pieces of the committed logs: the whole path, short enough for every run of the tests.
+// The study with whole logs and rotations is bench/confusion.cpp.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <chrono>
+
+#include "diagnose/diagnose.h"
+#include "shipped_data.h"
+
+namespace servodx {
+namespace {
+
+// Samples [from, to) of a log, as a log.
+Log piece(Log log, std::size_t from, std::size_t to) {
+  const auto cut = [&](std::vector<double>& v) {
+    if (v.empty()) return;
+    v.resize(to);
+    v.erase(v.begin(), v.begin() + static_cast<long>(from));
+  };
+  cut(log.time);
+  for (Channel& c : log.channels) cut(c.value);
+  return log;
+}
+
+TEST(MainJob, LostWireIsFoundAndSizedAndNoFaultTakenForAnother) {
+  const auto start = std::chrono::steady_clock::now();
+  const auto seconds = [&] { return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(); };
+  const RigFile rig = shipped_rig();
+  // The mixed logs step by up to half of the rated current from 0.4 s on.
+  constexpr std::size_t from = 400, to = 1300;
+  const auto pieces = [&](const std::vector<std::string>& names) {
+    std::vector<Log> out;
+    for (const std::string& name : names) out.push_back(piece(shipped_log(name), from, to));
+    return out;
+  };
+  TuneOptions o;
+  o.quiet = true;
+  o.generations = 2;
+  o.population = 24;  // the least that four islands take
+  const TuneResult tuned = tune(pieces({"healthy/h01_steps_large", "healthy/h12_mixed", "healthy/h04_multisine"}),
+                                read_table(shipped("params/borello2009.csv")), rig, o);
+  std::printf("tuned after %.1f s\n", seconds());
+  DiagnoseOptions quiet;
+  quiet.quiet = true;
+  const Baseline baseline =
+      make_baseline(pieces({"healthy/h15_no_supply_signals", "healthy/h05_prbs", "healthy/h03_sine_2hz"}), tuned.table,
+                    rig, 0.01, quiet);
+  std::printf("baseline after %.1f s: threshold %.2f, adequacy limit %.2f; %s\n", seconds(), baseline.threshold,
+              baseline.adequacy_limit, baseline.statement.c_str());
+  struct Case {
+    std::string log, truth;
+    double left;  // of the wire
+  };
+  const std::vector<Case> cases = {{"healthy/h06_sweep", "healthy", 1.0},
+                                   {"fault/f02_clogged_filter_severe", "clogged_filter", 1.0},
+                                   {"fault/f05_wire_lost_mild", "feedback_wire_lost", 0.5},
+                                   {"fault/f06_wire_lost_medium", "feedback_wire_lost", 0.2},
+                                   {"fault/f08_sticky_spool_severe", "sticky_spool", 1.0}};
+  int faults = 0, detected = 0, named = 0;
+  for (const Case& c : cases) {
+    const Diagnosis d = judge(assess(piece(shipped_log(c.log), from, to), tuned.table, rig, quiet), baseline);
+    std::string ambiguous;
+    for (const std::string& other : d.ambiguous_with) ambiguous += " or " + other;
+    std::printf("%-34s -> %-8s %-24s score %7.2f size %.3g [%.3g, %.3g]%s  (%.1f s)\n", c.log.c_str(),
+                d.verdict.c_str(), d.fault.value_or("").c_str(), d.error, d.severity.value, d.severity.lower,
+                d.severity.upper, ambiguous.c_str(), seconds());
+    if (c.truth == "healthy") continue;  // one log in four may be called faulty: three baseline logs promise no more
+    ++faults;
+    detected += d.verdict != "healthy";
+    named += d.fault == c.truth;
+    // A second of steps may be too little to see a fault; it must not show another one.
+    const bool listed = std::find(d.ambiguous_with.begin(), d.ambiguous_with.end(), c.truth) != d.ambiguous_with.end();
+    EXPECT_TRUE(!d.fault || *d.fault == c.truth || listed) << c.log;
+    if (c.truth != "feedback_wire_lost") continue;
+    // The static gain doubles, or rises fivefold: far beyond what health leaves.
+    EXPECT_EQ(d.verdict, "fault") << c.log;
+    EXPECT_GT(d.error, 3 * baseline.threshold) << c.log;
+    EXPECT_NEAR(d.severity.value, c.left, 0.15) << c.log;
+  }
+  std::printf("%d faults: %d detected, %d named\n", faults, detected, named);
+}
+
+}  // namespace
+}  // namespace servodx
