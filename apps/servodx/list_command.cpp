@@ -115,9 +115,10 @@ Listing effects(const Options&, Invocation&) {
     }
     add(effect.name, "table", effect.where, effect.meaning, parameters);
   }
-  out.text = table.text() +
-             "file: physics of its own, src/effects/; 'tune --effects A,B' adds its rows and frees them\n"
-             "table: rows among the 41; 'estimate' 1 frees one, 0 holds it at its nominal value; air is fitted log by log\n";
+  out.text =
+      table.text() +
+      "file: physics of its own, src/effects/; 'tune --effects A,B' adds its rows and frees them\n"
+      "table: rows among the 41; 'estimate' 1 frees one, 0 holds it at its nominal value; air is fitted log by log\n";
   return out;
 }
 
