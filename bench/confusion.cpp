@@ -41,7 +41,8 @@ std::vector<Truth> read_truth(const fs::path& file) {
     std::vector<std::string> c;
     for (std::string cell; std::getline(cells, cell, ',');) c.push_back(cell);
     if (c.size() < 9) continue;
-    out.push_back({c[0], c[1], c[2], c[3], c[5], c[4].empty() ? 0 : std::stod(c[4]), c[8].empty() ? NAN : std::stod(c[8])});
+    out.push_back(
+        {c[0], c[1], c[2], c[3], c[5], c[4].empty() ? 0 : std::stod(c[4]), c[8].empty() ? NAN : std::stod(c[8])});
   }
   return out;
 }
@@ -54,8 +55,9 @@ std::string label_of(const std::string& word) {
 }
 
 bool listed(const std::string& label) {
-  static const std::vector<std::string> seven = {"clogged_filter", "torque_motor_loss", "feedback_wire_backlash", "feedback_wire_lost",
-                                                 "sticky_spool",   "radial_clearance_wear", "null_shift"};
+  static const std::vector<std::string> seven = {"clogged_filter",     "torque_motor_loss", "feedback_wire_backlash",
+                                                 "feedback_wire_lost", "sticky_spool",      "radial_clearance_wear",
+                                                 "null_shift"};
   return std::find(seven.begin(), seven.end(), label) != seven.end();
 }
 
@@ -79,7 +81,8 @@ int main(int argc, char** argv) {
   std::vector<std::string> healthy;
   for (const Truth& t : truth)
     if (t.set == "healthy") healthy.push_back(t.path);
-  std::map<std::pair<std::string, std::string>, std::map<std::string, int>> confusion;  // (truth, severity) -> verdict -> count
+  std::map<std::pair<std::string, std::string>, std::map<std::string, int>>
+      confusion;  // (truth, severity) -> verdict -> count
   int false_alarms = 0, healthy_judged = 0;
   double promised = 0;
   const auto start = std::chrono::steady_clock::now();
@@ -90,8 +93,10 @@ int main(int argc, char** argv) {
     int turn = 0;
     for (std::size_t i = 0; i < healthy.size(); ++i) {
       Log log = read_log(dir + "/" + healthy[i], rig);
-      if (static_cast<int>(i) % rotations == r) held.push_back(std::move(log));
-      else (turn++ % 2 == 0 ? tune_logs : base_logs).push_back(std::move(log));
+      if (static_cast<int>(i) % rotations == r)
+        held.push_back(std::move(log));
+      else
+        (turn++ % 2 == 0 ? tune_logs : base_logs).push_back(std::move(log));
     }
     Table tuned;
     const std::string kept = cache.empty() ? "" : fmt::format("{}/rot{}.csv", cache, r);
@@ -107,9 +112,11 @@ int main(int argc, char** argv) {
     const DiagnoseOptions options;
     const Baseline baseline = make_baseline(base_logs, tuned, rig, 0.01, options);
     promised = baseline.promised;
-    fmt::print("rotation {}: {} tune, {} baseline, {} held out; threshold {:.2f}, adequacy limit {:.2f}\n", r, tune_logs.size(), base_logs.size(), held.size(), baseline.threshold,
-               baseline.adequacy_limit);
-    for (const Baseline::Score& s : baseline.scores) fmt::print("    baseline {:26s} score {:6.2f} adequacy {:.2f}\n", fs::path(s.log).filename().string(), s.score, s.adequacy);
+    fmt::print("rotation {}: {} tune, {} baseline, {} held out; threshold {:.2f}, adequacy limit {:.2f}\n", r,
+               tune_logs.size(), base_logs.size(), held.size(), baseline.threshold, baseline.adequacy_limit);
+    for (const Baseline::Score& s : baseline.scores)
+      fmt::print("    baseline {:26s} score {:6.2f} adequacy {:.2f}\n", fs::path(s.log).filename().string(), s.score,
+                 s.adequacy);
     const auto show = [&](const Log& log, const Truth& t) {
       const Diagnosis d = judge(assess(log, tuned, rig, options), baseline);
       const std::string verdict = d.fault ? *d.fault : d.verdict;
@@ -120,16 +127,23 @@ int main(int argc, char** argv) {
       }
       std::string ambiguous;
       for (const std::string& a : d.ambiguous_with) ambiguous += " " + a;
-      fmt::print("  {:28s} {:26s} {:7s} {:8.3g} -> {:22s} score {:8.2f} severity {:.3g} [{:.3g}, {:.3g}] adequacy {:.1f}{}{}{}\n", t.path, label_of(t.label), t.severity, t.value,
-                 verdict, d.error, d.severity.value, d.severity.lower, d.severity.upper,
-                 std::min_element(d.assessment.hypotheses.begin(), d.assessment.hypotheses.end(), [](auto& x, auto& y) { return x.probability > y.probability; })->adequacy,
-                 ambiguous.empty() ? "" : " ambiguous with" + ambiguous, d.onset ? fmt::format(" onset {:.3f} (true {:.3f})", *d.onset, t.onset) : "",
-                 d.assessment.gross.empty() ? "" : " [" + d.assessment.gross + "]");
+      fmt::print(
+          "  {:28s} {:26s} {:7s} {:8.3g} -> {:22s} score {:8.2f} severity {:.3g} [{:.3g}, {:.3g}] adequacy "
+          "{:.1f}{}{}{}\n",
+          t.path, label_of(t.label), t.severity, t.value, verdict, d.error, d.severity.value, d.severity.lower,
+          d.severity.upper,
+          std::min_element(d.assessment.hypotheses.begin(), d.assessment.hypotheses.end(),
+                           [](auto& x, auto& y) { return x.probability > y.probability; })
+              ->adequacy,
+          ambiguous.empty() ? "" : " ambiguous with" + ambiguous,
+          d.onset ? fmt::format(" onset {:.3f} (true {:.3f})", *d.onset, t.onset) : "",
+          d.assessment.gross.empty() ? "" : " [" + d.assessment.gross + "]");
       if (t.set == "healthy") {
         fmt::print("    replay");
         for (const ChannelResult& c : d.assessment.channels) {
           fmt::print("  {} {:.4g} ({:.1f} noise)", info(c.signal).name, c.rms, c.rms / c.noise_rms);
-          replay[std::string(info(c.signal).name)].push_back(c.signal == Signal::pressure_a || c.signal == Signal::pressure_b ? c.rms / 1e5 : c.rms / c.noise_rms);
+          replay[std::string(info(c.signal).name)].push_back(
+              c.signal == Signal::pressure_a || c.signal == Signal::pressure_b ? c.rms / 1e5 : c.rms / c.noise_rms);
         }
         fmt::print("\n");
       }
@@ -162,7 +176,8 @@ int main(int argc, char** argv) {
   }
   for (const auto& [severity, c] : by_severity)
     fmt::print("listed faults, {}: {} of {} detected, {} of {} named rightly\n", severity, c[1], c[0], c[2], c[0]);
-  fmt::print("false alarms: {} of {} healthy logs ({:.1f} %); promised {:.1f} %\n", false_alarms, healthy_judged, 100.0 * false_alarms / std::max(1, healthy_judged), 100 * promised);
+  fmt::print("false alarms: {} of {} healthy logs ({:.1f} %); promised {:.1f} %\n", false_alarms, healthy_judged,
+             100.0 * false_alarms / std::max(1, healthy_judged), 100 * promised);
   fmt::print("held-out healthy replay, median and worst (pressures in bar, others over noise):");
   for (auto& [signal, v] : replay) {
     std::sort(v.begin(), v.end());

@@ -59,9 +59,7 @@ void run(const Options& options) {
   const Table table = apply_rig_facts(invocation.table(options.params), rig);
   const Log log = invocation.log(options.log, rig);
   const LogData data = prepare(log, rig);
-  if (data.channels.empty())
-    throw InputError({options.log, 0, ""}, "holds no signal that the model reports",
-                     "log spool or piston position, both chamber pressures or a flow");
+  require_channels(data);
   const ParameterVector candidate = candidate_of(table);
   const SimulateOptions how = simulate_options(options, data);
   Trajectory simulated = simulate(data.scenario, candidate, how);

@@ -12,11 +12,17 @@ namespace servodx {
 template <int W>
 struct VectorOf;
 template <>
-struct VectorOf<2> { typedef double type __attribute__((vector_size(16))); };
+struct VectorOf<2> {
+  typedef double type __attribute__((vector_size(16)));
+};
 template <>
-struct VectorOf<4> { typedef double type __attribute__((vector_size(32))); };
+struct VectorOf<4> {
+  typedef double type __attribute__((vector_size(32)));
+};
 template <>
-struct VectorOf<8> { typedef double type __attribute__((vector_size(64))); };
+struct VectorOf<8> {
+  typedef double type __attribute__((vector_size(64)));
+};
 
 template <int W, int Isa = 0>
 struct Pack {
@@ -35,9 +41,18 @@ struct Pack {
   friend Pack operator*(Pack a, Pack b) { return Pack(a.v * b.v); }
   friend Pack operator/(Pack a, Pack b) { return Pack(a.v / b.v); }
   friend Pack operator-(Pack a) { return Pack(-a.v); }
-  Pack& operator+=(Pack b) { v += b.v; return *this; }
-  Pack& operator-=(Pack b) { v -= b.v; return *this; }
-  Pack& operator*=(Pack b) { v *= b.v; return *this; }
+  Pack& operator+=(Pack b) {
+    v += b.v;
+    return *this;
+  }
+  Pack& operator-=(Pack b) {
+    v -= b.v;
+    return *this;
+  }
+  Pack& operator*=(Pack b) {
+    v *= b.v;
+    return *this;
+  }
   friend Pack sqrt(Pack a) {
     Pack r;
     for (int i = 0; i < W; ++i) r.v[i] = std::sqrt(a.v[i]);  // one vector instruction

@@ -51,7 +51,8 @@ Dual<T, Mask{1} << K> seed(T value, T derivative) {
 
 // c = value, dc = ga*da + gb*db
 template <class T, Mask A, Mask B>
-inline __attribute__((always_inline)) Dual<T, A | B> chain(T value, const Dual<T, A>& a, T ga, const Dual<T, B>& b, T gb) {
+inline __attribute__((always_inline)) Dual<T, A | B> chain(T value, const Dual<T, A>& a, T ga, const Dual<T, B>& b,
+                                                           T gb) {
   Dual<T, A | B> r;
   r.v = value;
   unroll<Dual<T, A | B>::slots>([&](auto i) {
@@ -80,9 +81,12 @@ Dual<T, A | B> operator+(const Dual<T, A>& a, const Dual<T, B>& b) {
   r.v = a.v + b.v;
   unroll<Dual<T, A | B>::slots>([&](auto i) {
     constexpr int k = variable(A | B, i);
-    if constexpr (holds(A, k) && holds(B, k)) r.d[i] = a.d[slot(A, k)] + b.d[slot(B, k)];
-    else if constexpr (holds(A, k)) r.d[i] = a.d[slot(A, k)];
-    else r.d[i] = b.d[slot(B, k)];
+    if constexpr (holds(A, k) && holds(B, k))
+      r.d[i] = a.d[slot(A, k)] + b.d[slot(B, k)];
+    else if constexpr (holds(A, k))
+      r.d[i] = a.d[slot(A, k)];
+    else
+      r.d[i] = b.d[slot(B, k)];
   });
   return r;
 }
@@ -92,14 +96,19 @@ Dual<T, A | B> operator-(const Dual<T, A>& a, const Dual<T, B>& b) {
   r.v = a.v - b.v;
   unroll<Dual<T, A | B>::slots>([&](auto i) {
     constexpr int k = variable(A | B, i);
-    if constexpr (holds(A, k) && holds(B, k)) r.d[i] = a.d[slot(A, k)] - b.d[slot(B, k)];
-    else if constexpr (holds(A, k)) r.d[i] = a.d[slot(A, k)];
-    else r.d[i] = -b.d[slot(B, k)];
+    if constexpr (holds(A, k) && holds(B, k))
+      r.d[i] = a.d[slot(A, k)] - b.d[slot(B, k)];
+    else if constexpr (holds(A, k))
+      r.d[i] = a.d[slot(A, k)];
+    else
+      r.d[i] = -b.d[slot(B, k)];
   });
   return r;
 }
 template <class T, Mask A, Mask B>
-Dual<T, A | B> operator*(const Dual<T, A>& a, const Dual<T, B>& b) { return chain(a.v * b.v, a, b.v, b, a.v); }
+Dual<T, A | B> operator*(const Dual<T, A>& a, const Dual<T, B>& b) {
+  return chain(a.v * b.v, a, b.v, b, a.v);
+}
 template <class T, Mask A, Mask B>
 Dual<T, A | B> operator/(const Dual<T, A>& a, const Dual<T, B>& b) {
   const T inverse = T(1.0) / b.v;
@@ -107,22 +116,44 @@ Dual<T, A | B> operator/(const Dual<T, A>& a, const Dual<T, B>& b) {
   return chain(q, a, inverse, b, -q * inverse);
 }
 template <class T, Mask A>
-Dual<T, A> operator-(const Dual<T, A>& a) { return chain(-a.v, a, T(-1.0)); }
+Dual<T, A> operator-(const Dual<T, A>& a) {
+  return chain(-a.v, a, T(-1.0));
+}
 
 template <class T, Mask A>
-Dual<T, A> operator+(const Dual<T, A>& a, const std::type_identity_t<T>& c) { Dual<T, A> r = a; r.v = a.v + c; return r; }
+Dual<T, A> operator+(const Dual<T, A>& a, const std::type_identity_t<T>& c) {
+  Dual<T, A> r = a;
+  r.v = a.v + c;
+  return r;
+}
 template <class T, Mask A>
-Dual<T, A> operator+(const std::type_identity_t<T>& c, const Dual<T, A>& a) { Dual<T, A> r = a; r.v = c + a.v; return r; }
+Dual<T, A> operator+(const std::type_identity_t<T>& c, const Dual<T, A>& a) {
+  Dual<T, A> r = a;
+  r.v = c + a.v;
+  return r;
+}
 template <class T, Mask A>
-Dual<T, A> operator-(const Dual<T, A>& a, const std::type_identity_t<T>& c) { Dual<T, A> r = a; r.v = a.v - c; return r; }
+Dual<T, A> operator-(const Dual<T, A>& a, const std::type_identity_t<T>& c) {
+  Dual<T, A> r = a;
+  r.v = a.v - c;
+  return r;
+}
 template <class T, Mask A>
-Dual<T, A> operator-(const std::type_identity_t<T>& c, const Dual<T, A>& a) { return chain(c - a.v, a, T(-1.0)); }
+Dual<T, A> operator-(const std::type_identity_t<T>& c, const Dual<T, A>& a) {
+  return chain(c - a.v, a, T(-1.0));
+}
 template <class T, Mask A>
-Dual<T, A> operator*(const Dual<T, A>& a, const std::type_identity_t<T>& c) { return chain(a.v * c, a, c); }
+Dual<T, A> operator*(const Dual<T, A>& a, const std::type_identity_t<T>& c) {
+  return chain(a.v * c, a, c);
+}
 template <class T, Mask A>
-Dual<T, A> operator*(const std::type_identity_t<T>& c, const Dual<T, A>& a) { return chain(c * a.v, a, c); }
+Dual<T, A> operator*(const std::type_identity_t<T>& c, const Dual<T, A>& a) {
+  return chain(c * a.v, a, c);
+}
 template <class T, Mask A>
-Dual<T, A> operator/(const Dual<T, A>& a, const std::type_identity_t<T>& c) { return chain(a.v / c, a, T(1.0) / c); }
+Dual<T, A> operator/(const Dual<T, A>& a, const std::type_identity_t<T>& c) {
+  return chain(a.v / c, a, T(1.0) / c);
+}
 template <class T, Mask A>
 Dual<T, A> operator/(const std::type_identity_t<T>& c, const Dual<T, A>& a) {
   const T q = c / a.v;

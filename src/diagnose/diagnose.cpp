@@ -23,8 +23,8 @@ double worst_adequacy(const HypothesisFit& f) {
 
 std::string_view label(const HypothesisFit& f) { return f.fault ? f.fault->name : std::string_view("healthy"); }
 
-// A fault's model is a textbook model too: its own error is some tenth of its effect. Two hypotheses that both explain a
-// large effect to within that are not told apart by what is left.
+// A fault's model is a textbook model too: its own error is some tenth of its effect. Two hypotheses that both explain
+// a large effect to within that are not told apart by what is left.
 constexpr double effect_error = 0.1;
 
 // What one unit of misfit is worth: 1 where the best hypothesis fits as well as on the tuning logs, more where it does
@@ -43,7 +43,7 @@ ChangePoint change_point(const std::vector<double>& square, double degrees) {
   const std::size_t n = square.size();
   std::vector<double> sum(n + 1, 0.0);
   for (std::size_t k = 0; k < n; ++k) sum[k + 1] = sum[k] + square[k];
-  const auto margin = std::max<std::size_t>(50, n / 20);
+  const auto margin = std::max<std::size_t>(200, n / 10);  // either part must be able to speak for itself
   if (n < 4 * margin || sum[n] <= 0) return {};
   ChangePoint best;
   double best_cost = static_cast<double>(n) * std::log(sum[n] / static_cast<double>(n)), whole = best_cost;
@@ -60,13 +60,15 @@ ChangePoint change_point(const std::vector<double>& square, double degrees) {
 
 // The wire holds the spool against the torque; without it the spool runs to its stops, both of them, at any current.
 std::string gross_finding(const LogData& log, const ParameterVector& base) {
-  const auto spool = std::find_if(log.channels.begin(), log.channels.end(), [](const FitChannel& c) { return c.signal == Signal::spool_position; });
+  const auto spool = std::find_if(log.channels.begin(), log.channels.end(),
+                                  [](const FitChannel& c) { return c.signal == Signal::spool_position; });
   if (spool == log.channels.end()) return "";
   const double stop = 0.95 * base[row::spool_stop], small = 0.5 * log.scenario.rated_current;
   long up = 0, down = 0, n = 0, quiet = 0;
   double lowest = 1e300, highest = -1e300, command_low = 1e300, command_high = -1e300;
   for (std::size_t k = 0; k < spool->measured.size(); ++k) {
-    const double x = spool->measured[k], i = log.scenario.command[k] + base[row::servovalve_null] * log.scenario.rated_current;
+    const double x = spool->measured[k],
+                 i = log.scenario.command[k] + base[row::servovalve_null] * log.scenario.rated_current;
     if (std::isnan(x)) continue;
     ++n;
     lowest = std::min(lowest, x), highest = std::max(highest, x);
@@ -92,9 +94,11 @@ Assessment assess(const Log& log, const Table& tuned, const RigFile& rig, const 
   out.sha256 = log.sha256;
   out.notes = log.notes;
   const LogData data = prepare(log, rig, moving_average_of(tuned));
+  require_channels(data);
   const ErrorModel error = error_model_of(tuned);
   if (error.channels.empty())
-    throw InputError({.file = tuned.path}, "the table does not say how wrong its model is", "make it with 'servodx tune'; its header carries the lines 'model error ...'");
+    throw InputError({.file = tuned.path}, "the table does not say how wrong its model is",
+                     "make it with 'servodx tune'; its header carries the lines 'model error ...'");
   const ParameterVector base = candidate_of(tuned);
   HypothesisSettings settings;
   settings.null_limit = rig.null_limit;
@@ -106,7 +110,8 @@ Assessment assess(const Log& log, const Table& tuned, const RigFile& rig, const 
   if (options.stop && options.stop->load()) return out;
   out.gross = gross_finding(data, base);
   for (std::size_t c = 0; c < data.channels.size() && c < h.fits.front().channel_rms.size(); ++c)
-    out.channels.push_back({data.channels[c].signal, log.channels[index(data.channels[c].signal)].unit, h.fits.front().channel_rms[c], data.channels[c].noise, h.fits.front().channel_rms[c]});
+    out.channels.push_back({data.channels[c].signal, log.channels[index(data.channels[c].signal)].unit,
+                            h.fits.front().channel_rms[c], data.channels[c].noise, h.fits.front().channel_rms[c]});
 
   // A fault that steps in: before it the log is healthy, after it the hypotheses are judged on what is left.
   const ChangePoint change = change_point(h.healthy_square, h.degrees);
@@ -125,7 +130,8 @@ Assessment assess(const Log& log, const Table& tuned, const RigFile& rig, const 
     // A second set of nuisances and a time were bought: they must pay for themselves.
     // And what stood before must be health, not the same fault fitted badly.
     const bool was_healthy = (before.fits.front().misfit - best_misfit(before)) / scale < 10.0;
-    if (was_healthy && (whole - split) / scale > 25.0) {
+    const bool is_faulty = (after.fits.front().misfit - best_misfit(after)) / scale > 25.0;
+    if (was_healthy && is_faulty && (whole - split) / scale > 25.0) {
       out.onset = data.scenario.time[change.at];
       h = std::move(after);
     }
@@ -135,7 +141,9 @@ Assessment assess(const Log& log, const Table& tuned, const RigFile& rig, const 
   const double smallest = best_misfit(h);
   const double scale = std::max(1.0, smallest / h.degrees);
   const double separation = misfit_scale(healthy.misfit, smallest, h.degrees);
-  const auto weight = [&](const HypothesisFit& f) { return (f.fault ? f.fault->prior : 1.0) * std::exp(-0.5 * (f.misfit - smallest) / separation); };
+  const auto weight = [&](const HypothesisFit& f) {
+    return (f.fault ? f.fault->prior : 1.0) * std::exp(-0.5 * (f.misfit - smallest) / separation);
+  };
   double total = 0, best_gain = 0;
   for (const HypothesisFit& f : h.fits) total += weight(f);
   for (const HypothesisFit& f : h.fits) {
@@ -153,19 +161,30 @@ Assessment assess(const Log& log, const Table& tuned, const RigFile& rig, const 
     best_gain = std::max(best_gain, f.ok ? r.gain : 0.0);
     out.hypotheses.push_back(std::move(r));
   }
-  std::stable_sort(out.hypotheses.begin() + 1, out.hypotheses.end(), [](const auto& a, const auto& b) { return a.probability > b.probability; });
+  std::stable_sort(out.hypotheses.begin() + 1, out.hypotheses.end(),
+                   [](const auto& a, const auto& b) { return a.probability > b.probability; });
   out.score = std::max(std::sqrt(best_gain), std::log(std::max(1.0, worst_adequacy(healthy))) / adequacy_spread);
   if (!out.gross.empty()) out.score = std::max(out.score, 1e3);
 
   // What moved under the best hypothesis.
-  const auto best = std::max_element(h.fits.begin(), h.fits.end(), [&](const auto& a, const auto& b) { return weight(a) < weight(b); });
+  const auto best = std::max_element(h.fits.begin(), h.fits.end(),
+                                     [&](const auto& a, const auto& b) { return weight(a) < weight(b); });
   if (best->ok) {
     const FitProblem view({&data}, base, best->free);
     const ParameterVector moved = view.candidate(best->point, 0);
     out.null = moved[row::servovalve_null];
     for (std::size_t i = 0; i < tuned.rows.size() && i < static_cast<std::size_t>(n_parameters); ++i) {
       if (moved[i] == base[i]) continue;
-      ParameterResult p{tuned[static_cast<int>(i)].id, tuned[static_cast<int>(i)].name, tuned[static_cast<int>(i)].unit, base[i], moved[i], std::nan(""), "bounded", {}, 0, 0};
+      ParameterResult p{tuned[static_cast<int>(i)].id,
+                        tuned[static_cast<int>(i)].name,
+                        tuned[static_cast<int>(i)].unit,
+                        base[i],
+                        moved[i],
+                        std::nan(""),
+                        "bounded",
+                        {},
+                        0,
+                        0};
       for (std::size_t j = 0; j < best->free.size(); ++j)
         if (!best->free[j].apply && best->free[j].at == static_cast<int>(i) && !best->free[j].log_scale)
           p.std_error = best->standard_error[j] * (best->free[j].upper - best->free[j].lower);
@@ -175,17 +194,25 @@ Assessment assess(const Log& log, const Table& tuned, const RigFile& rig, const 
   return out;
 }
 
-Baseline make_baseline(const std::vector<Log>& logs, const Table& tuned, const RigFile& rig, double false_alarm, const DiagnoseOptions& options,
-                       long* simulations, long* failed) {
-  if (!(false_alarm > 0 && false_alarm < 1)) throw InputError({.file = "--false-alarm"}, fmt::format("{} is not a rate", false_alarm), "give a number between 0 and 1, such as 0.01");
+Baseline make_baseline(const std::vector<Log>& logs, const Table& tuned, const RigFile& rig, double false_alarm,
+                       const DiagnoseOptions& options, long* simulations, long* failed) {
+  if (!(false_alarm > 0 && false_alarm < 1))
+    throw InputError({.file = "--false-alarm"}, fmt::format("{} is not a rate", false_alarm),
+                     "give a number between 0 and 1, such as 0.01");
   const std::vector<std::string> used = tuned_by(tuned);
   for (std::size_t i = 0; i < logs.size(); ++i) {
     if (std::find(used.begin(), used.end(), logs[i].sha256) != used.end())
-      throw InputError({.file = logs[i].path}, "this log tuned " + tuned.path + ": its residual is smaller than a new log's", "give fault-free logs that the fit has not seen");
+      throw InputError({.file = logs[i].path},
+                       "this log tuned " + tuned.path + ": its residual is smaller than a new log's",
+                       "give fault-free logs that the fit has not seen");
     for (std::size_t j = 0; j < i; ++j)
-      if (logs[j].sha256 == logs[i].sha256) throw InputError({.file = logs[i].path}, "the same log as " + logs[j].path, "give each log once: the rate counts independent logs");
+      if (logs[j].sha256 == logs[i].sha256)
+        throw InputError({.file = logs[i].path}, "the same log as " + logs[j].path,
+                         "give each log once: the rate counts independent logs");
   }
-  if (logs.size() < 3) throw InputError({}, fmt::format("{} logs cannot set a threshold", logs.size()), "give at least 3 fault-free logs; the rate that can be promised is 1/(n+1)");
+  if (logs.size() < 3)
+    throw InputError({}, fmt::format("{} logs cannot set a threshold", logs.size()),
+                     "give at least 3 fault-free logs; the rate that can be promised is 1/(n+1)");
   Baseline b;
   b.asked = false_alarm;
   b.logs = static_cast<int>(logs.size());
@@ -215,17 +242,20 @@ Baseline make_baseline(const std::vector<Log>& logs, const Table& tuned, const R
   b.promised = (n + 1.0 - static_cast<double>(k)) / (n + 1.0);
   b.promised_95 = 1.0 - std::pow(0.05, 1.0 / n);
   b.logs_needed = static_cast<int>(std::ceil(1.0 / false_alarm - 1e-9)) - 1;
-  b.statement = fmt::format("{} fault-free logs promise a false-alarm rate of {:.1f} % on average over baselines (below {:.0f} % with 95 % confidence)", sorted.size(),
-                            100 * b.promised, 100 * b.promised_95);
+  b.statement = fmt::format(
+      "{} fault-free logs promise a false-alarm rate of {:.1f} % on average over baselines (below {:.0f} % with 95 % "
+      "confidence)",
+      sorted.size(), 100 * b.promised, 100 * b.promised_95);
   if (b.promised > false_alarm + 1e-12)
-    b.statement += fmt::format("; {:.3g} % takes {} logs, {} more", 100 * false_alarm, b.logs_needed, b.logs_needed - static_cast<int>(sorted.size()));
+    b.statement += fmt::format("; {:.3g} % takes {} logs, {} more", 100 * false_alarm, b.logs_needed,
+                               b.logs_needed - static_cast<int>(sorted.size()));
   return b;
 }
 
 Diagnosis judge(Assessment a, const Baseline& baseline) {
   constexpr double ambiguous_probability = 0.05;
-  // A fault is known less well than health: its hypothesis may leave twice the worst error that healthy logs show, and a
-  // quarter of what it has to explain.
+  // A fault is known less well than health: its hypothesis may leave twice the worst error that healthy logs show, and
+  // a quarter of what it has to explain.
   constexpr double fault_allowance = 2.0;
   constexpr double unexplained_part = 0.25;
   Diagnosis d;
@@ -240,10 +270,13 @@ Diagnosis judge(Assessment a, const Baseline& baseline) {
   if (a.score <= baseline.threshold) {
     d.verdict = "healthy";
   } else {
-    const HypothesisResult& best = *std::max_element(a.hypotheses.begin(), a.hypotheses.end(), [](const auto& x, const auto& y) { return x.probability < y.probability; });
+    const HypothesisResult& best =
+        *std::max_element(a.hypotheses.begin(), a.hypotheses.end(),
+                          [](const auto& x, const auto& y) { return x.probability < y.probability; });
     const bool wire = a.gross == "spool on both stops at small current";
     const double to_explain = a.hypotheses.front().adequacy;  // healthy comes first
-    const bool adequate = best.adequacy <= std::hypot(fault_allowance * std::max(1.0, baseline.adequacy_limit), unexplained_part * to_explain);
+    const bool adequate = best.adequacy <= std::hypot(fault_allowance * std::max(1.0, baseline.adequacy_limit),
+                                                      unexplained_part * to_explain);
     const HypothesisResult* named = nullptr;
     if (wire) {
       for (const HypothesisResult& h : a.hypotheses)

@@ -22,26 +22,26 @@ struct DiagnoseOptions {
 };
 
 struct HypothesisResult {
-  std::string name;        // "healthy" or a fault's label
-  double misfit = 0;       // penalised -2 log likelihood
-  double gain = 0;         // misfit of healthy less this one
+  std::string name;   // "healthy" or a fault's label
+  double misfit = 0;  // penalised -2 log likelihood
+  double gain = 0;    // misfit of healthy less this one
   double probability = 0;
   double severity = 0, severity_lower = 0, severity_upper = 0;  // 95 %
   std::string unit;
-  double adequacy = 0;     // whitened rms of the worst channel, 1 when like the healthy logs
+  double adequacy = 0;             // whitened rms of the worst channel, 1 when like the healthy logs
   std::vector<std::string> stops;  // how each start ended
 };
 
 // What a log says before any threshold.
 struct Assessment {
   std::string log, sha256;
-  double score = 0;        // detection statistic
+  double score = 0;                          // detection statistic
   std::vector<HypothesisResult> hypotheses;  // healthy first, then by misfit
-  std::vector<ChannelResult> channels;  // replay under health: rms beside noise
-  std::string gross;       // non-empty: seen without a fit (spool on its stop, no response)
-  std::optional<double> onset;  // [s] change point where one stands out
-  double null = 0;         // [fraction of rated] healthy hypothesis
-  std::vector<ParameterResult> parameters;  // what moved under the best hypothesis, and the nuisances
+  std::vector<ChannelResult> channels;       // replay under health: rms beside noise
+  std::string gross;                         // non-empty: seen without a fit (spool on its stop, no response)
+  std::optional<double> onset;               // [s] change point where one stands out
+  double null = 0;                           // [fraction of rated] healthy hypothesis
+  std::vector<ParameterResult> parameters;   // what moved under the best hypothesis, and the nuisances
   std::vector<std::string> notes;
   long simulations = 0, failed_simulations = 0;
 };
@@ -59,9 +59,9 @@ struct Baseline {
     double score = 0, adequacy = 0;
   };
   std::vector<Score> scores;
-  double adequacy_limit = 0;   // largest adequacy of a healthy log
+  double adequacy_limit = 0;  // largest adequacy of a healthy log
   double null_limit = 0.05;
-  std::string tuned_sha256;    // of the table it was made with
+  std::string tuned_sha256;  // of the table it was made with
 };
 
 // Refuses logs that tuned the table (by hash) and fewer than three logs.
@@ -70,9 +70,9 @@ Baseline make_baseline(const std::vector<Log>& logs, const Table& tuned, const R
 
 struct Diagnosis {
   std::string log;
-  std::string verdict;                // healthy | fault | unknown
+  std::string verdict;  // healthy | fault | unknown
   double error = 0, threshold = 0, p_value = 1;
-  std::optional<std::string> fault;   // label
+  std::optional<std::string> fault;  // label
   std::map<std::string, double> probabilities;
   std::vector<std::string> ambiguous_with;
   std::string separating_test;

@@ -27,6 +27,10 @@ FreeValue severity_value(const Fault& fault, double start, double null_limit) {
   return f;
 }
 
+bool two_sided(const Fault& fault) {
+  return std::any_of(fault.starts.begin(), fault.starts.end(), [](double s) { return s < 0; });
+}
+
 // The same severity within its tolerance. Where the healthy value is an end of the scale (nothing is less than clean),
 // the tolerance has one side.
 FreeValue tolerance_value(const Fault& fault) {
@@ -44,6 +48,9 @@ FreeValue tolerance_value(const Fault& fault) {
     const double width = std::abs(fault.least - fault.healthy);
     f.lower = fault.healthy - width, f.upper = fault.healthy + width;
     f.prior_sd = 0.25;
+  } else if (two_sided(fault)) {
+    f.lower = -fault.least, f.upper = fault.least;
+    f.prior_sd = 0.25;
   } else {
     f.lower = 0, f.upper = fault.least;
     f.prior_sd = 0.5;
@@ -51,14 +58,15 @@ FreeValue tolerance_value(const Fault& fault) {
   return f;
 }
 
-std::vector<FreeValue> free_values(const LogData& log, const ParameterVector& base, const Fault* fault, double start, double null_limit) {
+std::vector<FreeValue> free_values(const LogData& log, const ParameterVector& base, const Fault* fault, double start,
+                                   double null_limit) {
   std::vector<FreeValue> free;
   if (fault) free.push_back(severity_value(*fault, start, null_limit));
   for (FreeValue& f : nuisance_values(log, 0, base, null_limit))
     if (!(fault && fault->name == "null_shift" && f.at == row::servovalve_null)) free.push_back(std::move(f));
-  // A null within its limit is a nuisance already, and a nozzle mildly blocked looks just like it.
+  // A null within its limit is a nuisance already.
   for (const Fault* other : fault_list())
-    if (other != fault && other->name != "null_shift" && other->name != "plugged_nozzle") free.push_back(tolerance_value(*other));
+    if (other != fault && other->name != "null_shift") free.push_back(tolerance_value(*other));
   return free;
 }
 
@@ -67,7 +75,8 @@ void whiten(FitProblem& problem, const ErrorModel& error, const Trajectory& refe
   for (std::size_t c = 0; c < log.channels.size(); ++c) {
     const FitChannel& channel = log.channels[c];
     const ChannelError* e = error.find(channel.signal);
-    std::vector<double> act = activity(log.scenario.time, reference.ok ? reference.signals[channel.simulated] : channel.measured);
+    std::vector<double> act =
+        activity(log.scenario.time, reference.ok ? reference.signals[channel.simulated] : channel.measured);
     for (double& a : act)
       if (std::isnan(a)) a = 0;
     std::vector<double> sigma = sigma_of(e, channel.noise, act);
@@ -97,8 +106,9 @@ Point starting_point(const Attempt& a, const FitProblem& problem, const Hypothes
   return x;
 }
 
-void run(Attempt& a, const LogData& log, const ParameterVector& base, const ErrorModel& error, const Trajectory& reference,
-         const HypothesisFit* healthy, int iterations, const HypothesisSettings& settings) {
+void run(Attempt& a, const LogData& log, const ParameterVector& base, const ErrorModel& error,
+         const Trajectory& reference, const HypothesisFit* healthy, int iterations,
+         const HypothesisSettings& settings) {
   const auto stopped = [&] { return settings.stop && settings.stop->load(); };
   if (stopped()) return;
   SimulateOptions simulate_options;
@@ -124,7 +134,8 @@ void run(Attempt& a, const LogData& log, const ParameterVector& base, const Erro
   fit.misfit = 2 * r.misfit;
   fit.point = r.point;
   std::vector<char> kept(fit.free.size());
-  for (std::size_t j = 0; j < kept.size(); ++j) kept[j] = (a.fault && j == 0) || (r.point[j] > 1e-6 && r.point[j] < 1 - 1e-6);
+  for (std::size_t j = 0; j < kept.size(); ++j)
+    kept[j] = (a.fault && j == 0) || (r.point[j] > 1e-6 && r.point[j] < 1 - 1e-6);
   const Eigen::MatrixXd covariance = covariance_of(r.jacobian, kept);
   for (std::size_t j = 0; j < kept.size(); ++j)
     fit.standard_error.push_back(std::sqrt(std::max(0.0, covariance(static_cast<long>(j), static_cast<long>(j)))));
@@ -134,7 +145,8 @@ void run(Attempt& a, const LogData& log, const ParameterVector& base, const Erro
     const auto [at, n] = problem.rows(0, static_cast<int>(c));
     const ChannelError* e = error.find(log.channels[c].signal);
     const double effective = e ? e->effective : unlearnt_effective;
-    fit.channel_adequacy.push_back(std::sqrt(r.residual.segment(at, n).squaredNorm() / static_cast<double>(n) / effective));
+    fit.channel_adequacy.push_back(
+        std::sqrt(r.residual.segment(at, n).squaredNorm() / static_cast<double>(n) / effective));
     double raw = 0;
     for (std::size_t k = 0; k < samples; ++k) {
       const double v = r.residual[at + static_cast<long>(k)] * problem.sigma(0, static_cast<int>(c))[k];
@@ -142,12 +154,14 @@ void run(Attempt& a, const LogData& log, const ParameterVector& base, const Erro
     }
     fit.channel_rms.push_back(std::sqrt(raw / static_cast<double>(samples)));
     for (std::size_t k = 0; k < samples; ++k)
-      a.square[k] += r.residual[at + static_cast<long>(k)] * r.residual[at + static_cast<long>(k)] / effective / static_cast<double>(log.channels.size());
+      a.square[k] += r.residual[at + static_cast<long>(k)] * r.residual[at + static_cast<long>(k)] / effective /
+                     static_cast<double>(log.channels.size());
   }
   if (a.fault) {
     // The curvature at the end, inflated where the model does not fit as well as it should, and the fault's own spread.
     const double worst = *std::max_element(fit.channel_adequacy.begin(), fit.channel_adequacy.end());
-    const double range = a.fault->log_scale ? std::log(fit.free[0].upper / fit.free[0].lower) : fit.free[0].upper - fit.free[0].lower;
+    const double range =
+        a.fault->log_scale ? std::log(fit.free[0].upper / fit.free[0].lower) : fit.free[0].upper - fit.free[0].lower;
     const double half = 1.96 * std::hypot(fit.standard_error[0] * std::max(1.0, worst), a.fault->spread / range);
     fit.severity = fit.free[0].from_unit(r.point[0]);
     fit.severity_lower = fit.free[0].from_unit(std::clamp(r.point[0] - half, 0.0, 1.0));
@@ -155,20 +169,69 @@ void run(Attempt& a, const LogData& log, const ParameterVector& base, const Erro
   }
 }
 
+// Severities to begin at, best first: the fault's own identifiers and an even grid over its range, each run once with
+// the rest as in health. Lanes are cheap, and a friction or a backlash has more than one valley.
+std::vector<double> screened_starts(const LogData& log, const ParameterVector& base, const Fault& fault,
+                                    const ErrorModel& error, const Trajectory& reference, const HypothesisFit& healthy,
+                                    const HypothesisSettings& settings, long* simulations, long* failed) {
+  constexpr int grid = 6;
+  constexpr std::size_t kept = 2;
+  std::vector<double> severities = fault.starts;
+  for (double side : {1.0, -1.0}) {
+    if (side < 0 && !two_sided(fault)) continue;
+    const FreeValue range = severity_value(fault, side, settings.null_limit);
+    for (int k = 0; k < grid; ++k) severities.push_back(range.from_unit((k + 0.5) / grid));
+  }
+  SimulateOptions options;
+  options.threads = 1;
+  std::vector<std::pair<double, double>> ranked;  // misfit, severity
+  for (double severity : severities) {
+    // One free list serves a side: the unit interval of a severity depends on its sign.
+    FitProblem problem({&log}, base, free_values(log, base, &fault, severity, settings.null_limit), options);
+    whiten(problem, error, reference);
+    Attempt a{&fault, severity, {}, {}, 0, 0};
+    const Point x = starting_point(a, problem, &healthy);
+    const Evaluation e = problem.evaluate(std::span(&x, 1)).front();
+    *simulations += problem.simulations();
+    *failed += problem.failed_simulations();
+    if (e.ok) ranked.push_back({e.residual.squaredNorm(), severity});
+  }
+  std::stable_sort(ranked.begin(), ranked.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+  std::vector<double> best;
+  for (const auto& r : ranked)
+    if (best.size() < kept) best.push_back(r.second);
+  return best;
+}
+
 }  // namespace
 
-HypothesisFits fit_hypotheses(const LogData& log, const ParameterVector& base, const ErrorModel& error, const HypothesisSettings& settings) {
+HypothesisFits fit_hypotheses(const LogData& log, const ParameterVector& base, const ErrorModel& error,
+                              const HypothesisSettings& settings) {
   HypothesisFits out;
   // Health first: its trajectory says where things move, and so where the model may err, for all alike.
   SimulateOptions options;
   options.threads = settings.threads;
+  options.wanted.fill(false);
+  for (const FitChannel& c : log.channels) options.wanted[c.simulated] = true;
   const Trajectory reference = simulate(log.scenario, base, options);
   Attempt health;
   run(health, log, base, error, reference, nullptr, settings.iterations, settings);
-  std::vector<Attempt> attempts;
-  for (const Fault* fault : fault_list())
-    for (double start : fault->starts) attempts.push_back({fault, start, {}, {}, 0, 0});
   const int threads = settings.threads > 0 ? settings.threads : omp_get_max_threads();
+  const auto& faults = fault_list();
+  std::vector<std::vector<double>> starts(faults.size());
+  std::vector<long> screened(faults.size(), 0), screened_failed(faults.size(), 0);
+  const auto n_faults = static_cast<long>(faults.size());
+#pragma omp parallel for schedule(dynamic, 1) num_threads(threads)
+  for (long f = 0; f < n_faults; ++f) {
+    const auto k = static_cast<std::size_t>(f);
+    starts[k] = screened_starts(log, base, *faults[k], error, reference, health.fit, settings, &screened[k],
+                                &screened_failed[k]);
+  }
+  std::vector<Attempt> attempts;
+  for (std::size_t k = 0; k < faults.size(); ++k) {
+    if (starts[k].empty()) starts[k] = {faults[k]->starts.front()};
+    for (double start : starts[k]) attempts.push_back({faults[k], start, {}, {}, 0, 0});
+  }
   const auto all = [&](int iterations) {
     const auto count = static_cast<long>(attempts.size());
 #pragma omp parallel for schedule(dynamic, 1) num_threads(threads)
@@ -179,6 +242,7 @@ HypothesisFits fit_hypotheses(const LogData& log, const ParameterVector& base, c
   constexpr int few = 5;
   all(few);
   out.simulations = health.simulations, out.failed = health.failed;
+  for (std::size_t k = 0; k < faults.size(); ++k) out.simulations += screened[k], out.failed += screened_failed[k];
   std::vector<Attempt> best;
   for (Attempt& a : attempts) {
     if (best.empty() || best.back().fault != a.fault) {

@@ -1,8 +1,8 @@
 // The hypotheses about one log, each fitted to the same data with the same whitening.
 //
-// Healthy is not a point: every fault's severity may wander within its tolerance (up to `least`, with a prior of half of
-// that), the null within its limit. A fault's hypothesis lets its own severity run from `least` to the worst, all else as
-// in health. So a gain of a fault over health is what only a fault explains.
+// Healthy is not a point: every fault's severity may wander within its tolerance (up to `least`, with a prior of half
+// of that), the null within its limit. A fault's hypothesis lets its own severity run from `least` to the worst, all
+// else as in health. So a gain of a fault over health is what only a fault explains.
 #pragma once
 #include <atomic>
 #include <optional>
@@ -18,8 +18,8 @@ namespace servodx {
 struct HypothesisFit {
   const Fault* fault = nullptr;  // null: healthy
   bool ok = false;
-  double misfit = 1e300;         // -2 log likelihood, priors included
-  double severity = 0;           // in the fault's unit
+  double misfit = 1e300;                          // -2 log likelihood, priors included
+  double severity = 0;                            // in the fault's unit
   double severity_lower = 0, severity_upper = 0;  // 95 %, from the curvature, cut at the range that was searched
   Point point;
   std::vector<FreeValue> free;
@@ -37,8 +37,8 @@ struct HypothesisSettings {
 };
 
 struct HypothesisFits {
-  std::vector<HypothesisFit> fits;  // healthy first, then the faults in the order of the registry
-  double degrees = 0;               // independent samples of all channels
+  std::vector<HypothesisFit> fits;     // healthy first, then the faults in the order of the registry
+  double degrees = 0;                  // independent samples of all channels
   std::vector<double> healthy_square;  // a sample: mean over the channels of the squared whitened residual under health
   long simulations = 0, failed = 0;
 };

@@ -14,7 +14,7 @@ namespace servodx {
 
 struct EffectTemplate {
   static constexpr const char* name = "effect_template";  // group "effect:NAME" in tables
-  static constexpr const char* place = "spool";           // drive, first_stage, spool, metering, flow_a, piston_force, ...
+  static constexpr const char* place = "spool";  // drive, first_stage, spool, metering, flow_a, piston_force, ...
   static constexpr const char* meaning = "drag of the spool that grows with the square of its speed";
   static constexpr int n_states = 1;
   static constexpr int n_parameters = 2;

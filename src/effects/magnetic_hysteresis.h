@@ -13,8 +13,10 @@ struct MagneticHysteresis {
   static constexpr int n_states = 0;
   static constexpr int n_parameters = 2;
   static constexpr EffectParameter parameters[n_parameters] = {
-      {"hysteresis_width", "-", 0.0, 0.0, 0.06, 0.012, "full width of the loop of a large cycle, fraction of rated current"},
-      {"hysteresis_reach", "-", 0.1, 0.01, 0.6, 0.1, "amplitude from which the loop has its full width, fraction of rated current", false},
+      {"hysteresis_width", "-", 0.0, 0.0, 0.06, 0.012,
+       "full width of the loop of a large cycle, fraction of rated current"},
+      {"hysteresis_reach", "-", 0.1, 0.01, 0.6, 0.1,
+       "amplitude from which the loop has its full width, fraction of rated current", false},
   };
   static constexpr int elements = 4;
   static constexpr double spacing[elements] = {0.125, 0.25, 0.5, 1.0};  // thresholds over reach

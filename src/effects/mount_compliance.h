@@ -23,12 +23,15 @@ struct MountCompliance {
   template <class V>
   static auto body_velocity(const V& view) {
     const auto& p = view.p;
-    const auto force = p[row::piston_area_a] * view.template state<s_p_a>() - p[row::piston_area_b] * view.template state<s_p_b>();
+    const auto force =
+        p[row::piston_area_a] * view.template state<s_p_a>() - p[row::piston_area_b] * view.template state<s_p_b>();
     return -(view.template own_state<MountCompliance, 0>() + view.template own<MountCompliance>(0) * force) /
            view.template own<MountCompliance>(1);
   }
   template <class V>
-  static auto derivative(const V& view) { return std::make_tuple(body_velocity(view)); }
+  static auto derivative(const V& view) {
+    return std::make_tuple(body_velocity(view));
+  }
 };
 
 }  // namespace servodx

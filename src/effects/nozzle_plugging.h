@@ -12,13 +12,18 @@ struct NozzlePlugging {
   static constexpr int n_states = 0;
   static constexpr int n_parameters = 2;
   static constexpr EffectParameter parameters[n_parameters] = {
-      {"nozzle_1_blockage", "-", 0.0, 0.0, 0.98, 0.1, "blocked fraction of nozzle 1, which the flapper closes at positive current"},
+      {"nozzle_1_blockage", "-", 0.0, 0.0, 0.98, 0.1,
+       "blocked fraction of nozzle 1, which the flapper closes at positive current"},
       {"nozzle_2_blockage", "-", 0.0, 0.0, 0.98, 0.1, "blocked fraction of nozzle 2"},
   };
   template <class V, class X>
-  static auto nozzle_1_opening(const V& view, const X& gap) { return -(gap * view.template own<NozzlePlugging>(0)); }
+  static auto nozzle_1_opening(const V& view, const X& gap) {
+    return -(gap * view.template own<NozzlePlugging>(0));
+  }
   template <class V, class X>
-  static auto nozzle_2_opening(const V& view, const X& gap) { return -(gap * view.template own<NozzlePlugging>(1)); }
+  static auto nozzle_2_opening(const V& view, const X& gap) {
+    return -(gap * view.template own<NozzlePlugging>(1));
+  }
 };
 
 }  // namespace servodx

@@ -26,6 +26,8 @@ const std::vector<EffectInfo>& effect_list();
 
 // Position of effect E's j-th parameter in a parameter vector.
 template <class E>
-constexpr int effect_row(int j) { return n_parameters + AllEffects::parameter_offset<E>() + j; }
+constexpr int effect_row(int j) {
+  return n_parameters + AllEffects::parameter_offset<E>() + j;
+}
 
 }  // namespace servodx

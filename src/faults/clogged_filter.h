@@ -9,7 +9,10 @@ inline const Fault clogged_filter{
     .name = "clogged_filter",
     .meaning = "dirt in the pilot filter starves the first stage",
     .unit = "blocked fraction of the filter area",
-    .healthy = 0.0, .worst = 0.98, .log_scale = false, .least = 0.15,
+    .healthy = 0.0,
+    .worst = 0.98,
+    .log_scale = false,
+    .least = 0.15,
     .spread = 0.1,  // the size of the clean filter is not on data sheets
     .starts = {0.5, 0.8},
     .test = "full-amplitude steps at the coldest oil: the spool's slew falls, its static gain does not",

@@ -8,19 +8,19 @@
 namespace servodx {
 
 struct Fault {
-  std::string_view name;     // label of the verdict
+  std::string_view name;  // label of the verdict
   std::string_view meaning;
-  std::string_view unit;     // of the severity
-  double healthy;            // severity at which nothing moves
-  double worst;              // end of the range that is searched
-  bool log_scale;            // severity searched in log
-  double prior = 1.0;        // how common it is beside the others, before any data
-  double least;              // the mildest severity that is called a fault; nearer to healthy is wear in tolerance
-  double spread;             // what the model's form leaves open of a size, one standard deviation: of ln(severity) where
-                             // the scale is log, else of the severity; enters every interval
-  std::vector<double> starts;        // failure mode identifiers: severities from which a search begins
-  std::string_view test;     // input that shows this fault best, for "what would separate these"
-  std::string_view action;   // critical: stop the machine; abnormal: call service; abuse: change mode (GA paper)
+  std::string_view unit;  // of the severity
+  double healthy;         // severity at which nothing moves
+  double worst;           // end of the range that is searched
+  bool log_scale;         // severity searched in log
+  double prior = 1.0;     // how common it is beside the others, before any data
+  double least;           // the mildest severity that is called a fault; nearer to healthy is wear in tolerance
+  double spread;          // what the model's form leaves open of a size, one standard deviation: of ln(severity) where
+                          // the scale is log, else of the severity; enters every interval
+  std::vector<double> starts;  // failure mode identifiers: severities from which a search begins
+  std::string_view test;       // input that shows this fault best, for "what would separate these"
+  std::string_view action;     // critical: stop the machine; abnormal: call service; abuse: change mode (GA paper)
   // Moves the rows of a candidate (SI) to the severity.
   void (*apply)(double* candidate, double severity);
 };

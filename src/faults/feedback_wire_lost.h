@@ -9,8 +9,11 @@ inline const Fault feedback_wire_lost{
     .name = "feedback_wire_lost",
     .meaning = "the feedback wire is cracked or broken",
     .unit = "fraction of the wire stiffness left",
-    .healthy = 1.0, .worst = 0.0, .log_scale = false, .least = 0.9,
-    .spread = 0.03,
+    .healthy = 1.0,
+    .worst = 0.0,
+    .log_scale = false,
+    .least = 0.9,
+    .spread = 0.05,  // torque gain and wire stiffness share the static gain
     .starts = {0.8, 0.5, 0.1},
     .test = "small steps: the static gain rises as the stiffness falls; without a wire the spool does not stop",
     .action = "critical: stop the machine",

@@ -9,7 +9,10 @@ inline const Fault radial_clearance_wear{
     .name = "radial_clearance_wear",
     .meaning = "clearance between spool and sleeve has grown",
     .unit = "times the tuned clearance",
-    .healthy = 1.0, .worst = 15.0, .log_scale = true, .least = 1.8,
+    .healthy = 1.0,
+    .worst = 15.0,
+    .log_scale = true,
+    .least = 1.8,
     .spread = 0.15,  // leakage goes with a power of the clearance that depends on the edge
     .starts = {3.0, 8.0},
     .test = "small sine about null with ports loaded: pressure gain falls and leakage rises, more in hot oil",

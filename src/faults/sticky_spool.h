@@ -8,10 +8,14 @@ inline const Fault sticky_spool{
     .name = "sticky_spool",
     .meaning = "friction between spool and sleeve",
     .unit = "times the tuned friction",
-    .healthy = 1.0, .worst = 60.0, .log_scale = true, .least = 2.5,
+    .healthy = 1.0,
+    .worst = 60.0,
+    .log_scale = true,
+    .least = 2.5,
     .spread = 0.3,  // the healthy friction that it multiplies is hardly seen
     .starts = {4.0, 20.0},
-    .test = "slow small sine: the spool stands still at each reversal, longer the slower; backlash does not care for rate",
+    .test =
+        "slow small sine: the spool stands still at each reversal, longer the slower; backlash does not care for rate",
     .action = "abnormal: call service",
     .apply = [](double* v, double s) { v[row::spool_friction] *= s; }};
 

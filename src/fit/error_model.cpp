@@ -152,8 +152,8 @@ void apply_error_model(FitProblem& problem, const ErrorModel& model, const Point
 std::vector<std::string> to_comments(const ErrorModel& model) {
   std::vector<std::string> lines;
   for (const ChannelError& c : model.channels)
-    lines.push_back(fmt::format("{} {}: floor {} {}, per activity {}, effective fraction {}", comment_key, info(c.signal).name,
-                                c.floor, info(c.signal).si_unit, c.per_activity, c.effective));
+    lines.push_back(fmt::format("{} {}: floor {} {}, per activity {}, effective fraction {}", comment_key,
+                                info(c.signal).name, c.floor, info(c.signal).si_unit, c.per_activity, c.effective));
   return lines;
 }
 
@@ -164,7 +164,8 @@ ErrorModel error_model_of(const Table& table) {
     if (at == std::string::npos) continue;
     const std::size_t colon = line.find(':', at);
     if (colon == std::string::npos) continue;
-    std::istringstream name(line.substr(at + std::string(comment_key).size(), colon - at - std::string(comment_key).size()));
+    std::istringstream name(
+        line.substr(at + std::string(comment_key).size(), colon - at - std::string(comment_key).size()));
     std::string word;
     name >> word;
     const auto signal = find_signal(word);
@@ -172,8 +173,10 @@ ErrorModel error_model_of(const Table& table) {
       const std::size_t k = line.find(key, colon);
       return k == std::string::npos ? std::nan("") : std::strtod(line.c_str() + k + key.size(), nullptr);
     };
-    ChannelError c{signal.value_or(Signal::time), number_after("floor "), number_after("per activity "), number_after("effective fraction ")};
-    if (signal && std::isfinite(c.floor) && std::isfinite(c.per_activity) && c.effective > 0) model.channels.push_back(c);
+    ChannelError c{signal.value_or(Signal::time), number_after("floor "), number_after("per activity "),
+                   number_after("effective fraction ")};
+    if (signal && std::isfinite(c.floor) && std::isfinite(c.per_activity) && c.effective > 0)
+      model.channels.push_back(c);
   }
   return model;
 }

@@ -37,7 +37,8 @@ double effective_fraction(const std::vector<double>& whitened);
 // Maximum-likelihood floor and slope from the residuals of the problem's logs at x, pooled by signal.
 ErrorModel learn_error_model(const FitProblem& problem, const Point& x);
 
-// Sets the problem's whitening from the model at x: sigma(t) / sqrt(effective), so that 0.5 |residual|^2 is a log-likelihood.
+// Sets the problem's whitening from the model at x: sigma(t) / sqrt(effective), so that 0.5 |residual|^2 is a
+// log-likelihood.
 void apply_error_model(FitProblem& problem, const ErrorModel& model, const Point& x);
 
 // As comment lines of a tuned table, and back.

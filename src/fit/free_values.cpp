@@ -41,11 +41,14 @@ std::vector<FreeValue> nuisance_values(const LogData& log, int l, const Paramete
   const bool pressures = has(Signal::pressure_a) && has(Signal::pressure_b);
   // Valves are delivered nulled within 2 % and move by some per cent with temperature.
   const double null = base[row::servovalve_null];
-  out.push_back({"servovalve_null", row::servovalve_null, null - null_limit, null + null_limit, false, null, 0.02 / (2 * null_limit), l});
-  if (!log.scenario.command_slope) out.push_back({"command_slope", nuisance::command_slope, 0.0, 1.0, false, 0.5, 1.0, l});
+  out.push_back({"servovalve_null", row::servovalve_null, null - null_limit, null + null_limit, false, null,
+                 0.02 / (2 * null_limit), l});
+  if (!log.scenario.command_slope)
+    out.push_back({"command_slope", nuisance::command_slope, 0.0, 1.0, false, 0.5, 1.0, l});
   if (pressures) out.push_back({"air_fraction", row::air_fraction, 2e-4, 0.08, true, 0.005, 0.2, l});
   // Offset of the spool sensor against the hydraulic null: 1 % of a stroke bounds it; its spread is a tenth of that.
-  if (has(Signal::spool_position)) out.push_back({"spool_offset", nuisance::spool_offset, -5e-6, 5e-6, false, 0.0, 0.1, l});
+  if (has(Signal::spool_position))
+    out.push_back({"spool_offset", nuisance::spool_offset, -5e-6, 5e-6, false, 0.0, 0.1, l});
   // Pressure sensors: a quarter per cent of a 400 bar range.
   if (pressures) {
     out.push_back({"pressure_a_offset", nuisance::pressure_a_offset, -3e5, 3e5, false, 0.0, 0.15, l});
@@ -61,7 +64,8 @@ void add_effect_rows(Table& table, const std::vector<std::string>& effects) {
     if (it == list.end()) {
       std::string known;
       for (const EffectInfo& e : list) known += (known.empty() ? "" : ", ") + e.name;
-      throw InputError({.file = "--effects"}, "'" + name + "' is not an effect that can be freed", "use one of: " + known + ", or none");
+      throw InputError({.file = "--effects"}, "'" + name + "' is not an effect that can be freed",
+                       "use one of: " + known + ", or none");
     }
     for (const EffectParameter& p : it->parameters) {
       if (table.find(p.name) >= 0) continue;

@@ -13,8 +13,10 @@ namespace servodx {
 std::vector<FreeValue> shared_values(const Table& table);
 
 // A log's own: null, free air, command between samples, offsets of spool and pressure sensors; only those that the log
-// can show. `null_limit` [fraction of rated] bounds the null about the base's. Prior widths: docs/model.md, "Nuisances".
-std::vector<FreeValue> nuisance_values(const LogData& log, int log_index, const ParameterVector& base, double null_limit);
+// can show. `null_limit` [fraction of rated] bounds the null about the base's. Prior widths: docs/model.md,
+// "Nuisances".
+std::vector<FreeValue> nuisance_values(const LogData& log, int log_index, const ParameterVector& base,
+                                       double null_limit);
 
 // Appends rows for effects that the table lacks, at their typical size and free. Throws InputError for an unknown name.
 void add_effect_rows(Table& table, const std::vector<std::string>& effects);

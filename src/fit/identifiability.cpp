@@ -6,8 +6,8 @@
 
 namespace servodx {
 
-Identifiability identify(const Eigen::MatrixXd& jacobian, const std::vector<char>& candidates, double collinearity_limit,
-                         double flat_limit) {
+Identifiability identify(const Eigen::MatrixXd& jacobian, const std::vector<char>& candidates,
+                         double collinearity_limit, double flat_limit, double enough) {
   const long n = jacobian.cols();
   Identifiability out;
   out.verdict.assign(n, "free");
@@ -43,7 +43,7 @@ Identifiability identify(const Eigen::MatrixXd& jacobian, const std::vector<char
       rest2 -= b.dot(weights);
     }
     const double rest = std::sqrt(std::max(0.0, rest2));
-    if (candidates[j] && out.verdict[j] == "free" && rest < out.norm[j] / collinearity_limit) {
+    if (candidates[j] && out.verdict[j] == "free" && rest < std::min(enough, out.norm[j] / collinearity_limit)) {
       out.verdict[j] = "confounded";
       std::vector<std::pair<double, int>> strongest;
       for (long r = 0; r < weights.size(); ++r) strongest.push_back({-std::abs(weights[r]), static_cast<int>(kept[r])});

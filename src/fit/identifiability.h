@@ -1,9 +1,9 @@
-// Which free numbers the data can tell apart, from the local sensitivities (Brun, Reichert, Kuensch 2001: collinearity).
+// Which free numbers the data can tell apart, from the local sensitivities (Brun, Reichert, Kuensch 2001:
+// collinearity).
 #pragma once
+#include <Eigen/Dense>
 #include <string>
 #include <vector>
-
-#include <Eigen/Dense>
 
 namespace servodx {
 
@@ -16,10 +16,11 @@ struct Identifiability {
 
 // jacobian: rows in sigmas of independent samples, columns per unit interval; `candidates` marks columns that may be
 // frozen (nuisances are not). Greedy: strongest first; a column whose part that the kept ones do not span is shorter
-// than its norm over `collinearity_limit` is confounded; one that moves no channel by `flat_limit` sigmas over the whole
-// interval is flat.
-Identifiability identify(const Eigen::MatrixXd& jacobian, const std::vector<char>& candidates, double collinearity_limit = 15.0,
-                         double flat_limit = 1.0);
+// than its norm over `collinearity_limit` is confounded, unless that part alone still determines it to a quarter of
+// its interval (`enough` sigmas): an index says that two effects are alike, not that the data cannot tell them apart;
+// one that moves no channel by `flat_limit` sigmas over the whole interval is flat.
+Identifiability identify(const Eigen::MatrixXd& jacobian, const std::vector<char>& candidates,
+                         double collinearity_limit = 15.0, double flat_limit = 1.0, double enough = 4.0);
 
 // Covariance of the free columns (inverse of J^T J); rows and columns of frozen ones are zero.
 Eigen::MatrixXd covariance_of(const Eigen::MatrixXd& jacobian, const std::vector<char>& kept);

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/error.h"
+
 namespace servodx {
 namespace {
 
@@ -99,7 +101,8 @@ LogData prepare(const Log& log, const RigFile& rig, int window) {
   s.rated_current = rig.fact("valve.rated_current").value_or(0.02);
   if (rig.command_hold) s.command_slope = *rig.command_hold == CommandHold::linear ? 1.0 : 0.0;
   constexpr double reference_temperature = 313.15;  // [K] where the table's values hold
-  const double temperature = log.has(Signal::oil_temperature) ? mean_of_present(log[Signal::oil_temperature]) : reference_temperature;
+  const double temperature =
+      log.has(Signal::oil_temperature) ? mean_of_present(log[Signal::oil_temperature]) : reference_temperature;
   s.oil = oil_at(rig.fluid.density, rig.fluid.kinematic_viscosity, temperature);
   for (Signal which : simulated_signals) {
     if (!log.has(which)) continue;
@@ -115,6 +118,12 @@ LogData prepare(const Log& log, const RigFile& rig, int window) {
   }
   take_start(out);
   return out;
+}
+
+void require_channels(const LogData& log) {
+  if (log.channels.empty())
+    throw InputError({.file = log.path}, "holds no signal that the model reports",
+                     "log spool or piston position, both chamber pressures or a flow");
 }
 
 LogData slice(const LogData& log, std::size_t from, std::size_t to) {

@@ -13,10 +13,10 @@ namespace servodx {
 
 struct FitChannel {
   Signal signal;
-  int simulated = -1;              // position in simulated_signals
-  std::vector<double> measured;    // [SI] NaN where missing
-  double noise = 0;                // [SI] rms of the sensor noise, from second differences, at least the quantisation's
-  Filter filter;                   // applied to measurement and simulation alike, that is, to their difference
+  int simulated = -1;            // position in simulated_signals
+  std::vector<double> measured;  // [SI] NaN where missing
+  double noise = 0;              // [SI] rms of the sensor noise, from second differences, at least the quantisation's
+  Filter filter;                 // applied to measurement and simulation alike, that is, to their difference
 };
 
 struct LogData {
@@ -31,6 +31,9 @@ inline constexpr double piston_high_pass = 0.3;  // [Hz]
 
 // `window` [samples]: moving average of every channel, 1 for none. The rig file's mains frequency is notched out.
 LogData prepare(const Log& log, const RigFile& rig, int window = 1);
+
+// Refuses a log without any signal that the model reports.
+void require_channels(const LogData& log);
 
 // Samples [from, to) as a log of their own, started from what is measured at `from`.
 LogData slice(const LogData& log, std::size_t from, std::size_t to);

@@ -13,7 +13,8 @@ double FreeValue::from_unit(double u) const {
   return log_scale ? lower * std::pow(upper / lower, u) : lower + u * (upper - lower);
 }
 
-FitProblem::FitProblem(std::vector<const LogData*> logs, ParameterVector base, std::vector<FreeValue> free, SimulateOptions options)
+FitProblem::FitProblem(std::vector<const LogData*> logs, ParameterVector base, std::vector<FreeValue> free,
+                       SimulateOptions options)
     : logs_(std::move(logs)), base_(std::move(base)), free_(std::move(free)), options_(std::move(options)) {
   options_.wanted.fill(false);
   long at = 0;
@@ -64,7 +65,8 @@ void FitProblem::fill(const Point&, int log, const Trajectory& t, Eigen::Ref<Eig
   for (std::size_t c = 0; c < logs_[log]->channels.size(); ++c) {
     const std::vector<double> r = raw_residual(log, static_cast<int>(c), t);
     const long at = offset_[log][c];
-    for (std::size_t k = 0; k < r.size(); ++k) out[at + static_cast<long>(k)] = std::isnan(r[k]) ? 0.0 : r[k] / sigma_[log][c][k];
+    for (std::size_t k = 0; k < r.size(); ++k)
+      out[at + static_cast<long>(k)] = std::isnan(r[k]) ? 0.0 : r[k] / sigma_[log][c][k];
   }
 }
 
@@ -104,7 +106,8 @@ std::vector<Evaluation> FitProblem::evaluate(std::span<const Point> points) cons
     for (std::size_t l = 0; l < n_logs; ++l) fill(points[k], static_cast<int>(l), t[l * n_points + k], out[k].residual);
     long at = data_rows_;
     for (std::size_t j = 0; j < free_.size(); ++j)
-      if (std::isfinite(free_[j].prior_sd)) out[k].residual[at++] = (points[k][j] - free_[j].to_unit(free_[j].start)) / free_[j].prior_sd;
+      if (std::isfinite(free_[j].prior_sd))
+        out[k].residual[at++] = (points[k][j] - free_[j].to_unit(free_[j].start)) / free_[j].prior_sd;
   }
   return out;
 }
@@ -148,7 +151,8 @@ bool FitProblem::jacobian(const Point& x, const Eigen::VectorXd& residual, Eigen
       const long at = offset_[l].front();
       const long rows = static_cast<long>(logs_[l]->channels.size() * logs_[l]->scenario.time.size());
       fill(x, l, t[c - first], scratch);
-      jac.col(columns[c].j).segment(at, rows) = (scratch.segment(at, rows) - residual.segment(at, rows)) / columns[c].dx;
+      jac.col(columns[c].j).segment(at, rows) =
+          (scratch.segment(at, rows) - residual.segment(at, rows)) / columns[c].dx;
     }
     first = last;
   }

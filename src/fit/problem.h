@@ -17,13 +17,13 @@ namespace servodx {
 // A free number: which entry of a candidate, and how the unit interval maps onto it.
 struct FreeValue {
   std::string name;
-  int at = 0;                // position in a candidate
+  int at = 0;                   // position in a candidate
   double lower = 0, upper = 1;  // [SI]
   bool log_scale = false;
-  double start = 0;          // [SI]
+  double start = 0;                                           // [SI]
   double prior_sd = std::numeric_limits<double>::infinity();  // [of the unit interval] around `start`; infinite: none
-  int log = -1;              // index of the log it belongs to, or -1: shared by all
-  void (*apply)(double* candidate, double value) = nullptr;  // moves several entries at once, in place of `at`
+  int log = -1;                                               // index of the log it belongs to, or -1: shared by all
+  void (*apply)(double* candidate, double value) = nullptr;   // moves several entries at once, in place of `at`
 
   double to_unit(double value) const;
   double from_unit(double u) const;
@@ -31,8 +31,10 @@ struct FreeValue {
 
 class FitProblem {
  public:
-  // sigma[log][channel]: [SI] rms that whitens the channel's residual; a vector entry a sample is allowed through `scale`.
-  FitProblem(std::vector<const LogData*> logs, ParameterVector base, std::vector<FreeValue> free, SimulateOptions options = {});
+  // sigma[log][channel]: [SI] rms that whitens the channel's residual; a vector entry a sample is allowed through
+  // `scale`.
+  FitProblem(std::vector<const LogData*> logs, ParameterVector base, std::vector<FreeValue> free,
+             SimulateOptions options = {});
 
   int n() const { return static_cast<int>(free_.size()); }
   const std::vector<FreeValue>& free() const { return free_; }
@@ -57,7 +59,9 @@ class FitProblem {
   std::vector<double> raw_residual(int log, int channel, const Trajectory& t) const;
   std::vector<Trajectory> trajectories(const Point& x) const;
   // Rows of the residual that belong to (log, channel): first row and count.
-  std::pair<long, long> rows(int log, int channel) const { return {offset_[log][channel], static_cast<long>(logs_[log]->scenario.time.size())}; }
+  std::pair<long, long> rows(int log, int channel) const {
+    return {offset_[log][channel], static_cast<long>(logs_[log]->scenario.time.size())};
+  }
   long data_rows() const { return data_rows_; }
   long simulations() const { return simulations_; }
   long failed_simulations() const { return failed_; }

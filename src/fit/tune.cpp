@@ -68,7 +68,8 @@ void first_whitening(FitProblem& problem, const Point& x) {
     const double correlated = static_cast<double>(log.scenario.time.size()) / std::max(1.0, span * independent_rate);
     for (std::size_t c = 0; c < log.channels.size(); ++c) {
       const int li = static_cast<int>(l), ci = static_cast<int>(c);
-      const double r = t[l].ok ? rms_of(problem.raw_residual(li, ci, t[l]), 0, log.scenario.time.size()) : 100 * log.channels[c].noise;
+      const double r = t[l].ok ? rms_of(problem.raw_residual(li, ci, t[l]), 0, log.scenario.time.size())
+                               : 100 * log.channels[c].noise;
       problem.set_sigma(li, ci, std::max(2 * log.channels[c].noise, 0.7 * r) * std::sqrt(std::max(1.0, correlated)));
     }
   }
@@ -80,12 +81,14 @@ void hold_out(FitProblem& problem, double part) {
   for (std::size_t l = 0; l < problem.logs().size(); ++l)
     for (std::size_t c = 0; c < problem.logs()[l]->channels.size(); ++c) {
       std::vector<double> s = problem.sigma(static_cast<int>(l), static_cast<int>(c));
-      for (std::size_t k = static_cast<std::size_t>((1.0 - part) * static_cast<double>(s.size())); k < s.size(); ++k) s[k] *= ignored;
+      for (std::size_t k = static_cast<std::size_t>((1.0 - part) * static_cast<double>(s.size())); k < s.size(); ++k)
+        s[k] *= ignored;
       problem.set_sigma(static_cast<int>(l), static_cast<int>(c), std::move(s));
     }
 }
 
-LeastSquaresResult local(Tuning& run, FitProblem& problem, const Point& x, int iterations, bool first, double from, double to) {
+LeastSquaresResult local(Tuning& run, FitProblem& problem, const Point& x, int iterations, bool first, double from,
+                         double to) {
   LeastSquaresOptions o;
   o.max_iterations = iterations;
   o.difference = Difference::forward;
@@ -103,7 +106,8 @@ std::vector<LogData> excerpts(const std::vector<LogData>& logs, double seconds) 
   std::vector<LogData> out;
   for (const LogData& log : logs) {
     const auto& t = log.scenario.time;
-    out.push_back(slice(log, 0, static_cast<std::size_t>(std::lower_bound(t.begin(), t.end(), t.front() + seconds) - t.begin())));
+    out.push_back(
+        slice(log, 0, static_cast<std::size_t>(std::lower_bound(t.begin(), t.end(), t.front() + seconds) - t.begin())));
   }
   return out;
 }
@@ -180,7 +184,8 @@ std::vector<Point> breadth(Tuning& run, const Point& start) {
 }
 
 // Alternates fit and error model until the weights settle.
-LeastSquaresResult refine(Tuning& run, FitProblem& problem, Point x, ErrorModel& error, double held, int rounds, double from, double to) {
+LeastSquaresResult refine(Tuning& run, FitProblem& problem, Point x, ErrorModel& error, double held, int rounds,
+                          double from, double to) {
   LeastSquaresResult r;
   for (int round = 0; round < rounds; ++round) {
     error = learn_error_model(problem, x);
@@ -199,7 +204,8 @@ LeastSquaresResult refine(Tuning& run, FitProblem& problem, Point x, ErrorModel&
 int moving_average_of(const Table& table) {
   for (const std::string& line : table.comments)
     if (const std::size_t at = line.find(average_key); at != std::string::npos)
-      return std::max(1, static_cast<int>(std::strtol(line.c_str() + at + std::string(average_key).size() + 1, nullptr, 10)));
+      return std::max(
+          1, static_cast<int>(std::strtol(line.c_str() + at + std::string(average_key).size() + 1, nullptr, 10)));
   return 1;
 }
 
@@ -220,24 +226,32 @@ TuneResult tune(const std::vector<Log>& logs, const Table& nominal, const RigFil
   Tuning run{options, Progress("tune", {.quiet = options.quiet}), {}, {}, nominal, {}, {}, {}, 0, 0, {}};
   TuneResult out;
   if (options.moving_average < 1 || options.moving_average % 2 == 0)
-    throw InputError({.file = "--moving-average"}, fmt::format("{} is not an odd number of samples", options.moving_average), "give 1 for none, or 3, 5, ...");
+    throw InputError({.file = "--moving-average"},
+                     fmt::format("{} is not an odd number of samples", options.moving_average),
+                     "give 1 for none, or 3, 5, ...");
 
   // 1. What is fitted to what.
   for (const Log& log : logs) run.data.push_back(prepare(log, rig, options.moving_average));
-  for (const LogData& d : run.data) run.logs.push_back(&d);
+  for (const LogData& d : run.data) {
+    require_channels(d);
+    run.logs.push_back(&d);
+  }
   add_effect_rows(run.table, options.effects);
   run.table = apply_rig_facts(run.table, rig);
   run.base = candidate_of(run.table);
   run.shared = shared_values(run.table);
   for (std::size_t l = 0; l < run.data.size(); ++l)
-    for (FreeValue& f : nuisance_values(run.data[l], static_cast<int>(l), run.base, tuning_null_limit)) run.nuisances.push_back(std::move(f));
+    for (FreeValue& f : nuisance_values(run.data[l], static_cast<int>(l), run.base, tuning_null_limit))
+      run.nuisances.push_back(std::move(f));
   FitProblem problem(run.logs, run.base, run.all(), run.simulate_options());
   Point x = problem.start();
 
   // 2. Sensitivities at nominal: each row driven to its bounds, and what the data cannot tell apart is frozen.
   first_whitening(problem, x);
   Evaluation at_nominal = problem.evaluate(std::span(&x, 1)).front();
-  if (!at_nominal.ok) throw InputError({.file = nominal.path}, "the simulation fails at the table's nominal values", "check the table against the rig's data sheet");
+  if (!at_nominal.ok)
+    throw InputError({.file = nominal.path}, "the simulation fails at the table's nominal values",
+                     "check the table against the rig's data sheet");
   const std::size_t n_shared = run.shared.size();
   std::vector<Point> extremes;
   for (std::size_t j = 0; j < n_shared; ++j)
@@ -251,8 +265,11 @@ TuneResult tune(const std::vector<Log>& logs, const Table& nominal, const RigFil
     const std::size_t n = std::min<std::size_t>(16, extremes.size() - first);
     const std::vector<Evaluation> e = problem.evaluate(std::span(&extremes[first], n));
     for (std::size_t i = 0; i < n; ++i)
-      if (e[i].ok) effect[(first + i) / 2][(first + i) % 2] = (e[i].residual - at_nominal.residual).head(problem.data_rows()).norm();
-    run.progress.update(0.05 * static_cast<double>(first) / static_cast<double>(extremes.size()), problem.simulations());
+      if (e[i].ok)
+        effect[(first + i) / 2][(first + i) % 2] =
+            (e[i].residual - at_nominal.residual).head(problem.data_rows()).norm();
+    run.progress.update(0.05 * static_cast<double>(first) / static_cast<double>(extremes.size()),
+                        problem.simulations());
   }
   Eigen::MatrixXd jacobian;
   std::vector<FreeValue> all_shared = run.shared;
@@ -261,11 +278,13 @@ TuneResult tune(const std::vector<Log>& logs, const Table& nominal, const RigFil
   if (problem.jacobian(x, at_nominal.residual, jacobian)) {
     std::vector<char> candidates(static_cast<std::size_t>(problem.n()), 0);
     std::fill(candidates.begin(), candidates.begin() + static_cast<long>(n_shared), 1);
-    const Identifiability id = identify(jacobian.topRows(problem.data_rows()), candidates);
+    // The priors' rows count: a nuisance that its prior holds cannot stand in for a row.
+    const Identifiability id = identify(jacobian, candidates);
     std::vector<FreeValue> kept;
     for (std::size_t j = 0; j < n_shared; ++j) {
       // Far from nominal a row may matter that does not here: only what moves nothing anywhere is frozen as flat.
-      const bool matters = effect[j][0] > 2.0 || effect[j][1] > 2.0 || std::isnan(effect[j][0]) || std::isnan(effect[j][1]);
+      const bool matters =
+          effect[j][0] > 2.0 || effect[j][1] > 2.0 || std::isnan(effect[j][0]) || std::isnan(effect[j][1]);
       if (id.verdict[j] == "flat" && !matters) verdict[j] = "flat";
       if (id.verdict[j] == "confounded") {
         verdict[j] = "confounded";
@@ -292,7 +311,8 @@ TuneResult tune(const std::vector<Log>& logs, const Table& nominal, const RigFil
     ends.push_back(local(run, fit, starts[s], 6, true, a, a + 0.35 / static_cast<double>(starts.size())));
     out.starts.push_back(ends.back().cost);
   }
-  const std::size_t best = static_cast<std::size_t>(std::min_element(out.starts.begin(), out.starts.end()) - out.starts.begin());
+  const std::size_t best =
+      static_cast<std::size_t>(std::min_element(out.starts.begin(), out.starts.end()) - out.starts.begin());
   for (double c : out.starts) out.reached_best += c <= 1.05 * out.starts[best];
   x = ends[best].point;
 
@@ -313,7 +333,9 @@ TuneResult tune(const std::vector<Log>& logs, const Table& nominal, const RigFil
 
   // 6. Uncertainty, and the tuned table.
   std::vector<char> kept(static_cast<std::size_t>(fit.n()), 1);
-  for (int j = 0; j < fit.n(); ++j) kept[static_cast<std::size_t>(j)] = x[static_cast<std::size_t>(j)] > 1e-6 && x[static_cast<std::size_t>(j)] < 1 - 1e-6;
+  for (int j = 0; j < fit.n(); ++j)
+    kept[static_cast<std::size_t>(j)] =
+        x[static_cast<std::size_t>(j)] > 1e-6 && x[static_cast<std::size_t>(j)] < 1 - 1e-6;
   const Eigen::MatrixXd covariance = covariance_of(end.jacobian, kept);
   out.table = run.table;
   out.table.has_std_error = true;
@@ -322,8 +344,10 @@ TuneResult tune(const std::vector<Log>& logs, const Table& nominal, const RigFil
   };
   for (std::size_t i = 0; i < run.table.rows.size(); ++i) {
     Row& row = out.table.rows[i];
-    const auto free = std::find_if(fit.free().begin(), fit.free().end(), [&](const FreeValue& f) { return f.log < 0 && f.name == row.name; });
-    const auto listed = std::find_if(all_shared.begin(), all_shared.end(), [&](const FreeValue& f) { return f.name == row.name; });
+    const auto free = std::find_if(fit.free().begin(), fit.free().end(),
+                                   [&](const FreeValue& f) { return f.log < 0 && f.name == row.name; });
+    const auto listed =
+        std::find_if(all_shared.begin(), all_shared.end(), [&](const FreeValue& f) { return f.name == row.name; });
     if (listed == all_shared.end()) continue;
     ParameterResult p;
     p.id = row.id;
@@ -339,14 +363,17 @@ TuneResult tune(const std::vector<Log>& logs, const Table& nominal, const RigFil
     if (free != fit.free().end()) {
       const auto j = static_cast<std::size_t>(free - fit.free().begin());
       p.estimate = free->from_unit(x[j]);
-      const double se = std::sqrt(std::max(0.0, covariance(static_cast<long>(j), static_cast<long>(j)))) * derivative(*free, x[j]);
+      const double se =
+          std::sqrt(std::max(0.0, covariance(static_cast<long>(j), static_cast<long>(j)))) * derivative(*free, x[j]);
       if (!kept[j]) {
         p.verdict = "at_bound";
       } else {
         p.std_error = se;
         const double u_se = std::sqrt(covariance(static_cast<long>(j), static_cast<long>(j)));
-        if (u_se > 0.25) p.verdict = "flat";
-        else if (x[j] - 2 * u_se < 0 || x[j] + 2 * u_se > 1) p.verdict = "one_sided";
+        if (u_se > 0.25)
+          p.verdict = "flat";
+        else if (x[j] - 2 * u_se < 0 || x[j] + 2 * u_se > 1)
+          p.verdict = "one_sided";
         row.std_error = se;
       }
       row.nominal = p.estimate;
@@ -362,16 +389,20 @@ TuneResult tune(const std::vector<Log>& logs, const Table& nominal, const RigFil
     const ParameterVector v = fit.candidate(x, static_cast<int>(l));
     nulls.push_back(v[row::servovalve_null]);
     airs.push_back(v[row::air_fraction]);
-    LogResult lr{run.data[l].path, {}, nulls.back(), run.data[l].scenario.command_slope.value_or(v[nuisance::command_slope])};
+    LogResult lr{
+        run.data[l].path, {}, nulls.back(), run.data[l].scenario.command_slope.value_or(v[nuisance::command_slope])};
     for (std::size_t c = 0; c < run.data[l].channels.size(); ++c) {
       const FitChannel& channel = run.data[l].channels[c];
       const auto n = channel.measured.size();
       const auto from = static_cast<std::size_t>((1.0 - options.heldout) * static_cast<double>(n));
       ChannelResult r{channel.signal, logs[l].channels[index(channel.signal)].unit, 0, channel.noise, 0};
-      if (final_run[l].ok) r.rms = rms_of(fit.raw_residual(static_cast<int>(l), static_cast<int>(c), final_run[l]), 0, n);
-      if (heldout_run[l].ok) r.heldout_rms = rms_of(fit.raw_residual(static_cast<int>(l), static_cast<int>(c), heldout_run[l]), from, n);
+      if (final_run[l].ok)
+        r.rms = rms_of(fit.raw_residual(static_cast<int>(l), static_cast<int>(c), final_run[l]), 0, n);
+      if (heldout_run[l].ok)
+        r.heldout_rms = rms_of(fit.raw_residual(static_cast<int>(l), static_cast<int>(c), heldout_run[l]), from, n);
       lr.channels.push_back(r);
-      auto it = std::find_if(pooled.begin(), pooled.end(), [&](const ChannelResult& p) { return p.signal == r.signal; });
+      auto it =
+          std::find_if(pooled.begin(), pooled.end(), [&](const ChannelResult& p) { return p.signal == r.signal; });
       if (it == pooled.end()) it = pooled.insert(pooled.end(), {r.signal, r.unit, 0, 0, 0});
       it->rms += r.rms * r.rms;
       it->noise_rms += r.noise_rms * r.noise_rms;
@@ -392,18 +423,23 @@ TuneResult tune(const std::vector<Log>& logs, const Table& nominal, const RigFil
     return v[v.size() / 2];
   };
   out.table[row::servovalve_null].nominal = median(nulls);
-  out.table[row::air_fraction].nominal = std::clamp(median(airs), out.table[row::air_fraction].lower, out.table[row::air_fraction].upper);
+  out.table[row::air_fraction].nominal =
+      std::clamp(median(airs), out.table[row::air_fraction].lower, out.table[row::air_fraction].upper);
   out.table.comments = nominal.comments;
-  if (options.moving_average > 1) out.table.comments.push_back(fmt::format("{}: {} samples", average_key, options.moving_average));
+  if (options.moving_average > 1)
+    out.table.comments.push_back(fmt::format("{}: {} samples", average_key, options.moving_average));
   for (const std::string& line : to_comments(out.error)) out.table.comments.push_back(line);
   for (const LogData& d : run.data)
-    out.table.comments.push_back(fmt::format("{} {} {}", hash_key, d.sha256, std::filesystem::path(d.path).filename().string()));
+    out.table.comments.push_back(
+        fmt::format("{} {} {}", hash_key, d.sha256, std::filesystem::path(d.path).filename().string()));
   out.notes = run.notes;
   out.notes.push_back("local stage: " + end.stopped);
   std::string slopes;
   for (const LogResult& l : out.logs)
-    slopes += fmt::format("{}{} {:.2f}", slopes.empty() ? "" : ", ", std::filesystem::path(l.path).filename().string(), l.command_slope);
-  out.notes.push_back("command between samples, 0 held to 1 in a line" + std::string(rig.command_hold ? ", from the rig file: " : ", estimated log by log: ") + slopes);
+    slopes += fmt::format("{}{} {:.2f}", slopes.empty() ? "" : ", ", std::filesystem::path(l.path).filename().string(),
+                          l.command_slope);
+  out.notes.push_back("command between samples, 0 held to 1 in a line" +
+                      std::string(rig.command_hold ? ", from the rig file: " : ", estimated log by log: ") + slopes);
   out.simulations = run.simulations + fit.simulations();
   out.failed_simulations = run.failed + fit.failed_simulations();
   out.interrupted = run.stopped();

@@ -20,13 +20,15 @@ struct ParameterResult {
   // bounded | one_sided | flat | at_bound | confounded | frozen
   std::string verdict;
   std::vector<std::string> confounded_with;
-  double effect_at_lower = 0, effect_at_upper = 0;  // whitened rms change of the simulation at the row's bounds, in sigmas
+  double effect_at_lower = 0,
+         effect_at_upper = 0;  // whitened rms change of the simulation at the row's bounds, in sigmas
 };
 
 struct ChannelResult {
   Signal signal;
   std::string unit;  // as in the log
-  double rms = 0, noise_rms = 0, heldout_rms = 0;  // [SI] over all logs; held out: the last part of each log, before the final fit
+  double rms = 0, noise_rms = 0,
+         heldout_rms = 0;  // [SI] over all logs; held out: the last part of each log, before the final fit
 };
 
 struct LogResult {
@@ -42,10 +44,10 @@ struct TuneOptions {
   bool quiet = false;
   int population = 50;
   int generations = 30;
-  double heldout = 0.2;            // last part of every log, kept out of the first fit
+  double heldout = 0.2;  // last part of every log, kept out of the first fit
   std::vector<std::string> effects = {"magnetic_hysteresis", "mount_compliance"};  // freed beside the table's rows
-  int moving_average = 1;          // [samples] odd; smooths measurement and simulation alike, also in later commands
-  std::string checkpoint;          // file saved every generation; empty: none
+  int moving_average = 1;  // [samples] odd; smooths measurement and simulation alike, also in later commands
+  std::string checkpoint;  // file saved every generation; empty: none
   bool resume = false;
   const std::atomic<bool>* stop = nullptr;  // set: finish with the best so far
 };

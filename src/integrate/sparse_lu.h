@@ -20,9 +20,9 @@ struct Pattern {
 template <int N, Pattern<N> P>
 struct SparseLu {
   struct Plan {
-    std::array<int, N> order{};               // order[k]: the variable eliminated k-th
-    std::array<Mask, N> filled{};             // pattern with fill-in, original numbering
-    std::array<std::array<int, N>, N> slot{}; // storage position of (i, j), or -1
+    std::array<int, N> order{};                // order[k]: the variable eliminated k-th
+    std::array<Mask, N> filled{};              // pattern with fill-in, original numbering
+    std::array<std::array<int, N>, N> slot{};  // storage position of (i, j), or -1
     int entries = 0;
   };
   static constexpr Plan make() {
@@ -95,9 +95,12 @@ struct SparseLu {
   static inline __attribute__((always_inline)) void factorise(std::array<T, entries>& w) {
     unroll<n_operations>([&](auto i) {
       constexpr Operation op = operations[i];
-      if constexpr (op.kind == 0) w[op.a] = T(1.0) / w[op.a];
-      else if constexpr (op.kind == 1) w[op.a] = w[op.a] * w[op.b];
-      else w[op.a] = w[op.a] - w[op.b] * w[op.c];
+      if constexpr (op.kind == 0)
+        w[op.a] = T(1.0) / w[op.a];
+      else if constexpr (op.kind == 1)
+        w[op.a] = w[op.a] * w[op.b];
+      else
+        w[op.a] = w[op.a] - w[op.b] * w[op.c];
     });
   }
 

@@ -33,9 +33,10 @@ auto metering_edge(const X& opening, const P& dp, const Derived<T>& d, const T* 
   const auto covered = (root - opening) * T(0.5);
   const auto h2 = open * open + d.clearance2;
   const auto h = sqrt(h2);
-  const auto r = d.slot_per_length * (h * covered) + d.slot_corner / h;          // [Pa s/m2] per width, times h
+  const auto r = d.slot_per_length * (h * covered) + d.slot_corner / h;  // [Pa s/m2] per width, times h
   const auto k = d.edge_loss + d.hose_loss * h2;
-  const auto q = (T(2.0) * p[row::port_width]) * h * dp / (r + sqrt(r * r + k * smooth_abs(dp, T(c::orifice_transition))));
+  const auto q =
+      (T(2.0) * p[row::port_width]) * h * dp / (r + sqrt(r * r + k * smooth_abs(dp, T(c::orifice_transition))));
   return std::make_tuple(q, h);
 }
 
@@ -74,9 +75,10 @@ inline __attribute__((always_inline)) auto derivative(const S& s, const In& u, c
   // force would take a free flapper, and the flapper follows it up to the nozzle. That leaves out the impact (a few
   // tenths of a millisecond) and keeps a wall out of the equations, which no linearly implicit step sees coming.
   const auto x_f = saturate(z_f, p[row::nozzle_gap], T(c::stop_rounding));
-  const auto wire = p[row::feedback_wire_stiffness] * dead_zone(x_s + x_f, p[row::valve_glitch] * T(0.5), T(c::backlash_rounding));
-  const auto f_flapper = p[row::torque_motor_gain] * i - p[row::flapper_stiffness] * z_f - wire - d.nozzle_area * (p_1 - p_2) +
-                         hook_flapper_force(view, Effects{});
+  const auto wire =
+      p[row::feedback_wire_stiffness] * dead_zone(x_s + x_f, p[row::valve_glitch] * T(0.5), T(c::backlash_rounding));
+  const auto f_flapper = p[row::torque_motor_gain] * i - p[row::flapper_stiffness] * z_f - wire -
+                         d.nozzle_area * (p_1 - p_2) + hook_flapper_force(view, Effects{});
   const auto dv_f = d.flapper_rate2 * f_flapper - d.flapper_damping * v_f;
 
   // Filter, fixed orifices, nozzles, spool ends.
@@ -130,7 +132,8 @@ inline __attribute__((always_inline)) auto derivative(const S& s, const In& u, c
   // Piston.
   const auto v_slide2 = v_rel * v_rel * T(1.0 / (c::piston_stribeck_velocity * c::piston_stribeck_velocity));
   const auto f_friction = d.viscous * v_rel + smooth_sign(v_rel, T(c::piston_friction_rounding)) *
-                          (p[row::piston_coulomb_friction] + p[row::piston_stribeck_friction] / (T(1.0) + v_slide2));
+                                                  (p[row::piston_coulomb_friction] +
+                                                   p[row::piston_stribeck_friction] / (T(1.0) + v_slide2));
   const auto over = soft_positive(x_p - T(0.5) * p[row::piston_stroke], T(c::piston_stop_rounding));
   const auto under = soft_positive(-x_p - T(0.5) * p[row::piston_stroke], T(c::piston_stop_rounding));
   const auto in_stop = (over + under) / (over + under + T(c::piston_stop_rounding));

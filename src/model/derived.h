@@ -11,32 +11,32 @@ namespace servodx {
 template <class T>
 struct Derived {
   // first stage
-  T driver_rate;               // [1/s]
-  T flapper_rate2;             // [1/s2] natural frequency squared over stiffness times stiffness
-  T inverse_flapper_stiffness; // [m/N]
-  T flapper_damping;           // [1/s]
-  T nozzle_area;               // [m2] facing the flapper
-  T nozzle_conductance;        // [m3/s/sqrt(Pa)/m] per curtain opening
-  T orifice_conductance;       // [m3/s/sqrt(Pa)]
-  T filter_conductance;        // [m3/s/sqrt(Pa)] clean
-  T inverse_filter_compliance; // [Pa/m3]
-  T inverse_pilot_compliance;  // [Pa/m3]
+  T driver_rate;                // [1/s]
+  T flapper_rate2;              // [1/s2] natural frequency squared over stiffness times stiffness
+  T inverse_flapper_stiffness;  // [m/N]
+  T flapper_damping;            // [1/s]
+  T nozzle_area;                // [m2] facing the flapper
+  T nozzle_conductance;         // [m3/s/sqrt(Pa)/m] per curtain opening
+  T orifice_conductance;        // [m3/s/sqrt(Pa)]
+  T filter_conductance;         // [m3/s/sqrt(Pa)] clean
+  T inverse_filter_compliance;  // [Pa/m3]
+  T inverse_pilot_compliance;   // [Pa/m3]
   // second stage
-  T spool_area;                // [m2]
-  T inverse_spool_mass;        // [1/kg]
-  T spool_viscous;             // [N s/m] shear in the annulus
-  T flow_force;                // [-] times area and pressure drop
-  T clearance2;                // [m2]
-  T slot_per_length;           // [Pa s/m4 ...] laminar resistance of a covered edge, per length, times opening and width
-  T slot_corner;               // the same for the corner of an open edge
-  T edge_loss;                 // [Pa s2/m4] 4 rho / (2 Cd^2)
-  T hose_loss;                 // 4 hose_resistance width^2
+  T spool_area;          // [m2]
+  T inverse_spool_mass;  // [1/kg]
+  T spool_viscous;       // [N s/m] shear in the annulus
+  T flow_force;          // [-] times area and pressure drop
+  T clearance2;          // [m2]
+  T slot_per_length;     // [Pa s/m4 ...] laminar resistance of a covered edge, per length, times opening and width
+  T slot_corner;         // the same for the corner of an open edge
+  T edge_loss;           // [Pa s2/m4] 4 rho / (2 Cd^2)
+  T hose_loss;           // 4 hose_resistance width^2
   // actuator
-  T leak;                      // [m3/s/Pa]
-  T viscous;                   // [N s/m]
-  T inverse_mass;              // [1/kg]
-  T inverse_bulk;              // [1/Pa]
-  T air;                       // [Pa] free air fraction times atmospheric pressure
+  T leak;          // [m3/s/Pa]
+  T viscous;       // [N s/m]
+  T inverse_mass;  // [1/kg]
+  T inverse_bulk;  // [1/Pa]
+  T air;           // [Pa] free air fraction times atmospheric pressure
 };
 
 // p: the 41 rows in SI.

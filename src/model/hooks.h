@@ -20,12 +20,15 @@ namespace servodx {
 
 struct Nothing {};
 template <class X>
-X operator+(const X& x, Nothing) { return x; }
+X operator+(const X& x, Nothing) {
+  return x;
+}
 template <class X>
-  requires(!std::is_same_v<X, Nothing>)
-X operator+(Nothing, const X& x) { return x; }
+requires(!std::is_same_v<X, Nothing>) X operator+(Nothing, const X& x) { return x; }
 template <class X>
-X operator-(const X& x, Nothing) { return x; }
+X operator-(const X& x, Nothing) {
+  return x;
+}
 
 template <class... E>
 struct EffectList {
@@ -57,31 +60,41 @@ struct View {
   const T* p;  // the 41 rows, then the effects' parameters in the order of the list
 
   template <int K>
-  auto state() const { return s.template get<K>(); }
+  auto state() const {
+    return s.template get<K>();
+  }
   // j-th parameter of effect E, SI.
   template <class E>
-  const T& own(int j) const { return p[n_parameters + List::template parameter_offset<E>() + j]; }
+  const T& own(int j) const {
+    return p[n_parameters + List::template parameter_offset<E>() + j];
+  }
   // J-th state of effect E.
   template <class E, int J>
-  auto own_state() const { return s.template get<n_base_states + List::template state_offset<E>() + J>(); }
+  auto own_state() const {
+    return s.template get<n_base_states + List::template state_offset<E>() + J>();
+  }
 };
 
-#define SERVODX_HOOK(name)                                                     \
-  template <class V, class... E>                                               \
-  auto hook_##name(const V& view, EffectList<E...>) {                          \
-    return (Nothing{} + ... + [&](auto effect) {                               \
-      if constexpr (requires { effect.name(view); }) return effect.name(view); \
-      else return Nothing{};                                                   \
-    }(E{}));                                                                   \
+#define SERVODX_HOOK(name)                            \
+  template <class V, class... E>                      \
+  auto hook_##name(const V& view, EffectList<E...>) { \
+    return (Nothing{} + ... + [&](auto effect) {      \
+      if constexpr (requires { effect.name(view); })  \
+        return effect.name(view);                     \
+      else                                            \
+        return Nothing{};                             \
+    }(E{}));                                          \
   }
 // The same for a hook that is told what it adds to.
-#define SERVODX_HOOK_TO(name)                                                      \
-  template <class V, class... E, class X>                                          \
-  auto hook_##name(const V& view, EffectList<E...>, const X& x) {                  \
-    return (Nothing{} + ... + [&](auto effect) {                                   \
-      if constexpr (requires { effect.name(view, x); }) return effect.name(view, x); \
-      else return Nothing{};                                                       \
-    }(E{}));                                                                       \
+#define SERVODX_HOOK_TO(name)                                     \
+  template <class V, class... E, class X>                         \
+  auto hook_##name(const V& view, EffectList<E...>, const X& x) { \
+    return (Nothing{} + ... + [&](auto effect) {                  \
+      if constexpr (requires { effect.name(view, x); })           \
+        return effect.name(view, x);                              \
+      else                                                        \
+        return Nothing{};                                         \
+    }(E{}));                                                      \
   }
 SERVODX_HOOK(flapper_force)
 SERVODX_HOOK_TO(nozzle_1_opening)
@@ -97,8 +110,10 @@ SERVODX_HOOK(body_velocity)
 template <class V, class... E>
 auto effect_derivatives(const V& view, EffectList<E...>) {
   return std::tuple_cat([&](auto effect) {
-    if constexpr (requires { effect.derivative(view); }) return effect.derivative(view);
-    else return std::tuple<>{};
+    if constexpr (requires { effect.derivative(view); })
+      return effect.derivative(view);
+    else
+      return std::tuple<>{};
   }(E{})...);
 }
 

@@ -31,9 +31,9 @@ struct Inputs {
 
 // The log's oil, the same for every candidate.
 struct Oil {
-  double density = 860.0;               // [kg/m3] at the log's temperature
-  double dynamic_viscosity = 0.012;     // [Pa s] at the log's temperature
-  double viscosity_ratio = 1.0;         // over the value at 40 degC
+  double density = 860.0;            // [kg/m3] at the log's temperature
+  double dynamic_viscosity = 0.012;  // [Pa s] at the log's temperature
+  double viscosity_ratio = 1.0;      // over the value at 40 degC
 };
 
 // Density and viscosity at a temperature: Walther's law (ASTM D341) through the viscosity at 40 degC.

@@ -17,13 +17,17 @@ template <int N, class T>
 struct PlainStates {
   const std::array<T, N>& y;
   template <int K>
-  T get() const { return y[K]; }
+  T get() const {
+    return y[K];
+  }
 };
 template <int N, class T>
 struct DualStates {
   const std::array<T, N>& y;
   template <int K>
-  Dual<T, Mask{1} << K> get() const { return seed<K>(y[K], T(1.0)); }
+  Dual<T, Mask{1} << K> get() const {
+    return seed<K>(y[K], T(1.0));
+  }
 };
 
 // The model as the stepper sees it. Settling: spool, piston and measured pressures are held, and the current is free
@@ -36,7 +40,7 @@ struct System {
 
   const T* p;
   const Derived<T>& d;
-  Inputs<T> at, slope;              // at the start of the substep, and per second
+  Inputs<T> at, slope;                                    // at the start of the substep, and per second
   T hold_spool, hold_pressure, hold_piston, settle_rate;  // settling only: 1 held, 0 free
 
   template <class S, class In>
@@ -47,12 +51,13 @@ struct System {
     } else {
       // di/dt = -rate * (net spool force in terms of current) when the spool is held.
       const auto force = std::get<s_v_spool>(f) * (settle_rate * hold_spool);
-      const T free_spool = T(1.0) - hold_spool, free_pressure = T(1.0) - hold_pressure, free_piston = T(1.0) - hold_piston;
-      auto g = std::make_tuple(
-          std::get<s_current>(f) * free_spool - force, std::get<1>(f), std::get<2>(f), std::get<3>(f), std::get<4>(f),
-          std::get<5>(f), std::get<s_x_spool>(f) * free_spool, std::get<s_v_spool>(f) * free_spool,
-          std::get<s_p_a>(f) * free_pressure, std::get<s_p_b>(f) * free_pressure, std::get<s_x_piston>(f) * free_piston,
-          std::get<s_v_piston>(f) * free_piston);
+      const T free_spool = T(1.0) - hold_spool, free_pressure = T(1.0) - hold_pressure,
+              free_piston = T(1.0) - hold_piston;
+      auto g = std::make_tuple(std::get<s_current>(f) * free_spool - force, std::get<1>(f), std::get<2>(f),
+                               std::get<3>(f), std::get<4>(f), std::get<5>(f), std::get<s_x_spool>(f) * free_spool,
+                               std::get<s_v_spool>(f) * free_spool, std::get<s_p_a>(f) * free_pressure,
+                               std::get<s_p_b>(f) * free_pressure, std::get<s_x_piston>(f) * free_piston,
+                               std::get<s_v_piston>(f) * free_piston);
       return std::tuple_cat(g, rest(f, std::make_integer_sequence<int, Effects::n_states>{}));
     }
   }
@@ -68,18 +73,24 @@ struct System {
     unroll<n>([&](auto i) { f[i] = std::get<i>(g); });
   }
 
-  using DualResult = decltype(std::declval<System>().evaluate(std::declval<DualStates<n, T>>(), std::declval<Inputs<TimeDual>>()));
+  using DualResult =
+      decltype(std::declval<System>().evaluate(std::declval<DualStates<n, T>>(), std::declval<Inputs<TimeDual>>()));
   template <class X>
-  struct MaskOf { static constexpr Mask value = 0; };
+  struct MaskOf {
+    static constexpr Mask value = 0;
+  };
   template <class U, Mask M>
-  struct MaskOf<Dual<U, M>> { static constexpr Mask value = M; };
+  struct MaskOf<Dual<U, M>> {
+    static constexpr Mask value = M;
+  };
   template <int I>
-  static constexpr Mask mask_of() { return MaskOf<std::tuple_element_t<I, DualResult>>::value; }
+  static constexpr Mask mask_of() {
+    return MaskOf<std::tuple_element_t<I, DualResult>>::value;
+  }
   static constexpr Pattern<n> make_pattern() {
     Pattern<n> out;
-    [&]<int... I>(std::integer_sequence<int, I...>) {
-      ((out.row[I] = mask_of<I>() & ~time_mask), ...);
-    }(std::make_integer_sequence<int, n>{});
+    [&]<int... I>(std::integer_sequence<int, I...>) { ((out.row[I] = mask_of<I>() & ~time_mask), ...); }
+    (std::make_integer_sequence<int, n>{});
     return out;
   }
   static constexpr Pattern<n> pattern = make_pattern();
@@ -88,18 +99,23 @@ struct System {
   void value_and_jacobian(const std::array<T, n>& y, const T&, std::array<T, n>& f, W& w, std::array<T, n>& f_t) const {
     using Lu = SparseLu<n, pattern>;
     const Inputs<TimeDual> u{seed<n>(at.current, slope.current), seed<n>(at.supply_pressure, slope.supply_pressure),
-                             seed<n>(at.return_pressure, slope.return_pressure), seed<n>(at.load_force, slope.load_force)};
+                             seed<n>(at.return_pressure, slope.return_pressure),
+                             seed<n>(at.load_force, slope.load_force)};
     const auto g = evaluate(DualStates<n, T>{y}, u);
     unroll<n>([&](auto i) {
       constexpr Mask m = mask_of<i>();
       const auto& gi = std::get<i>(g);
       f[i] = gi.v;
-      if constexpr (holds(m, n)) f_t[i] = gi.d[slot(m, n)];
-      else f_t[i] = T(0.0);
+      if constexpr (holds(m, n))
+        f_t[i] = gi.d[slot(m, n)];
+      else
+        f_t[i] = T(0.0);
       unroll<n>([&](auto j) {
         if constexpr (Lu::plan.slot[i][j] >= 0) {
-          if constexpr (holds(m, j)) w[Lu::plan.slot[i][j]] = -gi.d[slot(m, j)];
-          else w[Lu::plan.slot[i][j]] = T(0.0);
+          if constexpr (holds(m, j))
+            w[Lu::plan.slot[i][j]] = -gi.d[slot(m, j)];
+          else
+            w[Lu::plan.slot[i][j]] = T(0.0);
         }
       });
     });
@@ -113,15 +129,16 @@ template <class T, class... E>
 struct Drive<T, EffectList<E...>> {
   template <class X>
   static auto memory_of(X) {
-    if constexpr (requires { typename X::template Memory<T>; }) return typename X::template Memory<T>{};
-    else return Nothing{};
+    if constexpr (requires { typename X::template Memory<T>; })
+      return typename X::template Memory<T>{};
+    else
+      return Nothing{};
   }
   std::tuple<decltype(memory_of(E{}))...> memory;
   void rest([[maybe_unused]] const T& current) {
     (
         [&] {
-          if constexpr (requires { typename E::template Memory<T>; })
-            E::rest(std::get<index_of<E>()>(memory), current);
+          if constexpr (requires { typename E::template Memory<T>; }) E::rest(std::get<index_of<E>()>(memory), current);
         }(),
         ...);
   }
@@ -180,12 +197,18 @@ void run_pack(const Scenario& in, const ParameterVector* const* candidates, Traj
   y[s_v_piston] = T(in.piston_velocity_start);
   y[s_current] = u.current;
   {
-    System<T, Effects, true> settling{p.data(), d, u, Inputs<T>{T(0.0), T(0.0), T(0.0), T(0.0)},
-                                      T(in.spool_start ? 1.0 : 0.0), T(in.pressure_a_start && in.pressure_b_start ? 1.0 : 0.0),
-                                      T(1.0), T(0.0)};
+    System<T, Effects, true> settling{p.data(),
+                                      d,
+                                      u,
+                                      Inputs<T>{T(0.0), T(0.0), T(0.0), T(0.0)},
+                                      T(in.spool_start ? 1.0 : 0.0),
+                                      T(in.pressure_a_start && in.pressure_b_start ? 1.0 : 0.0),
+                                      T(1.0),
+                                      T(0.0)};
     // A spool out of balance by the force that one amp makes settles at this rate; the pilot's own poles are faster.
     constexpr double rate = 400.0;  // [1/s]
-    const T force_per_amp = p[row::torque_motor_gain] * d.inverse_flapper_stiffness * d.spool_area * half / p[row::nozzle_gap];
+    const T force_per_amp =
+        p[row::torque_motor_gain] * d.inverse_flapper_stiffness * d.spool_area * half / p[row::nozzle_gap];
     settling.settle_rate = T(rate) / (d.inverse_spool_mass * force_per_amp);
     for (int k = 0; k < 60; ++k) rodas3_step<T>(settling, y, k < 20 ? 2e-4 : 1e-3);
   }
@@ -210,7 +233,9 @@ void run_pack(const Scenario& in, const ParameterVector* const* candidates, Traj
     out[4] = y[s_p_pilot_1];
     out[5] = y[s_p_pilot_2];
     if (options.wanted[6] || options.wanted[7]) {
-      const auto flow = [&](const T& opening, const T& dp) { return std::get<0>(metering_edge(opening, dp, d, p.data())); };
+      const auto flow = [&](const T& opening, const T& dp) {
+        return std::get<0>(metering_edge(opening, dp, d, p.data()));
+      };
       out[6] = flow(y[s_x_spool] - p[row::lap_pa], now.supply_pressure - y[s_p_a]) -
                flow(-y[s_x_spool] - p[row::lap_at], y[s_p_a] - now.return_pressure);
       out[7] = flow(-y[s_x_spool] - p[row::lap_pb], now.supply_pressure - y[s_p_b]) -
@@ -220,8 +245,9 @@ void run_pack(const Scenario& in, const ParameterVector* const* candidates, Traj
     for (int lane = 0; lane < lanes; ++lane) {
       if (!results[lane]->ok) continue;
       // Beyond 1 m of spool or 1e5 bar the numbers mean nothing.
-      const bool sane = std::abs(Lanes<T>::get(y[s_x_spool], lane)) < 1.0 && std::abs(Lanes<T>::get(y[s_p_a], lane)) < 1e10 &&
-                        std::abs(Lanes<T>::get(y[s_p_b], lane)) < 1e10 && std::abs(Lanes<T>::get(y[s_x_piston], lane)) < 1e3;
+      const bool sane =
+          std::abs(Lanes<T>::get(y[s_x_spool], lane)) < 1.0 && std::abs(Lanes<T>::get(y[s_p_a], lane)) < 1e10 &&
+          std::abs(Lanes<T>::get(y[s_p_b], lane)) < 1e10 && std::abs(Lanes<T>::get(y[s_x_piston], lane)) < 1e3;
       if (!sane) {
         results[lane]->ok = false;
         results[lane]->failed_at = in.time[k];
@@ -240,19 +266,21 @@ void run_pack(const Scenario& in, const ParameterVector* const* candidates, Traj
   // A linearly implicit step does not see a stop that it has not reached. After a jump the flapper crosses its gap in a
   // tenth of a millisecond, so the steps are short until the spool has answered. The schedule comes from the log alone:
   // every candidate takes the same steps.
-  constexpr double jump = 0.03;          // of rated current
-  constexpr double impact_time = 4e-3;   // [s]
+  constexpr double jump = 0.03;         // of rated current
+  constexpr double impact_time = 4e-3;  // [s]
   double impact_until = in.time[0] - 1.0;
   for (std::size_t k = 0; k + 1 < samples; ++k) {
     const double dt = in.time[k + 1] - in.time[k];
-    if (std::abs(in.command[k + 1] - in.command[k]) > jump * in.rated_current) impact_until = in.time[k + 1] + impact_time;
+    if (std::abs(in.command[k + 1] - in.command[k]) > jump * in.rated_current)
+      impact_until = in.time[k + 1] + impact_time;
     const double largest = in.time[k] < impact_until ? std::min(options.step, options.impact_step) : options.step;
     const int substeps = std::max(1, static_cast<int>(std::ceil(dt / largest - 1e-6)));
     const double h = dt / substeps;
     const T next_current = drive(T(in.command[k + 1]) + null, p.data(), rated);
     const Inputs<T> next = inputs_at(k + 1, next_current);
     const T per = T(1.0 / dt);
-    live.slope = {p[nuisance::command_slope] * (next.current - now.current) * per, (next.supply_pressure - now.supply_pressure) * per,
+    live.slope = {p[nuisance::command_slope] * (next.current - now.current) * per,
+                  (next.supply_pressure - now.supply_pressure) * per,
                   (next.return_pressure - now.return_pressure) * per, (next.load_force - now.load_force) * per};
     for (int j = 0; j < substeps; ++j) {
       const T t = T(h * j);
@@ -265,7 +293,8 @@ void run_pack(const Scenario& in, const ParameterVector* const* candidates, Traj
   }
 }
 
-using RunPack = void (*)(const Scenario&, const ParameterVector* const*, Trajectory* const*, int, const SimulateOptions&);
+using RunPack = void (*)(const Scenario&, const ParameterVector* const*, Trajectory* const*, int,
+                         const SimulateOptions&);
 
 struct Kernels {
   int width;

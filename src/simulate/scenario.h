@@ -35,20 +35,20 @@ struct Scenario {
   std::optional<double> command_slope;  // what the rig file says of the command between samples; empty: the candidate's
   // Measured at the first sample, where the log has it.
   std::optional<double> spool_start, pressure_a_start, pressure_b_start, piston_start;
-  double piston_velocity_start = 0.0;   // [m/s]
+  double piston_velocity_start = 0.0;  // [m/s]
 };
 
 // Signals that the model can report.
 inline constexpr std::array<Signal, 8> simulated_signals = {
-    Signal::spool_position,   Signal::piston_position, Signal::pressure_a, Signal::pressure_b,
-    Signal::pilot_pressure_1, Signal::pilot_pressure_2, Signal::flow_a,    Signal::flow_b};
+    Signal::spool_position,   Signal::piston_position,  Signal::pressure_a, Signal::pressure_b,
+    Signal::pilot_pressure_1, Signal::pilot_pressure_2, Signal::flow_a,     Signal::flow_b};
 inline constexpr int n_simulated = static_cast<int>(simulated_signals.size());
 // Position in simulated_signals, or -1.
 int simulated_index(Signal s);
 
 struct Trajectory {
   bool ok = false;
-  double failed_at = 0.0;  // [s] where it left the finite numbers, if not ok
+  double failed_at = 0.0;                                // [s] where it left the finite numbers, if not ok
   std::array<std::vector<double>, n_simulated> signals;  // empty unless asked for
 };
 
@@ -56,7 +56,7 @@ struct SimulateOptions {
   double step = 1.0e-3 / 3.0;        // [s] largest substep; substeps divide each sample interval evenly
   double impact_step = 1.0e-3 / 12;  // [s] while the flapper may cross its gap: after a jump of the command
   std::array<bool, n_simulated> wanted = {true, true, true, true, false, false, false, false};
-  int threads = 0;             // 0: all
+  int threads = 0;  // 0: all
 };
 
 }  // namespace servodx

@@ -15,7 +15,8 @@ struct Job {
   Trajectory* result = nullptr;
 };
 
-// Runs all jobs. Neighbouring jobs of one scenario share packs. A candidate that diverges has ok = false; nothing throws.
+// Runs all jobs. Neighbouring jobs of one scenario share packs. A candidate that diverges has ok = false; nothing
+// throws.
 void simulate(std::span<const Job> jobs, const SimulateOptions& options = {});
 Trajectory simulate(const Scenario& scenario, const ParameterVector& candidate, const SimulateOptions& options = {});
 
