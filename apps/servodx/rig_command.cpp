@@ -21,7 +21,8 @@ struct Options {
   std::string model = "params/rigs/borello2009.toml";
   std::string output;
   double celsius = 40.0;
-  std::vector<std::string> faults;
+  std::vector<std::string> faults, changes;
+  std::uint64_t valve = 0;
   rig::RigRun run;
 };
 
@@ -43,7 +44,8 @@ void run(Options& options) {
   Invocation invocation("rig", options.common);
   const std::string truth = truth_path(options.output);
   invocation.check_files({options.model}, {options.output, truth});
-  const rig::RigModel model = rig::read_rig_model(options.model);
+  rig::RigModel model = rig::another_valve(rig::read_rig_model(options.model), options.valve);
+  for (const auto& change : options.changes) rig::set_value(model, change);
   const std::string model_sha256 = sha256_of_file(options.model);
 
   rig::RigLog log = rig::run_rig(model, options.run);
@@ -87,8 +89,17 @@ void add_rig_command(CLI::App& app) {
   command->add_option("--air", options->run.air, "free air in the oil, volume fraction")->capture_default_str();
   command->add_option("--amplitude", options->run.amplitude, "fraction of rated current; 0: the excitation's own");
   command->add_option("--frequency", options->run.frequency, "of sine, triangle, preflight [Hz]; 0: its own");
-  command->add_option("--fault", options->faults, "NAME=SEVERITY; may be repeated");
-  command->add_option("--onset", options->run.onset, "time at which the faults step in [s]; without: from the start");
+  command->add_option("--fault", options->faults,
+                      "NAME=SEVERITY, NAME=SEVERITY@START [s] to step in, @START..END to grow; may be repeated");
+  command->add_flag("--offset", options->run.offset,
+                    "add the null offset of flight, Borello 2009: constant, steps, ramps");
+  command->add_option("--valve", options->valve, "another valve of the type, drawn from its tolerances; 0: as defined")
+      ->capture_default_str();
+  command->add_option(
+      "--set", options->changes,
+      "GROUP.NAME=VALUE in SI, sensors.SIGNAL.KEY=VALUE, or ports|first_stage|coil_wiring=WORD; may be repeated");
+  command->add_option("--onset", options->run.onset,
+                      "start of faults that name none [s]; without: from the log's start");
   command->add_option("--jitter", options->run.jitter, "rms of the sampling instants [s]");
   command->add_option("--channels", options->run.channels, "signals to log beside time and command")->delimiter(',');
   command->add_option("-o,--output", options->output, "the log, CSV; the truth goes beside it")

@@ -20,8 +20,8 @@ struct Friction {
     double rate;   // [m/s] dz/dt
   };
   Result at(double v, double z) const {
-    const double ratio = v / stribeck_speed;
-    const double slow = 1.0 / (1.0 + ratio * ratio);
+    const double vs2 = stribeck_speed * stribeck_speed;
+    const double slow = vs2 / (vs2 + v * v);
     const double g = coulomb + (breakaway - coulomb) * slow;
     const double rate = v - stiffness * std::fabs(v) / g * z;
     return {stiffness * z + damping * slow * rate + viscous * v, rate};

@@ -122,6 +122,32 @@ Stimulus preflight(const RigModel& m, const Shape& s) {
     return a * std::sin(two_pi * f * (t - 0.4));
   });
 }
+// Both checks with the offset compensated: rest, small step out and back long enough to settle cold, rest, then whole
+// cycles at several frequencies.
+Stimulus preflight_full(const RigModel& m, const Shape& s) {
+  struct Tone {
+    double start, frequency;
+  };
+  static constexpr Tone tones[] = {{1.5, 2.0}, {3.5, 3.0}, {5.5, 5.0}, {7.5, 8.0}};  // 2 s each
+  const double a = or_else(s.amplitude, 0.04);
+  Stimulus stimulus = open_loop(m, [=](double t) {
+    if (t < 0.5 || (t >= 0.8 && t < 1.5) || t >= 9.5) return 0.0;
+    if (t < 0.8) return 0.10;
+    const Tone& tone = tones[static_cast<std::size_t>((t - 1.5) / 2.0)];
+    return a * std::sin(two_pi * tone.frequency * (t - tone.start));
+  });
+  stimulus.compensated = true;
+  return stimulus;
+}
+Stimulus step(const RigModel& m, const Shape& s) {
+  const double a = or_else(s.amplitude, 1.0), half = 0.45 * s.duration;
+  return open_loop(m, [=](double t) {
+    const double held = std::min(0.3, 0.5 * half);  // 90 mm of a piston of 0.3 m/s
+    if (t >= 0.05 * s.duration && t < 0.05 * s.duration + held) return a;
+    if (t >= 0.05 * s.duration + half && t < 0.05 * s.duration + half + held) return -a;
+    return 0.0;
+  });
+}
 Stimulus mixed(const RigModel& m, const Shape& s) {
   const double half = 0.25 + 0.5 * (s.duration - 0.25);
   const Steps steps = random_steps(Random(s.seed, 14), 0.4, half, {0.02, 0.05, 0.10, 0.25, 0.5}, 0.08, 0.3);
@@ -150,9 +176,25 @@ Wave turbulence(Random random, double duration, double limit) {
   };
 }
 
+constexpr double loop_gain = 50.0;  // [1/m] rated current at 20 mm error: about 15 1/s
+
+Stimulus closed_loop(const RigModel& m, Wave setpoint) {
+  const double rated = m.driver_rated_current;
+  return {
+      .command = [=](double t, double x) { return std::clamp(loop_gain * rated * (setpoint(t) - x), -rated, rated); },
+      .setpoint = setpoint,
+      .load = {}};
+}
+
+// Slow sine without load: spool near null throughout.
+Stimulus track(const RigModel& m, const Shape& s) {
+  const double a = or_else(s.amplitude, 0.05) * 0.5 * m.actuator_stroke, f = or_else(s.frequency, 0.3);
+  return closed_loop(m, [=](double t) { return a * std::sin(two_pi * f * t); });
+}
+
 Stimulus flight(const RigModel& m, const Shape& s) {
   Random random(s.seed, 16);
-  const double half = 0.5 * m.actuator_stroke, largest = or_else(s.amplitude, 0.9) * half;
+  const double half = 0.5 * m.actuator_stroke, largest = or_else(s.amplitude, 1.0) * half;
   const double interval = std::min(20.0, s.duration / 2.5);
   std::vector<double> end{0.1}, level{0.0};
   double t = 0.1;
@@ -167,14 +209,9 @@ Stimulus flight(const RigModel& m, const Shape& s) {
   const Steps steps{end, level};
   const double stall = m.piston_area() * m.supply_pressure;
   const Wave gusts = turbulence(Random(s.seed, 17), s.duration, 0.2 * stall);
-  const double gain = 50.0 * m.driver_rated_current;  // [A/m] rated current at 20 mm error: about 15 1/s
-  const double rated = m.driver_rated_current;
-  return {.command = [=](double now, double x) { return std::clamp(gain * (steps.at(now) - x), -rated, rated); },
-          .setpoint = [=](double now) { return steps.at(now); },
-          .load =
-              [=](double now) {
-                return Load{gusts(now), 0.4 * stall / half};
-              }};
+  Stimulus stimulus = closed_loop(m, [=](double now) { return steps.at(now); });
+  stimulus.load = [=](double now) { return Load{gusts(now), 0.4 * stall / half}; };
+  return stimulus;
 }
 
 }  // namespace
@@ -189,10 +226,38 @@ const std::vector<ExcitationInfo>& excitations() {
       {"sweep", "open loop: logarithmic sine sweep from 1 to 150 Hz, 15 % of rated current", sweep},
       {"triangle", "open loop: triangle to full rated current, 0.5 Hz", triangle},
       {"preflight", "open loop: small step out and back, then a sine of 4 % of rated current at 5 Hz", preflight},
+      {"preflight_full",
+       "open loop, null compensated: rest, step of 10 % out and back, sines of 4 % at 2, 3, 5 and 8 Hz, 2 s each; 9.5 "
+       "s",
+       preflight_full},
+      {"step", "open loop: full step of rated current out and back, then the other way", step},
+      {"track", "closed loop: slow sine of 5 % of the stroke at 0.3 Hz, no load", track},
       {"flight", "closed loop: random position steps against spring and turbulence loads", flight},
       {"mixed", "open loop: preflight step, steps of 2 to 50 %, then a multisine", mixed},
   };
   return list;
+}
+
+std::function<double(double)> borello_offset(std::uint64_t seed, double duration) {
+  Random random(seed, 18);
+  std::vector<double> end, level;  // short steps
+  for (double t = 0.0; t < duration;) {
+    const double interval = 10.0 * random.uniform(), length = 2.0 * random.uniform();
+    end.insert(end.end(), {t + interval, t + interval + length});
+    level.insert(level.end(), {0.0, random.uniform(-0.03, 0.03)});
+    t += interval + length;
+  }
+  std::vector<double> knot{0.0}, value{random.uniform(-0.05, 0.05)};  // ramps, one after the other
+  while (knot.back() < duration) {
+    knot.push_back(knot.back() + random.uniform(1.0, 60.0));
+    value.push_back(random.uniform(-0.05, 0.05));
+  }
+  const Steps steps{end, level};
+  return [=](double t) {
+    const auto k = static_cast<std::size_t>(std::upper_bound(knot.begin() + 1, knot.end() - 1, t) - knot.begin());
+    const double part = std::clamp((t - knot[k - 1]) / (knot[k] - knot[k - 1]), 0.0, 1.0);
+    return 0.02 + steps.at(t) + value[k - 1] + part * (value[k] - value[k - 1]);
+  };
 }
 
 Stimulus make_stimulus(const std::string& name, const RigModel& model, const Shape& shape) {

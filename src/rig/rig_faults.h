@@ -1,7 +1,10 @@
-// Faults of the virtual rig, by the labels and severity values of the contract. Each is continuous: at `healthy` the
-// rig is bit for bit the healthy one. A new fault is a quantity in wear.h and one entry in the list.
+// Faults of the virtual rig, by the labels and severity values of the contract, and further degradations and sudden
+// failures. Each is continuous: at `healthy` the rig is bit for bit the healthy one. Each may be there from the start,
+// step in at a time, or grow from one time to another, in proportion to its severity value. A new fault is a quantity
+// in wear.h and one entry in the list.
 #pragma once
 #include <array>
+#include <limits>
 #include <map>
 #include <string>
 #include <vector>
@@ -21,12 +24,24 @@ struct RigFault {
 };
 const std::vector<RigFault>& rig_faults();
 
-using FaultSet = std::map<std::string, double>;  // label -> severity value
+struct FaultCourse {
+  double severity = 0.0;  // at its end
+  double start = -1.0;    // [s] negative: there from the start of the log
+  double end = -1.0;      // [s] beyond `start`: grows linearly between the two; else it steps in
 
+  FaultCourse() = default;
+  FaultCourse(double value, double from = -1.0, double until = -1.0) : severity(value), start(from), end(until) {}
+  bool changes() const { return start >= 0.0; }
+  double at(double time, double healthy) const;
+};
+using FaultSet = std::map<std::string, FaultCourse>;  // by label
+
+inline constexpr double fully_grown = std::numeric_limits<double>::infinity();
 // Throws InputError for an unknown label (with the list of labels) or a value out of range.
-Wear wear_of(const FaultSet& faults);
+Wear wear_of(const FaultSet& faults, double time = fully_grown);
 
-// "clogged_filter=0.5" or "clogged_filter=medium" into the set. Throws InputError.
+// Into the set: "clogged_filter=0.5" or "clogged_filter=medium" from the start, "...=0.5@2" stepping in at 2 s,
+// "...=0.5@2..10" growing from 2 to 10 s. Throws InputError.
 void add_fault(const std::string& text, FaultSet& faults);
 
 }  // namespace servodx::rig

@@ -12,11 +12,20 @@
 namespace servodx::rig {
 namespace {
 
-constexpr double settling = 0.3;  // [s] before the log, held centred by a slow loop
+constexpr double settling = 0.3;      // [s] before the log, held centred by a slow loop
+constexpr double compensating = 1.5;  // [s] the same, where the loop must find the null to compensate
+constexpr double centring = 0.5;      // [A/m] of that loop
 
 // Logged unless the run names its channels. Pilot pressures and coil current are there for those who ask.
-const std::vector<std::string> usual{"spool_position",  "piston_position", "pressure_a", "pressure_b",
-                                     "supply_pressure", "return_pressure", "load_force", "oil_temperature"};
+const std::vector<std::string>& usual(Ports ports) {
+  static const std::vector<std::string> actuator{"spool_position",  "piston_position", "pressure_a", "pressure_b",
+                                                 "supply_pressure", "return_pressure", "load_force", "oil_temperature"};
+  static const std::vector<std::string> blocked{"spool_position",  "load_pressure",   "leakage_flow",
+                                                "supply_pressure", "return_pressure", "oil_temperature"};
+  static const std::vector<std::string> free{"spool_position",  "valve_pressure_drop", "control_flow",
+                                             "supply_pressure", "return_pressure",     "oil_temperature"};
+  return ports == Ports::actuator ? actuator : ports == Ports::blocked ? blocked : free;
+}
 
 void check(const RigRun& run) {
   const auto range = [](const char* option, double value, double low, double high, const char* unit) {
@@ -36,7 +45,7 @@ void check(const RigRun& run) {
 }
 
 std::vector<SensorChain> chosen_sensors(const RigModel& model, const RigRun& run) {
-  const auto& wanted = run.channels.empty() ? usual : run.channels;
+  const auto& wanted = run.channels.empty() ? usual(model.ports) : run.channels;
   std::vector<SensorChain> chains;
   std::string names;
   std::size_t found = 0;
@@ -45,17 +54,40 @@ std::vector<SensorChain> chosen_sensors(const RigModel& model, const RigRun& run
     if (std::find(wanted.begin(), wanted.end(), sensor.signal) == wanted.end()) continue;
     ++found;
     if (!run.noise) sensor = {.signal = sensor.signal, .unit = sensor.unit};
-    chains.emplace_back(sensor, run.seed, 100 + static_cast<std::uint32_t>(index(*find_signal(sensor.signal))));
+    chains.emplace_back(sensor, run.seed, 100 + static_cast<std::uint32_t>(index(*find_signal(sensor.signal))),
+                        model.mains_frequency);
   }
-  if (!run.channels.empty() && found != wanted.size()) {
+  if (found != wanted.size()) {
     throw InputError({"", 0, "--channels"}, "a channel is unknown or named twice", "the rig measures " + names);
   }
   return chains;
 }
 
+FaultSet with_onset(const RigRun& run) {
+  FaultSet faults = run.faults;
+  for (auto& [name, course] : faults)
+    if (!course.changes()) course.start = run.onset;
+  return faults;
+}
+
+bool any_changes(const FaultSet& faults) {
+  return std::any_of(faults.begin(), faults.end(), [](const auto& fault) { return fault.second.changes(); });
+}
+
+nlohmann::json time_or_null(double time) { return time >= 0.0 ? nlohmann::json(time) : nlohmann::json(nullptr); }
+
 nlohmann::json truth_of(const RigModel& model, const RigRun& run, double h) {
   nlohmann::json faults = nlohmann::json::array();
-  for (const auto& [name, value] : run.faults) faults.push_back({{"label", name}, {"severity", value}});
+  std::string label;
+  double onset = -1.0;
+  for (const auto& [name, course] : with_onset(run)) {
+    faults.push_back({{"label", name},
+                      {"severity", course.severity},
+                      {"start", time_or_null(course.start)},
+                      {"end", time_or_null(course.end)}});
+    label += (label.empty() ? "" : "+") + name;
+    if (course.changes() && (onset < 0.0 || course.start < onset)) onset = course.start;
+  }
   nlohmann::json truth{
       {"tool", "servodx"},
       {"command", "rig"},
@@ -67,16 +99,35 @@ nlohmann::json truth_of(const RigModel& model, const RigRun& run, double h) {
       {"temperature", run.temperature - zero_celsius},
       {"air", run.air},
       {"faults", faults},
-      {"label", run.faults.empty() ? "healthy" : run.faults.begin()->first},
-      {"onset_time", nullptr},
+      {"label", label.empty() ? "healthy" : label},
+      {"onset_time", time_or_null(onset)},
       {"null", model.armature_null + model.armature_null_drift * (run.temperature - zero_celsius - 40.0)},
       {"step", h}};
-  if (run.onset >= 0.0 && !run.faults.empty()) truth["onset_time"] = run.onset;
   if (run.amplitude > 0.0) truth["amplitude"] = run.amplitude;
   if (run.frequency > 0.0) truth["frequency"] = run.frequency;
   if (run.jitter > 0.0) truth["jitter"] = run.jitter;
+  if (run.offset) truth["offset"] = "three terms, Borello 2009";
+  if (!model.changed.empty()) truth["changed"] = model.changed;
   return truth;
 }
+
+// How well oil and energy balance over a log: what came in less what is stored more, over what was moved.
+class Balance {
+ public:
+  explicit Balance(const VirtualRig& rig)
+      : start_(rig.state()), oil_(rig.plant().stored_oil(start_)), energy_(rig.plant().stored_energy(start_)) {}
+  nlohmann::json closed_by(const VirtualRig& rig) const {
+    const State& s = rig.state();
+    const auto gained = [&](Var v) { return s[v] - start_[v]; };
+    const double oil = gained(oil_in) - gained(oil_out) - (rig.plant().stored_oil(s) - oil_);
+    const double energy = gained(energy_in) - gained(energy_lost) - (rig.plant().stored_energy(s) - energy_);
+    return {{"oil_error", oil / gained(oil_in)}, {"energy_error", energy / gained(energy_lost)}};
+  }
+
+ private:
+  State start_;
+  double oil_, energy_;
+};
 
 // The recording of one run: the rig, its sensors and the loop of the control computer around them.
 class Recorder {
@@ -84,13 +135,17 @@ class Recorder {
   Recorder(const RigModel& model, const RigRun& run, const Stimulus& stimulus)
       : run_(run),
         stimulus_(stimulus),
-        faulty_(wear_of(run.faults)),
-        rig_(model, {run.temperature, run.air, run.onset < 0.0 ? faulty_ : Wear{}}),
+        faults_(with_onset(run)),
+        changes_(any_changes(faults_)),
+        rig_(model, {run.temperature, run.air, wear_of(faults_, 0.0)}),
         sensors_(chosen_sensors(model, run)),
         loop_sensor_(Sensor{"piston_position", "mm"}, run.seed, 99),
         unit_(find_unit("mA")) {
+    if (run.offset) offset_ = borello_offset(run.seed, run.duration);
     for (const auto& sensor : model.sensors) {
-      if (sensor.signal == "piston_position" && run.noise) loop_sensor_ = SensorChain(sensor, run.seed, 99);
+      if (sensor.signal == "piston_position" && run.noise) {
+        loop_sensor_ = SensorChain(sensor, run.seed, 99, model.mains_frequency);
+      }
     }
     const double tick = 1.0 / run.rate, largest = run.step > 0.0 ? run.step : model.solver_step;
     steps_ = static_cast<int>(std::ceil(tick / largest - 1e-9));
@@ -105,9 +160,17 @@ class Recorder {
     std::vector<double> time(rows), command(rows), setpoint;
     std::vector<std::vector<double>> columns(sensors_.size(), std::vector<double>(rows));
     Random jitter(run_.seed, 98);
+    const Balance start(rig_);
     for (std::size_t k = 0; k < rows; ++k) {
+      if (run_.stop && *run_.stop) {
+        stopped_ = true;
+        for (auto* column : {&time, &command}) column->resize(k);
+        for (auto& column : columns) column.resize(k);
+        break;
+      }
+      if (run_.progress && k % 64 == 0) run_.progress(static_cast<double>(k) / static_cast<double>(rows));
       const double tick = static_cast<double>(k) / run_.rate;
-      const double u = quantised(stimulus_.command(tick, loop_sensor_.read()));
+      const double u = quantised(stimulus_.command(tick, loop_sensor_.read()) + compensation_);
       if (stimulus_.setpoint) setpoint.push_back(stimulus_.setpoint(tick));
       int late = 0;  // steps after the tick at which the row is taken
       if (run_.jitter > 0.0) {
@@ -121,10 +184,14 @@ class Recorder {
           for (std::size_t c = 0; c < sensors_.size(); ++c) columns[c][k] = sensors_[c].read();
           if (observe) observe(time[k], u, rig_);
         }
+        if (i == 0) begin_tick(tick);
         if (i < steps_) advance(tick + i * h_, u);
       }
     }
     RigLog log;
+    log.truth = nlohmann::json::object();
+    if (!changes_) log.truth["balance"] = start.closed_by(rig_);
+    if (stopped_) log.truth["interrupted"] = true;
     log.columns.push_back({Signal::time, "s", std::move(time)});
     log.columns.push_back({Signal::command, "mA", std::move(command)});
     if (!setpoint.empty()) {
@@ -148,20 +215,24 @@ class Recorder {
   }
 
   void settle() {
-    const auto steps = static_cast<long>(std::ceil(settling / h_));
+    const auto steps = static_cast<long>(std::ceil((stimulus_.compensated ? compensating : settling) / h_));
     const Load load = stimulus_.load ? stimulus_.load(0.0) : Load{};
+    if (offset_) rig_.set_offset(offset_(0.0));
     for (long i = 0; i < steps; ++i) {
-      rig_.step(-0.5 * rig_.piston_position(), load.force, load.stiffness, h_);
+      rig_.step(-centring * rig_.piston_position(), load.force, load.stiffness, h_);
     }
+    if (stimulus_.compensated) compensation_ = -centring * rig_.piston_position();
     for (auto& sensor : sensors_) sensor.reset(rig_, seen(load));
     loop_sensor_.reset(rig_, seen(load));
   }
 
+  // Wear and offset move slowly against a tick.
+  void begin_tick(double tick) {
+    if (changes_) rig_.set_wear(wear_of(faults_, tick));
+    if (offset_) rig_.set_offset(offset_(tick));
+  }
+
   void advance(double time, double command) {
-    if (run_.onset >= 0.0 && !stepped_in_ && time >= run_.onset - 0.5 * h_) {
-      rig_.set_wear(faulty_);
-      stepped_in_ = true;
-    }
     const Load load = stimulus_.load ? stimulus_.load(time) : Load{};
     rig_.step(command, load.force, load.stiffness, h_);
     const Seen now = seen(load);
@@ -171,14 +242,17 @@ class Recorder {
 
   RigRun run_;
   Stimulus stimulus_;
-  Wear faulty_;
+  FaultSet faults_;
+  bool changes_;
+  std::function<double(double)> offset_;  // [1] of rated current against time; empty: none
   VirtualRig rig_;
   std::vector<SensorChain> sensors_;
   SensorChain loop_sensor_;
   const Unit* unit_;
   int steps_ = 1;
   double h_ = 0.0;
-  bool stepped_in_ = false;
+  double compensation_ = 0.0;  // [A] current that held the spool at null before the log
+  bool stopped_ = false;
 };
 
 }  // namespace
@@ -187,7 +261,9 @@ RigLog run_rig(const RigModel& model, const RigRun& run, const Stimulus& stimulu
   check(run);
   Recorder recorder(model, run, stimulus);
   RigLog log = recorder.record(observe);
-  log.truth = truth_of(model, run, recorder.step_size());
+  nlohmann::json truth = truth_of(model, run, recorder.step_size());
+  truth.update(log.truth);
+  log.truth = std::move(truth);
   log.comments.push_back(fmt::format("virtual rig '{}', excitation {}, seed {}", model.name, run.excitation, run.seed));
   return log;
 }

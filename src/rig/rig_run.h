@@ -4,6 +4,7 @@
 // The control computer runs at the log's rate: at each sample it reads the piston, sets the command and holds it until
 // the next (zero-order hold), so the logged command is exactly what the driver received.
 #pragma once
+#include <atomic>
 #include <cstdint>
 #include <functional>
 #include <nlohmann/json.hpp>
@@ -28,11 +29,14 @@ struct RigRun {
   double frequency = 0.0;                    // [Hz] 0: the excitation's own
   std::uint64_t seed = 1;
   FaultSet faults = {};
-  double onset = -1.0;                     // [s] time at which the faults step in; negative: there from the start
-  double jitter = 0.0;                     // [s] rms of the sampling instants
-  bool noise = true;                       // false: perfect sensors (no lag, noise, quantum), for tests and pictures
-  double step = 0.0;                       // [s] 0: the rig's own
-  std::vector<std::string> channels = {};  // signals to log beside time and command; empty: the rig's usual ones
+  double onset = -1.0;                      // [s] start of faults that have none of their own; negative: from the start
+  bool offset = false;                      // add the three-term null offset of Borello et al. 2009, sec. 7
+  double jitter = 0.0;                      // [s] rms of the sampling instants
+  bool noise = true;                        // false: perfect sensors (no lag, noise, quantum), for tests and pictures
+  double step = 0.0;                        // [s] 0: the rig's own
+  std::vector<std::string> channels = {};   // signals to log beside time and command; empty: the rig's usual ones
+  const std::atomic<bool>* stop = nullptr;  // set: the log ends early, and its truth says so
+  std::function<void(double fraction)> progress = {};
 };
 
 struct RigLog {

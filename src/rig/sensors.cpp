@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <numbers>
 
 #include "base/error.h"
 
@@ -16,8 +17,13 @@ double rounded(double shown, double quantum) {
   return value == 0.0 ? 0.0 : value;  // no -0
 }
 
-SensorChain::SensorChain(const Sensor& sensor, std::uint64_t seed, std::uint32_t stream)
-    : sensor_(sensor), signal_(*find_signal(sensor.signal)), unit_(find_unit(sensor.unit)), random_(seed, stream) {}
+SensorChain::SensorChain(const Sensor& sensor, std::uint64_t seed, std::uint32_t stream, double mains_frequency)
+    : sensor_(sensor),
+      signal_(*find_signal(sensor.signal)),
+      unit_(find_unit(sensor.unit)),
+      random_(seed, stream),
+      mains_(2.0 * std::numbers::pi * mains_frequency),
+      phase_(2.0 * std::numbers::pi * Random(seed, stream, 1).uniform()) {}
 
 double SensorChain::truth(const VirtualRig& rig, const Seen& seen) const {
   const State& s = rig.state();
@@ -27,7 +33,7 @@ double SensorChain::truth(const VirtualRig& rig, const Seen& seen) const {
     case Signal::spool_position:
       return s[x_spool];
     case Signal::piston_position:
-      return rig.piston_position();
+      return rig.position_gain() * rig.piston_position();
     case Signal::pressure_a:
       return s[p_a];
     case Signal::pressure_b:
@@ -42,6 +48,17 @@ double SensorChain::truth(const VirtualRig& rig, const Seen& seen) const {
       return s[p_pilot_2];
     case Signal::load_pressure:
       return s[p_a] - s[p_b];
+    case Signal::valve_pressure_drop:  // over the edges that carry the flow
+      return s[p_supply] - s[p_return] - std::copysign(s[p_a] - s[p_b], s[x_spool]);
+    case Signal::flow_a:
+      return rig.last_flows().q_a;
+    case Signal::flow_b:
+      return rig.last_flows().q_b;
+    case Signal::control_flow:  // a test stand's meter; on an actuator the mean of what enters and leaves it
+      return rig.model().has_actuator() ? 0.5 * (rig.last_flows().q_a - rig.last_flows().q_b)
+                                        : rig.last_flows().q_across;
+    case Signal::leakage_flow:
+      return rig.last_flows().q_return;
     case Signal::load_force:
       return seen.load_force;
     case Signal::oil_temperature:
@@ -55,6 +72,7 @@ double SensorChain::truth(const VirtualRig& rig, const Seen& seen) const {
 void SensorChain::reset(const VirtualRig& rig, const Seen& seen) { input_ = output_ = truth(rig, seen); }
 
 void SensorChain::follow(const VirtualRig& rig, const Seen& seen, double h) {
+  time_ += h;
   if (h != h_) {
     h_ = h;
     keep_ = sensor_.lag > 0.0 ? std::exp(-h / sensor_.lag) : 0.0;
@@ -65,7 +83,8 @@ void SensorChain::follow(const VirtualRig& rig, const Seen& seen, double h) {
 }
 
 double SensorChain::read() {
-  const double noisy = sensor_.gain * output_ + sensor_.offset + sensor_.noise * random_.normal();
+  double noisy = sensor_.gain * output_ + sensor_.offset + sensor_.noise * random_.normal();
+  if (sensor_.pickup > 0.0) noisy += sensor_.pickup * std::sin(mains_ * time_ + phase_);
   return unit_->to_si(rounded(unit_->from_si(noisy), sensor_.quantum));
 }
 

@@ -1,5 +1,6 @@
-// Measuring chains of a rig: first-order lag, gain, offset, white noise, rounding to the quantum of the log column.
-// Limits: noise is white to half the sample rate; no mains pick-up and no drift yet.
+// Measuring chains of a rig: first-order lag, gain, offset, mains pick-up, white noise, rounding to the quantum of the
+// log column.
+// Limits: noise is white to half the sample rate; pick-up is a sine at mains frequency; no drift.
 #pragma once
 #include <cstdint>
 
@@ -19,7 +20,7 @@ struct Seen {
 class SensorChain {
  public:
   // `stream` separates the sensors' noise; `signal` must be one the rig can measure, else InputError.
-  SensorChain(const Sensor& sensor, std::uint64_t seed, std::uint32_t stream);
+  SensorChain(const Sensor& sensor, std::uint64_t seed, std::uint32_t stream, double mains_frequency = 50.0);
   void reset(const VirtualRig& rig, const Seen& seen);             // lag settled
   void follow(const VirtualRig& rig, const Seen& seen, double h);  // after each step
   double read();                                                   // [SI] the next sample, as the log shows it
@@ -32,6 +33,7 @@ class SensorChain {
   Signal signal_;
   const Unit* unit_;
   Random random_;
+  double mains_, phase_ = 0.0, time_ = 0.0;
   double input_ = 0.0, output_ = 0.0, h_ = 0.0, keep_ = 0.0;
 };
 

@@ -26,10 +26,17 @@ inline VirtualRig settled(const Conditions& conditions = {}, double x = 0.0) {
   return rig;
 }
 
-inline Conditions with_fault(const std::string& fault) {
+// Through one edge and its drilling [m3/s] at 40 degC, p_from = dp and p_to = 0 gauge.
+inline double edge_flow(const RigModel& m, EdgeName edge, double x_spool, double dp, double p_to = 0.0) {
+  const Oil oil(m, 40.0 + zero_celsius, 0.0);
+  return flows_through(Edges(m).at(x_spool).law, oil, Four(p_to + dp), Four(p_to)).volume[edge];
+}
+
+inline Conditions with_faults(const std::vector<std::string>& list) {
   FaultSet faults;
-  add_fault(fault, faults);
+  for (const auto& fault : list) add_fault(fault, faults);
   return {.wear = wear_of(faults)};
 }
+inline Conditions with_fault(const std::string& fault) { return with_faults({fault}); }
 
 }  // namespace servodx::rig

@@ -140,19 +140,17 @@ TEST(ValveFacts, PressureGainIsThirtyToHundredPercentOfSupplyPerPercentOfCurrent
   // Ports blocked and at rest: each port's pressure is where its two edges carry the same flow. (In the rig itself the
   // null leakage takes seconds to fill the chambers.)
   const RigModel& m = flight_rig();
-  const Edge edge(m, Fluid(m, 40.0 + zero_celsius, 0.005), 1.0);
   const double high = m.supply_pressure, tank = m.supply_tank_pressure;
-  const auto port_pressure = [&](double from_supply, double to_return) {
+  const auto port_pressure = [&](double x, EdgeName from_supply, EdgeName to_return) {
     double low = tank, top = high;
-    for (int i = 0; i < 60; ++i) {
+    for (int i = 0; i < 40; ++i) {
       const double p = 0.5 * (low + top);
-      (edge.flow(from_supply, high - p).q > edge.flow(to_return, p - tank).q ? low : top) = p;
+      (edge_flow(m, from_supply, x, high - p, p) > edge_flow(m, to_return, x, p - tank, tank) ? low : top) = p;
     }
     return low;
   };
   const auto load_pressure = [&](double x) {
-    return port_pressure(x - m.ports_lap_pa, -x - m.ports_lap_at) -
-           port_pressure(-x - m.ports_lap_pb, x - m.ports_lap_bt);
+    return port_pressure(x, edge_pa, edge_at) - port_pressure(x, edge_pb, edge_bt);
   };
   const double percent = 0.01 * stroke;
   double steepest = 0.0;
