@@ -14,6 +14,7 @@
 #include "report/handy.h"
 #include "rig/excitations.h"
 #include "simulate/simulate.h"
+#include "valve_maps/registry.h"
 
 namespace servodx {
 namespace {
@@ -178,7 +179,11 @@ Listing models(const Options&, Invocation&) {
                        {"rows", n_parameters},
                        {"kernel", instruction_set()},
                        {"meaning", meaning}});
-  out.text = table.text();
+  for (const valve_maps::MapInfo& map : valve_maps::map_list()) {
+    table.row({map.name, "0", "", "", "valve map: " + map.meaning});
+    out.items.push_back({{"name", map.name}, {"kind", "valve map"}, {"meaning", map.meaning}});
+  }
+  out.text = table.text() + "valve map: load pressure from spool position and load flow; 'servodx map --model NAME'\n";
   return out;
 }
 

@@ -31,7 +31,7 @@ const std::map<std::string, std::set<std::string>> allowed = {
     {"diagnose", {"parameters", "signals", "simulate", "fit", "faults", "effects"}},
     {"explain", {"parameters", "signals", "simulate", "fit", "faults", "effects"}},
     {"prognose", {"parameters", "signals", "fit", "valve_maps", "integrate"}},
-    {"report", {"diagnose", "explain", "prognose", "fit"}},
+    {"report", {"diagnose", "explain", "prognose", "fit", "valve_maps"}},
 };
 
 struct Include {

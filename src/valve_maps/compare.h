@@ -1,0 +1,55 @@
+// How far each map is from HF, region by region, and what an evaluation costs.
+//
+// The grid is not the one that the numbers were read from (blocked ports and no load at full supply): load flows off
+// both lines, travels to the stop, and supplies that have fallen. Points beyond three times P_SR are left out: lines
+// would have burst. Regions by what HF says, in this order:
+//   water hammer  |P12| > P_SR
+//   saturated     |P12| > 0.9 P_SR
+//   null          |xS| <= x_SS
+//   linear        the rest: the spool is open, and pressure and flow trade against each other
+#pragma once
+#include <array>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "valve_maps/registry.h"
+
+namespace servodx::valve_maps {
+
+enum class Region { null, linear, saturated, water_hammer };
+inline constexpr std::array<const char*, 4> region_names = {"null", "linear", "saturated", "water_hammer"};
+Region region_of(double load_pressure, double x_s, double supply, const ValveNumbers& numbers);
+
+struct RegionError {
+  long points = 0;
+  double rms = 0, largest = 0;  // [fraction of the P_SR of the point]
+};
+
+struct MapError {
+  std::string name;
+  std::array<RegionError, 4> regions;  // by Region
+  Cost cost;                           // zero where it was not asked for
+};
+
+struct CompareOptions {
+  double stop = 5e-4;                                          // [m] largest travel
+  std::vector<double> supply_shares = {1.0, 0.6, 0.25, 0.05};  // of P_SR
+  bool costs = true;
+};
+
+std::vector<MapError> compare(const ValveNumbers& numbers, const HighFidelity& reference, const CompareOptions&);
+
+// What a picture shows unless told: the null region with the bend to saturation, and flows that a shut valve answers
+// with several times the supply.
+double default_travel(const ValveNumbers& numbers);                                // [m]
+double default_flow(const ValveNumbers& numbers);                                  // [m3/s]
+std::vector<double> falling_supplies(double supply, const ValveNumbers& numbers);  // [Pa] down to P_vap
+
+struct MapPoint {
+  double x_s, q_j, load_pressure;  // [m], [m3/s], [Pa]
+};
+// Rows of travel, columns of flow, evenly spaced from -largest to +largest; both counts odd, so that zero is met.
+std::vector<MapPoint> grid(const Map& map, double travel, int travels, double flow, int flows, double supply);
+
+}  // namespace servodx::valve_maps

@@ -1,0 +1,32 @@
+// The visible list of valve maps: one file and one line each.
+#pragma once
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "valve_maps/high_fidelity.h"
+#include "valve_maps/valve_numbers.h"
+
+namespace servodx::valve_maps {
+
+// Load pressure [Pa] from spool travel [m], load flow [m3/s] and supply less return [Pa].
+using Map = std::function<double(double x_s, double q_j, double supply)>;
+
+// [s] per evaluation. `in_step`: one after the other, the flow of each waiting for the pressure of the one before, as
+// in a simulation; `in_batch`: independent points in a loop.
+struct Cost {
+  double in_step = 0, in_batch = 0;
+};
+
+struct MapInfo {
+  std::string name;
+  std::string meaning;
+  Map (*make)(const ValveNumbers& numbers, const HighFidelity& reference);
+  Cost (*cost)(const ValveNumbers& numbers, const HighFidelity& reference);  // measured now
+};
+const std::vector<MapInfo>& map_list();
+
+// Null where there is no such map.
+const MapInfo* find_map(const std::string& name);
+
+}  // namespace servodx::valve_maps
