@@ -12,6 +12,8 @@
 #include <cstring>
 #include <limits>
 
+#include "base/block_reader.h"
+
 namespace servodx {
 namespace {
 
@@ -94,7 +96,17 @@ std::string read_file(const std::string& path) {
 }
 
 CsvCursor::CsvCursor(std::string_view text, std::string path)
-    : path_(std::move(path)), p_(text.data()), end_(text.data() + text.size()) {
+    : path_(std::move(path)), whole_(text.data() + text.size()), p_(text.data()), end_(whole_) {
+  read_header();
+}
+
+CsvCursor::CsvCursor(BlockReader& file, std::string path) : path_(std::move(path)), file_(&file) {
+  refill();
+  read_header();
+}
+
+void CsvCursor::read_header() {
+  const std::string_view text(p_, static_cast<std::size_t>(end_ - p_));
   if (text.starts_with("\xEF\xBB\xBF")) p_ += 3;
   if (text.starts_with("\xFF\xFE") || text.starts_with("\xFE\xFF"))
     throw InputError({path_, 1, ""}, "the text is UTF-16", "save the file as UTF-8");
@@ -111,6 +123,7 @@ CsvCursor::CsvCursor(std::string_view text, std::string path)
       continue;
     }
     separator_ = sniff_separator(line);
+    if (separator_ == ';') point_ = ',';
     header_line_ = line_;
     for (std::string cell; next_cell(cell);) header_.push_back(cell);
     return;
@@ -118,12 +131,37 @@ CsvCursor::CsvCursor(std::string_view text, std::string path)
   throw InputError({path_, 0, ""}, "the file has no header row", "begin it with a row of column names");
 }
 
+// Keeps what is unused, from the cell being read on.
+bool CsvCursor::refill() {
+  if (!file_) return false;
+  const std::string_view more = file_->next();
+  if (more.empty()) {
+    whole_ = end_;  // the last line may lack its end
+    return false;
+  }
+  const auto used = p_ ? static_cast<std::size_t>((cell_ ? cell_ : p_) - buffer_.data()) : 0;
+  const auto at = p_ ? static_cast<std::size_t>(p_ - buffer_.data()) - used : 0;
+  buffer_.erase(0, used);
+  dropped_ += used;
+  buffer_ += more;
+  const char* const begin = buffer_.data();
+  if (cell_) cell_ = begin;
+  p_ = begin + at;
+  end_ = begin + buffer_.size();
+  const auto line_end = buffer_.rfind('\n');
+  whole_ = line_end == std::string::npos ? begin : begin + line_end + 1;
+  return true;
+}
+
 void CsvCursor::count_line_ends(const char* from, const char* to) { next_line_ += std::count(from, to, '\n'); }
 
 bool CsvCursor::next_row() {
   while (in_row_ && more_) skip_cell();
   in_row_ = false;
-  while (p_ != end_) {
+  cell_ = cell_end_ = nullptr;
+  while (true) {
+    while (!row_is_whole() && refill()) {
+    }
     const char* q = p_;
     while (q != end_ && (is_blank(*q) || *q == '\r')) ++q;
     if (q == end_) break;
@@ -164,10 +202,18 @@ bool CsvCursor::next_cell(std::string& text) {
       text.append(p_, quote);
       count_line_ends(p_, quote);
       p_ = quote;
-      if (p_ == end_) throw InputError({path_, line_, ""}, "a quoted cell is not closed", "close it with '\"'");
+      if (p_ == end_) {
+        if (!refill()) throw InputError({path_, line_, ""}, "a quoted cell is not closed", "close it with '\"'");
+        --p_;  // the loop steps over a character that is not there
+        continue;
+      }
       ++p_;
+      if (p_ == end_) refill();
       if (p_ == end_ || *p_ != '"') break;
       text += '"';
+    }
+    // The row goes on behind a line end in quotes.
+    while (!row_is_whole() && refill()) {
     }
     cell_end_ = p_;
     while (p_ != end_ && is_blank(*p_)) ++p_;
@@ -188,8 +234,8 @@ bool CsvCursor::skip_cell() {
   return next_cell(ignored);
 }
 
-Cell CsvCursor::next_number(double& value) {
-  if (!in_row_ || !more_) return Cell::none;
+// What is not a plain decimal with a separator or a line feed behind it.
+Cell CsvCursor::next_odd_number(double& value) {
   const auto [after, error] = std::from_chars(p_, end_, value);
   if (error == std::errc() && std::isfinite(value) &&
       (after == end_ || *after == separator_ || *after == '\n' ||
@@ -208,6 +254,8 @@ bool CsvCursor::row_ended_by_file() const {
   return p_ == end_ && cell_end_ &&
          std::find_if(cell_end_, end_, [](char c) { return c == '\n' || c == '\r'; }) == end_;
 }
+
+std::size_t CsvCursor::bytes_taken() const { return dropped_ + static_cast<std::size_t>(p_ - buffer_.data()); }
 
 std::string CsvCursor::last_text() const {
   constexpr std::size_t longest = 40;

@@ -1,4 +1,5 @@
-// CSV text: a cursor that walks rows and cells of a file held in memory once, and the few words needed to write one.
+// CSV text: a cursor that walks rows and cells of a text in memory or of a file block by block, and the few words needed
+// to write one.
 //
 // Reads: separator ',' ';' or tab (the most frequent in the header line), decimal comma in numbers where the separator
 // is ';', UTF-8 BOM, LF and CRLF, '#' comment lines before the header, blank lines anywhere, RFC 4180 quoted cells
@@ -7,15 +8,18 @@
 //
 // No library: fast-cpp-csv-parser fixes separator and quoting at compile time, parses with its own float loop (not
 // correctly rounded) and throws its own errors, where logs need a sniffed separator and exact round trips.
-// std::from_chars is correctly rounded and as fast as fast_float, from which libstdc++ takes it.
+// Plain decimals go by base/decimal.h, the rest by std::from_chars; both round correctly.
 #pragma once
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "base/decimal.h"
 #include "base/error.h"
 
 namespace servodx {
+
+class BlockReader;
 
 // Whole file in one read. Throws InputError where it cannot be opened, is a folder, or is not readable.
 std::string read_file(const std::string& path);
@@ -26,6 +30,8 @@ class CsvCursor {
  public:
   // `text` must outlive the cursor; `path` is for errors. Reads comments and the header line.
   CsvCursor(std::string_view text, std::string path);
+  // The same of a file that is read as the cursor goes; holds no more of it than two blocks and the longest row.
+  CsvCursor(BlockReader& file, std::string path);
 
   const std::vector<std::string>& header() const { return header_; }
   long header_line() const { return header_line_; }
@@ -34,19 +40,41 @@ class CsvCursor {
 
   bool next_row();                     // to the next line that is not blank; skips what is left of this one
   bool next_cell(std::string& text);   // false: the row has no further cell
-  Cell next_number(double& value);     // NaN for missing; a finite number, or text (see last_text)
+  // NaN for missing; a finite number, or text (see last_text).
+  Cell next_number(double& value) {
+    if (!in_row_ || !more_) return Cell::none;
+    const char* const after = parse_decimal(p_, end_, point_, value);
+    if (!after || after == end_ || (*after != separator_ && *after != '\n')) return next_odd_number(value);
+    cell_ = p_;
+    cell_end_ = after;
+    p_ = after + 1;
+    if (*after == '\n') {
+      more_ = false;
+      ++next_line_;
+    }
+    return Cell::number;
+  }
   bool skip_cell();                    // like next_cell, without the text
   long line() const { return line_; }  // 1-based line on which the row began
   bool row_ended_by_file() const;      // after the row's last cell: no line end followed it
+  std::size_t bytes_taken() const;     // of the file, up to the cell to come
   std::string last_text() const;       // the cell just read, as written, shortened
 
  private:
+  void read_header();
+  Cell next_odd_number(double& value);
+  bool refill();  // more of the file behind what is left; false: there is no more
+  bool row_is_whole() const { return p_ < whole_; }
   bool at_row_end() const { return p_ == end_ || *p_ == '\n' || (*p_ == '\r' && (p_ + 1 == end_ || p_[1] == '\n')); }
   bool is_blank(char c) const { return c == ' ' || (c == '\t' && separator_ != '\t'); }
   void finish_cell();
   void count_line_ends(const char* from, const char* to);
 
   std::string path_;
+  BlockReader* file_ = nullptr;
+  std::string buffer_;              // of a file: what is not used up
+  std::size_t dropped_ = 0;         // of a file: bytes before the buffer
+  const char* whole_ = nullptr;     // of a file: after the last line end in the buffer
   const char* p_ = nullptr;
   const char* end_ = nullptr;
   const char* cell_ = nullptr;      // start of the cell just read
@@ -54,6 +82,7 @@ class CsvCursor {
   bool in_row_ = false;
   bool more_ = false;  // a further cell follows in this row
   char separator_ = ',';
+  char point_ = '.';  // accepted beside '.'
   long line_ = 0;
   long next_line_ = 1;
   long header_line_ = 0;

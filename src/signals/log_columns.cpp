@@ -1,0 +1,246 @@
+#include "signals/log_columns.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "signals/plausible.h"
+
+namespace servodx {
+namespace {
+
+struct NameAndUnit {
+  std::string name;
+  std::string unit;
+  bool has_unit = false;
+};
+
+std::string trimmed(std::string text) {
+  const auto first = text.find_first_not_of(" \t");
+  if (first == std::string::npos) return {};
+  return text.substr(first, text.find_last_not_of(" \t") - first + 1);
+}
+
+NameAndUnit parse_name(const std::string& cell) {
+  const auto open = cell.rfind('[');
+  if (open == std::string::npos || !cell.ends_with(']')) return {trimmed(cell), "", false};
+  return {trimmed(cell.substr(0, open)), trimmed(cell.substr(open + 1, cell.size() - open - 2)), true};
+}
+
+// The names in the file that are no signal, for the mend of a missing one.
+std::string in_quotes(const std::vector<std::string>& names) {
+  constexpr std::size_t most = 6;
+  std::string list;
+  for (std::size_t i = 0; i < std::min(most, names.size()); ++i) list += (i ? ", '" : "'") + names[i] + "'";
+  if (names.size() > most) list += fmt::format(" and {} more", names.size() - most);
+  return list;
+}
+
+// Smallest step between neighbours, and between the sorted values of an even sample of the record.
+double resolution(const std::vector<double>& x) {
+  constexpr std::size_t sampled = 4096;
+  double largest = 0.0;
+  for (double v : x) largest = std::max(largest, std::abs(v));  // NaN never replaces a number
+  const double rounding = 1e-12 * largest, infinity = std::numeric_limits<double>::infinity();
+  double smallest = infinity;
+  const auto consider = [&](double a, double b) {
+    const double step = std::abs(b - a);
+    smallest = std::min(smallest, step > rounding ? step : infinity);
+  };
+  for (std::size_t i = 1; i < x.size(); ++i) consider(x[i - 1], x[i]);
+  std::vector<double> some;
+  const std::size_t stride = x.size() / sampled + 1;
+  for (std::size_t i = 0; i < x.size(); i += stride)
+    if (!std::isnan(x[i])) some.push_back(x[i]);
+  std::sort(some.begin(), some.end());
+  for (std::size_t i = 1; i < some.size(); ++i) consider(some[i - 1], some[i]);
+  return std::isfinite(smallest) ? smallest : 0.0;
+}
+
+}  // namespace
+
+LogColumns::LogColumns(std::string path, const RigFile& rig, const ReadOptions& options, const LogFormat& format)
+    : path_(std::move(path)),
+      rig_(rig),
+      options_(options),
+      format_(format),
+      previous_(-std::numeric_limits<double>::infinity()) {
+  log_.path = path_;
+}
+
+void LogColumns::refuse(long line, const std::string& column, const std::string& rule, const std::string& mend) const {
+  if (format_.has_lines) throw InputError({path_, line, column}, rule, mend);
+  throw InputError({path_, 0, column}, line > 0 ? fmt::format("sample {}: {}", line, rule) : rule, mend);
+}
+
+int LogColumns::add(const std::string& cell, long line) {
+  header_line_ = line;
+  const NameAndUnit written = format_.has_units ? parse_name(cell) : NameAndUnit{cell, "", false};
+  auto mapping = rig_.columns.find(cell);
+  if (mapping == rig_.columns.end()) mapping = rig_.columns.find(written.name);
+  const bool mapped = mapping != rig_.columns.end();
+  const auto signal = find_signal(mapped ? mapping->second.signal : written.name);
+  if (!signal) {
+    ignored_.push_back(written.name);
+    return -1;
+  }
+  for (const Column& other : columns_)
+    if (other.signal == *signal)
+      refuse(line, written.name,
+             other.name == written.name
+                 ? "duplicate column"
+                 : fmt::format("duplicate column: '{}' is '{}' too", other.name, info(*signal).name),
+             "keep one column of the signal");
+  if (*signal == Signal::time) time_ = static_cast<int>(columns_.size());
+  columns_.push_back(
+      resolve(*signal, written.name, written.unit, written.has_unit, mapped ? &mapping->second : nullptr));
+  return static_cast<int>(columns_.size()) - 1;
+}
+
+// The unit of a column: from its name in the file, or from the rig file, which may add a gain and an offset.
+LogColumns::Column LogColumns::resolve(Signal signal, const std::string& column_name, const std::string& written_unit,
+                                       bool has_unit, const ColumnMapping* mapping) const {
+  const auto refuse_here = [&](const std::string& rule, const std::string& mend) {
+    refuse(format_.has_lines ? header_line_ : 0, column_name, rule, mend);
+  };
+  const std::string mapped_unit = mapping ? mapping->column_unit : "";
+  const auto in_rig_file = [&](const std::string& what) {
+    return fmt::format("add \"{}\" = {{ signal = \"{}\", {} }} to [columns] of the rig file (--rig)", column_name,
+                       info(signal).name, what);
+  };
+  if (!has_unit && mapped_unit.empty()) {
+    if (format_.has_units)
+      refuse_here("the header cell has no unit", fmt::format("write '{} [{}]'; accepted: {}", column_name,
+                                                             info(signal).si_unit, accepted_units(signal)));
+    refuse_here("the variable has no unit",
+                in_rig_file(fmt::format("unit = \"{}\"", info(signal).si_unit)) + "; accepted: " + accepted_units(signal));
+  }
+  if (has_unit && !mapped_unit.empty() && written_unit != mapped_unit)
+    refuse_here(fmt::format("unit '{}' here, '{}' in the rig file (line {})", written_unit, mapped_unit, mapping->line),
+                "make both agree");
+  const std::string name = has_unit ? written_unit : mapped_unit;
+  const Unit* unit = find_unit(name);
+  if (!unit) refuse_here(fmt::format("unknown unit '{}'", name), "accepted: " + accepted_units(signal));
+
+  Column column{signal, column_name, *unit, 1.0, 0.0, name};
+  if (mapping) {
+    column.gain = mapping->gain;
+    column.offset = mapping->offset;
+  }
+  const auto relative = relative_unit(signal);
+  if (mapping && mapping->gain_has_unit) {
+    column.written_unit = mapping->unit;
+  } else if (unit->dimension == Dimension::voltage && signal != Signal::time) {
+    refuse_here("volts need a gain",
+                in_rig_file(fmt::format("unit = \"{}\", gain = \"... {}/V\"", name, info(signal).si_unit)));
+  } else if (relative && unit->dimension == relative->dimension) {
+    const auto full = rig_.fact(std::string(relative->fact));
+    if (!full)
+      refuse_here(fmt::format("unit '{}' needs {}", name, relative->fact),
+                  "give it in the rig file (--rig) or write the column in " + units_of(info(signal).dimension));
+    column.unit.multiply *= *full;
+    column.full_scale = *full;
+  } else if (unit->dimension != info(signal).dimension) {
+    refuse_here(fmt::format("'{}' is a unit of {}, not of {}", name, name_of(unit->dimension),
+                            name_of(info(signal).dimension)),
+                "accepted: " + accepted_units(signal));
+  }
+  return column;
+}
+
+bool LogColumns::present(Signal signal) const {
+  return std::any_of(columns_.begin(), columns_.end(), [&](const Column& c) { return c.signal == signal; });
+}
+
+void LogColumns::refuse_missing(Signal signal, const std::string& rule) const {
+  const std::string name(info(signal).name);
+  std::string mend = format_.has_units ? fmt::format("add a column '{} [{}]'", name, info(signal).si_unit)
+                                       : fmt::format("add a variable '{}'", name);
+  mend += ", or map one of yours in [columns] of the rig file";
+  if (!ignored_.empty()) mend += " (not known: " + in_quotes(ignored_) + ")";
+  refuse(format_.has_lines ? header_line_ : 0, name, rule, mend);
+}
+
+void LogColumns::require_signals() const {
+  if (!present(Signal::time)) refuse_missing(Signal::time, "required signal is missing");
+  if (options_.require_drive && !present(Signal::command) && !present(Signal::coil_current))
+    refuse_missing(Signal::command, "required signal is missing, and so is 'coil_current'");
+  if (!options_.require_response) return;
+  for (Signal s : {Signal::spool_position, Signal::piston_position, Signal::load_pressure, Signal::flow_a,
+                   Signal::flow_b, Signal::control_flow, Signal::leakage_flow})
+    if (present(s)) return;
+  if (present(Signal::pressure_a) && present(Signal::pressure_b)) return;
+  refuse_missing(
+      Signal::spool_position,
+      "no response is logged (spool_position, piston_position, pressure_a with pressure_b, load_pressure or "
+      "a flow)");
+}
+
+void LogColumns::reserve(std::size_t samples) {
+  for (Column& column : columns_) column.value.reserve(samples);
+}
+
+void LogColumns::append(std::span<const double> sample, long line) {
+  const auto missing = [&](Column& column) {
+    ++column.missing;
+    if (column.first_missing_line == 0) column.first_missing_line = line;
+  };
+  Column& time = columns_[time_];
+  if (std::isnan(sample[time_])) return missing(time);
+  const double now = time.to_si(sample[time_]);
+  if (!(now > previous_))
+    refuse(line, time.name, fmt::format("time does not increase: {} s after {} s", now, previous_),
+           "sort the rows and remove repeated ones");
+  previous_ = now;
+  last_line_ = line;
+  for (std::size_t c = 0; c < columns_.size(); ++c) {
+    if (std::isnan(sample[c])) missing(columns_[c]);
+    columns_[c].value.push_back(columns_[c].to_si(sample[c]));
+  }
+}
+
+void LogColumns::check_counts() {
+  const std::size_t rows = columns_[time_].value.size();
+  for (const Column& column : columns_) {
+    const bool is_time = column.signal == Signal::time;
+    const std::size_t all = rows + (is_time ? column.missing : 0);
+    if (column.missing == 0) continue;
+    if (static_cast<double>(column.missing) > missing_limit * static_cast<double>(all))
+      refuse(column.first_missing_line, column.name,
+             fmt::format("{} of {} samples are missing, more than {} %", column.missing, all, 100.0 * missing_limit),
+             is_time ? "give every row its time" : "cut the log to where the signal is complete, or drop the column");
+    note(is_time ? fmt::format("{}: left out {} of {} rows without a time", path_, column.missing, all)
+                 : fmt::format("{}: '{}': left out {} of {} samples", path_, column.name, column.missing, all));
+  }
+  if (rows == 0)
+    refuse(format_.has_lines ? header_line_ : 0, "", "the log has no rows", "write one row a sample below the header");
+  if (rows < options_.minimum_rows)
+    refuse(format_.has_lines ? last_line_ : 0, "",
+           fmt::format("the log has {} rows, at least {} are needed", rows, options_.minimum_rows),
+           "record for longer");
+}
+
+Log LogColumns::finish(std::string sha256) {
+  log_.sha256 = std::move(sha256);
+  if (!ignored_.empty())
+    log_.notes.insert(log_.notes.begin(),
+                      fmt::format("{}: ignored {} further {}{}: {}", path_, ignored_.size(),
+                                  format_.has_units ? "column" : "variable", ignored_.size() == 1 ? "" : "s",
+                                  in_quotes(ignored_)));
+  check_counts();
+  for (Column& column : columns_) {
+    Channel& channel = log_.channels[index(column.signal)];
+    channel.unit = column.written_unit;
+    channel.full_scale = column.full_scale;
+    channel.column = column.name;
+    channel.missing = column.missing;
+    channel.resolution = resolution(column.value);
+    (column.signal == Signal::time ? log_.time : channel.value) = std::move(column.value);
+  }
+  for (std::string& text : implausible_values(log_, rig_)) note(std::move(text));
+  return std::move(log_);
+}
+
+}  // namespace servodx

@@ -1,0 +1,77 @@
+// What every file format of a log shares: which column is which signal, how its numbers become SI, and what is refused.
+#pragma once
+#include <span>
+#include <string>
+#include <vector>
+
+#include "base/error.h"
+#include "signals/log.h"
+
+namespace servodx {
+
+// How a file format speaks of its columns and samples in an error.
+struct LogFormat {
+  bool has_units = true;    // a column's name may carry '[unit]'; else units come from the rig file alone
+  bool has_lines = true;    // a sample is a line of the file; else it is named by its number
+};
+
+class LogColumns {
+ public:
+  LogColumns(std::string path, const RigFile& rig, const ReadOptions& options, const LogFormat& format);
+
+  // A column by its name in the file, in the file's order. Its position among the signals, or -1: it is no signal and
+  // ignored. `line` is that of the header.
+  int add(const std::string& name, long line);
+  void require_signals() const;              // after all are added
+  std::size_t size() const { return columns_.size(); }
+  const std::string& name(int column) const { return columns_[column].name; }
+  Signal signal(int column) const { return columns_[column].signal; }
+
+  void reserve(std::size_t samples);
+  // One sample of every column, in the file's units; NaN where missing. `line`: of the file, or the sample's number.
+  void append(std::span<const double> sample, long line);
+
+  [[noreturn]] void refuse(long line, const std::string& column, const std::string& rule,
+                           const std::string& mend) const;
+  void note(std::string text) { log_.notes.push_back(std::move(text)); }
+
+  Log finish(std::string sha256);
+
+ private:
+  struct Column {
+    Signal signal;
+    std::string name;
+    Unit unit;  // of the file's numbers
+    double gain = 1.0;
+    double offset = 0.0;
+    std::string written_unit;
+    double full_scale = 0.0;
+    std::vector<double> value = {};  // [SI]
+    std::size_t missing = 0;
+    long first_missing_line = 0;
+
+    double to_si(double x) const {
+      const double si = unit.to_si(x);
+      return gain == 1.0 && offset == 0.0 ? si : gain * si + offset;
+    }
+  };
+
+  Column resolve(Signal signal, const std::string& name, const std::string& unit, bool has_unit,
+                 const ColumnMapping* mapping) const;
+  bool present(Signal signal) const;
+  [[noreturn]] void refuse_missing(Signal signal, const std::string& rule) const;
+  void check_counts();
+
+  std::string path_;
+  const RigFile& rig_;
+  const ReadOptions& options_;
+  LogFormat format_;
+  Log log_;
+  std::vector<Column> columns_;
+  std::vector<std::string> ignored_;
+  int time_ = -1;  // position of the time column
+  double previous_;
+  long header_line_ = 0, last_line_ = 0;
+};
+
+}  // namespace servodx

@@ -1,0 +1,13 @@
+// The file formats behind read_log(), one function and one file each.
+#pragma once
+#include "signals/log.h"
+
+namespace servodx {
+
+Log read_csv_log(const std::string& path, const RigFile& rig, const ReadOptions& options);
+
+// MATLAB files (levels 4, 5, 7 and 7.3, through matio): numeric vectors of one length, directly in the file or one
+// structure deep ('data.qm'). A variable's name is the signal's or is mapped in the rig file, which gives the unit.
+Log read_mat_log(const std::string& path, const RigFile& rig, const ReadOptions& options);
+
+}  // namespace servodx
