@@ -124,8 +124,8 @@ RigFile Invocation::rig() {
   return rig;
 }
 
-Log Invocation::log(const std::string& path, const RigFile& rig) {
-  Log log = read_log(path, rig);
+Log Invocation::log(const std::string& path, const RigFile& rig, const ReadOptions& options) {
+  Log log = read_log(path, rig, options);
   header_.inputs.push_back({log.path, log.sha256});
   return log;
 }

@@ -44,7 +44,7 @@ class Invocation {
 
   // Readers that note what they read among the result's inputs.
   RigFile rig();
-  Log log(const std::string& path, const RigFile& rig);
+  Log log(const std::string& path, const RigFile& rig, const ReadOptions& options = {});
   std::vector<Log> logs(const std::vector<std::string>& paths, const RigFile& rig);  // refuses the same log twice
   Table table(const std::string& path);                                              // as the file says
   Table tuned_table(const std::string& path);                                        // refuses one that is not tuned

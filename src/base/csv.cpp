@@ -230,8 +230,17 @@ bool CsvCursor::next_cell(std::string& text) {
 }
 
 bool CsvCursor::skip_cell() {
-  std::string ignored;
-  return next_cell(ignored);
+  if (!in_row_ || !more_) return false;
+  const char* p = p_;
+  while (p != end_ && *p != separator_ && *p != '\n' && *p != '\r' && *p != '"') ++p;
+  if (p == end_ || *p == '\r' || *p == '"') {
+    std::string ignored;
+    return next_cell(ignored);
+  }
+  cell_ = p_;
+  cell_end_ = p_ = p;
+  finish_cell();
+  return true;
 }
 
 // What is not a plain decimal with a separator or a line feed behind it.

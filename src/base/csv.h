@@ -10,6 +10,7 @@
 // correctly rounded) and throws its own errors, where logs need a sniffed separator and exact round trips.
 // Plain decimals go by base/decimal.h, the rest by std::from_chars; both round correctly.
 #pragma once
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -53,6 +54,25 @@ class CsvCursor {
       ++next_line_;
     }
     return Cell::number;
+  }
+  // The row's numbers at once, where it holds as many plain ones as `row` and nothing else; else nothing is read.
+  bool next_plain_row(std::span<double> row) {
+    if (!in_row_ || !more_) return false;
+    const char *p = p_, *const end = end_;
+    const char separator = separator_, point = point_;
+    for (std::size_t i = 0; i < row.size(); ++i) {
+      p = parse_decimal(p, end, point, row[i]);
+      if (!p || p == end) return false;
+      if (i + 1 < row.size() ? *p != separator : *p != '\n' && (*p != '\r' || p + 1 == end || p[1] != '\n'))
+        return false;
+      ++p;
+    }
+    cell_ = p_;
+    cell_end_ = p - 1;
+    p_ = p[-1] == '\r' ? p + 1 : p;
+    more_ = false;
+    ++next_line_;
+    return true;
   }
   bool skip_cell();                    // like next_cell, without the text
   long line() const { return line_; }  // 1-based line on which the row began

@@ -20,8 +20,14 @@ inline constexpr int most_digits = 19;
 
 inline bool is_digit(char c) { return static_cast<unsigned char>(c - '0') < 10; }
 
-// Appends the digits at p to `value`, eight at a time while they last; the caller watches their number.
+// Appends the digits at p to `value`; the caller watches their number.
 inline const char* take_digits(const char* p, const char* end, std::uint64_t& value) {
+  for (; p != end && is_digit(*p); ++p) value = value * 10 + static_cast<std::uint64_t>(*p - '0');
+  return p;
+}
+
+// The same, eight at a time while they last.
+inline const char* take_many_digits(const char* p, const char* end, std::uint64_t& value) {
   if constexpr (std::endian::native == std::endian::little) {
     while (end - p >= 8) {
       std::uint64_t eight;
@@ -36,8 +42,7 @@ inline const char* take_digits(const char* p, const char* end, std::uint64_t& va
       p += 8;
     }
   }
-  for (; p != end && is_digit(*p); ++p) value = value * 10 + static_cast<std::uint64_t>(*p - '0');
-  return p;
+  return take_digits(p, end, value);
 }
 
 }  // namespace decimal
@@ -55,7 +60,7 @@ inline const char* parse_decimal(const char* p, const char* end, char point, dou
   long exponent = 0;
   if (p != end && (*p == '.' || *p == point)) {
     const char* const part = ++p;
-    p = take_digits(p, end, digits);
+    p = take_many_digits(p, end, digits);
     exponent = part - p;
     count -= exponent;
   }

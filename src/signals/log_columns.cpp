@@ -42,20 +42,23 @@ std::string in_quotes(const std::vector<std::string>& names) {
 double resolution(const std::vector<double>& x) {
   constexpr std::size_t sampled = 4096;
   double largest = 0.0;
-  for (double v : x) largest = std::max(largest, std::abs(v));  // NaN never replaces a number
+#pragma omp simd reduction(max : largest)
+  for (std::size_t i = 0; i < x.size(); ++i)
+    largest = std::abs(x[i]) > largest ? std::abs(x[i]) : largest;  // NaN never replaces a number
   const double rounding = 1e-12 * largest, infinity = std::numeric_limits<double>::infinity();
   double smallest = infinity;
-  const auto consider = [&](double a, double b) {
-    const double step = std::abs(b - a);
-    smallest = std::min(smallest, step > rounding ? step : infinity);
+  const auto step = [&](double a, double b) {
+    const double d = std::abs(b - a);
+    return d > rounding ? d : infinity;
   };
-  for (std::size_t i = 1; i < x.size(); ++i) consider(x[i - 1], x[i]);
+#pragma omp simd reduction(min : smallest)
+  for (std::size_t i = 1; i < x.size(); ++i) smallest = std::min(smallest, step(x[i - 1], x[i]));
   std::vector<double> some;
   const std::size_t stride = x.size() / sampled + 1;
   for (std::size_t i = 0; i < x.size(); i += stride)
     if (!std::isnan(x[i])) some.push_back(x[i]);
   std::sort(some.begin(), some.end());
-  for (std::size_t i = 1; i < some.size(); ++i) consider(some[i - 1], some[i]);
+  for (std::size_t i = 1; i < some.size(); ++i) smallest = std::min(smallest, step(some[i - 1], some[i]));
   return std::isfinite(smallest) ? smallest : 0.0;
 }
 
@@ -197,7 +200,7 @@ void LogColumns::append(std::span<const double> sample, long line) {
   last_line_ = line;
   for (std::size_t c = 0; c < columns_.size(); ++c) {
     if (std::isnan(sample[c])) missing(columns_[c]);
-    columns_[c].value.push_back(columns_[c].to_si(sample[c]));
+    columns_[c].value.push_back(sample[c]);
   }
 }
 
@@ -230,7 +233,14 @@ Log LogColumns::finish(std::string sha256) {
                                   format_.has_units ? "column" : "variable", ignored_.size() == 1 ? "" : "s",
                                   in_quotes(ignored_)));
   check_counts();
-  for (Column& column : columns_) {
+  const int n = static_cast<int>(columns_.size());
+#pragma omp parallel for schedule(dynamic, 1)
+  for (int c = 0; c < n; ++c) {
+    Column& column = columns_[c];
+    if (column.unit.multiply != 1.0 || column.unit.divide != 1.0 || column.unit.offset != 0.0)
+      for (double& x : column.value) x = column.unit.to_si(x);
+    if (column.gain != 1.0 || column.offset != 0.0)
+      for (double& x : column.value) x = column.gain * x + column.offset;
     Channel& channel = log_.channels[index(column.signal)];
     channel.unit = column.written_unit;
     channel.full_scale = column.full_scale;

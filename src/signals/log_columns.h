@@ -46,7 +46,7 @@ class LogColumns {
     double offset = 0.0;
     std::string written_unit;
     double full_scale = 0.0;
-    std::vector<double> value = {};  // [SI]
+    std::vector<double> value = {};  // in the file's unit until finish()
     std::size_t missing = 0;
     long first_missing_line = 0;
 

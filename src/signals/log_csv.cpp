@@ -22,7 +22,17 @@ Log read_csv_log(const std::string& path, const RigFile& rig, const ReadOptions&
 
   const std::size_t width = target.size();
   std::vector<double> row(log.size());
+  const bool all_are_signals = log.size() == width;
   for (long rows = 1; csv.next_row(); ++rows) {
+    // Rows so far give the rows to come; without it the columns grow by copying and take twice their size.
+    if (rows == rows_before_estimate)
+      log.reserve(static_cast<std::size_t>(1.02 * static_cast<double>(rows_before_estimate) *
+                                           static_cast<double>(file.file_size()) /
+                                           static_cast<double>(csv.bytes_taken())));
+    if (all_are_signals && csv.next_plain_row(row)) {
+      log.append(row, csv.line());
+      continue;
+    }
     std::optional<InputError> fault;
     std::size_t cells = 0;
     bool last_is_empty = false;
@@ -53,11 +63,6 @@ Log read_csv_log(const std::string& path, const RigFile& rig, const ReadOptions&
                      : "write one cell a column");
     if (fault) throw *fault;
     log.append(row, csv.line());
-    // Rows so far give the rows to come; without it the columns grow by copying and take twice their size.
-    if (rows == rows_before_estimate && csv.bytes_taken() > 0)
-      log.reserve(static_cast<std::size_t>(1.02 * static_cast<double>(rows_before_estimate) *
-                                           static_cast<double>(file.file_size()) /
-                                           static_cast<double>(csv.bytes_taken())));
   }
   return log.finish(file.sha256());
 }

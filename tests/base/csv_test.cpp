@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <bit>
+#include <charconv>
 #include <cmath>
 #include <vector>
 
@@ -117,6 +118,34 @@ TEST(Csv, AnyDoubleIsWrittenAndReadBackBitForBit) {
     ASSERT_EQ(csv.next_number(back), Cell::number) << text;
     ASSERT_EQ(std::bit_cast<std::uint64_t>(back), std::bit_cast<std::uint64_t>(x)) << text;
   }
+}
+
+// The quick way to a number is the slow way's number, or says that it is not its business.
+TEST(Csv, PlainDecimalsRoundAsTheStandardLibraryRounds) {
+  Random random(3);
+  int quick = 0;
+  for (int i = 0; i < 200000; ++i) {
+    std::string text = random.uniform() < 0.5 ? "-" : "";
+    const auto digits = [&](double most) {
+      for (int n = static_cast<int>(random.uniform(0, most)); n > 0; --n)
+        text += static_cast<char>('0' + static_cast<int>(random.uniform(0, 10)));
+    };
+    digits(i % 3 ? 6 : 22);
+    if (random.uniform() < 0.8) text += '.', digits(i % 5 ? 14 : 25);
+    if (random.uniform() < 0.3) text += random.uniform() < 0.5 ? "e-" : "E+", digits(i % 7 ? 2 : 4);
+    for (const char* behind : {"", ",1234567890"}) {
+      const std::string all = text + behind;
+      double plain = 0, standard = 0;
+      const char* const end = parse_decimal(all.data(), all.data() + all.size(), '.', plain);
+      const auto [after, error] = std::from_chars(all.data(), all.data() + all.size(), standard);
+      if (!end) continue;
+      ++quick;
+      ASSERT_EQ(error, std::errc()) << all;
+      ASSERT_EQ(end, after) << all;
+      ASSERT_EQ(std::bit_cast<std::uint64_t>(plain), std::bit_cast<std::uint64_t>(standard)) << all;
+    }
+  }
+  EXPECT_GT(quick, 200000);
 }
 
 TEST(Csv, OnlyALastRowWithoutLineEndIsSaidToEndWithTheFile) {

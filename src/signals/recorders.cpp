@@ -1,0 +1,320 @@
+#include "signals/recorders.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <complex>
+#include <unsupported/Eigen/FFT>
+
+#include "base/error.h"
+
+namespace servodx {
+namespace {
+
+constexpr double piece_time = 8.0;        // [s] long enough to be unlike its neighbours, short against a skew
+constexpr int most_pieces = 40;           // searched outwards from the liveliest
+constexpr int fewest_pieces = 4;          // to state an error
+constexpr double largest_skew = 1e-3;     // [-]
+constexpr double least_correlation = 0.7; // of increments in a piece
+constexpr double rival = 0.9;             // another lag with this share of the best correlation: the signal repeats
+constexpr double gap_over_step = 3.0;
+
+double usual_step(const std::vector<double>& t) {
+  std::vector<double> d;
+  for (std::size_t k = 1; k < t.size(); ++k) d.push_back(t[k] - t[k - 1]);
+  std::nth_element(d.begin(), d.begin() + static_cast<long>(d.size() / 2), d.end());
+  return d[d.size() / 2];
+}
+
+// A series that can be asked at any time; missing samples are bridged.
+class Series {
+ public:
+  Series(const std::vector<double>& time, const std::vector<double>& value) {
+    for (std::size_t k = 0; k < time.size(); ++k)
+      if (!std::isnan(value[k])) t_.push_back(time[k]), x_.push_back(value[k]);
+  }
+  double begin() const { return t_.front(); }
+  double end() const { return t_.back(); }
+  double at(double t) const {
+    const std::size_t k = interval(t);
+    return x_[k] + (x_[k + 1] - x_[k]) * (t - t_[k]) / (t_[k + 1] - t_[k]);
+  }
+  const std::vector<double>& time() const { return t_; }
+  const std::vector<double>& value() const { return x_; }
+
+ private:
+  std::size_t interval(double t) const {
+    const auto it = std::upper_bound(t_.begin(), t_.end(), t);
+    const auto k = std::max<long>(it - t_.begin() - 1, 0);
+    return std::min(static_cast<std::size_t>(k), t_.size() - 2);
+  }
+  std::vector<double> t_, x_;
+};
+
+// Increments on an even grid: what two recordings of one signal share whatever their bias.
+std::vector<double> increments(const Series& s, double from, double to, double step) {
+  std::vector<double> d;
+  double last = s.at(from);
+  for (double t = from + step; t <= to; t += step) {
+    const double x = s.at(t);
+    d.push_back(x - last);
+    last = x;
+  }
+  return d;
+}
+
+struct Lag {
+  long samples = 0;
+  double correlation = -1;  // normalised over the overlap
+  double rival = -1;        // the best apart from it
+  long rival_samples = 0;
+};
+
+// The shift of `piece` along `whole` that fits best, within [from, to] samples.
+Lag best_lag(const std::vector<double>& whole, const std::vector<double>& piece, long from, long to, long apart) {
+  const long n = static_cast<long>(whole.size()), m = static_cast<long>(piece.size());
+  from = std::max(from, 0L), to = std::min(to, n - m);
+  Lag best;
+  if (from > to || m < 16) return best;
+  long size = 1;
+  while (size < n + m) size *= 2;
+  std::vector<double> a(size, 0.0), b(size, 0.0), c;
+  std::copy(whole.begin(), whole.end(), a.begin());
+  std::copy(piece.begin(), piece.end(), b.begin());
+  Eigen::FFT<double> fft;
+  std::vector<std::complex<double>> fa, fb;
+  fft.fwd(fa, a);
+  fft.fwd(fb, b);
+  for (std::size_t k = 0; k < fa.size(); ++k) fa[k] *= std::conj(fb[k]);
+  fft.inv(c, fa);
+  std::vector<double> energy(n + 1, 0.0);
+  for (long k = 0; k < n; ++k) energy[k + 1] = energy[k] + whole[k] * whole[k];
+  double own = 0;
+  for (double x : piece) own += x * x;
+  const auto score = [&](long lag) {
+    const double there = energy[lag + m] - energy[lag];
+    return there > 1e-3 * own && own > 0 ? c[lag] / std::sqrt(there * own) : -1.0;
+  };
+  for (long lag = from; lag <= to; ++lag)
+    if (const double s = score(lag); s > best.correlation) best.samples = lag, best.correlation = s;
+  for (long lag = from; lag <= to; ++lag)
+    if (std::abs(lag - best.samples) > apart)
+      if (const double s = score(lag); s > best.rival) best.rival = s, best.rival_samples = lag;
+  return best;
+}
+
+struct Piece {
+  double at;      // [s] second's clock, middle
+  double offset;  // [s] first's time less second's there
+};
+
+// Least squares of the first's samples within [from, to] of its clock. `delay` and `skew` are about the time `middle`
+// of the second's clock: t1 = t2 + delay + skew (t2 - middle). Free: delay, gain, bias, and the skew where asked for.
+struct Alignment {
+  double delay = 0, skew = 0, correlation = 0;
+};
+Alignment align(const Series& first, const Series& second, double from, double to, double middle, Alignment a,
+                bool free_skew) {
+  const double h = 0.5 * usual_step(second.time());
+  const auto& t = first.time();
+  const auto begin = std::lower_bound(t.begin(), t.end(), from) - t.begin();
+  const auto end = std::upper_bound(t.begin(), t.end(), to) - t.begin();
+  for (int iteration = 0; iteration < 12; ++iteration) {
+    Eigen::Matrix4d normal = Eigen::Matrix4d::Zero();
+    Eigen::Vector4d right = Eigen::Vector4d::Zero();
+    double sx = 0, sy = 0, sxx = 0, syy = 0, sxy = 0, n = 0;
+    for (long k = begin; k < end; ++k) {
+      const double t2 = middle + (t[k] - a.delay - middle) / (1 + a.skew);
+      if (t2 < second.begin() + h || t2 > second.end() - h) continue;
+      const double x = second.at(t2), slope = (second.at(t2 + h) - second.at(t2 - h)) / (2 * h);
+      const Eigen::Vector4d row(1, x, -slope, free_skew ? -slope * (t2 - middle) : 0.0);
+      const double y = first.value()[k];
+      normal += row * row.transpose();
+      right += row * y;
+      sx += x, sy += y, sxx += x * x, syy += y * y, sxy += x * y, ++n;
+    }
+    if (n < 16 || !(sxx - sx * sx / n > 0) || !(syy - sy * sy / n > 0)) return a;
+    a.correlation = (sxy - sx * sy / n) / std::sqrt((sxx - sx * sx / n) * (syy - sy * sy / n));
+    if (!free_skew) normal(3, 3) = 1;
+    const Eigen::Vector4d scale = normal.diagonal().cwiseSqrt().cwiseMax(1e-300);
+    const Eigen::Matrix4d scaled = scale.cwiseInverse().asDiagonal() * normal * scale.cwiseInverse().asDiagonal();
+    const Eigen::Vector4d solution =
+        scale.cwiseInverse().asDiagonal() * scaled.ldlt().solve(scale.cwiseInverse().asDiagonal() * right);
+    const double gain = solution[1];
+    if (!(std::abs(gain) > 0)) return a;
+    // Steps of half a sample at most: the slope is that of a straight line between samples.
+    const double step = std::clamp(solution[2] / gain, -h, h);
+    const double turn = std::clamp(solution[3] / gain, -0.1 * largest_skew, 0.1 * largest_skew);
+    a.delay += step;
+    a.skew += turn;
+    if (std::abs(step) < 1e-9 && std::abs(turn) < 1e-10) break;
+  }
+  return a;
+}
+
+[[noreturn]] void refuse(const Log& second, const std::string& rule, const std::string& mend) {
+  throw InputError({second.path, 0, ""}, rule, mend);
+}
+
+ClockFit fit_clock(const Log& one, const Log& two, Signal by, const JoinOptions& options) {
+  const std::string name(info(by).name);
+  const Series first(one.time, one[by]), second(two.time, two[by]);
+  const double step = std::max(usual_step(one.time), usual_step(two.time));
+  const double length = std::min(piece_time, 0.5 * std::min(first.end() - first.begin(), second.end() - second.begin()));
+  const std::vector<double> whole = increments(first, first.begin(), first.end(), step);
+
+  // The second's pieces; the liveliest is looked for everywhere.
+  std::vector<double> starts;
+  const double span = second.end() - second.begin() - length;
+  const int count = std::clamp(static_cast<int>(span / (0.5 * length)) + 1, 2, most_pieces);
+  for (int k = 0; k < count; ++k) starts.push_back(second.begin() + span * k / (count - 1));
+  std::vector<std::vector<double>> pieces;
+  std::size_t liveliest = 0;
+  double most = -1;
+  for (std::size_t k = 0; k < starts.size(); ++k) {
+    pieces.push_back(increments(second, starts[k], starts[k] + length, step));
+    double energy = 0;
+    for (double x : pieces.back()) energy += x * x;
+    // Not at the ends, where the first may not have run.
+    const bool inner = k > 0 && k + 1 < starts.size();
+    if (energy * (inner ? 1.0 : 0.5) > most) most = energy * (inner ? 1.0 : 0.5), liveliest = k;
+  }
+  const auto lag_of = [&](double offset, std::size_t k) {
+    return std::lround((starts[k] + offset - first.begin()) / step);
+  };
+  const auto offset_of = [&](long lag, std::size_t k) {
+    return first.begin() + static_cast<double>(lag) * step - starts[k];
+  };
+  const long apart = std::max(4L, std::lround(0.05 / step));
+  long from = 0, to = static_cast<long>(whole.size());
+  if (options.near) {
+    const double at = *options.near, width = options.near_within;
+    from = lag_of(at - width, liveliest), to = lag_of(at + width, liveliest);
+  }
+  const Lag lag = best_lag(whole, pieces[liveliest], from, to, apart);
+  if (lag.correlation < least_correlation)
+    refuse(two, fmt::format("the two recordings of '{}' are not alike: correlation {:.2f} at best", name, lag.correlation),
+           "name another shared signal with --by, or check that both are of one test");
+  if (lag.rival > rival * lag.correlation)
+    refuse(two,
+           fmt::format("'{}' repeats itself: offsets of {:.4g} s and {:.4g} s fit alike", name,
+                       offset_of(lag.samples, liveliest), offset_of(lag.rival_samples, liveliest)),
+           "give the offset roughly with --near, or name another shared signal with --by");
+
+  // Outwards, each piece near where its neighbour was.
+  std::vector<Piece> found;
+  const auto track = [&](std::size_t k, double offset) {
+    const long there = lag_of(offset, k);
+    const long reach = std::lround(largest_skew * length / step) + 3;
+    const Lag l = best_lag(whole, pieces[k], there - reach, there + reach, 1L << 40);
+    if (l.correlation < least_correlation) return offset;
+    found.push_back({starts[k] + 0.5 * length, offset_of(l.samples, k)});
+    return found.back().offset;
+  };
+  double offset = track(liveliest, offset_of(lag.samples, liveliest));
+  for (std::size_t k = liveliest + 1; k < starts.size(); ++k) offset = track(k, offset);
+  offset = offset_of(lag.samples, liveliest);
+  for (std::size_t k = liveliest; k-- > 0;) offset = track(k, offset);
+
+  double middle = 0;
+  for (const Piece& p : found) middle += p.at / static_cast<double>(found.size());
+  double sum = 0, sum_tt = 0, sum_to = 0;
+  for (const Piece& p : found) sum += p.offset, sum_tt += std::pow(p.at - middle, 2), sum_to += (p.at - middle) * p.offset;
+  Alignment a{sum / static_cast<double>(found.size()), found.size() > 2 ? sum_to / sum_tt : 0.0, 0};
+  a = align(first, second, first.begin(), first.end(), middle, a, true);
+
+  // Each piece alone, by its own delay: their scatter is the error.
+  std::vector<Piece> fine;
+  for (const Piece& p : found) {
+    Alignment own{a.delay + a.skew * (p.at - middle), a.skew, 0};
+    const double at = p.at + own.delay;
+    own = align(first, second, at - 0.5 * length, at + 0.5 * length, p.at, own, false);
+    if (own.correlation > least_correlation) fine.push_back({p.at, own.delay - a.delay - a.skew * (p.at - middle)});
+  }
+  if (static_cast<int>(fine.size()) < fewest_pieces && found.size() > 1)
+    a = align(first, second, first.begin(), first.end(), middle, {a.delay, a.skew, 0}, true);
+  double scatter = 0, spread = 0;
+  for (const Piece& p : fine) scatter += p.offset * p.offset, spread += std::pow(p.at - middle, 2);
+  // Pieces overlap by half, so half of them are independent; two numbers are fitted.
+  const double independent = 0.5 * static_cast<double>(fine.size());
+  ClockFit clock;
+  clock.by = by;
+  clock.pieces = static_cast<int>(fine.size());
+  clock.skew = a.skew;
+  clock.offset = a.delay - a.skew * middle;
+  const double variance = independent > 2 ? scatter / static_cast<double>(fine.size()) * independent / (independent - 2)
+                                          : std::nan("");
+  clock.offset_error = std::sqrt(variance / independent);
+  clock.skew_error = spread > 0 ? std::sqrt(variance / (0.5 * spread)) : std::nan("");
+  clock.correlation = a.correlation;
+  return clock;
+}
+
+bool is_demand(Signal s) { return s == Signal::command || s == Signal::setpoint; }
+
+}  // namespace
+
+Log join_recorders(const Log& first, const Log& second, const JoinOptions& options, ClockFit& clock) {
+  std::vector<Signal> shared;
+  for (const SignalInfo& signal : signal_list)
+    if (signal.signal != Signal::time && first.has(signal.signal) && second.has(signal.signal))
+      shared.push_back(signal.signal);
+  if (shared.empty())
+    refuse(second, "shares no signal with " + first.path,
+           "record one signal on both, such as the command, and map it in [columns] of the rig file");
+  if (options.by && std::find(shared.begin(), shared.end(), *options.by) == shared.end())
+    refuse(second, fmt::format("'{}' is not in both logs", info(*options.by).name),
+           "name with --by a signal that both recorded");
+  if (options.by) shared = {*options.by};
+  std::optional<InputError> why;
+  std::optional<ClockFit> best;
+  for (Signal by : shared) {
+    try {
+      const ClockFit fit = fit_clock(first, second, by, options);
+      const auto worse = [&] { return std::isnan(best->offset_error) || fit.offset_error < best->offset_error; };
+      if (!best || worse()) best = fit;
+    } catch (const InputError& error) {
+      if (!why) why = error;
+    }
+  }
+  if (!best) throw *why;
+  clock = *best;
+
+  // The second's times on the first's clock.
+  std::vector<double> mapped;
+  for (double t : second.time) mapped.push_back(clock.offset + (1 + clock.skew) * t);
+  const double usual = usual_step(mapped);
+  const auto& t = first.time;
+  const auto begin = std::lower_bound(t.begin(), t.end(), mapped.front()) - t.begin();
+  const auto end = std::upper_bound(t.begin(), t.end(), mapped.back()) - t.begin();
+  Log out = first;
+  const auto cut = [&](std::vector<double>& x) {
+    if (!x.empty()) x = std::vector<double>(x.begin() + begin, x.begin() + end);
+  };
+  cut(out.time);
+  for (Channel& c : out.channels) cut(c.value);
+  for (const SignalInfo& signal : signal_list) {
+    const Signal s = signal.signal;
+    if (s == Signal::time || first.has(s) || !second.has(s)) continue;
+    Channel& channel = out.channels[index(s)] = second.channels[index(s)];
+    const std::vector<double>& x = second[s];
+    channel.value.assign(out.time.size(), std::nan(""));
+    channel.missing = 0;
+    std::size_t j = 0;
+    for (std::size_t k = 0; k < out.time.size(); ++k) {
+      while (j + 2 < mapped.size() && mapped[j + 1] <= out.time[k]) ++j;
+      const double width = mapped[j + 1] - mapped[j], part = (out.time[k] - mapped[j]) / width;
+      if (width > gap_over_step * usual)
+        channel.value[k] = part <= 0 ? x[j] : part >= 1 ? x[j + 1] : std::nan("");
+      else
+        channel.value[k] = is_demand(s) ? (part >= 1 ? x[j + 1] : x[j]) : x[j] + part * (x[j + 1] - x[j]);
+      channel.missing += std::isnan(channel.value[k]);
+    }
+  }
+  out.notes.insert(out.notes.end(), second.notes.begin(), second.notes.end());
+  return out;
+}
+
+}  // namespace servodx
