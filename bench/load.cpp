@@ -62,8 +62,7 @@ double peak_megabytes() {
 
 int main(int argc, char** argv) {
   const long rows = argc > 1 ? std::atol(argv[1]) : 1000000;
-  const std::string path =
-      (std::filesystem::temp_directory_path() / fmt::format("servodx_load_{}.csv", rows)).string();
+  const std::string path = (std::filesystem::temp_directory_path() / fmt::format("servodx_load_{}.csv", rows)).string();
   if (!std::filesystem::exists(path)) {
     write_file(path, long_log(rows));
     fmt::print("wrote {}; run again to measure (the writing would count towards the peak memory)\n", path);
@@ -89,7 +88,8 @@ int main(int argc, char** argv) {
   const double file = static_cast<double>(text.size()) / 1e6;
   fmt::print("{} rows, {:.0f} MB; sum {:.6g}\n", rows, file, sum);
   fmt::print("std::from_chars, one thread  {:.3f} s  {:.0f} MB/s\n", chars, file / chars);
-  fmt::print("read_log                     {:.3f} s  {:.0f} MB/s  ratio {:.2f}\n", reader, file / reader, reader / chars);
+  fmt::print("read_log                     {:.3f} s  {:.0f} MB/s  ratio {:.2f}\n", reader, file / reader,
+             reader / chars);
   fmt::print("peak memory {:.0f} MB, of which {:.0f} MB before reading; the samples themselves are {:.0f} MB\n", peak,
              before, static_cast<double>(rows) * 10 * 8 / 1e6);
 }

@@ -38,25 +38,23 @@ void run(const Options& options) {
   std::vector<OutputColumn> columns = {output_column(joined, Signal::time, joined.time)};
   for (const SignalInfo& signal : signal_list)
     if (joined.has(signal.signal)) columns.push_back(output_column(joined, signal.signal, joined[signal.signal]));
-  const std::string settled =
-      fmt::format("{} on the clock of {} by '{}': offset {:.6f} s (+- {:.1e}), skew {:.2f} ppm (+- {:.2g})",
-                  options.second, options.first, info(clock.by).name, clock.offset, clock.offset_error,
-                  1e6 * clock.skew, 1e6 * clock.skew_error);
+  const std::string settled = fmt::format(
+      "{} on the clock of {} by '{}': offset {:.6f} s (+- {:.1e}), skew {:.2f} ppm (+- {:.2g})", options.second,
+      options.first, info(clock.by).name, clock.offset, clock.offset_error, 1e6 * clock.skew, 1e6 * clock.skew_error);
   write_log(options.output, columns, {settled});
 
   invocation.note(joined.notes);
   if (std::isnan(clock.offset_error))
     invocation.note({fmt::format("too short to state an error of the clock: {} pieces", clock.pieces)});
-  invocation.finish(
-      fmt::format("{}\ncorrelation {:.5f}; {} samples: {}\n", settled, clock.correlation, joined.samples(),
-                  options.output),
-      {{"output", options.output},
-       {"samples", joined.samples()},
-       {"clock",
-        {{"signal", info(clock.by).name},
-         {"offset", {{"value", clock.offset}, {"std_error", clock.offset_error}, {"unit", "s"}}},
-         {"skew", {{"value", clock.skew}, {"std_error", clock.skew_error}, {"unit", "-"}}},
-         {"correlation", clock.correlation}}}});
+  invocation.finish(fmt::format("{}\ncorrelation {:.5f}; {} samples: {}\n", settled, clock.correlation,
+                                joined.samples(), options.output),
+                    {{"output", options.output},
+                     {"samples", joined.samples()},
+                     {"clock",
+                      {{"signal", info(clock.by).name},
+                       {"offset", {{"value", clock.offset}, {"std_error", clock.offset_error}, {"unit", "s"}}},
+                       {"skew", {{"value", clock.skew}, {"std_error", clock.skew_error}, {"unit", "-"}}},
+                       {"correlation", clock.correlation}}}});
 }
 
 }  // namespace

@@ -20,7 +20,7 @@ class BlockReader {
 
   // The next bytes, empty at the end; valid until the next call.
   std::string_view next();
-  std::string sha256();                         // of the whole file; after the end
+  std::string sha256();                            // of the whole file; after the end
   std::size_t file_size() const { return size_; }  // 0 where it is not known (a pipe)
 
  private:

@@ -1,5 +1,5 @@
-// CSV text: a cursor that walks rows and cells of a text in memory or of a file block by block, and the few words needed
-// to write one.
+// CSV text: a cursor that walks rows and cells of a text in memory or of a file block by block, and the few words
+// needed to write one.
 //
 // Reads: separator ',' ';' or tab (the most frequent in the header line), decimal comma in numbers where the separator
 // is ';', UTF-8 BOM, LF and CRLF, '#' comment lines before the header, blank lines anywhere, RFC 4180 quoted cells
@@ -39,8 +39,8 @@ class CsvCursor {
   const std::vector<std::string>& comments() const { return comments_; }  // without '#' and one space after it
   char separator() const { return separator_; }
 
-  bool next_row();                     // to the next line that is not blank; skips what is left of this one
-  bool next_cell(std::string& text);   // false: the row has no further cell
+  bool next_row();                    // to the next line that is not blank; skips what is left of this one
+  bool next_cell(std::string& text);  // false: the row has no further cell
   // NaN for missing; a finite number, or text (see last_text).
   Cell next_number(double& value) {
     if (!in_row_ || !more_) return Cell::none;
@@ -92,9 +92,9 @@ class CsvCursor {
 
   std::string path_;
   BlockReader* file_ = nullptr;
-  std::string buffer_;              // of a file: what is not used up
-  std::size_t dropped_ = 0;         // of a file: bytes before the buffer
-  const char* whole_ = nullptr;     // of a file: after the last line end in the buffer
+  std::string buffer_;           // of a file: what is not used up
+  std::size_t dropped_ = 0;      // of a file: bytes before the buffer
+  const char* whole_ = nullptr;  // of a file: after the last line end in the buffer
   const char* p_ = nullptr;
   const char* end_ = nullptr;
   const char* cell_ = nullptr;      // start of the cell just read

@@ -117,8 +117,8 @@ LogColumns::Column LogColumns::resolve(Signal signal, const std::string& column_
     if (format_.has_units)
       refuse_here("the header cell has no unit", fmt::format("write '{} [{}]'; accepted: {}", column_name,
                                                              info(signal).si_unit, accepted_units(signal)));
-    refuse_here("the variable has no unit",
-                in_rig_file(fmt::format("unit = \"{}\"", info(signal).si_unit)) + "; accepted: " + accepted_units(signal));
+    refuse_here("the variable has no unit", in_rig_file(fmt::format("unit = \"{}\"", info(signal).si_unit)) +
+                                                "; accepted: " + accepted_units(signal));
   }
   if (has_unit && !mapped_unit.empty() && written_unit != mapped_unit)
     refuse_here(fmt::format("unit '{}' here, '{}' in the rig file (line {})", written_unit, mapped_unit, mapping->line),
@@ -146,9 +146,9 @@ LogColumns::Column LogColumns::resolve(Signal signal, const std::string& column_
     column.unit.multiply *= *full;
     column.full_scale = *full;
   } else if (unit->dimension != info(signal).dimension) {
-    refuse_here(fmt::format("'{}' is a unit of {}, not of {}", name, name_of(unit->dimension),
-                            name_of(info(signal).dimension)),
-                "accepted: " + accepted_units(signal));
+    refuse_here(
+        fmt::format("'{}' is a unit of {}, not of {}", name, name_of(unit->dimension), name_of(info(signal).dimension)),
+        "accepted: " + accepted_units(signal));
   }
   return column;
 }
@@ -175,10 +175,9 @@ void LogColumns::require_signals() const {
                    Signal::flow_b, Signal::control_flow, Signal::leakage_flow})
     if (present(s)) return;
   if (present(Signal::pressure_a) && present(Signal::pressure_b)) return;
-  refuse_missing(
-      Signal::spool_position,
-      "no response is logged (spool_position, piston_position, pressure_a with pressure_b, load_pressure or "
-      "a flow)");
+  refuse_missing(Signal::spool_position,
+                 "no response is logged (spool_position, piston_position, pressure_a with pressure_b, load_pressure or "
+                 "a flow)");
 }
 
 void LogColumns::reserve(std::size_t samples) {
@@ -228,10 +227,9 @@ void LogColumns::check_counts() {
 Log LogColumns::finish(std::string sha256) {
   log_.sha256 = std::move(sha256);
   if (!ignored_.empty())
-    log_.notes.insert(log_.notes.begin(),
-                      fmt::format("{}: ignored {} further {}{}: {}", path_, ignored_.size(),
-                                  format_.has_units ? "column" : "variable", ignored_.size() == 1 ? "" : "s",
-                                  in_quotes(ignored_)));
+    log_.notes.insert(log_.notes.begin(), fmt::format("{}: ignored {} further {}{}: {}", path_, ignored_.size(),
+                                                      format_.has_units ? "column" : "variable",
+                                                      ignored_.size() == 1 ? "" : "s", in_quotes(ignored_)));
   check_counts();
   const int n = static_cast<int>(columns_.size());
 #pragma omp parallel for schedule(dynamic, 1)

@@ -11,8 +11,8 @@ namespace servodx {
 
 // How a file format speaks of its columns and samples in an error.
 struct LogFormat {
-  bool has_units = true;    // a column's name may carry '[unit]'; else units come from the rig file alone
-  bool has_lines = true;    // a sample is a line of the file; else it is named by its number
+  bool has_units = true;  // a column's name may carry '[unit]'; else units come from the rig file alone
+  bool has_lines = true;  // a sample is a line of the file; else it is named by its number
 };
 
 class LogColumns {
@@ -22,7 +22,7 @@ class LogColumns {
   // A column by its name in the file, in the file's order. Its position among the signals, or -1: it is no signal and
   // ignored. `line` is that of the header.
   int add(const std::string& name, long line);
-  void require_signals() const;              // after all are added
+  void require_signals() const;  // after all are added
   std::size_t size() const { return columns_.size(); }
   const std::string& name(int column) const { return columns_[column].name; }
   Signal signal(int column) const { return columns_[column].signal; }

@@ -79,7 +79,8 @@ class MatReader {
   Log read() {
     std::string hash = sha256_of_file(path_);  // refuses what cannot be read
     const File file(Mat_Open(path_.c_str(), MAT_ACC_RDONLY));
-    if (!file) throw InputError({path_, 0, ""}, "is not a MAT file", "save it with MATLAB's 'save', or write a CSV log");
+    if (!file)
+      throw InputError({path_, 0, ""}, "is not a MAT file", "save it with MATLAB's 'save', or write a CSV log");
     while (Variable v{Mat_VarReadNext(file.get())}) take(*v);
     log_.require_signals();
     feed();

@@ -13,12 +13,12 @@
 namespace servodx {
 namespace {
 
-constexpr double piece_time = 8.0;        // [s] long enough to be unlike its neighbours, short against a skew
-constexpr int most_pieces = 40;           // searched outwards from the liveliest
-constexpr int fewest_pieces = 4;          // to state an error
-constexpr double largest_skew = 1e-3;     // [-]
-constexpr double least_correlation = 0.7; // of increments in a piece
-constexpr double rival = 0.9;             // another lag with this share of the best correlation: the signal repeats
+constexpr double piece_time = 8.0;         // [s] long enough to be unlike its neighbours, short against a skew
+constexpr int most_pieces = 40;            // searched outwards from the liveliest
+constexpr int fewest_pieces = 4;           // to state an error
+constexpr double largest_skew = 1e-3;      // [-]
+constexpr double least_correlation = 0.7;  // of increments in a piece
+constexpr double rival = 0.9;              // another lag with this share of the best correlation: the signal repeats
 constexpr double gap_over_step = 3.0;
 
 double usual_step(const std::vector<double>& t) {
@@ -162,7 +162,8 @@ ClockFit fit_clock(const Log& one, const Log& two, Signal by, const JoinOptions&
   const std::string name(info(by).name);
   const Series first(one.time, one[by]), second(two.time, two[by]);
   const double step = std::max(usual_step(one.time), usual_step(two.time));
-  const double length = std::min(piece_time, 0.5 * std::min(first.end() - first.begin(), second.end() - second.begin()));
+  const double length =
+      std::min(piece_time, 0.5 * std::min(first.end() - first.begin(), second.end() - second.begin()));
   const std::vector<double> whole = increments(first, first.begin(), first.end(), step);
 
   // The second's pieces; the liveliest is looked for everywhere.
@@ -195,7 +196,8 @@ ClockFit fit_clock(const Log& one, const Log& two, Signal by, const JoinOptions&
   }
   const Lag lag = best_lag(whole, pieces[liveliest], from, to, apart);
   if (lag.correlation < least_correlation)
-    refuse(two, fmt::format("the two recordings of '{}' are not alike: correlation {:.2f} at best", name, lag.correlation),
+    refuse(two,
+           fmt::format("the two recordings of '{}' are not alike: correlation {:.2f} at best", name, lag.correlation),
            "name another shared signal with --by, or check that both are of one test");
   if (lag.rival > rival * lag.correlation)
     refuse(two,
@@ -221,7 +223,8 @@ ClockFit fit_clock(const Log& one, const Log& two, Signal by, const JoinOptions&
   double middle = 0;
   for (const Piece& p : found) middle += p.at / static_cast<double>(found.size());
   double sum = 0, sum_tt = 0, sum_to = 0;
-  for (const Piece& p : found) sum += p.offset, sum_tt += std::pow(p.at - middle, 2), sum_to += (p.at - middle) * p.offset;
+  for (const Piece& p : found)
+    sum += p.offset, sum_tt += std::pow(p.at - middle, 2), sum_to += (p.at - middle) * p.offset;
   Alignment a{sum / static_cast<double>(found.size()), found.size() > 2 ? sum_to / sum_tt : 0.0, 0};
   a = align(first, second, first.begin(), first.end(), middle, a, true);
 
@@ -244,8 +247,8 @@ ClockFit fit_clock(const Log& one, const Log& two, Signal by, const JoinOptions&
   clock.pieces = static_cast<int>(fine.size());
   clock.skew = a.skew;
   clock.offset = a.delay - a.skew * middle;
-  const double variance = independent > 2 ? scatter / static_cast<double>(fine.size()) * independent / (independent - 2)
-                                          : std::nan("");
+  const double variance =
+      independent > 2 ? scatter / static_cast<double>(fine.size()) * independent / (independent - 2) : std::nan("");
   clock.offset_error = std::sqrt(variance / independent);
   clock.skew_error = spread > 0 ? std::sqrt(variance / (0.5 * spread)) : std::nan("");
   clock.correlation = a.correlation;

@@ -23,14 +23,14 @@ struct ClockFit {
 };
 
 struct JoinOptions {
-  std::optional<Signal> by;       // empty: the shared signal that fixes the clock best
-  std::optional<double> near;     // [s] where the offset is known roughly: for signals that repeat
-  double near_within = 0.5;       // [s]
+  std::optional<Signal> by;    // empty: the shared signal that fixes the clock best
+  std::optional<double> near;  // [s] where the offset is known roughly: for signals that repeat
+  double near_within = 0.5;    // [s]
 };
 
 // The first log with the second's further signals on its clock, cut to where both ran. Position, pressure and the like
-// run in a line between the second's samples, demands are held; a sample that falls into a gap of the second is missing.
-// Throws InputError where the two share no signal, or it does not settle the clock.
+// run in a line between the second's samples, demands are held; a sample that falls into a gap of the second is
+// missing. Throws InputError where the two share no signal, or it does not settle the clock.
 Log join_recorders(const Log& first, const Log& second, const JoinOptions& options, ClockFit& clock);
 
 }  // namespace servodx

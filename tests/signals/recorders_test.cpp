@@ -57,8 +57,8 @@ TEST(Recorders, OffsetAndSkewAreFoundWithinTheStatedErrors) {
     const double offset = random.uniform(-20, 20) + (seed % 2 ? 1.7e5 : 0), skew = random.uniform(-4e-4, 4e-4);
     const Log first = record(truth, {0, 0, 0, 60, 1000, 11}, {Signal::spool_position, Signal::command});
     const double begin = (10 - offset) / (1 + skew);
-    const Log second = record(truth, {offset, skew, begin, begin + 55, 400, 12},
-                              {Signal::spool_position, Signal::pressure_a});
+    const Log second =
+        record(truth, {offset, skew, begin, begin + 55, 400, 12}, {Signal::spool_position, Signal::pressure_a});
     ClockFit clock;
     const Log joined = join_recorders(first, second, {}, clock);
     // The offset belongs to the middle of the overlap, far from the clock's zero where the skew's error would tell.
@@ -73,9 +73,9 @@ TEST(Recorders, OffsetAndSkewAreFoundWithinTheStatedErrors) {
     EXPECT_GE(joined.time.front(), 9.99);
     double worst = 0;
     for (std::size_t k = 0; k < joined.samples(); ++k)
-      worst = std::max(worst, std::abs(joined[Signal::pressure_a][k] - 36.0 -
-                                       (1 + index(Signal::pressure_a)) *
-                                           truth(joined.time[k] + 0.01 * index(Signal::pressure_a))));
+      worst = std::max(
+          worst, std::abs(joined[Signal::pressure_a][k] - 36.0 -
+                          (1 + index(Signal::pressure_a)) * truth(joined.time[k] + 0.01 * index(Signal::pressure_a))));
     EXPECT_LT(worst, 0.5) << "of a range of hundreds";
   }
   EXPECT_GE(inside, all * 3 / 4);
@@ -96,7 +96,8 @@ TEST(Recorders, WhatDoesNotSettleTheClockIsRefused) {
   EXPECT_EQ(refusal(first, record(truth, {0, 0, 0, 30, 500, 2}, {Signal::pressure_a}), {}),
             "recorder: shares no signal with recorder; record one signal on both, such as the command, and map it in "
             "[columns] of the rig file");
-  EXPECT_EQ(refusal(first, record(truth, {0, 0, 0, 30, 500, 2}, {Signal::command}), {.by = Signal::spool_position, .near = {}}),
+  EXPECT_EQ(refusal(first, record(truth, {0, 0, 0, 30, 500, 2}, {Signal::command}),
+                    {.by = Signal::spool_position, .near = {}}),
             "recorder: 'spool_position' is not in both logs; name with --by a signal that both recorded");
   EXPECT_NE(refusal(first, record(other, {0, 0, 0, 30, 500, 2}, {Signal::command}), {}).find("are not alike"),
             std::string::npos);
