@@ -33,7 +33,7 @@ int main(int argc, char** argv) {
   add_join_command(app);
   add_list_command(app);
   add_map_command(app);
-  add_rig_command(app);
+  add_rig_command(app, exit_code);
   try {
     app.parse(argc, argv);
     return exit_code;

@@ -1,4 +1,4 @@
-// `servodx rig`: the virtual rig writes a log and, beside it, the truth.
+// `servodx rig`: the virtual rig writes a log and, beside it, the truth; or a labelled set of them.
 #pragma once
 
 namespace CLI {
@@ -7,6 +7,6 @@ class App;
 
 namespace servodx {
 
-void add_rig_command(CLI::App& app);
+void add_rig_command(CLI::App& app, int& exit_code);
 
 }  // namespace servodx
