@@ -19,9 +19,9 @@ inline constexpr double flapper_damping_ratio =
     0.3;  // eddy currents and squeeze film; at 1 kHz not separable from driver_bandwidth
 inline constexpr double spool_length_in_diameters =
     6.0;  // spool mass = steel cylinder of this length; its mode (kHz) is above any log
-inline constexpr double spool_static_over_coulomb =
-    1.02;  // breakaway over sliding friction; at the kHz of a log more of it is chatter
-inline constexpr double spool_stribeck_velocity = 5e-2;   // [m/s] the lubricated film carries from some cm/s
+inline constexpr double spool_presliding =
+    2e-6;  // [m] steel on steel yields 2 to 5 um before it slips (Armstrong, Dupont & Canudas 1994, sec. 2.2)
+inline constexpr double seal_presliding = 2e-5;           // [m] an elastomer lip bends before it slips
 inline constexpr double piston_stribeck_velocity = 2e-2;  // [m/s] elastomer seals slide fully from some cm/s
 inline constexpr double clean_filter_area_ratio =
     5.0;  // clean filter area over both fixed orifices' areas: 4 % of the pilot pressure is lost
@@ -35,16 +35,14 @@ inline constexpr double piston_stop_stiffness = 2e8;  // [N/m] full actuator for
 inline constexpr double piston_stop_damping = 5e4;    // [N s/m] an impact does not rebound
 
 // Smoothing widths, each with what it must stay small against.
-inline constexpr double backlash_rounding = 5e-7;        // [m] ball contact; a tenth of mild backlash
-inline constexpr double nozzle_rounding = 1e-6;          // [m] flapper at a nozzle: seat roughness; 3 % of the gap
-inline constexpr double stop_rounding = 1e-6;            // [m] flapper stop; a wider one bends the slew
-inline constexpr double edge_rounding = 1e-6;            // [m] corner radius of a new metering edge
-inline constexpr double spool_stop_rounding = 1e-5;      // [m] a slewing spool must feel its stop a step ahead
-inline constexpr double piston_stop_rounding = 1e-5;     // [m]
-inline constexpr double spool_friction_rounding = 1e-4;  // [m/s] a stuck spool creeps by under 0.1 um in a millisecond,
-                                                         // below a sensor's noise; sharper, differences fail
+inline constexpr double backlash_rounding = 5e-7;     // [m] ball contact; a tenth of mild backlash
+inline constexpr double nozzle_rounding = 1e-6;       // [m] flapper at a nozzle: seat roughness; 3 % of the gap
+inline constexpr double stop_rounding = 1e-6;         // [m] flapper stop; a wider one bends the slew
+inline constexpr double edge_rounding = 1e-6;         // [m] corner radius of a new metering edge
+inline constexpr double spool_stop_rounding = 1e-5;   // [m] a slewing spool must feel its stop a step ahead
+inline constexpr double piston_stop_rounding = 1e-5;  // [m]
+inline constexpr double slip_rounding = 0.1;  // of presliding: the last asperities slip a little later than the first
 inline constexpr double filter_direction_rounding = 2e-3;  // [m/s] spool speed over which rows 1 and 2 hand over
-inline constexpr double piston_friction_rounding = 1e-3;   // [m/s] a third of a percent of no-load speed
 inline constexpr double orifice_transition = 1e4;          // [Pa] linear below 0.1 bar
 inline constexpr double pressure_floor = 5e4;              // [Pa] absolute pressure at which the air law is rounded off
 inline constexpr double current_rounding = 1e-5;           // [A] amplifier limit

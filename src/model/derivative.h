@@ -5,6 +5,7 @@
 // of lines, temperature within a log, transient flow force, spool rotation, drain pressure of the pilot stage.
 // Signs: positive current -> flapper closes nozzle 1 -> p1 rises -> spool moves positive -> P to A -> piston extends.
 #pragma once
+#include <algorithm>
 #include <tuple>
 
 #include "base/smooth.h"
@@ -46,6 +47,21 @@ auto chamber_compliance(const V& volume, const P& pressure, const Derived<T>& d,
   namespace c = constants;
   const auto absolute = soft_positive(pressure + T(c::atmospheric_pressure), T(c::pressure_floor));
   return volume * (d.inverse_bulk + d.air / (absolute * absolute)) + p[row::hose_compliance];
+}
+
+// Friction of dry surfaces over what slides, -1..1: asperities are springs until they slip (Dahl 1968; Prandtl's
+// elastic-plastic element). stretch: from their anchor, in presliding lengths, -1..1. The anchor is dragged along
+// between steps (dragged_anchor), so a stuck part stays where it is, and no kink in speed upsets a step.
+template <class T, class X>
+auto asperities(const X& stretch) {
+  namespace c = constants;
+  constexpr double limit = 1.0 - 4.0 * c::slip_rounding;  // all have slipped by 1
+  return saturate(stretch, T(limit), T(c::slip_rounding)) * T(1.0 / limit);
+}
+template <class T>
+T dragged_anchor(const T& anchor, const T& x, double presliding) {
+  using std::max, std::min;
+  return max(min(anchor, x + T(presliding)), x - T(presliding));
 }
 
 // Derivatives of all states, base states first, then the effects', as a tuple.
@@ -108,9 +124,7 @@ inline __attribute__((always_inline)) auto derivative(const S& s, const In& u, c
   const auto f_flow = d.flow_force * p[row::port_width] *
                       (h_pa * (u.supply_pressure - p_a) + h_bt * (p_b - u.return_pressure) -
                        h_pb * (u.supply_pressure - p_b) - h_at * (p_a - u.return_pressure));
-  const auto v_rel2 = v_s * v_s * T(1.0 / (c::spool_stribeck_velocity * c::spool_stribeck_velocity));
-  const auto f_dry = p[row::spool_friction] * smooth_sign(v_s, T(c::spool_friction_rounding)) *
-                     (T(1.0) + T(c::spool_static_over_coulomb - 1.0) / (T(1.0) + v_rel2));
+  const auto f_dry = p[row::spool_friction] * asperities<T>((x_s - u.spool_anchor) * T(1.0 / c::spool_presliding));
   const auto over_spool = soft_positive(x_s - p[row::spool_stop], T(c::spool_stop_rounding));
   const auto under_spool = soft_positive(-x_s - p[row::spool_stop], T(c::spool_stop_rounding));
   const auto in_spool_stop = (over_spool + under_spool) / (over_spool + under_spool + T(c::spool_stop_rounding));
@@ -131,7 +145,7 @@ inline __attribute__((always_inline)) auto derivative(const S& s, const In& u, c
 
   // Piston.
   const auto v_slide2 = v_rel * v_rel * T(1.0 / (c::piston_stribeck_velocity * c::piston_stribeck_velocity));
-  const auto f_friction = d.viscous * v_rel + smooth_sign(v_rel, T(c::piston_friction_rounding)) *
+  const auto f_friction = d.viscous * v_rel + asperities<T>((x_p - u.rod_anchor) * T(1.0 / c::seal_presliding)) *
                                                   (p[row::piston_coulomb_friction] +
                                                    p[row::piston_stribeck_friction] / (T(1.0) + v_slide2));
   const auto over = soft_positive(x_p - T(0.5) * p[row::piston_stroke], T(c::piston_stop_rounding));

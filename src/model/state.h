@@ -21,12 +21,15 @@ enum State : int {
 inline constexpr int n_base_states = 12;
 
 // What the log or the table supplies at an instant.
-template <class X>
+template <class X, class T = X>
 struct Inputs {
   X current;          // [A] demand at the amplifier, null and hysteresis included
   X supply_pressure;  // [Pa]
   X return_pressure;  // [Pa]
   X load_force;       // [N] opposes extension
+  // Where the asperities that hold the spool, and those that hold the rod in the body's seals, are unstretched.
+  T spool_anchor{};  // [m] constant within a step
+  T rod_anchor{};    // [m]
 };
 
 // The log's oil, the same for every candidate.

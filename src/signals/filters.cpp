@@ -115,10 +115,18 @@ std::vector<double> high_pass(std::span<const double> time, std::span<const doub
   if (!(cutoff > 0.0)) throw std::invalid_argument("high_pass: the cutoff must be positive");
   const double rate = 2.0 * std::numbers::pi * cutoff;
   std::vector<double> y(x.size(), missing_value);
+  // At rest on the mean of a beginning that is short against the filter's memory: started on one sample, that sample's
+  // noise would stay for the whole of it.
+  constexpr double beginning = 0.05;  // of the memory 1 / rate
+  double sum = 0.0, count = 0.0;
+  for (std::size_t k = 0; k < x.size() && time[k] - time[0] <= beginning / rate; ++k)
+    if (!std::isnan(x[k])) sum += x[k], ++count;
   double state = 0.0, last_x = missing_value, last_time = 0.0;
   for (std::size_t k = 0; k < x.size(); ++k) {
     if (std::isnan(x[k])) continue;
-    if (!std::isnan(last_x)) {
+    if (std::isnan(last_x)) {
+      state = count > 0.0 ? x[k] - sum / count : 0.0;
+    } else {
       const double z = rate * (time[k] - last_time);
       // y' = x' - rate y, with x' constant between the stamps.
       state = std::exp(-z) * state + (x[k] - last_x) * (-std::expm1(-z) / z);
