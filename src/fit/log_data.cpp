@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/error.h"
+#include "signals/smoother.h"
 
 namespace servodx {
 namespace {
@@ -93,7 +94,7 @@ LogData prepare(const Log& log, const RigFile& rig, int window) {
   s.current_measured = log.has(Signal::coil_current);
   s.command = bridged(log.time, log[s.current_measured ? Signal::coil_current : Signal::command]);
   const auto input = [&](Signal which) {
-    return log.has(which) ? bridged(log.time, log[which]) : std::vector<double>{};
+    return log.has(which) ? without_noise(bridged(log.time, log[which])) : std::vector<double>{};
   };
   s.supply_pressure = input(Signal::supply_pressure);
   s.return_pressure = input(Signal::return_pressure);

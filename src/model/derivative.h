@@ -49,13 +49,13 @@ auto chamber_compliance(const V& volume, const P& pressure, const Derived<T>& d,
   return volume * (d.inverse_bulk + d.air / (absolute * absolute)) + p[row::hose_compliance];
 }
 
-// Friction of dry surfaces over what slides, -1..1: asperities are springs until they slip (Dahl 1968; Prandtl's
-// elastic-plastic element). stretch: from their anchor, in presliding lengths, -1..1. The anchor is dragged along
-// between steps (dragged_anchor), so a stuck part stays where it is, and no kink in speed upsets a step.
+// Friction of dry surfaces as a share of what they bear, -1..1: asperities are springs until they slip (Dahl 1968;
+// Prandtl's elastic-plastic element). stretch: from their anchor, in presliding lengths, -1..1. The anchor is dragged
+// along between steps (dragged_anchor), so a stuck part stays where it is, and no kink in speed upsets a step.
 template <class T, class X>
 auto asperities(const X& stretch) {
   namespace c = constants;
-  constexpr double limit = 1.0 - 4.0 * c::slip_rounding;  // all have slipped by 1
+  constexpr double limit = 1.0 - 4.0 * c::slip_rounding;  // all have slipped by a stretch of 1
   return saturate(stretch, T(limit), T(c::slip_rounding)) * T(1.0 / limit);
 }
 template <class T>

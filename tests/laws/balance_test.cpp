@@ -129,50 +129,64 @@ TEST(Balance, MirroredCurrentMirrorsMotion) {
   }
 }
 
-// Power that a velocity's own forces draw: (f(v) - f(0)) v, everything else held. Never above zero.
+// Inputs with the asperities dragged behind the motion.
 template <class Effects>
-void friction_takes_power(const ParameterVector& v) {
-  const Bench<Effects> bench(v);
+Inputs<double> dragged(const Bench<Effects>& bench, const typename Bench<Effects>::Y& y, Inputs<double> u) {
+  const double rod = bench.rate(y, u)[s_x_piston];  // relative to the body
+  u.spool_anchor = y[s_x_spool] - std::copysign(constants::spool_presliding, y[s_v_spool]);
+  u.rod_anchor = y[s_x_piston] - std::copysign(constants::seal_presliding, rod);
+  return u;
+}
+
+// Each sort of friction takes power from what slides, at any speed.
+template <class Effects>
+void friction_takes_power(ParameterVector v, int row, int at, int position) {
+  const Bench<Effects> with(v);
+  v[row] = 0;
+  const Bench<Effects> without(v);
   for (unsigned trial = 0; trial < 500; ++trial) {
     Random random(13, trial);
-    const auto y = bench.state(random);
-    const auto u = bench.inputs(random);
-    auto spool = y, piston = y;
-    spool[s_v_spool] = 0;
-    piston[s_v_piston] -= bench.rate(y, u)[s_x_piston];  // no slip between rod and body
-    for (const double scale : {1.0, 1e-2, 1e-4}) {       // through the Stribeck range and the rounding
-      auto moving = y;
-      moving[s_v_spool] = scale * y[s_v_spool];
-      EXPECT_LE((bench.rate(moving, u)[s_v_spool] - bench.rate(spool, u)[s_v_spool]) * moving[s_v_spool], 0.0) << trial;
-      moving = piston;
-      const double slip = scale * y[s_v_piston];
-      moving[s_v_piston] += slip;
-      EXPECT_LE((bench.rate(moving, u)[s_v_piston] - bench.rate(piston, u)[s_v_piston]) * slip, 0.0) << trial;
+    auto y = with.state(random);
+    const auto u = with.inputs(random);
+    for (const double scale : {1.0, 1e-2, 1e-4}) {  // through the Stribeck range
+      y[s_v_spool] *= scale;
+      y[s_v_piston] *= scale;
+      const auto now = dragged(with, y, u);
+      const double slip = with.rate(y, now)[position];
+      EXPECT_LT((with.rate(y, now)[at] - without.rate(y, now)[at]) * slip, 0.0)
+          << parameter_list[row].name << ' ' << trial << ' ' << scale;
     }
   }
 }
 
-TEST(Balance, FrictionNeverAddsEnergy) {
+TEST(Balance, FrictionTakesPowerFromWhatSlides) {
   ParameterVector v = nominal_candidate();
   v[row::piston_stribeck_friction] = 800;
-  friction_takes_power<NoEffects>(v);
-  friction_takes_power<AllEffects>(with_effects(v));
-  // Friction alone, and each sort of it: nothing here may rest on another term that hides it.
-  for (int only : {row::spool_friction, row::piston_viscous_friction, row::piston_coulomb_friction,
-                   row::piston_stribeck_friction}) {
-    ParameterVector w = v;
-    for (int r : {row::spool_friction, row::piston_viscous_friction, row::piston_coulomb_friction,
-                  row::piston_stribeck_friction})
-      if (r != only) w[r] = 0;
-    friction_takes_power<NoEffects>(w);
-    ParameterVector none = w;
-    none[only] = 0;
-    const Bench<NoEffects> with(w), without(none);
-    Random random(17);
-    const auto y = with.state(random);
-    const auto u = with.inputs(random);
-    const int at = only == row::spool_friction ? s_v_spool : s_v_piston;
-    EXPECT_LT((with.rate(y, u)[at] - without.rate(y, u)[at]) * y[at], 0.0) << parameter_list[only].name;
+  for (const ParameterVector& w : {v, with_effects(v)}) {
+    friction_takes_power<AllEffects>(w, row::spool_friction, s_v_spool, s_x_spool);
+    for (int row : {row::piston_viscous_friction, row::piston_coulomb_friction, row::piston_stribeck_friction})
+      friction_takes_power<AllEffects>(w, row, s_v_piston, s_x_piston);
+  }
+}
+
+TEST(Balance, AsperitiesReturnNoMoreThanTheyStoreAndSpendOnEveryCycle) {
+  constexpr double presliding = 2e-6;
+  for (unsigned trial = 0; trial < 100; ++trial) {
+    Random random(19, trial);
+    // There and back again between random ends, some within presliding; work in friction times presliding lengths.
+    double x = 0, anchor = 0, work = 0, least = 0;
+    for (int leg = 0; leg < 20; ++leg) {
+      const double end = leg == 19 ? 0.0 : random.uniform(-5.0, 5.0) * presliding * (leg % 3 ? 1.0 : 0.1);
+      const double step = (end - x) / 1000;
+      for (int k = 0; k < 1000; ++k) {
+        x += step;
+        work += asperities<double>((x - 0.5 * step - anchor) / presliding) * step / presliding;
+        anchor = dragged_anchor(anchor, x, presliding);
+        least = std::min(least, work);
+      }
+    }
+    EXPECT_GT(least, -1e-3) << trial;  // starts unstretched: never more back than went in
+    EXPECT_GT(work, 0.5) << trial;     // many lengths slid
   }
 }
 

@@ -85,10 +85,11 @@ TEST(ShippedLogs, HalvingTheStepConverges) {
       };
       const double at_default = rms(a), at_half = rms(b);
       std::printf("  %s %.2f -> %.2f", std::string(info(c.signal).name).c_str(), at_default, at_half);
-      // In noises of one sample: an integration error of half the sensor's noise is lost in any fit. The default
-      // step is far from the limit of small steps in the pilot stage, so of order 3 only order 1 is asked.
-      EXPECT_LT(at_default, 0.5) << name << ' ' << info(c.signal).name;
-      EXPECT_LT(at_half, std::max(0.5 * at_default, 0.02)) << name << ' ' << info(c.signal).name;
+      // In noises of one sample: an integration error of a third of the sensor's noise is lost in any fit. The default
+      // step is far from the limit of small steps in the pilot stage, and asperities let go between steps, so of order
+      // 3 little more than convergence is asked.
+      EXPECT_LT(at_default, 0.3) << name << ' ' << info(c.signal).name;
+      EXPECT_LT(at_half, std::max(0.75 * at_default, 0.02)) << name << ' ' << info(c.signal).name;
     }
     std::printf(" noises\n");
   }
