@@ -115,17 +115,23 @@ std::vector<double> high_pass(std::span<const double> time, std::span<const doub
   if (!(cutoff > 0.0)) throw std::invalid_argument("high_pass: the cutoff must be positive");
   const double rate = 2.0 * std::numbers::pi * cutoff;
   std::vector<double> y(x.size(), missing_value);
-  // At rest on the mean of a beginning that is short against the filter's memory: started on one sample, that sample's
+  // From rest on the straight line through a beginning that is short against the filter's memory: from one sample, its
   // noise would stay for the whole of it.
   constexpr double beginning = 0.05;  // of the memory 1 / rate
-  double sum = 0.0, count = 0.0;
-  for (std::size_t k = 0; k < x.size() && time[k] - time[0] <= beginning / rate; ++k)
-    if (!std::isnan(x[k])) sum += x[k], ++count;
+  double first = 0.0, n = 0.0, st = 0.0, sx = 0.0, stt = 0.0, stx = 0.0;
+  for (std::size_t k = 0; k < x.size() && time[k] - time[0] <= beginning / rate; ++k) {
+    if (std::isnan(x[k])) continue;
+    if (n == 0.0) first = x[k];
+    const double t = time[k] - time[0], d = x[k] - first;  // about the first: a constant gives zero bit for bit
+    n += 1.0, st += t, sx += d, stt += t * t, stx += t * d;
+  }
+  const double spread = n * stt - st * st;
   double state = 0.0, last_x = missing_value, last_time = 0.0;
   for (std::size_t k = 0; k < x.size(); ++k) {
     if (std::isnan(x[k])) continue;
     if (std::isnan(last_x)) {
-      state = count > 0.0 ? x[k] - sum / count : 0.0;
+      const double t = time[k] - time[0];
+      if (n >= 3.0 && spread > 0.0) state = -((stt * sx - st * stx) + (n * stx - st * sx) * t) / spread;
     } else {
       const double z = rate * (time[k] - last_time);
       // y' = x' - rate y, with x' constant between the stamps.

@@ -190,5 +190,21 @@ TEST(Filters, ShortAndEmptyRecordsAreTaken) {
     for (int n : {0, 1, 2, 3}) EXPECT_EQ(filter(even(n, 1e-3), std::vector<double>(n, 1.0)).size(), n);
 }
 
+// Noise of the first sample alone must not last for the filter's memory.
+TEST(Filters, HighPassForgetsTheNoiseOfItsFirstSample) {
+  const auto t = even(4000, 1e-3);
+  double worst = 0;
+  for (unsigned seed = 0; seed < 20; ++seed) {
+    Random random(23, seed);
+    std::vector<double> x(t.size());
+    for (double& v : x) v = random.normal();
+    const auto y = high_pass(t, x, 0.3);
+    double mean = 0;
+    for (std::size_t k = 50; k < 250; ++k) mean += y[k] / 200.0;
+    worst = std::max(worst, std::abs(mean));
+  }
+  EXPECT_LT(worst, 0.6);  // one sample's noise would reach 2 of 20 times
+}
+
 }  // namespace
 }  // namespace servodx
