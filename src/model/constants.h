@@ -21,7 +21,9 @@ inline constexpr double spool_length_in_diameters =
     6.0;  // spool mass = steel cylinder of this length; its mode (kHz) is above any log
 inline constexpr double spool_presliding =
     2e-6;  // [m] steel on steel yields 2 to 5 um before it slips (Armstrong, Dupont & Canudas 1994, sec. 2.2)
-inline constexpr double seal_presliding = 3e-5;           // [m] an elastomer lip bends some tens of um before it slips
+// [m] A seal slips bit by bit, from its asperities to the bending of its lip; each family bears an equal share
+// (Maxwell's slip model: Iwan 1966, Al-Bender, Lampaert & Swevers 2005). One family alone rings at each reversal.
+inline constexpr double seal_presliding[] = {1e-5, 3e-5, 1e-4};
 inline constexpr double piston_stribeck_velocity = 2e-2;  // [m/s] elastomer seals slide fully from some cm/s
 inline constexpr double clean_filter_area_ratio =
     5.0;  // clean filter area over both fixed orifices' areas: 4 % of the pilot pressure is lost

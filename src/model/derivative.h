@@ -7,6 +7,7 @@
 #pragma once
 #include <algorithm>
 #include <tuple>
+#include <utility>
 
 #include "base/smooth.h"
 #include "model/constants.h"
@@ -145,9 +146,12 @@ inline __attribute__((always_inline)) auto derivative(const S& s, const In& u, c
 
   // Piston.
   const auto v_slide2 = v_rel * v_rel * T(1.0 / (c::piston_stribeck_velocity * c::piston_stribeck_velocity));
-  const auto f_friction = d.viscous * v_rel + asperities<T>((x_p - u.rod_anchor) * T(1.0 / c::seal_presliding)) *
-                                                  (p[row::piston_coulomb_friction] +
-                                                   p[row::piston_stribeck_friction] / (T(1.0) + v_slide2));
+  const auto seals = [&]<int... I>(std::integer_sequence<int, I...>) {
+    return (asperities<T>((x_p - u.seal_anchor[I]) * T(1.0 / c::seal_presliding[I])) + ...) * T(1.0 / n_seal_families);
+  }
+  (std::make_integer_sequence<int, n_seal_families>{});
+  const auto f_friction = d.viscous * v_rel + seals * (p[row::piston_coulomb_friction] +
+                                                       p[row::piston_stribeck_friction] / (T(1.0) + v_slide2));
   const auto over = soft_positive(x_p - T(0.5) * p[row::piston_stroke], T(c::piston_stop_rounding));
   const auto under = soft_positive(-x_p - T(0.5) * p[row::piston_stroke], T(c::piston_stop_rounding));
   const auto in_stop = (over + under) / (over + under + T(c::piston_stop_rounding));

@@ -72,7 +72,7 @@ struct System {
                       at.return_pressure + slope.return_pressure * t,
                       at.load_force + slope.load_force * t,
                       at.spool_anchor,
-                      at.rod_anchor};
+                      at.seal_anchor};
     const auto g = evaluate(PlainStates<n, T>{y}, u);
     unroll<n>([&](auto i) { f[i] = std::get<i>(g); });
   }
@@ -107,7 +107,7 @@ struct System {
                                 seed<n>(at.return_pressure, slope.return_pressure),
                                 seed<n>(at.load_force, slope.load_force),
                                 at.spool_anchor,
-                                at.rod_anchor};
+                                at.seal_anchor};
     const auto g = evaluate(DualStates<n, T>{y}, u);
     unroll<n>([&](auto i) {
       constexpr Mask m = mask_of<i>();
@@ -224,7 +224,7 @@ void run_pack(const Scenario& in, const ParameterVector* const* candidates, Traj
     for (int k = 0; k < 60; ++k) {
       // Which way spool and rod came to rest is not known: they hang by no friction.
       settling.at.spool_anchor = y[s_x_spool];
-      settling.at.rod_anchor = y[s_x_piston];
+      settling.at.seal_anchor.fill(y[s_x_piston]);
       rodas3_step<T>(settling, y, k < 20 ? 2e-4 : 1e-3);
     }
   }
@@ -285,7 +285,9 @@ void run_pack(const Scenario& in, const ParameterVector* const* candidates, Traj
   constexpr double jump = 0.03;         // of rated current
   constexpr double impact_time = 4e-3;  // [s]
   double impact_until = in.time[0] - 1.0;
-  T spool_anchor = y[s_x_spool], rod_anchor = y[s_x_piston];
+  T spool_anchor = y[s_x_spool];
+  std::array<T, n_seal_families> seal_anchor;
+  seal_anchor.fill(y[s_x_piston]);
   for (std::size_t k = 0; k + 1 < samples; ++k) {
     const double dt = in.time[k + 1] - in.time[k];
     if (std::abs(in.command[k + 1] - in.command[k]) > jump * in.rated_current)
@@ -306,10 +308,11 @@ void run_pack(const Scenario& in, const ParameterVector* const* candidates, Traj
                  now.return_pressure + live.slope.return_pressure * t,
                  now.load_force + live.slope.load_force * t,
                  spool_anchor,
-                 rod_anchor};
+                 seal_anchor};
       rodas3_step<T>(live, y, h);
       spool_anchor = dragged_anchor(spool_anchor, y[s_x_spool], constants::spool_presliding);
-      rod_anchor = dragged_anchor(rod_anchor, y[s_x_piston], constants::seal_presliding);
+      for (int i = 0; i < n_seal_families; ++i)
+        seal_anchor[i] = dragged_anchor(seal_anchor[i], y[s_x_piston], constants::seal_presliding[i]);
     }
     now = next;
     if (!report(k + 1, now)) return;

@@ -134,7 +134,8 @@ template <class Effects>
 Inputs<double> dragged(const Bench<Effects>& bench, const typename Bench<Effects>::Y& y, Inputs<double> u) {
   const double rod = bench.rate(y, u)[s_x_piston];  // relative to the body
   u.spool_anchor = y[s_x_spool] - std::copysign(constants::spool_presliding, y[s_v_spool]);
-  u.rod_anchor = y[s_x_piston] - std::copysign(constants::seal_presliding, rod);
+  for (int i = 0; i < n_seal_families; ++i)
+    u.seal_anchor[i] = y[s_x_piston] - std::copysign(constants::seal_presliding[i], rod);
   return u;
 }
 
