@@ -7,6 +7,7 @@
 #include "effects/magnetic_hysteresis.h"
 #include "effects/mount_compliance.h"
 #include "effects/nozzle_plugging.h"
+#include "effects/stiction.h"
 #include "model/hooks.h"
 
 namespace servodx {
@@ -14,7 +15,8 @@ namespace servodx {
 using NoEffects = EffectList<>;
 using AllEffects = EffectList<MagneticHysteresis,  //
                               MountCompliance,     //
-                              NozzlePlugging>;
+                              NozzlePlugging,      //
+                              Stiction>;
 inline constexpr int n_values = n_parameters + AllEffects::n_parameters;  // length of a parameter vector
 
 struct EffectInfo {

@@ -1,5 +1,6 @@
 // Sticky spool: silt or lacquer multiplies the friction between spool and sleeve.
 #pragma once
+#include "effects/registry.h"
 #include "faults/fault.h"
 
 namespace servodx {
@@ -17,6 +18,9 @@ inline const Fault sticky_spool{
     .test =
         "slow small sine: the spool stands still at each reversal, longer the slower; backlash does not care for rate",
     .action = "abnormal: call service",
-    .apply = [](double* v, double s) { v[row::spool_friction] *= s; }};
+    .apply = [](double* v, double s) {
+      v[row::spool_friction] *= s;
+      v[effect_row<Stiction>(0)] *= s;
+    }};
 
 }  // namespace servodx

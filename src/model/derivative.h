@@ -5,11 +5,11 @@
 // of lines, temperature within a log, transient flow force, spool rotation, drain pressure of the pilot stage.
 // Signs: positive current -> flapper closes nozzle 1 -> p1 rises -> spool moves positive -> P to A -> piston extends.
 #pragma once
-#include <algorithm>
 #include <tuple>
 #include <utility>
 
 #include "base/smooth.h"
+#include "model/asperities.h"
 #include "model/constants.h"
 #include "model/derived.h"
 #include "model/hooks.h"
@@ -48,21 +48,6 @@ auto chamber_compliance(const V& volume, const P& pressure, const Derived<T>& d,
   namespace c = constants;
   const auto absolute = soft_positive(pressure + T(c::atmospheric_pressure), T(c::pressure_floor));
   return volume * (d.inverse_bulk + d.air / (absolute * absolute)) + p[row::hose_compliance];
-}
-
-// Friction of dry surfaces as a share of what they bear, -1..1: asperities are springs until they slip (Dahl 1968;
-// Prandtl's elastic-plastic element). stretch: from their anchor, in presliding lengths, -1..1. The anchor is dragged
-// along between steps (dragged_anchor), so a stuck part stays where it is, and no kink in speed upsets a step.
-template <class T, class X>
-auto asperities(const X& stretch) {
-  namespace c = constants;
-  constexpr double limit = 1.0 - 4.0 * c::slip_rounding;  // all have slipped by a stretch of 1
-  return saturate(stretch, T(limit), T(c::slip_rounding)) * T(1.0 / limit);
-}
-template <class T>
-T dragged_anchor(const T& anchor, const T& x, double presliding) {
-  using std::max, std::min;
-  return max(min(anchor, x + T(presliding)), x - T(presliding));
 }
 
 // Derivatives of all states, base states first, then the effects', as a tuple.
@@ -125,7 +110,8 @@ inline __attribute__((always_inline)) auto derivative(const S& s, const In& u, c
   const auto f_flow = d.flow_force * p[row::port_width] *
                       (h_pa * (u.supply_pressure - p_a) + h_bt * (p_b - u.return_pressure) -
                        h_pb * (u.supply_pressure - p_b) - h_at * (p_a - u.return_pressure));
-  const auto f_dry = p[row::spool_friction] * asperities<T>((x_s - u.spool_anchor) * T(1.0 / c::spool_presliding));
+  const auto f_dry =
+      p[row::spool_friction] * asperities<T>((x_s - u.friction.spool_anchor) * T(1.0 / c::spool_presliding));
   const auto over_spool = soft_positive(x_s - p[row::spool_stop], T(c::spool_stop_rounding));
   const auto under_spool = soft_positive(-x_s - p[row::spool_stop], T(c::spool_stop_rounding));
   const auto in_spool_stop = (over_spool + under_spool) / (over_spool + under_spool + T(c::spool_stop_rounding));
@@ -145,13 +131,15 @@ inline __attribute__((always_inline)) auto derivative(const S& s, const In& u, c
                     chamber_compliance(volume_b, p_b, d, p);
 
   // Piston.
-  const auto v_slide2 = v_rel * v_rel * T(1.0 / (c::piston_stribeck_velocity * c::piston_stribeck_velocity));
+  constexpr int n_families = std::size(c::seal_presliding);
   const auto seals = [&]<int... I>(std::integer_sequence<int, I...>) {
-    return (asperities<T>((x_p - u.seal_anchor[I]) * T(1.0 / c::seal_presliding[I])) + ...) * T(1.0 / n_seal_families);
+    return (asperities<T>((x_p - u.friction.seal_anchor[I]) * T(1.0 / c::seal_presliding[I])) + ...) *
+           T(1.0 / n_families);
   }
-  (std::make_integer_sequence<int, n_seal_families>{});
+  (std::make_integer_sequence<int, n_families>{});
   const auto f_friction = d.viscous * v_rel + seals * (p[row::piston_coulomb_friction] +
-                                                       p[row::piston_stribeck_friction] / (T(1.0) + v_slide2));
+                                                       p[row::piston_stribeck_friction] *
+                                                           stribeck(u.friction.rod_speed, c::piston_stribeck_velocity));
   const auto over = soft_positive(x_p - T(0.5) * p[row::piston_stroke], T(c::piston_stop_rounding));
   const auto under = soft_positive(-x_p - T(0.5) * p[row::piston_stroke], T(c::piston_stop_rounding));
   const auto in_stop = (over + under) / (over + under + T(c::piston_stop_rounding));

@@ -1,6 +1,6 @@
 // States of the identification model and what drives it; the stages fill them in this order.
 #pragma once
-#include <array>
+#include "model/asperities.h"
 
 namespace servodx {
 
@@ -21,19 +21,14 @@ enum State : int {
 };
 inline constexpr int n_base_states = 12;
 
-inline constexpr int n_seal_families = 3;  // of asperities in the seals, by the way they go before they slip
-
 // What drives the model at an instant, from the log or the table, and what it remembers of the past.
 template <class X, class T = X>
 struct Inputs {
-  X current;          // [A] demand at the amplifier, null and hysteresis included
-  X supply_pressure;  // [Pa]
-  X return_pressure;  // [Pa]
-  X load_force;       // [N] opposes extension
-  // Where the asperities that hold the spool, and those that hold the rod in its seals, are unstretched; constant
-  // within a step.
-  T spool_anchor{};                              // [m]
-  std::array<T, n_seal_families> seal_anchor{};  // [m]
+  X current;                     // [A] demand at the amplifier, null and hysteresis included
+  X supply_pressure;             // [Pa]
+  X return_pressure;             // [Pa]
+  X load_force;                  // [N] opposes extension
+  FrictionMemory<T> friction{};  // constant within a step
 };
 
 // The log's oil, the same for every candidate.

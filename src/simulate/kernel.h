@@ -67,12 +67,9 @@ struct System {
   }
 
   void value(const std::array<T, n>& y, const T& t, std::array<T, n>& f) const {
-    const Inputs<T> u{at.current + slope.current * t,
-                      at.supply_pressure + slope.supply_pressure * t,
-                      at.return_pressure + slope.return_pressure * t,
-                      at.load_force + slope.load_force * t,
-                      at.spool_anchor,
-                      at.seal_anchor};
+    const Inputs<T> u{at.current + slope.current * t, at.supply_pressure + slope.supply_pressure * t,
+                      at.return_pressure + slope.return_pressure * t, at.load_force + slope.load_force * t,
+                      at.friction};
     const auto g = evaluate(PlainStates<n, T>{y}, u);
     unroll<n>([&](auto i) { f[i] = std::get<i>(g); });
   }
@@ -102,12 +99,9 @@ struct System {
   template <class W>
   void value_and_jacobian(const std::array<T, n>& y, const T&, std::array<T, n>& f, W& w, std::array<T, n>& f_t) const {
     using Lu = SparseLu<n, pattern>;
-    const Inputs<TimeDual, T> u{seed<n>(at.current, slope.current),
-                                seed<n>(at.supply_pressure, slope.supply_pressure),
+    const Inputs<TimeDual, T> u{seed<n>(at.current, slope.current), seed<n>(at.supply_pressure, slope.supply_pressure),
                                 seed<n>(at.return_pressure, slope.return_pressure),
-                                seed<n>(at.load_force, slope.load_force),
-                                at.spool_anchor,
-                                at.seal_anchor};
+                                seed<n>(at.load_force, slope.load_force), at.friction};
     const auto g = evaluate(DualStates<n, T>{y}, u);
     unroll<n>([&](auto i) {
       constexpr Mask m = mask_of<i>();
@@ -222,9 +216,7 @@ void run_pack(const Scenario& in, const ParameterVector* const* candidates, Traj
         p[row::torque_motor_gain] * d.inverse_flapper_stiffness * d.spool_area * half / p[row::nozzle_gap];
     settling.settle_rate = T(rate) / (d.inverse_spool_mass * force_per_amp);
     for (int k = 0; k < 60; ++k) {
-      // Which way spool and rod came to rest is not known: they hang by no friction.
-      settling.at.spool_anchor = y[s_x_spool];
-      settling.at.seal_anchor.fill(y[s_x_piston]);
+      settling.at.friction.rest(y[s_x_spool], y[s_x_piston]);
       rodas3_step<T>(settling, y, k < 20 ? 2e-4 : 1e-3);
     }
   }
@@ -285,9 +277,8 @@ void run_pack(const Scenario& in, const ParameterVector* const* candidates, Traj
   constexpr double jump = 0.03;         // of rated current
   constexpr double impact_time = 4e-3;  // [s]
   double impact_until = in.time[0] - 1.0;
-  T spool_anchor = y[s_x_spool];
-  std::array<T, n_seal_families> seal_anchor;
-  seal_anchor.fill(y[s_x_piston]);
+  FrictionMemory<T> friction;
+  friction.rest(y[s_x_spool], y[s_x_piston]);
   for (std::size_t k = 0; k + 1 < samples; ++k) {
     const double dt = in.time[k + 1] - in.time[k];
     if (std::abs(in.command[k + 1] - in.command[k]) > jump * in.rated_current)
@@ -303,16 +294,12 @@ void run_pack(const Scenario& in, const ParameterVector* const* candidates, Traj
                   (next.return_pressure - now.return_pressure) * per, (next.load_force - now.load_force) * per};
     for (int j = 0; j < substeps; ++j) {
       const T t = T(h * j);
-      live.at = {now.current + live.slope.current * t,
-                 now.supply_pressure + live.slope.supply_pressure * t,
-                 now.return_pressure + live.slope.return_pressure * t,
-                 now.load_force + live.slope.load_force * t,
-                 spool_anchor,
-                 seal_anchor};
+      live.at = {now.current + live.slope.current * t, now.supply_pressure + live.slope.supply_pressure * t,
+                 now.return_pressure + live.slope.return_pressure * t, now.load_force + live.slope.load_force * t,
+                 friction};
+      const T spool_from = y[s_x_spool], rod_from = y[s_x_piston];
       rodas3_step<T>(live, y, h);
-      spool_anchor = dragged_anchor(spool_anchor, y[s_x_spool], constants::spool_presliding);
-      for (int i = 0; i < n_seal_families; ++i)
-        seal_anchor[i] = dragged_anchor(seal_anchor[i], y[s_x_piston], constants::seal_presliding[i]);
+      friction.move(spool_from, y[s_x_spool], rod_from, y[s_x_piston], h);
     }
     now = next;
     if (!report(k + 1, now)) return;

@@ -133,9 +133,9 @@ TEST(Balance, MirroredCurrentMirrorsMotion) {
 template <class Effects>
 Inputs<double> dragged(const Bench<Effects>& bench, const typename Bench<Effects>::Y& y, Inputs<double> u) {
   const double rod = bench.rate(y, u)[s_x_piston];  // relative to the body
-  u.spool_anchor = y[s_x_spool] - std::copysign(constants::spool_presliding, y[s_v_spool]);
-  for (int i = 0; i < n_seal_families; ++i)
-    u.seal_anchor[i] = y[s_x_piston] - std::copysign(constants::seal_presliding[i], rod);
+  const double h = 1.0;                             // far enough for all to slip
+  u.friction.rest(y[s_x_spool] - y[s_v_spool] * h, y[s_x_piston] - rod * h);
+  u.friction.move(y[s_x_spool] - y[s_v_spool] * h, y[s_x_spool], y[s_x_piston] - rod * h, y[s_x_piston], h);
   return u;
 }
 

@@ -1,0 +1,62 @@
+// Dry friction as what carries it: asperities are springs until they slip, and bear their whole share from then on
+// (Dahl 1968; Prandtl's elastic-plastic element). Their anchor is dragged along between steps, so a stuck part stays
+// where it is, no corner in speed upsets a linearly implicit step, and two candidates that differ in a last digit stay
+// together. Left out: memory of the time at rest, damping while they hold.
+#pragma once
+#include <algorithm>
+#include <array>
+#include <iterator>
+
+#include "base/smooth.h"
+#include "model/constants.h"
+
+namespace servodx {
+
+// Share of the friction that is borne, -1..1. stretch: from the anchor, in presliding lengths, -1..1.
+template <class T, class X>
+auto asperities(const X& stretch) {
+  namespace c = constants;
+  constexpr double limit = 1.0 - 4.0 * c::slip_rounding;  // all have slipped by a stretch of 1
+  return saturate(stretch, T(limit), T(c::slip_rounding)) * T(1.0 / limit);
+}
+
+// Anchor [m] after a move to x [m].
+template <class T>
+T dragged_anchor(const T& anchor, const T& x, double presliding) {
+  using std::max, std::min;
+  return max(min(anchor, x + T(presliding)), x - T(presliding));
+}
+
+// Share of the breakaway friction that is left at a speed [m/s]: 1 at rest, a half at `fall` (Stribeck's curve). The
+// speed is the last step's: a force that falls as speed rises is negative damping, which no linearly implicit step
+// bears.
+template <class T>
+T stribeck(const T& speed, double fall) {
+  const T ratio = speed * T(1.0 / fall);
+  return T(1.0) / (T(1.0) + ratio * ratio);
+}
+
+// What spool and rod remember of their way.
+template <class T>
+struct FrictionMemory {
+  T spool_anchor{}, spool_speed{};                                     // [m], [m/s] mean over the last step
+  std::array<T, std::size(constants::seal_presliding)> seal_anchor{};  // [m]
+  T rod_speed{};                                                       // [m/s] relative to the body
+
+  // At rest and unstretched: which way they came is not known.
+  void rest(const T& x_spool, const T& x_rod) {
+    spool_anchor = x_spool;
+    seal_anchor.fill(x_rod);
+    spool_speed = rod_speed = T(0.0);
+  }
+  // After a step of h [s] between two places [m].
+  void move(const T& spool_from, const T& x_spool, const T& rod_from, const T& x_rod, double h) {
+    spool_anchor = dragged_anchor(spool_anchor, x_spool, constants::spool_presliding);
+    for (std::size_t i = 0; i < seal_anchor.size(); ++i)
+      seal_anchor[i] = dragged_anchor(seal_anchor[i], x_rod, constants::seal_presliding[i]);
+    spool_speed = (x_spool - spool_from) * T(1.0 / h);
+    rod_speed = (x_rod - rod_from) * T(1.0 / h);
+  }
+};
+
+}  // namespace servodx
