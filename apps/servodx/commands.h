@@ -14,5 +14,6 @@ void add_diagnose_command(CLI::App& app, int& exit_code);
 void add_join_command(CLI::App& app);
 void add_list_command(CLI::App& app);
 void add_map_command(CLI::App& app);
+void add_curves_command(CLI::App& app);
 
 }  // namespace servodx

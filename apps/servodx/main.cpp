@@ -32,6 +32,7 @@ int main(int argc, char** argv) {
   add_diagnose_command(app, exit_code);
   add_join_command(app);
   add_list_command(app);
+  add_curves_command(app);
   add_map_command(app);
   add_rig_command(app, exit_code);
   try {

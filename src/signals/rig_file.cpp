@@ -2,6 +2,7 @@
 
 #include <toml++/toml.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -64,6 +65,8 @@ class Reader {
       rig_.lines[key] = name.source().begin.line;
       if (key == "columns") {
         read_columns(section(node, key));
+      } else if (key == "limits") {
+        read_limits(section(node, key));
       } else if (key == "fluid" && node.is_string()) {
         read_preset(word(node, key));
       } else if (key == "valve" || key == "actuator" || key == "lines" || key == "supply" || key == "fluid" ||
@@ -106,7 +109,7 @@ class Reader {
     const std::string folder = dot == std::string::npos ? "" : key.substr(0, dot + 1);
     std::string known = folder.empty()
                             ? "name, serial, ports, command_hold, mains_frequency, null_limit, fluid, [valve], "
-                              "[actuator], [lines], [supply], [fluid], [columns]"
+                              "[actuator], [lines], [supply], [fluid], [limits], [columns]"
                             : "";
     if (folder == "valve.") known = "first_stage, dither";
     for (const RigFact& fact : rig_facts())
@@ -159,6 +162,34 @@ class Reader {
     for (const Preset& preset : presets) known += std::string(preset.name) + ", ";
     throw InputError(place("fluid"), "unknown fluid '" + name + "'",
                      "use one of " + known + "or a [fluid] section with density and kinematic_viscosity");
+  }
+
+  void read_limits(const toml::table& table) {
+    for (const auto& [name, node] : table) {
+      const std::string figure(name.str()), key = "limits." + figure;
+      rig_.lines[key] = name.source().begin.line;
+      const auto& list = limit_list();
+      const auto known = std::find_if(list.begin(), list.end(), [&](const LimitInfo& l) { return l.figure == figure; });
+      if (known == list.end()) {
+        std::string names;
+        for (const LimitInfo& l : list) names += (names.empty() ? "" : ", ") + std::string(l.figure);
+        throw InputError(place(key), "unknown figure", "known here: " + names);
+      }
+      Limit limit;
+      if (!node.is_table()) {
+        (known->upper ? limit.max : limit.min) = quantity(node, key, known->dimension, true);
+      } else {
+        for (const auto& [side, bound] : *node.as_table()) {
+          const std::string word(side.str()), at = key + "." + word;
+          rig_.lines[at] = side.source().begin.line;
+          if (word != "min" && word != "max") throw InputError(place(at), "unknown key", "known here: min, max");
+          (word == "min" ? limit.min : limit.max) = quantity(bound, at, known->dimension, true);
+        }
+        if (limit.min && limit.max && *limit.min > *limit.max)
+          throw InputError(place(key), "min is above max", "swap them");
+      }
+      rig_.limits[figure] = limit;
+    }
   }
 
   void read_columns(const toml::table& table) {
@@ -316,6 +347,24 @@ const std::vector<RigFact>& rig_facts() {
       {"fluid.kinematic_viscosity", kinematic_viscosity, false},
   };
   return facts;
+}
+
+const std::vector<LimitInfo>& limit_list() {
+  static const std::vector<LimitInfo> list = {
+      {"rated_flow", flow, false},
+      {"null_bias", fraction, true},
+      {"hysteresis", fraction, true},
+      {"threshold", fraction, true},
+      {"linearity", fraction, true},
+      {"symmetry", fraction, true},
+      {"lap", fraction, true},
+      {"pressure_gain", fraction, false},
+      {"null_leakage", flow, true},
+      {"pilot_leakage", flow, true},
+      {"phase_lag_90_frequency", frequency, false},
+      {"amplitude_3db_frequency", frequency, false},
+  };
+  return list;
 }
 
 RigFile read_rig_file(const std::string& path) { return Reader(path).read(); }

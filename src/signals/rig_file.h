@@ -35,6 +35,18 @@ struct Fluid {
   std::string name;                    // preset name, if one
 };
 
+// A limit of the acceptance sheet ([limits], 'servodx curves'): "4 %" bounds the figure on its usual side, a table
+// { min = "...", max = "..." } on either. Of a figure with a sign its size is judged.
+struct Limit {
+  std::optional<double> min, max;  // [SI]
+};
+struct LimitInfo {
+  std::string_view figure;
+  Dimension dimension;
+  bool upper;  // the usual side of a single value
+};
+const std::vector<LimitInfo>& limit_list();
+
 // Facts in SI; empty where the file is silent.
 struct RigFile {
   std::string path;
@@ -48,6 +60,7 @@ struct RigFile {
   // facts by dotted key, SI: "valve.rated_current" [A], "valve.spool_stroke" [m], "actuator.area_a" [m2],
   // "supply.pressure" [Pa], ...; rig_facts() lists them all
   std::map<std::string, double> facts;
+  std::map<std::string, Limit> limits;       // by figure
   std::map<std::string, std::string> words;  // string facts: "valve.first_stage"
   std::map<std::string, long> lines;         // line of each key given, for errors
   std::map<std::string, ColumnMapping> columns;

@@ -25,13 +25,14 @@ const std::map<std::string, std::set<std::string>> allowed = {
     {"optimise", {}},
     {"signals", {}},
     {"valve_maps", {}},
+    {"curves", {"signals"}},
     {"simulate", {"parameters", "model", "effects", "faults", "integrate", "signals"}},
     {"rig", {"integrate", "signals"}},
     {"fit", {"parameters", "simulate", "signals", "optimise"}},
     {"diagnose", {"parameters", "signals", "simulate", "fit", "faults", "effects"}},
     {"explain", {"parameters", "signals", "simulate", "fit", "faults", "effects"}},
     {"prognose", {"parameters", "signals", "fit", "valve_maps", "integrate"}},
-    {"report", {"diagnose", "explain", "prognose", "fit", "valve_maps"}},
+    {"report", {"diagnose", "explain", "prognose", "fit", "valve_maps", "curves"}},
 };
 
 struct Include {

@@ -1,0 +1,57 @@
+// The standard figures of a servovalve from a log of a test stand, as SAE ARP490 defines them: an acceptance sheet.
+//
+// Slow sweeps of the command give the flow, pressure and leakage curves, branch by branch; sine sweeps and noise give
+// the frequency response. Percentages are of rated current, of all sweeps of the log. A log holds some of the curves:
+// what it cannot show is not reported.
+//   rated_flow     mean size of the no-load flow at plus and minus rated current
+//   null_bias      current at which the mean of both branches is zero
+//   hysteresis     largest difference in current between the branches at one output
+//   threshold      change of current after a reversal until the output turns, less what the output's resolution takes
+//   linearity      largest departure of the mean curve from its straight line, in current
+//   symmetry       difference of the flow gains of the two polarities over the larger
+//   lap            distance between the straight parts of both polarities where they meet zero flow
+//   pressure_gain  blocked-port load pressure within +-40 % of supply: part of supply per per cent of rated current
+//   null_leakage   largest flow from supply to return with the ports blocked; pilot_leakage the least, spool open
+// Limits: a sweep that is not slow adds the lag of valve and meter to the hysteresis, and says so; the output's
+// resolution and noise widen what a figure can tell.
+#pragma once
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "curves/frequency_response.h"
+#include "signals/log.h"
+#include "signals/rig_file.h"
+
+namespace servodx::curves {
+
+// One output over the command, both branches and their mean on the same currents; NaN where a branch has no samples.
+struct SweepCurve {
+  Signal signal;
+  std::vector<double> current;         // [A] evenly spaced
+  std::vector<double> up, down, mean;  // [SI]
+};
+
+struct Figure {
+  std::string name;    // of limit_list, or a further one
+  std::string signal;  // what it was read from
+  double value = 0;    // [unit]
+  std::string unit;    // SI; "-" for a fraction
+  std::optional<Limit> limit;
+  std::optional<bool> pass;  // empty: no limit, or the log cannot tell
+  std::string note;
+};
+
+struct Sheet {
+  std::vector<Figure> figures;
+  std::vector<SweepCurve> curves;
+  std::vector<ResponsePoint> response;
+  std::string response_signal;
+  std::string verdict;  // pass | fail | not_judged
+  std::vector<std::string> notes;
+};
+
+// Throws InputError for a log or rig file from which no figure can be read.
+Sheet read_curves(const Log& log, const RigFile& rig);
+
+}  // namespace servodx::curves
