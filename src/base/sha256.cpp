@@ -2,6 +2,7 @@
 
 #include <openssl/evp.h>
 
+#include <array>
 #include <stdexcept>
 
 #include "base/csv.h"
@@ -41,5 +42,15 @@ std::string sha256(std::string_view bytes) {
 }
 
 std::string sha256_of_file(const std::string& path) { return sha256(read_file(path)); }
+
+std::string sha256_base64(std::string_view bytes) {
+  const std::string hex = sha256(bytes);
+  std::array<unsigned char, 32> digest;
+  for (std::size_t i = 0; i < digest.size(); ++i)
+    digest[i] = static_cast<unsigned char>(std::stoi(hex.substr(2 * i, 2), nullptr, 16));
+  std::array<unsigned char, 45> text;  // 44 characters and a zero
+  const int size = EVP_EncodeBlock(text.data(), digest.data(), static_cast<int>(digest.size()));
+  return {text.begin(), text.begin() + size};
+}
 
 }  // namespace servodx

@@ -23,6 +23,10 @@ double worst_adequacy(const HypothesisFit& f) {
 
 std::string_view label(const HypothesisFit& f) { return f.fault ? f.fault->name : std::string_view("healthy"); }
 
+ParameterVector candidate_at(const LogData& log, const ParameterVector& base, const HypothesisFit& f) {
+  return FitProblem({&log}, base, f.free).candidate(f.point, 0);
+}
+
 // A fault's model is a textbook model too: its own error is some tenth of its effect. Two hypotheses that both explain
 // a large effect to within that are not told apart by what is left.
 constexpr double effect_error = 0.1;
@@ -113,6 +117,10 @@ Assessment assess(const Log& log, const Table& tuned, const RigFile& rig, const 
     out.channels.push_back({data.channels[c].signal, log.channels[index(data.channels[c].signal)].unit,
                             h.fits.front().channel_rms[c], data.channels[c].noise, h.fits.front().channel_rms[c]});
 
+  const auto explain = [&](const HypothesisFit& f, std::size_t from) {
+    if (f.ok) out.explanations.push_back({std::string(label(f)), candidate_at(data, base, f), from});
+  };
+
   // A fault that steps in: before it the log is healthy, after it the hypotheses are judged on what is left.
   const ChangePoint change = change_point(h.healthy_square, h.degrees);
   const auto best_misfit = [](const HypothesisFits& f) {
@@ -133,9 +141,13 @@ Assessment assess(const Log& log, const Table& tuned, const RigFile& rig, const 
     const bool is_faulty = (after.fits.front().misfit - best_misfit(after)) / scale > 25.0;
     if (was_healthy && is_faulty && (whole - split) / scale > 25.0) {
       out.onset = data.scenario.time[change.at];
+      explain(before.fits.front(), 0);
       h = std::move(after);
     }
   }
+
+  for (const HypothesisFit& f : h.fits)
+    if (f.fault || !out.onset) explain(f, out.onset ? change.at : 0);
 
   const HypothesisFit& healthy = h.fits.front();
   const double smallest = best_misfit(h);
@@ -149,6 +161,7 @@ Assessment assess(const Log& log, const Table& tuned, const RigFile& rig, const 
   for (const HypothesisFit& f : h.fits) {
     HypothesisResult r;
     r.name = label(f);
+    r.meaning = f.fault ? std::string(f.fault->meaning) : "as the fault-free logs, within every fault's tolerance";
     r.misfit = f.misfit;
     r.gain = (healthy.misfit - f.misfit) / scale;
     r.probability = weight(f) / total;
@@ -170,8 +183,7 @@ Assessment assess(const Log& log, const Table& tuned, const RigFile& rig, const 
   const auto best = std::max_element(h.fits.begin(), h.fits.end(),
                                      [&](const auto& a, const auto& b) { return weight(a) < weight(b); });
   if (best->ok) {
-    const FitProblem view({&data}, base, best->free);
-    const ParameterVector moved = view.candidate(best->point, 0);
+    const ParameterVector moved = candidate_at(data, base, *best);
     out.null = moved[row::servovalve_null];
     for (std::size_t i = 0; i < tuned.rows.size() && i < static_cast<std::size_t>(n_parameters); ++i) {
       if (moved[i] == base[i]) continue;
@@ -223,7 +235,8 @@ Baseline make_baseline(const std::vector<Log>& logs, const Table& tuned, const R
   for (std::size_t i = 0; i < logs.size(); ++i) {
     const Assessment a = assess(logs[i], tuned, rig, options);
     if (options.stop && options.stop->load()) break;
-    b.scores.push_back({a.log, a.sha256, a.score, a.hypotheses.front().adequacy});
+    b.scores.push_back({a.log, a.sha256, a.score, a.hypotheses.front().adequacy,
+                        a.explanations.empty() ? Explanation{} : a.explanations.front()});
     b.adequacy_limit = std::max(b.adequacy_limit, a.hypotheses.front().adequacy);
     total += a.simulations;
     if (simulations) *simulations += a.simulations;

@@ -44,6 +44,7 @@ struct Tuning {
   std::vector<FreeValue> shared, nuisances;
   long simulations = 0, failed = 0;
   std::vector<std::string> notes;
+  std::vector<ConvergencePoint> convergence = {};
 
   bool stopped() const { return options.stop && options.stop->load(); }
   SimulateOptions simulate_options() const {
@@ -87,14 +88,15 @@ void hold_out(FitProblem& problem, double part) {
     }
 }
 
-LeastSquaresResult local(Tuning& run, FitProblem& problem, const Point& x, int iterations, bool first, double from,
-                         double to) {
+LeastSquaresResult local(Tuning& run, FitProblem& problem, const Point& x, const std::string& stage,
+                         int iterations, bool first, double from, double to) {
   LeastSquaresOptions o;
   o.max_iterations = iterations;
   o.difference = Difference::forward;
   o.cost_tolerance = 1e-6;
   o.compressed_first_pass = first;
   o.progress = [&](const LeastSquaresProgress& p) {
+    run.convergence.push_back({stage, run.simulations + problem.simulations(), p.cost});
     run.progress.update(from + (to - from) * p.iteration / iterations, run.simulations + problem.simulations());
     return !run.stopped();
   };
@@ -164,6 +166,7 @@ std::vector<Point> breadth(Tuning& run, const Point& start) {
   GeneticHooks hooks;
   hooks.generation = [&](const GeneticState& s) {
     if (!run.options.checkpoint.empty()) write_file(run.options.checkpoint, to_json(s));
+    run.convergence.push_back({"genetic search", run.simulations + problem.simulations(), s.best.cost});
     run.progress.update(0.1 + 0.25 * s.generation / o.generations, run.simulations + problem.simulations());
     return !run.stopped();
   };
@@ -192,7 +195,7 @@ LeastSquaresResult refine(Tuning& run, FitProblem& problem, Point x, ErrorModel&
     apply_error_model(problem, error, x);
     if (held > 0) hold_out(problem, held);
     const double a = from + (to - from) * round / rounds, b = from + (to - from) * (round + 1) / rounds;
-    r = local(run, problem, x, 12, false, a, b);
+    r = local(run, problem, x, held > 0 ? "weights" : "everything", 12, false, a, b);
     x = r.point;
     if (run.stopped()) break;
   }
@@ -308,7 +311,7 @@ TuneResult tune(const std::vector<Log>& logs, const Table& nominal, const RigFil
   std::vector<LeastSquaresResult> ends;
   for (std::size_t s = 0; s < starts.size() && !(run.stopped() && s > 0); ++s) {
     const double a = 0.35 + 0.35 * static_cast<double>(s) / static_cast<double>(starts.size());
-    ends.push_back(local(run, fit, starts[s], 6, true, a, a + 0.35 / static_cast<double>(starts.size())));
+    ends.push_back(local(run, fit, starts[s], fmt::format("start {}", s + 1), 6, true, a, a + 0.35 / static_cast<double>(starts.size())));
     out.starts.push_back(ends.back().cost);
   }
   const std::size_t best =
@@ -389,8 +392,11 @@ TuneResult tune(const std::vector<Log>& logs, const Table& nominal, const RigFil
     const ParameterVector v = fit.candidate(x, static_cast<int>(l));
     nulls.push_back(v[row::servovalve_null]);
     airs.push_back(v[row::air_fraction]);
-    LogResult lr{
-        run.data[l].path, {}, nulls.back(), run.data[l].scenario.command_slope.value_or(v[nuisance::command_slope])};
+    LogResult lr{run.data[l].path,
+                 {},
+                 nulls.back(),
+                 run.data[l].scenario.command_slope.value_or(v[nuisance::command_slope]),
+                 v};
     for (std::size_t c = 0; c < run.data[l].channels.size(); ++c) {
       const FitChannel& channel = run.data[l].channels[c];
       const auto n = channel.measured.size();
@@ -432,6 +438,7 @@ TuneResult tune(const std::vector<Log>& logs, const Table& nominal, const RigFil
   for (const LogData& d : run.data)
     out.table.comments.push_back(
         fmt::format("{} {} {}", hash_key, d.sha256, std::filesystem::path(d.path).filename().string()));
+  out.convergence = run.convergence;
   out.notes = run.notes;
   out.notes.push_back("local stage: " + end.stopped);
   std::string slopes;

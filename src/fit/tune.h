@@ -36,6 +36,14 @@ struct LogResult {
   std::vector<ChannelResult> channels;
   double null = 0;           // [fraction of rated]
   double command_slope = 0;  // command between samples: 0 held, 1 in a line to the next
+  ParameterVector candidate;  // what the fit says of this log
+};
+
+// How the misfit fell. Each stage weighs residuals in its own way: levels compare within a stage only.
+struct ConvergencePoint {
+  std::string stage;  // "genetic search", "start 1", ..., "refine"
+  long simulations = 0;
+  double cost = 0;
 };
 
 struct TuneOptions {
@@ -60,6 +68,7 @@ struct TuneResult {
   std::vector<ParameterResult> parameters;
   std::vector<double> starts;  // final costs of all local starts
   int reached_best = 0;
+  std::vector<ConvergencePoint> convergence;
   std::vector<std::string> notes;
   long simulations = 0, failed_simulations = 0;
   bool interrupted = false;

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "report/json.h"
+#include "report/page.h"
 #include "valve_maps/compare.h"
 
 namespace servodx::report {
@@ -20,6 +21,9 @@ struct MapPicture {
 std::string maps_svg(const std::vector<MapPicture>& pictures);
 
 std::string text_of(const valve_maps::ValveNumbers& numbers, const std::vector<valve_maps::MapError>& errors);
+// Without the costs: they are wall time, and a page is the same bytes for the same result.
+Page maps_page(const Header& header, const valve_maps::ValveNumbers& numbers,
+               const std::vector<valve_maps::MapError>& errors, const std::vector<MapPicture>& pictures);
 Json maps_json(const valve_maps::ValveNumbers& numbers, const std::vector<valve_maps::MapError>& errors);
 
 }  // namespace servodx::report

@@ -1,0 +1,49 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "report/handy.h"
+#include "report/pages.h"
+#include "report/replay_part.h"
+
+namespace servodx::report {
+
+Page baseline_page(const Header& header, const Baseline& b, const std::vector<Replay>& replays) {
+  Page page(header, fmt::format("Baseline of {} fault-free logs", b.logs));
+  const bool kept = b.promised <= b.asked + 1e-12;
+  Verdict v;
+  v.tone = kept ? Tone::good : Tone::doubt;
+  v.headline = fmt::format("A log is not healthy above an error of {}", digits(b.threshold));
+  v.detail = b.statement;
+  v.facts = {{"False alarms asked for", percent(b.asked)},
+             {"Promised on average", percent(b.promised)},
+             {"Below, with 95 % confidence", percent(b.promised_95)},
+             {"Logs needed for what was asked", std::to_string(b.logs_needed)}};
+  if (!kept)
+    v.reasons.push_back(fmt::format("{} logs cannot promise {}: give {} more.", b.logs, percent(b.asked),
+                                    std::max(0, b.logs_needed - b.logs)));
+  v.reasons.push_back("The promise holds for logs of like excitation and temperature as these.");
+  page.verdict(v);
+
+  page.section("What fault-free logs score",
+               "The threshold is one of these scores. A log far beyond the others deserves a look: is it fault-free, is its "
+               "excitation unlike the rest?");
+  auto order = b.scores;
+  std::stable_sort(order.begin(), order.end(), [](const auto& x, const auto& y) { return x.score > y.score; });
+  Bars bars{"Scores", "log", "score", {}, Mark{b.threshold, "threshold"}, {}};
+  for (const Baseline::Score& s : order)
+    bars.rows.push_back({s.log, s.score, digits(s.score),
+                         fmt::format("worst channel {} times its usual error", digits(s.adequacy, 2)),
+                         s.score > b.threshold ? Tone::doubt : Tone::good, ""});
+  page.add(bars);
+  for (const Baseline::Score& s : order)
+    for (const Replay& r : replays) {
+      if (r.log != s.log) continue;
+      page.section(fmt::format("{}: score {}", file_name(s.log), digits(s.score)),
+                   "The tuned model, its null and air fitted to this log, against the measurement.", &s != &order.front());
+      add_replay(page, r, {.shown = {}, .onset = {}, .logs = replays.size()});
+    }
+  return page;
+}
+
+}  // namespace servodx::report

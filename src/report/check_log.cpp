@@ -1,0 +1,230 @@
+#include "report/check_log.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/units.h"
+#include "report/columns.h"
+#include "report/handy.h"
+#include "report/replay_part.h"
+
+namespace servodx::report {
+namespace {
+
+constexpr double seen = 3.0, plain = 8.0;  // deviates from which a fault may show, and shows
+
+Json number(double v) { return std::isfinite(v) ? Json(v) : Json(nullptr); }
+
+// In the unit of the file where it is absolute, else SI.
+struct InUnit {
+  explicit InUnit(const ChannelSurvey& c) : unit(find_unit(c.unit)) {
+    const SignalInfo& signal = info(c.signal);
+    if (!unit || unit->dimension != signal.dimension) unit = find_unit(signal.si_unit);
+  }
+  std::string value(double si) const { return digits(unit->from_si(si), 4); }
+  std::string difference(double si) const { return digits(si / unit->scale(), 2); }
+  const Unit* unit;
+};
+
+std::string first_line(const LogSurvey& s) {
+  std::string line = fmt::format("{} samples, {} at {} Hz", s.samples, duration(s.duration), digits(s.rate, 4));
+  if (s.temperature) line += fmt::format(", oil {} degC", digits(*s.temperature - 273.15, 3));
+  line += s.closed_loop ? ", closed loop" : "";
+  return line;
+}
+
+std::string drive_words(const LogSurvey& s) {
+  return fmt::format("spans {}, about {} Hz", handy(s.drive_span, "A"), digits(s.drive_band, 2));
+}
+
+std::string visibility(double deviate) {
+  if (!std::isfinite(deviate)) return "the simulation fails";
+  return deviate < seen ? "hidden" : deviate < plain ? "may show" : "shows";
+}
+
+std::string verdict_words(const Identifiable& row) {
+  if (row.verdict == "flat") return "this log does not show it";
+  if (row.verdict == "confounded") return "only together with " + join(row.confounded_with);
+  return "";
+}
+
+std::pair<long, long> counts(const Promise& p) {
+  long known = 0;
+  for (const Identifiable& row : p.rows) known += row.verdict == "bounded";
+  return {known, static_cast<long>(p.rows.size())};
+}
+
+std::string promise_lead(const Promise& p) {
+  const auto [known, all] = counts(p);
+  return fmt::format("{} of {} free parameters{}", known, all,
+                     p.error_known ? "" : "; an upper bound: the table is not tuned, so the model's own error is not known");
+}
+
+}  // namespace
+
+std::string text_of(const std::vector<LogCheck>& checks) {
+  std::string text;
+  for (const LogCheck& check : checks) {
+    const LogSurvey& s = check.survey;
+    if (!text.empty()) text += "\n";
+    text += fmt::format("{}: {}\n", s.path, first_line(s));
+    Columns channels("lrrrrl", 2);
+    channels.row({"signal", "lowest", "highest", "noise", "step", "unit"});
+    for (const ChannelSurvey& c : s.channels) {
+      const InUnit in(c);
+      channels.row({std::string(info(c.signal).name), in.value(c.lowest), in.value(c.highest), in.difference(c.noise),
+                    in.difference(c.resolution), std::string(in.unit->name)});
+    }
+    text += channels.text();
+    text += "  drive " + drive_words(s) + "\n";
+    for (const Finding& f : s.findings) text += fmt::format("  suspicious: {}: {}\n", f.kind, f.text);
+    if (s.findings.empty()) text += "  nothing suspicious\n";
+    if (!check.promise) continue;
+    text += "  can identify " + promise_lead(*check.promise) + "\n";
+    Columns rows("lrrll", 4);
+    for (const Identifiable& r : check.promise->rows) {
+      const HandyUnit unit = handy_unit(r.unit, r.nominal);
+      rows.row({r.name, digits(r.nominal * unit.factor), std::isfinite(r.std_error) ? "+- " + digits(r.std_error * unit.factor, 2) : "",
+                unit.name, verdict_words(r)});
+    }
+    text += rows.text() + "  can show (deviates; below 3 stays hidden)\n";
+    Columns faults("lrrrr", 4);
+    faults.row({"fault", "at", "", "at", ""});
+    for (const Visible& v : check.promise->faults)
+      faults.row({v.fault, handy(v.least, v.unit), digits(v.at_least, 2), handy(v.typical, v.unit), digits(v.at_typical, 2)});
+    text += faults.text();
+  }
+  return text;
+}
+
+Json check_log_json(const std::vector<LogCheck>& checks) {
+  Json logs = Json::array();
+  for (const LogCheck& check : checks) {
+    const LogSurvey& s = check.survey;
+    Json channels = Json::array(), findings = Json::array();
+    for (const ChannelSurvey& c : s.channels)
+      channels.push_back({{"signal", info(c.signal).name},
+                          {"column", c.column},
+                          {"unit", info(c.signal).si_unit},
+                          {"unit_in_file", c.unit},
+                          {"missing", c.missing},
+                          {"lowest", number(c.lowest)},
+                          {"highest", number(c.highest)},
+                          {"noise_rms", number(c.noise)},
+                          {"resolution", number(c.resolution)},
+                          {"clipped", number(c.clipped)}});
+    for (const Finding& f : s.findings) findings.push_back({{"kind", f.kind}, {"text", f.text}});
+    Json one = {{"log", s.path},
+                {"samples", s.samples},
+                {"duration", number(s.duration)},
+                {"rate", number(s.rate)},
+                {"jitter", number(s.jitter)},
+                {"gaps", s.gaps},
+                {"lost_samples", s.lost},
+                {"longest_gap", number(s.longest_gap)},
+                {"temperature", s.temperature ? number(*s.temperature) : Json(nullptr)},
+                {"drive_span", number(s.drive_span)},
+                {"drive_band", number(s.drive_band)},
+                {"closed_loop", s.closed_loop},
+                {"channels", channels},
+                {"suspicious", findings}};
+    if (check.promise) {
+      Json rows = Json::array(), faults = Json::array();
+      for (const Identifiable& r : check.promise->rows)
+        rows.push_back({{"name", r.name},
+                        {"unit", r.unit},
+                        {"verdict", r.verdict},
+                        {"nominal", number(r.nominal)},
+                        {"std_error", number(r.std_error)},
+                        {"confounded_with", r.confounded_with}});
+      for (const Visible& v : check.promise->faults)
+        faults.push_back({{"fault", v.fault},
+                          {"unit", v.unit},
+                          {"least", number(v.least)},
+                          {"deviate_at_least", number(v.at_least)},
+                          {"typical", number(v.typical)},
+                          {"deviate_at_typical", number(v.at_typical)}});
+      one["identifiable"] = rows;
+      one["visible_faults"] = faults;
+      one["model_error_known"] = check.promise->error_known;
+    }
+    logs.push_back(one);
+  }
+  return {{"logs", logs}};
+}
+
+Page check_log_page(const Header& header, const std::vector<LogCheck>& checks) {
+  std::size_t suspicious = 0;
+  for (const LogCheck& c : checks) suspicious += !c.survey.findings.empty();
+  const bool one = checks.size() == 1;
+  Page page(header, one ? "Check of " + file_name(checks.front().survey.path) : fmt::format("Check of {} logs", checks.size()));
+  Verdict v;
+  v.tone = suspicious > 0 ? Tone::doubt : Tone::good;
+  if (one) {
+    const LogSurvey& s = checks.front().survey;
+    v.headline = s.findings.empty() ? "Nothing suspicious in " + file_name(s.path)
+                                    : fmt::format("{} suspicious thing{} in {}", s.findings.size(),
+                                                  s.findings.size() == 1 ? "" : "s", file_name(s.path));
+    v.detail = first_line(s);
+    for (const Finding& f : s.findings) v.reasons.push_back(f.kind + ": " + f.text);
+  } else {
+    v.headline = fmt::format("{} of {} logs have something suspicious", suspicious, checks.size());
+  }
+  page.verdict(v);
+  if (!one) {
+    page.section("All logs");
+    TablePart table{"Logs", "lrrrl", {"log", "s", "Hz", "degC", "suspicious"}, {}, 0};
+    for (const LogCheck& c : checks) {
+      std::vector<std::string> kinds;
+      for (const Finding& f : c.survey.findings) kinds.push_back(f.kind);
+      const LogSurvey& s = c.survey;
+      table.rows.push_back({s.path, Cell(digits(s.duration), s.duration), Cell(digits(s.rate, 4), s.rate),
+                            s.temperature ? Cell(digits(*s.temperature - 273.15), *s.temperature - 273.15) : Cell(""),
+                            join(kinds)});
+    }
+    page.add(table);
+  }
+  for (const LogCheck& check : checks) {
+    const LogSurvey& s = check.survey;
+    page.section(one ? "What is in it" : s.path, one ? "" : first_line(s), !one && s.findings.empty());
+    if (!one)
+      for (const Finding& f : s.findings) page.text(f.kind + ": " + f.text);
+    Plot drive{.title = "drive [mA], " + drive_words(s), .x_label = "time [s]", .x = check.time, .group = s.path, .low = true,
+               .most_rows = 4000};
+    drive.series.push_back({"drive", check.drive, Role::input});
+    for (double& value : drive.series.front().y) value *= 1e3;
+    page.add(drive);
+    TablePart table{"Signals", "llrrrrrl", {"signal", "column", "lowest", "highest", "noise", "step", "missing", "unit"}, {}, 0};
+    for (const ChannelSurvey& c : s.channels) {
+      const InUnit in(c);
+      table.rows.push_back({words(std::string(info(c.signal).name)), c.column, in.value(c.lowest), in.value(c.highest),
+                            in.difference(c.noise), in.difference(c.resolution), std::to_string(c.missing),
+                            std::string(in.unit->name)});
+    }
+    page.add(table);
+    if (!check.promise) {
+      page.text("With --params TABLE it also says which parameters and faults this log can show.");
+      continue;
+    }
+    Bars faults{"Which faults it can show", "fault", "deviate", {}, Mark{seen, "may show"}, 20.0};
+    for (const Visible& f : check.promise->faults)
+      for (const auto& [size, deviate] : {std::pair(f.least, f.at_least), std::pair(f.typical, f.at_typical)})
+        faults.rows.push_back({words(f.fault) + ", " + handy(size, f.unit), deviate, digits(deviate, 2), visibility(deviate),
+                               deviate >= plain ? Tone::good : deviate >= seen ? Tone::doubt : Tone::plain, ""});
+    page.add(faults);
+    TablePart rows{"Which parameters it can show: " + promise_lead(*check.promise), "lrrll",
+                   {"parameter", "value", "std. error", "unit", ""}, {}, 0};
+    for (const Identifiable& r : check.promise->rows) {
+      const HandyUnit unit = handy_unit(r.unit, r.nominal);
+      rows.rows.push_back({words(r.name), Cell(digits(r.nominal * unit.factor), r.nominal),
+                           std::isfinite(r.std_error) ? Cell(digits(r.std_error * unit.factor, 2), r.std_error) : Cell(""),
+                           unit.name, verdict_words(r)});
+    }
+    page.add(rows);
+  }
+  return page;
+}
+
+}  // namespace servodx::report

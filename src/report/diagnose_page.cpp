@@ -1,0 +1,213 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <map>
+
+#include "base/csv.h"
+#include "report/columns.h"
+#include "report/handy.h"
+#include "report/pages.h"
+#include "report/parameter_part.h"
+#include "report/replay_part.h"
+
+namespace servodx::report {
+namespace {
+
+Tone tone_of(const Diagnosis& d) {
+  return d.verdict == "healthy" ? Tone::good : d.verdict == "fault" ? Tone::bad : Tone::doubt;
+}
+
+const HypothesisResult* find(const Diagnosis& d, const std::string& name) {
+  for (const HypothesisResult& h : d.assessment.hypotheses)
+    if (h.name == name) return &h;
+  return nullptr;
+}
+
+// The hypothesis that comes nearest beside health.
+const HypothesisResult* nearest_fault(const Diagnosis& d) {
+  const HypothesisResult* best = nullptr;
+  for (const HypothesisResult& h : d.assessment.hypotheses)
+    if (h.name != "healthy" && (!best || h.probability > best->probability)) best = &h;
+  return best;
+}
+
+std::string size_of(const Diagnosis& d) {
+  if (!d.fault || !std::isfinite(d.severity.value)) return "";
+  return handy_interval(d.severity.value, d.severity.lower, d.severity.upper, d.severity.unit);
+}
+
+std::string headline(const Diagnosis& d) {
+  if (d.verdict == "healthy") return file_name(d.log) + " is like the fault-free logs";
+  if (d.verdict == "unknown") return file_name(d.log) + " is not healthy, and no known fault explains it";
+  const std::string size = size_of(d);
+  return words(d.fault.value_or("")) + (size.empty() ? "" : ", " + size);
+}
+
+std::vector<std::string> reasons(const Diagnosis& d, const Baseline& baseline) {
+  std::vector<std::string> why;
+  const bool above = d.error > d.threshold;
+  if (!d.assessment.gross.empty()) why.push_back("Seen without a fit: " + d.assessment.gross + ".");
+  const std::size_t n = baseline.scores.size();
+  const bool beyond_all = d.p_value * static_cast<double>(n + 1) < 1.5;
+  why.push_back(fmt::format("Its error is {}; the threshold, set by {} fault-free logs, is {}. {}", digits(d.error), n,
+                            digits(d.threshold),
+                            beyond_all ? fmt::format("None of them is as far off: p = {}, the least that {} logs can show.",
+                                                     digits(d.p_value, 2), n)
+                                       : fmt::format("A fault-free log is as far off with p = {}.", digits(d.p_value, 2))));
+  const HypothesisResult* healthy = find(d, "healthy");
+  const HypothesisResult* best = d.fault ? find(d, *d.fault) : nearest_fault(d);
+  if (above && healthy && best)
+    why.push_back(fmt::format(
+        "As healthy, the worst channel is {} times as wrong as on the tuning logs; with {} it is {}{}.",
+        digits(healthy->adequacy, 2), words(best->name), digits(best->adequacy, 2),
+        d.verdict == "unknown" ? fmt::format(" (fault-free logs reach {})", digits(baseline.adequacy_limit, 2)) : ""));
+  if (d.fault && !d.ambiguous_with.empty()) {
+    std::vector<std::string> others;
+    for (const std::string& other : d.ambiguous_with) others.push_back(words(other) + " " + chance(d.probabilities.at(other)));
+    why.push_back(fmt::format("It cannot be told for certain from {}. To separate them: {}.", join(others), d.separating_test));
+  } else if (d.fault && d.assessment.gross.empty()) {
+    const HypothesisResult* next = nullptr;
+    for (const HypothesisResult& h : d.assessment.hypotheses)
+      if (h.name != *d.fault && (!next || h.probability > next->probability)) next = &h;
+    if (next) why.push_back(fmt::format("The next best explanation, {}, has {}.", words(next->name), chance(next->probability)));
+  }
+  if (d.onset) why.push_back(fmt::format("Until {} s the log is healthy; the fault explains what follows.", digits(*d.onset, 4)));
+  return why;
+}
+
+Verdict verdict_of(const Diagnosis& d, const Baseline& baseline) {
+  Verdict v;
+  v.tone = tone_of(d);
+  v.word = d.verdict == "fault" ? "FAULT" : d.verdict == "unknown" ? "UNKNOWN" : "HEALTHY";
+  v.headline = headline(d);
+  if (const HypothesisResult* named = d.fault ? find(d, *d.fault) : nullptr; named && !named->meaning.empty())
+    v.detail = named->meaning + ", in " + d.log;
+  if (d.fault) v.facts.push_back({"Probability", chance(d.probabilities.at(*d.fault))});
+  if (d.onset) v.facts.push_back({"Since", digits(*d.onset, 4) + " s"});
+  v.facts.push_back({"Error / threshold", digits(d.error) + " / " + digits(d.threshold)});
+  v.facts.push_back({"Null", percent(d.assessment.null) + " of rated"});
+  if (!d.action.empty()) v.facts.push_back({"Action", d.action});
+  v.reasons = reasons(d, baseline);
+  return v;
+}
+
+void add_ranking(Page& page, const Diagnosis& d) {
+  Bars bars;
+  bars.title = "Hypotheses, each fitted to this log";
+  bars.label = "hypothesis";
+  bars.unit = "probability";
+  bars.full = 1.0;
+  auto order = d.assessment.hypotheses;
+  const auto p_of = [&](const HypothesisResult& h) {  // of an unknown the verdict's probabilities say only that
+    const auto found = d.probabilities.find(h.name);
+    return d.verdict == "unknown" || found == d.probabilities.end() ? h.probability : found->second;
+  };
+  std::stable_sort(order.begin(), order.end(), [&](const auto& a, const auto& b) { return p_of(a) > p_of(b); });
+  for (const HypothesisResult& h : order) {
+    std::string note = h.name == "healthy" ? "" : handy_interval(h.severity, h.severity_lower, h.severity_upper, h.unit) + "; ";
+    note += fmt::format("worst channel {} times its usual error", digits(h.adequacy, 2));
+    bars.rows.push_back({words(h.name), p_of(h), chance(p_of(h)), note,
+                         d.fault == h.name ? Tone::bad : h.name == "healthy" ? Tone::good : Tone::plain, ""});
+  }
+  page.add(bars);
+  if (d.verdict == "unknown") page.text("None of them fits well enough to be named: the bars only rank them among each other.");
+}
+
+void add_details(Page& page, const Diagnosis& d, const std::vector<Replay>& replays, std::size_t drawn) {
+  add_ranking(page, d);
+  const auto r = std::find_if(replays.begin(), replays.end(), [&](const Replay& x) { return x.log == d.log; });
+  if (r != replays.end()) {
+    ReplayView view;
+    view.shown = {"healthy"};
+    const HypothesisResult* nearest = nearest_fault(d);
+    if (d.fault)
+      view.shown.push_back(*d.fault);
+    else if (d.verdict == "unknown" && nearest)
+      view.shown.push_back(nearest->name);
+    for (const std::string& other : d.ambiguous_with)
+      if (view.shown.size() < 3 && other != "healthy") view.shown.push_back(other);
+    view.onset = d.onset;
+    view.logs = drawn;
+    page.text(d.verdict == "healthy"
+                  ? "Below, the tuned model, with null and air fitted to this log, against the measurement; the channel it "
+                    "misses most first."
+                  : "Below, dashed: the valve as healthy; full colour: with the fault. The channel that health misses most "
+                    "comes first. Where the dashed residual leaves the band and the coloured one stays in it, the fault "
+                    "explains what health cannot.");
+    add_replay(page, *r, view);
+  }
+  if (!d.assessment.parameters.empty())
+    page.add(moves_of(d.assessment.parameters, "Parameters against the tuned table, under the best hypothesis"));
+}
+
+// What was named against what was made, where the truth is known of every log.
+void add_confusion(Page& page, const std::vector<Diagnosis>& results, const std::vector<std::string>& truths) {
+  if (truths.size() != results.size() || std::any_of(truths.begin(), truths.end(), [](const auto& t) { return t.empty(); }))
+    return;
+  Matrix m{"Confusion: the truth is known from the files beside the logs", "truth", "verdict", {}, {}, {}, "", true};
+  const auto place = [](std::vector<std::string>& names, const std::string& name) {
+    const auto found = std::find(names.begin(), names.end(), name);
+    if (found != names.end()) return static_cast<std::size_t>(found - names.begin());
+    names.push_back(name);
+    return names.size() - 1;
+  };
+  std::map<std::pair<std::size_t, std::size_t>, double> counts;
+  for (std::size_t i = 0; i < results.size(); ++i) {
+    const std::size_t row = place(m.rows, words(truths[i]));
+    ++counts[{row, place(m.columns, words(results[i].fault.value_or(results[i].verdict)))}];
+  }
+  m.value.assign(m.rows.size(), std::vector<double>(m.columns.size(), 0.0));
+  for (const auto& [at, n] : counts) m.value[at.first][at.second] = n;
+  page.add(m);
+}
+
+}  // namespace
+
+std::string truth_beside(const std::string& log, const std::string& sha256) {
+  const std::string path = log.substr(0, log.rfind('.')) + ".truth.json";
+  std::error_code ignored;
+  if (!std::filesystem::is_regular_file(path, ignored)) return "";
+  const Json truth = Json::parse(read_file(path), nullptr, false);
+  const bool of_this_log = truth.is_object() && truth.value("sha256", "") == sha256;
+  return of_this_log ? truth.value("label", "") : "";
+}
+
+Page diagnose_page(const Header& header, const std::vector<Diagnosis>& results, const Baseline& baseline,
+                   const std::vector<Replay>& replays, const std::vector<std::string>& truths) {
+  if (results.size() == 1) {
+    const Diagnosis& d = results.front();
+    Page page(header, "Diagnosis of " + file_name(d.log));
+    page.verdict(verdict_of(d, baseline));
+    page.section("Why");
+    add_details(page, d, replays, 1);
+    return page;
+  }
+  long faults = 0, unknown = 0;
+  for (const Diagnosis& d : results) faults += d.verdict == "fault", unknown += d.verdict == "unknown";
+  const auto total = static_cast<long>(results.size());
+  Page page(header, fmt::format("Diagnosis of {} logs", total));
+  Verdict all;
+  all.tone = faults > 0 ? Tone::bad : unknown > 0 ? Tone::doubt : Tone::good;
+  all.headline = fmt::format("{} of {} logs show a fault, {} unknown, {} healthy", faults, total, unknown,
+                             total - faults - unknown);
+  page.verdict(all);
+  page.section("All logs");
+  Bars scores{"Error of each log", "log", "error", {}, Mark{baseline.threshold, "threshold"}, {}};
+  for (std::size_t i = 0; i < results.size(); ++i)
+    scores.rows.push_back({results[i].log, std::min(results[i].error, 10 * baseline.threshold), digits(results[i].error),
+                           results[i].verdict == "fault" ? headline(results[i]) : results[i].verdict,
+                           tone_of(results[i]), fmt::format("#log{}", i + 1)});
+  page.add(scores);
+  add_confusion(page, results, truths);
+  for (std::size_t i = 0; i < results.size(); ++i) {
+    page.verdict(verdict_of(results[i], baseline), fmt::format("log{}", i + 1));
+    page.section("Traces, hypotheses and parameters of " + file_name(results[i].log), "",
+                 results[i].verdict == "healthy");
+    add_details(page, results[i], replays, std::max<std::size_t>(1, replays.size()));
+  }
+  return page;
+}
+
+}  // namespace servodx::report

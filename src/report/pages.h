@@ -1,0 +1,27 @@
+// The page of each command: its result struct in, verdict first, then the parts that show why.
+#pragma once
+#include <string>
+#include <vector>
+
+#include "diagnose/diagnose.h"
+#include "fit/replay.h"
+#include "fit/tune.h"
+#include "report/page.h"
+
+namespace servodx::report {
+
+// Logs whose traces a page shows at most; of the rest it shows the figures.
+inline constexpr std::size_t most_replays = 12;
+
+// `replays`: of some of the result's logs, by path; what is not there is not drawn.
+Page tune_page(const Header& header, const TuneResult& result, const std::vector<Replay>& replays);
+Page simulate_page(const Header& header, const Replay& replay);
+Page baseline_page(const Header& header, const Baseline& baseline, const std::vector<Replay>& replays);
+// `truths`: what each log was made with, "" where that is not known; they enter the confusion table and nothing else.
+Page diagnose_page(const Header& header, const std::vector<Diagnosis>& results, const Baseline& baseline,
+                   const std::vector<Replay>& replays, const std::vector<std::string>& truths = {});
+
+// The label in LOG.truth.json beside a log of the virtual rig whose bytes it speaks of; "" without.
+std::string truth_beside(const std::string& log, const std::string& sha256);
+
+}  // namespace servodx::report

@@ -1,0 +1,14 @@
+// Rows of results that moved, as a part of a page.
+#pragma once
+#include <string>
+#include <vector>
+
+#include "fit/tune.h"
+#include "report/parts.h"
+
+namespace servodx::report {
+
+// The rows that moved, farthest first: by their standard errors where these are known, then by their size.
+Moves moves_of(const std::vector<ParameterResult>& parameters, const std::string& title);
+
+}  // namespace servodx::report

@@ -1,0 +1,150 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "report/handy.h"
+#include "report/pages.h"
+#include "report/parameter_part.h"
+#include "report/replay_part.h"
+
+namespace servodx::report {
+namespace {
+
+// Residual over noise up to which a channel is as good as the sensor lets it be, and from which it deserves a look.
+constexpr double near_noise = 2.0, far_from_noise = 10.0;
+
+std::string fit_in_words(const ChannelResult& c) {
+  const double times = c.heldout_rms / c.noise_rms;
+  if (!std::isfinite(times)) return "";
+  return times < near_noise ? "as good as the sensor" : times < far_from_noise ? "" : "look at its residual";
+}
+
+void add_channels(Page& page, const std::string& title, const std::vector<ChannelResult>& channels) {
+  TablePart table{title, "lrrrlrl", {"channel", "rms error", "held out", "noise", "unit", "held out over noise", ""}, {}, 0};
+  for (const ChannelResult& c : channels) {
+    const ChannelFigures f = figures(c);
+    table.rows.push_back({words(std::string(info(c.signal).name)), Cell(digits(f.rms), f.rms),
+                          Cell(digits(f.heldout_rms), f.heldout_rms), Cell(digits(f.noise_rms), f.noise_rms), f.unit,
+                          Cell(digits(f.heldout_rms / f.noise_rms), f.heldout_rms / f.noise_rms), fit_in_words(c)});
+  }
+  page.add(table);
+}
+
+void add_search(Page& page, const TuneResult& result) {
+  if (result.starts.size() > 1) {
+    std::vector<std::size_t> order(result.starts.size());
+    for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
+    std::stable_sort(order.begin(), order.end(),
+                     [&](std::size_t a, std::size_t b) { return result.starts[a] < result.starts[b]; });
+    Bars bars{"Where each start ended", "start", "cost", {}, {}, {}};
+    for (const std::size_t i : order)
+      bars.rows.push_back({i == 0 ? "table's values" : fmt::format("genetic {}", i), result.starts[i],
+                           digits(result.starts[i], 4), "",
+                           result.starts[i] <= 1.05 * result.starts[order.front()] ? Tone::good : Tone::plain, ""});
+    page.add(bars);
+  }
+  if (result.convergence.empty()) return;
+  Plot plot;
+  plot.title = "Cost, stage by stage";
+  plot.x_label = "simulations";
+  plot.log_y = true;
+  std::vector<std::string> stages;
+  for (const ConvergencePoint& c : result.convergence) {
+    plot.x.push_back(static_cast<double>(c.simulations));
+    if (std::find(stages.begin(), stages.end(), c.stage) == stages.end()) stages.push_back(c.stage);
+  }
+  constexpr Role roles[] = {Role::measured, Role::reference, Role::other, Role::named, Role::input};
+  for (std::size_t s = 0; s < stages.size(); ++s) {
+    Series series{stages[s], {}, roles[s % std::size(roles)]};
+    for (const ConvergencePoint& c : result.convergence)
+      series.y.push_back(c.stage == stages[s] ? c.cost : std::nan(""));
+    plot.series.push_back(std::move(series));
+  }
+  page.add(plot);
+  page.text("Each stage weighs the residuals in its own way: compare levels within a stage, not between stages.");
+}
+
+}  // namespace
+
+Page tune_page(const Header& header, const TuneResult& result, const std::vector<Replay>& replays) {
+  const auto logs = static_cast<long>(result.logs.size());
+  Page page(header, fmt::format("Nominal parameters from {} log{}", logs, logs == 1 ? "" : "s"));
+  long known = 0, bound = 0, held = 0;
+  for (const ParameterResult& p : result.parameters) {
+    known += std::isfinite(p.std_error);
+    bound += p.verdict == "at_bound";
+    held += !std::isfinite(p.std_error) && p.verdict != "at_bound";
+  }
+  const ChannelResult* worst = nullptr;
+  const auto times = [](const ChannelResult& c) { return c.heldout_rms / c.noise_rms; };
+  for (const ChannelResult& c : result.channels)
+    if (!worst || times(c) > times(*worst)) worst = &c;
+  const bool agreed = result.starts.size() < 2 || result.reached_best > 1;
+  const bool good = agreed && worst && times(*worst) < far_from_noise && !result.interrupted;
+  Verdict v;
+  v.tone = good ? Tone::good : Tone::doubt;
+  v.word = result.interrupted ? "INTERRUPTED" : "";
+  v.headline = fmt::format("{} parameters fitted to {} log{}", known + bound, logs, logs == 1 ? "" : "s");
+  if (worst)
+    v.detail = fmt::format(
+        "On the part of the logs that was held out, the worst channel, {}, is wrong by {} times its sensor's noise.",
+        words(std::string(info(worst->signal).name)), digits(times(*worst), 2));
+  v.facts = {{"Known with an error", std::to_string(known)},
+             {"At an end of their range", std::to_string(bound)},
+             {"Held: the logs cannot tell", std::to_string(held)},
+             {"Starts that agree", fmt::format("{} of {}", result.reached_best, result.starts.size())}};
+  if (!agreed)
+    v.reasons.push_back("Only one start reached the best cost: another valley may lie beside it. More generations, or logs "
+                        "that move the valve farther, would tell.");
+  if (bound > 0)
+    v.reasons.push_back(fmt::format(
+        "{} parameter{} an end of the range: check the data sheet behind it, or widen the bounds.", bound,
+        bound == 1 ? " stands at" : "s stand at"));
+  page.verdict(v);
+
+  page.section("How well the model fits",
+               "Held out: the last part of every log, before the final fit saw it. Noise: the sensor's own.");
+  add_channels(page, "Channels, all logs together", result.channels);
+  TablePart by_log{"Log by log", "lrr", {"log", "null", "command between samples"}, {}, 0};
+  for (const ChannelResult& c : result.channels) {
+    by_log.alignment += 'r';
+    by_log.head.push_back(words(std::string(info(c.signal).name)) + " over noise");
+  }
+  for (const LogResult& log : result.logs) {
+    std::vector<Cell> row = {log.path, Cell(percent(log.null) + " of rated", log.null),
+                             Cell(log.command_slope < 0.05   ? "held"
+                                  : log.command_slope > 0.95 ? "in a line"
+                                                             : digits(log.command_slope, 2),
+                                  log.command_slope)};
+    for (const ChannelResult& pooled : result.channels) {
+      row.push_back("");
+      for (const ChannelResult& c : log.channels)
+        if (c.signal == pooled.signal) row.back() = Cell(digits(c.rms / c.noise_rms, 2), c.rms / c.noise_rms);
+    }
+    by_log.rows.push_back(std::move(row));
+  }
+  page.add(by_log);
+
+  page.section("Parameters", "From the table's value to the fitted one. Sigma is the standard error of the fitted value.");
+  page.add(moves_of(result.parameters, "What moved"));
+  page.section("Did the search arrive?", "A valley that several starts reach is likelier the right one.");
+  add_search(page, result);
+  for (const Replay& r : replays) {
+    page.section("Measured and simulated: " + file_name(r.log), "", &r != &replays.front());
+    add_replay(page, r, {.shown = {}, .onset = {}, .logs = replays.size()});
+  }
+  return page;
+}
+
+Page simulate_page(const Header& header, const Replay& replay) {
+  Page page(header, "Simulation of " + file_name(replay.log));
+  Verdict v;
+  v.headline = "The model, driven by the inputs of " + file_name(replay.log);
+  page.verdict(v);
+  page.section("Measured and simulated", "Nothing is fitted: the table's values as they stand.");
+  add_replay(page, replay, {.shown = {}, .onset = {}, .logs = 1});
+  return page;
+}
+
+}  // namespace servodx::report

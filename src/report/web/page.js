@@ -1,0 +1,242 @@
+// Draws the plots of a report with uPlot, links their zoom, writes CSV. Words and tables are in the page already.
+"use strict";
+(() => {
+  const plots = JSON.parse(document.getElementById("data").textContent);
+  const root = document.documentElement;
+  const colour = (name) => getComputedStyle(root).getPropertyValue("--" + name).trim();
+  const dash = { measured: [], reference: [6, 4], named: [], other: [2, 3], input: [] };
+
+  // Plots of one group share the range of x; a plot without a group is a group of its own.
+  const groups = new Map();
+  const group_of = (key) => {
+    if (!groups.has(key)) groups.set(key, { charts: new Set(), range: null, busy: false });
+    return groups.get(key);
+  };
+  const drawn = new Map();  // element -> { chart, group }
+
+  function zoom(group, range) {  // range null: all
+    group.range = range;
+    group.busy = true;
+    for (const chart of group.charts) {
+      const x = chart.data[0];
+      chart.setScale("x", range ? { min: range[0], max: range[1] } : { min: x[0], max: x[x.length - 1] });
+    }
+    group.busy = false;
+  }
+
+  const short = (value) => (value == null ? "" : Number(value.toPrecision(5)).toString());
+
+  // Lines across the plot, with their words.
+  const marks = (plot) => (u) => {
+    const c = u.ctx, { left, top, width, height } = u.bbox, ratio = devicePixelRatio;
+    c.save();
+    c.strokeStyle = c.fillStyle = colour("text");
+    c.lineWidth = ratio;
+    c.setLineDash([4 * ratio, 3 * ratio]);
+    c.font = 12 * ratio + "px system-ui, sans-serif";
+    for (const [list, across] of [[plot.xmarks || [], false], [plot.ymarks || [], true]])
+      for (const mark of list) {
+        const at = u.valToPos(mark.at, across ? "y" : "x", true);
+        if (across ? at < top || at > top + height : at < left || at > left + width) continue;
+        c.beginPath();
+        if (across) { c.moveTo(left, at); c.lineTo(left + width, at); }
+        else { c.moveTo(at, top); c.lineTo(at, top + height); }
+        c.stroke();
+        if (across) { c.textAlign = "right"; c.fillText(mark.label, left + width - 4 * ratio, at - 4 * ratio); }
+        else {
+          const room = left + width - at > c.measureText(mark.label).width + 8 * ratio;
+          c.textAlign = room ? "left" : "right";
+          c.fillText(mark.label, at + (room ? 4 : -4) * ratio, top + 13 * ratio);
+        }
+      }
+    c.restore();
+  };
+
+  function options(plot, element, group, key) {
+    const narrow = element.clientWidth < 520;
+    const series = [{ label: plot.x, value: (u, v) => short(v) }];
+    for (const s of plot.series)
+      series.push({
+        label: s.name,
+        stroke: colour(s.role),
+        width: s.role === "measured" ? 1.25 : 1.75,
+        dash: dash[s.role],
+        value: (u, v) => short(v),
+        spanGaps: false,
+        paths: s.points ? () => null : undefined,
+        points: s.points ? { show: true, size: 7, fill: colour(s.role) } : { show: false },
+      });
+    const bands = [];
+    if (plot.band) {
+      const n = series.length;
+      const edge = { stroke: "transparent", points: { show: false }, value: (u, v) => "\u00b1" + short(v) };
+      series.push({ ...edge, label: plot.band, class: "lower" }, { ...edge, label: plot.band, class: "band" });
+      bands.push({ series: [n + 1, n], fill: colour("band") });
+    }
+    const axis = { stroke: colour("muted"), grid: { stroke: colour("grid"), width: 1 }, ticks: { stroke: colour("grid"), width: 1 }, font: "12px system-ui, sans-serif", labelFont: "12px system-ui, sans-serif" };
+    return {
+      width: element.clientWidth,
+      height: plot.low ? 140 : 200,
+      series, bands,
+      scales: { x: { time: false }, y: { distr: plot.log ? 3 : 1 } },
+      axes: [
+        { ...axis, label: plot.x_shown ? plot.x : null, labelSize: 16, size: 30 },
+        { ...axis, space: 26, size: narrow ? 48 : 64, values: plot.log ? undefined : (u, ticks) => ticks.map((v) => short(v)) },
+      ],
+      cursor: {
+        drag: { x: true, y: false },
+        sync: key ? { key, scales: ["x", null], filters: { pub: (type) => !/^mouse(down|up)$|^dblclick$/.test(type) } } : undefined,
+      },
+      hooks: {
+        draw: [marks(plot)],
+        setScale: [(u, scale) => {
+          if (scale !== "x" || group.busy || u.status !== 1) return;
+          const { min, max } = u.scales.x, x = u.data[0];
+          zoom(group, min <= x[0] && max >= x[x.length - 1] ? null : [min, max]);
+        }],
+      },
+    };
+  }
+
+  function draw(element) {
+    const number = element.parentElement.dataset.plot, plot = plots[number];
+    const key = plot.group ? "g:" + plot.group : "";
+    const group = group_of(key || "p:" + number);
+    erase(element);
+    const chart = new uPlot(options(plot, element, group, key), plot.data, element);
+    group.charts.add(chart);
+    drawn.set(element, { chart, group });
+    if (group.range) { group.busy = true; chart.setScale("x", { min: group.range[0], max: group.range[1] }); group.busy = false; }
+    for (const th of chart.root.querySelectorAll(".u-legend .u-series th")) {
+      th.tabIndex = 0;
+      th.setAttribute("role", "button");
+      th.addEventListener("keydown", (e) => { if (e.key === "Enter" || e.key === " ") { e.preventDefault(); e.stopPropagation(); th.click(); } });
+    }
+  }
+
+  function erase(element) {
+    const old = drawn.get(element);
+    if (!old) return;
+    old.group.charts.delete(old.chart);
+    old.chart.destroy();
+    drawn.delete(element);
+  }
+
+  const charts = [...document.querySelectorAll(".chart")];
+  const redraw = () => { for (const element of [...drawn.keys()]) draw(element); };
+
+  // Keys on a focused chart: + and - zoom about the middle, arrows move by a quarter, 0 shows all.
+  function step(element, key) {
+    const { chart, group } = drawn.get(element) || {};
+    if (!chart) return false;
+    const x = chart.data[0], first = x[0], last = x[x.length - 1];
+    const [min, max] = group.range || [first, last];
+    const span = max - min, middle = (min + max) / 2;
+    const to = (a, b) => { zoom(group, a <= first && b >= last ? null : [Math.max(a, first), Math.min(b, last)]); return true; };
+    switch (key) {
+      case "+": case "=": return to(middle - span / 4, middle + span / 4);
+      case "-": return to(middle - span, middle + span);
+      case "0": case "Home": zoom(group, null); return true;
+      case "ArrowLeft": { const d = Math.min(span / 4, min - first); return to(min - d, max - d); }
+      case "ArrowRight": { const d = Math.min(span / 4, last - max); return to(min + d, max + d); }
+    }
+    return false;
+  }
+
+  for (const element of charts)
+    element.addEventListener("keydown", (e) => {
+      if (!e.ctrlKey && !e.metaKey && !e.altKey && step(element, e.key)) e.preventDefault();
+    });
+
+  // Buttons that do the same, above the first chart of each section.
+  for (const part of document.querySelectorAll(".part")) {
+    const first = part.querySelector(".chart");
+    if (!first) continue;
+    const tools = document.createElement("div");
+    tools.className = "tools";
+    for (const [key, label] of [["+", "Zoom in"], ["-", "Zoom out"], ["ArrowLeft", "Earlier"], ["ArrowRight", "Later"], ["0", "Show all"]]) {
+      const button = document.createElement("button");
+      button.type = "button";
+      button.textContent = label;
+      button.addEventListener("click", () => step(first, key));
+      tools.append(button);
+    }
+    tools.append("or drag across a chart; a double click shows all");
+    first.parentElement.before(tools);
+  }
+
+  // Drawn when they come near the screen: a page of many logs opens at once.
+  const near = new IntersectionObserver((entries) => {
+    for (const entry of entries)
+      if (entry.isIntersecting && !drawn.has(entry.target) && entry.target.clientWidth > 0) draw(entry.target);
+  }, { rootMargin: "600px" });
+  for (const element of charts) near.observe(element);
+
+  let pending = 0;
+  new ResizeObserver(() => {
+    cancelAnimationFrame(pending);
+    pending = requestAnimationFrame(() => {
+      for (const [element, { chart }] of drawn)
+        if (element.clientWidth > 0 && element.clientWidth !== chart.width) draw(element);
+    });
+  }).observe(document.body);
+  matchMedia("(prefers-color-scheme: dark)").addEventListener("change", redraw);
+
+  // On paper: light, everything open, at the paper's width.
+  addEventListener("beforeprint", () => {
+    root.dataset.print = "";
+    for (const fold of document.querySelectorAll("details:not([open])")) { fold.open = true; fold.dataset.opened = ""; }
+    for (const element of charts) { element.style.width = "680px"; draw(element); }
+  });
+  addEventListener("afterprint", () => {
+    delete root.dataset.print;
+    for (const fold of document.querySelectorAll("details[data-opened]")) { fold.open = false; delete fold.dataset.opened; }
+    for (const element of charts) element.style.width = "";
+    redraw();
+  });
+
+  // Long tables show their first rows.
+  for (const figure of document.querySelectorAll("[data-shown]")) {
+    const rows = [...figure.querySelectorAll("tbody tr")].slice(Number(figure.dataset.shown));
+    for (const row of rows) row.dataset.folded = "";
+    const more = document.createElement("button");
+    more.type = "button";
+    more.className = "more";
+    more.textContent = `Show ${rows.length} more`;
+    more.addEventListener("click", () => { for (const row of rows) delete row.dataset.folded; more.remove(); });
+    figure.append(more);
+  }
+
+  // CSV: of a plot the columns as drawn, of a table the numbers behind its cells. A word that a spreadsheet would take
+  // for a formula gets an apostrophe.
+  const quoted = (text) => {
+    const safe = /^[=+@\t\r]|^-\D/.test(text) ? "'" + text : text;
+    return /[",\n\r]/.test(safe) ? '"' + safe.replaceAll('"', '""') + '"' : safe;
+  };
+  function csv(figure) {
+    if (figure.dataset.plot !== undefined) {
+      const plot = plots[figure.dataset.plot];
+      const names = [plot.x, ...plot.series.map((s) => s.name)];
+      if (plot.band) names.push(plot.band + " lower", plot.band + " upper");
+      const rows = plot.data[0].map((_, k) => plot.data.map((column) => column[k] ?? "").join(","));
+      return names.map(quoted).join(",") + "\n" + rows.join("\n") + "\n";
+    }
+    const lines = [];
+    for (const row of figure.querySelectorAll("tr"))
+      lines.push([...row.cells].filter((cell) => !cell.classList.contains("bar"))
+        .map((cell) => cell.dataset.value || quoted(cell.textContent.trim())).join(","));
+    return lines.join("\n") + "\n";
+  }
+  for (const button of document.querySelectorAll(".csv"))
+    button.addEventListener("click", () => {
+      const figure = button.closest("figure");
+      const link = document.createElement("a");
+      link.href = URL.createObjectURL(new Blob([csv(figure)], { type: "text/csv" }));
+      link.download = button.getAttribute("aria-label").slice("CSV of ".length).replace(/[^\w.-]+/g, "_") + ".csv";
+      link.click();
+      setTimeout(() => URL.revokeObjectURL(link.href), 1000);
+    });
+
+  // For tests and for the curious at the console.
+  window.servodx = { drawn, groups, csv, step };
+})();

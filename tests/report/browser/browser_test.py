@@ -1,0 +1,245 @@
+"""The pages of sample_pages in a real headless Chromium. Called by ctest: browser_test.py SAMPLE_PAGES [FOLDER]
+
+With FOLDER pages and screenshots are kept there: light, dark, phone, print. Exit code 77: no browser here, skipped."""
+import base64, csv, io, json, os, pathlib, shutil, subprocess, sys, tempfile, time, unittest
+
+try:
+    from selenium import webdriver
+    from selenium.webdriver.chrome.service import Service
+    from selenium.webdriver.common.action_chains import ActionChains
+    from selenium.webdriver.common.by import By
+    from selenium.webdriver.common.keys import Keys
+except ImportError:
+    print("skipped: python3-selenium is not installed (scripts/setup installs it)")
+    sys.exit(77)
+
+DRIVER, CHROMIUM = shutil.which("chromedriver"), shutil.which("chromium")
+if not DRIVER or not CHROMIUM:
+    print("skipped: chromium and chromedriver are not installed (scripts/setup installs them)")
+    sys.exit(77)
+
+FLAGS = ["--headless", "--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run", "--disable-dev-shm-usage",
+         "--disable-background-networking", "--disable-component-update", "--disable-sync"]
+PAGES = ["diagnose", "many", "baseline", "tune"]
+
+# Relative luminance and contrast as WCAG 2 defines them, of every element that holds text of its own.
+CONTRAST = """
+const rgb = (c) => { const m = c.match(/[\\d.]+/g).map(Number); return m.length < 4 ? [...m, 1] : m; };
+const linear = (v) => { v /= 255; return v <= 0.04045 ? v / 12.92 : ((v + 0.055) / 1.055) ** 2.4; };
+const luminance = ([r, g, b]) => 0.2126 * linear(r) + 0.7152 * linear(g) + 0.0722 * linear(b);
+const behind = (e) => { for (; e; e = e.parentElement) { const c = rgb(getComputedStyle(e).backgroundColor); if (c[3] > 0.99) return c; } return [255, 255, 255]; };
+const low = [];
+for (const e of document.querySelectorAll('body *')) {
+  if (!e.offsetParent || ![...e.childNodes].some((n) => n.nodeType === 3 && n.textContent.trim())) continue;
+  const a = luminance(rgb(getComputedStyle(e).color)), b = luminance(behind(e));
+  const ratio = (Math.max(a, b) + 0.05) / (Math.min(a, b) + 0.05);
+  if (ratio < 4.5) low.push(e.className + ': ' + e.textContent.trim().slice(0, 40) + ' ' + ratio.toFixed(2));
+}
+return low;"""
+
+
+class Pages(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.folder = pathlib.Path(KEEP or tempfile.mkdtemp())
+        cls.folder.mkdir(parents=True, exist_ok=True)
+        subprocess.run([SAMPLES, str(cls.folder)], check=True)
+        cls.profile = tempfile.mkdtemp()
+        options = webdriver.ChromeOptions()
+        options.binary_location = CHROMIUM
+        for flag in FLAGS + [f"--user-data-dir={cls.profile}", "--window-size=1280,1000"]:
+            options.add_argument(flag)
+        options.set_capability("goog:loggingPrefs", {"browser": "ALL", "performance": "ALL"})
+        cls.driver = webdriver.Chrome(service=Service(DRIVER), options=options)
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.driver.quit()
+        shutil.rmtree(cls.profile, ignore_errors=True)
+        if not KEEP:
+            shutil.rmtree(cls.folder, ignore_errors=True)
+
+    def setUp(self):
+        self.set_size(1280, 1000)
+        self.media("light")
+
+    def media(self, scheme):
+        self.driver.execute_cdp_cmd("Emulation.setEmulatedMedia", {"features": [{"name": "prefers-color-scheme", "value": scheme}]})
+
+    def set_size(self, width, height):
+        self.driver.execute_cdp_cmd("Emulation.setDeviceMetricsOverride",
+                                    {"width": width, "height": height, "deviceScaleFactor": 1, "mobile": width < 600})
+
+    def open(self, name):
+        for kind in ("browser", "performance"):
+            self.driver.get_log(kind)
+        self.driver.get((self.folder / f"{name}.html").as_uri())
+        self.run("document.querySelectorAll('details').forEach((d) => d.open = true)")
+        self.wait("window.servodx")
+
+    def run(self, script, *arguments):
+        if isinstance(script, str):
+            return self.driver.execute_script(script, *arguments)
+        return super().run(script)  # unittest calls this one
+
+    def wait(self, condition):
+        end = time.time() + 10
+        while not self.run("return Boolean(" + condition + ")"):
+            self.assertLess(time.time(), end, condition)
+            time.sleep(0.05)
+
+    def draw_all(self):
+        self.run("for (const c of document.querySelectorAll('.chart')) c.scrollIntoView()")
+        end = time.time() + 10
+        while self.run("return servodx.drawn.size < document.querySelectorAll('.chart').length"):
+            self.assertLess(time.time(), end, "charts not drawn")
+            self.run("const c = [...document.querySelectorAll('.chart')].find((e) => !servodx.drawn.has(e)); if (c) c.scrollIntoView()")
+            time.sleep(0.05)
+
+    def screenshot(self, name):
+        if not KEEP:
+            return
+        self.run("scrollTo(0, 0)")
+        size = self.run("return [document.documentElement.clientWidth, document.documentElement.scrollHeight]")
+        shot = self.driver.execute_cdp_cmd("Page.captureScreenshot", {
+            "captureBeyondViewport": True, "clip": {"x": 0, "y": 0, "width": size[0], "height": min(size[1], 6000), "scale": 1}})
+        (self.folder / f"{name}.png").write_bytes(base64.b64decode(shot["data"]))
+
+    def test_no_console_error_and_nothing_is_fetched(self):
+        for name in PAGES:
+            self.open(name)
+            self.draw_all()
+            self.assertEqual([e["message"] for e in self.driver.get_log("browser")], [], name)
+            asked = []
+            for entry in self.driver.get_log("performance"):
+                message = json.loads(entry["message"])["message"]
+                if message["method"] == "Network.requestWillBeSent":
+                    asked.append(message["params"]["request"]["url"])
+            self.assertEqual([u for u in asked if not u.startswith(("file:", "data:"))], [], name)
+            self.screenshot(name)
+
+    def test_every_chart_shows_ink(self):
+        for name in PAGES:
+            self.open(name)
+            self.draw_all()
+            blank = self.run("""
+                return [...servodx.drawn.keys()].filter((element) => {
+                  const c = element.querySelector('canvas'), d = c.getContext('2d').getImageData(0, 0, c.width, c.height).data;
+                  const seen = new Set();
+                  for (let k = 0; k < d.length; k += 4) if (d[k + 3] > 200) seen.add(d[k] << 16 | d[k + 1] << 8 | d[k + 2]);
+                  return seen.size < 3;
+                }).length""")
+            self.assertEqual(blank, 0, name)
+
+    def test_what_came_from_a_file_is_text(self):
+        for name in ["many", "baseline", "tune"]:
+            self.open(name)
+            self.assertEqual(self.run("return document.querySelectorAll('img').length"), 0)
+            self.assertEqual(self.run("return document.scripts.length"), 3)  # data, uPlot, the page's own
+            self.assertIn("<script>alert('log')</script>", self.run("return document.body.innerText"))
+        self.assertIn("script-src 'sha256-", (self.folder / "many.html").read_text())
+
+    def test_an_injected_script_would_not_run(self):
+        page = (self.folder / "baseline.html").read_text()
+        (self.folder / "injected.html").write_text(page.replace("</main>", "<script>window.injected = 1</script></main>"))
+        self.open("injected")
+        self.assertIsNone(self.run("return window.injected ?? null"))
+        self.assertTrue(self.run("return Boolean(window.servodx)"))
+
+    def ranges(self):
+        return self.run("return [...servodx.drawn.values()].map(({chart}) => [chart.scales.x.min, chart.scales.x.max])")
+
+    def test_zoom_links_all_channels(self):
+        self.open("diagnose")
+        self.draw_all()
+        self.assertGreaterEqual(len(self.ranges()), 9)  # command; value and residual of four channels
+        whole = self.ranges()[0]
+        over = self.driver.find_elements(By.CSS_SELECTOR, ".u-over")[1]
+        self.run("arguments[0].scrollIntoView({block: 'center'})", over)
+        ActionChains(self.driver).move_to_element_with_offset(over, -100, 0).click_and_hold().move_by_offset(200, 0).release().perform()
+        zoomed = self.ranges()
+        self.assertGreater(zoomed[0][0], whole[0])
+        self.assertLess(zoomed[0][1], whole[1])
+        self.assertTrue(all(r == zoomed[0] for r in zoomed), zoomed)
+        self.screenshot("diagnose_zoomed")
+        ActionChains(self.driver).double_click(over).perform()
+        self.assertTrue(all(r == whole for r in self.ranges()), self.ranges())
+
+    def test_keys_reach_and_move_the_charts(self):
+        self.open("diagnose")
+        self.draw_all()
+        whole = self.ranges()[0]
+        self.run("scrollTo(0, 0); document.activeElement.blur()")
+        for _ in range(40):
+            ActionChains(self.driver).send_keys(Keys.TAB).perform()
+            if self.run("return document.activeElement.classList.contains('chart')"):
+                break
+        else:
+            self.fail("no chart can be reached with the tab key")
+        self.assertNotEqual(self.run("return getComputedStyle(document.activeElement).outlineStyle"), "none")
+        self.driver.switch_to.active_element.send_keys("+")
+        zoomed = self.ranges()
+        self.assertTrue(all(r == zoomed[0] != whole for r in zoomed), zoomed)
+        self.driver.switch_to.active_element.send_keys(Keys.ARROW_RIGHT)
+        self.assertGreater(self.ranges()[0][0], zoomed[0][0])
+        self.driver.switch_to.active_element.send_keys("0")
+        self.assertEqual(self.ranges()[0], whole)
+        unreachable = self.run("return [...document.querySelectorAll('button, .chart, .u-series th, summary')].filter((e) => e.tabIndex < 0).length")
+        self.assertEqual(unreachable, 0)
+
+    def test_text_can_be_read_in_light_and_dark(self):
+        for name in PAGES:
+            for scheme in ("light", "dark"):
+                self.media(scheme)
+                self.open(name)
+                self.draw_all()
+                self.assertEqual(self.run(CONTRAST), [], f"{name} {scheme}")
+                if scheme == "dark":
+                    self.screenshot(name + "_dark")
+
+    def test_a_phone_shows_all_without_scrolling_sideways(self):
+        for name in PAGES:
+            self.set_size(390, 844)
+            self.open(name)
+            self.draw_all()
+            time.sleep(0.1)
+            self.assertLessEqual(self.run("return document.documentElement.scrollWidth"), 390, name)
+            self.screenshot(name + "_phone")
+
+    def test_every_figure_has_a_csv_that_reads_back(self):
+        for name in PAGES:
+            self.open(name)
+            figures = self.driver.find_elements(By.TAG_NAME, "figure")
+            self.assertTrue(figures)
+            for figure in figures:
+                self.assertEqual(len(figure.find_elements(By.CSS_SELECTOR, "button.csv")), 1)
+                rows = list(csv.reader(io.StringIO(self.run("return servodx.csv(arguments[0])", figure))))
+                self.assertGreater(len(rows), 1)
+                self.assertEqual({len(r) for r in rows}, {len(rows[0])}, rows[:3])
+
+    def test_a_million_rows_stay_small_and_keep_their_peak(self):
+        self.assertLess((self.folder / "long.html").stat().st_size, 5_000_000)
+        began = time.time()
+        self.open("long")
+        self.draw_all()
+        opened = time.time() - began
+        self.assertLess(opened, 15, "opening and drawing")  # seconds on a crowded machine
+        spool = self.run("const e = [...servodx.drawn.keys()].find((e) => e.ariaLabel.startsWith('spool position [mm]')); return servodx.drawn.get(e).chart.data[1].reduce((a, b) => Math.max(a, b))")
+        self.assertAlmostEqual(spool, 1.5, places=6)  # the lone sample, in mm
+        took = self.run("const t = performance.now(), e = [...servodx.drawn.keys()][0]; for (let k = 0; k < 10; ++k) servodx.step(e, '+'); return (performance.now() - t) / 10")
+        self.assertLess(took, 300, "a zoom step [ms]")
+
+    def test_paper_gets_light_pages_with_every_chart(self):
+        self.media("dark")
+        self.open("diagnose")
+        pdf = base64.b64decode(self.driver.execute_cdp_cmd("Page.printToPDF", {"printBackground": True})["data"])
+        self.assertTrue(pdf.startswith(b"%PDF"))
+        self.assertGreater(len(pdf), 50_000)
+        self.assertEqual(self.run("return document.documentElement.dataset.print ?? null"), None)  # and the screen is as before
+        if KEEP:
+            (self.folder / "diagnose.pdf").write_bytes(pdf)
+
+
+SAMPLES = sys.argv[1]
+KEEP = sys.argv[2] if len(sys.argv) > 2 else os.environ.get("SERVODX_SCREENSHOTS", "")
+unittest.main(argv=sys.argv[:1], verbosity=2)

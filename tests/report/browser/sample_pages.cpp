@@ -1,0 +1,142 @@
+// Writes pages of made-up results for the browser test: `sample_pages FOLDER`. Figures mean nothing; shapes and names do.
+#include <cmath>
+#include <cstdio>
+#include <numbers>
+#include <string>
+
+#include "base/atomic_file.h"
+#include "base/random.h"
+#include "report/pages.h"
+
+namespace {
+
+using namespace servodx;
+
+const std::string hostile = "</script><script>alert('log')</script><img src=x onerror=alert(1)>.csv";
+
+Replay some_replay(const std::string& log, std::size_t samples, const std::vector<std::string>& names) {
+  Replay r;
+  r.log = log;
+  Random random(7);
+  for (std::size_t k = 0; k < samples; ++k) {
+    r.time.push_back(1e-3 * static_cast<double>(k));
+    r.command.push_back(0.01 * std::sin(2 * std::numbers::pi * r.time[k]));
+  }
+  struct Sample {
+    Signal signal;
+    const char* unit;
+    double size;
+  };
+  for (const Sample& s : {Sample{Signal::spool_position, "mm", 5e-4}, Sample{Signal::piston_position, "mm", 0.1},
+                          Sample{Signal::pressure_a, "bar", 5e6}, Sample{Signal::pressure_b, "bar", 5e6}}) {
+    ReplayedChannel c{s.signal, s.unit, {}, {}, {}};
+    for (const std::string& name : names) c.simulated.push_back({name, {}, {}});
+    for (std::size_t k = 0; k < samples; ++k) {
+      const double y = s.size * std::sin(2 * std::numbers::pi * r.time[k] - 0.3);
+      c.measured.push_back(k == samples / 3 ? 3 * s.size : y + 0.01 * s.size * random.normal());  // one lone peak
+      c.sigma.push_back(0.015 * s.size);
+      for (std::size_t i = 0; i < names.size(); ++i) {
+        c.simulated[i].value.push_back(y * (i == 0 ? 1.1 : 1.0));
+        c.simulated[i].residual.push_back(c.measured[k] - c.simulated[i].value[k]);
+      }
+    }
+    r.channels.push_back(std::move(c));
+  }
+  return r;
+}
+
+report::Header some_header(const std::string& command, const std::string& log) {
+  report::Header header;
+  header.version = "0.0.0";
+  header.command = command;
+  header.inputs = {{log, std::string(64, 'a')}};
+  header.notes = {log + ": 3 gaps in time"};
+  header.settings = {{"name", log}};
+  header.simulations = 1234;
+  return header;
+}
+
+std::vector<ParameterResult> some_parameters() {
+  return {{4, "flapper_stiffness", "N/m", 5000, 6200, 55, "bounded", {}, 0, 0},
+          {9, "valve_glitch", "m", 0, 2.07e-5, 1.6e-6, "bounded", {}, 0, 0},
+          {22, "radial_clearance", "m", 3e-6, 2.9e-6, 4e-7, "bounded", {}, 0, 0},
+          {30, "cross_piston_leakage", "m3/s/Pa", 1e-13, 1e-13, std::nan(""), "confounded", {"spool_friction"}, 0, 0}};
+}
+
+Diagnosis some_diagnosis(const std::string& log, const std::string& verdict) {
+  Diagnosis d;
+  d.log = log;
+  d.verdict = verdict;
+  d.error = verdict == "healthy" ? 4 : 37;
+  d.threshold = 9.45;
+  d.p_value = 0.2;
+  d.assessment.log = log;
+  d.assessment.null = -0.0026;
+  d.assessment.parameters = some_parameters();
+  d.assessment.hypotheses = {
+      {"healthy", "as the fault-free logs", 900, 0, 1e-6, 0, 0, 0, "", 8.1, {}},
+      {"feedback_wire_backlash", "clearance between the ball and the spool", 80, 820, 0.93, 2.07e-5, 1.76e-5, 2.39e-5,
+       "m", 1.3, {}},
+      {"sticky_spool", "friction of the spool", 90, 810, 0.07, 4.1, 3.0, 5.2, "times the tuned friction", 1.6, {}}};
+  for (const HypothesisResult& h : d.assessment.hypotheses) d.probabilities[h.name] = h.probability;
+  if (verdict == "fault") {
+    d.fault = "feedback_wire_backlash";
+    d.severity = {2.07e-5, 1.76e-5, 2.39e-5, "m"};
+    d.ambiguous_with = {"sticky_spool"};
+    d.separating_test = "small sine about null: the spool jumps through the clearance at each reversal";
+    d.action = "abnormal: call service";
+    d.onset = 1.5;
+  }
+  return d;
+}
+
+Baseline some_baseline() {
+  Baseline b;
+  b.threshold = 9.45;
+  b.asked = 0.01;
+  b.promised = 1.0 / 5;
+  b.promised_95 = 0.5;
+  b.logs = 4;
+  b.logs_needed = 99;
+  b.statement = "4 fault-free logs promise a false-alarm rate of 20 % on average over baselines";
+  for (int i = 0; i < 4; ++i)
+    b.scores.push_back({i == 0 ? hostile : "h" + std::to_string(i) + ".csv", std::string(64, 'b'), 2.0 + 2.48 * i, 1.0 + i, {}});
+  b.adequacy_limit = 4;
+  return b;
+}
+
+TuneResult some_tuning() {
+  TuneResult t;
+  t.parameters = some_parameters();
+  t.channels = {{Signal::spool_position, "mm", 1e-6, 4e-7, 1.1e-6}, {Signal::pressure_a, "bar", 1e5, 2e4, 1.3e5}};
+  t.logs = {{hostile, t.channels, -0.004, 0.0, {}}, {"h2.csv", t.channels, 0.002, 1.0, {}}};
+  t.starts = {120, 80, 81, 300};
+  t.reached_best = 2;
+  for (int k = 0; k < 30; ++k) t.convergence.push_back({"genetic search", 50 * k, 1000.0 / (1 + k)});
+  for (int k = 0; k < 6; ++k) t.convergence.push_back({"start 1", 1500 + 20 * k, 100.0 / (1 + k)});
+  return t;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  if (argc != 2) return 2;
+  using namespace servodx::report;
+  const auto write = [&](const std::string& name, Page page) {
+    write_file(std::string(argv[1]) + "/" + name + ".html", page.html());
+  };
+  const std::vector<std::string> both = {"healthy", "feedback_wire_backlash"};
+  const std::string log = "bench/valve 3.csv";
+  write("diagnose", diagnose_page(some_header("diagnose", log), {some_diagnosis(log, "fault")}, some_baseline(),
+                                  {some_replay(log, 3000, both)}));
+  write("many", diagnose_page(some_header("diagnose", hostile),
+                              {some_diagnosis(hostile, "fault"), some_diagnosis("u.csv", "unknown"),
+                               some_diagnosis("h.csv", "healthy")},
+                              some_baseline(), {some_replay(hostile, 1500, both), some_replay("u.csv", 1500, both)},
+                              {"feedback_wire_backlash", "sticky_spool", "healthy"}));
+  write("long", diagnose_page(some_header("diagnose", log), {some_diagnosis(log, "fault")}, some_baseline(),
+                              {some_replay(log, 1'000'000, both)}));
+  write("baseline", baseline_page(some_header("baseline", hostile), some_baseline(), {some_replay(hostile, 1500, {"healthy"})}));
+  write("tune", tune_page(some_header("tune", hostile), some_tuning(), {some_replay(hostile, 1500, {"tuned"})}));
+  return 0;
+}
