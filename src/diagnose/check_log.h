@@ -1,0 +1,76 @@
+// `check-log`: what a log holds, what it could identify, and what is suspicious about it, before any fit.
+//
+// The survey reads the samples only. What it can identify is local: the sensitivities of the model at the table's
+// values on this log's inputs, against the errors the model is known to make (a tuned table) or, without these, against
+// twice the sensor's noise with 40 independent samples a second. A fault's visibility is the deviate by which the log
+// would differ, the log's own nuisances fitted away: below about 3 the fault at that size stays hidden.
+#pragma once
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "fit/identifiability.h"
+#include "parameters/table.h"
+#include "signals/log.h"
+#include "signals/rig_file.h"
+
+namespace servodx {
+
+struct ChannelSurvey {
+  Signal signal;
+  std::string column, unit;  // as in the file
+  std::size_t missing = 0;
+  double lowest = 0, highest = 0;  // [SI]
+  double noise = 0;                // [SI] rms, of the sensor
+  double resolution = 0;           // [SI] smallest step between distinct values; 0 unknown
+  double clipped = 0;              // part of the samples that lie on the lowest or the highest value, in runs
+};
+
+struct Finding {
+  std::string kind;  // jitter | gaps | rate | temperature | repeats | saturation | quantisation | values | missing
+  std::string text;
+};
+
+struct LogSurvey {
+  std::string path, sha256;
+  std::size_t samples = 0;
+  double duration = 0, rate = 0;         // [s], [Hz] from the usual step
+  double jitter = 0;                     // rms of the steps about the usual one, gaps left out, over it
+  std::size_t gaps = 0, lost = 0;        // gaps in time; samples they took
+  double longest_gap = 0;                // [s]
+  std::optional<double> temperature;     // [K] mean
+  double drive_span = 0;                 // [A] greatest less least drive
+  double drive_band = 0;                 // [Hz] of the sine that changes as fast as the drive
+  bool closed_loop = false;              // it has a setpoint
+  std::vector<ChannelSurvey> channels;
+  std::vector<Finding> findings;
+};
+
+LogSurvey survey(const Log& log, const RigFile& rig);
+// What only stands out beside the others: another rate, another temperature.
+void compare_surveys(std::vector<LogSurvey>& surveys);
+
+struct Identifiable {
+  std::string name, unit;
+  std::string verdict;  // bounded | flat | confounded
+  double nominal = 0, std_error = 0;         // [unit]; NaN where held
+  std::vector<std::string> confounded_with;
+};
+
+struct Visible {
+  std::string fault, unit;
+  double least = 0, typical = 0;              // severities
+  double at_least = 0, at_typical = 0;        // deviates
+};
+
+struct Promise {
+  std::vector<Identifiable> rows;
+  std::vector<Visible> faults;
+  bool error_known = false;  // the table is tuned
+  long simulations = 0;
+};
+
+// Throws InputError where the log lacks a signal that the model reports.
+Promise promise_of(const Log& log, const Table& table, const RigFile& rig, int threads = 0);
+
+}  // namespace servodx

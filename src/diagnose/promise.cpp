@@ -1,0 +1,129 @@
+#include <algorithm>
+#include <cmath>
+
+#include "base/error.h"
+#include "diagnose/check_log.h"
+#include "faults/registry.h"
+#include "fit/error_model.h"
+#include "fit/free_values.h"
+#include "fit/nominal.h"
+#include "fit/tune.h"
+
+namespace servodx {
+namespace {
+
+constexpr double independent_rate = 40.0;  // [1/s] samples that count, where no tuned table says
+constexpr double default_null_limit = 0.1;
+
+void whiten(FitProblem& problem, const ErrorModel& error, const Point& x) {
+  if (!error.channels.empty()) return apply_error_model(problem, error, x);
+  const LogData& log = *problem.logs().front();
+  const double span = log.scenario.time.back() - log.scenario.time.front();
+  const double correlated = static_cast<double>(log.scenario.time.size()) / std::max(1.0, span * independent_rate);
+  for (std::size_t c = 0; c < log.channels.size(); ++c)
+    problem.set_sigma(0, static_cast<int>(c), 2 * log.channels[c].noise * std::sqrt(std::max(1.0, correlated)));
+}
+
+// Length of what is left of `r` when the columns of `j` (nuisances, their priors included) have taken their best.
+double left_over(const Eigen::VectorXd& r, const Eigen::MatrixXd& j) {
+  if (j.cols() == 0) return r.norm();
+  return (r - j * j.colPivHouseholderQr().solve(r)).norm();
+}
+
+std::vector<Identifiable> identifiable_rows(const FitProblem& problem, const Table& table, const Eigen::MatrixXd& jacobian,
+                                            const Point& x) {
+  std::vector<char> candidates;
+  for (const FreeValue& f : problem.free()) candidates.push_back(f.log < 0);
+  const Identifiability id = identify(jacobian, candidates);
+  std::vector<char> kept;
+  for (const std::string& verdict : id.verdict) kept.push_back(verdict == "free");
+  const Eigen::MatrixXd covariance = covariance_of(jacobian, kept);
+  std::vector<Identifiable> rows;
+  for (std::size_t j = 0; j < kept.size(); ++j) {
+    const FreeValue& f = problem.free()[j];
+    const int at = table.find(f.name);
+    if (!candidates[j] || at < 0) continue;
+    const double value = f.from_unit(x[j]);
+    Identifiable row{f.name, table[at].unit, kept[j] ? "bounded" : id.verdict[j], value, std::nan(""), {}};
+    const auto k = static_cast<long>(j);
+    const double per_unit = f.log_scale ? value * std::log(f.upper / f.lower) : f.upper - f.lower;
+    if (kept[j]) row.std_error = std::sqrt(std::max(0.0, covariance(k, k))) * per_unit;
+    for (const int other : id.confounded_with[j]) row.confounded_with.push_back(problem.free()[static_cast<std::size_t>(other)].name);
+    rows.push_back(std::move(row));
+  }
+  return rows;
+}
+
+}  // namespace
+
+Promise promise_of(const Log& log, const Table& table, const RigFile& rig, int threads) {
+  const LogData data = prepare(log, rig, moving_average_of(table));
+  require_channels(data);
+  const Table facts = apply_rig_facts(table, rig);
+  const ParameterVector base = candidate_of(facts);
+  const ErrorModel error = error_model_of(facts);
+  SimulateOptions options;
+  options.threads = threads;
+  Promise promise;
+  promise.error_known = !error.channels.empty();
+
+  std::vector<FreeValue> free = shared_values(facts);
+  const std::vector<FreeValue> nuisances = nuisance_values(data, 0, base, default_null_limit);
+  free.insert(free.end(), nuisances.begin(), nuisances.end());
+  FitProblem problem({&data}, base, free, options);
+  const Point x = problem.start();
+  whiten(problem, error, x);
+  Evaluation at = problem.evaluate(std::span(&x, 1)).front();
+  Eigen::MatrixXd jacobian;
+  if (!at.ok || !problem.jacobian(x, at.residual, jacobian))
+    throw InputError({.file = table.path}, "the simulation fails at the table's values on " + log.path,
+                     "check the table against the rig's data sheet");
+  promise.rows = identifiable_rows(problem, facts, jacobian, x);
+  promise.simulations = problem.simulations();
+
+  // Each fault at two sizes, all of them as values of one problem: what it adds to the residual, nuisances fitted away.
+  std::vector<FreeValue> faulty = nuisances;
+  for (const Fault* fault : fault_list()) {
+    FreeValue f;
+    f.name = fault->name;
+    f.apply = fault->apply;
+    f.lower = std::min(fault->healthy, fault->worst);
+    f.upper = std::max(fault->healthy, fault->worst);
+    f.start = fault->healthy;
+    faulty.push_back(std::move(f));
+  }
+  FitProblem with(std::vector<const LogData*>{&data}, base, faulty, options);
+  const Point health = with.start();
+  whiten(with, error, health);
+  std::vector<Point> points = {health};
+  for (std::size_t k = 0; k < fault_list().size(); ++k) {
+    const Fault& fault = *fault_list()[k];
+    const std::size_t j = nuisances.size() + k;
+    const double typical = std::abs(fault.starts.back());
+    promise.faults.push_back({std::string(fault.name), std::string(fault.unit), fault.least, typical, 0, 0});
+    for (const double severity : {fault.least, typical}) {
+      Point p = health;
+      p[j] = faulty[j].to_unit(severity);
+      points.push_back(std::move(p));
+    }
+  }
+  const std::vector<Evaluation> runs = with.evaluate(points);
+  promise.simulations += with.simulations();
+  const long n = with.data_rows();
+  const auto first_nuisance = static_cast<long>(free.size() - nuisances.size());
+  const Eigen::MatrixXd own = jacobian.block(0, first_nuisance, n, static_cast<long>(nuisances.size()));
+  Eigen::MatrixXd without_null = own;  // a shifted null must not be fitted away by the log's own null
+  for (std::size_t j = 0; j < nuisances.size(); ++j)
+    if (nuisances[j].at == row::servovalve_null) without_null.col(static_cast<long>(j)).setZero();
+  for (std::size_t k = 0; k < promise.faults.size(); ++k) {
+    const Eigen::MatrixXd& nuisance = promise.faults[k].fault == "null_shift" ? without_null : own;
+    const auto deviate = [&](const Evaluation& e) {
+      return e.ok && runs.front().ok ? left_over((e.residual - runs.front().residual).head(n), nuisance) : std::nan("");
+    };
+    promise.faults[k].at_least = deviate(runs[1 + 2 * k]);
+    promise.faults[k].at_typical = deviate(runs[2 + 2 * k]);
+  }
+  return promise;
+}
+
+}  // namespace servodx

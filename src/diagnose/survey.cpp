@@ -1,0 +1,192 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "diagnose/check_log.h"
+#include "fit/log_data.h"
+
+namespace servodx {
+namespace {
+
+constexpr double gap_over_step = 1.5;       // a step this much over the usual one lost a sample
+constexpr double much_jitter = 0.02;        // rms of the steps over the usual one
+constexpr double much_clipped = 0.01;       // part of the samples
+constexpr std::size_t clipped_run = 5;      // samples: shorter stays at an extreme are chance
+constexpr double restless_run = 3.0;         // samples: a live signal repeats a value for fewer, on average
+constexpr double many_repeats = 0.02;       // part of the rows that equal the one before in every measured signal
+constexpr double coarse_step = 1.0 / 500;   // resolution over range from which steps show
+constexpr double cold = 283.15, hot = 343.15;  // [K] beyond these oil is far from the table's 40 degC
+constexpr double other_rate = 1.2, other_temperature = 15.0;  // [K] beside the other logs
+constexpr double kelvin = 273.15;
+
+double median(std::vector<double> v) {
+  if (v.empty()) return 0;
+  const auto middle = v.begin() + static_cast<std::ptrdiff_t>(v.size() / 2);
+  std::nth_element(v.begin(), middle, v.end());
+  return *middle;
+}
+
+bool is_measured(Signal s) { return s != Signal::time && s != Signal::command && s != Signal::setpoint; }
+
+void survey_time(const std::vector<double>& t, LogSurvey& s) {
+  std::vector<double> steps;
+  for (std::size_t k = 1; k < t.size(); ++k) steps.push_back(t[k] - t[k - 1]);
+  const double usual = median(steps);
+  double square = 0;
+  std::size_t n = 0;
+  for (const double step : steps) {
+    if (step > gap_over_step * usual) {
+      ++s.gaps;
+      s.lost += static_cast<std::size_t>(std::lround(step / usual)) - 1;
+      s.longest_gap = std::max(s.longest_gap, step);
+    } else {
+      square += (step / usual - 1) * (step / usual - 1), ++n;
+    }
+  }
+  s.rate = usual > 0 ? 1.0 / usual : 0;
+  s.jitter = n ? std::sqrt(square / static_cast<double>(n)) : 0;
+}
+
+// Frequency of the sine that decorrelates as fast as the series: found as the stride at which the mean square
+// difference reaches a tenth of its end value, twice the variance; a sine is there at a tenth of its period.
+double band_of(const std::vector<double>& t, const std::vector<double>& x) {
+  double mean = 0, square = 0;
+  std::size_t n = 0;
+  for (const double v : x)
+    if (std::isfinite(v)) mean += v, ++n;
+  if (n < 8) return 0;
+  mean /= static_cast<double>(n);
+  for (const double v : x)
+    if (std::isfinite(v)) square += (v - mean) * (v - mean);
+  square /= static_cast<double>(n);
+  if (square <= 0) return 0;
+  for (std::size_t stride = 1; stride < x.size() / 2; stride = std::max(stride + 1, stride * 5 / 4)) {
+    double difference = 0;
+    std::size_t pairs = 0;
+    for (std::size_t k = stride; k < x.size(); ++k)
+      if (std::isfinite(x[k]) && std::isfinite(x[k - stride]))
+        difference += (x[k] - x[k - stride]) * (x[k] - x[k - stride]), ++pairs;
+    if (pairs > 0 && difference / static_cast<double>(pairs) >= 0.2 * square)
+      return 0.1 / (static_cast<double>(stride) * (t.back() - t.front()) / static_cast<double>(t.size() - 1));
+  }
+  return 0;
+}
+
+ChannelSurvey survey_channel(const Log& log, Signal signal) {
+  const Channel& channel = log.channels[index(signal)];
+  ChannelSurvey c{signal, channel.column, channel.unit, channel.missing, HUGE_VAL, -HUGE_VAL, 0, channel.resolution, 0};
+  const std::vector<double>& x = channel.value;
+  for (const double v : x)
+    if (std::isfinite(v)) c.lowest = std::min(c.lowest, v), c.highest = std::max(c.highest, v);
+  c.noise = noise_of(x, channel.resolution);
+  // Flat stays at an extreme mean a limit only where the signal is restless elsewhere: a temperature that creeps through
+  // its steps is at no limit.
+  std::size_t at_extreme = 0, elsewhere = 0, runs = 0;
+  for (std::size_t k = 0; k < x.size();) {
+    std::size_t end = k + 1;
+    while (end < x.size() && x[end] == x[k]) ++end;
+    if ((x[k] == c.lowest || x[k] == c.highest) && end - k >= clipped_run)
+      at_extreme += end - k;
+    else
+      elsewhere += end - k, ++runs;
+    k = end;
+  }
+  const bool restless = runs > 0 && static_cast<double>(elsewhere) < restless_run * static_cast<double>(runs);
+  if (restless) c.clipped = static_cast<double>(at_extreme) / static_cast<double>(x.size());
+  return c;
+}
+
+// Rows that repeat the one before in everything measured: a logger faster than its source.
+double repeats(const Log& log) {
+  std::vector<const std::vector<double>*> measured;
+  for (const SignalInfo& s : signal_list) {
+    if (!is_measured(s.signal) || !log.has(s.signal)) continue;
+    const auto& x = log[s.signal];
+    if (std::any_of(x.begin(), x.end(), [&](double v) { return v != x.front(); })) measured.push_back(&x);
+  }
+  if (measured.empty() || log.samples() < 2) return 0;
+  std::size_t same = 0;
+  for (std::size_t k = 1; k < log.samples(); ++k)
+    same += std::all_of(measured.begin(), measured.end(), [&](const auto* x) { return (*x)[k] == (*x)[k - 1]; });
+  return static_cast<double>(same) / static_cast<double>(log.samples() - 1);
+}
+
+void find_suspicious(const Log& log, LogSurvey& s) {
+  const auto found = [&](const char* kind, std::string text) { s.findings.push_back({kind, std::move(text)}); };
+  if (s.jitter > much_jitter)
+    found("jitter", fmt::format("time stamps jitter by {:.2g} % of a step (rms): they are used as they are", 100 * s.jitter));
+  if (s.gaps > 0)
+    found("gaps", fmt::format("{} gap{} in time, {} sample{} lost, the longest {:.3g} ms; the command across a gap is not known",
+                              s.gaps, s.gaps == 1 ? "" : "s", s.lost, s.lost == 1 ? "" : "s", 1e3 * s.longest_gap));
+  if (const double part = repeats(log); part > many_repeats)
+    found("repeats", fmt::format("{:.2g} % of the rows repeat the row before in every measured signal: the source is slower "
+                                 "than the log", 100 * part));
+  if (s.temperature && (*s.temperature < cold || *s.temperature > hot))
+    found("temperature", fmt::format("{} oil, {:.0f} degC: judge it against fault-free logs of like temperature",
+                                     *s.temperature < cold ? "cold" : "hot", *s.temperature - kelvin));
+  for (const ChannelSurvey& c : s.channels) {
+    const std::string name = fmt::format("'{}'", info(c.signal).name);
+    if (c.missing > 0) found("missing", fmt::format("{}: {} samples are missing", name, c.missing));
+    if (!is_measured(c.signal)) continue;
+    if (c.clipped > much_clipped)
+      found("saturation", fmt::format("{}: {:.2g} % of the samples lie flat on its lowest or highest value: a sensor or "
+                                      "converter at its limit?", name, 100 * c.clipped));
+    const double range = c.highest - c.lowest;
+    if (simulated_index(c.signal) >= 0 && range > 0 && c.resolution > coarse_step * range && c.noise < 1.01 * c.resolution / std::sqrt(12.0))
+      found("quantisation", fmt::format("{}: steps of {:.2g} {} hide the noise and are {:.2g} % of what it moves", name,
+                                        c.resolution, info(c.signal).si_unit, 100 * c.resolution / range));
+  }
+  for (const std::string& note : log.notes) {  // what the reader saw: limits, spikes, frozen sensors, no excitation
+    if (note.find("gap") != std::string::npos && s.gaps > 0) continue;
+    const std::string front = log.path + ": ";
+    found("values", note.starts_with(front) ? note.substr(front.size()) : note);
+  }
+}
+
+}  // namespace
+
+LogSurvey survey(const Log& log, const RigFile&) {
+  LogSurvey s;
+  s.path = log.path;
+  s.sha256 = log.sha256;
+  s.samples = log.samples();
+  s.duration = log.time.back() - log.time.front();
+  survey_time(log.time, s);
+  s.closed_loop = log.has(Signal::setpoint);
+  if (log.has(Signal::oil_temperature)) {
+    double sum = 0;
+    std::size_t n = 0;
+    for (const double v : log[Signal::oil_temperature])
+      if (std::isfinite(v)) sum += v, ++n;
+    if (n > 0) s.temperature = sum / static_cast<double>(n);
+  }
+  for (const SignalInfo& signal : signal_list)
+    if (signal.signal != Signal::time && log.has(signal.signal)) s.channels.push_back(survey_channel(log, signal.signal));
+  const Signal drive = log.has(Signal::coil_current) ? Signal::coil_current : Signal::command;
+  for (const ChannelSurvey& c : s.channels)
+    if (c.signal == drive) s.drive_span = c.highest - c.lowest;
+  s.drive_band = band_of(log.time, log[drive]);
+  find_suspicious(log, s);
+  return s;
+}
+
+void compare_surveys(std::vector<LogSurvey>& surveys) {
+  if (surveys.size() < 3) return;
+  std::vector<double> rates, temperatures;
+  for (const LogSurvey& s : surveys) {
+    rates.push_back(s.rate);
+    if (s.temperature) temperatures.push_back(*s.temperature);
+  }
+  const double rate = median(rates), temperature = median(temperatures);
+  for (LogSurvey& s : surveys) {
+    if (s.rate > other_rate * rate || s.rate < rate / other_rate)
+      s.findings.push_back({"rate", fmt::format("{:.4g} Hz, the other logs {:.4g} Hz", s.rate, rate)});
+    const bool said = std::any_of(s.findings.begin(), s.findings.end(), [](const Finding& f) { return f.kind == "temperature"; });
+    if (s.temperature && !said && std::abs(*s.temperature - temperature) > other_temperature)
+      s.findings.push_back({"temperature", fmt::format("{:.0f} degC, the other logs about {:.0f} degC",
+                                                       *s.temperature - kelvin, temperature - kelvin)});
+  }
+}
+
+}  // namespace servodx

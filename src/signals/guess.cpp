@@ -1,0 +1,182 @@
+#include "signals/guess.h"
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <string_view>
+
+namespace servodx {
+namespace {
+
+// Words that all must stand in a name, most telling patterns first within a signal.
+struct Pattern {
+  Signal signal;
+  std::string_view words;  // with blanks between
+};
+constexpr Pattern patterns[] = {
+    {Signal::time, "time"}, {Signal::time, "zeit"}, {Signal::time, "timestamp"}, {Signal::time, "t"},
+    {Signal::coil_current, "coil current"}, {Signal::coil_current, "current measured"}, {Signal::coil_current, "current fb"},
+    {Signal::coil_current, "current feedback"}, {Signal::coil_current, "spulenstrom"}, {Signal::coil_current, "i coil"},
+    {Signal::coil_current, "iststrom"},
+    {Signal::command, "command"}, {Signal::command, "cmd"}, {Signal::command, "current demand"}, {Signal::command, "current"},
+    {Signal::command, "i cmd"}, {Signal::command, "i ref"}, {Signal::command, "strom"}, {Signal::command, "sollstrom"},
+    {Signal::command, "i"},
+    {Signal::setpoint, "setpoint"}, {Signal::setpoint, "position demand"}, {Signal::setpoint, "pos demand"},
+    {Signal::setpoint, "pos ref"}, {Signal::setpoint, "position command"}, {Signal::setpoint, "pos cmd"},
+    {Signal::setpoint, "sollweg"}, {Signal::setpoint, "sollposition"}, {Signal::setpoint, "demand"},
+    {Signal::spool_position, "spool"}, {Signal::spool_position, "lvdt"}, {Signal::spool_position, "schieber"},
+    {Signal::spool_position, "schieberweg"}, {Signal::spool_position, "xs"}, {Signal::spool_position, "xv"},
+    {Signal::piston_position, "piston"}, {Signal::piston_position, "rod"}, {Signal::piston_position, "ram"},
+    {Signal::piston_position, "actuator position"}, {Signal::piston_position, "actuator pos"},
+    {Signal::piston_position, "pos fb"}, {Signal::piston_position, "position"}, {Signal::piston_position, "pos"},
+    {Signal::piston_position, "kolben"}, {Signal::piston_position, "kolbenweg"}, {Signal::piston_position, "xp"},
+    {Signal::pressure_a, "pressure a"}, {Signal::pressure_a, "druck a"}, {Signal::pressure_a, "p a"}, {Signal::pressure_a, "pa"},
+    {Signal::pressure_b, "pressure b"}, {Signal::pressure_b, "druck b"}, {Signal::pressure_b, "p b"}, {Signal::pressure_b, "pb"},
+    {Signal::supply_pressure, "supply"}, {Signal::supply_pressure, "pump"}, {Signal::supply_pressure, "ps"},
+    {Signal::supply_pressure, "p s"}, {Signal::supply_pressure, "pressure p"}, {Signal::supply_pressure, "versorgungsdruck"},
+    {Signal::supply_pressure, "systemdruck"}, {Signal::supply_pressure, "druck p"},
+    {Signal::return_pressure, "return"}, {Signal::return_pressure, "tank"}, {Signal::return_pressure, "pt"},
+    {Signal::return_pressure, "p t"}, {Signal::return_pressure, "pr"}, {Signal::return_pressure, "pressure t"},
+    {Signal::return_pressure, "ruecklauf"}, {Signal::return_pressure, "druck t"}, {Signal::return_pressure, "tankdruck"},
+    {Signal::pilot_pressure_1, "pilot 1"}, {Signal::pilot_pressure_1, "nozzle 1"},
+    {Signal::pilot_pressure_2, "pilot 2"}, {Signal::pilot_pressure_2, "nozzle 2"},
+    {Signal::load_pressure, "load pressure"}, {Signal::load_pressure, "pl"}, {Signal::load_pressure, "p load"},
+    {Signal::load_pressure, "lastdruck"}, {Signal::valve_pressure_drop, "valve drop"}, {Signal::valve_pressure_drop, "drop"},
+    {Signal::load_force, "load force"}, {Signal::load_force, "force"}, {Signal::load_force, "load"}, {Signal::load_force, "kraft"},
+    {Signal::load_force, "last"},
+    {Signal::leakage_flow, "leakage"}, {Signal::leakage_flow, "leak"}, {Signal::leakage_flow, "leckage"},
+    {Signal::flow_a, "flow a"}, {Signal::flow_a, "qa"}, {Signal::flow_a, "q a"}, {Signal::flow_b, "flow b"},
+    {Signal::flow_b, "qb"}, {Signal::flow_b, "q b"}, {Signal::control_flow, "flow"}, {Signal::control_flow, "q"},
+    {Signal::control_flow, "durchfluss"},
+    {Signal::oil_temperature, "oil temperature"}, {Signal::oil_temperature, "temperature"}, {Signal::oil_temperature, "temp"},
+    {Signal::oil_temperature, "oil"}, {Signal::oil_temperature, "oeltemp"}, {Signal::oil_temperature, "temperatur"},
+};
+
+// How else people write units of the table.
+constexpr std::array<std::pair<std::string_view, std::string_view>, 24> unit_words = {{
+    {"sec", "s"}, {"seconds", "s"}, {"msec", "ms"}, {"\xC2\xB5s", "us"}, {"\xC2\xB5m", "um"}, {"micron", "um"}, {"inch", "in"},
+    {"C", "degC"}, {"\xC2\xB0" "C", "degC"}, {"deg C", "degC"}, {"celsius", "degC"}, {"F", "degF"}, {"\xC2\xB0" "F", "degF"},
+    {"lpm", "l/min"}, {"L/min", "l/min"}, {"volt", "V"}, {"volts", "V"}, {"MPA", "MPa"}, {"mpa", "MPa"}, {"Bar", "bar"},
+    {"BAR", "bar"}, {"PSI", "psi"}, {"psig", "psi"}, {"ma", "mA"},
+}};
+
+std::string trimmed(const std::string& text) {
+  const auto first = text.find_first_not_of(" \t");
+  return first == std::string::npos ? "" : text.substr(first, text.find_last_not_of(" \t") - first + 1);
+}
+
+std::string known_unit(const std::string& written) {
+  if (find_unit(written)) return written;
+  for (const auto& [word, unit] : unit_words)
+    if (written == word) return std::string(unit);
+  return "";
+}
+
+// Lower-case words: cut at everything that is no letter or digit, and where camelCase turns.
+std::vector<std::string> words_of(const std::string& name) {
+  std::vector<std::string> words;
+  std::string word;
+  bool was_lower = false;
+  const auto end = [&] {
+    if (!word.empty()) words.push_back(word);
+    word.clear();
+  };
+  for (const char c : name) {
+    const auto u = static_cast<unsigned char>(c);
+    if (std::isalnum(u)) {
+      if (std::isupper(u) && was_lower) end();
+      word += static_cast<char>(std::tolower(u));
+      was_lower = std::islower(u) != 0;
+    } else if (u >= 0x80) {  // a letter of another alphabet
+      word += c;
+      was_lower = true;
+    } else {
+      end();
+      was_lower = false;
+    }
+  }
+  end();
+  return words;
+}
+
+// Number of words of the pattern if all are there, plus one where nothing else is; 0: no match.
+int match(const std::vector<std::string>& name, std::string_view pattern) {
+  int matched = 0;
+  while (!pattern.empty()) {
+    const auto blank = std::min(pattern.find(' '), pattern.size());
+    if (std::find(name.begin(), name.end(), pattern.substr(0, blank)) == name.end()) return 0;
+    ++matched;
+    pattern.remove_prefix(std::min(blank + 1, pattern.size()));
+  }
+  return 2 * matched + (static_cast<std::size_t>(matched) == name.size());
+}
+
+bool unit_fits(const std::string& unit, Signal signal) {
+  const Unit* u = find_unit(unit);
+  if (!u || u->dimension == Dimension::voltage) return true;
+  const auto relative = relative_unit(signal);
+  return u->dimension == info(signal).dimension || (relative && u->dimension == relative->dimension);
+}
+
+ColumnGuess split(const std::string& cell) {
+  ColumnGuess g;
+  g.cell = cell;
+  g.name = trimmed(cell);
+  const auto cut = [&](std::size_t at, const std::string& unit) {
+    g.unit = unit;
+    g.name = trimmed(g.name.substr(0, at));
+  };
+  for (const auto& [open, close] : {std::pair{'[', ']'}, std::pair{'(', ')'}}) {
+    const auto at = g.name.rfind(open);
+    if (at == std::string::npos || at == 0 || g.name.back() != close) continue;
+    const std::string written = trimmed(g.name.substr(at + 1, g.name.size() - at - 2));
+    cut(at, known_unit(written));
+    g.unit_in_brackets = open == '[' && !g.unit.empty() && g.unit == written;
+    return g;
+  }
+  // "pressure_bar", "Q l/min": the last word is a unit; "p/bar": what follows the stroke is.
+  for (const char* marks : {"_ ", "/"}) {
+    const auto at = g.name.find_last_of(marks);
+    if (at == std::string::npos || at == 0) continue;
+    const std::string unit = known_unit(g.name.substr(at + 1));
+    if (unit.size() > 1 || unit == "V" || unit == "A" || unit == "s") {
+      cut(at, unit);
+      break;
+    }
+  }
+  return g;
+}
+
+}  // namespace
+
+std::vector<ColumnGuess> guess_columns(const std::vector<std::string>& header) {
+  std::vector<ColumnGuess> guesses;
+  struct Match {
+    int points;
+    std::size_t column;
+    Signal signal;
+  };
+  std::vector<Match> matches;
+  for (std::size_t i = 0; i < header.size(); ++i) {
+    ColumnGuess g = split(header[i]);
+    if (const auto own = find_signal(g.name)) {
+      g.canonical = true;
+      matches.push_back({100, i, *own});
+    }
+    const std::vector<std::string> words = words_of(g.name);
+    for (const Pattern& p : patterns)
+      if (const int points = match(words, p.words); points > 0 && unit_fits(g.unit, p.signal))
+        matches.push_back({points, i, p.signal});
+    guesses.push_back(std::move(g));
+  }
+  std::stable_sort(matches.begin(), matches.end(), [](const Match& a, const Match& b) { return a.points > b.points; });
+  std::array<bool, n_signals> taken{};
+  for (const Match& m : matches) {
+    if (guesses[m.column].signal || taken[static_cast<std::size_t>(index(m.signal))]) continue;
+    guesses[m.column].signal = m.signal;
+    taken[static_cast<std::size_t>(index(m.signal))] = true;
+  }
+  return guesses;
+}
+
+}  // namespace servodx
