@@ -8,6 +8,7 @@
 #include "commands.h"
 #include "diagnose/diagnose.h"
 #include "invocation.h"
+#include "report/pages.h"
 #include "report/text.h"
 
 namespace servodx {
@@ -31,8 +32,11 @@ int run(const Options& options) {
   const Table tuned = invocation.tuned_table(options.params);
   const std::vector<Log> logs = invocation.logs(options.logs, rig);
 
-  const std::atomic<bool>& stop = stop_on_interrupt();
   report::Header& header = invocation.header();
+  header.settings = {{"false_alarm", options.false_alarm}};
+  if (invocation.dry_run()) return ran;
+
+  const std::atomic<bool>& stop = stop_on_interrupt();
   const Baseline baseline = make_baseline(
       logs, tuned, rig, options.false_alarm,
       {.seed = options.common.seed, .threads = options.common.threads, .quiet = options.common.quiet, .stop = &stop},
@@ -40,7 +44,12 @@ int run(const Options& options) {
   for (const Log& log : logs) invocation.note(log.notes);
   if (baseline.scores.size() < logs.size())
     invocation.note({fmt::format("interrupted: rests on {} of {} logs", baseline.scores.size(), logs.size())});
-  header.settings = {{"false_alarm", options.false_alarm}};
+  if (invocation.wants_report()) {
+    std::vector<Replay> replays;
+    for (std::size_t i = 0; i < std::min(baseline.scores.size(), report::most_replays); ++i)
+      replays.push_back(replay(logs[i], tuned, rig, {baseline.scores[i].healthy}));
+    invocation.write_report(report::baseline_page(header, baseline, replays));
+  }
   const report::Json body = report::baseline_json(baseline);
   write_file(options.output, invocation.result(body));
   invocation.finish(report::text_of(baseline, {.colour = colour_wanted(), .written_to = options.output}), body);

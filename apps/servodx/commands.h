@@ -15,5 +15,11 @@ void add_join_command(CLI::App& app);
 void add_list_command(CLI::App& app);
 void add_map_command(CLI::App& app);
 void add_curves_command(CLI::App& app);
+void add_check_log_command(CLI::App& app);
+void add_compare_command(CLI::App& app);
+void add_init_command(CLI::App& app);
+void add_selftest_command(CLI::App& app);
+void add_rerun_command(CLI::App& app, int& exit_code);
+void add_manual_commands(CLI::App& app);  // completion, man: made from what the other commands say of themselves
 
 }  // namespace servodx

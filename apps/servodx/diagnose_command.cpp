@@ -11,6 +11,7 @@
 #include "diagnose/diagnose.h"
 #include "invocation.h"
 #include "report/baseline_file.h"
+#include "report/pages.h"
 #include "report/text.h"
 
 namespace servodx {
@@ -43,6 +44,23 @@ std::vector<Diagnosis> judge_each(const std::vector<Log>& logs, const Table& tun
   return results;
 }
 
+// Of the worst logs: a page of many would be too large to open.
+std::vector<Replay> replays(const std::vector<Log>& logs, const Table& tuned, const RigFile& rig,
+                            const std::vector<Diagnosis>& results) {
+  std::vector<const Diagnosis*> worst;
+  for (const Diagnosis& d : results) worst.push_back(&d);
+  std::stable_sort(worst.begin(), worst.end(), [](const auto* a, const auto* b) { return a->error > b->error; });
+  if (worst.size() > report::most_replays) worst.resize(report::most_replays);
+  std::vector<Replay> all;
+  for (const Diagnosis* d : worst)
+    for (const Log& log : logs)
+      if (log.path == d->log) {
+        all.push_back(replay(log, tuned, rig, d->assessment.explanations));
+        break;
+      }
+  return all;
+}
+
 int run(const Options& options) {
   require_option(!options.pool, "--pool", "logs cannot be pooled yet", "leave it out: each log is judged alone");
   Invocation invocation("diagnose", options.common);
@@ -57,6 +75,9 @@ int run(const Options& options) {
   for (const std::string& path : options.logs) logs.push_back(invocation.log(path, rig));
   report::Header& header = invocation.header();
   header.inputs.push_back({options.baseline, file.sha256});
+
+  header.settings = {{"false_alarm", file.baseline.asked}};
+  if (invocation.dry_run()) return ran;
 
   const std::atomic<bool>& stop = stop_on_interrupt();
   const std::vector<Diagnosis> results = judge_each(
@@ -73,7 +94,12 @@ int run(const Options& options) {
   }
   if (results.size() < logs.size())
     invocation.note({fmt::format("interrupted: {} of {} logs were judged", results.size(), logs.size())});
-  header.settings = {{"false_alarm", file.baseline.asked}};
+  if (invocation.wants_report()) {
+    std::vector<std::string> truths;
+    for (const Diagnosis& d : results) truths.push_back(report::truth_beside(d.log, d.assessment.sha256));
+    invocation.write_report(
+        report::diagnose_page(header, results, file.baseline, replays(logs, tuned, rig, results), truths));
+  }
   invocation.finish(text, report::diagnose_json(results));
   return stop ? interrupted : options.exit_code ? worst : ran;
 }

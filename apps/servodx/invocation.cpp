@@ -11,12 +11,17 @@
 #include <stdexcept>
 
 #include "base/atomic_file.h"
+#include "base/csv.h"
 #include "base/error.h"
+#include "manifest.h"
+#include "report/columns.h"
+#include "report/plain_page.h"
 
 namespace servodx {
 namespace fs = std::filesystem;
 namespace {
 
+std::vector<std::string> call;
 std::atomic<bool> stop{false};
 static_assert(std::atomic<bool>::is_always_lock_free, "a signal handler may store it");
 
@@ -65,6 +70,10 @@ void add_common_options(CLI::App& command, CommonOptions& options) {
   command.add_option("--json", options.json, "write the result as JSON to FILE; '-': to standard output, without text")
       ->type_name("FILE")
       ->group("Common");
+  command
+      .add_option("--report", options.report, "write a page that shows the result and why it holds: one file, offline")
+      ->type_name("FILE.html")
+      ->group("Common");
   command.add_option("--rig", options.rig, "rig file: data-sheet facts and names of columns")
       ->type_name("RIG.toml")
       ->group("Common");
@@ -78,6 +87,9 @@ void add_common_options(CLI::App& command, CommonOptions& options) {
       ->type_name("S")
       ->group("Common")
       ->capture_default_str();
+  command
+      .add_flag("--dry-run", options.dry_run, "read and check everything, print the effective settings, and end there")
+      ->group("Common");
   command.add_flag("--quiet", options.quiet, "no progress and no notices")->group("Common");
 }
 
@@ -85,9 +97,18 @@ void require_option(bool holds, const std::string& option, const std::string& ru
   if (!holds) throw InputError({option, 0, ""}, rule, mend);
 }
 
+void remember_call(int argc, char** argv) { call.assign(argv + 1, argv + argc); }
+
 const std::atomic<bool>& stop_on_interrupt() {
   std::signal(SIGINT, on_interrupt);
   return stop;
+}
+
+std::string shipped_path(const std::string& path) {
+  std::error_code ignored;
+  if (fs::exists(path, ignored)) return path;
+  const fs::path installed = fs::read_symlink("/proc/self/exe", ignored).parent_path().parent_path() / "share/servodx" / path;
+  return fs::exists(installed, ignored) ? installed.string() : path;
 }
 
 bool colour_wanted() { return ::isatty(STDOUT_FILENO) == 1 && !std::getenv("NO_COLOR"); }
@@ -98,11 +119,12 @@ Invocation::Invocation(std::string command, CommonOptions options) : options_(st
   header_.seed = options_.seed;
 }
 
-void Invocation::check_files(const std::vector<std::string>& inputs, const std::vector<std::string>& outputs) const {
+void Invocation::check_files(const std::vector<std::string>& inputs, const std::vector<std::string>& outputs) {
   std::vector<std::string> all_inputs = inputs;
   if (!options_.rig.empty()) all_inputs.push_back(options_.rig);
   std::vector<std::string> all_outputs = outputs;
   if (!options_.json.empty() && options_.json != "-") all_outputs.push_back(options_.json);
+  if (!options_.report.empty()) all_outputs.push_back(options_.report);
   std::vector<fs::path> seen;
   for (const std::string& output : all_outputs) {
     require_option(!output.empty(), "--output", "the name is empty", "name a file");
@@ -115,6 +137,30 @@ void Invocation::check_files(const std::vector<std::string>& inputs, const std::
         throw InputError({output, 0, ""}, "is named for two outputs", "give each output its own file");
     seen.push_back(resolved);
   }
+  outputs_ = std::move(all_outputs);
+}
+
+bool Invocation::dry_run() const {
+  if (!options_.dry_run) return false;
+  report::Json settings = {{"seed", header_.seed}, {"threads", options_.threads}};
+  settings.update(header_.settings);
+  if (options_.json == "-") {
+    print(report::Json{{"command", header_.command},
+                       {"dry_run", true},
+                       {"settings", settings},
+                       {"inputs", report::to_json(header_)["inputs"]},
+                       {"outputs", outputs_}}
+              .dump(2) +
+          "\n");
+    return true;
+  }
+  report::Columns table("ll", 2);
+  for (const auto& [key, value] : settings.items())
+    table.row({key, key == "threads" && value == 0 ? "all" : value.is_string() ? value.get<std::string>() : value.dump()});
+  for (const report::InputFile& file : header_.inputs) table.row({"input", file.path + "  " + file.sha256.substr(0, 12)});
+  for (const std::string& output : outputs_) table.row({"output", output});
+  print(header_.command + ", dry run: everything was read and checked, nothing is computed or written\n" + table.text());
+  return true;
 }
 
 RigFile Invocation::rig() {
@@ -166,9 +212,42 @@ std::string Invocation::result(const report::Json& body) {
   return report::dump(header_, body);
 }
 
+void Invocation::write_report(report::Page page) {
+  write_file(options_.report, page.html());
+  reported_ = true;
+}
+
+void Invocation::write_manifest() const {
+  std::error_code ignored;
+  std::vector<std::string> files;
+  for (const std::string& output : outputs_)
+    if (fs::is_regular_file(output, ignored)) files.push_back(output);
+  if (files.empty()) return;
+  const std::string path = files.front() + manifest_suffix;
+  const fs::path beside = fs::absolute(path).parent_path();
+  report::Json outputs = report::Json::array();
+  for (const std::string& file : files) outputs.push_back({{"path", file}, {"sha256", fingerprint(read_file(file))}});
+  const report::Json header = report::to_json(header_);
+  const report::Json manifest = {{"manifest", 1},
+                                 {"tool", "servodx"},
+                                 {"version", header_.version},
+                                 {"command", header_.command},
+                                 {"directory", fs::proximate(fs::current_path(), beside, ignored).string()},
+                                 {"arguments", call},
+                                 {"seed", header_.seed},
+                                 {"threads", options_.threads},
+                                 {"settings", header_.settings},
+                                 {"interrupted", stop.load()},
+                                 {"inputs", header["inputs"]},
+                                 {"outputs", outputs}};
+  write_file(path, manifest.dump(2, ' ', false, report::Json::error_handler_t::replace) + "\n");
+}
+
 void Invocation::finish(const std::string& text, const report::Json& body) {
+  if (!options_.json.empty() && options_.json != "-") write_file(options_.json, result(body));
+  if (wants_report() && !reported_) write_report(report::plain_page(header_, text, body));
+  write_manifest();
   if (options_.json == "-") return print(result(body));
-  if (!options_.json.empty()) write_file(options_.json, result(body));
   std::string all = text;
   if (!options_.quiet)
     for (const std::string& note : header_.notes) all += "note: " + note + "\n";

@@ -8,6 +8,7 @@
 
 #include "parameters/table.h"
 #include "report/json.h"
+#include "report/page.h"
 #include "signals/log.h"
 #include "signals/rig_file.h"
 
@@ -21,15 +22,20 @@ enum ExitCode { ran = 0, failed_inside = 1, refused = 2, found_fault = 10, found
 
 struct CommonOptions {
   std::string json;  // result file; "-": standard output, and no text there; empty: none
+  std::string report;  // page, HTML; empty: none
   std::string rig;   // rig.toml; empty: none
   int threads = 0;   // 0: all
   std::uint64_t seed = 1;
   bool quiet = false;
+  bool dry_run = false;
 };
 void add_common_options(CLI::App& command, CommonOptions& options);
 
 // Throws InputError naming the option, unless `holds`.
 void require_option(bool holds, const std::string& option, const std::string& rule, const std::string& mend);
+
+// The call as typed, for the manifest.
+void remember_call(int argc, char** argv);
 
 // Set by the first SIGINT from now on; a second one ends the program at once.
 const std::atomic<bool>& stop_on_interrupt();
@@ -39,8 +45,12 @@ class Invocation {
   Invocation(std::string command, CommonOptions options);
 
   // Before any work: refuses outputs whose folder is missing or closed, that are a folder, an input, or the same file
-  // twice. The --json file is among the outputs.
-  void check_files(const std::vector<std::string>& inputs, const std::vector<std::string>& outputs) const;
+  // twice. The --json and --report files are among the outputs.
+  void check_files(const std::vector<std::string>& inputs, const std::vector<std::string>& outputs);
+
+  // Between reading and working, the settings being set: true where the call is a rehearsal. It then has printed the
+  // effective settings, and the command ends without computing or writing.
+  bool dry_run() const;
 
   // Readers that note what they read among the result's inputs.
   RigFile rig();
@@ -56,14 +66,23 @@ class Invocation {
 
   // Header and body as a result file's bytes; the time so far is filled in.
   std::string result(const report::Json& body);
-  // The result to --json and the text to standard output, each where it is asked for; then the notes.
+  bool wants_report() const { return !options_.report.empty(); }
+  void write_report(report::Page page);  // without it, `finish` writes a plain one
+  // The result to --json and the text to standard output, each where it is asked for; then the notes. Beside the first
+  // file that the call wrote goes its manifest, FILE.manifest.json: all that `rerun` needs.
   void finish(const std::string& text, const report::Json& body);
 
  private:
   CommonOptions options_;
+  void write_manifest() const;
   report::Header header_;
+  bool reported_ = false;
+  std::vector<std::string> outputs_;  // checked; the command's own first
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
+
+// A file that comes with the program ("params/..."): the path itself where it is there, else where it was installed.
+std::string shipped_path(const std::string& path);
 
 bool colour_wanted();  // standard output is a terminal and NO_COLOR is not set
 

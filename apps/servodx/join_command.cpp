@@ -32,6 +32,7 @@ void run(const Options& options) {
   constexpr ReadOptions part_of_a_log{.require_response = false, .require_drive = false};
   const Log first = invocation.log(options.first, rig, part_of_a_log);
   const Log second = invocation.log(options.second, rig, part_of_a_log);
+  if (invocation.dry_run()) return;
   ClockFit clock;
   const Log joined = join_recorders(first, second, join, clock);
 

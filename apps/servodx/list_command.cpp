@@ -234,8 +234,9 @@ void run(const Options& options) {
     if (options.kind != kind.name) continue;
     Invocation invocation("list", options.common);
     invocation.check_files({options.params}, {});
-    const Listing listing = kind.make(options, invocation);
     invocation.header().settings = {{"kind", options.kind}};
+    const Listing listing = kind.make(options, invocation);
+    if (invocation.dry_run()) return;
     invocation.finish(listing.text, {{options.kind, listing.items}});
     return;
   }

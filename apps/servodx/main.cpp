@@ -35,6 +35,13 @@ int main(int argc, char** argv) {
   add_curves_command(app);
   add_map_command(app);
   add_rig_command(app, exit_code);
+  add_check_log_command(app);
+  add_compare_command(app);
+  add_init_command(app);
+  add_selftest_command(app);
+  add_rerun_command(app, exit_code);
+  add_manual_commands(app);
+  remember_call(argc, argv);
   try {
     app.parse(argc, argv);
     return exit_code;

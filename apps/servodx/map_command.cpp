@@ -56,15 +56,16 @@ void run(const Options& options) {
   require_option(all || find_map(options.model), "--model", "there is no map '" + options.model + "'",
                  "use one of " + report::join(names) + ", or all with --svg");
   require_option(!all || options.output.empty(), "--output", "holds one map", "name a model, or leave out -o");
-  require_option(!options.output.empty() || !options.svg.empty(), "--output", "is missing",
+  require_option(!options.output.empty() || !options.svg.empty() || !options.common.report.empty(), "--output", "is missing",
                  "add -o MAP.csv, or --svg FILE for a picture");
   Invocation invocation("map", options.common);
   std::vector<std::string> outputs;
   for (const std::string& path : {options.output, options.svg})
     if (!path.empty()) outputs.push_back(path);
-  invocation.check_files({options.params}, outputs);
+  const std::string params = shipped_path(options.params);
+  invocation.check_files({params}, outputs);
   const RigFile rig = invocation.rig();
-  const Table table = apply_rig_facts(invocation.table(options.params), rig);
+  const Table table = apply_rig_facts(invocation.table(params), rig);
 
   HighFidelity reference(geometry_of(table, rig));
   const ValveNumbers valve =
@@ -76,20 +77,24 @@ void run(const Options& options) {
     return grid(info.make(valve, reference), travel, travels, flow, flows, at);
   };
 
+  invocation.header().settings = {{"model", options.model}, {"supply", supply}, {"travel", travel}, {"flow", flow}};
+  if (invocation.dry_run()) return;
+
   if (!options.output.empty()) write_file(options.output, report::map_csv(map_of(*find_map(options.model), supply)));
-  if (!options.svg.empty()) {
-    std::vector<report::MapPicture> pictures;
+  std::vector<report::MapPicture> pictures;
+  if (!options.svg.empty() || invocation.wants_report()) {
     for (const MapInfo& info : map_list())
       if (all) pictures.push_back({info.name, map_of(info, supply), supply});
     if (!all)
       for (double at : falling_supplies(supply, valve))
         pictures.push_back({fmt::format("{}, P_SR {:.3g} bar", options.model, find_unit("bar")->from_si(at)),
                             map_of(*find_map(options.model), at), at});
-    write_file(options.svg, report::maps_svg(pictures));
   }
+  if (!options.svg.empty()) write_file(options.svg, report::maps_svg(pictures));
 
   const std::vector<MapError> errors = compare(valve, reference, {.stop = table[row::spool_stop].nominal});
-  invocation.header().settings = {{"model", options.model}, {"supply", supply}, {"travel", travel}, {"flow", flow}};
+  if (invocation.wants_report())
+    invocation.write_report(report::maps_page(invocation.header(), valve, errors, pictures));
   report::Json body = report::maps_json(valve, errors);
   body["output"] = options.output;
   body["picture"] = options.svg;

@@ -15,6 +15,7 @@
 #include "base/sha256.h"
 #include "invocation.h"
 #include "report/columns.h"
+#include "report/plain_page.h"
 #include "rig/facts.h"
 #include "rig/fleet.h"
 #include "rig/rig_run.h"
@@ -66,6 +67,8 @@ int one_log(Options& options, Invocation& invocation, const rig::RigModel& model
   invocation.header().simulations = 1;
   const std::size_t samples = log.columns.front().value.size();
   const std::string truth = truth_path(options.output);
+  if (invocation.wants_report())
+    invocation.write_report(report::columns_page(invocation.header(), "Log of the virtual rig: " + options.run.excitation, log.columns));
   invocation.finish(fmt::format("wrote {} ({} samples) and {}\n", options.output, samples, truth),
                     {{"output", options.output}, {"truth_file", truth}, {"samples", samples}, {"truth", log.truth}});
   return stop ? interrupted : ran;
@@ -160,6 +163,7 @@ void check_call(const Options& options) {
 
 int run(Options& options) {
   check_call(options);
+  options.model = shipped_path(options.model);
   options.run.seed = options.fleet.seed = options.common.seed;
   options.run.temperature = options.celsius.value_or(40.0) + rig::zero_celsius;
   if (options.celsius) options.fleet.temperature = options.run.temperature;
@@ -188,9 +192,10 @@ int run(Options& options) {
                      {"faults", options.faults},
                      {"changed", options.changes},
                      {"valve", options.valve}};
+  if (fleet) header.settings["fleet"] = options.fleet.logs;
+  if (invocation.dry_run()) return ran;
   if (options.facts) return facts_of(options, invocation, model);
   if (!options.torque.empty()) return torque_map(options, invocation, model);
-  if (fleet) header.settings["fleet"] = options.fleet.logs;
   return fleet ? labelled_set(options, invocation, model, model_sha256)
                : one_log(options, invocation, model, model_sha256);
 }

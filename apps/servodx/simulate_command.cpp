@@ -12,6 +12,7 @@
 #include "invocation.h"
 #include "report/columns.h"
 #include "report/handy.h"
+#include "report/pages.h"
 #include "simulate/simulate.h"
 
 namespace servodx {
@@ -62,6 +63,9 @@ void run(const Options& options) {
   require_channels(data);
   const ParameterVector candidate = candidate_of(table);
   const SimulateOptions how = simulate_options(options, data);
+  report::Header& header = invocation.header();
+  header.settings = {{"step", how.step}, {"impact_step", how.impact_step}};
+  if (invocation.dry_run()) return;
   Trajectory simulated = simulate(data.scenario, candidate, how);
   if (!simulated.ok)
     throw std::runtime_error(
@@ -76,11 +80,11 @@ void run(const Options& options) {
   }
   write_log(options.output, columns);
 
-  report::Header& header = invocation.header();
   header.simulations = 1;
   invocation.note(data.notes);
   invocation.note(left_out(log));
-  header.settings = {{"step", how.step}, {"impact_step", how.impact_step}};
+  if (invocation.wants_report())
+    invocation.write_report(report::simulate_page(header, replay(log, table, rig, {{"simulated", candidate}})));
   report::Json signals = report::Json::array();
   for (const OutputColumn& c : columns) signals.push_back({{"signal", info(c.signal).name}, {"unit", c.unit}});
   invocation.finish(fmt::format("simulated {} at {} samples: {}\n", report::join(names), log.samples(), options.output),

@@ -8,6 +8,7 @@
 #include "fit/tune.h"
 #include "invocation.h"
 #include "report/columns.h"
+#include "report/pages.h"
 #include "report/text.h"
 
 namespace servodx {
@@ -56,20 +57,28 @@ int run(const Options& options) {
   const Table nominal = invocation.table(options.params);  // tune() applies the facts, effects' rows included
   const std::vector<Log> logs = invocation.logs(options.logs, rig);
 
-  tune_options.stop = &stop_on_interrupt();
-  const TuneResult result = tune(logs, nominal, rig, tune_options);
-  write_table(options.output, result.table);
-
   report::Header& header = invocation.header();
-  header.simulations = result.simulations;
-  header.failed_simulations = result.failed_simulations;
-  for (const Log& log : logs) invocation.note(log.notes);
-  invocation.note(result.notes);
   header.settings = {{"population", tune_options.population},
                      {"generations", tune_options.generations},
                      {"heldout", tune_options.heldout},
                      {"moving_average", tune_options.moving_average},
                      {"effects", tune_options.effects}};
+  if (invocation.dry_run()) return ran;
+
+  tune_options.stop = &stop_on_interrupt();
+  const TuneResult result = tune(logs, nominal, rig, tune_options);
+  write_table(options.output, result.table);
+
+  header.simulations = result.simulations;
+  header.failed_simulations = result.failed_simulations;
+  for (const Log& log : logs) invocation.note(log.notes);
+  invocation.note(result.notes);
+  if (invocation.wants_report()) {
+    std::vector<Replay> replays;
+    for (std::size_t l = 0; l < std::min(logs.size(), report::most_replays); ++l)
+      replays.push_back(replay(logs[l], result.table, rig, {{"tuned", result.logs[l].candidate}}));
+    invocation.write_report(report::tune_page(header, result, replays));
+  }
   invocation.finish(report::text_of(result, {.colour = colour_wanted(), .written_to = options.output}),
                     report::tune_json(result));
   return result.interrupted ? interrupted : ran;

@@ -1,0 +1,124 @@
+// `servodx init LOG`: a commented rig file and a parameter table to begin with, from a log's header.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <cmath>
+#include <filesystem>
+#include <memory>
+
+#include "base/atomic_file.h"
+#include "base/csv.h"
+#include "commands.h"
+#include "invocation.h"
+#include "report/columns.h"
+#include "report/handy.h"
+#include "shipped.h"
+#include "signals/guess.h"
+
+namespace servodx {
+namespace {
+
+struct Options {
+  CommonOptions common;
+  std::string log, output = "rig.toml", table = "params.csv";
+};
+
+struct Header {
+  std::vector<ColumnGuess> columns;
+  std::vector<std::string> spans;  // "0 to 250", as written; empty where no number was seen
+};
+
+Header read_header(const std::string& path) {
+  const std::string bytes = read_file(path);
+  CsvCursor csv(bytes, path);
+  Header header{guess_columns(csv.header()), {}};
+  std::vector<double> low(csv.header().size(), HUGE_VAL), high(csv.header().size(), -HUGE_VAL);
+  while (csv.next_row())
+    for (std::size_t c = 0; c < low.size(); ++c) {
+      double value = 0;
+      if (csv.next_number(value) == Cell::number) low[c] = std::min(low[c], value), high[c] = std::max(high[c], value);
+    }
+  for (std::size_t c = 0; c < low.size(); ++c)
+    header.spans.push_back(low[c] <= high[c] ? report::digits(low[c], 4) + " to " + report::digits(high[c], 4) : "no numbers");
+  return header;
+}
+
+std::string toml_quoted(const std::string& text) {
+  std::string safe = "\"";
+  for (const char c : text) {
+    if (c == '"' || c == '\\') safe += '\\';
+    if (static_cast<unsigned char>(c) >= 0x20) safe += c;
+  }
+  return safe + "\"";
+}
+
+// The [columns] line of one column; a comment where nothing need or can be said.
+std::string column_line(const ColumnGuess& g, const std::string& span) {
+  const std::string note = "  # " + span + "\n";
+  if (!g.signal) return fmt::format("# {} = {{ signal = \"?\", unit = \"?\" }}  # not recognised: {}; ignored as it is\n", toml_quoted(g.cell), span);
+  const std::string signal(info(*g.signal).name);
+  if (g.canonical && g.unit_in_brackets) return fmt::format("# {} is read as it is{}", toml_quoted(g.cell), note);
+  const Unit* unit = find_unit(g.unit);
+  const bool volts = unit && unit->dimension == Dimension::voltage;
+  if (volts)
+    return fmt::format("{} = {{ signal = \"{}\", unit = \"{}\", gain = \"1 {}/V\", offset = \"0 {}\" }}  # {}; give the sensor's gain\n",
+                       toml_quoted(g.cell), signal, g.unit, info(*g.signal).si_unit, info(*g.signal).si_unit, span);
+  if (g.unit_in_brackets) return fmt::format("{} = {{ signal = \"{}\" }}{}", toml_quoted(g.cell), signal, note);
+  if (g.unit.empty())
+    return fmt::format("{} = {{ signal = \"{}\", unit = \"{}\" }}  # {}; the header has no unit: check this one\n", toml_quoted(g.cell),
+                       signal, info(*g.signal).si_unit, span);
+  return fmt::format("{} = {{ signal = \"{}\", unit = \"{}\" }}{}", toml_quoted(g.cell), signal, g.unit, note);
+}
+
+std::string rig_file(const std::string& log, const Header& header) {
+  std::string text = "# Rig file, begun by 'servodx init' from " + toml_quoted(log) + ".\n" + std::string(shipped::rig_comments) + "\n[columns]\n";
+  text += "# The log's columns. gain = \"-1\" turns a sign: positive command, spool and piston go together (docs/tutorial.md).\n";
+  for (std::size_t c = 0; c < header.columns.size(); ++c) text += column_line(header.columns[c], header.spans[c]);
+  return text;
+}
+
+void run(const Options& options) {
+  Invocation invocation("init", options.common);
+  require_option(options.common.rig.empty(), "--rig", "is what this command writes", "leave it out");
+  invocation.check_files({options.log}, {options.output, options.table});
+  for (const std::string& output : {options.output, options.table})
+    require_option(!std::filesystem::exists(output), output, "is there already, and may hold your work", "name another file or remove it");
+  const Header header = read_header(options.log);
+  invocation.header().inputs.push_back({options.log, sha256_of_file(options.log)});
+  if (invocation.dry_run()) return;
+  write_file(options.output, rig_file(options.log, header));
+  write_file(options.table, shipped::table);
+
+  report::Columns table("llll", 2);
+  table.row({"column", "taken for", "unit", "values"});
+  report::Json columns = report::Json::array();
+  for (std::size_t c = 0; c < header.columns.size(); ++c) {
+    const ColumnGuess& g = header.columns[c];
+    const std::string signal = g.signal ? std::string(info(*g.signal).name) : "";
+    table.row({g.cell, g.signal ? signal : "not recognised", g.unit, header.spans[c]});
+    columns.push_back({{"column", g.cell}, {"signal", g.signal ? report::Json(signal) : report::Json(nullptr)}, {"unit", g.unit}});
+  }
+  std::string text = fmt::format("wrote {} and {}\n{}", options.output, options.table, table.text());
+  try {
+    const Log log = read_log(options.log, read_rig_file(options.output));
+    text += fmt::format("the log reads with it: {} samples\n", log.samples());
+  } catch (const InputError& open) {
+    text += fmt::format("to be mended in {} before the log reads:\n  {}\n", options.output, open.what());
+  }
+  text += fmt::format("next: fill in the data sheet in {}, then 'servodx check-log {} --rig {}'\n", options.output, options.log, options.output);
+  invocation.finish(text, {{"rig", options.output}, {"table", options.table}, {"columns", columns}});
+}
+
+}  // namespace
+
+void add_init_command(CLI::App& app) {
+  auto options = std::make_shared<Options>();
+  CLI::App* command = app.add_subcommand("init", "A commented rig file and a parameter table to begin with, from a log's header");
+  command->add_option("LOG", options->log, "a rig log with your own column names, CSV")->required();
+  command->add_option("-o,--output", options->output, "the rig file")->type_name("RIG.toml")->capture_default_str();
+  command->add_option("--table", options->table, "the parameter table")->type_name("PARAMS.csv")->capture_default_str();
+  add_common_options(*command, options->common);
+  command->callback([options] { run(*options); });
+}
+
+}  // namespace servodx

@@ -1,0 +1,189 @@
+// `servodx completion SHELL` and `servodx man`: made from what the commands say of themselves, as --help is.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cstdio>
+#include <memory>
+
+#include "base/error.h"
+#include "commands.h"
+
+namespace servodx {
+namespace {
+
+std::vector<const CLI::App*> commands_of(const CLI::App& app) { return app.get_subcommands([](const CLI::App*) { return true; }); }
+
+// "--json", "-o": as typed.
+std::vector<std::string> names_of(const CLI::Option& option) {
+  std::vector<std::string> names;
+  for (const std::string& name : option.get_snames()) names.push_back("-" + name);
+  for (const std::string& name : option.get_lnames()) names.push_back("--" + name);
+  return names;
+}
+
+std::string joined(const std::vector<std::string>& words, const std::string& between) {
+  std::string all;
+  for (const std::string& word : words) all += (all.empty() ? "" : between) + word;
+  return all;
+}
+
+std::vector<std::string> option_names(const CLI::App& command) {
+  std::vector<std::string> all;
+  for (const CLI::Option* option : command.get_options())
+    for (std::string& name : names_of(*option)) all.push_back(std::move(name));
+  return all;
+}
+
+std::string bash(const CLI::App& app) {
+  std::vector<std::string> names;
+  std::string cases;
+  for (const CLI::App* command : commands_of(app)) {
+    names.push_back(command->get_name());
+    cases += fmt::format("    {}) options=\"{}\" ;;\n", command->get_name(), joined(option_names(*command), " "));
+  }
+  return fmt::format(R"(# bash completion of servodx; from 'servodx completion bash'
+_servodx() {{
+  local word=${{COMP_WORDS[COMP_CWORD]}} options=""
+  if ((COMP_CWORD == 1)); then
+    mapfile -t COMPREPLY < <(compgen -W "{} --help --version" -- "$word")
+    return
+  fi
+  case ${{COMP_WORDS[1]}} in
+{}  esac
+  if [[ $word == -* ]]; then
+    mapfile -t COMPREPLY < <(compgen -W "$options" -- "$word")
+  else
+    compopt -o filenames
+    mapfile -t COMPREPLY < <(compgen -f -- "$word")
+  fi
+}}
+complete -F _servodx servodx
+)",
+                     joined(names, " "), cases);
+}
+
+// A text between single quotes, for fish and zsh.
+std::string single_quoted(std::string text) {
+  std::string safe;
+  for (const char c : text) safe += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return "'" + safe + "'";
+}
+
+std::string fish(const CLI::App& app) {
+  std::string text = "# fish completion of servodx; from 'servodx completion fish'\n";
+  for (const CLI::App* command : commands_of(app)) {
+    text += fmt::format("complete -c servodx -n __fish_use_subcommand -f -a {} -d {}\n", command->get_name(),
+                        single_quoted(command->get_description()));
+    for (const CLI::Option* option : command->get_options()) {
+      if (option->get_positional()) continue;
+      text += fmt::format("complete -c servodx -n '__fish_seen_subcommand_from {}'", command->get_name());
+      for (const std::string& name : option->get_snames()) text += " -s " + name;
+      for (const std::string& name : option->get_lnames()) text += " -l " + name;
+      text += (option->get_expected_max() > 0 ? " -r -d " : " -d ") + single_quoted(option->get_description()) + "\n";
+    }
+  }
+  return text;
+}
+
+std::string zsh(const CLI::App& app) {
+  std::string names, cases;
+  for (const CLI::App* command : commands_of(app)) {
+    names += fmt::format("    {}\n", single_quoted(command->get_name() + ":" + command->get_description()));
+    cases += fmt::format("    {}) compadd -- {} ;;\n", command->get_name(), joined(option_names(*command), " "));
+  }
+  return fmt::format(R"(#compdef servodx
+# zsh completion of servodx; from 'servodx completion zsh'
+_servodx() {{
+  local -a commands=(
+{}  )
+  if ((CURRENT == 2)); then
+    _describe command commands
+  elif [[ $words[CURRENT] == -* ]]; then
+    case $words[2] in
+{}    esac
+  else
+    _files
+  fi
+}}
+_servodx "$@"
+)",
+                     names, cases);
+}
+
+// Text for roff: no line may begin with a dot, and a hyphen must stay one.
+std::string roff(const std::string& text) {
+  std::string safe;
+  bool at_start = true;
+  for (const char c : text) {
+    if (at_start && (c == '.' || c == '\'')) safe += "\\&";
+    if (c == '\\') {
+      safe += "\\e";
+    } else if (c == '-') {
+      safe += "\\-";
+    } else {
+      safe += c;
+    }
+    at_start = c == '\n';
+  }
+  return safe;
+}
+
+std::string man_option(const CLI::Option& option) {
+  std::string head;
+  if (option.get_positional()) {
+    head = "\\fI" + roff(option.get_name(true)) + "\\fR" + (option.get_expected_max() > 1 ? " ..." : "");
+  } else {
+    std::vector<std::string> names;
+    for (const std::string& name : names_of(option)) names.push_back("\\fB" + roff(name) + "\\fR");
+    head = joined(names, ", ");
+    if (option.get_expected_max() > 0) head += " \\fI" + roff(option.get_type_name()) + "\\fR";
+  }
+  std::string tail = option.get_required() ? " Required." : "";
+  if (!option.get_default_str().empty()) tail += " Default: " + option.get_default_str() + ".";
+  return fmt::format(".TP\n{}\n{}.{}\n", head, roff(option.get_description()), roff(tail));
+}
+
+std::string man(const CLI::App& app) {
+  std::string text = fmt::format(".TH SERVODX 1 \"\" \"servodx {}\" \"User Commands\"\n", SERVODX_VERSION);
+  text += ".SH NAME\nservodx \\- " + roff(app.get_description()) + "\n.SH SYNOPSIS\n.B servodx\n\\fICOMMAND\\fR [\\fIOPTION\\fR ...]\n";
+  text += ".SH COMMANDS\n";
+  std::string common;
+  for (const CLI::App* command : commands_of(app)) {
+    text += fmt::format(".SS {}\n{}.\n", roff(command->get_name()), roff(command->get_description()));
+    std::string in_common;
+    for (const CLI::Option* option : command->get_options()) {
+      if (option->get_group() == "Common")
+        in_common += man_option(*option);
+      else if (option->get_name(false, true).find("--help") == std::string::npos)
+        text += man_option(*option);
+    }
+    if (common.empty()) common = in_common;
+    if (!command->get_footer().empty()) text += ".PP\n.nf\n" + roff(command->get_footer()) + "\n.fi\n";
+  }
+  text += ".SH COMMON OPTIONS\n" + common;
+  text +=
+      ".SH EXIT STATUS\n.TP\n0\nit ran, whatever the verdict\n.TP\n1\nit failed inside\n.TP\n2\nthe call or an input was "
+      "refused; nothing is written\n.TP\n10, 11\nwith \\fBdiagnose \\-\\-exit\\-code\\fR: a fault; unknown\n.TP\n130\ninterrupted; "
+      "the best so far is written\n";
+  return text;
+}
+
+void print(const std::string& text) { std::fwrite(text.data(), 1, text.size(), stdout); }
+
+}  // namespace
+
+void add_manual_commands(CLI::App& app) {
+  auto shell = std::make_shared<std::string>();
+  CLI::App* completion = app.add_subcommand("completion", "Print a completion script: bash, zsh or fish");
+  completion->add_option("SHELL", *shell, "bash, zsh or fish")->required();
+  completion->callback([shell, &app] {
+    if (*shell == "bash") return print(bash(app));
+    if (*shell == "zsh") return print(zsh(app));
+    if (*shell == "fish") return print(fish(app));
+    throw InputError({}, "there is no completion for '" + *shell + "'", "use bash, zsh or fish");
+  });
+  app.add_subcommand("man", "Print the manual page (roff)")->callback([&app] { print(man(app)); });
+}
+
+}  // namespace servodx

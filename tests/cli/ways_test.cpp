@@ -1,0 +1,273 @@
+// The ways in and out: check-log, init, compare, --dry-run, --report, manifest and rerun, completion and man.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <utility>
+
+#include "program.h"
+
+namespace servodx {
+namespace {
+
+using Json = nlohmann::json;
+
+std::string shipped_log(const std::string& name) {
+  return bytes_of(std::filesystem::path(SERVODX_SOURCE_DIR) / "data" / name);
+}
+
+// The first `rows` rows of a shipped log.
+std::string first_rows(const std::string& name, int rows) {
+  std::istringstream in(shipped_log(name));
+  std::string text, line;
+  for (int k = 0; k <= rows && std::getline(in, line);) {
+    k += line.starts_with('#') ? 0 : 1;
+    text += line + "\n";
+  }
+  return text;
+}
+
+std::vector<std::string> kinds(const Json& result, std::size_t log = 0) {
+  std::vector<std::string> all;
+  for (const Json& f : result["logs"][log]["suspicious"]) all.push_back(f["kind"]);
+  return all;
+}
+
+bool has(const std::vector<std::string>& all, const std::string& one) {
+  return std::find(all.begin(), all.end(), one) != all.end();
+}
+
+Json check(const Desk& desk, const std::string& call) {
+  const Ended ended = desk.run("check-log " + call + " --json -");
+  EXPECT_EQ(ended.code, 0) << ended.err;
+  return ended.code == 0 ? Json::parse(ended.out) : Json();
+}
+
+TEST(CheckLog, FindsJitterGapsAndCold) {
+  const Desk desk;
+  std::istringstream in(first_rows("healthy/h12_mixed.csv", 1000));
+  std::string jitter, gaps, line;
+  for (long row = -1; std::getline(in, line);) {
+    if (line.starts_with('#')) continue;
+    if (++row == 0) {
+      jitter = gaps = line + "\n";
+      continue;
+    }
+    const double t = std::stod(line);
+    const std::string rest = line.substr(line.find(','));
+    jitter += std::to_string(t + ((row * 7) % 5 - 2) * 5e-5) + rest + "\n";
+    if (row % 100 > 2) gaps += line + "\n";
+  }
+  desk.write("clean.csv", first_rows("healthy/h12_mixed.csv", 1000));
+  desk.write("jitter.csv", jitter);
+  desk.write("gaps.csv", gaps);
+  desk.write("cold.csv", first_rows("healthy/h08_preflight_cold.csv", 1000));
+  EXPECT_TRUE(kinds(check(desk, "clean.csv")).empty()) << check(desk, "clean.csv")["logs"][0]["suspicious"];
+  EXPECT_TRUE(has(kinds(check(desk, "jitter.csv")), "jitter"));
+  const Json dropped = check(desk, "gaps.csv");
+  EXPECT_TRUE(has(kinds(dropped), "gaps"));
+  EXPECT_EQ(dropped["logs"][0]["gaps"], 9);
+  EXPECT_EQ(dropped["logs"][0]["lost_samples"], 27);
+  EXPECT_TRUE(has(kinds(check(desk, "cold.csv")), "temperature"));
+}
+
+TEST(CheckLog, FindsALogOfAnotherRateAmongOthers) {
+  const Desk desk;
+  for (const char* name : {"a.csv", "b.csv"}) desk.write(name, first_rows(name[0] == 'a' ? "healthy/h12_mixed.csv" : "healthy/h04_multisine.csv", 500));
+  std::istringstream in(first_rows("healthy/h06_sweep.csv", 500));
+  std::string slow, line;
+  for (long row = 0; std::getline(in, line);)
+    if (line.starts_with('#') || row++ % 2 == 0) slow += line + "\n";
+  desk.write("slow.csv", slow);
+  const Json result = check(desk, "a.csv b.csv slow.csv");
+  EXPECT_FALSE(has(kinds(result, 0), "rate"));
+  EXPECT_TRUE(has(kinds(result, 2), "rate"));
+}
+
+TEST(CheckLog, SaysWhatALogCanShow) {
+  const Desk desk;
+  desk.write("moving.csv", first_rows("healthy/h12_mixed.csv", 1000));
+  desk.write("table.csv", shipped_table());
+  const Json log = check(desk, "moving.csv --params table.csv")["logs"][0];
+  ASSERT_FALSE(log["identifiable"].empty());
+  ASSERT_GE(log["visible_faults"].size(), 7u);
+  for (const Json& fault : log["visible_faults"])
+    EXPECT_GE(fault["deviate_at_typical"].get<double>(), 0.0) << fault;
+  EXPECT_FALSE(log["model_error_known"].get<bool>());
+}
+
+// A user's own names, units and separator.
+std::string foreign_log() {
+  std::istringstream in(first_rows("healthy/h12_mixed.csv", 400));
+  std::string text = "Zeit (ms);Strom (mA);Schieberweg [um];Kolbenweg_mm;Druck A (bar);Druck B (bar);note\n", line;
+  bool header = true;
+  while (std::getline(in, line)) {
+    if (line.starts_with('#')) continue;
+    if (std::exchange(header, false)) continue;
+    std::istringstream cells(line);
+    std::vector<double> v;
+    for (std::string cell; std::getline(cells, cell, ',');) v.push_back(std::stod(cell));
+    std::ostringstream row;
+    row << v[0] * 1e3 << ';' << v[1] << ';' << v[2] * 1e3 << ';' << v[3] << ';' << v[4] << ';' << v[5] << ";1\n";
+    std::string made = row.str();
+    std::replace(made.begin(), made.end(), '.', ',');
+    text += made;
+  }
+  return text;
+}
+
+TEST(Init, AForeignLogReadsWithTheRigFileItWrites) {
+  const Desk desk;
+  desk.write("log.csv", foreign_log());
+  const Ended made = desk.run("init log.csv -o rig.toml --table params.csv");
+  ASSERT_EQ(made.code, 0) << made.err;
+  EXPECT_NE(made.out.find("the log reads with it: 400 samples"), std::string::npos) << made.out;
+  const Json result = check(desk, "log.csv --rig rig.toml --params params.csv");
+  std::vector<std::string> signals;
+  for (const Json& c : result["logs"][0]["channels"]) signals.push_back(c["signal"]);
+  EXPECT_EQ(signals, (std::vector<std::string>{"command", "spool_position", "piston_position", "pressure_a", "pressure_b"}));
+  const Ended again = desk.run("init log.csv -o rig.toml --table other.csv");
+  EXPECT_EQ(again.code, 2);  // it may hold the user's work
+  EXPECT_FALSE(std::filesystem::exists(desk / "other.csv"));
+}
+
+TEST(DryRun, PrintsTheSettingsAndWritesNothing) {
+  const Desk desk;
+  desk.write("log.csv", small_log());
+  desk.write("table.csv", shipped_table());
+  const auto before = desk.contents();
+  const Ended ended = desk.run("tune log.csv --params table.csv -o tuned.csv --generations 7 --json r.json --report r.html --dry-run");
+  EXPECT_EQ(ended.code, 0) << ended.err;
+  EXPECT_EQ(desk.contents(), before);
+  for (const char* word : {"dry run", "generations", "7", "population", "log.csv", "tuned.csv", "r.html"})
+    EXPECT_NE(ended.out.find(word), std::string::npos) << word << " is not in " << ended.out;
+  EXPECT_EQ(desk.run("tune missing.csv --params table.csv -o tuned.csv --dry-run").code, 2);
+}
+
+struct Simulated : Desk {
+  Simulated() {
+    write("log.csv", small_log());
+    write("table.csv", shipped_table());
+    const Ended ended = run("simulate log.csv --params table.csv -o sim.csv --json sim.json --report sim.html");
+    EXPECT_EQ(ended.code, 0) << ended.err;
+  }
+};
+
+TEST(Rerun, ReproducesEveryBitOfEveryOutput) {
+  const Simulated desk;
+  const auto before = desk.contents();
+  const Json manifest = Json::parse(bytes_of(desk / "sim.csv.manifest.json"));
+  for (const char* key : {"version", "seed", "threads", "inputs", "settings", "outputs", "arguments"})
+    EXPECT_TRUE(manifest.contains(key)) << key;
+  EXPECT_EQ(manifest["outputs"].size(), 3u);
+  const Ended again = desk.run("rerun sim.csv.manifest.json");
+  EXPECT_EQ(again.code, 0) << again.err << again.out;
+  EXPECT_NE(again.out.find("reproduced bit for bit"), std::string::npos) << again.out;
+  EXPECT_EQ(desk.contents(), before);  // results that were there stay as they are
+
+  std::filesystem::remove(desk / "sim.csv");
+  EXPECT_EQ(desk.run("rerun sim.csv.manifest.json").code, 0);
+  EXPECT_EQ(bytes_of(desk / "sim.csv"), before.at("sim.csv"));
+  // From another folder too.
+  std::filesystem::create_directory(desk / "elsewhere");
+  EXPECT_EQ(desk.run("rerun ../" + (desk.path.filename() / "sim.csv.manifest.json").string()).code, 0);
+}
+
+TEST(Rerun, SaysWhereBitsDifferAndKeepsBoth) {
+  const Simulated desk;
+  const std::string changed = bytes_of(desk / "sim.csv") + "\n";
+  const std::string manifest = bytes_of(desk / "sim.csv.manifest.json");
+  Json other = Json::parse(manifest);
+  other["outputs"][0]["sha256"] = std::string(64, '0');
+  desk.write("other.manifest.json", other.dump());
+  const Ended ended = desk.run("rerun other.manifest.json");
+  EXPECT_EQ(ended.code, 1);
+  EXPECT_NE(ended.out.find("DIFFERS"), std::string::npos) << ended.out;
+  EXPECT_TRUE(std::filesystem::exists(desk / "sim.csv.rerun"));
+}
+
+TEST(Rerun, RefusesChangedInputs) {
+  const Simulated desk;
+  desk.write("log.csv", small_log(240));
+  const Ended ended = desk.run("rerun sim.csv.manifest.json");
+  EXPECT_EQ(ended.code, 2);
+  EXPECT_NE(ended.err.find("log.csv: has changed"), std::string::npos) << ended.err;
+}
+
+TEST(Compare, TellsWhatDiffersAndWhatDoesNot) {
+  const Simulated desk;
+  const Ended same = desk.run("compare sim.json sim.json");
+  EXPECT_EQ(same.code, 0) << same.err;
+  EXPECT_NE(same.out.find("are the same"), std::string::npos) << same.out;
+  desk.write("a.json", R"({"tool": "servodx", "command": "tune", "version": "1", "seed": 1,
+    "parameters": [{"name": "spool_friction", "unit": "N", "estimate": 3.0, "std_error": 0.1},
+                   {"name": "moving_mass", "unit": "kg", "estimate": 10.0, "std_error": 1.0}]})");
+  desk.write("b.json", R"({"tool": "servodx", "command": "tune", "version": "1", "seed": 2,
+    "parameters": [{"name": "spool_friction", "unit": "N", "estimate": 4.0, "std_error": 0.1},
+                   {"name": "moving_mass", "unit": "kg", "estimate": 10.5, "std_error": 1.0}]})");
+  const Ended ended = desk.run("compare a.json b.json --json -");
+  ASSERT_EQ(ended.code, 0) << ended.err;
+  const Json result = Json::parse(ended.out);
+  ASSERT_EQ(result["differences"].size(), 2u);
+  EXPECT_TRUE(result["differences"][0]["matters"]);
+  EXPECT_NEAR(result["differences"][0]["sigmas"], 1.0 / (0.1 * std::sqrt(2.0)), 1e-9);
+  EXPECT_FALSE(result["differences"][1]["matters"]);
+  EXPECT_EQ(result["conditions"].size(), 1u);
+  EXPECT_EQ(desk.run("compare a.json sim.json").code, 2);  // of different commands
+}
+
+TEST(Report, EveryCommandThatTakesTheCommonOptionsWritesOne) {
+  const Simulated desk;
+  EXPECT_EQ(desk.run("list faults --report list.html --json - >/dev/null").code, 0);
+  EXPECT_EQ(desk.run("check-log log.csv --report check.html").code, 0);
+  EXPECT_EQ(desk.run("compare sim.json sim.json --report compare.html").code, 0);
+  for (const char* page : {"list.html", "check.html", "compare.html", "sim.html"}) {
+    const std::string html = bytes_of(desk / page);
+    EXPECT_TRUE(html.starts_with("<!DOCTYPE html>")) << page;
+    EXPECT_NE(html.find("</html>"), std::string::npos) << page;
+  }
+}
+
+TEST(Report, ALogNamedLikeAScriptIsText) {
+  const Desk desk;
+  const std::string name = "<script>alert(1)<_script>.csv";
+  desk.write(name, small_log());
+  const Ended ended = desk.run("check-log '" + name + "' --report page.html");
+  ASSERT_EQ(ended.code, 0) << ended.err;
+  EXPECT_EQ(bytes_of(desk / "page.html").find("<script>alert"), std::string::npos);
+}
+
+TEST(Manual, NamesEveryCommandAndOption) {
+  const Desk desk;
+  const std::string man = desk.run("man").out, bash = desk.run("completion bash").out;
+  EXPECT_TRUE(man.starts_with(".TH SERVODX 1")) << man.substr(0, 100);
+  for (const char* command : {"tune", "baseline", "diagnose", "check-log", "compare", "rerun", "selftest", "init"}) {
+    std::string in_man = command;
+    if (const auto at = in_man.find('-'); at != std::string::npos) in_man.replace(at, 1, "\\-");
+    EXPECT_NE(man.find(".SS " + in_man + "\n"), std::string::npos) << command;
+    EXPECT_NE(bash.find(std::string(command) + ") options="), std::string::npos) << command;
+  }
+  EXPECT_NE(bash.find("--false-alarm"), std::string::npos);
+  for (const char* shell : {"zsh", "fish"}) EXPECT_FALSE(desk.run(std::string("completion ") + shell).out.empty());
+  EXPECT_EQ(desk.run("completion tcsh").code, 2);
+  EXPECT_EQ(std::system("command -v bash >/dev/null"), 0);
+  desk.write("c.bash", bash);
+  EXPECT_EQ(std::system(("bash -n '" + (desk / "c.bash") + "'").c_str()), 0);
+}
+
+TEST(Selftest, StatesBiasAndCoverage) {
+  const Desk desk;
+  desk.write("log.csv", first_rows("healthy/h12_mixed.csv", 500));
+  desk.write("table.csv", shipped_table());
+  const Ended ended = desk.run("selftest log.csv --params table.csv --repeats 2 --json - --quiet");
+  ASSERT_EQ(ended.code, 0) << ended.err;
+  const Json result = Json::parse(ended.out);
+  ASSERT_FALSE(result["parameters"].empty());
+  for (const char* key : {"bias", "bias_sigmas", "rms", "std_error", "covered", "counted"})
+    EXPECT_TRUE(result["parameters"][0].contains(key)) << key;
+  EXPECT_TRUE(result["coverage"].contains("value"));
+}
+
+}  // namespace
+}  // namespace servodx
