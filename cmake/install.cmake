@@ -1,0 +1,67 @@
+# `cmake --install`: the program, its manual page and completions, the tables, and the library with its headers for
+# find_package(servodx). `cpack` makes Debian packages of the same: servodx and libservodx-dev.
+include(GNUInstallDirs)
+include(CMakePackageConfigHelpers)
+
+install(TARGETS servodx RUNTIME COMPONENT program)
+install(DIRECTORY params DESTINATION ${CMAKE_INSTALL_DATADIR}/servodx COMPONENT program)
+install(FILES README.md CHANGELOG.md DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT program)
+install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR} RENAME copyright COMPONENT program)
+install(FILES third_party/uplot/LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR} RENAME copyright.uplot COMPONENT program)
+install(DIRECTORY docs/ DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT program FILES_MATCHING PATTERN "*.md")
+
+# Manual and completions come from the program itself.
+set(manual ${CMAKE_BINARY_DIR}/manual)
+add_custom_command(
+  OUTPUT ${manual}/servodx.1 ${manual}/servodx.bash ${manual}/_servodx ${manual}/servodx.fish
+  COMMAND ${CMAKE_COMMAND} -E make_directory ${manual}
+  COMMAND servodx man > ${manual}/servodx.1
+  COMMAND servodx completion bash > ${manual}/servodx.bash
+  COMMAND servodx completion zsh > ${manual}/_servodx
+  COMMAND servodx completion fish > ${manual}/servodx.fish
+  DEPENDS servodx VERBATIM)
+add_custom_target(manual ALL DEPENDS ${manual}/servodx.1)
+install(FILES ${manual}/servodx.1 DESTINATION ${CMAKE_INSTALL_MANDIR}/man1 COMPONENT program)
+install(FILES ${manual}/servodx.bash DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions RENAME servodx
+        COMPONENT program)
+install(FILES ${manual}/_servodx DESTINATION ${CMAKE_INSTALL_DATADIR}/zsh/vendor-completions COMPONENT program)
+install(FILES ${manual}/servodx.fish DESTINATION ${CMAKE_INSTALL_DATADIR}/fish/vendor_completions.d COMPONENT program)
+
+# One target for users, servodx::servodx, over the folders' libraries.
+get_property(folders GLOBAL PROPERTY servodx_libraries)
+add_library(servodx_api INTERFACE)
+target_link_libraries(servodx_api INTERFACE ${folders})
+# What keeps results the same bits must hold in the user's translation units too, where templates are instantiated.
+target_compile_definitions(servodx_api INTERFACE EIGEN_DONT_PARALLELIZE)
+target_compile_options(servodx_api INTERFACE -ffp-contract=off)
+target_compile_features(servodx_api INTERFACE cxx_std_20)
+set_target_properties(servodx_api PROPERTIES EXPORT_NAME servodx)
+install(TARGETS servodx_api ${folders} EXPORT servodx-targets ARCHIVE COMPONENT development)
+install(EXPORT servodx-targets NAMESPACE servodx:: DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/servodx
+        COMPONENT development)
+install(DIRECTORY src/ DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/servodx COMPONENT development
+        FILES_MATCHING PATTERN "*.h" PATTERN "*.inc" PATTERN web EXCLUDE)
+install(DIRECTORY examples DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT development)
+configure_file(cmake/servodx-config.cmake ${CMAKE_BINARY_DIR}/servodx-config.cmake COPYONLY)
+write_basic_package_version_file(${CMAKE_BINARY_DIR}/servodx-config-version.cmake COMPATIBILITY SameMinorVersion)
+install(FILES ${CMAKE_BINARY_DIR}/servodx-config.cmake ${CMAKE_BINARY_DIR}/servodx-config-version.cmake
+        DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/servodx COMPONENT development)
+
+set(CPACK_GENERATOR DEB)
+set(CPACK_PACKAGE_VENDOR servodx)
+set(CPACK_PACKAGE_CONTACT "servodx maintainers <servodx@localhost>")
+set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "fault diagnosis of electrohydraulic servovalves from rig logs")
+set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
+set(CPACK_COMPONENTS_ALL program development)
+set(CPACK_DEB_COMPONENT_INSTALL ON)
+set(CPACK_COMPONENTS_GROUPING ONE_PER_GROUP)
+set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
+set(CPACK_STRIP_FILES ON)
+set(CPACK_DEBIAN_PROGRAM_PACKAGE_NAME servodx)
+set(CPACK_DEBIAN_PROGRAM_PACKAGE_SECTION science)
+set(CPACK_DEBIAN_PROGRAM_PACKAGE_SHLIBDEPS ON)
+set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_NAME libservodx-dev)
+set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SECTION libdevel)
+set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS
+    "libceres-dev, libeigen3-dev, libfmt-dev, libtomlplusplus-dev, nlohmann-json3-dev, libssl-dev, libmatio-dev")
+include(CPack)

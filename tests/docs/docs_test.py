@@ -1,0 +1,120 @@
+"""Every command in the docs, run; every link, followed. Called by ctest: docs_test.py SERVODX SOURCE
+
+A fence ```console holds commands ("$ servodx ...") and what they print. They run in order, in one folder a page, that
+begins with data/ and params/. Of the output shown every line must be printed, in order, numbers aside: digits may
+move, words may not; a line '...' stands for any lines. A fence ```sh holds commands with the reader's own names in
+them: they are rehearsed (--dry-run) in a folder that has files of these names."""
+import pathlib, re, shutil, subprocess, sys, tempfile, unittest
+
+PROGRAM, SOURCE = sys.argv[1], pathlib.Path(sys.argv[2])
+PAGES = [SOURCE / "README.md", SOURCE / "CONTRIBUTING.md", SOURCE / "data" / "README.md", *sorted((SOURCE / "docs").glob("*.md"))]
+FENCE = re.compile(r"^```(\w*)\n(.*?)^```", re.S | re.M)
+
+
+def shape(line):
+    return re.sub(r"\s+", " ", re.sub(r"[-+]?\d[\d.]*(e[-+]?\d+)?", "#", line)).strip()
+
+
+def run(command, folder):
+    return subprocess.run(["bash", "-ec", f'servodx() {{ "{PROGRAM}" "$@"; }}; ' + command], cwd=folder, text=True,
+                          stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+
+
+def blocks(text):
+    """(command, lines shown) of a console fence; a command goes on after a backslash."""
+    found, lines = [], iter(text.splitlines())
+    for line in lines:
+        if line.startswith("$ "):
+            command = line[2:]
+            while command.endswith("\\"):
+                command = command[:-1] + next(lines).strip()
+            found.append((command, []))
+        elif found:
+            found[-1][1].append(line)
+    return found
+
+
+class Docs(unittest.TestCase):
+    def test_console_commands_print_what_is_shown(self):
+        ran = 0
+        for page in PAGES:
+            fences = [body for kind, body in FENCE.findall(page.read_text()) if kind == "console"]
+            if not fences:
+                continue
+            with tempfile.TemporaryDirectory() as folder:
+                for name in ("data", "params"):
+                    shutil.copytree(SOURCE / name, pathlib.Path(folder) / name)
+                for command, shown in [b for fence in fences for b in blocks(fence)]:
+                    ended = run(command, folder)
+                    self.assertIn(ended.returncode, (0, 10, 11), f"{page.name}: {command}\n{ended.stderr}")
+                    printed = [shape(line) for line in ended.stdout.splitlines()]
+                    at = 0
+                    for line in shown:
+                        wanted = shape(line)
+                        if wanted in ("", "..."):
+                            continue
+                        self.assertIn(wanted, printed[at:], f"{page.name}: {command}\nprinted:\n{ended.stdout}")
+                        at += printed[at:].index(wanted) + 1
+                    ran += 1
+        self.assertGreater(ran, 5)
+
+    def test_sh_commands_are_calls_that_the_program_takes(self):
+        rehearsed = 0
+        with tempfile.TemporaryDirectory() as name:
+            folder = pathlib.Path(name)
+            self.furnish(folder)
+            for page in PAGES:
+                for kind, body in FENCE.findall(page.read_text()):
+                    if kind != "sh":
+                        continue
+                    for line in re.sub(r"\\\n\s*", "", body).splitlines():
+                        line = line.split("#")[0].strip()
+                        if not line.startswith("servodx "):
+                            continue
+                        ended = run(line if re.search(r"--help|servodx (man|completion|rerun)\b", line) else line + " --dry-run", folder)
+                        self.assertEqual(ended.returncode, 0, f"{page.name}: {line}\n{ended.stderr}")
+                        rehearsed += 1
+        self.assertGreater(rehearsed, 3)
+
+    def furnish(self, folder):
+        """Files of the names that the docs use for the reader's own."""
+        for name in ("data", "params"):
+            shutil.copytree(SOURCE / name, folder / name)
+        logs = sorted((SOURCE / "data" / "healthy").glob("*.csv"))
+        for own, some in (("healthy", logs[:4]), ("other_healthy", logs[4:9])):
+            (folder / own).mkdir()
+            for log in some:
+                shutil.copy(log, folder / own)
+        for name in ("suspect.csv", "log.csv", "LOG.csv"):
+            shutil.copy(SOURCE / "data/fault/f02_clogged_filter_severe.csv", folder / name)
+        shutil.copy(SOURCE / "data/rig.toml", folder / "rig.toml")
+        table = (SOURCE / "params/borello2009.csv").read_text().splitlines()
+        head = next(i for i, line in enumerate(table) if line.startswith("id,"))
+        tuned = table[:head] + [table[head] + ",std_error"] + [line + "," for line in table[head + 1:] if line]
+        (folder / "tuned.csv").write_text("\n".join(tuned) + "\n")
+        hash_of = subprocess.run(["sha256sum", "tuned.csv"], cwd=folder, text=True, stdout=subprocess.PIPE).stdout.split()[0]
+        (folder / "base.json").write_text(
+            '{"command": "baseline", "threshold": 3, "adequacy_limit": 1, "null_limit": 0.05, "tuned_sha256": "%s", '
+            '"false_alarm": {"asked": 0.1, "promised": 0.25, "promised_95": 0.6, "logs": 3, "logs_needed": 9, '
+            '"statement": ""}, "scores": [{"log": "h.csv", "sha256": "1", "score": 1, "adequacy": 1}]}' % hash_of)
+        for name in ("a.json", "b.json"):
+            (folder / name).write_text('{"tool": "servodx", "command": "tune"}')
+        ended = run("servodx simulate log.csv --params params/borello2009.csv --rig rig.toml -o sim.csv", folder)
+        self.assertEqual(ended.returncode, 0, ended.stderr)
+
+    def test_links_lead_somewhere(self):
+        for page in PAGES:
+            text = FENCE.sub("", page.read_text())
+            for target in re.findall(r"\]\(([^)\s]+)\)", text):
+                if target.startswith(("http:", "https:")):
+                    continue
+                path, _, anchor = target.partition("#")
+                to = (page.parent / path).resolve() if path else page
+                self.assertTrue(to.exists(), f"{page.name}: {target}")
+                if anchor:
+                    heads = [re.sub(r"[^\w\- ]", "", h.lower()).strip().replace(" ", "-")
+                             for h in re.findall(r"^#+ (.*)$", to.read_text(), re.M)]
+                    self.assertIn(anchor, heads, f"{page.name}: {target}")
+
+
+unittest.main(argv=sys.argv[:1], verbosity=2)

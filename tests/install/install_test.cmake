@@ -1,0 +1,26 @@
+# Installs into a folder of its own, builds the examples against it with find_package, runs one.
+#   cmake -DBUILD=... -DSOURCE=... -DCOMPILER=... -P install_test.cmake
+set(work ${BUILD}/install_test)
+file(REMOVE_RECURSE ${work})
+function(step)
+  execute_process(COMMAND ${ARGN} RESULT_VARIABLE code OUTPUT_VARIABLE out ERROR_VARIABLE out)
+  if(NOT code EQUAL 0)
+    message(FATAL_ERROR "'${ARGN}' ended with ${code}\n${out}")
+  endif()
+  set(output "${out}" PARENT_SCOPE)
+endfunction()
+step(${CMAKE_COMMAND} --install ${BUILD} --prefix ${work}/prefix)
+foreach(file bin/servodx share/man/man1/servodx.1 share/bash-completion/completions/servodx share/servodx/params/borello2009.csv)
+  if(NOT EXISTS ${work}/prefix/${file})
+    message(FATAL_ERROR "${file} is not installed")
+  endif()
+endforeach()
+step(${CMAKE_COMMAND} -S ${SOURCE}/examples -B ${work}/build -G Ninja -DCMAKE_PREFIX_PATH=${work}/prefix
+     -DCMAKE_BUILD_TYPE=Debug -DCMAKE_CXX_COMPILER=${COMPILER} -DCMAKE_CXX_COMPILER_LAUNCHER=${LAUNCHER})
+step(${CMAKE_COMMAND} --build ${work}/build)
+step(${work}/build/simulate_log ${SOURCE}/data/healthy/h08_preflight_cold.csv
+     ${work}/prefix/share/servodx/params/borello2009.csv ${SOURCE}/data/rig.toml)
+if(NOT output MATCHES "spool_position: rms error")
+  message(FATAL_ERROR "the example printed: ${output}")
+endif()
+file(REMOVE_RECURSE ${work})
