@@ -12,6 +12,7 @@ void add_tune_command(CLI::App& app, int& exit_code);
 void add_baseline_command(CLI::App& app, int& exit_code);
 void add_diagnose_command(CLI::App& app, int& exit_code);
 void add_join_command(CLI::App& app);
+void add_explain_command(CLI::App& app, int& exit_code);
 void add_list_command(CLI::App& app);
 void add_map_command(CLI::App& app);
 void add_curves_command(CLI::App& app);

@@ -50,12 +50,23 @@ auto chamber_compliance(const V& volume, const P& pressure, const Derived<T>& d,
   return volume * (d.inverse_bulk + d.air / (absolute * absolute)) + p[row::hose_compliance];
 }
 
+// Inputs with the supply pressure as it is at the valve.
+template <class In, class P>
+struct AtValve {
+  decltype(In::current) current;
+  P supply_pressure;
+  decltype(In::return_pressure) return_pressure;
+  decltype(In::load_force) load_force;
+};
+
 // Derivatives of all states, base states first, then the effects', as a tuple.
 // S: s.get<K>() gives state K. In: Inputs-like with members of dual or plain type.
 template <class Effects, class T, class S, class In>
-inline __attribute__((always_inline)) auto derivative(const S& s, const In& u, const T* p, const Derived<T>& d) {
+inline __attribute__((always_inline)) auto derivative(const S& s, const In& in, const T* p, const Derived<T>& d) {
   namespace c = constants;
-  const View<Effects, S, In, T> view{s, u, p};
+  const View<Effects, S, In, T> view{s, in, p};
+  const auto supply = in.supply_pressure + hook_supply_pressure(view, Effects{});
+  const AtValve<In, std::decay_t<decltype(supply)>> u{in.current, supply, in.return_pressure, in.load_force};
   const auto z_f = s.template get<s_x_flapper>();
   const auto v_f = s.template get<s_v_flapper>();
   const auto p_f = s.template get<s_p_filter>();
@@ -101,10 +112,11 @@ inline __attribute__((always_inline)) auto derivative(const S& s, const In& u, c
   const auto dp_2 = d.inverse_pilot_compliance * (q_orifice_2 - q_nozzle_2 + d.spool_area * v_s);
 
   // Metering edges. Flows carry direction: pa from supply to A, at from A to return.
-  const auto [q_pa, h_pa] = metering_edge(x_s - p[row::lap_pa], u.supply_pressure - p_a, d, p);
-  const auto [q_pb, h_pb] = metering_edge(-x_s - p[row::lap_pb], u.supply_pressure - p_b, d, p);
-  const auto [q_at, h_at] = metering_edge(-x_s - p[row::lap_at], p_a - u.return_pressure, d, p);
-  const auto [q_bt, h_bt] = metering_edge(x_s - p[row::lap_bt], p_b - u.return_pressure, d, p);
+  const auto x_m = x_s + hook_metering_opening(view, Effects{});
+  const auto [q_pa, h_pa] = metering_edge(x_m - p[row::lap_pa], u.supply_pressure - p_a, d, p);
+  const auto [q_pb, h_pb] = metering_edge(-x_m - p[row::lap_pb], u.supply_pressure - p_b, d, p);
+  const auto [q_at, h_at] = metering_edge(-x_m - p[row::lap_at], p_a - u.return_pressure, d, p);
+  const auto [q_bt, h_bt] = metering_edge(x_m - p[row::lap_bt], p_b - u.return_pressure, d, p);
 
   // Spool.
   const auto f_flow = d.flow_force * p[row::port_width] *

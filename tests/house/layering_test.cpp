@@ -30,7 +30,7 @@ const std::map<std::string, std::set<std::string>> allowed = {
     {"rig", {"integrate", "signals"}},
     {"fit", {"parameters", "simulate", "signals", "optimise"}},
     {"diagnose", {"parameters", "signals", "simulate", "fit", "faults", "effects"}},
-    {"explain", {"parameters", "signals", "simulate", "fit", "faults", "effects"}},
+    {"explain", {"parameters", "signals", "simulate", "optimise", "fit", "faults", "effects"}},
     {"prognose", {"parameters", "signals", "fit", "valve_maps", "integrate"}},
     {"report", {"diagnose", "explain", "prognose", "fit", "valve_maps", "curves"}},
 };
