@@ -23,19 +23,20 @@ struct SupplyDroop {
       {"supply_recovery", "s", 5e-3, 1e-3, 1.0, 5e-3, "time in which the droop follows the flow", false},
   };
   static constexpr double speed_rounding = 1e-3;  // [m/s] a third of a percent of no-load speed
+  static constexpr double state_pressure = 1e8;   // [Pa] unit of the own state, the droop: a bar is 1e-3
 
   template <class V>
   static auto supply_pressure(const V& view) {
-    return -view.template own_state<SupplyDroop, 0>();
+    using T = std::decay_t<decltype(view.p[0])>;
+    return -(T(state_pressure) * view.template own_state<SupplyDroop, 0>());
   }
   template <class V>
   static auto derivative(const V& view) {
     using T = std::decay_t<decltype(view.p[0])>;
-    const T area = T(0.5) * (view.p[row::piston_area_a] + view.p[row::piston_area_b]);
     const auto speed = smooth_abs(view.template state<s_v_piston>(), T(speed_rounding)) - T(speed_rounding);
-    return std::make_tuple(
-        (view.template own<SupplyDroop>(0) * area * speed - view.template own_state<SupplyDroop, 0>()) /
-        view.template own<SupplyDroop>(1));
+    const T area = T(0.5) * (view.p[row::piston_area_a] + view.p[row::piston_area_b]);
+    const auto steady = view.template own<SupplyDroop>(0) * area * T(1.0 / state_pressure) * speed;
+    return std::make_tuple((steady - view.template own_state<SupplyDroop, 0>()) / view.template own<SupplyDroop>(1));
   }
 };
 

@@ -2,7 +2,8 @@
 // motor feels the command of `delay` seconds ago.
 //
 // A pure delay of the samples, linear between them; between samples the command then runs as the rig's own does. Valid
-// up to 24 samples, beyond which the history ends. Leaves out: jitter of the delay. (Any text on sampled systems:
+// up to 24 samples, beyond which the history ends. Leaves out: jitter of the delay; the short steps after
+// a jump of the command, which follow the log's time and not the delayed one. (Any text on sampled systems:
 // Astrom & Wittenmark, Computer-Controlled Systems, 1997, ch. 3.)
 #pragma once
 #include "effects/effect.h"

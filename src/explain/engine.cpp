@@ -453,6 +453,7 @@ Explanation explain(Subject& subject, const EngineOptions& options) {
     int standing_left = round == 0 && options.p_new ? 2 : 0, new_left = options.fitted;
     for (const CauseScore& s : order) {
       if (stopped()) break;
+      if (options.among && !options.among(subject.causes()[static_cast<std::size_t>(s.cause)])) continue;
       if (in(s.cause) || s.gain < std::log(std::max(2.0, out.degrees))) continue;
       if (is_new(s.cause) ? new_left-- <= 0 : standing_left-- <= 0) continue;
       std::vector<int> causes = now.causes;

@@ -80,7 +80,8 @@ struct EngineOptions {
   // Chance that healthy data score a cause like this, all causes counted together; empty: no healthy data, all is new.
   // `round`: causes accepted so far.
   std::function<double(const CauseScore&, int round)> p_new;
-  double level = 0.05;  // a cause is new below this
+  double level = 0.05;                      // a cause is new below this
+  std::function<bool(const Cause&)> among;  // causes to look at; empty: all
 };
 
 struct Explanation {

@@ -65,7 +65,7 @@ ExplainedCause described(const ValveSubject& subject, const CauseResult& r, cons
   const auto problem = subject.problem(fit.causes);
   for (std::size_t j = 0; j < c.numbers.size(); ++j) {
     double factor = 1;
-    if (values[j].apply)  // a factor on the log's own
+    if (values[j].apply && !c.curve)  // a factor on the log's own
       factor = problem->candidate(fit.point, 0)[static_cast<std::size_t>(values[j].at)] / r.value[j];
     out.parameters.push_back({c.numbers[j].name, c.numbers[j].unit, factor * r.value[j], factor * r.std_error[j],
                               factor * c.numbers[j].off});
@@ -73,6 +73,14 @@ ExplainedCause described(const ValveSubject& subject, const CauseResult& r, cons
   for (int other : r.confusable_with)
     out.confusable_with.push_back(name_of(subject.causes()[static_cast<std::size_t>(other)]));
   return out;
+}
+
+// A curve that healthy logs do not show.
+bool curve_is_news(const Explanation& e, const Subject& subject, const EngineOptions& o) {
+  if (!o.p_new) return false;
+  return std::any_of(e.scores.begin(), e.scores.end(), [&](const CauseScore& s) {
+    return subject.causes()[static_cast<std::size_t>(s.cause)].curve && o.p_new(s, 0) <= o.level;
+  });
 }
 
 // The tuned table with what was found: re-tuned rows and the causes' own.
@@ -92,7 +100,17 @@ Table extended_table(const ValveSubject& subject, const Explanation& e, const st
   }
   for (std::size_t k = 0; k < causes.size(); ++k) {
     const int c = e.causes[k].cause;
-    const auto& values = subject.values(c);
+    auto values = subject.values(c);
+    auto parameters = causes[k].parameters;
+    if (subject.causes()[static_cast<std::size_t>(c)].curve)  // its codes and scale are rows as well
+      for (int j = 0; j < 4; ++j) {
+        const EffectParameter& p = Unexplained::parameters[j];
+        FreeValue code;
+        code.name = p.name, code.lower = p.lower, code.upper = p.upper;
+        values.push_back(code);
+        parameters.push_back(
+            {p.name, p.unit, v[static_cast<std::size_t>(effect_row<Unexplained>(j))], std::nan(""), 0});
+      }
     for (std::size_t j = 0; j < values.size(); ++j) {
       if (values[j].log > 0) continue;
       int at = table.find(values[j].name);
@@ -105,7 +123,7 @@ Table extended_table(const ValveSubject& subject, const Explanation& e, const st
               row.group = "effect:" + effect.name;
               row.lower = values[j].lower, row.upper = values[j].upper;
               row.estimate = true;
-              row.unit = causes[k].parameters[j].unit;
+              row.unit = parameters[j].unit;
               row.description = effect.parameters[q].meaning;
               table.rows.push_back(std::move(row));
               at = static_cast<int>(table.rows.size()) - 1;
@@ -113,8 +131,8 @@ Table extended_table(const ValveSubject& subject, const Explanation& e, const st
       }
       if (at < 0) continue;
       Row& row = table[at];
-      row.nominal = std::clamp(causes[k].parameters[j].value, row.lower, row.upper);
-      if (std::isfinite(causes[k].parameters[j].std_error)) row.std_error = causes[k].parameters[j].std_error;
+      row.nominal = std::clamp(parameters[j].value, row.lower, row.upper);
+      if (std::isfinite(parameters[j].std_error)) row.std_error = parameters[j].std_error;
       row.source = "explain: " + causes[k].effect;
     }
   }
@@ -145,16 +163,46 @@ ExplainResult explain_logs(const std::vector<Log>& logs, const Table& tuned, con
         const Cause& c = subject.causes()[static_cast<std::size_t>(s.cause)];
         for (const HealthyLog& l : alone)
           for (const HealthyScore& h : l.scores)
-            if (h.effect == c.effect && h.where == c.where) scores.push_back(h);
+            if (h.effect == c.effect && h.where == summarise(subject, s).where) scores.push_back(h);
       }
       if (scores.empty()) scores.push_back(summarise(subject, s));
       return test->together(test->alone(scores));
     };
   }
-  const Explanation e = explain(subject, engine);
+  const std::vector<Curve> curves = add_curves(subject);
+  engine.among = [](const Cause& c) { return !c.curve; };
+  Explanation e = explain(subject, engine);
+  const bool abnormal = healthy && e.before.ok && test->adequacy(subject.adequacy()) <= options.level;
+  if (e.before.ok && e.causes.empty() && (abnormal || !healthy || curve_is_news(e, subject, engine))) {
+    // Nothing that has a name: a curve.
+    engine.among = [](const Cause& c) { return c.curve; };
+    engine.most = 1;
+    Explanation learnt_one = explain(subject, engine);
+    for (std::size_t c = 0; c < e.candidates.size(); ++c)
+      if (!subject.causes()[c].curve) learnt_one.candidates[c] = e.candidates[c];
+    std::erase_if(learnt_one.standing, [](const CauseResult&) { return true; });
+    learnt_one.standing = std::move(e.standing);
+    e = std::move(learnt_one);
+    if (!e.causes.empty()) {
+      const CauseResult& r = e.causes.front();
+      const auto it = std::find_if(curves.begin(), curves.end(), [&](const Curve& c) { return c.cause == r.cause; });
+      out.curve = learnt(*it, r.value, r.std_error);
+    }
+  }
   if (!e.before.ok)
     throw InputError({.file = tuned.path}, "the simulation fails at the table's values on these logs",
                      "check that the table is of this rig");
+  out.shown = show(subject, logs, e.before.point);
+  for (const CauseScore& s : e.scores) {
+    const Cause& c = subject.causes()[static_cast<std::size_t>(s.cause)];
+    if (!c.curve) continue;
+    const auto p = healthy ? std::optional<double>(engine.p_new(s, 0)) : std::nullopt;
+    auto at =
+        std::find_if(out.places.begin(), out.places.end(), [&](const PlaceScore& q) { return q.where == c.where; });
+    if (at == out.places.end()) at = out.places.insert(at, {c.where, "", -1, p});
+    if (s.gain > at->gain) *at = {c.where, c.family, s.gain, p};
+  }
+  std::stable_sort(out.places.begin(), out.places.end(), [](const auto& a, const auto& b) { return a.gain > b.gain; });
   for (const CauseResult& r : e.causes) out.causes.push_back(described(subject, r, e.after));
   for (const CauseResult& r : e.standing) {
     ExplainedFit as;  // a standing cause was fitted alone
@@ -164,6 +212,7 @@ ExplainResult explain_logs(const std::vector<Log>& logs, const Table& tuned, con
   }
   for (const CandidateResult& r : e.candidates) {
     const Cause& c = subject.causes()[static_cast<std::size_t>(r.cause)];
+    if (c.curve && !out.curve) continue;
     out.candidates.push_back({c.effect, c.where, r.reason, r.predicted_gain,
                               healthy ? std::optional<double>(r.p_new) : std::nullopt, r.fitted, r.heldout_gain,
                               r.delta_bic});
@@ -175,7 +224,7 @@ ExplainResult explain_logs(const std::vector<Log>& logs, const Table& tuned, con
   out.adequacy_after = subject.adequacy() * e.after.misfit / e.before.misfit;
   if (healthy) out.p_adequacy = test->adequacy(out.adequacy_after);
   if (!e.causes.empty()) out.heldout_gain = heldout_gain(e.before, e.after, options.seed);
-  out.verdict = !e.causes.empty() ? "extended" : "sufficient";
+  out.verdict = out.curve ? "unexplained" : !e.causes.empty() ? "extended" : "sufficient";
   if (e.causes.empty() && out.p_adequacy && *out.p_adequacy < options.level) out.verdict = "unexplained";
   if (!out.causes.empty()) out.where = out.causes.front().where;
   out.channels = channels_of(subject, logs, e);

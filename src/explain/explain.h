@@ -6,8 +6,10 @@
 #include <string>
 #include <vector>
 
+#include "explain/curves.h"
 #include "explain/engine.h"
 #include "explain/healthy.h"
+#include "explain/show.h"
 #include "parameters/table.h"
 #include "signals/log.h"
 #include "signals/rig_file.h"
@@ -46,10 +48,20 @@ struct ExplainedCandidate {
   double delta_bic = 0;
 };
 
+// What something missing at a place, a function of one variable there, would remove of the misfit.
+struct PlaceScore {
+  std::string where, variable;
+  double gain = 0;
+  std::optional<double> p_new;
+};
+
 struct ExplainResult {
-  std::string verdict;  // sufficient | extended | unexplained
-  std::string where;    // of the first cause; empty: nowhere
+  std::optional<LearntCurve> curve;  // of `unexplained`
+  std::string verdict;               // sufficient | extended | unexplained
+  std::string where;                 // of the first cause; empty: nowhere
   std::vector<ExplainedChannel> channels;
+  std::vector<ShownChannel> shown;  // the residual as tuned
+  std::vector<PlaceScore> places;   // the best that a curve could do at each place, first the most
   std::vector<ExplainedCause> causes, standing;
   std::vector<ExplainedCandidate> candidates;
   Interval retuned;                                // held-out gain of re-tuning alone

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "explain/curves.h"
 #include "explain/valve.h"
 
 namespace servodx {
@@ -18,6 +19,19 @@ double variance(const std::vector<double>& v) {
   double sum = 0;
   for (double x : v) sum += (x - m) * (x - m);
   return sum / static_cast<double>(v.size() - 1);
+}
+
+// Variance of the sizes beyond their standard errors (DerSimonian & Laird 1986): logs that hardly see a cause hardly
+// count.
+double between(const std::vector<double>& size, const std::vector<double>& square) {
+  double w = 0, ww = 0, middle = 0, q = 0;
+  for (std::size_t i = 0; i < size.size(); ++i) {
+    const double one = 1 / (square[i] + 1e-300);
+    w += one, ww += one * one, middle += one * size[i];
+  }
+  middle /= w;
+  for (std::size_t i = 0; i < size.size(); ++i) q += (size[i] - middle) * (size[i] - middle) / (square[i] + 1e-300);
+  return std::max(0.0, (q - static_cast<double>(size.size() - 1)) / (w - ww / w));
 }
 
 // Continued fraction of the incomplete beta function (Abramowitz & Stegun 26.5.8), Lentz's method.
@@ -55,7 +69,11 @@ double student_tail(double t, double degrees) {
 
 HealthyScore summarise(const Subject& subject, const CauseScore& score) {
   const Cause& cause = subject.causes()[static_cast<std::size_t>(score.cause)];
-  HealthyScore out{cause.effect, cause.where, {}};
+  HealthyScore out{cause.effect, cause.where + (cause.family.empty() ? "" : "/" + cause.family), {}};
+  if (cause.curve) {  // knots that the log does not reach are loose: what they gain together is what counts
+    out.sizes.push_back({std::log1p(score.gain), 1.0});
+    return out;
+  }
   std::size_t k = 0;
   for (const auto& alternative : cause.probes) {
     if (alternative.size() == 1) {
@@ -76,6 +94,7 @@ HealthyLog score_healthy(const Log& log, const Table& tuned, const RigFile& rig,
                          long* failed) {
   HealthyLog out{log.path, log.sha256, 1, {}};
   ValveSubject subject({log}, tuned, rig, threads);
+  add_curves(subject);
   const ExplainedFit fit = fit_base(subject, EngineOptions{}.iterations);
   if (fit.ok) {
     out.adequacy = subject.adequacy();
@@ -106,13 +125,13 @@ double HealthyTest::alone(const std::vector<HealthyScore>& logs, int left_out) c
             k < s.sizes.size() && std::isfinite(s.sizes[k].std_error) && std::isfinite(s.sizes[k].size))
           size.push_back(s.sizes[k].size), square.push_back(s.sizes[k].std_error * s.sizes[k].std_error);
     if (size.size() < 3) continue;
-    const auto n = static_cast<double>(size.size());
-    const double tau2 = std::max(0.0, variance(size) - mean(square));
+    const double tau2 = between(size, square);
     // Mean weighted by what each knows, and its variance.
     struct Pool {
-      double weight = 0, sum = 0;
-      void add(double w, double x) { weight += w, sum += w * x; }
+      double weight = 0, sum = 0, squares = 0;
+      void add(double w, double x) { weight += w, sum += w * x, squares += w * w; }
       double mean() const { return sum / weight; }
+      double count() const { return weight * weight / squares; }  // of logs that speak
     } healthy, here;
     for (std::size_t i = 0; i < size.size(); ++i) healthy.add(1 / (tau2 + square[i] + 1e-300), size[i]);
     for (const HealthyScore& s : logs)
@@ -120,7 +139,7 @@ double HealthyTest::alone(const std::vector<HealthyScore>& logs, int left_out) c
         here.add(1 / (tau2 + s.sizes[k].std_error * s.sizes[k].std_error + 1e-300), s.sizes[k].size);
     if (here.weight <= 0) continue;
     const double t = (here.mean() - healthy.mean()) / std::sqrt(1 / here.weight + 1 / healthy.weight);
-    best = std::min(best, student_tail(t, n - 1));
+    best = std::min(best, student_tail(t, std::max(1.0, healthy.count() - 1)));
     ++tried;
   }
   // The probes of a cause are nearly one: sizes along one line.

@@ -19,7 +19,7 @@ namespace servodx {
 
 // A cause's sizes on one log, one a probe; a probe of several directions is their root mean square.
 struct HealthyScore {
-  std::string effect, where;
+  std::string effect, where;  // `where` with the family behind a slash where there is one
   std::vector<ProbeScore> sizes;
 };
 struct HealthyLog {

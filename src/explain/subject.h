@@ -35,6 +35,8 @@ struct Cause {
   // Sizes at which the score test looks: alternatives, each of one or more points that are tried together (the cosine
   // and the sine of one frequency). A point holds a value for each number. [unit]
   std::vector<std::vector<std::vector<double>>> probes;
+  std::string family = "";  // tells apart causes of one name and place: the variable of a learnt curve
+  bool curve = false;       // its numbers are a curve's knots: judged by what they gain together
 };
 
 // Rows of the residual that belong to one channel of one log, in order of time.

@@ -123,7 +123,7 @@ inline __attribute__((always_inline)) auto derivative(const S& s, const In& in, 
                       (h_pa * (u.supply_pressure - p_a) + h_bt * (p_b - u.return_pressure) -
                        h_pb * (u.supply_pressure - p_b) - h_at * (p_a - u.return_pressure));
   const auto f_dry =
-      p[row::spool_friction] * asperities<T>((x_s - u.friction.spool_anchor) * T(1.0 / c::spool_presliding));
+      p[row::spool_friction] * asperities<T>((x_s - in.friction.spool_anchor) * T(1.0 / c::spool_presliding));
   const auto over_spool = soft_positive(x_s - p[row::spool_stop], T(c::spool_stop_rounding));
   const auto under_spool = soft_positive(-x_s - p[row::spool_stop], T(c::spool_stop_rounding));
   const auto in_spool_stop = (over_spool + under_spool) / (over_spool + under_spool + T(c::spool_stop_rounding));
@@ -145,13 +145,13 @@ inline __attribute__((always_inline)) auto derivative(const S& s, const In& in, 
   // Piston.
   constexpr int n_families = std::size(c::seal_presliding);
   const auto seals = [&]<int... I>(std::integer_sequence<int, I...>) {
-    return (asperities<T>((x_p - u.friction.seal_anchor[I]) * T(1.0 / c::seal_presliding[I])) + ...) *
+    return (asperities<T>((x_p - in.friction.seal_anchor[I]) * T(1.0 / c::seal_presliding[I])) + ...) *
            T(1.0 / n_families);
   }
   (std::make_integer_sequence<int, n_families>{});
   const auto f_friction = d.viscous * v_rel + seals * (p[row::piston_coulomb_friction] +
                                                        p[row::piston_stribeck_friction] *
-                                                           stribeck(u.friction.rod_speed, c::piston_stribeck_velocity));
+                                                           stribeck(in.friction.rod_speed, c::piston_stribeck_velocity));
   const auto over = soft_positive(x_p - T(0.5) * p[row::piston_stroke], T(c::piston_stop_rounding));
   const auto under = soft_positive(-x_p - T(0.5) * p[row::piston_stroke], T(c::piston_stop_rounding));
   const auto in_stop = (over + under) / (over + under + T(c::piston_stop_rounding));

@@ -35,6 +35,19 @@ Json to_json(const ExplainedCause& c) {
           {"separating_test", c.test}};
 }
 
+Json to_json(const LearntCurve& c) {
+  Json points = Json::array();
+  for (const CurvePoint& p : c.points)
+    points.push_back({{"x", number(p.x)}, {"value", number(p.value)}, {"std_error", number(p.std_error)}});
+  return {{"where", c.where},
+          {"variable", c.variable},
+          {"variable_unit", c.variable_unit},
+          {"factor", c.factor},
+          {"unit", c.unit},
+          {"points", points},
+          {"closed_form", c.closed_form.empty() ? Json(nullptr) : Json(c.closed_form)}};
+}
+
 Json to_json(const ExplainedCandidate& c) {
   return {{"effect", c.effect},
           {"where", c.where},
@@ -53,6 +66,46 @@ Json array_of(const Results& results) {
   return array;
 }
 
+Json to_json(const ShownChannel& c) {
+  Json inputs = Json::array(), spectrum = Json::array(), coherence = Json::array(), maps = Json::array();
+  for (const InputCorrelation& i : c.inputs)
+    inputs.push_back({{"input", i.input},
+                      {"correlation", number(i.correlation)},
+                      {"lag_s", number(i.lag)},
+                      {"band_99", number(i.band)}});
+  for (const auto& [f, v] : c.spectrum) spectrum.push_back({number(f), number(v)});
+  for (const auto& [f, v] : c.coherence) coherence.push_back({number(f), number(v)});
+  for (const ResidualMap& m : c.maps) {
+    Json bins = Json::array();
+    for (const MapBin& b : m.bins)
+      bins.push_back({{"from", number(b.from)},
+                      {"to", number(b.to)},
+                      {"mean", number(b.mean)},
+                      {"rms", number(b.rms)},
+                      {"time_share", number(b.time)},
+                      {"excess_share", number(b.excess)}});
+    maps.push_back({{"variable", m.variable}, {"unit", m.unit}, {"bins", bins}});
+  }
+  return {{"signal", c.signal},
+          {"si_unit", info(*find_signal(c.signal)).si_unit},
+          {"rms", number(c.rms)},
+          {"noise_rms", number(c.noise)},
+          {"summary", c.summary},
+          {"memory_s", number(c.memory)},
+          {"lags_beyond_band", number(c.beyond_band)},
+          {"inputs", inputs},
+          {"spectrum", spectrum},
+          {"coherence_with_command", coherence},
+          {"maps", maps}};
+}
+
+Json to_json(const PlaceScore& p) {
+  return {{"where", p.where},
+          {"variable", p.variable},
+          {"gain", number(p.gain)},
+          {"p_new", p.p_new ? number(*p.p_new) : Json(nullptr)}};
+}
+
 std::string gain_text(const Interval& g) {
   return fmt::format("{} of the held-out misfit ({} to {}, 90 %)", percent(g.value), percent(g.lower),
                      percent(g.upper));
@@ -65,6 +118,10 @@ ChannelFigures in_log_unit(const ExplainedChannel& c, double a, double b, double
 
 void add_causes(std::string& text, const std::vector<ExplainedCause>& causes) {
   for (const ExplainedCause& c : causes) {
+    if (c.effect == Unexplained::name) {  // its numbers stand as a curve below
+      text += fmt::format("  {} at {}: removes {}\n", c.effect, c.where, gain_text(c.heldout_gain));
+      continue;
+    }
     text += fmt::format("  {} at {}: removes {}\n", c.effect, c.where, gain_text(c.heldout_gain));
     for (const ExplainedParameter& p : c.parameters) {
       const double half = 1.645 * p.std_error;
@@ -101,6 +158,10 @@ Json explain_json(const ExplainResult& r) {
           {"standing", array_of(r.standing)},
           {"candidates", array_of(r.candidates)},
           {"heldout_gain", r.causes.empty() ? Json(nullptr) : to_json(r.heldout_gain)},
+          {"residuals", array_of(r.shown)},
+          {"places", array_of(r.places)},
+          {"curve", r.curve ? to_json(*r.curve) : Json(nullptr)},
+          {"retuned_alone", to_json(r.retuned)},
           {"adequacy",
            {{"before", number(r.adequacy_before)},
             {"after", number(r.adequacy_after)},
@@ -112,7 +173,9 @@ std::string text_of(const ExplainResult& r, const TextOptions& options) {
   std::string text = r.verdict;
   if (r.verdict == "sufficient")
     text += ": nothing is wrong that healthy logs do not show or that a cause in the list would mend";
-  if (r.verdict == "unexplained") text += ": something is wrong, and no cause in the list mends it";
+  if (r.verdict == "unexplained")
+    text += r.curve ? ": no cause in the list mends it; a learnt curve does"
+                    : ": something is wrong, and no cause in the list mends it";
   if (r.verdict == "extended") {
     text += ": ";
     for (std::size_t k = 0; k < r.causes.size(); ++k) text += (k ? ", " : "") + r.causes[k].effect;
@@ -128,8 +191,22 @@ std::string text_of(const ExplainResult& r, const TextOptions& options) {
                digits(g.heldout_rms), f.unit});
   }
   text += table.text();
+  for (const ShownChannel& c : r.shown) {
+    const ChannelFigures f = figures(ChannelResult{*find_signal(c.signal), c.unit, c.rms, c.noise, c.rms});
+    text +=
+        fmt::format("  {}: {} {} rms, noise {}; {}\n", c.signal, digits(f.rms), f.unit, digits(f.noise_rms), c.summary);
+  }
   text += "  re-tuning alone removes " + gain_text(r.retuned) + "\n";
   add_causes(text, r.causes);
+  if (r.curve) {
+    text += fmt::format("  learnt in {}, against {}{}:\n", r.curve->where, r.curve->variable,
+                        r.curve->factor.empty() ? "" : ", by " + r.curve->factor);
+    Columns curve("rrr", 4);
+    curve.row({r.curve->variable_unit, r.curve->unit, "+-"});
+    for (const CurvePoint& p : r.curve->points) curve.row({digits(p.x), digits(p.value), digits(p.std_error, 2)});
+    text += curve.text();
+    if (!r.curve->closed_form.empty()) text += "    in short: " + r.curve->closed_form + "\n";
+  }
   if (!r.standing.empty()) text += "  standing, healthy logs show it too:\n";
   add_causes(text, r.standing);
   Columns tried("llrrl", 2);

@@ -341,7 +341,8 @@ using RunPack = void (*)(const Scenario&, const ParameterVector* const*, Traject
 struct Kernels {
   int width;
   const char* name;
-  RunPack base, extended, corrected;  // without effects, with all that have names, with a learnt curve too
+  RunPack base, extended;  // without effects, with all that have names
+  RunPack corrected;  // with a learnt curve too; scalar only: it is rare, and each instance takes a minute to build
 };
 Kernels kernels_scalar();
 Kernels kernels_generic();

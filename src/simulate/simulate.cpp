@@ -28,7 +28,7 @@ bool is_off(const EffectInfo& e, const ParameterVector& v) {
 }
 
 // Which kernel a candidate needs, the cheapest that holds all that is not at its off value; only candidates of the same
-// need share a pack. 0: none of the effects; 1: effects that have a name; 2 and above: a learnt curve, by its codes.
+// need share a pack. 0: none of the effects; 1: effects that have a name; 2: a learnt curve, which runs alone.
 int need_of(const ParameterVector& v) {
   int need = 0;
   for (const EffectInfo& e : effect_list()) {
@@ -37,8 +37,7 @@ int need_of(const ParameterVector& v) {
       need = std::max(need, 1);
       continue;
     }
-    const auto code = [&](int j) { return static_cast<int>(std::lround(v[e.first + j])); };
-    need = 2 + code(0) + 100 * code(1) + 10000 * code(2);
+    need = 2;
   }
   return need;
 }
@@ -63,7 +62,7 @@ void simulate(std::span<const Job> jobs, const SimulateOptions& options) {
   std::vector<PackOfJobs> packs;
   for (std::size_t i = 0; i < jobs.size(); ++i) {
     const int need = need_of(*jobs[i].candidate);
-    if (!packs.empty() && packs.back().count < kernels.width && packs.back().need == need &&
+    if (!packs.empty() && packs.back().count < kernels.width && packs.back().need == need && need < 2 &&
         jobs[packs.back().first].scenario == jobs[i].scenario)
       ++packs.back().count;
     else

@@ -22,7 +22,9 @@ ParameterVector with(int j, double value) {
 }
 
 TEST(TransportDelay, WholeSamplesOfDelayShiftTheResponseByAsMany) {
-  const Scenario s = stepped();
+  Scenario s = stepped();
+  for (std::size_t k = 0; k < s.time.size(); ++k)
+    s.command[k] = s.time[k] < 0.1 ? 0 : 3e-3 * std::sin(30 * (s.time[k] - 0.1));
   const Trajectory now = simulate(s, nominal_candidate(), all_signals());
   const Trajectory late = simulate(s, with<TransportDelay>(0, 5e-3), all_signals());
   const auto &a = of(now, Signal::spool_position), &b = of(late, Signal::spool_position);
