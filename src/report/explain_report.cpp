@@ -59,13 +59,6 @@ Json to_json(const ExplainedCandidate& c) {
           {"delta_bic", c.fitted ? number(c.delta_bic) : Json(nullptr)}};
 }
 
-template <class Results>
-Json array_of(const Results& results) {
-  Json array = Json::array();
-  for (const auto& r : results) array.push_back(to_json(r));
-  return array;
-}
-
 Json to_json(const ShownChannel& c) {
   Json inputs = Json::array(), spectrum = Json::array(), coherence = Json::array(), maps = Json::array();
   for (const InputCorrelation& i : c.inputs)
@@ -104,6 +97,13 @@ Json to_json(const PlaceScore& p) {
           {"variable", p.variable},
           {"gain", number(p.gain)},
           {"p_new", p.p_new ? number(*p.p_new) : Json(nullptr)}};
+}
+
+template <class Results>
+Json array_of(const Results& results) {
+  Json array = Json::array();
+  for (const auto& r : results) array.push_back(to_json(r));
+  return array;
 }
 
 std::string gain_text(const Interval& g) {
