@@ -1,7 +1,9 @@
 // `servodx check LOG`: the prognostic checks of one log, stored in the valve's history.
 #include <CLI/CLI.hpp>
 #include <cmath>
+#include <filesystem>
 #include <memory>
+#include <optional>
 
 #include "base/csv.h"
 #include "commands.h"
@@ -30,25 +32,29 @@ void run(const Options& options) {
   const RigFile rig = invocation.rig();
   const Table tuned = invocation.tuned_table(options.params);
   const Log log = invocation.log(options.log, rig);
-  History history(options.history, true);
+  std::optional<History> history;  // a new one is made only when there is something to store
+  if (std::filesystem::exists(options.history)) history.emplace(options.history, false);
 
   CheckOptions how = options.check;
   how.threads = options.common.threads;
   how.track = !options.no_track;
   how.correct = !options.raw;
+  if (history)
+    if (const auto last = history->last(options.valve)) how.last = tracked_in(*last);
   const CheckResult result = check(log, tuned, rig, how);
-  history.record(options.valve, options.serial.empty() ? rig.serial : options.serial,
-                 {.at = options.at,
-                  .cycles = options.cycles >= 0 ? std::optional(options.cycles) : std::nullopt,
-                  .log = log.path,
-                  .log_sha256 = log.sha256,
-                  .table_sha256 = tuned.sha256,
-                  .version = SERVODX_VERSION,
-                  .recorded_at = {},
-                  .temperature = result.temperature.value,
-                  .temperature_source = result.temperature.source,
-                  .checks = result.checks},
-                 read_file(options.params));
+  if (!history) history.emplace(options.history, true);
+  history->record(options.valve, options.serial.empty() ? rig.serial : options.serial,
+                  {.at = options.at,
+                   .cycles = options.cycles >= 0 ? std::optional(options.cycles) : std::nullopt,
+                   .log = log.path,
+                   .log_sha256 = log.sha256,
+                   .table_sha256 = tuned.sha256,
+                   .version = SERVODX_VERSION,
+                   .recorded_at = {},
+                   .temperature = result.temperature.value,
+                   .temperature_source = result.temperature.source,
+                   .checks = result.checks},
+                  read_file(options.params));
 
   report::Header& header = invocation.header();
   header.settings = {{"valve", options.valve}, {"at", options.at}, {"model", how.model}, {"history", options.history}};

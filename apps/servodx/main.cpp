@@ -33,6 +33,7 @@ int main(int argc, char** argv) {
   add_join_command(app);
   add_monitor_command(app);
   add_check_command(app);
+  add_trend_command(app);
   add_history_command(app, exit_code);
   add_list_command(app);
   add_curves_command(app);

@@ -28,7 +28,7 @@ void run(const Options& options) {
   const Log log = invocation.log(options.log, rig);
   const LogData data = prepare(log, rig);
   MonitorParameters monitor = monitor_parameters(table, supply_of(data, table));
-  const PressureLaw law = pressure_law(options.model, monitor);
+  const PressureLaw law = pressure_law(options.model, table, supply_of(data, table));
   const bool closed = !options.loop_gain.empty();
   if (closed) {
     require_option(log.has(Signal::setpoint), "--loop-gain", "the log has no 'setpoint' to close the loop on",

@@ -138,7 +138,7 @@ CheckResult check(const Log& log, const Table& tuned, const RigFile& rig, const 
 
   // 2. The monitor beside the log: as it is for |e|, from rest for the preflight checks.
   const MonitorParameters monitor = monitor_parameters(tuned, supply_of(data, tuned));
-  const PressureLaw law = pressure_law(options.model, monitor);
+  const PressureLaw law = pressure_law(options.model, tuned, supply_of(data, tuned));
   const FitChannel* spool = channel(data, Signal::spool_position);
   const FitChannel* piston = channel(data, Signal::piston_position);
   if (spool) {
@@ -166,7 +166,7 @@ CheckResult check(const Log& log, const Table& tuned, const RigFile& rig, const 
     out.failed_simulations += track.failed;
     out.adequacy = track.adequacy;
     if (!track.parameters.empty()) out.null = track.null;
-    for (const TrackedParameter& p : track.parameters) out.severities.push_back(p.severity);
+    for (const TrackedParameter& p : track.parameters) out.tracked.push_back(p.value);
   }
 
   // 4. Preflight checks, measured and, where asked, as the model expects them here and at the reference state.
@@ -189,10 +189,10 @@ CheckResult check(const Log& log, const Table& tuned, const RigFile& rig, const 
       out.failed_simulations += !was.ok + !would.ok;
       if (was.ok && would.ok) {
         here = figures_of(time, test, traces_of(was, data), at_rest.spool);
-        const MonitorParameters m =
-            monitor_parameters(tuned, {tuned[row::supply_pressure].nominal, tuned[row::return_pressure].nominal,
-                                       other.scenario.oil, data.scenario.rated_current});
-        const MonitorRun run = run_monitor(m, pressure_law(options.model, m), other, test.rest_current);
+        const Supply standard{tuned[row::supply_pressure].nominal, tuned[row::return_pressure].nominal,
+                              other.scenario.oil, data.scenario.rated_current};
+        const MonitorRun run = run_monitor(monitor_parameters(tuned, standard),
+                                           pressure_law(options.model, tuned, standard), other, test.rest_current);
         reference = figures_of(time, test, traces_of(would, data), run.spool);
       } else {
         out.notes.push_back("the model's run failed: the checks are not corrected to the reference state");

@@ -47,10 +47,10 @@ struct CheckResult {
   std::string log, sha256;
   OilTemperature temperature;
   std::vector<Check> checks;
-  double offset = 0;           // [of rated] current at rest less what the spool at rest calls for
-  std::optional<double> null;  // [of rated] fitted
-  bool no_response = false;    // the spool did not follow the preflight step
-  std::vector<double> severities;
+  double offset = 0;            // [of rated] current at rest less what the spool at rest calls for
+  std::optional<double> null;   // [of rated] fitted
+  bool no_response = false;     // the spool did not follow the preflight step
+  std::vector<double> tracked;  // values of the parameters, in the order of progressive_faults()
   double adequacy = 0;
   MeanError mean_error;  // with its running curve
   std::vector<std::string> notes;

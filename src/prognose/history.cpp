@@ -160,6 +160,16 @@ std::string event_names() {
   return names;
 }
 
+std::vector<double> tracked_in(const Recording& recording) {
+  std::vector<double> values;
+  for (const Progressive& p : progressive_faults()) {
+    values.push_back(std::nan(""));
+    for (const Check& c : recording.checks)
+      if (c.cause == p.fault->name) values.back() = c.value;
+  }
+  return values;
+}
+
 bool resets(EventKind kind, const Check& check) {
   switch (kind) {
     case EventKind::filter_changed:

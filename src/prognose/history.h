@@ -29,6 +29,9 @@ struct Recording {
   std::vector<Check> checks;
 };
 
+// Values of the tracked parameters, in the order of progressive_faults(); NaN where missing.
+std::vector<double> tracked_in(const Recording& recording);
+
 // What a maintenance event resets: the trends of checks that it renews start again from it.
 enum class EventKind { filter_changed, valve_swapped, overhauled, retuned, note };
 const char* name_of(EventKind kind);
@@ -70,9 +73,8 @@ class History {
               const std::string& table_text);
   void add_event(const std::string& valve, const Event& event);
   std::vector<std::string> valves() const;
-  ValveHistory of(const std::string& valve) const;  // throws InputError for an unknown valve
-  // Severities of the last check, see TrackOptions::last: `parameter:ID` values by id.
-  std::optional<Recording> last(const std::string& valve) const;
+  ValveHistory of(const std::string& valve) const;                // throws InputError for an unknown valve
+  std::optional<Recording> last(const std::string& valve) const;  // none where the valve is new
 
   HistoryContent content() const;
   Restored restore(const HistoryContent& content);  // adds what is not there; all of it or nothing

@@ -90,8 +90,8 @@ MonitorParameters monitor_parameters(const Table& table, const Supply& at) {
   const double ratio = 1 / over_nozzle;
   const double pilot_gain = 4 * (pilot + over_orifice) * ratio / (gap * std::pow(1 + ratio, 2));  // [Pa/m], both sides
   const double nozzle_area = area(curtain / std::numbers::pi);
-  p.wire_stiffness =
-      value(row::feedback_wire_stiffness) + spring / spool_area * (nozzle_area + p.flapper_stiffness / pilot_gain);
+  p.spool_force_gain = (nozzle_area + p.flapper_stiffness / pilot_gain) / spool_area;
+  p.wire_stiffness = value(row::feedback_wire_stiffness) + spring * p.spool_force_gain;
 
   valve_maps::HighFidelity valve(geometry_of(table, at));
   const valve_maps::ValveNumbers numbers = valve.measure(drop);

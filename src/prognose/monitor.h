@@ -23,6 +23,7 @@ namespace servodx {
 struct MonitorParameters {
   double motor_gain = 0;         // GM [N/A]
   double wire_stiffness = 0;     // KSF [N/m] feedback wire, with the flow force that the nozzles must balance
+  double spool_force_gain = 0;   // [N/N] force on the flapper that holds a force on the spool
   double flapper_stiffness = 0;  // KFt [N/m] flexure and wire
   double flapper_limit = 0;      // XFM [m]
   double first_stage_gain = 0;   // GQF / ASV [1/s] spool speed over flapper travel

@@ -50,6 +50,24 @@ FreeValue severity_value(const Fault& fault) {
   return f;
 }
 
+// Value of the fault's row at a point of the unit interval of its severity; monotone.
+double row_at(const ParameterVector& base, const Progressive& p, const FreeValue& severity, double u) {
+  ParameterVector v = base;
+  p.fault->apply(v.data(), severity.from_unit(std::clamp(u, 0.0, 1.0)));
+  return v[p.row];
+}
+
+// And back.
+double unit_of(const ParameterVector& base, const Progressive& p, const FreeValue& severity, double value) {
+  double low = 0, high = 1;
+  const bool rises = row_at(base, p, severity, 1) > row_at(base, p, severity, 0);
+  for (int k = 0; k < 50; ++k) {
+    const double mid = 0.5 * (low + high);
+    ((row_at(base, p, severity, mid) < value) == rises ? low : high) = mid;
+  }
+  return 0.5 * (low + high);
+}
+
 }  // namespace
 
 const std::vector<Progressive>& progressive_faults() {
@@ -85,7 +103,8 @@ Track track_parameters(const LogData& log, const Table& tuned, const TrackOption
   }
   if (options.last.size() == faults.size()) {
     Point x = health;
-    for (std::size_t j = 0; j < faults.size(); ++j) x[j] = free[j].to_unit(options.last[j]);
+    for (std::size_t j = 0; j < faults.size(); ++j)
+      if (std::isfinite(options.last[j])) x[j] = unit_of(base, faults[j], free[j], options.last[j]);
     starts.push_back(x);
   }
   LeastSquaresOptions o;
@@ -136,14 +155,9 @@ Track track_parameters(const LogData& log, const Table& tuned, const TrackOption
     p.id = faults[j].row + 1;
     p.fault = faults[j].fault;
     p.severity = free[j].from_unit(best.point[j]);
-    const auto row_at = [&](double u) {
-      ParameterVector v = base;
-      p.fault->apply(v.data(), free[j].from_unit(std::clamp(u, 0.0, 1.0)));
-      return v[faults[j].row];
-    };
-    p.value = row_at(best.point[j]);
+    p.value = row_at(base, faults[j], free[j], best.point[j]);
     const double h = best.point[j] < 0.5 ? 1e-3 : -1e-3;
-    p.std_error = std::abs((row_at(best.point[j] + h) - p.value) / h) * error_of(j);
+    p.std_error = std::abs((row_at(base, faults[j], free[j], best.point[j] + h) - p.value) / h) * error_of(j);
     out.parameters.push_back(p);
   }
   return out;

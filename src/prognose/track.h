@@ -35,7 +35,7 @@ struct Track {
 struct TrackOptions {
   double null_limit = 0.05;  // [of rated]
   int threads = 0;
-  std::vector<double> last;  // severities of the last check, in the order of progressive_faults(); another start
+  std::vector<double> last;  // values of the last check, in the order of progressive_faults(): another start
 };
 
 // Those of the registry that grow with use, and the row that each moves first.

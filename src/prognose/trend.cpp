@@ -14,10 +14,10 @@ namespace servodx {
 namespace {
 
 constexpr double infinite = std::numeric_limits<double>::infinity();
-constexpr std::size_t least_checks = 6;  // for a word on a trend
-constexpr std::size_t most_points = 240; // longer histories are averaged in blocks
-constexpr std::size_t looks = 40;        // moments at which an alert is looked for, evenly over the checks
-constexpr double per_checks = 100;       // the false-alarm rate of a valve is stated over this many checks
+constexpr std::size_t least_checks = 6;   // for a word on a trend
+constexpr std::size_t most_points = 240;  // longer histories are averaged in blocks
+constexpr std::size_t looks = 40;         // moments at which an alert is looked for, evenly over the checks
+constexpr double per_checks = 100;        // the false-alarm rate of a valve is stated over this many checks
 
 double median(std::vector<double> v) {
   std::nth_element(v.begin(), v.begin() + static_cast<long>(v.size() / 2), v.end());
@@ -123,7 +123,8 @@ std::vector<GrowthPoint> thinned(const std::vector<GrowthPoint>& points) {
 
 GrowthPrior prior_of(const Series& s, std::size_t healthy, const Level& failure) {
   std::vector<double> y, error;
-  for (std::size_t i = 0; i < healthy; ++i) y.push_back(s.points[i].y), error.push_back(std::sqrt(s.points[i].variance));
+  for (std::size_t i = 0; i < healthy; ++i)
+    y.push_back(s.points[i].y), error.push_back(std::sqrt(s.points[i].variance));
   GrowthPrior prior;
   prior.base = median(y);
   for (double& v : y) v = std::abs(v - prior.base);
@@ -157,6 +158,8 @@ CheckTrend trend_of(const Series& s, const TrendOptions& options, std::size_t na
   out.healthy = s.out(median(first));
   if (const auto given = options.failure.find(s.name); given != options.failure.end())
     out.failure = {given->second.first, given->second.second};
+  else if (const auto ratio = options.failure_ratio.find(s.name); ratio != options.failure_ratio.end())
+    (ratio->second > 1 ? out.failure.upper : out.failure.lower) = ratio->second * out.healthy;
   else if (s.fault)
     if (const auto failed = failed_row(*s.fault, out.healthy))
       (*failed > out.healthy ? out.failure.upper : out.failure.lower) = failed;
@@ -177,7 +180,8 @@ CheckTrend trend_of(const Series& s, const TrendOptions& options, std::size_t na
   // Levels: the spread of a single healthy check about the healthy mean.
   const GrowthModel begun({s.points.begin(), s.points.begin() + static_cast<long>(healthy)}, prior);
   std::vector<double> own, level;
-  for (std::size_t i = 0; i < healthy; ++i) own.push_back(s.points[i].variance), level.push_back(s.in(out.points[i].value));
+  for (std::size_t i = 0; i < healthy; ++i)
+    own.push_back(s.points[i].variance), level.push_back(s.in(out.points[i].value));
   const double centre = median(level);
   const double noise = begun.growth().probability < 0.5 ? begun.growth().null_noise : begun.growth().noise;
   const double spread = std::sqrt(noise * noise * (1 + 1.0 / static_cast<double>(healthy)) + median(own));
@@ -192,6 +196,14 @@ CheckTrend trend_of(const Series& s, const TrendOptions& options, std::size_t na
   out.threshold = band(options.false_alarm);
   out.warning = band(rate);
   out.healthy = s.out(centre);
+  // A warning comes half way to failure at the latest; against false alarms there the trend test stands.
+  const auto half_way = [&](std::optional<double>& warning, const std::optional<double>& failure, double side) {
+    if (!failure) return;
+    const double half = 0.5 * (out.healthy + *failure);
+    if (!warning || side * (*warning - half) > 0) warning = half;
+  };
+  half_way(out.warning.upper, out.failure.upper, 1);
+  half_way(out.warning.lower, out.failure.lower, -1);
   out.now = s.out(g.now);
   out.now_error = s.logarithm ? out.now * g.now_sd : g.now_sd;
   out.log_bayes_factor = g.log_bayes_factor;
@@ -217,7 +229,8 @@ CheckTrend trend_of(const Series& s, const TrendOptions& options, std::size_t na
     return v && (!s.logarithm || *v > 0) ? std::optional(s.in(*v)) : std::nullopt;
   };
   const bool passed = beyond(out.warning, out.now);
-  out.to_warning = passed ? 0.0 : quantile(model.life(y_of(out.warning.upper), y_of(out.warning.lower), options.seed), 0.5);
+  out.to_warning =
+      passed ? 0.0 : quantile(model.life(y_of(out.warning.upper), y_of(out.warning.lower), options.seed), 0.5);
   if (out.alert_at && passed) out.state = "warning";
   if (!out.failure.lower && !out.failure.upper) return out;
   if (beyond(out.failure, out.now)) out.state = "failed";
@@ -230,8 +243,8 @@ CheckTrend trend_of(const Series& s, const TrendOptions& options, std::size_t na
   const auto side = [&](const Level& l) { return up ? l.upper : l.lower; };
   if (side(out.threshold) && side(out.warning) && side(out.failure)) {
     const double sign = up ? 1 : -1;
-    out.tangent = tangent_rule(time, value, sign * *side(out.threshold), sign * *side(out.warning),
-                               sign * *side(out.failure));
+    out.tangent =
+        tangent_rule(time, value, sign * *side(out.threshold), sign * *side(out.warning), sign * *side(out.failure));
   }
   return out;
 }

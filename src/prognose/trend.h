@@ -26,7 +26,8 @@ struct TrendOptions {
   double false_alarm = 0.01;  // of a healthy valve
   int healthy = 12;           // first checks after a start or a reset that are taken as healthy
   std::map<std::string, std::pair<std::optional<double>, std::optional<double>>> failure;  // name -> lower, upper
-  double coverage = 0.9;      // of the interval of the life left
+  std::map<std::string, double> failure_ratio;  // name -> times its healthy value, where `failure` has none
+  double coverage = 0.9;                        // of the interval of the life left
   std::uint64_t seed = 1;
 };
 
@@ -56,8 +57,8 @@ struct CheckTrend {
   std::optional<double> alert_at;      // [h]
   std::optional<Remaining> remaining;  // to failure
   std::optional<TangentRule> tangent;
-  double to_warning = 0;               // [h] median; infinite without a trend, 0 when it is passed
-  Life life;                           // behind `remaining`
+  double to_warning = 0;  // [h] median; infinite without a trend, 0 when it is passed
+  Life life;              // behind `remaining`
   struct Point {
     double at, value, temperature;
     bool healthy;
@@ -67,7 +68,7 @@ struct CheckTrend {
 
 struct ValveTrend {
   std::string valve, serial, state;
-  double at = 0;      // [h] of the last check
+  double at = 0;  // [h] of the last check
   std::size_t checks = 0;
   std::optional<std::string> cause;  // label of a fault
   std::optional<double> alert_at;

@@ -103,7 +103,26 @@ TEST(Monitor, RunsAThousandTimesFasterThanTheRig) {
   EXPECT_GT(5 * log.scenario.time.back() / wall, 1000.0);
 }
 
-TEST(Monitor, AnUnknownPressureModelIsRefused) { EXPECT_THROW(pressure_law("nonesuch", shipped()), InputError); }
+// papers.md C: any valve map may stand in place of GP; unloaded and slow they all give the same motion.
+TEST(Monitor, EveryValveMapPlugsIn) {
+  const Table table = shipped_table();
+  Supply at;
+  at.supply = 207e5, at.return_ = 5e5;
+  at.oil = oil_at(860, 14e-6, 313.15);
+  const MonitorParameters p = monitor_parameters(table, at);
+  for (const char* name : {"linear", "A", "C1", "C2", "C3", "C5", "bridge", "HF"}) {
+    Monitor monitor(p, pressure_law(name, table, at));
+    for (int k = 0; k < 300; ++k) monitor.step(0.01, 0.0, 1e-3);
+    EXPECT_NEAR(monitor.speed(), 0.15, 0.05) << name;
+    EXPECT_TRUE(std::isfinite(monitor.pressure())) << name;
+  }
+}
+
+TEST(Monitor, AnUnknownPressureModelIsRefused) {
+  Supply at;
+  at.supply = 207e5;
+  EXPECT_THROW(pressure_law("nonesuch", shipped_table(), at), InputError);
+}
 
 }  // namespace
 }  // namespace servodx
