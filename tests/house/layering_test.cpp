@@ -31,8 +31,8 @@ const std::map<std::string, std::set<std::string>> allowed = {
     {"fit", {"parameters", "simulate", "signals", "optimise"}},
     {"diagnose", {"parameters", "signals", "simulate", "fit", "faults", "effects"}},
     {"explain", {"parameters", "signals", "simulate", "optimise", "fit", "faults", "effects"}},
-    {"prognose", {"parameters", "signals", "fit", "valve_maps", "integrate"}},
     {"report", {"diagnose", "explain", "prognose", "fit", "valve_maps", "curves"}},
+    {"prognose", {"parameters", "signals", "simulate", "fit", "faults", "valve_maps"}},
 };
 
 struct Include {
