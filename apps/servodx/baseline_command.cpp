@@ -5,9 +5,12 @@
 #include <memory>
 
 #include "base/atomic_file.h"
+#include "base/progress.h"
 #include "commands.h"
 #include "diagnose/diagnose.h"
+#include "explain/healthy.h"
 #include "invocation.h"
+#include "report/explain_report.h"
 #include "report/pages.h"
 #include "report/text.h"
 
@@ -20,6 +23,20 @@ struct Options {
   std::string params, output;
   double false_alarm = Baseline{}.asked;
 };
+
+// What `explain` asks of healthy logs.
+HealthyReference healthy(const std::vector<Log>& logs, const Table& tuned, const RigFile& rig, const Options& options,
+                         report::Header& header) {
+  Progress progress("baseline, causes", {.quiet = options.common.quiet});
+  HealthyReference out;
+  for (const Log& log : logs) {
+    if (stop_on_interrupt()) break;
+    out.logs.push_back(
+        score_healthy(log, tuned, rig, options.common.threads, &header.simulations, &header.failed_simulations));
+    progress.update(static_cast<double>(out.logs.size()) / static_cast<double>(logs.size()), header.simulations);
+  }
+  return out;
+}
 
 int run(const Options& options) {
   require_option(options.false_alarm > 0 && options.false_alarm < 1, "--false-alarm", "is a rate between 0 and 1",
@@ -50,7 +67,8 @@ int run(const Options& options) {
       replays.push_back(replay(logs[i], tuned, rig, {baseline.scores[i].healthy}));
     invocation.write_report(report::baseline_page(header, baseline, replays));
   }
-  const report::Json body = report::baseline_json(baseline);
+  report::Json body = report::baseline_json(baseline);
+  body["explain"] = report::healthy_json(healthy(logs, tuned, rig, options, header));
   write_file(options.output, invocation.result(body));
   invocation.finish(report::text_of(baseline, {.colour = colour_wanted(), .written_to = options.output}), body);
   return stop ? interrupted : ran;

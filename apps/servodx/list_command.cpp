@@ -6,6 +6,7 @@
 #include "base/error.h"
 #include "commands.h"
 #include "effects/registry.h"
+#include "effects/row_effects.h"
 #include "faults/registry.h"
 #include "fit/nominal.h"
 #include "invocation.h"
@@ -49,38 +50,6 @@ Listing faults(const Options&, Invocation&) {
   }
   out.text = table.text();
   return out;
-}
-
-// Effects that the base model has already: rows of the table, which a rig may hold at their off value.
-struct RowEffect {
-  const char *name, *where, *meaning;
-  double off;  // [SI] of every row
-  std::vector<int> rows;
-};
-const std::vector<RowEffect>& row_effects() {
-  static const std::vector<RowEffect> list = {
-      {"stribeck_friction",
-       "piston_force",
-       "breakaway friction of the piston above sliding friction",
-       0.0,
-       {row::piston_stribeck_friction}},
-      {"asymmetric_lap",
-       "metering",
-       "overlap of each metering edge of its own",
-       0.0,
-       {row::lap_pa, row::lap_pb, row::lap_at, row::lap_bt}},
-      {"hose_compliance", "flow_a, flow_b", "lines that widen under pressure", 0.0, {row::hose_compliance}},
-      {"air_entrainment", "flow_a, flow_b", "free air in the oil", 0.0, {row::air_fraction}},
-      {"cross_piston_leakage", "flow_a, flow_b", "oil that passes the piston seal", 0.0, {row::cross_piston_leakage}},
-      {"sensor_lag", "sensor:piston_position", "lag of the piston position sensor", 0.0, {row::position_sensor_lag}},
-      {"sensor_gain_error",
-       "sensor:piston_position",
-       "gain error of the piston position sensor",
-       1.0,
-       {row::position_sensor_gain}},
-      {"flow_force", "spool", "steady flow force on the spool", 0.0, {row::flow_force_coefficient}},
-  };
-  return list;
 }
 
 Listing effects(const Options&, Invocation&) {

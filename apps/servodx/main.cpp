@@ -31,6 +31,11 @@ int main(int argc, char** argv) {
   add_baseline_command(app, exit_code);
   add_diagnose_command(app, exit_code);
   add_join_command(app);
+  add_explain_command(app, exit_code);
+  add_monitor_command(app);
+  add_check_command(app);
+  add_trend_command(app);
+  add_history_command(app, exit_code);
   add_list_command(app);
   add_curves_command(app);
   add_map_command(app);

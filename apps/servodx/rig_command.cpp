@@ -107,7 +107,7 @@ int labelled_set(const Options& options, Invocation& invocation, const rig::RigM
 // The table of valve facts, and the torque motor's map.
 int facts_of(const Options& options, Invocation& invocation, const rig::RigModel& model) {
   const std::string limits_path = (fs::path(options.model).parent_path() / "valve_facts.csv").string();
-  const auto limits = rig::read_fact_limits(limits_path);
+  const auto limits = rig::read_fact_limits(limits_path, model.name);
   report::Columns table("lrlrrl");
   table.row({"fact", "measured", "unit", "real", "valves", "range from"});
   report::Json items = report::Json::array();

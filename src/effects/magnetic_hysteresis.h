@@ -33,7 +33,7 @@ struct MagneticHysteresis {
   }
   // [A] what the torque motor feels; q: own parameters, rated [A].
   template <class T>
-  static T drive(Memory<T>& m, const T& current, const T* q, const T& rated) {
+  static T drive(Memory<T>& m, double, const T& current, const T* q, const T& rated) {
     using std::max;
     using std::min;
     const T reach = q[1] * rated;

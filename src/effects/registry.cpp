@@ -17,7 +17,7 @@ std::vector<EffectInfo> describe(EffectList<E...>) {
 }  // namespace
 
 const std::vector<EffectInfo>& effect_list() {
-  static const std::vector<EffectInfo> list = describe(AllEffects{});
+  static const std::vector<EffectInfo> list = describe(CorrectedEffects{});
   return list;
 }
 

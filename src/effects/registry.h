@@ -5,9 +5,15 @@
 
 #include "effects/effect.h"
 #include "effects/magnetic_hysteresis.h"
+#include "effects/mains_pickup.h"
 #include "effects/mount_compliance.h"
 #include "effects/nozzle_plugging.h"
+#include "effects/sensor_response.h"
 #include "effects/stiction.h"
+#include "effects/supply_droop.h"
+#include "effects/transport_delay.h"
+#include "effects/unexplained.h"
+#include "effects/viscosity_change.h"
 #include "model/hooks.h"
 
 namespace servodx {
@@ -16,8 +22,15 @@ using NoEffects = EffectList<>;
 using AllEffects = EffectList<MagneticHysteresis,  //
                               MountCompliance,     //
                               NozzlePlugging,      //
-                              Stiction>;
-inline constexpr int n_values = n_parameters + AllEffects::n_parameters;  // length of a parameter vector
+                              Stiction,            //
+                              TransportDelay,      //
+                              ViscosityChange,     //
+                              SupplyDroop,         //
+                              MainsPickup,         //
+                              SensorResponse>;
+// A learnt curve costs more than all effects: it has a kernel of its own.
+using CorrectedEffects = Append<AllEffects, Unexplained>;
+inline constexpr int n_values = n_parameters + CorrectedEffects::n_parameters;  // length of a parameter vector
 
 struct EffectInfo {
   std::string name, place, meaning;
@@ -29,7 +42,7 @@ const std::vector<EffectInfo>& effect_list();
 // Position of effect E's j-th parameter in a parameter vector.
 template <class E>
 constexpr int effect_row(int j) {
-  return n_parameters + AllEffects::parameter_offset<E>() + j;
+  return n_parameters + CorrectedEffects::parameter_offset<E>() + j;
 }
 
 }  // namespace servodx

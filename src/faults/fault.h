@@ -1,5 +1,6 @@
 // A fault: a name, the rows that it moves, and one number, its severity, that is at `healthy` when it is absent.
 #pragma once
+#include <optional>
 #include <string_view>
 #include <vector>
 
@@ -23,6 +24,9 @@ struct Fault {
   std::string_view action;     // critical: stop the machine; abnormal: call service; abuse: change mode (GA paper)
   // Moves the rows of a candidate (SI) to the severity.
   void (*apply)(double* candidate, double severity);
+  // Where a valve that wears so has failed, unless its user says another level. A fault with one grows with use:
+  // `check` tracks it, `trend` predicts it.
+  std::optional<double> failed = {};
 };
 
 }  // namespace servodx

@@ -16,6 +16,7 @@ inline const Fault feedback_wire_backlash{
     .starts = {6e-6, 2e-5},
     .test = "small sine about null: the spool jumps through the clearance at each reversal, whatever the rate",
     .action = "abnormal: call service",
-    .apply = [](double* v, double s) { v[row::valve_glitch] += s; }};
+    .apply = [](double* v, double s) { v[row::valve_glitch] += s; },
+    .failed = 20e-6};  // the end of what Borello 2009 studies
 
 }  // namespace servodx

@@ -18,9 +18,11 @@ inline const Fault sticky_spool{
     .test =
         "slow small sine: the spool stands still at each reversal, longer the slower; backlash does not care for rate",
     .action = "abnormal: call service",
-    .apply = [](double* v, double s) {
-      v[row::spool_friction] *= s;
-      v[effect_row<Stiction>(0)] *= s;
-    }};
+    .apply =
+        [](double* v, double s) {
+          v[row::spool_friction] *= s;
+          v[effect_row<Stiction>(0)] *= s;
+        },
+    .failed = 20.0};  // the end of what Borello 2009 studies
 
 }  // namespace servodx

@@ -16,6 +16,7 @@ inline const Fault torque_motor_loss{
     .starts = {0.8, 0.3},
     .test = "small and full steps: static gain and slew fall together, where a soft wire raises the gain",
     .action = "abnormal: call service",
-    .apply = [](double* v, double s) { v[row::torque_motor_gain] *= s; }};
+    .apply = [](double* v, double s) { v[row::torque_motor_gain] *= s; },
+    .failed = 0.2};  // the end of what Borello 2009 studies
 
 }  // namespace servodx

@@ -20,6 +20,7 @@ inline constexpr double cd_orifice = 0.65;
 inline constexpr double cd_nozzle = 0.64;
 inline constexpr double clean_filter_area_ratio = 5.0;
 inline constexpr double slot_resistance = 6.0;
+inline constexpr double jet_angle_factor = 0.43;
 }  // namespace nominal
 
 // Returns the table with the rows that follow from facts overridden; their `source` becomes "rig.toml: KEY".

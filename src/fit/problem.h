@@ -3,6 +3,7 @@
 // residual = filtered (measured - simulated) / sigma, channel by channel, then the priors. All lanes of all logs are
 // filled in one batch; a nuisance's column costs only its own log's simulation.
 #pragma once
+#include <functional>
 #include <limits>
 #include <string>
 #include <vector>
@@ -23,7 +24,7 @@ struct FreeValue {
   double start = 0;                                           // [SI]
   double prior_sd = std::numeric_limits<double>::infinity();  // [of the unit interval] around `start`; infinite: none
   int log = -1;                                               // index of the log it belongs to, or -1: shared by all
-  void (*apply)(double* candidate, double value) = nullptr;   // moves several entries at once, in place of `at`
+  std::function<void(double* candidate, double value)> apply = {};  // moves several entries at once, in place of `at`
 
   double to_unit(double value) const;
   double from_unit(double u) const;

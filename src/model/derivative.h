@@ -50,12 +50,23 @@ auto chamber_compliance(const V& volume, const P& pressure, const Derived<T>& d,
   return volume * (d.inverse_bulk + d.air / (absolute * absolute)) + p[row::hose_compliance];
 }
 
+// Inputs with the supply pressure as it is at the valve.
+template <class In, class P>
+struct AtValve {
+  decltype(In::current) current;
+  P supply_pressure;
+  decltype(In::return_pressure) return_pressure;
+  decltype(In::load_force) load_force;
+};
+
 // Derivatives of all states, base states first, then the effects', as a tuple.
 // S: s.get<K>() gives state K. In: Inputs-like with members of dual or plain type.
 template <class Effects, class T, class S, class In>
-inline __attribute__((always_inline)) auto derivative(const S& s, const In& u, const T* p, const Derived<T>& d) {
+inline __attribute__((always_inline)) auto derivative(const S& s, const In& in, const T* p, const Derived<T>& d) {
   namespace c = constants;
-  const View<Effects, S, In, T> view{s, u, p};
+  const View<Effects, S, In, T> view{s, in, p};
+  const auto supply = in.supply_pressure + hook_supply_pressure(view, Effects{});
+  const AtValve<In, std::decay_t<decltype(supply)>> u{in.current, supply, in.return_pressure, in.load_force};
   const auto z_f = s.template get<s_x_flapper>();
   const auto v_f = s.template get<s_v_flapper>();
   const auto p_f = s.template get<s_p_filter>();
@@ -101,17 +112,18 @@ inline __attribute__((always_inline)) auto derivative(const S& s, const In& u, c
   const auto dp_2 = d.inverse_pilot_compliance * (q_orifice_2 - q_nozzle_2 + d.spool_area * v_s);
 
   // Metering edges. Flows carry direction: pa from supply to A, at from A to return.
-  const auto [q_pa, h_pa] = metering_edge(x_s - p[row::lap_pa], u.supply_pressure - p_a, d, p);
-  const auto [q_pb, h_pb] = metering_edge(-x_s - p[row::lap_pb], u.supply_pressure - p_b, d, p);
-  const auto [q_at, h_at] = metering_edge(-x_s - p[row::lap_at], p_a - u.return_pressure, d, p);
-  const auto [q_bt, h_bt] = metering_edge(x_s - p[row::lap_bt], p_b - u.return_pressure, d, p);
+  const auto x_m = x_s + hook_metering_opening(view, Effects{});
+  const auto [q_pa, h_pa] = metering_edge(x_m - p[row::lap_pa], u.supply_pressure - p_a, d, p);
+  const auto [q_pb, h_pb] = metering_edge(-x_m - p[row::lap_pb], u.supply_pressure - p_b, d, p);
+  const auto [q_at, h_at] = metering_edge(-x_m - p[row::lap_at], p_a - u.return_pressure, d, p);
+  const auto [q_bt, h_bt] = metering_edge(x_m - p[row::lap_bt], p_b - u.return_pressure, d, p);
 
   // Spool.
   const auto f_flow = d.flow_force * p[row::port_width] *
                       (h_pa * (u.supply_pressure - p_a) + h_bt * (p_b - u.return_pressure) -
                        h_pb * (u.supply_pressure - p_b) - h_at * (p_a - u.return_pressure));
   const auto f_dry =
-      p[row::spool_friction] * asperities<T>((x_s - u.friction.spool_anchor) * T(1.0 / c::spool_presliding));
+      p[row::spool_friction] * asperities<T>((x_s - in.friction.spool_anchor) * T(1.0 / c::spool_presliding));
   const auto over_spool = soft_positive(x_s - p[row::spool_stop], T(c::spool_stop_rounding));
   const auto under_spool = soft_positive(-x_s - p[row::spool_stop], T(c::spool_stop_rounding));
   const auto in_spool_stop = (over_spool + under_spool) / (over_spool + under_spool + T(c::spool_stop_rounding));
@@ -133,13 +145,13 @@ inline __attribute__((always_inline)) auto derivative(const S& s, const In& u, c
   // Piston.
   constexpr int n_families = std::size(c::seal_presliding);
   const auto seals = [&]<int... I>(std::integer_sequence<int, I...>) {
-    return (asperities<T>((x_p - u.friction.seal_anchor[I]) * T(1.0 / c::seal_presliding[I])) + ...) *
+    return (asperities<T>((x_p - in.friction.seal_anchor[I]) * T(1.0 / c::seal_presliding[I])) + ...) *
            T(1.0 / n_families);
   }
   (std::make_integer_sequence<int, n_families>{});
   const auto f_friction = d.viscous * v_rel + seals * (p[row::piston_coulomb_friction] +
                                                        p[row::piston_stribeck_friction] *
-                                                           stribeck(u.friction.rod_speed, c::piston_stribeck_velocity));
+                                                           stribeck(in.friction.rod_speed, c::piston_stribeck_velocity));
   const auto over = soft_positive(x_p - T(0.5) * p[row::piston_stroke], T(c::piston_stop_rounding));
   const auto under = soft_positive(-x_p - T(0.5) * p[row::piston_stroke], T(c::piston_stop_rounding));
   const auto in_stop = (over + under) / (over + under + T(c::piston_stop_rounding));

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "model/constants.h"
+#include "model/hooks.h"
 #include "model/state.h"
 #include "parameters/list.h"
 
@@ -39,12 +40,14 @@ struct Derived {
   T air;           // [Pa] free air fraction times atmospheric pressure
 };
 
-// p: the 41 rows in SI.
-template <class T>
+// p: a candidate in SI.
+template <class T, class Effects = EffectList<>>
 Derived<T> derive(const T* p, const Oil& oil) {
   using std::sqrt;
   namespace c = constants;
   Derived<T> d;
+  const T factor = hook_viscosity(p, Effects{});
+  const T dynamic_viscosity = factor * T(oil.dynamic_viscosity), viscosity_ratio = factor * T(oil.viscosity_ratio);
   const T per_root_density = T(std::sqrt(2.0 / oil.density));
   const T omega = T(2.0 * c::pi) * p[row::torque_motor_frequency];
   d.driver_rate = T(2.0 * c::pi) * p[row::driver_bandwidth];
@@ -62,17 +65,17 @@ Derived<T> derive(const T* p, const Oil& oil) {
   d.inverse_pilot_compliance = p[row::bulk_modulus] / (d.spool_area * p[row::spool_stop] * T(c::pilot_volume_in_stops));
   const T spool_length = p[row::spool_diameter] * T(c::spool_length_in_diameters);
   d.inverse_spool_mass = T(1.0) / (T(c::steel_density) * d.spool_area * spool_length);
-  d.spool_viscous = T(c::pi * oil.dynamic_viscosity) * p[row::spool_diameter] * spool_length / p[row::radial_clearance];
+  d.spool_viscous = T(c::pi) * dynamic_viscosity * p[row::spool_diameter] * spool_length / p[row::radial_clearance];
   d.flow_force = T(c::jet_angle_factor) * p[row::flow_force_coefficient];
   d.clearance2 = p[row::radial_clearance] * p[row::radial_clearance];
   // Plane Couette slot: dp = 12 mu L q / (w c^3); an open edge has a creeping-flow length of some openings.
-  const T slot = T(12.0 * oil.dynamic_viscosity);
+  const T slot = T(12.0) * dynamic_viscosity;
   d.slot_per_length = slot / (d.clearance2 * p[row::radial_clearance]);
   d.slot_corner = slot * T(c::slot_resistance);
   d.edge_loss = T(4.0 * oil.density / (2.0 * c::cd_metering * c::cd_metering));
   d.hose_loss = T(4.0) * p[row::hose_resistance] * p[row::port_width] * p[row::port_width];
-  d.leak = p[row::cross_piston_leakage] * T(1.0 / oil.viscosity_ratio);
-  d.viscous = p[row::piston_viscous_friction] * T(std::sqrt(oil.viscosity_ratio));  // mixed lubrication of seals
+  d.leak = p[row::cross_piston_leakage] * (T(1.0) / viscosity_ratio);
+  d.viscous = p[row::piston_viscous_friction] * sqrt(viscosity_ratio);  // mixed lubrication of seals
   d.inverse_mass = T(1.0) / p[row::moving_mass];
   d.inverse_bulk = T(1.0) / p[row::bulk_modulus];
   d.air = p[row::air_fraction] * T(c::atmospheric_pressure);

@@ -1,9 +1,13 @@
 // Named places of the model that effects fill. The model knows no effect; an effect is a struct with
 //   name, place, parameters (static list), n_states, and any of these members, each taking a view of the run:
-//     struct Memory, drive(memory, command, p)  [A]  applied to the command at each sample, with memory of its past
+//     struct Memory, drive(memory, time, command, p)  [A]  applied to the command at each sample, with memory of its
+//     past struct Sensors, observe(sensors, time, shown, p)  [SI]  applied to what is reported at each sample
+//     viscosity(p)         [-]   factor on the oil's viscosity
+//     supply_pressure(view) [Pa] added to the supply pressure at the valve
 //     flapper_force(view)  [N]   added to the torque motor's force
 //     nozzle_1_opening(view, open), nozzle_2_opening(view, open)  [m]  added to the open gap of a nozzle
 //     spool_force(view)    [N]   added to the force on the spool
+//     metering_opening(view) [m] added to the spool's travel where the edges meter
 //     flow_a(view), flow_b(view) [m3/s]  added to the flow into the chamber
 //     piston_force(view)   [N]   added to the force on the piston
 //     body_velocity(view)  [m/s] of the cylinder body; the rod is measured relative to it
@@ -52,6 +56,15 @@ struct EffectList {
   }
 };
 
+template <class List, class Last>
+struct AppendTo;
+template <class... E, class Last>
+struct AppendTo<EffectList<E...>, Last> {
+  using type = EffectList<E..., Last>;
+};
+template <class List, class Last>
+using Append = typename AppendTo<List, Last>::type;
+
 // What a hook sees: states, inputs and rows.
 template <class List, class States, class In, class T>
 struct View {
@@ -96,16 +109,31 @@ struct View {
         return Nothing{};                                         \
     }(E{}));                                                      \
   }
+SERVODX_HOOK(supply_pressure)
 SERVODX_HOOK(flapper_force)
 SERVODX_HOOK_TO(nozzle_1_opening)
 SERVODX_HOOK_TO(nozzle_2_opening)
 SERVODX_HOOK(spool_force)
+SERVODX_HOOK(metering_opening)
 SERVODX_HOOK(flow_a)
 SERVODX_HOOK(flow_b)
 SERVODX_HOOK(piston_force)
 SERVODX_HOOK(body_velocity)
 #undef SERVODX_HOOK_TO
 #undef SERVODX_HOOK
+
+// Factor on the oil's viscosity, 1 without an effect; p: a candidate.
+template <class T, class... E>
+T hook_viscosity([[maybe_unused]] const T* p, EffectList<E...>) {
+  T factor = T(1.0);
+  (
+      [&] {
+        if constexpr (requires { E::viscosity(p); })
+          factor = factor * E::viscosity(p + n_parameters + EffectList<E...>::template parameter_offset<E>());
+      }(),
+      ...);
+  return factor;
+}
 
 template <class V, class... E>
 auto effect_derivatives(const V& view, EffectList<E...>) {

@@ -93,7 +93,7 @@ void flow_facts(const Stand& stand, std::vector<Fact>& facts) {
   const auto middle = [&](double i) { return 0.5 * (flow_at(slow.up, i) + flow_at(slow.down, i)); };
   const double most = middle(end), least = middle(-end);
   const double rated_flow = 0.5 * (most - least) / 0.98;
-  facts.push_back({"rated_flow", "l/min", 6e4 * rated_flow});
+  facts.push_back({"no_load_flow", "l/min", 6e4 * rated_flow});
   // Linearity: from the best line through the normal flow curve; symmetry: gains of the polarities, null left out.
   double s_ii = 0.0, s_iq = 0.0, s_i = 0.0, s_q = 0.0, n = 0.0;
   for (double part = -0.95; part < 0.96; part += 0.05) {
@@ -294,26 +294,33 @@ std::vector<Fact> measure_facts(const RigModel& model) {
   return facts;
 }
 
-std::vector<FactLimit> read_fact_limits(const std::string& path) {
+std::vector<FactLimit> read_fact_limits(const std::string& path, const std::string& rig) {
   const std::string text = read_file(path);
   CsvCursor csv(text, path);
-  const std::vector<std::string> expected{"fact", "unit", "low", "high", "source"};
+  const std::vector<std::string> expected{"rig", "fact", "unit", "low", "high", "source"};
   if (csv.header() != expected) {
-    throw InputError({path, csv.header_line(), ""}, "the header is not fact,unit,low,high,source", "write it so");
+    throw InputError({path, csv.header_line(), ""}, "the header is not rig,fact,unit,low,high,source", "write it so");
   }
-  std::vector<FactLimit> limits;
+  std::vector<FactLimit> general, own;
   while (csv.next_row()) {
     std::vector<std::string> cells;
     for (std::string cell; csv.next_cell(cell);) cells.push_back(cell);
-    const auto low = cells.size() == 5 ? parse_number(cells[2]) : std::nullopt;
-    const auto high = cells.size() == 5 ? parse_number(cells[3]) : std::nullopt;
+    const auto low = cells.size() == 6 ? parse_number(cells[3]) : std::nullopt;
+    const auto high = cells.size() == 6 ? parse_number(cells[4]) : std::nullopt;
     if (!low || !high || *low > *high) {
-      throw InputError({path, csv.line(), ""}, "is no row of fact, unit, low, high, source",
-                       "give five cells, low not above high");
+      throw InputError({path, csv.line(), ""}, "is no row of rig, fact, unit, low, high, source",
+                       "give six cells, low not above high");
     }
-    limits.push_back({cells[0], cells[1], cells[4], *low, *high});
+    const FactLimit limit{cells[1], cells[2], cells[5], *low, *high};
+    if (cells[0].empty()) general.push_back(limit);
+    if (cells[0] == rig || (!cells[0].empty() && rig.starts_with(cells[0] + ","))) own.push_back(limit);
   }
-  return limits;
+  for (const FactLimit& limit : general) {
+    if (std::none_of(own.begin(), own.end(), [&](const FactLimit& mine) { return mine.name == limit.name; })) {
+      own.push_back(limit);
+    }
+  }
+  return own;
 }
 
 }  // namespace servodx::rig

@@ -20,8 +20,9 @@ struct FactLimit {
   std::string name, unit, source;
   double low, high;
 };
-// params/rigs/valve_facts.csv. Throws InputError.
-std::vector<FactLimit> read_fact_limits(const std::string& path);
+// What params/rigs/valve_facts.csv says of a rig: rows of no rig hold for all, a row that names the rig (or the rig of
+// which it is another valve) goes before them. Throws InputError.
+std::vector<FactLimit> read_fact_limits(const std::string& path, const std::string& rig);
 
 // Static torque [N m] of the motor without hysteresis.
 double motor_torque(const RigModel& model, double current, double angle);

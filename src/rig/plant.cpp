@@ -66,7 +66,7 @@ Plant::Plant(const RigModel& m, const Oil& oil, double temperature, const Wear& 
       flapper ? fixed_orifice(m.nozzles_orifice_diameter, m.nozzles_orifice_length, m.nozzles_orifice_discharge)
               : closed;
   for (int i = 0; i < 4; ++i) pilot_.set(i, fixed);
-  nozzle_area_ = pi / 4 * m.nozzles_diameter * m.nozzles_diameter;
+  nozzle_area_ = flapper ? pi / 4 * m.nozzles_diameter * m.nozzles_diameter : 0.0;
   jet_momentum_ = flapper ? 4.0 * m.nozzles_discharge / m.nozzles_diameter : 0.0;
   cushion_ = m.actuator_cushion_length > 0.0 ? m.actuator_cushion_damping / m.actuator_cushion_length : 0.0;
   turns_ = resistance_ = leakage_ = gain_ = integral_ = null_mmf_ = wire_ = pump_pressure_ = 0.0;
@@ -79,9 +79,9 @@ void Plant::set_wear(const Wear& wear) {
 
   // Driver and coils: a proportional-integral current controller laid out for the sound, cold circuit.
   const double sound = m_.motor_coil_resistance * m_.circuit_factor();
-  const double break_even = m_.coil_wiring == CoilWiring::parallel ? 2.0 / (1.0 + wear.coil_path) : 1.0;
-  leakage_ = m_.motor_leakage_inductance * m_.circuit_factor() * break_even;
-  resistance_ = sound * break_even * (1.0 + copper * (temperature_ - zero_celsius - 20.0));
+  const double one_of_two = m_.coil_wiring == CoilWiring::parallel ? 2.0 / (1.0 + wear.coil_path) : 1.0;
+  leakage_ = m_.motor_leakage_inductance * m_.circuit_factor() * one_of_two;
+  resistance_ = sound * one_of_two * (1.0 + copper * (temperature_ - zero_celsius - 20.0));
   gain_ =
       2.0 * pi * m_.driver_bandwidth * (magnetics_.inductance() + m_.motor_leakage_inductance * m_.circuit_factor());
   per_leakage_ = 1.0 / leakage_;

@@ -149,15 +149,39 @@ struct Drive<T, EffectList<E...>> {
     ((found = std::is_same_v<E, X> ? at : found, ++at), ...);
     return found;
   }
-  T operator()(T current, [[maybe_unused]] const T* p, [[maybe_unused]] const T& rated) {
+  T operator()([[maybe_unused]] double time, T current, [[maybe_unused]] const T* p, [[maybe_unused]] const T& rated) {
     (
         [&] {
           if constexpr (requires { typename E::template Memory<T>; })
-            current = E::drive(std::get<index_of<E>()>(memory), current,
+            current = E::drive(std::get<index_of<E>()>(memory), time, current,
                                p + n_parameters + EffectList<E...>::template parameter_offset<E>(), rated);
         }(),
         ...);
     return current;
+  }
+};
+
+// What the sensors show: the effects that act on them, in the order of the list.
+template <class T, class Effects>
+struct Sensed;
+template <class T, class... E>
+struct Sensed<T, EffectList<E...>> {
+  template <class X>
+  static auto memory_of(X) {
+    if constexpr (requires { typename X::template Sensors<T>; })
+      return typename X::template Sensors<T>{};
+    else
+      return Nothing{};
+  }
+  std::tuple<decltype(memory_of(E{}))...> memory;
+  void operator()([[maybe_unused]] double time, [[maybe_unused]] T* shown, [[maybe_unused]] const T* p) {
+    (
+        [&] {
+          if constexpr (requires { typename E::template Sensors<T>; })
+            E::observe(std::get<Drive<T, EffectList<E...>>::template index_of<E>()>(memory), time, shown,
+                       p + n_parameters + EffectList<E...>::template parameter_offset<E>());
+        }(),
+        ...);
   }
 };
 
@@ -174,7 +198,7 @@ void run_pack(const Scenario& in, const ParameterVector* const* candidates, Traj
     for (int lane = 0; lane < width; ++lane) Lanes<T>::set(p[k], lane, (*candidates[lane < lanes ? lane : 0])[k]);
   if (in.command_slope) p[nuisance::command_slope] = T(*in.command_slope);
   if (in.current_measured) p[row::driver_bandwidth] = T(2e4);  // the amplifier is behind us
-  const Derived<T> d = derive<T>(p.data(), in.oil);
+  const Derived<T> d = derive<T, Effects>(p.data(), in.oil);
   const T rated = T(in.rated_current), null = p[row::servovalve_null] * rated;
 
   const auto input = [&](const std::vector<double>& series, std::size_t k, const T& table) {
@@ -222,7 +246,8 @@ void run_pack(const Scenario& in, const ParameterVector* const* candidates, Traj
   }
   Drive<T, Effects> drive;
   drive.rest(y[s_current]);  // the history that ends at the current which holds the spool
-  T current = drive(T(in.command[0]) + null, p.data(), rated);
+  T current = drive(in.time[0], T(in.command[0]) + null, p.data(), rated);
+  Sensed<T, Effects> sensed;
 
   for (int lane = 0; lane < lanes; ++lane) {
     results[lane]->ok = true;
@@ -233,11 +258,11 @@ void run_pack(const Scenario& in, const ParameterVector* const* candidates, Traj
   }
   const auto report = [&](std::size_t k, const Inputs<T>& now) {
     std::array<T, n_simulated> out{};
-    out[0] = y[s_x_spool] + p[nuisance::spool_offset];
+    out[0] = y[s_x_spool];
     // A first-order lag of a smooth motion: true to first order in lag over period.
     out[1] = p[row::position_sensor_gain] * (y[s_x_piston] - p[row::position_sensor_lag] * y[s_v_piston]);
-    out[2] = y[s_p_a] + p[nuisance::pressure_a_offset];
-    out[3] = y[s_p_b] + p[nuisance::pressure_b_offset];
+    out[2] = y[s_p_a];
+    out[3] = y[s_p_b];
     out[4] = y[s_p_pilot_1];
     out[5] = y[s_p_pilot_2];
     if (options.wanted[6] || options.wanted[7]) {
@@ -249,6 +274,10 @@ void run_pack(const Scenario& in, const ParameterVector* const* candidates, Traj
       out[7] = flow(-y[s_x_spool] - p[row::lap_pb], now.supply_pressure - y[s_p_b]) -
                flow(y[s_x_spool] - p[row::lap_bt], y[s_p_b] - now.return_pressure);
     }
+    sensed(in.time[k], out.data(), p.data());
+    out[0] = out[0] + p[nuisance::spool_offset];
+    out[2] = out[2] + p[nuisance::pressure_a_offset];
+    out[3] = out[3] + p[nuisance::pressure_b_offset];
     bool any = false;
     for (int lane = 0; lane < lanes; ++lane) {
       if (!results[lane]->ok) continue;
@@ -286,7 +315,7 @@ void run_pack(const Scenario& in, const ParameterVector* const* candidates, Traj
     const double largest = in.time[k] < impact_until ? std::min(options.step, options.impact_step) : options.step;
     const int substeps = std::max(1, static_cast<int>(std::ceil(dt / largest - 1e-6)));
     const double h = dt / substeps;
-    const T next_current = drive(T(in.command[k + 1]) + null, p.data(), rated);
+    const T next_current = drive(in.time[k + 1], T(in.command[k + 1]) + null, p.data(), rated);
     const Inputs<T> next = inputs_at(k + 1, next_current);
     const T per = T(1.0 / dt);
     live.slope = {p[nuisance::command_slope] * (next.current - now.current) * per,
@@ -312,7 +341,8 @@ using RunPack = void (*)(const Scenario&, const ParameterVector* const*, Traject
 struct Kernels {
   int width;
   const char* name;
-  RunPack base, extended;  // without and with effects
+  RunPack base, extended;  // without effects, with all that have names
+  RunPack corrected;  // with a learnt curve too; scalar only: it is rare, and each instance takes a minute to build
 };
 Kernels kernels_scalar();
 Kernels kernels_generic();

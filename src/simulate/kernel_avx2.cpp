@@ -4,7 +4,7 @@ namespace servodx {
 
 Kernels kernels_avx2() {
   using T = Pack<4, 2>;
-  return {T::lanes, "avx2", &run_pack<T, NoEffects>, &run_pack<T, AllEffects>};
+  return {T::lanes, "avx2", &run_pack<T, NoEffects>, &run_pack<T, AllEffects>, nullptr};
 }
 
 }  // namespace servodx

@@ -4,7 +4,7 @@ namespace servodx {
 
 Kernels kernels_avx512() {
   using T = Pack<8, 5>;
-  return {T::lanes, "avx512", &run_pack<T, NoEffects>, &run_pack<T, AllEffects>};
+  return {T::lanes, "avx512", &run_pack<T, NoEffects>, &run_pack<T, AllEffects>, nullptr};
 }
 
 }  // namespace servodx

@@ -4,7 +4,7 @@ namespace servodx {
 
 Kernels kernels_generic() {
   using T = Pack<2, 0>;
-  return {T::lanes, "generic", &run_pack<T, NoEffects>, &run_pack<T, AllEffects>};
+  return {T::lanes, "generic", &run_pack<T, NoEffects>, &run_pack<T, AllEffects>, nullptr};
 }
 
 }  // namespace servodx

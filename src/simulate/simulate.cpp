@@ -3,6 +3,7 @@
 #include <omp.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "simulate/kernel.h"
 
@@ -20,18 +21,33 @@ const Kernels& best_kernels() {
   return chosen;
 }
 
-// True where every effect is at its off value, so that the base model is the same and cheaper.
-bool effects_off(const ParameterVector& v) {
-  for (const EffectInfo& e : effect_list())
-    for (std::size_t j = 0; j < e.parameters.size(); ++j)
-      if (e.parameters[j].switches && v[e.first + static_cast<int>(j)] != e.parameters[j].off) return false;
+bool is_off(const EffectInfo& e, const ParameterVector& v) {
+  for (std::size_t j = 0; j < e.parameters.size(); ++j)
+    if (e.parameters[j].switches && v[e.first + static_cast<int>(j)] != e.parameters[j].off) return false;
   return true;
 }
+
+// Which kernel a candidate needs, the cheapest that holds all that is not at its off value; only candidates of the same
+// need share a pack. 0: none of the effects; 1: effects that have a name; 2: a learnt curve, which runs alone.
+int need_of(const ParameterVector& v) {
+  int need = 0;
+  for (const EffectInfo& e : effect_list()) {
+    if (is_off(e, v)) continue;
+    if (e.name != Unexplained::name) {
+      need = std::max(need, 1);
+      continue;
+    }
+    need = 2;
+  }
+  return need;
+}
+
+RunPack run_of(const Kernels& k, int need) { return need == 0 ? k.base : need == 1 ? k.extended : k.corrected; }
 
 struct PackOfJobs {
   std::size_t first = 0;
   int count = 0;
-  bool off = true;
+  int need = 0;
 };
 
 }  // namespace
@@ -45,12 +61,12 @@ void simulate(std::span<const Job> jobs, const SimulateOptions& options) {
   const Kernels& kernels = best_kernels();
   std::vector<PackOfJobs> packs;
   for (std::size_t i = 0; i < jobs.size(); ++i) {
-    const bool off = effects_off(*jobs[i].candidate);
-    if (!packs.empty() && packs.back().count < kernels.width && packs.back().off == off &&
+    const int need = need_of(*jobs[i].candidate);
+    if (!packs.empty() && packs.back().count < kernels.width && packs.back().need == need && need < 2 &&
         jobs[packs.back().first].scenario == jobs[i].scenario)
       ++packs.back().count;
     else
-      packs.push_back({i, 1, off});
+      packs.push_back({i, 1, need});
   }
   // Longest logs first, so that no thread ends on a long one; the result does not depend on the order.
   std::vector<std::size_t> order(packs.size());
@@ -72,9 +88,9 @@ void simulate(std::span<const Job> jobs, const SimulateOptions& options) {
     const Scenario& scenario = *jobs[pack.first].scenario;
     if (pack.count == 1) {
       const Kernels scalar = kernels_scalar();
-      (pack.off ? scalar.base : scalar.extended)(scenario, candidates, results, 1, options);
+      run_of(scalar, pack.need)(scenario, candidates, results, 1, options);
     } else {
-      (pack.off ? kernels.base : kernels.extended)(scenario, candidates, results, pack.count, options);
+      run_of(kernels, pack.need)(scenario, candidates, results, pack.count, options);
     }
   }
 }

@@ -16,6 +16,7 @@ static_assert(nominal::cd_orifice == constants::cd_orifice);
 static_assert(nominal::cd_nozzle == constants::cd_nozzle);
 static_assert(nominal::clean_filter_area_ratio == constants::clean_filter_area_ratio);
 static_assert(nominal::slot_resistance == constants::slot_resistance);
+static_assert(nominal::jet_angle_factor == constants::jet_angle_factor);
 
 Table shipped() { return read_table(std::string(SERVODX_SOURCE_DIR) + "/params/borello2009.csv"); }
 

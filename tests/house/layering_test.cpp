@@ -30,9 +30,9 @@ const std::map<std::string, std::set<std::string>> allowed = {
     {"rig", {"integrate", "signals"}},
     {"fit", {"parameters", "simulate", "signals", "optimise"}},
     {"diagnose", {"parameters", "signals", "simulate", "fit", "faults", "effects"}},
-    {"explain", {"parameters", "signals", "simulate", "fit", "faults", "effects"}},
-    {"prognose", {"parameters", "signals", "fit", "valve_maps", "integrate"}},
+    {"explain", {"parameters", "signals", "simulate", "optimise", "fit", "faults", "effects"}},
     {"report", {"diagnose", "explain", "prognose", "fit", "valve_maps", "curves"}},
+    {"prognose", {"parameters", "signals", "simulate", "fit", "faults", "valve_maps"}},
 };
 
 struct Include {

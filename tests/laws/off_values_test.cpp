@@ -141,7 +141,8 @@ std::vector<ParameterVector> candidates(int count) {
     if (i % 7 > 4)
       for (const EffectInfo& e : effect_list())
         for (std::size_t j = 0; j < e.parameters.size(); ++j)
-          v[e.first + static_cast<int>(j)] = e.parameters[j].start * random.uniform(0.5, 1.5);
+          v[e.first + static_cast<int>(j)] =
+              e.parameters[j].start * (e.name == Unexplained::name && j < 3 ? 1.0 : random.uniform(0.5, 1.5));  // codes
     out.push_back(std::move(v));
   }
   return out;

@@ -129,7 +129,8 @@ ParameterVector random_candidate(const Table& table, std::uint32_t i, Moves move
     if (const double u = random.uniform(); moves(r)) v[r] = from_unit(table[r], u);
   if (i % 2)
     for (const EffectInfo& e : effect_list())
-      for (std::size_t j = 0; j < e.parameters.size(); ++j)
+      for (std::size_t j = 0; j < e.parameters.size() && e.name != Unexplained::name;
+           ++j)  // a curve is learnt, not searched
         v[e.first + static_cast<int>(j)] = random.uniform(e.parameters[j].lower, e.parameters[j].upper);
   return v;
 }

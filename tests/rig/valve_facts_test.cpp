@@ -17,7 +17,7 @@ const fs::path rigs = fs::path(SERVODX_SOURCE_DIR) / "params" / "rigs";
 
 void expect_within(const RigModel& model, const std::vector<std::string>& left_out = {}) {
   const auto facts = measure_facts(model);
-  for (const auto& limit : read_fact_limits((rigs / "valve_facts.csv").string())) {
+  for (const auto& limit : read_fact_limits((rigs / "valve_facts.csv").string(), model.name)) {
     if (std::find(left_out.begin(), left_out.end(), limit.name) != left_out.end()) continue;
     const auto fact = std::find_if(facts.begin(), facts.end(), [&](const Fact& f) { return f.name == limit.name; });
     ASSERT_NE(fact, facts.end()) << limit.name << " is measured by nobody";
@@ -27,11 +27,12 @@ void expect_within(const RigModel& model, const std::vector<std::string>& left_o
   }
 }
 
-TEST(ValveFacts, OfTheFlightActuatorsValveLieWithinTheRangeOfRealOnes) { expect_within(flight_rig()); }
+class ShippedRig : public ::testing::TestWithParam<std::string> {};
 
-TEST(ValveFacts, OfTheJetPipeValveLieWithinTheRangeOfRealOnes) {
-  expect_within(read_rig_model((rigs / "jet_pipe.toml").string()));
-}
+TEST_P(ShippedRig, HasFactsWithinTheRangeOfRealValves) { expect_within(read_rig_model((rigs / GetParam()).string())); }
+
+INSTANTIATE_TEST_SUITE_P(ValveFacts, ShippedRig, ::testing::Values("borello2009.toml", "jet_pipe.toml"),
+                         [](const auto& test) { return std::filesystem::path(test.param).stem().string(); });
 
 TEST(ValveFacts, OfAnotherValveOfTheTypeLieWithinTheRangeOfRealOnes) {
   // Speed and stall are the paper's actuator with its own valve.

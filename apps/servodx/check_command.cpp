@@ -1,0 +1,90 @@
+// `servodx check LOG`: the prognostic checks of one log, stored in the valve's history.
+#include <CLI/CLI.hpp>
+#include <cmath>
+#include <filesystem>
+#include <memory>
+#include <optional>
+
+#include "base/csv.h"
+#include "commands.h"
+#include "invocation.h"
+#include "prognose/check.h"
+#include "prognose/history.h"
+#include "report/prognosis.h"
+
+namespace servodx {
+namespace {
+
+struct Options {
+  CommonOptions common;
+  std::string log, params, history, valve, serial;
+  double at = 0, cycles = -1;
+  CheckOptions check;
+  bool no_track = false, raw = false;
+};
+
+void run(const Options& options) {
+  require_option(!options.valve.empty(), "--valve", "the name is empty", "name the valve");
+  require_option(std::isfinite(options.at) && options.at >= 0, "--at", "must be the hours of use, 0 or more",
+                 "--at 1250.5");
+  Invocation invocation("check", options.common);
+  invocation.check_files({options.log, options.params}, {options.history});
+  const RigFile rig = invocation.rig();
+  const Table tuned = invocation.tuned_table(options.params);
+  const Log log = invocation.log(options.log, rig);
+  std::optional<History> history;  // a new one is made only when there is something to store
+  if (std::filesystem::exists(options.history)) history.emplace(options.history, false);
+
+  CheckOptions how = options.check;
+  how.threads = options.common.threads;
+  how.track = !options.no_track;
+  how.correct = !options.raw;
+  if (history)
+    if (const auto last = history->last(options.valve)) how.last = tracked_in(*last);
+  const CheckResult result = check(log, tuned, rig, how);
+  if (!history) history.emplace(options.history, true);
+  history->record(options.valve, options.serial.empty() ? rig.serial : options.serial,
+                  {.at = options.at,
+                   .cycles = options.cycles >= 0 ? std::optional(options.cycles) : std::nullopt,
+                   .log = log.path,
+                   .log_sha256 = log.sha256,
+                   .table_sha256 = tuned.sha256,
+                   .version = SERVODX_VERSION,
+                   .recorded_at = {},
+                   .temperature = result.temperature.value,
+                   .temperature_source = result.temperature.source,
+                   .checks = result.checks},
+                  read_file(options.params));
+
+  report::Header& header = invocation.header();
+  header.settings = {{"valve", options.valve}, {"at", options.at}, {"model", how.model}, {"history", options.history}};
+  header.simulations = result.simulations;
+  header.failed_simulations = result.failed_simulations;
+  invocation.note(result.notes);
+  invocation.finish(report::text_of(result), report::check_json(result));
+}
+
+}  // namespace
+
+void add_check_command(CLI::App& app) {
+  auto options = std::make_shared<Options>();
+  CLI::App* command = app.add_subcommand("check", "Prognostic checks of a log, stored in a valve's history");
+  command->add_option("LOG", options->log, "rig log, CSV: in service, or a preflight test")->required();
+  command->add_option("--params", options->params, "tuned table of this valve")->required()->type_name("TUNED");
+  command->add_option("--history", options->history, "history file; made where there is none")
+      ->required()
+      ->type_name("H.db");
+  command->add_option("--valve", options->valve, "name of the valve in the history")->required()->type_name("ID");
+  command->add_option("--at", options->at, "hours of use at this check")->required()->type_name("HOURS");
+  command->add_option("--cycles", options->cycles, "cycles of use at this check")->type_name("N");
+  command->add_option("--serial", options->serial, "serial number; else the rig file's")->type_name("SN");
+  command->add_option("--model", options->check.model, "pressure model of the monitor")
+      ->type_name("NAME")
+      ->capture_default_str();
+  command->add_flag("--no-track", options->no_track, "leave the parameter estimates out");
+  command->add_flag("--raw", options->raw, "no correction to 40 degC");
+  add_common_options(*command, options->common);
+  command->callback([options] { run(*options); });
+}
+
+}  // namespace servodx

@@ -1,0 +1,69 @@
+// `servodx explain LOG...`: what the simulation gets wrong, where, why, and what mending it gains; logs pooled.
+#include <CLI/CLI.hpp>
+#include <memory>
+#include <optional>
+
+#include "base/error.h"
+#include "commands.h"
+#include "explain/explain.h"
+#include "invocation.h"
+#include "report/baseline_file.h"
+#include "report/explain_report.h"
+
+namespace servodx {
+namespace {
+
+struct Options {
+  CommonOptions common;
+  std::vector<std::string> logs;
+  std::string params, baseline, output;
+};
+
+int run(const Options& options) {
+  Invocation invocation("explain", options.common);
+  auto inputs = options.logs;
+  inputs.push_back(options.params);
+  if (!options.baseline.empty()) inputs.push_back(options.baseline);
+  invocation.check_files(inputs, {options.output});
+  const RigFile rig = invocation.rig();
+  const Table tuned = invocation.tuned_table(options.params);
+  report::Header& header = invocation.header();
+  std::optional<HealthyReference> healthy;
+  ExplainOptions explain{.seed = options.common.seed, .threads = options.common.threads, .quiet = options.common.quiet};
+  if (!options.baseline.empty()) {
+    const report::BaselineFile file = report::read_baseline(options.baseline);
+    report::require_same_table(file.baseline, options.baseline, tuned.path, tuned.sha256);
+    header.inputs.push_back({options.baseline, file.sha256});
+    healthy = report::read_healthy(options.baseline);
+    explain.level = file.baseline.asked;
+  }
+  const std::vector<Log> logs = invocation.logs(options.logs, rig);
+  explain.stop = &stop_on_interrupt();
+  const ExplainResult result = explain_logs(logs, tuned, rig, healthy ? &*healthy : nullptr, explain);
+  write_table(options.output, result.table);
+  header.simulations = result.simulations;
+  header.failed_simulations = result.failed_simulations;
+  for (const Log& log : logs) invocation.note(log.notes);
+  invocation.note(result.notes);
+  header.settings = {{"level", explain.level}, {"baseline", options.baseline}};
+  invocation.finish(report::text_of(result, {.colour = colour_wanted(), .written_to = options.output}),
+                    report::explain_json(result));
+  return result.interrupted ? interrupted : ran;
+}
+
+}  // namespace
+
+void add_explain_command(CLI::App& app, int& exit_code) {
+  auto options = std::make_shared<Options>();
+  CLI::App* command = app.add_subcommand(
+      "explain", "What the simulation gets wrong, where, why, and what mending it gains; logs are pooled");
+  command->add_option("LOG", options->logs, "rig logs of one valve in one state, CSV")->required();
+  command->add_option("--params", options->params, "tuned table")->required()->type_name("TUNED");
+  command->add_option("--baseline", options->baseline, "its baseline: then only of what healthy logs do not show")
+      ->type_name("BASE.json");
+  command->add_option("-o,--output", options->output, "the extended table")->required()->type_name("EXTENDED.csv");
+  add_common_options(*command, options->common);
+  command->callback([options, &exit_code] { exit_code = run(*options); });
+}
+
+}  // namespace servodx

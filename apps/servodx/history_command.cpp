@@ -1,0 +1,119 @@
+// `servodx history show|event|export|import|verify`: the store behind `check` and `trend`.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <cmath>
+#include <memory>
+
+#include "base/atomic_file.h"
+#include "commands.h"
+#include "invocation.h"
+#include "prognose/history.h"
+#include "prognose/history_csv.h"
+#include "report/columns.h"
+
+namespace servodx {
+namespace {
+
+struct Options {
+  CommonOptions common;
+  std::string history, file, valve, kind, text;
+  double at = 0;
+};
+
+void show(const Options& options) {
+  Invocation invocation("history show", options.common);
+  const History history(options.history, false);
+  report::Columns rows("llrrr");
+  rows.row({"valve", "serial", "checks", "hours", "events"});
+  report::Json valves = report::Json::array();
+  for (const std::string& name : history.valves()) {
+    const ValveHistory v = history.of(name);
+    const double last = v.recordings.empty() ? 0.0 : v.recordings.back().at;
+    rows.row({v.valve, v.serial, std::to_string(v.recordings.size()), fmt::format("{}", last),
+              std::to_string(v.events.size())});
+    report::Json events = report::Json::array();
+    for (const Event& e : v.events) events.push_back({{"at", e.at}, {"kind", name_of(e.kind)}, {"text", e.text}});
+    valves.push_back({{"valve", v.valve},
+                      {"serial", v.serial},
+                      {"checks", v.recordings.size()},
+                      {"last_at", last},
+                      {"unit", "h"},
+                      {"events", events}});
+  }
+  invocation.finish(rows.text(), {{"schema", History::schema_version()}, {"valves", valves}});
+}
+
+void add_event(const Options& options) {
+  const auto kind = find_event(options.kind);
+  require_option(kind.has_value(), "KIND", "'" + options.kind + "' is no event", "use one of: " + event_names());
+  require_option(std::isfinite(options.at) && options.at >= 0, "--at", "must be the hours of use, 0 or more",
+                 "--at 1250.5");
+  Invocation invocation("history event", options.common);
+  History history(options.history, false);
+  history.of(options.valve);  // refuses a name that is only mistyped
+  history.add_event(options.valve, {options.at, *kind, options.text, {}});
+  invocation.finish(fmt::format("{} at {} h: {}\n", options.valve, options.at, options.kind),
+                    {{"valve", options.valve}, {"at", options.at}, {"kind", options.kind}});
+}
+
+void write_csv(const Options& options) {
+  Invocation invocation("history export", options.common);
+  invocation.check_files({options.history}, {options.file});
+  const History history(options.history, false);
+  const HistoryContent content = history.content();
+  write_file(options.file, history_csv(content));
+  invocation.finish(
+      fmt::format("{} valves and {} tuned tables: {}\n", content.valves.size(), content.tables.size(), options.file),
+      {{"output", options.file}, {"valves", content.valves.size()}});
+}
+
+void read_csv(const Options& options) {
+  Invocation invocation("history import", options.common);
+  invocation.check_files({options.file}, {options.history});
+  const HistoryContent content = read_history_csv(options.file);
+  History history(options.history, true);
+  const Restored count = history.restore(content);
+  if (count.present > 0)
+    invocation.note({fmt::format("{} rows were in the history already and are left as they are", count.present)});
+  invocation.finish(fmt::format("{} checks and {} events added\n", count.recordings, count.events),
+                    {{"checks", count.recordings}, {"events", count.events}, {"present", count.present}});
+}
+
+void verify(const Options& options, int& exit_code) {
+  Invocation invocation("history verify", options.common);
+  const History history(options.history, false);
+  const std::string found = history.verify();
+  if (found != "ok") exit_code = failed_inside;
+  invocation.finish(options.history + ": " + found + "\n", {{"found", found}});
+}
+
+}  // namespace
+
+void add_history_command(CLI::App& app, int& exit_code) {
+  auto options = std::make_shared<Options>();
+  CLI::App* command = app.add_subcommand("history", "What a history holds; maintenance events; CSV out and in");
+  command->require_subcommand(1);
+  const auto part = [&](const char* name, const char* meaning) {
+    CLI::App* sub = command->add_subcommand(name, meaning);
+    sub->add_option("--history", options->history, "history file")->required()->type_name("H.db");
+    add_common_options(*sub, options->common);
+    return sub;
+  };
+  part("show", "The valves, their hours and events")->callback([options] { show(*options); });
+  CLI::App* event = part("event", "Records maintenance; it restarts the trends that it renews");
+  event->add_option("KIND", options->kind, event_names())->required();
+  event->add_option("--valve", options->valve, "name of the valve")->required()->type_name("ID");
+  event->add_option("--at", options->at, "hours of use")->required()->type_name("HOURS");
+  event->add_option("--text", options->text, "what was done")->type_name("TEXT");
+  event->callback([options] { add_event(*options); });
+  CLI::App* out = part("export", "Everything as CSV");
+  out->add_option("-o,--output", options->file, "CSV")->required()->type_name("FILE");
+  out->callback([options] { write_csv(*options); });
+  CLI::App* in = part("import", "Adds what a CSV holds and the history does not; all of it or nothing");
+  in->add_option("FILE", options->file, "CSV of an export")->required();
+  in->callback([options] { read_csv(*options); });
+  part("verify", "Looks for damage")->callback([options, &exit_code] { verify(*options, exit_code); });
+}
+
+}  // namespace servodx

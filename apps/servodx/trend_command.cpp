@@ -1,0 +1,100 @@
+// `servodx trend`: a valve's state, the levels its checks have reached and the life left; or a fleet's ranking.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <memory>
+
+#include "base/units.h"
+#include "commands.h"
+#include "invocation.h"
+#include "prognose/history.h"
+#include "prognose/limits.h"
+#include "prognose/trend.h"
+#include "report/prognosis.h"
+
+namespace servodx {
+namespace {
+
+struct Options {
+  CommonOptions common;
+  std::string history, valve, params;
+  std::vector<std::string> failures, limits;
+  double loop = 0;  // [1/s]
+  bool all = false;
+  TrendOptions trend;
+};
+
+// "fidelity=1.7" above, "parameter:3=<20" below.
+void add_failure(const std::string& text, TrendOptions& to) {
+  const auto equals = text.find('=');
+  const bool below = equals != std::string::npos && equals + 1 < text.size() && text[equals + 1] == '<';
+  const auto value = equals == std::string::npos ? std::nullopt : parse_number(text.substr(equals + (below ? 2 : 1)));
+  require_option(value.has_value() && equals > 0, "--failure", "'" + text + "' is not NAME=VALUE",
+                 "--failure fidelity=1.7, or --failure 'parameter:3=<20' for a lower limit");
+  auto& [lower, upper] = to.failure[text.substr(0, equals)];
+  (below ? lower : upper) = *value;
+}
+
+void run(Options options) {
+  require_option(options.all != !options.valve.empty(), "--valve", "name one valve, or --all", "give one of the two");
+  require_option(options.trend.false_alarm > 0 && options.trend.false_alarm < 0.5, "--false-alarm",
+                 "is a rate between 0 and 0.5", "0.01 is one healthy valve in a hundred");
+  require_option(options.trend.healthy >= 5, "--healthy", "needs at least 5 checks", "levels rest on them");
+  require_option(options.trend.coverage > 0 && options.trend.coverage < 1, "--coverage", "is between 0 and 1", "0.9");
+  options.trend.seed = options.common.seed;
+  Invocation invocation("trend", options.common);
+  require_option(options.limits.empty() || !options.params.empty(), "--limit", "needs the tuned table",
+                 "--params TUNED");
+  if (!options.params.empty()) {
+    const Table tuned = invocation.tuned_table(options.params);
+    for (const std::string& text : options.limits) add_limit(text, tuned, options.loop, options.trend);
+  }
+  for (const std::string& text : options.failures) add_failure(text, options.trend);
+  const History history(options.history, false);
+  std::vector<ValveTrend> trends;
+  for (const std::string& name : options.all ? history.valves() : std::vector<std::string>{options.valve}) {
+    trends.push_back(trend(history.of(name), options.trend));
+    invocation.note(trends.back().notes);
+  }
+  std::stable_sort(trends.begin(), trends.end(),
+                   [](const ValveTrend& a, const ValveTrend& b) { return a.to_warning < b.to_warning; });
+  invocation.header().settings = {{"history", options.history},       {"false_alarm", options.trend.false_alarm},
+                                  {"healthy", options.trend.healthy}, {"coverage", options.trend.coverage},
+                                  {"failure", options.failures},      {"limit", options.limits}};
+  invocation.finish(options.all ? report::ranking(trends) : report::text_of(trends.front()),
+                    report::trend_json(trends, options.all));
+}
+
+}  // namespace
+
+void add_trend_command(CLI::App& app) {
+  auto options = std::make_shared<Options>();
+  CLI::App* command = app.add_subcommand("trend", "Warning, failure and remaining useful life from a history");
+  command->add_option("--history", options->history, "history file")->required()->type_name("H.db");
+  command->add_option("--valve", options->valve, "one valve")->type_name("ID");
+  command->add_flag("--all", options->all, "all valves, the first to reach its warning level first");
+  command->add_option("--failure", options->failures, "failure level of a check: NAME=VALUE, NAME=<VALUE below")
+      ->type_name("NAME=VALUE");
+  command
+      ->add_option("--limit", options->limits,
+                   "performance limit that sets failure levels: bandwidth, gain, hysteresis, "
+                   "phase_margin")
+      ->type_name("NAME=VALUE");
+  command->add_option("--params", options->params, "tuned table, for --limit")->type_name("TUNED");
+  command->add_option("--loop", options->loop, "velocity gain of the position loop, for phase_margin [1/s]")
+      ->type_name("GAIN");
+  command->add_option("--false-alarm", options->trend.false_alarm, "part of healthy valves that may raise an alert")
+      ->type_name("RATE")
+      ->capture_default_str();
+  command->add_option("--healthy", options->trend.healthy, "first checks taken as healthy")
+      ->type_name("N")
+      ->capture_default_str();
+  command->add_option("--coverage", options->trend.coverage, "of the interval of the life left")
+      ->type_name("PART")
+      ->capture_default_str();
+  add_common_options(*command, options->common);
+  command->callback([options] { run(*options); });
+}
+
+}  // namespace servodx

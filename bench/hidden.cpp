@@ -1,0 +1,108 @@
+// Effects hidden in logs of the virtual rig: how many does `explain` name, place and size, and how many controls does
+// it accuse. `servodx_hidden --valves 2 --cases 28 --controls 20` takes minutes; README of the study: docs/explain.md.
+//   servodx_hidden [--valves N] [--cases N] [--controls N] [--unlisted N] [--seed S] [--out DIR] [--params P]
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <filesystem>
+#include <fstream>
+#include <map>
+
+#include "fit/tune.h"
+#include "hidden/cases.h"
+
+using namespace servodx;
+
+int main(int argc, char** argv) {
+  int valves = 2, cases = 28, controls = 20, unlisted = 0, healthy = 9, tuning = 6, generations = 12;
+  double seconds = 3.0, level = 0.05;
+  std::uint64_t seed = 1;
+  std::string out = "build/hidden", source = SERVODX_SOURCE_DIR, only;
+  CLI::App app("hidden effects: named, placed, sized; controls accused");
+  app.add_option("--valves", valves, "drawn from the rig's tolerances")->capture_default_str();
+  app.add_option("--cases", cases, "with an effect, over all valves")->capture_default_str();
+  app.add_option("--controls", controls, "without")->capture_default_str();
+  app.add_option("--unlisted", unlisted, "with an effect that the list does not have")->capture_default_str();
+  app.add_option("--healthy", healthy, "logs of the baseline, a valve")->capture_default_str();
+  app.add_option("--generations", generations, "of the tuning search")->capture_default_str();
+  app.add_option("--seconds", seconds, "of a log")->capture_default_str();
+  app.add_option("--level", level, "false-alarm rate asked for")->capture_default_str();
+  app.add_option("--seed", seed)->capture_default_str();
+  app.add_option("--only", only, "one effect");
+  app.add_option("--out", out)->capture_default_str();
+  CLI11_PARSE(app, argc, argv);
+
+  std::filesystem::create_directories(out);
+  std::vector<hidden::Score> scores;
+  for (int v = 0; v < valves; ++v) {
+    hidden::Bench bench{std::filesystem::path(out), source + "/params/rigs/borello2009.toml",
+                        read_rig_file(source + "/data/rig.toml"), static_cast<std::uint64_t>(v + 1)};
+    const auto read = [&](const std::vector<std::string>& paths) {
+      std::vector<Log> logs;
+      for (const std::string& p : paths) logs.push_back(read_log(p, bench.rig));
+      return logs;
+    };
+    const std::string table_path = fmt::format("{}/tuned_v{}.csv", out, v + 1);
+    if (!std::filesystem::exists(table_path)) {
+      TuneOptions options;
+      options.generations = generations;
+      options.seed = seed;
+      write_table(table_path,
+                  tune(read(hidden::healthy_logs(bench, seed, tuning, fmt::format("tune_v{}", v + 1), seconds)),
+                       read_table(source + "/params/borello2009.csv"), bench.rig, options)
+                      .table);
+    }
+    const Table tuned = read_table(table_path);
+    HealthyReference reference;
+    long simulations = 0, failed = 0;
+    for (const Log& log :
+         read(hidden::healthy_logs(bench, seed + 1000, healthy, fmt::format("base_v{}", v + 1), seconds)))
+      reference.logs.push_back(score_healthy(log, tuned, bench.rig, 0, &simulations, &failed));
+    const auto judge = [&](std::uint64_t s, const std::string& effect) {
+      const hidden::Case c = hidden::make_case(bench, s, effect, seconds);
+      const ExplainResult answer = explain_logs(read(c.logs), tuned, bench.rig, &reference,
+                                                {.quiet = true, .level = std::max(level, 1.0 / (healthy + 1.0))});
+      const hidden::Score sc = hidden::score(hidden::unseal(c.sealed), answer);  // opened after the answer
+      scores.push_back(sc);
+      fmt::print("{:22} {:34} -> {:11} {:22} {:22} {} {} size {} gain {:.0f} %", sc.truth.effect, sc.truth.size,
+                 sc.verdict, sc.first, sc.where, sc.named ? "named" : "-", sc.placed ? "placed" : "-",
+                 sc.size_inside ? (*sc.size_inside ? "in" : "out") : "?", 100 * sc.heldout_gain);
+      if (!answer.causes.empty() && !answer.causes[0].confusable_with.empty())
+        for (const auto& n : answer.causes[0].confusable_with) fmt::print(" | {}", n);
+      if (!sc.named && sc.truth.effect != "none")
+        for (const auto& k : answer.candidates)
+          if (k.effect == sc.truth.effect)
+            fmt::print("\n      {} {}: {} (gain {:.1f}, p {:.3g})", k.effect, k.where, k.reason, k.predicted_gain,
+                       k.p_new.value_or(-1));
+      fmt::print("\n");
+      std::fflush(stdout);
+    };
+    const auto share = [&](int n) { return n / valves + (v < n % valves); };
+    for (int k = 0; k < share(cases); ++k)
+      judge(seed * 100000 + static_cast<std::uint64_t>(k),
+            !only.empty() ? only : hidden::effects()[static_cast<std::size_t>(k) % hidden::effects().size()]);
+    for (int k = 0; k < share(unlisted); ++k)
+      judge(seed * 100000 + 30000 + static_cast<std::uint64_t>(k),
+            hidden::unlisted()[static_cast<std::size_t>(k) % hidden::unlisted().size()]);
+    for (int k = 0; k < share(controls); ++k) judge(seed * 100000 + 60000 + static_cast<std::uint64_t>(k), "none");
+  }
+
+  struct Count {
+    int n = 0, named = 0, placed = 0, accused = 0, sized = 0, inside = 0;
+  };
+  std::map<std::string, Count> by;
+  Count all, none;
+  for (const hidden::Score& s : scores) {
+    for (Count* c : {&by[s.truth.effect], s.truth.effect == "none" ? &none : &all}) {
+      c->n++, c->named += s.named, c->placed += s.placed, c->accused += s.accused;
+      if (s.size_inside) c->sized++, c->inside += *s.size_inside;
+    }
+  }
+  fmt::print("\n{:24} {:>5} {:>6} {:>7} {:>8} {:>12}\n", "effect", "cases", "named", "placed", "accused",
+             "size inside");
+  for (const auto& [name, c] : by)
+    fmt::print("{:24} {:5} {:6} {:7} {:8} {:>9}/{}\n", name, c.n, c.named, c.placed, c.accused, c.inside, c.sized);
+  fmt::print("named {} of {}, placed {}, sizes inside their 90 % interval {} of {}; controls accused {} of {}\n",
+             all.named, all.n, all.placed, all.inside, all.sized, none.accused, none.n);
+  return 0;
+}

@@ -1,0 +1,15 @@
+// Effects that the base model has already: rows of the table, which a rig may hold at their off value. Reported under
+// the effect's name all the same.
+#pragma once
+#include <vector>
+
+namespace servodx {
+
+struct RowEffect {
+  const char *name, *where, *meaning;
+  double off;             // [SI] of every row
+  std::vector<int> rows;  // positions in a parameter vector
+};
+const std::vector<RowEffect>& row_effects();
+
+}  // namespace servodx

@@ -1,0 +1,48 @@
+// Gain error and first-order lag of the spool and pressure sensors; the piston's have rows of the table (29, 34).
+// Reported as sensor_gain_error and sensor_lag at sensor:SIGNAL. The lag is stepped from sample to sample (implicit
+// Euler): true for lags above half a sample. Gain and lag act on what the sensor shows, before its offset.
+#pragma once
+#include "effects/effect.h"
+
+namespace servodx {
+
+struct SensorResponse {
+  static constexpr const char* name = "sensor_response";
+  static constexpr const char* place = "sensor";
+  static constexpr const char* meaning = "gain error and lag of the spool and pressure sensors";
+  static constexpr int n_states = 0;
+  static constexpr int channels = 3;
+  static constexpr int shown_at[channels] = {0, 2, 3};  // spool, pressure a, pressure b
+  static constexpr int n_parameters = 2 * channels;
+  static constexpr EffectParameter parameters[n_parameters] = {
+      {"spool_sensor_gain", "-", 1.0, 0.5, 1.5, 1.05, "indicated over true spool travel"},
+      {"spool_sensor_lag", "s", 0.0, 0.0, 0.02, 1e-3, "time constant of the spool sensor"},
+      {"pressure_a_sensor_gain", "-", 1.0, 0.5, 1.5, 1.05, "indicated over true pressure A"},
+      {"pressure_a_sensor_lag", "s", 0.0, 0.0, 0.02, 2e-3, "time constant of the sensor of pressure A"},
+      {"pressure_b_sensor_gain", "-", 1.0, 0.5, 1.5, 1.05, "indicated over true pressure B"},
+      {"pressure_b_sensor_lag", "s", 0.0, 0.0, 0.02, 2e-3, "time constant of the sensor of pressure B"},
+  };
+
+  template <class T>
+  struct Sensors {
+    T last[channels];
+    double time = 0;
+    bool begun = false;
+  };
+  template <class T>
+  static void observe(Sensors<T>& m, double time, T* shown, const T* q) {
+    for (int k = 0; k < channels; ++k) {
+      T& x = shown[shown_at[k]];
+      x = x * q[2 * k];
+      if (m.begun) {
+        const T lag = q[2 * k + 1];
+        x = x - lag / (lag + T(time - m.time)) * (x - m.last[k]);
+      }
+      m.last[k] = x;
+    }
+    m.time = time;
+    m.begun = true;
+  }
+};
+
+}  // namespace servodx

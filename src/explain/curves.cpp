@@ -1,0 +1,170 @@
+#include "explain/curves.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/QR>
+#include <algorithm>
+#include <cmath>
+
+namespace servodx {
+namespace {
+
+using U = Unexplained;
+
+// Place, variable and factor that make sense together.
+constexpr int likely[][3] = {
+    {U::drive, U::coil_current, U::one},
+    {U::spool, U::spool_position, U::one},
+    {U::spool, U::spool_velocity, U::one},
+    {U::metering, U::spool_position, U::one},
+    {U::metering, U::load_pressure, U::one},
+    {U::at_a, U::load_pressure, U::one},
+    {U::at_b, U::load_pressure, U::one},
+    {U::at_a, U::piston_position, U::by_load_pressure},
+    {U::piston, U::piston_position, U::one},
+    {U::piston, U::piston_velocity, U::one},
+    {U::piston, U::piston_position, U::by_direction},
+    {U::piston, U::load_pressure, U::by_direction},
+};
+
+double rms(const std::vector<double>& v) {
+  double sum = 0, n = 0;
+  for (double x : v)
+    if (std::isfinite(x)) sum += x * x, ++n;
+  return n > 0 ? std::sqrt(sum / n) : 0;
+}
+
+double scale_of(const ValveSubject& subject, int variable) {
+  double largest = 0;
+  for (const LogData& log : subject.logs()) {
+    const auto channel = [&](Signal s) -> const std::vector<double>* {
+      for (const FitChannel& c : log.channels)
+        if (c.signal == s) return &c.measured;
+      return nullptr;
+    };
+    const auto rate = [&](const std::vector<double>& x) {  // over 10 samples: above the noise
+      std::vector<double> v;
+      for (std::size_t k = 10; k < x.size(); ++k)
+        v.push_back((x[k] - x[k - 10]) / (log.scenario.time[k] - log.scenario.time[k - 10]));
+      return v;
+    };
+    const auto *piston = channel(Signal::piston_position), *spool = channel(Signal::spool_position),
+               *a = channel(Signal::pressure_a), *b = channel(Signal::pressure_b);
+    double now = 0;
+    if (variable == U::piston_position && piston) now = rms(*piston);
+    if (variable == U::piston_velocity && piston) now = rms(rate(*piston));
+    if (variable == U::spool_position && spool) now = rms(*spool);
+    if (variable == U::spool_velocity && spool) now = rms(rate(*spool));
+    if (variable == U::coil_current) now = rms(log.scenario.command);
+    if (variable == U::load_pressure && a && b) {
+      std::vector<double> d;
+      for (std::size_t k = 0; k < a->size(); ++k) d.push_back((*a)[k] - (*b)[k]);
+      now = rms(d);
+    }
+    largest = std::max(largest, now);
+  }
+  return std::max(largest, U::variables[variable].scale);
+}
+
+}  // namespace
+
+std::vector<Curve> add_curves(ValveSubject& subject) {
+  std::vector<Curve> out;
+  for (const auto& [place, variable, factor] : likely) {
+    Curve curve{place, variable, factor, scale_of(subject, variable), -1};
+    const U::PlaceInfo& at = U::places[place];
+    Cause cause;
+    cause.effect = U::name;
+    cause.where = at.where;
+    cause.family =
+        fmt::format("{}{}{}", U::variables[variable].name, factor == U::one ? "" : " by ", U::factors[factor]);
+    cause.curve = true;
+    std::vector<FreeValue> values;
+    std::vector<std::vector<double>> together;
+    for (int k = 0; k < U::knots; ++k) {
+      FreeValue f;
+      f.name = U::parameters[4 + k].name;
+      f.at = effect_row<U>(4 + k);
+      f.lower = -at.largest, f.upper = at.largest, f.start = 0;
+      f.apply = [curve, at = f.at](double* v, double value) {
+        v[effect_row<U>(0)] = curve.place, v[effect_row<U>(1)] = curve.variable, v[effect_row<U>(2)] = curve.factor;
+        v[effect_row<U>(3)] = curve.scale;
+        v[at] = value;
+      };
+      values.push_back(f);
+      cause.numbers.push_back({f.name, at.unit, f.lower, f.upper, false, 0.0, true, ""});
+      together.emplace_back(static_cast<std::size_t>(U::knots), 0.0);
+      together.back()[static_cast<std::size_t>(k)] = at.typical;
+    }
+    cause.probes = {together};
+    curve.cause = subject.add(std::move(cause), std::move(values));
+    out.push_back(curve);
+  }
+  return out;
+}
+
+LearntCurve learnt(const Curve& curve, const std::vector<double>& knots, const std::vector<double>& std_error) {
+  const U::VariableInfo& variable = U::variables[curve.variable];
+  LearntCurve out{U::places[curve.place].where,
+                  variable.name,
+                  variable.unit,
+                  U::factors[curve.factor],
+                  U::places[curve.place].unit,
+                  {},
+                  ""};
+  std::vector<double> x, y, w;
+  for (int k = 0; k < U::knots; ++k) {
+    const auto i = static_cast<std::size_t>(k);
+    const double s = curve::node[k];
+    out.points.push_back({curve.scale * s / std::sqrt(1 - s * s), knots[i], std_error[i]});
+    if (std::isfinite(std_error[i]) && std_error[i] > 0)
+      x.push_back(out.points.back().x), y.push_back(knots[i]), w.push_back(1 / std_error[i]);
+  }
+  // Shortest first; a form serves when it misses the knots by no more than their errors do.
+  struct Form {
+    std::vector<double (*)(double)> terms;
+    std::vector<std::string> words;  // of each term, behind its unit
+  };
+  const auto line = [](double v) { return v; };
+  const auto sign = [](double v) { return v > 0 ? 1.0 : v < 0 ? -1.0 : 0.0; };
+  const auto square = [](double v) { return v * std::abs(v); };
+  const auto cube = [](double v) { return v * v * v; };
+  const auto one = [](double) { return 1.0; };
+  const std::string per = std::string(" ") + out.unit + " per " + out.variable_unit;
+  const std::string plain = std::string(" ") + out.unit;
+  const std::vector<Form> forms = {
+      {{line}, {per + " x"}},
+      {{sign}, {plain + " sign(x)"}},
+      {{square}, {plain + "/(" + out.variable_unit + ")2 x|x|"}},
+      {{cube}, {plain + "/(" + out.variable_unit + ")3 x3"}},
+      {{one, line}, {plain, per + " x"}},
+      {{sign, line}, {plain + " sign(x)", per + " x"}},
+      {{line, cube}, {per + " x", plain + "/(" + out.variable_unit + ")3 x3"}},
+  };
+  for (const Form& form : forms) {
+    const auto n = static_cast<long>(x.size()), m = static_cast<long>(form.terms.size());
+    if (n < m + 2) break;
+    Eigen::MatrixXd a(n, m);
+    Eigen::VectorXd b(n);
+    for (long i = 0; i < n; ++i) {
+      const auto k = static_cast<std::size_t>(i);
+      b[i] = w[k] * y[k];
+      for (long j = 0; j < m; ++j) a(i, j) = w[k] * form.terms[static_cast<std::size_t>(j)](x[k]);
+    }
+    const Eigen::VectorXd c = a.colPivHouseholderQr().solve(b);
+    const double left = (a * c - b).squaredNorm();
+    // 95 % of chi-square, Wilson and Hilferty's cube root.
+    const double f = static_cast<double>(n - m),
+                 limit = f * std::pow(1 - 2 / (9 * f) + 1.645 * std::sqrt(2 / (9 * f)), 3);
+    if (left > limit) continue;
+    for (long j = 0; j < m; ++j)
+      out.closed_form += fmt::format("{}{:.3g}{}", j ? " + " : "", c[j], form.words[static_cast<std::size_t>(j)]);
+    if (!out.factor.empty())
+      out.closed_form += curve.factor == U::by_load_pressure ? ", times the load pressure over 100 bar"
+                                                             : ", times the direction of the piston";
+    break;
+  }
+  return out;
+}
+
+}  // namespace servodx

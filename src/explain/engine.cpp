@@ -1,0 +1,567 @@
+#include "explain/engine.h"
+
+#include <Eigen/QR>
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "base/random.h"
+
+namespace servodx {
+
+double Number::to_unit(double value) const {
+  const double v = std::clamp(value, lower, upper);
+  return log_scale ? std::log(v / lower) / std::log(upper / lower) : (v - lower) / (upper - lower);
+}
+double Number::from_unit(double u) const {
+  return log_scale ? lower * std::pow(upper / lower, u) : lower + u * (upper - lower);
+}
+
+namespace {
+
+std::size_t base_size(const Subject& subject, const ExplainedFit& f) {
+  std::size_t n = f.fit.numbers.size();
+  for (int c : f.causes) n -= subject.causes()[static_cast<std::size_t>(c)].numbers.size();
+  return n;
+}
+
+// A point of `from` in the numbers of `to`; numbers that `from` lacks stand at their start.
+Point carried(const Subject& subject, const ExplainedFit& from, const SubjectFit& to, const std::vector<int>& causes) {
+  Point x = to.start;
+  const std::size_t base = base_size(subject, from);
+  for (std::size_t j = 0; j < base; ++j)
+    for (std::size_t k = 0; k < to.numbers.size(); ++k)
+      if (j == k && to.numbers[k].name == from.fit.numbers[j].name) x[k] = from.point[j];
+  std::size_t to_base = to.numbers.size();
+  for (int c : causes) to_base -= subject.causes()[static_cast<std::size_t>(c)].numbers.size();
+  std::size_t at = to_base;
+  for (int c : causes) {
+    const std::size_t n = subject.causes()[static_cast<std::size_t>(c)].numbers.size();
+    std::size_t there = base;
+    for (int f : from.causes) {
+      const std::size_t m = subject.causes()[static_cast<std::size_t>(f)].numbers.size();
+      if (f == c)
+        for (std::size_t j = 0; j < n; ++j) x[at + j] = from.point[there + j];
+      there += m;
+    }
+    at += n;
+  }
+  return x;
+}
+
+LeastSquaresOptions how(int iterations) {
+  LeastSquaresOptions o;
+  o.max_iterations = iterations;
+  o.difference = Difference::forward;
+  o.cost_tolerance = 1e-4;
+  return o;
+}
+
+// Where a fit goes when the rows that `mask` zeroes are left out: one Gauss-Newton step, walls held.
+Point stepped(const ExplainedFit& fit, const Eigen::VectorXd& mask) {
+  const long n = fit.jacobian.cols();
+  Eigen::MatrixXd j = fit.jacobian;
+  Eigen::VectorXd r = fit.residual;
+  j.topRows(mask.size()).array().colwise() *= mask.array();
+  r.head(mask.size()).array() *= mask.array();
+  Eigen::MatrixXd h = j.transpose() * j;
+  const Eigen::VectorXd g = j.transpose() * r;
+  h.diagonal() += 1e-6 * h.diagonal() + Eigen::VectorXd::Constant(n, 1e-9);
+  std::vector<char> held(static_cast<std::size_t>(n), 0);
+  Point x = fit.point;
+  for (int round = 0; round < 8; ++round) {
+    std::vector<long> free;
+    for (long k = 0; k < n; ++k)
+      if (!held[static_cast<std::size_t>(k)]) free.push_back(k);
+    if (free.empty()) break;
+    const auto m = static_cast<long>(free.size());
+    Eigen::MatrixXd hf(m, m);
+    Eigen::VectorXd gf(m);
+    for (long a = 0; a < m; ++a) {
+      gf[a] = g[free[static_cast<std::size_t>(a)]];
+      for (long b = 0; b < m; ++b) hf(a, b) = h(free[static_cast<std::size_t>(a)], free[static_cast<std::size_t>(b)]);
+    }
+    const Eigen::VectorXd step = -hf.ldlt().solve(gf);
+    bool again = false;
+    for (long a = 0; a < m; ++a) {
+      const auto k = static_cast<std::size_t>(free[static_cast<std::size_t>(a)]);
+      const double to = fit.point[k] + step[a];
+      if (to < 0 || to > 1) held[k] = 1, again = true;
+      x[k] = std::clamp(to, 0.0, 1.0);
+    }
+    if (!again) break;
+    for (std::size_t k = 0; k < x.size(); ++k)
+      if (held[k]) x[k] = fit.point[k];
+  }
+  return x;
+}
+
+long data_rows(const Subject& subject) {
+  long n = 0;
+  for (const Series& s : subject.series()) n = std::max(n, s.first + s.count);
+  return n;
+}
+
+// Blocks of time: every log is cut into pieces of about the same length, which all its channels share.
+struct Block {
+  int log;
+  double from, to;  // fraction of the log's samples
+};
+std::vector<Block> blocks_of(const Subject& subject, int wanted) {
+  std::vector<long> samples;
+  for (const Series& s : subject.series()) {
+    if (static_cast<std::size_t>(s.log) >= samples.size()) samples.resize(static_cast<std::size_t>(s.log) + 1, 0);
+    samples[static_cast<std::size_t>(s.log)] = std::max(samples[static_cast<std::size_t>(s.log)], s.count);
+  }
+  const long total = std::accumulate(samples.begin(), samples.end(), 0L);
+  std::vector<Block> out;
+  for (std::size_t l = 0; l < samples.size(); ++l) {
+    const int n =
+        std::max(2, static_cast<int>(std::lround(static_cast<double>(wanted) * static_cast<double>(samples[l]) /
+                                                 static_cast<double>(total))));
+    for (int b = 0; b < n; ++b)
+      out.push_back({static_cast<int>(l), static_cast<double>(b) / n, static_cast<double>(b + 1) / n});
+  }
+  return out;
+}
+std::pair<long, long> rows_of(const Series& s, const Block& b) {
+  const auto n = static_cast<double>(s.count);
+  const long from = std::lround(b.from * n), to = std::lround(b.to * n);
+  return {s.first + from, to - from};
+}
+
+double quadratic_gain(const Eigen::MatrixXd& d, const Eigen::VectorXd& r) {
+  return (d * d.colPivHouseholderQr().solve(r)).squaredNorm();
+}
+
+}  // namespace
+
+double degrees_of(const Subject& subject) {
+  double n = 0;
+  for (const Series& s : subject.series()) n += static_cast<double>(s.count) * s.effective;
+  return n;
+}
+
+ExplainedFit fit_causes(const Subject& subject, const std::vector<int>& causes, const ExplainedFit* from,
+                        const CauseScore* score, int iterations, bool quick, bool wide) {
+  ExplainedFit out;
+  out.causes = causes;
+  out.wide = wide || (from && from->wide);
+  out.fit = subject.fit(causes, out.wide);
+  std::vector<Point> starts = {from ? carried(subject, *from, out.fit, causes) : out.fit.start};
+  if (score) {
+    // The cause comes last. It begins where its score says, and at its probes; the best goes on.
+    const Cause& cause = subject.causes()[static_cast<std::size_t>(score->cause)];
+    const std::size_t at = out.fit.numbers.size() - cause.numbers.size();
+    const Point x = starts.front();
+    starts.clear();
+    std::size_t k = 0;
+    for (const auto& alternative : cause.probes) {
+      Point together = x;
+      for (const auto& probe : alternative) {
+        Point alone = x;
+        for (std::size_t j = 0; j < cause.numbers.size(); ++j) {
+          const Number& n = cause.numbers[j];
+          const double moved = n.size ? n.off + score->probes[k].size * (probe[j] - n.off) : probe[j];
+          if (n.size && probe[j] == n.off) continue;
+          together[at + j] = n.to_unit(moved);
+          alone[at + j] = n.to_unit(probe[j]);
+        }
+        if (alternative.size() == 1) starts.push_back(alone);
+        ++k;
+      }
+      starts.push_back(together);
+    }
+  }
+  Point start = starts.front();
+  if (starts.size() > 1) {
+    const std::vector<Evaluation> e = out.fit.problem.evaluate(starts);
+    double best = 1e300;
+    for (std::size_t i = 0; i < e.size(); ++i)
+      if (e[i].ok && e[i].residual.squaredNorm() < best) best = e[i].residual.squaredNorm(), start = starts[i];
+  }
+  LeastSquaresProblem problem = out.fit.problem;
+  if (score && quick) {
+    // What was free before keeps its derivatives; only the new numbers' are taken again: a few runs in place of many.
+    const long old = from->jacobian.cols(), n = out.fit.problem.n;
+    problem.jacobian = [p = out.fit.problem, kept = from->jacobian, old, n](const Point& x, const Eigen::VectorXd& r,
+                                                                            Eigen::MatrixXd& j) {
+      constexpr double step = 1e-3;
+      std::vector<Point> moved;
+      std::vector<double> dx;
+      for (long k = old; k < n; ++k) {
+        moved.push_back(x);
+        dx.push_back(x[static_cast<std::size_t>(k)] + step <= 1 ? step : -step);
+        moved.back()[static_cast<std::size_t>(k)] += dx.back();
+      }
+      const std::vector<Evaluation> e = p.evaluate(moved);
+      j.resize(r.size(), n);
+      j.leftCols(old) = kept;
+      for (std::size_t k = 0; k < e.size(); ++k) {
+        if (!e[k].ok) return false;
+        j.col(old + static_cast<long>(k)) = (e[k].residual - r) / dx[k];
+      }
+      return true;
+    };
+  }
+  const LeastSquaresResult r = minimise_least_squares(problem, start, how(iterations));
+  if (r.reason == StopReason::start_failed) return out;
+  out.ok = true;
+  out.point = r.point;
+  out.misfit = 2 * r.misfit;
+  out.residual = r.residual;
+  out.jacobian = r.jacobian;
+  return out;
+}
+
+std::vector<CauseScore> score_causes(const Subject& subject, const ExplainedFit& at) {
+  std::vector<int> all(subject.causes().size());
+  std::iota(all.begin(), all.end(), 0);
+  const SubjectFit whole = subject.fit(all, at.wide);
+  const Point here = carried(subject, at, whole, all);
+  std::vector<Point> points = {here};
+  std::size_t base = whole.numbers.size();
+  for (const Cause& c : subject.causes()) base -= c.numbers.size();
+  std::size_t first = base;
+  for (const Cause& c : subject.causes()) {
+    for (const auto& alternative : c.probes)
+      for (const auto& probe : alternative) {
+        Point p = here;
+        for (std::size_t j = 0; j < c.numbers.size(); ++j) p[first + j] = c.numbers[j].to_unit(probe[j]);
+        points.push_back(std::move(p));
+      }
+    first += c.numbers.size();
+  }
+  const std::vector<Evaluation> e = whole.problem.evaluate(points);
+  // What the free numbers, priors included, cannot imitate.
+  const long rows = data_rows(subject);
+  const Eigen::HouseholderQR<Eigen::MatrixXd> qr(at.jacobian);
+  const auto apart = [&](Eigen::VectorXd v) {
+    Eigen::VectorXd y = qr.householderQ().transpose() * v;
+    y.head(std::min<long>(at.jacobian.cols(), y.size())).setZero();
+    return Eigen::VectorXd(qr.householderQ() * y);
+  };
+  Eigen::VectorXd r0 = at.residual;
+  std::vector<CauseScore> out;
+  std::size_t k = 1;
+  for (std::size_t c = 0; c < subject.causes().size(); ++c) {
+    const Cause& cause = subject.causes()[c];
+    CauseScore s;
+    s.cause = static_cast<int>(c);
+    for (std::size_t a = 0; a < cause.probes.size(); ++a) {
+      Eigen::MatrixXd d(at.residual.size(), 0);
+      for (const auto& probe : cause.probes[a]) {
+        const Evaluation& one = e[k++];
+        ProbeScore p;
+        p.std_error = std::nan("");
+        if (one.ok && e[0].ok) {
+          Eigen::VectorXd v = Eigen::VectorXd::Zero(at.residual.size());
+          v.head(rows) = one.residual.head(rows) - e[0].residual.head(rows);
+          v = apart(v);
+          const double square = v.squaredNorm();
+          if (square > 1e-12) {
+            p.size = -v.dot(r0) / square;
+            p.std_error = 1.0 / std::sqrt(square);
+            // A cause that begins at a wall cannot be less than absent.
+            bool wall = true;
+            for (std::size_t j = 0; j < cause.numbers.size(); ++j) {
+              const Number& n = cause.numbers[j];
+              if (n.size && probe[j] != n.off && (probe[j] > n.off ? n.off > n.lower : n.off < n.upper)) wall = false;
+            }
+            if (!(wall && p.size < 0)) {
+              d.conservativeResize(Eigen::NoChange, d.cols() + 1);
+              d.col(d.cols() - 1) = v;
+            }
+          }
+        }
+        s.probes.push_back(p);
+      }
+      const double gain = d.cols() > 0 ? quadratic_gain(d, r0) : 0.0;
+      if (gain > s.gain) s.gain = gain, s.alternative = static_cast<int>(a);
+    }
+    out.push_back(std::move(s));
+  }
+  return out;
+}
+
+void cross_validate(const Subject& subject, ExplainedFit& fit, const EngineOptions& options) {
+  const std::vector<Block> blocks = blocks_of(subject, options.blocks);
+  const auto& series = subject.series();
+  fit.heldout.assign(blocks.size(), std::vector<double>(series.size(), 1e300));
+  fit.heldout_residual = fit.residual;
+  const long rows = data_rows(subject);
+  for (int fold = 0; fold < options.folds; ++fold) {
+    if (options.stop && options.stop->load()) return;
+    Eigen::VectorXd mask = Eigen::VectorXd::Ones(rows);
+    const auto held = [&](std::size_t b) { return static_cast<int>(b) % options.folds == fold; };
+    for (std::size_t b = 0; b < blocks.size(); ++b)
+      for (const Series& s : series)
+        if (held(b) && s.log == blocks[b].log) {
+          const auto [at, n] = rows_of(s, blocks[b]);
+          mask.segment(at, n).setZero();
+        }
+    // Without the block the minimum moves a little: one Gauss-Newton step on the box finds it.
+    const Point moved = stepped(fit, mask);
+    const Evaluation e = fit.fit.problem.evaluate(std::span(&moved, 1)).front();
+    for (std::size_t b = 0; b < blocks.size(); ++b)
+      for (std::size_t i = 0; i < series.size(); ++i) {
+        if (!held(b)) continue;
+        if (series[i].log != blocks[b].log) {
+          fit.heldout[b][i] = 0;
+          continue;
+        }
+        const auto [at, n] = rows_of(series[i], blocks[b]);
+        fit.heldout[b][i] = e.ok ? e.residual.segment(at, n).squaredNorm() : 1e12;
+        if (e.ok) fit.heldout_residual.segment(at, n) = e.residual.segment(at, n);
+      }
+  }
+}
+
+Interval heldout_gain(const ExplainedFit& before, const ExplainedFit& after, std::uint64_t seed) {
+  constexpr int draws = 1000;
+  const std::size_t n = before.heldout.size();
+  std::vector<double> was(n), is(n);
+  for (std::size_t b = 0; b < n; ++b) {
+    was[b] = std::accumulate(before.heldout[b].begin(), before.heldout[b].end(), 0.0);
+    is[b] = std::accumulate(after.heldout[b].begin(), after.heldout[b].end(), 0.0);
+  }
+  const auto gain = [](double w, double i) { return w > 0 ? 1.0 - i / w : 0.0; };
+  std::vector<double> drawn;
+  for (int k = 0; k < draws; ++k) {
+    Random random(seed, static_cast<std::uint32_t>(k), 0xb00f);
+    double w = 0, i = 0;
+    for (std::size_t b = 0; b < n; ++b) {
+      const auto pick = static_cast<std::size_t>(random.below(static_cast<std::uint32_t>(n)));
+      w += was[pick], i += is[pick];
+    }
+    drawn.push_back(gain(w, i));
+  }
+  std::sort(drawn.begin(), drawn.end());
+  return {gain(std::accumulate(was.begin(), was.end(), 0.0), std::accumulate(is.begin(), is.end(), 0.0)),
+          drawn[draws / 20], drawn[draws - 1 - draws / 20]};
+}
+
+namespace {
+
+// Values and standard errors of the last cause of a fit.
+void size_up(const Subject& subject, const ExplainedFit& f, CauseResult& out) {
+  const long n = f.jacobian.cols();
+  Eigen::MatrixXd gram = f.jacobian.transpose() * f.jacobian;
+  std::vector<char> free(static_cast<std::size_t>(n));
+  for (long j = 0; j < n; ++j) {
+    const double u = f.point[static_cast<std::size_t>(j)];
+    free[static_cast<std::size_t>(j)] = u > 1e-6 && u < 1 - 1e-6;
+    if (!free[static_cast<std::size_t>(j)]) gram.row(j).setZero(), gram.col(j).setZero(), gram(j, j) = 1;
+  }
+  gram.diagonal().array() += 1e-12 * gram.diagonal().maxCoeff();
+  const Eigen::MatrixXd covariance = gram.ldlt().solve(Eigen::MatrixXd::Identity(n, n));
+  // The likelihood already counts the model's own error; where it fits worse than that, the errors are wider.
+  const double worse = std::sqrt(std::max(1.0, f.misfit / std::max(1.0, degrees_of(subject))));
+  std::size_t at = base_size(subject, f);
+  for (int c : f.causes) {
+    const Cause& cause = subject.causes()[static_cast<std::size_t>(c)];
+    if (c == out.cause) {
+      out.value.clear(), out.std_error.clear();
+      for (std::size_t j = 0; j < cause.numbers.size(); ++j) {
+        const Number& number = cause.numbers[j];
+        const double u = f.point[at + j];
+        const double value = number.from_unit(u);
+        const double slope =
+            number.log_scale ? value * std::log(number.upper / number.lower) : number.upper - number.lower;
+        const auto k = static_cast<long>(at + j);
+        out.value.push_back(value);
+        out.std_error.push_back(free[at + j] ? worse * slope * std::sqrt(std::max(0.0, covariance(k, k)))
+                                             : std::nan(""));
+      }
+    }
+    at += cause.numbers.size();
+  }
+}
+
+double delta_bic(const Subject& subject, const ExplainedFit& before, const ExplainedFit& after, double degrees) {
+  // Misfit in units of what is left at best: the residual's own size, where it is larger than the error model says.
+  const double scale = std::max(1.0, after.misfit / std::max(1.0, degrees));
+  const double numbers = static_cast<double>(after.fit.numbers.size()) - static_cast<double>(before.fit.numbers.size());
+  (void)subject;
+  return (before.misfit - after.misfit) / scale - numbers * std::log(std::max(2.0, degrees));
+}
+
+double total(const ExplainedFit& f) {
+  double sum = 0;
+  for (const auto& b : f.heldout) sum = std::accumulate(b.begin(), b.end(), sum);
+  return sum;
+}
+
+}  // namespace
+
+ExplainedFit fit_base(Subject& subject, int iterations) {
+  ExplainedFit fit = fit_causes(subject, {}, nullptr, nullptr, iterations, false);
+  if (fit.ok && subject.rescale(fit.residual)) fit = fit_causes(subject, {}, &fit, nullptr, iterations / 2, false);
+  return fit;
+}
+
+Explanation explain(Subject& subject, const EngineOptions& options) {
+  constexpr int quick_iterations = 4, full_iterations = 4;
+  Explanation out;
+  const auto stopped = [&] { return options.stop && options.stop->load(); };
+  const auto tell = [&](double f) {
+    if (options.progress) options.progress(f);
+  };
+  out.before = fit_base(subject, options.iterations);
+  tell(0.1);
+  out.after = out.before;
+  out.degrees = degrees_of(subject);
+  if (!out.before.ok || stopped()) return out;
+  cross_validate(subject, out.before, options);
+  tell(0.15);
+  const std::size_t n = subject.causes().size();
+  out.candidates.resize(n);
+  for (std::size_t c = 0; c < n; ++c) out.candidates[c].cause = static_cast<int>(c);
+  ExplainedFit retuned;
+  if (subject.retunes()) {
+    retuned = fit_causes(subject, {}, &out.before, nullptr, full_iterations, false, true);
+    if (retuned.ok) {
+      cross_validate(subject, retuned, options);
+      out.retuned = heldout_gain(out.before, retuned, options.seed);
+    }
+  }
+  tell(0.2);
+
+  ExplainedFit now = out.before;
+  std::vector<ExplainedFit> steps;  // before each accepted cause
+  for (int round = 0; round < options.most && !stopped(); ++round) {
+    std::vector<CauseScore> scores = score_causes(subject, now);
+    if (round == 0) out.scores = scores;
+    std::vector<double> p(n, 0.0);
+    for (std::size_t c = 0; c < n; ++c) {
+      if (options.p_new) p[c] = options.p_new(scores[c], round);
+      CandidateResult& r = out.candidates[c];
+      if (round == 0) r.predicted_gain = scores[c].gain, r.p_new = p[c], r.reason = "its score predicts too little";
+    }
+    // A second false alarm on the same data shall be as rare as two.
+    const double level = round == 0 ? options.level : options.level * options.level;
+    const auto is_new = [&](int c) { return p[static_cast<std::size_t>(c)] <= level; };
+    const auto in = [&](int c) { return std::count(now.causes.begin(), now.causes.end(), c) > 0; };
+    std::vector<CauseScore> order = scores;
+    // What is new first; by what it promises. In the first round a few that are not new are looked at as well: what
+    // stands in healthy data is said.
+    std::stable_sort(order.begin(), order.end(), [&](const CauseScore& a, const CauseScore& b) {
+      if (is_new(a.cause) != is_new(b.cause)) return is_new(a.cause);
+      return a.gain > b.gain;
+    });
+    std::vector<ExplainedFit> fits;
+    int standing_left = round == 0 && options.p_new ? 2 : 0, new_left = options.fitted;
+    for (const CauseScore& s : order) {
+      if (stopped()) break;
+      if (options.among && !options.among(subject.causes()[static_cast<std::size_t>(s.cause)])) continue;
+      if (in(s.cause) || s.gain < std::log(std::max(2.0, out.degrees))) continue;
+      if (is_new(s.cause) ? new_left-- <= 0 : standing_left-- <= 0) continue;
+      std::vector<int> causes = now.causes;
+      causes.push_back(s.cause);
+      ExplainedFit f = fit_causes(subject, causes, &now, &s, quick_iterations, true);
+      if (f.ok) fits.push_back(std::move(f));
+      tell(0.15 + 0.6 * (round + static_cast<double>(fits.size()) / (options.fitted + 2)) / options.most);
+    }
+    std::stable_sort(fits.begin(), fits.end(), [&](const ExplainedFit& a, const ExplainedFit& b) {
+      return delta_bic(subject, now, a, out.degrees) > delta_bic(subject, now, b, out.degrees);
+    });
+    std::vector<int> judged;                        // positions in fits
+    std::vector<ExplainedFit> beside(fits.size());  // the same on top of re-tuning
+    int new_judged = 0;
+    for (std::size_t i = 0; i < fits.size() && !stopped(); ++i) {
+      const int c = fits[i].causes.back();
+      CandidateResult& r = out.candidates[static_cast<std::size_t>(c)];
+      r.fitted = true;
+      r.delta_bic = delta_bic(subject, now, fits[i], out.degrees);
+      r.reason = r.delta_bic <= 0 ? "not worth its numbers" : "others fit better";
+      if (r.delta_bic <= 0 || (is_new(c) && new_judged >= options.judged)) continue;
+      new_judged += is_new(c);
+      ExplainedFit whole = fit_causes(subject, fits[i].causes, &fits[i], nullptr, full_iterations, false);
+      if (whole.ok && whole.misfit < fits[i].misfit) fits[i] = std::move(whole);
+      r.delta_bic = delta_bic(subject, now, fits[i], out.degrees);
+      cross_validate(subject, fits[i], options);
+      r.heldout_gain = heldout_gain(now, fits[i], options.seed);
+      if (retuned.ok) {
+        const CauseScore* score =
+            &*std::find_if(scores.begin(), scores.end(), [&](const auto& s) { return s.cause == c; });
+        ExplainedFit with = fit_causes(subject, fits[i].causes, &retuned, score, quick_iterations, true);
+        if (with.ok) cross_validate(subject, with, options);
+        r.beyond_retuning = with.ok ? heldout_gain(retuned, with, options.seed) : Interval{};
+        beside[i] = std::move(with);
+      }
+      if (retuned.ok && r.beyond_retuning.value <= 0)
+        r.reason = "re-tuning alone does as well on held-out data";
+      else if (r.heldout_gain.lower > 0)
+        judged.push_back(static_cast<int>(i));
+      else
+        r.reason = "no gain on held-out data beyond its interval";
+    }
+    const auto make_result = [&](std::size_t i, bool fresh) {
+      CauseResult r;
+      r.cause = fits[i].causes.back();
+      r.is_new = fresh;
+      r.heldout_gain = heldout_gain(now, fits[i], options.seed);
+      r.delta_bic = delta_bic(subject, now, fits[i], out.degrees);
+      r.misfit_gain = now.misfit - fits[i].misfit;
+      r.beyond_retuning = out.candidates[static_cast<std::size_t>(r.cause)].beyond_retuning;
+      size_up(subject, fits[i], r);
+      return r;
+    };
+    int best = -1;
+    for (int i : judged) {
+      const std::size_t k = static_cast<std::size_t>(i);
+      const int c = fits[k].causes.back();
+      if (!is_new(c)) {
+        out.candidates[static_cast<std::size_t>(c)].reason = "not beyond what healthy logs show";
+        out.standing.push_back(make_result(k, false));
+        continue;
+      }
+      const auto weight = [&](int j) {
+        const std::size_t f = static_cast<std::size_t>(j);
+        const Cause& cause = subject.causes()[static_cast<std::size_t>(fits[f].causes.back())];
+        // On a scale of independent samples: what is left on held-out data against how common the cause is.
+        return total(fits[f]) - 2 * std::log(cause.prior) * std::max(1.0, fits[f].misfit / out.degrees);
+      };
+      if (best < 0 || weight(i) < weight(best)) best = i;
+    }
+    if (best < 0) break;
+    const std::size_t b = static_cast<std::size_t>(best);
+    CauseResult taken = make_result(b, true);
+    for (int i : judged) {
+      const std::size_t k = static_cast<std::size_t>(i);
+      if (i == best || !is_new(fits[k].causes.back())) continue;
+      // As good in its place: within the interval of the difference, or at odds below twenty to one.
+      constexpr double odds = 5.99;  // 2 ln 20
+      if (heldout_gain(fits[k], fits[b], options.seed).lower <= 0 ||
+          taken.delta_bic - delta_bic(subject, now, fits[k], out.degrees) < odds)
+        taken.confusable_with.push_back(fits[k].causes.back());
+    }
+    out.candidates[static_cast<std::size_t>(taken.cause)].reason = "taken";
+    steps.push_back(now);
+    now = fits[b];
+    if (retuned.ok) retuned = std::move(beside[b]);
+    out.causes.push_back(std::move(taken));
+  }
+  // Leave each out again, the last one excepted: it has just shown its worth beside the others.
+  for (std::size_t i = 0; out.causes.size() > 1 && i + 1 < out.causes.size() && !stopped();) {
+    std::vector<int> without = now.causes;
+    std::erase(without, out.causes[i].cause);
+    ExplainedFit f = fit_causes(subject, without, &now, nullptr, full_iterations, false);
+    if (f.ok) cross_validate(subject, f, options);
+    const Interval worth = f.ok ? heldout_gain(f, now, options.seed) : Interval{1, 1, 1};
+    if (worth.lower <= 0) {
+      out.candidates[static_cast<std::size_t>(out.causes[i].cause)].reason = "not missed once the others were in";
+      out.causes.erase(out.causes.begin() + static_cast<long>(i));
+      now = std::move(f);
+    } else {
+      out.causes[i].heldout_gain = worth;
+      ++i;
+    }
+  }
+  for (CauseResult& r : out.causes) size_up(subject, now, r);
+  out.after = std::move(now);
+  tell(0.85);
+  return out;
+}
+
+}  // namespace servodx

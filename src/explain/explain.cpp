@@ -1,0 +1,238 @@
+#include "explain/explain.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/error.h"
+#include "base/progress.h"
+#include "explain/valve.h"
+#include "fit/free_values.h"
+
+namespace servodx {
+namespace {
+
+double square_sum(const Eigen::VectorXd& r, const Series& s) {
+  double sum = 0;
+  for (long k = 0; k < s.count; ++k) {
+    const double v = r[s.first + k] * (*s.sigma)[static_cast<std::size_t>(k)];
+    sum += v * v;
+  }
+  return sum;
+}
+
+// The residual of a channel in its own unit, pooled over the logs.
+std::vector<ExplainedChannel> channels_of(const ValveSubject& subject, const std::vector<Log>& logs,
+                                          const Explanation& e) {
+  struct Sum {
+    double before = 0, after = 0, noise = 0, held_before = 0, held_after = 0, n = 0;
+  };
+  std::vector<ExplainedChannel> out;
+  std::vector<Sum> sums;
+  for (const Series& s : subject.series()) {
+    std::size_t at = 0;
+    while (at < out.size() && out[at].signal != s.signal) ++at;
+    if (at == out.size()) {
+      const Signal signal = *find_signal(s.signal);
+      out.push_back({s.signal, logs[static_cast<std::size_t>(s.log)].channels[index(signal)].unit});
+      sums.emplace_back();
+    }
+    Sum& sum = sums[at];
+    const auto n = static_cast<double>(s.count);
+    sum.n += n;
+    sum.noise += n * s.noise * s.noise;
+    sum.before += square_sum(e.before.residual, s);
+    sum.after += square_sum(e.after.residual, s);
+    if (e.before.heldout_residual.size() > 0) sum.held_before += square_sum(e.before.heldout_residual, s);
+    if (e.after.heldout_residual.size() > 0) sum.held_after += square_sum(e.after.heldout_residual, s);
+  }
+  for (std::size_t k = 0; k < out.size(); ++k) {
+    const auto rms = [&](double v) { return std::sqrt(v / sums[k].n); };
+    out[k].rms_before = rms(sums[k].before), out[k].rms_after = rms(sums[k].after),
+    out[k].noise_rms = rms(sums[k].noise);
+    out[k].heldout_before = rms(sums[k].held_before), out[k].heldout_after = rms(sums[k].held_after);
+  }
+  return out;
+}
+
+std::string name_of(const Cause& c) { return c.effect + (c.where.starts_with("sensor:") ? " at " + c.where : ""); }
+
+ExplainedCause described(const ValveSubject& subject, const CauseResult& r, const ExplainedFit& fit) {
+  const Cause& c = subject.causes()[static_cast<std::size_t>(r.cause)];
+  ExplainedCause out{c.effect, c.where, c.test, {}, r.heldout_gain, r.beyond_retuning, r.delta_bic, {}};
+  const auto& values = subject.values(r.cause);
+  const auto problem = subject.problem(fit.causes);
+  for (std::size_t j = 0; j < c.numbers.size(); ++j) {
+    double factor = 1;
+    if (values[j].apply && !c.curve)  // a factor on the log's own
+      factor = problem->candidate(fit.point, 0)[static_cast<std::size_t>(values[j].at)] / r.value[j];
+    out.parameters.push_back({c.numbers[j].name, c.numbers[j].unit, factor * r.value[j], factor * r.std_error[j],
+                              factor * c.numbers[j].off});
+  }
+  for (int other : r.confusable_with)
+    out.confusable_with.push_back(name_of(subject.causes()[static_cast<std::size_t>(other)]));
+  return out;
+}
+
+// A curve that healthy logs do not show.
+bool curve_is_news(const Explanation& e, const Subject& subject, const EngineOptions& o) {
+  if (!o.p_new) return false;
+  return std::any_of(e.scores.begin(), e.scores.end(), [&](const CauseScore& s) {
+    return subject.causes()[static_cast<std::size_t>(s.cause)].curve && o.p_new(s, 0) <= o.level;
+  });
+}
+
+// The tuned table with what was found: re-tuned rows and the causes' own.
+Table extended_table(const ValveSubject& subject, const Explanation& e, const std::vector<ExplainedCause>& causes,
+                     const std::vector<Log>& logs) {
+  Table table = subject.table();
+  if (e.causes.empty()) return table;
+  const auto problem = subject.problem(e.after.causes);
+  const ParameterVector v = problem->candidate(e.after.point, 0);
+  for (int i = 0; i < n_parameters; ++i) {
+    Row& row = table[i];
+    if (row.nominal == v[static_cast<std::size_t>(i)]) continue;
+    const bool own = i == row::servovalve_null || i == row::air_fraction;
+    if (own && logs.size() > 1) continue;  // belongs to each log
+    row.nominal = std::clamp(v[static_cast<std::size_t>(i)], row.lower, row.upper);
+    row.source = "explain: re-tuned; before: " + row.source;
+  }
+  for (std::size_t k = 0; k < causes.size(); ++k) {
+    const int c = e.causes[k].cause;
+    auto values = subject.values(c);
+    auto parameters = causes[k].parameters;
+    if (subject.causes()[static_cast<std::size_t>(c)].curve)  // its codes and scale are rows as well
+      for (int j = 0; j < 4; ++j) {
+        const EffectParameter& p = Unexplained::parameters[j];
+        FreeValue code;
+        code.name = p.name, code.lower = p.lower, code.upper = p.upper;
+        values.push_back(code);
+        parameters.push_back(
+            {p.name, p.unit, v[static_cast<std::size_t>(effect_row<Unexplained>(j))], std::nan(""), 0});
+      }
+    for (std::size_t j = 0; j < values.size(); ++j) {
+      if (values[j].log > 0) continue;
+      int at = table.find(values[j].name);
+      if (at < 0) {
+        for (const EffectInfo& effect : effect_list())
+          for (std::size_t q = 0; q < effect.parameters.size(); ++q)
+            if (values[j].name == effect.parameters[q].name) {
+              Row row;
+              row.name = values[j].name;
+              row.group = "effect:" + effect.name;
+              row.lower = values[j].lower, row.upper = values[j].upper;
+              row.estimate = true;
+              row.unit = parameters[j].unit;
+              row.description = effect.parameters[q].meaning;
+              table.rows.push_back(std::move(row));
+              at = static_cast<int>(table.rows.size()) - 1;
+            }
+      }
+      if (at < 0) continue;
+      Row& row = table[at];
+      row.nominal = std::clamp(parameters[j].value, row.lower, row.upper);
+      if (std::isfinite(parameters[j].std_error)) row.std_error = parameters[j].std_error;
+      row.source = "explain: " + causes[k].effect;
+    }
+  }
+  return table;
+}
+
+}  // namespace
+
+ExplainResult explain_logs(const std::vector<Log>& logs, const Table& tuned, const RigFile& rig,
+                           const HealthyReference* healthy, const ExplainOptions& options) {
+  ExplainResult out;
+  ValveSubject subject(logs, tuned, rig, options.threads);
+  Progress progress("explain", {.quiet = options.quiet});
+  EngineOptions engine;
+  engine.seed = options.seed;
+  engine.stop = options.stop;
+  engine.level = options.level;
+  engine.progress = [&](double f) { progress.update(f, subject.simulations()); };
+  std::optional<HealthyTest> test;
+  std::vector<HealthyLog> alone;  // each log's scores by itself, as the healthy ones were taken
+  if (healthy) {
+    test.emplace(*healthy);
+    for (const Log& log : logs)
+      alone.push_back(score_healthy(log, tuned, rig, options.threads, &out.simulations, &out.failed_simulations));
+    engine.p_new = [&](const CauseScore& s, int round) {
+      std::vector<HealthyScore> scores;
+      if (round == 0) {
+        const Cause& c = subject.causes()[static_cast<std::size_t>(s.cause)];
+        for (const HealthyLog& l : alone)
+          for (const HealthyScore& h : l.scores)
+            if (h.effect == c.effect && h.where == summarise(subject, s).where) scores.push_back(h);
+      }
+      if (scores.empty()) scores.push_back(summarise(subject, s));
+      return test->together(test->alone(scores));
+    };
+  }
+  const std::vector<Curve> curves = add_curves(subject);
+  engine.among = [](const Cause& c) { return !c.curve; };
+  Explanation e = explain(subject, engine);
+  const bool abnormal = healthy && e.before.ok && test->adequacy(subject.adequacy()) <= options.level;
+  if (e.before.ok && e.causes.empty() && (abnormal || !healthy || curve_is_news(e, subject, engine))) {
+    // Nothing that has a name: a curve.
+    engine.among = [](const Cause& c) { return c.curve; };
+    engine.most = 1;
+    Explanation learnt_one = explain(subject, engine);
+    for (std::size_t c = 0; c < e.candidates.size(); ++c)
+      if (!subject.causes()[c].curve) learnt_one.candidates[c] = e.candidates[c];
+    std::erase_if(learnt_one.standing, [](const CauseResult&) { return true; });
+    learnt_one.standing = std::move(e.standing);
+    e = std::move(learnt_one);
+    if (!e.causes.empty()) {
+      const CauseResult& r = e.causes.front();
+      const auto it = std::find_if(curves.begin(), curves.end(), [&](const Curve& c) { return c.cause == r.cause; });
+      out.curve = learnt(*it, r.value, r.std_error);
+    }
+  }
+  if (!e.before.ok)
+    throw InputError({.file = tuned.path}, "the simulation fails at the table's values on these logs",
+                     "check that the table is of this rig");
+  out.shown = show(subject, logs, e.before.point);
+  for (const CauseScore& s : e.scores) {
+    const Cause& c = subject.causes()[static_cast<std::size_t>(s.cause)];
+    if (!c.curve) continue;
+    const auto p = healthy ? std::optional<double>(engine.p_new(s, 0)) : std::nullopt;
+    auto at =
+        std::find_if(out.places.begin(), out.places.end(), [&](const PlaceScore& q) { return q.where == c.where; });
+    if (at == out.places.end()) at = out.places.insert(at, {c.where, "", -1, p});
+    if (s.gain > at->gain) *at = {c.where, c.family, s.gain, p};
+  }
+  std::stable_sort(out.places.begin(), out.places.end(), [](const auto& a, const auto& b) { return a.gain > b.gain; });
+  for (const CauseResult& r : e.causes) out.causes.push_back(described(subject, r, e.after));
+  for (const CauseResult& r : e.standing) {
+    ExplainedFit as;  // a standing cause was fitted alone
+    as.causes = {r.cause};
+    as.point = subject.problem(as.causes)->start();
+    out.standing.push_back(described(subject, r, as));
+  }
+  for (const CandidateResult& r : e.candidates) {
+    const Cause& c = subject.causes()[static_cast<std::size_t>(r.cause)];
+    if (c.curve && !out.curve) continue;
+    out.candidates.push_back({c.effect, c.where, r.reason, r.predicted_gain,
+                              healthy ? std::optional<double>(r.p_new) : std::nullopt, r.fitted, r.heldout_gain,
+                              r.delta_bic});
+  }
+  std::stable_sort(out.candidates.begin(), out.candidates.end(),
+                   [](const auto& a, const auto& b) { return a.predicted_gain > b.predicted_gain; });
+  out.retuned = e.retuned;
+  out.adequacy_before = subject.adequacy();
+  out.adequacy_after = subject.adequacy() * e.after.misfit / e.before.misfit;
+  if (healthy) out.p_adequacy = test->adequacy(out.adequacy_after);
+  if (!e.causes.empty()) out.heldout_gain = heldout_gain(e.before, e.after, options.seed);
+  out.verdict = out.curve ? "unexplained" : !e.causes.empty() ? "extended" : "sufficient";
+  if (e.causes.empty() && out.p_adequacy && *out.p_adequacy < options.level) out.verdict = "unexplained";
+  if (!out.causes.empty()) out.where = out.causes.front().where;
+  out.channels = channels_of(subject, logs, e);
+  out.table = extended_table(subject, e, out.causes, logs);
+  out.interrupted = options.stop && options.stop->load();
+  out.simulations += subject.simulations();
+  out.failed_simulations += subject.failed_simulations();
+  return out;
+}
+
+}  // namespace servodx

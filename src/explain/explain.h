@@ -1,0 +1,81 @@
+// `explain`: what the simulation gets wrong on these logs, where, why, and what mending it gains. docs/explain.md.
+#pragma once
+#include <atomic>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "explain/curves.h"
+#include "explain/engine.h"
+#include "explain/healthy.h"
+#include "explain/show.h"
+#include "parameters/table.h"
+#include "signals/log.h"
+#include "signals/rig_file.h"
+
+namespace servodx {
+
+struct ExplainOptions {
+  std::uint64_t seed = 1;
+  int threads = 0;
+  bool quiet = false;
+  double level = 0.01;  // false-alarm rate at which a cause counts as new
+  const std::atomic<bool>* stop = nullptr;
+};
+
+struct ExplainedChannel {
+  std::string signal, unit;  // unit as in the first log that has it
+  double rms_before = 0, rms_after = 0, noise_rms = 0, heldout_before = 0, heldout_after = 0;  // [SI]
+};
+struct ExplainedParameter {
+  std::string name, unit;
+  double value = 0, std_error = 0, before = 0;  // [unit]
+};
+struct ExplainedCause {
+  std::string effect, where, test;
+  std::vector<ExplainedParameter> parameters;
+  Interval heldout_gain, beyond_retuning;
+  double delta_bic = 0;
+  std::vector<std::string> confusable_with;
+};
+struct ExplainedCandidate {
+  std::string effect, where, reason;
+  double predicted_gain = 0;
+  std::optional<double> p_new;
+  bool fitted = false;
+  Interval heldout_gain;
+  double delta_bic = 0;
+};
+
+// What something missing at a place, a function of one variable there, would remove of the misfit.
+struct PlaceScore {
+  std::string where, variable;
+  double gain = 0;
+  std::optional<double> p_new;
+};
+
+struct ExplainResult {
+  std::optional<LearntCurve> curve;  // of `unexplained`
+  std::string verdict;               // sufficient | extended | unexplained
+  std::string where;                 // of the first cause; empty: nowhere
+  std::vector<ExplainedChannel> channels;
+  std::vector<ShownChannel> shown;  // the residual as tuned
+  std::vector<PlaceScore> places;   // the best that a curve could do at each place, first the most
+  std::vector<ExplainedCause> causes, standing;
+  std::vector<ExplainedCandidate> candidates;
+  Interval retuned;                                // held-out gain of re-tuning alone
+  Interval heldout_gain;                           // of all causes together over re-tuning alone
+  double adequacy_before = 0, adequacy_after = 0;  // misfit over independent samples
+  std::optional<double> p_adequacy;                // chance that a healthy log is left with as much, after
+  Table table;                                     // extended
+  std::vector<std::string> notes;
+  long simulations = 0, failed_simulations = 0;
+  bool interrupted = false;
+};
+
+// `healthy` may be null: then of everything.
+ExplainResult explain_logs(const std::vector<Log>& logs, const Table& tuned, const RigFile& rig,
+                           const HealthyReference* healthy, const ExplainOptions& options);
+
+}  // namespace servodx

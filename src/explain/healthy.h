@@ -1,0 +1,61 @@
+// What healthy logs say of each cause, so that a rig's standing discrepancy is not taken for news.
+//
+// Every real rig differs from its model a little even when healthy, and from log to log. A cause's score on a healthy
+// log is a size with a standard error; over the logs the sizes scatter by tau beyond it (random effects: DerSimonian &
+// Laird 1986). A new log's size is news where it lies outside what that predicts: Student's t with the variance
+// (tau^2 + its own) (1 + 1/n) on n - 1 degrees. With n logs no distribution-free test can promise less than 1/(n + 1);
+// the tail beyond is an assumption, and the result says so.
+#pragma once
+#include <atomic>
+#include <string>
+#include <vector>
+
+#include "explain/engine.h"
+#include "parameters/table.h"
+#include "signals/log.h"
+#include "signals/rig_file.h"
+
+namespace servodx {
+
+// A cause's sizes on one log, one a probe; a probe of several directions is their root mean square.
+struct HealthyScore {
+  std::string effect, where;  // `where` with the family behind a slash where there is one
+  std::vector<ProbeScore> sizes;
+};
+struct HealthyLog {
+  std::string log, sha256;
+  double adequacy = 1;  // misfit over independent samples, re-tuned
+  std::vector<HealthyScore> scores;
+};
+struct HealthyReference {
+  std::vector<HealthyLog> logs;
+  bool empty() const { return logs.empty(); }
+};
+
+HealthyScore summarise(const Subject& subject, const CauseScore& score);
+// One log's scores; `simulations` and `failed` are added to.
+HealthyLog score_healthy(const Log& log, const Table& tuned, const RigFile& rig, int threads, long* simulations,
+                         long* failed);
+
+// The tests that a reference answers.
+class HealthyTest {
+ public:
+  explicit HealthyTest(const HealthyReference& reference);
+  // Chance that healthy logs show sizes like these of this cause, a score each log; 1 where fewer than three healthy
+  // logs speak of it.
+  double alone(const std::vector<HealthyScore>& logs) const { return alone(logs, -1); }
+  // The same with all causes counted together: how small the smallest of a healthy log's chances is, is learnt from the
+  // healthy logs themselves, each against the others: -ln(1 - p) is taken as exponential, its predictive is Lomax's.
+  double together(double alone) const;
+  // Chance that a healthy log is left with as much misfit.
+  double adequacy(double value) const;
+
+ private:
+  double alone(const std::vector<HealthyScore>& logs, int left_out) const;
+  const HealthyReference& reference_;
+  double sum_ = 0;  // over the healthy logs, of -ln(1 - the smallest chance)
+};
+// Two-sided tail of Student's t.
+double student_tail(double t, double degrees);
+
+}  // namespace servodx

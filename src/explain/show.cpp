@@ -1,0 +1,250 @@
+#include "explain/show.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <complex>
+#include <numeric>
+
+#include "fit/error_model.h"
+
+namespace servodx {
+namespace {
+
+constexpr double pi = 3.14159265358979323846;
+constexpr double near_event = 0.03;  // [s]
+
+struct Piece {  // one log's part of a channel
+  std::vector<double> time, residual, command;
+  std::vector<std::pair<std::string, std::vector<double>>> inputs;
+  std::vector<std::pair<std::string, std::vector<double>>> variables;  // "name|unit"
+  std::vector<double> since_reversal, since_jump;                      // [s]
+};
+
+std::vector<double> difference(const std::vector<double>& a, const std::vector<double>& b) {
+  std::vector<double> d(a.size());
+  for (std::size_t k = 0; k < a.size(); ++k) d[k] = a[k] - b[k];
+  return d;
+}
+
+// Time since `happens` was last true; long before the first time.
+template <class F>
+std::vector<double> since(const std::vector<double>& time, F happens) {
+  std::vector<double> out(time.size(), 1e9);
+  double last = -1e9;
+  for (std::size_t k = 1; k < time.size(); ++k) {
+    if (happens(k)) last = time[k];
+    out[k] = time[k] - last;
+  }
+  return out;
+}
+
+std::vector<double> without_mean(std::vector<double> x) {
+  double sum = 0, n = 0;
+  for (double v : x)
+    if (std::isfinite(v)) sum += v, ++n;
+  for (double& v : x) v = std::isfinite(v) ? v - sum / std::max(1.0, n) : 0.0;
+  return x;
+}
+
+// Cross- and auto-spectra of half-overlapping Hann windows, summed over all pieces.
+struct Welch {
+  static constexpr int length = 256;
+  std::vector<double> xx = std::vector<double>(length / 2, 0), yy = xx;
+  std::vector<std::complex<double>> xy = std::vector<std::complex<double>>(length / 2);
+  double windows = 0, dt = 1e-3;
+  void add(const std::vector<double>& x, const std::vector<double>& y, double step) {
+    dt = step;
+    for (std::size_t first = 0; first + length <= x.size(); first += length / 2, ++windows)
+      for (int f = 0; f < length / 2; ++f) {
+        std::complex<double> a, b;
+        const std::complex<double> turn = std::polar(1.0, -2 * pi * f / length);
+        std::complex<double> w = 1;
+        for (int k = 0; k < length; ++k, w *= turn) {
+          const double hann = 0.5 - 0.5 * std::cos(2 * pi * (k + 0.5) / length);
+          a += hann * x[first + static_cast<std::size_t>(k)] * w;
+          b += hann * y[first + static_cast<std::size_t>(k)] * w;
+        }
+        const auto i = static_cast<std::size_t>(f);
+        xx[i] += std::norm(a), yy[i] += std::norm(b), xy[i] += a * std::conj(b);
+      }
+  }
+  double frequency(int f) const { return f / (length * dt); }
+};
+
+InputCorrelation correlate(const std::string& name, const std::vector<Piece>& pieces, std::size_t input) {
+  InputCorrelation best{name, 0, 0, 0};
+  double n = 0;
+  constexpr int lags = 50;
+  std::vector<double> sum(lags + 1, 0);
+  double rr = 0, uu = 0, dt = 1e-3;
+  for (const Piece& p : pieces) {
+    if (input >= p.inputs.size()) continue;
+    const std::vector<double> r = without_mean(p.residual), u = without_mean(p.inputs[input].second);
+    n += static_cast<double>(r.size());
+    for (std::size_t k = 0; k < r.size(); ++k) rr += r[k] * r[k], uu += u[k] * u[k];
+    for (int lag = 0; lag <= lags; ++lag)
+      for (std::size_t k = static_cast<std::size_t>(lag); k < r.size(); ++k)
+        sum[static_cast<std::size_t>(lag)] += r[k] * u[k - static_cast<std::size_t>(lag)];
+    dt = (p.time.back() - p.time.front()) / static_cast<double>(p.time.size() - 1);
+  }
+  best.band = 2.58 / std::sqrt(std::max(1.0, n));
+  if (rr <= 0 || uu <= 0) return best;
+  for (int lag = 0; lag <= lags; ++lag) {
+    const double c = sum[static_cast<std::size_t>(lag)] / std::sqrt(rr * uu);
+    if (std::abs(c) > std::abs(best.correlation)) best.correlation = c, best.lag = lag * dt;
+  }
+  return best;
+}
+
+ResidualMap map_of(const std::string& name, const std::vector<Piece>& pieces, std::size_t variable, double noise) {
+  constexpr std::size_t wanted = 8;
+  ResidualMap out{name.substr(0, name.find('|')), name.substr(name.find('|') + 1), {}};
+  std::vector<std::pair<double, double>> points;  // variable, residual
+  double total = 0;
+  for (const Piece& p : pieces) {
+    if (variable >= p.variables.size()) continue;
+    const auto& v = p.variables[variable].second;
+    for (std::size_t k = 0; k < v.size(); ++k)
+      if (std::isfinite(v[k]) && std::isfinite(p.residual[k])) {
+        points.push_back({v[k], p.residual[k]});
+        total += std::max(0.0, p.residual[k] * p.residual[k] - noise * noise);
+      }
+  }
+  std::sort(points.begin(), points.end());
+  for (std::size_t b = 0; b < wanted && points.size() >= wanted; ++b) {
+    const std::size_t from = b * points.size() / wanted, to = (b + 1) * points.size() / wanted;
+    MapBin bin{points[from].first, points[to - 1].first};
+    for (std::size_t k = from; k < to; ++k) {
+      const double r = points[k].second;
+      bin.mean += r, bin.rms += r * r, bin.excess += std::max(0.0, r * r - noise * noise);
+    }
+    const auto n = static_cast<double>(to - from);
+    bin.mean /= n, bin.rms = std::sqrt(bin.rms / n);
+    bin.time = n / static_cast<double>(points.size());
+    bin.excess = total > 0 ? bin.excess / total : 0;
+    out.bins.push_back(bin);
+  }
+  return out;
+}
+
+// Where the excess gathers most: the event or the end of a map that holds the largest share of it for its time.
+std::string summary_of(const std::vector<Piece>& pieces, const std::vector<ResidualMap>& maps, double noise) {
+  double total = 0, n = 0, at_reversal = 0, t_reversal = 0, at_jump = 0, t_jump = 0;
+  for (const Piece& p : pieces)
+    for (std::size_t k = 0; k < p.residual.size(); ++k) {
+      if (!std::isfinite(p.residual[k])) continue;
+      const double e = std::max(0.0, p.residual[k] * p.residual[k] - noise * noise);
+      total += e, ++n;
+      if (p.since_reversal[k] < near_event) at_reversal += e, ++t_reversal;
+      if (p.since_jump[k] < near_event) at_jump += e, ++t_jump;
+    }
+  if (total <= 0 || n == 0) return "nothing beyond the sensor's noise";
+  struct Place {
+    std::string words;
+    double share, time;
+  };
+  std::vector<Place> places = {{"within 30 ms of a reversal", at_reversal / total, t_reversal / n},
+                               {"within 30 ms of a jump of the command", at_jump / total, t_jump / n}};
+  for (const ResidualMap& m : maps)
+    for (const auto& [bin, words] : {std::pair{m.bins.empty() ? MapBin{} : m.bins.front(), "lowest"},
+                                     std::pair{m.bins.empty() ? MapBin{} : m.bins.back(), "highest"}})
+      if (bin.time > 0)
+        places.push_back({fmt::format("in the {} eighth of {}", words, m.variable), bin.excess, bin.time});
+  const auto lift = [](const Place& p) {
+    return p.share > 0.25 && p.time > 0 ? p.share * std::log(p.share / p.time) : 0;
+  };
+  const auto best =
+      std::max_element(places.begin(), places.end(), [&](const Place& a, const Place& b) { return lift(a) < lift(b); });
+  if (lift(*best) < 0.2) return "the excess is spread evenly";
+  return fmt::format("{:.0f} % of the excess sits {} ({:.0f} % of the time)", 100 * best->share, best->words,
+                     100 * best->time);
+}
+
+}  // namespace
+
+std::vector<ShownChannel> show(const ValveSubject& subject, const std::vector<Log>& logs, const Point& point) {
+  const auto problem = subject.problem({});
+  const std::vector<Trajectory> runs = problem->trajectories(point);
+  std::vector<ShownChannel> out;
+  std::vector<std::vector<Piece>> pieces;
+  for (std::size_t l = 0; l < logs.size(); ++l) {
+    const LogData& data = subject.logs()[l];
+    const Scenario& s = data.scenario;
+    if (!runs[l].ok) continue;
+    const auto channel = [&](Signal which) -> const std::vector<double>* {
+      const auto& simulated = runs[l].signals[static_cast<std::size_t>(simulated_index(which))];
+      return simulated.empty() ? nullptr : &simulated;
+    };
+    const auto *piston = channel(Signal::piston_position), *spool = channel(Signal::spool_position),
+               *a = channel(Signal::pressure_a), *b = channel(Signal::pressure_b);
+    for (std::size_t c = 0; c < data.channels.size(); ++c) {
+      const FitChannel& f = data.channels[c];
+      const std::string name(info(f.signal).name);
+      std::size_t at = 0;
+      while (at < out.size() && out[at].signal != name) ++at;
+      if (at == out.size()) {
+        out.push_back({});
+        out.back().signal = name;
+        out.back().unit = logs[l].channels[index(f.signal)].unit;
+        pieces.emplace_back();
+      }
+      Piece p;
+      p.time = s.time;
+      p.residual = problem->raw_residual(static_cast<int>(l), static_cast<int>(c), runs[l]);
+      p.command = s.command;
+      p.inputs.push_back({"command", s.command});
+      if (!s.supply_pressure.empty()) p.inputs.push_back({"supply_pressure", s.supply_pressure});
+      if (!s.load_force.empty()) p.inputs.push_back({"load_force", s.load_force});
+      std::vector<double> velocity(s.time.size(), 0.0);
+      const std::vector<double>& moving = piston ? *piston : spool ? *spool : s.command;
+      for (std::size_t k = 1; k < velocity.size(); ++k)
+        velocity[k] = (moving[k] - moving[k - 1]) / (s.time[k] - s.time[k - 1]);
+      if (piston)
+        p.variables.push_back({"piston_position|m", *piston}), p.variables.push_back({"piston_velocity|m/s", velocity});
+      if (spool) p.variables.push_back({"spool_position|m", *spool});
+      if (a && b) p.variables.push_back({"load_pressure|Pa", difference(*a, *b)});
+      p.variables.push_back({"command|A", s.command});
+      p.since_reversal = since(s.time, [&](std::size_t k) { return velocity[k] * velocity[k - 1] < 0; });
+      p.since_jump = since(
+          s.time, [&](std::size_t k) { return std::abs(s.command[k] - s.command[k - 1]) > 0.03 * s.rated_current; });
+      out[at].noise = std::max(out[at].noise, f.noise);
+      pieces[at].push_back(std::move(p));
+    }
+  }
+  for (std::size_t i = 0; i < out.size(); ++i) {
+    ShownChannel& c = out[i];
+    double square = 0, n = 0, dt = 1e-3;
+    Welch welch;
+    std::vector<double> correlation(51, 0);
+    for (const Piece& p : pieces[i]) {
+      const std::vector<double> r = without_mean(p.residual);
+      dt = (p.time.back() - p.time.front()) / static_cast<double>(p.time.size() - 1);
+      for (double v : p.residual)
+        if (std::isfinite(v)) square += v * v, ++n;
+      welch.add(r, without_mean(p.command), dt);
+      for (std::size_t lag = 0; lag < correlation.size(); ++lag)
+        for (std::size_t k = lag; k < r.size(); ++k) correlation[lag] += r[k] * r[k - lag];
+      c.memory += dt / effective_fraction(r) / static_cast<double>(pieces[i].size());
+    }
+    c.rms = std::sqrt(square / std::max(1.0, n));
+    for (std::size_t lag = 1; lag < correlation.size(); ++lag)
+      c.beyond_band += std::abs(correlation[lag] / correlation[0]) > 2.58 / std::sqrt(n) ? 1.0 / 50 : 0;
+    for (std::size_t u = 0; u < pieces[i].front().inputs.size(); ++u)
+      c.inputs.push_back(correlate(pieces[i].front().inputs[u].first, pieces[i], u));
+    for (int f = 1; f < Welch::length / 2 && welch.windows > 0; ++f) {
+      const auto k = static_cast<std::size_t>(f);
+      // Hann: mean square 3/8; one-sided density.
+      c.spectrum.push_back(
+          {welch.frequency(f), std::sqrt(2 * dt * welch.xx[k] / (welch.windows * Welch::length * 0.375))});
+      c.coherence.push_back({welch.frequency(f), std::norm(welch.xy[k]) / std::max(1e-300, welch.xx[k] * welch.yy[k])});
+    }
+    for (std::size_t v = 0; v < pieces[i].front().variables.size(); ++v)
+      c.maps.push_back(map_of(pieces[i].front().variables[v].first, pieces[i], v, c.noise));
+    c.summary = summary_of(pieces[i], c.maps, c.noise);
+  }
+  return out;
+}
+
+}  // namespace servodx

@@ -1,0 +1,78 @@
+// What the engine of `explain` needs of a model and its data. It knows no hydraulics: a valve, a motor-driven slide or
+// anything else with named places and parameters serves.
+//
+// A subject states what is free in every fit (its base), the causes that might be missing, each at a named place with a
+// few numbers that are off where it is absent, and the misfit as least squares over the unit cube of base and causes.
+#pragma once
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "optimise/box_least_squares.h"
+
+namespace servodx {
+
+// A free number, as it enters a fit.
+struct Number {
+  std::string name, unit;
+  double lower = 0, upper = 1;  // [unit]
+  bool log_scale = false;
+  double off = 0;     // [unit] where the model is the base model
+  bool size = true;   // false: shapes a cause that another number switches
+  std::string label;  // name in reports; empty: name
+
+  double to_unit(double value) const;
+  double from_unit(double u) const;
+};
+
+// A physical cause, or a fault of a sensor or a clock.
+struct Cause {
+  std::string effect;  // the name that is reported
+  std::string where;   // its place in the model
+  std::string test;    // the input that shows it best
+  double prior = 1.0;  // how common beside the others, before any data
+  std::vector<Number> numbers;
+  // Sizes at which the score test looks: alternatives, each of one or more points that are tried together (the cosine
+  // and the sine of one frequency). A point holds a value for each number. [unit]
+  std::vector<std::vector<std::vector<double>>> probes;
+  std::string family = "";  // tells apart causes of one name and place: the variable of a learnt curve
+  bool curve = false;       // its numbers are a curve's knots: judged by what they gain together
+};
+
+// Rows of the residual that belong to one channel of one log, in order of time.
+struct Series {
+  std::string signal, unit;
+  int log = 0;
+  long first = 0, count = 0;
+  const std::vector<double>* time = nullptr;   // [s]
+  const std::vector<double>* sigma = nullptr;  // [unit] a residual row times its sigma is the physical residual
+  double noise = 0;                            // [unit] rms of the sensor
+  double effective = 1.0;                      // fraction of the samples that count as independent
+};
+
+// One fit: the base's free numbers first, then those of the causes asked for.
+struct SubjectFit {
+  std::vector<Number> numbers;
+  Point start;  // causes at their off value
+  LeastSquaresProblem problem;
+};
+
+class Subject {
+ public:
+  virtual ~Subject() = default;
+  virtual const std::vector<Cause>& causes() const = 0;
+  virtual const std::vector<Series>& series() const = 0;
+  // `wide`: the base's numbers let go much further than what is known of them: re-tuning. The same numbers.
+  virtual SubjectFit fit(const std::vector<int>& causes, bool wide) const = 0;
+  virtual bool retunes() const { return false; }  // `wide` makes a difference
+  // Sets the weights from the residual of re-tuning alone, channel by channel: its size and its memory. False: the
+  // subject keeps its weights.
+  virtual bool rescale(const Eigen::VectorXd& residual) {
+    (void)residual;
+    return false;
+  }
+  virtual long simulations() const { return 0; }
+  virtual long failed_simulations() const { return 0; }
+};
+
+}  // namespace servodx

@@ -1,0 +1,382 @@
+#include "explain/valve.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "base/error.h"
+#include "effects/row_effects.h"
+#include "fit/free_values.h"
+#include "fit/tune.h"
+
+namespace servodx {
+namespace {
+
+// The logs are of the rig that was tuned: its rows are known as well as the tuned table says, and not better than this
+// part of their range. Freed further, they take up what a missing effect does, differently on every log.
+constexpr double least_sd = 2e-3;
+constexpr double wide_sd = 0.1;    // re-tuning alone, to compare with
+constexpr double slack = 10;       // an effect may grow beyond what healthy parts show by this
+constexpr double row_prior = 0.1;  // a row that was held for a reason, beside an effect that has a name
+
+// What shows a cause best.
+const std::map<std::string, const char*> tests = {
+    {"stiction", "slow small triangle: the spool stands still at each reversal, longer the slower"},
+    {"magnetic_hysteresis", "slow triangles of several amplitudes: a loop of the same width at any rate"},
+    {"transport_delay", "steps and a multisine: lag in proportion to frequency, no loss of amplitude"},
+    {"mount_compliance", "steps into a stiff load: the body's resonance in the load pressure"},
+    {"mains_pickup", "rest: a line at the mains frequency with the valve still"},
+    {"viscosity_change", "the same test in cold and in hot oil"},
+    {"supply_droop", "full steps with the supply pressure measured at the valve"},
+    {"stribeck_friction", "slow ramps through standstill, both ways"},
+    {"asymmetric_lap", "slow triangle about null with ports loaded"},
+    {"hose_compliance", "steps against a blocked piston"},
+    {"air_entrainment", "steps at low and at high mean pressure: air is stiff under pressure, a hose is not"},
+    {"cross_piston_leakage", "hold a load: the piston creeps in proportion to the load pressure"},
+    {"sensor_lag", "a fast sine: the sensor lags in proportion to frequency"},
+    {"sensor_gain_error", "full strokes against a second reference"},
+    {"flow_force", "full opening at several pressure drops"},
+};
+
+const char* place_of_row(int at) {
+  switch (at) {
+    case row::driver_bandwidth:
+    case row::current_limit:
+    case row::servovalve_null:
+      return "drive";
+    case row::piston_area_a:
+    case row::piston_area_b:
+    case row::moving_mass:
+    case row::piston_viscous_friction:
+    case row::piston_coulomb_friction:
+    case row::piston_stribeck_friction:
+      return "piston_force";
+    case row::dead_volume_b:
+      return "flow_b";
+    case row::position_sensor_lag:
+    case row::position_sensor_gain:
+      return "sensor:piston_position";
+    case row::supply_pressure:
+    case row::return_pressure:
+      return "supply";
+    default:
+      break;
+  }
+  if (at < row::spool_diameter) return "first_stage";
+  if (at < row::port_width) return "spool";
+  if (at < row::piston_area_a || at == row::hose_resistance) return "metering";
+  return "flow_a";
+}
+
+void scale_air(double* candidate, double factor) { candidate[row::air_fraction] *= factor; }
+
+// Sizes at which a score looks: some about the present value.
+std::vector<double> sizes_about(const Number& n, std::vector<double> moves) {
+  std::vector<double> out;
+  for (double v : moves)
+    if (v >= n.lower && v <= n.upper && v != n.off && std::find(out.begin(), out.end(), v) == out.end())
+      out.push_back(v);
+  return out;
+}
+
+}  // namespace
+
+ValveSubject::ValveSubject(const std::vector<Log>& logs, const Table& tuned, const RigFile& rig, int threads)
+    : table_(tuned), base_(candidate_of(tuned)), error_(error_model_of(tuned)) {
+  if (error_.channels.empty())
+    throw InputError({.file = tuned.path}, "the table does not say how wrong its model is",
+                     "make it with 'servodx tune'; its header carries the lines 'model error ...'");
+  options_.threads = threads;
+  RigFile without_notch = rig;
+  without_notch.mains_frequency.reset();
+  for (const Log& log : logs) {
+    logs_.push_back(prepare(log, without_notch, moving_average_of(tuned)));
+    require_channels(logs_.back());
+  }
+  add_causes(rig);
+  for (FreeValue& f : shared_values(table_)) {
+    if (f.at >= n_parameters) continue;  // effects of the table are causes
+    const Row& row = table_[f.at];
+    const double slope = row.log_scale ? row.nominal * std::log(row.upper / row.lower) : row.upper - row.lower;
+    f.prior_sd = std::max(least_sd, row.std_error.value_or(0.0) / slope);
+    free_.push_back(std::move(f));
+  }
+  for (std::size_t l = 0; l < logs_.size(); ++l)
+    for (FreeValue& f : nuisance_values(logs_[l], static_cast<int>(l), base_, rig.null_limit))
+      free_.push_back(std::move(f));
+  // Whitening: the model's own error where things move, and the sensor's noise.
+  std::vector<const LogData*> data;
+  for (const LogData& l : logs_) data.push_back(&l);
+  FitProblem whole(data, base_, free_, options_);
+  apply_error_model(whole, error_, whole.start());
+  long first = 0;
+  for (std::size_t l = 0; l < logs_.size(); ++l) {
+    auto& sigmas = sigma_.emplace_back();
+    for (std::size_t c = 0; c < logs_[l].channels.size(); ++c)
+      sigmas.push_back(whole.sigma(static_cast<int>(l), static_cast<int>(c)));
+  }
+  for (std::size_t l = 0; l < logs_.size(); ++l)
+    for (std::size_t c = 0; c < logs_[l].channels.size(); ++c) {
+      const FitChannel& channel = logs_[l].channels[c];
+      const ChannelError* e = error_.find(channel.signal);
+      const auto n = static_cast<long>(channel.measured.size());
+      series_.push_back({std::string(info(channel.signal).name), std::string(info(channel.signal).si_unit),
+                         static_cast<int>(l), first, n, &logs_[l].scenario.time, &sigma_[l][c], channel.noise,
+                         e ? e->effective : 0.1});
+      first += n;
+    }
+}
+
+int ValveSubject::add(Cause cause, std::vector<FreeValue> values) {
+  if (const auto it = tests.find(cause.effect); it != tests.end() && cause.test.empty()) cause.test = it->second;
+  causes_.push_back(std::move(cause));
+  values_.push_back(std::move(values));
+  return static_cast<int>(causes_.size()) - 1;
+}
+
+void ValveSubject::add_causes(const RigFile& rig) {
+  const auto number_of = [](const FreeValue& f, const std::string& unit, bool size) {
+    return Number{f.name, unit, f.lower, f.upper, f.log_scale, f.start, size, ""};
+  };
+  // One alternative a size of one number, the rest as they are; and all together where there are several.
+  const auto finish = [&](Cause cause, std::vector<FreeValue> values, const std::vector<std::vector<double>>& sizes) {
+    std::vector<double> rest;
+    for (const FreeValue& f : values) rest.push_back(f.start);
+    std::vector<std::vector<double>> together;
+    for (std::size_t j = 0; j < sizes.size(); ++j)
+      for (std::size_t k = 0; k < sizes[j].size(); ++k) {
+        std::vector<double> probe = rest;
+        probe[j] = sizes[j][k];
+        cause.probes.push_back({probe});
+        if (k == 0) together.push_back(probe);
+      }
+    if (together.size() > 1) cause.probes.push_back(together);
+    if (!cause.probes.empty()) add(std::move(cause), std::move(values));
+  };
+  const auto shown = [&](Signal s) {
+    return std::any_of(logs_.begin(), logs_.end(), [&](const LogData& l) {
+      return std::any_of(l.channels.begin(), l.channels.end(), [&](const FitChannel& c) { return c.signal == s; });
+    });
+  };
+
+  // Sensors and clocks are suspects before physics.
+  for (const EffectInfo& e : effect_list()) {
+    const auto value_of = [&](int j) {
+      const EffectParameter& p = e.parameters[static_cast<std::size_t>(j)];
+      const int at = e.first + j;
+      const double v = base_[static_cast<std::size_t>(at)];
+      const double upper = p.switches && p.off == p.lower && v > 0.1 * p.upper ? slack * p.upper : p.upper;
+      return FreeValue{p.name, at, std::min(p.lower, v), std::max(upper, v), false, v};
+    };
+    if (e.name == MainsPickup::name) {
+      constexpr Signal signals[MainsPickup::channels] = {Signal::spool_position, Signal::piston_position,
+                                                         Signal::pressure_a, Signal::pressure_b};
+      for (int c = 0; c < MainsPickup::channels; ++c) {
+        if (!shown(signals[c])) continue;
+        Cause cause;
+        cause.effect = e.name;
+        cause.where = "sensor:" + std::string(info(signals[c]).name);
+        std::vector<FreeValue> values = {value_of(2 * MainsPickup::channels)};
+        cause.numbers.push_back(number_of(values[0], "Hz", false));
+        std::vector<double> rest = {values[0].start};
+        for (std::size_t l = 0; l < logs_.size(); ++l)
+          for (int k : {2 * c, 2 * c + 1}) {
+            FreeValue f = value_of(k);
+            f.log = static_cast<int>(l);  // the phase belongs to a log
+            cause.numbers.push_back(number_of(f, e.parameters[static_cast<std::size_t>(k)].unit, true));
+            rest.push_back(f.start);
+            values.push_back(std::move(f));
+          }
+        std::vector<double> frequencies = {50.0, 60.0};
+        if (rig.mains_frequency) frequencies = {*rig.mains_frequency};
+        for (double f : frequencies)
+          for (double off : {0.0, -0.15, 0.15}) {
+            std::vector<std::vector<double>> together;
+            for (std::size_t j = 1; j < rest.size(); ++j) {
+              std::vector<double> probe = rest;
+              probe[0] = f + off;
+              probe[j] += e.parameters[static_cast<std::size_t>(2 * c)].start;
+              together.push_back(std::move(probe));
+            }
+            cause.probes.push_back(std::move(together));
+          }
+        add(std::move(cause), std::move(values));
+      }
+      continue;
+    }
+    if (e.name == SensorResponse::name) {
+      constexpr Signal signals[SensorResponse::channels] = {Signal::spool_position, Signal::pressure_a,
+                                                            Signal::pressure_b};
+      for (int c = 0; c < SensorResponse::channels; ++c) {
+        if (!shown(signals[c])) continue;
+        for (int k : {0, 1}) {
+          const FreeValue f = value_of(2 * c + k);
+          const EffectParameter& p = e.parameters[static_cast<std::size_t>(2 * c + k)];
+          Cause cause;
+          cause.effect = k == 0 ? "sensor_gain_error" : "sensor_lag";
+          cause.where = "sensor:" + std::string(info(signals[c]).name);
+          cause.numbers = {number_of(f, p.unit, true)};
+          const double move = p.start - p.off;
+          finish(std::move(cause), {f}, {sizes_about(number_of(f, p.unit, true), {f.start + move, f.start - move})});
+        }
+      }
+      continue;
+    }
+    if (e.name == Unexplained::name) continue;
+    Cause cause;
+    cause.effect = e.name;
+    cause.where = e.place;
+    std::vector<FreeValue> values;
+    std::vector<std::vector<double>> sizes;
+    for (std::size_t j = 0; j < e.parameters.size(); ++j) {
+      const EffectParameter& p = e.parameters[j];
+      FreeValue f = value_of(static_cast<int>(j));
+      const bool in_table = table_.find(p.name) >= 0;
+      if (!p.switches && !in_table) f.start = p.start;
+      cause.numbers.push_back(number_of(f, p.unit, p.switches));
+      sizes.emplace_back();
+      if (p.switches) {
+        const double move = p.start - p.off, v = f.start;
+        sizes.back() = sizes_about(cause.numbers.back(), {v + move, v + 0.25 * move, v - 0.25 * move, v - move});
+      }
+      values.push_back(std::move(f));
+    }
+    finish(std::move(cause), values, sizes);
+    // The shape that the table has may suit what it had to imitate: the typical one is tried as well.
+    Cause& added = causes_.back();
+    const auto probes = added.probes;
+    for (std::size_t j = 0; j < e.parameters.size(); ++j)
+      if (const EffectParameter& p = e.parameters[j]; !p.switches && values[j].start != p.start)
+        for (const auto& alternative : probes) {
+          added.probes.push_back(alternative);
+          for (auto& probe : added.probes.back()) probe[j] = p.start;
+        }
+  }
+
+  // Rows.
+  const auto row_value = [&](int at) {
+    const Row& r = table_[at];
+    return FreeValue{r.name, at, std::min(r.lower, r.nominal), std::max(r.upper, r.nominal), r.log_scale, r.nominal};
+  };
+  const auto row_sizes = [](const Number& n) {
+    const double u = n.to_unit(n.off);
+    std::vector<double> out;
+    for (double du : {0.05, -0.05, 0.25, -0.25})
+      if (u + du >= 0 && u + du <= 1) out.push_back(n.from_unit(u + du));
+    return out;
+  };
+  std::vector<char> named(n_parameters, 0);
+  for (const RowEffect& e : row_effects()) {
+    Cause cause;
+    cause.effect = e.name;
+    cause.where = e.where;
+    std::vector<FreeValue> values;
+    std::vector<std::vector<double>> sizes;
+    for (int at : e.rows) {
+      named[static_cast<std::size_t>(at)] = 1;
+      FreeValue f = row_value(at);
+      if (at == row::air_fraction) {
+        f = FreeValue{"air_fraction", at, 0.02, 50.0, true, 1.0};
+        f.apply = &scale_air;
+      }
+      cause.numbers.push_back(number_of(f, table_[at].unit, true));
+      sizes.push_back(at == row::air_fraction ? std::vector<double>{2.0, 0.5, 8.0} : row_sizes(cause.numbers.back()));
+      values.push_back(std::move(f));
+    }
+    finish(std::move(cause), std::move(values), sizes);
+  }
+  const auto logged = [&](auto member) {
+    return std::all_of(logs_.begin(), logs_.end(), [&](const LogData& l) { return !(l.scenario.*member).empty(); });
+  };
+  for (int at = 0; at < n_parameters; ++at) {
+    const Row& r = table_[at];
+    if (named[static_cast<std::size_t>(at)] || !(r.upper > r.lower) || at == row::servovalve_null) continue;
+    if (at == row::supply_pressure && logged(&Scenario::supply_pressure)) continue;
+    if (at == row::return_pressure && logged(&Scenario::return_pressure)) continue;
+    Cause cause;
+    cause.effect = r.name;
+    cause.where = place_of_row(at);
+    cause.prior = row_prior;
+    const FreeValue f = row_value(at);  // one that is tuned is let go of what tuning knows
+    cause.numbers = {number_of(f, r.unit, true)};
+    const auto sizes = row_sizes(cause.numbers.back());
+    finish(std::move(cause), {f}, {sizes});
+  }
+}
+
+std::shared_ptr<FitProblem> ValveSubject::problem(const std::vector<int>& causes, bool wide) const {
+  std::vector<FreeValue> free = free_;
+  for (FreeValue& f : free)
+    if (wide && f.log < 0) f.prior_sd = wide_sd;
+  for (int c : causes)
+    for (const FreeValue& f : values_[static_cast<std::size_t>(c)]) free.push_back(f);
+  std::vector<const LogData*> data;
+  for (const LogData& l : logs_) data.push_back(&l);
+  const auto p = std::make_shared<FitProblem>(data, base_, std::move(free), options_);
+  p->difference_step = 1e-3;  // through contacts and frictions, as in diagnose
+  for (std::size_t l = 0; l < sigma_.size(); ++l)
+    for (std::size_t c = 0; c < sigma_[l].size(); ++c)
+      p->set_sigma(static_cast<int>(l), static_cast<int>(c), sigma_[l][c]);
+  made_.push_back(p);
+  return p;
+}
+
+SubjectFit ValveSubject::fit(const std::vector<int>& causes, bool wide) const {
+  const std::shared_ptr<FitProblem> p = problem(causes, wide);
+  SubjectFit out;
+  for (const FreeValue& f : free_) {
+    const int at = f.at < n_parameters ? f.at : -1;
+    out.numbers.push_back({f.name, at >= 0 ? std::string(parameter_list[static_cast<std::size_t>(at)].unit) : "",
+                           f.lower, f.upper, f.log_scale, f.start, true, ""});
+  }
+  for (int c : causes)
+    for (const Number& n : causes_[static_cast<std::size_t>(c)].numbers) out.numbers.push_back(n);
+  out.start = p->start();
+  out.problem.n = p->n();
+  out.problem.evaluate = [p](std::span<const Point> points) { return p->evaluate(points); };
+  out.problem.jacobian = [p](const Point& x, const Eigen::VectorXd& r, Eigen::MatrixXd& j) {
+    return p->jacobian(x, r, j);
+  };
+  return out;
+}
+
+bool ValveSubject::rescale(const Eigen::VectorXd& residual) {
+  double sum = 0;
+  for (std::size_t i = 0; i < series_.size(); ++i) {
+    Series& s = series_[i];
+    std::vector<double>* sigma = nullptr;
+    std::size_t at = 0;
+    for (auto& log : sigma_)
+      for (auto& channel : log)
+        if (at++ == i) sigma = &channel;
+    const double scale = std::sqrt(s.effective);  // the rows carry the square root of the effective fraction
+    std::vector<double> white(static_cast<std::size_t>(s.count));
+    double square = 0;
+    for (long k = 0; k < s.count; ++k) {
+      white[static_cast<std::size_t>(k)] = residual[s.first + k] / scale;
+      square += white[static_cast<std::size_t>(k)] * white[static_cast<std::size_t>(k)];
+    }
+    const double own = std::sqrt(square / static_cast<double>(s.count));
+    sum += own * own / static_cast<double>(series_.size());
+    const double effective = effective_fraction(white);
+    for (double& v : *sigma) v = std::max(v * scale * own, s.noise) / std::sqrt(effective);
+    s.effective = effective;
+  }
+  adequacy_ = sum;
+  return true;
+}
+
+long ValveSubject::simulations() const {
+  long n = 0;
+  for (const auto& p : made_) n += p->simulations();
+  return n;
+}
+long ValveSubject::failed_simulations() const {
+  long n = 0;
+  for (const auto& p : made_) n += p->failed_simulations();
+  return n;
+}
+
+}  // namespace servodx

@@ -1,0 +1,67 @@
+// Whether a figure grows, how, and when it will pass a level: Bayesian regression averaged over growth laws.
+//
+//   y(t) = base + temperature terms + a g((t - t0) / (now - t0)) + noise,   g(1) = 1
+//
+// g: power laws s^p (p = 1 is the linear one), exponentials; t0: onsets from the first check on. Given law, onset and
+// noise level all else is linear and Gaussian, so each is integrated in closed form (a Rao-Blackwellised particle
+// filter whose particles are a fixed grid: deterministic, and no degeneracy). Their evidences weigh them. The same
+// without growth is the null hypothesis, and the Bayes factor between the two is the trend test: under
+// the null a Bayes factor exceeds 1/alpha with probability alpha at most, however often one looks (Ville 1939).
+// Limits: one growth, monotone; noise independent from check to check; what changes its law later is seen late.
+#pragma once
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+namespace servodx {
+
+struct GrowthPoint {
+  double time = 0;  // [h]
+  double y = 0;
+  double variance = 0;           // [y^2] of the figure by its own standard error
+  std::vector<double> features;  // of the conditions: what temperature does, as known before any fit
+};
+
+struct GrowthPrior {
+  double base = 0, base_sd = 1;                  // of y
+  std::vector<double> feature_mean, feature_sd;  // of the features' coefficients
+  double noise = 1;                              // [y] about which the noise level is searched, 1/10 to 10 times
+  double scale = 1;                              // [y] size of a growth that matters, one standard deviation
+  int direction = 0;                             // +1, -1: growth to one side; 0: either
+};
+
+struct Growth {
+  double log_bayes_factor = 0;       // of growth over none
+  double probability = 0;            // of growth, even odds before
+  double now = 0, now_sd = 0;        // of y at reference conditions, at the last check
+  double base = 0, base_sd = 0;      // without growth
+  double slope = 0;                  // [y/h] at the last check, mean
+  std::vector<double> coefficients;  // of the features
+  double noise = 0;                  // [y] of one check
+  double null_noise = 0;             // the same without growth
+};
+
+// Sorted hours from now on to the passing of a level, each as likely as the other; infinite where it is never passed.
+using Life = std::vector<double>;
+double quantile(const Life& life, double p);
+
+class GrowthModel {
+ public:
+  GrowthModel(std::vector<GrowthPoint> points, const GrowthPrior& prior);
+  const Growth& growth() const { return growth_; }
+  // Hours until y at reference conditions passes `upper` or `lower`; `upper` counts for growth upwards. Given growth.
+  Life life(std::optional<double> upper, std::optional<double> lower, std::uint64_t seed) const;
+
+ private:
+  struct Component;
+  std::vector<Component> components_;
+  double now_ = 0;
+  Growth growth_;
+
+ public:
+  ~GrowthModel();
+  GrowthModel(GrowthModel&&) noexcept;
+  GrowthModel& operator=(GrowthModel&&) noexcept;
+};
+
+}  // namespace servodx

@@ -1,0 +1,93 @@
+// What is known of the valves over their lives: one SQLite file (through SQLiteCpp) with valves, checks, the tuned
+// tables they rest on, and maintenance events.
+//
+// A row is acknowledged when record() returns: written ahead (WAL) and synced, so a crash or a kill after that loses
+// nothing and one before it leaves nothing half. Writers of several processes queue for up to 30 s. A full disk
+// rolls the whole check back and throws. A damaged or foreign file is refused, never overwritten. Steps to newer
+// schemas run when a file is opened, each in one transaction; a file of a newer program is refused.
+// Limits: the file must lie on a local disk (SQLite's locks do not hold on most network mounts).
+#pragma once
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "prognose/check.h"
+
+namespace SQLite {
+class Database;
+}
+
+namespace servodx {
+
+struct Recording {
+  double at = 0;                 // [h] of use
+  std::optional<double> cycles;  // of use, where counted
+  std::string log, log_sha256, table_sha256, version, recorded_at;
+  double temperature = 0;  // [K]
+  std::string temperature_source;
+  std::vector<Check> checks;
+};
+
+// Values of the tracked parameters, in the order of progressive_faults(); NaN where missing.
+std::vector<double> tracked_in(const Recording& recording);
+
+// What a maintenance event resets: the trends of checks that it renews start again from it.
+enum class EventKind { filter_changed, valve_swapped, overhauled, retuned, note };
+const char* name_of(EventKind kind);
+std::optional<EventKind> find_event(const std::string& name);
+std::string event_names();
+bool resets(EventKind kind, const Check& check);
+
+struct Event {
+  double at = 0;  // [h]
+  EventKind kind = EventKind::note;
+  std::string text, recorded_at;
+};
+
+struct ValveHistory {
+  std::string valve, serial;
+  std::vector<Recording> recordings;  // by hours
+  std::vector<Event> events;
+};
+
+// Everything a history holds, to write it as CSV and read it back (history_csv.h).
+struct HistoryContent {
+  std::vector<ValveHistory> valves;
+  std::vector<std::pair<std::string, std::string>> tables;  // SHA-256, text
+};
+
+struct Restored {
+  long recordings = 0, events = 0, present = 0;  // present: were there already, left alone
+};
+
+class History {
+ public:
+  // `create`: a missing file is made, otherwise refused.
+  History(const std::string& path, bool create);
+  ~History();
+
+  // All of it or nothing. Refuses a log that this valve's history holds already, unless at other hours or by another
+  // table.
+  void record(const std::string& valve, const std::string& serial, const Recording& recording,
+              const std::string& table_text);
+  void add_event(const std::string& valve, const Event& event);
+  std::vector<std::string> valves() const;
+  ValveHistory of(const std::string& valve) const;                // throws InputError for an unknown valve
+  std::optional<Recording> last(const std::string& valve) const;  // none where the valve is new
+
+  HistoryContent content() const;
+  Restored restore(const HistoryContent& content);  // adds what is not there; all of it or nothing
+  std::string verify() const;                       // "ok", or what SQLite finds
+
+  static int schema_version();
+
+ private:
+  void migrate();
+  template <class F>
+  auto guarded(const F& work) const;
+  std::string path_;
+  std::unique_ptr<SQLite::Database> db_;
+};
+
+}  // namespace servodx

@@ -1,0 +1,25 @@
+// Failure levels of the checks from a stated performance limit of the valve, through its tuned table.
+//
+//   bandwidth=L      the valve's bandwidth has fallen to the part L: the filter's blockage (row 1) that halves the
+//                    pilot pressure so far, and r of a spool slower by 1/L
+//   gain=G           its static gain has fallen to the part G: row 3, and r = 1/G
+//   hysteresis=H     H of rated current: backlash b = H i GM / KSF (row 9); friction whose break-away takes as much
+//                    current (row 14)
+//   phase_margin=P   [deg] of the position loop of a velocity gain (`loop`, [1/s]): integrator and first-order valve,
+//                    P = 90 deg - atan(loop / bandwidth); then as bandwidth
+// Linear theory at 40 degC and the table's supply. Leaves out: limit cycles, and what one degradation does to another.
+#pragma once
+#include <string>
+
+#include "parameters/table.h"
+#include "prognose/trend.h"
+
+namespace servodx {
+
+// Adds to `options`. Throws InputError for an unknown limit or a value out of range.
+void add_limit(const std::string& text, const Table& tuned, double loop, TrendOptions& options);
+
+// r of a first-order spool `slower` times slower than the monitor, at the monitor's 95 % response.
+double fidelity_of_slower(double slower);
+
+}  // namespace servodx

@@ -1,0 +1,89 @@
+// `trend`: from a valve's history to its state, the level each check has reached, and the life left.
+//
+// Per check, in its corrected value (temperature by what the valve's healthy checks show, with the model's expectation
+// as one of the regressors):
+//   threshold  what one healthy check passes once in 1 / false_alarm
+//   warning    what the checks of a healthy valve pass once in 1 / false_alarm valves, over 100 checks of all its names
+//   failure    the user's, or the fault's own (Borello's end of range); the paper's checks have none unless given
+// A trend is confirmed when the Bayes factor of growth passes names / false_alarm. An alert is a confirmed trend whose
+// fitted curve has passed the warning level. No trend is an answer. Two-sided for r and E.
+//
+// Fusion: the cause is the tracked parameter with a confirmed trend that is nearest to its failure; the remaining
+// life pools the lives of that parameter and of the paper's checks that have a failure level, each by its sharpness.
+// Maintenance events restart what they renew (history.h); so does another tuned table.
+#pragma once
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "prognose/growth.h"
+#include "prognose/history.h"
+
+namespace servodx {
+
+struct TrendOptions {
+  double false_alarm = 0.01;  // of a healthy valve
+  int healthy = 12;           // first checks after a start or a reset that are taken as healthy
+  std::map<std::string, std::pair<std::optional<double>, std::optional<double>>> failure;  // name -> lower, upper
+  std::map<std::string, double> failure_ratio;  // name -> times its healthy value, where `failure` has none
+  double coverage = 0.9;                        // of the interval of the life left
+  std::uint64_t seed = 1;
+};
+
+struct Level {
+  std::optional<double> lower, upper;  // [unit of the check]
+};
+
+struct Remaining {
+  double median = 0, lower = 0, upper = 0;  // [h]; infinite where never
+};
+Remaining remaining_of(const Life& life, double coverage);
+
+struct TangentRule {
+  double alert_at = 0;         // [h]
+  double time_to_failure = 0;  // [h] from the alert
+};
+
+struct CheckTrend {
+  std::string name, unit, cause;
+  std::string state;  // unknown (too few checks) | healthy | watch | warning | failed
+  Level threshold, warning, failure;
+  double healthy = 0;             // where it began
+  double now = 0, now_error = 0;  // corrected, fitted
+  double slope = 0;               // [unit / h]
+  double log_bayes_factor = 0;
+  bool trend = false;
+  std::optional<double> alert_at;      // [h]
+  std::optional<Remaining> remaining;  // to failure
+  std::optional<TangentRule> tangent;
+  double to_warning = 0;  // [h] median; infinite without a trend, 0 when it is passed
+  Life life;              // behind `remaining`
+  struct Point {
+    double at, value, temperature;
+    bool healthy;
+  };
+  std::vector<Point> points;  // corrected
+};
+
+struct ValveTrend {
+  std::string valve, serial, state;
+  double at = 0;  // [h] of the last check
+  std::size_t checks = 0;
+  std::optional<std::string> cause;  // label of a fault
+  std::optional<double> alert_at;
+  std::optional<Remaining> remaining;
+  Life life;
+  double to_warning = 0;
+  std::vector<CheckTrend> trends;
+  std::vector<std::string> notes;
+};
+
+ValveTrend trend(const ValveHistory& history, const TrendOptions& options);
+
+// The paper's rule (sec. 9): a quadratic by least squares through what lies beyond the threshold; alert where it passes
+// the warning level; time to failure = (failure - warning) / slope of the tangent there. Rising figures; mirror others.
+std::optional<TangentRule> tangent_rule(const std::vector<double>& time, const std::vector<double>& value,
+                                        double threshold, double warning, double failure);
+
+}  // namespace servodx

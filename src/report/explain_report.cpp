@@ -1,0 +1,260 @@
+#include "report/explain_report.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/csv.h"
+#include "base/error.h"
+#include "report/columns.h"
+#include "report/handy.h"
+
+namespace servodx::report {
+namespace {
+
+Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
+
+Json to_json(const Interval& i) {
+  return {{"value", number(i.value)}, {"lower", number(i.lower)}, {"upper", number(i.upper)}};
+}
+
+Json to_json(const ExplainedCause& c) {
+  Json parameters = Json::object();
+  for (const ExplainedParameter& p : c.parameters)
+    parameters[p.name] = {
+        {"value", number(p.value)}, {"std_error", number(p.std_error)}, {"unit", p.unit}, {"before", number(p.before)}};
+  return {{"effect", c.effect},
+          {"where", c.where},
+          {"parameters", parameters},
+          {"heldout_gain", number(c.heldout_gain.value)},
+          {"heldout_gain_interval", {number(c.heldout_gain.lower), number(c.heldout_gain.upper)}},
+          {"gain_beyond_retuning", to_json(c.beyond_retuning)},
+          {"delta_bic", number(c.delta_bic)},
+          {"confusable_with", c.confusable_with},
+          {"separating_test", c.test}};
+}
+
+Json to_json(const LearntCurve& c) {
+  Json points = Json::array();
+  for (const CurvePoint& p : c.points)
+    points.push_back({{"x", number(p.x)}, {"value", number(p.value)}, {"std_error", number(p.std_error)}});
+  return {{"where", c.where},
+          {"variable", c.variable},
+          {"variable_unit", c.variable_unit},
+          {"factor", c.factor},
+          {"unit", c.unit},
+          {"points", points},
+          {"closed_form", c.closed_form.empty() ? Json(nullptr) : Json(c.closed_form)}};
+}
+
+Json to_json(const ExplainedCandidate& c) {
+  return {{"effect", c.effect},
+          {"where", c.where},
+          {"reason", c.reason},
+          {"predicted_gain", number(c.predicted_gain)},
+          {"p_new", c.p_new ? number(*c.p_new) : Json(nullptr)},
+          {"fitted", c.fitted},
+          {"heldout_gain", c.fitted ? to_json(c.heldout_gain) : Json(nullptr)},
+          {"delta_bic", c.fitted ? number(c.delta_bic) : Json(nullptr)}};
+}
+
+Json to_json(const ShownChannel& c) {
+  Json inputs = Json::array(), spectrum = Json::array(), coherence = Json::array(), maps = Json::array();
+  for (const InputCorrelation& i : c.inputs)
+    inputs.push_back({{"input", i.input},
+                      {"correlation", number(i.correlation)},
+                      {"lag_s", number(i.lag)},
+                      {"band_99", number(i.band)}});
+  for (const auto& [f, v] : c.spectrum) spectrum.push_back({number(f), number(v)});
+  for (const auto& [f, v] : c.coherence) coherence.push_back({number(f), number(v)});
+  for (const ResidualMap& m : c.maps) {
+    Json bins = Json::array();
+    for (const MapBin& b : m.bins)
+      bins.push_back({{"from", number(b.from)},
+                      {"to", number(b.to)},
+                      {"mean", number(b.mean)},
+                      {"rms", number(b.rms)},
+                      {"time_share", number(b.time)},
+                      {"excess_share", number(b.excess)}});
+    maps.push_back({{"variable", m.variable}, {"unit", m.unit}, {"bins", bins}});
+  }
+  return {{"signal", c.signal},
+          {"si_unit", info(*find_signal(c.signal)).si_unit},
+          {"rms", number(c.rms)},
+          {"noise_rms", number(c.noise)},
+          {"summary", c.summary},
+          {"memory_s", number(c.memory)},
+          {"lags_beyond_band", number(c.beyond_band)},
+          {"inputs", inputs},
+          {"spectrum", spectrum},
+          {"coherence_with_command", coherence},
+          {"maps", maps}};
+}
+
+Json to_json(const PlaceScore& p) {
+  return {{"where", p.where},
+          {"variable", p.variable},
+          {"gain", number(p.gain)},
+          {"p_new", p.p_new ? number(*p.p_new) : Json(nullptr)}};
+}
+
+template <class Results>
+Json array_of(const Results& results) {
+  Json array = Json::array();
+  for (const auto& r : results) array.push_back(to_json(r));
+  return array;
+}
+
+std::string gain_text(const Interval& g) {
+  return fmt::format("{} of the held-out misfit ({} to {}, 90 %)", percent(g.value), percent(g.lower),
+                     percent(g.upper));
+}
+
+// A channel's figures in the unit of the log where it has one.
+ChannelFigures in_log_unit(const ExplainedChannel& c, double a, double b, double d) {
+  return figures(ChannelResult{*find_signal(c.signal), c.unit, a, b, d});
+}
+
+void add_causes(std::string& text, const std::vector<ExplainedCause>& causes) {
+  for (const ExplainedCause& c : causes) {
+    if (c.effect == Unexplained::name) {  // its numbers stand as a curve below
+      text += fmt::format("  {} at {}: removes {}\n", c.effect, c.where, gain_text(c.heldout_gain));
+      continue;
+    }
+    text += fmt::format("  {} at {}: removes {}\n", c.effect, c.where, gain_text(c.heldout_gain));
+    for (const ExplainedParameter& p : c.parameters) {
+      const double half = 1.645 * p.std_error;
+      text += fmt::format("    {} {}, before {}\n", p.name,
+                          std::isfinite(half) ? handy(p.value, p.unit) + " (" + handy(p.value - half, p.unit) + " to " +
+                                                    handy(p.value + half, p.unit) + ", 90 %)"
+                                              : handy(p.value, p.unit),
+                          handy(p.before, p.unit));
+    }
+    if (!c.confusable_with.empty()) text += "    or else " + join(c.confusable_with) + "\n";
+    if (!c.test.empty()) text += "    to separate: " + c.test + "\n";
+  }
+}
+
+}  // namespace
+
+Json explain_json(const ExplainResult& r) {
+  Json channels = Json::array();
+  for (const ExplainedChannel& c : r.channels) {
+    const ChannelFigures f = in_log_unit(c, c.rms_before, c.noise_rms, c.heldout_before);
+    const ChannelFigures g = in_log_unit(c, c.rms_after, c.noise_rms, c.heldout_after);
+    channels.push_back({{"signal", c.signal},
+                        {"unit", f.unit},
+                        {"rms_before", number(f.rms)},
+                        {"rms_after", number(g.rms)},
+                        {"noise_rms", number(f.noise_rms)},
+                        {"heldout_before", number(f.heldout_rms)},
+                        {"heldout_after", number(g.heldout_rms)}});
+  }
+  return {{"verdict", r.verdict},
+          {"where", r.where.empty() ? Json(nullptr) : Json(r.where)},
+          {"channels", channels},
+          {"causes", array_of(r.causes)},
+          {"standing", array_of(r.standing)},
+          {"candidates", array_of(r.candidates)},
+          {"heldout_gain", r.causes.empty() ? Json(nullptr) : to_json(r.heldout_gain)},
+          {"residuals", array_of(r.shown)},
+          {"places", array_of(r.places)},
+          {"curve", r.curve ? to_json(*r.curve) : Json(nullptr)},
+          {"retuned_alone", to_json(r.retuned)},
+          {"adequacy",
+           {{"before", number(r.adequacy_before)},
+            {"after", number(r.adequacy_after)},
+            {"p_value", r.p_adequacy ? number(*r.p_adequacy) : Json(nullptr)}}},
+          {"interrupted", r.interrupted}};
+}
+
+std::string text_of(const ExplainResult& r, const TextOptions& options) {
+  std::string text = r.verdict;
+  if (r.verdict == "sufficient")
+    text += ": nothing is wrong that healthy logs do not show or that a cause in the list would mend";
+  if (r.verdict == "unexplained")
+    text += r.curve ? ": no cause in the list mends it; a learnt curve does"
+                    : ": something is wrong, and no cause in the list mends it";
+  if (r.verdict == "extended") {
+    text += ": ";
+    for (std::size_t k = 0; k < r.causes.size(); ++k) text += (k ? ", " : "") + r.causes[k].effect;
+  }
+  if (!options.written_to.empty()) text += "; " + options.written_to;
+  text += "\n";
+  Columns table("lrrrrrl", 2);
+  table.row({"channel", "rms before", "after", "noise", "held out", "after", "unit"});
+  for (const ExplainedChannel& c : r.channels) {
+    const ChannelFigures f = in_log_unit(c, c.rms_before, c.noise_rms, c.heldout_before);
+    const ChannelFigures g = in_log_unit(c, c.rms_after, c.noise_rms, c.heldout_after);
+    table.row({c.signal, digits(f.rms), digits(g.rms), digits(f.noise_rms), digits(f.heldout_rms),
+               digits(g.heldout_rms), f.unit});
+  }
+  text += table.text();
+  for (const ShownChannel& c : r.shown) {
+    const ChannelFigures f = figures(ChannelResult{*find_signal(c.signal), c.unit, c.rms, c.noise, c.rms});
+    text +=
+        fmt::format("  {}: {} {} rms, noise {}; {}\n", c.signal, digits(f.rms), f.unit, digits(f.noise_rms), c.summary);
+  }
+  text += "  re-tuning alone removes " + gain_text(r.retuned) + "\n";
+  add_causes(text, r.causes);
+  if (r.curve) {
+    text += fmt::format("  learnt in {}, against {}{}:\n", r.curve->where, r.curve->variable,
+                        r.curve->factor.empty() ? "" : ", by " + r.curve->factor);
+    Columns curve("rrr", 4);
+    curve.row({r.curve->variable_unit, r.curve->unit, "+-"});
+    for (const CurvePoint& p : r.curve->points) curve.row({digits(p.x), digits(p.value), digits(p.std_error, 2)});
+    text += curve.text();
+    if (!r.curve->closed_form.empty()) text += "    in short: " + r.curve->closed_form + "\n";
+  }
+  if (!r.standing.empty()) text += "  standing, healthy logs show it too:\n";
+  add_causes(text, r.standing);
+  Columns tried("llrrl", 2);
+  tried.row({"tried", "where", "predicted gain", "p", "why not"});
+  int shown = 0;
+  for (const ExplainedCandidate& c : r.candidates) {
+    if (c.reason == "taken" || ++shown > 6) continue;
+    tried.row({c.effect, c.where, digits(c.predicted_gain), c.p_new ? digits(*c.p_new, 2) : "", c.reason});
+  }
+  return text + tried.text();
+}
+
+Json healthy_json(const HealthyReference& healthy) {
+  Json logs = Json::array();
+  for (const HealthyLog& l : healthy.logs) {
+    Json scores = Json::array();
+    for (const HealthyScore& s : l.scores) {
+      Json sizes = Json::array();
+      for (const ProbeScore& p : s.sizes) sizes.push_back({number(p.size), number(p.std_error)});
+      scores.push_back({{"effect", s.effect}, {"where", s.where}, {"sizes", sizes}});
+    }
+    logs.push_back({{"log", l.log}, {"sha256", l.sha256}, {"adequacy", number(l.adequacy)}, {"scores", scores}});
+  }
+  return {{"logs", logs}};
+}
+
+HealthyReference read_healthy(const std::string& path) {
+  const auto refuse = [&](const char* key, const char* rule) {
+    throw InputError({path, 0, key}, rule, "make it again with 'servodx baseline'");
+  };
+  HealthyReference out;
+  try {
+    const Json file = Json::parse(read_file(path));
+    if (!file.contains("explain")) refuse("explain", "says nothing of what healthy logs show of each cause");
+    const auto value = [](const Json& j) { return j.is_number() ? j.get<double>() : std::nan(""); };
+    for (const Json& l : file.at("explain").at("logs")) {
+      HealthyLog log{l.at("log").get<std::string>(), l.at("sha256").get<std::string>(), value(l.at("adequacy")), {}};
+      for (const Json& s : l.at("scores")) {
+        HealthyScore score{s.at("effect").get<std::string>(), s.at("where").get<std::string>(), {}};
+        for (const Json& p : s.at("sizes")) score.sizes.push_back({value(p.at(0)), value(p.at(1))});
+        log.scores.push_back(std::move(score));
+      }
+      out.logs.push_back(std::move(log));
+    }
+  } catch (const Json::exception&) {
+    refuse("explain", "is not as 'baseline' writes it");
+  }
+  return out;
+}
+
+}  // namespace servodx::report

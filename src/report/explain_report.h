@@ -1,0 +1,19 @@
+// `explain` for people and for programs, and what a baseline keeps for it.
+#pragma once
+#include <string>
+
+#include "explain/explain.h"
+#include "report/json.h"
+#include "report/text.h"
+
+namespace servodx::report {
+
+Json explain_json(const ExplainResult& result);
+std::string text_of(const ExplainResult& result, const TextOptions& options);
+
+// The part of a baseline file that `explain` reads, under the key "explain".
+Json healthy_json(const HealthyReference& healthy);
+// Throws InputError where the file has none.
+HealthyReference read_healthy(const std::string& path);
+
+}  // namespace servodx::report

@@ -1,0 +1,90 @@
+// monitor, check, trend and history as a user calls them.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "program.h"
+
+namespace servodx {
+namespace {
+
+using Json = nlohmann::json;
+
+std::string data(const std::string& name) {
+  return bytes_of(std::filesystem::path(SERVODX_SOURCE_DIR) / "data" / name);
+}
+
+// The shipped table with a column of errors: `check` asks for a tuned one.
+std::string as_tuned() {
+  std::istringstream in(shipped_table());
+  std::string text, line;
+  while (std::getline(in, line))
+    text += line + (line.starts_with("#") ? "" : line.starts_with("id,") ? ",std_error" : ",") + "\n";
+  return text;
+}
+
+class Prognosis : public testing::Test {
+ protected:
+  Prognosis() {
+    desk.write("tuned.csv", as_tuned());
+    desk.write("rig.toml", data("rig.toml"));
+    desk.write("hot.csv", data("healthy/h09_preflight_hot.csv"));
+    desk.write("flight.csv", data("healthy/h10_flight.csv"));
+  }
+  Json json(const std::string& name) const { return Json::parse(bytes_of(desk / name)); }
+  Desk desk;
+};
+
+TEST_F(Prognosis, MonitorWritesItsRunAndItsSpeed) {
+  const Ended ended = desk.run("monitor flight.csv --params tuned.csv --rig rig.toml -o sim.csv --json m.json");
+  ASSERT_EQ(ended.code, 0) << ended.err;
+  EXPECT_TRUE(
+      bytes_of(desk / "sim.csv").starts_with("time [s],spool_position [mm],piston_position [mm],load_pressure"));
+  const Json m = json("m.json");
+  EXPECT_GT(m["real_time_factor"], 100);
+  EXPECT_GT(m["mean_error"]["value"], 0);
+  EXPECT_EQ(desk.run("monitor flight.csv --params tuned.csv -o s.csv --model C5").code, 0);
+  EXPECT_EQ(desk.run("monitor flight.csv --params tuned.csv -o t.csv --model nonesuch").code, 2);
+}
+
+TEST_F(Prognosis, ACheckIsStoredOnceAndComesOutAsItWentIn) {
+  const std::string call = "check hot.csv --params tuned.csv --rig rig.toml --history h.db --valve V7 --at ";
+  const Ended ended = desk.run(call + "12.5 --json c.json");
+  ASSERT_EQ(ended.code, 0) << ended.err;
+  const Json c = json("c.json");
+  std::vector<std::string> names;
+  for (const Json& check : c["checks"]) {
+    names.push_back(check["name"]);
+    for (const char* key : {"value", "std_error", "unit", "temperature"}) EXPECT_TRUE(check.contains(key)) << key;
+  }
+  for (const char* name : {"mean_error", "fidelity", "correlation@5Hz", "parameter:1", "parameter:9"})
+    EXPECT_NE(std::find(names.begin(), names.end(), name), names.end()) << name;
+  EXPECT_EQ(desk.run(call + "12.5").code, 2);  // the same log at the same hours
+  EXPECT_EQ(desk.run(call + "-1").code, 2);
+  ASSERT_EQ(desk.run("history export --history h.db -o h.csv").code, 0);
+  ASSERT_EQ(desk.run("history import h.csv --history other.db").code, 0);
+  ASSERT_EQ(desk.run("history export --history other.db -o again.csv").code, 0);
+  EXPECT_EQ(bytes_of(desk / "h.csv"), bytes_of(desk / "again.csv"));
+  EXPECT_EQ(desk.run("history event nonesuch --valve V7 --at 13 --history h.db").code, 2);
+  EXPECT_EQ(desk.run("history event filter_changed --valve V8 --at 13 --history h.db").code, 2);
+  EXPECT_EQ(desk.run("history event filter_changed --valve V7 --at 13 --history h.db").code, 0);
+  EXPECT_EQ(desk.run("history verify --history h.db").code, 0);
+}
+
+TEST_F(Prognosis, TrendOfFewChecksSaysSoAndRefusesWhatIsNotThere) {
+  ASSERT_EQ(
+      desk.run("check hot.csv --params tuned.csv --rig rig.toml --history h.db --valve V7 --at 1 --no-track").code, 0);
+  ASSERT_EQ(desk.run("trend --history h.db --valve V7 --json t.json").code, 0);
+  EXPECT_EQ(json("t.json")["state"], "unknown");
+  ASSERT_EQ(desk.run("trend --history h.db --all --json a.json").code, 0);
+  EXPECT_EQ(json("a.json")["valves"].size(), 1u);
+  EXPECT_EQ(desk.run("trend --history h.db --valve V8").code, 2);
+  EXPECT_EQ(desk.run("trend --history h.db").code, 2);
+  EXPECT_EQ(desk.run("trend --history none.db --all").code, 2);
+  EXPECT_EQ(desk.run("trend --history h.db --valve V7 --failure fidelity").code, 2);
+  EXPECT_FALSE(std::filesystem::exists(desk / "none.db"));
+}
+
+}  // namespace
+}  // namespace servodx

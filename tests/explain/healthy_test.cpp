@@ -1,0 +1,95 @@
+// What counts as news against healthy logs: at the rate that is stated.
+#include "explain/healthy.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "base/random.h"
+
+namespace servodx {
+namespace {
+
+// A log of a rig whose causes' sizes scatter by tau beyond their standard errors.
+HealthyLog draw(Random& random, int causes, double moved, int which) {
+  HealthyLog log;
+  log.adequacy = std::exp(0.3 * random.normal());
+  for (int c = 0; c < causes; ++c) {
+    const double error = std::exp(random.uniform(-1, 1)), tau = 0.3 * (c % 5);
+    const double size = c + tau * random.normal() + error * random.normal() + (c == which ? moved : 0);
+    log.scores.push_back({"cause " + std::to_string(c), "here", {{size, error}}});
+  }
+  return log;
+}
+
+double smallest(const HealthyTest& test, const HealthyLog& log) {
+  double p = 1;
+  for (const HealthyScore& s : log.scores) p = std::min(p, test.together(test.alone({s})));
+  return p;
+}
+
+TEST(Student, TailsAreThoseOfTheTables) {
+  EXPECT_NEAR(student_tail(2.262157, 9), 0.05, 1e-6);
+  EXPECT_NEAR(student_tail(4.604095, 4), 0.01, 1e-6);
+  EXPECT_NEAR(student_tail(0, 7), 1.0, 1e-12);
+  EXPECT_NEAR(student_tail(12.7062047, 1), 0.05, 1e-6);
+}
+
+TEST(Healthy, FalseAlarmsComeAtTheRateStated) {
+  constexpr int trials = 600, causes = 30;
+  for (const double level : {0.1, 0.02}) {
+    int alarms = 0;
+    for (int k = 0; k < trials; ++k) {
+      Random random(41, static_cast<std::uint32_t>(k));
+      HealthyReference reference;
+      for (int i = 0; i < 9; ++i) reference.logs.push_back(draw(random, causes, 0, -1));
+      alarms += smallest(HealthyTest(reference), draw(random, causes, 0, -1)) <= level;
+    }
+    const double sd = std::sqrt(level * (1 - level) / trials);
+    EXPECT_LT(alarms / static_cast<double>(trials), 1.5 * level + 2.5 * sd) << level;
+    std::printf("level %g: %d alarms in %d healthy logs\n", level, alarms, trials);
+  }
+}
+
+TEST(Healthy, WhatHasMovedFarIsFound) {
+  int found = 0;
+  constexpr int trials = 100;
+  for (int k = 0; k < trials; ++k) {
+    Random random(43, static_cast<std::uint32_t>(k));
+    HealthyReference reference;
+    for (int i = 0; i < 9; ++i) reference.logs.push_back(draw(random, 30, 0, -1));
+    const HealthyTest test(reference);
+    const HealthyLog log = draw(random, 30, 40, 7);
+    found += test.together(test.alone({log.scores[7]})) <= 0.1;
+  }
+  EXPECT_GE(found, 95);
+}
+
+TEST(Healthy, StandingSizeIsNoNews) {
+  // Cause 20 stands at 20 in every log: far from absent, and nothing new.
+  Random random(44, 1);
+  HealthyReference reference;
+  for (int i = 0; i < 9; ++i) reference.logs.push_back(draw(random, 30, 0, -1));
+  const HealthyTest test(reference);
+  EXPECT_GT(test.together(test.alone({draw(random, 30, 0, -1).scores[20]})), 0.1);
+}
+
+TEST(Healthy, LogsOfOneStateSpeakTogether) {
+  Random random(45, 1);
+  HealthyReference reference;
+  for (int i = 0; i < 9; ++i) reference.logs.push_back(draw(random, 5, 0, -1));
+  const HealthyTest test(reference);
+  const HealthyScore one{"cause 4", "here", {{4 + 5.0, 0.5}}};
+  EXPECT_LT(test.alone({one, one, one}), test.alone({one}));
+}
+
+TEST(Healthy, TooFewLogsAccuseNoOne) {
+  HealthyReference two;
+  Random random(46, 1);
+  for (int i = 0; i < 2; ++i) two.logs.push_back(draw(random, 5, 0, -1));
+  const HealthyTest test(two);
+  EXPECT_EQ(test.together(test.alone({{"cause 1", "here", {{1e6, 1}}}})), 1.0);
+}
+
+}  // namespace
+}  // namespace servodx

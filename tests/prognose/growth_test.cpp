@@ -1,0 +1,94 @@
+// Growth, its test and its prediction, on series whose truth is known.
+#include "prognose/growth.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "base/random.h"
+
+namespace servodx {
+namespace {
+
+GrowthPrior plain_prior(int direction = 1) {
+  return {
+      .base = 0, .base_sd = 1, .feature_mean = {}, .feature_sd = {}, .noise = 0.03, .scale = 1, .direction = direction};
+}
+
+template <class F>
+std::vector<GrowthPoint> series(const F& truth, int n, double noise, std::uint64_t seed, double life = 60) {
+  Random random(seed, 5);
+  std::vector<GrowthPoint> points;
+  for (int k = 0; k < n; ++k)
+    points.push_back({static_cast<double>(k), truth(k / life) + noise * random.normal(), 0.0, {}});
+  return points;
+}
+
+// Ville: under the null a Bayes factor passes 1/alpha with probability alpha at most, however often one looks.
+TEST(Growth, HealthySeriesAreSeldomTakenForATrendHoweverOftenOneLooks) {
+  constexpr int units = 60;
+  int alarms = 0;
+  for (int u = 0; u < units; ++u) {
+    const auto all = series([](double) { return 0.1; }, 50, 0.03, static_cast<std::uint64_t>(u));
+    for (std::size_t k = 10; k <= all.size(); k += 8) {
+      const GrowthModel model({all.begin(), all.begin() + static_cast<long>(k)}, plain_prior(0));
+      if (model.growth().log_bayes_factor > std::log(20.0)) {
+        ++alarms;
+        break;
+      }
+    }
+  }
+  EXPECT_LE(alarms, 7);  // 5 % of 60 is 3; 7 or more has a chance of 3 %
+}
+
+TEST(Growth, ALinearTrendIsSeenAndItsEndLiesInItsInterval) {
+  int inside = 0, near = 0;
+  constexpr int units = 20;
+  for (int u = 0; u < units; ++u) {
+    const auto points = series([](double s) { return 0.05 + s; }, 31, 0.02, static_cast<std::uint64_t>(u));
+    const GrowthModel model(points, plain_prior());
+    EXPECT_GT(model.growth().log_bayes_factor, 10);
+    const Life life = model.life(1.05, {}, 1);  // true: 60 - 30
+    inside += quantile(life, 0.05) <= 30 && 30 <= quantile(life, 0.95);
+    near += std::abs(quantile(life, 0.5) - 30) < 6;
+  }
+  EXPECT_GE(inside, 16);
+  EXPECT_GE(near, 16);
+}
+
+TEST(Growth, ACurvedTrendIsNotExtrapolatedAsALine) {
+  const auto points = series([](double s) { return s * s; }, 43, 0.005, 3);  // 70 % of the life
+  const GrowthModel model(points, plain_prior());
+  const Life life = model.life(1.0, {}, 1);
+  EXPECT_NEAR(quantile(life, 0.5), 18, 4);  // a line through it all would say 42
+}
+
+TEST(Growth, TemperatureIsNotTakenForGrowth) {
+  Random random(9);
+  std::vector<GrowthPoint> points;
+  for (int k = 0; k < 40; ++k) {
+    const double z = random.uniform(-1, 3);
+    points.push_back({static_cast<double>(k), 0.2 * z + 0.01 * random.normal(), 0.0, {z}});
+  }
+  GrowthPrior prior = plain_prior(0);
+  prior.feature_mean = {0.0}, prior.feature_sd = {0.3};
+  const GrowthModel model(points, prior);
+  EXPECT_LT(model.growth().log_bayes_factor, 1);
+  EXPECT_NEAR(model.growth().coefficients[0], 0.2, 0.02);
+}
+
+TEST(Growth, ChecksOfLargeErrorWeighLittle) {
+  auto points = series([](double s) { return s; }, 31, 0.01, 4);
+  for (int k = 0; k < 31; k += 3)
+    points[static_cast<std::size_t>(k)].y = 0.9, points[static_cast<std::size_t>(k)].variance = 1.0;
+  const GrowthModel model(points, plain_prior());
+  EXPECT_NEAR(model.growth().now, 0.5, 0.03);
+}
+
+TEST(Growth, SameSeedSameLife) {
+  const auto points = series([](double s) { return s; }, 31, 0.02, 5);
+  EXPECT_EQ(GrowthModel(points, plain_prior()).life(1.0, {}, 7), GrowthModel(points, plain_prior()).life(1.0, {}, 7));
+}
+
+}  // namespace
+}  // namespace servodx

@@ -1,0 +1,289 @@
+// The store: nothing acknowledged is lost, nothing foreign is touched.
+#include "prognose/history.h"
+
+#include <SQLiteCpp/SQLiteCpp.h>
+#include <gtest/gtest.h>
+#include <signal.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <thread>
+
+#include "base/error.h"
+#include "base/random.h"
+#include "prognose/history_csv.h"
+
+namespace servodx {
+namespace {
+
+namespace fs = std::filesystem;
+
+class HistoryFile : public testing::Test {
+ protected:
+  HistoryFile() {
+    std::string pattern = (fs::temp_directory_path() / "servodx_history_XXXXXX").string();
+    folder = mkdtemp(pattern.data());
+  }
+  ~HistoryFile() override { fs::remove_all(folder); }
+  std::string file(const std::string& name = "h.db") const { return (folder / name).string(); }
+  fs::path folder;
+};
+
+Recording a_check(double at, double value = 1.25) {
+  Recording r;
+  r.at = at;
+  r.log = "log.csv";
+  r.log_sha256 = "sha" + std::to_string(at);
+  r.table_sha256 = "table";
+  r.version = "1";
+  r.recorded_at = "2026-01-01T00:00:00Z";
+  r.temperature = 313.15;
+  r.temperature_source = "given";
+  r.checks = {{"fidelity", value, 0.01, "1", value, 1.0, ""},
+              {"parameter:9", 2e-6, std::nan(""), "m", 2e-6, 1.0, "feedback_wire_backlash"}};
+  return r;
+}
+
+TEST_F(HistoryFile, WhatIsRecordedIsReadBackInOrderOfHours) {
+  {
+    History h(file(), true);
+    h.record("v1", "SN 7", a_check(20, 0.1 + 0.2), "text");
+    h.record("v1", "", a_check(10), "text");
+    h.add_event("v1", {15, EventKind::filter_changed, "new screen", ""});
+  }
+  const History h(file(), false);
+  const ValveHistory v = h.of("v1");
+  EXPECT_EQ(v.serial, "SN 7");
+  ASSERT_EQ(v.recordings.size(), 2u);
+  EXPECT_EQ(v.recordings[0].at, 10);
+  EXPECT_EQ(v.recordings[1].checks[0].value, 0.1 + 0.2);
+  EXPECT_TRUE(std::isnan(v.recordings[1].checks[1].std_error));
+  ASSERT_EQ(v.events.size(), 1u);
+  EXPECT_EQ(v.events[0].kind, EventKind::filter_changed);
+  EXPECT_EQ(h.verify(), "ok");
+  EXPECT_THROW(h.of("v2"), InputError);
+}
+
+TEST_F(HistoryFile, TheSameLogAtTheSameHoursIsRefused) {
+  History h(file(), true);
+  h.record("v1", "", a_check(10), "");
+  EXPECT_THROW(h.record("v1", "", a_check(10), ""), InputError);
+  EXPECT_EQ(h.of("v1").recordings.size(), 1u);
+}
+
+TEST_F(HistoryFile, CsvThereAndBackGivesTheSameBits) {
+  History h(file(), true);
+  for (int k = 0; k < 5; ++k) h.record("valve, \"left\"", "SN", a_check(k / 3.0, k / 7.0), "id,name\n1,\"x\"\n");
+  h.add_event("valve, \"left\"", {1.5, EventKind::note, "two\nlines; ü", ""});
+  const std::string text = history_csv(h.content());
+  std::ofstream(file("h.csv"), std::ios::binary) << text;
+  History other(file("other.db"), true);
+  const Restored first = other.restore(read_history_csv(file("h.csv")));
+  EXPECT_EQ(first.recordings, 5);
+  EXPECT_EQ(first.events, 1);
+  EXPECT_EQ(history_csv(other.content()), text);
+  const Restored second = other.restore(read_history_csv(file("h.csv")));
+  EXPECT_EQ(second.recordings + second.events, 0);
+  EXPECT_EQ(second.present, 6);
+}
+
+TEST_F(HistoryFile, ABrokenCsvIsRefusedAtItsLineAndAddsNothing) {
+  History h(file(), true);
+  h.record("v1", "", a_check(10), "");
+  std::string text = history_csv(h.content());
+  text.replace(text.rfind("10,"), 2, "ten");
+  std::ofstream(file("bad.csv")) << text;
+  try {
+    read_history_csv(file("bad.csv"));
+    FAIL();
+  } catch (const InputError& e) {
+    EXPECT_EQ(e.where.line, 4);
+    EXPECT_EQ(e.where.column, "at [h]");
+  }
+}
+
+TEST_F(HistoryFile, AnOlderSchemaIsBroughtUpAndKeepsItsRows) {
+  {
+    History h(file(), true);
+    h.record("v1", "", a_check(10), "");
+  }
+  {
+    SQLite::Database raw(file(), SQLite::OPEN_READWRITE);
+    raw.exec("DROP INDEX recording_of_valve; DROP INDEX event_of_valve; PRAGMA user_version = 1");
+  }
+  const History h(file(), false);
+  EXPECT_EQ(h.of("v1").recordings.size(), 1u);
+  SQLite::Database raw(file());
+  EXPECT_EQ(raw.execAndGet("PRAGMA user_version").getInt(), History::schema_version());
+  EXPECT_EQ(raw.execAndGet("SELECT count(*) FROM sqlite_master WHERE name = 'recording_of_valve'").getInt(), 1);
+}
+
+TEST_F(HistoryFile, ANewerSchemaAnotherProgramsFileAndADamagedFileAreRefusedUntouched) {
+  { History h(file(), true); }
+  { SQLite::Database(file(), SQLite::OPEN_READWRITE).exec("PRAGMA user_version = 99"); }
+  EXPECT_THROW(History(file(), true), InputError);
+  { SQLite::Database(file("other.db"), SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE).exec("CREATE TABLE mine(x)"); }
+  EXPECT_THROW(History(file("other.db"), true), InputError);
+  const std::string noise(4096, 'x');
+  std::ofstream(file("noise.db")) << noise;
+  EXPECT_THROW(History(file("noise.db"), true), InputError);
+  std::ifstream in(file("noise.db"));
+  EXPECT_EQ(std::string(std::istreambuf_iterator<char>(in), {}), noise);
+  EXPECT_THROW(History(file("missing.db"), false), InputError);
+}
+
+TEST_F(HistoryFile, ADamagedPageIsReportedNotReadOver) {
+  {
+    History h(file(), true);
+    for (int k = 0; k < 200; ++k) h.record("v1", "", a_check(k), "");
+  }
+  {
+    std::fstream f(file(), std::ios::in | std::ios::out | std::ios::binary);
+    f.seekp(4096 * 3);
+    const std::string noise(4096 * 4, '\xa5');
+    f.write(noise.data(), static_cast<long>(noise.size()));
+  }
+  const auto read_all = [&] {
+    const History h(file(), false);
+    if (h.verify() != "ok") throw InputError({}, "damaged", "");
+    h.of("v1");
+  };
+  EXPECT_THROW(read_all(), InputError);
+}
+
+// A limit on the size of files stands for a full disk: the write fails in mid-transaction.
+TEST_F(HistoryFile, AWriteThatFailsLosesItsCheckSaysSoAndKeepsTheRest) {
+  { History h(file(), true); }
+  int ends[2];
+  ASSERT_EQ(pipe(ends), 0);
+  const pid_t child = fork();
+  if (child == 0) {
+    signal(SIGXFSZ, SIG_IGN);
+    const rlimit limit{200000, 200000};
+    setrlimit(RLIMIT_FSIZE, &limit);
+    int code = 1;
+    try {
+      History h(file(), true);
+      for (int k = 0; k < 2000; ++k) {
+        h.record("v1", "", a_check(k), std::string(500, 'x'));
+        if (write(ends[1], "+", 1) != 1) _exit(2);
+      }
+    } catch (const InputError&) {
+    } catch (const std::runtime_error&) {
+      code = 0;
+    }
+    _exit(code);
+  }
+  close(ends[1]);
+  std::size_t acknowledged = 0;
+  char byte;
+  while (read(ends[0], &byte, 1) == 1) ++acknowledged;
+  close(ends[0]);
+  int status = 0;
+  waitpid(child, &status, 0);
+  EXPECT_EQ(WEXITSTATUS(status), 0) << "the failure was not reported";
+  const History h(file(), false);
+  EXPECT_EQ(h.verify(), "ok");
+  EXPECT_GT(acknowledged, 3u);
+  EXPECT_EQ(h.of("v1").recordings.size(), acknowledged);
+}
+
+TEST_F(HistoryFile, WritersOfSeveralProcessesLoseNothing) {
+  { History h(file(), true); }
+  constexpr int writers = 4, each = 25;
+  std::vector<pid_t> children;
+  for (int w = 0; w < writers; ++w) {
+    const pid_t child = fork();
+    if (child == 0) {
+      int code = 0;
+      try {
+        History h(file(), true);
+        for (int k = 0; k < each; ++k) h.record("v" + std::to_string(w), "", a_check(k), "");
+      } catch (...) {
+        code = 1;
+      }
+      _exit(code);
+    }
+    children.push_back(child);
+  }
+  for (pid_t child : children) {
+    int status = 0;
+    waitpid(child, &status, 0);
+    EXPECT_EQ(WEXITSTATUS(status), 0);
+  }
+  const History h(file(), false);
+  for (int w = 0; w < writers; ++w) EXPECT_EQ(h.of("v" + std::to_string(w)).recordings.size(), 25u);
+}
+
+// A child records and acknowledges each check through a pipe; it is killed at a random moment. SERVODX_KILLS=200 for
+// the full count.
+TEST_F(HistoryFile, AKilledWriterLosesNoAcknowledgedCheck) {
+  const char* asked = std::getenv("SERVODX_KILLS");
+  const int kills = asked ? std::atoi(asked) : 25;
+  Random random(11);
+  int acknowledged = 0;
+  for (int k = 0; k < kills; ++k) {
+    int ends[2];
+    ASSERT_EQ(pipe(ends), 0);
+    const pid_t child = fork();
+    if (child == 0) {
+      close(ends[0]);
+      try {
+        History h(file(), true);
+        for (int i = acknowledged;; ++i) {
+          h.record("v1", "", a_check(i), "table text");
+          if (write(ends[1], "+", 1) != 1) _exit(2);
+        }
+      } catch (...) {
+      }
+      _exit(1);
+    }
+    close(ends[1]);
+    std::this_thread::sleep_for(std::chrono::microseconds(random.below(40000)));
+    kill(child, SIGKILL);
+    int status = 0;
+    waitpid(child, &status, 0);
+    EXPECT_TRUE(WIFSIGNALED(status)) << "the writer ended by itself";
+    char byte;
+    while (read(ends[0], &byte, 1) == 1) ++acknowledged;
+    close(ends[0]);
+    if (!fs::exists(file())) continue;
+    const History h(file(), false);
+    ASSERT_EQ(h.verify(), "ok") << "after kill " << k;
+    const std::vector<std::string> valves = h.valves();
+    const auto stored = valves.empty() ? 0 : static_cast<int>(h.of("v1").recordings.size());
+    ASSERT_GE(stored, acknowledged) << "after kill " << k;
+    ASSERT_LE(stored, acknowledged + 1) << "one check may be stored and not yet acknowledged";
+    acknowledged = stored;
+  }
+  EXPECT_GT(acknowledged, 0);
+}
+
+TEST_F(HistoryFile, TheTrendOfOneValveIsReadThroughAnIndex) {
+  { History h(file(), true); }
+  SQLite::Database raw(file());
+  SQLite::Statement plan(raw,
+                         "EXPLAIN QUERY PLAN SELECT r.id FROM recording r LEFT JOIN figure f ON f.recording = r.id "
+                         "WHERE valve = 1 ORDER BY at");
+  while (plan.executeStep())
+    EXPECT_EQ(plan.getColumn(3).getString().find("SCAN"), std::string::npos) << plan.getColumn(3).getString();
+}
+
+TEST(HistoryEvents, AFilterChangeRenewsWhatSeesTheFilterAndASwapRenewsAll) {
+  const Check fidelity{"fidelity", 0, 0, "1", 0, 1, ""},
+      backlash{"parameter:9", 0, 0, "m", 0, 1, "feedback_wire_backlash"},
+      filter{"parameter:1", 0, 0, "-", 0, 1, "clogged_filter"};
+  EXPECT_TRUE(resets(EventKind::filter_changed, filter));
+  EXPECT_TRUE(resets(EventKind::filter_changed, fidelity));
+  EXPECT_FALSE(resets(EventKind::filter_changed, backlash));
+  EXPECT_TRUE(resets(EventKind::valve_swapped, backlash));
+  EXPECT_FALSE(resets(EventKind::note, filter));
+}
+
+}  // namespace
+}  // namespace servodx

@@ -1,0 +1,127 @@
+// Levels, alerts, causes and resets, on made-up histories.
+#include "prognose/trend.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "base/random.h"
+
+namespace servodx {
+namespace {
+
+// A check every 2 h: backlash grows from `onset` h on to 20 um at 120 h, r stays, oil is anything.
+ValveHistory a_life(double until, double onset, std::uint64_t seed, double growth = 20e-6) {
+  ValveHistory h;
+  h.valve = "v";
+  Random random(seed, 6);
+  for (double t = 0; t <= until; t += 2) {
+    Recording r;
+    r.at = t;
+    r.table_sha256 = "a";
+    r.temperature = 243 + 100 * random.uniform();
+    const double cold = std::max(0.0, 313 - r.temperature) / 70;
+    const double play = t > onset ? growth * (t - onset) / (120 - onset) : 0.0;
+    r.checks.push_back(
+        {"parameter:9", 1e-6 + play + 3e-7 * random.normal(), 2e-7, "m", 0, 1, "feedback_wire_backlash"});
+    const double fidelity = 1.1 * (1 + 0.1 * cold) * (1 + 0.01 * random.normal());
+    r.checks.push_back({"fidelity", fidelity, 0.005, "1", fidelity, 1 + 0.1 * cold, ""});
+    h.recordings.push_back(r);
+  }
+  return h;
+}
+
+const CheckTrend& find(const ValveTrend& t, const std::string& name) {
+  for (const CheckTrend& c : t.trends)
+    if (c.name == name) return c;
+  throw std::runtime_error("no " + name);
+}
+
+TEST(Trend, AHealthyValveHasNoTrendAndNoAlert) {
+  for (std::uint64_t seed = 0; seed < 6; ++seed) {
+    const ValveTrend t = trend(a_life(100, 1e9, seed), {});
+    EXPECT_FALSE(t.alert_at) << seed;
+    EXPECT_FALSE(t.remaining) << seed;
+    for (const CheckTrend& c : t.trends) EXPECT_FALSE(c.trend) << c.name << " " << seed;
+  }
+}
+
+TEST(Trend, AWearingValveIsAlertedNamedAndGivenItsLife) {
+  const ValveTrend t = trend(a_life(80, 24, 1), {});
+  EXPECT_EQ(t.state, "warning");
+  EXPECT_EQ(t.cause, "feedback_wire_backlash");
+  ASSERT_TRUE(t.alert_at);
+  EXPECT_GT(*t.alert_at, 24);
+  EXPECT_LT(*t.alert_at, 50);
+  ASSERT_TRUE(t.remaining);
+  EXPECT_LE(t.remaining->lower, 40);
+  EXPECT_GE(t.remaining->upper, 40);
+  EXPECT_NEAR(t.remaining->median, 40, 12);
+  EXPECT_EQ(t.to_warning, 0.0);
+  const CheckTrend& c = find(t, "parameter:9");
+  EXPECT_NEAR(c.slope, 20e-6 / 96, 5e-8);
+  ASSERT_TRUE(c.tangent);
+  EXPECT_FALSE(find(t, "fidelity").trend);
+}
+
+TEST(Trend, AColdPreflightIsNoAlarm) {
+  ValveHistory h = a_life(60, 1e9, 4);
+  h.recordings.back().temperature = 243;
+  h.recordings.back().checks[1].measured = h.recordings.back().checks[1].value = 1.1 * 1.1;
+  const ValveTrend t = trend(h, {});
+  const CheckTrend& c = find(t, "fidelity");
+  EXPECT_NE(c.state, "warning");
+  EXPECT_NEAR(c.points.back().value, c.healthy, 0.03 * c.healthy);
+}
+
+TEST(Trend, TooFewChecksGiveNoWord) {
+  const ValveTrend t = trend(a_life(6, 0, 1), {});
+  EXPECT_EQ(t.state, "unknown");
+  EXPECT_FALSE(t.alert_at);
+}
+
+TEST(Trend, MaintenanceRestartsWhatItRenews) {
+  ValveHistory h = a_life(80, 24, 1);
+  h.events.push_back({81, EventKind::overhauled, "", ""});
+  EXPECT_TRUE(trend(h, {}).trends.empty());
+  h.events.back() = {81, EventKind::filter_changed, "", ""};
+  const ValveTrend t = trend(h, {});
+  EXPECT_EQ(t.trends.size(), 1u);  // r sees the filter, backlash does not
+  EXPECT_EQ(t.cause, "feedback_wire_backlash");
+}
+
+TEST(Trend, ChecksOnAnotherTunedTableAreSetApartAloud) {
+  ValveHistory h = a_life(80, 24, 1);
+  for (std::size_t k = 0; k < 30; ++k) h.recordings[k].table_sha256 = "old";
+  const ValveTrend t = trend(h, {});
+  EXPECT_EQ(find(t, "fidelity").points.size(), h.recordings.size() - 30);
+  ASSERT_FALSE(t.notes.empty());
+  EXPECT_NE(t.notes.front().find("30 checks"), std::string::npos);
+}
+
+TEST(Trend, AUsersFailureLevelCountsAndALowerOneToo) {
+  TrendOptions options;
+  options.failure["fidelity"] = {0.9, 1.7};
+  const ValveTrend t = trend(a_life(80, 1e9, 2), options);
+  EXPECT_EQ(find(t, "fidelity").failure.lower, 0.9);
+  EXPECT_EQ(find(t, "fidelity").failure.upper, 1.7);
+}
+
+// Fig. 13 with a straight line: the tangent is the line, and the end is where it meets the failure level.
+TEST(Trend, TheTangentRuleIsExactForALine) {
+  std::vector<double> time, value;
+  for (int k = 0; k <= 60; ++k) time.push_back(k), value.push_back(1 + 0.01 * k);
+  const auto rule = tangent_rule(time, value, 1.1, 1.3, 2.0);
+  ASSERT_TRUE(rule);
+  EXPECT_NEAR(rule->alert_at, 30, 1.01);
+  EXPECT_NEAR(rule->time_to_failure, 70, 1e-6);
+  EXPECT_FALSE(tangent_rule(time, value, 1.1, 1.7, 2.0));
+}
+
+TEST(Trend, SameHistorySameTrend) {
+  const ValveTrend a = trend(a_life(80, 24, 1), {}), b = trend(a_life(80, 24, 1), {});
+  EXPECT_EQ(a.life, b.life);
+}
+
+}  // namespace
+}  // namespace servodx
