@@ -30,8 +30,13 @@ struct Law {
 // side.
 constexpr std::array<Law, 8> laws = {
     {{0.5, 0, 1}, {0.7, 0, 1}, {1.0, 0, 6}, {1.4, 0, 1}, {2.0, 0, 1}, {3.0, 0, 1}, {1, 2.5, 1}, {1, 5.0, 1}}};
-// Onsets as parts of the record, and their weights: wear usually begins with use.
-constexpr std::array<std::pair<double, double>, 5> onsets = {{{0, 4}, {0.2, 1}, {0.4, 1}, {0.6, 1}, {0.8, 1}}};
+// Onsets as parts of the record, and their weights: wear usually begins with use. Between coarser ones a growth that
+// began late looks like one that accelerates.
+constexpr auto onsets = [] {
+  std::array<std::pair<double, double>, 18> all{};
+  for (std::size_t k = 0; k < all.size(); ++k) all[k] = {0.05 * static_cast<double>(k), k ? 4.0 / 17.0 : 4.0};
+  return all;
+}();
 constexpr std::array<double, 9> noises = {0.1, 0.18, 0.32, 0.56, 1, 1.8, 3.2, 5.6, 10};
 constexpr double negligible = 1e-4;  // weight below which a component is left out
 

@@ -139,7 +139,7 @@ TEST(RigFile, EachRefusalNamesPlaceRuleAndMend) {
       {"\nnmae = \"x\"\n",
        "rig.toml:2: column 'nmae': unknown key; known here: name, serial, ports, command_hold, mains_frequency, "
        "null_limit, "
-       "fluid, [valve], [actuator], [lines], [supply], [fluid], [columns]"},
+       "fluid, [valve], [actuator], [lines], [supply], [fluid], [limits], [columns]"},
       {"[supply]\npresure = \"207 bar\"\n",
        "rig.toml:2: column 'supply.presure': unknown key; known here: pressure, return_pressure"},
       {"[valve]\ndither = { amplitude = \"1 mA\", phase = \"0\" }\n",
