@@ -21,8 +21,8 @@ int main(int argc, char** argv) {
       if (y.empty()) continue;  // asked for by SimulateOptions::wanted
       double square = 0;
       for (std::size_t k = 0; k < y.size(); ++k) square += std::pow(c.measured[k] - y[k], 2);
-      std::printf("%s: rms error %.3g %s\n", info(c.signal).name.data(), std::sqrt(square / static_cast<double>(y.size())),
-                  info(c.signal).si_unit.data());
+      std::printf("%s: rms error %.3g %s\n", info(c.signal).name.data(),
+                  std::sqrt(square / static_cast<double>(y.size())), info(c.signal).si_unit.data());
     }
     return simulated.ok ? 0 : 1;
   } catch (const InputError& error) {

@@ -49,7 +49,9 @@ void add_check_log_command(CLI::App& app) {
   CLI::App* command =
       app.add_subcommand("check-log", "What is in a log, what it can identify, what is suspicious: before any fit");
   command->add_option("LOG", options->logs, "rig logs, CSV")->required();
-  command->add_option("--params", options->params, "parameter table: also say which parameters and faults the log can show")
+  command
+      ->add_option("--params", options->params,
+                   "parameter table: also say which parameters and faults the log can show")
       ->type_name("P");
   add_common_options(*command, options->common);
   command->callback([options] { run(*options); });

@@ -18,7 +18,8 @@ struct Options {
 void run(const Options& options) {
   Invocation invocation("compare", options.common);
   invocation.check_files({options.a, options.b}, {});
-  for (const std::string& path : {options.a, options.b}) invocation.header().inputs.push_back({path, sha256_of_file(path)});
+  for (const std::string& path : {options.a, options.b})
+    invocation.header().inputs.push_back({path, sha256_of_file(path)});
   if (invocation.dry_run()) return;
   const report::Comparison comparison = report::compare(options.a, options.b);
   if (invocation.wants_report()) invocation.write_report(report::compare_page(invocation.header(), comparison));
@@ -29,7 +30,8 @@ void run(const Options& options) {
 
 void add_compare_command(CLI::App& app) {
   auto options = std::make_shared<Options>();
-  CLI::App* command = app.add_subcommand("compare", "Two results of one command beside each other: what changed, by how much");
+  CLI::App* command =
+      app.add_subcommand("compare", "Two results of one command beside each other: what changed, by how much");
   command->add_option("A", options->a, "a result, JSON")->required()->type_name("A.json");
   command->add_option("B", options->b, "another, JSON")->required()->type_name("B.json");
   add_common_options(*command, options->common);

@@ -8,6 +8,7 @@
 
 #include "base/atomic_file.h"
 #include "base/csv.h"
+#include "base/sha256.h"
 #include "commands.h"
 #include "invocation.h"
 #include "report/columns.h"
@@ -39,7 +40,8 @@ Header read_header(const std::string& path) {
       if (csv.next_number(value) == Cell::number) low[c] = std::min(low[c], value), high[c] = std::max(high[c], value);
     }
   for (std::size_t c = 0; c < low.size(); ++c)
-    header.spans.push_back(low[c] <= high[c] ? report::digits(low[c], 4) + " to " + report::digits(high[c], 4) : "no numbers");
+    header.spans.push_back(low[c] <= high[c] ? report::digits(low[c], 4) + " to " + report::digits(high[c], 4)
+                                             : "no numbers");
   return header;
 }
 
@@ -55,24 +57,31 @@ std::string toml_quoted(const std::string& text) {
 // The [columns] line of one column; a comment where nothing need or can be said.
 std::string column_line(const ColumnGuess& g, const std::string& span) {
   const std::string note = "  # " + span + "\n";
-  if (!g.signal) return fmt::format("# {} = {{ signal = \"?\", unit = \"?\" }}  # not recognised: {}; ignored as it is\n", toml_quoted(g.cell), span);
+  if (!g.signal)
+    return fmt::format("# {} = {{ signal = \"?\", unit = \"?\" }}  # not recognised: {}; ignored as it is\n",
+                       toml_quoted(g.cell), span);
   const std::string signal(info(*g.signal).name);
   if (g.canonical && g.unit_in_brackets) return fmt::format("# {} is read as it is{}", toml_quoted(g.cell), note);
   const Unit* unit = find_unit(g.unit);
   const bool volts = unit && unit->dimension == Dimension::voltage;
   if (volts)
-    return fmt::format("{} = {{ signal = \"{}\", unit = \"{}\", gain = \"1 {}/V\", offset = \"0 {}\" }}  # {}; give the sensor's gain\n",
-                       toml_quoted(g.cell), signal, g.unit, info(*g.signal).si_unit, info(*g.signal).si_unit, span);
+    return fmt::format(
+        "{} = {{ signal = \"{}\", unit = \"{}\", gain = \"1 {}/V\", offset = \"0 {}\" }}  # {}; give the sensor's "
+        "gain\n",
+        toml_quoted(g.cell), signal, g.unit, info(*g.signal).si_unit, info(*g.signal).si_unit, span);
   if (g.unit_in_brackets) return fmt::format("{} = {{ signal = \"{}\" }}{}", toml_quoted(g.cell), signal, note);
   if (g.unit.empty())
-    return fmt::format("{} = {{ signal = \"{}\", unit = \"{}\" }}  # {}; the header has no unit: check this one\n", toml_quoted(g.cell),
-                       signal, info(*g.signal).si_unit, span);
+    return fmt::format("{} = {{ signal = \"{}\", unit = \"{}\" }}  # {}; the header has no unit: check this one\n",
+                       toml_quoted(g.cell), signal, info(*g.signal).si_unit, span);
   return fmt::format("{} = {{ signal = \"{}\", unit = \"{}\" }}{}", toml_quoted(g.cell), signal, g.unit, note);
 }
 
 std::string rig_file(const std::string& log, const Header& header) {
-  std::string text = "# Rig file, begun by 'servodx init' from " + toml_quoted(log) + ".\n" + std::string(shipped::rig_comments) + "\n[columns]\n";
-  text += "# The log's columns. gain = \"-1\" turns a sign: positive command, spool and piston go together (docs/tutorial.md).\n";
+  std::string text = "# Rig file, begun by 'servodx init' from " + toml_quoted(log) + ".\n" +
+                     std::string(shipped::rig_comments) + "\n[columns]\n";
+  text +=
+      "# The log's columns. gain = \"-1\" turns a sign: positive command, spool and piston go together "
+      "(docs/tutorial.md).\n";
   for (std::size_t c = 0; c < header.columns.size(); ++c) text += column_line(header.columns[c], header.spans[c]);
   return text;
 }
@@ -82,7 +91,8 @@ void run(const Options& options) {
   require_option(options.common.rig.empty(), "--rig", "is what this command writes", "leave it out");
   invocation.check_files({options.log}, {options.output, options.table});
   for (const std::string& output : {options.output, options.table})
-    require_option(!std::filesystem::exists(output), output, "is there already, and may hold your work", "name another file or remove it");
+    require_option(!std::filesystem::exists(output), output, "is there already, and may hold your work",
+                   "name another file or remove it");
   const Header header = read_header(options.log);
   invocation.header().inputs.push_back({options.log, sha256_of_file(options.log)});
   if (invocation.dry_run()) return;
@@ -96,7 +106,8 @@ void run(const Options& options) {
     const ColumnGuess& g = header.columns[c];
     const std::string signal = g.signal ? std::string(info(*g.signal).name) : "";
     table.row({g.cell, g.signal ? signal : "not recognised", g.unit, header.spans[c]});
-    columns.push_back({{"column", g.cell}, {"signal", g.signal ? report::Json(signal) : report::Json(nullptr)}, {"unit", g.unit}});
+    columns.push_back(
+        {{"column", g.cell}, {"signal", g.signal ? report::Json(signal) : report::Json(nullptr)}, {"unit", g.unit}});
   }
   std::string text = fmt::format("wrote {} and {}\n{}", options.output, options.table, table.text());
   try {
@@ -105,7 +116,8 @@ void run(const Options& options) {
   } catch (const InputError& open) {
     text += fmt::format("to be mended in {} before the log reads:\n  {}\n", options.output, open.what());
   }
-  text += fmt::format("next: fill in the data sheet in {}, then 'servodx check-log {} --rig {}'\n", options.output, options.log, options.output);
+  text += fmt::format("next: fill in the data sheet in {}, then 'servodx check-log {} --rig {}'\n", options.output,
+                      options.log, options.output);
   invocation.finish(text, {{"rig", options.output}, {"table", options.table}, {"columns", columns}});
 }
 
@@ -113,7 +125,8 @@ void run(const Options& options) {
 
 void add_init_command(CLI::App& app) {
   auto options = std::make_shared<Options>();
-  CLI::App* command = app.add_subcommand("init", "A commented rig file and a parameter table to begin with, from a log's header");
+  CLI::App* command =
+      app.add_subcommand("init", "A commented rig file and a parameter table to begin with, from a log's header");
   command->add_option("LOG", options->log, "a rig log with your own column names, CSV")->required();
   command->add_option("-o,--output", options->output, "the rig file")->type_name("RIG.toml")->capture_default_str();
   command->add_option("--table", options->table, "the parameter table")->type_name("PARAMS.csv")->capture_default_str();

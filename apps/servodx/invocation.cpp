@@ -107,7 +107,8 @@ const std::atomic<bool>& stop_on_interrupt() {
 std::string shipped_path(const std::string& path) {
   std::error_code ignored;
   if (fs::exists(path, ignored)) return path;
-  const fs::path installed = fs::read_symlink("/proc/self/exe", ignored).parent_path().parent_path() / "share/servodx" / path;
+  const fs::path installed =
+      fs::read_symlink("/proc/self/exe", ignored).parent_path().parent_path() / "share/servodx" / path;
   return fs::exists(installed, ignored) ? installed.string() : path;
 }
 
@@ -156,10 +157,14 @@ bool Invocation::dry_run() const {
   }
   report::Columns table("ll", 2);
   for (const auto& [key, value] : settings.items())
-    table.row({key, key == "threads" && value == 0 ? "all" : value.is_string() ? value.get<std::string>() : value.dump()});
-  for (const report::InputFile& file : header_.inputs) table.row({"input", file.path + "  " + file.sha256.substr(0, 12)});
+    table.row({key, key == "threads" && value == 0 ? "all"
+                    : value.is_string()            ? value.get<std::string>()
+                                                   : value.dump()});
+  for (const report::InputFile& file : header_.inputs)
+    table.row({"input", file.path + "  " + file.sha256.substr(0, 12)});
   for (const std::string& output : outputs_) table.row({"output", output});
-  print(header_.command + ", dry run: everything was read and checked, nothing is computed or written\n" + table.text());
+  print(header_.command + ", dry run: everything was read and checked, nothing is computed or written\n" +
+        table.text());
   return true;
 }
 

@@ -21,10 +21,10 @@ namespace servodx {
 enum ExitCode { ran = 0, failed_inside = 1, refused = 2, found_fault = 10, found_unknown = 11, interrupted = 130 };
 
 struct CommonOptions {
-  std::string json;  // result file; "-": standard output, and no text there; empty: none
+  std::string json;    // result file; "-": standard output, and no text there; empty: none
   std::string report;  // page, HTML; empty: none
-  std::string rig;   // rig.toml; empty: none
-  int threads = 0;   // 0: all
+  std::string rig;     // rig.toml; empty: none
+  int threads = 0;     // 0: all
   std::uint64_t seed = 1;
   bool quiet = false;
   bool dry_run = false;

@@ -12,7 +12,9 @@
 namespace servodx {
 namespace {
 
-std::vector<const CLI::App*> commands_of(const CLI::App& app) { return app.get_subcommands([](const CLI::App*) { return true; }); }
+std::vector<const CLI::App*> commands_of(const CLI::App& app) {
+  return app.get_subcommands([](const CLI::App*) { return true; });
+}
 
 // "--json", "-o": as typed.
 std::vector<std::string> names_of(const CLI::Option& option) {
@@ -146,7 +148,8 @@ std::string man_option(const CLI::Option& option) {
 
 std::string man(const CLI::App& app) {
   std::string text = fmt::format(".TH SERVODX 1 \"\" \"servodx {}\" \"User Commands\"\n", SERVODX_VERSION);
-  text += ".SH NAME\nservodx \\- " + roff(app.get_description()) + "\n.SH SYNOPSIS\n.B servodx\n\\fICOMMAND\\fR [\\fIOPTION\\fR ...]\n";
+  text += ".SH NAME\nservodx \\- " + roff(app.get_description()) +
+          "\n.SH SYNOPSIS\n.B servodx\n\\fICOMMAND\\fR [\\fIOPTION\\fR ...]\n";
   text += ".SH COMMANDS\n";
   std::string common;
   for (const CLI::App* command : commands_of(app)) {
@@ -163,8 +166,10 @@ std::string man(const CLI::App& app) {
   }
   text += ".SH COMMON OPTIONS\n" + common;
   text +=
-      ".SH EXIT STATUS\n.TP\n0\nit ran, whatever the verdict\n.TP\n1\nit failed inside\n.TP\n2\nthe call or an input was "
-      "refused; nothing is written\n.TP\n10, 11\nwith \\fBdiagnose \\-\\-exit\\-code\\fR: a fault; unknown\n.TP\n130\ninterrupted; "
+      ".SH EXIT STATUS\n.TP\n0\nit ran, whatever the verdict\n.TP\n1\nit failed inside\n.TP\n2\nthe call or an input "
+      "was "
+      "refused; nothing is written\n.TP\n10, 11\nwith \\fBdiagnose \\-\\-exit\\-code\\fR: a fault; "
+      "unknown\n.TP\n130\ninterrupted; "
       "the best so far is written\n";
   return text;
 }

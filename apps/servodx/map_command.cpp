@@ -56,8 +56,8 @@ void run(const Options& options) {
   require_option(all || find_map(options.model), "--model", "there is no map '" + options.model + "'",
                  "use one of " + report::join(names) + ", or all with --svg");
   require_option(!all || options.output.empty(), "--output", "holds one map", "name a model, or leave out -o");
-  require_option(!options.output.empty() || !options.svg.empty() || !options.common.report.empty(), "--output", "is missing",
-                 "add -o MAP.csv, or --svg FILE for a picture");
+  require_option(!options.output.empty() || !options.svg.empty() || !options.common.report.empty(), "--output",
+                 "is missing", "add -o MAP.csv, or --svg FILE for a picture");
   Invocation invocation("map", options.common);
   std::vector<std::string> outputs;
   for (const std::string& path : {options.output, options.svg})

@@ -1,6 +1,6 @@
 // `servodx rerun MANIFEST`: makes a result again and says whether every bit is the same.
-#include <fmt/format.h>
 #include <fcntl.h>
+#include <fmt/format.h>
 #include <spawn.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -71,7 +71,9 @@ int run_again(const report::Json& arguments) {
 // What stood there before, to be put back where the new bits are not better.
 class Before {
  public:
-  void keep(const std::string& path) { bytes_[path] = fs::exists(path) ? std::optional(read_file(path)) : std::nullopt; }
+  void keep(const std::string& path) {
+    bytes_[path] = fs::exists(path) ? std::optional(read_file(path)) : std::nullopt;
+  }
   void put_back(const std::string& path) const {
     if (const auto& bytes = bytes_.at(path))
       write_file(path, *bytes);
@@ -118,8 +120,9 @@ int run(const Options& options) {
   before.put_back(manifest_path);
   fs::current_path(home);
   const auto command = manifest["command"].get<std::string>();
-  invocation.finish(fmt::format("{} {}\n{}", command, all_same ? "reproduced bit for bit" : "NOT reproduced", table.text()),
-                    {{"rerun", command}, {"same", all_same}, {"outputs", outputs}});
+  invocation.finish(
+      fmt::format("{} {}\n{}", command, all_same ? "reproduced bit for bit" : "NOT reproduced", table.text()),
+      {{"rerun", command}, {"same", all_same}, {"outputs", outputs}});
   return all_same ? ran : ended == interrupted ? interrupted : failed_inside;
 }
 
@@ -129,8 +132,9 @@ void add_rerun_command(CLI::App& app, int& exit_code) {
   auto options = std::make_shared<Options>();
   CLI::App* command = app.add_subcommand("rerun", "Make a result again from its manifest and compare every bit");
   command->add_option("MANIFEST", options->manifest, "FILE.manifest.json, beside the result")->required();
-  command->footer("Outputs are compared, not overwritten: one that differs is left as FILE.rerun, and the exit code is 1.\n"
-                  "Of a JSON result, `seconds` is left out of the comparison.");
+  command->footer(
+      "Outputs are compared, not overwritten: one that differs is left as FILE.rerun, and the exit code is 1.\n"
+      "Of a JSON result, `seconds` is left out of the comparison.");
   add_common_options(*command, options->common);
   command->callback([options, &exit_code] { exit_code = run(*options); });
 }

@@ -68,7 +68,8 @@ int one_log(Options& options, Invocation& invocation, const rig::RigModel& model
   const std::size_t samples = log.columns.front().value.size();
   const std::string truth = truth_path(options.output);
   if (invocation.wants_report())
-    invocation.write_report(report::columns_page(invocation.header(), "Log of the virtual rig: " + options.run.excitation, log.columns));
+    invocation.write_report(
+        report::columns_page(invocation.header(), "Log of the virtual rig: " + options.run.excitation, log.columns));
   invocation.finish(fmt::format("wrote {} ({} samples) and {}\n", options.output, samples, truth),
                     {{"output", options.output}, {"truth_file", truth}, {"samples", samples}, {"truth", log.truth}});
   return stop ? interrupted : ran;

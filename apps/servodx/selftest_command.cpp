@@ -19,7 +19,8 @@ struct Options {
 void run(const Options& options) {
   SelftestOptions how = options.selftest;
   require_option(how.repeats >= 2, "--repeats", "must be at least 2", "20 tell a coverage to about 10 %");
-  require_option(how.spread > 0 && how.spread <= 0.25, "--spread", "must lie between 0 and 0.25", "0.05 of a row's interval");
+  require_option(how.spread > 0 && how.spread <= 0.25, "--spread", "must lie between 0 and 0.25",
+                 "0.05 of a row's interval");
   Invocation invocation("selftest", options.common);
   invocation.check_files({options.log, options.params}, {});
   const RigFile rig = invocation.rig();
@@ -46,8 +47,12 @@ void add_selftest_command(CLI::App& app) {
   CLI::App* command =
       app.add_subcommand("selftest", "Recover known truths on a log's own input: bias and coverage of the fit");
   command->add_option("LOG", options->log, "the rig log whose input and noise are used, CSV")->required();
-  command->add_option("--params", options->params, "parameter table about which truths are drawn")->required()->type_name("P");
-  command->add_option("--repeats", options->selftest.repeats, "truths to recover")->type_name("N")->capture_default_str();
+  command->add_option("--params", options->params, "parameter table about which truths are drawn")
+      ->required()
+      ->type_name("P");
+  command->add_option("--repeats", options->selftest.repeats, "truths to recover")
+      ->type_name("N")
+      ->capture_default_str();
   command->add_option("--spread", options->selftest.spread, "of the truths, as a part of each row's range")
       ->type_name("PART")
       ->capture_default_str();

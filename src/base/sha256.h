@@ -7,7 +7,7 @@
 namespace servodx {
 
 std::string sha256(std::string_view bytes);
-std::string sha256_base64(std::string_view bytes);  // as content policies of HTML pages write it
+std::string sha256_base64(std::string_view bytes);    // as content policies of HTML pages write it
 std::string sha256_of_file(const std::string& path);  // throws InputError where the file cannot be read
 
 // Piece by piece.

@@ -34,14 +34,14 @@ struct Finding {
 struct LogSurvey {
   std::string path, sha256;
   std::size_t samples = 0;
-  double duration = 0, rate = 0;         // [s], [Hz] from the usual step
-  double jitter = 0;                     // rms of the steps about the usual one, gaps left out, over it
-  std::size_t gaps = 0, lost = 0;        // gaps in time; samples they took
-  double longest_gap = 0;                // [s]
-  std::optional<double> temperature;     // [K] mean
-  double drive_span = 0;                 // [A] greatest less least drive
-  double drive_band = 0;                 // [Hz] of the sine that changes as fast as the drive
-  bool closed_loop = false;              // it has a setpoint
+  double duration = 0, rate = 0;      // [s], [Hz] from the usual step
+  double jitter = 0;                  // rms of the steps about the usual one, gaps left out, over it
+  std::size_t gaps = 0, lost = 0;     // gaps in time; samples they took
+  double longest_gap = 0;             // [s]
+  std::optional<double> temperature;  // [K] mean
+  double drive_span = 0;              // [A] greatest less least drive
+  double drive_band = 0;              // [Hz] of the sine that changes as fast as the drive
+  bool closed_loop = false;           // it has a setpoint
   std::vector<ChannelSurvey> channels;
   std::vector<Finding> findings;
 };
@@ -52,15 +52,15 @@ void compare_surveys(std::vector<LogSurvey>& surveys);
 
 struct Identifiable {
   std::string name, unit;
-  std::string verdict;  // bounded | flat | confounded
-  double nominal = 0, std_error = 0;         // [unit]; NaN where held
+  std::string verdict;                // bounded | flat | confounded
+  double nominal = 0, std_error = 0;  // [unit]; NaN where held
   std::vector<std::string> confounded_with;
 };
 
 struct Visible {
   std::string fault, unit;
-  double least = 0, typical = 0;              // severities
-  double at_least = 0, at_typical = 0;        // deviates
+  double least = 0, typical = 0;        // severities
+  double at_least = 0, at_typical = 0;  // deviates
 };
 
 struct Promise {

@@ -236,7 +236,7 @@ Baseline make_baseline(const std::vector<Log>& logs, const Table& tuned, const R
     const Assessment a = assess(logs[i], tuned, rig, options);
     if (options.stop && options.stop->load()) break;
     b.scores.push_back({a.log, a.sha256, a.score, a.hypotheses.front().adequacy,
-                        a.explanations.empty() ? Explanation{} : a.explanations.front()});
+                        a.explanations.empty() ? Candidate{} : a.explanations.front()});
     b.adequacy_limit = std::max(b.adequacy_limit, a.hypotheses.front().adequacy);
     total += a.simulations;
     if (simulations) *simulations += a.simulations;

@@ -25,8 +25,8 @@ struct DiagnoseOptions {
 struct HypothesisResult {
   std::string name;     // "healthy" or a fault's label
   std::string meaning;  // in words
-  double misfit = 0;  // penalised -2 log likelihood
-  double gain = 0;    // misfit of healthy less this one
+  double misfit = 0;    // penalised -2 log likelihood
+  double gain = 0;      // misfit of healthy less this one
   double probability = 0;
   double severity = 0, severity_lower = 0, severity_upper = 0;  // 95 %
   std::string unit;
@@ -44,7 +44,7 @@ struct Assessment {
   std::optional<double> onset;               // [s] change point where one stands out
   double null = 0;                           // [fraction of rated] healthy hypothesis
   std::vector<ParameterResult> parameters;   // what moved under the best hypothesis, and the nuisances
-  std::vector<Explanation> explanations;     // what each hypothesis that could be fitted says the log should be
+  std::vector<Candidate> explanations;       // what each hypothesis that could be fitted says the log should be
   std::vector<std::string> notes;
   long simulations = 0, failed_simulations = 0;
 };
@@ -60,7 +60,7 @@ struct Baseline {
   struct Score {
     std::string log, sha256;
     double score = 0, adequacy = 0;
-    Explanation healthy = {};  // not in the file: for the report
+    Candidate healthy = {};  // not in the file: for the report
   };
   std::vector<Score> scores;
   double adequacy_limit = 0;  // largest adequacy of a healthy log

@@ -30,8 +30,8 @@ double left_over(const Eigen::VectorXd& r, const Eigen::MatrixXd& j) {
   return (r - j * j.colPivHouseholderQr().solve(r)).norm();
 }
 
-std::vector<Identifiable> identifiable_rows(const FitProblem& problem, const Table& table, const Eigen::MatrixXd& jacobian,
-                                            const Point& x) {
+std::vector<Identifiable> identifiable_rows(const FitProblem& problem, const Table& table,
+                                            const Eigen::MatrixXd& jacobian, const Point& x) {
   std::vector<char> candidates;
   for (const FreeValue& f : problem.free()) candidates.push_back(f.log < 0);
   const Identifiability id = identify(jacobian, candidates);
@@ -48,7 +48,8 @@ std::vector<Identifiable> identifiable_rows(const FitProblem& problem, const Tab
     const auto k = static_cast<long>(j);
     const double per_unit = f.log_scale ? value * std::log(f.upper / f.lower) : f.upper - f.lower;
     if (kept[j]) row.std_error = std::sqrt(std::max(0.0, covariance(k, k))) * per_unit;
-    for (const int other : id.confounded_with[j]) row.confounded_with.push_back(problem.free()[static_cast<std::size_t>(other)].name);
+    for (const int other : id.confounded_with[j])
+      row.confounded_with.push_back(problem.free()[static_cast<std::size_t>(other)].name);
     rows.push_back(std::move(row));
   }
   return rows;

@@ -9,13 +9,13 @@
 namespace servodx {
 namespace {
 
-constexpr double gap_over_step = 1.5;       // a step this much over the usual one lost a sample
-constexpr double much_jitter = 0.02;        // rms of the steps over the usual one
-constexpr double much_clipped = 0.01;       // part of the samples
-constexpr std::size_t clipped_run = 5;      // samples: shorter stays at an extreme are chance
-constexpr double restless_run = 3.0;         // samples: a live signal repeats a value for fewer, on average
-constexpr double many_repeats = 0.02;       // part of the rows that equal the one before in every measured signal
-constexpr double coarse_step = 1.0 / 500;   // resolution over range from which steps show
+constexpr double gap_over_step = 1.5;          // a step this much over the usual one lost a sample
+constexpr double much_jitter = 0.02;           // rms of the steps over the usual one
+constexpr double much_clipped = 0.01;          // part of the samples
+constexpr std::size_t clipped_run = 5;         // samples: shorter stays at an extreme are chance
+constexpr double restless_run = 3.0;           // samples: a live signal repeats a value for fewer, on average
+constexpr double many_repeats = 0.02;          // part of the rows that equal the one before in every measured signal
+constexpr double coarse_step = 1.0 / 500;      // resolution over range from which steps show
 constexpr double cold = 283.15, hot = 343.15;  // [K] beyond these oil is far from the table's 40 degC
 constexpr double other_rate = 1.2, other_temperature = 15.0;  // [K] beside the other logs
 constexpr double kelvin = 273.15;
@@ -80,8 +80,8 @@ ChannelSurvey survey_channel(const Log& log, Signal signal) {
   for (const double v : x)
     if (std::isfinite(v)) c.lowest = std::min(c.lowest, v), c.highest = std::max(c.highest, v);
   c.noise = noise_of(x, channel.resolution);
-  // Flat stays at an extreme mean a limit only where the signal is restless elsewhere: a temperature that creeps through
-  // its steps is at no limit.
+  // Flat stays at an extreme mean a limit only where the signal is restless elsewhere: a temperature that creeps
+  // through its steps is at no limit.
   std::size_t at_extreme = 0, elsewhere = 0, runs = 0;
   for (std::size_t k = 0; k < x.size();) {
     std::size_t end = k + 1;
@@ -115,13 +115,18 @@ double repeats(const Log& log) {
 void find_suspicious(const Log& log, LogSurvey& s) {
   const auto found = [&](const char* kind, std::string text) { s.findings.push_back({kind, std::move(text)}); };
   if (s.jitter > much_jitter)
-    found("jitter", fmt::format("time stamps jitter by {:.2g} % of a step (rms): they are used as they are", 100 * s.jitter));
+    found("jitter",
+          fmt::format("time stamps jitter by {:.2g} % of a step (rms): they are used as they are", 100 * s.jitter));
   if (s.gaps > 0)
-    found("gaps", fmt::format("{} gap{} in time, {} sample{} lost, the longest {:.3g} ms; the command across a gap is not known",
-                              s.gaps, s.gaps == 1 ? "" : "s", s.lost, s.lost == 1 ? "" : "s", 1e3 * s.longest_gap));
+    found(
+        "gaps",
+        fmt::format("{} gap{} in time, {} sample{} lost, the longest {:.3g} ms; the command across a gap is not known",
+                    s.gaps, s.gaps == 1 ? "" : "s", s.lost, s.lost == 1 ? "" : "s", 1e3 * s.longest_gap));
   if (const double part = repeats(log); part > many_repeats)
-    found("repeats", fmt::format("{:.2g} % of the rows repeat the row before in every measured signal: the source is slower "
-                                 "than the log", 100 * part));
+    found("repeats",
+          fmt::format("{:.2g} % of the rows repeat the row before in every measured signal: the source is slower "
+                      "than the log",
+                      100 * part));
   if (s.temperature && (*s.temperature < cold || *s.temperature > hot))
     found("temperature", fmt::format("{} oil, {:.0f} degC: judge it against fault-free logs of like temperature",
                                      *s.temperature < cold ? "cold" : "hot", *s.temperature - kelvin));
@@ -130,10 +135,13 @@ void find_suspicious(const Log& log, LogSurvey& s) {
     if (c.missing > 0) found("missing", fmt::format("{}: {} samples are missing", name, c.missing));
     if (!is_measured(c.signal)) continue;
     if (c.clipped > much_clipped)
-      found("saturation", fmt::format("{}: {:.2g} % of the samples lie flat on its lowest or highest value: a sensor or "
-                                      "converter at its limit?", name, 100 * c.clipped));
+      found("saturation",
+            fmt::format("{}: {:.2g} % of the samples lie flat on its lowest or highest value: a sensor or "
+                        "converter at its limit?",
+                        name, 100 * c.clipped));
     const double range = c.highest - c.lowest;
-    if (simulated_index(c.signal) >= 0 && range > 0 && c.resolution > coarse_step * range && c.noise < 1.01 * c.resolution / std::sqrt(12.0))
+    if (simulated_index(c.signal) >= 0 && range > 0 && c.resolution > coarse_step * range &&
+        c.noise < 1.01 * c.resolution / std::sqrt(12.0))
       found("quantisation", fmt::format("{}: steps of {:.2g} {} hide the noise and are {:.2g} % of what it moves", name,
                                         c.resolution, info(c.signal).si_unit, 100 * c.resolution / range));
   }
@@ -162,7 +170,8 @@ LogSurvey survey(const Log& log, const RigFile&) {
     if (n > 0) s.temperature = sum / static_cast<double>(n);
   }
   for (const SignalInfo& signal : signal_list)
-    if (signal.signal != Signal::time && log.has(signal.signal)) s.channels.push_back(survey_channel(log, signal.signal));
+    if (signal.signal != Signal::time && log.has(signal.signal))
+      s.channels.push_back(survey_channel(log, signal.signal));
   const Signal drive = log.has(Signal::coil_current) ? Signal::coil_current : Signal::command;
   for (const ChannelSurvey& c : s.channels)
     if (c.signal == drive) s.drive_span = c.highest - c.lowest;
@@ -182,7 +191,8 @@ void compare_surveys(std::vector<LogSurvey>& surveys) {
   for (LogSurvey& s : surveys) {
     if (s.rate > other_rate * rate || s.rate < rate / other_rate)
       s.findings.push_back({"rate", fmt::format("{:.4g} Hz, the other logs {:.4g} Hz", s.rate, rate)});
-    const bool said = std::any_of(s.findings.begin(), s.findings.end(), [](const Finding& f) { return f.kind == "temperature"; });
+    const bool said =
+        std::any_of(s.findings.begin(), s.findings.end(), [](const Finding& f) { return f.kind == "temperature"; });
     if (s.temperature && !said && std::abs(*s.temperature - temperature) > other_temperature)
       s.findings.push_back({"temperature", fmt::format("{:.0f} degC, the other logs about {:.0f} degC",
                                                        *s.temperature - kelvin, temperature - kelvin)});

@@ -16,14 +16,14 @@ std::vector<double> behind_gap(std::size_t samples, const std::vector<double>& v
 
 }  // namespace
 
-Replay replay(const Log& log, const Table& tuned, const RigFile& rig, const std::vector<Explanation>& explanations) {
+Replay replay(const Log& log, const Table& tuned, const RigFile& rig, const std::vector<Candidate>& explanations) {
   const LogData data = prepare(log, rig, moving_average_of(tuned));
   const ErrorModel error = error_model_of(tuned);
   const std::size_t samples = data.scenario.time.size();
   Replay out{log.path, data.scenario.time, data.scenario.command, data.scenario.current_measured, {}};
   for (const FitChannel& c : data.channels)
     out.channels.push_back({c.signal, log.channels[index(c.signal)].unit, c.measured, {}, {}});
-  for (const Explanation& e : explanations) {
+  for (const Candidate& e : explanations) {
     if (e.candidate.empty()) continue;  // a hypothesis that could not be fitted
     const LogData part = e.from > 0 ? slice(data, e.from, samples) : data;
     const FitProblem problem({&part}, e.candidate, {});
@@ -31,9 +31,8 @@ Replay replay(const Log& log, const Table& tuned, const RigFile& rig, const std:
     if (!t.ok) continue;
     for (std::size_t c = 0; c < data.channels.size(); ++c) {
       const std::vector<double>& simulated = t.signals[data.channels[c].simulated];
-      out.channels[c].simulated.push_back(
-          {e.name, behind_gap(samples, simulated),
-           behind_gap(samples, problem.raw_residual(0, static_cast<int>(c), t))});
+      out.channels[c].simulated.push_back({e.name, behind_gap(samples, simulated),
+                                           behind_gap(samples, problem.raw_residual(0, static_cast<int>(c), t))});
       if (out.channels[c].sigma.empty() && e.from == 0)
         out.channels[c].sigma = sigma_of(error.find(data.channels[c].signal), data.channels[c].noise,
                                          activity(data.scenario.time, simulated));

@@ -12,7 +12,7 @@
 
 namespace servodx {
 
-struct Explanation {
+struct Candidate {
   std::string name;  // "healthy", a fault's label, "tuned"
   ParameterVector candidate;
   std::size_t from = 0;  // first sample it speaks of: a fault that steps in explains what follows
@@ -40,6 +40,6 @@ struct Replay {
 };
 
 // The log prepared as the table says it was tuned.
-Replay replay(const Log& log, const Table& tuned, const RigFile& rig, const std::vector<Explanation>& explanations);
+Replay replay(const Log& log, const Table& tuned, const RigFile& rig, const std::vector<Candidate>& explanations);
 
 }  // namespace servodx

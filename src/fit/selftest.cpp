@@ -15,9 +15,9 @@
 namespace servodx {
 namespace {
 
-constexpr double null_limit = 0.1;       // [fraction of rated] as in a tune
-constexpr double nuisance_share = 0.5;   // of the prior's width: true nuisances stay likely under it
-constexpr double inside = 0.02;          // truths keep this far from the ends of their interval
+constexpr double null_limit = 0.1;      // [fraction of rated] as in a tune
+constexpr double nuisance_share = 0.5;  // of the prior's width: true nuisances stay likely under it
+constexpr double inside = 0.02;         // truths keep this far from the ends of their interval
 constexpr int iterations = 25;
 
 // The log as the model would have written it with these parameters.
@@ -92,7 +92,8 @@ SelftestResult selftest(const Log& log, const Table& table, const RigFile& rig, 
   }
   const std::size_t n = free.size();
   if (n == 0)
-    throw InputError({.file = log.path}, "this log shows none of the free parameters", "give a log that moves the valve farther");
+    throw InputError({.file = log.path}, "this log shows none of the free parameters",
+                     "give a log that moves the valve farther");
   free.insert(free.end(), nuisances.begin(), nuisances.end());
 
   Progress progress("selftest", {.quiet = options.quiet});
@@ -106,7 +107,9 @@ SelftestResult selftest(const Log& log, const Table& table, const RigFile& rig, 
     const FitProblem maker({&data}, base, free, simulate_options);
     Point truth = maker.start();
     for (std::size_t j = 0; j < truth.size(); ++j) {
-      const double width = j < n ? options.spread : std::isfinite(free[j].prior_sd) ? nuisance_share * free[j].prior_sd : options.spread;
+      const double width = j < n                             ? options.spread
+                           : std::isfinite(free[j].prior_sd) ? nuisance_share * free[j].prior_sd
+                                                             : options.spread;
       truth[j] = std::clamp(random.normal(truth[j], width), inside, 1.0 - inside);
     }
     const Trajectory made = maker.trajectories(truth).front();

@@ -32,7 +32,8 @@ struct SelftestRow {
   double rms = 0;          // [unit] of estimate less truth
   double std_error = 0;    // [unit] root mean square of what the fit says of itself
   double bias_sigmas = 0;  // bias over its own standard error: beyond 3 it is real
-  int covered = 0, counted = 0;  // 95 % intervals that hold the truth; repeats in which the row stood at a bound say none
+  int covered = 0,
+      counted = 0;  // 95 % intervals that hold the truth; repeats in which the row stood at a bound say none
 };
 
 struct SelftestResult {
@@ -40,7 +41,7 @@ struct SelftestResult {
   std::vector<SelftestRow> rows;
   std::vector<std::string> held;  // rows that this log cannot tell: at the table's value in truth and fit alike
   int repeats = 0, failed = 0;
-  long covered = 0, counted = 0;  // all rows together
+  long covered = 0, counted = 0;                  // all rows together
   double coverage_lower = 0, coverage_upper = 0;  // 95 % interval of the share, repeats taken as independent
   long simulations = 0, failed_simulations = 0;
   bool interrupted = false;

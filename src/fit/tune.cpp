@@ -88,8 +88,8 @@ void hold_out(FitProblem& problem, double part) {
     }
 }
 
-LeastSquaresResult local(Tuning& run, FitProblem& problem, const Point& x, const std::string& stage,
-                         int iterations, bool first, double from, double to) {
+LeastSquaresResult local(Tuning& run, FitProblem& problem, const Point& x, const std::string& stage, int iterations,
+                         bool first, double from, double to) {
   LeastSquaresOptions o;
   o.max_iterations = iterations;
   o.difference = Difference::forward;
@@ -311,7 +311,8 @@ TuneResult tune(const std::vector<Log>& logs, const Table& nominal, const RigFil
   std::vector<LeastSquaresResult> ends;
   for (std::size_t s = 0; s < starts.size() && !(run.stopped() && s > 0); ++s) {
     const double a = 0.35 + 0.35 * static_cast<double>(s) / static_cast<double>(starts.size());
-    ends.push_back(local(run, fit, starts[s], fmt::format("start {}", s + 1), 6, true, a, a + 0.35 / static_cast<double>(starts.size())));
+    ends.push_back(local(run, fit, starts[s], fmt::format("start {}", s + 1), 6, true, a,
+                         a + 0.35 / static_cast<double>(starts.size())));
     out.starts.push_back(ends.back().cost);
   }
   const std::size_t best =
@@ -392,11 +393,8 @@ TuneResult tune(const std::vector<Log>& logs, const Table& nominal, const RigFil
     const ParameterVector v = fit.candidate(x, static_cast<int>(l));
     nulls.push_back(v[row::servovalve_null]);
     airs.push_back(v[row::air_fraction]);
-    LogResult lr{run.data[l].path,
-                 {},
-                 nulls.back(),
-                 run.data[l].scenario.command_slope.value_or(v[nuisance::command_slope]),
-                 v};
+    LogResult lr{
+        run.data[l].path, {}, nulls.back(), run.data[l].scenario.command_slope.value_or(v[nuisance::command_slope]), v};
     for (std::size_t c = 0; c < run.data[l].channels.size(); ++c) {
       const FitChannel& channel = run.data[l].channels[c];
       const auto n = channel.measured.size();

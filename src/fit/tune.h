@@ -34,8 +34,8 @@ struct ChannelResult {
 struct LogResult {
   std::string path;
   std::vector<ChannelResult> channels;
-  double null = 0;           // [fraction of rated]
-  double command_slope = 0;  // command between samples: 0 held, 1 in a line to the next
+  double null = 0;            // [fraction of rated]
+  double command_slope = 0;   // command between samples: 0 held, 1 in a line to the next
   ParameterVector candidate;  // what the fit says of this log
 };
 

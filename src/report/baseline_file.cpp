@@ -84,8 +84,11 @@ BaselineFile read_baseline(const std::string& path) {
   const Json& scores = read.at(file, "scores");
   if (!scores.is_array() || scores.empty()) read.refuse("scores", "holds no scores");
   for (const Json& s : scores)
-    b.scores.push_back({read.text(s, "scores.log"), read.text(s, "scores.sha256"),
-                        read.number(s, "scores.score", -any, any), read.number(s, "scores.adequacy", 0, any), {}});
+    b.scores.push_back({read.text(s, "scores.log"),
+                        read.text(s, "scores.sha256"),
+                        read.number(s, "scores.score", -any, any),
+                        read.number(s, "scores.adequacy", 0, any),
+                        {}});
   b.adequacy_limit = read.number(file, "adequacy_limit", 0, any);
   b.null_limit = read.number(file, "null_limit", 0, 1);
   b.tuned_sha256 = read.text(file, "tuned_sha256");

@@ -25,9 +25,10 @@ Page baseline_page(const Header& header, const Baseline& b, const std::vector<Re
   v.reasons.push_back("The promise holds for logs of like excitation and temperature as these.");
   page.verdict(v);
 
-  page.section("What fault-free logs score",
-               "The threshold is one of these scores. A log far beyond the others deserves a look: is it fault-free, is its "
-               "excitation unlike the rest?");
+  page.section(
+      "What fault-free logs score",
+      "The threshold is one of these scores. A log far beyond the others deserves a look: is it fault-free, is its "
+      "excitation unlike the rest?");
   auto order = b.scores;
   std::stable_sort(order.begin(), order.end(), [](const auto& x, const auto& y) { return x.score > y.score; });
   Bars bars{"Scores", "log", "score", {}, Mark{b.threshold, "threshold"}, {}};
@@ -40,7 +41,8 @@ Page baseline_page(const Header& header, const Baseline& b, const std::vector<Re
     for (const Replay& r : replays) {
       if (r.log != s.log) continue;
       page.section(fmt::format("{}: score {}", file_name(s.log), digits(s.score)),
-                   "The tuned model, its null and air fitted to this log, against the measurement.", &s != &order.front());
+                   "The tuned model, its null and air fitted to this log, against the measurement.",
+                   &s != &order.front());
       add_replay(page, r, {.shown = {}, .onset = {}, .logs = replays.size()});
     }
   return page;

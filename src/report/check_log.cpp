@@ -58,8 +58,9 @@ std::pair<long, long> counts(const Promise& p) {
 
 std::string promise_lead(const Promise& p) {
   const auto [known, all] = counts(p);
-  return fmt::format("{} of {} free parameters{}", known, all,
-                     p.error_known ? "" : "; an upper bound: the table is not tuned, so the model's own error is not known");
+  return fmt::format(
+      "{} of {} free parameters{}", known, all,
+      p.error_known ? "" : "; an upper bound: the table is not tuned, so the model's own error is not known");
 }
 
 }  // namespace
@@ -86,14 +87,16 @@ std::string text_of(const std::vector<LogCheck>& checks) {
     Columns rows("lrrll", 4);
     for (const Identifiable& r : check.promise->rows) {
       const HandyUnit unit = handy_unit(r.unit, r.nominal);
-      rows.row({r.name, digits(r.nominal * unit.factor), std::isfinite(r.std_error) ? "+- " + digits(r.std_error * unit.factor, 2) : "",
-                unit.name, verdict_words(r)});
+      rows.row({r.name, digits(r.nominal * unit.factor),
+                std::isfinite(r.std_error) ? "+- " + digits(r.std_error * unit.factor, 2) : "", unit.name,
+                verdict_words(r)});
     }
     text += rows.text() + "  can show (deviates; below 3 stays hidden)\n";
     Columns faults("lrrrr", 4);
     faults.row({"fault", "at", "", "at", ""});
     for (const Visible& v : check.promise->faults)
-      faults.row({v.fault, handy(v.least, v.unit), digits(v.at_least, 2), handy(v.typical, v.unit), digits(v.at_typical, 2)});
+      faults.row(
+          {v.fault, handy(v.least, v.unit), digits(v.at_least, 2), handy(v.typical, v.unit), digits(v.at_typical, 2)});
     text += faults.text();
   }
   return text;
@@ -159,7 +162,8 @@ Page check_log_page(const Header& header, const std::vector<LogCheck>& checks) {
   std::size_t suspicious = 0;
   for (const LogCheck& c : checks) suspicious += !c.survey.findings.empty();
   const bool one = checks.size() == 1;
-  Page page(header, one ? "Check of " + file_name(checks.front().survey.path) : fmt::format("Check of {} logs", checks.size()));
+  Page page(header,
+            one ? "Check of " + file_name(checks.front().survey.path) : fmt::format("Check of {} logs", checks.size()));
   Verdict v;
   v.tone = suspicious > 0 ? Tone::doubt : Tone::good;
   if (one) {
@@ -191,12 +195,17 @@ Page check_log_page(const Header& header, const std::vector<LogCheck>& checks) {
     page.section(one ? "What is in it" : s.path, one ? "" : first_line(s), !one && s.findings.empty());
     if (!one)
       for (const Finding& f : s.findings) page.text(f.kind + ": " + f.text);
-    Plot drive{.title = "drive [mA], " + drive_words(s), .x_label = "time [s]", .x = check.time, .group = s.path, .low = true,
+    Plot drive{.title = "drive [mA], " + drive_words(s),
+               .x_label = "time [s]",
+               .x = check.time,
+               .group = s.path,
+               .low = true,
                .most_rows = 4000};
     drive.series.push_back({"drive", check.drive, Role::input});
     for (double& value : drive.series.front().y) value *= 1e3;
     page.add(drive);
-    TablePart table{"Signals", "llrrrrrl", {"signal", "column", "lowest", "highest", "noise", "step", "missing", "unit"}, {}, 0};
+    TablePart table{
+        "Signals", "llrrrrrl", {"signal", "column", "lowest", "highest", "noise", "step", "missing", "unit"}, {}, 0};
     for (const ChannelSurvey& c : s.channels) {
       const InUnit in(c);
       table.rows.push_back({words(std::string(info(c.signal).name)), c.column, in.value(c.lowest), in.value(c.highest),
@@ -211,16 +220,24 @@ Page check_log_page(const Header& header, const std::vector<LogCheck>& checks) {
     Bars faults{"Which faults it can show", "fault", "deviate", {}, Mark{seen, "may show"}, 20.0};
     for (const Visible& f : check.promise->faults)
       for (const auto& [size, deviate] : {std::pair(f.least, f.at_least), std::pair(f.typical, f.at_typical)})
-        faults.rows.push_back({words(f.fault) + ", " + handy(size, f.unit), deviate, digits(deviate, 2), visibility(deviate),
-                               deviate >= plain ? Tone::good : deviate >= seen ? Tone::doubt : Tone::plain, ""});
+        faults.rows.push_back({words(f.fault) + ", " + handy(size, f.unit), deviate, digits(deviate, 2),
+                               visibility(deviate),
+                               deviate >= plain  ? Tone::good
+                               : deviate >= seen ? Tone::doubt
+                                                 : Tone::plain,
+                               ""});
     page.add(faults);
-    TablePart rows{"Which parameters it can show: " + promise_lead(*check.promise), "lrrll",
-                   {"parameter", "value", "std. error", "unit", ""}, {}, 0};
+    TablePart rows{"Which parameters it can show: " + promise_lead(*check.promise),
+                   "lrrll",
+                   {"parameter", "value", "std. error", "unit", ""},
+                   {},
+                   0};
     for (const Identifiable& r : check.promise->rows) {
       const HandyUnit unit = handy_unit(r.unit, r.nominal);
-      rows.rows.push_back({words(r.name), Cell(digits(r.nominal * unit.factor), r.nominal),
-                           std::isfinite(r.std_error) ? Cell(digits(r.std_error * unit.factor, 2), r.std_error) : Cell(""),
-                           unit.name, verdict_words(r)});
+      rows.rows.push_back(
+          {words(r.name), Cell(digits(r.nominal * unit.factor), r.nominal),
+           std::isfinite(r.std_error) ? Cell(digits(r.std_error * unit.factor, 2), r.std_error) : Cell(""), unit.name,
+           verdict_words(r)});
     }
     page.add(rows);
   }

@@ -10,8 +10,8 @@ namespace servodx::report {
 
 struct LogCheck {
   LogSurvey survey;
-  std::optional<Promise> promise;  // where a table was given
-  std::vector<double> time, drive; // [s], [A] for the page
+  std::optional<Promise> promise;   // where a table was given
+  std::vector<double> time, drive;  // [s], [A] for the page
 };
 
 std::string text_of(const std::vector<LogCheck>& checks);

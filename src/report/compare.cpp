@@ -58,8 +58,9 @@ class Comparing {
       return;
     }
     const bool numbers = a.is_number() && b.is_number();
-    to_.differences.push_back({what, shown(a), shown(b), numbers ? relative_change(a.get<double>(), b.get<double>()) : "",
-                               std::nan(""), matters});
+    to_.differences.push_back({what, shown(a), shown(b),
+                               numbers ? relative_change(a.get<double>(), b.get<double>()) : "", std::nan(""),
+                               matters});
   }
 
   void parameter(const std::string& name, const Json& a, const Json& b) {
@@ -95,7 +96,8 @@ class Comparing {
             to_.differences.push_back({name_path(path, name), "there", "not there", "", std::nan(""), false});
         }
         for (const auto& [name, item] : right)
-          if (!left.contains(name)) to_.differences.push_back({name_path(path, name), "not there", "there", "", std::nan(""), false});
+          if (!left.contains(name))
+            to_.differences.push_back({name_path(path, name), "not there", "there", "", std::nan(""), false});
         return;
       }
       return value(path, a, b);
@@ -112,11 +114,13 @@ class Comparing {
 void compare_conditions(const Json& a, const Json& b, Comparison& to) {
   for (const char* key : {"version", "seed"})
     if (a.value(key, Json()) != b.value(key, Json()))
-      to.conditions.push_back(fmt::format("{}: {} and {}", key, shown(a.value(key, Json())), shown(b.value(key, Json()))));
+      to.conditions.push_back(
+          fmt::format("{}: {} and {}", key, shown(a.value(key, Json())), shown(b.value(key, Json()))));
   const Json sa = a.value("settings", Json::object()), sb = b.value("settings", Json::object());
   for (const auto& [key, item] : sa.items())
     if (!sb.contains(key) || sb[key] != item)
-      to.conditions.push_back(fmt::format("setting {}: {} and {}", key, shown(item), sb.contains(key) ? shown(sb[key]) : "not there"));
+      to.conditions.push_back(
+          fmt::format("setting {}: {} and {}", key, shown(item), sb.contains(key) ? shown(sb[key]) : "not there"));
   const Json files_a = a.value("inputs", Json::array()), files_b = b.value("inputs", Json::array());
   const auto ia = by(files_a, "sha256"), ib = by(files_b, "sha256");
   for (const auto& [hash, file] : ia)
@@ -133,12 +137,13 @@ Comparison compare(const std::string& path_a, const std::string& path_b) {
   c.command = a["command"].get<std::string>();
   c.a = path_a, c.b = path_b;
   if (b["command"].get<std::string>() != c.command)
-    throw InputError({path_b, 0, "command"}, fmt::format("is a result of '{}', the other of '{}'", shown(b["command"]), c.command),
+    throw InputError({path_b, 0, "command"},
+                     fmt::format("is a result of '{}', the other of '{}'", shown(b["command"]), c.command),
                      "compare results of one command");
   compare_conditions(a, b, c);
   for (Json* json : {&a, &b})
-    for (const char* key : {"tool", "version", "command", "seed", "settings", "inputs", "seconds", "notes", "simulations",
-                            "failed_simulations", "output"})
+    for (const char* key : {"tool", "version", "command", "seed", "settings", "inputs", "seconds", "notes",
+                            "simulations", "failed_simulations", "output"})
       json->erase(key);
   // One log against another: diagnoses of one log each compare though the logs differ.
   if (c.command == "diagnose" && a["results"].size() == 1 && b["results"].size() == 1)
@@ -157,9 +162,13 @@ namespace {
 
 std::string headline(const Comparison& c) {
   if (c.differences.empty()) return fmt::format("The two results of '{}' are the same", c.command);
-  const auto matter = std::count_if(c.differences.begin(), c.differences.end(), [](const auto& d) { return d.matters; });
-  if (matter == 0) return fmt::format("{} figures differ, none beyond {} sigmas, and no verdict", c.differences.size(), digits(certain_sigmas));
-  return fmt::format("{} of {} differences matter: a verdict, or beyond {} sigmas", matter, c.differences.size(), digits(certain_sigmas));
+  const auto matter =
+      std::count_if(c.differences.begin(), c.differences.end(), [](const auto& d) { return d.matters; });
+  if (matter == 0)
+    return fmt::format("{} figures differ, none beyond {} sigmas, and no verdict", c.differences.size(),
+                       digits(certain_sigmas));
+  return fmt::format("{} of {} differences matter: a verdict, or beyond {} sigmas", matter, c.differences.size(),
+                     digits(certain_sigmas));
 }
 
 std::string in_sigmas(double s) { return std::isfinite(s) ? fmt::format("{}{}", s > 0 ? "+" : "", digits(s, 2)) : ""; }
@@ -190,7 +199,8 @@ Json compare_json(const Comparison& c) {
                            {"change", d.change},
                            {"sigmas", std::isfinite(d.sigmas) ? Json(d.sigmas) : Json(nullptr)},
                            {"matters", d.matters}});
-  return {{"a", c.a}, {"b", c.b}, {"of", c.command}, {"conditions", c.conditions}, {"differences", differences}, {"equal", c.same}};
+  return {{"a", c.a},       {"b", c.b}, {"of", c.command}, {"conditions", c.conditions}, {"differences", differences},
+          {"equal", c.same}};
 }
 
 Page compare_page(const Header& header, const Comparison& c) {
@@ -209,7 +219,8 @@ Page compare_page(const Header& header, const Comparison& c) {
   for (const auto& d : c.differences) {
     Cell name = d.what;
     if (d.matters) name.tone = Tone::bad;
-    table.rows.push_back({name, d.a, d.b, d.change, std::isfinite(d.sigmas) ? Cell(in_sigmas(d.sigmas), d.sigmas) : Cell("")});
+    table.rows.push_back(
+        {name, d.a, d.b, d.change, std::isfinite(d.sigmas) ? Cell(in_sigmas(d.sigmas), d.sigmas) : Cell("")});
   }
   page.add(table);
   return page;

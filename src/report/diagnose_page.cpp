@@ -51,11 +51,11 @@ std::vector<std::string> reasons(const Diagnosis& d, const Baseline& baseline) {
   if (!d.assessment.gross.empty()) why.push_back("Seen without a fit: " + d.assessment.gross + ".");
   const std::size_t n = baseline.scores.size();
   const bool beyond_all = d.p_value * static_cast<double>(n + 1) < 1.5;
-  why.push_back(fmt::format("Its error is {}; the threshold, set by {} fault-free logs, is {}. {}", digits(d.error), n,
-                            digits(d.threshold),
-                            beyond_all ? fmt::format("None of them is as far off: p = {}, the least that {} logs can show.",
-                                                     digits(d.p_value, 2), n)
-                                       : fmt::format("A fault-free log is as far off with p = {}.", digits(d.p_value, 2))));
+  why.push_back(fmt::format(
+      "Its error is {}; the threshold, set by {} fault-free logs, is {}. {}", digits(d.error), n, digits(d.threshold),
+      beyond_all
+          ? fmt::format("None of them is as far off: p = {}, the least that {} logs can show.", digits(d.p_value, 2), n)
+          : fmt::format("A fault-free log is as far off with p = {}.", digits(d.p_value, 2))));
   const HypothesisResult* healthy = find(d, "healthy");
   const HypothesisResult* best = d.fault ? find(d, *d.fault) : nearest_fault(d);
   if (above && healthy && best)
@@ -65,15 +65,20 @@ std::vector<std::string> reasons(const Diagnosis& d, const Baseline& baseline) {
         d.verdict == "unknown" ? fmt::format(" (fault-free logs reach {})", digits(baseline.adequacy_limit, 2)) : ""));
   if (d.fault && !d.ambiguous_with.empty()) {
     std::vector<std::string> others;
-    for (const std::string& other : d.ambiguous_with) others.push_back(words(other) + " " + chance(d.probabilities.at(other)));
-    why.push_back(fmt::format("It cannot be told for certain from {}. To separate them: {}.", join(others), d.separating_test));
+    for (const std::string& other : d.ambiguous_with)
+      others.push_back(words(other) + " " + chance(d.probabilities.at(other)));
+    why.push_back(
+        fmt::format("It cannot be told for certain from {}. To separate them: {}.", join(others), d.separating_test));
   } else if (d.fault && d.assessment.gross.empty()) {
     const HypothesisResult* next = nullptr;
     for (const HypothesisResult& h : d.assessment.hypotheses)
       if (h.name != *d.fault && (!next || h.probability > next->probability)) next = &h;
-    if (next) why.push_back(fmt::format("The next best explanation, {}, has {}.", words(next->name), chance(next->probability)));
+    if (next)
+      why.push_back(
+          fmt::format("The next best explanation, {}, has {}.", words(next->name), chance(next->probability)));
   }
-  if (d.onset) why.push_back(fmt::format("Until {} s the log is healthy; the fault explains what follows.", digits(*d.onset, 4)));
+  if (d.onset)
+    why.push_back(fmt::format("Until {} s the log is healthy; the fault explains what follows.", digits(*d.onset, 4)));
   return why;
 }
 
@@ -106,13 +111,18 @@ void add_ranking(Page& page, const Diagnosis& d) {
   };
   std::stable_sort(order.begin(), order.end(), [&](const auto& a, const auto& b) { return p_of(a) > p_of(b); });
   for (const HypothesisResult& h : order) {
-    std::string note = h.name == "healthy" ? "" : handy_interval(h.severity, h.severity_lower, h.severity_upper, h.unit) + "; ";
+    std::string note =
+        h.name == "healthy" ? "" : handy_interval(h.severity, h.severity_lower, h.severity_upper, h.unit) + "; ";
     note += fmt::format("worst channel {} times its usual error", digits(h.adequacy, 2));
     bars.rows.push_back({words(h.name), p_of(h), chance(p_of(h)), note,
-                         d.fault == h.name ? Tone::bad : h.name == "healthy" ? Tone::good : Tone::plain, ""});
+                         d.fault == h.name     ? Tone::bad
+                         : h.name == "healthy" ? Tone::good
+                                               : Tone::plain,
+                         ""});
   }
   page.add(bars);
-  if (d.verdict == "unknown") page.text("None of them fits well enough to be named: the bars only rank them among each other.");
+  if (d.verdict == "unknown")
+    page.text("None of them fits well enough to be named: the bars only rank them among each other.");
 }
 
 void add_details(Page& page, const Diagnosis& d, const std::vector<Replay>& replays, std::size_t drawn) {
@@ -130,12 +140,13 @@ void add_details(Page& page, const Diagnosis& d, const std::vector<Replay>& repl
       if (view.shown.size() < 3 && other != "healthy") view.shown.push_back(other);
     view.onset = d.onset;
     view.logs = drawn;
-    page.text(d.verdict == "healthy"
-                  ? "Below, the tuned model, with null and air fitted to this log, against the measurement; the channel it "
-                    "misses most first."
-                  : "Below, dashed: the valve as healthy; full colour: with the fault. The channel that health misses most "
-                    "comes first. Where the dashed residual leaves the band and the coloured one stays in it, the fault "
-                    "explains what health cannot.");
+    page.text(
+        d.verdict == "healthy"
+            ? "Below, the tuned model, with null and air fitted to this log, against the measurement; the channel it "
+              "misses most first."
+            : "Below, dashed: the valve as healthy; full colour: with the fault. The channel that health misses most "
+              "comes first. Where the dashed residual leaves the band and the coloured one stays in it, the fault "
+              "explains what health cannot.");
     add_replay(page, *r, view);
   }
   if (!d.assessment.parameters.empty())
@@ -144,7 +155,8 @@ void add_details(Page& page, const Diagnosis& d, const std::vector<Replay>& repl
 
 // What was named against what was made, where the truth is known of every log.
 void add_confusion(Page& page, const std::vector<Diagnosis>& results, const std::vector<std::string>& truths) {
-  if (truths.size() != results.size() || std::any_of(truths.begin(), truths.end(), [](const auto& t) { return t.empty(); }))
+  if (truths.size() != results.size() ||
+      std::any_of(truths.begin(), truths.end(), [](const auto& t) { return t.empty(); }))
     return;
   Matrix m{"Confusion: the truth is known from the files beside the logs", "truth", "verdict", {}, {}, {}, "", true};
   const auto place = [](std::vector<std::string>& names, const std::string& name) {
@@ -196,7 +208,8 @@ Page diagnose_page(const Header& header, const std::vector<Diagnosis>& results, 
   page.section("All logs");
   Bars scores{"Error of each log", "log", "error", {}, Mark{baseline.threshold, "threshold"}, {}};
   for (std::size_t i = 0; i < results.size(); ++i)
-    scores.rows.push_back({results[i].log, std::min(results[i].error, 10 * baseline.threshold), digits(results[i].error),
+    scores.rows.push_back({results[i].log, std::min(results[i].error, 10 * baseline.threshold),
+                           digits(results[i].error),
                            results[i].verdict == "fault" ? headline(results[i]) : results[i].verdict,
                            tone_of(results[i]), fmt::format("#log{}", i + 1)});
   page.add(scores);

@@ -17,21 +17,30 @@ namespace {
 
 const char* name_of(Role role) {
   switch (role) {
-    case Role::measured: return "measured";
-    case Role::reference: return "reference";
-    case Role::named: return "named";
-    case Role::other: return "other";
-    case Role::input: return "input";
+    case Role::measured:
+      return "measured";
+    case Role::reference:
+      return "reference";
+    case Role::named:
+      return "named";
+    case Role::other:
+      return "other";
+    case Role::input:
+      return "input";
   }
   return "";
 }
 
 const char* name_of(Tone tone) {
   switch (tone) {
-    case Tone::plain: return "plain";
-    case Tone::good: return "good";
-    case Tone::bad: return "bad";
-    case Tone::doubt: return "doubt";
+    case Tone::plain:
+      return "plain";
+    case Tone::good:
+      return "good";
+    case Tone::bad:
+      return "bad";
+    case Tone::doubt:
+      return "doubt";
   }
   return "";
 }
@@ -108,9 +117,9 @@ void Page::section(const std::string& title, const std::string& lead, bool folde
   in_section_ = true;
   folded_ = folded;
   const std::string id = fmt::format("s{}", ++sections_);
-  body_ += folded ? fmt::format("<details class=\"part\" id=\"{}\"><summary><h2>{}</h2></summary>\n", id,
-                                escape_html(title))
-                  : fmt::format("<section class=\"part\" id=\"{}\"><h2>{}</h2>\n", id, escape_html(title));
+  body_ +=
+      folded ? fmt::format("<details class=\"part\" id=\"{}\"><summary><h2>{}</h2></summary>\n", id, escape_html(title))
+             : fmt::format("<section class=\"part\" id=\"{}\"><h2>{}</h2>\n", id, escape_html(title));
   if (!lead.empty()) text(lead);
 }
 
@@ -125,7 +134,11 @@ void Page::add(const Plot& plot) {
   for (const Series& s : plot.series) columns.push_back(&s.y);
   const std::vector<std::size_t> kept = thinned(plot.x, columns, plot.most_rows);
 
-  Json head = {{"x", plot.x_label}, {"x_shown", plot.x_label_shown}, {"group", plot.group}, {"low", plot.low}, {"log", plot.log_y}};
+  Json head = {{"x", plot.x_label},
+               {"x_shown", plot.x_label_shown},
+               {"group", plot.group},
+               {"low", plot.low},
+               {"log", plot.log_y}};
   head["title"] = plot.title;
   Json series = Json::array();
   for (const Series& s : plot.series)
@@ -152,10 +165,10 @@ void Page::add(const Plot& plot) {
 
   std::string names;
   for (const Series& s : plot.series) names += (names.empty() ? "" : ", ") + s.name;
-  const std::string thin = kept.size() < plot.x.size()
-                               ? fmt::format(" <span class=\"thin\">{} of {} samples, every peak kept</span>",
-                                             kept.size(), plot.x.size())
-                               : "";
+  const std::string thin =
+      kept.size() < plot.x.size()
+          ? fmt::format(" <span class=\"thin\">{} of {} samples, every peak kept</span>", kept.size(), plot.x.size())
+          : "";
   body_ += fmt::format(
       "<figure class=\"plot\" data-plot=\"{}\"><figcaption><span>{}{}</span>{}</figcaption>"
       "<div class=\"chart{}\" role=\"group\" aria-roledescription=\"chart\" tabindex=\"0\" "
@@ -166,11 +179,10 @@ void Page::add(const Plot& plot) {
 
 void Page::add(const TablePart& table) {
   const auto align = [&](std::size_t c) { return c < table.alignment.size() ? table.alignment[c] : 'l'; };
-  body_ += fmt::format("<figure class=\"table\"{}><figcaption><span>{}</span>{}</figcaption><div class=\"wide\"><table>",
-                       table.shown > 0 && table.rows.size() > table.shown
-                           ? fmt::format(" data-shown=\"{}\"", table.shown)
-                           : "",
-                       escape_html(table.title), csv_button(table.title));
+  body_ += fmt::format(
+      "<figure class=\"table\"{}><figcaption><span>{}</span>{}</figcaption><div class=\"wide\"><table>",
+      table.shown > 0 && table.rows.size() > table.shown ? fmt::format(" data-shown=\"{}\"", table.shown) : "",
+      escape_html(table.title), csv_button(table.title));
   body_ += "<thead><tr>";
   for (std::size_t c = 0; c < table.head.size(); ++c) body_ += cell_html(table.head[c], align(c), "th");
   body_ += "</tr></thead><tbody>\n";
@@ -207,10 +219,9 @@ void Page::add(const Bars& bars) {
     name.link = r.link;
     body_ += fmt::format("<tr data-tone=\"{}\">{}<td class=\"r\" data-value=\"{}\">{}</td>", name_of(r.tone),
                          cell_html(name, 'l', "th"), exact(r.value), escape_html(r.text));
-    body_ += fmt::format("<td class=\"bar\" aria-hidden=\"true\"><span class=\"fill\" style=\"width:{}\"></span>{}</td>",
-                         part(r.value),
-                         bars.mark ? fmt::format("<span class=\"mark\" style=\"left:{}\"></span>", part(bars.mark->at))
-                                   : "");
+    body_ += fmt::format(
+        "<td class=\"bar\" aria-hidden=\"true\"><span class=\"fill\" style=\"width:{}\"></span>{}</td>", part(r.value),
+        bars.mark ? fmt::format("<span class=\"mark\" style=\"left:{}\"></span>", part(bars.mark->at)) : "");
     if (notes) body_ += fmt::format("<td class=\"note\">{}</td>", escape_html(r.note));
     body_ += "</tr>\n";
   }
@@ -223,11 +234,10 @@ void Page::add(const Moves& moves) {
   double full = 3.0;
   for (const Moves::Row& r : moves.rows)
     if (std::isfinite(r.sigmas)) full = std::max(full, std::min(most_sigmas, std::abs(r.sigmas)));
-  body_ += fmt::format("<figure class=\"moves\"{}><figcaption><span>{}</span>{}</figcaption><div class=\"wide\"><table>",
-                       moves.shown > 0 && moves.rows.size() > moves.shown
-                           ? fmt::format(" data-shown=\"{}\"", moves.shown)
-                           : "",
-                       escape_html(moves.title), csv_button(moves.title));
+  body_ += fmt::format(
+      "<figure class=\"moves\"{}><figcaption><span>{}</span>{}</figcaption><div class=\"wide\"><table>",
+      moves.shown > 0 && moves.rows.size() > moves.shown ? fmt::format(" data-shown=\"{}\"", moves.shown) : "",
+      escape_html(moves.title), csv_button(moves.title));
   body_ +=
       "<thead><tr><th>parameter</th><th class=\"r\">from</th><th class=\"r\">to</th><th class=\"r\">std. error</th>"
       "<th>unit</th><th class=\"r\">moved, in sigmas</th><th class=\"bar\" aria-hidden=\"true\"></th><th></th></tr>"
@@ -237,7 +247,8 @@ void Page::add(const Moves& moves) {
     const double length = known ? 50 * std::min(1.0, std::abs(r.sigmas) / full) : 0;
     body_ += fmt::format(
         "<tr><th>{}</th><td class=\"r\" data-value=\"{}\">{}</td><td class=\"r\" data-value=\"{}\">{}</td>"
-        "<td class=\"r\" data-value=\"{}\">{}</td><td data-value=\"{}\">{}</td><td class=\"r\" data-value=\"{}\">{}</td>",
+        "<td class=\"r\" data-value=\"{}\">{}</td><td data-value=\"{}\">{}</td><td class=\"r\" "
+        "data-value=\"{}\">{}</td>",
         escape_html(r.name), exact(r.exact_from), escape_html(r.from), exact(r.exact_to), escape_html(r.to),
         exact(r.exact_error), escape_html(r.error), escape_html(r.exact_unit), escape_html(r.unit), exact(r.sigmas),
         known ? (r.sigmas > 0 ? "+" : "") + digits(r.sigmas, 2) : "");
@@ -278,7 +289,8 @@ std::string Page::html() {
   section("How this was made", "", true);
   std::string settings;
   for (const auto& [key, value] : header_.settings.items())
-    settings += (settings.empty() ? "" : ", ") + key + " = " + value.dump(-1, ' ', false, Json::error_handler_t::replace);
+    settings +=
+        (settings.empty() ? "" : ", ") + key + " = " + value.dump(-1, ' ', false, Json::error_handler_t::replace);
   text(fmt::format("servodx {} {}, seed {}{}; {} simulations, {} of them failed.", header_.version, header_.command,
                    header_.seed, settings.empty() ? "" : ", " + settings, header_.simulations,
                    header_.failed_simulations));
@@ -302,8 +314,9 @@ std::string Page::html() {
   page += "<meta name=\"color-scheme\" content=\"light dark\">\n<link rel=\"icon\" href=\"data:,\">\n";
   page += fmt::format("<title>{}</title>\n<style>{}\n{}</style>\n</head>\n<body>\n", escape_html(title_),
                       assets::chart_style, assets::page_style);
-  page += fmt::format("<header><span class=\"tool\">servodx {}</span> <span class=\"title\">{}</span></header>\n<main>\n",
-                      escape_html(header_.command), escape_html(title_));
+  page +=
+      fmt::format("<header><span class=\"tool\">servodx {}</span> <span class=\"title\">{}</span></header>\n<main>\n",
+                  escape_html(header_.command), escape_html(title_));
   page += body_;
   page += "</main>\n<noscript><p>The charts need JavaScript; words and tables do not.</p></noscript>\n";
   page += fmt::format("<script type=\"application/json\" id=\"data\">[{}]</script>\n", data_);

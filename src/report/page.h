@@ -1,5 +1,6 @@
 // One self-contained HTML file: verdict first, then the parts that show why it holds. Opens offline, fetches nothing
-// (its content policy forbids it), prints, follows the reader's light or dark, and is the same bytes for the same result.
+// (its content policy forbids it), prints, follows the reader's light or dark, and is the same bytes for the same
+// result.
 //
 //   Page page(header, "Diagnosis of s1.csv");
 //   page.verdict({.tone = Tone::bad, .word = "FAULT", .headline = "..."});

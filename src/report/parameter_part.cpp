@@ -45,8 +45,7 @@ Moves moves_of(const std::vector<ParameterResult>& parameters, const std::string
     const double share = size > 0 ? std::abs(r.exact_to - r.exact_from) / size : 0;
     return std::pair(std::isfinite(r.sigmas) ? std::abs(r.sigmas) : 0.0, share);
   };
-  std::stable_sort(moves.rows.begin(), moves.rows.end(),
-                   [&](const auto& a, const auto& b) { return far(a) > far(b); });
+  std::stable_sort(moves.rows.begin(), moves.rows.end(), [&](const auto& a, const auto& b) { return far(a) > far(b); });
   return moves;
 }
 

@@ -32,15 +32,15 @@ struct Mark {  // a line across the plot
 };
 
 struct Plot {
-  std::string title = {};    // "spool position [mm]"
-  std::string x_label = {};  // "time [s]"
+  std::string title = {};     // "spool position [mm]"
+  std::string x_label = {};   // "time [s]"
   bool x_label_shown = true;  // under the axis; without: only beside the cursor's value
   std::vector<double> x = {};
   std::vector<Series> series = {};
   std::optional<Band> band = {};
   std::vector<Mark> x_marks = {}, y_marks = {};
   std::string group = {};  // plots of one group share zoom and cursor; empty: alone
-  bool low = false;   // half the height
+  bool low = false;        // half the height
   bool log_y = false;
   std::size_t most_rows = 8000;  // beyond this, thinned (report/thin.h)
 };
@@ -86,8 +86,8 @@ struct Moves {
   std::string title;
   struct Row {
     std::string name = {}, from = {}, to = {}, error = {}, unit = {};
-    double sigmas = NAN;        // signed; NaN: no error is known
-    std::string note = {};      // verdict, or how much it moved where sigmas are not known
+    double sigmas = NAN;                                     // signed; NaN: no error is known
+    std::string note = {};                                   // verdict, or how much it moved where sigmas are not known
     double exact_from = 0, exact_to = 0, exact_error = NAN;  // [exact_unit]
     std::string exact_unit = {};
   };

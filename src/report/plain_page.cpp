@@ -76,7 +76,12 @@ Page columns_page(const Header& header, const std::string& headline, const std::
   for (const OutputColumn& c : columns) {
     if (c.signal == Signal::time) continue;
     const std::string name = words(std::string(info(c.signal).name));
-    Plot plot{.title = name + " [" + c.unit + "]", .x_label = "time [s]", .x = time, .group = "log", .low = true, .most_rows = 6000};
+    Plot plot{.title = name + " [" + c.unit + "]",
+              .x_label = "time [s]",
+              .x = time,
+              .group = "log",
+              .low = true,
+              .most_rows = 6000};
     plot.series.push_back({name, scaled(c), c.signal == Signal::command ? Role::input : Role::measured});
     page.add(plot);
   }

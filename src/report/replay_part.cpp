@@ -106,9 +106,10 @@ void add_replay(Page& page, const Replay& replay, const ReplayView& view) {
     const HandyUnit small = handy_unit(std::string(info(channel.signal).si_unit), size);
     std::string figures;
     for (const auto* s : shown)
-      figures += fmt::format("{}{} {}", figures.empty() ? "" : ", ", words(s->name), digits(rms(s->residual) * small.factor));
-    Plot residual = plot(fmt::format("{}: measured less simulated [{}]; rms {}", name, small.name, figures),
-                         next == order.back());
+      figures +=
+          fmt::format("{}{} {}", figures.empty() ? "" : ", ", words(s->name), digits(rms(s->residual) * small.factor));
+    Plot residual =
+        plot(fmt::format("{}: measured less simulated [{}]; rms {}", name, small.name, figures), next == order.back());
     residual.low = true;
     for (std::size_t i = 0; i < shown.size(); ++i)
       residual.series.push_back({words(shown[i]->name), scaled(shown[i]->residual, small.factor), role_of(i)});

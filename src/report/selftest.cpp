@@ -15,10 +15,13 @@ namespace {
 constexpr double promised = 0.95;
 constexpr double real_bias = 3.0;  // sigmas of the mean
 
-double share(const SelftestResult& r) { return r.counted ? static_cast<double>(r.covered) / static_cast<double>(r.counted) : NAN; }
+double share(const SelftestResult& r) {
+  return r.counted ? static_cast<double>(r.covered) / static_cast<double>(r.counted) : NAN;
+}
 
 long biased(const SelftestResult& r) {
-  return std::count_if(r.rows.begin(), r.rows.end(), [](const SelftestRow& row) { return std::abs(row.bias_sigmas) > real_bias; });
+  return std::count_if(r.rows.begin(), r.rows.end(),
+                       [](const SelftestRow& row) { return std::abs(row.bias_sigmas) > real_bias; });
 }
 
 std::string coverage_words(const SelftestResult& r) {
@@ -34,7 +37,8 @@ std::string headline(const SelftestResult& r) {
 }
 
 std::string bias_words(const SelftestResult& r) {
-  return fmt::format("{} of {} parameters are biased beyond {} sigmas of the mean", biased(r), r.rows.size(), digits(real_bias));
+  return fmt::format("{} of {} parameters are biased beyond {} sigmas of the mean", biased(r), r.rows.size(),
+                     digits(real_bias));
 }
 
 }  // namespace
@@ -46,8 +50,8 @@ std::string text_of(const SelftestResult& r) {
   rows.row({"parameter", "value", "bias", "in sigmas", "rms error", "says +-", "held truth", "unit"});
   for (const SelftestRow& row : r.rows) {
     const HandyUnit unit = handy_unit(row.unit, std::max(std::abs(row.nominal), row.rms));
-    rows.row({row.name, digits(row.nominal * unit.factor), digits(row.bias * unit.factor, 2), digits(row.bias_sigmas, 2),
-              digits(row.rms * unit.factor, 2), digits(row.std_error * unit.factor, 2),
+    rows.row({row.name, digits(row.nominal * unit.factor), digits(row.bias * unit.factor, 2),
+              digits(row.bias_sigmas, 2), digits(row.rms * unit.factor, 2), digits(row.std_error * unit.factor, 2),
               fmt::format("{} of {}", row.covered, row.counted), unit.name});
   }
   text += rows.text();
@@ -68,14 +72,16 @@ Json selftest_json(const SelftestResult& r) {
                     {"std_error", number(row.std_error)},
                     {"covered", row.covered},
                     {"counted", row.counted}});
-  return {{"log", r.log},
-          {"repeats", r.repeats},
-          {"failed", r.failed},
-          {"coverage", {{"value", number(share(r))}, {"lower", r.coverage_lower}, {"upper", r.coverage_upper}, {"promised", promised}}},
-          {"biased", biased(r)},
-          {"parameters", rows},
-          {"held", r.held},
-          {"interrupted", r.interrupted}};
+  return {
+      {"log", r.log},
+      {"repeats", r.repeats},
+      {"failed", r.failed},
+      {"coverage",
+       {{"value", number(share(r))}, {"lower", r.coverage_lower}, {"upper", r.coverage_upper}, {"promised", promised}}},
+      {"biased", biased(r)},
+      {"parameters", rows},
+      {"held", r.held},
+      {"interrupted", r.interrupted}};
 }
 
 Page selftest_page(const Header& header, const SelftestResult& r) {
@@ -83,8 +89,10 @@ Page selftest_page(const Header& header, const SelftestResult& r) {
   Verdict v;
   v.tone = r.coverage_upper >= promised && biased(r) == 0 ? Tone::good : Tone::doubt;
   v.headline = headline(r);
-  v.detail = "Made-up truths, the log's own input and noise: what the fit finds again. The data were made by the model itself: "
-             "this tests the input and the fit, not the model.";
+  v.detail =
+      "Made-up truths, the log's own input and noise: what the fit finds again. The data were made by the model "
+      "itself: "
+      "this tests the input and the fit, not the model.";
   v.facts = {{"Truth held by 95 % intervals", percent(share(r))},
              {"That share lies within", percent(r.coverage_lower) + " to " + percent(r.coverage_upper)},
              {"Repeats", fmt::format("{}, {} failed", r.repeats, r.failed)},
@@ -92,15 +100,20 @@ Page selftest_page(const Header& header, const SelftestResult& r) {
   page.verdict(v);
   page.section("Parameter by parameter", "Sigmas: the bias over the scatter of its mean. Beyond 3 it is no chance.");
   Bars bars{"Share of intervals that hold the truth", "parameter", "share", {}, Mark{promised, "95 %"}, 1.1};
-  TablePart table{"Bias and error", "lrrrrrl", {"parameter", "value", "bias", "bias in sigmas", "rms error", "fit says", "unit"}, {}, 0};
+  TablePart table{"Bias and error",
+                  "lrrrrrl",
+                  {"parameter", "value", "bias", "bias in sigmas", "rms error", "fit says", "unit"},
+                  {},
+                  0};
   for (const SelftestRow& row : r.rows) {
     const HandyUnit unit = handy_unit(row.unit, std::max(std::abs(row.nominal), row.rms));
     const auto cell = [&](double value) { return Cell(digits(value * unit.factor), value); };
     const double part = row.counted ? static_cast<double>(row.covered) / row.counted : 0;
     bars.rows.push_back({words(row.name), part, fmt::format("{} of {}", row.covered, row.counted), "",
                          part >= 0.8 ? Tone::good : Tone::doubt, ""});
-    table.rows.push_back({words(row.name), cell(row.nominal), cell(row.bias), Cell(digits(row.bias_sigmas, 2), row.bias_sigmas),
-                          cell(row.rms), cell(row.std_error), unit.name});
+    table.rows.push_back({words(row.name), cell(row.nominal), cell(row.bias),
+                          Cell(digits(row.bias_sigmas, 2), row.bias_sigmas), cell(row.rms), cell(row.std_error),
+                          unit.name});
   }
   page.add(table);
   page.add(bars);

@@ -21,7 +21,8 @@ std::string fit_in_words(const ChannelResult& c) {
 }
 
 void add_channels(Page& page, const std::string& title, const std::vector<ChannelResult>& channels) {
-  TablePart table{title, "lrrrlrl", {"channel", "rms error", "held out", "noise", "unit", "held out over noise", ""}, {}, 0};
+  TablePart table{
+      title, "lrrrlrl", {"channel", "rms error", "held out", "noise", "unit", "held out over noise", ""}, {}, 0};
   for (const ChannelResult& c : channels) {
     const ChannelFigures f = figures(c);
     table.rows.push_back({words(std::string(info(c.signal).name)), Cell(digits(f.rms), f.rms),
@@ -95,12 +96,13 @@ Page tune_page(const Header& header, const TuneResult& result, const std::vector
              {"Held: the logs cannot tell", std::to_string(held)},
              {"Starts that agree", fmt::format("{} of {}", result.reached_best, result.starts.size())}};
   if (!agreed)
-    v.reasons.push_back("Only one start reached the best cost: another valley may lie beside it. More generations, or logs "
-                        "that move the valve farther, would tell.");
+    v.reasons.push_back(
+        "Only one start reached the best cost: another valley may lie beside it. More generations, or logs "
+        "that move the valve farther, would tell.");
   if (bound > 0)
-    v.reasons.push_back(fmt::format(
-        "{} parameter{} an end of the range: check the data sheet behind it, or widen the bounds.", bound,
-        bound == 1 ? " stands at" : "s stand at"));
+    v.reasons.push_back(
+        fmt::format("{} parameter{} an end of the range: check the data sheet behind it, or widen the bounds.", bound,
+                    bound == 1 ? " stands at" : "s stand at"));
   page.verdict(v);
 
   page.section("How well the model fits",
@@ -126,7 +128,8 @@ Page tune_page(const Header& header, const TuneResult& result, const std::vector
   }
   page.add(by_log);
 
-  page.section("Parameters", "From the table's value to the fitted one. Sigma is the standard error of the fitted value.");
+  page.section("Parameters",
+               "From the table's value to the fitted one. Sigma is the standard error of the fitted value.");
   page.add(moves_of(result.parameters, "What moved"));
   page.section("Did the search arrive?", "A valley that several starts reach is likelier the right one.");
   add_search(page, result);

@@ -39,8 +39,8 @@ Plot plot_of(const MapPicture& picture) {
 
 }  // namespace
 
-Page maps_page(const Header& header, const valve_maps::ValveNumbers& valve, const std::vector<valve_maps::MapError>& errors,
-               const std::vector<MapPicture>& pictures) {
+Page maps_page(const Header& header, const valve_maps::ValveNumbers& valve,
+               const std::vector<valve_maps::MapError>& errors, const std::vector<MapPicture>& pictures) {
   Page page(header, "Simplified valve models against HF");
   const auto worst = [](const valve_maps::MapError& e) {
     double rms = 0;
@@ -51,14 +51,19 @@ Page maps_page(const Header& header, const valve_maps::ValveNumbers& valve, cons
   for (const auto& e : errors)
     if (e.name != "HF" && (!best || worst(e) < worst(*best))) best = &e;
   Verdict v;
-  v.headline = best ? "Nearest to HF in its worst region: " + best->name + ", " + percent(worst(*best)) + " of P_SR" : "Valve maps";
-  v.detail = "Error of each map's load pressure against the detailed model HF, as a part of supply less return, region by region.";
+  v.headline = best ? "Nearest to HF in its worst region: " + best->name + ", " + percent(worst(*best)) + " of P_SR"
+                    : "Valve maps";
+  v.detail =
+      "Error of each map's load pressure against the detailed model HF, as a part of supply less return, region by "
+      "region.";
   v.facts = {{"P_SR", digits(in("bar", valve.supply), 4) + " bar"},
              {"Saturates at x_SS", digits(in("um", valve.saturation_travel), 3) + " um"},
              {"Leakage against flow gain", digits(valve.leak_share(), 3)}};
   page.verdict(v);
-  page.section("Error by region", "rms over the points of the region, in % of P_SR. Water hammer: beyond the supply. Saturated: above 90 % of it. Null: "
-                                  "within x_SS. Linear: the rest.");
+  page.section("Error by region",
+               "rms over the points of the region, in % of P_SR. Water hammer: beyond the supply. Saturated: above 90 "
+               "% of it. Null: "
+               "within x_SS. Linear: the rest.");
   TablePart table{"Error against HF, % of P_SR", "lrrrrr", {"map"}, {}, 0};
   for (const char* name : valve_maps::region_names) table.head.push_back(words(name));
   table.head.push_back("largest");

@@ -11,10 +11,10 @@
 namespace servodx {
 
 struct ColumnGuess {
-  std::string cell;              // as it stands in the header
-  std::string name;              // without its unit
-  std::optional<Signal> signal;  // empty: not recognised
-  std::string unit;              // of the closed table; empty: none or not recognised
+  std::string cell;               // as it stands in the header
+  std::string name;               // without its unit
+  std::optional<Signal> signal;   // empty: not recognised
+  std::string unit;               // of the closed table; empty: none or not recognised
   bool unit_in_brackets = false;  // "name [unit]" with a unit of the table: the reader takes it from there
   bool canonical = false;         // the name is the signal's own
 };

@@ -74,7 +74,8 @@ TEST(CheckLog, FindsJitterGapsAndCold) {
 
 TEST(CheckLog, FindsALogOfAnotherRateAmongOthers) {
   const Desk desk;
-  for (const char* name : {"a.csv", "b.csv"}) desk.write(name, first_rows(name[0] == 'a' ? "healthy/h12_mixed.csv" : "healthy/h04_multisine.csv", 500));
+  for (const char* name : {"a.csv", "b.csv"})
+    desk.write(name, first_rows(name[0] == 'a' ? "healthy/h12_mixed.csv" : "healthy/h04_multisine.csv", 500));
   std::istringstream in(first_rows("healthy/h06_sweep.csv", 500));
   std::string slow, line;
   for (long row = 0; std::getline(in, line);)
@@ -92,8 +93,7 @@ TEST(CheckLog, SaysWhatALogCanShow) {
   const Json log = check(desk, "moving.csv --params table.csv")["logs"][0];
   ASSERT_FALSE(log["identifiable"].empty());
   ASSERT_GE(log["visible_faults"].size(), 7u);
-  for (const Json& fault : log["visible_faults"])
-    EXPECT_GE(fault["deviate_at_typical"].get<double>(), 0.0) << fault;
+  for (const Json& fault : log["visible_faults"]) EXPECT_GE(fault["deviate_at_typical"].get<double>(), 0.0) << fault;
   EXPECT_FALSE(log["model_error_known"].get<bool>());
 }
 
@@ -126,7 +126,8 @@ TEST(Init, AForeignLogReadsWithTheRigFileItWrites) {
   const Json result = check(desk, "log.csv --rig rig.toml --params params.csv");
   std::vector<std::string> signals;
   for (const Json& c : result["logs"][0]["channels"]) signals.push_back(c["signal"]);
-  EXPECT_EQ(signals, (std::vector<std::string>{"command", "spool_position", "piston_position", "pressure_a", "pressure_b"}));
+  EXPECT_EQ(signals,
+            (std::vector<std::string>{"command", "spool_position", "piston_position", "pressure_a", "pressure_b"}));
   const Ended again = desk.run("init log.csv -o rig.toml --table other.csv");
   EXPECT_EQ(again.code, 2);  // it may hold the user's work
   EXPECT_FALSE(std::filesystem::exists(desk / "other.csv"));
@@ -137,7 +138,8 @@ TEST(DryRun, PrintsTheSettingsAndWritesNothing) {
   desk.write("log.csv", small_log());
   desk.write("table.csv", shipped_table());
   const auto before = desk.contents();
-  const Ended ended = desk.run("tune log.csv --params table.csv -o tuned.csv --generations 7 --json r.json --report r.html --dry-run");
+  const Ended ended =
+      desk.run("tune log.csv --params table.csv -o tuned.csv --generations 7 --json r.json --report r.html --dry-run");
   EXPECT_EQ(ended.code, 0) << ended.err;
   EXPECT_EQ(desk.contents(), before);
   for (const char* word : {"dry run", "generations", "7", "population", "log.csv", "tuned.csv", "r.html"})

@@ -38,14 +38,26 @@ TEST(Page, EveryPartEscapesEveryText) {
   Page page(header, hostile);
   page.verdict({Tone::bad, hostile, hostile, hostile, {{hostile, hostile}}, {hostile}}, hostile);
   page.section(hostile, hostile);
-  page.add(Plot{.title = hostile, .x_label = hostile, .x = {0, 1}, .series = {{hostile, {1, 2}}},
-                .band = Band{hostile, {0, 0}, {1, 1}}, .x_marks = {{0.5, hostile}}, .y_marks = {{0.5, hostile}}, .group = hostile});
+  page.add(Plot{.title = hostile,
+                .x_label = hostile,
+                .x = {0, 1},
+                .series = {{hostile, {1, 2}}},
+                .band = Band{hostile, {0, 0}, {1, 1}},
+                .x_marks = {{0.5, hostile}},
+                .y_marks = {{0.5, hostile}},
+                .group = hostile});
   Cell cell = hostile;
   cell.link = hostile;
   page.add(TablePart{hostile, "l", {hostile}, {{cell}}, 0});
-  page.add(Bars{hostile, hostile, hostile, {{hostile, 1, hostile, hostile, Tone::plain, hostile}}, Mark{1, hostile}, {}});
+  page.add(
+      Bars{hostile, hostile, hostile, {{hostile, 1, hostile, hostile, Tone::plain, hostile}}, Mark{1, hostile}, {}});
   Moves moves{hostile, {}, 0};
-  moves.rows.push_back({.name = hostile, .from = hostile, .to = hostile, .error = hostile, .unit = hostile, .note = hostile,
+  moves.rows.push_back({.name = hostile,
+                        .from = hostile,
+                        .to = hostile,
+                        .error = hostile,
+                        .unit = hostile,
+                        .note = hostile,
                         .exact_unit = hostile});
   page.add(moves);
   page.add(Matrix{hostile, hostile, hostile, {hostile}, {hostile}, {{1.0}}, hostile, false});
@@ -79,7 +91,8 @@ TEST(Page, SameResultSameBytes) {
 TEST(Thin, KeepsEveryPeakOfEverySeries) {
   constexpr std::size_t n = 1'000'000;
   std::vector<double> x(n), quiet(n, 0.0), noisy(n);
-  for (std::size_t k = 0; k < n; ++k) x[k] = 1e-3 * static_cast<double>(k), noisy[k] = std::sin(1e-4 * static_cast<double>(k));
+  for (std::size_t k = 0; k < n; ++k)
+    x[k] = 1e-3 * static_cast<double>(k), noisy[k] = std::sin(1e-4 * static_cast<double>(k));
   quiet[123457] = 5;
   noisy[765432] = -7;
   const std::vector<const std::vector<double>*> series = {&quiet, &noisy};

@@ -25,11 +25,11 @@ TEST(Guess, NamesAndUnitsAsPeopleWriteThem) {
   EXPECT_EQ(taken({"Q l/min"}), "control_flow in l/min");
 }
 
-
 TEST(Guess, AUnitOfAnotherQuantityRulesASignalOut) { EXPECT_EQ(taken({"valve current [bar]"}), "nothing in bar"); }
 
 TEST(Guess, EachSignalOnceAndTheBetterMatchWins) {
-  const std::vector<std::string> header = {"Position demand (mm)", "Position (mm)", "Current demand (mA)", "Coil current (mA)"};
+  const std::vector<std::string> header = {"Position demand (mm)", "Position (mm)", "Current demand (mA)",
+                                           "Coil current (mA)"};
   EXPECT_EQ(taken(header, 0), "setpoint in mm");
   EXPECT_EQ(taken(header, 1), "piston_position in mm");
   EXPECT_EQ(taken(header, 2), "command in mA");

@@ -1,4 +1,5 @@
-// Writes pages of made-up results for the browser test: `sample_pages FOLDER`. Figures mean nothing; shapes and names do.
+// Writes pages of made-up results for the browser test: `sample_pages FOLDER`. Figures mean nothing; shapes and names
+// do.
 #include <cmath>
 #include <cstdio>
 #include <numbers>
@@ -75,8 +76,17 @@ Diagnosis some_diagnosis(const std::string& log, const std::string& verdict) {
   d.assessment.parameters = some_parameters();
   d.assessment.hypotheses = {
       {"healthy", "as the fault-free logs", 900, 0, 1e-6, 0, 0, 0, "", 8.1, {}},
-      {"feedback_wire_backlash", "clearance between the ball and the spool", 80, 820, 0.93, 2.07e-5, 1.76e-5, 2.39e-5,
-       "m", 1.3, {}},
+      {"feedback_wire_backlash",
+       "clearance between the ball and the spool",
+       80,
+       820,
+       0.93,
+       2.07e-5,
+       1.76e-5,
+       2.39e-5,
+       "m",
+       1.3,
+       {}},
       {"sticky_spool", "friction of the spool", 90, 810, 0.07, 4.1, 3.0, 5.2, "times the tuned friction", 1.6, {}}};
   for (const HypothesisResult& h : d.assessment.hypotheses) d.probabilities[h.name] = h.probability;
   if (verdict == "fault") {
@@ -100,7 +110,8 @@ Baseline some_baseline() {
   b.logs_needed = 99;
   b.statement = "4 fault-free logs promise a false-alarm rate of 20 % on average over baselines";
   for (int i = 0; i < 4; ++i)
-    b.scores.push_back({i == 0 ? hostile : "h" + std::to_string(i) + ".csv", std::string(64, 'b'), 2.0 + 2.48 * i, 1.0 + i, {}});
+    b.scores.push_back(
+        {i == 0 ? hostile : "h" + std::to_string(i) + ".csv", std::string(64, 'b'), 2.0 + 2.48 * i, 1.0 + i, {}});
   b.adequacy_limit = 4;
   return b;
 }
@@ -136,7 +147,8 @@ int main(int argc, char** argv) {
                               {"feedback_wire_backlash", "sticky_spool", "healthy"}));
   write("long", diagnose_page(some_header("diagnose", log), {some_diagnosis(log, "fault")}, some_baseline(),
                               {some_replay(log, 1'000'000, both)}));
-  write("baseline", baseline_page(some_header("baseline", hostile), some_baseline(), {some_replay(hostile, 1500, {"healthy"})}));
+  write("baseline",
+        baseline_page(some_header("baseline", hostile), some_baseline(), {some_replay(hostile, 1500, {"healthy"})}));
   write("tune", tune_page(some_header("tune", hostile), some_tuning(), {some_replay(hostile, 1500, {"tuned"})}));
   return 0;
 }
