@@ -30,23 +30,15 @@ struct Options {
 SimulateOptions simulate_options(const Options& options, const LogData& data) {
   SimulateOptions to;
   to.threads = options.common.threads;
-  if (options.reference) to.step = to.impact_step = reference_step;
+  if (options.reference) to.step = to.impact_step = to.creep_step = reference_step;
   if (options.step_given) {  // impacts keep the default's share of the step
     to.impact_step *= options.step / to.step;
     to.step = options.step;
+    to.creep_step = options.step;
   }
   to.wanted.fill(false);
   for (const FitChannel& channel : data.channels) to.wanted[channel.simulated] = true;
   return to;
-}
-
-// Responses of the rig that the log holds and the model does not report.
-std::vector<std::string> left_out(const Log& log) {
-  std::vector<std::string> notes;
-  for (Signal s : {Signal::load_pressure, Signal::valve_pressure_drop, Signal::control_flow, Signal::leakage_flow})
-    if (log.has(s))
-      notes.push_back(fmt::format("{}: '{}' is left out: the model does not report it", log.path, info(s).name));
-  return notes;
 }
 
 void run(const Options& options) {
@@ -82,7 +74,6 @@ void run(const Options& options) {
 
   header.simulations = 1;
   invocation.note(data.notes);
-  invocation.note(left_out(log));
   if (invocation.wants_report())
     invocation.write_report(report::simulate_page(header, replay(log, table, rig, {{"simulated", candidate}})));
   report::Json signals = report::Json::array();

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "effects/effect.h"
+#include "effects/flow_meter_lag.h"
 #include "effects/magnetic_hysteresis.h"
 #include "effects/mains_pickup.h"
 #include "effects/mount_compliance.h"
@@ -27,7 +28,8 @@ using AllEffects = EffectList<MagneticHysteresis,  //
                               ViscosityChange,     //
                               SupplyDroop,         //
                               MainsPickup,         //
-                              SensorResponse>;
+                              SensorResponse,      //
+                              FlowMeterLag>;
 // A learnt curve costs more than all effects: it has a kernel of its own.
 using CorrectedEffects = Append<AllEffects, Unexplained>;
 inline constexpr int n_values = n_parameters + CorrectedEffects::n_parameters;  // length of a parameter vector

@@ -1,5 +1,7 @@
 #include "fit/log_data.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -84,6 +86,56 @@ double noise_of(const std::vector<double>& x, double resolution) {
   return std::max(d[d.size() / 2] / (0.6745 * std::sqrt(6.0)), quantisation);
 }
 
+Ports ports_of(const Log& log, const RigFile& rig) {
+  const bool has_actuator =
+      log.has(Signal::piston_position) || (log.has(Signal::pressure_a) && log.has(Signal::pressure_b));
+  const bool leakage = log.has(Signal::leakage_flow), flow = log.has(Signal::control_flow);
+  if (rig.ports == Ports::actuator && has_actuator) return Ports::actuator;
+  if (leakage != flow) return leakage ? Ports::blocked : Ports::free;
+  // Free ports hold no load pressure.
+  if (rig.ports == Ports::free && log.has(Signal::load_pressure) && !flow) return Ports::blocked;
+  return rig.ports;
+}
+
+namespace {
+
+// Free ports: the valve is given its drop, as logged or as the data sheet rates its flow, where no supply was logged.
+void take_valve_drop(Scenario& s, const Log& log, const RigFile& rig, std::vector<std::string>& notes) {
+  if (s.ports != Ports::free || !s.supply_pressure.empty()) return;
+  const auto rated = rig.fact("valve.rated_pressure_drop");
+  if (log.has(Signal::valve_pressure_drop)) {
+    s.supply_pressure = bridged(log.time, log[Signal::valve_pressure_drop]);
+  } else if (rated) {
+    s.supply_pressure.assign(log.time.size(), *rated);
+    notes.push_back(log.path + ": no supply pressure is logged; the drop over the valve is valve.rated_pressure_drop");
+  } else {
+    return;
+  }
+  const double table = rig.fact("supply.return_pressure").value_or(0.0);
+  for (std::size_t k = 0; k < s.supply_pressure.size(); ++k)
+    s.supply_pressure[k] += s.return_pressure.empty() ? table : s.return_pressure[k];
+  if (s.return_pressure.empty()) s.return_pressure.assign(log.time.size(), table);
+}
+
+// What another channel of the log says already, or what was put in.
+bool is_redundant(Signal which, const Log& log, Ports ports) {
+  const bool pressures = log.has(Signal::pressure_a) && log.has(Signal::pressure_b);
+  switch (which) {
+    case Signal::load_pressure:
+      return pressures || ports == Ports::free;
+    case Signal::valve_pressure_drop:
+      return pressures || log.has(Signal::load_pressure) || ports == Ports::free;
+    case Signal::control_flow:
+      return (log.has(Signal::flow_a) && log.has(Signal::flow_b)) || ports == Ports::blocked;
+    case Signal::leakage_flow:
+      return ports != Ports::blocked;  // by its definition
+    default:
+      return false;
+  }
+}
+
+}  // namespace
+
 LogData prepare(const Log& log, const RigFile& rig, int window) {
   LogData out;
   out.path = log.path;
@@ -99,6 +151,11 @@ LogData prepare(const Log& log, const RigFile& rig, int window) {
   s.supply_pressure = input(Signal::supply_pressure);
   s.return_pressure = input(Signal::return_pressure);
   s.load_force = input(Signal::load_force);
+  s.ports = ports_of(log, rig);
+  if (s.ports != rig.ports)
+    out.notes.push_back(fmt::format("{}: taken as of a valve on a test stand with {} ports", log.path,
+                                    s.ports == Ports::blocked ? "blocked" : "free"));
+  take_valve_drop(s, log, rig, out.notes);
   s.rated_current = rig.fact("valve.rated_current").value_or(0.02);
   if (rig.command_hold) s.command_slope = *rig.command_hold == CommandHold::linear ? 1.0 : 0.0;
   constexpr double reference_temperature = 313.15;  // [K] where the table's values hold
@@ -107,6 +164,11 @@ LogData prepare(const Log& log, const RigFile& rig, int window) {
   s.oil = oil_at(rig.fluid.density, rig.fluid.kinematic_viscosity, temperature);
   for (Signal which : simulated_signals) {
     if (!log.has(which)) continue;
+    if (is_redundant(which, log, s.ports)) {
+      out.notes.push_back(fmt::format("{}: '{}' is left out: it is an input, or another signal says it", log.path,
+                                      info(which).name));
+      continue;
+    }
     FitChannel c;
     c.signal = which;
     c.simulated = simulated_index(which);

@@ -29,6 +29,10 @@ struct LogData {
 // The piston integrates every null error, so its slow drift tells little: the corner below which it is left out.
 inline constexpr double piston_high_pass = 0.3;  // [Hz]
 
+// Where the log was taken: the rig file's `ports`, or what the log itself says of a valve on a test stand. Leakage flow
+// is measured with the ports blocked, control flow with the ports free; without either the rig file decides.
+Ports ports_of(const Log& log, const RigFile& rig);
+
 // `window` [samples]: moving average of every channel, 1 for none. The rig file's mains frequency is notched out.
 LogData prepare(const Log& log, const RigFile& rig, int window = 1);
 

@@ -103,10 +103,14 @@ LeastSquaresResult local(Tuning& run, FitProblem& problem, const Point& x, const
   return minimise_least_squares(problem.least_squares(), x, o);
 }
 
-// The first seconds of each log, for the global search.
+// The first seconds of each log, for the global search; of a test stand's slow sweep they show one end, so all of it.
 std::vector<LogData> excerpts(const std::vector<LogData>& logs, double seconds) {
   std::vector<LogData> out;
   for (const LogData& log : logs) {
+    if (log.scenario.ports != Ports::actuator) {
+      out.push_back(log);
+      continue;
+    }
     const auto& t = log.scenario.time;
     out.push_back(
         slice(log, 0, static_cast<std::size_t>(std::lower_bound(t.begin(), t.end(), t.front() + seconds) - t.begin())));

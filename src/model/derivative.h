@@ -42,6 +42,16 @@ auto metering_edge(const X& opening, const P& dp, const Derived<T>& d, const T* 
   return std::make_tuple(q, h);
 }
 
+// Pilot flow through the filter, whose blocked part may differ with the direction of the spool. [m3/s]
+template <class P, class V, class T>
+auto filter_flow(const P& dp, const V& v_spool, const Derived<T>& d, const T* p) {
+  namespace c = constants;
+  const auto direction = smooth_sign(v_spool, T(c::filter_direction_rounding));
+  const auto clear = T(1.0) - T(0.5) * (p[row::filter_blockage_positive] + p[row::filter_blockage_negative]) -
+                     (T(0.5) * (p[row::filter_blockage_positive] - p[row::filter_blockage_negative])) * direction;
+  return orifice_flow(d.filter_conductance * clear, dp, T(c::orifice_transition));
+}
+
 // Compliance of a chamber [m3/Pa]: oil, free air by the isothermal law, walls of the hose.
 template <class V, class P, class T>
 auto chamber_compliance(const V& volume, const P& pressure, const Derived<T>& d, const T* p) {
@@ -95,10 +105,7 @@ inline __attribute__((always_inline)) auto derivative(const S& s, const In& in, 
   const auto dv_f = d.flapper_rate2 * f_flapper - d.flapper_damping * v_f;
 
   // Filter, fixed orifices, nozzles, spool ends.
-  const auto direction = smooth_sign(v_s, T(c::filter_direction_rounding));
-  const auto clear = T(1.0) - T(0.5) * (p[row::filter_blockage_positive] + p[row::filter_blockage_negative]) -
-                     (T(0.5) * (p[row::filter_blockage_positive] - p[row::filter_blockage_negative])) * direction;
-  const auto q_filter = orifice_flow(d.filter_conductance * clear, u.supply_pressure - p_f, transition);
+  const auto q_filter = filter_flow(u.supply_pressure - p_f, v_s, d, p);
   const auto q_orifice_1 = orifice_flow(d.orifice_conductance, p_f - p_1, transition);
   const auto q_orifice_2 = orifice_flow(d.orifice_conductance, p_f - p_2, transition);
   const auto gap_1 = soft_positive(p[row::nozzle_gap] - x_f, T(c::nozzle_rounding));

@@ -185,6 +185,9 @@ struct Sensed<T, EffectList<E...>> {
   }
 };
 
+// Ports joined by a tube: wide enough to drop 0.02 bar at 10 l/min. [m3/s/Pa]
+inline constexpr double tube_conductance = 1e-7;
+
 // Runs `lanes` candidates (at most the width of T) over the log and writes their trajectories.
 template <class T, class Effects>
 void run_pack(const Scenario& in, const ParameterVector* const* candidates, Trajectory* const* results, int lanes,
@@ -198,7 +201,11 @@ void run_pack(const Scenario& in, const ParameterVector* const* candidates, Traj
     for (int lane = 0; lane < width; ++lane) Lanes<T>::set(p[k], lane, (*candidates[lane < lanes ? lane : 0])[k]);
   if (in.command_slope) p[nuisance::command_slope] = T(*in.command_slope);
   if (in.current_measured) p[row::driver_bandwidth] = T(2e4);  // the amplifier is behind us
-  const Derived<T> d = derive<T, Effects>(p.data(), in.oil);
+  // On a test stand the piston is held and displaces nothing, and a tube takes the place of the seal's leakage.
+  const bool on_stand = in.ports != Ports::actuator;
+  if (on_stand) p[row::piston_area_a] = p[row::piston_area_b] = T(0.0);
+  Derived<T> d = derive<T, Effects>(p.data(), in.oil);
+  if (on_stand) d.leak = T(in.ports == Ports::free ? tube_conductance : 0.0);
   const T rated = T(in.rated_current), null = p[row::servovalve_null] * rated;
 
   const auto input = [&](const std::vector<double>& series, std::size_t k, const T& table) {
@@ -265,15 +272,20 @@ void run_pack(const Scenario& in, const ParameterVector* const* candidates, Traj
     out[3] = y[s_p_b];
     out[4] = y[s_p_pilot_1];
     out[5] = y[s_p_pilot_2];
-    if (options.wanted[6] || options.wanted[7]) {
+    if (options.wanted[6] || options.wanted[7] || options.wanted[10] || options.wanted[11]) {
       const auto flow = [&](const T& opening, const T& dp) {
         return std::get<0>(metering_edge(opening, dp, d, p.data()));
       };
-      out[6] = flow(y[s_x_spool] - p[row::lap_pa], now.supply_pressure - y[s_p_a]) -
-               flow(-y[s_x_spool] - p[row::lap_at], y[s_p_a] - now.return_pressure);
-      out[7] = flow(-y[s_x_spool] - p[row::lap_pb], now.supply_pressure - y[s_p_b]) -
-               flow(y[s_x_spool] - p[row::lap_bt], y[s_p_b] - now.return_pressure);
+      const T q_pa = flow(y[s_x_spool] - p[row::lap_pa], now.supply_pressure - y[s_p_a]);
+      const T q_pb = flow(-y[s_x_spool] - p[row::lap_pb], now.supply_pressure - y[s_p_b]);
+      out[6] = q_pa - flow(-y[s_x_spool] - p[row::lap_at], y[s_p_a] - now.return_pressure);
+      out[7] = q_pb - flow(y[s_x_spool] - p[row::lap_bt], y[s_p_b] - now.return_pressure);
+      out[10] = T(0.5) * (out[6] - out[7]);
+      out[11] = q_pa + q_pb + filter_flow(now.supply_pressure - y[s_p_filter], y[s_v_spool], d, p.data());
     }
+    using std::max;
+    out[8] = y[s_p_a] - y[s_p_b];
+    out[9] = now.supply_pressure - now.return_pressure - max(out[8], -out[8]);
     sensed(in.time[k], out.data(), p.data());
     out[0] = out[0] + p[nuisance::spool_offset];
     out[2] = out[2] + p[nuisance::pressure_a_offset];
@@ -299,6 +311,7 @@ void run_pack(const Scenario& in, const ParameterVector* const* candidates, Traj
 
   Inputs<T> now = inputs_at(0, current);
   System<T, Effects, false> live{p.data(), d, now, now, T(0.0), T(0.0), T(0.0), T(0.0)};
+  System<T, Effects, true> stand{p.data(), d, now, now, T(0.0), T(0.0), T(1.0), T(0.0)};  // the piston alone is held
   if (!report(0, now)) return;
   // A linearly implicit step does not see a stop that it has not reached. After a jump the flapper crosses its gap in a
   // tenth of a millisecond, so the steps are short until the spool has answered. The schedule comes from the log alone:
@@ -308,11 +321,18 @@ void run_pack(const Scenario& in, const ParameterVector* const* candidates, Traj
   double impact_until = in.time[0] - 1.0;
   FrictionMemory<T> friction;
   friction.rest(y[s_x_spool], y[s_x_piston]);
+  // Slower than full stroke in a second, the valve's own dynamics stay settled, and an L-stable step passes over them.
+  constexpr double creep = 1.0;         // [1/s] rated current per time
+  constexpr double settle_time = 0.05;  // [s]
+  double lively_until = in.time[0];
   for (std::size_t k = 0; k + 1 < samples; ++k) {
     const double dt = in.time[k + 1] - in.time[k];
     if (std::abs(in.command[k + 1] - in.command[k]) > jump * in.rated_current)
       impact_until = in.time[k + 1] + impact_time;
-    const double largest = in.time[k] < impact_until ? std::min(options.step, options.impact_step) : options.step;
+    if (std::abs(in.command[k + 1] - in.command[k]) > creep * in.rated_current * dt)
+      lively_until = in.time[k + 1] + settle_time;
+    const double usual = on_stand && in.time[k] >= lively_until ? options.creep_step : options.step;
+    const double largest = in.time[k] < impact_until ? std::min(options.step, options.impact_step) : usual;
     const int substeps = std::max(1, static_cast<int>(std::ceil(dt / largest - 1e-6)));
     const double h = dt / substeps;
     const T next_current = drive(in.time[k + 1], T(in.command[k + 1]) + null, p.data(), rated);
@@ -327,7 +347,13 @@ void run_pack(const Scenario& in, const ParameterVector* const* candidates, Traj
                  now.return_pressure + live.slope.return_pressure * t, now.load_force + live.slope.load_force * t,
                  friction};
       const T spool_from = y[s_x_spool], rod_from = y[s_x_piston];
-      rodas3_step<T>(live, y, h);
+      if (on_stand) {
+        stand.at = live.at;
+        stand.slope = live.slope;
+        rodas3_step<T>(stand, y, h);
+      } else {
+        rodas3_step<T>(live, y, h);
+      }
       friction.move(spool_from, y[s_x_spool], rod_from, y[s_x_piston], h);
     }
     now = next;

@@ -7,6 +7,7 @@
 
 #include "effects/registry.h"
 #include "model/state.h"
+#include "signals/rig_file.h"
 #include "signals/signal.h"
 
 namespace servodx {
@@ -31,6 +32,8 @@ struct Scenario {
   std::vector<double> return_pressure;  // [Pa] empty: the table's
   std::vector<double> load_force;       // [N] empty: none
   Oil oil;
+  // What joins the control ports: the actuator, nothing, or a tube (a valve on a test stand).
+  Ports ports = Ports::actuator;
   double rated_current = 0.02;          // [A]
   std::optional<double> command_slope;  // what the rig file says of the command between samples; empty: the candidate's
   // Measured at the first sample, where the log has it.
@@ -39,9 +42,10 @@ struct Scenario {
 };
 
 // Signals that the model can report.
-inline constexpr std::array<Signal, 8> simulated_signals = {
-    Signal::spool_position,   Signal::piston_position,  Signal::pressure_a, Signal::pressure_b,
-    Signal::pilot_pressure_1, Signal::pilot_pressure_2, Signal::flow_a,     Signal::flow_b};
+inline constexpr std::array<Signal, 12> simulated_signals = {
+    Signal::spool_position,   Signal::piston_position,  Signal::pressure_a,    Signal::pressure_b,
+    Signal::pilot_pressure_1, Signal::pilot_pressure_2, Signal::flow_a,        Signal::flow_b,
+    Signal::load_pressure,    Signal::valve_pressure_drop, Signal::control_flow, Signal::leakage_flow};
 inline constexpr int n_simulated = static_cast<int>(simulated_signals.size());
 // Position in simulated_signals, or -1.
 int simulated_index(Signal s);
@@ -55,7 +59,8 @@ struct Trajectory {
 struct SimulateOptions {
   double step = 1.0e-3 / 3.0;        // [s] largest substep; substeps divide each sample interval evenly
   double impact_step = 1.0e-3 / 12;  // [s] while the flapper may cross its gap: after a jump of the command
-  std::array<bool, n_simulated> wanted = {true, true, true, true, false, false, false, false};
+  double creep_step = 10e-3;         // [s] on a test stand while the command creeps: all that is fast is at rest
+  std::array<bool, n_simulated> wanted = {true, true, true, true};
   int threads = 0;  // 0: all
 };
 

@@ -1,4 +1,4 @@
-// `servodx curves`: a sheet with pass and fail, as text and JSON, and what is refused.
+// `servodx curves`: a sheet with pass and fail, as text and JSON, and what is refused. And `simulate` on a test stand.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -6,6 +6,7 @@
 
 #include "base/csv.h"
 #include "program.h"
+#include "signals/log.h"
 
 namespace servodx {
 namespace {
@@ -28,6 +29,7 @@ std::string flow_log() {
 struct Stand : Desk {
   explicit Stand(const std::string& limits) {
     write("flow.csv", flow_log());
+    write("table.csv", shipped_table());
     write("rig.toml", "ports = \"free\"\n[valve]\nrated_current = \"20 mA\"\n" + limits);
   }
 };
@@ -71,6 +73,16 @@ TEST(Curves, RefusesUnknownLimitsAndLogsWithoutFigures) {
   }
   const Stand stand("");
   EXPECT_EQ(stand.run("curves flow.csv").code, 2);  // no rated current
+}
+
+TEST(Simulate, AcceptsALogOfATestStand) {
+  const Stand stand("");
+  const Ended ended = stand.run("simulate flow.csv --params table.csv --rig rig.toml -o sim.csv");
+  ASSERT_EQ(ended.code, 0) << ended.err;
+  const Log sim = read_log(stand / "sim.csv", {}, {.require_drive = false});
+  ASSERT_TRUE(sim.has(Signal::control_flow));
+  EXPECT_EQ(sim.channels[index(Signal::control_flow)].unit, "l/min");
+  EXPECT_NEAR(sim[Signal::control_flow][240] * 6e4, 14, 1.5);  // 19.6 mA
 }
 
 }  // namespace
