@@ -165,8 +165,8 @@ LogData prepare(const Log& log, const RigFile& rig, int window) {
   for (Signal which : simulated_signals) {
     if (!log.has(which)) continue;
     if (is_redundant(which, log, s.ports)) {
-      out.notes.push_back(fmt::format("{}: '{}' is left out: it is an input, or another signal says it", log.path,
-                                      info(which).name));
+      out.notes.push_back(
+          fmt::format("{}: '{}' is left out: it is an input, or another signal says it", log.path, info(which).name));
       continue;
     }
     FitChannel c;

@@ -156,9 +156,10 @@ inline __attribute__((always_inline)) auto derivative(const S& s, const In& in, 
            T(1.0 / n_families);
   }
   (std::make_integer_sequence<int, n_families>{});
-  const auto f_friction = d.viscous * v_rel + seals * (p[row::piston_coulomb_friction] +
-                                                       p[row::piston_stribeck_friction] *
-                                                           stribeck(in.friction.rod_speed, c::piston_stribeck_velocity));
+  const auto f_friction =
+      d.viscous * v_rel +
+      seals * (p[row::piston_coulomb_friction] +
+               p[row::piston_stribeck_friction] * stribeck(in.friction.rod_speed, c::piston_stribeck_velocity));
   const auto over = soft_positive(x_p - T(0.5) * p[row::piston_stroke], T(c::piston_stop_rounding));
   const auto under = soft_positive(-x_p - T(0.5) * p[row::piston_stroke], T(c::piston_stop_rounding));
   const auto in_stop = (over + under) / (over + under + T(c::piston_stop_rounding));

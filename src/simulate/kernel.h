@@ -187,6 +187,7 @@ struct Sensed<T, EffectList<E...>> {
 
 // Ports joined by a tube: wide enough to drop 0.02 bar at 10 l/min. [m3/s/Pa]
 inline constexpr double tube_conductance = 1e-7;
+inline constexpr double drop_rounding = 1e-6;  // [m] of spool travel, where the drop passes to the other two edges
 
 // Runs `lanes` candidates (at most the width of T) over the log and writes their trajectories.
 template <class T, class Effects>
@@ -278,14 +279,16 @@ void run_pack(const Scenario& in, const ParameterVector* const* candidates, Traj
       };
       const T q_pa = flow(y[s_x_spool] - p[row::lap_pa], now.supply_pressure - y[s_p_a]);
       const T q_pb = flow(-y[s_x_spool] - p[row::lap_pb], now.supply_pressure - y[s_p_b]);
-      out[6] = q_pa - flow(-y[s_x_spool] - p[row::lap_at], y[s_p_a] - now.return_pressure);
-      out[7] = q_pb - flow(y[s_x_spool] - p[row::lap_bt], y[s_p_b] - now.return_pressure);
+      const T q_at = flow(-y[s_x_spool] - p[row::lap_at], y[s_p_a] - now.return_pressure);
+      const T q_bt = flow(y[s_x_spool] - p[row::lap_bt], y[s_p_b] - now.return_pressure);
+      out[6] = q_pa - q_at;
+      out[7] = q_pb - q_bt;
       out[10] = T(0.5) * (out[6] - out[7]);
-      out[11] = q_pa + q_pb + filter_flow(now.supply_pressure - y[s_p_filter], y[s_v_spool], d, p.data());
+      // In the return line; what passes the filter leaves through the nozzles.
+      out[11] = q_at + q_bt + filter_flow(now.supply_pressure - y[s_p_filter], y[s_v_spool], d, p.data());
     }
-    using std::max;
     out[8] = y[s_p_a] - y[s_p_b];
-    out[9] = now.supply_pressure - now.return_pressure - max(out[8], -out[8]);
+    out[9] = now.supply_pressure - now.return_pressure - out[8] * smooth_sign(y[s_x_spool], T(drop_rounding));
     sensed(in.time[k], out.data(), p.data());
     out[0] = out[0] + p[nuisance::spool_offset];
     out[2] = out[2] + p[nuisance::pressure_a_offset];

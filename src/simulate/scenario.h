@@ -43,8 +43,8 @@ struct Scenario {
 
 // Signals that the model can report.
 inline constexpr std::array<Signal, 12> simulated_signals = {
-    Signal::spool_position,   Signal::piston_position,  Signal::pressure_a,    Signal::pressure_b,
-    Signal::pilot_pressure_1, Signal::pilot_pressure_2, Signal::flow_a,        Signal::flow_b,
+    Signal::spool_position,   Signal::piston_position,     Signal::pressure_a,   Signal::pressure_b,
+    Signal::pilot_pressure_1, Signal::pilot_pressure_2,    Signal::flow_a,       Signal::flow_b,
     Signal::load_pressure,    Signal::valve_pressure_drop, Signal::control_flow, Signal::leakage_flow};
 inline constexpr int n_simulated = static_cast<int>(simulated_signals.size());
 // Position in simulated_signals, or -1.
