@@ -61,6 +61,7 @@ void run(const Options& options) {
   header.simulations = result.simulations;
   header.failed_simulations = result.failed_simulations;
   invocation.note(result.notes);
+  if (invocation.wants_report()) invocation.write_report(report::check_page(header, result, log.time));
   invocation.finish(report::text_of(result), report::check_json(result));
 }
 

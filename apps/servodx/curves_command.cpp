@@ -26,6 +26,9 @@ void run(const Options& options) {
   const curves::Sheet sheet = curves::read_curves(log, rig);
   if (!options.svg.empty()) write_file(options.svg, report::curves_svg(sheet, *rig.fact("valve.rated_current")));
   invocation.note(sheet.notes);
+  if (invocation.wants_report())
+    invocation.write_report(
+        report::curves_page(invocation.header(), sheet, options.log, *rig.fact("valve.rated_current")));
   invocation.finish(report::text_of(sheet, options.log, colour_wanted()), report::curves_json(sheet));
 }
 

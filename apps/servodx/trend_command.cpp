@@ -62,6 +62,7 @@ void run(Options options) {
   invocation.header().settings = {{"history", options.history},       {"false_alarm", options.trend.false_alarm},
                                   {"healthy", options.trend.healthy}, {"coverage", options.trend.coverage},
                                   {"failure", options.failures},      {"limit", options.limits}};
+  if (invocation.wants_report()) invocation.write_report(report::trend_page(invocation.header(), trends, options.all));
   invocation.finish(options.all ? report::ranking(trends) : report::text_of(trends.front()),
                     report::trend_json(trends, options.all));
 }

@@ -16,7 +16,16 @@ namespace {
 using curves::Figure;
 using curves::Sheet;
 
-// A figure's value as a test engineer reads it.
+Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
+Json numbers(const std::vector<double>& values) {
+  Json array = Json::array();
+  for (double v : values) array.push_back(number(v));
+  return array;
+}
+Json bound(const std::optional<double>& b) { return b ? Json(*b) : Json(nullptr); }
+
+}  // namespace
+
 std::string readable(const Figure& f, double value) {
   if (f.unit == "-") return digits(100 * value, 3) + (f.name == "symmetry" ? " %" : " % of rated");
   if (f.unit == "1/%") return digits(100 * value, 3) + " % of supply per 1 %";
@@ -34,16 +43,6 @@ std::string limit_text(const Figure& f) {
   const std::string low = side("at least ", f.limit->min), high = side("at most ", f.limit->max);
   return low + (low.empty() || high.empty() ? "" : ", ") + high;
 }
-
-Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
-Json numbers(const std::vector<double>& values) {
-  Json array = Json::array();
-  for (double v : values) array.push_back(number(v));
-  return array;
-}
-Json bound(const std::optional<double>& b) { return b ? Json(*b) : Json(nullptr); }
-
-}  // namespace
 
 std::string text_of(const Sheet& sheet, const std::string& log, bool colour) {
   const bool judged = sheet.verdict != "not_judged";

@@ -1,14 +1,20 @@
-// The acceptance sheet of `servodx curves` as text, JSON and a picture.
+// The acceptance sheet of `servodx curves` as text, JSON, a picture and a page.
 #pragma once
 #include <string>
 
 #include "curves/curves.h"
 #include "report/json.h"
+#include "report/page.h"
 
 namespace servodx::report {
+
+// A figure's value, and its limit, as a test engineer reads them.
+std::string readable(const curves::Figure& figure, double value);
+std::string limit_text(const curves::Figure& figure);
 
 std::string text_of(const curves::Sheet& sheet, const std::string& log, bool colour);
 Json curves_json(const curves::Sheet& sheet);
 std::string curves_svg(const curves::Sheet& sheet, double rated_current);
+Page curves_page(const Header& header, const curves::Sheet& sheet, const std::string& log, double rated_current);
 
 }  // namespace servodx::report

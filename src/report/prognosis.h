@@ -1,10 +1,11 @@
-// Results of `monitor`, `check` and `trend` as JSON and as text.
+// Results of `monitor`, `check` and `trend` as JSON, text and pages.
 #pragma once
 #include <string>
 
 #include "prognose/check.h"
 #include "prognose/trend.h"
 #include "report/json.h"
+#include "report/page.h"
 
 namespace servodx::report {
 
@@ -17,5 +18,10 @@ Json to_json(const ValveTrend& trend);
 Json trend_json(const std::vector<ValveTrend>& trends, bool all);
 std::string text_of(const ValveTrend& trend);
 std::string ranking(const std::vector<ValveTrend>& trends);
+
+// The running |e|, where the log is long enough for it, and every check with its correction.
+Page check_page(const Header& header, const CheckResult& result, const std::vector<double>& time);
+// One valve: each check over its hours with levels, and how long is left; of several, the ranking first.
+Page trend_page(const Header& header, const std::vector<ValveTrend>& trends, bool all);
 
 }  // namespace servodx::report

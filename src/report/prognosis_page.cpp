@@ -1,0 +1,177 @@
+#include <algorithm>
+#include <cmath>
+
+#include "report/handy.h"
+#include "report/prognosis.h"
+#include "report/replay_part.h"
+
+namespace servodx::report {
+namespace {
+
+std::string named(const std::string& check, const std::string& cause) {
+  return cause.empty() ? check : words(cause) + " (" + check + ")";
+}
+
+std::string in_hours(double h) { return std::isfinite(h) ? digits(h) + " h" : "never"; }
+
+Tone tone_of(const std::string& state) {
+  if (state == "failed" || state == "warning") return Tone::bad;
+  return state == "healthy" ? Tone::good : Tone::doubt;
+}
+
+std::string left(const std::optional<Remaining>& r, double coverage) {
+  if (!r) return "not predicted";
+  return in_hours(r->median) + " (" + in_hours(r->lower) + " to " + in_hours(r->upper) + ", " + percent(coverage) + ")";
+}
+
+double coverage_of(const Header& header) { return header.settings.value("coverage", 0.9); }
+
+// A check over its hours, with what it must not pass.
+Plot history_of(const CheckTrend& t) {
+  const HandyUnit unit = handy_unit(t.unit, std::max(std::abs(t.healthy), std::abs(t.now)));
+  Plot plot{.title = named(t.name, t.cause) + (unit.name.empty() ? "" : " [" + unit.name + "]"),
+            .x_label = "hours of use",
+            .group = "life"};
+  Series healthy{"taken as healthy", {}, Role::reference, true}, watched{"watched", {}, Role::measured, true};
+  for (const CheckTrend::Point& p : t.points) {
+    plot.x.push_back(p.at);
+    healthy.y.push_back(p.healthy ? p.value * unit.factor : std::nan(""));
+    watched.y.push_back(p.healthy ? std::nan("") : p.value * unit.factor);
+  }
+  plot.series = {healthy, watched};
+  const auto mark = [&](const Level& level, const char* label) {
+    for (const auto& bound : {level.lower, level.upper})
+      if (bound && std::isfinite(*bound)) plot.y_marks.push_back({*bound * unit.factor, label});
+  };
+  mark(t.threshold, "threshold");
+  mark(t.warning, "warning");
+  mark(t.failure, "failure");
+  if (t.alert_at) plot.x_marks.push_back({*t.alert_at, "alert"});
+  return plot;
+}
+
+// The chance to be failed by an hour, from sorted hours each as likely as the other.
+std::optional<Plot> life_plot(const Life& life, double now) {
+  Plot plot{.title = "chance of having failed [%]", .x_label = "hours of use"};
+  Series s{"predicted", {}, Role::named};
+  for (std::size_t k = 0; k < life.size() && std::isfinite(life[k]); ++k) {
+    plot.x.push_back(now + life[k]);
+    s.y.push_back(100.0 * static_cast<double>(k + 1) / static_cast<double>(life.size()));
+  }
+  if (plot.x.size() < 2) return {};
+  plot.series = {s};
+  return plot;
+}
+
+TablePart table_of(const ValveTrend& v, double coverage) {
+  TablePart table{"Checks of " + v.valve, "llrrll", {"check", "state", "began", "now", "trend", "life left"}, {}, 0};
+  for (const CheckTrend& t : v.trends) {
+    Cell state = t.state;
+    state.tone = tone_of(t.state);
+    table.rows.push_back({named(t.name, t.cause), state, Cell(handy(t.healthy, t.unit), t.healthy),
+                          t.points.size() < 2 ? Cell("-") : Cell(handy(t.now, t.unit), t.now),
+                          t.trend ? "odds of growth e^" + digits(t.log_bayes_factor, 2) : "none shown",
+                          left(t.remaining, coverage)});
+  }
+  return table;
+}
+
+void add_valve(Page& page, const ValveTrend& v, double coverage, bool folded) {
+  page.section(
+      "Checks of " + v.valve,
+      "Corrected to 40 degC oil. A trend is confirmed before anything is predicted; \"none shown\" is an answer.",
+      folded);
+  page.add(table_of(v, coverage));
+  if (const auto life = life_plot(v.life, v.at)) page.add(*life);
+  // What moves first, then the rest.
+  std::vector<const CheckTrend*> order;
+  for (const CheckTrend& t : v.trends) order.push_back(&t);
+  std::stable_sort(order.begin(), order.end(),
+                   [](auto* a, auto* b) { return a->log_bayes_factor > b->log_bayes_factor; });
+  for (const CheckTrend* t : order)
+    if (t->points.size() > 1) page.add(history_of(*t));
+}
+
+Verdict verdict_of(const ValveTrend& v, double coverage) {
+  Verdict verdict;
+  verdict.tone = tone_of(v.state);
+  verdict.word = v.state;
+  std::transform(verdict.word.begin(), verdict.word.end(), verdict.word.begin(),
+                 [](unsigned char c) { return std::toupper(c); });
+  verdict.headline = v.cause      ? words(*v.cause) + " grows in " + v.valve
+                     : v.alert_at ? "A check of " + v.valve + " grows; no parameter names the cause"
+                                  : v.valve + " shows no growth that would be acted on";
+  verdict.facts = {{"Valve", v.serial.empty() ? v.valve : v.valve + ", serial " + v.serial},
+                   {"Last check", in_hours(v.at)},
+                   {"Checks recorded", std::to_string(v.checks)},
+                   {"Alert", v.alert_at ? "at " + in_hours(*v.alert_at) : "none"},
+                   {"Life left", left(v.remaining, coverage)}};
+  for (const CheckTrend& t : v.trends)
+    if (t.alert_at)
+      verdict.reasons.push_back(named(t.name, t.cause) + " passed its warning level at " + in_hours(*t.alert_at));
+  return verdict;
+}
+
+}  // namespace
+
+Page trend_page(const Header& header, const std::vector<ValveTrend>& trends, bool all) {
+  const double coverage = coverage_of(header);
+  Page page(header, all ? "Fleet of " + std::to_string(trends.size()) + " valves" : "Trend of " + trends.front().valve);
+  if (!all) {
+    page.verdict(verdict_of(trends.front(), coverage));
+    add_valve(page, trends.front(), coverage, false);
+    return page;
+  }
+  const auto alerts =
+      std::count_if(trends.begin(), trends.end(), [](const ValveTrend& v) { return v.alert_at.has_value(); });
+  Verdict v;
+  v.tone = alerts > 0 ? Tone::bad : Tone::good;
+  v.headline = alerts > 0
+                   ? std::to_string(alerts) + " of " + std::to_string(trends.size()) + " valves have raised an alert"
+                   : "No valve has raised an alert";
+  page.verdict(v);
+  page.section("Ranking", "The first to reach its warning level first.");
+  TablePart table{"Ranking", "lllrll", {"valve", "state", "cause", "at", "to warning", "life left"}, {}, 0};
+  for (const ValveTrend& t : trends) {
+    Cell state = t.state;
+    state.tone = tone_of(t.state);
+    table.rows.push_back({t.valve, state, t.cause ? words(*t.cause) : "-", Cell(in_hours(t.at), t.at),
+                          t.to_warning > 0 ? in_hours(t.to_warning) : "passed", left(t.remaining, coverage)});
+  }
+  page.add(table);
+  for (const ValveTrend& t : trends) add_valve(page, t, coverage, &t != &trends.front());
+  return page;
+}
+
+Page check_page(const Header& header, const CheckResult& r, const std::vector<double>& time) {
+  Page page(header, "Checks of " + file_name(r.log));
+  Verdict v;
+  v.tone = r.no_response ? Tone::bad : Tone::plain;
+  v.headline = r.no_response ? "The spool did not follow the step"
+                             : std::to_string(r.checks.size()) + " checks, oil at " +
+                                   digits(r.temperature.value - 273.15) + " degC (" + r.temperature.source + ")";
+  v.detail = "What they mean for this valve, its history says: servodx trend.";
+  v.facts = {{"Offset of the current", percent(r.offset)},
+             {"Fit of the model", digits(r.adequacy, 2) + " times its usual error"}};
+  if (r.null) v.facts.push_back({"Null", percent(*r.null)});
+  page.verdict(v);
+  page.section("Checks", "As measured, and corrected to 40 degC oil and the supply of the tuned table.");
+  TablePart table{"Checks", "lrrrr", {"check", "measured", "model's ratio", "corrected", "standard error"}, {}, 0};
+  for (const Check& c : r.checks)
+    table.rows.push_back({named(c.name, c.cause), Cell(handy(c.measured, c.unit), c.measured),
+                          Cell(digits(c.expected), c.expected), Cell(handy(c.value, c.unit), c.value),
+                          Cell(handy(c.std_error, c.unit), c.std_error)});
+  page.add(table);
+  if (r.mean_error.running.size() == time.size() && !time.empty()) {
+    Plot plot{.title = "running mean of |e| [um]", .x_label = "time [s]", .x = time};
+    Series s{"|e|", r.mean_error.running, Role::measured};
+    for (double& y : s.y) y *= 1e6;
+    plot.series = {s};
+    if (r.mean_error.settled) plot.x_marks = {{r.mean_error.settled_at, "settled"}};
+    page.section("Mean error", "Between measured and monitored spool, over the time so far.");
+    page.add(plot);
+  }
+  return page;
+}
+
+}  // namespace servodx::report
