@@ -114,9 +114,13 @@ int main(int argc, char** argv) {
     promised = baseline.promised;
     fmt::print("rotation {}: {} tune, {} baseline, {} held out; threshold {:.2f}, adequacy limit {:.2f}\n", r,
                tune_logs.size(), base_logs.size(), held.size(), baseline.threshold, baseline.adequacy_limit);
-    for (const Baseline::Score& s : baseline.scores)
-      fmt::print("    baseline {:26s} score {:6.2f} adequacy {:.2f}\n", fs::path(s.log).filename().string(), s.score,
-                 s.adequacy);
+    for (const Baseline::Score& s : baseline.scores) {
+      fmt::print("    baseline {:26s} score {:6.2f} adequacy {:.2f} gains", fs::path(s.log).filename().string(),
+                 s.score, s.adequacy);
+      for (const auto& [fault, gain] : s.gains)
+        if (gain > 1) fmt::print(" {} {:.1f}", fault, gain);
+      fmt::print("\n");
+    }
     const auto show = [&](const Log& log, const Truth& t) {
       const Diagnosis d = judge(assess(log, tuned, rig, options), baseline);
       const std::string verdict = d.fault ? *d.fault : d.verdict;
@@ -147,6 +151,10 @@ int main(int argc, char** argv) {
         }
         fmt::print("\n");
       }
+      fmt::print("    gains");
+      for (const HypothesisResult& h : d.assessment.hypotheses)
+        if (h.gain > 1) fmt::print(" {} {:.1f}", h.name, h.gain);
+      fmt::print("\n");
       std::fflush(stdout);
     };
     for (const Log& log : held)

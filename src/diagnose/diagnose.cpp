@@ -37,6 +37,8 @@ double misfit_scale(double healthy, double best, double degrees) {
   return std::max(1.0, best / degrees) + effect_error * effect_error * std::max(0.0, healthy - best) / degrees;
 }
 
+constexpr std::size_t shortest_part = 200;  // samples on either side of a change
+
 struct ChangePoint {
   std::size_t at = 0;
   bool found = false;
@@ -47,7 +49,7 @@ ChangePoint change_point(const std::vector<double>& square, double degrees) {
   const std::size_t n = square.size();
   std::vector<double> sum(n + 1, 0.0);
   for (std::size_t k = 0; k < n; ++k) sum[k + 1] = sum[k] + square[k];
-  const auto margin = std::max<std::size_t>(200, n / 10);  // either part must be able to speak for itself
+  const auto margin = std::max(shortest_part, n / 10);  // either part must be able to speak for itself
   if (n < 4 * margin || sum[n] <= 0) return {};
   ChangePoint best;
   double best_cost = static_cast<double>(n) * std::log(sum[n] / static_cast<double>(n)), whole = best_cost;
@@ -122,32 +124,46 @@ Assessment assess(const Log& log, const Table& tuned, const RigFile& rig, const 
   };
 
   // A fault that steps in: before it the log is healthy, after it the hypotheses are judged on what is left.
-  const ChangePoint change = change_point(h.healthy_square, h.degrees);
+  std::vector<std::size_t> changes;
+  if (const ChangePoint c = change_point(h.healthy_square, h.degrees); c.found) changes.push_back(c.at);
+  // A large one drags the nuisances of the whole log along, and nothing is quiet: health is asked of the beginning too.
+  if (const std::size_t n = data.scenario.time.size(); n >= 4 * shortest_part) {
+    const std::vector<double> square = square_beyond_beginning(data, std::max(shortest_part, n / 4), base, error,
+                                                               settings, &out.simulations, &out.failed_simulations);
+    const ChangePoint c = square.empty() ? ChangePoint{} : change_point(square, h.degrees);
+    if (c.found && (changes.empty() || changes.front() != c.at)) changes.push_back(c.at);
+  }
   const auto best_misfit = [](const HypothesisFits& f) {
     double m = 1e300;
     for (const HypothesisFit& fit : f.fits) m = std::min(m, fit.misfit);
     return m;
   };
-  if (change.found) {
-    HypothesisFits before = fit_hypotheses(slice(data, 0, change.at), base, error, settings);
-    HypothesisFits after = fit_hypotheses(slice(data, change.at, data.scenario.time.size()), base, error, settings);
+  std::size_t judged_from = 0;
+  for (const std::size_t at : changes) {
+    HypothesisFits before = fit_hypotheses(slice(data, 0, at), base, error, settings);
+    HypothesisFits after = fit_hypotheses(slice(data, at, data.scenario.time.size()), base, error, settings);
     out.simulations += before.simulations + after.simulations;
     out.failed_simulations += before.failed + after.failed;
     const double whole = best_misfit(h), split = before.fits.front().misfit + best_misfit(after);
     const double scale = std::max(1.0, split / h.degrees);
+    // What was gone before cannot be the fault that is there after: that fault gains next to nothing before.
+    std::size_t fault = 0;
+    for (std::size_t k = 1; k < after.fits.size(); ++k)
+      if (after.fits[k].misfit < after.fits[fault].misfit) fault = k;
+    const double gain_before = before.fits.front().misfit - before.fits[fault].misfit;
+    const double gain_after = after.fits.front().misfit - after.fits[fault].misfit;
     // A second set of nuisances and a time were bought: they must pay for themselves.
-    // And what stood before must be health, not the same fault fitted badly.
-    const bool was_healthy = (before.fits.front().misfit - best_misfit(before)) / scale < 10.0;
-    const bool is_faulty = (after.fits.front().misfit - best_misfit(after)) / scale > 25.0;
-    if (was_healthy && is_faulty && (whole - split) / scale > 25.0) {
-      out.onset = data.scenario.time[change.at];
+    if (gain_after / scale > 25.0 && gain_before < 0.1 * gain_after && (whole - split) / scale > 25.0) {
+      out.onset = data.scenario.time[at];
+      judged_from = at;
       explain(before.fits.front(), 0);
       h = std::move(after);
+      break;
     }
   }
 
   for (const HypothesisFit& f : h.fits)
-    if (f.fault || !out.onset) explain(f, out.onset ? change.at : 0);
+    if (f.fault || !out.onset) explain(f, judged_from);
 
   const HypothesisFit& healthy = h.fits.front();
   const double smallest = best_misfit(h);
@@ -156,14 +172,14 @@ Assessment assess(const Log& log, const Table& tuned, const RigFile& rig, const 
   const auto weight = [&](const HypothesisFit& f) {
     return (f.fault ? f.fault->prior : 1.0) * std::exp(-0.5 * (f.misfit - smallest) / separation);
   };
-  double total = 0, best_gain = 0;
+  double total = 0;
   for (const HypothesisFit& f : h.fits) total += weight(f);
   for (const HypothesisFit& f : h.fits) {
     HypothesisResult r;
     r.name = label(f);
     r.meaning = f.fault ? std::string(f.fault->meaning) : "as the fault-free logs, within every fault's tolerance";
     r.misfit = f.misfit;
-    r.gain = (healthy.misfit - f.misfit) / scale;
+    r.gain = f.ok ? (healthy.misfit - f.misfit) / scale : 0.0;
     r.probability = weight(f) / total;
     r.severity = f.severity;
     r.severity_lower = std::min(f.severity_lower, f.severity_upper);
@@ -171,13 +187,10 @@ Assessment assess(const Log& log, const Table& tuned, const RigFile& rig, const 
     r.unit = f.fault ? std::string(f.fault->unit) : "";
     r.adequacy = worst_adequacy(f);
     r.stops = f.stops;
-    best_gain = std::max(best_gain, f.ok ? r.gain : 0.0);
     out.hypotheses.push_back(std::move(r));
   }
   std::stable_sort(out.hypotheses.begin() + 1, out.hypotheses.end(),
                    [](const auto& a, const auto& b) { return a.probability > b.probability; });
-  out.score = std::max(std::sqrt(best_gain), std::log(std::max(1.0, worst_adequacy(healthy))) / adequacy_spread);
-  if (!out.gross.empty()) out.score = std::max(out.score, 1e3);
 
   // What moved under the best hypothesis.
   const auto best = std::max_element(h.fits.begin(), h.fits.end(),
@@ -206,6 +219,26 @@ Assessment assess(const Log& log, const Table& tuned, const RigFile& rig, const 
   return out;
 }
 
+double score_of(const Assessment& a, const std::map<std::string, double>& usual) {
+  double score = std::log(std::max(1.0, a.hypotheses.front().adequacy)) / adequacy_spread;
+  for (const HypothesisResult& h : a.hypotheses) {
+    const auto known = usual.find(h.name);
+    const double of_health = known == usual.end() ? 0.0 : known->second;
+    score = std::max(score, std::sqrt(std::max(0.0, h.gain) / (1.0 + of_health)));
+  }
+  return a.gross.empty() ? score : std::max(score, 1e3);
+}
+
+std::map<std::string, double> usual_gains(const Baseline& baseline, int left_out) {
+  std::map<std::string, double> usual;
+  for (std::size_t i = 0; i < baseline.scores.size(); ++i)
+    if (static_cast<int>(i) != left_out)
+      for (const auto& [fault, gain] : baseline.scores[i].gains) usual[fault] += std::max(0.0, gain);
+  const auto logs = static_cast<double>(baseline.scores.size()) - (left_out >= 0 ? 1.0 : 0.0);
+  for (auto& [fault, gain] : usual) gain /= logs;
+  return usual;
+}
+
 Baseline make_baseline(const std::vector<Log>& logs, const Table& tuned, const RigFile& rig, double false_alarm,
                        const DiagnoseOptions& options, long* simulations, long* failed) {
   if (!(false_alarm > 0 && false_alarm < 1))
@@ -232,11 +265,19 @@ Baseline make_baseline(const std::vector<Log>& logs, const Table& tuned, const R
   b.tuned_sha256 = tuned.sha256;
   Progress progress("baseline", {.quiet = options.quiet});
   long total = 0;
+  std::vector<Assessment> judged;
   for (std::size_t i = 0; i < logs.size(); ++i) {
     const Assessment a = assess(logs[i], tuned, rig, options);
     if (options.stop && options.stop->load()) break;
-    b.scores.push_back({a.log, a.sha256, a.score, a.hypotheses.front().adequacy,
+    b.scores.push_back({a.log,
+                        a.sha256,
+                        0.0,
+                        a.hypotheses.front().adequacy,
+                        {},
                         a.explanations.empty() ? Candidate{} : a.explanations.front()});
+    for (const HypothesisResult& h : a.hypotheses)
+      if (h.name != "healthy") b.scores.back().gains[h.name] = h.gain;
+    judged.push_back(a);
     b.adequacy_limit = std::max(b.adequacy_limit, a.hypotheses.front().adequacy);
     total += a.simulations;
     if (simulations) *simulations += a.simulations;
@@ -245,6 +286,8 @@ Baseline make_baseline(const std::vector<Log>& logs, const Table& tuned, const R
   }
   b.logs = static_cast<int>(b.scores.size());
   if (b.scores.empty()) return b;
+  for (std::size_t i = 0; i < judged.size(); ++i)
+    b.scores[i].score = score_of(judged[i], usual_gains(b, static_cast<int>(i)));
   std::vector<double> sorted;
   for (const Baseline::Score& s : b.scores) sorted.push_back(s.score);
   std::sort(sorted.begin(), sorted.end());
@@ -273,14 +316,14 @@ Diagnosis judge(Assessment a, const Baseline& baseline) {
   constexpr double unexplained_part = 0.25;
   Diagnosis d;
   d.log = a.log;
-  d.error = a.score;
+  d.error = score_of(a, usual_gains(baseline));
   d.threshold = baseline.threshold;
   d.onset = a.onset;
   long above = 1;
-  for (const Baseline::Score& s : baseline.scores) above += s.score >= a.score;
+  for (const Baseline::Score& s : baseline.scores) above += s.score >= d.error;
   d.p_value = static_cast<double>(above) / static_cast<double>(baseline.scores.size() + 1);
   for (const HypothesisResult& h : a.hypotheses) d.probabilities[h.name] = h.probability;
-  if (a.score <= baseline.threshold) {
+  if (d.error <= baseline.threshold) {
     d.verdict = "healthy";
   } else {
     const HypothesisResult& best =

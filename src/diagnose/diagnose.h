@@ -37,7 +37,6 @@ struct HypothesisResult {
 // What a log says before any threshold.
 struct Assessment {
   std::string log, sha256;
-  double score = 0;                          // detection statistic
   std::vector<HypothesisResult> hypotheses;  // healthy first, then by misfit
   std::vector<ChannelResult> channels;       // replay under health: rms beside noise
   std::string gross;                         // non-empty: seen without a fit (spool on its stop, no response)
@@ -60,7 +59,8 @@ struct Baseline {
   struct Score {
     std::string log, sha256;
     double score = 0, adequacy = 0;
-    Candidate healthy = {};  // not in the file: for the report
+    std::map<std::string, double> gains = {};  // of each fault over health
+    Candidate healthy = {};                    // not in the file: for the report
   };
   std::vector<Score> scores;
   double adequacy_limit = 0;  // largest adequacy of a healthy log
@@ -88,6 +88,14 @@ struct Diagnosis {
   std::optional<double> onset;  // [s]
   Assessment assessment;
 };
+
+// Detection statistic of a log: how far it is from health in deviates, by the fault that explains most or by what no
+// fault explains. `usual`: what each fault gains on fault-free logs, on average; a fault that health shows too must
+// gain the more.
+double score_of(const Assessment& assessment, const std::map<std::string, double>& usual);
+
+// Mean gain of each fault over the baseline's logs, but for log `left_out` (-1: none).
+std::map<std::string, double> usual_gains(const Baseline& baseline, int left_out = -1);
 
 Diagnosis judge(Assessment assessment, const Baseline& baseline);
 

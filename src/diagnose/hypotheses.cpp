@@ -11,8 +11,6 @@
 namespace servodx {
 namespace {
 
-constexpr double unlearnt_effective = 0.05;  // for a channel that the tuning logs lacked
-
 // Severity as a free number, from the mildest that is called a fault to the worst, on the side of the start.
 FreeValue severity_value(const Fault& fault, double start, double null_limit) {
   FreeValue f;
@@ -80,10 +78,34 @@ void whiten(FitProblem& problem, const ErrorModel& error, const Trajectory& refe
     for (double& a : act)
       if (std::isnan(a)) a = 0;
     std::vector<double> sigma = sigma_of(e, channel.noise, act);
-    const double scale = 1.0 / std::sqrt(e ? e->effective : unlearnt_effective);
+    const double scale = 1.0 / std::sqrt(effective_of(e, log.scenario.time));
     for (double& s : sigma) s *= scale;
     problem.set_sigma(0, static_cast<int>(c), std::move(sigma));
   }
+}
+
+// A sample: mean over the channels of the squared whitened residual.
+std::vector<double> squares(const FitProblem& problem, const Eigen::VectorXd& residual, const ErrorModel& error) {
+  const LogData& log = *problem.logs().front();
+  std::vector<double> square(log.scenario.time.size(), 0.0);
+  for (std::size_t c = 0; c < log.channels.size(); ++c) {
+    const long at = problem.rows(0, static_cast<int>(c)).first;
+    const double effective = effective_of(error.find(log.channels[c].signal), log.scenario.time);
+    for (std::size_t k = 0; k < square.size(); ++k) {
+      const double r = residual[at + static_cast<long>(k)];
+      square[k] += r * r / effective / static_cast<double>(log.channels.size());
+    }
+  }
+  return square;
+}
+
+// The trajectory at the tuned values: it says where things move, and so where the model may err, for all alike.
+Trajectory reference_of(const LogData& log, const ParameterVector& base, int threads) {
+  SimulateOptions options;
+  options.threads = threads;
+  options.wanted.fill(false);
+  for (const FitChannel& c : log.channels) options.wanted[c.simulated] = true;
+  return simulate(log.scenario, base, options);
 }
 
 struct Attempt {
@@ -140,22 +162,19 @@ void run(Attempt& a, const LogData& log, const ParameterVector& base, const Erro
   for (std::size_t j = 0; j < kept.size(); ++j)
     fit.standard_error.push_back(std::sqrt(std::max(0.0, covariance(static_cast<long>(j), static_cast<long>(j)))));
   const std::size_t samples = log.scenario.time.size();
-  a.square.assign(samples, 0.0);
+  a.square = squares(problem, r.residual, error);
   for (std::size_t c = 0; c < log.channels.size(); ++c) {
     const auto [at, n] = problem.rows(0, static_cast<int>(c));
     const ChannelError* e = error.find(log.channels[c].signal);
-    const double effective = e ? e->effective : unlearnt_effective;
-    fit.channel_adequacy.push_back(
-        std::sqrt(r.residual.segment(at, n).squaredNorm() / static_cast<double>(n) / effective));
+    const double effective = effective_of(e, log.scenario.time);
+    const auto present = static_cast<double>(std::max(1L, present_samples(log.channels[c])));
+    fit.channel_adequacy.push_back(std::sqrt(r.residual.segment(at, n).squaredNorm() / present / effective));
     double raw = 0;
     for (std::size_t k = 0; k < samples; ++k) {
       const double v = r.residual[at + static_cast<long>(k)] * problem.sigma(0, static_cast<int>(c))[k];
       raw += v * v;
     }
-    fit.channel_rms.push_back(std::sqrt(raw / static_cast<double>(samples)));
-    for (std::size_t k = 0; k < samples; ++k)
-      a.square[k] += r.residual[at + static_cast<long>(k)] * r.residual[at + static_cast<long>(k)] / effective /
-                     static_cast<double>(log.channels.size());
+    fit.channel_rms.push_back(std::sqrt(raw / present));
   }
   if (a.fault) {
     // The curvature at the end, inflated where the model does not fit as well as it should, and the fault's own spread.
@@ -208,12 +227,7 @@ std::vector<double> screened_starts(const LogData& log, const ParameterVector& b
 HypothesisFits fit_hypotheses(const LogData& log, const ParameterVector& base, const ErrorModel& error,
                               const HypothesisSettings& settings) {
   HypothesisFits out;
-  // Health first: its trajectory says where things move, and so where the model may err, for all alike.
-  SimulateOptions options;
-  options.threads = settings.threads;
-  options.wanted.fill(false);
-  for (const FitChannel& c : log.channels) options.wanted[c.simulated] = true;
-  const Trajectory reference = simulate(log.scenario, base, options);
+  const Trajectory reference = reference_of(log, base, settings.threads);
   Attempt health;
   run(health, log, base, error, reference, nullptr, settings.iterations, settings);
   const int threads = settings.threads > 0 ? settings.threads : omp_get_max_threads();
@@ -264,10 +278,27 @@ HypothesisFits fit_hypotheses(const LogData& log, const ParameterVector& base, c
     out.fits.push_back(std::move(a.fit));
   }
   for (const FitChannel& c : log.channels) {
-    const ChannelError* e = error.find(c.signal);
-    out.degrees += static_cast<double>(c.measured.size()) * (e ? e->effective : unlearnt_effective);
+    out.degrees += static_cast<double>(present_samples(c)) * effective_of(error.find(c.signal), log.scenario.time);
   }
   return out;
+}
+
+std::vector<double> square_beyond_beginning(const LogData& log, std::size_t end, const ParameterVector& base,
+                                            const ErrorModel& error, const HypothesisSettings& settings,
+                                            long* simulations, long* failed) {
+  const LogData beginning = slice(log, 0, end);
+  Attempt health;
+  run(health, beginning, base, error, reference_of(beginning, base, settings.threads), nullptr, settings.iterations,
+      settings);
+  *simulations += health.simulations;
+  *failed += health.failed;
+  if (!health.fit.ok) return {};
+  FitProblem problem({&log}, base, health.fit.free);
+  whiten(problem, error, reference_of(log, base, settings.threads));
+  const Evaluation e = problem.evaluate(std::span(&health.fit.point, 1)).front();
+  *simulations += problem.simulations();
+  *failed += problem.failed_simulations();
+  return e.ok ? squares(problem, e.residual, error) : std::vector<double>{};
 }
 
 }  // namespace servodx

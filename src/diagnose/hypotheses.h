@@ -46,4 +46,10 @@ struct HypothesisFits {
 HypothesisFits fit_hypotheses(const LogData& log, const ParameterVector& base, const ErrorModel& error,
                               const HypothesisSettings& settings);
 
+// The log's squared residual, a sample, under health as fitted to its beginning alone, the samples before `end`: what a
+// whole log's fit cannot show where a fault that steps in drags the nuisances along. Empty where the fit fails.
+std::vector<double> square_beyond_beginning(const LogData& log, std::size_t end, const ParameterVector& base,
+                                            const ErrorModel& error, const HypothesisSettings& settings,
+                                            long* simulations, long* failed);
+
 }  // namespace servodx

@@ -12,16 +12,14 @@
 namespace servodx {
 namespace {
 
-constexpr double independent_rate = 40.0;  // [1/s] samples that count, where no tuned table says
 constexpr double default_null_limit = 0.1;
 
 void whiten(FitProblem& problem, const ErrorModel& error, const Point& x) {
   if (!error.channels.empty()) return apply_error_model(problem, error, x);
   const LogData& log = *problem.logs().front();
-  const double span = log.scenario.time.back() - log.scenario.time.front();
-  const double correlated = static_cast<double>(log.scenario.time.size()) / std::max(1.0, span * independent_rate);
+  const double effective = effective_of(nullptr, log.scenario.time);
   for (std::size_t c = 0; c < log.channels.size(); ++c)
-    problem.set_sigma(0, static_cast<int>(c), 2 * log.channels[c].noise * std::sqrt(std::max(1.0, correlated)));
+    problem.set_sigma(0, static_cast<int>(c), 2 * log.channels[c].noise / std::sqrt(effective));
 }
 
 // Length of what is left of `r` when the columns of `j` (nuisances, their priors included) have taken their best.

@@ -124,7 +124,7 @@ ValveSubject::ValveSubject(const std::vector<Log>& logs, const Table& tuned, con
       const auto n = static_cast<long>(channel.measured.size());
       series_.push_back({std::string(info(channel.signal).name), std::string(info(channel.signal).si_unit),
                          static_cast<int>(l), first, n, &logs_[l].scenario.time, &sigma_[l][c], channel.noise,
-                         e ? e->effective : 0.1});
+                         effective_of(e, logs_[l].scenario.time)});
       first += n;
     }
 }

@@ -9,7 +9,8 @@
 namespace servodx {
 namespace {
 
-constexpr double activity_time = 20e-3;  // [s] memory of the activity
+constexpr double activity_time = 20e-3;      // [s] memory of the activity
+constexpr double unlearnt_independent = 50;  // [1/s]
 constexpr const char* comment_key = "model error";
 
 double square(double x) { return x * x; }
@@ -43,6 +44,13 @@ std::vector<double> sigma_of(const ChannelError* error, double noise, const std:
   return s;
 }
 
+double effective_of(const ChannelError* error, const std::vector<double>& time) {
+  const double span = time.empty() ? 0.0 : time.back() - time.front();
+  if (!(span > 0)) return 1.0;
+  const double rate = static_cast<double>(time.size() - 1) / span;
+  return std::min(1.0, (error ? error->independent : unlearnt_independent) / rate);
+}
+
 double effective_fraction(const std::vector<double>& w) {
   std::vector<double> x;
   for (double v : w)
@@ -70,7 +78,7 @@ ErrorModel learn_error_model(const FitProblem& problem, const Point& x) {
   for (Signal signal : simulated_signals) {
     // Pool the logs that have this channel.
     std::vector<std::vector<double>> residuals, activities;
-    std::vector<double> noises;
+    std::vector<double> noises, rates;
     for (std::size_t l = 0; l < t.size(); ++l) {
       if (!t[l].ok) continue;
       const auto& channels = problem.logs()[l]->channels;
@@ -79,6 +87,8 @@ ErrorModel learn_error_model(const FitProblem& problem, const Point& x) {
           residuals.push_back(problem.raw_residual(static_cast<int>(l), static_cast<int>(c), t[l]));
           activities.push_back(activity(problem.logs()[l]->scenario.time, t[l].signals[channels[c].simulated]));
           noises.push_back(channels[c].noise);
+          const std::vector<double>& time = problem.logs()[l]->scenario.time;
+          rates.push_back(static_cast<double>(time.size() - 1) / (time.back() - time.front()));
         }
     }
     if (residuals.empty()) continue;
@@ -115,15 +125,13 @@ ErrorModel learn_error_model(const FitProblem& problem, const Point& x) {
             best = trial, lf += df, ls += ds, moved = true;
         }
       }
-    ChannelError error{signal, std::exp(lf), std::exp(ls), 1.0};
-    double fraction = 0;
+    ChannelError error{signal, std::exp(lf), std::exp(ls), 0.0};
     for (std::size_t i = 0; i < residuals.size(); ++i) {
       const std::vector<double> sigma = sigma_of(&error, noises[i], activities[i]);
       std::vector<double> whitened(residuals[i].size());
       for (std::size_t k = 0; k < whitened.size(); ++k) whitened[k] = residuals[i][k] / sigma[k];
-      fraction += effective_fraction(whitened);
+      error.independent += effective_fraction(whitened) * rates[i] / static_cast<double>(residuals.size());
     }
-    error.effective = fraction / static_cast<double>(residuals.size());
     model.channels.push_back(error);
   }
   return model;
@@ -142,7 +150,7 @@ void apply_error_model(FitProblem& problem, const ErrorModel& model, const Point
       for (double& a : act)
         if (std::isnan(a)) a = 0;
       std::vector<double> sigma = sigma_of(error, channel.noise, act);
-      const double scale = 1.0 / std::sqrt(error ? error->effective : 0.1);
+      const double scale = 1.0 / std::sqrt(effective_of(error, log.scenario.time));
       for (double& s : sigma) s *= scale;
       problem.set_sigma(static_cast<int>(l), static_cast<int>(c), std::move(sigma));
     }
@@ -152,8 +160,8 @@ void apply_error_model(FitProblem& problem, const ErrorModel& model, const Point
 std::vector<std::string> to_comments(const ErrorModel& model) {
   std::vector<std::string> lines;
   for (const ChannelError& c : model.channels)
-    lines.push_back(fmt::format("{} {}: floor {} {}, per activity {}, effective fraction {}", comment_key,
-                                info(c.signal).name, c.floor, info(c.signal).si_unit, c.per_activity, c.effective));
+    lines.push_back(fmt::format("{} {}: floor {} {}, per activity {}, independent {} 1/s", comment_key,
+                                info(c.signal).name, c.floor, info(c.signal).si_unit, c.per_activity, c.independent));
   return lines;
 }
 
@@ -174,8 +182,8 @@ ErrorModel error_model_of(const Table& table) {
       return k == std::string::npos ? std::nan("") : std::strtod(line.c_str() + k + key.size(), nullptr);
     };
     ChannelError c{signal.value_or(Signal::time), number_after("floor "), number_after("per activity "),
-                   number_after("effective fraction ")};
-    if (signal && std::isfinite(c.floor) && std::isfinite(c.per_activity) && c.effective > 0)
+                   number_after("independent ")};
+    if (signal && std::isfinite(c.floor) && std::isfinite(c.per_activity) && c.independent > 0)
       model.channels.push_back(c);
   }
   return model;

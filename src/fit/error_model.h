@@ -3,7 +3,8 @@
 // sigma(t)^2 = noise^2 + floor^2 + (per_activity * activity(t))^2, where activity is how far the simulated channel
 // moves in a millisecond, averaged over the last 20 ms: a model is wrong in timing and gain, so it errs where things
 // move. Learnt from fault-free logs; in every likelihood it stands for the model's own error. Residuals are
-// correlated in time: `effective` is the fraction of samples that count as independent.
+// correlated in time: `independent` is how many of them a second count. A model's error lasts as long at any sample
+// rate, so a log taken twice as fast does not tell twice as much.
 #pragma once
 #include <string>
 #include <vector>
@@ -16,7 +17,7 @@ struct ChannelError {
   Signal signal;
   double floor = 0;         // [SI]
   double per_activity = 0;  // [-] channel movement per millisecond to error
-  double effective = 0.05;  // [-] 0..1
+  double independent = 50;  // [1/s]
 };
 
 struct ErrorModel {
@@ -30,6 +31,10 @@ std::vector<double> activity(const std::vector<double>& time, const std::vector<
 // sigma(t) [SI] of a channel with sensor noise `noise`. `error` may be null: noise alone.
 std::vector<double> sigma_of(const ChannelError* error, double noise, const std::vector<double>& activity);
 
+// Fraction of the samples at `time` that count as independent, at most 1. `error` may be null: a channel that no tuning
+// log held.
+double effective_of(const ChannelError* error, const std::vector<double>& time);
+
 // Fraction of independent samples of a whitened series: 1 over the integrated autocorrelation time (initial positive
 // sequence, Geyer 1992).
 double effective_fraction(const std::vector<double>& whitened);
@@ -37,7 +42,7 @@ double effective_fraction(const std::vector<double>& whitened);
 // Maximum-likelihood floor and slope from the residuals of the problem's logs at x, pooled by signal.
 ErrorModel learn_error_model(const FitProblem& problem, const Point& x);
 
-// Sets the problem's whitening from the model at x: sigma(t) / sqrt(effective), so that 0.5 |residual|^2 is a
+// Sets the problem's whitening from the model at x: sigma(t) / sqrt(effective fraction), so that 0.5 |residual|^2 is a
 // log-likelihood.
 void apply_error_model(FitProblem& problem, const ErrorModel& model, const Point& x);
 

@@ -30,6 +30,27 @@ std::vector<double> bridged(const std::vector<double>& t, std::vector<double> x)
   return x;
 }
 
+// The command that passed in a gap is not known, and the valve remembers it for some milliseconds. As long as the gap
+// was, at most this long, what comes after is not compared: never more than half of a log is lost to it.
+constexpr double gap_memory = 10e-3;   // [s] several time constants of a first stage
+constexpr double gap_over_step = 1.8;  // time step per usual step
+
+std::vector<char> after_gaps(const std::vector<double>& t) {
+  std::vector<char> unknown(t.size(), 0);
+  if (t.size() < 3) return unknown;
+  std::vector<double> steps;
+  for (std::size_t k = 1; k < t.size(); ++k) steps.push_back(t[k] - t[k - 1]);
+  std::nth_element(steps.begin(), steps.begin() + static_cast<long>(steps.size() / 2), steps.end());
+  const double usual = steps[steps.size() / 2];
+  double until = -1e300;
+  for (std::size_t k = 1; k < t.size(); ++k) {
+    const double step = t[k] - t[k - 1];
+    if (step > gap_over_step * usual) until = std::max(until, t[k] + std::min(step, gap_memory));
+    unknown[k] = t[k] < until;
+  }
+  return unknown;
+}
+
 double mean_of_present(const std::vector<double>& x) {
   double sum = 0;
   long n = 0;
@@ -136,6 +157,10 @@ bool is_redundant(Signal which, const Log& log, Ports ports) {
 
 }  // namespace
 
+long present_samples(const FitChannel& c) {
+  return std::count_if(c.measured.begin(), c.measured.end(), [](double v) { return !std::isnan(v); });
+}
+
 LogData prepare(const Log& log, const RigFile& rig, int window) {
   LogData out;
   out.path = log.path;
@@ -162,6 +187,7 @@ LogData prepare(const Log& log, const RigFile& rig, int window) {
   const double temperature =
       log.has(Signal::oil_temperature) ? mean_of_present(log[Signal::oil_temperature]) : reference_temperature;
   s.oil = oil_at(rig.fluid.density, rig.fluid.kinematic_viscosity, temperature);
+  const std::vector<char> unknown = after_gaps(log.time);
   for (Signal which : simulated_signals) {
     if (!log.has(which)) continue;
     if (is_redundant(which, log, s.ports)) {
@@ -174,6 +200,8 @@ LogData prepare(const Log& log, const RigFile& rig, int window) {
     c.simulated = simulated_index(which);
     c.measured = log[which];
     c.noise = noise_of(c.measured, log.channels[index(which)].resolution) / std::sqrt(static_cast<double>(window));
+    for (std::size_t k = 0; k < unknown.size(); ++k)
+      if (unknown[k]) c.measured[k] = std::nan("");
     c.filter.window = window;
     c.filter.mains = rig.mains_frequency.value_or(0.0);
     if (which == Signal::piston_position) c.filter.drift = piston_high_pass;

@@ -19,6 +19,8 @@ struct FitChannel {
   Filter filter;                 // applied to measurement and simulation alike, that is, to their difference
 };
 
+long present_samples(const FitChannel& channel);
+
 struct LogData {
   std::string path, sha256;
   Scenario scenario;
@@ -34,6 +36,7 @@ inline constexpr double piston_high_pass = 0.3;  // [Hz]
 Ports ports_of(const Log& log, const RigFile& rig);
 
 // `window` [samples]: moving average of every channel, 1 for none. The rig file's mains frequency is notched out.
+// What follows a gap in time is not compared until the valve has forgotten what passed in it.
 LogData prepare(const Log& log, const RigFile& rig, int window = 1);
 
 // Refuses a log without any signal that the model reports.

@@ -83,12 +83,14 @@ BaselineFile read_baseline(const std::string& path) {
   b.statement = read.text(rate, "false_alarm.statement");
   const Json& scores = read.at(file, "scores");
   if (!scores.is_array() || scores.empty()) read.refuse("scores", "holds no scores");
-  for (const Json& s : scores)
-    b.scores.push_back({read.text(s, "scores.log"),
-                        read.text(s, "scores.sha256"),
-                        read.number(s, "scores.score", -any, any),
-                        read.number(s, "scores.adequacy", 0, any),
-                        {}});
+  for (const Json& s : scores) {
+    b.scores.push_back({read.text(s, "scores.log"), read.text(s, "scores.sha256"),
+                        read.number(s, "scores.score", -any, any), read.number(s, "scores.adequacy", 0, any)});
+    const Json& gains = read.at(s, "scores.gains");
+    if (!gains.is_object()) read.refuse("scores.gains", "is no object");
+    for (const auto& [fault, gain] : gains.items())
+      b.scores.back().gains[fault] = read.number(gains, "scores.gains." + fault, -any, any);
+  }
   b.adequacy_limit = read.number(file, "adequacy_limit", 0, any);
   b.null_limit = read.number(file, "null_limit", 0, 1);
   b.tuned_sha256 = read.text(file, "tuned_sha256");

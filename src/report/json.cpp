@@ -68,8 +68,11 @@ Json tune_json(const TuneResult& result) {
 Json baseline_json(const Baseline& b) {
   Json scores = Json::array();
   for (const Baseline::Score& s : b.scores)
-    scores.push_back(
-        {{"log", s.log}, {"sha256", s.sha256}, {"score", number(s.score)}, {"adequacy", number(s.adequacy)}});
+    scores.push_back({{"log", s.log},
+                      {"sha256", s.sha256},
+                      {"score", number(s.score)},
+                      {"adequacy", number(s.adequacy)},
+                      {"gains", s.gains}});
   return {{"threshold", number(b.threshold)},
           {"false_alarm",
            {{"asked", number(b.asked)},

@@ -20,7 +20,7 @@ HypothesisResult hypothesis(const std::string& name, double probability, double 
 Assessment assessment(double score, std::vector<HypothesisResult> hypotheses) {
   Assessment a;
   a.log = "log.csv";
-  a.score = score;
+  hypotheses.back().gain = score * score;
   a.hypotheses = std::move(hypotheses);
   return a;
 }
@@ -60,6 +60,19 @@ TEST(Judge, ScoreAboveItNamesTheMostProbableFaultWithItsSize) {
   EXPECT_TRUE(d.ambiguous_with.empty());
   EXPECT_TRUE(d.separating_test.empty());
   EXPECT_EQ(d.probabilities.at("clogged_filter"), 0.998);
+}
+
+TEST(Judge, AFaultThatHealthGainsByTooMustGainTheMore) {
+  // Where fault-free logs gain 24 by a leaking cylinder, one that gains 100 by it is 2 deviates off, not 10.
+  Baseline b = baseline();
+  for (Baseline::Score& s : b.scores) s.gains = {{"cylinder_leakage", 24.0}, {"sticky_spool", 0.0}};
+  const auto verdict = [&](const char* fault) {
+    return judge(assessment(10.0, {hypothesis("healthy", 0.0), hypothesis(fault, 1.0)}), b);
+  };
+  EXPECT_DOUBLE_EQ(verdict("cylinder_leakage").error, 2.0);
+  EXPECT_EQ(verdict("cylinder_leakage").verdict, "healthy");
+  EXPECT_DOUBLE_EQ(verdict("sticky_spool").error, 10.0);
+  EXPECT_EQ(verdict("sticky_spool").verdict, "fault");
 }
 
 TEST(Judge, PValueIsTheRankAmongTheHealthyLogs) {

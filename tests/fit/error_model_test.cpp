@@ -29,7 +29,7 @@ TEST(ErrorModel, CommentsOfATableReadBackToTheSameBits) {
     EXPECT_EQ(read.channels[i].signal, model.channels[i].signal);
     EXPECT_EQ(read.channels[i].floor, model.channels[i].floor);
     EXPECT_EQ(read.channels[i].per_activity, model.channels[i].per_activity);
-    EXPECT_EQ(read.channels[i].effective, model.channels[i].effective);
+    EXPECT_EQ(read.channels[i].independent, model.channels[i].independent);
   }
   EXPECT_EQ(read.find(Signal::pressure_b), nullptr);
   EXPECT_EQ(error_model_of(shipped_table()).channels.size(), 0u);
@@ -82,6 +82,17 @@ TEST(ErrorModel, ActivityOfARampIsItsTravelInAMillisecond) {
   EXPECT_NEAR(activity(dense_time, dense).back(), 0.02, 1e-6);
 }
 
+TEST(ErrorModel, ALogTakenTwiceAsFastTellsNoMoreOfTheModelsError) {
+  const ChannelError error{Signal::spool_position, 4.0, 6.0, 40.0};
+  const auto told = [&](double rate) {
+    std::vector<double> time;
+    for (int k = 0; k <= 2 * static_cast<int>(rate); ++k) time.push_back(k / rate);
+    return effective_of(&error, time) * static_cast<double>(time.size());
+  };
+  EXPECT_NEAR(told(2000), told(1000), 0.1);
+  EXPECT_NEAR(told(20), 41, 1e-9);  // no sample counts twice
+}
+
 TEST(ErrorModel, SigmaIsTheRootOfTheSumOfSquares) {
   const ChannelError error{Signal::spool_position, 4.0, 6.0, 1.0};
   EXPECT_EQ(sigma_of(&error, 3.0, {0.0, 2.0}), (std::vector<double>{5.0, 13.0}));
@@ -104,7 +115,7 @@ TEST(ErrorModel, LearnsTheFloorThatWasAdded) {
     ASSERT_NE(e, nullptr);
     EXPECT_NEAR(e->floor / c.noise, 4.0, 0.4) << info(c.signal).name;
     // White, but for the piston: its filter drags the noise of the first sample along.
-    EXPECT_TRUE(e->effective > 0.7 || c.signal == Signal::piston_position) << info(c.signal).name;
+    EXPECT_TRUE(effective_of(e, log.scenario.time) > 0.7 || c.signal == Signal::piston_position) << info(c.signal).name;
   }
 }
 

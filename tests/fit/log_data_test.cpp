@@ -104,6 +104,27 @@ TEST(LogData, NoiseOfAMeasuredForceDoesNotDriveTheLoad) {
   EXPECT_LT(std::sqrt(sum / static_cast<double>(force.size())), 10.0);
 }
 
+TEST(LogData, WhatFollowsAGapIsNotComparedAsLongAsItWasOrTheValveRemembers) {
+  Log log = shipped_log("healthy/h12_mixed");
+  const auto without = [&](std::size_t from, std::size_t to) {
+    Log cut = log;
+    const auto drop = [&](std::vector<double>& v) {
+      if (!v.empty()) v.erase(v.begin() + static_cast<long>(from), v.begin() + static_cast<long>(to));
+    };
+    drop(cut.time);
+    for (Channel& c : cut.channels) drop(c.value);
+    return prepare(cut, shipped_rig());
+  };
+  const auto lost = [&](const LogData& data) {
+    const auto& x = channel(data, Signal::spool_position).measured;
+    return std::count_if(x.begin(), x.end(), [](double v) { return std::isnan(v); });
+  };
+  EXPECT_EQ(lost(prepare(log, shipped_rig())), 0);
+  EXPECT_NEAR(static_cast<double>(lost(without(1000, 1004))), 5, 1);   // 4 samples lost: a step of 5 ms
+  EXPECT_NEAR(static_cast<double>(lost(without(1000, 1500))), 10, 1);  // 10 ms
+  EXPECT_TRUE(std::isnan(channel(without(1000, 1500), Signal::pressure_a).measured[1000]));
+}
+
 TEST(LogData, MeasuredCurrentDrivesInPlaceOfTheCommand) {
   Log log = shipped_log("healthy/h12_mixed");
   Channel& coil = log.channels[index(Signal::coil_current)];

@@ -27,7 +27,8 @@ Baseline some_baseline() {
   b.logs_needed = 99;
   b.statement = "8 logs promise at most one false alarm in 9";
   for (int i = 0; i < 8; ++i)
-    b.scores.push_back({fmt::format("h{}.csv", i), std::string(64, 'a'), 0.1 * i, 1.0 / (1 + i)});
+    b.scores.push_back(
+        {fmt::format("h{}.csv", i), std::string(64, 'a'), 0.1 * i, 1.0 / (1 + i), {{"sticky_spool", 0.3 * i}}});
   b.adequacy_limit = 1.2345678901234567;
   b.null_limit = 0.05;
   b.tuned_sha256 = std::string(64, 'b');
@@ -125,6 +126,7 @@ TEST(BaselineFile, ReadsBackToTheSameBits) {
     EXPECT_EQ(back.scores[i].sha256, b.scores[i].sha256);
     EXPECT_EQ(back.scores[i].score, b.scores[i].score);
     EXPECT_EQ(back.scores[i].adequacy, b.scores[i].adequacy);
+    EXPECT_EQ(back.scores[i].gains, b.scores[i].gains);
   }
 }
 
