@@ -82,7 +82,7 @@ TEST(Simulate, AcceptsALogOfATestStand) {
   const Log sim = read_log(stand / "sim.csv", {}, {.require_drive = false});
   ASSERT_TRUE(sim.has(Signal::control_flow));
   EXPECT_EQ(sim.channels[index(Signal::control_flow)].unit, "l/min");
-  EXPECT_NEAR(sim[Signal::control_flow][240] * 6e4, 14, 1.5);  // 19.6 mA
+  EXPECT_NEAR(sim[Signal::control_flow][960] * 6e4, 14, 1.5);  // 19.6 mA
 }
 
 }  // namespace
