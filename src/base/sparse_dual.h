@@ -9,6 +9,8 @@
 #include <type_traits>
 #include <utility>
 
+#include "base/pack.h"
+
 namespace servodx {
 
 using Mask = std::uint32_t;
@@ -58,7 +60,7 @@ inline __attribute__((always_inline)) Dual<T, A | B> chain(T value, const Dual<T
   unroll<Dual<T, A | B>::slots>([&](auto i) {
     constexpr int k = variable(A | B, i);
     if constexpr (holds(A, k) && holds(B, k))
-      r.d[i] = ga * a.d[slot(A, k)] + gb * b.d[slot(B, k)];
+      r.d[i] = multiply_add(ga, a.d[slot(A, k)], gb * b.d[slot(B, k)]);
     else if constexpr (holds(A, k))
       r.d[i] = ga * a.d[slot(A, k)];
     else
@@ -164,6 +166,27 @@ Dual<T, A> sqrt(const Dual<T, A>& a) {
   using std::sqrt;
   const T r = sqrt(a.v);
   return chain(r, a, T(0.5) / r);
+}
+template <class T, Mask A>
+Dual<T, A> root(const Dual<T, A>& a) {
+  const auto [r, y] = both_roots(a.v);
+  return chain(r, a, T(0.5) * y);
+}
+template <class T, Mask A>
+Dual<T, A> inverse(const Dual<T, A>& a) {
+  const T y = inverse(a.v);
+  return chain(y, a, -y * y);
+}
+template <class T, Mask A>
+Dual<T, A> inverse_root(const Dual<T, A>& a) {
+  const T y = inverse_root(a.v);
+  return chain(y, a, T(-0.5) * y * y * y);
+}
+template <class T, Mask A>
+Roots<Dual<T, A>> both_roots(const Dual<T, A>& a) {
+  const auto [r, y] = both_roots(a.v);
+  const T half = T(0.5) * y;
+  return {chain(r, a, half), chain(y, a, -half * y * y)};
 }
 
 }  // namespace servodx

@@ -12,32 +12,33 @@ namespace servodx {
 
 // System: n; pattern (static constexpr Pattern<n>);
 //   void value(const std::array<T,n>& y, const T& t, std::array<T,n>& f)
-//   void value_and_jacobian(y, t, f, w, f_t): fills f, df/dt at fixed y, and w[slot(i,j)] = -J(i,j) (0 on fill-in).
+//   void value_and_jacobian(y, t, f, w, f_t): fills f, df/dt at fixed y, and w[slot(i,j)] = J(i,j) (0 on fill-in).
 // t runs from 0 to h within the step.
 template <class T, class System>
-inline __attribute__((always_inline)) void rodas3_step(System& system, std::array<T, System::n>& y, double h) {
+__attribute__((noinline)) void rodas3_step(System& system, std::array<T, System::n>& y, double h) {
   constexpr int n = System::n;
   using Lu = SparseLu<n, System::pattern>;
   std::array<T, Lu::entries> w;
   std::array<T, n> f, f_t, k1, k2, k3, k4, z;
   system.value_and_jacobian(y, T(0.0), f, w, f_t);
   const T diagonal = T(2.0 / h);  // 1 / (gamma h), gamma = 1/2
-  unroll<n>([&](auto i) { w[Lu::plan.slot[i][i]] = w[Lu::plan.slot[i][i]] + diagonal; });
-  Lu::template factorise<T>(w);
-  const T inv_h = T(1.0 / h), h_t = T(h);
-  for (int i = 0; i < n; ++i) k1[i] = f[i] + T(0.5) * h_t * f_t[i];
+  unroll<n>([&](auto i) { w[Lu::plan.slot[i][i]] = w[Lu::plan.slot[i][i]] - diagonal; });
+  Lu::template factorise<T>(w);  // of J - I/(gamma h): the k below are the stages with their sign turned
+  const T inv_h = T(1.0 / h), h_t = T(h), one = T(0.5 * h), three = T(1.5 * h), four = T(4.0 / h), two = T(2.0),
+          eight = T(8.0 / (3.0 * h));
+  unroll<n>([&](auto i) { k1[i] = multiply_add(one, f_t[i], f[i]); });
   Lu::template solve<T>(w, k1);
-  for (int i = 0; i < n; ++i) k2[i] = f[i] + T(4.0) * inv_h * k1[i] + T(1.5) * h_t * f_t[i];
+  unroll<n>([&](auto i) { k2[i] = subtract_product(multiply_add(three, f_t[i], f[i]), four, k1[i]); });
   Lu::template solve<T>(w, k2);
-  for (int i = 0; i < n; ++i) z[i] = y[i] + T(2.0) * k1[i];
+  unroll<n>([&](auto i) { z[i] = subtract_product(y[i], two, k1[i]); });
   system.value(z, h_t, f);
-  for (int i = 0; i < n; ++i) k3[i] = f[i] + inv_h * (k1[i] - k2[i]);
+  unroll<n>([&](auto i) { k3[i] = multiply_add(inv_h, k2[i] - k1[i], f[i]); });
   Lu::template solve<T>(w, k3);
-  for (int i = 0; i < n; ++i) z[i] = z[i] + k3[i];
+  unroll<n>([&](auto i) { z[i] = z[i] - k3[i]; });
   system.value(z, h_t, f);
-  for (int i = 0; i < n; ++i) k4[i] = f[i] + inv_h * (k1[i] - k2[i] - T(8.0 / 3.0) * k3[i]);
+  unroll<n>([&](auto i) { k4[i] = multiply_add(eight, k3[i], multiply_add(inv_h, k2[i] - k1[i], f[i])); });
   Lu::template solve<T>(w, k4);
-  for (int i = 0; i < n; ++i) y[i] = z[i] + k4[i];
+  unroll<n>([&](auto i) { y[i] = z[i] - k4[i]; });
 }
 
 }  // namespace servodx

@@ -55,7 +55,7 @@ struct SparseLu {
   static constexpr int entries = plan.entries;
 
   struct Operation {
-    std::int16_t kind;  // 0: w[a] = 1/w[a] (pivot);  1: w[a] = w[a]*w[b] (multiplier);  2: w[a] -= w[b]*w[c]
+    std::int16_t kind;  // 0: w[a] = 1/w[a] (pivot);  1: w[a] = w[a]*w[b] (by a pivot);  2: w[a] -= w[b]*w[c]
     std::int16_t a, b, c;
   };
   static constexpr int count_operations() { return build<1>(nullptr); }
@@ -79,6 +79,10 @@ struct SparseLu {
           if (!done[j] && plan.slot[p][j] >= 0)
             emit({2, static_cast<std::int16_t>(plan.slot[i][j]), m, static_cast<std::int16_t>(plan.slot[p][j])});
       }
+      // Both factors get a unit diagonal: a solve then waits for one product a level, not two.
+      for (int j = 0; j < N; ++j)
+        if (!done[j] && plan.slot[p][j] >= 0)
+          emit({1, static_cast<std::int16_t>(plan.slot[p][j]), static_cast<std::int16_t>(plan.slot[p][p]), 0});
     }
     return n;
   }
@@ -96,11 +100,11 @@ struct SparseLu {
     unroll<n_operations>([&](auto i) {
       constexpr Operation op = operations[i];
       if constexpr (op.kind == 0)
-        w[op.a] = T(1.0) / w[op.a];
+        w[op.a] = inverse(w[op.a]);
       else if constexpr (op.kind == 1)
         w[op.a] = w[op.a] * w[op.b];
       else
-        w[op.a] = w[op.a] - w[op.b] * w[op.c];
+        w[op.a] = subtract_product(w[op.a], w[op.b], w[op.c]);
     });
   }
 
@@ -111,17 +115,17 @@ struct SparseLu {
       constexpr int p = plan.order[k];
       unroll<N>([&](auto l) {
         constexpr int i = plan.order[l];
-        if constexpr (l > k && plan.slot[i][p] >= 0) x[i] = x[i] - w[plan.slot[i][p]] * x[p];
+        if constexpr (l > k && plan.slot[i][p] >= 0) x[i] = subtract_product(x[i], w[plan.slot[i][p]], x[p]);
       });
     });
+    unroll<N>([&](auto k) { x[k] = x[k] * w[plan.slot[k][k]]; });
     unroll<N>([&](auto r) {
       constexpr int k = N - 1 - r;
       constexpr int p = plan.order[k];
       unroll<N>([&](auto l) {
         constexpr int j = plan.order[l];
-        if constexpr (l > k && plan.slot[p][j] >= 0) x[p] = x[p] - w[plan.slot[p][j]] * x[j];
+        if constexpr (l > k && plan.slot[p][j] >= 0) x[p] = subtract_product(x[p], w[plan.slot[p][j]], x[j]);
       });
-      x[p] = x[p] * w[plan.slot[p][p]];
     });
   }
 };

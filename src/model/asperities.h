@@ -12,12 +12,13 @@
 
 namespace servodx {
 
-// Share of the friction that is borne, -1..1. stretch: from the anchor, in presliding lengths, -1..1.
+// Share of the friction that is borne, -1..1. stretch: from the anchor, in presliding lengths. All have slipped well
+// before a stretch of 1, where the anchor is dragged to after a step: what slides bears the same at any step.
 template <class T, class X>
 auto asperities(const X& stretch) {
   namespace c = constants;
-  constexpr double limit = 1.0 - 4.0 * c::slip_rounding;  // all have slipped by a stretch of 1
-  return saturate(stretch, T(limit), T(c::slip_rounding)) * T(1.0 / limit);
+  constexpr double limit = 1.0 - 4.0 * c::slip_rounding;
+  return blunt_saturate(stretch, T(limit), T(c::slip_rounding)) * T(1.0 / limit);
 }
 
 // Anchor [m] after a move to x [m].
@@ -33,7 +34,7 @@ T dragged_anchor(const T& anchor, const T& x, double presliding) {
 template <class T>
 T stribeck(const T& speed, double fall) {
   const T ratio = speed * T(1.0 / fall);
-  return T(1.0) / (T(1.0) + ratio * ratio);
+  return inverse(T(1.0) + ratio * ratio);
 }
 
 // What spool and rod remember of their way.
@@ -42,12 +43,14 @@ struct FrictionMemory {
   T spool_anchor{}, spool_speed{};                                     // [m], [m/s] mean over the last step
   std::array<T, std::size(constants::seal_presliding)> seal_anchor{};  // [m]
   T rod_speed{};                                                       // [m/s] relative to the body
+  T seal_breakaway{};                                                  // share that is left at that speed
 
   // At rest and unstretched: which way they came is not known.
   void rest(const T& x_spool, const T& x_rod) {
     spool_anchor = x_spool;
     seal_anchor.fill(x_rod);
     spool_speed = rod_speed = T(0.0);
+    seal_breakaway = T(1.0);
   }
   // After a step of h [s] between two places [m].
   void move(const T& spool_from, const T& x_spool, const T& rod_from, const T& x_rod, double h) {
@@ -56,6 +59,7 @@ struct FrictionMemory {
       seal_anchor[i] = dragged_anchor(seal_anchor[i], x_rod, constants::seal_presliding[i]);
     spool_speed = (x_spool - spool_from) * T(1.0 / h);
     rod_speed = (x_rod - rod_from) * T(1.0 / h);
+    seal_breakaway = stribeck(rod_speed, constants::piston_stribeck_velocity);
   }
 };
 

@@ -27,37 +27,51 @@ auto orifice_flow(const C& conductance, const P& dp, const T& transition) {
 // Laminar slot, orifice and hose in series: dp = R q + K q|q|, so q = 2 dp / (R + sqrt(R^2 + 4 K |dp|)).
 // R: plane slot of the covered length and creeping flow at the edge; K: Bernoulli at the edge plus the hose.
 template <class X, class P, class T>
-auto metering_edge(const X& opening, const P& dp, const Derived<T>& d, const T* p) {
-  using std::sqrt;
+inline __attribute__((always_inline)) auto metering_edge(const X& opening, const P& dp, const Derived<T>& d) {
   namespace c = constants;
-  const auto root = smooth_abs(opening, T(c::edge_rounding));
-  const auto open = (opening + root) * T(0.5);
-  const auto covered = (root - opening) * T(0.5);
+  const auto length = smooth_abs(opening, T(c::edge_rounding));
+  const auto open = (opening + length) * T(0.5);
+  const auto covered = (length - opening) * T(0.5);
   const auto h2 = open * open + d.clearance2;
-  const auto h = sqrt(h2);
-  const auto r = d.slot_per_length * (h * covered) + d.slot_corner / h;  // [Pa s/m2] per width, times h
+  const auto [h, per_h] = both_roots(h2);
+  const auto r = d.slot_per_length * (h * covered) + d.slot_corner * per_h;  // [Pa s/m2] per width, times h
   const auto k = d.edge_loss + d.hose_loss * h2;
-  const auto q =
-      (T(2.0) * p[row::port_width]) * h * dp / (r + sqrt(r * r + k * smooth_abs(dp, T(c::orifice_transition))));
+  const auto q = d.twice_width * h * dp *
+                 inverse(r + root(r * r + k * smooth_abs(dp, T(c::orifice_transition))));
   return std::make_tuple(q, h);
+}
+
+// With derivatives: taken in the edge's own two variables, then carried to what those depend on.
+template <class T, Mask A, Mask B>
+requires(A != 1 || B != 2) inline __attribute__((always_inline)) auto metering_edge(const Dual<T, A>& opening,
+                                                                                     const Dual<T, B>& dp,
+                                                                                     const Derived<T>& d) {
+  const auto [q, h] = metering_edge(seed<0>(opening.v, T(1.0)), seed<1>(dp.v, T(1.0)), d);
+  return std::make_tuple(chain(q.v, opening, q.d[0], dp, q.d[1]), chain(h.v, opening, h.d[0]));
 }
 
 // Pilot flow through the filter, whose blocked part may differ with the direction of the spool. [m3/s]
 template <class P, class V, class T>
-auto filter_flow(const P& dp, const V& v_spool, const Derived<T>& d, const T* p) {
+auto filter_flow(const P& dp, const V& v_spool, const Derived<T>& d) {
   namespace c = constants;
   const auto direction = smooth_sign(v_spool, T(c::filter_direction_rounding));
-  const auto clear = T(1.0) - T(0.5) * (p[row::filter_blockage_positive] + p[row::filter_blockage_negative]) -
-                     (T(0.5) * (p[row::filter_blockage_positive] - p[row::filter_blockage_negative])) * direction;
-  return orifice_flow(d.filter_conductance * clear, dp, T(c::orifice_transition));
+  return orifice_flow(d.filter_conductance - d.filter_one_way * direction, dp, T(c::orifice_transition));
 }
 
-// Compliance of a chamber [m3/Pa]: oil, free air by the isothermal law, walls of the hose.
+// Stiffness of a chamber [Pa/m3]: oil, free air by the isothermal law, walls of the hose, all in one fraction.
 template <class V, class P, class T>
-auto chamber_compliance(const V& volume, const P& pressure, const Derived<T>& d, const T* p) {
+auto chamber_stiffness(const V& volume, const P& pressure, const Derived<T>& d, const T* p) {
   namespace c = constants;
   const auto absolute = soft_positive(pressure + T(c::atmospheric_pressure), T(c::pressure_floor));
-  return volume * (d.inverse_bulk + d.air / (absolute * absolute)) + p[row::hose_compliance];
+  const auto square = absolute * absolute;
+  return square * inverse((volume * d.inverse_bulk + p[row::hose_compliance]) * square + d.air * volume);
+}
+
+// Share of a stop's damping that acts, 0 clear of it to 1 well inside. [m]
+template <class X, class T>
+auto in_contact(const X& over, const X& under, const T& rounding) {
+  const auto depth = over + under;
+  return depth * inverse(depth + rounding);
 }
 
 // Inputs with the supply pressure as it is at the valve.
@@ -92,20 +106,20 @@ inline __attribute__((always_inline)) auto derivative(const S& s, const In& in, 
 
   // Driver and coil.
   const auto i = s.template get<s_current>();
-  const auto di = d.driver_rate * (saturate(u.current, p[row::current_limit], T(c::current_rounding)) - i);
+  const auto di = d.driver_rate * (u.current - i);
 
   // Torque motor and flapper. The wire pulls through its backlash. The nozzles are the stops: s_x_flapper is where the
   // force would take a free flapper, and the flapper follows it up to the nozzle. That leaves out the impact (a few
   // tenths of a millisecond) and keeps a wall out of the equations, which no linearly implicit step sees coming.
   const auto x_f = saturate(z_f, p[row::nozzle_gap], T(c::stop_rounding));
   const auto wire =
-      p[row::feedback_wire_stiffness] * dead_zone(x_s + x_f, p[row::valve_glitch] * T(0.5), T(c::backlash_rounding));
+      p[row::feedback_wire_stiffness] * dead_zone(x_s + x_f, d.half_backlash, T(c::backlash_rounding));
   const auto f_flapper = p[row::torque_motor_gain] * i - p[row::flapper_stiffness] * z_f - wire -
                          d.nozzle_area * (p_1 - p_2) + hook_flapper_force(view, Effects{});
   const auto dv_f = d.flapper_rate2 * f_flapper - d.flapper_damping * v_f;
 
   // Filter, fixed orifices, nozzles, spool ends.
-  const auto q_filter = filter_flow(u.supply_pressure - p_f, v_s, d, p);
+  const auto q_filter = filter_flow(u.supply_pressure - p_f, v_s, d);
   const auto q_orifice_1 = orifice_flow(d.orifice_conductance, p_f - p_1, transition);
   const auto q_orifice_2 = orifice_flow(d.orifice_conductance, p_f - p_2, transition);
   const auto gap_1 = soft_positive(p[row::nozzle_gap] - x_f, T(c::nozzle_rounding));
@@ -120,20 +134,20 @@ inline __attribute__((always_inline)) auto derivative(const S& s, const In& in, 
 
   // Metering edges. Flows carry direction: pa from supply to A, at from A to return.
   const auto x_m = x_s + hook_metering_opening(view, Effects{});
-  const auto [q_pa, h_pa] = metering_edge(x_m - p[row::lap_pa], u.supply_pressure - p_a, d, p);
-  const auto [q_pb, h_pb] = metering_edge(-x_m - p[row::lap_pb], u.supply_pressure - p_b, d, p);
-  const auto [q_at, h_at] = metering_edge(-x_m - p[row::lap_at], p_a - u.return_pressure, d, p);
-  const auto [q_bt, h_bt] = metering_edge(x_m - p[row::lap_bt], p_b - u.return_pressure, d, p);
+  const auto [q_pa, h_pa] = metering_edge(x_m - p[row::lap_pa], u.supply_pressure - p_a, d);
+  const auto [q_pb, h_pb] = metering_edge(-x_m - p[row::lap_pb], u.supply_pressure - p_b, d);
+  const auto [q_at, h_at] = metering_edge(-x_m - p[row::lap_at], p_a - u.return_pressure, d);
+  const auto [q_bt, h_bt] = metering_edge(x_m - p[row::lap_bt], p_b - u.return_pressure, d);
 
   // Spool.
-  const auto f_flow = d.flow_force * p[row::port_width] *
+  const auto f_flow = d.flow_force *
                       (h_pa * (u.supply_pressure - p_a) + h_bt * (p_b - u.return_pressure) -
                        h_pb * (u.supply_pressure - p_b) - h_at * (p_a - u.return_pressure));
   const auto f_dry =
       p[row::spool_friction] * asperities<T>((x_s - in.friction.spool_anchor) * T(1.0 / c::spool_presliding));
   const auto over_spool = soft_positive(x_s - p[row::spool_stop], T(c::spool_stop_rounding));
   const auto under_spool = soft_positive(-x_s - p[row::spool_stop], T(c::spool_stop_rounding));
-  const auto in_spool_stop = (over_spool + under_spool) / (over_spool + under_spool + T(c::spool_stop_rounding));
+  const auto in_spool_stop = in_contact(over_spool, under_spool, T(c::spool_stop_rounding));
   const auto f_spool = d.spool_area * (p_1 - p_2) - f_flow - f_dry - d.spool_viscous * v_s -
                        T(c::spool_stop_stiffness) * (over_spool - under_spool) -
                        T(c::spool_stop_damping) * (in_spool_stop * v_s) + hook_spool_force(view, Effects{});
@@ -142,12 +156,12 @@ inline __attribute__((always_inline)) auto derivative(const S& s, const In& in, 
   // Chambers. The body may move; volumes and the sensor see the rod relative to it.
   const auto v_rel = v_p - hook_body_velocity(view, Effects{});
   const auto q_leak = d.leak * (p_a - p_b);
-  const auto volume_a = p[row::dead_volume_a] + p[row::piston_area_a] * (T(0.5) * p[row::piston_stroke] + x_p);
-  const auto volume_b = p[row::dead_volume_b] + p[row::piston_area_b] * (T(0.5) * p[row::piston_stroke] - x_p);
-  const auto dp_a = (q_pa - q_at - q_leak - p[row::piston_area_a] * v_rel + hook_flow_a(view, Effects{})) /
-                    chamber_compliance(volume_a, p_a, d, p);
-  const auto dp_b = (q_pb - q_bt + q_leak + p[row::piston_area_b] * v_rel + hook_flow_b(view, Effects{})) /
-                    chamber_compliance(volume_b, p_b, d, p);
+  const auto volume_a = d.middle_volume_a + p[row::piston_area_a] * x_p;
+  const auto volume_b = d.middle_volume_b - p[row::piston_area_b] * x_p;
+  const auto dp_a = (q_pa - q_at - q_leak - p[row::piston_area_a] * v_rel + hook_flow_a(view, Effects{})) *
+                    chamber_stiffness(volume_a, p_a, d, p);
+  const auto dp_b = (q_pb - q_bt + q_leak + p[row::piston_area_b] * v_rel + hook_flow_b(view, Effects{})) *
+                    chamber_stiffness(volume_b, p_b, d, p);
 
   // Piston.
   constexpr int n_families = std::size(c::seal_presliding);
@@ -156,6 +170,7 @@ inline __attribute__((always_inline)) auto derivative(const S& s, const In& in, 
            T(1.0 / n_families);
   }
   (std::make_integer_sequence<int, n_families>{});
+<<<<<<< HEAD
   const auto f_friction =
       d.viscous * v_rel +
       seals * (p[row::piston_coulomb_friction] +
@@ -163,6 +178,13 @@ inline __attribute__((always_inline)) auto derivative(const S& s, const In& in, 
   const auto over = soft_positive(x_p - T(0.5) * p[row::piston_stroke], T(c::piston_stop_rounding));
   const auto under = soft_positive(-x_p - T(0.5) * p[row::piston_stroke], T(c::piston_stop_rounding));
   const auto in_stop = (over + under) / (over + under + T(c::piston_stop_rounding));
+=======
+  const auto f_friction = d.viscous * v_rel + seals * (p[row::piston_coulomb_friction] +
+                                                       p[row::piston_stribeck_friction] * in.friction.seal_breakaway);
+  const auto over = soft_positive(x_p - d.half_stroke, T(c::piston_stop_rounding));
+  const auto under = soft_positive(-x_p - d.half_stroke, T(c::piston_stop_rounding));
+  const auto in_stop = in_contact(over, under, T(c::piston_stop_rounding));
+>>>>>>> fbc142f (Kernel: refined inverse roots, one inverse root an orifice, unit factors, chains interleaved by the scheduler)
   const auto f_piston = p[row::piston_area_a] * p_a - p[row::piston_area_b] * p_b - u.load_force - f_friction -
                         T(c::piston_stop_stiffness) * (over - under) - T(c::piston_stop_damping) * (in_stop * v_rel) +
                         hook_piston_force(view, Effects{});

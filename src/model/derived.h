@@ -19,14 +19,17 @@ struct Derived {
   T nozzle_area;                // [m2] facing the flapper
   T nozzle_conductance;         // [m3/s/sqrt(Pa)/m] per curtain opening
   T orifice_conductance;        // [m3/s/sqrt(Pa)]
-  T filter_conductance;         // [m3/s/sqrt(Pa)] clean
+  T filter_conductance;         // [m3/s/sqrt(Pa)] mean of both directions of the spool
+  T filter_one_way;             // [m3/s/sqrt(Pa)] less while the spool moves positive, more while it moves negative
+  T half_backlash;              // [m] between wire and spool
   T inverse_filter_compliance;  // [Pa/m3]
   T inverse_pilot_compliance;   // [Pa/m3]
   // second stage
   T spool_area;          // [m2]
   T inverse_spool_mass;  // [1/kg]
   T spool_viscous;       // [N s/m] shear in the annulus
-  T flow_force;          // [-] times area and pressure drop
+  T flow_force;          // [m] times open height and pressure drop
+  T twice_width;         // [m]
   T clearance2;          // [m2]
   T slot_per_length;     // [Pa s/m4 ...] laminar resistance of a covered edge, per length, times opening and width
   T slot_corner;         // the same for the corner of an open edge
@@ -36,6 +39,8 @@ struct Derived {
   T leak;          // [m3/s/Pa]
   T viscous;       // [N s/m]
   T inverse_mass;  // [1/kg]
+  T half_stroke;   // [m]
+  T middle_volume_a, middle_volume_b;  // [m3] at mid-stroke
   T inverse_bulk;  // [1/Pa]
   T air;           // [Pa] free air fraction times atmospheric pressure
 };
@@ -59,14 +64,19 @@ Derived<T> derive(const T* p, const Oil& oil) {
   d.nozzle_conductance = T(c::cd_nozzle) * per_root_density * p[row::hydraulic_amplifier_gain];
   const T orifice_area = T(c::pi / 4.0) * p[row::fixed_orifice_diameter] * p[row::fixed_orifice_diameter];
   d.orifice_conductance = T(c::cd_orifice) * per_root_density * orifice_area;
-  d.filter_conductance = d.orifice_conductance * T(2.0 * c::clean_filter_area_ratio);
+  const T clean = d.orifice_conductance * T(2.0 * c::clean_filter_area_ratio);
+  d.filter_conductance =
+      clean * (T(1.0) - T(0.5) * (p[row::filter_blockage_positive] + p[row::filter_blockage_negative]));
+  d.filter_one_way = clean * (T(0.5) * (p[row::filter_blockage_positive] - p[row::filter_blockage_negative]));
+  d.half_backlash = p[row::valve_glitch] * T(0.5);
   d.inverse_filter_compliance = p[row::bulk_modulus] * T(1.0 / c::filter_node_volume);
   d.spool_area = T(c::pi / 4.0) * p[row::spool_diameter] * p[row::spool_diameter];
   d.inverse_pilot_compliance = p[row::bulk_modulus] / (d.spool_area * p[row::spool_stop] * T(c::pilot_volume_in_stops));
   const T spool_length = p[row::spool_diameter] * T(c::spool_length_in_diameters);
   d.inverse_spool_mass = T(1.0) / (T(c::steel_density) * d.spool_area * spool_length);
   d.spool_viscous = T(c::pi) * dynamic_viscosity * p[row::spool_diameter] * spool_length / p[row::radial_clearance];
-  d.flow_force = T(c::jet_angle_factor) * p[row::flow_force_coefficient];
+  d.flow_force = T(c::jet_angle_factor) * p[row::flow_force_coefficient] * p[row::port_width];
+  d.twice_width = T(2.0) * p[row::port_width];
   d.clearance2 = p[row::radial_clearance] * p[row::radial_clearance];
   // Plane Couette slot: dp = 12 mu L q / (w c^3); an open edge has a creeping-flow length of some openings.
   const T slot = T(12.0) * dynamic_viscosity;
@@ -77,6 +87,9 @@ Derived<T> derive(const T* p, const Oil& oil) {
   d.leak = p[row::cross_piston_leakage] * (T(1.0) / viscosity_ratio);
   d.viscous = p[row::piston_viscous_friction] * sqrt(viscosity_ratio);  // mixed lubrication of seals
   d.inverse_mass = T(1.0) / p[row::moving_mass];
+  d.half_stroke = T(0.5) * p[row::piston_stroke];
+  d.middle_volume_a = p[row::dead_volume_a] + p[row::piston_area_a] * d.half_stroke;
+  d.middle_volume_b = p[row::dead_volume_b] + p[row::piston_area_b] * d.half_stroke;
   d.inverse_bulk = T(1.0) / p[row::bulk_modulus];
   d.air = p[row::air_fraction] * T(c::atmospheric_pressure);
   return d;

@@ -24,7 +24,7 @@ inline constexpr int n_base_states = 12;
 // What drives the model at an instant, from the log or the table, and what it remembers of the past.
 template <class X, class T = X>
 struct Inputs {
-  X current;                     // [A] demand at the amplifier, null and hysteresis included
+  X current;                     // [A] demand at the amplifier, null, hysteresis and limit included
   X supply_pressure;             // [Pa]
   X return_pressure;             // [Pa]
   X load_force;                  // [N] opposes extension

@@ -66,7 +66,7 @@ struct System {
     return std::make_tuple(std::get<n_base_states + I>(f)...);
   }
 
-  void value(const std::array<T, n>& y, const T& t, std::array<T, n>& f) const {
+  __attribute__((flatten)) void value(const std::array<T, n>& y, const T& t, std::array<T, n>& f) const {
     const Inputs<T> u{at.current + slope.current * t, at.supply_pressure + slope.supply_pressure * t,
                       at.return_pressure + slope.return_pressure * t, at.load_force + slope.load_force * t,
                       at.friction};
@@ -97,7 +97,7 @@ struct System {
   static constexpr Pattern<n> pattern = make_pattern();
 
   template <class W>
-  void value_and_jacobian(const std::array<T, n>& y, const T&, std::array<T, n>& f, W& w, std::array<T, n>& f_t) const {
+  __attribute__((flatten)) void value_and_jacobian(const std::array<T, n>& y, const T&, std::array<T, n>& f, W& w, std::array<T, n>& f_t) const {
     using Lu = SparseLu<n, pattern>;
     const Inputs<TimeDual, T> u{seed<n>(at.current, slope.current), seed<n>(at.supply_pressure, slope.supply_pressure),
                                 seed<n>(at.return_pressure, slope.return_pressure),
@@ -114,7 +114,7 @@ struct System {
       unroll<n>([&](auto j) {
         if constexpr (Lu::plan.slot[i][j] >= 0) {
           if constexpr (holds(m, j))
-            w[Lu::plan.slot[i][j]] = -gi.d[slot(m, j)];
+            w[Lu::plan.slot[i][j]] = gi.d[slot(m, j)];
           else
             w[Lu::plan.slot[i][j]] = T(0.0);
         }
@@ -213,7 +213,7 @@ void run_pack(const Scenario& in, const ParameterVector* const* candidates, Traj
     return series.empty() ? table : T(series[k]);
   };
   const auto inputs_at = [&](std::size_t k, const T& current) {
-    return Inputs<T>{current,
+    return Inputs<T>{saturate(current, p[row::current_limit], T(constants::current_rounding)),
                      input(in.supply_pressure, k, p[row::supply_pressure]),
                      input(in.return_pressure, k, p[row::return_pressure]),
                      input(in.load_force, k, T(0.0)),
@@ -275,7 +275,7 @@ void run_pack(const Scenario& in, const ParameterVector* const* candidates, Traj
     out[5] = y[s_p_pilot_2];
     if (options.wanted[6] || options.wanted[7] || options.wanted[10] || options.wanted[11]) {
       const auto flow = [&](const T& opening, const T& dp) {
-        return std::get<0>(metering_edge(opening, dp, d, p.data()));
+        return std::get<0>(metering_edge(opening, dp, d));
       };
       const T q_pa = flow(y[s_x_spool] - p[row::lap_pa], now.supply_pressure - y[s_p_a]);
       const T q_pb = flow(-y[s_x_spool] - p[row::lap_pb], now.supply_pressure - y[s_p_b]);
@@ -285,7 +285,7 @@ void run_pack(const Scenario& in, const ParameterVector* const* candidates, Traj
       out[7] = q_pb - q_bt;
       out[10] = T(0.5) * (out[6] - out[7]);
       // In the return line; what passes the filter leaves through the nozzles.
-      out[11] = q_at + q_bt + filter_flow(now.supply_pressure - y[s_p_filter], y[s_v_spool], d, p.data());
+      out[11] = q_at + q_bt + filter_flow(now.supply_pressure - y[s_p_filter], y[s_v_spool], d);
     }
     out[8] = y[s_p_a] - y[s_p_b];
     out[9] = now.supply_pressure - now.return_pressure - out[8] * smooth_sign(y[s_x_spool], T(drop_rounding));
@@ -371,7 +371,7 @@ struct Kernels {
   int width;
   const char* name;
   RunPack base, extended;  // without effects, with all that have names
-  RunPack corrected;  // with a learnt curve too; scalar only: it is rare, and each instance takes a minute to build
+  RunPack corrected;       // with a learnt curve too; plain doubles only: it is rare, and an instance is slow to build
 };
 Kernels kernels_scalar();
 Kernels kernels_generic();

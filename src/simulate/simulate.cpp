@@ -14,7 +14,7 @@ const Kernels& best_kernels() {
   static const Kernels chosen = [] {
 #if defined(__x86_64__)
     if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq")) return kernels_avx512();
-    if (__builtin_cpu_supports("avx2")) return kernels_avx2();
+    if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma")) return kernels_avx2();
 #endif
     return kernels_generic();
   }();
@@ -59,6 +59,7 @@ int simulated_index(Signal s) {
 
 void simulate(std::span<const Job> jobs, const SimulateOptions& options) {
   const Kernels& kernels = best_kernels();
+  static const Kernels plain = kernels_scalar();
   std::vector<PackOfJobs> packs;
   for (std::size_t i = 0; i < jobs.size(); ++i) {
     const int need = need_of(*jobs[i].candidate);
@@ -86,12 +87,8 @@ void simulate(std::span<const Job> jobs, const SimulateOptions& options) {
       results[lane] = jobs[pack.first + lane].result;
     }
     const Scenario& scenario = *jobs[pack.first].scenario;
-    if (pack.count == 1) {
-      const Kernels scalar = kernels_scalar();
-      run_of(scalar, pack.need)(scenario, candidates, results, 1, options);
-    } else {
-      run_of(kernels, pack.need)(scenario, candidates, results, pack.count, options);
-    }
+    // One alone runs in a lane too: eight cost hardly more, and the bits are the same in any company.
+    run_of(pack.need == 2 ? plain : kernels, pack.need)(scenario, candidates, results, pack.count, options);
   }
 }
 

@@ -72,7 +72,7 @@ void jacobian_equals_differences(const ParameterVector& v) {
     for (int j = 0; j < n; ++j)
       for (int i = 0; i < n; ++i) {
         const double h = step_of(j);
-        const double stated = Lu::plan.slot[i][j] >= 0 ? -w[Lu::plan.slot[i][j]] : 0.0;
+        const double stated = Lu::plan.slot[i][j] >= 0 ? w[Lu::plan.slot[i][j]] : 0.0;
         const double found = difference([&](double s) { return along(i, j, s); }, h);
         // The sum's own rounding, and that of a stop's root, which cancels to nothing away from the stop.
         const double stop =
