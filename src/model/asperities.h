@@ -43,7 +43,7 @@ struct FrictionMemory {
   T spool_anchor{}, spool_speed{};                                     // [m], [m/s] mean over the last step
   std::array<T, std::size(constants::seal_presliding)> seal_anchor{};  // [m]
   T rod_speed{};                                                       // [m/s] relative to the body
-  T seal_breakaway{};                                                  // share that is left at that speed
+  T seal_breakaway = T(1.0);                                           // share that is left at that speed
 
   // At rest and unstretched: which way they came is not known.
   void rest(const T& x_spool, const T& x_rod) {

@@ -170,21 +170,11 @@ inline __attribute__((always_inline)) auto derivative(const S& s, const In& in, 
            T(1.0 / n_families);
   }
   (std::make_integer_sequence<int, n_families>{});
-<<<<<<< HEAD
-  const auto f_friction =
-      d.viscous * v_rel +
-      seals * (p[row::piston_coulomb_friction] +
-               p[row::piston_stribeck_friction] * stribeck(in.friction.rod_speed, c::piston_stribeck_velocity));
-  const auto over = soft_positive(x_p - T(0.5) * p[row::piston_stroke], T(c::piston_stop_rounding));
-  const auto under = soft_positive(-x_p - T(0.5) * p[row::piston_stroke], T(c::piston_stop_rounding));
-  const auto in_stop = (over + under) / (over + under + T(c::piston_stop_rounding));
-=======
   const auto f_friction = d.viscous * v_rel + seals * (p[row::piston_coulomb_friction] +
                                                        p[row::piston_stribeck_friction] * in.friction.seal_breakaway);
   const auto over = soft_positive(x_p - d.half_stroke, T(c::piston_stop_rounding));
   const auto under = soft_positive(-x_p - d.half_stroke, T(c::piston_stop_rounding));
   const auto in_stop = in_contact(over, under, T(c::piston_stop_rounding));
->>>>>>> fbc142f (Kernel: refined inverse roots, one inverse root an orifice, unit factors, chains interleaved by the scheduler)
   const auto f_piston = p[row::piston_area_a] * p_a - p[row::piston_area_b] * p_b - u.load_force - f_friction -
                         T(c::piston_stop_stiffness) * (over - under) - T(c::piston_stop_damping) * (in_stop * v_rel) +
                         hook_piston_force(view, Effects{});

@@ -33,9 +33,9 @@ struct VanDerPol {
     using Lu = SparseLu<2, pattern>;
     value(y, t, f);
     w[Lu::plan.slot[0][0]] = T(0.0);
-    w[Lu::plan.slot[0][1]] = T(-1.0);
-    w[Lu::plan.slot[1][0]] = T(2.0 * mu) * y[0] * y[1] + T(1.0);
-    w[Lu::plan.slot[1][1]] = -(T(mu) * (T(1.0) - y[0] * y[0]));
+    w[Lu::plan.slot[0][1]] = T(1.0);
+    w[Lu::plan.slot[1][0]] = -(T(2.0 * mu) * y[0] * y[1] + T(1.0));
+    w[Lu::plan.slot[1][1]] = T(mu) * (T(1.0) - y[0] * y[0]);
     f_t = {T(0.0), T(0.0)};
   }
 };
@@ -54,7 +54,7 @@ struct ProtheroRobinson {
   void value_and_jacobian(const std::array<double, 1>& y, const double& t, std::array<double, 1>& f, W& w,
                           std::array<double, 1>& f_t) const {
     value(y, t, f);
-    w[0] = -lambda;
+    w[0] = lambda;
     f_t[0] = tells_time_derivative ? -lambda * std::cos(start + t) - std::sin(start + t) : 0.0;
   }
 };
@@ -72,7 +72,7 @@ struct Forced {
   void value_and_jacobian(const std::array<double, 1>& y, const double& t, std::array<double, 1>& f, W& w,
                           std::array<double, 1>& f_t) const {
     value(y, t, f);
-    w[0] = -2 * y[0] * std::cos(start + t);
+    w[0] = 2 * y[0] * std::cos(start + t);
     f_t[0] = tells_time_derivative ? -y[0] * y[0] * std::sin(start + t) : 0.0;
   }
 };

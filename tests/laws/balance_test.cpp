@@ -25,9 +25,9 @@ void stored_rates_balance(const ParameterVector& v) {
     const double v_rel = f[s_x_piston];
     const double volume_a = p[row::dead_volume_a] + p[row::piston_area_a] * (p[row::piston_stroke] / 2 + y[s_x_piston]);
     const double volume_b = p[row::dead_volume_b] + p[row::piston_area_b] * (p[row::piston_stroke] / 2 - y[s_x_piston]);
-    const double stored_a = chamber_compliance(volume_a, y[s_p_a], d, p) * f[s_p_a] + p[row::piston_area_a] * v_rel;
-    const double stored_b = chamber_compliance(volume_b, y[s_p_b], d, p) * f[s_p_b] - p[row::piston_area_b] * v_rel;
-    const auto edge = [&](double opening, double dp) { return std::get<0>(metering_edge(opening, dp, d, p)); };
+    const double stored_a = f[s_p_a] / chamber_stiffness(volume_a, y[s_p_a], d, p) + p[row::piston_area_a] * v_rel;
+    const double stored_b = f[s_p_b] / chamber_stiffness(volume_b, y[s_p_b], d, p) - p[row::piston_area_b] * v_rel;
+    const auto edge = [&](double opening, double dp) { return std::get<0>(metering_edge(opening, dp, d)); };
     const double in = edge(y[s_x_spool] - p[row::lap_pa], u.supply_pressure - y[s_p_a]) +
                       edge(-y[s_x_spool] - p[row::lap_pb], u.supply_pressure - y[s_p_b]);
     const double out = edge(-y[s_x_spool] - p[row::lap_at], y[s_p_a] - u.return_pressure) +
@@ -77,9 +77,9 @@ TEST(Balance, OilStoredOverARunEqualsTheFlowsOfTheRun) {
     const double dt = s.time[k] - s.time[k - 1], travel = 0.5 * (x[k] + x[k - 1]);
     const double volume_a = v[row::dead_volume_a] + v[row::piston_area_a] * (v[row::piston_stroke] / 2 + travel);
     const double volume_b = v[row::dead_volume_b] + v[row::piston_area_b] * (v[row::piston_stroke] / 2 - travel);
-    stored_a += chamber_compliance(volume_a, mean(Signal::pressure_a), d, v.data()) * (a[k] - a[k - 1]) +
+    stored_a += (a[k] - a[k - 1]) / chamber_stiffness(volume_a, mean(Signal::pressure_a), d, v.data()) +
                 v[row::piston_area_a] * (x[k] - x[k - 1]);
-    stored_b += chamber_compliance(volume_b, mean(Signal::pressure_b), d, v.data()) * (b[k] - b[k - 1]) -
+    stored_b += (b[k] - b[k - 1]) / chamber_stiffness(volume_b, mean(Signal::pressure_b), d, v.data()) -
                 v[row::piston_area_b] * (x[k] - x[k - 1]);
     const double leak = d.leak * (mean(Signal::pressure_a) - mean(Signal::pressure_b));
     in_a += dt * (mean(Signal::flow_a) - leak);

@@ -1,4 +1,5 @@
-// What is absent changes nothing, to the bit; and a lane of a batch is the run alone, to the bit.
+// What is absent changes nothing, to the bit; a lane of a batch is the run alone, to the bit; and instruction sets, whose
+// roots and products round differently, agree far below anything that a log can show.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -41,9 +42,8 @@ Trajectory run(RunPack kernel, const Scenario& s, const ParameterVector& v) {
 TEST(OffValues, EveryEffectAtItsOffValueChangesNoBit) {
   const ParameterVector off = nominal_candidate();
   for (const LogData& log : pieces()) {
-    const Trajectory base = run(kernels_scalar().base, log.scenario, off);
+    const Trajectory base = simulate(log.scenario, off, all_signals());
     ASSERT_TRUE(base.ok);
-    EXPECT_TRUE(same_bits(base, simulate(log.scenario, off, all_signals())));
     for (const EffectInfo& e : effect_list()) {
       // What only shapes an effect may take any value while the effect is off.
       ParameterVector shaped = off, on = off;
@@ -148,7 +148,7 @@ std::vector<ParameterVector> candidates(int count) {
   return out;
 }
 
-TEST(Batch, LaneEqualsScalarBitForBitAtAnyThreadCount) {
+TEST(Batch, LaneEqualsTheRunAloneBitForBitAtAnyThreadCount) {
   const std::vector<ParameterVector> v = candidates(29);
   const std::vector<LogData> logs = pieces();
   const auto batch = [&](int threads) {
@@ -173,10 +173,10 @@ TEST(Batch, LaneEqualsScalarBitForBitAtAnyThreadCount) {
     }
 }
 
-TEST(Batch, EveryInstructionSetComputesTheSameBits) {
+TEST(Batch, EveryInstructionSetComputesWhatPlainDoublesDo) {
   std::vector<Kernels> kernels = {kernels_generic()};
 #if defined(__x86_64__)
-  if (__builtin_cpu_supports("avx2")) kernels.push_back(kernels_avx2());
+  if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma")) kernels.push_back(kernels_avx2());
   if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq")) kernels.push_back(kernels_avx512());
 #endif
   const std::vector<ParameterVector> v = candidates(8);
@@ -187,9 +187,20 @@ TEST(Batch, EveryInstructionSetComputesTheSameBits) {
     std::vector<Trajectory*> out;
     for (int i = 0; i < k.width; ++i) in.push_back(&v[i]), out.push_back(&t[i]);
     k.extended(log.scenario, in.data(), out.data(), k.width, all_signals());
-    std::printf("%s: %d lanes compared\n", k.name, k.width);
-    for (int i = 0; i < k.width; ++i)
-      EXPECT_TRUE(same_bits(t[i], run(kernels_scalar().extended, log.scenario, v[i]))) << k.name << ' ' << i;
+    double worst = 0;
+    for (int i = 0; i < k.width; ++i) {
+      const Trajectory plain = run(kernels_scalar().extended, log.scenario, v[i]);
+      ASSERT_TRUE(plain.ok && t[i].ok) << k.name << ' ' << i;
+      for (int c = 0; c < n_simulated; ++c) {
+        const auto [low, high] = std::minmax_element(plain.signals[c].begin(), plain.signals[c].end());
+        for (std::size_t s = 0; s < plain.signals[c].size(); ++s) {
+          const double apart = std::abs(t[i].signals[c][s] - plain.signals[c][s]) / (*high - *low);
+          worst = std::max(worst, apart);
+          ASSERT_LT(apart, 1e-7) << k.name << ' ' << i << ' ' << info(simulated_signals[c]).name;  // of its range
+        }
+      }
+    }
+    std::printf("%s: %d lanes compared, worst %.1e of a signal's range\n", k.name, k.width, worst);
   }
 }
 

@@ -1,0 +1,76 @@
+// The global search with its local stage on a log of 10 s, and what a second thread gives it.
+#include <fmt/format.h>
+
+#include "optimise/box_least_squares.h"
+#include "optimise/genetic.h"
+#include "ratios/measure.h"
+#include "ratios/rows.h"
+#include "ratios/twin.h"
+
+namespace servodx::bench {
+namespace {
+
+constexpr int parameters = 25;
+
+struct Search {
+  double genetic = 0, local = 0, cost_over_floor = 0;
+};
+
+GeneticResult breed(const Twin& twin, int generations) {
+  GeneticOptions o;
+  o.population = 50;
+  o.generations = generations;
+  const BatchCost cost = [&](std::span<const Point> points) {
+    std::vector<double> c;
+    for (const Evaluation& e : twin.evaluate(points)) c.push_back(e.ok ? 0.5 * e.residual.squaredNorm() : 1e30);
+    return c;
+  };
+  return minimise_genetic(parameters, cost, o);
+}
+
+Search search(const Twin& twin) {
+  Search s;
+  const double begun = thread_seconds();
+  const GeneticResult found = breed(twin, 100);
+  s.genetic = thread_seconds() - begun;
+  LeastSquaresProblem problem;
+  problem.n = parameters;
+  problem.evaluate = [&](std::span<const Point> points) { return twin.evaluate(points); };
+  LeastSquaresOptions local;
+  local.difference = Difference::forward;
+  local.difference_step = 1e-4;
+  local.cost_goal = twin.goal();
+  const LeastSquaresResult end = minimise_least_squares(problem, found.state.best.point, local);
+  s.local = thread_seconds() - begun - s.genetic;
+  s.cost_over_floor = end.misfit / twin.floor;
+  return s;
+}
+
+}  // namespace
+
+void genetic_rows(Report& report, const Choice& choice) {
+  const Scenario scenario = trace(10.0);
+  const Twin alone(parameters, 1, scenario, 1), both(parameters, 1, scenario, 2);
+  std::vector<double> total;
+  Search last;
+  for (int k = 0; k < std::min(3, choice.turns); ++k) {
+    last = search(alone);
+    total.push_back(last.genetic + last.local);
+  }
+  const double seconds = median_of(total);
+  report.rows.push_back({"genetic search 50 x 100 and local stage, 10 s log, one core", "15 s", "6 s",
+                         fmt::format("{:.1f} s", seconds),
+                         fmt::format("{:.1f} s of it local; ends at {:.3f} of the floor", last.local, last.cost_over_floor)});
+  report.json["ga_plus_local_seconds_one_core"] = seconds;
+  report.json["ga_plus_local"] = {{"genetic", last.genetic}, {"local", last.local}, {"cost_over_floor", last.cost_over_floor}};
+
+  // Wall time, so other work on the machine counts against two threads.
+  const std::vector<Timing> t =
+      take_turns({[&] { breed(alone, 8); }, [&] { breed(both, 8); }}, choice.turns, wall_seconds);
+  const double gain = t[0].median / t[1].median;
+  report.rows.push_back({"two threads against one, on the search", "1.8x", "1.95x", fmt::format("{:.2f}x", gain),
+                         fmt::format("best turns {:.2f}x", t[0].low / t[1].low)});
+  report.json["ga_two_thread_speedup"] = gain;
+}
+
+}  // namespace servodx::bench

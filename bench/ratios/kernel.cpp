@@ -1,0 +1,150 @@
+// Speed of a simulation, alone and in packs, against CVODE at the same error; Jacobian; failures inside the box.
+#include <fmt/format.h>
+
+#include "base/random.h"
+#include "fit/free_values.h"
+#include "fit/problem.h"
+#include "ratios/cvode.h"
+#include "ratios/measure.h"
+#include "ratios/rows.h"
+#include "ratios/trace.h"
+
+namespace servodx::bench {
+namespace {
+
+constexpr double seconds = 4.0;   // simulated
+constexpr int batch = 64;         // candidates
+constexpr double fine = 2e-6;     // [s] step of the reference
+
+// The cheapest setting of CVODE that errs no more than `error`.
+std::optional<CvodeSetting> fair_setting(const Scenario& s, const ParameterVector& v, const Trajectory& truth,
+                                         double error, Report& report) {
+  std::optional<CvodeSetting> best;
+  double least = 0;
+  for (const bool knots : {false, true})
+    for (const double tolerance : {3e-3, 1e-3, 3e-4, 1e-4, 3e-5, 1e-5, 3e-6, 1e-6, 1e-7}) {
+      const double from = thread_seconds();
+      const auto t = run_cvode(s, v, {tolerance, knots}, truth);
+      const double took = thread_seconds() - from;
+      if (!t) continue;
+      const double e = pressure_error(*t, truth);
+      report.json["cvode2"]["tried"].push_back({{"tolerance", tolerance},
+                                                {"stop_at_knots", knots},
+                                                {"error", e},
+                                                {"ms_per_simulated_second", 1e3 * took / seconds}});
+      if (e <= error && (!best || took < least)) best = {tolerance, knots}, least = took;
+    }
+  return best;
+}
+
+// Random sets over the rows, of 10,000: how many fail.
+long failures(bool all_rows) {
+  Scenario s = trace(1.0);
+  long failed = 0;
+  for (int from = 0; from < 10000; from += 1000) {
+    std::vector<ParameterVector> v(1000, candidate_of(table()));
+    std::vector<Trajectory> t(v.size());
+    std::vector<Job> jobs;
+    for (std::size_t i = 0; i < v.size(); ++i) {
+      Random random(71, static_cast<std::uint32_t>(from) + static_cast<std::uint32_t>(i));
+      for (int r = 0; r < n_parameters; ++r)
+        if (all_rows || table()[r].estimate) v[i][r] = from_unit(table()[r], random.uniform());
+      jobs.push_back({&s, &v[i], &t[i]});
+    }
+    simulate(jobs, {});
+    for (const Trajectory& one : t) failed += !one.ok;
+  }
+  return failed;
+}
+
+}  // namespace
+
+void kernel_rows(Report& report, const Choice& choice) {
+  const ParameterVector v = candidate_of(table());
+  const Scenario s = trace(seconds);
+  SimulateOptions reference = one_thread();
+  reference.wanted.fill(true);
+  reference.step = reference.impact_step = fine;
+  const Trajectory truth = simulate(s, v, reference);
+  const double error = pressure_error(simulate(s, v, one_thread()), truth);
+  report.json["error"] = error;
+  report.json["instruction_set"] = instruction_set();
+
+  const double allowed = std::max(error, 1e-3);
+  std::optional<CvodeSetting> setting;
+  if (!cvode_missing()) setting = fair_setting(s, v, truth, allowed, report);
+
+  std::vector<Trajectory> t(batch);
+  std::vector<Job> jobs;
+  for (Trajectory& one : t) jobs.push_back({&s, &v, &one});
+  // All rows free, on four channels: what a fit asks for.
+  LogData log;
+  log.scenario = s;
+  for (Signal signal : {Signal::spool_position, Signal::piston_position, Signal::pressure_a, Signal::pressure_b})
+    log.channels.push_back(
+        {signal, simulated_index(signal), truth.signals[simulated_index(signal)], 1e-3, Filter{}});
+  std::vector<FreeValue> free;
+  for (int r = 0; r < n_parameters; ++r)
+    free.push_back({.name = table()[r].name,
+                    .at = r,
+                    .lower = table()[r].lower,
+                    .upper = table()[r].upper,
+                    .log_scale = table()[r].log_scale,
+                    .start = table()[r].nominal});
+  FitProblem problem({&log}, v, free, one_thread());
+  const Point x = problem.start();
+  const Eigen::VectorXd residual = problem.evaluate(std::span(&x, 1)).front().residual;
+  Eigen::MatrixXd jacobian;
+
+  std::vector<std::function<void()>> tasks = {[&] { simulate(s, v, one_thread()); },
+                                              [&] { simulate(jobs, one_thread()); },
+                                              [&] { problem.jacobian(x, residual, jacobian); }};
+  if (setting) tasks.push_back([&] { run_cvode(s, v, *setting, truth); });
+  const std::vector<Timing> took = take_turns(tasks, choice.turns);
+  const double per_second = 1e3 / seconds;
+  const auto spread = [&](const Timing& a, double by) {
+    return fmt::format("{:.3g} to {:.3g} ms/s", a.low * by, a.high * by);
+  };
+  report.notes.push_back(fmt::format("error of ours on the chamber pressures {:.3f} % of range (reference: step {:g} s)",
+                                     100 * error, fine));
+  report.json["ms_per_simulated_second_alone"] = took[0].median * per_second;
+  report.json["ms_per_simulated_second_in_a_batch"] = took[1].median * per_second / batch;
+
+  if (setting) {
+    const auto& c = took[3];
+    const double scalar = c.median / took[0].median, packed = c.median / (took[1].median / batch);
+    report.rows.push_back({"one simulation against CVODE of order 2, equal error", "15x", "35x",
+                           fmt::format("{:.1f}x", scalar), spread(took[0], per_second)});
+    report.rows.push_back({"batch against the same, per core", "120x", "250x", fmt::format("{:.0f}x", packed),
+                           spread(took[1], per_second / batch)});
+    report.json["scalar_vs_cvode2"] = scalar;
+    report.json["batch_vs_cvode2"] = packed;
+    report.json["cvode2"]["tolerance"] = setting->tolerance;
+    report.json["cvode2"]["stop_at_knots"] = setting->stop_at_knots;
+    report.json["cvode2"]["ms_per_simulated_second"] = c.median * per_second;
+    report.notes.push_back(fmt::format("CVODE of order 2: {:.1f} ms per simulated second at tolerance {:g}{}",
+                                       c.median * per_second, setting->tolerance,
+                                       setting->stop_at_knots ? ", stopping at every sample" : ""));
+  } else {
+    const std::string why = cvode_missing() ? cvode_missing() : "no tolerance of CVODE reaches this error";
+    for (const char* key : {"scalar_vs_cvode2", "batch_vs_cvode2"}) report.json[key] = nullptr;
+    report.json["reasons"]["cvode2"] = why;
+    report.rows.push_back({"one simulation and a batch against CVODE of order 2", "15x, 120x", "35x, 250x", "-", why});
+  }
+  const double factor = batch * seconds / took[1].median;
+  report.rows.push_back({"simulated over wall seconds, per core", "4500", "8000", fmt::format("{:.0f}", factor),
+                         fmt::format("{:.0f} to {:.0f}", batch * seconds / took[1].high, batch * seconds / took[1].low)});
+  report.json["realtime_factor_per_core"] = factor;
+  const double sims = took[2].median / took[0].median;
+  report.rows.push_back({"Jacobian of 41 parameters, in simulations", "7", "3.6", fmt::format("{:.1f}", sims),
+                         fmt::format("{:.1f} to {:.1f}", took[2].low / took[0].median, took[2].high / took[0].median)});
+  report.json["jacobian_in_simulations"] = sims;
+
+  const long failed = failures(false), failed_all = failures(true);
+  report.rows.push_back({"failed of 10,000 random sets of the fitted rows", "0", "0", fmt::format("{}", failed),
+                         fmt::format("all 41 rows: {}", failed_all)});
+  report.json["failed_of_10000"] = failed;
+  report.json["failed_of_10000_all_41_rows"] = failed_all;
+}
+
+}  // namespace servodx::bench

@@ -1,0 +1,92 @@
+// Fits with a known answer: the model drives itself, with true values drawn in the box and the shipped rig's noise laid
+// on. Several seeds share one input, so that their candidates fill the same packs.
+#pragma once
+#include <vector>
+
+#include "base/random.h"
+#include "optimise/problem.h"
+#include "ratios/trace.h"
+
+namespace servodx::bench {
+
+// The first 8, 15 or 25 are free: what a servovalve engineer would free first, then what takes part.
+inline const std::vector<int>& fitted_rows() {
+  static const std::vector<int> rows = {
+      row::torque_motor_gain, row::flapper_stiffness, row::driver_bandwidth, row::spool_friction, row::port_width,
+      row::radial_clearance, row::cross_piston_leakage, row::servovalve_null,
+      // 15
+      row::flow_force_coefficient, row::lap_pa, row::lap_pb, row::lap_at, row::lap_bt, row::piston_viscous_friction,
+      row::piston_coulomb_friction,
+      // 25
+      row::valve_glitch, row::fixed_orifice_diameter, row::nozzle_gap, row::hydraulic_amplifier_gain,
+      row::torque_motor_frequency, row::position_sensor_lag, row::bulk_modulus, row::hose_resistance,
+      row::hose_compliance, row::air_fraction};
+  return rows;
+}
+
+class Twin {
+ public:
+  static constexpr double noise[4] = {2.5e-7, 1e-5, 8e3, 8e3};  // [m, m, Pa, Pa] as params/rigs/borello2009.toml
+
+  Twin(int free, int seed, const Scenario& scenario, int threads) : n(free), scenario_(scenario) {
+    options_.threads = threads;
+    base_ = candidate_of(table());
+    Random random(static_cast<std::uint64_t>(seed), 7);
+    Point truth;
+    for (int j = 0; j < n; ++j) truth.push_back(random.uniform(0.1, 0.9));
+    const Trajectory made = simulate(scenario_, candidate(truth), options_);
+    double sum = 0;
+    for (int c = 0; c < 4; ++c) {
+      measured_[c] = made.signals[c];
+      Random laid(static_cast<std::uint64_t>(seed), 8, static_cast<std::uint32_t>(c));
+      for (double& x : measured_[c]) {
+        const double e = laid.normal();
+        x += noise[c] * e;
+        sum += e * e;
+      }
+    }
+    floor = 0.5 * sum;
+  }
+
+  ParameterVector candidate(const Point& x) const {
+    ParameterVector v = base_;
+    for (int j = 0; j < n; ++j) v[fitted_rows()[j]] = from_unit(table()[fitted_rows()[j]], x[j]);
+    return v;
+  }
+  Evaluation whitened(const Trajectory& t) const {
+    Evaluation e;
+    e.ok = t.ok;
+    if (!t.ok) return e;
+    const auto samples = static_cast<Eigen::Index>(scenario_.time.size());
+    e.residual.resize(4 * samples);
+    for (int c = 0; c < 4; ++c)
+      for (Eigen::Index k = 0; k < samples; ++k)
+        e.residual[c * samples + k] = (measured_[c][static_cast<std::size_t>(k)] - t.signals[c][static_cast<std::size_t>(k)]) / noise[c];
+    return e;
+  }
+  double misfit(const Trajectory& t) const { return t.ok ? 0.5 * whitened(t).residual.squaredNorm() : 1e12; }
+  std::vector<Evaluation> evaluate(std::span<const Point> points) const {
+    std::vector<ParameterVector> v;
+    for (const Point& x : points) v.push_back(candidate(x));
+    std::vector<Trajectory> t(points.size());
+    std::vector<Job> jobs;
+    for (std::size_t i = 0; i < v.size(); ++i) jobs.push_back({&scenario_, &v[i], &t[i]});
+    simulate(jobs, options_);
+    std::vector<Evaluation> out;
+    for (const Trajectory& one : t) out.push_back(whitened(one));
+    return out;
+  }
+
+  int n;
+  double floor = 0;  // misfit of the truth
+  double goal() const { return 1.05 * floor; }
+  const Scenario& scenario() const { return scenario_; }
+
+ private:
+  const Scenario& scenario_;
+  SimulateOptions options_;
+  ParameterVector base_;
+  std::array<std::vector<double>, 4> measured_;
+};
+
+}  // namespace servodx::bench
