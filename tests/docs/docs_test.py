@@ -6,7 +6,7 @@ move, words may not; a line '...' stands for any lines. A fence ```sh holds comm
 them: they are rehearsed (--dry-run) in a folder that has files of these names."""
 import pathlib, re, shutil, subprocess, sys, tempfile, unittest
 
-PROGRAM, SOURCE = sys.argv[1], pathlib.Path(sys.argv[2])
+PROGRAM, SOURCE = pathlib.Path(sys.argv[1]).resolve(), pathlib.Path(sys.argv[2]).resolve()
 PAGES = [SOURCE / "README.md", SOURCE / "CONTRIBUTING.md", SOURCE / "data" / "README.md", *sorted((SOURCE / "docs").glob("*.md"))]
 FENCE = re.compile(r"^```(\w*)\n(.*?)^```", re.S | re.M)
 
@@ -96,7 +96,7 @@ class Docs(unittest.TestCase):
         (folder / "base.json").write_text(
             '{"command": "baseline", "threshold": 3, "adequacy_limit": 1, "null_limit": 0.05, "tuned_sha256": "%s", '
             '"false_alarm": {"asked": 0.1, "promised": 0.25, "promised_95": 0.6, "logs": 3, "logs_needed": 9, '
-            '"statement": ""}, "scores": [{"log": "h.csv", "sha256": "1", "score": 1, "adequacy": 1}]}' % hash_of)
+            '"statement": ""}, "scores": [{"log": "h.csv", "sha256": "1", "score": 1, "adequacy": 1, "gains": {}}]}' % hash_of)
         for name in ("a.json", "b.json"):
             (folder / name).write_text('{"tool": "servodx", "command": "tune"}')
         ended = run("servodx simulate log.csv --params params/borello2009.csv --rig rig.toml -o sim.csv", folder)
