@@ -1,15 +1,20 @@
 // Effects hidden in logs of the virtual rig: how many does `explain` name, place and size, and how many controls does
-// it accuse. `servodx_hidden --valves 2 --cases 28 --controls 20` takes minutes; README of the study: docs/explain.md.
-//   servodx_hidden [--valves N] [--cases N] [--controls N] [--unlisted N] [--seed S] [--out DIR] [--params P]
+// it accuse. The must of the study: docs/explain.md.
+//   servodx_hidden [--valves N] [--cases N] [--controls N] [--unlisted N] [--seed S] [--out DIR]
+// A valve is tuned once and its healthy logs are read once: table, reference and every answer are kept in DIR, so a
+// study that is stopped goes on where it was, and a larger one begins with what the smaller has done. --again judges
+// anew what the table and the reference are kept for.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
 #include <filesystem>
 #include <fstream>
 #include <map>
+#include <nlohmann/json.hpp>
 
 #include "fit/tune.h"
 #include "hidden/cases.h"
+#include "report/explain_report.h"
 
 using namespace servodx;
 
@@ -17,6 +22,7 @@ int main(int argc, char** argv) {
   int valves = 2, cases = 28, controls = 20, unlisted = 0, healthy = 9, tuning = 6, generations = 12;
   double seconds = 3.0, level = 0.05;
   std::uint64_t seed = 1;
+  bool again = false;
   std::string out = "build/hidden", source = SERVODX_SOURCE_DIR, only;
   CLI::App app("hidden effects: named, placed, sized; controls accused");
   app.add_option("--valves", valves, "drawn from the rig's tolerances")->capture_default_str();
@@ -29,6 +35,7 @@ int main(int argc, char** argv) {
   app.add_option("--level", level, "false-alarm rate asked for")->capture_default_str();
   app.add_option("--seed", seed)->capture_default_str();
   app.add_option("--only", only, "one effect");
+  app.add_flag("--again", again, "do not take answers that are there");
   app.add_option("--out", out)->capture_default_str();
   CLI11_PARSE(app, argc, argv);
 
@@ -53,28 +60,36 @@ int main(int argc, char** argv) {
                       .table);
     }
     const Table tuned = read_table(table_path);
-    HealthyReference reference;
-    long simulations = 0, failed = 0;
-    for (const Log& log :
-         read(hidden::healthy_logs(bench, seed + 1000, healthy, fmt::format("base_v{}", v + 1), seconds)))
-      reference.logs.push_back(score_healthy(log, tuned, bench.rig, 0, &simulations, &failed));
+    const std::string reference_path = fmt::format("{}/reference_v{}.json", out, v + 1);
+    if (!std::filesystem::exists(reference_path)) {
+      HealthyReference reference;
+      long simulations = 0, failed = 0;
+      for (const Log& log :
+           read(hidden::healthy_logs(bench, seed + 1000, healthy, fmt::format("base_v{}", v + 1), seconds)))
+        reference.logs.push_back(score_healthy(log, tuned, bench.rig, 0, &simulations, &failed));
+      std::ofstream(reference_path) << report::Json{{"explain", report::healthy_json(reference)}};
+    }
+    const HealthyReference reference = report::read_healthy(reference_path);
     const auto judge = [&](std::uint64_t s, const std::string& effect) {
-      const hidden::Case c = hidden::make_case(bench, s, effect, seconds);
-      const ExplainResult answer = explain_logs(read(c.logs), tuned, bench.rig, &reference,
-                                                {.quiet = true, .level = std::max(level, 1.0 / (healthy + 1.0))});
-      const hidden::Score sc = hidden::score(hidden::unseal(c.sealed), answer);  // opened after the answer
+      const std::string answer_path = fmt::format("{}/answer_v{}_{}_{}.json", out, v + 1, s, effect);
+      hidden::Score sc;
+      if (!again && std::filesystem::exists(answer_path)) {
+        std::ifstream in(answer_path);
+        sc = hidden::from_json(report::Json::parse(in).at("score"));
+      } else {
+        const hidden::Case c = hidden::make_case(bench, s, effect, seconds);
+        const ExplainResult answer = explain_logs(read(c.logs), tuned, bench.rig, &reference,
+                                                  {.quiet = true, .level = std::max(level, 1.0 / (healthy + 1.0))});
+        sc = hidden::score(hidden::unseal(c.sealed), answer);  // opened after the answer
+        std::ofstream(answer_path) << report::Json{{"score", hidden::to_json(sc)},
+                                                   {"answer", report::explain_json(answer)}};
+      }
       scores.push_back(sc);
-      fmt::print("{:22} {:34} -> {:11} {:22} {:22} {} {} size {} gain {:.0f} %", sc.truth.effect, sc.truth.size,
-                 sc.verdict, sc.first, sc.where, sc.named ? "named" : "-", sc.placed ? "placed" : "-",
-                 sc.size_inside ? (*sc.size_inside ? "in" : "out") : "?", 100 * sc.heldout_gain);
-      if (!answer.causes.empty() && !answer.causes[0].confusable_with.empty())
-        for (const auto& n : answer.causes[0].confusable_with) fmt::print(" | {}", n);
-      if (!sc.named && sc.truth.effect != "none")
-        for (const auto& k : answer.candidates)
-          if (k.effect == sc.truth.effect)
-            fmt::print("\n      {} {}: {} (gain {:.1f}, p {:.3g})", k.effect, k.where, k.reason, k.predicted_gain,
-                       k.p_new.value_or(-1));
-      fmt::print("\n");
+      fmt::print("v{} {} {:22} {:34} -> {:11} {:22} {:22} {} {} size {} gain {:.0f} %{}{}\n", v + 1, s, sc.truth.effect,
+                 sc.truth.size, sc.verdict, sc.first, sc.where, sc.named ? "named" : "-", sc.placed ? "placed" : "-",
+                 sc.size_inside ? (*sc.size_inside ? "in" : "out") : "?", 100 * sc.heldout_gain,
+                 sc.gain_share ? fmt::format(", {:.0f} % of the true one's", 100 * *sc.gain_share) : "",
+                 sc.note.empty() ? "" : "\n      " + sc.note);
       std::fflush(stdout);
     };
     const auto share = [&](int n) { return n / valves + (v < n % valves); };
@@ -88,7 +103,7 @@ int main(int argc, char** argv) {
   }
 
   struct Count {
-    int n = 0, named = 0, placed = 0, accused = 0, sized = 0, inside = 0;
+    int n = 0, named = 0, placed = 0, accused = 0, sized = 0, inside = 0, gained = 0, enough = 0;
   };
   std::map<std::string, Count> by;
   Count all, none;
@@ -96,13 +111,16 @@ int main(int argc, char** argv) {
     for (Count* c : {&by[s.truth.effect], s.truth.effect == "none" ? &none : &all}) {
       c->n++, c->named += s.named, c->placed += s.placed, c->accused += s.accused;
       if (s.size_inside) c->sized++, c->inside += *s.size_inside;
+      if (s.gain_share) c->gained++, c->enough += *s.gain_share >= 0.8;
     }
   }
   fmt::print("\n{:24} {:>5} {:>6} {:>7} {:>8} {:>12}\n", "effect", "cases", "named", "placed", "accused",
              "size inside");
   for (const auto& [name, c] : by)
     fmt::print("{:24} {:5} {:6} {:7} {:8} {:>9}/{}\n", name, c.n, c.named, c.placed, c.accused, c.inside, c.sized);
-  fmt::print("named {} of {}, placed {}, sizes inside their 90 % interval {} of {}; controls accused {} of {}\n",
-             all.named, all.n, all.placed, all.inside, all.sized, none.accused, none.n);
+  fmt::print(
+      "named {} of {}, placed {}, sizes inside their 90 % interval {} of {}; held-out gain at least 80 % "
+      "of the true effect's {} of {}; controls accused {} of {}\n",
+      all.named, all.n, all.placed, all.inside, all.sized, all.enough, all.gained, none.accused, none.n);
   return 0;
 }

@@ -9,6 +9,7 @@
 #include "invocation.h"
 #include "report/baseline_file.h"
 #include "report/explain_report.h"
+#include "report/pages.h"
 
 namespace servodx {
 namespace {
@@ -17,6 +18,7 @@ struct Options {
   CommonOptions common;
   std::vector<std::string> logs;
   std::string params, baseline, output;
+  std::vector<std::string> without;
 };
 
 int run(const Options& options) {
@@ -30,6 +32,7 @@ int run(const Options& options) {
   report::Header& header = invocation.header();
   std::optional<HealthyReference> healthy;
   ExplainOptions explain{.seed = options.common.seed, .threads = options.common.threads, .quiet = options.common.quiet};
+  explain.without = options.without;
   if (!options.baseline.empty()) {
     const report::BaselineFile file = report::read_baseline(options.baseline);
     report::require_same_table(file.baseline, options.baseline, tuned.path, tuned.sha256);
@@ -45,7 +48,16 @@ int run(const Options& options) {
   header.failed_simulations = result.failed_simulations;
   for (const Log& log : logs) invocation.note(log.notes);
   invocation.note(result.notes);
-  header.settings = {{"level", explain.level}, {"baseline", options.baseline}};
+  if (invocation.wants_report()) {
+    std::vector<Replay> replays;
+    for (std::size_t l = 0; l < std::min(logs.size(), report::most_replays); ++l) {
+      std::vector<Candidate> candidates = {{"as tuned", result.before[l]}};
+      if (!result.causes.empty()) candidates.push_back({"extended", result.after[l]});
+      replays.push_back(replay(logs[l], tuned, rig, candidates));
+    }
+    invocation.write_report(report::explain_page(header, result, replays));
+  }
+  header.settings = {{"level", explain.level}, {"baseline", options.baseline}, {"without", options.without}};
   invocation.finish(report::text_of(result, {.colour = colour_wanted(), .written_to = options.output}),
                     report::explain_json(result));
   return result.interrupted ? interrupted : ran;
@@ -62,6 +74,10 @@ void add_explain_command(CLI::App& app, int& exit_code) {
   command->add_option("--baseline", options->baseline, "its baseline: then only of what healthy logs do not show")
       ->type_name("BASE.json");
   command->add_option("-o,--output", options->output, "the extended table")->required()->type_name("EXTENDED.csv");
+  command
+      ->add_option("--without", options->without,
+                   "leave an effect out of the list: what is found then, if not its name")
+      ->type_name("EFFECT");
   add_common_options(*command, options->common);
   command->callback([options, &exit_code] { exit_code = run(*options); });
 }

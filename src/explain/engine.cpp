@@ -214,9 +214,11 @@ ExplainedFit fit_causes(const Subject& subject, const std::vector<int>& causes, 
   return out;
 }
 
-std::vector<CauseScore> score_causes(const Subject& subject, const ExplainedFit& at) {
+std::vector<CauseScore> score_causes(const Subject& subject, const ExplainedFit& at,
+                                     const std::function<bool(const Cause&)>& among) {
   std::vector<int> all(subject.causes().size());
   std::iota(all.begin(), all.end(), 0);
+  const auto looked_at = [&](const Cause& c) { return !among || among(c); };
   const SubjectFit whole = subject.fit(all, at.wide);
   const Point here = carried(subject, at, whole, all);
   std::vector<Point> points = {here};
@@ -226,6 +228,7 @@ std::vector<CauseScore> score_causes(const Subject& subject, const ExplainedFit&
   for (const Cause& c : subject.causes()) {
     for (const auto& alternative : c.probes)
       for (const auto& probe : alternative) {
+        if (!looked_at(c)) continue;
         Point p = here;
         for (std::size_t j = 0; j < c.numbers.size(); ++j) p[first + j] = c.numbers[j].to_unit(probe[j]);
         points.push_back(std::move(p));
@@ -248,6 +251,10 @@ std::vector<CauseScore> score_causes(const Subject& subject, const ExplainedFit&
     const Cause& cause = subject.causes()[c];
     CauseScore s;
     s.cause = static_cast<int>(c);
+    if (!looked_at(cause)) {
+      out.push_back(std::move(s));
+      continue;
+    }
     for (std::size_t a = 0; a < cause.probes.size(); ++a) {
       Eigen::MatrixXd d(at.residual.size(), 0);
       for (const auto& probe : cause.probes[a]) {
@@ -288,31 +295,35 @@ void cross_validate(const Subject& subject, ExplainedFit& fit, const EngineOptio
   const std::vector<Block> blocks = blocks_of(subject, options.blocks);
   const auto& series = subject.series();
   fit.heldout.assign(blocks.size(), std::vector<double>(series.size(), 1e300));
-  fit.heldout_residual = fit.residual;
+  fit.heldout_residual = subject.physical(fit.residual);
   const long rows = data_rows(subject);
+  const auto held = [&](std::size_t b, int fold) { return static_cast<int>(b) % options.folds == fold; };
+  // Without its blocks the minimum moves a little: one Gauss-Newton step on the box finds it.
+  std::vector<Point> moved;
   for (int fold = 0; fold < options.folds; ++fold) {
-    if (options.stop && options.stop->load()) return;
     Eigen::VectorXd mask = Eigen::VectorXd::Ones(rows);
-    const auto held = [&](std::size_t b) { return static_cast<int>(b) % options.folds == fold; };
     for (std::size_t b = 0; b < blocks.size(); ++b)
       for (const Series& s : series)
-        if (held(b) && s.log == blocks[b].log) {
+        if (held(b, fold) && s.log == blocks[b].log) {
           const auto [at, n] = rows_of(s, blocks[b]);
           mask.segment(at, n).setZero();
         }
-    // Without the block the minimum moves a little: one Gauss-Newton step on the box finds it.
-    const Point moved = stepped(fit, mask);
-    const Evaluation e = fit.fit.problem.evaluate(std::span(&moved, 1)).front();
+    moved.push_back(stepped(fit, mask));
+  }
+  const std::vector<Evaluation> runs = fit.fit.problem.evaluate(moved);
+  for (int fold = 0; fold < options.folds; ++fold) {
+    const Evaluation& e = runs[static_cast<std::size_t>(fold)];
+    const Eigen::VectorXd physical = e.ok ? subject.physical(e.residual) : fit.heldout_residual;
     for (std::size_t b = 0; b < blocks.size(); ++b)
       for (std::size_t i = 0; i < series.size(); ++i) {
-        if (!held(b)) continue;
+        if (!held(b, fold)) continue;
         if (series[i].log != blocks[b].log) {
           fit.heldout[b][i] = 0;
           continue;
         }
         const auto [at, n] = rows_of(series[i], blocks[b]);
         fit.heldout[b][i] = e.ok ? e.residual.segment(at, n).squaredNorm() : 1e12;
-        if (e.ok) fit.heldout_residual.segment(at, n) = e.residual.segment(at, n);
+        fit.heldout_residual.segment(at, n) = physical.segment(at, n);
       }
   }
 }
@@ -400,47 +411,50 @@ ExplainedFit fit_base(Subject& subject, int iterations) {
   return fit;
 }
 
-Explanation explain(Subject& subject, const EngineOptions& options) {
+Explanation explain(Subject& subject, const EngineOptions& options, const Explanation* begun) {
   constexpr int quick_iterations = 4, full_iterations = 4;
   Explanation out;
   const auto stopped = [&] { return options.stop && options.stop->load(); };
   const auto tell = [&](double f) {
     if (options.progress) options.progress(f);
   };
-  out.before = fit_base(subject, options.iterations);
+  out.before = begun ? begun->before : fit_base(subject, options.iterations);
   tell(0.1);
   out.after = out.before;
   out.degrees = degrees_of(subject);
   if (!out.before.ok || stopped()) return out;
-  cross_validate(subject, out.before, options);
+  if (!begun) cross_validate(subject, out.before, options);
   tell(0.15);
   const std::size_t n = subject.causes().size();
   out.candidates.resize(n);
   for (std::size_t c = 0; c < n; ++c) out.candidates[c].cause = static_cast<int>(c);
-  ExplainedFit retuned;
-  if (subject.retunes()) {
-    retuned = fit_causes(subject, {}, &out.before, nullptr, full_iterations, false, true);
-    if (retuned.ok) {
-      cross_validate(subject, retuned, options);
-      out.retuned = heldout_gain(out.before, retuned, options.seed);
-    }
+  if (begun) {
+    out.wide = begun->wide;
+  } else if (subject.retunes()) {
+    out.wide = fit_causes(subject, {}, &out.before, nullptr, full_iterations, false, true);
+    if (out.wide.ok) cross_validate(subject, out.wide, options);
   }
+  if (out.wide.ok) out.retuned = heldout_gain(out.before, out.wide, options.seed);
+  ExplainedFit retuned = out.wide;
   tell(0.2);
 
   ExplainedFit now = out.before;
   std::vector<ExplainedFit> steps;  // before each accepted cause
   for (int round = 0; round < options.most && !stopped(); ++round) {
-    std::vector<CauseScore> scores = score_causes(subject, now);
+    const std::vector<CauseScore> scores = score_causes(subject, now, options.among);
     if (round == 0) out.scores = scores;
-    std::vector<double> p(n, 0.0);
+    std::vector<double> p(n, options.p_new ? 1.0 : 0.0);
     for (std::size_t c = 0; c < n; ++c) {
+      if (scores[c].probes.empty()) continue;  // not looked at
       if (options.p_new) p[c] = options.p_new(scores[c], round);
       CandidateResult& r = out.candidates[c];
       if (round == 0) r.predicted_gain = scores[c].gain, r.p_new = p[c], r.reason = "its score predicts too little";
     }
     // A second false alarm on the same data shall be as rare as two.
-    const double level = round == 0 ? options.level : options.level * options.level;
-    const auto is_new = [&](int c) { return p[static_cast<std::size_t>(c)] <= level; };
+    const double share = options.p_left ? 0.5 * options.level : options.level;
+    const double level = round == 0 ? share : share * share;
+    const bool abnormal = options.p_left && options.p_left(now, round) <= level;
+    const auto is_new = [&](int c) { return abnormal || p[static_cast<std::size_t>(c)] <= level; };
     const auto in = [&](int c) { return std::count(now.causes.begin(), now.causes.end(), c) > 0; };
     std::vector<CauseScore> order = scores;
     // What is new first; by what it promises. In the first round a few that are not new are looked at as well: what
@@ -450,7 +464,7 @@ Explanation explain(Subject& subject, const EngineOptions& options) {
       return a.gain > b.gain;
     });
     std::vector<ExplainedFit> fits;
-    int standing_left = round == 0 && options.p_new ? 2 : 0, new_left = options.fitted;
+    int standing_left = round == 0 && options.p_new && !begun ? 2 : 0, new_left = options.fitted;
     for (const CauseScore& s : order) {
       if (stopped()) break;
       if (options.among && !options.among(subject.causes()[static_cast<std::size_t>(s.cause)])) continue;

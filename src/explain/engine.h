@@ -44,7 +44,7 @@ struct ExplainedFit {
   Eigen::MatrixXd jacobian;
   std::vector<std::vector<double>>
       heldout;                       // [block][series]: sum of squared rows of blocks that were left out in turn
-  Eigen::VectorXd heldout_residual;  // rows of each block from the fit that had not seen it
+  Eigen::VectorXd heldout_residual;  // physical, each block's from the fit that had not seen it
 };
 
 struct CauseResult {
@@ -80,13 +80,17 @@ struct EngineOptions {
   // Chance that healthy data score a cause like this, all causes counted together; empty: no healthy data, all is new.
   // `round`: causes accepted so far.
   std::function<double(const CauseScore&, int round)> p_new;
-  double level = 0.05;                      // a cause is new below this
+  // Chance that healthy data are left as wrong as by this fit; empty: not asked. Where it is small something is new,
+  // and a cause need not be news by itself.
+  std::function<double(const ExplainedFit&, int round)> p_left;
+  double level = 0.05;                      // something is new below this; both questions share it
   std::function<bool(const Cause&)> among;  // causes to look at; empty: all
 };
 
 struct Explanation {
   ExplainedFit before, after;         // as tuned; with the causes
-  Interval retuned;                   // held-out gain of re-tuning alone
+  ExplainedFit wide;                  // re-tuned alone
+  Interval retuned;                   // its held-out gain
   std::vector<CauseResult> causes;    // new
   std::vector<CauseResult> standing;  // worth having, and healthy data show them too
   std::vector<CandidateResult> candidates;
@@ -100,13 +104,16 @@ ExplainedFit fit_causes(const Subject& subject, const std::vector<int>& causes, 
                         const CauseScore* score, int iterations, bool quick, bool wide = false);
 // Re-tuned alone; then the weights are what is left of it, and it is re-tuned with these.
 ExplainedFit fit_base(Subject& subject, int iterations);
-std::vector<CauseScore> score_causes(const Subject& subject, const ExplainedFit& at);
+// A score for each cause; without probes where `among` does not let it through. Empty: all.
+std::vector<CauseScore> score_causes(const Subject& subject, const ExplainedFit& at,
+                                     const std::function<bool(const Cause&)>& among = {});
 // Fills heldout.
 void cross_validate(const Subject& subject, ExplainedFit& fit, const EngineOptions& options);
 // Fraction of `before`'s held-out misfit that `after` removes, with its block-bootstrap interval (90 %).
 Interval heldout_gain(const ExplainedFit& before, const ExplainedFit& after, std::uint64_t seed);
 double degrees_of(const Subject& subject);
 
-Explanation explain(Subject& subject, const EngineOptions& options);
+// `begun`: an explanation of the same data among other causes, whose base fit serves again.
+Explanation explain(Subject& subject, const EngineOptions& options, const Explanation* begun = nullptr);
 
 }  // namespace servodx

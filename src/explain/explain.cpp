@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <deque>
 
 #include "base/error.h"
 #include "base/progress.h"
@@ -13,13 +14,8 @@
 namespace servodx {
 namespace {
 
-double square_sum(const Eigen::VectorXd& r, const Series& s) {
-  double sum = 0;
-  for (long k = 0; k < s.count; ++k) {
-    const double v = r[s.first + k] * (*s.sigma)[static_cast<std::size_t>(k)];
-    sum += v * v;
-  }
-  return sum;
+double square_sum(const Eigen::VectorXd& physical, const Series& s) {
+  return physical.segment(s.first, s.count).squaredNorm();
 }
 
 // The residual of a channel in its own unit, pooled over the logs.
@@ -30,6 +26,7 @@ std::vector<ExplainedChannel> channels_of(const ValveSubject& subject, const std
   };
   std::vector<ExplainedChannel> out;
   std::vector<Sum> sums;
+  const Eigen::VectorXd before = subject.physical(e.before.residual), after = subject.physical(e.after.residual);
   for (const Series& s : subject.series()) {
     std::size_t at = 0;
     while (at < out.size() && out[at].signal != s.signal) ++at;
@@ -42,8 +39,8 @@ std::vector<ExplainedChannel> channels_of(const ValveSubject& subject, const std
     const auto n = static_cast<double>(s.count);
     sum.n += n;
     sum.noise += n * s.noise * s.noise;
-    sum.before += square_sum(e.before.residual, s);
-    sum.after += square_sum(e.after.residual, s);
+    sum.before += square_sum(before, s);
+    sum.after += square_sum(after, s);
     if (e.before.heldout_residual.size() > 0) sum.held_before += square_sum(e.before.heldout_residual, s);
     if (e.after.heldout_residual.size() > 0) sum.held_after += square_sum(e.after.heldout_residual, s);
   }
@@ -73,14 +70,6 @@ ExplainedCause described(const ValveSubject& subject, const CauseResult& r, cons
   for (int other : r.confusable_with)
     out.confusable_with.push_back(name_of(subject.causes()[static_cast<std::size_t>(other)]));
   return out;
-}
-
-// A curve that healthy logs do not show.
-bool curve_is_news(const Explanation& e, const Subject& subject, const EngineOptions& o) {
-  if (!o.p_new) return false;
-  return std::any_of(e.scores.begin(), e.scores.end(), [&](const CauseScore& s) {
-    return subject.causes()[static_cast<std::size_t>(s.cause)].curve && o.p_new(s, 0) <= o.level;
-  });
 }
 
 // The tuned table with what was found: re-tuned rows and the causes' own.
@@ -152,38 +141,69 @@ ExplainResult explain_logs(const std::vector<Log>& logs, const Table& tuned, con
   engine.level = options.level;
   engine.progress = [&](double f) { progress.update(f, subject.simulations()); };
   std::optional<HealthyTest> test;
-  std::vector<HealthyLog> alone;  // each log's scores by itself, as the healthy ones were taken
+  // Each log by itself, as the healthy ones were taken; one log is itself.
+  std::deque<ValveSubject> single;
+  std::vector<ExplainedFit> single_fits;
+  std::vector<std::vector<HealthyScore>> alone(logs.size());
+  const auto score_alone = [&] {
+    for (std::size_t l = 0; l < single.size(); ++l)
+      if (single_fits[l].ok)
+        for (const CauseScore& s : score_causes(single[l], single_fits[l], engine.among))
+          if (!s.probes.empty()) alone[l].push_back(summarise(single[l], s));
+  };
   if (healthy) {
     test.emplace(*healthy);
-    for (const Log& log : logs)
-      alone.push_back(score_healthy(log, tuned, rig, options.threads, &out.simulations, &out.failed_simulations));
+    if (logs.size() > 1)
+      for (const Log& log : logs) {
+        single.emplace_back(std::vector<Log>{log}, tuned, rig, options.threads);
+        add_curves(single.back());
+        single_fits.push_back(fit_base(single.back(), engine.iterations));
+      }
     engine.p_new = [&](const CauseScore& s, int round) {
       std::vector<HealthyScore> scores;
-      if (round == 0) {
-        const Cause& c = subject.causes()[static_cast<std::size_t>(s.cause)];
-        for (const HealthyLog& l : alone)
-          for (const HealthyScore& h : l.scores)
-            if (h.effect == c.effect && h.where == summarise(subject, s).where) scores.push_back(h);
-      }
-      if (scores.empty()) scores.push_back(summarise(subject, s));
+      const HealthyScore whole = summarise(subject, s);
+      if (round == 0)
+        for (const auto& log : alone)
+          for (const HealthyScore& h : log)
+            if (h.effect == whole.effect && h.where == whole.where) scores.push_back(h);
+      if (scores.empty()) scores.push_back(whole);
       return test->together(test->alone(scores));
     };
   }
+  if (healthy)
+    engine.p_left = [&](const ExplainedFit& fit, int round) {
+      std::vector<Miss> misses = subject.misses(fit.residual);
+      if (round == 0)  // the blocks do not know of effects
+        for (const BlockReplay& b : replay_blocks(subject, fit.point)) misses.push_back({b.block, b.missing});
+      return test->any(misses);
+    };
   const std::vector<Curve> curves = add_curves(subject);
-  engine.among = [](const Cause& c) { return !c.curve; };
+  std::vector<CauseScore> curve_scores;
+  engine.among = [&](const Cause& c) {
+    return !c.curve && std::find(options.without.begin(), options.without.end(), c.effect) == options.without.end();
+  };
+  score_alone();
   Explanation e = explain(subject, engine);
-  const bool abnormal = healthy && e.before.ok && test->adequacy(subject.adequacy()) <= options.level;
-  if (e.before.ok && e.causes.empty() && (abnormal || !healthy || curve_is_news(e, subject, engine))) {
-    // Nothing that has a name: a curve.
+  // A name has to leave the logs as healthy ones are left, or to do as well as a curve, which has none.
+  const auto like_healthy = [&](const Explanation& x) {
+    return healthy && test->any(subject.misses(x.after.residual)) > options.level;
+  };
+  if (e.before.ok && (e.causes.empty() || (healthy && !like_healthy(e)))) {
     engine.among = [](const Cause& c) { return c.curve; };
     engine.most = 1;
-    Explanation learnt_one = explain(subject, engine);
-    for (std::size_t c = 0; c < e.candidates.size(); ++c)
-      if (!subject.causes()[c].curve) learnt_one.candidates[c] = e.candidates[c];
-    std::erase_if(learnt_one.standing, [](const CauseResult&) { return true; });
-    learnt_one.standing = std::move(e.standing);
-    e = std::move(learnt_one);
-    if (!e.causes.empty()) {
+    score_alone();
+    Explanation learnt_one = explain(subject, engine, &e);
+    curve_scores = learnt_one.scores;
+    const bool better = e.causes.empty() ||
+                        (!learnt_one.causes.empty() && heldout_gain(e.after, learnt_one.after, options.seed).lower > 0);
+    if (!learnt_one.causes.empty() && better) {
+      for (std::size_t c = 0; c < e.candidates.size(); ++c)
+        if (!subject.causes()[c].curve) {
+          learnt_one.candidates[c] = e.candidates[c];
+          if (e.candidates[c].reason == "taken") learnt_one.candidates[c].reason = "a curve without a name does better";
+        }
+      learnt_one.standing = std::move(e.standing);
+      e = std::move(learnt_one);
       const CauseResult& r = e.causes.front();
       const auto it = std::find_if(curves.begin(), curves.end(), [&](const Curve& c) { return c.cause == r.cause; });
       out.curve = learnt(*it, r.value, r.std_error);
@@ -193,7 +213,10 @@ ExplainResult explain_logs(const std::vector<Log>& logs, const Table& tuned, con
     throw InputError({.file = tuned.path}, "the simulation fails at the table's values on these logs",
                      "check that the table is of this rig");
   out.shown = show(subject, logs, e.before.point);
-  for (const CauseScore& s : e.scores) {
+  out.blocks = replay_blocks(subject, e.before.point);
+  if (healthy)
+    for (BlockReplay& b : out.blocks) b.p_new = test->miss({b.block, b.missing});
+  for (const CauseScore& s : curve_scores) {
     const Cause& c = subject.causes()[static_cast<std::size_t>(s.cause)];
     if (!c.curve) continue;
     const auto p = healthy ? std::optional<double>(engine.p_new(s, 0)) : std::nullopt;
@@ -212,7 +235,7 @@ ExplainResult explain_logs(const std::vector<Log>& logs, const Table& tuned, con
   }
   for (const CandidateResult& r : e.candidates) {
     const Cause& c = subject.causes()[static_cast<std::size_t>(r.cause)];
-    if (c.curve && !out.curve) continue;
+    if ((c.curve && !out.curve) || r.reason.empty()) continue;  // not looked at
     out.candidates.push_back({c.effect, c.where, r.reason, r.predicted_gain,
                               healthy ? std::optional<double>(r.p_new) : std::nullopt, r.fitted, r.heldout_gain,
                               r.delta_bic});
@@ -220,16 +243,28 @@ ExplainResult explain_logs(const std::vector<Log>& logs, const Table& tuned, con
   std::stable_sort(out.candidates.begin(), out.candidates.end(),
                    [](const auto& a, const auto& b) { return a.predicted_gain > b.predicted_gain; });
   out.retuned = e.retuned;
-  out.adequacy_before = subject.adequacy();
-  out.adequacy_after = subject.adequacy() * e.after.misfit / e.before.misfit;
-  if (healthy) out.p_adequacy = test->adequacy(out.adequacy_after);
+  out.adequacy_before = subject.adequacy(e.before.residual);
+  out.adequacy_after = subject.adequacy(e.after.residual);
+  if (healthy) out.p_adequacy = e.causes.empty() ? engine.p_left(e.before, 0) : engine.p_left(e.after, 1);
   if (!e.causes.empty()) out.heldout_gain = heldout_gain(e.before, e.after, options.seed);
   out.verdict = out.curve ? "unexplained" : !e.causes.empty() ? "extended" : "sufficient";
-  if (e.causes.empty() && out.p_adequacy && *out.p_adequacy < options.level) out.verdict = "unexplained";
-  if (!out.causes.empty()) out.where = out.causes.front().where;
+  if (e.causes.empty() && out.p_adequacy && *out.p_adequacy <= 0.5 * options.level) out.verdict = "unexplained";
+  if (!out.causes.empty()) {
+    out.where = out.causes.front().where;
+  } else if (out.verdict == "unexplained" && !out.blocks.empty()) {
+    const auto least = std::min_element(out.blocks.begin(), out.blocks.end(),
+                                        [](const auto& a, const auto& b) { return *a.p_new < *b.p_new; });
+    out.where = least->places.front();
+  }
   out.channels = channels_of(subject, logs, e);
+  for (std::size_t l = 0; l < logs.size(); ++l) {
+    out.before.push_back(subject.problem({})->candidate(e.before.point, static_cast<int>(l)));
+    out.after.push_back(subject.problem(e.after.causes)->candidate(e.after.point, static_cast<int>(l)));
+  }
   out.table = extended_table(subject, e, out.causes, logs);
   out.interrupted = options.stop && options.stop->load();
+  for (const ValveSubject& one : single)
+    out.simulations += one.simulations(), out.failed_simulations += one.failed_simulations();
   out.simulations += subject.simulations();
   out.failed_simulations += subject.failed_simulations();
   return out;

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "explain/blocks.h"
 #include "explain/curves.h"
 #include "explain/engine.h"
 #include "explain/healthy.h"
@@ -20,7 +21,8 @@ struct ExplainOptions {
   std::uint64_t seed = 1;
   int threads = 0;
   bool quiet = false;
-  double level = 0.01;  // false-alarm rate at which a cause counts as new
+  double level = 0.01;               // false-alarm rate at which a cause counts as new
+  std::vector<std::string> without;  // effects that are left out of the list
   const std::atomic<bool>* stop = nullptr;
 };
 
@@ -48,7 +50,8 @@ struct ExplainedCandidate {
   double delta_bic = 0;
 };
 
-// What something missing at a place, a function of one variable there, would remove of the misfit.
+// What something missing at a place, a function of one variable there, would remove of the misfit. Scored where nothing
+// that has a name suffices.
 struct PlaceScore {
   std::string where, variable;
   double gain = 0;
@@ -61,6 +64,7 @@ struct ExplainResult {
   std::string where;                 // of the first cause; empty: nowhere
   std::vector<ExplainedChannel> channels;
   std::vector<ShownChannel> shown;  // the residual as tuned
+  std::vector<BlockReplay> blocks;  // what each block misses with measured signals in place of simulated ones
   std::vector<PlaceScore> places;   // the best that a curve could do at each place, first the most
   std::vector<ExplainedCause> causes, standing;
   std::vector<ExplainedCandidate> candidates;
@@ -69,6 +73,7 @@ struct ExplainResult {
   double adequacy_before = 0, adequacy_after = 0;  // misfit over independent samples
   std::optional<double> p_adequacy;                // chance that a healthy log is left with as much, after
   Table table;                                     // extended
+  std::vector<ParameterVector> before, after;      // candidates of each log, as tuned and with the causes
   std::vector<std::string> notes;
   long simulations = 0, failed_simulations = 0;
   bool interrupted = false;

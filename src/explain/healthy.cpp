@@ -92,13 +92,15 @@ HealthyScore summarise(const Subject& subject, const CauseScore& score) {
 
 HealthyLog score_healthy(const Log& log, const Table& tuned, const RigFile& rig, int threads, long* simulations,
                          long* failed) {
-  HealthyLog out{log.path, log.sha256, 1, {}};
+  HealthyLog out{log.path, log.sha256, 1, {}, {}};
   ValveSubject subject({log}, tuned, rig, threads);
   add_curves(subject);
   const ExplainedFit fit = fit_base(subject, EngineOptions{}.iterations);
   if (fit.ok) {
-    out.adequacy = subject.adequacy();
+    out.adequacy = subject.adequacy(fit.residual);
     for (const CauseScore& s : score_causes(subject, fit)) out.scores.push_back(summarise(subject, s));
+    out.misses = subject.misses(fit.residual);
+    for (const BlockReplay& b : replay_blocks(subject, fit.point)) out.misses.push_back({b.block, b.missing});
   }
   if (simulations) *simulations += subject.simulations();
   if (failed) *failed += subject.failed_simulations();
@@ -153,14 +155,39 @@ double HealthyTest::together(double alone) const {
   return 1 - std::pow(1 - std::log1p(-alone) / sum_, -n);
 }
 
-double HealthyTest::adequacy(double value) const {
+namespace {
+
+// Chance that one more positive number of the same kind is as large: Student's predictive of the logarithms.
+double chance_above(const std::vector<double>& healthy, double value) {
   std::vector<double> logs;
-  for (const HealthyLog& l : reference_.logs)
-    if (l.adequacy > 0) logs.push_back(std::log(l.adequacy));
-  if (logs.size() < 3) return 1;
+  for (double v : healthy)
+    if (v > 0) logs.push_back(std::log(v));
+  if (logs.size() < 3 || !(value > 0)) return 1;
   const auto n = static_cast<double>(logs.size());
   const double t = (std::log(value) - mean(logs)) / std::sqrt(std::max(1e-6, variance(logs)) * (1 + 1 / n));
   return t > 0 ? 0.5 * student_tail(t, n - 1) : 1;
+}
+
+}  // namespace
+
+double HealthyTest::adequacy(double value) const {
+  std::vector<double> healthy;
+  for (const HealthyLog& l : reference_.logs) healthy.push_back(l.adequacy);
+  return chance_above(healthy, value);
+}
+
+double HealthyTest::miss(const Miss& part) const {
+  std::vector<double> healthy;
+  for (const HealthyLog& l : reference_.logs)
+    for (const Miss& m : l.misses)
+      if (m.part == part.part) healthy.push_back(m.size);
+  return chance_above(healthy, part.size);
+}
+
+double HealthyTest::any(const std::vector<Miss>& parts) const {
+  double least = 1;
+  for (const Miss& m : parts) least = std::min(least, miss(m) * static_cast<double>(parts.size()));
+  return least;
 }
 
 }  // namespace servodx

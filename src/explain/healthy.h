@@ -5,11 +5,15 @@
 // Laird 1986). A new log's size is news where it lies outside what that predicts: Student's t with the variance
 // (tau^2 + its own) (1 + 1/n) on n - 1 degrees. With n logs no distribution-free test can promise less than 1/(n + 1);
 // the tail beyond is an assumption, and the result says so.
+//
+// Sizes scatter widely where a test hardly shows a cause, and then no size is news. So a log is also looked at whole:
+// if a block of the model or a channel misses more than healthy logs do, something is new whatever its name.
 #pragma once
 #include <atomic>
 #include <string>
 #include <vector>
 
+#include "explain/blocks.h"
 #include "explain/engine.h"
 #include "parameters/table.h"
 #include "signals/log.h"
@@ -26,6 +30,7 @@ struct HealthyLog {
   std::string log, sha256;
   double adequacy = 1;  // misfit over independent samples, re-tuned
   std::vector<HealthyScore> scores;
+  std::vector<Miss> misses;
 };
 struct HealthyReference {
   std::vector<HealthyLog> logs;
@@ -49,6 +54,10 @@ class HealthyTest {
   double together(double alone) const;
   // Chance that a healthy log is left with as much misfit.
   double adequacy(double value) const;
+  // Chance that a part misses as much in a healthy log; 1 where fewer than three speak of it.
+  double miss(const Miss& part) const;
+  // That any of these parts does, by Bonferroni.
+  double any(const std::vector<Miss>& parts) const;
 
  private:
   double alone(const std::vector<HealthyScore>& logs, int left_out) const;

@@ -45,7 +45,7 @@ struct Series {
   int log = 0;
   long first = 0, count = 0;
   const std::vector<double>* time = nullptr;   // [s]
-  const std::vector<double>* sigma = nullptr;  // [unit] a residual row times its sigma is the physical residual
+  const std::vector<double>* sigma = nullptr;  // [unit] size of the residual that a row counts as one
   double noise = 0;                            // [unit] rms of the sensor
   double effective = 1.0;                      // fraction of the samples that count as independent
 };
@@ -55,6 +55,12 @@ struct SubjectFit {
   std::vector<Number> numbers;
   Point start;  // causes at their off value
   LeastSquaresProblem problem;
+};
+
+// How much one part of a replay misses: a block of the model (explain/blocks.h), or a channel against its usual error.
+struct Miss {
+  std::string part;
+  double size = 0;
 };
 
 class Subject {
@@ -70,6 +76,13 @@ class Subject {
   virtual bool rescale(const Eigen::VectorXd& residual) {
     (void)residual;
     return false;
+  }
+  // The residual behind the rows of a fit, in its own units.
+  virtual Eigen::VectorXd physical(const Eigen::VectorXd& rows) const {
+    Eigen::VectorXd out = Eigen::VectorXd::Zero(rows.size());
+    for (const Series& s : series())
+      for (long k = 0; k < s.count; ++k) out[s.first + k] = rows[s.first + k] * (*s.sigma)[static_cast<std::size_t>(k)];
+    return out;
   }
   virtual long simulations() const { return 0; }
   virtual long failed_simulations() const { return 0; }

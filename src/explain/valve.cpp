@@ -126,6 +126,12 @@ ValveSubject::ValveSubject(const std::vector<Log>& logs, const Table& tuned, con
                          static_cast<int>(l), first, n, &logs_[l].scenario.time, &sigma_[l][c], channel.noise,
                          effective_of(e, logs_[l].scenario.time)});
       first += n;
+      auto& tuned_sigma = tuned_sigma_.emplace_back(sigma_[l][c]);
+      for (double& v : tuned_sigma) v *= std::sqrt(series_.back().effective);
+      memory_.push_back(0.0);
+      auto& afresh = afresh_.emplace_back(channel.measured.size(), 0);
+      for (std::size_t k = 0; k < afresh.size(); ++k)
+        afresh[k] = k == 0 || std::isnan(channel.measured[k]) || std::isnan(channel.measured[k - 1]);
     }
 }
 
@@ -206,22 +212,28 @@ void ValveSubject::add_causes(const RigFile& rig) {
       }
       continue;
     }
+    // Gain and lag of a sensor carry one name whichever file has them.
+    const auto add_sensor = [&](int j, int shown_at, const char* effect) {
+      const Signal signal = simulated_signals[static_cast<std::size_t>(shown_at)];
+      if (!shown(signal)) return;
+      const FreeValue f = value_of(j);
+      const EffectParameter& p = e.parameters[static_cast<std::size_t>(j)];
+      Cause cause;
+      cause.effect = effect;
+      cause.where = "sensor:" + std::string(info(signal).name);
+      cause.numbers = {number_of(f, p.unit, true)};
+      const double move = p.start - p.off;
+      finish(std::move(cause), {f}, {sizes_about(number_of(f, p.unit, true), {f.start + move, f.start - move})});
+    };
     if (e.name == SensorResponse::name) {
-      constexpr Signal signals[SensorResponse::channels] = {Signal::spool_position, Signal::pressure_a,
-                                                            Signal::pressure_b};
       for (int c = 0; c < SensorResponse::channels; ++c) {
-        if (!shown(signals[c])) continue;
-        for (int k : {0, 1}) {
-          const FreeValue f = value_of(2 * c + k);
-          const EffectParameter& p = e.parameters[static_cast<std::size_t>(2 * c + k)];
-          Cause cause;
-          cause.effect = k == 0 ? "sensor_gain_error" : "sensor_lag";
-          cause.where = "sensor:" + std::string(info(signals[c]).name);
-          cause.numbers = {number_of(f, p.unit, true)};
-          const double move = p.start - p.off;
-          finish(std::move(cause), {f}, {sizes_about(number_of(f, p.unit, true), {f.start + move, f.start - move})});
-        }
+        add_sensor(2 * c, SensorResponse::shown_at[c], "sensor_gain_error");
+        add_sensor(2 * c + 1, SensorResponse::shown_at[c], "sensor_lag");
       }
+      continue;
+    }
+    if (e.name == FlowMeterLag::name) {
+      for (int k = 0; k < FlowMeterLag::n_parameters; ++k) add_sensor(k, FlowMeterLag::shown_at[k], "sensor_lag");
       continue;
     }
     if (e.name == Unexplained::name) continue;
@@ -335,36 +347,102 @@ SubjectFit ValveSubject::fit(const std::vector<int>& causes, bool wide) const {
     for (const Number& n : causes_[static_cast<std::size_t>(c)].numbers) out.numbers.push_back(n);
   out.start = p->start();
   out.problem.n = p->n();
-  out.problem.evaluate = [p](std::span<const Point> points) { return p->evaluate(points); };
-  out.problem.jacobian = [p](const Point& x, const Eigen::VectorXd& r, Eigen::MatrixXd& j) {
-    return p->jacobian(x, r, j);
+  out.problem.evaluate = [this, p](std::span<const Point> points) {
+    std::vector<Evaluation> e = p->evaluate(points);
+    for (Evaluation& one : e)
+      if (one.ok) remember(one.residual);
+    return e;
+  };
+  out.problem.jacobian = [this, p](const Point& x, const Eigen::VectorXd& r, Eigen::MatrixXd& j) {
+    Eigen::VectorXd plain = r;
+    forget(plain);
+    if (!p->jacobian(x, plain, j)) return false;
+    for (long c = 0; c < j.cols(); ++c) remember(j.col(c));
+    return true;
   };
   return out;
 }
 
-bool ValveSubject::rescale(const Eigen::VectorXd& residual) {
-  double sum = 0;
+// A row that nothing is known before has the variance of the whole series, not of its news.
+void ValveSubject::remember(Eigen::Ref<Eigen::VectorXd> rows) const {
   for (std::size_t i = 0; i < series_.size(); ++i) {
-    Series& s = series_[i];
-    std::vector<double>* sigma = nullptr;
-    std::size_t at = 0;
-    for (auto& log : sigma_)
-      for (auto& channel : log)
-        if (at++ == i) sigma = &channel;
-    const double scale = std::sqrt(s.effective);  // the rows carry the square root of the effective fraction
-    std::vector<double> white(static_cast<std::size_t>(s.count));
-    double square = 0;
-    for (long k = 0; k < s.count; ++k) {
-      white[static_cast<std::size_t>(k)] = residual[s.first + k] / scale;
-      square += white[static_cast<std::size_t>(k)] * white[static_cast<std::size_t>(k)];
-    }
-    const double own = std::sqrt(square / static_cast<double>(s.count));
-    sum += own * own / static_cast<double>(series_.size());
-    const double effective = effective_fraction(white);
-    for (double& v : *sigma) v = std::max(v * scale * own, s.noise) / std::sqrt(effective);
-    s.effective = effective;
+    const double alone = std::sqrt(1 - memory_[i] * memory_[i]);
+    for (long k = series_[i].count - 1, at = series_[i].first + k; k >= 0; --k, --at)
+      if (afresh_[i][static_cast<std::size_t>(k)])
+        rows[at] *= alone;
+      else
+        rows[at] -= memory_[i] * rows[at - 1];
   }
-  adequacy_ = sum;
+}
+void ValveSubject::forget(Eigen::Ref<Eigen::VectorXd> rows) const {
+  for (std::size_t i = 0; i < series_.size(); ++i) {
+    const double alone = std::sqrt(1 - memory_[i] * memory_[i]);
+    for (long k = 0, at = series_[i].first; k < series_[i].count; ++k, ++at)
+      if (afresh_[i][static_cast<std::size_t>(k)])
+        rows[at] /= alone;
+      else
+        rows[at] += memory_[i] * rows[at - 1];
+  }
+}
+
+Eigen::VectorXd ValveSubject::physical(const Eigen::VectorXd& rows) const {
+  Eigen::VectorXd plain = rows;
+  forget(plain);
+  return Subject::physical(plain);
+}
+
+std::vector<Miss> ValveSubject::misses(const Eigen::VectorXd& rows) const {
+  const Eigen::VectorXd r = physical(rows);
+  std::vector<Miss> out;
+  std::vector<double> samples;
+  for (std::size_t i = 0; i < series_.size(); ++i) {
+    const Series& s = series_[i];
+    std::size_t at = 0;
+    while (at < out.size() && out[at].part != s.signal) ++at;
+    if (at == out.size()) out.push_back({s.signal, 0}), samples.push_back(0);
+    for (long k = 0; k < s.count; ++k) {
+      const double w = r[s.first + k] / tuned_sigma_[i][static_cast<std::size_t>(k)];
+      out[at].size += w * w;
+    }
+    samples[at] += static_cast<double>(s.count);
+  }
+  for (std::size_t i = 0; i < out.size(); ++i) out[i].size = std::sqrt(out[i].size / samples[i]);
+  return out;
+}
+
+double ValveSubject::adequacy(const Eigen::VectorXd& rows) const {
+  double sum = 0;
+  const std::vector<Miss> channels = misses(rows);
+  for (const Miss& m : channels) sum += m.size * m.size / static_cast<double>(channels.size());
+  return sum;
+}
+
+bool ValveSubject::rescale(const Eigen::VectorXd& rows) {
+  constexpr double longest_memory = 1 - 1e-6;
+  Eigen::VectorXd white = physical(rows);
+  for (std::size_t i = 0; i < series_.size(); ++i) {
+    double square = 0, neighbours = 0;
+    for (long k = 0, at = series_[i].first; k < series_[i].count; ++k, ++at) {
+      white[at] /= tuned_sigma_[i][static_cast<std::size_t>(k)];
+      square += white[at] * white[at];
+      if (!afresh_[i][static_cast<std::size_t>(k)]) neighbours += white[at] * white[at - 1];
+    }
+    memory_[i] = square > 0 ? std::clamp(neighbours / square, 0.0, longest_memory) : 0.0;
+  }
+  remember(white);
+  std::size_t i = 0;
+  for (auto& log : sigma_)
+    for (auto& sigma : log) {
+      Series& s = series_[i];
+      const std::vector<double> news(white.data() + s.first, white.data() + s.first + s.count);
+      double square = 0;
+      for (double v : news) square += v * v;
+      const double own = std::sqrt(square / static_cast<double>(s.count));
+      s.effective = effective_fraction(news);
+      for (std::size_t k = 0; k < sigma.size(); ++k)
+        sigma[k] = std::max(tuned_sigma_[i][k] * own, s.noise) / std::sqrt(s.effective);
+      ++i;
+    }
   return true;
 }
 

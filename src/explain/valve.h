@@ -3,6 +3,10 @@
 // Free in every fit: each log's nuisances, and the rows that `tune` freed, about their tuned values: re-tuning. Causes:
 // every effect of the registry, the effects that are rows, sensors and mains pick-up channel by channel, and every row
 // that was held. The mains notch is off: a filter that could hide an effect is none here.
+//
+// Residuals wander: a null that is a little off drives the piston away for good. Rows are therefore what a sample's
+// residual says beyond the one before, r(k) - a r(k-1), a the channel's own correlation from sample to sample
+// (Cochrane & Orcutt 1949): what comes and goes with the motion counts in full, and what merely drifts, once.
 #pragma once
 #include <memory>
 #include <optional>
@@ -27,8 +31,12 @@ class ValveSubject : public Subject {
   SubjectFit fit(const std::vector<int>& causes, bool wide) const override;
   bool retunes() const override { return true; }
   bool rescale(const Eigen::VectorXd& residual) override;
-  // Misfit per independent sample before the weights were rescaled: 1 when as wrong as on the tuning logs.
-  double adequacy() const { return adequacy_; }
+  Eigen::VectorXd physical(const Eigen::VectorXd& rows) const override;
+  // Mean square of the residual behind the rows in units of the model's error on the tuning logs, all channels alike: 1
+  // when as wrong as there.
+  double adequacy(const Eigen::VectorXd& rows) const;
+  // The same channel by channel, the root of it.
+  std::vector<Miss> misses(const Eigen::VectorXd& rows) const;
   long simulations() const override;
   long failed_simulations() const override;
 
@@ -44,6 +52,8 @@ class ValveSubject : public Subject {
 
  private:
   void add_causes(const RigFile& rig);
+  void remember(Eigen::Ref<Eigen::VectorXd> rows) const;  // r(k) to r(k) - a r(k-1), series by series
+  void forget(Eigen::Ref<Eigen::VectorXd> rows) const;    // and back
   std::vector<LogData> logs_;
   Table table_;
   ParameterVector base_;
@@ -53,8 +63,10 @@ class ValveSubject : public Subject {
   std::vector<Cause> causes_;
   std::vector<std::vector<FreeValue>> values_;
   std::vector<std::vector<std::vector<double>>> sigma_;  // [log][channel][sample] whitening
+  std::vector<std::vector<double>> tuned_sigma_;         // [series][sample] the same as the tuned table says it
+  std::vector<double> memory_;                           // [series] a
+  std::vector<std::vector<char>> afresh_;                // [series][sample] nothing is known of the sample before
   std::vector<Series> series_;
-  double adequacy_ = 1;
   mutable std::vector<std::shared_ptr<FitProblem>> made_;
 };
 

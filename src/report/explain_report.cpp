@@ -99,6 +99,12 @@ Json to_json(const PlaceScore& p) {
           {"p_new", p.p_new ? number(*p.p_new) : Json(nullptr)}};
 }
 
+Json to_json(const BlockReplay& b) {
+  return {{"block", b.block},      {"places", b.places},       {"missing", b.quantity},
+          {"unit", b.unit},        {"rms", number(b.missing)}, {"passing_rms", number(b.passing)},
+          {"follows", b.variable}, {"share", number(b.share)}, {"p_new", b.p_new ? number(*b.p_new) : Json(nullptr)}};
+}
+
 template <class Results>
 Json array_of(const Results& results) {
   Json array = Json::array();
@@ -159,6 +165,7 @@ Json explain_json(const ExplainResult& r) {
           {"candidates", array_of(r.candidates)},
           {"heldout_gain", r.causes.empty() ? Json(nullptr) : to_json(r.heldout_gain)},
           {"residuals", array_of(r.shown)},
+          {"blocks", array_of(r.blocks)},
           {"places", array_of(r.places)},
           {"curve", r.curve ? to_json(*r.curve) : Json(nullptr)},
           {"retuned_alone", to_json(r.retuned)},
@@ -196,6 +203,10 @@ std::string text_of(const ExplainResult& r, const TextOptions& options) {
     text +=
         fmt::format("  {}: {} {} rms, noise {}; {}\n", c.signal, digits(f.rms), f.unit, digits(f.noise_rms), c.summary);
   }
+  for (const BlockReplay& b : r.blocks)
+    text += fmt::format("  {}: misses {} rms of {}{}{}\n", b.block, handy(b.missing, b.unit), handy(b.passing, b.unit),
+                        b.share > 0.2 ? fmt::format(", {} of it in line with {}", percent(b.share), b.variable) : "",
+                        b.p_new ? ", p = " + digits(*b.p_new, 2) : "");
   text += "  re-tuning alone removes " + gain_text(r.retuned) + "\n";
   add_causes(text, r.causes);
   if (r.curve) {
@@ -228,7 +239,13 @@ Json healthy_json(const HealthyReference& healthy) {
       for (const ProbeScore& p : s.sizes) sizes.push_back({number(p.size), number(p.std_error)});
       scores.push_back({{"effect", s.effect}, {"where", s.where}, {"sizes", sizes}});
     }
-    logs.push_back({{"log", l.log}, {"sha256", l.sha256}, {"adequacy", number(l.adequacy)}, {"scores", scores}});
+    Json misses = Json::object();
+    for (const Miss& m : l.misses) misses[m.part] = number(m.size);
+    logs.push_back({{"log", l.log},
+                    {"sha256", l.sha256},
+                    {"adequacy", number(l.adequacy)},
+                    {"scores", scores},
+                    {"misses", misses}});
   }
   return {{"logs", logs}};
 }
@@ -243,12 +260,15 @@ HealthyReference read_healthy(const std::string& path) {
     if (!file.contains("explain")) refuse("explain", "says nothing of what healthy logs show of each cause");
     const auto value = [](const Json& j) { return j.is_number() ? j.get<double>() : std::nan(""); };
     for (const Json& l : file.at("explain").at("logs")) {
-      HealthyLog log{l.at("log").get<std::string>(), l.at("sha256").get<std::string>(), value(l.at("adequacy")), {}};
+      HealthyLog log{
+          l.at("log").get<std::string>(), l.at("sha256").get<std::string>(), value(l.at("adequacy")), {}, {}};
       for (const Json& s : l.at("scores")) {
         HealthyScore score{s.at("effect").get<std::string>(), s.at("where").get<std::string>(), {}};
         for (const Json& p : s.at("sizes")) score.sizes.push_back({value(p.at(0)), value(p.at(1))});
         log.scores.push_back(std::move(score));
       }
+      if (l.contains("misses"))  // later than the rest
+        for (const auto& [part, size] : l.at("misses").items()) log.misses.push_back({part, value(size)});
       out.logs.push_back(std::move(log));
     }
   } catch (const Json::exception&) {

@@ -3,12 +3,16 @@
 #include <string>
 
 #include "explain/explain.h"
+#include "fit/replay.h"
 #include "report/json.h"
+#include "report/page.h"
 #include "report/text.h"
 
 namespace servodx::report {
 
 Json explain_json(const ExplainResult& result);
+// `replays`: of some of the logs, as tuned and with the causes.
+Page explain_page(const Header& header, const ExplainResult& result, const std::vector<Replay>& replays);
 std::string text_of(const ExplainResult& result, const TextOptions& options);
 
 // The part of a baseline file that `explain` reads, under the key "explain".

@@ -1,9 +1,14 @@
 // The engine knows no valve: here it explains a real motor-driven slide, EMPS (Janot, Gautier, Brunot 2019, nonlinear
 // system identification benchmark), from a model of some forty lines. Its friction depends on direction; nobody says
 // so.
+//
+// The force is taken as it was measured. The published 4.08 % of the base model is a smaller figure because there the
+// force was low-passed like the model's side: with both sides filtered at 50 Hz ours is 4.06 % and the friction as
+// published; with the force as measured no filter of the position, from 20 to 300 Hz, goes below 4.38 %.
 #include <gtest/gtest.h>
 #include <matio.h>
 
+#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
@@ -26,9 +31,9 @@ std::vector<double> variable(mat_t* file, const char* name) {
   return out;
 }
 
-// Butterworth of order 4 at 70 Hz, once forward and once backward.
-std::vector<double> without_phase(std::vector<double> x) {
-  const double k = std::tan(3.14159265358979 * 70.0 * 1e-3);
+// Butterworth of order 4, once forward and once backward.
+std::vector<double> without_phase(std::vector<double> x, double corner) {
+  const double k = std::tan(3.14159265358979 * corner * 1e-3);
   for (int pass = 0; pass < 2; ++pass) {
     for (const double q : {0.54119610, 1.30656296}) {
       const double n = 1 / (1 + k / q + k * k), b = k * k * n, a1 = 2 * (k * k - 1) * n, a2 = (1 - k / q + k * k) * n;
@@ -57,7 +62,7 @@ Motion read_emps() {
   Mat_Close(file);
   constexpr double newtons_per_volt = 35.15065;
   for (double& f : m.force) f *= newtons_per_volt;
-  m.position = without_phase(m.position);
+  m.position = without_phase(m.position, 70);
   const auto slope = [&](const std::vector<double>& x) {
     std::vector<double> d(x.size(), 0.0);
     for (std::size_t k = 1; k + 1 < x.size(); ++k) d[k] = (x[k + 1] - x[k - 1]) / (m.time[k + 1] - m.time[k - 1]);
@@ -159,6 +164,33 @@ class Slide : public Subject {
   std::vector<double (*)(const Motion&, std::size_t)> forces_;
   std::vector<Series> series_;
 };
+
+TEST(Emps, PublishedBaseErrorIsThatOfAForceThatWasFilteredToo) {
+  if (!std::filesystem::exists(emps_file)) GTEST_SKIP() << emps_file << " is not here";
+  const Motion m = read_emps();
+  const auto n = static_cast<long>(m.time.size());
+  std::vector<double> sign, one(m.time.size(), 1.0);
+  for (double v : m.velocity) sign.push_back(v > 0 ? 1.0 : v < 0 ? -1.0 : 0.0);
+  for (const bool both : {false, true}) {
+    const auto side = [&](const std::vector<double>& x) { return both ? without_phase(x, 50) : x; };
+    Eigen::MatrixXd a(n, 4);
+    int column = 0;
+    for (const auto* x : {&m.acceleration, &m.velocity, &sign, static_cast<const std::vector<double>*>(&one)}) {
+      const std::vector<double> values = side(*x);
+      a.col(column++) = Eigen::Map<const Eigen::VectorXd>(values.data(), n);
+    }
+    const std::vector<double> force = side(m.force);
+    const Eigen::Map<const Eigen::VectorXd> b(force.data(), n);
+    const Eigen::VectorXd x = a.colPivHouseholderQr().solve(b);
+    const double error = (a * x - b).norm() / b.norm();
+    std::printf("force %s: %.2f %%, viscous %.1f, Coulomb %.2f\n", both ? "filtered" : "as measured", 100 * error, x[1],
+                x[2]);
+    if (!both) continue;
+    EXPECT_NEAR(error, 0.0408, 0.0005);
+    EXPECT_NEAR(x[1], 203.5, 0.5);
+    EXPECT_NEAR(x[2], 20.39, 0.05);
+  }
+}
 
 TEST(Emps, DirectionDependentFrictionIsFoundUnaided) {
   if (!std::filesystem::exists(emps_file)) GTEST_SKIP() << emps_file << " is not here";

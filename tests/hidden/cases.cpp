@@ -253,7 +253,8 @@ std::vector<std::string> healthy_logs(const Bench& bench, std::uint64_t seed, in
   return out;
 }
 
-Case make_case(const Bench& bench, std::uint64_t seed, const std::string& effect, double seconds) {
+Case make_case(const Bench& bench, std::uint64_t seed, const std::string& effect, double seconds,
+               const std::vector<std::string>& excitations) {
   const RigModel model = rig::another_valve(rig::read_rig_model(bench.rig_model), bench.valve);
   Random random(seed, 0, static_cast<std::uint32_t>(bench.valve), 0x41dd);
   Hiding h{model, conditions(random, seconds), 0, {}, {"none", {}, "", 0, ""}};
@@ -263,7 +264,7 @@ Case make_case(const Bench& bench, std::uint64_t seed, const std::string& effect
       if (e.name == picked) e.hide(h, random);
   Case out;
   const std::string stem = fmt::format("case_v{}_{}", bench.valve, seed);
-  for (const char* excitation : {"mixed", "flight"}) {
+  for (const std::string& excitation : excitations) {
     h.run.excitation = excitation;
     h.run.seed += 1;
     out.logs.push_back(write(h, bench.folder / fmt::format("{}_{}.csv", stem, excitation)));
@@ -304,7 +305,47 @@ Score score(const Truth& truth, const ExplainResult& answer) {
   }
   if (truth.effect.starts_with("unlisted:")) out.named = answer.verdict == "unexplained";
   out.placed = std::find(truth.where.begin(), truth.where.end(), out.where) != truth.where.end();
+  for (const ExplainedCandidate& c : answer.candidates) {
+    if (c.effect != truth.effect || std::find(truth.where.begin(), truth.where.end(), c.where) == truth.where.end())
+      continue;
+    if (c.fitted && c.heldout_gain.value > 0 && !answer.causes.empty())
+      out.gain_share = out.heldout_gain / c.heldout_gain.value;
+    if (!out.named)
+      out.note = fmt::format("{} {}: {} (gain {:.1f}, p {:.3g})", c.effect, c.where, c.reason, c.predicted_gain,
+                             c.p_new.value_or(-1));
+    break;
+  }
   return out;
+}
+
+nlohmann::json to_json(const Score& s) {
+  const auto maybe = [](const auto& value) { return value ? Json(*value) : Json(nullptr); };
+  return {{"effect", s.truth.effect},
+          {"places", s.truth.where},
+          {"size", s.truth.size},
+          {"verdict", s.verdict},
+          {"first", s.first},
+          {"where", s.where},
+          {"named", s.named},
+          {"placed", s.placed},
+          {"accused", s.accused},
+          {"size_inside", maybe(s.size_inside)},
+          {"heldout_gain", s.heldout_gain},
+          {"gain_share", maybe(s.gain_share)},
+          {"note", s.note}};
+}
+
+Score from_json(const nlohmann::json& j) {
+  Score s;
+  s.truth.effect = j.at("effect"), s.truth.where = j.at("places").get<std::vector<std::string>>();
+  s.truth.size = j.at("size");
+  s.verdict = j.at("verdict"), s.first = j.at("first"), s.where = j.at("where");
+  s.named = j.at("named"), s.placed = j.at("placed"), s.accused = j.at("accused");
+  if (!j.at("size_inside").is_null()) s.size_inside = j.at("size_inside").get<bool>();
+  s.heldout_gain = j.at("heldout_gain");
+  if (!j.at("gain_share").is_null()) s.gain_share = j.at("gain_share").get<double>();
+  s.note = j.at("note");
+  return s;
 }
 
 }  // namespace servodx::hidden

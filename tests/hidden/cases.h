@@ -7,6 +7,7 @@
 #pragma once
 #include <cstdint>
 #include <filesystem>
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <vector>
@@ -42,7 +43,8 @@ const std::vector<std::string>& unlisted();  // what the list does not have
 std::vector<std::string> healthy_logs(const Bench& bench, std::uint64_t seed, int count, const std::string& name,
                                       double seconds);
 // A case; effect empty: the generator picks one. "none": a control.
-Case make_case(const Bench& bench, std::uint64_t seed, const std::string& effect, double seconds);
+Case make_case(const Bench& bench, std::uint64_t seed, const std::string& effect, double seconds,
+               const std::vector<std::string>& excitations = {"mixed", "flight"});
 Truth unseal(const std::string& sealed);
 
 struct Score {
@@ -53,7 +55,11 @@ struct Score {
   bool accused = false;             // any cause, or unexplained
   std::optional<bool> size_inside;  // 90 % interval
   double heldout_gain = 0;
+  std::optional<double> gain_share;  // of what the true effect gains alone on the same data, where that is known
+  std::string note;                  // of a miss: what became of the true effect
 };
 Score score(const Truth& truth, const ExplainResult& answer);
+nlohmann::json to_json(const Score& score);
+Score from_json(const nlohmann::json& json);
 
 }  // namespace servodx::hidden

@@ -1,0 +1,111 @@
+#include "simulate/balance.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "model/derivative.h"
+#include "signals/smoother.h"
+
+namespace servodx {
+namespace {
+
+struct States {
+  std::array<double, n_base_states> y{};
+  template <int K>
+  double get() const {
+    return y[K];
+  }
+};
+
+std::vector<double> bridged(const std::vector<double>& x) {
+  std::vector<double> out = x;
+  double last = 0;
+  for (double v : x)
+    if (std::isfinite(v)) {
+      last = v;
+      break;
+    }
+  for (double& v : out) v = std::isfinite(v) ? last = v : last;
+  return out;
+}
+
+}  // namespace
+
+Balance balance(const Scenario& in, const Measured& measured, const ParameterVector& p, double window) {
+  Balance out;
+  const std::size_t n = in.time.size();
+  if (!measured.piston || !measured.pressure_a || !measured.pressure_b || n < 8 || in.ports != Ports::actuator)
+    return out;
+  const auto less = [&](const std::vector<double>& x, int offset) {
+    std::vector<double> v = bridged(x);
+    for (double& value : v) value -= p[static_cast<std::size_t>(offset)];
+    return v;
+  };
+  std::vector<double> x = bridged(*measured.piston);
+  for (double& v : x) v /= p[row::position_sensor_gain];
+  const std::vector<double> smooth = without_noise(x);
+  const std::vector<double> a = less(*measured.pressure_a, nuisance::pressure_a_offset),
+                            b = less(*measured.pressure_b, nuisance::pressure_b_offset);
+  const std::vector<double> spool =
+      measured.spool ? without_noise(less(*measured.spool, nuisance::spool_offset)) : std::vector<double>{};
+  const Derived<double> d = derive<double, NoEffects>(p.data(), in.oil);
+  const auto input = [&](const std::vector<double>& series, std::size_t k, double table) {
+    return series.empty() ? table : series[k];
+  };
+
+  // Net flows over compliance and net force over mass at every sample, the rod at rest for the flows.
+  std::vector<double> rate_a(n), rate_b(n), force(n), compliance_a(n), compliance_b(n);
+  FrictionMemory<double> friction;
+  friction.rest(0.0, smooth[0]);
+  for (std::size_t k = 0; k < n; ++k) {
+    const double dt = in.time[std::min(k + 1, n - 1)] - in.time[k > 0 ? k - 1 : 0];
+    States s;
+    s.y[s_p_a] = a[k], s.y[s_p_b] = b[k];
+    s.y[s_x_spool] = spool.empty() ? 0.0 : spool[k];
+    s.y[s_x_piston] = smooth[k];
+    s.y[s_v_piston] = (smooth[std::min(k + 1, n - 1)] - smooth[k > 0 ? k - 1 : 0]) / dt;
+    s.y[s_p_filter] = s.y[s_p_pilot_1] = s.y[s_p_pilot_2] = 0.5 * p[row::supply_pressure];
+    if (k > 0) friction.move(0.0, 0.0, smooth[k - 1], smooth[k], in.time[k] - in.time[k - 1]);
+    const Inputs<double> u{0.0, input(in.supply_pressure, k, p[row::supply_pressure]),
+                           input(in.return_pressure, k, p[row::return_pressure]), input(in.load_force, k, 0.0),
+                           friction};
+    const auto f = derivative<NoEffects, double>(s, u, p.data(), d);
+    force[k] = p[row::moving_mass] * std::get<s_v_piston>(f);
+    const double half = 0.5 * p[row::piston_stroke];
+    compliance_a[k] =
+        chamber_compliance(p[row::dead_volume_a] + p[row::piston_area_a] * (half + smooth[k]), a[k], d, p.data());
+    compliance_b[k] =
+        chamber_compliance(p[row::dead_volume_b] + p[row::piston_area_b] * (half - smooth[k]), b[k], d, p.data());
+    rate_a[k] = std::get<s_p_a>(f) * compliance_a[k] + p[row::piston_area_a] * s.y[s_v_piston];
+    rate_b[k] = std::get<s_p_b>(f) * compliance_b[k] - p[row::piston_area_b] * s.y[s_v_piston];
+  }
+
+  const double dt = (in.time.back() - in.time.front()) / static_cast<double>(n - 1);
+  const auto half = std::max<std::size_t>(2, static_cast<std::size_t>(std::lround(0.5 * window / dt)));
+  for (std::size_t mid = half; mid + half < n; mid += half) {
+    const std::size_t from = mid - half, to = mid + half;
+    const double span = in.time[to] - in.time[from], side = 0.5 * span;
+    if (span > 1.5 * window) continue;  // a gap
+    // Trapezoid rule for the flows, a hat for the force.
+    double q_a = 0, q_b = 0, net = 0, hat = 0;
+    for (std::size_t k = from; k <= to; ++k) {
+      const double edge = k == from || k == to ? 0.5 : 1.0;
+      q_a += edge * rate_a[k], q_b += edge * rate_b[k];
+      const double w = 1.0 - std::abs(in.time[k] - in.time[mid]) / side;
+      net += w * force[k], hat += w;
+    }
+    const auto samples = static_cast<double>(to - from);
+    out.time.push_back(in.time[mid]);
+    const double v = (smooth[to] - smooth[from]) / span;
+    out.piston.push_back(smooth[mid]), out.velocity.push_back(v), out.load_pressure.push_back(a[mid] - b[mid]);
+    out.force.push_back(p[row::moving_mass] * (smooth[to] - 2 * smooth[mid] + smooth[from]) / (side * side) -
+                        net / hat);
+    if (spool.empty()) continue;
+    out.spool.push_back(spool[mid]);
+    out.flow_a.push_back(compliance_a[mid] * (a[to] - a[from]) / span - q_a / samples + p[row::piston_area_a] * v);
+    out.flow_b.push_back(compliance_b[mid] * (b[to] - b[from]) / span - q_b / samples - p[row::piston_area_b] * v);
+  }
+  return out;
+}
+
+}  // namespace servodx
