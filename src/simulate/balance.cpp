@@ -71,11 +71,8 @@ Balance balance(const Scenario& in, const Measured& measured, const ParameterVec
                            friction};
     const auto f = derivative<NoEffects, double>(s, u, p.data(), d);
     force[k] = p[row::moving_mass] * std::get<s_v_piston>(f);
-    const double half = 0.5 * p[row::piston_stroke];
-    compliance_a[k] =
-        chamber_compliance(p[row::dead_volume_a] + p[row::piston_area_a] * (half + smooth[k]), a[k], d, p.data());
-    compliance_b[k] =
-        chamber_compliance(p[row::dead_volume_b] + p[row::piston_area_b] * (half - smooth[k]), b[k], d, p.data());
+    compliance_a[k] = 1.0 / chamber_stiffness(d.middle_volume_a + p[row::piston_area_a] * smooth[k], a[k], d, p.data());
+    compliance_b[k] = 1.0 / chamber_stiffness(d.middle_volume_b - p[row::piston_area_b] * smooth[k], b[k], d, p.data());
     rate_a[k] = std::get<s_p_a>(f) * compliance_a[k] + p[row::piston_area_a] * s.y[s_v_piston];
     rate_b[k] = std::get<s_p_b>(f) * compliance_b[k] - p[row::piston_area_b] * s.y[s_v_piston];
   }

@@ -169,15 +169,15 @@ TEST(Emps, PublishedBaseErrorIsThatOfAForceThatWasFilteredToo) {
   if (!std::filesystem::exists(emps_file)) GTEST_SKIP() << emps_file << " is not here";
   const Motion m = read_emps();
   const auto n = static_cast<long>(m.time.size());
-  std::vector<double> sign, one(m.time.size(), 1.0);
-  for (double v : m.velocity) sign.push_back(v > 0 ? 1.0 : v < 0 ? -1.0 : 0.0);
+  std::vector<std::vector<double>> columns = {m.acceleration, m.velocity, m.velocity,
+                                              std::vector<double>(m.time.size(), 1.0)};
+  for (double& v : columns[2]) v = v > 0 ? 1.0 : v < 0 ? -1.0 : 0.0;
   for (const bool both : {false, true}) {
     const auto side = [&](const std::vector<double>& x) { return both ? without_phase(x, 50) : x; };
     Eigen::MatrixXd a(n, 4);
-    int column = 0;
-    for (const auto* x : {&m.acceleration, &m.velocity, &sign, static_cast<const std::vector<double>*>(&one)}) {
-      const std::vector<double> values = side(*x);
-      a.col(column++) = Eigen::Map<const Eigen::VectorXd>(values.data(), n);
+    for (int c = 0; c < 4; ++c) {
+      const std::vector<double> values = side(columns[static_cast<std::size_t>(c)]);
+      a.col(c) = Eigen::Map<const Eigen::VectorXd>(values.data(), n);
     }
     const std::vector<double> force = side(m.force);
     const Eigen::Map<const Eigen::VectorXd> b(force.data(), n);
