@@ -12,13 +12,13 @@
 namespace servodx::rig {
 namespace {
 
-constexpr double centring = 0.05;  // [A/m] = 0.05 mA/mm
+constexpr double centring = 2.5;  // [1/m] of rated current: 0.05 mA/mm of 20 mA
 constexpr double two_pi = 2.0 * std::numbers::pi;
 using Wave = std::function<double(double)>;  // time [s] -> fraction of rated current
 
 Stimulus open_loop(const RigModel& m, Wave wave) {
   const double rated = m.driver_rated_current;
-  return {.command = [=](double t, double x) { return rated * wave(t) - centring * x; }, .setpoint = {}, .load = {}};
+  return {.command = [=](double t, double x) { return rated * (wave(t) - centring * x); }, .setpoint = {}, .load = {}};
 }
 
 double or_else(double value, double otherwise) { return value > 0.0 ? value : otherwise; }
@@ -207,7 +207,7 @@ Stimulus flight(const RigModel& m, const Shape& s) {
     level.push_back(0.0);
   }
   const Steps steps{end, level};
-  const double stall = m.piston_area() * m.supply_pressure;
+  const double stall = std::min(m.piston_area_a(), m.piston_area_b()) * m.supply_pressure;
   const Wave gusts = turbulence(Random(s.seed, 17), s.duration, 0.2 * stall);
   Stimulus stimulus = closed_loop(m, [=](double now) { return steps.at(now); });
   stimulus.load = [=](double now) { return Load{gusts(now), 0.4 * stall / half}; };

@@ -232,7 +232,7 @@ void actuator_facts(const Stand& stand, std::vector<Fact>& facts) {
   stand.hold(rig, stand.rated(), 0.1);
   facts.push_back({"no_load_speed", "mm/s", 1e4 * (rig.piston_position() - before)});
   // The load that stops the piston lies between the one it still lifts and the one that pushes it back.
-  const double differential_area = stand.type.piston_area() * stand.type.supply_pressure;
+  const double differential_area = stand.type.piston_area_a() * stand.type.supply_pressure;
   double low = 0.7 * differential_area, high = 1.2 * differential_area, differential = 1.0;
   while (high - low > 0.002 * differential_area) {
     const double force = 0.5 * (low + high), h = stand.type.solver_step;

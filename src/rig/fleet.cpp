@@ -168,8 +168,8 @@ std::string data_sheet(const RigModel& m) {
   }
   if (m.has_actuator()) {
     text += "[actuator]\n";
-    line("area_a", m.piston_area(), "m2");
-    line("area_b", m.piston_area(), "m2");
+    line("area_a", m.piston_area_a(), "m2");
+    line("area_b", m.piston_area_b(), "m2");
     line("stroke", m.actuator_stroke * 1e3, "mm");
     line("moving_mass", m.actuator_piston_mass + m.actuator_surface_mass, "kg");
     line("dead_volume_a", m.actuator_dead_volume * 1e6, "cm3");

@@ -37,7 +37,8 @@ Plant::Plant(const RigModel& m, const Oil& oil, double temperature, const Wear& 
       temperature_(temperature),
       magnetics_(m),
       edges_(m),
-      piston_area_(m.piston_area()),
+      piston_area_a_(m.piston_area_a()),
+      piston_area_b_(m.piston_area_b()),
       spool_area_(m.spool_area()),
       moving_(m.has_actuator() ? 1.0 : 0.0),
       surface_damping_(pair_damping(m.actuator_attachment_damping, m.actuator_surface_stiffness, m.actuator_piston_mass,
@@ -217,7 +218,7 @@ void Plant::rates(const State& s, const Inputs& in, const Hysteresis& hysteresis
 
   // 3 oil at the nodes: net inflow of reference oil against growth of the volume
   const double v_rod = moving_ * (s[v_piston] - s[v_body]), x_rod = s[x_piston] - s[x_body];
-  const double end_growth = spool_area_ * s[v_spool], rod_growth = piston_area_ * v_rod;
+  const double end_growth = spool_area_ * s[v_spool];
   const std::array<Four, 2> volume = volumes(s);
   const std::array<Four, 2> inflow{
       four(f.q_filter - in_pilot.reference[into_1] - in_pilot.reference[into_2] - q_bypass,
@@ -225,7 +226,7 @@ void Plant::rates(const State& s, const Inputs& in, const Hysteresis& hysteresis
            f.q_a - f.q_across),
       four(f.q_b + f.q_across, f.q_supply - f.q_filter - f.q_pa - f.q_pb,
            f.q_at + f.q_bt + f.q_nozzle_1 + f.q_nozzle_2 + q_end_1 + q_end_2 + q_bypass - f.q_return, -f.q_supply)};
-  const std::array<Four, 2> swell{four(0.0, end_growth, -end_growth, rod_growth), four(-rod_growth, 0.0, 0.0, 0.0)};
+  const std::array<Four, 2> swell{four(0.0, end_growth, -end_growth, piston_area_a_ * v_rod), four(-piston_area_b_ * v_rod, 0.0, 0.0, 0.0)};
   double throttled = -f.q_return * tank_enthalpy_;  // enthalpy that the restrictions took
   double accumulator_enthalpy = 0.0;
   for (int k = 0; k < 2; ++k) {
@@ -280,7 +281,7 @@ void Plant::rates(const State& s, const Inputs& in, const Hysteresis& hysteresis
   const double cushion = into > 0.0 && x_rod * v_rod > 0.0 ? -cushion_ * into * v_rod : 0.0;
   f.piston_friction = -seal.force;
   const double end_stop = cushion + stop_force(x_rod, v_rod, half, m_.actuator_stop_stiffness, 2.0);
-  const double on_piston = piston_area_ * (s[p_a] - s[p_b]) - seal.force + end_stop;
+  const double on_piston = piston_area_a_ * s[p_a] - piston_area_b_ * s[p_b] - seal.force + end_stop;
   const double slip = s[v_piston] - s[v_surface];
   const double rod =  // on the surface
       m_.actuator_surface_stiffness * (s[x_piston] - s[x_surface]) + surface_damping_ * slip;
@@ -311,17 +312,21 @@ State Plant::rest() const {
   State s{};
   s[p_supply] = s[p_accumulator] = s[p_filter] = pump_pressure_;
   s[p_return] = m_.supply_tank_pressure;
-  s[p_pilot_1] = s[p_pilot_2] = s[p_a] = s[p_b] = 0.5 * (pump_pressure_ + m_.supply_tank_pressure);
+  const double both = pump_pressure_ + m_.supply_tank_pressure;
+  s[p_pilot_1] = s[p_pilot_2] = 0.5 * both;
+  // Balanced edges share the supply, the piston balances the forces.
+  s[p_a] = both * (piston_area_b_ / (piston_area_a_ + piston_area_b_));
+  s[p_b] = both * (piston_area_a_ / (piston_area_a_ + piston_area_b_));
   return s;
 }
 
 double Plant::volume_a(const State& s) const {
   if (moving_ == 0.0) return m_.bench_volume;
-  return m_.actuator_dead_volume + piston_area_ * (0.5 * m_.actuator_stroke + (s[x_piston] - s[x_body]));
+  return m_.actuator_dead_volume + piston_area_a_ * (0.5 * m_.actuator_stroke + (s[x_piston] - s[x_body]));
 }
 double Plant::volume_b(const State& s) const {
   if (moving_ == 0.0) return m_.bench_volume;
-  return m_.actuator_dead_volume + piston_area_ * (0.5 * m_.actuator_stroke - (s[x_piston] - s[x_body]));
+  return m_.actuator_dead_volume + piston_area_b_ * (0.5 * m_.actuator_stroke - (s[x_piston] - s[x_body]));
 }
 
 double Plant::stored_oil(const State& s) const {

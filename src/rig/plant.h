@@ -113,7 +113,7 @@ class Plant {
   Nozzle nozzle_1_, nozzle_2_;
   double jet_left_ = 1.0;  // [1] of a jet pipe's jet
   Friction spool_friction_, piston_friction_;
-  double piston_area_, spool_area_, nozzle_area_, end_leak_, jet_momentum_, cushion_, moving_, null_mmf_, turns_,
+  double piston_area_a_, piston_area_b_, spool_area_, nozzle_area_, end_leak_, jet_momentum_, cushion_, moving_, null_mmf_, turns_,
       resistance_, leakage_, gain_, integral_, surface_damping_, earth_damping_, wire_, pump_pressure_;
   // reciprocals of what every evaluation divides by
   double per_accumulator_, per_pump_lag_, per_leakage_, per_gain_, per_inertia_, per_spool_mass_, per_piston_mass_,

@@ -235,7 +235,8 @@ void check_whole(const RigModel& m) {
   const auto refuse = [&](const char* key, const char* rule, const char* mend) {
     throw InputError({m.path, 0, key}, rule, mend);
   };
-  if (m.actuator_rod >= m.actuator_bore) refuse("actuator.rod", "rod not thinner than the bore", "swap them");
+  if (m.actuator_rod_a >= m.actuator_bore) refuse("actuator.rod_a", "rod not thinner than the bore", "swap them");
+  if (m.actuator_rod_b >= m.actuator_bore) refuse("actuator.rod_b", "rod not thinner than the bore", "swap them");
   if (m.first_stage == FirstStage::flapper_nozzle && m.armature_stop >= m.nozzles_gap) {
     refuse("armature.stop", "the flapper would pass through a nozzle", "make it smaller than nozzles.gap");
   }
@@ -266,8 +267,11 @@ const std::vector<ParameterInfo>& rig_parameters() {
   return list;
 }
 
-double RigModel::piston_area() const {
-  return std::numbers::pi / 4 * (actuator_bore * actuator_bore - actuator_rod * actuator_rod);
+double RigModel::piston_area_a() const {
+  return std::numbers::pi / 4 * (actuator_bore * actuator_bore - actuator_rod_a * actuator_rod_a);
+}
+double RigModel::piston_area_b() const {
+  return std::numbers::pi / 4 * (actuator_bore * actuator_bore - actuator_rod_b * actuator_rod_b);
 }
 double RigModel::spool_area() const { return std::numbers::pi / 4 * spool_diameter * spool_diameter; }
 double RigModel::working_turns() const { return coil_wiring == CoilWiring::series ? 2.0 * motor_turns : motor_turns; }

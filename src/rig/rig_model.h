@@ -38,7 +38,8 @@ struct RigModel {
   std::vector<Sensor> sensors;       // in the order of the log's columns
   std::vector<std::string> changed;  // "group.name=value" set after reading
 
-  double piston_area() const;     // [m2]
+  double piston_area_a() const;   // [m2]
+  double piston_area_b() const;   // [m2]
   double spool_area() const;      // [m2]
   double working_turns() const;   // [1] ampere turns per ampere of the driver
   double circuit_factor() const;  // [1] resistance and leakage inductance of the wired coils over those of one

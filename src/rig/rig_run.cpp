@@ -14,7 +14,7 @@ namespace {
 
 constexpr double settling = 0.3;      // [s] before the log, held centred by a slow loop
 constexpr double compensating = 1.5;  // [s] the same, where the loop must find the null to compensate
-constexpr double centring = 0.5;      // [A/m] of that loop
+constexpr double centring = 25.0;     // [1/m] of rated current, of that loop
 
 // Logged unless the run names its channels. Pilot pressures and coil current are there for those who ask.
 const std::vector<std::string>& usual(Ports ports) {
@@ -216,12 +216,13 @@ class Recorder {
 
   void settle() {
     const auto steps = static_cast<long>(std::ceil((stimulus_.compensated ? compensating : settling) / h_));
+    const double to_centre = centring * rig_.model().driver_rated_current;  // [A/m]
     const Load load = stimulus_.load ? stimulus_.load(0.0) : Load{};
     if (offset_) rig_.set_offset(offset_(0.0));
     for (long i = 0; i < steps; ++i) {
-      rig_.step(-centring * rig_.piston_position(), load.force, load.stiffness, h_);
+      rig_.step(-to_centre * rig_.piston_position(), load.force, load.stiffness, h_);
     }
-    if (stimulus_.compensated) compensation_ = -centring * rig_.piston_position();
+    if (stimulus_.compensated) compensation_ = -to_centre * rig_.piston_position();
     for (auto& sensor : sensors_) sensor.reset(rig_, seen(load));
     loop_sensor_.reset(rig_, seen(load));
   }
