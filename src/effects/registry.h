@@ -9,6 +9,7 @@
 #include "effects/mains_pickup.h"
 #include "effects/mount_compliance.h"
 #include "effects/nozzle_plugging.h"
+#include "effects/rod_cavity.h"
 #include "effects/sensor_response.h"
 #include "effects/stiction.h"
 #include "effects/supply_droop.h"
@@ -29,7 +30,8 @@ using AllEffects = EffectList<MagneticHysteresis,  //
                               SupplyDroop,         //
                               MainsPickup,         //
                               SensorResponse,      //
-                              FlowMeterLag>;
+                              FlowMeterLag,        //
+                              RodCavity>;
 // A learnt curve costs more than all effects: it has a kernel of its own.
 using CorrectedEffects = Append<AllEffects, Unexplained>;
 inline constexpr int n_values = n_parameters + CorrectedEffects::n_parameters;  // length of a parameter vector

@@ -54,6 +54,10 @@ std::vector<FreeValue> nuisance_values(const LogData& log, int l, const Paramete
     out.push_back({"pressure_a_offset", nuisance::pressure_a_offset, -3e5, 3e5, false, 0.0, 0.15, l});
     out.push_back({"pressure_b_offset", nuisance::pressure_b_offset, -3e5, 3e5, false, 0.0, 0.15, l});
   }
+  if (has(Signal::pilot_pressure_1))
+    out.push_back({"pilot_pressure_1_offset", nuisance::pilot_pressure_1_offset, -3e5, 3e5, false, 0.0, 0.15, l});
+  if (has(Signal::pilot_pressure_2))
+    out.push_back({"pilot_pressure_2_offset", nuisance::pilot_pressure_2_offset, -3e5, 3e5, false, 0.0, 0.15, l});
   return out;
 }
 

@@ -68,6 +68,7 @@ using Append = typename AppendTo<List, Last>::type;
 // What a hook sees: states, inputs and rows.
 template <class List, class States, class In, class T>
 struct View {
+  using Effects = List;
   const States& s;
   const In& u;
   const T* p;  // the 41 rows, then the effects' parameters in the order of the list

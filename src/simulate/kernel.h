@@ -293,6 +293,8 @@ void run_pack(const Scenario& in, const ParameterVector* const* candidates, Traj
     out[0] = out[0] + p[nuisance::spool_offset];
     out[2] = out[2] + p[nuisance::pressure_a_offset];
     out[3] = out[3] + p[nuisance::pressure_b_offset];
+    out[4] = out[4] + p[nuisance::pilot_pressure_1_offset];
+    out[5] = out[5] + p[nuisance::pilot_pressure_2_offset];
     bool any = false;
     for (int lane = 0; lane < lanes; ++lane) {
       if (!results[lane]->ok) continue;

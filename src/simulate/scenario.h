@@ -21,8 +21,10 @@ inline constexpr int command_slope = n_values;
 inline constexpr int spool_offset = n_values + 1;
 inline constexpr int pressure_a_offset = n_values + 2;
 inline constexpr int pressure_b_offset = n_values + 3;
+inline constexpr int pilot_pressure_1_offset = n_values + 4;
+inline constexpr int pilot_pressure_2_offset = n_values + 5;
 }  // namespace nuisance
-inline constexpr int n_candidate = n_values + 4;
+inline constexpr int n_candidate = n_values + 6;
 
 struct Scenario {
   std::vector<double> time;             // [s]
