@@ -5,6 +5,7 @@
 
 #include "commands.h"
 #include "effects/registry.h"
+#include "fit/free_values.h"
 #include "fit/tune.h"
 #include "invocation.h"
 #include "report/columns.h"
@@ -19,6 +20,7 @@ struct Options {
   std::vector<std::string> logs;
   std::string params, output;
   std::string effects = report::join(TuneOptions{}.effects, ",");  // or "none"
+  std::string local = "least_squares", profile;
   TuneOptions tune;
 };
 
@@ -43,6 +45,11 @@ int run(const Options& options) {
   require_option(tune_options.population >= 24, "--population", "must be at least 24", "four islands of six each");
   require_option(tune_options.generations >= 0, "--generations", "must not be negative",
                  "0 leaves the genetic search out");
+  require_option(options.local == "least_squares" || options.local == "nlopt", "--local",
+                 "unknown method '" + options.local + "'", "use least_squares or nlopt");
+  require_option(tune_options.rounds >= 1, "--rounds", "must be at least 1", "2 is the default");
+  tune_options.derivative_free = options.local == "nlopt";
+  tune_options.profile = CLI::detail::split(options.profile, ',');
   tune_options.seed = options.common.seed;
   tune_options.threads = options.common.threads;
   tune_options.quiet = options.common.quiet;
@@ -55,6 +62,12 @@ int run(const Options& options) {
   invocation.check_files(inputs, outputs);
   const RigFile rig = invocation.rig();
   const Table nominal = invocation.table(options.params);  // tune() applies the facts, effects' rows included
+  for (const std::string& name : tune_options.profile)
+    if (Table with_effects = nominal; name != "all" && !name.empty()) {
+      add_effect_rows(with_effects, tune_options.effects);
+      require_option(with_effects.find(name) >= 0, "--profile", "the table has no row '" + name + "'",
+                     "name rows of the table, with commas between, or 'all'");
+    }
   const std::vector<Log> logs = invocation.logs(options.logs, rig);
 
   report::Header& header = invocation.header();
@@ -62,7 +75,9 @@ int run(const Options& options) {
                      {"generations", tune_options.generations},
                      {"heldout", tune_options.heldout},
                      {"moving_average", tune_options.moving_average},
-                     {"effects", tune_options.effects}};
+                     {"effects", tune_options.effects},
+                     {"local", options.local},
+                     {"profile", options.profile}};
   if (invocation.dry_run()) return ran;
 
   tune_options.stop = &stop_on_interrupt();
@@ -98,6 +113,10 @@ void add_tune_command(CLI::App& app, int& exit_code) {
       ->type_name("N")
       ->capture_default_str();
   command
+      ->add_option("--rounds", tune.rounds, "most rounds of the last stage; more where its note says 'iteration limit'")
+      ->type_name("N")
+      ->capture_default_str();
+  command
       ->add_option("--moving-average", tune.moving_average,
                    "smooth measurement and simulation alike, odd number of samples; later commands follow")
       ->type_name("N")
@@ -105,6 +124,13 @@ void add_tune_command(CLI::App& app, int& exit_code) {
   command->add_option("--effects", options->effects, "effects freed beside the table's rows, or 'none'")
       ->type_name("A,B")
       ->capture_default_str();
+  command
+      ->add_option("--local", options->local,
+                   "local stage: least_squares, or nlopt (without derivatives, slower) where friction sticks and slips")
+      ->type_name("METHOD")
+      ->capture_default_str();
+  command->add_option("--profile", options->profile, "check the 95 % intervals of these rows, or 'all', by refitting")
+      ->type_name("A,B");
   command->add_option("--checkpoint", tune.checkpoint, "save the search to FILE every generation")->type_name("FILE");
   command->add_flag("--resume", tune.resume, "go on from the checkpoint");
   add_common_options(*command, options->common);

@@ -16,6 +16,8 @@
 #include "fit/identifiability.h"
 #include "fit/nominal.h"
 #include "fit/problem.h"
+#include "fit/profile.h"
+#include "optimise/derivative_free.h"
 #include "optimise/genetic.h"
 
 namespace servodx {
@@ -90,6 +92,23 @@ void hold_out(FitProblem& problem, double part) {
 
 LeastSquaresResult local(Tuning& run, FitProblem& problem, const Point& x, const std::string& stage, int iterations,
                          bool first, double from, double to) {
+  if (run.options.derivative_free) {
+    // As many points as the other way spends on its Jacobians.
+    DerivativeFreeOptions d;
+    d.max_evaluations = static_cast<long>(iterations) * (problem.n() + 8);
+    d.progress = [&](long evaluations, double) {
+      run.progress.update(from + (to - from) * static_cast<double>(evaluations) / static_cast<double>(d.max_evaluations),
+                          run.simulations + problem.simulations());
+      return !run.stopped();
+    };
+    const BatchEvaluate evaluate = [&](std::span<const Point> points) { return problem.evaluate(points); };
+    const DerivativeFreeResult found = minimise_without_derivatives(problem.n(), evaluate, x, d);
+    LeastSquaresResult end;
+    end.point = found.point;
+    end.cost = end.misfit = found.cost;
+    end.stopped = found.stopped;
+    return end;
+  }
   LeastSquaresOptions o;
   o.max_iterations = iterations;
   o.difference = Difference::forward;
@@ -196,12 +215,13 @@ LeastSquaresResult refine(Tuning& run, FitProblem& problem, Point x, ErrorModel&
   LeastSquaresResult r;
   for (int round = 0; round < rounds; ++round) {
     error = learn_error_model(problem, x);
+    for (ChannelError& c : error.channels) c.effective = std::max(c.effective, run.options.least_effective);
     apply_error_model(problem, error, x);
     if (held > 0) hold_out(problem, held);
     const double a = from + (to - from) * round / rounds, b = from + (to - from) * (round + 1) / rounds;
     r = local(run, problem, x, held > 0 ? "weights" : "everything", 12, false, a, b);
     x = r.point;
-    if (run.stopped()) break;
+    if (run.stopped() || (round >= 1 && r.reason == StopReason::converged)) break;
   }
   return r;
 }
@@ -331,7 +351,7 @@ TuneResult tune(const std::vector<Log>& logs, const Table& nominal, const RigFil
   const std::vector<Trajectory> heldout_run = fit.trajectories(x);
 
   // 5. Final fit on everything.
-  if (!run.stopped()) end = refine(run, fit, x, out.error, 0.0, 2, 0.8, 1.0);
+  if (!run.stopped()) end = refine(run, fit, x, out.error, 0.0, options.rounds, 0.8, 1.0);
   x = end.point;
   out.error = learn_error_model(fit, x);
   apply_error_model(fit, out.error, x);
@@ -383,6 +403,17 @@ TuneResult tune(const std::vector<Log>& logs, const Table& nominal, const RigFil
         else if (x[j] - 2 * u_se < 0 || x[j] + 2 * u_se > 1)
           p.verdict = "one_sided";
         row.std_error = se;
+      }
+      const auto& asked = options.profile;
+      const auto asks = [&](const std::string& name) { return std::find(asked.begin(), asked.end(), name) != asked.end(); };
+      if (kept[j] && (asks("all") || asks(row.name)) && !run.stopped()) {
+        const ProfileInterval interval = profile(fit, x, static_cast<int>(j), covariance);
+        p.profile_lower = free->from_unit(interval.lower);
+        p.profile_upper = free->from_unit(interval.upper);
+        out.notes.push_back(fmt::format("profile of {}: 95 % from {:.4g}{} to {:.4g}{} {}; by curvature {:.4g} to {:.4g}",
+                                        row.name, p.profile_lower, interval.lower_open ? " (its bound)" : "",
+                                        p.profile_upper, interval.upper_open ? " (its bound)" : "", row.unit,
+                                        p.estimate - 1.96 * se, p.estimate + 1.96 * se));
       }
       row.nominal = p.estimate;
       row.source = "tuned; before: " + run.table.rows[i].source;
@@ -441,7 +472,7 @@ TuneResult tune(const std::vector<Log>& logs, const Table& nominal, const RigFil
     out.table.comments.push_back(
         fmt::format("{} {} {}", hash_key, d.sha256, std::filesystem::path(d.path).filename().string()));
   out.convergence = run.convergence;
-  out.notes = run.notes;
+  out.notes.insert(out.notes.begin(), run.notes.begin(), run.notes.end());
   out.notes.push_back("local stage: " + end.stopped);
   std::string slopes;
   for (const LogResult& l : out.logs)

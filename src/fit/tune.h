@@ -2,6 +2,7 @@
 #pragma once
 #include <atomic>
 #include <cstdint>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -20,6 +21,9 @@ struct ParameterResult {
   // bounded | one_sided | flat | at_bound | confounded | frozen
   std::string verdict;
   std::vector<std::string> confounded_with;
+  double profile_lower =
+             std::numeric_limits<double>::quiet_NaN(),  // [unit] 95 % by profile likelihood, where asked for
+      profile_upper = std::numeric_limits<double>::quiet_NaN();
   double effect_at_lower = 0,
          effect_at_upper = 0;  // whitened rms change of the simulation at the row's bounds, in sigmas
 };
@@ -52,10 +56,16 @@ struct TuneOptions {
   bool quiet = false;
   int population = 50;
   int generations = 30;
+  int rounds = 2;  // most of the last stage (12 steps, then new weights); it ends early where it converges
+  // While it is fitted a channel counts for at least this fraction of independent samples. Above 0, a channel whose
+  // misfit is slow at first (an offset not yet found) is not weighed down to nothing before it is mended.
+  double least_effective = 0;
   double heldout = 0.2;  // last part of every log, kept out of the first fit
   std::vector<std::string> effects = {"magnetic_hysteresis", "mount_compliance"};  // freed beside the table's rows
-  int moving_average = 1;  // [samples] odd; smooths measurement and simulation alike, also in later commands
-  std::string checkpoint;  // file saved every generation; empty: none
+  bool derivative_free = false;      // local stage by NLopt: where differences are not to be trusted
+  std::vector<std::string> profile;  // rows whose interval is checked by profile likelihood; "all": every one
+  int moving_average = 1;            // [samples] odd; smooths measurement and simulation alike, also in later commands
+  std::string checkpoint;            // file saved every generation; empty: none
   bool resume = false;
   const std::atomic<bool>* stop = nullptr;  // set: finish with the best so far
 };

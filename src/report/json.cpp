@@ -40,6 +40,7 @@ Json to_json(const ParameterResult& p) {
           {"nominal", number(p.nominal)},
           {"estimate", number(p.estimate)},
           {"std_error", number(p.std_error)},
+          {"profile", {{"lower", number(p.profile_lower)}, {"upper", number(p.profile_upper)}}},
           {"verdict", p.verdict},
           {"confounded_with", p.confounded_with},
           {"effect_at_lower", number(p.effect_at_lower)},
