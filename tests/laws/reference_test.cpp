@@ -1,0 +1,99 @@
+// The default step against the reference of 1e-5 s (the source paper's step), on every shipped log of both rigs: the
+// first second of each, or whole logs with SERVODX_WHOLE_LOGS=1.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <map>
+
+#include "laws/bench.h"
+
+namespace servodx {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Shipped {
+  std::string name;
+  LogData data;
+};
+
+std::vector<Shipped> logs_of(const std::vector<std::string>& folders, const RigFile& rig) {
+  const bool whole = std::getenv("SERVODX_WHOLE_LOGS") != nullptr;
+  std::vector<Shipped> out;
+  for (const std::string& folder : folders)
+    for (const auto& entry : fs::directory_iterator(shipped("data/" + folder)))
+      if (entry.path().extension() == ".csv") {
+        const LogData data = prepare(read_log(entry.path().string(), rig), rig);
+        const std::size_t samples = data.scenario.time.size();
+        out.push_back({folder + "/" + entry.path().stem().string(),
+                       slice(data, 0, whole ? samples : std::min<std::size_t>(samples, 1000))});
+      }
+  std::sort(out.begin(), out.end(), [](const Shipped& a, const Shipped& b) { return a.name < b.name; });
+  return out;
+}
+
+struct Errors {  // over the signal's range in the log, worst of all signals and logs
+  double largest = 0, rms = 0;
+};
+
+Errors errors(const std::vector<Shipped>& logs, const ParameterVector& v, double step, double impact_step) {
+  std::vector<Trajectory> found(logs.size()), reference(logs.size());
+  std::vector<Job> jobs, reference_jobs;
+  for (std::size_t l = 0; l < logs.size(); ++l) {
+    jobs.push_back({&logs[l].data.scenario, &v, &found[l]});
+    reference_jobs.push_back({&logs[l].data.scenario, &v, &reference[l]});
+  }
+  SimulateOptions options = all_signals();
+  options.step = step, options.impact_step = impact_step;
+  simulate(jobs, options);
+  options.step = options.impact_step = 1e-5;
+  simulate(reference_jobs, options);
+  Errors worst;
+  for (std::size_t l = 0; l < logs.size(); ++l) {
+    EXPECT_TRUE(found[l].ok && reference[l].ok) << logs[l].name;
+    std::printf("%-42s", logs[l].name.c_str());
+    for (const FitChannel& c : logs[l].data.channels) {
+      const auto &a = found[l].signals[c.simulated], &b = reference[l].signals[c.simulated];
+      double largest = 0, square = 0, low = b[0], high = b[0];
+      for (std::size_t k = 0; k < b.size(); ++k) {
+        largest = std::max(largest, std::abs(a[k] - b[k]));
+        square += (a[k] - b[k]) * (a[k] - b[k]);
+        low = std::min(low, b[k]), high = std::max(high, b[k]);
+      }
+      const double rms = std::sqrt(square / static_cast<double>(b.size()));
+      std::printf("  %s %.3f %% (rms %.4f %%)", std::string(info(c.signal).name).c_str(), 100 * largest / (high - low),
+                  100 * rms / (high - low));
+      // A pilot pressure moves by a few bar, less than its own swing while the first millisecond settles.
+      if (c.signal == Signal::pilot_pressure_1 || c.signal == Signal::pilot_pressure_2) continue;
+      worst.largest = std::max(worst.largest, largest / (high - low));
+      worst.rms = std::max(worst.rms, rms / (high - low));
+    }
+    std::printf("\n");
+  }
+  std::printf("worst %.3f %%, rms %.4f %%\n", 100 * worst.largest, 100 * worst.rms);
+  return worst;
+}
+
+// What fits and searches use: good to a tenth of a per cent over a log, not at every sample.
+const SimulateOptions by_default;
+// A quarter of it: good at every sample.
+constexpr double fine = 1e-3 / 12, fine_impact = 1e-3 / 24;
+
+TEST(Reference, OnEveryLogOfTheFlightActuator) {
+  const std::vector<Shipped> logs = logs_of({"healthy", "fault", "sudden"}, shipped_rig());
+  EXPECT_LT(errors(logs, nominal_candidate(), by_default.step, by_default.impact_step).rms, 1.5e-3);
+  EXPECT_LT(errors(logs, nominal_candidate(), fine, fine_impact).largest, 1e-3);
+}
+
+TEST(Reference, OnEveryLogOfTheBench) {
+  const RigFile rig = read_rig_file(shipped("data/bench/rig.toml"));
+  const ParameterVector v = candidate_of(apply_rig_facts(read_table(shipped("params/bench.csv")), rig));
+  const std::vector<Shipped> logs = logs_of({"bench/healthy", "bench/fault"}, rig);
+  EXPECT_LT(errors(logs, v, by_default.step, by_default.impact_step).rms, 1.5e-3);
+  EXPECT_LT(errors(logs, v, fine, fine_impact).largest, 1e-3);
+}
+
+}  // namespace
+}  // namespace servodx
