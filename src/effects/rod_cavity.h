@@ -20,7 +20,7 @@ struct RodCavity {
   static constexpr const char* name = "rod_cavity";
   static constexpr const char* place = "piston_force";
   static constexpr const char* meaning = "the position sensor's cavity in the rod is a third chamber, filled from A";
-  static constexpr int n_states = 1;  // pressure in the cavity [Pa]
+  static constexpr int n_states = 1;  // oil compressed into the cavity per length, area * pressure / bulk modulus [m2]
   static constexpr int n_parameters = 3;
   static constexpr EffectParameter parameters[n_parameters] = {
       {"rod_cavity_area", "m2", 0.0, 0.0, 5e-4, 8e-5, "section of the sensor's core in the rod"},
@@ -29,26 +29,33 @@ struct RodCavity {
   };
   static constexpr double shortest = 1e-3;  // [m] the end stop gives by less
 
-  // Oil from chamber A into the cavity, per area of the cavity. [m/s]
+  // Force of the cavity's pressure on the piston. [N]
+  template <class V>
+  static auto force(const V& view) {
+    return view.p[row::bulk_modulus] * view.template own_state<RodCavity, 0>();
+  }
+  // Oil from chamber A into the cavity. [m3/s]
   template <class V>
   static auto filling(const V& view) {
-    const auto per_pressure =
+    const auto per_force =
         view.template own<RodCavity>(1) / (view.p[row::bulk_modulus] * view.template own<RodCavity>(2));
-    return per_pressure * (view.template state<s_p_a>() - view.template own_state<RodCavity, 0>());
+    return per_force * (view.template own<RodCavity>(0) * view.template state<s_p_a>() - force(view));
   }
+  // Room that the core leaves. [m3/s]
   template <class V>
-  static auto speed(const V& view) {
-    return view.template state<s_v_piston>() - hook_body_velocity(view, typename V::Effects{});
+  static auto growth(const V& view) {
+    return view.template own<RodCavity>(0) *
+           (view.template state<s_v_piston>() - hook_body_velocity(view, typename V::Effects{}));
   }
 
   // Chamber A does not feed the cavity's area by its own growth, but through the restriction.
   template <class V>
   static auto flow_a(const V& view) {
-    return view.template own<RodCavity>(0) * (speed(view) - filling(view));
+    return growth(view) - filling(view);
   }
   template <class V>
   static auto piston_force(const V& view) {
-    return view.template own<RodCavity>(0) * (view.template own_state<RodCavity, 0>() - view.template state<s_p_a>());
+    return force(view) - view.template own<RodCavity>(0) * view.template state<s_p_a>();
   }
   template <class V>
   static auto derivative(const V& view) {
@@ -56,7 +63,7 @@ struct RodCavity {
     const auto length = soft_positive(
         view.template own<RodCavity>(1) + T(0.5) * view.p[row::piston_stroke] + view.template state<s_x_piston>(),
         T(shortest));
-    return std::make_tuple(view.p[row::bulk_modulus] * (filling(view) - speed(view)) / length);
+    return std::make_tuple((filling(view) - growth(view)) / length);
   }
 };
 

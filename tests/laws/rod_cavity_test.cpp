@@ -19,24 +19,28 @@ constexpr int cavity = n_base_states + AllEffects::state_offset<RodCavity>();
 
 TEST(RodCavity, OilThatEntersItLeftChamberA) {
   // dp/dt of chamber A times its compliance, with and without: the difference is what the cavity and its area take.
-  const ParameterVector on = with_cavity(1e-4, 2e-3), off = with_cavity(0.0, 2e-3);
+  constexpr double area = 1e-4;
+  const ParameterVector on = with_cavity(area, 2e-3), off = with_cavity(0.0, 2e-3);
   const Everything with(on), without(off);
   for (unsigned trial = 0; trial < 40; ++trial) {
     Random random(61, trial);
-    auto y = with.state(random);
-    y[cavity] = random.uniform(0, 2e7);
+    auto y = with.state(random), rest = y;
+    for (int k = n_base_states; k < Everything::n; ++k) y[k] = rest[k] = 0;
+    const double pressure = random.uniform(0, 2e7);
+    y[cavity] = area * pressure / with.p(row::bulk_modulus);
     const auto u = with.inputs(random);
-    const auto f = with.rate(y, u), g = without.rate(y, u);
-    const double length = 0.02 + 0.5 * with.p(row::piston_stroke) + y[s_x_piston];
-    if (length < 0.01) continue;
+    const auto f = with.rate(y, u), g = without.rate(rest, u);
+    const double length = soft_positive(0.02 + 0.5 * with.p(row::piston_stroke) + y[s_x_piston], RodCavity::shortest);
     // Oil stored in the cavity: its compressed column and the room that the core leaves.
-    const double stored = 1e-4 * (length / with.p(row::bulk_modulus) * f[cavity] + f[s_x_piston]);
+    const double stored = length * f[cavity] + area * f[s_x_piston];
     const double volume =
         with.p(row::dead_volume_a) + with.p(row::piston_area_a) * (0.5 * with.p(row::piston_stroke) + y[s_x_piston]);
     const double compliance = chamber_compliance(volume, y[s_p_a], with.derived(), with.p());
-    const double from_a = 1e-4 * f[s_x_piston] - compliance * (f[s_p_a] - g[s_p_a]);
-    EXPECT_NEAR(stored, from_a, 1e-9 * std::abs(from_a) + 1e-16) << trial;
-    EXPECT_NEAR(f[s_v_piston] - g[s_v_piston], 1e-4 * (y[cavity] - y[s_p_a]) / with.p(row::moving_mass), 1e-6) << trial;
+    const double from_a = area * f[s_x_piston] - compliance * (f[s_p_a] - g[s_p_a]);
+    EXPECT_NEAR(stored, from_a, 1e-3 * std::abs(from_a) + 1e-9 * std::abs(compliance * f[s_p_a])) << trial;
+    EXPECT_NEAR(f[s_v_piston] - g[s_v_piston], area * (pressure - y[s_p_a]) / with.p(row::moving_mass),
+                1e-9 * std::abs(f[s_v_piston]) + 1e-6)
+        << trial;
   }
 }
 
@@ -49,7 +53,8 @@ TEST(RodCavity, ASlowOneHoldsThePistonBackAndAFastOneDoesNot) {
     return (x.back() - x[x.size() - 100]) / 0.1;
   };
   const double base = speed(0.0, 1e-3);
-  EXPECT_NEAR(speed(1e-4, 1e-4), base, 0.002 * base);
+  // Filling it takes 9 bar on 1 cm2: 90 N of some 8000 that the edges have left.
+  EXPECT_NEAR(speed(1e-4, 1e-4), base, 0.006 * base);
   EXPECT_LT(speed(1e-4, 5e-2), 0.98 * base);
 }
 
