@@ -74,8 +74,11 @@ ProfileInterval profile(const FitProblem& problem, const Point& best, int j, con
           ++r;
         }
       held.hold_at(centre + side * distance);
-      const LeastSquaresResult fit = minimise_least_squares(held.least_squares(), start, options);
-      const double root = std::sqrt(std::max(0.0, 2 * (fit.misfit - least)));
+      const Point alone{centre + side * distance};
+      const double misfit = problem.n() > 1
+                                ? minimise_least_squares(held.least_squares(), start, options).misfit
+                                : 0.5 * problem.evaluate(std::span(&alone, 1)).front().residual.squaredNorm();
+      const double root = std::sqrt(std::max(0.0, 2 * (misfit - least)));
       open = distance >= room && root < root_of_chi2;
       if (open || std::abs(root - root_of_chi2) < close * root_of_chi2) break;
       if (root < root_of_chi2) inside = distance, inside_root = root;
