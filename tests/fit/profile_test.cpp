@@ -38,17 +38,5 @@ TEST(Profile, OfANearlyLinearNumberIsTheIntervalOfTheCurvature) {
   }
 }
 
-TEST(Profile, StopsAtABoundThatTheDataDoNotExclude) {
-  const Table table = shipped_table();
-  ParameterVector truth = candidate_of(table);
-  truth[row::cross_piston_leakage] = 1e-15;
-  const LogData log = written_by_model(slice(shipped_data("healthy/h12_mixed"), 0, 500), truth, 5, 30.0);
-  const Fitted fit = fitted(log, truth, {free_row(table, row::cross_piston_leakage)});
-  const ProfileInterval found = profile(fit.problem, fit.end.point, 0, fit.covariance);
-  EXPECT_TRUE(found.lower_open);
-  EXPECT_EQ(found.lower, 0.0);
-  EXPECT_GT(found.upper, fit.end.point[0]);
-}
-
 }  // namespace
 }  // namespace servodx
