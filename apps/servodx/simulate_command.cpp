@@ -23,12 +23,12 @@ constexpr double reference_step = 1e-5;  // [s] where the integrator's error is 
 struct Options {
   CommonOptions common;
   std::string log, params, output;
-  double step = SimulateOptions{}.step;  // [s]
+  double step = fine_steps().step;  // [s]
   bool step_given = false, reference = false;
 };
 
 SimulateOptions simulate_options(const Options& options, const LogData& data) {
-  SimulateOptions to;
+  SimulateOptions to = fine_steps();
   to.threads = options.common.threads;
   if (options.reference) to.step = to.impact_step = to.creep_step = reference_step;
   if (options.step_given) {  // impacts keep the default's share of the step

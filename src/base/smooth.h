@@ -50,18 +50,18 @@ auto saturate(const X& x, const L& limit, const W& width) {
   return (smooth_abs(x + limit, width) - smooth_abs(x - limit, width)) * 0.5;
 }
 
-// The same with corners that are parabolas within `width` of the limit: exact beyond, and no root. Its slope has corners.
-template <class X, class T>
-auto blunt_saturate(const X& x, const T& limit, const T& width) {
+// From -1 at x = -1 to 1 at x = 1 and exactly flat beyond, two derivatives continuous: (15 x - 10 x^3 + 3 x^5) / 8.
+template <class X>
+X flat_step(const X& x) {
   using std::max, std::min;
-  const X a = max(X(-width), min(X(width), x + limit)), b = max(X(-width), min(X(width), x - limit));
-  return ((a - b) * (x - (a + b) * T(0.5)) + (a + b) * limit) * (T(0.5) / width);
+  const X c = max(min(x, X(1.0)), X(-1.0)), c2 = c * c;
+  return c * (X(1.875) - c2 * (X(1.25) - X(0.375) * c2));
 }
 template <class T, Mask A>
-Dual<T, A> blunt_saturate(const Dual<T, A>& x, const T& limit, const T& width) {
+Dual<T, A> flat_step(const Dual<T, A>& x) {
   using std::max, std::min;
-  const T a = max(-width, min(width, x.v + limit)), b = max(-width, min(width, x.v - limit)), per = T(0.5) / width;
-  return chain(((a - b) * (x.v - (a + b) * T(0.5)) + (a + b) * limit) * per, x, (a - b) * per);
+  const T c = max(min(x.v, T(1.0)), T(-1.0)), rest = T(1.0) - c * c;
+  return chain(flat_step(x.v), x, T(1.875) * (rest * rest));
 }
 
 // sign(dp) sqrt(|dp|), linear within `transition` of zero: dp / (dp^2 + transition^2)^(1/4).

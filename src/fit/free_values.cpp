@@ -61,6 +61,25 @@ std::vector<FreeValue> nuisance_values(const LogData& log, int l, const Paramete
   return out;
 }
 
+std::vector<FreeValue> start_values(const LogData& log, int l) {
+  constexpr double reach = 8.0;      // [sigmas] either way
+  constexpr double prior_sd = 0.25;  // of the interval: 4 sigmas
+  std::vector<FreeValue> out;
+  const auto add = [&](const char* name, int at, double sigma) {
+    if (sigma > 0) out.push_back({name, at, -reach * sigma, reach * sigma, false, 0.0, prior_sd, l});
+  };
+  const Scenario& s = log.scenario;
+  for (const FitChannel& c : log.channels) {
+    const double noise = c.noise * std::sqrt(static_cast<double>(c.filter.window));  // of one sample
+    if (c.signal == Signal::spool_position) add("spool_start", nuisance::spool_start, noise);
+    if (c.signal == Signal::pressure_a) add("pressure_a_start", nuisance::pressure_a_start, noise);
+    if (c.signal == Signal::pressure_b) add("pressure_b_start", nuisance::pressure_b_start, noise);
+    if (c.signal == Signal::piston_position && s.ports == Ports::actuator)
+      add("piston_velocity_start", nuisance::piston_velocity_start, noise * starting_slope_error(s.time));
+  }
+  return out;
+}
+
 void add_effect_rows(Table& table, const std::vector<std::string>& effects) {
   for (const std::string& name : effects) {
     const auto& list = effect_list();

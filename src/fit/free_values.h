@@ -18,6 +18,11 @@ std::vector<FreeValue> shared_values(const Table& table);
 std::vector<FreeValue> nuisance_values(const LogData& log, int log_index, const ParameterVector& base,
                                        double null_limit);
 
+// Where a log starts, true less measured: spool, chamber pressures, piston speed, each bounded by what its sensor's
+// noise makes likely. The first sample is in the misfit like any other, so the prior is wide. Held at zero, the first
+// sample's noise drives the whole first transient, and parameters take it for theirs.
+std::vector<FreeValue> start_values(const LogData& log, int log_index);
+
 // Appends rows for effects that the table lacks, at their typical size and free. Throws InputError for an unknown name.
 void add_effect_rows(Table& table, const std::vector<std::string>& effects);
 

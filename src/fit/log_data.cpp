@@ -65,11 +65,13 @@ std::optional<double> first_present(const std::vector<double>& x) {
   return std::nullopt;
 }
 
-// Slope of the first samples, least squares over at most 10 ms.
+constexpr double start_span = 0.0101;  // [s] over which the speed at the start is measured
+
+// Slope of the first samples, least squares.
 double starting_slope(const std::vector<double>& t, const std::vector<double>& x) {
   double st = 0, sx = 0, stt = 0, stx = 0;
   int n = 0;
-  for (std::size_t k = 0; k < x.size() && t[k] - t[0] < 0.0101; ++k) {
+  for (std::size_t k = 0; k < x.size() && t[k] - t[0] < start_span; ++k) {
     if (std::isnan(x[k])) continue;
     const double s = t[k] - t[0];
     st += s, sx += x[k], stt += s * s, stx += s * x[k], ++n;
@@ -93,6 +95,16 @@ void take_start(LogData& log) {
 }
 
 }  // namespace
+
+double starting_slope_error(const std::vector<double>& t) {
+  double st = 0, stt = 0, n = 0;
+  for (std::size_t k = 0; k < t.size() && t[k] - t[0] < start_span; ++k) {
+    const double s = t[k] - t[0];
+    st += s, stt += s * s, ++n;
+  }
+  const double spread = n * stt - st * st;
+  return n >= 3 && spread > 0 ? std::sqrt(n / spread) : 0.0;
+}
 
 double noise_of(const std::vector<double>& x, double resolution) {
   std::vector<double> d;

@@ -45,6 +45,9 @@ void require_channels(const LogData& log);
 // Samples [from, to) as a log of their own, started from what is measured at `from`.
 LogData slice(const LogData& log, std::size_t from, std::size_t to);
 
+// Standard error of the starting speed over that of one sample. [1/s]
+double starting_slope_error(const std::vector<double>& time);
+
 // Noise rms of a series, robust against motion: median absolute second difference over that of white noise.
 double noise_of(const std::vector<double>& x, double resolution);
 

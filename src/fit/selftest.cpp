@@ -65,7 +65,8 @@ SelftestResult selftest(const Log& log, const Table& table, const RigFile& rig, 
 
   // Free: what this log can tell. The rest stays at the table's value in truth and fit alike.
   std::vector<FreeValue> free = shared_values(facts);
-  const std::vector<FreeValue> nuisances = nuisance_values(data, 0, base, null_limit);
+  std::vector<FreeValue> nuisances = nuisance_values(data, 0, base, null_limit);
+  for (FreeValue& f : start_values(data, 0)) nuisances.push_back(std::move(f));
   {
     std::vector<FreeValue> all = free;
     all.insert(all.end(), nuisances.begin(), nuisances.end());

@@ -267,9 +267,11 @@ TuneResult tune(const std::vector<Log>& logs, const Table& nominal, const RigFil
   run.table = apply_rig_facts(run.table, rig);
   run.base = candidate_of(run.table);
   run.shared = shared_values(run.table);
-  for (std::size_t l = 0; l < run.data.size(); ++l)
+  for (std::size_t l = 0; l < run.data.size(); ++l) {
     for (FreeValue& f : nuisance_values(run.data[l], static_cast<int>(l), run.base, tuning_null_limit))
       run.nuisances.push_back(std::move(f));
+    for (FreeValue& f : start_values(run.data[l], static_cast<int>(l))) run.nuisances.push_back(std::move(f));
+  }
   FitProblem problem(run.logs, run.base, run.all(), run.simulate_options());
   Point x = problem.start();
 

@@ -12,13 +12,12 @@
 
 namespace servodx {
 
-// Share of the friction that is borne, -1..1. stretch: from the anchor, in presliding lengths. All have slipped well
-// before a stretch of 1, where the anchor is dragged to after a step: what slides bears the same at any step.
+// Share of the friction that is borne, -1..1. stretch: from the anchor, in presliding lengths. Beyond 1 all have
+// slipped and the share is exactly 1, however far a step runs ahead of its anchor: else friction would depend on the
+// step.
 template <class T, class X>
 auto asperities(const X& stretch) {
-  namespace c = constants;
-  constexpr double limit = 1.0 - 4.0 * c::slip_rounding;
-  return blunt_saturate(stretch, T(limit), T(c::slip_rounding)) * T(1.0 / limit);
+  return flat_step(stretch);
 }
 
 // Anchor [m] after a move to x [m].

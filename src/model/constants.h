@@ -43,7 +43,6 @@ inline constexpr double stop_rounding = 1e-6;         // [m] flapper stop; a wid
 inline constexpr double edge_rounding = 1e-6;         // [m] corner radius of a new metering edge
 inline constexpr double spool_stop_rounding = 1e-5;   // [m] a slewing spool must feel its stop a step ahead
 inline constexpr double piston_stop_rounding = 1e-5;  // [m]
-inline constexpr double slip_rounding = 0.1;  // of presliding: the last asperities slip a little later than the first
 inline constexpr double filter_direction_rounding = 2e-3;  // [m/s] spool speed over which rows 1 and 2 hand over
 inline constexpr double orifice_transition = 1e4;          // [Pa] linear below 0.1 bar
 inline constexpr double pressure_floor = 5e4;              // [Pa] absolute pressure at which the air law is rounded off

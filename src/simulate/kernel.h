@@ -227,11 +227,15 @@ void run_pack(const Scenario& in, const ParameterVector* const* candidates, Traj
   const T half = T(0.5) * (u.supply_pressure + u.return_pressure);
   y[s_p_filter] = u.supply_pressure;
   y[s_p_pilot_1] = y[s_p_pilot_2] = half;
-  y[s_x_spool] = in.spool_start ? T(*in.spool_start) - p[nuisance::spool_offset] : T(0.0);
-  y[s_p_a] = in.pressure_a_start ? T(*in.pressure_a_start) - p[nuisance::pressure_a_offset] : half;
-  y[s_p_b] = in.pressure_b_start ? T(*in.pressure_b_start) - p[nuisance::pressure_b_offset] : half;
+  // Where measured: the first sample, less the sensor's offset, and its noise put right.
+  const auto start = [&](const std::optional<double>& measured, int offset, int error, const T& otherwise) {
+    return measured ? T(*measured) - p[offset] + p[error] : otherwise;
+  };
+  y[s_x_spool] = start(in.spool_start, nuisance::spool_offset, nuisance::spool_start, T(0.0));
+  y[s_p_a] = start(in.pressure_a_start, nuisance::pressure_a_offset, nuisance::pressure_a_start, half);
+  y[s_p_b] = start(in.pressure_b_start, nuisance::pressure_b_offset, nuisance::pressure_b_start, half);
   y[s_x_piston] = T(in.piston_start.value_or(0.0)) / p[row::position_sensor_gain];
-  y[s_v_piston] = T(in.piston_velocity_start);
+  y[s_v_piston] = T(in.piston_velocity_start) + p[nuisance::piston_velocity_start];
   y[s_current] = u.current;
   {
     System<T, Effects, true> settling{p.data(),

@@ -184,6 +184,14 @@ TEST(Balance, FrictionTakesPowerFromWhatSlides) {
   }
 }
 
+// A step runs ahead of the anchor by as much as the part slides in it.
+TEST(Balance, SlidingFrictionIsTheSameHoweverFarAStepRunsAheadOfItsAnchor) {
+  for (const double stretch : {1.0, 1.3, 2.0, 30.0}) {
+    EXPECT_EQ(asperities<double>(stretch), 1.0) << stretch;
+    EXPECT_EQ(asperities<double>(-stretch), -1.0) << stretch;
+  }
+}
+
 TEST(Balance, AsperitiesReturnNoMoreThanTheyStoreAndSpendOnEveryCycle) {
   constexpr double presliding = 2e-6;
   for (unsigned trial = 0; trial < 100; ++trial) {
