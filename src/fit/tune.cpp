@@ -24,6 +24,7 @@ namespace servodx {
 namespace {
 
 constexpr double tuning_null_limit = 0.1;  // fault-free logs: a null may sit anywhere that calibration allows
+constexpr double independent_rate = 40;    // [1/s] samples that count before anything is known of their correlation
 constexpr const char* hash_key = "tuned by";
 constexpr const char* average_key = "moving average";
 
@@ -63,7 +64,6 @@ struct Tuning {
 
 // Whitening before anything is known: the residual's own size, a few tens of independent samples a second.
 void first_whitening(FitProblem& problem, const Point& x) {
-  constexpr double independent_rate = 40.0;  // [1/s]
   const std::vector<Trajectory> t = problem.trajectories(x);
   for (std::size_t l = 0; l < t.size(); ++l) {
     const LogData& log = *problem.logs()[l];
@@ -209,13 +209,16 @@ std::vector<Point> breadth(Tuning& run, const Point& start) {
   return out;
 }
 
-// Alternates fit and error model until the weights settle.
+// Alternates fit and error model until the weights settle. An error model that is learnt at an unfinished fit takes an
+// offset not yet found for correlation; the channel would count for so few samples that it is never mended. So on the
+// way each counts for at least as many as the first whitening takes, and only the last rounds weigh as learnt.
 LeastSquaresResult refine(Tuning& run, FitProblem& problem, Point x, ErrorModel& error, double held, int rounds,
                           double from, double to) {
   LeastSquaresResult r;
   for (int round = 0; round < rounds; ++round) {
     error = learn_error_model(problem, x);
-    for (ChannelError& c : error.channels) c.effective = std::max(c.effective, run.options.least_effective);
+    if (held > 0 || round == 0)
+      for (ChannelError& c : error.channels) c.independent = std::max(c.independent, independent_rate);
     apply_error_model(problem, error, x);
     if (held > 0) hold_out(problem, held);
     const double a = from + (to - from) * round / rounds, b = from + (to - from) * (round + 1) / rounds;

@@ -56,10 +56,7 @@ struct TuneOptions {
   bool quiet = false;
   int population = 50;
   int generations = 30;
-  int rounds = 2;  // most of the last stage (12 steps, then new weights); it ends early where it converges
-  // While it is fitted a channel counts for at least this fraction of independent samples. Above 0, a channel whose
-  // misfit is slow at first (an offset not yet found) is not weighed down to nothing before it is mended.
-  double least_effective = 0;
+  int rounds = 4;  // most of the last stage (12 steps, then new weights); it ends early where it converges
   double heldout = 0.2;  // last part of every log, kept out of the first fit
   std::vector<std::string> effects = {"magnetic_hysteresis", "mount_compliance"};  // freed beside the table's rows
   bool derivative_free = false;      // local stage by NLopt: where differences are not to be trusted

@@ -114,33 +114,27 @@ std::vector<double> high_pass(std::span<const double> time, std::span<const doub
   if (time.size() != x.size()) throw std::invalid_argument("high_pass: time and signal differ in length");
   if (!(cutoff > 0.0)) throw std::invalid_argument("high_pass: the cutoff must be positive");
   const double rate = 2.0 * std::numbers::pi * cutoff;
-  std::vector<double> y(x.size(), missing_value);
-  // From rest on the straight line through a beginning that is short against the filter's memory: from one sample, its
-  // noise would stay for the whole of it.
-  constexpr double beginning = 0.05;  // of the memory 1 / rate
-  double first = 0.0, n = 0.0, st = 0.0, sx = 0.0, stt = 0.0, stx = 0.0;
-  for (std::size_t k = 0; k < x.size() && time[k] - time[0] <= beginning / rate; ++k) {
-    if (std::isnan(x[k])) continue;
-    if (n == 0.0) first = x[k];
-    const double t = time[k] - time[0], d = x[k] - first;  // about the first: a constant gives zero bit for bit
-    n += 1.0, st += t, sx += d, stt += t * t, stx += t * d;
-  }
-  const double spread = n * stt - st * st;
-  double state = 0.0, last_x = missing_value, last_time = 0.0;
+  std::vector<double> y(x.size(), missing_value), start(x.size(), 0.0);
+  double state = 0.0, decayed = 1.0, last_x = missing_value, last_time = 0.0, along = 0.0, own = 0.0;
   for (std::size_t k = 0; k < x.size(); ++k) {
     if (std::isnan(x[k])) continue;
-    if (std::isnan(last_x)) {
-      const double t = time[k] - time[0];
-      if (n >= 3.0 && spread > 0.0) state = -((stt * sx - st * stx) + (n * stx - st * sx) * t) / spread;
-    } else {
-      const double z = rate * (time[k] - last_time);
+    if (!std::isnan(last_x)) {
+      const double z = rate * (time[k] - last_time), keep = std::exp(-z);
       // y' = x' - rate y, with x' constant between the stamps.
-      state = std::exp(-z) * state + (x[k] - last_x) * (-std::expm1(-z) / z);
+      state = keep * state + (x[k] - last_x) * (-std::expm1(-z) / z);
+      decayed *= keep;
     }
     y[k] = state;
+    start[k] = decayed;
+    along += state * decayed;
+    own += decayed * decayed;
     last_x = x[k];
     last_time = time[k];
   }
+  // Where the signal stood before its first sample is not known; what that leaves behind is taken out as a whole. From
+  // one sample, or a few, their noise would stay for the whole of the filter's memory.
+  if (own > 0.0)
+    for (std::size_t k = 0; k < x.size(); ++k) y[k] -= along / own * start[k];
   return y;
 }
 

@@ -27,8 +27,8 @@ std::vector<double> moving_average(std::span<const double> x, int window);
 std::vector<double> notch(std::span<const double> time, std::span<const double> x, double frequency, double half_width);
 
 // First-order high-pass with corner `cutoff` [Hz], forward in time, exact for a signal that is linear between its
-// stamps whatever their spacing. Starts at rest on the line through the first twentieth of its memory (1 / (2 pi cutoff)), so
-// a constant gives zero. Across missing samples the signal is taken as linear.
+// stamps whatever their spacing. Starts from the state that leaves the least sum of squares: a constant gives zero.
+// Across missing samples the signal is taken as linear.
 std::vector<double> high_pass(std::span<const double> time, std::span<const double> x, double cutoff);
 
 // NaN into `x` wherever `like` has it.

@@ -109,8 +109,6 @@ inline TuneResult tuned(const Twin& twin, int threads) {
   options.quiet = true;
   options.effects = {};
   options.generations = 0;  // the truth lies near nominal: breadth is not what is asked here
-  options.rounds = 12;
-  options.least_effective = 0.04;  // 40 a second
   Table nominal = twin.table;
   rig.facts.erase("actuator.mount_stiffness");
   const double rated = *rig.fact("valve.rated_current");
