@@ -35,7 +35,7 @@ TEST(RodCavity, OilThatEntersItLeftChamberA) {
     const double stored = length * f[cavity] + area * f[s_x_piston];
     const double volume =
         with.p(row::dead_volume_a) + with.p(row::piston_area_a) * (0.5 * with.p(row::piston_stroke) + y[s_x_piston]);
-    const double compliance = chamber_compliance(volume, y[s_p_a], with.derived(), with.p());
+    const double compliance = 1.0 / chamber_stiffness(volume, y[s_p_a], with.derived(), with.p());
     const double from_a = area * f[s_x_piston] - compliance * (f[s_p_a] - g[s_p_a]);
     EXPECT_NEAR(stored, from_a, 1e-3 * std::abs(from_a) + 1e-9 * std::abs(compliance * f[s_p_a])) << trial;
     EXPECT_NEAR(f[s_v_piston] - g[s_v_piston], area * (pressure - y[s_p_a]) / with.p(row::moving_mass),
