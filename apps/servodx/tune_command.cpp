@@ -47,7 +47,8 @@ int run(const Options& options) {
                  "0 leaves the genetic search out");
   require_option(options.local == "least_squares" || options.local == "nlopt", "--local",
                  "unknown method '" + options.local + "'", "use least_squares or nlopt");
-  require_option(tune_options.rounds >= 1, "--rounds", "must be at least 1", fmt::format("{} is the default", TuneOptions{}.rounds));
+  require_option(tune_options.rounds >= 1, "--rounds", "must be at least 1",
+                 std::to_string(TuneOptions{}.rounds) + " is the default");
   tune_options.derivative_free = options.local == "nlopt";
   tune_options.profile = CLI::detail::split(options.profile, ',');
   tune_options.seed = options.common.seed;
