@@ -5,6 +5,7 @@
 
 #include "commands.h"
 #include "effects/registry.h"
+#include "fit/log_data.h"
 #include "fit/tune.h"
 #include "invocation.h"
 #include "report/columns.h"
@@ -18,7 +19,7 @@ struct Options {
   CommonOptions common;
   std::vector<std::string> logs;
   std::string params, output;
-  std::string effects = report::join(TuneOptions{}.effects, ",");  // or "none"
+  std::string effects;  // or "none"; empty: as fits the logs
   TuneOptions tune;
 };
 
@@ -35,7 +36,7 @@ std::vector<std::string> effects_of(const std::string& list) {
 
 int run(const Options& options) {
   TuneOptions tune_options = options.tune;
-  tune_options.effects = effects_of(options.effects);
+  if (!options.effects.empty()) tune_options.effects = effects_of(options.effects);
   require_option(!tune_options.resume || !tune_options.checkpoint.empty(), "--resume",
                  "there is nothing to resume from", "add --checkpoint FILE");
   require_option(!tune_options.resume || std::filesystem::exists(tune_options.checkpoint), "--checkpoint",
@@ -57,12 +58,14 @@ int run(const Options& options) {
   const Table nominal = invocation.table(options.params);  // tune() applies the facts, effects' rows included
   const std::vector<Log> logs = invocation.logs(options.logs, rig);
 
+  if (!tune_options.effects) tune_options.effects = default_effects(all_on_test_stand(logs, rig));
+
   report::Header& header = invocation.header();
   header.settings = {{"population", tune_options.population},
                      {"generations", tune_options.generations},
                      {"heldout", tune_options.heldout},
                      {"moving_average", tune_options.moving_average},
-                     {"effects", tune_options.effects}};
+                     {"effects", *tune_options.effects}};
   if (invocation.dry_run()) return ran;
 
   tune_options.stop = &stop_on_interrupt();
@@ -104,7 +107,8 @@ void add_tune_command(CLI::App& app, int& exit_code) {
       ->capture_default_str();
   command->add_option("--effects", options->effects, "effects freed beside the table's rows, or 'none'")
       ->type_name("A,B")
-      ->capture_default_str();
+      ->default_str(report::join(default_effects(false), ",") + "; on a test stand " +
+                    report::join(default_effects(true), ","));
   command->add_option("--checkpoint", tune.checkpoint, "save the search to FILE every generation")->type_name("FILE");
   command->add_flag("--resume", tune.resume, "go on from the checkpoint");
   add_common_options(*command, options->common);

@@ -3,12 +3,14 @@
 #include <string>
 #include <vector>
 
+#include "effects/edge_radius.h"
 #include "effects/effect.h"
 #include "effects/flow_meter_lag.h"
 #include "effects/magnetic_hysteresis.h"
 #include "effects/mains_pickup.h"
 #include "effects/mount_compliance.h"
 #include "effects/nozzle_plugging.h"
+#include "effects/port_line.h"
 #include "effects/sensor_response.h"
 #include "effects/stiction.h"
 #include "effects/supply_droop.h"
@@ -29,7 +31,9 @@ using AllEffects = EffectList<MagneticHysteresis,  //
                               SupplyDroop,         //
                               MainsPickup,         //
                               SensorResponse,      //
-                              FlowMeterLag>;
+                              FlowMeterLag,        //
+                              EdgeRadius,          //
+                              PortLine>;
 // A learnt curve costs more than all effects: it has a kernel of its own.
 using CorrectedEffects = Append<AllEffects, Unexplained>;
 inline constexpr int n_values = n_parameters + CorrectedEffects::n_parameters;  // length of a parameter vector
@@ -38,6 +42,7 @@ struct EffectInfo {
   std::string name, place, meaning;
   int first = 0;  // position of its first parameter in a parameter vector
   std::vector<EffectParameter> parameters;
+  bool stand_only = false;  // sought only in logs of a valve on a test stand
 };
 const std::vector<EffectInfo>& effect_list();
 

@@ -2,6 +2,7 @@
 #pragma once
 #include <atomic>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -52,13 +53,16 @@ struct TuneOptions {
   bool quiet = false;
   int population = 50;
   int generations = 30;
-  double heldout = 0.2;  // last part of every log, kept out of the first fit
-  std::vector<std::string> effects = {"magnetic_hysteresis", "mount_compliance"};  // freed beside the table's rows
+  double heldout = 0.2;                             // last part of every log, kept out of the first fit
+  std::optional<std::vector<std::string>> effects;  // freed beside the table's rows; empty: default_effects()
   int moving_average = 1;  // [samples] odd; smooths measurement and simulation alike, also in later commands
   std::string checkpoint;  // file saved every generation; empty: none
   bool resume = false;
   const std::atomic<bool>* stop = nullptr;  // set: finish with the best so far
 };
+
+// What a tune frees unless told: of a valve on an actuator, and of one on a test stand.
+std::vector<std::string> default_effects(bool on_stand);
 
 struct TuneResult {
   Table table;  // the tuned table

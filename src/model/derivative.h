@@ -29,12 +29,12 @@ auto orifice_flow(const C& conductance, const P& dp, const T& transition) {
 template <class X, class P, class T>
 inline __attribute__((always_inline)) auto metering_edge(const X& opening, const P& dp, const Derived<T>& d) {
   namespace c = constants;
-  const auto length = smooth_abs(opening, T(c::edge_rounding));
+  const auto length = smooth_abs(opening, d.edge_rounding);
   const auto open = (opening + length) * T(0.5);
   const auto covered = (length - opening) * T(0.5);
   const auto h2 = open * open + d.clearance2;
   const auto [h, per_h] = both_roots(h2);
-  const auto r = d.slot_per_length * (h * covered) + d.slot_corner * per_h;  // [Pa s/m2] per width, times h
+  const auto r = (d.slot_per_length * covered + d.slot_corner) * per_h;  // [Pa s/m] times width and h
   const auto k = d.edge_loss + d.hose_loss * h2;
   const auto q = d.twice_width * h * dp *
                  inverse(r + root(r * r + k * smooth_abs(dp, T(c::orifice_transition))));

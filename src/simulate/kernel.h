@@ -249,9 +249,11 @@ void run_pack(const Scenario& in, const ParameterVector* const* candidates, Traj
     settling.settle_rate = T(rate) / (d.inverse_spool_mass * force_per_amp);
     for (int k = 0; k < 60; ++k) {
       settling.at.friction.rest(y[s_x_spool], y[s_x_piston]);
+      effects_at_rest(y.data(), p.data(), Effects{});
       rodas3_step<T>(settling, y, k < 20 ? 2e-4 : 1e-3);
     }
   }
+  effects_at_rest(y.data(), p.data(), Effects{});
   Drive<T, Effects> drive;
   drive.rest(y[s_current]);  // the history that ends at the current which holds the spool
   T current = drive(in.time[0], T(in.command[0]) + null, p.data(), rated);
