@@ -101,16 +101,19 @@ TEST(TestStand, LessOverlapIsASteeperLoadPressureAndMoreLeakageAtNull) {
 }
 
 TEST(TestStand, ACreepingSweepCostsAStepASampleAndLosesNothing) {
-  const ParameterVector v = candidate_of(shipped_table());
-  const Scenario s = stand(Ports::blocked, 0.1 * rated, 40, 100);
-  SimulateOptions fine = all_signals();
-  fine.creep_step = fine.step;
-  const Trajectory coarse = simulate(s, v, all_signals()), exact = simulate(s, v, fine);
-  for (Signal signal : {Signal::load_pressure, Signal::leakage_flow, Signal::spool_position}) {
-    double worst = 0;
-    for (std::size_t k = 0; k < s.time.size(); ++k)
-      worst = std::max(worst, std::fabs(of(coarse, signal)[k] - of(exact, signal)[k]));
-    EXPECT_LT(worst, 2e-3 * largest(of(exact, signal))) << info(signal).name;
+  ParameterVector v = candidate_of(shipped_table());
+  for (double volume : {2e-5, 1e-3}) {
+    v[row::dead_volume_a] = v[row::dead_volume_b] = volume;
+    const Scenario s = stand(Ports::blocked, 0.2 * rated, 40, 100);
+    SimulateOptions fine = all_signals();
+    fine.creep_step = fine.step;
+    const Trajectory coarse = simulate(s, v, all_signals()), exact = simulate(s, v, fine);
+    for (Signal signal : {Signal::load_pressure, Signal::leakage_flow, Signal::spool_position}) {
+      double worst = 0;
+      for (std::size_t k = 0; k < s.time.size(); ++k)
+        worst = std::max(worst, std::fabs(of(coarse, signal)[k] - of(exact, signal)[k]));
+      EXPECT_LT(worst, 5e-3 * largest(of(exact, signal))) << info(signal).name << ' ' << volume;
+    }
   }
 }
 
