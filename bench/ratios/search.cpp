@@ -31,6 +31,7 @@ std::optional<long> ours(const Twin& twin, int seed) {
   o.difference_step = 1e-4;
   o.compressed_first_pass = true;
   o.cost_goal = twin.goal();
+  o.slow_iterations = 5;
   long used = 0;
   for (std::uint32_t round = 0; used < patience; ++round) {
     std::vector<Point> points;

@@ -48,9 +48,14 @@ class Twin {
     floor = 0.5 * sum;
   }
 
+  // The table's box; the null within what a fit of a fault-free valve allows it (fit/tune.cpp).
   ParameterVector candidate(const Point& x) const {
+    constexpr double null_limit = 0.1;
     ParameterVector v = base_;
-    for (int j = 0; j < n; ++j) v[fitted_rows()[j]] = from_unit(table()[fitted_rows()[j]], x[j]);
+    for (int j = 0; j < n; ++j) {
+      const int r = fitted_rows()[j];
+      v[r] = r == row::servovalve_null ? null_limit * (2 * x[j] - 1) : from_unit(table()[r], x[j]);
+    }
     return v;
   }
   Evaluation whitened(const Trajectory& t) const {
