@@ -66,7 +66,8 @@ class Twin {
     e.residual.resize(4 * samples);
     for (int c = 0; c < 4; ++c)
       for (Eigen::Index k = 0; k < samples; ++k)
-        e.residual[c * samples + k] = (measured_[c][static_cast<std::size_t>(k)] - t.signals[c][static_cast<std::size_t>(k)]) / noise[c];
+        e.residual[c * samples + k] =
+            (measured_[c][static_cast<std::size_t>(k)] - t.signals[c][static_cast<std::size_t>(k)]) / noise[c];
     return e;
   }
   double misfit(const Trajectory& t) const { return t.ok ? 0.5 * whitened(t).residual.squaredNorm() : 1e12; }

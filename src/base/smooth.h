@@ -50,7 +50,8 @@ auto saturate(const X& x, const L& limit, const W& width) {
   return (smooth_abs(x + limit, width) - smooth_abs(x - limit, width)) * 0.5;
 }
 
-// The same with corners that are parabolas within `width` of the limit: exact beyond, and no root. Its slope has corners.
+// The same with corners that are parabolas within `width` of the limit: exact beyond, and no root. Its slope has
+// corners.
 template <class X, class T>
 auto blunt_saturate(const X& x, const T& limit, const T& width) {
   using std::max, std::min;
