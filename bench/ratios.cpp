@@ -40,8 +40,11 @@ int main(int argc, char** argv) {
   std::string json_path;
   bool quick = false;
   const std::vector<std::pair<std::string, void (*)(bench::Report&, const bench::Choice&)>> parts = {
-      {"kernel", bench::kernel_rows}, {"search", bench::search_rows},   {"genetic", bench::genetic_rows},
-      {"loading", bench::loading_rows}, {"scaling", bench::scaling_rows}};
+      {"kernel", bench::kernel_rows},
+      {"search", bench::search_rows},
+      {"genetic", bench::genetic_rows},
+      {"loading", bench::loading_rows},
+      {"scaling", bench::scaling_rows}};
   std::vector<std::string> only;
   CLI::App app("the ratio table, measured");
   app.add_option("--json", json_path, "file for the figures");
@@ -71,8 +74,8 @@ int main(int argc, char** argv) {
   }
   report.json["seconds"] = bench::wall_seconds() - begun;
 
-  fmt::print("{}\n\n{:<66} {:>10} {:>10} {:>10}  {}\n", report.json["machine"].get<std::string>(), "what", "must", "aim",
-             "measured", "spread");
+  fmt::print("{}\n\n{:<66} {:>10} {:>10} {:>10}  {}\n", report.json["machine"].get<std::string>(), "what", "must",
+             "aim", "measured", "spread");
   for (const bench::Row& r : report.rows)
     fmt::print("{:<66} {:>10} {:>10} {:>10}  {}\n", r.what, r.must, r.aim, r.measured, r.spread);
   fmt::print("\n");

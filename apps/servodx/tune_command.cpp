@@ -6,6 +6,7 @@
 #include "commands.h"
 #include "effects/registry.h"
 #include "fit/free_values.h"
+#include "fit/log_data.h"
 #include "fit/tune.h"
 #include "invocation.h"
 #include "report/columns.h"
@@ -19,7 +20,7 @@ struct Options {
   CommonOptions common;
   std::vector<std::string> logs;
   std::string params, output;
-  std::string effects = report::join(TuneOptions{}.effects, ",");  // or "none"
+  std::string effects;  // or "none"; empty: as fits the logs
   std::string local = "least_squares", profile;
   TuneOptions tune;
 };
@@ -37,7 +38,7 @@ std::vector<std::string> effects_of(const std::string& list) {
 
 int run(const Options& options) {
   TuneOptions tune_options = options.tune;
-  tune_options.effects = effects_of(options.effects);
+  if (!options.effects.empty()) tune_options.effects = effects_of(options.effects);
   require_option(!tune_options.resume || !tune_options.checkpoint.empty(), "--resume",
                  "there is nothing to resume from", "add --checkpoint FILE");
   require_option(!tune_options.resume || std::filesystem::exists(tune_options.checkpoint), "--checkpoint",
@@ -63,20 +64,22 @@ int run(const Options& options) {
   invocation.check_files(inputs, outputs);
   const RigFile rig = invocation.rig();
   const Table nominal = invocation.table(options.params);  // tune() applies the facts, effects' rows included
+  const std::vector<Log> logs = invocation.logs(options.logs, rig);
+
+  if (!tune_options.effects) tune_options.effects = default_effects(all_on_test_stand(logs, rig));
   for (const std::string& name : tune_options.profile)
     if (Table with_effects = nominal; name != "all" && !name.empty()) {
-      add_effect_rows(with_effects, tune_options.effects);
+      add_effect_rows(with_effects, *tune_options.effects);
       require_option(with_effects.find(name) >= 0, "--profile", "the table has no row '" + name + "'",
                      "name rows of the table, with commas between, or 'all'");
     }
-  const std::vector<Log> logs = invocation.logs(options.logs, rig);
 
   report::Header& header = invocation.header();
   header.settings = {{"population", tune_options.population},
                      {"generations", tune_options.generations},
                      {"heldout", tune_options.heldout},
                      {"moving_average", tune_options.moving_average},
-                     {"effects", tune_options.effects},
+                     {"effects", *tune_options.effects},
                      {"local", options.local},
                      {"profile", options.profile}};
   if (invocation.dry_run()) return ran;
@@ -124,7 +127,8 @@ void add_tune_command(CLI::App& app, int& exit_code) {
       ->capture_default_str();
   command->add_option("--effects", options->effects, "effects freed beside the table's rows, or 'none'")
       ->type_name("A,B")
-      ->capture_default_str();
+      ->default_str(report::join(default_effects(false), ",") + "; on a test stand " +
+                    report::join(default_effects(true), ","));
   command
       ->add_option("--local", options->local,
                    "local stage: least_squares, or nlopt (without derivatives, slower) where friction sticks and slips")

@@ -89,14 +89,15 @@ std::optional<Trajectory> run_cvode(const Scenario& in, const ParameterVector& p
   SUNLinearSolver solver = SUNLinSol_Dense(y, matrix, context);
   bool good = CVodeInit(cvode, rate, in.time[0], y) == CV_SUCCESS &&
               CVodeSVtolerances(cvode, setting.tolerance, tolerance) == CV_SUCCESS &&
-              CVodeSetUserData(cvode, &run) == CV_SUCCESS && CVodeSetLinearSolver(cvode, solver, matrix) == CV_SUCCESS &&
+              CVodeSetUserData(cvode, &run) == CV_SUCCESS &&
+              CVodeSetLinearSolver(cvode, solver, matrix) == CV_SUCCESS &&
               CVodeSetJacFn(cvode, jacobian) == CV_SUCCESS && CVodeSetMaxOrd(cvode, 2) == CV_SUCCESS &&
               CVodeSetMaxNumSteps(cvode, 1000000) == CV_SUCCESS;
   Trajectory out;
   const auto report = [&](const std::array<double, n>& s) {
-    const double values[] = {s[s_x_spool], p[row::position_sensor_gain] *
-                                               (s[s_x_piston] - p[row::position_sensor_lag] * s[s_v_piston]),
-                             s[s_p_a], s[s_p_b]};
+    const double values[] = {
+        s[s_x_spool], p[row::position_sensor_gain] * (s[s_x_piston] - p[row::position_sensor_lag] * s[s_v_piston]),
+        s[s_p_a], s[s_p_b]};
     for (int c = 0; c < 4; ++c) out.signals[c].push_back(values[c]);
   };
   report(x);

@@ -1,6 +1,6 @@
-// The model under SUNDIALS' CVODE: BDF held to order 2 (the lightly damped pilot mode lies in the lobe where orders 3 to
-// 5 are unstable), analytic Jacobian from the same dual numbers, dense direct solver, the state scaled by tolerances of
-// its own. Friction's anchors are dragged after each of its steps, as they are after each of ours.
+// The model under SUNDIALS' CVODE: BDF held to order 2 (the lightly damped pilot mode lies in the lobe where orders 3
+// to 5 are unstable), analytic Jacobian from the same dual numbers, dense direct solver, the state scaled by tolerances
+// of its own. Friction's anchors are dragged after each of its steps, as they are after each of ours.
 #pragma once
 #include <optional>
 
@@ -9,8 +9,8 @@
 namespace servodx::bench {
 
 struct CvodeSetting {
-  double tolerance = 1e-5;      // relative; absolute: times each state's typical size
-  bool stop_at_knots = false;   // at every sample, where the input bends
+  double tolerance = 1e-5;     // relative; absolute: times each state's typical size
+  bool stop_at_knots = false;  // at every sample, where the input bends
 };
 
 // The reason why there is none, or null.

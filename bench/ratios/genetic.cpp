@@ -1,8 +1,9 @@
 // The global search with its local stage on a log of 10 s, and what a second thread gives it.
+#include "optimise/genetic.h"
+
 #include <fmt/format.h>
 
 #include "optimise/box_least_squares.h"
-#include "optimise/genetic.h"
 #include "ratios/measure.h"
 #include "ratios/rows.h"
 #include "ratios/twin.h"
@@ -58,18 +59,19 @@ void genetic_rows(Report& report, const Choice& choice) {
     total.push_back(last.genetic + last.local);
   }
   const double seconds = median_of(total);
-  report.rows.push_back({"genetic search 50 x 100 and local stage, 10 s log, one core", "15 s", "6 s",
-                         fmt::format("{:.1f} s", seconds),
-                         fmt::format("{:.1f} s of it local; ends at {:.3f} of the floor", last.local, last.cost_over_floor)});
+  report.add({"genetic search 50 x 100 and local stage, 10 s log, one core", "15 s", "6 s",
+              fmt::format("{:.1f} s", seconds),
+              fmt::format("{:.1f} s of it local; ends at {:.3f} of the floor", last.local, last.cost_over_floor)});
   report.json["ga_plus_local_seconds_one_core"] = seconds;
-  report.json["ga_plus_local"] = {{"genetic", last.genetic}, {"local", last.local}, {"cost_over_floor", last.cost_over_floor}};
+  report.json["ga_plus_local"] = {
+      {"genetic", last.genetic}, {"local", last.local}, {"cost_over_floor", last.cost_over_floor}};
 
   // Wall time, so other work on the machine counts against two threads.
   const std::vector<Timing> t =
       take_turns({[&] { breed(alone, 8); }, [&] { breed(both, 8); }}, choice.turns, wall_seconds);
   const double gain = t[0].median / t[1].median;
-  report.rows.push_back({"two threads against one, on the search", "1.8x", "1.95x", fmt::format("{:.2f}x", gain),
-                         fmt::format("best turns {:.2f}x", t[0].low / t[1].low)});
+  report.add({"two threads against one, on the search", "1.8x", "1.95x", fmt::format("{:.2f}x", gain),
+              fmt::format("best turns {:.2f}x", t[0].low / t[1].low)});
   report.json["ga_two_thread_speedup"] = gain;
 }
 

@@ -12,9 +12,9 @@
 namespace servodx::bench {
 namespace {
 
-constexpr double seconds = 4.0;   // simulated
-constexpr int batch = 64;         // candidates
-constexpr double fine = 2e-6;     // [s] step of the reference
+constexpr double seconds = 4.0;  // simulated
+constexpr int batch = 64;        // candidates
+constexpr double fine = 2e-6;    // [s] step of the reference
 
 // The cheapest setting of CVODE that errs no more than `error`.
 std::optional<CvodeSetting> fair_setting(const Scenario& s, const ParameterVector& v, const Trajectory& truth,
@@ -81,8 +81,7 @@ void kernel_rows(Report& report, const Choice& choice) {
   LogData log;
   log.scenario = s;
   for (Signal signal : {Signal::spool_position, Signal::piston_position, Signal::pressure_a, Signal::pressure_b})
-    log.channels.push_back(
-        {signal, simulated_index(signal), truth.signals[simulated_index(signal)], 1e-3, Filter{}});
+    log.channels.push_back({signal, simulated_index(signal), truth.signals[simulated_index(signal)], 1e-3, Filter{}});
   std::vector<FreeValue> free;
   for (int r = 0; r < n_parameters; ++r)
     free.push_back({.name = table()[r].name,
@@ -105,18 +104,18 @@ void kernel_rows(Report& report, const Choice& choice) {
   const auto spread = [&](const Timing& a, double by) {
     return fmt::format("{:.3g} to {:.3g} ms/s", a.low * by, a.high * by);
   };
-  report.notes.push_back(fmt::format("error of ours on the chamber pressures {:.3f} % of range (reference: step {:g} s)",
-                                     100 * error, fine));
+  report.notes.push_back(fmt::format(
+      "error of ours on the chamber pressures {:.3f} % of range (reference: step {:g} s)", 100 * error, fine));
   report.json["ms_per_simulated_second_alone"] = took[0].median * per_second;
   report.json["ms_per_simulated_second_in_a_batch"] = took[1].median * per_second / batch;
 
   if (setting) {
     const auto& c = took[3];
     const double scalar = c.median / took[0].median, packed = c.median / (took[1].median / batch);
-    report.rows.push_back({"one simulation against CVODE of order 2, equal error", "15x", "35x",
-                           fmt::format("{:.1f}x", scalar), spread(took[0], per_second)});
-    report.rows.push_back({"batch against the same, per core", "120x", "250x", fmt::format("{:.0f}x", packed),
-                           spread(took[1], per_second / batch)});
+    report.add({"one simulation against CVODE of order 2, equal error", "15x", "35x", fmt::format("{:.1f}x", scalar),
+                spread(took[0], per_second)});
+    report.add({"batch against the same, per core", "120x", "250x", fmt::format("{:.0f}x", packed),
+                spread(took[1], per_second / batch)});
     report.json["scalar_vs_cvode2"] = scalar;
     report.json["batch_vs_cvode2"] = packed;
     report.json["cvode2"]["tolerance"] = setting->tolerance;
@@ -129,20 +128,20 @@ void kernel_rows(Report& report, const Choice& choice) {
     const std::string why = cvode_missing() ? cvode_missing() : "no tolerance of CVODE reaches this error";
     for (const char* key : {"scalar_vs_cvode2", "batch_vs_cvode2"}) report.json[key] = nullptr;
     report.json["reasons"]["cvode2"] = why;
-    report.rows.push_back({"one simulation and a batch against CVODE of order 2", "15x, 120x", "35x, 250x", "-", why});
+    report.add({"one simulation and a batch against CVODE of order 2", "15x, 120x", "35x, 250x", "-", why});
   }
   const double factor = batch * seconds / took[1].median;
-  report.rows.push_back({"simulated over wall seconds, per core", "4500", "8000", fmt::format("{:.0f}", factor),
-                         fmt::format("{:.0f} to {:.0f}", batch * seconds / took[1].high, batch * seconds / took[1].low)});
+  report.add({"simulated over wall seconds, per core", "4500", "8000", fmt::format("{:.0f}", factor),
+              fmt::format("{:.0f} to {:.0f}", batch * seconds / took[1].high, batch * seconds / took[1].low)});
   report.json["realtime_factor_per_core"] = factor;
   const double sims = took[2].median / took[0].median;
-  report.rows.push_back({"Jacobian of 41 parameters, in simulations", "7", "3.6", fmt::format("{:.1f}", sims),
-                         fmt::format("{:.1f} to {:.1f}", took[2].low / took[0].median, took[2].high / took[0].median)});
+  report.add({"Jacobian of 41 parameters, in simulations", "7", "3.6", fmt::format("{:.1f}", sims),
+              fmt::format("{:.1f} to {:.1f}", took[2].low / took[0].median, took[2].high / took[0].median)});
   report.json["jacobian_in_simulations"] = sims;
 
   const long failed = failures(false), failed_all = failures(true);
-  report.rows.push_back({"failed of 10,000 random sets of the fitted rows", "0", "0", fmt::format("{}", failed),
-                         fmt::format("all 41 rows: {}", failed_all)});
+  report.add({"failed of 10,000 random sets of the fitted rows", "0", "0", fmt::format("{}", failed),
+              fmt::format("all 41 rows: {}", failed_all)});
   report.json["failed_of_10000"] = failed;
   report.json["failed_of_10000_all_41_rows"] = failed_all;
 }

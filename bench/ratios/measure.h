@@ -1,5 +1,5 @@
-// Times on a machine that does other things too: what is compared takes turns, a thread's own processor time counts, and
-// the median of the turns stands, with the lowest and the highest as spread.
+// Times on a machine that does other things too: what is compared takes turns, a thread's own processor time counts,
+// and the median of the turns stands, with the lowest and the highest as spread.
 #pragma once
 #include <time.h>
 

@@ -31,8 +31,7 @@ struct Objective {
 };
 template <class Make>
 Peer pagmo_peer(const char* name, unsigned population, Make make) {
-  return {std::string("pagmo2 ") + name,
-          [=](int n, const std::function<double(const Point&)>& cost, unsigned seed) {
+  return {std::string("pagmo2 ") + name, [=](int n, const std::function<double(const Point&)>& cost, unsigned seed) {
             pagmo::population people{pagmo::problem{Objective{n, &cost}}, population, seed};
             pagmo::algorithm{make(seed)}.evolve(people);
           }};
@@ -40,8 +39,7 @@ Peer pagmo_peer(const char* name, unsigned population, Make make) {
 #endif
 #ifdef SERVODX_HAVE_NLOPT
 Peer nlopt_peer(const char* name, nlopt::algorithm algorithm) {
-  return {std::string("NLopt ") + name,
-          [=](int n, const std::function<double(const Point&)>& cost, unsigned seed) {
+  return {std::string("NLopt ") + name, [=](int n, const std::function<double(const Point&)>& cost, unsigned seed) {
             nlopt::srand(seed);
             nlopt::opt search(algorithm, static_cast<unsigned>(n));
             search.set_lower_bounds(0.0);
@@ -82,8 +80,7 @@ const std::vector<Peer>& peers() {
                  [](unsigned s) {
                    return pagmo::de1220(ever, {2u, 3u, 7u, 10u, 13u, 14u, 15u, 16u}, 1u, 0, 0, false, s);
                  }),
-      pagmo_peer("cmaes", 20,
-                 [](unsigned s) { return pagmo::cmaes(ever, -1, -1, -1, -1, 0.3, 0, 0, false, true, s); }),
+      pagmo_peer("cmaes", 20, [](unsigned s) { return pagmo::cmaes(ever, -1, -1, -1, -1, 0.3, 0, 0, false, true, s); }),
 #endif
 #ifdef SERVODX_HAVE_NLOPT
       nlopt_peer("CRS2", nlopt::GN_CRS2_LM),

@@ -1,5 +1,7 @@
 // A row of the table: what is asked, what was measured, and what goes into the JSON file.
 #pragma once
+#include <fmt/format.h>
+
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
@@ -14,6 +16,12 @@ struct Report {
   std::vector<Row> rows;
   std::vector<std::string> notes;
   nlohmann::ordered_json json;
+
+  // The row goes to standard error as soon as it is known: the whole takes minutes.
+  void add(Row row) {
+    fmt::print(stderr, "  {}: {} ({})\n", row.what, row.measured, row.spread);
+    rows.push_back(std::move(row));
+  }
 };
 
 struct Choice {

@@ -18,8 +18,8 @@ double exponent(const std::vector<std::pair<double, double>>& points) {
   return (n * xy - x * y) / (n * xx - x * x);
 }
 
-void add(Report& report, const char* over, const std::vector<double>& at, const std::vector<std::function<void()>>& tasks,
-         int turns) {
+void add(Report& report, const char* over, const std::vector<double>& at,
+         const std::vector<std::function<void()>>& tasks, int turns) {
   const std::vector<Timing> t = take_turns(tasks, turns);
   std::vector<std::pair<double, double>> points;
   for (std::size_t i = 0; i < at.size(); ++i) {

@@ -31,6 +31,7 @@ std::optional<long> ours(const Twin& twin, int seed) {
   o.difference_step = 1e-4;
   o.compressed_first_pass = true;
   o.cost_goal = twin.goal();
+  o.slow_iterations = 5;
   long used = 0;
   for (std::uint32_t round = 0; used < patience; ++round) {
     std::vector<Point> points;
@@ -98,7 +99,8 @@ class Desk {
         if (s.waiting) now.push_back(&s);
       std::vector<Trajectory> t(now.size());
       std::vector<Job> jobs;
-      for (std::size_t i = 0; i < now.size(); ++i) jobs.push_back({&now[i]->twin->scenario(), &now[i]->candidate, &t[i]});
+      for (std::size_t i = 0; i < now.size(); ++i)
+        jobs.push_back({&now[i]->twin->scenario(), &now[i]->candidate, &t[i]});
       simulate(jobs, {});
       for (std::size_t i = 0; i < now.size(); ++i) now[i]->cost = now[i]->twin->misfit(t[i]), now[i]->waiting = false;
       waiting_ = 0;
@@ -165,9 +167,9 @@ void search_rows(Report& report, const Choice& choice) {
     const std::string key = std::to_string(n);
     report.json["simulations_to_floor"][key] = {
         {"median", or_null(median)}, {"successes", count}, {"seeds", choice.seeds}, {"lowest", low}, {"highest", high}};
-    report.rows.push_back({fmt::format("simulations to 1.05 of the floor, {} parameters", n), "1000", "500",
-                           median ? fmt::format("{:.0f}", *median) : "-",
-                           fmt::format("{} of {} seeds, {} to {}", count, choice.seeds, low, high)});
+    report.add({fmt::format("simulations to 1.05 of the floor, {} parameters", n), "1000", "500",
+                median ? fmt::format("{:.0f}", *median) : "-",
+                fmt::format("{} of {} seeds, {} to {}", count, choice.seeds, low, high)});
 
     if (peers().empty() || !median || choice.peer_budget <= 0) {
       report.json["best_peer"][key] = nullptr;
@@ -181,18 +183,16 @@ void search_rows(Report& report, const Choice& choice) {
       return std::count_if(reached[p].begin(), reached[p].end(), [](const auto& u) { return u.has_value(); });
     };
     for (std::size_t p = 0; p < reached.size(); ++p) {
-      report.json["peers"][key][peers()[p].name] = {{"successes", successes(p)}, {"median", or_null(median_of(reached[p]))}};
+      report.json["peers"][key][peers()[p].name] = {{"successes", successes(p)},
+                                                    {"median", or_null(median_of(reached[p]))}};
       if (successes(p) > successes(best)) best = p;
     }
     const std::optional<double> theirs = median_of(reached[best]);
-    report.json["best_peer"][key] = {{"name", peers()[best].name},
-                                     {"median", or_null(theirs)},
-                                     {"successes", successes(best)},
-                                     {"budget", budget}};
-    report.rows.push_back(
-        {fmt::format("the best of {} peers, {} parameters, over ours", peers().size(), n), "5x", "10x",
-         theirs ? fmt::format("{:.1f}x", *theirs / *median) : fmt::format("over {:.0f}x", choice.peer_budget),
-         fmt::format("{}: {} of {} seeds in {}", peers()[best].name, successes(best), choice.seeds, budget)});
+    report.json["best_peer"][key] = {
+        {"name", peers()[best].name}, {"median", or_null(theirs)}, {"successes", successes(best)}, {"budget", budget}};
+    report.add({fmt::format("the best of {} peers, {} parameters, over ours", peers().size(), n), "5x", "10x",
+                theirs ? fmt::format("{:.1f}x", *theirs / *median) : fmt::format("over {:.0f}x", choice.peer_budget),
+                fmt::format("{}: {} of {} seeds in {}", peers()[best].name, successes(best), choice.seeds, budget)});
   }
 }
 

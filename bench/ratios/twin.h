@@ -48,9 +48,14 @@ class Twin {
     floor = 0.5 * sum;
   }
 
+  // The table's box; the null within what a fit of a fault-free valve allows it (fit/tune.cpp).
   ParameterVector candidate(const Point& x) const {
+    constexpr double null_limit = 0.1;
     ParameterVector v = base_;
-    for (int j = 0; j < n; ++j) v[fitted_rows()[j]] = from_unit(table()[fitted_rows()[j]], x[j]);
+    for (int j = 0; j < n; ++j) {
+      const int r = fitted_rows()[j];
+      v[r] = r == row::servovalve_null ? null_limit * (2 * x[j] - 1) : from_unit(table()[r], x[j]);
+    }
     return v;
   }
   Evaluation whitened(const Trajectory& t) const {
@@ -61,7 +66,8 @@ class Twin {
     e.residual.resize(4 * samples);
     for (int c = 0; c < 4; ++c)
       for (Eigen::Index k = 0; k < samples; ++k)
-        e.residual[c * samples + k] = (measured_[c][static_cast<std::size_t>(k)] - t.signals[c][static_cast<std::size_t>(k)]) / noise[c];
+        e.residual[c * samples + k] =
+            (measured_[c][static_cast<std::size_t>(k)] - t.signals[c][static_cast<std::size_t>(k)]) / noise[c];
     return e;
   }
   double misfit(const Trajectory& t) const { return t.ok ? 0.5 * whitened(t).residual.squaredNorm() : 1e12; }

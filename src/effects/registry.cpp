@@ -9,6 +9,7 @@ std::vector<EffectInfo> describe(EffectList<E...>) {
   (
       [&] {
         all.push_back({E::name, E::place, E::meaning, at, {E::parameters, E::parameters + E::n_parameters}});
+        if constexpr (requires { E::stand_only; }) all.back().stand_only = E::stand_only;
         at += E::n_parameters;
       }(),
       ...);

@@ -3,12 +3,14 @@
 #include <string>
 #include <vector>
 
+#include "effects/edge_radius.h"
 #include "effects/effect.h"
 #include "effects/flow_meter_lag.h"
 #include "effects/magnetic_hysteresis.h"
 #include "effects/mains_pickup.h"
 #include "effects/mount_compliance.h"
 #include "effects/nozzle_plugging.h"
+#include "effects/port_line.h"
 #include "effects/rod_cavity.h"
 #include "effects/sensor_response.h"
 #include "effects/stiction.h"
@@ -31,6 +33,8 @@ using AllEffects = EffectList<MagneticHysteresis,  //
                               MainsPickup,         //
                               SensorResponse,      //
                               FlowMeterLag,        //
+                              EdgeRadius,          //
+                              PortLine,            //
                               RodCavity>;
 // A learnt curve costs more than all effects: it has a kernel of its own.
 using CorrectedEffects = Append<AllEffects, Unexplained>;
@@ -40,6 +44,7 @@ struct EffectInfo {
   std::string name, place, meaning;
   int first = 0;  // position of its first parameter in a parameter vector
   std::vector<EffectParameter> parameters;
+  bool stand_only = false;  // sought only in logs of a valve on a test stand
 };
 const std::vector<EffectInfo>& effect_list();
 

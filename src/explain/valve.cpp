@@ -29,6 +29,8 @@ const std::map<std::string, const char*> tests = {
     {"mount_compliance", "steps into a stiff load: the body's resonance in the load pressure"},
     {"mains_pickup", "rest: a line at the mains frequency with the valve still"},
     {"viscosity_change", "the same test in cold and in hot oil"},
+    {"edge_radius", "the pressure's slope at null beside the leakage there: blunt edges leak more at the same slope"},
+    {"port_line", "leakage sweeps at two rates, ports blocked: a tail after null that lasts as long at either"},
     {"supply_droop", "full steps with the supply pressure measured at the valve"},
     {"stribeck_friction", "slow ramps through standstill, both ways"},
     {"asymmetric_lap", "slow triangle about null with ports loaded"},
@@ -167,6 +169,9 @@ void ValveSubject::add_causes(const RigFile& rig) {
     });
   };
 
+  const bool on_stand =
+      std::any_of(logs_.begin(), logs_.end(), [](const LogData& l) { return l.scenario.ports != Ports::actuator; });
+
   // Sensors and clocks are suspects before physics.
   for (const EffectInfo& e : effect_list()) {
     const auto value_of = [&](int j) {
@@ -236,7 +241,7 @@ void ValveSubject::add_causes(const RigFile& rig) {
       for (int k = 0; k < FlowMeterLag::n_parameters; ++k) add_sensor(k, FlowMeterLag::shown_at[k], "sensor_lag");
       continue;
     }
-    if (e.name == Unexplained::name) continue;
+    if (e.name == Unexplained::name || (e.stand_only && !on_stand)) continue;
     Cause cause;
     cause.effect = e.name;
     cause.where = e.place;

@@ -130,6 +130,10 @@ Ports ports_of(const Log& log, const RigFile& rig) {
   return rig.ports;
 }
 
+bool all_on_test_stand(const std::vector<Log>& logs, const RigFile& rig) {
+  return std::all_of(logs.begin(), logs.end(), [&](const Log& l) { return ports_of(l, rig) != Ports::actuator; });
+}
+
 namespace {
 
 // Free ports: the valve is given its drop, as logged or as the data sheet rates its flow, where no supply was logged.

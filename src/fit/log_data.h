@@ -34,6 +34,7 @@ inline constexpr double piston_high_pass = 0.3;  // [Hz]
 // Where the log was taken: the rig file's `ports`, or what the log itself says of a valve on a test stand. Leakage flow
 // is measured with the ports blocked, control flow with the ports free; without either the rig file decides.
 Ports ports_of(const Log& log, const RigFile& rig);
+bool all_on_test_stand(const std::vector<Log>& logs, const RigFile& rig);
 
 // `window` [samples]: moving average of every channel, 1 for none. The rig file's mains frequency is notched out.
 // What follows a gap in time is not compared until the valve has forgotten what passed in it.

@@ -231,6 +231,11 @@ LeastSquaresResult refine(Tuning& run, FitProblem& problem, Point x, ErrorModel&
 
 }  // namespace
 
+std::vector<std::string> default_effects(bool on_stand) {
+  if (on_stand) return {"magnetic_hysteresis", "flow_meter_lag", "edge_radius", "port_line"};
+  return {"magnetic_hysteresis", "mount_compliance"};
+}
+
 int moving_average_of(const Table& table) {
   for (const std::string& line : table.comments)
     if (const std::size_t at = line.find(average_key); at != std::string::npos)
@@ -266,8 +271,11 @@ TuneResult tune(const std::vector<Log>& logs, const Table& nominal, const RigFil
     require_channels(d);
     run.logs.push_back(&d);
   }
-  add_effect_rows(run.table, options.effects);
-  run.table = apply_rig_facts(run.table, rig);
+  const bool on_stand = all_on_test_stand(logs, rig);
+  RigFile facts = rig;
+  if (on_stand && facts.ports == Ports::actuator) facts.ports = Ports::blocked;  // the logs say so
+  add_effect_rows(run.table, options.effects.value_or(default_effects(on_stand)));
+  run.table = apply_rig_facts(run.table, facts);
   run.base = candidate_of(run.table);
   run.shared = shared_values(run.table);
   for (std::size_t l = 0; l < run.data.size(); ++l) {

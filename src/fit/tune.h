@@ -3,6 +3,7 @@
 #include <atomic>
 #include <cstdint>
 #include <limits>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -58,7 +59,7 @@ struct TuneOptions {
   int generations = 30;
   int rounds = 4;  // most of the last stage (12 steps, then new weights); it ends early where it converges
   double heldout = 0.2;  // last part of every log, kept out of the first fit
-  std::vector<std::string> effects = {"magnetic_hysteresis", "mount_compliance"};  // freed beside the table's rows
+  std::optional<std::vector<std::string>> effects;  // freed beside the table's rows; empty: default_effects()
   bool derivative_free = false;      // local stage by NLopt: where differences are not to be trusted
   std::vector<std::string> profile;  // rows whose interval is checked by profile likelihood; "all": every one
   int moving_average = 1;            // [samples] odd; smooths measurement and simulation alike, also in later commands
@@ -66,6 +67,9 @@ struct TuneOptions {
   bool resume = false;
   const std::atomic<bool>* stop = nullptr;  // set: finish with the best so far
 };
+
+// What a tune frees unless told: of a valve on an actuator, and of one on a test stand.
+std::vector<std::string> default_effects(bool on_stand);
 
 struct TuneResult {
   Table table;  // the tuned table

@@ -29,23 +29,22 @@ auto orifice_flow(const C& conductance, const P& dp, const T& transition) {
 template <class X, class P, class T>
 inline __attribute__((always_inline)) auto metering_edge(const X& opening, const P& dp, const Derived<T>& d) {
   namespace c = constants;
-  const auto length = smooth_abs(opening, T(c::edge_rounding));
+  const auto length = smooth_abs(opening, d.edge_rounding);
   const auto open = (opening + length) * T(0.5);
   const auto covered = (length - opening) * T(0.5);
   const auto h2 = open * open + d.clearance2;
   const auto [h, per_h] = both_roots(h2);
-  const auto r = d.slot_per_length * (h * covered) + d.slot_corner * per_h;  // [Pa s/m2] per width, times h
+  const auto r = (d.slot_per_length * covered + d.slot_corner) * per_h;  // [Pa s/m] times width and h
   const auto k = d.edge_loss + d.hose_loss * h2;
-  const auto q = d.twice_width * h * dp *
-                 inverse(r + root(r * r + k * smooth_abs(dp, T(c::orifice_transition))));
+  const auto q = d.twice_width * h * dp * inverse(r + root(r * r + k * smooth_abs(dp, T(c::orifice_transition))));
   return std::make_tuple(q, h);
 }
 
 // With derivatives: taken in the edge's own two variables, then carried to what those depend on.
 template <class T, Mask A, Mask B>
-requires(A != 1 || B != 2) inline __attribute__((always_inline)) auto metering_edge(const Dual<T, A>& opening,
-                                                                                     const Dual<T, B>& dp,
-                                                                                     const Derived<T>& d) {
+requires(A != 1 || B != 2) inline
+    __attribute__((always_inline)) auto metering_edge(const Dual<T, A>& opening, const Dual<T, B>& dp,
+                                                      const Derived<T>& d) {
   const auto [q, h] = metering_edge(seed<0>(opening.v, T(1.0)), seed<1>(dp.v, T(1.0)), d);
   return std::make_tuple(chain(q.v, opening, q.d[0], dp, q.d[1]), chain(h.v, opening, h.d[0]));
 }
@@ -112,8 +111,7 @@ inline __attribute__((always_inline)) auto derivative(const S& s, const In& in, 
   // force would take a free flapper, and the flapper follows it up to the nozzle. That leaves out the impact (a few
   // tenths of a millisecond) and keeps a wall out of the equations, which no linearly implicit step sees coming.
   const auto x_f = saturate(z_f, p[row::nozzle_gap], T(c::stop_rounding));
-  const auto wire =
-      p[row::feedback_wire_stiffness] * dead_zone(x_s + x_f, d.half_backlash, T(c::backlash_rounding));
+  const auto wire = p[row::feedback_wire_stiffness] * dead_zone(x_s + x_f, d.half_backlash, T(c::backlash_rounding));
   const auto f_flapper = p[row::torque_motor_gain] * i - p[row::flapper_stiffness] * z_f - wire -
                          d.nozzle_area * (p_1 - p_2) + hook_flapper_force(view, Effects{});
   const auto dv_f = d.flapper_rate2 * f_flapper - d.flapper_damping * v_f;
@@ -140,9 +138,8 @@ inline __attribute__((always_inline)) auto derivative(const S& s, const In& in, 
   const auto [q_bt, h_bt] = metering_edge(x_m - p[row::lap_bt], p_b - u.return_pressure, d);
 
   // Spool.
-  const auto f_flow = d.flow_force *
-                      (h_pa * (u.supply_pressure - p_a) + h_bt * (p_b - u.return_pressure) -
-                       h_pb * (u.supply_pressure - p_b) - h_at * (p_a - u.return_pressure));
+  const auto f_flow = d.flow_force * (h_pa * (u.supply_pressure - p_a) + h_bt * (p_b - u.return_pressure) -
+                                      h_pb * (u.supply_pressure - p_b) - h_at * (p_a - u.return_pressure));
   const auto f_dry =
       p[row::spool_friction] * asperities<T>((x_s - in.friction.spool_anchor) * T(1.0 / c::spool_presliding));
   const auto over_spool = soft_positive(x_s - p[row::spool_stop], T(c::spool_stop_rounding));

@@ -31,18 +31,19 @@ struct Derived {
   T flow_force;          // [m] times open height and pressure drop
   T twice_width;         // [m]
   T clearance2;          // [m2]
-  T slot_per_length;     // [Pa s/m4 ...] laminar resistance of a covered edge, per length, times opening and width
-  T slot_corner;         // the same for the corner of an open edge
+  T slot_per_length;     // [Pa s/m] laminar resistance of a covered edge per length, times width and opening squared
+  T slot_corner;         // [Pa s] the same of the corner of an open edge
+  T edge_rounding;       // [m] corner radius of the metering edges
   T edge_loss;           // [Pa s2/m4] 4 rho / (2 Cd^2)
   T hose_loss;           // 4 hose_resistance width^2
   // actuator
-  T leak;          // [m3/s/Pa]
-  T viscous;       // [N s/m]
-  T inverse_mass;  // [1/kg]
-  T half_stroke;   // [m]
+  T leak;                              // [m3/s/Pa]
+  T viscous;                           // [N s/m]
+  T inverse_mass;                      // [1/kg]
+  T half_stroke;                       // [m]
   T middle_volume_a, middle_volume_b;  // [m3] at mid-stroke
-  T inverse_bulk;  // [1/Pa]
-  T air;           // [Pa] free air fraction times atmospheric pressure
+  T inverse_bulk;                      // [1/Pa]
+  T air;                               // [Pa] free air fraction times atmospheric pressure
 };
 
 // p: a candidate in SI.
@@ -80,8 +81,9 @@ Derived<T> derive(const T* p, const Oil& oil) {
   d.clearance2 = p[row::radial_clearance] * p[row::radial_clearance];
   // Plane Couette slot: dp = 12 mu L q / (w c^3); an open edge has a creeping-flow length of some openings.
   const T slot = T(12.0) * dynamic_viscosity;
-  d.slot_per_length = slot / (d.clearance2 * p[row::radial_clearance]);
+  d.slot_per_length = slot / p[row::radial_clearance];
   d.slot_corner = slot * T(c::slot_resistance);
+  d.edge_rounding = T(c::edge_rounding) + hook_edge_rounding(p, Effects{});
   d.edge_loss = T(4.0 * oil.density / (2.0 * c::cd_metering * c::cd_metering));
   d.hose_loss = T(4.0) * p[row::hose_resistance] * p[row::port_width] * p[row::port_width];
   d.leak = p[row::cross_piston_leakage] * (T(1.0) / viscosity_ratio);

@@ -3,6 +3,7 @@
 //     struct Memory, drive(memory, time, command, p)  [A]  applied to the command at each sample, with memory of its
 //     past struct Sensors, observe(sensors, time, shown, p)  [SI]  applied to what is reported at each sample
 //     viscosity(p)         [-]   factor on the oil's viscosity
+//     edge_rounding(p)     [m]   added to the corner radius of the metering edges
 //     supply_pressure(view) [Pa] added to the supply pressure at the valve
 //     flapper_force(view)  [N]   added to the torque motor's force
 //     nozzle_1_opening(view, open), nozzle_2_opening(view, open)  [m]  added to the open gap of a nozzle
@@ -12,6 +13,7 @@
 //     piston_force(view)   [N]   added to the force on the piston
 //     body_velocity(view)  [m/s] of the cylinder body; the rod is measured relative to it
 //     derivative(view)     tuple of the derivatives of its own states
+//     at_rest(own, y, p)   sets its own states to where they rest beside the base states y; without it they rest at 0
 // A place without an effect adds nothing, not even a zero.
 #pragma once
 #include <tuple>
@@ -134,6 +136,31 @@ T hook_viscosity([[maybe_unused]] const T* p, EffectList<E...>) {
       }(),
       ...);
   return factor;
+}
+
+// What the effects add to the corner radius of the metering edges. [m]
+template <class T, class... E>
+T hook_edge_rounding([[maybe_unused]] const T* p, EffectList<E...>) {
+  T added = T(0.0);
+  (
+      [&] {
+        if constexpr (requires { E::edge_rounding(p); })
+          added = added + E::edge_rounding(p + n_parameters + EffectList<E...>::template parameter_offset<E>());
+      }(),
+      ...);
+  return added;
+}
+
+// y: all states, the effects' behind the base states.
+template <class T, class... E>
+void effects_at_rest([[maybe_unused]] T* y, [[maybe_unused]] const T* p, EffectList<E...>) {
+  (
+      [&] {
+        if constexpr (requires { E::at_rest(y, y, p); })
+          E::at_rest(y + n_base_states + EffectList<E...>::template state_offset<E>(), y,
+                     p + n_parameters + EffectList<E...>::template parameter_offset<E>());
+      }(),
+      ...);
 }
 
 template <class V, class... E>

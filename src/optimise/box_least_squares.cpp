@@ -360,6 +360,7 @@ class Search {
     damping_ = options_.first_damping;
     radius_ = options_.step_limit;
     bool central = options_.difference == Difference::central;
+    std::vector<double> costs;  // of the pass
     const bool may_refine = last && options_.difference == Difference::forward_then_central;
     for (;;) {
       take_jacobian(central);
@@ -397,6 +398,12 @@ class Search {
       if (options_.max_evaluations > 0 && result_.evaluations >= options_.max_evaluations) {
         stop(StopReason::evaluation_limit,
              "evaluation limit of " + std::to_string(options_.max_evaluations) + "; " + state);
+        return false;
+      }
+      costs.push_back(cost_);
+      const auto slow = static_cast<std::size_t>(options_.slow_iterations);
+      if (slow > 0 && costs.size() > slow && cost_ > 0.9 * costs[costs.size() - 1 - slow]) {
+        stop(StopReason::stalled, "too slow: " + std::to_string(slow) + " iterations; " + state);
         return false;
       }
       if (step(m) == Step::none_better) {
@@ -460,6 +467,7 @@ void LeastSquaresOptions::validate() const {
   require(damping_trials >= 1 && damping_trials <= 64, "damping_trials", "must be 1 to 64");
   require(first_damping > 0 && std::isfinite(first_damping), "first_damping", "must be above 0 and finite");
   require(cost_tolerance >= 0 && cost_tolerance < 1, "cost_tolerance", "must be at least 0 and below 1");
+  require(slow_iterations >= 0, "slow_iterations", "must not be negative (0 means never)");
   require(cost_floor >= 0, "cost_floor", "must not be negative");
   require(step_tolerance > 0 && step_tolerance < step_limit, "step_tolerance",
           "must be above 0 and below 'step_limit'");

@@ -58,6 +58,9 @@ struct LeastSquaresOptions {
   double cost_tolerance = 1e-8;   // converged when the model promises less than this part of the cost
   double cost_floor = 1e-20;      // converged when the cost itself, or the promised gain, is below this
   double step_tolerance = 1e-12;  // of the box; trials shorter than this are a stall
+  // Give up (stalled) after this many iterations that together lower the cost by less than a tenth: a start that leads
+  // nowhere costs more than the next one. 0: never.
+  int slow_iterations = 0;
   double cost_goal = -1;          // stop as soon as the plain misfit 0.5*|e|^2 is at or below this; negative: off
   RobustLoss loss = RobustLoss::none;
   double loss_scale = 1.0;

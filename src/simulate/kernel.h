@@ -207,6 +207,8 @@ void run_pack(const Scenario& in, const ParameterVector* const* candidates, Traj
   if (on_stand) p[row::piston_area_a] = p[row::piston_area_b] = T(0.0);
   Derived<T> d = derive<T, Effects>(p.data(), in.oil);
   if (on_stand) d.leak = T(in.ports == Ports::free ? tube_conductance : 0.0);
+  // A port that empties within a step overshoots return; free air would expand there and hold it below.
+  if (on_stand) d.air = T(0.0);
   const T rated = T(in.rated_current), null = p[row::servovalve_null] * rated;
 
   const auto input = [&](const std::vector<double>& series, std::size_t k, const T& table) {
@@ -253,9 +255,18 @@ void run_pack(const Scenario& in, const ParameterVector* const* candidates, Traj
     settling.settle_rate = T(rate) / (d.inverse_spool_mass * force_per_amp);
     for (int k = 0; k < 60; ++k) {
       settling.at.friction.rest(y[s_x_spool], y[s_x_piston]);
+      effects_at_rest(y.data(), p.data(), Effects{});
       rodas3_step<T>(settling, y, k < 20 ? 2e-4 : 1e-3);
     }
+    // The lines of a stand fill through the edges' leakage: some seconds.
+    if (on_stand)
+      for (int k = 0; k < 500; ++k) {
+        settling.at.friction.rest(y[s_x_spool], y[s_x_piston]);
+        effects_at_rest(y.data(), p.data(), Effects{});
+        rodas3_step<T>(settling, y, 1e-2);
+      }
   }
+  effects_at_rest(y.data(), p.data(), Effects{});
   Drive<T, Effects> drive;
   drive.rest(y[s_current]);  // the history that ends at the current which holds the spool
   T current = drive(in.time[0], T(in.command[0]) + null, p.data(), rated);

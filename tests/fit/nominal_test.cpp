@@ -186,7 +186,10 @@ TEST(RigFacts, ContradictionsAreRefusedAtTheirKey) {
   EXPECT_EQ(refused_at(jet), "valve.first_stage");
   EXPECT_EQ(refused_at(rig_with({{"valve.spool_stop", 0.4e-3}})), "valve.spool_stop");
   EXPECT_EQ(refused_at(rig_with({{"valve.phase_lag_90_frequency", 900}})), "valve.phase_lag_90_frequency");
-  EXPECT_EQ(refused_at(rig_with({{"valve.pilot_leakage", 1.0 / 60000}})), "valve.pilot_leakage");
+  EXPECT_EQ(refused_at(rig_with({{"valve.pilot_leakage", 1.0 / 60000}, {"valve.nozzle_diameter", 0.34e-3}})),
+            "valve.pilot_leakage");
+  // Nozzles that nobody stated are as wide as it takes.
+  EXPECT_EQ(refused_at(rig_with({{"valve.pilot_leakage", 1.0 / 60000}})), "not refused");
   EXPECT_EQ(refused_at(rig_with({{"valve.null_leakage", 0.3 / 60000}, {"valve.pilot_leakage", 0.4 / 60000}})),
             "valve.null_leakage");
   EXPECT_EQ(refused_at(rig_with({{"supply.pressure", 4e5}})), "supply.pressure");

@@ -101,16 +101,19 @@ TEST(TestStand, LessOverlapIsASteeperLoadPressureAndMoreLeakageAtNull) {
 }
 
 TEST(TestStand, ACreepingSweepCostsAStepASampleAndLosesNothing) {
-  const ParameterVector v = candidate_of(shipped_table());
-  const Scenario s = stand(Ports::blocked, 0.1 * rated, 40, 100);
-  SimulateOptions fine = all_signals();
-  fine.creep_step = fine.step;
-  const Trajectory coarse = simulate(s, v, all_signals()), exact = simulate(s, v, fine);
-  for (Signal signal : {Signal::load_pressure, Signal::leakage_flow, Signal::spool_position}) {
-    double worst = 0;
-    for (std::size_t k = 0; k < s.time.size(); ++k)
-      worst = std::max(worst, std::fabs(of(coarse, signal)[k] - of(exact, signal)[k]));
-    EXPECT_LT(worst, 2e-3 * largest(of(exact, signal))) << info(signal).name;
+  ParameterVector v = candidate_of(shipped_table());
+  for (double volume : {2e-5, 1e-3}) {
+    v[row::dead_volume_a] = v[row::dead_volume_b] = volume;
+    const Scenario s = stand(Ports::blocked, 0.2 * rated, 40, 100);
+    SimulateOptions fine = all_signals();
+    fine.creep_step = fine.step;
+    const Trajectory coarse = simulate(s, v, all_signals()), exact = simulate(s, v, fine);
+    for (Signal signal : {Signal::load_pressure, Signal::leakage_flow, Signal::spool_position}) {
+      double worst = 0;
+      for (std::size_t k = 0; k < s.time.size(); ++k)
+        worst = std::max(worst, std::fabs(of(coarse, signal)[k] - of(exact, signal)[k]));
+      EXPECT_LT(worst, 5e-3 * largest(of(exact, signal))) << info(signal).name << ' ' << volume;
+    }
   }
 }
 
@@ -125,6 +128,47 @@ TEST(TestStand, AFlowMetersLagDelaysARampByItself) {
   EXPECT_NEAR(of(late, Signal::control_flow)[at], of(prompt, Signal::control_flow)[at - behind],
               0.01 * largest(of(prompt, Signal::control_flow)));
   EXPECT_NEAR(of(late, Signal::spool_position)[at], of(prompt, Signal::spool_position)[at], 1e-12);
+}
+
+TEST(TestStand, BluntEdgesLeakAtNullAndPassTheSameFlowWhenOpen) {
+  ParameterVector v = candidate_of(shipped_table());
+  const Scenario shut = stand(Ports::blocked, 0.2 * rated, 100, 50), open = stand(Ports::free, rated, 10, 100);
+  double last = 0;
+  const double flow = of(simulate(open, v, all_signals()), Signal::control_flow)[250];
+  for (double radius : {0.0, 5e-6, 10e-6, 20e-6}) {
+    v[effect_row<EdgeRadius>(0)] = radius;
+    const Trajectory t = simulate(shut, v, all_signals());
+    ASSERT_TRUE(t.ok);
+    const double null_leakage = largest(of(t, Signal::leakage_flow));
+    EXPECT_GT(null_leakage, last) << radius;
+    last = null_leakage;
+    EXPECT_NEAR(of(simulate(open, v, all_signals()), Signal::control_flow)[250], flow, 0.01 * flow) << radius;
+  }
+}
+
+TEST(TestStand, AVolumeBehindARestrictionEmptiesIntoTheReturnLineInItsOwnTime) {
+  ParameterVector v = candidate_of(shipped_table());
+  Scenario s = stand(Ports::blocked, 0, 1, 100, 0);
+  s.time.clear(), s.command.clear();
+  for (int k = 0; k < 4000; ++k) {  // A under pressure for 10 s, then open to return
+    s.time.push_back(0.01 * k);
+    s.command.push_back(k < 1000 ? 0.2 * rated : -0.2 * rated);
+  }
+  const Trajectory without = simulate(s, v, all_signals());
+  constexpr double compliance = 1e-12, time = 3.0;
+  v[effect_row<PortLine>(0)] = compliance;
+  v[effect_row<PortLine>(2)] = time;
+  const Trajectory with = simulate(s, v, all_signals());
+  ASSERT_TRUE(with.ok);
+  const auto excess = [&](std::size_t k) {
+    return of(with, Signal::leakage_flow)[k] - of(without, Signal::leakage_flow)[k];
+  };
+  EXPECT_NEAR(excess(999), 0.0, 1e-3 * of(without, Signal::leakage_flow)[999]);  // at rest it takes no part
+  double returned = 0;
+  for (std::size_t k = 1000; k + 1 < 4000; ++k) returned += 0.5 * (excess(k) + excess(k + 1)) * 0.01;
+  const double held = compliance * (of(with, Signal::pressure_a)[999] - of(with, Signal::pressure_a).back());
+  EXPECT_NEAR(returned, held, 0.02 * held);
+  EXPECT_NEAR(excess(1300 + 100) / excess(1000 + 100), std::exp(-1.0), 0.03);
 }
 
 Log bench_log(std::initializer_list<Signal> signals) {

@@ -28,6 +28,9 @@ void stored_rates_balance(const ParameterVector& v) {
     const double stored_a = f[s_p_a] / chamber_stiffness(volume_a, y[s_p_a], d, p) + p[row::piston_area_a] * v_rel;
     const double stored_b = f[s_p_b] / chamber_stiffness(volume_b, y[s_p_b], d, p) - p[row::piston_area_b] * v_rel;
     const auto edge = [&](double opening, double dp) { return std::get<0>(metering_edge(opening, dp, d)); };
+    double lines = 0;  // what goes into the volumes behind the ports
+    if constexpr (Effects::n_states > 0)
+      for (int s : {0, 1}) lines += f[n_base_states + Effects::template state_offset<PortLine>() + s];
     const double in = edge(y[s_x_spool] - p[row::lap_pa], u.supply_pressure - y[s_p_a]) +
                       edge(-y[s_x_spool] - p[row::lap_pb], u.supply_pressure - y[s_p_b]);
     const double out = edge(-y[s_x_spool] - p[row::lap_at], y[s_p_a] - u.return_pressure) +
@@ -38,7 +41,8 @@ void stored_rates_balance(const ParameterVector& v) {
       stored_rod =
           soft_positive(length, RodCavity::shortest) * f[n_base_states + Effects::template state_offset<RodCavity>()];
     }
-    EXPECT_NEAR(stored_a + stored_b + stored_rod, in - out, 1e-9 * (std::abs(in) + std::abs(out) + std::abs(stored_a)))
+    EXPECT_NEAR(stored_a + stored_b + stored_rod + lines, in - out,
+                1e-9 * (std::abs(in) + std::abs(out) + std::abs(stored_a)))
         << trial;
 
     // Pilot stage: what the spool pushes out of one end it takes in at the other. So the rate at which the three nodes

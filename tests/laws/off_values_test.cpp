@@ -1,5 +1,5 @@
-// What is absent changes nothing, to the bit; a lane of a batch is the run alone, to the bit; and instruction sets, whose
-// roots and products round differently, agree far below anything that a log can show.
+// What is absent changes nothing, to the bit; a lane of a batch is the run alone, to the bit; and instruction sets,
+// whose roots and products round differently, agree far below anything that a log can show.
 #include <gtest/gtest.h>
 
 #include <algorithm>

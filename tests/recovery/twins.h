@@ -107,7 +107,7 @@ inline TuneResult tuned(const Twin& twin, int threads) {
   TuneOptions options;
   options.threads = threads;
   options.quiet = true;
-  options.effects = {};
+  options.effects = std::vector<std::string>{};
   options.generations = 0;  // the truth lies near nominal: breadth is not what is asked here
   Table nominal = twin.table;
   rig.facts.erase("actuator.mount_stiffness");
