@@ -89,14 +89,18 @@ TEST_F(MainJob, TuneWritesTheTableAndTheContractsKeys) {
 }
 
 TEST_F(MainJob, AnInterruptedTuneWritesTheBestSoFar) {
+  // On a busy machine half a second may pass before there is anything to interrupt.
   const TemporaryFolder streams;
-  const std::string call =
-      "cd '" + desk().path.string() + "' && timeout --preserve-status -s INT 0.5 '" + SERVODX_PROGRAM +
-      "' tune t1.csv t2.csv --params table.csv --population 100 --generations 100000 -o part.csv >'" +
-      (streams / "out") + "' 2>&1";
-  const int status = std::system(call.c_str());
-  ASSERT_TRUE(WIFEXITED(status));
-  EXPECT_EQ(WEXITSTATUS(status), 130) << bytes_of(streams / "out");
+  for (const char* seconds : {"0.5", "2", "8"}) {
+    const std::string call =
+        "cd '" + desk().path.string() + "' && timeout --preserve-status -s INT " + seconds + " '" + SERVODX_PROGRAM +
+        "' tune t1.csv t2.csv --params table.csv --population 100 --generations 100000 -o part.csv >'" +
+        (streams / "out") + "' 2>&1";
+    const int status = std::system(call.c_str());
+    ASSERT_TRUE(WIFEXITED(status));
+    EXPECT_EQ(WEXITSTATUS(status), 130) << bytes_of(streams / "out");
+    if (std::filesystem::exists(desk() / "part.csv")) break;
+  }
   EXPECT_EQ(desk().run("list params --params part.csv").code, 0);
   EXPECT_NE(bytes_of(streams / "out").find("interrupted"), std::string::npos);
 }
@@ -114,7 +118,7 @@ TEST_F(MainJob, DiagnoseRefusesABaselineThatDoesNotServe) {
   desk().write("other.json",
                R"({"command": "baseline", "threshold": 3, "adequacy_limit": 1, "null_limit": 0.05, "tuned_sha256": "0",
                    "false_alarm": {"asked": 0.1, "promised": 0.25, "promised_95": 0.6, "logs": 3, "logs_needed": 9,
-                   "statement": ""}, "scores": [{"log": "h.csv", "sha256": "1", "score": 1, "adequacy": 1}]})");
+                   "statement": ""}, "scores": [{"log": "h.csv", "sha256": "1", "score": 1, "adequacy": 1, "gains": {}}]})");
   const std::string call = "diagnose s1.csv --params tuned.csv --rig rig.toml --baseline ";
   expect_refused(desk().run(call + "other.json"),
                  "other.json: column 'tuned_sha256': was made with another table than tuned.csv");
