@@ -1,6 +1,7 @@
 include(CMakeFindDependencyMacro)
 find_dependency(Eigen3)
 find_dependency(Ceres)
+find_dependency(NLopt)
 find_dependency(fmt)
 find_dependency(tomlplusplus)
 find_dependency(OpenMP COMPONENTS CXX)
