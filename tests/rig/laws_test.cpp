@@ -9,6 +9,29 @@
 namespace servodx::rig {
 namespace {
 
+TEST(RigLaws, CommittedLogIsWhatTheRigWrites) {
+  // Within twice the noise: other processors round otherwise.
+  const Log committed = read_log(std::string(SERVODX_SOURCE_DIR) + "/data/healthy/h09_preflight_hot.csv");
+  const auto log = run_rig(
+      flight_rig(),
+      {.excitation = "preflight", .duration = 2.4, .temperature = 65.0 + zero_celsius, .air = 0.010, .seed = 109});
+  int compared = 0;
+  for (const auto& column : log.columns) {
+    if (column.signal == Signal::time || !committed.has(column.signal)) continue;
+    const auto& expected = committed[column.signal];
+    ASSERT_EQ(expected.size(), column.value.size());
+    const std::string name(info(column.signal).name);
+    const auto sensor = std::find_if(flight_rig().sensors.begin(), flight_rig().sensors.end(),
+                                     [&](const Sensor& s) { return s.signal == name; });
+    if (sensor == flight_rig().sensors.end()) continue;
+    double worst = 0.0;
+    for (std::size_t k = 0; k < expected.size(); ++k) worst = std::max(worst, std::fabs(expected[k] - column.value[k]));
+    EXPECT_LE(worst, 2.0 * sensor->noise) << name;
+    ++compared;
+  }
+  EXPECT_GE(compared, 4);
+}
+
 TEST(RigLaws, StoredOilEqualsFlowInMinusFlowOut) {
   for (const double celsius : {-30.0, 40.0, 70.0}) {
     VirtualRig rig = settled({.temperature = celsius + zero_celsius, .air = 0.02});
