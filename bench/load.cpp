@@ -7,16 +7,14 @@
 #include <sys/resource.h>
 
 #include <algorithm>
-#include <charconv>
 #include <chrono>
-#include <cmath>
 #include <cstdlib>
 #include <filesystem>
 #include <functional>
 
 #include "base/atomic_file.h"
 #include "base/csv.h"
-#include "base/random.h"
+#include "long_log.h"
 #include "signals/log.h"
 
 using namespace servodx;
@@ -24,22 +22,6 @@ using namespace servodx;
 namespace {
 
 constexpr int repeats = 5;
-
-// Ten columns of twelve significant digits.
-std::string long_log(long rows) {
-  std::string text =
-      "time [s],command [mA],spool_position [mm],piston_position [mm],pressure_a [bar],pressure_b [bar],"
-      "supply_pressure [bar],return_pressure [bar],load_force [N],oil_temperature [degC]\n";
-  Random random(1);
-  for (long i = 0; i < rows; ++i) {
-    const double t = 1e-3 * static_cast<double>(i), u = 20 * std::sin(0.3 * t);
-    text += fmt::format("{:.12g}", t + 1e-7 * random.uniform());
-    for (double x : {u, 0.025 * u, 3 * u, 100 + u, 100 - u, 207.0, 5.0, 50 * u, 40.0})
-      text += fmt::format(",{:.12g}", x + 0.01 * random.normal());
-    text += '\n';
-  }
-  return text;
-}
 
 double median_seconds(const std::function<void()>& work) {
   std::vector<double> seconds;
@@ -64,7 +46,7 @@ int main(int argc, char** argv) {
   const long rows = argc > 1 ? std::atol(argv[1]) : 1000000;
   const std::string path = (std::filesystem::temp_directory_path() / fmt::format("servodx_load_{}.csv", rows)).string();
   if (!std::filesystem::exists(path)) {
-    write_file(path, long_log(rows));
+    write_file(path, bench::long_log(rows));
     fmt::print("wrote {}; run again to measure (the writing would count towards the peak memory)\n", path);
     return 0;
   }
@@ -76,15 +58,7 @@ int main(int argc, char** argv) {
   const double peak = peak_megabytes();
   const std::string text = read_file(path);
   double sum = 0;
-  const double chars = median_seconds([&] {
-    const char* p = text.data() + text.find('\n') + 1;
-    const char* const end = text.data() + text.size();
-    while (p < end) {
-      double x = 0;
-      p = std::from_chars(p, end, x).ptr + 1;
-      sum += x;
-    }
-  });
+  const double chars = median_seconds([&] { sum += bench::sum_of_numbers(text); });
   const double file = static_cast<double>(text.size()) / 1e6;
   fmt::print("{} rows, {:.0f} MB; sum {:.6g}\n", rows, file, sum);
   fmt::print("std::from_chars, one thread  {:.3f} s  {:.0f} MB/s\n", chars, file / chars);

@@ -17,6 +17,7 @@
 #include "base/error.h"
 #include "base/random.h"
 #include "prognose/history_csv.h"
+#include "temporary_folder.h"
 
 namespace servodx {
 namespace {
@@ -25,13 +26,8 @@ namespace fs = std::filesystem;
 
 class HistoryFile : public testing::Test {
  protected:
-  HistoryFile() {
-    std::string pattern = (fs::temp_directory_path() / "servodx_history_XXXXXX").string();
-    folder = mkdtemp(pattern.data());
-  }
-  ~HistoryFile() override { fs::remove_all(folder); }
-  std::string file(const std::string& name = "h.db") const { return (folder / name).string(); }
-  fs::path folder;
+  std::string file(const std::string& name = "h.db") const { return folder / name; }
+  TemporaryFolder folder;
 };
 
 Recording a_check(double at, double value = 1.25) {
