@@ -27,6 +27,20 @@ auto soft_positive(const X& x, const W& width) {
   return (x + smooth_abs(x, width)) * 0.5;
 }
 
+// max(x, 0) once more: a parabola within `width` of zero and exactly 0 below. For what a great stiffness multiplies, where
+// the tail of soft_positive would reach far.
+template <class X>
+X contact_depth(const X& x, double width) {
+  using std::max, std::min;
+  const X begun = max(X(0.0), min(x + X(width), X(2.0 * width)));
+  return begun * begun * X(0.25 / width) + max(X(0.0), x - X(width));
+}
+template <class T, Mask A>
+Dual<T, A> contact_depth(const Dual<T, A>& x, double width) {
+  using std::max, std::min;
+  return chain(contact_depth(x.v, width), x, max(T(0.0), min(x.v + T(width), T(2.0 * width))) * T(0.5 / width));
+}
+
 // -1..1 in place of the sign of x; 0.7 at x = width.
 template <class X, class W>
 auto smooth_sign(const X& x, const W& width) {

@@ -1,6 +1,10 @@
-// Magnetic hysteresis of the torque motor, as four play operators between command and torque (Prandtl-Ishlinskii; see
-// Visintin, Differential Models of Hysteresis, 1994). Rate-independent, exact at the samples, adds no state to the
-// equations. Leaves out: dependence on the armature's angle, and the pinching of the loop near saturation.
+// Magnetic hysteresis of the torque motor: play operators between command and torque (Prandtl-Ishlinskii; see
+// Visintin, Differential Models of Hysteresis, 1994), each with half the threshold of the last. Iron has domains of all
+// sizes, so loops of all amplitudes open, and small ones cost gain: where each play's loop is half as wide as the last
+// one's the width grows with the amplitude (Rayleigh 1887); less fading is iron that opens early. The armature's flux
+// follows its angle too: a slewing flapper drives the iron beyond where the current alone would. Rate-independent, exact
+// at the samples but for the angle, which is the last sample's; adds no state to the equations. Leaves out the pinching
+// of the loop near saturation.
 #pragma once
 #include "effects/effect.h"
 
@@ -11,40 +15,47 @@ struct MagneticHysteresis {
   static constexpr const char* place = "drive";
   static constexpr const char* meaning = "torque lags the current by a loop that does not depend on rate";
   static constexpr int n_states = 0;
-  static constexpr int n_parameters = 2;
+  static constexpr int n_parameters = 4;
   static constexpr EffectParameter parameters[n_parameters] = {
       {"hysteresis_width", "-", 0.0, 0.0, 0.06, 0.012,
        "full width of the loop of a large cycle, fraction of rated current"},
-      {"hysteresis_reach", "-", 0.1, 0.01, 0.6, 0.1,
+      {"hysteresis_reach", "-", 0.5, 0.02, 1.0, 0.5,
        "amplitude from which the loop has its full width, fraction of rated current", false},
+      {"hysteresis_fading", "-", 0.5, 0.2, 1.5, 0.5,
+       "width of the loop of each play over that of the play with twice its threshold", false},
+      {"magnetic_spring", "-", 1.0, 0.0, 2.0, 1.0,
+       "the magnets' spring over the armature's net stiffness: how much the iron's flux follows the angle", false},
   };
-  static constexpr int elements = 4;
-  static constexpr double spacing[elements] = {0.125, 0.25, 0.5, 1.0};  // thresholds over reach
-  static constexpr double spacing_sum = 1.875;
+  static constexpr int elements = 7;           // down to 1/64 of the reach
+  static constexpr double largest_loss = 0.45;  // of the gain at small loops; with the spring at its bound still stable
 
   template <class T>
   struct Memory {
     T play[elements];
   };
-  // History that ends at `current` with the loop closed.
+  // History that ends here with the loop closed. spring: current [A] that holds the flapper where it is against the
+  // armature's net stiffness; q: own parameters; rated [A].
   template <class T>
-  static void rest(Memory<T>& m, const T& current) {
-    for (T& x : m.play) x = current;
+  static void rest(Memory<T>& m, const T& current, const T& spring, const T* q, const T&) {
+    for (T& x : m.play) x = current + q[3] * spring;
   }
-  // [A] what the torque motor feels; q: own parameters, rated [A].
+  // [A] what the torque motor feels.
   template <class T>
-  static T drive(Memory<T>& m, double, const T& current, const T* q, const T& rated) {
+  static T drive(Memory<T>& m, double, const T& current, const T& spring, const T* q, const T& rated) {
     using std::max;
     using std::min;
-    const T reach = q[1] * rated;
-    const T weight = q[0] * rated * T(0.5 / spacing_sum) / reach;
-    T sum = T(0.0);
+    const T flux = current + q[3] * spring;  // [A]
+    T threshold = q[1] * rated, share = T(1.0), shares = T(0.0), slopes = T(0.0), sum = T(0.0);
     for (int j = 0; j < elements; ++j) {
-      const T r = reach * T(spacing[j]);
-      m.play[j] = max(current - r, min(current + r, m.play[j]));
-      sum = sum + (m.play[j] - current);
+      m.play[j] = max(flux - threshold, min(flux + threshold, m.play[j]));
+      const T slope = share / threshold;
+      sum = sum + slope * (m.play[j] - flux);
+      slopes = slopes + slope;
+      shares = shares + share;
+      threshold = threshold * T(0.5);
+      share = share * q[2];
     }
-    return current + weight * sum;
+    return current + min(q[0] * rated * T(0.5) / shares, T(largest_loss) / slopes) * sum;
   }
 };
 

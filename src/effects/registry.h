@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "effects/armature_angle.h"
 #include "effects/edge_radius.h"
 #include "effects/effect.h"
 #include "effects/flow_meter_lag.h"
@@ -24,6 +25,7 @@ namespace servodx {
 
 using NoEffects = EffectList<>;
 using AllEffects = EffectList<MagneticHysteresis,  //
+                              ArmatureAngle,       //
                               MountCompliance,     //
                               NozzlePlugging,      //
                               Stiction,            //

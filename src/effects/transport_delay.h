@@ -29,12 +29,12 @@ struct TransportDelay {
   };
   // History of a current that stood still.
   template <class T>
-  static void rest(Memory<T>& m, const T& current) {
+  static void rest(Memory<T>& m, const T& current, const T&, const T*, const T&) {
     for (T& c : m.current) c = current;
     m.begun = false;
   }
   template <class T>
-  static T drive(Memory<T>& m, double time, const T& current, const T* q, const T&) {
+  static T drive(Memory<T>& m, double time, const T& current, const T&, const T* q, const T&) {
     using std::max;
     using std::min;
     if (!m.begun)

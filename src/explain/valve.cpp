@@ -25,6 +25,7 @@ constexpr double row_prior = 0.1;  // a row that was held for a reason, beside a
 const std::map<std::string, const char*> tests = {
     {"stiction", "slow small triangle: the spool stands still at each reversal, longer the slower"},
     {"magnetic_hysteresis", "slow triangles of several amplitudes: a loop of the same width at any rate"},
+    {"armature_angle", "full steps both ways: how long the spool slews before it slows down"},
     {"transport_delay", "steps and a multisine: lag in proportion to frequency, no loss of amplitude"},
     {"mount_compliance", "steps into a stiff load: the body's resonance in the load pressure"},
     {"mains_pickup", "rest: a line at the mains frequency with the valve still"},

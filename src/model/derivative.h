@@ -23,6 +23,14 @@ auto orifice_flow(const C& conductance, const P& dp, const T& transition) {
   return conductance * signed_sqrt(dp, transition);
 }
 
+// Nozzle: bore and curtain in series. opening [m] of the curtain. The bore's jet presses on the flapper with two velocity
+// heads, one of which the bore has lost, so the force stays area times pressure drop (Merritt eq. 6-69 with the loss).
+template <class X, class P, class T>
+auto nozzle_flow(const X& opening, const P& dp, const Derived<T>& d) {
+  const auto curtain = opening * inverse_root(d.bore_loss * (opening * opening) + T(1.0));
+  return orifice_flow(d.nozzle_conductance * curtain, dp, T(constants::orifice_transition));
+}
+
 // One metering edge. opening [m] (negative: covered by that length), dp [Pa]; flow [m3/s] and open height h [m].
 // Laminar slot, orifice and hose in series: dp = R q + K q|q|, so q = 2 dp / (R + sqrt(R^2 + 4 K |dp|)).
 // R: plane slot of the covered length and creeping flow at the edge; K: Bernoulli at the edge plus the hose.
@@ -66,7 +74,7 @@ auto chamber_stiffness(const V& volume, const P& pressure, const Derived<T>& d, 
   return square * inverse((volume * d.inverse_bulk + p[row::hose_compliance]) * square + d.air * volume);
 }
 
-// Share of a stop's damping that acts, 0 clear of it to 1 well inside. [m]
+// Share of a stop's damping that acts, 0 clear of it to 1 well inside: oil is squeezed out before there is contact. [m]
 template <class X, class T>
 auto in_contact(const X& over, const X& under, const T& rounding) {
   const auto depth = over + under;
@@ -110,7 +118,7 @@ inline __attribute__((always_inline)) auto derivative(const S& s, const In& in, 
   // Torque motor and flapper. The wire pulls through its backlash. The nozzles are the stops: s_x_flapper is where the
   // force would take a free flapper, and the flapper follows it up to the nozzle. That leaves out the impact (a few
   // tenths of a millisecond) and keeps a wall out of the equations, which no linearly implicit step sees coming.
-  const auto x_f = saturate(z_f, p[row::nozzle_gap], T(c::stop_rounding));
+  const auto x_f = flapper_travel(z_f, p);
   const auto wire = p[row::feedback_wire_stiffness] * dead_zone(x_s + x_f, d.half_backlash, T(c::backlash_rounding));
   const auto f_flapper = p[row::torque_motor_gain] * i - p[row::flapper_stiffness] * z_f - wire -
                          d.nozzle_area * (p_1 - p_2) + hook_flapper_force(view, Effects{});
@@ -122,10 +130,10 @@ inline __attribute__((always_inline)) auto derivative(const S& s, const In& in, 
   const auto q_orifice_2 = orifice_flow(d.orifice_conductance, p_f - p_2, transition);
   const auto gap_1 = soft_positive(p[row::nozzle_gap] - x_f, T(c::nozzle_rounding));
   const auto gap_2 = soft_positive(p[row::nozzle_gap] + x_f, T(c::nozzle_rounding));
-  const auto q_nozzle_1 = orifice_flow(d.nozzle_conductance * (gap_1 + hook_nozzle_1_opening(view, Effects{}, gap_1)),
-                                       p_1 - u.return_pressure, transition);
-  const auto q_nozzle_2 = orifice_flow(d.nozzle_conductance * (gap_2 + hook_nozzle_2_opening(view, Effects{}, gap_2)),
-                                       p_2 - u.return_pressure, transition);
+  const auto q_nozzle_1 =
+      nozzle_flow(gap_1 + hook_nozzle_1_opening(view, Effects{}, gap_1), p_1 - u.return_pressure, d);
+  const auto q_nozzle_2 =
+      nozzle_flow(gap_2 + hook_nozzle_2_opening(view, Effects{}, gap_2), p_2 - u.return_pressure, d);
   const auto dp_f = d.inverse_filter_compliance * (q_filter - q_orifice_1 - q_orifice_2);
   const auto dp_1 = d.inverse_pilot_compliance * (q_orifice_1 - q_nozzle_1 - d.spool_area * v_s);
   const auto dp_2 = d.inverse_pilot_compliance * (q_orifice_2 - q_nozzle_2 + d.spool_area * v_s);
@@ -142,11 +150,12 @@ inline __attribute__((always_inline)) auto derivative(const S& s, const In& in, 
                                       h_pb * (u.supply_pressure - p_b) - h_at * (p_a - u.return_pressure));
   const auto f_dry =
       p[row::spool_friction] * asperities<T>((x_s - in.friction.spool_anchor) * T(1.0 / c::spool_presliding));
-  const auto over_spool = soft_positive(x_s - p[row::spool_stop], T(c::spool_stop_rounding));
-  const auto under_spool = soft_positive(-x_s - p[row::spool_stop], T(c::spool_stop_rounding));
-  const auto in_spool_stop = in_contact(over_spool, under_spool, T(c::spool_stop_rounding));
+  const auto beyond = x_s - p[row::spool_stop], behind = -x_s - p[row::spool_stop];
+  const auto in_spool_stop = in_contact(soft_positive(beyond, T(c::spool_film)), soft_positive(behind, T(c::spool_film)),
+                                        T(c::spool_film));
   const auto f_spool = d.spool_area * (p_1 - p_2) - f_flow - f_dry - d.spool_viscous * v_s -
-                       T(c::spool_stop_stiffness) * (over_spool - under_spool) -
+                       T(c::spool_stop_stiffness) * (contact_depth(beyond, c::spool_stop_rounding) -
+                                                       contact_depth(behind, c::spool_stop_rounding)) -
                        T(c::spool_stop_damping) * (in_spool_stop * v_s) + hook_spool_force(view, Effects{});
   const auto dv_s = d.inverse_spool_mass * f_spool;
 

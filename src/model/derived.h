@@ -18,6 +18,7 @@ struct Derived {
   T flapper_damping;            // [1/s]
   T nozzle_area;                // [m2] facing the flapper
   T nozzle_conductance;         // [m3/s/sqrt(Pa)/m] per curtain opening
+  T bore_loss;                  // [1/m2] pressure lost in a nozzle's bore over that at its curtain, per opening squared
   T orifice_conductance;        // [m3/s/sqrt(Pa)]
   T filter_conductance;         // [m3/s/sqrt(Pa)] mean of both directions of the spool
   T filter_one_way;             // [m3/s/sqrt(Pa)] less while the spool moves positive, more while it moves negative
@@ -63,6 +64,9 @@ Derived<T> derive(const T* p, const Oil& oil) {
   const T nozzle_diameter = p[row::hydraulic_amplifier_gain] * T(1.0 / c::pi);
   d.nozzle_area = T(c::pi / 4.0) * nozzle_diameter * nozzle_diameter;
   d.nozzle_conductance = T(c::cd_nozzle) * per_root_density * p[row::hydraulic_amplifier_gain];
+  // Bernoulli: the bore's velocity is 4 Cd opening / diameter times the curtain's.
+  const T bore_speed = T(4.0 * c::cd_nozzle) / nozzle_diameter;
+  d.bore_loss = T(c::nozzle_bore_loss) * bore_speed * bore_speed;
   const T orifice_area = T(c::pi / 4.0) * p[row::fixed_orifice_diameter] * p[row::fixed_orifice_diameter];
   d.orifice_conductance = T(c::cd_orifice) * per_root_density * orifice_area;
   const T clean = d.orifice_conductance * T(2.0 * c::clean_filter_area_ratio);

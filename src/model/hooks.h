@@ -1,7 +1,7 @@
 // Named places of the model that effects fill. The model knows no effect; an effect is a struct with
 //   name, place, parameters (static list), n_states, and any of these members, each taking a view of the run:
-//     struct Memory, drive(memory, time, command, p)  [A]  applied to the command at each sample, with memory of its
-//     past struct Sensors, observe(sensors, time, shown, p)  [SI]  applied to what is reported at each sample
+//     struct Memory, drive(memory, time, command, spring, p)  [A]  applied to the command at each sample, with
+//     memory of its past; struct Sensors, observe(sensors, time, shown, p)  [SI]  applied to what is reported at each sample
 //     viscosity(p)         [-]   factor on the oil's viscosity
 //     edge_rounding(p)     [m]   added to the corner radius of the metering edges
 //     supply_pressure(view) [Pa] added to the supply pressure at the valve
@@ -19,6 +19,8 @@
 #include <tuple>
 #include <type_traits>
 
+#include "base/smooth.h"
+#include "model/constants.h"
 #include "model/state.h"
 #include "parameters/list.h"
 
@@ -57,6 +59,12 @@ struct EffectList {
     return at;
   }
 };
+
+// Travel of the flapper [m]: `free` [m] is where the force would take it if no nozzle stopped it.
+template <class X, class T>
+auto flapper_travel(const X& free, const T* p) {
+  return saturate(free, p[row::nozzle_gap], T(constants::stop_rounding));
+}
 
 template <class List, class Last>
 struct AppendTo;

@@ -136,10 +136,13 @@ struct Drive<T, EffectList<E...>> {
       return Nothing{};
   }
   std::tuple<decltype(memory_of(E{}))...> memory;
-  void rest([[maybe_unused]] const T& current) {
+  void rest([[maybe_unused]] const T& current, [[maybe_unused]] const T& spring, [[maybe_unused]] const T* p,
+            [[maybe_unused]] const T& rated) {
     (
         [&] {
-          if constexpr (requires { typename E::template Memory<T>; }) E::rest(std::get<index_of<E>()>(memory), current);
+          if constexpr (requires { typename E::template Memory<T>; })
+            E::rest(std::get<index_of<E>()>(memory), current, spring,
+                    p + n_parameters + EffectList<E...>::template parameter_offset<E>(), rated);
         }(),
         ...);
   }
@@ -149,11 +152,12 @@ struct Drive<T, EffectList<E...>> {
     ((found = std::is_same_v<E, X> ? at : found, ++at), ...);
     return found;
   }
-  T operator()([[maybe_unused]] double time, T current, [[maybe_unused]] const T* p, [[maybe_unused]] const T& rated) {
+  T operator()([[maybe_unused]] double time, T current, [[maybe_unused]] const T& spring, [[maybe_unused]] const T* p,
+               [[maybe_unused]] const T& rated) {
     (
         [&] {
           if constexpr (requires { typename E::template Memory<T>; })
-            current = E::drive(std::get<index_of<E>()>(memory), time, current,
+            current = E::drive(std::get<index_of<E>()>(memory), time, current, spring,
                                p + n_parameters + EffectList<E...>::template parameter_offset<E>(), rated);
         }(),
         ...);
@@ -268,8 +272,10 @@ void run_pack(const Scenario& in, const ParameterVector* const* candidates, Traj
   }
   effects_at_rest(y.data(), p.data(), Effects{});
   Drive<T, Effects> drive;
-  drive.rest(y[s_current]);  // the history that ends at the current which holds the spool
-  T current = drive(in.time[0], T(in.command[0]) + null, p.data(), rated);
+  const T spring_rate = p[row::flapper_stiffness] / p[row::torque_motor_gain];  // [A/m]
+  const auto spring = [&] { return flapper_travel(y[s_x_flapper], p.data()) * spring_rate; };
+  drive.rest(y[s_current], spring(), p.data(), rated);  // the history that ends at the current which holds the spool
+  T current = drive(in.time[0], T(in.command[0]) + null, spring(), p.data(), rated);
   Sensed<T, Effects> sensed;
 
   for (int lane = 0; lane < lanes; ++lane) {
@@ -355,7 +361,7 @@ void run_pack(const Scenario& in, const ParameterVector* const* candidates, Traj
     const double largest = in.time[k] < impact_until ? std::min(options.step, options.impact_step) : usual;
     const int substeps = std::max(1, static_cast<int>(std::ceil(dt / largest - 1e-6)));
     const double h = dt / substeps;
-    const T next_current = drive(in.time[k + 1], T(in.command[k + 1]) + null, p.data(), rated);
+    const T next_current = drive(in.time[k + 1], T(in.command[k + 1]) + null, spring(), p.data(), rated);
     const Inputs<T> next = inputs_at(k + 1, next_current);
     const T per = T(1.0 / dt);
     live.slope = {p[nuisance::command_slope] * (next.current - now.current) * per,

@@ -94,6 +94,63 @@ TEST(SensorResponse, LagOfARampIsItsSlopeTimesTheTimeConstant) {
   EXPECT_NEAR(a[500] - b[500], 5e-3 * slope, 0.05 * 5e-3 * slope);
 }
 
+// Spool over rated stroke along a slow triangle of `amplitude` (of rated), the last of three cycles.
+struct Loop {
+  double width, gain;  // [of rated current]: at the middle, between the branches; peak to peak over the command's
+};
+Loop slow_loop(ParameterVector v, double amplitude) {
+  constexpr double period = 0.8;
+  v[row::spool_friction] = 0.05;  // what is left is the iron's
+  v[row::driver_bandwidth] = 3000;
+  const Scenario s = made(3 * period, 1e-3, [&](double t) {
+    const double phase = t / period - std::floor(t / period);
+    const double x = phase < 0.25 ? 4 * phase : phase < 0.75 ? 2 - 4 * phase : 4 * phase - 4;
+    return 20e-3 * amplitude * x;
+  });
+  const Trajectory t = simulate(s, v, all_signals());
+  EXPECT_TRUE(t.ok);
+  const auto& x = of(t, Signal::spool_position);
+  const auto at = [&](double phase) { return x[static_cast<std::size_t>(std::lround((2 + phase) * period / 1e-3))]; };
+  const double travel = at(0.25) - at(0.75), per_rated = travel / (2 * amplitude);
+  return {std::abs(at(0.5) - at(1.0 - 1e-9)) / per_rated, per_rated};
+}
+
+TEST(MagneticHysteresis, LargeCycleHasTheWholeLoopAndASmallOneLessGain) {
+  const Loop without = slow_loop(nominal_candidate(), 1.0), without_small = slow_loop(nominal_candidate(), 0.05);
+  const ParameterVector v = with<MagneticHysteresis>(0, 0.03);
+  const Loop large = slow_loop(v, 1.0), small = slow_loop(v, 0.05);
+  // The spool lags a triangle in any case: that much is taken off.
+  EXPECT_NEAR(large.width - without.width, 0.03, 0.003);
+  EXPECT_LT(small.width - without_small.width, 0.4 * 0.03);
+  EXPECT_GT(small.width - without_small.width, 0.02 * 0.03);
+  EXPECT_LT(small.gain / without_small.gain, large.gain / without.gain - 0.02);
+}
+
+TEST(MagneticHysteresis, SlewingFlapperLeavesTheIronFurtherOnThanTheCurrentAloneWould) {
+  // After a step the flux has been beyond where it rests: part of the loop is undone, and the spool stops nearer to the
+  // line without hysteresis.
+  const Scenario s = made(0.4, 1e-3, [](double t) { return t < 0.1 ? 0.0 : 8e-3; });
+  const auto end = [&](const ParameterVector& v) { return of(simulate(s, v, all_signals()), Signal::spool_position).back(); };
+  ParameterVector still = with<MagneticHysteresis>(0, 0.03), moved = still;
+  still[effect_row<MagneticHysteresis>(3)] = 0.0;
+  moved[effect_row<MagneticHysteresis>(3)] = 1.5;
+  const double line = end(nominal_candidate());
+  EXPECT_LT(end(still), line);
+  EXPECT_GT(end(moved), end(still));
+}
+
+TEST(ArmatureAngle, FlapperOnItsNozzleStaysThereLonger) {
+  const Scenario s = made(0.3, 1e-3, [](double t) { return t < 0.1 ? -15e-3 : 15e-3; });
+  const auto slew = [&](double travel) {
+    return of(simulate(s, with<ArmatureAngle>(0, travel), all_signals()), Signal::spool_position);
+  };
+  const auto flat = slew(0.0), curved = slew(0.08);
+  double most = 0;
+  for (std::size_t k = 100; k < 140; ++k) most = std::max(most, curved[k] - flat[k]);
+  EXPECT_GT(most, 5e-6);
+  EXPECT_NEAR(curved.back(), flat.back(), 2e-6);  // at rest the flapper is near its middle
+}
+
 TEST(Unexplained, AStraightCurveOfSpeedIsViscousFriction) {
   // Knots on a line in s with a scale far above the speed: s = v / scale.
   const Scenario s = stepped();

@@ -85,6 +85,27 @@ TEST(Valve, SpoolFollowsTheCurrentByTorqueGainOverWireStiffness) {
   EXPECT_NEAR(of(t, Signal::spool_position).back(), wire_only, 0.08 * wire_only);
 }
 
+TEST(Valve, StopsDoNotActBeforeContact) {
+  // A stiff stop with a tail would hold the spool back at full stroke.
+  ParameterVector near = nominal_candidate(), far = near;
+  const Scenario s = made(0.15, 1e-3, [](double t) { return t < 0.02 ? 0.0 : 18e-3; });
+  const double reached = of(simulate(s, near, all_signals()), Signal::spool_position).back();
+  near[row::spool_stop] = reached + 2e-5;
+  far[row::spool_stop] = 2 * reached;
+  EXPECT_NEAR(of(simulate(s, near, all_signals()), Signal::spool_position).back(),
+              of(simulate(s, far, all_signals()), Signal::spool_position).back(), 5e-8);
+}
+
+TEST(Valve, NozzlePassesItsCurtainWhenNarrowAndItsBoreWhenWide) {
+  const ParameterVector v = nominal_candidate();
+  const Derived<double> d = derive<double>(v.data(), Oil{});
+  const double dp = 1e7, curtain = d.nozzle_conductance * std::sqrt(dp);
+  EXPECT_NEAR(nozzle_flow(1e-7, dp, d) / (curtain * 1e-7), 1.0, 1e-4);
+  // Far from the flapper one velocity head of the bore takes the whole drop.
+  const double bore = d.nozzle_area * std::sqrt(2 * dp / (constants::nozzle_bore_loss * Oil{}.density));
+  EXPECT_NEAR(nozzle_flow(0.1, dp, d) / bore, 1.0, 1e-3);
+}
+
 TEST(Valve, FlowRisesWithPortWidth) {
   ParameterVector v = nominal_candidate();
   const Scenario s = made(0.2, 1e-3, [](double t) { return t < 0.01 ? 0.0 : 0.01; });
