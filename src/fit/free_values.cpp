@@ -107,4 +107,11 @@ void add_effect_rows(Table& table, const std::vector<std::string>& effects) {
   }
 }
 
+std::optional<double> off_value(int position) {
+  for (const EffectInfo& e : effect_list())
+    for (std::size_t j = 0; j < e.parameters.size(); ++j)
+      if (e.first + static_cast<int>(j) == position && e.parameters[j].switches) return e.parameters[j].off;
+  return std::nullopt;
+}
+
 }  // namespace servodx

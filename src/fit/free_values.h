@@ -1,5 +1,6 @@
 // The free numbers of a fit: the table's rows to estimate, the effects asked for, and each log's nuisances.
 #pragma once
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -25,5 +26,8 @@ std::vector<FreeValue> start_values(const LogData& log, int log_index);
 
 // Appends rows for effects that the table lacks, at their typical size and free. Throws InputError for an unknown name.
 void add_effect_rows(Table& table, const std::vector<std::string>& effects);
+
+// Value at which a parameter of a candidate switches its effect off; none for the 41 rows and for what only shapes.
+std::optional<double> off_value(int position);
 
 }  // namespace servodx

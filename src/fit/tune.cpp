@@ -25,6 +25,7 @@ namespace {
 
 constexpr double tuning_null_limit = 0.1;  // fault-free logs: a null may sit anywhere that calibration allows
 constexpr double independent_rate = 40;    // [1/s] samples that count before anything is known of their correlation
+constexpr double drawing_tolerance = 0.05;  // of a bore below half a millimetre, relative
 constexpr const char* hash_key = "tuned by";
 constexpr const char* average_key = "moving average";
 
@@ -330,12 +331,21 @@ TuneResult tune(const std::vector<Log>& logs, const Table& nominal, const RigFil
         verdict[j] = "confounded";
         for (int k : id.confounded_with[j]) confounded[j].push_back(problem.free()[static_cast<std::size_t>(k)].name);
       }
-      if (verdict[j] == "bounded") kept.push_back(run.shared[j]);
+      if (verdict[j] == "bounded")
+        kept.push_back(run.shared[j]);
+      else if (const auto off = off_value(run.shared[j].at))  // an effect that the logs do not tell is not claimed
+        run.base[run.shared[j].at] = run.table.rows[static_cast<std::size_t>(run.table.find(run.shared[j].name))].nominal = *off;
     }
     run.shared = kept;
   }
   run.simulations += problem.simulations();
   run.failed += problem.failed_simulations();
+
+  // The nozzles' diameter sets the scale of all forces on the spool, which logs of motion and pressure hardly show: it
+  // stays near its drawing, or friction and flow force would end anywhere along a valley.
+  if (facts.fact("valve.nozzle_diameter"))
+    for (FreeValue& f : run.shared)
+      if (f.at == row::hydraulic_amplifier_gain) f.prior_sd = drawing_tolerance / std::log(f.upper / f.lower);
 
   // 3. Breadth: genetic search, then the local stage from the best distinct points and from nominal.
   FitProblem fit(run.logs, run.base, run.all(), run.simulate_options());
