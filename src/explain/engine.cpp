@@ -499,10 +499,6 @@ Explanation explain(Subject& subject, const EngineOptions& options, const Explan
         const CauseScore* score =
             &*std::find_if(scores.begin(), scores.end(), [&](const auto& s) { return s.cause == c; });
         ExplainedFit with = fit_causes(subject, fits[i].causes, &retuned, score, quick_iterations, true);
-        if (with.ok && options.patient) {
-          ExplainedFit end = fit_causes(subject, fits[i].causes, &with, nullptr, options.iterations, false);
-          if (end.ok && end.misfit < with.misfit) with = std::move(end);
-        }
         if (with.ok) cross_validate(subject, with, options);
         r.beyond_retuning = with.ok ? heldout_gain(retuned, with, options.seed) : Interval{};
         beside[i] = std::move(with);

@@ -75,7 +75,6 @@ struct EngineOptions {
   int judged = 3;       // of these, judged on held-out data
   int most = 3;         // causes accepted
   int iterations = 12;  // of a fit
-  bool patient = false;  // re-tuning beside a cause goes to its end before the cause is refused for it
   const std::atomic<bool>* stop = nullptr;
   std::function<void(double)> progress;
   // Chance that healthy data score a cause like this, all causes counted together; empty: no healthy data, all is new.

@@ -143,10 +143,7 @@ ExplainResult explain_logs(const std::vector<Log>& logs, const Table& tuned, con
   engine.seed = options.seed;
   engine.stop = options.stop;
   engine.level = options.level;
-  if (all_on_test_stand(logs, rig)) {
-    engine.blocks *= 4;  // a sweep says most in the few seconds that it is near null
-    engine.patient = true;  // laps, clearance and corners make one peak together: a new one moves the others far
-  }
+  if (all_on_test_stand(logs, rig)) engine.blocks *= 4;  // a sweep says most in the few seconds that it is near null
   engine.progress = [&](double f) { progress.update(f, subject.simulations()); };
   std::optional<HealthyTest> test;
   // Each log by itself, as the healthy ones were taken; one log is itself.
