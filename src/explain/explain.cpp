@@ -134,11 +134,16 @@ ExplainResult explain_logs(const std::vector<Log>& logs, const Table& tuned, con
                            const HealthyReference* healthy, const ExplainOptions& options) {
   ExplainResult out;
   ValveSubject subject(logs, tuned, rig, options.threads);
+  for (std::size_t l = 0; l < logs.size(); ++l) {
+    const std::vector<std::string>& notes = subject.logs()[l].notes;
+    out.notes.insert(out.notes.end(), notes.begin() + static_cast<long>(logs[l].notes.size()), notes.end());
+  }
   Progress progress("explain", {.quiet = options.quiet});
   EngineOptions engine;
   engine.seed = options.seed;
   engine.stop = options.stop;
   engine.level = options.level;
+  if (all_on_test_stand(logs, rig)) engine.blocks *= 4;  // a sweep says most in the few seconds that it is near null
   engine.progress = [&](double f) { progress.update(f, subject.simulations()); };
   std::optional<HealthyTest> test;
   // Each log by itself, as the healthy ones were taken; one log is itself.

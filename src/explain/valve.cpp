@@ -9,6 +9,7 @@
 #include "base/error.h"
 #include "effects/row_effects.h"
 #include "fit/free_values.h"
+#include "fit/thin.h"
 #include "fit/tune.h"
 
 namespace servodx {
@@ -73,6 +74,21 @@ const char* place_of_row(int at) {
   return "flow_a";
 }
 
+// All samples of a sweep on a stand count alike, as in `tune`.
+void make_alike(std::vector<double>& sigma) {
+  double square = 0;
+  for (double s : sigma) square += s * s;
+  std::fill(sigma.begin(), sigma.end(), std::sqrt(square / static_cast<double>(sigma.size())));
+}
+
+// Laps, corners and hysteresis are about a per cent of rated current wide: so finely a sweep tells them apart.
+constexpr double sweep_detail = 0.01;  // of rated current
+double travel_of(const Scenario& s) {
+  double sum = 0;
+  for (std::size_t k = 1; k < s.command.size(); ++k) sum += std::abs(s.command[k] - s.command[k - 1]);
+  return sum / s.rated_current;
+}
+
 void scale_air(double* candidate, double factor) { candidate[row::air_fraction] *= factor; }
 
 // Sizes at which a score looks: some about the present value.
@@ -92,10 +108,11 @@ ValveSubject::ValveSubject(const std::vector<Log>& logs, const Table& tuned, con
     throw InputError({.file = tuned.path}, "the table does not say how wrong its model is",
                      "make it with 'servodx tune'; its header carries the lines 'model error ...'");
   options_.threads = threads;
+  options_.creep_step = creep_step_of(logs, rig);
   RigFile without_notch = rig;
   without_notch.mains_frequency.reset();
   for (const Log& log : logs) {
-    logs_.push_back(prepare(log, without_notch, moving_average_of(tuned)));
+    logs_.push_back(prepare_thinned(log, without_notch, moving_average_of(tuned)));
     require_channels(logs_.back());
   }
   add_causes(rig);
@@ -117,8 +134,10 @@ ValveSubject::ValveSubject(const std::vector<Log>& logs, const Table& tuned, con
   long first = 0;
   for (std::size_t l = 0; l < logs_.size(); ++l) {
     auto& sigmas = sigma_.emplace_back();
-    for (std::size_t c = 0; c < logs_[l].channels.size(); ++c)
+    for (std::size_t c = 0; c < logs_[l].channels.size(); ++c) {
       sigmas.push_back(whole.sigma(static_cast<int>(l), static_cast<int>(c)));
+      if (of_stand(l)) make_alike(sigmas.back());
+    }
   }
   for (std::size_t l = 0; l < logs_.size(); ++l)
     for (std::size_t c = 0; c < logs_[l].channels.size(); ++c) {
@@ -434,6 +453,7 @@ bool ValveSubject::rescale(const Eigen::VectorXd& rows) {
       if (!afresh_[i][static_cast<std::size_t>(k)]) neighbours += white[at] * white[at - 1];
     }
     memory_[i] = square > 0 ? std::clamp(neighbours / square, 0.0, longest_memory) : 0.0;
+    if (of_stand(static_cast<std::size_t>(series_[i].log))) memory_[i] = 0;
   }
   remember(white);
   std::size_t i = 0;
@@ -445,6 +465,10 @@ bool ValveSubject::rescale(const Eigen::VectorXd& rows) {
       for (double v : news) square += v * v;
       const double own = std::sqrt(square / static_cast<double>(s.count));
       s.effective = effective_fraction(news);
+      if (of_stand(static_cast<std::size_t>(s.log))) {
+        const double points = travel_of(logs_[static_cast<std::size_t>(s.log)].scenario) / sweep_detail;
+        s.effective = std::clamp(points / static_cast<double>(s.count), s.effective, 1.0);
+      }
       for (std::size_t k = 0; k < sigma.size(); ++k)
         sigma[k] = std::max(tuned_sigma_[i][k] * own, s.noise) / std::sqrt(s.effective);
       ++i;

@@ -7,6 +7,7 @@
 // Residuals wander: a null that is a little off drives the piston away for good. Rows are therefore what a sample's
 // residual says beyond the one before, r(k) - a r(k-1), a the channel's own correlation from sample to sample
 // (Cochrane & Orcutt 1949): what comes and goes with the motion counts in full, and what merely drifts, once.
+// Not so on a test stand: what is wrong of a sweep is a slow curve of its command, and to be seen as that.
 #pragma once
 #include <memory>
 #include <optional>
@@ -52,6 +53,7 @@ class ValveSubject : public Subject {
 
  private:
   void add_causes(const RigFile& rig);
+  bool of_stand(std::size_t log) const { return logs_[log].scenario.ports != Ports::actuator; }
   void remember(Eigen::Ref<Eigen::VectorXd> rows) const;  // r(k) to r(k) - a r(k-1), series by series
   void forget(Eigen::Ref<Eigen::VectorXd> rows) const;    // and back
   std::vector<LogData> logs_;

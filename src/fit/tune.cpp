@@ -17,6 +17,7 @@
 #include "fit/nominal.h"
 #include "fit/problem.h"
 #include "fit/profile.h"
+#include "fit/thin.h"
 #include "optimise/derivative_free.h"
 #include "optimise/genetic.h"
 
@@ -49,11 +50,14 @@ struct Tuning {
   long simulations = 0, failed = 0;
   std::vector<std::string> notes;
   std::vector<ConvergencePoint> convergence = {};
+  double creep_step = SimulateOptions{}.creep_step;  // [s]
+  bool on_stand = false;
 
   bool stopped() const { return options.stop && options.stop->load(); }
   SimulateOptions simulate_options() const {
     SimulateOptions s;
     s.threads = options.threads;
+    s.creep_step = creep_step;
     return s;
   }
   std::vector<FreeValue> all() const {
@@ -75,6 +79,25 @@ void first_whitening(FitProblem& problem, const Point& x) {
       const double r = t[l].ok ? rms_of(problem.raw_residual(li, ci, t[l]), 0, log.scenario.time.size())
                                : 100 * log.channels[c].noise;
       problem.set_sigma(li, ci, std::max(2 * log.channels[c].noise, 0.7 * r) * std::sqrt(std::max(1.0, correlated)));
+    }
+  }
+}
+
+// On a stand the model's error is a curve of the command, not of time: a fast sweep tells as much of it as a slow one, so
+// each counts alike, by its own rms.
+void weigh_sweeps(FitProblem& problem, const Point& x) {
+  const std::vector<Trajectory> t = problem.trajectories(x);
+  double samples = 0, sweeps = 0;
+  for (const LogData* log : problem.logs())
+    for (const FitChannel& c : log->channels) samples += static_cast<double>(c.measured.size()), sweeps += 1;
+  for (std::size_t l = 0; l < t.size(); ++l) {
+    const LogData& log = *problem.logs()[l];
+    for (std::size_t c = 0; c < log.channels.size(); ++c) {
+      const int li = static_cast<int>(l), ci = static_cast<int>(c);
+      const std::size_t n = log.channels[c].measured.size();
+      const double r = t[l].ok ? rms_of(problem.raw_residual(li, ci, t[l]), 0, n) : 100 * log.channels[c].noise;
+      problem.set_sigma(li, ci, std::max(log.channels[c].noise, r) *
+                                    std::sqrt(static_cast<double>(n) / (samples / sweeps)));
     }
   }
 }
@@ -213,14 +236,22 @@ std::vector<Point> breadth(Tuning& run, const Point& start) {
 // Alternates fit and error model until the weights settle. An error model that is learnt at an unfinished fit takes an
 // offset not yet found for correlation; the channel would count for so few samples that it is never mended. So on the
 // way each counts for at least as many as the first whitening takes, and only the last rounds weigh as learnt.
+// A stand's sweeps never do. Their residual is one slow curve of the command: by its memory a whole sweep would count
+// for a few samples, least where the meter reads finest; by its size beside the speed of the output the flat ends would
+// count, and the peak at null not. There weigh_sweeps() holds to the end, and only the errors of the values are taken
+// from what is learnt.
 LeastSquaresResult refine(Tuning& run, FitProblem& problem, Point x, ErrorModel& error, double held, int rounds,
                           double from, double to) {
   LeastSquaresResult r;
   for (int round = 0; round < rounds; ++round) {
-    error = learn_error_model(problem, x);
-    if (held > 0 || round == 0)
-      for (ChannelError& c : error.channels) c.independent = std::max(c.independent, independent_rate);
-    apply_error_model(problem, error, x);
+    if (run.on_stand) {
+      weigh_sweeps(problem, x);
+    } else {
+      error = learn_error_model(problem, x);
+      if (held > 0 || round == 0)
+        for (ChannelError& c : error.channels) c.independent = std::max(c.independent, independent_rate);
+      apply_error_model(problem, error, x);
+    }
     if (held > 0) hold_out(problem, held);
     const double a = from + (to - from) * round / rounds, b = from + (to - from) * (round + 1) / rounds;
     r = local(run, problem, x, held > 0 ? "weights" : "everything", 12, false, a, b);
@@ -267,15 +298,20 @@ TuneResult tune(const std::vector<Log>& logs, const Table& nominal, const RigFil
                      "give 1 for none, or 3, 5, ...");
 
   // 1. What is fitted to what.
-  for (const Log& log : logs) run.data.push_back(prepare(log, rig, options.moving_average));
+  for (const Log& log : logs) {
+    run.data.push_back(prepare_thinned(log, rig, options.moving_average));
+    const std::vector<std::string>& notes = run.data.back().notes;
+    run.notes.insert(run.notes.end(), notes.begin() + static_cast<long>(log.notes.size()), notes.end());
+  }
+  run.creep_step = creep_step_of(logs, rig);
+  run.on_stand = all_on_test_stand(logs, rig);
   for (const LogData& d : run.data) {
     require_channels(d);
     run.logs.push_back(&d);
   }
-  const bool on_stand = all_on_test_stand(logs, rig);
   RigFile facts = rig;
-  if (on_stand && facts.ports == Ports::actuator) facts.ports = Ports::blocked;  // the logs say so
-  add_effect_rows(run.table, options.effects.value_or(default_effects(on_stand)));
+  if (run.on_stand && facts.ports == Ports::actuator) facts.ports = Ports::blocked;  // the logs say so
+  add_effect_rows(run.table, options.effects.value_or(default_effects(run.on_stand)));
   run.table = apply_rig_facts(run.table, facts);
   run.base = candidate_of(run.table);
   run.shared = shared_values(run.table);
@@ -350,7 +386,7 @@ TuneResult tune(const std::vector<Log>& logs, const Table& nominal, const RigFil
   // 3. Breadth: genetic search, then the local stage from the best distinct points and from nominal.
   FitProblem fit(run.logs, run.base, run.all(), run.simulate_options());
   x = fit.start();
-  first_whitening(fit, x);
+  run.on_stand ? weigh_sweeps(fit, x) : first_whitening(fit, x);
   std::vector<Point> starts = {x};
   if (options.generations > 0 && !run.stopped())
     for (Point& p : breadth(run, x)) starts.push_back(std::move(p));
