@@ -39,7 +39,7 @@
   const marks = (plot) => (u) => {
     const c = u.ctx, { left, top, width, height } = u.bbox, ratio = devicePixelRatio;
     const right = left + width, bottom = top + height, line = 14 * ratio, gap = 8 * ratio, edge = 4 * ratio;
-    const taken = [];
+    const taken = [], said = [];
     const hit = (box) => taken.find((t) => box.left < t.right && t.left < box.right && box.top < t.bottom && t.top < box.bottom);
     // From this place to the left, or down by lines, until it is free.
     const write = (words, x, y, down) => {
@@ -51,7 +51,7 @@
         else { box.right = other.left - gap; box.left = box.right - long; }
       }
       taken.push(box);
-      c.fillText(words, box.left, box.bottom - edge);
+      said.push([words, box]);
     };
     const stroke = (x0, y0, x1, y1) => { c.beginPath(); c.moveTo(x0, y0); c.lineTo(x1, y1); c.stroke(); };
     c.save();
@@ -64,7 +64,7 @@
     for (const mark of plot.ymarks || []) {
       const at = u.valToPos(mark.at, "y", true);
       if (at < top || at > bottom) {
-        const words = mark.label && (at < top ? "\u2191 " : "\u2193 ") + mark.label + " " + short(mark.at);
+        const words = mark.label && (at < top ? "\u2191 " : "\u2193 ") + mark.label + " " + Number(mark.at.toPrecision(3));
         write(words, from_right(words), at < top ? top + edge : bottom - line, false);
       } else {
         stroke(left, at, right, at);
@@ -76,6 +76,12 @@
       if (at < left || at > right) continue;
       stroke(at, top, at, bottom);
       write(mark.label, right - at > long + gap ? at + edge : at - edge - long, top, true);
+    }
+    for (const [words, box] of said) {  // after all lines: none strikes a word through
+      c.fillStyle = colour("card");
+      c.fillRect(box.left - edge / 2, box.top, box.right - box.left + edge, line);
+      c.fillStyle = colour("text");
+      c.fillText(words, box.left, box.bottom - edge);
     }
     c.restore();
   };
