@@ -36,8 +36,8 @@ std::string coverage_words(const SelftestResult& r) {
 std::string headline(const SelftestResult& r) {
   return fmt::format("{}: {}", file_name(r.log),
                      r.coverage_upper < promised ? "the fit's errors are too small on this input"
-                     : biased(r) > 0             ? "the fit's errors are honest, with a bias in some parameters"
-                                                 : "the fit recovers the truth, and its errors are honest");
+                     : biased(r) > 0             ? "nothing shows the fit's errors wrong, but some parameters are biased"
+                                                 : "the fit recovers the truth, and nothing shows its errors wrong");
 }
 
 std::string bias_words(const SelftestResult& r) {
