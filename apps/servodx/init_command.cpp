@@ -80,8 +80,8 @@ std::string rig_file(const std::string& log, const Header& header) {
   std::string text = "# Rig file, begun by 'servodx init' from " + toml_quoted(log) + ".\n" +
                      std::string(shipped::rig_comments) + "\n[columns]\n";
   text +=
-      "# The log's columns. gain = \"-1\" turns a sign: positive command, spool and piston go together "
-      "(docs/tutorial.md).\n";
+      "# The log's columns. gain = \"-1\" turns a sign: positive command, spool and piston go together; "
+      "'servodx list signals' says\n# what each signal is, and which way is positive.\n";
   for (std::size_t c = 0; c < header.columns.size(); ++c) text += column_line(header.columns[c], header.spans[c]);
   return text;
 }
@@ -102,9 +102,11 @@ void run(const Options& options) {
   report::Columns table("llll", 2);
   table.row({"column", "taken for", "unit", "values"});
   report::Json columns = report::Json::array();
+  std::vector<std::string> unknown;
   for (std::size_t c = 0; c < header.columns.size(); ++c) {
     const ColumnGuess& g = header.columns[c];
     const std::string signal = g.signal ? std::string(info(*g.signal).name) : "";
+    if (!g.signal) unknown.push_back("'" + g.cell + "'");
     table.row({g.cell, g.signal ? signal : "not recognised", g.unit, header.spans[c]});
     columns.push_back(
         {{"column", g.cell}, {"signal", g.signal ? report::Json(signal) : report::Json(nullptr)}, {"unit", g.unit}});
@@ -116,6 +118,9 @@ void run(const Options& options) {
   } catch (const InputError& open) {
     text += fmt::format("to be mended in {} before the log reads:\n  {}\n", options.output, open.what());
   }
+  if (!unknown.empty())
+    text += fmt::format("not recognised, so ignored: {}; 'servodx list signals' has the names for {}\n",
+                        report::join(unknown), options.output);
   text += fmt::format("next: fill in the data sheet in {}, then 'servodx check-log {} --rig {}'\n", options.output,
                       options.log, options.output);
   invocation.finish(text, {{"rig", options.output}, {"table", options.table}, {"columns", columns}});

@@ -14,6 +14,8 @@ namespace {
 std::string refusal(const CLI::App* app, const CLI::Error& error) {
   std::string call = app->get_name();
   for (const CLI::App* command : app->get_subcommands()) call += " " + command->get_name();
+  if (const auto left = app->remaining(); app->get_subcommands().empty() && !left.empty())
+    return call + ": no command is called '" + left.front() + "'; '" + call + " --help' lists what there is\n";
   return call + ": " + error.what() + "; '" + call + " --help' lists what there is\n";
 }
 

@@ -27,7 +27,7 @@ struct ChannelSurvey {
 };
 
 struct Finding {
-  std::string kind;  // jitter | gaps | rate | temperature | repeats | saturation | quantisation | values | missing
+  std::string kind;  // jitter | gaps | rate | temperature | repeats | saturation | quantisation | sign | values | missing
   std::string text;
 };
 

@@ -9,7 +9,7 @@
 namespace servodx {
 namespace {
 
-constexpr double gap_over_step = 1.5;          // a step this much over the usual one lost a sample
+constexpr double gap_over_step = 1.8;          // a step this much over the usual one lost a sample, as in the fit
 constexpr double much_jitter = 0.02;           // rms of the steps over the usual one
 constexpr double much_clipped = 0.01;          // part of the samples
 constexpr std::size_t clipped_run = 5;         // samples: shorter stays at an extreme are chance
@@ -19,6 +19,9 @@ constexpr double coarse_step = 1.0 / 500;      // resolution over range from whi
 constexpr double cold = 283.15, hot = 343.15;  // [K] beyond these oil is far from the table's 40 degC
 constexpr double other_rate = 1.2, other_temperature = 15.0;  // [K] beside the other logs
 constexpr double kelvin = 273.15;
+constexpr double spool_lag = 4e-3, piston_lag = 10e-3;  // [s] within which each answers the drive
+constexpr double half_window = 10e-3;                   // [s] of the difference that stands for piston speed
+constexpr double with = 0.3, against = -0.5;            // correlations: at most one way, at least the other
 
 double median(std::vector<double> v) {
   if (v.empty()) return 0;
@@ -44,7 +47,8 @@ void survey_time(const std::vector<double>& t, LogSurvey& s) {
       square += (step / usual - 1) * (step / usual - 1), ++n;
     }
   }
-  s.rate = usual > 0 ? 1.0 / usual : 0;
+  // Samples over time: the median of jittered steps is not quite their mean.
+  s.rate = t.back() > t.front() ? static_cast<double>(t.size() - 1 + s.lost) / (t.back() - t.front()) : 0;
   s.jitter = n ? std::sqrt(square / static_cast<double>(n)) : 0;
 }
 
@@ -112,6 +116,44 @@ double repeats(const Log& log) {
   return static_cast<double>(same) / static_cast<double>(log.samples() - 1);
 }
 
+// Least and greatest correlation of y with x so many samples earlier.
+std::pair<double, double> correlations(const std::vector<double>& x, const std::vector<double>& y, std::size_t lags) {
+  double least = 0, greatest = 0;
+  for (std::size_t lag = 0; lag <= lags && lag < x.size(); ++lag) {
+    double n = 0, sx = 0, sy = 0, sxx = 0, syy = 0, sxy = 0;
+    for (std::size_t k = lag; k < x.size(); ++k) {
+      const double a = x[k - lag], b = y[k];
+      if (!std::isfinite(a) || !std::isfinite(b)) continue;
+      n += 1, sx += a, sy += b, sxx += a * a, syy += b * b, sxy += a * b;
+    }
+    const double scale = (n * sxx - sx * sx) * (n * syy - sy * sy);
+    if (n < 8 || scale <= 0) continue;
+    const double r = (n * sxy - sx * sy) / std::sqrt(scale);
+    least = std::min(least, r), greatest = std::max(greatest, r);
+  }
+  return {least, greatest};
+}
+
+// Spool and piston speed follow the drive, within their lag. One that runs against it has a sign turned.
+void find_turned(const Log& log, LogSurvey& s) {
+  const std::vector<double>& drive = log[log.has(Signal::coil_current) ? Signal::coil_current : Signal::command];
+  const auto samples = [&](double time) { return static_cast<std::size_t>(std::lround(time * s.rate)); };
+  const auto turned = [&](Signal signal, const std::vector<double>& answer, double lag) {
+    const auto [least, greatest] = correlations(drive, answer, samples(lag));
+    if (least > against || greatest > with) return;
+    s.findings.push_back({"sign", fmt::format("'{}' runs against the drive: give its column, or the drive's, "
+                                              "gain = \"-1\" in the rig file",
+                                              info(signal).name)});
+  };
+  if (log.has(Signal::spool_position)) turned(Signal::spool_position, log[Signal::spool_position], spool_lag);
+  if (!log.has(Signal::piston_position)) return;
+  const std::vector<double>& x = log[Signal::piston_position];
+  const std::size_t half = std::max<std::size_t>(1, samples(half_window));
+  std::vector<double> speed(x.size(), std::nan(""));
+  for (std::size_t k = half; k + half < x.size(); ++k) speed[k] = x[k + half] - x[k - half];
+  turned(Signal::piston_position, speed, piston_lag);
+}
+
 void find_suspicious(const Log& log, LogSurvey& s) {
   const auto found = [&](const char* kind, std::string text) { s.findings.push_back({kind, std::move(text)}); };
   if (s.jitter > much_jitter)
@@ -145,6 +187,7 @@ void find_suspicious(const Log& log, LogSurvey& s) {
       found("quantisation", fmt::format("{}: steps of {:.2g} {} hide the noise and are {:.2g} % of what it moves", name,
                                         c.resolution, info(c.signal).si_unit, 100 * c.resolution / range));
   }
+  find_turned(log, s);
   for (const std::string& note : log.notes) {  // what the reader saw: limits, spikes, frozen sensors, no excitation
     if (note.find("gap") != std::string::npos && s.gaps > 0) continue;
     const std::string front = log.path + ": ";

@@ -30,13 +30,21 @@ struct InUnit {
 
 std::string first_line(const LogSurvey& s) {
   std::string line = fmt::format("{} samples, {} at {} Hz", s.samples, duration(s.duration), digits(s.rate, 4));
-  if (s.temperature) line += fmt::format(", oil {} degC", digits(*s.temperature - 273.15, 3));
+  if (s.temperature) line += fmt::format(", oil {} degC", digits(0.1 * std::round(10 * (*s.temperature - 273.15)), 3));
   line += s.closed_loop ? ", closed loop" : "";
   return line;
 }
 
 std::string drive_words(const LogSurvey& s) {
   return fmt::format("spans {}, about {} Hz", handy(s.drive_span, "A"), digits(s.drive_band, 2));
+}
+
+// Each kind once.
+std::string kinds_of(const LogSurvey& s) {
+  std::vector<std::string> kinds;
+  for (const Finding& f : s.findings)
+    if (std::find(kinds.begin(), kinds.end(), f.kind) == kinds.end()) kinds.push_back(f.kind);
+  return join(kinds);
 }
 
 std::string visibility(double deviate) {
@@ -169,8 +177,7 @@ Page check_log_page(const Header& header, const std::vector<LogCheck>& checks) {
   if (one) {
     const LogSurvey& s = checks.front().survey;
     v.headline = s.findings.empty() ? "Nothing suspicious in " + file_name(s.path)
-                                    : fmt::format("{} suspicious thing{} in {}", s.findings.size(),
-                                                  s.findings.size() == 1 ? "" : "s", file_name(s.path));
+                                    : "Suspicious in " + file_name(s.path) + ": " + kinds_of(s);
     v.detail = first_line(s);
     for (const Finding& f : s.findings) v.reasons.push_back(f.kind + ": " + f.text);
   } else {
@@ -181,12 +188,10 @@ Page check_log_page(const Header& header, const std::vector<LogCheck>& checks) {
     page.section("All logs");
     TablePart table{"Logs", "lrrrl", {"log", "s", "Hz", "degC", "suspicious"}, {}, 0};
     for (const LogCheck& c : checks) {
-      std::vector<std::string> kinds;
-      for (const Finding& f : c.survey.findings) kinds.push_back(f.kind);
       const LogSurvey& s = c.survey;
       table.rows.push_back({s.path, Cell(digits(s.duration), s.duration), Cell(digits(s.rate, 4), s.rate),
                             s.temperature ? Cell(digits(*s.temperature - 273.15), *s.temperature - 273.15) : Cell(""),
-                            join(kinds)});
+                            kinds_of(s)});
     }
     page.add(table);
   }

@@ -18,9 +18,35 @@ std::string display_unit(Signal signal) {
   return si == "m3/s" ? "l/min" : si == "Pa" ? "bar" : si == "m" ? "mm" : si;
 }
 
+constexpr double passed_over = 0.02;  // of rated current: a sweep this fast between two samples is drawn through
+
+// Places that a branch passed over between two samples, in a line.
+std::vector<double> drawn_through(std::vector<double> y, const std::vector<double>& x, double most) {
+  std::size_t last = y.size();
+  for (std::size_t k = 0; k < y.size(); ++k) {
+    if (!std::isfinite(y[k])) continue;
+    if (last < k && std::abs(x[k] - x[last]) <= most)
+      for (std::size_t j = last + 1; j < k; ++j)
+        y[j] = y[last] + (y[k] - y[last]) * (x[j] - x[last]) / (x[k] - x[last]);
+    last = k;
+  }
+  return y;
+}
+
+// What a first look asks for.
+std::vector<std::pair<std::string, std::string>> first_facts(const Sheet& sheet) {
+  std::vector<std::pair<std::string, std::string>> facts;
+  for (const char* name : {"rated_flow", "null_bias", "hysteresis", "pressure_gain", "null_leakage", "phase_lag_90_frequency", "lap"})
+    for (const Figure& f : sheet.figures)
+      if (f.name == name && std::isfinite(f.value) && facts.size() < 4)
+        facts.push_back({words(f.name), readable(f, f.value)});
+  return facts;
+}
+
 Plot branches(const curves::SweepCurve& c, double rated_current) {
   const std::string unit = display_unit(c.signal), name = words(std::string(info(c.signal).name));
-  const auto scaled = [&](std::vector<double> y) {
+  const auto scaled = [&](const std::vector<double>& branch) {
+    std::vector<double> y = drawn_through(branch, c.current, passed_over * rated_current);
     for (double& v : y) v = find_unit(unit)->from_si(v);
     return y;
   };
@@ -58,9 +84,11 @@ Page curves_page(const Header& header, const Sheet& sheet, const std::string& lo
       std::count_if(sheet.figures.begin(), sheet.figures.end(), [](auto& f) { return f.pass.has_value(); });
   const auto failed =
       std::count_if(sheet.figures.begin(), sheet.figures.end(), [](auto& f) { return f.pass && !*f.pass; });
-  v.headline = judged == 0  ? "The rig file gives no limit that this log can be judged by"
+  v.headline = judged == 0  ? file_name(log) + ": the rig file gives no limit for its figures"
                : failed > 0 ? std::to_string(failed) + " of " + std::to_string(judged) + " limits are broken"
                             : "All " + std::to_string(judged) + " limits are kept";
+  if (judged == 0) v.detail = "Limits go under [limits] of the rig file; the figures stand below.";
+  v.facts = first_facts(sheet);
   for (const Figure& f : sheet.figures)
     if (f.pass && !*f.pass) v.reasons.push_back(words(f.name) + ": " + readable(f, f.value) + ", " + limit_text(f));
   page.verdict(v);

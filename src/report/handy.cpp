@@ -57,7 +57,7 @@ std::string digits(double value, int significant) {
 }
 
 HandyUnit handy_unit(const std::string& unit, double magnitude) {
-  if (unit.empty() || unit == "-") return {"", 1.0};
+  if (unit.empty() || unit == "-" || unit == "1") return {"", 1.0};
   for (const Ladder& step : ladders)
     if (unit == step.unit && std::abs(magnitude) < step.below) return {std::string(step.name), step.factor};
   // "blocked fraction of the filter area" reads as "52 % of the filter area blocked".

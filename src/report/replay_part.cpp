@@ -103,7 +103,9 @@ void add_replay(Page& page, const Replay& replay, const ReplayView& view) {
 
     double size = 0;
     for (const auto* s : shown) size = std::max(size, rms(s->residual));
-    const HandyUnit small = handy_unit(std::string(info(channel.signal).si_unit), size);
+    // In the trace's own unit where that reads well: who logs psi thinks in psi.
+    const bool reads_well = size * unit.factor >= 0.1 && size * unit.factor < 1000;
+    const HandyUnit small = reads_well ? unit : handy_unit(std::string(info(channel.signal).si_unit), size);
     std::string figures;
     for (const auto* s : shown)
       figures +=

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "explain/healthy.h"
 #include "report/columns.h"
 #include "report/handy.h"
 #include "report/replay_part.h"
@@ -13,15 +14,18 @@ namespace servodx::report {
 namespace {
 
 constexpr double promised = 0.95;
-constexpr double real_bias = 3.0;  // sigmas of the mean
+constexpr double chance_of_bias = 0.0027;  // of a row without bias: 3 sigmas; Student's, as the scatter is of few repeats
 
 double share(const SelftestResult& r) {
   return r.counted ? static_cast<double>(r.covered) / static_cast<double>(r.counted) : NAN;
 }
 
+bool is_biased(const SelftestRow& row, const SelftestResult& r) {
+  return student_tail(row.bias_sigmas, std::max(1, r.repeats - r.failed - 1)) < chance_of_bias;
+}
+
 long biased(const SelftestResult& r) {
-  return std::count_if(r.rows.begin(), r.rows.end(),
-                       [](const SelftestRow& row) { return std::abs(row.bias_sigmas) > real_bias; });
+  return std::count_if(r.rows.begin(), r.rows.end(), [&](const SelftestRow& row) { return is_biased(row, r); });
 }
 
 std::string coverage_words(const SelftestResult& r) {
@@ -30,15 +34,18 @@ std::string coverage_words(const SelftestResult& r) {
 }
 
 std::string headline(const SelftestResult& r) {
-  const bool honest = r.coverage_upper >= promised;
   return fmt::format("{}: {}", file_name(r.log),
-                     honest ? "the fit recovers the truth, and its errors are honest"
-                            : "the fit's errors are too small on this input");
+                     r.coverage_upper < promised ? "the fit's errors are too small on this input"
+                     : biased(r) > 0             ? "nothing shows the fit's errors wrong, but some parameters are biased"
+                                                 : "the fit recovers the truth, and nothing shows its errors wrong");
 }
 
 std::string bias_words(const SelftestResult& r) {
-  return fmt::format("{} of {} parameters are biased beyond {} sigmas of the mean", biased(r), r.rows.size(),
-                     digits(real_bias));
+  std::vector<std::string> names;
+  for (const SelftestRow& row : r.rows)
+    if (is_biased(row, r)) names.push_back(row.name);
+  return fmt::format("{} of {} parameters are biased beyond chance (3 sigmas){}{}", names.size(), r.rows.size(),
+                     names.empty() ? "" : ": ", join(names));
 }
 
 }  // namespace
@@ -98,7 +105,7 @@ Page selftest_page(const Header& header, const SelftestResult& r) {
              {"Repeats", fmt::format("{}, {} failed", r.repeats, r.failed)},
              {"Biased parameters", fmt::format("{} of {}", biased(r), r.rows.size())}};
   page.verdict(v);
-  page.section("Parameter by parameter", "Sigmas: the bias over the scatter of its mean. Beyond 3 it is no chance.");
+  page.section("Parameter by parameter", "Sigmas: the bias over the scatter of its mean. Beyond 3, or more with few repeats, it is no chance.");
   Bars bars{"Share of intervals that hold the truth", "parameter", "share", {}, Mark{promised, "95 %"}, 1.1};
   TablePart table{"Bias and error",
                   "lrrrrrl",

@@ -11,6 +11,8 @@
 namespace servodx::report {
 namespace {
 
+constexpr double far_off = 10.0;  // times the usual error, from which a fault-free log is of another kind
+
 // A held row has no error of its own; one on a bound was fitted and has none either.
 bool was_fitted(const ParameterResult& p) { return std::isfinite(p.std_error) || p.verdict == "at_bound"; }
 
@@ -120,7 +122,12 @@ std::string text_of(const Baseline& b, const TextOptions& options) {
   Columns table("lrr", 2);
   table.row({"log", "score", "adequacy"});
   for (const Baseline::Score& s : b.scores) table.row({s.log, digits(s.score, 4), digits(s.adequacy)});
-  return text + table.text();
+  text += table.text();
+  for (const Baseline::Score& s : b.scores)
+    if (s.adequacy > far_off)
+      text += fmt::format("  {}: its worst channel is {} times as wrong as on the tuning logs: tune with a log of its kind\n",
+                          s.log, digits(s.adequacy, 2));
+  return text;
 }
 
 std::string text_of(const Diagnosis& d, const TextOptions& options) {

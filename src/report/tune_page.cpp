@@ -108,10 +108,10 @@ Page tune_page(const Header& header, const TuneResult& result, const std::vector
   page.section("How well the model fits",
                "Held out: the last part of every log, before the final fit saw it. Noise: the sensor's own.");
   add_channels(page, "Channels, all logs together", result.channels);
-  TablePart by_log{"Log by log", "lrr", {"log", "null", "command between samples"}, {}, 0};
+  TablePart by_log{"Log by log; of a channel its error over the sensor's noise", "lrr", {"log", "null", "command between samples"}, {}, 0};
   for (const ChannelResult& c : result.channels) {
     by_log.alignment += 'r';
-    by_log.head.push_back(words(std::string(info(c.signal).name)) + " over noise");
+    by_log.head.push_back(words(std::string(info(c.signal).name)));
   }
   for (const LogResult& log : result.logs) {
     std::vector<Cell> row = {log.path, Cell(percent(log.null) + " of rated", log.null),

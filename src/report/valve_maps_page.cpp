@@ -16,11 +16,11 @@ constexpr double shown = 2.0;  // of the supply: beyond, the water hammer leaves
 
 // Load pressure over travel at five load flows.
 Plot plot_of(const MapPicture& picture) {
-  Plot plot{.title = picture.title + ": load pressure [MPa]", .x_label = "spool position [mm]", .group = "maps"};
+  Plot plot{.title = picture.title + ": load pressure [MPa]", .x_label = "spool position [um]", .group = "maps"};
   std::vector<double> flows;
   for (const auto& p : picture.points) {
     if (p.x_s == picture.points.front().x_s) flows.push_back(p.q_j);
-    if (plot.x.empty() || plot.x.back() != in("mm", p.x_s)) plot.x.push_back(in("mm", p.x_s));
+    if (plot.x.empty() || plot.x.back() != in("um", p.x_s)) plot.x.push_back(in("um", p.x_s));
   }
   constexpr Role roles[] = {Role::input, Role::other, Role::measured, Role::reference, Role::named};
   const double limit = shown * in("MPa", picture.supply);
@@ -47,18 +47,23 @@ Page maps_page(const Header& header, const valve_maps::ValveNumbers& valve,
     for (const auto& region : e.regions) rms = std::max(rms, region.rms);
     return rms;
   };
-  const valve_maps::MapError* best = nullptr;
-  for (const auto& e : errors)
+  const valve_maps::MapError *best = nullptr, *asked = nullptr;
+  const std::string model = header.settings.value("model", "");
+  for (const auto& e : errors) {
     if (e.name != "HF" && (!best || worst(e) < worst(*best))) best = &e;
+    if (e.name != "HF" && e.name == model) asked = &e;
+  }
   Verdict v;
-  v.headline = best ? "Nearest to HF in its worst region: " + best->name + ", " + percent(worst(*best)) + " of P_SR"
-                    : "Valve maps";
+  v.headline = asked  ? asked->name + " is off HF by " + percent(worst(*asked)) + " of P_SR in its worst region"
+               : best ? "Nearest to HF in its worst region: " + best->name + ", " + percent(worst(*best)) + " of P_SR"
+                      : "Valve maps";
   v.detail =
       "Error of each map's load pressure against the detailed model HF, as a part of supply less return, region by "
       "region.";
-  v.facts = {{"P_SR", digits(in("bar", valve.supply), 4) + " bar"},
+  if (asked && best) v.facts.push_back({"Nearest of all", best->name + ", " + percent(worst(*best))});
+  v.facts.insert(v.facts.end(), {{"P_SR", digits(in("bar", valve.supply), 4) + " bar"},
              {"Saturates at x_SS", digits(in("um", valve.saturation_travel), 3) + " um"},
-             {"Leakage against flow gain", digits(valve.leak_share(), 3)}};
+             {"Leakage against flow gain", digits(valve.leak_share(), 3)}});
   page.verdict(v);
   page.section("Error by region",
                "rms over the points of the region, in % of P_SR. Water hammer: beyond the supply. Saturated: above 90 "

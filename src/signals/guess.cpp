@@ -116,6 +116,7 @@ constexpr Pattern patterns[] = {
     {Signal::oil_temperature, "temperature"},
     {Signal::oil_temperature, "temp"},
     {Signal::oil_temperature, "oil"},
+    {Signal::oil_temperature, "oel"},
     {Signal::oil_temperature, "oeltemp"},
     {Signal::oil_temperature, "temperatur"},
 };
@@ -267,6 +268,14 @@ std::vector<ColumnGuess> guess_columns(const std::vector<std::string>& header) {
     if (guesses[m.column].signal || taken[static_cast<std::size_t>(index(m.signal))]) continue;
     guesses[m.column].signal = m.signal;
     taken[static_cast<std::size_t>(index(m.signal))] = true;
+  }
+  // A name in no list, but a unit that only one signal has.
+  for (ColumnGuess& g : guesses) {
+    const Unit* unit = find_unit(g.unit);
+    bool& oil = taken[static_cast<std::size_t>(index(Signal::oil_temperature))];
+    if (g.signal || oil || !unit || unit->dimension != Dimension::temperature) continue;
+    g.signal = Signal::oil_temperature;
+    oil = true;
   }
   return guesses;
 }

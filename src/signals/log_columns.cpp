@@ -162,7 +162,8 @@ void LogColumns::refuse_missing(Signal signal, const std::string& rule) const {
   std::string mend = format_.has_units ? fmt::format("add a column '{} [{}]'", name, info(signal).si_unit)
                                        : fmt::format("add a variable '{}'", name);
   mend += ", or map one of yours in [columns] of the rig file";
-  if (!ignored_.empty()) mend += " (not known: " + in_quotes(ignored_) + ")";
+  if (format_.has_lines) mend += " ('servodx init LOG' begins one)";
+  if (!ignored_.empty()) mend += "; not known: " + in_quotes(ignored_);
   refuse(format_.has_lines ? header_line_ : 0, name, rule, mend);
 }
 

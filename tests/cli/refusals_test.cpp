@@ -92,7 +92,7 @@ const std::vector<Refusal>& refusals() {
        {"rig.toml:2: column 'valve.first_stage': ", "jet pipe", "; "}},
       // Options
       {"NoCommand", no_change, "", {"servodx: ", "subcommand is required", "--help"}},
-      {"UnknownCommand", no_change, "symulate log.csv", {"servodx: ", "; ", "--help"}},
+      {"UnknownCommand", no_change, "symulate log.csv", {"servodx: ", "no command is called 'symulate'; ", "--help"}},
       {"UnknownOption",
        no_change,
        simulate + " --stepp 1e-4",

@@ -56,7 +56,7 @@ TEST(CheckLog, FindsJitterGapsAndCold) {
     }
     const double t = std::stod(line);
     const std::string rest = line.substr(line.find(','));
-    jitter += std::to_string(t + ((row * 7) % 5 - 2) * 5e-5) + rest + "\n";
+    jitter += std::to_string(t + (row % 4 == 1 ? 6.5e-4 : 0)) + rest + "\n";  // late stamps, no sample lost
     if (row % 100 > 2) gaps += line + "\n";
   }
   desk.write("clean.csv", first_rows("healthy/h12_mixed.csv", 1000));
@@ -64,12 +64,28 @@ TEST(CheckLog, FindsJitterGapsAndCold) {
   desk.write("gaps.csv", gaps);
   desk.write("cold.csv", first_rows("healthy/h08_preflight_cold.csv", 1000));
   EXPECT_TRUE(kinds(check(desk, "clean.csv")).empty()) << check(desk, "clean.csv")["logs"][0]["suspicious"];
-  EXPECT_TRUE(has(kinds(check(desk, "jitter.csv")), "jitter"));
+  const Json jittered = check(desk, "jitter.csv");
+  EXPECT_TRUE(has(kinds(jittered), "jitter"));
+  EXPECT_FALSE(has(kinds(jittered), "gaps"));
+  EXPECT_NEAR(jittered["logs"][0]["rate"].get<double>(), 1000, 1);
   const Json dropped = check(desk, "gaps.csv");
   EXPECT_TRUE(has(kinds(dropped), "gaps"));
   EXPECT_EQ(dropped["logs"][0]["gaps"], 9);
   EXPECT_EQ(dropped["logs"][0]["lost_samples"], 27);
   EXPECT_TRUE(has(kinds(check(desk, "cold.csv")), "temperature"));
+}
+
+TEST(CheckLog, FindsASignThatIsTurned) {
+  const Desk desk;
+  desk.write("log.csv", first_rows("healthy/h12_mixed.csv", 1500));
+  for (const char* signal : {"spool_position", "piston_position"}) {
+    const std::string name = signal;
+    desk.write("rig.toml", "[columns]\n" + name + " = { signal = \"" + name + "\", gain = \"-1\" }\n");
+    const Json found = check(desk, "log.csv --rig rig.toml")["logs"][0]["suspicious"];
+    ASSERT_EQ(found.size(), 1) << found;
+    EXPECT_EQ(found[0]["kind"], "sign");
+    EXPECT_NE(found[0]["text"].get<std::string>().find(name), std::string::npos) << found;
+  }
 }
 
 TEST(CheckLog, FindsALogOfAnotherRateAmongOthers) {

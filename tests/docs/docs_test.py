@@ -3,7 +3,8 @@
 A fence ```console holds commands ("$ servodx ...") and what they print. They run in order, in one folder a page, that
 begins with data/ and params/. Of the output shown every line must be printed, in order, numbers aside: digits may
 move, words may not; a line '...' stands for any lines. A fence ```sh holds commands with the reader's own names in
-them: they are rehearsed (--dry-run) in a folder that has files of these names."""
+them: they are rehearsed (--dry-run) in a folder that has files of these names. `init` runs, as later lines need its
+files."""
 import pathlib, re, shutil, subprocess, sys, tempfile, unittest
 
 PROGRAM, SOURCE = pathlib.Path(sys.argv[1]).resolve(), pathlib.Path(sys.argv[2]).resolve()
@@ -71,7 +72,7 @@ class Docs(unittest.TestCase):
                         line = line.split("#")[0].strip()
                         if not line.startswith("servodx "):
                             continue
-                        ended = run(line if re.search(r"--help|servodx (man|completion|rerun)\b", line) else line + " --dry-run", folder)
+                        ended = run(line if re.search(r"--help|servodx (man|completion|rerun|init)\b", line) else line + " --dry-run", folder)
                         self.assertEqual(ended.returncode, 0, f"{page.name}: {line}\n{ended.stderr}")
                         rehearsed += 1
         self.assertGreaterEqual(rehearsed, 3)  # the main job

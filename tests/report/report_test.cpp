@@ -9,6 +9,7 @@
 #include "report/columns.h"
 #include "report/handy.h"
 #include "report/json.h"
+#include "report/selftest.h"
 #include "report/text.h"
 #include "temporary_folder.h"
 
@@ -275,6 +276,18 @@ TEST(TuneReport, HeldRowsSayWhyAndFittedOnesHaveErrors) {
   EXPECT_DOUBLE_EQ(json["channels"][0]["heldout_rms"].get<double>(), 2.0);
   EXPECT_EQ(json["starts"].size(), 2u);
 }
+
+// Two repeats have a scatter of one degree of freedom: six of its sigmas are chance, of twenty repeats' they are not.
+TEST(Selftest, ABiasIsNoNewsBeforeThereAreRepeatsEnough) {
+  SelftestResult r;
+  r.rows.push_back({.name = "port_width", .bias = 1, .bias_sigmas = 6});
+  r.repeats = 2;
+  EXPECT_EQ(selftest_json(r)["biased"], 0);
+  r.repeats = 20;
+  EXPECT_EQ(selftest_json(r)["biased"], 1);
+}
+
+TEST(HandyUnits, ARatioHasNoUnit) { EXPECT_EQ(handy(1.5, "1"), "1.5"); }
 
 }  // namespace
 }  // namespace servodx::report

@@ -22,6 +22,7 @@ TEST(Guess, NamesAndUnitsAsPeopleWriteThem) {
   EXPECT_EQ(taken({"P B/psi"}), "pressure_b in psi");
   EXPECT_EQ(taken({"Supply (PSI)"}), "supply_pressure in psi");
   EXPECT_EQ(taken({"T oil (C)"}), "oil_temperature in degC");
+  EXPECT_EQ(taken({"Fluid 3 (C)"}), "oil_temperature in degC");  // by its unit alone
   EXPECT_EQ(taken({"Q l/min"}), "control_flow in l/min");
 }
 

@@ -215,14 +215,14 @@ TEST(Log, ColumnsAreMappedWithGainAndOffset) {
 
 TEST(Log, EachRefusalNamesPlaceRuleAndMend) {
   const std::string currents = "A, mA, % of rated, or V with a gain in the rig file";
-  const std::string mapping = ", or map one of yours in [columns] of the rig file";
+  const std::string mapping = ", or map one of yours in [columns] of the rig file ('servodx init LOG' begins one)";
   const struct {
     std::string text, message;
   } cases[] = {
       {"", "log.csv: the file has no header row; begin it with a row of column names"},
       {"Time [s],command [mA],spool_position [mm]\n" + rows(30),
        "log.csv:1: column 'time': required signal is missing; add a column 'time [s]'" + mapping +
-           " (not known: 'Time')"},
+           "; not known: 'Time'"},
       {"time [s],spool_position [mm]\n",
        "log.csv:1: column 'command': required signal is missing, and so is 'coil_current'; add a column 'command [A]'" +
            mapping},

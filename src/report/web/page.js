@@ -26,29 +26,63 @@
 
   const short = (value) => (value == null ? "" : Number(value.toPrecision(5)).toString());
 
-  // Lines across the plot, with their words.
+  // Range of y: the data, and the marks no farther from it than it spans. A mark beyond is said at the edge.
+  const range_with = (list) => (u, min, max) => {
+    if (min == null) return [null, null];
+    const span = max - min || Math.abs(max) || 1;
+    let low = min, high = max;
+    for (const { at } of list) if (at >= min - span && at <= max + span) { low = Math.min(low, at); high = Math.max(high, at); }
+    return uPlot.rangeNum(low, high, 0.1, true);
+  };
+
+  // Lines across the plot, with their words; no word lies on another.
   const marks = (plot) => (u) => {
     const c = u.ctx, { left, top, width, height } = u.bbox, ratio = devicePixelRatio;
+    const right = left + width, bottom = top + height, line = 14 * ratio, gap = 8 * ratio, edge = 4 * ratio;
+    const taken = [], said = [];
+    const hit = (box) => taken.find((t) => box.left < t.right && t.left < box.right && box.top < t.bottom && t.top < box.bottom);
+    // From this place to the left, or down by lines, until it is free.
+    const write = (words, x, y, down) => {
+      if (!words) return;
+      const long = c.measureText(words).width;
+      const box = { left: x, right: x + long, top: y, bottom: y + line };
+      for (let other = hit(box), tries = 0; other && tries < 20; other = hit(box), ++tries) {
+        if (down) { box.top = other.bottom; box.bottom = box.top + line; }
+        else { box.right = other.left - gap; box.left = box.right - long; }
+      }
+      taken.push(box);
+      said.push([words, box]);
+    };
+    const stroke = (x0, y0, x1, y1) => { c.beginPath(); c.moveTo(x0, y0); c.lineTo(x1, y1); c.stroke(); };
     c.save();
     c.strokeStyle = c.fillStyle = colour("text");
     c.lineWidth = ratio;
     c.setLineDash([4 * ratio, 3 * ratio]);
     c.font = 12 * ratio + "px system-ui, sans-serif";
-    for (const [list, across] of [[plot.xmarks || [], false], [plot.ymarks || [], true]])
-      for (const mark of list) {
-        const at = u.valToPos(mark.at, across ? "y" : "x", true);
-        if (across ? at < top || at > top + height : at < left || at > left + width) continue;
-        c.beginPath();
-        if (across) { c.moveTo(left, at); c.lineTo(left + width, at); }
-        else { c.moveTo(at, top); c.lineTo(at, top + height); }
-        c.stroke();
-        if (across) { c.textAlign = "right"; c.fillText(mark.label, left + width - 4 * ratio, at - 4 * ratio); }
-        else {
-          const room = left + width - at > c.measureText(mark.label).width + 8 * ratio;
-          c.textAlign = room ? "left" : "right";
-          c.fillText(mark.label, at + (room ? 4 : -4) * ratio, top + 13 * ratio);
-        }
+    c.textAlign = "left";
+    const from_right = (words) => right - edge - c.measureText(words).width;
+    for (const mark of plot.ymarks || []) {
+      const at = u.valToPos(mark.at, "y", true);
+      if (at < top || at > bottom) {
+        const words = mark.label && (at < top ? "\u2191 " : "\u2193 ") + mark.label + " " + Number(mark.at.toPrecision(3));
+        write(words, from_right(words), at < top ? top + edge : bottom - line, false);
+      } else {
+        stroke(left, at, right, at);
+        write(mark.label, from_right(mark.label), at - line >= top ? at - line : at, false);
       }
+    }
+    for (const mark of plot.xmarks || []) {
+      const at = u.valToPos(mark.at, "x", true), long = c.measureText(mark.label).width;
+      if (at < left || at > right) continue;
+      stroke(at, top, at, bottom);
+      write(mark.label, right - at > long + gap ? at + edge : at - edge - long, top, true);
+    }
+    for (const [words, box] of said) {  // after all lines: none strikes a word through
+      c.fillStyle = colour("card");
+      c.fillRect(box.left - edge / 2, box.top, box.right - box.left + edge, line);
+      c.fillStyle = colour("text");
+      c.fillText(words, box.left, box.bottom - edge);
+    }
     c.restore();
   };
 
@@ -78,7 +112,7 @@
       width: element.clientWidth,
       height: plot.low ? 140 : 200,
       series, bands,
-      scales: { x: { time: false }, y: { distr: plot.log ? 3 : 1 } },
+      scales: { x: { time: false }, y: plot.log ? { distr: 3 } : { range: range_with(plot.ymarks || []) } },
       axes: [
         { ...axis, label: plot.x_shown ? plot.x : null, labelSize: 16, size: 30 },
         { ...axis, space: 26, size: narrow ? 48 : 64, values: plot.log ? undefined : (u, ticks) => ticks.map((v) => short(v)) },
