@@ -1,6 +1,7 @@
 // Smooth stand-ins for the kinks of hydraulics: no branch, and finite derivatives everywhere. Each takes the width over
-// which it rounds its kink; far from the kink (ten widths) the error is below one part in a hundred of the width.
-// Duals get the derivative that costs least: one inverse root gives the root and its slope.
+// which it rounds its kink: by a hyperbola, off by less than one part in a hundred of the width ten widths away, or by a
+// parabola, exact beyond the width and cheaper, with a slope that has corners. Duals get the derivative that costs least:
+// one inverse root gives the root and its slope.
 #pragma once
 #include <algorithm>
 #include <cmath>
@@ -27,8 +28,8 @@ auto soft_positive(const X& x, const W& width) {
   return (x + smooth_abs(x, width)) * 0.5;
 }
 
-// max(x, 0) once more: a parabola within `width` of zero and exactly 0 below. For what a great stiffness multiplies, where
-// the tail of soft_positive would reach far.
+// max(x, 0) once more: a parabola within `width` of zero and exactly 0 below. For contacts, where the tail of
+// soft_positive, times a great stiffness, would reach far.
 template <class X>
 X contact_depth(const X& x, double width) {
   using std::max, std::min;
@@ -52,16 +53,29 @@ Dual<T, A> smooth_sign(const Dual<T, A>& x, const std::type_identity_t<T>& width
   return chain(s, x, y * (T(1.0) - s * s));
 }
 
-// x beyond a gap of half width `half` on either side of zero, corners rounded within `width`. Exactly x at half = 0.
-template <class X, class H, class W>
-auto dead_zone(const X& x, const H& half, const W& width) {
-  return x - (smooth_abs(x + half, width) - smooth_abs(x - half, width)) * 0.5;
+// |x|, its corner kept: for what it only scales, so that the whole is smooth without a width.
+template <class X>
+X magnitude(const X& x) {
+  using std::max;
+  return max(x, -x);
+}
+template <class T, Mask A>
+Dual<T, A> magnitude(const Dual<T, A>& x) {
+  using std::max, std::min;
+  return chain(magnitude(x.v), x, max(T(-1.0), min(T(1.0), x.v * T(1e300))));
 }
 
-// x kept within +-limit, corners rounded within `width`.
-template <class X, class L, class W>
-auto saturate(const X& x, const L& limit, const W& width) {
-  return (smooth_abs(x + limit, width) - smooth_abs(x - limit, width)) * 0.5;
+// x beyond a gap of half width `half` on either side of zero, corners rounded within `width`: exactly 0 in the gap, and x
+// at half = 0.
+template <class X, class H>
+auto dead_zone(const X& x, const H& half, double width) {
+  return contact_depth(x - half, width) - contact_depth(-x - half, width);
+}
+
+// x kept within +-limit, corners rounded within `width`; exactly x well inside.
+template <class X, class L>
+auto saturate(const X& x, const L& limit, double width) {
+  return x - dead_zone(x, limit, width);
 }
 
 // From -1 at x = -1 to 1 at x = 1 and exactly flat beyond, two derivatives continuous: (15 x - 10 x^3 + 3 x^5) / 8.

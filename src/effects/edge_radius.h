@@ -2,8 +2,9 @@
 // about its lap: the leakage at null and the pressure gain are those of blunt edges, the flow at large openings is not
 // (Merritt, Hydraulic Control Systems, 1967, sec. 5.3; Borello 2009 lets the radius grow in service).
 //
-// Added to the rounding that the base model gives a new edge. One radius for all edges; the model's smooth corner
-// stands for the true arc, so that the number is that of a size, not of a measurement.
+// Added to the rounding that the base model gives a new edge. One radius for the two edges from supply, one for the two
+// to return, which other oil has worn; the model's smooth corner stands for the true arc, so that the numbers are those
+// of a size, not of a measurement.
 #pragma once
 #include "effects/effect.h"
 
@@ -15,14 +16,15 @@ struct EdgeRadius {
   static constexpr const char* meaning = "the metering edges are blunt";
   static constexpr bool stand_only = true;  // an actuator shows its valve's edges through its own friction at null
   static constexpr int n_states = 0;
-  static constexpr int n_parameters = 1;
+  static constexpr int n_parameters = 2;
   static constexpr EffectParameter parameters[n_parameters] = {
-      {"edge_radius", "m", 0.0, 0.0, 1e-4, 5e-6, "corner radius of the metering edges above that of new ones"},
+      {"edge_radius", "m", 0.0, 0.0, 1e-4, 5e-6, "corner radius of the edges from supply above that of new ones"},
+      {"return_edge_radius", "m", 0.0, 0.0, 1e-4, 5e-6, "corner radius of the edges to return above that of new ones"},
   };
   // [m] added to the rounding of the edges; q: own parameters.
   template <class T>
-  static T edge_rounding(const T* q) {
-    return q[0];
+  static T edge_rounding(const T* q, bool to_return) {
+    return q[to_return];
   }
 };
 

@@ -19,7 +19,7 @@ inline constexpr double cd_metering = 0.61;
 inline constexpr double cd_orifice = 0.65;
 inline constexpr double cd_nozzle = 0.64;
 inline constexpr double clean_filter_area_ratio = 5.0;
-inline constexpr double slot_resistance = 6.0;
+inline constexpr double slot_resistance = 0.845;
 inline constexpr double jet_angle_factor = 0.43;
 }  // namespace nominal
 

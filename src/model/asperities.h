@@ -60,6 +60,15 @@ struct FrictionMemory {
     rod_speed = (x_rod - rod_from) * T(1.0 / h);
     seal_breakaway = stribeck(rod_speed, constants::piston_stribeck_velocity);
   }
+  // One lane of another memory.
+  void take_lane(const FrictionMemory& from, int lane) {
+    servodx::take_lane(spool_anchor, from.spool_anchor, lane);
+    servodx::take_lane(spool_speed, from.spool_speed, lane);
+    for (std::size_t i = 0; i < seal_anchor.size(); ++i)
+      servodx::take_lane(seal_anchor[i], from.seal_anchor[i], lane);
+    servodx::take_lane(rod_speed, from.rod_speed, lane);
+    servodx::take_lane(seal_breakaway, from.seal_breakaway, lane);
+  }
 };
 
 }  // namespace servodx

@@ -29,8 +29,9 @@ inline constexpr double seal_presliding[] = {1e-5, 3e-5, 1e-4};
 inline constexpr double piston_stribeck_velocity = 2e-2;  // [m/s] elastomer seals slide fully from some cm/s
 inline constexpr double clean_filter_area_ratio =
     5.0;  // clean filter area over both fixed orifices' areas: 4 % of the pilot pressure is lost
-inline constexpr double slot_resistance =
-    6.0;  // creeping-flow length of an open edge, in openings: moves laminar flow to turbulent near Re 100
+// Creeping-flow length of an open edge, in openings: C_d = delta sqrt(Re) with delta = 0.157 of a slot (Merritt 1967,
+// sec. 3-4) is 1/(48 delta^2) of them.
+inline constexpr double slot_resistance = 0.845;
 inline constexpr double filter_node_volume = 2e-7;    // [m3] between filter and orifices; a pole near 0.1 ms
 inline constexpr double pilot_volume_in_stops = 4.0;  // spool end volume = end area times this many stop travels
 inline constexpr double spool_stop_stiffness = 2e7;   // [N/m] full pilot force penetrates some 20 um
@@ -40,8 +41,7 @@ inline constexpr double piston_stop_damping = 5e4;    // [N s/m] an impact does 
 
 // Smoothing widths, each with what it must stay small against.
 inline constexpr double backlash_rounding = 5e-7;     // [m] ball contact; a tenth of mild backlash
-inline constexpr double nozzle_rounding = 1e-6;       // [m] flapper at a nozzle: seat roughness; 3 % of the gap
-inline constexpr double stop_rounding = 1e-6;         // [m] flapper stop; a wider one bends the slew
+inline constexpr double stop_rounding = 1e-6;         // [m] flapper at a nozzle: seat roughness; a wider one bends the slew
 inline constexpr double edge_rounding = 1e-6;         // [m] corner radius of a new metering edge
 inline constexpr double spool_stop_rounding = 1e-5;   // [m] roughness and tilt of the end faces
 inline constexpr double spool_film = 3e-5;            // [m] where the squeezed oil slows the spool: its way in a step

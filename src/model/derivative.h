@@ -31,29 +31,30 @@ auto nozzle_flow(const X& opening, const P& dp, const Derived<T>& d) {
   return orifice_flow(d.nozzle_conductance * curtain, dp, T(constants::orifice_transition));
 }
 
-// One metering edge. opening [m] (negative: covered by that length), dp [Pa]; flow [m3/s] and open height h [m].
+// One metering edge. opening [m] (negative: covered by that length), radius [m] of its corner, dp [Pa]; flow [m3/s] and
+// open height h [m].
 // Laminar slot, orifice and hose in series: dp = R q + K q|q|, so q = 2 dp / (R + sqrt(R^2 + 4 K |dp|)).
 // R: plane slot of the covered length and creeping flow at the edge; K: Bernoulli at the edge plus the hose.
 template <class X, class P, class T>
-inline __attribute__((always_inline)) auto metering_edge(const X& opening, const P& dp, const Derived<T>& d) {
-  namespace c = constants;
-  const auto length = smooth_abs(opening, d.edge_rounding);
+inline __attribute__((always_inline)) auto metering_edge(const X& opening, const T& radius, const P& dp,
+                                                       const Derived<T>& d) {
+  const auto length = smooth_abs(opening, radius);
   const auto open = (opening + length) * T(0.5);
   const auto covered = (length - opening) * T(0.5);
   const auto h2 = open * open + d.clearance2;
   const auto [h, per_h] = both_roots(h2);
   const auto r = (d.slot_per_length * covered + d.slot_corner) * per_h;  // [Pa s/m] times width and h
   const auto k = d.edge_loss + d.hose_loss * h2;
-  const auto q = d.twice_width * h * dp * inverse(r + root(r * r + k * smooth_abs(dp, T(c::orifice_transition))));
+  const auto q = d.twice_width * h * dp * inverse(r + root(r * r + k * magnitude(dp)));
   return std::make_tuple(q, h);
 }
 
 // With derivatives: taken in the edge's own two variables, then carried to what those depend on.
 template <class T, Mask A, Mask B>
 requires(A != 1 || B != 2) inline
-    __attribute__((always_inline)) auto metering_edge(const Dual<T, A>& opening, const Dual<T, B>& dp,
+    __attribute__((always_inline)) auto metering_edge(const Dual<T, A>& opening, const T& radius, const Dual<T, B>& dp,
                                                       const Derived<T>& d) {
-  const auto [q, h] = metering_edge(seed<0>(opening.v, T(1.0)), seed<1>(dp.v, T(1.0)), d);
+  const auto [q, h] = metering_edge(seed<0>(opening.v, T(1.0)), radius, seed<1>(dp.v, T(1.0)), d);
   return std::make_tuple(chain(q.v, opening, q.d[0], dp, q.d[1]), chain(h.v, opening, h.d[0]));
 }
 
@@ -119,7 +120,7 @@ inline __attribute__((always_inline)) auto derivative(const S& s, const In& in, 
   // force would take a free flapper, and the flapper follows it up to the nozzle. That leaves out the impact (a few
   // tenths of a millisecond) and keeps a wall out of the equations, which no linearly implicit step sees coming.
   const auto x_f = flapper_travel(z_f, p);
-  const auto wire = p[row::feedback_wire_stiffness] * dead_zone(x_s + x_f, d.half_backlash, T(c::backlash_rounding));
+  const auto wire = p[row::feedback_wire_stiffness] * dead_zone(x_s + x_f, d.half_backlash, c::backlash_rounding);
   const auto f_flapper = p[row::torque_motor_gain] * i - p[row::flapper_stiffness] * z_f - wire -
                          d.nozzle_area * (p_1 - p_2) + hook_flapper_force(view, Effects{});
   const auto dv_f = d.flapper_rate2 * f_flapper - d.flapper_damping * v_f;
@@ -128,8 +129,8 @@ inline __attribute__((always_inline)) auto derivative(const S& s, const In& in, 
   const auto q_filter = filter_flow(u.supply_pressure - p_f, v_s, d);
   const auto q_orifice_1 = orifice_flow(d.orifice_conductance, p_f - p_1, transition);
   const auto q_orifice_2 = orifice_flow(d.orifice_conductance, p_f - p_2, transition);
-  const auto gap_1 = soft_positive(p[row::nozzle_gap] - x_f, T(c::nozzle_rounding));
-  const auto gap_2 = soft_positive(p[row::nozzle_gap] + x_f, T(c::nozzle_rounding));
+  const auto gap_1 = p[row::nozzle_gap] - x_f;
+  const auto gap_2 = p[row::nozzle_gap] + x_f;
   const auto q_nozzle_1 =
       nozzle_flow(gap_1 + hook_nozzle_1_opening(view, Effects{}, gap_1), p_1 - u.return_pressure, d);
   const auto q_nozzle_2 =
@@ -140,10 +141,10 @@ inline __attribute__((always_inline)) auto derivative(const S& s, const In& in, 
 
   // Metering edges. Flows carry direction: pa from supply to A, at from A to return.
   const auto x_m = x_s + hook_metering_opening(view, Effects{});
-  const auto [q_pa, h_pa] = metering_edge(x_m - p[row::lap_pa], u.supply_pressure - p_a, d);
-  const auto [q_pb, h_pb] = metering_edge(-x_m - p[row::lap_pb], u.supply_pressure - p_b, d);
-  const auto [q_at, h_at] = metering_edge(-x_m - p[row::lap_at], p_a - u.return_pressure, d);
-  const auto [q_bt, h_bt] = metering_edge(x_m - p[row::lap_bt], p_b - u.return_pressure, d);
+  const auto [q_pa, h_pa] = metering_edge(x_m - p[row::lap_pa], d.supply_edge, u.supply_pressure - p_a, d);
+  const auto [q_pb, h_pb] = metering_edge(-x_m - p[row::lap_pb], d.supply_edge, u.supply_pressure - p_b, d);
+  const auto [q_at, h_at] = metering_edge(-x_m - p[row::lap_at], d.return_edge, p_a - u.return_pressure, d);
+  const auto [q_bt, h_bt] = metering_edge(x_m - p[row::lap_bt], d.return_edge, p_b - u.return_pressure, d);
 
   // Spool.
   const auto f_flow = d.flow_force * (h_pa * (u.supply_pressure - p_a) + h_bt * (p_b - u.return_pressure) -
@@ -151,8 +152,8 @@ inline __attribute__((always_inline)) auto derivative(const S& s, const In& in, 
   const auto f_dry =
       p[row::spool_friction] * asperities<T>((x_s - in.friction.spool_anchor) * T(1.0 / c::spool_presliding));
   const auto beyond = x_s - p[row::spool_stop], behind = -x_s - p[row::spool_stop];
-  const auto in_spool_stop = in_contact(soft_positive(beyond, T(c::spool_film)), soft_positive(behind, T(c::spool_film)),
-                                        T(c::spool_film));
+  const auto in_spool_stop =
+      in_contact(contact_depth(beyond, c::spool_film), contact_depth(behind, c::spool_film), T(c::spool_film));
   const auto f_spool = d.spool_area * (p_1 - p_2) - f_flow - f_dry - d.spool_viscous * v_s -
                        T(c::spool_stop_stiffness) * (contact_depth(beyond, c::spool_stop_rounding) -
                                                        contact_depth(behind, c::spool_stop_rounding)) -
@@ -178,8 +179,8 @@ inline __attribute__((always_inline)) auto derivative(const S& s, const In& in, 
   (std::make_integer_sequence<int, n_families>{});
   const auto f_friction = d.viscous * v_rel + seals * (p[row::piston_coulomb_friction] +
                                                        p[row::piston_stribeck_friction] * in.friction.seal_breakaway);
-  const auto over = soft_positive(x_p - d.half_stroke, T(c::piston_stop_rounding));
-  const auto under = soft_positive(-x_p - d.half_stroke, T(c::piston_stop_rounding));
+  const auto over = contact_depth(x_p - d.half_stroke, c::piston_stop_rounding);
+  const auto under = contact_depth(-x_p - d.half_stroke, c::piston_stop_rounding);
   const auto in_stop = in_contact(over, under, T(c::piston_stop_rounding));
   const auto f_piston = p[row::piston_area_a] * p_a - p[row::piston_area_b] * p_b - u.load_force - f_friction -
                         T(c::piston_stop_stiffness) * (over - under) - T(c::piston_stop_damping) * (in_stop * v_rel) +

@@ -34,7 +34,7 @@ struct Derived {
   T clearance2;          // [m2]
   T slot_per_length;     // [Pa s/m] laminar resistance of a covered edge per length, times width and opening squared
   T slot_corner;         // [Pa s] the same of the corner of an open edge
-  T edge_rounding;       // [m] corner radius of the metering edges
+  T supply_edge, return_edge;  // [m] corner radius of the metering edges from supply and to return
   T edge_loss;           // [Pa s2/m4] 4 rho / (2 Cd^2)
   T hose_loss;           // 4 hose_resistance width^2
   // actuator
@@ -87,7 +87,8 @@ Derived<T> derive(const T* p, const Oil& oil) {
   const T slot = T(12.0) * dynamic_viscosity;
   d.slot_per_length = slot / p[row::radial_clearance];
   d.slot_corner = slot * T(c::slot_resistance);
-  d.edge_rounding = T(c::edge_rounding) + hook_edge_rounding(p, Effects{});
+  d.supply_edge = T(c::edge_rounding) + hook_edge_rounding(p, false, Effects{});
+  d.return_edge = T(c::edge_rounding) + hook_edge_rounding(p, true, Effects{});
   d.edge_loss = T(4.0 * oil.density / (2.0 * c::cd_metering * c::cd_metering));
   d.hose_loss = T(4.0) * p[row::hose_resistance] * p[row::port_width] * p[row::port_width];
   d.leak = p[row::cross_piston_leakage] * (T(1.0) / viscosity_ratio);

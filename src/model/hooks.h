@@ -3,7 +3,7 @@
 //     struct Memory, drive(memory, time, command, spring, p)  [A]  applied to the command at each sample, with
 //     memory of its past; struct Sensors, observe(sensors, time, shown, p)  [SI]  applied to what is reported at each sample
 //     viscosity(p)         [-]   factor on the oil's viscosity
-//     edge_rounding(p)     [m]   added to the corner radius of the metering edges
+//     edge_rounding(p, to_return) [m] added to the corner radius of the metering edges
 //     supply_pressure(view) [Pa] added to the supply pressure at the valve
 //     flapper_force(view)  [N]   added to the torque motor's force
 //     nozzle_1_opening(view, open), nozzle_2_opening(view, open)  [m]  added to the open gap of a nozzle
@@ -63,7 +63,7 @@ struct EffectList {
 // Travel of the flapper [m]: `free` [m] is where the force would take it if no nozzle stopped it.
 template <class X, class T>
 auto flapper_travel(const X& free, const T* p) {
-  return saturate(free, p[row::nozzle_gap], T(constants::stop_rounding));
+  return saturate(free, p[row::nozzle_gap], constants::stop_rounding);
 }
 
 template <class List, class Last>
@@ -146,14 +146,14 @@ T hook_viscosity([[maybe_unused]] const T* p, EffectList<E...>) {
   return factor;
 }
 
-// What the effects add to the corner radius of the metering edges. [m]
+// What the effects add to the corner radius of the metering edges, those to return or those from supply. [m]
 template <class T, class... E>
-T hook_edge_rounding([[maybe_unused]] const T* p, EffectList<E...>) {
+T hook_edge_rounding([[maybe_unused]] const T* p, [[maybe_unused]] bool to_return, EffectList<E...>) {
   T added = T(0.0);
   (
       [&] {
-        if constexpr (requires { E::edge_rounding(p); })
-          added = added + E::edge_rounding(p + n_parameters + EffectList<E...>::template parameter_offset<E>());
+        if constexpr (requires { E::edge_rounding(p, to_return); })
+          added = added + E::edge_rounding(p + n_parameters + EffectList<E...>::template parameter_offset<E>(), to_return);
       }(),
       ...);
   return added;

@@ -181,24 +181,33 @@ class Genetic {
     return width <= options_.collapse;
   }
 
+  // The few by which a population exceeds whole batches rest, each in its turn.
+  bool rests(std::uint32_t individual) const {
+    const auto size = static_cast<std::uint64_t>(options_.population), spare = size % options_.batch;
+    return 2 * spare <= static_cast<std::uint64_t>(options_.batch) && (individual + static_cast<std::uint64_t>(state_.generation) * spare) % size < spare;
+  }
+
   void step() {
     ++state_.generation;
     std::vector<Point> points;
-    std::vector<std::vector<Child>> broods(state_.islands.size());  // empty: a fresh start
+    std::vector<std::vector<Child>> broods(state_.islands.size());
+    std::vector<bool> afresh(state_.islands.size());
     std::uint32_t individual = 0;
     for (std::size_t i = 0; i < state_.islands.size(); ++i) {
       const Island& island = state_.islands[i];
       const int size = static_cast<int>(island.population.size());
-      if (is_done(island)) {
+      if ((afresh[i] = is_done(island))) {
         const std::vector<Point> start = fresh(i, size, false);
         points.insert(points.end(), start.begin(), start.end());
         individual += static_cast<std::uint32_t>(size);
         continue;
       }
       const Brood brood = look_at(island, options_.tournament);
-      for (int slot = 0; slot < size; ++slot) {
-        Random random(state_.seed, static_cast<std::uint32_t>(state_.generation), individual++, kChild);
+      for (int slot = 0; slot < size; ++slot, ++individual) {
+        if (rests(individual)) continue;
+        Random random(state_.seed, static_cast<std::uint32_t>(state_.generation), individual, kChild);
         broods[i].push_back(make_child(brood, slot, random));
+        broods[i].back().parent = slot;
         points.push_back(broods[i].back().point);
       }
     }
@@ -206,14 +215,15 @@ class Genetic {
     std::size_t at = 0;
     for (std::size_t i = 0; i < state_.islands.size(); ++i) {
       Island& island = state_.islands[i];
-      const std::size_t size = island.population.size();
-      if (broods[i].empty()) {
+      if (afresh[i]) {
+        const std::size_t size = island.population.size();
         ++state_.restarts;
         fill(island, {points.begin() + at, points.begin() + at + size}, costs.data() + at);
+        at += size;
       } else {
         select(island, broods[i], costs.data() + at);
+        at += broods[i].size();
       }
-      at += size;
     }
     migrate();
     if (hooks_.refine && hooks_.refine_every > 0 && state_.generation % hooks_.refine_every == 0) admit();
@@ -227,7 +237,7 @@ class Genetic {
     double weight = 0, reach = 0, reach2 = 0, mixing = 0;
     for (std::size_t k = 0; k < children.size(); ++k) {
       Child& child = children[k];
-      Individual& parent = island.population[k];
+      Individual& parent = island.population[child.parent];
       island.tries[child.variation] += 1;
       if (costs[k] > parent.cost || costs[k] >= kWorst) continue;
       if (costs[k] < parent.cost) {
@@ -329,6 +339,7 @@ class Genetic {
 
 void GeneticOptions::validate() const {
   require(population >= kLeastIsland, "population", "must be at least 6");
+  require(batch >= 1, "batch", "must be at least 1");
   require(generations >= 0, "generations", "must not be negative");
   require(tournament >= 1, "tournament", "must be at least 1");
   require(seed_spread >= 0 && std::isfinite(seed_spread), "seed_spread", "must not be negative");

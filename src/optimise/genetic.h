@@ -19,6 +19,7 @@ namespace servodx {
 struct GeneticOptions {
   int population = 50;  // all islands together
   int generations = 100;
+  int batch = 8;  // candidates that run side by side: where few are too many, parents rest in turn
   std::uint64_t seed = 1;
   int tournament = 2;
   double seed_spread = 0.1;       // standard deviation of the cloud about each seed point, of the box

@@ -20,6 +20,7 @@ namespace servodx {
 
 struct Child {
   Point point;
+  int parent = 0;  // slot
   int variation = 0;
   double reach = 0, mixing = 0;  // of a difference; remembered if it wins
 };

@@ -187,6 +187,7 @@ class Recorder {
         if (i == 0) begin_tick(tick);
         if (i < steps_) advance(tick + i * h_, u);
       }
+      check_finite(tick);
     }
     RigLog log;
     log.truth = nlohmann::json::object();
@@ -222,9 +223,19 @@ class Recorder {
     for (long i = 0; i < steps; ++i) {
       rig_.step(-to_centre * rig_.piston_position(), load.force, load.stiffness, h_);
     }
+    check_finite(0.0);
     if (stimulus_.compensated) compensation_ = -to_centre * rig_.piston_position();
     for (auto& sensor : sensors_) sensor.reset(rig_, seen(load));
     loop_sensor_.reset(rig_, seen(load));
+  }
+
+  // An explicit solver that meets a rate above its limit runs away: thin friction, small volumes, hot oil.
+  void check_finite(double time) const {
+    const State& s = rig_.state();
+    if (std::all_of(s.begin(), s.end(), [](double x) { return std::isfinite(x); })) return;
+    throw InputError({"", 0, "solver.step"},
+                     fmt::format("the rig's equations ran away at {:.4g} s with steps of {:.3g} s", time, h_),
+                     "take smaller steps with --set solver.step=..., or parameters that are less stiff");
   }
 
   // Wear and offset move slowly against a tick.

@@ -3,6 +3,7 @@
 #include <array>
 #include <cmath>
 #include <tuple>
+#include <utility>
 
 #include "base/pack.h"
 #include "base/sparse_dual.h"
@@ -219,7 +220,7 @@ void run_pack(const Scenario& in, const ParameterVector* const* candidates, Traj
     return series.empty() ? table : T(series[k]);
   };
   const auto inputs_at = [&](std::size_t k, const T& current) {
-    return Inputs<T>{saturate(current, p[row::current_limit], T(constants::current_rounding)),
+    return Inputs<T>{saturate(current, p[row::current_limit], constants::current_rounding),
                      input(in.supply_pressure, k, p[row::supply_pressure]),
                      input(in.return_pressure, k, p[row::return_pressure]),
                      input(in.load_force, k, T(0.0)),
@@ -227,8 +228,39 @@ void run_pack(const Scenario& in, const ParameterVector* const* candidates, Traj
                      T(0.0)};
   };
 
-  // Initial state.
+  // Far beyond its stops, or at pressures that oil does not know, a lane has diverged: not below 1.
+  const T per_travel = T(0.1) / p[row::spool_stop];
+  const auto excess = [&](const std::array<T, n>& state) {
+    const T per_pressure = T(1e-9), x = state[s_x_spool] * per_travel, rod = state[s_x_piston] * T(1e-3),
+            p_1 = state[s_p_pilot_1] * per_pressure, p_2 = state[s_p_pilot_2] * per_pressure,
+            p_a = state[s_p_a] * per_pressure, p_b = state[s_p_b] * per_pressure;
+    return (x * x + rod * rod) + (p_1 * p_1 + p_2 * p_2) + (p_a * p_a + p_b * p_b);
+  };
+  const auto is_sane = [](const T& excess, int lane) { return Lanes<T>::get(excess, lane) < 1.0; };
+  // Lanes that diverged take what `again` makes of them; the others keep what they have, so a lane's bits do not depend
+  // on its company.
   std::array<T, n> y{};
+  FrictionMemory<T> friction;
+  const auto rescue = [&](const std::array<T, n>& y_before, const FrictionMemory<T>& friction_before, auto&& again) {
+    const auto y_first = std::exchange(y, y_before);
+    const auto friction_first = std::exchange(friction, friction_before);
+    const T first = excess(y_first);
+    again();
+    for (int lane = 0; lane < width; ++lane) {
+      if (!is_sane(first, lane)) continue;
+      for (int j = 0; j < n; ++j) take_lane(y[j], y_first[j], lane);
+      friction.take_lane(friction_first, lane);
+    }
+  };
+  const auto any_lost = [&] {
+    const T now = excess(y);
+    for (int lane = 0; lane < lanes; ++lane)
+      if (results[lane]->ok && !is_sane(now, lane)) return true;
+    return false;
+  };
+  for (int lane = 0; lane < lanes; ++lane) results[lane]->ok = true;
+
+  // Initial state.
   Inputs<T> u = inputs_at(0, T(in.command[0]) + null);
   const T half = T(0.5) * (u.supply_pressure + u.return_pressure);
   y[s_p_filter] = u.supply_pressure;
@@ -257,11 +289,16 @@ void run_pack(const Scenario& in, const ParameterVector* const* candidates, Traj
     const T force_per_amp =
         p[row::torque_motor_gain] * d.inverse_flapper_stiffness * d.spool_area * half / p[row::nozzle_gap];
     settling.settle_rate = T(rate) / (d.inverse_spool_mass * force_per_amp);
-    for (int k = 0; k < 60; ++k) {
-      settling.at.friction.rest(y[s_x_spool], y[s_x_piston]);
-      effects_at_rest(y.data(), p.data(), Effects{});
-      rodas3_step<T>(settling, y, k < 20 ? 2e-4 : 1e-3);
-    }
+    const auto settle = [&](int finer) {
+      for (int k = 0; k < 60 * finer; ++k) {
+        settling.at.friction.rest(y[s_x_spool], y[s_x_piston]);
+        effects_at_rest(y.data(), p.data(), Effects{});
+        rodas3_step<T>(settling, y, (k < 20 * finer ? 2e-4 : 1e-3) / finer);
+      }
+    };
+    const auto unsettled = y;
+    settle(1);
+    if (any_lost()) rescue(unsettled, friction, [&] { settle(16); });
     // The lines of a stand fill through the edges' leakage: some seconds.
     if (on_stand)
       for (int k = 0; k < 500; ++k) {
@@ -278,13 +315,11 @@ void run_pack(const Scenario& in, const ParameterVector* const* candidates, Traj
   T current = drive(in.time[0], T(in.command[0]) + null, spring(), p.data(), rated);
   Sensed<T, Effects> sensed;
 
-  for (int lane = 0; lane < lanes; ++lane) {
-    results[lane]->ok = true;
+  for (int lane = 0; lane < lanes; ++lane)
     for (int c = 0; c < n_simulated; ++c) {
       results[lane]->signals[c].clear();
       if (options.wanted[c]) results[lane]->signals[c].resize(samples);
     }
-  }
   const auto report = [&](std::size_t k, const Inputs<T>& now) {
     std::array<T, n_simulated> out{};
     out[0] = y[s_x_spool];
@@ -295,13 +330,13 @@ void run_pack(const Scenario& in, const ParameterVector* const* candidates, Traj
     out[4] = y[s_p_pilot_1];
     out[5] = y[s_p_pilot_2];
     if (options.wanted[6] || options.wanted[7] || options.wanted[10] || options.wanted[11]) {
-      const auto flow = [&](const T& opening, const T& dp) {
-        return std::get<0>(metering_edge(opening, dp, d));
+      const auto flow = [&](const T& opening, const T& radius, const T& dp) {
+        return std::get<0>(metering_edge(opening, radius, dp, d));
       };
-      const T q_pa = flow(y[s_x_spool] - p[row::lap_pa], now.supply_pressure - y[s_p_a]);
-      const T q_pb = flow(-y[s_x_spool] - p[row::lap_pb], now.supply_pressure - y[s_p_b]);
-      const T q_at = flow(-y[s_x_spool] - p[row::lap_at], y[s_p_a] - now.return_pressure);
-      const T q_bt = flow(y[s_x_spool] - p[row::lap_bt], y[s_p_b] - now.return_pressure);
+      const T q_pa = flow(y[s_x_spool] - p[row::lap_pa], d.supply_edge, now.supply_pressure - y[s_p_a]);
+      const T q_pb = flow(-y[s_x_spool] - p[row::lap_pb], d.supply_edge, now.supply_pressure - y[s_p_b]);
+      const T q_at = flow(-y[s_x_spool] - p[row::lap_at], d.return_edge, y[s_p_a] - now.return_pressure);
+      const T q_bt = flow(y[s_x_spool] - p[row::lap_bt], d.return_edge, y[s_p_b] - now.return_pressure);
       out[6] = q_pa - q_at;
       out[7] = q_pb - q_bt;
       out[10] = T(0.5) * (out[6] - out[7]);
@@ -317,13 +352,10 @@ void run_pack(const Scenario& in, const ParameterVector* const* candidates, Traj
     out[4] = out[4] + p[nuisance::pilot_pressure_1_offset];
     out[5] = out[5] + p[nuisance::pilot_pressure_2_offset];
     bool any = false;
+    const T here = excess(y);
     for (int lane = 0; lane < lanes; ++lane) {
       if (!results[lane]->ok) continue;
-      // Beyond 1 m of spool or 1e5 bar the numbers mean nothing.
-      const bool sane =
-          std::abs(Lanes<T>::get(y[s_x_spool], lane)) < 1.0 && std::abs(Lanes<T>::get(y[s_p_a], lane)) < 1e10 &&
-          std::abs(Lanes<T>::get(y[s_p_b], lane)) < 1e10 && std::abs(Lanes<T>::get(y[s_x_piston], lane)) < 1e3;
-      if (!sane) {
+      if (!is_sane(here, lane)) {
         results[lane]->ok = false;
         results[lane]->failed_at = in.time[k];
         continue;
@@ -345,7 +377,6 @@ void run_pack(const Scenario& in, const ParameterVector* const* candidates, Traj
   constexpr double jump = 0.03;         // of rated current
   constexpr double impact_time = 4e-3;  // [s]
   double impact_until = in.time[0] - 1.0;
-  FrictionMemory<T> friction;
   friction.rest(y[s_x_spool], y[s_x_piston]);
   // Slower than full stroke in a second, the valve's own dynamics stay settled, and an L-stable step passes over them.
   constexpr double creep = 1.0;         // [1/s] rated current per time
@@ -360,28 +391,35 @@ void run_pack(const Scenario& in, const ParameterVector* const* candidates, Traj
     const double usual = on_stand && in.time[k] >= lively_until ? options.creep_step : options.step;
     const double largest = in.time[k] < impact_until ? std::min(options.step, options.impact_step) : usual;
     const int substeps = std::max(1, static_cast<int>(std::ceil(dt / largest - 1e-6)));
-    const double h = dt / substeps;
     const T next_current = drive(in.time[k + 1], T(in.command[k + 1]) + null, spring(), p.data(), rated);
     const Inputs<T> next = inputs_at(k + 1, next_current);
     const T per = T(1.0 / dt);
     live.slope = {p[nuisance::command_slope] * (next.current - now.current) * per,
                   (next.supply_pressure - now.supply_pressure) * per,
                   (next.return_pressure - now.return_pressure) * per, (next.load_force - now.load_force) * per};
-    for (int j = 0; j < substeps; ++j) {
-      const T t = T(h * j);
-      live.at = {now.current + live.slope.current * t, now.supply_pressure + live.slope.supply_pressure * t,
-                 now.return_pressure + live.slope.return_pressure * t, now.load_force + live.slope.load_force * t,
-                 friction};
-      const T spool_from = y[s_x_spool], rod_from = y[s_x_piston];
-      if (on_stand) {
-        stand.at = live.at;
-        stand.slope = live.slope;
-        rodas3_step<T>(stand, y, h);
-      } else {
-        rodas3_step<T>(live, y, h);
+    const auto advance = [&](int steps) {
+      const double h = dt / steps;
+      for (int j = 0; j < steps; ++j) {
+        const T t = T(h * j);
+        live.at = {now.current + live.slope.current * t, now.supply_pressure + live.slope.supply_pressure * t,
+                   now.return_pressure + live.slope.return_pressure * t, now.load_force + live.slope.load_force * t,
+                   friction};
+        const T spool_from = y[s_x_spool], rod_from = y[s_x_piston];
+        if (on_stand) {
+          stand.at = live.at;
+          stand.slope = live.slope;
+          rodas3_step<T>(stand, y, h);
+        } else {
+          rodas3_step<T>(live, y, h);
+        }
+        friction.move(spool_from, y[s_x_spool], rod_from, y[s_x_piston], h);
       }
-      friction.move(spool_from, y[s_x_spool], rod_from, y[s_x_piston], h);
-    }
+    };
+    const auto y_before = y;
+    const auto friction_before = friction;
+    advance(substeps);
+    for (int finer = substeps * 8; finer <= substeps * 64 && any_lost(); finer *= 8)
+      rescue(y_before, friction_before, [&] { advance(finer); });
     now = next;
     if (!report(k + 1, now)) return;
   }

@@ -136,7 +136,7 @@ TEST(TestStand, BluntEdgesLeakAtNullAndPassTheSameFlowWhenOpen) {
   double last = 0;
   const double flow = of(simulate(open, v, all_signals()), Signal::control_flow)[250];
   for (double radius : {0.0, 5e-6, 10e-6, 20e-6}) {
-    v[effect_row<EdgeRadius>(0)] = radius;
+    v[effect_row<EdgeRadius>(0)] = v[effect_row<EdgeRadius>(1)] = radius;
     const Trajectory t = simulate(shut, v, all_signals());
     ASSERT_TRUE(t.ok);
     const double null_leakage = largest(of(t, Signal::leakage_flow));

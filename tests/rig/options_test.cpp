@@ -43,6 +43,15 @@ TEST(RigOptions, ADriverShortOfVoltageSlewsItsCurrent) {
   EXPECT_GT(rise(changed({"driver.voltage=10"})), 2.0 * rise(changed({"driver.voltage=100"})));
 }
 
+TEST(RigOptions, ASolverThatRunsAwayIsAnErrorAndNotALogOfHoles) {
+  const RigModel m = changed({"spool.coulomb=0.05"});  // its bristles are stiffer than the step bears
+  RigRun run;
+  run.duration = 0.2;
+  EXPECT_THROW(run_rig(m, run), InputError);
+  run.step = 2e-7;
+  EXPECT_NO_THROW(run_rig(m, run));
+}
+
 TEST(RigOptions, DitherNarrowsTheHysteresisThatFrictionLeaves) {
   const auto loop = [](const RigModel& m) {
     VirtualRig up(m, {}), down(m, {});

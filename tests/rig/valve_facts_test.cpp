@@ -31,7 +31,7 @@ class ShippedRig : public ::testing::TestWithParam<std::string> {};
 
 TEST_P(ShippedRig, HasFactsWithinTheRangeOfRealValves) { expect_within(read_rig_model((rigs / GetParam()).string())); }
 
-INSTANTIATE_TEST_SUITE_P(ValveFacts, ShippedRig, ::testing::Values("borello2009.toml", "jet_pipe.toml"),
+INSTANTIATE_TEST_SUITE_P(ValveFacts, ShippedRig, ::testing::Values("borello2009.toml", "bench.toml", "jet_pipe.toml"),
                          [](const auto& test) { return std::filesystem::path(test.param).stem().string(); });
 
 TEST(ValveFacts, OfAnotherValveOfTheTypeLieWithinTheRangeOfRealOnes) {
