@@ -3,7 +3,7 @@
 //
 // The hot loop is bound by the divider, which takes 16 to 32 cycles for eight doubles where a multiplication takes a
 // half. So it asks for `inverse_root` and `inverse`: where the instruction set fuses multiply and add (Isa 2: AVX2 and
-// FMA, 5: AVX-512) they are a first guess and one or two steps of Newton's kind, right to two units in the last place;
+// FMA, 5: AVX-512) they are a first guess and one or two steps of third order, right to eleven digits;
 // elsewhere they are the IEEE root and quotient. So instruction sets differ in the last digits (docs/performance.md).
 #pragma once
 #include <algorithm>
@@ -71,12 +71,12 @@ struct Pack {
   // 1/sqrt(a), a > 0 and normal.
   friend Pack inverse_root(Pack a) {
     if constexpr (refined) {
-      // y(1 + e/2 + 3e^2/8 + 5e^3/16), e = 1 - a y^2, leaves 35e^4/128: a guess of 14 bits needs it once, one of 3.5 %
-      // twice. One order less leaves 6e-13, which a run past friction's corners blows up to 1e-7 of a pressure's range.
+      // y(1 + e/2 + 3e^2/8), e = 1 - a y^2, leaves 5e^3/16: 6e-13 after one step from a guess of 14 bits, 3e-12
+      // after two from one of 3.5 %. A model's steps err by 1e-4.
       Pack y = guess_root(a);
       for (int i = 0; i < (Isa == 5 ? 1 : 2); ++i) {
         const Pack e = subtract_product(1.0, a * y, y);
-        y = multiply_add(multiply_add(multiply_add(Pack(0.3125), e, Pack(0.375)), e, Pack(0.5)), y * e, y);
+        y = multiply_add(multiply_add(Pack(0.375), e, Pack(0.5)), y * e, y);
       }
       return y;
     } else {
@@ -87,8 +87,8 @@ struct Pack {
   friend Pack inverse(Pack a) {
     if constexpr (refined && Isa == 5) {
       Pack y = guess_inverse(a);
-      const Pack e = subtract_product(1.0, a, y);  // below 2^-14; y(1 + e + e^2 + e^3) leaves e^4
-      return multiply_add(y, multiply_add(multiply_add(e, e, e), e, e), y);
+      const Pack e = subtract_product(1.0, a, y);  // below 2^-14; y(1 + e + e^2) leaves e^3
+      return multiply_add(y, multiply_add(e, e, e), y);
     } else {
       return Pack(1.0) / a;
     }
