@@ -1,7 +1,7 @@
 // Smooth stand-ins for the kinks of hydraulics: no branch, and finite derivatives everywhere. Each takes the width over
-// which it rounds its kink: by a hyperbola, off by less than one part in a hundred of the width ten widths away, or by a
-// parabola, exact beyond the width and cheaper, with a slope that has corners. Duals get the derivative that costs least:
-// one inverse root gives the root and its slope.
+// which it rounds its kink: by a hyperbola, off by less than one part in a hundred of the width ten widths away, or by
+// a parabola, exact beyond the width and cheaper, with a slope that has corners. Duals get the derivative that costs
+// least: one inverse root gives the root and its slope.
 #pragma once
 #include <algorithm>
 #include <cmath>
@@ -65,8 +65,8 @@ Dual<T, A> magnitude(const Dual<T, A>& x) {
   return chain(magnitude(x.v), x, max(T(-1.0), min(T(1.0), x.v * T(1e300))));
 }
 
-// x beyond a gap of half width `half` on either side of zero, corners rounded within `width`: exactly 0 in the gap, and x
-// at half = 0.
+// x beyond a gap of half width `half` on either side of zero, corners rounded within `width`: exactly 0 in the gap, and
+// x at half = 0.
 template <class X, class H>
 auto dead_zone(const X& x, const H& half, double width) {
   return contact_depth(x - half, width) - contact_depth(-x - half, width);

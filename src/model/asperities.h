@@ -64,8 +64,7 @@ struct FrictionMemory {
   void take_lane(const FrictionMemory& from, int lane) {
     servodx::take_lane(spool_anchor, from.spool_anchor, lane);
     servodx::take_lane(spool_speed, from.spool_speed, lane);
-    for (std::size_t i = 0; i < seal_anchor.size(); ++i)
-      servodx::take_lane(seal_anchor[i], from.seal_anchor[i], lane);
+    for (std::size_t i = 0; i < seal_anchor.size(); ++i) servodx::take_lane(seal_anchor[i], from.seal_anchor[i], lane);
     servodx::take_lane(rod_speed, from.rod_speed, lane);
     servodx::take_lane(seal_breakaway, from.seal_breakaway, lane);
   }

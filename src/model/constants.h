@@ -12,9 +12,9 @@ inline constexpr double steel_density = 7800.0;           // [kg/m3]
 inline constexpr double cd_metering = 0.61;  // sharp edge, turbulent (Merritt eq. 3-34)
 inline constexpr double cd_orifice =
     0.65;  // short-tube fixed orifice with rounded inlet (Merritt sec. 3-4: 0.6 to 0.88)
-inline constexpr double cd_nozzle = 0.64;  // flapper-nozzle curtain (Merritt sec. 5-6)
-inline constexpr double nozzle_bore_loss =
-    1.0;  // velocity heads of the bore: entrance 0.5, turn into the curtain 0.5. A wide gap passes no more than the bore
+inline constexpr double cd_nozzle = 0.64;        // flapper-nozzle curtain (Merritt sec. 5-6)
+inline constexpr double nozzle_bore_loss = 1.0;  // velocity heads of the bore: entrance 0.5, turn into the curtain 0.5.
+                                                 // A wide gap passes no more than the bore
 inline constexpr double jet_angle_factor =
     0.43;  // 2 Cd Cv cos(69 deg): flow force per area and pressure drop (Merritt eq. 5-96)
 inline constexpr double flapper_damping_ratio =
@@ -35,14 +35,14 @@ inline constexpr double slot_resistance = 0.845;
 inline constexpr double filter_node_volume = 2e-7;    // [m3] between filter and orifices; a pole near 0.1 ms
 inline constexpr double pilot_volume_in_stops = 4.0;  // spool end volume = end area times this many stop travels
 inline constexpr double spool_stop_stiffness = 2e7;   // [N/m] full pilot force penetrates some 20 um
-inline constexpr double spool_stop_damping = 1000.0;   // [N s/m] oil squeezed out between spool end and cap: no rebound
+inline constexpr double spool_stop_damping = 1000.0;  // [N s/m] oil squeezed out between spool end and cap: no rebound
 inline constexpr double piston_stop_stiffness = 2e8;  // [N/m] full actuator force penetrates 0.1 mm
 inline constexpr double piston_stop_damping = 5e4;    // [N s/m] an impact does not rebound
 
 // Smoothing widths, each with what it must stay small against.
-inline constexpr double backlash_rounding = 5e-7;     // [m] ball contact; a tenth of mild backlash
-inline constexpr double stop_rounding = 1e-6;         // [m] flapper at a nozzle: seat roughness; a wider one bends the slew
-inline constexpr double edge_rounding = 1e-6;         // [m] corner radius of a new metering edge
+inline constexpr double backlash_rounding = 5e-7;  // [m] ball contact; a tenth of mild backlash
+inline constexpr double stop_rounding = 1e-6;  // [m] flapper at a nozzle: seat roughness; a wider one bends the slew
+inline constexpr double edge_rounding = 1e-6;  // [m] corner radius of a new metering edge
 inline constexpr double spool_stop_rounding = 1e-5;   // [m] roughness and tilt of the end faces
 inline constexpr double spool_film = 3e-5;            // [m] where the squeezed oil slows the spool: its way in a step
 inline constexpr double piston_stop_rounding = 1e-5;  // [m]

@@ -23,8 +23,9 @@ auto orifice_flow(const C& conductance, const P& dp, const T& transition) {
   return conductance * signed_sqrt(dp, transition);
 }
 
-// Nozzle: bore and curtain in series. opening [m] of the curtain. The bore's jet presses on the flapper with two velocity
-// heads, one of which the bore has lost, so the force stays area times pressure drop (Merritt eq. 6-69 with the loss).
+// Nozzle: bore and curtain in series. opening [m] of the curtain. The bore's jet presses on the flapper with two
+// velocity heads, one of which the bore has lost, so the force stays area times pressure drop (Merritt eq. 6-69 with
+// the loss).
 template <class X, class P, class T>
 auto nozzle_flow(const X& opening, const P& dp, const Derived<T>& d) {
   const auto curtain = opening * inverse_root(d.bore_loss * (opening * opening) + T(1.0));
@@ -37,7 +38,7 @@ auto nozzle_flow(const X& opening, const P& dp, const Derived<T>& d) {
 // R: plane slot of the covered length and creeping flow at the edge; K: Bernoulli at the edge plus the hose.
 template <class X, class P, class T>
 inline __attribute__((always_inline)) auto metering_edge(const X& opening, const T& radius, const P& dp,
-                                                       const Derived<T>& d) {
+                                                         const Derived<T>& d) {
   const auto length = smooth_abs(opening, radius);
   const auto open = (opening + length) * T(0.5);
   const auto covered = (length - opening) * T(0.5);
@@ -156,7 +157,7 @@ inline __attribute__((always_inline)) auto derivative(const S& s, const In& in, 
       in_contact(contact_depth(beyond, c::spool_film), contact_depth(behind, c::spool_film), T(c::spool_film));
   const auto f_spool = d.spool_area * (p_1 - p_2) - f_flow - f_dry - d.spool_viscous * v_s -
                        T(c::spool_stop_stiffness) * (contact_depth(beyond, c::spool_stop_rounding) -
-                                                       contact_depth(behind, c::spool_stop_rounding)) -
+                                                     contact_depth(behind, c::spool_stop_rounding)) -
                        T(c::spool_stop_damping) * (in_spool_stop * v_s) + hook_spool_force(view, Effects{});
   const auto dv_s = d.inverse_spool_mass * f_spool;
 

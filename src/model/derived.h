@@ -35,8 +35,8 @@ struct Derived {
   T slot_per_length;     // [Pa s/m] laminar resistance of a covered edge per length, times width and opening squared
   T slot_corner;         // [Pa s] the same of the corner of an open edge
   T supply_edge, return_edge;  // [m] corner radius of the metering edges from supply and to return
-  T edge_loss;           // [Pa s2/m4] 4 rho / (2 Cd^2)
-  T hose_loss;           // 4 hose_resistance width^2
+  T edge_loss;                 // [Pa s2/m4] 4 rho / (2 Cd^2)
+  T hose_loss;                 // 4 hose_resistance width^2
   // actuator
   T leak;                              // [m3/s/Pa]
   T viscous;                           // [N s/m]

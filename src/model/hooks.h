@@ -1,10 +1,9 @@
 // Named places of the model that effects fill. The model knows no effect; an effect is a struct with
 //   name, place, parameters (static list), n_states, and any of these members, each taking a view of the run:
 //     struct Memory, drive(memory, time, command, spring, p)  [A]  applied to the command at each sample, with
-//     memory of its past; struct Sensors, observe(sensors, time, shown, p)  [SI]  applied to what is reported at each sample
-//     viscosity(p)         [-]   factor on the oil's viscosity
-//     edge_rounding(p, to_return) [m] added to the corner radius of the metering edges
-//     supply_pressure(view) [Pa] added to the supply pressure at the valve
+//     memory of its past; struct Sensors, observe(sensors, time, shown, p)  [SI]  applied to what is reported at each
+//     sample viscosity(p)         [-]   factor on the oil's viscosity edge_rounding(p, to_return) [m] added to the
+//     corner radius of the metering edges supply_pressure(view) [Pa] added to the supply pressure at the valve
 //     flapper_force(view)  [N]   added to the torque motor's force
 //     nozzle_1_opening(view, open), nozzle_2_opening(view, open)  [m]  added to the open gap of a nozzle
 //     spool_force(view)    [N]   added to the force on the spool
@@ -153,7 +152,8 @@ T hook_edge_rounding([[maybe_unused]] const T* p, [[maybe_unused]] bool to_retur
   (
       [&] {
         if constexpr (requires { E::edge_rounding(p, to_return); })
-          added = added + E::edge_rounding(p + n_parameters + EffectList<E...>::template parameter_offset<E>(), to_return);
+          added =
+              added + E::edge_rounding(p + n_parameters + EffectList<E...>::template parameter_offset<E>(), to_return);
       }(),
       ...);
   return added;

@@ -25,9 +25,10 @@ namespace {
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kLeastDamping = 1e-12;
 constexpr double kMostDamping = 1e12;
-constexpr double kGoodGain = 0.75;   // of what the undamped model promises; below it the trials are bent
-constexpr double kRounding = 1e-12;  // of the cost: a promised gain below this cannot be seen
-constexpr double kBendFrom = 1e-6;   // of the box; shorter steps meet rounding, not curvature
+constexpr double kGoodGain = 0.75;    // of what the undamped model promises; below it the trials are bent
+constexpr double kKeptPromise = 0.5;  // of what a step promised: its Jacobian serves once more
+constexpr double kRounding = 1e-12;   // of the cost: a promised gain below this cannot be seen
+constexpr double kBendFrom = 1e-6;    // of the box; shorter steps meet rounding, not curvature
 
 void require(bool good, const char* option, const char* rule) {
   if (!good) throw InputError({}, std::string("option '") + option + "' " + rule, "");
@@ -303,6 +304,14 @@ class Search {
     return points;
   }
 
+  // The Jacobian after a step from (x, residual): right along the step, as it was across it.
+  void learn(const Point& x, const Eigen::VectorXd& residual) {
+    Eigen::VectorXd step(problem_.n);
+    for (int j = 0; j < problem_.n; ++j) step[j] = x_[j] - x[j];
+    const Eigen::VectorXd missed = residual_ - residual - jacobian_ * step;
+    jacobian_.noalias() += missed * (step / step.squaredNorm()).transpose();
+  }
+
   // Raises the damping and shortens the reach until a trial lowers the cost or the steps vanish.
   Step step(const Model& m) {
     double from = damping_ * 1e-4;
@@ -338,6 +347,7 @@ class Search {
         radius_ = std::min(options_.step_limit, std::max(radius, 4 * t.length));
         x_ = std::move(t.point);
         residual_ = std::move(values[best.index].residual);
+        kept_promise_ = cost_ - best.cost >= kKeptPromise * t.promised;
         cost_ = best.cost;
         return Step::accepted;
       }
@@ -362,11 +372,12 @@ class Search {
     bool central = options_.difference == Difference::central;
     std::vector<double> costs;  // of the pass
     const bool may_refine = last && options_.difference == Difference::forward_then_central;
+    int learnt = 0;  // steps that the Jacobian has learnt since its differences
     for (;;) {
-      take_jacobian(central);
+      if (learnt == 0) take_jacobian(central);
       const Model m = model();
       result_.promised_gain = trial(m, m.gradient, kLeastDamping, options_.step_limit).promised;
-      ++result_.iterations;
+      if (learnt == 0) ++result_.iterations;
       const double misfit = 0.5 * residual_.squaredNorm();
       const std::string state = "cost " + number(cost_) + ", gradient cosine " + number(result_.gradient_cosine) +
                                 ", promised gain " + number(result_.promised_gain);
@@ -382,7 +393,12 @@ class Search {
         return false;
       }
       const bool flat_cost = cost_ <= options_.cost_floor;
-      if (flat_cost || result_.promised_gain <= tolerance * cost_ + options_.cost_floor) {
+      const bool at_end = flat_cost || result_.promised_gain <= tolerance * cost_ + options_.cost_floor;
+      if (learnt > 0 && at_end) {  // only differences say that it is the end
+        learnt = 0;
+        continue;
+      }
+      if (at_end) {
         if (may_refine && own_jacobian_ && !central && !flat_cost) {
           central = true;
           continue;
@@ -390,23 +406,30 @@ class Search {
         stop(StopReason::converged, "converged; " + state);
         return true;
       }
-      if (result_.iterations >= options_.max_iterations) {
+      if (learnt == 0 && result_.iterations >= options_.max_iterations) {
         stop(StopReason::iteration_limit,
              "iteration limit of " + std::to_string(options_.max_iterations) + "; " + state);
         return false;
       }
-      if (options_.max_evaluations > 0 && result_.evaluations >= options_.max_evaluations) {
+      if (learnt == 0 && options_.max_evaluations > 0 && result_.evaluations >= options_.max_evaluations) {
         stop(StopReason::evaluation_limit,
              "evaluation limit of " + std::to_string(options_.max_evaluations) + "; " + state);
         return false;
       }
-      costs.push_back(cost_);
+      if (learnt == 0) costs.push_back(cost_);
       const auto slow = static_cast<std::size_t>(options_.slow_iterations);
-      if (slow > 0 && costs.size() > slow && cost_ > 0.9 * costs[costs.size() - 1 - slow]) {
+      if (learnt == 0 && slow > 0 && costs.size() > slow && cost_ > 0.9 * costs[costs.size() - 1 - slow]) {
         stop(StopReason::stalled, "too slow: " + std::to_string(slow) + " iterations; " + state);
         return false;
       }
-      if (step(m) == Step::none_better) {
+      const Point x = x_;
+      const Eigen::VectorXd residual = residual_;
+      if (step(m) == Step::accepted) {
+        learnt = own_jacobian_ && !central && kept_promise_ && learnt < options_.secant_steps ? learnt + 1 : 0;
+        if (learnt > 0) learn(x, residual);
+      } else if (learnt > 0) {
+        learnt = 0;
+      } else {
         if (may_refine && own_jacobian_ && !central) {
           central = true;
           continue;
@@ -455,6 +478,7 @@ class Search {
   double damping_ = 0;
   double radius_ = 0;
   bool own_jacobian_ = true;
+  bool kept_promise_ = false;  // the last step
 };
 
 }  // namespace
@@ -465,6 +489,7 @@ void LeastSquaresOptions::validate() const {
   require(step_limit > 0 && step_limit <= 1, "step_limit", "must be above 0 and at most 1");
   require(difference_step > 0 && difference_step <= 0.1, "difference_step", "must be above 0 and at most 0.1");
   require(damping_trials >= 1 && damping_trials <= 64, "damping_trials", "must be 1 to 64");
+  require(secant_steps >= 0, "secant_steps", "must not be negative (0 means never)");
   require(first_damping > 0 && std::isfinite(first_damping), "first_damping", "must be above 0 and finite");
   require(cost_tolerance >= 0 && cost_tolerance < 1, "cost_tolerance", "must be at least 0 and below 1");
   require(slow_iterations >= 0, "slow_iterations", "must not be negative (0 means never)");

@@ -11,6 +11,9 @@
 // held). The residual must be smooth on the scale of `difference_step`. Finds one local minimum; genetic.h and
 // multi_start.h give the breadth. Why not Ceres' minimiser: decisions in box_least_squares.cpp.
 //
+// Between two sets of differences the Jacobian learns from the steps that keep their promise (Broyden 1965); what ends a
+// search is always differences.
+//
 // Source: More (1978), The Levenberg-Marquardt algorithm; Nocedal and Wright (2006), ch. 10 and 16; Transtrum and
 // Sethna (2012), Improvements to the Levenberg-Marquardt algorithm (bending a step by the curvature it meets).
 #pragma once
@@ -54,6 +57,9 @@ struct LeastSquaresOptions {
   double difference_step = 1e-5;  // of the box
   Difference difference = Difference::forward_then_central;
   int damping_trials = 8;         // dampings tried at once
+  // Steps taken on one set of differences while each keeps its promise: the Jacobian then learns from the step itself
+  // (Broyden 1965). 0: differences after every step.
+  int secant_steps = 3;
   double first_damping = 1e-1;    // middle of the first ladder, relative to the Marquardt diagonal
   double cost_tolerance = 1e-8;   // converged when the model promises less than this part of the cost
   double cost_floor = 1e-20;      // converged when the cost itself, or the promised gain, is below this

@@ -184,7 +184,8 @@ class Genetic {
   // The few by which a population exceeds whole batches rest, each in its turn.
   bool rests(std::uint32_t individual) const {
     const auto size = static_cast<std::uint64_t>(options_.population), spare = size % options_.batch;
-    return 2 * spare <= static_cast<std::uint64_t>(options_.batch) && (individual + static_cast<std::uint64_t>(state_.generation) * spare) % size < spare;
+    return 2 * spare <= static_cast<std::uint64_t>(options_.batch) &&
+           (individual + static_cast<std::uint64_t>(state_.generation) * spare) % size < spare;
   }
 
   void step() {

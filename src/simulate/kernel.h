@@ -98,7 +98,8 @@ struct System {
   static constexpr Pattern<n> pattern = make_pattern();
 
   template <class W>
-  __attribute__((flatten)) void value_and_jacobian(const std::array<T, n>& y, const T&, std::array<T, n>& f, W& w, std::array<T, n>& f_t) const {
+  __attribute__((flatten)) void value_and_jacobian(const std::array<T, n>& y, const T&, std::array<T, n>& f, W& w,
+                                                   std::array<T, n>& f_t) const {
     using Lu = SparseLu<n, pattern>;
     const Inputs<TimeDual, T> u{seed<n>(at.current, slope.current), seed<n>(at.supply_pressure, slope.supply_pressure),
                                 seed<n>(at.return_pressure, slope.return_pressure),

@@ -166,8 +166,9 @@ TEST(ShippedLogs, NoFailureAtAnySeverityOfAnyFault) {
 }
 
 TEST(ShippedLogs, FailuresInTheWholeBoxAreFewAndSaySo) {
-  // Corners that no fit and no fault search: breakaway friction (row 33) far above what seals show, and a filter blocked
-  // in one direction only (row 1 unlike row 2) still break runs at the default step. Without them next to nothing fails.
+  // Corners that no fit and no fault search: breakaway friction (row 33) far above what seals show, and a filter
+  // blocked in one direction only (row 1 unlike row 2) still break runs at the default step. Without them next to
+  // nothing fails.
   const Table table = shipped_table();
   std::vector<ParameterVector> whole, without;
   for (std::uint32_t i = 0; i < 512; ++i) {

@@ -214,7 +214,9 @@ TEST(BoxLeastSquares, StallOnARoughCostIsSaidWithItsGradient) {
 TEST(BoxLeastSquares, CallersJacobianSavesItsPoints) {
   const Eigen::MatrixXd a = Eigen::MatrixXd::Random(30, 12);
   LeastSquaresProblem problem = linear(a, a * Eigen::VectorXd::Constant(12, 0.4));
-  const LeastSquaresResult by_difference = minimise_least_squares(problem, Point(12, 0.7));
+  LeastSquaresOptions options;
+  options.secant_steps = 0;
+  const LeastSquaresResult by_difference = minimise_least_squares(problem, Point(12, 0.7), options);
   problem.jacobian = [&](const Point&, const Eigen::VectorXd&, Eigen::MatrixXd& jacobian) {
     jacobian = a;
     return true;
@@ -223,6 +225,41 @@ TEST(BoxLeastSquares, CallersJacobianSavesItsPoints) {
   EXPECT_EQ(by_caller.reason, StopReason::converged);
   EXPECT_LT(by_caller.evaluations + 24, by_difference.evaluations);
   EXPECT_TRUE(by_caller.jacobian == a);
+}
+
+// exp(a_i . x) against its values at a known point: curved, with a full Jacobian.
+LeastSquaresProblem exponentials(const Eigen::MatrixXd& a, const Eigen::VectorXd& truth) {
+  const Eigen::VectorXd measured = (a * truth).array().exp();
+  return {static_cast<int>(a.cols()),
+          [a, measured](std::span<const Point> points) {
+            std::vector<Evaluation> out;
+            for (const Point& p : points) {
+              const Eigen::VectorXd e = (a * as_vector(p)).array().exp() - measured.array();
+              out.push_back({true, e});
+            }
+            return out;
+          },
+          {}};
+}
+
+TEST(BoxLeastSquares, StepsThatTeachTheJacobianSaveEvaluationsAndEndAtTheSameMinimumWithDifferences) {
+  std::srand(5);
+  const int n = 20;
+  const Eigen::MatrixXd a = Eigen::MatrixXd::Random(60, n);
+  const Eigen::VectorXd truth = Eigen::VectorXd::LinSpaced(n, 0.3, 0.7);
+  const LeastSquaresProblem problem = exponentials(a, truth);
+  LeastSquaresOptions options;
+  options.difference = Difference::forward;
+  options.secant_steps = 0;
+  const LeastSquaresResult without = minimise_least_squares(problem, Point(n, 0.9), options);
+  options.secant_steps = 3;
+  const LeastSquaresResult with = minimise_least_squares(problem, Point(n, 0.9), options);
+  EXPECT_EQ(with.reason, StopReason::converged);
+  EXPECT_LT(5 * with.evaluations, 4 * without.evaluations);
+  for (int j = 0; j < n; ++j) EXPECT_NEAR(with.point[j], truth[j], 1e-6);
+  const Eigen::VectorXd values = (a * truth).array().exp();
+  EXPECT_LT((with.jacobian - values.asDiagonal() * a).cwiseAbs().maxCoeff(),
+            1e-3 * with.jacobian.cwiseAbs().maxCoeff());
 }
 
 TEST(BoxLeastSquares, InterruptionGoalAndLimitsReturnTheBestSoFar) {
