@@ -37,18 +37,22 @@ double largest(const std::vector<double>& x) {
 }
 
 TEST(TestStand, BlockedPortsReachTheSupply) {
-  const ParameterVector v = candidate_of(shipped_table());
+  ParameterVector v = candidate_of(shipped_table());
+  v[row::hose_compliance] = 0;  // slow and stiff, or what the ports swallow and give back is in the leakage
   const double supply = v[row::supply_pressure] - v[row::return_pressure];
-  const Trajectory t = simulate(stand(Ports::blocked, 0.2 * rated, 10, 100), v, all_signals());
+  const Trajectory t = simulate(stand(Ports::blocked, 0.2 * rated, 40, 100), v, all_signals());
+  constexpr std::size_t quarter = 1000;
   ASSERT_TRUE(t.ok);
   EXPECT_NEAR(largest(of(t, Signal::load_pressure)), supply, 0.02 * supply);
   // Positive command raises A.
-  EXPECT_GT(of(t, Signal::load_pressure)[250], 0.9 * supply);
-  // The leakage peaks where the load pressure passes zero.
+  EXPECT_GT(of(t, Signal::load_pressure)[quarter], 0.9 * supply);
+  // The leakage peaks about null. Just off it turbulent edges pass a little more: the covered one has the whole drop before
+  // its land resists.
   const auto& leakage = of(t, Signal::leakage_flow);
   const auto peak = static_cast<std::size_t>(std::max_element(leakage.begin(), leakage.end()) - leakage.begin());
-  EXPECT_LT(std::fabs(of(t, Signal::load_pressure)[peak]), 0.3 * supply);
-  EXPECT_GT(leakage[peak], 1.05 * leakage[250]);
+  EXPECT_LT(std::fabs(of(t, Signal::spool_position)[peak]), 0.01 * v[row::spool_stop]);
+  EXPECT_GT(leakage[2 * quarter], 0.95 * leakage[peak]);
+  EXPECT_GT(leakage[peak], 1.05 * leakage[quarter]);
 }
 
 TEST(TestStand, WhatABlockedPortSwallowsIsWhatItsPressureStores) {
