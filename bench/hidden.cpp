@@ -9,9 +9,9 @@
 #include <CLI/CLI.hpp>
 #include <filesystem>
 #include <fstream>
-#include <map>
 #include <nlohmann/json.hpp>
 
+#include "base/progress.h"
 #include "fit/tune.h"
 #include "hidden/cases.h"
 #include "report/explain_report.h"
@@ -41,6 +41,7 @@ int main(int argc, char** argv) {
 
   std::filesystem::create_directories(out);
   std::vector<hidden::Score> scores;
+  Progress progress("hidden effects", {});
   for (int v = 0; v < valves; ++v) {
     hidden::Bench bench{std::filesystem::path(out), source + "/params/rigs/borello2009.toml",
                         read_rig_file(source + "/data/rig.toml"), static_cast<std::uint64_t>(v + 1)};
@@ -85,6 +86,8 @@ int main(int argc, char** argv) {
                                                    {"answer", report::explain_json(answer)}};
       }
       scores.push_back(sc);
+      progress.update(static_cast<double>(scores.size()) / (cases + controls + unlisted),
+                      static_cast<long>(scores.size()));
       fmt::print("v{} {} {:22} {:34} -> {:11} {:22} {:22} {} {} size {} gain {:.0f} %{}{}\n", v + 1, s, sc.truth.effect,
                  sc.truth.size, sc.verdict, sc.first, sc.where, sc.named ? "named" : "-", sc.placed ? "placed" : "-",
                  sc.size_inside ? (*sc.size_inside ? "in" : "out") : "?", 100 * sc.heldout_gain,
@@ -102,25 +105,6 @@ int main(int argc, char** argv) {
     for (int k = 0; k < share(controls); ++k) judge(seed * 100000 + 60000 + static_cast<std::uint64_t>(k), "none");
   }
 
-  struct Count {
-    int n = 0, named = 0, placed = 0, accused = 0, sized = 0, inside = 0, gained = 0, enough = 0;
-  };
-  std::map<std::string, Count> by;
-  Count all, none;
-  for (const hidden::Score& s : scores) {
-    for (Count* c : {&by[s.truth.effect], s.truth.effect == "none" ? &none : &all}) {
-      c->n++, c->named += s.named, c->placed += s.placed, c->accused += s.accused;
-      if (s.size_inside) c->sized++, c->inside += *s.size_inside;
-      if (s.gain_share) c->gained++, c->enough += *s.gain_share >= 0.8;
-    }
-  }
-  fmt::print("\n{:24} {:>5} {:>6} {:>7} {:>8} {:>12}\n", "effect", "cases", "named", "placed", "accused",
-             "size inside");
-  for (const auto& [name, c] : by)
-    fmt::print("{:24} {:5} {:6} {:7} {:8} {:>9}/{}\n", name, c.n, c.named, c.placed, c.accused, c.inside, c.sized);
-  fmt::print(
-      "named {} of {}, placed {}, sizes inside their 90 % interval {} of {}; held-out gain at least 80 % "
-      "of the true effect's {} of {}; controls accused {} of {}\n",
-      all.named, all.n, all.placed, all.inside, all.sized, all.enough, all.gained, none.accused, none.n);
+  fmt::print("\n{}", hidden::tally(scores));
   return 0;
 }

@@ -130,11 +130,19 @@ std::pair<long, long> rows_of(const Series& s, const Block& b) {
   return {s.first + from, to - from};
 }
 
-double quadratic_gain(const Eigen::MatrixXd& d, const Eigen::VectorXd& r) {
-  return (d * d.colPivHouseholderQr().solve(r)).squaredNorm();
-}
-
 }  // namespace
+
+double deviance_of(const Subject& subject, const Eigen::VectorXd& residual) {
+  double sum = 0;
+  long rows = 0;
+  for (const Series& s : subject.series()) {
+    const double independent = static_cast<double>(s.count) * s.effective;
+    const double times = residual.segment(s.first, s.count).squaredNorm() / (independent * s.usual);
+    sum += independent * (times > 1 ? 1 + std::log(times) : times);
+    rows = std::max(rows, s.first + s.count);
+  }
+  return sum + residual.tail(residual.size() - rows).squaredNorm();
+}
 
 double degrees_of(const Subject& subject) {
   double n = 0;
@@ -209,6 +217,7 @@ ExplainedFit fit_causes(const Subject& subject, const std::vector<int>& causes, 
   out.ok = true;
   out.point = r.point;
   out.misfit = 2 * r.misfit;
+  out.deviance = deviance_of(subject, r.residual);
   out.residual = r.residual;
   out.jacobian = r.jacobian;
   return out;
@@ -238,13 +247,21 @@ std::vector<CauseScore> score_causes(const Subject& subject, const ExplainedFit&
   const std::vector<Evaluation> e = whole.problem.evaluate(points);
   // What the free numbers, priors included, cannot imitate.
   const long rows = data_rows(subject);
-  const Eigen::HouseholderQR<Eigen::MatrixXd> qr(at.jacobian);
+  Eigen::MatrixXd imitated(at.jacobian.rows(), 0);
+  for (long j = 0; j < at.jacobian.cols(); ++j) {
+    const double u = at.point[static_cast<std::size_t>(j)];
+    if (u < 1e-6 || u > 1 - 1e-6) continue;  // a wall holds it
+    imitated.conservativeResize(Eigen::NoChange, imitated.cols() + 1);
+    imitated.col(imitated.cols() - 1) = at.jacobian.col(j);
+  }
+  const Eigen::HouseholderQR<Eigen::MatrixXd> qr(imitated);
   const auto apart = [&](Eigen::VectorXd v) {
     Eigen::VectorXd y = qr.householderQ().transpose() * v;
-    y.head(std::min<long>(at.jacobian.cols(), y.size())).setZero();
+    y.head(std::min<long>(imitated.cols(), y.size())).setZero();
     return Eigen::VectorXd(qr.householderQ() * y);
   };
-  Eigen::VectorXd r0 = at.residual;
+  const Eigen::VectorXd& r0 = at.residual;
+  const double left = deviance_of(subject, r0);
   std::vector<CauseScore> out;
   std::size_t k = 1;
   for (std::size_t c = 0; c < subject.causes().size(); ++c) {
@@ -276,6 +293,8 @@ std::vector<CauseScore> score_causes(const Subject& subject, const ExplainedFit&
               if (n.size && probe[j] != n.off && (probe[j] > n.off ? n.off > n.lower : n.off < n.upper)) wall = false;
             }
             if (!(wall && p.size < 0)) {
+              // As it is at the probe: a large effect is no straight line.
+              s.gain = std::max(s.gain, left - deviance_of(subject, r0 + v));
               d.conservativeResize(Eigen::NoChange, d.cols() + 1);
               d.col(d.cols() - 1) = v;
             }
@@ -283,7 +302,7 @@ std::vector<CauseScore> score_causes(const Subject& subject, const ExplainedFit&
         }
         s.probes.push_back(p);
       }
-      const double gain = d.cols() > 0 ? quadratic_gain(d, r0) : 0.0;
+      const double gain = d.cols() > 0 ? left - deviance_of(subject, r0 - d * d.colPivHouseholderQr().solve(r0)) : 0.0;
       if (gain > s.gain) s.gain = gain, s.alternative = static_cast<int>(a);
     }
     out.push_back(std::move(s));
@@ -389,18 +408,9 @@ void size_up(const Subject& subject, const ExplainedFit& f, CauseResult& out) {
   }
 }
 
-double delta_bic(const Subject& subject, const ExplainedFit& before, const ExplainedFit& after, double degrees) {
-  // Misfit in units of what is left at best: the residual's own size, where it is larger than the error model says.
-  const double scale = std::max(1.0, after.misfit / std::max(1.0, degrees));
+double delta_bic(const ExplainedFit& before, const ExplainedFit& after, double degrees) {
   const double numbers = static_cast<double>(after.fit.numbers.size()) - static_cast<double>(before.fit.numbers.size());
-  (void)subject;
-  return (before.misfit - after.misfit) / scale - numbers * std::log(std::max(2.0, degrees));
-}
-
-double total(const ExplainedFit& f) {
-  double sum = 0;
-  for (const auto& b : f.heldout) sum = std::accumulate(b.begin(), b.end(), sum);
-  return sum;
+  return before.deviance - after.deviance - numbers * std::log(std::max(2.0, degrees));
 }
 
 }  // namespace
@@ -430,7 +440,7 @@ Explanation explain(Subject& subject, const EngineOptions& options, const Explan
   for (std::size_t c = 0; c < n; ++c) out.candidates[c].cause = static_cast<int>(c);
   if (begun) {
     out.wide = begun->wide;
-  } else if (subject.retunes()) {
+  } else if (subject.retunes() && !subject.holds()) {
     out.wide = fit_causes(subject, {}, &out.before, nullptr, full_iterations, false, true);
     if (out.wide.ok) cross_validate(subject, out.wide, options);
   }
@@ -443,6 +453,10 @@ Explanation explain(Subject& subject, const EngineOptions& options, const Explan
   for (int round = 0; round < options.most && !stopped(); ++round) {
     const std::vector<CauseScore> scores = score_causes(subject, now, options.among);
     if (round == 0) out.scores = scores;
+    // A second false alarm on the same data shall be as rare as two.
+    const double share = options.p_left ? 0.5 * options.level : options.level;
+    const double level = round == 0 ? share : share * share;
+    const bool abnormal = options.p_left && options.p_left(now, round) <= level;
     std::vector<double> p(n, options.p_new ? 1.0 : 0.0);
     for (std::size_t c = 0; c < n; ++c) {
       if (scores[c].probes.empty()) continue;  // not looked at
@@ -450,11 +464,11 @@ Explanation explain(Subject& subject, const EngineOptions& options, const Explan
       CandidateResult& r = out.candidates[c];
       if (round == 0) r.predicted_gain = scores[c].gain, r.p_new = p[c], r.reason = "its score predicts too little";
     }
-    // A second false alarm on the same data shall be as rare as two.
-    const double share = options.p_left ? 0.5 * options.level : options.level;
-    const double level = round == 0 ? share : share * share;
-    const bool abnormal = options.p_left && options.p_left(now, round) <= level;
-    const auto is_new = [&](int c) { return abnormal || p[static_cast<std::size_t>(c)] <= level; };
+    // Where something is new, a cause that healthy data show as well is still not it.
+    const auto is_new = [&](int c) {
+      const auto k = static_cast<std::size_t>(c);
+      return p[k] <= level || (abnormal && (!options.beyond || options.beyond(scores[k])));
+    };
     const auto in = [&](int c) { return std::count(now.causes.begin(), now.causes.end(), c) > 0; };
     std::vector<CauseScore> order = scores;
     // What is new first; by what it promises. In the first round a few that are not new are looked at as well: what
@@ -464,35 +478,45 @@ Explanation explain(Subject& subject, const EngineOptions& options, const Explan
       return a.gain > b.gain;
     });
     std::vector<ExplainedFit> fits;
-    int standing_left = round == 0 && options.p_new && !begun ? 2 : 0, new_left = options.fitted;
+    int standing_left = round == 0 && options.p_new && !begun ? 2 : 0;
+    int new_left = options.fitted, rare_left = options.fitted / 2;
     for (const CauseScore& s : order) {
       if (stopped()) break;
       if (options.among && !options.among(subject.causes()[static_cast<std::size_t>(s.cause)])) continue;
       if (in(s.cause) || s.gain < std::log(std::max(2.0, out.degrees))) continue;
-      if (is_new(s.cause) ? new_left-- <= 0 : standing_left-- <= 0) continue;
+      const bool rare = subject.causes()[static_cast<std::size_t>(s.cause)].prior < 1;
+      if ((is_new(s.cause) ? rare ? rare_left : new_left : standing_left)-- <= 0) continue;
       std::vector<int> causes = now.causes;
       causes.push_back(s.cause);
       ExplainedFit f = fit_causes(subject, causes, &now, &s, quick_iterations, true);
       if (f.ok) fits.push_back(std::move(f));
-      tell(0.15 + 0.6 * (round + static_cast<double>(fits.size()) / (options.fitted + 2)) / options.most);
+      tell(0.15 +
+           0.6 * (round + std::min(1.0, static_cast<double>(fits.size()) / (1.5 * options.fitted))) / options.most);
     }
+    const auto prior_of = [&](const ExplainedFit& f) {
+      return subject.causes()[static_cast<std::size_t>(f.causes.back())].prior;
+    };
+    // The commoner first, then by what they gain.
     std::stable_sort(fits.begin(), fits.end(), [&](const ExplainedFit& a, const ExplainedFit& b) {
-      return delta_bic(subject, now, a, out.degrees) > delta_bic(subject, now, b, out.degrees);
+      if (prior_of(a) != prior_of(b)) return prior_of(a) > prior_of(b);
+      return delta_bic(now, a, out.degrees) > delta_bic(now, b, out.degrees);
     });
     std::vector<int> judged;                        // positions in fits
     std::vector<ExplainedFit> beside(fits.size());  // the same on top of re-tuning
-    int new_judged = 0;
+    int new_judged = 0, rare_judged = 0;
     for (std::size_t i = 0; i < fits.size() && !stopped(); ++i) {
       const int c = fits[i].causes.back();
       CandidateResult& r = out.candidates[static_cast<std::size_t>(c)];
       r.fitted = true;
-      r.delta_bic = delta_bic(subject, now, fits[i], out.degrees);
+      r.delta_bic = delta_bic(now, fits[i], out.degrees);
       r.reason = r.delta_bic <= 0 ? "not worth its numbers" : "others fit better";
-      if (r.delta_bic <= 0 || (is_new(c) && new_judged >= options.judged)) continue;
-      new_judged += is_new(c);
+      const bool rare = prior_of(fits[i]) < 1;
+      int& counted = rare ? rare_judged : new_judged;
+      if (r.delta_bic <= 0 || (is_new(c) && counted >= (rare ? options.judged / 2 : options.judged))) continue;
+      counted += is_new(c);
       ExplainedFit whole = fit_causes(subject, fits[i].causes, &fits[i], nullptr, full_iterations, false);
-      if (whole.ok && whole.misfit < fits[i].misfit) fits[i] = std::move(whole);
-      r.delta_bic = delta_bic(subject, now, fits[i], out.degrees);
+      if (whole.ok && whole.deviance < fits[i].deviance) fits[i] = std::move(whole);
+      r.delta_bic = delta_bic(now, fits[i], out.degrees);
       cross_validate(subject, fits[i], options);
       r.heldout_gain = heldout_gain(now, fits[i], options.seed);
       if (retuned.ok) {
@@ -515,8 +539,8 @@ Explanation explain(Subject& subject, const EngineOptions& options, const Explan
       r.cause = fits[i].causes.back();
       r.is_new = fresh;
       r.heldout_gain = heldout_gain(now, fits[i], options.seed);
-      r.delta_bic = delta_bic(subject, now, fits[i], out.degrees);
-      r.misfit_gain = now.misfit - fits[i].misfit;
+      r.delta_bic = delta_bic(now, fits[i], out.degrees);
+      r.misfit_gain = now.deviance - fits[i].deviance;
       r.beyond_retuning = out.candidates[static_cast<std::size_t>(r.cause)].beyond_retuning;
       size_up(subject, fits[i], r);
       return r;
@@ -530,13 +554,14 @@ Explanation explain(Subject& subject, const EngineOptions& options, const Explan
         out.standing.push_back(make_result(k, false));
         continue;
       }
-      const auto weight = [&](int j) {
-        const std::size_t f = static_cast<std::size_t>(j);
-        const Cause& cause = subject.causes()[static_cast<std::size_t>(fits[f].causes.back())];
-        // On a scale of independent samples: what is left on held-out data against how common the cause is.
-        return total(fits[f]) - 2 * std::log(cause.prior) * std::max(1.0, fits[f].misfit / out.degrees);
+      // A rarer cause has to do better than a commoner one on held-out data, beyond the interval.
+      const auto better = [&](int j, int than) {
+        const ExplainedFit &a = fits[static_cast<std::size_t>(j)], &b = fits[static_cast<std::size_t>(than)];
+        if (prior_of(a) < prior_of(b)) return heldout_gain(b, a, options.seed).lower > 0;
+        if (prior_of(a) > prior_of(b)) return heldout_gain(a, b, options.seed).lower <= 0;
+        return delta_bic(now, a, out.degrees) > delta_bic(now, b, out.degrees);
       };
-      if (best < 0 || weight(i) < weight(best)) best = i;
+      if (best < 0 || better(i, best)) best = i;
     }
     if (best < 0) break;
     const std::size_t b = static_cast<std::size_t>(best);
@@ -547,7 +572,7 @@ Explanation explain(Subject& subject, const EngineOptions& options, const Explan
       // As good in its place: within the interval of the difference, or at odds below twenty to one.
       constexpr double odds = 5.99;  // 2 ln 20
       if (heldout_gain(fits[k], fits[b], options.seed).lower <= 0 ||
-          taken.delta_bic - delta_bic(subject, now, fits[k], out.degrees) < odds)
+          taken.delta_bic - delta_bic(now, fits[k], out.degrees) < odds)
         taken.confusable_with.push_back(fits[k].causes.back());
     }
     out.candidates[static_cast<std::size_t>(taken.cause)].reason = "taken";
@@ -574,6 +599,16 @@ Explanation explain(Subject& subject, const EngineOptions& options, const Explan
   }
   for (CauseResult& r : out.causes) size_up(subject, now, r);
   out.after = std::move(now);
+  if (!out.causes.empty() && subject.retunes() && subject.holds() && !stopped()) {
+    if (!out.wide.ok) {
+      out.wide = fit_causes(subject, {}, &out.before, nullptr, full_iterations, false, true);
+      if (out.wide.ok) cross_validate(subject, out.wide, options);
+    }
+    if (out.wide.ok) {
+      out.retuned = heldout_gain(out.before, out.wide, options.seed);
+      for (CauseResult& r : out.causes) r.beyond_retuning = heldout_gain(out.wide, out.after, options.seed);
+    }
+  }
   tell(0.85);
   return out;
 }

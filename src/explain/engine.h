@@ -23,7 +23,7 @@ struct ProbeScore {
 };
 struct CauseScore {
   int cause = 0;
-  double gain = 0;                 // predicted fall of the misfit (-2 log likelihood)
+  double gain = 0;                 // predicted fall of the deviance
   int alternative = 0;             // of its probes
   std::vector<ProbeScore> probes;  // all of them, alternatives one after another
 };
@@ -39,7 +39,8 @@ struct ExplainedFit {
   SubjectFit fit;
   bool ok = false;
   Point point;
-  double misfit = 0;  // -2 log likelihood, priors included
+  double misfit = 0;    // sum of squares, priors included
+  double deviance = 0;  // -2 log likelihood where a channel may err more than is usual: deviance_of
   Eigen::VectorXd residual;
   Eigen::MatrixXd jacobian;
   std::vector<std::vector<double>>
@@ -50,10 +51,10 @@ struct ExplainedFit {
 struct CauseResult {
   int cause = 0;
   std::vector<double> value, std_error;  // [unit] of its numbers; NaN where a wall holds it
-  Interval beyond_retuning;              // the same on top of re-tuning: what no other row could have done
+  Interval beyond_retuning;              // the same on top of re-tuning, or where the base's numbers hold, against it
   Interval heldout_gain;                 // fraction of the held-out misfit that it removes, 90 %
   double delta_bic = 0;                  // positive: worth its numbers
-  double misfit_gain = 0;                // fall of the misfit when it was added
+  double misfit_gain = 0;                // fall of the deviance when it was added
   std::vector<int> confusable_with;      // causes that do nearly as well in its place
   bool is_new = true;                    // false: healthy data show it as well
 };
@@ -71,8 +72,8 @@ struct EngineOptions {
   std::uint64_t seed = 1;
   int folds = 5;
   int blocks = 15;      // of time, over all logs together; a fold leaves out every `folds`-th
-  int fitted = 6;       // causes that are fitted in full, each round
-  int judged = 3;       // of these, judged on held-out data
+  int fitted = 8;       // causes that are fitted, each round
+  int judged = 4;       // of these, judged on held-out data; and half as many that are rarer than others
   int most = 3;         // causes accepted
   int iterations = 12;  // of a fit
   const std::atomic<bool>* stop = nullptr;
@@ -80,6 +81,8 @@ struct EngineOptions {
   // Chance that healthy data score a cause like this, all causes counted together; empty: no healthy data, all is new.
   // `round`: causes accepted so far.
   std::function<double(const CauseScore&, int round)> p_new;
+  // A score promises more than on any healthy data; asked where something is known to be new. Empty: all do.
+  std::function<bool(const CauseScore&)> beyond;
   // Chance that healthy data are left as wrong as by this fit; empty: not asked. Where it is small something is new,
   // and a cause need not be news by itself.
   std::function<double(const ExplainedFit&, int round)> p_left;
@@ -112,6 +115,10 @@ void cross_validate(const Subject& subject, ExplainedFit& fit, const EngineOptio
 // Fraction of `before`'s held-out misfit that `after` removes, with its block-bootstrap interval (90 %).
 Interval heldout_gain(const ExplainedFit& before, const ExplainedFit& after, std::uint64_t seed);
 double degrees_of(const Subject& subject);
+// -2 log likelihood of a residual, rows of the priors included, each channel's variance unknown but not below what is
+// usual for it. A sum of squares would drown the names of a large effect: one that leaves a hundredth of the square
+// does far better than one that leaves a tenth, and by hardly more of the sum.
+double deviance_of(const Subject& subject, const Eigen::VectorXd& residual);
 
 // `begun`: an explanation of the same data among other causes, whose base fit serves again.
 Explanation explain(Subject& subject, const EngineOptions& options, const Explanation* begun = nullptr);

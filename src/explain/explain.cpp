@@ -55,7 +55,25 @@ std::vector<ExplainedChannel> channels_of(const ValveSubject& subject, const std
 
 std::string name_of(const Cause& c) { return c.effect + (c.where.starts_with("sensor:") ? " at " + c.where : ""); }
 
-ExplainedCause described(const ValveSubject& subject, const CauseResult& r, const ExplainedFit& fit) {
+// How a number of a cause scatters over healthy logs. [its unit] 0 where that is not known.
+double healthy_spread(const Subject& subject, const HealthyTest& test, int cause, std::size_t number,
+                      double std_error) {
+  const Cause& c = subject.causes()[static_cast<std::size_t>(cause)];
+  const Number& n = c.numbers[number];
+  HealthyScore here{c.effect, c.where + (c.family.empty() ? "" : "/" + c.family), {}, 0};
+  for (std::size_t a = 0; n.size && a < c.probes.size(); ++a) {
+    const auto& probe = c.probes[a].front();
+    if (c.probes[a].size() > 1 || probe[number] == n.off) continue;
+    const double move = std::abs(probe[number] - n.off);
+    here.sizes.assign(a + 1, {0, std_error / move});
+    return move * test.spread(here, a);
+  }
+  return 0;
+}
+
+// The error of a number is that of the fit, and what healthy logs scatter.
+ExplainedCause described(const ValveSubject& subject, const HealthyTest* test, const CauseResult& r,
+                         const ExplainedFit& fit) {
   const Cause& c = subject.causes()[static_cast<std::size_t>(r.cause)];
   ExplainedCause out{c.effect, c.where, c.test, {}, r.heldout_gain, r.beyond_retuning, r.delta_bic, {}};
   const auto& values = subject.values(r.cause);
@@ -64,8 +82,10 @@ ExplainedCause described(const ValveSubject& subject, const CauseResult& r, cons
     double factor = 1;
     if (values[j].apply && !c.curve)  // a factor on the log's own
       factor = problem->candidate(fit.point, 0)[static_cast<std::size_t>(values[j].at)] / r.value[j];
-    out.parameters.push_back({c.numbers[j].name, c.numbers[j].unit, factor * r.value[j], factor * r.std_error[j],
-                              factor * c.numbers[j].off});
+    const double error =
+        std::hypot(r.std_error[j], test ? healthy_spread(subject, *test, r.cause, j, r.std_error[j]) : 0.0);
+    out.parameters.push_back(
+        {c.numbers[j].name, c.numbers[j].unit, factor * r.value[j], factor * error, factor * c.numbers[j].off});
   }
   for (int other : r.confusable_with)
     out.confusable_with.push_back(name_of(subject.causes()[static_cast<std::size_t>(other)]));
@@ -133,7 +153,9 @@ Table extended_table(const ValveSubject& subject, const Explanation& e, const st
 ExplainResult explain_logs(const std::vector<Log>& logs, const Table& tuned, const RigFile& rig,
                            const HealthyReference* healthy, const ExplainOptions& options) {
   ExplainResult out;
-  ValveSubject subject(logs, tuned, rig, options.threads);
+  std::optional<KnownRig> known;
+  if (healthy) known = healthy->known();
+  ValveSubject subject(logs, tuned, rig, options.threads, known);
   for (std::size_t l = 0; l < logs.size(); ++l) {
     const std::vector<std::string>& notes = subject.logs()[l].notes;
     out.notes.insert(out.notes.end(), notes.begin() + static_cast<long>(logs[l].notes.size()), notes.end());
@@ -150,6 +172,8 @@ ExplainResult explain_logs(const std::vector<Log>& logs, const Table& tuned, con
   std::deque<ValveSubject> single;
   std::vector<ExplainedFit> single_fits;
   std::vector<std::vector<HealthyScore>> alone(logs.size());
+  constexpr double air_rate = 0.005;  // one end of the range in which a log's air is its own affair
+  bool air_beyond = false;
   const auto score_alone = [&] {
     for (std::size_t l = 0; l < single.size(); ++l)
       if (single_fits[l].ok)
@@ -160,7 +184,7 @@ ExplainResult explain_logs(const std::vector<Log>& logs, const Table& tuned, con
     test.emplace(*healthy);
     if (logs.size() > 1)
       for (const Log& log : logs) {
-        single.emplace_back(std::vector<Log>{log}, tuned, rig, options.threads);
+        single.emplace_back(std::vector<Log>{log}, tuned, rig, options.threads, known);
         add_curves(single.back());
         single_fits.push_back(fit_base(single.back(), engine.iterations));
       }
@@ -172,11 +196,21 @@ ExplainResult explain_logs(const std::vector<Log>& logs, const Table& tuned, con
           for (const HealthyScore& h : log)
             if (h.effect == whole.effect && h.where == whole.where) scores.push_back(h);
       if (scores.empty()) scores.push_back(whole);
-      return test->together(test->alone(scores));
+      const double p = test->together(test->alone(scores));
+      // Air beyond what healthy logs have had: at the end of that range, and the data ask for more.
+      if (round == 0 && whole.effect == "air_entrainment" && air_beyond) return std::min(p, air_rate);
+      return p;
     };
   }
   if (healthy)
+    engine.beyond = [&](const CauseScore& s) {
+      HealthyScore here = summarise(subject, s);
+      here.gain /= static_cast<double>(logs.size());
+      return test->beyond(here);
+    };
+  if (healthy)
     engine.p_left = [&](const ExplainedFit& fit, int round) {
+      if (round == 0) air_beyond = subject.air_at_wall(fit.point);
       std::vector<Miss> misses = subject.misses(fit.residual);
       if (round == 0)  // the blocks do not know of effects
         for (const BlockReplay& b : replay_blocks(subject, fit.point)) misses.push_back({b.block, b.missing});
@@ -231,12 +265,12 @@ ExplainResult explain_logs(const std::vector<Log>& logs, const Table& tuned, con
     if (s.gain > at->gain) *at = {c.where, c.family, s.gain, p};
   }
   std::stable_sort(out.places.begin(), out.places.end(), [](const auto& a, const auto& b) { return a.gain > b.gain; });
-  for (const CauseResult& r : e.causes) out.causes.push_back(described(subject, r, e.after));
+  for (const CauseResult& r : e.causes) out.causes.push_back(described(subject, test ? &*test : nullptr, r, e.after));
   for (const CauseResult& r : e.standing) {
     ExplainedFit as;  // a standing cause was fitted alone
     as.causes = {r.cause};
     as.point = subject.problem(as.causes)->start();
-    out.standing.push_back(described(subject, r, as));
+    out.standing.push_back(described(subject, test ? &*test : nullptr, r, as));
   }
   for (const CandidateResult& r : e.candidates) {
     const Cause& c = subject.causes()[static_cast<std::size_t>(r.cause)];

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/student.h"
 #include "explain/curves.h"
 #include "explain/valve.h"
 
@@ -21,55 +22,53 @@ double variance(const std::vector<double>& v) {
   return sum / static_cast<double>(v.size() - 1);
 }
 
-// Variance of the sizes beyond their standard errors (DerSimonian & Laird 1986): logs that hardly see a cause hardly
-// count.
-double between(const std::vector<double>& size, const std::vector<double>& square) {
-  double w = 0, ww = 0, middle = 0, q = 0;
-  for (std::size_t i = 0; i < size.size(); ++i) {
-    const double one = 1 / (square[i] + 1e-300);
-    w += one, ww += one * one, middle += one * size[i];
-  }
-  middle /= w;
-  for (std::size_t i = 0; i < size.size(); ++i) q += (size[i] - middle) * (size[i] - middle) / (square[i] + 1e-300);
-  return std::max(0.0, (q - static_cast<double>(size.size() - 1)) / (w - ww / w));
-}
-
-// Continued fraction of the incomplete beta function (Abramowitz & Stegun 26.5.8), Lentz's method.
-double beta_fraction(double a, double b, double x) {
-  constexpr double tiny = 1e-300;
-  double c = 1, d = 1 - (a + b) * x / (a + 1);
-  d = 1 / (std::abs(d) < tiny ? tiny : d);
-  double h = d;
-  for (int m = 1; m < 300; ++m) {
-    for (const double step : {m * (b - m) * x / ((a + 2 * m - 1) * (a + 2 * m)),
-                              -(a + m) * (a + b + m) * x / ((a + 2 * m) * (a + 2 * m + 1))}) {
-      d = 1 + step * d;
-      d = 1 / (std::abs(d) < tiny ? tiny : d);
-      c = 1 + step / c;
-      if (std::abs(c) < tiny) c = tiny;
-      h *= d * c;
+// Sizes over healthy logs, as random effects. How far they scatter beyond their standard errors has two faces: alike on
+// all logs (tau: DerSimonian & Laird 1986), or in proportion to the standard error, where a test that hardly shows a
+// cause lends it whatever else is wrong (Birge 1932). The likelier of the two is taken.
+struct Scatter {
+  double tau2 = 0, phi2 = 1;
+  double mean = 0, mean_variance = 0, degrees = 1;
+  double variance(double square) const { return tau2 + phi2 * square; }
+};
+Scatter scatter_of(const std::vector<double>& size, const std::vector<double>& square) {
+  const auto n = static_cast<double>(size.size());
+  struct Pool {
+    double weight = 0, sum = 0, squares = 0;
+    void add(double w, double x) { weight += w, sum += w * x, squares += w * w; }
+    double mean() const { return sum / weight; }
+  };
+  const auto pooled = [&](const Scatter& s) {
+    Pool p;
+    for (std::size_t i = 0; i < size.size(); ++i) p.add(1 / (s.variance(square[i]) + 1e-300), size[i]);
+    return p;
+  };
+  const auto likelihood = [&](const Scatter& s) {
+    double sum = 0;
+    for (std::size_t i = 0; i < size.size(); ++i) {
+      const double v = s.variance(square[i]) + 1e-300;
+      sum -= std::log(v) + (size[i] - s.mean) * (size[i] - s.mean) / v;
     }
-    if (std::abs(d * c - 1) < 1e-14) break;
-  }
-  return h;
-}
-double incomplete_beta(double a, double b, double x) {
-  if (x <= 0) return 0;
-  if (x >= 1) return 1;
-  const double front =
-      std::exp(std::lgamma(a + b) - std::lgamma(a) - std::lgamma(b) + a * std::log(x) + b * std::log1p(-x));
-  return x < (a + 1) / (a + b + 2) ? front * beta_fraction(a, b, x) / a : 1 - front * beta_fraction(b, a, 1 - x) / b;
+    return sum;
+  };
+  Scatter alike, in_proportion;
+  Pool p = pooled(alike);
+  double q = 0;
+  for (std::size_t i = 0; i < size.size(); ++i) q += (size[i] - p.mean()) * (size[i] - p.mean()) / (square[i] + 1e-300);
+  in_proportion.phi2 = std::max(1.0, q / (n - 1));
+  in_proportion.mean = p.mean(), in_proportion.mean_variance = in_proportion.phi2 / p.weight;
+  in_proportion.degrees = n - 1;
+  alike.tau2 = std::max(0.0, (q - (n - 1)) / (p.weight - p.squares / p.weight));
+  p = pooled(alike);
+  alike.mean = p.mean(), alike.mean_variance = 1 / p.weight;
+  alike.degrees = std::max(1.0, p.weight * p.weight / p.squares - 1);  // of logs that speak
+  return likelihood(in_proportion) > likelihood(alike) ? in_proportion : alike;
 }
 
 }  // namespace
 
-double student_tail(double t, double degrees) {
-  return incomplete_beta(0.5 * degrees, 0.5, degrees / (degrees + t * t));
-}
-
 HealthyScore summarise(const Subject& subject, const CauseScore& score) {
   const Cause& cause = subject.causes()[static_cast<std::size_t>(score.cause)];
-  HealthyScore out{cause.effect, cause.where + (cause.family.empty() ? "" : "/" + cause.family), {}};
+  HealthyScore out{cause.effect, cause.where + (cause.family.empty() ? "" : "/" + cause.family), {}, score.gain};
   if (cause.curve) {  // knots that the log does not reach are loose: what they gain together is what counts
     out.sizes.push_back({std::log1p(score.gain), 1.0});
     return out;
@@ -92,18 +91,30 @@ HealthyScore summarise(const Subject& subject, const CauseScore& score) {
 
 HealthyLog score_healthy(const Log& log, const Table& tuned, const RigFile& rig, int threads, long* simulations,
                          long* failed) {
-  HealthyLog out{log.path, log.sha256, 1, {}, {}};
-  ValveSubject subject({log}, tuned, rig, threads);
+  HealthyLog out;
+  out.log = log.path, out.sha256 = log.sha256;
+  ValveSubject subject({log}, tuned, rig, threads, KnownRig{});
   add_curves(subject);
   const ExplainedFit fit = fit_base(subject, EngineOptions{}.iterations);
   if (fit.ok) {
     out.adequacy = subject.adequacy(fit.residual);
     for (const CauseScore& s : score_causes(subject, fit)) out.scores.push_back(summarise(subject, s));
     out.misses = subject.misses(fit.residual);
+    out.errors = subject.errors(fit.residual);
+    out.air = subject.air({}, fit.point).front();
     for (const BlockReplay& b : replay_blocks(subject, fit.point)) out.misses.push_back({b.block, b.missing});
   }
   if (simulations) *simulations += subject.simulations();
   if (failed) *failed += subject.failed_simulations();
+  return out;
+}
+
+KnownRig HealthyReference::known() const {
+  KnownRig out;
+  for (const HealthyLog& l : logs) {
+    out.errors.insert(out.errors.end(), l.errors.begin(), l.errors.end());
+    if (l.air > 0) out.air.push_back(l.air);
+  }
   return out;
 }
 
@@ -127,25 +138,40 @@ double HealthyTest::alone(const std::vector<HealthyScore>& logs, int left_out) c
             k < s.sizes.size() && std::isfinite(s.sizes[k].std_error) && std::isfinite(s.sizes[k].size))
           size.push_back(s.sizes[k].size), square.push_back(s.sizes[k].std_error * s.sizes[k].std_error);
     if (size.size() < 3) continue;
-    const double tau2 = between(size, square);
-    // Mean weighted by what each knows, and its variance.
-    struct Pool {
-      double weight = 0, sum = 0, squares = 0;
-      void add(double w, double x) { weight += w, sum += w * x, squares += w * w; }
-      double mean() const { return sum / weight; }
-      double count() const { return weight * weight / squares; }  // of logs that speak
-    } healthy, here;
-    for (std::size_t i = 0; i < size.size(); ++i) healthy.add(1 / (tau2 + square[i] + 1e-300), size[i]);
+    const Scatter scatter = scatter_of(size, square);
+    double weight = 0, sum = 0;
     for (const HealthyScore& s : logs)
-      if (k < s.sizes.size() && std::isfinite(s.sizes[k].std_error))
-        here.add(1 / (tau2 + s.sizes[k].std_error * s.sizes[k].std_error + 1e-300), s.sizes[k].size);
-    if (here.weight <= 0) continue;
-    const double t = (here.mean() - healthy.mean()) / std::sqrt(1 / here.weight + 1 / healthy.weight);
-    best = std::min(best, student_tail(t, std::max(1.0, healthy.count() - 1)));
+      if (k < s.sizes.size() && std::isfinite(s.sizes[k].std_error)) {
+        const double w = 1 / (scatter.variance(s.sizes[k].std_error * s.sizes[k].std_error) + 1e-300);
+        weight += w, sum += w * s.sizes[k].size;
+      }
+    if (weight <= 0) continue;
+    const double t = (sum / weight - scatter.mean) / std::sqrt(1 / weight + scatter.mean_variance);
+    best = std::min(best, student_tail(t, scatter.degrees));
     ++tried;
   }
   // The probes of a cause are nearly one: sizes along one line.
   return tried ? std::min(1.0, best * std::min(tried, 2)) : 1.0;
+}
+
+double HealthyTest::spread(const HealthyScore& of, std::size_t probe) const {
+  std::vector<double> size, square;
+  for (const HealthyLog& l : reference_.logs)
+    for (const HealthyScore& s : l.scores)
+      if (s.effect == of.effect && s.where == of.where && probe < s.sizes.size() &&
+          std::isfinite(s.sizes[probe].std_error) && std::isfinite(s.sizes[probe].size))
+        size.push_back(s.sizes[probe].size), square.push_back(s.sizes[probe].std_error * s.sizes[probe].std_error);
+  if (size.size() < 3) return 0;
+  const Scatter scatter = scatter_of(size, square);
+  const double own = of.sizes[probe].std_error;
+  return std::sqrt(std::max(0.0, scatter.variance(own * own) - own * own) + scatter.mean * scatter.mean);
+}
+
+bool HealthyTest::beyond(const HealthyScore& here) const {
+  for (const HealthyLog& l : reference_.logs)
+    for (const HealthyScore& s : l.scores)
+      if (s.effect == here.effect && s.where == here.where && s.gain >= here.gain) return false;
+  return true;
 }
 
 double HealthyTest::together(double alone) const {

@@ -1,15 +1,15 @@
 // What healthy logs say of each cause, so that a rig's standing discrepancy is not taken for news.
 //
 // Every real rig differs from its model a little even when healthy, and from log to log. A cause's score on a healthy
-// log is a size with a standard error; over the logs the sizes scatter by tau beyond it (random effects: DerSimonian &
-// Laird 1986). A new log's size is news where it lies outside what that predicts: Student's t with the variance
-// (tau^2 + its own) (1 + 1/n) on n - 1 degrees. With n logs no distribution-free test can promise less than 1/(n + 1);
-// the tail beyond is an assumption, and the result says so.
+// log is a size with a standard error; over the logs the sizes scatter beyond it (random effects). A new log's size is
+// news where it lies outside what that predicts, by Student's t. With n logs no distribution-free test can promise less
+// than 1/(n + 1); the tail beyond is an assumption, and the result says so.
 //
 // Sizes scatter widely where a test hardly shows a cause, and then no size is news. So a log is also looked at whole:
 // if a block of the model or a channel misses more than healthy logs do, something is new whatever its name.
 #pragma once
 #include <atomic>
+#include <cmath>
 #include <string>
 #include <vector>
 
@@ -25,16 +25,20 @@ namespace servodx {
 struct HealthyScore {
   std::string effect, where;  // `where` with the family behind a slash where there is one
   std::vector<ProbeScore> sizes;
+  double gain = 0;  // predicted fall of the deviance
 };
 struct HealthyLog {
   std::string log, sha256;
   double adequacy = 1;  // misfit over independent samples, re-tuned
   std::vector<HealthyScore> scores;
   std::vector<Miss> misses;
+  std::vector<UsualError> errors;
+  double air = std::nan("");  // [-] free air, as fitted
 };
 struct HealthyReference {
   std::vector<HealthyLog> logs;
   bool empty() const { return logs.empty(); }
+  KnownRig known() const;
 };
 
 HealthyScore summarise(const Subject& subject, const CauseScore& score);
@@ -52,8 +56,13 @@ class HealthyTest {
   // The same with all causes counted together: how small the smallest of a healthy log's chances is, is learnt from the
   // healthy logs themselves, each against the others: -ln(1 - p) is taken as exponential, its predictive is Lomax's.
   double together(double alone) const;
+  // The cause promises more here than on any healthy log.
+  bool beyond(const HealthyScore& here) const;
   // Chance that a healthy log is left with as much misfit.
   double adequacy(double value) const;
+  // How far a size of this cause lies from none on healthy logs, and what a log with this standard error scatters
+  // beyond it: root of the sum of squares; 0 where fewer than three speak of it. [of the probe]
+  double spread(const HealthyScore& of, std::size_t probe) const;
   // Chance that a part misses as much in a healthy log; 1 where fewer than three speak of it.
   double miss(const Miss& part) const;
   // That any of these parts does, by Bonferroni.
@@ -64,7 +73,5 @@ class HealthyTest {
   const HealthyReference& reference_;
   double sum_ = 0;  // over the healthy logs, of -ln(1 - the smallest chance)
 };
-// Two-sided tail of Student's t.
-double student_tail(double t, double degrees);
 
 }  // namespace servodx

@@ -48,6 +48,7 @@ struct Series {
   const std::vector<double>* sigma = nullptr;  // [unit] size of the residual that a row counts as one
   double noise = 0;                            // [unit] rms of the sensor
   double effective = 1.0;                      // fraction of the samples that count as independent
+  double usual = 1.0;  // mean square of its rows, per independent sample, where nothing new is wrong
 };
 
 // One fit: the base's free numbers first, then those of the causes asked for.
@@ -68,9 +69,12 @@ class Subject {
   virtual ~Subject() = default;
   virtual const std::vector<Cause>& causes() const = 0;
   virtual const std::vector<Series>& series() const = 0;
-  // `wide`: the base's numbers let go much further than what is known of them: re-tuning. The same numbers.
+  // `wide`: the base's numbers let go much further than what is known of them: re-tuning. The base's numbers begin
+  // alike.
   virtual SubjectFit fit(const std::vector<int>& causes, bool wide) const = 0;
   virtual bool retunes() const { return false; }  // `wide` makes a difference
+  // Healthy data say that the base holds: re-tuning is reported beside a cause, and no reason to refuse it.
+  virtual bool holds() const { return false; }
   // Sets the weights from the residual of re-tuning alone, channel by channel: its size and its memory. False: the
   // subject keeps its weights.
   virtual bool rescale(const Eigen::VectorXd& residual) {

@@ -7,6 +7,7 @@
 #include <map>
 
 #include "base/error.h"
+#include "base/student.h"
 #include "effects/row_effects.h"
 #include "fit/free_values.h"
 #include "fit/thin.h"
@@ -18,7 +19,8 @@ namespace {
 // The logs are of the rig that was tuned: its rows are known as well as the tuned table says, and not better than this
 // part of their range. Freed further, they take up what a missing effect does, differently on every log.
 constexpr double least_sd = 2e-3;
-constexpr double wide_sd = 0.1;    // re-tuning alone, to compare with
+constexpr double wide_sd = 0.1;  // re-tuning alone, to compare with
+constexpr double longest_memory = 1 - 1e-6;
 constexpr double slack = 10;       // an effect may grow beyond what healthy parts show by this
 constexpr double row_prior = 0.1;  // a row that was held for a reason, beside an effect that has a name
 
@@ -89,6 +91,28 @@ double travel_of(const Scenario& s) {
   return sum / s.rated_current;
 }
 
+// Air goes where healthy logs have had it, by Student's 99 %; beyond that it is a cause, and no log's own affair.
+void limit_air(FreeValue& air, const std::vector<double>& healthy) {
+  if (healthy.size() < 3) return;
+  double mean = 0, square = 0;
+  const auto n = static_cast<double>(healthy.size());
+  for (double v : healthy) mean += std::log(v) / n;
+  for (double v : healthy) square += std::pow(std::log(v) - mean, 2) / (n - 1);
+  double t = 2.6;  // quantile, found by steps: once a subject
+  while (student_tail(t, n - 1) > 0.01) t *= 1.05;
+  const double reach = t * std::sqrt(square * (1 + 1 / n));
+  air.lower = std::max(air.lower, std::exp(mean - reach)), air.upper = std::min(air.upper, std::exp(mean + reach));
+  air.start = std::clamp(air.start, air.lower, air.upper);
+}
+
+double median(std::vector<double> v) {
+  std::sort(v.begin(), v.end());
+  return v.empty() ? 0 : 0.5 * (v[v.size() / 2] + v[(v.size() - 1) / 2]);
+}
+double rate_of(const std::vector<double>& time) {
+  return static_cast<double>(time.size() - 1) / (time.back() - time.front());
+}
+
 void scale_air(double* candidate, double factor) { candidate[row::air_fraction] *= factor; }
 
 // Sizes at which a score looks: some about the present value.
@@ -102,8 +126,9 @@ std::vector<double> sizes_about(const Number& n, std::vector<double> moves) {
 
 }  // namespace
 
-ValveSubject::ValveSubject(const std::vector<Log>& logs, const Table& tuned, const RigFile& rig, int threads)
-    : table_(tuned), base_(candidate_of(tuned)), error_(error_model_of(tuned)) {
+ValveSubject::ValveSubject(const std::vector<Log>& logs, const Table& tuned, const RigFile& rig, int threads,
+                           std::optional<KnownRig> known)
+    : table_(tuned), base_(candidate_of(tuned)), error_(error_model_of(tuned)), known_(std::move(known)) {
   if (error_.channels.empty())
     throw InputError({.file = tuned.path}, "the table does not say how wrong its model is",
                      "make it with 'servodx tune'; its header carries the lines 'model error ...'");
@@ -116,6 +141,12 @@ ValveSubject::ValveSubject(const std::vector<Log>& logs, const Table& tuned, con
     require_channels(logs_.back());
   }
   add_causes(rig);
+  for (std::size_t l = 0; l < logs_.size(); ++l)
+    for (FreeValue& f : nuisance_values(logs_[l], static_cast<int>(l), base_, rig.null_limit)) {
+      if (known_ && f.at == row::air_fraction) limit_air(f, known_->air);
+      free_.push_back(std::move(f));
+    }
+  own_ = free_.size();
   for (FreeValue& f : shared_values(table_)) {
     if (f.at >= n_parameters) continue;  // effects of the table are causes
     const Row& row = table_[f.at];
@@ -123,9 +154,6 @@ ValveSubject::ValveSubject(const std::vector<Log>& logs, const Table& tuned, con
     f.prior_sd = std::max(least_sd, row.std_error.value_or(0.0) / slope);
     free_.push_back(std::move(f));
   }
-  for (std::size_t l = 0; l < logs_.size(); ++l)
-    for (FreeValue& f : nuisance_values(logs_[l], static_cast<int>(l), base_, rig.null_limit))
-      free_.push_back(std::move(f));
   // Whitening: the model's own error where things move, and the sensor's noise.
   std::vector<const LogData*> data;
   for (const LogData& l : logs_) data.push_back(&l);
@@ -248,7 +276,8 @@ void ValveSubject::add_causes(const RigFile& rig) {
       cause.where = "sensor:" + std::string(info(signal).name);
       cause.numbers = {number_of(f, p.unit, true)};
       const double move = p.start - p.off;
-      finish(std::move(cause), {f}, {sizes_about(number_of(f, p.unit, true), {f.start + move, f.start - move})});
+      finish(std::move(cause), {f},
+             {sizes_about(number_of(f, p.unit, true), {f.start + move, f.start - move, f.start + 4 * move})});
     };
     if (e.name == SensorResponse::name) {
       for (int c = 0; c < SensorResponse::channels; ++c) {
@@ -276,9 +305,17 @@ void ValveSubject::add_causes(const RigFile& rig) {
       sizes.emplace_back();
       if (p.switches) {
         const double move = p.start - p.off, v = f.start;
-        sizes.back() = sizes_about(cause.numbers.back(), {v + move, v + 0.25 * move, v - 0.25 * move, v - move});
+        sizes.back() =
+            sizes_about(cause.numbers.back(), {v + move, v + 0.25 * move, v + 4 * move, v - 0.25 * move, v - move});
       }
       values.push_back(std::move(f));
+    }
+    if (e.name == Stiction::name) {  // what sticks also drags: silt and lacquer raise the sliding friction too
+      const Row& r = table_[row::spool_friction];
+      values.push_back({r.name, row::spool_friction, std::min(r.lower, r.nominal), std::max(r.upper, r.nominal),
+                        r.log_scale, r.nominal});
+      cause.numbers.push_back(number_of(values.back(), r.unit, true));
+      sizes.push_back(sizes_about(cause.numbers.back(), {2 * r.nominal, 5 * r.nominal}));
     }
     finish(std::move(cause), values, sizes);
     // The shape that the table has may suit what it had to imitate: the typical one is tried as well.
@@ -344,7 +381,7 @@ void ValveSubject::add_causes(const RigFile& rig) {
 }
 
 std::shared_ptr<FitProblem> ValveSubject::problem(const std::vector<int>& causes, bool wide) const {
-  std::vector<FreeValue> free = free_;
+  std::vector<FreeValue> free(free_.begin(), free_.begin() + static_cast<long>(base_count(wide)));
   for (FreeValue& f : free)
     if (wide && f.log < 0) f.prior_sd = wide_sd;
   for (int c : causes)
@@ -363,7 +400,8 @@ std::shared_ptr<FitProblem> ValveSubject::problem(const std::vector<int>& causes
 SubjectFit ValveSubject::fit(const std::vector<int>& causes, bool wide) const {
   const std::shared_ptr<FitProblem> p = problem(causes, wide);
   SubjectFit out;
-  for (const FreeValue& f : free_) {
+  for (std::size_t j = 0; j < base_count(wide); ++j) {
+    const FreeValue& f = free_[j];
     const int at = f.at < n_parameters ? f.at : -1;
     out.numbers.push_back({f.name, at >= 0 ? std::string(parameter_list[static_cast<std::size_t>(at)].unit) : "",
                            f.lower, f.upper, f.log_scale, f.start, true, ""});
@@ -416,61 +454,111 @@ Eigen::VectorXd ValveSubject::physical(const Eigen::VectorXd& rows) const {
   return Subject::physical(plain);
 }
 
-std::vector<Miss> ValveSubject::misses(const Eigen::VectorXd& rows) const {
-  const Eigen::VectorXd r = physical(rows);
-  std::vector<Miss> out;
-  std::vector<double> samples;
+Eigen::VectorXd ValveSubject::in_tuned_errors(const Eigen::VectorXd& rows) const {
+  Eigen::VectorXd r = physical(rows);
+  for (std::size_t i = 0; i < series_.size(); ++i)
+    for (long k = 0; k < series_[i].count; ++k) r[series_[i].first + k] /= tuned_sigma_[i][static_cast<std::size_t>(k)];
+  return r;
+}
+
+std::vector<UsualError> ValveSubject::errors(const Eigen::VectorXd& rows) const {
+  const Eigen::VectorXd r = in_tuned_errors(rows);
+  std::vector<UsualError> out;
   for (std::size_t i = 0; i < series_.size(); ++i) {
     const Series& s = series_[i];
-    std::size_t at = 0;
-    while (at < out.size() && out[at].part != s.signal) ++at;
-    if (at == out.size()) out.push_back({s.signal, 0}), samples.push_back(0);
-    for (long k = 0; k < s.count; ++k) {
-      const double w = r[s.first + k] / tuned_sigma_[i][static_cast<std::size_t>(k)];
-      out[at].size += w * w;
+    double square = 0, neighbours = 0;
+    for (long k = 0, at = s.first; k < s.count; ++k, ++at) {
+      square += r[at] * r[at];
+      if (!afresh_[i][static_cast<std::size_t>(k)]) neighbours += r[at] * r[at - 1];
     }
-    samples[at] += static_cast<double>(s.count);
+    out.push_back({s.signal, std::sqrt(square / static_cast<double>(s.count)),
+                   square > 0 ? std::clamp(neighbours / square, 0.0, longest_memory) : 0.0, s.effective,
+                   rate_of(*s.time)});
   }
+  return out;
+}
+
+std::vector<Miss> ValveSubject::misses(const Eigen::VectorXd& rows) const {
+  std::vector<Miss> out;
+  std::vector<double> samples;
+  const std::vector<UsualError> all = errors(rows);
+  for (std::size_t i = 0; i < all.size(); ++i)
+    for (const bool news : {false, true}) {
+      const std::string part = all[i].signal + (news ? ", news" : "");
+      std::size_t at = 0;
+      while (at < out.size() && out[at].part != part) ++at;
+      if (at == out.size()) out.push_back({part, 0}), samples.push_back(0);
+      const auto n = static_cast<double>(series_[i].count);
+      out[at].size += n * all[i].size * all[i].size * (news ? 1 - all[i].memory * all[i].memory : 1);
+      samples[at] += n;
+    }
   for (std::size_t i = 0; i < out.size(); ++i) out[i].size = std::sqrt(out[i].size / samples[i]);
   return out;
 }
 
-double ValveSubject::adequacy(const Eigen::VectorXd& rows) const {
-  double sum = 0;
-  const std::vector<Miss> channels = misses(rows);
-  for (const Miss& m : channels) sum += m.size * m.size / static_cast<double>(channels.size());
-  return sum;
+std::vector<double> ValveSubject::air(const std::vector<int>& causes, const Point& point) const {
+  std::vector<double> out;
+  const auto p = problem(causes);
+  for (std::size_t l = 0; l < logs_.size(); ++l)
+    out.push_back(p->candidate(point, static_cast<int>(l))[row::air_fraction]);
+  return out;
 }
 
+bool ValveSubject::air_at_wall(const Point& point) const {
+  for (std::size_t j = 0; j < own_; ++j)
+    if (free_[j].at == row::air_fraction && (point[j] < 1e-6 || point[j] > 1 - 1e-6)) return true;
+  return false;
+}
+
+double ValveSubject::adequacy(const Eigen::VectorXd& rows) const {
+  double sum = 0;
+  double channels = 0;
+  for (const Miss& m : misses(rows))
+    if (!m.part.ends_with(", news")) sum += m.size * m.size, ++channels;
+  return sum / std::max(1.0, channels);
+}
+
+// The channel's own size and memory; where healthy logs tell what is usual, their memory, and no larger size.
 bool ValveSubject::rescale(const Eigen::VectorXd& rows) {
-  constexpr double longest_memory = 1 - 1e-6;
-  Eigen::VectorXd white = physical(rows);
+  Eigen::VectorXd white = in_tuned_errors(rows);
+  const std::vector<UsualError> own = errors(rows);
+  const auto news = [](const UsualError& e, double a) {
+    return e.size * std::sqrt(std::max(0.0, 1 - 2 * a * e.memory + a * a));
+  };
+  std::vector<double> usual(series_.size(), 0.0), usual_effective(series_.size(), 0.0);  // 0: not known
   for (std::size_t i = 0; i < series_.size(); ++i) {
-    double square = 0, neighbours = 0;
-    for (long k = 0, at = series_[i].first; k < series_[i].count; ++k, ++at) {
-      white[at] /= tuned_sigma_[i][static_cast<std::size_t>(k)];
-      square += white[at] * white[at];
-      if (!afresh_[i][static_cast<std::size_t>(k)]) neighbours += white[at] * white[at - 1];
-    }
-    memory_[i] = square > 0 ? std::clamp(neighbours / square, 0.0, longest_memory) : 0.0;
-    if (of_stand(static_cast<std::size_t>(series_[i].log))) memory_[i] = 0;
+    memory_[i] = of_stand(static_cast<std::size_t>(series_[i].log)) ? 0.0 : own[i].memory;
+    if (!known_) continue;
+    std::vector<UsualError> same;
+    std::vector<double> memories, sizes, fractions;
+    for (UsualError e : known_->errors)
+      if (e.signal == series_[i].signal) {
+        e.memory = std::pow(e.memory, e.rate / own[i].rate);
+        memories.push_back(e.memory), fractions.push_back(std::min(1.0, e.effective * e.rate / own[i].rate));
+        same.push_back(e);
+      }
+    if (same.size() < 3) continue;
+    memory_[i] = median(memories);
+    for (const UsualError& e : same) sizes.push_back(news(e, memory_[i]));
+    usual[i] = median(sizes), usual_effective[i] = median(fractions);
   }
   remember(white);
   std::size_t i = 0;
   for (auto& log : sigma_)
     for (auto& sigma : log) {
       Series& s = series_[i];
-      const std::vector<double> news(white.data() + s.first, white.data() + s.first + s.count);
+      const std::vector<double> said(white.data() + s.first, white.data() + s.first + s.count);
       double square = 0;
-      for (double v : news) square += v * v;
-      const double own = std::sqrt(square / static_cast<double>(s.count));
-      s.effective = effective_fraction(news);
+      for (double v : said) square += v * v;
+      double size = std::sqrt(square / static_cast<double>(s.count));
+      s.effective = effective_fraction(said);
+      if (usual[i] > 0 && usual[i] < size) size = usual[i], s.effective = usual_effective[i];
       if (of_stand(static_cast<std::size_t>(s.log))) {
         const double points = travel_of(logs_[static_cast<std::size_t>(s.log)].scenario) / sweep_detail;
         s.effective = std::clamp(points / static_cast<double>(s.count), s.effective, 1.0);
       }
       for (std::size_t k = 0; k < sigma.size(); ++k)
-        sigma[k] = std::max(tuned_sigma_[i][k] * own, s.noise) / std::sqrt(s.effective);
+        sigma[k] = std::max(tuned_sigma_[i][k] * size, s.noise) / std::sqrt(s.effective);
       ++i;
     }
   return true;

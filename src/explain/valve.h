@@ -1,6 +1,8 @@
 // The servovalve as a subject of `explain`: logs of one valve in one state, its tuned table, and what might be missing.
 //
-// Free in every fit: each log's nuisances, and the rows that `tune` freed, about their tuned values: re-tuning. Causes:
+// Free in every fit: each log's nuisances, and the rows that `tune` freed, about their tuned values. With healthy logs
+// to compare with the rows hold: what they have wrong is the same there, and no news; freed, they would take up what a
+// missing effect does, differently on every log. A residual is then weighed by what is usual on healthy logs. Causes:
 // every effect of the registry, the effects that are rows, sensors and mains pick-up channel by channel, and every row
 // that was held. The mains notch is off: a filter that could hide an effect is none here.
 //
@@ -22,22 +24,43 @@
 
 namespace servodx {
 
+// How a channel errs on one healthy log, as tuned.
+struct UsualError {
+  std::string signal;
+  double size = 1;       // rms, of the error that the tuned table states
+  double memory = 0;     // correlation from sample to sample
+  double effective = 1;  // fraction of the samples' news that counts as independent
+  double rate = 1000;    // [1/s] of the samples
+};
+// What is known of a rig from its healthy logs.
+struct KnownRig {
+  std::vector<UsualError> errors;  // of all logs
+  std::vector<double> air;         // fraction, a log each
+};
+
 class ValveSubject : public Subject {
  public:
-  // Throws InputError where logs or table cannot be used.
-  ValveSubject(const std::vector<Log>& logs, const Table& tuned, const RigFile& rig, int threads);
+  // `known`: the rig's rows hold; may be empty. Throws InputError where logs or table cannot be used.
+  ValveSubject(const std::vector<Log>& logs, const Table& tuned, const RigFile& rig, int threads,
+               std::optional<KnownRig> known = {});
 
   const std::vector<Cause>& causes() const override { return causes_; }
   const std::vector<Series>& series() const override { return series_; }
   SubjectFit fit(const std::vector<int>& causes, bool wide) const override;
   bool retunes() const override { return true; }
+  bool holds() const override { return known_.has_value(); }
   bool rescale(const Eigen::VectorXd& residual) override;
   Eigen::VectorXd physical(const Eigen::VectorXd& rows) const override;
   // Mean square of the residual behind the rows in units of the model's error on the tuning logs, all channels alike: 1
   // when as wrong as there.
   double adequacy(const Eigen::VectorXd& rows) const;
-  // The same channel by channel, the root of it.
+  // The same channel by channel, the root of it; and of what each sample says beyond the one before.
   std::vector<Miss> misses(const Eigen::VectorXd& rows) const;
+  std::vector<UsualError> errors(const Eigen::VectorXd& rows) const;
+  // Free air of each log at a point.
+  std::vector<double> air(const std::vector<int>& causes, const Point& point) const;
+  // The air of a log stands at the end of what healthy logs have.
+  bool air_at_wall(const Point& point) const;
   long simulations() const override;
   long failed_simulations() const override;
 
@@ -53,6 +76,8 @@ class ValveSubject : public Subject {
 
  private:
   void add_causes(const RigFile& rig);
+  std::size_t base_count(bool wide) const { return known_ && !wide ? own_ : free_.size(); }
+  Eigen::VectorXd in_tuned_errors(const Eigen::VectorXd& rows) const;
   bool of_stand(std::size_t log) const { return logs_[log].scenario.ports != Ports::actuator; }
   void remember(Eigen::Ref<Eigen::VectorXd> rows) const;  // r(k) to r(k) - a r(k-1), series by series
   void forget(Eigen::Ref<Eigen::VectorXd> rows) const;    // and back
@@ -61,7 +86,9 @@ class ValveSubject : public Subject {
   ParameterVector base_;
   ErrorModel error_;
   SimulateOptions options_;
-  std::vector<FreeValue> free_;  // the base's
+  std::optional<KnownRig> known_;
+  std::vector<FreeValue> free_;  // the base's: each log's own, then the rows
+  std::size_t own_ = 0;          // of these, the logs' own
   std::vector<Cause> causes_;
   std::vector<std::vector<FreeValue>> values_;
   std::vector<std::vector<std::vector<double>>> sigma_;  // [log][channel][sample] whitening

@@ -237,12 +237,21 @@ Json healthy_json(const HealthyReference& healthy) {
     for (const HealthyScore& s : l.scores) {
       Json sizes = Json::array();
       for (const ProbeScore& p : s.sizes) sizes.push_back({number(p.size), number(p.std_error)});
-      scores.push_back({{"effect", s.effect}, {"where", s.where}, {"sizes", sizes}});
+      scores.push_back({{"effect", s.effect}, {"where", s.where}, {"gain", number(s.gain)}, {"sizes", sizes}});
     }
     Json misses = Json::object();
     for (const Miss& m : l.misses) misses[m.part] = number(m.size);
+    Json errors = Json::array();
+    for (const UsualError& e : l.errors)
+      errors.push_back({{"signal", e.signal},
+                        {"size", number(e.size)},
+                        {"memory", number(e.memory)},
+                        {"effective", number(e.effective)},
+                        {"rate", number(e.rate)}});
     logs.push_back({{"log", l.log},
                     {"sha256", l.sha256},
+                    {"errors", errors},
+                    {"air_fraction", number(l.air)},
                     {"adequacy", number(l.adequacy)},
                     {"scores", scores},
                     {"misses", misses}});
@@ -260,10 +269,15 @@ HealthyReference read_healthy(const std::string& path) {
     if (!file.contains("explain")) refuse("explain", "says nothing of what healthy logs show of each cause");
     const auto value = [](const Json& j) { return j.is_number() ? j.get<double>() : std::nan(""); };
     for (const Json& l : file.at("explain").at("logs")) {
-      HealthyLog log{
-          l.at("log").get<std::string>(), l.at("sha256").get<std::string>(), value(l.at("adequacy")), {}, {}};
+      HealthyLog log;
+      log.log = l.at("log").get<std::string>(), log.sha256 = l.at("sha256").get<std::string>();
+      log.adequacy = value(l.at("adequacy")), log.air = value(l.at("air_fraction"));
+      for (const Json& e : l.at("errors"))
+        log.errors.push_back({e.at("signal").get<std::string>(), value(e.at("size")), value(e.at("memory")),
+                              value(e.at("effective")), value(e.at("rate"))});
       for (const Json& s : l.at("scores")) {
-        HealthyScore score{s.at("effect").get<std::string>(), s.at("where").get<std::string>(), {}};
+        HealthyScore score{
+            s.at("effect").get<std::string>(), s.at("where").get<std::string>(), {}, value(s.at("gain"))};
         for (const Json& p : s.at("sizes")) score.sizes.push_back({value(p.at(0)), value(p.at(1))});
         log.scores.push_back(std::move(score));
       }

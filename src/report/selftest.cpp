@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "explain/healthy.h"
+#include "base/student.h"
 #include "report/columns.h"
 #include "report/handy.h"
 #include "report/replay_part.h"

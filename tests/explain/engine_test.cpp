@@ -96,7 +96,7 @@ TEST(Engine, WhatFitsAsWellIsSaidToBeConfusable) {
 }
 
 TEST(Engine, CauseThatTheFreeNumbersImitateScoresNothing) {
-  Line line(shapes, 5, 4, 3.0);  // a line, in a model that has a line
+  Line line(shapes, 5, 4, 2.0);  // a line, in a model that has a line, and within its bounds
   const Explanation e = explain(line, {});
   EXPECT_TRUE(e.causes.empty());
   EXPECT_LT(e.scores[4].gain, 1e-6);
@@ -130,6 +130,23 @@ TEST(Engine, WhatHealthyDataShowIsNotAccused) {
   EXPECT_TRUE(e.causes.empty());
   ASSERT_FALSE(e.standing.empty());
   EXPECT_EQ(line.causes()[static_cast<std::size_t>(e.standing[0].cause)].effect, "slow wave");
+}
+
+TEST(Engine, WhereSomethingIsNewWhatHealthyDataShowAsWellIsStillNotIt) {
+  Line line({shapes[0], shapes[1]}, 7, 1, 1.0);
+  EngineOptions o;
+  o.p_new = [](const CauseScore&, int) { return 0.5; };
+  o.p_left = [](const ExplainedFit&, int round) { return round == 0 ? 1e-6 : 1.0; };
+  EXPECT_EQ(explain(line, o).causes.size(), 1u);
+  o.beyond = [](const CauseScore&) { return false; };
+  EXPECT_TRUE(explain(line, o).causes.empty());
+}
+
+TEST(Engine, FarBeyondWhatIsUsualHalvesCountAlike) {
+  Line line(shapes, 1, -1, 0);
+  const auto far = [&](double size) { return deviance_of(line, Eigen::VectorXd::Constant(600, size)); };
+  EXPECT_NEAR(far(64) - far(32), far(8) - far(4), 1e-9);
+  EXPECT_NEAR(far(0.8) - far(0.4), 600 * (0.64 - 0.16), 1e-9) << "within the usual it is the sum of squares";
 }
 
 TEST(Engine, SameSeedSameResult) {

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "base/random.h"
+#include "base/student.h"
 
 namespace servodx {
 namespace {
@@ -17,7 +18,7 @@ HealthyLog draw(Random& random, int causes, double moved, int which) {
   for (int c = 0; c < causes; ++c) {
     const double error = std::exp(random.uniform(-1, 1)), tau = 0.3 * (c % 5);
     const double size = c + tau * random.normal() + error * random.normal() + (c == which ? moved : 0);
-    log.scores.push_back({"cause " + std::to_string(c), "here", {{size, error}}});
+    log.scores.push_back({"cause " + std::to_string(c), "here", {{size, error}}, 0});
   }
   return log;
 }
@@ -65,6 +66,38 @@ TEST(Healthy, WhatHasMovedFarIsFound) {
   EXPECT_GE(found, 95);
 }
 
+// Tests that hardly show a cause lend it whatever else is wrong: sizes scatter in proportion to their standard errors.
+HealthyScore lent(Random& random, double error) { return {"leak", "here", {{10 * error * random.normal(), error}}, 0}; }
+
+TEST(Healthy, TestsThatHardlyShowACauseDoNotHideItWhereOneShowsItWell) {
+  constexpr int trials = 200;
+  int found = 0, alarms = 0;
+  for (int k = 0; k < trials; ++k) {
+    Random random(47, static_cast<std::uint32_t>(k));
+    HealthyReference reference;
+    for (int i = 0; i < 9; ++i) {
+      reference.logs.emplace_back();
+      reference.logs.back().scores.push_back(lent(random, std::exp(random.uniform(-3, 1))));
+    }
+    const HealthyTest test(reference);
+    found += test.alone({{"leak", "here", {{5.0, 0.05}}, 0}}) <= 0.01;
+    alarms += test.alone({lent(random, std::exp(random.uniform(-3, 1)))}) <= 0.05;
+  }
+  EXPECT_GE(found, trials * 9 / 10);
+  EXPECT_LE(alarms, 0.05 * trials + 2.5 * std::sqrt(0.05 * 0.95 * trials));
+}
+
+TEST(Healthy, BeyondIsMoreThanOnAnyHealthyLog) {
+  HealthyReference reference;
+  for (double gain : {3.0, 40.0, 12.0}) {
+    reference.logs.emplace_back();
+    reference.logs.back().scores.push_back({"leak", "here", {}, gain});
+  }
+  const HealthyTest test(reference);
+  EXPECT_TRUE(test.beyond({"leak", "here", {}, 41}));
+  EXPECT_FALSE(test.beyond({"leak", "here", {}, 39}));
+}
+
 TEST(Healthy, StandingSizeIsNoNews) {
   // Cause 20 stands at 20 in every log: far from absent, and nothing new.
   Random random(44, 1);
@@ -79,7 +112,7 @@ TEST(Healthy, LogsOfOneStateSpeakTogether) {
   HealthyReference reference;
   for (int i = 0; i < 9; ++i) reference.logs.push_back(draw(random, 5, 0, -1));
   const HealthyTest test(reference);
-  const HealthyScore one{"cause 4", "here", {{4 + 5.0, 0.5}}};
+  const HealthyScore one{"cause 4", "here", {{4 + 5.0, 0.5}}, 0};
   EXPECT_LT(test.alone({one, one, one}), test.alone({one}));
 }
 
@@ -88,7 +121,7 @@ TEST(Healthy, TooFewLogsAccuseNoOne) {
   Random random(46, 1);
   for (int i = 0; i < 2; ++i) two.logs.push_back(draw(random, 5, 0, -1));
   const HealthyTest test(two);
-  EXPECT_EQ(test.together(test.alone({{"cause 1", "here", {{1e6, 1}}}})), 1.0);
+  EXPECT_EQ(test.together(test.alone({{"cause 1", "here", {{1e6, 1}}, 0}})), 1.0);
 }
 
 }  // namespace

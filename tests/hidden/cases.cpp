@@ -6,6 +6,7 @@
 #include <cmath>
 #include <fstream>
 #include <functional>
+#include <map>
 #include <nlohmann/json.hpp>
 
 #include "base/random.h"
@@ -314,6 +315,51 @@ Score score(const Truth& truth, const ExplainResult& answer) {
       out.note = fmt::format("{} {}: {} (gain {:.1f}, p {:.3g})", c.effect, c.where, c.reason, c.predicted_gain,
                              c.p_new.value_or(-1));
     break;
+  }
+  return out;
+}
+
+namespace {
+
+// "12 of 14 (86 %, 60 to 96)": Wilson 1927, 95 %.
+std::string share(int k, int n) {
+  if (n == 0) return "0 of 0";
+  constexpr double z2 = 1.96 * 1.96;
+  const double p = static_cast<double>(k) / n, middle = (p + z2 / (2 * n)) / (1 + z2 / n),
+               reach = std::sqrt(z2 * (p * (1 - p) / n + z2 / (4.0 * n * n))) / (1 + z2 / n);
+  return fmt::format("{} of {} ({:.0f} %, {:.0f} to {:.0f})", k, n, 100 * p, 100 * (middle - reach),
+                     100 * (middle + reach));
+}
+
+}  // namespace
+
+std::string tally(const std::vector<Score>& scores) {
+  struct Count {
+    int n = 0, named = 0, placed = 0, silent = 0, sized = 0, inside = 0, gained = 0, enough = 0;
+  };
+  std::map<std::string, Count> by;
+  Count listed, not_listed, none;
+  for (const Score& s : scores) {
+    Count& kind = s.truth.effect == "none" ? none : s.truth.effect.starts_with("unlisted:") ? not_listed : listed;
+    for (Count* c : {&by[s.truth.effect], &kind}) {
+      c->n++, c->named += s.named, c->placed += s.placed, c->silent += !s.accused;
+      if (s.size_inside) c->sized++, c->inside += *s.size_inside;
+      if (s.gain_share) c->gained++, c->enough += *s.gain_share >= 0.8;
+    }
+  }
+  std::string out = fmt::format("{:24} {:>5} {:>6} {:>7} {:>7} {:>12}\n", "effect", "cases", "named", "placed",
+                                "silent", "size inside");
+  for (const auto& [name, c] : by)
+    out +=
+        fmt::format("{:24} {:5} {:6} {:7} {:7} {:>9}/{}\n", name, c.n, c.named, c.placed, c.silent, c.inside, c.sized);
+  out += "named first or as a declared alternative: " + share(listed.named, listed.n) + "\n";
+  out += "placed: " + share(listed.placed, listed.n) + "\n";
+  out += "sizes inside their 90 % interval: " + share(listed.inside, listed.sized) + "\n";
+  out += "held-out gain at least 80 % of the true effect's: " + share(listed.enough, listed.gained) + "\n";
+  out += "controls accused: " + share(none.n - none.silent, none.n) + "\n";
+  if (not_listed.n > 0) {
+    out += "not in the list, called unexplained: " + share(not_listed.named, not_listed.n) + "\n";
+    out += "  and placed: " + share(not_listed.placed, not_listed.n) + "\n";
   }
   return out;
 }

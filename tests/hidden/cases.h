@@ -59,6 +59,8 @@ struct Score {
   std::string note;                  // of a miss: what became of the true effect
 };
 Score score(const Truth& truth, const ExplainResult& answer);
+// Counts over cases and controls, effect by effect, with Wilson's 95 % intervals.
+std::string tally(const std::vector<Score>& scores);
 nlohmann::json to_json(const Score& score);
 Score from_json(const nlohmann::json& json);
 
