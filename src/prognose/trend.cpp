@@ -71,6 +71,14 @@ struct Series {
 // Viscosity over that at 40 degC of a 14 mm2/s oil: only its logarithm as a regressor matters here.
 double log_viscosity(double kelvin) { return std::log(oil_at(860, 14e-6, kelvin).viscosity_ratio); }
 
+// Error of -ln(1 - b). What a log tells is the drop over the filter, which goes with 1/(1 - b)^2: near a clean filter
+// the slope of that is small and an error taken by it alone endless, though a drop so large would have been seen.
+double error_of_lost(double b, double error) {
+  const double open = 1 - std::clamp(b, 0.0, Series::most_lost);
+  const double drop = 1 / (open * open), by = 2 * error * drop / open;
+  return 0.5 * std::log(1 + by / drop);
+}
+
 void append(Series& s, const Recording& r, const Check& c) {
   const double value = s.paper() ? c.measured : c.value;
   if (!std::isfinite(value) || (s.paper() && value <= 0)) return;
@@ -78,7 +86,8 @@ void append(Series& s, const Recording& r, const Check& c) {
   p.time = r.at;
   p.y = s.in(value);
   const double error = std::isfinite(c.std_error) ? c.std_error : 0.0;
-  p.variance = std::pow(error / s.stretch(c.value), 2);
+  p.variance =
+      std::pow(s.scale == Series::Scale::part_lost ? error_of_lost(c.value, error) : error / s.stretch(c.value), 2);
   const double z = std::isfinite(r.temperature) ? log_viscosity(r.temperature) : 0.0;
   p.features = {z, z * z};
   if (s.paper()) p.features.push_back(std::log(c.expected > 0 ? c.expected : 1.0));
@@ -149,12 +158,19 @@ std::optional<double> failed_row(const Fault& fault) {
   return {};
 }
 
+// What the model's form leaves open of a severity at a value of its row, in the coordinate of the growth: it reads a
+// level, whoever set it, no better than that.
+double left_open(const Series& s, double value) {
+  return s.fault->log_scale ? s.fault->spread * std::abs(value) : s.fault->spread / s.stretch(value);
+}
+
 // From the user, from a limit, or from the fault itself; in the coordinate of the growth.
 FailureAt failure_of(const Series& s, const TrendOptions& options) {
   FailureAt at;
   const auto to_side = [&](double value, bool up) { (up ? at.upper : at.lower) = value; };
   if (const auto given = options.failure.find(s.name); given != options.failure.end()) {
     at.lower = s.in(given->second.first), at.upper = s.in(given->second.second);
+    if (const auto& level = at.upper ? at.upper : at.lower; level && s.fault) at.sd = left_open(s, s.out(*level));
   } else if (const auto ratio = options.failure_ratio.find(s.name); ratio != options.failure_ratio.end()) {
     at.of = s.paper() ? FailureAt::Of::beyond_base : FailureAt::Of::times_base;
     to_side(s.paper() ? std::log(ratio->second) : ratio->second, ratio->second > 1);
@@ -163,16 +179,14 @@ FailureAt failure_of(const Series& s, const TrendOptions& options) {
       // A severity that multiplies does so to the tuned value; what the estimate errs by in health it errs by later.
       if (s.fault->log_scale && s.tuned) {
         at.of = FailureAt::Of::beyond_base;
-        at.sd = s.fault->spread * *failed * *s.tuned;
+        at.sd = left_open(s, *failed * *s.tuned);
         to_side((*failed - 1) * *s.tuned, *failed > 1);
         return at;
       }
       if (s.fault->log_scale) at.of = FailureAt::Of::times_base;
       // Of what was open at the beginning: how large a clean filter is stands on no data sheet, and no log tells it.
       if (s.fault->part_lost) at.of = FailureAt::Of::beyond_base;
-      // A severity is known to what the model's form leaves open; a level that a user gives is in the check's own
-      // terms.
-      at.sd = s.fault->log_scale ? 0.0 : s.fault->spread / s.stretch(*failed);
+      if (!s.fault->log_scale) at.sd = left_open(s, *failed);
       to_side(s.in(*failed), *failed > (s.fault->log_scale ? 1.0 : 0.0));
     }
   }
@@ -291,8 +305,9 @@ CheckTrend trend_of(const Series& s, const TrendOptions& options, std::size_t na
   const GrowthModel begun({s.points.begin(), s.points.begin() + static_cast<long>(healthy)}, prior);
   std::vector<double> own;
   for (std::size_t i = 0; i < healthy; ++i) own.push_back(s.points[i].variance);
-  const double centre =
+  double centre =
       out.trend ? g.base : median({corrected.begin(), corrected.begin() + static_cast<long>(healthy)});
+  if (prior.part_lost) centre = std::max(centre, 0.0);  // nothing is cleaner than clean
   const double noise = begun.growth().probability < 0.5 ? begun.growth().null_noise : begun.growth().noise;
   const double spread = std::sqrt(noise * noise * (1 + 1.0 / static_cast<double>(healthy)) + median(own));
   const auto band = [&](double rate) {
