@@ -18,6 +18,7 @@ inline const Fault clogged_filter{
     .test = "full-amplitude steps at the coldest oil: the spool's slew falls, its static gain does not",
     .action = "critical: stop the machine",
     .apply = [](double* v, double s) { v[row::filter_blockage_positive] = v[row::filter_blockage_negative] = s; },
-    .failed = 0.75};  // the end of what Borello 2009 studies
+    .failed = 0.75,  // the end of what Borello 2009 studies
+    .part_lost = true};
 
 }  // namespace servodx

@@ -27,6 +27,7 @@ struct Fault {
   // Where a valve that wears so has failed, unless its user says another level. A fault with one grows with use:
   // `check` tracks it, `trend` predicts it.
   std::optional<double> failed = {};
+  bool part_lost = false;  // the severity is a part lost, and what is left of it acts
 };
 
 }  // namespace servodx

@@ -1,5 +1,3 @@
-#include "parameters/table.h"
-
 #include <algorithm>
 #include <array>
 #include <charconv>
@@ -11,6 +9,7 @@
 #include "base/csv.h"
 #include "base/error.h"
 #include "base/sha256.h"
+#include "parameters/table_text.h"
 
 namespace servodx {
 namespace {
@@ -49,8 +48,7 @@ class Reader {
  public:
   explicit Reader(std::string path) : file_(std::move(path)) {}
 
-  Table read() {
-    const std::string text = read_file(file_);
+  Table read(const std::string& text) {
     CsvCursor csv(text, file_);
     Table table;
     table.path = file_;
@@ -233,7 +231,8 @@ int Table::find(const std::string& name) const {
   return -1;
 }
 
-Table read_table(const std::string& path) { return Reader(path).read(); }
+Table read_table(const std::string& path) { return parse_table(read_file(path), path); }
+Table parse_table(const std::string& text, const std::string& path) { return Reader(path).read(text); }
 
 void write_table(const std::string& path, const Table& table) {
   std::string out;

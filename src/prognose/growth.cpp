@@ -16,20 +16,36 @@ struct Law {
   double power = 1;     // s^power
   double exponent = 0;  // else (exp(k s) - 1) / (exp(k) - 1)
   double weight = 1;    // before any data
+  double lost = 0;      // of a part that is lost so far: then ln(1 - lost u) / ln(1 - lost) of the above
   double at(double s) const {
     if (s <= 0) return 0;
-    return exponent > 0 ? std::expm1(exponent * s) / std::expm1(exponent) : std::pow(s, power);
+    const double u = exponent > 0 ? std::expm1(exponent * s) / std::expm1(exponent) : std::pow(s, power);
+    return lost > 0 ? std::log1p(-lost * u) / std::log1p(-lost) : u;
   }
   double inverse(double g) const {
-    return exponent > 0 ? std::log1p(g * std::expm1(exponent)) / exponent : std::pow(g, 1 / power);
+    const double u = lost > 0 ? -std::expm1(g * std::log1p(-lost)) / lost : g;
+    return exponent > 0 ? std::log1p(u * std::expm1(exponent)) / exponent : std::pow(u, 1 / power);
   }
-  double slope_at_1() const { return exponent > 0 ? exponent * std::exp(exponent) / std::expm1(exponent) : power; }
+  double slope_at_1() const {
+    const double slope = exponent > 0 ? exponent * std::exp(exponent) / std::expm1(exponent) : power;
+    return lost > 0 ? slope * lost / ((lost - 1) * std::log1p(-lost)) : slope;
+  }
 };
 
-// Wear at constant duty is linear; dirt and chemistry are not known to be. Linear has the weight of all others of a
-// side.
-constexpr std::array<Law, 8> laws = {
-    {{0.5, 0, 1}, {0.7, 0, 1}, {1.0, 0, 6}, {1.4, 0, 1}, {2.0, 0, 1}, {3.0, 0, 1}, {1, 2.5, 1}, {1, 5.0, 1}}};
+// Wear at constant duty is linear; dirt and chemistry are not known to be. Linear has as much weight as the others.
+constexpr std::array<Law, 13> laws = {{{0.5, 0, 1},
+                                       {0.6, 0, 1},
+                                       {0.72, 0, 1},
+                                       {0.85, 0, 1},
+                                       {1.0, 0, 12},
+                                       {1.2, 0, 1},
+                                       {1.4, 0, 1},
+                                       {1.7, 0, 1},
+                                       {2.0, 0, 1},
+                                       {2.5, 0, 1},
+                                       {3.0, 0, 1},
+                                       {1, 2.5, 1},
+                                       {1, 5.0, 1}}};
 // Onsets as parts of the record, and their weights: wear usually begins with use. Between coarser ones a growth that
 // began late looks like one that accelerates.
 constexpr auto onsets = [] {
@@ -38,33 +54,14 @@ constexpr auto onsets = [] {
   return all;
 }();
 constexpr std::array<double, 9> noises = {0.1, 0.18, 0.32, 0.56, 1, 1.8, 3.2, 5.6, 10};
+// Wander over the whole record, in parts of the growth that matters. A healthy figure may wander by the lesser one.
+constexpr std::array<double, 3> wanders = {0, 0.03, 0.1};
+constexpr std::size_t healthy_wanders = 2;
+// A part lost so far, where it is one: how far ln(1 - part) is from a straight line depends on it.
+constexpr std::array<double, 4> losses = {0.15, 0.35, 0.55, 0.75};
 constexpr double negligible = 1e-4;  // weight below which a component is left out
 
 double normal_cdf(double x) { return 0.5 * std::erfc(-x / std::numbers::sqrt2); }
-
-// Gaussian linear regression with a Gaussian prior: evidence and posterior.
-struct Regression {
-  double log_evidence = 0;
-  Eigen::VectorXd mean;
-  Eigen::MatrixXd covariance;
-};
-Regression regress(const Eigen::MatrixXd& x, const Eigen::VectorXd& y, const Eigen::VectorXd& variance,
-                   const Eigen::VectorXd& prior_mean, const Eigen::VectorXd& prior_sd) {
-  const Eigen::VectorXd weight = variance.cwiseInverse(), precision = prior_sd.cwiseAbs2().cwiseInverse();
-  const Eigen::VectorXd r = y - x * prior_mean;
-  Eigen::MatrixXd a = x.transpose() * weight.asDiagonal() * x;
-  a.diagonal() += precision;
-  const Eigen::VectorXd b = x.transpose() * weight.cwiseProduct(r);
-  const Eigen::LLT<Eigen::MatrixXd> factor(a);
-  const Eigen::VectorXd shift = factor.solve(b);
-  Regression out;
-  out.mean = prior_mean + shift;
-  out.covariance = factor.solve(Eigen::MatrixXd::Identity(a.rows(), a.cols()));
-  const double log_det = 2 * factor.matrixLLT().diagonal().array().log().sum();
-  out.log_evidence = -0.5 * (weight.cwiseProduct(r).dot(r) - b.dot(shift) + variance.array().log().sum() + log_det -
-                             precision.array().log().sum());
-  return out;
-}
 
 double log_sum(const std::vector<double>& x) {
   const double top = *std::max_element(x.begin(), x.end());
@@ -73,6 +70,57 @@ double log_sum(const std::vector<double>& x) {
   return top + std::log(sum);
 }
 
+// Base and features; the growth is set apart.
+constexpr int most_terms = 8;
+using Terms = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, most_terms, 1>;
+using TermMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, most_terms, most_terms>;
+
+// Gaussian linear regression of all but the growth at one noise level and wander, whitened, and what a growth adds.
+struct Regression {
+  Eigen::LLT<Eigen::MatrixXd> factor;  // of the noise's covariance
+  Eigen::MatrixXd x;                   // whitened
+  Eigen::VectorXd residual;            // whitened, of the prior mean
+  Eigen::LLT<TermMatrix> precision;
+  Terms right, mean;
+  TermMatrix covariance;
+  double log_evidence = 0;
+
+  Regression(const Eigen::MatrixXd& terms, const Eigen::VectorXd& y, const Eigen::MatrixXd& noise,
+             const Terms& prior_mean, const Terms& prior_sd)
+      : factor(noise) {
+    x = factor.matrixL().solve(terms);
+    residual = factor.matrixL().solve(y - terms * prior_mean);
+    const Terms prior = prior_sd.cwiseAbs2().cwiseInverse();
+    TermMatrix a = x.transpose() * x;
+    a.diagonal() += prior;
+    precision.compute(a);
+    right = x.transpose() * residual;
+    const Terms shift = precision.solve(right);
+    mean = prior_mean + shift;
+    covariance = precision.solve(TermMatrix::Identity(a.rows(), a.cols()));
+    const auto log_det = [](const auto& llt) { return 2 * llt.matrixLLT().diagonal().array().log().sum(); };
+    log_evidence = -0.5 * (residual.squaredNorm() - right.dot(shift) + log_det(factor) + log_det(precision) -
+                           prior.array().log().sum());
+  }
+
+  struct Grown {
+    double log_evidence = 0, mean = 0, variance = 0;  // of a
+    Terms tilt;                                       // how far the terms fall for a unit of a
+  };
+  Grown with(const Eigen::VectorXd& growth, double prior_sd) const {
+    const Eigen::VectorXd g = factor.matrixL().solve(growth);
+    const Terms cross = x.transpose() * g;
+    Grown out;
+    out.tilt = precision.solve(cross);
+    const double prior = 1 / (prior_sd * prior_sd);
+    const double own = g.squaredNorm() + prior - cross.dot(out.tilt);
+    const double pull = g.dot(residual) - out.tilt.dot(right);
+    out.mean = pull / own, out.variance = 1 / own;
+    out.log_evidence = log_evidence + 0.5 * (pull * pull / own - std::log(own) + std::log(prior));
+    return out;
+  }
+};
+
 }  // namespace
 
 struct GrowthModel::Component {
@@ -80,9 +128,11 @@ struct GrowthModel::Component {
   Law law;
   double onset = 0, span = 1;  // [h]
   int direction = 0;
-  double noise = 0;
-  Eigen::VectorXd mean;  // base, features, growth
-  Eigen::MatrixXd covariance;
+  double noise = 0, wander = 0;
+  double a = 0, a_sd = 0;                  // growth to now
+  double base = 0, base_sd = 0, tilt = 0;  // given a: base - tilt (a' - a), with this spread
+  double strayed = 0, strayed_sd = 0;      // wander to now
+  Terms mean;
 };
 GrowthModel::~GrowthModel() = default;
 GrowthModel::GrowthModel(GrowthModel&&) noexcept = default;
@@ -104,102 +154,143 @@ GrowthModel::GrowthModel(std::vector<GrowthPoint> points, const GrowthPrior& pri
   const auto f = static_cast<long>(prior.feature_mean.size());
   const double first = points.front().time;
   now_ = points.back().time;
-  Eigen::MatrixXd x(n, f + 2);
-  Eigen::VectorXd y(n), own(n), mean(f + 2), sd(f + 2);
+  length_ = std::max(now_ - first, 1e-12);
+  Eigen::MatrixXd x(n, f + 1), drift(n, n);
+  Eigen::VectorXd y(n), own(n), column(n);
+  Terms mean(f + 1), sd(f + 1);
   mean[0] = prior.base, sd[0] = prior.base_sd;
   for (long j = 0; j < f; ++j)
     mean[j + 1] = prior.feature_mean[static_cast<std::size_t>(j)],
              sd[j + 1] = prior.feature_sd[static_cast<std::size_t>(j)];
-  mean[f + 1] = 0, sd[f + 1] = prior.scale;
   for (long i = 0; i < n; ++i) {
     const GrowthPoint& p = points[static_cast<std::size_t>(i)];
     y[i] = p.y, own[i] = p.variance, x(i, 0) = 1;
     for (long j = 0; j < f; ++j) x(i, j + 1) = p.features[static_cast<std::size_t>(j)];
+    for (long k = 0; k <= i; ++k)
+      drift(i, k) = drift(k, i) = (points[static_cast<std::size_t>(k)].time - first) / length_;
   }
 
+  double laws_weight = 0, onsets_weight = 0;
+  std::vector<Law> tried(laws.begin(), laws.end());
+  if (prior.part_lost) {
+    tried.clear();
+    for (const double lost : losses)
+      for (Law law : laws) law.lost = lost, tried.push_back(law);
+  }
+  for (const Law& law : tried) laws_weight += law.weight;
+  for (const auto& onset : onsets) onsets_weight += onset.second;
   std::vector<double> null, all;
-  Regression best_null;
-  double best_null_noise = 0;
-  std::vector<Component> found;
-  for (double level : noises) {
-    const double c = level * prior.noise;
-    const Eigen::VectorXd variance = own.array() + c * c;
-    const Regression none = regress(x.leftCols(f + 1), y, variance, mean.head(f + 1), sd.head(f + 1));
-    if (null.empty() || none.log_evidence > *std::max_element(null.begin(), null.end()))
-      best_null = none, best_null_noise = c;
-    null.push_back(none.log_evidence - std::log(static_cast<double>(noises.size())));
-    double laws_weight = 0, onsets_weight = 0;
-    for (const Law& law : laws) laws_weight += law.weight;
-    for (const auto& onset : onsets) onsets_weight += onset.second;
-    for (const auto& [part, onset_weight] : onsets) {
-      const double t0 = first + part * (now_ - first), span = std::max(now_ - t0, 1e-12);
-      for (const Law& law : laws) {
-        for (long i = 0; i < n; ++i) x(i, f + 1) = law.at((points[static_cast<std::size_t>(i)].time - t0) / span);
-        Regression r = regress(x, y, variance, mean, sd);
-        double evidence = r.log_evidence + std::log(law.weight / laws_weight * onset_weight / onsets_weight /
-                                                    static_cast<double>(noises.size()));
+  std::vector<Regression> regressions;
+  struct Candidate {
+    std::size_t regression, onset, law;
+    Regression::Grown grown;
+  };
+  std::vector<Candidate> found;
+  std::size_t best_null = 0;
+  for (double wander : wanders)
+    for (double level : noises) {
+      const std::size_t r = regressions.size();
+      Eigen::MatrixXd noise = std::pow(wander * prior.scale, 2) * drift;
+      noise.diagonal() += (own.array() + std::pow(level * prior.noise, 2)).matrix();
+      regressions.emplace_back(x, y, noise, mean, sd);
+      if (wander > wanders[healthy_wanders - 1]) continue;
+      null.push_back(regressions.back().log_evidence - std::log(static_cast<double>(noises.size() * healthy_wanders)));
+      if (null.back() >= null[best_null]) best_null = r;
+    }
+  for (std::size_t o = 0; o < onsets.size(); ++o) {
+    const double t0 = first + onsets[o].first * (now_ - first), span = std::max(now_ - t0, 1e-12);
+    for (std::size_t l = 0; l < tried.size(); ++l) {
+      for (long i = 0; i < n; ++i) column[i] = tried[l].at((points[static_cast<std::size_t>(i)].time - t0) / span);
+      const double before = std::log(tried[l].weight / laws_weight * onsets[o].second / onsets_weight /
+                                     static_cast<double>(regressions.size()));
+      for (std::size_t r = 0; r < regressions.size(); ++r) {
+        Regression::Grown g = regressions[r].with(column, prior.scale);
+        g.log_evidence += before;
         // A prior cut to one side: twice the part of the posterior that lies there.
         if (prior.direction != 0)
-          evidence += std::log(std::max(
-              1e-300, 2 * normal_cdf(prior.direction * r.mean[f + 1] / std::sqrt(r.covariance(f + 1, f + 1)))));
-        all.push_back(evidence);
-        found.push_back({evidence, law, t0, span, prior.direction, c, std::move(r.mean), std::move(r.covariance)});
+          g.log_evidence +=
+              std::log(std::max(1e-300, 2 * normal_cdf(prior.direction * g.mean / std::sqrt(g.variance))));
+        all.push_back(g.log_evidence);
+        found.push_back({r, o, l, std::move(g)});
       }
     }
   }
   const double growth = log_sum(all);
   growth_.log_bayes_factor = growth - log_sum(null);
   growth_.probability = 1 / (1 + std::exp(-growth_.log_bayes_factor));
-  for (Component& c : found) {
-    c.weight = std::exp(c.weight - growth);
-    if (c.weight > negligible) components_.push_back(std::move(c));
-  }
-  // Means over growth laws; without a trend, of the null.
   double total = 0, square = 0;
   growth_.coefficients.assign(static_cast<std::size_t>(f), 0.0);
-  for (const Component& c : components_) {
-    const double at = c.mean[0] + c.mean[f + 1];
-    total += c.weight;
-    growth_.now += c.weight * at;
-    square += c.weight * (at * at + c.covariance(0, 0) + c.covariance(f + 1, f + 1) + 2 * c.covariance(0, f + 1));
-    growth_.base += c.weight * c.mean[0];
-    growth_.slope += c.weight * c.mean[f + 1] * c.law.slope_at_1() / c.span;
-    growth_.noise += c.weight * c.noise;
-    for (long j = 0; j < f; ++j) growth_.coefficients[static_cast<std::size_t>(j)] += c.weight * c.mean[j + 1];
+  for (const Candidate& from : found) {
+    const double weight = std::exp(from.grown.log_evidence - growth);
+    if (weight <= negligible) continue;
+    const Regression& r = regressions[from.regression];
+    Component c;
+    c.weight = weight;
+    c.law = tried[from.law];
+    c.onset = first + onsets[from.onset].first * (now_ - first);
+    c.span = std::max(now_ - c.onset, 1e-12);
+    c.direction = prior.direction;
+    c.noise = noises[from.regression % noises.size()] * prior.noise;
+    c.wander = wanders[from.regression / noises.size()] * prior.scale;
+    c.a = from.grown.mean, c.a_sd = std::sqrt(from.grown.variance);
+    c.mean = r.mean - from.grown.tilt * c.a;
+    c.base = c.mean[0], c.base_sd = std::sqrt(r.covariance(0, 0)), c.tilt = from.grown.tilt[0];
+    if (c.wander > 0) {  // what the curve leaves, smoothed to now
+      for (long i = 0; i < n; ++i) column[i] = c.law.at((points[static_cast<std::size_t>(i)].time - c.onset) / c.span);
+      const Eigen::VectorXd to_now = c.wander * c.wander * drift.col(n - 1);
+      const Eigen::VectorXd gain = r.factor.solve(to_now);
+      c.strayed = gain.dot(y - x * c.mean - column * c.a);
+      c.strayed_sd = std::sqrt(std::max(0.0, c.wander * c.wander - gain.dot(to_now)));
+    }
+    const double at = c.base + c.a + c.strayed;
+    const double spread = c.base_sd * c.base_sd + std::pow((1 - c.tilt) * c.a_sd, 2) + c.strayed_sd * c.strayed_sd;
+    total += weight;
+    growth_.now += weight * at;
+    square += weight * (at * at + spread);
+    growth_.base += weight * c.base;
+    growth_.slope += weight * c.a * c.law.slope_at_1() / c.span;
+    growth_.noise += weight * c.noise;
+    for (long j = 0; j < f; ++j) growth_.coefficients[static_cast<std::size_t>(j)] += weight * c.mean[j + 1];
+    components_.push_back(std::move(c));
   }
   growth_.now /= total, growth_.base /= total, growth_.slope /= total, growth_.noise /= total;
   for (double& b : growth_.coefficients) b /= total;
   growth_.now_sd = std::sqrt(std::max(0.0, square / total - growth_.now * growth_.now));
-  growth_.base_sd = std::sqrt(best_null.covariance(0, 0));
-  growth_.null_noise = best_null_noise;
-  if (growth_.probability < 0.5) {
-    growth_.base = growth_.now = best_null.mean[0];
+  const Regression& none = regressions[best_null];
+  growth_.base_sd = std::sqrt(none.covariance(0, 0));
+  growth_.null_noise = noises[best_null % noises.size()] * prior.noise;
+  if (growth_.probability < 0.5) {  // without a trend, the null's
+    growth_.base = growth_.now = none.mean[0];
     growth_.now_sd = growth_.base_sd;
-    growth_.noise = best_null_noise;
-    for (long j = 0; j < f; ++j) growth_.coefficients[static_cast<std::size_t>(j)] = best_null.mean[j + 1];
+    growth_.noise = growth_.null_noise;
+    for (long j = 0; j < f; ++j) growth_.coefficients[static_cast<std::size_t>(j)] = none.mean[j + 1];
   }
 }
 
-Life GrowthModel::life(std::optional<double> upper, std::optional<double> lower, std::uint64_t seed) const {
+Life GrowthModel::life(const FailureAt& failure, std::uint64_t seed) const {
   constexpr int draws = 64, kept = 200;
   std::vector<std::pair<double, double>> passed;  // hours, weight
   for (std::size_t k = 0; k < components_.size(); ++k) {
     const Component& c = components_[k];
-    const long last = c.mean.size() - 1;
     Random random(seed, 21, static_cast<std::uint32_t>(k));
-    const double sd = std::sqrt(c.covariance(last, last));
-    const double tilt = c.covariance(0, last) / c.covariance(last, last);
-    const double rest = std::sqrt(std::max(0.0, c.covariance(0, 0) - tilt * c.covariance(0, last)));
     std::vector<double> hours;
     for (int i = 0; i < 20 * draws && hours.size() < draws; ++i) {
-      const double a = c.mean[last] + sd * random.normal();
-      const double base = c.mean[0] + tilt * (a - c.mean[last]) + rest * random.normal();
+      const double a = c.a + c.a_sd * random.normal();
+      const double base = c.base - c.tilt * (a - c.a) + c.base_sd * random.normal();
+      const double strayed = c.strayed + c.strayed_sd * random.normal(), ahead = random.normal();
+      const double moved = failure.sd * random.normal();
       if (c.direction != 0 && a * c.direction <= 0) continue;
-      const std::optional<double>& level = a > 0 ? upper : lower;
+      const std::optional<double>& given = a > 0 ? failure.upper : failure.lower;
       double t = std::numeric_limits<double>::infinity();
-      if (level && a != 0) {
-        const double g = (*level - base) / a;
-        t = g <= 0 ? 0.0 : std::max(0.0, c.onset + c.span * c.law.inverse(g) - now_);
+      if (given && a != 0) {
+        const double level = failure.level(*given, base) + moved;
+        // The wander goes on: once from now to the first estimate of the end.
+        const auto reached = [&](double astray) {
+          const double g = (level - base - astray) / a;
+          return g <= 0 ? 0.0 : std::max(0.0, c.onset + c.span * c.law.inverse(g) - now_);
+        };
+        t = reached(strayed);
+        if (c.wander > 0) t = reached(strayed + c.wander * std::sqrt(std::min(t, length_) / length_) * ahead);
       }
       hours.push_back(t);
     }

@@ -1,13 +1,14 @@
 // Whether a figure grows, how, and when it will pass a level: Bayesian regression averaged over growth laws.
 //
-//   y(t) = base + temperature terms + a g((t - t0) / (now - t0)) + noise,   g(1) = 1
+//   y(t) = base + temperature terms + a g((t - t0) / (now - t0)) + wander + noise,   g(1) = 1
 //
-// g: power laws s^p (p = 1 is the linear one), exponentials; t0: onsets from the first check on. Given law, onset and
-// noise level all else is linear and Gaussian, so each is integrated in closed form (a Rao-Blackwellised particle
-// filter whose particles are a fixed grid: deterministic, and no degeneracy). Their evidences weigh them. The same
-// without growth is the null hypothesis, and the Bayes factor between the two is the trend test: under
-// the null a Bayes factor exceeds 1/alpha with probability alpha at most, however often one looks (Ville 1939).
-// Limits: one growth, monotone; noise independent from check to check; what changes its law later is seen late.
+// g: power laws s^p (p = 1 is the linear one), exponentials; t0: onsets from the first check on. Wander is a Wiener
+// process: no law is quite the wear's. Given law, onset, noise level and wander all else is linear and Gaussian, so
+// each is integrated in closed form (a Rao-Blackwellised particle filter whose particles are a fixed grid:
+// deterministic, and no degeneracy). Their evidences weigh them. The same without growth is the null hypothesis, and
+// the Bayes factor between the two is the trend test: under the null a Bayes factor exceeds 1/alpha with probability
+// alpha at most, however often one looks (Ville 1939).
+// Limits: one growth, monotone but for its wander; what changes its law later is seen late.
 #pragma once
 #include <cstdint>
 #include <optional>
@@ -28,6 +29,7 @@ struct GrowthPrior {
   double noise = 1;                              // [y] about which the noise level is searched, 1/10 to 10 times
   double scale = 1;                              // [y] size of a growth that matters, one standard deviation
   int direction = 0;                             // +1, -1: growth to one side; 0: either
+  bool part_lost = false;                        // y = -ln(1 - part lost), and it is the part that grows by a law
 };
 
 struct Growth {
@@ -45,17 +47,28 @@ struct Growth {
 using Life = std::vector<double>;
 double quantile(const Life& life, double p);
 
+// Where y has failed: at these values, at these multiples of where it began, or so far from there.
+struct FailureAt {
+  enum class Of { value, times_base, beyond_base };
+  std::optional<double> upper, lower;
+  Of of = Of::value;
+  double sd = 0;  // of the level itself
+  double level(double given, double base) const {
+    return of == Of::times_base ? given * base : of == Of::beyond_base ? base + given : given;
+  }
+};
+
 class GrowthModel {
  public:
   GrowthModel(std::vector<GrowthPoint> points, const GrowthPrior& prior);
   const Growth& growth() const { return growth_; }
-  // Hours until y at reference conditions passes `upper` or `lower`; `upper` counts for growth upwards. Given growth.
-  Life life(std::optional<double> upper, std::optional<double> lower, std::uint64_t seed) const;
+  // Hours until y at reference conditions passes a level; `upper` counts for growth upwards. Given growth.
+  Life life(const FailureAt& level, std::uint64_t seed) const;
 
  private:
   struct Component;
   std::vector<Component> components_;
-  double now_ = 0;
+  double now_ = 0, length_ = 0;  // [h] of the last point, and since the first
   Growth growth_;
 
  public:

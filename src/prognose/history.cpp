@@ -12,6 +12,7 @@
 #include <filesystem>
 
 #include "base/error.h"
+#include "parameters/table_text.h"
 
 namespace servodx {
 namespace {
@@ -272,6 +273,17 @@ void History::add_event(const std::string& valve, const Event& event) {
         "nothing is left to do");
 }
 
+std::vector<double> tuned_rows(const std::string& table_text) {
+  std::vector<double> rows;
+  if (table_text.empty()) return rows;
+  try {
+    const Table table = parse_table(table_text, "the history's tuned table");
+    for (int i = 0; i < n_parameters; ++i) rows.push_back(table[i].nominal);
+  } catch (const InputError&) {  // another program's notes: the checks stand without it
+  }
+  return rows;
+}
+
 std::vector<std::string> History::valves() const {
   return guarded([&] {
     std::vector<std::string> names;
@@ -325,6 +337,11 @@ ValveHistory History::of(const std::string& valve) const {
       out.events.push_back({events.getColumn(0).getDouble(),
                             find_event(events.getColumn(1).getString()).value_or(EventKind::note),
                             events.getColumn(2).getString(), events.getColumn(3).getString()});
+    if (!out.recordings.empty()) {
+      SQLite::Statement table(*db_, "SELECT content FROM tuned_table WHERE sha256 = ?");
+      table.bind(1, out.recordings.back().table_sha256);
+      if (table.executeStep()) out.tuned = tuned_rows(table.getColumn(0).getString());
+    }
     return true;
   });
   if (known) return out;

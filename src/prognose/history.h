@@ -49,7 +49,11 @@ struct ValveHistory {
   std::string valve, serial;
   std::vector<Recording> recordings;  // by hours
   std::vector<Event> events;
+  std::vector<double> tuned;  // the 41 rows of the last check's table; empty where the history does not hold it
 };
+
+// The rows of a stored table's text.
+std::vector<double> tuned_rows(const std::string& table_text);
 
 // Everything a history holds, to write it as CSV and read it back (history_csv.h).
 struct HistoryContent {

@@ -85,6 +85,30 @@ double parsed(const Cells& cells, Column c, const Place& row, bool required) {
   return *x;
 }
 
+// Place of each of the file's columns among ours.
+std::vector<int> columns_of(const CsvCursor& cursor, const std::string& path, bool& celsius) {
+  std::vector<int> columns;
+  for (const std::string& name : cursor.header()) {
+    const bool warm = name == "oil_temperature [degC]";
+    const auto found = warm ? header.begin() + temperature : std::find(header.begin(), header.end(), name);
+    const int c = static_cast<int>(found - header.begin());
+    std::string known;
+    for (const char* n : header) known += (known.empty() ? "" : ", ") + std::string(n);
+    if (found == header.end())
+      throw InputError({path, cursor.header_line(), name}, "is no column of a history",
+                       "leave it out; a history has " + known);
+    if (std::find(columns.begin(), columns.end(), c) != columns.end())
+      throw InputError({path, cursor.header_line(), name}, "is there twice", "remove one");
+    celsius = celsius || warm;
+    columns.push_back(c);
+  }
+  for (const Column c : {valve, at, figure, value})
+    if (std::find(columns.begin(), columns.end(), c) == columns.end())
+      throw InputError({path, cursor.header_line(), header[c]}, "a history needs this column",
+                       "'servodx history export' shows what one looks like");
+  return columns;
+}
+
 }  // namespace
 
 std::string history_csv(const HistoryContent& content) {
@@ -125,10 +149,8 @@ std::string history_csv(const HistoryContent& content) {
 HistoryContent read_history_csv(const std::string& path) {
   const std::string bytes = read_file(path);
   CsvCursor cursor(bytes, path);
-  for (std::size_t c = 0; c < header.size(); ++c)
-    if (cursor.header().size() != header.size() || cursor.header()[c] != header[c])
-      throw InputError({path, cursor.header_line(), c < cursor.header().size() ? cursor.header()[c] : ""},
-                       "the columns are not those of a history", "export one with 'servodx history export' to compare");
+  bool celsius = false;
+  const std::vector<int> columns = columns_of(cursor, path, celsius);
   HistoryContent content;
   std::map<std::string, std::size_t> place;  // of a valve
   while (cursor.next_row()) {
@@ -136,12 +158,13 @@ HistoryContent read_history_csv(const std::string& path) {
     std::size_t n = 0;
     std::string cell;
     while (cursor.next_cell(cell)) {
-      if (n < cells.size()) cells[n] = cell;
+      if (n < columns.size()) cells[static_cast<std::size_t>(columns[n])] = cell;
       ++n;
     }
     const Place row{path, cursor.line(), ""};
-    if (n != cells.size())
-      throw InputError(row, fmt::format("has {} cells, the header {}", n, cells.size()), "mend the row");
+    if (n != columns.size())
+      throw InputError(row, fmt::format("has {} cells, the header {}", n, columns.size()), "mend the row");
+    if (cells[kind].empty()) cells[kind] = "figure";
     if (cells[kind] == "table") {
       content.tables.emplace_back(cells[table_sha256], cells[text]);
       continue;
@@ -150,7 +173,7 @@ HistoryContent read_history_csv(const std::string& path) {
       throw InputError({path, row.line, "kind"}, "unknown '" + cells[kind] + "'", "use figure, event or table");
     if (cells[valve].empty()) throw InputError({path, row.line, "valve"}, "is empty", "name the valve");
     const auto [found, fresh] = place.emplace(cells[valve], content.valves.size());
-    if (fresh) content.valves.push_back({cells[valve], cells[serial], {}, {}});
+    if (fresh) content.valves.push_back({cells[valve], cells[serial], {}, {}, {}});
     ValveHistory& v = content.valves[found->second];
     const double hours = parsed(cells, at, row, true);
     if (cells[kind] == "event") {
@@ -167,8 +190,10 @@ HistoryContent read_history_csv(const std::string& path) {
       r.at = hours;
       const double counted = parsed(cells, cycles, row, false);
       if (!std::isnan(counted)) r.cycles = counted;
-      r.temperature = parsed(cells, temperature, row, true);
-      r.temperature_source = cells[temperature_source], r.log = cells[log], r.log_sha256 = cells[log_sha256];
+      r.temperature = parsed(cells, temperature, row, false) + (celsius ? 273.15 : 0.0);
+      r.temperature_source = cells[temperature_source];
+      if (std::isnan(r.temperature)) r.temperature = 313.15, r.temperature_source = "assumed";
+      r.log = cells[log], r.log_sha256 = cells[log_sha256];
       r.table_sha256 = cells[table_sha256], r.version = cells[version], r.recorded_at = cells[recorded_at];
       v.recordings.push_back(std::move(r));
     }
@@ -176,9 +201,12 @@ HistoryContent read_history_csv(const std::string& path) {
     std::vector<Check>& checks = v.recordings.back().checks;
     if (std::any_of(checks.begin(), checks.end(), [&](const Check& c) { return c.name == cells[figure]; }))
       throw InputError({path, row.line, "name"}, "'" + cells[figure] + "' stands twice in one check", "remove one");
-    checks.push_back({cells[figure], parsed(cells, value, row, false), parsed(cells, std_error, row, false),
-                      cells[unit], parsed(cells, measured, row, false), parsed(cells, expected, row, false),
-                      cells[cause]});
+    Check c{cells[figure], parsed(cells, value, row, false),    parsed(cells, std_error, row, false),
+            cells[unit],   parsed(cells, measured, row, false), parsed(cells, expected, row, false),
+            cells[cause]};
+    if (std::isnan(c.expected)) c.expected = 1;
+    if (std::isnan(c.measured)) c.measured = c.value * c.expected;
+    checks.push_back(std::move(c));
   }
   return content;
 }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "fit/error_model.h"
 #include "fit/free_values.h"
@@ -11,7 +12,9 @@ namespace servodx {
 namespace {
 
 constexpr double prior_sd = 0.5;   // [of a severity's range] about health: weak, it only holds what a log cannot tell
-constexpr int few = 4, many = 16;  // iterations of every start, and of the best
+constexpr std::size_t tried = 3;   // starts that are followed, those of least misfit
+constexpr int few = 4, many = 16;  // iterations of each, and of the best
+constexpr double healthier = 3;    // [spreads] by which a row may come out better than tuned
 
 // Whitened by how wrong the model is where things move, every sample for itself: what is constant in that error is the
 // same in every check of one kind, and a trend does not see it.
@@ -35,14 +38,16 @@ int first_row(const Fault& fault) {
   return -1;
 }
 
-// The whole range, from a little beyond health where that is not an end of the scale.
+// The whole range, from a little beyond health where that is not an end of the scale: the model's form leaves that
+// open, but a motor does not grow stronger, and a wider range lets two faults pull against each other.
 FreeValue severity_value(const Fault& fault) {
   FreeValue f;
   f.name = fault.name;
   f.apply = fault.apply;
   f.log_scale = fault.log_scale;
   f.start = fault.healthy;
-  const double beyond = fault.log_scale ? std::pow(fault.healthy / fault.worst, 0.25) * fault.healthy : fault.healthy;
+  const double side = fault.worst > fault.healthy ? -1 : 1;
+  const double beyond = fault.log_scale ? fault.healthy * std::exp(side * healthier * fault.spread) : fault.healthy;
   f.lower = std::min(beyond, fault.worst);
   f.upper = std::max(beyond, fault.worst);
   f.prior_sd = prior_sd;
@@ -114,7 +119,14 @@ Track track_parameters(const LogData& log, const Table& tuned, const TrackOption
   const LeastSquaresProblem least = problem.least_squares();
   LeastSquaresResult best;
   best.cost = 1e300;
-  for (const Point& start : starts) {
+  const std::vector<Evaluation> at = problem.evaluate(starts);
+  std::vector<std::size_t> order(starts.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  const auto misfit = [&](std::size_t i) { return at[i].ok ? at[i].residual.squaredNorm() : 1e300; };
+  std::stable_sort(order.begin(), order.end(), [&](std::size_t i, std::size_t j) { return misfit(i) < misfit(j); });
+  order.resize(std::min(order.size(), tried));
+  for (const std::size_t i : order) {
+    const Point& start = starts[i];
     LeastSquaresResult r = minimise_least_squares(least, start, o);
     if (r.reason != StopReason::start_failed && r.cost < best.cost) best = std::move(r);
   }

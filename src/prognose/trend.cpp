@@ -17,6 +17,8 @@ constexpr double infinite = std::numeric_limits<double>::infinity();
 constexpr std::size_t least_checks = 6;   // for a word on a trend
 constexpr std::size_t most_points = 240;  // longer histories are averaged in blocks
 constexpr std::size_t looks = 40;         // moments at which an alert is looked for, evenly over the checks
+constexpr double latest_warning = 0.25;   // of the way to failure: three quarters are left to act in
+constexpr double outlying = 4;            // [spreads] from its neighbours at which a check is set aside
 constexpr double per_checks = 100;        // the false-alarm rate of a valve is stated over this many checks
 
 double median(std::vector<double> v) {
@@ -34,36 +36,88 @@ double two_sided_quantile(double p) {
   return 0.5 * (low + high);
 }
 
-// One check over a valve's life, as the growth model takes it: the paper's positive figures in their logarithm, where
-// what temperature does is a factor; parameters as they are.
+// One check over a valve's life, as the growth model takes it. The paper's positive figures in their logarithm, where
+// what temperature does is a factor; a part lost (of the filter's area) by the logarithm of what is left, which is what
+// acts, for the same reason and because a log tells it about equally well everywhere; other parameters as they are.
 struct Series {
+  enum class Scale { plain, logarithm, part_lost };
   std::string name, unit, cause;
   const Fault* fault = nullptr;
-  bool logarithm = false;
+  std::optional<double> tuned;  // the row's value in the table that the checks rest on
+  Scale scale = Scale::plain;
   std::vector<GrowthPoint> points;
   std::vector<double> temperature;  // [K]
 
-  double in(double value) const { return logarithm ? std::log(value) : value; }
-  double out(double y) const { return logarithm ? std::exp(y) : y; }
+  static constexpr double most_lost = 0.999;
+  bool paper() const { return scale == Scale::logarithm; }
+  double in(double v) const {
+    return scale == Scale::logarithm   ? std::log(v)
+           : scale == Scale::part_lost ? -std::log1p(-std::min(v, most_lost))
+                                       : v;
+  }
+  double out(double y) const {
+    return scale == Scale::logarithm ? std::exp(y) : scale == Scale::part_lost ? -std::expm1(-y) : y;
+  }
+  // d out / d y at a value.
+  double stretch(double v) const {
+    return scale == Scale::logarithm ? std::abs(v) : scale == Scale::part_lost ? 1 - std::min(v, most_lost) : 1.0;
+  }
+  std::optional<double> in(const std::optional<double>& v) const {
+    return v && (!paper() || *v > 0) ? std::optional(in(*v)) : std::nullopt;
+  }
   Level out(double lower, double upper) const { return {out(lower), out(upper)}; }
 };
 
 // Viscosity over that at 40 degC of a 14 mm2/s oil: only its logarithm as a regressor matters here.
 double log_viscosity(double kelvin) { return std::log(oil_at(860, 14e-6, kelvin).viscosity_ratio); }
 
+// Error of -ln(1 - b). What a log tells is the drop over the filter, which goes with 1/(1 - b)^2: near a clean filter
+// the slope of that is small and an error taken by it alone endless, though a drop so large would have been seen.
+double error_of_lost(double b, double error) {
+  const double open = 1 - std::clamp(b, 0.0, Series::most_lost);
+  const double drop = 1 / (open * open), by = 2 * error * drop / open;
+  return 0.5 * std::log(1 + by / drop);
+}
+
 void append(Series& s, const Recording& r, const Check& c) {
-  const double value = s.logarithm ? c.measured : c.value;
-  if (!std::isfinite(value) || (s.logarithm && value <= 0)) return;
+  const double value = s.paper() ? c.measured : c.value;
+  if (!std::isfinite(value) || (s.paper() && value <= 0)) return;
   GrowthPoint p;
   p.time = r.at;
   p.y = s.in(value);
   const double error = std::isfinite(c.std_error) ? c.std_error : 0.0;
-  p.variance = std::pow(s.logarithm ? error / std::abs(c.value) : error, 2);
-  const double z = log_viscosity(r.temperature);
+  p.variance =
+      std::pow(s.scale == Series::Scale::part_lost ? error_of_lost(c.value, error) : error / s.stretch(c.value), 2);
+  const double z = std::isfinite(r.temperature) ? log_viscosity(r.temperature) : 0.0;
   p.features = {z, z * z};
-  if (s.logarithm) p.features.push_back(std::log(c.expected > 0 ? c.expected : 1.0));
+  if (s.paper()) p.features.push_back(std::log(c.expected > 0 ? c.expected : 1.0));
   s.points.push_back(std::move(p));
   s.temperature.push_back(r.temperature);
+}
+
+// What follows from the name of a figure and the valve's table. A figure that is not always positive has no logarithm.
+Series begun(const Check& check, const ValveHistory& history) {
+  Series s;
+  s.name = check.name, s.unit = check.unit, s.cause = check.cause;
+  for (const Progressive& p : progressive_faults())
+    if (check.name == fmt::format("parameter:{}", p.row + 1)) {
+      if (s.cause.empty()) s.cause = p.fault->name;
+      if (static_cast<std::size_t>(p.row) < history.tuned.size())
+        s.tuned = history.tuned[static_cast<std::size_t>(p.row)];
+    }
+  if (!s.cause.empty()) {
+    s.fault = find_fault(s.cause);
+    if (s.fault && s.fault->part_lost) s.scale = Series::Scale::part_lost;
+    return s;
+  }
+  const auto positive = [&](const Recording& r) {
+    return std::all_of(r.checks.begin(), r.checks.end(),
+                       [&](const Check& c) { return c.name != check.name || !(c.measured <= 0); });
+  };
+  if (!check.name.starts_with("parameter:") &&
+      std::all_of(history.recordings.begin(), history.recordings.end(), positive))
+    s.scale = Series::Scale::logarithm;
+  return s;
 }
 
 std::vector<Series> series_of(const ValveHistory& history, std::vector<std::string>& notes) {
@@ -82,8 +136,7 @@ std::vector<Series> series_of(const ValveHistory& history, std::vector<std::stri
       if (renewed) continue;
       auto it = std::find_if(all.begin(), all.end(), [&](const Series& s) { return s.name == c.name; });
       if (it == all.end()) {
-        it = all.insert(all.end(), Series{c.name, c.unit, c.cause, nullptr, c.cause.empty(), {}, {}});
-        if (!c.cause.empty()) it->fault = find_fault(c.cause);
+        it = all.insert(all.end(), begun(c, history));
       }
       append(*it, r, c);
     }
@@ -94,14 +147,50 @@ std::vector<Series> series_of(const ValveHistory& history, std::vector<std::stri
   return all;
 }
 
-// The row's value where the fault has failed, from its healthy value.
-std::optional<double> failed_row(const Fault& fault, double healthy) {
+// The value of a fault's row where it has failed: for severities that multiply, of what it was.
+std::optional<double> failed_row(const Fault& fault) {
   if (!fault.failed) return {};
+  const double healthy = fault.log_scale ? 1.0 : 0.0;
   ParameterVector v(n_candidate, healthy), moved = v;
   fault.apply(moved.data(), *fault.failed);
   for (int i = 0; i < n_parameters; ++i)
     if (moved[i] != v[i]) return moved[i];
   return {};
+}
+
+// What the model's form leaves open of a severity at a value of its row, in the coordinate of the growth: it reads a
+// level, whoever set it, no better than that.
+double left_open(const Series& s, double value) {
+  return s.fault->log_scale ? s.fault->spread * std::abs(value) : s.fault->spread / s.stretch(value);
+}
+
+// From the user, from a limit, or from the fault itself; in the coordinate of the growth.
+FailureAt failure_of(const Series& s, const TrendOptions& options) {
+  FailureAt at;
+  const auto to_side = [&](double value, bool up) { (up ? at.upper : at.lower) = value; };
+  if (const auto given = options.failure.find(s.name); given != options.failure.end()) {
+    at.lower = s.in(given->second.first), at.upper = s.in(given->second.second);
+    if (const auto& level = at.upper ? at.upper : at.lower; level && s.fault) at.sd = left_open(s, s.out(*level));
+  } else if (const auto ratio = options.failure_ratio.find(s.name); ratio != options.failure_ratio.end()) {
+    at.of = s.paper() ? FailureAt::Of::beyond_base : FailureAt::Of::times_base;
+    to_side(s.paper() ? std::log(ratio->second) : ratio->second, ratio->second > 1);
+  } else if (s.fault) {
+    if (const auto failed = failed_row(*s.fault)) {
+      // A severity that multiplies does so to the tuned value; what the estimate errs by in health it errs by later.
+      if (s.fault->log_scale && s.tuned) {
+        at.of = FailureAt::Of::beyond_base;
+        at.sd = left_open(s, *failed * *s.tuned);
+        to_side((*failed - 1) * *s.tuned, *failed > 1);
+        return at;
+      }
+      if (s.fault->log_scale) at.of = FailureAt::Of::times_base;
+      // Of what was open at the beginning: how large a clean filter is stands on no data sheet, and no log tells it.
+      if (s.fault->part_lost) at.of = FailureAt::Of::beyond_base;
+      if (!s.fault->log_scale) at.sd = left_open(s, *failed);
+      to_side(s.in(*failed), *failed > (s.fault->log_scale ? 1.0 : 0.0));
+    }
+  }
+  return at;
 }
 
 std::vector<GrowthPoint> thinned(const std::vector<GrowthPoint>& points) {
@@ -121,7 +210,7 @@ std::vector<GrowthPoint> thinned(const std::vector<GrowthPoint>& points) {
   return out;
 }
 
-GrowthPrior prior_of(const Series& s, std::size_t healthy, const Level& failure) {
+GrowthPrior prior_of(const Series& s, std::size_t healthy, const FailureAt& failure) {
   std::vector<double> y, error;
   for (std::size_t i = 0; i < healthy; ++i)
     y.push_back(s.points[i].y), error.push_back(std::sqrt(s.points[i].variance));
@@ -132,19 +221,47 @@ GrowthPrior prior_of(const Series& s, std::size_t healthy, const Level& failure)
   if (failure.upper && !failure.lower) prior.direction = 1;
   if (failure.lower && !failure.upper) prior.direction = -1;
   // A growth that matters: half as much again for the paper's checks, the way to failure for a parameter.
-  prior.scale = s.logarithm ? 0.5 : std::max(std::abs(prior.base), 1e-300);
+  prior.scale = s.paper() ? 0.5 : std::max(std::abs(prior.base), 1e-300);
   for (const std::optional<double>& level : {failure.lower, failure.upper})
-    if (level && (!s.logarithm || *level > 0)) prior.scale = std::max(std::abs(s.in(*level) - prior.base), 1e-300);
+    if (level) prior.scale = std::max(std::abs(failure.level(*level, prior.base) - prior.base), 1e-300);
   prior.noise = std::max({1.4826 * median(y), 0.3 * median(error), 1e-4 * prior.scale});
   prior.base_sd = prior.scale;
-  const double swing = s.logarithm ? 0.3 : 0.3 * std::max(std::abs(prior.base), prior.noise);
+  prior.part_lost = s.scale == Series::Scale::part_lost;
+  // What cold oil does to the estimate of a severity that adds knows nothing of the healthy value.
+  const bool adds = s.fault && !s.fault->log_scale;
+  const double swing = s.paper() ? 0.3 : 0.3 * (adds ? prior.scale : std::max(std::abs(prior.base), prior.noise));
   prior.feature_mean = {0.0, 0.0};
   prior.feature_sd = {swing, swing / 3};  // over three decades of viscosity: twice itself
-  if (s.logarithm) {                      // the model's expectation: taken at its word within a half
+  if (s.paper()) {                        // the model's expectation: taken at its word within a half
     prior.feature_mean.push_back(1.0);
     prior.feature_sd.push_back(0.5);
   }
   return prior;
+}
+
+// One check alone raises no alert: what lies far from its neighbours, before and after it, weighs as little as it is
+// far from them, until others join it. Their spread is that of all checks about their neighbours.
+std::vector<GrowthPoint> set_aside(std::vector<GrowthPoint> points, const GrowthPrior& prior) {
+  constexpr std::size_t reach = 3;
+  if (points.size() < least_checks) return points;
+  const GrowthModel first(thinned(points), prior);
+  std::vector<double> corrected;
+  for (const GrowthPoint& p : points) {
+    double y = p.y;
+    for (std::size_t j = 0; j < p.features.size(); ++j) y -= first.growth().coefficients[j] * p.features[j];
+    corrected.push_back(y);
+  }
+  std::vector<double> away;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    std::vector<double> near;
+    for (std::size_t k = i >= reach ? i - reach : 0; k < std::min(points.size(), i + reach + 1); ++k)
+      if (k != i) near.push_back(corrected[k]);
+    away.push_back(std::abs(corrected[i] - median(near)));
+  }
+  const double spread = std::max(1.4826 * median(away), 1e-300);
+  for (std::size_t i = 0; i < points.size(); ++i)
+    if (away[i] > outlying * std::hypot(spread, std::sqrt(points[i].variance))) points[i].variance += away[i] * away[i];
+  return points;
 }
 
 CheckTrend trend_of(const Series& s, const TrendOptions& options, std::size_t names) {
@@ -155,34 +272,42 @@ CheckTrend trend_of(const Series& s, const TrendOptions& options, std::size_t na
   const std::size_t n = s.points.size(), healthy = std::min(n, static_cast<std::size_t>(options.healthy));
   std::vector<double> first;
   for (std::size_t i = 0; i < healthy; ++i) first.push_back(s.points[i].y);
+  const FailureAt failure = failure_of(s, options);
+  const auto fails_at = [&](double base) {
+    Level level;
+    if (failure.upper) level.upper = s.out(failure.level(*failure.upper, base));
+    if (failure.lower) level.lower = s.out(failure.level(*failure.lower, base));
+    return level;
+  };
   out.healthy = s.out(median(first));
-  if (const auto given = options.failure.find(s.name); given != options.failure.end())
-    out.failure = {given->second.first, given->second.second};
-  else if (const auto ratio = options.failure_ratio.find(s.name); ratio != options.failure_ratio.end())
-    (ratio->second > 1 ? out.failure.upper : out.failure.lower) = ratio->second * out.healthy;
-  else if (s.fault)
-    if (const auto failed = failed_row(*s.fault, out.healthy))
-      (*failed > out.healthy ? out.failure.upper : out.failure.lower) = failed;
+  out.failure = fails_at(median(first));
   for (std::size_t i = 0; i < n; ++i)
     out.points.push_back({s.points[i].time, s.out(s.points[i].y), s.temperature[i], i < healthy});
   if (n < least_checks) return out;
 
-  const GrowthPrior prior = prior_of(s, healthy, out.failure);
-  const std::vector<GrowthPoint> all = thinned(s.points);
+  const GrowthPrior prior = prior_of(s, healthy, failure);
+  const std::vector<GrowthPoint> all = thinned(set_aside(s.points, prior));
   const GrowthModel model(all, prior);
   const Growth& g = model.growth();
+  std::vector<double> corrected;
   for (std::size_t i = 0; i < n; ++i) {
     double y = s.points[i].y;
     for (std::size_t j = 0; j < g.coefficients.size(); ++j) y -= g.coefficients[j] * s.points[i].features[j];
+    corrected.push_back(y);
     out.points[i].value = s.out(y);
   }
+  out.log_bayes_factor = g.log_bayes_factor;
+  const double confirmed = std::log(static_cast<double>(names) / options.false_alarm);
+  out.trend = g.log_bayes_factor > confirmed;
 
-  // Levels: the spread of a single healthy check about the healthy mean.
+  // Levels: the spread of a single healthy check about where the figure began. What grows from the first check on began
+  // below its first checks.
   const GrowthModel begun({s.points.begin(), s.points.begin() + static_cast<long>(healthy)}, prior);
-  std::vector<double> own, level;
-  for (std::size_t i = 0; i < healthy; ++i)
-    own.push_back(s.points[i].variance), level.push_back(s.in(out.points[i].value));
-  const double centre = median(level);
+  std::vector<double> own;
+  for (std::size_t i = 0; i < healthy; ++i) own.push_back(s.points[i].variance);
+  double centre =
+      out.trend ? g.base : median({corrected.begin(), corrected.begin() + static_cast<long>(healthy)});
+  if (prior.part_lost) centre = std::max(centre, 0.0);  // nothing is cleaner than clean
   const double noise = begun.growth().probability < 0.5 ? begun.growth().null_noise : begun.growth().noise;
   const double spread = std::sqrt(noise * noise * (1 + 1.0 / static_cast<double>(healthy)) + median(own));
   const auto band = [&](double rate) {
@@ -192,28 +317,29 @@ CheckTrend trend_of(const Series& s, const TrendOptions& options, std::size_t na
     if (prior.direction < 0) l.upper.reset();
     return l;
   };
-  const double rate = options.false_alarm / (per_checks * static_cast<double>(names));
-  out.threshold = band(options.false_alarm);
-  out.warning = band(rate);
   out.healthy = s.out(centre);
-  // A warning comes half way to failure at the latest; against false alarms there the trend test stands.
-  const auto half_way = [&](std::optional<double>& warning, const std::optional<double>& failure, double side) {
-    if (!failure) return;
-    const double half = 0.5 * (out.healthy + *failure);
-    if (!warning || side * (*warning - half) > 0) warning = half;
-  };
-  half_way(out.warning.upper, out.failure.upper, 1);
-  half_way(out.warning.lower, out.failure.lower, -1);
-  out.now = s.out(g.now);
-  out.now_error = s.logarithm ? out.now * g.now_sd : g.now_sd;
-  out.log_bayes_factor = g.log_bayes_factor;
-  const double confirmed = std::log(static_cast<double>(names) / options.false_alarm);
-  out.trend = g.log_bayes_factor > confirmed;
+  out.failure = fails_at(centre);
+  out.threshold = band(options.false_alarm);
+  out.warning = band(options.false_alarm / (per_checks * static_cast<double>(names)));
   const auto beyond = [](const Level& l, double value) {
     return (l.upper && value > *l.upper) || (l.lower && value < *l.lower);
   };
-  out.slope = out.trend ? (s.logarithm ? out.now * g.slope : g.slope) : 0.0;
-  out.state = "healthy";
+  // Where health alone scatters beyond failure one check says nothing at this false-alarm rate: only a trend can.
+  out.blind = (out.threshold.upper && out.failure.upper && *out.threshold.upper >= *out.failure.upper) ||
+              (out.threshold.lower && out.failure.lower && *out.threshold.lower <= *out.failure.lower);
+  if (out.blind) out.threshold = {};
+  // A warning comes at a part of the way to failure at the latest; against false alarms there the trend test stands.
+  const auto in_time = [&](std::optional<double>& warning, const std::optional<double>& end, double side) {
+    if (!end) return;
+    const double latest = s.out(centre + latest_warning * (s.in(*end) - centre));
+    if (!warning || side * (*warning - latest) > 0) warning = latest;
+  };
+  in_time(out.warning.upper, out.failure.upper, 1);
+  in_time(out.warning.lower, out.failure.lower, -1);
+  out.now = s.out(g.now);
+  out.now_error = s.stretch(out.now) * g.now_sd;
+  out.slope = out.trend ? s.stretch(out.now) * g.slope : 0.0;
+  out.state = out.blind ? "blind" : "healthy";
   if (out.trend || beyond(out.threshold, out.points.back().value)) out.state = "watch";
   if (!out.trend) return out;
 
@@ -225,16 +351,13 @@ CheckTrend trend_of(const Series& s, const TrendOptions& options, std::size_t na
       out.alert_at = all[k - 1].time;
   }
   if (!out.alert_at && beyond(out.warning, out.now)) out.alert_at = all.back().time;
-  const auto y_of = [&](const std::optional<double>& v) {
-    return v && (!s.logarithm || *v > 0) ? std::optional(s.in(*v)) : std::nullopt;
-  };
   const bool passed = beyond(out.warning, out.now);
   out.to_warning =
-      passed ? 0.0 : quantile(model.life(y_of(out.warning.upper), y_of(out.warning.lower), options.seed), 0.5);
+      passed ? 0.0 : quantile(model.life({s.in(out.warning.upper), s.in(out.warning.lower)}, options.seed), 0.5);
   if (out.alert_at && passed) out.state = "warning";
   if (!out.failure.lower && !out.failure.upper) return out;
   if (beyond(out.failure, out.now)) out.state = "failed";
-  out.life = model.life(y_of(out.failure.upper), y_of(out.failure.lower), options.seed);
+  out.life = model.life(failure, options.seed);
   out.remaining = remaining_of(out.life, options.coverage);
 
   std::vector<double> time, value;
@@ -269,7 +392,7 @@ Life pooled(const std::vector<std::pair<const Life*, double>>& lives) {
 }
 
 int rank_of(const std::string& state) {
-  const char* order[] = {"unknown", "healthy", "watch", "warning", "failed"};
+  const char* order[] = {"unknown", "blind", "healthy", "watch", "warning", "failed"};
   return static_cast<int>(std::find(std::begin(order), std::end(order), state) - std::begin(order));
 }
 
@@ -323,6 +446,11 @@ ValveTrend trend(const ValveHistory& history, const TrendOptions& options) {
     if (way > furthest) furthest = way, nearest = &t;
   }
   if (nearest) out.cause = nearest->cause;
+  for (const CheckTrend& t : out.trends)
+    if (t.blind && !t.trend)
+      out.notes.push_back(fmt::format(
+          "{}: a healthy check scatters beyond the failure level at this false-alarm rate; only a trend can warn",
+          t.name));
   std::vector<std::pair<const Life*, double>> lives;
   for (const CheckTrend& t : out.trends)
     if (!t.life.empty() && (t.cause.empty() || &t == nearest)) {

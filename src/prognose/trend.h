@@ -47,7 +47,8 @@ struct TangentRule {
 
 struct CheckTrend {
   std::string name, unit, cause;
-  std::string state;  // unknown (too few checks) | healthy | watch | warning | failed
+  std::string state;   // unknown (too few checks) | blind | healthy | watch | warning | failed
+  bool blind = false;  // one check cannot tell failure from health at this false-alarm rate: only a trend can
   Level threshold, warning, failure;
   double healthy = 0;             // where it began
   double now = 0, now_error = 0;  // corrected, fitted

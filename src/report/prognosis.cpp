@@ -83,6 +83,7 @@ Json to_json(const CheckTrend& t) {
           {"unit", t.unit},
           {"cause", t.cause.empty() ? Json(nullptr) : Json(t.cause)},
           {"state", t.state},
+          {"blind", t.blind},
           {"trend", t.trend},
           {"log_bayes_factor", number(t.log_bayes_factor)},
           {"healthy", number(t.healthy)},

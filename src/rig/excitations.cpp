@@ -124,6 +124,20 @@ Stimulus preflight(const RigModel& m, const Shape& s) {
 }
 // Both checks with the offset compensated: rest, small step out and back long enough to settle cold, rest, then whole
 // cycles at several frequencies.
+// The same with a doublet of rated current between them: slewing draws all of the pilot flow through the filter, which
+// a small step does not. The piston comes back to where it was.
+Stimulus preflight_slew(const RigModel& m, const Shape& s) {
+  const double a = or_else(s.amplitude, 0.04), f = or_else(s.frequency, 5.0);
+  return open_loop(m, [=](double t) {
+    if (t < 0.1) return 0.0;
+    if (t < 0.25) return 0.10;
+    if (t < 0.35) return 0.0;
+    if (t < 0.38) return 1.0;
+    if (t < 0.41) return -1.0;
+    if (t < 0.5) return 0.0;
+    return a * std::sin(two_pi * f * (t - 0.5));
+  });
+}
 Stimulus preflight_full(const RigModel& m, const Shape& s) {
   struct Tone {
     double start, frequency;
@@ -226,6 +240,8 @@ const std::vector<ExcitationInfo>& excitations() {
       {"sweep", "open loop: logarithmic sine sweep from 1 to 150 Hz, 15 % of rated current", sweep},
       {"triangle", "open loop: triangle to full rated current, 0.5 Hz", triangle},
       {"preflight", "open loop: small step out and back, then a sine of 4 % of rated current at 5 Hz", preflight},
+      {"preflight_slew", "preflight with a doublet of full current before the sine, which shows the filter",
+       preflight_slew},
       {"preflight_full",
        "open loop, null compensated: rest, step of 10 % out and back, sines of 4 % at 2, 3, 5 and 8 Hz, 2 s each; 9.5 "
        "s",

@@ -48,7 +48,7 @@ TEST(Growth, ALinearTrendIsSeenAndItsEndLiesInItsInterval) {
     const auto points = series([](double s) { return 0.05 + s; }, 31, 0.02, static_cast<std::uint64_t>(u));
     const GrowthModel model(points, plain_prior());
     EXPECT_GT(model.growth().log_bayes_factor, 10);
-    const Life life = model.life(1.05, {}, 1);  // true: 60 - 30
+    const Life life = model.life({1.05, {}}, 1);  // true: 60 - 30
     inside += quantile(life, 0.05) <= 30 && 30 <= quantile(life, 0.95);
     near += std::abs(quantile(life, 0.5) - 30) < 6;
   }
@@ -59,8 +59,29 @@ TEST(Growth, ALinearTrendIsSeenAndItsEndLiesInItsInterval) {
 TEST(Growth, ACurvedTrendIsNotExtrapolatedAsALine) {
   const auto points = series([](double s) { return s * s; }, 43, 0.005, 3);  // 70 % of the life
   const GrowthModel model(points, plain_prior());
-  const Life life = model.life(1.0, {}, 1);
+  const Life life = model.life({1.0, {}}, 1);
   EXPECT_NEAR(quantile(life, 0.5), 18, 4);  // a line through it all would say 42
+}
+
+// Laws that are not on the grid, alone and with a Wiener process on top: the intervals must hold.
+TEST(Growth, IntervalsCoverTheEndWhateverTheLaw) {
+  int inside = 0, units = 0;
+  for (const double power : {0.65, 1.0, 1.55})
+    for (const double wander : {0.0, 0.05})
+      for (std::uint64_t u = 0; u < 10; ++u, ++units) {
+        Random random(u, 11);
+        std::vector<GrowthPoint> points;
+        double astray = 0, end = 0;
+        for (int k = 0; end == 0; ++k) {
+          astray += wander * random.normal() / std::sqrt(60.0);
+          const double y = std::pow(k / 60.0, power) + astray;
+          if (k <= 40) points.push_back({static_cast<double>(k), y + 0.02 * random.normal(), 0.0, {}});
+          if (y >= 1) end = k - 0.5;
+        }
+        const Life life = GrowthModel(points, plain_prior()).life({1.0, {}}, 1);
+        inside += quantile(life, 0.05) <= end - 40 && end - 40 <= quantile(life, 0.95);
+      }
+  EXPECT_GE(inside, units * 80 / 100);
 }
 
 TEST(Growth, TemperatureIsNotTakenForGrowth) {
@@ -87,7 +108,8 @@ TEST(Growth, ChecksOfLargeErrorWeighLittle) {
 
 TEST(Growth, SameSeedSameLife) {
   const auto points = series([](double s) { return s; }, 31, 0.02, 5);
-  EXPECT_EQ(GrowthModel(points, plain_prior()).life(1.0, {}, 7), GrowthModel(points, plain_prior()).life(1.0, {}, 7));
+  EXPECT_EQ(GrowthModel(points, plain_prior()).life({1.0, {}}, 7),
+            GrowthModel(points, plain_prior()).life({1.0, {}}, 7));
 }
 
 }  // namespace

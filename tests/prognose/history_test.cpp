@@ -103,6 +103,22 @@ TEST_F(HistoryFile, ABrokenCsvIsRefusedAtItsLineAndAddsNothing) {
   }
 }
 
+TEST_F(HistoryFile, ACsvOfAnotherOriginNeedsValveHoursNameAndValue) {
+  std::ofstream(file("other.csv")) << "at [h],valve,name,value,oil_temperature [degC]\n"
+                                      "1,v1,fidelity,1.2,\n1,v1,parameter:9,3e-6,40\n5,v1,fidelity,1.3,-10\n";
+  const HistoryContent content = read_history_csv(file("other.csv"));
+  History h(file(), true);
+  EXPECT_EQ(h.restore(content).recordings, 2);
+  const ValveHistory v = h.of("v1");
+  ASSERT_EQ(v.recordings.size(), 2u);
+  EXPECT_EQ(v.recordings[0].checks.size(), 2u);
+  EXPECT_EQ(v.recordings[1].checks[0].measured, 1.3);
+  EXPECT_EQ(v.recordings[1].checks[0].expected, 1.0);
+  EXPECT_NEAR(v.recordings[1].temperature, 263.15, 1e-9);
+  std::ofstream(file("typo.csv")) << "at [h],valve,name,valeu\n1,v1,fidelity,1.2\n";
+  EXPECT_THROW(read_history_csv(file("typo.csv")), InputError);
+}
+
 TEST_F(HistoryFile, AnOlderSchemaIsBroughtUpAndKeepsItsRows) {
   {
     History h(file(), true);

@@ -118,6 +118,69 @@ TEST(Trend, TheTangentRuleIsExactForALine) {
   EXPECT_FALSE(tangent_rule(time, value, 1.1, 1.7, 2.0));
 }
 
+// A life of one parameter: `value` over the part s of the way, a check every 2 h, without temperature.
+template <class F>
+ValveHistory of_one(const std::string& name, const F& value, double noise, double std_error, int checks = 40) {
+  ValveHistory h;
+  h.valve = "v";
+  Random random(8, 7);
+  for (int k = 0; k < checks; ++k) {
+    Recording r;
+    r.at = 2 * k, r.table_sha256 = "a", r.temperature = 313;
+    const double v = value(k / 60.0) + noise * random.normal();
+    r.checks.push_back({name, v, std_error, "", v, 1, ""});
+    h.recordings.push_back(r);
+  }
+  return h;
+}
+
+// What multiplies does so to the tuned value, and an estimate that errs in health errs by as much later.
+TEST(Trend, AMultiplyingSeverityHasFailedThatManyTunedValuesBeyondWhereItBegan) {
+  ValveHistory h = of_one(
+      "parameter:14", [](double s) { return 0.7 + 19 * 1.6 * s; }, 0.3, 0.1);
+  h.tuned.assign(41, 0.0);
+  h.tuned[13] = 1.6;
+  const ValveTrend t = trend(h, {});
+  EXPECT_EQ(t.cause, "sticky_spool");  // by its row: a history of another origin names no cause
+  EXPECT_NEAR(*find(t, "parameter:14").failure.upper, 0.7 + 19 * 1.6, 0.5);
+  ASSERT_TRUE(t.remaining);
+  EXPECT_LE(t.remaining->lower, 42);  // true: 120 - 78
+  EXPECT_GE(t.remaining->upper, 42);
+  h.tuned.clear();  // without the table: of where it began
+  EXPECT_NEAR(*find(trend(h, {}), "parameter:14").failure.upper, 20 * 0.7, 6);
+}
+
+// A clean filter's size is on no data sheet: a model that takes it for half blocked sees an eighth left at the end.
+TEST(Trend, ABlockedFilterHasFailedWhenAQuarterIsLeftOfWhatWasOpen) {
+  const ValveTrend t = trend(of_one(
+                                 "parameter:1", [](double s) { return 1 - 0.5 * (1 - 0.75 * s); }, 0.01, 0.01),
+                             {});
+  EXPECT_NEAR(*find(t, "parameter:1").failure.upper, 0.875, 0.01);
+  ASSERT_TRUE(t.remaining);
+  EXPECT_NEAR(t.remaining->median, 42, 12);
+}
+
+TEST(Trend, ACheckThatScattersBeyondFailureInHealthSaysThatItIsBlind) {
+  const ValveTrend t = trend(of_one(
+                                 "parameter:9", [](double) { return 5e-6; }, 9e-6, 9e-6),
+                             {});
+  const CheckTrend& c = find(t, "parameter:9");
+  EXPECT_TRUE(c.blind);
+  EXPECT_EQ(c.state, "blind");
+  EXPECT_FALSE(c.threshold.upper);
+  ASSERT_EQ(t.notes.size(), 1u);
+  EXPECT_NE(t.notes.front().find("only a trend can warn"), std::string::npos);
+}
+
+TEST(Trend, OneOutlyingCheckRaisesNoAlert) {
+  ValveHistory h = of_one(
+      "parameter:9", [](double) { return 1e-6; }, 3e-7, 1e-7);
+  h.recordings.back().checks[0].value = 9e-6;
+  const ValveTrend t = trend(h, {});
+  EXPECT_FALSE(t.alert_at);
+  EXPECT_EQ(t.state, "watch");
+}
+
 TEST(Trend, SameHistorySameTrend) {
   const ValveTrend a = trend(a_life(80, 24, 1), {}), b = trend(a_life(80, 24, 1), {});
   EXPECT_EQ(a.life, b.life);

@@ -1,0 +1,59 @@
+// What the parts of the prognosis study share: a virtual valve that is checked, and its degradations.
+#pragma once
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "base/random.h"
+#include "prognose/check.h"
+#include "prognose/history.h"
+#include "rig/rig_run.h"
+#include "signals/rig_file.h"
+
+namespace servodx::study {
+
+struct Bench {
+  Table tuned;
+  RigFile rig;
+  rig::RigModel model;
+};
+
+// The paper's degradations, each to the end of what it studies.
+struct Degradation {
+  const char* name;
+  double healthy, failed;  // severity
+  const char* figure;      // of Borello et al. 2009
+  const char* check;       // that it shows
+};
+inline constexpr Degradation degradations[] = {{"clogged_filter", 0, 0.75, "8", "fidelity"},
+                                               {"torque_motor_loss", 1, 0.2, "9", "fidelity"},
+                                               {"feedback_wire_backlash", 0, 20e-6, "10", "mean_error"},
+                                               {"sticky_spool", 1, 20, "11", "mean_error"},
+                                               {"radial_clearance_wear", 1, 10, "12", "correlation@5Hz"}};
+inline double severity_at(const Degradation& d, double s) { return d.healthy + (d.failed - d.healthy) * s; }
+
+struct Condition {
+  double celsius = 40, air = 0.005, null = 0;  // null: of rated current, beside the valve's own
+};
+// -30 to 70 degC, free air 0.2 to 2 %, null within 1.5 %.
+Condition random_condition(Random& random);
+
+// The log of one test as a file would hold it.
+Log test_log(const rig::RigModel& valve, const std::string& fault, double severity, const Condition& at,
+             rig::RigRun run);
+// A preflight test of 0.96 s: step, doublet, and two cycles at 5 Hz.
+rig::RigRun preflight(std::uint64_t seed);
+
+Recording recording_of(double at, const CheckResult& result);
+const Check* find(const std::vector<Check>& checks, const std::string& name);
+
+// On all threads that OpenMP has; progress to standard error.
+void for_each(int n, const std::string& what, const std::function<void(int)>& work);
+
+void figures(const Bench& bench, const std::string& out);
+void lives(const Bench& bench, const std::string& out, int units, int checks);
+void series(const Bench& bench, const std::string& out, const std::vector<std::string>& folders);
+void store(const std::string& file, long rows);
+
+}  // namespace servodx::study

@@ -1,0 +1,12 @@
+// A parameter table that is not in a file: the copy that a history keeps of what its checks rest on.
+#pragma once
+#include <string>
+
+#include "parameters/table.h"
+
+namespace servodx {
+
+// As read_table(); `path` is for messages.
+Table parse_table(const std::string& text, const std::string& path);
+
+}  // namespace servodx
