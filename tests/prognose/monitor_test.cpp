@@ -3,8 +3,6 @@
 
 #include <gtest/gtest.h>
 
-#include <chrono>
-
 #include "base/error.h"
 #include "support.h"
 
@@ -97,10 +95,10 @@ TEST(Monitor, ACloggedFilterSlowsItAndAWeakMotorShortensIt) {
 TEST(Monitor, RunsAThousandTimesFasterThanTheRig) {
   LogData log = preflight_log({5, 5, 5, 5, 5, 5, 5, 5});
   const MonitorParameters p = shipped();
-  const auto before = std::chrono::steady_clock::now();
+  const std::clock_t before = std::clock();  // of the processor: a busy machine says nothing of the monitor
   for (int k = 0; k < 5; ++k) run_monitor(p, linear_pressure(p), log);
-  const double wall = std::chrono::duration<double>(std::chrono::steady_clock::now() - before).count();
-  EXPECT_GT(5 * log.scenario.time.back() / wall, 1000.0);
+  const double seconds = static_cast<double>(std::clock() - before) / CLOCKS_PER_SEC;
+  EXPECT_GT(5 * log.scenario.time.back(), 1000.0 * seconds);
 }
 
 // papers.md C: any valve map may stand in place of GP; unloaded and slow they all give the same motion.
