@@ -3,7 +3,9 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <limits>
 #include <memory>
+#include <utility>
 
 #include "base/units.h"
 #include "commands.h"
@@ -57,8 +59,12 @@ void run(Options options) {
     trends.push_back(trend(history.of(name), options.trend));
     invocation.note(trends.back().notes);
   }
+  // The first to warn first; of those that have passed it, the first to fail.
+  const auto urgency = [](const ValveTrend& v) {
+    return std::pair(v.to_warning, v.remaining ? v.remaining->median : std::numeric_limits<double>::infinity());
+  };
   std::stable_sort(trends.begin(), trends.end(),
-                   [](const ValveTrend& a, const ValveTrend& b) { return a.to_warning < b.to_warning; });
+                   [&](const ValveTrend& a, const ValveTrend& b) { return urgency(a) < urgency(b); });
   invocation.header().settings = {{"history", options.history},       {"false_alarm", options.trend.false_alarm},
                                   {"healthy", options.trend.healthy}, {"coverage", options.trend.coverage},
                                   {"failure", options.failures},      {"limit", options.limits}};

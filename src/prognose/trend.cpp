@@ -453,7 +453,7 @@ ValveTrend trend(const ValveHistory& history, const TrendOptions& options) {
           t.name));
   std::vector<std::pair<const Life*, double>> lives;
   for (const CheckTrend& t : out.trends)
-    if (!t.life.empty() && (t.cause.empty() || &t == nearest)) {
+    if (!t.life.empty() && (nearest ? &t == nearest : t.cause.empty())) {
       const Remaining r = remaining_of(t.life, options.coverage);
       const double width = std::isfinite(r.upper) ? std::max(r.upper - r.lower, 1e-6) : 1e6 * std::max(1.0, r.lower);
       lives.emplace_back(&t.life, 1 / (width * width));

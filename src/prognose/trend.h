@@ -3,14 +3,17 @@
 // Per check, in its corrected value (temperature by what the valve's healthy checks show, with the model's expectation
 // as one of the regressors):
 //   threshold  what one healthy check passes once in 1 / false_alarm
-//   warning    what the checks of a healthy valve pass once in 1 / false_alarm valves, over 100 checks of all its names
+//   warning    what the checks of a healthy valve pass once in 1 / false_alarm valves, over 100 checks of all its
+//   names;
+//              a quarter of the way to failure at the latest
 //   failure    the user's, or the fault's own (Borello's end of range); the paper's checks have none unless given
 // A trend is confirmed when the Bayes factor of growth passes names / false_alarm. An alert is a confirmed trend whose
 // fitted curve has passed the warning level. No trend is an answer. Two-sided for r and E.
 //
-// Fusion: the cause is the tracked parameter with a confirmed trend that is nearest to its failure; the remaining
-// life pools the lives of that parameter and of the paper's checks that have a failure level, each by its sharpness.
-// Maintenance events restart what they renew (history.h); so does another tuned table.
+// Fusion: the cause is the tracked parameter with a confirmed trend that is nearest to its failure, and the remaining
+// life is its. Where no parameter has one, the lives of the paper's checks that have a failure level are pooled, each
+// by its sharpness: what they read depends on more than the cause, so beside a cause they only blur it. Maintenance
+// events restart what they renew (history.h); so does another tuned table.
 #pragma once
 #include <map>
 #include <optional>
