@@ -467,6 +467,7 @@ Explanation explain(Subject& subject, const EngineOptions& options, const Explan
     // Where something is new, a cause that healthy data show as well is still not it.
     const auto is_new = [&](int c) {
       const auto k = static_cast<std::size_t>(c);
+      if (scores[k].probes.empty()) return false;  // not looked at
       return p[k] <= level || (abnormal && (!options.beyond || options.beyond(scores[k])));
     };
     const auto in = [&](int c) { return std::count(now.causes.begin(), now.causes.end(), c) > 0; };
