@@ -15,7 +15,7 @@ namespace {
 
 constexpr double infinite = std::numeric_limits<double>::infinity();
 constexpr std::size_t least_checks = 6;   // for a word on a trend
-constexpr std::size_t most_points = 240;  // longer histories are averaged in blocks
+constexpr std::size_t most_points = 100;  // longer histories are averaged in blocks
 constexpr std::size_t looks = 40;         // moments at which an alert is looked for, evenly over the checks
 constexpr double latest_warning = 0.25;   // of the way to failure: three quarters are left to act in
 constexpr double outlying = 4;            // [spreads] from its neighbours at which a check is set aside
