@@ -203,12 +203,6 @@ ExplainResult explain_logs(const std::vector<Log>& logs, const Table& tuned, con
     };
   }
   if (healthy)
-    engine.beyond = [&](const CauseScore& s) {
-      HealthyScore here = summarise(subject, s);
-      here.gain /= static_cast<double>(logs.size());
-      return test->beyond(here);
-    };
-  if (healthy)
     engine.p_left = [&](const ExplainedFit& fit, int round) {
       if (round == 0) air_beyond = subject.air_at_wall(fit.point);
       std::vector<Miss> misses = subject.misses(fit.residual);
