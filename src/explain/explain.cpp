@@ -172,8 +172,6 @@ ExplainResult explain_logs(const std::vector<Log>& logs, const Table& tuned, con
   std::deque<ValveSubject> single;
   std::vector<ExplainedFit> single_fits;
   std::vector<std::vector<HealthyScore>> alone(logs.size());
-  constexpr double air_rate = 0.005;  // one end of the range in which a log's air is its own affair
-  bool air_beyond = false;
   const auto score_alone = [&] {
     for (std::size_t l = 0; l < single.size(); ++l)
       if (single_fits[l].ok)
@@ -196,15 +194,11 @@ ExplainResult explain_logs(const std::vector<Log>& logs, const Table& tuned, con
           for (const HealthyScore& h : log)
             if (h.effect == whole.effect && h.where == whole.where) scores.push_back(h);
       if (scores.empty()) scores.push_back(whole);
-      const double p = test->together(test->alone(scores));
-      // Air beyond what healthy logs have had: at the end of that range, and the data ask for more.
-      if (round == 0 && whole.effect == "air_entrainment" && air_beyond) return std::min(p, air_rate);
-      return p;
+      return test->together(test->alone(scores));
     };
   }
   if (healthy)
     engine.p_left = [&](const ExplainedFit& fit, int round) {
-      if (round == 0) air_beyond = subject.air_at_wall(fit.point);
       std::vector<Miss> misses = subject.misses(fit.residual);
       if (round == 0)  // the blocks do not know of effects
         for (const BlockReplay& b : replay_blocks(subject, fit.point)) misses.push_back({b.block, b.missing});

@@ -124,6 +124,7 @@ HealthyTest::HealthyTest(const HealthyReference& reference) : reference_(referen
     for (const HealthyScore& s : reference.logs[i].scores)
       smallest = std::min(smallest, alone({s}, static_cast<int>(i)));
     sum_ -= std::log1p(-std::min(smallest, 1 - 1e-12));
+    least_ = std::min(least_, smallest);
   }
 }
 
@@ -176,8 +177,9 @@ bool HealthyTest::beyond(const HealthyScore& here) const {
 
 double HealthyTest::together(double alone) const {
   // The smallest of m independent chances has -ln(1 - p) exponential with rate m; m is learnt, causes are alike.
+  // What some healthy log shows beside the others is not new, whatever the law says: that holds for any scatter.
   const auto n = static_cast<double>(reference_.logs.size());
-  if (n < 3 || alone >= 1) return 1;
+  if (n < 3 || alone >= std::min(1.0, least_)) return 1;
   return 1 - std::pow(1 - std::log1p(-alone) / sum_, -n);
 }
 

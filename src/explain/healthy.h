@@ -72,6 +72,7 @@ class HealthyTest {
   double alone(const std::vector<HealthyScore>& logs, int left_out) const;
   const HealthyReference& reference_;
   double sum_ = 0;  // over the healthy logs, of -ln(1 - the smallest chance)
+  double least_ = 1;  // smallest chance that a healthy log has beside the others
 };
 
 }  // namespace servodx

@@ -504,12 +504,6 @@ std::vector<double> ValveSubject::air(const std::vector<int>& causes, const Poin
   return out;
 }
 
-bool ValveSubject::air_at_wall(const Point& point) const {
-  for (std::size_t j = 0; j < own_; ++j)
-    if (free_[j].at == row::air_fraction && (point[j] < 1e-6 || point[j] > 1 - 1e-6)) return true;
-  return false;
-}
-
 double ValveSubject::adequacy(const Eigen::VectorXd& rows) const {
   double sum = 0;
   double channels = 0;

@@ -59,8 +59,6 @@ class ValveSubject : public Subject {
   std::vector<UsualError> errors(const Eigen::VectorXd& rows) const;
   // Free air of each log at a point.
   std::vector<double> air(const std::vector<int>& causes, const Point& point) const;
-  // The air of a log stands at the end of what healthy logs have.
-  bool air_at_wall(const Point& point) const;
   long simulations() const override;
   long failed_simulations() const override;
 
