@@ -464,11 +464,11 @@ Explanation explain(Subject& subject, const EngineOptions& options, const Explan
       CandidateResult& r = out.candidates[c];
       if (round == 0) r.predicted_gain = scores[c].gain, r.p_new = p[c], r.reason = "its score predicts too little";
     }
-    // Where something is new, a cause that healthy data show as well is still not it.
+    // Where the data are abnormal as a whole, a cause need not be news by itself.
     const auto is_new = [&](int c) {
       const auto k = static_cast<std::size_t>(c);
       if (scores[k].probes.empty()) return false;  // not looked at
-      return p[k] <= level || (abnormal && (!options.beyond || options.beyond(scores[k])));
+      return p[k] <= level || abnormal;
     };
     const auto in = [&](int c) { return std::count(now.causes.begin(), now.causes.end(), c) > 0; };
     std::vector<CauseScore> order = scores;

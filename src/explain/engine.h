@@ -81,8 +81,6 @@ struct EngineOptions {
   // Chance that healthy data score a cause like this, all causes counted together; empty: no healthy data, all is new.
   // `round`: causes accepted so far.
   std::function<double(const CauseScore&, int round)> p_new;
-  // A score promises more than on any healthy data; asked where something is known to be new. Empty: all do.
-  std::function<bool(const CauseScore&)> beyond;
   // Chance that healthy data are left as wrong as by this fit; empty: not asked. Where it is small something is new,
   // and a cause need not be news by itself.
   std::function<double(const ExplainedFit&, int round)> p_left;

@@ -168,13 +168,6 @@ double HealthyTest::spread(const HealthyScore& of, std::size_t probe) const {
   return std::sqrt(std::max(0.0, scatter.variance(own * own) - own * own) + scatter.mean * scatter.mean);
 }
 
-bool HealthyTest::beyond(const HealthyScore& here) const {
-  for (const HealthyLog& l : reference_.logs)
-    for (const HealthyScore& s : l.scores)
-      if (s.effect == here.effect && s.where == here.where && s.gain >= here.gain) return false;
-  return true;
-}
-
 double HealthyTest::together(double alone) const {
   // The smallest of m independent chances has -ln(1 - p) exponential with rate m; m is learnt, causes are alike.
   // What some healthy log shows beside the others is not new, whatever the law says: that holds for any scatter.

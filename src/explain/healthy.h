@@ -56,8 +56,6 @@ class HealthyTest {
   // The same with all causes counted together: how small the smallest of a healthy log's chances is, is learnt from the
   // healthy logs themselves, each against the others: -ln(1 - p) is taken as exponential, its predictive is Lomax's.
   double together(double alone) const;
-  // The cause promises more here than on any healthy log.
-  bool beyond(const HealthyScore& here) const;
   // Chance that a healthy log is left with as much misfit.
   double adequacy(double value) const;
   // How far a size of this cause lies from none on healthy logs, and what a log with this standard error scatters

@@ -49,7 +49,7 @@ double creeping_time(const Log& log, const RigFile& rig) {
 double creep_step_of(const std::vector<Log>& logs, const RigFile& rig) {
   double step = thin_time / 2;
   for (const Log& log : logs)
-    if (ports_of(log, rig) != Ports::actuator) step = std::min(step, creeping_time(log, rig));
+    if (ports_of(log, rig) != Ports::actuator) step = std::min(step, creeping_time(log, rig) / 2);
   return std::max(step, SimulateOptions{}.creep_step);
 }
 

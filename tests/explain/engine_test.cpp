@@ -132,14 +132,12 @@ TEST(Engine, WhatHealthyDataShowIsNotAccused) {
   EXPECT_EQ(line.causes()[static_cast<std::size_t>(e.standing[0].cause)].effect, "slow wave");
 }
 
-TEST(Engine, WhereSomethingIsNewWhatHealthyDataShowAsWellIsStillNotIt) {
+TEST(Engine, WhereTheDataAreAbnormalACauseNeedNotBeNewsByItself) {
   Line line({shapes[0], shapes[1]}, 7, 1, 1.0);
   EngineOptions o;
   o.p_new = [](const CauseScore&, int) { return 0.5; };
   o.p_left = [](const ExplainedFit&, int round) { return round == 0 ? 1e-6 : 1.0; };
   EXPECT_EQ(explain(line, o).causes.size(), 1u);
-  o.beyond = [](const CauseScore&) { return false; };
-  EXPECT_TRUE(explain(line, o).causes.empty());
 }
 
 TEST(Engine, FarBeyondWhatIsUsualHalvesCountAlike) {

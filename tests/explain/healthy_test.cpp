@@ -87,17 +87,6 @@ TEST(Healthy, TestsThatHardlyShowACauseDoNotHideItWhereOneShowsItWell) {
   EXPECT_LE(alarms, 0.05 * trials + 2.5 * std::sqrt(0.05 * 0.95 * trials));
 }
 
-TEST(Healthy, BeyondIsMoreThanOnAnyHealthyLog) {
-  HealthyReference reference;
-  for (double gain : {3.0, 40.0, 12.0}) {
-    reference.logs.emplace_back();
-    reference.logs.back().scores.push_back({"leak", "here", {}, gain});
-  }
-  const HealthyTest test(reference);
-  EXPECT_TRUE(test.beyond({"leak", "here", {}, 41}));
-  EXPECT_FALSE(test.beyond({"leak", "here", {}, 39}));
-}
-
 TEST(Healthy, StandingSizeIsNoNews) {
   // Cause 20 stands at 20 in every log: far from absent, and nothing new.
   Random random(44, 1);

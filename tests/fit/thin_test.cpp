@@ -97,7 +97,7 @@ TEST(Thin, TheModelSaysOfAThinnedSweepWhatItSaysOfAllItsSamples) {
         square += off * off, worst = std::max(worst, off);
       }
       RecordProperty(std::string(info(s).name), std::to_string(worst));
-      EXPECT_LT(std::sqrt(square / static_cast<double>(p.size())), 2.5e-3) << info(s).name << ' ' << period;
+      EXPECT_LT(std::sqrt(square / static_cast<double>(p.size())), 2e-3) << info(s).name << ' ' << period;
       EXPECT_LT(worst, 2e-2) << info(s).name << ' ' << period;
     }
   }
