@@ -1,10 +1,11 @@
 // The prognosis study: figures 8 to 13 of Borello et al. 2009, lives of random valves to their end, progressive series
-// of a rig, and the store at size. Its parts are in bench/prognosis/.
+// of a rig, the store at size, and the monitor's speed. Its parts are in bench/prognosis/.
 //
 //   servodx_prognosis figures TUNED RIG.toml RIG_MODEL.toml OUT_DIR
-//   servodx_prognosis lives   TUNED RIG.toml RIG_MODEL.toml OUT_DIR [UNITS [CHECKS]]     units per degradation
+//   servodx_prognosis lives   TUNED RIG.toml RIG_MODEL.toml OUT_DIR [UNITS [CHECKS [FIRST]]]   units a degradation
 //   servodx_prognosis series  TUNED RIG.toml OUT_DIR SERIES_DIR...                       t01.csv, t02.csv, ...
 //   servodx_prognosis store   FILE ROWS
+//   servodx_prognosis speed   TUNED RIG.toml RIG_MODEL.toml                               of the monitor
 #include <cstdio>
 
 #include "prognosis/study.h"
@@ -21,13 +22,17 @@ int run(int argc, char** argv) {
   };
   if (what == "figures" && argc == 6) return figures(bench(true), argv[5]), 0;
   if (what == "lives" && argc >= 6)
-    return lives(bench(true), argv[5], argc > 6 ? std::stoi(argv[6]) : 40, argc > 7 ? std::stoi(argv[7]) : 40), 0;
+    return lives(bench(true), argv[5], argc > 6 ? std::stoi(argv[6]) : 40, argc > 7 ? std::stoi(argv[7]) : 40,
+                 argc > 8 ? std::stoi(argv[8]) : 0),
+           0;
   if (what == "series" && argc >= 6) return series(bench(false), argv[4], {argv + 5, argv + argc}), 0;
+  if (what == "speed" && argc == 5) return speed(bench(true)), 0;
   if (what == "store" && argc == 4) return store(argv[2], std::stol(argv[3])), 0;
   std::fprintf(stderr,
-               "usage: servodx_prognosis figures|lives TUNED RIG.toml RIG_MODEL.toml OUT [UNITS [CHECKS]]\n"
+               "usage: servodx_prognosis figures|lives TUNED RIG.toml RIG_MODEL.toml OUT [UNITS [CHECKS [FIRST]]]\n"
                "       servodx_prognosis series TUNED RIG.toml OUT SERIES_DIR...\n"
-               "       servodx_prognosis store FILE ROWS\n");
+               "       servodx_prognosis store FILE ROWS\n"
+               "       servodx_prognosis speed TUNED RIG.toml RIG_MODEL.toml\n");
   return 2;
 }
 

@@ -1,135 +1,70 @@
-// Random valves followed to their end, and healthy ones. What is made (a history of checks a unit) is kept in
-// OUT/units/*.csv and taken up again by the next run, so that judging them anew costs no simulation; each can be
-// imported into a history and looked at with `servodx trend`.
+// Random valves followed to their end, and healthy ones: how good the predictions were.
 //
-// A unit is a valve drawn from the rig's tolerances and checked with the table tuned on the nominal valve. Its checks
-// come at even parts of the life, each at random oil temperature, free air and null. Its degradation grows from its
-// first hour (every other pair of units) or from a later one, by s^p: linear in every other unit. End of life is the
-// rig's true severity at its failed level. Failure levels of the paper's checks come from a seeded-fault test of the
-// nominal valve.
+// A unit is a valve drawn from the rig's tolerances and checked with its own table (units.h). Its checks come at even
+// parts of the life, each at random oil temperature, free air and null. End of life is the rig's true quantity at the
+// failed level. Failure levels come from a seeded-fault test of three valves of the type.
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <filesystem>
 #include <map>
 
 #include "base/atomic_file.h"
-#include "base/csv.h"
-#include "prognose/history_csv.h"
 #include "prognose/metrics.h"
 #include "prognose/trend.h"
-#include "prognosis/study.h"
+#include "prognosis/units.h"
 
 namespace servodx::study {
 namespace {
-
-namespace fs = std::filesystem;
-
-struct Unit {
-  std::string name;
-  const Degradation* degradation = nullptr;  // none: healthy
-  std::uint64_t valve = 0;
-  double power = 1, onset = 0, life = 0;  // onset as a part of the life [h]
-  std::uint32_t stream = 0;
-
-  double progress(double s) const { return s <= onset ? 0.0 : std::pow((s - onset) / (1 - onset), power); }
-};
-
-std::vector<Unit> plan(int units) {
-  std::vector<Unit> all;
-  const auto add = [&](const Degradation* d, std::uint32_t group, int u) {
-    Random random(31, group, static_cast<std::uint32_t>(u));
-    Unit unit;
-    unit.name = fmt::format("{}-{:02}", d ? d->name : "healthy", u);
-    unit.degradation = d;
-    unit.stream = 1000 * group + static_cast<std::uint32_t>(u);
-    unit.valve = unit.stream + 1;
-    const double power = std::exp(random.uniform(std::log(0.7), std::log(2.0))), onset = random.uniform(0.05, 0.3);
-    unit.power = u % 2 ? power : 1.0;
-    unit.onset = u / 2 % 2 ? onset : 0.0;
-    unit.life = random.uniform(80, 200);
-    all.push_back(unit);
-  };
-  for (int u = 0; u < units; ++u) {
-    std::uint32_t group = 1;
-    for (const Degradation& d : degradations) add(&d, group++, u);
-    add(nullptr, group, u);
-  }
-  return all;
-}
-
-ValveHistory live(const Bench& b, const Unit& unit, int checks) {
-  const rig::RigModel valve = rig::another_valve(b.model, unit.valve);
-  Random random(32, unit.stream);
-  ValveHistory h;
-  h.valve = unit.name;
-  std::vector<double> last;
-  for (int k = 0; k < checks; ++k) {
-    const double s = 0.95 * k / (checks - 1.0);  // the last check a little before the end
-    const double severity = unit.degradation ? severity_at(*unit.degradation, unit.progress(s)) : 0;
-    const Condition at = random_condition(random);
-    const Log log =
-        test_log(valve, unit.degradation ? unit.degradation->name : "", severity, at, preflight(random.bits64()));
-    const CheckResult r = check(log, b.tuned, b.rig, {.threads = 1, .last = last});
-    last = r.tracked;
-    h.recordings.push_back(recording_of(s * unit.life, r));
-    h.recordings.back().log = h.recordings.back().log_sha256 = fmt::format("{}-{}", unit.name, k);
-    h.recordings.back().table_sha256 = b.tuned.sha256;
-  }
-  return h;
-}
-
-ValveHistory kept(const Bench& b, const Unit& unit, int checks, const std::string& folder) {
-  const std::string file = folder + "/" + unit.name + ".csv";
-  ValveHistory h;
-  if (fs::exists(file)) {
-    h = read_history_csv(file).valves.front();
-  } else {
-    h = live(b, unit, checks);
-    write_file(file, history_csv({{h}, {{b.tuned.sha256, read_file(b.tuned.path)}}}));
-  }
-  for (int i = 0; i < n_parameters; ++i) h.tuned.push_back(b.tuned[i].nominal);
-  return h;
-}
 
 double median(std::vector<double> v) {
   std::sort(v.begin(), v.end());
   return v.empty() ? std::nan("") : v[v.size() / 2];
 }
 
-// Label of the fault that a tracked parameter stands for.
-std::string find_parameter(const std::string& name) {
+// Label of the fault that a tracked parameter stands for; empty for the paper's checks.
+std::string caused_by(const std::string& check) {
   for (const Progressive& p : progressive_faults())
-    if (name == fmt::format("parameter:{}", p.row + 1)) return std::string(p.fault->name);
+    if (check == fmt::format("parameter:{}", p.row + 1)) return std::string(p.fault->name);
   return {};
 }
 
-// Failure levels of every check that a degradation moves, by a seeded-fault test of the nominal valve, as a user would
-// set them: of the paper's checks a multiple of healthy, of the parameters what they read at the failed severity.
-TrendOptions seeded_fault(const Bench& b, const Degradation& d) {
+constexpr int seeded_valves = 3;
+std::pair<rig::RigModel, Table> seeded_valve(const Bench& b, int v, const std::string& folder) {
+  const auto stream = static_cast<std::uint32_t>(9000 + v);
+  rig::RigModel valve = rig::another_valve(b.model, stream);
+  Table own = own_table(b, fmt::format("seeded-{}", v), valve, stream, folder);
+  return {std::move(valve), std::move(own)};
+}
+
+// Failure levels of every check that a degradation moves, by a seeded-fault test of three valves of the type at the
+// reference oil, as a user would set them: of the paper's checks a multiple of healthy, of the parameters what they
+// read.
+TrendOptions seeded_fault(const Bench& b, const Degradation& d, const std::string& folder) {
   std::map<std::string, std::vector<double>> healthy, failed;
-  std::map<std::string, bool> parameter;
-  for (int k = 0; k < 5; ++k) {
-    const Condition at{10.0 + 12 * k, 0.005, 0};
-    const auto add = [&](const std::string& fault, double severity, std::map<std::string, std::vector<double>>& to) {
-      const Log log = test_log(b.model, fault, severity, at, preflight(900 + static_cast<std::uint64_t>(k)));
-      for (const Check& c : check(log, b.tuned, b.rig, {.threads = 1, .last = {}}).checks)
-        to[c.name].push_back(c.value), parameter[c.name] = !c.cause.empty();
-    };
-    add("", 0, healthy), add(d.name, d.failed, failed);
+  for (int v = 0; v < seeded_valves; ++v) {
+    const auto [valve, own] = seeded_valve(b, v, folder);
+    for (int k = 0; k < 3; ++k) {
+      const Condition at{30.0 + 10 * k, 0.005, 0};
+      const auto add = [&, &valve = valve, &own = own](const std::string& fault, double severity,
+                                                       std::map<std::string, std::vector<double>>& to) {
+        const Log log = test_log(valve, fault, severity, at, preflight(900 + static_cast<std::uint64_t>(k)));
+        for (const Check& c : check(log, own, b.rig, {.threads = 1, .last = {}}).checks) to[c.name].push_back(c.value);
+      };
+      add("", 0, healthy), add(d.name, end_of(d, b.model, valve).failed, failed);
+    }
   }
   TrendOptions options;
   for (const auto& [name, values] : healthy) {
     if (failed[name].empty()) continue;
     const auto [low, high] = std::minmax_element(values.begin(), values.end());
     const double h = median(values), f = median(failed[name]);
-    if (!(std::abs(f - h) > 3 * (*high - *low))) continue;
-    if (!parameter[name])
-      options.failure_ratio[name] = f / h;
-    else if (find_parameter(name) == d.name)
+    const std::string cause = caused_by(name);
+    if (cause == d.name)
       (f > h ? options.failure[name].second : options.failure[name].first) = f;
+    else if (cause.empty() && std::abs(f - h) > 3 * (*high - *low))
+      options.failure_ratio[name] = f / h;
   }
   return options;
 }
@@ -191,17 +126,16 @@ struct Tally {
 
 }  // namespace
 
-void lives(const Bench& b, const std::string& out, int units, int checks) {
-  const std::string folder = out + "/units";
-  fs::create_directories(folder);
-  const std::vector<Unit> all = plan(units);
+void lives(const Bench& b, const std::string& out, int units, int checks, int first) {
+  const std::vector<Unit> all = plan(first, units);
   const int n = static_cast<int>(all.size());
   std::vector<ValveHistory> histories(all.size());
-  for_each(n, "lives", [&](int i) { histories[i] = kept(b, all[i], checks, folder); });
+  for_each(n, "lives", [&](int i) { histories[i] = history_of(b, all[i], checks, out); });
   std::map<std::string, TrendOptions> seeded;
   for (const Degradation& d : degradations) seeded[d.name];
+  for_each(seeded_valves, "seeded valves", [&](int v) { seeded_valve(b, v, out); });
   for_each(std::size(degradations), "seeded faults",
-           [&](int i) { seeded.at(degradations[i].name) = seeded_fault(b, degradations[i]); });
+           [&](int i) { seeded.at(degradations[i].name) = seeded_fault(b, degradations[i], out); });
   for (const auto& [name, o] : seeded) {
     std::fprintf(stderr, "\n%s fails at", name.c_str());
     for (const auto& [check, ratio] : o.failure_ratio) std::fprintf(stderr, " %s x %.3g", check.c_str(), ratio);
@@ -247,7 +181,7 @@ void lives(const Bench& b, const std::string& out, int units, int checks) {
         csv += (own ? "own," : "seeded,") + judged[i][l].row;
         for (Tally* t : {&of_all[lambdas[l]], &of_each[all[i].degradation->name][lambdas[l]]}) t->add(judged[i][l]);
       }
-    std::printf("\nfailure levels: %s\n", own ? "the tool's own" : "a seeded-fault test of the nominal valve");
+    std::printf("\nfailure levels: %s\n", own ? "the tool's own" : "a seeded-fault test of three valves");
     std::printf("%-24s %6s %5s %8s %13s %16s %6s %6s %6s %9s %12s %12s %12s\n", "degradation", "lambda", "units",
                 "alerted", "met", "covered", "early", "late", "named", "CRPS [h]", "tangent", "tangent met",
                 "its CRPS");

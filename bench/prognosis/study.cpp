@@ -33,7 +33,7 @@ Log test_log(const rig::RigModel& valve, const std::string& fault, double severi
 rig::RigRun preflight(std::uint64_t seed) {
   rig::RigRun run;
   run.excitation = "preflight_slew";
-  run.duration = 0.96;
+  run.duration = 1.15;
   run.seed = seed;
   return run;
 }

@@ -42,7 +42,7 @@ Condition random_condition(Random& random);
 // The log of one test as a file would hold it.
 Log test_log(const rig::RigModel& valve, const std::string& fault, double severity, const Condition& at,
              rig::RigRun run);
-// A preflight test of 0.96 s: step, doublet, and two cycles at 5 Hz.
+// A preflight test: step, slews, two cycles at 5 Hz and a sine of 30 %.
 rig::RigRun preflight(std::uint64_t seed);
 
 Recording recording_of(double at, const CheckResult& result);
@@ -52,8 +52,9 @@ const Check* find(const std::vector<Check>& checks, const std::string& name);
 void for_each(int n, const std::string& what, const std::function<void(int)>& work);
 
 void figures(const Bench& bench, const std::string& out);
-void lives(const Bench& bench, const std::string& out, int units, int checks);
+void lives(const Bench& bench, const std::string& out, int units, int checks, int first);
 void series(const Bench& bench, const std::string& out, const std::vector<std::string>& folders);
 void store(const std::string& file, long rows);
+void speed(const Bench& bench);
 
 }  // namespace servodx::study

@@ -103,20 +103,38 @@ struct Regression {
                            prior.array().log().sum());
   }
 
+  // Of a, with d integrated out.
   struct Grown {
-    double log_evidence = 0, mean = 0, variance = 0;  // of a
-    Terms tilt;                                       // how far the terms fall for a unit of a
+    double log_evidence = 0, mean = 0, variance = 0;
+    Eigen::Vector2d d = Eigen::Vector2d::Zero();
+    Terms terms;               // given a at its mean
+    Terms tilt;                // how far they fall for a unit of a
+    double base_variance = 0;  // of the first of them, given a
   };
-  Grown with(const Eigen::VectorXd& growth, double prior_sd) const {
-    const Eigen::VectorXd g = factor.matrixL().solve(growth);
-    const Terms cross = x.transpose() * g;
+  // `g`, whitened: the growth and its products with the features that d stands for.
+  Grown with(const Eigen::Ref<const Eigen::MatrixXd>& g, const Eigen::Vector3d& prior_sd) const {
+    using Small = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 3, 3>;
+    using SmallVector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 3, 1>;
+    using Cross = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, most_terms, 3>;
+    const long m = g.cols();
+    const Cross cross = x.transpose() * g, fall = precision.solve(cross);
+    const SmallVector prior = prior_sd.head(m).cwiseAbs2().cwiseInverse();
+    Small own = g.transpose() * g - cross.transpose() * fall;
+    own.diagonal() += prior;
+    const SmallVector pull = g.transpose() * residual - fall.transpose() * right;
+    const Eigen::LLT<Small> inverse(own);
+    const Small spread = inverse.solve(Small::Identity(m, m));
+    const SmallVector at = spread * pull, per_a = spread.col(0) / spread(0, 0);
     Grown out;
-    out.tilt = precision.solve(cross);
-    const double prior = 1 / (prior_sd * prior_sd);
-    const double own = g.squaredNorm() + prior - cross.dot(out.tilt);
-    const double pull = g.dot(residual) - out.tilt.dot(right);
-    out.mean = pull / own, out.variance = 1 / own;
-    out.log_evidence = log_evidence + 0.5 * (pull * pull / own - std::log(own) + std::log(prior));
+    out.mean = at[0], out.variance = spread(0, 0);
+    out.d.head(m - 1) = at.tail(m - 1);
+    out.terms = mean - fall * at;
+    out.tilt = fall * per_a;
+    const SmallVector of_base = fall.row(0).transpose();
+    out.base_variance =
+        covariance(0, 0) + of_base.dot(spread * of_base) - std::pow(of_base.dot(spread.col(0)), 2) / spread(0, 0);
+    const double log_det = 2 * inverse.matrixLLT().diagonal().array().log().sum();
+    out.log_evidence = log_evidence + 0.5 * (pull.dot(at) - log_det + prior.array().log().sum());
     return out;
   }
 };
@@ -130,6 +148,7 @@ struct GrowthModel::Component {
   int direction = 0;
   double noise = 0, wander = 0;
   double a = 0, a_sd = 0;                  // growth to now
+  Eigen::Vector2d d;                       // of it per unit of the first features
   double base = 0, base_sd = 0, tilt = 0;  // given a: base - tilt (a' - a), with this spread
   double strayed = 0, strayed_sd = 0;      // wander to now
   Terms mean;
@@ -197,15 +216,28 @@ GrowthModel::GrowthModel(std::vector<GrowthPoint> points, const GrowthPrior& pri
       null.push_back(regressions.back().log_evidence - std::log(static_cast<double>(noises.size() * healthy_wanders)));
       if (null.back() >= null[best_null]) best_null = r;
     }
-  for (std::size_t o = 0; o < onsets.size(); ++o) {
-    const double t0 = first + onsets[o].first * (now_ - first), span = std::max(now_ - t0, 1e-12);
-    for (std::size_t l = 0; l < tried.size(); ++l) {
-      for (long i = 0; i < n; ++i) column[i] = tried[l].at((points[static_cast<std::size_t>(i)].time - t0) / span);
-      const double before = std::log(tried[l].weight / laws_weight * onsets[o].second / onsets_weight /
-                                     static_cast<double>(regressions.size()));
-      for (std::size_t r = 0; r < regressions.size(); ++r) {
-        Regression::Grown g = regressions[r].with(column, prior.scale);
-        g.log_evidence += before;
+  // Every growth that is tried, and its products with the oil's features, side by side: whitened in one go.
+  const long oil = prior.tilt > 0 ? std::min(f, 2L) : 0;
+  const Eigen::Vector3d growth_sd(prior.scale, prior.tilt, prior.tilt / 3);
+  const long width = 1 + oil;
+  Eigen::MatrixXd growths(n, static_cast<long>(onsets.size() * tried.size()) * width);
+  long at_column = 0;
+  for (const auto& onset : onsets) {
+    const double t0 = first + onset.first * (now_ - first), span = std::max(now_ - t0, 1e-12);
+    for (const Law& law : tried) {
+      for (long i = 0; i < n; ++i) column[i] = law.at((points[static_cast<std::size_t>(i)].time - t0) / span);
+      growths.col(at_column++) = column;
+      for (long j = 0; j < oil; ++j) growths.col(at_column++) = column.cwiseProduct(x.col(j + 1));
+    }
+  }
+  for (std::size_t r = 0; r < regressions.size(); ++r) {
+    const Eigen::MatrixXd whitened = regressions[r].factor.matrixL().solve(growths);
+    for (std::size_t o = 0; o < onsets.size(); ++o)
+      for (std::size_t l = 0; l < tried.size(); ++l) {
+        Regression::Grown g =
+            regressions[r].with(whitened.middleCols(static_cast<long>(o * tried.size() + l) * width, width), growth_sd);
+        g.log_evidence += std::log(tried[l].weight / laws_weight * onsets[o].second / onsets_weight /
+                                   static_cast<double>(regressions.size()));
         // A prior cut to one side: twice the part of the posterior that lies there.
         if (prior.direction != 0)
           g.log_evidence +=
@@ -213,7 +245,6 @@ GrowthModel::GrowthModel(std::vector<GrowthPoint> points, const GrowthPrior& pri
         all.push_back(g.log_evidence);
         found.push_back({r, o, l, std::move(g)});
       }
-    }
   }
   const double growth = log_sum(all);
   growth_.log_bayes_factor = growth - log_sum(null);
@@ -233,13 +264,16 @@ GrowthModel::GrowthModel(std::vector<GrowthPoint> points, const GrowthPrior& pri
     c.noise = noises[from.regression % noises.size()] * prior.noise;
     c.wander = wanders[from.regression / noises.size()] * prior.scale;
     c.a = from.grown.mean, c.a_sd = std::sqrt(from.grown.variance);
-    c.mean = r.mean - from.grown.tilt * c.a;
-    c.base = c.mean[0], c.base_sd = std::sqrt(r.covariance(0, 0)), c.tilt = from.grown.tilt[0];
+    c.d = from.grown.d;
+    c.mean = from.grown.terms;
+    c.base = c.mean[0], c.base_sd = std::sqrt(from.grown.base_variance), c.tilt = from.grown.tilt[0];
     if (c.wander > 0) {  // what the curve leaves, smoothed to now
       for (long i = 0; i < n; ++i) column[i] = c.law.at((points[static_cast<std::size_t>(i)].time - c.onset) / c.span);
       const Eigen::VectorXd to_now = c.wander * c.wander * drift.col(n - 1);
       const Eigen::VectorXd gain = r.factor.solve(to_now);
-      c.strayed = gain.dot(y - x * c.mean - column * c.a);
+      Eigen::VectorXd left = y - x * c.mean - column * c.a;
+      for (long j = 0; j < oil; ++j) left -= column.cwiseProduct(x.col(j + 1)) * c.d[j];
+      c.strayed = gain.dot(left);
       c.strayed_sd = std::sqrt(std::max(0.0, c.wander * c.wander - gain.dot(to_now)));
     }
     const double at = c.base + c.a + c.strayed;
@@ -267,18 +301,36 @@ GrowthModel::GrowthModel(std::vector<GrowthPoint> points, const GrowthPrior& pri
   }
 }
 
+double GrowthModel::at_reference(const GrowthPoint& point) const {
+  double y = point.y;
+  for (std::size_t j = 0; j < point.features.size(); ++j) y -= growth_.coefficients[j] * point.features[j];
+  if (growth_.probability < 0.5) return y;
+  double total = 0, grown = 0;
+  for (const Component& c : components_) {
+    total += c.weight;
+    for (std::size_t j = 0; j < std::min<std::size_t>(2, point.features.size()); ++j)
+      grown += c.weight * c.d[static_cast<long>(j)] * point.features[j] * c.law.at((point.time - c.onset) / c.span);
+  }
+  return y - grown / total;
+}
+
 Life GrowthModel::life(const FailureAt& failure, std::uint64_t seed) const {
-  constexpr int draws = 64, kept = 200;
+  constexpr double all_draws = 4000;  // shared among the components by their weights
+  constexpr int least_draws = 16, kept = 200;
   std::vector<std::pair<double, double>> passed;  // hours, weight
   for (std::size_t k = 0; k < components_.size(); ++k) {
     const Component& c = components_[k];
     Random random(seed, 21, static_cast<std::uint32_t>(k));
+    const int draws = 2 * std::max(least_draws / 2, static_cast<int>(0.5 * all_draws * c.weight));
     std::vector<double> hours;
-    for (int i = 0; i < 20 * draws && hours.size() < draws; ++i) {
-      const double a = c.a + c.a_sd * random.normal();
-      const double base = c.base - c.tilt * (a - c.a) + c.base_sd * random.normal();
-      const double strayed = c.strayed + c.strayed_sd * random.normal(), ahead = random.normal();
-      const double moved = failure.sd * random.normal();
+    std::array<double, 5> z{};
+    for (int i = 0; i < 20 * draws && std::ssize(hours) < draws; ++i) {
+      // In pairs of opposite sign: the middle of a wide distribution is not left to chance.
+      for (double& v : z) v = i % 2 ? -v : random.normal();
+      const double a = c.a + c.a_sd * z[0];
+      const double base = c.base - c.tilt * (a - c.a) + c.base_sd * z[1];
+      const double strayed = c.strayed + c.strayed_sd * z[2], ahead = z[3];
+      const double moved = failure.sd * z[4];
       if (c.direction != 0 && a * c.direction <= 0) continue;
       const std::optional<double>& given = a > 0 ? failure.upper : failure.lower;
       double t = std::numeric_limits<double>::infinity();

@@ -1,8 +1,9 @@
 // Whether a figure grows, how, and when it will pass a level: Bayesian regression averaged over growth laws.
 //
-//   y(t) = base + temperature terms + a g((t - t0) / (now - t0)) + wander + noise,   g(1) = 1
+//   y(t) = base + temperature terms + (a + d1 z + d2 z2) g((t - t0) / (now - t0)) + wander + noise,   g(1) = 1
 //
-// g: power laws s^p (p = 1 is the linear one), exponentials; t0: onsets from the first check on. Wander is a Wiener
+// z, z2: the first two features (log of viscosity and its square): wear that acts through the oil shows more or less of
+// itself in the cold. g: power laws s^p (p = 1 is the linear one), exponentials; t0: onsets from the first check on. Wander is a Wiener
 // process: no law is quite the wear's. Given law, onset, noise level and wander all else is linear and Gaussian, so
 // each is integrated in closed form (a Rao-Blackwellised particle filter whose particles are a fixed grid:
 // deterministic, and no degeneracy). Their evidences weigh them. The same without growth is the null hypothesis, and
@@ -29,6 +30,7 @@ struct GrowthPrior {
   double noise = 1;                              // [y] about which the noise level is searched, 1/10 to 10 times
   double scale = 1;                              // [y] size of a growth that matters, one standard deviation
   int direction = 0;                             // +1, -1: growth to one side; 0: either
+  double tilt = 0;                               // [y] spread of d1, of a growth of `scale`; of d2 a third
   bool part_lost = false;                        // y = -ln(1 - part lost), and it is the part that grows by a law
 };
 
@@ -62,6 +64,8 @@ class GrowthModel {
  public:
   GrowthModel(std::vector<GrowthPoint> points, const GrowthPrior& prior);
   const Growth& growth() const { return growth_; }
+  // What a check at this time would have read at reference conditions: features zero.
+  double at_reference(const GrowthPoint& point) const;
   // Hours until y at reference conditions passes a level; `upper` counts for growth upwards. Given growth.
   Life life(const FailureAt& level, std::uint64_t seed) const;
 

@@ -232,6 +232,7 @@ GrowthPrior prior_of(const Series& s, std::size_t healthy, const FailureAt& fail
   const double swing = s.paper() ? 0.3 : 0.3 * (adds ? prior.scale : std::max(std::abs(prior.base), prior.noise));
   prior.feature_mean = {0.0, 0.0};
   prior.feature_sd = {swing, swing / 3};  // over three decades of viscosity: twice itself
+  prior.tilt = 0.15 * prior.scale;        // over three e-folds of viscosity: half of itself
   if (s.paper()) {                        // the model's expectation: taken at its word within a half
     prior.feature_mean.push_back(1.0);
     prior.feature_sd.push_back(0.5);
@@ -246,11 +247,7 @@ std::vector<GrowthPoint> set_aside(std::vector<GrowthPoint> points, const Growth
   if (points.size() < least_checks) return points;
   const GrowthModel first(thinned(points), prior);
   std::vector<double> corrected;
-  for (const GrowthPoint& p : points) {
-    double y = p.y;
-    for (std::size_t j = 0; j < p.features.size(); ++j) y -= first.growth().coefficients[j] * p.features[j];
-    corrected.push_back(y);
-  }
+  for (const GrowthPoint& p : points) corrected.push_back(first.at_reference(p));
   std::vector<double> away;
   for (std::size_t i = 0; i < points.size(); ++i) {
     std::vector<double> near;
@@ -291,10 +288,8 @@ CheckTrend trend_of(const Series& s, const TrendOptions& options, std::size_t na
   const Growth& g = model.growth();
   std::vector<double> corrected;
   for (std::size_t i = 0; i < n; ++i) {
-    double y = s.points[i].y;
-    for (std::size_t j = 0; j < g.coefficients.size(); ++j) y -= g.coefficients[j] * s.points[i].features[j];
-    corrected.push_back(y);
-    out.points[i].value = s.out(y);
+    corrected.push_back(model.at_reference(s.points[i]));
+    out.points[i].value = s.out(corrected.back());
   }
   out.log_bayes_factor = g.log_bayes_factor;
   const double confirmed = std::log(static_cast<double>(names) / options.false_alarm);

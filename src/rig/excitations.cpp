@@ -122,22 +122,29 @@ Stimulus preflight(const RigModel& m, const Shape& s) {
     return a * std::sin(two_pi * f * (t - 0.4));
   });
 }
-// Both checks with the offset compensated: rest, small step out and back long enough to settle cold, rest, then whole
-// cycles at several frequencies.
-// The same with a doublet of rated current between them: slewing draws all of the pilot flow through the filter, which
-// a small step does not. The piston comes back to where it was.
+// The same with what it lacks to tell all wear apart, in 0.2 s more. Reversals of rated current between step and sine:
+// slewing draws all of the pilot flow through the filter, which a small step does not. A sine of 30 % after it, at
+// which a spool still moves whose friction or weak motor holds it still in the small one. Whole cycles but for the last
+// half: the piston comes back to within 3 mm. The offset is compensated first.
 Stimulus preflight_slew(const RigModel& m, const Shape& s) {
   const double a = or_else(s.amplitude, 0.04), f = or_else(s.frequency, 5.0);
-  return open_loop(m, [=](double t) {
+  constexpr double slews = 0.35, reversal = 0.03, rest = 0.47, small = 0.55, large_frequency = 10.0;
+  const double large = small + 2 / f, end = large + 1.5 / large_frequency;
+  Stimulus stimulus = open_loop(m, [=](double t) {
     if (t < 0.1) return 0.0;
     if (t < 0.25) return 0.10;
-    if (t < 0.35) return 0.0;
-    if (t < 0.38) return 1.0;
-    if (t < 0.41) return -1.0;
-    if (t < 0.5) return 0.0;
-    return a * std::sin(two_pi * f * (t - 0.5));
+    if (t < slews) return 0.0;
+    if (t < rest) return static_cast<int>((t - slews) / reversal + 1e-9) % 2 == 0 ? 1.0 : -1.0;
+    if (t < small) return 0.0;
+    if (t < large) return a * std::sin(two_pi * f * (t - small));
+    if (t < end) return 0.3 * std::sin(two_pi * large_frequency * (t - large));
+    return 0.0;
   });
+  stimulus.compensated = true;
+  return stimulus;
 }
+// Both checks with the offset compensated: rest, small step out and back long enough to settle cold, rest, then whole
+// cycles at several frequencies.
 Stimulus preflight_full(const RigModel& m, const Shape& s) {
   struct Tone {
     double start, frequency;
@@ -240,7 +247,8 @@ const std::vector<ExcitationInfo>& excitations() {
       {"sweep", "open loop: logarithmic sine sweep from 1 to 150 Hz, 15 % of rated current", sweep},
       {"triangle", "open loop: triangle to full rated current, 0.5 Hz", triangle},
       {"preflight", "open loop: small step out and back, then a sine of 4 % of rated current at 5 Hz", preflight},
-      {"preflight_slew", "preflight with a doublet of full current before the sine, which shows the filter",
+      {"preflight_slew",
+       "preflight with reversals of full current before the sine and a sine of 30 % after it; 1.15 s",
        preflight_slew},
       {"preflight_full",
        "open loop, null compensated: rest, step of 10 % out and back, sines of 4 % at 2, 3, 5 and 8 Hz, 2 s each; 9.5 "

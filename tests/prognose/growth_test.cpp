@@ -98,6 +98,30 @@ TEST(Growth, TemperatureIsNotTakenForGrowth) {
   EXPECT_NEAR(model.growth().coefficients[0], 0.2, 0.02);
 }
 
+// A wear that reads 12 % less of itself for an e-fold of viscosity, its last checks all cold: what counts is how far it
+// would read in warm oil.
+TEST(Growth, WearThatShowsLessInTheColdIsAsFarAsWarmChecksSay) {
+  Random random(10);
+  std::vector<GrowthPoint> points;
+  for (int k = 0; k < 40; ++k) {
+    const double z = k < 34 ? random.uniform(-0.7, 3) : 2.5;
+    points.push_back({static_cast<double>(k), k / 60.0 * (1 - 0.12 * z) + 0.005 * random.normal(), 0.0, {z, z * z}});
+  }
+  GrowthPrior prior = plain_prior();
+  prior.feature_mean = {0.0, 0.0}, prior.feature_sd = {0.3, 0.1}, prior.tilt = 0.15;
+  const GrowthModel model(points, prior);
+  EXPECT_NEAR(quantile(model.life({1.0, {}}, 1), 0.5), 60 - 39, 1.5);
+  EXPECT_NEAR(model.at_reference(points.back()), 39 / 60.0, 0.03);
+}
+
+// The level itself is known to a third only; the curve exactly. The median is where the curve passes the level's middle.
+TEST(Growth, AWideLevelDoesNotMoveTheMiddleOfTheLife) {
+  const auto points = series([](double s) { return s; }, 55, 1e-4, 6);
+  const GrowthModel model(points, plain_prior());
+  for (std::uint64_t seed = 1; seed < 6; ++seed)
+    EXPECT_NEAR(quantile(model.life({.upper = 1.0, .lower = {}, .sd = 0.3}, seed), 0.5), 60 - 54, 0.3);
+}
+
 TEST(Growth, ChecksOfLargeErrorWeighLittle) {
   auto points = series([](double s) { return s; }, 31, 0.01, 4);
   for (int k = 0; k < 31; k += 3)

@@ -1,0 +1,117 @@
+#include "prognosis/units.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <filesystem>
+
+#include "base/atomic_file.h"
+#include "base/csv.h"
+#include "fit/tune.h"
+#include "prognose/history_csv.h"
+#include "signals/log.h"
+
+namespace servodx::study {
+namespace {
+
+namespace fs = std::filesystem;
+
+Log kept_log(const Bench& b, const std::string& file, const rig::RigModel& valve, const Condition& at,
+             const rig::RigRun& run) {
+  if (!fs::exists(file)) {
+    rig::RigRun here = run;
+    here.temperature = at.celsius + 273.15;
+    here.air = at.air;
+    rig::RigModel moved = valve;
+    moved.armature_null += at.null;
+    const rig::RigLog log = rig::run_rig(moved, here);
+    write_log(file, log.columns, log.comments);
+  }
+  return read_log(file, b.rig);
+}
+
+}  // namespace
+
+Degradation end_of(Degradation d, const rig::RigModel& type, const rig::RigModel& valve) {
+  if (std::string_view(d.name) == "radial_clearance_wear") d.failed *= type.edges_clearance / valve.edges_clearance;
+  return d;
+}
+
+Table own_table(const Bench& b, const std::string& name, const rig::RigModel& valve, std::uint32_t stream,
+                const std::string& folder) {
+  const std::string file = folder + "/valves/" + name + ".csv", tests = folder + "/tests/" + name;
+  for (const std::string& made : {tests, folder + "/valves"}) fs::create_directories(made);
+  if (!fs::exists(file)) {
+    Random random(33, stream);
+    rig::RigRun mixed;
+    mixed.excitation = "mixed", mixed.duration = 4, mixed.seed = random.bits64();
+    std::vector<Log> logs = {kept_log(b, tests + "/a1.csv", valve, {}, mixed)};
+    for (const double celsius : {20.0, 40.0, 60.0})
+      logs.push_back(kept_log(b, fmt::format("{}/a{}.csv", tests, logs.size() + 1), valve, {.celsius = celsius},
+                              preflight(random.bits64())));
+    TuneOptions options;
+    options.quiet = true;
+    options.threads = 1;
+    options.generations = 0;  // it begins near
+    write_table(file, tune(logs, b.tuned, b.rig, options).table);
+  }
+  return read_table(file);
+}
+
+std::vector<Unit> plan(int first, int units) {
+  std::vector<Unit> all;
+  const auto add = [&](const Degradation* d, std::uint32_t group, int u) {
+    Random random(31, group, static_cast<std::uint32_t>(u));
+    Unit unit;
+    unit.name = fmt::format("{}-{:02}", d ? d->name : "healthy", u);
+    unit.degradation = d;
+    unit.stream = 1000 * group + static_cast<std::uint32_t>(u);
+    unit.valve = unit.stream + 1;
+    const double power = std::exp(random.uniform(std::log(0.7), std::log(2.0))), onset = random.uniform(0.05, 0.3);
+    unit.power = u % 2 ? power : 1.0;
+    unit.onset = u / 2 % 2 ? onset : 0.0;
+    unit.life = random.uniform(80, 200);
+    all.push_back(unit);
+  };
+  for (int u = first; u < first + units; ++u) {
+    std::uint32_t group = 1;
+    for (const Degradation& d : degradations) add(&d, group++, u);
+    add(nullptr, group, u);
+  }
+  return all;
+}
+
+ValveHistory history_of(const Bench& b, const Unit& unit, int checks, const std::string& folder) {
+  const std::string file = folder + "/units/" + unit.name + ".csv", tests = folder + "/tests/" + unit.name;
+  fs::create_directories(folder + "/units");
+  const rig::RigModel valve = rig::another_valve(b.model, unit.valve);
+  const Table own = own_table(b, unit.name, valve, unit.stream, folder);
+  ValveHistory h;
+  if (fs::exists(file)) {
+    h = read_history_csv(file).valves.front();
+  } else {
+    h.valve = unit.name;
+    Random random(32, unit.stream);
+    std::vector<double> last;
+    const Degradation end =
+        unit.degradation ? end_of(*unit.degradation, b.model, valve) : degradations[0];
+    for (int k = 0; k < checks; ++k) {
+      const double s = 0.95 * k / (checks - 1.0);  // the last check a little before the end
+      const Condition at = random_condition(random);
+      rig::RigRun run = preflight(random.bits64());
+      if (unit.degradation) run.faults[unit.degradation->name] = severity_at(end, unit.progress(s));
+      const Log log = kept_log(b, fmt::format("{}/t{:02}.csv", tests, k + 1), valve, at, run);
+      const CheckResult r = check(log, own, b.rig, {.threads = 1, .last = last});
+      last = r.tracked;
+      h.recordings.push_back(recording_of(s * unit.life, r));
+      h.recordings.back().log = log.path;
+      h.recordings.back().log_sha256 = r.sha256;
+      h.recordings.back().table_sha256 = own.sha256;
+    }
+    write_file(file, history_csv({{h}, {{own.sha256, read_file(own.path)}}}));
+  }
+  for (int i = 0; i < n_parameters; ++i) h.tuned.push_back(own[i].nominal);
+  return h;
+}
+
+}  // namespace servodx::study
