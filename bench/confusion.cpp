@@ -47,6 +47,33 @@ std::vector<Truth> read_truth(const fs::path& file) {
   return out;
 }
 
+struct Replayed {
+  Signal signal;
+  double rms, noise;  // [SI]
+};
+
+// What health leaves of a log, the piston above 0.3 Hz: below what fits look at, so that drift counts here.
+std::vector<Replayed> replayed(const Assessment& a, const Log& log, const Table& tuned, const RigFile& rig) {
+  constexpr double piston_drift = 0.3;  // [Hz]
+  LogData data = prepare(log, rig, moving_average_of(tuned));
+  for (FitChannel& c : data.channels)
+    if (c.signal == Signal::piston_position) c.filter.drift = piston_drift;
+  const auto healthy =
+      std::find_if(a.explanations.begin(), a.explanations.end(), [](const Candidate& c) { return c.name == "healthy"; });
+  std::vector<Replayed> out;
+  if (healthy == a.explanations.end()) return out;
+  const FitProblem problem({&data}, healthy->candidate, {});
+  const Trajectory t = problem.trajectories({}).front();
+  if (!t.ok) return out;
+  for (std::size_t c = 0; c < data.channels.size(); ++c) {
+    double sum = 0, n = 0;
+    for (double r : problem.raw_residual(0, static_cast<int>(c), t))
+      if (!std::isnan(r)) sum += r * r, ++n;
+    out.push_back({data.channels[c].signal, std::sqrt(sum / n), data.channels[c].noise});
+  }
+  return out;
+}
+
 // Words of the rig's truth for labels of ours.
 std::string label_of(const std::string& word) {
   if (word == "sensor_gain_drift_position") return "sensor_fault";
@@ -144,10 +171,10 @@ int main(int argc, char** argv) {
           d.assessment.gross.empty() ? "" : " [" + d.assessment.gross + "]");
       if (t.set == "healthy") {
         fmt::print("    replay");
-        for (const ChannelResult& c : d.assessment.channels) {
-          fmt::print("  {} {:.4g} ({:.1f} noise)", info(c.signal).name, c.rms, c.rms / c.noise_rms);
-          replay[std::string(info(c.signal).name)].push_back(
-              c.signal == Signal::pressure_a || c.signal == Signal::pressure_b ? c.rms / 1e5 : c.rms / c.noise_rms);
+        for (const auto& [signal, rms, noise] : replayed(d.assessment, log, tuned, rig)) {
+          fmt::print("  {} {:.4g} ({:.1f} noise)", info(signal).name, rms, rms / noise);
+          replay[std::string(info(signal).name)].push_back(
+              signal == Signal::pressure_a || signal == Signal::pressure_b ? rms / 1e5 : rms / noise);
         }
         fmt::print("\n");
       }

@@ -5,6 +5,7 @@
 
 #include "effects/armature_angle.h"
 #include "effects/edge_radius.h"
+#include "effects/edge_transition.h"
 #include "effects/effect.h"
 #include "effects/flow_meter_lag.h"
 #include "effects/magnetic_hysteresis.h"
@@ -37,7 +38,8 @@ using AllEffects = EffectList<MagneticHysteresis,  //
                               FlowMeterLag,        //
                               EdgeRadius,          //
                               PortLine,            //
-                              RodCavity>;
+                              RodCavity,           //
+                              EdgeTransition>;
 // A learnt curve costs more than all effects: it has a kernel of its own.
 using CorrectedEffects = Append<AllEffects, Unexplained>;
 inline constexpr int n_values = n_parameters + CorrectedEffects::n_parameters;  // length of a parameter vector

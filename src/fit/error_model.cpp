@@ -11,6 +11,8 @@ namespace {
 
 constexpr double activity_time = 20e-3;      // [s] memory of the activity
 constexpr double unlearnt_independent = 50;  // [1/s]
+// Logs differ in how well the model fits them. A log's own variance about the pooled one is worth so many samples.
+constexpr double prior_worth = 4;
 constexpr const char* comment_key = "model error";
 
 double square(double x) { return x * x; }
@@ -137,7 +139,7 @@ ErrorModel learn_error_model(const FitProblem& problem, const Point& x) {
   return model;
 }
 
-void apply_error_model(FitProblem& problem, const ErrorModel& model, const Point& x) {
+void apply_error_model(FitProblem& problem, const ErrorModel& model, const Point& x, bool each_log) {
   const std::vector<Trajectory> t = problem.trajectories(x);
   for (std::size_t l = 0; l < t.size(); ++l) {
     const LogData& log = *problem.logs()[l];
@@ -150,7 +152,15 @@ void apply_error_model(FitProblem& problem, const ErrorModel& model, const Point
       for (double& a : act)
         if (std::isnan(a)) a = 0;
       std::vector<double> sigma = sigma_of(error, channel.noise, act);
-      const double scale = 1.0 / std::sqrt(effective_of(error, log.scenario.time));
+      const double fraction = effective_of(error, log.scenario.time);
+      double scale = 1.0 / std::sqrt(fraction);
+      if (each_log && t[l].ok) {
+        const std::vector<double> residual = problem.raw_residual(static_cast<int>(l), static_cast<int>(c), t[l]);
+        double sum = 0, n = 0;
+        for (std::size_t k = 0; k < residual.size(); ++k)
+          if (!std::isnan(residual[k])) sum += square(residual[k] / sigma[k]), ++n;
+        scale *= std::sqrt((prior_worth + fraction * sum) / (prior_worth + fraction * n));
+      }
       for (double& s : sigma) s *= scale;
       problem.set_sigma(static_cast<int>(l), static_cast<int>(c), std::move(sigma));
     }

@@ -43,8 +43,9 @@ double effective_fraction(const std::vector<double>& whitened);
 ErrorModel learn_error_model(const FitProblem& problem, const Point& x);
 
 // Sets the problem's whitening from the model at x: sigma(t) / sqrt(effective fraction), so that 0.5 |residual|^2 is a
-// log-likelihood.
-void apply_error_model(FitProblem& problem, const ErrorModel& model, const Point& x);
+// log-likelihood. `each_log`: a channel of a log that the model fits worse than the others counts for less, and one that
+// it fits better for more; its variance has an inverse-gamma prior about the pooled one.
+void apply_error_model(FitProblem& problem, const ErrorModel& model, const Point& x, bool each_log = false);
 
 // As comment lines of a tuned table, and back.
 std::vector<std::string> to_comments(const ErrorModel& model);

@@ -250,7 +250,7 @@ LeastSquaresResult refine(Tuning& run, FitProblem& problem, Point x, ErrorModel&
       error = learn_error_model(problem, x);
       if (held > 0 || round == 0)
         for (ChannelError& c : error.channels) c.independent = std::max(c.independent, independent_rate);
-      apply_error_model(problem, error, x);
+      apply_error_model(problem, error, x, true);
     }
     if (held > 0) hold_out(problem, held);
     const double a = from + (to - from) * round / rounds, b = from + (to - from) * (round + 1) / rounds;
@@ -265,7 +265,7 @@ LeastSquaresResult refine(Tuning& run, FitProblem& problem, Point x, ErrorModel&
 
 std::vector<std::string> default_effects(bool on_stand) {
   if (on_stand) return {"magnetic_hysteresis", "flow_meter_lag", "edge_radius", "port_line"};
-  return {"magnetic_hysteresis", "armature_angle", "mount_compliance"};
+  return {"magnetic_hysteresis", "armature_angle", "mount_compliance", "edge_transition"};
 }
 
 int moving_average_of(const Table& table) {

@@ -86,7 +86,7 @@ Derived<T> derive(const T* p, const Oil& oil) {
   // Plane Couette slot: dp = 12 mu L q / (w c^3); an open edge has a creeping-flow length of some openings.
   const T slot = T(12.0) * dynamic_viscosity;
   d.slot_per_length = slot / p[row::radial_clearance];
-  d.slot_corner = slot * T(c::slot_resistance);
+  d.slot_corner = slot * (T(c::slot_resistance) + hook_edge_creep(p, Effects{}));
   d.supply_edge = T(c::edge_rounding) + hook_edge_rounding(p, false, Effects{});
   d.return_edge = T(c::edge_rounding) + hook_edge_rounding(p, true, Effects{});
   d.edge_loss = T(4.0 * oil.density / (2.0 * c::cd_metering * c::cd_metering));

@@ -2,8 +2,11 @@
 //   name, place, parameters (static list), n_states, and any of these members, each taking a view of the run:
 //     struct Memory, drive(memory, time, command, spring, p)  [A]  applied to the command at each sample, with
 //     memory of its past; struct Sensors, observe(sensors, time, shown, p)  [SI]  applied to what is reported at each
-//     sample viscosity(p)         [-]   factor on the oil's viscosity edge_rounding(p, to_return) [m] added to the
-//     corner radius of the metering edges supply_pressure(view) [Pa] added to the supply pressure at the valve
+//     sample
+//     viscosity(p)         [-]   factor on the oil's viscosity
+//     edge_rounding(p, to_return) [m] added to the corner radius of the metering edges
+//     edge_creep(p)        [-]   added to the creeping-flow length of an open edge, in openings
+//     supply_pressure(view) [Pa] added to the supply pressure at the valve
 //     flapper_force(view)  [N]   added to the torque motor's force
 //     nozzle_1_opening(view, open), nozzle_2_opening(view, open)  [m]  added to the open gap of a nozzle
 //     spool_force(view)    [N]   added to the force on the spool
@@ -143,6 +146,19 @@ T hook_viscosity([[maybe_unused]] const T* p, EffectList<E...>) {
       }(),
       ...);
   return factor;
+}
+
+// What the effects add to the creeping-flow length of an open edge, in openings.
+template <class T, class... E>
+T hook_edge_creep([[maybe_unused]] const T* p, EffectList<E...>) {
+  T added = T(0.0);
+  (
+      [&] {
+        if constexpr (requires { E::edge_creep(p); })
+          added = added + E::edge_creep(p + n_parameters + EffectList<E...>::template parameter_offset<E>());
+      }(),
+      ...);
+  return added;
 }
 
 // What the effects add to the corner radius of the metering edges, those to return or those from supply. [m]

@@ -119,5 +119,31 @@ TEST(ErrorModel, LearnsTheFloorThatWasAdded) {
   }
 }
 
+TEST(ErrorModel, ALogThatTheModelFitsBadlyCountsForLessAndTheOthersForMore) {
+  // Two logs that the model writes; one has three times the white noise that its sensors are said to have.
+  const Table table = shipped_table();
+  const ParameterVector truth = candidate_of(table);
+  const LogData shipped = slice(shipped_data("healthy/h12_mixed"), 0, 2000);
+  const LogData good = written_by_model(shipped, truth, 3);
+  LogData bad = written_by_model(shipped, truth, 4, 3.0);
+  for (FitChannel& c : bad.channels) c.noise /= 3.0;
+  FitProblem problem({&good, &bad}, truth, {free_row(table, row::driver_bandwidth)});
+  const Point x = problem.start();
+  const ErrorModel pooled = learn_error_model(problem, x);
+  const auto whitened = [&](bool each_log) {
+    apply_error_model(problem, pooled, x, each_log);
+    const Eigen::VectorXd r = problem.evaluate(std::span(&x, 1)).front().residual;
+    // Both logs have the same channels and samples; priors follow.
+    const long n = static_cast<long>(good.channels.size() * good.scenario.time.size());
+    return std::pair{r.head(n).squaredNorm(), r.segment(n, n).squaredNorm()};
+  };
+  const auto [good_pooled, bad_pooled] = whitened(false);
+  const auto [good_own, bad_own] = whitened(true);
+  std::printf("bad over good log: pooled %.2f, each with its own variance %.2f\n", bad_pooled / good_pooled,
+              bad_own / good_own);
+  EXPECT_GT(bad_pooled / good_pooled, 4.0);
+  EXPECT_NEAR(bad_own / good_own, 1.0, 0.3);
+}
+
 }  // namespace
 }  // namespace servodx
