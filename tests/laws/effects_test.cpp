@@ -56,6 +56,29 @@ TEST(ViscosityChange, DoublingItIsAnOilTwiceAsThick) {
       EXPECT_NEAR(of(a, which)[k], of(b, which)[k], 1e-6 * (std::abs(of(a, which)[k]) + 1e-9)) << k;
 }
 
+TEST(EdgeTransition, CostsAnOpenEdgeAFlowThatGrowsWithViscosityAndNotWithTheOpening) {
+  // dp = rho / 2 (v / Cd)^2 + 12 mu L v / h: to first order the flow w h v is less by 12 mu L w Cd^2 / rho at any h.
+  const double more = 45.0, length = more / EdgeTransition::per_length, cd = constants::cd_metering;
+  const auto lost = [&](double current, double thicker) {
+    Scenario s = made(0.6, 1e-3, [&](double t) { return t < 0.05 ? 0.0 : current; });
+    s.oil.dynamic_viscosity *= thicker;
+    const auto speed = [&](double added) {
+      const Trajectory t = simulate(s, with<EdgeTransition>(0, EdgeTransition::parameters[0].off + added), all_signals());
+      const auto& x = of(t, Signal::piston_position);
+      return (x[550] - x[450]) / (s.time[550] - s.time[450]);
+    };
+    const ParameterVector v = nominal_candidate();
+    const double first_order =
+        12 * s.oil.dynamic_viscosity * length * v[row::port_width] * cd * cd / s.oil.density / v[row::piston_area_a];
+    return (speed(0) - speed(more)) / first_order;
+  };
+  for (const double current : {4e-3, 10e-3})
+    for (const double thicker : {1.0, 3.0}) {
+      std::printf("%.0f mA, viscosity x%.0f: %.3f of the first order\n", 1e3 * current, thicker, lost(current, thicker));
+      EXPECT_NEAR(lost(current, thicker), 1.0, 0.1);
+    }
+}
+
 TEST(SupplyDroop, SteadySpeedCostsItsFlowTimesTheResistance) {
   // At a steady speed with no load the chambers follow: their sum is supply plus return less what droops.
   Scenario s = made(0.6, 1e-3, [](double t) { return t < 0.05 ? 0.0 : 10e-3; });
