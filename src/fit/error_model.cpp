@@ -13,6 +13,10 @@ constexpr double activity_time = 20e-3;      // [s] memory of the activity
 constexpr double unlearnt_independent = 50;  // [1/s]
 // Logs differ in how well the model fits them. A log's own variance about the pooled one is worth so many samples.
 constexpr double prior_worth = 4;
+// Floor and slope are thought alike in size to within a factor e before the residuals speak: logs that always move say
+// nothing of the floor, and the next log may rest. A log speaks with so many independent samples.
+constexpr double prior_spread = 1;
+constexpr double log_worth = 20;
 constexpr const char* comment_key = "model error";
 
 double square(double x) { return x * x; }
@@ -113,6 +117,8 @@ ErrorModel learn_error_model(const FitProblem& problem, const Point& x) {
         }
         total += one / static_cast<double>(std::max(1L, count));
       }
+      for (double share : {floor / rms, slope * rms_activity / rms})
+        total += square(std::log(std::sqrt(2.0) * share)) / square(prior_spread) / log_worth;
       return total;
     };
     // Two numbers, a smooth bowl in their logs: coarse grid, then halving.

@@ -119,6 +119,36 @@ TEST(ErrorModel, LearnsTheFloorThatWasAdded) {
   }
 }
 
+TEST(ErrorModel, LogsThatAlwaysMoveLeaveAFloorForOneThatRests) {
+  // The error is all in proportion to the activity, and nothing rests: such logs say nothing of the floor.
+  const Table table = shipped_table();
+  const ParameterVector truth = candidate_of(table);
+  LogData log = slice(shipped_data("healthy/h04_multisine"), 500, 2500);
+  SimulateOptions o;
+  o.wanted.fill(true);
+  const Trajectory t = simulate(log.scenario, truth, o);
+  Random random(5);
+  for (FitChannel& c : log.channels) {
+    c.measured = t.signals[c.simulated];
+    const std::vector<double> act = activity(log.scenario.time, c.measured);
+    for (std::size_t k = 0; k < act.size(); ++k) c.measured[k] += act[k] * random.normal();
+    c.noise = 1e-6 * std::abs(c.measured.front()) + 1e-12;
+  }
+  const FitProblem problem({&log}, truth, {free_row(table, row::driver_bandwidth)});
+  const ErrorModel model = learn_error_model(problem, problem.start());
+  for (std::size_t c = 0; c < log.channels.size(); ++c) {
+    const ChannelError& e = *model.find(log.channels[c].signal);
+    std::vector<double> r = problem.raw_residual(0, static_cast<int>(c), t);
+    double sum = 0;
+    for (double x : r) sum += x * x;
+    const double rms = std::sqrt(sum / static_cast<double>(r.size()));
+    std::printf("%s: floor %.3g of the rms, per activity %.2f\n", std::string(info(e.signal).name).c_str(), e.floor / rms,
+                e.per_activity);
+    EXPECT_GT(e.floor / rms, 1e-3) << info(e.signal).name;
+    EXPECT_NEAR(e.per_activity, 1.0, 0.25) << info(e.signal).name;
+  }
+}
+
 TEST(ErrorModel, ALogThatTheModelFitsBadlyCountsForLessAndTheOthersForMore) {
   // Two logs that the model writes; one has three times the white noise that its sensors are said to have.
   const Table table = shipped_table();
