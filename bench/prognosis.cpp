@@ -5,6 +5,7 @@
 //   servodx_prognosis lives   TUNED RIG.toml RIG_MODEL.toml OUT_DIR [UNITS [CHECKS [FIRST]]]   units a degradation
 //   servodx_prognosis series  TUNED RIG.toml OUT_DIR SERIES_DIR...                       t01.csv, t02.csv, ...
 //   servodx_prognosis store   FILE ROWS
+//   servodx_prognosis predictor UNITS                                                   lives with the truth for a reading
 //   servodx_prognosis speed   TUNED RIG.toml RIG_MODEL.toml                               of the monitor
 #include <cstdio>
 
@@ -26,12 +27,14 @@ int run(int argc, char** argv) {
                  argc > 8 ? std::stoi(argv[8]) : 0),
            0;
   if (what == "series" && argc >= 6) return series(bench(false), argv[4], {argv + 5, argv + argc}), 0;
+  if (what == "predictor" && argc == 3) return predictor(std::stoi(argv[2]), 40), 0;
   if (what == "speed" && argc == 5) return speed(bench(true)), 0;
   if (what == "store" && argc == 4) return store(argv[2], std::stol(argv[3])), 0;
   std::fprintf(stderr,
                "usage: servodx_prognosis figures|lives TUNED RIG.toml RIG_MODEL.toml OUT [UNITS [CHECKS [FIRST]]]\n"
                "       servodx_prognosis series TUNED RIG.toml OUT SERIES_DIR...\n"
                "       servodx_prognosis store FILE ROWS\n"
+               "       servodx_prognosis predictor UNITS\n"
                "       servodx_prognosis speed TUNED RIG.toml RIG_MODEL.toml\n");
   return 2;
 }

@@ -56,5 +56,6 @@ void lives(const Bench& bench, const std::string& out, int units, int checks, in
 void series(const Bench& bench, const std::string& out, const std::vector<std::string>& folders);
 void store(const std::string& file, long rows);
 void speed(const Bench& bench);
+void predictor(int units, int checks);
 
 }  // namespace servodx::study

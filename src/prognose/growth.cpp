@@ -234,16 +234,19 @@ GrowthModel::GrowthModel(std::vector<GrowthPoint> points, const GrowthPrior& pri
     const Eigen::MatrixXd whitened = regressions[r].factor.matrixL().solve(growths);
     for (std::size_t o = 0; o < onsets.size(); ++o)
       for (std::size_t l = 0; l < tried.size(); ++l) {
-        Regression::Grown g =
-            regressions[r].with(whitened.middleCols(static_cast<long>(o * tried.size() + l) * width, width), growth_sd);
-        g.log_evidence += std::log(tried[l].weight / laws_weight * onsets[o].second / onsets_weight /
-                                   static_cast<double>(regressions.size()));
-        // A prior cut to one side: twice the part of the posterior that lies there.
-        if (prior.direction != 0)
-          g.log_evidence +=
-              std::log(std::max(1e-300, 2 * normal_cdf(prior.direction * g.mean / std::sqrt(g.variance))));
-        all.push_back(g.log_evidence);
-        found.push_back({r, o, l, std::move(g)});
+        const auto block = whitened.middleCols(static_cast<long>(o * tried.size() + l) * width, width);
+        const double before = std::log(tried[l].weight / laws_weight * onsets[o].second / onsets_weight /
+                                       static_cast<double>(regressions.size() * (oil > 0 ? 2 : 1)));
+        for (long columns = 1; columns <= width; columns += std::max(1L, oil)) {  // with and without the oil in it
+          Regression::Grown g = regressions[r].with(block.leftCols(columns), growth_sd);
+          g.log_evidence += before;
+          // A prior cut to one side: twice the part of the posterior that lies there.
+          if (prior.direction != 0)
+            g.log_evidence +=
+                std::log(std::max(1e-300, 2 * normal_cdf(prior.direction * g.mean / std::sqrt(g.variance))));
+          all.push_back(g.log_evidence);
+          found.push_back({r, o, l, std::move(g)});
+        }
       }
   }
   const double growth = log_sum(all);

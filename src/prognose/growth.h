@@ -3,12 +3,12 @@
 //   y(t) = base + temperature terms + (a + d1 z + d2 z2) g((t - t0) / (now - t0)) + wander + noise,   g(1) = 1
 //
 // z, z2: the first two features (log of viscosity and its square): wear that acts through the oil shows more or less of
-// itself in the cold. g: power laws s^p (p = 1 is the linear one), exponentials; t0: onsets from the first check on. Wander is a Wiener
-// process: no law is quite the wear's. Given law, onset, noise level and wander all else is linear and Gaussian, so
-// each is integrated in closed form (a Rao-Blackwellised particle filter whose particles are a fixed grid:
-// deterministic, and no degeneracy). Their evidences weigh them. The same without growth is the null hypothesis, and
-// the Bayes factor between the two is the trend test: under the null a Bayes factor exceeds 1/alpha with probability
-// alpha at most, however often one looks (Ville 1939).
+// itself in the cold, or, as likely beforehand, does not. g: power laws s^p (p = 1 is the linear one), exponentials; t0:
+// onsets from the first check on. Wander is a Wiener process: no law is quite the wear's. Given law, onset, noise level
+// and wander all else is linear and Gaussian, so each is integrated in closed form (a Rao-Blackwellised particle filter
+// whose particles are a fixed grid: deterministic, and no degeneracy). Their evidences weigh them. The same without
+// growth is the null hypothesis, and the Bayes factor between the two is the trend test: under the null a Bayes factor
+// exceeds 1/alpha with probability alpha at most, however often one looks (Ville 1939).
 // Limits: one growth, monotone but for its wander; what changes its law later is seen late.
 #pragma once
 #include <cstdint>
