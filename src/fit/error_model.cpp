@@ -134,12 +134,14 @@ ErrorModel learn_error_model(const FitProblem& problem, const Point& x) {
         }
       }
     ChannelError error{signal, std::exp(lf), std::exp(ls), 0.0};
+    double correlation_time = 0;  // [s] mean over the logs: one that shows nothing but white noise must not hide the others'
     for (std::size_t i = 0; i < residuals.size(); ++i) {
       const std::vector<double> sigma = sigma_of(&error, noises[i], activities[i]);
       std::vector<double> whitened(residuals[i].size());
       for (std::size_t k = 0; k < whitened.size(); ++k) whitened[k] = residuals[i][k] / sigma[k];
-      error.independent += effective_fraction(whitened) * rates[i] / static_cast<double>(residuals.size());
+      correlation_time += 1 / (effective_fraction(whitened) * rates[i] * static_cast<double>(residuals.size()));
     }
+    error.independent = 1 / correlation_time;
     model.channels.push_back(error);
   }
   return model;
