@@ -10,15 +10,6 @@ namespace {
 
 constexpr double window = 20e-3;  // [s] short against a stroke, long against the noise of a position
 
-struct Part {  // one log's share of a block
-  std::vector<double> missing, passing;
-  std::vector<std::pair<const char*, std::vector<double>>> variables;
-};
-struct Block {
-  BlockReplay about;
-  std::vector<Part> parts;
-};
-
 double mean_square(const std::vector<double>& x) {
   double sum = 0;
   for (double v : x) sum += v * v;
@@ -41,17 +32,18 @@ std::vector<double> signs(const std::vector<double>& x) {
   return out;
 }
 
-BlockReplay pooled(Block& block) {
+BlockReplay pooled(ReplayedBlock& block) {
   BlockReplay out = std::move(block.about);
   std::vector<double> missing, passing;
-  for (const Part& p : block.parts) {
+  for (const ReplayedPart& p : block.parts) {
     missing.insert(missing.end(), p.missing.begin(), p.missing.end());
     passing.insert(passing.end(), p.passing.begin(), p.passing.end());
   }
   out.missing = std::sqrt(mean_square(missing)), out.passing = std::sqrt(mean_square(passing));
   for (std::size_t v = 0; v < block.parts.front().variables.size(); ++v) {
     std::vector<double> x;
-    for (const Part& p : block.parts) x.insert(x.end(), p.variables[v].second.begin(), p.variables[v].second.end());
+    for (const ReplayedPart& p : block.parts)
+      x.insert(x.end(), p.variables[v].second.begin(), p.variables[v].second.end());
     if (const double share = line_share(x, missing); share > out.share)
       out.share = share, out.variable = block.parts.front().variables[v].first;
   }
@@ -60,10 +52,10 @@ BlockReplay pooled(Block& block) {
 
 }  // namespace
 
-std::vector<BlockReplay> replay_blocks(const ValveSubject& subject, const Point& point, int log) {
+std::vector<ReplayedBlock> replay_parts(const ValveSubject& subject, const Point& point, int log) {
   const auto problem = subject.problem({});
   const std::vector<Trajectory> runs = problem->trajectories(point);
-  std::vector<Block> blocks = {
+  std::vector<ReplayedBlock> blocks = {
       {{"current -> spool", {"drive", "first_stage", "spool", "sensor:spool_position"}, "current", "A"}, {}},
       {{"spool and pressures -> flow A",
         {"metering", "flow_a", "supply", "sensor:spool_position", "sensor:pressure_a"},
@@ -93,7 +85,7 @@ std::vector<BlockReplay> replay_blocks(const ValveSubject& subject, const Point&
       const std::vector<double> residual = problem->raw_residual(static_cast<int>(l), static_cast<int>(c), runs[l]);
       const std::vector<double>& simulated = runs[l].signals[static_cast<std::size_t>(channel.simulated)];
       const double per_metre = candidate[row::feedback_wire_stiffness] / candidate[row::torque_motor_gain];
-      Part part;
+      ReplayedPart part;
       std::vector<double> x, v;
       for (std::size_t k = 1; k < residual.size(); ++k) {
         if (!std::isfinite(residual[k])) continue;
@@ -111,7 +103,7 @@ std::vector<BlockReplay> replay_blocks(const ValveSubject& subject, const Point&
     const Balance b = balance(data.scenario, measured, candidate, window);
     if (b.time.empty()) continue;
     const auto part_of = [&](const std::vector<double>& missing, double area, const std::vector<double>& by) {
-      Part part;
+      ReplayedPart part;
       part.missing = missing;
       for (double v : by) part.passing.push_back(area * v);
       part.variables = {{"piston_position", b.piston},
@@ -127,9 +119,13 @@ std::vector<BlockReplay> replay_blocks(const ValveSubject& subject, const Point&
     }
     blocks[3].parts.push_back(part_of(b.force, candidate[row::piston_area_a], b.load_pressure));
   }
+  std::erase_if(blocks, [](const ReplayedBlock& b) { return b.parts.empty(); });
+  return blocks;
+}
+
+std::vector<BlockReplay> replay_blocks(const ValveSubject& subject, const Point& point, int log) {
   std::vector<BlockReplay> out;
-  for (Block& b : blocks)
-    if (!b.parts.empty()) out.push_back(pooled(b));
+  for (ReplayedBlock& b : replay_parts(subject, point, log)) out.push_back(pooled(b));
   return out;
 }
 

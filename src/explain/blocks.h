@@ -12,6 +12,7 @@
 #pragma once
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "explain/valve.h"
@@ -27,6 +28,17 @@ struct BlockReplay {
   double share = 0;                  // of its square that this line takes
   std::optional<double> p_new = {};  // chance that a healthy log misses as much
 };
+
+// One log's share of a block, sample by sample.
+struct ReplayedPart {
+  std::vector<double> missing, passing;
+  std::vector<std::pair<std::string, std::vector<double>>> variables;
+};
+struct ReplayedBlock {
+  BlockReplay about;
+  std::vector<ReplayedPart> parts;
+};
+std::vector<ReplayedBlock> replay_parts(const ValveSubject& subject, const Point& point, int log = -1);
 
 // At a point of problem({}): `log` alone, or all pooled (negative).
 std::vector<BlockReplay> replay_blocks(const ValveSubject& subject, const Point& point, int log = -1);

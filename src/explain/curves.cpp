@@ -2,9 +2,12 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Cholesky>
 #include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
+
+#include "explain/blocks.h"
 
 namespace servodx {
 namespace {
@@ -87,6 +90,7 @@ std::vector<Curve> add_curves(ValveSubject& subject) {
       f.at = effect_row<U>(4 + k);
       f.lower = -at.largest, f.upper = at.largest, f.start = 0;
       f.apply = [curve, at = f.at](double* v, double value) {
+        if (value == 0) return;  // all curves share the rows: one that is off leaves them to the one that is on
         v[effect_row<U>(0)] = curve.place, v[effect_row<U>(1)] = curve.variable, v[effect_row<U>(2)] = curve.factor;
         v[effect_row<U>(3)] = curve.scale;
         v[at] = value;
@@ -101,6 +105,48 @@ std::vector<Curve> add_curves(ValveSubject& subject) {
     out.push_back(curve);
   }
   return out;
+}
+
+void guess_curves(ValveSubject& subject, const std::vector<Curve>& curves, const Point& point) {
+  const std::vector<ReplayedBlock> blocks = replay_parts(subject, point);
+  for (const Curve& curve : curves) {
+    const U::PlaceInfo& place = U::places[curve.place];
+    // The block whose missing quantity is what the curve adds.
+    const auto block = std::find_if(blocks.begin(), blocks.end(), [&](const ReplayedBlock& b) {
+      return curve.place == U::drive ? b.about.quantity == "current" : b.about.quantity == place.where;
+    });
+    if (block == blocks.end()) continue;
+    // Least squares on the knots; a knot that the logs do not reach stays at rest.
+    constexpr double rest = 1e-6;
+    Eigen::MatrixXd gram = Eigen::MatrixXd::Zero(U::knots, U::knots);
+    Eigen::VectorXd right = Eigen::VectorXd::Zero(U::knots);
+    bool shown = true;
+    for (const ReplayedPart& part : block->parts) {
+      const auto variable = [&](const char* name) -> const std::vector<double>* {
+        for (const auto& [its, values] : part.variables)
+          if (its == name) return &values;
+        return nullptr;
+      };
+      const auto* x = variable(U::variables[curve.variable].name);
+      const auto* by = curve.factor == U::one ? nullptr : variable(U::factors[curve.factor]);
+      shown = shown && x && (by || curve.factor == U::one);
+      for (std::size_t k = 0; shown && k < part.missing.size(); ++k) {
+        const double s = (*x)[k] / std::hypot((*x)[k], curve.scale);
+        const double factor = !by ? 1 : curve.factor == U::by_load_pressure ? (*by)[k] / U::factor_pressure : (*by)[k];
+        Eigen::VectorXd row = Eigen::VectorXd::Zero(U::knots);
+        double power = factor;
+        for (int j = 0; j < U::knots; ++j, power *= s)
+          for (int i = 0; i < U::knots; ++i) row[i] += curve::powers[j][i] * power;
+        if (!row.allFinite() || !std::isfinite(part.missing[k])) continue;
+        gram += row * row.transpose();
+        right += row * part.missing[k];
+      }
+    }
+    if (!shown || !(gram.trace() > 0)) continue;
+    gram.diagonal().array() += rest * gram.trace();
+    const Eigen::VectorXd knots = gram.ldlt().solve(right).cwiseMax(-place.largest).cwiseMin(place.largest);
+    subject.try_at(curve.cause, {knots.data(), knots.data() + U::knots});
+  }
 }
 
 LearntCurve learnt(const Curve& curve, const std::vector<double>& knots, const std::vector<double>& std_error) {

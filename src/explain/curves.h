@@ -16,6 +16,10 @@ struct Curve {
 // Adds the curves as causes; scales are the variables' rms on the logs.
 std::vector<Curve> add_curves(ValveSubject& subject);
 
+// Where the log shows what drives and moves a block, what it misses there, sample by sample, gives the curves of its
+// place a first guess, however far from a straight line the simulation's answer to them is. `point`: of problem({}).
+void guess_curves(ValveSubject& subject, const std::vector<Curve>& curves, const Point& point);
+
 struct CurvePoint {
   double x = 0, value = 0, std_error = 0;  // [SI]
 };

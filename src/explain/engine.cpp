@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <optional>
 
 #include "base/random.h"
 
@@ -49,8 +50,9 @@ Point carried(const Subject& subject, const ExplainedFit& from, const SubjectFit
   return x;
 }
 
-LeastSquaresOptions how(int iterations) {
+LeastSquaresOptions how(int iterations, bool curve) {
   LeastSquaresOptions o;
+  if (curve) o.damping_trials = 3;  // no batch makes its runs cheap
   o.max_iterations = iterations;
   o.difference = Difference::forward;
   o.cost_tolerance = 1e-4;
@@ -130,6 +132,34 @@ std::pair<long, long> rows_of(const Series& s, const Block& b) {
   return {s.first + from, to - from};
 }
 
+// deviance_of as a sum of squares: about this residual, the weight of each row that makes their gradients alike.
+// Refitted with the weights of what is left, a sum of squares arrives where the deviance is least.
+Eigen::VectorXd weights_at(const Subject& subject, const Eigen::VectorXd& residual) {
+  Eigen::VectorXd w = Eigen::VectorXd::Ones(residual.size());
+  for (const Series& s : subject.series()) {
+    const double independent = static_cast<double>(s.count) * s.effective;
+    const double times = residual.segment(s.first, s.count).squaredNorm() / (independent * s.usual);
+    if (times > 1) w.segment(s.first, s.count).setConstant(1 / std::sqrt(times));
+  }
+  return w;
+}
+LeastSquaresProblem weighed(const LeastSquaresProblem& p, const Eigen::VectorXd& w) {
+  LeastSquaresProblem out = p;
+  out.evaluate = [p, w](std::span<const Point> points) {
+    std::vector<Evaluation> e = p.evaluate(points);
+    for (Evaluation& one : e)
+      if (one.ok) one.residual.array() *= w.array();
+    return e;
+  };
+  if (p.jacobian)
+    out.jacobian = [p, w](const Point& x, const Eigen::VectorXd& r, Eigen::MatrixXd& j) {
+      if (!p.jacobian(x, r.cwiseQuotient(w), j)) return false;
+      j.array().colwise() *= w.array();
+      return true;
+    };
+  return out;
+}
+
 }  // namespace
 
 double deviance_of(const Subject& subject, const Eigen::VectorXd& residual) {
@@ -182,11 +212,15 @@ ExplainedFit fit_causes(const Subject& subject, const std::vector<int>& causes, 
     }
   }
   Point start = starts.front();
-  if (starts.size() > 1) {
+  std::optional<Eigen::VectorXd> weights;  // none where nothing is known of the start
+  if (from) {
     const std::vector<Evaluation> e = out.fit.problem.evaluate(starts);
     double best = 1e300;
     for (std::size_t i = 0; i < e.size(); ++i)
-      if (e[i].ok && e[i].residual.squaredNorm() < best) best = e[i].residual.squaredNorm(), start = starts[i];
+      if (const double d = e[i].ok ? deviance_of(subject, e[i].residual) : 1e300; d < best) {
+        best = d, start = starts[i];
+        weights = weights_at(subject, e[i].residual);
+      }
   }
   LeastSquaresProblem problem = out.fit.problem;
   if (score && quick) {
@@ -203,8 +237,8 @@ ExplainedFit fit_causes(const Subject& subject, const std::vector<int>& causes, 
         moved.back()[static_cast<std::size_t>(k)] += dx.back();
       }
       const std::vector<Evaluation> e = p.evaluate(moved);
-      j.resize(r.size(), n);
-      j.leftCols(old) = kept;
+      j.setZero(r.size(), n);
+      j.topLeftCorner(kept.rows(), old) = kept;  // priors of the new numbers come last
       for (std::size_t k = 0; k < e.size(); ++k) {
         if (!e[k].ok) return false;
         j.col(old + static_cast<long>(k)) = (e[k].residual - r) / dx[k];
@@ -212,14 +246,27 @@ ExplainedFit fit_causes(const Subject& subject, const std::vector<int>& causes, 
       return true;
     };
   }
-  const LeastSquaresResult r = minimise_least_squares(problem, start, how(iterations));
-  if (r.reason == StopReason::start_failed) return out;
-  out.ok = true;
-  out.point = r.point;
-  out.misfit = 2 * r.misfit;
-  out.deviance = deviance_of(subject, r.residual);
-  out.residual = r.residual;
-  out.jacobian = r.jacobian;
+  const bool curve = std::any_of(causes.begin(), causes.end(),
+                                 [&](int c) { return subject.causes()[static_cast<std::size_t>(c)].curve; });
+  // Twice where weights are in play: what is left of a channel once the cause is in it is not what it began with.
+  const int passes = weights && weights->minCoeff() < 1 ? 2 : 1;
+  for (int pass = 0; pass < passes; ++pass) {
+    const bool plain = passes == 1;
+    const LeastSquaresResult r =
+        minimise_least_squares(plain ? problem : weighed(problem, *weights), start, how(iterations, curve));
+    if (r.reason == StopReason::start_failed) return out;
+    const Eigen::VectorXd residual = plain ? r.residual : r.residual.cwiseQuotient(*weights);
+    const double deviance = deviance_of(subject, residual);
+    if (out.ok && deviance > out.deviance) break;
+    out.ok = true;
+    out.point = start = r.point;
+    out.misfit = residual.squaredNorm();
+    out.deviance = deviance;
+    out.residual = residual;
+    out.jacobian = r.jacobian;
+    if (!plain) out.jacobian.array().colwise() /= weights->array();
+    weights = weights_at(subject, residual);
+  }
   return out;
 }
 
@@ -302,8 +349,13 @@ std::vector<CauseScore> score_causes(const Subject& subject, const ExplainedFit&
         }
         s.probes.push_back(p);
       }
-      const double gain = d.cols() > 0 ? left - deviance_of(subject, r0 - d * d.colPivHouseholderQr().solve(r0)) : 0.0;
-      if (gain > s.gain) s.gain = gain, s.alternative = static_cast<int>(a);
+      Eigen::VectorXd r = r0;
+      for (int pass = 0; pass < 2 && d.cols() > 0; ++pass) {
+        const Eigen::VectorXd w = weights_at(subject, r);
+        r = r0 - d * (w.asDiagonal() * d).colPivHouseholderQr().solve(w.cwiseProduct(r0));
+        if (const double gain = left - deviance_of(subject, r); gain > s.gain)
+          s.gain = gain, s.alternative = static_cast<int>(a);
+      }
     }
     out.push_back(std::move(s));
   }
@@ -327,7 +379,7 @@ void cross_validate(const Subject& subject, ExplainedFit& fit, const EngineOptio
           const auto [at, n] = rows_of(s, blocks[b]);
           mask.segment(at, n).setZero();
         }
-    moved.push_back(stepped(fit, mask));
+    moved.push_back(stepped(fit, mask.cwiseProduct(weights_at(subject, fit.residual).head(rows))));
   }
   const std::vector<Evaluation> runs = fit.fit.problem.evaluate(moved);
   for (int fold = 0; fold < options.folds; ++fold) {
@@ -457,6 +509,7 @@ Explanation explain(Subject& subject, const EngineOptions& options, const Explan
     const double share = options.p_left ? 0.5 * options.level : options.level;
     const double level = round == 0 ? share : share * share;
     const bool abnormal = options.p_left && options.p_left(now, round) <= level;
+    const bool abnormal_rows = abnormal && options.p_left(now, round + 1) <= level;  // not by its blocks alone
     std::vector<double> p(n, options.p_new ? 1.0 : 0.0);
     for (std::size_t c = 0; c < n; ++c) {
       if (scores[c].probes.empty()) continue;  // not looked at
@@ -504,10 +557,11 @@ Explanation explain(Subject& subject, const EngineOptions& options, const Explan
     });
     std::vector<int> judged;                        // positions in fits
     std::vector<ExplainedFit> beside(fits.size());  // the same on top of re-tuning
+    std::vector<Interval> beyond(fits.size());
     int new_judged = 0, rare_judged = 0;
     for (std::size_t i = 0; i < fits.size() && !stopped(); ++i) {
       const int c = fits[i].causes.back();
-      CandidateResult& r = out.candidates[static_cast<std::size_t>(c)];
+      CandidateResult later, &r = round == 0 ? out.candidates[static_cast<std::size_t>(c)] : later;
       r.fitted = true;
       r.delta_bic = delta_bic(now, fits[i], out.degrees);
       r.reason = r.delta_bic <= 0 ? "not worth its numbers" : "others fit better";
@@ -526,9 +580,16 @@ Explanation explain(Subject& subject, const EngineOptions& options, const Explan
         ExplainedFit with = fit_causes(subject, fits[i].causes, &retuned, score, quick_iterations, true);
         if (with.ok) cross_validate(subject, with, options);
         r.beyond_retuning = with.ok ? heldout_gain(retuned, with, options.seed) : Interval{};
+        beyond[i] = r.beyond_retuning;
         beside[i] = std::move(with);
       }
-      if (retuned.ok && r.beyond_retuning.value <= 0)
+      // A name that is not news by itself has to be what makes the data abnormal.
+      const bool restores = subject.causes()[static_cast<std::size_t>(c)].curve ||
+                            p[static_cast<std::size_t>(c)] <= level || !is_new(c) || !abnormal_rows ||
+                            options.p_left(fits[i], round + 1) > level;
+      if (!restores)
+        r.reason = "no news by itself, and the data stay abnormal with it";
+      else if (retuned.ok && r.beyond_retuning.value <= 0)
         r.reason = "re-tuning alone does as well on held-out data";
       else if (r.heldout_gain.lower > 0)
         judged.push_back(static_cast<int>(i));
@@ -542,7 +603,7 @@ Explanation explain(Subject& subject, const EngineOptions& options, const Explan
       r.heldout_gain = heldout_gain(now, fits[i], options.seed);
       r.delta_bic = delta_bic(now, fits[i], out.degrees);
       r.misfit_gain = now.deviance - fits[i].deviance;
-      r.beyond_retuning = out.candidates[static_cast<std::size_t>(r.cause)].beyond_retuning;
+      r.beyond_retuning = beyond[i];
       size_up(subject, fits[i], r);
       return r;
     };
@@ -599,6 +660,10 @@ Explanation explain(Subject& subject, const EngineOptions& options, const Explan
     }
   }
   for (CauseResult& r : out.causes) size_up(subject, now, r);
+  if (out.causes.size() == 1 && steps.size() > 1) {  // what came before it is out again
+    out.causes.front().heldout_gain = heldout_gain(out.before, now, options.seed);
+    out.causes.front().delta_bic = delta_bic(out.before, now, out.degrees);
+  }
   out.after = std::move(now);
   if (!out.causes.empty() && subject.retunes() && subject.holds() && !stopped()) {
     if (!out.wide.ok) {

@@ -183,8 +183,9 @@ ExplainResult explain_logs(const std::vector<Log>& logs, const Table& tuned, con
     if (logs.size() > 1)
       for (const Log& log : logs) {
         single.emplace_back(std::vector<Log>{log}, tuned, rig, options.threads, known);
-        add_curves(single.back());
+        const std::vector<Curve> of_one = add_curves(single.back());
         single_fits.push_back(fit_base(single.back(), engine.iterations));
+        if (single_fits.back().ok) guess_curves(single.back(), of_one, single_fits.back().point);
       }
     engine.p_new = [&](const CauseScore& s, int round) {
       std::vector<HealthyScore> scores;
@@ -211,18 +212,22 @@ ExplainResult explain_logs(const std::vector<Log>& logs, const Table& tuned, con
   };
   score_alone();
   Explanation e = explain(subject, engine);
-  // A name has to leave the logs as healthy ones are left, or to do as well as a curve, which has none.
+  // A name has to leave the logs as healthy ones are left, or to do as well as a curve, which has none. A row without a
+  // name of its own, which takes on what the list does not have, has to do better than a curve beyond the interval.
   const auto like_healthy = [&](const Explanation& x) {
     return healthy && test->any(subject.misses(x.after.residual)) > options.level;
   };
-  if (e.before.ok && (e.causes.empty() || (healthy && !like_healthy(e)))) {
+  const bool bare = !e.causes.empty() && subject.causes()[static_cast<std::size_t>(e.causes.front().cause)].prior < 1;
+  if (e.before.ok && (e.causes.empty() || bare || (healthy && !like_healthy(e)))) {
+    guess_curves(subject, curves, e.before.point);
     engine.among = [](const Cause& c) { return c.curve; };
-    engine.most = 1;
+    engine.most = 1, engine.fitted = engine.judged = 3;
     score_alone();
     Explanation learnt_one = explain(subject, engine, &e);
     curve_scores = learnt_one.scores;
-    const bool better = e.causes.empty() ||
-                        (!learnt_one.causes.empty() && heldout_gain(e.after, learnt_one.after, options.seed).lower > 0);
+    const bool better = e.causes.empty() || (!learnt_one.causes.empty() &&
+                                             (bare ? heldout_gain(learnt_one.after, e.after, options.seed).lower <= 0
+                                                   : heldout_gain(e.after, learnt_one.after, options.seed).lower > 0));
     if (!learnt_one.causes.empty() && better) {
       for (std::size_t c = 0; c < e.candidates.size(); ++c)
         if (!subject.causes()[c].curve) {

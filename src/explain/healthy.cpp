@@ -94,14 +94,16 @@ HealthyLog score_healthy(const Log& log, const Table& tuned, const RigFile& rig,
   HealthyLog out;
   out.log = log.path, out.sha256 = log.sha256;
   ValveSubject subject({log}, tuned, rig, threads, KnownRig{});
-  add_curves(subject);
+  const std::vector<Curve> curves = add_curves(subject);
   const ExplainedFit fit = fit_base(subject, EngineOptions{}.iterations);
   if (fit.ok) {
+    guess_curves(subject, curves, fit.point);
     out.adequacy = subject.adequacy(fit.residual);
     for (const CauseScore& s : score_causes(subject, fit)) out.scores.push_back(summarise(subject, s));
     out.misses = subject.misses(fit.residual);
     out.errors = subject.errors(fit.residual);
-    out.air = subject.air({}, fit.point).front();
+    out.air = subject.own(0, row::air_fraction, fit.point);
+    out.command_slope = subject.own(0, nuisance::command_slope, fit.point);
     for (const BlockReplay& b : replay_blocks(subject, fit.point)) out.misses.push_back({b.block, b.missing});
   }
   if (simulations) *simulations += subject.simulations();
@@ -114,6 +116,7 @@ KnownRig HealthyReference::known() const {
   for (const HealthyLog& l : logs) {
     out.errors.insert(out.errors.end(), l.errors.begin(), l.errors.end());
     if (l.air > 0) out.air.push_back(l.air);
+    if (std::isfinite(l.command_slope)) out.command_slope.push_back(l.command_slope);
   }
   return out;
 }

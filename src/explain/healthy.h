@@ -33,7 +33,8 @@ struct HealthyLog {
   std::vector<HealthyScore> scores;
   std::vector<Miss> misses;
   std::vector<UsualError> errors;
-  double air = std::nan("");  // [-] free air, as fitted
+  double air = std::nan("");            // [-] free air, as fitted
+  double command_slope = std::nan("");  // of the command between samples, as fitted
 };
 struct HealthyReference {
   std::vector<HealthyLog> logs;

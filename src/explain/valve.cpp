@@ -21,7 +21,7 @@ namespace {
 constexpr double least_sd = 2e-3;
 constexpr double wide_sd = 0.1;  // re-tuning alone, to compare with
 constexpr double longest_memory = 1 - 1e-6;
-constexpr double slack = 10;       // an effect may grow beyond what healthy parts show by this
+constexpr double slack = 10;       // an effect may grow beyond what this rig shows when healthy by this
 constexpr double row_prior = 0.1;  // a row that was held for a reason, beside an effect that has a name
 
 // What shows a cause best.
@@ -92,18 +92,22 @@ double travel_of(const Scenario& s) {
   return sum / s.rated_current;
 }
 
-// Air goes where healthy logs have had it, by Student's 99 %; beyond that it is a cause, and no log's own affair.
-void limit_air(FreeValue& air, const std::vector<double>& healthy) {
+// What healthy logs have had of a nuisance, by Student's 99 %, is where it goes; beyond is a cause, and no log's own
+// affair. A log's air is a number of its oil; the command between samples is the logger's, and a delay in its place.
+void limit(FreeValue& own, const std::vector<double>& healthy) {
   if (healthy.size() < 3) return;
+  const auto scaled = [&](double v) { return own.log_scale ? std::log(v) : v; };
+  const auto back = [&](double v) { return own.log_scale ? std::exp(v) : v; };
   double mean = 0, square = 0;
   const auto n = static_cast<double>(healthy.size());
-  for (double v : healthy) mean += std::log(v) / n;
-  for (double v : healthy) square += std::pow(std::log(v) - mean, 2) / (n - 1);
+  for (double v : healthy) mean += scaled(v) / n;
+  for (double v : healthy) square += std::pow(scaled(v) - mean, 2) / (n - 1);
   double t = 2.6;  // quantile, found by steps: once a subject
   while (student_tail(t, n - 1) > 0.01) t *= 1.05;
-  const double reach = t * std::sqrt(square * (1 + 1 / n));
-  air.lower = std::max(air.lower, std::exp(mean - reach)), air.upper = std::min(air.upper, std::exp(mean + reach));
-  air.start = std::clamp(air.start, air.lower, air.upper);
+  const double reach = t * std::sqrt(square * (1 + 1 / n)), least = 1e-3 * (own.upper - own.lower);
+  own.lower = std::max(own.lower, back(mean - reach));
+  own.upper = std::max(std::min(own.upper, back(mean + reach)), own.lower + least);
+  own.start = std::clamp(own.start, own.lower, own.upper);
 }
 
 double median(std::vector<double> v) {
@@ -144,7 +148,8 @@ ValveSubject::ValveSubject(const std::vector<Log>& logs, const Table& tuned, con
   add_causes(rig);
   for (std::size_t l = 0; l < logs_.size(); ++l)
     for (FreeValue& f : nuisance_values(logs_[l], static_cast<int>(l), base_, rig.null_limit)) {
-      if (known_ && f.at == row::air_fraction) limit_air(f, known_->air);
+      if (known_ && f.at == row::air_fraction) limit(f, known_->air);
+      if (known_ && f.at == nuisance::command_slope) limit(f, known_->command_slope);
       free_.push_back(std::move(f));
     }
   own_ = free_.size();
@@ -227,7 +232,7 @@ void ValveSubject::add_causes(const RigFile& rig) {
       const EffectParameter& p = e.parameters[static_cast<std::size_t>(j)];
       const int at = e.first + j;
       const double v = base_[static_cast<std::size_t>(at)];
-      const double upper = p.switches && p.off == p.lower && v > 0.1 * p.upper ? slack * p.upper : p.upper;
+      const double upper = p.switches && p.off == p.lower ? std::max(p.upper, slack * v) : p.upper;
       return FreeValue{p.name, at, std::min(p.lower, v), std::max(upper, v), false, v};
     };
     if (e.name == MainsPickup::name) {
@@ -297,11 +302,16 @@ void ValveSubject::add_causes(const RigFile& rig) {
     cause.where = e.place;
     std::vector<FreeValue> values;
     std::vector<std::vector<double>> sizes;
+    std::vector<std::pair<std::size_t, double>> typical;  // shapes that the table has otherwise
     for (std::size_t j = 0; j < e.parameters.size(); ++j) {
       const EffectParameter& p = e.parameters[j];
       FreeValue f = value_of(static_cast<int>(j));
-      const bool in_table = table_.find(p.name) >= 0;
-      if (!p.switches && !in_table) f.start = p.start;
+      const int in_table = table_.find(p.name);
+      // What grows is the size. A shape that was found in tuning is this valve's own; let go, it takes on what any
+      // other cause does.
+      if (!p.switches && in_table >= 0 && table_[in_table].std_error) continue;
+      if (!p.switches && in_table < 0) f.start = p.start;
+      if (!p.switches && f.start != p.start) typical.emplace_back(values.size(), p.start);
       cause.numbers.push_back(number_of(f, p.unit, p.switches));
       sizes.emplace_back();
       if (p.switches) {
@@ -319,15 +329,15 @@ void ValveSubject::add_causes(const RigFile& rig) {
       sizes.push_back(sizes_about(cause.numbers.back(), {2 * r.nominal, 5 * r.nominal}));
     }
     finish(std::move(cause), values, sizes);
-    // The shape that the table has may suit what it had to imitate: the typical one is tried as well.
+    // A shape that the table has, and no log has shown, may suit what it had to imitate: the typical one is tried as
+    // well.
     Cause& added = causes_.back();
     const auto probes = added.probes;
-    for (std::size_t j = 0; j < e.parameters.size(); ++j)
-      if (const EffectParameter& p = e.parameters[j]; !p.switches && values[j].start != p.start)
-        for (const auto& alternative : probes) {
-          added.probes.push_back(alternative);
-          for (auto& probe : added.probes.back()) probe[j] = p.start;
-        }
+    for (const auto& [j, start] : typical)
+      for (const auto& alternative : probes) {
+        added.probes.push_back(alternative);
+        for (auto& probe : added.probes.back()) probe[j] = start;
+      }
   }
 
   // Rows.
@@ -497,12 +507,9 @@ std::vector<Miss> ValveSubject::misses(const Eigen::VectorXd& rows) const {
   return out;
 }
 
-std::vector<double> ValveSubject::air(const std::vector<int>& causes, const Point& point) const {
-  std::vector<double> out;
-  const auto p = problem(causes);
-  for (std::size_t l = 0; l < logs_.size(); ++l)
-    out.push_back(p->candidate(point, static_cast<int>(l))[row::air_fraction]);
-  return out;
+double ValveSubject::own(int log, int at, const Point& point) const {
+  const bool stated = at == nuisance::command_slope && logs_[static_cast<std::size_t>(log)].scenario.command_slope;
+  return stated ? std::nan("") : problem({})->candidate(point, log)[static_cast<std::size_t>(at)];
 }
 
 double ValveSubject::adequacy(const Eigen::VectorXd& rows) const {

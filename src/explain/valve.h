@@ -34,8 +34,9 @@ struct UsualError {
 };
 // What is known of a rig from its healthy logs.
 struct KnownRig {
-  std::vector<UsualError> errors;  // of all logs
-  std::vector<double> air;         // fraction, a log each
+  std::vector<UsualError> errors;     // of all logs
+  std::vector<double> air;            // fraction, a log each
+  std::vector<double> command_slope;  // of the command between samples, a log each: how the logger takes it
 };
 
 class ValveSubject : public Subject {
@@ -57,8 +58,8 @@ class ValveSubject : public Subject {
   // The same channel by channel, the root of it; and of what each sample says beyond the one before.
   std::vector<Miss> misses(const Eigen::VectorXd& rows) const;
   std::vector<UsualError> errors(const Eigen::VectorXd& rows) const;
-  // Free air of each log at a point.
-  std::vector<double> air(const std::vector<int>& causes, const Point& point) const;
+  // A nuisance of a log at a point of problem({}); NaN where the rig file states it.
+  double own(int log, int at, const Point& point) const;
   long simulations() const override;
   long failed_simulations() const override;
 
@@ -69,6 +70,10 @@ class ValveSubject : public Subject {
   const std::vector<FreeValue>& values(int cause) const { return values_[static_cast<std::size_t>(cause)]; }
   // Another cause, a learnt curve.
   int add(Cause cause, std::vector<FreeValue> values);
+  // Another size at which a cause is tried, and a fit of it may begin.
+  void try_at(int cause, std::vector<double> numbers) {
+    causes_[static_cast<std::size_t>(cause)].probes.push_back({std::move(numbers)});
+  }
   const ParameterVector& base() const { return base_; }
   const Table& table() const { return table_; }
 

@@ -252,6 +252,7 @@ Json healthy_json(const HealthyReference& healthy) {
                     {"sha256", l.sha256},
                     {"errors", errors},
                     {"air_fraction", number(l.air)},
+                    {"command_slope", number(l.command_slope)},
                     {"adequacy", number(l.adequacy)},
                     {"scores", scores},
                     {"misses", misses}});
@@ -281,7 +282,8 @@ HealthyReference read_healthy(const std::string& path) {
         for (const Json& p : s.at("sizes")) score.sizes.push_back({value(p.at(0)), value(p.at(1))});
         log.scores.push_back(std::move(score));
       }
-      if (l.contains("misses"))  // later than the rest
+      if (l.contains("command_slope")) log.command_slope = value(l.at("command_slope"));  // later than the rest
+      if (l.contains("misses"))
         for (const auto& [part, size] : l.at("misses").items()) log.misses.push_back({part, value(size)});
       out.logs.push_back(std::move(log));
     }

@@ -1,0 +1,42 @@
+// Learnt curves share their rows of a candidate: one that is on is the one that runs, whatever others are in the list.
+#include "explain/curves.h"
+
+#include <gtest/gtest.h>
+
+#include "parameters/table.h"
+#include "signals/log.h"
+#include "signals/rig_file.h"
+
+namespace servodx {
+namespace {
+
+using U = Unexplained;
+
+TEST(Curves, OfAllInTheListTheOneThatIsOnRuns) {
+  const std::string source = SERVODX_SOURCE_DIR;
+  const RigFile rig = read_rig_file(source + "/data/rig.toml");
+  ValveSubject subject({read_log(source + "/data/healthy/h08_preflight_cold.csv", rig)},
+                       read_table(source + "/tests/hidden/valve_1.csv"), rig, 1, KnownRig{});
+  const std::vector<Curve> curves = add_curves(subject);
+  std::vector<int> all;
+  std::size_t at = 0;
+  for (const Curve& c : curves) all.push_back(c.cause);
+  const auto problem = subject.problem(all);
+  Point start = problem->start();
+  at = start.size() - curves.size() * static_cast<std::size_t>(U::knots);
+  for (const Curve& c : curves) {
+    Point x = start;
+    const Number& knot = subject.causes()[static_cast<std::size_t>(c.cause)].numbers[2];
+    x[at + 2] = knot.to_unit(0.5 * U::places[c.place].typical);
+    const ParameterVector v = problem->candidate(x, 0);
+    const auto row = [&](int k) { return v[static_cast<std::size_t>(effect_row<U>(k))]; };
+    EXPECT_EQ(row(0), c.place);
+    EXPECT_EQ(row(1), c.variable);
+    EXPECT_EQ(row(2), c.factor);
+    EXPECT_NEAR(row(4 + 2), 0.5 * U::places[c.place].typical, 1e-9 * U::places[c.place].largest);
+    at += static_cast<std::size_t>(U::knots);
+  }
+}
+
+}  // namespace
+}  // namespace servodx
