@@ -1,7 +1,7 @@
 // Where the flow through an open metering edge turns from laminar to turbulent. The base model takes the value that
 // theory gives for a sharp slot, C_d = delta sqrt(Re) with delta = 0.157 (Merritt 1967, sec. 3-4); rounded corners, burrs
 // and passages behind the edge move it. The laminar part costs an open edge a flow that grows with viscosity and hardly
-// with the opening: it acts like a lap that is wider in the cold.
+// with the opening: it acts like a lap that is wider in the cold. Bounds: delta from 0.08, half of the slot's, to 0.43.
 #pragma once
 #include "effects/effect.h"
 #include "model/constants.h"
@@ -17,7 +17,7 @@ struct EdgeTransition {
   // Re_t = (C_d / delta)^2 with Re of the hydraulic diameter, twice the opening.
   static constexpr double per_length = 48.0 * constants::cd_metering * constants::cd_metering;
   static constexpr EffectParameter parameters[n_parameters] = {
-      {"transition_reynolds", "-", per_length* constants::slot_resistance, 0.5, 300.0, 60.0,
+      {"transition_reynolds", "-", per_length* constants::slot_resistance, 2.0, 60.0, 30.0,
        "Reynolds number, of twice the opening, at which laminar and turbulent drop are alike"},
   };
   // [-] added to the creeping-flow length of an open edge, in openings; q: own parameters.
