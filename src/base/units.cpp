@@ -93,6 +93,10 @@ std::optional<Split> split(std::string_view text) {
 
 const Unit& unit_or_throw(std::string_view name, Dimension expected, const Place& where) {
   const Unit* unit = find_unit(name);
+  // "2..5 um", "2-5 um", "2 to 5 um", "3,5 um": more numbers follow the first.
+  if (!unit && name.find_first_of("0123456789") != std::string_view::npos && name.find_first_of(".,-t") == 0)
+    throw InputError(where, quoted(name) + " follows the number: a range, or a decimal comma",
+                     "give one number with a decimal point and its unit, as in \"3.5 um\"");
   if (!unit) throw InputError(where, "unknown unit " + quoted(name), "use one of " + units_of(expected));
   return *unit;
 }

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "base/units.h"
+#include "fit/log_data.h"
 #include "report/handy.h"
 
 namespace servodx::report {
@@ -110,8 +111,10 @@ void add_replay(Page& page, const Replay& replay, const ReplayView& view) {
     for (const auto* s : shown)
       figures +=
           fmt::format("{}{} {}", figures.empty() ? "" : ", ", words(s->name), digits(rms(s->residual) * small.factor));
-    Plot residual =
-        plot(fmt::format("{}: measured less simulated [{}]; rms {}", name, small.name, figures), next == order.back());
+    const std::string filtered =
+        channel.signal == Signal::piston_position ? fmt::format(", drift below {:g} Hz left out", piston_high_pass) : "";
+    Plot residual = plot(fmt::format("{}: measured less simulated{} [{}]; rms {}", name, filtered, small.name, figures),
+                         next == order.back());
     residual.low = true;
     for (std::size_t i = 0; i < shown.size(); ++i)
       residual.series.push_back({words(shown[i]->name), scaled(shown[i]->residual, small.factor), role_of(i)});

@@ -72,6 +72,8 @@ constexpr Pattern patterns[] = {
     {Signal::supply_pressure, "pump"},
     {Signal::supply_pressure, "ps"},
     {Signal::supply_pressure, "p s"},
+    {Signal::supply_pressure, "pp"},
+    {Signal::supply_pressure, "p p"},
     {Signal::supply_pressure, "pressure p"},
     {Signal::supply_pressure, "versorgungsdruck"},
     {Signal::supply_pressure, "systemdruck"},

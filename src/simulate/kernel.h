@@ -237,7 +237,7 @@ void run_pack(const Scenario& in, const ParameterVector* const* candidates, Traj
             p_a = state[s_p_a] * per_pressure, p_b = state[s_p_b] * per_pressure;
     return (x * x + rod * rod) + (p_1 * p_1 + p_2 * p_2) + (p_a * p_a + p_b * p_b);
   };
-  const auto is_sane = [](const T& excess, int lane) { return Lanes<T>::get(excess, lane) < 1.0; };
+  const auto is_sane = [](const T& beyond, int lane) { return Lanes<T>::get(beyond, lane) < 1.0; };
   // Lanes that diverged take what `again` makes of them; the others keep what they have, so a lane's bits do not depend
   // on its company.
   std::array<T, n> y{};
