@@ -104,4 +104,20 @@ Dual<T, A> signed_sqrt(const Dual<T, A>& dp, const std::type_identity_t<T>& tran
   return chain(dp.v * z, dp, z * (T(1.0) - T(0.5) * s * s));
 }
 
+// The same behind a laminar resistance in series: x that solves |dp| = x^2 + 2 l x, with the sign of dp. signed_sqrt at
+// l = 0.
+template <class P, class L, class W>
+auto signed_sqrt_behind(const L& l, const P& dp, const W& transition) {
+  const auto [r, y] = both_roots(dp * dp + transition * transition);
+  return (root(l * l + r) - l) * (dp * y);
+}
+template <class T, Mask A>
+Dual<T, A> signed_sqrt_behind(const std::type_identity_t<T>& l, const Dual<T, A>& dp,
+                              const std::type_identity_t<T>& transition) {
+  const auto [r, y] = both_roots(dp.v * dp.v + transition * transition);
+  const auto [whole, z] = both_roots(l * l + r);
+  const T s = dp.v * y, x = whole - l;
+  return chain(x * s, dp, T(0.5) * z * s * s + x * y * (T(1.0) - s * s));
+}
+
 }  // namespace servodx

@@ -12,6 +12,7 @@
 #include "effects/mains_pickup.h"
 #include "effects/mount_compliance.h"
 #include "effects/nozzle_plugging.h"
+#include "effects/orifice_length.h"
 #include "effects/port_line.h"
 #include "effects/rod_cavity.h"
 #include "effects/sensor_response.h"
@@ -39,7 +40,8 @@ using AllEffects = EffectList<MagneticHysteresis,  //
                               EdgeRadius,          //
                               PortLine,            //
                               RodCavity,           //
-                              EdgeTransition>;
+                              EdgeTransition,      //
+                              OrificeLength>;
 // A learnt curve costs more than all effects: it has a kernel of its own.
 using CorrectedEffects = Append<AllEffects, Unexplained>;
 inline constexpr int n_values = n_parameters + CorrectedEffects::n_parameters;  // length of a parameter vector

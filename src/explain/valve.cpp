@@ -34,6 +34,7 @@ const std::map<std::string, const char*> tests = {
     {"mains_pickup", "rest: a line at the mains frequency with the valve still"},
     {"viscosity_change", "the same test in cold and in hot oil"},
     {"edge_transition", "slow triangles of some per cent in cold and in hot oil: in the cold the piston lags by a wider lap"},
+    {"orifice_length", "full steps in cold and in hot oil: in the cold the spool slews slower"},
     {"edge_radius", "the pressure's slope at null beside the leakage there: blunt edges leak more at the same slope"},
     {"port_line", "leakage sweeps at two rates, ports blocked: a tail after null that lasts as long at either"},
     {"supply_droop", "full steps with the supply pressure measured at the valve"},

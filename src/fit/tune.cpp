@@ -24,8 +24,8 @@
 namespace servodx {
 namespace {
 
-constexpr double tuning_null_limit = 0.1;  // fault-free logs: a null may sit anywhere that calibration allows
-constexpr double independent_rate = 40;    // [1/s] samples that count before anything is known of their correlation
+constexpr double tuning_null_limit = 0.1;   // fault-free logs: a null may sit anywhere that calibration allows
+constexpr double independent_rate = 40;     // [1/s] samples that count before anything is known of their correlation
 constexpr double drawing_tolerance = 0.05;  // of a bore below half a millimetre, relative
 constexpr const char* hash_key = "tuned by";
 constexpr const char* average_key = "moving average";
@@ -83,8 +83,8 @@ void first_whitening(FitProblem& problem, const Point& x) {
   }
 }
 
-// On a stand the model's error is a curve of the command, not of time: a fast sweep tells as much of it as a slow one, so
-// each counts alike, by its own rms.
+// On a stand the model's error is a curve of the command, not of time: a fast sweep tells as much of it as a slow one,
+// so each counts alike, by its own rms.
 void weigh_sweeps(FitProblem& problem, const Point& x) {
   const std::vector<Trajectory> t = problem.trajectories(x);
   double samples = 0, sweeps = 0;
@@ -96,8 +96,8 @@ void weigh_sweeps(FitProblem& problem, const Point& x) {
       const int li = static_cast<int>(l), ci = static_cast<int>(c);
       const std::size_t n = log.channels[c].measured.size();
       const double r = t[l].ok ? rms_of(problem.raw_residual(li, ci, t[l]), 0, n) : 100 * log.channels[c].noise;
-      problem.set_sigma(li, ci, std::max(log.channels[c].noise, r) *
-                                    std::sqrt(static_cast<double>(n) / (samples / sweeps)));
+      problem.set_sigma(li, ci,
+                        std::max(log.channels[c].noise, r) * std::sqrt(static_cast<double>(n) / (samples / sweeps)));
     }
   }
 }
@@ -121,8 +121,9 @@ LeastSquaresResult local(Tuning& run, FitProblem& problem, const Point& x, const
     DerivativeFreeOptions d;
     d.max_evaluations = static_cast<long>(iterations) * (problem.n() + 8);
     d.progress = [&](long evaluations, double) {
-      run.progress.update(from + (to - from) * static_cast<double>(evaluations) / static_cast<double>(d.max_evaluations),
-                          run.simulations + problem.simulations());
+      run.progress.update(
+          from + (to - from) * static_cast<double>(evaluations) / static_cast<double>(d.max_evaluations),
+          run.simulations + problem.simulations());
       return !run.stopped();
     };
     const BatchEvaluate evaluate = [&](std::span<const Point> points) { return problem.evaluate(points); };
@@ -265,7 +266,7 @@ LeastSquaresResult refine(Tuning& run, FitProblem& problem, Point x, ErrorModel&
 
 std::vector<std::string> default_effects(bool on_stand) {
   if (on_stand) return {"magnetic_hysteresis", "flow_meter_lag", "edge_radius", "port_line"};
-  return {"magnetic_hysteresis", "armature_angle", "mount_compliance", "edge_transition"};
+  return {"magnetic_hysteresis", "armature_angle", "mount_compliance", "edge_transition", "orifice_length"};
 }
 
 int moving_average_of(const Table& table) {
@@ -370,7 +371,8 @@ TuneResult tune(const std::vector<Log>& logs, const Table& nominal, const RigFil
       if (verdict[j] == "bounded")
         kept.push_back(run.shared[j]);
       else if (const auto off = off_value(run.shared[j].at))  // an effect that the logs do not tell is not claimed
-        run.base[run.shared[j].at] = run.table.rows[static_cast<std::size_t>(run.table.find(run.shared[j].name))].nominal = *off;
+        run.base[run.shared[j].at] =
+            run.table.rows[static_cast<std::size_t>(run.table.find(run.shared[j].name))].nominal = *off;
     }
     run.shared = kept;
   }
@@ -464,15 +466,17 @@ TuneResult tune(const std::vector<Log>& logs, const Table& nominal, const RigFil
         row.std_error = se;
       }
       const auto& asked = options.profile;
-      const auto asks = [&](const std::string& name) { return std::find(asked.begin(), asked.end(), name) != asked.end(); };
+      const auto asks = [&](const std::string& name) {
+        return std::find(asked.begin(), asked.end(), name) != asked.end();
+      };
       if (kept[j] && (asks("all") || asks(row.name)) && !run.stopped()) {
         const ProfileInterval interval = profile(fit, x, static_cast<int>(j), covariance);
         p.profile_lower = free->from_unit(interval.lower);
         p.profile_upper = free->from_unit(interval.upper);
-        out.notes.push_back(fmt::format("profile of {}: 95 % from {:.4g}{} to {:.4g}{} {}; by curvature {:.4g} to {:.4g}",
-                                        row.name, p.profile_lower, interval.lower_open ? " (its bound)" : "",
-                                        p.profile_upper, interval.upper_open ? " (its bound)" : "", row.unit,
-                                        p.estimate - 1.96 * se, p.estimate + 1.96 * se));
+        out.notes.push_back(fmt::format(
+            "profile of {}: 95 % from {:.4g}{} to {:.4g}{} {}; by curvature {:.4g} to {:.4g}", row.name,
+            p.profile_lower, interval.lower_open ? " (its bound)" : "", p.profile_upper,
+            interval.upper_open ? " (its bound)" : "", row.unit, p.estimate - 1.96 * se, p.estimate + 1.96 * se));
       }
       row.nominal = p.estimate;
       row.source = "tuned; before: " + run.table.rows[i].source;

@@ -20,9 +20,10 @@ struct Derived {
   T nozzle_conductance;         // [m3/s/sqrt(Pa)/m] per curtain opening
   T bore_loss;                  // [1/m2] pressure lost in a nozzle's bore over that at its curtain, per opening squared
   T orifice_conductance;        // [m3/s/sqrt(Pa)]
-  T filter_conductance;         // [m3/s/sqrt(Pa)] mean of both directions of the spool
-  T filter_one_way;             // [m3/s/sqrt(Pa)] less while the spool moves positive, more while it moves negative
-  T half_backlash;              // [m] between wire and spool
+  T orifice_creep;       // [sqrt(Pa)] half the laminar drop of a fixed orifice over the root of the turbulent one
+  T filter_conductance;  // [m3/s/sqrt(Pa)] mean of both directions of the spool
+  T filter_one_way;      // [m3/s/sqrt(Pa)] less while the spool moves positive, more while it moves negative
+  T half_backlash;       // [m] between wire and spool
   T inverse_filter_compliance;  // [Pa/m3]
   T inverse_pilot_compliance;   // [Pa/m3]
   // second stage
@@ -69,6 +70,10 @@ Derived<T> derive(const T* p, const Oil& oil) {
   d.bore_loss = T(c::nozzle_bore_loss) * bore_speed * bore_speed;
   const T orifice_area = T(c::pi / 4.0) * p[row::fixed_orifice_diameter] * p[row::fixed_orifice_diameter];
   d.orifice_conductance = T(c::cd_orifice) * per_root_density * orifice_area;
+  // Hagen-Poiseuille, 128 mu L q / (pi D^4), in series with the jet's head.
+  const T cube = p[row::fixed_orifice_diameter] * p[row::fixed_orifice_diameter] * p[row::fixed_orifice_diameter];
+  d.orifice_creep =
+      hook_orifice_length(p, Effects{}) * T(64.0 / c::pi) * dynamic_viscosity * d.orifice_conductance / cube;
   const T clean = d.orifice_conductance * T(2.0 * c::clean_filter_area_ratio);
   d.filter_conductance =
       clean * (T(1.0) - T(0.5) * (p[row::filter_blockage_positive] + p[row::filter_blockage_negative]));

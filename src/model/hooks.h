@@ -6,6 +6,7 @@
 //     viscosity(p)         [-]   factor on the oil's viscosity
 //     edge_rounding(p, to_return) [m] added to the corner radius of the metering edges
 //     edge_creep(p)        [-]   added to the creeping-flow length of an open edge, in openings
+//     orifice_length(p)    [-]   added to the length of the fixed orifices, in diameters
 //     supply_pressure(view) [Pa] added to the supply pressure at the valve
 //     flapper_force(view)  [N]   added to the torque motor's force
 //     nozzle_1_opening(view, open), nozzle_2_opening(view, open)  [m]  added to the open gap of a nozzle
@@ -148,17 +149,27 @@ T hook_viscosity([[maybe_unused]] const T* p, EffectList<E...>) {
   return factor;
 }
 
-// What the effects add to the creeping-flow length of an open edge, in openings.
+// What the effects add to a number that is fixed for the whole run.
+#define SERVODX_FIXED_HOOK(place)                                                                          \
+  template <class T, class... E>                                                                           \
+  T hook_##place([[maybe_unused]] const T* p, EffectList<E...>) {                                          \
+    T added = T(0.0);                                                                                      \
+    (                                                                                                      \
+        [&] {                                                                                              \
+          if constexpr (requires { E::place(p); })                                                         \
+            added = added + E::place(p + n_parameters + EffectList<E...>::template parameter_offset<E>()); \
+        }(),                                                                                               \
+        ...);                                                                                              \
+    return added;                                                                                          \
+  }
+SERVODX_FIXED_HOOK(edge_creep)
+SERVODX_FIXED_HOOK(orifice_length)
+#undef SERVODX_FIXED_HOOK
+
+// Whether a fixed orifice may have a length: without, its laminar drop costs nothing.
 template <class T, class... E>
-T hook_edge_creep([[maybe_unused]] const T* p, EffectList<E...>) {
-  T added = T(0.0);
-  (
-      [&] {
-        if constexpr (requires { E::edge_creep(p); })
-          added = added + E::edge_creep(p + n_parameters + EffectList<E...>::template parameter_offset<E>());
-      }(),
-      ...);
-  return added;
+constexpr bool has_orifice_length(EffectList<E...>) {
+  return (requires(const T* p) { E::orifice_length(p); } || ...);
 }
 
 // What the effects add to the corner radius of the metering edges, those to return or those from supply. [m]

@@ -63,7 +63,8 @@ TEST(EdgeTransition, CostsAnOpenEdgeAFlowThatGrowsWithViscosityAndNotWithTheOpen
     Scenario s = made(0.6, 1e-3, [&](double t) { return t < 0.05 ? 0.0 : current; });
     s.oil.dynamic_viscosity *= thicker;
     const auto speed = [&](double added) {
-      const Trajectory t = simulate(s, with<EdgeTransition>(0, EdgeTransition::parameters[0].off + added), all_signals());
+      const Trajectory t =
+          simulate(s, with<EdgeTransition>(0, EdgeTransition::parameters[0].off + added), all_signals());
       const auto& x = of(t, Signal::piston_position);
       return (x[550] - x[450]) / (s.time[550] - s.time[450]);
     };
@@ -74,9 +75,52 @@ TEST(EdgeTransition, CostsAnOpenEdgeAFlowThatGrowsWithViscosityAndNotWithTheOpen
   };
   for (const double current : {4e-3, 10e-3})
     for (const double thicker : {1.0, 3.0}) {
-      std::printf("%.0f mA, viscosity x%.0f: %.3f of the first order\n", 1e3 * current, thicker, lost(current, thicker));
+      std::printf("%.0f mA, viscosity x%.0f: %.3f of the first order\n", 1e3 * current, thicker,
+                  lost(current, thicker));
       EXPECT_NEAR(lost(current, thicker), 1.0, 0.1);
     }
+}
+
+TEST(OrificeLength, PilotPressureAtRestIsThatOfPoiseuilleInSeriesWithJets) {
+  // At rest both sides pass q: (2q / G_f)^2 + (q / G_o)^2 + 128 mu L / (pi D^4) q + (q / G_n)^2 = supply less return.
+  for (const double slenderness : {0.0, 3.0})
+    for (const double thicker : {1.0, 10.0}) {
+      Scenario s = made(0.2, 1e-3, [](double) { return 0.0; });
+      s.oil.dynamic_viscosity *= thicker;
+      ParameterVector v = with<OrificeLength>(0, slenderness);
+      v[row::servovalve_null] = 0;
+      const Derived<double> d = derive<double>(v.data(), s.oil);
+      const double bore = v[row::fixed_orifice_diameter], gap = v[row::nozzle_gap];
+      const double laminar = 128 * s.oil.dynamic_viscosity * slenderness / (constants::pi * bore * bore * bore);
+      const double nozzle = d.nozzle_conductance * gap / std::sqrt(1 + d.bore_loss * gap * gap);
+      const double square = 4 / (d.filter_conductance * d.filter_conductance) +
+                            1 / (d.orifice_conductance * d.orifice_conductance) + 1 / (nozzle * nozzle);
+      const double drop = v[row::supply_pressure] - v[row::return_pressure];
+      const double q = 2 * drop / (laminar + std::sqrt(laminar * laminar + 4 * square * drop));
+      const double expected = v[row::return_pressure] + q * q / (nozzle * nozzle);
+      const Trajectory t = simulate(s, v, all_signals());
+      ASSERT_TRUE(t.ok);
+      for (Signal side : {Signal::pilot_pressure_1, Signal::pilot_pressure_2})
+        EXPECT_NEAR(of(t, side).back(), expected, 1e-3 * drop) << slenderness << " " << thicker;
+    }
+}
+
+TEST(OrificeLength, ColdOilCostsASlewItsSpeedOnlyWithALength) {
+  const auto fastest = [](double slenderness, double thicker) {
+    Scenario s = made(0.2, 1e-4, [](double t) { return t < 0.05 ? -20e-3 : 20e-3; });
+    s.oil.dynamic_viscosity *= thicker;
+    const Trajectory t = simulate(s, with<OrificeLength>(0, slenderness), all_signals());
+    const auto& x = of(t, Signal::spool_position);
+    double v = 0;
+    for (std::size_t k = 5; k < x.size(); ++k) v = std::max(v, (x[k] - x[k - 5]) / 5e-4);
+    return v;
+  };
+  const double thin = fastest(0, 1), sharp = fastest(0, 10), tube = fastest(2, 10), capillary = fastest(5, 10);
+  std::printf("slew %.1f mm/s; in oil ten times as thick %.1f, with a length of 2 diameters %.1f, of 5 %.1f\n",
+              1e3 * thin, 1e3 * sharp, 1e3 * tube, 1e3 * capillary);
+  EXPECT_NEAR(sharp, thin, 0.01 * thin);
+  EXPECT_LT(tube, 0.97 * sharp);
+  EXPECT_LT(capillary, 0.97 * tube);
 }
 
 TEST(SupplyDroop, SteadySpeedCostsItsFlowTimesTheResistance) {
@@ -153,7 +197,9 @@ TEST(MagneticHysteresis, SlewingFlapperLeavesTheIronFurtherOnThanTheCurrentAlone
   // After a step the flux has been beyond where it rests: part of the loop is undone, and the spool stops nearer to the
   // line without hysteresis.
   const Scenario s = made(0.4, 1e-3, [](double t) { return t < 0.1 ? 0.0 : 8e-3; });
-  const auto end = [&](const ParameterVector& v) { return of(simulate(s, v, all_signals()), Signal::spool_position).back(); };
+  const auto end = [&](const ParameterVector& v) {
+    return of(simulate(s, v, all_signals()), Signal::spool_position).back();
+  };
   ParameterVector still = with<MagneticHysteresis>(0, 0.03), moved = still;
   still[effect_row<MagneticHysteresis>(3)] = 0.0;
   moved[effect_row<MagneticHysteresis>(3)] = 1.5;
