@@ -48,7 +48,8 @@ struct Oil {
             liquid * (one - rise * e) * T(inverse_beta) + T(0.75 / atmosphere) * air * thin,
             liquid * gauge * (one - e * (T(0.5) - T(1.0 / 6.0) * rise * e)) + T(4.0) * air * absolute};
   }
-  // Of flowing oil, where the air does not count: [Pa s]; reference oil in a volume of liquid [1].
+  // Of flowing oil, whose bubbles take no room at its pressures: [Pa s]; reference oil in a volume of it [1], which
+  // carries its air along; the mass of reference oil [kg/m3].
   template <class T>
   T viscosity_at(const T& gauge) const {
     const T thick = T(viscosity_rise) * gauge;
@@ -57,8 +58,9 @@ struct Oil {
   template <class T>
   T packing(const T& gauge) const {
     const T e = gauge * T(inverse_beta);
-    return T(1.0) + e * (T(1.0) - T(0.5 * (beta_rise - 1.0)) * e);
+    return (T(1.0) + e * (T(1.0) - T(0.5 * (beta_rise - 1.0)) * e)) * T(1.0 / (1.0 - air_fraction));
   }
+  double reference_density() const { return density * (1.0 - air_fraction); }
   double stored(double gauge, double volume) const { return volume / at(gauge).volume; }  // [m3] reference oil
   double energy(double gauge, double volume) const {                                      // [J] of a chamber
     const auto p = at(gauge);

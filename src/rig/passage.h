@@ -65,7 +65,7 @@ struct FourFlows {
 inline FourFlows flows_through(const Restrictions& r, const Oil& oil, const Four& from, const Four& to) {
   const Four mean = Four(0.5) * (from + to), packing = oil.packing(mean);
   FourFlows f;
-  f.density = Four(oil.density) * packing;
+  f.density = Four(oil.reference_density()) * packing;
   f.volume =
       flow_through(r.laminar, r.transition, r.turbulent, r.inertial, oil.viscosity_at(mean), f.density, from - to);
   f.reference = f.volume * packing;
