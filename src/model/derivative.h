@@ -23,13 +23,10 @@ auto orifice_flow(const C& conductance, const P& dp, const T& transition) {
   return conductance * signed_sqrt(dp, transition);
 }
 
-// Fixed orifice, behind the laminar drop of its own length where an effect gives it one. [m3/s]
-template <class Effects, class P, class T>
+// Fixed orifice, behind the laminar drop of its own length. [m3/s]
+template <class P, class T>
 auto fixed_orifice_flow(const P& dp, const Derived<T>& d) {
-  if constexpr (has_orifice_length<T>(Effects{}))
-    return d.orifice_conductance * signed_sqrt_behind(d.orifice_creep, dp, T(constants::orifice_transition));
-  else
-    return orifice_flow(d.orifice_conductance, dp, T(constants::orifice_transition));
+  return d.orifice_conductance * signed_sqrt_behind(d.orifice_creep, dp, T(constants::orifice_transition));
 }
 
 // Nozzle: bore and curtain in series. opening [m] of the curtain. The bore's jet presses on the flapper with two
@@ -136,8 +133,8 @@ inline __attribute__((always_inline)) auto derivative(const S& s, const In& in, 
 
   // Filter, fixed orifices, nozzles, spool ends.
   const auto q_filter = filter_flow(u.supply_pressure - p_f, v_s, d);
-  const auto q_orifice_1 = fixed_orifice_flow<Effects>(p_f - p_1, d);
-  const auto q_orifice_2 = fixed_orifice_flow<Effects>(p_f - p_2, d);
+  const auto q_orifice_1 = fixed_orifice_flow(p_f - p_1, d);
+  const auto q_orifice_2 = fixed_orifice_flow(p_f - p_2, d);
   const auto gap_1 = p[row::nozzle_gap] - x_f;
   const auto gap_2 = p[row::nozzle_gap] + x_f;
   const auto q_nozzle_1 =

@@ -166,12 +166,6 @@ SERVODX_FIXED_HOOK(edge_creep)
 SERVODX_FIXED_HOOK(orifice_length)
 #undef SERVODX_FIXED_HOOK
 
-// Whether a fixed orifice may have a length: without, its laminar drop costs nothing.
-template <class T, class... E>
-constexpr bool has_orifice_length(EffectList<E...>) {
-  return (requires(const T* p) { E::orifice_length(p); } || ...);
-}
-
 // What the effects add to the corner radius of the metering edges, those to return or those from supply. [m]
 template <class T, class... E>
 T hook_edge_rounding([[maybe_unused]] const T* p, [[maybe_unused]] bool to_return, EffectList<E...>) {
