@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "base/error.h"
+#include "base/nearest.h"
 #include "commands.h"
 #include "effects/registry.h"
 #include "effects/row_effects.h"
@@ -209,7 +210,7 @@ void run(const Options& options) {
     invocation.finish(listing.text, {{options.kind, listing.items}});
     return;
   }
-  throw InputError({}, "there is no list of '" + options.kind + "'", "use one of " + report::join(names));
+  throw InputError({}, "there is no list of '" + options.kind + "'", did_you_mean(options.kind, names) + "use one of " + report::join(names));
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 #include <exception>
 
 #include "base/error.h"
+#include "base/nearest.h"
 #include "commands.h"
 #include "invocation.h"
 #include "rig_command.h"
@@ -14,8 +15,12 @@ namespace {
 std::string refusal(const CLI::App* app, const CLI::Error& error) {
   std::string call = app->get_name();
   for (const CLI::App* command : app->get_subcommands()) call += " " + command->get_name();
-  if (const auto left = app->remaining(); app->get_subcommands().empty() && !left.empty())
-    return call + ": no command is called '" + left.front() + "'; '" + call + " --help' lists what there is\n";
+  if (const auto left = app->remaining(); app->get_subcommands().empty() && !left.empty()) {
+    std::vector<std::string> commands;
+    for (const CLI::App* command : app->get_subcommands({})) commands.push_back(command->get_name());
+    return call + ": no command is called '" + left.front() + "'; " + servodx::did_you_mean(left.front(), commands) +
+           "'" + call + " --help' lists what there is\n";
+  }
   return call + ": " + error.what() + "; '" + call + " --help' lists what there is\n";
 }
 

@@ -7,7 +7,7 @@
 #include <limits>
 #include <numbers>
 
-#include "base/error.h"
+#include "base/key_error.h"
 #include "curves/sweep.h"
 
 namespace servodx::curves {
@@ -72,7 +72,7 @@ class Reading {
   Reading(const Log& log, const RigFile& rig, Sheet& sheet) : log_(log), rig_(rig), sheet_(sheet) {
     const auto rated = rig.fact("valve.rated_current");
     if (!rated)
-      throw InputError({rig.path.empty() ? log.path : rig.path, 0, "valve.rated_current"},
+      throw key_error({rig.path.empty() ? log.path : rig.path, 0, "valve.rated_current"},
                        "is missing, and the figures are parts of it",
                        "give a rig file with [valve] rated_current = \"20 mA\"");
     rated_ = *rated;

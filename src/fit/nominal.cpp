@@ -6,7 +6,7 @@
 #include <numbers>
 
 #include "base/csv.h"
-#include "base/error.h"
+#include "base/key_error.h"
 
 namespace servodx {
 namespace {
@@ -79,7 +79,7 @@ class Facts {
   double differential() const { return value(row::supply_pressure) - value(row::return_pressure); }
 
   [[noreturn]] void refuse(const std::string& key, const std::string& rule, const std::string& mend) const {
-    throw InputError({rig_.path, rig_.line(key), key}, rule, mend);
+    throw key_error({rig_.path, rig_.line(key), key}, rule, mend);
   }
 
   void set(int position, double nominal, double lower, double upper, const std::string& key,
@@ -312,7 +312,7 @@ class Facts {
 
 Table apply_rig_facts(const Table& table, const RigFile& rig, std::vector<std::string>* where_from) {
   if (const auto it = rig.words.find("valve.first_stage"); it != rig.words.end() && it->second == "jet_pipe")
-    throw InputError(
+    throw key_error(
         {rig.path, rig.line("valve.first_stage"), "valve.first_stage"},
         "a jet pipe cannot be fitted: the model's pilot pressures come from two nozzles and a flapper, and "
         "no setting of rows 3 to 10 recovers a jet's",

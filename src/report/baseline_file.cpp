@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "base/csv.h"
-#include "base/error.h"
+#include "base/key_error.h"
 #include "base/sha256.h"
 
 namespace servodx::report {
@@ -53,12 +53,21 @@ class Reader {
     return value.get<std::string>();
   }
   [[noreturn]] void refuse(const std::string& key, const std::string& rule) const {
-    throw InputError({path_, 0, key}, rule, make_again);
+    throw key_error({path_, 0, key}, rule, make_again);
   }
 
  private:
   std::string path_;
 };
+
+TestConditions read_test(const Reader& read, const Json& test) {
+  TestConditions c;
+  c.drive_span = read.number(test, "scores.test.drive_span", 0, HUGE_VAL);
+  c.drive_band = read.number(test, "scores.test.drive_band", 0, HUGE_VAL);
+  if (!read.at(test, "scores.test.temperature").is_null())
+    c.temperature = read.number(test, "scores.test.temperature", 0, HUGE_VAL);
+  return c;
+}
 
 }  // namespace
 
@@ -68,7 +77,7 @@ BaselineFile read_baseline(const std::string& path) {
   const Json file = read.parse(bytes);
   if (!file.is_object()) throw InputError({path, 0, ""}, "is no object", make_again);
   if (const std::string command = read.text(file, "command"); command != "baseline")
-    throw InputError({path, 0, "command"}, "is the result of '" + command + "', not of 'baseline'",
+    throw key_error({path, 0, "command"}, "is the result of '" + command + "', not of 'baseline'",
                      "name the file that 'servodx baseline -o' wrote");
 
   constexpr double any = HUGE_VAL;
@@ -90,6 +99,7 @@ BaselineFile read_baseline(const std::string& path) {
     if (!gains.is_object()) read.refuse("scores.gains", "is no object");
     for (const auto& [fault, gain] : gains.items())
       b.scores.back().gains[fault] = read.number(gains, "scores.gains." + fault, -any, any);
+    if (s.contains("test")) b.scores.back().test = read_test(read, s["test"]);  // earlier versions wrote none
   }
   b.adequacy_limit = read.number(file, "adequacy_limit", 0, any);
   b.null_limit = read.number(file, "null_limit", 0, 1);
@@ -100,7 +110,7 @@ BaselineFile read_baseline(const std::string& path) {
 void require_same_table(const Baseline& baseline, const std::string& baseline_path, const std::string& table_path,
                         const std::string& table_sha256) {
   if (baseline.tuned_sha256 == table_sha256) return;
-  throw InputError({baseline_path, 0, "tuned_sha256"}, "was made with another table than " + table_path,
+  throw key_error({baseline_path, 0, "tuned_sha256"}, "was made with another table than " + table_path,
                    "give the table it was made with, or make a baseline with this one");
 }
 

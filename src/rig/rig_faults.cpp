@@ -1,28 +1,31 @@
 #include "rig/rig_faults.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 
 #include "base/error.h"
+#include "base/nearest.h"
 #include "base/units.h"
 
 namespace servodx::rig {
 namespace {
 
 const RigFault& find(const std::string& name) {
-  std::string names;
+  std::vector<std::string> names;
   for (const auto& fault : rig_faults()) {
     if (fault.name == name) return fault;
-    names += (names.empty() ? "" : ", ") + fault.name;
+    names.push_back(fault.name);
   }
-  throw InputError({"", 0, "--fault"}, fmt::format("unknown fault '{}'", name), "known are " + names);
+  throw InputError({.file = "--fault"}, fmt::format("unknown fault '{}'", name),
+                   fmt::format("{}known are {}", did_you_mean(name, names), fmt::join(names, ", ")));
 }
 
 void check(const RigFault& fault, const FaultCourse& course) {
   if (!(course.severity >= fault.low && course.severity <= fault.high)) {
     throw InputError(
-        {"", 0, "--fault"},
+        {.file = "--fault"},
         fmt::format("{} = {} is outside {} to {} {}", fault.name, course.severity, fault.low, fault.high, fault.unit),
         fmt::format("{} is healthy; mild, medium and severe are {}, {} and {}", fault.healthy, fault.severity[0],
                     fault.severity[1], fault.severity[2]));
@@ -30,7 +33,7 @@ void check(const RigFault& fault, const FaultCourse& course) {
 }
 
 [[noreturn]] void refuse(const RigFault& fault, const std::string& text, const std::string& rule) {
-  throw InputError({"", 0, "--fault"}, fmt::format("'{}' {}", text, rule),
+  throw InputError({.file = "--fault"}, fmt::format("'{}' {}", text, rule),
                    fmt::format("write {0}={1}, {0}=medium, {0}={1}@2 to step in at 2 s, or {0}={1}@2..10 to grow",
                                fault.name, fault.severity[1]));
 }
@@ -105,7 +108,7 @@ void add_fault(const std::string& text, FaultSet& faults) {
   }
   check(fault, course);
   if (!faults.emplace(fault.name, course).second) {
-    throw InputError({"", 0, "--fault"}, fmt::format("{} is given twice", fault.name), "give it once");
+    throw InputError({.file = "--fault"}, fmt::format("{} is given twice", fault.name), "give it once");
   }
 }
 

@@ -10,7 +10,7 @@
 #include <numbers>
 #include <set>
 
-#include "base/error.h"
+#include "base/key_error.h"
 #include "base/random.h"
 
 namespace servodx::rig {
@@ -280,16 +280,20 @@ double RigModel::circuit_factor() const {
 }
 
 RigModel read_rig_model(const std::string& path) {
-  RigModel model = Reader().read(path);
-  check_whole(model);
-  return model;
+  try {
+    RigModel model = Reader().read(path);
+    check_whole(model);
+    return model;
+  } catch (const InputError& error) {
+    throw key_error(error);
+  }
 }
 
 void set_value(RigModel& model, const std::string& text) {
   const auto equals = text.find('=');
   const std::string key = text.substr(0, equals);
   const std::string value = equals == std::string::npos ? "" : text.substr(equals + 1);
-  const Place where{"", 0, "--set " + key};
+  const Place where{"--set " + key, 0, ""};
   if (!set_word(model, key, value, where)) {
     const auto x = parse_number(value);
     if (!x) throw InputError(where, fmt::format("'{}' is no number", value), "write group.name=value in SI units");

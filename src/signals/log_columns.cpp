@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "base/nearest.h"
 #include "signals/plausible.h"
 
 namespace servodx {
@@ -164,6 +165,8 @@ void LogColumns::refuse_missing(Signal signal, const std::string& rule) const {
   mend += ", or map one of yours in [columns] of the rig file";
   if (format_.has_lines) mend += " ('servodx init LOG' begins one)";
   if (!ignored_.empty()) mend += "; not known: " + in_quotes(ignored_);
+  if (const std::string near = nearest_word(name, ignored_); !near.empty())
+    mend += fmt::format("; is '{}' '{}' misspelt?", near, name);
   refuse(format_.has_lines ? header_line_ : 0, name, rule, mend);
 }
 
@@ -225,12 +228,26 @@ void LogColumns::check_counts() {
            "record for longer");
 }
 
+// What the rig file maps and the log has under no name: a misspelt column is else dropped without a word.
+void LogColumns::note_unmapped() {
+  for (const auto& [column, mapping] : rig_.columns) {
+    const auto signal = find_signal(mapping.signal);
+    if (!signal || present(*signal)) continue;
+    const std::string near = nearest_word(column, ignored_);
+    note(fmt::format("{}: the rig file maps column '{}' to '{}' (line {}), and the log has none of that name: {}", path_,
+                     column, mapping.signal, mapping.line,
+                     near.empty() ? "give the column its name in the log, or read on without the signal"
+                                  : fmt::format("is it '{}'?", near)));
+  }
+}
+
 Log LogColumns::finish(std::string sha256) {
   log_.sha256 = std::move(sha256);
   if (!ignored_.empty())
     log_.notes.insert(log_.notes.begin(), fmt::format("{}: ignored {} further {}{}: {}", path_, ignored_.size(),
                                                       format_.has_units ? "column" : "variable",
                                                       ignored_.size() == 1 ? "" : "s", in_quotes(ignored_)));
+  note_unmapped();
   check_counts();
   const int n = static_cast<int>(columns_.size());
 #pragma omp parallel for schedule(dynamic, 1)

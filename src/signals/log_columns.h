@@ -61,6 +61,7 @@ class LogColumns {
   bool present(Signal signal) const;
   [[noreturn]] void refuse_missing(Signal signal, const std::string& rule) const;
   void check_counts();
+  void note_unmapped();
 
   std::string path_;
   const RigFile& rig_;

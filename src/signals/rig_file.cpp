@@ -7,6 +7,8 @@
 #include <numbers>
 
 #include "base/csv.h"
+#include "base/key_error.h"
+#include "base/nearest.h"
 #include "base/sha256.h"
 
 namespace servodx {
@@ -34,6 +36,17 @@ std::string listed(std::initializer_list<std::string_view> words) {
   std::string list;
   for (auto word : words) list += (list.empty() ? "'" : ", '") + std::string(word) + "'";
   return list;
+}
+
+// "did you mean 'pressure'? known here: pressure, return_pressure"; a section's brackets are no letters.
+std::string known_here(const std::string& word, const std::vector<std::string>& known) {
+  std::vector<std::string> bare;
+  std::string list;
+  for (const std::string& each : known) {
+    bare.push_back(each.front() == '[' ? each.substr(1, each.size() - 2) : each);
+    list += (list.empty() ? "" : ", ") + each;
+  }
+  return did_you_mean(word, bare) + "known here: " + list;
 }
 
 class Reader {
@@ -107,15 +120,15 @@ class Reader {
   [[noreturn]] void refuse_unknown(const std::string& key) const {
     const auto dot = key.rfind('.');
     const std::string folder = dot == std::string::npos ? "" : key.substr(0, dot + 1);
-    std::string known = folder.empty()
-                            ? "name, serial, ports, command_hold, mains_frequency, null_limit, fluid, [valve], "
-                              "[actuator], [lines], [supply], [fluid], [limits], [columns]"
-                            : "";
-    if (folder == "valve.") known = "first_stage, dither";
+    std::vector<std::string> known;
+    if (folder.empty())
+      known = {"name",    "serial",     "ports",   "command_hold", "mains_frequency", "null_limit", "fluid",
+               "[valve]", "[actuator]", "[lines]", "[supply]",     "[fluid]",         "[limits]",   "[columns]"};
+    if (folder == "valve.") known = {"first_stage", "dither"};
     for (const RigFact& fact : rig_facts())
       if (!folder.empty() && fact.key.starts_with(folder) && fact.key.find('.', folder.size()) == fact.key.npos)
-        known += (known.empty() ? "" : ", ") + std::string(fact.key.substr(folder.size()));
-    throw InputError(place(key), "unknown key", "known here: " + known);
+        known.emplace_back(fact.key.substr(folder.size()));
+    throw InputError(place(key), "unknown key", known_here(key.substr(folder.size()), known));
   }
 
   const toml::table& section(const toml::node& node, const std::string& key) const {
@@ -133,7 +146,8 @@ class Reader {
     const std::string choice = word(node, key);
     for (auto each : choices)
       if (each == choice) return choice;
-    throw InputError(place(key), "unknown value '" + choice + "'", "use one of " + listed(choices));
+    throw InputError(place(key), "unknown value '" + choice + "'",
+                     did_you_mean(choice, choices) + "use one of " + listed(choices));
   }
 
   double quantity(const toml::node& node, const std::string& key, Dimension dimension, bool may_be_zero) const {
@@ -171,9 +185,9 @@ class Reader {
       const auto& list = limit_list();
       const auto known = std::find_if(list.begin(), list.end(), [&](const LimitInfo& l) { return l.figure == figure; });
       if (known == list.end()) {
-        std::string names;
-        for (const LimitInfo& l : list) names += (names.empty() ? "" : ", ") + std::string(l.figure);
-        throw InputError(place(key), "unknown figure", "known here: " + names);
+        std::vector<std::string> names;
+        for (const LimitInfo& l : list) names.emplace_back(l.figure);
+        throw InputError(place(key), "unknown figure", known_here(figure, names));
       }
       Limit limit;
       if (!node.is_table()) {
@@ -210,14 +224,19 @@ class Reader {
       const std::string field(name.str());
       rig_.lines[key + "." + field] = name.source().begin.line;
       if (field != "signal" && field != "unit" && field != "gain" && field != "offset")
-        throw InputError(place(key + "." + field), "unknown key", "known here: signal, unit, gain, offset");
+        throw InputError(place(key + "." + field), "unknown key",
+                         known_here(field, {"signal", "unit", "gain", "offset"}));
     }
     const toml::node* signal_node = table.get("signal");
     if (!signal_node) throw InputError(place(key), "names no signal", "add signal = \"...\"");
     mapping.signal = word(*signal_node, key + ".signal");
     const auto signal = find_signal(mapping.signal);
-    if (!signal)
-      throw InputError(place(key + ".signal"), "unknown signal '" + mapping.signal + "'", "see 'servodx list signals'");
+    if (!signal) {
+      std::vector<std::string_view> names;
+      for (const SignalInfo& each : signal_list) names.push_back(each.name);
+      throw InputError(place(key + ".signal"), "unknown signal '" + mapping.signal + "'",
+                       did_you_mean(mapping.signal, names) + "see 'servodx list signals'");
+    }
     const Dimension dimension = info(*signal).dimension;
 
     if (const toml::node* node = table.get("gain")) {
@@ -367,6 +386,12 @@ const std::vector<LimitInfo>& limit_list() {
   return list;
 }
 
-RigFile read_rig_file(const std::string& path) { return Reader(path).read(); }
+RigFile read_rig_file(const std::string& path) {
+  try {
+    return Reader(path).read();
+  } catch (const InputError& error) {
+    throw key_error(error);  // quantities are read by who knows of columns only
+  }
+}
 
 }  // namespace servodx

@@ -121,7 +121,7 @@ TEST_F(MainJob, DiagnoseRefusesABaselineThatDoesNotServe) {
                    "statement": ""}, "scores": [{"log": "h.csv", "sha256": "1", "score": 1, "adequacy": 1, "gains": {}}]})");
   const std::string call = "diagnose s1.csv --params tuned.csv --rig rig.toml --baseline ";
   expect_refused(desk().run(call + "other.json"),
-                 "other.json: column 'tuned_sha256': was made with another table than tuned.csv");
+                 "other.json: key 'tuned_sha256': was made with another table than tuned.csv");
   desk().write("cut.json", bytes_of(desk() / "other.json").substr(0, 300));
   expect_refused(desk().run(call + "cut.json"), "cut.json:3: is not JSON");
 }

@@ -88,6 +88,23 @@ TEST(CheckLog, FindsASignThatIsTurned) {
   }
 }
 
+// A column's name misspelt in the rig file, or another in this log, would else drop the signal without a word.
+TEST(CheckLog, FindsASignalThatIsMappedAndNotThere) {
+  const Desk desk;
+  std::string log = first_rows("healthy/h12_mixed.csv", 500);
+  desk.write("rig.toml", "[columns]\n\"P_a\" = { signal = \"pressure_a\", unit = \"bar\" }\n");
+  desk.write("log.csv", log);  // under its own name it is there
+  EXPECT_TRUE(kinds(check(desk, "log.csv --rig rig.toml")).empty());
+  log.replace(log.find("pressure_a"), 10, "P_aa");
+  desk.write("log.csv", log);
+  const Json found = check(desk, "log.csv --rig rig.toml")["logs"][0]["suspicious"];
+  ASSERT_TRUE(has(kinds(check(desk, "log.csv --rig rig.toml")), "columns")) << found;
+  for (const Json& f : found)
+    if (f["kind"] == "columns")
+      for (const char* words : {"column 'P_a'", "'pressure_a'", "line 2", "is it 'P_aa'?"})
+        EXPECT_NE(f["text"].get<std::string>().find(words), std::string::npos) << words << " is not in " << f;
+}
+
 TEST(CheckLog, FindsALogOfAnotherRateAmongOthers) {
   const Desk desk;
   for (const char* name : {"a.csv", "b.csv"})

@@ -137,66 +137,66 @@ TEST(RigFile, EachRefusalNamesPlaceRuleAndMend) {
     std::string text, message;
   } cases[] = {
       {"\nnmae = \"x\"\n",
-       "rig.toml:2: column 'nmae': unknown key; known here: name, serial, ports, command_hold, mains_frequency, "
+       "rig.toml:2: key 'nmae': unknown key; did you mean 'name'? known here: name, serial, ports, command_hold, mains_frequency, "
        "null_limit, "
        "fluid, [valve], [actuator], [lines], [supply], [fluid], [limits], [columns]"},
       {"[supply]\npresure = \"207 bar\"\n",
-       "rig.toml:2: column 'supply.presure': unknown key; known here: pressure, return_pressure"},
+       "rig.toml:2: key 'supply.presure': unknown key; did you mean 'pressure'? known here: pressure, return_pressure"},
       {"[valve]\ndither = { amplitude = \"1 mA\", phase = \"0\" }\n",
-       "rig.toml:2: column 'valve.dither.phase': unknown key; known here: amplitude, frequency"},
+       "rig.toml:2: key 'valve.dither.phase': unknown key; known here: amplitude, frequency"},
       {"[valve]\nrated_current = 20\n",
-       "rig.toml:2: column 'valve.rated_current': a bare number has no unit; write a quoted quantity with one of A, "
+       "rig.toml:2: key 'valve.rated_current': a bare number has no unit; write a quoted quantity with one of A, "
        "mA"},
       {"[valve]\nrated_current = \"20\"\n",
-       "rig.toml:2: column 'valve.rated_current': '20' has no unit; add one of A, mA"},
+       "rig.toml:2: key 'valve.rated_current': '20' has no unit; add one of A, mA"},
       {"[valve]\nspool_stroke = \"0.5 bar\"\n",
-       "rig.toml:2: column 'valve.spool_stroke': 'bar' is a unit of pressure, not of length; use one of " + lengths},
+       "rig.toml:2: key 'valve.spool_stroke': 'bar' is a unit of pressure, not of length; use one of " + lengths},
       {"[valve]\nspool_stroke = \"-0.5 mm\"\n",
-       "rig.toml:2: column 'valve.spool_stroke': must be positive; check the sign, or leave the key out"},
+       "rig.toml:2: key 'valve.spool_stroke': must be positive; check the sign, or leave the key out"},
       {"[valve]\nno_load_flow = \"14 l/min\"\nrated_flow = \"7 l/min\"\nrated_pressure_drop = \"70 bar\"\n",
-       "rig.toml:3: column 'valve.rated_flow': given beside valve.no_load_flow; keep one of the two"},
+       "rig.toml:3: key 'valve.rated_flow': given beside valve.no_load_flow; keep one of the two"},
       {"[valve]\nrated_flow = \"7 l/min\"\n",
-       "rig.toml:2: column 'valve.rated_flow': needs valve.rated_pressure_drop; add the total drop over both edges, "
+       "rig.toml:2: key 'valve.rated_flow': needs valve.rated_pressure_drop; add the total drop over both edges, "
        "such as "
        "rated_pressure_drop = \"70 bar\""},
       {"[valve]\nfirst_stage = \"jet\"\n",
-       "rig.toml:2: column 'valve.first_stage': unknown value 'jet'; use one of 'flapper_nozzle', 'jet_pipe'"},
+       "rig.toml:2: key 'valve.first_stage': unknown value 'jet'; use one of 'flapper_nozzle', 'jet_pipe'"},
       {"ports = \"open\"\n",
-       "rig.toml:1: column 'ports': unknown value 'open'; use one of 'actuator', 'blocked', 'free'"},
-      {"valve = \"x\"\n", "rig.toml:1: column 'valve': is not a section; write it as [valve]"},
+       "rig.toml:1: key 'ports': unknown value 'open'; use one of 'actuator', 'blocked', 'free'"},
+      {"valve = \"x\"\n", "rig.toml:1: key 'valve': is not a section; write it as [valve]"},
       {"fluid = \"water\"\n",
-       "rig.toml:1: column 'fluid': unknown fluid 'water'; use one of MIL-PRF-5606, MIL-PRF-83282, AS1241, ISO VG 32, "
+       "rig.toml:1: key 'fluid': unknown fluid 'water'; use one of MIL-PRF-5606, MIL-PRF-83282, AS1241, ISO VG 32, "
        "ISO VG "
        "46, or a [fluid] section with density and kinematic_viscosity"},
       {"[actuator]\narea_a = \"1 cm2\"\nbore_diameter = \"40 mm\"\n",
-       "rig.toml:2: column 'actuator.area_a': given beside actuator.bore_diameter; keep areas or diameters, not both"},
+       "rig.toml:2: key 'actuator.area_a': given beside actuator.bore_diameter; keep areas or diameters, not both"},
       {"[actuator]\nrod_diameter_a = \"4 mm\"\n",
-       "rig.toml:2: column 'actuator.rod_diameter_a': needs actuator.bore_diameter; add bore_diameter or give area_a "
+       "rig.toml:2: key 'actuator.rod_diameter_a': needs actuator.bore_diameter; add bore_diameter or give area_a "
        "and area_b"},
       {"[actuator]\nbore_diameter = \"4 mm\"\nrod_diameter_a = \"4 mm\"\n",
-       "rig.toml:3: column 'actuator.rod_diameter_a': is not below actuator.bore_diameter; check both diameters"},
+       "rig.toml:3: key 'actuator.rod_diameter_a': is not below actuator.bore_diameter; check both diameters"},
       {"[supply]\npressure = \"5 bar\"\nreturn_pressure = \"5 bar\"\n",
-       "rig.toml:3: column 'supply.return_pressure': is not below supply.pressure; check both values"},
+       "rig.toml:3: key 'supply.return_pressure': is not below supply.pressure; check both values"},
       {"[columns]\nx = { signal = \"spool\" }\n",
-       "rig.toml:2: column 'columns.x.signal': unknown signal 'spool'; see 'servodx list signals'"},
-      {"[columns]\nx = { unit = \"mm\" }\n", "rig.toml:2: column 'columns.x': names no signal; add signal = \"...\""},
+       "rig.toml:2: key 'columns.x.signal': unknown signal 'spool'; see 'servodx list signals'"},
+      {"[columns]\nx = { unit = \"mm\" }\n", "rig.toml:2: key 'columns.x': names no signal; add signal = \"...\""},
       {"[columns]\nx = { signal = \"spool_position\", units = \"mm\" }\n",
-       "rig.toml:2: column 'columns.x.units': unknown key; known here: signal, unit, gain, offset"},
+       "rig.toml:2: key 'columns.x.units': unknown key; did you mean 'unit'? known here: signal, unit, gain, offset"},
       {"[columns]\nx = { signal = \"spool_position\", unit = \"V\" }\n",
-       "rig.toml:2: column 'columns.x.unit': volts need a gain; add gain = \"... m/V\""},
+       "rig.toml:2: key 'columns.x.unit': volts need a gain; add gain = \"... m/V\""},
       {"[columns]\nx = { signal = \"spool_position\", unit = \"V\", gain = \"-1\" }\n",
-       "rig.toml:2: column 'columns.x.unit': volts need a gain; add gain = \"... m/V\""},
+       "rig.toml:2: key 'columns.x.unit': volts need a gain; add gain = \"... m/V\""},
       {"[columns]\nx = { signal = \"spool_position\", unit = \"mm\", gain = \"20 mm/V\" }\n",
-       "rig.toml:2: column 'columns.x.unit': 'mm' is not what the gain divides by ('V'); make unit and gain agree"},
+       "rig.toml:2: key 'columns.x.unit': 'mm' is not what the gain divides by ('V'); make unit and gain agree"},
       {"[columns]\nx = { signal = \"spool_position\", unit = \"bar\" }\n",
-       "rig.toml:2: column 'columns.x.unit': 'bar' is no unit of 'spool_position'; use one of " + lengths +
+       "rig.toml:2: key 'columns.x.unit': 'bar' is no unit of 'spool_position'; use one of " + lengths +
            ", % of stroke, or V with a gain in the rig file"},
       {"[columns]\nx = { signal = \"spool_position\", gain = \"0\" }\n",
-       "rig.toml:2: column 'columns.x.gain': a gain of zero loses the signal; write a number, or a number with a unit "
+       "rig.toml:2: key 'columns.x.gain': a gain of zero loses the signal; write a number, or a number with a unit "
        "such as "
        "'20 m/V'"},
       {"[columns]\nx = { signal = \"spool_position\", offset = \"1 bar\" }\n",
-       "rig.toml:2: column 'columns.x.offset': 'bar' is a unit of pressure, not of length; use one of " + lengths},
+       "rig.toml:2: key 'columns.x.offset': 'bar' is a unit of pressure, not of length; use one of " + lengths},
   };
   for (const auto& c : cases) EXPECT_EQ(refusal(c.text), c.message);
 }

@@ -1,0 +1,17 @@
+// Refusals of files that hold keys, not columns: "rig.toml:2: key 'valve.rated_current': has no unit; ...".
+#pragma once
+#include <string>
+#include <utility>
+
+#include "base/error.h"
+
+namespace servodx {
+
+// `at.column` is the key.
+inline InputError key_error(const Place& at, const std::string& rule, std::string mend) {
+  return {{at.file, at.line, ""}, at.column.empty() ? rule : "key '" + at.column + "': " + rule, std::move(mend)};
+}
+// What a reader of quantities, which knows of columns only, said of a key.
+inline InputError key_error(const InputError& error) { return key_error(error.where, error.rule, error.mend); }
+
+}  // namespace servodx
