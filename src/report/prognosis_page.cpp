@@ -24,6 +24,13 @@ std::string left(const std::optional<Remaining>& r, double coverage) {
   return in_hours(r->median) + " (" + in_hours(r->lower) + " to " + in_hours(r->upper) + ", " + percent(coverage) + ")";
 }
 
+// Odds in which a person believes; the figure itself is in the JSON.
+std::string growth(double log_odds) {
+  constexpr double most = 1000;
+  const double odds = std::exp(std::min(log_odds, std::log(2 * most)));
+  return odds > most ? "grows, over 1000 to 1" : "grows, " + digits(odds, 2) + " to 1";
+}
+
 double coverage_of(const Header& header) { return header.settings.value("coverage", 0.9); }
 
 // A check over its hours, with what it must not pass.
@@ -70,7 +77,7 @@ TablePart table_of(const ValveTrend& v, double coverage) {
     state.tone = tone_of(t.state);
     table.rows.push_back({named(t.name, t.cause), state, Cell(handy(t.healthy, t.unit), t.healthy),
                           t.points.size() < 2 ? Cell("-") : Cell(handy(t.now, t.unit), t.now),
-                          t.trend ? "odds of growth e^" + digits(t.log_bayes_factor, 2) : "none shown",
+                          t.trend ? growth(t.log_bayes_factor) : "none shown",
                           left(t.remaining, coverage)});
   }
   return table;
@@ -101,6 +108,8 @@ Verdict verdict_of(const ValveTrend& v, double coverage) {
   verdict.headline = v.cause      ? words(*v.cause) + " grows in " + v.valve
                      : v.alert_at ? "A check of " + v.valve + " grows; no parameter names the cause"
                                   : v.valve + " shows no growth that would be acted on";
+  if (v.cause && v.remaining && std::isfinite(v.remaining->median))
+    verdict.headline += ", about " + in_hours(v.remaining->median) + " left";
   verdict.facts = {{"Valve", v.serial.empty() ? v.valve : v.valve + ", serial " + v.serial},
                    {"Last check", in_hours(v.at)},
                    {"Checks recorded", std::to_string(v.checks)},

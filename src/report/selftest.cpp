@@ -29,8 +29,9 @@ long biased(const SelftestResult& r) {
 }
 
 std::string coverage_words(const SelftestResult& r) {
-  return fmt::format("{} of its 95 % intervals hold the truth ({} to {}, from {} repeats)", percent(share(r)),
-                     percent(r.coverage_lower), percent(r.coverage_upper), r.repeats - r.failed);
+  return fmt::format("{} of its 95 % intervals hold the truth ({} to {}, from {} repeat{})", percent(share(r)),
+                     percent(r.coverage_lower), percent(r.coverage_upper), r.repeats - r.failed,
+                     r.repeats - r.failed == 1 ? "" : "s");
 }
 
 std::string headline(const SelftestResult& r) {

@@ -54,16 +54,17 @@ Page maps_page(const Header& header, const valve_maps::ValveNumbers& valve,
     if (e.name != "HF" && e.name == model) asked = &e;
   }
   Verdict v;
-  v.headline = asked  ? asked->name + " is off HF by " + percent(worst(*asked)) + " of P_SR in its worst region"
-               : best ? "Nearest to HF in its worst region: " + best->name + ", " + percent(worst(*best)) + " of P_SR"
+  v.headline = asked  ? "Map " + asked->name + " is wrong by up to " + percent(worst(*asked)) + " of the supply"
+               : best ? "Nearest to the detailed model: " + best->name + ", wrong by up to " + percent(worst(*best)) +
+                            " of the supply"
                       : "Valve maps";
   v.detail =
-      "Error of each map's load pressure against the detailed model HF, as a part of supply less return, region by "
-      "region.";
+      "Load pressure from spool position and load flow, against the detailed model HF: rms in the worst of four regions, "
+      "as a part of P_SR, supply less return.";
   if (asked && best) v.facts.push_back({"Nearest of all", best->name + ", " + percent(worst(*best))});
-  v.facts.insert(v.facts.end(), {{"P_SR", digits(in("bar", valve.supply), 4) + " bar"},
-             {"Saturates at x_SS", digits(in("um", valve.saturation_travel), 3) + " um"},
-             {"Leakage against flow gain", digits(valve.leak_share(), 3)}});
+  v.facts.insert(v.facts.end(), {{"Supply less return, P_SR", digits(in("bar", valve.supply), 4) + " bar"},
+             {"Travel at which it saturates, x_SS", digits(in("um", valve.saturation_travel), 3) + " um"},
+             {"Leakage share, G_PQ C_LK", digits(valve.leak_share(), 3)}});
   page.verdict(v);
   page.section("Error by region",
                "rms over the points of the region, in % of P_SR. Water hammer: beyond the supply. Saturated: above 90 "
