@@ -3,7 +3,11 @@
 #include <filesystem>
 #include <memory>
 
+#include "base/error.h"
+#include "base/nearest.h"
+#include "base/progress.h"
 #include "commands.h"
+#include "diagnose/check_log.h"
 #include "effects/registry.h"
 #include "fit/free_values.h"
 #include "fit/log_data.h"
@@ -12,6 +16,7 @@
 #include "report/columns.h"
 #include "report/pages.h"
 #include "report/text.h"
+#include "report/tune_words.h"
 
 namespace servodx {
 namespace {
@@ -32,8 +37,26 @@ std::vector<std::string> effects_of(const std::string& list) {
   for (const EffectInfo& effect : effect_list()) known.push_back(effect.name);
   for (const std::string& name : names)
     require_option(std::find(known.begin() + 1, known.end(), name) != known.end(), "--effects",
-                   "unknown effect '" + name + "'", "use " + report::join(known) + ", with commas between");
+                   "unknown effect '" + name + "'", did_you_mean(name, known) + "use " + report::join(known) + ", with commas between");
   return names;
+}
+
+// What a diagnosis with the tuned table would see on each log. Logs of a test stand are not diagnosed.
+std::vector<Promise> promises(const std::vector<Log>& logs, const TuneResult& result, const RigFile& rig,
+                              const Options& options, Invocation& invocation) {
+  std::vector<Promise> all;
+  if (result.interrupted || all_on_test_stand(logs, rig)) return all;
+  Progress progress("faults in sight", {.quiet = options.common.quiet});
+  for (const Log& log : logs) {
+    try {
+      all.push_back(promise_of(log, result.table, rig, options.common.threads));
+      invocation.header().simulations += all.back().simulations;
+    } catch (const InputError& error) {  // the table is written: what is missing is said, and no more
+      invocation.note({error.what()});
+    }
+    progress.update(static_cast<double>(&log - logs.data() + 1) / static_cast<double>(logs.size()), 0);
+  }
+  return all;
 }
 
 int run(const Options& options) {
@@ -92,14 +115,16 @@ int run(const Options& options) {
   header.failed_simulations = result.failed_simulations;
   for (const Log& log : logs) invocation.note(log.notes);
   invocation.note(result.notes);
+  const report::GoodEnough good = report::good_enough(result, promises(logs, result, rig, options, invocation));
   if (invocation.wants_report()) {
     std::vector<Replay> replays;
     for (std::size_t l = 0; l < std::min(logs.size(), report::most_replays); ++l)
       replays.push_back(replay(logs[l], result.table, rig, {{"tuned", result.logs[l].candidate}}));
-    invocation.write_report(report::tune_page(header, result, replays));
+    invocation.write_report(report::tune_page(header, result, good, replays));
   }
-  invocation.finish(report::text_of(result, {.colour = colour_wanted(), .written_to = options.output}),
-                    report::tune_json(result));
+  report::Json body = report::tune_json(result);
+  body["good_enough"] = report::to_json(good);
+  invocation.finish(report::text_of(result, good, {.colour = colour_wanted(), .written_to = options.output}), body);
   return result.interrupted ? interrupted : ran;
 }
 

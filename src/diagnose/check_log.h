@@ -27,7 +27,8 @@ struct ChannelSurvey {
 };
 
 struct Finding {
-  std::string kind;  // jitter | gaps | rate | temperature | repeats | saturation | quantisation | sign | values | missing
+  // jitter | gaps | rate | temperature | repeats | saturation | quantisation | sign | values | columns | missing
+  std::string kind;
   std::string text;
 };
 

@@ -110,9 +110,15 @@ Assessment assess(const Log& log, const Table& tuned, const RigFile& rig, const 
   settings.null_limit = rig.null_limit;
   settings.threads = options.threads;
   settings.stop = options.stop;
+  out.test = conditions_of(log);
+  // A change in mid-log has its parts judged alone: about a third as much again, where the log is long enough.
+  const double first_part = data.scenario.time.size() >= 4 * shortest_part ? 0.75 : 1.0;
+  if (options.progress)
+    settings.progress = [&](double part, long simulations) { options.progress(first_part * part, simulations); };
   HypothesisFits h = fit_hypotheses(data, base, error, settings);
   out.simulations = h.simulations;
   out.failed_simulations = h.failed;
+  settings.progress = {};
   if (options.stop && options.stop->load()) return out;
   out.gross = gross_finding(data, base);
   for (std::size_t c = 0; c < data.channels.size() && c < h.fits.front().channel_rms.size(); ++c)
@@ -185,37 +191,16 @@ Assessment assess(const Log& log, const Table& tuned, const RigFile& rig, const 
     r.severity_lower = std::min(f.severity_lower, f.severity_upper);
     r.severity_upper = std::max(f.severity_lower, f.severity_upper);
     r.unit = f.fault ? std::string(f.fault->unit) : "";
+    r.at_least = f.at_least;
     r.adequacy = worst_adequacy(f);
+    if (f.ok) r.null = candidate_at(data, base, f)[row::servovalve_null];
+    r.moved = moved_rows(f, data, base, tuned);
     r.stops = f.stops;
     out.hypotheses.push_back(std::move(r));
   }
   std::stable_sort(out.hypotheses.begin() + 1, out.hypotheses.end(),
                    [](const auto& a, const auto& b) { return a.probability > b.probability; });
 
-  // What moved under the best hypothesis.
-  const auto best = std::max_element(h.fits.begin(), h.fits.end(),
-                                     [&](const auto& a, const auto& b) { return weight(a) < weight(b); });
-  if (best->ok) {
-    const ParameterVector moved = candidate_at(data, base, *best);
-    out.null = moved[row::servovalve_null];
-    for (std::size_t i = 0; i < tuned.rows.size() && i < static_cast<std::size_t>(n_parameters); ++i) {
-      if (moved[i] == base[i]) continue;
-      ParameterResult p{tuned[static_cast<int>(i)].id,
-                        tuned[static_cast<int>(i)].name,
-                        tuned[static_cast<int>(i)].unit,
-                        base[i],
-                        moved[i],
-                        std::nan(""),
-                        "bounded",
-                        {},
-                        0,
-                        0};
-      for (std::size_t j = 0; j < best->free.size(); ++j)
-        if (!best->free[j].apply && best->free[j].at == static_cast<int>(i) && !best->free[j].log_scale)
-          p.std_error = best->standard_error[j] * (best->free[j].upper - best->free[j].lower);
-      out.parameters.push_back(std::move(p));
-    }
-  }
   return out;
 }
 
@@ -267,13 +252,18 @@ Baseline make_baseline(const std::vector<Log>& logs, const Table& tuned, const R
   long total = 0;
   std::vector<Assessment> judged;
   for (std::size_t i = 0; i < logs.size(); ++i) {
-    const Assessment a = assess(logs[i], tuned, rig, options);
+    DiagnoseOptions of_log = options;
+    of_log.progress = [&](double part, long simulations) {
+      progress.update((static_cast<double>(i) + part) / static_cast<double>(logs.size()), total + simulations);
+    };
+    const Assessment a = assess(logs[i], tuned, rig, of_log);
     if (options.stop && options.stop->load()) break;
     b.scores.push_back({a.log,
                         a.sha256,
                         0.0,
                         a.hypotheses.front().adequacy,
                         {},
+                        a.test,
                         a.explanations.empty() ? Candidate{} : a.explanations.front()});
     for (const HypothesisResult& h : a.hypotheses)
       if (h.name != "healthy") b.scores.back().gains[h.name] = h.gain;
@@ -308,6 +298,21 @@ Baseline make_baseline(const std::vector<Log>& logs, const Table& tuned, const R
   return b;
 }
 
+namespace {
+
+std::optional<Diagnosis::Unlike> unlike_all(const TestConditions& test, const Baseline& baseline) {
+  const Baseline::Score* nearest = nullptr;
+  double least = HUGE_VAL;
+  for (const Baseline::Score& s : baseline.scores) {
+    if (!s.test) return {};  // made by an earlier version: nothing is known of its tests
+    if (const double d = distance(test, *s.test); !nearest || d < least) least = d, nearest = &s;
+  }
+  if (!nearest || least <= 1) return {};
+  return Diagnosis::Unlike{nearest->log, *nearest->test};
+}
+
+}  // namespace
+
 Diagnosis judge(Assessment a, const Baseline& baseline) {
   constexpr double ambiguous_probability = 0.05;
   // A fault is known less well than health: its hypothesis may leave twice the worst error that healthy logs show, and
@@ -322,7 +327,10 @@ Diagnosis judge(Assessment a, const Baseline& baseline) {
   long above = 1;
   for (const Baseline::Score& s : baseline.scores) above += s.score >= d.error;
   d.p_value = static_cast<double>(above) / static_cast<double>(baseline.scores.size() + 1);
+  d.baseline_logs = static_cast<int>(baseline.scores.size());
+  d.unlike = unlike_all(a.test, baseline);
   for (const HypothesisResult& h : a.hypotheses) d.probabilities[h.name] = h.probability;
+  const HypothesisResult* told = &a.hypotheses.front();  // health
   if (d.error <= baseline.threshold) {
     d.verdict = "healthy";
   } else {
@@ -341,6 +349,7 @@ Diagnosis judge(Assessment a, const Baseline& baseline) {
     } else if (adequate && best.name != "healthy") {
       named = &best;
     }
+    told = named ? named : &best;
     if (!named) {
       d.verdict = "unknown";
       d.probabilities["unknown"] = 1.0;
@@ -360,6 +369,9 @@ Diagnosis judge(Assessment a, const Baseline& baseline) {
       if (fault && !d.ambiguous_with.empty()) d.separating_test = fault->test;
     }
   }
+  d.told = told->name;
+  d.null = told->null;
+  d.moved = told->moved;
   d.assessment = std::move(a);
   return d;
 }

@@ -2,11 +2,14 @@
 #pragma once
 #include <atomic>
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "diagnose/conditions.h"
+#include "diagnose/moved.h"
 #include "fit/error_model.h"
 #include "fit/replay.h"
 #include "fit/tune.h"
@@ -20,6 +23,8 @@ struct DiagnoseOptions {
   int threads = 0;
   bool quiet = false;
   const std::atomic<bool>* stop = nullptr;
+  // Part of a log's work that is done, its simulations so far. From any thread.
+  std::function<void(double part, long simulations)> progress = {};
 };
 
 struct HypothesisResult {
@@ -32,6 +37,9 @@ struct HypothesisResult {
   std::string unit;
   double adequacy = 0;             // whitened rms of the worst channel, 1 when like the healthy logs
   std::vector<std::string> stops;  // how each start ended
+  bool at_least = false;           // at the mildest that is called this fault: the fit has found none of it
+  double null = 0;                 // [fraction of rated]
+  std::vector<MovedRow> moved;     // the fault's rows first
 };
 
 // What a log says before any threshold.
@@ -41,9 +49,8 @@ struct Assessment {
   std::vector<ChannelResult> channels;       // replay under health: rms beside noise
   std::string gross;                         // non-empty: seen without a fit (spool on its stop, no response)
   std::optional<double> onset;               // [s] change point where one stands out
-  double null = 0;                           // [fraction of rated] healthy hypothesis
-  std::vector<ParameterResult> parameters;   // what moved under the best hypothesis, and the nuisances
   std::vector<Candidate> explanations;       // what each hypothesis that could be fitted says the log should be
+  TestConditions test;
   std::vector<std::string> notes;
   long simulations = 0, failed_simulations = 0;
 };
@@ -60,6 +67,7 @@ struct Baseline {
     std::string log, sha256;
     double score = 0, adequacy = 0;
     std::map<std::string, double> gains = {};  // of each fault over health
+    std::optional<TestConditions> test = {};   // files of earlier versions have none
     Candidate healthy = {};                    // not in the file: for the report
   };
   std::vector<Score> scores;
@@ -76,6 +84,13 @@ struct Diagnosis {
   std::string log;
   std::string verdict;  // healthy | fault | unknown
   double error = 0, threshold = 0, p_value = 1;
+  int baseline_logs = 0;
+  // Set where no log of the baseline is of a test like this one: the nearest. The threshold was set by other tests.
+  struct Unlike {
+    std::string log;
+    TestConditions test;
+  };
+  std::optional<Unlike> unlike;
   std::optional<std::string> fault;  // label
   std::map<std::string, double> probabilities;
   std::vector<std::string> ambiguous_with;
@@ -86,6 +101,9 @@ struct Diagnosis {
     std::string unit;
   } severity;
   std::optional<double> onset;  // [s]
+  std::string told;  // the hypothesis that null and rows are of: the verdict's; of an unknown state the nearest
+  double null = 0;   // [fraction of rated]
+  std::vector<MovedRow> moved;
   Assessment assessment;
 };
 

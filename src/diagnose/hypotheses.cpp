@@ -183,6 +183,9 @@ void run(Attempt& a, const LogData& log, const ParameterVector& base, const Erro
         a.fault->log_scale ? std::log(fit.free[0].upper / fit.free[0].lower) : fit.free[0].upper - fit.free[0].lower;
     const double half = 1.96 * std::hypot(fit.standard_error[0] * std::max(1.0, worst), a.fault->spread / range);
     fit.severity = fit.free[0].from_unit(r.point[0]);
+    const auto beyond_health = [&](double u) { return std::abs(fit.free[0].from_unit(u) - a.fault->healthy); };
+    constexpr double close = 1e-3;  // of the range that was searched
+    fit.at_least = std::abs(r.point[0] - (beyond_health(0.0) < beyond_health(1.0) ? 0.0 : 1.0)) < close;
     fit.severity_lower = fit.free[0].from_unit(std::clamp(r.point[0] - half, 0.0, 1.0));
     fit.severity_upper = fit.free[0].from_unit(std::clamp(r.point[0] + half, 0.0, 1.0));
   }
@@ -228,10 +231,23 @@ HypothesisFits fit_hypotheses(const LogData& log, const ParameterVector& base, c
                               const HypothesisSettings& settings) {
   HypothesisFits out;
   const Trajectory reference = reference_of(log, base, settings.threads);
+  const auto& faults = fault_list();
+  // Work counted in steps of least squares: a screening is about one, and few begin again.
+  constexpr int few = 5;
+  constexpr double screening = 1, again_part = 2;
+  const double whole = settings.iterations + static_cast<double>(faults.size()) *
+                                                 (screening + 2.0 * few + (settings.iterations - few) + again_part);
+  std::atomic<double> done = 0;
+  std::atomic<long> simulated = 0;
+  const auto worked = [&](double steps, long simulations) {
+    const double so_far = done.fetch_add(steps) + steps;
+    const long all = simulated.fetch_add(simulations) + simulations;
+    if (settings.progress) settings.progress(std::min(1.0, so_far / whole), all);
+  };
   Attempt health;
   run(health, log, base, error, reference, nullptr, settings.iterations, settings);
+  worked(settings.iterations, health.simulations);
   const int threads = settings.threads > 0 ? settings.threads : omp_get_max_threads();
-  const auto& faults = fault_list();
   std::vector<std::vector<double>> starts(faults.size());
   std::vector<long> screened(faults.size(), 0), screened_failed(faults.size(), 0);
   const auto n_faults = static_cast<long>(faults.size());
@@ -240,6 +256,7 @@ HypothesisFits fit_hypotheses(const LogData& log, const ParameterVector& base, c
     const auto k = static_cast<std::size_t>(f);
     starts[k] = screened_starts(log, base, *faults[k], error, reference, health.fit, settings, &screened[k],
                                 &screened_failed[k]);
+    worked(screening, screened[k]);
   }
   std::vector<Attempt> attempts;
   for (std::size_t k = 0; k < faults.size(); ++k) {
@@ -249,11 +266,14 @@ HypothesisFits fit_hypotheses(const LogData& log, const ParameterVector& base, c
   const auto all = [&](int iterations) {
     const auto count = static_cast<long>(attempts.size());
 #pragma omp parallel for schedule(dynamic, 1) num_threads(threads)
-    for (long i = 0; i < count; ++i)
-      run(attempts[static_cast<std::size_t>(i)], log, base, error, reference, &health.fit, iterations, settings);
+    for (long i = 0; i < count; ++i) {
+      Attempt& a = attempts[static_cast<std::size_t>(i)];
+      const long before = a.simulations;
+      run(a, log, base, error, reference, &health.fit, iterations, settings);
+      worked(iterations, a.simulations - before);
+    }
   };
   // Every start gets a few steps; the best of each fault goes on.
-  constexpr int few = 5;
   constexpr double worth_another_start = 4.0;  // of misfit: two deviates
   all(few);
   out.simulations = health.simulations, out.failed = health.failed;
@@ -280,6 +300,7 @@ HypothesisFits fit_hypotheses(const LogData& log, const ParameterVector& base, c
     const HypothesisFit& fault = attempts[static_cast<std::size_t>(i)].fit;
     if (fault.ok && fault.misfit < health.fit.misfit - worth_another_start)
       run(again[static_cast<std::size_t>(i)], log, base, error, reference, &fault, settings.iterations, settings);
+    worked(again_part, again[static_cast<std::size_t>(i)].simulations);
   }
   for (Attempt& a : again) {
     out.simulations += a.simulations, out.failed += a.failed;

@@ -5,6 +5,7 @@
 // else as in health. So a gain of a fault over health is what only a fault explains.
 #pragma once
 #include <atomic>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -20,6 +21,7 @@ struct HypothesisFit {
   bool ok = false;
   double misfit = 1e300;                          // -2 log likelihood, priors included
   double severity = 0;                            // in the fault's unit
+  bool at_least = false;                          // it stands at the mild end of its range
   double severity_lower = 0, severity_upper = 0;  // 95 %, from the curvature, cut at the range that was searched
   Point point;
   std::vector<FreeValue> free;
@@ -34,6 +36,7 @@ struct HypothesisSettings {
   int threads = 0;
   int iterations = 20;
   const std::atomic<bool>* stop = nullptr;  // set: give up; what comes back is worthless
+  std::function<void(double part, long simulations)> progress = {};  // after every fit, from any thread
 };
 
 struct HypothesisFits {

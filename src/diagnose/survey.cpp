@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "diagnose/check_log.h"
+#include "diagnose/conditions.h"
 #include "fit/log_data.h"
 
 namespace servodx {
@@ -50,31 +51,6 @@ void survey_time(const std::vector<double>& t, LogSurvey& s) {
   // Samples over time: the median of jittered steps is not quite their mean.
   s.rate = t.back() > t.front() ? static_cast<double>(t.size() - 1 + s.lost) / (t.back() - t.front()) : 0;
   s.jitter = n ? std::sqrt(square / static_cast<double>(n)) : 0;
-}
-
-// Frequency of the sine that decorrelates as fast as the series: found as the stride at which the mean square
-// difference reaches a tenth of its end value, twice the variance; a sine is there at a tenth of its period.
-double band_of(const std::vector<double>& t, const std::vector<double>& x) {
-  double mean = 0, square = 0;
-  std::size_t n = 0;
-  for (const double v : x)
-    if (std::isfinite(v)) mean += v, ++n;
-  if (n < 8) return 0;
-  mean /= static_cast<double>(n);
-  for (const double v : x)
-    if (std::isfinite(v)) square += (v - mean) * (v - mean);
-  square /= static_cast<double>(n);
-  if (square <= 0) return 0;
-  for (std::size_t stride = 1; stride < x.size() / 2; stride = std::max(stride + 1, stride * 5 / 4)) {
-    double difference = 0;
-    std::size_t pairs = 0;
-    for (std::size_t k = stride; k < x.size(); ++k)
-      if (std::isfinite(x[k]) && std::isfinite(x[k - stride]))
-        difference += (x[k] - x[k - stride]) * (x[k] - x[k - stride]), ++pairs;
-    if (pairs > 0 && difference / static_cast<double>(pairs) >= 0.2 * square)
-      return 0.1 / (static_cast<double>(stride) * (t.back() - t.front()) / static_cast<double>(t.size() - 1));
-  }
-  return 0;
 }
 
 ChannelSurvey survey_channel(const Log& log, Signal signal) {
@@ -191,7 +167,8 @@ void find_suspicious(const Log& log, LogSurvey& s) {
   for (const std::string& note : log.notes) {  // what the reader saw: limits, spikes, frozen sensors, no excitation
     if (note.find("gap") != std::string::npos && s.gaps > 0) continue;
     const std::string front = log.path + ": ";
-    found("values", note.starts_with(front) ? note.substr(front.size()) : note);
+    const bool unmapped = note.find("the rig file maps column") != std::string::npos;
+    found(unmapped ? "columns" : "values", note.starts_with(front) ? note.substr(front.size()) : note);
   }
 }
 
@@ -205,20 +182,11 @@ LogSurvey survey(const Log& log, const RigFile&) {
   s.duration = log.time.back() - log.time.front();
   survey_time(log.time, s);
   s.closed_loop = log.has(Signal::setpoint);
-  if (log.has(Signal::oil_temperature)) {
-    double sum = 0;
-    std::size_t n = 0;
-    for (const double v : log[Signal::oil_temperature])
-      if (std::isfinite(v)) sum += v, ++n;
-    if (n > 0) s.temperature = sum / static_cast<double>(n);
-  }
+  const TestConditions test = conditions_of(log);
+  s.temperature = test.temperature, s.drive_span = test.drive_span, s.drive_band = test.drive_band;
   for (const SignalInfo& signal : signal_list)
     if (signal.signal != Signal::time && log.has(signal.signal))
       s.channels.push_back(survey_channel(log, signal.signal));
-  const Signal drive = log.has(Signal::coil_current) ? Signal::coil_current : Signal::command;
-  for (const ChannelSurvey& c : s.channels)
-    if (c.signal == drive) s.drive_span = c.highest - c.lowest;
-  s.drive_band = band_of(log.time, log[drive]);
   find_suspicious(log, s);
   return s;
 }

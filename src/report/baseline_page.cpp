@@ -22,7 +22,7 @@ Page baseline_page(const Header& header, const Baseline& b, const std::vector<Re
   if (!kept)
     v.reasons.push_back(fmt::format("{} logs cannot promise {}: give {} more.", b.logs, percent(b.asked),
                                     std::max(0, b.logs_needed - b.logs)));
-  v.reasons.push_back("The promise holds for logs of like excitation and temperature as these.");
+  v.reasons.push_back("The promise holds for logs of like excitation and temperature as these; a diagnosis says where a log is unlike all of them.");
   page.verdict(v);
 
   page.section(
@@ -37,6 +37,15 @@ Page baseline_page(const Header& header, const Baseline& b, const std::vector<Re
                          fmt::format("worst channel {} times its usual error", digits(s.adequacy, 2)),
                          s.score > b.threshold ? Tone::doubt : Tone::good, ""});
   page.add(bars);
+  if (std::all_of(order.begin(), order.end(), [](const auto& s) { return s.test.has_value(); })) {
+    TablePart tests{"What tests the promise covers", "lrrr", {"log", "drive spans mA", "about Hz", "oil degC"}, {}, 0};
+    for (const Baseline::Score& s : order)
+      tests.rows.push_back({s.log, Cell(digits(1e3 * s.test->drive_span), 1e3 * s.test->drive_span),
+                            Cell(digits(s.test->drive_band, 2), s.test->drive_band),
+                            s.test->temperature ? Cell(digits(*s.test->temperature - 273.15), *s.test->temperature - 273.15)
+                                                : Cell("")});
+    page.add(tests);
+  }
   for (const Baseline::Score& s : order)
     for (const Replay& r : replays) {
       if (r.log != s.log) continue;

@@ -166,6 +166,20 @@ Json check_log_json(const std::vector<LogCheck>& checks) {
   return {{"logs", logs}};
 }
 
+void add_visible(Page& page, const std::vector<Visible>& faults) {
+  Bars bars{"Faults, each at the mildest that is called one and at typical size", "fault", "deviate", {},
+            Mark{seen, "may show"}, 20.0};
+  for (const Visible& f : faults)
+    for (const auto& [size, deviate] : {std::pair(f.least, f.at_least), std::pair(f.typical, f.at_typical)})
+      bars.rows.push_back({words(f.fault) + ", " + handy(size, f.unit), deviate, digits(deviate, 2),
+                           visibility(deviate),
+                           deviate >= plain  ? Tone::good
+                           : deviate >= seen ? Tone::doubt
+                                             : Tone::plain,
+                           ""});
+  page.add(bars);
+}
+
 Page check_log_page(const Header& header, const std::vector<LogCheck>& checks) {
   std::size_t suspicious = 0;
   for (const LogCheck& c : checks) suspicious += !c.survey.findings.empty();
@@ -222,16 +236,7 @@ Page check_log_page(const Header& header, const std::vector<LogCheck>& checks) {
       page.text("With --params TABLE it also says which parameters and faults this log can show.");
       continue;
     }
-    Bars faults{"Which faults it can show", "fault", "deviate", {}, Mark{seen, "may show"}, 20.0};
-    for (const Visible& f : check.promise->faults)
-      for (const auto& [size, deviate] : {std::pair(f.least, f.at_least), std::pair(f.typical, f.at_typical)})
-        faults.rows.push_back({words(f.fault) + ", " + handy(size, f.unit), deviate, digits(deviate, 2),
-                               visibility(deviate),
-                               deviate >= plain  ? Tone::good
-                               : deviate >= seen ? Tone::doubt
-                                                 : Tone::plain,
-                               ""});
-    page.add(faults);
+    add_visible(page, check.promise->faults);
     TablePart rows{"Which parameters it can show: " + promise_lead(*check.promise),
                    "lrrll",
                    {"parameter", "value", "std. error", "unit", ""},

@@ -16,6 +16,8 @@ struct LogCheck {
 
 std::string text_of(const std::vector<LogCheck>& checks);
 Json check_log_json(const std::vector<LogCheck>& checks);
+// A part of a page: each fault at two sizes, and whether the log would show it.
+void add_visible(Page& page, const std::vector<Visible>& faults);
 Page check_log_page(const Header& header, const std::vector<LogCheck>& checks);
 
 }  // namespace servodx::report

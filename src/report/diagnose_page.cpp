@@ -7,6 +7,7 @@
 
 #include "base/csv.h"
 #include "report/columns.h"
+#include "report/diagnosis_words.h"
 #include "report/handy.h"
 #include "report/pages.h"
 #include "report/parameter_part.h"
@@ -16,7 +17,8 @@ namespace servodx::report {
 namespace {
 
 Tone tone_of(const Diagnosis& d) {
-  return d.verdict == "healthy" ? Tone::good : d.verdict == "fault" ? Tone::bad : Tone::doubt;
+  if (d.verdict == "fault") return Tone::bad;
+  return d.verdict == "healthy" && !d.unlike ? Tone::good : Tone::doubt;
 }
 
 const HypothesisResult* find(const Diagnosis& d, const std::string& name) {
@@ -33,15 +35,10 @@ const HypothesisResult* nearest_fault(const Diagnosis& d) {
   return best;
 }
 
-std::string size_of(const Diagnosis& d) {
-  if (!d.fault || !std::isfinite(d.severity.value)) return "";
-  return handy_interval(d.severity.value, d.severity.lower, d.severity.upper, d.severity.unit);
-}
-
 std::string headline(const Diagnosis& d) {
   if (d.verdict == "healthy") return file_name(d.log) + " is like the fault-free logs";
   if (d.verdict == "unknown") return file_name(d.log) + " is not healthy, and no known fault explains it";
-  const std::string size = size_of(d);
+  const std::string size = size_words(d);
   return words(d.fault.value_or("")) + (size.empty() ? "" : ", " + size);
 }
 
@@ -50,12 +47,10 @@ std::vector<std::string> reasons(const Diagnosis& d, const Baseline& baseline) {
   const bool above = d.error > d.threshold;
   if (!d.assessment.gross.empty()) why.push_back("Seen without a fit: " + d.assessment.gross + ".");
   const std::size_t n = baseline.scores.size();
-  const bool beyond_all = d.p_value * static_cast<double>(n + 1) < 1.5;
-  why.push_back(fmt::format(
-      "Its error is {}; the threshold, set by {} fault-free logs, is {}. {}", digits(d.error), n, digits(d.threshold),
-      beyond_all
-          ? fmt::format("None of them is as far off: p = {}, the least that {} logs can show.", digits(d.p_value, 2), n)
-          : fmt::format("A fault-free log is as far off with p = {}.", digits(d.p_value, 2))));
+  why.push_back(fmt::format("Its error is {}; the threshold, set by {} fault-free logs, is {}. A fault-free log is as "
+                            "far off with {}.",
+                            digits(d.error), n, digits(d.threshold), chance_words(d)));
+  if (d.unlike) why.push_back("Beware: " + unlike_words(d) + ". The threshold may not hold for it.");
   const HypothesisResult* healthy = find(d, "healthy");
   const HypothesisResult* best = d.fault ? find(d, *d.fault) : nearest_fault(d);
   if (above && healthy && best)
@@ -92,7 +87,7 @@ Verdict verdict_of(const Diagnosis& d, const Baseline& baseline) {
   if (d.fault) v.facts.push_back({"Probability", chance(d.probabilities.at(*d.fault))});
   if (d.onset) v.facts.push_back({"Since", digits(*d.onset, 4) + " s"});
   v.facts.push_back({"Error / threshold", digits(d.error) + " / " + digits(d.threshold)});
-  v.facts.push_back({"Null", percent(d.assessment.null) + " of rated"});
+  v.facts.push_back({"Null", percent(d.null) + " of rated"});
   if (!d.action.empty()) v.facts.push_back({"Action", d.action});
   v.reasons = reasons(d, baseline);
   return v;
@@ -112,7 +107,7 @@ void add_ranking(Page& page, const Diagnosis& d) {
   std::stable_sort(order.begin(), order.end(), [&](const auto& a, const auto& b) { return p_of(a) > p_of(b); });
   for (const HypothesisResult& h : order) {
     std::string note =
-        h.name == "healthy" ? "" : handy_interval(h.severity, h.severity_lower, h.severity_upper, h.unit) + "; ";
+        h.name == "healthy" ? "" : size_words(h) + "; ";
     note += fmt::format("worst channel {} times its usual error", digits(h.adequacy, 2));
     bars.rows.push_back({words(h.name), p_of(h), chance(p_of(h)), note,
                          d.fault == h.name     ? Tone::bad
@@ -127,6 +122,11 @@ void add_ranking(Page& page, const Diagnosis& d) {
 
 void add_details(Page& page, const Diagnosis& d, const std::vector<Replay>& replays, std::size_t drawn) {
   add_ranking(page, d);
+  const auto [by_fault, in_health] = moved_parts(d);
+  if (!by_fault.empty())
+    page.add(moves_of({by_fault.begin(), by_fault.end()},
+                      d.fault ? "What the fault moves, against the tuned table"
+                              : "What the nearest hypothesis, " + words(d.told) + ", moves against the tuned table"));
   const auto r = std::find_if(replays.begin(), replays.end(), [&](const Replay& x) { return x.log == d.log; });
   if (r != replays.end()) {
     ReplayView view;
@@ -149,8 +149,12 @@ void add_details(Page& page, const Diagnosis& d, const std::vector<Replay>& repl
               "explains what health cannot.");
     add_replay(page, *r, view);
   }
-  if (!d.assessment.parameters.empty())
-    page.add(moves_of(d.assessment.parameters, "Parameters against the tuned table, under the best hypothesis"));
+  if (!in_health.empty()) {
+    Moves wander = moves_of({in_health.begin(), in_health.end()},
+                            "Let wander as on a healthy valve: tolerances, and this log's own null and air");
+    wander.shown = 4;
+    page.add(wander);
+  }
 }
 
 // What was named against what was made, where the truth is known of every log.

@@ -9,10 +9,26 @@ namespace {
 
 Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
 
+Json test_json(const TestConditions& test) {
+  return {{"drive_span", number(test.drive_span)},
+          {"drive_band", number(test.drive_band)},
+          {"temperature", test.temperature ? number(*test.temperature) : Json(nullptr)}};
+}
+
 template <class Results>
 Json array_of(const Results& results) {
   Json array = Json::array();
   for (const auto& result : results) array.push_back(to_json(result));
+  return array;
+}
+
+Json moved_json(const std::vector<MovedRow>& rows) {
+  constexpr const char* by_name[] = {"fault", "tolerance", "nuisance"};
+  Json array = Json::array();
+  for (const MovedRow& row : rows) {
+    array.push_back(to_json(row));
+    array.back()["by"] = by_name[static_cast<std::size_t>(row.by)];
+  }
   return array;
 }
 
@@ -68,12 +84,14 @@ Json tune_json(const TuneResult& result) {
 
 Json baseline_json(const Baseline& b) {
   Json scores = Json::array();
-  for (const Baseline::Score& s : b.scores)
+  for (const Baseline::Score& s : b.scores) {
     scores.push_back({{"log", s.log},
                       {"sha256", s.sha256},
                       {"score", number(s.score)},
                       {"adequacy", number(s.adequacy)},
                       {"gains", s.gains}});
+    if (s.test) scores.back()["test"] = test_json(*s.test);
+  }
   return {{"threshold", number(b.threshold)},
           {"false_alarm",
            {{"asked", number(b.asked)},
@@ -98,7 +116,8 @@ Json to_json(const HypothesisResult& h) {
            {{"value", number(h.severity)},
             {"lower", number(h.severity_lower)},
             {"upper", number(h.severity_upper)},
-            {"unit", h.unit}}},
+            {"unit", h.unit},
+            {"at_least", h.at_least}}},
           {"stops", h.stops}};
 }
 
@@ -121,10 +140,13 @@ Json to_json(const Diagnosis& d) {
             {"upper", sized ? number(d.severity.upper) : Json(nullptr)},
             {"unit", d.severity.unit}}},
           {"onset_time", d.onset ? number(*d.onset) : Json(nullptr)},
-          {"parameters", array_of(d.assessment.parameters)},
+          {"parameters", moved_json(d.moved)},
           {"action", d.action},
           {"gross", d.assessment.gross},
-          {"null", number(d.assessment.null)},
+          {"hypothesis_told", d.told},
+          {"test", test_json(d.assessment.test)},
+          {"unlike_baseline", d.unlike ? Json{{"nearest", d.unlike->log}, {"test", test_json(d.unlike->test)}} : Json(nullptr)},
+          {"null", number(d.null)},
           {"channels", array_of(d.assessment.channels)},
           {"hypotheses", array_of(d.assessment.hypotheses)},
           {"notes", d.assessment.notes}};

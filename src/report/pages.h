@@ -7,6 +7,7 @@
 #include "fit/replay.h"
 #include "fit/tune.h"
 #include "report/page.h"
+#include "report/tune_words.h"
 
 namespace servodx::report {
 
@@ -14,7 +15,8 @@ namespace servodx::report {
 inline constexpr std::size_t most_replays = 12;
 
 // `replays`: of some of the result's logs, by path; what is not there is not drawn.
-Page tune_page(const Header& header, const TuneResult& result, const std::vector<Replay>& replays);
+Page tune_page(const Header& header, const TuneResult& result, const GoodEnough& good,
+               const std::vector<Replay>& replays);
 Page simulate_page(const Header& header, const Replay& replay);
 Page baseline_page(const Header& header, const Baseline& baseline, const std::vector<Replay>& replays);
 // `truths`: what each log was made with, "" where that is not known; they enter the confusion table and nothing else.

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "report/columns.h"
+#include "report/diagnosis_words.h"
 #include "report/handy.h"
 
 namespace servodx::report {
@@ -26,10 +27,17 @@ struct InHandyUnit {
   HandyUnit unit;
 };
 
-// Change over size: what moved most comes first.
-double moved(const ParameterResult& p) {
-  const double change = std::abs(p.estimate - p.nominal);
-  return change > 0 ? change / std::max(std::abs(p.nominal), std::abs(p.estimate)) : 0.0;
+template <class Rows>
+std::string moves_table(const Rows& rows, std::size_t most) {
+  Columns table("lrlrrrl", 4);
+  for (std::size_t i = 0; i < std::min(rows.size(), most); ++i) {
+    const ParameterResult& p = rows[i];
+    const InHandyUnit in(p);
+    const bool known = std::isfinite(p.std_error);
+    table.row({p.name, in(p.nominal), "->", in(p.estimate), known ? "+-" : "", known ? in(p.std_error, 2) : "",
+               in.unit.name});
+  }
+  return table.text();
 }
 
 std::string in_colour(const std::string& word, const std::string& verdict, bool colour) {
@@ -96,12 +104,14 @@ std::pair<std::string, std::string> standing(const Diagnosis& d) {
 
 }  // namespace
 
-std::string text_of(const TuneResult& result, const TextOptions& options) {
+std::string text_of(const TuneResult& result, const GoodEnough& good, const TextOptions& options) {
   const auto fitted = std::count_if(result.parameters.begin(), result.parameters.end(), was_fitted);
   std::string text = fmt::format("{}tuned {} from {}", result.interrupted ? "interrupted, the best so far: " : "",
                                  plural(fitted, "parameter"), plural(static_cast<long>(result.logs.size()), "log"));
   text += options.written_to.empty() ? "\n" : ": " + options.written_to + "\n";
-  text += channels_table(result.channels) + "\n" + parameters_table(result.parameters);
+  text += "  good enough?  " + line_of(good) + "\n";
+  if (!good.errors.empty()) text += "  " + good.errors + "\n";
+  text += "\n" + channels_table(result.channels) + "\n" + parameters_table(result.parameters);
   text += held_rows(result.parameters) + "\n";
   if (!result.starts.empty()) {
     auto costs = result.starts;
@@ -136,40 +146,29 @@ std::string text_of(const Diagnosis& d, const TextOptions& options) {
     first += in_colour("FAULT", d.verdict, options.colour) + " " + d.fault.value_or("");
   else
     first += in_colour(d.verdict == "unknown" ? "UNKNOWN" : d.verdict, d.verdict, options.colour);
-  if (d.fault && std::isfinite(d.severity.value))
-    first += ", " + handy_interval(d.severity.value, d.severity.lower, d.severity.upper, d.severity.unit);
+  if (const std::string size = size_words(d); !size.empty()) first += ", " + size;
   if (d.verdict == "unknown") first += ": not like the fault-free logs, and no known fault explains it";
 
   Columns table("ll", 2);
   const auto [word, hypotheses] = standing(d);
   table.row({word, hypotheses});
-  table.row(
-      {"error", fmt::format("{}, threshold {}; p = {}", digits(d.error), digits(d.threshold), digits(d.p_value, 2))});
+  table.row({"error", fmt::format("{}, threshold {}; {}", digits(d.error), digits(d.threshold), chance_words(d))});
+  if (d.unlike) table.row({"beware", unlike_words(d)});
   if (!d.assessment.gross.empty()) table.row({"seen at once", d.assessment.gross});
   if (d.onset) table.row({"since", digits(*d.onset, 4) + " s"});
   if (!d.ambiguous_with.empty()) table.row({"or else", join(d.ambiguous_with)});
   if (!d.separating_test.empty()) table.row({"to separate", d.separating_test});
   if (!d.action.empty()) table.row({"action", d.action});
-  table.row({"null", percent(d.assessment.null) + " of rated"});
+  table.row({"null", percent(d.null) + " of rated"});
 
-  auto parameters = d.assessment.parameters;
-  std::erase_if(parameters, [](const ParameterResult& p) {
-    return moved(p) == 0.0 || p.name == "servovalve_null";  // the null has a line of its own
-  });
-  std::stable_sort(parameters.begin(), parameters.end(),
-                   [](const auto& a, const auto& b) { return moved(a) > moved(b); });
-  constexpr std::size_t most = 5;
-  if (parameters.size() > most) parameters.resize(most);
+  auto [by_fault, in_health] = moved_parts(d);
+  std::erase_if(in_health, [](const MovedRow& p) { return p.name == "servovalve_null"; });  // it has a line of its own
+  constexpr std::size_t most = 4;
   std::string text = first + "\n" + table.text();
-  if (!parameters.empty()) {
-    Columns moves("lrlrrrl", 4);
-    for (const ParameterResult& p : parameters) {
-      const InHandyUnit in(p);
-      moves.row({p.name, in(p.nominal), "->", in(p.estimate), std::isfinite(p.std_error) ? "+-" : "",
-                 std::isfinite(p.std_error) ? in(p.std_error, 2) : "", in.unit.name});
-    }
-    text += "  moved\n" + moves.text();
-  }
+  if (!by_fault.empty())
+    text += fmt::format("  {}\n", d.fault ? "moved by the fault" : "moved by the nearest, " + d.told) +
+            moves_table(by_fault, most);
+  if (!in_health.empty()) text += "  let wander, as in health\n" + moves_table(in_health, most);
   return text;
 }
 

@@ -5,6 +5,7 @@
 
 #include "diagnose/diagnose.h"
 #include "fit/tune.h"
+#include "report/tune_words.h"
 
 namespace servodx::report {
 
@@ -13,7 +14,7 @@ struct TextOptions {
   std::string written_to;  // the command's output file, if any
 };
 
-std::string text_of(const TuneResult& result, const TextOptions& options);
+std::string text_of(const TuneResult& result, const GoodEnough& good, const TextOptions& options);
 std::string text_of(const Baseline& baseline, const TextOptions& options);
 std::string text_of(const Diagnosis& diagnosis, const TextOptions& options);
 

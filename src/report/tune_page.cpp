@@ -5,6 +5,7 @@
 
 #include "report/handy.h"
 #include "report/pages.h"
+#include "report/check_log.h"
 #include "report/parameter_part.h"
 #include "report/replay_part.h"
 
@@ -66,9 +67,15 @@ void add_search(Page& page, const TuneResult& result) {
   page.text("Each stage weighs the residuals in its own way: compare levels within a stage, not between stages.");
 }
 
+std::string sentence(std::string text) {
+  if (!text.empty()) text.front() = static_cast<char>(std::toupper(static_cast<unsigned char>(text.front())));
+  return text + ".";
+}
+
 }  // namespace
 
-Page tune_page(const Header& header, const TuneResult& result, const std::vector<Replay>& replays) {
+Page tune_page(const Header& header, const TuneResult& result, const GoodEnough& enough,
+               const std::vector<Replay>& replays) {
   const auto logs = static_cast<long>(result.logs.size());
   Page page(header, fmt::format("Nominal parameters from {} log{}", logs, logs == 1 ? "" : "s"));
   long known = 0, bound = 0, held = 0;
@@ -77,28 +84,18 @@ Page tune_page(const Header& header, const TuneResult& result, const std::vector
     bound += p.verdict == "at_bound";
     held += !std::isfinite(p.std_error) && p.verdict != "at_bound";
   }
-  const ChannelResult* worst = nullptr;
-  const auto times = [](const ChannelResult& c) { return c.heldout_rms / c.noise_rms; };
-  for (const ChannelResult& c : result.channels)
-    if (!worst || times(c) > times(*worst)) worst = &c;
-  const bool agreed = result.starts.size() < 2 || result.reached_best > 1;
-  const bool good = agreed && worst && times(*worst) < far_from_noise && !result.interrupted;
   Verdict v;
-  v.tone = good ? Tone::good : Tone::doubt;
-  v.word = result.interrupted ? "INTERRUPTED" : "";
-  v.headline = fmt::format("{} parameters fitted to {} log{}", known + bound, logs, logs == 1 ? "" : "s");
-  if (worst)
-    v.detail = fmt::format(
-        "On the part of the logs that was held out, the worst channel, {}, is wrong by {} times its sensor's noise.",
-        words(std::string(info(worst->signal).name)), digits(times(*worst), 2));
+  v.tone = enough.yes ? Tone::good : Tone::doubt;
+  v.word = result.interrupted ? "INTERRUPTED" : enough.yes ? "GOOD ENOUGH" : "WITH CARE";
+  v.headline = enough.yes ? "Good enough to diagnose with" : "To be diagnosed with care";
+  v.detail = fmt::format("{} parameters fitted to {} log{}; {}.", known + bound, logs, logs == 1 ? "" : "s",
+                         enough.errors);
   v.facts = {{"Known with an error", std::to_string(known)},
              {"At an end of their range", std::to_string(bound)},
              {"Held: the logs cannot tell", std::to_string(held)},
              {"Starts that agree", fmt::format("{} of {}", result.reached_best, result.starts.size())}};
-  if (!agreed)
-    v.reasons.push_back(
-        "Only one start reached the best cost: another valley may lie beside it. More generations, or logs "
-        "that move the valve farther, would tell.");
+  if (enough.yes) v.reasons.push_back(sentence(line_of(enough)));
+  for (const std::string& reason : enough.reasons) v.reasons.push_back(sentence(reason));
   if (bound > 0)
     v.reasons.push_back(
         fmt::format("{} parameter{} an end of the range: check the data sheet behind it, or widen the bounds.", bound,
@@ -127,6 +124,13 @@ Page tune_page(const Header& header, const TuneResult& result, const std::vector
     by_log.rows.push_back(std::move(row));
   }
   page.add(by_log);
+
+  if (!enough.best.empty()) {
+    page.section("Which faults a diagnosis would see",
+                 "On the log of these that shows each best, against the errors that this model makes, in deviates: below "
+                 "3 the fault stays hidden.");
+    add_visible(page, enough.best);
+  }
 
   page.section("Parameters",
                "From the table's value to the fitted one. Sigma is the standard error of the fitted value.");

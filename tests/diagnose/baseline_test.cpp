@@ -3,9 +3,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <mutex>
+#include <set>
 
 #include "base/error.h"
 #include "diagnose/diagnose.h"
+#include "faults/registry.h"
 #include "shipped_data.h"
 
 namespace servodx {
@@ -104,6 +107,36 @@ TEST(Baseline, PromisesTheRatesThatItsNumberOfLogsAllows) {
   EXPECT_DOUBLE_EQ(high.promised, 2.0 / 4);
   EXPECT_EQ(high.threshold, scores[1]);
   EXPECT_EQ(high.statement.find("more"), std::string::npos) << high.statement;
+}
+
+TEST(Assess, AFaultsRowsAreItsOwnAndProgressIsToldFitByFit) {
+  const Log log = cut(shipped_log("fault/f02_clogged_filter_severe"), 250);
+  DiagnoseOptions options = quiet();
+  std::mutex one;
+  std::vector<double> parts;
+  options.progress = [&](double part, long) {
+    const std::scoped_lock lock(one);
+    parts.push_back(part);
+  };
+  const Assessment a = assess(log, as_tuned("0"), shipped_rig(), options);
+  EXPECT_GT(parts.size(), 2 * fault_list().size());
+  EXPECT_LE(*std::max_element(parts.begin(), parts.end()), 1.0);
+  for (const HypothesisResult& h : a.hypotheses) {
+    std::set<std::string> by_fault;
+    bool health_began = false;
+    for (const MovedRow& row : h.moved) {
+      EXPECT_NE(row.estimate, row.nominal) << row.name;
+      EXPECT_FALSE(row.std_error <= 0) << row.name << " has moved, and not by nothing";
+      if (row.by == MovedRow::By::fault)
+        by_fault.insert(row.name), EXPECT_FALSE(health_began) << row.name;
+      else
+        health_began = true;
+    }
+    if (h.name == "healthy") EXPECT_TRUE(by_fault.empty());
+    if (h.name == "clogged_filter")
+      EXPECT_EQ(by_fault, (std::set<std::string>{"filter_blockage_positive", "filter_blockage_negative"}));
+    if (h.name == "plugged_nozzle") EXPECT_TRUE(by_fault.contains("nozzle_1_blockage") || by_fault.contains("nozzle_2_blockage"));
+  }
 }
 
 TEST(Assess, SameResultAtAnyThreadCount) {

@@ -137,6 +137,32 @@ TEST(Judge, OtherGrossFindingsNameNothingByThemselves) {
   }
 }
 
+TEST(Judge, RowsAndNullAreOfTheHypothesisThatTheVerdictIsOf) {
+  HypothesisResult healthy = hypothesis("healthy", 0.001), filter = hypothesis("clogged_filter", 0.998);
+  healthy.null = 0.01, filter.null = 0.02;
+  Assessment a = assessment(10, {healthy, filter});
+  EXPECT_EQ(judge(a, baseline()).told, "clogged_filter");
+  EXPECT_EQ(judge(a, baseline()).null, 0.02);
+  a.hypotheses.back().gain = 0;  // below the threshold the most probable fault is none
+  EXPECT_EQ(judge(a, baseline()).told, "healthy");
+  EXPECT_EQ(judge(a, baseline()).null, 0.01);
+}
+
+TEST(Judge, ATestUnlikeEveryLogOfTheBaselineIsSaidWithTheNearest) {
+  Baseline b = baseline();
+  const TestConditions warm{0.020, 6.0, 313.0}, cold{0.020, 6.0, 270.0}, large{0.045, 6.0, 313.0};
+  Assessment a = assessment(1, {hypothesis("healthy", 0.9), hypothesis("clogged_filter", 0.1)});
+  a.test = warm;
+  EXPECT_FALSE(judge(a, b).unlike) << "a baseline of earlier versions knows of no tests";
+  b.scores[0].test = cold, b.scores[1].test = large, b.scores[2].test = TestConditions{0.018, 11.0, 320.0};
+  EXPECT_FALSE(judge(a, b).unlike);
+  b.scores[2].test = cold;  // now each is unlike in one thing: too cold, too large
+  ASSERT_TRUE(judge(a, b).unlike);
+  EXPECT_EQ(judge(a, b).unlike->log, "b");
+  a.test.temperature.reset();  // a log that does not say is no other test
+  EXPECT_FALSE(judge(a, b).unlike);
+}
+
 TEST(Judge, OnsetIsHandedOn) {
   Assessment a = assessment(9.0, {hypothesis("healthy", 0.0), hypothesis("sticky_spool", 1.0)});
   a.onset = 1.25;

@@ -7,10 +7,12 @@
 
 #include "report/baseline_file.h"
 #include "report/columns.h"
+#include "report/diagnosis_words.h"
 #include "report/handy.h"
 #include "report/json.h"
 #include "report/selftest.h"
 #include "report/text.h"
+#include "report/tune_words.h"
 #include "temporary_folder.h"
 
 namespace servodx::report {
@@ -50,14 +52,15 @@ Diagnosis some_diagnosis() {
   d.action = "abnormal: call service";
   d.severity = {12e-6, 9e-6, 15e-6, "m"};
   d.onset = 2.3125;
-  ParameterResult moved;
+  MovedRow moved;
+  moved.by = MovedRow::By::fault;
   moved.id = 9;
   moved.name = "valve_glitch";
   moved.unit = "m";
   moved.estimate = 12e-6;
   moved.std_error = 1.5e-6;
   moved.verdict = "bounded";
-  d.assessment.parameters = {moved};
+  d.moved = {moved};
   return d;
 }
 
@@ -153,19 +156,19 @@ TEST(BaselineFile, RefusalsNameFileKeyAndMend) {
   EXPECT_EQ(refusal(good.dump()), "accepted");
   EXPECT_EQ(refusal("{\n\"threshold\": oops"), "base.json:2: is not JSON" + mend);
   EXPECT_EQ(refusal("[1]"), "base.json: is no object" + mend);
-  EXPECT_EQ(refusal("{}"), "base.json: column 'command': is missing" + mend);
-  EXPECT_EQ(edited([](Json& j) { j.erase("threshold"); }), "base.json: column 'threshold': is missing" + mend);
-  EXPECT_EQ(edited([](Json& j) { j["threshold"] = nullptr; }), "base.json: column 'threshold': is not a number" + mend);
+  EXPECT_EQ(refusal("{}"), "base.json: key 'command': is missing" + mend);
+  EXPECT_EQ(edited([](Json& j) { j.erase("threshold"); }), "base.json: key 'threshold': is missing" + mend);
+  EXPECT_EQ(edited([](Json& j) { j["threshold"] = nullptr; }), "base.json: key 'threshold': is not a number" + mend);
   EXPECT_EQ(edited([](Json& j) { j["false_alarm"]["promised"] = 2; }),
-            "base.json: column 'false_alarm.promised': is out of range: 2" + mend);
+            "base.json: key 'false_alarm.promised': is out of range: 2" + mend);
   EXPECT_EQ(edited([](Json& j) { j["false_alarm"] = 3; }),
-            "base.json: column 'false_alarm.asked': is not in an object" + mend);
-  EXPECT_EQ(edited([](Json& j) { j["scores"] = Json::array(); }), "base.json: column 'scores': holds no scores" + mend);
+            "base.json: key 'false_alarm.asked': is not in an object" + mend);
+  EXPECT_EQ(edited([](Json& j) { j["scores"] = Json::array(); }), "base.json: key 'scores': holds no scores" + mend);
   EXPECT_EQ(edited([](Json& j) { j["scores"][0].erase("score"); }),
-            "base.json: column 'scores.score': is missing" + mend);
+            "base.json: key 'scores.score': is missing" + mend);
   EXPECT_EQ(
       edited([](Json& j) { j["command"] = "tune"; }),
-      "base.json: column 'command': is the result of 'tune', not of 'baseline'; name the file that 'servodx baseline "
+      "base.json: key 'command': is the result of 'tune', not of 'baseline'; name the file that 'servodx baseline "
       "-o' wrote");
 }
 
@@ -194,7 +197,7 @@ TEST(DiagnoseJson, WhatIsAbsentOrNotFiniteIsNull) {
   d.fault.reset();
   d.onset.reset();
   d.error = INFINITY;
-  d.assessment.parameters[0].std_error = nan;
+  d.moved[0].std_error = nan;
   const Json r = Json::parse(dump({}, diagnose_json({d}))).at("results").at(0);
   EXPECT_TRUE(r["fault"].is_null());
   EXPECT_TRUE(r["onset_time"].is_null());
@@ -212,6 +215,50 @@ TEST(DiagnoseText, TheFirstLineIsTheVerdictWithItsSize) {
     EXPECT_NE(text.find(words), std::string::npos) << words << " is not in:\n" << text;
   EXPECT_EQ(text.find('\033'), std::string::npos);
   EXPECT_NE(text_of(some_diagnosis(), {.colour = true, .written_to = ""}).find('\033'), std::string::npos);
+}
+
+// A rank among n logs ends at 1 / (n + 1): a small p is not to be read off few logs.
+TEST(DiagnoseText, ThePValueSaysWhereTheLogsCanShowNoLess) {
+  Diagnosis d = some_diagnosis();
+  d.baseline_logs = 9;
+  d.p_value = 0.1;
+  EXPECT_NE(text_of(d, {}).find("p = 0.1, the least that 9 logs can show"), std::string::npos) << text_of(d, {});
+  d.p_value = 0.2;
+  EXPECT_EQ(text_of(d, {}).find("the least"), std::string::npos) << text_of(d, {});
+}
+
+TEST(DiagnoseText, TheFaultsRowsComeBeforeWhatHealthyValvesVaryBy) {
+  Diagnosis d = some_diagnosis();
+  MovedRow tolerance = d.moved.front(), air = d.moved.front();
+  tolerance.name = "torque_motor_gain", tolerance.by = MovedRow::By::tolerance, tolerance.estimate = 1;
+  air.name = "air_fraction", air.by = MovedRow::By::nuisance, air.estimate = 2;
+  d.moved = {tolerance, air, d.moved.front()};
+  const std::string text = text_of(d, {});
+  const auto at = [&](const char* word) { return text.find(word); };
+  EXPECT_LT(at("moved by the fault"), at("valve_glitch")) << text;
+  EXPECT_LT(at("valve_glitch"), at(", as in health")) << text;
+  EXPECT_LT(at(", as in health"), at("torque_motor_gain")) << text;
+  EXPECT_LT(at(", as in health"), at("air_fraction")) << text;
+}
+
+TEST(DiagnoseText, ATestThatTheBaselineHasNoneOfIsSaid) {
+  Diagnosis d = some_diagnosis();
+  EXPECT_EQ(text_of(d, {}).find("beware"), std::string::npos);
+  d.assessment.test = {0.0431, 5.56, 314.0};
+  d.unlike = {"logs/h11.csv", {0.04, 1.96, 333.0}};
+  EXPECT_NE(text_of(d, {}).find("no log of the baseline is of a test like this (drive spans 43.1 mA at about 5.6 Hz, oil "
+                                "41 degC); the nearest, h11.csv: drive spans 40 mA at about 2 Hz, oil 60 degC"),
+            std::string::npos)
+      << text_of(d, {});
+}
+
+// At the mild end of its range a hypothesis has found nothing: the end's value is the search's, not the log's.
+TEST(DiagnosisWords, AHypothesisAtItsLeastHasNoSize) {
+  HypothesisResult h;
+  h.severity = 0.15, h.severity_lower = 0.15, h.severity_upper = 0.3, h.unit = "blocked fraction of the filter area";
+  EXPECT_EQ(size_words(h), "15 % of the filter area blocked (15 to 30, 95 %)");
+  h.at_least = true;
+  EXPECT_EQ(size_words(h), "none of it seen");
 }
 
 TEST(DiagnoseText, AHealthyLogSaysSoFirst) {
@@ -266,7 +313,7 @@ TEST(TuneReport, HeldRowsSayWhyAndFittedOnesHaveErrors) {
   result.logs = {{"h.csv", result.channels, 0.01}};
   result.starts = {2.0, 1.0};
   result.reached_best = 1;
-  const std::string text = text_of(result, {});
+  const std::string text = text_of(result, good_enough(result, {}), {});
   for (const char* words : {"tuned 1 parameter from 1 log\n", "104.2", "held: nozzle_gap",
                             "together with flapper_stiffness, spool_offset\n", "1 of 2 starts", "1 to 2"})
     EXPECT_NE(text.find(words), std::string::npos) << words << " is not in:\n" << text;
@@ -275,6 +322,40 @@ TEST(TuneReport, HeldRowsSayWhyAndFittedOnesHaveErrors) {
   EXPECT_EQ(json["channels"][0]["unit"], "um");
   EXPECT_DOUBLE_EQ(json["channels"][0]["heldout_rms"].get<double>(), 2.0);
   EXPECT_EQ(json["starts"].size(), 2u);
+}
+
+TEST(TuneReport, GoodEnoughIsWhatPredictsHasArrivedAndWouldSeeTheFaults) {
+  TuneResult result;
+  result.channels = {{Signal::spool_position, "um", 1e-6, 5e-7, 1.5e-6}};
+  result.starts = {1.0, 1.01};
+  result.reached_best = 2;
+  result.notes = {"local stage: converged; cost 1"};
+  Promise log;
+  log.faults = {{"sticky_spool", "-", 2.5, 20, 4, 30}, {"clogged_filter", "-", 0.15, 0.8, 0.5, 1}};
+  Promise other = log;  // the fault that one log hides another may show
+  other.faults[1].at_typical = 12;
+  GoodEnough good = good_enough(result, {log, other});
+  EXPECT_TRUE(good.yes);
+  EXPECT_EQ(good.errors, "error over noise on the held-out part: spool position 3");
+  EXPECT_EQ(good.faint, std::vector<std::string>{"clogged_filter"});
+  EXPECT_TRUE(line_of(good).starts_with("yes: ")) << line_of(good);
+
+  good = good_enough(result, {log});
+  EXPECT_FALSE(good.yes);
+  EXPECT_EQ(good.hidden, std::vector<std::string>{"clogged_filter"});
+  const auto reason = [&](const char* words) {
+    const GoodEnough g = good_enough(result, {other});
+    EXPECT_FALSE(g.yes) << words;
+    EXPECT_NE(line_of(g).find(words), std::string::npos) << line_of(g);
+  };
+  result.notes = {"local stage: iteration limit of 40; cost 1"};
+  reason("has not arrived (iteration limit of 40)");
+  result.notes.clear();
+  result.reached_best = 1;
+  reason("no second start");
+  result.reached_best = 2;
+  result.channels[0].heldout_rms = 2.1e-6;
+  reason("predicts worse than it fits (spool position by 2.1 times)");
 }
 
 // Two repeats have a scatter of one degree of freedom: six of its sigmas are chance, of twenty repeats' they are not.

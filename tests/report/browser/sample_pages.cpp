@@ -72,8 +72,13 @@ Diagnosis some_diagnosis(const std::string& log, const std::string& verdict) {
   d.threshold = 9.45;
   d.p_value = 0.2;
   d.assessment.log = log;
-  d.assessment.null = -0.0026;
-  d.assessment.parameters = some_parameters();
+  d.null = -0.0026;
+  d.told = "feedback_wire_backlash";
+  for (const ParameterResult& p : some_parameters())
+    d.moved.push_back({p, p.name == "valve_glitch" ? MovedRow::By::fault : MovedRow::By::tolerance});
+  d.baseline_logs = 4;
+  d.assessment.test = {0.043, 5.6, 314.0};
+  d.unlike = {hostile, {0.040, 2.0, 333.0}};
   d.assessment.hypotheses = {
       {"healthy", "as the fault-free logs", 900, 0, 1e-6, 0, 0, 0, "", 8.1, {}},
       {"feedback_wire_backlash",
@@ -88,6 +93,7 @@ Diagnosis some_diagnosis(const std::string& log, const std::string& verdict) {
        1.3,
        {}},
       {"sticky_spool", "friction of the spool", 90, 810, 0.07, 4.1, 3.0, 5.2, "times the tuned friction", 1.6, {}}};
+  d.assessment.hypotheses.back().at_least = true;
   for (const HypothesisResult& h : d.assessment.hypotheses) d.probabilities[h.name] = h.probability;
   if (verdict == "fault") {
     d.fault = "feedback_wire_backlash";
@@ -98,6 +104,13 @@ Diagnosis some_diagnosis(const std::string& log, const std::string& verdict) {
     d.onset = 1.5;
   }
   return d;
+}
+
+Promise some_promise() {
+  Promise p;
+  p.faults = {{"sticky_spool", "times the tuned friction", 2.5, 20, 4, 30},
+              {"clogged_filter", "blocked fraction of the filter area", 0.15, 0.8, 0.5, 1}};
+  return p;
 }
 
 Baseline some_baseline() {
@@ -149,6 +162,7 @@ int main(int argc, char** argv) {
                               {some_replay(log, 1'000'000, both)}));
   write("baseline",
         baseline_page(some_header("baseline", hostile), some_baseline(), {some_replay(hostile, 1500, {"healthy"})}));
-  write("tune", tune_page(some_header("tune", hostile), some_tuning(), {some_replay(hostile, 1500, {"tuned"})}));
+  write("tune", tune_page(some_header("tune", hostile), some_tuning(), good_enough(some_tuning(), {some_promise()}),
+                          {some_replay(hostile, 1500, {"tuned"})}));
   return 0;
 }

@@ -1,0 +1,75 @@
+#include "diagnose/conditions.h"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+namespace servodx {
+namespace {
+
+constexpr double like_span = 2.0, like_band = 4.0;  // ratios
+constexpr double like_temperature = 15.0;           // [K]
+
+// Frequency of the sine that decorrelates as fast as the series: found as the stride at which the mean square
+// difference reaches a tenth of its end value, twice the variance; a sine is there at a tenth of its period.
+double band_of(const std::vector<double>& t, const std::vector<double>& x) {
+  double mean = 0, square = 0;
+  std::size_t n = 0;
+  for (const double v : x)
+    if (std::isfinite(v)) mean += v, ++n;
+  if (n < 8) return 0;
+  mean /= static_cast<double>(n);
+  for (const double v : x)
+    if (std::isfinite(v)) square += (v - mean) * (v - mean);
+  square /= static_cast<double>(n);
+  if (square <= 0) return 0;
+  for (std::size_t stride = 1; stride < x.size() / 2; stride = std::max(stride + 1, stride * 5 / 4)) {
+    double difference = 0;
+    std::size_t pairs = 0;
+    for (std::size_t k = stride; k < x.size(); ++k)
+      if (std::isfinite(x[k]) && std::isfinite(x[k - stride]))
+        difference += (x[k] - x[k - stride]) * (x[k] - x[k - stride]), ++pairs;
+    if (pairs > 0 && difference / static_cast<double>(pairs) >= 0.2 * square)
+      return 0.1 / (static_cast<double>(stride) * (t.back() - t.front()) / static_cast<double>(t.size() - 1));
+  }
+  return 0;
+}
+
+double mean(const std::vector<double>& x) {
+  double sum = 0;
+  std::size_t n = 0;
+  for (const double v : x)
+    if (std::isfinite(v)) sum += v, ++n;
+  return n > 0 ? sum / static_cast<double>(n) : std::nan("");
+}
+
+// Of two positive numbers, in powers of `like`; of a drive that stands still against one that moves: far.
+double ratio_distance(double a, double b, double like) {
+  if (a == b) return 0;
+  if (!(a > 0 && b > 0)) return HUGE_VAL;
+  return std::abs(std::log(a / b)) / std::log(like);
+}
+
+}  // namespace
+
+TestConditions conditions_of(const Log& log) {
+  TestConditions c;
+  const std::vector<double>& drive = log[log.has(Signal::coil_current) ? Signal::coil_current : Signal::command];
+  double lowest = HUGE_VAL, highest = -HUGE_VAL;
+  for (const double v : drive)
+    if (std::isfinite(v)) lowest = std::min(lowest, v), highest = std::max(highest, v);
+  c.drive_span = std::max(0.0, highest - lowest);
+  c.drive_band = band_of(log.time, drive);
+  if (log.has(Signal::oil_temperature))
+    if (const double t = mean(log[Signal::oil_temperature]); std::isfinite(t)) c.temperature = t;
+  return c;
+}
+
+double distance(const TestConditions& a, const TestConditions& b) {
+  double d = std::max(ratio_distance(a.drive_span, b.drive_span, like_span),
+                      ratio_distance(a.drive_band, b.drive_band, like_band));
+  if (a.temperature && b.temperature) d = std::max(d, std::abs(*a.temperature - *b.temperature) / like_temperature);
+  return d;
+}
+
+}  // namespace servodx

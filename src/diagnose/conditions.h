@@ -1,0 +1,24 @@
+// What test a log is of, in three numbers: how far and how fast it drives the valve, how warm the oil is.
+//
+// A baseline promises its rate of false alarms for logs like its own. Tests of one programme differ from run to run by
+// less than a factor of two in amplitude, of four in speed (a random sequence, a step beside a multisine) and by some
+// kelvin; beyond that the model's error may be another, and the threshold is none.
+#pragma once
+#include <optional>
+
+#include "signals/log.h"
+
+namespace servodx {
+
+struct TestConditions {
+  double drive_span = 0;              // [A] greatest less least
+  double drive_band = 0;              // [Hz] of the sine that changes as fast as the drive
+  std::optional<double> temperature;  // [K] mean
+};
+
+TestConditions conditions_of(const Log& log);
+
+// How far apart two tests are: at most 1 where they are alike. A temperature that one log does not hold is no difference.
+double distance(const TestConditions& a, const TestConditions& b);
+
+}  // namespace servodx

@@ -1,0 +1,21 @@
+// The rows that a hypothesis moved, with their errors: the fault's own first, then the tolerances that it shares with
+// health, then the log's nuisances.
+#pragma once
+#include <vector>
+
+#include "diagnose/hypotheses.h"
+#include "fit/tune.h"
+#include "parameters/table.h"
+
+namespace servodx {
+
+struct MovedRow : ParameterResult {
+  enum class By { fault, tolerance, nuisance } by = By::nuisance;
+};
+
+// `base`: the tuned candidate. Rows of the table and of effects; a sensor's offset and the like are no valve's rows. A
+// value that ended on a bound has no error.
+std::vector<MovedRow> moved_rows(const HypothesisFit& fit, const LogData& log, const ParameterVector& base,
+                                 const Table& tuned);
+
+}  // namespace servodx

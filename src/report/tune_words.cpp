@@ -1,0 +1,93 @@
+#include "report/tune_words.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "report/columns.h"
+#include "report/handy.h"
+#include "report/replay_part.h"
+
+namespace servodx::report {
+namespace {
+
+constexpr double predicts_worse = 2.0;  // held-out over fitted error
+constexpr double seen = 3.0;            // deviates
+
+// How the last stage ended, without the figures behind it.
+std::string end_of(const TuneResult& result) {
+  constexpr std::string_view front = "local stage: ";
+  for (const std::string& note : result.notes)
+    if (note.starts_with(front)) return note.substr(front.size(), note.find(';') - front.size());
+  return "";
+}
+
+std::vector<Visible> best_of(const std::vector<Promise>& promises) {
+  std::vector<Visible> best;
+  for (const Promise& p : promises)
+    for (std::size_t k = 0; k < p.faults.size(); ++k) {
+      if (best.size() <= k) best.push_back(p.faults[k]), best.back().at_least = best.back().at_typical = 0;
+      best[k].at_least = std::fmax(best[k].at_least, p.faults[k].at_least);  // NaN where a simulation failed
+      best[k].at_typical = std::fmax(best[k].at_typical, p.faults[k].at_typical);
+    }
+  return best;
+}
+
+}  // namespace
+
+GoodEnough good_enough(const TuneResult& result, const std::vector<Promise>& promises) {
+  GoodEnough g;
+  std::vector<std::string> errors, worse;
+  for (const ChannelResult& c : result.channels) {
+    const std::string name = words(std::string(info(c.signal).name));
+    if (c.noise_rms > 0 && std::isfinite(c.heldout_rms))
+      errors.push_back(name + " " + digits(c.heldout_rms / c.noise_rms, 2));
+    if (c.rms > 0 && c.heldout_rms > predicts_worse * c.rms)
+      worse.push_back(fmt::format("{} by {} times", name, digits(c.heldout_rms / c.rms, 2)));
+  }
+  if (!errors.empty()) g.errors = "error over noise on the held-out part: " + join(errors);
+  if (result.interrupted) g.reasons.push_back("it was interrupted");
+  if (!worse.empty())
+    g.reasons.push_back("it predicts worse than it fits (" + join(worse) + "): tune with more logs, of more kinds");
+  if (const std::string end = end_of(result); !end.empty() && !end.starts_with("converged") && !result.interrupted)
+    g.reasons.push_back("the search has not arrived (" + end + "): more --rounds");
+  if (result.starts.size() > 1 && result.reached_best < 2)
+    g.reasons.push_back("no second start reached the best valley: more --generations");
+  g.best = best_of(promises);
+  for (const Visible& v : g.best) {
+    if (!(v.at_typical >= seen))
+      g.hidden.push_back(v.fault);
+    else if (!(v.at_least >= seen))
+      g.faint.push_back(v.fault);
+  }
+  if (!g.hidden.empty())
+    g.reasons.push_back("on logs like these it would not see, even at typical size: " + join(g.hidden));
+  g.yes = g.reasons.empty();
+  return g;
+}
+
+std::string line_of(const GoodEnough& g) {
+  if (!g.yes) return fmt::format("with care: {}", fmt::join(g.reasons, "; "));
+  std::string line = "yes: it predicts as well as it fits, and the search has arrived";
+  if (!g.best.empty())
+    line += fmt::format("; on logs like these a diagnosis sees every fault at its typical size{}",
+                        g.faint.empty() ? ", and at its mildest" : ", and may miss at their mildest " + join(g.faint));
+  return line;
+}
+
+Json to_json(const GoodEnough& g) {
+  const auto number = [](double v) { return std::isfinite(v) ? Json(v) : Json(nullptr); };
+  Json faults = Json::array();
+  for (const Visible& v : g.best)
+    faults.push_back({{"fault", v.fault},
+                      {"unit", v.unit},
+                      {"least", v.least},
+                      {"deviate_at_least", number(v.at_least)},
+                      {"typical", v.typical},
+                      {"deviate_at_typical", number(v.at_typical)}});
+  return {{"yes", g.yes}, {"reasons", g.reasons}, {"hidden", g.hidden}, {"faint", g.faint}, {"visible_faults", faults}};
+}
+
+}  // namespace servodx::report

@@ -1,0 +1,32 @@
+// Is a tune good enough to diagnose with? Said in one line, from what the tune and its logs know.
+//
+// Three questions. Does the model predict what it was not fitted to: the error on the held-out part against the fitted
+// error, at most twice, as a diagnosis lets a hypothesis leave twice the usual error and no more (judge). Did the search
+// arrive: its end, and a second start in the same valley. And would a fault be seen: each at its typical size on the
+// log of these that shows it best, against the errors that the table now says its model makes (check-log's deviates;
+// below 3 it stays hidden).
+#pragma once
+#include <string>
+#include <vector>
+
+#include "diagnose/check_log.h"
+#include "fit/tune.h"
+#include "report/json.h"
+
+namespace servodx::report {
+
+struct GoodEnough {
+  bool yes = false;
+  std::string errors;                // "held-out error over noise: spool position 3.0, piston position 5.1"
+  std::vector<std::string> reasons;  // why not, or not quite
+  std::vector<std::string> hidden;   // faults that stay hidden at typical size on every log
+  std::vector<std::string> faint;    // that show then, and hide at the mildest that is called the fault
+  std::vector<Visible> best;         // of each fault, on the log that shows it best
+};
+
+// `promises`: of the logs with the tuned table; without any nothing is said of faults.
+GoodEnough good_enough(const TuneResult& result, const std::vector<Promise>& promises);
+std::string line_of(const GoodEnough& g);  // "yes: ..." or "with care: ..."
+Json to_json(const GoodEnough& g);
+
+}  // namespace servodx::report
