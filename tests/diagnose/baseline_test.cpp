@@ -127,15 +127,18 @@ TEST(Assess, AFaultsRowsAreItsOwnAndProgressIsToldFitByFit) {
     for (const MovedRow& row : h.moved) {
       EXPECT_NE(row.estimate, row.nominal) << row.name;
       EXPECT_FALSE(row.std_error <= 0) << row.name << " has moved, and not by nothing";
-      if (row.by == MovedRow::By::fault)
-        by_fault.insert(row.name), EXPECT_FALSE(health_began) << row.name;
-      else
-        health_began = true;
+      const bool of_fault = row.by == MovedRow::By::fault;
+      EXPECT_FALSE(of_fault && health_began) << row.name << " is the fault's and comes late";
+      health_began |= !of_fault;
+      if (of_fault) by_fault.insert(row.name);
     }
-    if (h.name == "healthy") EXPECT_TRUE(by_fault.empty());
-    if (h.name == "clogged_filter")
+    if (h.name == "healthy") {
+      EXPECT_TRUE(by_fault.empty());
+    } else if (h.name == "clogged_filter") {
       EXPECT_EQ(by_fault, (std::set<std::string>{"filter_blockage_positive", "filter_blockage_negative"}));
-    if (h.name == "plugged_nozzle") EXPECT_TRUE(by_fault.contains("nozzle_1_blockage") || by_fault.contains("nozzle_2_blockage"));
+    } else if (h.name == "plugged_nozzle") {
+      EXPECT_TRUE(by_fault.contains("nozzle_1_blockage") || by_fault.contains("nozzle_2_blockage"));
+    }
   }
 }
 

@@ -222,7 +222,7 @@ TEST(Log, EachRefusalNamesPlaceRuleAndMend) {
       {"", "log.csv: the file has no header row; begin it with a row of column names"},
       {"Time [s],command [mA],spool_position [mm]\n" + rows(30),
        "log.csv:1: column 'time': required signal is missing; add a column 'time [s]'" + mapping +
-           "; not known: 'Time'"},
+           "; not known: 'Time'; is 'Time' 'time' misspelt?"},
       {"time [s],spool_position [mm]\n",
        "log.csv:1: column 'command': required signal is missing, and so is 'coil_current'; add a column 'command [A]'" +
            mapping},
