@@ -37,7 +37,8 @@ std::vector<std::string> effects_of(const std::string& list) {
   for (const EffectInfo& effect : effect_list()) known.push_back(effect.name);
   for (const std::string& name : names)
     require_option(std::find(known.begin() + 1, known.end(), name) != known.end(), "--effects",
-                   "unknown effect '" + name + "'", did_you_mean(name, known) + "use " + report::join(known) + ", with commas between");
+                   "unknown effect '" + name + "'",
+                   did_you_mean(name, known) + "use " + report::join(known) + ", with commas between");
   return names;
 }
 

@@ -22,7 +22,9 @@ Page baseline_page(const Header& header, const Baseline& b, const std::vector<Re
   if (!kept)
     v.reasons.push_back(fmt::format("{} logs cannot promise {}: give {} more.", b.logs, percent(b.asked),
                                     std::max(0, b.logs_needed - b.logs)));
-  v.reasons.push_back("The promise holds for logs of like excitation and temperature as these; a diagnosis says where a log is unlike all of them.");
+  v.reasons.push_back(
+      "The promise holds for logs of like excitation and temperature as these; a diagnosis says where a log is unlike "
+      "all of them.");
   page.verdict(v);
 
   page.section(
@@ -42,8 +44,9 @@ Page baseline_page(const Header& header, const Baseline& b, const std::vector<Re
     for (const Baseline::Score& s : order)
       tests.rows.push_back({s.log, Cell(digits(1e3 * s.test->drive_span), 1e3 * s.test->drive_span),
                             Cell(digits(s.test->drive_band, 2), s.test->drive_band),
-                            s.test->temperature ? Cell(digits(*s.test->temperature - 273.15), *s.test->temperature - 273.15)
-                                                : Cell("")});
+                            s.test->temperature
+                                ? Cell(digits(*s.test->temperature - 273.15), *s.test->temperature - 273.15)
+                                : Cell("")});
     page.add(tests);
   }
   for (const Baseline::Score& s : order)

@@ -47,9 +47,10 @@ std::vector<std::string> reasons(const Diagnosis& d, const Baseline& baseline) {
   const bool above = d.error > d.threshold;
   if (!d.assessment.gross.empty()) why.push_back("Seen without a fit: " + d.assessment.gross + ".");
   const std::size_t n = baseline.scores.size();
-  why.push_back(fmt::format("Its error is {}; the threshold, set by {} fault-free logs, is {}. A fault-free log is as "
-                            "far off with {}.",
-                            digits(d.error), n, digits(d.threshold), chance_words(d)));
+  why.push_back(
+      fmt::format("Its error is {}; the threshold, set by {} fault-free logs, is {}. A fault-free log is as "
+                  "far off with {}.",
+                  digits(d.error), n, digits(d.threshold), chance_words(d)));
   if (d.unlike) why.push_back("Beware: " + unlike_words(d) + ". The threshold may not hold for it.");
   const HypothesisResult* healthy = find(d, "healthy");
   const HypothesisResult* best = d.fault ? find(d, *d.fault) : nearest_fault(d);
@@ -106,8 +107,7 @@ void add_ranking(Page& page, const Diagnosis& d) {
   };
   std::stable_sort(order.begin(), order.end(), [&](const auto& a, const auto& b) { return p_of(a) > p_of(b); });
   for (const HypothesisResult& h : order) {
-    std::string note =
-        h.name == "healthy" ? "" : size_words(h) + "; ";
+    std::string note = h.name == "healthy" ? "" : size_words(h) + "; ";
     note += fmt::format("worst channel {} times its usual error", digits(h.adequacy, 2));
     bars.rows.push_back({words(h.name), p_of(h), chance(p_of(h)), note,
                          d.fault == h.name     ? Tone::bad

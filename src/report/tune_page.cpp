@@ -3,9 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "report/check_log.h"
+#include "report/columns.h"
 #include "report/handy.h"
 #include "report/pages.h"
-#include "report/check_log.h"
 #include "report/parameter_part.h"
 #include "report/replay_part.h"
 
@@ -87,15 +88,17 @@ Page tune_page(const Header& header, const TuneResult& result, const GoodEnough&
   Verdict v;
   v.tone = enough.yes ? Tone::good : Tone::doubt;
   v.word = result.interrupted ? "INTERRUPTED" : enough.yes ? "GOOD ENOUGH" : "WITH CARE";
-  v.headline = enough.yes ? "Good enough to diagnose with" : "To be diagnosed with care";
-  v.detail = fmt::format("{} parameters fitted to {} log{}; {}.", known + bound, logs, logs == 1 ? "" : "s",
-                         enough.errors);
+  v.headline = enough.yes ? "Good enough to diagnose with" : "Diagnose with this table, but mind what follows";
+  v.detail =
+      fmt::format("{} parameters fitted to {} log{}; {}.", known + bound, logs, logs == 1 ? "" : "s", enough.errors);
   v.facts = {{"Known with an error", std::to_string(known)},
              {"At an end of their range", std::to_string(bound)},
              {"Held: the logs cannot tell", std::to_string(held)},
              {"Starts that agree", fmt::format("{} of {}", result.reached_best, result.starts.size())}};
   if (enough.yes) v.reasons.push_back(sentence(line_of(enough)));
   for (const std::string& reason : enough.reasons) v.reasons.push_back(sentence(reason));
+  if (!enough.yes && !enough.exceptions.empty())
+    v.reasons.push_back("Predicted worse than fitted: " + join(enough.exceptions) + ", so logs of its kind are few.");
   if (bound > 0)
     v.reasons.push_back(
         fmt::format("{} parameter{} an end of the range: check the data sheet behind it, or widen the bounds.", bound,
@@ -126,9 +129,10 @@ Page tune_page(const Header& header, const TuneResult& result, const GoodEnough&
   page.add(by_log);
 
   if (!enough.best.empty()) {
-    page.section("Which faults a diagnosis would see",
-                 "On the log of these that shows each best, against the errors that this model makes, in deviates: below "
-                 "3 the fault stays hidden.");
+    page.section(
+        "Which faults a diagnosis would see",
+        "On the log of these that shows each best, against the errors that this model makes, in deviates: below "
+        "3 the fault stays hidden.");
     add_visible(page, enough.best);
   }
 

@@ -24,6 +24,27 @@ std::string end_of(const TuneResult& result) {
   return "";
 }
 
+struct Prediction {
+  double usual = 0;         // held-out over fitted error, median over the logs
+  double worst = 0;         // and the log that is predicted worst
+  const LogResult* log = nullptr;
+};
+
+Prediction prediction_of(const TuneResult& result, Signal signal) {
+  Prediction p;
+  std::vector<double> ratios;
+  for (const LogResult& log : result.logs)
+    for (const ChannelResult& c : log.channels) {
+      if (c.signal != signal || !(c.rms > 0) || !std::isfinite(c.heldout_rms)) continue;
+      ratios.push_back(c.heldout_rms / c.rms);
+      if (ratios.back() > p.worst) p.worst = ratios.back(), p.log = &log;
+    }
+  if (ratios.empty()) return p;
+  std::sort(ratios.begin(), ratios.end());
+  p.usual = ratios[ratios.size() / 2];
+  return p;
+}
+
 std::vector<Visible> best_of(const std::vector<Promise>& promises) {
   std::vector<Visible> best;
   for (const Promise& p : promises)
@@ -44,8 +65,11 @@ GoodEnough good_enough(const TuneResult& result, const std::vector<Promise>& pro
     const std::string name = words(std::string(info(c.signal).name));
     if (c.noise_rms > 0 && std::isfinite(c.heldout_rms))
       errors.push_back(name + " " + digits(c.heldout_rms / c.noise_rms, 2));
-    if (c.rms > 0 && c.heldout_rms > predicts_worse * c.rms)
-      worse.push_back(fmt::format("{} by {} times", name, digits(c.heldout_rms / c.rms, 2)));
+    const Prediction p = prediction_of(result, c.signal);
+    if (p.usual > predicts_worse)
+      worse.push_back(fmt::format("{} {} times", name, digits(p.usual, 2)));
+    else if (p.worst > predicts_worse)
+      g.exceptions.push_back(fmt::format("{} of {} ({} times)", name, file_name(p.log->path), digits(p.worst, 2)));
   }
   if (!errors.empty()) g.errors = "error over noise on the held-out part: " + join(errors);
   if (result.interrupted) g.reasons.push_back("it was interrupted");
@@ -69,12 +93,14 @@ GoodEnough good_enough(const TuneResult& result, const std::vector<Promise>& pro
 }
 
 std::string line_of(const GoodEnough& g) {
-  if (!g.yes) return fmt::format("with care: {}", fmt::join(g.reasons, "; "));
+  const std::string but =
+      g.exceptions.empty() ? "" : "; predicted worse than fitted: " + join(g.exceptions) + ", so logs of its kind are few";
+  if (!g.yes) return fmt::format("with care: {}{}", fmt::join(g.reasons, "; "), but);
   std::string line = "yes: it predicts as well as it fits, and the search has arrived";
   if (!g.best.empty())
     line += fmt::format("; on logs like these a diagnosis sees every fault at its typical size{}",
                         g.faint.empty() ? ", and at its mildest" : ", and may miss at their mildest " + join(g.faint));
-  return line;
+  return line + but;
 }
 
 Json to_json(const GoodEnough& g) {
@@ -87,7 +113,7 @@ Json to_json(const GoodEnough& g) {
                       {"deviate_at_least", number(v.at_least)},
                       {"typical", v.typical},
                       {"deviate_at_typical", number(v.at_typical)}});
-  return {{"yes", g.yes}, {"reasons", g.reasons}, {"hidden", g.hidden}, {"faint", g.faint}, {"visible_faults", faults}};
+  return {{"yes", g.yes}, {"reasons", g.reasons}, {"exceptions", g.exceptions}, {"hidden", g.hidden}, {"faint", g.faint}, {"visible_faults", faults}};
 }
 
 }  // namespace servodx::report

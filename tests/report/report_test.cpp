@@ -164,8 +164,7 @@ TEST(BaselineFile, RefusalsNameFileKeyAndMend) {
   EXPECT_EQ(edited([](Json& j) { j["false_alarm"] = 3; }),
             "base.json: key 'false_alarm.asked': is not in an object" + mend);
   EXPECT_EQ(edited([](Json& j) { j["scores"] = Json::array(); }), "base.json: key 'scores': holds no scores" + mend);
-  EXPECT_EQ(edited([](Json& j) { j["scores"][0].erase("score"); }),
-            "base.json: key 'scores.score': is missing" + mend);
+  EXPECT_EQ(edited([](Json& j) { j["scores"][0].erase("score"); }), "base.json: key 'scores.score': is missing" + mend);
   EXPECT_EQ(
       edited([](Json& j) { j["command"] = "tune"; }),
       "base.json: key 'command': is the result of 'tune', not of 'baseline'; name the file that 'servodx baseline "
@@ -246,9 +245,10 @@ TEST(DiagnoseText, ATestThatTheBaselineHasNoneOfIsSaid) {
   EXPECT_EQ(text_of(d, {}).find("beware"), std::string::npos);
   d.assessment.test = {0.0431, 5.56, 314.0};
   d.unlike = {"logs/h11.csv", {0.04, 1.96, 333.0}};
-  EXPECT_NE(text_of(d, {}).find("no log of the baseline is of a test like this (drive spans 43.1 mA at about 5.6 Hz, oil "
-                                "41 degC); the nearest, h11.csv: drive spans 40 mA at about 2 Hz, oil 60 degC"),
-            std::string::npos)
+  EXPECT_NE(
+      text_of(d, {}).find("no log of the baseline is of a test like this (drive spans 43.1 mA at about 5.6 Hz, oil "
+                          "41 degC); the nearest, h11.csv: drive spans 40 mA at about 2 Hz, oil 60 degC"),
+      std::string::npos)
       << text_of(d, {});
 }
 
@@ -354,8 +354,15 @@ TEST(TuneReport, GoodEnoughIsWhatPredictsHasArrivedAndWouldSeeTheFaults) {
   result.reached_best = 1;
   reason("no second start");
   result.reached_best = 2;
-  result.channels[0].heldout_rms = 2.1e-6;
-  reason("predicts worse than it fits (spool position by 2.1 times)");
+  const auto log_with = [&](const char* path, double heldout) {
+    return LogResult{path, {{Signal::spool_position, "um", 1e-6, 5e-7, heldout}}, 0, 0, {}};
+  };
+  result.logs = {log_with("a.csv", 1e-6), log_with("b.csv", 1.1e-6), log_with("c.csv", 31e-6)};
+  good = good_enough(result, {other});  // one log without its like is said, and judges nothing
+  EXPECT_TRUE(good.yes) << line_of(good);
+  EXPECT_NE(line_of(good).find("spool position of c.csv (31 times)"), std::string::npos) << line_of(good);
+  result.logs[1] = log_with("b.csv", 2.1e-6);
+  reason("predicts worse than it fits (spool position 2.1 times)");
 }
 
 // Two repeats have a scatter of one degree of freedom: six of its sigmas are chance, of twenty repeats' they are not.
