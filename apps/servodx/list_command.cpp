@@ -210,7 +210,8 @@ void run(const Options& options) {
     invocation.finish(listing.text, {{options.kind, listing.items}});
     return;
   }
-  throw InputError({}, "there is no list of '" + options.kind + "'", did_you_mean(options.kind, names) + "use one of " + report::join(names));
+  throw InputError({}, "there is no list of '" + options.kind + "'",
+                   did_you_mean(options.kind, names) + "use one of " + report::join(names));
 }
 
 }  // namespace

@@ -73,8 +73,8 @@ class Reading {
     const auto rated = rig.fact("valve.rated_current");
     if (!rated)
       throw key_error({rig.path.empty() ? log.path : rig.path, 0, "valve.rated_current"},
-                       "is missing, and the figures are parts of it",
-                       "give a rig file with [valve] rated_current = \"20 mA\"");
+                      "is missing, and the figures are parts of it",
+                      "give a rig file with [valve] rated_current = \"20 mA\"");
     rated_ = *rated;
   }
 

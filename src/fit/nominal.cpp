@@ -312,11 +312,10 @@ class Facts {
 
 Table apply_rig_facts(const Table& table, const RigFile& rig, std::vector<std::string>* where_from) {
   if (const auto it = rig.words.find("valve.first_stage"); it != rig.words.end() && it->second == "jet_pipe")
-    throw key_error(
-        {rig.path, rig.line("valve.first_stage"), "valve.first_stage"},
-        "a jet pipe cannot be fitted: the model's pilot pressures come from two nozzles and a flapper, and "
-        "no setting of rows 3 to 10 recovers a jet's",
-        "use the virtual rig for jet pipes, or leave the key out for a flapper-nozzle valve");
+    throw key_error({rig.path, rig.line("valve.first_stage"), "valve.first_stage"},
+                    "a jet pipe cannot be fitted: the model's pilot pressures come from two nozzles and a flapper, and "
+                    "no setting of rows 3 to 10 recovers a jet's",
+                    "use the virtual rig for jet pipes, or leave the key out for a flapper-nozzle valve");
   if (table.has_std_error) {
     if (where_from) where_from->push_back(table.path + " is tuned: its values stand, the facts are not applied");
     return table;

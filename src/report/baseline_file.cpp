@@ -78,7 +78,7 @@ BaselineFile read_baseline(const std::string& path) {
   if (!file.is_object()) throw InputError({path, 0, ""}, "is no object", make_again);
   if (const std::string command = read.text(file, "command"); command != "baseline")
     throw key_error({path, 0, "command"}, "is the result of '" + command + "', not of 'baseline'",
-                     "name the file that 'servodx baseline -o' wrote");
+                    "name the file that 'servodx baseline -o' wrote");
 
   constexpr double any = HUGE_VAL;
   Baseline b;
@@ -111,7 +111,7 @@ void require_same_table(const Baseline& baseline, const std::string& baseline_pa
                         const std::string& table_sha256) {
   if (baseline.tuned_sha256 == table_sha256) return;
   throw key_error({baseline_path, 0, "tuned_sha256"}, "was made with another table than " + table_path,
-                   "give the table it was made with, or make a baseline with this one");
+                  "give the table it was made with, or make a baseline with this one");
 }
 
 }  // namespace servodx::report

@@ -167,8 +167,12 @@ Json check_log_json(const std::vector<LogCheck>& checks) {
 }
 
 void add_visible(Page& page, const std::vector<Visible>& faults) {
-  Bars bars{"Faults, each at the mildest that is called one and at typical size", "fault", "deviate", {},
-            Mark{seen, "may show"}, 20.0};
+  Bars bars{"Faults, each at the mildest that is called one and at typical size",
+            "fault",
+            "deviate",
+            {},
+            Mark{seen, "may show"},
+            20.0};
   for (const Visible& f : faults)
     for (const auto& [size, deviate] : {std::pair(f.least, f.at_least), std::pair(f.typical, f.at_typical)})
       bars.rows.push_back({words(f.fault) + ", " + handy(size, f.unit), deviate, digits(deviate, 2),

@@ -77,8 +77,7 @@ TablePart table_of(const ValveTrend& v, double coverage) {
     state.tone = tone_of(t.state);
     table.rows.push_back({named(t.name, t.cause), state, Cell(handy(t.healthy, t.unit), t.healthy),
                           t.points.size() < 2 ? Cell("-") : Cell(handy(t.now, t.unit), t.now),
-                          t.trend ? growth(t.log_bayes_factor) : "none shown",
-                          left(t.remaining, coverage)});
+                          t.trend ? growth(t.log_bayes_factor) : "none shown", left(t.remaining, coverage)});
   }
   return table;
 }

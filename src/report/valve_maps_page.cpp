@@ -59,12 +59,14 @@ Page maps_page(const Header& header, const valve_maps::ValveNumbers& valve,
                             " of the supply"
                       : "Valve maps";
   v.detail =
-      "Load pressure from spool position and load flow, against the detailed model HF: rms in the worst of four regions, "
+      "Load pressure from spool position and load flow, against the detailed model HF: rms in the worst of four "
+      "regions, "
       "as a part of P_SR, supply less return.";
   if (asked && best) v.facts.push_back({"Nearest of all", best->name + ", " + percent(worst(*best))});
-  v.facts.insert(v.facts.end(), {{"Supply less return, P_SR", digits(in("bar", valve.supply), 4) + " bar"},
-             {"Travel at which it saturates, x_SS", digits(in("um", valve.saturation_travel), 3) + " um"},
-             {"Leakage share, G_PQ C_LK", digits(valve.leak_share(), 3)}});
+  v.facts.insert(v.facts.end(),
+                 {{"Supply less return, P_SR", digits(in("bar", valve.supply), 4) + " bar"},
+                  {"Travel at which it saturates, x_SS", digits(in("um", valve.saturation_travel), 3) + " um"},
+                  {"Leakage share, G_PQ C_LK", digits(valve.leak_share(), 3)}});
   page.verdict(v);
   page.section("Error by region",
                "rms over the points of the region, in % of P_SR. Water hammer: beyond the supply. Saturated: above 90 "

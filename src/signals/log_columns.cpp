@@ -234,8 +234,8 @@ void LogColumns::note_unmapped() {
     const auto signal = find_signal(mapping.signal);
     if (!signal || present(*signal)) continue;
     const std::string near = nearest_word(column, ignored_);
-    note(fmt::format("{}: the rig file maps column '{}' to '{}' (line {}), and the log has none of that name: {}", path_,
-                     column, mapping.signal, mapping.line,
+    note(fmt::format("{}: the rig file maps column '{}' to '{}' (line {}), and the log has none of that name: {}",
+                     path_, column, mapping.signal, mapping.line,
                      near.empty() ? "give the column its name in the log, or read on without the signal"
                                   : fmt::format("is it '{}'?", near)));
   }

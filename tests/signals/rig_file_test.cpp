@@ -137,7 +137,8 @@ TEST(RigFile, EachRefusalNamesPlaceRuleAndMend) {
     std::string text, message;
   } cases[] = {
       {"\nnmae = \"x\"\n",
-       "rig.toml:2: key 'nmae': unknown key; did you mean 'name'? known here: name, serial, ports, command_hold, mains_frequency, "
+       "rig.toml:2: key 'nmae': unknown key; did you mean 'name'? known here: name, serial, ports, command_hold, "
+       "mains_frequency, "
        "null_limit, "
        "fluid, [valve], [actuator], [lines], [supply], [fluid], [limits], [columns]"},
       {"[supply]\npresure = \"207 bar\"\n",
@@ -161,8 +162,7 @@ TEST(RigFile, EachRefusalNamesPlaceRuleAndMend) {
        "rated_pressure_drop = \"70 bar\""},
       {"[valve]\nfirst_stage = \"jet\"\n",
        "rig.toml:2: key 'valve.first_stage': unknown value 'jet'; use one of 'flapper_nozzle', 'jet_pipe'"},
-      {"ports = \"open\"\n",
-       "rig.toml:1: key 'ports': unknown value 'open'; use one of 'actuator', 'blocked', 'free'"},
+      {"ports = \"open\"\n", "rig.toml:1: key 'ports': unknown value 'open'; use one of 'actuator', 'blocked', 'free'"},
       {"valve = \"x\"\n", "rig.toml:1: key 'valve': is not a section; write it as [valve]"},
       {"fluid = \"water\"\n",
        "rig.toml:1: key 'fluid': unknown fluid 'water'; use one of MIL-PRF-5606, MIL-PRF-83282, AS1241, ISO VG 32, "
