@@ -165,11 +165,15 @@ void search_rows(Report& report, const Choice& choice) {
     for (const auto& u : used)
       if (u) low = std::min(low, *u), high = std::max(high, *u);
     const std::string key = std::to_string(n);
-    report.json["simulations_to_floor"][key] = {
-        {"median", or_null(median)}, {"successes", count}, {"seeds", choice.seeds}, {"lowest", low}, {"highest", high}};
+    int redrawn = 0;
+    for (const Twin& twin : twins) redrawn += twin.redrawn;
+    report.json["simulations_to_floor"][key] = {{"median", or_null(median)}, {"successes", count},
+                                                {"seeds", choice.seeds},     {"lowest", low},
+                                                {"highest", high},           {"truths_drawn_again", redrawn}};
     report.add({fmt::format("simulations to 1.05 of the floor, {} parameters", n), "1000", "500",
                 median ? fmt::format("{:.0f}", *median) : "-",
-                fmt::format("{} of {} seeds, {} to {}", count, choice.seeds, low, high)});
+                fmt::format("{} of {} seeds, {} to {}; {} singing valves drawn again", count, choice.seeds, low, high,
+                            redrawn)});
 
     if (peers().empty() || !median || choice.peer_budget <= 0) {
       report.json["best_peer"][key] = nullptr;

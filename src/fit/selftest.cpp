@@ -11,6 +11,7 @@
 #include "fit/nominal.h"
 #include "fit/problem.h"
 #include "fit/tune.h"
+#include "fit/uncertainty.h"
 
 namespace servodx {
 namespace {
@@ -153,16 +154,16 @@ SelftestResult selftest(const Log& log, const Table& table, const RigFile& rig, 
     }
     std::vector<char> kept(free.size());
     for (std::size_t j = 0; j < free.size(); ++j) kept[j] = r.point[j] > 1e-6 && r.point[j] < 1 - 1e-6;
-    const Eigen::MatrixXd covariance = covariance_of(r.jacobian, kept);
+    const auto [point, covariance] = uncertainty(problem, r.point, r.jacobian, kept);
     for (std::size_t j = 0; j < n; ++j) {
       Tally& t = tallies[j];
       const FreeValue& f = free[j];
-      const double error = f.from_unit(r.point[j]) - f.from_unit(truth[j]);
+      const double error = f.from_unit(point[j]) - f.from_unit(truth[j]);
       t.sum += error, t.square += error * error, ++t.n;
       if (!kept[j]) continue;
       const auto k = static_cast<long>(j);
       const double unit_error = std::sqrt(std::max(0.0, covariance(k, k)));
-      const double per_unit = f.log_scale ? f.from_unit(r.point[j]) * std::log(f.upper / f.lower) : f.upper - f.lower;
+      const double per_unit = f.log_scale ? f.from_unit(point[j]) * std::log(f.upper / f.lower) : f.upper - f.lower;
       t.errors += unit_error * unit_error * per_unit * per_unit;
       t.covered += std::abs(r.point[j] - truth[j]) <= 1.96 * unit_error;
       ++t.counted;

@@ -18,6 +18,7 @@
 #include "fit/problem.h"
 #include "fit/profile.h"
 #include "fit/thin.h"
+#include "fit/uncertainty.h"
 #include "optimise/derivative_free.h"
 #include "optimise/genetic.h"
 
@@ -418,14 +419,15 @@ TuneResult tune(const std::vector<Log>& logs, const Table& nominal, const RigFil
   apply_error_model(fit, out.error, x);
   const Evaluation final_point = fit.evaluate(std::span(&x, 1)).front();
   if (fit.jacobian(x, final_point.residual, jacobian)) end.jacobian = jacobian;
-  const std::vector<Trajectory> final_run = fit.trajectories(x);
 
   // 6. Uncertainty, and the tuned table.
   std::vector<char> kept(static_cast<std::size_t>(fit.n()), 1);
   for (int j = 0; j < fit.n(); ++j)
     kept[static_cast<std::size_t>(j)] =
         x[static_cast<std::size_t>(j)] > 1e-6 && x[static_cast<std::size_t>(j)] < 1 - 1e-6;
-  const Eigen::MatrixXd covariance = covariance_of(end.jacobian, kept);
+  const auto [point, covariance] = uncertainty(fit, x, end.jacobian, kept);
+  x = point;
+  const std::vector<Trajectory> final_run = fit.trajectories(x);
   out.table = run.table;
   out.table.has_std_error = true;
   const auto derivative = [](const FreeValue& f, double u) {
