@@ -36,12 +36,9 @@ struct Oil {
   double density = 860.0;            // [kg/m3] at the log's temperature
   double dynamic_viscosity = 0.012;  // [Pa s] at the log's temperature
   double viscosity_ratio = 1.0;      // over the value at 40 degC
-  double bulk_ratio = 1.0;           // bulk modulus over its value at 40 degC, row 38
 };
 
-// Density, viscosity and stiffness at a temperature: Walther's law (ASTM D341) through the viscosity at 40 degC; the
-// bulk modulus of mineral oils falls as 10^(-0.0024 T) (Hodges 1996, as reviewed by Gholizadeh, Burton & Schoenau
-// 2011).
+// Density and viscosity at a temperature: Walther's law (ASTM D341) through the viscosity at 40 degC.
 Oil oil_at(double density_20, double kinematic_viscosity_40, double temperature_kelvin);
 
 }  // namespace servodx
