@@ -177,7 +177,8 @@ TEST(RigFacts, ContradictionsAreRefusedAtTheirKey) {
       apply_rig_facts(shipped(), rig);
     } catch (const InputError& e) {
       EXPECT_FALSE(e.mend.empty());
-      return e.where.column;
+      const std::size_t from = e.rule.find("key '"), to = e.rule.find("': ");
+      return from == 0 && to != std::string::npos ? e.rule.substr(5, to - 5) : "no key";
     }
     return "not refused";
   };
