@@ -253,8 +253,8 @@ Baseline make_baseline(const std::vector<Log>& logs, const Table& tuned, const R
   std::vector<Assessment> judged;
   for (std::size_t i = 0; i < logs.size(); ++i) {
     DiagnoseOptions of_log = options;
-    of_log.progress = [&](double part, long simulations) {
-      progress.update((static_cast<double>(i) + part) / static_cast<double>(logs.size()), total + simulations);
+    of_log.progress = [&](double part, long so_far) {
+      progress.update((static_cast<double>(i) + part) / static_cast<double>(logs.size()), total + so_far);
     };
     const Assessment a = assess(logs[i], tuned, rig, of_log);
     if (options.stop && options.stop->load()) break;

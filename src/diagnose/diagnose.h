@@ -35,11 +35,11 @@ struct HypothesisResult {
   double probability = 0;
   double severity = 0, severity_lower = 0, severity_upper = 0;  // 95 %
   std::string unit;
-  double adequacy = 0;             // whitened rms of the worst channel, 1 when like the healthy logs
-  std::vector<std::string> stops;  // how each start ended
-  bool at_least = false;           // at the mildest that is called this fault: the fit has found none of it
-  double null = 0;                 // [fraction of rated]
-  std::vector<MovedRow> moved;     // the fault's rows first
+  double adequacy = 0;               // whitened rms of the worst channel, 1 when like the healthy logs
+  std::vector<std::string> stops;    // how each start ended
+  bool at_least = false;             // at the mildest that is called this fault: the fit has found none of it
+  double null = 0;                   // [fraction of rated]
+  std::vector<MovedRow> moved = {};  // the fault's rows first
 };
 
 // What a log says before any threshold.

@@ -21,8 +21,8 @@ struct ExplainOptions {
   std::uint64_t seed = 1;
   int threads = 0;
   bool quiet = false;
-  double level = 0.01;               // false-alarm rate at which a cause counts as new
-  std::vector<std::string> without;  // effects that are left out of the list
+  double level = 0.01;                    // false-alarm rate at which a cause counts as new
+  std::vector<std::string> without = {};  // effects that are left out of the list
   const std::atomic<bool>* stop = nullptr;
 };
 

@@ -26,7 +26,7 @@ struct SelftestOptions {
 };
 
 struct SelftestRow {
-  std::string name, unit;
+  std::string name = {}, unit = {};
   double nominal = 0;      // [unit]
   double bias = 0;         // [unit] mean of estimate less truth
   double rms = 0;          // [unit] of estimate less truth

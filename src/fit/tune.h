@@ -39,9 +39,9 @@ struct ChannelResult {
 struct LogResult {
   std::string path;
   std::vector<ChannelResult> channels;
-  double null = 0;            // [fraction of rated]
-  double command_slope = 0;   // command between samples: 0 held, 1 in a line to the next
-  ParameterVector candidate;  // what the fit says of this log
+  double null = 0;                 // [fraction of rated]
+  double command_slope = 0;        // command between samples: 0 held, 1 in a line to the next
+  ParameterVector candidate = {};  // what the fit says of this log
 };
 
 // How the misfit fell. Each stage weighs residuals in its own way: levels compare within a stage only.
@@ -57,10 +57,10 @@ struct TuneOptions {
   bool quiet = false;
   int population = 50;
   int generations = 30;
-  int rounds = 4;  // most of the last stage (12 steps, then new weights); it ends early where it converges
+  int rounds = 4;        // most of the last stage (12 steps, then new weights); it ends early where it converges
   double heldout = 0.2;  // last part of every log, kept out of the first fit
   std::optional<std::vector<std::string>> effects;  // freed beside the table's rows; empty: default_effects()
-  bool derivative_free = false;      // local stage by NLopt: where differences are not to be trusted
+  bool derivative_free = false;                     // local stage by NLopt: where differences are not to be trusted
   std::vector<std::string> profile;  // rows whose interval is checked by profile likelihood; "all": every one
   int moving_average = 1;            // [samples] odd; smooths measurement and simulation alike, also in later commands
   std::string checkpoint;            // file saved every generation; empty: none

@@ -145,9 +145,9 @@ Track track_parameters(const LogData& log, const Table& tuned, const TrackOption
   }
 
   for (std::size_t c = 0; c < log.channels.size(); ++c) {
-    const auto [at, n] = problem.rows(0, static_cast<int>(c));
+    const auto [first, n] = problem.rows(0, static_cast<int>(c));
     out.adequacy =
-        std::max(out.adequacy, std::sqrt(best.residual.segment(at, n).squaredNorm() / static_cast<double>(n)));
+        std::max(out.adequacy, std::sqrt(best.residual.segment(first, n).squaredNorm() / static_cast<double>(n)));
   }
   const Eigen::MatrixXd covariance = covariance_of(best.jacobian, std::vector<char>(free.size(), 1));
   const auto error_of = [&](std::size_t j) {

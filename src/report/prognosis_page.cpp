@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <string_view>
 
 #include "report/handy.h"
 #include "report/prognosis.h"
@@ -8,8 +9,19 @@
 namespace servodx::report {
 namespace {
 
+// "clogged filter (row 1)", and the paper's checks by their symbols.
 std::string named(const std::string& check, const std::string& cause) {
-  return cause.empty() ? check : words(cause) + " (" + check + ")";
+  const auto rest = [&](std::string_view start) {
+    return check.starts_with(start) ? check.substr(start.size()) : std::string();
+  };
+  if (!cause.empty()) {
+    const std::string row = rest("parameter:");
+    return words(cause) + " (" + (row.empty() ? check : "row " + row) + ")";
+  }
+  if (check == "mean_error") return "mean error |e|";
+  if (check == "fidelity") return "fidelity r";
+  if (const std::string at = rest("correlation@"); !at.empty()) return "correlation E(tau) at " + at;
+  return check;
 }
 
 std::string in_hours(double h) { return std::isfinite(h) ? digits(h) + " h" : "never"; }

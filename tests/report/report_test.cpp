@@ -10,6 +10,7 @@
 #include "report/diagnosis_words.h"
 #include "report/handy.h"
 #include "report/json.h"
+#include "report/prognosis.h"
 #include "report/selftest.h"
 #include "report/text.h"
 #include "report/tune_words.h"
@@ -106,6 +107,18 @@ TEST(Columns, AlignWhateverTheWidths) {
   table.row({"b\u00b5b", "1"});
   table.row({"", ""});
   EXPECT_EQ(table.text(), " a    1000\n b\u00b5b     1\n\n");
+}
+
+TEST(CheckPage, CallsChecksByTheirSymbolsAndParametersByTheirRows) {
+  CheckResult r;
+  r.log = "preflight.csv";
+  for (const char* name : {"mean_error", "fidelity", "correlation@5Hz"})
+    r.checks.push_back({name, 1, 0, "-", 1, 1, ""});
+  r.checks.push_back({"parameter:9", 2e-6, 1e-7, "m", 2e-6, 1, "feedback_wire_backlash"});
+  const std::string html = check_page({}, r, {}).html();
+  for (const char* shown : {"mean error |e|", "fidelity r", "correlation E(tau) at 5Hz", "backlash (row 9)"})
+    EXPECT_NE(html.find(shown), std::string::npos) << shown;
+  EXPECT_EQ(html.find("parameter:9"), std::string::npos);
 }
 
 TEST(BaselineFile, ReadsBackToTheSameBits) {
