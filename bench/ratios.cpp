@@ -1,5 +1,5 @@
 // The ratio table: the kernel, the optimiser and the reader against the best that others offer, in one run.
-//   servodx_bench_ratios [--json FILE] [--only PART...] [--quick] [--seeds N] [--peer-budget X]
+//   servodx_bench_ratios [--json FILE] [--picture FILE.svg] [--only PART...] [--quick] [--seeds N] [--peer-budget X]
 //
 // Ratios of things that took turns in this run; absolute times belong to this machine. Peers that were not installed
 // when this was built are null in the JSON, with the reason. What it all means: docs/performance.md.
@@ -37,18 +37,21 @@ std::string machine() {
 
 int main(int argc, char** argv) {
   bench::Choice choice;
-  std::string json_path;
+  std::string json_path, picture_path;
   bool quick = false;
   const std::vector<std::pair<std::string, void (*)(bench::Report&, const bench::Choice&)>> parts = {
       {"kernel", bench::kernel_rows},
       {"search", bench::search_rows},
+      {"virtual", bench::virtual_rows},
+      {"functions", bench::function_rows},
       {"genetic", bench::genetic_rows},
       {"loading", bench::loading_rows},
       {"scaling", bench::scaling_rows}};
   std::vector<std::string> only;
   CLI::App app("the ratio table, measured");
   app.add_option("--json", json_path, "file for the figures");
-  app.add_option("--only", only, "parts: kernel, search, genetic, loading, scaling");
+  app.add_option("--picture", picture_path, "file for the plot of the scaling, SVG");
+  app.add_option("--only", only, "parts: kernel, search, virtual, functions, genetic, loading, scaling");
   app.add_flag("--quick", quick, "3 seeds, no peers, 3 turns: a look, not a measurement");
   app.add_option("--seeds", choice.seeds, "of the twin objectives")->capture_default_str();
   app.add_option("--peer-budget", choice.peer_budget, "simulations a peer may use, in medians of ours; 0: no peers")
@@ -82,5 +85,6 @@ int main(int argc, char** argv) {
   for (const std::string& note : report.notes) fmt::print("{}\n", note);
   if (report.json.contains("reasons")) fmt::print("not measured: {}\n", report.json["reasons"].dump());
   if (!json_path.empty()) write_file(json_path, report.json.dump(2) + "\n");
+  if (!picture_path.empty() && !report.panels.empty()) write_file(picture_path, report::svg_of(report.panels, 3));
   return 0;
 }

@@ -31,8 +31,8 @@ SimulateOptions simulate_options(const Options& options, const LogData& data) {
   SimulateOptions to = fine_steps();
   to.threads = options.common.threads;
   if (options.reference) to.step = to.impact_step = to.creep_step = reference_step;
-  if (options.step_given) {  // impacts keep the default's share of the step
-    to.impact_step *= options.step / to.step;
+  if (options.step_given) {
+    to.impact_step = std::min(to.impact_step, options.step);
     to.step = options.step;
     to.creep_step = options.step;
   }

@@ -6,6 +6,7 @@
 #include "base/error.h"
 #include "base/nearest.h"
 #include "base/progress.h"
+#include "base/units.h"
 #include "commands.h"
 #include "diagnose/check_log.h"
 #include "effects/registry.h"
@@ -27,6 +28,7 @@ struct Options {
   std::string params, output;
   std::string effects;  // or "none"; empty: as fits the logs
   std::string local = "least_squares", profile;
+  std::vector<std::string> priors;
   TuneOptions tune;
 };
 
@@ -60,6 +62,19 @@ std::vector<Promise> promises(const std::vector<Log>& logs, const TuneResult& re
   return all;
 }
 
+// "piston_area_a=1e-5": standard deviation in the row's unit.
+std::map<std::string, double> priors_of(const std::vector<std::string>& list) {
+  std::map<std::string, double> priors;
+  for (const std::string& text : list) {
+    const auto equals = text.find('=');
+    const double sd = equals == std::string::npos ? 0 : parse_number(text.substr(equals + 1)).value_or(0);
+    require_option(sd > 0 && equals > 0, "--prior", "'" + text + "' is not NAME=SD",
+                   "--prior piston_area_a=1e-5: a standard deviation about the table's nominal, in the row's unit");
+    priors[text.substr(0, equals)] = sd;
+  }
+  return priors;
+}
+
 int run(const Options& options) {
   TuneOptions tune_options = options.tune;
   if (!options.effects.empty()) tune_options.effects = effects_of(options.effects);
@@ -75,6 +90,7 @@ int run(const Options& options) {
   require_option(tune_options.rounds >= 1, "--rounds", "must be at least 1",
                  std::to_string(TuneOptions{}.rounds) + " is the default");
   tune_options.derivative_free = options.local == "nlopt";
+  tune_options.priors = priors_of(options.priors);
   tune_options.profile = CLI::detail::split(options.profile, ',');
   tune_options.seed = options.common.seed;
   tune_options.threads = options.common.threads;
@@ -105,7 +121,8 @@ int run(const Options& options) {
                      {"moving_average", tune_options.moving_average},
                      {"effects", *tune_options.effects},
                      {"local", options.local},
-                     {"profile", options.profile}};
+                     {"profile", options.profile},
+                     {"prior", options.priors}};
   if (invocation.dry_run()) return ran;
 
   tune_options.stop = &stop_on_interrupt();
@@ -162,6 +179,10 @@ void add_tune_command(CLI::App& app, int& exit_code) {
       ->capture_default_str();
   command->add_option("--profile", options->profile, "check the 95 % intervals of these rows, or 'all', by refitting")
       ->type_name("A,B");
+  command
+      ->add_option("--prior", options->priors,
+                   "hold a row to the table's nominal, give or take SD in the row's unit; may be repeated")
+      ->type_name("NAME=SD");
   command->add_option("--checkpoint", tune.checkpoint, "save the search to FILE every generation")->type_name("FILE");
   command->add_flag("--resume", tune.resume, "go on from the checkpoint");
   add_common_options(*command, options->common);

@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "report/line_chart.h"
+
 namespace servodx::bench {
 
 struct Row {
@@ -15,6 +17,7 @@ struct Row {
 struct Report {
   std::vector<Row> rows;
   std::vector<std::string> notes;
+  std::vector<report::ChartPanel> panels;
   nlohmann::ordered_json json;
 
   // The row goes to standard error as soon as it is known: the whole takes minutes.
@@ -32,6 +35,8 @@ struct Choice {
 
 void kernel_rows(Report& report, const Choice& choice);
 void search_rows(Report& report, const Choice& choice);
+void virtual_rows(Report& report, const Choice& choice);
+void function_rows(Report& report, const Choice& choice);
 void genetic_rows(Report& report, const Choice& choice);
 void loading_rows(Report& report, const Choice& choice);
 void scaling_rows(Report& report, const Choice& choice);

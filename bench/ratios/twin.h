@@ -1,6 +1,7 @@
 // Fits with a known answer: the model drives itself, with true values drawn in the box and the shipped rig's noise laid
 // on. Several seeds share one input, so that their candidates fill the same packs. A draw whose valve sings at rest is
-// no valve that anyone fits, and is drawn again.
+// no valve that anyone fits, and is drawn again. The same fit to a log of the virtual rig has no true values and no
+// known floor.
 #pragma once
 #include <algorithm>
 #include <vector>
@@ -32,6 +33,7 @@ class Twin {
 
   Twin(int free, int seed, const Scenario& scenario, int threads) : n(free), scenario_(scenario) {
     options_.threads = threads;
+    for (int c = 0; c < 4; ++c) sigma_[c] = noise[c];
     base_ = candidate_of(table());
     Point truth;
     do {
@@ -54,6 +56,19 @@ class Twin {
     floor = 0.5 * sum;
   }
 
+  // A log with the four signals, as wrong as its sensors and one per cent of what each moves by.
+  Twin(int free, const LogData& log, int threads) : n(free), scenario_(log.scenario) {
+    options_.threads = threads;
+    base_ = candidate_of(table());
+    for (const FitChannel& channel : log.channels) {
+      const int c = channel.simulated;
+      if (c >= 4) continue;
+      measured_[c] = channel.measured;
+      const auto [low, high] = std::minmax_element(channel.measured.begin(), channel.measured.end());
+      sigma_[c] = std::hypot(channel.noise, 0.01 * (*high - *low));
+    }
+  }
+
   // The table's box; the null within what a fit of a fault-free valve allows it (fit/tune.cpp).
   ParameterVector candidate(const Point& x) const {
     constexpr double null_limit = 0.1;
@@ -73,10 +88,9 @@ class Twin {
     for (int c = 0; c < 4; ++c)
       for (Eigen::Index k = 0; k < samples; ++k)
         e.residual[c * samples + k] =
-            (measured_[c][static_cast<std::size_t>(k)] - t.signals[c][static_cast<std::size_t>(k)]) / noise[c];
+            (measured_[c][static_cast<std::size_t>(k)] - t.signals[c][static_cast<std::size_t>(k)]) / sigma_[c];
     return e;
   }
-  double misfit(const Trajectory& t) const { return t.ok ? 0.5 * whitened(t).residual.squaredNorm() : 1e12; }
   std::vector<Evaluation> evaluate(std::span<const Point> points) const {
     std::vector<ParameterVector> v;
     for (const Point& x : points) v.push_back(candidate(x));
@@ -90,7 +104,7 @@ class Twin {
   }
 
   int n;
-  double floor = 0;  // misfit of the truth
+  double floor = 0;  // misfit of the truth, where there is one
   int redrawn = 0;   // truths that sang
   double goal() const { return 1.05 * floor; }
   const Scenario& scenario() const { return scenario_; }
@@ -113,6 +127,7 @@ class Twin {
   SimulateOptions options_;
   ParameterVector base_;
   std::array<std::vector<double>, 4> measured_;
+  std::array<double, 4> sigma_{};  // [m, m, Pa, Pa]
 };
 
 }  // namespace servodx::bench

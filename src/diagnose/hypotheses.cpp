@@ -231,7 +231,7 @@ HypothesisFits fit_hypotheses(const LogData& log, const ParameterVector& base, c
                               const HypothesisSettings& settings) {
   HypothesisFits out;
   const Trajectory reference = reference_of(log, base, settings.threads);
-  const auto& faults = fault_list();
+  const auto& faults = settings.among.empty() ? fault_list() : settings.among;
   // Work counted in steps of least squares: a screening is about one, and few begin again.
   constexpr int few = 5;
   constexpr double screening = 1, again_part = 2;

@@ -35,12 +35,13 @@ struct HypothesisSettings {
   double null_limit = 0.05;  // [fraction of rated]
   int threads = 0;
   int iterations = 20;
+  std::vector<const Fault*> among = {};     // weighed beside health; empty: all of the registry
   const std::atomic<bool>* stop = nullptr;  // set: give up; what comes back is worthless
   std::function<void(double part, long simulations)> progress = {};  // after every fit, from any thread
 };
 
 struct HypothesisFits {
-  std::vector<HypothesisFit> fits;     // healthy first, then the faults in the order of the registry
+  std::vector<HypothesisFit> fits;     // healthy first, then the faults in the order of the registry, or of `among`
   double degrees = 0;                  // independent samples of all channels
   std::vector<double> healthy_square;  // a sample: mean over the channels of the squared whitened residual under health
   long simulations = 0, failed = 0;

@@ -226,6 +226,8 @@ void ValveSubject::add_causes(const RigFile& rig) {
 
   const bool on_stand =
       std::any_of(logs_.begin(), logs_.end(), [](const LogData& l) { return l.scenario.ports != Ports::actuator; });
+  const bool oil_known =
+      std::all_of(logs_.begin(), logs_.end(), [](const LogData& l) { return l.scenario.oil_known; });
 
   // Sensors and clocks are suspects before physics.
   for (const EffectInfo& e : effect_list()) {
@@ -298,6 +300,7 @@ void ValveSubject::add_causes(const RigFile& rig) {
       continue;
     }
     if (e.name == Unexplained::name || (e.stand_only && !on_stand)) continue;
+    if (e.name == ViscosityChange::name && !oil_known) continue;  // each log's own
     Cause cause;
     cause.effect = e.name;
     cause.where = e.place;

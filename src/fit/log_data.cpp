@@ -200,8 +200,12 @@ LogData prepare(const Log& log, const RigFile& rig, int window) {
   s.rated_current = rig.fact("valve.rated_current").value_or(0.02);
   if (rig.command_hold) s.command_slope = *rig.command_hold == CommandHold::linear ? 1.0 : 0.0;
   constexpr double reference_temperature = 313.15;  // [K] where the table's values hold
-  const double temperature =
-      log.has(Signal::oil_temperature) ? mean_of_present(log[Signal::oil_temperature]) : reference_temperature;
+  const bool measured = log.has(Signal::oil_temperature);
+  const double temperature = measured ? mean_of_present(log[Signal::oil_temperature]) : reference_temperature;
+  s.oil_known = measured || s.ports != Ports::actuator;  // a stand holds 40 degC within 6 K (ISO 10770-1)
+  if (!s.oil_known)
+    out.notes.push_back(
+        fmt::format("{}: no oil temperature: the oil's viscosity is fitted, about that at 40 degC", log.path));
   s.oil = oil_at(rig.fluid.density, rig.fluid.kinematic_viscosity, temperature);
   const std::vector<char> unknown = after_gaps(log.time);
   for (Signal which : simulated_signals) {

@@ -39,6 +39,18 @@ double rms_of(const std::vector<double>& r, std::size_t from, std::size_t to) {
   return n ? std::sqrt(sum / static_cast<double>(n)) : 0.0;
 }
 
+// Priors asked for, about the table's nominal.
+void take_priors(std::vector<FreeValue>& shared, const std::map<std::string, double>& priors) {
+  for (const auto& [name, sd] : priors) {
+    const auto f = std::find_if(shared.begin(), shared.end(), [&](const FreeValue& v) { return v.name == name; });
+    if (f == shared.end())
+      throw InputError({.file = "--prior"}, "'" + name + "' is not among the rows that are fitted",
+                       "name a row with estimate 1; row 41 and the air are each log's own");
+    const double slope = f->log_scale ? f->start * std::log(f->upper / f->lower) : f->upper - f->lower;
+    f->prior_sd = sd / slope;
+  }
+}
+
 // Everything a run of `tune` carries from step to step.
 struct Tuning {
   const TuneOptions& options;
@@ -317,6 +329,7 @@ TuneResult tune(const std::vector<Log>& logs, const Table& nominal, const RigFil
   run.table = apply_rig_facts(run.table, facts);
   run.base = candidate_of(run.table);
   run.shared = shared_values(run.table);
+  take_priors(run.shared, options.priors);
   for (std::size_t l = 0; l < run.data.size(); ++l) {
     for (FreeValue& f : nuisance_values(run.data[l], static_cast<int>(l), run.base, tuning_null_limit))
       run.nuisances.push_back(std::move(f));
@@ -384,7 +397,8 @@ TuneResult tune(const std::vector<Log>& logs, const Table& nominal, const RigFil
   // stays near its drawing, or friction and flow force would end anywhere along a valley.
   if (facts.fact("valve.nozzle_diameter"))
     for (FreeValue& f : run.shared)
-      if (f.at == row::hydraulic_amplifier_gain) f.prior_sd = drawing_tolerance / std::log(f.upper / f.lower);
+      if (f.at == row::hydraulic_amplifier_gain && !options.priors.contains(f.name))
+        f.prior_sd = drawing_tolerance / std::log(f.upper / f.lower);
 
   // 3. Breadth: genetic search, then the local stage from the best distinct points and from nominal.
   FitProblem fit(run.logs, run.base, run.all(), run.simulate_options());
@@ -545,6 +559,14 @@ TuneResult tune(const std::vector<Log>& logs, const Table& nominal, const RigFil
                           l.command_slope);
   out.notes.push_back("command between samples, 0 held to 1 in a line" +
                       std::string(rig.command_hold ? ", from the rig file: " : ", estimated log by log: ") + slopes);
+  std::string viscosities;
+  for (const LogResult& l : out.logs)
+    if (const auto i = static_cast<std::size_t>(&l - out.logs.data()); !run.data[i].scenario.oil_known)
+      viscosities +=
+          fmt::format("{}{} {:.2f}", viscosities.empty() ? "" : ", ", std::filesystem::path(l.path).filename().string(),
+                      l.candidate[effect_row<ViscosityChange>(0)]);
+  if (!viscosities.empty())
+    out.notes.push_back("viscosity over that at 40 degC, where no temperature was logged: " + viscosities);
   out.simulations = run.simulations + fit.simulations();
   out.failed_simulations = run.failed + fit.failed_simulations();
   out.interrupted = run.stopped();

@@ -101,6 +101,7 @@ OilTemperature estimate_temperature(const LogData& log, const Table& tuned, cons
     LogData at = log;
     kelvin.push_back(celsius + 273.15);
     at.scenario.oil = oil_at(rig.fluid.density, rig.fluid.kinematic_viscosity, kelvin.back());
+    at.scenario.oil_known = true;
     misfit.push_back(misfit_at(at, tuned, error, threads, simulations));
   }
   const double least = *std::min_element(misfit.begin(), misfit.end());
@@ -131,6 +132,7 @@ CheckResult check(const Log& log, const Table& tuned, const RigFile& rig, const 
   } else if (options.correct) {
     out.temperature = estimate_temperature(data, tuned, rig, options.threads, &out.simulations);
     data.scenario.oil = oil_at(rig.fluid.density, rig.fluid.kinematic_viscosity, out.temperature.value);
+    data.scenario.oil_known = true;
     out.notes.push_back("oil temperature estimated from the response; wear that acts like cold oil would shift it");
   } else {
     out.temperature = {reference_kelvin, std::nan(""), "assumed"};

@@ -39,6 +39,7 @@ struct Scenario {
   std::vector<double> return_pressure;  // [Pa] empty: the table's
   std::vector<double> load_force;       // [N] empty: none
   Oil oil;
+  bool oil_known = true;  // its temperature was logged, or is known otherwise
   // What joins the control ports: the actuator, nothing, or a tube (a valve on a test stand).
   Ports ports = Ports::actuator;
   double rated_current = 0.02;          // [A]
@@ -76,7 +77,7 @@ struct SimulateOptions {
 inline SimulateOptions fine_steps() {
   SimulateOptions o;
   o.step = 1e-4;
-  o.impact_step = 1e-3 / 24;
+  o.impact_step = 1e-5;  // the spool rings between its two oil columns at some 13 kHz for a millisecond
   return o;
 }
 

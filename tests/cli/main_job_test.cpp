@@ -88,6 +88,18 @@ TEST_F(MainJob, TuneWritesTheTableAndTheContractsKeys) {
   EXPECT_EQ(bytes_of(desk() / "one.csv"), bytes_of(desk() / "tuned.csv"));
 }
 
+TEST_F(MainJob, APriorAskedForHoldsARowToTheTablesNominal) {
+  ASSERT_EQ(tuned().code, 0) << tuned().err;
+  const auto moved = [](const Json& result) {
+    for (const Json& p : result["parameters"])
+      if (p["name"] == "port_width") return std::abs(p["estimate"].get<double>() / p["nominal"].get<double>() - 1);
+    return 0.0;
+  };
+  ASSERT_EQ(desk().run(tune_call + "-o held.csv --json held.json --prior port_width=1e-7").code, 0);
+  EXPECT_LT(moved(json("held.json")), 1e-3);
+  EXPECT_GT(moved(json("tuned.json")), 1e-2);
+}
+
 TEST_F(MainJob, AnInterruptedTuneWritesTheBestSoFar) {
   // On a busy machine half a second may pass before there is anything to interrupt.
   const TemporaryFolder streams;

@@ -6,6 +6,7 @@
 #include "fit/free_values.h"
 #include "fit/identifiability.h"
 #include "fit/support.h"
+#include "optimise/box_least_squares.h"
 
 namespace servodx {
 namespace {
@@ -250,6 +251,44 @@ TEST(Twin, ValuesAreRecoveredWithinTheirStatedUncertaintyAsTuneWorks) {
   EXPECT_EQ(c.within_four, c.total);
   EXPECT_GE(c.within_two, c.total * 8 / 10);
   EXPECT_LT(c.mean_square, 2.5);  // the weights are learnt from the same data
+}
+
+// A log without a temperature has a viscosity of its own: found within its error, and where it is held at that of
+// 40 degC the oil's part stays in the residual.
+TEST(Nuisances, ViscosityIsFoundWhereNoTemperatureWasLogged) {
+  const Table table = shipped_table();
+  constexpr int viscosity = effect_row<ViscosityChange>(0);
+  for (const double factor : {0.4, 1.0, 3.0}) {
+    ParameterVector truth = candidate_of(table);
+    truth[viscosity] = factor;
+    LogData log = written_by_model(slice(shipped_data("healthy/h12_mixed"), 0, 1500), truth, 3);
+    truth[viscosity] = 1.0;
+    const auto fitted = [&](bool known) {
+      log.scenario.oil_known = known;
+      FitProblem problem({&log}, truth, nuisance_values(log, 0, truth, 0.05));
+      for (std::size_t c = 0; c < log.channels.size(); ++c)
+        problem.set_sigma(0, static_cast<int>(c), log.channels[c].noise);
+      return std::pair{problem, minimise_least_squares(problem.least_squares(), problem.start(), {})};
+    };
+    const auto [held, stiff] = fitted(true);
+    const auto [free, own] = fitted(false);
+    ASSERT_EQ(free.n(), held.n() + 1);
+    const auto at =
+        std::find_if(free.free().begin(), free.free().end(), [](const FreeValue& f) { return f.at == viscosity; }) -
+        free.free().begin();
+    const Eigen::MatrixXd covariance = (own.jacobian.transpose() * own.jacobian).inverse();
+    const double error = std::log(
+                     free.free()[static_cast<std::size_t>(at)].from_unit(own.point[static_cast<std::size_t>(at)]) /
+                     factor),
+                 sd = std::sqrt(covariance(at, at)) * std::log(10.0 / 0.1);
+    std::printf("viscosity times %.1f: off by %.3f +- %.3f; misfit %.0f, held %.0f\n", factor, error, sd, own.misfit,
+                stiff.misfit);
+    EXPECT_LT(std::abs(error), 3 * sd + 0.01);
+    EXPECT_LT(sd, 0.2);
+    if (factor != 1.0) {
+      EXPECT_GT(stiff.misfit, own.misfit + 20);
+    }
+  }
 }
 
 }  // namespace

@@ -1,0 +1,207 @@
+#include "ratios/race.h"
+
+#include <algorithm>
+#include <condition_variable>
+#include <mutex>
+#include <thread>
+
+#include "base/random.h"
+#include "optimise/box_least_squares.h"
+#include "ratios/peers.h"
+
+namespace servodx::bench {
+namespace {
+
+constexpr long patience = 5000;  // evaluations of ours before a seed counts as failed
+
+// Runs of peers wait here with one point each; when all that live wait, one batch an objective serves them.
+class Desk {
+ public:
+  struct Closed {};
+  struct Seat {
+    std::size_t objective = 0;
+    long used = 0;
+    std::optional<long> reached;
+    Point point;
+    double cost = 0;
+    bool waiting = false;
+  };
+
+  Desk(const std::vector<Objective>& objectives, std::vector<Seat>& seats, long budget)
+      : objectives_(objectives), seats_(seats), budget_(budget), live_(static_cast<int>(seats.size())) {}
+
+  double ask(Seat& seat, const Point& x) {
+    if (seat.used >= budget_ || seat.reached) throw Closed{};
+    std::unique_lock lock(mutex_);
+    seat.point = x;
+    seat.waiting = true;
+    ++waiting_;
+    changed_.notify_all();
+    served_.wait(lock, [&] { return !seat.waiting; });
+    ++seat.used;
+    if (seat.cost <= objectives_[seat.objective].goal) seat.reached = seat.used;
+    return seat.cost;
+  }
+  void leave() {
+    const std::lock_guard lock(mutex_);
+    --live_;
+    changed_.notify_all();
+  }
+  void serve() {
+    std::unique_lock lock(mutex_);
+    for (;;) {
+      changed_.wait(lock, [&] { return waiting_ == live_; });
+      if (live_ == 0) return;
+      for (std::size_t k = 0; k < objectives_.size(); ++k) {
+        std::vector<Seat*> now;
+        std::vector<Point> points;
+        for (Seat& s : seats_)
+          if (s.waiting && s.objective == k) now.push_back(&s), points.push_back(s.point);
+        if (now.empty()) continue;
+        const std::vector<Evaluation> e = objectives_[k].evaluate(points);
+        for (std::size_t i = 0; i < now.size(); ++i) {
+          now[i]->cost = misfit(e[i]), now[i]->waiting = false;
+          least_ = std::min(least_, now[i]->cost);
+        }
+      }
+      waiting_ = 0;
+      served_.notify_all();
+    }
+  }
+  double least() const { return least_; }
+
+ private:
+  const std::vector<Objective>& objectives_;
+  std::vector<Seat>& seats_;
+  long budget_;
+  std::mutex mutex_;
+  std::condition_variable changed_, served_;
+  int live_, waiting_ = 0;
+  double least_ = 1e300;
+};
+
+long arrived(const std::vector<std::optional<long>>& v) {
+  return std::count_if(v.begin(), v.end(), [](const auto& u) { return u.has_value(); });
+}
+
+}  // namespace
+
+double misfit(const Evaluation& e) { return e.ok ? 0.5 * e.residual.squaredNorm() : 1e12; }
+
+std::optional<long> ours(const Objective& objective, int seed, long patience, double* least) {
+  constexpr int spread = 16;
+  LeastSquaresProblem problem;
+  problem.n = objective.n;
+  problem.evaluate = objective.evaluate;
+  LeastSquaresOptions o;
+  o.difference = Difference::forward;
+  o.difference_step = 1e-4;
+  o.compressed_first_pass = true;
+  o.cost_goal = objective.goal;
+  o.slow_iterations = 5;
+  long used = 0;
+  for (std::uint32_t round = 0; used < patience; ++round) {
+    std::vector<Point> points;
+    for (std::uint32_t k = 0; k < spread; ++k) {
+      Random random(static_cast<std::uint64_t>(seed), 9, round, k);
+      Point x;
+      for (int j = 0; j < objective.n; ++j) x.push_back(random.uniform());
+      points.push_back(std::move(x));
+    }
+    std::vector<std::pair<double, int>> order;
+    const std::vector<Evaluation> first = objective.evaluate(points);
+    used += spread;
+    for (int k = 0; k < spread; ++k)
+      if (first[k].ok) order.push_back({first[k].residual.squaredNorm(), k});
+    std::sort(order.begin(), order.end());
+    for (std::size_t k = 0; k < std::min<std::size_t>(2, order.size()) && used < patience; ++k) {
+      o.max_evaluations = patience - used;
+      const LeastSquaresResult r = minimise_least_squares(problem, points[order[k].second], o);
+      used += r.evaluations;
+      if (least) *least = std::min(*least, r.misfit);
+      if (r.misfit <= objective.goal) return used;
+    }
+  }
+  return std::nullopt;
+}
+
+std::vector<std::vector<std::optional<long>>> run_peers(const std::vector<Objective>& objectives, long budget,
+                                                        double* least) {
+  std::vector<Desk::Seat> seats(peers().size() * objectives.size());
+  for (std::size_t i = 0; i < seats.size(); ++i) seats[i].objective = i % objectives.size();
+  Desk desk(objectives, seats, budget);
+  {
+    std::vector<std::jthread> threads;
+    for (std::size_t i = 0; i < seats.size(); ++i)
+      threads.emplace_back([&, i] {
+        try {
+          const auto cost = [&](const Point& x) { return desk.ask(seats[i], x); };
+          peers()[i / objectives.size()].run(objectives[0].n, cost, static_cast<unsigned>(1 + i % objectives.size()));
+        } catch (...) {  // the desk closed, or the method gave up
+        }
+        desk.leave();
+      });
+    desk.serve();
+  }
+  if (least) *least = desk.least();
+  std::vector<std::vector<std::optional<long>>> out(peers().size());
+  for (std::size_t i = 0; i < seats.size(); ++i) out[i / objectives.size()].push_back(seats[i].reached);
+  return out;
+}
+
+std::optional<double> median_arrival(std::vector<std::optional<long>> v) {
+  std::sort(v.begin(), v.end(), [](const auto& a, const auto& b) { return a && (!b || *a < *b); });
+  const auto& middle = v[v.size() / 2];
+  return middle ? std::optional<double>(static_cast<double>(*middle)) : std::nullopt;
+}
+
+nlohmann::ordered_json or_null(const std::optional<double>& x) {
+  return x ? nlohmann::ordered_json(*x) : nlohmann::ordered_json(nullptr);
+}
+
+void race(Report& report, const Choice& choice, const std::string& what, const std::string& prefix,
+          const std::vector<Objective>& objectives, nlohmann::ordered_json said) {
+  const int n = objectives.front().n;
+  const std::string key = std::to_string(n);
+  std::vector<std::optional<long>> used;
+  for (std::size_t k = 0; k < objectives.size(); ++k)
+    used.push_back(ours(objectives[k], static_cast<int>(k) + 1, patience));
+  const std::optional<double> median = median_arrival(used);
+  long low = patience, high = 0;
+  for (const auto& u : used)
+    if (u) low = std::min(low, *u), high = std::max(high, *u);
+  nlohmann::ordered_json& mine = report.json[prefix + "simulations_to_floor"][key];
+  mine = {{"median", or_null(median)},
+          {"successes", arrived(used)},
+          {"seeds", objectives.size()},
+          {"lowest", low},
+          {"highest", high}};
+  mine.update(said);
+  report.add({fmt::format("simulations to 1.05 of the floor, {} parameters{}", n, what), "1000", "500",
+              median ? fmt::format("{:.0f}", *median) : "-",
+              fmt::format("{} of {} seeds, {} to {}", arrived(used), objectives.size(), low, high)});
+
+  nlohmann::ordered_json& theirs = report.json[prefix + "best_peer"][key];
+  theirs = nullptr;
+  if (choice.peer_budget <= 0) report.json["reasons"]["best_peer"].push_back("left out on request");
+  if (peers().empty() || !median || choice.peer_budget <= 0) return;
+  const long budget = static_cast<long>(choice.peer_budget * *median);
+  const auto reached = run_peers(objectives, budget);
+  std::size_t best = 0;
+  for (std::size_t p = 0; p < reached.size(); ++p) {
+    report.json[prefix + "peers"][key][peers()[p].name] = {{"successes", arrived(reached[p])},
+                                                           {"median", or_null(median_arrival(reached[p]))}};
+    if (arrived(reached[p]) > arrived(reached[best])) best = p;
+  }
+  const std::optional<double> arrival = median_arrival(reached[best]);
+  theirs = {{"name", peers()[best].name},
+            {"median", or_null(arrival)},
+            {"successes", arrived(reached[best])},
+            {"budget", budget}};
+  report.add(
+      {fmt::format("the best of {} peers, {} parameters{}, over ours", peers().size(), n, what), "5x", "10x",
+       arrival ? fmt::format("{:.1f}x", *arrival / *median) : fmt::format("over {:.0f}x", choice.peer_budget),
+       fmt::format("{}: {} of {} seeds in {}", peers()[best].name, arrived(reached[best]), objectives.size(), budget)});
+}
+
+}  // namespace servodx::bench
