@@ -176,7 +176,7 @@ void race(Report& report, const Choice& choice, const std::string& what, const s
           {"seeds", objectives.size()},
           {"lowest", low},
           {"highest", high}};
-  mine.update(said);
+  if (said.is_object()) mine.update(said);
   report.add({fmt::format("simulations to 1.05 of the floor, {} parameters{}", n, what), "1000", "500",
               median ? fmt::format("{:.0f}", *median) : "-",
               fmt::format("{} of {} seeds, {} to {}", arrived(used), objectives.size(), low, high)});

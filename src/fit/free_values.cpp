@@ -45,12 +45,12 @@ std::vector<FreeValue> nuisance_values(const LogData& log, int l, const Paramete
                  0.02 / (2 * null_limit), l});
   if (!log.scenario.command_slope)
     out.push_back({"command_slope", nuisance::command_slope, 0.0, 1.0, false, 0.5, 1.0, l});
-  // Rigs run some 20 K about 40 degC, where a mineral oil is 2.2 times as thick, or as thin.
+  // Rigs run some 20 K about 40 degC, where a mineral oil is 2.2 times as thick, or as thin; -20 degC is 30 times.
   if (!log.scenario.oil_known) {
     constexpr int at = effect_row<ViscosityChange>(0);
-    constexpr EffectParameter p = ViscosityChange::parameters[0];
-    out.push_back({p.name, at, p.lower, p.upper, true, std::clamp(base[at], p.lower, p.upper),
-                   std::log(2.2) / std::log(p.upper / p.lower), l});
+    constexpr double thinnest = 0.1, thickest = 50;
+    out.push_back({ViscosityChange::parameters[0].name, at, thinnest, thickest, true,
+                   std::clamp(base[at], thinnest, thickest), std::log(2.2) / std::log(thickest / thinnest), l});
   }
   if (pressures) out.push_back({"air_fraction", row::air_fraction, 2e-4, 0.08, true, 0.005, 0.2, l});
   // Offset of the spool sensor against the hydraulic null: 1 % of a stroke bounds it; its spread is a tenth of that.

@@ -204,8 +204,7 @@ LogData prepare(const Log& log, const RigFile& rig, int window) {
   const double temperature = measured ? mean_of_present(log[Signal::oil_temperature]) : reference_temperature;
   s.oil_known = measured || s.ports != Ports::actuator;  // a stand holds 40 degC within 6 K (ISO 10770-1)
   if (!s.oil_known)
-    out.notes.push_back(
-        fmt::format("{}: no oil temperature: the oil's viscosity is fitted, about that at 40 degC", log.path));
+    out.notes.push_back(fmt::format("{}: no oil temperature: taken as 40 degC, give or take 20 K", log.path));
   s.oil = oil_at(rig.fluid.density, rig.fluid.kinematic_viscosity, temperature);
   const std::vector<char> unknown = after_gaps(log.time);
   for (Signal which : simulated_signals) {

@@ -328,6 +328,13 @@ TuneResult tune(const std::vector<Log>& logs, const Table& nominal, const RigFil
   add_effect_rows(run.table, options.effects.value_or(default_effects(run.on_stand)));
   run.table = apply_rig_facts(run.table, facts);
   run.base = candidate_of(run.table);
+  // Clearances and frictions know their oil's viscosity as a factor only: without a temperature anywhere they hold for
+  // the first log's oil.
+  if (std::none_of(run.data.begin(), run.data.end(), [](const LogData& d) { return d.scenario.oil_known; })) {
+    run.data.front().scenario.oil_known = true;
+    run.notes.push_back("no log holds the oil's temperature: the table holds for the oil of " + run.data.front().path +
+                        ", taken as at 40 degC");
+  }
   run.shared = shared_values(run.table);
   take_priors(run.shared, options.priors);
   for (std::size_t l = 0; l < run.data.size(); ++l) {
@@ -561,7 +568,7 @@ TuneResult tune(const std::vector<Log>& logs, const Table& nominal, const RigFil
                       std::string(rig.command_hold ? ", from the rig file: " : ", estimated log by log: ") + slopes);
   std::string viscosities;
   for (const LogResult& l : out.logs)
-    if (const auto i = static_cast<std::size_t>(&l - out.logs.data()); !run.data[i].scenario.oil_known)
+    if (!run.data[static_cast<std::size_t>(&l - out.logs.data())].scenario.oil_known)
       viscosities +=
           fmt::format("{}{} {:.2f}", viscosities.empty() ? "" : ", ", std::filesystem::path(l.path).filename().string(),
                       l.candidate[effect_row<ViscosityChange>(0)]);
