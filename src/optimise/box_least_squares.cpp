@@ -58,6 +58,7 @@ class Search {
  private:
   // The normal equations of one point, with the loss of the pass.
   struct Model {
+    Eigen::VectorXd metric;    // of the damping, scaled alike
     Eigen::MatrixXd hessian;   // J'J of the changed residual, scaled to a unit diagonal
     Eigen::VectorXd gradient;  // in scaled coordinates
     Eigen::VectorXd scale;     // s = scale * scaled step
@@ -199,6 +200,10 @@ class Search {
     const double largest = std::max(hessian.diagonal().maxCoeff(), std::numeric_limits<double>::min());
     m.scale.resize(n);
     for (int j = 0; j < n; ++j) m.scale[j] = 1.0 / std::sqrt(std::max(hessian(j, j), 1e-24 * largest));
+    // Marquardt's metric, and a thousandth of the strongest column's in every direction: else weak parameters are run
+    // into their walls while the strong ones still stand wrong.
+    constexpr double least_metric = 1e-3;
+    m.metric = 1.0 + least_metric * largest * m.scale.array().square();
     m.hessian = m.scale.asDiagonal() * hessian * m.scale.asDiagonal();
     m.gradient = m.scale.cwiseProduct(gradient);
 
@@ -231,7 +236,7 @@ class Search {
       upper[j] = std::min(1.0 - x_[j], radius);
     }
     Eigen::MatrixXd damped = m.hessian;
-    damped.diagonal().array() += damping;
+    damped.diagonal() += damping * m.metric;
     const BoxQuadraticResult step =
         minimise_box_quadratic(damped, gradient, lower.cwiseQuotient(m.scale), upper.cwiseQuotient(m.scale));
     Trial t;

@@ -2,10 +2,10 @@
 // loss.
 //
 // Levenberg-Marquardt with true bounds: each step solves the damped quadratic *on the box* (box_quadratic.h: walls
-// held, re-solved on the free set), with Marquardt's diagonal as the damping metric and no coordinate moving further
-// than `step_limit`. A step computed as if free and then clipped stops descending; that, and a metric that lets a weak
-// parameter run away, is what fails in a servovalve fit. Every evaluation is a batch: the n points of the Jacobian, and
-// a ladder of dampings tried at once, since lanes of a pack are nearly free.
+// held, re-solved on the free set), with Marquardt's diagonal and a little of the unit matrix as the damping metric and
+// no coordinate moving further than `step_limit`. A step computed as if free and then clipped stops descending; that,
+// and a metric that lets a weak parameter run away, is what fails in a servovalve fit. Every evaluation is a batch: the
+// n points of the Jacobian, and a ladder of dampings tried at once, since lanes of a pack are nearly free.
 //
 // Limits: dense, n up to a few hundred, any number of rows (J, one block of it and the residuals of one ladder are
 // held). The residual must be smooth on the scale of `difference_step`. Finds one local minimum; genetic.h and
