@@ -1,6 +1,7 @@
 // How time grows with the length of a log, the population, and the numbers of parameters, logs and hypotheses, and
 // memory with the length of a log: exponents of fitted powers, and their plot.
 #include <fmt/format.h>
+#include <omp.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -33,6 +34,7 @@ void add(Report& report, const std::string& what, const std::string& unit, const
   report.json["scaling"][over]["exponent"] = p;
   const std::string power = fmt::format("{} grows as ({})^{:.2f}", what, over, p);
   report.notes.push_back(fmt::format("{}, {:g} to {:g}", power, points.front().first, points.back().first));
+  fmt::print(stderr, "  {}\n", report.notes.back());
   report::ChartPanel panel;
   panel.title = power, panel.x_label = over, panel.y_label = fmt::format("log10 of {} [{}]", what, unit);
   panel.log_x = true;
@@ -59,6 +61,7 @@ void add_times(Report& report, const std::string& over, const std::vector<double
 double peak_memory(const std::function<void()>& work) {
   const pid_t child = fork();
   if (child == 0) {
+    omp_set_num_threads(1);  // the pool's other threads stayed with the parent
     work();
     _exit(0);
   }
@@ -158,6 +161,10 @@ void scaling_rows(Report& report, const Choice& choice) {
     std::filesystem::remove(path);
   }
   add(report, "memory", "MB", "rows of a log", memory);
+  const auto &few = memory.front(), &many = memory.back();
+  report.notes.push_back(fmt::format("{:.0f} bytes a row of ten columns, {:.0f} MB before the first",
+                                     1048576 * (many.second - few.second) / (many.first - few.first),
+                                     few.second - few.first * (many.second - few.second) / (many.first - few.first)));
 }
 
 }  // namespace servodx::bench

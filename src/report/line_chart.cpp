@@ -95,7 +95,7 @@ std::string drawn(const ChartLine& line, const std::string& colour, const Axis& 
     }
     if (line.dots) {
       if (inside(py))
-        out += fmt::format("<circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"1.6\" fill=\"{}\"/>\n", x.at(px), y.at(py), colour);
+        out += fmt::format("<circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"1.8\" fill=\"{}\"/>\n", x.at(px), y.at(py), colour);
       continue;
     }
     if (k > 0 && std::isfinite(line.x[k - 1]) && std::isfinite(line.y[k - 1]) && py != line.y[k - 1]) {
@@ -154,11 +154,13 @@ std::string panel_svg(const ChartPanel& panel) {
     const std::string colour = line.colour.empty() ? scale_colour(k, panel.lines.size()) : line.colour;
     out += drawn(line, colour, x, y, y_range);
     if (line.label.empty()) continue;
-    legend += fmt::format(
-        "<line x1=\"{0}\" y1=\"{1}\" x2=\"{2}\" y2=\"{1}\" stroke=\"{3}\" stroke-width=\"2\"/>"
-        "<text x=\"{4}\" y=\"{5}\" {6}>{7}</text>\n",
-        x1 - legend_width, row - 4, x1 - legend_width + 14, colour, x1 - legend_width + 18, row, font,
-        escaped(line.label));
+    const double key = x1 - legend_width;
+    legend += line.dots ? fmt::format("<circle cx=\"{}\" cy=\"{}\" r=\"3\" fill=\"{}\"/>", key + 7, row - 4, colour)
+                        : fmt::format(
+                              "<line x1=\"{0}\" y1=\"{1}\" x2=\"{2}\" y2=\"{1}\" stroke=\"{3}\" "
+                              "stroke-width=\"2\"/>",
+                              key, row - 4, key + 14, colour);
+    legend += fmt::format("<text x=\"{}\" y=\"{}\" {}>{}</text>\n", key + 18, row, font, escaped(line.label));
     row += legend_row;
   }
   return out + legend;
