@@ -67,11 +67,10 @@ int main(int argc, char** argv) {
     const Table tuned = read_table(table_path);
     const std::string reference_path = fmt::format("{}/reference_v{}.json", out, valve);
     if (!std::filesystem::exists(reference_path)) {
-      HealthyReference reference;
-      long simulations = 0, failed = 0;
-      for (const Log& log :
-           read(hidden::healthy_logs(bench, seed + 1000, healthy, fmt::format("base_v{}", valve), seconds)))
-        reference.logs.push_back(score_healthy(log, tuned, bench.rig, 0, &simulations, &failed));
+      HealthyCounts counts;
+      const HealthyReference reference =
+          score_healthy(read(hidden::healthy_logs(bench, seed + 1000, healthy, fmt::format("base_v{}", valve), seconds)),
+                        tuned, bench.rig, 0, counts);
       std::ofstream(reference_path) << report::Json{{"explain", report::healthy_json(reference)}};
     }
     const HealthyReference reference = report::read_healthy(reference_path);

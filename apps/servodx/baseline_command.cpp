@@ -28,13 +28,13 @@ struct Options {
 HealthyReference healthy(const std::vector<Log>& logs, const Table& tuned, const RigFile& rig, const Options& options,
                          report::Header& header) {
   Progress progress("baseline, causes", {.quiet = options.common.quiet});
-  HealthyReference out;
-  for (const Log& log : logs) {
-    if (stop_on_interrupt()) break;
-    out.logs.push_back(
-        score_healthy(log, tuned, rig, options.common.threads, &header.simulations, &header.failed_simulations));
-    progress.update(static_cast<double>(out.logs.size()) / static_cast<double>(logs.size()), header.simulations);
-  }
+  HealthyCounts counts{header.simulations, header.failed_simulations};
+  const auto told = [&](double done) {
+    progress.update(done, counts.simulations);
+    return !stop_on_interrupt();
+  };
+  HealthyReference out = score_healthy(logs, tuned, rig, options.common.threads, counts, told);
+  header.simulations = counts.simulations, header.failed_simulations = counts.failed;
   return out;
 }
 

@@ -294,19 +294,28 @@ std::vector<CauseScore> score_causes(const Subject& subject, const ExplainedFit&
   const std::vector<Evaluation> e = whole.problem.evaluate(points);
   // What the free numbers, priors included, cannot imitate.
   const long rows = data_rows(subject);
-  Eigen::MatrixXd imitated(at.jacobian.rows(), 0);
-  for (long j = 0; j < at.jacobian.cols(); ++j) {
-    const double u = at.point[static_cast<std::size_t>(j)];
-    if (u < 1e-6 || u > 1 - 1e-6) continue;  // a wall holds it
-    imitated.conservativeResize(Eigen::NoChange, imitated.cols() + 1);
-    imitated.col(imitated.cols() - 1) = at.jacobian.col(j);
-  }
-  const Eigen::HouseholderQR<Eigen::MatrixXd> qr(imitated);
-  const auto apart = [&](Eigen::VectorXd v) {
-    Eigen::VectorXd y = qr.householderQ().transpose() * v;
-    y.head(std::min<long>(imitated.cols(), y.size())).setZero();
-    return Eigen::VectorXd(qr.householderQ() * y);
+  struct Imitation {
+    Eigen::HouseholderQR<Eigen::MatrixXd> qr;
+    long columns = 0;
+    Eigen::VectorXd apart(const Eigen::VectorXd& v) const {
+      Eigen::VectorXd y = qr.householderQ().transpose() * v;
+      y.head(std::min<long>(columns, y.size())).setZero();
+      return qr.householderQ() * y;
+    }
   };
+  const auto but = [&](const std::string& atop) {
+    Eigen::MatrixXd imitated(at.jacobian.rows(), 0);
+    for (long j = 0; j < at.jacobian.cols(); ++j) {
+      const double u = at.point[static_cast<std::size_t>(j)];
+      if (u < 1e-6 || u > 1 - 1e-6) continue;  // a wall holds it
+      if (!atop.empty() && at.fit.numbers[static_cast<std::size_t>(j)].name == atop) continue;
+      imitated.conservativeResize(Eigen::NoChange, imitated.cols() + 1);
+      imitated.col(imitated.cols() - 1) = at.jacobian.col(j);
+    }
+    const long columns = imitated.cols();
+    return Imitation{Eigen::HouseholderQR<Eigen::MatrixXd>(imitated), columns};
+  };
+  const Imitation of_all = but("");
   const Eigen::VectorXd& r0 = at.residual;
   const double left = deviance_of(subject, r0);
   std::vector<CauseScore> out;
@@ -319,6 +328,16 @@ std::vector<CauseScore> score_causes(const Subject& subject, const ExplainedFit&
       out.push_back(std::move(s));
       continue;
     }
+    std::optional<Imitation> of_rest;
+    if (!cause.atop.empty()) {
+      of_rest = but(cause.atop);
+      double n = 0;
+      for (std::size_t j = 0; j < base_size(subject, at); ++j)
+        if (const Number& number = at.fit.numbers[j]; number.name == cause.atop)
+          s.below += std::log(number.from_unit(at.point[j])), ++n;
+      s.below /= std::max(1.0, n);
+    }
+    const Imitation& imitation = of_rest ? *of_rest : of_all;
     for (std::size_t a = 0; a < cause.probes.size(); ++a) {
       Eigen::MatrixXd d(at.residual.size(), 0);
       for (const auto& probe : cause.probes[a]) {
@@ -328,7 +347,7 @@ std::vector<CauseScore> score_causes(const Subject& subject, const ExplainedFit&
         if (one.ok && e[0].ok) {
           Eigen::VectorXd v = Eigen::VectorXd::Zero(at.residual.size());
           v.head(rows) = one.residual.head(rows) - e[0].residual.head(rows);
-          v = apart(v);
+          v = imitation.apart(v);
           const double square = v.squaredNorm();
           if (square > 1e-12) {
             p.size = -v.dot(r0) / square;

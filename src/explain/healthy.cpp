@@ -68,7 +68,8 @@ Scatter scatter_of(const std::vector<double>& size, const std::vector<double>& s
 
 HealthyScore summarise(const Subject& subject, const CauseScore& score) {
   const Cause& cause = subject.causes()[static_cast<std::size_t>(score.cause)];
-  HealthyScore out{cause.effect, cause.where + (cause.family.empty() ? "" : "/" + cause.family), {}, score.gain};
+  HealthyScore out{
+      cause.effect, cause.where + (cause.family.empty() ? "" : "/" + cause.family), {}, score.gain, cause.prior};
   if (cause.curve) {  // knots that the log does not reach are loose: what they gain together is what counts
     out.sizes.push_back({std::log1p(score.gain), 1.0});
     return out;
@@ -77,6 +78,8 @@ HealthyScore summarise(const Subject& subject, const CauseScore& score) {
   for (const auto& alternative : cause.probes) {
     if (alternative.size() == 1) {
       out.sizes.push_back(score.probes[k++]);
+      if (!cause.atop.empty())  // a factor: what it is of
+        out.sizes.back().size += score.below / std::log(alternative.front().front() / cause.numbers.front().off);
       continue;
     }
     double size = 0, error = 0;
@@ -89,31 +92,49 @@ HealthyScore summarise(const Subject& subject, const CauseScore& score) {
   return out;
 }
 
-HealthyLog score_healthy(const Log& log, const Table& tuned, const RigFile& rig, int threads, long* simulations,
-                         long* failed) {
-  HealthyLog out;
-  out.log = log.path, out.sha256 = log.sha256;
-  ValveSubject subject({log}, tuned, rig, threads, KnownRig{});
-  const std::vector<Curve> curves = add_curves(subject);
-  const ExplainedFit fit = fit_base(subject, EngineOptions{}.iterations);
-  if (fit.ok) {
-    guess_curves(subject, curves, fit.point);
-    out.adequacy = subject.adequacy(fit.residual);
-    for (const CauseScore& s : score_causes(subject, fit)) out.scores.push_back(summarise(subject, s));
-    out.misses = subject.misses(fit.residual);
-    out.errors = subject.errors(fit.residual);
-    out.air = subject.own(0, row::air_fraction, fit.point);
-    out.command_slope = subject.own(0, nuisance::command_slope, fit.point);
-    for (const BlockReplay& b : replay_blocks(subject, fit.point)) out.misses.push_back({b.block, b.missing});
+HealthyReference score_healthy(const std::vector<Log>& logs, const Table& tuned, const RigFile& rig, int threads,
+                               HealthyCounts& counts, const std::function<bool(double)>& told) {
+  const auto n = static_cast<double>(logs.size());
+  const auto count = [&](const ValveSubject& s) {
+    counts.simulations += s.simulations(), counts.failed += s.failed_simulations();
+  };
+  HealthyReference all, out;
+  for (const Log& log : logs) {  // what is usual
+    HealthyLog& h = all.logs.emplace_back();
+    h.log = log.path, h.sha256 = log.sha256;
+    ValveSubject subject({log}, tuned, rig, threads, KnownRig{});
+    const ExplainedFit fit = fit_base(subject, EngineOptions{}.iterations);
+    if (fit.ok) {
+      h.errors = subject.errors(fit.residual);
+      h.air = subject.own(0, row::air_fraction, fit.point);
+      h.command_slope = subject.own(0, nuisance::command_slope, fit.point);
+    }
+    count(subject);
+    if (told && !told(0.2 * static_cast<double>(all.logs.size()) / n)) return out;
   }
-  if (simulations) *simulations += subject.simulations();
-  if (failed) *failed += subject.failed_simulations();
+  for (std::size_t l = 0; l < logs.size(); ++l) {
+    ValveSubject subject({logs[l]}, tuned, rig, threads, all.known(static_cast<int>(l)));
+    HealthyLog& h = out.logs.emplace_back(all.logs[l]);
+    const std::vector<Curve> curves = add_curves(subject);
+    const ExplainedFit fit = fit_base(subject, EngineOptions{}.iterations);
+    if (fit.ok) {
+      guess_curves(subject, curves, fit.point);
+      h.adequacy = subject.adequacy(fit.residual);
+      for (const CauseScore& s : score_causes(subject, fit)) h.scores.push_back(summarise(subject, s));
+      h.misses = subject.misses(fit.residual);
+      for (const BlockReplay& b : replay_blocks(subject, fit.point)) h.misses.push_back({b.block, b.missing});
+    }
+    count(subject);
+    if (told && !told(0.2 + 0.8 * static_cast<double>(out.logs.size()) / n)) break;
+  }
   return out;
 }
 
-KnownRig HealthyReference::known() const {
+KnownRig HealthyReference::known(int left_out) const {
   KnownRig out;
-  for (const HealthyLog& l : logs) {
+  for (std::size_t i = 0; i < logs.size(); ++i) {
+    const HealthyLog& l = logs[i];
+    if (static_cast<int>(i) == left_out) continue;
     out.errors.insert(out.errors.end(), l.errors.begin(), l.errors.end());
     if (l.air > 0) out.air.push_back(l.air);
     if (std::isfinite(l.command_slope)) out.command_slope.push_back(l.command_slope);
@@ -122,35 +143,69 @@ KnownRig HealthyReference::known() const {
 }
 
 HealthyTest::HealthyTest(const HealthyReference& reference) : reference_(reference) {
-  for (std::size_t i = 0; i < reference.logs.size(); ++i) {
-    double smallest = 1;
-    for (const HealthyScore& s : reference.logs[i].scores)
-      smallest = std::min(smallest, alone({s}, static_cast<int>(i)));
-    sum_ -= std::log1p(-std::min(smallest, 1 - 1e-12));
-    least_ = std::min(least_, smallest);
-  }
+  const std::size_t n = reference.logs.size();
+  for (std::size_t i = 0; i < n; ++i)
+    for (const HealthyScore& s : reference.logs[i].scores) {
+      OfCause& c = causes_[{s.effect, s.where}];
+      c.score.resize(n), c.surprise.resize(n);
+      c.score[i] = &s;
+    }
+  for (auto& [name, c] : causes_)
+    for (std::size_t i = 0; i < n; ++i)
+      if (c.score[i]) c.surprise[i] = -std::log(std::max(1e-300, by_law(c, {*c.score[i]}, static_cast<int>(i))));
+  smallest_.assign(n, 1.0);
+  for (const auto& [name, c] : causes_)
+    for (std::size_t i = 0; i < n; ++i)
+      if (c.score[i])
+        smallest_[i] =
+            std::min(smallest_[i], believed(c, c.surprise[i], static_cast<int>(i), c.score[i]->prior));
 }
 
-double HealthyTest::alone(const std::vector<HealthyScore>& logs, int left_out) const {
+const HealthyTest::OfCause* HealthyTest::of(const HealthyScore& cause) const {
+  const auto it = causes_.find({cause.effect, cause.where});
+  return it == causes_.end() ? nullptr : &it->second;
+}
+
+double HealthyTest::alone(const std::vector<HealthyScore>& logs) const {
+  const OfCause* c = of(logs.front());
+  if (!c) return 1;
+  return believed(*c, -std::log(std::max(1e-300, by_law(*c, logs, -1))), -1, logs.front().prior);
+}
+
+// If the law holds, surprises are exponential with mean one, and so it is believed until the logs say otherwise: their
+// mean is the inverse of a gamma, and the next surprise Lomax's. A law that is too careful is left as it is.
+double HealthyTest::believed(const OfCause& cause, double surprise, int left_out, double prior) const {
+  constexpr double law = 10;  // counts as much as so many logs
+  double n = 0, sum = 0;
+  for (std::size_t i = 0; i < cause.score.size(); ++i)
+    if (cause.score[i] && static_cast<int>(i) != left_out) ++n, sum += cause.surprise[i];
+  return std::min(1.0, std::pow(1 + surprise / (std::max(sum, n) + law), -n - law) / prior);
+}
+
+double HealthyTest::by_law(const OfCause& cause, const std::vector<HealthyScore>& logs, int left_out) const {
   double best = 1;
   int tried = 0;
   for (std::size_t k = 0; k < logs.front().sizes.size(); ++k) {
     std::vector<double> size, square;
-    for (std::size_t i = 0; i < reference_.logs.size(); ++i)
-      for (const HealthyScore& s : reference_.logs[i].scores)
-        if (static_cast<int>(i) != left_out && s.effect == logs.front().effect && s.where == logs.front().where &&
-            k < s.sizes.size() && std::isfinite(s.sizes[k].std_error) && std::isfinite(s.sizes[k].size))
-          size.push_back(s.sizes[k].size), square.push_back(s.sizes[k].std_error * s.sizes[k].std_error);
+    for (std::size_t i = 0; i < cause.score.size(); ++i) {
+      const HealthyScore* s = cause.score[i];
+      if (s && static_cast<int>(i) != left_out && k < s->sizes.size() && std::isfinite(s->sizes[k].std_error) &&
+          std::isfinite(s->sizes[k].size))
+        size.push_back(s->sizes[k].size), square.push_back(s->sizes[k].std_error * s->sizes[k].std_error);
+    }
     if (size.size() < 3) continue;
     const Scatter scatter = scatter_of(size, square);
-    double weight = 0, sum = 0;
+    double weight = 0, sum = 0, noise = 0, shared = 0;
     for (const HealthyScore& s : logs)
       if (k < s.sizes.size() && std::isfinite(s.sizes[k].std_error)) {
-        const double w = 1 / (scatter.variance(s.sizes[k].std_error * s.sizes[k].std_error) + 1e-300);
+        const double own = s.sizes[k].std_error * s.sizes[k].std_error, all = scatter.variance(own) + 1e-300;
+        const double w = 1 / all;
         weight += w, sum += w * s.sizes[k].size;
+        noise += w * w * own, shared += w * std::sqrt(std::max(0.0, all - own));
       }
     if (weight <= 0) continue;
-    const double t = (sum / weight - scatter.mean) / std::sqrt(1 / weight + scatter.mean_variance);
+    const double scattered = (noise + shared * shared) / (weight * weight);
+    const double t = (sum / weight - scatter.mean) / std::sqrt(scattered + scatter.mean_variance);
     best = std::min(best, student_tail(t, scatter.degrees));
     ++tried;
   }
@@ -173,10 +228,13 @@ double HealthyTest::spread(const HealthyScore& of, std::size_t probe) const {
 
 double HealthyTest::together(double alone) const {
   // The smallest of m independent chances has -ln(1 - p) exponential with rate m; m is learnt, causes are alike.
-  // What some healthy log shows beside the others is not new, whatever the law says: that holds for any scatter.
-  const auto n = static_cast<double>(reference_.logs.size());
-  if (n < 3 || alone >= std::min(1.0, least_)) return 1;
-  return 1 - std::pow(1 - std::log1p(-alone) / sum_, -n);
+  const auto n = static_cast<double>(smallest_.size());
+  if (n < 3 || alone >= 1) return 1;
+  double sum = 0, as_small = 0;
+  for (double p : smallest_) sum -= std::log1p(-std::min(p, 1 - 1e-12)), as_small += p <= alone;
+  const double by_law = 1 - std::pow(1 - std::log1p(-alone) / sum, -n);
+  // What some healthy logs show is no rarer than they are, whatever the law says: that holds for any scatter.
+  return as_small > 0 ? std::max(by_law, (as_small + 1) / (n + 1)) : by_law;
 }
 
 namespace {

@@ -10,7 +10,10 @@
 #pragma once
 #include <atomic>
 #include <cmath>
+#include <functional>
+#include <map>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "explain/blocks.h"
@@ -25,7 +28,8 @@ namespace servodx {
 struct HealthyScore {
   std::string effect, where;  // `where` with the family behind a slash where there is one
   std::vector<ProbeScore> sizes;
-  double gain = 0;  // predicted fall of the deviance
+  double gain = 0;   // predicted fall of the deviance
+  double prior = 1;  // its share of the false alarms beside the others'
 };
 struct HealthyLog {
   std::string log, sha256;
@@ -39,21 +43,28 @@ struct HealthyLog {
 struct HealthyReference {
   std::vector<HealthyLog> logs;
   bool empty() const { return logs.empty(); }
-  KnownRig known() const;
+  KnownRig known(int left_out = -1) const;
 };
 
 HealthyScore summarise(const Subject& subject, const CauseScore& score);
-// One log's scores; `simulations` and `failed` are added to.
-HealthyLog score_healthy(const Log& log, const Table& tuned, const RigFile& rig, int threads, long* simulations,
-                         long* failed);
+struct HealthyCounts {
+  long simulations = 0, failed = 0;
+};
+// Each log is scored as a suspect will be: weighed by what the other logs say is usual. `told`: fraction done; false
+// from it ends the work, and the logs that are done are returned.
+HealthyReference score_healthy(const std::vector<Log>& logs, const Table& tuned, const RigFile& rig, int threads,
+                               HealthyCounts& counts, const std::function<bool(double)>& told = {});
 
 // The tests that a reference answers.
 class HealthyTest {
  public:
   explicit HealthyTest(const HealthyReference& reference);
   // Chance that healthy logs show sizes like these of this cause, a score each log; 1 where fewer than three healthy
-  // logs speak of it.
-  double alone(const std::vector<HealthyScore>& logs) const { return alone(logs, -1); }
+  // logs speak of it. Logs of one state share its oil and its day: over them only the noise averages out, and not what
+  // else scatters from one healthy log to another. Tails that are longer than Student's are learnt: a cause's own
+  // chances on the healthy logs, each beside the others, say how far its chances can be believed. A rare cause has its
+  // share of the false alarms and no more: its chance counts over its prior (Genovese et al. 2006).
+  double alone(const std::vector<HealthyScore>& logs) const;
   // The same with all causes counted together: how small the smallest of a healthy log's chances is, is learnt from the
   // healthy logs themselves, each against the others: -ln(1 - p) is taken as exponential, its predictive is Lomax's.
   double together(double alone) const;
@@ -68,10 +79,16 @@ class HealthyTest {
   double any(const std::vector<Miss>& parts) const;
 
  private:
-  double alone(const std::vector<HealthyScore>& logs, int left_out) const;
+  struct OfCause {
+    std::vector<const HealthyScore*> score;  // [healthy log] null: it does not speak of the cause
+    std::vector<double> surprise;            // [healthy log] -ln of its chance by Student's law beside the others
+  };
+  const OfCause* of(const HealthyScore& cause) const;
+  double by_law(const OfCause& cause, const std::vector<HealthyScore>& logs, int left_out) const;
+  double believed(const OfCause& cause, double surprise, int left_out, double prior) const;
   const HealthyReference& reference_;
-  double sum_ = 0;  // over the healthy logs, of -ln(1 - the smallest chance)
-  double least_ = 1;  // smallest chance that a healthy log has beside the others
+  std::map<std::pair<std::string, std::string>, OfCause> causes_;
+  std::vector<double> smallest_;  // [healthy log] of its chances beside the others
 };
 
 }  // namespace servodx

@@ -369,6 +369,7 @@ void ValveSubject::add_causes(const RigFile& rig) {
       if (at == row::air_fraction) {
         f = FreeValue{"air_fraction", at, 0.02, 50.0, true, 1.0};
         f.apply = &scale_air;
+        cause.atop = table_[at].name;
       }
       cause.numbers.push_back(number_of(f, table_[at].unit, true));
       sizes.push_back(at == row::air_fraction ? std::vector<double>{2.0, 0.5, 8.0} : row_sizes(cause.numbers.back()));

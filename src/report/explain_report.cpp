@@ -237,7 +237,7 @@ Json healthy_json(const HealthyReference& healthy) {
     for (const HealthyScore& s : l.scores) {
       Json sizes = Json::array();
       for (const ProbeScore& p : s.sizes) sizes.push_back({number(p.size), number(p.std_error)});
-      scores.push_back({{"effect", s.effect}, {"where", s.where}, {"gain", number(s.gain)}, {"sizes", sizes}});
+      scores.push_back({{"effect", s.effect}, {"where", s.where}, {"gain", number(s.gain)}, {"prior", s.prior}, {"sizes", sizes}});
     }
     Json misses = Json::object();
     for (const Miss& m : l.misses) misses[m.part] = number(m.size);
@@ -278,7 +278,8 @@ HealthyReference read_healthy(const std::string& path) {
                               value(e.at("effective")), value(e.at("rate"))});
       for (const Json& s : l.at("scores")) {
         HealthyScore score{
-            s.at("effect").get<std::string>(), s.at("where").get<std::string>(), {}, value(s.at("gain"))};
+            s.at("effect").get<std::string>(), s.at("where").get<std::string>(), {}, value(s.at("gain")), 1.0};
+        if (s.contains("prior")) score.prior = value(s.at("prior"));  // later than the rest
         for (const Json& p : s.at("sizes")) score.sizes.push_back({value(p.at(0)), value(p.at(1))});
         log.scores.push_back(std::move(score));
       }

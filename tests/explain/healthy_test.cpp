@@ -105,6 +105,70 @@ TEST(Healthy, LogsOfOneStateSpeakTogether) {
   EXPECT_LT(test.alone({one, one, one}), test.alone({one}));
 }
 
+// Two logs of one day have its oil and its air: what those make of a cause is the same in both.
+TEST(Healthy, LogsOfOneDayAreNoTwoWitnesses) {
+  constexpr int trials = 600, causes = 20;
+  int alarms = 0;
+  for (int k = 0; k < trials; ++k) {
+    Random random(48, static_cast<std::uint32_t>(k));
+    constexpr double error = 0.1;
+    const auto day = [&](int logs) {
+      std::vector<HealthyLog> out(static_cast<std::size_t>(logs));
+      for (int c = 0; c < causes; ++c) {
+        const double of_the_day = random.normal();
+        for (HealthyLog& log : out)
+          log.scores.push_back({"cause " + std::to_string(c), "here", {{of_the_day + error * random.normal(), error}}, 0});
+      }
+      return out;
+    };
+    HealthyReference reference;
+    for (int i = 0; i < 19; ++i) reference.logs.push_back(day(1).front());
+    const HealthyTest test(reference);
+    const std::vector<HealthyLog> suspect = day(4);
+    double p = 1;
+    for (std::size_t c = 0; c < causes; ++c) {
+      std::vector<HealthyScore> scores;
+      for (const HealthyLog& log : suspect) scores.push_back(log.scores[c]);
+      p = std::min(p, test.together(test.alone(scores)));
+    }
+    alarms += p <= 0.05;
+  }
+  EXPECT_LE(alarms, 0.05 * trials + 2.5 * std::sqrt(0.05 * 0.95 * trials));
+}
+
+// One cause scatters with tails far beyond Student's: it may not accuse, and may not deafen the test for the others.
+TEST(Healthy, LongTailsOfOneCauseAreLearntAndStayItsOwn) {
+  constexpr int trials = 300, causes = 20;
+  int alarms = 0, found = 0;
+  for (int k = 0; k < trials; ++k) {
+    Random random(49, static_cast<std::uint32_t>(k));
+    const auto log = [&](double moved) {
+      HealthyLog out = draw(random, causes, moved, 3);
+      const double wild = std::tan(1.5 * random.uniform(-1, 1));
+      out.scores.push_back({"wild", "here", {{wild, 0.1}}, 0});
+      return out;
+    };
+    HealthyReference reference;
+    for (int i = 0; i < 19; ++i) reference.logs.push_back(log(0));
+    const HealthyTest test(reference);
+    alarms += smallest(test, log(0)) <= 0.05;
+    found += test.together(test.alone({log(40).scores[3]})) <= 0.05;
+  }
+  EXPECT_LE(alarms, 0.05 * trials + 2.5 * std::sqrt(0.05 * 0.95 * trials));
+  EXPECT_GE(found, trials * 8 / 10);
+}
+
+TEST(Healthy, RareCauseHasItsShareOfTheFalseAlarmsAndNoMore) {
+  Random random(50, 1);
+  HealthyReference reference;
+  for (int i = 0; i < 9; ++i) reference.logs.push_back(draw(random, 5, 0, -1));
+  const HealthyTest test(reference);
+  const HealthyScore one{"cause 4", "here", {{4 + 5.0, 0.5}}, 0};
+  HealthyScore rare = one;
+  rare.prior = 0.1;
+  EXPECT_NEAR(test.alone({rare}), 10 * test.alone({one}), 1e-9);
+}
+
 TEST(Healthy, TooFewLogsAccuseNoOne) {
   HealthyReference two;
   Random random(46, 1);
