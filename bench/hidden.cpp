@@ -19,7 +19,7 @@
 using namespace servodx;
 
 int main(int argc, char** argv) {
-  int valves = 2, first = 1, cases = 28, controls = 20, unlisted = 0, healthy = 9, tuning = 6, generations = 12;
+  int valves = 2, first = 1, cases = 28, controls = 20, unlisted = 0, healthy = 19, tuning = 6, generations = 12;
   double seconds = 3.0, level = 0.05;
   std::uint64_t seed = 1;
   bool again = false;

@@ -544,10 +544,12 @@ Explanation explain(Subject& subject, const EngineOptions& options, const Explan
     };
     const auto in = [&](int c) { return std::count(now.causes.begin(), now.causes.end(), c) > 0; };
     std::vector<CauseScore> order = scores;
-    // What is new first; by what it promises. In the first round a few that are not new are looked at as well: what
-    // stands in healthy data is said.
+    const auto news = [&](int c) { return p[static_cast<std::size_t>(c)] <= level; };  // by itself
+    // What is new first, by itself before what is so only because the data are abnormal; then by what it promises. In
+    // the first round a few that are not new are looked at as well: what stands in healthy data is said.
     std::stable_sort(order.begin(), order.end(), [&](const CauseScore& a, const CauseScore& b) {
       if (is_new(a.cause) != is_new(b.cause)) return is_new(a.cause);
+      if (is_new(a.cause) && news(a.cause) != news(b.cause)) return news(a.cause);
       return a.gain > b.gain;
     });
     std::vector<ExplainedFit> fits;
@@ -569,9 +571,10 @@ Explanation explain(Subject& subject, const EngineOptions& options, const Explan
     const auto prior_of = [&](const ExplainedFit& f) {
       return subject.causes()[static_cast<std::size_t>(f.causes.back())].prior;
     };
-    // The commoner first, then by what they gain.
+    // The commoner first, then what is news by itself, then by what they gain.
     std::stable_sort(fits.begin(), fits.end(), [&](const ExplainedFit& a, const ExplainedFit& b) {
       if (prior_of(a) != prior_of(b)) return prior_of(a) > prior_of(b);
+      if (news(a.causes.back()) != news(b.causes.back())) return news(a.causes.back());
       return delta_bic(now, a, out.degrees) > delta_bic(now, b, out.degrees);
     });
     std::vector<int> judged;                        // positions in fits
@@ -604,7 +607,7 @@ Explanation explain(Subject& subject, const EngineOptions& options, const Explan
       }
       // A name that is not news by itself has to be what makes the data abnormal.
       const bool restores = subject.causes()[static_cast<std::size_t>(c)].curve ||
-                            p[static_cast<std::size_t>(c)] <= level || !is_new(c) || !abnormal_rows ||
+                            news(c) || !is_new(c) || !abnormal_rows ||
                             options.p_left(fits[i], round + 1) > level;
       if (!restores)
         r.reason = "no news by itself, and the data stay abnormal with it";

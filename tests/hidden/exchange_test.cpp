@@ -1,0 +1,39 @@
+// Healthy logs and a suspect are weighed alike, or the one's scatter says nothing of the other's.
+#include <gtest/gtest.h>
+
+#include "explain/curves.h"
+#include "explain/healthy.h"
+#include "explain/valve.h"
+#include "hidden/cases.h"
+#include "parameters/table.h"
+#include "temporary_folder.h"
+
+namespace servodx::hidden {
+namespace {
+
+TEST(Exchange, HealthyLogIsScoredBesideTheOthersAsASuspectIs) {
+  const std::string source = SERVODX_SOURCE_DIR;
+  const TemporaryFolder folder;
+  const Bench bench{folder.path, source + "/params/rigs/borello2009.toml", read_rig_file(source + "/data/rig.toml"), 1};
+  const Table tuned = read_table(source + "/tests/hidden/valve_1.csv");
+  std::vector<Log> logs;
+  for (const std::string& path : healthy_logs(bench, 3, 4, "healthy", 0.8)) logs.push_back(read_log(path, bench.rig));
+  HealthyCounts counts;
+  const HealthyLog beside = score_healthy(logs, tuned, bench.rig, 0, counts).logs.back();
+
+  const Log suspect = logs.back();
+  logs.pop_back();
+  const HealthyReference others = score_healthy(logs, tuned, bench.rig, 0, counts);
+  ValveSubject subject({suspect}, tuned, bench.rig, 0, others.known());
+  const std::vector<Curve> curves = add_curves(subject);
+  const ExplainedFit fit = fit_base(subject, EngineOptions{}.iterations);
+  guess_curves(subject, curves, fit.point);
+  const std::vector<CauseScore> scores = score_causes(subject, fit);
+  ASSERT_EQ(scores.size(), beside.scores.size());
+  for (std::size_t c = 0; c < scores.size(); ++c)
+    EXPECT_DOUBLE_EQ(scores[c].gain, beside.scores[c].gain) << beside.scores[c].effect;
+  EXPECT_EQ(subject.misses(fit.residual).front().size, beside.misses.front().size);
+}
+
+}  // namespace
+}  // namespace servodx::hidden
