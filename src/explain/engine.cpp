@@ -606,9 +606,8 @@ Explanation explain(Subject& subject, const EngineOptions& options, const Explan
         beside[i] = std::move(with);
       }
       // A name that is not news by itself has to be what makes the data abnormal.
-      const bool restores = subject.causes()[static_cast<std::size_t>(c)].curve ||
-                            news(c) || !is_new(c) || !abnormal_rows ||
-                            options.p_left(fits[i], round + 1) > level;
+      const bool restores = subject.causes()[static_cast<std::size_t>(c)].curve || news(c) || !is_new(c) ||
+                            !abnormal_rows || options.p_left(fits[i], round + 1) > level;
       if (!restores)
         r.reason = "no news by itself, and the data stay abnormal with it";
       else if (retuned.ok && r.beyond_retuning.value <= 0)

@@ -157,8 +157,7 @@ HealthyTest::HealthyTest(const HealthyReference& reference) : reference_(referen
   for (const auto& [name, c] : causes_)
     for (std::size_t i = 0; i < n; ++i)
       if (c.score[i])
-        smallest_[i] =
-            std::min(smallest_[i], believed(c, c.surprise[i], static_cast<int>(i), c.score[i]->prior));
+        smallest_[i] = std::min(smallest_[i], believed(c, c.surprise[i], static_cast<int>(i), c.score[i]->prior));
 }
 
 const HealthyTest::OfCause* HealthyTest::of(const HealthyScore& cause) const {

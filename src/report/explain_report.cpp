@@ -237,7 +237,8 @@ Json healthy_json(const HealthyReference& healthy) {
     for (const HealthyScore& s : l.scores) {
       Json sizes = Json::array();
       for (const ProbeScore& p : s.sizes) sizes.push_back({number(p.size), number(p.std_error)});
-      scores.push_back({{"effect", s.effect}, {"where", s.where}, {"gain", number(s.gain)}, {"prior", s.prior}, {"sizes", sizes}});
+      scores.push_back(
+          {{"effect", s.effect}, {"where", s.where}, {"gain", number(s.gain)}, {"prior", s.prior}, {"sizes", sizes}});
     }
     Json misses = Json::object();
     for (const Miss& m : l.misses) misses[m.part] = number(m.size);

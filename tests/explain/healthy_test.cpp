@@ -117,7 +117,8 @@ TEST(Healthy, LogsOfOneDayAreNoTwoWitnesses) {
       for (int c = 0; c < causes; ++c) {
         const double of_the_day = random.normal();
         for (HealthyLog& log : out)
-          log.scores.push_back({"cause " + std::to_string(c), "here", {{of_the_day + error * random.normal(), error}}, 0});
+          log.scores.push_back(
+              {"cause " + std::to_string(c), "here", {{of_the_day + error * random.normal(), error}}, 0});
       }
       return out;
     };
