@@ -39,6 +39,10 @@ void run(const Options& options) {
   how.threads = options.common.threads;
   how.track = !options.no_track;
   how.correct = !options.raw;
+  report::Header& header = invocation.header();
+  header.settings = {{"valve", options.valve}, {"at", options.at}, {"model", how.model}, {"history", options.history}};
+  if (invocation.dry_run()) return;
+
   if (history)
     if (const auto last = history->last(options.valve)) how.last = tracked_in(*last);
   const CheckResult result = check(log, tuned, rig, how);
@@ -56,8 +60,6 @@ void run(const Options& options) {
                    .checks = result.checks},
                   read_file(options.params));
 
-  report::Header& header = invocation.header();
-  header.settings = {{"valve", options.valve}, {"at", options.at}, {"model", how.model}, {"history", options.history}};
   header.simulations = result.simulations;
   header.failed_simulations = result.failed_simulations;
   invocation.note(result.notes);

@@ -23,6 +23,7 @@ void run(const Options& options) {
   invocation.check_files({options.log}, outputs);
   const RigFile rig = invocation.rig();
   const Log log = invocation.log(options.log, rig);
+  if (invocation.dry_run()) return;
   const curves::Sheet sheet = curves::read_curves(log, rig);
   if (!options.svg.empty()) write_file(options.svg, report::curves_svg(sheet, *rig.fact("valve.rated_current")));
   invocation.note(sheet.notes);

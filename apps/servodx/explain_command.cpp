@@ -41,6 +41,9 @@ int run(const Options& options) {
     explain.level = file.baseline.asked;
   }
   const std::vector<Log> logs = invocation.logs(options.logs, rig);
+  header.settings = {{"level", explain.level}, {"baseline", options.baseline}, {"without", options.without}};
+  if (invocation.dry_run()) return ran;
+
   explain.stop = &stop_on_interrupt();
   const ExplainResult result = explain_logs(logs, tuned, rig, healthy ? &*healthy : nullptr, explain);
   write_table(options.output, result.table);
@@ -57,7 +60,6 @@ int run(const Options& options) {
     }
     invocation.write_report(report::explain_page(header, result, replays));
   }
-  header.settings = {{"level", explain.level}, {"baseline", options.baseline}, {"without", options.without}};
   invocation.finish(report::text_of(result, {.colour = colour_wanted(), .written_to = options.output}),
                     report::explain_json(result));
   return result.interrupted ? interrupted : ran;

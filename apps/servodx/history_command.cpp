@@ -24,6 +24,7 @@ struct Options {
 void show(const Options& options) {
   Invocation invocation("history show", options.common);
   const History history(options.history, false);
+  if (invocation.dry_run()) return;
   report::Columns rows("llrrr");
   rows.row({"valve", "serial", "checks", "hours", "events"});
   report::Json valves = report::Json::array();
@@ -52,6 +53,8 @@ void add_event(const Options& options) {
   Invocation invocation("history event", options.common);
   History history(options.history, false);
   history.of(options.valve);  // refuses a name that is only mistyped
+  invocation.header().settings = {{"valve", options.valve}, {"at", options.at}, {"kind", options.kind}};
+  if (invocation.dry_run()) return;
   history.add_event(options.valve, {options.at, *kind, options.text, {}});
   invocation.finish(fmt::format("{} at {} h: {}\n", options.valve, options.at, options.kind),
                     {{"valve", options.valve}, {"at", options.at}, {"kind", options.kind}});
@@ -61,6 +64,7 @@ void write_csv(const Options& options) {
   Invocation invocation("history export", options.common);
   invocation.check_files({options.history}, {options.file});
   const History history(options.history, false);
+  if (invocation.dry_run()) return;
   const HistoryContent content = history.content();
   write_file(options.file, history_csv(content));
   invocation.finish(
@@ -72,6 +76,7 @@ void read_csv(const Options& options) {
   Invocation invocation("history import", options.common);
   invocation.check_files({options.file}, {options.history});
   const HistoryContent content = read_history_csv(options.file);
+  if (invocation.dry_run()) return;
   History history(options.history, true);
   const Restored count = history.restore(content);
   if (count.present > 0)
@@ -83,6 +88,7 @@ void read_csv(const Options& options) {
 void verify(const Options& options, int& exit_code) {
   Invocation invocation("history verify", options.common);
   const History history(options.history, false);
+  if (invocation.dry_run()) return;
   const std::string found = history.verify();
   if (found != "ok") exit_code = failed_inside;
   invocation.finish(options.history + ": " + found + "\n", {{"found", found}});

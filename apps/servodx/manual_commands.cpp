@@ -30,11 +30,28 @@ std::string joined(const std::vector<std::string>& words, const std::string& bet
   return all;
 }
 
+// What help shows; a kept name that is refused has no group.
+std::vector<const CLI::Option*> options_of(const CLI::App& command) {
+  return command.get_options([](const CLI::Option* option) { return !option->get_group().empty(); });
+}
+
+// With those of its own commands, as `history` has some.
 std::vector<std::string> option_names(const CLI::App& command) {
   std::vector<std::string> all;
-  for (const CLI::Option* option : command.get_options())
-    for (std::string& name : names_of(*option)) all.push_back(std::move(name));
+  const auto add = [&](std::string name) {
+    if (std::find(all.begin(), all.end(), name) == all.end()) all.push_back(std::move(name));
+  };
+  for (const CLI::Option* option : options_of(command))
+    for (const std::string& name : names_of(*option)) add(name);
+  for (const CLI::App* part : commands_of(command))
+    for (const std::string& name : option_names(*part)) add(name);
   return all;
+}
+
+std::string part_names(const CLI::App& command) {
+  std::vector<std::string> names;
+  for (const CLI::App* part : commands_of(command)) names.push_back(part->get_name());
+  return joined(names, " ");
 }
 
 std::string bash(const CLI::App& app) {
@@ -42,11 +59,13 @@ std::string bash(const CLI::App& app) {
   std::string cases;
   for (const CLI::App* command : commands_of(app)) {
     names.push_back(command->get_name());
-    cases += fmt::format("    {}) options=\"{}\" ;;\n", command->get_name(), joined(option_names(*command), " "));
+    const std::string parts = part_names(*command);
+    cases += fmt::format("    {}) options=\"{}\"{} ;;\n", command->get_name(), joined(option_names(*command), " "),
+                         parts.empty() ? "" : " parts=\"" + parts + "\"");
   }
   return fmt::format(R"(# bash completion of servodx; from 'servodx completion bash'
 _servodx() {{
-  local word=${{COMP_WORDS[COMP_CWORD]}} options=""
+  local word=${{COMP_WORDS[COMP_CWORD]}} options="" parts=""
   if ((COMP_CWORD == 1)); then
     mapfile -t COMPREPLY < <(compgen -W "{} --help --version" -- "$word")
     return
@@ -55,6 +74,8 @@ _servodx() {{
 {}  esac
   if [[ $word == -* ]]; then
     mapfile -t COMPREPLY < <(compgen -W "$options" -- "$word")
+  elif ((COMP_CWORD == 2)) && [[ $parts ]]; then
+    mapfile -t COMPREPLY < <(compgen -W "$parts" -- "$word")
   else
     compopt -o filenames
     mapfile -t COMPREPLY < <(compgen -f -- "$word")
@@ -72,27 +93,42 @@ std::string single_quoted(std::string text) {
   return "'" + safe + "'";
 }
 
-std::string fish(const CLI::App& app) {
-  std::string text = "# fish completion of servodx; from 'servodx completion fish'\n";
-  for (const CLI::App* command : commands_of(app)) {
-    text += fmt::format("complete -c servodx -n __fish_use_subcommand -f -a {} -d {}\n", command->get_name(),
-                        single_quoted(command->get_description()));
-    for (const CLI::Option* option : command->get_options()) {
-      if (option->get_positional()) continue;
-      text += fmt::format("complete -c servodx -n '__fish_seen_subcommand_from {}'", command->get_name());
-      for (const std::string& name : option->get_snames()) text += " -s " + name;
-      for (const std::string& name : option->get_lnames()) text += " -l " + name;
-      text += (option->get_expected_max() > 0 ? " -r -d " : " -d ") + single_quoted(option->get_description()) + "\n";
-    }
+// The options of a command, where `seen` are the words before; then its own commands.
+std::string fish_options(const CLI::App& command, const std::string& seen) {
+  std::string text;
+  for (const CLI::App* part : commands_of(command)) {
+    text += fmt::format("complete -c servodx -n '{}; and not __fish_seen_subcommand_from {}' -f -a {} -d {}\n", seen,
+                        part_names(command), part->get_name(), single_quoted(part->get_description()));
+    text += fish_options(*part, seen + "; and __fish_seen_subcommand_from " + part->get_name());
+  }
+  if (!text.empty()) return text;
+  for (const CLI::Option* option : options_of(command)) {
+    if (option->get_positional()) continue;
+    text += fmt::format("complete -c servodx -n '{}'", seen);
+    for (const std::string& name : option->get_snames()) text += " -s " + name;
+    for (const std::string& name : option->get_lnames()) text += " -l " + name;
+    text += (option->get_expected_max() > 0 ? " -r -d " : " -d ") + single_quoted(option->get_description()) + "\n";
   }
   return text;
 }
 
+std::string fish(const CLI::App& app) {
+  std::string text = "# fish completion of servodx; from 'servodx completion fish'\n";
+  for (const CLI::App* command : commands_of(app))
+    text += fmt::format("complete -c servodx -n __fish_use_subcommand -f -a {} -d {}\n", command->get_name(),
+                        single_quoted(command->get_description())) +
+            fish_options(*command, "__fish_seen_subcommand_from " + command->get_name());
+  return text;
+}
+
 std::string zsh(const CLI::App& app) {
-  std::string names, cases;
+  std::string names, cases, parts;
   for (const CLI::App* command : commands_of(app)) {
     names += fmt::format("    {}\n", single_quoted(command->get_name() + ":" + command->get_description()));
     cases += fmt::format("    {}) compadd -- {} ;;\n", command->get_name(), joined(option_names(*command), " "));
+    if (const std::string those = part_names(*command); !those.empty())
+      parts += fmt::format("  elif ((CURRENT == 3)) && [[ $words[2] == {} ]]; then\n    compadd -- {}\n",
+                           command->get_name(), those);
   }
   return fmt::format(R"(#compdef servodx
 # zsh completion of servodx; from 'servodx completion zsh'
@@ -104,13 +140,13 @@ _servodx() {{
   elif [[ $words[CURRENT] == -* ]]; then
     case $words[2] in
 {}    esac
-  else
+{}  else
     _files
   fi
 }}
 _servodx "$@"
 )",
-                     names, cases);
+                     names, cases, parts);
 }
 
 // Text for roff: no line may begin with a dot, and a hyphen must stay one.
@@ -146,6 +182,20 @@ std::string man_option(const CLI::Option& option) {
   return fmt::format(".TP\n{}\n{}.{}\n", head, roff(option.get_description()), roff(tail));
 }
 
+// One command; the options that all share are kept for a section of their own.
+void add_man(std::string& text, std::string& common, const CLI::App& command, const std::string& called) {
+  text += fmt::format(".SS {}\n{}.\n", roff(called), roff(command.get_description()));
+  std::string in_common;
+  for (const CLI::Option* option : options_of(command)) {
+    if (option->get_group() == "Common")
+      in_common += man_option(*option);
+    else if (option->get_name(false, true).find("--help") == std::string::npos)
+      text += man_option(*option);
+  }
+  if (common.empty()) common = in_common;
+  if (!command.get_footer().empty()) text += ".PP\n.nf\n" + roff(command.get_footer()) + "\n.fi\n";
+}
+
 std::string man(const CLI::App& app) {
   std::string text = fmt::format(".TH SERVODX 1 \"\" \"servodx {}\" \"User Commands\"\n", SERVODX_VERSION);
   text += ".SH NAME\nservodx \\- " + roff(app.get_description()) +
@@ -153,16 +203,9 @@ std::string man(const CLI::App& app) {
   text += ".SH COMMANDS\n";
   std::string common;
   for (const CLI::App* command : commands_of(app)) {
-    text += fmt::format(".SS {}\n{}.\n", roff(command->get_name()), roff(command->get_description()));
-    std::string in_common;
-    for (const CLI::Option* option : command->get_options()) {
-      if (option->get_group() == "Common")
-        in_common += man_option(*option);
-      else if (option->get_name(false, true).find("--help") == std::string::npos)
-        text += man_option(*option);
-    }
-    if (common.empty()) common = in_common;
-    if (!command->get_footer().empty()) text += ".PP\n.nf\n" + roff(command->get_footer()) + "\n.fi\n";
+    add_man(text, common, *command, command->get_name());
+    for (const CLI::App* part : commands_of(*command))
+      add_man(text, common, *part, command->get_name() + " " + part->get_name());
   }
   text += ".SH COMMON OPTIONS\n" + common;
   text +=

@@ -35,6 +35,8 @@ void run(const Options& options) {
                    "leave it away: the measured current drives the monitor");
     monitor.control_gain = parse_gain(options.loop_gain, Dimension::current, {.file = "--loop-gain"}).value;
   }
+  invocation.header().settings = {{"model", options.model}, {"loop_gain", monitor.control_gain}};
+  if (invocation.dry_run()) return;
 
   const auto before = std::chrono::steady_clock::now();
   MonitorRun run =
@@ -63,7 +65,6 @@ void run(const Options& options) {
                              output_column(log, Signal::load_pressure, std::move(run.pressure))});
   invocation.note(data.notes);
   invocation.header().simulations = 1;
-  invocation.header().settings = {{"model", options.model}, {"loop_gain", monitor.control_gain}};
   invocation.finish(text, {{"output", options.output},
                            {"samples", log.samples()},
                            {"real_time_factor", simulated / wall},

@@ -54,6 +54,12 @@ void run(Options options) {
   }
   for (const std::string& text : options.failures) add_failure(text, options.trend);
   const History history(options.history, false);
+  if (!options.all) history.of(options.valve);  // refuses a name that is not there
+  invocation.header().settings = {{"history", options.history},       {"false_alarm", options.trend.false_alarm},
+                                  {"healthy", options.trend.healthy}, {"coverage", options.trend.coverage},
+                                  {"failure", options.failures},      {"limit", options.limits}};
+  if (invocation.dry_run()) return;
+
   std::vector<ValveTrend> trends;
   for (const std::string& name : options.all ? history.valves() : std::vector<std::string>{options.valve}) {
     trends.push_back(trend(history.of(name), options.trend));
@@ -65,9 +71,6 @@ void run(Options options) {
   };
   std::stable_sort(trends.begin(), trends.end(),
                    [&](const ValveTrend& a, const ValveTrend& b) { return urgency(a) < urgency(b); });
-  invocation.header().settings = {{"history", options.history},       {"false_alarm", options.trend.false_alarm},
-                                  {"healthy", options.trend.healthy}, {"coverage", options.trend.coverage},
-                                  {"failure", options.failures},      {"limit", options.limits}};
   if (invocation.wants_report()) invocation.write_report(report::trend_page(invocation.header(), trends, options.all));
   invocation.finish(options.all ? report::ranking(trends) : report::text_of(trends.front()),
                     report::trend_json(trends, options.all));

@@ -230,7 +230,7 @@ CheckResult check(const Log& log, const Table& tuned, const RigFile& rig, const 
   for (const TrackedParameter& p : track.parameters)
     out.checks.push_back({fmt::format("parameter:{}", p.id), p.value, p.std_error,
                           std::string(parameter_list[static_cast<std::size_t>(p.id - 1)].unit), p.value, 1.0,
-                          std::string(p.fault->name)});
+                          std::string(p.fault->name), p.tuned, p.failed});
   return out;
 }
 

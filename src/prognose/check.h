@@ -9,6 +9,7 @@
 // The temperature is the log's, or estimated: the oil at which a healthy model fits best, from -40 to 100 degC. An
 // estimate is worth what its error says, and it can mistake wear for cold; the result says which it is.
 #pragma once
+#include <cmath>
 #include <optional>
 #include <string>
 #include <vector>
@@ -28,6 +29,7 @@ struct Check {
   double measured = 0;  // before the correction
   double expected = 1;  // what a healthy valve would measure here, over what it would at the reference state
   std::string cause;    // fault label of a parameter; empty for the paper's checks
+  double tuned = NAN, failed = NAN;  // of a parameter, not stored: the table's value, and where the fault has failed
 };
 
 struct CheckOptions {

@@ -170,6 +170,10 @@ Track track_parameters(const LogData& log, const Table& tuned, const TrackOption
     p.value = row_at(base, faults[j], free[j], best.point[j]);
     const double h = best.point[j] < 0.5 ? 1e-3 : -1e-3;
     p.std_error = std::abs((row_at(base, faults[j], free[j], best.point[j] + h) - p.value) / h) * error_of(j);
+    ParameterVector failed = base;
+    p.fault->apply(failed.data(), *p.fault->failed);
+    p.tuned = base[faults[j].row];
+    p.failed = failed[faults[j].row];
     out.parameters.push_back(p);
   }
   return out;

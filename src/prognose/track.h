@@ -21,6 +21,7 @@ struct TrackedParameter {
   const Fault* fault = nullptr;
   double value = 0, std_error = 0;  // [unit of the row]
   double severity = 0;              // [unit of the fault]
+  double tuned = 0, failed = 0;     // [unit of the row] where the valve began, and where the fault's `failed` lies
 };
 
 struct Track {

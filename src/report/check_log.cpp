@@ -199,7 +199,8 @@ Page check_log_page(const Header& header, const std::vector<LogCheck>& checks) {
     v.detail = first_line(s);
     for (const Finding& f : s.findings) v.reasons.push_back(f.kind + ": " + f.text);
   } else {
-    v.headline = fmt::format("{} of {} logs have something suspicious", suspicious, checks.size());
+    v.headline = suspicious == 0 ? fmt::format("Nothing suspicious in {} logs", checks.size())
+                                 : fmt::format("{} of {} logs have something suspicious", suspicious, checks.size());
   }
   page.verdict(v);
   if (!one) {

@@ -100,6 +100,7 @@ void add_ranking(Page& page, const Diagnosis& d) {
   bars.label = "hypothesis";
   bars.unit = "probability";
   bars.full = 1.0;
+  bars.shown = 4;
   auto order = d.assessment.hypotheses;
   const auto p_of = [&](const HypothesisResult& h) {  // of an unknown the verdict's probabilities say only that
     const auto found = d.probabilities.find(h.name);

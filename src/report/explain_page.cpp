@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "report/columns.h"
 #include "report/explain_report.h"
 #include "report/handy.h"
 #include "report/replay_part.h"
@@ -13,31 +14,87 @@ std::string of_misfit(const Interval& g) {
   return fmt::format("{} ({} to {}, 90 %)", percent(g.value), percent(g.lower), percent(g.upper));
 }
 
+// "20.3 um (19.9 to 20.6, 90 %)"
+std::string size_of(const ExplainedParameter& p) {
+  const HandyUnit unit = handy_unit(p.unit, p.value);
+  const double half = 1.645 * p.std_error * unit.factor, value = p.value * unit.factor;
+  std::string text = digits(value) + (unit.name.empty() ? "" : " " + unit.name);
+  if (std::isfinite(half)) text += fmt::format(" ({} to {}, 90 %)", digits(value - half), digits(value + half));
+  return text;
+}
+
 std::string headline(const ExplainResult& r) {
   if (r.verdict == "sufficient") return "The simulation misses nothing that healthy logs do not show";
-  if (r.causes.empty()) return "Something is missing that no cause in the list mends, near " + words(r.where);
+  if (r.causes.empty())
+    return "Something is missing that no cause in the list mends" + (r.where.empty() ? "" : ", near " + words(r.where));
   std::string text;
-  for (const ExplainedCause& c : r.causes)
-    text += (text.empty() ? "" : ", ") + words(c.effect) + " at " + words(c.where);
+  for (const ExplainedCause& c : r.causes) {
+    text += fmt::format("{}{} at {}", text.empty() ? "" : "; ", words(c.effect), words(c.where));
+    if (c.parameters.size() == 1) text += ", " + size_of(c.parameters.front());
+  }
   return text;
+}
+
+// The verdict as a person would say it; the JSON keeps its own word.
+const char* word_of(const ExplainResult& r) {
+  return r.verdict == "sufficient" ? "NOTHING NEW" : r.verdict == "extended" ? "FOUND" : "UNEXPLAINED";
+}
+
+std::vector<std::string> reasons(const ExplainResult& r) {
+  std::vector<std::string> why;
+  // The channel that shows it most.
+  const ExplainedChannel* worst = nullptr;
+  for (const ExplainedChannel& c : r.channels)
+    if (!worst || c.rms_before * worst->noise_rms > worst->rms_before * c.noise_rms) worst = &c;
+  if (worst) {
+    const std::string unit(info(*find_signal(worst->signal)).si_unit);
+    why.push_back(fmt::format("It shows most in the {}: off by {} rms as tuned{}; the sensor's noise is {}.",
+                              words(worst->signal), handy(worst->rms_before, unit),
+                              r.causes.empty() ? "" : ", by " + handy(worst->rms_after, unit) + " with what was found",
+                              handy(worst->noise_rms, unit)));
+  }
+  const BlockReplay* newest = nullptr;
+  for (const BlockReplay& b : r.blocks)
+    if (b.p_new && (!newest || *b.p_new < *newest->p_new)) newest = &b;
+  if (newest && r.verdict != "sufficient")
+    why.push_back(
+        fmt::format("With measured signals at its ends, the block {} misses {} of {}; a healthy log misses "
+                    "as much with a chance of {}.",
+                    newest->block, handy(newest->missing, newest->unit), handy(newest->passing, newest->unit),
+                    chance(*newest->p_new)));
+  if (r.p_adequacy)
+    why.push_back(
+        fmt::format("What is left is {} times the tuning logs' misfit{}; a healthy log is left with as much "
+                    "with a chance of {}.",
+                    digits(r.adequacy_after), r.causes.empty() ? "" : " (" + digits(r.adequacy_before) + " before)",
+                    chance(*r.p_adequacy)));
+  for (const ExplainedCause& c : r.causes) {
+    std::vector<std::string> others;
+    for (const std::string& o : c.confusable_with) others.push_back(words(o));
+    if (!others.empty())
+      why.push_back(fmt::format("In place of {} it may be {}.", words(c.effect), join(others, " or ")));
+    if (!c.test.empty()) why.push_back(words(c.effect) + " shows best in " + c.test + ".");
+  }
+  return why;
 }
 
 TablePart causes_table(const std::string& title, const std::vector<ExplainedCause>& causes) {
   TablePart table{
       title, "llrrrlll", {"cause", "where", "number", "value", "90 %", "unit", "gain held out", "or else"}, {}, 0};
   for (const ExplainedCause& c : causes) {
-    std::string others;
-    for (const std::string& o : c.confusable_with) others += (others.empty() ? "" : ", ") + words(o);
+    std::vector<std::string> others;
+    for (const std::string& o : c.confusable_with) others.push_back(words(o));
     for (const ExplainedParameter& p : c.parameters) {
+      const HandyUnit unit = handy_unit(p.unit, p.value);
       const double half = 1.645 * p.std_error;
       table.rows.push_back({words(c.effect),
                             words(c.where),
                             words(p.name),
-                            {digits(p.value), p.value},
-                            {std::isfinite(half) ? "+-" + digits(half, 2) : "at a bound", half},
-                            p.unit,
+                            {digits(p.value * unit.factor), p.value},
+                            {std::isfinite(half) ? "+-" + digits(half * unit.factor, 2) : "at a bound", half},
+                            unit.name,
                             {of_misfit(c.heldout_gain), c.heldout_gain.value},
-                            others});
+                            join(others)});
     }
   }
   return table;
@@ -46,14 +103,20 @@ TablePart causes_table(const std::string& title, const std::vector<ExplainedCaus
 // A residual against one variable of the operating point: mean and rms of eight parts with equally many samples.
 Plot map_plot(const ShownChannel& c, const ResidualMap& m) {
   Plot plot;
-  plot.title = fmt::format("{} residual [{}]", words(c.signal), info(*find_signal(c.signal)).si_unit);
-  plot.x_label = fmt::format("{} [{}]", words(m.variable), m.unit);
+  double most = 0, farthest = 0;
+  for (const MapBin& b : m.bins)
+    most = std::max(most, b.rms), farthest = std::max({farthest, std::abs(b.from), std::abs(b.to)});
+  const HandyUnit unit = handy_unit(std::string(info(*find_signal(c.signal)).si_unit), most),
+                  along = handy_unit(m.unit, farthest);
+  plot.title = fmt::format("{} residual [{}]", words(c.signal), unit.name);
+  plot.x_label = words(m.variable) + (along.name.empty() ? "" : " [" + along.name + "]");
   Series mean{"mean", {}, Role::measured}, above{"mean + rms about it", {}, Role::other},
       below{"mean - rms about it", {}, Role::other};
   for (const MapBin& b : m.bins) {
     const double spread = std::sqrt(std::max(0.0, b.rms * b.rms - b.mean * b.mean));
-    plot.x.push_back(0.5 * (b.from + b.to));
-    mean.y.push_back(b.mean), above.y.push_back(b.mean + spread), below.y.push_back(b.mean - spread);
+    plot.x.push_back(0.5 * (b.from + b.to) * along.factor);
+    mean.y.push_back(b.mean * unit.factor);
+    above.y.push_back((b.mean + spread) * unit.factor), below.y.push_back((b.mean - spread) * unit.factor);
   }
   plot.series = {mean, above, below};
   plot.low = true;
@@ -62,10 +125,13 @@ Plot map_plot(const ShownChannel& c, const ResidualMap& m) {
 
 Plot spectrum_plot(const ShownChannel& c) {
   Plot plot;
-  plot.title = fmt::format("{} residual [{}/sqrt(Hz)]", words(c.signal), info(*find_signal(c.signal)).si_unit);
+  double most = 0;
+  for (const auto& [f, v] : c.spectrum) most = std::max(most, v);
+  const HandyUnit unit = handy_unit(std::string(info(*find_signal(c.signal)).si_unit), most);
+  plot.title = fmt::format("{} residual [{}/sqrt(Hz)]", words(c.signal), unit.name);
   plot.x_label = "frequency [Hz]";
   Series s{"residual", {}, Role::measured};
-  for (const auto& [f, v] : c.spectrum) plot.x.push_back(f), s.y.push_back(v);
+  for (const auto& [f, v] : c.spectrum) plot.x.push_back(f), s.y.push_back(v * unit.factor);
   plot.series = {s};
   plot.low = plot.log_y = true;
   return plot;
@@ -77,18 +143,18 @@ Page explain_page(const Header& header, const ExplainResult& r, const std::vecto
   Page page(header, "What the simulation misses");
   Verdict v;
   v.tone = r.verdict == "sufficient" ? Tone::good : r.verdict == "extended" ? Tone::bad : Tone::doubt;
-  v.word = r.verdict;
+  v.word = word_of(r);
   v.headline = headline(r);
-  if (!r.causes.empty())
-    v.detail = fmt::format("Mending it removes {} of the misfit on data that the fit had not seen.",
-                           of_misfit(r.heldout_gain));
-  v.facts = {{"Re-tuning alone removes", of_misfit(r.retuned)},
-             {"Misfit over that of the tuning logs, before", digits(r.adequacy_before)},
-             {"after", digits(r.adequacy_after)}};
-  if (r.p_adequacy) v.facts.push_back({"Chance that a healthy log is left with as much", digits(*r.p_adequacy, 2)});
-  for (const ExplainedCause& c : r.causes)
-    if (!c.test.empty()) v.reasons.push_back(words(c.effect) + " shows best in " + c.test);
+  if (r.verdict == "extended") v.detail = "The simulation lacks this; with it, it follows the logs.";
+  if (r.curve) v.detail = "Nothing in the list mends it; a curve learnt from the logs does.";
+  if (!r.causes.empty()) v.facts.push_back({"Mending it removes", of_misfit(r.heldout_gain)});
+  v.facts.push_back({"Re-tuning alone removes", of_misfit(r.retuned)});
+  v.facts.push_back({"Misfit over the tuning logs'",
+                     digits(r.adequacy_before) + (r.causes.empty() ? "" : ", then " + digits(r.adequacy_after))});
+  v.reasons = reasons(r);
   page.verdict(v);
+  if (!r.causes.empty() || r.curve)
+    page.section("What was found", "Its numbers, and what each is worth on data that the fit had not seen.");
   if (!r.causes.empty()) page.add(causes_table("Causes", r.causes));
   if (r.curve) {
     Plot plot;

@@ -52,8 +52,12 @@ std::string exact(double value) {
 }
 
 std::string cell_html(const Cell& cell, char alignment, const char* element = "td") {
+  constexpr std::size_t long_words = 24;  // characters that a narrow screen must not stack
   std::string attributes;
-  if (alignment == 'r') attributes += " class=\"r\"";
+  if (alignment == 'r')
+    attributes += " class=\"r\"";
+  else if (cell.text.size() > long_words)
+    attributes += " class=\"long\"";
   if (cell.tone != Tone::plain) attributes += fmt::format(" data-tone=\"{}\"", name_of(cell.tone));
   if (cell.value) attributes += fmt::format(" data-value=\"{}\"", exact(*cell.value));
   std::string text = escape_html(cell.text);
@@ -72,6 +76,11 @@ void append_numbers(std::string& to, const std::vector<double>& v, const std::ve
       to += "null";
   }
   to += ']';
+}
+
+// Rows beyond `shown` open on a click.
+std::string folded_rows(std::size_t rows, std::size_t shown) {
+  return shown > 0 && rows > shown ? fmt::format(" data-shown=\"{}\"", shown) : "";
 }
 
 constexpr int digits_of_y = 6, digits_of_x = 9;
@@ -179,10 +188,9 @@ void Page::add(const Plot& plot) {
 
 void Page::add(const TablePart& table) {
   const auto align = [&](std::size_t c) { return c < table.alignment.size() ? table.alignment[c] : 'l'; };
-  body_ += fmt::format(
-      "<figure class=\"table\"{}><figcaption><span>{}</span>{}</figcaption><div class=\"wide\"><table>",
-      table.shown > 0 && table.rows.size() > table.shown ? fmt::format(" data-shown=\"{}\"", table.shown) : "",
-      escape_html(table.title), csv_button(table.title));
+  body_ +=
+      fmt::format("<figure class=\"table\"{}><figcaption><span>{}</span>{}</figcaption><div class=\"wide\"><table>",
+                  folded_rows(table.rows.size(), table.shown), escape_html(table.title), csv_button(table.title));
   body_ += "<thead><tr>";
   for (std::size_t c = 0; c < table.head.size(); ++c) body_ += cell_html(table.head[c], align(c), "th");
   body_ += "</tr></thead><tbody>\n";
@@ -205,8 +213,8 @@ void Page::add(const Bars& bars) {
   };
   bool notes = false;
   for (const Bars::Row& r : bars.rows) notes = notes || !r.note.empty();
-  body_ += fmt::format("<figure class=\"bars\"><figcaption><span>{}</span>{}</figcaption><div class=\"wide\"><table>",
-                       escape_html(bars.title), csv_button(bars.title));
+  body_ += fmt::format("<figure class=\"bars\"{}><figcaption><span>{}</span>{}</figcaption><div class=\"wide\"><table>",
+                       folded_rows(bars.rows.size(), bars.shown), escape_html(bars.title), csv_button(bars.title));
   body_ += fmt::format("<thead><tr><th>{}</th><th class=\"r\">{}</th><th class=\"bar\" aria-hidden=\"true\">{}</th>{}",
                        escape_html(bars.label), escape_html(bars.unit),
                        bars.mark ? fmt::format("<span class=\"mark\" style=\"left:{}\">{}</span>", part(bars.mark->at),
@@ -234,10 +242,9 @@ void Page::add(const Moves& moves) {
   double full = 3.0;
   for (const Moves::Row& r : moves.rows)
     if (std::isfinite(r.sigmas)) full = std::max(full, std::min(most_sigmas, std::abs(r.sigmas)));
-  body_ += fmt::format(
-      "<figure class=\"moves\"{}><figcaption><span>{}</span>{}</figcaption><div class=\"wide\"><table>",
-      moves.shown > 0 && moves.rows.size() > moves.shown ? fmt::format(" data-shown=\"{}\"", moves.shown) : "",
-      escape_html(moves.title), csv_button(moves.title));
+  body_ +=
+      fmt::format("<figure class=\"moves\"{}><figcaption><span>{}</span>{}</figcaption><div class=\"wide\"><table>",
+                  folded_rows(moves.rows.size(), moves.shown), escape_html(moves.title), csv_button(moves.title));
   body_ +=
       "<thead><tr><th>parameter</th><th class=\"r\">from</th><th class=\"r\">to</th><th class=\"r\">std. error</th>"
       "<th>unit</th><th class=\"r\">moved, in sigmas</th><th class=\"bar\" aria-hidden=\"true\"></th><th></th></tr>"

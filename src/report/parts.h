@@ -79,6 +79,7 @@ struct Bars {
   std::vector<Row> rows;
   std::optional<Mark> mark;    // "threshold"
   std::optional<double> full;  // value of a full bar; empty: the greatest
+  std::size_t shown = 0;       // as of a table
 };
 
 // What moved, and by how many of its standard errors.

@@ -1,3 +1,5 @@
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <string_view>
@@ -37,10 +39,12 @@ std::string left(const std::optional<Remaining>& r, double coverage) {
 }
 
 // Odds in which a person believes; the figure itself is in the JSON.
-std::string growth(double log_odds) {
+std::string growth(const CheckTrend& t) {
+  if (!t.trend) return "none shown";
   constexpr double most = 1000;
-  const double odds = std::exp(std::min(log_odds, std::log(2 * most)));
-  return odds > most ? "grows, over 1000 to 1" : "grows, " + digits(odds, 2) + " to 1";
+  const double odds = std::exp(std::min(t.log_bayes_factor, std::log(2 * most)));
+  return std::string(t.now < t.healthy ? "falls, " : "rises, ") +
+         (odds > most ? "over 1000 to 1" : digits(odds, 2) + " to 1");
 }
 
 double coverage_of(const Header& header) { return header.settings.value("coverage", 0.9); }
@@ -88,8 +92,8 @@ TablePart table_of(const ValveTrend& v, double coverage) {
     Cell state = t.state;
     state.tone = tone_of(t.state);
     table.rows.push_back({named(t.name, t.cause), state, Cell(handy(t.healthy, t.unit), t.healthy),
-                          t.points.size() < 2 ? Cell("-") : Cell(handy(t.now, t.unit), t.now),
-                          t.trend ? growth(t.log_bayes_factor) : "none shown", left(t.remaining, coverage)});
+                          t.points.size() < 2 ? Cell("-") : Cell(handy(t.now, t.unit), t.now), growth(t),
+                          left(t.remaining, coverage)});
   }
   return table;
 }
@@ -120,7 +124,7 @@ Verdict verdict_of(const ValveTrend& v, double coverage) {
                      : v.alert_at ? "A check of " + v.valve + " grows; no parameter names the cause"
                                   : v.valve + " shows no growth that would be acted on";
   if (v.cause && v.remaining && std::isfinite(v.remaining->median))
-    verdict.headline += ", about " + in_hours(v.remaining->median) + " left";
+    verdict.headline += ", about " + digits(v.remaining->median, 2) + " h left";
   verdict.facts = {{"Valve", v.serial.empty() ? v.valve : v.valve + ", serial " + v.serial},
                    {"Last check", in_hours(v.at)},
                    {"Checks recorded", std::to_string(v.checks)},
@@ -163,24 +167,63 @@ Page trend_page(const Header& header, const std::vector<ValveTrend>& trends, boo
   return page;
 }
 
+// Of the way from the tuned table to the fault's own level of failure; NaN of the paper's checks.
+double way(const Check& c, double value) { return (value - c.tuned) / (c.failed - c.tuned); }
+double way_error(const Check& c) { return std::abs(c.std_error / (c.failed - c.tuned)); }
+
+// Wear that has surely come a quarter of the way, where `trend` would warn of it; the farthest.
+const Check* worn(const CheckResult& r) {
+  constexpr double far = 0.25, sure = 2.0;
+  const Check* most = nullptr;
+  for (const Check& c : r.checks)
+    if (way(c, c.value) - sure * way_error(c) > far && (!most || way(c, c.value) > way(*most, most->value))) most = &c;
+  return most;
+}
+
+void add_ways(Page& page, const CheckResult& r) {
+  Bars bars{"From the tuned table to failure", "wear", "of the way", {}, Mark{1.0, "failed"}, 1.15};
+  for (const Check& c : r.checks)
+    if (std::isfinite(way(c, c.value)))
+      bars.rows.push_back({words(c.cause), std::max(0.0, way(c, c.value)), percent(way(c, c.value)),
+                           fmt::format("+- {}; {}, tuned {}, failed at {}", percent(way_error(c)),
+                                       handy(c.value, c.unit), handy(c.tuned, c.unit), handy(c.failed, c.unit)),
+                           &c == worn(r) ? Tone::doubt : Tone::plain, ""});
+  if (bars.rows.empty()) return;
+  std::stable_sort(bars.rows.begin(), bars.rows.end(), [](const auto& a, const auto& b) { return a.value > b.value; });
+  page.section("How far each wear has come",
+               "The fault's own level of failure. An error as long as its bar: this log does not tell.");
+  page.add(bars);
+}
+
 Page check_page(const Header& header, const CheckResult& r, const std::vector<double>& time) {
   Page page(header, "Checks of " + file_name(r.log));
   Verdict v;
-  v.tone = r.no_response ? Tone::bad : Tone::plain;
+  const Check* most = worn(r);
+  v.tone = r.no_response ? Tone::bad : most ? Tone::doubt : Tone::plain;
   v.headline = r.no_response ? "The spool did not follow the step"
-                             : std::to_string(r.checks.size()) + " checks, oil at " +
-                                   digits(r.temperature.value - 273.15) + " degC (" + r.temperature.source + ")";
-  v.detail = "What they mean for this valve, its history says: servodx trend.";
-  v.facts = {{"Offset of the current", percent(r.offset)},
+               : most        ? fmt::format("{} has come {} of the way to failure: {}", words(most->cause),
+                                           percent(way(*most, most->value)), handy(most->value, most->unit))
+               : std::any_of(r.checks.begin(), r.checks.end(), [](const Check& c) { return !c.cause.empty(); })
+                   ? "No wear has surely come a quarter of the way to failure"
+                   : fmt::format("{} checks; wear was not estimated", r.checks.size());
+  v.detail = "One check alone is no alarm: what it means for this valve, its history says (servodx trend).";
+  v.facts = {{"Checks recorded", std::to_string(r.checks.size())},
+             {"Oil", digits(r.temperature.value - 273.15) + " degC, " + r.temperature.source},
+             {"Offset of the current", percent(r.offset)},
              {"Fit of the model", digits(r.adequacy, 2) + " times its usual error"}};
   if (r.null) v.facts.push_back({"Null", percent(*r.null)});
+  constexpr double poor = 4.0;  // times the usual error
+  if (r.adequacy > poor)
+    v.reasons.push_back("The model follows this log " + digits(r.adequacy, 2) +
+                        " times worse than those that tuned it: a size read off it may be another cause's.");
   page.verdict(v);
+  add_ways(page, r);
   page.section("Checks", "As measured, and corrected to 40 degC oil and the supply of the tuned table.");
   TablePart table{"Checks", "lrrrr", {"check", "measured", "model's ratio", "corrected", "standard error"}, {}, 0};
   for (const Check& c : r.checks)
     table.rows.push_back({named(c.name, c.cause), Cell(handy(c.measured, c.unit), c.measured),
-                          Cell(digits(c.expected), c.expected), Cell(handy(c.value, c.unit), c.value),
-                          Cell(handy(c.std_error, c.unit), c.std_error)});
+                          c.cause.empty() ? Cell(digits(c.expected), c.expected) : Cell(""),
+                          Cell(handy(c.value, c.unit), c.value), Cell(handy(c.std_error, c.unit), c.std_error)});
   page.add(table);
   if (r.mean_error.running.size() == time.size() && !time.empty()) {
     Plot plot{.title = "running mean of |e| [um]", .x_label = "time [s]", .x = time};

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
+#include "base/sha256.h"
 #include "program.h"
 
 namespace servodx {
@@ -180,6 +181,80 @@ TEST(DryRun, PrintsTheSettingsAndWritesNothing) {
   EXPECT_EQ(desk.run("tune missing.csv --params table.csv -o tuned.csv --dry-run").code, 2);
 }
 
+// A table as `tune` writes it and a baseline made with it: what the commands that need both will read.
+std::string tuned_table() {
+  std::istringstream in(shipped_table());
+  std::string text, line;
+  for (bool header = true; std::getline(in, line);) {
+    if (line.starts_with('#') || line.empty()) continue;
+    text += line + (std::exchange(header, false) ? ",std_error\n" : ",\n");
+  }
+  return text;
+}
+
+std::string empty_baseline(const std::string& table) {
+  Json base = Json::parse(R"({"command": "baseline", "threshold": 3, "adequacy_limit": 1, "null_limit": 0.05,
+    "false_alarm": {"asked": 0.1, "promised": 0.25, "promised_95": 0.6, "logs": 3, "logs_needed": 9, "statement": ""},
+    "scores": [{"log": "h.csv", "sha256": "1", "score": 1, "adequacy": 1, "gains": {}}]})");
+  base["tuned_sha256"] = sha256_of_file(table);
+  return base.dump();
+}
+
+// A command that takes the option and forgets it would write in earnest, a check even into a history.
+TEST(DryRun, IsARehearsalWithEveryCommandThatTakesIt) {
+  const Desk desk;
+  desk.write("log.csv", small_log());
+  const std::string table = tuned_table();
+  desk.write("table.csv", table);
+  desk.write("base.json", empty_baseline(desk / "table.csv"));
+  desk.write("lives.csv", "valve,at [h],name,value,std_error\nV7,10,fidelity,1.1,0.01\n");
+  desk.write("other.csv", small_log(240));
+  desk.write("a.json", R"({"tool": "servodx", "command": "tune"})");
+  desk.write("rig.toml", "[valve]\nrated_current = \"20 mA\"\n");
+  ASSERT_EQ(desk.run("history import lives.csv --history h.db").code, 0);
+  ASSERT_EQ(desk.run("simulate log.csv --params table.csv -o sim.csv").code, 0);
+  const std::map<std::string, std::string> calls = {
+      {"simulate", "log.csv --params table.csv -o out.csv"},
+      {"tune", "log.csv --params table.csv -o out.csv"},
+      {"baseline", "log.csv --params table.csv -o out.json"},
+      {"diagnose", "log.csv --params table.csv --baseline base.json"},
+      {"explain", "log.csv --params table.csv -o out.csv"},
+      {"monitor", "log.csv --params table.csv -o out.csv"},
+      {"check", "log.csv --params table.csv --history h.db --valve V7 --at 20"},
+      {"trend", "--history h.db --valve V7"},
+      {"history show", "--history h.db"},
+      {"history event", "overhauled --history h.db --valve V7 --at 20"},
+      {"history export", "--history h.db -o out.csv"},
+      {"history import", "lives.csv --history new.db"},
+      {"history verify", "--history h.db"},
+      {"rig", "--rig-model " + std::string(SERVODX_SOURCE_DIR) + "/params/rigs/borello2009.toml -o out.csv"},
+      {"curves", "log.csv --rig rig.toml --svg out.svg"},
+      {"map", "--model C3 --params table.csv -o out.csv"},
+      {"list", "faults"},
+      {"check-log", "log.csv"},
+      {"selftest", "log.csv --params table.csv"},
+      {"compare", "a.json a.json"},
+      {"join", "log.csv other.csv -o out.csv"},
+      {"init", "log.csv -o out.toml --table out.csv"},
+      {"rerun", "sim.csv.manifest.json"}};
+  const auto before = desk.contents();
+  for (const auto& [command, rest] : calls) {
+    const Ended ended = desk.run(command + " " + rest + " --json r.json --report r.html --dry-run");
+    EXPECT_EQ(ended.code, 0) << command << ": " << ended.err;
+    EXPECT_NE(ended.out.find(", dry run: "), std::string::npos) << command << " printed: " << ended.out;
+    EXPECT_EQ(desk.contents(), before) << command;
+  }
+  // None is missing above: `history` has commands of its own, the other two no options.
+  std::istringstream man(desk.run("man").out);
+  for (std::string line; std::getline(man, line);) {
+    if (!line.starts_with(".SS ")) continue;
+    std::string command = line.substr(4);
+    command.erase(std::remove(command.begin(), command.end(), '\\'), command.end());
+    if (command != "history" && command != "completion" && command != "man")
+      EXPECT_TRUE(calls.contains(command)) << command;
+  }
+}
+
 struct Simulated : Desk {
   Simulated() {
     write("log.csv", small_log());
@@ -277,18 +352,38 @@ TEST(Manual, NamesEveryCommandAndOption) {
   const Desk desk;
   const std::string man = desk.run("man").out, bash = desk.run("completion bash").out;
   EXPECT_TRUE(man.starts_with(".TH SERVODX 1")) << man.substr(0, 100);
-  for (const char* command : {"tune", "baseline", "diagnose", "check-log", "compare", "rerun", "selftest", "init"}) {
+  for (const char* command :
+       {"tune", "baseline", "diagnose", "check-log", "compare", "rerun", "selftest", "init", "history event"}) {
     std::string in_man = command;
     if (const auto at = in_man.find('-'); at != std::string::npos) in_man.replace(at, 1, "\\-");
     EXPECT_NE(man.find(".SS " + in_man + "\n"), std::string::npos) << command;
-    EXPECT_NE(bash.find(std::string(command) + ") options="), std::string::npos) << command;
+    const std::string first = std::string(command).substr(0, std::string(command).find(' '));
+    EXPECT_NE(bash.find(first + ") options="), std::string::npos) << command;
   }
   EXPECT_NE(bash.find("--false-alarm"), std::string::npos);
+  EXPECT_EQ(bash.find("--pool"), std::string::npos);  // kept as a name, refused
   for (const char* shell : {"zsh", "fish"}) EXPECT_FALSE(desk.run(std::string("completion ") + shell).out.empty());
   EXPECT_EQ(desk.run("completion tcsh").code, 2);
   EXPECT_EQ(std::system("command -v bash >/dev/null"), 0);
   desk.write("c.bash", bash);
   EXPECT_EQ(std::system(("bash -n '" + (desk / "c.bash") + "'").c_str()), 0);
+}
+
+TEST(Completion, BashCompletesCommandsTheirPartsAndOptions) {
+  const Desk desk;
+  desk.write("c.bash", desk.run("completion bash").out);
+  const auto completed = [&](const std::string& words, int at) {
+    const std::string call = "cd '" + desk.path.string() + "' && bash -c 'source ./c.bash; COMP_WORDS=(servodx " +
+                             words + "); COMP_CWORD=" + std::to_string(at) +
+                             "; _servodx; echo \"${COMPREPLY[*]}\"' >said";
+    EXPECT_EQ(std::system(call.c_str()), 0);
+    const std::string said = bytes_of(desk / "said");
+    return said.substr(0, said.find('\n'));
+  };
+  EXPECT_EQ(completed("diag", 1), "diagnose");
+  EXPECT_EQ(completed("tune --gen", 2), "--generations");
+  EXPECT_EQ(completed("history ex", 2), "export");
+  EXPECT_EQ(completed("history export --hist", 3), "--history");
 }
 
 TEST(Selftest, StatesBiasAndCoverage) {

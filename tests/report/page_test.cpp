@@ -77,6 +77,22 @@ TEST(Page, FetchesNothing) {
   EXPECT_EQ(count(html, "<link rel=\"stylesheet"), 0u);
 }
 
+TEST(Page, RowsBeyondThoseShownAreFoldedAndStillThere) {
+  Bars bars{.title = "b", .label = "l", .unit = "u", .rows = {}, .mark = {}, .full = {}, .shown = 2};
+  for (const char* name : {"first", "second", "third"}) bars.rows.push_back({name, 1, "1"});
+  Page page({}, "t");
+  page.section("s");
+  page.add(bars);
+  const std::string html = page.html();
+  EXPECT_NE(html.find("class=\"bars\" data-shown=\"2\""), std::string::npos);
+  EXPECT_NE(html.find("third"), std::string::npos);
+  bars.shown = 3;
+  Page all({}, "t");
+  all.section("s");
+  all.add(bars);
+  EXPECT_EQ(all.html().find("class=\"bars\" data-shown"), std::string::npos);
+}
+
 TEST(Page, SameResultSameBytes) {
   const auto make = [] {
     Page page({}, "t");

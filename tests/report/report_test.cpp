@@ -8,6 +8,7 @@
 #include "report/baseline_file.h"
 #include "report/columns.h"
 #include "report/diagnosis_words.h"
+#include "report/explain_report.h"
 #include "report/handy.h"
 #include "report/json.h"
 #include "report/prognosis.h"
@@ -119,6 +120,68 @@ TEST(CheckPage, CallsChecksByTheirSymbolsAndParametersByTheirRows) {
   for (const char* shown : {"mean error |e|", "fidelity r", "correlation E(tau) at 5Hz", "backlash (row 9)"})
     EXPECT_NE(html.find(shown), std::string::npos) << shown;
   EXPECT_EQ(html.find("parameter:9"), std::string::npos);
+}
+
+// The tuned value and the fault's own level of failure make a size a way; an error as long as the way is no news.
+TEST(CheckPage, OpensWithTheWearThatHasSurelyComeAQuarterOfTheWay) {
+  CheckResult r;
+  r.log = "preflight.csv";
+  r.checks.push_back({"parameter:1", 0.6, 0.5, "-", 0.6, 1, "clogged_filter", 0.0, 0.75});
+  r.checks.push_back({"parameter:9", 2e-6, 1e-7, "m", 2e-6, 1, "feedback_wire_backlash", 0.0, 20e-6});
+  EXPECT_NE(check_page({}, r, {}).html().find("No wear has surely come a quarter of the way"), std::string::npos);
+  r.checks.back() = {"parameter:9", 12e-6, 1e-7, "m", 12e-6, 1, "feedback_wire_backlash", 0.0, 20e-6};
+  const std::string html = check_page({}, r, {}).html();
+  EXPECT_NE(html.find("feedback wire backlash has come 60 % of the way to failure: 12 um"), std::string::npos);
+}
+
+ExplainResult some_explanation() {
+  ExplainResult r;
+  r.verdict = "extended";
+  r.where = "first_stage";
+  r.channels = {{"pressure_a", "bar", 3e5, 2e5, 1e5, 3e5, 2e5}, {"spool_position", "um", 9e-6, 1e-6, 5e-7, 9e-6, 1e-6}};
+  r.causes = {{"valve_glitch",
+               "first_stage",
+               "small sines",
+               {{"valve_glitch", "m", 20.3e-6, 0.2e-6, 0}},
+               {0.98, 0.97, 0.99},
+               {},
+               0,
+               {"asymmetric_lap"}}};
+  r.heldout_gain = {0.98, 0.97, 0.99};
+  r.adequacy_before = 346, r.adequacy_after = 1.2;
+  r.p_adequacy = 0.4;
+  return r;
+}
+
+// What was found and how large, and the channel that shows it most, before any table.
+TEST(ExplainPage, OpensWithTheCauseItsSizeAndTheChannelThatShowsIt) {
+  const std::string html = explain_page({}, some_explanation(), {}).html();
+  const std::string opening = html.substr(0, html.find("<section class=\"part\""));
+  for (const char* shown :
+       {"FOUND", "valve glitch at first stage, 20.3 um (20 to 20.6, 90 %)",
+        "It shows most in the spool position: off by 9 um rms as tuned, by 1 um with what was found", "(346 before)",
+        "In place of valve glitch it may be asymmetric lap", "shows best in small sines"})
+    EXPECT_NE(opening.find(shown), std::string::npos)
+        << shown << " is not in " << opening.substr(opening.find("<main>"));
+  EXPECT_NE(html.find("What was found"), std::string::npos);
+
+  ExplainResult nothing;
+  nothing.verdict = "sufficient";
+  EXPECT_NE(explain_page({}, nothing, {}).html().find("NOTHING NEW"), std::string::npos);
+  nothing.verdict = "unexplained";
+  EXPECT_NE(explain_page({}, nothing, {}).html().find("UNEXPLAINED"), std::string::npos);
+}
+
+TEST(TrendPage, AFigureThatFallsIsNotSaidToRise) {
+  ValveTrend v;
+  v.valve = "V7", v.state = "warning";
+  CheckTrend t;
+  t.name = "fidelity", t.unit = "1", t.state = "warning";
+  t.healthy = 1.34, t.now = 1.15, t.trend = true, t.log_bayes_factor = 20;
+  v.trends = {t};
+  EXPECT_NE(trend_page({}, {v}, false).html().find("falls, over 1000 to 1"), std::string::npos);
+  v.trends.front().now = 1.5;
+  EXPECT_NE(trend_page({}, {v}, false).html().find("rises, over 1000 to 1"), std::string::npos);
 }
 
 TEST(BaselineFile, ReadsBackToTheSameBits) {

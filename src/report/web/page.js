@@ -35,20 +35,25 @@
     return uPlot.rangeNum(low, high, 0.1, true);
   };
 
+  // Room at the right for the words of the levels: inside the plot they would hide data.
+  const gutter = (plot) => {
+    const words = (plot.ymarks || []).map((mark) => mark.label.length).filter(Boolean);
+    return words.length ? 16 + 7 * Math.max(...words) : null;
+  };
+
   // Lines across the plot, with their words; no word lies on another.
   const marks = (plot) => (u) => {
     const c = u.ctx, { left, top, width, height } = u.bbox, ratio = devicePixelRatio;
     const right = left + width, bottom = top + height, line = 14 * ratio, gap = 8 * ratio, edge = 4 * ratio;
     const taken = [], said = [];
     const hit = (box) => taken.find((t) => box.left < t.right && t.left < box.right && box.top < t.bottom && t.top < box.bottom);
-    // From this place to the left, or down by lines, until it is free.
-    const write = (words, x, y, down) => {
+    // From this place down by lines until it is free.
+    const write = (words, x, y) => {
       if (!words) return;
-      const long = c.measureText(words).width;
-      const box = { left: x, right: x + long, top: y, bottom: y + line };
+      const box = { left: x, right: x + c.measureText(words).width, top: y, bottom: y + line };
       for (let other = hit(box), tries = 0; other && tries < 20; other = hit(box), ++tries) {
-        if (down) { box.top = other.bottom; box.bottom = box.top + line; }
-        else { box.right = other.left - gap; box.left = box.right - long; }
+        box.top = other.bottom;
+        box.bottom = box.top + line;
       }
       taken.push(box);
       said.push([words, box]);
@@ -60,22 +65,24 @@
     c.setLineDash([4 * ratio, 3 * ratio]);
     c.font = 12 * ratio + "px system-ui, sans-serif";
     c.textAlign = "left";
-    const from_right = (words) => right - edge - c.measureText(words).width;
-    for (const mark of plot.ymarks || []) {
-      const at = u.valToPos(mark.at, "y", true);
-      if (at < top || at > bottom) {
-        const words = mark.label && (at < top ? "\u2191 " : "\u2193 ") + mark.label + " " + Number(mark.at.toPrecision(3));
-        write(words, from_right(words), at < top ? top + edge : bottom - line, false);
-      } else {
-        stroke(left, at, right, at);
-        write(mark.label, from_right(mark.label), at - line >= top ? at - line : at, false);
-      }
+    const levels = [];  // words beside the plot, from the top down
+    for (const { at, label } of plot.ymarks || []) {
+      const y = u.valToPos(at, "y", true), out = y < top ? "\u2191 " : y > bottom ? "\u2193 " : "";
+      if (!out) stroke(left, y, right, y);
+      if (!label) continue;
+      const words = out ? [out + label, short(Number(at.toPrecision(3)))] : [label];
+      levels.push({ words, tall: words.length * line, y: y < top ? top : y > bottom ? bottom - 2 * line : y - line / 2 });
     }
+    levels.sort((a, b) => a.y - b.y);
+    let free = top - line;
+    for (const level of levels) { level.y = Math.max(level.y, free); free = level.y + level.tall; }
+    free = bottom + line;
+    for (const level of levels.reverse()) { level.y = Math.min(level.y, free - level.tall); free = level.y; }
     for (const mark of plot.xmarks || []) {
       const at = u.valToPos(mark.at, "x", true), long = c.measureText(mark.label).width;
       if (at < left || at > right) continue;
       stroke(at, top, at, bottom);
-      write(mark.label, right - at > long + gap ? at + edge : at - edge - long, top, true);
+      write(mark.label, right - at > long + gap ? at + edge : at - edge - long, top);
     }
     for (const [words, box] of said) {  // after all lines: none strikes a word through
       c.fillStyle = colour("card");
@@ -83,17 +90,21 @@
       c.fillStyle = colour("text");
       c.fillText(words, box.left, box.bottom - edge);
     }
+    for (const { words, y } of levels)
+      words.forEach((text, k) => c.fillText(text, right + edge, y + (k + 1) * line - edge));
     c.restore();
   };
 
   function options(plot, element, group, key) {
-    const narrow = element.clientWidth < 520;
+    const narrow = element.clientWidth < 520, dense = plot.data[0].length > 4000;
     const series = [{ label: plot.x, value: (u, v) => short(v) }];
     for (const s of plot.series)
       series.push({
         label: s.name,
         stroke: colour(s.role),
-        width: s.role === "measured" ? 1.25 : 1.75,
+        // Measured is drawn first, so its rim has to stay in sight. Beyond one pixel a long line takes ten times as long
+        // to paint (docs/performance.md).
+        width: dense ? 1 / devicePixelRatio : s.role === "measured" && plot.series.length > 1 ? 2.5 : 1.5,
         dash: dash[s.role],
         value: (u, v) => short(v),
         spanGaps: false,
@@ -112,10 +123,11 @@
       width: element.clientWidth,
       height: plot.low ? 140 : 200,
       series, bands,
+      padding: [null, gutter(plot), null, null],
       scales: { x: { time: false }, y: plot.log ? { distr: 3 } : { range: range_with(plot.ymarks || []) } },
       axes: [
         { ...axis, label: plot.x_shown ? plot.x : null, labelSize: 16, size: 30 },
-        { ...axis, space: 26, size: narrow ? 48 : 64, values: plot.log ? undefined : (u, ticks) => ticks.map((v) => short(v)) },
+        { ...axis, space: 26, size: (u, ticks) => Math.max(narrow ? 48 : 64, 16 + 7 * Math.max(0, ...(ticks || []).map((t) => String(t ?? "").length))), values: plot.log ? undefined : (u, ticks) => ticks.map((v) => short(v)) },
       ],
       cursor: {
         drag: { x: true, y: false },

@@ -1,26 +1,19 @@
-"""The pages of sample_pages in a real headless Chromium. Called by ctest: browser_test.py SAMPLE_PAGES [FOLDER]
+"""Pages in a real headless Chromium: made-up results (sample_pages) and what the program itself writes. Called by
+ctest: browser_test.py SAMPLE_PAGES SERVODX SOURCE [FOLDER]
 
 With FOLDER pages and screenshots are kept there: light, dark, phone, print. Exit code 77: no browser here, skipped."""
-import base64, csv, io, json, os, pathlib, shutil, subprocess, sys, tempfile, time, unittest
+import base64, csv, io, json, os, pathlib, random, shutil, subprocess, sys, tempfile, time, unittest
 
-try:
-    from selenium import webdriver
-    from selenium.webdriver.chrome.service import Service
-    from selenium.webdriver.common.action_chains import ActionChains
-    from selenium.webdriver.common.by import By
-    from selenium.webdriver.common.keys import Keys
-except ImportError:
-    print("skipped: python3-selenium is not installed (scripts/setup installs it)")
-    sys.exit(77)
+import browser
+from selenium.webdriver.common.action_chains import ActionChains
+from selenium.webdriver.common.by import By
+from selenium.webdriver.common.keys import Keys
 
-DRIVER, CHROMIUM = shutil.which("chromedriver"), shutil.which("chromium")
-if not DRIVER or not CHROMIUM:
-    print("skipped: chromium and chromedriver are not installed (scripts/setup installs them)")
-    sys.exit(77)
-
-FLAGS = ["--headless", "--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run", "--disable-dev-shm-usage",
-         "--disable-background-networking", "--disable-component-update", "--disable-sync"]
-PAGES = ["diagnose", "many", "baseline", "tune"]
+# A log may have any name.
+HOSTILE = "<script>alert('log')<_script><img src=x onerror=alert(1)>.csv"
+MADE_UP = ["diagnose", "many", "baseline", "tune"]
+REAL = ["explain", "check", "trend", "map", "curves", "check-log", "simulate"]
+PAGES = MADE_UP + REAL
 
 # Relative luminance and contrast as WCAG 2 defines them, of every element that holds text of its own.
 CONTRAST = """
@@ -44,13 +37,51 @@ class Pages(unittest.TestCase):
         cls.folder = pathlib.Path(KEEP or tempfile.mkdtemp())
         cls.folder.mkdir(parents=True, exist_ok=True)
         subprocess.run([SAMPLES, str(cls.folder)], check=True)
+        with tempfile.TemporaryDirectory() as desk:
+            cls.real_pages(pathlib.Path(desk))
         cls.profile = tempfile.mkdtemp()
-        options = webdriver.ChromeOptions()
-        options.binary_location = CHROMIUM
-        for flag in FLAGS + [f"--user-data-dir={cls.profile}", "--window-size=1280,1000"]:
-            options.add_argument(flag)
-        options.set_capability("goog:loggingPrefs", {"browser": "ALL", "performance": "ALL"})
-        cls.driver = webdriver.Chrome(service=Service(DRIVER), options=options)
+        cls.driver = browser.start(cls.profile)
+
+    @classmethod
+    def real_pages(cls, desk):
+        """What the program writes of short shipped logs under a hostile name, with a table that was never tuned."""
+        def rows(log, seconds):
+            lines = (SOURCE / "data" / log).read_text().splitlines(True)
+            head = next(i for i, line in enumerate(lines) if line.startswith("time"))
+            return "".join(lines[head:head + 1 + round(1000 * seconds)])
+
+        def servodx(command, *arguments):
+            call = [PROGRAM, command, *arguments, "--report", str(cls.folder / f"{command}.html"), "--quiet"]
+            ended = subprocess.run(call, cwd=desk, text=True, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE)
+            if ended.returncode:
+                raise RuntimeError(f"servodx {command} ended with {ended.returncode}\n{ended.stderr}")
+
+        table = (SOURCE / "params/borello2009.csv").read_text().splitlines()
+        head = next(i for i, line in enumerate(table) if line.startswith("id,"))
+        tuned = [table[head] + ",std_error"] + [line + "," for line in table[head + 1:] if line]
+        error = [f"# model error {name}: floor {floor}, per activity 0.1, independent 20 1/s"
+                 for name, floor in (("spool_position", "1e-6 m"), ("piston_position", "1e-5 m"), ("pressure_a", "2e4 Pa"),
+                                     ("pressure_b", "2e4 Pa"))]
+        (desk / "tuned.csv").write_text("\n".join(error + tuned) + "\n")
+        given = ["--params", "tuned.csv", "--rig", str(SOURCE / "data/rig.toml")]
+        log = desk / HOSTILE
+
+        log.write_text(rows("healthy/h12_mixed.csv", 0.6))
+        servodx("check-log", HOSTILE, *given)
+        servodx("simulate", HOSTILE, *given, "-o", "simulated.csv")
+        servodx("explain", HOSTILE, *given, "-o", "extended.csv")
+        log.write_text(rows("healthy/h07_triangle.csv", 4))
+        servodx("curves", HOSTILE, "--rig", str(SOURCE / "data/rig.toml"))
+        log.write_text(rows("healthy/h09_preflight_hot.csv", 2.4))
+        servodx("check", HOSTILE, *given, "--history", "one.db", "--valve", HOSTILE, "--at", "10")
+        servodx("map", "--model", "C3", "--params", str(SOURCE / "params/borello2009.csv"), "-o", "map.csv")
+        chance = random.Random(5)
+        wear = [f"{HOSTILE},{10 * k},parameter:9,{max(0, k - 15) * 1e-6 + 3e-7 * chance.gauss(0, 1):.3g},3e-7"
+                for k in range(30)]
+        (desk / "history.csv").write_text("valve,at [h],name,value,std_error\n" + "\n".join(wear) + "\n")
+        subprocess.run([PROGRAM, "history", "import", "history.csv", "--history", "wear.db", "--quiet"], cwd=desk,
+                       check=True, stdout=subprocess.DEVNULL)
+        servodx("trend", "--history", "wear.db", "--valve", HOSTILE)
 
     @classmethod
     def tearDownClass(cls):
@@ -89,12 +120,7 @@ class Pages(unittest.TestCase):
             time.sleep(0.05)
 
     def draw_all(self):
-        self.run("for (const c of document.querySelectorAll('.chart')) c.scrollIntoView()")
-        end = time.time() + 10
-        while self.run("return servodx.drawn.size < document.querySelectorAll('.chart').length"):
-            self.assertLess(time.time(), end, "charts not drawn")
-            self.run("const c = [...document.querySelectorAll('.chart')].find((e) => !servodx.drawn.has(e)); if (c) c.scrollIntoView()")
-            time.sleep(0.05)
+        browser.draw_all(self.driver)
 
     def screenshot(self, name):
         if not KEEP:
@@ -132,11 +158,12 @@ class Pages(unittest.TestCase):
             self.assertEqual(blank, 0, name)
 
     def test_what_came_from_a_file_is_text(self):
-        for name in ["many", "baseline", "tune"]:
+        for name in PAGES:
             self.open(name)
-            self.assertEqual(self.run("return document.querySelectorAll('img').length"), 0)
-            self.assertEqual(self.run("return document.scripts.length"), 3)  # data, uPlot, the page's own
-            self.assertIn("<script>alert('log')</script>", self.run("return document.body.innerText"))
+            self.assertEqual(self.run("return document.querySelectorAll('img').length"), 0, name)
+            self.assertEqual(self.run("return document.scripts.length"), 3, name)  # data, uPlot, the page's own
+            if name not in ("diagnose", "map"):  # these have no file of a hostile name
+                self.assertIn("<script>alert('log')<", self.run("return document.body.innerText"), name)
         self.assertIn("script-src 'sha256-", (self.folder / "many.html").read_text())
 
     def test_an_injected_script_would_not_run(self):
@@ -218,28 +245,44 @@ class Pages(unittest.TestCase):
                 self.assertEqual({len(r) for r in rows}, {len(rows[0])}, rows[:3])
 
     def test_a_million_rows_stay_small_and_keep_their_peak(self):
-        self.assertLess((self.folder / "long.html").stat().st_size, 5_000_000)
-        began = time.time()
-        self.open("long")
-        self.draw_all()
-        opened = time.time() - began
-        self.assertLess(opened, 15, "opening and drawing")  # seconds on a crowded machine
+        took = browser.measure(self.driver, self.folder / "long.html")
+        print("a million rows:", browser.words(took))
+        self.assertLess(took["bytes"], 5_000_000)
+        self.assertEqual(took["charts"], 9)
+        # Milliseconds of processor: what a busy machine does not change. Painting is not in them, but on the way to the
+        # screen: lines of more than a pixel took 600 to 1000 where these take 50 to 90, on the same busy machine.
+        self.assertLess(took["open_cpu"], 3_000)
+        self.assertLess(took["zoom_cpu"], 300)
+        self.assertLess(sorted(took["zoom"])[len(took["zoom"]) // 2], 400)
         spool = self.run("const e = [...servodx.drawn.keys()].find((e) => e.ariaLabel.startsWith('spool position [mm]')); return servodx.drawn.get(e).chart.data[1].reduce((a, b) => Math.max(a, b))")
         self.assertAlmostEqual(spool, 1.5, places=6)  # the lone sample, in mm
-        took = self.run("const t = performance.now(), e = [...servodx.drawn.keys()][0]; for (let k = 0; k < 10; ++k) servodx.step(e, '+'); return (performance.now() - t) / 10")
-        self.assertLess(took, 300, "a zoom step [ms]")
 
     def test_paper_gets_light_pages_with_every_chart(self):
-        self.media("dark")
-        self.open("diagnose")
-        pdf = base64.b64decode(self.driver.execute_cdp_cmd("Page.printToPDF", {"printBackground": True})["data"])
-        self.assertTrue(pdf.startswith(b"%PDF"))
-        self.assertGreater(len(pdf), 50_000)
-        self.assertEqual(self.run("return document.documentElement.dataset.print ?? null"), None)  # and the screen is as before
-        if KEEP:
-            (self.folder / "diagnose.pdf").write_bytes(pdf)
+        for name in PAGES:
+            self.media("dark")
+            self.open(name)
+            pdf = base64.b64decode(self.driver.execute_cdp_cmd("Page.printToPDF", {"printBackground": True})["data"])
+            self.assertTrue(pdf.startswith(b"%PDF"))
+            self.assertGreater(len(pdf), 20_000, name)
+            # And the screen is as before.
+            self.assertEqual(self.run("return document.documentElement.dataset.print ?? null"), None)
+            if KEEP:
+                (self.folder / f"{name}.pdf").write_bytes(pdf)
+
+    def test_nothing_is_cut_off_on_paper(self):
+        for name in PAGES:
+            self.set_size(720, 1000)
+            self.open(name)
+            self.driver.execute_cdp_cmd("Emulation.setEmulatedMedia", {"media": "print"})
+            self.run("dispatchEvent(new Event('beforeprint'))")
+            cut = self.run("return [...document.querySelectorAll('.wide')].filter((e) => e.scrollWidth > e.clientWidth + 1 && getComputedStyle(e).overflowX !== 'visible').length")
+            wide = self.run("return document.documentElement.scrollWidth")
+            self.run("dispatchEvent(new Event('afterprint'))")
+            self.driver.execute_cdp_cmd("Emulation.setEmulatedMedia", {"media": ""})
+            self.assertEqual(cut, 0, name)
+            self.assertLessEqual(wide, 720, name)
 
 
-SAMPLES = sys.argv[1]
-KEEP = sys.argv[2] if len(sys.argv) > 2 else os.environ.get("SERVODX_SCREENSHOTS", "")
+SAMPLES, PROGRAM, SOURCE = sys.argv[1], str(pathlib.Path(sys.argv[2]).resolve()), pathlib.Path(sys.argv[3]).resolve()
+KEEP = sys.argv[4] if len(sys.argv) > 4 else os.environ.get("SERVODX_SCREENSHOTS", "")
 unittest.main(argv=sys.argv[:1], verbosity=2)
