@@ -102,12 +102,15 @@ void run(const Options& options) {
   report::Columns table("llll", 2);
   table.row({"column", "taken for", "unit", "values"});
   report::Json columns = report::Json::array();
-  std::vector<std::string> unknown;
+  std::vector<std::string> unknown, without_unit;
   for (std::size_t c = 0; c < header.columns.size(); ++c) {
     const ColumnGuess& g = header.columns[c];
     const std::string signal = g.signal ? std::string(info(*g.signal).name) : "";
     if (!g.signal) unknown.push_back("'" + g.cell + "'");
-    table.row({g.cell, g.signal ? signal : "not recognised", g.unit, header.spans[c]});
+    const bool guessed = g.signal && g.unit.empty();
+    if (guessed) without_unit.push_back("'" + g.cell + "'");
+    table.row({g.cell, g.signal ? signal : "not recognised",
+               guessed ? std::string(info(*g.signal).si_unit) + "?" : g.unit, header.spans[c]});
     columns.push_back(
         {{"column", g.cell}, {"signal", g.signal ? report::Json(signal) : report::Json(nullptr)}, {"unit", g.unit}});
   }
@@ -118,6 +121,12 @@ void run(const Options& options) {
   } catch (const InputError& open) {
     text += fmt::format("to be mended in {} before the log reads:\n  {}\n", options.output, open.what());
   }
+  if (!without_unit.empty())
+    text += fmt::format("the header has no unit for {}: SI was taken; give the right one in {}\n",
+                        report::join(without_unit), options.output);
+  if (header.columns.size() == 1)
+    text +=
+        "its first row has one cell only: where the header stands farther down, begin the lines before it with '#'\n";
   if (!unknown.empty())
     text += fmt::format("not recognised, so ignored: {}; 'servodx list signals' has the names for {}\n",
                         report::join(unknown), options.output);

@@ -145,7 +145,7 @@ Page explain_page(const Header& header, const ExplainResult& r, const std::vecto
   v.tone = r.verdict == "sufficient" ? Tone::good : r.verdict == "extended" ? Tone::bad : Tone::doubt;
   v.word = word_of(r);
   v.headline = headline(r);
-  if (r.verdict == "extended") v.detail = "The simulation lacks this; with it, it follows the logs.";
+  if (r.verdict == "extended") v.detail = "What the simulation lacks on these logs, and how large it is.";
   if (r.curve) v.detail = "Nothing in the list mends it; a curve learnt from the logs does.";
   if (!r.causes.empty()) v.facts.push_back({"Mending it removes", of_misfit(r.heldout_gain)});
   v.facts.push_back({"Re-tuning alone removes", of_misfit(r.retuned)});

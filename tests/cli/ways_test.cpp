@@ -181,6 +181,23 @@ TEST(DryRun, PrintsTheSettingsAndWritesNothing) {
   EXPECT_EQ(desk.run("tune missing.csv --params table.csv -o tuned.csv --dry-run").code, 2);
 }
 
+// What the header does not say is asked for on the screen, not only in the file.
+TEST(Init, SaysWhatTheHeaderDoesNotSay) {
+  const Desk desk;
+  std::string log = first_rows("healthy/h12_mixed.csv", 100);
+  const auto header = log.find("time [s]"), end = log.find('\n', header);
+  desk.write("bare.csv", "Zeit,Strom,Schieber,Kolben,pA,pB,psupply,preturn,Last,Oel" + log.substr(end));
+  const Ended bare = desk.run("init bare.csv -o bare.toml --table bare.params.csv");
+  ASSERT_EQ(bare.code, 0) << bare.err;
+  EXPECT_NE(bare.out.find("the header has no unit for 'Zeit', 'Strom', 'Schieber'"), std::string::npos) << bare.out;
+  desk.write("recorder.csv", "Recorder 7\n" + log.substr(header));
+  const Ended preamble = desk.run("init recorder.csv -o recorder.toml --table recorder.params.csv");
+  ASSERT_EQ(preamble.code, 0) << preamble.err;
+  EXPECT_NE(preamble.out.find("begin the lines before it with '#'"), std::string::npos) << preamble.out;
+  desk.write("units.csv", log.substr(header));
+  EXPECT_EQ(desk.run("init units.csv -o units.toml --table units.params.csv").out.find("no unit"), std::string::npos);
+}
+
 // A table as `tune` writes it and a baseline made with it: what the commands that need both will read.
 std::string tuned_table() {
   std::istringstream in(shipped_table());

@@ -140,6 +140,19 @@ TEST(Assess, AFaultsRowsAreItsOwnAndProgressIsToldFitByFit) {
       EXPECT_TRUE(by_fault.contains("nozzle_1_blockage") || by_fault.contains("nozzle_2_blockage"));
     }
   }
+  // What the log has none of ends where its fault begins, and says so.
+  int none_seen = 0;
+  for (const HypothesisResult& h : a.hypotheses) {
+    const auto fault =
+        std::find_if(fault_list().begin(), fault_list().end(), [&](auto* f) { return f->name == h.name; });
+    if (fault == fault_list().end() || !h.at_least) continue;
+    ++none_seen;
+    const Fault& f = **fault;
+    EXPECT_NEAR(std::abs(h.severity - f.healthy), std::abs(f.least - f.healthy), 0.01 * std::abs(f.worst - f.least))
+        << h.name;
+  }
+  EXPECT_GT(none_seen, 0);
+  EXPECT_LT(none_seen, static_cast<int>(fault_list().size()));
 }
 
 TEST(Assess, SameResultAtAnyThreadCount) {

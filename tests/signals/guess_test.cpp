@@ -24,6 +24,10 @@ TEST(Guess, NamesAndUnitsAsPeopleWriteThem) {
   EXPECT_EQ(taken({"T oil (C)"}), "oil_temperature in degC");
   EXPECT_EQ(taken({"Fluid 3 (C)"}), "oil_temperature in degC");  // by its unit alone
   EXPECT_EQ(taken({"Q l/min"}), "control_flow in l/min");
+  EXPECT_EQ(taken({"Press A (bar)"}), "pressure_a in bar");
+  EXPECT_EQ(taken({"PressB (bar)"}), "pressure_b in bar");
+  EXPECT_EQ(taken({"x_s [mm]"}), "spool_position in mm");
+  EXPECT_EQ(taken({"psupply_Pa"}), "supply_pressure in Pa");
 }
 
 TEST(Guess, AUnitOfAnotherQuantityRulesASignalOut) { EXPECT_EQ(taken({"valve current [bar]"}), "nothing in bar"); }
