@@ -44,7 +44,7 @@ if(DPKG_DEB AND SHLIBDEPS)
     endforeach()
     step(${DPKG_DEB} -x ${file} ${work}/${name})
   endfunction()
-  deb(servodx libc6 libceres libfmt libmatio libgomp1 libnlopt libssl libsqlite3)
+  deb(servodx libc6 libfmt libmatio libgomp1 libnlopt libssl libsqlite3)
   deb(libservodx-dev libceres-dev libeigen3-dev libfmt-dev libmatio-dev libnlopt-cxx-dev libsqlitecpp-dev libssl-dev
       libtomlplusplus-dev nlohmann-json3-dev pkg-config)
   step(${work}/servodx/usr/bin/servodx list faults)
