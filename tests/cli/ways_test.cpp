@@ -101,9 +101,10 @@ TEST(CheckLog, FindsASignalThatIsMappedAndNotThere) {
   const Json found = check(desk, "log.csv --rig rig.toml")["logs"][0]["suspicious"];
   ASSERT_TRUE(has(kinds(check(desk, "log.csv --rig rig.toml")), "columns")) << found;
   for (const Json& f : found)
-    if (f["kind"] == "columns")
+    if (f["kind"] == "columns") {
       for (const char* words : {"column 'P_a'", "'pressure_a'", "line 2", "is it 'P_aa'?"})
         EXPECT_NE(f["text"].get<std::string>().find(words), std::string::npos) << words << " is not in " << f;
+    }
 }
 
 TEST(CheckLog, FindsALogOfAnotherRateAmongOthers) {
@@ -267,8 +268,9 @@ TEST(DryRun, IsARehearsalWithEveryCommandThatTakesIt) {
     if (!line.starts_with(".SS ")) continue;
     std::string command = line.substr(4);
     command.erase(std::remove(command.begin(), command.end(), '\\'), command.end());
-    if (command != "history" && command != "completion" && command != "man")
+    if (command != "history" && command != "completion" && command != "man") {
       EXPECT_TRUE(calls.contains(command)) << command;
+    }
   }
 }
 
