@@ -344,6 +344,19 @@ TEST(Compare, TellsWhatDiffersAndWhatDoesNot) {
   EXPECT_FALSE(result["differences"][1]["matters"]);
   EXPECT_EQ(result["conditions"].size(), 1u);
   EXPECT_EQ(desk.run("compare a.json sim.json").code, 2);  // of different commands
+
+  // Another verdict matters; another number without an error is told.
+  for (const auto& [name, verdict] : {std::pair("c.json", "healthy"), std::pair("d.json", "fault")})
+    desk.write(name, std::string(R"({"tool": "servodx", "command": "diagnose", "version": "1", "seed": 1, "results":
+      [{"log": "s.csv", "error": )") +
+                         (verdict[0] == 'h' ? "2" : "3") + R"(, "verdict": ")" + verdict + R"("}]})");
+  const Ended verdicts = desk.run("compare c.json d.json --json -");
+  ASSERT_EQ(verdicts.code, 0) << verdicts.err;
+  int matter = 0;
+  const Json differences = Json::parse(verdicts.out)["differences"];
+  for (const Json& d : differences) matter += d["matters"].get<bool>();
+  EXPECT_EQ(differences.size(), 2u) << differences;
+  EXPECT_EQ(matter, 1) << differences;
 }
 
 TEST(Report, EveryCommandThatTakesTheCommonOptionsWritesOne) {
@@ -364,7 +377,9 @@ TEST(Report, ALogNamedLikeAScriptIsText) {
   desk.write(name, small_log());
   const Ended ended = desk.run("check-log '" + name + "' --report page.html");
   ASSERT_EQ(ended.code, 0) << ended.err;
-  EXPECT_EQ(bytes_of(desk / "page.html").find("<script>alert"), std::string::npos);
+  const std::string html = bytes_of(desk / "page.html");
+  for (const char* markup : {"<script>alert", "<script&gt;alert", "<_script"})
+    EXPECT_EQ(html.find(markup), std::string::npos) << markup;
 }
 
 TEST(Manual, NamesEveryCommandAndOption) {

@@ -140,12 +140,20 @@ TEST(Judge, OtherGrossFindingsNameNothingByThemselves) {
 TEST(Judge, RowsAndNullAreOfTheHypothesisThatTheVerdictIsOf) {
   HypothesisResult healthy = hypothesis("healthy", 0.001), filter = hypothesis("clogged_filter", 0.998);
   healthy.null = 0.01, filter.null = 0.02;
+  MovedRow row;
+  row.name = "air";
+  healthy.moved = {row};
+  row.name = "filter_blockage_positive";
+  filter.moved = {row};
   Assessment a = assessment(10, {healthy, filter});
   EXPECT_EQ(judge(a, baseline()).told, "clogged_filter");
   EXPECT_EQ(judge(a, baseline()).null, 0.02);
+  ASSERT_EQ(judge(a, baseline()).moved.size(), 1u);
+  EXPECT_EQ(judge(a, baseline()).moved.front().name, "filter_blockage_positive");
   a.hypotheses.back().gain = 0;  // below the threshold the most probable fault is none
   EXPECT_EQ(judge(a, baseline()).told, "healthy");
   EXPECT_EQ(judge(a, baseline()).null, 0.01);
+  EXPECT_EQ(judge(a, baseline()).moved.front().name, "air");
 }
 
 TEST(Judge, ATestUnlikeEveryLogOfTheBaselineIsSaidWithTheNearest) {
