@@ -608,14 +608,16 @@ Explanation explain(Subject& subject, const EngineOptions& options, const Explan
       // A name that is not news by itself has to be what makes the data abnormal.
       const bool restores = subject.causes()[static_cast<std::size_t>(c)].curve || news(c) || !is_new(c) ||
                             !abnormal_rows || options.p_left(fits[i], round + 1) > level;
-      if (!restores)
+      if (!restores) {
         r.reason = "no news by itself, and the data stay abnormal with it";
-      else if (retuned.ok && r.beyond_retuning.value <= 0)
+        if (round == 0 && r.heldout_gain.lower > 0) out.refused.push_back(fits[i]);
+      } else if (retuned.ok && r.beyond_retuning.value <= 0) {
         r.reason = "re-tuning alone does as well on held-out data";
-      else if (r.heldout_gain.lower > 0)
+      } else if (r.heldout_gain.lower > 0) {
         judged.push_back(static_cast<int>(i));
-      else
+      } else {
         r.reason = "no gain on held-out data beyond its interval";
+      }
     }
     const auto make_result = [&](std::size_t i, bool fresh) {
       CauseResult r;

@@ -96,8 +96,9 @@ struct Explanation {
   std::vector<CauseResult> causes;    // new
   std::vector<CauseResult> standing;  // worth having, and healthy data show them too
   std::vector<CandidateResult> candidates;
-  std::vector<CauseScore> scores;  // at `before`
-  double degrees = 0;              // independent samples
+  std::vector<ExplainedFit> refused;  // names that help, and leave the data abnormal
+  std::vector<CauseScore> scores;     // at `before`
+  double degrees = 0;                 // independent samples
 };
 
 // The fit with these causes, from where `from` got to, the last one from where its score says. Quick: what was free in

@@ -217,6 +217,7 @@ ExplainResult explain_logs(const std::vector<Log>& logs, const Table& tuned, con
   const auto like_healthy = [&](const Explanation& x) {
     return healthy && test->any(subject.misses(x.after.residual)) > options.level;
   };
+  std::string better_place;
   const bool bare = !e.causes.empty() && subject.causes()[static_cast<std::size_t>(e.causes.front().cause)].prior < 1;
   if (e.before.ok && (e.causes.empty() || bare || (healthy && !like_healthy(e)))) {
     guess_curves(subject, curves, e.before.point);
@@ -234,6 +235,16 @@ ExplainResult explain_logs(const std::vector<Log>& logs, const Table& tuned, con
           learnt_one.candidates[c] = e.candidates[c];
           if (e.candidates[c].reason == "taken") learnt_one.candidates[c].reason = "a curve without a name does better";
         }
+      // Names that were refused because they leave the logs abnormal: where the curve does no better, they are as good
+      // an answer as it, and where one does better the place is that name's.
+      double most = 0;
+      for (const ExplainedFit& name : e.refused) {
+        const int c = name.causes.back();
+        if (heldout_gain(name, learnt_one.after, options.seed).lower > 0) continue;
+        learnt_one.causes.front().confusable_with.push_back(c);
+        if (const double more = heldout_gain(learnt_one.after, name, options.seed).value; more > most)
+          most = more, better_place = subject.causes()[static_cast<std::size_t>(c)].where;
+      }
       learnt_one.standing = std::move(e.standing);
       e = std::move(learnt_one);
       const CauseResult& r = e.causes.front();
@@ -280,13 +291,16 @@ ExplainResult explain_logs(const std::vector<Log>& logs, const Table& tuned, con
   if (healthy) out.p_adequacy = e.causes.empty() ? engine.p_left(e.before, 0) : engine.p_left(e.after, 1);
   if (!e.causes.empty()) out.heldout_gain = heldout_gain(e.before, e.after, options.seed);
   out.verdict = out.curve ? "unexplained" : !e.causes.empty() ? "extended" : "sufficient";
-  if (e.causes.empty() && out.p_adequacy && *out.p_adequacy <= 0.5 * options.level) out.verdict = "unexplained";
-  if (!out.causes.empty()) {
-    out.where = out.causes.front().where;
-  } else if (out.verdict == "unexplained" && !out.blocks.empty()) {
+  // Left abnormal by names that remove less than half of it: most of what is wrong has no name.
+  const bool abnormal = out.p_adequacy && *out.p_adequacy <= 0.5 * options.level;
+  const bool nameless = abnormal && !out.curve && (e.causes.empty() || out.heldout_gain.value < 0.5);
+  if (nameless) out.verdict = "unexplained";
+  if (nameless && !out.blocks.empty()) {
     const auto least = std::min_element(out.blocks.begin(), out.blocks.end(),
                                         [](const auto& a, const auto& b) { return *a.p_new < *b.p_new; });
     out.where = least->places.front();
+  } else if (!out.causes.empty()) {
+    out.where = better_place.empty() ? out.causes.front().where : better_place;
   }
   out.channels = channels_of(subject, logs, e);
   for (std::size_t l = 0; l < logs.size(); ++l) {

@@ -140,6 +140,17 @@ TEST(Engine, WhereTheDataAreAbnormalACauseNeedNotBeNewsByItself) {
   EXPECT_EQ(explain(line, o).causes.size(), 1u);
 }
 
+TEST(Engine, NameThatHelpsAndLeavesTheDataAbnormalIsRefusedAndKept) {
+  Line line({shapes[0], shapes[1]}, 7, 1, 1.0);
+  EngineOptions o;
+  o.p_new = [](const CauseScore&, int) { return 0.5; };
+  o.p_left = [](const ExplainedFit&, int) { return 1e-6; };
+  const Explanation e = explain(line, o);
+  EXPECT_TRUE(e.causes.empty());
+  ASSERT_FALSE(e.refused.empty());
+  EXPECT_GT(heldout_gain(e.before, e.refused.front(), o.seed).lower, 0);
+}
+
 TEST(Engine, FarBeyondWhatIsUsualHalvesCountAlike) {
   Line line(shapes, 1, -1, 0);
   const auto far = [&](double size) { return deviance_of(line, Eigen::VectorXd::Constant(600, size)); };

@@ -17,7 +17,7 @@ TEST(Exchange, HealthyLogIsScoredBesideTheOthersAsASuspectIs) {
   const Bench bench{folder.path, source + "/params/rigs/borello2009.toml", read_rig_file(source + "/data/rig.toml"), 1};
   const Table tuned = read_table(source + "/tests/hidden/valve_1.csv");
   std::vector<Log> logs;
-  for (const std::string& path : healthy_logs(bench, 3, 4, "healthy", 0.8)) logs.push_back(read_log(path, bench.rig));
+  for (const std::string& path : healthy_logs(bench, 3, 4, "healthy", 0.4)) logs.push_back(read_log(path, bench.rig));
   HealthyCounts counts;
   const HealthyLog beside = score_healthy(logs, tuned, bench.rig, 0, counts).logs.back();
 
