@@ -10,6 +10,7 @@
 #include <map>
 
 #include "base/atomic_file.h"
+#include "base/keep_memory.h"
 #include "ratios/measure.h"
 #include "ratios/rows.h"
 #include "simulate/simulate.h"
@@ -36,16 +37,13 @@ std::string machine() {
 }  // namespace
 
 int main(int argc, char** argv) {
+  keep_freed_memory();
   bench::Choice choice;
   std::string json_path, picture_path;
   bool quick = false;
   const std::vector<std::pair<std::string, void (*)(bench::Report&, const bench::Choice&)>> parts = {
-      {"kernel", bench::kernel_rows},
-      {"search", bench::search_rows},
-      {"virtual", bench::virtual_rows},
-      {"functions", bench::function_rows},
-      {"genetic", bench::genetic_rows},
-      {"loading", bench::loading_rows},
+      {"kernel", bench::kernel_rows},      {"search", bench::search_rows},   {"virtual", bench::virtual_rows},
+      {"functions", bench::function_rows}, {"genetic", bench::genetic_rows}, {"loading", bench::loading_rows},
       {"scaling", bench::scaling_rows}};
   std::vector<std::string> only;
   CLI::App app("the ratio table, measured");

@@ -4,6 +4,7 @@
 #include <exception>
 
 #include "base/error.h"
+#include "base/keep_memory.h"
 #include "base/nearest.h"
 #include "commands.h"
 #include "invocation.h"
@@ -28,6 +29,7 @@ std::string refusal(const CLI::App* app, const CLI::Error& error) {
 
 int main(int argc, char** argv) {
   using namespace servodx;
+  keep_freed_memory();
   CLI::App app("Fault diagnosis of electrohydraulic servovalves from rig logs", "servodx");
   app.set_version_flag("--version", "servodx " SERVODX_VERSION);
   app.require_subcommand(1);

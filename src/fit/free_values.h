@@ -14,8 +14,8 @@ namespace servodx {
 std::vector<FreeValue> shared_values(const Table& table);
 
 // A log's own: null, free air, viscosity where no temperature was logged, command between samples, offsets of spool and
-// pressure sensors; only those that the log can show. `null_limit` [fraction of rated] bounds the null about the base's. Prior widths: docs/model.md,
-// "Nuisances".
+// pressure sensors; only those that the log can show. `null_limit` [fraction of rated] bounds the null about the
+// base's. Prior widths: docs/model.md, "Nuisances".
 std::vector<FreeValue> nuisance_values(const LogData& log, int log_index, const ParameterVector& base,
                                        double null_limit);
 

@@ -65,8 +65,12 @@ void FitProblem::fill(const Point&, int log, const Trajectory& t, Eigen::Ref<Eig
   for (std::size_t c = 0; c < logs_[log]->channels.size(); ++c) {
     const std::vector<double> r = raw_residual(log, static_cast<int>(c), t);
     const long at = offset_[log][c];
-    for (std::size_t k = 0; k < r.size(); ++k)
-      out[at + static_cast<long>(k)] = std::isnan(r[k]) ? 0.0 : r[k] / sigma_[log][c][k];
+    const double* sigma = sigma_[log][c].data();
+    double* to = out.data() + at;
+    for (std::size_t k = 0; k < r.size(); ++k) {  // what is missing is NaN, and whitened so
+      const double whitened = r[k] / sigma[k];
+      to[k] = whitened == whitened ? whitened : 0.0;
+    }
   }
 }
 

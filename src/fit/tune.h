@@ -63,7 +63,7 @@ struct TuneOptions {
   std::optional<std::vector<std::string>> effects;  // freed beside the table's rows; empty: default_effects()
   // Priors asked for: by row, the standard deviation about the table's nominal [unit of the row].
   std::map<std::string, double> priors;
-  bool derivative_free = false;                     // local stage by NLopt: where differences are not to be trusted
+  bool derivative_free = false;      // local stage by NLopt: where differences are not to be trusted
   std::vector<std::string> profile;  // rows whose interval is checked by profile likelihood; "all": every one
   int moving_average = 1;            // [samples] odd; smooths measurement and simulation alike, also in later commands
   std::string checkpoint;            // file saved every generation; empty: none

@@ -11,8 +11,8 @@
 // held). The residual must be smooth on the scale of `difference_step`. Finds one local minimum; genetic.h and
 // multi_start.h give the breadth. Why not Ceres' minimiser: decisions in box_least_squares.cpp.
 //
-// Between two sets of differences the Jacobian learns from the steps that keep their promise (Broyden 1965); what ends a
-// search is always differences.
+// Between two sets of differences the Jacobian learns from the steps that keep their promise (Broyden 1965); what ends
+// a search is always differences.
 //
 // Source: More (1978), The Levenberg-Marquardt algorithm; Nocedal and Wright (2006), ch. 10 and 16; Transtrum and
 // Sethna (2012), Improvements to the Levenberg-Marquardt algorithm (bending a step by the curvature it meets).
@@ -56,7 +56,7 @@ struct LeastSquaresOptions {
   double step_limit = 0.3;        // of the box, in one iteration
   double difference_step = 1e-5;  // of the box
   Difference difference = Difference::forward_then_central;
-  int damping_trials = 8;         // dampings tried at once
+  int damping_trials = 8;  // dampings tried at once
   // Steps taken on one set of differences while each keeps its promise: the Jacobian then learns from the step itself
   // (Broyden 1965). 0: differences after every step.
   int secant_steps = 3;
@@ -67,7 +67,7 @@ struct LeastSquaresOptions {
   // Give up (stalled) after this many iterations that together lower the cost by less than a tenth: a start that leads
   // nowhere costs more than the next one. 0: never.
   int slow_iterations = 0;
-  double cost_goal = -1;          // stop as soon as the plain misfit 0.5*|e|^2 is at or below this; negative: off
+  double cost_goal = -1;  // stop as soon as the plain misfit 0.5*|e|^2 is at or below this; negative: off
   RobustLoss loss = RobustLoss::none;
   double loss_scale = 1.0;
   bool compressed_first_pass = false;  // first minimise with RobustLoss::compressed to 1e-3, then with `loss`
