@@ -40,6 +40,7 @@ Search search(const Twin& twin) {
   LeastSquaresOptions local;
   local.difference = Difference::forward;
   local.difference_step = 1e-4;
+  local.least_metric = local.from_afar;
   local.cost_goal = twin.goal();
   const LeastSquaresResult end = minimise_least_squares(problem, found.state.best.point, local);
   s.local = thread_seconds() - begun - s.genetic;

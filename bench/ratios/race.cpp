@@ -97,6 +97,7 @@ std::optional<long> ours(const Objective& objective, int seed, long patience, do
   o.difference = Difference::forward;
   o.difference_step = 1e-4;
   o.compressed_first_pass = true;
+  o.least_metric = o.from_afar;
   o.cost_goal = objective.goal;
   o.slow_iterations = 5;
   long used = 0;

@@ -127,8 +127,11 @@ void hold_out(FitProblem& problem, double part) {
     }
 }
 
+// Where a local search begins: at the table's values, at a point that the genetic search found, or where one ended.
+enum class Start { nominal, found, ended };
+
 LeastSquaresResult local(Tuning& run, FitProblem& problem, const Point& x, const std::string& stage, int iterations,
-                         bool first, double from, double to) {
+                         Start start, double from, double to) {
   if (run.options.derivative_free) {
     // As many points as the other way spends on its Jacobians.
     DerivativeFreeOptions d;
@@ -151,7 +154,8 @@ LeastSquaresResult local(Tuning& run, FitProblem& problem, const Point& x, const
   o.max_iterations = iterations;
   o.difference = Difference::forward;
   o.cost_tolerance = 1e-6;
-  o.compressed_first_pass = first;
+  o.compressed_first_pass = start != Start::ended;
+  if (start == Start::found) o.least_metric = o.from_afar;
   o.progress = [&](const LeastSquaresProgress& p) {
     run.convergence.push_back({stage, run.simulations + problem.simulations(), p.cost});
     run.progress.update(from + (to - from) * p.iteration / iterations, run.simulations + problem.simulations());
@@ -268,7 +272,7 @@ LeastSquaresResult refine(Tuning& run, FitProblem& problem, Point x, ErrorModel&
     }
     if (held > 0) hold_out(problem, held);
     const double a = from + (to - from) * round / rounds, b = from + (to - from) * (round + 1) / rounds;
-    r = local(run, problem, x, held > 0 ? "weights" : "everything", 12, false, a, b);
+    r = local(run, problem, x, held > 0 ? "weights" : "everything", 12, Start::ended, a, b);
     x = r.point;
     if (run.stopped() || (round >= 1 && r.reason == StopReason::converged)) break;
   }
@@ -418,8 +422,8 @@ TuneResult tune(const std::vector<Log>& logs, const Table& nominal, const RigFil
   std::vector<LeastSquaresResult> ends;
   for (std::size_t s = 0; s < starts.size() && !(run.stopped() && s > 0); ++s) {
     const double a = 0.35 + 0.35 * static_cast<double>(s) / static_cast<double>(starts.size());
-    ends.push_back(local(run, fit, starts[s], fmt::format("start {}", s + 1), 6, true, a,
-                         a + 0.35 / static_cast<double>(starts.size())));
+    ends.push_back(local(run, fit, starts[s], fmt::format("start {}", s + 1), 6, s == 0 ? Start::nominal : Start::found,
+                         a, a + 0.35 / static_cast<double>(starts.size())));
     out.starts.push_back(ends.back().cost);
   }
   const std::size_t best =

@@ -200,10 +200,7 @@ class Search {
     const double largest = std::max(hessian.diagonal().maxCoeff(), std::numeric_limits<double>::min());
     m.scale.resize(n);
     for (int j = 0; j < n; ++j) m.scale[j] = 1.0 / std::sqrt(std::max(hessian(j, j), 1e-24 * largest));
-    // Marquardt's metric, and a thousandth of the strongest column's in every direction: a fit of 25 parameters then
-    // takes a quarter fewer simulations, anywhere from 1e-4 to 1e-2 (docs/performance.md).
-    constexpr double least_metric = 1e-3;
-    m.metric = 1.0 + least_metric * largest * m.scale.array().square();
+    m.metric = 1.0 + options_.least_metric * largest * m.scale.array().square();
     m.hessian = m.scale.asDiagonal() * hessian * m.scale.asDiagonal();
     m.gradient = m.scale.cwiseProduct(gradient);
 
@@ -495,6 +492,7 @@ void LeastSquaresOptions::validate() const {
   require(difference_step > 0 && difference_step <= 0.1, "difference_step", "must be above 0 and at most 0.1");
   require(damping_trials >= 1 && damping_trials <= 64, "damping_trials", "must be 1 to 64");
   require(secant_steps >= 0, "secant_steps", "must not be negative (0 means never)");
+  require(least_metric >= 0 && std::isfinite(least_metric), "least_metric", "must be finite and not negative");
   require(first_damping > 0 && std::isfinite(first_damping), "first_damping", "must be above 0 and finite");
   require(cost_tolerance >= 0 && cost_tolerance < 1, "cost_tolerance", "must be at least 0 and below 1");
   require(slow_iterations >= 0, "slow_iterations", "must not be negative (0 means never)");

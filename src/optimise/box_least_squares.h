@@ -60,6 +60,10 @@ struct LeastSquaresOptions {
   // Steps taken on one set of differences while each keeps its promise: the Jacobian then learns from the step itself
   // (Broyden 1965). 0: differences after every step.
   int secant_steps = 3;
+  // Damping in every direction beside Marquardt's diagonal, as a part of the strongest column's: `from_afar` for starts
+  // that no one chose, where it saves a fifth of the evaluations; 0 about a start that is known to be near.
+  double least_metric = 0;
+  static constexpr double from_afar = 1e-3;
   double first_damping = 1e-1;    // middle of the first ladder, relative to the Marquardt diagonal
   double cost_tolerance = 1e-8;   // converged when the model promises less than this part of the cost
   double cost_floor = 1e-20;      // converged when the cost itself, or the promised gain, is below this
