@@ -76,6 +76,29 @@ double peak_memory(const std::function<void()>& work) {
 void scaling_rows(Report& report, const Choice& choice) {
   const ParameterVector v = candidate_of(table());
   const int turns = std::min(3, choice.turns);
+  const std::string data = std::string(SERVODX_SOURCE_DIR) + "/data/";
+  const RigFile rig = read_rig_file(data + "rig.toml");
+
+  // Memory: reading a log and one simulation of all of it; first, as a process inherits what its parent holds.
+  std::vector<std::pair<double, double>> memory;
+  const auto folder = std::filesystem::temp_directory_path();
+  for (const long rows : {62500L, 125000L, 250000L, 500000L, 1000000L}) {
+    const std::string path = (folder / fmt::format("servodx_memory_{}.csv", rows)).string();
+    write_file(path, long_log(rows));
+    memory.push_back({static_cast<double>(rows), peak_memory([&] {
+                        const LogData long_one = prepare(read_log(path), rig);
+                        Trajectory t;
+                        const std::vector<Job> jobs = {{&long_one.scenario, &v, &t}};
+                        simulate(jobs, one_thread());
+                      })});
+    std::filesystem::remove(path);
+  }
+  add(report, "memory", "MB", "rows of a log", memory);
+  const auto &few = memory.front(), &many = memory.back();
+  report.notes.push_back(fmt::format("{:.0f} bytes a row of ten columns, {:.0f} MB before the first",
+                                     1048576 * (many.second - few.second) / (many.first - few.first),
+                                     few.second - few.first * (many.second - few.second) / (many.first - few.first)));
+
   std::vector<Scenario> logs;
   std::vector<std::function<void()>> tasks;
   const auto batch = [&v](const Scenario& s, int count) {
@@ -107,8 +130,6 @@ void scaling_rows(Report& report, const Choice& choice) {
   add_times(report, "parameters of a Jacobian", counts, tasks, turns);
 
   // Logs: the Jacobian of what they share and of each one's own, as in a tune.
-  const std::string data = std::string(SERVODX_SOURCE_DIR) + "/data/";
-  const RigFile rig = read_rig_file(data + "rig.toml");
   const Log read = read_log(data + "healthy/h12_mixed.csv", rig);
   const LogData log = slice(prepare(read, rig), 0, 2000);
   const std::vector<LogData> same(8, log);
@@ -145,26 +166,6 @@ void scaling_rows(Report& report, const Choice& choice) {
       fit_hypotheses(log, v, error, settings);
     });
   add_times(report, "hypotheses beside health", hypotheses, tasks, turns);
-
-  // Memory: reading a log and one simulation of all of it.
-  std::vector<std::pair<double, double>> memory;
-  const auto folder = std::filesystem::temp_directory_path();
-  for (const long rows : {62500L, 125000L, 250000L, 500000L, 1000000L}) {
-    const std::string path = (folder / fmt::format("servodx_memory_{}.csv", rows)).string();
-    write_file(path, long_log(rows));
-    memory.push_back({static_cast<double>(rows), peak_memory([&] {
-                        const LogData long_one = prepare(read_log(path), rig);
-                        Trajectory t;
-                        const std::vector<Job> jobs = {{&long_one.scenario, &v, &t}};
-                        simulate(jobs, one_thread());
-                      })});
-    std::filesystem::remove(path);
-  }
-  add(report, "memory", "MB", "rows of a log", memory);
-  const auto &few = memory.front(), &many = memory.back();
-  report.notes.push_back(fmt::format("{:.0f} bytes a row of ten columns, {:.0f} MB before the first",
-                                     1048576 * (many.second - few.second) / (many.first - few.first),
-                                     few.second - few.first * (many.second - few.second) / (many.first - few.first)));
 }
 
 }  // namespace servodx::bench
