@@ -62,14 +62,14 @@ std::vector<Promise> promises(const std::vector<Log>& logs, const TuneResult& re
   return all;
 }
 
-// "piston_area_a=1e-5": standard deviation in the row's unit.
+// "piston_area_a=1e-5": standard deviation in the table's unit.
 std::map<std::string, double> priors_of(const std::vector<std::string>& list) {
   std::map<std::string, double> priors;
   for (const std::string& text : list) {
     const auto equals = text.find('=');
     const double sd = equals == std::string::npos ? 0 : parse_number(text.substr(equals + 1)).value_or(0);
     require_option(sd > 0 && equals > 0, "--prior", "'" + text + "' is not NAME=SD",
-                   "--prior piston_area_a=1e-5: a standard deviation about the table's nominal, in the row's unit");
+                   "--prior piston_area_a=1e-5: a standard deviation about the table's nominal, in the table's unit");
     priors[text.substr(0, equals)] = sd;
   }
   return priors;
@@ -181,7 +181,7 @@ void add_tune_command(CLI::App& app, int& exit_code) {
       ->type_name("A,B");
   command
       ->add_option("--prior", options->priors,
-                   "hold a row to the table's nominal, give or take SD in the row's unit; may be repeated")
+                   "hold a row to its nominal, give or take SD in the table's unit; may be repeated")
       ->type_name("NAME=SD");
   command->add_option("--checkpoint", tune.checkpoint, "save the search to FILE every generation")->type_name("FILE");
   command->add_flag("--resume", tune.resume, "go on from the checkpoint");

@@ -59,16 +59,12 @@ class Desk {
           if (s.waiting && s.objective == k) now.push_back(&s), points.push_back(s.point);
         if (now.empty()) continue;
         const std::vector<Evaluation> e = objectives_[k].evaluate(points);
-        for (std::size_t i = 0; i < now.size(); ++i) {
-          now[i]->cost = misfit(e[i]), now[i]->waiting = false;
-          least_ = std::min(least_, now[i]->cost);
-        }
+        for (std::size_t i = 0; i < now.size(); ++i) now[i]->cost = misfit(e[i]), now[i]->waiting = false;
       }
       waiting_ = 0;
       served_.notify_all();
     }
   }
-  double least() const { return least_; }
 
  private:
   const std::vector<Objective>& objectives_;
@@ -77,7 +73,6 @@ class Desk {
   std::mutex mutex_;
   std::condition_variable changed_, served_;
   int live_, waiting_ = 0;
-  double least_ = 1e300;
 };
 
 long arrived(const std::vector<std::optional<long>>& v) {
@@ -126,8 +121,7 @@ std::optional<long> ours(const Objective& objective, int seed, long patience, do
   return std::nullopt;
 }
 
-std::vector<std::vector<std::optional<long>>> run_peers(const std::vector<Objective>& objectives, long budget,
-                                                        double* least) {
+std::vector<std::vector<std::optional<long>>> run_peers(const std::vector<Objective>& objectives, long budget) {
   std::vector<Desk::Seat> seats(peers().size() * objectives.size());
   for (std::size_t i = 0; i < seats.size(); ++i) seats[i].objective = i % objectives.size();
   Desk desk(objectives, seats, budget);
@@ -144,7 +138,6 @@ std::vector<std::vector<std::optional<long>>> run_peers(const std::vector<Object
       });
     desk.serve();
   }
-  if (least) *least = desk.least();
   std::vector<std::vector<std::optional<long>>> out(peers().size());
   for (std::size_t i = 0; i < seats.size(); ++i) out[i / objectives.size()].push_back(seats[i].reached);
   return out;

@@ -22,8 +22,7 @@ std::optional<long> ours(const Objective& objective, int seed, long patience, do
 
 // reached[peer][objective]: evaluations until the goal, none within the budget. A method's seed is the objective's
 // place in the list, from 1. All runs advance in step: one batch serves those that share an objective.
-std::vector<std::vector<std::optional<long>>> run_peers(const std::vector<Objective>& objectives, long budget,
-                                                        double* least = nullptr);
+std::vector<std::vector<std::optional<long>>> run_peers(const std::vector<Objective>& objectives, long budget);
 
 // Median with what never arrived as infinitely late; empty when that is the median.
 std::optional<double> median_arrival(std::vector<std::optional<long>> arrivals);

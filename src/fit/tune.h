@@ -61,7 +61,7 @@ struct TuneOptions {
   int rounds = 4;        // most of the last stage (12 steps, then new weights); it ends early where it converges
   double heldout = 0.2;  // last part of every log, kept out of the first fit
   std::optional<std::vector<std::string>> effects;  // freed beside the table's rows; empty: default_effects()
-  // Priors asked for: by row, the standard deviation about the table's nominal [unit of the row].
+  // Priors asked for: by row, the standard deviation about the table's nominal [the table's unit].
   std::map<std::string, double> priors;
   bool derivative_free = false;      // local stage by NLopt: where differences are not to be trusted
   std::vector<std::string> profile;  // rows whose interval is checked by profile likelihood; "all": every one
