@@ -84,6 +84,10 @@ Listing effects(const Options&, Invocation&) {
       parameters.push_back(
           {{"id", p.id}, {"name", p.name}, {"unit", p.unit}, {"off", effect.off}, {"meaning", p.meaning}});
     }
+    for (const int at : effect.shapes) {
+      const EffectParameter& p = parameter_at(at);
+      parameters.push_back({{"name", p.name}, {"unit", p.unit}, {"off", p.off}, {"meaning", p.meaning}});
+    }
     add(effect.name, "table", effect.where, effect.meaning, parameters);
   }
   out.text =

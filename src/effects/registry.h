@@ -15,6 +15,8 @@
 #include "effects/orifice_length.h"
 #include "effects/port_line.h"
 #include "effects/rod_cavity.h"
+#include "effects/screen_drop.h"
+#include "effects/seal_film.h"
 #include "effects/sensor_response.h"
 #include "effects/stiction.h"
 #include "effects/supply_droop.h"
@@ -41,7 +43,9 @@ using AllEffects = EffectList<MagneticHysteresis,  //
                               PortLine,            //
                               RodCavity,           //
                               EdgeTransition,      //
-                              OrificeLength>;
+                              OrificeLength,       //
+                              ScreenDrop,          //
+                              SealFilm>;
 // A learnt curve costs more than all effects: it has a kernel of its own.
 using CorrectedEffects = Append<AllEffects, Unexplained>;
 inline constexpr int n_values = n_parameters + CorrectedEffects::n_parameters;  // length of a parameter vector
@@ -50,9 +54,12 @@ struct EffectInfo {
   std::string name, place, meaning;
   int first = 0;  // position of its first parameter in a parameter vector
   std::vector<EffectParameter> parameters;
-  bool stand_only = false;  // sought only in logs of a valve on a test stand
+  bool stand_only = false;   // sought only in logs of a valve on a test stand
+  bool shapes_rows = false;  // belongs to a row effect (row_effects.h) and means nothing without it
 };
 const std::vector<EffectInfo>& effect_list();
+// What stands behind the 41 rows at a position of a parameter vector.
+const EffectParameter& parameter_at(int position);
 
 // Position of effect E's j-th parameter in a parameter vector.
 template <class E>

@@ -1,6 +1,6 @@
 #include "effects/row_effects.h"
 
-#include "model/hooks.h"
+#include "effects/registry.h"
 
 namespace servodx {
 
@@ -10,7 +10,8 @@ const std::vector<RowEffect>& row_effects() {
        "piston_force",
        "breakaway friction of the piston above sliding friction",
        0.0,
-       {row::piston_stribeck_friction}},
+       {row::piston_stribeck_friction},
+       {effect_row<SealFilm>(0)}},
       {"asymmetric_lap",
        "metering",
        "overlap of each metering edge of its own",

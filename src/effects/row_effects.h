@@ -7,8 +7,9 @@ namespace servodx {
 
 struct RowEffect {
   const char *name, *where, *meaning;
-  double off;             // [SI] of every row
-  std::vector<int> rows;  // positions in a parameter vector
+  double off;                    // [SI] of every row
+  std::vector<int> rows;         // positions in a parameter vector
+  std::vector<int> shapes = {};  // the same, of effect parameters that say how the rows act
 };
 const std::vector<RowEffect>& row_effects();
 

@@ -26,7 +26,8 @@ struct Stiction {
     using T = std::decay_t<decltype(view.p[0])>;
     const auto stretch =
         (view.template state<s_x_spool>() - view.u.friction.spool_anchor) * T(1.0 / constants::spool_presliding);
-    return -((view.template own<Stiction>(0) * stribeck(view.u.friction.spool_speed, speed)) * asperities<T>(stretch));
+    return -((view.template own<Stiction>(0) * stribeck(view.u.friction.spool_speed, T(1.0 / speed))) *
+             asperities<T>(stretch));
   }
 };
 

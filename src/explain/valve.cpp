@@ -33,7 +33,8 @@ const std::map<std::string, const char*> tests = {
     {"mount_compliance", "steps into a stiff load: the body's resonance in the load pressure"},
     {"mains_pickup", "rest: a line at the mains frequency with the valve still"},
     {"viscosity_change", "the same test in cold and in hot oil"},
-    {"edge_transition", "slow triangles of some per cent in cold and in hot oil: in the cold the piston lags by a wider lap"},
+    {"edge_transition",
+     "slow triangles of some per cent in cold and in hot oil: in the cold the piston lags by a wider lap"},
     {"orifice_length", "full steps in cold and in hot oil: in the cold the spool slews slower"},
     {"edge_radius", "the pressure's slope at null beside the leakage there: blunt edges leak more at the same slope"},
     {"port_line", "leakage sweeps at two rates, ports blocked: a tail after null that lasts as long at either"},
@@ -226,8 +227,7 @@ void ValveSubject::add_causes(const RigFile& rig) {
 
   const bool on_stand =
       std::any_of(logs_.begin(), logs_.end(), [](const LogData& l) { return l.scenario.ports != Ports::actuator; });
-  const bool oil_known =
-      std::all_of(logs_.begin(), logs_.end(), [](const LogData& l) { return l.scenario.oil_known; });
+  const bool oil_known = std::all_of(logs_.begin(), logs_.end(), [](const LogData& l) { return l.scenario.oil_known; });
 
   // Sensors and clocks are suspects before physics.
   for (const EffectInfo& e : effect_list()) {
@@ -299,7 +299,7 @@ void ValveSubject::add_causes(const RigFile& rig) {
       for (int k = 0; k < FlowMeterLag::n_parameters; ++k) add_sensor(k, FlowMeterLag::shown_at[k], "sensor_lag");
       continue;
     }
-    if (e.name == Unexplained::name || (e.stand_only && !on_stand)) continue;
+    if (e.name == Unexplained::name || e.shapes_rows || (e.stand_only && !on_stand)) continue;
     if (e.name == ViscosityChange::name && !oil_known) continue;  // each log's own
     Cause cause;
     cause.effect = e.name;
@@ -373,6 +373,13 @@ void ValveSubject::add_causes(const RigFile& rig) {
       }
       cause.numbers.push_back(number_of(f, table_[at].unit, true));
       sizes.push_back(at == row::air_fraction ? std::vector<double>{2.0, 0.5, 8.0} : row_sizes(cause.numbers.back()));
+      values.push_back(std::move(f));
+    }
+    for (const int at : e.shapes) {
+      const EffectParameter& p = parameter_at(at);
+      FreeValue f{p.name, at, p.lower, p.upper, true, table_.find(p.name) >= 0 ? base_[at] : p.start};
+      cause.numbers.push_back(number_of(f, p.unit, false));
+      sizes.emplace_back();
       values.push_back(std::move(f));
     }
     finish(std::move(cause), std::move(values), sizes);

@@ -27,12 +27,12 @@ T dragged_anchor(const T& anchor, const T& x, double presliding) {
   return max(min(anchor, x + T(presliding)), x - T(presliding));
 }
 
-// Share of the breakaway friction that is left at a speed [m/s]: 1 at rest, a half at `fall` (Stribeck's curve). The
-// speed is the last step's: a force that falls as speed rises is negative damping, which no linearly implicit step
-// bears.
+// Share of the breakaway friction that is left at a speed [m/s]: 1 at rest, a half at that of 1 / `per_fall`
+// (Stribeck's curve). The speed is the last step's: a force that falls as speed rises is negative damping, which no
+// linearly implicit step bears.
 template <class T>
-T stribeck(const T& speed, double fall) {
-  const T ratio = speed * T(1.0 / fall);
+T stribeck(const T& speed, const T& per_fall) {
+  const T ratio = speed * per_fall;
   return inverse(T(1.0) + ratio * ratio);
 }
 
@@ -51,14 +51,15 @@ struct FrictionMemory {
     spool_speed = rod_speed = T(0.0);
     seal_breakaway = T(1.0);
   }
-  // After a step of h [s] between two places [m].
-  void move(const T& spool_from, const T& x_spool, const T& rod_from, const T& x_rod, double h) {
+  // After a step of h [s] between two places [m]; per_film_speed [s/m] of the rod's seals.
+  void move(const T& spool_from, const T& x_spool, const T& rod_from, const T& x_rod, double h,
+            const T& per_film_speed) {
     spool_anchor = dragged_anchor(spool_anchor, x_spool, constants::spool_presliding);
     for (std::size_t i = 0; i < seal_anchor.size(); ++i)
       seal_anchor[i] = dragged_anchor(seal_anchor[i], x_rod, constants::seal_presliding[i]);
     spool_speed = (x_spool - spool_from) * T(1.0 / h);
     rod_speed = (x_rod - rod_from) * T(1.0 / h);
-    seal_breakaway = stribeck(rod_speed, constants::piston_stribeck_velocity);
+    seal_breakaway = stribeck(rod_speed, per_film_speed);
   }
   // One lane of another memory.
   void take_lane(const FrictionMemory& from, int lane) {

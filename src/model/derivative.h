@@ -65,12 +65,14 @@ requires(A != 1 || B != 2) inline
   return std::make_tuple(chain(q.v, opening, q.d[0], dp, q.d[1]), chain(h.v, opening, h.d[0]));
 }
 
-// Pilot flow through the filter, whose blocked part may differ with the direction of the spool. [m3/s]
+// Pilot flow through the filter, whose blocked part may differ with the direction of the spool, behind the laminar drop
+// of its pores: as many pass the flow as are open, so that drop stays in proportion to the root of the other. [m3/s]
 template <class P, class V, class T>
 auto filter_flow(const P& dp, const V& v_spool, const Derived<T>& d) {
   namespace c = constants;
   const auto direction = smooth_sign(v_spool, T(c::filter_direction_rounding));
-  return orifice_flow(d.filter_conductance - d.filter_one_way * direction, dp, T(c::orifice_transition));
+  return (d.filter_conductance - d.filter_one_way * direction) *
+         signed_sqrt_behind(d.filter_creep, dp, T(c::orifice_transition));
 }
 
 // Stiffness of a chamber [Pa/m3]: oil, free air by the isothermal law, walls of the hose, all in one fraction.

@@ -23,6 +23,7 @@ struct Derived {
   T orifice_creep;       // [sqrt(Pa)] half the laminar drop of a fixed orifice over the root of the turbulent one
   T filter_conductance;  // [m3/s/sqrt(Pa)] mean of both directions of the spool
   T filter_one_way;      // [m3/s/sqrt(Pa)] less while the spool moves positive, more while it moves negative
+  T filter_creep;        // [sqrt(Pa)] half the laminar drop of the clean filter over the root of its turbulent one
   T half_backlash;       // [m] between wire and spool
   T inverse_filter_compliance;  // [Pa/m3]
   T inverse_pilot_compliance;   // [Pa/m3]
@@ -41,6 +42,7 @@ struct Derived {
   // actuator
   T leak;                              // [m3/s/Pa]
   T viscous;                           // [N s/m]
+  T per_film_speed;                    // [s/m] of the seals' breakaway friction
   T inverse_mass;                      // [1/kg]
   T half_stroke;                       // [m]
   T middle_volume_a, middle_volume_b;  // [m3] at mid-stroke
@@ -78,10 +80,14 @@ Derived<T> derive(const T* p, const Oil& oil) {
   d.filter_conductance =
       clean * (T(1.0) - T(0.5) * (p[row::filter_blockage_positive] + p[row::filter_blockage_negative]));
   d.filter_one_way = clean * (T(0.5) * (p[row::filter_blockage_positive] - p[row::filter_blockage_negative]));
+  // At rest the orifices lose about half of the supply, and the filter that over its areas' ratio squared.
+  d.filter_creep = hook_screen_drop(p, Effects{}) * viscosity_ratio * T(0.5 * c::clean_filter_area_ratio) /
+                   sqrt(T(0.5) * p[row::supply_pressure]);
   d.half_backlash = p[row::valve_glitch] * T(0.5);
-  d.inverse_filter_compliance = p[row::bulk_modulus] * T(1.0 / c::filter_node_volume);
+  const T bulk_modulus = p[row::bulk_modulus] * T(oil.stiffness_ratio);
+  d.inverse_filter_compliance = bulk_modulus * T(1.0 / c::filter_node_volume);
   d.spool_area = T(c::pi / 4.0) * p[row::spool_diameter] * p[row::spool_diameter];
-  d.inverse_pilot_compliance = p[row::bulk_modulus] / (d.spool_area * p[row::spool_stop] * T(c::pilot_volume_in_stops));
+  d.inverse_pilot_compliance = bulk_modulus / (d.spool_area * p[row::spool_stop] * T(c::pilot_volume_in_stops));
   const T spool_length = p[row::spool_diameter] * T(c::spool_length_in_diameters);
   d.inverse_spool_mass = T(1.0) / (T(c::steel_density) * d.spool_area * spool_length);
   d.spool_viscous = T(c::pi) * dynamic_viscosity * p[row::spool_diameter] * spool_length / p[row::radial_clearance];
@@ -98,11 +104,12 @@ Derived<T> derive(const T* p, const Oil& oil) {
   d.hose_loss = T(4.0) * p[row::hose_resistance] * p[row::port_width] * p[row::port_width];
   d.leak = p[row::cross_piston_leakage] * (T(1.0) / viscosity_ratio);
   d.viscous = p[row::piston_viscous_friction] * sqrt(viscosity_ratio);  // mixed lubrication of seals
+  d.per_film_speed = T(1.0) / (T(c::piston_stribeck_velocity) + hook_seal_film_speed(p, Effects{}));
   d.inverse_mass = T(1.0) / p[row::moving_mass];
   d.half_stroke = T(0.5) * p[row::piston_stroke];
   d.middle_volume_a = p[row::dead_volume_a] + p[row::piston_area_a] * d.half_stroke;
   d.middle_volume_b = p[row::dead_volume_b] + p[row::piston_area_b] * d.half_stroke;
-  d.inverse_bulk = T(1.0) / p[row::bulk_modulus];
+  d.inverse_bulk = T(1.0) / bulk_modulus;
   d.air = p[row::air_fraction] * T(c::atmospheric_pressure);
   return d;
 }

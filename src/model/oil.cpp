@@ -15,6 +15,7 @@ Oil oil_at(double density_20, double kinematic_viscosity_40, double temperature_
   oil.density = density_20 * (1.0 - 7e-4 * (temperature_kelvin - 293.15));  // thermal expansion of mineral oils
   oil.dynamic_viscosity = nu * oil.density;
   oil.viscosity_ratio = nu / kinematic_viscosity_40;
+  oil.stiffness_ratio = std::pow(10.0, -0.0024 * (temperature_kelvin - 313.15));
   return oil;
 }
 

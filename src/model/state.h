@@ -36,9 +36,11 @@ struct Oil {
   double density = 860.0;            // [kg/m3] at the log's temperature
   double dynamic_viscosity = 0.012;  // [Pa s] at the log's temperature
   double viscosity_ratio = 1.0;      // over the value at 40 degC
+  double stiffness_ratio = 1.0;      // bulk modulus without air over that at 40 degC
 };
 
-// Density and viscosity at a temperature: Walther's law (ASTM D341) through the viscosity at 40 degC.
+// Density, viscosity and stiffness at a temperature: Walther's law (ASTM D341) through the viscosity at 40 degC; the
+// bulk modulus of mineral oils falls by a factor of 10^0.0024 a kelvin (Hodges 1996, "Hydraulic Fluids").
 Oil oil_at(double density_20, double kinematic_viscosity_40, double temperature_kelvin);
 
 }  // namespace servodx

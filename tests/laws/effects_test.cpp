@@ -123,6 +123,72 @@ TEST(OrificeLength, ColdOilCostsASlewItsSpeedOnlyWithALength) {
   EXPECT_LT(capillary, 0.97 * tube);
 }
 
+TEST(ScreenDrop, PilotPressureAtRestIsThatOfPoresAndJetsInSeries) {
+  // At rest y = 2 q / (G_f open): y^2 + drop (viscosity ratio) y / y_0 + (q / G_o)^2 + (q / G_n)^2 = supply less
+  // return.
+  for (const double viscous : {0.0, 4e5})
+    for (const double thicker : {1.0, 20.0})
+      for (const double blocked : {0.0, 0.7}) {
+        Scenario s = made(0.2, 1e-3, [](double) { return 0.0; });
+        s.oil.dynamic_viscosity *= thicker, s.oil.viscosity_ratio *= thicker;
+        ParameterVector v = with<ScreenDrop>(0, viscous);
+        v[row::servovalve_null] = 0;
+        v[row::filter_blockage_positive] = v[row::filter_blockage_negative] = blocked;
+        const Derived<double> d = derive<double>(v.data(), s.oil);
+        const double gap = v[row::nozzle_gap];
+        const double nozzle = d.nozzle_conductance * gap / std::sqrt(1 + d.bore_loss * gap * gap);
+        const double per_filter = 2 / d.filter_conductance;
+        const double laminar = viscous * s.oil.viscosity_ratio * per_filter * constants::clean_filter_area_ratio /
+                               std::sqrt(0.5 * v[row::supply_pressure]);
+        const double square =
+            per_filter * per_filter + 1 / (d.orifice_conductance * d.orifice_conductance) + 1 / (nozzle * nozzle);
+        const double drop = v[row::supply_pressure] - v[row::return_pressure];
+        const double q = 2 * drop / (laminar + std::sqrt(laminar * laminar + 4 * square * drop));
+        const double expected = v[row::return_pressure] + q * q / (nozzle * nozzle);
+        const Trajectory t = simulate(s, v, all_signals());
+        ASSERT_TRUE(t.ok);
+        for (Signal side : {Signal::pilot_pressure_1, Signal::pilot_pressure_2})
+          EXPECT_NEAR(of(t, side).back(), expected, 2e-3 * drop) << viscous << " " << thicker << " " << blocked;
+      }
+}
+
+TEST(SealFilm, AtItsSpeedHalfOfTheBreakawayFrictionIsLeft) {
+  // At a steady speed the load pressure carries what is left of the breakaway friction beside all else.
+  const auto force = [](double breakaway, double film_speed, double current, double* speed) {
+    ParameterVector v = with<SealFilm>(0, film_speed);
+    v[row::piston_stribeck_friction] = breakaway;
+    const Scenario s = made(1.0, 1e-3, [&](double t) { return t < 0.05 ? 0.0 : current; });
+    const Trajectory t = simulate(s, v, all_signals());
+    EXPECT_TRUE(t.ok);
+    const auto& x = of(t, Signal::piston_position);
+    *speed = (x[950] - x[750]) / (s.time[950] - s.time[750]);
+    return v[row::piston_area_a] * of(t, Signal::pressure_a)[850] -
+           v[row::piston_area_b] * of(t, Signal::pressure_b)[850];
+  };
+  double speed = 0, other = 0;
+  const double without = force(0, 8e-3, 1.2e-3, &speed);
+  for (const double film : {speed, 3 * speed}) {
+    const double left = (force(200, film, 1.2e-3, &other) - without) / 200;
+    const double ratio = other / film;
+    std::printf("%.1f mm/s, film at %.1f: %.3f left\n", 1e3 * other, 1e3 * film, left);
+    EXPECT_NEAR(left, 1 / (1 + ratio * ratio), 0.03);
+  }
+}
+
+TEST(Oil, ColdOilIsStifferByHalfAPerCentAKelvin) {
+  const Oil cold = oil_at(860, 14e-6, 303.15), hot = oil_at(860, 14e-6, 323.15), at_40 = oil_at(860, 14e-6, 313.15);
+  EXPECT_NEAR(at_40.stiffness_ratio, 1.0, 1e-12);
+  EXPECT_NEAR(std::log(cold.stiffness_ratio / hot.stiffness_ratio) / 20.0, 5.5e-3, 1e-4);
+  // A blocked piston: the load pressure's mode, and with it a chamber's stiffness, follows the oil's.
+  ParameterVector v = nominal_candidate();
+  v[row::air_fraction] = 0, v[row::hose_compliance] = 0;
+  const auto stiffness = [&](const Oil& oil) {
+    const Derived<double> d = derive<double>(v.data(), oil);
+    return chamber_stiffness(1e-4, 7e6, d, v.data());
+  };
+  EXPECT_NEAR(stiffness(cold) / stiffness(hot), cold.stiffness_ratio / hot.stiffness_ratio, 1e-6);
+}
+
 TEST(SupplyDroop, SteadySpeedCostsItsFlowTimesTheResistance) {
   // At a steady speed with no load the chambers follow: their sum is supply plus return less what droops.
   Scenario s = made(0.6, 1e-3, [](double t) { return t < 0.05 ? 0.0 : 10e-3; });
