@@ -172,6 +172,11 @@ FailureAt failure_of(const Series& s, const TrendOptions& options) {
     at.lower = s.in(given->second.first), at.upper = s.in(given->second.second);
     if (const auto& level = at.upper ? at.upper : at.lower; level && s.fault) at.sd = left_open(s, s.out(*level));
   } else if (const auto ratio = options.failure_ratio.find(s.name); ratio != options.failure_ratio.end()) {
+    if (s.fault && s.fault->log_scale && s.tuned) {  // a healthy one may be hardly seen: the tuned one rests on more
+      to_side(ratio->second * *s.tuned, ratio->second > 1);
+      at.sd = left_open(s, ratio->second * *s.tuned);
+      return at;
+    }
     at.of = s.paper() ? FailureAt::Of::beyond_base : FailureAt::Of::times_base;
     to_side(s.paper() ? std::log(ratio->second) : ratio->second, ratio->second > 1);
   } else if (s.fault) {
