@@ -2,13 +2,14 @@
 //
 // A unit is a valve drawn from the rig's tolerances and checked with its own table (units.h). Its checks come at even
 // parts of the life, each at random oil temperature, free air and null. End of life is the rig's true quantity at the
-// failed level. Failure levels come from a seeded-fault test of three valves of the type.
+// failed level. Failure levels come from a seeded-fault test of five valves of the type.
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <map>
+#include <numeric>
 
 #include "base/atomic_file.h"
 #include "prognose/metrics.h"
@@ -32,9 +33,23 @@ std::string caused_by(const std::string& check) {
 
 int row_of(const std::string& check) { return std::stoi(check.substr(check.find(':') + 1)) - 1; }
 
-// Failure levels of every check that a degradation moves, by a seeded-fault test of three valves of the type at the
+// Failure levels of every check that a degradation moves, by a seeded-fault test of five valves of the type at the
 // reference oil, as a user would set them: of the paper's checks a multiple of healthy; of the parameters what they
 // read, or, where it is the valve's own value that multiplies, a multiple of what that valve was tuned to.
+// How far another valve's level may lie from the median of these valves' looks: what their means scatter by, that
+// median's own error, and Student's factor for so few at 90 %.
+double spread_of(const std::vector<double>& looks) {
+  const std::size_t each = looks.size() / seeded_valves;
+  double sum = 0, square = 0;
+  for (int v = 0; v < seeded_valves; ++v) {
+    const auto first = looks.begin() + static_cast<long>(v * each);
+    const double mean = std::accumulate(first, first + static_cast<long>(each), 0.0) / static_cast<double>(each);
+    sum += mean, square += mean * mean;
+  }
+  constexpr double n = seeded_valves, student = 2.13 / 1.645;
+  return student * std::sqrt((square - sum * sum / n) / (n - 1) * (1 + 1 / n));
+}
+
 TrendOptions seeded_fault(const Bench& b, const Degradation& d, const std::string& folder) {
   std::map<std::string, std::vector<double>> healthy, failed;
   const auto add = [](const ValveHistory& h, bool of_its_own, std::map<std::string, std::vector<double>>& to) {
@@ -53,6 +68,7 @@ TrendOptions seeded_fault(const Bench& b, const Degradation& d, const std::strin
     const auto [low, high] = std::minmax_element(values.begin(), values.end());
     const double h = median(values), f = median(failed[name]);
     const std::string cause = caused_by(name);
+    if (cause == d.name) options.failure_spread[name] = spread_of(failed[name]);
     if (cause == d.name && d.of_its_own)
       options.failure_ratio[name] = f;
     else if (cause == d.name)
@@ -195,7 +211,7 @@ void lives(const Bench& b, const std::string& out, int units, int checks, int fi
         csv += (own ? "own," : "seeded,") + judged[i][l].row;
         for (Tally* t : {&of_all[lambdas[l]], &of_each[all[i].degradation->name][lambdas[l]]}) t->add(judged[i][l]);
       }
-    std::printf("\nfailure levels: %s\n", own ? "the tool's own" : "a seeded-fault test of three valves");
+    std::printf("\nfailure levels: %s\n", own ? "the tool's own" : "a seeded-fault test of five valves");
     std::printf("%-24s %6s %5s %8s %13s %16s %6s %6s %6s %9s %12s %12s %12s\n", "degradation", "lambda", "units",
                 "alerted", "met", "covered", "early", "late", "named", "CRPS [h]", "tangent", "tangent met",
                 "its CRPS");

@@ -63,9 +63,10 @@ Table own_table(const Bench& b, const std::string& name, const rig::RigModel& va
     options.generations = 0;  // it begins near
     options.effects = default_effects(false);
     options.effects->emplace_back("screen_drop");
-    // Drawings hold for all valves of the type; logs of a few seconds would trade the bores against one another.
+    // What drawings say of all valves of the type holds: logs of a few seconds would trade it for something else.
     options.priors = {{"fixed_orifice_diameter", 0.02 * b.tuned[row::fixed_orifice_diameter].nominal},
-                      {"orifice_slenderness", 0.3}};
+                      {"orifice_slenderness", 0.3},
+                      {"screen_viscous_drop", 0.5e5}};
     write_table(file, tune(logs, b.tuned, b.rig, options).table);
   }
   return read_table(file);

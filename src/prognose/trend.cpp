@@ -168,13 +168,18 @@ double left_open(const Series& s, double value) {
 FailureAt failure_of(const Series& s, const TrendOptions& options) {
   FailureAt at;
   const auto to_side = [&](double value, bool up) { (up ? at.upper : at.lower) = value; };
+  // How well a level is known at a value of the row: as who set it says, else as the model's form allows.
+  const auto known_to = [&](double value, double unit) {
+    const auto stated = options.failure_spread.find(s.name);
+    return stated == options.failure_spread.end() ? left_open(s, value) : stated->second * unit / s.stretch(value);
+  };
   if (const auto given = options.failure.find(s.name); given != options.failure.end()) {
     at.lower = s.in(given->second.first), at.upper = s.in(given->second.second);
-    if (const auto& level = at.upper ? at.upper : at.lower; level && s.fault) at.sd = left_open(s, s.out(*level));
+    if (const auto& level = at.upper ? at.upper : at.lower; level && s.fault) at.sd = known_to(s.out(*level), 1);
   } else if (const auto ratio = options.failure_ratio.find(s.name); ratio != options.failure_ratio.end()) {
-    if (s.fault && s.fault->log_scale && s.tuned) {  // a healthy one may be hardly seen: the tuned one rests on more
+    if (s.fault && s.fault->log_scale && s.tuned) {  // its healthy checks may hardly see it: the tuning logs saw more
       to_side(ratio->second * *s.tuned, ratio->second > 1);
-      at.sd = left_open(s, ratio->second * *s.tuned);
+      at.sd = known_to(ratio->second * *s.tuned, *s.tuned);
       return at;
     }
     at.of = s.paper() ? FailureAt::Of::beyond_base : FailureAt::Of::times_base;
@@ -305,8 +310,7 @@ CheckTrend trend_of(const Series& s, const TrendOptions& options, std::size_t na
   const GrowthModel begun({s.points.begin(), s.points.begin() + static_cast<long>(healthy)}, prior);
   std::vector<double> own;
   for (std::size_t i = 0; i < healthy; ++i) own.push_back(s.points[i].variance);
-  double centre =
-      out.trend ? g.base : median({corrected.begin(), corrected.begin() + static_cast<long>(healthy)});
+  double centre = out.trend ? g.base : median({corrected.begin(), corrected.begin() + static_cast<long>(healthy)});
   if (prior.part_lost) centre = std::max(centre, 0.0);  // nothing is cleaner than clean
   const double noise = begun.growth().probability < 0.5 ? begun.growth().null_noise : begun.growth().noise;
   const double spread = std::sqrt(noise * noise * (1 + 1.0 / static_cast<double>(healthy)) + median(own));

@@ -31,6 +31,8 @@ struct TrendOptions {
   std::map<std::string, std::pair<std::optional<double>, std::optional<double>>> failure;  // name -> lower, upper
   // name -> times its healthy value, of a parameter that multiplies its tuned one, where `failure` has none
   std::map<std::string, double> failure_ratio;
+  // name of a parameter -> one standard deviation of that level, in its unit; else by the fault's own `spread`
+  std::map<std::string, double> failure_spread;
   double coverage = 0.9;                        // of the interval of the life left
   std::uint64_t seed = 1;
 };
