@@ -91,6 +91,7 @@ void append(Series& s, const Recording& r, const Check& c) {
   const double z = std::isfinite(r.temperature) ? log_viscosity(r.temperature) : 0.0;
   p.features = {z, z * z};
   if (s.paper()) p.features.push_back(std::log(c.expected > 0 ? c.expected : 1.0));
+  if (s.scale == Series::Scale::part_lost) p.features.push_back(0.5 * std::pow(s.stretch(std::max(c.value, 0.0)), 2));
   s.points.push_back(std::move(p));
   s.temperature.push_back(r.temperature);
 }
@@ -246,6 +247,12 @@ GrowthPrior prior_of(const Series& s, std::size_t healthy, const FailureAt& fail
   if (s.paper()) {                        // the model's expectation: taken at its word within a half
     prior.feature_mean.push_back(1.0);
     prior.feature_sd.push_back(0.5);
+  }
+  // What a model errs by in the drop over a clean filter it errs by at every check, and it is the less of a blocked
+  // one's: d ln(open) = 0.5 open^2 d drop, drops over that of the clean one.
+  if (prior.part_lost) {
+    prior.feature_mean.push_back(0.0);
+    prior.feature_sd.push_back(0.25);
   }
   return prior;
 }
