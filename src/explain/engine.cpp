@@ -331,11 +331,11 @@ std::vector<CauseScore> score_causes(const Subject& subject, const ExplainedFit&
     std::optional<Imitation> of_rest;
     if (!cause.atop.empty()) {
       of_rest = but(cause.atop);
-      double n = 0;
+      double n = 0, sum = 0;
       for (std::size_t j = 0; j < base_size(subject, at); ++j)
         if (const Number& number = at.fit.numbers[j]; number.name == cause.atop)
-          s.below += std::log(number.from_unit(at.point[j])), ++n;
-      s.below /= std::max(1.0, n);
+          sum += number.from_unit(at.point[j]), ++n;
+      if (n > 0) s.of = sum / n;
     }
     const Imitation& imitation = of_rest ? *of_rest : of_all;
     for (std::size_t a = 0; a < cause.probes.size(); ++a) {
