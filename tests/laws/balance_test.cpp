@@ -153,7 +153,8 @@ Inputs<double> dragged(const Bench<Effects>& bench, const typename Bench<Effects
   const double rod = bench.rate(y, u)[s_x_piston];  // relative to the body
   const double h = 1.0;                             // far enough for all to slip
   u.friction.rest(y[s_x_spool] - y[s_v_spool] * h, y[s_x_piston] - rod * h);
-  u.friction.move(y[s_x_spool] - y[s_v_spool] * h, y[s_x_spool], y[s_x_piston] - rod * h, y[s_x_piston], h);
+  u.friction.move(y[s_x_spool] - y[s_v_spool] * h, y[s_x_spool], y[s_x_piston] - rod * h, y[s_x_piston], h,
+                  bench.derived().per_film_speed);
   return u;
 }
 
