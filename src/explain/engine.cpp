@@ -536,10 +536,13 @@ Explanation explain(Subject& subject, const EngineOptions& options, const Explan
       CandidateResult& r = out.candidates[c];
       if (round == 0) r.predicted_gain = scores[c].gain, r.p_new = p[c], r.reason = "its score predicts too little";
     }
-    // Where the data are abnormal as a whole, a cause need not be news by itself.
+    // Where the data are abnormal as a whole, a cause need not be news by itself. Where they are not, what is found
+    // suffices, and a rare cause beside it only takes some of its size.
+    const bool suffices = round > 0 && options.p_left && !abnormal;
     const auto is_new = [&](int c) {
       const auto k = static_cast<std::size_t>(c);
       if (scores[k].probes.empty()) return false;  // not looked at
+      if (suffices && subject.causes()[k].prior < 1) return false;
       return p[k] <= level || abnormal;
     };
     const auto in = [&](int c) { return std::count(now.causes.begin(), now.causes.end(), c) > 0; };

@@ -42,7 +42,7 @@ struct FrictionMemory {
   T spool_anchor{}, spool_speed{};                                     // [m], [m/s] mean over the last step
   std::array<T, std::size(constants::seal_presliding)> seal_anchor{};  // [m]
   T rod_speed{};                                                       // [m/s] relative to the body
-  T seal_breakaway = T(1.0);                                           // share that is left at that speed
+  T seal_breakaway = T(1.0);                                           // share that is left of the breakaway friction
 
   // At rest and unstretched: which way they came is not known.
   void rest(const T& x_spool, const T& x_rod) {
@@ -59,7 +59,11 @@ struct FrictionMemory {
       seal_anchor[i] = dragged_anchor(seal_anchor[i], x_rod, constants::seal_presliding[i]);
     spool_speed = (x_spool - spool_from) * T(1.0 / h);
     rod_speed = (x_rod - rod_from) * T(1.0 / h);
-    seal_breakaway = stribeck(rod_speed, per_film_speed);
+    // Friction follows the speed as contacts are renewed, over the way on which they slip: without that lag (Rice &
+    // Ruina 1983; Armstrong-Helouvry et al. 1994) a slow piston would hunt where a real one creeps.
+    using std::max;
+    const T renewed = max(x_rod - rod_from, rod_from - x_rod) * T(1.0 / constants::seal_renewal);
+    seal_breakaway = (seal_breakaway + renewed * stribeck(rod_speed, per_film_speed)) * inverse(T(1.0) + renewed);
   }
   // One lane of another memory.
   void take_lane(const FrictionMemory& from, int lane) {

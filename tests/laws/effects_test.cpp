@@ -157,7 +157,7 @@ TEST(SealFilm, AtItsSpeedHalfOfTheBreakawayFrictionIsLeft) {
   const auto force = [](double breakaway, double film_speed, double current, double* speed) {
     ParameterVector v = with<SealFilm>(0, film_speed);
     v[row::piston_stribeck_friction] = breakaway;
-    v[row::piston_viscous_friction] = 1e4;  // or the falling branch makes it stick and slip
+    v[row::piston_viscous_friction] = 1e4;  // well damped
     const Scenario s = made(1.0, 1e-3, [&](double t) { return t < 0.05 ? 0.0 : current; });
     const Trajectory t = simulate(s, v, all_signals());
     EXPECT_TRUE(t.ok);
@@ -177,6 +177,36 @@ TEST(SealFilm, AtItsSpeedHalfOfTheBreakawayFrictionIsLeft) {
     std::printf("%.1f mm/s, film at %.1f: %.3f left\n", 1e3 * other, 1e3 * film, left);
     EXPECT_NEAR(left, 1 / (1 + ratio * ratio), 0.03);
   }
+}
+
+TEST(SealFilm, FrictionFollowsASpeedOverTheWayOnWhichContactsAreRenewed) {
+  for (const double speed : {5e-3, 0.1}) {
+    constexpr double per_film_speed = 1 / 8e-3, step = 1e-7;
+    FrictionMemory<double> m;
+    m.rest(0, 0);
+    double x = 0;
+    while (x < constants::seal_renewal) m.move(0, 0, x, x + step, step / speed, per_film_speed), x += step;
+    const double steady = stribeck(speed, per_film_speed);
+    EXPECT_NEAR(m.seal_breakaway, steady + (1 - steady) * std::exp(-1.0), 2e-3);
+  }
+}
+
+TEST(SealFilm, SlowPistonCreepsOnFallingFriction) {
+  ParameterVector v = with<SealFilm>(0, 8e-3);
+  v[row::piston_stribeck_friction] = 250;
+  const Scenario s = made(1.5, 1e-3, [](double t) { return t < 0.05 ? 0.0 : 0.9e-3; });
+  const Trajectory t = simulate(s, v, all_signals());
+  ASSERT_TRUE(t.ok);
+  const auto& x = of(t, Signal::piston_position);
+  double least = 1, most = 0;
+  for (std::size_t k = 1000; k < 1490; ++k) {
+    const double speed = (x[k + 2] - x[k]) / (s.time[k + 2] - s.time[k]);
+    least = std::min(least, speed), most = std::max(most, speed);
+  }
+  std::printf("%.2f to %.2f mm/s\n", 1e3 * least, 1e3 * most);
+  EXPECT_GT(least, 1e-3);
+  EXPECT_LT(most, 6e-3);  // below the film's speed, where friction falls
+  EXPECT_LT(most, 1.2 * least);
 }
 
 TEST(Oil, ColdOilIsStifferByHalfAPerCentAKelvin) {
