@@ -413,7 +413,7 @@ void run_pack(const Scenario& in, const ParameterVector* const* candidates, Traj
         } else {
           rodas3_step<T>(live, y, h);
         }
-        friction.move(spool_from, y[s_x_spool], rod_from, y[s_x_piston], h, d.per_film_speed);
+        friction.move(spool_from, y[s_x_spool], rod_from, y[s_x_piston], h, d.per_film_speed, d.breakaway);
       }
     };
     const auto y_before = y;
