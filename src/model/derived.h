@@ -43,8 +43,7 @@ struct Derived {
   T leak;                              // [m3/s/Pa]
   T viscous;                           // [N s/m]
   T per_film_speed;                    // [s/m] of the seals' breakaway friction
-  T breakaway;  // [-] breakaway friction above sliding over sliding friction; a tenth of it counts as sliding, or a
-                // seal that slides freely would have no stiffness
+  T breakaway;                         // [-] breakaway friction above sliding over sliding and a tenth of itself
   T inverse_mass;                      // [1/kg]
   T half_stroke;                       // [m]
   T middle_volume_a, middle_volume_b;  // [m3] at mid-stroke
