@@ -240,15 +240,18 @@ std::vector<std::string> words_of(const std::string& name) {
 }
 
 // Number of words of the pattern if all are there, plus one where nothing else is; 0: no match.
-int match(const std::vector<std::string>& name, std::string_view pattern) {
+int match(std::vector<std::string> name, std::string_view pattern) {
+  const std::size_t words = name.size();
   int matched = 0;
   while (!pattern.empty()) {
     const auto blank = std::min(pattern.find(' '), pattern.size());
-    if (std::find(name.begin(), name.end(), pattern.substr(0, blank)) == name.end()) return 0;
+    const auto word = std::find(name.begin(), name.end(), pattern.substr(0, blank));
+    if (word == name.end()) return 0;
+    name.erase(word);  // each counts once: "p_T" is no "p p"
     ++matched;
     pattern.remove_prefix(std::min(blank + 1, pattern.size()));
   }
-  return 2 * matched + (static_cast<std::size_t>(matched) == name.size());
+  return 2 * matched + (static_cast<std::size_t>(matched) == words);
 }
 
 bool unit_fits(const std::string& unit, Signal signal) {

@@ -51,6 +51,8 @@ TEST(Guess, ASubscriptIsNoUnit) {
   EXPECT_EQ(taken({"U_cmd/V"}), "command in V");
   EXPECT_EQ(taken({"i_A"}), "command in A");
   EXPECT_EQ(taken({"t_s"}), "time in s");
+  EXPECT_EQ(taken({"pT"}), "return_pressure");  // no p_P, though it has a p
+  EXPECT_EQ(taken({"p_P"}), "supply_pressure");
 }
 
 TEST(Guess, UnitsInAnyCapitalsAndThePerCentOfASignal) {
