@@ -37,13 +37,13 @@ std::string headline(const ExplainResult& r) {
   return text;
 }
 
-// "valve glitch: backlash between feedback wire and spool, full width", as the lists of effects and of rows say it.
+// "valve glitch (backlash between feedback wire and spool, full width)", as the lists of effects and of rows say it.
 std::string with_meaning(const std::string& effect) {
   std::string meaning;
   if (const int row = find_parameter(effect); row >= 0) meaning = parameter_list[row].meaning;
   for (const EffectInfo& e : effect_list())
     if (e.name == effect) meaning = e.meaning;
-  return words(effect) + (meaning.empty() ? "" : ": " + meaning);
+  return words(effect) + (meaning.empty() ? "" : " (" + meaning + ")");
 }
 
 std::string with_meanings(const std::vector<ExplainedCause>& causes) {
@@ -163,7 +163,7 @@ Page explain_page(const Header& header, const ExplainResult& r, const std::vecto
   v.word = word_of(r);
   v.headline = headline(r);
   if (r.verdict == "extended")
-    v.detail = "What the simulation has wrong on these logs. " + with_meanings(r.causes) + ".";
+    v.detail = "What the simulation has wrong on these logs: " + with_meanings(r.causes) + ".";
   if (r.curve) v.detail = "Nothing in the list mends it; a curve learnt from the logs does.";
   if (!r.causes.empty()) v.facts.push_back({"Mending it removes, of the misfit", of_misfit(r.heldout_gain)});
   v.facts.push_back({"Re-tuning alone removes", of_misfit(r.retuned)});
