@@ -331,11 +331,11 @@ std::vector<CauseScore> score_causes(const Subject& subject, const ExplainedFit&
     std::optional<Imitation> of_rest;
     if (!cause.atop.empty()) {
       of_rest = but(cause.atop);
-      double n = 0;
+      double n = 0, sum = 0;
       for (std::size_t j = 0; j < base_size(subject, at); ++j)
         if (const Number& number = at.fit.numbers[j]; number.name == cause.atop)
-          s.below += std::log(number.from_unit(at.point[j])), ++n;
-      s.below /= std::max(1.0, n);
+          sum += number.from_unit(at.point[j]), ++n;
+      if (n > 0) s.of = sum / n;
     }
     const Imitation& imitation = of_rest ? *of_rest : of_all;
     for (std::size_t a = 0; a < cause.probes.size(); ++a) {
@@ -536,10 +536,13 @@ Explanation explain(Subject& subject, const EngineOptions& options, const Explan
       CandidateResult& r = out.candidates[c];
       if (round == 0) r.predicted_gain = scores[c].gain, r.p_new = p[c], r.reason = "its score predicts too little";
     }
-    // Where the data are abnormal as a whole, a cause need not be news by itself.
+    // Where the data are abnormal as a whole, a cause need not be news by itself. Where they are not, what is found
+    // suffices, and a rare cause beside it only takes some of its size.
+    const bool suffices = round > 0 && options.p_left && !abnormal;
     const auto is_new = [&](int c) {
       const auto k = static_cast<std::size_t>(c);
       if (scores[k].probes.empty()) return false;  // not looked at
+      if (suffices && subject.causes()[k].prior < 1) return false;
       return p[k] <= level || abnormal;
     };
     const auto in = [&](int c) { return std::count(now.causes.begin(), now.causes.end(), c) > 0; };

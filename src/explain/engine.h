@@ -26,7 +26,7 @@ struct CauseScore {
   double gain = 0;                 // predicted fall of the deviance
   int alternative = 0;             // of its probes
   std::vector<ProbeScore> probes;  // all of them, alternatives one after another
-  double below = 0;                // logarithm of the numbers that it is atop of
+  double of = 1;                   // what it is a factor on: mean of the base's numbers that it is atop of
 };
 
 struct Interval {

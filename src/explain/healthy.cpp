@@ -78,8 +78,10 @@ HealthyScore summarise(const Subject& subject, const CauseScore& score) {
   for (const auto& alternative : cause.probes) {
     if (alternative.size() == 1) {
       out.sizes.push_back(score.probes[k++]);
-      if (!cause.atop.empty())  // a factor: what it is of
-        out.sizes.back().size += score.below / std::log(alternative.front().front() / cause.numbers.front().off);
+      if (cause.atop.empty()) continue;
+      const double off = cause.numbers.front().off, move = alternative.front().front() - off;
+      ProbeScore& whole = out.sizes.back();
+      whole = {score.of * (off + move * whole.size), score.of * std::abs(move) * whole.std_error};
       continue;
     }
     double size = 0, error = 0;

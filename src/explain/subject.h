@@ -37,7 +37,7 @@ struct Cause {
   std::vector<std::vector<std::vector<double>>> probes;
   std::string family = "";  // tells apart causes of one name and place: the variable of a learnt curve
   bool curve = false;       // its numbers are a curve's knots: judged by what they gain together
-  // Name of the base's numbers that it goes on where they end, a factor on them: its size is then counted with theirs.
+  // Name of the base's numbers that it goes on where they end, a factor on them: its size is then what they are in all.
   std::string atop = "";
 };
 

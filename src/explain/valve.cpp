@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <set>
 
 #include "base/error.h"
 #include "base/student.h"
@@ -23,6 +24,9 @@ constexpr double wide_sd = 0.1;  // re-tuning alone, to compare with
 constexpr double longest_memory = 1 - 1e-6;
 constexpr double slack = 10;       // an effect may grow beyond what this rig shows when healthy by this
 constexpr double row_prior = 0.1;  // a row that was held for a reason, beside an effect that has a name
+// Of the construction, there from the first day or never: in a rig's healthy logs as well, and no likely news.
+const std::set<std::string> built_in = {ArmatureAngle::name, RodCavity::name, EdgeTransition::name, OrificeLength::name,
+                                        ScreenDrop::name};
 
 // What shows a cause best.
 const std::map<std::string, const char*> tests = {
@@ -36,6 +40,7 @@ const std::map<std::string, const char*> tests = {
     {"edge_transition",
      "slow triangles of some per cent in cold and in hot oil: in the cold the piston lags by a wider lap"},
     {"orifice_length", "full steps in cold and in hot oil: in the cold the spool slews slower"},
+    {"screen_drop", "full steps in cold and in hot oil: in the cold the pilot pressures fall"},
     {"edge_radius", "the pressure's slope at null beside the leakage there: blunt edges leak more at the same slope"},
     {"port_line", "leakage sweeps at two rates, ports blocked: a tail after null that lasts as long at either"},
     {"supply_droop", "full steps with the supply pressure measured at the valve"},
@@ -95,20 +100,19 @@ double travel_of(const Scenario& s) {
 }
 
 // What healthy logs have had of a nuisance, by Student's 99 %, is where it goes; beyond is a cause, and no log's own
-// affair. A log's air is a number of its oil; the command between samples is the logger's, and a delay in its place.
+// affair. A log's air is a number of its oil, and counts by how soft it makes it: little air and none are alike. The
+// command between samples is the logger's, and a delay in its place.
 void limit(FreeValue& own, const std::vector<double>& healthy) {
   if (healthy.size() < 3) return;
-  const auto scaled = [&](double v) { return own.log_scale ? std::log(v) : v; };
-  const auto back = [&](double v) { return own.log_scale ? std::exp(v) : v; };
   double mean = 0, square = 0;
   const auto n = static_cast<double>(healthy.size());
-  for (double v : healthy) mean += scaled(v) / n;
-  for (double v : healthy) square += std::pow(scaled(v) - mean, 2) / (n - 1);
+  for (double v : healthy) mean += v / n;
+  for (double v : healthy) square += std::pow(v - mean, 2) / (n - 1);
   double t = 2.6;  // quantile, found by steps: once a subject
   while (student_tail(t, n - 1) > 0.01) t *= 1.05;
   const double reach = t * std::sqrt(square * (1 + 1 / n)), least = 1e-3 * (own.upper - own.lower);
-  own.lower = std::max(own.lower, back(mean - reach));
-  own.upper = std::max(std::min(own.upper, back(mean + reach)), own.lower + least);
+  own.lower = std::max(own.lower, mean - reach);
+  own.upper = std::max(std::min(own.upper, mean + reach), own.lower + least);
   own.start = std::clamp(own.start, own.lower, own.upper);
 }
 
@@ -304,6 +308,7 @@ void ValveSubject::add_causes(const RigFile& rig) {
     Cause cause;
     cause.effect = e.name;
     cause.where = e.place;
+    if (known_ && built_in.contains(e.name)) cause.prior = row_prior;
     std::vector<FreeValue> values;
     std::vector<std::vector<double>> sizes;
     std::vector<std::pair<std::size_t, double>> typical;  // shapes that the table has otherwise

@@ -22,9 +22,9 @@ auto asperities(const X& stretch) {
 
 // Anchor [m] after a move to x [m].
 template <class T>
-T dragged_anchor(const T& anchor, const T& x, double presliding) {
+T dragged_anchor(const T& anchor, const T& x, const T& presliding) {
   using std::max, std::min;
-  return max(min(anchor, x + T(presliding)), x - T(presliding));
+  return max(min(anchor, x + presliding), x - presliding);
 }
 
 // Share of the breakaway friction that is left at a speed [m/s]: 1 at rest, a half at that of 1 / `per_fall`
@@ -36,30 +36,48 @@ T stribeck(const T& speed, const T& per_fall) {
   return inverse(T(1.0) + ratio * ratio);
 }
 
+// Of the rod's seals: how much more they hold than they drag.
+template <class T>
+struct Breakaway {
+  T over_sliding;    // [-] breakaway friction above sliding friction over sliding friction; 0: none
+  T per_film_speed;  // [s/m]
+};
+
 // What spool and rod remember of their way.
 template <class T>
 struct FrictionMemory {
   T spool_anchor{}, spool_speed{};                                     // [m], [m/s] mean over the last step
   std::array<T, std::size(constants::seal_presliding)> seal_anchor{};  // [m]
   T rod_speed{};                                                       // [m/s] relative to the body
-  T seal_breakaway = T(1.0);                                           // share that is left at that speed
+  T seal_breakaway = T(1.0);                                           // share that is left of the breakaway friction
+  T seal_per_reach = T(1.0);  // sliding friction over what the seals hold: they are no stiffer for holding on longer
 
   // At rest and unstretched: which way they came is not known.
   void rest(const T& x_spool, const T& x_rod) {
     spool_anchor = x_spool;
     seal_anchor.fill(x_rod);
     spool_speed = rod_speed = T(0.0);
-    seal_breakaway = T(1.0);
+    seal_breakaway = seal_per_reach = T(1.0);
   }
-  // After a step of h [s] between two places [m]; per_film_speed [s/m] of the rod's seals.
+  // After a step of h [s] between two places [m]. `sticks` false where no breakaway is above 0: the same bits, sooner.
   void move(const T& spool_from, const T& x_spool, const T& rod_from, const T& x_rod, double h,
-            const T& per_film_speed) {
-    spool_anchor = dragged_anchor(spool_anchor, x_spool, constants::spool_presliding);
-    for (std::size_t i = 0; i < seal_anchor.size(); ++i)
-      seal_anchor[i] = dragged_anchor(seal_anchor[i], x_rod, constants::seal_presliding[i]);
+            const Breakaway<T>& breakaway, bool sticks = true) {
+    spool_anchor = dragged_anchor(spool_anchor, x_spool, T(constants::spool_presliding));
     spool_speed = (x_spool - spool_from) * T(1.0 / h);
     rod_speed = (x_rod - rod_from) * T(1.0 / h);
-    seal_breakaway = stribeck(rod_speed, per_film_speed);
+    T reach = T(1.0);
+    if (sticks) {
+      // Friction follows the speed as contacts are renewed, over the way on which they slip: without that lag (Rice &
+      // Ruina 1983; Armstrong-Helouvry et al. 1994) a slow piston would hunt where a real one creeps.
+      using std::max;
+      const T renewed = max(x_rod - rod_from, rod_from - x_rod) * T(1.0 / constants::seal_renewal);
+      seal_breakaway =
+          (seal_breakaway + renewed * stribeck(rod_speed, breakaway.per_film_speed)) * inverse(T(1.0) + renewed);
+      reach = T(1.0) + breakaway.over_sliding * seal_breakaway;
+      seal_per_reach = T(1.0) / reach;
+    }
+    for (std::size_t i = 0; i < seal_anchor.size(); ++i)
+      seal_anchor[i] = dragged_anchor(seal_anchor[i], x_rod, T(constants::seal_presliding[i]) * reach);
   }
   // One lane of another memory.
   void take_lane(const FrictionMemory& from, int lane) {
@@ -68,6 +86,7 @@ struct FrictionMemory {
     for (std::size_t i = 0; i < seal_anchor.size(); ++i) servodx::take_lane(seal_anchor[i], from.seal_anchor[i], lane);
     servodx::take_lane(rod_speed, from.rod_speed, lane);
     servodx::take_lane(seal_breakaway, from.seal_breakaway, lane);
+    servodx::take_lane(seal_per_reach, from.seal_per_reach, lane);
   }
 };
 

@@ -26,6 +26,8 @@ inline constexpr double spool_presliding =
 // [m] A seal slips bit by bit, from its asperities to the bending of its lip; each family bears an equal share
 // (Maxwell's slip model: Iwan 1966, Al-Bender, Lampaert & Swevers 2005). One family alone rings at each reversal.
 inline constexpr double seal_presliding[] = {1e-5, 3e-5, 1e-4};
+inline constexpr double seal_renewal = 5e-5;   // [m] mean of these: a seal's contacts are new after sliding as far
+inline constexpr double least_friction = 1.0;  // [N] keeps a ratio of frictions defined where there are none
 inline constexpr double piston_stribeck_velocity = 2e-2;  // [m/s] elastomer seals slide fully from some cm/s
 inline constexpr double clean_filter_area_ratio =
     5.0;  // clean filter area over both fixed orifices' areas: 4 % of the pilot pressure is lost

@@ -181,7 +181,9 @@ inline __attribute__((always_inline)) auto derivative(const S& s, const In& in, 
   // Piston.
   constexpr int n_families = std::size(c::seal_presliding);
   const auto seals = [&]<int... I>(std::integer_sequence<int, I...>) {
-    return (asperities<T>((x_p - in.friction.seal_anchor[I]) * T(1.0 / c::seal_presliding[I])) + ...) *
+    return (asperities<T>((x_p - in.friction.seal_anchor[I]) *
+                          (T(1.0 / c::seal_presliding[I]) * in.friction.seal_per_reach)) +
+            ...) *
            T(1.0 / n_families);
   }
   (std::make_integer_sequence<int, n_families>{});

@@ -248,9 +248,9 @@ GrowthModel::GrowthModel(std::vector<GrowthPoint> points, const GrowthPrior& pri
                 std::log(std::max(1e-300, 2 * normal_cdf(prior.direction * g.mean / std::sqrt(g.variance))));
           if (tried[l].lost > 0) {  // the part that it supposes has to be the part that it finds
             const double supposed = -std::log1p(-tried[l].lost),
-                         sd = std::hypot(loss_spread * supposed, std::sqrt(g.variance));
-            g.log_evidence += 0.5 * std::pow(g.mean / prior.scale, 2) + std::log(prior.scale / sd) -
-                              0.5 * std::pow((g.mean - supposed) / sd, 2);
+                         error = std::hypot(loss_spread * supposed, std::sqrt(g.variance));
+            g.log_evidence += 0.5 * std::pow(g.mean / prior.scale, 2) + std::log(prior.scale / error) -
+                              0.5 * std::pow((g.mean - supposed) / error, 2);
           }
           all.push_back(g.log_evidence);
           found.push_back({r, o, l, std::move(g)});

@@ -35,6 +35,7 @@ class Line : public Subject {
   }
   const std::vector<Cause>& causes() const override { return causes_; }
   const std::vector<Series>& series() const override { return series_; }
+  void make_rare(std::size_t cause) { causes_[cause].prior = 0.1; }
   SubjectFit fit(const std::vector<int>& causes, bool) const override {
     SubjectFit out;
     out.numbers = {{"a", "-", -10, 10, false, 0, true, ""}, {"b", "-", -10, 10, false, 0, true, ""}};
@@ -111,6 +112,20 @@ TEST(Engine, TwoCausesAreBothFound) {
   const Explanation whole = explain(line, {});
   ASSERT_EQ(whole.causes.size(), 1u);
   EXPECT_EQ(whole.causes[0].cause, 2);
+}
+
+TEST(Engine, RareCauseIsNamedBesideAnotherOnlyWhereTheDataAreStillAbnormal) {
+  const std::vector<Line::Shape> both = {
+      shapes[0], shapes[2], {"sum", "", [](double t) { return std::sin(40 * t) + 6 * std::abs(t - 0.5); }}};
+  for (const bool abnormal : {false, true}) {
+    Line line(both, 11, 2, 1.0);
+    line.make_rare(1);
+    EngineOptions o;
+    o.among = [](const Cause& c) { return c.effect != "sum"; };
+    o.p_new = [](const CauseScore&, int) { return 1e-6; };
+    o.p_left = [&](const ExplainedFit&, int round) { return round == 0 || (abnormal && round == 1) ? 1e-6 : 1.0; };
+    EXPECT_EQ(explain(line, o).causes.size(), abnormal ? 2u : 1u);
+  }
 }
 
 TEST(Engine, NoiseAloneIsLeftAlone) {

@@ -153,7 +153,8 @@ Inputs<double> dragged(const Bench<Effects>& bench, const typename Bench<Effects
   const double rod = bench.rate(y, u)[s_x_piston];  // relative to the body
   const double h = 1.0;                             // far enough for all to slip
   u.friction.rest(y[s_x_spool] - y[s_v_spool] * h, y[s_x_piston] - rod * h);
-  u.friction.move(y[s_x_spool] - y[s_v_spool] * h, y[s_x_spool], y[s_x_piston] - rod * h, y[s_x_piston], h);
+  u.friction.move(y[s_x_spool] - y[s_v_spool] * h, y[s_x_spool], y[s_x_piston] - rod * h, y[s_x_piston], h,
+                  bench.derived().breakaway);
   return u;
 }
 
@@ -186,6 +187,29 @@ TEST(Balance, FrictionTakesPowerFromWhatSlides) {
     for (int row : {row::piston_viscous_friction, row::piston_coulomb_friction, row::piston_stribeck_friction})
       friction_takes_power<AllEffects>(w, row, s_v_piston, s_x_piston);
   }
+}
+
+TEST(Balance, SealsThatHoldMoreHoldLongerAndAreNoStiffer) {
+  // What holds the rod against a slow push, from rest.
+  const auto held = [](double breakaway, double push) {
+    ParameterVector v = nominal_candidate();
+    v[row::piston_stribeck_friction] = breakaway;
+    const Bench<AllEffects> bench(v);
+    Random random(21, 1);
+    auto y = bench.state(random);
+    y[s_v_piston] = 0;
+    auto u = bench.inputs(random);
+    u.friction.rest(y[s_x_spool], y[s_x_piston] - push);
+    const double h = push / 1e-5;  // [s] at 10 um/s
+    u.friction.move(y[s_x_spool], y[s_x_spool], y[s_x_piston] - push, y[s_x_piston], h, bench.derived().breakaway);
+    auto free = u;
+    free.friction.rest(y[s_x_spool], y[s_x_piston]);
+    return v[row::moving_mass] * (bench.rate(y, free)[s_v_piston] - bench.rate(y, u)[s_v_piston]);
+  };
+  const double sliding = nominal_candidate()[row::piston_coulomb_friction];
+  EXPECT_NEAR(held(0, 1e-6) / held(500, 1e-6), 1.0, 0.1);
+  EXPECT_NEAR(held(0, 1e-2), sliding, 1e-3 * sliding);
+  EXPECT_NEAR(held(500, 1e-2), sliding + 500, 1e-3 * (sliding + 500));
 }
 
 // A step runs ahead of the anchor by as much as the part slides in it.

@@ -81,27 +81,32 @@ TEST(EdgeTransition, CostsAnOpenEdgeAFlowThatGrowsWithViscosityAndNotWithTheOpen
     }
 }
 
+// At rest both sides pass q: (2q / G_f)^2 + (q / G_o)^2 + (q / G_n)^2 + laminar q = supply less return.
+void expect_pilot_pressures_at_rest(const Scenario& s, const ParameterVector& v, const Derived<double>& d,
+                                    double laminar) {
+  const double gap = v[row::nozzle_gap], nozzle = d.nozzle_conductance * gap / std::sqrt(1 + d.bore_loss * gap * gap);
+  const double square = 4 / (d.filter_conductance * d.filter_conductance) +
+                        1 / (d.orifice_conductance * d.orifice_conductance) + 1 / (nozzle * nozzle);
+  const double drop = v[row::supply_pressure] - v[row::return_pressure];
+  const double q = 2 * drop / (laminar + std::sqrt(laminar * laminar + 4 * square * drop));
+  const double expected = v[row::return_pressure] + q * q / (nozzle * nozzle);
+  const Trajectory t = simulate(s, v, all_signals());
+  ASSERT_TRUE(t.ok);
+  for (Signal side : {Signal::pilot_pressure_1, Signal::pilot_pressure_2})
+    EXPECT_NEAR(of(t, side).back(), expected, 1e-3 * drop);
+}
+
 TEST(OrificeLength, PilotPressureAtRestIsThatOfPoiseuilleInSeriesWithJets) {
-  // At rest both sides pass q: (2q / G_f)^2 + (q / G_o)^2 + 128 mu L / (pi D^4) q + (q / G_n)^2 = supply less return.
   for (const double slenderness : {0.0, 3.0})
     for (const double thicker : {1.0, 10.0}) {
+      SCOPED_TRACE(testing::Message() << slenderness << " diameters, viscosity times " << thicker);
       Scenario s = made(0.2, 1e-3, [](double) { return 0.0; });
       s.oil.dynamic_viscosity *= thicker;
       ParameterVector v = with<OrificeLength>(0, slenderness);
       v[row::servovalve_null] = 0;
-      const Derived<double> d = derive<double>(v.data(), s.oil);
-      const double bore = v[row::fixed_orifice_diameter], gap = v[row::nozzle_gap];
-      const double laminar = 128 * s.oil.dynamic_viscosity * slenderness / (constants::pi * bore * bore * bore);
-      const double nozzle = d.nozzle_conductance * gap / std::sqrt(1 + d.bore_loss * gap * gap);
-      const double square = 4 / (d.filter_conductance * d.filter_conductance) +
-                            1 / (d.orifice_conductance * d.orifice_conductance) + 1 / (nozzle * nozzle);
-      const double drop = v[row::supply_pressure] - v[row::return_pressure];
-      const double q = 2 * drop / (laminar + std::sqrt(laminar * laminar + 4 * square * drop));
-      const double expected = v[row::return_pressure] + q * q / (nozzle * nozzle);
-      const Trajectory t = simulate(s, v, all_signals());
-      ASSERT_TRUE(t.ok);
-      for (Signal side : {Signal::pilot_pressure_1, Signal::pilot_pressure_2})
-        EXPECT_NEAR(of(t, side).back(), expected, 1e-3 * drop) << slenderness << " " << thicker;
+      const double cube = std::pow(v[row::fixed_orifice_diameter], 3);
+      expect_pilot_pressures_at_rest(s, v, derive<double>(v.data(), s.oil),
+                                     128 * s.oil.dynamic_viscosity * slenderness / (constants::pi * cube));
     }
 }
 
@@ -124,31 +129,19 @@ TEST(OrificeLength, ColdOilCostsASlewItsSpeedOnlyWithALength) {
 }
 
 TEST(ScreenDrop, PilotPressureAtRestIsThatOfPoresAndJetsInSeries) {
-  // At rest y = 2 q / (G_f open): y^2 + drop (viscosity ratio) y / y_0 + (q / G_o)^2 + (q / G_n)^2 = supply less
-  // return.
+  // The pores of a filter take drop times the ratio of viscosities at its own flow at rest, less of them the more.
   for (const double viscous : {0.0, 4e5})
     for (const double thicker : {1.0, 20.0})
       for (const double blocked : {0.0, 0.7}) {
+        SCOPED_TRACE(testing::Message() << viscous << " Pa, viscosity times " << thicker << ", blocked " << blocked);
         Scenario s = made(0.2, 1e-3, [](double) { return 0.0; });
         s.oil.dynamic_viscosity *= thicker, s.oil.viscosity_ratio *= thicker;
         ParameterVector v = with<ScreenDrop>(0, viscous);
         v[row::servovalve_null] = 0;
         v[row::filter_blockage_positive] = v[row::filter_blockage_negative] = blocked;
         const Derived<double> d = derive<double>(v.data(), s.oil);
-        const double gap = v[row::nozzle_gap];
-        const double nozzle = d.nozzle_conductance * gap / std::sqrt(1 + d.bore_loss * gap * gap);
-        const double per_filter = 2 / d.filter_conductance;
-        const double laminar = viscous * s.oil.viscosity_ratio * per_filter * constants::clean_filter_area_ratio /
-                               std::sqrt(0.5 * v[row::supply_pressure]);
-        const double square =
-            per_filter * per_filter + 1 / (d.orifice_conductance * d.orifice_conductance) + 1 / (nozzle * nozzle);
-        const double drop = v[row::supply_pressure] - v[row::return_pressure];
-        const double q = 2 * drop / (laminar + std::sqrt(laminar * laminar + 4 * square * drop));
-        const double expected = v[row::return_pressure] + q * q / (nozzle * nozzle);
-        const Trajectory t = simulate(s, v, all_signals());
-        ASSERT_TRUE(t.ok);
-        for (Signal side : {Signal::pilot_pressure_1, Signal::pilot_pressure_2})
-          EXPECT_NEAR(of(t, side).back(), expected, 2e-3 * drop) << viscous << " " << thicker << " " << blocked;
+        const double at_rest = std::sqrt(0.5 * v[row::supply_pressure]) / constants::clean_filter_area_ratio;
+        expect_pilot_pressures_at_rest(s, v, d, viscous * s.oil.viscosity_ratio / at_rest * 2 / d.filter_conductance);
       }
 }
 
@@ -157,22 +150,56 @@ TEST(SealFilm, AtItsSpeedHalfOfTheBreakawayFrictionIsLeft) {
   const auto force = [](double breakaway, double film_speed, double current, double* speed) {
     ParameterVector v = with<SealFilm>(0, film_speed);
     v[row::piston_stribeck_friction] = breakaway;
+    v[row::piston_viscous_friction] = 1e4;  // well damped
     const Scenario s = made(1.0, 1e-3, [&](double t) { return t < 0.05 ? 0.0 : current; });
     const Trajectory t = simulate(s, v, all_signals());
     EXPECT_TRUE(t.ok);
     const auto& x = of(t, Signal::piston_position);
     *speed = (x[950] - x[750]) / (s.time[950] - s.time[750]);
-    return v[row::piston_area_a] * of(t, Signal::pressure_a)[850] -
-           v[row::piston_area_b] * of(t, Signal::pressure_b)[850];
+    double mean = 0;  // of what the pressures carry
+    for (std::size_t k = 750; k < 950; ++k)
+      mean += (v[row::piston_area_a] * of(t, Signal::pressure_a)[k] -
+               v[row::piston_area_b] * of(t, Signal::pressure_b)[k]) / 200;
+    return mean;
   };
   double speed = 0, other = 0;
-  const double without = force(0, 8e-3, 1.2e-3, &speed);
+  const double without = force(0, 8e-3, 3e-3, &speed);
   for (const double film : {speed, 3 * speed}) {
-    const double left = (force(200, film, 1.2e-3, &other) - without) / 200;
+    const double left = (force(200, film, 3e-3, &other) - without) / 200;
     const double ratio = other / film;
     std::printf("%.1f mm/s, film at %.1f: %.3f left\n", 1e3 * other, 1e3 * film, left);
     EXPECT_NEAR(left, 1 / (1 + ratio * ratio), 0.03);
   }
+}
+
+TEST(SealFilm, FrictionFollowsASpeedOverTheWayOnWhichContactsAreRenewed) {
+  for (const double speed : {5e-3, 0.1}) {
+    constexpr double per_film_speed = 1 / 8e-3, step = 1e-7;
+    FrictionMemory<double> m;
+    m.rest(0, 0);
+    double x = 0;
+    while (x < constants::seal_renewal) m.move(0, 0, x, x + step, step / speed, {2, per_film_speed}), x += step;
+    const double steady = stribeck(speed, per_film_speed);
+    EXPECT_NEAR(m.seal_breakaway, steady + (1 - steady) * std::exp(-1.0), 2e-3);
+  }
+}
+
+TEST(SealFilm, SlowPistonCreepsOnFallingFriction) {
+  ParameterVector v = with<SealFilm>(0, 8e-3);
+  v[row::piston_stribeck_friction] = 250;
+  const Scenario s = made(1.5, 1e-3, [](double t) { return t < 0.05 ? 0.0 : 0.9e-3; });
+  const Trajectory t = simulate(s, v, all_signals());
+  ASSERT_TRUE(t.ok);
+  const auto& x = of(t, Signal::piston_position);
+  double least = 1, most = 0;
+  for (std::size_t k = 1000; k < 1490; ++k) {
+    const double speed = (x[k + 2] - x[k]) / (s.time[k + 2] - s.time[k]);
+    least = std::min(least, speed), most = std::max(most, speed);
+  }
+  std::printf("%.2f to %.2f mm/s\n", 1e3 * least, 1e3 * most);
+  EXPECT_GT(least, 1e-3);
+  EXPECT_LT(most, 6e-3);  // below the film's speed, where friction falls
+  EXPECT_LT(most, 1.2 * least);
 }
 
 TEST(Oil, ColdOilIsStifferByHalfAPerCentAKelvin) {

@@ -262,6 +262,29 @@ TEST(BoxLeastSquares, StepsThatTeachTheJacobianSaveEvaluationsAndEndAtTheSameMin
             1e-3 * with.jacobian.cwiseAbs().maxCoeff());
 }
 
+TEST(BoxLeastSquares, ALeastMetricHoldsWhatIsHardlySeenAndMovesNoMinimum) {
+  // Columns a thousandfold apart. Marquardt's diagonal damps both alike; beside it a part m of the strong column's
+  // diagonal holds the weak one by 1 + m 10^6 times as much, and the strong one by 1 + m.
+  Eigen::MatrixXd a = Eigen::MatrixXd::Zero(2, 2);
+  a(0, 0) = 1.0, a(1, 1) = 1e-3;
+  const LeastSquaresProblem problem = linear(a, a * Eigen::Vector2d(0.6, 0.5));
+  const Point start = {0.4, 0.3};
+  const auto run = [&](double least, int iterations) {
+    LeastSquaresOptions o;
+    o.damping_trials = 1, o.first_damping = 1e3, o.secant_steps = 0;
+    o.least_metric = least;
+    o.max_iterations = iterations;
+    return minimise_least_squares(problem, start, o).point;
+  };
+  for (const double least : {0.0, 1e-5, 1e-3}) {
+    const Point first = run(least, 2), end = run(least, 100);
+    const auto damping = [&](int k) { return 0.2 / (first[k] - start[k]) - 1; };
+    EXPECT_NEAR(damping(1) / damping(0), (1 + least * 1e6) / (1 + least), 1e-3 * (1 + least * 1e6)) << least;
+    EXPECT_NEAR(end[0], 0.6, 1e-6) << least;
+    EXPECT_NEAR(end[1], 0.5, 1e-4) << least;
+  }
+}
+
 TEST(BoxLeastSquares, InterruptionGoalAndLimitsReturnTheBestSoFar) {
   const LeastSquaresProblem problem{4, residuals_of(rosenbrock(4)), {}};
   LeastSquaresOptions options;
