@@ -32,9 +32,11 @@ struct Header {
 Header read_header(const std::string& path) {
   const std::string bytes = read_file(path);
   CsvCursor csv(bytes, path);
-  Header header{guess_columns(csv.header()), {}};
+  bool in_row = csv.next_row();
+  const std::vector<std::string> units = in_row ? units_row(csv) : std::vector<std::string>{};
+  Header header{guess_columns(csv.header(), units), {}};
   std::vector<double> low(csv.header().size(), HUGE_VAL), high(csv.header().size(), -HUGE_VAL);
-  while (csv.next_row())
+  for (; in_row; in_row = csv.next_row())
     for (std::size_t c = 0; c < low.size(); ++c) {
       double value = 0;
       if (csv.next_number(value) == Cell::number) low[c] = std::min(low[c], value), high[c] = std::max(high[c], value);
@@ -118,6 +120,9 @@ void run(const Options& options) {
   try {
     const Log log = read_log(options.log, read_rig_file(options.output));
     text += fmt::format("the log reads with it: {} samples\n", log.samples());
+    for (const std::string& note : log.notes)
+      if (note.find(": ignored ") == std::string::npos)
+        text += "  beware: " + note + "\n";  // the ignored are told below
   } catch (const InputError& open) {
     text += fmt::format("to be mended in {} before the log reads:\n  {}\n", options.output, open.what());
   }

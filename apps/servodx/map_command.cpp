@@ -89,6 +89,7 @@ void run(const Options& options) {
       for (double at : falling_supplies(supply, valve))
         pictures.push_back({fmt::format("{}, P_SR {:.3g} bar", options.model, find_unit("bar")->from_si(at)),
                             map_of(*find_map(options.model), at), at});
+    if (!all && options.model != "HF") pictures.front().detailed = map_of(*find_map("HF"), supply);
   }
   if (!options.svg.empty()) write_file(options.svg, report::maps_svg(pictures));
 

@@ -27,15 +27,31 @@ struct Options {
   TrendOptions trend;
 };
 
-// "fidelity=1.7" above, "parameter:3=<20" below.
+// "fidelity=1.7" above, "parameter:3=<20" below; "parameter:14=20x" times the tuned value (of the paper's checks: the
+// healthy one); "parameter:22=30e-6~1e-6" known to one standard deviation.
 void add_failure(const std::string& text, TrendOptions& to) {
   const auto equals = text.find('=');
-  const bool below = equals != std::string::npos && equals + 1 < text.size() && text[equals + 1] == '<';
-  const auto value = equals == std::string::npos ? std::nullopt : parse_number(text.substr(equals + (below ? 2 : 1)));
-  require_option(value.has_value() && equals > 0, "--failure", "'" + text + "' is not NAME=VALUE",
-                 "--failure fidelity=1.7, or --failure 'parameter:3=<20' for a lower limit");
-  auto& [lower, upper] = to.failure[text.substr(0, equals)];
-  (below ? lower : upper) = *value;
+  const std::string name = text.substr(0, equals);
+  std::string level = equals == std::string::npos ? "" : text.substr(equals + 1);
+  const bool below = level.starts_with('<');
+  if (below) level.erase(0, 1);
+  std::optional<double> spread;
+  const auto tilde = level.find('~');
+  if (tilde != std::string::npos) spread = parse_number(level.substr(tilde + 1)), level.erase(tilde);
+  const bool times = level.ends_with('x');
+  if (times) level.pop_back();
+  const std::optional<double> value = parse_number(level);
+  require_option(
+      value && equals > 0 && (tilde == std::string::npos || (spread && *spread > 0)) &&
+          !(times && (below || *value <= 0)),
+      "--failure", "'" + text + "' is not NAME=VALUE",
+      "--failure fidelity=1.7, --failure 'parameter:3=<20' for a lower limit, --failure parameter:14=20x for "
+      "20 times the tuned value, ~SPREAD behind it for how well it is known");
+  if (spread) to.failure_spread[name] = *spread;
+  if (times)
+    to.failure_ratio[name] = *value;
+  else
+    (below ? to.failure[name].first : to.failure[name].second) = *value;
 }
 
 void run(Options options) {
@@ -84,7 +100,9 @@ void add_trend_command(CLI::App& app) {
   command->add_option("--history", options->history, "history file")->required()->type_name("H.db");
   command->add_option("--valve", options->valve, "one valve")->type_name("ID");
   command->add_flag("--all", options->all, "all valves, the first to reach its warning level first");
-  command->add_option("--failure", options->failures, "failure level of a check: NAME=VALUE, NAME=<VALUE below")
+  command
+      ->add_option("--failure", options->failures,
+                   "failure level of a check: NAME=VALUE, NAME=<VALUE below, NAME=20x times the tuned value")
       ->type_name("NAME=VALUE");
   command
       ->add_option("--limit", options->limits,

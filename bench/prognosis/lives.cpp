@@ -2,13 +2,14 @@
 //
 // A unit is a valve drawn from the rig's tolerances and checked with its own table (units.h). Its checks come at even
 // parts of the life, each at random oil temperature, free air and null. End of life is the rig's true quantity at the
-// failed level. Failure levels come from a seeded-fault test of three valves of the type.
+// failed level. Failure levels come from a seeded-fault test of five valves of the type.
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <map>
+#include <numeric>
 
 #include "base/atomic_file.h"
 #include "prognose/metrics.h"
@@ -30,43 +31,71 @@ std::string caused_by(const std::string& check) {
   return {};
 }
 
-constexpr int seeded_valves = 3;
-std::pair<rig::RigModel, Table> seeded_valve(const Bench& b, int v, const std::string& folder) {
-  const auto stream = static_cast<std::uint32_t>(9000 + v);
-  rig::RigModel valve = rig::another_valve(b.model, stream);
-  Table own = own_table(b, fmt::format("seeded-{}", v), valve, stream, folder);
-  return {std::move(valve), std::move(own)};
+int row_of(const std::string& check) { return std::stoi(check.substr(check.find(':') + 1)) - 1; }
+
+// Failure levels of every check that a degradation moves, by a seeded-fault test of five valves of the type at the
+// reference oil, as a user would set them: of the paper's checks a multiple of healthy; of the parameters what they
+// read, or, where it is the valve's own value that multiplies, a multiple of what that valve was tuned to.
+// How far another valve's level may lie from the median of these valves' looks: what their means scatter by, that
+// median's own error, and Student's factor for so few at 90 %.
+double spread_of(const std::vector<double>& looks) {
+  const std::size_t each = looks.size() / seeded_valves;
+  double sum = 0, square = 0;
+  for (int v = 0; v < seeded_valves; ++v) {
+    const auto first = looks.begin() + static_cast<long>(v * each);
+    const double mean = std::accumulate(first, first + static_cast<long>(each), 0.0) / static_cast<double>(each);
+    sum += mean, square += mean * mean;
+  }
+  constexpr double n = seeded_valves, student = 2.13 / 1.645;
+  return student * std::sqrt((square - sum * sum / n) / (n - 1) * (1 + 1 / n));
 }
 
-// Failure levels of every check that a degradation moves, by a seeded-fault test of three valves of the type at the
-// reference oil, as a user would set them: of the paper's checks a multiple of healthy, of the parameters what they
-// read.
 TrendOptions seeded_fault(const Bench& b, const Degradation& d, const std::string& folder) {
   std::map<std::string, std::vector<double>> healthy, failed;
-  for (int v = 0; v < seeded_valves; ++v) {
-    const auto [valve, own] = seeded_valve(b, v, folder);
-    for (int k = 0; k < 3; ++k) {
-      const Condition at{30.0 + 10 * k, 0.005, 0};
-      const auto add = [&, &valve = valve, &own = own](const std::string& fault, double severity,
-                                                       std::map<std::string, std::vector<double>>& to) {
-        const Log log = test_log(valve, fault, severity, at, preflight(900 + static_cast<std::uint64_t>(k)));
-        for (const Check& c : check(log, own, b.rig, {.threads = 1, .last = {}}).checks) to[c.name].push_back(c.value);
-      };
-      add("", 0, healthy), add(d.name, end_of(d, b.model, valve).failed, failed);
-    }
-  }
+  const auto add = [](const ValveHistory& h, bool of_its_own, std::map<std::string, std::vector<double>>& to) {
+    for (const Recording& r : h.recordings)
+      for (const Check& c : r.checks)
+        to[c.name].push_back(of_its_own && !caused_by(c.name).empty()
+                                 ? c.value / h.tuned[static_cast<std::size_t>(row_of(c.name))]
+                                 : c.value);
+  };
+  for (int v = 0; v < seeded_valves; ++v)
+    add(seeded_looks(b, v, nullptr, folder), d.of_its_own, healthy),
+        add(seeded_looks(b, v, &d, folder), d.of_its_own, failed);
   TrendOptions options;
   for (const auto& [name, values] : healthy) {
     if (failed[name].empty()) continue;
     const auto [low, high] = std::minmax_element(values.begin(), values.end());
     const double h = median(values), f = median(failed[name]);
     const std::string cause = caused_by(name);
-    if (cause == d.name)
+    if (cause == d.name) options.failure_spread[name] = spread_of(failed[name]);
+    if (cause == d.name && d.of_its_own)
+      options.failure_ratio[name] = f;
+    else if (cause == d.name)
       (f > h ? options.failure[name].second : options.failure[name].first) = f;
     else if (cause.empty() && std::abs(f - h) > 3 * (*high - *low))
       options.failure_ratio[name] = f / h;
   }
   return options;
+}
+
+// Every reading of the row that wears beside the truth.
+std::string readings_csv(const Bench& b, const std::vector<Unit>& all, const std::vector<ValveHistory>& histories) {
+  std::string csv = "degradation,unit,part of the life,oil_temperature [degC],truth,reading,std_error,tuned\n";
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    if (!all[i].degradation) continue;
+    const rig::RigModel valve = rig::another_valve(b.model, all[i].valve);
+    const Degradation end = end_of(*all[i].degradation, b.model, valve);
+    for (const Recording& r : histories[i].recordings)
+      for (const Check& c : r.checks) {
+        if (caused_by(c.name) != end.name) continue;
+        const double s = r.at / all[i].life;
+        csv += fmt::format("{},{},{:.4f},{:.1f},{:.5g},{:.5g},{:.3g},{:.5g}\n", end.name, all[i].name, s,
+                           r.temperature - 273.15, truth_of(end, valve, severity_at(end, all[i].progress(s))), c.value,
+                           c.std_error, histories[i].tuned[static_cast<std::size_t>(row_of(c.name))]);
+      }
+  }
+  return csv;
 }
 
 ValveHistory until(const ValveHistory& h, double at) {
@@ -131,9 +160,10 @@ void lives(const Bench& b, const std::string& out, int units, int checks, int fi
   const int n = static_cast<int>(all.size());
   std::vector<ValveHistory> histories(all.size());
   for_each(n, "lives", [&](int i) { histories[i] = history_of(b, all[i], checks, out); });
+  write_file(out + "/readings.csv", readings_csv(b, all, histories));
   std::map<std::string, TrendOptions> seeded;
   for (const Degradation& d : degradations) seeded[d.name];
-  for_each(seeded_valves, "seeded valves", [&](int v) { seeded_valve(b, v, out); });
+  for_each(seeded_valves, "seeded valves", [&](int v) { seeded_looks(b, v, nullptr, out); });
   for_each(std::size(degradations), "seeded faults",
            [&](int i) { seeded.at(degradations[i].name) = seeded_fault(b, degradations[i], out); });
   for (const auto& [name, o] : seeded) {
@@ -181,7 +211,7 @@ void lives(const Bench& b, const std::string& out, int units, int checks, int fi
         csv += (own ? "own," : "seeded,") + judged[i][l].row;
         for (Tally* t : {&of_all[lambdas[l]], &of_each[all[i].degradation->name][lambdas[l]]}) t->add(judged[i][l]);
       }
-    std::printf("\nfailure levels: %s\n", own ? "the tool's own" : "a seeded-fault test of three valves");
+    std::printf("\nfailure levels: %s\n", own ? "the tool's own" : "a seeded-fault test of five valves");
     std::printf("%-24s %6s %5s %8s %13s %16s %6s %6s %6s %9s %12s %12s %12s\n", "degradation", "lambda", "units",
                 "alerted", "met", "covered", "early", "late", "named", "CRPS [h]", "tangent", "tangent met",
                 "its CRPS");

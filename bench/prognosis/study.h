@@ -25,12 +25,13 @@ struct Degradation {
   double healthy, failed;  // severity
   const char* figure;      // of Borello et al. 2009
   const char* check;       // that it shows
+  bool of_its_own;         // fails at a multiple of what the valve was when new; else at one value for all of the type
 };
-inline constexpr Degradation degradations[] = {{"clogged_filter", 0, 0.75, "8", "fidelity"},
-                                               {"torque_motor_loss", 1, 0.2, "9", "fidelity"},
-                                               {"feedback_wire_backlash", 0, 20e-6, "10", "mean_error"},
-                                               {"sticky_spool", 1, 20, "11", "mean_error"},
-                                               {"radial_clearance_wear", 1, 10, "12", "correlation@5Hz"}};
+inline constexpr Degradation degradations[] = {{"clogged_filter", 0, 0.75, "8", "fidelity", false},
+                                               {"torque_motor_loss", 1, 0.2, "9", "fidelity", true},
+                                               {"feedback_wire_backlash", 0, 20e-6, "10", "mean_error", false},
+                                               {"sticky_spool", 1, 20, "11", "mean_error", true},
+                                               {"radial_clearance_wear", 1, 10, "12", "correlation@5Hz", false}};
 inline double severity_at(const Degradation& d, double s) { return d.healthy + (d.failed - d.healthy) * s; }
 
 struct Condition {

@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <filesystem>
+#include <functional>
 
 #include "base/atomic_file.h"
 #include "base/csv.h"
@@ -37,6 +38,13 @@ Degradation end_of(Degradation d, const rig::RigModel& type, const rig::RigModel
   return d;
 }
 
+double truth_of(const Degradation& d, const rig::RigModel& valve, double severity) {
+  const std::string_view name = d.name;
+  if (name == "sticky_spool") return severity * valve.spool_coulomb;
+  if (name == "radial_clearance_wear") return severity * valve.edges_clearance;
+  return severity;
+}
+
 Table own_table(const Bench& b, const std::string& name, const rig::RigModel& valve, std::uint32_t stream,
                 const std::string& folder) {
   const std::string file = folder + "/valves/" + name + ".csv", tests = folder + "/tests/" + name;
@@ -46,13 +54,19 @@ Table own_table(const Bench& b, const std::string& name, const rig::RigModel& va
     rig::RigRun mixed;
     mixed.excitation = "mixed", mixed.duration = 4, mixed.seed = random.bits64();
     std::vector<Log> logs = {kept_log(b, tests + "/a1.csv", valve, {}, mixed)};
-    for (const double celsius : {20.0, 40.0, 60.0})
+    for (const double celsius : {20.0, 40.0, 60.0, -10.0})
       logs.push_back(kept_log(b, fmt::format("{}/a{}.csv", tests, logs.size() + 1), valve, {.celsius = celsius},
                               preflight(random.bits64())));
     TuneOptions options;
     options.quiet = true;
     options.threads = 1;
     options.generations = 0;  // it begins near
+    options.effects = default_effects(false);
+    options.effects->emplace_back("screen_drop");
+    // What drawings say of all valves of the type holds: logs of a few seconds would trade it for something else.
+    options.priors = {{"fixed_orifice_diameter", 0.02 * b.tuned[row::fixed_orifice_diameter].nominal},
+                      {"orifice_slenderness", 0.3},
+                      {"screen_viscous_drop", 0.5e5}};
     write_table(file, tune(logs, b.tuned, b.rig, options).table);
   }
   return read_table(file);
@@ -81,20 +95,51 @@ std::vector<Unit> plan(int first, int units) {
   return all;
 }
 
-ValveHistory history_of(const Bench& b, const Unit& unit, int checks, const std::string& folder) {
-  const std::string file = folder + "/units/" + unit.name + ".csv", tests = folder + "/tests/" + unit.name;
-  fs::create_directories(folder + "/units");
-  const rig::RigModel valve = rig::another_valve(b.model, unit.valve);
-  const Table own = own_table(b, unit.name, valve, unit.stream, folder);
+namespace {
+
+// A history that is kept: read where it is there, else made by `add`, check by check.
+ValveHistory kept_history(const std::string& name, const std::string& file, const Table& own,
+                          const std::function<void(ValveHistory&)>& add) {
   ValveHistory h;
   if (fs::exists(file)) {
     h = read_history_csv(file).valves.front();
   } else {
-    h.valve = unit.name;
+    h.valve = name;
+    add(h);
+    for (Recording& r : h.recordings) r.table_sha256 = own.sha256;
+    fs::create_directories(fs::path(file).parent_path());
+    write_file(file, history_csv({{h}, {{own.sha256, read_file(own.path)}}}));
+  }
+  for (int i = 0; i < n_parameters; ++i) h.tuned.push_back(own[i].nominal);
+  return h;
+}
+
+}  // namespace
+
+ValveHistory seeded_looks(const Bench& b, int v, const Degradation* failed_by, const std::string& folder) {
+  const auto stream = static_cast<std::uint32_t>(9000 + v);
+  const rig::RigModel valve = rig::another_valve(b.model, stream);
+  const Table own = own_table(b, fmt::format("seeded-{}", v), valve, stream, folder);
+  const std::string name = fmt::format("seeded-{}-{}", v, failed_by ? failed_by->name : "healthy");
+  return kept_history(name, folder + "/seeded/" + name + ".csv", own, [&](ValveHistory& h) {
+    for (int k = 0; k < 3; ++k) {
+      const Condition at{30.0 + 10 * k, 0.005, 0};
+      const Log log =
+          test_log(valve, failed_by ? failed_by->name : "", failed_by ? end_of(*failed_by, b.model, valve).failed : 0.0,
+                   at, preflight(900 + static_cast<std::uint64_t>(k)));
+      h.recordings.push_back(recording_of(k, check(log, own, b.rig, {.threads = 1, .last = {}})));
+    }
+  });
+}
+
+ValveHistory history_of(const Bench& b, const Unit& unit, int checks, const std::string& folder) {
+  const std::string tests = folder + "/tests/" + unit.name;
+  const rig::RigModel valve = rig::another_valve(b.model, unit.valve);
+  const Table own = own_table(b, unit.name, valve, unit.stream, folder);
+  return kept_history(unit.name, folder + "/units/" + unit.name + ".csv", own, [&](ValveHistory& h) {
     Random random(32, unit.stream);
     std::vector<double> last;
-    const Degradation end =
-        unit.degradation ? end_of(*unit.degradation, b.model, valve) : degradations[0];
+    const Degradation end = unit.degradation ? end_of(*unit.degradation, b.model, valve) : degradations[0];
     for (int k = 0; k < checks; ++k) {
       const double s = 0.95 * k / (checks - 1.0);  // the last check a little before the end
       const Condition at = random_condition(random);
@@ -106,12 +151,8 @@ ValveHistory history_of(const Bench& b, const Unit& unit, int checks, const std:
       h.recordings.push_back(recording_of(s * unit.life, r));
       h.recordings.back().log = log.path;
       h.recordings.back().log_sha256 = r.sha256;
-      h.recordings.back().table_sha256 = own.sha256;
     }
-    write_file(file, history_csv({{h}, {{own.sha256, read_file(own.path)}}}));
-  }
-  for (int i = 0; i < n_parameters; ++i) h.tuned.push_back(own[i].nominal);
-  return h;
+  });
 }
 
 }  // namespace servodx::study

@@ -4,6 +4,7 @@
 //   tests/UNIT/a1.csv ...    acceptance logs: a mixed drive, and preflight tests at 20, 40 and 60 degC
 //   tests/UNIT/t01.csv ...   its preflight tests
 //   valves/UNIT.csv          its own table: the type's, tuned on the acceptance logs
+//   seeded/VALVE-FAULT.csv   looks at valves with a fault at its failed severity
 //   units/UNIT.csv           its history of checks, which `servodx history import` reads
 #pragma once
 #include <cmath>
@@ -32,9 +33,14 @@ std::vector<Unit> plan(int first, int units);
 // With the severity at which this valve has failed: the level of failure is a clearance, whatever it was when the valve
 // was new.
 Degradation end_of(Degradation degradation, const rig::RigModel& type, const rig::RigModel& valve);
+// The worn quantity itself, of this valve: newtons of a friction, metres of a clearance, else the severity.
+double truth_of(const Degradation& degradation, const rig::RigModel& valve, double severity);
 // What a valve's own acceptance logs say of it, from the type's table.
 Table own_table(const Bench& bench, const std::string& name, const rig::RigModel& valve, std::uint32_t stream,
                 const std::string& folder);
+// Three looks, at 30, 40 and 50 degC, at one of the valves of the seeded-fault test: healthy, or failed by a fault.
+inline constexpr int seeded_valves = 5;
+ValveHistory seeded_looks(const Bench& bench, int valve, const Degradation* failed_by, const std::string& folder);
 ValveHistory history_of(const Bench& bench, const Unit& unit, int checks, const std::string& folder);
 
 }  // namespace servodx::study

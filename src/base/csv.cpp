@@ -11,6 +11,7 @@
 #include <cstdlib>
 #include <cstring>
 #include <limits>
+#include <tuple>
 
 #include "base/block_reader.h"
 
@@ -175,6 +176,17 @@ bool CsvCursor::next_row() {
   }
   p_ = end_;
   return false;
+}
+
+std::vector<std::string> CsvCursor::row_ahead() {
+  const char* const line_end = std::find(p_, end_, '\n');
+  // A quoted line end would read on from the file, and what was passed would be gone.
+  if (!in_row_ || line_end == end_ || std::count(p_, line_end, '"') % 2 != 0) return {};
+  const auto at = std::tuple(p_, cell_, cell_end_, next_line_, more_);
+  std::vector<std::string> cells;
+  for (std::string cell; next_cell(cell);) cells.push_back(cell);
+  std::tie(p_, cell_, cell_end_, next_line_, more_) = at;
+  return cells;
 }
 
 // At the end of a cell's text: steps over trailing blanks and the separator or the line end.

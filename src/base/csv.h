@@ -40,6 +40,7 @@ class CsvCursor {
   char separator() const { return separator_; }
 
   bool next_row();                    // to the next line that is not blank; skips what is left of this one
+  std::vector<std::string> row_ahead();  // cells of the row just begun, which stays to be read
   bool next_cell(std::string& text);  // false: the row has no further cell
   // NaN for missing; a finite number, or text (see last_text).
   Cell next_number(double& value) {

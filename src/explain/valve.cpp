@@ -40,6 +40,7 @@ const std::map<std::string, const char*> tests = {
     {"edge_transition",
      "slow triangles of some per cent in cold and in hot oil: in the cold the piston lags by a wider lap"},
     {"orifice_length", "full steps in cold and in hot oil: in the cold the spool slews slower"},
+    {"screen_drop", "full steps in cold and in hot oil: in the cold the pilot pressures fall"},
     {"edge_radius", "the pressure's slope at null beside the leakage there: blunt edges leak more at the same slope"},
     {"port_line", "leakage sweeps at two rates, ports blocked: a tail after null that lasts as long at either"},
     {"supply_droop", "full steps with the supply pressure measured at the valve"},

@@ -36,6 +36,13 @@ T stribeck(const T& speed, const T& per_fall) {
   return inverse(T(1.0) + ratio * ratio);
 }
 
+// Of the rod's seals: how much more they hold than they drag.
+template <class T>
+struct Breakaway {
+  T over_sliding;    // [-] breakaway friction above sliding friction over sliding friction; 0: none
+  T per_film_speed;  // [s/m]
+};
+
 // What spool and rod remember of their way.
 template <class T>
 struct FrictionMemory {
@@ -52,20 +59,23 @@ struct FrictionMemory {
     spool_speed = rod_speed = T(0.0);
     seal_breakaway = seal_per_reach = T(1.0);
   }
-  // After a step of h [s] between two places [m]. Of the rod's seals: per_film_speed [s/m]; breakaway friction over
-  // sliding friction.
-  void move(const T& spool_from, const T& x_spool, const T& rod_from, const T& x_rod, double h, const T& per_film_speed,
-            const T& breakaway) {
+  // After a step of h [s] between two places [m]. `sticks` false where no breakaway is above 0: the same bits, sooner.
+  void move(const T& spool_from, const T& x_spool, const T& rod_from, const T& x_rod, double h,
+            const Breakaway<T>& breakaway, bool sticks = true) {
     spool_anchor = dragged_anchor(spool_anchor, x_spool, T(constants::spool_presliding));
     spool_speed = (x_spool - spool_from) * T(1.0 / h);
     rod_speed = (x_rod - rod_from) * T(1.0 / h);
-    // Friction follows the speed as contacts are renewed, over the way on which they slip: without that lag (Rice &
-    // Ruina 1983; Armstrong-Helouvry et al. 1994) a slow piston would hunt where a real one creeps.
-    using std::max;
-    const T renewed = max(x_rod - rod_from, rod_from - x_rod) * T(1.0 / constants::seal_renewal);
-    seal_breakaway = (seal_breakaway + renewed * stribeck(rod_speed, per_film_speed)) * inverse(T(1.0) + renewed);
-    const T reach = T(1.0) + breakaway * seal_breakaway;
-    seal_per_reach = T(1.0) / reach;
+    T reach = T(1.0);
+    if (sticks) {
+      // Friction follows the speed as contacts are renewed, over the way on which they slip: without that lag (Rice &
+      // Ruina 1983; Armstrong-Helouvry et al. 1994) a slow piston would hunt where a real one creeps.
+      using std::max;
+      const T renewed = max(x_rod - rod_from, rod_from - x_rod) * T(1.0 / constants::seal_renewal);
+      seal_breakaway =
+          (seal_breakaway + renewed * stribeck(rod_speed, breakaway.per_film_speed)) * inverse(T(1.0) + renewed);
+      reach = T(1.0) + breakaway.over_sliding * seal_breakaway;
+      seal_per_reach = T(1.0) / reach;
+    }
     for (std::size_t i = 0; i < seal_anchor.size(); ++i)
       seal_anchor[i] = dragged_anchor(seal_anchor[i], x_rod, T(constants::seal_presliding[i]) * reach);
   }

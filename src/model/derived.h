@@ -42,8 +42,7 @@ struct Derived {
   // actuator
   T leak;                              // [m3/s/Pa]
   T viscous;                           // [N s/m]
-  T per_film_speed;                    // [s/m] of the seals' breakaway friction
-  T breakaway;                         // [-] breakaway friction above sliding over sliding and a tenth of itself
+  Breakaway<T> breakaway;
   T inverse_mass;                      // [1/kg]
   T half_stroke;                       // [m]
   T middle_volume_a, middle_volume_b;  // [m3] at mid-stroke
@@ -105,9 +104,11 @@ Derived<T> derive(const T* p, const Oil& oil) {
   d.hose_loss = T(4.0) * p[row::hose_resistance] * p[row::port_width] * p[row::port_width];
   d.leak = p[row::cross_piston_leakage] * (T(1.0) / viscosity_ratio);
   d.viscous = p[row::piston_viscous_friction] * sqrt(viscosity_ratio);  // mixed lubrication of seals
-  d.per_film_speed = T(1.0) / (T(c::piston_stribeck_velocity) + hook_seal_film_speed(p, Effects{}));
-  d.breakaway = p[row::piston_stribeck_friction] /
-                (p[row::piston_coulomb_friction] + T(0.1) * p[row::piston_stribeck_friction] + T(c::least_friction));
+  d.breakaway.per_film_speed = T(1.0) / (T(c::piston_stribeck_velocity) + hook_seal_film_speed(p, Effects{}));
+  // A tenth of itself and a newton keep the ratio bounded where seals hardly drag.
+  d.breakaway.over_sliding =
+      p[row::piston_stribeck_friction] /
+      (p[row::piston_coulomb_friction] + T(0.1) * p[row::piston_stribeck_friction] + T(c::least_friction));
   d.inverse_mass = T(1.0) / p[row::moving_mass];
   d.half_stroke = T(0.5) * p[row::piston_stroke];
   d.middle_volume_a = p[row::dead_volume_a] + p[row::piston_area_a] * d.half_stroke;

@@ -57,8 +57,10 @@ constexpr std::array<double, 9> noises = {0.1, 0.18, 0.32, 0.56, 1, 1.8, 3.2, 5.
 // Wander over the whole record, in parts of the growth that matters. A healthy figure may wander by the lesser one.
 constexpr std::array<double, 3> wanders = {0, 0.03, 0.1};
 constexpr std::size_t healthy_wanders = 2;
-// A part lost so far, where it is one: how far ln(1 - part) is from a straight line depends on it.
-constexpr std::array<double, 4> losses = {0.15, 0.35, 0.55, 0.75};
+// A part lost so far, where it is one: how far ln(1 - part) is from a straight line depends on it. The logarithm has
+// then grown by -ln(1 - part), give or take what a model with a wrong exponent makes of it.
+constexpr std::array<double, 9> losses = {0.1, 0.25, 0.38, 0.48, 0.57, 0.64, 0.7, 0.76, 0.82};
+constexpr double loss_spread = 0.2;  // [of that growth]
 constexpr double negligible = 1e-4;  // weight below which a component is left out
 
 double normal_cdf(double x) { return 0.5 * std::erfc(-x / std::numbers::sqrt2); }
@@ -244,6 +246,12 @@ GrowthModel::GrowthModel(std::vector<GrowthPoint> points, const GrowthPrior& pri
           if (prior.direction != 0)
             g.log_evidence +=
                 std::log(std::max(1e-300, 2 * normal_cdf(prior.direction * g.mean / std::sqrt(g.variance))));
+          if (tried[l].lost > 0) {  // the part that it supposes has to be the part that it finds
+            const double supposed = -std::log1p(-tried[l].lost),
+                         error = std::hypot(loss_spread * supposed, std::sqrt(g.variance));
+            g.log_evidence += 0.5 * std::pow(g.mean / prior.scale, 2) + std::log(prior.scale / error) -
+                              0.5 * std::pow((g.mean - supposed) / error, 2);
+          }
           all.push_back(g.log_evidence);
           found.push_back({r, o, l, std::move(g)});
         }

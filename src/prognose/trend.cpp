@@ -91,6 +91,7 @@ void append(Series& s, const Recording& r, const Check& c) {
   const double z = std::isfinite(r.temperature) ? log_viscosity(r.temperature) : 0.0;
   p.features = {z, z * z};
   if (s.paper()) p.features.push_back(std::log(c.expected > 0 ? c.expected : 1.0));
+  if (s.scale == Series::Scale::part_lost) p.features.push_back(0.5 * std::pow(s.stretch(std::max(c.value, 0.0)), 2));
   s.points.push_back(std::move(p));
   s.temperature.push_back(r.temperature);
 }
@@ -168,10 +169,20 @@ double left_open(const Series& s, double value) {
 FailureAt failure_of(const Series& s, const TrendOptions& options) {
   FailureAt at;
   const auto to_side = [&](double value, bool up) { (up ? at.upper : at.lower) = value; };
+  // How well a level is known at a value of the row: as who set it says, else as the model's form allows.
+  const auto known_to = [&](double value, double unit) {
+    const auto stated = options.failure_spread.find(s.name);
+    return stated == options.failure_spread.end() ? left_open(s, value) : stated->second * unit / s.stretch(value);
+  };
   if (const auto given = options.failure.find(s.name); given != options.failure.end()) {
     at.lower = s.in(given->second.first), at.upper = s.in(given->second.second);
-    if (const auto& level = at.upper ? at.upper : at.lower; level && s.fault) at.sd = left_open(s, s.out(*level));
+    if (const auto& level = at.upper ? at.upper : at.lower; level && s.fault) at.sd = known_to(s.out(*level), 1);
   } else if (const auto ratio = options.failure_ratio.find(s.name); ratio != options.failure_ratio.end()) {
+    if (s.fault && s.fault->log_scale && s.tuned) {  // its healthy checks may hardly see it: the tuning logs saw more
+      to_side(ratio->second * *s.tuned, ratio->second > 1);
+      at.sd = known_to(ratio->second * *s.tuned, *s.tuned);
+      return at;
+    }
     at.of = s.paper() ? FailureAt::Of::beyond_base : FailureAt::Of::times_base;
     to_side(s.paper() ? std::log(ratio->second) : ratio->second, ratio->second > 1);
   } else if (s.fault) {
@@ -237,6 +248,12 @@ GrowthPrior prior_of(const Series& s, std::size_t healthy, const FailureAt& fail
     prior.feature_mean.push_back(1.0);
     prior.feature_sd.push_back(0.5);
   }
+  // What a model errs by in the drop over a clean filter it errs by at every check, and it is the less of a blocked
+  // one's: d ln(open) = 0.5 open^2 d drop, drops over that of the clean one.
+  if (prior.part_lost) {
+    prior.feature_mean.push_back(0.0);
+    prior.feature_sd.push_back(0.25);
+  }
   return prior;
 }
 
@@ -300,8 +317,7 @@ CheckTrend trend_of(const Series& s, const TrendOptions& options, std::size_t na
   const GrowthModel begun({s.points.begin(), s.points.begin() + static_cast<long>(healthy)}, prior);
   std::vector<double> own;
   for (std::size_t i = 0; i < healthy; ++i) own.push_back(s.points[i].variance);
-  double centre =
-      out.trend ? g.base : median({corrected.begin(), corrected.begin() + static_cast<long>(healthy)});
+  double centre = out.trend ? g.base : median({corrected.begin(), corrected.begin() + static_cast<long>(healthy)});
   if (prior.part_lost) centre = std::max(centre, 0.0);  // nothing is cleaner than clean
   const double noise = begun.growth().probability < 0.5 ? begun.growth().null_noise : begun.growth().noise;
   const double spread = std::sqrt(noise * noise * (1 + 1.0 / static_cast<double>(healthy)) + median(own));

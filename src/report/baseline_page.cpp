@@ -40,7 +40,8 @@ Page baseline_page(const Header& header, const Baseline& b, const std::vector<Re
                          s.score > b.threshold ? Tone::doubt : Tone::good, ""});
   page.add(bars);
   if (std::all_of(order.begin(), order.end(), [](const auto& s) { return s.test.has_value(); })) {
-    TablePart tests{"What tests the promise covers", "lrrr", {"log", "drive spans mA", "about Hz", "oil degC"}, {}, 0};
+    TablePart tests{
+        "What tests the promise covers", "lrrr", {"log", "drive spans [mA]", "at about [Hz]", "oil [degC]"}, {}, 0};
     for (const Baseline::Score& s : order)
       tests.rows.push_back({s.log, Cell(digits(1e3 * s.test->drive_span), 1e3 * s.test->drive_span),
                             Cell(digits(s.test->drive_band, 2), s.test->drive_band),

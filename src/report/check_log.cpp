@@ -169,7 +169,7 @@ Json check_log_json(const std::vector<LogCheck>& checks) {
 void add_visible(Page& page, const std::vector<Visible>& faults) {
   Bars bars{"Faults, each at the mildest that is called one and at typical size",
             "fault",
-            "deviate",
+            "sigmas",
             {},
             Mark{seen, "may show"},
             20.0};
@@ -205,12 +205,12 @@ Page check_log_page(const Header& header, const std::vector<LogCheck>& checks) {
   page.verdict(v);
   if (!one) {
     page.section("All logs");
-    TablePart table{"Logs", "lrrrl", {"log", "s", "Hz", "degC", "suspicious"}, {}, 0};
+    TablePart table{"Logs", "lrrrl", {"log", "lasts [s]", "rate [Hz]", "oil [degC]", "suspicious"}, {}, 0};
     for (const LogCheck& c : checks) {
       const LogSurvey& s = c.survey;
       table.rows.push_back({s.path, Cell(digits(s.duration), s.duration), Cell(digits(s.rate, 4), s.rate),
                             s.temperature ? Cell(digits(*s.temperature - 273.15), *s.temperature - 273.15) : Cell(""),
-                            kinds_of(s)});
+                            s.findings.empty() ? "nothing" : kinds_of(s)});
     }
     page.add(table);
   }

@@ -211,7 +211,7 @@ Page compare_page(const Header& header, const Comparison& c) {
   const bool any = std::any_of(c.differences.begin(), c.differences.end(), [](const auto& d) { return d.matters; });
   v.tone = any ? Tone::doubt : Tone::good;
   v.facts = {{"Differ", std::to_string(c.differences.size())}, {"Equal", std::to_string(c.same)}};
-  for (const std::string& condition : c.conditions) v.reasons.push_back("They differ in " + condition);
+  for (const std::string& condition : c.conditions) v.reasons.push_back("Conditions differ: " + condition);
   page.verdict(v);
   if (c.differences.empty()) return page;
   page.section("Differences");

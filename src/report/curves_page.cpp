@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <optional>
 
 #include "base/units.h"
 #include "report/curves.h"
@@ -56,6 +57,20 @@ Plot branches(const curves::SweepCurve& c, double rated_current) {
   return plot;
 }
 
+// What lies between the branches: on the sweep's own scale it is too thin to be seen.
+std::optional<Plot> between(const Plot& sweep, const std::string& name, const std::string& unit) {
+  Plot plot{.title = name + ", falling less rising [" + unit + "]",
+            .x_label = sweep.x_label,
+            .x = sweep.x,
+            .group = sweep.group,
+            .low = true};
+  Series s{"falling less rising", {}, Role::measured};
+  for (std::size_t k = 0; k < sweep.x.size(); ++k) s.y.push_back(sweep.series[1].y[k] - sweep.series[0].y[k]);
+  if (std::count_if(s.y.begin(), s.y.end(), [](double y) { return std::isfinite(y); }) < 2) return {};
+  plot.series = {s};
+  return plot;
+}
+
 void add_response(Page& page, const Sheet& sheet) {
   Plot gain{.title = "amplitude ratio [dB]", .x_label = "frequency [Hz]", .group = "bode"};
   Plot phase{.title = "phase [deg]", .x_label = "frequency [Hz]", .group = "bode"};
@@ -105,7 +120,12 @@ Page curves_page(const Header& header, const Sheet& sheet, const std::string& lo
   if (!sheet.curves.empty())
     page.section("Sweeps",
                  "Both branches over current. What lies between them is hysteresis and the lag of the meter.");
-  for (const curves::SweepCurve& c : sheet.curves) page.add(branches(c, rated_current));
+  for (const curves::SweepCurve& c : sheet.curves) {
+    const Plot sweep = branches(c, rated_current);
+    page.add(sweep);
+    if (const auto gap = between(sweep, words(std::string(info(c.signal).name)), display_unit(c.signal)))
+      page.add(*gap);
+  }
   if (!sheet.response.empty()) add_response(page, sheet);
   return page;
 }

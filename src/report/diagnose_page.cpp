@@ -158,25 +158,49 @@ void add_details(Page& page, const Diagnosis& d, const std::vector<Replay>& repl
   }
 }
 
+std::string named(const Diagnosis& d) { return d.fault.value_or(d.verdict); }
+
+bool all_known(const std::vector<Diagnosis>& results, const std::vector<std::string>& truths) {
+  return truths.size() == results.size() &&
+         std::none_of(truths.begin(), truths.end(), [](const auto& t) { return t.empty(); });
+}
+
+// Where the truth is known: how many are right, and which are not.
+void say_truth(Verdict& v, const std::vector<Diagnosis>& results, const std::vector<std::string>& truths) {
+  if (!all_known(results, truths)) return;
+  std::vector<std::string> wrong;
+  for (std::size_t i = 0; i < results.size(); ++i)
+    if (named(results[i]) != truths[i])
+      wrong.push_back(fmt::format("{}: the verdict is {}, the truth {}.", file_name(results[i].log),
+                                  words(named(results[i])), words(truths[i])));
+  v.detail = fmt::format("{} of {} verdicts are what the truth files beside the logs say.",
+                         results.size() - wrong.size(), results.size());
+  constexpr std::size_t most = 8;
+  if (wrong.size() <= most) v.reasons = wrong;
+}
+
 // What was named against what was made, where the truth is known of every log.
 void add_confusion(Page& page, const std::vector<Diagnosis>& results, const std::vector<std::string>& truths) {
-  if (truths.size() != results.size() ||
-      std::any_of(truths.begin(), truths.end(), [](const auto& t) { return t.empty(); }))
-    return;
+  if (!all_known(results, truths)) return;
   Matrix m{"Confusion: the truth is known from the files beside the logs", "truth", "verdict", {}, {}, {}, "", true};
-  const auto place = [](std::vector<std::string>& names, const std::string& name) {
-    const auto found = std::find(names.begin(), names.end(), name);
-    if (found != names.end()) return static_cast<std::size_t>(found - names.begin());
-    names.push_back(name);
-    return names.size() - 1;
+  // Rows and columns in one order, so that what is right lies on the diagonal: health, the faults, last what is no
+  // truth (unknown).
+  std::map<std::pair<std::string, std::string>, double> counts;
+  for (std::size_t i = 0; i < results.size(); ++i) ++counts[{words(truths[i]), words(named(results[i]))}];
+  const auto add = [](std::vector<std::string>& names, const std::string& name) {
+    if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
   };
-  std::map<std::pair<std::size_t, std::size_t>, double> counts;
-  for (std::size_t i = 0; i < results.size(); ++i) {
-    const std::size_t row = place(m.rows, words(truths[i]));
-    ++counts[{row, place(m.columns, words(results[i].fault.value_or(results[i].verdict)))}];
+  for (const bool health : {true, false})
+    for (const auto& [at, n] : counts)
+      if ((at.first == "healthy") == health) add(m.rows, at.first);
+  m.columns = m.rows;
+  for (const auto& [at, n] : counts)
+    if (at.second != "unknown") add(m.columns, at.second);
+  for (const auto& [at, n] : counts) add(m.columns, at.second);
+  for (const std::string& row : m.rows) {
+    m.value.emplace_back();
+    for (const std::string& column : m.columns) m.value.back().push_back(counts[{row, column}]);
   }
-  m.value.assign(m.rows.size(), std::vector<double>(m.columns.size(), 0.0));
-  for (const auto& [at, n] : counts) m.value[at.first][at.second] = n;
   page.add(m);
 }
 
@@ -209,6 +233,7 @@ Page diagnose_page(const Header& header, const std::vector<Diagnosis>& results, 
   all.tone = faults > 0 ? Tone::bad : unknown > 0 ? Tone::doubt : Tone::good;
   all.headline = fmt::format("{} of {} logs show a fault, {} unknown, {} healthy", faults, total, unknown,
                              total - faults - unknown);
+  say_truth(all, results, truths);
   page.verdict(all);
   page.section("All logs");
   Bars scores{"Error of each log", "log", "error", {}, Mark{baseline.threshold, "threshold"}, {}};

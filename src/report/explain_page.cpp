@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "effects/registry.h"
+#include "parameters/list.h"
 #include "report/columns.h"
 #include "report/explain_report.h"
 #include "report/handy.h"
@@ -33,6 +35,21 @@ std::string headline(const ExplainResult& r) {
     if (c.parameters.size() == 1) text += ", " + size_of(c.parameters.front());
   }
   return text;
+}
+
+// "valve glitch (backlash between feedback wire and spool, full width)", as the lists of effects and of rows say it.
+std::string with_meaning(const std::string& effect) {
+  std::string meaning;
+  if (const int row = find_parameter(effect); row >= 0) meaning = parameter_list[row].meaning;
+  for (const EffectInfo& e : effect_list())
+    if (e.name == effect) meaning = e.meaning;
+  return words(effect) + (meaning.empty() ? "" : " (" + meaning + ")");
+}
+
+std::string with_meanings(const std::vector<ExplainedCause>& causes) {
+  std::vector<std::string> all;
+  for (const ExplainedCause& c : causes) all.push_back(with_meaning(c.effect));
+  return join(all, "; ");
 }
 
 // The verdict as a person would say it; the JSON keeps its own word.
@@ -89,7 +106,7 @@ TablePart causes_table(const std::string& title, const std::vector<ExplainedCaus
       const double half = 1.645 * p.std_error;
       table.rows.push_back({words(c.effect),
                             words(c.where),
-                            words(p.name),
+                            p.name == c.effect ? std::string() : words(p.name),
                             {digits(p.value * unit.factor), p.value},
                             {std::isfinite(half) ? "+-" + digits(half * unit.factor, 2) : "at a bound", half},
                             unit.name,
@@ -145,12 +162,13 @@ Page explain_page(const Header& header, const ExplainResult& r, const std::vecto
   v.tone = r.verdict == "sufficient" ? Tone::good : r.verdict == "extended" ? Tone::bad : Tone::doubt;
   v.word = word_of(r);
   v.headline = headline(r);
-  if (r.verdict == "extended") v.detail = "What the simulation lacks on these logs, and how large it is.";
+  if (r.verdict == "extended")
+    v.detail = "What the simulation has wrong on these logs: " + with_meanings(r.causes) + ".";
   if (r.curve) v.detail = "Nothing in the list mends it; a curve learnt from the logs does.";
-  if (!r.causes.empty()) v.facts.push_back({"Mending it removes", of_misfit(r.heldout_gain)});
+  if (!r.causes.empty()) v.facts.push_back({"Mending it removes, of the misfit", of_misfit(r.heldout_gain)});
   v.facts.push_back({"Re-tuning alone removes", of_misfit(r.retuned)});
-  v.facts.push_back({"Misfit over the tuning logs'",
-                     digits(r.adequacy_before) + (r.causes.empty() ? "" : ", then " + digits(r.adequacy_after))});
+  v.facts.push_back({"Misfit, times the tuning logs'",
+                     digits(r.adequacy_before) + (r.causes.empty() ? "" : ", mended " + digits(r.adequacy_after))});
   v.reasons = reasons(r);
   page.verdict(v);
   if (!r.causes.empty() || r.curve)
@@ -175,7 +193,8 @@ Page explain_page(const Header& header, const ExplainResult& r, const std::vecto
   page.section("How wrong it is", "Residual of each channel as tuned and with the causes, beside the sensor's noise.");
   TablePart channels{"Channels",
                      "lrrrrrll",
-                     {"channel", "before", "after", "noise", "held out", "after", "unit", "where the excess gathers"},
+                     {"channel", "before", "after", "noise", "held out, before", "held out, after", "unit",
+                      "where the excess gathers"},
                      {},
                      0};
   for (const ExplainedChannel& c : r.channels) {
@@ -193,7 +212,7 @@ Page explain_page(const Header& header, const ExplainResult& r, const std::vecto
                              {digits(before.heldout_rms), before.heldout_rms},
                              {digits(after.heldout_rms), after.heldout_rms},
                              before.unit,
-                             summary});
+                             words(summary)});
   }
   page.add(channels);
   for (const Replay& replay : replays) {
@@ -210,23 +229,24 @@ Page explain_page(const Header& header, const ExplainResult& r, const std::vecto
       bars.rows.push_back({b.block, b.passing > 0 ? b.missing / b.passing : 0,
                            fmt::format("{} of {}", handy(b.missing, b.unit), handy(b.passing, b.unit)),
                            fmt::format("{} of it in line with {}{}", percent(b.share), words(b.variable),
-                                       b.p_new ? "; chance in health " + digits(*b.p_new, 2) : ""),
+                                       b.p_new ? "; in health with a chance of " + chance(*b.p_new) : ""),
                            b.p_new && *b.p_new < 0.05 ? Tone::doubt : Tone::plain, ""});
     page.add(bars);
   }
   for (const ShownChannel& c : r.shown) {
-    page.section(words(c.signal) + ": residual maps", c.summary, true);
+    page.section(words(c.signal) + ": residual maps", words(c.summary), true);
     for (const ResidualMap& m : c.maps)
       if (!m.bins.empty()) page.add(map_plot(c, m));
     if (!c.spectrum.empty()) page.add(spectrum_plot(c));
   }
 
-  page.section("What was tried", "By the misfit that its score predicts it would remove.");
+  page.section("What was tried",
+               "By the misfit that each would remove, as the slope of the residual predicts; the best were fitted.");
   Bars bars{"Candidates", "cause", "predicted gain", {}, {}, {}};
   for (const ExplainedCandidate& c : r.candidates) {
     if (bars.rows.size() >= 15) break;
     bars.rows.push_back({words(c.effect) + " at " + words(c.where), c.predicted_gain, digits(c.predicted_gain),
-                         c.reason + (c.p_new ? "; chance in health " + digits(*c.p_new, 2) : ""),
+                         c.reason + (c.p_new ? "; in health with a chance of " + chance(*c.p_new) : ""),
                          c.reason == "taken" ? Tone::bad : Tone::plain, ""});
   }
   page.add(bars);

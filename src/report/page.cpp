@@ -52,12 +52,12 @@ std::string exact(double value) {
 }
 
 std::string cell_html(const Cell& cell, char alignment, const char* element = "td") {
-  constexpr std::size_t long_words = 24;  // characters that a narrow screen must not stack
+  constexpr std::size_t short_words = 16, long_words = 24;  // characters: never broken; broken anywhere if need be
   std::string attributes;
-  if (alignment == 'r')
-    attributes += " class=\"r\"";
-  else if (cell.text.size() > long_words)
-    attributes += " class=\"long\"";
+  attributes += alignment == 'r'                  ? " class=\"r\""
+                : cell.text.size() > long_words   ? " class=\"long\""
+                : cell.text.size() <= short_words ? " class=\"short\""
+                                                  : "";
   if (cell.tone != Tone::plain) attributes += fmt::format(" data-tone=\"{}\"", name_of(cell.tone));
   if (cell.value) attributes += fmt::format(" data-value=\"{}\"", exact(*cell.value));
   std::string text = escape_html(cell.text);
@@ -253,10 +253,10 @@ void Page::add(const Moves& moves) {
     const bool known = std::isfinite(r.sigmas);
     const double length = known ? 50 * std::min(1.0, std::abs(r.sigmas) / full) : 0;
     body_ += fmt::format(
-        "<tr><th>{}</th><td class=\"r\" data-value=\"{}\">{}</td><td class=\"r\" data-value=\"{}\">{}</td>"
-        "<td class=\"r\" data-value=\"{}\">{}</td><td data-value=\"{}\">{}</td><td class=\"r\" "
+        "<tr>{}<td class=\"r\" data-value=\"{}\">{}</td><td class=\"r\" data-value=\"{}\">{}</td>"
+        "<td class=\"r\" data-value=\"{}\">{}</td><td class=\"short\" data-value=\"{}\">{}</td><td class=\"r\" "
         "data-value=\"{}\">{}</td>",
-        escape_html(r.name), exact(r.exact_from), escape_html(r.from), exact(r.exact_to), escape_html(r.to),
+        cell_html(r.name, 'l', "th"), exact(r.exact_from), escape_html(r.from), exact(r.exact_to), escape_html(r.to),
         exact(r.exact_error), escape_html(r.error), escape_html(r.exact_unit), escape_html(r.unit), exact(r.sigmas),
         known ? (r.sigmas > 0 ? "+" : "") + digits(r.sigmas, 2) : "");
     body_ += fmt::format(
@@ -278,7 +278,7 @@ void Page::add(const Matrix& m) {
   for (const std::string& c : m.columns) body_ += fmt::format("<th class=\"r\">{}</th>", escape_html(c));
   body_ += "</tr></thead><tbody>\n";
   for (std::size_t r = 0; r < m.rows.size(); ++r) {
-    body_ += fmt::format("<tr><th>{}</th>", escape_html(m.rows[r]));
+    body_ += "<tr>" + cell_html(m.rows[r], 'l', "th");
     for (std::size_t c = 0; c < m.columns.size(); ++c) {
       const double v = m.value[r][c];
       const int depth = full > 0 && std::isfinite(v) ? static_cast<int>(std::lround(100 * std::abs(v) / full)) : 0;

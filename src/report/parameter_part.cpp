@@ -15,7 +15,7 @@ std::string verdict_in_words(const ParameterResult& p) {
   for (const std::string& name : p.confounded_with)
     if (std::find(others.begin(), others.end(), name) == others.end()) others.push_back(name);
   if (p.verdict == "flat") return "the logs do not show it";
-  if (p.verdict == "confounded") return "held: the logs show it only together with " + join(others);
+  if (p.verdict == "confounded") return "held: the logs show it only together with " + words(join(others));
   if (p.verdict == "at_bound") return "at the end of its range";
   if (p.verdict == "one_sided") return "known on one side only";
   if (p.verdict == "frozen") return "held";

@@ -26,6 +26,19 @@ std::string named(const std::string& check, const std::string& cause) {
   return check;
 }
 
+// A part lost (of the filter's area) reads as per cent.
+HandyUnit unit_of(const std::string& unit, const std::string& cause, double magnitude) {
+  return unit == "-" && !cause.empty() ? HandyUnit{"%", 100.0} : handy_unit(unit, magnitude);
+}
+std::string size_of(const std::string& unit, const std::string& cause, double value) {
+  const HandyUnit in = unit_of(unit, cause, value);
+  return digits(value * in.factor) + (in.name.empty() ? "" : " " + in.name);
+}
+template <class C>
+std::string size_of(const C& check, double value) {
+  return size_of(check.unit, check.cause, value);
+}
+
 std::string in_hours(double h) { return std::isfinite(h) ? digits(h) + " h" : "never"; }
 
 Tone tone_of(const std::string& state) {
@@ -38,12 +51,18 @@ std::string left(const std::optional<Remaining>& r, double coverage) {
   return in_hours(r->median) + " (" + in_hours(r->lower) + " to " + in_hours(r->upper) + ", " + percent(coverage) + ")";
 }
 
+// A confirmed trend to the other side than the one level of failure lies on: a repair, or a table that is wrong.
+bool moves_away(const CheckTrend& t) {
+  if (!t.trend || t.failure.upper.has_value() == t.failure.lower.has_value()) return false;
+  return t.failure.upper ? t.now < t.healthy : t.now > t.healthy;
+}
+
 // Odds in which a person believes; the figure itself is in the JSON.
 std::string growth(const CheckTrend& t) {
   if (!t.trend) return "none shown";
   constexpr double most = 1000;
   const double odds = std::exp(std::min(t.log_bayes_factor, std::log(2 * most)));
-  return std::string(t.now < t.healthy ? "falls, " : "rises, ") +
+  return std::string(t.now < t.healthy ? "falls, " : "rises, ") + (moves_away(t) ? "away from failure, " : "") +
          (odds > most ? "over 1000 to 1" : digits(odds, 2) + " to 1");
 }
 
@@ -51,7 +70,7 @@ double coverage_of(const Header& header) { return header.settings.value("coverag
 
 // A check over its hours, with what it must not pass.
 Plot history_of(const CheckTrend& t) {
-  const HandyUnit unit = handy_unit(t.unit, std::max(std::abs(t.healthy), std::abs(t.now)));
+  const HandyUnit unit = unit_of(t.unit, t.cause, std::max(std::abs(t.healthy), std::abs(t.now)));
   Plot plot{.title = named(t.name, t.cause) + (unit.name.empty() ? "" : " [" + unit.name + "]"),
             .x_label = "hours of use",
             .group = "life"};
@@ -91,9 +110,9 @@ TablePart table_of(const ValveTrend& v, double coverage) {
   for (const CheckTrend& t : v.trends) {
     Cell state = t.state;
     state.tone = tone_of(t.state);
-    table.rows.push_back({named(t.name, t.cause), state, Cell(handy(t.healthy, t.unit), t.healthy),
-                          t.points.size() < 2 ? Cell("-") : Cell(handy(t.now, t.unit), t.now), growth(t),
-                          left(t.remaining, coverage)});
+    table.rows.push_back({named(t.name, t.cause), state, Cell(size_of(t, t.healthy), t.healthy),
+                          t.points.size() < 2 ? Cell("-") : Cell(size_of(t, t.now), t.now), growth(t),
+                          moves_away(t) ? "not towards failure" : left(t.remaining, coverage)});
   }
   return table;
 }
@@ -122,7 +141,9 @@ Verdict verdict_of(const ValveTrend& v, double coverage) {
                  [](unsigned char c) { return std::toupper(c); });
   verdict.headline = v.cause      ? words(*v.cause) + " grows in " + v.valve
                      : v.alert_at ? "A check of " + v.valve + " grows; no parameter names the cause"
-                                  : v.valve + " shows no growth that would be acted on";
+                     : std::any_of(v.trends.begin(), v.trends.end(), moves_away)
+                         ? v.valve + " shows no growth towards failure, but a check that moves away from it"
+                         : v.valve + " shows no growth that would be acted on";
   if (v.cause && v.remaining && std::isfinite(v.remaining->median))
     verdict.headline += ", about " + digits(v.remaining->median, 2) + " h left";
   verdict.facts = {{"Valve", v.serial.empty() ? v.valve : v.valve + ", serial " + v.serial},
@@ -185,8 +206,8 @@ void add_ways(Page& page, const CheckResult& r) {
   for (const Check& c : r.checks)
     if (std::isfinite(way(c, c.value)))
       bars.rows.push_back({words(c.cause), std::max(0.0, way(c, c.value)), percent(way(c, c.value)),
-                           fmt::format("+- {}; {}, tuned {}, failed at {}", percent(way_error(c)),
-                                       handy(c.value, c.unit), handy(c.tuned, c.unit), handy(c.failed, c.unit)),
+                           fmt::format("+- {}; {}, tuned {}, failed at {}", percent(way_error(c)), size_of(c, c.value),
+                                       size_of(c, c.tuned), size_of(c, c.failed)),
                            &c == worn(r) ? Tone::doubt : Tone::plain, ""});
   if (bars.rows.empty()) return;
   std::stable_sort(bars.rows.begin(), bars.rows.end(), [](const auto& a, const auto& b) { return a.value > b.value; });
@@ -202,16 +223,16 @@ Page check_page(const Header& header, const CheckResult& r, const std::vector<do
   v.tone = r.no_response ? Tone::bad : most ? Tone::doubt : Tone::plain;
   v.headline = r.no_response ? "The spool did not follow the step"
                : most        ? fmt::format("{} has come {} of the way to failure: {}", words(most->cause),
-                                           percent(way(*most, most->value)), handy(most->value, most->unit))
+                                           percent(way(*most, most->value)), size_of(*most, most->value))
                : std::any_of(r.checks.begin(), r.checks.end(), [](const Check& c) { return !c.cause.empty(); })
                    ? "No wear has surely come a quarter of the way to failure"
                    : fmt::format("{} checks; wear was not estimated", r.checks.size());
   v.detail = "One check alone is no alarm: what it means for this valve, its history says (servodx trend).";
   v.facts = {{"Checks recorded", std::to_string(r.checks.size())},
              {"Oil", digits(r.temperature.value - 273.15) + " degC, " + r.temperature.source},
-             {"Offset of the current", percent(r.offset)},
+             {"Offset of the current", percent(r.offset) + " of rated"},
              {"Fit of the model", digits(r.adequacy, 2) + " times its usual error"}};
-  if (r.null) v.facts.push_back({"Null", percent(*r.null)});
+  if (r.null) v.facts.push_back({"Null", percent(*r.null) + " of rated"});
   constexpr double poor = 4.0;  // times the usual error
   if (r.adequacy > poor)
     v.reasons.push_back("The model follows this log " + digits(r.adequacy, 2) +
@@ -219,11 +240,12 @@ Page check_page(const Header& header, const CheckResult& r, const std::vector<do
   page.verdict(v);
   add_ways(page, r);
   page.section("Checks", "As measured, and corrected to 40 degC oil and the supply of the tuned table.");
-  TablePart table{"Checks", "lrrrr", {"check", "measured", "model's ratio", "corrected", "standard error"}, {}, 0};
+  TablePart table{
+      "Checks", "lrrrr", {"check", "measured", "model: here over at 40 degC", "corrected", "standard error"}, {}, 0};
   for (const Check& c : r.checks)
-    table.rows.push_back({named(c.name, c.cause), Cell(handy(c.measured, c.unit), c.measured),
+    table.rows.push_back({named(c.name, c.cause), Cell(size_of(c, c.measured), c.measured),
                           c.cause.empty() ? Cell(digits(c.expected), c.expected) : Cell(""),
-                          Cell(handy(c.value, c.unit), c.value), Cell(handy(c.std_error, c.unit), c.std_error)});
+                          Cell(size_of(c, c.value), c.value), Cell(size_of(c, c.std_error), c.std_error)});
   page.add(table);
   if (r.mean_error.running.size() == time.size() && !time.empty()) {
     Plot plot{.title = "running mean of |e| [um]", .x_label = "time [s]", .x = time};

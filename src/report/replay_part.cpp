@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 
 #include "base/units.h"
@@ -53,6 +54,9 @@ Role role_of(std::size_t place) { return place == 0 ? Role::reference : place ==
 
 std::string words(std::string label) {
   std::replace(label.begin(), label.end(), '_', ' ');
+  // A port's letter: "pressure_a" -> "pressure A".
+  if (const std::size_t n = label.size(); n > 2 && label[n - 2] == ' ')
+    label[n - 1] = static_cast<char>(std::toupper(static_cast<unsigned char>(label[n - 1])));
   return label;
 }
 

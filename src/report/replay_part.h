@@ -19,7 +19,7 @@ struct ReplayView {
 
 void add_replay(Page& page, const Replay& replay, const ReplayView& view);
 
-std::string words(std::string label);            // "feedback_wire_lost" -> "feedback wire lost"
+std::string words(std::string label);  // "feedback_wire_lost" -> "feedback wire lost", "pressure_a" -> "pressure A"
 std::string file_name(const std::string& path);  // without its folder
 
 }  // namespace servodx::report

@@ -37,8 +37,8 @@ std::string coverage_words(const SelftestResult& r) {
 std::string headline(const SelftestResult& r) {
   return fmt::format("{}: {}", file_name(r.log),
                      r.coverage_upper < promised ? "the fit's errors are too small on this input"
-                     : biased(r) > 0             ? "nothing shows the fit's errors wrong, but some parameters are biased"
-                                                 : "the fit recovers the truth, and nothing shows its errors wrong");
+                     : biased(r) > 0 ? "nothing speaks against the fit's stated errors, but some parameters are biased"
+                                     : "the fit finds the truth again, and nothing speaks against its stated errors");
 }
 
 std::string bias_words(const SelftestResult& r) {
@@ -101,8 +101,8 @@ Page selftest_page(const Header& header, const SelftestResult& r) {
       "Made-up truths, the log's own input and noise: what the fit finds again. The data were made by the model "
       "itself: "
       "this tests the input and the fit, not the model.";
-  v.facts = {{"Truth held by 95 % intervals", percent(share(r))},
-             {"That share lies within", percent(r.coverage_lower) + " to " + percent(r.coverage_upper)},
+  v.facts = {{"95 % intervals that hold the truth", percent(share(r))},
+             {"In the long run between", percent(r.coverage_lower) + " and " + percent(r.coverage_upper)},
              {"Repeats", fmt::format("{}, {} failed", r.repeats, r.failed)},
              {"Biased parameters", fmt::format("{} of {}", biased(r), r.rows.size())}};
   page.verdict(v);
@@ -110,7 +110,7 @@ Page selftest_page(const Header& header, const SelftestResult& r) {
   Bars bars{"Share of intervals that hold the truth", "parameter", "share", {}, Mark{promised, "95 %"}, 1.1};
   TablePart table{"Bias and error",
                   "lrrrrrl",
-                  {"parameter", "value", "bias", "bias in sigmas", "rms error", "fit says", "unit"},
+                  {"parameter", "value", "bias", "bias in sigmas", "rms error", "error stated", "unit"},
                   {},
                   0};
   for (const SelftestRow& row : r.rows) {

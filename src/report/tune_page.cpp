@@ -34,6 +34,15 @@ void add_channels(Page& page, const std::string& title, const std::vector<Channe
   page.add(table);
 }
 
+// As `fit/tune.h` calls its stages, for a reader who has not seen it.
+std::string stage_words(const std::string& stage) {
+  if (stage == "start 1") return "from the table's values";
+  if (stage.starts_with("start ")) return "from genetic " + std::to_string(std::stoi(stage.substr(6)) - 1);
+  if (stage == "weights") return "on all but the end of each log";
+  if (stage == "everything") return "on whole logs";
+  return stage;
+}
+
 void add_search(Page& page, const TuneResult& result) {
   if (result.starts.size() > 1) {
     std::vector<std::size_t> order(result.starts.size());
@@ -59,7 +68,7 @@ void add_search(Page& page, const TuneResult& result) {
   }
   constexpr Role roles[] = {Role::measured, Role::reference, Role::other, Role::named, Role::input};
   for (std::size_t s = 0; s < stages.size(); ++s) {
-    Series series{stages[s], {}, roles[s % std::size(roles)]};
+    Series series{stage_words(stages[s]), {}, roles[s % std::size(roles)]};
     for (const ConvergencePoint& c : result.convergence)
       series.y.push_back(c.stage == stages[s] ? c.cost : std::nan(""));
     plot.series.push_back(std::move(series));
@@ -79,51 +88,55 @@ Page tune_page(const Header& header, const TuneResult& result, const GoodEnough&
                const std::vector<Replay>& replays) {
   const auto logs = static_cast<long>(result.logs.size());
   Page page(header, fmt::format("Nominal parameters from {} log{}", logs, logs == 1 ? "" : "s"));
-  long known = 0, bound = 0, held = 0;
+  long known = 0, held = 0;
+  std::vector<std::string> at_end;
   for (const ParameterResult& p : result.parameters) {
     known += std::isfinite(p.std_error);
-    bound += p.verdict == "at_bound";
+    if (p.verdict == "at_bound") at_end.push_back(words(p.name));
     held += !std::isfinite(p.std_error) && p.verdict != "at_bound";
   }
   Verdict v;
   v.tone = enough.yes ? Tone::good : Tone::doubt;
   v.word = result.interrupted ? "INTERRUPTED" : enough.yes ? "GOOD ENOUGH" : "WITH CARE";
   v.headline = enough.yes ? "Good enough to diagnose with" : "Diagnose with this table, but mind what follows";
-  v.detail =
-      fmt::format("{} parameters fitted to {} log{}; {}.", known + bound, logs, logs == 1 ? "" : "s", enough.errors);
+  v.detail = fmt::format("{} parameters fitted to {} log{}; {}.", known + static_cast<long>(at_end.size()), logs,
+                         logs == 1 ? "" : "s", enough.errors);
   v.facts = {{"Known with an error", std::to_string(known)},
-             {"At an end of their range", std::to_string(bound)},
+             {"At an end of their range", std::to_string(at_end.size())},
              {"Held: the logs cannot tell", std::to_string(held)},
              {"Starts that agree", fmt::format("{} of {}", result.reached_best, result.starts.size())}};
   if (enough.yes) v.reasons.push_back(sentence(line_of(enough)));
   for (const std::string& reason : enough.reasons) v.reasons.push_back(sentence(reason));
   if (!enough.yes && !enough.exceptions.empty())
     v.reasons.push_back("Predicted worse than fitted: " + join(enough.exceptions) + ", so logs of its kind are few.");
-  if (bound > 0)
-    v.reasons.push_back(
-        fmt::format("{} parameter{} an end of the range: check the data sheet behind it, or widen the bounds.", bound,
-                    bound == 1 ? " stands at" : "s stand at"));
+  if (!at_end.empty())
+    v.reasons.push_back(fmt::format("At an end of {} range: {}. Check the data sheet behind {}, or widen the bounds.",
+                                    at_end.size() == 1 ? "its" : "their", join(at_end),
+                                    at_end.size() == 1 ? "it" : "them"));
   page.verdict(v);
 
   page.section("How well the model fits",
                "Held out: the last part of every log, before the final fit saw it. Noise: the sensor's own.");
   add_channels(page, "Channels, all logs together", result.channels);
-  TablePart by_log{"Log by log; of a channel its error over the sensor's noise", "lrr", {"log", "null", "command between samples"}, {}, 0};
+  TablePart by_log{"Log by log: of each channel the error over the sensor's noise", "l", {"log"}, {}, 0};
   for (const ChannelResult& c : result.channels) {
     by_log.alignment += 'r';
     by_log.head.push_back(words(std::string(info(c.signal).name)));
   }
+  by_log.alignment += "rl";
+  by_log.head.insert(by_log.head.end(), {"null", "command from sample to sample"});
   for (const LogResult& log : result.logs) {
-    std::vector<Cell> row = {log.path, Cell(percent(log.null) + " of rated", log.null),
-                             Cell(log.command_slope < 0.05   ? "held"
-                                  : log.command_slope > 0.95 ? "in a line"
-                                                             : digits(log.command_slope, 2),
-                                  log.command_slope)};
+    std::vector<Cell> row = {log.path};
     for (const ChannelResult& pooled : result.channels) {
       row.push_back("");
       for (const ChannelResult& c : log.channels)
         if (c.signal == pooled.signal) row.back() = Cell(digits(c.rms / c.noise_rms, 2), c.rms / c.noise_rms);
     }
+    row.push_back(Cell(percent(log.null) + " of rated", log.null));
+    row.push_back(Cell(log.command_slope < 0.05   ? "held"
+                       : log.command_slope > 0.95 ? "runs in a line"
+                                                  : "runs " + percent(log.command_slope) + " of the step",
+                       log.command_slope));
     by_log.rows.push_back(std::move(row));
   }
   page.add(by_log);
@@ -131,8 +144,8 @@ Page tune_page(const Header& header, const TuneResult& result, const GoodEnough&
   if (!enough.best.empty()) {
     page.section(
         "Which faults a diagnosis would see",
-        "On the log of these that shows each best, against the errors that this model makes, in deviates: below "
-        "3 the fault stays hidden.");
+        "On the log of these that shows each best, against the errors that this model makes, in sigmas: below 3 "
+        "the fault stays hidden.");
     add_visible(page, enough.best);
   }
 

@@ -12,29 +12,67 @@ namespace {
 
 double in(const char* unit, double si) { return find_unit(unit)->from_si(si); }
 
+// Percent; beyond ten times all a map is no use, however far.
+Cell in_percent(double part) { return Cell(part > 10 ? "over 1000" : digits(100 * part), part); }
+
 constexpr double shown = 2.0;  // of the supply: beyond, the water hammer leaves the picture
+
+std::vector<double> flows_of(const std::vector<valve_maps::MapPoint>& points) {
+  std::vector<double> flows;
+  for (const auto& p : points)
+    if (p.x_s == points.front().x_s) flows.push_back(p.q_j);
+  return flows;
+}
+
+// Of one load flow, by its place among the flows: travel [um] and load pressure [bar].
+std::vector<double> travel_of(const std::vector<valve_maps::MapPoint>& points, std::size_t flows) {
+  std::vector<double> x;
+  for (std::size_t k = 0; k < points.size(); k += flows) x.push_back(in("um", points[k].x_s));
+  return x;
+}
+std::vector<double> pressure_of(const std::vector<valve_maps::MapPoint>& points, std::size_t flows, std::size_t j,
+                                double supply) {
+  std::vector<double> y;
+  for (std::size_t k = j; k < points.size(); k += flows)
+    y.push_back(std::abs(points[k].load_pressure) > shown * supply ? std::nan("") : in("bar", points[k].load_pressure));
+  return y;
+}
+
+std::vector<Mark> supply_marks(double supply) { return {{in("bar", supply), "supply"}, {-in("bar", supply), ""}}; }
 
 // Load pressure over travel at five load flows.
 Plot plot_of(const MapPicture& picture) {
-  Plot plot{.title = picture.title + ": load pressure [MPa]", .x_label = "spool position [um]", .group = "maps"};
-  std::vector<double> flows;
-  for (const auto& p : picture.points) {
-    if (p.x_s == picture.points.front().x_s) flows.push_back(p.q_j);
-    if (plot.x.empty() || plot.x.back() != in("um", p.x_s)) plot.x.push_back(in("um", p.x_s));
-  }
+  const std::vector<double> flows = flows_of(picture.points);
+  Plot plot{.title = picture.title + ": load pressure [bar]",
+            .x_label = "spool position [um]",
+            .x = travel_of(picture.points, flows.size()),
+            .group = "maps"};
   constexpr Role roles[] = {Role::input, Role::other, Role::measured, Role::reference, Role::named};
-  const double limit = shown * in("MPa", picture.supply);
   for (std::size_t i = 0; i < std::size(roles); ++i) {
     const std::size_t j = i * (flows.size() - 1) / (std::size(roles) - 1);
-    Series series{digits(in("l/min", flows[j])) + " l/min", {}, roles[i]};
-    for (std::size_t k = j; k < picture.points.size(); k += flows.size()) {
-      const double p = in("MPa", picture.points[k].load_pressure);
-      series.y.push_back(std::abs(p) > limit ? std::nan("") : p);
-    }
-    plot.series.push_back(std::move(series));
+    plot.series.push_back({digits(in("l/min", flows[j])) + " l/min",
+                           pressure_of(picture.points, flows.size(), j, picture.supply), roles[i]});
   }
-  plot.y_marks = {{in("MPa", picture.supply), "supply"}, {-in("MPa", picture.supply), ""}};
+  plot.y_marks = supply_marks(picture.supply);
   return plot;
+}
+
+// The map and HF at no load flow, half of the largest, and the largest; the other side is its mirror.
+std::vector<Plot> beside_detailed(const std::string& model, const MapPicture& picture) {
+  const std::vector<double> flows = flows_of(picture.points);
+  std::vector<Plot> plots;
+  for (const std::size_t quarters : {2, 3, 4}) {
+    const std::size_t j = quarters * (flows.size() - 1) / 4;
+    Plot plot{.title = "load flow " + digits(in("l/min", flows[j])) + " l/min: load pressure [bar]",
+              .x_label = "spool position [um]",
+              .x = travel_of(picture.points, flows.size()),
+              .group = "maps"};
+    plot.series = {{"HF", pressure_of(picture.detailed, flows.size(), j, picture.supply), Role::measured},
+                   {model, pressure_of(picture.points, flows.size(), j, picture.supply), Role::named}};
+    plot.y_marks = supply_marks(picture.supply);
+    plots.push_back(std::move(plot));
+  }
+  return plots;
 }
 
 }  // namespace
@@ -42,10 +80,15 @@ Plot plot_of(const MapPicture& picture) {
 Page maps_page(const Header& header, const valve_maps::ValveNumbers& valve,
                const std::vector<valve_maps::MapError>& errors, const std::vector<MapPicture>& pictures) {
   Page page(header, "Simplified valve models against HF");
-  const auto worst = [](const valve_maps::MapError& e) {
-    double rms = 0;
-    for (const auto& region : e.regions) rms = std::max(rms, region.rms);
-    return rms;
+  const auto worst_region = [](const valve_maps::MapError& e) {
+    return static_cast<std::size_t>(std::max_element(e.regions.begin(), e.regions.end(),
+                                                     [](const auto& x, const auto& y) { return x.rms < y.rms; }) -
+                                    e.regions.begin());
+  };
+  const auto worst = [&](const valve_maps::MapError& e) { return e.regions[worst_region(e)].rms; };
+  const auto where = [&](const valve_maps::MapError& e) {
+    return percent(worst(e)) + " of the supply in its worst region (" +
+           words(std::string(valve_maps::region_names[worst_region(e)])) + ")";
   };
   const valve_maps::MapError *best = nullptr, *asked = nullptr;
   const std::string model = header.settings.value("model", "");
@@ -54,14 +97,12 @@ Page maps_page(const Header& header, const valve_maps::ValveNumbers& valve,
     if (e.name != "HF" && e.name == model) asked = &e;
   }
   Verdict v;
-  v.headline = asked  ? "Map " + asked->name + " is wrong by up to " + percent(worst(*asked)) + " of the supply"
-               : best ? "Nearest to the detailed model: " + best->name + ", wrong by up to " + percent(worst(*best)) +
-                            " of the supply"
+  v.headline = asked  ? "Map " + asked->name + " is off by " + where(*asked)
+               : best ? "Nearest to the detailed model: " + best->name + ", off by " + where(*best)
                       : "Valve maps";
   v.detail =
-      "Load pressure from spool position and load flow, against the detailed model HF: rms in the worst of four "
-      "regions, "
-      "as a part of P_SR, supply less return.";
+      "Load pressure from spool position and load flow, against the detailed model HF: rms error, as a part of P_SR, "
+      "supply less return.";
   if (asked && best) v.facts.push_back({"Nearest of all", best->name + ", " + percent(worst(*best))});
   v.facts.insert(v.facts.end(),
                  {{"Supply less return, P_SR", digits(in("bar", valve.supply), 4) + " bar"},
@@ -79,13 +120,17 @@ Page maps_page(const Header& header, const valve_maps::ValveNumbers& valve,
     std::vector<Cell> row = {e.name};
     double largest = 0;
     for (const auto& region : e.regions) {
-      row.push_back(region.points > 0 ? Cell(digits(100 * region.rms), region.rms) : Cell(""));
+      row.push_back(region.points > 0 ? in_percent(region.rms) : Cell(""));
       largest = std::max(largest, region.largest);
     }
-    row.push_back(Cell(digits(100 * largest), largest));
+    row.push_back(in_percent(largest));
     table.rows.push_back(std::move(row));
   }
   page.add(table);
+  if (!pictures.empty() && !pictures.front().detailed.empty()) {
+    page.section("Where " + model + " goes wrong", "Beside HF, at the supply asked for.");
+    for (const Plot& plot : beside_detailed(model, pictures.front())) page.add(plot);
+  }
   page.section("Maps", "Load pressure over spool position, a line for each load flow; cut at twice the supply.");
   for (const MapPicture& picture : pictures) page.add(plot_of(picture));
   return page;

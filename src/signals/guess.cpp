@@ -34,6 +34,14 @@ constexpr Pattern patterns[] = {
     {Signal::command, "strom"},
     {Signal::command, "sollstrom"},
     {Signal::command, "i"},
+    {Signal::command, "isoll"},
+    {Signal::command, "i soll"},
+    {Signal::command, "i set"},
+    {Signal::command, "u soll"},
+    {Signal::command, "usoll"},
+    {Signal::command, "u"},
+    {Signal::command, "stellsignal"},
+    {Signal::command, "drive"},
     {Signal::setpoint, "setpoint"},
     {Signal::setpoint, "position demand"},
     {Signal::setpoint, "pos demand"},
@@ -42,11 +50,18 @@ constexpr Pattern patterns[] = {
     {Signal::setpoint, "pos cmd"},
     {Signal::setpoint, "sollweg"},
     {Signal::setpoint, "sollposition"},
+    {Signal::setpoint, "x ref"},
+    {Signal::setpoint, "x soll"},
+    {Signal::setpoint, "reference"},
     {Signal::setpoint, "demand"},
     {Signal::spool_position, "spool"},
     {Signal::spool_position, "lvdt"},
     {Signal::spool_position, "schieber"},
     {Signal::spool_position, "schieberweg"},
+    {Signal::spool_position, "steuerkolben"},
+    {Signal::spool_position, "valve position"},
+    {Signal::spool_position, "valve pos"},
+    {Signal::spool_position, "valve stroke"},
     {Signal::spool_position, "xs"},
     {Signal::spool_position, "xv"},
     {Signal::spool_position, "x s"},
@@ -61,18 +76,31 @@ constexpr Pattern patterns[] = {
     {Signal::piston_position, "pos"},
     {Signal::piston_position, "kolben"},
     {Signal::piston_position, "kolbenweg"},
+    {Signal::piston_position, "cylinder"},
+    {Signal::piston_position, "cyl"},
+    {Signal::piston_position, "zylinder"},
+    {Signal::piston_position, "zylinderweg"},
+    {Signal::piston_position, "actuator"},
     {Signal::piston_position, "xp"},
     {Signal::piston_position, "x p"},
+    {Signal::piston_position, "xk"},
+    {Signal::piston_position, "x k"},
     {Signal::pressure_a, "pressure a"},
     {Signal::pressure_a, "press a"},
     {Signal::pressure_a, "druck a"},
     {Signal::pressure_a, "p a"},
     {Signal::pressure_a, "pa"},
+    {Signal::pressure_a, "port a"},
+    {Signal::pressure_a, "p1"},
+    {Signal::pressure_a, "p 1"},
     {Signal::pressure_b, "pressure b"},
     {Signal::pressure_b, "press b"},
     {Signal::pressure_b, "druck b"},
     {Signal::pressure_b, "p b"},
     {Signal::pressure_b, "pb"},
+    {Signal::pressure_b, "port b"},
+    {Signal::pressure_b, "p2"},
+    {Signal::pressure_b, "p 2"},
     {Signal::supply_pressure, "supply"},
     {Signal::supply_pressure, "psupply"},
     {Signal::supply_pressure, "pump"},
@@ -80,6 +108,11 @@ constexpr Pattern patterns[] = {
     {Signal::supply_pressure, "p s"},
     {Signal::supply_pressure, "pp"},
     {Signal::supply_pressure, "p p"},
+    {Signal::supply_pressure, "p0"},
+    {Signal::supply_pressure, "p 0"},
+    {Signal::supply_pressure, "p sup"},
+    {Signal::supply_pressure, "p sys"},
+    {Signal::supply_pressure, "system pressure"},
     {Signal::supply_pressure, "pressure p"},
     {Signal::supply_pressure, "versorgungsdruck"},
     {Signal::supply_pressure, "systemdruck"},
@@ -108,6 +141,9 @@ constexpr Pattern patterns[] = {
     {Signal::load_force, "force"},
     {Signal::load_force, "load"},
     {Signal::load_force, "kraft"},
+    {Signal::load_force, "f l"},
+    {Signal::load_force, "fl"},
+    {Signal::load_force, "f load"},
     {Signal::load_force, "last"},
     {Signal::leakage_flow, "leakage"},
     {Signal::leakage_flow, "leak"},
@@ -130,8 +166,8 @@ constexpr Pattern patterns[] = {
     {Signal::oil_temperature, "temperatur"},
 };
 
-// How else people write units of the table.
-constexpr std::array<std::pair<std::string_view, std::string_view>, 24> unit_words = {{
+// How else people write units of the table, capitals aside.
+constexpr std::pair<std::string_view, std::string_view> unit_words[] = {
     {"sec", "s"},
     {"seconds", "s"},
     {"msec", "ms"},
@@ -139,39 +175,41 @@ constexpr std::array<std::pair<std::string_view, std::string_view>, 24> unit_wor
     {"\xC2\xB5m", "um"},
     {"micron", "um"},
     {"inch", "in"},
-    {"C", "degC"},
+    {"inches", "in"},
+    {"amp", "A"},
+    {"amps", "A"},
+    {"barg", "bar"},
+    {"bara", "bar"},
+    {"c", "degC"},
+    {"degc", "degC"},
     {"\xC2\xB0"
-     "C",
+     "c",
      "degC"},
-    {"deg C", "degC"},
+    {"deg c", "degC"},
     {"celsius", "degC"},
-    {"F", "degF"},
+    {"f", "degF"},
+    {"degf", "degF"},
     {"\xC2\xB0"
-     "F",
+     "f",
      "degF"},
     {"lpm", "l/min"},
-    {"L/min", "l/min"},
     {"volt", "V"},
     {"volts", "V"},
-    {"MPA", "MPa"},
     {"mpa", "MPa"},
-    {"Bar", "bar"},
-    {"BAR", "bar"},
-    {"PSI", "psi"},
+    {"kpa", "kPa"},
+    {"kn", "kN"},
     {"psig", "psi"},
     {"ma", "mA"},
-}};
+};
 
 std::string trimmed(const std::string& text) {
   const auto first = text.find_first_not_of(" \t");
   return first == std::string::npos ? "" : text.substr(first, text.find_last_not_of(" \t") - first + 1);
 }
 
-std::string known_unit(const std::string& written) {
-  if (find_unit(written)) return written;
-  for (const auto& [word, unit] : unit_words)
-    if (written == word) return std::string(unit);
-  return "";
+std::string small(std::string text) {
+  for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return text;
 }
 
 // Lower-case words: cut at everything that is no letter or digit, and where camelCase turns.
@@ -202,73 +240,122 @@ std::vector<std::string> words_of(const std::string& name) {
 }
 
 // Number of words of the pattern if all are there, plus one where nothing else is; 0: no match.
-int match(const std::vector<std::string>& name, std::string_view pattern) {
+int match(std::vector<std::string> name, std::string_view pattern) {
+  const std::size_t words = name.size();
   int matched = 0;
   while (!pattern.empty()) {
     const auto blank = std::min(pattern.find(' '), pattern.size());
-    if (std::find(name.begin(), name.end(), pattern.substr(0, blank)) == name.end()) return 0;
+    const auto word = std::find(name.begin(), name.end(), pattern.substr(0, blank));
+    if (word == name.end()) return 0;
+    name.erase(word);  // each counts once: "p_T" is no "p p"
     ++matched;
     pattern.remove_prefix(std::min(blank + 1, pattern.size()));
   }
-  return 2 * matched + (static_cast<std::size_t>(matched) == name.size());
+  return 2 * matched + (static_cast<std::size_t>(matched) == words);
 }
 
 bool unit_fits(const std::string& unit, Signal signal) {
   const Unit* u = find_unit(unit);
   if (!u || u->dimension == Dimension::voltage) return true;
   const auto relative = relative_unit(signal);
-  return u->dimension == info(signal).dimension || (relative && u->dimension == relative->dimension);
+  return u->dimension == info(signal).dimension || (relative && (u->dimension == relative->dimension || unit == "%"));
 }
 
-ColumnGuess split(const std::string& cell) {
-  ColumnGuess g;
-  g.cell = cell;
-  g.name = trimmed(cell);
-  const auto cut = [&](std::size_t at, const std::string& unit) {
-    g.unit = unit;
-    g.name = trimmed(g.name.substr(0, at));
-  };
+struct Match {
+  int points;
+  std::size_t column;
+  Signal signal;
+};
+
+// The signals that a name may stand for with this unit.
+std::vector<Match> matches_of(const std::string& name, const std::string& unit, std::size_t column) {
+  std::vector<Match> matches;
+  const std::vector<std::string> words = words_of(name);
+  for (const Pattern& p : patterns)
+    if (const int points = match(words, p.words); points > 0 && unit_fits(unit, p.signal))
+      matches.push_back({points, column, p.signal});
+  return matches;
+}
+
+bool is_whole(const Match& m) { return m.points % 2 == 1; }
+
+// "name (unit)", "name [unit]".
+bool split_brackets(ColumnGuess& g) {
   for (const auto& [open, close] : {std::pair{'[', ']'}, std::pair{'(', ')'}}) {
     const auto at = g.name.rfind(open);
     if (at == std::string::npos || at == 0 || g.name.back() != close) continue;
     const std::string written = trimmed(g.name.substr(at + 1, g.name.size() - at - 2));
-    cut(at, known_unit(written));
+    g.unit = unit_meant(written);
     g.unit_in_brackets = open == '[' && !g.unit.empty() && g.unit == written;
-    return g;
+    g.name = trimmed(g.name.substr(0, at));
+    return true;
   }
-  // "pressure_bar", "Q l/min": the last word is a unit; "p/bar": what follows the stroke is.
+  return false;
+}
+
+// "pressure_bar", "Q l/min": the last word is a unit; "p/bar": what follows the stroke is. A subscript is none: "p_A"
+// is no p in amperes, "u_in" no u in inches.
+void split_last_word(ColumnGuess& g) {
+  const std::vector<Match> whole = matches_of(g.name, "", 0);
   for (const char* marks : {"_ ", "/"}) {
     const auto at = g.name.find_last_of(marks);
     if (at == std::string::npos || at == 0) continue;
-    const std::string unit = known_unit(g.name.substr(at + 1));
-    if (unit.size() > 1 || unit == "V" || unit == "A" || unit == "s") {
-      cut(at, unit);
-      break;
-    }
+    const std::string name = trimmed(g.name.substr(0, at)), unit = unit_meant(g.name.substr(at + 1));
+    if (unit.empty() || (unit.size() == 1 && unit != "V" && unit != "A" && unit != "s")) continue;
+    if (*marks != '/' && (std::any_of(whole.begin(), whole.end(), is_whole) ||
+                          (!whole.empty() && matches_of(name, unit, 0).empty() && !find_signal(name))))
+      continue;
+    g.name = name;
+    g.unit = unit;
+    return;
   }
-  return g;
 }
 
 }  // namespace
 
-std::vector<ColumnGuess> guess_columns(const std::vector<std::string>& header) {
+std::string unit_meant(const std::string& written) {
+  if (find_unit(written)) return written;
+  const std::string low = small(written);
+  for (const auto& [word, unit] : unit_words)
+    if (low == word) return std::string(unit);
+  return find_unit(low) ? low : "";
+}
+
+std::vector<std::string> units_row(CsvCursor& csv) {
+  std::vector<std::string> units = csv.row_ahead();
+  bool any = false;
+  for (std::string& cell : units) {
+    std::string number = cell;
+    std::replace(number.begin(), number.end(), ',', '.');
+    if (parse_number(number)) return {};
+    const std::size_t n = cell.size();
+    if (n > 1 && ((cell[0] == '[' && cell[n - 1] == ']') || (cell[0] == '(' && cell[n - 1] == ')')))
+      cell = trimmed(cell.substr(1, n - 2));
+    any = any || !unit_meant(cell).empty();
+  }
+  return any && units.size() == csv.header().size() ? units : std::vector<std::string>{};
+}
+
+std::vector<ColumnGuess> guess_columns(const std::vector<std::string>& header, const std::vector<std::string>& units) {
   std::vector<ColumnGuess> guesses;
-  struct Match {
-    int points;
-    std::size_t column;
-    Signal signal;
-  };
   std::vector<Match> matches;
   for (std::size_t i = 0; i < header.size(); ++i) {
-    ColumnGuess g = split(header[i]);
+    ColumnGuess g;
+    g.cell = header[i];
+    g.name = trimmed(header[i]);
+    const bool bracketed = split_brackets(g);
+    if (!bracketed && i < units.size()) {
+      g.unit = unit_meant(units[i]);
+      g.unit_in_brackets = !g.unit.empty() && g.unit == units[i];
+    } else if (!bracketed) {
+      split_last_word(g);
+    }
     if (const auto own = find_signal(g.name)) {
       g.canonical = true;
       matches.push_back({100, i, *own});
     }
-    const std::vector<std::string> words = words_of(g.name);
-    for (const Pattern& p : patterns)
-      if (const int points = match(words, p.words); points > 0 && unit_fits(g.unit, p.signal))
-        matches.push_back({points, i, p.signal});
+    const std::vector<Match> more = matches_of(g.name, g.unit, i);
+    matches.insert(matches.end(), more.begin(), more.end());
     guesses.push_back(std::move(g));
   }
   std::stable_sort(matches.begin(), matches.end(), [](const Match& a, const Match& b) { return a.points > b.points; });
@@ -278,13 +365,20 @@ std::vector<ColumnGuess> guess_columns(const std::vector<std::string>& header) {
     guesses[m.column].signal = m.signal;
     taken[static_cast<std::size_t>(index(m.signal))] = true;
   }
-  // A name in no list, but a unit that only one signal has.
   for (ColumnGuess& g : guesses) {
+    // A name in no list, but a unit that only one signal has.
     const Unit* unit = find_unit(g.unit);
     bool& oil = taken[static_cast<std::size_t>(index(Signal::oil_temperature))];
-    if (g.signal || oil || !unit || unit->dimension != Dimension::temperature) continue;
-    g.signal = Signal::oil_temperature;
-    oil = true;
+    if (!g.signal && !oil && unit && unit->dimension == Dimension::temperature) {
+      g.signal = Signal::oil_temperature;
+      oil = true;
+    }
+    // Of what a per cent is a part, the signal says.
+    if (const auto relative = g.signal ? relative_unit(*g.signal) : std::nullopt; relative && g.unit == "%") {
+      for (const Unit& u : unit_table())
+        if (u.dimension == relative->dimension) g.unit = u.name;
+      g.unit_in_brackets = false;
+    }
   }
   return guesses;
 }

@@ -1,11 +1,13 @@
 // What a column of a user's log may be: its signal and unit, guessed from the header cell alone.
 //
-// Words of English and German rigs; a guess is a starting point for a person to correct, never used by a reader.
+// Words of English and German rigs; a guess is a starting point for a person to correct: a reader takes from here only
+// that a row of units is no row of samples.
 #pragma once
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "base/csv.h"
 #include "signals/signal.h"
 
 namespace servodx {
@@ -15,11 +17,19 @@ struct ColumnGuess {
   std::string name;               // without its unit
   std::optional<Signal> signal;   // empty: not recognised
   std::string unit;               // of the closed table; empty: none or not recognised
-  bool unit_in_brackets = false;  // "name [unit]" with a unit of the table: the reader takes it from there
+  bool unit_in_brackets = false;  // a unit of the table, in "name [unit]" or in the row below: the reader takes it
   bool canonical = false;         // the name is the signal's own
 };
 
-// Each signal once: the better match wins, then the first column.
-std::vector<ColumnGuess> guess_columns(const std::vector<std::string>& header);
+// The unit of the closed table that people mean by a word: "PSI", "deg C", "lpm"; empty: none.
+std::string unit_meant(const std::string& written);
+
+// The row that a cursor stands at, where it is one of units below a header: no cell is a number, one at least is a
+// unit. Without their brackets; empty: it is none.
+std::vector<std::string> units_row(CsvCursor& csv);
+
+// Each signal once: the better match wins, then the first column. `units`: of a row below the header, a cell a column.
+std::vector<ColumnGuess> guess_columns(const std::vector<std::string>& header,
+                                       const std::vector<std::string>& units = {});
 
 }  // namespace servodx

@@ -121,10 +121,12 @@ LogColumns::Column LogColumns::resolve(Signal signal, const std::string& column_
     refuse_here("the variable has no unit", in_rig_file(fmt::format("unit = \"{}\"", info(signal).si_unit)) +
                                                 "; accepted: " + accepted_units(signal));
   }
-  if (has_unit && !mapped_unit.empty() && written_unit != mapped_unit)
+  // The rig file says what a header means that the table does not know: "[deg C]", or "[%]" of what.
+  const bool means = find_unit(written_unit) && !(written_unit == "%" && mapped_unit.starts_with("% of "));
+  if (has_unit && means && !mapped_unit.empty() && written_unit != mapped_unit)
     refuse_here(fmt::format("unit '{}' here, '{}' in the rig file (line {})", written_unit, mapped_unit, mapping->line),
                 "make both agree");
-  const std::string name = has_unit ? written_unit : mapped_unit;
+  const std::string name = has_unit && (means || mapped_unit.empty()) ? written_unit : mapped_unit;
   const Unit* unit = find_unit(name);
   if (!unit) refuse_here(fmt::format("unknown unit '{}'", name), "accepted: " + accepted_units(signal));
 

@@ -6,6 +6,7 @@
 
 #include "base/block_reader.h"
 #include "base/csv.h"
+#include "signals/guess.h"
 #include "signals/log_columns.h"
 #include "signals/log_formats.h"
 
@@ -17,13 +18,21 @@ Log read_csv_log(const std::string& path, const RigFile& rig, const ReadOptions&
   CsvCursor csv(file, path);
   LogColumns log(path, rig, options, {});
   std::vector<int> target;  // of each column of the file: its position among the signals, or -1
-  for (const std::string& cell : csv.header()) target.push_back(log.add(cell, csv.header_line()));
+  bool in_row = csv.next_row();
+  const std::vector<std::string> units = in_row ? units_row(csv) : std::vector<std::string>{};
+  for (std::size_t c = 0; c < csv.header().size(); ++c) {
+    const std::string& cell = csv.header()[c];
+    // A word that is no unit of the table is the rig file's to replace.
+    const bool known = c < units.size() && find_unit(units[c]) && !cell.ends_with(']');
+    target.push_back(log.add(known ? cell + " [" + units[c] + "]" : cell, csv.header_line()));
+  }
   log.require_signals();
+  if (!units.empty()) in_row = csv.next_row();
 
   const std::size_t width = target.size();
   std::vector<double> row(log.size());
   const bool all_are_signals = log.size() == width;
-  for (long rows = 1; csv.next_row(); ++rows) {
+  for (long rows = 1; in_row; ++rows, in_row = csv.next_row()) {
     // Rows so far give the rows to come; without it the columns grow by copying and take twice their size.
     if (rows == rows_before_estimate)
       log.reserve(static_cast<std::size_t>(1.02 * static_cast<double>(rows_before_estimate) *

@@ -65,8 +65,7 @@ Balance balance(const Scenario& in, const Measured& measured, const ParameterVec
     s.y[s_x_piston] = smooth[k];
     s.y[s_v_piston] = (smooth[std::min(k + 1, n - 1)] - smooth[k > 0 ? k - 1 : 0]) / dt;
     s.y[s_p_filter] = s.y[s_p_pilot_1] = s.y[s_p_pilot_2] = 0.5 * p[row::supply_pressure];
-    if (k > 0)
-      friction.move(0.0, 0.0, smooth[k - 1], smooth[k], in.time[k] - in.time[k - 1], d.per_film_speed, d.breakaway);
+    if (k > 0) friction.move(0.0, 0.0, smooth[k - 1], smooth[k], in.time[k] - in.time[k - 1], d.breakaway);
     const Inputs<double> u{0.0, input(in.supply_pressure, k, p[row::supply_pressure]),
                            input(in.return_pressure, k, p[row::return_pressure]), input(in.load_force, k, 0.0),
                            friction};

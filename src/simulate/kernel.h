@@ -215,6 +215,8 @@ void run_pack(const Scenario& in, const ParameterVector* const* candidates, Traj
   if (on_stand) d.leak = T(in.ports == Ports::free ? tube_conductance : 0.0);
   // A port that empties within a step overshoots return; free air would expand there and hold it below.
   if (on_stand) d.air = T(0.0);
+  bool sticks = false;
+  for (int lane = 0; lane < width; ++lane) sticks |= Lanes<T>::get(p[row::piston_stribeck_friction], lane) != 0.0;
   const T rated = T(in.rated_current), null = p[row::servovalve_null] * rated;
 
   const auto input = [&](const std::vector<double>& series, std::size_t k, const T& table) {
@@ -413,7 +415,7 @@ void run_pack(const Scenario& in, const ParameterVector* const* candidates, Traj
         } else {
           rodas3_step<T>(live, y, h);
         }
-        friction.move(spool_from, y[s_x_spool], rod_from, y[s_x_piston], h, d.per_film_speed, d.breakaway);
+        friction.move(spool_from, y[s_x_spool], rod_from, y[s_x_piston], h, d.breakaway, sticks);
       }
     };
     const auto y_before = y;

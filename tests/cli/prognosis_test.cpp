@@ -83,6 +83,9 @@ TEST_F(Prognosis, TrendOfFewChecksSaysSoAndRefusesWhatIsNotThere) {
   EXPECT_EQ(desk.run("trend --history h.db").code, 2);
   EXPECT_EQ(desk.run("trend --history none.db --all").code, 2);
   EXPECT_EQ(desk.run("trend --history h.db --valve V7 --failure fidelity").code, 2);
+  EXPECT_EQ(desk.run("trend --history h.db --valve V7 --failure 'parameter:14=<20x'").code, 2);
+  EXPECT_EQ(desk.run("trend --history h.db --valve V7 --failure 'parameter:14=20x~'").code, 2);
+  EXPECT_EQ(desk.run("trend --history h.db --valve V7 --failure 'parameter:14=20x~1'").code, 0);
   EXPECT_FALSE(std::filesystem::exists(desk / "none.db"));
 }
 

@@ -150,6 +150,36 @@ TEST(Trend, AMultiplyingSeverityHasFailedThatManyTunedValuesBeyondWhereItBegan) 
   EXPECT_NEAR(*find(trend(h, {}), "parameter:14").failure.upper, 20 * 0.7, 6);
 }
 
+// A user's level of what multiplies is a multiple of the tuned value, whatever the first checks read.
+TEST(Trend, AMultipleOfWhatMultipliesIsOfTheTunedValue) {
+  ValveHistory h = of_one(
+      "parameter:14", [](double s) { return 0.7 + 31.3 * s; }, 0.3, 0.1);
+  h.tuned.assign(41, 0.0);
+  h.tuned[13] = 1.6;
+  TrendOptions options;
+  options.failure_ratio["parameter:14"] = 20;
+  const ValveTrend t = trend(h, options);
+  EXPECT_NEAR(*find(t, "parameter:14").failure.upper, 32, 1e-9);
+  ASSERT_TRUE(t.remaining);
+  EXPECT_NEAR(t.remaining->median, 42, 4);
+}
+
+// Who set a level may know it better, or less well, than the fault's file does.
+TEST(Trend, TheStatedSpreadOfALevelSetsTheIntervalOfTheLife) {
+  const ValveHistory h = of_one(
+      "parameter:9", [](double s) { return 20e-6 * s; }, 1e-7, 1e-7);
+  const auto width = [&](double spread) {
+    TrendOptions options;
+    options.failure["parameter:9"].second = 20e-6;
+    options.failure_spread["parameter:9"] = spread;
+    const ValveTrend t = trend(h, options);
+    return t.remaining ? t.remaining->upper - t.remaining->lower : 0.0;
+  };
+  // 120 h to 20 um: 6 h a micrometre, 3.29 standard deviations in 90 %.
+  EXPECT_NEAR(width(2e-6), 3.29 * 2 * 6, 10);
+  EXPECT_LT(width(2e-7), 0.4 * width(2e-6));
+}
+
 // A clean filter's size is on no data sheet: a model that takes it for half blocked sees an eighth left at the end.
 TEST(Trend, ABlockedFilterHasFailedWhenAQuarterIsLeftOfWhatWasOpen) {
   const ValveTrend t = trend(of_one(

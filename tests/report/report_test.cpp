@@ -11,7 +11,9 @@
 #include "report/explain_report.h"
 #include "report/handy.h"
 #include "report/json.h"
+#include "report/pages.h"
 #include "report/prognosis.h"
+#include "report/replay_part.h"
 #include "report/selftest.h"
 #include "report/text.h"
 #include "report/tune_words.h"
@@ -160,6 +162,7 @@ TEST(ExplainPage, OpensWithTheCauseItsSizeAndTheChannelThatShowsIt) {
   for (const char* shown :
        {"FOUND", "valve glitch at first stage, 20.3 um (20 to 20.6, 90 %)",
         "It shows most in the spool position: off by 9 um rms as tuned, by 1 um with what was found", "(346 before)",
+        "valve glitch (backlash between feedback wire and spool, full width)",
         "In place of valve glitch it may be asymmetric lap", "shows best in small sines"})
     EXPECT_NE(opening.find(shown), std::string::npos)
         << shown << " is not in " << opening.substr(opening.find("<main>"));
@@ -182,6 +185,76 @@ TEST(TrendPage, AFigureThatFallsIsNotSaidToRise) {
   EXPECT_NE(trend_page({}, {v}, false).html().find("falls, over 1000 to 1"), std::string::npos);
   v.trends.front().now = 1.5;
   EXPECT_NE(trend_page({}, {v}, false).html().find("rises, over 1000 to 1"), std::string::npos);
+}
+
+// A history may come from anywhere: a filter that gets cleaner has no life towards a blocked one.
+TEST(TrendPage, WhatMovesAwayFromFailureIsSaidToAndGetsNoLife) {
+  ValveTrend v;
+  v.valve = "V7", v.state = "watch";
+  CheckTrend t;
+  t.name = "parameter:1", t.unit = "-", t.cause = "clogged_filter", t.state = "watch";
+  t.healthy = 0.46, t.now = 0.10, t.trend = true, t.log_bayes_factor = 20;
+  t.failure.upper = 0.87;
+  t.remaining = Remaining{346, 65, 14074};
+  v.trends = {t};
+  const std::string away = trend_page({}, {v}, false).html();
+  EXPECT_NE(away.find("away from failure"), std::string::npos);
+  EXPECT_NE(away.find("10 %"), std::string::npos);  // of the filter
+  EXPECT_EQ(away.find("346 h"), std::string::npos);
+  std::swap(v.trends.front().healthy, v.trends.front().now);
+  const std::string towards = trend_page({}, {v}, false).html();
+  EXPECT_EQ(towards.find("away from failure"), std::string::npos);
+  EXPECT_NE(towards.find("346 h"), std::string::npos);
+}
+
+// The heads of a page's first matrix: its columns, then its rows.
+std::pair<std::vector<std::string>, std::vector<std::string>> heads_of_matrix(const std::string& html) {
+  std::pair<std::vector<std::string>, std::vector<std::string>> heads;
+  const std::size_t from = html.find("<figure class=\"matrix\">"), body = html.find("<tbody>", from);
+  for (std::size_t at = html.find("<th", html.find("</th>", from)); at < html.find("</figure>", from);
+       at = html.find("<th", at + 1)) {
+    const std::size_t word = html.find('>', at) + 1;
+    (at < body ? heads.first : heads.second).push_back(html.substr(word, html.find('<', word) - word));
+  }
+  return heads;
+}
+
+TEST(DiagnosePage, TheTruthLiesOnTheDiagonalAndWhatIsWrongIsNamed) {
+  std::vector<Diagnosis> results;
+  for (const char* verdict : {"fault", "unknown", "healthy", "healthy"}) {
+    results.push_back(some_diagnosis());
+    results.back().verdict = verdict;
+    if (results.back().verdict != "fault") results.back().fault.reset();
+  }
+  results[1].log = "stuck.csv";
+  const std::string html = diagnose_page({}, results, some_baseline(), {},
+                                         {"feedback_wire_backlash", "sticky_spool", "clogged_filter", "healthy"})
+                               .html();
+  const auto [columns, rows] = heads_of_matrix(html);
+  EXPECT_EQ(rows, (std::vector<std::string>{"healthy", "clogged filter", "feedback wire backlash", "sticky spool"}));
+  std::vector<std::string> all = rows;
+  all.push_back("unknown");
+  EXPECT_EQ(columns, all);
+  const std::string opening = html.substr(0, html.find("<section class=\"part\""));
+  EXPECT_NE(opening.find("2 of 4 verdicts are what the truth files"), std::string::npos);
+  EXPECT_NE(opening.find("stuck.csv: the verdict is unknown, the truth sticky spool."), std::string::npos);
+}
+
+TEST(TunePage, NamesTheParametersAtAnEndOfTheirRange) {
+  TuneResult result;
+  result.logs = {{"h.csv", {}, 0.01, 0.0, {}}};
+  ParameterResult p;
+  p.name = "torque_motor_frequency", p.unit = "Hz", p.nominal = 700, p.estimate = 350, p.std_error = nan;
+  p.verdict = "at_bound";
+  result.parameters = {p};
+  const std::string html = tune_page({}, result, good_enough(result, {}), {}).html();
+  EXPECT_NE(html.find("At an end of its range: torque motor frequency."), std::string::npos);
+}
+
+TEST(Words, APortsLetterIsACapital) {
+  EXPECT_EQ(words("pressure_a"), "pressure A");
+  EXPECT_EQ(words("lap_pb"), "lap pb");
+  EXPECT_EQ(words("a"), "a");
 }
 
 TEST(BaselineFile, ReadsBackToTheSameBits) {

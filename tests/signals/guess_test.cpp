@@ -41,6 +41,44 @@ TEST(Guess, EachSignalOnceAndTheBetterMatchWins) {
   EXPECT_EQ(taken(header, 3), "coil_current in mA");
 }
 
+TEST(Guess, ASubscriptIsNoUnit) {
+  EXPECT_EQ(taken({"p_A"}), "pressure_a");  // no p in amperes
+  EXPECT_EQ(taken({"x_s"}), "spool_position");
+  EXPECT_EQ(taken({"u_in"}), "command");  // no u in inches
+  EXPECT_EQ(taken({"p_A (psi)"}), "pressure_a in psi");
+  EXPECT_EQ(taken({"x_{s} [mm]"}), "spool_position in mm");
+  EXPECT_EQ(taken({"x_K [mm]"}), "piston_position in mm");
+  EXPECT_EQ(taken({"U_cmd/V"}), "command in V");
+  EXPECT_EQ(taken({"i_A"}), "command in A");
+  EXPECT_EQ(taken({"t_s"}), "time in s");
+  EXPECT_EQ(taken({"pT"}), "return_pressure");  // no p_P, though it has a p
+  EXPECT_EQ(taken({"p_P"}), "supply_pressure");
+}
+
+TEST(Guess, UnitsInAnyCapitalsAndThePerCentOfASignal) {
+  EXPECT_EQ(taken({"Time (SEC)"}), "time in s");
+  EXPECT_EQ(taken({"Oil temp (DegC)"}), "oil_temperature in degC");
+  EXPECT_EQ(taken({"pB (MPA)"}), "pressure_b in MPa");
+  EXPECT_EQ(taken({"Valve command (%)"}), "command in % of rated");
+  EXPECT_EQ(taken({"Spool [%]"}), "spool_position in % of stroke");
+}
+
+TEST(Guess, ARowOfUnitsBelowTheHeaderIsNoRowOfSamples) {
+  const auto units_below = [](const std::string& text) {
+    CsvCursor csv(text, "log.csv");
+    return csv.next_row() ? units_row(csv) : std::vector<std::string>{};
+  };
+  EXPECT_EQ(units_below("t;p_A;x\n[s];(psi);mm\n0;1,5;2\n"), (std::vector<std::string>{"s", "psi", "mm"}));
+  EXPECT_EQ(units_below("t,id\n\"s\",\n0,1\n"), (std::vector<std::string>{"s", ""}));
+  EXPECT_TRUE(units_below("t;x\n0;1,5\n").empty());
+  EXPECT_TRUE(units_below("t,x\nstart,stop\n").empty());  // words, and none a unit
+  const auto guesses = guess_columns({"t", "p_A", "u"}, {"s", "PSI", "V"});
+  EXPECT_EQ(info(*guesses[1].signal).name, "pressure_a");
+  EXPECT_EQ(guesses[1].unit, "psi");
+  EXPECT_TRUE(guesses[0].unit_in_brackets);   // the reader takes it from the row
+  EXPECT_FALSE(guesses[1].unit_in_brackets);  // the rig file has to say it
+}
+
 TEST(Guess, WhatItDoesNotKnowIsNothing) {
   EXPECT_EQ(taken({"note"}), "nothing");
   EXPECT_EQ(taken({"operator id"}), "nothing");

@@ -119,6 +119,33 @@ TEST(Log, SeparatorDecimalCommaBomCrlfAndCommentsReadAlike) {
   }
 }
 
+TEST(Log, ARowOfUnitsBelowTheHeaderReadsAsIfInIt) {
+  const Log plain = read("time [s],command [mA],spool_position [mm]\n" + rows(30));
+  for (const std::string& text : {"time,command,spool_position\ns,mA,mm\n" + rows(30),
+                                  "time,command,spool_position\r\n[s],(mA),\"mm\"\r\n" + rows(30),
+                                  "time,command [mA],spool_position\ns,mA,mm\n\n" + rows(30)}) {
+    const Log log = read(text);
+    EXPECT_TRUE(same_bits(log.time, plain.time)) << text.substr(0, 60);
+    EXPECT_TRUE(same_bits(log[Signal::command], plain[Signal::command])) << text.substr(0, 60);
+    EXPECT_TRUE(same_bits(log[Signal::spool_position], plain[Signal::spool_position])) << text.substr(0, 60);
+  }
+  EXPECT_EQ(refusal("time,command,spool_position\ns,mA\n" + rows(30)),
+            "log.csv:1: column 'time': the header cell has no unit; write 'time [s]'; accepted: s, ms, us, min, h");
+}
+
+TEST(Log, AUnitThatTheTableHasNotIsTheRigFilesToReplace) {
+  const Log plain = read("time [s],command [mA],spool_position [mm]\n" + rows(30));
+  const RigFile rig = rig_with(
+      "[columns]\ntime = { signal = \"time\", unit = \"s\" }\nspool_position = { signal = \"spool_position\", "
+      "unit = \"mm\" }\n");
+  for (const std::string& text : {"time [sec],command [mA],spool_position [MM]\n" + rows(30),
+                                  "time,command,spool_position\nsec,mA,MM\n" + rows(30)}) {
+    const Log log = read(text, rig);
+    EXPECT_TRUE(same_bits(log.time, plain.time)) << text.substr(0, 60);
+    EXPECT_TRUE(same_bits(log[Signal::spool_position], plain[Signal::spool_position])) << text.substr(0, 60);
+  }
+}
+
 TEST(Log, ColumnOrderIsFree) {
   const Log log = read("spool_position [mm],time [s],command [mA]\n0.1,0,1\n0.2,1,2\n", {}, {.minimum_rows = 2});
   EXPECT_EQ(log.time, (std::vector<double>{0, 1}));

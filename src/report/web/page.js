@@ -121,7 +121,7 @@
     const axis = { stroke: colour("muted"), grid: { stroke: colour("grid"), width: 1 }, ticks: { stroke: colour("grid"), width: 1 }, font: "12px system-ui, sans-serif", labelFont: "12px system-ui, sans-serif" };
     return {
       width: element.clientWidth,
-      height: plot.low ? 140 : 200,
+      height: (plot.low ? 140 : 200) * ("print" in root.dataset ? 0.8 : 1),
       series, bands,
       padding: [null, gutter(plot), null, null],
       scales: { x: { time: false }, y: plot.log ? { distr: 3 } : { range: range_with(plot.ymarks || []) } },

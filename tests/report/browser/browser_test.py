@@ -31,6 +31,23 @@ for (const e of document.querySelectorAll('body *')) {
 return low;"""
 
 
+# Words of tables that stand in more than one line: letters below each other. What is longer than `most` may break.
+TORN = """
+const most = 16, torn = [];
+for (const cell of document.querySelectorAll('figure:not(.plot) th, figure:not(.plot) td')) {
+  const walk = document.createTreeWalker(cell, NodeFilter.SHOW_TEXT);
+  for (let node; (node = walk.nextNode());)
+    for (const word of node.data.matchAll(/\\S+/g)) {
+      if (word[0].length > most) continue;
+      const range = document.createRange();
+      range.setStart(node, word.index);
+      range.setEnd(node, word.index + word[0].length);
+      if (new Set([...range.getClientRects()].map((r) => Math.round(r.top))).size > 1) torn.push(word[0]);
+    }
+}
+return torn;"""
+
+
 class Pages(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
@@ -224,13 +241,14 @@ class Pages(unittest.TestCase):
                 if scheme == "dark":
                     self.screenshot(name + "_dark")
 
-    def test_a_phone_shows_all_without_scrolling_sideways(self):
+    def test_a_phone_shows_all_words_whole_without_scrolling_sideways(self):
         for name in PAGES:
             self.set_size(390, 844)
             self.open(name)
             self.draw_all()
             time.sleep(0.1)
             self.assertLessEqual(self.run("return document.documentElement.scrollWidth"), 390, name)
+            self.assertEqual(self.run(TORN), [], name)
             self.screenshot(name + "_phone")
 
     def test_every_figure_has_a_csv_that_reads_back(self):
@@ -269,17 +287,19 @@ class Pages(unittest.TestCase):
             if KEEP:
                 (self.folder / f"{name}.pdf").write_bytes(pdf)
 
-    def test_nothing_is_cut_off_on_paper(self):
+    def test_nothing_is_cut_off_and_no_word_torn_on_paper(self):
         for name in PAGES:
             self.set_size(720, 1000)
             self.open(name)
             self.driver.execute_cdp_cmd("Emulation.setEmulatedMedia", {"media": "print"})
             self.run("dispatchEvent(new Event('beforeprint'))")
+            torn = self.run(TORN)
             cut = self.run("return [...document.querySelectorAll('.wide')].filter((e) => e.scrollWidth > e.clientWidth + 1 && getComputedStyle(e).overflowX !== 'visible').length")
             wide = self.run("return document.documentElement.scrollWidth")
             self.run("dispatchEvent(new Event('afterprint'))")
             self.driver.execute_cdp_cmd("Emulation.setEmulatedMedia", {"media": ""})
             self.assertEqual(cut, 0, name)
+            self.assertEqual(torn, [], name)
             self.assertLessEqual(wide, 720, name)
 
 
