@@ -299,6 +299,12 @@ ExplainResult explain_logs(const std::vector<Log>& logs, const Table& tuned, con
     const auto least = std::min_element(out.blocks.begin(), out.blocks.end(),
                                         [](const auto& a, const auto& b) { return *a.p_new < *b.p_new; });
     out.where = least->places.front();
+    // Where every block looks healthy, the name that helps most knows the place better, though it does not suffice.
+    double most = 0;
+    for (const ExplainedFit& name : e.refused)
+      if (const double gain = heldout_gain(e.before, name, options.seed).value;
+          *least->p_new > options.level && gain > most)
+        most = gain, out.where = subject.causes()[static_cast<std::size_t>(name.causes.back())].where;
   } else if (!out.causes.empty()) {
     out.where = better_place.empty() ? out.causes.front().where : better_place;
   }
