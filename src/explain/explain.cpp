@@ -291,9 +291,13 @@ ExplainResult explain_logs(const std::vector<Log>& logs, const Table& tuned, con
   if (healthy) out.p_adequacy = e.causes.empty() ? engine.p_left(e.before, 0) : engine.p_left(e.after, 1);
   if (!e.causes.empty()) out.heldout_gain = heldout_gain(e.before, e.after, options.seed);
   out.verdict = out.curve ? "unexplained" : !e.causes.empty() ? "extended" : "sufficient";
-  // Left abnormal by names that remove less than half of it: most of what is wrong has no name.
+  // Left abnormal by names of which the first removes less than half of it: most of what is wrong has no name, and a
+  // heap of names is none.
   const bool abnormal = out.p_adequacy && *out.p_adequacy <= 0.5 * options.level;
-  const bool nameless = abnormal && !out.curve && (e.causes.empty() || out.heldout_gain.value < 0.5);
+  const auto first_alone = [&] {
+    return e.candidates[static_cast<std::size_t>(e.causes.front().cause)].heldout_gain.value;
+  };
+  const bool nameless = abnormal && !out.curve && (e.causes.empty() || first_alone() < 0.5);
   if (nameless) out.verdict = "unexplained";
   if (nameless && !out.blocks.empty()) {
     const auto least = std::min_element(out.blocks.begin(), out.blocks.end(),
