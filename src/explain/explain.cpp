@@ -295,6 +295,7 @@ ExplainResult explain_logs(const std::vector<Log>& logs, const Table& tuned, con
   // heap of names is none.
   const bool abnormal = out.p_adequacy && *out.p_adequacy <= 0.5 * options.level;
   const auto first_alone = [&] {
+    if (e.causes.size() == 1) return out.heldout_gain.value;
     return e.candidates[static_cast<std::size_t>(e.causes.front().cause)].heldout_gain.value;
   };
   const bool nameless = abnormal && !out.curve && (e.causes.empty() || first_alone() < 0.5);
