@@ -656,8 +656,9 @@ Explanation explain(Subject& subject, const EngineOptions& options, const Explan
     CauseResult taken = make_result(b, true);
     for (int i : judged) {
       const std::size_t k = static_cast<std::size_t>(i);
-      if (i == best || !is_new(fits[k].causes.back())) continue;
-      // As good in its place: within the interval of the difference, or at odds below twenty to one.
+      if (i == best) continue;
+      // As good in its place: within the interval of the difference, or at odds below twenty to one. Something is new,
+      // so one whose size healthy data show as well may be what it is.
       constexpr double odds = 5.99;  // 2 ln 20
       if (heldout_gain(fits[k], fits[b], options.seed).lower <= 0 ||
           taken.delta_bic - delta_bic(now, fits[k], out.degrees) < odds)

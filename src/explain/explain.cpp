@@ -304,14 +304,25 @@ ExplainResult explain_logs(const std::vector<Log>& logs, const Table& tuned, con
   if (healthy) out.p_adequacy = e.causes.empty() ? engine.p_left(e.before, 0) : engine.p_left(e.after, 1);
   if (!e.causes.empty()) out.heldout_gain = heldout_gain(e.before, e.after, options.seed);
   out.verdict = out.curve ? "unexplained" : !e.causes.empty() ? "extended" : "sufficient";
-  // Left abnormal by names that remove less than half of it: most of what is wrong has no name.
+  // Left abnormal by names of which the first removes less than half of it: most of what is wrong has no name, and a
+  // heap of names is none.
   const bool abnormal = out.p_adequacy && *out.p_adequacy <= 0.5 * options.level;
-  const bool nameless = abnormal && !out.curve && (e.causes.empty() || out.heldout_gain.value < 0.5);
+  const auto first_alone = [&] {
+    if (e.causes.size() == 1) return out.heldout_gain.value;
+    return e.candidates[static_cast<std::size_t>(e.causes.front().cause)].heldout_gain.value;
+  };
+  const bool nameless = abnormal && !out.curve && (e.causes.empty() || first_alone() < 0.5);
   if (nameless) out.verdict = "unexplained";
   if (nameless && !out.blocks.empty()) {
     const auto least = std::min_element(out.blocks.begin(), out.blocks.end(),
                                         [](const auto& a, const auto& b) { return *a.p_new < *b.p_new; });
     out.where = least->places.front();
+    // Where every block looks healthy, the name that helps most knows the place better, though it does not suffice.
+    double most = 0;
+    for (const ExplainedFit& name : e.refused)
+      if (const double gain = heldout_gain(e.before, name, options.seed).value;
+          *least->p_new > options.level && gain > most)
+        most = gain, out.where = subject.causes()[static_cast<std::size_t>(name.causes.back())].where;
   } else if (!out.causes.empty()) {
     out.where = better_place.empty() ? out.causes.front().where : better_place;
   }

@@ -147,6 +147,16 @@ TEST(Engine, WhatHealthyDataShowIsNotAccused) {
   EXPECT_EQ(line.causes()[static_cast<std::size_t>(e.standing[0].cause)].effect, "slow wave");
 }
 
+TEST(Engine, WhatStandsInHealthyDataAndFitsAsWellIsSaidToBeConfusable) {
+  Line line({shapes[0], shapes[3]}, 3, 0, 1.0);
+  EngineOptions o;
+  o.p_new = [](const CauseScore& s, int) { return s.cause == 0 ? 1e-6 : 0.5; };
+  const Explanation e = explain(line, o);
+  ASSERT_EQ(e.causes.size(), 1u);
+  EXPECT_EQ(e.causes[0].cause, 0);
+  EXPECT_EQ(e.causes[0].confusable_with, std::vector<int>{1});
+}
+
 TEST(Engine, WhereTheDataAreAbnormalACauseNeedNotBeNewsByItself) {
   Line line({shapes[0], shapes[1]}, 7, 1, 1.0);
   EngineOptions o;
