@@ -149,6 +149,7 @@ ExplainResult some_explanation() {
                {},
                0,
                {"asymmetric_lap"}}};
+  r.causes.front().meaning = "backlash between feedback wire and spool, full width";
   r.heldout_gain = {0.98, 0.97, 0.99};
   r.adequacy_before = 346, r.adequacy_after = 1.2;
   r.p_adequacy = 0.4;
@@ -199,7 +200,7 @@ TEST(TrendPage, WhatMovesAwayFromFailureIsSaidToAndGetsNoLife) {
   v.trends = {t};
   const std::string away = trend_page({}, {v}, false).html();
   EXPECT_NE(away.find("away from failure"), std::string::npos);
-  EXPECT_NE(away.find("10 %"), std::string::npos);  // of the filter
+  EXPECT_NE(away.find("46 %"), std::string::npos);  // of the filter
   EXPECT_EQ(away.find("346 h"), std::string::npos);
   std::swap(v.trends.front().healthy, v.trends.front().now);
   const std::string towards = trend_page({}, {v}, false).html();
