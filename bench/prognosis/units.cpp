@@ -61,8 +61,6 @@ Table own_table(const Bench& b, const std::string& name, const rig::RigModel& va
     options.quiet = true;
     options.threads = 1;
     options.generations = 0;  // it begins near
-    options.effects = default_effects(false);
-    options.effects->emplace_back("screen_drop");
     // What drawings say of all valves of the type holds: logs of a few seconds would trade it for something else.
     options.priors = {{"fixed_orifice_diameter", 0.02 * b.tuned[row::fixed_orifice_diameter].nominal},
                       {"orifice_slenderness", 0.3},

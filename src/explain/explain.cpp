@@ -8,8 +8,11 @@
 
 #include "base/error.h"
 #include "base/progress.h"
+#include "effects/registry.h"
+#include "effects/row_effects.h"
 #include "explain/valve.h"
 #include "fit/free_values.h"
+#include "parameters/list.h"
 
 namespace servodx {
 namespace {
@@ -72,10 +75,20 @@ double healthy_spread(const Subject& subject, const HealthyTest& test, int cause
 }
 
 // The error of a number is that of the fit, and what healthy logs scatter.
+std::string meaning_of(const Cause& c) {
+  if (const int row = find_parameter(c.effect); row >= 0)
+    return std::string(parameter_list[static_cast<std::size_t>(row)].meaning);
+  for (const EffectInfo& e : effect_list())
+    if (e.name == c.effect) return e.meaning;
+  for (const RowEffect& e : row_effects())
+    if (e.name == c.effect && e.where == c.where) return e.meaning;  // a lag of one sensor is not that of another
+  return {};
+}
+
 ExplainedCause described(const ValveSubject& subject, const HealthyTest* test, const CauseResult& r,
                          const ExplainedFit& fit) {
   const Cause& c = subject.causes()[static_cast<std::size_t>(r.cause)];
-  ExplainedCause out{c.effect, c.where, c.test, {}, r.heldout_gain, r.beyond_retuning, r.delta_bic, {}};
+  ExplainedCause out{c.effect, c.where, c.test, {}, r.heldout_gain, r.beyond_retuning, r.delta_bic, {}, meaning_of(c)};
   const auto& values = subject.values(r.cause);
   const auto problem = subject.problem(fit.causes);
   for (std::size_t j = 0; j < c.numbers.size(); ++j) {

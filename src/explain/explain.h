@@ -40,6 +40,7 @@ struct ExplainedCause {
   Interval heldout_gain, beyond_retuning;
   double delta_bic = 0;
   std::vector<std::string> confusable_with;
+  std::string meaning = {};  // as the lists of effects and of rows say it; empty where they do not
 };
 struct ExplainedCandidate {
   std::string effect, where, reason;

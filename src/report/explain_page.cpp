@@ -2,8 +2,6 @@
 
 #include <algorithm>
 
-#include "effects/registry.h"
-#include "parameters/list.h"
 #include "report/columns.h"
 #include "report/explain_report.h"
 #include "report/handy.h"
@@ -37,18 +35,11 @@ std::string headline(const ExplainResult& r) {
   return text;
 }
 
-// "valve glitch (backlash between feedback wire and spool, full width)", as the lists of effects and of rows say it.
-std::string with_meaning(const std::string& effect) {
-  std::string meaning;
-  if (const int row = find_parameter(effect); row >= 0) meaning = parameter_list[row].meaning;
-  for (const EffectInfo& e : effect_list())
-    if (e.name == effect) meaning = e.meaning;
-  return words(effect) + (meaning.empty() ? "" : " (" + meaning + ")");
-}
-
+// "valve glitch (backlash between feedback wire and spool, full width)".
 std::string with_meanings(const std::vector<ExplainedCause>& causes) {
   std::vector<std::string> all;
-  for (const ExplainedCause& c : causes) all.push_back(with_meaning(c.effect));
+  for (const ExplainedCause& c : causes)
+    all.push_back(words(c.effect) + (c.meaning.empty() ? "" : " (" + c.meaning + ")"));
   return join(all, "; ");
 }
 

@@ -81,27 +81,32 @@ TEST(EdgeTransition, CostsAnOpenEdgeAFlowThatGrowsWithViscosityAndNotWithTheOpen
     }
 }
 
+// At rest both sides pass q: (2q / G_f)^2 + (q / G_o)^2 + (q / G_n)^2 + laminar q = supply less return.
+void expect_pilot_pressures_at_rest(const Scenario& s, const ParameterVector& v, const Derived<double>& d,
+                                    double laminar) {
+  const double gap = v[row::nozzle_gap], nozzle = d.nozzle_conductance * gap / std::sqrt(1 + d.bore_loss * gap * gap);
+  const double square = 4 / (d.filter_conductance * d.filter_conductance) +
+                        1 / (d.orifice_conductance * d.orifice_conductance) + 1 / (nozzle * nozzle);
+  const double drop = v[row::supply_pressure] - v[row::return_pressure];
+  const double q = 2 * drop / (laminar + std::sqrt(laminar * laminar + 4 * square * drop));
+  const double expected = v[row::return_pressure] + q * q / (nozzle * nozzle);
+  const Trajectory t = simulate(s, v, all_signals());
+  ASSERT_TRUE(t.ok);
+  for (Signal side : {Signal::pilot_pressure_1, Signal::pilot_pressure_2})
+    EXPECT_NEAR(of(t, side).back(), expected, 1e-3 * drop);
+}
+
 TEST(OrificeLength, PilotPressureAtRestIsThatOfPoiseuilleInSeriesWithJets) {
-  // At rest both sides pass q: (2q / G_f)^2 + (q / G_o)^2 + 128 mu L / (pi D^4) q + (q / G_n)^2 = supply less return.
   for (const double slenderness : {0.0, 3.0})
     for (const double thicker : {1.0, 10.0}) {
+      SCOPED_TRACE(testing::Message() << slenderness << " diameters, viscosity times " << thicker);
       Scenario s = made(0.2, 1e-3, [](double) { return 0.0; });
       s.oil.dynamic_viscosity *= thicker;
       ParameterVector v = with<OrificeLength>(0, slenderness);
       v[row::servovalve_null] = 0;
-      const Derived<double> d = derive<double>(v.data(), s.oil);
-      const double bore = v[row::fixed_orifice_diameter], gap = v[row::nozzle_gap];
-      const double laminar = 128 * s.oil.dynamic_viscosity * slenderness / (constants::pi * bore * bore * bore);
-      const double nozzle = d.nozzle_conductance * gap / std::sqrt(1 + d.bore_loss * gap * gap);
-      const double square = 4 / (d.filter_conductance * d.filter_conductance) +
-                            1 / (d.orifice_conductance * d.orifice_conductance) + 1 / (nozzle * nozzle);
-      const double drop = v[row::supply_pressure] - v[row::return_pressure];
-      const double q = 2 * drop / (laminar + std::sqrt(laminar * laminar + 4 * square * drop));
-      const double expected = v[row::return_pressure] + q * q / (nozzle * nozzle);
-      const Trajectory t = simulate(s, v, all_signals());
-      ASSERT_TRUE(t.ok);
-      for (Signal side : {Signal::pilot_pressure_1, Signal::pilot_pressure_2})
-        EXPECT_NEAR(of(t, side).back(), expected, 1e-3 * drop) << slenderness << " " << thicker;
+      const double cube = std::pow(v[row::fixed_orifice_diameter], 3);
+      expect_pilot_pressures_at_rest(s, v, derive<double>(v.data(), s.oil),
+                                     128 * s.oil.dynamic_viscosity * slenderness / (constants::pi * cube));
     }
 }
 
@@ -124,31 +129,19 @@ TEST(OrificeLength, ColdOilCostsASlewItsSpeedOnlyWithALength) {
 }
 
 TEST(ScreenDrop, PilotPressureAtRestIsThatOfPoresAndJetsInSeries) {
-  // At rest y = 2 q / (G_f open): y^2 + drop (viscosity ratio) y / y_0 + (q / G_o)^2 + (q / G_n)^2 = supply less
-  // return.
+  // The pores of a filter take drop times the ratio of viscosities at its own flow at rest, less of them the more.
   for (const double viscous : {0.0, 4e5})
     for (const double thicker : {1.0, 20.0})
       for (const double blocked : {0.0, 0.7}) {
+        SCOPED_TRACE(testing::Message() << viscous << " Pa, viscosity times " << thicker << ", blocked " << blocked);
         Scenario s = made(0.2, 1e-3, [](double) { return 0.0; });
         s.oil.dynamic_viscosity *= thicker, s.oil.viscosity_ratio *= thicker;
         ParameterVector v = with<ScreenDrop>(0, viscous);
         v[row::servovalve_null] = 0;
         v[row::filter_blockage_positive] = v[row::filter_blockage_negative] = blocked;
         const Derived<double> d = derive<double>(v.data(), s.oil);
-        const double gap = v[row::nozzle_gap];
-        const double nozzle = d.nozzle_conductance * gap / std::sqrt(1 + d.bore_loss * gap * gap);
-        const double per_filter = 2 / d.filter_conductance;
-        const double laminar = viscous * s.oil.viscosity_ratio * per_filter * constants::clean_filter_area_ratio /
-                               std::sqrt(0.5 * v[row::supply_pressure]);
-        const double square =
-            per_filter * per_filter + 1 / (d.orifice_conductance * d.orifice_conductance) + 1 / (nozzle * nozzle);
-        const double drop = v[row::supply_pressure] - v[row::return_pressure];
-        const double q = 2 * drop / (laminar + std::sqrt(laminar * laminar + 4 * square * drop));
-        const double expected = v[row::return_pressure] + q * q / (nozzle * nozzle);
-        const Trajectory t = simulate(s, v, all_signals());
-        ASSERT_TRUE(t.ok);
-        for (Signal side : {Signal::pilot_pressure_1, Signal::pilot_pressure_2})
-          EXPECT_NEAR(of(t, side).back(), expected, 2e-3 * drop) << viscous << " " << thicker << " " << blocked;
+        const double at_rest = std::sqrt(0.5 * v[row::supply_pressure]) / constants::clean_filter_area_ratio;
+        expect_pilot_pressures_at_rest(s, v, d, viscous * s.oil.viscosity_ratio / at_rest * 2 / d.filter_conductance);
       }
 }
 
