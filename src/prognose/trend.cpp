@@ -352,7 +352,7 @@ CheckTrend trend_of(const Series& s, const TrendOptions& options, std::size_t na
   out.slope = out.trend ? s.stretch(out.now) * g.slope : 0.0;
   out.state = out.blind ? "blind" : "healthy";
   if (out.trend || beyond(out.threshold, out.points.back().value)) out.state = "watch";
-  if (!out.trend) return out;
+  if (!out.trend || prior.direction * (g.now - g.base) < 0) return out;  // away from failure is no way to it
 
   // When the alert was first due, looking as the checks came in.
   const std::size_t step = std::max<std::size_t>(1, all.size() / looks);

@@ -164,6 +164,23 @@ TEST(Trend, AMultipleOfWhatMultipliesIsOfTheTunedValue) {
   EXPECT_NEAR(t.remaining->median, 42, 4);
 }
 
+// An estimate that recovers, or a tune that was wrong: there is a trend, and no life.
+TEST(Trend, WhatMovesAwayFromFailureIsGivenNoLife) {
+  const auto to = [](double last) {
+    const ValveHistory h = of_one(
+        "parameter:9", [&](double s) { return 10e-6 + (last - 10e-6) * s; }, 1e-7, 1e-7);
+    TrendOptions options;
+    options.failure["parameter:9"].second = 20e-6;
+    return trend(h, options);
+  };
+  const ValveTrend away = to(3e-6), towards = to(17e-6);
+  EXPECT_TRUE(find(away, "parameter:9").trend);
+  EXPECT_FALSE(away.alert_at);
+  EXPECT_FALSE(away.remaining);
+  EXPECT_FALSE(find(away, "parameter:9").remaining);
+  EXPECT_TRUE(towards.remaining);
+}
+
 // Who set a level may know it better, or less well, than the fault's file does.
 TEST(Trend, TheStatedSpreadOfALevelSetsTheIntervalOfTheLife) {
   const ValveHistory h = of_one(
