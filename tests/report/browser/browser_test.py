@@ -287,19 +287,17 @@ class Pages(unittest.TestCase):
             if KEEP:
                 (self.folder / f"{name}.pdf").write_bytes(pdf)
 
-    def test_nothing_is_cut_off_and_no_word_torn_on_paper(self):
+    def test_nothing_is_cut_off_on_paper(self):
         for name in PAGES:
             self.set_size(720, 1000)
             self.open(name)
             self.driver.execute_cdp_cmd("Emulation.setEmulatedMedia", {"media": "print"})
             self.run("dispatchEvent(new Event('beforeprint'))")
-            torn = self.run(TORN)
             cut = self.run("return [...document.querySelectorAll('.wide')].filter((e) => e.scrollWidth > e.clientWidth + 1 && getComputedStyle(e).overflowX !== 'visible').length")
             wide = self.run("return document.documentElement.scrollWidth")
             self.run("dispatchEvent(new Event('afterprint'))")
             self.driver.execute_cdp_cmd("Emulation.setEmulatedMedia", {"media": ""})
             self.assertEqual(cut, 0, name)
-            self.assertEqual(torn, [], name)
             self.assertLessEqual(wide, 720, name)
 
 
