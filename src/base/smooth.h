@@ -92,20 +92,8 @@ Dual<T, A> flat_step(const Dual<T, A>& x) {
   return chain(flat_step(x.v), x, T(1.875) * (rest * rest));
 }
 
-// sign(dp) sqrt(|dp|), linear within `transition` of zero: dp / (dp^2 + transition^2)^(1/4).
-template <class P, class W>
-auto signed_sqrt(const P& dp, const W& transition) {
-  return dp * inverse_root(smooth_abs(dp, transition));
-}
-template <class T, Mask A>
-Dual<T, A> signed_sqrt(const Dual<T, A>& dp, const std::type_identity_t<T>& transition) {
-  const auto [r, y] = both_roots(dp.v * dp.v + transition * transition);
-  const T z = inverse_root(r), s = dp.v * y;
-  return chain(dp.v * z, dp, z * (T(1.0) - T(0.5) * s * s));
-}
-
-// The same behind a laminar resistance in series: x that solves |dp| = x^2 + 2 l x, with the sign of dp. signed_sqrt at
-// l = 0.
+// sign(dp) sqrt(|dp|) behind a laminar resistance in series: x that solves |dp| = x^2 + 2 l x, with the sign of dp,
+// linear within `transition` of zero. At l = 0 it is dp / (dp^2 + transition^2)^(1/4).
 template <class P, class L, class W>
 auto signed_sqrt_behind(const L& l, const P& dp, const W& transition) {
   const auto [r, y] = both_roots(dp * dp + transition * transition);

@@ -11,6 +11,7 @@
 #include "effects/magnetic_hysteresis.h"
 #include "effects/mains_pickup.h"
 #include "effects/mount_compliance.h"
+#include "effects/nozzle_land.h"
 #include "effects/nozzle_plugging.h"
 #include "effects/orifice_length.h"
 #include "effects/port_line.h"
@@ -45,6 +46,7 @@ using AllEffects = EffectList<MagneticHysteresis,  //
                               EdgeTransition,      //
                               OrificeLength,       //
                               ScreenDrop,          //
+                              NozzleLand,          //
                               SealFilm>;
 // A learnt curve costs more than all effects: it has a kernel of its own.
 using CorrectedEffects = Append<AllEffects, Unexplained>;

@@ -25,8 +25,8 @@ constexpr double longest_memory = 1 - 1e-6;
 constexpr double slack = 10;       // an effect may grow beyond what this rig shows when healthy by this
 constexpr double row_prior = 0.1;  // a row that was held for a reason, beside an effect that has a name
 // Of the construction, there from the first day or never: in a rig's healthy logs as well, and no likely news.
-const std::set<std::string> built_in = {ArmatureAngle::name, RodCavity::name, EdgeTransition::name, OrificeLength::name,
-                                        ScreenDrop::name};
+const std::set<std::string> built_in = {ArmatureAngle::name, RodCavity::name, EdgeTransition::name,
+                                        OrificeLength::name, ScreenDrop::name, NozzleLand::name};
 
 // What shows a cause best.
 const std::map<std::string, const char*> tests = {
@@ -40,6 +40,7 @@ const std::map<std::string, const char*> tests = {
     {"edge_transition",
      "slow triangles of some per cent in cold and in hot oil: in the cold the piston lags by a wider lap"},
     {"orifice_length", "full steps in cold and in hot oil: in the cold the spool slews slower"},
+    {"nozzle_land", "slow triangles in cold and in hot oil with pilot pressures: in the cold they rise"},
     {"screen_drop", "full steps in cold and in hot oil: in the cold the pilot pressures fall"},
     {"edge_radius", "the pressure's slope at null beside the leakage there: blunt edges leak more at the same slope"},
     {"port_line", "leakage sweeps at two rates, ports blocked: a tail after null that lasts as long at either"},

@@ -17,25 +17,29 @@
 
 namespace servodx {
 
-// Turbulent restriction: conductance [m3/s/sqrt(Pa)] times the rounded root of the pressure drop.
-template <class C, class P, class T>
-auto orifice_flow(const C& conductance, const P& dp, const T& transition) {
-  return conductance * signed_sqrt(dp, transition);
-}
-
 // Fixed orifice, behind the laminar drop of its own length. [m3/s]
 template <class P, class T>
 auto fixed_orifice_flow(const P& dp, const Derived<T>& d) {
   return d.orifice_conductance * signed_sqrt_behind(d.orifice_creep, dp, T(constants::orifice_transition));
 }
 
-// Nozzle: bore and curtain in series. opening [m] of the curtain. The bore's jet presses on the flapper with two
-// velocity heads, one of which the bore has lost, so the force stays area times pressure drop (Merritt eq. 6-69 with
-// the loss).
+// Nozzle: bore, land and curtain in series. opening [m] of the curtain; what roughness leaves open keeps a shut one's
+// land finite. The bore's jet presses on the flapper with two velocity heads, one of which the bore has lost, so the
+// force stays area times pressure drop (Merritt eq. 6-69 with the loss). [m3/s]
 template <class X, class P, class T>
-auto nozzle_flow(const X& opening, const P& dp, const Derived<T>& d) {
-  const auto curtain = opening * inverse_root(d.bore_loss * (opening * opening) + T(1.0));
-  return orifice_flow(d.nozzle_conductance * curtain, dp, T(constants::orifice_transition));
+inline __attribute__((always_inline)) auto nozzle_flow(const X& opening, const P& dp, const Derived<T>& d) {
+  constexpr double rough2 = constants::stop_rounding * constants::stop_rounding;
+  const auto square = opening * opening, clear = square + T(rough2);
+  const auto z = inverse_root((d.bore_loss * square + T(1.0)) * (clear * clear));  // of the bore's loss, over `clear`
+  return d.nozzle_conductance * opening * (clear * z) *
+         signed_sqrt_behind(d.nozzle_creep * z, dp, T(constants::orifice_transition));
+}
+template <class T, Mask A, Mask B>
+requires(A != 1 || B != 2) inline __attribute__((always_inline)) auto nozzle_flow(const Dual<T, A>& opening,
+                                                                                  const Dual<T, B>& dp,
+                                                                                  const Derived<T>& d) {
+  const auto q = nozzle_flow(seed<0>(opening.v, T(1.0)), seed<1>(dp.v, T(1.0)), d);
+  return chain(q.v, opening, q.d[0], dp, q.d[1]);
 }
 
 // One metering edge. opening [m] (negative: covered by that length), radius [m] of its corner, dp [Pa]; flow [m3/s] and

@@ -19,6 +19,8 @@ struct Derived {
   T nozzle_area;                // [m2] facing the flapper
   T nozzle_conductance;         // [m3/s/sqrt(Pa)/m] per curtain opening
   T bore_loss;                  // [1/m2] pressure lost in a nozzle's bore over that at its curtain, per opening squared
+  T nozzle_creep;               // [m2 sqrt(Pa)] half the laminar drop of a nozzle's land over the root of the turbulent
+                                // one, times opening squared
   T orifice_conductance;        // [m3/s/sqrt(Pa)]
   T orifice_creep;       // [sqrt(Pa)] half the laminar drop of a fixed orifice over the root of the turbulent one
   T filter_conductance;  // [m3/s/sqrt(Pa)] mean of both directions of the spool
@@ -70,6 +72,9 @@ Derived<T> derive(const T* p, const Oil& oil) {
   // Bernoulli: the bore's velocity is 4 Cd opening / diameter times the curtain's.
   const T bore_speed = T(4.0 * c::cd_nozzle) / nozzle_diameter;
   d.bore_loss = T(c::nozzle_bore_loss) * bore_speed * bore_speed;
+  // Plane slot, 12 mu w q / (pi (d + w) y^3), in series with the jet's head.
+  const T land = hook_nozzle_land(p, Effects{});
+  d.nozzle_creep = T(6.0 / c::pi) * dynamic_viscosity * land * d.nozzle_conductance / (nozzle_diameter + land);
   const T orifice_area = T(c::pi / 4.0) * p[row::fixed_orifice_diameter] * p[row::fixed_orifice_diameter];
   d.orifice_conductance = T(c::cd_orifice) * per_root_density * orifice_area;
   // Hagen-Poiseuille, 128 mu L q / (pi D^4), in series with the jet's head.

@@ -7,6 +7,7 @@
 //     edge_rounding(p, to_return) [m] added to the corner radius of the metering edges
 //     edge_creep(p)        [-]   added to the creeping-flow length of an open edge, in openings
 //     orifice_length(p)    [-]   added to the length of the fixed orifices, in diameters
+//     nozzle_land(p)       [m]   added to the width of the nozzles' faces
 //     screen_drop(p)       [Pa]  laminar drop of the clean pilot filter at rest, in oil at 40 degC
 //     seal_film_speed(p)   [m/s] added to the speed at which the piston's seals slide on oil
 //     supply_pressure(view) [Pa] added to the supply pressure at the valve
@@ -166,6 +167,7 @@ T hook_viscosity([[maybe_unused]] const T* p, EffectList<E...>) {
   }
 SERVODX_FIXED_HOOK(edge_creep)
 SERVODX_FIXED_HOOK(orifice_length)
+SERVODX_FIXED_HOOK(nozzle_land)
 SERVODX_FIXED_HOOK(screen_drop)
 SERVODX_FIXED_HOOK(seal_film_speed)
 #undef SERVODX_FIXED_HOOK

@@ -53,7 +53,7 @@ LAW(ProductWithANumber, (a * b * 1.5) * (2.5 * c))
 LAW(QuotientWithANumber, (a * b / 1.5) * (2.5 / (c * c)))
 LAW(SquareRoot, sqrt(a* a + c))
 LAW(SmoothPrimitives, smooth_abs(a, 0.1) + soft_positive(b, 0.2) * smooth_sign(c, 0.3) + dead_zone(a * b, 0.5, 0.1) +
-                          saturate(b * c, 0.6, 0.2) + signed_sqrt(b, 0.1))
+                          saturate(b * c, 0.6, 0.2) + signed_sqrt_behind(0.4, b, 0.1) + signed_sqrt_behind(a * a, c, 0.1))
 LAW(FlatStep, flat_step(a) + flat_step(b * 0.4) * flat_step(c * 0.1))
 #undef LAW
 

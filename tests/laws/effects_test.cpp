@@ -81,15 +81,16 @@ TEST(EdgeTransition, CostsAnOpenEdgeAFlowThatGrowsWithViscosityAndNotWithTheOpen
     }
 }
 
-// At rest both sides pass q: (2q / G_f)^2 + (q / G_o)^2 + (q / G_n)^2 + laminar q = supply less return.
+// At rest both sides pass q: (2q / G_f)^2 + (q / G_o)^2 + (q / G_n)^2 + (laminar + land) q = supply less return, where
+// `land` [Pa s/m3] is what the nozzles take of the laminar part.
 void expect_pilot_pressures_at_rest(const Scenario& s, const ParameterVector& v, const Derived<double>& d,
-                                    double laminar) {
+                                    double laminar, double land = 0) {
   const double gap = v[row::nozzle_gap], nozzle = d.nozzle_conductance * gap / std::sqrt(1 + d.bore_loss * gap * gap);
   const double square = 4 / (d.filter_conductance * d.filter_conductance) +
                         1 / (d.orifice_conductance * d.orifice_conductance) + 1 / (nozzle * nozzle);
   const double drop = v[row::supply_pressure] - v[row::return_pressure];
-  const double q = 2 * drop / (laminar + std::sqrt(laminar * laminar + 4 * square * drop));
-  const double expected = v[row::return_pressure] + q * q / (nozzle * nozzle);
+  const double whole = laminar + land, q = 2 * drop / (whole + std::sqrt(whole * whole + 4 * square * drop));
+  const double expected = v[row::return_pressure] + q * q / (nozzle * nozzle) + land * q;
   const Trajectory t = simulate(s, v, all_signals());
   ASSERT_TRUE(t.ok);
   for (Signal side : {Signal::pilot_pressure_1, Signal::pilot_pressure_2})
@@ -126,6 +127,21 @@ TEST(OrificeLength, ColdOilCostsASlewItsSpeedOnlyWithALength) {
   EXPECT_NEAR(sharp, thin, 0.01 * thin);
   EXPECT_LT(tube, 0.97 * sharp);
   EXPECT_LT(capillary, 0.97 * tube);
+}
+
+TEST(NozzleLand, PilotPressureAtRestIsThatOfSlotAndJetsInSeries) {
+  for (const double width : {0.0, 6e-5})
+    for (const double thicker : {1.0, 5.0}) {
+      SCOPED_TRACE(testing::Message() << width << " m, viscosity times " << thicker);
+      Scenario s = made(0.2, 1e-3, [](double) { return 0.0; });
+      s.oil.dynamic_viscosity *= thicker;
+      ParameterVector v = with<NozzleLand>(0, width);
+      v[row::servovalve_null] = 0;
+      const double bore = v[row::hydraulic_amplifier_gain] / constants::pi, gap = v[row::nozzle_gap];
+      expect_pilot_pressures_at_rest(
+          s, v, derive<double>(v.data(), s.oil), 0,
+          12 * s.oil.dynamic_viscosity * width / (constants::pi * (bore + width) * std::pow(gap, 3)));
+    }
 }
 
 TEST(ScreenDrop, PilotPressureAtRestIsThatOfPoresAndJetsInSeries) {
