@@ -17,20 +17,46 @@ int candidate_position(const Table& table, int row) {
   return -1;
 }
 
+// Width of a row's weak prior, of its range: an effect is likely to be of its typical size, whose bounds have to hold
+// the odd valve as well; of a row its bounds say what is likely.
+double prior_width(const Row& r, int at) {
+  constexpr double half = 0.5;
+  if (at < n_parameters) return half;
+  const EffectParameter& e = parameter_at(at);
+  return e.switches && e.start != e.off ? std::min(half, std::abs(e.start - e.off) / (r.upper - r.lower)) : half;
+}
+
+// What a drawing says of the pilot stage, and how well it holds, relative: bores below half a millimetre, the fixed
+// orifices' with the discharge of short tubes (0.6 to 0.88); the gap is set in assembly.
+struct Drawing {
+  int row;
+  const char* fact;
+  double tolerance;
+};
+constexpr Drawing pilot_drawings[] = {{row::hydraulic_amplifier_gain, "valve.nozzle_diameter", 0.05},
+                                      {row::fixed_orifice_diameter, "valve.fixed_orifice_diameter", 0.05},
+                                      {row::nozzle_gap, "valve.nozzle_gap", 0.15}};
+
 bool log_nuisance(int position) { return position == row::servovalve_null || position == row::air_fraction; }
 
 }  // namespace
 
 std::vector<FreeValue> shared_values(const Table& table) {
-  constexpr double prior_sd = 0.5;  // of the row's range: weak
   std::vector<FreeValue> out;
   for (std::size_t i = 0; i < table.rows.size(); ++i) {
     const Row& r = table.rows[i];
     const int at = candidate_position(table, static_cast<int>(i));
     if (!r.estimate || at < 0 || log_nuisance(at) || !(r.upper > r.lower)) continue;
-    out.push_back({r.name, at, r.lower, r.upper, r.log_scale, r.nominal, prior_sd, -1});
+    out.push_back({r.name, at, r.lower, r.upper, r.log_scale, r.nominal, prior_width(r, at), -1});
   }
   return out;
+}
+
+void hold_to_drawings(std::vector<FreeValue>& shared, const RigFile& rig, const std::map<std::string, double>& asked) {
+  for (const Drawing& d : pilot_drawings)
+    if (rig.fact(d.fact))
+      for (FreeValue& f : shared)
+        if (f.at == d.row && !asked.contains(f.name)) f.prior_sd = d.tolerance / std::log(f.upper / f.lower);
 }
 
 std::vector<FreeValue> nuisance_values(const LogData& log, int l, const ParameterVector& base, double null_limit) {

@@ -1,5 +1,6 @@
 // The free numbers of a fit: the table's rows to estimate, the effects asked for, and each log's nuisances.
 #pragma once
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -9,9 +10,16 @@
 
 namespace servodx {
 
-// Rows with estimate = 1 that all logs share (row 41 and the air are nuisances of each log), with a prior of half the
-// row's range around its nominal: a datasheet's bounds already say what is likely.
+// Rows with estimate = 1 that all logs share (row 41 and the air are nuisances of each log), with a prior around
+// its nominal. Half the row's range is its width, as a datasheet's bounds already say what is likely; of an effect it
+// is the effect's typical size.
 std::vector<FreeValue> shared_values(const Table& table);
+
+// Narrower priors for what the rig file gives of the pilot stage. Logs of motion and pressure hardly show it: the
+// nozzles' diameter sets the scale of all forces on the spool, orifices and gap trade with what is laminar beside them;
+// left alone, friction, flow force and the answer to another oil end anywhere along a valley.
+// A row that a prior is `asked` for keeps it.
+void hold_to_drawings(std::vector<FreeValue>& shared, const RigFile& rig, const std::map<std::string, double>& asked);
 
 // A log's own: null, free air, viscosity where no temperature was logged, command between samples, offsets of spool and
 // pressure sensors; only those that the log can show. `null_limit` [fraction of rated] bounds the null about the

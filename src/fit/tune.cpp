@@ -27,7 +27,6 @@ namespace {
 
 constexpr double tuning_null_limit = 0.1;   // fault-free logs: a null may sit anywhere that calibration allows
 constexpr double independent_rate = 40;     // [1/s] samples that count before anything is known of their correlation
-constexpr double drawing_tolerance = 0.05;  // of a bore below half a millimetre, relative
 constexpr const char* hash_key = "tuned by";
 constexpr const char* average_key = "moving average";
 
@@ -283,7 +282,8 @@ LeastSquaresResult refine(Tuning& run, FitProblem& problem, Point x, ErrorModel&
 
 std::vector<std::string> default_effects(bool on_stand) {
   if (on_stand) return {"magnetic_hysteresis", "flow_meter_lag", "edge_radius", "port_line"};
-  return {"magnetic_hysteresis", "armature_angle", "mount_compliance", "edge_transition", "orifice_length", "screen_drop"};
+  return {"magnetic_hysteresis", "armature_angle", "mount_compliance", "edge_transition",
+          "orifice_length",      "screen_drop",    "nozzle_land"};
 }
 
 int moving_average_of(const Table& table) {
@@ -404,12 +404,7 @@ TuneResult tune(const std::vector<Log>& logs, const Table& nominal, const RigFil
   run.simulations += problem.simulations();
   run.failed += problem.failed_simulations();
 
-  // The nozzles' diameter sets the scale of all forces on the spool, which logs of motion and pressure hardly show: it
-  // stays near its drawing, or friction and flow force would end anywhere along a valley.
-  if (facts.fact("valve.nozzle_diameter"))
-    for (FreeValue& f : run.shared)
-      if (f.at == row::hydraulic_amplifier_gain && !options.priors.contains(f.name))
-        f.prior_sd = drawing_tolerance / std::log(f.upper / f.lower);
+  hold_to_drawings(run.shared, facts, options.priors);
 
   // 3. Breadth: genetic search, then the local stage from the best distinct points and from nominal.
   FitProblem fit(run.logs, run.base, run.all(), run.simulate_options());

@@ -35,9 +35,9 @@ inline __attribute__((always_inline)) auto nozzle_flow(const X& opening, const P
          signed_sqrt_behind(d.nozzle_creep * z, dp, T(constants::orifice_transition));
 }
 template <class T, Mask A, Mask B>
-requires(A != 1 || B != 2) inline __attribute__((always_inline)) auto nozzle_flow(const Dual<T, A>& opening,
-                                                                                  const Dual<T, B>& dp,
-                                                                                  const Derived<T>& d) {
+requires(A != 1 || B != 2) inline
+    __attribute__((always_inline)) auto nozzle_flow(const Dual<T, A>& opening, const Dual<T, B>& dp,
+                                                    const Derived<T>& d) {
   const auto q = nozzle_flow(seed<0>(opening.v, T(1.0)), seed<1>(dp.v, T(1.0)), d);
   return chain(q.v, opening, q.d[0], dp, q.d[1]);
 }

@@ -22,6 +22,35 @@ TEST(FreeValue, UnitIntervalAndValueAreInverses) {
   }
 }
 
+TEST(SharedValues, AnEffectIsLikelyOfItsTypicalSizeAndARowWithinItsBounds) {
+  Table table = shipped_table();
+  add_effect_rows(table, {OrificeLength::name});
+  bool met = false;
+  for (const FreeValue& f : shared_values(table)) {
+    if (f.at < n_parameters) EXPECT_EQ(f.prior_sd, 0.5) << f.name;
+    if (f.name != OrificeLength::parameters[0].name) continue;
+    met = true;
+    EXPECT_NEAR(f.prior_sd * (f.upper - f.lower), OrificeLength::parameters[0].start, 1e-12);
+  }
+  EXPECT_TRUE(met);
+}
+
+TEST(SharedValues, WhatADrawingGivesOfThePilotStageIsHeldUnlessAPriorIsAskedFor) {
+  const auto width = [](const std::map<std::string, double>& facts, const std::map<std::string, double>& asked) {
+    RigFile rig;
+    rig.facts = facts;
+    std::vector<FreeValue> shared = shared_values(shipped_table());
+    hold_to_drawings(shared, rig, asked);
+    const auto f = std::find_if(shared.begin(), shared.end(),
+                                [](const FreeValue& v) { return v.at == row::fixed_orifice_diameter; });
+    return f->prior_sd * std::log(f->upper / f->lower);  // relative
+  };
+  const std::map<std::string, double> drawing = {{"valve.fixed_orifice_diameter", 0.2e-3}};
+  EXPECT_NEAR(width(drawing, {}), 0.05, 1e-12);
+  EXPECT_GT(width({}, {}), 0.2);
+  EXPECT_GT(width(drawing, {{"fixed_orifice_diameter", 4e-6}}), 0.2);
+}
+
 // Two logs, shared rows and nuisances of each.
 struct TwoLogs {
   Table table = shipped_table();
