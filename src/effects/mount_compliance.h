@@ -1,5 +1,6 @@
-// Compliance of the structure that holds the cylinder: its body gives way under the hydraulic force, with a loss that
-// damps it (Kelvin-Voigt). The body's own mass is left out: valid well below the body's resonance.
+// Compliance of the structure that holds the cylinder: its body, a mass on a spring with a loss (Kelvin-Voigt), gives
+// way under the hydraulic force and rings. What the seals' friction and the stops do to it is left out. Without a mass
+// it follows the force as fast as its loss lets it. Bounds: to 200 kg, a cylinder of some tonnes of force.
 #pragma once
 #include <tuple>
 
@@ -12,25 +13,35 @@ struct MountCompliance {
   static constexpr const char* name = "mount_compliance";
   static constexpr const char* place = "piston_force";
   static constexpr const char* meaning = "the cylinder's body moves against a mount of finite stiffness";
-  static constexpr int n_states = 1;
-  static constexpr int n_parameters = 2;
+  static constexpr int n_states = 2;  // travel of the body, its velocity
+  static constexpr int n_parameters = 3;
   static constexpr EffectParameter parameters[n_parameters] = {
-      {"mount_compliance", "m/N", 0.0, 0.0, 3e-7, 3e-8, "travel of the body per force"},
+      {"mount_compliance", "m/N", 0.0, 0.0, 1e-6, 3e-8, "travel of the body per force"},
       {"mount_relaxation", "s", 2e-4, 2e-5, 5e-3, 2e-4, "damping over stiffness of the mount", false},
+      {"mount_mass", "kg", 0.0, 0.0, 200.0, 10.0, "mass of the cylinder's body", false},
   };
+  static constexpr double least_period2 = 1e-10;  // [s2] of a body without mass, over (2 pi)^2: 16 kHz, above any log
 
-  // Velocity of the body: it relaxes towards the travel that the hydraulic force asks for.
   template <class V>
   static auto body_velocity(const V& view) {
+    return view.template own_state<MountCompliance, 1>();
+  }
+  // m C v' = -x - C F - T v
+  template <class V, class T = std::decay_t<decltype(*V::p)>>
+  static auto derivative(const V& view) {
     const auto& p = view.p;
     const auto force =
         p[row::piston_area_a] * view.template state<s_p_a>() - p[row::piston_area_b] * view.template state<s_p_b>();
-    return -(view.template own_state<MountCompliance, 0>() + view.template own<MountCompliance>(0) * force) /
-           view.template own<MountCompliance>(1);
+    const auto travel = view.template own_state<MountCompliance, 0>(), speed = body_velocity(view);
+    const T compliance = view.template own<MountCompliance>(0);
+    const T rate = inverse(compliance * view.template own<MountCompliance>(2) + T(least_period2));
+    return std::make_tuple(speed,
+                           -rate * (travel + compliance * force + view.template own<MountCompliance>(1) * speed));
   }
-  template <class V>
-  static auto derivative(const V& view) {
-    return std::make_tuple(body_velocity(view));
+  template <class T>
+  static void at_rest(T* own, const T* y, const T* q, const T* p) {
+    own[0] = -q[0] * (p[row::piston_area_a] * y[s_p_a] - p[row::piston_area_b] * y[s_p_b]);
+    own[1] = T(0.0);
   }
 };
 

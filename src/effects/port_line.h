@@ -48,7 +48,7 @@ struct PortLine {
   }
   // Own states at rest; y: the base states, q: own parameters.
   template <class T>
-  static void at_rest(T* own, const T* y, const T* q) {
+  static void at_rest(T* own, const T* y, const T* q, const T*) {
     own[0] = q[0] * y[s_p_a];
     own[1] = q[1] * y[s_p_b];
   }

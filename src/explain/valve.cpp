@@ -25,8 +25,18 @@ constexpr double longest_memory = 1 - 1e-6;
 constexpr double slack = 10;       // an effect may grow beyond what this rig shows when healthy by this
 constexpr double row_prior = 0.1;  // a row that was held for a reason, beside an effect that has a name
 // Of the construction, there from the first day or never: in a rig's healthy logs as well, and no likely news.
-const std::set<std::string> built_in = {ArmatureAngle::name, RodCavity::name, EdgeTransition::name,
+const std::set<std::string> built_in = {ArmatureAngle::name, RodCavity::name,  EdgeTransition::name,
                                         OrificeLength::name, ScreenDrop::name, NozzleLand::name};
+
+// Rows that an effect takes along; `grows`: they are a size of it, and no mere part of its shape.
+struct Along {
+  std::string_view effect;
+  int row;
+  bool grows;
+};
+constexpr Along rows_along[] = {
+    {Stiction::name, row::spool_friction, true},        // what sticks also drags: silt and lacquer
+    {MountCompliance::name, row::moving_mass, false}};  // structure that gives way swings with the rod
 
 // What shows a cause best.
 const std::map<std::string, const char*> tests = {
@@ -331,12 +341,14 @@ void ValveSubject::add_causes(const RigFile& rig) {
       }
       values.push_back(std::move(f));
     }
-    if (e.name == Stiction::name) {  // what sticks also drags: silt and lacquer raise the sliding friction too
-      const Row& r = table_[row::spool_friction];
-      values.push_back({r.name, row::spool_friction, std::min(r.lower, r.nominal), std::max(r.upper, r.nominal),
-                        r.log_scale, r.nominal});
-      cause.numbers.push_back(number_of(values.back(), r.unit, true));
-      sizes.push_back(sizes_about(cause.numbers.back(), {2 * r.nominal, 5 * r.nominal}));
+    for (const Along& along : rows_along) {
+      if (e.name != along.effect) continue;
+      const Row& r = table_[along.row];
+      values.push_back(
+          {r.name, along.row, std::min(r.lower, r.nominal), std::max(r.upper, r.nominal), r.log_scale, r.nominal});
+      cause.numbers.push_back(number_of(values.back(), r.unit, along.grows));
+      sizes.push_back(along.grows ? sizes_about(cause.numbers.back(), {2 * r.nominal, 5 * r.nominal})
+                                  : std::vector<double>{});
     }
     finish(std::move(cause), values, sizes);
     // A shape that the table has, and no log has shown, may suit what it had to imitate: the typical one is tried as

@@ -19,7 +19,8 @@
 //     piston_force(view)   [N]   added to the force on the piston
 //     body_velocity(view)  [m/s] of the cylinder body; the rod is measured relative to it
 //     derivative(view)     tuple of the derivatives of its own states
-//     at_rest(own, y, p)   sets its own states to where they rest beside the base states y; without it they rest at 0
+//     at_rest(own, y, q, p)  sets its own states to where they rest beside the base states y, q: its own parameters, p:
+//     the rows; without it they rest at 0
 // A place without an effect adds nothing, not even a zero.
 #pragma once
 #include <tuple>
@@ -191,9 +192,9 @@ template <class T, class... E>
 void effects_at_rest([[maybe_unused]] T* y, [[maybe_unused]] const T* p, EffectList<E...>) {
   (
       [&] {
-        if constexpr (requires { E::at_rest(y, y, p); })
+        if constexpr (requires { E::at_rest(y, y, p, p); })
           E::at_rest(y + n_base_states + EffectList<E...>::template state_offset<E>(), y,
-                     p + n_parameters + EffectList<E...>::template parameter_offset<E>());
+                     p + n_parameters + EffectList<E...>::template parameter_offset<E>(), p);
       }(),
       ...);
 }

@@ -144,6 +144,41 @@ TEST(NozzleLand, PilotPressureAtRestIsThatOfSlotAndJetsInSeries) {
     }
 }
 
+TEST(MountCompliance, NewtonsLawHoldsForTheBody) {
+  Random random(91, 1);
+  const double compliance = 2e-7, relaxation = 3e-4, mass = 12;
+  ParameterVector v = nominal_candidate();
+  v[effect_row<MountCompliance>(0)] = compliance, v[effect_row<MountCompliance>(1)] = relaxation,
+  v[effect_row<MountCompliance>(2)] = mass;
+  const Bench<AllEffects> bench(v);
+  constexpr int at = n_base_states + AllEffects::state_offset<MountCompliance>();
+  for (int k = 0; k < 20; ++k) {
+    auto y = bench.state(random);
+    y[at] = random.uniform(-1e-3, 1e-3), y[at + 1] = random.uniform(-0.1, 0.1);
+    const auto rate = bench.rate(y, bench.inputs(random));
+    const double force = v[row::piston_area_a] * y[s_p_a] - v[row::piston_area_b] * y[s_p_b];
+    const double expected = -(force + y[at] / compliance + relaxation / compliance * y[at + 1]) / mass;
+    EXPECT_EQ(rate[at], y[at + 1]);
+    EXPECT_NEAR(rate[at + 1], expected, 1e-3 * std::abs(expected));  // the little that keeps a body without mass finite
+  }
+}
+
+TEST(MountCompliance, ABodyWithoutMassGoesWhereItsLossLetsIt) {
+  Random random(92, 1);
+  const double compliance = 2e-7, relaxation = 3e-4;
+  ParameterVector v = nominal_candidate();
+  v[effect_row<MountCompliance>(0)] = compliance, v[effect_row<MountCompliance>(1)] = relaxation,
+  v[effect_row<MountCompliance>(2)] = 0;
+  const Bench<AllEffects> bench(v);
+  constexpr int at = n_base_states + AllEffects::state_offset<MountCompliance>();
+  auto y = bench.state(random);
+  const auto u = bench.inputs(random);
+  for (int k = 0; k < 200; ++k) bench.step(y, u, 1e-6);
+  const double force = v[row::piston_area_a] * y[s_p_a] - v[row::piston_area_b] * y[s_p_b];
+  const double expected = -(y[at] + compliance * force) / relaxation;
+  EXPECT_NEAR(y[at + 1], expected, 1e-2 * std::abs(expected));
+}
+
 TEST(ScreenDrop, PilotPressureAtRestIsThatOfPoresAndJetsInSeries) {
   // The pores of a filter take drop times the ratio of viscosities at its own flow at rest, less of them the more.
   for (const double viscous : {0.0, 4e5})
@@ -175,7 +210,8 @@ TEST(SealFilm, AtItsSpeedHalfOfTheBreakawayFrictionIsLeft) {
     double mean = 0;  // of what the pressures carry
     for (std::size_t k = 750; k < 950; ++k)
       mean += (v[row::piston_area_a] * of(t, Signal::pressure_a)[k] -
-               v[row::piston_area_b] * of(t, Signal::pressure_b)[k]) / 200;
+               v[row::piston_area_b] * of(t, Signal::pressure_b)[k]) /
+              200;
     return mean;
   };
   double speed = 0, other = 0;
