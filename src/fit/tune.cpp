@@ -236,8 +236,8 @@ std::vector<Point> breadth(Tuning& run, const Point& start) {
     // Children are ranked in floats; what is shown is counted in full.
     constexpr int shown_every = 10;
     if (!s.best.point.empty() && (s.generation % shown_every == 0 || s.generation == o.generations))
-      run.convergence.push_back({"genetic search", run.simulations + problem.simulations(),
-                                 cost(std::span(&s.best.point, 1)).front()});
+      run.convergence.push_back(
+          {"genetic search", run.simulations + problem.simulations(), cost(std::span(&s.best.point, 1)).front()});
     run.progress.update(0.1 + 0.25 * s.generation / o.generations, run.simulations + problem.simulations());
     return !run.stopped();
   };
