@@ -91,13 +91,15 @@ class Twin {
             (measured_[c][static_cast<std::size_t>(k)] - t.signals[c][static_cast<std::size_t>(k)]) / sigma_[c];
     return e;
   }
-  std::vector<Evaluation> evaluate(std::span<const Point> points) const {
+  std::vector<Evaluation> evaluate(std::span<const Point> points, bool ranking = false) const {
     std::vector<ParameterVector> v;
     for (const Point& x : points) v.push_back(candidate(x));
     std::vector<Trajectory> t(points.size());
     std::vector<Job> jobs;
     for (std::size_t i = 0; i < v.size(); ++i) jobs.push_back({&scenario_, &v[i], &t[i]});
-    simulate(jobs, options_);
+    SimulateOptions options = options_;
+    options.ranking = ranking;
+    simulate(jobs, options);
     std::vector<Evaluation> out;
     for (const Trajectory& one : t) out.push_back(whitened(one));
     return out;

@@ -62,7 +62,7 @@ X magnitude(const X& x) {
 template <class T, Mask A>
 Dual<T, A> magnitude(const Dual<T, A>& x) {
   using std::max, std::min;
-  return chain(magnitude(x.v), x, max(T(-1.0), min(T(1.0), x.v * T(1e300))));
+  return chain(magnitude(x.v), x, max(T(-1.0), min(T(1.0), x.v * T(1e30))));
 }
 
 // x beyond a gap of half width `half` on either side of zero, corners rounded within `width`: exactly 0 in the gap, and

@@ -87,7 +87,7 @@ std::vector<Trajectory> FitProblem::trajectories(const Point& x) const {
   return t;
 }
 
-std::vector<Evaluation> FitProblem::evaluate(std::span<const Point> points) const {
+std::vector<Evaluation> FitProblem::evaluate(std::span<const Point> points, bool ranking) const {
   const std::size_t n_logs = logs_.size(), n_points = points.size();
   std::vector<ParameterVector> v(n_logs * n_points);
   std::vector<Trajectory> t(v.size());
@@ -97,7 +97,9 @@ std::vector<Evaluation> FitProblem::evaluate(std::span<const Point> points) cons
       v[l * n_points + k] = candidate(points[k], static_cast<int>(l));
       jobs.push_back({&logs_[l]->scenario, &v[l * n_points + k], &t[l * n_points + k]});
     }
-  simulate(jobs, options_);
+  SimulateOptions options = options_;
+  options.ranking = ranking;
+  simulate(jobs, options);
   simulations_ += static_cast<long>(jobs.size());
   std::vector<Evaluation> out(n_points);
   for (std::size_t k = 0; k < n_points; ++k) {

@@ -52,7 +52,8 @@ class FitProblem {
   void set_sigma(int log, int channel, std::vector<double> sigma);
   const std::vector<double>& sigma(int log, int channel) const { return sigma_[log][channel]; }
 
-  std::vector<Evaluation> evaluate(std::span<const Point> points) const;
+  // `ranking`: fast and in floats, to compare points (SimulateOptions::ranking).
+  std::vector<Evaluation> evaluate(std::span<const Point> points, bool ranking = false) const;
   bool jacobian(const Point& x, const Eigen::VectorXd& residual, Eigen::MatrixXd& j) const;
   LeastSquaresProblem least_squares() const;
 

@@ -192,11 +192,11 @@ std::vector<Point> breadth(Tuning& run, const Point& start) {
     std::copy(s.begin(), s.end(), x.begin());
     return x;
   };
-  const BatchCost cost = [&](std::span<const Point> points) {
+  const auto costs = [&](std::span<const Point> points, bool ranking) {
     std::vector<Point> xs;
     for (const Point& p : points) xs.push_back(full(p));
     std::vector<double> c;
-    for (const Evaluation& e : problem.evaluate(xs)) {
+    for (const Evaluation& e : problem.evaluate(xs, ranking)) {
       if (!e.ok) {
         c.push_back(1e30);
         continue;
@@ -227,10 +227,16 @@ std::vector<Point> breadth(Tuning& run, const Point& start) {
   o.generations = run.options.generations;
   o.seed = run.options.seed;
   o.archive = 3;
+  const BatchCost cost = [&](std::span<const Point> points) { return costs(points, false); };
   GeneticHooks hooks;
+  hooks.screen = [&](std::span<const Point> points) { return costs(points, true); };
   hooks.generation = [&](const GeneticState& s) {
     if (!run.options.checkpoint.empty()) write_file(run.options.checkpoint, to_json(s));
-    run.convergence.push_back({"genetic search", run.simulations + problem.simulations(), s.best.cost});
+    // Children are ranked in floats; what is shown is counted in full.
+    constexpr int shown_every = 10;
+    if (!s.best.point.empty() && (s.generation % shown_every == 0 || s.generation == o.generations))
+      run.convergence.push_back(
+          {"genetic search", run.simulations + problem.simulations(), cost(std::span(&s.best.point, 1)).front()});
     run.progress.update(0.1 + 0.25 * s.generation / o.generations, run.simulations + problem.simulations());
     return !run.stopped();
   };

@@ -47,15 +47,16 @@ class Genetic {
   GeneticResult run(bool resumed) {
     if (!resumed) {
       begin();
-      if (!told()) return {std::move(state_), GeneticStop::interrupted};
+      if (!told()) return end(GeneticStop::interrupted);
     }
     for (;;) {
-      if (state_.best.cost <= options_.cost_goal) return {std::move(state_), GeneticStop::goal};
-      if (state_.generation >= options_.generations) return {std::move(state_), GeneticStop::generations};
-      if (options_.max_evaluations > 0 && state_.evaluations + options_.population > options_.max_evaluations)
-        return {std::move(state_), GeneticStop::evaluation_limit};
+      if (state_.best.cost <= options_.cost_goal) return end(GeneticStop::goal);
+      if (state_.generation >= options_.generations) return end(GeneticStop::generations);
+      const int next = options_.population + (hooks_.screen ? options_.archive : 0);
+      if (options_.max_evaluations > 0 && state_.evaluations + next > options_.max_evaluations)
+        return end(GeneticStop::evaluation_limit);
       step();
-      if (!told()) return {std::move(state_), GeneticStop::interrupted};
+      if (!told()) return end(GeneticStop::interrupted);
     }
   }
 
@@ -74,8 +75,25 @@ class Genetic {
 
   bool told() const { return !hooks_.generation || hooks_.generation(state_); }
 
-  std::vector<double> evaluate(const std::vector<Point>& points) {
-    std::vector<double> costs = cost_(points);
+  // What was screened is ranked anew by the cost itself: best and archive, all that is reported, hold no other.
+  GeneticResult end(GeneticStop reason) {
+    if (hooks_.screen) {
+      std::vector<Individual> screened;
+      screened.swap(state_.archive);
+      state_.best = {{}, kWorst};
+      std::vector<Point> points;
+      for (const Individual& one : screened) points.push_back(one.point);
+      const std::vector<double> costs = evaluate(cost_, points);
+      for (std::size_t k = 0; k < costs.size(); ++k) remember({points[k], costs[k]});
+    }
+    return {std::move(state_), reason};
+  }
+
+  std::vector<double> rank(const std::vector<Point>& points) {
+    return evaluate(hooks_.screen ? hooks_.screen : cost_, points);
+  }
+  std::vector<double> evaluate(const BatchCost& cost_of, const std::vector<Point>& points) {
+    std::vector<double> costs = cost_of(points);
     if (costs.size() != points.size()) throw std::logic_error("BatchCost returned another number of costs");
     state_.evaluations += static_cast<long>(points.size());
     for (double& cost : costs) {
@@ -142,7 +160,7 @@ class Genetic {
       const std::vector<Point> points = fresh(i, island_size(i), true);
       all.insert(all.end(), points.begin(), points.end());
     }
-    const std::vector<double> costs = evaluate(all);
+    const std::vector<double> costs = rank(all);
     std::size_t at = 0;
     for (std::size_t i = 0; i < islands(); ++i) {
       const auto size = static_cast<std::size_t>(island_size(i));
@@ -212,7 +230,7 @@ class Genetic {
         points.push_back(broods[i].back().point);
       }
     }
-    const std::vector<double> costs = evaluate(points);
+    const std::vector<double> costs = rank(points);
     std::size_t at = 0;
     for (std::size_t i = 0; i < state_.islands.size(); ++i) {
       Island& island = state_.islands[i];

@@ -49,6 +49,9 @@ struct GeneticHooks {
   // to count.
   std::function<std::vector<Individual>(const GeneticState&)> refine;
   int refine_every = 10;
+  // A cheaper cost that ranks almost as the cost does: all comparisons are by it, and what is returned as best and in
+  // the archive is ranked anew by the cost itself. While the search runs, its state holds costs of the screen.
+  BatchCost screen;
 };
 
 struct GeneticResult {

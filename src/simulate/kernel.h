@@ -441,5 +441,8 @@ Kernels kernels_scalar();
 Kernels kernels_generic();
 Kernels kernels_avx2();
 Kernels kernels_avx512();
+// Twice as many lanes, of floats: for ranking only.
+Kernels kernels_avx2_floats();
+Kernels kernels_avx512_floats();
 
 }  // namespace servodx

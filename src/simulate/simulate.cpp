@@ -10,13 +10,18 @@
 namespace servodx {
 namespace {
 
-const Kernels& best_kernels() {
-  static const Kernels chosen = [] {
+struct Choice {
+  Kernels doubles, ranking;
+};
+
+const Choice& best_kernels() {
+  static const Choice chosen = []() -> Choice {
 #if defined(__x86_64__)
-    if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq")) return kernels_avx512();
-    if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma")) return kernels_avx2();
+    if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq"))
+      return {kernels_avx512(), kernels_avx512_floats()};
+    if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma")) return {kernels_avx2(), kernels_avx2_floats()};
 #endif
-    return kernels_generic();
+    return {kernels_generic(), kernels_generic()};
   }();
   return chosen;
 }
@@ -58,7 +63,7 @@ int simulated_index(Signal s) {
 }
 
 void simulate(std::span<const Job> jobs, const SimulateOptions& options) {
-  const Kernels& kernels = best_kernels();
+  const Kernels& kernels = options.ranking ? best_kernels().ranking : best_kernels().doubles;
   static const Kernels plain = kernels_scalar();
   std::vector<PackOfJobs> packs;
   for (std::size_t i = 0; i < jobs.size(); ++i) {
@@ -99,7 +104,7 @@ Trajectory simulate(const Scenario& scenario, const ParameterVector& candidate, 
   return t;
 }
 
-std::string instruction_set() { return best_kernels().name; }
-int pack_width() { return best_kernels().width; }
+std::string instruction_set() { return best_kernels().doubles.name; }
+int pack_width() { return best_kernels().doubles.width; }
 
 }  // namespace servodx

@@ -155,26 +155,29 @@ std::vector<ParameterVector> candidates(int count) {
 TEST(Batch, LaneEqualsTheRunAloneBitForBitAtAnyThreadCount) {
   const std::vector<ParameterVector> v = candidates(29);
   const std::vector<LogData> logs = pieces();
+  SimulateOptions o = all_signals();
   const auto batch = [&](int threads) {
     std::vector<Trajectory> t(v.size() * logs.size());
     std::vector<Job> jobs;
     for (std::size_t l = 0; l < logs.size(); ++l)
       for (std::size_t i = 0; i < v.size(); ++i) jobs.push_back({&logs[l].scenario, &v[i], &t[l * v.size() + i]});
-    SimulateOptions o = all_signals();
     o.threads = threads;
     simulate(jobs, o);
     return t;
   };
-  const std::vector<Trajectory> one = batch(1), two = batch(2);
   std::printf("kernel in use: %s, %d lanes\n", instruction_set().c_str(), pack_width());
   EXPECT_GT(pack_width(), 1);
-  for (std::size_t l = 0; l < logs.size(); ++l)
-    for (std::size_t i = 0; i < v.size(); ++i) {
-      const Trajectory alone = simulate(logs[l].scenario, v[i], all_signals());
-      EXPECT_TRUE(alone.ok) << i;
-      EXPECT_TRUE(same_bits(alone, one[l * v.size() + i])) << "log " << l << ", candidate " << i;
-      EXPECT_TRUE(same_bits(alone, two[l * v.size() + i])) << "log " << l << ", candidate " << i << ", two threads";
-    }
+  for (const bool ranking : {false, true}) {
+    o.ranking = ranking;
+    const std::vector<Trajectory> one = batch(1), two = batch(2);
+    for (std::size_t l = 0; l < logs.size(); ++l)
+      for (std::size_t i = 0; i < v.size(); ++i) {
+        const Trajectory alone = simulate(logs[l].scenario, v[i], o);
+        EXPECT_TRUE(alone.ok) << i;
+        EXPECT_TRUE(same_bits(alone, one[l * v.size() + i])) << "log " << l << ", candidate " << i;
+        EXPECT_TRUE(same_bits(alone, two[l * v.size() + i])) << "log " << l << ", candidate " << i << ", two threads";
+      }
+  }
 }
 
 TEST(Batch, EveryInstructionSetComputesWhatPlainDoublesDo) {

@@ -1,0 +1,10 @@
+#include "simulate/kernel.h"
+
+namespace servodx {
+
+Kernels kernels_avx2_floats() {
+  using T = Pack<8, 2, float>;
+  return {T::lanes, "avx2", &run_pack<T, NoEffects>, &run_pack<T, AllEffects>, nullptr};
+}
+
+}  // namespace servodx

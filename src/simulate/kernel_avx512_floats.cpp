@@ -1,0 +1,10 @@
+#include "simulate/kernel.h"
+
+namespace servodx {
+
+Kernels kernels_avx512_floats() {
+  using T = Pack<16, 5, float>;
+  return {T::lanes, "avx512", &run_pack<T, NoEffects>, &run_pack<T, AllEffects>, nullptr};
+}
+
+}  // namespace servodx
