@@ -251,6 +251,19 @@ class Pages(unittest.TestCase):
             self.assertEqual(self.run(TORN), [], name)
             self.screenshot(name + "_phone")
 
+    def test_a_width_that_depends_on_the_charts_ends(self):
+        # As where a chart taken down lets a scroll bar go: pages once drew for ever then.
+        self.open("diagnose")
+        self.draw_all()
+        self.driver.set_script_timeout(10)
+        self.driver.execute_async_script("""
+            const done = arguments[0], style = document.createElement('style');
+            style.textContent = '.chart { width: 600px; } .chart:not(:has(.uplot)) { width: 580px; }';
+            document.head.append(style);
+            setTimeout(done, 300);""")
+        widths = self.run("return [...servodx.drawn.values()].map(({chart}) => chart.width)")
+        self.assertEqual(set(widths), {600})
+
     def test_every_figure_has_a_csv_that_reads_back(self):
         for name in PAGES:
             self.open(name)
@@ -287,17 +300,19 @@ class Pages(unittest.TestCase):
             if KEEP:
                 (self.folder / f"{name}.pdf").write_bytes(pdf)
 
-    def test_nothing_is_cut_off_on_paper(self):
+    def test_nothing_is_cut_off_and_no_word_torn_on_paper(self):
         for name in PAGES:
             self.set_size(720, 1000)
             self.open(name)
             self.driver.execute_cdp_cmd("Emulation.setEmulatedMedia", {"media": "print"})
             self.run("dispatchEvent(new Event('beforeprint'))")
+            torn = self.run(TORN)
             cut = self.run("return [...document.querySelectorAll('.wide')].filter((e) => e.scrollWidth > e.clientWidth + 1 && getComputedStyle(e).overflowX !== 'visible').length")
             wide = self.run("return document.documentElement.scrollWidth")
             self.run("dispatchEvent(new Event('afterprint'))")
             self.driver.execute_cdp_cmd("Emulation.setEmulatedMedia", {"media": ""})
             self.assertEqual(cut, 0, name)
+            self.assertEqual(torn, [], name)
             self.assertLessEqual(wide, 720, name)
 
 
