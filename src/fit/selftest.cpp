@@ -131,6 +131,8 @@ SelftestResult selftest(const Log& log, const Table& table, const RigFile& rig, 
     o.max_iterations = iterations;
     o.difference = Difference::forward;
     o.cost_tolerance = 1e-6;
+    // No farther at once than truths scatter: longer first steps drag rows that the log tells poorly into other minima.
+    o.step_limit = options.spread;
     double last_cost = HUGE_VAL;  // no robust first pass: a twin has no outliers
     int idle = 0;
     o.progress = [&](const LeastSquaresProgress& now) {

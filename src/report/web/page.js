@@ -200,7 +200,7 @@
     if (!first) continue;
     const tools = document.createElement("div");
     tools.className = "tools";
-    for (const [key, label] of [["+", "Zoom in"], ["-", "Zoom out"], ["ArrowLeft", "Earlier"], ["ArrowRight", "Later"], ["0", "Show all"]]) {
+    for (const [key, label] of [["+", "Zoom in"], ["-", "Zoom out"], ["ArrowLeft", "Left"], ["ArrowRight", "Right"], ["0", "Show all"]]) {
       const button = document.createElement("button");
       button.type = "button";
       button.textContent = label;
