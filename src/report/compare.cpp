@@ -241,7 +241,7 @@ Page compare_page(const Header& header, const Comparison& c) {
     Cell name = words(d.what);
     if (d.matters) name.tone = Tone::bad;
     table.rows.push_back(
-        {name, d.a, d.b, d.change, std::isfinite(d.sigmas) ? Cell(in_sigmas(d.sigmas), d.sigmas) : Cell("")});
+        {name, shortened(d.a), shortened(d.b), d.change, std::isfinite(d.sigmas) ? Cell(in_sigmas(d.sigmas), d.sigmas) : Cell("")});
   }
   page.add(table);
   return page;

@@ -12,7 +12,7 @@ from selenium.webdriver.common.keys import Keys
 # A log may have any name.
 HOSTILE = "<script>alert('log')<_script><img src=x onerror=alert(1)>.csv"
 MADE_UP = ["diagnose", "many", "baseline", "tune"]
-REAL = ["explain", "check", "trend", "map", "curves", "check-log", "simulate"]
+REAL = ["explain", "check", "trend", "map", "curves", "check-log", "simulate", "compare"]
 PAGES = MADE_UP + REAL
 
 # Relative luminance and contrast as WCAG 2 defines them, of every element that holds text of its own.
@@ -86,7 +86,14 @@ class Pages(unittest.TestCase):
         log.write_text(rows("healthy/h12_mixed.csv", 0.6))
         servodx("check-log", HOSTILE, *given)
         servodx("simulate", HOSTILE, *given, "-o", "simulated.csv")
-        servodx("explain", HOSTILE, *given, "-o", "extended.csv")
+        servodx("explain", HOSTILE, *given, "-o", "extended.csv", "--json", HOSTILE + ".json")
+        # The same result but for a name, a size and a verdict.
+        other = json.loads((desk / (HOSTILE + ".json")).read_text())
+        other["verdict"] = "sufficient"
+        for channel in other["channels"]:
+            channel["rms_after"] *= 1.5
+        (desk / "other.json").write_text(json.dumps(other))
+        servodx("compare", HOSTILE + ".json", "other.json")
         log.write_text(rows("healthy/h07_triangle.csv", 4))
         servodx("curves", HOSTILE, "--rig", str(SOURCE / "data/rig.toml"))
         log.write_text(rows("healthy/h09_preflight_hot.csv", 2.4))
