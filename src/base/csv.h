@@ -3,9 +3,9 @@
 //
 // Reads: separator ',' ';' or tab (the most frequent in the header line), decimal comma in numbers where the separator
 // is ';', UTF-8 BOM, LF and CRLF, '#' comment lines before the header, blank lines anywhere, RFC 4180 quoted cells
-// (which may hold separators, doubled quotes and line ends). Spaces around a cell are dropped. Words of a header that are
-// no UTF-8 are taken as Latin-1.
-// Leaves out: UTF-16 (refused), thousands separators, escapes other than doubled quotes.
+// (which may hold separators, doubled quotes and line ends). Spaces around a cell are dropped. Words of a header that
+// are no UTF-8 are taken as Latin-1. Leaves out: UTF-16 (refused), thousands separators, escapes other than doubled
+// quotes.
 //
 // No library: fast-cpp-csv-parser fixes separator and quoting at compile time, parses with its own float loop (not
 // correctly rounded) and throws its own errors, where logs need a sniffed separator and exact round trips.

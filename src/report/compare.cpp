@@ -16,9 +16,9 @@ namespace servodx::report {
 namespace {
 
 constexpr double certain_sigmas = 3.0;
-constexpr double rounding = 1e-9;       // relative: sums in another order
-constexpr std::size_t longest = 40;     // characters of a text in a terminal's column
-constexpr std::size_t most_named = 3;   // in the headline
+constexpr double rounding = 1e-9;      // relative: sums in another order
+constexpr std::size_t longest = 40;    // characters of a text in a terminal's column
+constexpr std::size_t most_named = 3;  // in the headline
 
 Json read_result(const std::string& path) {
   Json json = Json::parse(read_file(path), nullptr, false);
@@ -240,8 +240,8 @@ Page compare_page(const Header& header, const Comparison& c) {
   for (const auto& d : c.differences) {
     Cell name = words(d.what);
     if (d.matters) name.tone = Tone::bad;
-    table.rows.push_back(
-        {name, shortened(d.a), shortened(d.b), d.change, std::isfinite(d.sigmas) ? Cell(in_sigmas(d.sigmas), d.sigmas) : Cell("")});
+    table.rows.push_back({name, shortened(d.a), shortened(d.b), d.change,
+                          std::isfinite(d.sigmas) ? Cell(in_sigmas(d.sigmas), d.sigmas) : Cell("")});
   }
   page.add(table);
   return page;

@@ -176,11 +176,16 @@ Page trend_page(const Header& header, const std::vector<ValveTrend>& trends, boo
                           : "No valve has raised an alert";
   for (const ValveTrend& t : trends)
     if (t.alert_at)
-      v.reasons.push_back(fmt::format("{}: {}, at {}; life left {}", t.valve, t.cause ? words(*t.cause) : "no cause named",
-                                      in_hours(*t.alert_at), left(t.remaining, coverage)));
+      v.reasons.push_back(fmt::format("{}: {}, at {}; life left {}", t.valve,
+                                      t.cause ? words(*t.cause) : "no cause named", in_hours(*t.alert_at),
+                                      left(t.remaining, coverage)));
   page.verdict(v);
   page.section("Ranking");
-  TablePart table{"The first to reach its warning level first", "lllrll", {"valve", "state", "cause", "at", "to warning", "life left"}, {}, 0};
+  TablePart table{"The first to reach its warning level first",
+                  "lllrll",
+                  {"valve", "state", "cause", "at", "to warning", "life left"},
+                  {},
+                  0};
   for (const ValveTrend& t : trends) {
     Cell state = t.state;
     state.tone = tone_of(t.state);

@@ -386,9 +386,8 @@ long pass_lines_above_header(CsvCursor& csv) {
     }
     std::vector<std::string> cells = CsvCursor(line, "").header();
     const auto empty = [](const std::string& cell) { return cell.empty(); };
-    const bool numbers = std::all_of(cells.begin(), cells.end(), [&](const std::string& cell) {
-      return cell.empty() || is_number(cell);
-    });
+    const bool numbers = std::all_of(cells.begin(), cells.end(),
+                                     [&](const std::string& cell) { return cell.empty() || is_number(cell); });
     if (!numbers || std::count_if(cells.begin(), cells.end(), std::not_fn(empty)) < 2) {
       rows.push_back(std::move(cells));
       continue;

@@ -35,7 +35,12 @@ TEST(Csv, SeparatorsLineEndsBomAndBlanksDoNotChangeTheCells) {
 }
 
 TEST(Csv, HeadersInLatin1AreTheSameWordsInUtf8) {
-  EXPECT_EQ(rows_of("\xD6l;T (\xB0" "C)\n1;2\n").front(), (std::vector<std::string>{"\xC3\x96l", "T (\xC2\xB0" "C)"}));
+  EXPECT_EQ(rows_of("\xD6l;T (\xB0"
+                    "C)\n1;2\n")
+                .front(),
+            (std::vector<std::string>{"\xC3\x96l",
+                                      "T (\xC2\xB0"
+                                      "C)"}));
   EXPECT_EQ(rows_of("\xC3\x96l;x\n1;2\n").front(), (std::vector<std::string>{"\xC3\x96l", "x"}));
 }
 

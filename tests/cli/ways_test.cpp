@@ -347,7 +347,8 @@ TEST(DryRun, TellsHowLongLogsOfManySamplesTake) {
   desk.write("log.csv", log);
   const Ended ended = desk.run("tune log.csv --params params.csv -o tuned.csv --dry-run");
   EXPECT_EQ(ended.code, 0) << ended.err;
-  EXPECT_NE(ended.err.find("tune: 160000 samples, 2 min 8 s to 10 min 40 s of one core"), std::string::npos) << ended.err;
+  EXPECT_NE(ended.err.find("tune: 160000 samples, 2 min 8 s to 10 min 40 s of one core"), std::string::npos)
+      << ended.err;
   EXPECT_EQ(desk.run("tune log.csv --params params.csv -o tuned.csv --dry-run --quiet").err, "");
 }
 

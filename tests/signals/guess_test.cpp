@@ -87,7 +87,10 @@ TEST(Guess, TIsATemperatureWhereTheTimeIsAnother) {
 }
 
 TEST(Guess, UmlautsAndCompounds) {
-  const std::vector<std::string> header = {"Ventilstrom Soll", "R\xC3\xBC" "cklaufdruck", "\xC3\x96ltemperatur", "Volumenstrom"};
+  const std::vector<std::string> header = {"Ventilstrom Soll",
+                                           "R\xC3\xBC"
+                                           "cklaufdruck",
+                                           "\xC3\x96ltemperatur", "Volumenstrom"};
   EXPECT_EQ(taken(header, 0), "command");
   EXPECT_EQ(taken(header, 1), "return_pressure");
   EXPECT_EQ(taken(header, 2), "oil_temperature");
