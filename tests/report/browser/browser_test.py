@@ -267,6 +267,7 @@ class Pages(unittest.TestCase):
             const done = arguments[0], style = document.createElement('style');
             style.textContent = '.chart { width: 600px; } .chart:not(:has(.uplot)) { width: 580px; }';
             document.head.append(style);
+            document.body.style.width = '1200px';
             setTimeout(done, 300);""")
         widths = self.run("return [...servodx.drawn.values()].map(({chart}) => chart.width)")
         self.assertEqual(set(widths), {600})
