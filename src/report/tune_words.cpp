@@ -16,7 +16,7 @@ namespace {
 constexpr double predicts_worse = 2.0;  // held-out over fitted error
 constexpr double seen = 3.0;            // deviates
 // Fitted error over the sensor's noise from which the model follows another rig than this: with the data sheet of the
-// rig pooled errors are 1 to 22 of it, with another valve's flow and cylinder 370 to 760.
+// rig pooled errors are 1 to 22 of it, with another valve's flow and cylinder 160 to 760 (piston, pressures).
 constexpr double follows = 50.0;
 
 // How the last stage ended, without the figures behind it.
