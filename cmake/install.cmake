@@ -10,17 +10,17 @@ install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR} RENAME copyright COMPO
 install(FILES third_party/uplot/LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR} RENAME copyright.uplot COMPONENT program)
 install(DIRECTORY docs DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT program FILES_MATCHING PATTERN "*.md")
 
-# Manual and completions come from the program itself.
+# Manual and completions come from the program itself, made with it: the target servodx is enough to install.
 set(manual ${CMAKE_BINARY_DIR}/manual)
 add_custom_command(
-  OUTPUT ${manual}/servodx.1 ${manual}/servodx.bash ${manual}/_servodx ${manual}/servodx.fish
+  TARGET servodx POST_BUILD
+  BYPRODUCTS ${manual}/servodx.1 ${manual}/servodx.bash ${manual}/_servodx ${manual}/servodx.fish
   COMMAND ${CMAKE_COMMAND} -E make_directory ${manual}
   COMMAND servodx man > ${manual}/servodx.1
   COMMAND servodx completion bash > ${manual}/servodx.bash
   COMMAND servodx completion zsh > ${manual}/_servodx
   COMMAND servodx completion fish > ${manual}/servodx.fish
-  DEPENDS servodx VERBATIM)
-add_custom_target(manual ALL DEPENDS ${manual}/servodx.1)
+  VERBATIM)
 install(FILES ${manual}/servodx.1 DESTINATION ${CMAKE_INSTALL_MANDIR}/man1 COMPONENT program)
 install(FILES ${manual}/servodx.bash DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions RENAME servodx
         COMPONENT program)

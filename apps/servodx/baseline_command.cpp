@@ -51,6 +51,7 @@ int run(const Options& options) {
 
   report::Header& header = invocation.header();
   header.settings = {{"false_alarm", options.false_alarm}};
+  invocation.tell_of_long_fits(logs);
   if (invocation.dry_run()) return ran;
 
   const std::atomic<bool>& stop = stop_on_interrupt();

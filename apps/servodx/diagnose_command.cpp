@@ -82,6 +82,7 @@ int run(const Options& options) {
   header.inputs.push_back({options.baseline, file.sha256});
 
   header.settings = {{"false_alarm", file.baseline.asked}};
+  invocation.tell_of_long_fits(logs);
   if (invocation.dry_run()) return ran;
 
   const std::atomic<bool>& stop = stop_on_interrupt();

@@ -42,6 +42,7 @@ int run(const Options& options) {
   }
   const std::vector<Log> logs = invocation.logs(options.logs, rig);
   header.settings = {{"level", explain.level}, {"baseline", options.baseline}, {"without", options.without}};
+  invocation.tell_of_long_fits(logs);
   if (invocation.dry_run()) return ran;
 
   explain.stop = &stop_on_interrupt();

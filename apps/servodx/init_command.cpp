@@ -32,6 +32,7 @@ struct Header {
 Header read_header(const std::string& path) {
   const std::string bytes = read_file(path);
   CsvCursor csv(bytes, path);
+  pass_lines_above_header(csv);
   bool in_row = csv.next_row();
   const std::vector<std::string> units = in_row ? units_row(csv) : std::vector<std::string>{};
   Header header{guess_columns(csv.header(), units), {}};

@@ -15,6 +15,7 @@
 #include "base/error.h"
 #include "manifest.h"
 #include "report/columns.h"
+#include "report/handy.h"
 #include "report/plain_page.h"
 
 namespace servodx {
@@ -139,6 +140,19 @@ void Invocation::check_files(const std::vector<std::string>& inputs, const std::
     seen.push_back(resolved);
   }
   outputs_ = std::move(all_outputs);
+}
+
+void Invocation::tell_of_long_fits(const std::vector<Log>& logs) const {
+  constexpr double least = 0.8e-3, most = 4e-3;  // [s] of a core for a sample, docs/performance.md
+  constexpr double long_fit = 600;               // [s]
+  double samples = 0;
+  for (const Log& log : logs) samples += static_cast<double>(log.samples());
+  if (options_.quiet || most * samples < long_fit) return;
+  std::fprintf(stderr,
+               "%s: %.0f samples, %s to %s of one core. Fits take every sample: logs at 1 or 2 kHz, or cut to the "
+               "seconds that matter, take less; two cores half of it.\n",
+               header_.command.c_str(), samples, report::duration(least * samples).c_str(),
+               report::duration(most * samples).c_str());
 }
 
 bool Invocation::dry_run() const {

@@ -56,6 +56,8 @@ class Invocation {
   RigFile rig();
   Log log(const std::string& path, const RigFile& rig, const ReadOptions& options = {});
   std::vector<Log> logs(const std::vector<std::string>& paths, const RigFile& rig);  // refuses the same log twice
+  // Where fits of so many samples take long: how long, and what makes it shorter; to standard error.
+  void tell_of_long_fits(const std::vector<Log>& logs) const;
   Table table(const std::string& path);                                              // as the file says
   Table tuned_table(const std::string& path);                                        // refuses one that is not tuned
 

@@ -22,6 +22,16 @@ std::string refusal(const CLI::App* app, const CLI::Error& error) {
     return call + ": no command is called '" + left.front() + "'; " + servodx::did_you_mean(left.front(), commands) +
            "'" + call + " --help' lists what there is\n";
   }
+  // A name misspelt is the reason why another is missing.
+  for (const CLI::App* command : app->get_subcommands())
+    for (const std::string& word : command->remaining())
+      if (word.starts_with("--")) {
+        std::vector<std::string> names;
+        for (const CLI::Option* option : command->get_options())
+          for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
+        return call + ": no option is called '" + word + "'; " + servodx::did_you_mean(word, names) + "'" + call +
+               " --help' lists what there is\n";
+      }
   return call + ": " + error.what() + "; '" + call + " --help' lists what there is\n";
 }
 
@@ -35,24 +45,25 @@ int main(int argc, char** argv) {
   app.require_subcommand(1);
   app.failure_message(refusal);
   int exit_code = ran;
-  add_simulate_command(app);
+  // In the order in which a rig's owner meets them.
+  add_init_command(app);
+  add_check_log_command(app);
+  add_join_command(app);
   add_tune_command(app, exit_code);
   add_baseline_command(app, exit_code);
   add_diagnose_command(app, exit_code);
-  add_join_command(app);
   add_explain_command(app, exit_code);
-  add_monitor_command(app);
+  add_selftest_command(app);
+  add_simulate_command(app);
   add_check_command(app);
   add_trend_command(app);
   add_history_command(app, exit_code);
-  add_list_command(app);
+  add_monitor_command(app);
   add_curves_command(app);
   add_map_command(app);
   add_rig_command(app, exit_code);
-  add_check_log_command(app);
+  add_list_command(app);
   add_compare_command(app);
-  add_init_command(app);
-  add_selftest_command(app);
   add_rerun_command(app, exit_code);
   add_manual_commands(app);
   remember_call(argc, argv);

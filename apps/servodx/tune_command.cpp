@@ -123,6 +123,7 @@ int run(const Options& options) {
                      {"local", options.local},
                      {"profile", options.profile},
                      {"prior", options.priors}};
+  invocation.tell_of_long_fits(logs);
   if (invocation.dry_run()) return ran;
 
   tune_options.stop = &stop_on_interrupt();

@@ -33,6 +33,32 @@ char sniff_separator(std::string_view line) {
   return counts[best] > 0 ? candidates[best] : ',';
 }
 
+bool is_utf8(std::string_view text) {
+  for (std::size_t i = 0; i < text.size();) {
+    const auto c = static_cast<unsigned char>(text[i++]);
+    int more = c < 0x80 ? 0 : c >= 0xC2 && c < 0xE0 ? 1 : c >= 0xE0 && c < 0xF0 ? 2 : c >= 0xF0 && c < 0xF5 ? 3 : -1;
+    for (; more > 0 && i < text.size() && (text[i] & 0xC0) == 0x80; --more) ++i;
+    if (more != 0) return false;
+  }
+  return true;
+}
+
+// Words of a recorder that writes Latin-1, as most that are no UTF-8 do.
+std::string as_utf8(std::string text) {
+  if (is_utf8(text)) return text;
+  std::string wide;
+  for (const char c : text) {
+    const auto u = static_cast<unsigned char>(c);
+    if (u < 0x80) {
+      wide += c;
+    } else {
+      wide += static_cast<char>(0xC0 | u >> 6);
+      wide += static_cast<char>(0x80 | (u & 0x3F));
+    }
+  }
+  return wide;
+}
+
 // A number that std::from_chars did not take whole: sign '+', decimal comma, range. `text` is trimmed.
 Cell parse_cell(std::string_view text, bool decimal_comma, double& value) {
   char buffer[64];
@@ -123,13 +149,22 @@ void CsvCursor::read_header() {
       more_ = false;
       continue;
     }
-    separator_ = sniff_separator(line);
-    if (separator_ == ';') point_ = ',';
-    header_line_ = line_;
-    for (std::string cell; next_cell(cell);) header_.push_back(cell);
-    return;
+    return take_header();
   }
   throw InputError({path_, 0, ""}, "the file has no header row", "begin it with a row of column names");
+}
+
+// The row just begun.
+void CsvCursor::take_header() {
+  separator_ = sniff_separator({p_, static_cast<std::size_t>(std::find(p_, end_, '\n') - p_)});
+  point_ = separator_ == ';' ? ',' : '.';
+  header_line_ = line_;
+  header_.clear();
+  for (std::string cell; next_cell(cell);) header_.push_back(as_utf8(std::move(cell)));
+}
+
+void CsvCursor::next_header() {
+  if (next_row()) take_header();
 }
 
 // Keeps what is unused, from the cell being read on.
@@ -184,7 +219,7 @@ std::vector<std::string> CsvCursor::row_ahead() {
   if (!in_row_ || line_end == end_ || std::count(p_, line_end, '"') % 2 != 0) return {};
   const auto at = std::tuple(p_, cell_, cell_end_, next_line_, more_);
   std::vector<std::string> cells;
-  for (std::string cell; next_cell(cell);) cells.push_back(cell);
+  for (std::string cell; next_cell(cell);) cells.push_back(as_utf8(std::move(cell)));
   std::tie(p_, cell_, cell_end_, next_line_, more_) = at;
   return cells;
 }

@@ -23,6 +23,7 @@ struct ChannelSurvey {
   double lowest = 0, highest = 0;  // [SI]
   double noise = 0;                // [SI] rms, of the sensor
   double resolution = 0;           // [SI] smallest step between distinct values; 0 unknown
+  double full_scale = 0;           // [SI] what a relative unit is a part of; 0: the unit is absolute
   double clipped = 0;              // part of the samples that lie on the lowest or the highest value, in runs
 };
 

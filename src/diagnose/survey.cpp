@@ -55,7 +55,16 @@ void survey_time(const std::vector<double>& t, LogSurvey& s) {
 
 ChannelSurvey survey_channel(const Log& log, Signal signal) {
   const Channel& channel = log.channels[index(signal)];
-  ChannelSurvey c{signal, channel.column, channel.unit, channel.missing, HUGE_VAL, -HUGE_VAL, 0, channel.resolution, 0};
+  ChannelSurvey c{signal,
+                  channel.column,
+                  channel.unit,
+                  channel.missing,
+                  HUGE_VAL,
+                  -HUGE_VAL,
+                  0,
+                  channel.resolution,
+                  channel.full_scale,
+                  0};
   const std::vector<double>& x = channel.value;
   for (const double v : x)
     if (std::isfinite(v)) c.lowest = std::min(c.lowest, v), c.highest = std::max(c.highest, v);

@@ -131,6 +131,8 @@ SelftestResult selftest(const Log& log, const Table& table, const RigFile& rig, 
     o.max_iterations = iterations;
     o.difference = Difference::forward;
     o.cost_tolerance = 1e-6;
+    // No farther at once than truths scatter: longer first steps drag rows that the log tells poorly into other minima.
+    o.step_limit = options.spread;
     double last_cost = HUGE_VAL;  // no robust first pass: a twin has no outliers
     int idle = 0;
     o.progress = [&](const LeastSquaresProgress& now) {
@@ -165,7 +167,7 @@ SelftestResult selftest(const Log& log, const Table& table, const RigFile& rig, 
       const double unit_error = std::sqrt(std::max(0.0, covariance(k, k)));
       const double per_unit = f.log_scale ? f.from_unit(point[j]) * std::log(f.upper / f.lower) : f.upper - f.lower;
       t.errors += unit_error * unit_error * per_unit * per_unit;
-      t.covered += std::abs(r.point[j] - truth[j]) <= 1.96 * unit_error;
+      t.covered += std::abs(point[j] - truth[j]) <= 1.96 * unit_error;
       ++t.counted;
     }
     progress.update(static_cast<double>(repeat + 1) / options.repeats, out.simulations);

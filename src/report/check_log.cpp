@@ -17,15 +17,19 @@ constexpr double seen = 3.0, plain = 8.0;  // deviates from which a fault may sh
 
 Json number(double v) { return std::isfinite(v) ? Json(v) : Json(nullptr); }
 
-// In the unit of the file where it is absolute, else SI.
+// In the unit of the file; of a part of a fact ("% of rated") too.
 struct InUnit {
   explicit InUnit(const ChannelSurvey& c) : unit(find_unit(c.unit)) {
     const SignalInfo& signal = info(c.signal);
-    if (!unit || unit->dimension != signal.dimension) unit = find_unit(signal.si_unit);
+    if (unit && unit->dimension != signal.dimension && c.full_scale > 0)
+      full = c.full_scale;
+    else if (!unit || unit->dimension != signal.dimension)
+      unit = find_unit(signal.si_unit);
   }
-  std::string value(double si) const { return digits(unit->from_si(si), 4); }
-  std::string difference(double si) const { return digits(si / unit->scale(), 2); }
+  std::string value(double si) const { return digits(unit->from_si(si / full), 4); }
+  std::string difference(double si) const { return digits(si / full / unit->scale(), 2); }
   const Unit* unit;
+  double full = 1;  // [SI] what the unit is a part of
 };
 
 std::string first_line(const LogSurvey& s) {
@@ -252,7 +256,7 @@ Page check_log_page(const Header& header, const std::vector<LogCheck>& checks) {
       rows.rows.push_back(
           {words(r.name), Cell(digits(r.nominal * unit.factor), r.nominal),
            std::isfinite(r.std_error) ? Cell(digits(r.std_error * unit.factor, 2), r.std_error) : Cell(""), unit.name,
-           verdict_words(r)});
+           words(verdict_words(r))});
     }
     page.add(rows);
   }

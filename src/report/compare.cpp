@@ -10,11 +10,15 @@
 #include "base/error.h"
 #include "report/columns.h"
 #include "report/handy.h"
+#include "report/replay_part.h"
 
 namespace servodx::report {
 namespace {
 
 constexpr double certain_sigmas = 3.0;
+constexpr double rounding = 1e-9;      // relative: sums in another order
+constexpr std::size_t longest = 40;    // characters of a text in a terminal's column
+constexpr std::size_t most_named = 3;  // in the headline
 
 Json read_result(const std::string& path) {
   Json json = Json::parse(read_file(path), nullptr, false);
@@ -39,6 +43,8 @@ std::string relative_change(double a, double b) {
   return fmt::format("{}{} %", b > a ? "+" : "", digits(100 * (b / a - 1), 2));
 }
 
+bool is_rounding(double a, double b) { return a == b || std::abs(a - b) <= rounding * std::abs(a); }
+
 // Elements of an array of objects by the text under a key.
 std::map<std::string, const Json*> by(const Json& array, const char* key) {
   std::map<std::string, const Json*> found;
@@ -53,11 +59,11 @@ class Comparing {
   explicit Comparing(Comparison& to) : to_(to) {}
 
   void value(const std::string& what, const Json& a, const Json& b, bool matters = false) {
-    if (a == b) {
+    const bool numbers = a.is_number() && b.is_number();
+    if (a == b || (numbers && is_rounding(a.get<double>(), b.get<double>()))) {
       ++to_.same;
       return;
     }
-    const bool numbers = a.is_number() && b.is_number();
     to_.differences.push_back({what, shown(a), shown(b),
                                numbers ? relative_change(a.get<double>(), b.get<double>()) : "", std::nan(""),
                                matters});
@@ -65,7 +71,7 @@ class Comparing {
 
   void parameter(const std::string& name, const Json& a, const Json& b) {
     const double from = number(a, "estimate"), to = number(b, "estimate");
-    if (from == to) {
+    if (is_rounding(from, to)) {
       ++to_.same;
       return;
     }
@@ -107,7 +113,10 @@ class Comparing {
   }
 
  private:
-  static std::string name_path(const std::string& path, const std::string& name) { return path + " " + name; }
+  // A parameter and a channel are known by their name.
+  static std::string name_path(const std::string& path, const std::string& name) {
+    return path == "parameters" || path == "channels" ? name : path + " " + name;
+  }
   Comparison& to_;
 };
 
@@ -162,13 +171,25 @@ namespace {
 
 std::string headline(const Comparison& c) {
   if (c.differences.empty()) return fmt::format("The two results of '{}' are the same", c.command);
-  const auto matter =
-      std::count_if(c.differences.begin(), c.differences.end(), [](const auto& d) { return d.matters; });
-  if (matter == 0)
+  std::vector<std::string> matter;
+  for (const Comparison::Difference& d : c.differences)
+    if (d.matters) matter.push_back(d.what);
+  if (matter.empty())
     return fmt::format("{} figures differ, none beyond {} sigmas, and no verdict", c.differences.size(),
                        digits(certain_sigmas));
-  return fmt::format("{} of {} differences matter: a verdict, or beyond {} sigmas", matter, c.differences.size(),
-                     digits(certain_sigmas));
+  const std::size_t all = matter.size();
+  if (all > most_named) matter.resize(most_named);
+  return fmt::format("{} of {} differences matter (a verdict, or beyond {} sigmas): {}{}", all, c.differences.size(),
+                     digits(certain_sigmas), join(matter),
+                     all > most_named ? fmt::format(" and {} more", all - most_named) : "");
+}
+
+// Cut, where a whole sentence stands in a cell.
+std::string shortened(const std::string& text) {
+  if (text.size() <= longest) return text;
+  std::size_t end = longest;
+  while ((text[end] & 0xC0) == 0x80) --end;  // not within a character
+  return text.substr(0, end) + "...";
 }
 
 std::string in_sigmas(double s) { return std::isfinite(s) ? fmt::format("{}{}", s > 0 ? "+" : "", digits(s, 2)) : ""; }
@@ -183,7 +204,7 @@ std::string text_of(const Comparison& c) {
   if (!c.differences.empty()) table.row({"", "", "A", "B", "change", "sigmas"});
   for (std::size_t i = 0; i < std::min(most, c.differences.size()); ++i) {
     const auto& d = c.differences[i];
-    table.row({d.matters ? "*" : "", d.what, d.a, d.b, d.change, in_sigmas(d.sigmas)});
+    table.row({d.matters ? "*" : "", d.what, shortened(d.a), shortened(d.b), d.change, in_sigmas(d.sigmas)});
   }
   text += table.text();
   if (c.differences.size() > most) text += fmt::format("  and {} more: --json has all\n", c.differences.size() - most);
@@ -206,7 +227,7 @@ Json compare_json(const Comparison& c) {
 Page compare_page(const Header& header, const Comparison& c) {
   Page page(header, "Comparison of two results of " + c.command);
   Verdict v;
-  v.headline = headline(c);
+  v.headline = words(headline(c));
   v.detail = c.a + "  (A) and  " + c.b + "  (B)";
   const bool any = std::any_of(c.differences.begin(), c.differences.end(), [](const auto& d) { return d.matters; });
   v.tone = any ? Tone::doubt : Tone::good;
@@ -217,10 +238,10 @@ Page compare_page(const Header& header, const Comparison& c) {
   page.section("Differences");
   TablePart table{"From A to B", "lrrrr", {"", "A", "B", "change", "sigmas"}, {}, 40};
   for (const auto& d : c.differences) {
-    Cell name = d.what;
+    Cell name = words(d.what);
     if (d.matters) name.tone = Tone::bad;
-    table.rows.push_back(
-        {name, d.a, d.b, d.change, std::isfinite(d.sigmas) ? Cell(in_sigmas(d.sigmas), d.sigmas) : Cell("")});
+    table.rows.push_back({name, shortened(d.a), shortened(d.b), d.change,
+                          std::isfinite(d.sigmas) ? Cell(in_sigmas(d.sigmas), d.sigmas) : Cell("")});
   }
   page.add(table);
   return page;

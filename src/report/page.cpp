@@ -54,8 +54,9 @@ std::string exact(double value) {
 std::string cell_html(const Cell& cell, char alignment, const char* element = "td") {
   constexpr std::size_t short_words = 16, long_words = 24;  // characters: never broken; broken anywhere if need be
   std::string attributes;
-  attributes += alignment == 'r'                  ? " class=\"r\""
-                : cell.text.size() > long_words   ? " class=\"long\""
+  const bool is_long = cell.text.size() > long_words;
+  attributes += alignment == 'r'                  ? (is_long ? " class=\"r long\"" : " class=\"r\"")
+                : is_long                         ? " class=\"long\""
                 : cell.text.size() <= short_words ? " class=\"short\""
                                                   : "";
   if (cell.tone != Tone::plain) attributes += fmt::format(" data-tone=\"{}\"", name_of(cell.tone));

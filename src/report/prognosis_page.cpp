@@ -171,12 +171,21 @@ Page trend_page(const Header& header, const std::vector<ValveTrend>& trends, boo
       std::count_if(trends.begin(), trends.end(), [](const ValveTrend& v) { return v.alert_at.has_value(); });
   Verdict v;
   v.tone = alerts > 0 ? Tone::bad : Tone::good;
-  v.headline = alerts > 0
-                   ? std::to_string(alerts) + " of " + std::to_string(trends.size()) + " valves have raised an alert"
-                   : "No valve has raised an alert";
+  v.headline = alerts > 0 ? fmt::format("{} of {} valves {} raised an alert", alerts, trends.size(),
+                                        alerts == 1 ? "has" : "have")
+                          : "No valve has raised an alert";
+  for (const ValveTrend& t : trends)
+    if (t.alert_at)
+      v.reasons.push_back(fmt::format("{}: {}, at {}; life left {}", t.valve,
+                                      t.cause ? words(*t.cause) : "no cause named", in_hours(*t.alert_at),
+                                      left(t.remaining, coverage)));
   page.verdict(v);
-  page.section("Ranking", "The first to reach its warning level first.");
-  TablePart table{"Ranking", "lllrll", {"valve", "state", "cause", "at", "to warning", "life left"}, {}, 0};
+  page.section("Ranking");
+  TablePart table{"The first to reach its warning level first",
+                  "lllrll",
+                  {"valve", "state", "cause", "at", "to warning", "life left"},
+                  {},
+                  0};
   for (const ValveTrend& t : trends) {
     Cell state = t.state;
     state.tone = tone_of(t.state);

@@ -106,7 +106,7 @@ Page tune_page(const Header& header, const TuneResult& result, const GoodEnough&
              {"Held: the logs cannot tell", std::to_string(held)},
              {"Starts that agree", fmt::format("{} of {}", result.reached_best, result.starts.size())}};
   if (enough.yes) v.reasons.push_back(sentence(line_of(enough)));
-  for (const std::string& reason : enough.reasons) v.reasons.push_back(sentence(reason));
+  for (const std::string& reason : enough.reasons) v.reasons.push_back(sentence(words(reason)));
   if (!enough.yes && !enough.exceptions.empty())
     v.reasons.push_back("Predicted worse than fitted: " + join(enough.exceptions) + ", so logs of its kind are few.");
   if (!at_end.empty())

@@ -15,6 +15,9 @@ namespace {
 
 constexpr double predicts_worse = 2.0;  // held-out over fitted error
 constexpr double seen = 3.0;            // deviates
+// Fitted error over the sensor's noise from which the model follows another rig than this: with the data sheet of the
+// rig pooled errors are 1 to 22 of it, with another valve's flow and cylinder 160 to 760 (piston, pressures).
+constexpr double follows = 50.0;
 
 // How the last stage ended, without the figures behind it.
 std::string end_of(const TuneResult& result) {
@@ -60,11 +63,13 @@ std::vector<Visible> best_of(const std::vector<Promise>& promises) {
 
 GoodEnough good_enough(const TuneResult& result, const std::vector<Promise>& promises) {
   GoodEnough g;
-  std::vector<std::string> errors, worse;
+  std::vector<std::string> errors, worse, far;
   for (const ChannelResult& c : result.channels) {
     const std::string name = words(std::string(info(c.signal).name));
     if (c.noise_rms > 0 && std::isfinite(c.heldout_rms))
       errors.push_back(name + " " + digits(c.heldout_rms / c.noise_rms, 2));
+    if (c.noise_rms > 0 && c.rms > follows * c.noise_rms)
+      far.push_back(fmt::format("{} {} times", name, digits(c.rms / c.noise_rms, 2)));
     const Prediction p = prediction_of(result, c.signal);
     if (p.usual > predicts_worse)
       worse.push_back(fmt::format("{} {} times", name, digits(p.usual, 2)));
@@ -73,6 +78,9 @@ GoodEnough good_enough(const TuneResult& result, const std::vector<Promise>& pro
   }
   if (!errors.empty()) g.errors = "error over noise on the held-out part: " + join(errors);
   if (result.interrupted) g.reasons.push_back("it was interrupted");
+  if (!far.empty())
+    g.reasons.push_back("the model does not follow these logs (error over noise: " + join(far) +
+                        "): check the rig file's data sheet (flow, areas, supply), signs and gains of sensors");
   if (!worse.empty())
     g.reasons.push_back("it predicts worse than it fits (" + join(worse) + "): tune with more logs, of more kinds");
   if (const std::string end = end_of(result); !end.empty() && !end.starts_with("converged") && !result.interrupted)

@@ -1,11 +1,11 @@
 // Is a tune good enough to diagnose with? Said in one line, from what the tune and its logs know.
 //
-// Three questions. Does the model predict what it was not fitted to: of the median log the error on the held-out part
-// against the fitted error, at most twice, as a diagnosis lets a hypothesis leave twice the usual error and no more
-// (judge); single logs that are predicted worse are named, for they have no like among the others. Did the
-// search arrive: its end, and a second start in the same valley. And would a fault be seen: each at its typical size on
-// the log of these that shows it best, against the errors that the table now says its model makes (check-log's
-// deviates; below 3 it stays hidden).
+// Four questions. Does the model follow the logs at all: if not, the data sheet is another rig's. Does it predict what
+// it was not fitted to: of the median log the error on the held-out part against the fitted error, at most twice, as a
+// diagnosis lets a hypothesis leave twice the usual error and no more (judge); single logs that are predicted worse are
+// named, for they have no like among the others. Did the search arrive: its end, and a second start in the same valley.
+// And would a fault be seen: each at its typical size on the log of these that shows it best, against the errors that
+// the table now says its model makes (check-log's deviates; below 3 it stays hidden).
 #pragma once
 #include <string>
 #include <vector>

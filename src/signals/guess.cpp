@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <functional>
 #include <string_view>
 
 namespace servodx {
@@ -33,6 +34,8 @@ constexpr Pattern patterns[] = {
     {Signal::command, "i ref"},
     {Signal::command, "strom"},
     {Signal::command, "sollstrom"},
+    {Signal::command, "ventilstrom"},
+    {Signal::command, "steuerstrom"},
     {Signal::command, "i"},
     {Signal::command, "isoll"},
     {Signal::command, "i soll"},
@@ -88,6 +91,8 @@ constexpr Pattern patterns[] = {
     {Signal::pressure_a, "pressure a"},
     {Signal::pressure_a, "press a"},
     {Signal::pressure_a, "druck a"},
+    {Signal::pressure_a, "kammerdruck a"},
+    {Signal::pressure_a, "zylinderdruck a"},
     {Signal::pressure_a, "p a"},
     {Signal::pressure_a, "pa"},
     {Signal::pressure_a, "port a"},
@@ -96,6 +101,8 @@ constexpr Pattern patterns[] = {
     {Signal::pressure_b, "pressure b"},
     {Signal::pressure_b, "press b"},
     {Signal::pressure_b, "druck b"},
+    {Signal::pressure_b, "kammerdruck b"},
+    {Signal::pressure_b, "zylinderdruck b"},
     {Signal::pressure_b, "p b"},
     {Signal::pressure_b, "pb"},
     {Signal::pressure_b, "port b"},
@@ -116,6 +123,8 @@ constexpr Pattern patterns[] = {
     {Signal::supply_pressure, "pressure p"},
     {Signal::supply_pressure, "versorgungsdruck"},
     {Signal::supply_pressure, "systemdruck"},
+    {Signal::supply_pressure, "pumpendruck"},
+    {Signal::supply_pressure, "speisedruck"},
     {Signal::supply_pressure, "druck p"},
     {Signal::return_pressure, "return"},
     {Signal::return_pressure, "preturn"},
@@ -125,6 +134,7 @@ constexpr Pattern patterns[] = {
     {Signal::return_pressure, "pr"},
     {Signal::return_pressure, "pressure t"},
     {Signal::return_pressure, "ruecklauf"},
+    {Signal::return_pressure, "ruecklaufdruck"},
     {Signal::return_pressure, "druck t"},
     {Signal::return_pressure, "tankdruck"},
     {Signal::pilot_pressure_1, "pilot 1"},
@@ -163,6 +173,7 @@ constexpr Pattern patterns[] = {
     {Signal::oil_temperature, "oil"},
     {Signal::oil_temperature, "oel"},
     {Signal::oil_temperature, "oeltemp"},
+    {Signal::oil_temperature, "oeltemperatur"},
     {Signal::oil_temperature, "temperatur"},
 };
 
@@ -212,8 +223,20 @@ std::string small(std::string text) {
   return text;
 }
 
+// Umlauts as they are written without: "Oeltemperatur".
+std::string without_umlauts(std::string text) {
+  constexpr std::pair<std::string_view, std::string_view> umlauts[] = {
+      {"\xC3\xA4", "ae"}, {"\xC3\xB6", "oe"}, {"\xC3\xBC", "ue"}, {"\xC3\x9F", "ss"},
+      {"\xC3\x84", "Ae"}, {"\xC3\x96", "Oe"}, {"\xC3\x9C", "Ue"}};
+  for (const auto& [umlaut, letters] : umlauts)
+    for (auto at = text.find(umlaut); at != text.npos; at = text.find(umlaut, at))
+      text.replace(at, umlaut.size(), letters);
+  return text;
+}
+
 // Lower-case words: cut at everything that is no letter or digit, and where camelCase turns.
-std::vector<std::string> words_of(const std::string& name) {
+std::vector<std::string> words_of(const std::string& written) {
+  const std::string name = without_umlauts(written);
   std::vector<std::string> words;
   std::string word;
   bool was_lower = false;
@@ -321,19 +344,62 @@ std::string unit_meant(const std::string& written) {
   return find_unit(low) ? low : "";
 }
 
-std::vector<std::string> units_row(CsvCursor& csv) {
-  std::vector<std::string> units = csv.row_ahead();
+namespace {
+
+bool is_number(std::string cell) {
+  std::replace(cell.begin(), cell.end(), ',', '.');
+  return parse_number(cell).has_value();
+}
+
+// The cells without their brackets, where one at least is a unit and none a number.
+std::vector<std::string> as_units(std::vector<std::string> units) {
   bool any = false;
   for (std::string& cell : units) {
-    std::string number = cell;
-    std::replace(number.begin(), number.end(), ',', '.');
-    if (parse_number(number)) return {};
+    if (is_number(cell)) return {};
     const std::size_t n = cell.size();
     if (n > 1 && ((cell[0] == '[' && cell[n - 1] == ']') || (cell[0] == '(' && cell[n - 1] == ')')))
       cell = trimmed(cell.substr(1, n - 2));
     any = any || !unit_meant(cell).empty();
   }
-  return any && units.size() == csv.header().size() ? units : std::vector<std::string>{};
+  return any ? units : std::vector<std::string>{};
+}
+
+}  // namespace
+
+std::vector<std::string> units_row(CsvCursor& csv) {
+  const std::vector<std::string> units = as_units(csv.row_ahead());
+  return units.size() == csv.header().size() ? units : std::vector<std::string>{};
+}
+
+long pass_lines_above_header(CsvCursor& csv) {
+  constexpr std::size_t most = 100;  // lines
+  std::vector<std::vector<std::string>> rows = {csv.header()};
+  const std::string_view text = csv.ahead();
+  for (std::size_t at = 0; at < text.size() && rows.size() <= most;) {
+    const std::size_t end = std::min(text.find('\n', at), text.size());
+    const std::string_view line = text.substr(at, end - at);
+    at = end + 1;
+    if (line.find_first_not_of(" \t\r") == line.npos) continue;
+    if (line.starts_with('#') || std::count(line.begin(), line.end(), '"') % 2 != 0) {
+      rows.emplace_back();
+      continue;
+    }
+    std::vector<std::string> cells = CsvCursor(line, "").header();
+    const auto empty = [](const std::string& cell) { return cell.empty(); };
+    const bool numbers = std::all_of(cells.begin(), cells.end(),
+                                     [&](const std::string& cell) { return cell.empty() || is_number(cell); });
+    if (!numbers || std::count_if(cells.begin(), cells.end(), std::not_fn(empty)) < 2) {
+      rows.push_back(std::move(cells));
+      continue;
+    }
+    const std::size_t width = cells.size(), last = rows.size() - 1;
+    if (rows.front().size() == width || rows[last].size() != width) return 0;
+    const bool units = rows[last - 1].size() == width && !as_units(rows[last]).empty();
+    const std::size_t above = units ? last - 1 : last;
+    for (std::size_t k = 0; k < above; ++k) csv.next_header();
+    return static_cast<long>(above);
+  }
+  return 0;
 }
 
 std::vector<ColumnGuess> guess_columns(const std::vector<std::string>& header, const std::vector<std::string>& units) {
@@ -366,10 +432,10 @@ std::vector<ColumnGuess> guess_columns(const std::vector<std::string>& header, c
     taken[static_cast<std::size_t>(index(m.signal))] = true;
   }
   for (ColumnGuess& g : guesses) {
-    // A name in no list, but a unit that only one signal has.
+    // A name in no list, but a unit that only one signal has; or T, where the time is another column.
     const Unit* unit = find_unit(g.unit);
     bool& oil = taken[static_cast<std::size_t>(index(Signal::oil_temperature))];
-    if (!g.signal && !oil && unit && unit->dimension == Dimension::temperature) {
+    if (!g.signal && !oil && (unit ? unit->dimension == Dimension::temperature : g.name == "T")) {
       g.signal = Signal::oil_temperature;
       oil = true;
     }

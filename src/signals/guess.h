@@ -24,6 +24,11 @@ struct ColumnGuess {
 // The unit of the closed table that people mean by a word: "PSI", "deg C", "lpm"; empty: none.
 std::string unit_meant(const std::string& written);
 
+// Takes the header from below the lines that a recorder wrote above it, and says how many rows those are. Certain, as
+// it looks only where the first row has another number of cells than the first row of numbers, which is refused else:
+// then the row above the numbers is the header, or the one above that where it is one of units.
+long pass_lines_above_header(CsvCursor& csv);
+
 // The row that a cursor stands at, where it is one of units below a header: no cell is a number, one at least is a
 // unit. Without their brackets; empty: it is none.
 std::vector<std::string> units_row(CsvCursor& csv);

@@ -16,7 +16,11 @@ Log read_csv_log(const std::string& path, const RigFile& rig, const ReadOptions&
   constexpr long rows_before_estimate = 1000;
   BlockReader file(path);
   CsvCursor csv(file, path);
+  const long above = pass_lines_above_header(csv);
   LogColumns log(path, rig, options, {});
+  if (above > 0)
+    log.note(fmt::format("{}:{}: the header; left out {} row{} above it", path, csv.header_line(), above,
+                         above == 1 ? "" : "s"));
   std::vector<int> target;  // of each column of the file: its position among the signals, or -1
   bool in_row = csv.next_row();
   const std::vector<std::string> units = in_row ? units_row(csv) : std::vector<std::string>{};

@@ -34,6 +34,16 @@ TEST(Csv, SeparatorsLineEndsBomAndBlanksDoNotChangeTheCells) {
     EXPECT_EQ(rows_of(text), expected) << text;
 }
 
+TEST(Csv, HeadersInLatin1AreTheSameWordsInUtf8) {
+  EXPECT_EQ(rows_of("\xD6l;T (\xB0"
+                    "C)\n1;2\n")
+                .front(),
+            (std::vector<std::string>{"\xC3\x96l",
+                                      "T (\xC2\xB0"
+                                      "C)"}));
+  EXPECT_EQ(rows_of("\xC3\x96l;x\n1;2\n").front(), (std::vector<std::string>{"\xC3\x96l", "x"}));
+}
+
 TEST(Csv, QuotedCellsHoldSeparatorsQuotesAndLineEnds) {
   EXPECT_EQ(rows_of("a,b\n\"x, \"\"y\"\"\",\"two\nlines\"\n"), (Rows{{"a", "b"}, {"x, \"y\"", "two\nlines"}}));
 }

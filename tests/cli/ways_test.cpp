@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <sstream>
 #include <utility>
 
 #include "base/sha256.h"
@@ -74,6 +75,20 @@ TEST(CheckLog, FindsJitterGapsAndCold) {
   EXPECT_EQ(dropped["logs"][0]["gaps"], 9);
   EXPECT_EQ(dropped["logs"][0]["lost_samples"], 27);
   EXPECT_TRUE(has(kinds(check(desk, "cold.csv")), "temperature"));
+}
+
+TEST(CheckLog, APartOfAFactIsToldInPerCent) {
+  const Desk desk;
+  desk.write("rig.toml", "[valve]\nrated_current = \"20 mA\"\n");
+  std::string log = "time [s],command [% of rated],spool_position [mm]\n";
+  for (int k = 0; k < 200; ++k) log += std::to_string(1e-3 * k) + (k % 50 < 25 ? ",-40,0.1\n" : ",60,-0.1\n");
+  desk.write("log.csv", log);
+  const Ended ended = desk.run("check-log log.csv --rig rig.toml");
+  ASSERT_EQ(ended.code, 0) << ended.err;
+  const auto at = ended.out.find("  command ");
+  ASSERT_NE(at, std::string::npos) << ended.out;
+  const std::string line = ended.out.substr(at, ended.out.find('\n', at) - at);
+  for (const char* words : {" -40 ", " 60 ", "% of rated"}) EXPECT_NE(line.find(words), std::string::npos) << line;
 }
 
 TEST(CheckLog, FindsASignThatIsTurned) {
@@ -322,6 +337,31 @@ TEST(Rerun, RefusesChangedInputs) {
   const Ended ended = desk.run("rerun sim.csv.manifest.json");
   EXPECT_EQ(ended.code, 2);
   EXPECT_NE(ended.err.find("log.csv: has changed"), std::string::npos) << ended.err;
+}
+
+TEST(DryRun, TellsHowLongLogsOfManySamplesTake) {
+  const Desk desk;
+  desk.write("params.csv", shipped_table());
+  std::string log = "time [s],command [mA],spool_position [mm]\n";
+  for (int k = 0; k < 160000; ++k) log += std::to_string(5e-5 * k) + (k % 50 < 25 ? ",-4,0.1\n" : ",6,-0.1\n");
+  desk.write("log.csv", log);
+  const Ended ended = desk.run("tune log.csv --params params.csv -o tuned.csv --dry-run");
+  EXPECT_EQ(ended.code, 0) << ended.err;
+  EXPECT_NE(ended.err.find("tune: 160000 samples, 2 min 8 s to 10 min 40 s of one core"), std::string::npos)
+      << ended.err;
+  EXPECT_EQ(desk.run("tune log.csv --params params.csv -o tuned.csv --dry-run --quiet").err, "");
+}
+
+TEST(Compare, LongTextsAreCutAndRoundingIsNoDifference) {
+  const Simulated desk;
+  for (const auto& [name, value] : {std::pair("a.json", "1.0"), std::pair("b.json", "1.0000000000001")})
+    desk.write(name, std::string(R"({"tool": "servodx", "command": "explain", "version": "1", "seed": 1, "why": ")") +
+                         std::string(500, name[0]) + R"(", "rms": )" + value + "}");
+  const Ended ended = desk.run("compare a.json b.json");
+  ASSERT_EQ(ended.code, 0) << ended.err;
+  EXPECT_EQ(ended.out.find("rms"), std::string::npos) << ended.out;
+  std::istringstream lines(ended.out);
+  for (std::string line; std::getline(lines, line);) EXPECT_LT(line.size(), 160u) << line;
 }
 
 TEST(Compare, TellsWhatDiffersAndWhatDoesNot) {

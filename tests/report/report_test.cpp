@@ -513,6 +513,8 @@ TEST(TuneReport, GoodEnoughIsWhatPredictsHasArrivedAndWouldSeeTheFaults) {
   EXPECT_NE(line_of(good).find("spool position of c.csv (31 times)"), std::string::npos) << line_of(good);
   result.logs[1] = log_with("b.csv", 2.1e-6);
   reason("predicts worse than it fits (spool position 2.1 times)");
+  result.channels[0].rms = 60 * result.channels[0].noise_rms;
+  reason("does not follow these logs (error over noise: spool position 60 times): check the rig file's data sheet");
 }
 
 // Two repeats have a scatter of one degree of freedom: six of its sigmas are chance, of twenty repeats' they are not.

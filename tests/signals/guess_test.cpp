@@ -79,6 +79,39 @@ TEST(Guess, ARowOfUnitsBelowTheHeaderIsNoRowOfSamples) {
   EXPECT_FALSE(guesses[1].unit_in_brackets);  // the rig file has to say it
 }
 
+TEST(Guess, TIsATemperatureWhereTheTimeIsAnother) {
+  EXPECT_EQ(taken({"t", "T"}, 1), "oil_temperature");
+  EXPECT_EQ(taken({"Zeit", "T"}, 1), "oil_temperature");
+  EXPECT_EQ(taken({"T"}), "time");
+  EXPECT_EQ(taken({"t [s]", "T [s]"}, 1), "nothing in s");
+}
+
+TEST(Guess, UmlautsAndCompounds) {
+  const std::vector<std::string> header = {"Ventilstrom Soll",
+                                           "R\xC3\xBC"
+                                           "cklaufdruck",
+                                           "\xC3\x96ltemperatur", "Volumenstrom"};
+  EXPECT_EQ(taken(header, 0), "command");
+  EXPECT_EQ(taken(header, 1), "return_pressure");
+  EXPECT_EQ(taken(header, 2), "oil_temperature");
+  EXPECT_EQ(taken(header, 3), "nothing");  // a stream of oil, no current
+}
+
+TEST(Guess, LinesOfARecorderAboveTheHeaderArePassed) {
+  const auto header_below = [](const std::string& text) {
+    CsvCursor csv(text, "log.csv");
+    const long above = pass_lines_above_header(csv);
+    return std::pair(above, csv.header());
+  };
+  const std::vector<std::string> three = {"t", "p_A", "x"};
+  EXPECT_EQ(header_below("Run 7\nrate,1000\n\nt;p_A;x\n0;1,5;2\n"), std::pair(2L, three));
+  EXPECT_EQ(header_below("# note\nRun 7\nt;p_A;x\ns;psi;mm\n0;1,5;2\n"), std::pair(1L, three));
+  EXPECT_EQ(header_below("a;b;c\nd\nt;p_A;x\n0;1,5;\n"), std::pair(0L, std::vector<std::string>{"a", "b", "c"}));
+  EXPECT_EQ(header_below("t;p_A;x\n0;1,5;2\n"), std::pair(0L, three));
+  EXPECT_EQ(header_below("t;p_A;x\n0;1,5\n"), std::pair(0L, three));  // ragged, and refused as such
+  EXPECT_EQ(header_below("t;p_A;x\nwords\n"), std::pair(0L, three));
+}
+
 TEST(Guess, WhatItDoesNotKnowIsNothing) {
   EXPECT_EQ(taken({"note"}), "nothing");
   EXPECT_EQ(taken({"operator id"}), "nothing");

@@ -133,6 +133,15 @@ TEST(Log, ARowOfUnitsBelowTheHeaderReadsAsIfInIt) {
             "log.csv:1: column 'time': the header cell has no unit; write 'time [s]'; accepted: s, ms, us, min, h");
 }
 
+TEST(Log, LinesOfARecorderAboveTheHeaderAreLeftOutAndTold) {
+  const std::string plain = "time [s];command [mA];spool_position [mm]\n0;1;2\n1;2;3\n";
+  const Log log = read("Recorder 5;V2\nrate;1000\n\n" + plain, {}, {.minimum_rows = 2});
+  EXPECT_TRUE(same_bits(log[Signal::command], read(plain, {}, {.minimum_rows = 2})[Signal::command]));
+  ASSERT_EQ(log.notes.size(), 1u);
+  EXPECT_NE(log.notes.front().find("log.csv:4: the header; left out 2 rows above it"), std::string::npos)
+      << log.notes.front();
+}
+
 TEST(Log, AUnitThatTheTableHasNotIsTheRigFilesToReplace) {
   const Log plain = read("time [s],command [mA],spool_position [mm]\n" + rows(30));
   const RigFile rig = rig_with(

@@ -96,7 +96,7 @@
   };
 
   function options(plot, element, group, key) {
-    const narrow = element.clientWidth < 520, dense = plot.data[0].length > 4000;
+    const dense = plot.data[0].length > 4000;
     const series = [{ label: plot.x, value: (u, v) => short(v) }];
     for (const s of plot.series)
       series.push({
@@ -127,7 +127,7 @@
       scales: { x: { time: false }, y: plot.log ? { distr: 3 } : { range: range_with(plot.ymarks || []) } },
       axes: [
         { ...axis, label: plot.x_shown ? plot.x : null, labelSize: 16, size: 30 },
-        { ...axis, space: 26, size: (u, ticks) => Math.max(narrow ? 48 : 64, 16 + 7 * Math.max(0, ...(ticks || []).map((t) => String(t ?? "").length))), values: plot.log ? undefined : (u, ticks) => ticks.map((v) => short(v)) },
+        { ...axis, space: 26, size: (u, ticks) => Math.max(u.width < 520 ? 48 : 64, 16 + 7 * Math.max(0, ...(ticks || []).map((t) => String(t ?? "").length))), values: plot.log ? undefined : (u, ticks) => ticks.map((v) => short(v)) },
       ],
       cursor: {
         drag: { x: true, y: false },
@@ -200,7 +200,7 @@
     if (!first) continue;
     const tools = document.createElement("div");
     tools.className = "tools";
-    for (const [key, label] of [["+", "Zoom in"], ["-", "Zoom out"], ["ArrowLeft", "Earlier"], ["ArrowRight", "Later"], ["0", "Show all"]]) {
+    for (const [key, label] of [["+", "Zoom in"], ["-", "Zoom out"], ["ArrowLeft", "Left"], ["ArrowRight", "Right"], ["0", "Show all"]]) {
       const button = document.createElement("button");
       button.type = "button";
       button.textContent = label;
@@ -222,8 +222,12 @@
   new ResizeObserver(() => {
     cancelAnimationFrame(pending);
     pending = requestAnimationFrame(() => {
-      for (const [element, { chart }] of drawn)
-        if (element.clientWidth > 0 && element.clientWidth !== chart.width) draw(element);
+      // In place: a chart taken down and drawn anew makes the page shorter for a moment, a scroll bar goes, and all are
+      // wider again; that never ended.
+      for (const [element, { chart }] of drawn) {
+        const width = element.clientWidth;
+        if (width > 0 && width !== chart.width) chart.setSize({ width, height: chart.height });
+      }
     });
   }).observe(document.body);
   matchMedia("(prefers-color-scheme: dark)").addEventListener("change", redraw);

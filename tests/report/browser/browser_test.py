@@ -12,7 +12,7 @@ from selenium.webdriver.common.keys import Keys
 # A log may have any name.
 HOSTILE = "<script>alert('log')<_script><img src=x onerror=alert(1)>.csv"
 MADE_UP = ["diagnose", "many", "baseline", "tune"]
-REAL = ["explain", "check", "trend", "map", "curves", "check-log", "simulate"]
+REAL = ["explain", "check", "trend", "map", "curves", "check-log", "simulate", "compare"]
 PAGES = MADE_UP + REAL
 
 # Relative luminance and contrast as WCAG 2 defines them, of every element that holds text of its own.
@@ -86,7 +86,14 @@ class Pages(unittest.TestCase):
         log.write_text(rows("healthy/h12_mixed.csv", 0.6))
         servodx("check-log", HOSTILE, *given)
         servodx("simulate", HOSTILE, *given, "-o", "simulated.csv")
-        servodx("explain", HOSTILE, *given, "-o", "extended.csv")
+        servodx("explain", HOSTILE, *given, "-o", "extended.csv", "--json", HOSTILE + ".json")
+        # The same result but for a name, a size and a verdict.
+        other = json.loads((desk / (HOSTILE + ".json")).read_text())
+        other["verdict"] = "sufficient"
+        for channel in other["channels"]:
+            channel["rms_after"] *= 1.5
+        (desk / "other.json").write_text(json.dumps(other))
+        servodx("compare", HOSTILE + ".json", "other.json")
         log.write_text(rows("healthy/h07_triangle.csv", 4))
         servodx("curves", HOSTILE, "--rig", str(SOURCE / "data/rig.toml"))
         log.write_text(rows("healthy/h09_preflight_hot.csv", 2.4))
@@ -251,6 +258,20 @@ class Pages(unittest.TestCase):
             self.assertEqual(self.run(TORN), [], name)
             self.screenshot(name + "_phone")
 
+    def test_a_width_that_depends_on_the_charts_ends(self):
+        # As where a chart taken down lets a scroll bar go: pages once drew for ever then.
+        self.open("diagnose")
+        self.draw_all()
+        self.driver.set_script_timeout(10)
+        self.driver.execute_async_script("""
+            const done = arguments[0], style = document.createElement('style');
+            style.textContent = '.chart { width: 600px; } .chart:not(:has(.uplot)) { width: 580px; }';
+            document.head.append(style);
+            document.body.style.width = '1200px';
+            setTimeout(done, 300);""")
+        widths = self.run("return [...servodx.drawn.values()].map(({chart}) => chart.width)")
+        self.assertEqual(set(widths), {600})
+
     def test_every_figure_has_a_csv_that_reads_back(self):
         for name in PAGES:
             self.open(name)
@@ -287,17 +308,19 @@ class Pages(unittest.TestCase):
             if KEEP:
                 (self.folder / f"{name}.pdf").write_bytes(pdf)
 
-    def test_nothing_is_cut_off_on_paper(self):
+    def test_nothing_is_cut_off_and_no_word_torn_on_paper(self):
         for name in PAGES:
             self.set_size(720, 1000)
             self.open(name)
             self.driver.execute_cdp_cmd("Emulation.setEmulatedMedia", {"media": "print"})
             self.run("dispatchEvent(new Event('beforeprint'))")
+            torn = self.run(TORN)
             cut = self.run("return [...document.querySelectorAll('.wide')].filter((e) => e.scrollWidth > e.clientWidth + 1 && getComputedStyle(e).overflowX !== 'visible').length")
             wide = self.run("return document.documentElement.scrollWidth")
             self.run("dispatchEvent(new Event('afterprint'))")
             self.driver.execute_cdp_cmd("Emulation.setEmulatedMedia", {"media": ""})
             self.assertEqual(cut, 0, name)
+            self.assertEqual(torn, [], name)
             self.assertLessEqual(wide, 720, name)
 
 
