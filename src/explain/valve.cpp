@@ -337,7 +337,8 @@ void ValveSubject::add_causes(const RigFile& rig) {
       if (p.switches) {
         const double move = p.start - p.off, v = f.start;
         sizes.back() =
-            sizes_about(cause.numbers.back(), {v + move, v + 0.25 * move, v + 4 * move, v - 0.25 * move, v - move});
+            sizes_about(cause.numbers.back(),
+                        {v + move, v + 0.25 * move, v + 4 * move, v + 16 * move, v - 0.25 * move, v - move});
       }
       values.push_back(std::move(f));
     }
