@@ -256,6 +256,8 @@ class Pages(unittest.TestCase):
             time.sleep(0.1)
             self.assertLessEqual(self.run("return document.documentElement.scrollWidth"), 390, name)
             self.assertEqual(self.run(TORN), [], name)
+            folded = self.run("return [...document.querySelectorAll('[data-folded]')].filter((e) => e.getClientRects().length).length")
+            self.assertEqual(folded, 0, name)
             self.screenshot(name + "_phone")
 
     def test_a_width_that_depends_on_the_charts_ends(self):
