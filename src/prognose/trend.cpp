@@ -74,7 +74,7 @@ double log_viscosity(double kelvin) { return std::log(oil_at(860, 14e-6, kelvin)
 // Error of -ln(1 - b). What a log tells is the drop over the filter, which goes with 1/(1 - b)^2: near a clean filter
 // the slope of that is small and an error taken by it alone endless, though a drop so large would have been seen.
 double error_of_lost(double b, double error) {
-  const double open = 1 - std::clamp(b, 0.0, Series::most_lost);
+  const double open = 1 - std::min(b, Series::most_lost);
   const double drop = 1 / (open * open), by = 2 * error * drop / open;
   return 0.5 * std::log(1 + by / drop);
 }
@@ -91,7 +91,7 @@ void append(Series& s, const Recording& r, const Check& c) {
   const double z = std::isfinite(r.temperature) ? log_viscosity(r.temperature) : 0.0;
   p.features = {z, z * z};
   if (s.paper()) p.features.push_back(std::log(c.expected > 0 ? c.expected : 1.0));
-  if (s.scale == Series::Scale::part_lost) p.features.push_back(0.5 * std::pow(s.stretch(std::max(c.value, 0.0)), 2));
+  if (s.scale == Series::Scale::part_lost) p.features.push_back(0.5 * std::pow(s.stretch(c.value), 2));
   s.points.push_back(std::move(p));
   s.temperature.push_back(r.temperature);
 }
@@ -181,6 +181,13 @@ FailureAt failure_of(const Series& s, const TrendOptions& options) {
     if (s.fault && s.fault->log_scale && s.tuned) {  // its healthy checks may hardly see it: the tuning logs saw more
       to_side(ratio->second * *s.tuned, ratio->second > 1);
       at.sd = known_to(ratio->second * *s.tuned, *s.tuned);
+      return at;
+    }
+    if (s.scale == Series::Scale::part_lost) {  // of what was open
+      at.of = FailureAt::Of::beyond_base;
+      const auto stated = options.failure_spread.find(s.name);
+      at.sd = stated == options.failure_spread.end() ? left_open(s, 1 - ratio->second) : stated->second / ratio->second;
+      to_side(-std::log(ratio->second), true);
       return at;
     }
     at.of = s.paper() ? FailureAt::Of::beyond_base : FailureAt::Of::times_base;
@@ -318,7 +325,6 @@ CheckTrend trend_of(const Series& s, const TrendOptions& options, std::size_t na
   std::vector<double> own;
   for (std::size_t i = 0; i < healthy; ++i) own.push_back(s.points[i].variance);
   double centre = out.trend ? g.base : median({corrected.begin(), corrected.begin() + static_cast<long>(healthy)});
-  if (prior.part_lost) centre = std::max(centre, 0.0);  // nothing is cleaner than clean
   const double noise = begun.growth().probability < 0.5 ? begun.growth().null_noise : begun.growth().noise;
   const double spread = std::sqrt(noise * noise * (1 + 1.0 / static_cast<double>(healthy)) + median(own));
   const auto band = [&](double rate) {

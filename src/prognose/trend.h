@@ -29,7 +29,7 @@ struct TrendOptions {
   double false_alarm = 0.01;  // of a healthy valve
   int healthy = 12;           // first checks after a start or a reset that are taken as healthy
   std::map<std::string, std::pair<std::optional<double>, std::optional<double>>> failure;  // name -> lower, upper
-  // name -> times its healthy value, of a parameter that multiplies its tuned one, where `failure` has none
+  // name -> times its healthy value, of a parameter that multiplies its tuned one, of a part lost what was open
   std::map<std::string, double> failure_ratio;
   // name of a parameter -> one standard deviation of that level, in its unit; else by the fault's own `spread`
   std::map<std::string, double> failure_spread;
