@@ -68,12 +68,6 @@ TrendOptions seeded_fault(const Bench& b, const Degradation& d, const std::strin
     const auto [low, high] = std::minmax_element(values.begin(), values.end());
     const double h = median(values), f = median(failed[name]);
     const std::string cause = caused_by(name);
-    if (cause == d.name && find_fault(cause)->part_lost) {  // of what was open in health, look by look
-      std::vector<double> left;
-      for (std::size_t k = 0; k < failed[name].size(); ++k) left.push_back((1 - failed[name][k]) / (1 - values[k]));
-      options.failure_ratio[name] = median(left), options.failure_spread[name] = spread_of(left);
-      continue;
-    }
     if (cause == d.name) options.failure_spread[name] = spread_of(failed[name]);
     if (cause == d.name && d.of_its_own)
       options.failure_ratio[name] = f;

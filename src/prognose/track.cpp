@@ -11,11 +11,12 @@
 namespace servodx {
 namespace {
 
-constexpr double prior_sd = 0.5;    // [of a severity's range] about health: weak, it only holds what a log cannot tell
-constexpr std::size_t tried = 3;    // starts that are followed, those of least misfit
-constexpr int few = 4, many = 16;   // iterations of each, and of the best
-constexpr double healthier = 3;     // [spreads] by which a row may come out better than tuned
-constexpr double larger_clean = 1;  // parts by which what is lost of may be larger than the model has it
+constexpr double prior_sd = 0.5;   // [of a severity's range] about health: weak, it only holds what a log cannot tell
+constexpr std::size_t tried = 3;   // starts that are followed, those of least misfit
+constexpr int few = 4, many = 16;  // iterations of each, and of the best
+constexpr double healthier = 3;    // [spreads] by which a row may come out better than tuned
+// What is lost of may be larger than the model has it, to half of the drop over a clean filter.
+constexpr double larger_clean = 0.41421356237309515;
 
 // Whitened by how wrong the model is where things move, every sample for itself: what is constant in that error is the
 // same in every check of one kind, and a trend does not see it.

@@ -207,6 +207,25 @@ TEST(Trend, ABlockedFilterHasFailedWhenAQuarterIsLeftOfWhatWasOpen) {
   EXPECT_NEAR(t.remaining->median, 42, 12);
 }
 
+// A weak motor and a filter that is read widely: the filter comes nearer to its end by chance, the motor has surely
+// come half of the way.
+TEST(Trend, TheCauseIsWhatHasSurelyComeFurthest) {
+  ValveHistory h = of_one(
+      "parameter:3", [](double s) { return 100 * (1 - 0.8 * s); }, 0.3, 0.3);
+  h.tuned.assign(41, 0.0);
+  h.tuned[2] = 100;
+  Random random(5, 12);
+  for (std::size_t k = 0; k < h.recordings.size(); ++k) {
+    const double b = (k < 20 ? 0.0 : 0.65) + 0.12 * random.normal();
+    h.recordings[k].checks.push_back({"parameter:1", b, 0.12, "1", b, 1, ""});
+  }
+  const ValveTrend t = trend(h, {});
+  ASSERT_TRUE(find(t, "parameter:1").trend);
+  EXPECT_GT(find(t, "parameter:1").now, 0.75 * 0.6);  // beside the motor's 0.52 / 0.8
+  EXPECT_EQ(t.cause, "torque_motor_loss");
+  EXPECT_NEAR(t.remaining->median, 42, 4);
+}
+
 // The drop over the filter is read too small by half of a clean one's at every check, so that a nearly clean one passes
 // for clean: no late onset follows from that, and no early end.
 TEST(Trend, AConstantErrorOfTheDropOverAFilterIsNoLateOnset) {
