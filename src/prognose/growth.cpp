@@ -180,7 +180,7 @@ GrowthModel::GrowthModel(std::vector<GrowthPoint> points, const GrowthPrior& pri
   now_ = points.back().time;
   length_ = std::max(now_ - first, 1e-12);
   Eigen::MatrixXd x(n, f + 1), drift(n, n);
-  Eigen::VectorXd y(n), own(n), column(n);
+  Eigen::VectorXd y(n), own(n), exposed(n), column(n);
   Terms mean(f + 1), sd(f + 1);
   mean[0] = prior.base, sd[0] = prior.base_sd;
   for (long j = 0; j < f; ++j)
@@ -188,7 +188,7 @@ GrowthModel::GrowthModel(std::vector<GrowthPoint> points, const GrowthPrior& pri
              sd[j + 1] = prior.feature_sd[static_cast<std::size_t>(j)];
   for (long i = 0; i < n; ++i) {
     const GrowthPoint& p = points[static_cast<std::size_t>(i)];
-    y[i] = p.y, own[i] = p.variance, x(i, 0) = 1;
+    y[i] = p.y, own[i] = p.variance, exposed[i] = p.exposed, x(i, 0) = 1;
     for (long j = 0; j < f; ++j) x(i, j + 1) = p.features[static_cast<std::size_t>(j)];
     for (long k = 0; k <= i; ++k)
       drift(i, k) = drift(k, i) = (points[static_cast<std::size_t>(k)].time - first) / length_;
@@ -203,9 +203,8 @@ GrowthModel::GrowthModel(std::vector<GrowthPoint> points, const GrowthPrior& pri
   }
   for (const Law& law : tried) laws_weight += law.weight;
   for (const auto& onset : onsets) onsets_weight += onset.second;
-  // Noise of each check at its least, and of it what thick oil adds.
   std::vector<double> scatters = {0.0};
-  if (prior.scatter > 0 && f > 0) scatters.push_back(prior.scatter);
+  if (prior.scatter > 0) scatters.push_back(prior.scatter);
   std::vector<double> null, all;
   std::vector<Regression> regressions;
   struct Candidate {
@@ -217,12 +216,11 @@ GrowthModel::GrowthModel(std::vector<GrowthPoint> points, const GrowthPrior& pri
   const std::size_t healthy_ones = scatters.size() * healthy_wanders * noises.size();
   for (double wander : wanders)
     for (double scatter : scatters) {
-      const Eigen::ArrayXd thick = f > 0 ? x.col(1).array().max(0.0).eval() : Eigen::ArrayXd::Zero(n).eval();
-      const Eigen::ArrayXd more = 1 + (scatter * thick).square();
       for (double level : noises) {
         const std::size_t r = regressions.size();
         Eigen::MatrixXd noise = std::pow(wander * prior.scale, 2) * drift;
-        noise.diagonal() += (own.array() + std::pow(level * prior.noise, 2) * more).matrix();
+        noise.diagonal() += own + (scatter * exposed).cwiseAbs2();
+        noise.diagonal().array() += std::pow(level * prior.noise, 2);
         regressions.emplace_back(x, y, noise, mean, sd);
         if (r >= healthy_ones) continue;
         null.push_back(regressions.back().log_evidence - std::log(static_cast<double>(healthy_ones)));

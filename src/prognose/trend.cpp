@@ -218,6 +218,7 @@ std::vector<GrowthPoint> thinned(const std::vector<GrowthPoint>& points) {
     mean.features.assign(points[from].features.size(), 0.0);
     const auto n = static_cast<double>(to - from);
     for (std::size_t i = from; i < to; ++i) {
+      mean.exposed += points[i].exposed / n;
       mean.time += points[i].time / n, mean.y += points[i].y / n, mean.variance += points[i].variance / n / n;
       for (std::size_t j = 0; j < mean.features.size(); ++j) mean.features[j] += points[i].features[j] / n;
     }
@@ -261,25 +262,38 @@ GrowthPrior prior_of(const Series& s, std::size_t healthy, const FailureAt& fail
     prior.feature_mean.push_back(0.0);
     prior.feature_sd.push_back(1.0);
   }
-  prior.scatter = 3;  // what the model has wrong of thick oil differs from check to check
+  prior.scatter = prior.tilt;
   return prior;
+}
+
+constexpr std::size_t reach = 3;  // neighbours to either side
+
+double median_of_neighbours(const std::vector<double>& y, std::size_t i) {
+  std::vector<double> near;
+  for (std::size_t k = i >= reach ? i - reach : 0; k < std::min(y.size(), i + reach + 1); ++k)
+    if (k != i) near.push_back(y[k]);
+  return median(near);
+}
+
+// What the oil may change of a check.
+void expose(std::vector<GrowthPoint>& points, const GrowthPrior& prior) {
+  std::vector<double> y;
+  for (const GrowthPoint& p : points) y.push_back(p.y);
+  for (std::size_t i = 0; i < points.size(); ++i)
+    points[i].exposed = std::abs((median_of_neighbours(y, i) - prior.base) * points[i].features[0]);
 }
 
 // One check alone raises no alert: what lies far from its neighbours, before and after it, weighs as little as it is
 // far from them, until others join it. Their spread is that of all checks about their neighbours.
 std::vector<GrowthPoint> set_aside(std::vector<GrowthPoint> points, const GrowthPrior& prior) {
-  constexpr std::size_t reach = 3;
   if (points.size() < least_checks) return points;
+  expose(points, prior);
   const GrowthModel first(thinned(points), prior);
   std::vector<double> corrected;
   for (const GrowthPoint& p : points) corrected.push_back(first.at_reference(p));
   std::vector<double> away;
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    std::vector<double> near;
-    for (std::size_t k = i >= reach ? i - reach : 0; k < std::min(points.size(), i + reach + 1); ++k)
-      if (k != i) near.push_back(corrected[k]);
-    away.push_back(std::abs(corrected[i] - median(near)));
-  }
+  for (std::size_t i = 0; i < points.size(); ++i)
+    away.push_back(std::abs(corrected[i] - median_of_neighbours(corrected, i)));
   const double spread = std::max(1.4826 * median(away), 1e-300);
   for (std::size_t i = 0; i < points.size(); ++i)
     if (away[i] > outlying * std::hypot(spread, std::sqrt(points[i].variance))) points[i].variance += away[i] * away[i];
