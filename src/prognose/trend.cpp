@@ -78,6 +78,15 @@ double error_of_lost(double b, double error) {
   return 0.5 * std::log(1 + by / drop);
 }
 
+constexpr std::size_t reach = 3;  // neighbours to either side
+
+double median_of_neighbours(const std::vector<double>& y, std::size_t i) {
+  std::vector<double> near;
+  for (std::size_t k = i >= reach ? i - reach : 0; k < std::min(y.size(), i + reach + 1); ++k)
+    if (k != i) near.push_back(y[k]);
+  return median(near);
+}
+
 // By how much ln(open) is read too low for a drop that is too high by the inertial one over the clean filter. The drop
 // over a fine screen is half laminar at 40 degC and all but laminar in the cold: there it hardly matters.
 double of_clean_drop(double open, double log_viscosity) {
@@ -96,7 +105,6 @@ void append(Series& s, const Recording& r, const Check& c) {
   const double z = std::isfinite(r.temperature) ? log_viscosity(r.temperature) : 0.0;
   p.features = {z, z * z};
   if (s.paper()) p.features.push_back(std::log(c.expected > 0 ? c.expected : 1.0));
-  if (s.scale == Series::Scale::part_lost) p.features.push_back(of_clean_drop(s.stretch(c.value), z));
   s.points.push_back(std::move(p));
   s.temperature.push_back(r.temperature);
 }
@@ -126,6 +134,16 @@ Series begun(const Check& check, const ValveHistory& history) {
   return s;
 }
 
+// Of what is open, by its neighbours: a check's own noise would explain itself.
+void add_clean_drop(Series& s) {
+  std::vector<double> y;
+  for (const GrowthPoint& p : s.points) y.push_back(p.y);
+  for (std::size_t i = 0; i < y.size(); ++i) {
+    const double open = std::exp(-(y.size() > 1 ? median_of_neighbours(y, i) : y[i]));
+    s.points[i].features.push_back(of_clean_drop(open, s.points[i].features[0]));
+  }
+}
+
 std::vector<Series> series_of(const ValveHistory& history, std::vector<std::string>& notes) {
   std::vector<Series> all;
   if (history.recordings.empty()) return all;
@@ -150,6 +168,8 @@ std::vector<Series> series_of(const ValveHistory& history, std::vector<std::stri
   if (other_tables > 0)
     notes.push_back(fmt::format("{} checks rest on another tuned table and are left out", other_tables));
   std::erase_if(all, [](const Series& s) { return s.points.empty(); });
+  for (Series& s : all)
+    if (s.scale == Series::Scale::part_lost) add_clean_drop(s);
   return all;
 }
 
@@ -264,15 +284,6 @@ GrowthPrior prior_of(const Series& s, std::size_t healthy, const FailureAt& fail
   }
   prior.scatter = prior.tilt;
   return prior;
-}
-
-constexpr std::size_t reach = 3;  // neighbours to either side
-
-double median_of_neighbours(const std::vector<double>& y, std::size_t i) {
-  std::vector<double> near;
-  for (std::size_t k = i >= reach ? i - reach : 0; k < std::min(y.size(), i + reach + 1); ++k)
-    if (k != i) near.push_back(y[k]);
-  return median(near);
 }
 
 // What the oil may change of a check.
