@@ -30,7 +30,7 @@ struct Degradation {
 inline constexpr Degradation degradations[] = {{"clogged_filter", 0, 0.75, "8", "fidelity", false},
                                                {"torque_motor_loss", 1, 0.2, "9", "fidelity", true},
                                                {"feedback_wire_backlash", 0, 20e-6, "10", "mean_error", false},
-                                               {"sticky_spool", 1, 20, "11", "mean_error", true},
+                                               {"sticky_spool", 1, 20, "11", "mean_error", false},
                                                {"radial_clearance_wear", 1, 10, "12", "correlation@5Hz", false}};
 inline double severity_at(const Degradation& d, double s) { return d.healthy + (d.failed - d.healthy) * s; }
 

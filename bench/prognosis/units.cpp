@@ -40,7 +40,7 @@ Degradation end_of(Degradation d, const rig::RigModel& type, const rig::RigModel
 
 double truth_of(const Degradation& d, const rig::RigModel& valve, double severity) {
   const std::string_view name = d.name;
-  if (name == "sticky_spool") return severity * valve.spool_coulomb;
+  if (name == "sticky_spool") return severity * valve.spool_breakaway;  // what holds it in small strokes
   if (name == "radial_clearance_wear") return severity * valve.edges_clearance;
   return severity;
 }

@@ -60,8 +60,10 @@ constexpr std::size_t healthy_wanders = 2;
 // A part lost so far, where it is one: how far ln(1 - part) is from a straight line depends on it. The logarithm has
 // then grown by -ln(1 - part), give or take what a model with a wrong exponent makes of it.
 constexpr std::array<double, 9> losses = {0.1, 0.25, 0.38, 0.48, 0.57, 0.64, 0.7, 0.76, 0.82};
-constexpr double loss_spread = 0.2;  // [of that growth]
-constexpr double negligible = 1e-4;  // weight below which a component is left out
+constexpr double loss_spread = 0.2;    // [of that growth]
+constexpr double negligible = 1e-4;    // weight below which a component is left out
+constexpr double least_tilted = 0.02;  // [scale] of a growth at which the oil's part in it is looked for
+constexpr double hopeless = 14;        // [nats] below the best noise level at which no further one is looked at
 
 double normal_cdf(double x) { return 0.5 * std::erfc(-x / std::numbers::sqrt2); }
 
@@ -113,13 +115,14 @@ struct Regression {
     Terms tilt;                // how far they fall for a unit of a
     double base_variance = 0;  // of the first of them, given a
   };
-  // `g`, whitened: the growth and its products with the features that d stands for.
-  Grown with(const Eigen::Ref<const Eigen::MatrixXd>& g, const Eigen::Vector3d& prior_sd) const {
+  // `g`, whitened: the growth and its products with the features that d stands for; `crossed`: x^T g.
+  Grown with(const Eigen::Ref<const Eigen::MatrixXd>& g, const Eigen::Ref<const Eigen::MatrixXd>& crossed,
+             const Eigen::Vector3d& prior_sd) const {
     using Small = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 3, 3>;
     using SmallVector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 3, 1>;
     using Cross = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, most_terms, 3>;
     const long m = g.cols();
-    const Cross cross = x.transpose() * g, fall = precision.solve(cross);
+    const Cross cross = crossed, fall = precision.solve(cross);
     const SmallVector prior = prior_sd.head(m).cwiseAbs2().cwiseInverse();
     Small own = g.transpose() * g - cross.transpose() * fall;
     own.diagonal() += prior;
@@ -177,7 +180,7 @@ GrowthModel::GrowthModel(std::vector<GrowthPoint> points, const GrowthPrior& pri
   now_ = points.back().time;
   length_ = std::max(now_ - first, 1e-12);
   Eigen::MatrixXd x(n, f + 1), drift(n, n);
-  Eigen::VectorXd y(n), own(n), column(n);
+  Eigen::VectorXd y(n), own(n), exposed(n), column(n);
   Terms mean(f + 1), sd(f + 1);
   mean[0] = prior.base, sd[0] = prior.base_sd;
   for (long j = 0; j < f; ++j)
@@ -185,7 +188,7 @@ GrowthModel::GrowthModel(std::vector<GrowthPoint> points, const GrowthPrior& pri
              sd[j + 1] = prior.feature_sd[static_cast<std::size_t>(j)];
   for (long i = 0; i < n; ++i) {
     const GrowthPoint& p = points[static_cast<std::size_t>(i)];
-    y[i] = p.y, own[i] = p.variance, x(i, 0) = 1;
+    y[i] = p.y, own[i] = p.variance, exposed[i] = p.exposed, x(i, 0) = 1;
     for (long j = 0; j < f; ++j) x(i, j + 1) = p.features[static_cast<std::size_t>(j)];
     for (long k = 0; k <= i; ++k)
       drift(i, k) = drift(k, i) = (points[static_cast<std::size_t>(k)].time - first) / length_;
@@ -200,6 +203,8 @@ GrowthModel::GrowthModel(std::vector<GrowthPoint> points, const GrowthPrior& pri
   }
   for (const Law& law : tried) laws_weight += law.weight;
   for (const auto& onset : onsets) onsets_weight += onset.second;
+  std::vector<double> scatters = {0.0};
+  if (prior.scatter > 0) scatters.push_back(prior.scatter);
   std::vector<double> null, all;
   std::vector<Regression> regressions;
   struct Candidate {
@@ -208,19 +213,22 @@ GrowthModel::GrowthModel(std::vector<GrowthPoint> points, const GrowthPrior& pri
   };
   std::vector<Candidate> found;
   std::size_t best_null = 0;
+  const std::size_t healthy_ones = scatters.size() * healthy_wanders * noises.size();
   for (double wander : wanders)
-    for (double level : noises) {
-      const std::size_t r = regressions.size();
-      Eigen::MatrixXd noise = std::pow(wander * prior.scale, 2) * drift;
-      noise.diagonal() += (own.array() + std::pow(level * prior.noise, 2)).matrix();
-      regressions.emplace_back(x, y, noise, mean, sd);
-      if (wander > wanders[healthy_wanders - 1]) continue;
-      null.push_back(regressions.back().log_evidence - std::log(static_cast<double>(noises.size() * healthy_wanders)));
-      if (null.back() >= null[best_null]) best_null = r;
+    for (double scatter : scatters) {
+      for (double level : noises) {
+        const std::size_t r = regressions.size();
+        Eigen::MatrixXd noise = std::pow(wander * prior.scale, 2) * drift;
+        noise.diagonal() += own + (scatter * exposed).cwiseAbs2();
+        noise.diagonal().array() += std::pow(level * prior.noise, 2);
+        regressions.emplace_back(x, y, noise, mean, sd);
+        if (r >= healthy_ones) continue;
+        null.push_back(regressions.back().log_evidence - std::log(static_cast<double>(healthy_ones)));
+        if (null.back() >= null[best_null]) best_null = r;
+      }
     }
   // Every growth that is tried, and its products with the oil's features, side by side: whitened in one go.
   const long oil = prior.tilt > 0 ? std::min(f, 2L) : 0;
-  const Eigen::Vector3d growth_sd(prior.scale, prior.tilt, prior.tilt / 3);
   const long width = 1 + oil;
   Eigen::MatrixXd growths(n, static_cast<long>(onsets.size() * tried.size()) * width);
   long at_column = 0;
@@ -232,15 +240,21 @@ GrowthModel::GrowthModel(std::vector<GrowthPoint> points, const GrowthPrior& pri
       for (long j = 0; j < oil; ++j) growths.col(at_column++) = column.cwiseProduct(x.col(j + 1));
     }
   }
-  for (std::size_t r = 0; r < regressions.size(); ++r) {
+  const auto grow = [&](std::size_t r) {  // all of them at one noise; their evidence together
+    const std::size_t begin = all.size();
     const Eigen::MatrixXd whitened = regressions[r].factor.matrixL().solve(growths);
+    const Eigen::MatrixXd crossed = regressions[r].x.transpose() * whitened;
     for (std::size_t o = 0; o < onsets.size(); ++o)
       for (std::size_t l = 0; l < tried.size(); ++l) {
-        const auto block = whitened.middleCols(static_cast<long>(o * tried.size() + l) * width, width);
+        const long from = static_cast<long>(o * tried.size() + l) * width;
         const double before = std::log(tried[l].weight / laws_weight * onsets[o].second / onsets_weight /
                                        static_cast<double>(regressions.size() * (oil > 0 ? 2 : 1)));
-        for (long columns = 1; columns <= width; columns += std::max(1L, oil)) {  // with and without the oil in it
-          Regression::Grown g = regressions[r].with(block.leftCols(columns), growth_sd);
+        double grown = 0;  // what it tells without the oil in it: how much of it there is for the oil to change
+        for (long columns = 1; columns <= width; columns += std::max(1L, oil)) {
+          const double tilt = prior.tilt * std::clamp(std::abs(grown), least_tilted * prior.scale, prior.scale);
+          Regression::Grown g = regressions[r].with(whitened.middleCols(from, columns),
+                                                    crossed.middleCols(from, columns), {prior.scale, tilt, tilt / 3});
+          if (columns == 1) grown = g.mean;
           g.log_evidence += before;
           // A prior cut to one side: twice the part of the posterior that lies there.
           if (prior.direction != 0)
@@ -256,11 +270,26 @@ GrowthModel::GrowthModel(std::vector<GrowthPoint> points, const GrowthPrior& pri
           found.push_back({r, o, l, std::move(g)});
         }
       }
+    return log_sum({all.begin() + static_cast<long>(begin), all.end()});
+  };
+  // The evidence over the noise level has one peak: from the best without growth down and up, until nothing is left.
+  for (std::size_t first_of = 0; first_of < regressions.size(); first_of += noises.size()) {
+    std::size_t from = first_of;
+    for (std::size_t r = first_of; r < first_of + noises.size(); ++r)
+      if (regressions[r].log_evidence > regressions[from].log_evidence) from = r;
+    double best = grow(from);
+    const auto matters = [&](std::size_t r) {
+      const double here = grow(r);
+      best = std::max(best, here);
+      return here > best - hopeless;
+    };
+    for (std::size_t r = from; r > first_of && matters(r - 1);) --r;
+    for (std::size_t r = from + 1; r < first_of + noises.size() && matters(r);) ++r;
   }
   const double growth = log_sum(all);
   growth_.log_bayes_factor = growth - log_sum(null);
   growth_.probability = 1 / (1 + std::exp(-growth_.log_bayes_factor));
-  double total = 0, square = 0;
+  double total = 0, square = 0, grown_square = 0;
   growth_.coefficients.assign(static_cast<std::size_t>(f), 0.0);
   for (const Candidate& from : found) {
     const double weight = std::exp(from.grown.log_evidence - growth);
@@ -273,7 +302,7 @@ GrowthModel::GrowthModel(std::vector<GrowthPoint> points, const GrowthPrior& pri
     c.span = std::max(now_ - c.onset, 1e-12);
     c.direction = prior.direction;
     c.noise = noises[from.regression % noises.size()] * prior.noise;
-    c.wander = wanders[from.regression / noises.size()] * prior.scale;
+    c.wander = wanders[from.regression / noises.size() / scatters.size()] * prior.scale;
     c.a = from.grown.mean, c.a_sd = std::sqrt(from.grown.variance);
     c.d = from.grown.d;
     c.mean = from.grown.terms;
@@ -292,6 +321,8 @@ GrowthModel::GrowthModel(std::vector<GrowthPoint> points, const GrowthPrior& pri
     total += weight;
     growth_.now += weight * at;
     square += weight * (at * at + spread);
+    growth_.grown += weight * (c.a + c.strayed);
+    grown_square += weight * (std::pow(c.a + c.strayed, 2) + c.a_sd * c.a_sd + c.strayed_sd * c.strayed_sd);
     growth_.base += weight * c.base;
     growth_.slope += weight * c.a * c.law.slope_at_1() / c.span;
     growth_.noise += weight * c.noise;
@@ -301,6 +332,8 @@ GrowthModel::GrowthModel(std::vector<GrowthPoint> points, const GrowthPrior& pri
   growth_.now /= total, growth_.base /= total, growth_.slope /= total, growth_.noise /= total;
   for (double& b : growth_.coefficients) b /= total;
   growth_.now_sd = std::sqrt(std::max(0.0, square / total - growth_.now * growth_.now));
+  growth_.grown /= total;
+  growth_.grown_sd = std::sqrt(std::max(0.0, grown_square / total - growth_.grown * growth_.grown));
   const Regression& none = regressions[best_null];
   growth_.base_sd = std::sqrt(none.covariance(0, 0));
   growth_.null_noise = noises[best_null % noises.size()] * prior.noise;

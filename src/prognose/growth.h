@@ -3,13 +3,13 @@
 //   y(t) = base + temperature terms + (a + d1 z + d2 z2) g((t - t0) / (now - t0)) + wander + noise,   g(1) = 1
 //
 // z, z2: the first two features (log of viscosity and its square): wear that acts through the oil shows more or less of
-// itself in the cold, or, as likely beforehand, does not. g: power laws s^p (p = 1 is the linear one), exponentials; t0:
-// onsets from the first check on. Wander is a Wiener process: no law is quite the wear's. Given law, onset, noise level
-// and wander all else is linear and Gaussian, so each is integrated in closed form (a Rao-Blackwellised particle filter
-// whose particles are a fixed grid: deterministic, and no degeneracy). Their evidences weigh them. The same without
-// growth is the null hypothesis, and the Bayes factor between the two is the trend test: under the null a Bayes factor
-// exceeds 1/alpha with probability alpha at most, however often one looks (Ville 1939).
-// Limits: one growth, monotone but for its wander; what changes its law later is seen late.
+// itself in the cold, or, as likely beforehand, does not; it may do so differently from check to check. g: power laws
+// s^p (p = 1 is the linear one), exponentials; t0: onsets from the first check on. Wander is a Wiener process: no law
+// is quite the wear's. Given law, onset, noise and wander all else is linear and Gaussian, so each is integrated in
+// closed form (a Rao-Blackwellised particle filter whose particles are a fixed grid: deterministic, and no degeneracy).
+// Their evidences weigh them. The same without growth is the null hypothesis, and the Bayes factor between the two is
+// the trend test: under the null a Bayes factor exceeds 1/alpha with probability alpha at most, however often one looks
+// (Ville 1939). Limits: one growth, monotone but for its wander; what changes its law later is seen late.
 #pragma once
 #include <cstdint>
 #include <optional>
@@ -22,6 +22,7 @@ struct GrowthPoint {
   double y = 0;
   double variance = 0;           // [y^2] of the figure by its own standard error
   std::vector<double> features;  // of the conditions: what temperature does, as known before any fit
+  double exposed = 0;            // [y] growth so far, as neighbours show it, times the first feature's size
 };
 
 struct GrowthPrior {
@@ -30,7 +31,8 @@ struct GrowthPrior {
   double noise = 1;                              // [y] about which the noise level is searched, 1/10 to 10 times
   double scale = 1;                              // [y] size of a growth that matters, one standard deviation
   int direction = 0;                             // +1, -1: growth to one side; 0: either
-  double tilt = 0;                               // [y] spread of d1, of a growth of `scale`; of d2 a third
+  double tilt = 0;                               // spread of d1 over the growth so far; of d2 a third
+  double scatter = 0;                            // spread of one check over what is `exposed`, or, as likely, none
   bool part_lost = false;                        // y = -ln(1 - part lost), and it is the part that grows by a law
 };
 
@@ -40,6 +42,7 @@ struct Growth {
   double now = 0, now_sd = 0;        // of y at reference conditions, at the last check
   double base = 0, base_sd = 0;      // without growth
   double slope = 0;                  // [y/h] at the last check, mean
+  double grown = 0, grown_sd = 0;    // to the last check, wander included
   std::vector<double> coefficients;  // of the features
   double noise = 0;                  // [y] of one check
   double null_noise = 0;             // the same without growth

@@ -16,7 +16,6 @@ namespace {
 constexpr double infinite = std::numeric_limits<double>::infinity();
 constexpr std::size_t least_checks = 6;   // for a word on a trend
 constexpr std::size_t most_points = 100;  // longer histories are averaged in blocks
-constexpr std::size_t looks = 40;         // moments at which an alert is looked for, evenly over the checks
 constexpr double latest_warning = 0.25;   // of the way to failure: three quarters are left to act in
 constexpr double outlying = 4;            // [spreads] from its neighbours at which a check is set aside
 constexpr double per_checks = 100;        // the false-alarm rate of a valve is stated over this many checks
@@ -74,9 +73,24 @@ double log_viscosity(double kelvin) { return std::log(oil_at(860, 14e-6, kelvin)
 // Error of -ln(1 - b). What a log tells is the drop over the filter, which goes with 1/(1 - b)^2: near a clean filter
 // the slope of that is small and an error taken by it alone endless, though a drop so large would have been seen.
 double error_of_lost(double b, double error) {
-  const double open = 1 - std::clamp(b, 0.0, Series::most_lost);
+  const double open = 1 - std::min(b, Series::most_lost);
   const double drop = 1 / (open * open), by = 2 * error * drop / open;
   return 0.5 * std::log(1 + by / drop);
+}
+
+constexpr std::size_t reach = 3;  // neighbours to either side
+
+double median_of_neighbours(const std::vector<double>& y, std::size_t i) {
+  std::vector<double> near;
+  for (std::size_t k = i >= reach ? i - reach : 0; k < std::min(y.size(), i + reach + 1); ++k)
+    if (k != i) near.push_back(y[k]);
+  return median(near);
+}
+
+// By how much ln(open) is read too low for a drop that is too high by the inertial one over the clean filter. The drop
+// over a fine screen is half laminar at 40 degC and all but laminar in the cold: there it hardly matters.
+double of_clean_drop(double open, double log_viscosity) {
+  return 0.5 * open * open / (1 + 0.5 * std::exp(log_viscosity) * open);
 }
 
 void append(Series& s, const Recording& r, const Check& c) {
@@ -91,7 +105,6 @@ void append(Series& s, const Recording& r, const Check& c) {
   const double z = std::isfinite(r.temperature) ? log_viscosity(r.temperature) : 0.0;
   p.features = {z, z * z};
   if (s.paper()) p.features.push_back(std::log(c.expected > 0 ? c.expected : 1.0));
-  if (s.scale == Series::Scale::part_lost) p.features.push_back(0.5 * std::pow(s.stretch(std::max(c.value, 0.0)), 2));
   s.points.push_back(std::move(p));
   s.temperature.push_back(r.temperature);
 }
@@ -121,6 +134,16 @@ Series begun(const Check& check, const ValveHistory& history) {
   return s;
 }
 
+// Of what is open, by its neighbours: a check's own noise would explain itself.
+void add_clean_drop(Series& s) {
+  std::vector<double> y;
+  for (const GrowthPoint& p : s.points) y.push_back(p.y);
+  for (std::size_t i = 0; i < y.size(); ++i) {
+    const double open = std::exp(-(y.size() > 1 ? median_of_neighbours(y, i) : y[i]));
+    s.points[i].features.push_back(of_clean_drop(open, s.points[i].features[0]));
+  }
+}
+
 std::vector<Series> series_of(const ValveHistory& history, std::vector<std::string>& notes) {
   std::vector<Series> all;
   if (history.recordings.empty()) return all;
@@ -145,6 +168,8 @@ std::vector<Series> series_of(const ValveHistory& history, std::vector<std::stri
   if (other_tables > 0)
     notes.push_back(fmt::format("{} checks rest on another tuned table and are left out", other_tables));
   std::erase_if(all, [](const Series& s) { return s.points.empty(); });
+  for (Series& s : all)
+    if (s.scale == Series::Scale::part_lost) add_clean_drop(s);
   return all;
 }
 
@@ -213,6 +238,7 @@ std::vector<GrowthPoint> thinned(const std::vector<GrowthPoint>& points) {
     mean.features.assign(points[from].features.size(), 0.0);
     const auto n = static_cast<double>(to - from);
     for (std::size_t i = from; i < to; ++i) {
+      mean.exposed += points[i].exposed / n;
       mean.time += points[i].time / n, mean.y += points[i].y / n, mean.variance += points[i].variance / n / n;
       for (std::size_t j = 0; j < mean.features.size(); ++j) mean.features[j] += points[i].features[j] / n;
     }
@@ -238,40 +264,47 @@ GrowthPrior prior_of(const Series& s, std::size_t healthy, const FailureAt& fail
   prior.noise = std::max({1.4826 * median(y), 0.3 * median(error), 1e-4 * prior.scale});
   prior.base_sd = prior.scale;
   prior.part_lost = s.scale == Series::Scale::part_lost;
+  // It begins with all of it, which the table calls zero; how large that is is on no data sheet: half to twice.
+  if (prior.part_lost) prior.base = 0, prior.base_sd = 0.5 * std::numbers::ln2;
   // What cold oil does to the estimate of a severity that adds knows nothing of the healthy value.
   const bool adds = s.fault && !s.fault->log_scale;
   const double swing = s.paper() ? 0.3 : 0.3 * (adds ? prior.scale : std::max(std::abs(prior.base), prior.noise));
   prior.feature_mean = {0.0, 0.0};
   prior.feature_sd = {swing, swing / 3};  // over three decades of viscosity: twice itself
-  prior.tilt = 0.15 * prior.scale;        // over three e-folds of viscosity: half of itself
+  prior.tilt = 0.15;                      // over three e-folds of viscosity: half of itself
   if (s.paper()) {                        // the model's expectation: taken at its word within a half
     prior.feature_mean.push_back(1.0);
     prior.feature_sd.push_back(0.5);
   }
   // What a model errs by in the drop over a clean filter it errs by at every check, and it is the less of a blocked
-  // one's: d ln(open) = 0.5 open^2 d drop, drops over that of the clean one.
+  // one's. Bores known to 2 % leave open as much of the pilot's supply as a clean screen takes.
   if (prior.part_lost) {
     prior.feature_mean.push_back(0.0);
-    prior.feature_sd.push_back(0.25);
+    prior.feature_sd.push_back(1.0);
   }
+  prior.scatter = prior.tilt;
   return prior;
+}
+
+// What the oil may change of a check.
+void expose(std::vector<GrowthPoint>& points, const GrowthPrior& prior) {
+  std::vector<double> y;
+  for (const GrowthPoint& p : points) y.push_back(p.y);
+  for (std::size_t i = 0; i < points.size(); ++i)
+    points[i].exposed = std::abs((median_of_neighbours(y, i) - prior.base) * points[i].features[0]);
 }
 
 // One check alone raises no alert: what lies far from its neighbours, before and after it, weighs as little as it is
 // far from them, until others join it. Their spread is that of all checks about their neighbours.
 std::vector<GrowthPoint> set_aside(std::vector<GrowthPoint> points, const GrowthPrior& prior) {
-  constexpr std::size_t reach = 3;
   if (points.size() < least_checks) return points;
+  expose(points, prior);
   const GrowthModel first(thinned(points), prior);
   std::vector<double> corrected;
   for (const GrowthPoint& p : points) corrected.push_back(first.at_reference(p));
   std::vector<double> away;
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    std::vector<double> near;
-    for (std::size_t k = i >= reach ? i - reach : 0; k < std::min(points.size(), i + reach + 1); ++k)
-      if (k != i) near.push_back(corrected[k]);
-    away.push_back(std::abs(corrected[i] - median(near)));
-  }
+  for (std::size_t i = 0; i < points.size(); ++i)
+    away.push_back(std::abs(corrected[i] - median_of_neighbours(corrected, i)));
   const double spread = std::max(1.4826 * median(away), 1e-300);
   for (std::size_t i = 0; i < points.size(); ++i)
     if (away[i] > outlying * std::hypot(spread, std::sqrt(points[i].variance))) points[i].variance += away[i] * away[i];
@@ -318,7 +351,6 @@ CheckTrend trend_of(const Series& s, const TrendOptions& options, std::size_t na
   std::vector<double> own;
   for (std::size_t i = 0; i < healthy; ++i) own.push_back(s.points[i].variance);
   double centre = out.trend ? g.base : median({corrected.begin(), corrected.begin() + static_cast<long>(healthy)});
-  if (prior.part_lost) centre = std::max(centre, 0.0);  // nothing is cleaner than clean
   const double noise = begun.growth().probability < 0.5 ? begun.growth().null_noise : begun.growth().noise;
   const double spread = std::sqrt(noise * noise * (1 + 1.0 / static_cast<double>(healthy)) + median(own));
   const auto band = [&](double rate) {
@@ -354,20 +386,27 @@ CheckTrend trend_of(const Series& s, const TrendOptions& options, std::size_t na
   if (out.trend || beyond(out.threshold, out.points.back().value)) out.state = "watch";
   if (!out.trend || prior.direction * (g.now - g.base) < 0) return out;  // away from failure is no way to it
 
-  // When the alert was first due, looking as the checks came in.
-  const std::size_t step = std::max<std::size_t>(1, all.size() / looks);
-  for (std::size_t k = std::max(healthy, least_checks); k <= all.size() && !out.alert_at; k += step) {
-    const GrowthModel then({all.begin(), all.begin() + static_cast<long>(k)}, prior);
-    if (then.growth().log_bayes_factor > confirmed && beyond(out.warning, s.out(then.growth().now)))
-      out.alert_at = all[k - 1].time;
+  // Since when the alert is due: by halves, as a growth that is seen stays seen.
+  if (beyond(out.warning, out.now)) {
+    std::size_t not_yet = std::max(healthy, least_checks) - 1, due = all.size();
+    while (due > not_yet + 1) {
+      const std::size_t k = (not_yet + due) / 2;
+      const GrowthModel then({all.begin(), all.begin() + static_cast<long>(k)}, prior);
+      const bool so = then.growth().log_bayes_factor > confirmed && beyond(out.warning, s.out(then.growth().now));
+      (so ? due : not_yet) = k;
+    }
+    out.alert_at = all[due - 1].time;
   }
-  if (!out.alert_at && beyond(out.warning, out.now)) out.alert_at = all.back().time;
-  const bool passed = beyond(out.warning, out.now);
+  const bool passed = out.alert_at.has_value();
   out.to_warning =
       passed ? 0.0 : quantile(model.life({s.in(out.warning.upper), s.in(out.warning.lower)}, options.seed), 0.5);
-  if (out.alert_at && passed) out.state = "warning";
+  if (passed) out.state = "warning";
   if (!out.failure.lower && !out.failure.upper) return out;
   if (beyond(out.failure, out.now)) out.state = "failed";
+  if (const auto& end = g.grown > 0 ? failure.upper : failure.lower) {
+    constexpr double one_sided = 1.645;  // 95 %
+    out.surely = (std::abs(g.grown) - one_sided * g.grown_sd) / std::abs(failure.level(*end, g.base) - g.base);
+  }
   out.life = model.life(failure, options.seed);
   out.remaining = remaining_of(out.life, options.coverage);
 
@@ -445,18 +484,15 @@ ValveTrend trend(const ValveHistory& history, const TrendOptions& options) {
   const std::vector<Series> all = series_of(history, out.notes);
   for (const Series& s : all) out.trends.push_back(trend_of(s, options, all.size()));
 
-  const CheckTrend* nearest = nullptr;
-  double furthest = 0;
+  const CheckTrend* cause = nullptr;
   for (const CheckTrend& t : out.trends) {
     if (rank_of(t.state) > rank_of(out.state)) out.state = t.state;
     out.to_warning = std::min(out.to_warning, t.to_warning);
     if (t.alert_at && (!out.alert_at || *t.alert_at < *out.alert_at)) out.alert_at = t.alert_at;
     if (t.cause.empty() || !t.trend || t.life.empty()) continue;
-    const double failure = t.failure.upper ? *t.failure.upper : *t.failure.lower;
-    const double way = (t.now - t.healthy) / (failure - t.healthy);
-    if (way > furthest) furthest = way, nearest = &t;
+    if (!cause || t.surely > cause->surely) cause = &t;
   }
-  if (nearest) out.cause = nearest->cause;
+  if (cause) out.cause = cause->cause;
   for (const CheckTrend& t : out.trends)
     if (t.blind && !t.trend)
       out.notes.push_back(fmt::format(
@@ -464,7 +500,7 @@ ValveTrend trend(const ValveHistory& history, const TrendOptions& options) {
           t.name));
   std::vector<std::pair<const Life*, double>> lives;
   for (const CheckTrend& t : out.trends)
-    if (!t.life.empty() && (nearest ? &t == nearest : t.cause.empty())) {
+    if (!t.life.empty() && (cause ? &t == cause : t.cause.empty())) {
       const Remaining r = remaining_of(t.life, options.coverage);
       const double width = std::isfinite(r.upper) ? std::max(r.upper - r.lower, 1e-6) : 1e6 * std::max(1.0, r.lower);
       lives.emplace_back(&t.life, 1 / (width * width));

@@ -10,10 +10,11 @@
 // A trend is confirmed when the Bayes factor of growth passes names / false_alarm. An alert is a confirmed trend whose
 // fitted curve has passed the warning level. No trend is an answer. Two-sided for r and E.
 //
-// Fusion: the cause is the tracked parameter with a confirmed trend that is nearest to its failure, and the remaining
-// life is its. Where no parameter has one, the lives of the paper's checks that have a failure level are pooled, each
-// by its sharpness: what they read depends on more than the cause, so beside a cause they only blur it. Maintenance
-// events restart what they renew (history.h); so does another tuned table.
+// Fusion: the cause is the tracked parameter with a confirmed trend that has surely come furthest on its way to failure
+// (the 5 % quantile of that part: what is read widely comes near by chance), and the remaining life is its. Where no
+// parameter has one, the lives of the paper's checks that have a failure level are pooled, each by its sharpness: what
+// they read depends on more than the cause, so beside a cause they only blur it. Maintenance events restart what they
+// renew (history.h); so does another tuned table.
 #pragma once
 #include <map>
 #include <optional>
@@ -33,7 +34,7 @@ struct TrendOptions {
   std::map<std::string, double> failure_ratio;
   // name of a parameter -> one standard deviation of that level, in its unit; else by the fault's own `spread`
   std::map<std::string, double> failure_spread;
-  double coverage = 0.9;                        // of the interval of the life left
+  double coverage = 0.9;  // of the interval of the life left
   std::uint64_t seed = 1;
 };
 
@@ -59,6 +60,7 @@ struct CheckTrend {
   double healthy = 0;             // where it began
   double now = 0, now_error = 0;  // corrected, fitted
   double slope = 0;               // [unit / h]
+  double surely = 0;              // part of the way to failure that it has come in 95 of 100 cases
   double log_bayes_factor = 0;
   bool trend = false;
   std::optional<double> alert_at;      // [h]

@@ -129,7 +129,28 @@ TEST(Growth, WearThatShowsLessInTheColdIsAsFarAsWarmChecksSay) {
   EXPECT_NEAR(model.at_reference(points.back()), 39 / 60.0, 0.03);
 }
 
-// The level itself is known to a third only; the curve exactly. The median is where the curve passes the level's middle.
+// Cold checks of which one shows all of the growth and the next half of it: they differ by more than warm ones, which
+// then say no less of the end.
+TEST(Growth, ColdChecksThatDisagreeDoNotBlurWhatWarmOnesSay) {
+  std::vector<GrowthPoint> points;
+  Random random(12);
+  for (int k = 0; k < 26; ++k) {
+    const double z = k % 4 == 2 ? 3.0 : random.uniform(-0.5, 0.5), grown = std::max(0.0, (k - 10) / 30.0);
+    const double shown = k % 8 == 2 ? 0.5 : 1.0;
+    points.push_back({static_cast<double>(k), grown * shown + 0.01 * random.normal(), 0.0, {z, z * z}, z * grown});
+  }
+  const auto life = [&](double scatter) {
+    GrowthPrior prior = plain_prior();
+    prior.feature_mean = {0.0, 0.0}, prior.feature_sd = {0.3, 0.1}, prior.tilt = 0.15, prior.scatter = scatter;
+    return GrowthModel(points, prior).life({1.0, {}}, 1);
+  };
+  const auto width = [](const Life& l) { return quantile(l, 0.95) - quantile(l, 0.05); };
+  EXPECT_NEAR(quantile(life(0.15), 0.5), 40 - 25, 3);
+  EXPECT_LT(width(life(0.15)), 0.7 * width(life(0)));
+}
+
+// The level itself is known to a third only; the curve exactly. The median is where the curve passes the level's
+// middle.
 TEST(Growth, AWideLevelDoesNotMoveTheMiddleOfTheLife) {
   const auto points = series([](double s) { return s; }, 55, 1e-4, 6);
   const GrowthModel model(points, plain_prior());
