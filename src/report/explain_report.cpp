@@ -124,12 +124,9 @@ ChannelFigures in_log_unit(const ExplainedChannel& c, double a, double b, double
 
 void add_causes(std::string& text, const std::vector<ExplainedCause>& causes) {
   for (const ExplainedCause& c : causes) {
-    if (c.effect == Unexplained::name) {  // its numbers stand as a curve below
-      text += fmt::format("  {} at {}: removes {}\n", c.effect, c.where, gain_text(c.heldout_gain));
-      continue;
-    }
     text += fmt::format("  {} at {}: removes {}\n", c.effect, c.where, gain_text(c.heldout_gain));
     for (const ExplainedParameter& p : c.parameters) {
+      if (c.effect == Unexplained::name) break;  // its numbers stand as a curve below
       const double half = 1.645 * p.std_error;
       text += fmt::format("    {} {}, before {}\n", p.name,
                           std::isfinite(half) ? handy(p.value, p.unit) + " (" + handy(p.value - half, p.unit) + " to " +
@@ -217,6 +214,8 @@ std::string text_of(const ExplainResult& r, const TextOptions& options) {
     for (const CurvePoint& p : r.curve->points) curve.row({digits(p.x), digits(p.value), digits(p.std_error, 2)});
     text += curve.text();
     if (!r.curve->closed_form.empty()) text += "    in short: " + r.curve->closed_form + "\n";
+    if (r.where != r.curve->where)
+      text += "    rather at " + r.where + ": a name there that leaves the logs abnormal does better than the curve\n";
   }
   if (!r.standing.empty()) text += "  standing, healthy logs show it too:\n";
   add_causes(text, r.standing);
