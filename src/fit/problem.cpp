@@ -1,9 +1,34 @@
 #include "fit/problem.h"
 
+#include <omp.h>
+
 #include <algorithm>
 #include <cmath>
 
 namespace servodx {
+namespace {
+
+// What a thread's runs are made in, kept from call to call: a search asks for the same megabytes in every generation.
+struct Workspace {
+  std::vector<ParameterVector> candidates;
+  std::vector<Trajectory> runs;
+  std::vector<Job> jobs;
+
+  void hold(std::size_t n) {
+    if (runs.size() < n) candidates.resize(n), runs.resize(n);
+    jobs.clear();
+  }
+};
+Workspace& workspace() {
+  thread_local Workspace w;
+  return w;
+}
+std::vector<double>& residual_space() {
+  thread_local std::vector<double> r;
+  return r;
+}
+
+}  // namespace
 
 double FreeValue::to_unit(double value) const {
   const double v = std::clamp(value, lower, upper);
@@ -21,10 +46,13 @@ FitProblem::FitProblem(std::vector<const LogData*> logs, ParameterVector base, s
   for (const LogData* log : logs_) {
     auto& offsets = offset_.emplace_back();
     auto& sigmas = sigma_.emplace_back();
+    auto& drifts = drift_.emplace_back();
     for (const FitChannel& c : log->channels) {
       options_.wanted[c.simulated] = true;
       offsets.push_back(at);
       sigmas.emplace_back(log->scenario.time.size(), std::max(c.noise, 1e-300));
+      drifts.emplace_back();
+      if (c.filter.drift > 0.0) drifts.back().emplace(log->scenario.time, c.measured, c.filter.drift);
       at += static_cast<long>(log->scenario.time.size());
     }
   }
@@ -40,12 +68,17 @@ Point FitProblem::start() const {
 }
 
 ParameterVector FitProblem::candidate(const Point& x, int log) const {
-  ParameterVector v = base_;
+  ParameterVector v;
+  candidate(x, log, v);
+  return v;
+}
+
+void FitProblem::candidate(const Point& x, int log, ParameterVector& v) const {
+  v = base_;
   for (std::size_t j = 0; j < free_.size(); ++j)
     if ((free_[j].log < 0 || free_[j].log == log) && !free_[j].apply) v[free_[j].at] = free_[j].from_unit(x[j]);
   for (std::size_t j = 0; j < free_.size(); ++j)
     if ((free_[j].log < 0 || free_[j].log == log) && free_[j].apply) free_[j].apply(v.data(), free_[j].from_unit(x[j]));
-  return v;
 }
 
 void FitProblem::set_sigma(int log, int channel, double sigma) {
@@ -53,26 +86,45 @@ void FitProblem::set_sigma(int log, int channel, double sigma) {
 }
 void FitProblem::set_sigma(int log, int channel, std::vector<double> sigma) { sigma_[log][channel] = std::move(sigma); }
 
-std::vector<double> FitProblem::raw_residual(int log, int channel, const Trajectory& t) const {
+void FitProblem::residual(int log, int channel, const Trajectory& t, std::vector<double>& r) const {
   const FitChannel& c = logs_[log]->channels[channel];
   const std::vector<double>& simulated = t.signals[c.simulated];
-  std::vector<double> r(c.measured.size());
+  r.resize(c.measured.size());
   for (std::size_t k = 0; k < r.size(); ++k) r[k] = c.measured[k] - simulated[k];
-  return c.filter(logs_[log]->scenario.time, r);
+  Filter before = c.filter;
+  before.drift = 0.0;
+  if (before.window != 1 || before.mains > 0.0) r = before(logs_[log]->scenario.time, r);
+  if (const auto& drift = drift_[log][channel]) (*drift)(r);
 }
 
-void FitProblem::fill(const Point&, int log, const Trajectory& t, Eigen::Ref<Eigen::VectorXd> out) const {
-  for (std::size_t c = 0; c < logs_[log]->channels.size(); ++c) {
-    const std::vector<double> r = raw_residual(log, static_cast<int>(c), t);
-    const long at = offset_[log][c];
-    const double* sigma = sigma_[log][c].data();
-    double* to = out.data() + at;
-    for (std::size_t k = 0; k < r.size(); ++k) {  // what is missing is NaN, and whitened so
-      const double whitened = r[k] / sigma[k];
-      to[k] = whitened == whitened ? whitened : 0.0;
-    }
+void FitProblem::whitened(int log, int channel, const Trajectory& t, std::vector<double>& r) const {
+  residual(log, channel, t, r);
+  const double* sigma = sigma_[log][channel].data();
+  for (std::size_t k = 0; k < r.size(); ++k) {  // what is missing is NaN, and whitened so
+    const double whitened = r[k] / sigma[k];
+    r[k] = whitened == whitened ? whitened : 0.0;
   }
 }
+
+std::vector<double> FitProblem::raw_residual(int log, int channel, const Trajectory& t) const {
+  std::vector<double> r;
+  residual(log, channel, t, r);
+  return r;
+}
+
+void FitProblem::fill(int log, const Trajectory& t, Eigen::Ref<Eigen::VectorXd> out) const {
+  std::vector<double>& r = residual_space();
+  for (std::size_t c = 0; c < logs_[log]->channels.size(); ++c) {
+    whitened(log, static_cast<int>(c), t, r);
+    std::copy(r.begin(), r.end(), out.data() + offset_[log][c]);
+  }
+}
+
+double FitProblem::prior_residual(std::size_t j, double x) const {
+  return (x - free_[j].to_unit(free_[j].start)) / free_[j].prior_sd;
+}
+
+int FitProblem::threads() const { return options_.threads > 0 ? options_.threads : omp_get_max_threads(); }
 
 std::vector<Trajectory> FitProblem::trajectories(const Point& x) const {
   std::vector<Trajectory> t(logs_.size());
@@ -87,33 +139,70 @@ std::vector<Trajectory> FitProblem::trajectories(const Point& x) const {
   return t;
 }
 
-std::vector<Evaluation> FitProblem::evaluate(std::span<const Point> points, bool ranking) const {
-  const std::size_t n_logs = logs_.size(), n_points = points.size();
-  std::vector<ParameterVector> v(n_logs * n_points);
-  std::vector<Trajectory> t(v.size());
-  std::vector<Job> jobs;
+// All logs at all points, a log's points side by side; valid until this thread's next runs.
+std::span<const Trajectory> FitProblem::run_all(std::span<const Point> points, bool ranking) const {
+  const std::size_t n_logs = logs_.size(), n_points = points.size(), n = n_logs * n_points;
+  Workspace& w = workspace();
+  w.hold(n);
   for (std::size_t l = 0; l < n_logs; ++l)
     for (std::size_t k = 0; k < n_points; ++k) {
-      v[l * n_points + k] = candidate(points[k], static_cast<int>(l));
-      jobs.push_back({&logs_[l]->scenario, &v[l * n_points + k], &t[l * n_points + k]});
+      const std::size_t i = l * n_points + k;
+      candidate(points[k], static_cast<int>(l), w.candidates[i]);
+      w.jobs.push_back({&logs_[l]->scenario, &w.candidates[i], &w.runs[i]});
     }
   SimulateOptions options = options_;
   options.ranking = ranking;
-  simulate(jobs, options);
-  simulations_ += static_cast<long>(jobs.size());
-  std::vector<Evaluation> out(n_points);
-  for (std::size_t k = 0; k < n_points; ++k) {
-    for (std::size_t l = 0; l < n_logs; ++l) out[k].ok = out[k].ok && t[l * n_points + k].ok;
-    if (!out[k].ok) {
-      ++failed_;
-      continue;
-    }
+  simulate(w.jobs, options);
+  simulations_ += static_cast<long>(n);
+  for (std::size_t k = 0; k < n_points; ++k) failed_ += !all_ran({w.runs.data(), n}, n_points, k);
+  return {w.runs.data(), n};
+}
+
+bool FitProblem::all_ran(std::span<const Trajectory> runs, std::size_t points, std::size_t k) const {
+  for (std::size_t i = k; i < runs.size(); i += points)
+    if (!runs[i].ok) return false;
+  return true;
+}
+
+std::vector<Evaluation> FitProblem::evaluate(std::span<const Point> points) const {
+  const auto runs = run_all(points, false);
+  const auto n_points = static_cast<long>(points.size());
+  std::vector<Evaluation> out(points.size());
+#pragma omp parallel for schedule(dynamic, 1) num_threads(threads())
+  for (long i = 0; i < n_points; ++i) {
+    const auto k = static_cast<std::size_t>(i);
+    out[k].ok = all_ran(runs, points.size(), k);
+    if (!out[k].ok) continue;
     out[k].residual.setZero(total_rows_);
-    for (std::size_t l = 0; l < n_logs; ++l) fill(points[k], static_cast<int>(l), t[l * n_points + k], out[k].residual);
+    for (std::size_t l = 0; l < logs_.size(); ++l)
+      fill(static_cast<int>(l), runs[l * points.size() + k], out[k].residual);
     long at = data_rows_;
     for (std::size_t j = 0; j < free_.size(); ++j)
-      if (std::isfinite(free_[j].prior_sd))
-        out[k].residual[at++] = (points[k][j] - free_[j].to_unit(free_[j].start)) / free_[j].prior_sd;
+      if (std::isfinite(free_[j].prior_sd)) out[k].residual[at++] = prior_residual(j, points[k][j]);
+  }
+  return out;
+}
+
+std::vector<double> FitProblem::costs(std::span<const Point> points, RobustLoss loss, double scale,
+                                      bool ranking) const {
+  const auto runs = run_all(points, ranking);
+  const auto n_points = static_cast<long>(points.size());
+  std::vector<double> out(points.size(), std::numeric_limits<double>::infinity());
+#pragma omp parallel for schedule(dynamic, 1) num_threads(threads())
+  for (long i = 0; i < n_points; ++i) {
+    const auto k = static_cast<std::size_t>(i);
+    if (!all_ran(runs, points.size(), k)) continue;
+    double sum = 0;
+    const auto count = [&](double e) { sum += robust_square(loss, scale, e); };
+    std::vector<double>& r = residual_space();
+    for (std::size_t l = 0; l < logs_.size(); ++l)
+      for (std::size_t c = 0; c < logs_[l]->channels.size(); ++c) {
+        whitened(static_cast<int>(l), static_cast<int>(c), runs[l * points.size() + k], r);
+        for (const double e : r) count(e);
+      }
+    for (std::size_t j = 0; j < free_.size(); ++j)
+      if (std::isfinite(free_[j].prior_sd)) count(prior_residual(j, points[k][j]));
+    out[k] = 0.5 * sum;
   }
   return out;
 }
@@ -133,32 +222,36 @@ bool FitProblem::jacobian(const Point& x, const Eigen::VectorXd& residual, Eigen
   // A log at a time keeps the trajectories of one log's columns in memory, not of all.
   std::vector<char> failed(columns.size(), 0);
   std::size_t first = 0;
-  Eigen::VectorXd scratch(total_rows_);
+  Point moved = x;
   while (first < columns.size()) {
     std::size_t last = first;
     while (last < columns.size() && (columns[last].log == columns[first].log || last - first < 64)) ++last;
-    std::vector<ParameterVector> v(last - first);
-    std::vector<Trajectory> t(last - first);
-    std::vector<Job> jobs;
+    Workspace& w = workspace();
+    w.hold(last - first);
     for (std::size_t c = first; c < last; ++c) {
-      Point moved = x;
-      moved[columns[c].j] += columns[c].dx;
-      v[c - first] = candidate(moved, columns[c].log);
-      jobs.push_back({&logs_[columns[c].log]->scenario, &v[c - first], &t[c - first]});
+      moved[columns[c].j] = x[columns[c].j] + columns[c].dx;
+      candidate(moved, columns[c].log, w.candidates[c - first]);
+      moved[columns[c].j] = x[columns[c].j];
+      w.jobs.push_back({&logs_[columns[c].log]->scenario, &w.candidates[c - first], &w.runs[c - first]});
     }
-    simulate(jobs, options_);
-    simulations_ += static_cast<long>(jobs.size());
-    for (std::size_t c = first; c < last; ++c) {
-      if (!t[c - first].ok) {
+    simulate(w.jobs, options_);
+    simulations_ += static_cast<long>(w.jobs.size());
+    for (std::size_t c = first; c < last; ++c)
+      if (!w.runs[c - first].ok) {
         ++failed_;
         return false;
       }
+    const std::vector<Trajectory>& runs = w.runs;
+#pragma omp parallel for schedule(dynamic, 1) num_threads(threads())
+    for (std::size_t c = first; c < last; ++c) {
       const int l = columns[c].log;
-      const long at = offset_[l].front();
-      const long rows = static_cast<long>(logs_[l]->channels.size() * logs_[l]->scenario.time.size());
-      fill(x, l, t[c - first], scratch);
-      jac.col(columns[c].j).segment(at, rows) =
-          (scratch.segment(at, rows) - residual.segment(at, rows)) / columns[c].dx;
+      std::vector<double>& r = residual_space();
+      for (std::size_t channel = 0; channel < logs_[l]->channels.size(); ++channel) {
+        whitened(l, static_cast<int>(channel), runs[c - first], r);
+        const long at = offset_[l][channel];
+        for (std::size_t k = 0; k < r.size(); ++k)
+          jac(at + static_cast<long>(k), columns[c].j) = (r[k] - residual[at + static_cast<long>(k)]) / columns[c].dx;
+      }
     }
     first = last;
   }

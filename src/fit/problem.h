@@ -5,12 +5,14 @@
 #pragma once
 #include <functional>
 #include <limits>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "fit/log_data.h"
 #include "optimise/box_least_squares.h"
 #include "optimise/problem.h"
+#include "optimise/robust_loss.h"
 #include "simulate/simulate.h"
 
 namespace servodx {
@@ -52,8 +54,11 @@ class FitProblem {
   void set_sigma(int log, int channel, std::vector<double> sigma);
   const std::vector<double>& sigma(int log, int channel) const { return sigma_[log][channel]; }
 
-  // `ranking`: fast and in floats, to compare points (SimulateOptions::ranking).
-  std::vector<Evaluation> evaluate(std::span<const Point> points, bool ranking = false) const;
+  std::vector<Evaluation> evaluate(std::span<const Point> points) const;
+  // 0.5 * sum of the squared residuals as `loss` changes them (robust_loss.h); infinite where a run fails. Keeps no
+  // residuals, and from the second call on asks for no memory but its result's. `ranking`: fast and in floats, to
+  // compare points (SimulateOptions::ranking).
+  std::vector<double> costs(std::span<const Point> points, RobustLoss loss, double scale, bool ranking = false) const;
   bool jacobian(const Point& x, const Eigen::VectorXd& residual, Eigen::MatrixXd& j) const;
   LeastSquaresProblem least_squares() const;
 
@@ -69,13 +74,22 @@ class FitProblem {
   long failed_simulations() const { return failed_; }
 
  private:
-  void fill(const Point& x, int log, const Trajectory& t, Eigen::Ref<Eigen::VectorXd> out) const;
+  void candidate(const Point& x, int log, ParameterVector& v) const;
+  std::span<const Trajectory> run_all(std::span<const Point> points, bool ranking) const;
+  bool all_ran(std::span<const Trajectory> runs, std::size_t points, std::size_t k) const;
+  // Of one run, of a channel: raw, and whitened.
+  void residual(int log, int channel, const Trajectory& t, std::vector<double>& r) const;
+  void whitened(int log, int channel, const Trajectory& t, std::vector<double>& r) const;
+  double prior_residual(std::size_t j, double x) const;
+  void fill(int log, const Trajectory& t, Eigen::Ref<Eigen::VectorXd> out) const;
+  int threads() const;
   std::vector<const LogData*> logs_;
   ParameterVector base_;
   std::vector<FreeValue> free_;
   SimulateOptions options_;
   std::vector<std::vector<std::vector<double>>> sigma_;
   std::vector<std::vector<long>> offset_;
+  std::vector<std::vector<std::optional<HighPass>>> drift_;  // the channels' high-passes, made ready
   long data_rows_ = 0, total_rows_ = 0;
   mutable long simulations_ = 0, failed_ = 0;
 };

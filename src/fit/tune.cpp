@@ -25,8 +25,8 @@
 namespace servodx {
 namespace {
 
-constexpr double tuning_null_limit = 0.1;   // fault-free logs: a null may sit anywhere that calibration allows
-constexpr double independent_rate = 40;     // [1/s] samples that count before anything is known of their correlation
+constexpr double tuning_null_limit = 0.1;  // fault-free logs: a null may sit anywhere that calibration allows
+constexpr double independent_rate = 40;    // [1/s] samples that count before anything is known of their correlation
 constexpr const char* hash_key = "tuned by";
 constexpr const char* average_key = "moving average";
 
@@ -192,21 +192,16 @@ std::vector<Point> breadth(Tuning& run, const Point& start) {
     std::copy(s.begin(), s.end(), x.begin());
     return x;
   };
+  const auto full = [&](const Point& s) {
+    Point x = start;
+    std::copy(s.begin(), s.end(), x.begin());
+    return x;
+  };
   const auto costs = [&](std::span<const Point> points, bool ranking) {
-    std::vector<Point> xs;
-    for (const Point& p : points) xs.push_back(full(p));
-    std::vector<double> c;
-    for (const Evaluation& e : problem.evaluate(xs, ranking)) {
-      if (!e.ok) {
-        c.push_back(1e30);
-        continue;
-      }
-      // Compressed residuals: one channel far off must not hide the rest.
-      double sum = 0;
-      for (double r : e.residual) sum += r * r / (1.0 + std::abs(r) / 3.0);
-      c.push_back(0.5 * sum);
-    }
-    return c;
+    std::vector<Point> whole;
+    for (const Point& p : points) whole.push_back(full(p));
+    // Compressed residuals: one channel far off must not hide the rest.
+    return problem.costs(whole, RobustLoss::compressed, 3.0, ranking);
   };
   // Failure mode identifiers of a fault-free valve: as the table says; a slow first stage; much friction; worn edges.
   const Point nominal(start.begin(), start.begin() + static_cast<long>(n));

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <stdexcept>
+#include <utility>
 
 #include "base/error.h"
 #include "optimise/genetic_variation.h"
@@ -52,11 +53,12 @@ class Genetic {
     for (;;) {
       if (state_.best.cost <= options_.cost_goal) return end(GeneticStop::goal);
       if (state_.generation >= options_.generations) return end(GeneticStop::generations);
-      const int next = options_.population + (hooks_.screen ? options_.archive : 0);
+      const int next = wave() + (hooks_.screen ? options_.archive : 0);
       if (options_.max_evaluations > 0 && state_.evaluations + next > options_.max_evaluations)
         return end(GeneticStop::evaluation_limit);
+      const int before = state_.generation;
       step();
-      if (!told()) return end(GeneticStop::interrupted);
+      if (state_.generation > before && !told()) return end(GeneticStop::interrupted);
     }
   }
 
@@ -71,6 +73,14 @@ class Genetic {
     int first = 0;
     for (std::size_t i = 0; i < island; ++i) first += island_size(i);
     return first;
+  }
+
+  // Children asked for at once; the last wave ends with the last generation.
+  int wave() const {
+    const int batches = (2 * options_.population + options_.batch) / (2 * options_.batch);  // the nearest number
+    const int whole = batches > 0 ? batches * options_.batch : options_.population;
+    const long left = static_cast<long>(options_.generations - state_.generation) * options_.population - state_.turn;
+    return static_cast<int>(std::min<long>(whole, left));
   }
 
   bool told() const { return !hooks_.generation || hooks_.generation(state_); }
@@ -199,61 +209,82 @@ class Genetic {
     return width <= options_.collapse;
   }
 
-  // The few by which a population exceeds whole batches rest, each in its turn.
-  bool rests(std::uint32_t individual) const {
-    const auto size = static_cast<std::uint64_t>(options_.population), spare = size % options_.batch;
-    return 2 * spare <= static_cast<std::uint64_t>(options_.batch) &&
-           (individual + static_cast<std::uint64_t>(state_.generation) * spare) % size < spare;
+  // The slots of one island that are in a wave, as positions in its population.
+  struct Stretch {
+    std::size_t island;
+    int first, count;
+    std::uint32_t generation;  // that their children belong to
+    bool afresh = false;       // the whole island, and no children
+    std::vector<Child> children;
+  };
+
+  std::vector<Stretch> stretches(int slots) const {
+    std::vector<Stretch> out;
+    auto generation = static_cast<std::uint32_t>(state_.generation + 1);
+    for (int slot = state_.turn; slots > 0; slot = 0, ++generation)
+      for (std::size_t i = 0; i < state_.islands.size() && slots > 0; ++i) {
+        const int first = std::max(0, slot - first_slot(i)), count = std::min(slots, island_size(i) - first);
+        if (count <= 0) continue;
+        out.push_back({i, first, count, generation, false, {}});
+        slots -= count;
+      }
+    return out;
   }
 
   void step() {
-    ++state_.generation;
+    const int slots = wave();
+    std::vector<Stretch> all = stretches(slots);
     std::vector<Point> points;
-    std::vector<std::vector<Child>> broods(state_.islands.size());
-    std::vector<bool> afresh(state_.islands.size());
-    std::uint32_t individual = 0;
-    for (std::size_t i = 0; i < state_.islands.size(); ++i) {
-      const Island& island = state_.islands[i];
-      const int size = static_cast<int>(island.population.size());
-      if ((afresh[i] = is_done(island))) {
-        const std::vector<Point> start = fresh(i, size, false);
+    std::vector<bool> done(islands());
+    for (Stretch& s : all) {
+      const Island& island = state_.islands[s.island];
+      if (done[s.island]) continue;  // a wave may reach an island's end and its beginning
+      if ((s.afresh = done[s.island] = is_done(island))) {
+        const std::vector<Point> start = fresh(s.island, static_cast<int>(island.population.size()), false);
         points.insert(points.end(), start.begin(), start.end());
-        individual += static_cast<std::uint32_t>(size);
         continue;
       }
       const Brood brood = look_at(island, options_.tournament);
-      for (int slot = 0; slot < size; ++slot, ++individual) {
-        if (rests(individual)) continue;
-        Random random(state_.seed, static_cast<std::uint32_t>(state_.generation), individual, kChild);
-        broods[i].push_back(make_child(brood, slot, random));
-        broods[i].back().parent = slot;
-        points.push_back(broods[i].back().point);
+      for (int slot = s.first; slot < s.first + s.count; ++slot) {
+        Random random(state_.seed, s.generation, static_cast<std::uint32_t>(first_slot(s.island) + slot), kChild);
+        s.children.push_back(make_child(brood, slot, random));
+        s.children.back().parent = slot;
+        points.push_back(s.children.back().point);
       }
     }
     const std::vector<double> costs = rank(points);
     std::size_t at = 0;
-    for (std::size_t i = 0; i < state_.islands.size(); ++i) {
-      Island& island = state_.islands[i];
-      if (afresh[i]) {
-        const std::size_t size = island.population.size();
+    for (Stretch& s : all) {
+      Island& island = state_.islands[s.island];
+      const std::size_t size = island.population.size();
+      if (s.afresh) {
         ++state_.restarts;
         fill(island, {points.begin() + at, points.begin() + at + size}, costs.data() + at);
         at += size;
-      } else {
-        select(island, broods[i], costs.data() + at);
-        at += broods[i].size();
       }
+      if (done[s.island]) continue;
+      if (s.first == 0) forget(island);
+      select(island, s.children, costs.data() + at);
+      at += s.children.size();
+      if (s.first + s.count == static_cast<int>(size)) take_stock(island);
     }
-    migrate();
-    if (hooks_.refine && hooks_.refine_every > 0 && state_.generation % hooks_.refine_every == 0) admit();
+    state_.turn += slots;
+    while (state_.turn >= options_.population) {
+      state_.turn -= options_.population;
+      ++state_.generation;
+      migrate();
+      if (hooks_.refine && hooks_.refine_every > 0 && state_.generation % hooks_.refine_every == 0) admit();
+    }
   }
 
-  void select(Island& island, std::vector<Child>& children, const double* costs) {
+  static void forget(Island& island) {
     for (int v = 0; v < kVariations; ++v) {
       island.tries[v] *= kForget;
       island.wins[v] *= kForget;
     }
-    double weight = 0, reach = 0, reach2 = 0, mixing = 0;
+  }
+
+  void select(Island& island, std::vector<Child>& children, const double* costs) {
     for (std::size_t k = 0; k < children.size(); ++k) {
       Child& child = children[k];
       Individual& parent = island.population[child.parent];
@@ -263,16 +294,19 @@ class Genetic {
         island.wins[child.variation] += 1;
         if (child.variation == 2 || child.variation == 3) {
           const double gain = std::min(parent.cost, 1e100) - std::min(costs[k], 1e100);
-          weight += gain;
-          reach += gain * child.reach;
-          reach2 += gain * child.reach * child.reach;
-          mixing += gain * child.mixing;
+          const double parts[] = {1.0, child.reach, child.reach * child.reach, child.mixing};
+          for (std::size_t j = 0; j < island.gains.size(); ++j) island.gains[j] += gain * parts[j];
         }
       }
       parent = {std::move(child.point), costs[k]};
       remember(parent);
       island.best_since_start = std::min(island.best_since_start, costs[k]);
     }
+  }
+
+  // Once a generation: which moves won, and whether the island still gains.
+  void take_stock(Island& island) const {
+    const auto [weight, reach, reach2, mixing] = std::exchange(island.gains, {});
     if (weight > 0 && reach > 0) {
       island.reach[island.memory_at] = reach2 / reach;  // Lehmer mean: leans to the larger
       island.mixing[island.memory_at] = mixing / weight;

@@ -1,6 +1,7 @@
 // Genetic algorithm on the unit cube, for breadth: which structure, which basin. It is real-coded and elitist (a slot
-// only ever gets better), keeps its children in the box by reflection, and asks for a whole generation of all islands
-// as one batch. Each island may start from its own seed points (the fit passes one island per Failure-Mode Identifier).
+// only ever gets better), keeps its children in the box by reflection, and asks for them in waves that go round the slots
+// of all islands: whole batches, however many the population has. Each island may start from its own seed points (the
+// fit passes one island per Failure-Mode Identifier).
 // An island whose best and median stop improving, or whose members have drawn together, gives its best to the archive
 // and starts afresh. The archive holds the best points that are apart: the starts of the local stage.
 //
@@ -19,7 +20,10 @@ namespace servodx {
 struct GeneticOptions {
   int population = 50;  // all islands together
   int generations = 100;
-  int batch = 8;  // candidates that run side by side: where few are too many, parents rest in turn
+  // Children come in waves of whole batches, as many as are nearest to the population (64 for 50, whose first 14 slots
+  // get two in the first wave, the next 14 in the next): 32 fill two packs of 16 floats or four of 8 doubles, evenly
+  // on one and two threads. Waves smaller than the population converge slower: old and new then stand side by side.
+  int batch = 32;
   std::uint64_t seed = 1;
   int tournament = 2;
   double seed_spread = 0.1;       // standard deviation of the cloud about each seed point, of the box

@@ -26,10 +26,11 @@ std::vector<Individual> to_list(const json& j) {
 }  // namespace
 
 std::string to_json(const GeneticState& state) {
-  json j{{"format", "servodx genetic state 1"},
+  json j{{"format", "servodx genetic state 2"},
          {"n", state.n},
          {"seed", state.seed},
          {"generation", state.generation},
+         {"turn", state.turn},
          {"evaluations", state.evaluations},
          {"failed", state.failed},
          {"restarts", state.restarts},
@@ -43,6 +44,7 @@ std::string to_json(const GeneticState& state) {
                             {"reach", island.reach},
                             {"mixing", island.mixing},
                             {"memory_at", island.memory_at},
+                            {"gains", island.gains},
                             {"best_since_start", island.best_since_start},
                             {"mark", island.mark},
                             {"median_mark", island.median_mark},
@@ -54,11 +56,12 @@ std::string to_json(const GeneticState& state) {
 GeneticState genetic_state_from_json(const std::string& text) {
   try {
     const json j = json::parse(text);
-    if (j.at("format") != "servodx genetic state 1") throw InputError({}, "not a genetic state of format 1", "");
+    if (j.at("format") != "servodx genetic state 2") throw InputError({}, "not a genetic state of format 2", "");
     GeneticState state;
     j.at("n").get_to(state.n);
     j.at("seed").get_to(state.seed);
     j.at("generation").get_to(state.generation);
+    j.at("turn").get_to(state.turn);
     j.at("evaluations").get_to(state.evaluations);
     j.at("failed").get_to(state.failed);
     j.at("restarts").get_to(state.restarts);
@@ -72,6 +75,7 @@ GeneticState genetic_state_from_json(const std::string& text) {
       item.at("reach").get_to(island.reach);
       item.at("mixing").get_to(island.mixing);
       item.at("memory_at").get_to(island.memory_at);
+      item.at("gains").get_to(island.gains);
       item.at("best_since_start").get_to(island.best_since_start);
       item.at("mark").get_to(island.mark);
       item.at("median_mark").get_to(island.median_mark);

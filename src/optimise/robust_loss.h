@@ -35,4 +35,11 @@ inline LossValue robust(RobustLoss loss, double scale, double e) {
   return {t, e / ((1.0 + u * u) * t)};
 }
 
+// t^2 alone.
+inline double robust_square(RobustLoss loss, double scale, double e) {
+  if (loss == RobustLoss::compressed) return e * e / (1.0 + std::abs(e) / scale);
+  const double t = robust(loss, scale, e).t;
+  return t * t;
+}
+
 }  // namespace servodx

@@ -5,6 +5,7 @@
 #include <limits>
 #include <numbers>
 #include <stdexcept>
+#include <utility>
 
 namespace servodx {
 namespace {
@@ -112,30 +113,46 @@ std::vector<double> notch(std::span<const double> time, std::span<const double> 
 
 std::vector<double> high_pass(std::span<const double> time, std::span<const double> x, double cutoff) {
   if (time.size() != x.size()) throw std::invalid_argument("high_pass: time and signal differ in length");
+  std::vector<double> y(x.begin(), x.end());
+  HighPass(time, x, cutoff)(y);
+  return y;
+}
+
+HighPass::HighPass(std::span<const double> time, std::span<const double> like, double cutoff)
+    : keep_(like.size()), gain_(like.size()), start_(like.size(), missing_value) {
   if (!(cutoff > 0.0)) throw std::invalid_argument("high_pass: the cutoff must be positive");
   const double rate = 2.0 * std::numbers::pi * cutoff;
-  std::vector<double> y(x.size(), missing_value), start(x.size(), 0.0);
-  double state = 0.0, decayed = 1.0, last_x = missing_value, last_time = 0.0, along = 0.0, own = 0.0;
-  for (std::size_t k = 0; k < x.size(); ++k) {
-    if (std::isnan(x[k])) continue;
-    if (!std::isnan(last_x)) {
-      const double z = rate * (time[k] - last_time), keep = std::exp(-z);
+  double decayed = 1.0, last_time = missing_value;
+  for (std::size_t k = 0; k < like.size(); ++k) {
+    if (std::isnan(like[k])) continue;
+    if (!std::isnan(last_time)) {
+      const double z = rate * (time[k] - last_time);
       // y' = x' - rate y, with x' constant between the stamps.
-      state = keep * state + (x[k] - last_x) * (-std::expm1(-z) / z);
-      decayed *= keep;
+      keep_[k] = std::exp(-z);
+      gain_[k] = -std::expm1(-z) / z;
+      decayed *= keep_[k];
     }
-    y[k] = state;
-    start[k] = decayed;
-    along += state * decayed;
-    own += decayed * decayed;
-    last_x = x[k];
+    start_[k] = decayed;
+    own_ += decayed * decayed;
     last_time = time[k];
+  }
+}
+
+void HighPass::operator()(std::span<double> x) const {
+  double state = 0.0, last = missing_value, along = 0.0;
+  for (std::size_t k = 0; k < x.size(); ++k) {
+    if (std::isnan(start_[k])) {
+      x[k] = missing_value;
+      continue;
+    }
+    if (!std::isnan(last)) state = keep_[k] * state + (x[k] - last) * gain_[k];
+    last = std::exchange(x[k], state);
+    along += state * start_[k];
   }
   // Where the signal stood before its first sample is not known; what that leaves behind is taken out as a whole. From
   // one sample, or a few, their noise would stay for the whole of the filter's memory.
-  if (own > 0.0)
-    for (std::size_t k = 0; k < x.size(); ++k) y[k] -= along / own * start[k];
-  return y;
+  if (!(own_ > 0.0)) return;
+  for (std::size_t k = 0; k < x.size(); ++k) x[k] -= along / own_ * start_[k];
 }
 
 void copy_missing(std::span<const double> like, std::span<double> x) {

@@ -31,6 +31,20 @@ std::vector<double> notch(std::span<const double> time, std::span<const double> 
 // Across missing samples the signal is taken as linear.
 std::vector<double> high_pass(std::span<const double> time, std::span<const double> x, double cutoff);
 
+// The high-pass made ready for stamps and missing samples that stay the same, signal after signal.
+class HighPass {
+ public:
+  // `like`: NaN where samples are missing, values of no matter.
+  HighPass(std::span<const double> time, std::span<const double> like, double cutoff);
+  // In place; what is missing comes out as NaN.
+  void operator()(std::span<double> x) const;
+
+ private:
+  std::vector<double> keep_, gain_;  // of the state, and of the step of the signal, from the sample before
+  std::vector<double> start_;        // what the state before the first sample has become; NaN where missing
+  double own_ = 0;
+};
+
 // NaN into `x` wherever `like` has it.
 void copy_missing(std::span<const double> like, std::span<double> x);
 
