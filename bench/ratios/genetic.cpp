@@ -22,15 +22,9 @@ GeneticResult breed(const Twin& twin, int generations, bool screened) {
   GeneticOptions o;
   o.population = 50;
   o.generations = generations;
-  const auto costs = [&](std::span<const Point> points, bool ranking) {
-    std::vector<double> c;
-    for (const Evaluation& e : twin.evaluate(points, ranking))
-      c.push_back(e.ok ? 0.5 * e.residual.squaredNorm() : 1e30);
-    return c;
-  };
-  const BatchCost cost = [&](std::span<const Point> points) { return costs(points, false); };
+  const BatchCost cost = [&](std::span<const Point> points) { return twin.costs(points, false); };
   GeneticHooks hooks;
-  if (screened) hooks.screen = [&](std::span<const Point> points) { return costs(points, true); };
+  if (screened) hooks.screen = [&](std::span<const Point> points) { return twin.costs(points, true); };
   return minimise_genetic(parameters, cost, o, {}, hooks);
 }
 
@@ -79,17 +73,14 @@ void genetic_rows(Report& report, const Choice& choice) {
       {"in_doubles", {{"seconds", median_of(total_in_doubles)}, {"cost_over_floor", in_doubles.cost_over_floor}}}};
 
   // Wall time, so other work on the machine counts against two threads.
-  // In doubles 48 children are six packs, which share evenly; in floats they are three.
-  const std::vector<Timing> t = take_turns({[&] { breed(alone, 8, false); }, [&] { breed(both, 8, false); },
-                                            [&] { breed(alone, 8, true); }, [&] { breed(both, 8, true); }},
+  const std::vector<Timing> t = take_turns({[&] { breed(alone, 8, true); }, [&] { breed(both, 8, true); },
+                                            [&] { breed(alone, 8, false); }, [&] { breed(both, 8, false); }},
                                            choice.turns, wall_seconds);
-  const double gain = t[0].median / t[1].median, in_floats = t[2].median / t[3].median;
-  report.add(
-      {"two threads against one, on the search in doubles", "1.8x", "1.95x", fmt::format("{:.2f}x", gain),
-       fmt::format("best turns {:.2f}x; three packs of floats {:.2f}x, {:.2f} of the time of two threads in doubles",
-                   t[0].low / t[1].low, in_floats, t[3].median / t[1].median)});
+  const double gain = t[0].median / t[1].median, in_doubles_gain = t[2].median / t[3].median;
+  report.add({"two threads against one, on the search", "1.8x", "1.95x", fmt::format("{:.2f}x", gain),
+              fmt::format("best turns {:.2f}x; all in doubles {:.2f}x", t[0].low / t[1].low, in_doubles_gain)});
   report.json["ga_two_thread_speedup"] = gain;
-  report.json["ga_two_thread_speedup_in_floats"] = in_floats;
+  report.json["ga_two_thread_speedup_in_doubles"] = in_doubles_gain;
 }
 
 }  // namespace servodx::bench

@@ -8,6 +8,7 @@
 #include "base/random.h"
 #include "optimise/box_least_squares.h"
 #include "ratios/peers.h"
+#include "simulate/together.h"
 
 namespace servodx::bench {
 namespace {
@@ -157,9 +158,10 @@ void race(Report& report, const Choice& choice, const std::string& what, const s
           const std::vector<Objective>& objectives, nlohmann::ordered_json said) {
   const int n = objectives.front().n;
   const std::string key = std::to_string(n);
-  std::vector<std::optional<long>> used;
-  for (std::size_t k = 0; k < objectives.size(); ++k)
-    used.push_back(ours(objectives[k], static_cast<int>(k) + 1, patience));
+  std::vector<std::optional<long>> used(objectives.size());
+  together(static_cast<int>(used.size()), 0, [&](int k) {
+    used[static_cast<std::size_t>(k)] = ours(objectives[static_cast<std::size_t>(k)], k + 1, patience);
+  });
   const std::optional<double> median = median_arrival(used);
   long low = patience, high = 0;
   for (const auto& u : used)

@@ -45,18 +45,20 @@ void virtual_rows(Report& report, const Choice& choice) {
   }
   for (const int n : counts) {
     // The floor: the best of a long search of ours, four times what a seed may use.
-    std::vector<Twin> fits;
-    std::vector<Objective> objectives, by_seed;
-    for (const LogData& log : logs) fits.emplace_back(n, log, 0);
-    for (const Twin& fit : fits) objectives.push_back(objective_of(fit));
-    for (Objective& o : objectives) {
+    std::vector<double> goals;
+    for (const LogData& log : logs) {
+      const Twin fit(n, log, 0);
+      Objective o = objective_of(fit);
       double least = 1e300;
       o.goal = -1;
       ours(o, 1000, 20000, &least);
-      o.goal = 1.05 * least;
+      goals.push_back(1.05 * least);
     }
-    for (int seed = 0; seed < choice.seeds; ++seed)
-      by_seed.push_back(objectives[static_cast<std::size_t>(seed) % objectives.size()]);
+    std::vector<Twin> fits;
+    std::vector<Objective> by_seed;
+    for (int seed = 0; seed < choice.seeds; ++seed) fits.emplace_back(n, logs[seed % logs.size()], 0);
+    for (const Twin& fit : fits)
+      by_seed.push_back(objective_of(fit)), by_seed.back().goal = goals[(by_seed.size() - 1) % logs.size()];
     race(report, choice, ", virtual rig", "virtual_rig_", by_seed);
   }
 }

@@ -4,10 +4,11 @@
 // and no known floor.
 #pragma once
 #include <algorithm>
+#include <memory>
 #include <vector>
 
 #include "base/random.h"
-#include "optimise/problem.h"
+#include "fit/problem.h"
 #include "ratios/trace.h"
 
 namespace servodx::bench {
@@ -31,23 +32,20 @@ class Twin {
  public:
   static constexpr double noise[4] = {2.5e-7, 1e-5, 8e3, 8e3};  // [m, m, Pa, Pa] as params/rigs/borello2009.toml
 
-  Twin(int free, int seed, const Scenario& scenario, int threads) : n(free), scenario_(scenario) {
-    options_.threads = threads;
-    for (int c = 0; c < 4; ++c) sigma_[c] = noise[c];
-    base_ = candidate_of(table());
+  Twin(int free, int seed, const Scenario& scenario, int threads) : Twin(free, empty_log(scenario), threads) {
     Point truth;
     do {
       Random random(static_cast<std::uint64_t>(seed), 7, static_cast<std::uint32_t>(redrawn++));
       truth.clear();
       for (int j = 0; j < n; ++j) truth.push_back(random.uniform(0.1, 0.9));
-    } while (sings(candidate(truth)));
+    } while (sings(problem_.candidate(truth, 0)));
     --redrawn;
-    const Trajectory made = simulate(scenario_, candidate(truth), options_);
+    const Trajectory made = problem_.trajectories(truth).front();
     double sum = 0;
     for (int c = 0; c < 4; ++c) {
-      measured_[c] = made.signals[c];
       Random laid(static_cast<std::uint64_t>(seed), 8, static_cast<std::uint32_t>(c));
-      for (double& x : measured_[c]) {
+      log_->channels[c].measured = made.signals[c];
+      for (double& x : log_->channels[c].measured) {
         const double e = laid.normal();
         x += noise[c] * e;
         sum += e * e;
@@ -56,67 +54,64 @@ class Twin {
     floor = 0.5 * sum;
   }
 
-  // A log with the four signals, as wrong as its sensors and one per cent of what each moves by.
-  Twin(int free, const LogData& log, int threads) : n(free), scenario_(log.scenario) {
-    options_.threads = threads;
-    base_ = candidate_of(table());
-    for (const FitChannel& channel : log.channels) {
-      const int c = channel.simulated;
-      if (c >= 4) continue;
-      measured_[c] = channel.measured;
-      const auto [low, high] = std::minmax_element(channel.measured.begin(), channel.measured.end());
-      sigma_[c] = std::hypot(channel.noise, 0.01 * (*high - *low));
-    }
-  }
+  // The four signals of a log, as wrong as its sensors and one per cent of what each moves by.
+  Twin(int free, const LogData& log, int threads) : Twin(free, four_of(log), threads) {}
 
-  // The table's box; the null within what a fit of a fault-free valve allows it (fit/tune.cpp).
-  ParameterVector candidate(const Point& x) const {
-    constexpr double null_limit = 0.1;
-    ParameterVector v = base_;
-    for (int j = 0; j < n; ++j) {
-      const int r = fitted_rows()[j];
-      v[r] = r == row::servovalve_null ? null_limit * (2 * x[j] - 1) : from_unit(table()[r], x[j]);
-    }
-    return v;
-  }
-  Evaluation whitened(const Trajectory& t) const {
-    Evaluation e;
-    e.ok = t.ok;
-    if (!t.ok) return e;
-    const auto samples = static_cast<Eigen::Index>(scenario_.time.size());
-    e.residual.resize(4 * samples);
-    for (int c = 0; c < 4; ++c)
-      for (Eigen::Index k = 0; k < samples; ++k)
-        e.residual[c * samples + k] =
-            (measured_[c][static_cast<std::size_t>(k)] - t.signals[c][static_cast<std::size_t>(k)]) / sigma_[c];
-    return e;
-  }
-  std::vector<Evaluation> evaluate(std::span<const Point> points, bool ranking = false) const {
-    std::vector<ParameterVector> v;
-    for (const Point& x : points) v.push_back(candidate(x));
-    std::vector<Trajectory> t(points.size());
-    std::vector<Job> jobs;
-    for (std::size_t i = 0; i < v.size(); ++i) jobs.push_back({&scenario_, &v[i], &t[i]});
-    SimulateOptions options = options_;
-    options.ranking = ranking;
-    simulate(jobs, options);
-    std::vector<Evaluation> out;
-    for (const Trajectory& one : t) out.push_back(whitened(one));
-    return out;
+  std::vector<Evaluation> evaluate(std::span<const Point> points) const { return problem_.evaluate(points); }
+  std::vector<double> costs(std::span<const Point> points, bool ranking) const {
+    return problem_.costs(points, RobustLoss::none, 1.0, ranking);
   }
 
   int n;
   double floor = 0;  // misfit of the truth, where there is one
   int redrawn = 0;   // truths that sang
   double goal() const { return 1.05 * floor; }
-  const Scenario& scenario() const { return scenario_; }
 
  private:
+  Twin(int free, std::shared_ptr<LogData> log, int threads)
+      : n(free), log_(std::move(log)), problem_({log_.get()}, candidate_of(table()), values(free), options(threads)) {}
+  static SimulateOptions options(int threads) {
+    SimulateOptions o;
+    o.threads = threads;
+    return o;
+  }
+
+  // The table's box; the null within what a fit of a fault-free valve allows it (fit/tune.cpp).
+  static std::vector<FreeValue> values(int count) {
+    constexpr double null_limit = 0.1;
+    std::vector<FreeValue> all;
+    for (int j = 0; j < count; ++j) {
+      const int r = fitted_rows()[j];
+      const servodx::Row& of = table()[r];
+      all.push_back({.name = of.name, .at = r, .lower = of.lower, .upper = of.upper, .log_scale = of.log_scale});
+      if (r == row::servovalve_null) all.back().lower = -null_limit, all.back().upper = null_limit;
+    }
+    return all;
+  }
+
+  static std::shared_ptr<LogData> empty_log(const Scenario& scenario) {
+    auto log = std::make_shared<LogData>();
+    log->scenario = scenario;
+    for (int c = 0; c < 4; ++c)
+      log->channels.push_back({simulated_signals[c], c, std::vector<double>(scenario.time.size()), noise[c], {}});
+    return log;
+  }
+  static std::shared_ptr<LogData> four_of(const LogData& log) {
+    auto four = std::make_shared<LogData>(log);
+    std::erase_if(four->channels, [](const FitChannel& c) { return c.simulated >= 4; });
+    for (FitChannel& c : four->channels) {
+      const auto [low, high] = std::minmax_element(c.measured.begin(), c.measured.end());
+      c.noise = std::hypot(c.noise, 0.01 * (*high - *low));
+      c.filter = {};
+    }
+    return four;
+  }
+
   // Whether half the step moves a signal by more than its noise (rms): a valve that sings, at rest or on its way.
   bool sings(const ParameterVector& v) const {
-    SimulateOptions half = options_;
+    SimulateOptions whole, half;
     half.step /= 2, half.impact_step /= 2;
-    const Trajectory a = simulate(scenario_, v, options_), b = simulate(scenario_, v, half);
+    const Trajectory a = simulate(log_->scenario, v, whole), b = simulate(log_->scenario, v, half);
     if (!a.ok || !b.ok) return true;
     for (int c = 0; c < 4; ++c) {
       double square = 0;
@@ -126,11 +121,8 @@ class Twin {
     return false;
   }
 
-  const Scenario& scenario_;
-  SimulateOptions options_;
-  ParameterVector base_;
-  std::array<std::vector<double>, 4> measured_;
-  std::array<double, 4> sigma_{};  // [m, m, Pa, Pa]
+  std::shared_ptr<LogData> log_;
+  FitProblem problem_;
 };
 
 }  // namespace servodx::bench

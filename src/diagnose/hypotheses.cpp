@@ -1,12 +1,12 @@
 #include "diagnose/hypotheses.h"
 
-#include <omp.h>
-
 #include <algorithm>
 #include <cmath>
+#include <functional>
 
 #include "fit/free_values.h"
 #include "fit/identifiability.h"
+#include "simulate/together.h"
 
 namespace servodx {
 namespace {
@@ -191,38 +191,35 @@ void run(Attempt& a, const LogData& log, const ParameterVector& base, const Erro
   }
 }
 
-// Severities to begin at, best first: the fault's own identifiers and an even grid over its range, each run once with
-// the rest as in health. Lanes are cheap, and a friction or a backlash has more than one valley.
-std::vector<double> screened_starts(const LogData& log, const ParameterVector& base, const Fault& fault,
-                                    const ErrorModel& error, const Trajectory& reference, const HypothesisFit& healthy,
-                                    const HypothesisSettings& settings, long* simulations, long* failed) {
+// Severities to begin at: the fault's own identifiers and an even grid over its range. Lanes are cheap, and a friction
+// or a backlash has more than one valley.
+std::vector<double> grid_of(const Fault& fault, double null_limit) {
   constexpr int grid = 6;
-  constexpr std::size_t kept = 2;
   std::vector<double> severities = fault.starts;
   for (double side : {1.0, -1.0}) {
     if (side < 0 && !two_sided(fault)) continue;
-    const FreeValue range = severity_value(fault, side, settings.null_limit);
+    const FreeValue range = severity_value(fault, side, null_limit);
     for (int k = 0; k < grid; ++k) severities.push_back(range.from_unit((k + 0.5) / grid));
   }
+  return severities;
+}
+
+struct Screened {
+  double severity = 0, misfit = 1e300;  // with the rest as in health
+  long simulations = 0, failed = 0;
+};
+
+void screen(Screened& s, const Fault& fault, const LogData& log, const ParameterVector& base, const ErrorModel& error,
+            const Trajectory& reference, const HypothesisFit& healthy, const HypothesisSettings& settings) {
   SimulateOptions options;
   options.threads = 1;
-  std::vector<std::pair<double, double>> ranked;  // misfit, severity
-  for (double severity : severities) {
-    // One free list serves a side: the unit interval of a severity depends on its sign.
-    FitProblem problem({&log}, base, free_values(log, base, &fault, severity, settings.null_limit), options);
-    whiten(problem, error, reference);
-    Attempt a{&fault, severity, {}, {}, 0, 0};
-    const Point x = starting_point(a, problem, &healthy);
-    const Evaluation e = problem.evaluate(std::span(&x, 1)).front();
-    *simulations += problem.simulations();
-    *failed += problem.failed_simulations();
-    if (e.ok) ranked.push_back({e.residual.squaredNorm(), severity});
-  }
-  std::stable_sort(ranked.begin(), ranked.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
-  std::vector<double> best;
-  for (const auto& r : ranked)
-    if (best.size() < kept) best.push_back(r.second);
-  return best;
+  // The unit interval of a severity depends on its sign.
+  FitProblem problem({&log}, base, free_values(log, base, &fault, s.severity, settings.null_limit), options);
+  whiten(problem, error, reference);
+  const Point x = starting_point({&fault, s.severity, {}, {}, 0, 0}, problem, &healthy);
+  const Evaluation e = problem.evaluate(std::span(&x, 1)).front();
+  if (e.ok) s.misfit = e.residual.squaredNorm();
+  s.simulations = problem.simulations(), s.failed = problem.failed_simulations();
 }
 
 }  // namespace
@@ -247,37 +244,45 @@ HypothesisFits fit_hypotheses(const LogData& log, const ParameterVector& base, c
   Attempt health;
   run(health, log, base, error, reference, nullptr, settings.iterations, settings);
   worked(settings.iterations, health.simulations);
-  const int threads = settings.threads > 0 ? settings.threads : omp_get_max_threads();
-  std::vector<std::vector<double>> starts(faults.size());
-  std::vector<long> screened(faults.size(), 0), screened_failed(faults.size(), 0);
-  const auto n_faults = static_cast<long>(faults.size());
-#pragma omp parallel for schedule(dynamic, 1) num_threads(threads)
-  for (long f = 0; f < n_faults; ++f) {
-    const auto k = static_cast<std::size_t>(f);
-    starts[k] = screened_starts(log, base, *faults[k], error, reference, health.fit, settings, &screened[k],
-                                &screened_failed[k]);
-    worked(screening, screened[k]);
-  }
+  // Side by side in the same packs, as many as memory holds: a fit keeps some 1.4 kB a sample.
+  constexpr std::size_t samples_at_once = 1'000'000;
+  const auto group = static_cast<int>(std::max<std::size_t>(2, samples_at_once / log.scenario.time.size()));
+  const auto each = [&](std::size_t count, const std::function<void(std::size_t)>& task) {
+    const int n = static_cast<int>(count);
+    for (int first = 0; first < n; first += group)
+      together(std::min(group, n - first), settings.threads, [&](int i) { task(static_cast<std::size_t>(first + i)); });
+  };
+  std::vector<std::pair<const Fault*, Screened>> screened;
+  for (const Fault* fault : faults)
+    for (double severity : grid_of(*fault, settings.null_limit)) screened.push_back({fault, {severity}});
+  each(screened.size(), [&](std::size_t k) {
+    auto& [fault, s] = screened[k];
+    screen(s, *fault, log, base, error, reference, health.fit, settings);
+    worked(screening * static_cast<double>(faults.size()) / static_cast<double>(screened.size()), s.simulations);
+  });
+  std::stable_sort(screened.begin(), screened.end(),
+                   [](const auto& a, const auto& b) { return a.second.misfit < b.second.misfit; });
+  constexpr int kept = 2;
   std::vector<Attempt> attempts;
-  for (std::size_t k = 0; k < faults.size(); ++k) {
-    if (starts[k].empty()) starts[k] = {faults[k]->starts.front()};
-    for (double start : starts[k]) attempts.push_back({faults[k], start, {}, {}, 0, 0});
+  for (const Fault* fault : faults) {
+    int begun = 0;
+    for (const auto& [of, s] : screened)
+      if (of == fault && begun < kept && (begun == 0 || s.misfit < 1e300))
+        attempts.push_back({fault, s.severity, {}, {}, 0, 0}), ++begun;
   }
   const auto all = [&](int iterations) {
-    const auto count = static_cast<long>(attempts.size());
-#pragma omp parallel for schedule(dynamic, 1) num_threads(threads)
-    for (long i = 0; i < count; ++i) {
-      Attempt& a = attempts[static_cast<std::size_t>(i)];
+    each(attempts.size(), [&](std::size_t k) {
+      Attempt& a = attempts[k];
       const long before = a.simulations;
       run(a, log, base, error, reference, &health.fit, iterations, settings);
       worked(iterations, a.simulations - before);
-    }
+    });
   };
   // Every start gets a few steps; the best of each fault goes on.
   constexpr double worth_another_start = 4.0;  // of misfit: two deviates
   all(few);
   out.simulations = health.simulations, out.failed = health.failed;
-  for (std::size_t k = 0; k < faults.size(); ++k) out.simulations += screened[k], out.failed += screened_failed[k];
+  for (const auto& [fault, s] : screened) out.simulations += s.simulations, out.failed += s.failed;
   std::vector<Attempt> best;
   for (Attempt& a : attempts) {
     if (best.empty() || best.back().fault != a.fault) {
@@ -294,14 +299,12 @@ HypothesisFits fit_hypotheses(const LogData& log, const ParameterVector& base, c
   // Health had one start, the faults many: what one of them gained by better nuisances is no fault's. So health begins
   // again where each fault ended.
   std::vector<Attempt> again(attempts.size());
-  const auto n_again = static_cast<long>(again.size());
-#pragma omp parallel for schedule(dynamic, 1) num_threads(threads)
-  for (long i = 0; i < n_again; ++i) {
-    const HypothesisFit& fault = attempts[static_cast<std::size_t>(i)].fit;
+  each(again.size(), [&](std::size_t k) {
+    const HypothesisFit& fault = attempts[k].fit;
     if (fault.ok && fault.misfit < health.fit.misfit - worth_another_start)
-      run(again[static_cast<std::size_t>(i)], log, base, error, reference, &fault, settings.iterations, settings);
-    worked(again_part, again[static_cast<std::size_t>(i)].simulations);
-  }
+      run(again[k], log, base, error, reference, &fault, settings.iterations, settings);
+    worked(again_part, again[k].simulations);
+  });
   for (Attempt& a : again) {
     out.simulations += a.simulations, out.failed += a.failed;
     if (a.fit.ok && a.fit.misfit < health.fit.misfit)

@@ -192,11 +192,6 @@ std::vector<Point> breadth(Tuning& run, const Point& start) {
     std::copy(s.begin(), s.end(), x.begin());
     return x;
   };
-  const auto full = [&](const Point& s) {
-    Point x = start;
-    std::copy(s.begin(), s.end(), x.begin());
-    return x;
-  };
   const auto costs = [&](std::span<const Point> points, bool ranking) {
     std::vector<Point> whole;
     for (const Point& p : points) whole.push_back(full(p));

@@ -2,86 +2,35 @@
 
 #include <algorithm>
 #include <cmath>
-#include <condition_variable>
 #include <cstdio>
-#include <exception>
+#include <iterator>
 #include <limits>
 #include <mutex>
-#include <thread>
 
 #include "base/error.h"
+#include "base/meeting.h"
 
 namespace servodx {
 namespace {
 
-// Runs wait here with the points they want; when every live run waits, the calling thread evaluates them as one batch.
-class Meeting {
- public:
-  explicit Meeting(int runs) : live_(runs), requests_(runs) {}
-
-  // For a run. Blocks until its values are there.
-  std::vector<Evaluation> ask(int run, std::span<const Point> points) {
-    std::unique_lock lock(mutex_);
-    Request& request = requests_[run];
-    request.points = points;
-    request.waiting = true;
-    ++waiting_;
-    changed_.notify_all();
-    changed_.wait(lock, [&] { return !request.waiting || broken_; });
-    if (broken_) throw Broken{};
-    return std::move(request.values);
-  }
-
-  void leave() {
-    const std::lock_guard lock(mutex_);
-    --live_;
-    changed_.notify_all();
-  }
-
-  // For the calling thread: serves until all runs have left.
-  void serve(const BatchEvaluate& evaluate) {
-    std::unique_lock lock(mutex_);
-    for (;;) {
-      changed_.wait(lock, [&] { return waiting_ == live_; });
-      if (live_ == 0) return;
-      std::vector<Point> points;
-      for (const Request& request : requests_)
-        if (request.waiting) points.insert(points.end(), request.points.begin(), request.points.end());
-      std::vector<Evaluation> values = evaluate(points);
-      if (values.size() != points.size()) throw std::logic_error("BatchEvaluate returned another number of points");
-      std::size_t at = 0;
-      for (Request& request : requests_) {
-        if (!request.waiting) continue;
-        request.values.clear();
-        for (std::size_t k = 0; k < request.points.size(); ++k) request.values.push_back(std::move(values[at++]));
-        request.waiting = false;
-      }
-      waiting_ = 0;
-      changed_.notify_all();
-    }
-  }
-
-  void call_off() {
-    const std::lock_guard lock(mutex_);
-    broken_ = true;
-    changed_.notify_all();
-  }
-
-  struct Broken {};
-
- private:
-  struct Request {
-    std::span<const Point> points;
-    std::vector<Evaluation> values;
-    bool waiting = false;
-  };
-  std::mutex mutex_;
-  std::condition_variable changed_;
-  int live_;
-  int waiting_ = 0;
-  bool broken_ = false;
-  std::vector<Request> requests_;
+struct Request {
+  std::span<const Point> points;
+  std::vector<Evaluation> values;
 };
+
+// All points of all that ask, as one batch.
+void serve(const BatchEvaluate& evaluate, const std::vector<Request*>& requests) {
+  std::vector<Point> points;
+  for (const Request* r : requests) points.insert(points.end(), r->points.begin(), r->points.end());
+  std::vector<Evaluation> values = evaluate(points);
+  if (values.size() != points.size()) throw std::logic_error("BatchEvaluate returned another number of points");
+  auto at = values.begin();
+  for (Request* r : requests) {
+    const auto end = at + static_cast<std::ptrdiff_t>(r->points.size());
+    r->values.assign(std::make_move_iterator(at), std::make_move_iterator(end));
+    at = end;
+  }
+}
 
 std::string number(double value) {
   char text[32];
@@ -93,48 +42,32 @@ std::vector<LeastSquaresResult> run_all(const LeastSquaresProblem& problem, cons
                                         const LeastSquaresOptions& options) {
   const int count = static_cast<int>(starts.size());
   std::vector<LeastSquaresResult> results(count);
-  std::vector<std::exception_ptr> errors(count);
   std::mutex one_at_a_time;  // the caller's Jacobian and progress need not be thread-safe
-  Meeting meeting(count);
-  const auto work = [&](int run) {
-    try {
-      LeastSquaresProblem mine;
-      mine.n = problem.n;
-      mine.evaluate = [&meeting, run](std::span<const Point> points) { return meeting.ask(run, points); };
-      if (problem.jacobian) {
-        mine.jacobian = [&](const Point& point, const Eigen::VectorXd& residual, Eigen::MatrixXd& jacobian) {
-          const std::lock_guard lock(one_at_a_time);
-          return problem.jacobian(point, residual, jacobian);
-        };
-      }
-      LeastSquaresOptions local = options;
-      if (options.progress) {
-        local.progress = [&](const LeastSquaresProgress& now) {
-          const std::lock_guard lock(one_at_a_time);
-          return options.progress(now);
-        };
-      }
-      results[run] = minimise_least_squares(mine, starts[run], local);
-    } catch (const Meeting::Broken&) {
-    } catch (...) {
-      errors[run] = std::current_exception();
+  const auto work = [&](int run, const Meeting<Request>::Ask& ask) {
+    LeastSquaresProblem mine;
+    mine.n = problem.n;
+    mine.evaluate = [&ask](std::span<const Point> points) {
+      Request request{points, {}};
+      ask(request);
+      return std::move(request.values);
+    };
+    if (problem.jacobian) {
+      mine.jacobian = [&](const Point& point, const Eigen::VectorXd& residual, Eigen::MatrixXd& jacobian) {
+        const std::lock_guard lock(one_at_a_time);
+        return problem.jacobian(point, residual, jacobian);
+      };
     }
-    meeting.leave();
+    LeastSquaresOptions local = options;
+    if (options.progress) {
+      local.progress = [&](const LeastSquaresProgress& now) {
+        const std::lock_guard lock(one_at_a_time);
+        return options.progress(now);
+      };
+    }
+    results[run] = minimise_least_squares(mine, starts[run], local);
   };
-  std::exception_ptr served;
-  {
-    std::vector<std::jthread> threads;
-    for (int run = 0; run < count; ++run) threads.emplace_back(work, run);
-    try {
-      meeting.serve(problem.evaluate);
-    } catch (...) {
-      served = std::current_exception();
-      meeting.call_off();
-    }
-  }
-  if (served) std::rethrow_exception(served);
-  for (const std::exception_ptr& error : errors)
-    if (error) std::rethrow_exception(error);
+  Meeting<Request>::hold(count, count, work,
+                         [&](const std::vector<Request*>& requests) { serve(problem.evaluate, requests); });
   return results;
 }
 

@@ -3,9 +3,14 @@
 #include <omp.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
+#include <tuple>
+#include <utility>
 
+#include "base/meeting.h"
 #include "simulate/kernel.h"
+#include "simulate/together.h"
 
 namespace servodx {
 namespace {
@@ -34,6 +39,7 @@ bool is_off(const EffectInfo& e, const ParameterVector& v) {
 
 // Which kernel a candidate needs, the cheapest that holds all that is not at its off value; only candidates of the same
 // need share a pack. 0: none of the effects; 1: effects that have a name; 2: a learnt curve, which runs alone.
+constexpr int learnt_curve = 2;
 int need_of(const ParameterVector& v) {
   int need = 0;
   for (const EffectInfo& e : effect_list()) {
@@ -42,7 +48,7 @@ int need_of(const ParameterVector& v) {
       need = std::max(need, 1);
       continue;
     }
-    need = 2;
+    need = learnt_curve;
   }
   return need;
 }
@@ -50,10 +56,47 @@ int need_of(const ParameterVector& v) {
 RunPack run_of(const Kernels& k, int need) { return need == 0 ? k.base : need == 1 ? k.extended : k.corrected; }
 
 struct PackOfJobs {
-  std::size_t first = 0;
-  int count = 0;
-  int need = 0;
+  std::array<const Job*, 16> jobs;
+  int count = 0, need = 0;
 };
+
+// Jobs of one log and one need share packs, wherever they stand. Longest logs first, so that no thread ends on a long
+// one; the result does not depend on the order.
+void pack(std::span<const Job> jobs, int width, std::vector<PackOfJobs>& packs) {
+  thread_local std::vector<std::pair<const Job*, int>> order;  // and its need
+  order.clear();
+  for (const Job& job : jobs) order.push_back({&job, need_of(*job.candidate)});
+  const auto key = [](const std::pair<const Job*, int>& j) {
+    return std::tuple(-static_cast<long>(j.first->scenario->time.size()), j.first->scenario, j.second);
+  };
+  std::sort(order.begin(), order.end(), [&](const auto& a, const auto& b) {
+    const auto of_a = key(a), of_b = key(b);
+    return of_a != of_b ? of_a < of_b : a.first < b.first;
+  });
+  packs.clear();
+  for (std::size_t i = 0; i < order.size(); ++i) {
+    const auto [job, need] = order[i];
+    if (i == 0 || key(order[i]) != key(order[i - 1]) || need == learnt_curve || packs.back().count == width)
+      packs.push_back({{}, 0, need});
+    packs.back().jobs[static_cast<std::size_t>(packs.back().count++)] = job;
+  }
+}
+
+struct Request {
+  std::span<const Job> jobs;
+  SimulateOptions options;
+};
+
+// Whether the runs of one come out as the other's: all but the threads.
+bool same_runs(const SimulateOptions& a, const SimulateOptions& b) {
+  const auto what = [](const SimulateOptions& o) {
+    return std::tie(o.step, o.impact_step, o.creep_step, o.wanted, o.ranking);
+  };
+  return what(a) == what(b);
+}
+
+std::atomic<long> packs_so_far = 0;
+thread_local const Meeting<Request>::Ask* company = nullptr;  // of the task that runs in this thread
 
 }  // namespace
 
@@ -63,38 +106,59 @@ int simulated_index(Signal s) {
 }
 
 void simulate(std::span<const Job> jobs, const SimulateOptions& options) {
+  if (company) {
+    Request request{jobs, options};
+    return (*company)(request);
+  }
   const Kernels& kernels = options.ranking ? best_kernels().ranking : best_kernels().doubles;
   static const Kernels plain = kernels_scalar();
-  std::vector<PackOfJobs> packs;
-  for (std::size_t i = 0; i < jobs.size(); ++i) {
-    const int need = need_of(*jobs[i].candidate);
-    if (!packs.empty() && packs.back().count < kernels.width && packs.back().need == need && need < 2 &&
-        jobs[packs.back().first].scenario == jobs[i].scenario)
-      ++packs.back().count;
-    else
-      packs.push_back({i, 1, need});
-  }
-  // Longest logs first, so that no thread ends on a long one; the result does not depend on the order.
-  std::vector<std::size_t> order(packs.size());
-  for (std::size_t k = 0; k < order.size(); ++k) order[k] = k;
-  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
-    return jobs[packs[a].first].scenario->time.size() > jobs[packs[b].first].scenario->time.size();
-  });
+  thread_local std::vector<PackOfJobs> space;
+  std::vector<PackOfJobs>& packs = space;
+  pack(jobs, kernels.width, packs);
   const int threads = options.threads > 0 ? options.threads : omp_get_max_threads();
   const auto count = static_cast<long>(packs.size());
+  packs_so_far += count;
 #pragma omp parallel for schedule(dynamic, 1) num_threads(threads)
   for (long k = 0; k < count; ++k) {
-    const PackOfJobs& pack = packs[order[k]];
+    const PackOfJobs& pack = packs[static_cast<std::size_t>(k)];
     const ParameterVector* candidates[16];
     Trajectory* results[16];
     for (int lane = 0; lane < pack.count; ++lane) {
-      candidates[lane] = jobs[pack.first + lane].candidate;
-      results[lane] = jobs[pack.first + lane].result;
+      candidates[lane] = pack.jobs[static_cast<std::size_t>(lane)]->candidate;
+      results[lane] = pack.jobs[static_cast<std::size_t>(lane)]->result;
     }
-    const Scenario& scenario = *jobs[pack.first].scenario;
     // One alone runs in a lane too: eight cost hardly more, and the bits are the same in any company.
-    run_of(pack.need == 2 ? plain : kernels, pack.need)(scenario, candidates, results, pack.count, options);
+    run_of(pack.need == learnt_curve ? plain : kernels, pack.need)(*pack.jobs[0]->scenario, candidates, results,
+                                                                   pack.count, options);
   }
+}
+
+void together(int tasks, int threads, const std::function<void(int)>& task) {
+  const int at_a_time = threads > 0 ? threads : omp_get_max_threads();
+  const auto serve = [&](const std::vector<Request*>& requests) {
+    std::vector<char> served(requests.size(), 0);
+    std::vector<Job> jobs;
+    for (std::size_t i = 0; i < requests.size(); ++i) {
+      if (served[i]) continue;
+      SimulateOptions options = requests[i]->options;
+      jobs.clear();
+      for (std::size_t k = i; k < requests.size(); ++k) {
+        if (served[k] || !same_runs(requests[k]->options, options)) continue;
+        jobs.insert(jobs.end(), requests[k]->jobs.begin(), requests[k]->jobs.end());
+        served[k] = 1;
+      }
+      options.threads = threads;
+      simulate(jobs, options);
+    }
+  };
+  Meeting<Request>::hold(
+      tasks, at_a_time,
+      [&](int i, const Meeting<Request>::Ask& ask) {
+        company = &ask;
+        omp_set_num_threads(1);  // of what this task does by itself
+        task(i);
+      },
+      serve);
 }
 
 Trajectory simulate(const Scenario& scenario, const ParameterVector& candidate, const SimulateOptions& options) {
@@ -106,5 +170,6 @@ Trajectory simulate(const Scenario& scenario, const ParameterVector& candidate, 
 
 std::string instruction_set() { return best_kernels().doubles.name; }
 int pack_width() { return best_kernels().doubles.width; }
+long packs_run() { return packs_so_far; }
 
 }  // namespace servodx

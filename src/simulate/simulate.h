@@ -23,5 +23,7 @@ Trajectory simulate(const Scenario& scenario, const ParameterVector& candidate, 
 // Name of the instruction set in use: "avx512", "avx2" or "generic".
 std::string instruction_set();
 int pack_width();
+// Packs that this process has run so far; beside the runs asked for it tells how full they were.
+long packs_run();
 
 }  // namespace servodx

@@ -2,11 +2,28 @@
 
 #include <gtest/gtest.h>
 
+#include <cstdlib>
+#include <new>
+
 #include "fit/error_model.h"
 #include "fit/free_values.h"
 #include "fit/identifiability.h"
 #include "fit/support.h"
 #include "optimise/box_least_squares.h"
+
+namespace {
+std::size_t bytes_asked_for = 0;
+}
+
+// Counted in this program, whose tests run one at a time.
+void* operator new(std::size_t size) {
+#pragma omp atomic
+  bytes_asked_for += size;
+  if (void* p = std::malloc(size)) return p;
+  throw std::bad_alloc();
+}
+void operator delete(void* p) noexcept { std::free(p); }
+void operator delete(void* p, std::size_t) noexcept { std::free(p); }
 
 namespace servodx {
 namespace {
@@ -66,6 +83,38 @@ struct TwoLogs {
     return f;
   }
 };
+
+TEST(FitProblem, CostsAreHalfTheSquaredResidualsAsTheLossChangesThem) {
+  const TwoLogs logs;
+  std::vector<FreeValue> free = logs.free();
+  free[1].prior_sd = 0.2;
+  FitProblem problem({&logs.a, &logs.b}, logs.truth, free);
+  std::vector<Point> points(5, problem.start());
+  for (std::size_t k = 0; k < points.size(); ++k)
+    for (std::size_t j = 0; j < points[k].size(); ++j)
+      points[k][j] = 0.9 * points[k][j] + 0.1 * static_cast<double>((j + k) % 5) / 5;
+  const std::vector<Evaluation> e = problem.evaluate(points);
+  for (const RobustLoss loss : {RobustLoss::none, RobustLoss::compressed, RobustLoss::soft_l1}) {
+    const std::vector<double> costs = problem.costs(points, loss, 3.0);
+    for (std::size_t k = 0; k < points.size(); ++k) {
+      double sum = 0;
+      for (double r : e[k].residual) sum += std::pow(robust(loss, 3.0, r).t, 2);
+      EXPECT_NEAR(costs[k], 0.5 * sum, 1e-12 * sum);
+    }
+  }
+}
+
+TEST(FitProblem, AGenerationsCostsAskForNoMemoryButTheirOwn) {
+  const TwoLogs logs;
+  FitProblem problem({&logs.a, &logs.b}, logs.truth, logs.free(), {.threads = 1});
+  const std::vector<Point> points(48, problem.start());
+  for (const bool ranking : {true, false}) {
+    problem.costs(points, RobustLoss::compressed, 3.0, ranking);
+    const std::size_t before = bytes_asked_for;
+    const std::vector<double> costs = problem.costs(points, RobustLoss::compressed, 3.0, ranking);
+    EXPECT_EQ(bytes_asked_for - before, costs.size() * sizeof(double));
+  }
+}
 
 TEST(FitProblem, JacobianEqualsCentralDifferences) {
   const TwoLogs logs;
