@@ -177,6 +177,7 @@ struct GrowthModel::Component {
       sum += d[static_cast<long>(j)] * p.features[j];
     return sum * (of_drop ? 1 + drop_beyond_whole(lost * along(p.time)) : along(p.time));
   }
+  double size() const { return of_drop && lost > 0 ? a / drop_beyond_whole(lost) : 1.0; }
   double slope_now() const {
     if (!of_drop) return a * law.slope_at_1() / span;
     const double drop = 1 + drop_beyond_whole(lost);
@@ -354,7 +355,7 @@ GrowthModel::GrowthModel(std::vector<GrowthPoint> points, const GrowthPrior& pri
   const double growth = log_sum(all);
   growth_.log_bayes_factor = growth - log_sum(null);
   growth_.probability = 1 / (1 + std::exp(-growth_.log_bayes_factor));
-  double total = 0, square = 0, grown_square = 0;
+  double total = 0, square = 0, grown_square = 0, size = 0;
   growth_.coefficients.assign(features, 0.0);
   const auto component = [&](std::size_t r, double lost, const Regression::Grown& grown) {
     Component c;
@@ -396,7 +397,7 @@ GrowthModel::GrowthModel(std::vector<GrowthPoint> points, const GrowthPrior& pri
     square += weight * (at * at + spread);
     growth_.grown += weight * (c.a + strayed);
     grown_square += weight * (std::pow(c.a + strayed, 2) + c.a_sd * c.a_sd + strayed_sd * strayed_sd);
-    growth_.base += weight * c.base;
+    growth_.base += weight * c.base, size += weight * c.size();
     growth_.slope += weight * c.slope_now();
     growth_.noise += weight * c.noise;
     for (long j = 0; j < f; ++j) growth_.coefficients[added_[static_cast<std::size_t>(j)]] += weight * c.mean[j + 1];
@@ -405,7 +406,7 @@ GrowthModel::GrowthModel(std::vector<GrowthPoint> points, const GrowthPrior& pri
   growth_.now /= total, growth_.base /= total, growth_.slope /= total, growth_.noise /= total;
   for (double& b : growth_.coefficients) b /= total;
   growth_.now_sd = std::sqrt(std::max(0.0, square / total - growth_.now * growth_.now));
-  growth_.grown /= total;
+  growth_.grown /= total, growth_.size = size / total;
   growth_.grown_sd = std::sqrt(std::max(0.0, grown_square / total - growth_.grown * growth_.grown));
   const Component none = component(best_null, 0, nulls[best_null]);
   growth_.base_sd = none.base_sd;
@@ -413,7 +414,7 @@ GrowthModel::GrowthModel(std::vector<GrowthPoint> points, const GrowthPrior& pri
   if (growth_.probability < 0.5) {  // without a trend, the null's
     growth_.base = growth_.now = none.base;
     growth_.now_sd = growth_.base_sd;
-    growth_.noise = growth_.null_noise;
+    growth_.noise = growth_.null_noise, growth_.size = 1;
     for (long j = 0; j < f; ++j) growth_.coefficients[added_[static_cast<std::size_t>(j)]] = none.mean[j + 1];
     components_.assign(1, none);
     components_.front().weight = 1;
@@ -459,7 +460,7 @@ Life GrowthModel::life(const FailureAt& failure, std::uint64_t seed) const {
       const std::optional<double>& given = a > 0 ? failure.upper : failure.lower;
       double t = std::numeric_limits<double>::infinity();
       if (given && a != 0) {
-        const double level = failure.level(*given, base);
+        const double level = failure.level(*given, base, a / c.a * c.size());
         // The wander goes on: once from now to the first estimate of the end.
         const auto reached = [&](double astray) {
           return std::max(0.0, c.onset + c.span * c.reaches(level, base, a, astray - moved) - now_);

@@ -53,6 +53,7 @@ struct Growth {
   double base = 0, base_sd = 0;      // without growth
   double slope = 0;                  // [y/h] at the last check, mean
   double grown = 0, grown_sd = 0;    // to the last check, wander included
+  double size = 1;                   // of a drop over the whole part, as the model has it: m above
   std::vector<double> coefficients;  // of the features
   double noise = 0;                  // [y] of one check
   double null_noise = 0;             // the same without growth
@@ -68,8 +69,9 @@ struct FailureAt {
   std::optional<double> upper, lower;
   Of of = Of::value;
   double sd = 0;  // of the level itself, in what wears: of a drop in the part that is lost
-  double level(double given, double base) const {
-    return of == Of::times_base ? given * base : of == Of::beyond_base ? base + given : given;
+  // `size`: of what is followed, in what the model takes for one; a drop's only.
+  double level(double given, double base, double size = 1) const {
+    return of == Of::times_base ? given * base : of == Of::beyond_base ? base + given * size : given;
   }
 };
 

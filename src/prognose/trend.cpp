@@ -67,10 +67,11 @@ struct Series {
   double stretch(double v) const {
     return scale == Scale::logarithm ? std::abs(v) : scale == Scale::drop ? lost_per_drop(drop_at(v)) : 1.0;
   }
-  // How far a growth has come, evenly told from first to last: of a drop in its logarithm.
+  // How far a growth has come where its error matters as much at the first as at the last: of a drop its logarithm.
   double way(double grown) const { return scale == Scale::drop ? std::log1p(std::max(grown, 0.0)) : grown; }
-  double at_part_of_way(double part, double grown) const {
-    return scale == Scale::drop ? std::expm1(part * way(grown)) : part * grown;
+  // The growth when a part of the way has been worn; of a drop it is the part lost that wears.
+  double worn(double part, double grown) const {
+    return scale == Scale::drop ? drop_at(part * lost_at(1 + std::max(grown, 0.0))) - 1 : part * grown;
   }
   std::optional<double> in(const std::optional<double>& v) const {
     return v && (!paper() || *v > 0) ? std::optional(in(*v)) : std::nullopt;
@@ -337,14 +338,14 @@ CheckTrend trend_of(const Series& s, const TrendOptions& options, std::size_t na
   std::vector<double> first;
   for (std::size_t i = 0; i < healthy; ++i) first.push_back(s.points[i].y);
   const FailureAt failure = failure_of(s, options);
-  const auto fails_at = [&](double base) {
+  const auto fails_at = [&](double base, double size) {
     Level level;
-    if (failure.upper) level.upper = s.out(failure.level(*failure.upper, base));
-    if (failure.lower) level.lower = s.out(failure.level(*failure.lower, base));
+    if (failure.upper) level.upper = s.out(failure.level(*failure.upper, base, size));
+    if (failure.lower) level.lower = s.out(failure.level(*failure.lower, base, size));
     return level;
   };
   out.healthy = s.out(median(first));
-  out.failure = fails_at(median(first));
+  out.failure = fails_at(median(first), 1);
   for (std::size_t i = 0; i < n; ++i)
     out.points.push_back({s.points[i].time, s.out(s.points[i].y), s.temperature[i], i < healthy});
   if (n < least_checks) return out;
@@ -379,7 +380,7 @@ CheckTrend trend_of(const Series& s, const TrendOptions& options, std::size_t na
     return l;
   };
   out.healthy = s.out(centre);
-  out.failure = fails_at(centre);
+  out.failure = fails_at(centre, g.size);
   out.threshold = band(options.false_alarm);
   out.warning = band(options.false_alarm / (per_checks * static_cast<double>(names)));
   const auto beyond = [](const Level& l, double value) {
@@ -392,7 +393,7 @@ CheckTrend trend_of(const Series& s, const TrendOptions& options, std::size_t na
   // A warning comes at a part of the way to failure at the latest; against false alarms there the trend test stands.
   const auto in_time = [&](std::optional<double>& warning, const std::optional<double>& end, double side) {
     if (!end) return;
-    const double latest = s.out(centre + s.at_part_of_way(latest_warning, s.in(*end) - centre));
+    const double latest = s.out(centre + s.worn(latest_warning, s.in(*end) - centre));
     if (!warning || side * (*warning - latest) > 0) warning = latest;
   };
   in_time(out.warning.upper, out.failure.upper, 1);
@@ -423,8 +424,8 @@ CheckTrend trend_of(const Series& s, const TrendOptions& options, std::size_t na
   if (beyond(out.failure, out.now)) out.state = "failed";
   if (const auto& end = g.grown > 0 ? failure.upper : failure.lower) {
     constexpr double one_sided = 1.645;  // 95 %
-    out.surely =
-        s.way(std::abs(g.grown) - one_sided * g.grown_sd) / s.way(std::abs(failure.level(*end, g.base) - g.base));
+    out.surely = s.way(std::abs(g.grown) - one_sided * g.grown_sd) /
+                 s.way(std::abs(failure.level(*end, g.base, g.size) - g.base));
   }
   out.life = model.life(failure, options.seed);
   out.remaining = remaining_of(out.life, options.coverage);
