@@ -47,7 +47,7 @@ constexpr std::array<Law, 13> laws = {{{0.5, 0, 1},
                                        {1, 5.0, 1}}};
 // Onsets as parts of the record, and their weights: wear usually begins with use. Between coarser ones a growth that
 // began late looks like one that accelerates.
-constexpr auto onsets = [] {
+constexpr auto all_onsets = [] {
   std::array<std::pair<double, double>, 18> all{};
   for (std::size_t k = 0; k < all.size(); ++k) all[k] = {0.05 * static_cast<double>(k), k ? 4.0 / 17.0 : 4.0};
   return all;
@@ -58,8 +58,8 @@ constexpr std::array<double, 3> wanders = {0, 0.03, 0.1};
 constexpr std::size_t healthy_wanders = 2;
 // A part lost so far, where it is one, by what the drop has grown: what is between two of them its size tells.
 constexpr auto losses = [] {
-  std::array<double, 18> drops{};
-  for (std::size_t k = 0; k < drops.size(); ++k) drops[k] = k ? 1.35 * drops[k - 1] : 0.2;
+  std::array<double, 13> drops{};
+  for (std::size_t k = 0; k < drops.size(); ++k) drops[k] = k ? 1.5 * drops[k - 1] : 0.2;
   return drops;
 }();
 constexpr double size_spread = 0.25;   // of the drop over the whole part, as the model has it
@@ -84,6 +84,7 @@ using TermMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, most
 // Gaussian linear regression of all but the growth at one noise level and wander, whitened, and what a growth adds.
 struct Regression {
   Eigen::LLT<Eigen::MatrixXd> factor;  // of the noise's covariance
+  Eigen::VectorXd alone;               // inverse spread of each point where none depends on another
   Eigen::MatrixXd x;                   // whitened
   Eigen::VectorXd residual;            // whitened, of the prior mean
   Eigen::LLT<TermMatrix> precision;
@@ -94,8 +95,9 @@ struct Regression {
   Regression(const Eigen::MatrixXd& terms, const Eigen::VectorXd& y, const Eigen::MatrixXd& noise,
              const Terms& prior_mean, const Terms& prior_sd)
       : factor(noise) {
-    x = factor.matrixL().solve(terms);
-    residual = factor.matrixL().solve(y - terms * prior_mean);
+    if (noise.isDiagonal(0)) alone = noise.diagonal().cwiseSqrt().cwiseInverse();
+    x = whitened(terms);
+    residual = whitened(y - terms * prior_mean);
     const Terms prior = prior_sd.cwiseAbs2().cwiseInverse();
     TermMatrix a = x.transpose() * x;
     a.diagonal() += prior;
@@ -107,6 +109,11 @@ struct Regression {
     const auto log_det = [](const auto& llt) { return 2 * llt.matrixLLT().diagonal().array().log().sum(); };
     log_evidence = -0.5 * (residual.squaredNorm() - right.dot(shift) + log_det(factor) + log_det(precision) -
                            prior.array().log().sum());
+  }
+
+  Eigen::MatrixXd whitened(const Eigen::MatrixXd& of) const {
+    if (alone.size() > 0) return alone.asDiagonal() * of;
+    return factor.matrixL().solve(of);
   }
 
   // Of a, with d integrated out.
@@ -230,6 +237,8 @@ GrowthModel::GrowthModel(std::vector<GrowthPoint> points, const GrowthPrior& pri
   }
   const double worn = prior.of_drop ? lost_at_drop(1 + prior.scale) : prior.scale;  // of what wears, that matters
 
+  std::vector<std::pair<double, double>> onsets;
+  for (std::size_t k = 0; k < all_onsets.size(); k += prior.coarse ? 3 : 1) onsets.push_back(all_onsets[k]);
   double laws_weight = 0, onsets_weight = 0;
   for (const Law& law : laws) laws_weight += law.weight;
   for (const auto& onset : onsets) onsets_weight += onset.second;
@@ -262,7 +271,7 @@ GrowthModel::GrowthModel(std::vector<GrowthPoint> points, const GrowthPrior& pri
   std::vector<double> parts = {0.0};  // lost to now
   if (prior.of_drop) {
     parts.clear();
-    for (const double drop : losses) parts.push_back(lost_at_drop(1 + drop));
+    for (std::size_t k = 0; k < losses.size(); k += prior.coarse ? 2 : 1) parts.push_back(lost_at_drop(1 + losses[k]));
   }
   const long each = static_cast<long>(onsets.size() * laws.size());
   std::vector<Eigen::MatrixXd> growths;
@@ -294,7 +303,7 @@ GrowthModel::GrowthModel(std::vector<GrowthPoint> points, const GrowthPrior& pri
   for (std::size_t r = 0; r < static_cast<std::size_t>(healthy_ones); ++r) {
     const Regression& of = regressions[r];
     if (prior.of_drop) {
-      const Eigen::MatrixXd whitened = of.factor.matrixL().solve(whole);
+      const Eigen::MatrixXd whitened = of.whitened(whole);
       nulls.push_back(of.with(whitened, of.x.transpose() * whitened, supposed, spreads(0)));
     } else {
       nulls.push_back(
@@ -310,7 +319,7 @@ GrowthModel::GrowthModel(std::vector<GrowthPoint> points, const GrowthPrior& pri
     const double hopeful = *std::max_element(of_part.begin(), of_part.end()) - hopeless;
     for (std::size_t part = 0; part < parts.size(); ++part) {
       if (!every_part && of_part[part] < hopeful) continue;
-      const Eigen::MatrixXd whitened = regressions[r].factor.matrixL().solve(growths[part]);
+      const Eigen::MatrixXd whitened = regressions[r].whitened(growths[part]);
       const Eigen::MatrixXd crossed = regressions[r].x.transpose() * whitened;
       of_part[part] = -1e300;
       for (std::size_t o = 0; o < onsets.size(); ++o)

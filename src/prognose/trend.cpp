@@ -288,6 +288,12 @@ void expose(std::vector<GrowthPoint>& points, const GrowthPrior& prior) {
   }
 }
 
+// A drop is tried in many parts lost: where only the curve through the checks is asked for, in fewer.
+GrowthPrior first_look(GrowthPrior prior) {
+  prior.coarse = prior.of_drop;
+  return prior;
+}
+
 // Where the scale of what is lost ends a reading says: at most this. The normal reading that says as much to the curve
 // that all tell together (Newton's step of the likelihood of a censored reading).
 std::vector<GrowthPoint> at_the_end(std::vector<GrowthPoint> points, const GrowthPrior& prior) {
@@ -296,7 +302,7 @@ std::vector<GrowthPoint> at_the_end(std::vector<GrowthPoint> points, const Growt
   const std::vector<GrowthPoint> as_read = points;
   const auto ends = [&](const GrowthPoint& p) { return prior.of_drop && p.y < near * Series::least_drop; };
   for (int k = 0; k < steps && std::any_of(as_read.begin(), as_read.end(), ends); ++k) {
-    const GrowthModel all(thinned(points), prior);
+    const GrowthModel all(thinned(points), first_look(prior));
     for (std::size_t i = 0; i < points.size(); ++i) {
       const GrowthPoint& p = as_read[i];
       if (!ends(p)) continue;
@@ -317,7 +323,7 @@ std::vector<GrowthPoint> at_the_end(std::vector<GrowthPoint> points, const Growt
 std::vector<GrowthPoint> set_aside(std::vector<GrowthPoint> points, const GrowthPrior& prior) {
   if (points.size() < least_checks) return points;
   expose(points, prior);
-  const GrowthModel first(thinned(points), prior);
+  const GrowthModel first(thinned(points), first_look(prior));
   std::vector<double> corrected;
   for (const GrowthPoint& p : points) corrected.push_back(first.at_reference(p));
   std::vector<double> away;
