@@ -18,6 +18,7 @@ constexpr std::size_t least_checks = 6;   // for a word on a trend
 constexpr std::size_t most_points = 100;  // longer histories are averaged in blocks
 constexpr double latest_warning = 0.25;   // of the way to failure: three quarters are left to act in
 constexpr double outlying = 4;            // [spreads] from its neighbours at which a check is set aside
+constexpr double as_far = 0.5;            // of the furthest on its way to failure: what may be the cause instead
 constexpr double per_checks = 100;        // the false-alarm rate of a valve is stated over this many checks
 
 double median(std::vector<double> v) {
@@ -510,14 +511,19 @@ ValveTrend trend(const ValveHistory& history, const TrendOptions& options) {
   const std::vector<Series> all = series_of(history, out.notes);
   for (const Series& s : all) out.trends.push_back(trend_of(s, options, all.size()));
 
-  const CheckTrend* cause = nullptr;
+  double furthest = -infinite;  // of what may be the cause, surely
+  const auto may_be = [](const CheckTrend& t) { return !t.cause.empty() && t.trend && !t.life.empty(); };
   for (const CheckTrend& t : out.trends) {
     if (rank_of(t.state) > rank_of(out.state)) out.state = t.state;
     out.to_warning = std::min(out.to_warning, t.to_warning);
     if (t.alert_at && (!out.alert_at || *t.alert_at < *out.alert_at)) out.alert_at = t.alert_at;
-    if (t.cause.empty() || !t.trend || t.life.empty()) continue;
-    if (!cause || t.surely > cause->surely) cause = &t;
+    if (may_be(t)) furthest = std::max(furthest, t.surely);
   }
+  const CheckTrend* cause = nullptr;
+  for (const CheckTrend& t : out.trends)
+    if (may_be(t) && t.surely >= std::min(furthest, as_far * furthest) &&
+        (!cause || t.log_bayes_factor > cause->log_bayes_factor))
+      cause = &t;
   if (cause) out.cause = cause->cause;
   for (const CheckTrend& t : out.trends)
     if (t.blind && !t.trend)
