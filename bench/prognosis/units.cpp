@@ -45,31 +45,18 @@ double truth_of(const Degradation& d, const rig::RigModel& valve, double severit
   return severity;
 }
 
-namespace {
-
-// A mixed drive and preflight tests of the valve as it was delivered.
-std::vector<Log> acceptance(const Bench& b, const std::string& name, const rig::RigModel& valve, std::uint32_t stream,
-                            const std::string& folder) {
-  const std::string tests = folder + "/tests/" + name;
-  fs::create_directories(tests);
-  Random random(33, stream);
-  rig::RigRun mixed;
-  mixed.excitation = "mixed", mixed.duration = 4, mixed.seed = random.bits64();
-  std::vector<Log> logs = {kept_log(b, tests + "/a1.csv", valve, {}, mixed)};
-  for (const double celsius : {20.0, 40.0, 60.0, -10.0})
-    logs.push_back(kept_log(b, fmt::format("{}/a{}.csv", tests, logs.size() + 1), valve, {.celsius = celsius},
-                            preflight(random.bits64())));
-  return logs;
-}
-
-}  // namespace
-
 Table own_table(const Bench& b, const std::string& name, const rig::RigModel& valve, std::uint32_t stream,
                 const std::string& folder) {
-  const std::string file = folder + "/valves/" + name + ".csv";
-  fs::create_directories(folder + "/valves");
+  const std::string file = folder + "/valves/" + name + ".csv", tests = folder + "/tests/" + name;
+  for (const std::string& made : {tests, folder + "/valves"}) fs::create_directories(made);
   if (!fs::exists(file)) {
-    const std::vector<Log> logs = acceptance(b, name, valve, stream, folder);
+    Random random(33, stream);
+    rig::RigRun mixed;
+    mixed.excitation = "mixed", mixed.duration = 4, mixed.seed = random.bits64();
+    std::vector<Log> logs = {kept_log(b, tests + "/a1.csv", valve, {}, mixed)};
+    for (const double celsius : {20.0, 40.0, 60.0, -10.0})
+      logs.push_back(kept_log(b, fmt::format("{}/a{}.csv", tests, logs.size() + 1), valve, {.celsius = celsius},
+                              preflight(random.bits64())));
     TuneOptions options;
     options.quiet = true;
     options.threads = 1;
@@ -147,16 +134,7 @@ ValveHistory history_of(const Bench& b, const Unit& unit, int checks, const std:
   const std::string tests = folder + "/tests/" + unit.name;
   const rig::RigModel valve = rig::another_valve(b.model, unit.valve);
   const Table own = own_table(b, unit.name, valve, unit.stream, folder);
-  ValveHistory all = kept_history(unit.name, folder + "/acceptance/" + unit.name + ".csv", own, [&](ValveHistory& h) {
-    const std::vector<Log> logs = acceptance(b, unit.name, valve, unit.stream, folder);
-    for (auto log = logs.begin() + 1; log != logs.end(); ++log) {
-      const CheckResult r = check(*log, own, b.rig, {.threads = 1, .last = {}});
-      h.recordings.push_back(recording_of(0, r));
-      h.recordings.back().log = log->path;
-      h.recordings.back().log_sha256 = r.sha256;
-    }
-  });
-  const ValveHistory life = kept_history(unit.name, folder + "/units/" + unit.name + ".csv", own, [&](ValveHistory& h) {
+  return kept_history(unit.name, folder + "/units/" + unit.name + ".csv", own, [&](ValveHistory& h) {
     Random random(32, unit.stream);
     std::vector<double> last;
     const Degradation end = unit.degradation ? end_of(*unit.degradation, b.model, valve) : degradations[0];
@@ -173,8 +151,6 @@ ValveHistory history_of(const Bench& b, const Unit& unit, int checks, const std:
       h.recordings.back().log_sha256 = r.sha256;
     }
   });
-  all.recordings.insert(all.recordings.end(), life.recordings.begin(), life.recordings.end());
-  return all;
 }
 
 }  // namespace servodx::study
