@@ -53,9 +53,9 @@ constexpr auto all_onsets = [] {
   return all;
 }();
 constexpr std::array<double, 9> noises = {0.1, 0.18, 0.32, 0.56, 1, 1.8, 3.2, 5.6, 10};
-// Wander over the whole record, in parts of the growth that matters: no law is quite the wear's, and those above lie a
-// hundredth apart. A healthy figure may wander by the lesser two.
-constexpr std::array<double, 3> wanders = {0.01, 0.03, 0.1};
+// Wander over the whole record, in parts of the growth that matters: no law is quite the wear's, and what lies between
+// two of those above is off them by a hundredth at most. A healthy figure may wander by the lesser two.
+constexpr std::array<double, 3> wanders = {0.005, 0.03, 0.1};
 constexpr std::size_t healthy_wanders = 2;
 // A part lost so far, where it is one, by what the drop has grown: what is between two of them its size tells.
 constexpr auto losses = [] {

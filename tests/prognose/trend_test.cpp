@@ -203,7 +203,7 @@ TEST(Trend, ABlockedFilterHasFailedWhenAQuarterIsLeftOfWhatWasOpen) {
   const ValveTrend t = trend(of_one(
                                  "parameter:1", [](double s) { return 1 - 0.9 * (1 - 0.75 * s); }, 0.01, 0.01),
                              {});
-  EXPECT_NEAR(*find(t, "parameter:1").failure.upper, 1 - 0.9 * 0.25, 0.01);
+  EXPECT_NEAR(*find(t, "parameter:1").failure.upper, 1 - 0.9 * 0.25, 0.015);  // 0.75 without the size
   ASSERT_TRUE(t.remaining);
   EXPECT_NEAR(t.remaining->median, 42, 12);
 }
@@ -257,13 +257,13 @@ TEST(Trend, AConstantErrorOfTheDropOverAFilterIsNoLateOnset) {
 
 // A filter as a model reads it that errs in the bores beside it, which adds to the drop and shows in warm oil, and in
 // how much of a screen's drop is laminar, which multiplies it in cold oil; read no lower than half of a clean drop.
-ValveHistory a_filter(double worn_at_end, int checks, std::uint64_t seed) {
+ValveHistory a_filter(double worn_at_end, int checks, std::uint64_t seed, double coldest = 243) {
   ValveHistory h;
   h.valve = "v";
   Random random(seed, 13);
   for (int k = 0; k < checks; ++k) {
     Recording r;
-    r.at = 2 * k, r.table_sha256 = "a", r.temperature = 243 + 100 * random.uniform();
+    r.at = 2 * k, r.table_sha256 = "a", r.temperature = random.uniform(coldest, 343);
     const double z = std::log(oil_at(860, 14e-6, r.temperature).viscosity_ratio), thick = std::exp(z);
     const double open = 1 - worn_at_end * k / 60, beside = -1.2 * 2 / (1 + thick);
     const double drop = (1 + 0.2 * z * z) / (open * open) + beside + 0.25 * random.normal();
@@ -274,24 +274,37 @@ ValveHistory a_filter(double worn_at_end, int checks, std::uint64_t seed) {
   return h;
 }
 
-TEST(Trend, AFilterIsMetThroughWarmAndColdErrorsAndTheEndOfItsReadings) {
+// Median and width of the life that is left at 84 h of 120, both in parts of the true one; means over four valves.
+std::pair<double, double> left_of_a_filter(double coldest) {
   TrendOptions options;
   options.failure["parameter:1"].second = 1 - 1 / std::sqrt(16 - 1.2);  // as such a valve reads three quarters
   options.failure_spread["parameter:1"] = 0.01;
-  constexpr int valves = 6;
-  int met = 0, inside = 0;
+  constexpr int valves = 4;
+  double median = 0, width = 0;
   for (std::uint64_t seed = 0; seed < valves; ++seed) {
-    const ValveTrend t = trend(a_filter(0.75, 43, seed), options);  // 84 h of 120
-    if (!t.alert_at || !t.remaining) continue;
-    met += std::abs(t.remaining->median - 36) < 0.2 * 36;
-    inside += t.remaining->lower <= 36 && 36 <= t.remaining->upper;
+    const ValveTrend t = trend(a_filter(0.75, 43, seed, coldest), options);
+    EXPECT_TRUE(t.alert_at);
+    if (!t.remaining) continue;
+    median += t.remaining->median / 36 / valves, width += (t.remaining->upper - t.remaining->lower) / 36 / valves;
   }
-  EXPECT_GE(met, 5);
-  EXPECT_GE(inside, 5);
+  return {median, width};
+}
+
+// In warm oil half of the readings say no more than that they are at their end, and the bores take a clean drop off the
+// others: as readings like others, and without bores, the end came a third too early.
+TEST(Trend, ReadingsAtTheirEndAndWhatIsWrongBesideAFilterAreNoLateOnset) {
+  EXPECT_NEAR(left_of_a_filter(293).first, 1, 0.17);
+}
+
+// Cold readings twice too large for life say as much as warm ones: taken for scatter the interval is twice as wide.
+TEST(Trend, AFilterThatReadsLargerInTheColdForLifeIsReadInTheColdToo) {
+  const auto [median, width] = left_of_a_filter(243);
+  EXPECT_NEAR(median, 1, 0.12);
+  EXPECT_LT(width, 0.75);
 }
 
 TEST(Trend, AHealthyFilterIsSilentThroughWarmAndColdErrorsAndTheEndOfItsReadings) {
-  for (std::uint64_t seed = 0; seed < 6; ++seed) {
+  for (std::uint64_t seed = 0; seed < 4; ++seed) {
     const ValveTrend t = trend(a_filter(0, 60, seed), {});
     EXPECT_FALSE(t.alert_at) << seed;
     EXPECT_FALSE(find(t, "parameter:1").trend) << seed;
