@@ -9,7 +9,15 @@
 // closed form (a Rao-Blackwellised particle filter whose particles are a fixed grid: deterministic, and no degeneracy).
 // Their evidences weigh them. The same without growth is the null hypothesis, and the Bayes factor between the two is
 // the trend test: under the null a Bayes factor exceeds 1/alpha with probability alpha at most, however often one looks
-// (Ville 1939). Limits: one growth, monotone but for its wander; what changes its law later is seen late.
+// (Ville 1939).
+//
+// Of a part that is being lost (a filter's area) the drop over it is followed, at the same flow, over that of the whole
+// one as the model has it:
+//
+//   y(t) = base(z) + m (R(t) - 1) + (d1 z + d2 z2) R(t) + noise,   R = 1 / (1 - lost g)^2
+//
+// What else is wrong in the flow's path adds to the drop, and how large the part is in thick oil multiplies it. `lost`
+// is on the grid, m about 1. Limits: one growth, monotone but for its wander; what changes its law later is seen late.
 #pragma once
 #include <cstdint>
 #include <optional>
@@ -23,6 +31,8 @@ struct GrowthPoint {
   double variance = 0;           // [y^2] of the figure by its own standard error
   std::vector<double> features;  // of the conditions: what temperature does, as known before any fit
   double exposed = 0;            // [y] growth so far, as neighbours show it, times the first feature's size
+  double stretch = 1;            // y per unit of what wears, here
+  double base_shown = 1;         // part of the base that shows at these conditions
 };
 
 struct GrowthPrior {
@@ -31,9 +41,10 @@ struct GrowthPrior {
   double noise = 1;                              // [y] about which the noise level is searched, 1/10 to 10 times
   double scale = 1;                              // [y] size of a growth that matters, one standard deviation
   int direction = 0;                             // +1, -1: growth to one side; 0: either
-  double tilt = 0;                               // spread of d1 over the growth so far; of d2 a third
+  double tilt = 0;                               // spread of d1 over the growth so far; of d2 a third (a drop: as d1)
   double scatter = 0;                            // spread of one check over what is `exposed`, or, as likely, none
-  bool part_lost = false;                        // y = -ln(1 - part lost), and it is the part that grows by a law
+  bool coarse = false;                           // fewer onsets and parts lost: for a first look
+  bool of_drop = false;                          // y is a drop over a part that is being lost, see above
 };
 
 struct Growth {
@@ -43,6 +54,7 @@ struct Growth {
   double base = 0, base_sd = 0;      // without growth
   double slope = 0;                  // [y/h] at the last check, mean
   double grown = 0, grown_sd = 0;    // to the last check, wander included
+  double size = 1;                   // of a drop over the whole part, as the model has it: m above
   std::vector<double> coefficients;  // of the features
   double noise = 0;                  // [y] of one check
   double null_noise = 0;             // the same without growth
@@ -57,9 +69,10 @@ struct FailureAt {
   enum class Of { value, times_base, beyond_base };
   std::optional<double> upper, lower;
   Of of = Of::value;
-  double sd = 0;  // of the level itself
-  double level(double given, double base) const {
-    return of == Of::times_base ? given * base : of == Of::beyond_base ? base + given : given;
+  double sd = 0;  // of the level itself, in what wears: of a drop in the part that is lost
+  // `size`: of what is followed, in what the model takes for one; a drop's only.
+  double level(double given, double base, double size = 1) const {
+    return of == Of::times_base ? given * base : of == Of::beyond_base ? base + given * size : given;
   }
 };
 
@@ -69,12 +82,16 @@ class GrowthModel {
   const Growth& growth() const { return growth_; }
   // What a check at this time would have read at reference conditions: features zero.
   double at_reference(const GrowthPoint& point) const;
+  // What such a check reads, noise apart.
+  double expected(const GrowthPoint& point) const;
   // Hours until y at reference conditions passes a level; `upper` counts for growth upwards. Given growth.
   Life life(const FailureAt& level, std::uint64_t seed) const;
 
  private:
   struct Component;
   std::vector<Component> components_;
+  std::vector<std::size_t> added_;  // features that add
+  double by_conditions(const GrowthPoint& point) const;
   double now_ = 0, length_ = 0;  // [h] of the last point, and since the first
   Growth growth_;
 

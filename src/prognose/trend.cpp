@@ -18,6 +18,7 @@ constexpr std::size_t least_checks = 6;   // for a word on a trend
 constexpr std::size_t most_points = 100;  // longer histories are averaged in blocks
 constexpr double latest_warning = 0.25;   // of the way to failure: three quarters are left to act in
 constexpr double outlying = 4;            // [spreads] from its neighbours at which a check is set aside
+constexpr double as_far = 0.5;            // of the furthest on its way to failure: what may be the cause instead
 constexpr double per_checks = 100;        // the false-alarm rate of a valve is stated over this many checks
 
 double median(std::vector<double> v) {
@@ -36,10 +37,11 @@ double two_sided_quantile(double p) {
 }
 
 // One check over a valve's life, as the growth model takes it. The paper's positive figures in their logarithm, where
-// what temperature does is a factor; a part lost (of the filter's area) by the logarithm of what is left, which is what
-// acts, for the same reason and because a log tells it about equally well everywhere; other parameters as they are.
+// what temperature does is a factor; a part lost (of the filter's area) by the drop over what is left, at the same
+// flow, over that of the whole part: that is what a log tells, about equally well from clean to blocked, and what else
+// is wrong in the pilot's path adds to it. Other parameters as they are.
 struct Series {
-  enum class Scale { plain, logarithm, part_lost };
+  enum class Scale { plain, logarithm, drop };
   std::string name, unit, cause;
   const Fault* fault = nullptr;
   std::optional<double> tuned;  // the row's value in the table that the checks rest on
@@ -48,18 +50,29 @@ struct Series {
   std::vector<double> temperature;  // [K]
 
   static constexpr double most_lost = 0.999;
+  // Below half of the drop over the whole part a reading ends: from there on straight, so that every drop has a part.
+  static constexpr double least_drop = 0.5;
+  static double lost_at(double drop) {
+    const double from = std::max(drop, least_drop);
+    return 1 - 1 / std::sqrt(from) + (drop - from) * lost_per_drop(drop);
+  }
+  static double lost_per_drop(double drop) { return 0.5 * std::pow(std::max(drop, least_drop), -1.5); }
+  static double drop_at(double lost) {
+    const double from = std::clamp(lost, lost_at(least_drop), most_lost);
+    return 1 / ((1 - from) * (1 - from)) + std::min(0.0, lost - from) / lost_per_drop(least_drop);
+  }
   bool paper() const { return scale == Scale::logarithm; }
-  double in(double v) const {
-    return scale == Scale::logarithm   ? std::log(v)
-           : scale == Scale::part_lost ? -std::log1p(-std::min(v, most_lost))
-                                       : v;
-  }
-  double out(double y) const {
-    return scale == Scale::logarithm ? std::exp(y) : scale == Scale::part_lost ? -std::expm1(-y) : y;
-  }
+  double in(double v) const { return scale == Scale::logarithm ? std::log(v) : scale == Scale::drop ? drop_at(v) : v; }
+  double out(double y) const { return scale == Scale::logarithm ? std::exp(y) : scale == Scale::drop ? lost_at(y) : y; }
   // d out / d y at a value.
   double stretch(double v) const {
-    return scale == Scale::logarithm ? std::abs(v) : scale == Scale::part_lost ? 1 - std::min(v, most_lost) : 1.0;
+    return scale == Scale::logarithm ? std::abs(v) : scale == Scale::drop ? lost_per_drop(drop_at(v)) : 1.0;
+  }
+  // How far a growth has come where its error matters as much at the first as at the last: of a drop its logarithm.
+  double way(double grown) const { return scale == Scale::drop ? std::log1p(std::max(grown, 0.0)) : grown; }
+  // The growth when a part of the way has been worn; of a drop it is the part lost that wears.
+  double worn(double part, double grown) const {
+    return scale == Scale::drop ? drop_at(part * lost_at(1 + std::max(grown, 0.0))) - 1 : part * grown;
   }
   std::optional<double> in(const std::optional<double>& v) const {
     return v && (!paper() || *v > 0) ? std::optional(in(*v)) : std::nullopt;
@@ -70,14 +83,6 @@ struct Series {
 // Viscosity over that at 40 degC of a 14 mm2/s oil: only its logarithm as a regressor matters here.
 double log_viscosity(double kelvin) { return std::log(oil_at(860, 14e-6, kelvin).viscosity_ratio); }
 
-// Error of -ln(1 - b). What a log tells is the drop over the filter, which goes with 1/(1 - b)^2: near a clean filter
-// the slope of that is small and an error taken by it alone endless, though a drop so large would have been seen.
-double error_of_lost(double b, double error) {
-  const double open = 1 - std::min(b, Series::most_lost);
-  const double drop = 1 / (open * open), by = 2 * error * drop / open;
-  return 0.5 * std::log(1 + by / drop);
-}
-
 constexpr std::size_t reach = 3;  // neighbours to either side
 
 double median_of_neighbours(const std::vector<double>& y, std::size_t i) {
@@ -87,11 +92,9 @@ double median_of_neighbours(const std::vector<double>& y, std::size_t i) {
   return median(near);
 }
 
-// By how much ln(open) is read too low for a drop that is too high by the inertial one over the clean filter. The drop
-// over a fine screen is half laminar at 40 degC and all but laminar in the cold: there it hardly matters.
-double of_clean_drop(double open, double log_viscosity) {
-  return 0.5 * open * open / (1 + 0.5 * std::exp(log_viscosity) * open);
-}
+// Part of what is wrong beside a filter, as a drop over the clean one, that shows in thick oil: the drop over a fine
+// screen is half laminar at 40 degC and all but laminar in the cold, that over the bores beside it is not.
+double beside_laminar(double log_viscosity) { return 1 / (0.5 + 0.5 * std::exp(log_viscosity)); }
 
 void append(Series& s, const Recording& r, const Check& c) {
   const double value = s.paper() ? c.measured : c.value;
@@ -100,11 +103,11 @@ void append(Series& s, const Recording& r, const Check& c) {
   p.time = r.at;
   p.y = s.in(value);
   const double error = std::isfinite(c.std_error) ? c.std_error : 0.0;
-  p.variance =
-      std::pow(s.scale == Series::Scale::part_lost ? error_of_lost(c.value, error) : error / s.stretch(c.value), 2);
+  p.variance = std::pow(error / s.stretch(c.value), 2);
   const double z = std::isfinite(r.temperature) ? log_viscosity(r.temperature) : 0.0;
   p.features = {z, z * z};
   if (s.paper()) p.features.push_back(std::log(c.expected > 0 ? c.expected : 1.0));
+  if (s.scale == Series::Scale::drop) p.base_shown = beside_laminar(z), p.features.push_back(1 - p.base_shown);
   s.points.push_back(std::move(p));
   s.temperature.push_back(r.temperature);
 }
@@ -121,7 +124,7 @@ Series begun(const Check& check, const ValveHistory& history) {
     }
   if (!s.cause.empty()) {
     s.fault = find_fault(s.cause);
-    if (s.fault && s.fault->part_lost) s.scale = Series::Scale::part_lost;
+    if (s.fault && s.fault->part_lost) s.scale = Series::Scale::drop;
     return s;
   }
   const auto positive = [&](const Recording& r) {
@@ -132,16 +135,6 @@ Series begun(const Check& check, const ValveHistory& history) {
       std::all_of(history.recordings.begin(), history.recordings.end(), positive))
     s.scale = Series::Scale::logarithm;
   return s;
-}
-
-// Of what is open, by its neighbours: a check's own noise would explain itself.
-void add_clean_drop(Series& s) {
-  std::vector<double> y;
-  for (const GrowthPoint& p : s.points) y.push_back(p.y);
-  for (std::size_t i = 0; i < y.size(); ++i) {
-    const double open = std::exp(-(y.size() > 1 ? median_of_neighbours(y, i) : y[i]));
-    s.points[i].features.push_back(of_clean_drop(open, s.points[i].features[0]));
-  }
 }
 
 std::vector<Series> series_of(const ValveHistory& history, std::vector<std::string>& notes) {
@@ -168,8 +161,6 @@ std::vector<Series> series_of(const ValveHistory& history, std::vector<std::stri
   if (other_tables > 0)
     notes.push_back(fmt::format("{} checks rest on another tuned table and are left out", other_tables));
   std::erase_if(all, [](const Series& s) { return s.points.empty(); });
-  for (Series& s : all)
-    if (s.scale == Series::Scale::part_lost) add_clean_drop(s);
   return all;
 }
 
@@ -187,7 +178,7 @@ std::optional<double> failed_row(const Fault& fault) {
 // What the model's form leaves open of a severity at a value of its row, in the coordinate of the growth: it reads a
 // level, whoever set it, no better than that.
 double left_open(const Series& s, double value) {
-  return s.fault->log_scale ? s.fault->spread * std::abs(value) : s.fault->spread / s.stretch(value);
+  return s.fault->log_scale ? s.fault->spread * std::abs(value) : s.fault->spread;
 }
 
 // From the user, from a limit, or from the fault itself; in the coordinate of the growth.
@@ -197,7 +188,7 @@ FailureAt failure_of(const Series& s, const TrendOptions& options) {
   // How well a level is known at a value of the row: as who set it says, else as the model's form allows.
   const auto known_to = [&](double value, double unit) {
     const auto stated = options.failure_spread.find(s.name);
-    return stated == options.failure_spread.end() ? left_open(s, value) : stated->second * unit / s.stretch(value);
+    return stated == options.failure_spread.end() ? left_open(s, value) : stated->second * unit;
   };
   if (const auto given = options.failure.find(s.name); given != options.failure.end()) {
     at.lower = s.in(given->second.first), at.upper = s.in(given->second.second);
@@ -223,7 +214,7 @@ FailureAt failure_of(const Series& s, const TrendOptions& options) {
       // Of what was open at the beginning: how large a clean filter is stands on no data sheet, and no log tells it.
       if (s.fault->part_lost) at.of = FailureAt::Of::beyond_base;
       if (!s.fault->log_scale) at.sd = left_open(s, *failed);
-      to_side(s.in(*failed), *failed > (s.fault->log_scale ? 1.0 : 0.0));
+      to_side(s.in(*failed) - (s.fault->part_lost ? s.in(0.0) : 0.0), *failed > (s.fault->log_scale ? 1.0 : 0.0));
     }
   }
   return at;
@@ -238,7 +229,8 @@ std::vector<GrowthPoint> thinned(const std::vector<GrowthPoint>& points) {
     mean.features.assign(points[from].features.size(), 0.0);
     const auto n = static_cast<double>(to - from);
     for (std::size_t i = from; i < to; ++i) {
-      mean.exposed += points[i].exposed / n;
+      mean.exposed += points[i].exposed / n, mean.stretch += (points[i].stretch - 1) / n;
+      mean.base_shown += (points[i].base_shown - 1) / n;
       mean.time += points[i].time / n, mean.y += points[i].y / n, mean.variance += points[i].variance / n / n;
       for (std::size_t j = 0; j < mean.features.size(); ++j) mean.features[j] += points[i].features[j] / n;
     }
@@ -263,9 +255,7 @@ GrowthPrior prior_of(const Series& s, std::size_t healthy, const FailureAt& fail
     if (level) prior.scale = std::max(std::abs(failure.level(*level, prior.base) - prior.base), 1e-300);
   prior.noise = std::max({1.4826 * median(y), 0.3 * median(error), 1e-4 * prior.scale});
   prior.base_sd = prior.scale;
-  prior.part_lost = s.scale == Series::Scale::part_lost;
-  // It begins with all of it, which the table calls zero; how large that is is on no data sheet: half to twice.
-  if (prior.part_lost) prior.base = 0, prior.base_sd = 0.5 * std::numbers::ln2;
+  prior.of_drop = s.scale == Series::Scale::drop;
   // What cold oil does to the estimate of a severity that adds knows nothing of the healthy value.
   const bool adds = s.fault && !s.fault->log_scale;
   const double swing = s.paper() ? 0.3 : 0.3 * (adds ? prior.scale : std::max(std::abs(prior.base), prior.noise));
@@ -276,22 +266,57 @@ GrowthPrior prior_of(const Series& s, std::size_t healthy, const FailureAt& fail
     prior.feature_mean.push_back(1.0);
     prior.feature_sd.push_back(0.5);
   }
-  // What a model errs by in the drop over a clean filter it errs by at every check, and it is the less of a blocked
-  // one's. Bores known to 2 % leave open as much of the pilot's supply as a clean screen takes.
-  if (prior.part_lost) {
-    prior.feature_mean.push_back(0.0);
-    prior.feature_sd.push_back(1.0);
+  if (prior.of_drop) {
+    // It begins with all of it. Bores known to 2 % leave open as much of the pilot's supply as a clean screen takes;
+    // in thick oil, where the screen takes the most of it, half of that.
+    prior.base = 1, prior.base_sd = 1;
+    prior.feature_mean = {0.0, 0.0, 1.0};
+    prior.feature_sd = {0.0, 0.0, 0.5};
+    prior.tilt = 0.3;  // how much of a screen's drop is laminar is on no data sheet: twice itself over three e-folds
   }
-  prior.scatter = prior.tilt;
+  prior.scatter = 0.15;
   return prior;
 }
 
-// What the oil may change of a check.
+// What the oil may change of a check, and what of its figure a unit of wear is there.
 void expose(std::vector<GrowthPoint>& points, const GrowthPrior& prior) {
   std::vector<double> y;
   for (const GrowthPoint& p : points) y.push_back(p.y);
-  for (std::size_t i = 0; i < points.size(); ++i)
-    points[i].exposed = std::abs((median_of_neighbours(y, i) - prior.base) * points[i].features[0]);
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const double near = median_of_neighbours(y, i), drop = std::max(near, 1.0);
+    points[i].exposed = std::abs((prior.of_drop ? drop : near - prior.base) * points[i].features[0]);
+    if (prior.of_drop) points[i].stretch = 1 / Series::lost_per_drop(drop);
+  }
+}
+
+// A drop is tried in many parts lost: where only the curve through the checks is asked for, in fewer.
+GrowthPrior first_look(GrowthPrior prior) {
+  prior.coarse = prior.of_drop;
+  return prior;
+}
+
+// Where the scale of what is lost ends a reading says: at most this. The normal reading that says as much to the curve
+// that all tell together (Newton's step of the likelihood of a censored reading).
+std::vector<GrowthPoint> at_the_end(std::vector<GrowthPoint> points, const GrowthPrior& prior) {
+  constexpr double near = 1.001;
+  constexpr int steps = 2;
+  const std::vector<GrowthPoint> as_read = points;
+  const auto ends = [&](const GrowthPoint& p) { return prior.of_drop && p.y < near * Series::least_drop; };
+  for (int k = 0; k < steps && std::any_of(as_read.begin(), as_read.end(), ends); ++k) {
+    const GrowthModel all(thinned(points), first_look(prior));
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      const GrowthPoint& p = as_read[i];
+      if (!ends(p)) continue;
+      const double sigma = std::hypot(std::sqrt(p.variance), all.growth().noise);
+      const double curve = all.expected(p), z = (p.y - curve) / sigma;
+      const double ratio = std::exp(-0.5 * z * z) * std::numbers::sqrt2 / std::sqrt(std::numbers::pi) /
+                           std::max(std::erfc(-z / std::numbers::sqrt2), 1e-300);
+      const double bend = std::clamp(ratio * (z + ratio), 1e-3, 1.0);
+      points[i].y = curve - sigma * ratio / bend;
+      points[i].variance = p.variance + sigma * sigma * (1 / bend - 1);
+    }
+  }
+  return points;
 }
 
 // One check alone raises no alert: what lies far from its neighbours, before and after it, weighs as little as it is
@@ -299,7 +324,7 @@ void expose(std::vector<GrowthPoint>& points, const GrowthPrior& prior) {
 std::vector<GrowthPoint> set_aside(std::vector<GrowthPoint> points, const GrowthPrior& prior) {
   if (points.size() < least_checks) return points;
   expose(points, prior);
-  const GrowthModel first(thinned(points), prior);
+  const GrowthModel first(thinned(points), first_look(prior));
   std::vector<double> corrected;
   for (const GrowthPoint& p : points) corrected.push_back(first.at_reference(p));
   std::vector<double> away;
@@ -320,20 +345,21 @@ CheckTrend trend_of(const Series& s, const TrendOptions& options, std::size_t na
   std::vector<double> first;
   for (std::size_t i = 0; i < healthy; ++i) first.push_back(s.points[i].y);
   const FailureAt failure = failure_of(s, options);
-  const auto fails_at = [&](double base) {
+  const auto fails_at = [&](double base, double size) {
     Level level;
-    if (failure.upper) level.upper = s.out(failure.level(*failure.upper, base));
-    if (failure.lower) level.lower = s.out(failure.level(*failure.lower, base));
+    if (failure.upper) level.upper = s.out(failure.level(*failure.upper, base, size));
+    if (failure.lower) level.lower = s.out(failure.level(*failure.lower, base, size));
     return level;
   };
   out.healthy = s.out(median(first));
-  out.failure = fails_at(median(first));
+  out.failure = fails_at(median(first), 1);
   for (std::size_t i = 0; i < n; ++i)
     out.points.push_back({s.points[i].time, s.out(s.points[i].y), s.temperature[i], i < healthy});
   if (n < least_checks) return out;
 
   const GrowthPrior prior = prior_of(s, healthy, failure);
-  const std::vector<GrowthPoint> all = thinned(set_aside(s.points, prior));
+  const std::vector<GrowthPoint> told = at_the_end(set_aside(s.points, prior), prior);
+  const std::vector<GrowthPoint> all = thinned(told);
   const GrowthModel model(all, prior);
   const Growth& g = model.growth();
   std::vector<double> corrected;
@@ -347,7 +373,7 @@ CheckTrend trend_of(const Series& s, const TrendOptions& options, std::size_t na
 
   // Levels: the spread of a single healthy check about where the figure began. What grows from the first check on began
   // below its first checks.
-  const GrowthModel begun({s.points.begin(), s.points.begin() + static_cast<long>(healthy)}, prior);
+  const GrowthModel begun({told.begin(), told.begin() + static_cast<long>(healthy)}, prior);
   std::vector<double> own;
   for (std::size_t i = 0; i < healthy; ++i) own.push_back(s.points[i].variance);
   double centre = out.trend ? g.base : median({corrected.begin(), corrected.begin() + static_cast<long>(healthy)});
@@ -361,7 +387,7 @@ CheckTrend trend_of(const Series& s, const TrendOptions& options, std::size_t na
     return l;
   };
   out.healthy = s.out(centre);
-  out.failure = fails_at(centre);
+  out.failure = fails_at(centre, g.size);
   out.threshold = band(options.false_alarm);
   out.warning = band(options.false_alarm / (per_checks * static_cast<double>(names)));
   const auto beyond = [](const Level& l, double value) {
@@ -374,7 +400,7 @@ CheckTrend trend_of(const Series& s, const TrendOptions& options, std::size_t na
   // A warning comes at a part of the way to failure at the latest; against false alarms there the trend test stands.
   const auto in_time = [&](std::optional<double>& warning, const std::optional<double>& end, double side) {
     if (!end) return;
-    const double latest = s.out(centre + latest_warning * (s.in(*end) - centre));
+    const double latest = s.out(centre + s.worn(latest_warning, s.in(*end) - centre));
     if (!warning || side * (*warning - latest) > 0) warning = latest;
   };
   in_time(out.warning.upper, out.failure.upper, 1);
@@ -405,7 +431,8 @@ CheckTrend trend_of(const Series& s, const TrendOptions& options, std::size_t na
   if (beyond(out.failure, out.now)) out.state = "failed";
   if (const auto& end = g.grown > 0 ? failure.upper : failure.lower) {
     constexpr double one_sided = 1.645;  // 95 %
-    out.surely = (std::abs(g.grown) - one_sided * g.grown_sd) / std::abs(failure.level(*end, g.base) - g.base);
+    out.surely = s.way(std::abs(g.grown) - one_sided * g.grown_sd) /
+                 s.way(std::abs(failure.level(*end, g.base, g.size) - g.base));
   }
   out.life = model.life(failure, options.seed);
   out.remaining = remaining_of(out.life, options.coverage);
@@ -484,14 +511,19 @@ ValveTrend trend(const ValveHistory& history, const TrendOptions& options) {
   const std::vector<Series> all = series_of(history, out.notes);
   for (const Series& s : all) out.trends.push_back(trend_of(s, options, all.size()));
 
-  const CheckTrend* cause = nullptr;
+  double furthest = -infinite;  // of what may be the cause, surely
+  const auto may_be = [](const CheckTrend& t) { return !t.cause.empty() && t.trend && !t.life.empty(); };
   for (const CheckTrend& t : out.trends) {
     if (rank_of(t.state) > rank_of(out.state)) out.state = t.state;
     out.to_warning = std::min(out.to_warning, t.to_warning);
     if (t.alert_at && (!out.alert_at || *t.alert_at < *out.alert_at)) out.alert_at = t.alert_at;
-    if (t.cause.empty() || !t.trend || t.life.empty()) continue;
-    if (!cause || t.surely > cause->surely) cause = &t;
+    if (may_be(t)) furthest = std::max(furthest, t.surely);
   }
+  const CheckTrend* cause = nullptr;
+  for (const CheckTrend& t : out.trends)
+    if (may_be(t) && t.surely >= std::min(furthest, as_far * furthest) &&
+        (!cause || t.log_bayes_factor > cause->log_bayes_factor))
+      cause = &t;
   if (cause) out.cause = cause->cause;
   for (const CheckTrend& t : out.trends)
     if (t.blind && !t.trend)

@@ -10,8 +10,9 @@
 // A trend is confirmed when the Bayes factor of growth passes names / false_alarm. An alert is a confirmed trend whose
 // fitted curve has passed the warning level. No trend is an answer. Two-sided for r and E.
 //
-// Fusion: the cause is the tracked parameter with a confirmed trend that has surely come furthest on its way to failure
-// (the 5 % quantile of that part: what is read widely comes near by chance), and the remaining life is its. Where no
+// Fusion: the cause is the tracked parameter with the most certain trend of those that have surely come at least half
+// as far on their way to failure as the furthest (the 5 % quantile of that part: what is read widely comes near by
+// chance, and what wears draws the readings of others with it, less certainly), and the remaining life is its. Where no
 // parameter has one, the lives of the paper's checks that have a failure level are pooled, each by its sharpness: what
 // they read depends on more than the cause, so beside a cause they only blur it. Maintenance events restart what they
 // renew (history.h); so does another tuned table.
