@@ -1,8 +1,8 @@
 #include "explain/smoother.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <limits>
 #include <numbers>
 #include <optional>
 
@@ -12,10 +12,12 @@ namespace servodx {
 namespace {
 
 using Index = std::size_t;
-constexpr Index search_samples = 3000;      // of all runs: the intensity is searched for on so many
+constexpr Index blocks = 16;                // of time, of each run
+constexpr Index search_samples = 1500;      // of all runs: the intensity is searched for on so many
 constexpr double step = 4.6, finest = 0.5;  // of the logarithm of the walk's variance: a factor of ten in intensity
-constexpr int longest_path = 10;
-constexpr double most_typical = 1e4;  // the path begins where the walk gets so many times the typical over the run
+constexpr int longest_path = 12;
+// The path begins where the walk gets so many times the typical over the run.
+constexpr double most_typical = 1e3, most_by_slope = 1e5;
 
 Index states_of(const std::vector<LinearRun>& runs) { return static_cast<Index>(runs.front().start.size()); }
 Index samples_of(const std::vector<LinearRun>& runs) {
@@ -55,13 +57,48 @@ std::vector<LinearRun> pruned(const std::vector<LinearRun>& runs) {
   return out;
 }
 
-// Filter and smoother of N states at most, one of them the missing input, the last.
+// out = b a^T, columns one after another: nearly all of the time. What is zero in a costs nothing.
+template <int N>
+inline __attribute__((always_inline)) void product(const double* a, const double* b, double* out) {
+  typedef double V __attribute__((vector_size(32), aligned(8), may_alias));
+  constexpr int width = 4;
+  static_assert(N % width == 0);
+  for (int j = 0; j < N; ++j) {
+    V sum[N / width] = {};
+    for (int k = 0; k < N; ++k) {
+      const double f = a[k * N + j];
+      if (f == 0) continue;
+      const V* column = reinterpret_cast<const V*>(b + k * N);
+      for (int i = 0; i < N / width; ++i) sum[i] += f * column[i];
+    }
+    for (int i = 0; i < N / width; ++i) reinterpret_cast<V*>(out + j * N)[i] = sum[i];
+  }
+}
+template <int N>
+void product_anywhere(const double* a, const double* b, double* out) {
+  product<N>(a, b, out);
+}
+#if defined(__x86_64__)
+template <int N>
+__attribute__((target("avx2"))) void product_avx2(const double* a, const double* b, double* out) {
+  product<N>(a, b, out);
+}
+#endif
+template <int N>
+auto best_product() {
+#if defined(__x86_64__)
+  if (__builtin_cpu_supports("avx2")) return &product_avx2<N>;
+#endif
+  return &product_anywhere<N>;
+}
+
+// Filter and smoother of N states at most, two of them the missing input and its slope, the last.
 template <int N>
 class KalmanFilter {
  public:
   using Vector = Eigen::Matrix<double, N, 1>;
   using Matrix = Eigen::Matrix<double, N, N>;
-  static constexpr int w = N - 1;
+  static constexpr int w = N - 2, slope = N - 1;
 
   explicit KalmanFilter(const std::vector<LinearRun>& runs) : runs_(runs) {
     const auto n = static_cast<long>(states_of(runs));
@@ -78,8 +115,8 @@ class KalmanFilter {
       }
     }
   }
-  // What is missing enters here from now on; negative: nowhere.
-  void choose(int place) {
+  // What is missing enters here from now on; negative: nowhere. It is a walk, or its slope is.
+  void choose(int place, bool by_slope) {
     const auto n = static_cast<long>(states_of(runs_));
     for (Index l = 0; l < runs_.size(); ++l) {
       const LinearRun& r = runs_[l];
@@ -87,6 +124,7 @@ class KalmanFilter {
         Eigen::VectorXd b = Eigen::VectorXd::Zero(n);
         if (place >= 0) b = r.transition[k].col(n + place);
         transition_[l][k].col(w).head(n) = b;
+        transition_[l][k](w, slope) = by_slope ? r.time[k + 1] - r.time[k] : 0.0;
         for (Index c = 0; c < r.channels.size(); ++c)
           lagged_[l][k * r.channels.size() + c][w] = r.channels[c].shows.dot(b);
       }
@@ -94,15 +132,17 @@ class KalmanFilter {
   }
 
   struct Walk {
-    double variance = 0;                     // [unit2/s]
-    double start = 0;                        // [unit2] variance at the first sample
+    bool by_slope = false;                   // the slope walks
+    double variance = 0;                     // [unit2/s], or of the slope [unit2/s3]
+    double start = 0, slope_start = 0;       // [unit2], [unit2/s2] variance at the first sample
     std::vector<std::vector<double>> noise;  // [run][channel] factor on the variance of the news
   };
   struct Pass {
-    std::vector<std::vector<double>> surprise, square, samples;  // [run][channel] sums of ln F, of e2/F, of 1
-    std::vector<std::vector<double>> own, own_square;            // the last two by the noise's share of F
-    std::vector<std::vector<std::vector<double>>> innovations;   // [run][channel][sample], over their sigma
-    std::vector<std::vector<double>> value, variance;            // [run][sample] of w; empty unless smoothed
+    std::vector<std::vector<double>> surprise, square, samples;     // [run][channel] sums of ln F, of e2/F, of 1
+    std::vector<std::vector<double>> own, own_square;               // the last two by the noise's share of F
+    std::vector<std::vector<std::array<double, blocks>>> by_block;  // [run][channel] log likelihood but for a constant
+    std::vector<std::vector<std::vector<double>>> innovations;      // [run][channel][sample], over their sigma
+    std::vector<std::vector<double>> value, variance;               // [run][sample] of w; empty unless smoothed
     double log_likelihood(const std::vector<std::vector<double>>* counts = nullptr) const {
       double sum = 0;
       for (Index l = 0; l < surprise.size(); ++l)
@@ -147,6 +187,8 @@ class KalmanFilter {
     out.surprise.emplace_back(channels, 0.0), out.square.emplace_back(channels, 0.0);
     out.samples.emplace_back(channels, 0.0), out.innovations.emplace_back(channels);
     out.own.emplace_back(channels, 0.0), out.own_square.emplace_back(channels, 0.0);
+    out.by_block.emplace_back(channels);
+    Index block = 0;
     std::vector<Vector> shows;
     for (const LinearChannel& c : r.channels) {
       shows.push_back(Vector::Zero());
@@ -158,20 +200,23 @@ class KalmanFilter {
     Vector x = Vector::Zero();
     Matrix p = Matrix::Zero();
     p.diagonal().head(n) = r.start.cwiseAbs2();
-    p(w, w) = walk.start;
+    p(w, w) = walk.start, p(slope, slope) = walk.slope_start;
+    const int walks = walk.by_slope ? slope : w;
     const auto update = [&](Index c, const Vector& row, double innovation, double variance) {
       const Vector ph = p * row;
       const double f = row.dot(ph) + variance, e = innovation - row.dot(x);
       const Vector gain = ph / f;
       x += gain * e;
       p.noalias() -= gain * ph.transpose();
-      const double square = e * e / f, share = variance / f;
-      out.surprise[l][c] += std::log(f), out.square[l][c] += square, out.samples[l][c] += 1;
+      const double square = e * e / f, share = variance / f, surprise = std::log(f);
+      out.by_block[l][c][block] -= 0.5 * (surprise + square);
+      out.surprise[l][c] += surprise, out.square[l][c] += square, out.samples[l][c] += 1;
       out.own[l][c] += share, out.own_square[l][c] += share * square;
       if (keep != Keep::sums) out.innovations[l][c].push_back(e / std::sqrt(f));
       if (smoothed) updates.push_back({&row, gain, e / f, 1 / f});
     };
     for (Index k = 0; k < samples; ++k) {
+      block = k * blocks / samples;
       const auto follows = [&](const LinearChannel& c) { return k > 0 && std::isfinite(c.residual[k - 1]); };
       if (k > 0) {
         for (Index c = 0; c < channels; ++c) {
@@ -186,7 +231,7 @@ class KalmanFilter {
         const Matrix& a = transition_[l][k - 1];
         x = a * x;
         p = times(a, times(a, p).transpose());
-        p(w, w) += walk.variance * (r.time[k] - r.time[k - 1]);
+        p(walks, walks) += walk.variance * (r.time[k] - r.time[k - 1]);
       }
       for (Index c = 0; c < channels; ++c) {
         const LinearChannel& of = r.channels[c];
@@ -222,15 +267,10 @@ class KalmanFilter {
       undo(kept[k - 1].fresh, at.lagged);
     }
   }
-  // b a^T for symmetric b; what is zero in a costs nothing.
   static Matrix times(const Matrix& a, const Matrix& b) {
+    static const auto best = best_product<N>();
     Matrix out;
-    for (int j = 0; j < N; ++j) {
-      Vector sum = Vector::Zero();
-      for (int k = 0; k < N; ++k)
-        if (const double f = a(j, k); f != 0) sum += f * b.col(k);
-      out.col(j) = sum;
-    }
+    best(a.data(), b.data(), out.data());
     return out;
   }
 
@@ -263,34 +303,53 @@ class Search {
         nothing_(),
         noise_(ones(runs)) {}
 
-  typename F::Walk walk(double log_variance, std::vector<std::vector<double>> noise) const {
-    // As unknown at the start as it becomes over the run.
-    const double variance = std::isfinite(log_variance) ? std::exp(log_variance) : 0;
-    return {variance, variance * duration_, std::move(noise)};
+  // As unknown at the start as it becomes over the run.
+  typename F::Walk walk(bool by_slope, double log_variance, std::vector<std::vector<double>> noise) const {
+    const double variance = std::exp(log_variance), grown = variance * duration_;
+    return {by_slope, variance, by_slope ? grown * duration_ * duration_ / 3 : grown, by_slope ? grown : 0.0,
+            std::move(noise)};
   }
   // As large as they come out without anything missing.
   void without() {
-    fine_.choose(-1), coarse_.choose(-1);
-    typename F::Walk none = walk(-std::numeric_limits<double>::infinity(), noise_);
+    fine_.choose(-1, false), coarse_.choose(-1, false);
+    typename F::Walk none{.noise = noise_};
     for (int round = 0; round < 2; ++round) none.noise = coarse_(none, F::Keep::sums).noise(none.noise);
     none.noise = fine_(none, F::Keep::sums).noise(none.noise);
     noise_ = none.noise;
     nothing_ = fine_(none, F::Keep::innovations);
   }
-  // The intensity and the noise of greatest likelihood: along a path of falling intensity, since noise that has to grow
-  // does so at once.
+  // The walk and the noise of greatest likelihood.
   typename F::Walk at(int place, double typical) {
-    fine_.choose(place), coarse_.choose(place);
-    struct Step {
-      double log_variance, log_likelihood;
-      std::vector<std::vector<double>> noise;
+    const Step walks = most_likely(place, false, typical), slopes = most_likely(place, true, typical);
+    const bool by_slope = slopes.log_likelihood > walks.log_likelihood;
+    const Step& best = by_slope ? slopes : walks;
+    fine_.choose(place, by_slope);
+    typename F::Walk out = walk(by_slope, best.log_variance, best.noise);
+    out.noise = fine_(out, F::Keep::sums).noise(out.noise);
+    return out;
+  }
+  typename F::Pass smoothed(const typename F::Walk& walk) const { return fine_(walk, F::Keep::smoothed); }
+  const typename F::Pass& nothing() const { return nothing_; }
+
+ private:
+  struct Step {
+    double log_variance, log_likelihood;
+    std::vector<std::vector<double>> noise;
+  };
+  // Along a path of falling intensity, since noise that has to grow does so at once; then closer about the best.
+  Step most_likely(int place, bool by_slope, double typical) {
+    coarse_.choose(place, by_slope);
+    const auto look = [&](double at, const std::vector<std::vector<double>>& from) -> Step {
+      typename F::Pass pass = coarse_(walk(by_slope, at, from), F::Keep::sums);
+      std::vector<std::vector<double>> noise = pass.noise(from);
+      if (!alike(noise, from)) {
+        pass = coarse_(walk(by_slope, at, noise), F::Keep::sums);
+        noise = pass.noise(noise);
+      }
+      return {at, pass.log_likelihood(), std::move(noise)};
     };
-    const auto look = [&](double at_log, std::vector<std::vector<double>> noise) -> Step {
-      noise = coarse_(walk(at_log, noise), F::Keep::sums).noise(noise);
-      const typename F::Pass pass = coarse_(walk(at_log, noise), F::Keep::sums);
-      return {at_log, pass.log_likelihood(), pass.noise(noise)};
-    };
-    const double first = std::log(most_typical * most_typical * typical * typical / duration_);
+    const double most = by_slope ? most_by_slope : most_typical;
+    const double first = std::log(most * most * typical * typical / walk(by_slope, 0.0, {}).start);
     Step best = look(first, ones(coarse_runs_)), last = best;
     for (int k = 1, falls = 0; k < longest_path && falls < 2; ++k) {
       Step next = look(first - k * step, last.noise);
@@ -304,14 +363,15 @@ class Search {
           best = std::move(s);
           break;
         }
-    typename F::Walk out = walk(best.log_variance, best.noise);
-    out.noise = fine_(out, F::Keep::sums).noise(out.noise);
-    return out;
+    return best;
   }
-  typename F::Pass smoothed(const typename F::Walk& walk) const { return fine_(walk, F::Keep::smoothed); }
-  const typename F::Pass& nothing() const { return nothing_; }
-
- private:
+  static bool alike(const std::vector<std::vector<double>>& a, const std::vector<std::vector<double>>& b) {
+    constexpr double little = 0.01;
+    for (Index l = 0; l < a.size(); ++l)
+      for (Index c = 0; c < a[l].size(); ++c)
+        if (std::abs(a[l][c] - b[l][c]) > little * b[l][c]) return false;
+    return true;
+  }
   F fine_, coarse_;
   const std::vector<LinearRun>& coarse_runs_;
   double duration_;
@@ -324,7 +384,7 @@ SmootherResult searched(const std::vector<LinearRun>& runs, const std::vector<do
                         const std::function<bool(double)>& told) {
   const Index samples = samples_of(runs);
   std::vector<LinearRun> coarse;
-  const auto stride = static_cast<int>(std::max<Index>(1, samples / search_samples));
+  const auto stride = static_cast<int>((samples + search_samples - 1) / search_samples);
   for (const LinearRun& r : runs) coarse.push_back(thinned(r, stride));
   Search<N> search(runs, coarse);
   search.without();
@@ -336,7 +396,7 @@ SmootherResult searched(const std::vector<LinearRun>& runs, const std::vector<do
     const auto walk = search.at(static_cast<int>(place), typical[place]);
     passes.push_back(search.smoothed(walk));
     SmoothedInput& of = out.places.emplace_back();
-    of.intensity = std::sqrt(walk.variance);
+    of.intensity = std::sqrt(walk.variance), of.by_slope = walk.by_slope;
     of.value = passes.back().value, of.noise = walk.noise;
     for (auto& run : of.noise)
       for (double& v : run) v = std::sqrt(v);
@@ -360,6 +420,12 @@ SmootherResult searched(const std::vector<LinearRun>& runs, const std::vector<do
     SmoothedInput& of = out.places[place];
     of.log_likelihood = passes[place].log_likelihood(&counts);
     of.gain = of.log_likelihood - without;
+    for (Index l = 0; l < counts.size(); ++l)
+      for (Index b = 0; b < blocks; ++b) {
+        double& sum = of.by_block.emplace_back(0.0);
+        for (Index c = 0; c < counts[l].size(); ++c)
+          sum += counts[l][c] * (passes[place].by_block[l][c][b] - search.nothing().by_block[l][c][b]);
+      }
   }
   return out;
 }
@@ -367,13 +433,22 @@ SmootherResult searched(const std::vector<LinearRun>& runs, const std::vector<do
 // The smallest filter that holds so many states.
 template <class F>
 auto of_size(Index states, F f) {
-  if (states <= 4) return f(std::integral_constant<int, 4>{});
+  if (states <= 8) return f(std::integral_constant<int, 8>{});
   if (states <= 16) return f(std::integral_constant<int, 16>{});
   if (states <= 20) return f(std::integral_constant<int, 20>{});
+  if (states <= 24) return f(std::integral_constant<int, 24>{});
   return f(std::integral_constant<int, 32>{});
 }
 
 }  // namespace
+
+bool preferred(const SmoothedInput& place, const SmoothedInput& to) {
+  const double n = static_cast<double>(place.by_block.size()), mean = (place.gain - to.gain) / n;
+  double square = 0;
+  for (Index b = 0; b < place.by_block.size(); ++b)
+    square += std::pow(place.by_block[b] - to.by_block[b] - mean, 2) / (n - 1);
+  return n * mean > std::log(20.0) && n * mean > 1.645 * std::sqrt(n * square);
+}
 
 LinearRun thinned(const LinearRun& run, int stride) {
   if (stride <= 1) return run;
@@ -405,16 +480,17 @@ LinearRun thinned(const LinearRun& run, int stride) {
 SmootherResult smooth(const std::vector<LinearRun>& runs, const std::vector<double>& typical,
                       const std::function<bool(double)>& told) {
   const std::vector<LinearRun> used = pruned(runs);
-  return of_size(states_of(used) + 1, [&](auto n) { return searched<n>(used, typical, told); });
+  return of_size(states_of(used) + 2, [&](auto n) { return searched<n>(used, typical, told); });
 }
 
 SmoothedInput smooth_at(const std::vector<LinearRun>& runs, int place, double intensity, double start) {
   const std::vector<LinearRun> used = pruned(runs);
-  return of_size(states_of(used) + 1, [&](auto n) {
+  return of_size(states_of(used) + 2, [&](auto n) {
     using F = KalmanFilter<n>;
     F filter(used);
-    filter.choose(place);
-    const auto pass = filter({intensity * intensity, start * start, ones(used)}, F::Keep::smoothed);
+    filter.choose(place, false);
+    const auto pass =
+        filter({.variance = intensity * intensity, .start = start * start, .noise = ones(used)}, F::Keep::smoothed);
     SmoothedInput out;
     out.intensity = intensity;
     out.log_likelihood = pass.log_likelihood();

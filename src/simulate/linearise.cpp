@@ -129,16 +129,22 @@ struct Columns {
   using T = Pack<2, 0>;
   using Lu = Linear<T>::Lu;
   static constexpr int packs = (n_all + T::lanes - 1) / T::lanes;
+  using Block = std::array<std::array<T, n_all>, packs>;
   std::vector<Eigen::MatrixXd>& out;
-  std::array<std::array<T, n_all>, packs> x{};
+  int stride;
+  int passed = 0;
+  Block begun = identity(), x = begun;  // at the last sample, and now
 
-  void interval() {
+  static Block identity() {
+    Block b;
     for (int c = 0; c < packs; ++c)
       for (int i = 0; i < n_all; ++i) {
-        x[c][i] = T(0.0);
-        if (i / T::lanes == c) x[c][i].set(i % T::lanes, 1.0);
+        b[c][i] = T(0.0);
+        if (i / T::lanes == c) b[c][i].set(i % T::lanes, 1.0);
       }
+    return b;
   }
+  void interval() { x = begun; }
   void step(const Live& live, const std::array<double, n_live>& y, double h) {
     const Rates rates = with_derivatives(live, y);
     std::array<double, Lu::entries> j{};
@@ -166,27 +172,32 @@ struct Columns {
     return i < own ? i : i < n_live ? i + n_anchors : i - n_missing_places;
   }
   void sample() {
+    begun = x;
+    if (++passed % stride) return;
     Eigen::MatrixXd& to = out.emplace_back(n_all, n_all);
     for (int c = 0; c < n_all; ++c)
       for (int i = 0; i < n_all; ++i) to(place_of(i), place_of(c)) = x[c / T::lanes][i][c % T::lanes];
+    begun = identity();
   }
 };
 
 }  // namespace
 
-int Linearisation::missing(int place) { return n_all - n_missing_places + place; }
-
-Linearisation linearise(const Scenario& scenario, const ParameterVector& candidate, const SimulateOptions& options) {
+Linearisation linearise(const Scenario& scenario, const ParameterVector& candidate, const SimulateOptions& options,
+                        int stride) {
   Linearisation out;
   out.states = n_all;
+  out.at_rest = Eigen::VectorXd::Zero(n_all);
+  out.at_rest[Columns::place_of(n_live)] = constants::spool_presliding;
+  for (int i = 0; i < n_seals; ++i) out.at_rest[Columns::place_of(n_live + 1 + i)] = constants::seal_presliding[i];
   if (scenario.ports != Ports::actuator) return out;
   SimulateOptions silent = options;
   silent.wanted.fill(false);
   Trajectory t;
   const ParameterVector* from = &candidate;
   Trajectory* to = &t;
-  out.transition.reserve(scenario.time.size());
-  run_watched<double, Effects>(scenario, &from, &to, 1, silent, Columns{out.transition});
+  out.transition.reserve(scenario.time.size() / static_cast<std::size_t>(stride));
+  run_watched<double, Effects>(scenario, &from, &to, 1, silent, Columns{out.transition, stride});
   out.ok = t.ok;
   return out;
 }

@@ -35,11 +35,12 @@ struct Linearisation {
   bool ok = false;
   // The model's states (model/state.h), the effects' behind, then what friction remembers, then what is missing.
   int states = 0;
-  static int missing(int place);            // position of a place's missing input in the state
-  std::vector<Eigen::MatrixXd> transition;  // [sample] to the next one: states x states, SI
+  std::vector<Eigen::MatrixXd> transition;  // to the next sample, or the `stride`-th: states x states, SI
+  Eigen::VectorXd at_rest;                  // [states] how far a part at rest may stand from where its friction is none
 };
 
-Linearisation linearise(const Scenario& scenario, const ParameterVector& candidate,
-                        const SimulateOptions& options = {});
+// The missing inputs are the last states, in the order of their list.
+Linearisation linearise(const Scenario& scenario, const ParameterVector& candidate, const SimulateOptions& options = {},
+                        int stride = 1);
 
 }  // namespace servodx
