@@ -6,7 +6,6 @@
 // Leaves out: valves on a test stand; sensors as places; what re-tuning could imitate.
 #pragma once
 #include <functional>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -16,12 +15,11 @@ namespace servodx {
 
 struct MissingInput {
   std::string where, quantity, unit;
-  double rms = 0, std_error = 0;     // [unit] over time, and rms of its standard error
-  double gain = 0;                   // log likelihood over nothing missing, less what its one number costs (BIC)
-  bool likely = false;               // preferred to nothing missing, and no other place is preferred to it
-  std::string variable = {};         // that it follows most closely, in a line
-  double share = 0;                  // of its square that this line takes
-  std::optional<double> p_new = {};  // chance that a healthy log misses as much
+  double rms = 0, std_error = 0;  // [unit] over time, and rms of its standard error
+  double gain = 0;                // log likelihood over nothing missing, less what its one number costs (BIC)
+  bool likely = false;            // preferred to nothing missing, and no other place is preferred to it
+  std::string variable = {};      // that it follows most closely, in a line
+  double share = 0;               // of its square that this line takes
   std::vector<std::vector<double>> value = {}, error = {};  // [log][sample] of MissingInputs::time; [unit]
 };
 struct MissingInputs {
