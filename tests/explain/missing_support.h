@@ -32,6 +32,9 @@ struct Rehearsed {
     log.time.resize(n);
     for (Channel& c : log.channels)
       if (!c.value.empty()) c.value.resize(n);
+    // A current that is added goes through the motor's memory, and is no longer what was added.
+    for (Row& row : table.rows)
+      if (row.name == "hysteresis_width") row.nominal = 0;
     if (!log.has(Signal::load_force)) log.channels[index(Signal::load_force)].value.assign(n, 0.0);
     const ValveSubject plain({log}, table, rig, 1, {});
     ParameterVector p = plain.problem({})->candidate(plain.problem({})->start(), 0);
@@ -43,6 +46,13 @@ struct Rehearsed {
       force.push_back(planted.force ? planted.force(t) : 0),
           current.push_back(planted.current ? planted.current(t) : 0);
       s.load_force[k] -= force.back(), s.command[k] += current.back();
+    }
+    // What the torque motor gets of it: behind the driver's lag, a mean over each interval.
+    double lagged = 0;
+    for (std::size_t k = 0; k < n; ++k) {
+      const double z = 2 * 3.14159265358979 * p[row::driver_bandwidth] * 1e-3, u = current[k], from = lagged;
+      lagged = u + (from - u) * std::exp(-z);
+      current[k] = u - (from - u) * std::expm1(-z) / z;
     }
     SimulateOptions fine = fine_steps();
     fine.wanted.fill(true);
