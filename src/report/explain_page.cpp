@@ -145,15 +145,12 @@ Plot spectrum_plot(const ShownChannel& c) {
   return plot;
 }
 
-void add_missing(Page& page, const MissingInputs& m) {
+void add_missing(Page& page, const ExplainResult& r) {
+  const MissingInputs& m = r.missing;
   page.section("What is missing over time",
                "A current, force, flow or pressure at one place of the model, estimated from what all channels leave.");
   const MissingInput& best = m.places.front();
-  if (!best.likely) {
-    page.text("Nothing: no place explains what the channels leave better than their noise does.");
-    return;
-  }
-  page.text(words(missing_in_words(m)) + ".");
+  page.text(words(missing_in_words(r)) + ".");
   Bars bars{"Places", "place", "log likelihood over nothing missing", {}, {}, {}};
   for (const MissingInput& p : m.places)
     bars.rows.push_back({words(p.where) + ", " + p.quantity, std::max(0.0, p.gain), digits(p.gain),
@@ -260,7 +257,7 @@ Page explain_page(const Header& header, const ExplainResult& r, const std::vecto
                            b.p_new && *b.p_new < 0.05 ? Tone::doubt : Tone::plain, ""});
     page.add(bars);
   }
-  if (!r.missing.places.empty()) add_missing(page, r.missing);
+  if (!missing_in_words(r).empty()) add_missing(page, r);
   for (const ShownChannel& c : r.shown) {
     page.section(words(c.signal) + ": residual maps", words(c.summary), true);
     for (const ResidualMap& m : c.maps)

@@ -201,12 +201,13 @@ Json explain_json(const ExplainResult& r) {
           {"interrupted", r.interrupted}};
 }
 
-std::string missing_in_words(const MissingInputs& m) {
+std::string missing_in_words(const ExplainResult& r) {
+  const MissingInputs& m = r.missing;
   constexpr double follows = 0.2;  // of its square, to be worth a word
   const auto named = [](const MissingInput& p) {
     return p.where == "drive" || p.quantity != "force" ? p.where + " (" + p.quantity + ")" : p.where;
   };
-  if (m.places.empty() || !m.places.front().likely) return {};
+  if (r.verdict == "sufficient" || m.places.empty() || !m.places.front().likely) return {};
   const MissingInput& p = m.places.front();
   std::string text =
       fmt::format("missing at {}: {} rms, give or take {}", named(p), handy(p.rms, p.unit), handy(p.std_error, p.unit));
@@ -250,7 +251,7 @@ std::string text_of(const ExplainResult& r, const TextOptions& options) {
     text += fmt::format("  {}: misses {} rms of {}{}{}\n", b.block, handy(b.missing, b.unit), handy(b.passing, b.unit),
                         b.share > 0.2 ? fmt::format(", {} of it in line with {}", percent(b.share), b.variable) : "",
                         b.p_new ? ", p = " + digits(*b.p_new, 2) : "");
-  if (const std::string line = missing_in_words(r.missing); !line.empty()) text += "  " + line + "\n";
+  if (const std::string line = missing_in_words(r); !line.empty()) text += "  " + line + "\n";
   text += "  re-tuning alone removes " + gain_text(r.retuned) + "\n";
   add_causes(text, r.causes);
   if (r.curve) {
