@@ -158,7 +158,7 @@ TEST(Smoother, ConstantForceOnAFreeMassIsTheParabolaOfLeastSquares) {
     run.channels[0].residual.push_back(force * parabola + random.normal(0.0, noise));
     xx += parabola * parabola, xy += parabola * run.channels[0].residual.back();
   }
-  const SmoothedInput out = smooth_at({run}, 0, 0.0, 1.0);
+  const SmoothedInput out = smooth_at({run}, 0, 0.0, 0.1);
   for (std::size_t k = 0; k < run.time.size(); ++k) {
     EXPECT_NEAR(out.value[0][k], xy / xx, 1e-6 * force);
     EXPECT_NEAR(out.std_error[0][k], noise / std::sqrt(xx), 0.02 * noise / std::sqrt(xx));
@@ -201,7 +201,7 @@ TEST(Smoother, BandHoldsAWalkAsOftenAsItSaysAndASmootherInputMoreOften) {
                      of_smooth = coverage(force_shown, place, memory, smooth_one);
         std::printf("  %s, place %d, memory %.1f: %.1f %%, %.1f %%\n", force_shown ? "two channels" : "position", place,
                     memory, 100 * of_walk, 100 * of_smooth);
-        EXPECT_NEAR(of_walk, 0.9, 0.04);
+        EXPECT_NEAR(of_walk, 0.9, 0.055);  // three standard errors of some 270 independent stretches
         EXPECT_GT(of_smooth, 0.86);
       }
 }
