@@ -272,6 +272,13 @@ ExplainResult explain_logs(const std::vector<Log>& logs, const Table& tuned, con
   out.blocks = replay_blocks(subject, e.before.point);
   if (healthy)
     for (BlockReplay& b : out.blocks) b.p_new = test->miss({b.block, b.missing});
+  {
+    Progress of_missing("explain, missing input", {.quiet = options.quiet});
+    out.missing = missing_inputs(subject, e.before.point, [&](double f) {
+      of_missing.update(f, subject.simulations());
+      return !options.stop || !options.stop->load();
+    });
+  }
   for (const CauseScore& s : curve_scores) {
     const Cause& c = subject.causes()[static_cast<std::size_t>(s.cause)];
     if (!c.curve) continue;

@@ -10,6 +10,7 @@
 #include "explain/curves.h"
 #include "explain/engine.h"
 #include "explain/healthy.h"
+#include "explain/missing.h"
 #include "explain/show.h"
 #include "parameters/table.h"
 #include "signals/log.h"
@@ -67,6 +68,7 @@ struct ExplainResult {
   std::vector<ShownChannel> shown;  // the residual as tuned
   std::vector<BlockReplay> blocks;  // what each block misses with measured signals in place of simulated ones
   std::vector<PlaceScore> places;   // the best that a curve could do at each place, first the most
+  MissingInputs missing;            // as tuned, what is missing over time, were it all at one place
   std::vector<ExplainedCause> causes, standing;
   std::vector<ExplainedCandidate> candidates;
   Interval retuned;                                // held-out gain of re-tuning alone

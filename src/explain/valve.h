@@ -74,6 +74,8 @@ class ValveSubject : public Subject {
   void try_at(int cause, std::vector<double> numbers) {
     causes_[static_cast<std::size_t>(cause)].probes.push_back({std::move(numbers)});
   }
+  // Correlation from sample to sample that a series is weighed with.
+  double memory(std::size_t series) const { return memory_[series]; }
   const ParameterVector& base() const { return base_; }
   const Table& table() const { return table_; }
 

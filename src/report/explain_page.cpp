@@ -145,6 +145,39 @@ Plot spectrum_plot(const ShownChannel& c) {
   return plot;
 }
 
+void add_missing(Page& page, const ExplainResult& r) {
+  const MissingInputs& m = r.missing;
+  page.section("What is missing over time",
+               "A current, force, flow or pressure at one place of the model, estimated from what all channels leave.");
+  const MissingInput& best = m.places.front();
+  page.text(words(missing_in_words(r)) + ".");
+  Bars bars{"Places", "place", "log likelihood over nothing missing", {}, {}, {}};
+  for (const MissingInput& p : m.places)
+    bars.rows.push_back({words(p.where) + ", " + p.quantity, std::max(0.0, p.gain), digits(p.gain),
+                         fmt::format("{} rms, {} of its square in line with {}", handy(p.rms, p.unit), percent(p.share),
+                                     words(p.variable)),
+                         p.likely ? Tone::doubt : Tone::plain, ""});
+  page.add(bars);
+  const HandyUnit unit = handy_unit(best.unit, best.rms);
+  for (std::size_t l = 0; l < m.time.size(); ++l) {
+    Plot plot;
+    plot.title = fmt::format("{} missing at {}{} [{}]", best.quantity, words(best.where),
+                             m.time.size() > 1 ? fmt::format(", log {}", l + 1) : "", unit.name);
+    plot.x_label = "time [s]";
+    plot.x = m.time[l];
+    Series value{"missing", {}, Role::named};
+    Band band{"90 %", {}, {}};
+    for (std::size_t k = 0; k < best.value[l].size(); ++k) {
+      const double v = best.value[l][k], half = 1.645 * best.error[l][k];
+      value.y.push_back(v * unit.factor);
+      band.lower.push_back((v - half) * unit.factor), band.upper.push_back((v + half) * unit.factor);
+    }
+    plot.series = {value};
+    plot.band = band;
+    page.add(plot);
+  }
+}
+
 }  // namespace
 
 Page explain_page(const Header& header, const ExplainResult& r, const std::vector<Replay>& replays) {
@@ -224,6 +257,7 @@ Page explain_page(const Header& header, const ExplainResult& r, const std::vecto
                            b.p_new && *b.p_new < 0.05 ? Tone::doubt : Tone::plain, ""});
     page.add(bars);
   }
+  if (!missing_in_words(r).empty()) add_missing(page, r);
   for (const ShownChannel& c : r.shown) {
     page.section(words(c.signal) + ": residual maps", words(c.summary), true);
     for (const ResidualMap& m : c.maps)

@@ -99,6 +99,33 @@ Json to_json(const PlaceScore& p) {
           {"p_new", p.p_new ? number(*p.p_new) : Json(nullptr)}};
 }
 
+// The likeliest place over time, log by log; of a long log every so many samples.
+Json to_json(const MissingInputs& m) {
+  constexpr std::size_t most = 1000;
+  Json places = Json::array(), logs = Json::array();
+  for (const MissingInput& p : m.places)
+    places.push_back({{"where", p.where},
+                      {"quantity", p.quantity},
+                      {"unit", p.unit},
+                      {"rms", number(p.rms)},
+                      {"std_error", number(p.std_error)},
+                      {"gain", number(p.gain)},
+                      {"likely", p.likely},
+                      {"follows", p.variable},
+                      {"share", number(p.share)}});
+  if (!m.places.empty() && m.places.front().likely)
+    for (std::size_t l = 0; l < m.time.size(); ++l) {
+      Json time = Json::array(), value = Json::array(), error = Json::array();
+      const std::size_t stride = 1 + m.time[l].size() / most;
+      for (std::size_t k = 0; k < m.time[l].size(); k += stride) {
+        time.push_back(number(m.time[l][k]));
+        value.push_back(number(m.places.front().value[l][k])), error.push_back(number(m.places.front().error[l][k]));
+      }
+      logs.push_back({{"time", time}, {"value", value}, {"std_error", error}});
+    }
+  return {{"places", places}, {"logs", logs}};
+}
+
 Json to_json(const BlockReplay& b) {
   return {{"block", b.block},      {"places", b.places},       {"missing", b.quantity},
           {"unit", b.unit},        {"rms", number(b.missing)}, {"passing_rms", number(b.passing)},
@@ -164,6 +191,7 @@ Json explain_json(const ExplainResult& r) {
           {"residuals", array_of(r.shown)},
           {"blocks", array_of(r.blocks)},
           {"places", array_of(r.places)},
+          {"missing_input", to_json(r.missing)},
           {"curve", r.curve ? to_json(*r.curve) : Json(nullptr)},
           {"retuned_alone", to_json(r.retuned)},
           {"adequacy",
@@ -171,6 +199,25 @@ Json explain_json(const ExplainResult& r) {
             {"after", number(r.adequacy_after)},
             {"p_value", r.p_adequacy ? number(*r.p_adequacy) : Json(nullptr)}}},
           {"interrupted", r.interrupted}};
+}
+
+std::string missing_in_words(const ExplainResult& r) {
+  const MissingInputs& m = r.missing;
+  constexpr double follows = 0.2;  // of its square, to be worth a word
+  const auto named = [](const MissingInput& p) {
+    return p.where == "drive" || p.quantity != "force" ? p.where + " (" + p.quantity + ")" : p.where;
+  };
+  if (r.verdict == "sufficient" || m.places.empty() || !m.places.front().likely) return {};
+  const MissingInput& p = m.places.front();
+  std::string text =
+      fmt::format("missing at {}: {} rms, give or take {}", named(p), handy(p.rms, p.unit), handy(p.std_error, p.unit));
+  if (p.share > follows) text += fmt::format(", {} of its square in line with {}", percent(p.share), p.variable);
+  std::vector<std::string> others;
+  for (std::size_t k = 1; k < m.places.size(); ++k)
+    if (m.places[k].likely)
+      others.push_back(fmt::format("{} at {}", handy(m.places[k].rms, m.places[k].unit), named(m.places[k])));
+  if (!others.empty()) text += "; these channels do not tell it from " + join(others, " or ");
+  return text;
 }
 
 std::string text_of(const ExplainResult& r, const TextOptions& options) {
@@ -204,6 +251,7 @@ std::string text_of(const ExplainResult& r, const TextOptions& options) {
     text += fmt::format("  {}: misses {} rms of {}{}{}\n", b.block, handy(b.missing, b.unit), handy(b.passing, b.unit),
                         b.share > 0.2 ? fmt::format(", {} of it in line with {}", percent(b.share), b.variable) : "",
                         b.p_new ? ", p = " + digits(*b.p_new, 2) : "");
+  if (const std::string line = missing_in_words(r); !line.empty()) text += "  " + line + "\n";
   text += "  re-tuning alone removes " + gain_text(r.retuned) + "\n";
   add_causes(text, r.causes);
   if (r.curve) {

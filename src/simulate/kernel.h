@@ -195,10 +195,20 @@ struct Sensed<T, EffectList<E...>> {
 inline constexpr double tube_conductance = 1e-7;
 inline constexpr double drop_rounding = 1e-6;  // [m] of spool travel, where the drop passes to the other two edges
 
+// Sees each step of a run before it is taken; here, nobody does.
+struct Unwatched {
+  void interval() {}  // the steps from one sample to the next begin, or begin again
+  template <class... A>
+  void step(const A&...) {}
+  template <class... A>
+  void dragged(const A&...) {}  // friction's anchors, before and after
+  void sample() {}              // the next sample is reached
+};
+
 // Runs `lanes` candidates (at most the width of T) over the log and writes their trajectories.
-template <class T, class Effects>
-void run_pack(const Scenario& in, const ParameterVector* const* candidates, Trajectory* const* results, int lanes,
-              const SimulateOptions& options) {
+template <class T, class Effects, class Watch>
+void run_watched(const Scenario& in, const ParameterVector* const* candidates, Trajectory* const* results, int lanes,
+                 const SimulateOptions& options, Watch&& watch) {
   constexpr int n = System<T, Effects, false>::n;
   constexpr int width = Lanes<T>::count;
   const std::size_t samples = in.time.size();
@@ -402,6 +412,7 @@ void run_pack(const Scenario& in, const ParameterVector* const* candidates, Traj
                   (next.return_pressure - now.return_pressure) * per, (next.load_force - now.load_force) * per};
     const auto advance = [&](int steps) {
       const double h = dt / steps;
+      watch.interval();
       for (int j = 0; j < steps; ++j) {
         const T t = T(h * j);
         live.at = {now.current + live.slope.current * t, now.supply_pressure + live.slope.supply_pressure * t,
@@ -413,9 +424,11 @@ void run_pack(const Scenario& in, const ParameterVector* const* candidates, Traj
           stand.slope = live.slope;
           rodas3_step<T>(stand, y, h);
         } else {
+          watch.step(live, y, h);
           rodas3_step<T>(live, y, h);
         }
         friction.move(spool_from, y[s_x_spool], rod_from, y[s_x_piston], h, d.breakaway, sticks);
+        watch.dragged(live.at.friction, friction);
       }
     };
     const auto y_before = y;
@@ -423,9 +436,16 @@ void run_pack(const Scenario& in, const ParameterVector* const* candidates, Traj
     advance(substeps);
     for (int finer = substeps * 8; finer <= substeps * 64 && any_lost(); finer *= 8)
       rescue(y_before, friction_before, [&] { advance(finer); });
+    watch.sample();
     now = next;
     if (!report(k + 1, now)) return;
   }
+}
+
+template <class T, class Effects>
+void run_pack(const Scenario& in, const ParameterVector* const* candidates, Trajectory* const* results, int lanes,
+              const SimulateOptions& options) {
+  run_watched<T, Effects>(in, candidates, results, lanes, options, Unwatched{});
 }
 
 using RunPack = void (*)(const Scenario&, const ParameterVector* const*, Trajectory* const*, int,

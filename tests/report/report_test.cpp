@@ -176,6 +176,31 @@ TEST(ExplainPage, OpensWithTheCauseItsSizeAndTheChannelThatShowsIt) {
   EXPECT_NE(explain_page({}, nothing, {}).html().find("UNEXPLAINED"), std::string::npos);
 }
 
+// The likeliest place by name, size and what it follows, and what the channels do not tell it from; in health, nothing.
+TEST(ExplainPage, SaysWhatIsMissingAndDrawsItWithItsBand) {
+  ExplainResult r = some_explanation();
+  MissingInput force{"piston_force", "force", "N"}, flow{"flow_b", "flow", "m3/s"};
+  force.rms = 310, force.std_error = 20, force.gain = 500, force.likely = true;
+  force.variable = "direction of the piston", force.share = 0.88;
+  force.value = {{300, -320}}, force.error = {{20, 20}};
+  flow.rms = 2e-6, flow.gain = 498, flow.likely = true;
+  flow.value = {{1e-6, 2e-6}}, flow.error = {{1e-7, 1e-7}};
+  r.missing = {{force, flow}, {{0, 0.001}}};
+  const std::string text = text_of(r, {});
+  EXPECT_NE(
+      text.find("missing at piston_force: 310 N rms, give or take 20 N, 88 % of its square in line with direction of "
+                "the piston; these channels do not tell it from"),
+      std::string::npos)
+      << text;
+  EXPECT_NE(explain_page({}, r, {}).html().find("force missing at piston force [N]"), std::string::npos);
+  const Json json = explain_json(r)["missing_input"];
+  EXPECT_EQ(json["places"].size(), 2u);
+  EXPECT_EQ(json["logs"][0]["value"][1], -320);
+  r.verdict = "sufficient";
+  EXPECT_EQ(text_of(r, {}).find("missing at"), std::string::npos);
+  EXPECT_EQ(explain_page({}, r, {}).html().find("force missing at"), std::string::npos);
+}
+
 TEST(TrendPage, AFigureThatFallsIsNotSaidToRise) {
   ValveTrend v;
   v.valve = "V7", v.state = "warning";

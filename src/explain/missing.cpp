@@ -1,0 +1,233 @@
+#include "explain/missing.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "explain/smoother.h"
+#include "simulate/linearise.h"
+
+namespace servodx {
+namespace {
+
+constexpr std::size_t most_samples = 20000;  // of all logs; of more, every second and so on
+const double told_apart = std::log(20.0);    // odds at which a place is preferred to none
+
+// What a channel shows of the model's states; empty: of none that the smoother knows.
+Eigen::VectorXd shown(Signal signal, int states, const ParameterVector& p) {
+  Eigen::VectorXd h = Eigen::VectorXd::Zero(states);
+  switch (signal) {
+    case Signal::spool_position:
+      h[s_x_spool] = 1;
+      return h;
+    case Signal::piston_position:
+      h[s_x_piston] = p[row::position_sensor_gain];
+      h[s_v_piston] = -p[row::position_sensor_gain] * p[row::position_sensor_lag];
+      return h;
+    case Signal::pressure_a:
+      h[s_p_a] = 1;
+      return h;
+    case Signal::pressure_b:
+      h[s_p_b] = 1;
+      return h;
+    case Signal::pilot_pressure_1:
+      h[s_p_pilot_1] = 1;
+      return h;
+    case Signal::pilot_pressure_2:
+      h[s_p_pilot_2] = 1;
+      return h;
+    case Signal::load_pressure:
+      h[s_p_a] = 1, h[s_p_b] = -1;
+      return h;
+    default:
+      return {};
+  }
+}
+
+template <class X>
+std::vector<X> every(const std::vector<X>& x, int stride) {
+  std::vector<X> out;
+  for (std::size_t k = 0; k < x.size(); k += static_cast<std::size_t>(stride)) out.push_back(x[k]);
+  return out;
+}
+
+// One log as the smoother takes it; the high-pass of a channel is one more state. `series`: of its first channel.
+LinearRun linear_run(const ValveSubject& subject, const FitProblem& problem, const Trajectory& run, int log,
+                     std::size_t series, const ParameterVector& p, int stride) {
+  const LogData& data = subject.logs()[static_cast<std::size_t>(log)];
+  const Scenario& in = data.scenario;
+  LinearRun out;
+  out.time = every(in.time, stride);
+  Linearisation linear = linearise(in, p, {}, stride);
+  if (!linear.ok) return {};
+  struct Filtered {
+    Eigen::VectorXd shows;
+    double corner;  // [Hz]
+    double noise;
+  };
+  std::vector<Filtered> filtered;
+  const int own = linear.states - n_missing_places;
+  double piston_noise = 0, spool_noise = 0.05 * p[row::spool_stop],
+         pressure_noise = 0.2 * p[row::supply_pressure];  // where not measured
+  for (std::size_t c = 0; c < data.channels.size(); ++c) {
+    const FitChannel& channel = data.channels[c];
+    if (channel.signal == Signal::piston_position) piston_noise = channel.noise;
+    if (channel.signal == Signal::spool_position) spool_noise = channel.noise;
+    if (channel.signal == Signal::pressure_a) pressure_noise = channel.noise;
+    Eigen::VectorXd h = shown(channel.signal, own, p);
+    if (h.size() == 0) continue;
+    LinearChannel& to = out.channels.emplace_back();
+    to.residual = every(problem.raw_residual(log, static_cast<int>(c), run), stride);
+    if (subject.holds()) {
+      to.sigma = every(*subject.series()[series + c].sigma, stride);
+      const double a = subject.memory(series + c);
+      to.memory = std::pow(a, stride);
+      for (double& s : to.sigma) s *= std::sqrt((1 - to.memory * to.memory) / (1 - a * a));
+    } else {
+      to.sigma.assign(out.time.size(), channel.noise);
+    }
+    to.shows = std::move(h);
+    if (channel.filter.drift > 0) {
+      filtered.push_back({to.shows, channel.filter.drift, channel.noise});
+      to.shows = Eigen::VectorXd::Zero(own);
+      to.shows.conservativeResize(own + static_cast<long>(filtered.size()));
+      to.shows[own + static_cast<long>(filtered.size()) - 1] = 1;
+    }
+  }
+  const auto extra = static_cast<long>(filtered.size()), all = own + extra;
+  for (LinearChannel& c : out.channels) {
+    const long had = c.shows.size();
+    c.shows.conservativeResize(all);
+    c.shows.tail(all - had).setZero();
+  }
+  out.start = Eigen::VectorXd::Zero(all);
+  out.start.head(own) = linear.at_rest.head(own);
+  out.start[s_x_spool] = spool_noise;
+  out.start[s_p_a] = out.start[s_p_b] = pressure_noise;
+  out.start[s_x_piston] = piston_noise;
+  out.start[s_v_piston] = piston_noise * starting_slope_error(in.time);
+  constexpr double anywhere = 1e3;  // where the signal stood before its first sample
+  for (long f = 0; f < extra; ++f) out.start[own + f] = anywhere * filtered[static_cast<std::size_t>(f)].noise;
+  for (std::size_t k = 0; k < linear.transition.size(); ++k) {
+    Eigen::MatrixXd from = std::move(linear.transition[k]);
+    Eigen::MatrixXd& to = out.transition.emplace_back(Eigen::MatrixXd::Zero(all, all + n_missing_places));
+    to.topLeftCorner(own, own) = from.topLeftCorner(own, own);
+    to.topRightCorner(own, n_missing_places) = from.topRightCorner(own, n_missing_places);
+    for (long f = 0; f < extra; ++f) {
+      // As signals/filters.h has it: y' = x' - rate y, x a line between the samples.
+      const Filtered& by = filtered[static_cast<std::size_t>(f)];
+      const double z = 2 * std::numbers::pi * by.corner * (out.time[k + 1] - out.time[k]), passes = -std::expm1(-z) / z;
+      to.row(own + f).head(own) = passes * (by.shows.transpose() * from.topLeftCorner(own, own) - by.shows.transpose());
+      to.row(own + f).tail(n_missing_places) =
+          passes * by.shows.transpose() * from.topRightCorner(own, n_missing_places);
+      to(own + f, own + f) = std::exp(-z);
+    }
+  }
+  return out;
+}
+
+// Signals that what is missing may depend on, as simulated.
+std::vector<std::pair<std::string, std::vector<double>>> variables_of(const Scenario& in, const Trajectory& t,
+                                                                      int stride) {
+  const auto signal = [&](Signal s) -> const std::vector<double>& {
+    return t.signals[static_cast<std::size_t>(simulated_index(s))];
+  };
+  const auto& spool = signal(Signal::spool_position);
+  const auto& piston = signal(Signal::piston_position);
+  const auto rate = [&](const std::vector<double>& x) {
+    std::vector<double> v(x.size(), 0.0);
+    for (std::size_t k = 1; k < x.size(); ++k) v[k] = (x[k] - x[k - 1]) / (in.time[k] - in.time[k - 1]);
+    return v;
+  };
+  // Rounded as a learnt curve's: at rest there is none.
+  const auto direction = [](std::vector<double> v) {
+    for (double& x : v) x = x / std::hypot(x, Unexplained::direction_speed);
+    return v;
+  };
+  std::vector<double> load;
+  for (std::size_t k = 0; k < in.time.size(); ++k)
+    load.push_back(signal(Signal::pressure_a)[k] - signal(Signal::pressure_b)[k]);
+  std::vector<std::pair<std::string, std::vector<double>>> out = {{"coil_current", in.command},
+                                                                  {"spool_position", spool},
+                                                                  {"spool_velocity", rate(spool)},
+                                                                  {"direction of the spool", direction(rate(spool))},
+                                                                  {"piston_position", piston},
+                                                                  {"piston_velocity", rate(piston)},
+                                                                  {"direction of the piston", direction(rate(piston))},
+                                                                  {"load_pressure", load}};
+  for (auto& [name, values] : out) values = every(values, stride);
+  return out;
+}
+
+// Share of the square of y about its mean that a line in x takes, each sample weighed by how well it is known.
+struct LineShare {
+  double n = 0, x = 0, y = 0, xx = 0, yy = 0, xy = 0;
+  void add(double vx, double vy, double w) {
+    n += w, x += w * vx, y += w * vy, xx += w * vx * vx, yy += w * vy * vy, xy += w * vx * vy;
+  }
+  double value() const {
+    const double vx = xx - x * x / n, vy = yy - y * y / n, c = xy - x * y / n;
+    return vx > 0 && vy > 0 ? c * c / (vx * vy) : 0;
+  }
+};
+
+}  // namespace
+
+MissingInputs missing_inputs(const ValveSubject& subject, const Point& point, const std::function<bool(double)>& told) {
+  MissingInputs out;
+  const auto problem = subject.problem({});
+  std::size_t samples = 0, series = 0;
+  for (const LogData& l : subject.logs()) samples += l.scenario.time.size();
+  const auto stride = static_cast<int>(samples / most_samples) + 1;
+  std::vector<LinearRun> linear;
+  std::vector<std::vector<std::pair<std::string, std::vector<double>>>> variables;
+  // The steps of a fit are too coarse for what is looked at sample by sample; for its derivatives they do.
+  SimulateOptions fine = fine_steps();
+  fine.wanted.fill(true);
+  for (std::size_t l = 0; l < subject.logs().size(); ++l) {
+    const LogData& log = subject.logs()[l];
+    if (log.scenario.ports != Ports::actuator) return out;
+    const ParameterVector p = problem->candidate(point, static_cast<int>(l));
+    const Trajectory run = simulate(log.scenario, p, fine);
+    if (!run.ok) return out;
+    linear.push_back(linear_run(subject, *problem, run, static_cast<int>(l), series, p, stride));
+    if (linear.back().channels.empty()) return out;
+    series += log.channels.size();
+    variables.push_back(variables_of(log.scenario, run, stride));
+    out.time.push_back(linear.back().time);
+  }
+  std::vector<double> typical;
+  for (const MissingPlace& place : missing_places) typical.push_back(place.typical);
+  const SmootherResult smoothed = smooth(linear, typical, told);
+  const double cost = 0.5 * std::log(std::max(2.0, smoothed.independent));
+  for (std::size_t i = 0; i < smoothed.places.size(); ++i) {
+    const SmoothedInput& from = smoothed.places[i];
+    const MissingPlace& place = missing_places[i];
+    MissingInput& to = out.places.emplace_back(MissingInput{place.where, place.quantity, place.unit});
+    to.gain = from.gain - cost;
+    to.value = from.value, to.error = from.std_error;
+    double n = 0, square = 0, error = 0;
+    for (std::size_t l = 0; l < to.value.size(); ++l)
+      for (std::size_t k = 0; k < to.value[l].size(); ++k)
+        n += 1, square += std::pow(to.value[l][k], 2), error += std::pow(to.error[l][k], 2);
+    to.rms = std::sqrt(square / n), to.std_error = std::sqrt(error / n);
+    for (std::size_t v = 0; v < variables.front().size(); ++v) {
+      LineShare line;
+      for (std::size_t l = 0; l < to.value.size(); ++l)
+        for (std::size_t k = 0; k < to.value[l].size(); ++k) {
+          const double e = to.error[l][k], w = 1 / (e * e + to.std_error * to.std_error);
+          if (std::isfinite(w)) line.add(variables[l][v].second[k], to.value[l][k], w);
+        }
+      if (const double share = line.value(); share > to.share)
+        to.share = share, to.variable = variables.front()[v].first;
+    }
+  }
+  const auto best = std::max_element(smoothed.places.begin(), smoothed.places.end(),
+                                     [](const auto& a, const auto& b) { return a.gain < b.gain; });
+  for (std::size_t i = 0; i < out.places.size(); ++i)
+    out.places[i].likely = out.places[i].gain > told_apart && !preferred(*best, smoothed.places[i]);
+  std::stable_sort(out.places.begin(), out.places.end(), [](const auto& a, const auto& b) { return a.gain > b.gain; });
+  return out;
+}
+
+}  // namespace servodx
