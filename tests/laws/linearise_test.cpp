@@ -141,6 +141,26 @@ TEST(Linearise, StuckPartStaysWhereADeviationPutIt) {
   EXPECT_LT(x[s_x_piston], 0.9e-6);
 }
 
+TEST(Linearise, PartThatSlidElsewhereStopsThere) {
+  // Its asperities were dragged along: where it stops it is held, and not pulled to where the run stopped.
+  ParameterVector v = valve();
+  v[row::piston_coulomb_friction] = 3000;
+  const auto stopping = [](double pressure) {
+    Scenario s = moving(pressure, 0);
+    for (std::size_t k = 0; k < s.time.size(); ++k) s.command[k] = s.time[k] < 0.05 ? 0.01 : 0, s.load_force[k] = 0;
+    return s;
+  };
+  constexpr double more = 1e4;  // [Pa]
+  const Linearisation linear = linearise(stopping(0), v, of_step(fine));
+  const Trajectory with = simulate(stopping(more), v, of_step(fine)), without = simulate(stopping(0), v, of_step(fine));
+  Eigen::VectorXd x = Eigen::VectorXd::Zero(linear.states);
+  x[s_p_a] = more;
+  for (const Eigen::MatrixXd& t : linear.transition) x = t * x;
+  const double truth = at(with, 200).piston - at(without, 200).piston;
+  EXPECT_GT(std::abs(truth), 1e-7) << x[s_x_piston];
+  EXPECT_NEAR(x[s_x_piston], truth, 0.1 * std::abs(truth));
+}
+
 TEST(Linearise, StrideIsTheProductOfItsSamples) {
   const Linearisation one = linearise(moving(0, 0), valve()), four = linearise(moving(0, 0), valve(), {}, 4);
   ASSERT_EQ(four.transition.size(), 50u);
