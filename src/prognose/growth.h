@@ -33,6 +33,7 @@ struct GrowthPoint {
   double exposed = 0;            // [y] growth so far, as neighbours show it, times the first feature's size
   double stretch = 1;            // y per unit of what wears, here
   double base_shown = 1;         // part of the base that shows at these conditions
+  bool at_most = false;          // the figure's scale ends here: `y` or less
 };
 
 struct GrowthPrior {

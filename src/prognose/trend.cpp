@@ -46,6 +46,7 @@ struct Series {
   const Fault* fault = nullptr;
   std::optional<double> tuned;  // the row's value in the table that the checks rest on
   Scale scale = Scale::plain;
+  double clean = 1;  // drop over the whole part, in that of the table's whole part
   std::vector<GrowthPoint> points;
   std::vector<double> temperature;  // [K]
 
@@ -62,11 +63,15 @@ struct Series {
     return 1 / ((1 - from) * (1 - from)) + std::min(0.0, lost - from) / lost_per_drop(least_drop);
   }
   bool paper() const { return scale == Scale::logarithm; }
-  double in(double v) const { return scale == Scale::logarithm ? std::log(v) : scale == Scale::drop ? drop_at(v) : v; }
-  double out(double y) const { return scale == Scale::logarithm ? std::exp(y) : scale == Scale::drop ? lost_at(y) : y; }
+  double in(double v) const {
+    return scale == Scale::logarithm ? std::log(v) : scale == Scale::drop ? drop_at(v) / clean : v;
+  }
+  double out(double y) const {
+    return scale == Scale::logarithm ? std::exp(y) : scale == Scale::drop ? lost_at(y * clean) : y;
+  }
   // d out / d y at a value.
   double stretch(double v) const {
-    return scale == Scale::logarithm ? std::abs(v) : scale == Scale::drop ? lost_per_drop(drop_at(v)) : 1.0;
+    return scale == Scale::logarithm ? std::abs(v) : scale == Scale::drop ? lost_per_drop(drop_at(v)) * clean : 1.0;
   }
   // How far a growth has come where its error matters as much at the first as at the last: of a drop its logarithm.
   double way(double grown) const { return scale == Scale::drop ? std::log1p(std::max(grown, 0.0)) : grown; }
@@ -107,7 +112,11 @@ void append(Series& s, const Recording& r, const Check& c) {
   const double z = std::isfinite(r.temperature) ? log_viscosity(r.temperature) : 0.0;
   p.features = {z, z * z};
   if (s.paper()) p.features.push_back(std::log(c.expected > 0 ? c.expected : 1.0));
-  if (s.scale == Series::Scale::drop) p.base_shown = beside_laminar(z), p.features.push_back(1 - p.base_shown);
+  if (s.scale == Series::Scale::drop) {
+    constexpr double near = 1.001;
+    p.at_most = p.y < near * Series::least_drop;
+    p.base_shown = beside_laminar(z), p.features.push_back(1 - p.base_shown);
+  }
   s.points.push_back(std::move(p));
   s.temperature.push_back(r.temperature);
 }
@@ -164,6 +173,19 @@ std::vector<Series> series_of(const ValveHistory& history, std::vector<std::stri
   return all;
 }
 
+// A table that no data sheet and no log gave the screen's own size reads a clean one as partly blocked. Where health
+// reads further from the table's than two deviations of what is left open (a clean drop by the bores, a quarter by the
+// screen), that is the clean drop, and wear is of it.
+void take_clean(Series& s, std::size_t healthy) {
+  const double left_open = std::hypot(1.0, 0.25);
+  std::vector<double> first;
+  for (std::size_t i = 0; i < std::min(healthy, s.points.size()); ++i) first.push_back(s.points[i].y);
+  const double read = median(first);
+  if (s.scale != Series::Scale::drop || read < 1 + 2 * left_open) return;
+  s.clean = read;
+  for (GrowthPoint& p : s.points) p.y /= read, p.variance /= read * read;
+}
+
 // The value of a fault's row where it has failed: for severities that multiply, of what it was.
 std::optional<double> failed_row(const Fault& fault) {
   if (!fault.failed) return {};
@@ -214,7 +236,8 @@ FailureAt failure_of(const Series& s, const TrendOptions& options) {
       // Of what was open at the beginning: how large a clean filter is stands on no data sheet, and no log tells it.
       if (s.fault->part_lost) at.of = FailureAt::Of::beyond_base;
       if (!s.fault->log_scale) at.sd = left_open(s, *failed);
-      to_side(s.in(*failed) - (s.fault->part_lost ? s.in(0.0) : 0.0), *failed > (s.fault->log_scale ? 1.0 : 0.0));
+      to_side(s.fault->part_lost ? Series::drop_at(*failed) - 1 : s.in(*failed),
+              *failed > (s.fault->log_scale ? 1 : 0));
     }
   }
   return at;
@@ -298,15 +321,14 @@ GrowthPrior first_look(GrowthPrior prior) {
 // Where the scale of what is lost ends a reading says: at most this. The normal reading that says as much to the curve
 // that all tell together (Newton's step of the likelihood of a censored reading).
 std::vector<GrowthPoint> at_the_end(std::vector<GrowthPoint> points, const GrowthPrior& prior) {
-  constexpr double near = 1.001;
   constexpr int steps = 2;
   const std::vector<GrowthPoint> as_read = points;
-  const auto ends = [&](const GrowthPoint& p) { return prior.of_drop && p.y < near * Series::least_drop; };
-  for (int k = 0; k < steps && std::any_of(as_read.begin(), as_read.end(), ends); ++k) {
+  const auto at_most = [](const GrowthPoint& p) { return p.at_most; };
+  for (int k = 0; k < steps && std::any_of(as_read.begin(), as_read.end(), at_most); ++k) {
     const GrowthModel all(thinned(points), first_look(prior));
     for (std::size_t i = 0; i < points.size(); ++i) {
       const GrowthPoint& p = as_read[i];
-      if (!ends(p)) continue;
+      if (!p.at_most) continue;
       const double sigma = std::hypot(std::sqrt(p.variance), all.growth().noise);
       const double curve = all.expected(p), z = (p.y - curve) / sigma;
       const double ratio = std::exp(-0.5 * z * z) * std::numbers::sqrt2 / std::sqrt(std::numbers::pi) /
@@ -508,7 +530,8 @@ ValveTrend trend(const ValveHistory& history, const TrendOptions& options) {
   out.at = history.recordings.empty() ? 0.0 : history.recordings.back().at;
   out.state = "unknown";
   out.to_warning = infinite;
-  const std::vector<Series> all = series_of(history, out.notes);
+  std::vector<Series> all = series_of(history, out.notes);
+  for (Series& s : all) take_clean(s, static_cast<std::size_t>(options.healthy));
   for (const Series& s : all) out.trends.push_back(trend_of(s, options, all.size()));
 
   double furthest = -infinite;  // of what may be the cause, surely

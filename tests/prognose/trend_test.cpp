@@ -198,14 +198,17 @@ TEST(Trend, TheStatedSpreadOfALevelSetsTheIntervalOfTheLife) {
   EXPECT_LT(width(2e-7), 0.4 * width(2e-6));
 }
 
-// A clean filter's size is on no data sheet: a model that takes it for a tenth blocked sees less left at the end.
+// A clean filter's size is on no data sheet: a model that takes it for a tenth or for half blocked sees less left at
+// the end.
 TEST(Trend, ABlockedFilterHasFailedWhenAQuarterIsLeftOfWhatWasOpen) {
-  const ValveTrend t = trend(of_one(
-                                 "parameter:1", [](double s) { return 1 - 0.9 * (1 - 0.75 * s); }, 0.01, 0.01),
-                             {});
-  EXPECT_NEAR(*find(t, "parameter:1").failure.upper, 1 - 0.9 * 0.25, 0.015);  // 0.75 without the size
-  ASSERT_TRUE(t.remaining);
-  EXPECT_NEAR(t.remaining->median, 42, 12);
+  for (const double open : {0.9, 0.5}) {
+    const ValveTrend t = trend(of_one(
+                                   "parameter:1", [&](double s) { return 1 - open * (1 - 0.75 * s); }, 0.01, 0.01),
+                               {});
+    EXPECT_NEAR(*find(t, "parameter:1").failure.upper, 1 - open * 0.25, 0.015);  // 0.75 without the size
+    ASSERT_TRUE(t.remaining);
+    EXPECT_NEAR(t.remaining->median, 42, 12);
+  }
 }
 
 // A weak motor and a filter that is read widely: the filter comes nearer to its end by chance, the motor has surely
