@@ -220,6 +220,8 @@ void add_rig_command(CLI::App& app, int& exit_code) {
   command->add_option("--rate", options->run.rate, "samples and control ticks a second [Hz]")->capture_default_str();
   command->add_option("--temperature", options->celsius, "oil and valve [degC]; without: 40, of a fleet -20 to 65");
   command->add_option("--air", options->run.air, "free air in the oil, volume fraction")->capture_default_str();
+  command->add_option("--viscosity", options->run.viscosity, "of the oil, over what the rig's definition says of it")
+      ->capture_default_str();
   command->add_option("--amplitude", options->run.amplitude, "fraction of rated current; 0: the excitation's own");
   command->add_option("--frequency", options->run.frequency, "of sine, triangle, preflight [Hz]; 0: its own");
   command->add_option("--fault", options->faults,

@@ -10,9 +10,9 @@ double kinematic_viscosity(double at_40, double at_100, double temperature) {
   return (std::pow(10.0, std::pow(10.0, level)) - 0.7) * 1e-6;
 }
 
-Oil::Oil(const RigModel& m, double temperature, double air)
+Oil::Oil(const RigModel& m, double temperature, double air, double thickness)
     : density(m.oil_density * (1.0 - m.oil_expansion * (temperature - zero_celsius - 20.0))),
-      viscosity(density * kinematic_viscosity(m.oil_viscosity_40, m.oil_viscosity_100, temperature)),
+      viscosity(thickness * density * kinematic_viscosity(m.oil_viscosity_40, m.oil_viscosity_100, temperature)),
       viscosity_rise(m.oil_viscosity_pressure),
       inverse_beta(std::exp(m.oil_bulk_temperature * (temperature - zero_celsius - 40.0)) / m.oil_bulk_modulus),
       beta_rise(m.oil_bulk_pressure),

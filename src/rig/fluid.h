@@ -27,7 +27,8 @@ struct Oil {
   double beta_rise;       // [1]
   double air_fraction;    // [1] free air by volume at atmospheric pressure
 
-  Oil(const RigModel& m, double temperature, double air);
+  // `thickness`: viscosity over what the model's law says.
+  Oil(const RigModel& m, double temperature, double air, double thickness = 1.0);
 
   // T: double, or several of them
   template <class T>

@@ -38,6 +38,7 @@ void check(const RigRun& run) {
   range("--rate", run.rate, 10.0, 5e4, "Hz");
   range("--temperature", run.temperature - zero_celsius, -40.0, 100.0, "degC");
   range("--air", run.air, 0.0, 0.2, "(fraction)");
+  range("--viscosity", run.viscosity, 0.05, 20.0, "(factor)");
   range("--amplitude", run.amplitude, 0.0, 1.2, "(fraction)");
   range("--frequency", run.frequency, 0.0, 500.0, "Hz");
   range("--jitter", run.jitter, 0.0, 0.25 / run.rate, "s");
@@ -103,6 +104,7 @@ nlohmann::json truth_of(const RigModel& model, const RigRun& run, double h) {
       {"onset_time", time_or_null(onset)},
       {"null", model.armature_null + model.armature_null_drift * (run.temperature - zero_celsius - 40.0)},
       {"step", h}};
+  if (run.viscosity != 1.0) truth["viscosity"] = run.viscosity;
   if (run.amplitude > 0.0) truth["amplitude"] = run.amplitude;
   if (run.frequency > 0.0) truth["frequency"] = run.frequency;
   if (run.jitter > 0.0) truth["jitter"] = run.jitter;
@@ -137,7 +139,7 @@ class Recorder {
         stimulus_(stimulus),
         faults_(with_onset(run)),
         changes_(any_changes(faults_)),
-        rig_(model, {run.temperature, run.air, wear_of(faults_, 0.0)}),
+        rig_(model, {run.temperature, run.air, wear_of(faults_, 0.0), run.viscosity}),
         sensors_(chosen_sensors(model, run)),
         loop_sensor_(Sensor{"piston_position", "mm"}, run.seed, 99),
         unit_(find_unit("mA")) {

@@ -25,6 +25,7 @@ struct RigRun {
   double rate = 1000.0;                      // [Hz] of samples and of the control computer
   double temperature = 40.0 + zero_celsius;  // [K] of oil and valve
   double air = 0.005;                        // [1] free air in the oil, by volume at atmospheric pressure
+  double viscosity = 1.0;                    // [1] of the oil, over what the model's law says of it
   double amplitude = 0.0;                    // [1] of rated current; 0: the excitation's own
   double frequency = 0.0;                    // [Hz] 0: the excitation's own
   std::uint64_t seed = 1;

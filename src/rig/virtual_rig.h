@@ -12,6 +12,7 @@ struct Conditions {
   double temperature = 40.0 + zero_celsius;  // [K]
   double air = 0.005;                        // [1] free air at atmospheric pressure
   Wear wear = {};
+  double viscosity = 1.0;  // [1] of the oil, over what the model's law says; drawings are stated with the model's oil
 };
 
 class VirtualRig {

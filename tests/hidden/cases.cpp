@@ -77,7 +77,7 @@ const std::vector<Effect>& listed_effects() {
       {"viscosity_change",
        [](Hiding& h, Random& r) {
          const double by = r.uniform() < 0.5 ? r.uniform(0.3, 0.5) : r.uniform(2, 3.5);
-         h.model.oil_viscosity_40 *= by, h.model.oil_viscosity_100 *= by;
+         h.run.viscosity = by;  // another oil in the same hardware
          h.truth = {"viscosity_change",
                     {"metering", "piston_force"},
                     "viscosity_factor",

@@ -205,6 +205,15 @@ TEST(RigFaults, AWornPistonSealLeaksInProportionToTheLoadPressure) {
   EXPECT_NEAR(conductance(with_fault("cylinder_leakage=1e-11")), 1e-11, 2e-12);  // thicker under pressure
 }
 
+TEST(RigFaults, OilOfHalfTheViscosityLeaksTwiceAsMuchThroughTheSameSeal) {
+  const auto conductance = [](double viscosity) {
+    VirtualRig rig = settled({.viscosity = viscosity});
+    hold(rig, 0.0, 0.1, 8000.0);
+    return rig.flows().q_across / (rig.state()[p_a] - rig.state()[p_b]);
+  };
+  EXPECT_NEAR(conductance(0.5) / conductance(1.0), 2.0, 0.02);
+}
+
 TEST(RigFaults, ASaggingSupplyLowersTheSupplyPressure) {
   EXPECT_NEAR(settled(with_fault("supply_fault=0.5")).state()[p_supply], 0.5 * flight_rig().supply_pressure, 3e5);
 }
