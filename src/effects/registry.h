@@ -18,6 +18,7 @@
 #include "effects/rod_cavity.h"
 #include "effects/screen_drop.h"
 #include "effects/seal_film.h"
+#include "effects/seal_shear.h"
 #include "effects/sensor_response.h"
 #include "effects/stiction.h"
 #include "effects/supply_droop.h"
@@ -47,7 +48,8 @@ using AllEffects = EffectList<MagneticHysteresis,  //
                               OrificeLength,       //
                               ScreenDrop,          //
                               NozzleLand,          //
-                              SealFilm>;
+                              SealFilm,            //
+                              SealShear>;
 // A learnt curve costs more than all effects: it has a kernel of its own.
 using CorrectedEffects = Append<AllEffects, Unexplained>;
 inline constexpr int n_values = n_parameters + CorrectedEffects::n_parameters;  // length of a parameter vector

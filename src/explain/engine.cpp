@@ -270,6 +270,41 @@ ExplainedFit fit_causes(const Subject& subject, const std::vector<int>& causes, 
   return out;
 }
 
+Point numbers_of_causes(const Subject& subject, const ExplainedFit& fit) {
+  return {fit.point.begin() + static_cast<long>(base_size(subject, fit)), fit.point.end()};
+}
+
+ExplainedFit hold_causes(const Subject& subject, const std::vector<int>& causes, const Point& numbers,
+                         const ExplainedFit& from, int iterations) {
+  ExplainedFit out;
+  out.wide = from.wide;
+  out.causes = causes;
+  out.fit = subject.fit(causes, out.wide);
+  const std::size_t base = base_size(subject, out);
+  const auto whole = [&](Point x) {
+    x.insert(x.end(), numbers.begin(), numbers.end());
+    return x;
+  };
+  LeastSquaresProblem held;
+  held.n = static_cast<int>(base);
+  held.evaluate = [&](std::span<const Point> points) {
+    std::vector<Point> all;
+    for (const Point& p : points) all.push_back(whole(p));
+    return out.fit.problem.evaluate(all);
+  };
+  const Point start(from.point.begin(), from.point.begin() + static_cast<long>(base));
+  const LeastSquaresResult r = minimise_least_squares(held, start, how(iterations, false));
+  if (r.reason == StopReason::start_failed) return out;
+  out.ok = true;
+  out.point = whole(r.point);
+  out.residual = r.residual;
+  out.misfit = r.residual.squaredNorm();
+  out.deviance = deviance_of(subject, r.residual);
+  out.jacobian.setZero(r.jacobian.rows(), static_cast<long>(out.point.size()));
+  out.jacobian.leftCols(r.jacobian.cols()) = r.jacobian;
+  return out;
+}
+
 std::vector<CauseScore> score_causes(const Subject& subject, const ExplainedFit& at,
                                      const std::function<bool(const Cause&)>& among) {
   std::vector<int> all(subject.causes().size());
@@ -642,11 +677,15 @@ Explanation explain(Subject& subject, const EngineOptions& options, const Explan
         out.standing.push_back(make_result(k, false));
         continue;
       }
-      // A rarer cause has to do better than a commoner one on held-out data, beyond the interval.
+      // A rarer cause has to do better than a commoner one on held-out data, beyond the interval; and one that leaves
+      // the data as healthy ones are left need not be outdone.
+      const auto suffices_alone = [&](const ExplainedFit& f) {
+        return options.p_left && options.p_left(f, round + 1) > level;
+      };
       const auto better = [&](int j, int than) {
         const ExplainedFit &a = fits[static_cast<std::size_t>(j)], &b = fits[static_cast<std::size_t>(than)];
-        if (prior_of(a) < prior_of(b)) return heldout_gain(b, a, options.seed).lower > 0;
-        if (prior_of(a) > prior_of(b)) return heldout_gain(a, b, options.seed).lower <= 0;
+        if (prior_of(a) < prior_of(b)) return !suffices_alone(b) && heldout_gain(b, a, options.seed).lower > 0;
+        if (prior_of(a) > prior_of(b)) return suffices_alone(a) || heldout_gain(a, b, options.seed).lower <= 0;
         return delta_bic(now, a, out.degrees) > delta_bic(now, b, out.degrees);
       };
       if (best < 0 || better(i, best)) best = i;

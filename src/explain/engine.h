@@ -107,9 +107,15 @@ ExplainedFit fit_causes(const Subject& subject, const std::vector<int>& causes, 
                         const CauseScore* score, int iterations, bool quick, bool wide = false);
 // Re-tuned alone; then the weights are what is left of it, and it is re-tuned with these.
 ExplainedFit fit_base(Subject& subject, int iterations);
+// The fit with these causes held at `numbers`, theirs one after another: what is free beside them, from where `from`
+// is. A cause's columns of the Jacobian are zero.
+ExplainedFit hold_causes(const Subject& subject, const std::vector<int>& causes, const Point& numbers,
+                         const ExplainedFit& from, int iterations);
 // A score for each cause; without probes where `among` does not let it through. Empty: all.
 std::vector<CauseScore> score_causes(const Subject& subject, const ExplainedFit& at,
                                      const std::function<bool(const Cause&)>& among = {});
+// The numbers of a fit's causes, one after another.
+Point numbers_of_causes(const Subject& subject, const ExplainedFit& fit);
 // Fills heldout.
 void cross_validate(const Subject& subject, ExplainedFit& fit, const EngineOptions& options);
 // Fraction of `before`'s held-out misfit that `after` removes, with its block-bootstrap interval (90 %).

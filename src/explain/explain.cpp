@@ -10,6 +10,7 @@
 #include "base/progress.h"
 #include "effects/registry.h"
 #include "effects/row_effects.h"
+#include "explain/replay.h"
 #include "explain/valve.h"
 #include "fit/free_values.h"
 #include "parameters/list.h"
@@ -63,7 +64,7 @@ double healthy_spread(const Subject& subject, const HealthyTest& test, int cause
                       double std_error) {
   const Cause& c = subject.causes()[static_cast<std::size_t>(cause)];
   const Number& n = c.numbers[number];
-  HealthyScore here{c.effect, c.where + (c.family.empty() ? "" : "/" + c.family), {}, 0};
+  HealthyScore here{c.effect, c.where + (c.family.empty() ? "" : "/" + c.family), {}, 0, 1, subject.thickness()};
   for (std::size_t a = 0; n.size && a < c.probes.size(); ++a) {
     const auto& probe = c.probes[a].front();
     if (c.probes[a].size() > 1 || probe[number] == n.off) continue;
@@ -85,10 +86,13 @@ std::string meaning_of(const Cause& c) {
   return {};
 }
 
-ExplainedCause described(const ValveSubject& subject, const HealthyTest* test, const CauseResult& r,
-                         const ExplainedFit& fit) {
+// `told_by`: the subject that it was found on, the valve's or the replay of its blocks.
+ExplainedCause described(const ValveSubject& subject, const Subject& told_by, const HealthyTest* test,
+                         const CauseResult& r, const ExplainedFit& fit) {
   const Cause& c = subject.causes()[static_cast<std::size_t>(r.cause)];
-  ExplainedCause out{c.effect, c.where, c.test, {}, r.heldout_gain, r.beyond_retuning, r.delta_bic, {}, meaning_of(c)};
+  ExplainedCause out{
+      c.effect,     c.where, c.test, {}, r.heldout_gain, r.beyond_retuning, r.delta_bic, {}, &told_by != &subject,
+      meaning_of(c)};
   const auto& values = subject.values(r.cause);
   const auto problem = subject.problem(fit.causes);
   for (std::size_t j = 0; j < c.numbers.size(); ++j) {
@@ -96,7 +100,7 @@ ExplainedCause described(const ValveSubject& subject, const HealthyTest* test, c
     if (values[j].apply && !c.curve)  // a factor on the log's own
       factor = problem->candidate(fit.point, 0)[static_cast<std::size_t>(values[j].at)] / r.value[j];
     const double error =
-        std::hypot(r.std_error[j], test ? healthy_spread(subject, *test, r.cause, j, r.std_error[j]) : 0.0);
+        std::hypot(r.std_error[j], test ? healthy_spread(told_by, *test, r.cause, j, r.std_error[j]) : 0.0);
     out.parameters.push_back(
         {c.numbers[j].name, c.numbers[j].unit, factor * r.value[j], factor * error, factor * c.numbers[j].off});
   }
@@ -184,7 +188,8 @@ ExplainResult explain_logs(const std::vector<Log>& logs, const Table& tuned, con
   // Each log by itself, as the healthy ones were taken; one log is itself.
   std::deque<ValveSubject> single;
   std::vector<ExplainedFit> single_fits;
-  std::vector<std::vector<HealthyScore>> alone(logs.size());
+  using Scores = std::vector<std::vector<HealthyScore>>;  // [log][cause]
+  Scores alone(logs.size());
   const auto score_alone = [&] {
     for (std::size_t l = 0; l < single.size(); ++l)
       if (single_fits[l].ok)
@@ -200,17 +205,20 @@ ExplainResult explain_logs(const std::vector<Log>& logs, const Table& tuned, con
         single_fits.push_back(fit_base(single.back(), engine.iterations));
         if (single_fits.back().ok) guess_curves(single.back(), of_one, single_fits.back().point);
       }
-    engine.p_new = [&](const CauseScore& s, int round) {
+  }
+  const auto news = [&](const Subject& of, const Scores& by_log) {
+    return [&](const CauseScore& s, int round) {
       std::vector<HealthyScore> scores;
-      const HealthyScore whole = summarise(subject, s);
+      const HealthyScore whole = summarise(of, s);
       if (round == 0)
-        for (const auto& log : alone)
+        for (const auto& log : by_log)
           for (const HealthyScore& h : log)
             if (h.effect == whole.effect && h.where == whole.where) scores.push_back(h);
       if (scores.empty()) scores.push_back(whole);
       return test->together(test->alone(scores));
     };
-  }
+  };
+  if (healthy) engine.p_new = news(subject, alone);
   if (healthy)
     engine.p_left = [&](const ExplainedFit& fit, int round) {
       std::vector<Miss> misses = subject.misses(fit.residual);
@@ -220,9 +228,10 @@ ExplainResult explain_logs(const std::vector<Log>& logs, const Table& tuned, con
     };
   const std::vector<Curve> curves = add_curves(subject);
   std::vector<CauseScore> curve_scores;
-  engine.among = [&](const Cause& c) {
+  const auto named = [&](const Cause& c) {
     return !c.curve && std::find(options.without.begin(), options.without.end(), c.effect) == options.without.end();
   };
+  engine.among = named;
   score_alone();
   Explanation e = explain(subject, engine);
   // A name has to leave the logs as healthy ones are left, or to do as well as a curve, which has none. A row without a
@@ -265,6 +274,50 @@ ExplainResult explain_logs(const std::vector<Log>& logs, const Table& tuned, con
       out.curve = learnt(*it, r.value, r.std_error);
     }
   }
+  const auto first_alone = [&] {
+    return e.causes.size() == 1 ? heldout_gain(e.before, e.after, options.seed).value
+                                : e.candidates[static_cast<std::size_t>(e.causes.front().cause)].heldout_gain.value;
+  };
+  // What the free run leaves open, the replay of the blocks may tell: a name that is news there, is worth its numbers
+  // on held-out windows, and leaves the blocks as healthy logs do.
+  std::optional<ReplaySubject> blocks;
+  bool by_blocks = false;
+  if (healthy && e.before.ok && (e.causes.empty() || out.curve || bare || (!like_healthy(e) && first_alone() < 0.5)))
+    blocks.emplace(subject, e.before.point, *known);
+  if (blocks && !blocks->empty()) {
+    Scores of_blocks(logs.size());
+    for (std::size_t l = 0; l < single.size(); ++l) {
+      if (!single_fits[l].ok) continue;
+      ReplaySubject one(single[l], single_fits[l].point, *known);
+      if (one.empty()) continue;
+      if (const ExplainedFit fit = fit_base(one, engine.iterations); fit.ok)
+        for (const CauseScore& s : score_causes(one, fit, named))
+          if (!s.probes.empty()) of_blocks[l].push_back(summarise(one, s));
+    }
+    EngineOptions there;
+    there.seed = options.seed, there.stop = options.stop, there.level = options.level;
+    there.among = named;
+    there.p_new = news(*blocks, of_blocks);
+    // Beside the question of the free run, which has most of its share.
+    there.p_left = [&](const ExplainedFit& fit, int) {
+      return std::min(1.0, 2 * test->any(blocks->misses(fit.residual)));
+    };
+    Explanation told = explain(*blocks, there);
+    if (!told.causes.empty() && test->any(blocks->misses(told.after.residual)) > options.level) {
+      ExplainedFit after =
+          hold_causes(subject, told.after.causes, numbers_of_causes(*blocks, told.after), e.before, engine.iterations);
+      if (after.ok) {
+        cross_validate(subject, after, engine);
+        by_blocks = true;
+        e.after = std::move(after);
+        e.causes = std::move(told.causes);
+        for (const CauseResult& r : e.causes)
+          e.candidates[static_cast<std::size_t>(r.cause)].reason = "taken: the replay of the blocks tells it";
+        out.curve.reset();
+        better_place.clear();
+      }
+    }
+  }
   if (!e.before.ok)
     throw InputError({.file = tuned.path}, "the simulation fails at the table's values on these logs",
                      "check that the table is of this rig");
@@ -289,12 +342,15 @@ ExplainResult explain_logs(const std::vector<Log>& logs, const Table& tuned, con
     if (s.gain > at->gain) *at = {c.where, c.family, s.gain, p};
   }
   std::stable_sort(out.places.begin(), out.places.end(), [](const auto& a, const auto& b) { return a.gain > b.gain; });
-  for (const CauseResult& r : e.causes) out.causes.push_back(described(subject, test ? &*test : nullptr, r, e.after));
+  for (const CauseResult& r : e.causes) {
+    const Subject& told_by = by_blocks ? static_cast<const Subject&>(*blocks) : subject;
+    out.causes.push_back(described(subject, told_by, test ? &*test : nullptr, r, e.after));
+  }
   for (const CauseResult& r : e.standing) {
     ExplainedFit as;  // a standing cause was fitted alone
     as.causes = {r.cause};
     as.point = subject.problem(as.causes)->start();
-    out.standing.push_back(described(subject, test ? &*test : nullptr, r, as));
+    out.standing.push_back(described(subject, subject, test ? &*test : nullptr, r, as));
   }
   for (const CandidateResult& r : e.candidates) {
     const Cause& c = subject.causes()[static_cast<std::size_t>(r.cause)];
@@ -314,11 +370,7 @@ ExplainResult explain_logs(const std::vector<Log>& logs, const Table& tuned, con
   // Left abnormal by names of which the first removes less than half of it: most of what is wrong has no name, and a
   // heap of names is none.
   const bool abnormal = out.p_adequacy && *out.p_adequacy <= 0.5 * options.level;
-  const auto first_alone = [&] {
-    if (e.causes.size() == 1) return out.heldout_gain.value;
-    return e.candidates[static_cast<std::size_t>(e.causes.front().cause)].heldout_gain.value;
-  };
-  const bool nameless = abnormal && !out.curve && (e.causes.empty() || first_alone() < 0.5);
+  const bool nameless = abnormal && !out.curve && !by_blocks && (e.causes.empty() || first_alone() < 0.5);
   if (nameless) out.verdict = "unexplained";
   if (nameless && !out.blocks.empty()) {
     const auto least = std::min_element(out.blocks.begin(), out.blocks.end(),

@@ -5,6 +5,7 @@
 
 #include "base/student.h"
 #include "explain/curves.h"
+#include "explain/replay.h"
 #include "explain/valve.h"
 
 namespace servodx {
@@ -24,52 +25,81 @@ double variance(const std::vector<double>& v) {
 
 // Sizes over healthy logs, as random effects. How far they scatter beyond their standard errors has two faces: alike on
 // all logs (tau: DerSimonian & Laird 1986), or in proportion to the standard error, where a test that hardly shows a
-// cause lends it whatever else is wrong (Birge 1932). The likelier of the two is taken.
+// cause lends it whatever else is wrong (Birge 1932). The likelier of the two is taken. Where the model's answer to the
+// oil's temperature is off, sizes follow the oil: a line in the logarithm of its viscosity is taken where it is worth
+// its number (Schwarz 1978), and the sizes scatter about that.
+struct Size {
+  double size = 0, square = 0, thickness = 0;  // [of the probe], its standard error squared, ln of the viscosity
+};
 struct Scatter {
   double tau2 = 0, phi2 = 1;
-  double mean = 0, mean_variance = 0, degrees = 1;
-  double variance(double square) const { return tau2 + phi2 * square; }
+  double mean = 0, mean_variance = 0, slope = 0, slope_variance = 0, middle = 0, degrees = 1;
+  double log_likelihood = -1e300;  // twice
+  double variance(double square) const { return tau2 + phi2 * square + 1e-300; }
+  double at(double thickness) const { return mean + (std::isfinite(thickness) ? slope * (thickness - middle) : 0.0); }
+  double variance_at(double thickness) const {
+    const double off = std::isfinite(thickness) ? thickness - middle : 0.0;
+    return mean_variance + off * off * slope_variance;
+  }
 };
-Scatter scatter_of(const std::vector<double>& size, const std::vector<double>& square) {
-  const auto n = static_cast<double>(size.size());
-  struct Pool {
-    double weight = 0, sum = 0, squares = 0;
-    void add(double w, double x) { weight += w, sum += w * x, squares += w * w; }
-    double mean() const { return sum / weight; }
-  };
-  const auto pooled = [&](const Scatter& s) {
-    Pool p;
-    for (std::size_t i = 0; i < size.size(); ++i) p.add(1 / (s.variance(square[i]) + 1e-300), size[i]);
-    return p;
-  };
-  const auto likelihood = [&](const Scatter& s) {
-    double sum = 0;
-    for (std::size_t i = 0; i < size.size(); ++i) {
-      const double v = s.variance(square[i]) + 1e-300;
-      sum -= std::log(v) + (size[i] - s.mean) * (size[i] - s.mean) / v;
-    }
-    return sum;
-  };
+// Weighted line, or mean, through the sizes.
+void pool(const std::vector<Size>& sizes, bool line, Scatter& s) {
+  double w = 0, wx = 0;
+  for (const Size& z : sizes) w += 1 / s.variance(z.square), wx += z.thickness / s.variance(z.square);
+  s.middle = line ? wx / w : 0.0;
+  double wy = 0, xx = 0, xy = 0;
+  for (const Size& z : sizes) {
+    const double v = s.variance(z.square), x = z.thickness - s.middle;
+    wy += z.size / v, xx += x * x / v, xy += x * z.size / v;
+  }
+  s.mean = wy / w, s.mean_variance = 1 / w;
+  s.slope = line ? xy / xx : 0.0, s.slope_variance = line ? 1 / xx : 0.0;
+  s.log_likelihood = 0;
+  for (const Size& z : sizes) {
+    const double v = s.variance(z.square), off = z.size - s.at(z.thickness);
+    s.log_likelihood -= std::log(v) + off * off / v;
+  }
+}
+Scatter scatter_of(const std::vector<Size>& sizes, bool line) {
+  const double n = static_cast<double>(sizes.size()), numbers = line ? 2 : 1;
   Scatter alike, in_proportion;
-  Pool p = pooled(alike);
-  double q = 0;
-  for (std::size_t i = 0; i < size.size(); ++i) q += (size[i] - p.mean()) * (size[i] - p.mean()) / (square[i] + 1e-300);
-  in_proportion.phi2 = std::max(1.0, q / (n - 1));
-  in_proportion.mean = p.mean(), in_proportion.mean_variance = in_proportion.phi2 / p.weight;
-  in_proportion.degrees = n - 1;
-  alike.tau2 = std::max(0.0, (q - (n - 1)) / (p.weight - p.squares / p.weight));
-  p = pooled(alike);
-  alike.mean = p.mean(), alike.mean_variance = 1 / p.weight;
-  alike.degrees = std::max(1.0, p.weight * p.weight / p.squares - 1);  // of logs that speak
-  return likelihood(in_proportion) > likelihood(alike) ? in_proportion : alike;
+  pool(sizes, line, alike);
+  double q = 0, w = 0, w2 = 0, w2xx = 0;  // Cochran's, and what it would be without scatter
+  for (const Size& z : sizes) {
+    const double v = z.square + 1e-300, off = z.size - alike.at(z.thickness), x = z.thickness - alike.middle;
+    q += off * off / v, w += 1 / v, w2 += 1 / (v * v), w2xx += x * x / (v * v);
+  }
+  const double taken = w2 / w + w2xx * alike.slope_variance;
+  in_proportion.phi2 = std::max(1.0, q / (n - numbers));
+  pool(sizes, line, in_proportion);
+  in_proportion.degrees = n - numbers;
+  alike.tau2 = std::max(0.0, (q - (n - numbers)) / (w - taken));
+  pool(sizes, line, alike);
+  double squares = 0;
+  for (const Size& z : sizes) squares += 1 / std::pow(alike.variance(z.square), 2);
+  alike.degrees =
+      std::max(1.0, 1 / (alike.mean_variance * alike.mean_variance * squares) - numbers);  // logs that speak
+  return in_proportion.log_likelihood > alike.log_likelihood ? in_proportion : alike;
+}
+Scatter scatter_of(const std::vector<Size>& sizes) {
+  const Scatter mean = scatter_of(sizes, false);
+  double low = 1e300, high = -1e300;
+  for (const Size& z : sizes) low = std::min(low, z.thickness), high = std::max(high, z.thickness);
+  constexpr std::size_t fewest = 6;
+  if (sizes.size() < fewest || !std::isfinite(low + high) || !(high > low)) return mean;
+  for (const Size& z : sizes)
+    if (!std::isfinite(z.thickness)) return mean;
+  const Scatter line = scatter_of(sizes, true);
+  return line.log_likelihood - mean.log_likelihood > std::log(static_cast<double>(sizes.size())) ? line : mean;
 }
 
 }  // namespace
 
 HealthyScore summarise(const Subject& subject, const CauseScore& score) {
   const Cause& cause = subject.causes()[static_cast<std::size_t>(score.cause)];
-  HealthyScore out{
-      cause.effect, cause.where + (cause.family.empty() ? "" : "/" + cause.family), {}, score.gain, cause.prior};
+  HealthyScore out{cause.effect, cause.where + (cause.family.empty() ? "" : "/" + cause.family),
+                   {},           score.gain,
+                   cause.prior,  subject.thickness()};
   if (cause.curve) {  // knots that the log does not reach are loose: what they gain together is what counts
     out.sizes.push_back({std::log1p(score.gain), 1.0});
     return out;
@@ -108,6 +138,9 @@ HealthyReference score_healthy(const std::vector<Log>& logs, const Table& tuned,
     const ExplainedFit fit = fit_base(subject, EngineOptions{}.iterations);
     if (fit.ok) {
       h.errors = subject.errors(fit.residual);
+      if (ReplaySubject blocks(subject, fit.point); !blocks.empty())
+        if (const ExplainedFit replayed = fit_base(blocks, EngineOptions{}.iterations); replayed.ok)
+          for (UsualError& e : blocks.errors(replayed.residual)) h.errors.push_back(std::move(e));
       h.air = subject.own(0, row::air_fraction, fit.point);
       h.command_slope = subject.own(0, nuisance::command_slope, fit.point);
     }
@@ -125,6 +158,11 @@ HealthyReference score_healthy(const std::vector<Log>& logs, const Table& tuned,
       for (const CauseScore& s : score_causes(subject, fit)) h.scores.push_back(summarise(subject, s));
       h.misses = subject.misses(fit.residual);
       for (const BlockReplay& b : replay_blocks(subject, fit.point)) h.misses.push_back({b.block, b.missing});
+      if (ReplaySubject blocks(subject, fit.point, all.known(static_cast<int>(l))); !blocks.empty())
+        if (const ExplainedFit replayed = fit_base(blocks, EngineOptions{}.iterations); replayed.ok) {
+          for (const CauseScore& s : score_causes(blocks, replayed)) h.scores.push_back(summarise(blocks, s));
+          for (Miss& m : blocks.misses(replayed.residual)) h.misses.push_back(std::move(m));
+        }
     }
     count(subject);
     if (told && !told(0.2 + 0.8 * static_cast<double>(out.logs.size()) / n)) break;
@@ -187,26 +225,27 @@ double HealthyTest::by_law(const OfCause& cause, const std::vector<HealthyScore>
   double best = 1;
   int tried = 0;
   for (std::size_t k = 0; k < logs.front().sizes.size(); ++k) {
-    std::vector<double> size, square;
+    std::vector<Size> sizes;
     for (std::size_t i = 0; i < cause.score.size(); ++i) {
       const HealthyScore* s = cause.score[i];
       if (s && static_cast<int>(i) != left_out && k < s->sizes.size() && std::isfinite(s->sizes[k].std_error) &&
           std::isfinite(s->sizes[k].size))
-        size.push_back(s->sizes[k].size), square.push_back(s->sizes[k].std_error * s->sizes[k].std_error);
+        sizes.push_back({s->sizes[k].size, s->sizes[k].std_error * s->sizes[k].std_error, s->thickness});
     }
-    if (size.size() < 3) continue;
-    const Scatter scatter = scatter_of(size, square);
-    double weight = 0, sum = 0, noise = 0, shared = 0;
+    if (sizes.size() < 3) continue;
+    const Scatter scatter = scatter_of(sizes);
+    double weight = 0, sum = 0, noise = 0, shared = 0, known = 0;
     for (const HealthyScore& s : logs)
       if (k < s.sizes.size() && std::isfinite(s.sizes[k].std_error)) {
-        const double own = s.sizes[k].std_error * s.sizes[k].std_error, all = scatter.variance(own) + 1e-300;
+        const double own = s.sizes[k].std_error * s.sizes[k].std_error, all = scatter.variance(own);
         const double w = 1 / all;
-        weight += w, sum += w * s.sizes[k].size;
+        weight += w, sum += w * (s.sizes[k].size - scatter.at(s.thickness));
         noise += w * w * own, shared += w * std::sqrt(std::max(0.0, all - own));
+        known += w * std::sqrt(scatter.variance_at(s.thickness));
       }
     if (weight <= 0) continue;
-    const double scattered = (noise + shared * shared) / (weight * weight);
-    const double t = (sum / weight - scatter.mean) / std::sqrt(scattered + scatter.mean_variance);
+    const double scattered = (noise + shared * shared + known * known) / (weight * weight);
+    const double t = sum / weight / std::sqrt(scattered);
     best = std::min(best, student_tail(t, scatter.degrees));
     ++tried;
   }
@@ -215,16 +254,16 @@ double HealthyTest::by_law(const OfCause& cause, const std::vector<HealthyScore>
 }
 
 double HealthyTest::spread(const HealthyScore& of, std::size_t probe) const {
-  std::vector<double> size, square;
+  std::vector<Size> sizes;
   for (const HealthyLog& l : reference_.logs)
     for (const HealthyScore& s : l.scores)
       if (s.effect == of.effect && s.where == of.where && probe < s.sizes.size() &&
           std::isfinite(s.sizes[probe].std_error) && std::isfinite(s.sizes[probe].size))
-        size.push_back(s.sizes[probe].size), square.push_back(s.sizes[probe].std_error * s.sizes[probe].std_error);
-  if (size.size() < 3) return 0;
-  const Scatter scatter = scatter_of(size, square);
-  const double own = of.sizes[probe].std_error;
-  return std::sqrt(std::max(0.0, scatter.variance(own * own) - own * own) + scatter.mean * scatter.mean);
+        sizes.push_back({s.sizes[probe].size, s.sizes[probe].std_error * s.sizes[probe].std_error, s.thickness});
+  if (sizes.size() < 3) return 0;
+  const Scatter scatter = scatter_of(sizes);
+  const double own = of.sizes[probe].std_error, none = scatter.at(of.thickness);
+  return std::sqrt(std::max(0.0, scatter.variance(own * own) - own * own) + none * none);
 }
 
 double HealthyTest::together(double alone) const {

@@ -28,8 +28,9 @@ namespace servodx {
 struct HealthyScore {
   std::string effect, where;  // `where` with the family behind a slash where there is one
   std::vector<ProbeScore> sizes;
-  double gain = 0;   // predicted fall of the deviance
-  double prior = 1;  // its share of the false alarms beside the others'
+  double gain = 0;                  // predicted fall of the deviance
+  double prior = 1;                 // its share of the false alarms beside the others'
+  double thickness = std::nan("");  // ln of the viscosity of the log's oil (Subject::thickness)
 };
 struct HealthyLog {
   std::string log, sha256;

@@ -4,6 +4,7 @@
 // A subject states what is free in every fit (its base), the causes that might be missing, each at a named place with a
 // few numbers that are off where it is absent, and the misfit as least squares over the unit cube of base and causes.
 #pragma once
+#include <cmath>
 #include <functional>
 #include <string>
 #include <vector>
@@ -83,6 +84,9 @@ class Subject {
     (void)residual;
     return false;
   }
+  // ln of the oil's viscosity over the reference, mean of the logs: sizes on healthy logs may follow it. NaN: not
+  // known.
+  virtual double thickness() const { return std::nan(""); }
   // The residual behind the rows of a fit, in its own units.
   virtual Eigen::VectorXd physical(const Eigen::VectorXd& rows) const {
     Eigen::VectorXd out = Eigen::VectorXd::Zero(rows.size());

@@ -26,7 +26,8 @@ constexpr double slack = 10;       // an effect may grow beyond what this rig sh
 constexpr double row_prior = 0.1;  // a row that was held for a reason, beside an effect that has a name
 // Of the construction, there from the first day or never: in a rig's healthy logs as well, and no likely news.
 const std::set<std::string> built_in = {ArmatureAngle::name, RodCavity::name,  EdgeTransition::name,
-                                        OrificeLength::name, ScreenDrop::name, NozzleLand::name};
+                                        OrificeLength::name, ScreenDrop::name, NozzleLand::name,
+                                        SealShear::name};
 
 // Rows that an effect takes along; `grows`: they are a size of it, and no mere part of its shape.
 struct Along {
@@ -51,6 +52,7 @@ const std::map<std::string, const char*> tests = {
      "slow triangles of some per cent in cold and in hot oil: in the cold the piston lags by a wider lap"},
     {"orifice_length", "full steps in cold and in hot oil: in the cold the spool slews slower"},
     {"nozzle_land", "slow triangles in cold and in hot oil with pilot pressures: in the cold they rise"},
+    {"seal_shear", "the same fast strokes in cold and in hot oil"},
     {"screen_drop", "full steps in cold and in hot oil: in the cold the pilot pressures fall"},
     {"edge_radius", "the pressure's slope at null beside the leakage there: blunt edges leak more at the same slope"},
     {"port_line", "leakage sweeps at two rates, ports blocked: a tail after null that lasts as long at either"},
@@ -336,9 +338,8 @@ void ValveSubject::add_causes(const RigFile& rig) {
       sizes.emplace_back();
       if (p.switches) {
         const double move = p.start - p.off, v = f.start;
-        sizes.back() =
-            sizes_about(cause.numbers.back(),
-                        {v + move, v + 0.25 * move, v + 4 * move, v + 16 * move, v - 0.25 * move, v - move});
+        sizes.back() = sizes_about(cause.numbers.back(),
+                                   {v + move, v + 0.25 * move, v + 4 * move, v + 16 * move, v - 0.25 * move, v - move});
       }
       values.push_back(std::move(f));
     }
@@ -541,6 +542,15 @@ std::vector<Miss> ValveSubject::misses(const Eigen::VectorXd& rows) const {
 double ValveSubject::own(int log, int at, const Point& point) const {
   const bool stated = at == nuisance::command_slope && logs_[static_cast<std::size_t>(log)].scenario.command_slope;
   return stated ? std::nan("") : problem({})->candidate(point, log)[static_cast<std::size_t>(at)];
+}
+
+double ValveSubject::thickness() const {
+  double sum = 0;
+  for (const LogData& l : logs_) {
+    if (!l.scenario.oil_known) return std::nan("");
+    sum += std::log(l.scenario.oil.viscosity_ratio);
+  }
+  return sum / static_cast<double>(logs_.size());
 }
 
 double ValveSubject::adequacy(const Eigen::VectorXd& rows) const {

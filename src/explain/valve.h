@@ -50,6 +50,7 @@ class ValveSubject : public Subject {
   SubjectFit fit(const std::vector<int>& causes, bool wide) const override;
   bool retunes() const override { return true; }
   bool holds() const override { return known_.has_value(); }
+  double thickness() const override;
   bool rescale(const Eigen::VectorXd& residual) override;
   Eigen::VectorXd physical(const Eigen::VectorXd& rows) const override;
   // Mean square of the residual behind the rows in units of the model's error on the tuning logs, all channels alike: 1

@@ -108,7 +108,8 @@ Derived<T> derive(const T* p, const Oil& oil) {
   d.edge_loss = T(4.0 * oil.density / (2.0 * c::cd_metering * c::cd_metering));
   d.hose_loss = T(4.0) * p[row::hose_resistance] * p[row::port_width] * p[row::port_width];
   d.leak = p[row::cross_piston_leakage] * (T(1.0) / viscosity_ratio);
-  d.viscous = p[row::piston_viscous_friction] * sqrt(viscosity_ratio);  // mixed lubrication of seals
+  const T sheared = hook_seal_shear(p, Effects{}), film = sqrt(viscosity_ratio);  // seals ride on a film of their own
+  d.viscous = p[row::piston_viscous_friction] * ((T(1.0) - sheared) * film + sheared * viscosity_ratio);
   d.breakaway.per_film_speed = T(1.0) / (T(c::piston_stribeck_velocity) + hook_seal_film_speed(p, Effects{}));
   // A tenth of itself and a newton keep the ratio bounded where seals hardly drag.
   d.breakaway.over_sliding =

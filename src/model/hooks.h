@@ -10,6 +10,7 @@
 //     nozzle_land(p)       [m]   added to the width of the nozzles' faces
 //     screen_drop(p)       [Pa]  laminar drop of the clean pilot filter at rest, in oil at 40 degC
 //     seal_film_speed(p)   [m/s] added to the speed at which the piston's seals slide on oil
+//     seal_shear(p)        [-]   share of the piston's viscous friction in proportion to the viscosity
 //     supply_pressure(view) [Pa] added to the supply pressure at the valve
 //     flapper_force(view)  [N]   added to the torque motor's force
 //     nozzle_1_opening(view, open), nozzle_2_opening(view, open)  [m]  added to the open gap of a nozzle
@@ -171,6 +172,7 @@ SERVODX_FIXED_HOOK(orifice_length)
 SERVODX_FIXED_HOOK(nozzle_land)
 SERVODX_FIXED_HOOK(screen_drop)
 SERVODX_FIXED_HOOK(seal_film_speed)
+SERVODX_FIXED_HOOK(seal_shear)
 #undef SERVODX_FIXED_HOOK
 
 // What the effects add to the corner radius of the metering edges, those to return or those from supply. [m]

@@ -79,6 +79,11 @@ std::vector<std::string> reasons(const ExplainResult& r) {
   for (const ExplainedCause& c : r.causes) {
     std::vector<std::string> others;
     for (const std::string& o : c.confusable_with) others.push_back(words(o));
+    if (c.by_blocks)
+      why.push_back(
+          fmt::format("{} was told by the blocks with measured signals between them, where it removes {} of "
+                      "what they miss; the simulation alone does not settle it.",
+                      words(c.effect), percent(c.heldout_gain.value)));
     if (!others.empty())
       why.push_back(fmt::format("In place of {} it may be {}.", words(c.effect), join(others, " or ")));
     if (!c.test.empty()) why.push_back(words(c.effect) + " shows best in " + c.test + ".");

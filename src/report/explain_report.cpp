@@ -26,6 +26,7 @@ Json to_json(const ExplainedCause& c) {
         {"value", number(p.value)}, {"std_error", number(p.std_error)}, {"unit", p.unit}, {"before", number(p.before)}};
   return {{"effect", c.effect},
           {"where", c.where},
+          {"told_by", c.by_blocks ? "blocks" : "simulation"},
           {"parameters", parameters},
           {"heldout_gain", number(c.heldout_gain.value)},
           {"heldout_gain_interval", {number(c.heldout_gain.lower), number(c.heldout_gain.upper)}},
@@ -151,7 +152,8 @@ ChannelFigures in_log_unit(const ExplainedChannel& c, double a, double b, double
 
 void add_causes(std::string& text, const std::vector<ExplainedCause>& causes) {
   for (const ExplainedCause& c : causes) {
-    text += fmt::format("  {} at {}: removes {}\n", c.effect, c.where, gain_text(c.heldout_gain));
+    text += fmt::format("  {} at {}: removes {}{}\n", c.effect, c.where, gain_text(c.heldout_gain),
+                        c.by_blocks ? ", of what the blocks miss with measured signals between them" : "");
     for (const ExplainedParameter& p : c.parameters) {
       if (c.effect == Unexplained::name) break;  // its numbers stand as a curve below
       const double half = 1.645 * p.std_error;
@@ -302,6 +304,7 @@ Json healthy_json(const HealthyReference& healthy) {
                     {"air_fraction", number(l.air)},
                     {"command_slope", number(l.command_slope)},
                     {"adequacy", number(l.adequacy)},
+                    {"thickness", number(l.scores.empty() ? std::nan("") : l.scores.front().thickness)},
                     {"scores", scores},
                     {"misses", misses}});
   }
@@ -331,6 +334,8 @@ HealthyReference read_healthy(const std::string& path) {
         for (const Json& p : s.at("sizes")) score.sizes.push_back({value(p.at(0)), value(p.at(1))});
         log.scores.push_back(std::move(score));
       }
+      if (l.contains("thickness"))  // later than the rest
+        for (HealthyScore& s : log.scores) s.thickness = value(l.at("thickness"));
       if (l.contains("command_slope")) log.command_slope = value(l.at("command_slope"));  // later than the rest
       if (l.contains("misses"))
         for (const auto& [part, size] : l.at("misses").items()) log.misses.push_back({part, value(size)});

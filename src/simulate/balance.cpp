@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "effects/registry.h"
 #include "model/derivative.h"
 #include "signals/smoother.h"
 
@@ -10,7 +11,7 @@ namespace servodx {
 namespace {
 
 struct States {
-  std::array<double, n_base_states> y{};
+  std::array<double, n_base_states + AllEffects::n_states> y{};
   template <int K>
   double get() const {
     return y[K];
@@ -31,24 +32,36 @@ std::vector<double> bridged(const std::vector<double>& x) {
 
 }  // namespace
 
+std::vector<double> quiet(const std::vector<double>& measured) { return without_noise(bridged(measured)); }
+
 Balance balance(const Scenario& in, const Measured& measured, const ParameterVector& p, double window) {
   Balance out;
   const std::size_t n = in.time.size();
   if (!measured.piston || !measured.pressure_a || !measured.pressure_b || n < 8 || in.ports != Ports::actuator)
     return out;
-  const auto less = [&](const std::vector<double>& x, int offset) {
+  // What a sensor stands for: less its offset, then its lag and gain undone. `shown`: of SensorResponse.
+  const auto less = [&](const std::vector<double>& x, int offset, int shown) {
     std::vector<double> v = bridged(x);
     for (double& value : v) value -= p[static_cast<std::size_t>(offset)];
-    return v;
+    const auto at = static_cast<std::size_t>(effect_row<SensorResponse>(2 * shown));
+    const double gain = p[at], lag = p[at + 1];
+    if (gain == 1 && lag == 0) return v;
+    std::vector<double> truth(n);
+    for (std::size_t k = 0; k < n; ++k) {
+      const std::size_t from = k > 0 ? k - 1 : 0, to = std::min(k + 1, n - 1);
+      truth[k] = (v[k] + lag * (v[to] - v[from]) / (in.time[to] - in.time[from])) / gain;
+    }
+    return truth;
   };
-  std::vector<double> x = bridged(*measured.piston);
-  for (double& v : x) v /= p[row::position_sensor_gain];
-  const std::vector<double> smooth = without_noise(x);
-  const std::vector<double> a = less(*measured.pressure_a, nuisance::pressure_a_offset),
-                            b = less(*measured.pressure_b, nuisance::pressure_b_offset);
-  const std::vector<double> spool =
-      measured.spool ? without_noise(less(*measured.spool, nuisance::spool_offset)) : std::vector<double>{};
-  const Derived<double> d = derive<double, NoEffects>(p.data(), in.oil);
+  // Taking noise out is linear and leaves a constant alone: what the sensor does can be undone behind it.
+  std::vector<double> smooth = measured.quiet ? *measured.piston : quiet(*measured.piston);
+  for (double& v : smooth) v /= p[row::position_sensor_gain];
+  const std::vector<double> a = less(*measured.pressure_a, nuisance::pressure_a_offset, 1),
+                            b = less(*measured.pressure_b, nuisance::pressure_b_offset, 2);
+  std::vector<double> spool;
+  if (measured.spool)
+    spool = less(measured.quiet ? *measured.spool : quiet(*measured.spool), nuisance::spool_offset, 0);
+  const Derived<double> d = derive<double, AllEffects>(p.data(), in.oil);
   const auto input = [&](const std::vector<double>& series, std::size_t k, double table) {
     return series.empty() ? table : series[k];
   };
@@ -69,7 +82,7 @@ Balance balance(const Scenario& in, const Measured& measured, const ParameterVec
     const Inputs<double> u{0.0, input(in.supply_pressure, k, p[row::supply_pressure]),
                            input(in.return_pressure, k, p[row::return_pressure]), input(in.load_force, k, 0.0),
                            friction};
-    const auto f = derivative<NoEffects, double>(s, u, p.data(), d);
+    const auto f = derivative<AllEffects, double>(s, u, p.data(), d);
     force[k] = p[row::moving_mass] * std::get<s_v_piston>(f);
     compliance_a[k] = 1.0 / chamber_stiffness(d.middle_volume_a + p[row::piston_area_a] * smooth[k], a[k], d, p.data());
     compliance_b[k] = 1.0 / chamber_stiffness(d.middle_volume_b - p[row::piston_area_b] * smooth[k], b[k], d, p.data());

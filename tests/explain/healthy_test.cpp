@@ -87,6 +87,34 @@ TEST(Healthy, TestsThatHardlyShowACauseDoNotHideItWhereOneShowsItWell) {
   EXPECT_LE(alarms, 0.05 * trials + 2.5 * std::sqrt(0.05 * 0.95 * trials));
 }
 
+// Where the model's answer to the oil is off, sizes follow its viscosity: what lies on that line is no news however far
+// out, and what lies off it is, though other oils show as much.
+TEST(Healthy, SizesThatFollowTheOilAreJudgedBesideTheirLine) {
+  constexpr int trials = 200;
+  int found = 0, alarms = 0, with_nothing_known = 0;
+  for (int k = 0; k < trials; ++k) {
+    Random random(48, static_cast<std::uint32_t>(k));
+    const auto score = [&](double thickness, double moved) {
+      return HealthyScore{"friction", "here", {{3 * thickness + 0.1 * random.normal() + moved, 0.05}}, 0, 1, thickness};
+    };
+    HealthyReference reference;
+    for (int i = 0; i < 12; ++i) {
+      reference.logs.emplace_back();
+      reference.logs.back().scores.push_back(score(random.uniform(-0.5, 0.5), 0));
+    }
+    const HealthyTest test(reference);
+    found += test.alone({score(0, 1.0)}) <= 0.01;
+    alarms += test.alone({score(random.uniform(-0.7, 0.7), 0)}) <= 0.05;
+    HealthyScore blind = score(0, 1.0);
+    for (HealthyLog& l : reference.logs) l.scores[0].thickness = std::nan("");
+    blind.thickness = std::nan("");
+    with_nothing_known += HealthyTest(reference).alone({blind}) <= 0.01;
+  }
+  EXPECT_GE(found, trials * 9 / 10);
+  EXPECT_LE(with_nothing_known, trials / 10);
+  EXPECT_LE(alarms, 0.05 * trials + 2.5 * std::sqrt(0.05 * 0.95 * trials));
+}
+
 TEST(Healthy, StandingSizeIsNoNews) {
   // Cause 20 stands at 20 in every log: far from absent, and nothing new.
   Random random(44, 1);

@@ -15,6 +15,7 @@ namespace servodx {
 struct Planted {
   std::function<double(double)> current = {}, force = {};  // [A], [N] of time
   double leak = 0, seal = 0;                               // [m3/s/Pa], [N] more of these rows
+  std::function<void(ParameterVector&)> change = {};       // of anything else
 };
 struct Rehearsed {
   std::string source = SERVODX_SOURCE_DIR;
@@ -41,6 +42,7 @@ struct Rehearsed {
     const LogData data = plain.logs().front();
     Scenario s = data.scenario;
     p[row::cross_piston_leakage] += planted.leak, p[row::piston_coulomb_friction] += planted.seal;
+    if (planted.change) planted.change(p);
     for (std::size_t k = 0; k < n; ++k) {
       const double t = s.time[k];
       force.push_back(planted.force ? planted.force(t) : 0),

@@ -196,6 +196,32 @@ TEST(ScreenDrop, PilotPressureAtRestIsThatOfPoresAndJetsInSeries) {
       }
 }
 
+TEST(SealShear, ItsShareOfTheViscousFrictionGrowsWithTheViscosityAndTheRestWithItsRoot) {
+  // At a steady speed the load pressure carries the friction.
+  constexpr double viscous = 1e4;  // [N s/m]
+  const auto per_speed = [](double share, double thicker) {
+    ParameterVector v = with<SealShear>(0, share);
+    v[row::piston_viscous_friction] = viscous;
+    v[row::piston_coulomb_friction] = v[row::piston_stribeck_friction] = 0;
+    Scenario s = made(1.0, 1e-3, [](double t) { return t < 0.05 ? 0.0 : 1e-3; });
+    s.oil.viscosity_ratio = thicker;
+    const Trajectory t = simulate(s, v, all_signals());
+    EXPECT_TRUE(t.ok);
+    const auto& x = of(t, Signal::piston_position);
+    double mean = 0;  // of what the pressures carry
+    for (std::size_t k = 750; k < 950; ++k)
+      mean += (v[row::piston_area_a] * of(t, Signal::pressure_a)[k] -
+               v[row::piston_area_b] * of(t, Signal::pressure_b)[k]) /
+              200;
+    return mean / ((x[950] - x[750]) / (s.time[950] - s.time[750]));
+  };
+  for (const double share : {0.0, 0.6, 1.0})
+    for (const double thicker : {1.0, 4.0}) {
+      const double expected = viscous * ((1 - share) * std::sqrt(thicker) + share * thicker);
+      EXPECT_NEAR(per_speed(share, thicker), expected, 0.01 * expected) << share << ", " << thicker;
+    }
+}
+
 TEST(SealFilm, AtItsSpeedHalfOfTheBreakawayFrictionIsLeft) {
   // At a steady speed the load pressure carries what is left of the breakaway friction beside all else.
   const auto force = [](double breakaway, double film_speed, double current, double* speed) {
