@@ -6,8 +6,9 @@
 // there to be read. What is wrong elsewhere does not reach it either. It needs piston, both pressures, and for the
 // flows the spool; and it is blind to causes ahead of the spool, and to those with states of their own.
 //
-// Flows count in every window; the force only where the rod slides through it by more than its seals give before they
-// slip: what they hold before that hangs on a way that the log does not tell to the micrometre.
+// Flows count in every window; the force only where the rod slides all through it, faster than its seals give before
+// they slip: what they hold before that hangs on a way that the log does not tell to the micrometre. Near the ends of
+// the stroke it does not count: cushions are no part of the model.
 #pragma once
 #include <span>
 #include <vector>

@@ -108,6 +108,12 @@ Balance balance(const Scenario& in, const Measured& measured, const ParameterVec
     out.time.push_back(in.time[mid]);
     const double v = (smooth[to] - smooth[from]) / span;
     out.piston.push_back(smooth[mid]), out.velocity.push_back(v), out.load_pressure.push_back(a[mid] - b[mid]);
+    double least = 1e300;
+    for (int quarter = 0; quarter < 4; ++quarter) {
+      const std::size_t start = from + (to - from) * quarter / 4, end = from + (to - from) * (quarter + 1) / 4;
+      least = std::min(least, (smooth[end] - smooth[start]) / (in.time[end] - in.time[start]) * (v < 0 ? -1 : 1));
+    }
+    out.least_speed.push_back(least);
     out.force.push_back(p[row::moving_mass] * (smooth[to] - 2 * smooth[mid] + smooth[from]) / (side * side) -
                         net / hat);
     if (spool.empty()) continue;

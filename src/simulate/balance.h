@@ -26,6 +26,7 @@ struct Balance {
   std::vector<double> force;           // [N] missing on the piston, positive extends
   // Middle of each window: what the missing may depend on.
   std::vector<double> spool, piston, velocity, load_pressure;  // [m], [m], [m/s], [Pa]
+  std::vector<double> least_speed;  // [m/s] of the window's quarters, the way it goes; negative: it turns
 };
 
 Balance balance(const Scenario& scenario, const Measured& measured, const ParameterVector& candidate, double window);
