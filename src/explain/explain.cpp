@@ -165,6 +165,35 @@ Table extended_table(const ValveSubject& subject, const Explanation& e, const st
   return table;
 }
 
+using Scores = std::vector<std::vector<HealthyScore>>;  // [log][cause]
+
+// Chance that healthy logs score a cause like this: each log by itself, as the healthy ones were taken. All three have
+// to outlive it.
+std::function<double(const CauseScore&, int)> news(const HealthyTest& test, const Subject& subject,
+                                                   const Scores& by_log) {
+  return [&](const CauseScore& s, int round) {
+    std::vector<HealthyScore> scores;
+    const HealthyScore whole = summarise(subject, s);
+    if (round == 0)
+      for (const auto& log : by_log)
+        for (const HealthyScore& h : log)
+          if (h.effect == whole.effect && h.where == whole.where) scores.push_back(h);
+    if (scores.empty()) scores.push_back(whole);
+    return test.together(test.alone(scores));
+  };
+}
+
+std::vector<HealthyScore> score_blocks(const ValveSubject& valve, const Point& at, const KnownRig& known,
+                                       const std::function<bool(const Cause&)>& among) {
+  std::vector<HealthyScore> out;
+  ReplaySubject blocks(valve, at, known);
+  if (blocks.empty()) return out;
+  if (const ExplainedFit fit = fit_base(blocks, EngineOptions{}.iterations); fit.ok)
+    for (const CauseScore& s : score_causes(blocks, fit, among))
+      if (!s.probes.empty()) out.push_back(summarise(blocks, s));
+  return out;
+}
+
 }  // namespace
 
 ExplainResult explain_logs(const std::vector<Log>& logs, const Table& tuned, const RigFile& rig,
@@ -188,7 +217,6 @@ ExplainResult explain_logs(const std::vector<Log>& logs, const Table& tuned, con
   // Each log by itself, as the healthy ones were taken; one log is itself.
   std::deque<ValveSubject> single;
   std::vector<ExplainedFit> single_fits;
-  using Scores = std::vector<std::vector<HealthyScore>>;  // [log][cause]
   Scores alone(logs.size());
   const auto score_alone = [&] {
     for (std::size_t l = 0; l < single.size(); ++l)
@@ -206,26 +234,15 @@ ExplainResult explain_logs(const std::vector<Log>& logs, const Table& tuned, con
         if (single_fits.back().ok) guess_curves(single.back(), of_one, single_fits.back().point);
       }
   }
-  const auto news = [&](const Subject& of, const Scores& by_log) {
-    return [&](const CauseScore& s, int round) {
-      std::vector<HealthyScore> scores;
-      const HealthyScore whole = summarise(of, s);
-      if (round == 0)
-        for (const auto& log : by_log)
-          for (const HealthyScore& h : log)
-            if (h.effect == whole.effect && h.where == whole.where) scores.push_back(h);
-      if (scores.empty()) scores.push_back(whole);
-      return test->together(test->alone(scores));
-    };
-  };
-  if (healthy) engine.p_new = news(subject, alone);
-  if (healthy)
+  if (healthy) {
+    engine.p_new = news(*test, subject, alone);
     engine.p_left = [&](const ExplainedFit& fit, int round) {
       std::vector<Miss> misses = subject.misses(fit.residual);
       if (round == 0)  // the blocks do not know of effects
         for (const BlockReplay& b : replay_blocks(subject, fit.point)) misses.push_back({b.block, b.missing});
       return test->any(misses);
     };
+  }
   const std::vector<Curve> curves = add_curves(subject);
   std::vector<CauseScore> curve_scores;
   const auto named = [&](const Cause& c) {
@@ -286,18 +303,12 @@ ExplainResult explain_logs(const std::vector<Log>& logs, const Table& tuned, con
     blocks.emplace(subject, e.before.point, *known);
   if (blocks && !blocks->empty()) {
     Scores of_blocks(logs.size());
-    for (std::size_t l = 0; l < single.size(); ++l) {
-      if (!single_fits[l].ok) continue;
-      ReplaySubject one(single[l], single_fits[l].point, *known);
-      if (one.empty()) continue;
-      if (const ExplainedFit fit = fit_base(one, engine.iterations); fit.ok)
-        for (const CauseScore& s : score_causes(one, fit, named))
-          if (!s.probes.empty()) of_blocks[l].push_back(summarise(one, s));
-    }
+    for (std::size_t l = 0; l < single.size(); ++l)
+      if (single_fits[l].ok) of_blocks[l] = score_blocks(single[l], single_fits[l].point, *known, named);
     EngineOptions there;
     there.seed = options.seed, there.stop = options.stop, there.level = options.level;
     there.among = named;
-    there.p_new = news(*blocks, of_blocks);
+    there.p_new = news(*test, *blocks, of_blocks);
     // Beside the question of the free run, which has most of its share.
     there.p_left = [&](const ExplainedFit& fit, int) {
       return std::min(1.0, 2 * test->any(blocks->misses(fit.residual)));
