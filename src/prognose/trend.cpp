@@ -44,7 +44,8 @@ struct Series {
   enum class Scale { plain, logarithm, drop };
   std::string name, unit, cause;
   const Fault* fault = nullptr;
-  std::optional<double> tuned;  // the row's value in the table that the checks rest on
+  std::optional<double> tuned;      // the row's value in the table that the checks rest on
+  std::optional<double> to_nozzle;  // of a friction of the spool
   Scale scale = Scale::plain;
   double clean = 1;  // drop over the whole part, in that of the table's whole part
   std::vector<GrowthPoint> points;
@@ -130,6 +131,7 @@ Series begun(const Check& check, const ValveHistory& history) {
       if (s.cause.empty()) s.cause = p.fault->name;
       if (static_cast<std::size_t>(p.row) < history.tuned.size())
         s.tuned = history.tuned[static_cast<std::size_t>(p.row)];
+      if (s.tuned && p.row == row::spool_friction) s.to_nozzle = to_nozzle(history.tuned);
     }
   if (!s.cause.empty()) {
     s.fault = find_fault(s.cause);
@@ -215,6 +217,10 @@ FailureAt failure_of(const Series& s, const TrendOptions& options) {
   if (const auto given = options.failure.find(s.name); given != options.failure.end()) {
     at.lower = s.in(given->second.first), at.upper = s.in(given->second.second);
     if (const auto& level = at.upper ? at.upper : at.lower; level && s.fault) at.sd = known_to(s.out(*level), 1);
+  } else if (const auto force = options.failure_at_nozzle.find(s.name);
+             force != options.failure_at_nozzle.end() && s.to_nozzle) {
+    at.upper = force->second / *s.to_nozzle;
+    at.sd = known_to(*at.upper, 1 / *s.to_nozzle);
   } else if (const auto ratio = options.failure_ratio.find(s.name); ratio != options.failure_ratio.end()) {
     if (s.fault && s.fault->log_scale && s.tuned) {  // its healthy checks may hardly see it: the tuning logs saw more
       to_side(ratio->second * *s.tuned, ratio->second > 1);
@@ -496,6 +502,11 @@ int rank_of(const std::string& state) {
 }
 
 }  // namespace
+
+double to_nozzle(const std::vector<double>& tuned) {
+  const double nozzle = tuned.at(row::hydraulic_amplifier_gain) / std::numbers::pi;
+  return std::pow(nozzle / tuned.at(row::spool_diameter), 2);
+}
 
 Remaining remaining_of(const Life& life, double coverage) {
   return {quantile(life, 0.5), quantile(life, 0.5 - coverage / 2), quantile(life, 0.5 + coverage / 2)};

@@ -33,11 +33,19 @@ struct TrendOptions {
   std::map<std::string, std::pair<std::optional<double>, std::optional<double>>> failure;  // name -> lower, upper
   // name -> times its healthy value, of a parameter that multiplies its tuned one, where `failure` has none
   std::map<std::string, double> failure_ratio;
-  // name of a parameter -> one standard deviation of that level, in its unit; else by the fault's own `spread`
+  // name of a friction of the spool -> [N] at the nozzle axis, see `to_nozzle`
+  std::map<std::string, double> failure_at_nozzle;
+  // name of a parameter -> one standard deviation of that level, in the unit it is stated in; else by the fault's own
+  // `spread`
   std::map<std::string, double> failure_spread;
   double coverage = 0.9;  // of the interval of the life left
   std::uint64_t seed = 1;
 };
+
+// [N/N] force at the nozzle axis that holds one at the spool: the pilot pressure that balances it presses on the
+// flapper, nozzle over spool area. From the tuned rows. A log of motion tells the force at the nozzle; what it is at
+// the spool rests on the nozzles' bore, and what a table has wrong of that all its friction has.
+double to_nozzle(const std::vector<double>& tuned);
 
 struct Level {
   std::optional<double> lower, upper;  // [unit of the check]

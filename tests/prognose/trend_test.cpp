@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <numbers>
 
 #include "base/random.h"
 #include "model/state.h"
@@ -163,6 +164,25 @@ TEST(Trend, AMultipleOfWhatMultipliesIsOfTheTunedValue) {
   EXPECT_NEAR(*find(t, "parameter:14").failure.upper, 32, 1e-9);
   ASSERT_TRUE(t.remaining);
   EXPECT_NEAR(t.remaining->median, 42, 4);
+}
+
+// Two tables of one valve, their nozzles' bores 4 % apart: all of the friction is read 8 % differently, and it has
+// failed at the same force at the nozzle.
+TEST(Trend, AFrictionsLevelAtTheNozzleDoesNotKnowTheBore) {
+  for (const double bore : {0.98, 1.02}) {
+    ValveHistory h = of_one(
+        "parameter:14", [&](double s) { return (1.6 + 30.4 * s) / (bore * bore); }, 0.3, 0.1);
+    h.tuned.assign(41, 0.0);
+    h.tuned[13] = 1.6;
+    h.tuned[5] = std::numbers::pi * bore * 0.35e-3, h.tuned[12] = 7e-3;  // nozzle 20 times narrower than the spool
+    TrendOptions options;
+    options.failure_at_nozzle["parameter:14"] = 32.0 / 400;
+    options.failure_spread["parameter:14"] = 0.32 / 400;
+    const ValveTrend t = trend(h, options);
+    EXPECT_NEAR(*find(t, "parameter:14").failure.upper, 32 / (bore * bore), 1e-9);
+    ASSERT_TRUE(t.remaining);
+    EXPECT_NEAR(t.remaining->median, 42, 4);
+  }
 }
 
 // An estimate that recovers, or a tune that was wrong: there is a trend, and no life.
