@@ -543,7 +543,11 @@ ValveTrend trend(const ValveHistory& history, const TrendOptions& options) {
   out.to_warning = infinite;
   std::vector<Series> all = series_of(history, out.notes);
   for (Series& s : all) take_clean(s, static_cast<std::size_t>(options.healthy));
-  for (const Series& s : all) out.trends.push_back(trend_of(s, options, all.size()));
+  for (const Series& s : all) {
+    out.trends.push_back(trend_of(s, options, all.size()));
+    if (options.failure_at_nozzle.contains(s.name) && !s.to_nozzle)
+      out.notes.push_back(fmt::format("{}: no tuned table says what a force at the nozzle is at the spool", s.name));
+  }
 
   double furthest = -infinite;  // of what may be the cause, surely
   const auto may_be = [](const CheckTrend& t) { return !t.cause.empty() && t.trend && !t.life.empty(); };

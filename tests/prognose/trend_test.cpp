@@ -182,6 +182,8 @@ TEST(Trend, AFrictionsLevelAtTheNozzleDoesNotKnowTheBore) {
     EXPECT_NEAR(*find(t, "parameter:14").failure.upper, 32 / (bore * bore), 1e-9);
     ASSERT_TRUE(t.remaining);
     EXPECT_NEAR(t.remaining->median, 42, 4);
+    h.tuned.clear();
+    EXPECT_EQ(trend(h, options).notes.size(), 1U);  // nothing says what that force is at the spool
   }
 }
 
