@@ -2,7 +2,7 @@
 // of a rig, the store at size, and the monitor's speed. Its parts are in bench/prognosis/.
 //
 //   servodx_prognosis figures TUNED RIG.toml RIG_MODEL.toml OUT_DIR
-//   servodx_prognosis lives   TUNED RIG.toml RIG_MODEL.toml OUT_DIR [UNITS [CHECKS [FIRST [DEGRADATION...]]]]   units a degradation
+//   servodx_prognosis lives   TUNED RIG.toml RIG_MODEL.toml OUT_DIR [UNITS [CHECKS [FIRST [DEGRADATION...]]]]   of each
 //   servodx_prognosis series  TUNED RIG.toml OUT_DIR SERIES_DIR...                       t01.csv, t02.csv, ...
 //   servodx_prognosis store   FILE ROWS
 //   servodx_prognosis predictor UNITS                                                   lives with the truth for a reading
@@ -32,7 +32,8 @@ int run(int argc, char** argv) {
   if (what == "speed" && argc == 5) return speed(bench(true)), 0;
   if (what == "store" && argc == 4) return store(argv[2], std::stol(argv[3])), 0;
   std::fprintf(stderr,
-               "usage: servodx_prognosis figures|lives TUNED RIG.toml RIG_MODEL.toml OUT [UNITS [CHECKS [FIRST [DEGRADATION...]]]]\n"
+               "usage: servodx_prognosis figures|lives TUNED RIG.toml RIG_MODEL.toml OUT [UNITS [CHECKS [FIRST "
+               "[DEGRADATION...]]]]\n"
                "       servodx_prognosis series TUNED RIG.toml OUT SERIES_DIR...\n"
                "       servodx_prognosis store FILE ROWS\n"
                "       servodx_prognosis predictor UNITS\n"

@@ -59,7 +59,7 @@ TrendOptions seeded_fault(const Bench& b, const Degradation& d, const std::strin
     for (const Recording& r : h.recordings)
       for (const Check& c : r.checks) {
         double value = c.value;
-        if (caused_by(c.name) == d.name && d.stated == Stated::at_nozzle) value *= to_nozzle(h.tuned);
+        if (caused_by(c.name) == d.name && d.stated == Stated::current) value *= friction_current(h.tuned);
         if (caused_by(c.name) == d.name && d.stated == Stated::multiple)
           value /= h.tuned[static_cast<std::size_t>(row_of(c.name))];
         to[c.name].push_back(value);
@@ -78,8 +78,8 @@ TrendOptions seeded_fault(const Bench& b, const Degradation& d, const std::strin
       options.failure_spread[name] = spread_of(failed[name]);
       if (d.stated == Stated::multiple)
         options.failure_ratio[name] = level;
-      else if (d.stated == Stated::at_nozzle)
-        options.failure_at_nozzle[name] = level;
+      else if (d.stated == Stated::current)
+        options.failure_current[name] = level;
       else
         (f > h ? options.failure[name].second : options.failure[name].first) = level;
     } else if (cause.empty() && std::abs(f - h) > 3 * (*high - *low)) {
@@ -184,8 +184,7 @@ void lives(const Bench& b, const std::string& out, int units, int checks, int fi
   for (const auto& [name, o] : seeded) {
     std::fprintf(stderr, "\n%s fails at", name.c_str());
     for (const auto& [check, ratio] : o.failure_ratio) std::fprintf(stderr, " %s x %.3g", check.c_str(), ratio);
-    for (const auto& [check, force] : o.failure_at_nozzle)
-      std::fprintf(stderr, " %s %.3g@nozzle", check.c_str(), force);
+    for (const auto& [check, current] : o.failure_current) std::fprintf(stderr, " %s %.3gA", check.c_str(), current);
     for (const auto& [check, l] : o.failure)
       std::fprintf(stderr, " %s %.3g", check.c_str(), l.second.value_or(l.first.value_or(0)));
     for (const auto& [check, spread] : o.failure_spread) std::fprintf(stderr, " (%s ~%.2g)", check.c_str(), spread);

@@ -20,8 +20,8 @@ struct Bench {
 };
 
 // How a seeded-fault test states what a parameter reads at its end: as it is, as a multiple of what that valve was
-// tuned to, or at the nozzle axis.
-enum class Stated { value, multiple, at_nozzle };
+// tuned to, or as the current that it takes.
+enum class Stated { value, multiple, current };
 
 // The paper's degradations, each to the end of what it studies.
 struct Degradation {
@@ -35,7 +35,7 @@ inline constexpr Degradation degradations[] = {
     {"clogged_filter", 0, 0.75, "8", "fidelity", Stated::value},
     {"torque_motor_loss", 1, 0.2, "9", "fidelity", Stated::multiple},
     {"feedback_wire_backlash", 0, 20e-6, "10", "mean_error", Stated::value},
-    {"sticky_spool", 1, 20, "11", "mean_error", Stated::at_nozzle},
+    {"sticky_spool", 1, 20, "11", "mean_error", Stated::current},
     {"radial_clearance_wear", 1, 10, "12", "correlation@5Hz", Stated::value}};
 inline double severity_at(const Degradation& d, double s) { return d.healthy + (d.failed - d.healthy) * s; }
 

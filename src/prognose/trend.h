@@ -33,8 +33,8 @@ struct TrendOptions {
   std::map<std::string, std::pair<std::optional<double>, std::optional<double>>> failure;  // name -> lower, upper
   // name -> times its healthy value, of a parameter that multiplies its tuned one, where `failure` has none
   std::map<std::string, double> failure_ratio;
-  // name of a friction of the spool -> [N] at the nozzle axis, see `to_nozzle`
-  std::map<std::string, double> failure_at_nozzle;
+  // name of the spool's friction -> [A] of coil current that it takes, see `friction_current`
+  std::map<std::string, double> failure_current;
   // name of a parameter -> one standard deviation of that level, in the unit it is stated in; else by the fault's own
   // `spread`
   std::map<std::string, double> failure_spread;
@@ -42,10 +42,11 @@ struct TrendOptions {
   std::uint64_t seed = 1;
 };
 
-// [N/N] force at the nozzle axis that holds one at the spool: the pilot pressure that balances it presses on the
-// flapper, nozzle over spool area. From the tuned rows. A log of motion tells the force at the nozzle; what it is at
-// the spool rests on the nozzles' bore, and what a table has wrong of that all its friction has.
-double to_nozzle(const std::vector<double>& tuned);
+// [A/N] coil current that holds a force on the spool: the pilot pressure that balances it presses on the flapper,
+// nozzle over spool area, against the motor. From the tuned rows. A log holds currents and motion; what a current is in
+// newtons at the spool rests on the motor's gain and the nozzles' bore, and what a table has wrong of them all its
+// friction has.
+double friction_current(const std::vector<double>& tuned);
 
 struct Level {
   std::optional<double> lower, upper;  // [unit of the check]
