@@ -2,11 +2,12 @@
 // of a rig, the store at size, and the monitor's speed. Its parts are in bench/prognosis/.
 //
 //   servodx_prognosis figures TUNED RIG.toml RIG_MODEL.toml OUT_DIR
-//   servodx_prognosis lives   TUNED RIG.toml RIG_MODEL.toml OUT_DIR [UNITS [CHECKS [FIRST]]]   units a degradation
+//   servodx_prognosis lives   TUNED RIG.toml RIG_MODEL.toml OUT_DIR [UNITS [CHECKS [FIRST [DEGRADATION...]]]]   of each
 //   servodx_prognosis series  TUNED RIG.toml OUT_DIR SERIES_DIR...                       t01.csv, t02.csv, ...
 //   servodx_prognosis store   FILE ROWS
 //   servodx_prognosis predictor UNITS                                                   lives with the truth for a reading
 //   servodx_prognosis speed   TUNED RIG.toml RIG_MODEL.toml                               of the monitor
+#include <algorithm>
 #include <cstdio>
 
 #include "prognosis/study.h"
@@ -24,14 +25,15 @@ int run(int argc, char** argv) {
   if (what == "figures" && argc == 6) return figures(bench(true), argv[5]), 0;
   if (what == "lives" && argc >= 6)
     return lives(bench(true), argv[5], argc > 6 ? std::stoi(argv[6]) : 40, argc > 7 ? std::stoi(argv[7]) : 40,
-                 argc > 8 ? std::stoi(argv[8]) : 0),
+                 argc > 8 ? std::stoi(argv[8]) : 0, {argv + std::min(argc, 9), argv + argc}),
            0;
   if (what == "series" && argc >= 6) return series(bench(false), argv[4], {argv + 5, argv + argc}), 0;
   if (what == "predictor" && argc == 3) return predictor(std::stoi(argv[2]), 40), 0;
   if (what == "speed" && argc == 5) return speed(bench(true)), 0;
   if (what == "store" && argc == 4) return store(argv[2], std::stol(argv[3])), 0;
   std::fprintf(stderr,
-               "usage: servodx_prognosis figures|lives TUNED RIG.toml RIG_MODEL.toml OUT [UNITS [CHECKS [FIRST]]]\n"
+               "usage: servodx_prognosis figures|lives TUNED RIG.toml RIG_MODEL.toml OUT [UNITS [CHECKS [FIRST "
+               "[DEGRADATION...]]]]\n"
                "       servodx_prognosis series TUNED RIG.toml OUT SERIES_DIR...\n"
                "       servodx_prognosis store FILE ROWS\n"
                "       servodx_prognosis predictor UNITS\n"

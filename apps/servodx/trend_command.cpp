@@ -28,7 +28,8 @@ struct Options {
 };
 
 // "fidelity=1.7" above, "parameter:3=<20" below; "parameter:14=20x" times the tuned value (of the paper's checks: the
-// healthy one); "parameter:22=30e-6~1e-6" known to one standard deviation.
+// healthy one); "parameter:14=0.9e-3A" the current that the spool's friction takes; "parameter:22=30e-6~1e-6" known to
+// one standard deviation.
 void add_failure(const std::string& text, TrendOptions& to) {
   const auto equals = text.find('=');
   const std::string name = text.substr(0, equals);
@@ -40,16 +41,22 @@ void add_failure(const std::string& text, TrendOptions& to) {
   if (tilde != std::string::npos) spread = parse_number(level.substr(tilde + 1)), level.erase(tilde);
   const bool times = level.ends_with('x');
   if (times) level.pop_back();
+  const bool current = level.ends_with('A');
+  if (current) level.pop_back();
   const std::optional<double> value = parse_number(level);
   require_option(
       value && equals > 0 && (tilde == std::string::npos || (spread && *spread > 0)) &&
-          !(times && (below || *value <= 0)),
+          !((times || current) && (below || *value <= 0)) &&
+          !(current && name != fmt::format("parameter:{}", row::spool_friction + 1)),
       "--failure", "'" + text + "' is not NAME=VALUE",
       "--failure fidelity=1.7, --failure 'parameter:3=<20' for a lower limit, --failure parameter:14=20x for "
-      "20 times the tuned value, ~SPREAD behind it for how well it is known");
+      "20 times the tuned value, parameter:14=0.9e-3A for the current that the spool's friction takes, ~SPREAD "
+      "behind it for how well it is known");
   if (spread) to.failure_spread[name] = *spread;
   if (times)
     to.failure_ratio[name] = *value;
+  else if (current)
+    to.failure_current[name] = *value;
   else
     (below ? to.failure[name].first : to.failure[name].second) = *value;
 }
@@ -102,7 +109,8 @@ void add_trend_command(CLI::App& app) {
   command->add_flag("--all", options->all, "all valves, the first to reach its warning level first");
   command
       ->add_option("--failure", options->failures,
-                   "failure level of a check: NAME=VALUE, NAME=<VALUE below, NAME=20x times the tuned value")
+                   "failure level of a check: NAME=VALUE, NAME=<VALUE below, NAME=20x times the tuned value, "
+                   "parameter:14=0.9e-3A the current that the spool's friction takes")
       ->type_name("NAME=VALUE");
   command
       ->add_option("--limit", options->limits,

@@ -33,48 +33,58 @@ std::string caused_by(const std::string& check) {
 
 int row_of(const std::string& check) { return std::stoi(check.substr(check.find(':') + 1)) - 1; }
 
-// Failure levels of every check that a degradation moves, by a seeded-fault test of five valves of the type at the
-// reference oil, as a user would set them: of the paper's checks a multiple of healthy; of the parameters what they
-// read, or, where it is the valve's own value that multiplies, a multiple of what that valve was tuned to.
-// How far another valve's level may lie from the median of these valves' looks: what their means scatter by, that
-// median's own error, and Student's factor for so few at 90 %.
-double spread_of(const std::vector<double>& looks) {
-  const std::size_t each = looks.size() / seeded_valves;
-  double sum = 0, square = 0;
-  for (int v = 0; v < seeded_valves; ++v) {
-    const auto first = looks.begin() + static_cast<long>(v * each);
-    const double mean = std::accumulate(first, first + static_cast<long>(each), 0.0) / static_cast<double>(each);
-    sum += mean, square += mean * mean;
-  }
-  constexpr double n = seeded_valves, student = 2.13 / 1.645;
-  return student * std::sqrt((square - sum * sum / n) / (n - 1) * (1 + 1 / n));
+double mean_of(const std::vector<double>& v) {
+  return std::accumulate(v.begin(), v.end(), 0.0) / static_cast<double>(v.size());
 }
 
+// How far another valve's level may lie from the mean of these valves': what their means scatter by, that mean's own
+// error, and Student's factor for so few at 90 %.
+double spread_of(const std::vector<double>& looks) {
+  const std::size_t each = looks.size() / seeded_valves;
+  double square = 0;
+  for (std::size_t v = 0; v < seeded_valves; ++v) {
+    const auto first = looks.begin() + static_cast<long>(v * each);
+    square += std::pow(mean_of({first, first + static_cast<long>(each)}) - mean_of(looks), 2);
+  }
+  constexpr double n = seeded_valves, student = 1.796 / 1.645;  // n - 1 degrees of freedom
+  return student * std::sqrt(square / (n - 1) * (1 + 1 / n));
+}
+
+// Failure levels of every check that a degradation moves, by a seeded-fault test of valves of the type at the reference
+// oil, as a user would set them: of the paper's checks a multiple of healthy; of the parameters as the degradation is
+// stated.
 TrendOptions seeded_fault(const Bench& b, const Degradation& d, const std::string& folder) {
   std::map<std::string, std::vector<double>> healthy, failed;
-  const auto add = [](const ValveHistory& h, bool of_its_own, std::map<std::string, std::vector<double>>& to) {
+  const auto add = [&](const ValveHistory& h, std::map<std::string, std::vector<double>>& to) {
     for (const Recording& r : h.recordings)
-      for (const Check& c : r.checks)
-        to[c.name].push_back(of_its_own && !caused_by(c.name).empty()
-                                 ? c.value / h.tuned[static_cast<std::size_t>(row_of(c.name))]
-                                 : c.value);
+      for (const Check& c : r.checks) {
+        double value = c.value;
+        if (caused_by(c.name) == d.name && d.stated == Stated::current) value *= friction_current(h.tuned);
+        if (caused_by(c.name) == d.name && d.stated == Stated::multiple)
+          value /= h.tuned[static_cast<std::size_t>(row_of(c.name))];
+        to[c.name].push_back(value);
+      }
   };
   for (int v = 0; v < seeded_valves; ++v)
-    add(seeded_looks(b, v, nullptr, folder), d.of_its_own, healthy),
-        add(seeded_looks(b, v, &d, folder), d.of_its_own, failed);
+    add(seeded_looks(b, v, nullptr, folder), healthy), add(seeded_looks(b, v, &d, folder), failed);
   TrendOptions options;
   for (const auto& [name, values] : healthy) {
     if (failed[name].empty()) continue;
     const auto [low, high] = std::minmax_element(values.begin(), values.end());
     const double h = median(values), f = median(failed[name]);
     const std::string cause = caused_by(name);
-    if (cause == d.name) options.failure_spread[name] = spread_of(failed[name]);
-    if (cause == d.name && d.of_its_own)
-      options.failure_ratio[name] = f;
-    else if (cause == d.name)
-      (f > h ? options.failure[name].second : options.failure[name].first) = f;
-    else if (cause.empty() && std::abs(f - h) > 3 * (*high - *low))
+    if (cause == d.name) {
+      const double level = mean_of(failed[name]);
+      options.failure_spread[name] = spread_of(failed[name]);
+      if (d.stated == Stated::multiple)
+        options.failure_ratio[name] = level;
+      else if (d.stated == Stated::current)
+        options.failure_current[name] = level;
+      else
+        (f > h ? options.failure[name].second : options.failure[name].first) = level;
+    } else if (cause.empty() && std::abs(f - h) > 3 * (*high - *low)) {
       options.failure_ratio[name] = f / h;
+    }
   }
   return options;
 }
@@ -155,8 +165,13 @@ struct Tally {
 
 }  // namespace
 
-void lives(const Bench& b, const std::string& out, int units, int checks, int first) {
-  const std::vector<Unit> all = plan(first, units);
+void lives(const Bench& b, const std::string& out, int units, int checks, int first,
+           const std::vector<std::string>& only) {
+  std::vector<Unit> all = plan(first, units);
+  if (!only.empty())
+    std::erase_if(all, [&](const Unit& u) {
+      return std::find(only.begin(), only.end(), u.degradation ? u.degradation->name : "healthy") == only.end();
+    });
   const int n = static_cast<int>(all.size());
   std::vector<ValveHistory> histories(all.size());
   for_each(n, "lives", [&](int i) { histories[i] = history_of(b, all[i], checks, out); });
@@ -169,8 +184,10 @@ void lives(const Bench& b, const std::string& out, int units, int checks, int fi
   for (const auto& [name, o] : seeded) {
     std::fprintf(stderr, "\n%s fails at", name.c_str());
     for (const auto& [check, ratio] : o.failure_ratio) std::fprintf(stderr, " %s x %.3g", check.c_str(), ratio);
+    for (const auto& [check, current] : o.failure_current) std::fprintf(stderr, " %s %.3gA", check.c_str(), current);
     for (const auto& [check, l] : o.failure)
       std::fprintf(stderr, " %s %.3g", check.c_str(), l.second.value_or(l.first.value_or(0)));
+    for (const auto& [check, spread] : o.failure_spread) std::fprintf(stderr, " (%s ~%.2g)", check.c_str(), spread);
   }
 
   std::vector<std::optional<double>> alarm(all.size());
@@ -211,7 +228,8 @@ void lives(const Bench& b, const std::string& out, int units, int checks, int fi
         csv += (own ? "own," : "seeded,") + judged[i][l].row;
         for (Tally* t : {&of_all[lambdas[l]], &of_each[all[i].degradation->name][lambdas[l]]}) t->add(judged[i][l]);
       }
-    std::printf("\nfailure levels: %s\n", own ? "the tool's own" : "a seeded-fault test of five valves");
+    std::printf("\nfailure levels: %s\n",
+                own ? "the tool's own" : fmt::format("a seeded-fault test of {} valves", seeded_valves).c_str());
     std::printf("%-24s %6s %5s %8s %13s %16s %6s %6s %6s %9s %12s %12s %12s\n", "degradation", "lambda", "units",
                 "alerted", "met", "covered", "early", "late", "named", "CRPS [h]", "tangent", "tangent met",
                 "its CRPS");

@@ -19,19 +19,24 @@ struct Bench {
   rig::RigModel model;
 };
 
+// How a seeded-fault test states what a parameter reads at its end: as it is, as a multiple of what that valve was
+// tuned to, or as the current that it takes.
+enum class Stated { value, multiple, current };
+
 // The paper's degradations, each to the end of what it studies.
 struct Degradation {
   const char* name;
   double healthy, failed;  // severity
   const char* figure;      // of Borello et al. 2009
   const char* check;       // that it shows
-  bool of_its_own;         // fails at a multiple of what the valve was when new; else at one value for all of the type
+  Stated stated;
 };
-inline constexpr Degradation degradations[] = {{"clogged_filter", 0, 0.75, "8", "fidelity", false},
-                                               {"torque_motor_loss", 1, 0.2, "9", "fidelity", true},
-                                               {"feedback_wire_backlash", 0, 20e-6, "10", "mean_error", false},
-                                               {"sticky_spool", 1, 20, "11", "mean_error", false},
-                                               {"radial_clearance_wear", 1, 10, "12", "correlation@5Hz", false}};
+inline constexpr Degradation degradations[] = {
+    {"clogged_filter", 0, 0.75, "8", "fidelity", Stated::value},
+    {"torque_motor_loss", 1, 0.2, "9", "fidelity", Stated::multiple},
+    {"feedback_wire_backlash", 0, 20e-6, "10", "mean_error", Stated::value},
+    {"sticky_spool", 1, 20, "11", "mean_error", Stated::current},
+    {"radial_clearance_wear", 1, 10, "12", "correlation@5Hz", Stated::value}};
 inline double severity_at(const Degradation& d, double s) { return d.healthy + (d.failed - d.healthy) * s; }
 
 struct Condition {
@@ -53,7 +58,9 @@ const Check* find(const std::vector<Check>& checks, const std::string& name);
 void for_each(int n, const std::string& what, const std::function<void(int)>& work);
 
 void figures(const Bench& bench, const std::string& out);
-void lives(const Bench& bench, const std::string& out, int units, int checks, int first);
+// `only`: these degradations, or "healthy"; none: all.
+void lives(const Bench& bench, const std::string& out, int units, int checks, int first,
+           const std::vector<std::string>& only);
 void series(const Bench& bench, const std::string& out, const std::vector<std::string>& folders);
 void store(const std::string& file, long rows);
 void speed(const Bench& bench);

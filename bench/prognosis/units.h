@@ -39,7 +39,7 @@ double truth_of(const Degradation& degradation, const rig::RigModel& valve, doub
 Table own_table(const Bench& bench, const std::string& name, const rig::RigModel& valve, std::uint32_t stream,
                 const std::string& folder);
 // Three looks, at 30, 40 and 50 degC, at one of the valves of the seeded-fault test: healthy, or failed by a fault.
-inline constexpr int seeded_valves = 5;
+inline constexpr int seeded_valves = 12;
 ValveHistory seeded_looks(const Bench& bench, int valve, const Degradation* failed_by, const std::string& folder);
 ValveHistory history_of(const Bench& bench, const Unit& unit, int checks, const std::string& folder);
 

@@ -44,7 +44,8 @@ struct Series {
   enum class Scale { plain, logarithm, drop };
   std::string name, unit, cause;
   const Fault* fault = nullptr;
-  std::optional<double> tuned;  // the row's value in the table that the checks rest on
+  std::optional<double> tuned;       // the row's value in the table that the checks rest on
+  std::optional<double> per_newton;  // [A/N] of the spool's friction
   Scale scale = Scale::plain;
   double clean = 1;  // drop over the whole part, in that of the table's whole part
   std::vector<GrowthPoint> points;
@@ -130,6 +131,7 @@ Series begun(const Check& check, const ValveHistory& history) {
       if (s.cause.empty()) s.cause = p.fault->name;
       if (static_cast<std::size_t>(p.row) < history.tuned.size())
         s.tuned = history.tuned[static_cast<std::size_t>(p.row)];
+      if (s.tuned && p.row == row::spool_friction) s.per_newton = friction_current(history.tuned);
     }
   if (!s.cause.empty()) {
     s.fault = find_fault(s.cause);
@@ -215,6 +217,10 @@ FailureAt failure_of(const Series& s, const TrendOptions& options) {
   if (const auto given = options.failure.find(s.name); given != options.failure.end()) {
     at.lower = s.in(given->second.first), at.upper = s.in(given->second.second);
     if (const auto& level = at.upper ? at.upper : at.lower; level && s.fault) at.sd = known_to(s.out(*level), 1);
+  } else if (const auto current = options.failure_current.find(s.name);
+             current != options.failure_current.end() && s.per_newton) {
+    at.upper = current->second / *s.per_newton;
+    at.sd = known_to(*at.upper, 1 / *s.per_newton);
   } else if (const auto ratio = options.failure_ratio.find(s.name); ratio != options.failure_ratio.end()) {
     if (s.fault && s.fault->log_scale && s.tuned) {  // its healthy checks may hardly see it: the tuning logs saw more
       to_side(ratio->second * *s.tuned, ratio->second > 1);
@@ -497,6 +503,11 @@ int rank_of(const std::string& state) {
 
 }  // namespace
 
+double friction_current(const std::vector<double>& tuned) {
+  const double nozzle = tuned.at(row::hydraulic_amplifier_gain) / std::numbers::pi;
+  return std::pow(nozzle / tuned.at(row::spool_diameter), 2) / tuned.at(row::torque_motor_gain);
+}
+
 Remaining remaining_of(const Life& life, double coverage) {
   return {quantile(life, 0.5), quantile(life, 0.5 - coverage / 2), quantile(life, 0.5 + coverage / 2)};
 }
@@ -532,7 +543,11 @@ ValveTrend trend(const ValveHistory& history, const TrendOptions& options) {
   out.to_warning = infinite;
   std::vector<Series> all = series_of(history, out.notes);
   for (Series& s : all) take_clean(s, static_cast<std::size_t>(options.healthy));
-  for (const Series& s : all) out.trends.push_back(trend_of(s, options, all.size()));
+  for (const Series& s : all) {
+    out.trends.push_back(trend_of(s, options, all.size()));
+    if (options.failure_current.contains(s.name) && !s.per_newton)
+      out.notes.push_back(fmt::format("{}: no tuned table says what friction takes that current", s.name));
+  }
 
   double furthest = -infinite;  // of what may be the cause, surely
   const auto may_be = [](const CheckTrend& t) { return !t.cause.empty() && t.trend && !t.life.empty(); };

@@ -33,11 +33,20 @@ struct TrendOptions {
   std::map<std::string, std::pair<std::optional<double>, std::optional<double>>> failure;  // name -> lower, upper
   // name -> times its healthy value, of a parameter that multiplies its tuned one, where `failure` has none
   std::map<std::string, double> failure_ratio;
-  // name of a parameter -> one standard deviation of that level, in its unit; else by the fault's own `spread`
+  // name of the spool's friction -> [A] of coil current that it takes, see `friction_current`
+  std::map<std::string, double> failure_current;
+  // name of a parameter -> one standard deviation of that level, in the unit it is stated in; else by the fault's own
+  // `spread`
   std::map<std::string, double> failure_spread;
   double coverage = 0.9;  // of the interval of the life left
   std::uint64_t seed = 1;
 };
+
+// [A/N] coil current that holds a force on the spool: the pilot pressure that balances it presses on the flapper,
+// nozzle over spool area, against the motor. From the tuned rows. A log holds currents and motion; what a current is in
+// newtons at the spool rests on the motor's gain and the nozzles' bore, and what a table has wrong of them all its
+// friction has.
+double friction_current(const std::vector<double>& tuned);
 
 struct Level {
   std::optional<double> lower, upper;  // [unit of the check]

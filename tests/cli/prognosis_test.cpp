@@ -86,6 +86,8 @@ TEST_F(Prognosis, TrendOfFewChecksSaysSoAndRefusesWhatIsNotThere) {
   EXPECT_EQ(desk.run("trend --history h.db --valve V7 --failure 'parameter:14=<20x'").code, 2);
   EXPECT_EQ(desk.run("trend --history h.db --valve V7 --failure 'parameter:14=20x~'").code, 2);
   EXPECT_EQ(desk.run("trend --history h.db --valve V7 --failure 'parameter:14=20x~1'").code, 0);
+  EXPECT_EQ(desk.run("trend --history h.db --valve V7 --failure parameter:9=0.9e-3A").code, 2);
+  EXPECT_EQ(desk.run("trend --history h.db --valve V7 --failure parameter:14=0.9e-3A~2e-5").code, 0);
   EXPECT_FALSE(std::filesystem::exists(desk / "none.db"));
 }
 

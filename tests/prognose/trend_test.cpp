@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <numbers>
 
 #include "base/random.h"
 #include "model/state.h"
@@ -163,6 +164,29 @@ TEST(Trend, AMultipleOfWhatMultipliesIsOfTheTunedValue) {
   EXPECT_NEAR(*find(t, "parameter:14").failure.upper, 32, 1e-9);
   ASSERT_TRUE(t.remaining);
   EXPECT_NEAR(t.remaining->median, 42, 4);
+}
+
+// Two tables of one valve, their nozzles' bores 4 % and their motors 6 % apart: all of the friction is read 14 %
+// differently, and it has failed where it takes the same current.
+TEST(Trend, AFrictionsLevelAsACurrentKnowsNeitherBoreNorMotor) {
+  for (const double side : {-1, 1}) {
+    const double bore = 1 - 0.02 * side, motor = 1 + 0.03 * side, newtons = motor / (bore * bore);
+    ValveHistory h = of_one(
+        "parameter:14", [&](double s) { return (1.6 + 30.4 * s) * newtons; }, 0.3, 0.1);
+    h.tuned.assign(41, 0.0);
+    h.tuned[2] = 100 * motor;
+    h.tuned[13] = 1.6;
+    h.tuned[5] = std::numbers::pi * bore * 0.35e-3, h.tuned[12] = 7e-3;  // nozzle 20 times narrower than the spool
+    TrendOptions options;
+    options.failure_current["parameter:14"] = 32.0 / 400 / 100;
+    options.failure_spread["parameter:14"] = 0.32 / 400 / 100;
+    const ValveTrend t = trend(h, options);
+    EXPECT_NEAR(*find(t, "parameter:14").failure.upper, 32 * newtons, 1e-9);
+    ASSERT_TRUE(t.remaining);
+    EXPECT_NEAR(t.remaining->median, 42, 4);
+    h.tuned.clear();
+    EXPECT_EQ(trend(h, options).notes.size(), 1U);  // nothing says what friction that is
+  }
 }
 
 // An estimate that recovers, or a tune that was wrong: there is a trend, and no life.
