@@ -42,8 +42,8 @@ ReplaySubject::ReplaySubject(const ValveSubject& valve, const Point& at, const K
     base_.push_back(problem->candidate(at, static_cast<int>(l)));
     Quiet& q = quiet_.emplace_back();
     for (const FitChannel& c : valve.logs()[l].channels) {
-      if (c.signal == Signal::spool_position) q.spool = quiet(c.measured);
-      if (c.signal == Signal::piston_position) q.piston = quiet(c.measured);
+      if (c.signal == Signal::spool_position) q.spool = quiet(valve.logs()[l].scenario.time, c.measured);
+      if (c.signal == Signal::piston_position) q.piston = quiet(valve.logs()[l].scenario.time, c.measured);
     }
     const Balance b = balance_of(l, base_.back());
     const double free_travel = (0.5 - cushion) * base_.back()[row::piston_stroke];

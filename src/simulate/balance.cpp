@@ -32,7 +32,38 @@ std::vector<double> bridged(const std::vector<double>& x) {
 
 }  // namespace
 
-std::vector<double> quiet(const std::vector<double>& measured) { return without_noise(bridged(measured)); }
+namespace {
+
+double median_step(const std::vector<double>& time) {
+  std::vector<double> d;
+  for (std::size_t k = 1; k < time.size(); ++k) d.push_back(time[k] - time[k - 1]);
+  const auto middle = d.begin() + static_cast<long>(d.size() / 2);
+  std::nth_element(d.begin(), middle, d.end());
+  return *middle;
+}
+constexpr double late = 1.5;  // median steps from one sample to the next: some are missing between them
+
+}  // namespace
+
+// Noise is taken out on an even grid, where a gap is a straight line and no corner.
+std::vector<double> quiet(const std::vector<double>& time, const std::vector<double>& measured) {
+  const std::vector<double> x = bridged(measured);
+  if (x.size() < 3) return x;
+  const double dt = median_step(time);
+  std::vector<double> even;
+  std::vector<std::size_t> at = {0};
+  even.push_back(x[0]);
+  for (std::size_t k = 1; k < x.size(); ++k) {
+    const double gap = (time[k] - time[k - 1]) / dt;
+    const int steps = gap > late ? static_cast<int>(std::lround(std::min(gap, 1e4))) : 1;
+    for (int s = 1; s <= steps; ++s) even.push_back(x[k - 1] + (x[k] - x[k - 1]) * s / steps);
+    at.push_back(even.size() - 1);
+  }
+  const std::vector<double> smooth = without_noise(even);
+  std::vector<double> out;
+  for (std::size_t k : at) out.push_back(smooth[k]);
+  return out;
+}
 
 Balance balance(const Scenario& in, const Measured& measured, const ParameterVector& p, double window) {
   Balance out;
@@ -54,13 +85,13 @@ Balance balance(const Scenario& in, const Measured& measured, const ParameterVec
     return truth;
   };
   // Taking noise out is linear and leaves a constant alone: what the sensor does can be undone behind it.
-  std::vector<double> smooth = measured.quiet ? *measured.piston : quiet(*measured.piston);
+  std::vector<double> smooth = measured.quiet ? *measured.piston : quiet(in.time, *measured.piston);
   for (double& v : smooth) v /= p[row::position_sensor_gain];
   const std::vector<double> a = less(*measured.pressure_a, nuisance::pressure_a_offset, 1),
                             b = less(*measured.pressure_b, nuisance::pressure_b_offset, 2);
   std::vector<double> spool;
   if (measured.spool)
-    spool = less(measured.quiet ? *measured.spool : quiet(*measured.spool), nuisance::spool_offset, 0);
+    spool = less(measured.quiet ? *measured.spool : quiet(in.time, *measured.spool), nuisance::spool_offset, 0);
   const Derived<double> d = derive<double, AllEffects>(p.data(), in.oil);
   const auto input = [&](const std::vector<double>& series, std::size_t k, double table) {
     return series.empty() ? table : series[k];
@@ -90,12 +121,14 @@ Balance balance(const Scenario& in, const Measured& measured, const ParameterVec
     rate_b[k] = std::get<s_p_b>(f) * compliance_b[k] - p[row::piston_area_b] * s.y[s_v_piston];
   }
 
-  const double dt = (in.time.back() - in.time.front()) / static_cast<double>(n - 1);
-  const auto half = std::max<std::size_t>(2, static_cast<std::size_t>(std::lround(0.5 * window / dt)));
+  const double step = median_step(in.time);
+  const auto half = std::max<std::size_t>(2, static_cast<std::size_t>(std::lround(0.5 * window / step)));
   for (std::size_t mid = half; mid + half < n; mid += half) {
     const std::size_t from = mid - half, to = mid + half;
     const double span = in.time[to] - in.time[from], side = 0.5 * span;
-    if (span > 1.5 * window) continue;  // a gap
+    bool whole = true;  // no sample is missing
+    for (std::size_t k = from; k < to; ++k) whole = whole && in.time[k + 1] - in.time[k] <= late * step;
+    if (!whole) continue;
     // Trapezoid rule for the flows, a hat for the force.
     double q_a = 0, q_b = 0, net = 0, hat = 0;
     for (std::size_t k = from; k <= to; ++k) {

@@ -18,8 +18,8 @@ struct Measured {
   const std::vector<double>*spool = nullptr, *piston = nullptr, *pressure_a = nullptr, *pressure_b = nullptr;
   bool quiet = false;  // spool and piston are bridged and without noise already
 };
-// Spool and piston as `balance` takes them: gaps bridged, noise out.
-std::vector<double> quiet(const std::vector<double>& measured);
+// Spool and piston as `balance` takes them: gaps bridged, noise out. time [s] of the samples.
+std::vector<double> quiet(const std::vector<double>& time, const std::vector<double>& measured);
 struct Balance {
   std::vector<double> time;            // [s] middle of each window
   std::vector<double> flow_a, flow_b;  // [m3/s] missing into the chamber; empty: not shown by the log
