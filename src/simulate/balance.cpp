@@ -45,23 +45,18 @@ constexpr double late = 1.5;  // median steps from one sample to the next: some 
 
 }  // namespace
 
-// Noise is taken out on an even grid, where a gap is a straight line and no corner.
+// Stretch by stretch: what happened in a gap is not known, and a line across it would put corners at its ends.
 std::vector<double> quiet(const std::vector<double>& time, const std::vector<double>& measured) {
-  const std::vector<double> x = bridged(measured);
-  if (x.size() < 3) return x;
-  const double dt = median_step(time);
-  std::vector<double> even;
-  std::vector<std::size_t> at = {0};
-  even.push_back(x[0]);
-  for (std::size_t k = 1; k < x.size(); ++k) {
-    const double gap = (time[k] - time[k - 1]) / dt;
-    const int steps = gap > late ? static_cast<int>(std::lround(std::min(gap, 1e4))) : 1;
-    for (int s = 1; s <= steps; ++s) even.push_back(x[k - 1] + (x[k] - x[k - 1]) * s / steps);
-    at.push_back(even.size() - 1);
+  std::vector<double> out = measured;
+  if (time.size() < 3) return out;
+  const double step = median_step(time);
+  for (std::size_t from = 0, to; from < out.size(); from = std::max(to, from + 1)) {
+    to = from;
+    while (to < out.size() && std::isfinite(measured[to]) && (to == from || time[to] - time[to - 1] <= late * step))
+      ++to;
+    const std::vector<double> smooth = without_noise(std::span(measured).subspan(from, to - from));
+    std::copy(smooth.begin(), smooth.end(), out.begin() + static_cast<long>(from));
   }
-  const std::vector<double> smooth = without_noise(even);
-  std::vector<double> out;
-  for (std::size_t k : at) out.push_back(smooth[k]);
   return out;
 }
 
@@ -85,7 +80,7 @@ Balance balance(const Scenario& in, const Measured& measured, const ParameterVec
     return truth;
   };
   // Taking noise out is linear and leaves a constant alone: what the sensor does can be undone behind it.
-  std::vector<double> smooth = measured.quiet ? *measured.piston : quiet(in.time, *measured.piston);
+  std::vector<double> smooth = bridged(measured.quiet ? *measured.piston : quiet(in.time, *measured.piston));
   for (double& v : smooth) v /= p[row::position_sensor_gain];
   const std::vector<double> a = less(*measured.pressure_a, nuisance::pressure_a_offset, 1),
                             b = less(*measured.pressure_b, nuisance::pressure_b_offset, 2);
@@ -127,7 +122,11 @@ Balance balance(const Scenario& in, const Measured& measured, const ParameterVec
     const std::size_t from = mid - half, to = mid + half;
     const double span = in.time[to] - in.time[from], side = 0.5 * span;
     bool whole = true;  // no sample is missing
-    for (std::size_t k = from; k < to; ++k) whole = whole && in.time[k + 1] - in.time[k] <= late * step;
+    for (std::size_t k = from; k <= to; ++k) {
+      whole = whole && (k == to || in.time[k + 1] - in.time[k] <= late * step);
+      for (const auto* x : {measured.piston, measured.pressure_a, measured.pressure_b, measured.spool})
+        whole = whole && (!x || std::isfinite((*x)[k]));
+    }
     if (!whole) continue;
     // Trapezoid rule for the flows, a hat for the force.
     double q_a = 0, q_b = 0, net = 0, hat = 0;

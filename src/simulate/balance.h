@@ -16,9 +16,9 @@ namespace servodx {
 // Measured, in SI, NaN where missing; null where the log has none.
 struct Measured {
   const std::vector<double>*spool = nullptr, *piston = nullptr, *pressure_a = nullptr, *pressure_b = nullptr;
-  bool quiet = false;  // spool and piston are bridged and without noise already
+  bool quiet = false;  // spool and piston are without noise already
 };
-// Spool and piston as `balance` takes them: gaps bridged, noise out. time [s] of the samples.
+// Spool and piston as `balance` takes them: noise out, NaN where missing. time [s] of the samples.
 std::vector<double> quiet(const std::vector<double>& time, const std::vector<double>& measured);
 struct Balance {
   std::vector<double> time;            // [s] middle of each window

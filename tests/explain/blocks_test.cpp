@@ -63,6 +63,9 @@ TEST(Blocks, SamplesThatTheLogLacksAreMissingInNoBlock) {
   for (FitChannel& c : written.channels) thin(c.measured);
   Scenario& s = written.scenario;
   for (std::vector<double>* x : {&s.command, &s.supply_pressure, &s.return_pressure, &s.load_force, &s.time}) thin(*x);
+  for (FitChannel& c : written.channels)  // and some are not numbers
+    for (std::size_t k = 500; k < c.measured.size(); k += 300)
+      for (std::size_t j = k; j < std::min(k + 10, c.measured.size()); ++j) c.measured[j] = std::nan("");
   const Balance b = replayed(written, r.table);
   ASSERT_GT(b.time.size(), 30u);
   EXPECT_LT(rms(b.force), 1.3 * rms(whole.force));
