@@ -4,13 +4,11 @@
 #include <cmath>
 
 #include "fit/error_model.h"
-#include "model/constants.h"
 
 namespace servodx {
 namespace {
 
 constexpr double window = 20e-3;     // [s] short against a stroke, long against the noise of a position
-constexpr double cushion = 0.05;     // of the stroke, at either end: cushions are no part of the model
 constexpr std::size_t fewest = 10;   // windows of a series
 constexpr double offset_range = 10;  // [sigma]
 
@@ -36,7 +34,6 @@ ReplaySubject::ReplaySubject(const ValveSubject& valve, const Point& at, const K
     causes_.back().atop.clear();
   }
   const auto problem = valve.problem({});
-  const double reach = *std::max_element(std::begin(constants::seal_presliding), std::end(constants::seal_presliding));
   long first = 0;
   for (std::size_t l = 0; l < valve.logs().size(); ++l) {
     base_.push_back(problem->candidate(at, static_cast<int>(l)));
@@ -46,13 +43,11 @@ ReplaySubject::ReplaySubject(const ValveSubject& valve, const Point& at, const K
       if (c.signal == Signal::piston_position) q.piston = quiet(valve.logs()[l].scenario.time, c.measured);
     }
     const Balance b = balance_of(l, base_.back());
-    const double free_travel = (0.5 - cushion) * base_.back()[row::piston_stroke];
     for (const Kind& k : kinds) {
       const std::vector<double>& missing = b.*k.missing;
       Part part{l, k.missing, {}};
       for (std::size_t i = 0; i < missing.size(); ++i)
-        if (!k.sliding || (b.least_speed[i] * window > reach && std::abs(b.piston[i]) < free_travel))
-          part.windows.push_back(i);
+        if (!k.sliding || b.slides[i]) part.windows.push_back(i);
       if (part.windows.size() < fewest) continue;
       std::vector<double> time;
       for (std::size_t i : part.windows) time.push_back(b.time[i]);

@@ -41,7 +41,8 @@ double median_step(const std::vector<double>& time) {
   std::nth_element(d.begin(), middle, d.end());
   return *middle;
 }
-constexpr double late = 1.5;  // median steps from one sample to the next: some are missing between them
+constexpr double cushion = 0.05;  // of the stroke
+constexpr double late = 1.5;      // median steps from one sample to the next: some are missing between them
 
 }  // namespace
 
@@ -118,6 +119,8 @@ Balance balance(const Scenario& in, const Measured& measured, const ParameterVec
 
   const double step = median_step(in.time);
   const auto half = std::max<std::size_t>(2, static_cast<std::size_t>(std::lround(0.5 * window / step)));
+  const double reach = *std::max_element(std::begin(constants::seal_presliding), std::end(constants::seal_presliding));
+  const double free_travel = (0.5 - cushion) * p[row::piston_stroke];
   for (std::size_t mid = half; mid + half < n; mid += half) {
     const std::size_t from = mid - half, to = mid + half;
     const double span = in.time[to] - in.time[from], side = 0.5 * span;
@@ -140,12 +143,12 @@ Balance balance(const Scenario& in, const Measured& measured, const ParameterVec
     out.time.push_back(in.time[mid]);
     const double v = (smooth[to] - smooth[from]) / span;
     out.piston.push_back(smooth[mid]), out.velocity.push_back(v), out.load_pressure.push_back(a[mid] - b[mid]);
-    double least = 1e300;
+    bool slides = std::abs(smooth[mid]) < free_travel;
     for (int quarter = 0; quarter < 4; ++quarter) {
       const std::size_t start = from + (to - from) * quarter / 4, end = from + (to - from) * (quarter + 1) / 4;
-      least = std::min(least, (smooth[end] - smooth[start]) / (in.time[end] - in.time[start]) * (v < 0 ? -1 : 1));
+      slides = slides && 4 * (smooth[end] - smooth[start]) * (v < 0 ? -1 : 1) > reach;
     }
-    out.least_speed.push_back(least);
+    out.slides.push_back(slides);
     out.force.push_back(p[row::moving_mass] * (smooth[to] - 2 * smooth[mid] + smooth[from]) / (side * side) -
                         net / hat);
     if (spool.empty()) continue;

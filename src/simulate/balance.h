@@ -26,7 +26,9 @@ struct Balance {
   std::vector<double> force;           // [N] missing on the piston, positive extends
   // Middle of each window: what the missing may depend on.
   std::vector<double> spool, piston, velocity, load_pressure;  // [m], [m], [m/s], [Pa]
-  std::vector<double> least_speed;  // [m/s] of the window's quarters, the way it goes; negative: it turns
+  // The rod slides all through, one way, by more than its seals give before they slip, and clear of the stops' cushions,
+  // which the model does not have: the last twentieth of the stroke at either end.
+  std::vector<char> slides;
 };
 
 Balance balance(const Scenario& scenario, const Measured& measured, const ParameterVector& candidate, double window);

@@ -3,6 +3,7 @@
 
 #include "explain/curves.h"
 #include "explain/healthy.h"
+#include "explain/replay.h"
 #include "explain/valve.h"
 #include "hidden/cases.h"
 #include "parameters/table.h"
@@ -28,7 +29,10 @@ TEST(Exchange, HealthyLogIsScoredBesideTheOthersAsASuspectIs) {
   const std::vector<Curve> curves = add_curves(subject);
   const ExplainedFit fit = fit_base(subject, EngineOptions{}.iterations);
   guess_curves(subject, curves, fit.point);
-  const std::vector<CauseScore> scores = score_causes(subject, fit);
+  std::vector<CauseScore> scores = score_causes(subject, fit);
+  ReplaySubject blocks(subject, fit.point, others.known());
+  const ExplainedFit replayed = fit_base(blocks, EngineOptions{}.iterations);
+  for (CauseScore& s : score_causes(blocks, replayed)) scores.push_back(std::move(s));
   ASSERT_EQ(scores.size(), beside.scores.size());
   for (std::size_t c = 0; c < scores.size(); ++c)
     EXPECT_DOUBLE_EQ(scores[c].gain, beside.scores[c].gain) << beside.scores[c].effect;
