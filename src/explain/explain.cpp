@@ -165,6 +165,19 @@ Table extended_table(const ValveSubject& subject, const Explanation& e, const st
   return table;
 }
 
+// Either, or what does as well in its place, is the other or what does as well in its.
+bool share_a_name(const CauseResult& a, const CauseResult& b) {
+  const auto names = [](const CauseResult& r) {
+    std::vector<int> out = r.confusable_with;
+    out.push_back(r.cause);
+    return out;
+  };
+  for (int x : names(a))
+    for (int y : names(b))
+      if (x == y) return true;
+  return false;
+}
+
 using Scores = std::vector<std::vector<HealthyScore>>;  // [log][cause]
 
 // Chance that healthy logs score a cause like this: each log by itself, as the healthy ones were taken. All three have
@@ -296,10 +309,12 @@ ExplainResult explain_logs(const std::vector<Log>& logs, const Table& tuned, con
                                 : e.candidates[static_cast<std::size_t>(e.causes.front().cause)].heldout_gain.value;
   };
   // What the free run leaves open, the replay of the blocks may tell: a name that is news there, is worth its numbers
-  // on held-out windows, and leaves the blocks as healthy logs do.
+  // on held-out windows, and leaves the blocks as healthy logs do. Where the free run has a name and others as good, it
+  // has to be about one of these.
   std::optional<ReplaySubject> blocks;
   bool by_blocks = false;
-  if (healthy && e.before.ok && (e.causes.empty() || out.curve || bare || (!like_healthy(e) && first_alone() < 0.5)))
+  const bool open = e.causes.empty() || out.curve || bare || (healthy && !like_healthy(e) && first_alone() < 0.5);
+  if (healthy && e.before.ok && (open || !e.causes.front().confusable_with.empty()))
     blocks.emplace(subject, e.before.point, *known);
   if (blocks && !blocks->empty()) {
     Scores of_blocks(logs.size());
@@ -314,12 +329,15 @@ ExplainResult explain_logs(const std::vector<Log>& logs, const Table& tuned, con
       return std::min(1.0, 2 * test->any(blocks->misses(fit.residual)));
     };
     Explanation told = explain(*blocks, there);
-    if (!told.causes.empty() && test->any(blocks->misses(told.after.residual)) > options.level) {
+    const bool stands = !told.causes.empty() && test->any(blocks->misses(told.after.residual)) > options.level;
+    if (stands && (open || share_a_name(told.causes.front(), e.causes.front()))) {
       ExplainedFit after =
           hold_causes(subject, told.after.causes, numbers_of_causes(*blocks, told.after), e.before, engine.iterations);
       if (after.ok) {
         cross_validate(subject, after, engine);
         by_blocks = true;
+        for (const CauseResult& r : e.causes)
+          e.candidates[static_cast<std::size_t>(r.cause)].reason = "the replay of the blocks tells another";
         e.after = std::move(after);
         e.causes = std::move(told.causes);
         for (const CauseResult& r : e.causes)
