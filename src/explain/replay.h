@@ -24,6 +24,8 @@ class ReplaySubject : public Subject {
   // `at`: a point of valve.problem({}); each log's own numbers hold there. `known`: the rig's healthy logs. The valve
   // must outlive it.
   ReplaySubject(const ValveSubject& valve, const Point& at, const KnownRig& known = {});
+  ReplaySubject(const ReplaySubject&) = delete;  // series point into it
+  ReplaySubject& operator=(const ReplaySubject&) = delete;
   bool empty() const { return series_.empty(); }  // no log has the signals
 
   const std::vector<Cause>& causes() const override { return causes_; }  // the valve's, learnt curves excepted
