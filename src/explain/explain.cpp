@@ -395,6 +395,12 @@ ExplainResult explain_logs(const std::vector<Log>& logs, const Table& tuned, con
   out.adequacy_after = subject.adequacy(e.after.residual);
   if (healthy) out.p_adequacy = e.causes.empty() ? engine.p_left(e.before, 0) : engine.p_left(e.after, 1);
   if (!e.causes.empty()) out.heldout_gain = heldout_gain(e.before, e.after, options.seed);
+  if (by_blocks && out.heldout_gain.lower <= 0)
+    out.notes.push_back(fmt::format(
+        "{} is told by the blocks with measured signals between them. The simulation by itself does not follow better "
+        "with it: held out it gains {:.0f} % ({:.0f} to {:.0f}).",
+        out.causes.front().effect, 100 * out.heldout_gain.value, 100 * out.heldout_gain.lower,
+        100 * out.heldout_gain.upper));
   out.verdict = out.curve ? "unexplained" : !e.causes.empty() ? "extended" : "sufficient";
   // Left abnormal by names of which the first removes less than half of it: most of what is wrong has no name, and a
   // heap of names is none.
