@@ -196,17 +196,6 @@ std::function<double(const CauseScore&, int)> news(const HealthyTest& test, cons
   };
 }
 
-std::vector<HealthyScore> score_blocks(const ValveSubject& valve, const Point& at, const KnownRig& known,
-                                       const std::function<bool(const Cause&)>& among) {
-  std::vector<HealthyScore> out;
-  ReplaySubject blocks(valve, at, known);
-  if (blocks.empty()) return out;
-  if (const ExplainedFit fit = fit_base(blocks, EngineOptions{}.iterations); fit.ok)
-    for (const CauseScore& s : score_causes(blocks, fit, among))
-      if (!s.probes.empty()) out.push_back(summarise(blocks, s));
-  return out;
-}
-
 }  // namespace
 
 ExplainResult explain_logs(const std::vector<Log>& logs, const Table& tuned, const RigFile& rig,
@@ -319,7 +308,7 @@ ExplainResult explain_logs(const std::vector<Log>& logs, const Table& tuned, con
   if (blocks && !blocks->empty()) {
     Scores of_blocks(logs.size());
     for (std::size_t l = 0; l < single.size(); ++l)
-      if (single_fits[l].ok) of_blocks[l] = score_blocks(single[l], single_fits[l].point, *known, named);
+      if (single_fits[l].ok) of_blocks[l] = score_blocks(single[l], single_fits[l].point, *known, named).scores;
     EngineOptions there;
     there.seed = options.seed, there.stop = options.stop, there.level = options.level;
     there.among = named;

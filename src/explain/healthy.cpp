@@ -124,6 +124,19 @@ HealthyScore summarise(const Subject& subject, const CauseScore& score) {
   return out;
 }
 
+ScoredBlocks score_blocks(const ValveSubject& valve, const Point& at, const KnownRig& known,
+                          const std::function<bool(const Cause&)>& among) {
+  ScoredBlocks out;
+  ReplaySubject blocks(valve, at, known);
+  if (blocks.empty()) return out;
+  const ExplainedFit fit = fit_base(blocks, EngineOptions{}.iterations);
+  if (!fit.ok) return out;
+  for (const CauseScore& s : score_causes(blocks, fit, among))
+    if (!s.probes.empty()) out.scores.push_back(summarise(blocks, s));
+  out.misses = blocks.misses(fit.residual);
+  return out;
+}
+
 HealthyReference score_healthy(const std::vector<Log>& logs, const Table& tuned, const RigFile& rig, int threads,
                                HealthyCounts& counts, const std::function<bool(double)>& told) {
   const auto n = static_cast<double>(logs.size());
@@ -158,11 +171,9 @@ HealthyReference score_healthy(const std::vector<Log>& logs, const Table& tuned,
       for (const CauseScore& s : score_causes(subject, fit)) h.scores.push_back(summarise(subject, s));
       h.misses = subject.misses(fit.residual);
       for (const BlockReplay& b : replay_blocks(subject, fit.point)) h.misses.push_back({b.block, b.missing});
-      if (ReplaySubject blocks(subject, fit.point, all.known(static_cast<int>(l))); !blocks.empty())
-        if (const ExplainedFit replayed = fit_base(blocks, EngineOptions{}.iterations); replayed.ok) {
-          for (const CauseScore& s : score_causes(blocks, replayed)) h.scores.push_back(summarise(blocks, s));
-          for (Miss& m : blocks.misses(replayed.residual)) h.misses.push_back(std::move(m));
-        }
+      ScoredBlocks blocks = score_blocks(subject, fit.point, all.known(static_cast<int>(l)));
+      h.scores.insert(h.scores.end(), blocks.scores.begin(), blocks.scores.end());
+      h.misses.insert(h.misses.end(), blocks.misses.begin(), blocks.misses.end());
     }
     count(subject);
     if (told && !told(0.2 + 0.8 * static_cast<double>(out.logs.size()) / n)) break;

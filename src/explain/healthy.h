@@ -48,6 +48,13 @@ struct HealthyReference {
 };
 
 HealthyScore summarise(const Subject& subject, const CauseScore& score);
+// The same of the blocks' replay of a valve's logs; `at`: a point of valve.problem({}). Empty: no log shows the blocks.
+struct ScoredBlocks {
+  std::vector<HealthyScore> scores;
+  std::vector<Miss> misses;
+};
+ScoredBlocks score_blocks(const ValveSubject& valve, const Point& at, const KnownRig& known,
+                          const std::function<bool(const Cause&)>& among = {});
 struct HealthyCounts {
   long simulations = 0, failed = 0;
 };

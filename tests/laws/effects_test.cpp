@@ -196,49 +196,46 @@ TEST(ScreenDrop, PilotPressureAtRestIsThatOfPoresAndJetsInSeries) {
       }
 }
 
+// The piston at a steady speed: what the pressures carry there is the friction, as nothing else loads it.
+struct Steady {
+  double speed = 0, force = 0;  // [m/s], [N]
+};
+Steady steady(const ParameterVector& v, double current, double thicker = 1) {
+  Scenario s = made(1.0, 1e-3, [&](double t) { return t < 0.05 ? 0.0 : current; });
+  s.oil.viscosity_ratio *= thicker;
+  const Trajectory t = simulate(s, v, all_signals());
+  EXPECT_TRUE(t.ok);
+  const auto& x = of(t, Signal::piston_position);
+  Steady out{(x[950] - x[750]) / (s.time[950] - s.time[750])};
+  for (std::size_t k = 750; k < 950; ++k)
+    out.force +=
+        (v[row::piston_area_a] * of(t, Signal::pressure_a)[k] - v[row::piston_area_b] * of(t, Signal::pressure_b)[k]) /
+        200;
+  return out;
+}
+
 TEST(SealShear, ItsShareOfTheViscousFrictionGrowsWithTheViscosityAndTheRestWithItsRoot) {
-  // At a steady speed the load pressure carries the friction.
   constexpr double viscous = 1e4;  // [N s/m]
-  const auto per_speed = [](double share, double thicker) {
-    ParameterVector v = with<SealShear>(0, share);
-    v[row::piston_viscous_friction] = viscous;
-    v[row::piston_coulomb_friction] = v[row::piston_stribeck_friction] = 0;
-    Scenario s = made(1.0, 1e-3, [](double t) { return t < 0.05 ? 0.0 : 1e-3; });
-    s.oil.viscosity_ratio = thicker;
-    const Trajectory t = simulate(s, v, all_signals());
-    EXPECT_TRUE(t.ok);
-    const auto& x = of(t, Signal::piston_position);
-    double mean = 0;  // of what the pressures carry
-    for (std::size_t k = 750; k < 950; ++k)
-      mean += (v[row::piston_area_a] * of(t, Signal::pressure_a)[k] -
-               v[row::piston_area_b] * of(t, Signal::pressure_b)[k]) /
-              200;
-    return mean / ((x[950] - x[750]) / (s.time[950] - s.time[750]));
-  };
   for (const double share : {0.0, 0.6, 1.0})
     for (const double thicker : {1.0, 4.0}) {
+      ParameterVector v = with<SealShear>(0, share);
+      v[row::piston_viscous_friction] = viscous;
+      v[row::piston_coulomb_friction] = v[row::piston_stribeck_friction] = 0;
+      const Steady run = steady(v, 1e-3, thicker);
       const double expected = viscous * ((1 - share) * std::sqrt(thicker) + share * thicker);
-      EXPECT_NEAR(per_speed(share, thicker), expected, 0.01 * expected) << share << ", " << thicker;
+      EXPECT_NEAR(run.force / run.speed, expected, 0.01 * expected) << share << ", " << thicker;
     }
 }
 
 TEST(SealFilm, AtItsSpeedHalfOfTheBreakawayFrictionIsLeft) {
-  // At a steady speed the load pressure carries what is left of the breakaway friction beside all else.
+  // What is left of the breakaway friction stands beside all else.
   const auto force = [](double breakaway, double film_speed, double current, double* speed) {
     ParameterVector v = with<SealFilm>(0, film_speed);
     v[row::piston_stribeck_friction] = breakaway;
     v[row::piston_viscous_friction] = 1e4;  // well damped
-    const Scenario s = made(1.0, 1e-3, [&](double t) { return t < 0.05 ? 0.0 : current; });
-    const Trajectory t = simulate(s, v, all_signals());
-    EXPECT_TRUE(t.ok);
-    const auto& x = of(t, Signal::piston_position);
-    *speed = (x[950] - x[750]) / (s.time[950] - s.time[750]);
-    double mean = 0;  // of what the pressures carry
-    for (std::size_t k = 750; k < 950; ++k)
-      mean += (v[row::piston_area_a] * of(t, Signal::pressure_a)[k] -
-               v[row::piston_area_b] * of(t, Signal::pressure_b)[k]) /
-              200;
-    return mean;
+    const Steady run = steady(v, current);
+    *speed = run.speed;
+    return run.force;
   };
   double speed = 0, other = 0;
   const double without = force(0, 8e-3, 3e-3, &speed);
