@@ -95,9 +95,10 @@ int main(int argc, char** argv) {
       scores.push_back(sc);
       progress.update(static_cast<double>(scores.size()) / (cases + controls + unlisted),
                       static_cast<long>(scores.size()));
-      fmt::print("v{} {} {:22} {:34} -> {:11} {:22} {:22} {} {} size {} gain {:.0f} %{}{}\n", valve, s, sc.truth.effect,
-                 sc.truth.size, sc.verdict, sc.first, sc.where, sc.named ? "named" : "-", sc.placed ? "placed" : "-",
-                 sc.size_inside ? (*sc.size_inside ? "in" : "out") : "?", 100 * sc.heldout_gain,
+      fmt::print("v{} {} {:22} {:34} -> {:11} {:22} {:22} {} {} size {}{} gain {:.0f} %{}{}\n", valve, s,
+                 sc.truth.effect, sc.truth.size, sc.verdict, sc.first, sc.where, sc.named ? "named" : "-",
+                 sc.placed ? "placed" : "-", sc.size_inside ? (*sc.size_inside ? "in" : "out") : "?",
+                 sc.variable ? *sc.variable ? " variable" : " variable -" : "", 100 * sc.heldout_gain,
                  sc.gain_share ? fmt::format(", {:.0f} % of the true one's", 100 * *sc.gain_share) : "",
                  sc.note.empty() ? "" : "\n      " + sc.note);
       std::fflush(stdout);

@@ -5,8 +5,8 @@
 //
 // The knots stand at Chebyshev nodes of s: x = 0, +-0.48, +-1.25, +-4.4 times the scale, so the curve is finest about
 // zero, where valves bend, and level far out. The factor is 1, or the load pressure over 100 bar (a leak), or the
-// direction of the piston (a friction). A description, not a law: it holds where the log that taught it has been.
-// Leaves out: memory; curves of two variables other than through the factor.
+// direction of the piston (a friction), or its velocity over 0.1 m/s (a brake). A description, not a law: it holds
+// where the log that taught it has been. Leaves out: memory; curves of two variables other than through the factor.
 #pragma once
 #include <array>
 #include <cmath>
@@ -60,7 +60,7 @@ struct Unexplained {
     coil_current,
     n_variables
   };
-  enum Factor { one, by_load_pressure, by_direction, n_factors };
+  enum Factor { one, by_load_pressure, by_direction, by_velocity, n_factors };
   struct PlaceInfo {
     const char *where, *unit;
     double largest;  // [unit] bound of a knot
@@ -68,7 +68,7 @@ struct Unexplained {
   };
   static constexpr PlaceInfo places[n_places] = {{"drive", "A", 0.01, 2e-4},     {"spool", "N", 100.0, 2.0},
                                                  {"metering", "m", 2e-4, 2e-6},  {"flow_a", "m3/s", 2e-4, 2e-6},
-                                                 {"flow_b", "m3/s", 2e-4, 2e-6}, {"piston_force", "N", 1e4, 100.0}};
+                                                 {"flow_b", "m3/s", 2e-4, 2e-6}, {"piston_force", "N", 3e4, 100.0}};
   struct VariableInfo {
     const char *name, *unit;
     double scale;  // [unit] the smallest that is of use
@@ -76,8 +76,9 @@ struct Unexplained {
   static constexpr VariableInfo variables[n_variables] = {
       {"piston_position", "m", 1e-3},  {"piston_velocity", "m/s", 2e-3}, {"spool_position", "m", 5e-6},
       {"spool_velocity", "m/s", 2e-3}, {"load_pressure", "Pa", 2e5},     {"coil_current", "A", 1e-4}};
-  static constexpr const char* factors[n_factors] = {"", "load_pressure", "direction of the piston"};
+  static constexpr const char* factors[n_factors] = {"", "load_pressure", "direction of the piston", "piston_velocity"};
   static constexpr double factor_pressure = 1e7;   // [Pa] load pressure at which the factor is 1
+  static constexpr double factor_speed = 0.1;      // [m/s] velocity at which it is 1
   static constexpr double direction_speed = 2e-3;  // [m/s] rounding of the direction
 
   static constexpr EffectParameter parameters[n_parameters] = {
@@ -86,16 +87,16 @@ struct Unexplained {
       {"curve_variable", "-", 1, 0, n_variables - 1, 1,
        "code of the variable: piston position, piston velocity, spool position, spool velocity, load pressure, current",
        false},
-      {"curve_factor", "-", 0, 0, n_factors - 1, 0, "code of the factor: none, load pressure, direction of the piston",
-       false},
+      {"curve_factor", "-", 0, 0, n_factors - 1, 0,
+       "code of the factor: none, load pressure, direction of the piston, its velocity", false},
       {"curve_scale", "SI", 0.05, 1e-6, 1e9, 0.05, "scale of the variable", false},
-      {"curve_knot_1", "SI", 0, -1e4, 1e4, -10, "curve at s = -0.975"},
-      {"curve_knot_2", "SI", 0, -1e4, 1e4, -8, "curve at s = -0.782"},
-      {"curve_knot_3", "SI", 0, -1e4, 1e4, -5, "curve at s = -0.434"},
-      {"curve_knot_4", "SI", 0, -1e4, 1e4, 0, "curve at s = 0"},
-      {"curve_knot_5", "SI", 0, -1e4, 1e4, 5, "curve at s = 0.434"},
-      {"curve_knot_6", "SI", 0, -1e4, 1e4, 8, "curve at s = 0.782"},
-      {"curve_knot_7", "SI", 0, -1e4, 1e4, 10, "curve at s = 0.975"},
+      {"curve_knot_1", "SI", 0, -3e4, 3e4, -10, "curve at s = -0.975"},
+      {"curve_knot_2", "SI", 0, -3e4, 3e4, -8, "curve at s = -0.782"},
+      {"curve_knot_3", "SI", 0, -3e4, 3e4, -5, "curve at s = -0.434"},
+      {"curve_knot_4", "SI", 0, -3e4, 3e4, 0, "curve at s = 0"},
+      {"curve_knot_5", "SI", 0, -3e4, 3e4, 5, "curve at s = 0.434"},
+      {"curve_knot_6", "SI", 0, -3e4, 3e4, 8, "curve at s = 0.782"},
+      {"curve_knot_7", "SI", 0, -3e4, 3e4, 10, "curve at s = 0.975"},
   };
 
   // The codes are the same in all lanes of a pack.
@@ -125,7 +126,8 @@ struct Unexplained {
     }
     const auto curve = c[0] + s * (c[1] + s * (c[2] + s * (c[3] + s * (c[4] + s * (c[5] + s * c[6])))));
     const auto by = is(factor == one) + is(factor == by_load_pressure) * T(1.0 / factor_pressure) * load +
-                    is(factor == by_direction) * smooth_sign(view.template state<s_v_piston>(), T(direction_speed));
+                    is(factor == by_direction) * smooth_sign(view.template state<s_v_piston>(), T(direction_speed)) +
+                    is(factor == by_velocity) * T(1.0 / factor_speed) * view.template state<s_v_piston>();
     return is(code(view, 0) == where) * (by * curve);
   }
 

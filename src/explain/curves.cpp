@@ -28,7 +28,11 @@ constexpr int likely[][3] = {
     {U::piston, U::piston_velocity, U::one},
     {U::piston, U::piston_position, U::by_direction},
     {U::piston, U::load_pressure, U::by_direction},
+    {U::piston, U::piston_position, U::by_velocity},
 };
+
+// Where a knot stands. [scale]
+double reach(int knot) { return curve::node[knot] / std::sqrt(1 - curve::node[knot] * curve::node[knot]); }
 
 double rms(const std::vector<double>& v) {
   double sum = 0, n = 0;
@@ -82,15 +86,25 @@ std::vector<Curve> add_curves(ValveSubject& subject) {
     cause.family =
         fmt::format("{}{}{}", U::variables[variable].name, factor == U::one ? "" : " by ", U::factors[factor]);
     cause.curve = true;
+    // What the piston's balance misses is read from the pressures.
+    cause.simulated = place == U::piston && (variable == U::load_pressure || factor == U::by_load_pressure);
+    // A friction may be less than the model's and never drives the piston, or a fit runs away where the logs do not
+    // reach.
+    const auto own = [&](int row) { return subject.table()[row].nominal; };
+    const double largest = factor == U::by_velocity    ? own(row::piston_viscous_friction) * U::factor_speed
+                           : factor == U::by_direction ? own(row::piston_coulomb_friction)
+                                                       : at.largest;
+    const double typical = largest < at.typical ? -at.typical : at.typical;
     std::vector<FreeValue> values;
     std::vector<std::vector<double>> together;
     for (int k = 0; k < U::knots; ++k) {
       FreeValue f;
       f.name = U::parameters[4 + k].name;
       f.at = effect_row<U>(4 + k);
-      f.lower = -at.largest, f.upper = at.largest, f.start = 0;
+      f.lower = -at.largest, f.upper = largest, f.start = 0;
       f.apply = [curve, at = f.at](double* v, double value) {
-        if (value == 0) return;  // all curves share the rows: one that is off leaves them to the one that is on
+        // All curves share the rows: one that is off, but for rounding, leaves them to the one that is on.
+        if (std::abs(value) < 1e-12 * U::places[curve.place].largest) return;
         v[effect_row<U>(0)] = curve.place, v[effect_row<U>(1)] = curve.variable, v[effect_row<U>(2)] = curve.factor;
         v[effect_row<U>(3)] = curve.scale;
         v[at] = value;
@@ -98,9 +112,18 @@ std::vector<Curve> add_curves(ValveSubject& subject) {
       values.push_back(f);
       cause.numbers.push_back({f.name, at.unit, f.lower, f.upper, false, 0.0, true, ""});
       together.emplace_back(static_cast<std::size_t>(U::knots), 0.0);
-      together.back()[static_cast<std::size_t>(k)] = at.typical;
+      together.back()[static_cast<std::size_t>(k)] = typical;
     }
     cause.probes = {together};
+    // Where the logs do not reach, the curve goes on in a straight line: a knot lies between its neighbours, give or
+    // take a typical size.
+    for (int k = 1; k + 1 < U::knots; ++k) {
+      std::vector<double>& row = cause.ties.emplace_back(static_cast<std::size_t>(U::knots), 0.0);
+      const auto j = static_cast<std::size_t>(k);
+      row[j] = 1 / at.typical;
+      row[j - 1] = -(reach(k + 1) - reach(k)) / (reach(k + 1) - reach(k - 1)) / at.typical;
+      row[j + 1] = -(reach(k) - reach(k - 1)) / (reach(k + 1) - reach(k - 1)) / at.typical;
+    }
     curve.cause = subject.add(std::move(cause), std::move(values));
     out.push_back(curve);
   }
@@ -132,7 +155,10 @@ void guess_curves(ValveSubject& subject, const std::vector<Curve>& curves, const
       shown = shown && x && (by || curve.factor == U::one);
       for (std::size_t k = 0; shown && k < part.missing.size(); ++k) {
         const double s = (*x)[k] / std::hypot((*x)[k], curve.scale);
-        const double factor = !by ? 1 : curve.factor == U::by_load_pressure ? (*by)[k] / U::factor_pressure : (*by)[k];
+        const double factor = !by                                   ? 1
+                              : curve.factor == U::by_load_pressure ? (*by)[k] / U::factor_pressure
+                              : curve.factor == U::by_velocity      ? (*by)[k] / U::factor_speed
+                                                                    : (*by)[k];
         Eigen::VectorXd row = Eigen::VectorXd::Zero(U::knots);
         double power = factor;
         for (int j = 0; j < U::knots; ++j, power *= s)
@@ -161,8 +187,7 @@ LearntCurve learnt(const Curve& curve, const std::vector<double>& knots, const s
   std::vector<double> x, y, w;
   for (int k = 0; k < U::knots; ++k) {
     const auto i = static_cast<std::size_t>(k);
-    const double s = curve::node[k];
-    out.points.push_back({curve.scale * s / std::sqrt(1 - s * s), knots[i], std_error[i]});
+    out.points.push_back({curve.scale * reach(k), knots[i], std_error[i]});
     if (std::isfinite(std_error[i]) && std_error[i] > 0)
       x.push_back(out.points.back().x), y.push_back(knots[i]), w.push_back(1 / std_error[i]);
   }
@@ -207,6 +232,7 @@ LearntCurve learnt(const Curve& curve, const std::vector<double>& knots, const s
       out.closed_form += fmt::format("{}{:.3g}{}", j ? " + " : "", c[j], form.words[static_cast<std::size_t>(j)]);
     if (!out.factor.empty())
       out.closed_form += curve.factor == U::by_load_pressure ? ", times the load pressure over 100 bar"
+                         : curve.factor == U::by_velocity    ? ", times the piston's velocity over 0.1 m/s"
                                                              : ", times the direction of the piston";
     break;
   }

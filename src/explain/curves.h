@@ -28,6 +28,7 @@ struct LearntCurve {
   std::vector<CurvePoint> points;  // at the knots
   // "-1.2e+03 N per m/s times x": the form with fewest numbers that passes the knots within their errors; empty: none.
   std::string closed_form;
+  std::string depends_on() const { return variable + (factor.empty() ? "" : " by " + factor); }
 };
 LearntCurve learnt(const Curve& curve, const std::vector<double>& knots, const std::vector<double>& std_error);
 

@@ -246,6 +246,9 @@ ExplainResult explain_logs(const std::vector<Log>& logs, const Table& tuned, con
     };
   }
   const std::vector<Curve> curves = add_curves(subject);
+  const auto curve_of = [&](int cause) {
+    return *std::find_if(curves.begin(), curves.end(), [&](const Curve& c) { return c.cause == cause; });
+  };
   std::vector<CauseScore> curve_scores;
   const auto named = [&](const Cause& c) {
     return !c.curve && std::find(options.without.begin(), options.without.end(), c.effect) == options.without.end();
@@ -258,6 +261,25 @@ ExplainResult explain_logs(const std::vector<Log>& logs, const Table& tuned, con
   const auto like_healthy = [&](const Explanation& x) {
     return healthy && test->any(subject.misses(x.after.residual)) > options.level;
   };
+  // The first of several alone: a curve is one cause.
+  const auto first_fit = [&] {
+    if (e.causes.size() == 1) return e.after;
+    const int first = e.causes.front().cause;
+    ExplainedFit one =
+        fit_causes(subject, {first}, &e.before, &e.scores[static_cast<std::size_t>(first)], engine.iterations, false);
+    if (one.ok) cross_validate(subject, one, engine);
+    return one;
+  };
+  const auto first_alone = [&] {
+    return e.causes.size() == 1 ? heldout_gain(e.before, e.after, options.seed).value
+                                : e.candidates[static_cast<std::size_t>(e.causes.front().cause)].heldout_gain.value;
+  };
+  // Left abnormal, by names of which the first removes less than half of it: most of what is wrong has no name, and a
+  // heap of names is none.
+  const auto left = [&] { return e.causes.empty() ? engine.p_left(e.before, 0) : engine.p_left(e.after, 1); };
+  const auto nameless = [&] {
+    return healthy && left() <= 0.5 * options.level && (e.causes.empty() || first_alone() < 0.5);
+  };
   std::string better_place;
   const bool bare = !e.causes.empty() && subject.causes()[static_cast<std::size_t>(e.causes.front().cause)].prior < 1;
   if (e.before.ok && (e.causes.empty() || bare || (healthy && !like_healthy(e)))) {
@@ -267,10 +289,12 @@ ExplainResult explain_logs(const std::vector<Log>& logs, const Table& tuned, con
     score_alone();
     Explanation learnt_one = explain(subject, engine, &e);
     curve_scores = learnt_one.scores;
-    const bool better = e.causes.empty() || (!learnt_one.causes.empty() &&
-                                             (bare ? heldout_gain(learnt_one.after, e.after, options.seed).lower <= 0
-                                                   : heldout_gain(e.after, learnt_one.after, options.seed).lower > 0));
-    if (!learnt_one.causes.empty() && better) {
+    const auto better_than = [&](const ExplainedFit& name) {
+      return !name.ok || (bare ? heldout_gain(learnt_one.after, name, options.seed).lower <= 0
+                               : heldout_gain(name, learnt_one.after, options.seed).lower > 0);
+    };
+    const bool better = !learnt_one.causes.empty() && (e.causes.empty() || better_than(bare ? first_fit() : e.after));
+    if (better) {
       for (std::size_t c = 0; c < e.candidates.size(); ++c)
         if (!subject.causes()[c].curve) {
           learnt_one.candidates[c] = e.candidates[c];
@@ -289,14 +313,9 @@ ExplainResult explain_logs(const std::vector<Log>& logs, const Table& tuned, con
       learnt_one.standing = std::move(e.standing);
       e = std::move(learnt_one);
       const CauseResult& r = e.causes.front();
-      const auto it = std::find_if(curves.begin(), curves.end(), [&](const Curve& c) { return c.cause == r.cause; });
-      out.curve = learnt(*it, r.value, r.std_error);
+      out.curve = learnt(curve_of(r.cause), r.value, r.std_error);
     }
   }
-  const auto first_alone = [&] {
-    return e.causes.size() == 1 ? heldout_gain(e.before, e.after, options.seed).value
-                                : e.candidates[static_cast<std::size_t>(e.causes.front().cause)].heldout_gain.value;
-  };
   // What the free run leaves open, the replay of the blocks may tell: a name that is news there, is worth its numbers
   // on held-out windows, and leaves the blocks as healthy logs do. Where the free run has a name and others as good, it
   // has to be about one of these.
@@ -308,7 +327,7 @@ ExplainResult explain_logs(const std::vector<Log>& logs, const Table& tuned, con
   if (blocks && !blocks->empty()) {
     Scores of_blocks(logs.size());
     for (std::size_t l = 0; l < single.size(); ++l)
-      if (single_fits[l].ok) of_blocks[l] = score_blocks(single[l], single_fits[l].point, *known, named).scores;
+      if (single_fits[l].ok) of_blocks[l] = score_blocks(single[l], single_fits[l].point, *known).scores;
     EngineOptions there;
     there.seed = options.seed, there.stop = options.stop, there.level = options.level;
     there.among = named;
@@ -317,23 +336,44 @@ ExplainResult explain_logs(const std::vector<Log>& logs, const Table& tuned, con
     there.p_left = [&](const ExplainedFit& fit, int) {
       return std::min(1.0, 2 * test->any(blocks->misses(fit.residual)));
     };
-    Explanation told = explain(*blocks, there);
-    const bool stands = !told.causes.empty() && test->any(blocks->misses(told.after.residual)) > options.level;
-    if (stands && (open || share_a_name(told.causes.front(), e.causes.front()))) {
+    // What was told, held in the free run.
+    const auto held = [&](const Explanation& told) {
       ExplainedFit after =
           hold_causes(subject, told.after.causes, numbers_of_causes(*blocks, told.after), e.before, engine.iterations);
-      if (after.ok) {
-        cross_validate(subject, after, engine);
-        by_blocks = true;
-        for (const CauseResult& r : e.causes)
-          e.candidates[static_cast<std::size_t>(r.cause)].reason = "the replay of the blocks tells another";
-        e.after = std::move(after);
-        e.causes = std::move(told.causes);
-        for (const CauseResult& r : e.causes)
-          e.candidates[static_cast<std::size_t>(r.cause)].reason = "taken: the replay of the blocks tells it";
-        out.curve.reset();
-        better_place.clear();
-      }
+      if (after.ok) cross_validate(subject, after, engine);
+      return after;
+    };
+    const auto take = [&](Explanation& told, ExplainedFit after) {
+      by_blocks = true;
+      for (const CauseResult& r : e.causes)
+        e.candidates[static_cast<std::size_t>(r.cause)].reason = "the replay of the blocks tells another";
+      e.after = std::move(after);
+      e.causes = std::move(told.causes);
+      for (const CauseResult& r : e.causes)
+        e.candidates[static_cast<std::size_t>(r.cause)].reason = "taken: the replay of the blocks tells it";
+      out.curve.reset();
+      better_place.clear();
+    };
+    Explanation told = explain(*blocks, there);
+    const bool stands = !told.causes.empty() && test->any(blocks->misses(told.after.residual)) > options.level;
+    if (stands && (open || share_a_name(told.causes.front(), e.causes.front())))
+      if (ExplainedFit after = held(told); after.ok) take(told, std::move(after));
+    // A curve that they tell serves where the free run finds none, or follows better with it than with its own. A bare
+    // row has to do better, as beside the free run's.
+    const auto better = [&](const ExplainedFit& after) {
+      return heldout_gain(out.curve ? e.after : e.before, after, options.seed).lower > 0 &&
+             !(bare && !out.curve && heldout_gain(after, first_fit(), options.seed).lower > 0);
+    };
+    if (open && !by_blocks && told.before.ok) {
+      there.among = [](const Cause& c) { return c.curve; };
+      there.most = 1;
+      Explanation shape = explain(*blocks, there, &told);
+      if (!shape.causes.empty())
+        if (ExplainedFit after = held(shape); after.ok && better(after)) {
+          const CauseResult r = shape.causes.front();
+          take(shape, std::move(after));
+          out.curve = learnt(curve_of(r.cause), r.value, r.std_error);
+        }
     }
   }
   if (!e.before.ok)
@@ -382,7 +422,7 @@ ExplainResult explain_logs(const std::vector<Log>& logs, const Table& tuned, con
   out.retuned = e.retuned;
   out.adequacy_before = subject.adequacy(e.before.residual);
   out.adequacy_after = subject.adequacy(e.after.residual);
-  if (healthy) out.p_adequacy = e.causes.empty() ? engine.p_left(e.before, 0) : engine.p_left(e.after, 1);
+  if (healthy) out.p_adequacy = left();
   if (!e.causes.empty()) out.heldout_gain = heldout_gain(e.before, e.after, options.seed);
   if (by_blocks && out.heldout_gain.lower <= 0)
     out.notes.push_back(fmt::format(
@@ -391,12 +431,9 @@ ExplainResult explain_logs(const std::vector<Log>& logs, const Table& tuned, con
         out.causes.front().effect, 100 * out.heldout_gain.value, 100 * out.heldout_gain.lower,
         100 * out.heldout_gain.upper));
   out.verdict = out.curve ? "unexplained" : !e.causes.empty() ? "extended" : "sufficient";
-  // Left abnormal by names of which the first removes less than half of it: most of what is wrong has no name, and a
-  // heap of names is none.
-  const bool abnormal = out.p_adequacy && *out.p_adequacy <= 0.5 * options.level;
-  const bool nameless = abnormal && !out.curve && !by_blocks && (e.causes.empty() || first_alone() < 0.5);
-  if (nameless) out.verdict = "unexplained";
-  if (nameless && !out.blocks.empty()) {
+  const bool no_name = !out.curve && !by_blocks && nameless();
+  if (no_name) out.verdict = "unexplained";
+  if (no_name && !out.blocks.empty()) {
     const auto least = std::min_element(out.blocks.begin(), out.blocks.end(),
                                         [](const auto& a, const auto& b) { return *a.p_new < *b.p_new; });
     out.where = least->places.front();
@@ -409,6 +446,10 @@ ExplainResult explain_logs(const std::vector<Log>& logs, const Table& tuned, con
   } else if (!out.causes.empty()) {
     out.where = better_place.empty() ? out.causes.front().where : better_place;
   }
+  if (out.curve) out.depends_on = out.curve->depends_on();
+  if (no_name)  // no curve does either; what it follows most is said all the same
+    for (const PlaceScore& p : out.places)
+      if (p.where == out.where) out.depends_on = p.variable;
   out.channels = channels_of(subject, logs, e);
   for (std::size_t l = 0; l < logs.size(); ++l) {
     out.before.push_back(subject.problem({})->candidate(e.before.point, static_cast<int>(l)));

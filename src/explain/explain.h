@@ -65,6 +65,7 @@ struct ExplainResult {
   std::optional<LearntCurve> curve;  // of `unexplained`
   std::string verdict;               // sufficient | extended | unexplained
   std::string where;                 // of the first cause; empty: nowhere
+  std::string depends_on;            // of `unexplained`: the variable that it follows, "X by Y" where it takes two
   std::vector<ExplainedChannel> channels;
   std::vector<ShownChannel> shown;  // the residual as tuned
   std::vector<BlockReplay> blocks;  // what each block misses with measured signals in place of simulated ones

@@ -124,14 +124,13 @@ HealthyScore summarise(const Subject& subject, const CauseScore& score) {
   return out;
 }
 
-ScoredBlocks score_blocks(const ValveSubject& valve, const Point& at, const KnownRig& known,
-                          const std::function<bool(const Cause&)>& among) {
+ScoredBlocks score_blocks(const ValveSubject& valve, const Point& at, const KnownRig& known) {
   ScoredBlocks out;
   ReplaySubject blocks(valve, at, known);
   if (blocks.empty()) return out;
   const ExplainedFit fit = fit_base(blocks, EngineOptions{}.iterations);
   if (!fit.ok) return out;
-  for (const CauseScore& s : score_causes(blocks, fit, among))
+  for (const CauseScore& s : score_causes(blocks, fit))
     if (!s.probes.empty()) out.scores.push_back(summarise(blocks, s));
   out.misses = blocks.misses(fit.residual);
   return out;

@@ -53,8 +53,7 @@ struct ScoredBlocks {
   std::vector<HealthyScore> scores;
   std::vector<Miss> misses;
 };
-ScoredBlocks score_blocks(const ValveSubject& valve, const Point& at, const KnownRig& known,
-                          const std::function<bool(const Cause&)>& among = {});
+ScoredBlocks score_blocks(const ValveSubject& valve, const Point& at, const KnownRig& known);
 struct HealthyCounts {
   long simulations = 0, failed = 0;
 };

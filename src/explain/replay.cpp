@@ -28,10 +28,10 @@ double root_mean_square(const Eigen::VectorXd& x) { return std::sqrt(x.squaredNo
 ReplaySubject::ReplaySubject(const ValveSubject& valve, const Point& at, const KnownRig& known)
     : valve_(valve), usual_(known.errors) {
   for (const Cause& c : valve.causes()) {
-    if (c.curve) break;  // they come last
     causes_.push_back(c);
-    causes_.back().family = "replay";
+    causes_.back().family = c.family.empty() ? "replay" : "replay/" + c.family;
     causes_.back().atop.clear();
+    if (c.simulated) causes_.back().probes.clear();  // not looked at
   }
   const auto problem = valve.problem({});
   long first = 0;
@@ -126,6 +126,7 @@ SubjectFit ReplaySubject::fit(const std::vector<int>& causes, bool) const {
     }
     return e;
   };
+  tie(out, causes_, causes);
   return out;
 }
 

@@ -28,7 +28,7 @@ class ReplaySubject : public Subject {
   ReplaySubject& operator=(const ReplaySubject&) = delete;
   bool empty() const { return series_.empty(); }  // no log has the signals
 
-  const std::vector<Cause>& causes() const override { return causes_; }  // the valve's, learnt curves excepted
+  const std::vector<Cause>& causes() const override { return causes_; }  // the valve's
   const std::vector<Series>& series() const override { return series_; }
   // Free beside the causes: what each series misses on the mean, in its sigmas.
   SubjectFit fit(const std::vector<int>& causes, bool wide) const override;

@@ -38,6 +38,9 @@ struct Cause {
   std::vector<std::vector<std::vector<double>>> probes;
   std::string family = "";  // tells apart causes of one name and place: the variable of a learnt curve
   bool curve = false;       // its numbers are a curve's knots: judged by what they gain together
+  bool simulated = false;   // of what a block's own balance ties to it: with measured signals it would explain itself
+  // What is likely of its numbers before any data: each row, a weight a number [1/unit], sums to zero give or take one.
+  std::vector<std::vector<double>> ties = {};
   // Name of the base's numbers that it goes on where they end, a factor on them: its size is then what they are in all.
   std::string atop = "";
 };
@@ -60,6 +63,9 @@ struct SubjectFit {
   Point start;  // causes at their off value
   LeastSquaresProblem problem;
 };
+
+// Appends the ties of these causes to the rows of a fit whose last numbers are theirs.
+void tie(SubjectFit& fit, const std::vector<Cause>& all, const std::vector<int>& causes);
 
 // How much one part of a replay misses: a block of the model (explain/blocks.h), or a channel against its usual error.
 struct Miss {

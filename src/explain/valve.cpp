@@ -466,6 +466,7 @@ SubjectFit ValveSubject::fit(const std::vector<int>& causes, bool wide) const {
     for (long c = 0; c < j.cols(); ++c) remember(j.col(c));
     return true;
   };
+  tie(out, causes_, causes);
   return out;
 }
 

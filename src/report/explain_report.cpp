@@ -185,6 +185,7 @@ Json explain_json(const ExplainResult& r) {
   }
   return {{"verdict", r.verdict},
           {"where", r.where.empty() ? Json(nullptr) : Json(r.where)},
+          {"depends_on", r.depends_on.empty() ? Json(nullptr) : Json(r.depends_on)},
           {"channels", channels},
           {"causes", array_of(r.causes)},
           {"standing", array_of(r.standing)},
@@ -229,6 +230,7 @@ std::string text_of(const ExplainResult& r, const TextOptions& options) {
   if (r.verdict == "unexplained")
     text += r.curve ? ": no cause in the list mends it; a learnt curve does"
                     : ": something is wrong, and no cause in the list mends it";
+  if (!r.curve && !r.depends_on.empty()) text += "; at " + r.where + " it follows " + r.depends_on;
   if (r.verdict == "extended") {
     text += ": ";
     for (std::size_t k = 0; k < r.causes.size(); ++k) text += (k ? ", " : "") + r.causes[k].effect;

@@ -10,8 +10,9 @@
 namespace servodx {
 namespace {
 
+template <class Effects>
 struct States {
-  std::array<double, n_base_states + AllEffects::n_states> y{};
+  std::array<double, n_base_states + Effects::n_states> y{};
   template <int K>
   double get() const {
     return y[K];
@@ -61,7 +62,10 @@ std::vector<double> quiet(const std::vector<double>& time, const std::vector<dou
   return out;
 }
 
-Balance balance(const Scenario& in, const Measured& measured, const ParameterVector& p, double window) {
+namespace {
+
+template <class Effects>
+Balance balance_with(const Scenario& in, const Measured& measured, const ParameterVector& p, double window) {
   Balance out;
   const std::size_t n = in.time.size();
   if (!measured.piston || !measured.pressure_a || !measured.pressure_b || n < 8 || in.ports != Ports::actuator)
@@ -88,7 +92,7 @@ Balance balance(const Scenario& in, const Measured& measured, const ParameterVec
   std::vector<double> spool;
   if (measured.spool)
     spool = less(measured.quiet ? *measured.spool : quiet(in.time, *measured.spool), nuisance::spool_offset, 0);
-  const Derived<double> d = derive<double, AllEffects>(p.data(), in.oil);
+  const Derived<double> d = derive<double, Effects>(p.data(), in.oil);
   const auto input = [&](const std::vector<double>& series, std::size_t k, double table) {
     return series.empty() ? table : series[k];
   };
@@ -99,7 +103,7 @@ Balance balance(const Scenario& in, const Measured& measured, const ParameterVec
   friction.rest(0.0, smooth[0]);
   for (std::size_t k = 0; k < n; ++k) {
     const double dt = in.time[std::min(k + 1, n - 1)] - in.time[k > 0 ? k - 1 : 0];
-    States s;
+    States<Effects> s;
     s.y[s_p_a] = a[k], s.y[s_p_b] = b[k];
     s.y[s_x_spool] = spool.empty() ? 0.0 : spool[k];
     s.y[s_x_piston] = smooth[k];
@@ -109,7 +113,7 @@ Balance balance(const Scenario& in, const Measured& measured, const ParameterVec
     const Inputs<double> u{0.0, input(in.supply_pressure, k, p[row::supply_pressure]),
                            input(in.return_pressure, k, p[row::return_pressure]), input(in.load_force, k, 0.0),
                            friction};
-    const auto f = derivative<AllEffects, double>(s, u, p.data(), d);
+    const auto f = derivative<Effects, double>(s, u, p.data(), d);
     force[k] = p[row::moving_mass] * std::get<s_v_piston>(f);
     compliance_a[k] = 1.0 / chamber_stiffness(d.middle_volume_a + p[row::piston_area_a] * smooth[k], a[k], d, p.data());
     compliance_b[k] = 1.0 / chamber_stiffness(d.middle_volume_b - p[row::piston_area_b] * smooth[k], b[k], d, p.data());
@@ -157,6 +161,17 @@ Balance balance(const Scenario& in, const Measured& measured, const ParameterVec
     out.flow_b.push_back(compliance_b[mid] * (b[to] - b[from]) / span - q_b / samples - p[row::piston_area_b] * v);
   }
   return out;
+}
+
+}  // namespace
+
+// A learnt curve is worked out only where there is one.
+Balance balance(const Scenario& in, const Measured& measured, const ParameterVector& p, double window) {
+  bool curve = false;
+  for (int k = 0; k < Unexplained::knots; ++k)
+    curve = curve || p[static_cast<std::size_t>(effect_row<Unexplained>(4 + k))] != 0;
+  return curve ? balance_with<CorrectedEffects>(in, measured, p, window)
+               : balance_with<AllEffects>(in, measured, p, window);
 }
 
 }  // namespace servodx

@@ -103,6 +103,37 @@ TEST(Engine, CauseThatTheFreeNumbersImitateScoresNothing) {
   EXPECT_LT(e.scores[4].gain, 1e-6);
 }
 
+// Three knots of which the data show two: the third lies on their line. Without the tie it stays where it began.
+TEST(Engine, TiesCarryACurveStraightOnWhereTheDataDoNotReach) {
+  Cause cause;
+  cause.numbers.assign(3, {"knot", "-", -10, 10, false, 0.0, true, ""});
+  cause.ties = {{1 / 0.1, -2 / 0.1, 1 / 0.1}};
+  for (const bool exact : {false, true}) {
+    SubjectFit fit;
+    fit.numbers = cause.numbers;
+    fit.start = {0.5, 0.5, 0.5};
+    fit.problem.n = 3;
+    fit.problem.evaluate = [n = cause.numbers[0]](std::span<const Point> points) {
+      std::vector<Evaluation> e(points.size());
+      for (std::size_t k = 0; k < points.size(); ++k) {
+        e[k].ok = true;
+        e[k].residual = Eigen::Vector2d((n.from_unit(points[k][0]) - 1) / 0.01, (n.from_unit(points[k][1]) - 2) / 0.01);
+      }
+      return e;
+    };
+    if (exact)
+      fit.problem.jacobian = [](const Point&, const Eigen::VectorXd&, Eigen::MatrixXd& j) {
+        j.setZero(2, 3);
+        j(0, 0) = j(1, 1) = 20 / 0.01;
+        return true;
+      };
+    tie(fit, {cause}, {0});
+    const LeastSquaresResult r = minimise_least_squares(fit.problem, fit.start, {});
+    EXPECT_NEAR(cause.numbers[2].from_unit(r.point[2]), 3, 1e-3) << exact;
+    EXPECT_NEAR(cause.numbers[1].from_unit(r.point[1]), 2, 1e-3) << exact;
+  }
+}
+
 TEST(Engine, TwoCausesAreBothFound) {
   // The second one is planted by hand: the first one's shape stays in the data of the second line.
   std::vector<Line::Shape> both = {

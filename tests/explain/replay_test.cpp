@@ -4,9 +4,11 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "effects/registry.h"
+#include "explain/curves.h"
 #include "explain/engine.h"
 #include "explain/missing_support.h"
 
@@ -40,7 +42,8 @@ Read read_off(const Rehearsed& r, const std::string& cause) {
   if (e.causes.empty()) return out;
   out.value = e.causes.front().value, out.std_error = e.causes.front().std_error;
   out.gain = e.causes.front().heldout_gain.value;
-  for (const Number& n : blocks.causes()[static_cast<std::size_t>(e.causes.front().cause)].numbers) out.off.push_back(n.off);
+  for (const Number& n : blocks.causes()[static_cast<std::size_t>(e.causes.front().cause)].numbers)
+    out.off.push_back(n.off);
   return out;
 }
 
@@ -90,6 +93,57 @@ TEST(Replay, ASensorsGainIsNoPhysics) {
   const Rehearsed r(log_name, {.change = [&](ParameterVector& p) { p[static_cast<std::size_t>(at)] = 1.06; }}, all, 5);
   const Read found = read_off(r, "sensor_gain_error");
   EXPECT_EQ(found.name, "sensor_gain_error");
+}
+
+// The curve whose place and variables the truth has promises most, and is what was planted where the log has been.
+TEST(Replay, WhatHasNoNameIsReadAsACurveOfItsOwnVariables) {
+  using U = Unexplained;
+  KnownRig known;  // what is left where nothing is missing: a planted force remembers itself over the whole log
+  for (std::uint32_t seed = 11; seed < 14; ++seed) {
+    const Rehearsed healthy(log_name, {}, all, seed);
+    const ValveSubject valve({healthy.log}, healthy.table, healthy.rig, 1, KnownRig{});
+    ReplaySubject blocks(valve, valve.problem({})->start());
+    for (const UsualError& e : blocks.errors(fit_base(blocks, 12).residual)) known.errors.push_back(e);
+  }
+  struct Planted {
+    int factor;
+    double knots[U::knots];  // [N]
+    const char* family;
+  };
+  for (const Planted& planted :
+       {Planted{U::one, {3000, 900, 350, 0, -350, -900, -3000}, "replay/piston_position"},
+        Planted{
+            U::by_velocity, {-900, -500, -200, -50, -200, -500, -900}, "replay/piston_position by piston_velocity"}}) {
+    constexpr double scale = 0.02;  // [m]
+    const auto put = [&](ParameterVector& p) {
+      const auto at = [&](int k) -> double& { return p[static_cast<std::size_t>(effect_row<U>(k))]; };
+      at(0) = U::piston, at(1) = U::piston_position, at(2) = planted.factor, at(3) = scale;
+      for (int k = 0; k < U::knots; ++k) at(4 + k) = planted.knots[k];
+    };
+    const Rehearsed r(log_name, {.change = put}, all, 7);
+    ValveSubject valve({r.log}, r.table, r.rig, 1, KnownRig{});
+    const std::vector<Curve> curves = add_curves(valve);
+    ReplaySubject blocks(valve, valve.problem({})->start(), known);
+    EngineOptions options;
+    options.among = [](const Cause& c) { return c.curve; };
+    options.most = 1;
+    const Explanation e = explain(blocks, options);
+    ASSERT_EQ(e.causes.size(), 1u);
+    EXPECT_EQ(blocks.causes()[static_cast<std::size_t>(e.causes.front().cause)].family, planted.family);
+    const auto curve =
+        std::find_if(curves.begin(), curves.end(), [&](const Curve& c) { return c.cause == e.causes.front().cause; });
+    ASSERT_NE(curve, curves.end());
+    const auto value = [](const double* knots, double x, double its_scale) {
+      double s = x / std::hypot(x, its_scale), power = 1, sum = 0;
+      for (int j = 0; j < U::knots; ++j, power *= s)
+        for (int k = 0; k < U::knots; ++k) sum += curve::powers[j][k] * power * knots[k];
+      return sum;
+    };
+    for (const double x : {-0.02, -0.01, 0.01, 0.02}) {
+      const double truth = value(planted.knots, x, scale);
+      EXPECT_NEAR(value(e.causes.front().value.data(), x, curve->scale), truth, 30 + 0.1 * std::abs(truth)) << x;
+    }
+  }
 }
 
 TEST(Replay, WithoutPressuresThereIsNone) {

@@ -169,19 +169,27 @@ const std::vector<Effect>& unlisted_effects() {
        [](Hiding& h, Random& r) {
          const double stiffness = r.uniform(2e4, 8e4);
          h.unlogged_load = [stiffness](double) { return rig::Load{0.0, stiffness}; };
-         h.truth = {"unlisted:spring", {"piston_force"}, "", 0, "piston_position"};
+         h.truth = {"unlisted:spring",  {"piston_force"}, "", 0, fmt::format("{:.0f} N/mm", 1e-3 * stiffness),
+                    {"piston_position"}};
        }},
       {"unlisted:saturation",  // the armature's iron saturates
        [](Hiding& h, Random& r) {
-         h.model.motor_saturation_flux *= r.uniform(0.35, 0.5);
-         h.truth = {"unlisted:saturation", {"drive", "first_stage"}, "", 0, "coil_current"};
+         const double times = r.uniform(0.35, 0.5);
+         h.model.motor_saturation_flux *= times;
+         h.truth = {"unlisted:saturation", {"drive", "first_stage"}, "", 0, fmt::format("flux times {:.2f}", times),
+                    {"coil_current"}};
        }},
       {"unlisted:cushion",  // a brake about mid-stroke: the stops' cushions reach far
        [](Hiding& h, Random& r) {
          h.model.actuator_cushion_length = 0.1;
          h.model.actuator_stroke = 0.2;
          h.model.actuator_cushion_damping = r.uniform(1e4, 3e4);
-         h.truth = {"unlisted:cushion", {"piston_force"}, "", 0, "piston_velocity"};
+         h.truth = {"unlisted:cushion",
+                    {"piston_force"},
+                    "",
+                    0,
+                    fmt::format("{:.0f} kN s/m", 1e-3 * h.model.actuator_cushion_damping),
+                    {"piston_velocity", "piston_position by piston_velocity"}};
        }},
   };
   return list;
@@ -273,19 +281,17 @@ Case make_case(const Bench& bench, std::uint64_t seed, const std::string& effect
     out.logs.push_back(write(h, bench.folder / fmt::format("{}_{}.csv", stem, excitation)));
   }
   out.sealed = (bench.folder / (stem + ".sealed")).string();
-  std::ofstream(out.sealed) << Json{{"effect", h.truth.effect},
-                                    {"where", h.truth.where},
-                                    {"parameter", h.truth.parameter},
-                                    {"change", h.truth.change},
-                                    {"size", h.truth.size}};
+  std::ofstream(out.sealed) << Json{{"effect", h.truth.effect},       {"where", h.truth.where},
+                                    {"parameter", h.truth.parameter}, {"change", h.truth.change},
+                                    {"size", h.truth.size},           {"depends_on", h.truth.depends_on}};
   return out;
 }
 
 Truth unseal(const std::string& sealed) {
   std::ifstream in(sealed);
   const Json j = Json::parse(in);
-  return {j.at("effect"), j.at("where").get<std::vector<std::string>>(), j.at("parameter"), j.at("change"),
-          j.at("size")};
+  return {j.at("effect"), j.at("where").get<std::vector<std::string>>(),     j.at("parameter"), j.at("change"),
+          j.at("size"),   j.at("depends_on").get<std::vector<std::string>>()};
 }
 
 Score score(const Truth& truth, const ExplainResult& answer) {
@@ -307,7 +313,11 @@ Score score(const Truth& truth, const ExplainResult& answer) {
           out.size_inside = std::abs(p.value - p.before - truth.change) <= 1.645 * p.std_error;
   }
   if (truth.effect.starts_with("unlisted:")) out.named = answer.verdict == "unexplained";
-  out.placed = std::find(truth.where.begin(), truth.where.end(), out.where) != truth.where.end();
+  const auto one_of = [](const std::vector<std::string>& list, const std::string& name) {
+    return std::find(list.begin(), list.end(), name) != list.end();
+  };
+  out.placed = one_of(truth.where, out.where);
+  if (!truth.depends_on.empty()) out.variable = out.named && out.placed && one_of(truth.depends_on, answer.depends_on);
   for (const ExplainedCandidate& c : answer.candidates) {
     if (c.effect != truth.effect || std::find(truth.where.begin(), truth.where.end(), c.where) == truth.where.end())
       continue;
@@ -337,7 +347,7 @@ std::string share(int k, int n) {
 
 std::string tally(const std::vector<Score>& scores) {
   struct Count {
-    int n = 0, named = 0, placed = 0, silent = 0, sized = 0, inside = 0, gained = 0, enough = 0;
+    int n = 0, named = 0, placed = 0, silent = 0, sized = 0, inside = 0, gained = 0, enough = 0, by_variable = 0;
   };
   std::map<std::string, Count> by;
   Count listed, not_listed, none;
@@ -346,6 +356,7 @@ std::string tally(const std::vector<Score>& scores) {
     for (Count* c : {&by[s.truth.effect], &kind}) {
       c->n++, c->named += s.named, c->placed += s.placed, c->silent += !s.accused;
       if (s.size_inside) c->sized++, c->inside += *s.size_inside;
+      if (s.variable) c->by_variable += *s.variable;
       if (s.gain_share) c->gained++, c->enough += *s.gain_share >= 0.8;
     }
   }
@@ -362,6 +373,7 @@ std::string tally(const std::vector<Score>& scores) {
   if (not_listed.n > 0) {
     out += "not in the list, called unexplained: " + share(not_listed.named, not_listed.n) + "\n";
     out += "  and placed: " + share(not_listed.placed, not_listed.n) + "\n";
+    out += "  and by the right variable: " + share(not_listed.by_variable, not_listed.n) + "\n";
   }
   return out;
 }
@@ -378,6 +390,7 @@ nlohmann::json to_json(const Score& s) {
           {"placed", s.placed},
           {"accused", s.accused},
           {"size_inside", maybe(s.size_inside)},
+          {"variable", maybe(s.variable)},
           {"heldout_gain", s.heldout_gain},
           {"gain_share", maybe(s.gain_share)},
           {"note", s.note}};
@@ -390,6 +403,7 @@ Score from_json(const nlohmann::json& j) {
   s.verdict = j.at("verdict"), s.first = j.at("first"), s.where = j.at("where");
   s.named = j.at("named"), s.placed = j.at("placed"), s.accused = j.at("accused");
   if (!j.at("size_inside").is_null()) s.size_inside = j.at("size_inside").get<bool>();
+  if (const auto v = j.value("variable", Json(nullptr)); !v.is_null()) s.variable = v.get<bool>();
   s.heldout_gain = j.at("heldout_gain");
   if (!j.at("gain_share").is_null()) s.gain_share = j.at("gain_share").get<double>();
   s.note = j.at("note");

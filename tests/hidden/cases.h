@@ -29,11 +29,12 @@ struct Case {
   std::string sealed;  // file of the truth
 };
 struct Truth {
-  std::string effect;              // none | a name of the list | unlisted:NAME
-  std::vector<std::string> where;  // places that are right
-  std::string parameter;           // of the model; empty: no common size
-  double change = 0;               // [SI] of it against the healthy valve
-  std::string size;                // in words
+  std::string effect;                        // none | a name of the list | unlisted:NAME
+  std::vector<std::string> where;            // places that are right
+  std::string parameter;                     // of the model; empty: no common size
+  double change = 0;                         // [SI] of it against the healthy valve
+  std::string size;                          // in words
+  std::vector<std::string> depends_on = {};  // of what the list does not have: variables that are right
 };
 
 const std::vector<std::string>& effects();   // what can be hidden of the list
@@ -54,6 +55,7 @@ struct Score {
   bool placed = false;
   bool accused = false;             // any cause, or unexplained
   std::optional<bool> size_inside;  // 90 % interval
+  std::optional<bool> variable;     // of what the list does not have: named and placed, by the right variable
   double heldout_gain = 0;
   std::optional<double> gain_share;  // of what the true effect gains alone on the same data, where that is known
   std::string note;                  // of a miss: what became of the true effect

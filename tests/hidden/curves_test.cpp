@@ -38,5 +38,24 @@ TEST(Curves, OfAllInTheListTheOneThatIsOnRuns) {
   }
 }
 
+// Or a fit drives the simulation out of bounds where the logs do not reach.
+TEST(Curves, NoFrictionDrivesThePiston) {
+  const std::string source = SERVODX_SOURCE_DIR;
+  const RigFile rig = read_rig_file(source + "/data/rig.toml");
+  const Table table = read_table(source + "/tests/hidden/valve_1.csv");
+  ValveSubject subject({read_log(source + "/data/healthy/h08_preflight_cold.csv", rig)}, table, rig, 1, KnownRig{});
+  int frictions = 0;
+  for (const Curve& c : add_curves(subject))
+    for (const Number& knot : subject.causes()[static_cast<std::size_t>(c.cause)].numbers) {
+      if (c.factor != U::by_velocity && c.factor != U::by_direction) continue;
+      ++frictions;
+      const double own = c.factor == U::by_velocity ? table[row::piston_viscous_friction].nominal * U::factor_speed
+                                                    : table[row::piston_coulomb_friction].nominal;
+      EXPECT_LE(knot.upper, own);
+      EXPECT_LT(knot.lower, -1000);
+    }
+  EXPECT_GE(frictions, 3 * U::knots);
+}
+
 }  // namespace
 }  // namespace servodx
