@@ -358,13 +358,13 @@ ExplainResult explain_logs(const std::vector<Log>& logs, const Table& tuned, con
     const bool stands = !told.causes.empty() && test->any(blocks->misses(told.after.residual)) > options.level;
     if (stands && (open || share_a_name(told.causes.front(), e.causes.front())))
       if (ExplainedFit after = held(told); after.ok) take(told, std::move(after));
-    // A curve that they tell serves where the free run finds none, or follows better with it than with its own. A bare
-    // row has to do better, as beside the free run's.
+    // Where something is wrong without a name, a curve that they tell serves if the free run finds none, or follows
+    // better with it than with its own. A bare row has to do better, as beside the free run's.
     const auto better = [&](const ExplainedFit& after) {
       return heldout_gain(out.curve ? e.after : e.before, after, options.seed).lower > 0 &&
              !(bare && !out.curve && heldout_gain(after, first_fit(), options.seed).lower > 0);
     };
-    if (open && !by_blocks && told.before.ok) {
+    if (!by_blocks && told.before.ok && (out.curve || bare || nameless())) {
       there.among = [](const Cause& c) { return c.curve; };
       there.most = 1;
       Explanation shape = explain(*blocks, there, &told);

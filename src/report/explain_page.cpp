@@ -194,6 +194,7 @@ Page explain_page(const Header& header, const ExplainResult& r, const std::vecto
   if (r.verdict == "extended")
     v.detail = "What the simulation has wrong on these logs: " + with_meanings(r.causes) + ".";
   if (r.curve) v.detail = "Nothing in the list mends it; a curve learnt from the logs does.";
+  if (!r.depends_on.empty()) v.facts.push_back({"It follows", words(r.depends_on)});
   if (!r.causes.empty()) v.facts.push_back({"Mending it removes, of the misfit", of_misfit(r.heldout_gain)});
   v.facts.push_back({"Re-tuning alone removes", of_misfit(r.retuned)});
   v.facts.push_back({"Misfit, times the tuning logs'",
@@ -205,7 +206,8 @@ Page explain_page(const Header& header, const ExplainResult& r, const std::vecto
   if (!r.causes.empty()) page.add(causes_table("Causes", r.causes));
   if (r.curve) {
     Plot plot;
-    plot.title = fmt::format("learnt curve in {} [{}]", words(r.curve->where), r.curve->unit);
+    plot.title = fmt::format("learnt curve in {} [{}]{}", words(r.curve->where), r.curve->unit,
+                             r.curve->factor.empty() ? "" : ", by " + words(r.curve->factor));
     plot.x_label = fmt::format("{} [{}]", words(r.curve->variable), r.curve->variable_unit);
     Series s{"curve", {}, Role::named};
     Band band{"standard error", {}, {}};
