@@ -1,5 +1,6 @@
 // The ratio table: the kernel, the optimiser and the reader against the best that others offer, in one run.
-//   servodx_bench_ratios [--json FILE] [--picture FILE.svg] [--only PART...] [--quick] [--seeds N] [--peer-budget X]
+//   servodx_bench_ratios [--json FILE] [--picture FILE.svg] [--only PART...] [--quick] [--seeds N] [--free N...]
+//     [--peer-budget X]
 //
 // Ratios of things that took turns in this run; absolute times belong to this machine. Peers that were not installed
 // when this was built are null in the JSON, with the reason. What it all means: docs/performance.md.
@@ -52,10 +53,13 @@ int main(int argc, char** argv) {
   app.add_option("--only", only, "parts: kernel, search, virtual, functions, genetic, loading, scaling");
   app.add_flag("--quick", quick, "3 seeds, no peers, 3 turns: a look, not a measurement");
   app.add_option("--seeds", choice.seeds, "of the twin objectives")->capture_default_str();
+  app.add_option("--free", choice.free, "parameters of the fits to a floor")
+      ->check(CLI::IsMember({8, 15, 25}))
+      ->capture_default_str();
   app.add_option("--peer-budget", choice.peer_budget, "simulations a peer may use, in medians of ours; 0: no peers")
       ->capture_default_str();
   CLI11_PARSE(app, argc, argv);
-  if (quick) choice = {.seeds = 3, .peer_budget = 0, .turns = 3};
+  if (quick) choice.seeds = 3, choice.peer_budget = 0, choice.turns = 3;
 
   bench::Report report;
   report.json["machine"] = machine();

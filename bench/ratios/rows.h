@@ -28,9 +28,10 @@ struct Report {
 };
 
 struct Choice {
-  int seeds = 15;          // of the twin objectives
-  double peer_budget = 5;  // simulations a peer may use, in medians of ours
-  int turns = 7;           // of each timing
+  int seeds = 15;                       // of the twin objectives
+  std::vector<int> free = {8, 15, 25};  // parameters of the fits to a floor
+  double peer_budget = 5;               // simulations a peer may use, in medians of ours
+  int turns = 7;                        // of each timing
 };
 
 void kernel_rows(Report& report, const Choice& choice);

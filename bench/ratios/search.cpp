@@ -12,7 +12,6 @@ namespace servodx::bench {
 namespace {
 
 constexpr double seconds = 5.0;
-const std::vector<int> counts = {8, 15, 25};
 
 Objective objective_of(const Twin& twin) {
   return {twin.n, twin.goal(), [&twin](std::span<const Point> points) { return twin.evaluate(points); }};
@@ -23,7 +22,7 @@ Objective objective_of(const Twin& twin) {
 void search_rows(Report& report, const Choice& choice) {
   const Scenario scenario = trace(seconds);
   for (const std::string& why : missing_peers()) report.json["reasons"]["best_peer"].push_back(why);
-  for (const int n : counts) {
+  for (const int n : choice.free) {
     std::vector<Twin> twins;
     std::vector<Objective> objectives;
     for (int seed = 1; seed <= choice.seeds; ++seed) twins.emplace_back(n, seed, scenario, 0);
@@ -43,7 +42,7 @@ void virtual_rows(Report& report, const Choice& choice) {
     const auto end = std::lower_bound(t.begin(), t.end(), t.front() + seconds) - t.begin();
     logs.push_back(slice(whole, 0, static_cast<std::size_t>(end)));
   }
-  for (const int n : counts) {
+  for (const int n : choice.free) {
     // The floor: the best of a long search of ours, four times what a seed may use.
     std::vector<double> goals;
     for (const LogData& log : logs) {
