@@ -21,7 +21,7 @@ Objective objective_of(const Twin& twin) {
 
 void search_rows(Report& report, const Choice& choice) {
   const Scenario scenario = trace(seconds);
-  for (const std::string& why : missing_peers()) report.json["reasons"]["best_peer"].push_back(why);
+  for (const std::string& why : missing_peers()) report.excuse("best_peer", why);
   for (const int n : choice.free) {
     std::vector<Twin> twins;
     std::vector<Objective> objectives;
@@ -32,7 +32,12 @@ void search_rows(Report& report, const Choice& choice) {
   }
 }
 
-void virtual_rows(Report& report, const Choice& choice) {
+void virtual_rows(Report& report, const Choice& asked) {
+  Choice choice = asked;
+  if (!asked.peers_on_logs) {
+    choice.peer_budget = 0;
+    report.excuse("virtual_rig_best_peer", "takes most of an hour: --only virtual");
+  }
   const std::string folder = std::string(SERVODX_SOURCE_DIR) + "/data/";
   const RigFile rig = read_rig_file(folder + "rig.toml");
   std::vector<LogData> logs;
