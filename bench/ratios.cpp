@@ -60,7 +60,7 @@ int main(int argc, char** argv) {
       ->capture_default_str();
   CLI11_PARSE(app, argc, argv);
   choice.peers_on_logs = std::find(only.begin(), only.end(), "virtual") != only.end();
-  if (quick) choice.seeds = 3, choice.peer_budget = 0, choice.turns = 3;
+  if (quick) choice.seeds = 3, choice.peer_budget = 0, choice.floor_search = 5000, choice.turns = 3;
 
   bench::Report report;
   report.json["machine"] = machine();

@@ -38,6 +38,7 @@ struct Choice {
   std::vector<int> free = {8, 15, 25};  // parameters of the fits to a floor
   double peer_budget = 5;               // simulations a peer may use, in medians of ours
   bool peers_on_logs = false;           // peers on the virtual rig's logs too: most of an hour
+  long floor_search = 20000;            // simulations that seek the floor of the virtual rig's logs
   int turns = 7;                        // of each timing
 };
 

@@ -48,14 +48,14 @@ void virtual_rows(Report& report, const Choice& asked) {
     logs.push_back(slice(whole, 0, static_cast<std::size_t>(end)));
   }
   for (const int n : choice.free) {
-    // The floor: the best of a long search of ours, four times what a seed may use.
+    // The floor: the best of a long search of ours.
     std::vector<double> goals;
     for (const LogData& log : logs) {
       const Twin fit(n, log, 0);
       Objective o = objective_of(fit);
       double least = 1e300;
       o.goal = -1;
-      ours(o, 1000, 20000, &least);
+      ours(o, 1000, choice.floor_search, &least);
       goals.push_back(1.05 * least);
     }
     std::vector<Twin> fits;
