@@ -21,7 +21,7 @@ std::size_t bytes_asked_for = 0;
 #if defined(__GLIBC__) && !defined(__SANITIZE_ADDRESS__)
 constexpr bool sees_eigen = true;
 extern "C" void* __libc_malloc(std::size_t size);
-extern "C" void* malloc(std::size_t size) {
+extern "C" void* malloc(std::size_t size) noexcept {
 #pragma omp atomic
   bytes_asked_for += size;
   return __libc_malloc(size);
