@@ -127,7 +127,7 @@ void kernel_rows(Report& report, const Choice& choice) {
   } else {
     const std::string why = cvode_missing() ? cvode_missing() : "no tolerance of CVODE reaches this error";
     for (const char* key : {"scalar_vs_cvode2", "batch_vs_cvode2"}) report.json[key] = nullptr;
-    report.json["reasons"]["cvode2"] = why;
+    report.excuse("cvode2", why);
     report.add({"one simulation and a batch against CVODE of order 2", "15x, 120x", "35x, 250x", "-", why});
   }
   const double factor = batch * seconds / took[1].median;

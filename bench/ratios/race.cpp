@@ -179,8 +179,15 @@ void race(Report& report, const Choice& choice, const std::string& what, const s
 
   nlohmann::ordered_json& theirs = report.json[prefix + "best_peer"][key];
   theirs = nullptr;
-  if (choice.peer_budget <= 0) report.json["reasons"]["best_peer"].push_back("left out on request");
-  if (peers().empty() || !median || choice.peer_budget <= 0) return;
+  const std::string row = fmt::format("the best of {} peers, {} parameters{}, over ours", peers().size(), n, what);
+  if (peers().empty() || !median || choice.peer_budget <= 0) {
+    const std::string why = peers().empty() ? "no peer is installed"
+                            : !median       ? "ours does not arrive in the median"
+                                            : "peers were left out";
+    report.excuse(prefix + "best_peer", why);
+    report.add({row, "5x", "10x", "-", why});
+    return;
+  }
   const long budget = static_cast<long>(choice.peer_budget * *median);
   const auto reached = run_peers(objectives, budget);
   std::size_t best = 0;
@@ -190,14 +197,15 @@ void race(Report& report, const Choice& choice, const std::string& what, const s
     if (arrived(reached[p]) > arrived(reached[best])) best = p;
   }
   const std::optional<double> arrival = median_arrival(reached[best]);
-  theirs = {{"name", peers()[best].name},
+  const long first = arrived(reached[best]);
+  theirs = {{"name", first > 0 ? nlohmann::ordered_json(peers()[best].name) : nlohmann::ordered_json(nullptr)},
             {"median", or_null(arrival)},
-            {"successes", arrived(reached[best])},
+            {"successes", first},
             {"budget", budget}};
-  report.add(
-      {fmt::format("the best of {} peers, {} parameters{}, over ours", peers().size(), n, what), "5x", "10x",
-       arrival ? fmt::format("{:.1f}x", *arrival / *median) : fmt::format("over {:.0f}x", choice.peer_budget),
-       fmt::format("{}: {} of {} seeds in {}", peers()[best].name, arrived(reached[best]), objectives.size(), budget)});
+  report.add({row, "5x", "10x",
+              arrival ? fmt::format("{:.1f}x", *arrival / *median) : fmt::format("over {:.0f}x", choice.peer_budget),
+              fmt::format("{}, {} of {} seeds in {} simulations", first > 0 ? peers()[best].name : "none arrives",
+                          first, objectives.size(), budget)});
 }
 
 }  // namespace servodx::bench

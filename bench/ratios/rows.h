@@ -2,6 +2,7 @@
 #pragma once
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
@@ -25,12 +26,20 @@ struct Report {
     fmt::print(stderr, "  {}: {} ({})\n", row.what, row.measured, row.spread);
     rows.push_back(std::move(row));
   }
+  // Why a figure is null.
+  void excuse(const std::string& what, const std::string& why) {
+    nlohmann::ordered_json& all = json["reasons"][what];
+    if (std::find(all.begin(), all.end(), why) == all.end()) all.push_back(why);
+  }
 };
 
 struct Choice {
-  int seeds = 15;          // of the twin objectives
-  double peer_budget = 5;  // simulations a peer may use, in medians of ours
-  int turns = 7;           // of each timing
+  int seeds = 15;                       // of the twin objectives
+  std::vector<int> free = {8, 15, 25};  // parameters of the fits to a floor
+  double peer_budget = 5;               // simulations a peer may use, in medians of ours
+  bool peers_on_logs = false;           // peers on the virtual rig's logs too: most of an hour
+  long floor_search = 20000;            // simulations that seek the floor of the virtual rig's logs
+  int turns = 7;                        // of each timing
 };
 
 void kernel_rows(Report& report, const Choice& choice);
@@ -39,6 +48,7 @@ void virtual_rows(Report& report, const Choice& choice);
 void function_rows(Report& report, const Choice& choice);
 void genetic_rows(Report& report, const Choice& choice);
 void loading_rows(Report& report, const Choice& choice);
+void diagnose_rows(Report& report, const Choice& choice);
 void scaling_rows(Report& report, const Choice& choice);
 
 }  // namespace servodx::bench

@@ -84,7 +84,7 @@ void scaling_rows(Report& report, const Choice& choice) {
   const auto folder = std::filesystem::temp_directory_path();
   for (const long rows : {62500L, 125000L, 250000L, 500000L, 1000000L}) {
     const std::string path = (folder / fmt::format("servodx_memory_{}.csv", rows)).string();
-    write_file(path, long_log(rows));
+    peak_memory([&] { write_file(path, long_log(rows)); });  // nor may the parent hold what it wrote
     memory.push_back({static_cast<double>(rows), peak_memory([&] {
                         const LogData long_one = prepare(read_log(path), rig);
                         Trajectory t;

@@ -12,7 +12,6 @@ namespace servodx::bench {
 namespace {
 
 constexpr double seconds = 5.0;
-const std::vector<int> counts = {8, 15, 25};
 
 Objective objective_of(const Twin& twin) {
   return {twin.n, twin.goal(), [&twin](std::span<const Point> points) { return twin.evaluate(points); }};
@@ -22,8 +21,8 @@ Objective objective_of(const Twin& twin) {
 
 void search_rows(Report& report, const Choice& choice) {
   const Scenario scenario = trace(seconds);
-  for (const std::string& why : missing_peers()) report.json["reasons"]["best_peer"].push_back(why);
-  for (const int n : counts) {
+  for (const std::string& why : missing_peers()) report.excuse("best_peer", why);
+  for (const int n : choice.free) {
     std::vector<Twin> twins;
     std::vector<Objective> objectives;
     for (int seed = 1; seed <= choice.seeds; ++seed) twins.emplace_back(n, seed, scenario, 0);
@@ -33,7 +32,12 @@ void search_rows(Report& report, const Choice& choice) {
   }
 }
 
-void virtual_rows(Report& report, const Choice& choice) {
+void virtual_rows(Report& report, const Choice& asked) {
+  Choice choice = asked;
+  if (!asked.peers_on_logs) {
+    choice.peer_budget = 0;
+    report.excuse("virtual_rig_best_peer", "takes most of an hour: --only virtual");
+  }
   const std::string folder = std::string(SERVODX_SOURCE_DIR) + "/data/";
   const RigFile rig = read_rig_file(folder + "rig.toml");
   std::vector<LogData> logs;
@@ -43,15 +47,15 @@ void virtual_rows(Report& report, const Choice& choice) {
     const auto end = std::lower_bound(t.begin(), t.end(), t.front() + seconds) - t.begin();
     logs.push_back(slice(whole, 0, static_cast<std::size_t>(end)));
   }
-  for (const int n : counts) {
-    // The floor: the best of a long search of ours, four times what a seed may use.
+  for (const int n : choice.free) {
+    // The floor: the best of a long search of ours.
     std::vector<double> goals;
     for (const LogData& log : logs) {
       const Twin fit(n, log, 0);
       Objective o = objective_of(fit);
       double least = 1e300;
       o.goal = -1;
-      ours(o, 1000, 20000, &least);
+      ours(o, 1000, choice.floor_search, &least);
       goals.push_back(1.05 * least);
     }
     std::vector<Twin> fits;

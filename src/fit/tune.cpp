@@ -192,11 +192,12 @@ std::vector<Point> breadth(Tuning& run, const Point& start) {
     std::copy(s.begin(), s.end(), x.begin());
     return x;
   };
+  std::vector<Point> whole;  // kept: a generation asks for no memory
   const auto costs = [&](std::span<const Point> points, bool ranking) {
-    std::vector<Point> whole;
-    for (const Point& p : points) whole.push_back(full(p));
+    if (whole.size() < points.size()) whole.resize(points.size(), start);
+    for (std::size_t k = 0; k < points.size(); ++k) std::copy(points[k].begin(), points[k].end(), whole[k].begin());
     // Compressed residuals: one channel far off must not hide the rest.
-    return problem.costs(whole, RobustLoss::compressed, 3.0, ranking);
+    return problem.costs(std::span(whole).first(points.size()), RobustLoss::compressed, 3.0, ranking);
   };
   // Failure mode identifiers of a fault-free valve: as the table says; a slow first stage; much friction; worn edges.
   const Point nominal(start.begin(), start.begin() + static_cast<long>(n));

@@ -36,6 +36,7 @@ class Genetic {
       : cost_(cost), options_(options), seeds_(seeds), hooks_(hooks) {
     state_.n = n;
     state_.seed = options.seed;
+    make_room();
   }
 
   void take(const GeneticState& saved) {
@@ -43,6 +44,7 @@ class Genetic {
       throw InputError({}, "the saved genetic search has other dimensions, another seed or other islands",
                        "resume with the options it was started with");
     state_ = saved;
+    make_room();
   }
 
   GeneticResult run(bool resumed) {
@@ -99,10 +101,8 @@ class Genetic {
     return {std::move(state_), reason};
   }
 
-  std::vector<double> rank(const std::vector<Point>& points) {
-    return evaluate(hooks_.screen ? hooks_.screen : cost_, points);
-  }
-  std::vector<double> evaluate(const BatchCost& cost_of, const std::vector<Point>& points) {
+  std::vector<double> rank() { return evaluate(hooks_.screen ? hooks_.screen : cost_, wave_points()); }
+  std::vector<double> evaluate(const BatchCost& cost_of, std::span<const Point> points) {
     std::vector<double> costs = cost_of(points);
     if (costs.size() != points.size()) throw std::logic_error("BatchCost returned another number of costs");
     state_.evaluations += static_cast<long>(points.size());
@@ -114,49 +114,67 @@ class Genetic {
     return costs;
   }
 
+  // Points are asked for in buffers that are kept: a generation asks for no memory but its costs'.
+  void make_room() {
+    broods_.resize(islands());
+    state_.archive.reserve(static_cast<std::size_t>(options_.archive));
+    spare_.reserve(static_cast<std::size_t>(options_.archive));
+  }
+  Point& next_point() {
+    if (asked_ == points_.size()) points_.emplace_back();
+    points_[asked_].resize(static_cast<std::size_t>(state_.n));
+    return points_[asked_++];
+  }
+  std::span<Point> wave_points() { return std::span(points_).first(asked_); }
+
   // Points of a fresh island: seeds, a cloud about them, and a Latin hypercube over the box.
-  std::vector<Point> fresh(std::size_t island, int size, bool with_seeds) const {
+  void fresh(std::size_t island, int size, bool with_seeds) {
     const int n = state_.n;
     const auto generation = static_cast<std::uint32_t>(state_.generation);
     const auto first = static_cast<std::uint32_t>(first_slot(island));
-    std::vector<Point> points;
+    int rest = size;
     if (with_seeds && island < seeds_.size() && !seeds_[island].empty()) {
       const auto& seeds = seeds_[island];
       const int seeded =
           std::min(size, std::max(static_cast<int>(seeds.size()), static_cast<int>(options_.seeded_part * size)));
+      rest -= seeded;
       for (int k = 0; k < seeded; ++k) {
-        Point point = seeds[k % seeds.size()];
+        Point& point = next_point();
+        point = seeds[k % seeds.size()];
         Random random(state_.seed, generation, first + static_cast<std::uint32_t>(k), kCloud);
         for (double& v : point)
           v = reflect(k < static_cast<int>(seeds.size()) ? v : v + options_.seed_spread * random.normal());
-        points.push_back(std::move(point));
       }
     }
-    const int rest = size - static_cast<int>(points.size());
-    std::vector<Point> spread(rest, Point(n));
+    const std::size_t spread = asked_;
+    for (int k = 0; k < rest; ++k) next_point();
     Random random(state_.seed, generation, first, kSpread);
+    cell_.resize(static_cast<std::size_t>(size));
     for (int j = 0; j < n; ++j) {
-      std::vector<int> cell(rest);
       for (int k = 0; k < rest; ++k) {
         const int other = static_cast<int>(random.below(static_cast<std::uint32_t>(k + 1)));  // inside-out shuffle
-        cell[k] = cell[other];
-        cell[other] = k;
+        cell_[k] = cell_[other];
+        cell_[other] = k;
       }
-      for (int k = 0; k < rest; ++k) spread[k][j] = (cell[k] + random.uniform()) / rest;
+      for (int k = 0; k < rest; ++k) points_[spread + k][j] = (cell_[k] + random.uniform()) / rest;
     }
-    points.insert(points.end(), spread.begin(), spread.end());
-    return points;
   }
 
-  void fill(Island& island, const std::vector<Point>& points, const double* costs) {
-    island = Island{};
+  void fill(Island& island, std::span<const Point> points, const double* costs) {
+    Island blank;
+    blank.population.swap(island.population);
+    blank.reach.swap(island.reach);
+    blank.mixing.swap(island.mixing);
+    island = std::move(blank);
+    island.population.resize(points.size());
     island.reach.assign(kMemory, 0.5);
     island.mixing.assign(kMemory, 0.5);
     island.best_since_start = kWorst;
     for (std::size_t k = 0; k < points.size(); ++k) {
-      island.population.push_back({points[k], costs[k]});
+      island.population[k].point = points[k];
+      island.population[k].cost = costs[k];
       island.best_since_start = std::min(island.best_since_start, costs[k]);
-      remember(island.population.back());
+      remember(island.population[k]);
     }
     island.mark = island.best_since_start;
     island.median_mark = median(island);
@@ -165,16 +183,13 @@ class Genetic {
   void begin() {
     state_.islands.resize(islands());
     state_.best.cost = kWorst;
-    std::vector<Point> all;
-    for (std::size_t i = 0; i < islands(); ++i) {
-      const std::vector<Point> points = fresh(i, island_size(i), true);
-      all.insert(all.end(), points.begin(), points.end());
-    }
-    const std::vector<double> costs = rank(all);
+    asked_ = 0;
+    for (std::size_t i = 0; i < islands(); ++i) fresh(i, island_size(i), true);
+    const std::vector<double> costs = rank();
     std::size_t at = 0;
     for (std::size_t i = 0; i < islands(); ++i) {
       const auto size = static_cast<std::size_t>(island_size(i));
-      fill(state_.islands[i], {all.begin() + at, all.begin() + at + size}, costs.data() + at);
+      fill(state_.islands[i], wave_points().subspan(at, size), costs.data() + at);
       at += size;
     }
   }
@@ -187,12 +202,26 @@ class Genetic {
     if (static_cast<int>(archive.size()) >= options_.archive && one.cost >= archive.back().cost) return;
     for (const Individual& kept : archive)
       if (kept.cost <= one.cost && distance(kept.point, one.point) < options_.archive_distance) return;
-    std::erase_if(archive,
-                  [&](const Individual& kept) { return distance(kept.point, one.point) < options_.archive_distance; });
+    // What goes out lends its memory to what comes in.
+    for (std::size_t k = 0; k < archive.size();) {
+      if (distance(archive[k].point, one.point) >= options_.archive_distance) {
+        ++k;
+        continue;
+      }
+      std::rotate(archive.begin() + k, archive.begin() + k + 1, archive.end());
+      take_out();
+    }
+    if (static_cast<int>(archive.size()) >= options_.archive) take_out();
+    if (spare_.empty()) spare_.emplace_back();
+    spare_.back() = one;
     const auto place = std::upper_bound(archive.begin(), archive.end(), one.cost,
                                         [](double cost, const Individual& kept) { return cost < kept.cost; });
-    archive.insert(place, one);
-    if (static_cast<int>(archive.size()) > options_.archive) archive.pop_back();
+    archive.insert(place, std::move(spare_.back()));
+    spare_.pop_back();
+  }
+  void take_out() {
+    spare_.push_back(std::move(state_.archive.back()));
+    state_.archive.pop_back();
   }
 
   bool is_done(const Island& island) const {
@@ -215,57 +244,54 @@ class Genetic {
     int first, count;
     std::uint32_t generation;  // that their children belong to
     bool afresh = false;       // the whole island, and no children
-    std::vector<Child> children;
   };
 
-  std::vector<Stretch> stretches(int slots) const {
-    std::vector<Stretch> out;
+  void share_out(int slots) {
+    stretches_.clear();
     auto generation = static_cast<std::uint32_t>(state_.generation + 1);
     for (int slot = state_.turn; slots > 0; slot = 0, ++generation)
       for (std::size_t i = 0; i < state_.islands.size() && slots > 0; ++i) {
         const int first = std::max(0, slot - first_slot(i)), count = std::min(slots, island_size(i) - first);
         if (count <= 0) continue;
-        out.push_back({i, first, count, generation, false, {}});
+        stretches_.push_back({i, first, count, generation});
         slots -= count;
       }
-    return out;
   }
 
   void step() {
     const int slots = wave();
-    std::vector<Stretch> all = stretches(slots);
-    std::vector<Point> points;
-    std::vector<bool> done(islands());
-    for (Stretch& s : all) {
+    share_out(slots);
+    asked_ = 0;
+    children_.clear();
+    done_.assign(islands(), false);
+    for (Stretch& s : stretches_) {
       const Island& island = state_.islands[s.island];
-      if (done[s.island]) continue;  // a wave may reach an island's end and its beginning
-      if ((s.afresh = done[s.island] = is_done(island))) {
-        const std::vector<Point> start = fresh(s.island, static_cast<int>(island.population.size()), false);
-        points.insert(points.end(), start.begin(), start.end());
+      if (done_[s.island]) continue;  // a wave may reach an island's end and its beginning
+      done_[s.island] = s.afresh = is_done(island);
+      if (s.afresh) {
+        fresh(s.island, static_cast<int>(island.population.size()), false);
         continue;
       }
-      const Brood brood = look_at(island, options_.tournament);
+      Brood& brood = broods_[s.island];
+      brood.look_at(island, options_.tournament);
       for (int slot = s.first; slot < s.first + s.count; ++slot) {
         Random random(state_.seed, s.generation, static_cast<std::uint32_t>(first_slot(s.island) + slot), kChild);
-        s.children.push_back(make_child(brood, slot, random));
-        s.children.back().parent = slot;
-        points.push_back(s.children.back().point);
+        children_.push_back(make_child(brood, slot, random, next_point()));
       }
     }
-    const std::vector<double> costs = rank(points);
-    std::size_t at = 0;
-    for (Stretch& s : all) {
+    const std::vector<double> costs = rank();
+    std::size_t at = 0, child = 0;
+    for (const Stretch& s : stretches_) {
       Island& island = state_.islands[s.island];
       const std::size_t size = island.population.size();
       if (s.afresh) {
         ++state_.restarts;
-        fill(island, {points.begin() + at, points.begin() + at + size}, costs.data() + at);
+        fill(island, wave_points().subspan(at, size), costs.data() + at);
         at += size;
       }
-      if (done[s.island]) continue;
+      if (done_[s.island]) continue;
       if (s.first == 0) forget(island);
-      select(island, s.children, costs.data() + at);
-      at += s.children.size();
+      for (int k = 0; k < s.count; ++k, ++at) select(island, children_[child++], points_[at], costs[at]);
       if (s.first + s.count == static_cast<int>(size)) take_stock(island);
     }
     state_.turn += slots;
@@ -284,28 +310,26 @@ class Genetic {
     }
   }
 
-  void select(Island& island, std::vector<Child>& children, const double* costs) {
-    for (std::size_t k = 0; k < children.size(); ++k) {
-      Child& child = children[k];
-      Individual& parent = island.population[child.parent];
-      island.tries[child.variation] += 1;
-      if (costs[k] > parent.cost || costs[k] >= kWorst) continue;
-      if (costs[k] < parent.cost) {
-        island.wins[child.variation] += 1;
-        if (child.variation == 2 || child.variation == 3) {
-          const double gain = std::min(parent.cost, 1e100) - std::min(costs[k], 1e100);
-          const double parts[] = {1.0, child.reach, child.reach * child.reach, child.mixing};
-          for (std::size_t j = 0; j < island.gains.size(); ++j) island.gains[j] += gain * parts[j];
-        }
+  void select(Island& island, const Child& child, Point& point, double cost) {
+    Individual& parent = island.population[child.parent];
+    island.tries[child.variation] += 1;
+    if (cost > parent.cost || cost >= kWorst) return;
+    if (cost < parent.cost) {
+      island.wins[child.variation] += 1;
+      if (child.variation == 2 || child.variation == 3) {
+        const double gain = std::min(parent.cost, 1e100) - std::min(cost, 1e100);
+        const double parts[] = {1.0, child.reach, child.reach * child.reach, child.mixing};
+        for (std::size_t j = 0; j < island.gains.size(); ++j) island.gains[j] += gain * parts[j];
       }
-      parent = {std::move(child.point), costs[k]};
-      remember(parent);
-      island.best_since_start = std::min(island.best_since_start, costs[k]);
     }
+    parent.point.swap(point);
+    parent.cost = cost;
+    remember(parent);
+    island.best_since_start = std::min(island.best_since_start, cost);
   }
 
   // Once a generation: which moves won, and whether the island still gains.
-  void take_stock(Island& island) const {
+  void take_stock(Island& island) {
     const auto [weight, reach, reach2, mixing] = std::exchange(island.gains, {});
     if (weight > 0 && reach > 0) {
       island.reach[island.memory_at] = reach2 / reach;  // Lehmer mean: leans to the larger
@@ -324,11 +348,11 @@ class Genetic {
     island.stagnant = 0;
   }
 
-  static double median(const Island& island) {
-    std::vector<double> costs;
-    for (const Individual& one : island.population) costs.push_back(one.cost);
-    const auto middle = costs.begin() + static_cast<std::ptrdiff_t>(costs.size() / 2);
-    std::nth_element(costs.begin(), middle, costs.end());
+  double median(const Island& island) {
+    sorted_.clear();
+    for (const Individual& one : island.population) sorted_.push_back(one.cost);
+    const auto middle = sorted_.begin() + static_cast<std::ptrdiff_t>(sorted_.size() / 2);
+    std::nth_element(sorted_.begin(), middle, sorted_.end());
     return *middle;
   }
 
@@ -340,12 +364,13 @@ class Genetic {
   void migrate() {
     if (options_.migrate_every <= 0 || state_.islands.size() < 2 || state_.generation % options_.migrate_every != 0)
       return;
-    std::vector<Individual> best;
-    for (const Island& island : state_.islands)
-      best.push_back(*std::min_element(island.population.begin(), island.population.end(),
-                                       [](const Individual& a, const Individual& b) { return a.cost < b.cost; }));
-    for (std::size_t i = 0; i < state_.islands.size(); ++i)
-      settle(state_.islands[(i + 1) % state_.islands.size()], best[i]);
+    guests_.resize(islands());
+    for (std::size_t i = 0; i < islands(); ++i) {
+      const auto& population = state_.islands[i].population;
+      guests_[i] = *std::min_element(population.begin(), population.end(),
+                                     [](const Individual& a, const Individual& b) { return a.cost < b.cost; });
+    }
+    for (std::size_t i = 0; i < islands(); ++i) settle(state_.islands[(i + 1) % islands()], guests_[i]);
   }
 
   void settle(Island& island, const Individual& guest) {
@@ -386,6 +411,17 @@ class Genetic {
   const std::vector<std::vector<Point>>& seeds_;
   const GeneticHooks& hooks_;
   GeneticState state_;
+
+  // Kept from wave to wave for their memory only.
+  std::vector<Point> points_;  // the first `asked_` are the wave's
+  std::size_t asked_ = 0;
+  std::vector<Child> children_;
+  std::vector<Stretch> stretches_;
+  std::vector<char> done_;     // islands that start afresh in this wave
+  std::vector<Brood> broods_;  // an island each
+  std::vector<Individual> guests_, spare_;
+  std::vector<int> cell_;
+  std::vector<double> sorted_;
 };
 
 }  // namespace

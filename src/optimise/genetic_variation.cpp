@@ -35,31 +35,35 @@ void mutate(Eigen::VectorXd& x, Random& random) {
   }
 }
 
-Eigen::VectorXd crossover(const Brood& brood, int slot, bool turned, Random& random) {
+// The child stands at the parent and `move`, given along the principal axes or the coordinates.
+void step_from(Brood& brood, int slot, bool turned) {
+  if (turned) brood.along.noalias() = brood.axes() * brood.move;
+  brood.child = vector(brood.island->population[slot].point) + (turned ? brood.along : brood.move);
+}
+
+void turn_to_axes(Brood& brood) {
+  brood.along.noalias() = brood.axes().transpose() * brood.move;
+  brood.move.swap(brood.along);
+}
+
+void crossover(Brood& brood, int slot, bool turned, Random& random) {
   const auto& population = brood.island->population;
-  const auto a = vector(population[slot].point);
   int other = tournament(brood, random);
   if (other == slot) other = draw_below(random, static_cast<int>(population.size()));
-  Eigen::VectorXd gap = vector(population[other].point) - a;
-  if (turned) gap = (brood.axes.transpose() * gap).eval();
-  for (double& d : gap) {
+  brood.move = vector(population[other].point) - vector(population[slot].point);
+  if (turned) turn_to_axes(brood);
+  for (double& d : brood.move) {
     const double u = random.uniform();
     const double power = 1.0 / (kCrossoverEta + 1.0);
     const double beta = u < 0.5 ? std::pow(2 * u, power) : std::pow(1.0 / (2 * (1 - u)), power);
     const double near = 0.5 * (1 - beta), far = 0.5 * (1 + beta);
     d *= random.uniform() < 0.5 ? near : far;
   }
-  Eigen::VectorXd x = a;
-  if (turned) {
-    x += brood.axes * gap;
-  } else {
-    x += gap;
-  }
-  mutate(x, random);
-  return x;
+  step_from(brood, slot, turned);
+  mutate(brood.child, random);
 }
 
-Eigen::VectorXd difference(const Brood& brood, int slot, bool turned, Child& child, Random& random) {
+void difference(Brood& brood, int slot, bool turned, Child& child, Random& random) {
   const Island& island = *brood.island;
   const int size = static_cast<int>(island.population.size());
   const int cell = draw_below(random, static_cast<int>(island.reach.size()));
@@ -73,23 +77,20 @@ Eigen::VectorXd difference(const Brood& brood, int slot, bool turned, Child& chi
   int a = draw_below(random, size), b = draw_below(random, size);
   while (a == slot) a = draw_below(random, size);
   while (b == slot || b == a) b = draw_below(random, size);
-  const auto x = vector(island.population[slot].point);
-  Eigen::VectorXd move = child.reach * (vector(island.population[best].point) - x + vector(island.population[a].point) -
-                                        vector(island.population[b].point));
-  if (turned) move = (brood.axes.transpose() * move).eval();
-  const int always = draw_below(random, static_cast<int>(x.size()));
-  for (int j = 0; j < x.size(); ++j)
-    if (random.uniform() >= child.mixing && j != always) move[j] = 0;
-  if (turned) return x + brood.axes * move;
-  return x + move;
+  brood.move = child.reach * (vector(island.population[best].point) - vector(island.population[slot].point) +
+                              vector(island.population[a].point) - vector(island.population[b].point));
+  if (turned) turn_to_axes(brood);
+  const int always = draw_below(random, static_cast<int>(brood.move.size()));
+  for (int j = 0; j < brood.move.size(); ++j)
+    if (random.uniform() >= child.mixing && j != always) brood.move[j] = 0;
+  step_from(brood, slot, turned);
 }
 
-Eigen::VectorXd ensemble(const Brood& brood, Random& random) {
+void ensemble(Brood& brood, Random& random) {
   const auto& population = brood.island->population;
   const double scale = std::exp(0.4 * random.normal()) / std::sqrt(static_cast<double>(population.size()));
-  Eigen::VectorXd x = brood.centre;
-  for (const Individual& one : population) x += (scale * random.normal()) * (vector(one.point) - brood.mean);
-  return x;
+  brood.child = brood.centre;
+  for (const Individual& one : population) brood.child += (scale * random.normal()) * (vector(one.point) - brood.mean);
 }
 
 }  // namespace
@@ -99,63 +100,63 @@ double reflect(double x) {
   return x > 1.0 ? 2.0 - x : x;
 }
 
-Brood look_at(const Island& island, int tournament_size) {
-  const auto& population = island.population;
+void Brood::look_at(const Island& one, int tournament_size) {
+  const auto& population = one.population;
   const int size = static_cast<int>(population.size());
   const auto n = static_cast<Eigen::Index>(population.front().point.size());
-  Brood brood;
-  brood.island = &island;
-  brood.tournament = tournament_size;
-  brood.by_cost.resize(size);
-  std::iota(brood.by_cost.begin(), brood.by_cost.end(), 0);
-  std::stable_sort(brood.by_cost.begin(), brood.by_cost.end(),
-                   [&](int a, int b) { return population[a].cost < population[b].cost; });
-  Eigen::MatrixXd points(n, size);
+  island = &one;
+  tournament = tournament_size;
+  by_cost.resize(size);
+  std::iota(by_cost.begin(), by_cost.end(), 0);
+  std::sort(by_cost.begin(), by_cost.end(), [&](int a, int b) {
+    return population[a].cost < population[b].cost || (population[a].cost == population[b].cost && a < b);
+  });
+  points.resize(n, size);
   for (int k = 0; k < size; ++k) points.col(k) = vector(population[k].point);
-  brood.mean = points.rowwise().mean();
-  brood.centre = Eigen::VectorXd::Zero(n);
+  mean = points.rowwise().mean();
+  centre.setZero(n);
   double weights = 0;
   for (int k = 0; k < size / 2; ++k) {
     const double weight = std::log(size / 2 + 0.5) - std::log(k + 1.0);
-    brood.centre += weight * points.col(brood.by_cost[k]);
+    centre += weight * points.col(by_cost[k]);
     weights += weight;
   }
-  brood.centre /= weights;
-  const Eigen::MatrixXd spread = points.colwise() - brood.mean;
-  brood.axes = Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(spread * spread.transpose()).eigenvectors();
+  centre /= weights;
+  spread = points.colwise() - mean;
+  square.noalias() = spread * spread.transpose();
+  principal.compute(square);
 
   double total = 0;
   for (int v = 0; v < kVariations; ++v) {
-    brood.share[v] = (island.wins[v] + 0.5) / (island.tries[v] + 2.0);
-    total += brood.share[v];
+    share[v] = (one.wins[v] + 0.5) / (one.tries[v] + 2.0);
+    total += share[v];
   }
-  for (double& share : brood.share) share = kFloor + (1 - kVariations * kFloor) * share / total;
-  return brood;
+  for (double& s : share) s = kFloor + (1 - kVariations * kFloor) * s / total;
 }
 
-Child make_child(const Brood& brood, int slot, Random& random) {
+Child make_child(Brood& brood, int slot, Random& random, Point& point) {
   Child child;
+  child.parent = slot;
   double at = random.uniform();
   while (child.variation < kVariations - 1 && at >= brood.share[child.variation]) at -= brood.share[child.variation++];
-  Eigen::VectorXd x;
   switch (child.variation) {
     case 0:
-      x = crossover(brood, slot, false, random);
+      crossover(brood, slot, false, random);
       break;
     case 1:
-      x = crossover(brood, slot, true, random);
+      crossover(brood, slot, true, random);
       break;
     case 2:
-      x = difference(brood, slot, false, child, random);
+      difference(brood, slot, false, child, random);
       break;
     case 3:
-      x = difference(brood, slot, true, child, random);
+      difference(brood, slot, true, child, random);
       break;
     default:
-      x = ensemble(brood, random);
+      ensemble(brood, random);
   }
-  child.point.resize(x.size());
-  for (Eigen::Index j = 0; j < x.size(); ++j) child.point[j] = reflect(x[j]);
+  point.resize(brood.child.size());
+  std::transform(brood.child.begin(), brood.child.end(), point.begin(), reflect);
   return child;
 }
 

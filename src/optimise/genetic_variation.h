@@ -19,25 +19,30 @@
 namespace servodx {
 
 struct Child {
-  Point point;
   int parent = 0;  // slot
   int variation = 0;
   double reach = 0, mixing = 0;  // of a difference; remembered if it wins
 };
 
-// The island as the variations see it, made once a generation.
+// An island as the variations see it. Looking again, a generation later, asks for no memory but a vector that Eigen
+// takes to turn the axes.
 struct Brood {
   const Island* island = nullptr;
   std::vector<int> by_cost;  // slots, best first
-  Eigen::MatrixXd axes;      // columns: principal axes of the population
-  Eigen::VectorXd centre;    // weighted, of the better half
-  Eigen::VectorXd mean;      // of all
+  Eigen::MatrixXd points;    // columns: the population
+  Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> principal;
+  Eigen::VectorXd centre;  // weighted, of the better half
+  Eigen::VectorXd mean;    // of all
   std::array<double, kVariations> share{};
   int tournament = 2;
+  Eigen::MatrixXd spread, square;  // work space, as is all that follows
+  Eigen::VectorXd child, move, along;
+
+  void look_at(const Island& one, int tournament_size);
+  const Eigen::MatrixXd& axes() const { return principal.eigenvectors(); }  // columns: principal, of the population
 };
 
-Brood look_at(const Island& island, int tournament);
-Child make_child(const Brood& brood, int slot, Random& random);
+Child make_child(Brood& brood, int slot, Random& random, Point& point);
 
 double reflect(double x);  // folds any finite number into [0, 1]
 

@@ -117,6 +117,18 @@ TEST_F(MainJob, AnInterruptedTuneWritesTheBestSoFar) {
   EXPECT_NE(bytes_of(streams / "out").find("interrupted"), std::string::npos);
 }
 
+// A population of whole batches, so that a generation ends where a wave does.
+TEST_F(MainJob, AResumedSearchEndsAsTheWholeOne) {
+  const std::string call =
+      "tune t1.csv t2.csv --params table.csv --rig rig.toml --effects none --rounds 1 --population 64 --quiet ";
+  ASSERT_EQ(desk().run(call + "--generations 11 --checkpoint whole.search -o whole.csv").code, 0);
+  ASSERT_EQ(desk().run(call + "--generations 7 --checkpoint cut.search -o cut.csv").code, 0);
+  EXPECT_NE(bytes_of(desk() / "cut.search"), bytes_of(desk() / "whole.search"));
+  ASSERT_EQ(desk().run(call + "--generations 11 --checkpoint cut.search --resume --threads 1 -o cut.csv").code, 0);
+  EXPECT_EQ(bytes_of(desk() / "cut.search"), bytes_of(desk() / "whole.search"));
+  EXPECT_EQ(bytes_of(desk() / "cut.csv"), bytes_of(desk() / "whole.csv"));
+}
+
 TEST_F(MainJob, BaselineRefusesLogsThatTunedTheTableAndTooFewLogs) {
   ASSERT_EQ(tuned().code, 0) << tuned().err;
   expect_refused(desk().run("baseline t1.csv b2.csv b3.csv --params tuned.csv --rig rig.toml -o base.json"),

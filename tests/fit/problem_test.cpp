@@ -10,12 +10,24 @@
 #include "fit/identifiability.h"
 #include "fit/support.h"
 #include "optimise/box_least_squares.h"
+#include "optimise/genetic.h"
 
 namespace {
 std::size_t bytes_asked_for = 0;
 }
 
-// Counted in this program, whose tests run one at a time.
+// Counted in this program, whose tests run one at a time. Eigen asks malloc; where that cannot be watched, what C++ asks
+// for is.
+#if defined(__GLIBC__) && !defined(__SANITIZE_ADDRESS__)
+constexpr bool sees_eigen = true;
+extern "C" void* __libc_malloc(std::size_t size);
+extern "C" void* malloc(std::size_t size) noexcept {
+#pragma omp atomic
+  bytes_asked_for += size;
+  return __libc_malloc(size);
+}
+#else
+constexpr bool sees_eigen = false;
 void* operator new(std::size_t size) {
 #pragma omp atomic
   bytes_asked_for += size;
@@ -24,6 +36,7 @@ void* operator new(std::size_t size) {
 }
 void operator delete(void* p) noexcept { std::free(p); }
 void operator delete(void* p, std::size_t) noexcept { std::free(p); }
+#endif
 
 namespace servodx {
 namespace {
@@ -113,6 +126,39 @@ TEST(FitProblem, AGenerationsCostsAskForNoMemoryButTheirOwn) {
     const std::size_t before = bytes_asked_for;
     const std::vector<double> costs = problem.costs(points, RobustLoss::compressed, 3.0, ranking);
     EXPECT_EQ(bytes_asked_for - before, costs.size() * sizeof(double));
+  }
+}
+
+// Everything between two generations: children, costs, selection, archive, migration, islands that start afresh.
+TEST(FitProblem, AGenerationOfTheSearchAsksForNoMemoryButItsCosts) {
+  const TwoLogs logs;
+  FitProblem problem({&logs.a, &logs.b}, logs.truth, logs.free(), {.threads = 1});
+  const auto n = static_cast<std::size_t>(problem.n());
+  const std::vector<std::vector<Point>> seeds = {{problem.start()}, {}};
+  GeneticOptions o;
+  o.population = 64;  // a wave is a generation
+  o.generations = 40;
+  o.stagnation = 3;
+  o.stagnation_gain = 0.3;
+  o.migrate_every = 2;
+  GeneticHooks hooks;
+  hooks.screen = [&](std::span<const Point> points) {
+    return problem.costs(points, RobustLoss::compressed, 3.0, true);
+  };
+  std::vector<std::size_t> asked;
+  asked.reserve(100);
+  hooks.generation = [&](const GeneticState&) {
+    asked.push_back(bytes_asked_for);
+    return true;
+  };
+  const GeneticState end = minimise_genetic(problem.n(), hooks.screen, o, seeds, hooks).state;
+  EXPECT_GT(end.restarts, 2);
+  // Eigen takes a vector to turn the axes of each island that has children.
+  const std::size_t costs = 64 * sizeof(double), eigen = sees_eigen ? seeds.size() * n * sizeof(double) : 0;
+  constexpr std::size_t warm = 5;  // generations in which the archive fills
+  for (std::size_t k = warm; k + 1 < asked.size(); ++k) {
+    EXPECT_GE(asked[k + 1] - asked[k], costs);
+    EXPECT_LE(asked[k + 1] - asked[k], costs + eigen) << k;
   }
 }
 
