@@ -32,8 +32,8 @@ Log test_log(const rig::RigModel& valve, const std::string& fault, double severi
 
 rig::RigRun preflight(std::uint64_t seed) {
   rig::RigRun run;
-  run.excitation = "preflight_slew";
-  run.duration = 1.15;
+  run.excitation = "preflight_wear";
+  run.duration = 2.75;
   run.seed = seed;
   return run;
 }

@@ -48,7 +48,7 @@ Condition random_condition(Random& random);
 // The log of one test as a file would hold it.
 Log test_log(const rig::RigModel& valve, const std::string& fault, double severity, const Condition& at,
              rig::RigRun run);
-// A preflight test: step, slews, two cycles at 5 Hz and a sine of 30 %.
+// A preflight test: step, slews, two cycles at 5 Hz, a slow triangle and a sine of 30 %.
 rig::RigRun preflight(std::uint64_t seed);
 
 Recording recording_of(double at, const CheckResult& result);
