@@ -124,10 +124,10 @@ Stimulus preflight(const RigModel& m, const Shape& s) {
   });
 }
 // The same with what it lacks to tell all wear apart. Reversals of rated current between step and sine: slewing draws
-// all of the pilot flow through the filter, which a small step does not. After the sine a slow triangle, if any, which
-// holds the spool about null, where leakage and laps are parted. A sine of 30 % after that, at which a spool still moves
-// whose friction or weak motor holds it still in the small one. Whole cycles but for the last half: the piston comes back
-// to within 3 mm. The offset is compensated first.
+// all of the pilot flow through the filter, which a small step does not. After the sine a slow triangle, if any: the
+// spool creeps through its laps, where these and the leakage part. A sine of 30 % after that, at which a spool still
+// moves whose friction or weak motor holds it still in the small one. Whole cycles but for the last half: the piston
+// comes back to within a few millimetres. The offset is compensated first.
 Stimulus slews_and_sines(const RigModel& m, const Shape& s, int reversals, double triangles) {
   const double a = or_else(s.amplitude, 0.04), f = or_else(s.frequency, 5.0);
   constexpr double slews = 0.35, reversal = 0.03, rest = 0.08, triangle_frequency = 2.0, large_frequency = 10.0;
@@ -257,8 +257,7 @@ const std::vector<ExcitationInfo>& excitations() {
        "preflight with reversals of full current before the sine and a sine of 30 % after it; 1.15 s",
        preflight_slew},
       {"preflight_wear",
-       "preflight_slew with 24 reversals in place of 4 and a slow triangle of 6 % across null; 2.75 s",
-       preflight_wear},
+       "preflight_slew with 24 reversals in place of 4 and a slow triangle of 6 % across null; 2.75 s", preflight_wear},
       {"preflight_full",
        "open loop, null compensated: rest, step of 10 % out and back, sines of 4 % at 2, 3, 5 and 8 Hz, 2 s each; 9.5 "
        "s",
