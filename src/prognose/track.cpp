@@ -15,6 +15,8 @@ constexpr double prior_sd = 0.5;   // [of a severity's range] about health: weak
 constexpr std::size_t tried = 3;   // starts that are followed, those of least misfit
 constexpr int few = 4, many = 16;  // iterations of each, and of the best
 constexpr double healthier = 3;    // [spreads] by which a row may come out better than tuned
+// What is lost of may be larger than the model has it, to half of the drop over a clean filter.
+constexpr double larger_clean = 0.41421356237309515;
 
 // Whitened by how wrong the model is where things move, every sample for itself: what is constant in that error is the
 // same in every check of one kind, and a trend does not see it.
@@ -48,7 +50,7 @@ FreeValue severity_value(const Fault& fault) {
   f.start = fault.healthy;
   const double side = fault.worst > fault.healthy ? -1 : 1;
   const double beyond = fault.log_scale   ? fault.healthy * std::exp(side * healthier * fault.spread)
-                        : fault.part_lost ? fault.healthy + side * (1 / std::sqrt(least_drop) - 1)
+                        : fault.part_lost ? fault.healthy + side * larger_clean
                                           : fault.healthy;
   f.lower = std::min(beyond, fault.worst);
   f.upper = std::max(beyond, fault.worst);

@@ -16,10 +16,6 @@
 
 namespace servodx {
 
-// Of a part that is lost: what it is lost of may be larger than the model has it, to this drop over the whole part's.
-// That far, as what is wrong beside it (the bores of the pilot stage) is worth as much as a clean filter.
-inline constexpr double least_drop = 0.1;
-
 struct TrackedParameter {
   int id = 0;  // row 1..41
   const Fault* fault = nullptr;

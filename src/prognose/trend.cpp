@@ -52,7 +52,8 @@ struct Series {
   std::vector<double> temperature;  // [K]
 
   static constexpr double most_lost = 0.999;
-  // Below `least_drop` no reading goes: from there on straight, so that every drop has a part.
+  // Below half of the drop over the whole part a reading ends: from there on straight, so that every drop has a part.
+  static constexpr double least_drop = 0.5;
   static double lost_at(double drop) {
     const double from = std::max(drop, least_drop);
     return 1 - 1 / std::sqrt(from) + (drop - from) * lost_per_drop(drop);
@@ -114,7 +115,7 @@ void append(Series& s, const Recording& r, const Check& c) {
   if (s.paper()) p.features.push_back(std::log(c.expected > 0 ? c.expected : 1.0));
   if (s.scale == Series::Scale::drop) {
     constexpr double near = 1.001;
-    p.at_most = p.y < near * least_drop;
+    p.at_most = p.y < near * Series::least_drop;
     p.base_shown = beside_laminar(z), p.features.push_back(1 - p.base_shown);
   }
   s.points.push_back(std::move(p));
