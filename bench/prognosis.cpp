@@ -1,12 +1,13 @@
 // The prognosis study: figures 8 to 13 of Borello et al. 2009, lives of random valves to their end, progressive series
-// of a rig, the store at size, and the monitor's speed. Its parts are in bench/prognosis/.
+// of a rig, the store at size, and the monitor's speed. Its parts are in bench/prognosis/. Lives are checked by the
+// excitation preflight_slew, or by preflight_wear where `--test preflight_wear` stands first.
 //
 //   servodx_prognosis figures TUNED RIG.toml RIG_MODEL.toml OUT_DIR
 //   servodx_prognosis lives   TUNED RIG.toml RIG_MODEL.toml OUT_DIR [UNITS [CHECKS [FIRST [DEGRADATION...]]]]   of each
 //   servodx_prognosis series  TUNED RIG.toml OUT_DIR SERIES_DIR...                       t01.csv, t02.csv, ...
 //   servodx_prognosis store   FILE ROWS
-//   servodx_prognosis predictor UNITS                                                   lives with the truth for a reading
-//   servodx_prognosis speed   TUNED RIG.toml RIG_MODEL.toml                               of the monitor
+//   servodx_prognosis predictor UNITS                                                   lives with the truth for a
+//   reading servodx_prognosis speed   TUNED RIG.toml RIG_MODEL.toml                               of the monitor
 #include <algorithm>
 #include <cstdio>
 
@@ -16,9 +17,11 @@ namespace servodx::study {
 namespace {
 
 int run(int argc, char** argv) {
+  const char* test = "preflight_slew";
+  if (argc > 2 && std::string_view(argv[1]) == "--test") test = argv[2], argv += 2, argc -= 2;
   const std::string what = argc > 1 ? argv[1] : "";
   const auto bench = [&](bool with_model) {
-    Bench b{read_table(argv[2]), read_rig_file(argv[3]), {}};
+    Bench b{read_table(argv[2]), read_rig_file(argv[3]), {}, test};
     if (with_model) b.model = rig::read_rig_model(argv[4]);
     return b;
   };
@@ -32,7 +35,8 @@ int run(int argc, char** argv) {
   if (what == "speed" && argc == 5) return speed(bench(true)), 0;
   if (what == "store" && argc == 4) return store(argv[2], std::stol(argv[3])), 0;
   std::fprintf(stderr,
-               "usage: servodx_prognosis figures|lives TUNED RIG.toml RIG_MODEL.toml OUT [UNITS [CHECKS [FIRST "
+               "usage: servodx_prognosis [--test preflight_wear] figures|lives TUNED RIG.toml RIG_MODEL.toml OUT "
+               "[UNITS [CHECKS [FIRST "
                "[DEGRADATION...]]]]\n"
                "       servodx_prognosis series TUNED RIG.toml OUT SERIES_DIR...\n"
                "       servodx_prognosis store FILE ROWS\n"

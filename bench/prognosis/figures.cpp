@@ -65,7 +65,7 @@ const std::array<Theory, std::size(degradations)> theories = {{{"theory: pilot p
                                                                {"theory: no lap left", of_clearance}}};
 
 rig::RigRun test_of(const Degradation& d, std::uint64_t seed) {
-  rig::RigRun run = preflight(seed);
+  rig::RigRun run = preflight("preflight_slew", seed);
   const std::string shown = d.check;
   if (shown == "mean_error") run.excitation = "flight", run.duration = 20, run.offset = true;
   if (shown == "correlation@5Hz") run.amplitude = 0.025, run.duration = 1.6;
@@ -85,7 +85,7 @@ ChartPanel figure_13(const Bench& b, std::string& csv) {
     const double at = 2.5 * k;
     const Condition condition = random_condition(random);
     const CheckResult r = check(test_log(b.model, "feedback_wire_backlash", 20e-6 * at / life, condition,
-                                         preflight(700 + static_cast<std::uint64_t>(k))),
+                                         preflight(b.test, 700 + static_cast<std::uint64_t>(k))),
                                 b.tuned, b.rig, {.threads = 1, .last = last});
     last = r.tracked;
     h.recordings.push_back(recording_of(at, r));

@@ -30,10 +30,10 @@ Log test_log(const rig::RigModel& valve, const std::string& fault, double severi
   return log;
 }
 
-rig::RigRun preflight(std::uint64_t seed) {
+rig::RigRun preflight(const std::string& test, std::uint64_t seed) {
   rig::RigRun run;
-  run.excitation = "preflight_slew";
-  run.duration = 1.15;
+  run.excitation = test;
+  run.duration = test == "preflight_wear" ? 2.75 : 1.15;
   run.seed = seed;
   return run;
 }

@@ -17,6 +17,7 @@ struct Bench {
   Table tuned;
   RigFile rig;
   rig::RigModel model;
+  std::string test;  // of the lives: preflight_slew or preflight_wear
 };
 
 // How a seeded-fault test states what a parameter reads at its end: as it is, as a multiple of what that valve was
@@ -48,8 +49,8 @@ Condition random_condition(Random& random);
 // The log of one test as a file would hold it.
 Log test_log(const rig::RigModel& valve, const std::string& fault, double severity, const Condition& at,
              rig::RigRun run);
-// A preflight test: step, slews, two cycles at 5 Hz and a sine of 30 %.
-rig::RigRun preflight(std::uint64_t seed);
+// One of them at its full length.
+rig::RigRun preflight(const std::string& test, std::uint64_t seed);
 
 Recording recording_of(double at, const CheckResult& result);
 const Check* find(const std::vector<Check>& checks, const std::string& name);

@@ -56,7 +56,7 @@ Table own_table(const Bench& b, const std::string& name, const rig::RigModel& va
     std::vector<Log> logs = {kept_log(b, tests + "/a1.csv", valve, {}, mixed)};
     for (const double celsius : {20.0, 40.0, 60.0, -10.0})
       logs.push_back(kept_log(b, fmt::format("{}/a{}.csv", tests, logs.size() + 1), valve, {.celsius = celsius},
-                              preflight(random.bits64())));
+                              preflight(b.test, random.bits64())));
     TuneOptions options;
     options.quiet = true;
     options.threads = 1;
@@ -124,7 +124,7 @@ ValveHistory seeded_looks(const Bench& b, int v, const Degradation* failed_by, c
       const Condition at{30.0 + 10 * k, 0.005, 0};
       const Log log =
           test_log(valve, failed_by ? failed_by->name : "", failed_by ? end_of(*failed_by, b.model, valve).failed : 0.0,
-                   at, preflight(900 + static_cast<std::uint64_t>(k)));
+                   at, preflight(b.test, 900 + static_cast<std::uint64_t>(k)));
       h.recordings.push_back(recording_of(k, check(log, own, b.rig, {.threads = 1, .last = {}})));
     }
   });
@@ -141,7 +141,7 @@ ValveHistory history_of(const Bench& b, const Unit& unit, int checks, const std:
     for (int k = 0; k < checks; ++k) {
       const double s = 0.95 * k / (checks - 1.0);  // the last check a little before the end
       const Condition at = random_condition(random);
-      rig::RigRun run = preflight(random.bits64());
+      rig::RigRun run = preflight(b.test, random.bits64());
       if (unit.degradation) run.faults[unit.degradation->name] = severity_at(end, unit.progress(s));
       const Log log = kept_log(b, fmt::format("{}/t{:02}.csv", tests, k + 1), valve, at, run);
       const CheckResult r = check(log, own, b.rig, {.threads = 1, .last = last});

@@ -105,12 +105,13 @@ Stimulus sweep(const RigModel& m, const Shape& s) {
   const double a = or_else(s.amplitude, 0.15), low = 1.0, high = 150.0, rate = std::log(high / low) / s.duration;
   return open_loop(m, [=](double t) { return a * std::sin(two_pi * low * (std::exp(rate * t) - 1.0) / rate); });
 }
+double triangle_at(double turns) {
+  const double turn = turns + 0.25;
+  return 1.0 - 4.0 * std::fabs(turn - std::floor(turn) - 0.5);
+}
 Stimulus triangle(const RigModel& m, const Shape& s) {
   const double a = or_else(s.amplitude, 1.0), f = or_else(s.frequency, 0.5);
-  return open_loop(m, [=](double t) {
-    const double turn = t * f + 0.25;
-    return a * (1.0 - 4.0 * std::fabs(turn - std::floor(turn) - 0.5));
-  });
+  return open_loop(m, [=](double t) { return a * triangle_at(f * t); });
 }
 // Borello's two preflight checks in one log: rest, small step out and back, rest, small slow sine.
 Stimulus preflight(const RigModel& m, const Shape& s) {
@@ -122,27 +123,32 @@ Stimulus preflight(const RigModel& m, const Shape& s) {
     return a * std::sin(two_pi * f * (t - 0.4));
   });
 }
-// The same with what it lacks to tell all wear apart, in 0.2 s more. Reversals of rated current between step and sine:
-// slewing draws all of the pilot flow through the filter, which a small step does not. A sine of 30 % after it, at
-// which a spool still moves whose friction or weak motor holds it still in the small one. Whole cycles but for the last
-// half: the piston comes back to within 3 mm. The offset is compensated first.
-Stimulus preflight_slew(const RigModel& m, const Shape& s) {
+// The same with what it lacks to tell all wear apart. Reversals of rated current between step and sine: slewing draws
+// all of the pilot flow through the filter, which a small step does not. After the sine a slow triangle, if any: the
+// spool creeps through its laps, where these and the leakage part. A sine of 30 % after that, at which a spool still
+// moves whose friction or weak motor holds it still in the small one. Whole cycles but for the last half: the piston
+// comes back to within a few millimetres. The offset is compensated first.
+Stimulus slews_and_sines(const RigModel& m, const Shape& s, int reversals, double triangles) {
   const double a = or_else(s.amplitude, 0.04), f = or_else(s.frequency, 5.0);
-  constexpr double slews = 0.35, reversal = 0.03, rest = 0.47, small = 0.55, large_frequency = 10.0;
-  const double large = small + 2 / f, end = large + 1.5 / large_frequency;
+  constexpr double slews = 0.35, reversal = 0.03, rest = 0.08, triangle_frequency = 2.0, large_frequency = 10.0;
+  const double slewed = slews + reversal * reversals, small = slewed + rest, slow = small + 2 / f,
+               large = slow + triangles / triangle_frequency, end = large + 1.5 / large_frequency;
   Stimulus stimulus = open_loop(m, [=](double t) {
     if (t < 0.1) return 0.0;
     if (t < 0.25) return 0.10;
     if (t < slews) return 0.0;
-    if (t < rest) return static_cast<int>((t - slews) / reversal + 1e-9) % 2 == 0 ? 1.0 : -1.0;
+    if (t < slewed - 1e-9) return static_cast<int>((t - slews) / reversal + 1e-9) % 2 == 0 ? 1.0 : -1.0;
     if (t < small) return 0.0;
-    if (t < large) return a * std::sin(two_pi * f * (t - small));
+    if (t < slow) return a * std::sin(two_pi * f * (t - small));
+    if (t < large) return 1.5 * a * triangle_at(triangle_frequency * (t - slow));
     if (t < end) return 0.3 * std::sin(two_pi * large_frequency * (t - large));
     return 0.0;
   });
   stimulus.compensated = true;
   return stimulus;
 }
+Stimulus preflight_slew(const RigModel& m, const Shape& s) { return slews_and_sines(m, s, 4, 0); }
+Stimulus preflight_wear(const RigModel& m, const Shape& s) { return slews_and_sines(m, s, 24, 2); }
 // Both checks with the offset compensated: rest, small step out and back long enough to settle cold, rest, then whole
 // cycles at several frequencies.
 Stimulus preflight_full(const RigModel& m, const Shape& s) {
@@ -250,6 +256,8 @@ const std::vector<ExcitationInfo>& excitations() {
       {"preflight_slew",
        "preflight with reversals of full current before the sine and a sine of 30 % after it; 1.15 s",
        preflight_slew},
+      {"preflight_wear",
+       "preflight_slew with 24 reversals in place of 4 and a slow triangle of 6 % across null; 2.75 s", preflight_wear},
       {"preflight_full",
        "open loop, null compensated: rest, step of 10 % out and back, sines of 4 % at 2, 3, 5 and 8 Hz, 2 s each; 9.5 "
        "s",
