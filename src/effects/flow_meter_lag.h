@@ -1,8 +1,9 @@
 // Lag of the flow meters of a test stand: a gear or turbine meter and its filter follow a change of flow within some
 // tenths of a second, so that the two branches of a sweep part by rate times lag, which looks like hysteresis and is
-// none. First order, stepped from sample to sample (implicit Euler): true for lags above half a sample.
+// none. First order, from sample to sample.
 #pragma once
 #include "effects/effect.h"
+#include "effects/sampled_lag.h"
 
 namespace servodx {
 
@@ -21,19 +22,11 @@ struct FlowMeterLag {
 
   template <class T>
   struct Sensors {
-    T last[n_parameters];
-    double time = 0;
-    bool begun = false;
+    SampledLag<T> meter[n_parameters];
   };
   template <class T>
   static void observe(Sensors<T>& m, double time, T* shown, const T* q) {
-    for (int k = 0; k < n_parameters; ++k) {
-      T& x = shown[shown_at[k]];
-      if (m.begun) x = x - q[k] / (q[k] + T(time - m.time)) * (x - m.last[k]);
-      m.last[k] = x;
-    }
-    m.time = time;
-    m.begun = true;
+    for (int k = 0; k < n_parameters; ++k) shown[shown_at[k]] = m.meter[k](time, shown[shown_at[k]], q[k]);
   }
 };
 

@@ -20,13 +20,15 @@ struct MagneticHysteresis {
       {"hysteresis_width", "-", 0.0, 0.0, 0.06, 0.012,
        "full width of the loop of a large cycle, fraction of rated current"},
       {"hysteresis_reach", "-", 0.5, 0.02, 1.0, 0.5,
-       "amplitude from which the loop has its full width, fraction of rated current", false},
+       "amplitude from which the loop has its full width, fraction of rated current; further where so wide a loop would "
+       "leave small motions no gain",
+       false},
       {"hysteresis_fading", "-", 0.5, 0.2, 1.5, 0.5,
        "width of the loop of each play over that of the play with twice its threshold", false},
       {"magnetic_spring", "-", 1.0, 0.0, 2.0, 1.0,
        "the magnets' spring over the armature's net stiffness: how much the iron's flux follows the angle", false},
   };
-  static constexpr int elements = 7;           // down to 1/64 of the reach
+  static constexpr int elements = 7;            // down to 1/64 of the reach
   static constexpr double largest_loss = 0.45;  // of the gain at small loops; with the spring at its bound still stable
 
   template <class T>
@@ -45,17 +47,24 @@ struct MagneticHysteresis {
     using std::max;
     using std::min;
     const T flux = current + q[3] * spring;  // [A]
-    T threshold = q[1] * rated, share = T(1.0), shares = T(0.0), slopes = T(0.0), sum = T(0.0);
+    T share = T(1.0), slope = T(1.0), shares = T(0.0), slopes = T(0.0);
+    for (int j = 0; j < elements; ++j) {
+      shares = shares + share;
+      slopes = slopes + slope;
+      share = share * q[2];
+      slope = slope * T(2.0) * q[2];
+    }
+    const T weight = q[0] * rated * T(0.5) / shares;  // [A]
+    // A loop too wide for its reach opens later.
+    T threshold = max(q[1] * rated, weight * slopes * T(1.0 / largest_loss)), sum = T(0.0);
+    share = T(1.0);
     for (int j = 0; j < elements; ++j) {
       m.play[j] = max(flux - threshold, min(flux + threshold, m.play[j]));
-      const T slope = share / threshold;
-      sum = sum + slope * (m.play[j] - flux);
-      slopes = slopes + slope;
-      shares = shares + share;
+      sum = sum + share / threshold * (m.play[j] - flux);
       threshold = threshold * T(0.5);
       share = share * q[2];
     }
-    return current + min(q[0] * rated * T(0.5) / shares, T(largest_loss) / slopes) * sum;
+    return current + weight * sum;
   }
 };
 

@@ -10,6 +10,8 @@ struct RowEffect {
   double off;                    // [SI] of every row
   std::vector<int> rows;         // positions in a parameter vector
   std::vector<int> shapes = {};  // the same, of effect parameters that say how the rows act
+  double worst = 0;              // [SI] of every row: how far it may go if that is beyond the table's box
+  const char* also = nullptr;    // a name that others give it
 };
 const std::vector<RowEffect>& row_effects();
 

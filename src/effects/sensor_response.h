@@ -1,8 +1,9 @@
 // Gain error and first-order lag of the spool and pressure sensors; the piston's have rows of the table (29, 34).
-// Reported as sensor_gain_error and sensor_lag at sensor:SIGNAL. The lag is stepped from sample to sample (implicit
-// Euler): true for lags above half a sample. Gain and lag act on what the sensor shows, before its offset.
+// Reported as sensor_gain_error and sensor_lag at sensor:SIGNAL. Gain and lag act on what the sensor shows, before its
+// offset.
 #pragma once
 #include "effects/effect.h"
+#include "effects/sampled_lag.h"
 
 namespace servodx {
 
@@ -25,23 +26,21 @@ struct SensorResponse {
 
   template <class T>
   struct Sensors {
-    T last[channels];
-    double time = 0;
-    bool begun = false;
+    SampledLag<T> lag[channels];
   };
   template <class T>
   static void observe(Sensors<T>& m, double time, T* shown, const T* q) {
     for (int k = 0; k < channels; ++k) {
       T& x = shown[shown_at[k]];
-      x = x * q[2 * k];
-      if (m.begun) {
-        const T lag = q[2 * k + 1];
-        x = x - lag / (lag + T(time - m.time)) * (x - m.last[k]);
-      }
-      m.last[k] = x;
+      x = m.lag[k](time, x * q[2 * k], q[2 * k + 1]);
     }
-    m.time = time;
-    m.begun = true;
+  }
+  // What stands behind a sensor at rest that shows `x`.
+  template <class T>
+  static T behind(int signal, const T& x, const T* q) {
+    for (int k = 0; k < channels; ++k)
+      if (signal == shown_at[k]) return x / q[2 * k];
+    return x;
   }
 };
 

@@ -627,7 +627,16 @@ Explanation explain(Subject& subject, const EngineOptions& options, const Explan
       if (suffices && subject.causes()[k].prior < 1) return false;
       return p[k] <= level || abnormal;
     };
-    const auto in = [&](int c) { return std::count(now.causes.begin(), now.causes.end(), c) > 0; };
+    // In already, or it goes by a number of one that is: two names of one number would leave the first without a say.
+    const auto in = [&](int c) {
+      const auto& mine = subject.causes()[static_cast<std::size_t>(c)].numbers;
+      return std::any_of(now.causes.begin(), now.causes.end(), [&](int taken) {
+        const auto& its = subject.causes()[static_cast<std::size_t>(taken)].numbers;
+        return taken == c || std::any_of(mine.begin(), mine.end(), [&](const Number& a) {
+                 return std::any_of(its.begin(), its.end(), [&](const Number& b) { return a.name == b.name; });
+               });
+      });
+    };
     std::vector<CauseScore> order = scores;
     const auto news = [&](int c) { return p[static_cast<std::size_t>(c)] <= level; };  // by itself
     // What is new first, by itself before what is so only because the data are abnormal; then by what it promises. In

@@ -59,18 +59,19 @@ std::vector<ExplainedChannel> channels_of(const ValveSubject& subject, const std
 
 std::string name_of(const Cause& c) { return c.effect + (c.where.starts_with("sensor:") ? " at " + c.where : ""); }
 
-// How a number of a cause scatters over healthy logs. [its unit] 0 where that is not known.
-double healthy_spread(const Subject& subject, const HealthyTest& test, int cause, std::size_t number,
-                      double std_error) {
+// How a number of a cause scatters over healthy logs. [its unit] 0 where that is not known. `of`: what it is a factor
+// on.
+double healthy_spread(const Subject& subject, const HealthyTest& test, int cause, std::size_t number, double std_error,
+                      double of) {
   const Cause& c = subject.causes()[static_cast<std::size_t>(cause)];
   const Number& n = c.numbers[number];
   HealthyScore here{c.effect, c.where + (c.family.empty() ? "" : "/" + c.family), {}, 0, 1, subject.thickness()};
   for (std::size_t a = 0; n.size && a < c.probes.size(); ++a) {
     const auto& probe = c.probes[a].front();
     if (c.probes[a].size() > 1 || probe[number] == n.off) continue;
-    const double move = std::abs(probe[number] - n.off);
-    here.sizes.assign(a + 1, {0, std_error / move});
-    return move * test.spread(here, a);
+    const double unit = c.atop.empty() ? std::abs(probe[number] - n.off) : 1 / of;  // as `summarise` counts
+    here.sizes.assign(a + 1, {0, std_error / unit});
+    return unit * test.spread(here, a);
   }
   return 0;
 }
@@ -79,10 +80,10 @@ double healthy_spread(const Subject& subject, const HealthyTest& test, int cause
 std::string meaning_of(const Cause& c) {
   if (const int row = find_parameter(c.effect); row >= 0)
     return std::string(parameter_list[static_cast<std::size_t>(row)].meaning);
-  for (const EffectInfo& e : effect_list())
-    if (e.name == c.effect) return e.meaning;
   for (const RowEffect& e : row_effects())
     if (e.name == c.effect && e.where == c.where) return e.meaning;  // a lag of one sensor is not that of another
+  for (const EffectInfo& e : effect_list())
+    if (e.name == c.effect) return e.meaning;
   return {};
 }
 
@@ -100,12 +101,14 @@ ExplainedCause described(const ValveSubject& subject, const Subject& told_by, co
     if (values[j].apply && !c.curve)  // a factor on the log's own
       factor = problem->candidate(fit.point, 0)[static_cast<std::size_t>(values[j].at)] / r.value[j];
     const double error =
-        std::hypot(r.std_error[j], test ? healthy_spread(told_by, *test, r.cause, j, r.std_error[j]) : 0.0);
+        std::hypot(r.std_error[j], test ? healthy_spread(told_by, *test, r.cause, j, r.std_error[j], factor) : 0.0);
     out.parameters.push_back(
         {c.numbers[j].name, c.numbers[j].unit, factor * r.value[j], factor * error, factor * c.numbers[j].off});
   }
   for (int other : r.confusable_with)
     out.confusable_with.push_back(name_of(subject.causes()[static_cast<std::size_t>(other)]));
+  for (const RowEffect& e : row_effects())
+    if (e.name == c.effect && e.where == c.where && e.also) out.confusable_with.push_back(e.also);
   return out;
 }
 

@@ -256,14 +256,15 @@ void ValveSubject::add_causes(const RigFile& rig) {
       return FreeValue{p.name, at, std::min(p.lower, v), std::max(upper, v), false, v};
     };
     if (e.name == MainsPickup::name) {
-      constexpr Signal signals[MainsPickup::channels] = {Signal::spool_position, Signal::piston_position,
-                                                         Signal::pressure_a, Signal::pressure_b};
+      constexpr Signal signals[MainsPickup::sensors] = {Signal::spool_position, Signal::piston_position,
+                                                        Signal::pressure_a, Signal::pressure_b};
       for (int c = 0; c < MainsPickup::channels; ++c) {
-        if (!shown(signals[c])) continue;
+        const bool of_sensor = c < MainsPickup::sensors;
+        if (of_sensor && !shown(signals[c])) continue;
         Cause cause;
         cause.effect = e.name;
-        cause.where = "sensor:" + std::string(info(signals[c]).name);
-        std::vector<FreeValue> values = {value_of(2 * MainsPickup::channels)};
+        cause.where = of_sensor ? "sensor:" + std::string(info(signals[c]).name) : "drive";
+        std::vector<FreeValue> values = {value_of(2 * MainsPickup::channels + c)};
         cause.numbers.push_back(number_of(values[0], "Hz", false));
         std::vector<double> rest = {values[0].start};
         for (std::size_t l = 0; l < logs_.size(); ++l)
@@ -393,6 +394,7 @@ void ValveSubject::add_causes(const RigFile& rig) {
       }
       cause.numbers.push_back(number_of(f, table_[at].unit, true));
       sizes.push_back(at == row::air_fraction ? std::vector<double>{2.0, 0.5, 8.0} : row_sizes(cause.numbers.back()));
+      cause.numbers.back().upper = f.upper = std::max(f.upper, e.worst);
       values.push_back(std::move(f));
     }
     for (const int at : e.shapes) {

@@ -8,6 +8,7 @@
 #include "base/pack.h"
 #include "base/sparse_dual.h"
 #include "effects/registry.h"
+#include "effects/sampled_lag.h"
 #include "integrate/rodas3.h"
 #include "model/derivative.h"
 #include "simulate/scenario.h"
@@ -180,6 +181,15 @@ struct Sensed<T, EffectList<E...>> {
       return Nothing{};
   }
   std::tuple<decltype(memory_of(E{}))...> memory;
+  static T behind([[maybe_unused]] int signal, T x, [[maybe_unused]] const T* p) {
+    (
+        [&] {
+          if constexpr (requires { E::behind(signal, x, p); })
+            x = E::behind(signal, x, p + n_parameters + EffectList<E...>::template parameter_offset<E>());
+        }(),
+        ...);
+    return x;
+  }
   void operator()([[maybe_unused]] double time, [[maybe_unused]] T* shown, [[maybe_unused]] const T* p) {
     (
         [&] {
@@ -278,13 +288,13 @@ void run_watched(const Scenario& in, const ParameterVector* const* candidates, T
   const T half = T(0.5) * (u.supply_pressure + u.return_pressure);
   y[s_p_filter] = u.supply_pressure;
   y[s_p_pilot_1] = y[s_p_pilot_2] = half;
-  // Where measured: the first sample, less the sensor's offset, and its noise put right.
-  const auto start = [&](const std::optional<double>& measured, int offset, int error, const T& otherwise) {
-    return measured ? T(*measured) - p[offset] + p[error] : otherwise;
+  // Where measured: what stands behind the first sample, less the sensor's offset, and its noise put right.
+  const auto start = [&](int signal, const std::optional<double>& measured, int offset, int error, const T& otherwise) {
+    return measured ? Sensed<T, Effects>::behind(signal, T(*measured) - p[offset], p.data()) + p[error] : otherwise;
   };
-  y[s_x_spool] = start(in.spool_start, nuisance::spool_offset, nuisance::spool_start, T(0.0));
-  y[s_p_a] = start(in.pressure_a_start, nuisance::pressure_a_offset, nuisance::pressure_a_start, half);
-  y[s_p_b] = start(in.pressure_b_start, nuisance::pressure_b_offset, nuisance::pressure_b_start, half);
+  y[s_x_spool] = start(0, in.spool_start, nuisance::spool_offset, nuisance::spool_start, T(0.0));
+  y[s_p_a] = start(2, in.pressure_a_start, nuisance::pressure_a_offset, nuisance::pressure_a_start, half);
+  y[s_p_b] = start(3, in.pressure_b_start, nuisance::pressure_b_offset, nuisance::pressure_b_start, half);
   y[s_x_piston] = T(in.piston_start.value_or(0.0)) / p[row::position_sensor_gain];
   y[s_v_piston] = T(in.piston_velocity_start) + p[nuisance::piston_velocity_start];
   y[s_current] = u.current;
@@ -327,6 +337,7 @@ void run_watched(const Scenario& in, const ParameterVector* const* candidates, T
   drive.rest(y[s_current], spring(), p.data(), rated);  // the history that ends at the current which holds the spool
   T current = drive(in.time[0], T(in.command[0]) + null, spring(), p.data(), rated);
   Sensed<T, Effects> sensed;
+  SampledLag<T> position_lag;
 
   for (int lane = 0; lane < lanes; ++lane)
     for (int c = 0; c < n_simulated; ++c) {
@@ -336,8 +347,8 @@ void run_watched(const Scenario& in, const ParameterVector* const* candidates, T
   const auto report = [&](std::size_t k, const Inputs<T>& now) {
     std::array<T, n_simulated> out{};
     out[0] = y[s_x_spool];
-    // A first-order lag of a smooth motion: true to first order in lag over period.
-    out[1] = p[row::position_sensor_gain] * (y[s_x_piston] - p[row::position_sensor_lag] * y[s_v_piston]);
+    out[1] = p[row::position_sensor_gain] *
+             position_lag(in.time[k], y[s_x_piston], p[row::position_sensor_lag], y[s_v_piston]);
     out[2] = y[s_p_a];
     out[3] = y[s_p_b];
     out[4] = y[s_p_pilot_1];

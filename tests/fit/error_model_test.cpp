@@ -100,7 +100,7 @@ TEST(ErrorModel, SigmaIsTheRootOfTheSumOfSquares) {
 }
 
 TEST(ErrorModel, LearnsTheFloorThatWasAdded) {
-  // The model writes the log, and white noise of four times what the log's second differences would say is added as
+  // The model writes the log, and white noise of four times what the log's differences would say is added as
   // the model's own error: floor^2 + noise^2 = (4 noise)^2 + noise^2.
   const Table table = shipped_table();
   const ParameterVector truth = candidate_of(table);

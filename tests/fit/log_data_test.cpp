@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <numbers>
+
 #include "base/random.h"
 #include "fit/support.h"
 
@@ -27,6 +29,14 @@ TEST(Noise, MotionAndStepsDoNotCount) {
   for (std::size_t k = 0; k < x.size(); ++k)
     x[k] = random.normal(0.0, 0.01) + 2.0 * std::sin(1e-2 * static_cast<double>(k)) + (k / 200 % 2 ? 5.0 : 0.0);
   EXPECT_NEAR(noise_of(x, 0.0), 0.01, 0.0015);
+}
+
+TEST(Noise, LivelyMotionDoesNotCount) {  // 50 Hz, a hundred times the noise, all of the log
+  Random random(9);
+  std::vector<double> x(4000);
+  for (std::size_t k = 0; k < x.size(); ++k)
+    x[k] = random.normal(0.0, 0.01) + std::sin(0.05 * 2 * std::numbers::pi * static_cast<double>(k));
+  EXPECT_NEAR(noise_of(x, 0.0), 0.01, 0.002);
 }
 
 TEST(Noise, IsAtLeastThatOfTheQuantisation) {

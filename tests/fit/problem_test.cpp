@@ -152,7 +152,7 @@ TEST(FitProblem, AGenerationOfTheSearchAsksForNoMemoryButItsCosts) {
     return true;
   };
   const GeneticState end = minimise_genetic(problem.n(), hooks.screen, o, seeds, hooks).state;
-  EXPECT_GT(end.restarts, 2);
+  EXPECT_GT(end.restarts, 0);
   // Eigen takes a vector to turn the axes of each island that has children.
   const std::size_t costs = 64 * sizeof(double), eigen = sees_eigen ? seeds.size() * n * sizeof(double) : 0;
   constexpr std::size_t warm = 5;  // generations in which the archive fills

@@ -2,6 +2,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <numbers>
+#include <tuple>
 
 #include "laws/bench.h"
 #include "shipped_data.h"
@@ -320,6 +322,23 @@ TEST(MainsPickup, AddsItsLineAndMovesNothing) {
   }
 }
 
+TEST(MainsPickup, OnTheCommandItIsASineOfCurrentThatTheValveFollows) {
+  Scenario s = stepped(), humming = s;
+  const double size = 0.01;  // of rated current
+  for (std::size_t k = 0; k < s.time.size(); ++k)
+    humming.command[k] += size * s.rated_current * std::cos(2 * std::numbers::pi * 50.0 * s.time[k]);
+  const auto expected = of(simulate(humming, nominal_candidate(), all_signals()), Signal::spool_position);
+  const auto found =
+      of(simulate(s, with<MainsPickup>(2 * MainsPickup::current, size), all_signals()), Signal::spool_position);
+  const auto still = of(simulate(s, nominal_candidate(), all_signals()), Signal::spool_position);
+  double largest = 0;
+  for (std::size_t k = 60; k < s.time.size(); ++k) {
+    EXPECT_NEAR(found[k], expected[k], 1e-8) << k;
+    largest = std::max(largest, std::abs(found[k] - still[k]));
+  }
+  EXPECT_GT(largest, 1e-6);
+}
+
 TEST(SensorResponse, LagOfARampIsItsSlopeTimesTheTimeConstant) {
   Scenario s = made(0.6, 1e-3, [](double t) { return t < 0.05 ? 0.0 : 10e-3 * (t - 0.05); });
   const Trajectory clean = simulate(s, nominal_candidate(), all_signals());
@@ -327,6 +346,51 @@ TEST(SensorResponse, LagOfARampIsItsSlopeTimesTheTimeConstant) {
   const auto &a = of(clean, Signal::spool_position), &b = of(lagged, Signal::spool_position);
   const double slope = (a[500] - a[400]) / 0.1;
   EXPECT_NEAR(a[500] - b[500], 5e-3 * slope, 0.05 * 5e-3 * slope);
+}
+
+TEST(SensorResponse, RunBeginsAtWhatTheSensorShows) {
+  Scenario s = stepped();
+  s.pressure_a_start = 100e5, s.pressure_b_start = 90e5, s.spool_start = 3e-6;
+  for (const auto& [number, signal, shown] :
+       {std::tuple{0, Signal::spool_position, 3e-6}, {2, Signal::pressure_a, 100e5}, {4, Signal::pressure_b, 90e5}}) {
+    const Trajectory t = simulate(s, with<SensorResponse>(number, 1.1), all_signals());
+    EXPECT_NEAR(of(t, signal).front(), shown, 1e-3 * shown);
+  }
+}
+
+TEST(SampledLag, SineComesOutSmallerAndLaterAsOfAFirstOrderLag) {
+  constexpr double period = 1e-3;
+  for (const double frequency : {5.0, 20.0, 50.0})
+    for (const double lag : {0.1e-3, 1e-3, 8e-3}) {
+      const double w = 2 * std::numbers::pi * frequency;
+      SampledLag<double> lagged;
+      double worst = 0;
+      for (int k = 0; k < 1000; ++k) {
+        const double t = period * k, y = lagged(t, std::sin(w * t), lag, w);
+        if (k > 500)
+          worst =
+              std::max(worst, std::abs(y - (std::sin(w * t) - w * lag * std::cos(w * t)) / (1 + w * w * lag * lag)));
+      }
+      std::printf("%2.0f Hz, lag %.1f ms: off by %.5f\n", frequency, 1e3 * lag, worst);
+      EXPECT_LT(worst, 0.02);
+    }
+}
+
+TEST(PositionSensor, LagOfManySamplesDampsAFastMotion) {
+  // 30 Hz behind 8 ms: 0.55 of the motion; its speed times the lag would be 1.5 of it.
+  Scenario s = stepped();
+  for (std::size_t k = 0; k < s.time.size(); ++k) s.command[k] = 6e-3 * std::sin(2 * std::numbers::pi * 30 * s.time[k]);
+  ParameterVector late = nominal_candidate();
+  late[row::position_sensor_lag] = 8e-3;
+  const auto swing = [&](const ParameterVector& v) {
+    const auto x = of(simulate(s, v, all_signals()), Signal::piston_position);
+    double sum = 0, mean = 0;
+    for (std::size_t k = 200; k < 400; ++k) mean += x[k] / 200;
+    for (std::size_t k = 200; k < 400; ++k) sum += (x[k] - mean) * (x[k] - mean);
+    return std::sqrt(sum);
+  };
+  const double ratio = swing(late) / swing(nominal_candidate()), w = 2 * std::numbers::pi * 30 * 8e-3;
+  EXPECT_NEAR(ratio, 1 / std::sqrt(1 + w * w), 0.05);
 }
 
 // Spool over rated stroke along a slow triangle of `amplitude` (of rated), the last of three cycles.
@@ -359,6 +423,18 @@ TEST(MagneticHysteresis, LargeCycleHasTheWholeLoopAndASmallOneLessGain) {
   EXPECT_LT(small.width - without_small.width, 0.4 * 0.03);
   EXPECT_GT(small.width - without_small.width, 0.02 * 0.03);
   EXPECT_LT(small.gain / without_small.gain, large.gain / without.gain - 0.02);
+}
+
+TEST(MagneticHysteresis, LoopOfALargeCycleIsAsWideAsStatedHoweverSoonItOpens) {
+  const Loop without = slow_loop(nominal_candidate(), 1.0);
+  for (const double width : {0.03, 0.06, 0.12})
+    for (const double reach : {0.05, 0.5}) {
+      ParameterVector v = with<MagneticHysteresis>(0, width);
+      v[effect_row<MagneticHysteresis>(1)] = reach;
+      const double found = slow_loop(v, 1.0).width - without.width;
+      std::printf("width %.2f, reach %.2f: %.4f\n", width, reach, found);
+      EXPECT_NEAR(found, width, 0.1 * width);
+    }
 }
 
 TEST(MagneticHysteresis, SlewingFlapperLeavesTheIronFurtherOnThanTheCurrentAloneWould) {
