@@ -1,8 +1,9 @@
 // Droop of the supply at the valve under the flow that the actuator draws: a source of finite resistance (lines, pump
 // characteristic), filled up by what stands near the valve (accumulator, hoses) with a time constant.
 //
-// Flow drawn = mean piston area times speed: leakage and compression are left out. Only where supply_pressure is not
-// measured at the valve; a measured one holds the droop already. Source: Merritt 1967, ch. 11 (supplies).
+// Flow drawn = mean piston area times speed: leakage and compression are left out. Moves the simulation only where
+// supply_pressure is not measured; a measured one holds the droop, and the blocks' replay reads it there
+// (explain/replay.h). Source: Merritt 1967, ch. 11 (supplies).
 #pragma once
 #include <tuple>
 

@@ -19,7 +19,8 @@ struct Kind {
 };
 constexpr Kind kinds[] = {{"missing flow A", "m3/s", &Balance::flow_a, false},
                           {"missing flow B", "m3/s", &Balance::flow_b, false},
-                          {"missing force", "N", &Balance::force, true}};
+                          {"missing force", "N", &Balance::force, true},
+                          {"supply pressure", "Pa", &Balance::supply, false}};
 
 double root_mean_square(const Eigen::VectorXd& x) { return std::sqrt(x.squaredNorm() / static_cast<double>(x.size())); }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "effects/registry.h"
 #include "model/derivative.h"
@@ -99,6 +100,10 @@ Balance balance_with(const Scenario& in, const Measured& measured, const Paramet
 
   // Net flows over compliance and net force over mass at every sample, the rod at rest for the flows.
   std::vector<double> rate_a(n), rate_b(n), force(n), compliance_a(n), compliance_b(n);
+  std::vector<double> supply = in.supply_pressure;
+  const double mean_supply = std::accumulate(supply.begin(), supply.end(), 0.0) / static_cast<double>(n);
+  const double droop = p[effect_row<SupplyDroop>(0)] * 0.5 * (p[row::piston_area_a] + p[row::piston_area_b]);
+  SampledLag<double> drawn;
   FrictionMemory<double> friction;
   friction.rest(0.0, smooth[0]);
   for (std::size_t k = 0; k < n; ++k) {
@@ -108,6 +113,8 @@ Balance balance_with(const Scenario& in, const Measured& measured, const Paramet
     s.y[s_x_spool] = spool.empty() ? 0.0 : spool[k];
     s.y[s_x_piston] = smooth[k];
     s.y[s_v_piston] = (smooth[std::min(k + 1, n - 1)] - smooth[k > 0 ? k - 1 : 0]) / dt;
+    if (!supply.empty())
+      supply[k] += droop * drawn(in.time[k], std::abs(s.y[s_v_piston]), p[effect_row<SupplyDroop>(1)]) - mean_supply;
     s.y[s_p_filter] = s.y[s_p_pilot_1] = s.y[s_p_pilot_2] = 0.5 * p[row::supply_pressure];
     if (k > 0) friction.move(0.0, 0.0, smooth[k - 1], smooth[k], in.time[k] - in.time[k - 1], d.breakaway);
     const Inputs<double> u{0.0, input(in.supply_pressure, k, p[row::supply_pressure]),
@@ -136,10 +143,11 @@ Balance balance_with(const Scenario& in, const Measured& measured, const Paramet
     }
     if (!whole) continue;
     // Trapezoid rule for the flows, a hat for the force.
-    double q_a = 0, q_b = 0, net = 0, hat = 0;
+    double q_a = 0, q_b = 0, net = 0, hat = 0, above = 0;
     for (std::size_t k = from; k <= to; ++k) {
       const double edge = k == from || k == to ? 0.5 : 1.0;
       q_a += edge * rate_a[k], q_b += edge * rate_b[k];
+      if (!supply.empty()) above += edge * supply[k];
       const double w = 1.0 - std::abs(in.time[k] - in.time[mid]) / side;
       net += w * force[k], hat += w;
     }
@@ -155,6 +163,7 @@ Balance balance_with(const Scenario& in, const Measured& measured, const Paramet
     out.slides.push_back(slides);
     out.force.push_back(p[row::moving_mass] * (smooth[to] - 2 * smooth[mid] + smooth[from]) / (side * side) -
                         net / hat);
+    if (!supply.empty()) out.supply.push_back(above / samples);
     if (spool.empty()) continue;
     out.spool.push_back(spool[mid]);
     out.flow_a.push_back(compliance_a[mid] * (a[to] - a[from]) / span - q_a / samples + p[row::piston_area_a] * v);

@@ -24,6 +24,9 @@ struct Balance {
   std::vector<double> time;            // [s] middle of each window
   std::vector<double> flow_a, flow_b;  // [m3/s] missing into the chamber; empty: not shown by the log
   std::vector<double> force;           // [N] missing on the piston, positive extends
+  // [Pa] what the supply pressure lies above its mean and the droop (effect supply_droop) by the flow that the rod's
+  // way draws; empty: not measured
+  std::vector<double> supply;
   // Middle of each window: what the missing may depend on.
   std::vector<double> spool, piston, velocity, load_pressure;  // [m], [m], [m/s], [Pa]
   // The rod slides all through, one way, by more than its seals give before they slip, and clear of the stops' cushions,

@@ -228,6 +228,7 @@ void run_watched(const Scenario& in, const ParameterVector* const* candidates, T
     for (int lane = 0; lane < width; ++lane) Lanes<T>::set(p[k], lane, (*candidates[lane < lanes ? lane : 0])[k]);
   if (in.command_slope) p[nuisance::command_slope] = T(*in.command_slope);
   if (in.current_measured) p[row::driver_bandwidth] = T(2e4);  // the amplifier is behind us
+  if (!in.supply_pressure.empty()) p[effect_row<SupplyDroop>(0)] = T(0.0);  // what is measured holds the droop
   // On a test stand the piston is held and displaces nothing, and a tube takes the place of the seal's leakage.
   const bool on_stand = in.ports != Ports::actuator;
   if (on_stand) p[row::piston_area_a] = p[row::piston_area_b] = T(0.0);

@@ -33,7 +33,8 @@ Read read_off(const Rehearsed& r, const std::string& cause) {
   const std::vector<CauseScore> scores = score_causes(blocks, base);
   for (const CauseScore& s : scores) {
     const Cause& c = blocks.causes()[static_cast<std::size_t>(s.cause)];
-    if (s.gain > most) most = s.gain, out.name = c.effect;
+    // The logs come from a rig whose supply sags when healthy: only healthy logs can tell that it is no news.
+    if (s.gain > most && (c.effect == cause || c.effect != "supply_droop")) most = s.gain, out.name = c.effect;
   }
   EngineOptions options;
   options.among = [&](const Cause& c) { return c.effect == cause; };
@@ -86,6 +87,26 @@ TEST(Replay, LeakageIsReadFromTheFlows) {
   ASSERT_FALSE(found.value.empty());
   EXPECT_EQ(found.name, "cross_piston_leakage");
   EXPECT_NEAR(found.value[0] - found.off[0], leak, 0.1 * leak);
+}
+
+TEST(Replay, SupplyThatSagsWithTheFlowIsReadThoughTheSimulationIsDrivenByIt) {
+  Rehearsed r(log_name, {}, all, 6);
+  const Read healthy = read_off(r, "supply_droop");
+  // What the rod draws by, added to what the rig's own supply does.
+  constexpr double resistance = 2e10, recovery = 20e-3;  // [Pa s/m3], [s]
+  const std::vector<double> x = quiet(r.log.time, r.log[Signal::piston_position]);
+  SampledLag<double> drawn;
+  std::vector<double>& supply = r.log.channels[index(Signal::supply_pressure)].value;
+  const double area = r.table[row::piston_area_a].nominal;
+  for (std::size_t k = 0; k < x.size(); ++k) {
+    const std::size_t from = k > 0 ? k - 1 : 0, to = std::min(k + 1, x.size() - 1);
+    const double speed = std::abs(x[to] - x[from]) / (r.log.time[to] - r.log.time[from]);
+    supply[k] -= drawn(r.log.time[k], resistance * area * speed, recovery);
+  }
+  const Read found = read_off(r, "supply_droop");
+  ASSERT_FALSE(found.value.empty());
+  const double before = healthy.value.empty() ? 0.0 : healthy.value[0];
+  EXPECT_NEAR(found.value[0] - before, resistance, 0.15 * resistance) << before;
 }
 
 TEST(Replay, ASensorsGainIsNoPhysics) {
