@@ -14,10 +14,11 @@
 namespace servodx::bench {
 namespace {
 
-constexpr int parameters = 25;
+constexpr int parameters = 25, most_starts = 4;
 
 struct Search {
-  double genetic = 0, local = 0, cost_over_floor = 0;
+  double genetic = 0, local = 0, cost_over_floor = 1e300;
+  int starts = 0;  // of the local stage, until one arrives
 };
 
 GeneticResult breed(const Twin& twin, int generations, bool screened) {
@@ -43,9 +44,13 @@ Search search(const Twin& twin, bool screened) {
   local.difference_step = 1e-4;
   local.least_metric = local.from_afar;
   local.cost_goal = twin.goal();
-  const LeastSquaresResult end = minimise_least_squares(problem, found.state.best.point, local);
+  // From the best points that are apart, best first: the best may lie in a wrong valley.
+  for (const Individual& start : found.state.archive) {
+    const LeastSquaresResult end = minimise_least_squares(problem, start.point, local);
+    s.cost_over_floor = std::min(s.cost_over_floor, end.misfit / twin.floor);
+    if (++s.starts == most_starts || end.misfit <= twin.goal()) break;
+  }
   s.local = thread_seconds() - begun - s.genetic;
-  s.cost_over_floor = end.misfit / twin.floor;
   return s;
 }
 
@@ -63,15 +68,18 @@ void genetic_rows(Report& report, const Choice& choice) {
     total_in_doubles.push_back(in_doubles.genetic + in_doubles.local);
   }
   const double seconds = median_of(total);
-  report.add({"genetic search 50 x 100 and local stage, 10 s log, one core", "15 s", "6 s",
-              fmt::format("{:.1f} s", seconds),
-              fmt::format("{:.1f} s of it local; ends at {:.3f} of the floor; all in doubles {:.1f} s, at {:.3f}",
-                          last.local, last.cost_over_floor, median_of(total_in_doubles), in_doubles.cost_over_floor)});
+  report.add(
+      {"genetic search 50 x 100 and local stage, 10 s log, one core", "15 s", "6 s", fmt::format("{:.1f} s", seconds),
+       fmt::format("{:.1f} s of it local; ends at {:.3f} of the floor, from start {}; all in doubles {:.1f} s, at "
+                   "{:.3f}, from start {}",
+                   last.local, last.cost_over_floor, last.starts, median_of(total_in_doubles),
+                   in_doubles.cost_over_floor, in_doubles.starts)});
   report.json["ga_plus_local_seconds_one_core"] = seconds;
   report.json["ga_plus_local"] = {
       {"genetic", last.genetic},
       {"local", last.local},
       {"cost_over_floor", last.cost_over_floor},
+      {"starts", last.starts},
       {"in_doubles", {{"seconds", median_of(total_in_doubles)}, {"cost_over_floor", in_doubles.cost_over_floor}}}};
 
   // Wall time, so other work on the machine counts against two threads. What the machine can give at all is what two
