@@ -68,9 +68,10 @@ int main(int argc, char** argv) {
     const std::string reference_path = fmt::format("{}/reference_v{}.json", out, valve);
     if (!std::filesystem::exists(reference_path)) {
       HealthyCounts counts;
-      const HealthyReference reference = score_healthy(
+      HealthyReference reference = score_healthy(
           read(hidden::healthy_logs(bench, seed + 1000, healthy, fmt::format("base_v{}", valve), seconds)), tuned,
           bench.rig, 0, counts);
+      for (HealthyLog& l : reference.logs) l.log = std::filesystem::path(l.log).filename();  // they stand beside it
       std::ofstream(reference_path) << report::Json{{"explain", report::healthy_json(reference)}};
     }
     const HealthyReference reference = report::read_healthy(reference_path);

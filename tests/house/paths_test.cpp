@@ -1,0 +1,35 @@
+// What is committed holds no path of the machine that made it: it would be wrong on any other.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <regex>
+#include <set>
+#include <string>
+
+namespace {
+
+namespace fs = std::filesystem;
+
+TEST(Paths, ShippedFilesNameOthersRelatively) {
+  const std::set<std::string> kinds = {".json", ".csv", ".toml"};
+  const std::regex absolute(R"("(/[\w.+-]+){2,})");  // begins a quoted text, and has a folder
+  int looked_at = 0;
+  for (const char* folder : {"data", "params", "tests", "docs", "examples"})
+    for (const auto& entry : fs::recursive_directory_iterator(fs::path(SERVODX_SOURCE_DIR) / folder)) {
+      if (!kinds.contains(entry.path().extension().string())) continue;
+      ++looked_at;
+      std::ifstream in(entry.path());
+      const std::string text{std::istreambuf_iterator<char>(in), {}};
+      // A search from quote to quote: std::regex recurses over long texts.
+      for (std::size_t at = text.find("\"/"); at != std::string::npos; at = text.find("\"/", at + 1)) {
+        const std::string quoted = text.substr(at, 200);
+        EXPECT_FALSE(std::regex_search(quoted, absolute, std::regex_constants::match_continuous))
+            << fs::relative(entry.path(), SERVODX_SOURCE_DIR) << ": " << quoted.substr(0, quoted.find('"', 1) + 1);
+      }
+    }
+  EXPECT_GT(looked_at, 50);
+}
+
+}  // namespace
