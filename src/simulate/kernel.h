@@ -261,26 +261,41 @@ void run_watched(const Scenario& in, const ParameterVector* const* candidates, T
     return (x * x + rod * rod) + (p_1 * p_1 + p_2 * p_2) + (p_a * p_a + p_b * p_b);
   };
   const auto is_sane = [](const T& beyond, int lane) { return Lanes<T>::get(beyond, lane) < 1.0; };
-  // Lanes that diverged take what `again` makes of them; the others keep what they have, so a lane's bits do not depend
-  // on its company.
+  // Lanes that are `chosen` take what `again` makes of them; the others keep what they have, so a lane's bits do not
+  // depend on its company.
   std::array<T, n> y{};
   FrictionMemory<T> friction;
-  const auto rescue = [&](const std::array<T, n>& y_before, const FrictionMemory<T>& friction_before, auto&& again) {
+  const auto redo = [&](const std::array<T, n>& y_before, const FrictionMemory<T>& friction_before,
+                        const std::array<bool, width>& chosen, auto&& again) {
     const auto y_first = std::exchange(y, y_before);
     const auto friction_first = std::exchange(friction, friction_before);
-    const T first = excess(y_first);
     again();
     for (int lane = 0; lane < width; ++lane) {
-      if (!is_sane(first, lane)) continue;
+      if (chosen[lane]) continue;
       for (int j = 0; j < n; ++j) take_lane(y[j], y_first[j], lane);
       friction.take_lane(friction_first, lane);
     }
   };
-  const auto any_lost = [&] {
+  const auto lost = [&] {
     const T now = excess(y);
+    std::array<bool, width> out{};
+    for (int lane = 0; lane < width; ++lane) out[lane] = !is_sane(now, lane);
+    return out;
+  };
+  const auto some = [&](const std::array<bool, width>& of) {
     for (int lane = 0; lane < lanes; ++lane)
-      if (results[lane]->ok && !is_sane(now, lane)) return true;
+      if (results[lane]->ok && of[lane]) return true;
     return false;
+  };
+  // Whose rod, clear of its stops, would be in one after `dt` at its speed.
+  const auto impacts = [&](double dt) {
+    const T deep = d.half_stroke + T(constants::piston_stop_rounding);
+    const T there = y[s_x_piston] + y[s_v_piston] * T(dt);
+    const T in = there * there - deep * deep, clear = d.half_stroke * d.half_stroke - y[s_x_piston] * y[s_x_piston];
+    std::array<bool, width> out{};
+    for (int lane = 0; lane < width; ++lane)
+      out[lane] = Lanes<T>::get(in, lane) > 0.0 && Lanes<T>::get(clear, lane) > 0.0;
+    return out;
   };
   for (int lane = 0; lane < lanes; ++lane) results[lane]->ok = true;
 
@@ -322,7 +337,7 @@ void run_watched(const Scenario& in, const ParameterVector* const* candidates, T
     };
     const auto unsettled = y;
     settle(1);
-    if (any_lost()) rescue(unsettled, friction, [&] { settle(16); });
+    if (const auto which = lost(); some(which)) redo(unsettled, friction, which, [&] { settle(16); });
     // The lines of a stand fill through the edges' leakage: some seconds.
     if (on_stand)
       for (int k = 0; k < 500; ++k) {
@@ -396,9 +411,13 @@ void run_watched(const Scenario& in, const ParameterVector* const* candidates, T
   System<T, Effects, false> live{p.data(), d, now, now, T(0.0), T(0.0), T(0.0), T(0.0)};
   System<T, Effects, true> stand{p.data(), d, now, now, T(0.0), T(0.0), T(1.0), T(0.0)};  // the piston alone is held
   if (!report(0, now)) return;
+  const auto steps_of = [](double dt, double largest) {
+    return std::max(1, static_cast<int>(std::ceil(dt / largest - 1e-6)));
+  };
   // A linearly implicit step does not see a stop that it has not reached. After a jump the flapper crosses its gap in a
-  // tenth of a millisecond, so the steps are short until the spool has answered. The schedule comes from the log alone:
-  // every candidate takes the same steps.
+  // tenth of a millisecond, so the steps are short until the spool has answered. This schedule comes from the log alone:
+  // every candidate takes the same steps. A rod that comes upon its stop is seen a sample before: that candidate takes
+  // the sample in short steps too, or is thrown back at many times its speed, or not, by the last digit of its values.
   constexpr double jump = 0.03;         // of rated current
   constexpr double impact_time = 4e-3;  // [s]
   double impact_until = in.time[0] - 1.0;
@@ -415,7 +434,7 @@ void run_watched(const Scenario& in, const ParameterVector* const* candidates, T
       lively_until = in.time[k + 1] + settle_time;
     const double usual = on_stand && in.time[k] >= lively_until ? options.creep_step : options.step;
     const double largest = in.time[k] < impact_until ? std::min(options.step, options.impact_step) : usual;
-    const int substeps = std::max(1, static_cast<int>(std::ceil(dt / largest - 1e-6)));
+    const int substeps = steps_of(dt, largest);
     const T next_current = drive(in.time[k + 1], T(in.command[k + 1]) + null, spring(), p.data(), rated);
     const Inputs<T> next = inputs_at(k + 1, next_current);
     const T per = T(1.0 / dt);
@@ -445,9 +464,15 @@ void run_watched(const Scenario& in, const ParameterVector* const* candidates, T
     };
     const auto y_before = y;
     const auto friction_before = friction;
+    const auto hit = impacts(dt);
     advance(substeps);
-    for (int finer = substeps * 8; finer <= substeps * 64 && any_lost(); finer *= 8)
-      rescue(y_before, friction_before, [&] { advance(finer); });
+    if (const int finer = steps_of(dt, options.impact_step); !on_stand && finer > substeps && some(hit))
+      redo(y_before, friction_before, hit, [&] { advance(finer); });
+    for (int finer = substeps * 8; finer <= substeps * 64; finer *= 8) {
+      const auto which = lost();
+      if (!some(which)) break;
+      redo(y_before, friction_before, which, [&] { advance(finer); });
+    }
     watch.sample();
     now = next;
     if (!report(k + 1, now)) return;

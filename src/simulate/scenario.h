@@ -66,7 +66,7 @@ struct Trajectory {
 
 struct SimulateOptions {
   double step = 1.0e-3 / 3.0;        // [s] largest substep; substeps divide each sample interval evenly
-  double impact_step = 1.0e-3 / 12;  // [s] while the flapper may cross its gap: after a jump of the command
+  double impact_step = 1.0e-3 / 12;  // [s] after a jump of the command, and while the rod comes upon its stop
   double creep_step = 10e-3;         // [s] on a test stand while the command creeps: all that is fast is at rest
   std::array<bool, n_simulated> wanted = {true, true, true, true};
   int threads = 0;  // 0: all
