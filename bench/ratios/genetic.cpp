@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <thread>
 
 #include "optimise/box_least_squares.h"
@@ -14,28 +15,32 @@
 namespace servodx::bench {
 namespace {
 
-constexpr int parameters = 25, most_starts = 4;
+constexpr int parameters = 25, draws = 5, most_starts = 4;
 
 struct Search {
-  double genetic = 0, local = 0, cost_over_floor = 1e300;
+  double seconds = 0, local = 0, cost_over_floor = 1e300;
+  long simulations = 0;
   int starts = 0;  // of the local stage, until one arrives
+  bool arrived = false;
 };
 
-GeneticResult breed(const Twin& twin, int generations, bool screened) {
+GeneticResult breed(const Twin& twin, int seed, int generations, bool screened) {
   GeneticOptions o;
   o.population = 50;
   o.generations = generations;
+  o.seed = static_cast<std::uint64_t>(seed);
   const BatchCost cost = [&](std::span<const Point> points) { return twin.costs(points, false); };
   GeneticHooks hooks;
   if (screened) hooks.screen = [&](std::span<const Point> points) { return twin.costs(points, true); };
   return minimise_genetic(parameters, cost, o, {}, hooks);
 }
 
-Search search(const Twin& twin, bool screened) {
+Search search(const Twin& twin, int seed, bool screened) {
   Search s;
   const double begun = thread_seconds();
-  const GeneticResult found = breed(twin, 100, screened);
-  s.genetic = thread_seconds() - begun;
+  const GeneticResult found = breed(twin, seed, 100, screened);
+  const double bred = thread_seconds();
+  s.simulations = found.state.evaluations;
   LeastSquaresProblem problem;
   problem.n = parameters;
   problem.evaluate = [&](std::span<const Point> points) { return twin.evaluate(points); };
@@ -44,55 +49,80 @@ Search search(const Twin& twin, bool screened) {
   local.difference_step = 1e-4;
   local.least_metric = local.from_afar;
   local.cost_goal = twin.goal();
+  local.slow_iterations = 5;
   // From the best points that are apart, best first: the best may lie in a wrong valley.
   for (const Individual& start : found.state.archive) {
     const LeastSquaresResult end = minimise_least_squares(problem, start.point, local);
+    s.simulations += end.evaluations;
     s.cost_over_floor = std::min(s.cost_over_floor, end.misfit / twin.floor);
-    if (++s.starts == most_starts || end.misfit <= twin.goal()) break;
+    s.arrived = end.misfit <= twin.goal();
+    if (++s.starts == most_starts || s.arrived) break;
   }
-  s.local = thread_seconds() - begun - s.genetic;
+  s.local = thread_seconds() - bred;
+  s.seconds = thread_seconds() - begun;
   return s;
 }
+
+struct Searches {
+  std::vector<Search> all;
+
+  template <class T>
+  double median(T Search::*of) const {
+    std::vector<double> v;
+    for (const Search& s : all) v.push_back(static_cast<double>(s.*of));
+    return median_of(std::move(v));
+  }
+  long arrived(int within) const {
+    return std::count_if(all.begin(), all.end(), [&](const Search& s) { return s.arrived && s.starts <= within; });
+  }
+  nlohmann::ordered_json json() const {
+    nlohmann::ordered_json each = nlohmann::ordered_json::array();
+    for (const Search& s : all)
+      each.push_back({{"seconds", s.seconds},
+                      {"local", s.local},
+                      {"simulations", s.simulations},
+                      {"cost_over_floor", s.cost_over_floor},
+                      {"starts", s.starts}});
+    return {{"seconds", median(&Search::seconds)},
+            {"arrived", arrived(most_starts)},
+            {"from_the_first_start", arrived(1)},
+            {"draws", each}};
+  }
+};
 
 }  // namespace
 
 void genetic_rows(Report& report, const Choice& choice) {
   const Scenario scenario = trace(10.0);
-  const Twin alone(parameters, 1, scenario, 1), both(parameters, 1, scenario, 2);
-  std::vector<double> total, total_in_doubles;
-  Search last, in_doubles;
-  for (int k = 0; k < std::min(3, choice.turns); ++k) {
-    last = search(alone, true);
-    in_doubles = search(alone, false);
-    total.push_back(last.genetic + last.local);
-    total_in_doubles.push_back(in_doubles.genetic + in_doubles.local);
+  Searches floats, doubles;
+  for (int seed = 1; seed <= std::min(draws, choice.turns); ++seed) {
+    const Twin twin(parameters, seed, scenario, 1);
+    floats.all.push_back(search(twin, seed, true));
+    doubles.all.push_back(search(twin, seed, false));
   }
-  const double seconds = median_of(total);
-  report.add(
-      {"genetic search 50 x 100 and local stage, 10 s log, one core", "15 s", "6 s", fmt::format("{:.1f} s", seconds),
-       fmt::format("{:.1f} s of it local; ends at {:.3f} of the floor, from start {}; all in doubles {:.1f} s, at "
-                   "{:.3f}, from start {}",
-                   last.local, last.cost_over_floor, last.starts, median_of(total_in_doubles),
-                   in_doubles.cost_over_floor, in_doubles.starts)});
+  const double seconds = floats.median(&Search::seconds);
+  report.add({"genetic search 50 x 100 and local stage, 10 s log, one core", "15 s", "6 s",
+              fmt::format("{:.1f} s", seconds),
+              fmt::format("{} of {} draws arrive, {} from the first start of {}; {:.1f} s of it local, {:.0f} "
+                          "simulations; all in doubles {:.1f} s, {} arrive",
+                          floats.arrived(most_starts), floats.all.size(), floats.arrived(1), most_starts,
+                          floats.median(&Search::local), floats.median(&Search::simulations),
+                          doubles.median(&Search::seconds), doubles.arrived(most_starts))});
   report.json["ga_plus_local_seconds_one_core"] = seconds;
-  report.json["ga_plus_local"] = {
-      {"genetic", last.genetic},
-      {"local", last.local},
-      {"cost_over_floor", last.cost_over_floor},
-      {"starts", last.starts},
-      {"in_doubles", {{"seconds", median_of(total_in_doubles)}, {"cost_over_floor", in_doubles.cost_over_floor}}}};
+  report.json["ga_plus_local"] = floats.json();
+  report.json["ga_plus_local"]["in_doubles"] = doubles.json();
 
   // Wall time, so other work on the machine counts against two threads. What the machine can give at all is what two
   // searches that share nothing take side by side: a core may run slower for the other's work.
-  const Twin other(parameters, 1, scenario, 1);
+  const Twin alone(parameters, 1, scenario, 1), other(parameters, 1, scenario, 1), both(parameters, 1, scenario, 2);
   const auto side_by_side = [&](bool screened) {
-    std::thread beside([&] { breed(other, 8, screened); });
-    breed(alone, 8, screened);
+    std::thread beside([&] { breed(other, 1, 8, screened); });
+    breed(alone, 1, 8, screened);
     beside.join();
   };
   const std::vector<Timing> t =
-      take_turns({[&] { breed(alone, 8, true); }, [&] { breed(both, 8, true); }, [&] { side_by_side(true); },
-                  [&] { breed(alone, 8, false); }, [&] { breed(both, 8, false); }, [&] { side_by_side(false); }},
+      take_turns({[&] { breed(alone, 1, 8, true); }, [&] { breed(both, 1, 8, true); }, [&] { side_by_side(true); },
+                  [&] { breed(alone, 1, 8, false); }, [&] { breed(both, 1, 8, false); }, [&] { side_by_side(false); }},
                  choice.turns, wall_seconds);
   const double gain = t[0].median / t[1].median, in_doubles_gain = t[3].median / t[4].median;
   const double machine = 2 * t[0].median / t[2].median, machine_in_doubles = 2 * t[3].median / t[5].median;

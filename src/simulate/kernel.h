@@ -287,14 +287,14 @@ void run_watched(const Scenario& in, const ParameterVector* const* candidates, T
       if (results[lane]->ok && of[lane]) return true;
     return false;
   };
-  // Whose rod, clear of its stops, would be in one after `dt` at its speed.
+  // Whose rod would be in a stop after `dt` at its speed, and further in than now by more than the faces are rough.
   const auto impacts = [&](double dt) {
-    const T deep = d.half_stroke + T(constants::piston_stop_rounding);
-    const T there = y[s_x_piston] + y[s_v_piston] * T(dt);
-    const T in = there * there - deep * deep, clear = d.half_stroke * d.half_stroke - y[s_x_piston] * y[s_x_piston];
+    const T rough = T(constants::piston_stop_rounding), deep = d.half_stroke + rough;
+    const T here = y[s_x_piston], there = here + y[s_v_piston] * T(dt);
+    const T in = there * there - deep * deep, further = there * there - here * here - T(2.0) * d.half_stroke * rough;
     std::array<bool, width> out{};
     for (int lane = 0; lane < width; ++lane)
-      out[lane] = Lanes<T>::get(in, lane) > 0.0 && Lanes<T>::get(clear, lane) > 0.0;
+      out[lane] = Lanes<T>::get(in, lane) > 0.0 && Lanes<T>::get(further, lane) > 0.0;
     return out;
   };
   for (int lane = 0; lane < lanes; ++lane) results[lane]->ok = true;
