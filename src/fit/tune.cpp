@@ -218,7 +218,6 @@ std::vector<Point> breadth(Tuning& run, const Point& start) {
   o.generations = run.options.generations;
   o.seed = run.options.seed;
   o.archive = 3;
-  o.archive_distance = 0.05;  // islands about the table's values: near starts of 30 rows and more end in several minima
   const BatchCost cost = [&](std::span<const Point> points) { return costs(points, false); };
   GeneticHooks hooks;
   hooks.screen = [&](std::span<const Point> points) { return costs(points, true); };

@@ -34,8 +34,8 @@ struct GeneticOptions {
   double collapse = 1e-9;         // an island no wider than this (of the box, every coordinate) starts afresh
   int archive = 10;
   // Root mean square over the coordinates, of the box. Random points are some 0.4 apart; a population that has settled
-  // in a valley is some 0.1 wide, and starts from one valley end alike.
-  double archive_distance = 0.2;
+  // in one valley is some 0.1 wide, so an archive that is to hold starts in others needs more.
+  double archive_distance = 0.05;
   double failure_cost = 1e30;      // at or above: counted as failed
   long max_evaluations = 0;        // 0: no limit. No generation is begun that would pass it
   double cost_goal = -1e300;       // stop once the best is at or below it
