@@ -96,8 +96,8 @@ TEST(Valve, StopsDoNotActBeforeContact) {
               of(simulate(s, far, all_signals()), Signal::spool_position).back(), 5e-8);
 }
 
-// A rod at some 0.3 m/s begins one step in thirty within the roughness of its stop's face, where the force grows a
-// hundred times as steeply as inside. That must not throw it back, whatever its values.
+// A rod at some 0.3 m/s begins one step in thirty within the roughness of its stop's face, where the force grows
+// several times as steeply as inside. That must not throw it back, whatever its values.
 TEST(Valve, StopHoldsTheRodThatComesUponIt) {
   const Table table = shipped_table();
   const double stop = table[row::piston_stroke].nominal / 2;
