@@ -261,41 +261,34 @@ void run_watched(const Scenario& in, const ParameterVector* const* candidates, T
     return (x * x + rod * rod) + (p_1 * p_1 + p_2 * p_2) + (p_a * p_a + p_b * p_b);
   };
   const auto is_sane = [](const T& beyond, int lane) { return Lanes<T>::get(beyond, lane) < 1.0; };
-  // Lanes that are `chosen` take what `again` makes of them; the others keep what they have, so a lane's bits do not
-  // depend on its company.
+  // Lanes that are `due` (not below 0) take what `again` makes of them; the others keep what they have, so a lane's bits
+  // do not depend on its company.
   std::array<T, n> y{};
   FrictionMemory<T> friction;
-  const auto redo = [&](const std::array<T, n>& y_before, const FrictionMemory<T>& friction_before,
-                        const std::array<bool, width>& chosen, auto&& again) {
+  const auto is_due = [](const T& due, int lane) { return !(Lanes<T>::get(due, lane) < 0.0); };
+  const auto redo = [&](const std::array<T, n>& y_before, const FrictionMemory<T>& friction_before, const T& due,
+                        auto&& again) {
     const auto y_first = std::exchange(y, y_before);
     const auto friction_first = std::exchange(friction, friction_before);
     again();
     for (int lane = 0; lane < width; ++lane) {
-      if (chosen[lane]) continue;
+      if (is_due(due, lane)) continue;
       for (int j = 0; j < n; ++j) take_lane(y[j], y_first[j], lane);
       friction.take_lane(friction_first, lane);
     }
   };
-  const auto lost = [&] {
-    const T now = excess(y);
-    std::array<bool, width> out{};
-    for (int lane = 0; lane < width; ++lane) out[lane] = !is_sane(now, lane);
-    return out;
-  };
-  const auto some = [&](const std::array<bool, width>& of) {
+  const auto any_due = [&](const T& due) {
     for (int lane = 0; lane < lanes; ++lane)
-      if (results[lane]->ok && of[lane]) return true;
+      if (results[lane]->ok && is_due(due, lane)) return true;
     return false;
   };
-  // Whose rod would be in a stop after `dt` at its speed, and further in than now by more than the faces are rough.
+  const auto lost = [&] { return excess(y) - T(1.0); };
+  // Whose rod would be in a stop after `dt` at its speed, and further in than now by more than the face is rough.
   const auto impacts = [&](double dt) {
     const T rough = T(constants::piston_stop_rounding), deep = d.half_stroke + rough;
     const T here = y[s_x_piston], there = here + y[s_v_piston] * T(dt);
-    const T in = there * there - deep * deep, further = there * there - here * here - T(2.0) * d.half_stroke * rough;
-    std::array<bool, width> out{};
-    for (int lane = 0; lane < width; ++lane)
-      out[lane] = Lanes<T>::get(in, lane) > 0.0 && Lanes<T>::get(further, lane) > 0.0;
-    return out;
+    using std::min;
+    return min(there * there - deep * deep, there * there - here * here - T(2.0) * d.half_stroke * rough);
   };
   for (int lane = 0; lane < lanes; ++lane) results[lane]->ok = true;
 
@@ -337,7 +330,7 @@ void run_watched(const Scenario& in, const ParameterVector* const* candidates, T
     };
     const auto unsettled = y;
     settle(1);
-    if (const auto which = lost(); some(which)) redo(unsettled, friction, which, [&] { settle(16); });
+    if (const T due = lost(); any_due(due)) redo(unsettled, friction, due, [&] { settle(16); });
     // The lines of a stand fill through the edges' leakage: some seconds.
     if (on_stand)
       for (int k = 0; k < 500; ++k) {
@@ -464,14 +457,14 @@ void run_watched(const Scenario& in, const ParameterVector* const* candidates, T
     };
     const auto y_before = y;
     const auto friction_before = friction;
-    const auto hit = impacts(dt);
+    const T hit = impacts(dt);
     advance(substeps);
-    if (const int finer = steps_of(dt, options.impact_step); !on_stand && finer > substeps && some(hit))
+    if (const int finer = steps_of(dt, options.impact_step); !on_stand && finer > substeps && any_due(hit))
       redo(y_before, friction_before, hit, [&] { advance(finer); });
     for (int finer = substeps * 8; finer <= substeps * 64; finer *= 8) {
-      const auto which = lost();
-      if (!some(which)) break;
-      redo(y_before, friction_before, which, [&] { advance(finer); });
+      const T due = lost();
+      if (!any_due(due)) break;
+      redo(y_before, friction_before, due, [&] { advance(finer); });
     }
     watch.sample();
     now = next;
