@@ -7,6 +7,7 @@
 #include <memory>
 #include <utility>
 
+#include "base/sha256.h"
 #include "base/units.h"
 #include "commands.h"
 #include "invocation.h"
@@ -20,7 +21,7 @@ namespace {
 
 struct Options {
   CommonOptions common;
-  std::string history, valve, params;
+  std::string history, valve, params, seeded;
   std::vector<std::string> failures, limits;
   double loop = 0;  // [1/s]
   bool all = false;
@@ -76,11 +77,16 @@ void run(Options options) {
     for (const std::string& text : options.limits) add_limit(text, tuned, options.loop, options.trend);
   }
   for (const std::string& text : options.failures) add_failure(text, options.trend);
+  if (!options.seeded.empty()) {
+    options.trend.seeded = read_seeded_csv(options.seeded);
+    invocation.header().inputs.push_back({options.seeded, sha256_of_file(options.seeded)});
+  }
   const History history(options.history, false);
   if (!options.all) history.of(options.valve);  // refuses a name that is not there
   invocation.header().settings = {{"history", options.history},       {"false_alarm", options.trend.false_alarm},
                                   {"healthy", options.trend.healthy}, {"coverage", options.trend.coverage},
-                                  {"failure", options.failures},      {"limit", options.limits}};
+                                  {"failure", options.failures},      {"limit", options.limits},
+                                  {"seeded", options.seeded}};
   if (invocation.dry_run()) return;
 
   std::vector<ValveTrend> trends;
@@ -117,6 +123,11 @@ void add_trend_command(CLI::App& app) {
                    "performance limit that sets failure levels: bandwidth, gain, hysteresis, "
                    "phase_margin")
       ->type_name("NAME=VALUE");
+  command
+      ->add_option("--seeded", options->seeded,
+                   "what checks of valves with wear of known size read: valve, name, truth, value, oil_temperature "
+                   "[degC]; parameters are taken to the wear at which these read the same")
+      ->type_name("TEST.csv");
   command->add_option("--params", options->params, "tuned table, for --limit")->type_name("TUNED");
   command->add_option("--loop", options->loop, "velocity gain of the position loop, for phase_margin [1/s]")
       ->type_name("GAIN");

@@ -2,7 +2,8 @@
 //
 // A unit is a valve drawn from the rig's tolerances and checked with its own table (units.h). Its checks come at even
 // parts of the life, each at random oil temperature, free air and null. End of life is the rig's true quantity at the
-// failed level. Failure levels come from a seeded-fault test of five valves of the type.
+// failed level. Failure levels, and how parameters read wear of known size, come from a seeded-fault test of twelve
+// valves of the type.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -50,14 +51,35 @@ double spread_of(const std::vector<double>& looks) {
   return student * std::sqrt(square / (n - 1) * (1 + 1 / n));
 }
 
-// Failure levels of every check that a degradation moves, by a seeded-fault test of valves of the type at the reference
-// oil, as a user would set them: of the paper's checks a multiple of healthy; of the parameters as the degradation is
-// stated.
+// What the seeded-fault test read of the degradations whose parameter is stated as it is, as `servodx trend --seeded`
+// takes it.
+std::string seeded_csv(const Bench& b, const std::string& folder) {
+  std::string csv = "valve,name,truth,value,oil_temperature [degC]\n";
+  for (const Degradation& d : degradations) {
+    if (d.stated != Stated::value) continue;
+    for (int v = 0; v < seeded_valves; ++v)
+      for (const Degradation* fault : {static_cast<const Degradation*>(nullptr), &d}) {
+        const rig::RigModel valve = seeded_valve(b, v);
+        for (const Recording& r : seeded_looks(b, v, fault, folder).recordings)
+          for (const Check& c : r.checks)
+            if (caused_by(c.name) == d.name)
+              csv += fmt::format("{},{},{:.6g},{:.6g},{:.1f}\n", v, c.name,
+                                 truth_of(d, valve, severity_at(end_of(d, b.model, valve), fault ? seeded_part(r) : 0)),
+                                 c.value, r.temperature - 273.15);
+      }
+  }
+  return csv;
+}
+
+// Failure levels of every check that a degradation moves, by a seeded-fault test of valves of the type in warm oil, as
+// a user would set them: of the paper's checks a multiple of healthy; of the parameters as the degradation is stated.
 TrendOptions seeded_fault(const Bench& b, const Degradation& d, const std::string& folder) {
+  constexpr double warm = 283;  // [K]
   std::map<std::string, std::vector<double>> healthy, failed;
-  const auto add = [&](const ValveHistory& h, std::map<std::string, std::vector<double>>& to) {
+  const auto add = [&](const ValveHistory& h, bool whole_way, std::map<std::string, std::vector<double>>& to) {
     for (const Recording& r : h.recordings)
       for (const Check& c : r.checks) {
+        if ((whole_way && seeded_part(r) < 1) || r.temperature < warm) continue;
         double value = c.value;
         if (caused_by(c.name) == d.name && d.stated == Stated::current) value *= friction_current(h.tuned);
         if (caused_by(c.name) == d.name && d.stated == Stated::multiple)
@@ -66,22 +88,22 @@ TrendOptions seeded_fault(const Bench& b, const Degradation& d, const std::strin
       }
   };
   for (int v = 0; v < seeded_valves; ++v)
-    add(seeded_looks(b, v, nullptr, folder), healthy), add(seeded_looks(b, v, &d, folder), failed);
+    add(seeded_looks(b, v, nullptr, folder), false, healthy), add(seeded_looks(b, v, &d, folder), true, failed);
   TrendOptions options;
+  options.seeded = read_seeded_csv(folder + "/seeded.csv");
   for (const auto& [name, values] : healthy) {
     if (failed[name].empty()) continue;
     const auto [low, high] = std::minmax_element(values.begin(), values.end());
     const double h = median(values), f = median(failed[name]);
     const std::string cause = caused_by(name);
-    if (cause == d.name) {
+    if (cause == d.name && d.stated == Stated::value) {
+      const rig::RigModel& type = b.model;
+      const double end = truth_of(d, type, d.failed);
+      (end > truth_of(d, type, d.healthy) ? options.failure[name].second : options.failure[name].first) = end;
+    } else if (cause == d.name) {
       const double level = mean_of(failed[name]);
       options.failure_spread[name] = spread_of(failed[name]);
-      if (d.stated == Stated::multiple)
-        options.failure_ratio[name] = level;
-      else if (d.stated == Stated::current)
-        options.failure_current[name] = level;
-      else
-        (f > h ? options.failure[name].second : options.failure[name].first) = level;
+      (d.stated == Stated::multiple ? options.failure_ratio : options.failure_current)[name] = level;
     } else if (cause.empty() && std::abs(f - h) > 3 * (*high - *low)) {
       options.failure_ratio[name] = f / h;
     }
@@ -179,8 +201,11 @@ void lives(const Bench& b, const std::string& out, int units, int checks, int fi
   std::map<std::string, TrendOptions> seeded;
   for (const Degradation& d : degradations) seeded[d.name];
   for_each(seeded_valves, "seeded valves", [&](int v) { seeded_looks(b, v, nullptr, out); });
-  for_each(std::size(degradations), "seeded faults",
-           [&](int i) { seeded.at(degradations[i].name) = seeded_fault(b, degradations[i], out); });
+  for_each(std::size(degradations), "seeded faults", [&](int i) {
+    for (int v = 0; v < seeded_valves; ++v) seeded_looks(b, v, &degradations[i], out);
+  });
+  write_file(out + "/seeded.csv", seeded_csv(b, out));
+  for (const Degradation& d : degradations) seeded.at(d.name) = seeded_fault(b, d, out);
   for (const auto& [name, o] : seeded) {
     std::fprintf(stderr, "\n%s fails at", name.c_str());
     for (const auto& [check, ratio] : o.failure_ratio) std::fprintf(stderr, " %s x %.3g", check.c_str(), ratio);

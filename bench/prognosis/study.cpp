@@ -33,7 +33,7 @@ Log test_log(const rig::RigModel& valve, const std::string& fault, double severi
 rig::RigRun preflight(const std::string& test, std::uint64_t seed) {
   rig::RigRun run;
   run.excitation = test;
-  run.duration = test == "preflight_wear" ? 2.75 : 1.15;
+  run.duration = test == "preflight_wear" ? 2.75 : 1.51;
   run.seed = seed;
   return run;
 }

@@ -114,19 +114,24 @@ ValveHistory kept_history(const std::string& name, const std::string& file, cons
 
 }  // namespace
 
-ValveHistory seeded_looks(const Bench& b, int v, const Degradation* failed_by, const std::string& folder) {
+rig::RigModel seeded_valve(const Bench& b, int v) {
+  return rig::another_valve(b.model, static_cast<std::uint64_t>(9000 + v));
+}
+
+ValveHistory seeded_looks(const Bench& b, int v, const Degradation* fault, const std::string& folder) {
   const auto stream = static_cast<std::uint32_t>(9000 + v);
-  const rig::RigModel valve = rig::another_valve(b.model, stream);
+  const rig::RigModel valve = seeded_valve(b, v);
   const Table own = own_table(b, fmt::format("seeded-{}", v), valve, stream, folder);
-  const std::string name = fmt::format("seeded-{}-{}", v, failed_by ? failed_by->name : "healthy");
+  const std::string name = fmt::format("seeded-{}-{}", v, fault ? fault->name : "healthy");
   return kept_history(name, folder + "/seeded/" + name + ".csv", own, [&](ValveHistory& h) {
-    for (int k = 0; k < 3; ++k) {
-      const Condition at{30.0 + 10 * k, 0.005, 0};
-      const Log log =
-          test_log(valve, failed_by ? failed_by->name : "", failed_by ? end_of(*failed_by, b.model, valve).failed : 0.0,
-                   at, preflight(b.test, 900 + static_cast<std::uint64_t>(k)));
-      h.recordings.push_back(recording_of(k, check(log, own, b.rig, {.threads = 1, .last = {}})));
-    }
+    int look = 0;
+    for (const double part : fault ? std::vector(std::begin(seeded_parts), std::end(seeded_parts)) : std::vector{0.0})
+      for (const double celsius : seeded_celsius) {
+        const double severity = fault ? severity_at(end_of(*fault, b.model, valve), part) : 0.0;
+        const Log log = test_log(valve, fault ? fault->name : "", severity, {celsius, 0.005, 0},
+                                 preflight(b.test, 900 + static_cast<std::uint64_t>(look)));
+        h.recordings.push_back(recording_of(look++, check(log, own, b.rig, {.threads = 1, .last = {}})));
+      }
   });
 }
 

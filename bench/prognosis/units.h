@@ -4,10 +4,12 @@
 //   tests/UNIT/a1.csv ...    acceptance logs: a mixed drive, and preflight tests at 20, 40 and 60 degC
 //   tests/UNIT/t01.csv ...   its preflight tests
 //   valves/UNIT.csv          its own table: the type's, tuned on the acceptance logs
-//   seeded/VALVE-FAULT.csv   looks at valves with a fault at its failed severity
+//   seeded.csv               the seeded-fault test, as `servodx trend --seeded` reads it
+//   seeded/VALVE-FAULT.csv   looks at valves with a fault of known severities
 //   units/UNIT.csv           its history of checks, which `servodx history import` reads
 #pragma once
 #include <cmath>
+#include <iterator>
 #include <string>
 #include <vector>
 
@@ -38,9 +40,15 @@ double truth_of(const Degradation& degradation, const rig::RigModel& valve, doub
 // What a valve's own acceptance logs say of it, from the type's table.
 Table own_table(const Bench& bench, const std::string& name, const rig::RigModel& valve, std::uint32_t stream,
                 const std::string& folder);
-// Three looks, at 30, 40 and 50 degC, at one of the valves of the seeded-fault test: healthy, or failed by a fault.
+// One of the valves of the seeded-fault test, with a fault that has come so far on its way to failure (none: healthy): a
+// recording for each part and temperature in turn, numbered by `at`.
 inline constexpr int seeded_valves = 12;
-ValveHistory seeded_looks(const Bench& bench, int valve, const Degradation* failed_by, const std::string& folder);
+inline constexpr double seeded_parts[] = {0.125, 0.25, 0.5, 0.75, 1}, seeded_celsius[] = {-25, 0, 25, 60};
+inline double seeded_part(const Recording& look) {
+  return seeded_parts[static_cast<std::size_t>(look.at) / std::size(seeded_celsius)];
+}
+rig::RigModel seeded_valve(const Bench& bench, int valve);
+ValveHistory seeded_looks(const Bench& bench, int valve, const Degradation* fault, const std::string& folder);
 ValveHistory history_of(const Bench& bench, const Unit& unit, int checks, const std::string& folder);
 
 }  // namespace servodx::study

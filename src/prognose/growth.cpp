@@ -57,13 +57,14 @@ constexpr std::array<double, 9> noises = {0.1, 0.18, 0.32, 0.56, 1, 1.8, 3.2, 5.
 // two of those above is off them by a hundredth at most. A healthy figure may wander by the lesser two.
 constexpr std::array<double, 3> wanders = {0.005, 0.03, 0.1};
 constexpr std::size_t healthy_wanders = 2;
+// Of the stated errors: most of one may be what the model's form gets wrong, which is the same from check to check.
+constexpr std::array<double, 2> repeated = {1.0, 0.3};
 // A part lost so far, where it is one, by what the drop has grown: what is between two of them its size tells.
 constexpr auto losses = [] {
   std::array<double, 13> drops{};
   for (std::size_t k = 0; k < drops.size(); ++k) drops[k] = k ? 1.5 * drops[k - 1] : 0.2;
   return drops;
 }();
-constexpr double size_spread = 0.25;   // of the drop over the whole part, as the model has it
 constexpr double negligible = 1e-4;    // weight below which a component is left out
 constexpr double least_tilted = 0.02;  // [scale] of a growth at which the oil's part in it is looked for
 constexpr double hopeless = 14;        // [nats] below the best noise level at which no further one is looked at
@@ -252,15 +253,17 @@ GrowthModel::GrowthModel(std::vector<GrowthPoint> points, const GrowthPrior& pri
     Regression::Grown grown;
   };
   std::vector<Candidate> found;
-  const auto healthy_ones = static_cast<double>(scatters.size() * healthy_wanders * noises.size());
+  const std::size_t stated = own.isZero(0) ? 1 : repeated.size(), of_wander = scatters.size() * stated * noises.size();
+  const auto healthy_ones = static_cast<double>(healthy_wanders * of_wander);
   for (double wander : wanders)
     for (double scatter : scatters)
-      for (double level : noises) {
-        Eigen::MatrixXd noise = std::pow(wander * worn, 2) * stretch.asDiagonal() * drift * stretch.asDiagonal();
-        noise.diagonal() += own + (scatter * exposed).cwiseAbs2();
-        noise.diagonal().array() += std::pow(level * prior.noise, 2);
-        regressions.emplace_back(x, y, noise, mean, sd);
-      }
+      for (std::size_t k = 0; k < stated; ++k)
+        for (double level : noises) {
+          Eigen::MatrixXd noise = std::pow(wander * worn, 2) * stretch.asDiagonal() * drift * stretch.asDiagonal();
+          noise.diagonal() += repeated[k] * repeated[k] * own + (scatter * exposed).cwiseAbs2();
+          noise.diagonal().array() += std::pow(level * prior.noise, 2);
+          regressions.emplace_back(x, y, noise, mean, sd);
+        }
   // Every growth that is tried, and its products with the oil's features, side by side: whitened in one go. Of a part
   // that is lost the drop grows, and what the oil makes of it is of the whole drop, without growth too.
   const long oil = prior.tilt > 0 && features >= 2 ? 2 : prior.tilt > 0 ? std::min(f, 1L) : 0;
@@ -292,7 +295,7 @@ GrowthModel::GrowthModel(std::vector<GrowthPoint> points, const GrowthPrior& pri
   }
   const Eigen::Vector3d supposed(prior.of_drop ? 1.0 : 0.0, 0.0, 0.0);
   const auto spreads = [&](double grown) -> Eigen::Vector3d {
-    if (prior.of_drop) return {size_spread, prior.tilt, prior.tilt};
+    if (prior.of_drop) return {prior.size_sd, prior.tilt, prior.tilt};
     const double tilt = prior.tilt * std::clamp(std::abs(grown), least_tilted * prior.scale, prior.scale);
     return {prior.scale, tilt, tilt / 3};
   };
@@ -371,7 +374,7 @@ GrowthModel::GrowthModel(std::vector<GrowthPoint> points, const GrowthPrior& pri
     Component c;
     c.of_drop = prior.of_drop, c.lost = lost, c.direction = prior.direction;
     c.noise = noises[r % noises.size()] * prior.noise;
-    c.wander = wanders[r / noises.size() / scatters.size()] * worn;
+    c.wander = wanders[r / of_wander] * worn;
     const double unit = prior.of_drop ? drop_beyond_whole(lost) : 1.0;
     c.a = unit * grown.mean, c.a_sd = unit * std::sqrt(grown.variance);
     c.d = grown.d;

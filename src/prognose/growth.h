@@ -43,6 +43,7 @@ struct GrowthPrior {
   double scale = 1;                              // [y] size of a growth that matters, one standard deviation
   int direction = 0;                             // +1, -1: growth to one side; 0: either
   double tilt = 0;                               // spread of d1 over the growth so far; of d2 a third (a drop: as d1)
+  double size_sd = 0.25;                         // of a drop: of that over the whole part, as the model has it
   double scatter = 0;                            // spread of one check over what is `exposed`, or, as likely, none
   bool coarse = false;                           // fewer onsets and parts lost: for a first look
   bool of_drop = false;                          // y is a drop over a part that is being lost, see above

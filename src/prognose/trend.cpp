@@ -47,7 +47,8 @@ struct Series {
   std::optional<double> tuned;       // the row's value in the table that the checks rest on
   std::optional<double> per_newton;  // [A/N] of the spool's friction
   Scale scale = Scale::plain;
-  double clean = 1;  // drop over the whole part, in that of the table's whole part
+  double clean = 1;    // drop over the whole part, in that of the table's whole part
+  ReadingCurve curve;  // of valves with known wear, where there is one
   std::vector<GrowthPoint> points;
   std::vector<double> temperature;  // [K]
 
@@ -85,9 +86,6 @@ struct Series {
   }
   Level out(double lower, double upper) const { return {out(lower), out(upper)}; }
 };
-
-// Viscosity over that at 40 degC of a 14 mm2/s oil: only its logarithm as a regressor matters here.
-double log_viscosity(double kelvin) { return std::log(oil_at(860, 14e-6, kelvin).viscosity_ratio); }
 
 constexpr std::size_t reach = 3;  // neighbours to either side
 
@@ -188,6 +186,20 @@ void take_clean(Series& s, std::size_t healthy) {
   for (GrowthPoint& p : s.points) p.y /= read, p.variance /= read * read;
 }
 
+// Readings as the wear at which valves with parts of known wear read the same, in the coordinate of the growth.
+void take_seeded(Series& s, const std::vector<SeededReading>& seeded) {
+  std::vector<SeededReading> of_this;
+  for (SeededReading r : seeded)
+    if (r.check == s.name) r.truth = s.in(r.truth), r.reading = s.in(r.reading), of_this.push_back(std::move(r));
+  if (of_this.empty()) return;
+  s.curve = ReadingCurve(of_this, s.scale == Series::Scale::drop ? std::optional(0.0) : std::nullopt);
+  for (GrowthPoint& p : s.points) {
+    const ReadingCurve::Worn worn = s.curve.at(p.y, p.features[0]);
+    p.y = worn.truth, p.variance = worn.per_reading * worn.per_reading * p.variance + worn.error * worn.error;
+  }
+  if (s.tuned) s.tuned = s.out(s.curve.at(s.in(*s.tuned), 0).truth);
+}
+
 // The value of a fault's row where it has failed: for severities that multiply, of what it was.
 std::optional<double> failed_row(const Fault& fault) {
   if (!fault.failed) return {};
@@ -212,7 +224,8 @@ FailureAt failure_of(const Series& s, const TrendOptions& options) {
   // How well a level is known at a value of the row: as who set it says, else as the model's form allows.
   const auto known_to = [&](double value, double unit) {
     const auto stated = options.failure_spread.find(s.name);
-    return stated == options.failure_spread.end() ? left_open(s, value) : stated->second * unit;
+    if (stated != options.failure_spread.end()) return stated->second * unit;
+    return s.curve.empty() ? left_open(s, value) : s.curve.spread(s.in(value)) * s.stretch(value);
   };
   if (const auto given = options.failure.find(s.name); given != options.failure.end()) {
     at.lower = s.in(given->second.first), at.upper = s.in(given->second.second);
@@ -304,6 +317,10 @@ GrowthPrior prior_of(const Series& s, std::size_t healthy, const FailureAt& fail
     prior.tilt = 0.3;  // how much of a screen's drop is laminar is on no data sheet: twice itself over three e-folds
   }
   prior.scatter = 0.15;
+  if (const auto& valves = s.curve.differing()) {
+    prior.tilt = std::min(prior.tilt, valves->tilt);
+    prior.size_sd = std::min(prior.size_sd, valves->size);
+  }
   return prior;
 }
 
@@ -542,7 +559,7 @@ ValveTrend trend(const ValveHistory& history, const TrendOptions& options) {
   out.state = "unknown";
   out.to_warning = infinite;
   std::vector<Series> all = series_of(history, out.notes);
-  for (Series& s : all) take_clean(s, static_cast<std::size_t>(options.healthy));
+  for (Series& s : all) take_seeded(s, options.seeded), take_clean(s, static_cast<std::size_t>(options.healthy));
   for (const Series& s : all) {
     out.trends.push_back(trend_of(s, options, all.size()));
     if (options.failure_current.contains(s.name) && !s.per_newton)

@@ -24,6 +24,7 @@
 
 #include "prognose/growth.h"
 #include "prognose/history.h"
+#include "prognose/seeded.h"
 
 namespace servodx {
 
@@ -38,6 +39,8 @@ struct TrendOptions {
   // name of a parameter -> one standard deviation of that level, in the unit it is stated in; else by the fault's own
   // `spread`
   std::map<std::string, double> failure_spread;
+  // of valves of the type: parameters are read as these were
+  std::vector<SeededReading> seeded;
   double coverage = 0.9;  // of the interval of the life left
   std::uint64_t seed = 1;
 };

@@ -147,7 +147,7 @@ Stimulus slews_and_sines(const RigModel& m, const Shape& s, int reversals, doubl
   stimulus.compensated = true;
   return stimulus;
 }
-Stimulus preflight_slew(const RigModel& m, const Shape& s) { return slews_and_sines(m, s, 4, 0); }
+Stimulus preflight_slew(const RigModel& m, const Shape& s) { return slews_and_sines(m, s, 16, 0); }
 Stimulus preflight_wear(const RigModel& m, const Shape& s) { return slews_and_sines(m, s, 24, 2); }
 // Both checks with the offset compensated: rest, small step out and back long enough to settle cold, rest, then whole
 // cycles at several frequencies.
@@ -254,10 +254,10 @@ const std::vector<ExcitationInfo>& excitations() {
       {"triangle", "open loop: triangle to full rated current, 0.5 Hz", triangle},
       {"preflight", "open loop: small step out and back, then a sine of 4 % of rated current at 5 Hz", preflight},
       {"preflight_slew",
-       "preflight with reversals of full current before the sine and a sine of 30 % after it; 1.15 s",
+       "preflight with reversals of full current before the sine and a sine of 30 % after it; 1.51 s",
        preflight_slew},
       {"preflight_wear",
-       "preflight_slew with 24 reversals in place of 4 and a slow triangle of 6 % across null; 2.75 s", preflight_wear},
+       "preflight_slew with 24 reversals in place of 16 and a slow triangle of 6 % across null; 2.75 s", preflight_wear},
       {"preflight_full",
        "open loop, null compensated: rest, step of 10 % out and back, sines of 4 % at 2, 3, 5 and 8 Hz, 2 s each; 9.5 "
        "s",

@@ -1,0 +1,223 @@
+#include "prognose/seeded.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <stdexcept>
+
+#include "base/csv.h"
+#include "base/error.h"
+#include "base/student.h"
+#include "base/units.h"
+#include "model/state.h"
+
+namespace servodx {
+namespace {
+
+constexpr double apart = 0.05;  // of their range: what lies closer was meant to be the same
+
+// Means of values that were meant to be the same, rising.
+std::vector<double> levels_of(std::vector<double> values) {
+  std::sort(values.begin(), values.end());
+  std::vector<double> levels;
+  for (std::size_t from = 0, to = 0; from < values.size(); from = to) {
+    double sum = 0;
+    while (to < values.size() && (to == from || values[to] - values[to - 1] <= apart * (values.back() - values[0])))
+      sum += values[to++];
+    levels.push_back(sum / static_cast<double>(to - from));
+  }
+  return levels;
+}
+
+std::size_t nearest(const std::vector<double>& levels, double value) {
+  const auto away = [&](double a, double b) { return std::abs(a - value) < std::abs(b - value); };
+  return static_cast<std::size_t>(std::min_element(levels.begin(), levels.end(), away) - levels.begin());
+}
+
+// One standard deviation of another value by so few that scatter about nought, or about their mean: Student's factor at
+// 90 %, and the error of that mean.
+double spread_of(const std::vector<double>& off) {
+  const auto n = static_cast<double>(off.size());
+  if (n < 2) return 0;
+  double low = 1.6, high = 7, square = 0;
+  for (int k = 0; k < 50; ++k) {
+    const double mid = 0.5 * (low + high);
+    (student_tail(mid, n - 1) > 0.1 ? low : high) = mid;
+  }
+  for (double x : off) square += x * x;
+  return low / 1.645 * std::sqrt(square / (n - 1) * (1 + 1 / n));
+}
+
+double mean_of(const std::vector<double>& v) {
+  double sum = 0;
+  for (double x : v) sum += x;
+  return sum / static_cast<double>(v.size());
+}
+
+}  // namespace
+
+double log_viscosity(double kelvin) { return std::log(oil_at(860, 14e-6, kelvin).viscosity_ratio); }
+
+ReadingCurve::ReadingCurve(const std::vector<SeededReading>& readings, std::optional<double> origin) {
+  std::vector<double> truths, oils;
+  for (const SeededReading& r : readings) truths.push_back(r.truth), oils.push_back(r.log_viscosity);
+  sizes_ = levels_of(truths), viscosities_ = levels_of(oils);
+  if (sizes_.size() < 2) throw std::invalid_argument("needs readings of two sizes of wear");
+  std::vector<std::vector<std::vector<double>>> cells(viscosities_.size(),
+                                                      std::vector<std::vector<double>>(sizes_.size()));
+  for (const SeededReading& r : readings)
+    cells[nearest(viscosities_, r.log_viscosity)][nearest(sizes_, r.truth)].push_back(r.reading);
+  for (const auto& of_oil : cells) {
+    std::vector<double> means;
+    for (const std::vector<double>& cell : of_oil) {
+      if (cell.empty()) throw std::invalid_argument("needs a reading of every size at every oil temperature");
+      means.push_back(means.empty() ? mean_of(cell) : std::max(means.back(), mean_of(cell)));
+    }
+    if (!(means.back() > means.front())) throw std::invalid_argument("reads no more of the largest than of the least");
+    readings_.push_back(std::move(means));
+  }
+  // How far each reading is off, by cell, by size and valve, and by valve.
+  for (auto& of_oil : cells)
+    for (std::vector<double>& cell : of_oil) cell.clear();
+  std::vector<std::map<std::string, std::vector<double>>> of_size(sizes_.size());
+  struct Off {
+    std::size_t oil, size;
+    double truth, log_viscosity, by;
+  };
+  std::map<std::string, std::vector<Off>> of_valve;
+  for (const SeededReading& r : readings) {
+    const Off off{nearest(viscosities_, r.log_viscosity), nearest(sizes_, r.truth), r.truth, r.log_viscosity,
+                  at(r.reading, r.log_viscosity).truth - r.truth};
+    cells[off.oil][off.size].push_back(off.by);
+    of_size[off.size][r.valve].push_back(off.by);
+    of_valve[r.valve].push_back(off);
+  }
+  for (const auto& of_valves : of_size) {
+    std::vector<double> means;
+    for (const auto& [valve, by] : of_valves) means.push_back(mean_of(by));
+    spreads_.push_back(spread_of(means));
+  }
+
+  // Each valve by itself: off = base + size * grown + (d1 z + d2 z2) acted, by how far valves are off there.
+  constexpr long unknowns = 4;
+  const double least = 1e-6 * (sizes_.back() - sizes_.front());
+  auto left = cells;
+  std::vector<double> size, tilt;
+  std::vector<std::vector<double>> scatter;
+  for (std::size_t oil = 0; oil < cells.size(); ++oil) {
+    scatter.emplace_back();
+    for (std::size_t k = 0; k < sizes_.size(); ++k) {
+      scatter.back().push_back(std::max(spread_of(cells[oil][k]), least));
+      left[oil][k].clear();
+    }
+  }
+  for (const auto& [valve, offs] : of_valve) {
+    Eigen::MatrixXd x(std::ssize(offs), unknowns);
+    Eigen::VectorXd y(std::ssize(offs));
+    for (long i = 0; i < std::ssize(offs); ++i) {
+      const Off& off = offs[static_cast<std::size_t>(i)];
+      const double z = off.log_viscosity, acted = off.truth - origin.value_or(sizes_.front());
+      const double known_to = scatter[off.oil][off.size];
+      x.row(i) << 1, off.truth - sizes_.front(), z * acted, z * z * acted;
+      x.row(i) /= known_to, y[i] = off.by / known_to;
+    }
+    const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(x);
+    if (qr.rank() < unknowns || std::ssize(offs) <= unknowns) continue;
+    const Eigen::VectorXd b = qr.solve(y), residual = y - x * b;
+    const auto n = static_cast<double>(offs.size());
+    for (long i = 0; i < std::ssize(offs); ++i) {
+      const Off& off = offs[static_cast<std::size_t>(i)];
+      left[off.oil][off.size].push_back(std::sqrt(n / (n - unknowns)) * residual[i] * scatter[off.oil][off.size]);
+    }
+    size.push_back(b[1]), tilt.push_back(b[2]), tilt.push_back(b[3]);
+  }
+  if (size.size() < 3) return;
+  differing_ = {spread_of(size), spread_of(tilt)};
+  for (std::size_t oil = 0; oil < cells.size(); ++oil)
+    for (std::size_t k = 0; k < sizes_.size(); ++k)
+      scatter[oil][k] = std::min(spread_of(left[oil][k]), scatter[oil][k]);
+  errors_ = std::move(scatter);
+}
+
+ReadingCurve::Worn ReadingCurve::at(double reading, double log_viscosity) const {
+  const auto worn = [&](std::size_t oil) {
+    const std::vector<double>& read = readings_[oil];
+    std::size_t k = 1;
+    while (k + 1 < read.size() && (reading > read[k] || read[k] == read[k - 1])) ++k;
+    Worn at;
+    if (reading > read.front()) at.per_reading = (sizes_[k] - sizes_[k - 1]) / (read[k] - read[k - 1]);
+    at.truth = reading > read.front() ? sizes_[k - 1] + at.per_reading * (reading - read[k - 1])
+                                      : sizes_.front() + reading - read.front();
+    if (!errors_.empty()) at.error = errors_[oil][nearest(sizes_, at.truth)];
+    return at;
+  };
+  if (viscosities_.size() < 2) return worn(0);
+  const double z = std::clamp(log_viscosity, viscosities_.front(), viscosities_.back());
+  std::size_t k = 1;
+  while (k + 1 < viscosities_.size() && z > viscosities_[k]) ++k;
+  const double part = (z - viscosities_[k - 1]) / (viscosities_[k] - viscosities_[k - 1]);
+  const Worn thin = worn(k - 1), thick = worn(k);
+  const auto between = [&](double Worn::*of) { return (1 - part) * thin.*of + part * thick.*of; };
+  return {between(&Worn::truth), between(&Worn::per_reading), between(&Worn::error)};
+}
+
+double ReadingCurve::spread(double truth) const { return spreads_[nearest(sizes_, truth)]; }
+
+std::vector<SeededReading> read_seeded_csv(const std::string& path) {
+  const std::string bytes = read_file(path);
+  CsvCursor cursor(bytes, path);
+  enum { valve, name, truth, value, temperature, n_needed };
+  constexpr std::array<const char*, n_needed> needed = {"valve", "name", "truth", "value", "oil_temperature [degC]"};
+  std::array<std::size_t, n_needed> place{};
+  bool kelvin = false;
+  for (std::size_t c = 0; c < n_needed; ++c) {
+    auto found = std::find(cursor.header().begin(), cursor.header().end(), needed[c]);
+    if (c == temperature && found == cursor.header().end()) {
+      found = std::find(cursor.header().begin(), cursor.header().end(), "oil_temperature [K]");
+      kelvin = true;
+    }
+    if (found == cursor.header().end())
+      throw InputError({path, cursor.header_line(), needed[c]}, "a seeded-fault test needs this column",
+                       "add it to what 'servodx history export' writes of the test's checks");
+    place[c] = static_cast<std::size_t>(found - cursor.header().begin());
+  }
+  std::vector<SeededReading> out;
+  while (cursor.next_row()) {
+    std::vector<std::string> cells;
+    for (std::string cell; cursor.next_cell(cell);) cells.push_back(cell);
+    if (cells.size() != cursor.header().size())
+      throw InputError({path, cursor.line(), ""},
+                       fmt::format("has {} cells, the header {}", cells.size(), cursor.header().size()),
+                       "mend the row");
+    if (cells[place[truth]].empty()) continue;
+    const auto number = [&](std::size_t c) {
+      const auto x = parse_number(cells[place[c]]);
+      if (!x)
+        throw InputError({path, cursor.line(), needed[c]}, "'" + cells[place[c]] + "' is not a number",
+                         "write it with a point, without a unit");
+      return *x;
+    };
+    out.push_back({cells[place[name]], cells[place[valve]], number(truth), number(value),
+                   log_viscosity(number(temperature) + (kelvin ? 0.0 : 273.15))});
+  }
+  if (out.empty())
+    throw InputError({path, 0, "truth"}, "no row has one", "give the measured wear of each check's valve");
+  std::map<std::string, std::vector<SeededReading>> of_check;
+  for (const SeededReading& r : out) of_check[r.check].push_back(r);
+  for (const auto& [check, readings] : of_check) {
+    if (!check.starts_with("parameter:"))
+      throw InputError({path, 0, "name"}, "'" + check + "' is no tracked parameter", "leave its truth empty");
+    try {
+      ReadingCurve(readings, {});
+    } catch (const std::invalid_argument& e) {
+      throw InputError({path, 0, ""}, check + " " + e.what(), "complete the test, or leave that check's truth empty");
+    }
+  }
+  return out;
+}
+
+}  // namespace servodx
