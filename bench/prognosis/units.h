@@ -40,8 +40,8 @@ double truth_of(const Degradation& degradation, const rig::RigModel& valve, doub
 // What a valve's own acceptance logs say of it, from the type's table.
 Table own_table(const Bench& bench, const std::string& name, const rig::RigModel& valve, std::uint32_t stream,
                 const std::string& folder);
-// One of the valves of the seeded-fault test, with a fault that has come so far on its way to failure (none: healthy): a
-// recording for each part and temperature in turn, numbered by `at`.
+// One of the valves of the seeded-fault test, with a fault that has come so far on its way to failure (none: healthy):
+// a recording for each part and temperature in turn, numbered by `at`.
 inline constexpr int seeded_valves = 12;
 inline constexpr double seeded_parts[] = {0.125, 0.25, 0.5, 0.75, 1}, seeded_celsius[] = {-25, 0, 25, 60};
 inline double seeded_part(const Recording& look) {

@@ -261,8 +261,8 @@ void run_watched(const Scenario& in, const ParameterVector* const* candidates, T
     return (x * x + rod * rod) + (p_1 * p_1 + p_2 * p_2) + (p_a * p_a + p_b * p_b);
   };
   const auto is_sane = [](const T& beyond, int lane) { return Lanes<T>::get(beyond, lane) < 1.0; };
-  // Lanes that are `due` (not below 0) take what `again` makes of them; the others keep what they have, so a lane's bits
-  // do not depend on its company.
+  // Lanes that are `due` (not below 0) take what `again` makes of them; the others keep what they have, so a lane's
+  // bits do not depend on its company.
   std::array<T, n> y{};
   FrictionMemory<T> friction;
   const auto is_due = [](const T& due, int lane) { return !(Lanes<T>::get(due, lane) < 0.0); };
