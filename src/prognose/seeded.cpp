@@ -13,7 +13,7 @@
 #include "base/error.h"
 #include "base/student.h"
 #include "base/units.h"
-#include "model/state.h"
+#include "simulate/scenario.h"
 
 namespace servodx {
 namespace {
