@@ -12,6 +12,7 @@
 #include "effects/mains_pickup.h"
 #include "effects/mount_compliance.h"
 #include "effects/nozzle_land.h"
+#include "effects/nozzle_mismatch.h"
 #include "effects/nozzle_plugging.h"
 #include "effects/orifice_length.h"
 #include "effects/port_line.h"
@@ -49,7 +50,8 @@ using AllEffects = EffectList<MagneticHysteresis,  //
                               ScreenDrop,          //
                               NozzleLand,          //
                               SealFilm,            //
-                              SealShear>;
+                              SealShear,           //
+                              NozzleMismatch>;
 // A learnt curve costs more than all effects: it has a kernel of its own.
 using CorrectedEffects = Append<AllEffects, Unexplained>;
 inline constexpr int n_values = n_parameters + CorrectedEffects::n_parameters;  // length of a parameter vector
@@ -59,6 +61,7 @@ struct EffectInfo {
   int first = 0;  // position of its first parameter in a parameter vector
   std::vector<EffectParameter> parameters;
   bool stand_only = false;   // sought only in logs of a valve on a test stand
+  bool as_made = false;      // told by healthy logs; not sought
   bool shapes_rows = false;  // belongs to a row effect (row_effects.h) and means nothing without it
 };
 const std::vector<EffectInfo>& effect_list();

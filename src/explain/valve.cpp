@@ -317,7 +317,7 @@ void ValveSubject::add_causes(const RigFile& rig) {
       for (int k = 0; k < FlowMeterLag::n_parameters; ++k) add_sensor(k, FlowMeterLag::shown_at[k], "sensor_lag");
       continue;
     }
-    if (e.name == Unexplained::name || e.shapes_rows || (e.stand_only && !on_stand)) continue;
+    if (e.name == Unexplained::name || e.shapes_rows || e.as_made || (e.stand_only && !on_stand)) continue;
     if (e.name == ViscosityChange::name && !oil_known) continue;  // each log's own
     Cause cause;
     cause.effect = e.name;

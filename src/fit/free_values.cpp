@@ -128,7 +128,8 @@ void add_effect_rows(Table& table, const std::vector<std::string>& effects) {
       Row r;
       r.name = p.name;
       r.group = "effect:" + name;
-      r.nominal = p.start;
+      // What may as well be on either side of nought begins there.
+      r.nominal = p.lower + p.upper == 2 * p.off ? p.off : p.start;
       r.lower = p.lower;
       r.upper = p.upper;
       r.estimate = true;

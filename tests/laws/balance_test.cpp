@@ -109,7 +109,7 @@ TEST(Balance, MirroredCurrentMirrorsMotion) {
   for (const bool effects : {false, true}) {
     ParameterVector v = nominal_candidate();
     if (effects) {
-      v = with_effects(v);  // both nozzles alike, so symmetric too
+      v = with_effects(v);
       for (int j = 0; j < 2 * MainsPickup::channels; ++j)
         v[effect_row<MainsPickup>(j)] = 0;  // the mains mirror nothing
       v[effect_row<RodCavity>(0)] = 0;  // on one side only
@@ -123,6 +123,7 @@ TEST(Balance, MirroredCurrentMirrorsMotion) {
     ParameterVector mirror = v;
     mirror[row::filter_blockage_positive] = 0.4, mirror[row::filter_blockage_negative] = 0.7;
     mirror[row::servovalve_null] = -0.02;
+    mirror[effect_row<NozzleMismatch>(0)] *= -1;
     const auto command = [](double t) { return t < 0.01 ? 0.0 : t < 0.2 ? 0.015 : -0.02 * std::sin(40 * t); };
     const auto load = [](double t) { return 4000 * std::sin(25 * t) + 500; };
     const Scenario s = made(0.5, 1e-3, command, load);

@@ -146,6 +146,39 @@ TEST(NozzleLand, PilotPressureAtRestIsThatOfSlotAndJetsInSeries) {
     }
 }
 
+TEST(NozzleMismatch, PilotIsInBalanceWhereTheFlapperMakesUpForIt) {
+  // (1 + q) (g - x) = (1 - q) (g + x) at x = q g.
+  constexpr double excess = 0.03;
+  const ParameterVector v = with<NozzleMismatch>(0, excess);
+  const Bench<AllEffects> bench(v);
+  const auto apart = [&](double travel) {
+    Bench<AllEffects>::Y y{};
+    y[s_x_flapper] = travel * v[row::nozzle_gap];
+    y[s_p_filter] = 20e6, y[s_p_pilot_1] = y[s_p_pilot_2] = 10e6, y[s_p_a] = y[s_p_b] = 10e6;
+    const auto rate = bench.rate(y, {0, v[row::supply_pressure], v[row::return_pressure], 0});
+    return rate[s_p_pilot_1] - rate[s_p_pilot_2];
+  };
+  EXPECT_LT(apart(0), 0);  // nozzle 1 lets more go
+  EXPECT_NEAR(apart(excess), 0, 0.02 * std::abs(apart(0)));
+}
+
+TEST(NozzleMismatch, SpoolSlewsFasterOutThroughTheNozzleThatPassesMore) {
+  const auto slew = [](double excess, double current) {
+    Scenario s = made(0.06, 1e-4, [&](double t) { return t < 0.03 ? -current : current; });
+    const Trajectory t = simulate(s, with<NozzleMismatch>(0, excess), all_signals());
+    const auto& x = of(t, Signal::spool_position);
+    double fastest = 0;
+    for (std::size_t k = 305; k < x.size(); ++k) fastest = std::max(fastest, std::abs(x[k] - x[k - 5]) / 5e-4);
+    return fastest;
+  };
+  const double to_2 = slew(0.05, 20e-3), to_1 = slew(0.05, -20e-3), alike = slew(0, 20e-3);
+  std::printf("%.1f and %.1f mm/s, %.1f where alike\n", 1e3 * to_2, 1e3 * to_1, 1e3 * alike);
+  // Positive current closes nozzle 1; the spool pushes what it displaces through nozzle 2, which passes less.
+  EXPECT_LT(to_2, alike);
+  EXPECT_GT(to_1, alike);
+  EXPECT_NEAR(slew(-0.05, 20e-3), to_1, 1e-3 * alike);
+}
+
 TEST(MountCompliance, NewtonsLawHoldsForTheBody) {
   Random random(91, 1);
   const double compliance = 2e-7, relaxation = 3e-4, mass = 12;
