@@ -1,7 +1,7 @@
 // Two nozzles are never quite alike: bores, edges and the fixed orifices before them differ by a few per cent, and one
-// side passes more at the same gap. The flapper then stands off the middle at rest, which a null takes up, and the spool
-// slews faster one way than the other, which no null does. Valves are made so: it does not come, so `explain` does not
-// seek it. Bounds: bores that differ by a tenth.
+// side passes more at the same gap. The flapper then stands off the middle at rest, which a null takes up, and the
+// spool slews faster one way than the other, which no null does. Valves are made so: it does not come, so `explain`
+// does not seek it. Bounds: bores that differ by a tenth.
 #pragma once
 #include "effects/effect.h"
 
