@@ -279,9 +279,8 @@ LeastSquaresResult refine(Tuning& run, FitProblem& problem, Point x, ErrorModel&
 
 std::vector<std::string> default_effects(bool on_stand) {
   if (on_stand) return {"magnetic_hysteresis", "flow_meter_lag", "edge_radius", "port_line"};
-  return {"magnetic_hysteresis", "armature_angle", "mount_compliance", "edge_transition",
-          "orifice_length",      "screen_drop",    "nozzle_land",      "seal_shear",
-          "nozzle_mismatch"};
+  return {"magnetic_hysteresis", "armature_angle", "mount_compliance", "edge_transition", "orifice_length",
+          "screen_drop",         "nozzle_land",    "seal_shear",       "nozzle_mismatch"};
 }
 
 int moving_average_of(const Table& table) {
