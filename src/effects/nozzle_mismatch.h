@@ -17,13 +17,14 @@ struct NozzleMismatch {
   static constexpr EffectParameter parameters[n_parameters] = {
       {"nozzle_1_excess", "-", 0.0, -0.1, 0.1, 0.02, "what nozzle 1 passes beyond the mean of both, part of that mean"},
   };
-  template <class V, class X>
-  static auto nozzle_1_opening(const V& view, const X& gap) {
-    return gap * view.template own<NozzleMismatch>(0);
+  // [-] q: own parameters.
+  template <class T>
+  static T nozzle_1_share(const T* q) {
+    return q[0];
   }
-  template <class V, class X>
-  static auto nozzle_2_opening(const V& view, const X& gap) {
-    return -(gap * view.template own<NozzleMismatch>(0));
+  template <class T>
+  static T nozzle_2_share(const T* q) {
+    return -q[0];
   }
 };
 

@@ -1,7 +1,6 @@
 // Dirt in one of the two nozzles: part of its curtain is blocked, and the pilot bridge is out of balance.
 #pragma once
 #include "effects/effect.h"
-#include "model/hooks.h"
 
 namespace servodx {
 
@@ -16,13 +15,14 @@ struct NozzlePlugging {
        "blocked fraction of nozzle 1, which the flapper closes at positive current"},
       {"nozzle_2_blockage", "-", 0.0, 0.0, 0.98, 0.1, "blocked fraction of nozzle 2"},
   };
-  template <class V, class X>
-  static auto nozzle_1_opening(const V& view, const X& gap) {
-    return -(gap * view.template own<NozzlePlugging>(0));
+  // [-] q: own parameters.
+  template <class T>
+  static T nozzle_1_share(const T* q) {
+    return -q[0];
   }
-  template <class V, class X>
-  static auto nozzle_2_opening(const V& view, const X& gap) {
-    return -(gap * view.template own<NozzlePlugging>(1));
+  template <class T>
+  static T nozzle_2_share(const T* q) {
+    return -q[1];
   }
 };
 

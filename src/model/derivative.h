@@ -141,12 +141,8 @@ inline __attribute__((always_inline)) auto derivative(const S& s, const In& in, 
   const auto q_filter = filter_flow(u.supply_pressure - p_f, v_s, d);
   const auto q_orifice_1 = fixed_orifice_flow(p_f - p_1, d);
   const auto q_orifice_2 = fixed_orifice_flow(p_f - p_2, d);
-  const auto gap_1 = p[row::nozzle_gap] - x_f;
-  const auto gap_2 = p[row::nozzle_gap] + x_f;
-  const auto q_nozzle_1 =
-      nozzle_flow(gap_1 + hook_nozzle_1_opening(view, Effects{}, gap_1), p_1 - u.return_pressure, d);
-  const auto q_nozzle_2 =
-      nozzle_flow(gap_2 + hook_nozzle_2_opening(view, Effects{}, gap_2), p_2 - u.return_pressure, d);
+  const auto q_nozzle_1 = nozzle_flow(d.nozzle_1_share * (p[row::nozzle_gap] - x_f), p_1 - u.return_pressure, d);
+  const auto q_nozzle_2 = nozzle_flow(d.nozzle_2_share * (p[row::nozzle_gap] + x_f), p_2 - u.return_pressure, d);
   const auto dp_f = d.inverse_filter_compliance * (q_filter - q_orifice_1 - q_orifice_2);
   const auto dp_1 = d.inverse_pilot_compliance * (q_orifice_1 - q_nozzle_1 - d.spool_area * v_s);
   const auto dp_2 = d.inverse_pilot_compliance * (q_orifice_2 - q_nozzle_2 + d.spool_area * v_s);

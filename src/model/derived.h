@@ -12,21 +12,22 @@ namespace servodx {
 template <class T>
 struct Derived {
   // first stage
-  T driver_rate;                // [1/s]
-  T flapper_rate2;              // [1/s2] natural frequency squared over stiffness times stiffness
-  T inverse_flapper_stiffness;  // [m/N]
-  T flapper_damping;            // [1/s]
-  T nozzle_area;                // [m2] facing the flapper
-  T nozzle_conductance;         // [m3/s/sqrt(Pa)/m] per curtain opening
-  T bore_loss;                  // [1/m2] pressure lost in a nozzle's bore over that at its curtain, per opening squared
-  T nozzle_creep;               // [m2 sqrt(Pa)] half the laminar drop of a nozzle's land over the root of the turbulent
-                                // one, times opening squared
-  T orifice_conductance;        // [m3/s/sqrt(Pa)]
-  T orifice_creep;       // [sqrt(Pa)] half the laminar drop of a fixed orifice over the root of the turbulent one
-  T filter_conductance;  // [m3/s/sqrt(Pa)] mean of both directions of the spool
-  T filter_one_way;      // [m3/s/sqrt(Pa)] less while the spool moves positive, more while it moves negative
-  T filter_creep;        // [sqrt(Pa)] half the laminar drop of the clean filter over the root of its turbulent one
-  T half_backlash;       // [m] between wire and spool
+  T driver_rate;                     // [1/s]
+  T flapper_rate2;                   // [1/s2] natural frequency squared over stiffness times stiffness
+  T inverse_flapper_stiffness;       // [m/N]
+  T flapper_damping;                 // [1/s]
+  T nozzle_area;                     // [m2] facing the flapper
+  T nozzle_1_share, nozzle_2_share;  // [-] open of each nozzle's gap
+  T nozzle_conductance;              // [m3/s/sqrt(Pa)/m] per curtain opening
+  T bore_loss;            // [1/m2] pressure lost in a nozzle's bore over that at its curtain, per opening squared
+  T nozzle_creep;         // [m2 sqrt(Pa)] half the laminar drop of a nozzle's land over the root of the turbulent
+                          // one, times opening squared
+  T orifice_conductance;  // [m3/s/sqrt(Pa)]
+  T orifice_creep;        // [sqrt(Pa)] half the laminar drop of a fixed orifice over the root of the turbulent one
+  T filter_conductance;   // [m3/s/sqrt(Pa)] mean of both directions of the spool
+  T filter_one_way;       // [m3/s/sqrt(Pa)] less while the spool moves positive, more while it moves negative
+  T filter_creep;         // [sqrt(Pa)] half the laminar drop of the clean filter over the root of its turbulent one
+  T half_backlash;        // [m] between wire and spool
   T inverse_filter_compliance;  // [Pa/m3]
   T inverse_pilot_compliance;   // [Pa/m3]
   // second stage
@@ -42,8 +43,8 @@ struct Derived {
   T edge_loss;                 // [Pa s2/m4] 4 rho / (2 Cd^2)
   T hose_loss;                 // 4 hose_resistance width^2
   // actuator
-  T leak;                              // [m3/s/Pa]
-  T viscous;                           // [N s/m]
+  T leak;     // [m3/s/Pa]
+  T viscous;  // [N s/m]
   Breakaway<T> breakaway;
   T inverse_mass;                      // [1/kg]
   T half_stroke;                       // [m]
@@ -68,6 +69,8 @@ Derived<T> derive(const T* p, const Oil& oil) {
   d.flapper_damping = T(2.0 * c::flapper_damping_ratio) * omega;
   const T nozzle_diameter = p[row::hydraulic_amplifier_gain] * T(1.0 / c::pi);
   d.nozzle_area = T(c::pi / 4.0) * nozzle_diameter * nozzle_diameter;
+  d.nozzle_1_share = T(1.0) + hook_nozzle_1_share(p, Effects{});
+  d.nozzle_2_share = T(1.0) + hook_nozzle_2_share(p, Effects{});
   d.nozzle_conductance = T(c::cd_nozzle) * per_root_density * p[row::hydraulic_amplifier_gain];
   // Bernoulli: the bore's velocity is 4 Cd opening / diameter times the curtain's.
   const T bore_speed = T(4.0 * c::cd_nozzle) / nozzle_diameter;

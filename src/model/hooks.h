@@ -7,13 +7,13 @@
 //     edge_rounding(p, to_return) [m] added to the corner radius of the metering edges
 //     edge_creep(p)        [-]   added to the creeping-flow length of an open edge, in openings
 //     orifice_length(p)    [-]   added to the length of the fixed orifices, in diameters
+//     nozzle_1_share(p), nozzle_2_share(p)  [-]  added to the share of a nozzle's gap that is open
 //     nozzle_land(p)       [m]   added to the width of the nozzles' faces
 //     screen_drop(p)       [Pa]  laminar drop of the clean pilot filter at rest, in oil at 40 degC
 //     seal_film_speed(p)   [m/s] added to the speed at which the piston's seals slide on oil
 //     seal_shear(p)        [-]   share of the piston's viscous friction in proportion to the viscosity
 //     supply_pressure(view) [Pa] added to the supply pressure at the valve
 //     flapper_force(view)  [N]   added to the torque motor's force
-//     nozzle_1_opening(view, open), nozzle_2_opening(view, open)  [m]  added to the open gap of a nozzle
 //     spool_force(view)    [N]   added to the force on the spool
 //     metering_opening(view) [m] added to the spool's travel where the edges meter
 //     flow_a(view), flow_b(view) [m3/s]  added to the flow into the chamber
@@ -117,28 +117,14 @@ struct View {
         return Nothing{};                             \
     }(E{}));                                          \
   }
-// The same for a hook that is told what it adds to.
-#define SERVODX_HOOK_TO(name)                                     \
-  template <class V, class... E, class X>                         \
-  auto hook_##name(const V& view, EffectList<E...>, const X& x) { \
-    return (Nothing{} + ... + [&](auto effect) {                  \
-      if constexpr (requires { effect.name(view, x); })           \
-        return effect.name(view, x);                              \
-      else                                                        \
-        return Nothing{};                                         \
-    }(E{}));                                                      \
-  }
 SERVODX_HOOK(supply_pressure)
 SERVODX_HOOK(flapper_force)
-SERVODX_HOOK_TO(nozzle_1_opening)
-SERVODX_HOOK_TO(nozzle_2_opening)
 SERVODX_HOOK(spool_force)
 SERVODX_HOOK(metering_opening)
 SERVODX_HOOK(flow_a)
 SERVODX_HOOK(flow_b)
 SERVODX_HOOK(piston_force)
 SERVODX_HOOK(body_velocity)
-#undef SERVODX_HOOK_TO
 #undef SERVODX_HOOK
 
 // Factor on the oil's viscosity, 1 without an effect; p: a candidate.
@@ -169,6 +155,8 @@ T hook_viscosity([[maybe_unused]] const T* p, EffectList<E...>) {
   }
 SERVODX_FIXED_HOOK(edge_creep)
 SERVODX_FIXED_HOOK(orifice_length)
+SERVODX_FIXED_HOOK(nozzle_1_share)
+SERVODX_FIXED_HOOK(nozzle_2_share)
 SERVODX_FIXED_HOOK(nozzle_land)
 SERVODX_FIXED_HOOK(screen_drop)
 SERVODX_FIXED_HOOK(seal_film_speed)

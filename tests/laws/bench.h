@@ -22,7 +22,8 @@ class Bench {
   static constexpr int n = Live::n;
   using Y = std::array<double, n>;
 
-  explicit Bench(ParameterVector v, const Oil& oil = {}) : p_(std::move(v)), d_(derive<double>(p_.data(), oil)) {}
+  explicit Bench(ParameterVector v, const Oil& oil = {})
+      : p_(std::move(v)), d_(derive<double, Effects>(p_.data(), oil)) {}
   const double* p() const { return p_.data(); }
   double p(int row) const { return p_[row]; }
   const Derived<double>& derived() const { return d_; }

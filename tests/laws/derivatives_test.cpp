@@ -120,7 +120,7 @@ TEST(Derivatives, JetOverEveryRowEqualsDifferences) {
     const auto u = bench.inputs(random);
     std::array<Jet, rows> p;
     for (int j = 0; j < rows; ++j) p[j] = Jet(v[j], j);
-    const Derived<Jet> d = derive<Jet>(p.data(), Oil{});
+    const Derived<Jet> d = derive<Jet, AllEffects>(p.data(), Oil{});
     std::array<Jet, n> states;
     for (int i = 0; i < n; ++i) states[i] = Jet(y[i]);
     const Inputs<Jet> inputs{Jet(u.current), Jet(u.supply_pressure), Jet(u.return_pressure), Jet(u.load_force)};
