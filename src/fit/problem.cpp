@@ -218,7 +218,10 @@ bool FitProblem::jacobian(const Point& x, const Eigen::VectorXd& residual, Eigen
     for (std::size_t j = 0; j < free_.size(); ++j)
       if (free_[j].log < 0 || free_[j].log == static_cast<int>(l))
         columns.push_back({static_cast<int>(j), static_cast<int>(l), x[j] + step <= 1.0 ? step : -step});
-  jac.setZero(total_rows_, n());
+  jac.resize(total_rows_, n());
+  for (std::size_t j = 0; j < free_.size(); ++j)  // what a log's own value does not touch
+    if (free_[j].log >= 0) jac.col(static_cast<long>(j)).head(data_rows_).setZero();
+  jac.bottomRows(total_rows_ - data_rows_).setZero();
   // A log at a time keeps the trajectories of one log's columns in memory, not of all.
   std::vector<char> failed(columns.size(), 0);
   std::size_t first = 0;
@@ -248,9 +251,9 @@ bool FitProblem::jacobian(const Point& x, const Eigen::VectorXd& residual, Eigen
       std::vector<double>& r = residual_space();
       for (std::size_t channel = 0; channel < logs_[l]->channels.size(); ++channel) {
         whitened(l, static_cast<int>(channel), runs[c - first], r);
-        const long at = offset_[l][channel];
-        for (std::size_t k = 0; k < r.size(); ++k)
-          jac(at + static_cast<long>(k), columns[c].j) = (r[k] - residual[at + static_cast<long>(k)]) / columns[c].dx;
+        const long at = offset_[l][channel], samples = static_cast<long>(r.size());
+        jac.col(columns[c].j).segment(at, samples) =
+            (Eigen::Map<const Eigen::VectorXd>(r.data(), samples) - residual.segment(at, samples)) / columns[c].dx;
       }
     }
     first = last;
