@@ -145,6 +145,7 @@ void run(Attempt& a, const LogData& log, const ParameterVector& base, const Erro
   o.max_iterations = iterations;
   o.difference = Difference::forward;
   o.cost_tolerance = 1e-4;
+  o.damping_trials = 1;  // the hypotheses fill each other's packs: no lane is free
   o.progress = [&](const LeastSquaresProgress&) { return !stopped(); };
   const LeastSquaresResult r = minimise_least_squares(problem.least_squares(), starting_point(a, problem, healthy), o);
   a.simulations += problem.simulations();
