@@ -217,7 +217,7 @@ void lives(const Bench& b, const std::string& out, int units, int checks, int fi
 
   std::vector<std::optional<double>> alarm(all.size());
   std::vector<std::string> alarmed(all.size());
-  for_each(n, "healthy", [&](int i) {
+  for_each(n, "false alarms", [&](int i) {
     if (all[i].degradation) return;
     for (std::size_t k = 12; k <= histories[i].recordings.size() && !alarm[i]; k += 2) {  // on every other occasion
       const ValveTrend t = trend(until(histories[i], histories[i].recordings[k - 1].at), {});

@@ -128,14 +128,14 @@ void add_effect_rows(Table& table, const std::vector<std::string>& effects) {
       Row r;
       r.name = p.name;
       r.group = "effect:" + name;
-      // What may as well be on either side of nought begins there.
-      r.nominal = p.lower + p.upper == 2 * p.off ? p.off : p.start;
+      const bool either_side = p.lower + p.upper == 2 * p.off;  // as likely on one side of nought as on the other
+      r.nominal = either_side ? p.off : p.start;
       r.lower = p.lower;
       r.upper = p.upper;
       r.estimate = true;
       r.unit = p.unit;
       r.description = p.meaning;
-      r.source = "typical size";
+      r.source = either_side ? "none, its sign unknown" : "typical size";
       table.rows.push_back(r);
     }
   }

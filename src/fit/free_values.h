@@ -32,7 +32,8 @@ std::vector<FreeValue> nuisance_values(const LogData& log, int log_index, const 
 // sample's noise drives the whole first transient, and parameters take it for theirs.
 std::vector<FreeValue> start_values(const LogData& log, int log_index);
 
-// Appends rows for effects that the table lacks, at their typical size and free. Throws InputError for an unknown name.
+// Appends rows for effects that the table lacks, free and at their typical size, or off where a number may lie on
+// either side of nought. Throws InputError for an unknown name.
 void add_effect_rows(Table& table, const std::vector<std::string>& effects);
 
 // Value at which a parameter of a candidate switches its effect off; none for the 41 rows and for what only shapes.
