@@ -11,7 +11,8 @@ namespace {
 
 constexpr double panel_width = 420, panel_height = 300;         // [px]
 constexpr double left = 62, right = 14, top = 30, bottom = 44;  // [px] margins of a panel
-constexpr double legend_row = 14, legend_width = 120;           // [px]
+constexpr double legend_row = 14, key_width = 18;               // [px]
+constexpr double letter = 6.2;                                  // [px] a letter's width in the mean, `font`
 constexpr const char* font = "font-family=\"sans-serif\" font-size=\"11\"";
 
 std::string escaped(const std::string& text) {
@@ -117,6 +118,38 @@ std::string drawn(const ChartLine& line, const std::string& colour, const Axis& 
   return out;
 }
 
+struct Box {
+  double x0, y0, x1, y1;  // [px]
+};
+
+// Of the four corners of `frame` the one that hides least of the lines, the lower right if all are alike.
+Box corner_for(double width, double height, const Box& frame, const std::vector<ChartLine>& lines, const Axis& x,
+               const Axis& y) {
+  constexpr int parts = 16;  // of a stretch between two points
+  Box best{};
+  long least = std::numeric_limits<long>::max();
+  for (const double y0 : {frame.y1 - height, frame.y0})
+    for (const double x0 : {frame.x1 - width, frame.x0}) {
+      const Box box{x0, y0, x0 + width, y0 + height};
+      long hidden = 0;
+      const auto see = [&](double px, double py) {
+        hidden += px >= box.x0 && px <= box.x1 && py >= box.y0 && py <= box.y1;
+      };
+      for (const ChartLine& line : lines)
+        for (std::size_t k = 0; k < line.x.size(); ++k) {
+          const double px = x.at(line.x[k]), py = y.at(line.y[k]);
+          if (line.dots || k == 0) {
+            see(px, py);
+            continue;
+          }
+          const double from_x = x.at(line.x[k - 1]), from_y = y.at(line.y[k - 1]);
+          for (int i = 1; i <= parts; ++i) see(from_x + (px - from_x) * i / parts, from_y + (py - from_y) * i / parts);
+        }
+      if (hidden < least) best = box, least = hidden;
+    }
+  return best;
+}
+
 std::string panel_svg(const ChartPanel& panel) {
   auto x_range = panel.x_range, y_range = panel.y_range;
   if (!(x_range.second > x_range.first)) x_range = range_of(panel.lines, &ChartLine::x);
@@ -146,21 +179,28 @@ std::string panel_svg(const ChartPanel& panel) {
   out += fmt::format("<text transform=\"translate(14,{}) rotate(-90)\" {} text-anchor=\"middle\">{}</text>\n",
                      0.5 * (y0 + y1), font, escaped(panel.y_label));
   std::string legend;
-  const auto labelled =
-      std::count_if(panel.lines.begin(), panel.lines.end(), [](const ChartLine& line) { return !line.label.empty(); });
-  double row = y0 - legend_row * static_cast<double>(labelled);
+  std::size_t labelled = 0, letters = 0;
+  for (const ChartLine& line : panel.lines)
+    if (!line.label.empty()) ++labelled, letters = std::max(letters, line.label.size());
+  const Box corner = corner_for(key_width + letter * static_cast<double>(letters) + 4,
+                                legend_row * static_cast<double>(labelled) + 8, {x0, y1, x1, y0}, panel.lines, x, y);
+  const double key = corner.x0 + 4;
+  if (labelled > 0)
+    legend += fmt::format(
+        "<rect x=\"{:.1f}\" y=\"{:.1f}\" width=\"{:.1f}\" height=\"{:.1f}\" fill=\"white\" opacity=\"0.8\"/>\n",
+        corner.x0 + 1, corner.y0 + 1, corner.x1 - corner.x0 - 2, corner.y1 - corner.y0 - 2);
+  double row = corner.y0 + legend_row;
   for (std::size_t k = 0; k < panel.lines.size(); ++k) {
     const ChartLine& line = panel.lines[k];
     const std::string colour = line.colour.empty() ? scale_colour(k, panel.lines.size()) : line.colour;
     out += drawn(line, colour, x, y, y_range);
     if (line.label.empty()) continue;
-    const double key = x1 - legend_width;
     legend += line.dots ? fmt::format("<circle cx=\"{}\" cy=\"{}\" r=\"3\" fill=\"{}\"/>", key + 7, row - 4, colour)
                         : fmt::format(
                               "<line x1=\"{0}\" y1=\"{1}\" x2=\"{2}\" y2=\"{1}\" stroke=\"{3}\" "
                               "stroke-width=\"2\"/>",
                               key, row - 4, key + 14, colour);
-    legend += fmt::format("<text x=\"{}\" y=\"{}\" {}>{}</text>\n", key + 18, row, font, escaped(line.label));
+    legend += fmt::format("<text x=\"{}\" y=\"{}\" {}>{}</text>\n", key + key_width, row, font, escaped(line.label));
     row += legend_row;
   }
   return out + legend;
