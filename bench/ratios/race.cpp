@@ -1,9 +1,7 @@
 #include "ratios/race.h"
 
 #include <algorithm>
-#include <condition_variable>
-#include <mutex>
-#include <thread>
+#include <span>
 
 #include "base/random.h"
 #include "optimise/box_least_squares.h"
@@ -14,67 +12,6 @@ namespace servodx::bench {
 namespace {
 
 constexpr long patience = 5000;  // evaluations of ours before a seed counts as failed
-
-// Runs of peers wait here with one point each; when all that live wait, one batch an objective serves them.
-class Desk {
- public:
-  struct Closed {};
-  struct Seat {
-    std::size_t objective = 0;
-    long used = 0;
-    std::optional<long> reached;
-    Point point;
-    double cost = 0;
-    bool waiting = false;
-  };
-
-  Desk(const std::vector<Objective>& objectives, std::vector<Seat>& seats, long budget)
-      : objectives_(objectives), seats_(seats), budget_(budget), live_(static_cast<int>(seats.size())) {}
-
-  double ask(Seat& seat, const Point& x) {
-    if (seat.used >= budget_ || seat.reached) throw Closed{};
-    std::unique_lock lock(mutex_);
-    seat.point = x;
-    seat.waiting = true;
-    ++waiting_;
-    changed_.notify_all();
-    served_.wait(lock, [&] { return !seat.waiting; });
-    ++seat.used;
-    if (seat.cost <= objectives_[seat.objective].goal) seat.reached = seat.used;
-    return seat.cost;
-  }
-  void leave() {
-    const std::lock_guard lock(mutex_);
-    --live_;
-    changed_.notify_all();
-  }
-  void serve() {
-    std::unique_lock lock(mutex_);
-    for (;;) {
-      changed_.wait(lock, [&] { return waiting_ == live_; });
-      if (live_ == 0) return;
-      for (std::size_t k = 0; k < objectives_.size(); ++k) {
-        std::vector<Seat*> now;
-        std::vector<Point> points;
-        for (Seat& s : seats_)
-          if (s.waiting && s.objective == k) now.push_back(&s), points.push_back(s.point);
-        if (now.empty()) continue;
-        const std::vector<Evaluation> e = objectives_[k].evaluate(points);
-        for (std::size_t i = 0; i < now.size(); ++i) now[i]->cost = misfit(e[i]), now[i]->waiting = false;
-      }
-      waiting_ = 0;
-      served_.notify_all();
-    }
-  }
-
- private:
-  const std::vector<Objective>& objectives_;
-  std::vector<Seat>& seats_;
-  long budget_;
-  std::mutex mutex_;
-  std::condition_variable changed_, served_;
-  int live_, waiting_ = 0;
-};
 
 long arrived(const std::vector<std::optional<long>>& v) {
   return std::count_if(v.begin(), v.end(), [](const auto& u) { return u.has_value(); });
@@ -123,25 +60,27 @@ std::optional<long> ours(const Objective& objective, int seed, long patience, do
 }
 
 std::vector<std::vector<std::optional<long>>> run_peers(const std::vector<Objective>& objectives, long budget) {
-  std::vector<Desk::Seat> seats(peers().size() * objectives.size());
-  for (std::size_t i = 0; i < seats.size(); ++i) seats[i].objective = i % objectives.size();
-  Desk desk(objectives, seats, budget);
-  {
-    std::vector<std::jthread> threads;
-    for (std::size_t i = 0; i < seats.size(); ++i)
-      threads.emplace_back([&, i] {
-        try {
-          const auto cost = [&](const Point& x) { return desk.ask(seats[i], x); };
-          peers()[i / objectives.size()].run(objectives[0].n, cost, static_cast<unsigned>(1 + i % objectives.size()));
-        } catch (...) {  // the desk closed, or the method gave up
-        }
-        desk.leave();
-      });
-    desk.serve();
-  }
-  std::vector<std::vector<std::optional<long>>> out(peers().size());
-  for (std::size_t i = 0; i < seats.size(); ++i) out[i / objectives.size()].push_back(seats[i].reached);
-  return out;
+  struct Closed {};
+  const std::size_t n = objectives.size();
+  std::vector<std::vector<std::optional<long>>> reached(peers().size(), std::vector<std::optional<long>>(n));
+  together(static_cast<int>(peers().size() * n), 0, [&](int i) {
+    const std::size_t peer = static_cast<std::size_t>(i) / n, k = static_cast<std::size_t>(i) % n;
+    const Objective mine = objectives[k];  // with a count of runs of its own
+    std::optional<long>& arrival = reached[peer][k];
+    long used = 0;
+    const auto cost = [&](const Point& x) {
+      if (used >= budget || arrival) throw Closed{};
+      const double found = misfit(mine.evaluate(std::span(&x, 1)).front());
+      ++used;
+      if (found <= mine.goal) arrival = used;
+      return found;
+    };
+    try {
+      peers()[peer].run(mine.n, cost, static_cast<unsigned>(1 + k));
+    } catch (...) {  // closed, or the method gave up
+    }
+  });
+  return reached;
 }
 
 std::optional<double> median_arrival(std::vector<std::optional<long>> v) {
@@ -179,6 +118,7 @@ void race(Report& report, const Choice& choice, const std::string& what, const s
 
   nlohmann::ordered_json& theirs = report.json[prefix + "best_peer"][key];
   theirs = nullptr;
+  for (const std::string& why : missing_peers()) report.excuse(prefix + "best_peer", why);
   const std::string row = fmt::format("the best of {} peers, {} parameters{}, over ours", peers().size(), n, what);
   if (peers().empty() || !median || choice.peer_budget <= 0) {
     const std::string why = peers().empty() ? "no peer is installed"

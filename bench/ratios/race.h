@@ -8,6 +8,7 @@
 
 namespace servodx::bench {
 
+// Copies may be asked side by side.
 struct Objective {
   int n = 0;
   double goal = 0;  // of the misfit 0.5*|residual|^2
@@ -21,7 +22,7 @@ double misfit(const Evaluation& e);  // a failed point: 1e12
 std::optional<long> ours(const Objective& objective, int seed, long patience, double* least = nullptr);
 
 // reached[peer][objective]: evaluations until the goal, none within the budget. A method's seed is the objective's
-// place in the list, from 1. All runs advance in step: one batch serves those that share an objective.
+// place in the list, from 1. All runs advance in step, and what waits is simulated as one batch.
 std::vector<std::vector<std::optional<long>>> run_peers(const std::vector<Objective>& objectives, long budget);
 
 // Median with what never arrived as infinitely late; empty when that is the median.

@@ -36,8 +36,7 @@ struct Report {
 struct Choice {
   int seeds = 15;                       // of the twin objectives
   std::vector<int> free = {8, 15, 25};  // parameters of the fits to a floor
-  double peer_budget = 5;               // simulations a peer may use, in medians of ours
-  bool peers_on_logs = false;           // peers on the virtual rig's logs too: most of an hour
+  double peer_budget = 10;              // simulations a peer may use, in medians of ours
   long floor_search = 20000;            // simulations that seek the floor of the virtual rig's logs
   int turns = 7;                        // of each timing
 };

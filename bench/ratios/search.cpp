@@ -4,40 +4,37 @@
 
 #include "optimise/box_least_squares.h"
 #include "ratios/measure.h"
-#include "ratios/peers.h"
 #include "ratios/race.h"
 #include "ratios/twin.h"
+#include "simulate/together.h"
 
 namespace servodx::bench {
 namespace {
 
 constexpr double seconds = 5.0;
 
-Objective objective_of(const Twin& twin) {
-  return {twin.n, twin.goal(), [&twin](std::span<const Point> points) { return twin.evaluate(points); }};
+Objective objective_of(Twin twin) {
+  return {twin.n, twin.goal(),
+          [twin = std::move(twin)](std::span<const Point> points) { return twin.evaluate(points); }};
 }
 
 }  // namespace
 
 void search_rows(Report& report, const Choice& choice) {
   const Scenario scenario = trace(seconds);
-  for (const std::string& why : missing_peers()) report.excuse("best_peer", why);
   for (const int n : choice.free) {
-    std::vector<Twin> twins;
     std::vector<Objective> objectives;
-    for (int seed = 1; seed <= choice.seeds; ++seed) twins.emplace_back(n, seed, scenario, 0);
     int redrawn = 0;
-    for (const Twin& twin : twins) objectives.push_back(objective_of(twin)), redrawn += twin.redrawn;
+    for (int seed = 1; seed <= choice.seeds; ++seed) {
+      const Twin twin(n, seed, scenario, 0);
+      objectives.push_back(objective_of(twin));
+      redrawn += twin.redrawn;
+    }
     race(report, choice, "", "", objectives, {{"truths_drawn_again", redrawn}});
   }
 }
 
-void virtual_rows(Report& report, const Choice& asked) {
-  Choice choice = asked;
-  if (!asked.peers_on_logs) {
-    choice.peer_budget = 0;
-    report.excuse("virtual_rig_best_peer", "takes most of an hour: --only virtual");
-  }
+void virtual_rows(Report& report, const Choice& choice) {
   const std::string folder = std::string(SERVODX_SOURCE_DIR) + "/data/";
   const RigFile rig = read_rig_file(folder + "rig.toml");
   std::vector<LogData> logs;
@@ -48,21 +45,23 @@ void virtual_rows(Report& report, const Choice& asked) {
     logs.push_back(slice(whole, 0, static_cast<std::size_t>(end)));
   }
   for (const int n : choice.free) {
+    std::vector<Objective> fits;
+    for (const LogData& log : logs) fits.push_back(objective_of(Twin(n, log, 0)));
     // The floor: the best of a long search of ours.
-    std::vector<double> goals;
-    for (const LogData& log : logs) {
-      const Twin fit(n, log, 0);
-      Objective o = objective_of(fit);
+    std::vector<double> goals(fits.size());
+    together(static_cast<int>(fits.size()), 0, [&](int k) {
+      Objective endless = fits[static_cast<std::size_t>(k)];
+      endless.goal = -1;
       double least = 1e300;
-      o.goal = -1;
-      ours(o, 1000, choice.floor_search, &least);
-      goals.push_back(1.05 * least);
-    }
-    std::vector<Twin> fits;
+      ours(endless, 1000, choice.floor_search, &least);
+      goals[static_cast<std::size_t>(k)] = 1.05 * least;
+    });
     std::vector<Objective> by_seed;
-    for (int seed = 0; seed < choice.seeds; ++seed) fits.emplace_back(n, logs[seed % logs.size()], 0);
-    for (const Twin& fit : fits)
-      by_seed.push_back(objective_of(fit)), by_seed.back().goal = goals[(by_seed.size() - 1) % logs.size()];
+    for (int seed = 0; seed < choice.seeds; ++seed) {
+      const std::size_t k = static_cast<std::size_t>(seed) % fits.size();
+      by_seed.push_back(fits[k]);
+      by_seed.back().goal = goals[k];
+    }
     race(report, choice, ", virtual rig", "virtual_rig_", by_seed);
   }
 }

@@ -63,31 +63,38 @@ class Meeting {
   }
 
   void take_place(std::unique_lock<std::mutex>& lock) {
-    changed_.wait(lock, [&] { return places_ > 0 || broken_; });
-    --places_;
+    place_.wait(lock, [&] { return places_ > 0 || broken_; });
     if (broken_) throw Broken{};
+    --places_;
   }
 
   void ask(int run, Request& request) {
     std::unique_lock lock(mutex_);
     Request*& mine = requests_[static_cast<std::size_t>(run)];
     mine = &request;
-    ++waiting_, ++places_;
-    changed_.notify_all();
-    changed_.wait(lock, [&] { return !mine || broken_; });
+    ++waiting_;
+    give_place();
+    served_.wait(lock, [&] { return !mine || broken_; });
     take_place(lock);
   }
 
   void leave() {
     const std::lock_guard lock(mutex_);
-    --live_, ++places_;
-    changed_.notify_all();
+    --live_;
+    give_place();
+  }
+
+  // To one who waits for it; who serves is woken by the last alone, not by each of a hundred.
+  void give_place() {
+    ++places_;
+    place_.notify_one();
+    if (waiting_ == live_) all_wait_.notify_one();
   }
 
   void serve(const std::function<void(const std::vector<Request*>&)>& serve) {
     std::unique_lock lock(mutex_);
     for (;;) {
-      changed_.wait(lock, [&] { return waiting_ == live_; });
+      all_wait_.wait(lock, [&] { return waiting_ == live_; });
       if (live_ == 0) return;
       std::vector<Request*> now;
       for (Request* request : requests_)
@@ -95,18 +102,19 @@ class Meeting {
       serve(now);
       std::fill(requests_.begin(), requests_.end(), nullptr);
       waiting_ = 0;
-      changed_.notify_all();
+      served_.notify_all();
     }
   }
 
   void call_off() {
     const std::lock_guard lock(mutex_);
     broken_ = true;
-    changed_.notify_all();
+    served_.notify_all();
+    place_.notify_all();
   }
 
   std::mutex mutex_;
-  std::condition_variable changed_;
+  std::condition_variable place_, served_, all_wait_;
   int live_, waiting_ = 0, places_;
   bool broken_ = false;
   std::vector<Request*> requests_;  // of each run: what it waits for, or null
