@@ -1,4 +1,6 @@
 // `servodx check LOG`: the prognostic checks of one log, stored in the valve's history.
+#include <fmt/format.h>
+
 #include <CLI/CLI.hpp>
 #include <cmath>
 #include <filesystem>
@@ -10,6 +12,7 @@
 #include "invocation.h"
 #include "prognose/check.h"
 #include "prognose/history.h"
+#include "prognose/monitor.h"
 #include "report/prognosis.h"
 
 namespace servodx {
@@ -18,7 +21,8 @@ namespace {
 struct Options {
   CommonOptions common;
   std::string log, params, history, valve, serial;
-  double at = 0, cycles = -1;
+  double at = 0;
+  std::optional<double> cycles;
   CheckOptions check;
   bool no_track = false, raw = false;
 };
@@ -27,8 +31,11 @@ void run(const Options& options) {
   require_option(!options.valve.empty(), "--valve", "the name is empty", "name the valve");
   require_option(std::isfinite(options.at) && options.at >= 0, "--at", "must be the hours of use, 0 or more",
                  "--at 1250.5");
+  require_option(!options.cycles || (std::isfinite(*options.cycles) && *options.cycles >= 0), "--cycles",
+                 "must be a number, 0 or more", "--cycles 120000");
   Invocation invocation("check", options.common);
   invocation.check_files({options.log, options.params}, {options.history});
+  require_pressure_law(options.check.model);
   const RigFile rig = invocation.rig();
   const Table tuned = invocation.tuned_table(options.params);
   const Log log = invocation.log(options.log, rig);
@@ -43,13 +50,21 @@ void run(const Options& options) {
   header.settings = {{"valve", options.valve}, {"at", options.at}, {"model", how.model}, {"history", options.history}};
   if (invocation.dry_run()) return;
 
-  if (history)
+  const std::string serial = options.serial.empty() ? rig.serial : options.serial;
+  if (history) {
     if (const auto last = history->last(options.valve)) how.last = tracked_in(*last);
+    if (const std::string was = history->serial(options.valve); !was.empty() && !serial.empty() && was != serial)
+      invocation.note(
+          {fmt::format("'{}' was serial {} and is {} now: if the valve was swapped, 'servodx history event "
+                       "valve_swapped' starts its "
+                       "trends again",
+                       options.valve, was, serial)});
+  }
   const CheckResult result = check(log, tuned, rig, how);
   if (!history) history.emplace(options.history, true);
-  history->record(options.valve, options.serial.empty() ? rig.serial : options.serial,
+  history->record(options.valve, serial,
                   {.at = options.at,
-                   .cycles = options.cycles >= 0 ? std::optional(options.cycles) : std::nullopt,
+                   .cycles = options.cycles,
                    .log = log.path,
                    .log_sha256 = log.sha256,
                    .table_sha256 = tuned.sha256,

@@ -3,7 +3,9 @@
 
 #include <CLI/CLI.hpp>
 #include <cmath>
+#include <filesystem>
 #include <memory>
+#include <optional>
 
 #include "base/atomic_file.h"
 #include "commands.h"
@@ -23,6 +25,7 @@ struct Options {
 
 void show(const Options& options) {
   Invocation invocation("history show", options.common);
+  invocation.check_files({options.history}, {});
   const History history(options.history, false);
   if (invocation.dry_run()) return;
   report::Columns rows("llrrr");
@@ -51,6 +54,7 @@ void add_event(const Options& options) {
   require_option(std::isfinite(options.at) && options.at >= 0, "--at", "must be the hours of use, 0 or more",
                  "--at 1250.5");
   Invocation invocation("history event", options.common);
+  invocation.check_files({options.history}, {});
   History history(options.history, false);
   history.of(options.valve);  // refuses a name that is only mistyped
   invocation.header().settings = {{"valve", options.valve}, {"at", options.at}, {"kind", options.kind}};
@@ -76,9 +80,11 @@ void read_csv(const Options& options) {
   Invocation invocation("history import", options.common);
   invocation.check_files({options.file}, {options.history});
   const HistoryContent content = read_history_csv(options.file);
+  std::optional<History> history;  // a new one is made only when there is something to store
+  if (std::filesystem::exists(options.history)) history.emplace(options.history, false);
   if (invocation.dry_run()) return;
-  History history(options.history, true);
-  const Restored count = history.restore(content);
+  if (!history) history.emplace(options.history, true);
+  const Restored count = history->restore(content);
   if (count.present > 0)
     invocation.note({fmt::format("{} rows were in the history already and are left as they are", count.present)});
   invocation.finish(fmt::format("{} checks and {} events added\n", count.recordings, count.events),
@@ -87,6 +93,7 @@ void read_csv(const Options& options) {
 
 void verify(const Options& options, int& exit_code) {
   Invocation invocation("history verify", options.common);
+  invocation.check_files({options.history}, {});
   const History history(options.history, false);
   if (invocation.dry_run()) return;
   const std::string found = history.verify();

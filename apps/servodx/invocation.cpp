@@ -264,7 +264,11 @@ void Invocation::write_manifest() const {
 
 void Invocation::finish(const std::string& text, const report::Json& body) {
   if (!options_.json.empty() && options_.json != "-") write_file(options_.json, result(body));
-  if (wants_report() && !reported_) write_report(report::plain_page(header_, text, body));
+  if (wants_report() && !reported_) {
+    report::Json shown = body;
+    without_wall_time(shown);
+    write_report(report::plain_page(header_, text, shown));
+  }
   write_manifest();
   if (options_.json == "-") return print(result(body));
   std::string all = text;

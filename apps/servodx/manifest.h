@@ -12,7 +12,7 @@ inline constexpr const char* manifest_suffix = ".manifest.json";
 // Takes out, at any depth, what measures this machine's time: the one thing that two runs do not share.
 inline void without_wall_time(nlohmann::ordered_json& json) {
   if (json.is_object())
-    for (const char* key : {"seconds", "cost_in_step", "cost_in_batch"}) json.erase(key);
+    for (const char* key : {"seconds", "cost_in_step", "cost_in_batch", "real_time_factor"}) json.erase(key);
   if (json.is_structured())
     for (auto& item : json) without_wall_time(item);
 }

@@ -45,8 +45,8 @@ void run(const Options& options) {
   const double simulated = log.time.back() - log.time.front();
 
   report::Json error = nullptr;
-  std::string text = fmt::format("monitored {} s at {} samples, {:.0f} times real time: {}\n",
-                                 report::digits(simulated), log.samples(), simulated / wall, options.output);
+  std::string text = fmt::format("monitored {} s at {} samples: {}\n{:.0f} times real time\n",
+                                 report::digits(simulated), log.samples(), options.output, simulated / wall);
   if (log.has(Signal::spool_position)) {
     const MeanError e = mean_error(log.time, log[Signal::spool_position], run.spool);
     error = {{"value", e.figure.value},

@@ -46,10 +46,9 @@ void add_failure(const std::string& text, TrendOptions& to) {
   if (current) level.pop_back();
   const std::optional<double> value = parse_number(level);
   require_option(
-      value && equals > 0 && (tilde == std::string::npos || (spread && *spread > 0)) &&
-          !((times || current) && (below || *value <= 0)) &&
-          !(current && name != fmt::format("parameter:{}", row::spool_friction + 1)),
-      "--failure", "'" + text + "' is not NAME=VALUE",
+      value && *value > 0 && equals > 0 && (tilde == std::string::npos || (spread && *spread > 0)) &&
+          !((times || current) && below) && !(current && name != fmt::format("parameter:{}", row::spool_friction + 1)),
+      "--failure", "'" + text + "' is not NAME=VALUE above 0",
       "--failure fidelity=1.7, --failure 'parameter:3=<20' for a lower limit, --failure parameter:14=20x for "
       "20 times the tuned value, parameter:14=0.9e-3A for the current that the spool's friction takes, ~SPREAD "
       "behind it for how well it is known");
@@ -62,6 +61,23 @@ void add_failure(const std::string& text, TrendOptions& to) {
     (below ? to.failure[name].first : to.failure[name].second) = *value;
 }
 
+// What checks are called; of the rest, what is only not in this history is told.
+void require_levels_of_checks(const std::vector<std::string>& failures, const History& history,
+                              Invocation& invocation) {
+  if (failures.empty()) return;
+  const std::vector<std::string> held = history.figures();
+  for (const std::string& text : failures) {
+    const std::string name = text.substr(0, text.find('='));
+    if (std::find(held.begin(), held.end(), name) != held.end()) continue;
+    bool known = name == "mean_error" || name == "fidelity" || name.starts_with("correlation@");
+    for (int id = 1; id <= n_parameters; ++id) known = known || name == fmt::format("parameter:{}", id);
+    require_option(
+        known, "--failure", "'" + name + "' is no check",
+        fmt::format("use mean_error, fidelity, correlation@5Hz or parameter:1 to parameter:{}", n_parameters));
+    invocation.note({name + ": no check of this history reads it; its failure level changes nothing"});
+  }
+}
+
 void run(Options options) {
   require_option(options.all != !options.valve.empty(), "--valve", "name one valve, or --all", "give one of the two");
   require_option(options.trend.false_alarm > 0 && options.trend.false_alarm < 0.5, "--false-alarm",
@@ -70,6 +86,10 @@ void run(Options options) {
   require_option(options.trend.coverage > 0 && options.trend.coverage < 1, "--coverage", "is between 0 and 1", "0.9");
   options.trend.seed = options.common.seed;
   Invocation invocation("trend", options.common);
+  std::vector<std::string> inputs = {options.history};
+  for (const std::string& file : {options.params, options.seeded})
+    if (!file.empty()) inputs.push_back(file);
+  invocation.check_files(inputs, {});
   require_option(options.limits.empty() || !options.params.empty(), "--limit", "needs the tuned table",
                  "--params TUNED");
   if (!options.params.empty()) {
@@ -83,6 +103,7 @@ void run(Options options) {
   }
   const History history(options.history, false);
   if (!options.all) history.of(options.valve);  // refuses a name that is not there
+  require_levels_of_checks(options.failures, history, invocation);
   invocation.header().settings = {{"history", options.history},       {"false_alarm", options.trend.false_alarm},
                                   {"healthy", options.trend.healthy}, {"coverage", options.trend.coverage},
                                   {"failure", options.failures},      {"limit", options.limits},

@@ -39,6 +39,8 @@ struct Oil {
   double stiffness_ratio = 1.0;      // bulk modulus without air over that at 40 degC
 };
 
+inline constexpr double coldest_oil = 173.15, hottest_oil = 573.15;  // [K] beyond what any oil bears
+
 // Density, viscosity and stiffness at a temperature: Walther's law (ASTM D341) through the viscosity at 40 degC; the
 // bulk modulus of mineral oils falls by a factor of 10^0.0024 a kelvin (Hodges 1996, "Hydraulic Fluids").
 Oil oil_at(double density_20, double kinematic_viscosity_40, double temperature_kelvin);

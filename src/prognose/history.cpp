@@ -128,6 +128,25 @@ bool insert(SQLite::Database& db, long long valve, long long table, const Record
   return true;
 }
 
+// Name of a figure that a check which is there already does not hold so; empty where it holds all of them.
+std::string unlike(SQLite::Database& db, long long valve, long long table, const Recording& r) {
+  SQLite::Statement find(db,
+                         "SELECT value FROM figure JOIN recording ON recording = id WHERE valve = ? AND at = ? AND "
+                         "log_sha256 = ? AND tuned_table = ? AND name = ?");
+  for (const Check& c : r.checks) {
+    find.bind(1, static_cast<std::int64_t>(valve));
+    find.bind(2, r.at);
+    find.bind(3, r.log_sha256);
+    find.bind(4, static_cast<std::int64_t>(table));
+    find.bind(5, c.name);
+    if (!find.executeStep()) return c.name;
+    const double held = number(find.getColumn(0));
+    if (held != c.value && !(std::isnan(held) && std::isnan(c.value))) return c.name;
+    find.reset();
+  }
+  return "";
+}
+
 bool insert(SQLite::Database& db, long long valve, const Event& e) {
   SQLite::Statement find(db, "SELECT 1 FROM event WHERE valve = ? AND at = ? AND kind = ? AND text = ?");
   SQLite::Statement add(db, "INSERT INTO event(valve, at, kind, text, recorded_at) VALUES(?, ?, ?, ?, ?)");
@@ -209,8 +228,10 @@ auto History::guarded(const F& work) const {
 }
 
 History::History(const std::string& path, bool create) : path_(path) {
-  if (!create && !std::filesystem::exists(path))
-    throw InputError({.file = path}, "there is no such history", "record a check with 'servodx check' first");
+  const char* const mend = "record a check with 'servodx check' first";
+  if (!create && !std::filesystem::exists(path)) throw InputError({.file = path}, "there is no such history", mend);
+  if (!create && std::filesystem::is_regular_file(path) && std::filesystem::file_size(path) == 0)
+    throw InputError({.file = path}, "is empty, no history", mend);
   guarded([&] {
     db_ =
         std::make_unique<SQLite::Database>(path, SQLite::OPEN_READWRITE | (create ? SQLite::OPEN_CREATE : 0), busy_ms);
@@ -284,12 +305,24 @@ std::vector<double> tuned_rows(const std::string& table_text) {
   return rows;
 }
 
-std::vector<std::string> History::valves() const {
+std::vector<std::string> History::valves() const { return names("SELECT name FROM valve ORDER BY name"); }
+
+std::vector<std::string> History::figures() const { return names("SELECT DISTINCT name FROM figure ORDER BY name"); }
+
+std::vector<std::string> History::names(const char* query) const {
   return guarded([&] {
-    std::vector<std::string> names;
-    SQLite::Statement all(*db_, "SELECT name FROM valve ORDER BY name");
-    while (all.executeStep()) names.push_back(all.getColumn(0).getString());
-    return names;
+    std::vector<std::string> out;
+    SQLite::Statement all(*db_, query);
+    while (all.executeStep()) out.push_back(all.getColumn(0).getString());
+    return out;
+  });
+}
+
+std::string History::serial(const std::string& valve) const {
+  return guarded([&] {
+    SQLite::Statement find(*db_, "SELECT serial FROM valve WHERE name = ?");
+    find.bind(1, valve);
+    return find.executeStep() ? find.getColumn(0).getString() : std::string();
   });
 }
 
@@ -377,8 +410,19 @@ Restored History::restore(const HistoryContent& content) {
     for (const auto& [sha256, text] : content.tables) id_of_table(*db_, sha256, text);
     for (const ValveHistory& valve : content.valves) {
       const long long id = id_of_valve(*db_, valve.valve, valve.serial);
-      for (const Recording& r : valve.recordings)
-        ++(insert(*db_, id, id_of_table(*db_, r.table_sha256, ""), r) ? count.recordings : count.present);
+      for (const Recording& r : valve.recordings) {
+        const long long table = id_of_table(*db_, r.table_sha256, "");
+        if (insert(*db_, id, table, r)) {
+          ++count.recordings;
+          continue;
+        }
+        if (const std::string other = unlike(*db_, id, table, r); !other.empty())
+          throw InputError(
+              {.file = path_},
+              fmt::format("holds a check of '{}' at {} h with another '{}', or without it", valve.valve, r.at, other),
+              "give the row other hours, or the log_sha256 of its own log; nothing was added");
+        ++count.present;
+      }
       for (const Event& e : valve.events) ++(insert(*db_, id, e) ? count.events : count.present);
     }
     all.commit();

@@ -77,7 +77,9 @@ class History {
               const std::string& table_text);
   void add_event(const std::string& valve, const Event& event);
   std::vector<std::string> valves() const;
+  std::vector<std::string> figures() const;                       // names of all checks, of any valve
   ValveHistory of(const std::string& valve) const;                // throws InputError for an unknown valve
+  std::string serial(const std::string& valve) const;             // empty where none is known
   std::optional<Recording> last(const std::string& valve) const;  // none where the valve is new
 
   HistoryContent content() const;
@@ -88,6 +90,7 @@ class History {
 
  private:
   void migrate();
+  std::vector<std::string> names(const char* query) const;
   template <class F>
   auto guarded(const F& work) const;
   std::string path_;

@@ -6,10 +6,14 @@
 #include <array>
 #include <cmath>
 #include <map>
+#include <string_view>
+#include <tuple>
 
 #include "base/csv.h"
 #include "base/error.h"
 #include "base/units.h"
+#include "parameters/list.h"
+#include "simulate/scenario.h"
 
 namespace servodx {
 namespace {
@@ -85,6 +89,61 @@ double parsed(const Cells& cells, Column c, const Place& row, bool required) {
   return *x;
 }
 
+// A number that is not below nought.
+double counted(const Cells& cells, Column c, const Place& row, bool required) {
+  const double x = parsed(cells, c, row, required);
+  if (x < 0) throw InputError({row.file, row.line, header[c]}, "'" + cells[c] + "' is below 0", "mend the number");
+  return x;
+}
+
+// The row of `parameter:ID`; none for other names.
+const ParameterInfo* row_of(const Cells& cells, const Place& row) {
+  constexpr std::string_view start = "parameter:";
+  if (!cells[figure].starts_with(start)) return nullptr;
+  const auto id = parse_number(std::string_view(cells[figure]).substr(start.size()));
+  if (!id || *id != std::floor(*id) || *id < 1 || *id > n_parameters)
+    throw InputError({row.file, row.line, header[figure]}, "'" + cells[figure] + "' is no row of the table",
+                     fmt::format("use parameter:1 to parameter:{}", n_parameters));
+  return &parameter_list[static_cast<std::size_t>(*id) - 1];
+}
+
+// The unit in which a history keeps a figure; empty for figures it does not know.
+std::string kept_in(const Cells& cells, const Place& row) {
+  if (const ParameterInfo* parameter = row_of(cells, row)) return std::string(parameter->unit);
+  if (cells[figure] == "mean_error") return "m";
+  if (cells[figure] == "fidelity") return "1";
+  return cells[figure].starts_with("correlation@") ? "m2" : "";
+}
+
+// Factor from the row's unit to the kept one.
+double to_kept(const Cells& cells, const std::string& kept, const Place& row) {
+  const std::string& written = cells[unit];
+  const auto plain = [](const std::string& u) { return u == "-" || u == "1"; };
+  if (kept.empty() || written.empty() || written == kept || (plain(written) && plain(kept))) return 1;
+  const Unit *from = find_unit(written), *to = find_unit(kept);
+  if (!from || !to || from->dimension != to->dimension)
+    throw InputError({row.file, row.line, header[unit]}, fmt::format("'{}' is no unit of {}", written, cells[figure]),
+                     "use " + (to ? units_of(to->dimension) : kept));
+  return from->scale() / to->scale();
+}
+
+Recording recording_of(const Cells& cells, double hours, bool celsius, const Place& row) {
+  Recording r;
+  r.at = hours;
+  const double cycled = counted(cells, cycles, row, false);
+  if (!std::isnan(cycled)) r.cycles = cycled;
+  r.temperature = parsed(cells, temperature, row, false) + (celsius ? 273.15 : 0.0);
+  r.temperature_source = cells[temperature_source];
+  if (std::isnan(r.temperature)) r.temperature = 313.15, r.temperature_source = "assumed";
+  if (r.temperature < coldest_oil || r.temperature > hottest_oil)
+    throw InputError({row.file, row.line, celsius ? "oil_temperature [degC]" : header[temperature]},
+                     "'" + cells[temperature] + "' is no oil's temperature",
+                     celsius ? "give degrees Celsius from -100 to 300" : "give kelvins from 173 to 573");
+  r.log = cells[log], r.log_sha256 = cells[log_sha256];
+  r.table_sha256 = cells[table_sha256], r.version = cells[version], r.recorded_at = cells[recorded_at];
+  return r;
+}
+
 // Place of each of the file's columns among ours.
 std::vector<int> columns_of(const CsvCursor& cursor, const std::string& path, bool& celsius) {
   std::vector<int> columns;
@@ -153,6 +212,8 @@ HistoryContent read_history_csv(const std::string& path) {
   const std::vector<int> columns = columns_of(cursor, path, celsius);
   HistoryContent content;
   std::map<std::string, std::size_t> place;  // of a valve
+  // Of a check among its valve's: rows of one check need not stand together.
+  std::map<std::tuple<std::size_t, double, std::string, std::string>, std::size_t> checked;
   while (cursor.next_row()) {
     Cells cells;
     std::size_t n = 0;
@@ -175,7 +236,7 @@ HistoryContent read_history_csv(const std::string& path) {
     const auto [found, fresh] = place.emplace(cells[valve], content.valves.size());
     if (fresh) content.valves.push_back({cells[valve], cells[serial], {}, {}, {}});
     ValveHistory& v = content.valves[found->second];
-    const double hours = parsed(cells, at, row, true);
+    const double hours = counted(cells, at, row, true);
     if (cells[kind] == "event") {
       const auto known = find_event(cells[figure]);
       if (!known)
@@ -183,26 +244,25 @@ HistoryContent read_history_csv(const std::string& path) {
       v.events.push_back({hours, *known, cells[text], cells[recorded_at]});
       continue;
     }
-    if (v.recordings.empty() || v.recordings.back().at != hours ||
-        v.recordings.back().log_sha256 != cells[log_sha256] ||
-        v.recordings.back().table_sha256 != cells[table_sha256]) {
-      Recording r;
-      r.at = hours;
-      const double counted = parsed(cells, cycles, row, false);
-      if (!std::isnan(counted)) r.cycles = counted;
-      r.temperature = parsed(cells, temperature, row, false) + (celsius ? 273.15 : 0.0);
-      r.temperature_source = cells[temperature_source];
-      if (std::isnan(r.temperature)) r.temperature = 313.15, r.temperature_source = "assumed";
-      r.log = cells[log], r.log_sha256 = cells[log_sha256];
-      r.table_sha256 = cells[table_sha256], r.version = cells[version], r.recorded_at = cells[recorded_at];
-      v.recordings.push_back(std::move(r));
+    const auto [check, first] =
+        checked.emplace(std::tuple(found->second, hours, cells[log_sha256], cells[table_sha256]), v.recordings.size());
+    if (first) v.recordings.push_back(recording_of(cells, hours, celsius, row));
+    if (cells[figure].empty()) {  // of a check that holds no figure
+      if (!cells[value].empty())
+        throw InputError({path, row.line, header[figure]}, "is empty beside a value", "name the figure");
+      continue;
     }
-    if (cells[figure].empty()) continue;
-    std::vector<Check>& checks = v.recordings.back().checks;
+    std::vector<Check>& checks = v.recordings[check->second].checks;
     if (std::any_of(checks.begin(), checks.end(), [&](const Check& c) { return c.name == cells[figure]; }))
       throw InputError({path, row.line, "name"}, "'" + cells[figure] + "' stands twice in one check", "remove one");
-    Check c{cells[figure], parsed(cells, value, row, false),    parsed(cells, std_error, row, false),
-            cells[unit],   parsed(cells, measured, row, false), parsed(cells, expected, row, false),
+    const std::string kept = kept_in(cells, row);
+    const double factor = to_kept(cells, kept, row);
+    Check c{cells[figure],
+            factor * parsed(cells, value, row, false),
+            factor * counted(cells, std_error, row, false),
+            kept.empty() ? cells[unit] : kept,
+            factor * parsed(cells, measured, row, false),
+            parsed(cells, expected, row, false),
             cells[cause]};
     if (std::isnan(c.expected)) c.expected = 1;
     if (std::isnan(c.measured)) c.measured = c.value * c.expected;

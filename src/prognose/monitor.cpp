@@ -111,13 +111,16 @@ PressureLaw linear_pressure(const MonitorParameters& p) {
   };
 }
 
+void require_pressure_law(const std::string& name) {
+  if (valve_maps::find_map(name)) return;
+  std::string names;
+  for (const valve_maps::MapInfo& map : valve_maps::map_list()) names += (names.empty() ? "" : ", ") + map.name;
+  throw InputError({.file = "--model"}, "there is no pressure model '" + name + "'", "use one of " + names);
+}
+
 PressureLaw pressure_law(const std::string& name, const Table& table, const Supply& at) {
+  require_pressure_law(name);
   const valve_maps::MapInfo* info = valve_maps::find_map(name);
-  if (!info) {
-    std::string names;
-    for (const valve_maps::MapInfo& map : valve_maps::map_list()) names += (names.empty() ? "" : ", ") + map.name;
-    throw InputError({.file = "--model"}, "there is no pressure model '" + name + "'", "use one of " + names);
-  }
   const double drop = at.supply - at.return_;
   valve_maps::HighFidelity valve(geometry_of(table, at));
   const valve_maps::ValveNumbers numbers = valve.measure(drop);

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 namespace servodx {
 namespace {
@@ -136,8 +137,14 @@ Preflight find_preflight(const LogData& log) {
     const double half = turns[i + 1].time - turns[i].time;
     std::size_t j = i + 1;
     while (j + 1 < turns.size() && std::abs(turns[j + 1].time - turns[j].time - half) < equal_periods * half) ++j;
-    if (j - i >= 3)
-      if (const auto sine = sine_of(t, u, turns[i].time, turns[j].time, j - i)) found.sines.push_back(*sine);
+    // Between two tones lies a half period of neither, which may pass for one of either.
+    for (const auto& [first, last] : {std::pair(i, j), std::pair(i, j - 1), std::pair(i + 1, j)})
+      if (last >= first + 3)
+        if (const auto sine = sine_of(t, u, turns[first].time, turns[last].time, last - first)) {
+          found.sines.push_back(*sine);
+          j = last;
+          break;
+        }
     i = j;
   }
   return found;

@@ -201,8 +201,14 @@ std::vector<SeededReading> read_seeded_csv(const std::string& path) {
                          "write it with a point, without a unit");
       return *x;
     };
-    out.push_back({cells[place[name]], cells[place[valve]], number(truth), number(value),
-                   log_viscosity(number(temperature) + (kelvin ? 0.0 : 273.15))});
+    const auto refuse = [&](std::size_t c, const std::string& mend) {
+      throw InputError({path, cursor.line(), needed[c]}, "'" + cells[place[c]] + "' cannot be", mend);
+    };
+    const double kelvins = number(temperature) + (kelvin ? 0.0 : 273.15);
+    if (kelvins < coldest_oil || kelvins > hottest_oil)
+      refuse(temperature, "give the oil's temperature in the header's unit");
+    if (number(truth) < 0) refuse(truth, "wear is 0 or more");
+    out.push_back({cells[place[name]], cells[place[valve]], number(truth), number(value), log_viscosity(kelvins)});
   }
   if (out.empty())
     throw InputError({path, 0, "truth"}, "no row has one", "give the measured wear of each check's valve");

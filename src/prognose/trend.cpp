@@ -281,7 +281,8 @@ std::vector<GrowthPoint> thinned(const std::vector<GrowthPoint>& points) {
   return out;
 }
 
-GrowthPrior prior_of(const Series& s, std::size_t healthy, const FailureAt& failure) {
+// `own`: the level of failure if the user had stated none.
+GrowthPrior prior_of(const Series& s, std::size_t healthy, const FailureAt& failure, const FailureAt& own) {
   std::vector<double> y, error;
   for (std::size_t i = 0; i < healthy; ++i)
     y.push_back(s.points[i].y), error.push_back(std::sqrt(s.points[i].variance));
@@ -292,9 +293,13 @@ GrowthPrior prior_of(const Series& s, std::size_t healthy, const FailureAt& fail
   if (failure.upper && !failure.lower) prior.direction = 1;
   if (failure.lower && !failure.upper) prior.direction = -1;
   // A growth that matters: half as much again for the paper's checks, the way to failure for a parameter.
-  prior.scale = s.paper() ? 0.5 : std::max(std::abs(prior.base), 1e-300);
-  for (const std::optional<double>& level : {failure.lower, failure.upper})
-    if (level) prior.scale = std::max(std::abs(failure.level(*level, prior.base) - prior.base), 1e-300);
+  const auto way = [&](const FailureAt& end) {
+    double scale = s.paper() ? 0.5 : std::max(std::abs(prior.base), 1e-300);
+    for (const std::optional<double>& level : {end.lower, end.upper})
+      if (level) scale = std::max(std::abs(end.level(*level, prior.base) - prior.base), 1e-300);
+    return scale;
+  };
+  prior.scale = std::max(way(failure), 0.5 * way(own));  // a level near health keeps nothing from growing past it
   prior.noise = std::max({1.4826 * median(y), 0.3 * median(error), 1e-4 * prior.scale});
   prior.base_sd = prior.scale;
   prior.of_drop = s.scale == Series::Scale::drop;
@@ -402,11 +407,14 @@ CheckTrend trend_of(const Series& s, const TrendOptions& options, std::size_t na
     out.points.push_back({s.points[i].time, s.out(s.points[i].y), s.temperature[i], i < healthy});
   if (n < least_checks) return out;
 
-  const GrowthPrior prior = prior_of(s, healthy, failure);
+  TrendOptions unstated = options;
+  unstated.failure.clear(), unstated.failure_current.clear(), unstated.failure_ratio.clear();
+  const GrowthPrior prior = prior_of(s, healthy, failure, failure_of(s, unstated));
   const std::vector<GrowthPoint> told = at_the_end(set_aside(s.points, prior), prior);
   const std::vector<GrowthPoint> all = thinned(told);
   const GrowthModel model(all, prior);
   const Growth& g = model.growth();
+  if (!std::isfinite(g.now)) return out;  // a ratio that reads 0 or less has no logarithm
   std::vector<double> corrected;
   for (std::size_t i = 0; i < n; ++i) {
     corrected.push_back(model.at_reference(s.points[i]));
@@ -596,7 +604,10 @@ ValveTrend trend(const ValveHistory& history, const TrendOptions& options) {
     out.life = pooled(lives);
     out.remaining = remaining_of(out.life, options.coverage);
   }
-  if (out.state == "unknown")
+  for (const CheckTrend& t : out.trends)
+    if (t.state == "unknown" && t.points.size() >= least_checks)
+      out.notes.push_back(t.name + ": holds a reading that none can be, 0 or less of a ratio: no word on a trend");
+  if (out.state == "unknown" && out.checks < least_checks)
     out.notes.push_back(fmt::format("fewer than {} checks: no word on a trend", least_checks));
   return out;
 }

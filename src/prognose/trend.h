@@ -17,6 +17,7 @@
 // they read depends on more than the cause, so beside a cause they only blur it. Maintenance events restart what they
 // renew (history.h); so does another tuned table.
 #pragma once
+#include <cmath>
 #include <map>
 #include <optional>
 #include <string>
@@ -70,10 +71,10 @@ struct CheckTrend {
   std::string state;   // unknown (too few checks) | blind | healthy | watch | warning | failed
   bool blind = false;  // one check cannot tell failure from health at this false-alarm rate: only a trend can
   Level threshold, warning, failure;
-  double healthy = 0;             // where it began
-  double now = 0, now_error = 0;  // corrected, fitted
-  double slope = 0;               // [unit / h]
-  double surely = 0;              // part of the way to failure that it has come in 95 of 100 cases
+  double healthy = 0;                 // where it began
+  double now = NAN, now_error = NAN;  // corrected, fitted; NaN where the checks are too few
+  double slope = 0;                   // [unit / h]
+  double surely = 0;                  // part of the way to failure that it has come in 95 of 100 cases
   double log_bayes_factor = 0;
   bool trend = false;
   std::optional<double> alert_at;      // [h]

@@ -147,7 +147,7 @@ std::string text_of(const ValveTrend& v) {
       return s.empty() ? std::string("-") : s;
     };
     rows.row({t.cause.empty() ? t.name : t.name + " (" + t.cause + ")", t.trend ? t.state : t.state + ", no trend",
-              handy(t.healthy, t.unit), t.points.size() < 2 ? "-" : handy(t.now, t.unit), bounds(t.warning),
+              handy(t.healthy, t.unit), std::isfinite(t.now) ? handy(t.now, t.unit) : "-", bounds(t.warning),
               bounds(t.failure), t.remaining ? life_text(*t.remaining) : "-"});
   }
   return text + rows.text();

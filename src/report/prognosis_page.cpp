@@ -70,7 +70,7 @@ double coverage_of(const Header& header) { return header.settings.value("coverag
 
 // A check over its hours, with what it must not pass.
 Plot history_of(const CheckTrend& t) {
-  const HandyUnit unit = unit_of(t.unit, t.cause, std::max(std::abs(t.healthy), std::abs(t.now)));
+  const HandyUnit unit = unit_of(t.unit, t.cause, std::fmax(std::abs(t.healthy), std::abs(t.now)));
   Plot plot{.title = named(t.name, t.cause) + (unit.name.empty() ? "" : " [" + unit.name + "]"),
             .x_label = "hours of use",
             .group = "life"};
@@ -111,7 +111,7 @@ TablePart table_of(const ValveTrend& v, double coverage) {
     Cell state = t.state;
     state.tone = tone_of(t.state);
     table.rows.push_back({named(t.name, t.cause), state, Cell(size_of(t, t.healthy), t.healthy),
-                          t.points.size() < 2 ? Cell("-") : Cell(size_of(t, t.now), t.now), growth(t),
+                          std::isfinite(t.now) ? Cell(size_of(t, t.now), t.now) : Cell("-"), growth(t),
                           moves_away(t) ? "not towards failure" : left(t.remaining, coverage)});
   }
   return table;
@@ -201,7 +201,7 @@ Page trend_page(const Header& header, const std::vector<ValveTrend>& trends, boo
 double way(const Check& c, double value) { return (value - c.tuned) / (c.failed - c.tuned); }
 double way_error(const Check& c) { return std::abs(c.std_error / (c.failed - c.tuned)); }
 
-// Wear that has surely come a quarter of the way, where `trend` would warn of it; the farthest.
+// Wear that reads a quarter of the way, where `trend` would warn of it, beyond what noise does; the farthest.
 const Check* worn(const CheckResult& r) {
   constexpr double far = 0.25, sure = 2.0;
   const Check* most = nullptr;
@@ -229,14 +229,17 @@ Page check_page(const Header& header, const CheckResult& r, const std::vector<do
   Page page(header, "Checks of " + file_name(r.log));
   Verdict v;
   const Check* most = worn(r);
-  v.tone = r.no_response ? Tone::bad : most ? Tone::doubt : Tone::plain;
+  v.tone = r.no_response ? Tone::bad : Tone::plain;
   v.headline = r.no_response ? "The spool did not follow the step"
-               : most        ? fmt::format("{} has come {} of the way to failure: {}", words(most->cause),
+               : most        ? fmt::format("{} reads {} of the way to failure: {}", words(most->cause),
                                            percent(way(*most, most->value)), size_of(*most, most->value))
                : std::any_of(r.checks.begin(), r.checks.end(), [](const Check& c) { return !c.cause.empty(); })
-                   ? "No wear has surely come a quarter of the way to failure"
+                   ? "No wear reads a quarter of the way to failure or more"
                    : fmt::format("{} checks; wear was not estimated", r.checks.size());
-  v.detail = "One check alone is no alarm: what it means for this valve, its history says (servodx trend).";
+  v.detail =
+      "A reading, no verdict: healthy logs of other kinds or oils read apart by far more than the errors below. What "
+      "it "
+      "means for this valve, its history says (servodx trend).";
   v.facts = {{"Checks recorded", std::to_string(r.checks.size())},
              {"Oil", digits(r.temperature.value - 273.15) + " degC, " + r.temperature.source},
              {"Offset of the current", percent(r.offset) + " of rated"},

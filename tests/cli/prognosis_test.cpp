@@ -1,4 +1,5 @@
 // monitor, check, trend and history as a user calls them.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -89,6 +90,38 @@ TEST_F(Prognosis, TrendOfFewChecksSaysSoAndRefusesWhatIsNotThere) {
   EXPECT_EQ(desk.run("trend --history h.db --valve V7 --failure parameter:9=0.9e-3A").code, 2);
   EXPECT_EQ(desk.run("trend --history h.db --valve V7 --failure parameter:14=0.9e-3A~2e-5").code, 0);
   EXPECT_FALSE(std::filesystem::exists(desk / "none.db"));
+  for (const char* level : {"fidelty=1.7", "parameter:99=1", "parameter:9=-5"})
+    EXPECT_EQ(desk.run(fmt::format("trend --history h.db --valve V7 --failure {}", level)).code, 2) << level;
+}
+
+TEST_F(Prognosis, NothingWritesOverTheHistoryNorStoresWhereTheResultCannotGo) {
+  ASSERT_EQ(
+      desk.run("check hot.csv --params tuned.csv --rig rig.toml --history h.db --valve V7 --at 1 --no-track").code, 0);
+  for (const char* call : {"trend --history h.db --all", "history show --history h.db", "history verify --history h.db",
+                           "history event note --history h.db --valve V7 --at 2"})
+    for (const char* over : {"--json h.db", "--report h.db", "--json nowhere/x.json"})
+      EXPECT_EQ(desk.run(fmt::format("{} {}", call, over)).code, 2) << call << " " << over;
+  ASSERT_EQ(desk.run("history show --history h.db --json s.json").code, 0);
+  EXPECT_EQ(json("s.json")["valves"][0]["checks"], 1);
+  EXPECT_TRUE(json("s.json")["valves"][0]["events"].empty());
+}
+
+TEST_F(Prognosis, AnotherSerialOfOneValveIsTold) {
+  const std::string check = "check hot.csv --params tuned.csv --rig rig.toml --history h.db --valve V7 --no-track ";
+  const auto told = [&](const std::string& call) {
+    const Ended ended = desk.run(check + call);
+    EXPECT_EQ(ended.code, 0);
+    return (ended.out + ended.err).find("valve_swapped") != std::string::npos;
+  };
+  EXPECT_FALSE(told("--at 1 --serial A"));
+  EXPECT_FALSE(told("--at 2 --serial A"));
+  EXPECT_TRUE(told("--at 3 --serial B"));
+}
+
+TEST_F(Prognosis, MonitorIsMadeAgainBitForBit) {
+  ASSERT_EQ(desk.run("monitor flight.csv --params tuned.csv -o again.csv --json again.json --report again.html").code,
+            0);
+  EXPECT_EQ(desk.run("rerun again.csv.manifest.json").code, 0);
 }
 
 }  // namespace

@@ -40,6 +40,16 @@ TEST(Preflight, FindsRestStepAndEverySine) {
   }
 }
 
+// The half period between two tones may pass for one of the first.
+TEST(Preflight, NearTonesAreToldApart) {
+  for (const double ratio : {1.2, 1.3, 1.4, 1.5, 1.7}) {
+    const Preflight found = find_preflight(preflight_log({2.0, 2.0 * ratio}));
+    ASSERT_EQ(found.sines.size(), 2u) << ratio;
+    EXPECT_NEAR(found.sines[0].frequency, 2.0, 0.02) << ratio;
+    EXPECT_NEAR(found.sines[1].frequency, 2.0 * ratio, 0.02 * ratio) << ratio;
+  }
+}
+
 TEST(Preflight, ARandomCommandHoldsNoTest) {
   LogData log;
   Random random(7);

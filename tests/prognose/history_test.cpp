@@ -119,6 +119,66 @@ TEST_F(HistoryFile, ACsvOfAnotherOriginNeedsValveHoursNameAndValue) {
   EXPECT_THROW(read_history_csv(file("typo.csv")), InputError);
 }
 
+TEST_F(HistoryFile, RowsOfOneCheckNeedNotStandTogether) {
+  std::ofstream(file("by_name.csv")) << "valve,at [h],name,value\nv1,1,fidelity,1.2\nv1,2,fidelity,1.3\n"
+                                        "v1,1,parameter:9,3e-6\nv1,2,parameter:9,4e-6\n";
+  History h(file(), true);
+  EXPECT_EQ(h.restore(read_history_csv(file("by_name.csv"))).recordings, 2);
+  for (const Recording& r : h.of("v1").recordings) EXPECT_EQ(r.checks.size(), 2u);
+  std::ofstream(file("twice.csv"))
+      << "valve,at [h],name,value\nv1,1,fidelity,1.2\nv1,2,fidelity,1.3\nv1,1,fidelity,1.4\n";
+  EXPECT_THROW(read_history_csv(file("twice.csv")), InputError);
+}
+
+TEST_F(HistoryFile, AnImportThatContradictsTheHistoryIsRefusedWhole) {
+  const auto csv = [&](const char* rows) {
+    std::ofstream(file("rows.csv")) << "valve,at [h],name,value\n" << rows;
+    return read_history_csv(file("rows.csv"));
+  };
+  History h(file(), true);
+  h.restore(csv("v1,1,fidelity,1.2\n"));
+  EXPECT_EQ(h.restore(csv("v1,1,fidelity,1.2\n")).present, 1);
+  EXPECT_THROW(h.restore(csv("v1,2,fidelity,1.2\nv1,1,fidelity,1.3\n")), InputError) << "another value";
+  EXPECT_THROW(h.restore(csv("v1,2,fidelity,1.2\nv1,1,parameter:9,1e-6\n")), InputError) << "another figure";
+  EXPECT_EQ(h.of("v1").recordings.size(), 1u);
+}
+
+TEST_F(HistoryFile, AnImportTakesUnitsAtTheirWord) {
+  const auto read = [&](const char* row) {
+    std::ofstream(file("row.csv")) << "valve,at [h],name,value,std_error,unit\n" << row;
+    return read_history_csv(file("row.csv")).valves.front().recordings.front().checks.front();
+  };
+  const Check c = read("v1,1,parameter:9,15,0.5,um\n");
+  EXPECT_NEAR(c.value, 15e-6, 1e-18);
+  EXPECT_NEAR(c.std_error, 0.5e-6, 1e-18);
+  EXPECT_EQ(c.unit, "m");
+  EXPECT_EQ(read("v1,1,fidelity,1.2,0.1,-\n").value, 1.2);
+  EXPECT_THROW(read("v1,1,parameter:9,15,0.5,bar\n"), InputError);
+  EXPECT_THROW(read("v1,1,parameter:9,15,0.5,bananas\n"), InputError);
+}
+
+TEST_F(HistoryFile, AnImportRefusesWhatNoValveCanRead) {
+  for (const char* row : {"v1,-5,1,fidelity,1.2,0.1,313", "v1,5,-7,fidelity,1.2,0.1,313",
+                          "v1,5,1,fidelity,1.2,-0.1,313", "v1,5,1,fidelity,1.2,0.1,40",
+                          "v1,5,1,parameter:99,1.2,0.1,313", "v1,5,1,parameter:x,1.2,0.1,313", "v1,5,1,,1.2,0.1,313"}) {
+    std::ofstream(file("row.csv")) << "valve,at [h],cycles,name,value,std_error,oil_temperature [K]\n"
+                                      "v1,4,0,fidelity,1.2,0.1,313\n"
+                                   << row << "\n";
+    try {
+      read_history_csv(file("row.csv"));
+      ADD_FAILURE() << row;
+    } catch (const InputError& e) {
+      EXPECT_EQ(e.where.line, 3) << row;
+    }
+  }
+}
+
+TEST_F(HistoryFile, AnEmptyFileIsNoHistory) {
+  std::ofstream(file("empty.db")).flush();
+  EXPECT_THROW(History(file("empty.db"), false), InputError);
+  EXPECT_EQ(std::filesystem::file_size(file("empty.db")), 0u);
+}
+
 TEST_F(HistoryFile, AnOlderSchemaIsBroughtUpAndKeepsItsRows) {
   {
     History h(file(), true);

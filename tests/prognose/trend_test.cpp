@@ -350,6 +350,24 @@ TEST(Trend, ACheckThatScattersBeyondFailureInHealthSaysThatItIsBlind) {
   EXPECT_NE(t.notes.front().find("only a trend can warn"), std::string::npos);
 }
 
+TEST(Trend, WhatIsFailedByOneLevelIsFailedByEveryNearerOne) {
+  for (const double level : {1.5e-6, 2e-6, 3e-6, 5e-6, 9e-6}) {
+    TrendOptions o;
+    o.failure["parameter:9"].second = level;
+    EXPECT_EQ(find(trend(a_life(100, 0, 1), o), "parameter:9").state, "failed") << level;
+  }
+}
+
+TEST(Trend, ReadingsThatAreNoneAreNotHealth) {
+  ValveHistory h = of_one(
+      "fidelity", [](double) { return 1.2; }, 0.01, 0.01);
+  h.recordings[5].checks[0].value = 0;
+  const ValveTrend t = trend(h, {});
+  EXPECT_EQ(t.state, "unknown");
+  ASSERT_EQ(t.notes.size(), 1u);
+  EXPECT_NE(t.notes.front().find("fidelity"), std::string::npos);
+}
+
 TEST(Trend, OneOutlyingCheckRaisesNoAlert) {
   ValveHistory h = of_one(
       "parameter:9", [](double) { return 1e-6; }, 3e-7, 1e-7);

@@ -125,15 +125,15 @@ TEST(CheckPage, CallsChecksByTheirSymbolsAndParametersByTheirRows) {
 }
 
 // The tuned value and the fault's own level of failure make a size a way; an error as long as the way is no news.
-TEST(CheckPage, OpensWithTheWearThatHasSurelyComeAQuarterOfTheWay) {
+TEST(CheckPage, OpensWithTheWearThatSurelyReadsAQuarterOfTheWay) {
   CheckResult r;
   r.log = "preflight.csv";
   r.checks.push_back({"parameter:1", 0.6, 0.5, "-", 0.6, 1, "clogged_filter", 0.0, 0.75});
   r.checks.push_back({"parameter:9", 2e-6, 1e-7, "m", 2e-6, 1, "feedback_wire_backlash", 0.0, 20e-6});
-  EXPECT_NE(check_page({}, r, {}).html().find("No wear has surely come a quarter of the way"), std::string::npos);
+  EXPECT_NE(check_page({}, r, {}).html().find("No wear reads a quarter of the way"), std::string::npos);
   r.checks.back() = {"parameter:9", 12e-6, 1e-7, "m", 12e-6, 1, "feedback_wire_backlash", 0.0, 20e-6};
   const std::string html = check_page({}, r, {}).html();
-  EXPECT_NE(html.find("feedback wire backlash has come 60 % of the way to failure: 12 um"), std::string::npos);
+  EXPECT_NE(html.find("feedback wire backlash reads 60 % of the way to failure: 12 um"), std::string::npos);
 }
 
 ExplainResult some_explanation() {
