@@ -211,9 +211,13 @@ CheckResult check(const Log& log, const Table& tuned, const RigFile& rig, const 
       out.no_response = seen.fidelity->no_response;
       if (out.no_response)
         out.notes.push_back("no response: the spool did not follow the preflight step");
-      else
+      else {
+        if (seen.fidelity->figure.value < 0)
+          out.notes.push_back(
+              "fidelity is below 0: the spool moved against the command; is the sign of its signal right?");
         add("fidelity", seen.fidelity->figure, "1", here.fidelity ? &here.fidelity->figure : nullptr,
             reference.fidelity ? &reference.fidelity->figure : nullptr);
+      }
     }
     for (std::size_t i = 0; i < test.sines.size(); ++i) {
       if (!seen.correlation[i]) continue;

@@ -574,6 +574,14 @@ ValveTrend trend(const ValveHistory& history, const TrendOptions& options) {
       out.notes.push_back(fmt::format("{}: no tuned table says what friction takes that current", s.name));
   }
 
+  for (std::size_t k = 0; k < all.size(); ++k) {
+    const CheckTrend& t = out.trends[k];
+    if ((t.failure.upper && t.healthy > *t.failure.upper) || (t.failure.lower && t.healthy < *t.failure.lower))
+      out.notes.push_back(t.name + ": its first checks are beyond its failure level already");
+    if (options.failure_ratio.contains(t.name) && all[k].fault && !all[k].fault->log_scale)
+      out.notes.push_back(t.name + ": does not multiply, so its level is so many times its first checks");
+  }
+
   double furthest = -infinite;  // of what may be the cause, surely
   const auto may_be = [](const CheckTrend& t) { return !t.cause.empty() && t.trend && !t.life.empty(); };
   for (const CheckTrend& t : out.trends) {

@@ -358,6 +358,16 @@ TEST(Trend, WhatIsFailedByOneLevelIsFailedByEveryNearerOne) {
   }
 }
 
+TEST(Trend, ALevelOnTheSideOfHealthIsTold) {
+  TrendOptions o;
+  o.failure["fidelity"].second = 0.5;
+  const ValveTrend t = trend(of_one(
+                                 "fidelity", [](double) { return 1.2; }, 0.01, 0.01),
+                             o);
+  ASSERT_FALSE(t.notes.empty());
+  EXPECT_NE(t.notes.front().find("beyond its failure level already"), std::string::npos);
+}
+
 TEST(Trend, ReadingsThatAreNoneAreNotHealth) {
   ValveHistory h = of_one(
       "fidelity", [](double) { return 1.2; }, 0.01, 0.01);
