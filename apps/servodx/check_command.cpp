@@ -55,9 +55,8 @@ void run(const Options& options) {
     if (const auto last = history->last(options.valve)) how.last = tracked_in(*last);
     if (const std::string was = history->serial(options.valve); !was.empty() && !serial.empty() && was != serial)
       invocation.note(
-          {fmt::format("'{}' was serial {} and is {} now: if the valve was swapped, 'servodx history event "
-                       "valve_swapped' starts its "
-                       "trends again",
+          {fmt::format("'{}' was serial {} and is {} now: if the valve was swapped, "
+                       "'servodx history event valve_swapped' starts its trends again",
                        options.valve, was, serial)});
   }
   const CheckResult result = check(log, tuned, rig, how);

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <limits>
 #include <memory>
+#include <optional>
+#include <set>
 #include <utility>
 
 #include "base/sha256.h"
@@ -62,13 +64,11 @@ void add_failure(const std::string& text, TrendOptions& to) {
 }
 
 // What checks are called; of the rest, what is only not in this history is told.
-void require_levels_of_checks(const std::vector<std::string>& failures, const History& history,
+void require_levels_of_checks(const std::vector<std::string>& failures, const std::set<std::string>& held,
                               Invocation& invocation) {
-  if (failures.empty()) return;
-  const std::vector<std::string> held = history.figures();
   for (const std::string& text : failures) {
     const std::string name = text.substr(0, text.find('='));
-    if (std::find(held.begin(), held.end(), name) != held.end()) continue;
+    if (held.contains(name)) continue;
     bool known = name == "mean_error" || name == "fidelity" || name.starts_with("correlation@");
     for (int id = 1; id <= n_parameters; ++id) known = known || name == fmt::format("parameter:{}", id);
     require_option(
@@ -85,6 +85,7 @@ void run(Options options) {
   require_option(options.trend.healthy >= 5, "--healthy", "needs at least 5 checks", "levels rest on them");
   require_option(options.trend.coverage > 0 && options.trend.coverage < 1, "--coverage", "is between 0 and 1", "0.9");
   options.trend.seed = options.common.seed;
+  options.trend.threads = options.common.threads;
   Invocation invocation("trend", options.common);
   std::vector<std::string> inputs = {options.history};
   for (const std::string& file : {options.params, options.seeded})
@@ -102,8 +103,17 @@ void run(Options options) {
     invocation.header().inputs.push_back({options.seeded, sha256_of_file(options.seeded)});
   }
   const History history(options.history, false);
-  if (!options.all) history.of(options.valve);  // refuses a name that is not there
-  require_levels_of_checks(options.failures, history, invocation);
+  std::optional<ValveHistory> one;
+  std::set<std::string> held;
+  if (options.all) {
+    if (!options.failures.empty())
+      for (std::string& name : history.figures()) held.insert(std::move(name));
+  } else {
+    one = history.of(options.valve);  // refuses a name that is not there
+    for (const Recording& r : one->recordings)
+      for (const Check& c : r.checks) held.insert(c.name);
+  }
+  require_levels_of_checks(options.failures, held, invocation);
   invocation.header().settings = {{"history", options.history},       {"false_alarm", options.trend.false_alarm},
                                   {"healthy", options.trend.healthy}, {"coverage", options.trend.coverage},
                                   {"failure", options.failures},      {"limit", options.limits},
@@ -112,7 +122,7 @@ void run(Options options) {
 
   std::vector<ValveTrend> trends;
   for (const std::string& name : options.all ? history.valves() : std::vector<std::string>{options.valve}) {
-    trends.push_back(trend(history.of(name), options.trend));
+    trends.push_back(trend(one ? *one : history.of(name), options.trend));
     invocation.note(trends.back().notes);
   }
   // The first to warn first; of those that have passed it, the first to fail.

@@ -86,15 +86,17 @@ long long id_of_table(SQLite::Database& db, const std::string& sha256, const std
   return find.getColumn(0).getInt64();
 }
 
-// Whether it was new.
-bool insert(SQLite::Database& db, long long valve, long long table, const Recording& r) {
+std::optional<long long> find_recording(SQLite::Database& db, long long valve, long long table, const Recording& r) {
   SQLite::Statement find(db,
-                         "SELECT 1 FROM recording WHERE valve = ? AND at = ? AND log_sha256 = ? AND tuned_table = ?");
+                         "SELECT id FROM recording WHERE valve = ? AND at = ? AND log_sha256 = ? AND tuned_table = ?");
   find.bind(1, static_cast<std::int64_t>(valve));
   find.bind(2, r.at);
   find.bind(3, r.log_sha256);
   find.bind(4, static_cast<std::int64_t>(table));
-  if (find.executeStep()) return false;
+  return find.executeStep() ? std::optional(find.getColumn(0).getInt64()) : std::nullopt;
+}
+
+void insert(SQLite::Database& db, long long valve, long long table, const Recording& r) {
   SQLite::Statement add(db,
                         "INSERT INTO recording(valve, at, cycles, log, log_sha256, tuned_table, temperature, "
                         "temperature_source, version, recorded_at) VALUES(?, ?, ?, ?, ?, ?, ?, ?, ?, ?)");
@@ -125,20 +127,14 @@ bool insert(SQLite::Database& db, long long valve, long long table, const Record
     figure.exec();
     figure.reset();
   }
-  return true;
 }
 
-// Name of a figure that a check which is there already does not hold so; empty where it holds all of them.
-std::string unlike(SQLite::Database& db, long long valve, long long table, const Recording& r) {
-  SQLite::Statement find(db,
-                         "SELECT value FROM figure JOIN recording ON recording = id WHERE valve = ? AND at = ? AND "
-                         "log_sha256 = ? AND tuned_table = ? AND name = ?");
-  for (const Check& c : r.checks) {
-    find.bind(1, static_cast<std::int64_t>(valve));
-    find.bind(2, r.at);
-    find.bind(3, r.log_sha256);
-    find.bind(4, static_cast<std::int64_t>(table));
-    find.bind(5, c.name);
+// The first figure of a check that a stored one holds otherwise or not; empty where it holds all.
+std::string unlike(SQLite::Database& db, long long recording, const std::vector<Check>& checks) {
+  SQLite::Statement find(db, "SELECT value FROM figure WHERE recording = ? AND name = ?");
+  for (const Check& c : checks) {
+    find.bind(1, static_cast<std::int64_t>(recording));
+    find.bind(2, c.name);
     if (!find.executeStep()) return c.name;
     const double held = number(find.getColumn(0));
     if (held != c.value && !(std::isnan(held) && std::isnan(c.value))) return c.name;
@@ -269,8 +265,10 @@ void History::record(const std::string& valve, const std::string& serial, const 
                      const std::string& table_text) {
   const bool added = guarded([&] {
     SQLite::Transaction all(*db_, SQLite::TransactionBehavior::IMMEDIATE);
-    const bool fresh = insert(*db_, id_of_valve(*db_, valve, serial),
-                              id_of_table(*db_, recording.table_sha256, table_text), recording);
+    const long long id = id_of_valve(*db_, valve, serial);
+    const long long table = id_of_table(*db_, recording.table_sha256, table_text);
+    const bool fresh = !find_recording(*db_, id, table, recording);
+    if (fresh) insert(*db_, id, table, recording);
     if (fresh) all.commit();
     return fresh;
   });
@@ -412,11 +410,13 @@ Restored History::restore(const HistoryContent& content) {
       const long long id = id_of_valve(*db_, valve.valve, valve.serial);
       for (const Recording& r : valve.recordings) {
         const long long table = id_of_table(*db_, r.table_sha256, "");
-        if (insert(*db_, id, table, r)) {
+        const auto held = find_recording(*db_, id, table, r);
+        if (!held) {
+          insert(*db_, id, table, r);
           ++count.recordings;
           continue;
         }
-        if (const std::string other = unlike(*db_, id, table, r); !other.empty())
+        if (const std::string other = unlike(*db_, *held, r.checks); !other.empty())
           throw InputError(
               {.file = path_},
               fmt::format("holds a check of '{}' at {} h with another '{}', or without it", valve.valve, r.at, other),

@@ -1,6 +1,7 @@
 #include "prognose/trend.h"
 
 #include <fmt/format.h>
+#include <omp.h>
 
 #include <Eigen/Dense>
 #include <algorithm>
@@ -217,6 +218,27 @@ double left_open(const Series& s, double value) {
   return s.fault->log_scale ? s.fault->spread * std::abs(value) : s.fault->spread;
 }
 
+// The fault's own, in the coordinate of the growth; none of the paper's checks.
+FailureAt own_failure(const Series& s) {
+  FailureAt at;
+  const auto failed = s.fault ? failed_row(*s.fault) : std::nullopt;
+  if (!failed) return at;
+  auto& side = *failed > (s.fault->log_scale ? 1 : 0) ? at.upper : at.lower;
+  // A severity that multiplies does so to the tuned value; what the estimate errs by in health it errs by later.
+  if (s.fault->log_scale && s.tuned) {
+    at.of = FailureAt::Of::beyond_base;
+    at.sd = left_open(s, *failed * *s.tuned);
+    side = (*failed - 1) * *s.tuned;
+    return at;
+  }
+  if (s.fault->log_scale) at.of = FailureAt::Of::times_base;
+  // Of what was open at the beginning: how large a clean filter is stands on no data sheet, and no log tells it.
+  if (s.fault->part_lost) at.of = FailureAt::Of::beyond_base;
+  if (!s.fault->log_scale) at.sd = left_open(s, *failed);
+  side = s.fault->part_lost ? Series::drop_at(*failed) - 1 : s.in(*failed);
+  return at;
+}
+
 // From the user, from a limit, or from the fault itself; in the coordinate of the growth.
 FailureAt failure_of(const Series& s, const TrendOptions& options) {
   FailureAt at;
@@ -242,22 +264,8 @@ FailureAt failure_of(const Series& s, const TrendOptions& options) {
     }
     at.of = s.paper() ? FailureAt::Of::beyond_base : FailureAt::Of::times_base;
     to_side(s.paper() ? std::log(ratio->second) : ratio->second, ratio->second > 1);
-  } else if (s.fault) {
-    if (const auto failed = failed_row(*s.fault)) {
-      // A severity that multiplies does so to the tuned value; what the estimate errs by in health it errs by later.
-      if (s.fault->log_scale && s.tuned) {
-        at.of = FailureAt::Of::beyond_base;
-        at.sd = left_open(s, *failed * *s.tuned);
-        to_side((*failed - 1) * *s.tuned, *failed > 1);
-        return at;
-      }
-      if (s.fault->log_scale) at.of = FailureAt::Of::times_base;
-      // Of what was open at the beginning: how large a clean filter is stands on no data sheet, and no log tells it.
-      if (s.fault->part_lost) at.of = FailureAt::Of::beyond_base;
-      if (!s.fault->log_scale) at.sd = left_open(s, *failed);
-      to_side(s.fault->part_lost ? Series::drop_at(*failed) - 1 : s.in(*failed),
-              *failed > (s.fault->log_scale ? 1 : 0));
-    }
+  } else {
+    return own_failure(s);
   }
   return at;
 }
@@ -281,8 +289,7 @@ std::vector<GrowthPoint> thinned(const std::vector<GrowthPoint>& points) {
   return out;
 }
 
-// `own`: the level of failure if the user had stated none.
-GrowthPrior prior_of(const Series& s, std::size_t healthy, const FailureAt& failure, const FailureAt& own) {
+GrowthPrior prior_of(const Series& s, std::size_t healthy, const FailureAt& failure) {
   std::vector<double> y, error;
   for (std::size_t i = 0; i < healthy; ++i)
     y.push_back(s.points[i].y), error.push_back(std::sqrt(s.points[i].variance));
@@ -299,7 +306,8 @@ GrowthPrior prior_of(const Series& s, std::size_t healthy, const FailureAt& fail
       if (level) scale = std::max(std::abs(end.level(*level, prior.base) - prior.base), 1e-300);
     return scale;
   };
-  prior.scale = std::max(way(failure), 0.5 * way(own));  // a level near health keeps nothing from growing past it
+  prior.scale =
+      std::max(way(failure), 0.5 * way(own_failure(s)));  // a level near health keeps nothing from growing past it
   prior.noise = std::max({1.4826 * median(y), 0.3 * median(error), 1e-4 * prior.scale});
   prior.base_sd = prior.scale;
   prior.of_drop = s.scale == Series::Scale::drop;
@@ -407,9 +415,7 @@ CheckTrend trend_of(const Series& s, const TrendOptions& options, std::size_t na
     out.points.push_back({s.points[i].time, s.out(s.points[i].y), s.temperature[i], i < healthy});
   if (n < least_checks) return out;
 
-  TrendOptions unstated = options;
-  unstated.failure.clear(), unstated.failure_current.clear(), unstated.failure_ratio.clear();
-  const GrowthPrior prior = prior_of(s, healthy, failure, failure_of(s, unstated));
+  const GrowthPrior prior = prior_of(s, healthy, failure);
   const std::vector<GrowthPoint> told = at_the_end(set_aside(s.points, prior), prior);
   const std::vector<GrowthPoint> all = thinned(told);
   const GrowthModel model(all, prior);
@@ -568,11 +574,15 @@ ValveTrend trend(const ValveHistory& history, const TrendOptions& options) {
   out.to_warning = infinite;
   std::vector<Series> all = series_of(history, out.notes);
   for (Series& s : all) take_seeded(s, options.seeded), take_clean(s, static_cast<std::size_t>(options.healthy));
-  for (const Series& s : all) {
-    out.trends.push_back(trend_of(s, options, all.size()));
+  out.trends.resize(all.size());
+  const auto series = static_cast<long>(all.size());
+  const int threads = options.threads > 0 ? options.threads : omp_get_max_threads();
+#pragma omp parallel for schedule(dynamic, 1) num_threads(threads)
+  for (long k = 0; k < series; ++k)
+    out.trends[static_cast<std::size_t>(k)] = trend_of(all[static_cast<std::size_t>(k)], options, all.size());
+  for (const Series& s : all)
     if (options.failure_current.contains(s.name) && !s.per_newton)
       out.notes.push_back(fmt::format("{}: no tuned table says what friction takes that current", s.name));
-  }
 
   for (std::size_t k = 0; k < all.size(); ++k) {
     const CheckTrend& t = out.trends[k];

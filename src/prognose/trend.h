@@ -44,6 +44,7 @@ struct TrendOptions {
   std::vector<SeededReading> seeded;
   double coverage = 0.9;  // of the interval of the life left
   std::uint64_t seed = 1;
+  int threads = 0;  // 0: all; the result does not depend on it
 };
 
 // [A/N] coil current that holds a force on the spool: the pilot pressure that balances it presses on the flapper,
@@ -68,7 +69,7 @@ struct TangentRule {
 
 struct CheckTrend {
   std::string name, unit, cause;
-  std::string state;   // unknown (too few checks) | blind | healthy | watch | warning | failed
+  std::string state;   // unknown (no word: notes) | blind | healthy | watch | warning | failed
   bool blind = false;  // one check cannot tell failure from health at this false-alarm rate: only a trend can
   Level threshold, warning, failure;
   double healthy = 0;                 // where it began

@@ -237,9 +237,8 @@ Page check_page(const Header& header, const CheckResult& r, const std::vector<do
                    ? "No wear reads a quarter of the way to failure or more"
                    : fmt::format("{} checks; wear was not estimated", r.checks.size());
   v.detail =
-      "A reading, no verdict: healthy logs of other kinds or oils read apart by far more than the errors below. What "
-      "it "
-      "means for this valve, its history says (servodx trend).";
+      "A reading, no verdict: healthy logs of other kinds or oils read apart by far more than the errors below. "
+      "What it means for this valve, its history says (servodx trend).";
   v.facts = {{"Checks recorded", std::to_string(r.checks.size())},
              {"Oil", digits(r.temperature.value - 273.15) + " degC, " + r.temperature.source},
              {"Offset of the current", percent(r.offset) + " of rated"},

@@ -387,8 +387,10 @@ TEST(Trend, OneOutlyingCheckRaisesNoAlert) {
   EXPECT_EQ(t.state, "watch");
 }
 
-TEST(Trend, SameHistorySameTrend) {
-  const ValveTrend a = trend(a_life(80, 24, 1), {}), b = trend(a_life(80, 24, 1), {});
+TEST(Trend, SameHistorySameTrendOnAnyThreads) {
+  TrendOptions one, two;
+  one.threads = 1, two.threads = 2;
+  const ValveTrend a = trend(a_life(80, 24, 1), one), b = trend(a_life(80, 24, 1), two);
   EXPECT_EQ(a.life, b.life);
 }
 
