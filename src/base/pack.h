@@ -81,7 +81,8 @@ struct Pack {
 
   Pack() = default;
   Pack(double x)
-      : v(Vector{} + static_cast<Real>(x)) {}  // every lane; implicit so that formulas read the same for all scalars
+      : v(static_cast<Real>(x) - Vector{}) {
+  }  // every lane (less 0 folds away); implicit so that formulas read the same for all scalars
   explicit Pack(Vector x) : v(x) {}
   double operator[](int lane) const { return v[lane]; }
   void set(int lane, double x) { v[lane] = static_cast<Real>(x); }

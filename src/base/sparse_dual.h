@@ -13,23 +13,52 @@
 
 namespace servodx {
 
-using Mask = std::uint32_t;
+// A set of variables 0 to 191: states, and whatever else a derivative is asked along. Three members, not an array: g++
+// 12 confuses template arguments that hold one.
+struct Mask {
+  static constexpr int size = 192;
+  std::uint64_t low = 0, middle = 0, high = 0;
+
+  constexpr std::uint64_t part(int i) const { return i == 0 ? low : i == 1 ? middle : high; }
+  friend constexpr bool operator==(const Mask&, const Mask&) = default;
+  friend constexpr Mask operator|(const Mask& a, const Mask& b) {
+    return {a.low | b.low, a.middle | b.middle, a.high | b.high};
+  }
+  friend constexpr Mask operator&(const Mask& a, const Mask& b) {
+    return {a.low & b.low, a.middle & b.middle, a.high & b.high};
+  }
+  friend constexpr Mask operator~(const Mask& a) { return {~a.low, ~a.middle, ~a.high}; }
+  constexpr Mask& operator|=(const Mask& b) { return *this = *this | b; }
+  constexpr Mask& operator&=(const Mask& b) { return *this = *this & b; }
+};
+constexpr Mask only(int k) {
+  const std::uint64_t bit = std::uint64_t{1} << k % 64;
+  return {k < 64 ? bit : 0, k / 64 == 1 ? bit : 0, k / 64 == 2 ? bit : 0};
+}
+// Variables first to last - 1.
+constexpr Mask range(int first, int last) {
+  Mask m;
+  for (int k = first; k < last; ++k) m |= only(k);
+  return m;
+}
+constexpr bool holds(const Mask& m, int k) { return m.part(k / 64) >> k % 64 & 1u; }
+constexpr int count(const Mask& m) { return std::popcount(m.low) + std::popcount(m.middle) + std::popcount(m.high); }
 
 template <class T, Mask M>
 struct Dual {
-  static constexpr int slots = std::popcount(M);
+  static constexpr int slots = count(M);
   T v;
   std::array<T, slots> d;
 };
 
 // Slot of variable k in mask m.
-constexpr int slot(Mask m, int k) { return std::popcount(m & ((Mask{1} << k) - 1)); }
-constexpr bool holds(Mask m, int k) { return (m >> k) & 1u; }
+constexpr int slot(const Mask& m, int k) { return count(m & range(0, k)); }
 
 // The variable of the i-th slot of mask m.
-constexpr int variable(Mask m, int i) {
-  for (int k = 0; k < 32; ++k)
-    if (holds(m, k) && i-- == 0) return k;
+constexpr int variable(const Mask& m, int i) {
+  for (int j = 0; j < Mask::size / 64; ++j)
+    for (std::uint64_t left = m.part(j); left; left &= left - 1)
+      if (i-- == 0) return 64 * j + std::countr_zero(left);
   return -1;
 }
 
@@ -47,7 +76,7 @@ inline __attribute__((always_inline)) void unroll(F&& f) {
 }
 
 template <int K, class T>
-Dual<T, Mask{1} << K> seed(T value, T derivative) {
+Dual<T, only(K)> seed(T value, T derivative) {
   return {value, {derivative}};
 }
 
@@ -74,6 +103,30 @@ inline __attribute__((always_inline)) Dual<T, A> chain(T value, const Dual<T, A>
   Dual<T, A> r;
   r.v = value;
   unroll<Dual<T, A>::slots>([&](auto i) { r.d[i] = ga * a.d[i]; });
+  return r;
+}
+
+// f was taken with the variables 0 and 1 in place of a and b: its derivatives by what a and b depend on, and by what
+// else it depended on itself.
+template <class T, Mask F, Mask A, Mask B>
+inline __attribute__((always_inline)) auto carried(const Dual<T, F>& f, const Dual<T, A>& a, const Dual<T, B>& b) {
+  constexpr Mask rest = F & ~range(0, 2);
+  constexpr Mask all = rest | (holds(F, 0) ? A : Mask{}) | (holds(F, 1) ? B : Mask{});
+  Dual<T, all> r;
+  r.v = f.v;
+  unroll<Dual<T, all>::slots>([&](auto i) {
+    constexpr int k = variable(all, i);
+    constexpr bool by_a = holds(F, 0) && holds(A, k), by_b = holds(F, 1) && holds(B, k);
+    static_assert(!holds(rest, k) || !(by_a || by_b));
+    if constexpr (by_a && by_b)
+      r.d[i] = multiply_add(f.d[0], a.d[slot(A, k)], f.d[slot(F, 1)] * b.d[slot(B, k)]);
+    else if constexpr (by_a)
+      r.d[i] = f.d[0] * a.d[slot(A, k)];
+    else if constexpr (by_b)
+      r.d[i] = f.d[slot(F, 1)] * b.d[slot(B, k)];
+    else
+      r.d[i] = f.d[slot(F, k)];
+  });
   return r;
 }
 

@@ -29,15 +29,15 @@ struct EffectTemplate {
   // A hook: what is added at its place. No `if` on data; the same line runs on packs and on dual numbers.
   template <class V>
   static auto spool_force(const V& view) {
-    using T = std::decay_t<decltype(view.p[0])>;  // double or a pack
+    using T = typename V::Scalar;
     const auto v = view.template own_state<EffectTemplate, 0>();
-    return -(view.template own<EffectTemplate>(0) * (v * smooth_abs(v, T(speed_rounding))));
+    return -(view.template own<EffectTemplate, 0>() * (v * smooth_abs(v, T(speed_rounding))));
   }
   // One derivative for each own state.
   template <class V>
   static auto derivative(const V& view) {
     return std::make_tuple((view.template state<s_v_spool>() - view.template own_state<EffectTemplate, 0>()) /
-                           view.template own<EffectTemplate>(1));
+                           view.template own<EffectTemplate, 1>());
   }
 };
 

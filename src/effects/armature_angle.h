@@ -1,7 +1,7 @@
-// The torque motor's air gaps change as the armature turns: its gain grows with the square of the angle and its magnetic
-// spring, which works against the flexure, stiffens (Merritt 1967, sec. 6-2, to second order in travel over air gap).
-// A flapper that lies on its nozzle then stays there longer. The magnets are taken to cancel half of the flexure, as in
-// valves that are stable without current. Leaves out saturation of the iron and unequal gaps.
+// The torque motor's air gaps change as the armature turns: its gain grows with the square of the angle and its
+// magnetic spring, which works against the flexure, stiffens (Merritt 1967, sec. 6-2, to second order in travel over
+// air gap). A flapper that lies on its nozzle then stays there longer. The magnets are taken to cancel half of the
+// flexure, as in valves that are stable without current. Leaves out saturation of the iron and unequal gaps.
 #pragma once
 #include "effects/effect.h"
 #include "model/hooks.h"
@@ -21,12 +21,12 @@ struct ArmatureAngle {
 
   template <class V>
   static auto flapper_force(const V& view) {
-    using T = std::decay_t<decltype(view.p[0])>;
-    const auto& p = view.p;
-    const auto x = flapper_travel(view.template state<s_x_flapper>(), p);
-    const auto torque = T(3.0) * p[row::torque_motor_gain] * view.template state<s_current>();
-    const T per_square = view.template own<ArmatureAngle>(0) / (p[row::nozzle_gap] * p[row::nozzle_gap]);
-    return per_square * (x * x) * (torque + T(2.0) * p[row::flapper_stiffness] * x);
+    using T = typename V::Scalar;
+    const auto x = flapper_travel(view.template state<s_x_flapper>(), view.p);
+    const auto torque = T(3.0) * pick<row::torque_motor_gain>(view.p) * view.template state<s_current>();
+    const auto per_square =
+        view.template own<ArmatureAngle, 0>() / (pick<row::nozzle_gap>(view.p) * pick<row::nozzle_gap>(view.p));
+    return per_square * (x * x) * (torque + T(2.0) * pick<row::flapper_stiffness>(view.p) * x);
   }
 };
 

@@ -27,16 +27,16 @@ struct MountCompliance {
     return view.template own_state<MountCompliance, 1>();
   }
   // m C v' = -x - C F - T v
-  template <class V, class T = std::decay_t<decltype(*V::p)>>
+  template <class V>
   static auto derivative(const V& view) {
-    const auto& p = view.p;
-    const auto force =
-        p[row::piston_area_a] * view.template state<s_p_a>() - p[row::piston_area_b] * view.template state<s_p_b>();
+    using T = typename V::Scalar;
+    const auto force = pick<row::piston_area_a>(view.p) * view.template state<s_p_a>() -
+                       pick<row::piston_area_b>(view.p) * view.template state<s_p_b>();
     const auto travel = view.template own_state<MountCompliance, 0>(), speed = body_velocity(view);
-    const T compliance = view.template own<MountCompliance>(0);
-    const T rate = inverse(compliance * view.template own<MountCompliance>(2) + T(least_period2));
+    const auto compliance = view.template own<MountCompliance, 0>();
+    const auto rate = inverse(compliance * view.template own<MountCompliance, 2>() + T(least_period2));
     return std::make_tuple(speed,
-                           -rate * (travel + compliance * force + view.template own<MountCompliance>(1) * speed));
+                           -rate * (travel + compliance * force + view.template own<MountCompliance, 1>() * speed));
   }
   template <class T>
   static void at_rest(T* own, const T* y, const T* q, const T* p) {

@@ -32,7 +32,8 @@ struct PortLine {
   static auto flow(const V& view) {
     constexpr int port = S == 0 ? s_p_a : s_p_b;
     const auto held = view.template own_state<PortLine, S>();
-    return (view.template own<PortLine>(S) * view.template state<port>() - held) / view.template own<PortLine>(2 + S);
+    return (view.template own<PortLine, S>() * view.template state<port>() - held) /
+           view.template own<PortLine, 2 + S>();
   }
   template <class V>
   static auto flow_a(const V& view) {

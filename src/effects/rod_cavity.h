@@ -32,19 +32,19 @@ struct RodCavity {
   // Force of the cavity's pressure on the piston. [N]
   template <class V>
   static auto force(const V& view) {
-    return view.p[row::bulk_modulus] * view.template own_state<RodCavity, 0>();
+    return pick<row::bulk_modulus>(view.p) * view.template own_state<RodCavity, 0>();
   }
   // Oil from chamber A into the cavity. [m3/s]
   template <class V>
   static auto filling(const V& view) {
     const auto per_force =
-        view.template own<RodCavity>(1) / (view.p[row::bulk_modulus] * view.template own<RodCavity>(2));
-    return per_force * (view.template own<RodCavity>(0) * view.template state<s_p_a>() - force(view));
+        view.template own<RodCavity, 1>() / (pick<row::bulk_modulus>(view.p) * view.template own<RodCavity, 2>());
+    return per_force * (view.template own<RodCavity, 0>() * view.template state<s_p_a>() - force(view));
   }
   // Room that the core leaves. [m3/s]
   template <class V>
   static auto growth(const V& view) {
-    return view.template own<RodCavity>(0) *
+    return view.template own<RodCavity, 0>() *
            (view.template state<s_v_piston>() - hook_body_velocity(view, typename V::Effects{}));
   }
 
@@ -55,14 +55,14 @@ struct RodCavity {
   }
   template <class V>
   static auto piston_force(const V& view) {
-    return force(view) - view.template own<RodCavity>(0) * view.template state<s_p_a>();
+    return force(view) - view.template own<RodCavity, 0>() * view.template state<s_p_a>();
   }
   template <class V>
   static auto derivative(const V& view) {
-    using T = std::decay_t<decltype(view.p[0])>;  // double or a pack
-    const auto length = soft_positive(
-        view.template own<RodCavity>(1) + T(0.5) * view.p[row::piston_stroke] + view.template state<s_x_piston>(),
-        T(shortest));
+    using T = typename V::Scalar;
+    const auto length = soft_positive(view.template own<RodCavity, 1>() + T(0.5) * pick<row::piston_stroke>(view.p) +
+                                          view.template state<s_x_piston>(),
+                                      T(shortest));
     return std::make_tuple((filling(view) - growth(view)) / length);
   }
 };

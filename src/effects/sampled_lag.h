@@ -7,7 +7,7 @@ namespace servodx {
 
 template <class T>
 struct SampledLag {
-  T input, output;
+  T input{}, output{};
   double time = 0;
   bool begun = false;
 

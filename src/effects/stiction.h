@@ -23,10 +23,10 @@ struct Stiction {
 
   template <class V>
   static auto spool_force(const V& view) {
-    using T = std::decay_t<decltype(view.p[0])>;
+    using T = typename V::Scalar;
     const auto stretch =
         (view.template state<s_x_spool>() - view.u.friction.spool_anchor) * T(1.0 / constants::spool_presliding);
-    return -((view.template own<Stiction>(0) * stribeck(view.u.friction.spool_speed, T(1.0 / speed))) *
+    return -((view.template own<Stiction, 0>() * stribeck(view.u.friction.spool_speed, T(1.0 / speed))) *
              asperities<T>(stretch));
   }
 };

@@ -28,16 +28,16 @@ struct SupplyDroop {
 
   template <class V>
   static auto supply_pressure(const V& view) {
-    using T = std::decay_t<decltype(view.p[0])>;
+    using T = typename V::Scalar;
     return -(T(state_pressure) * view.template own_state<SupplyDroop, 0>());
   }
   template <class V>
   static auto derivative(const V& view) {
-    using T = std::decay_t<decltype(view.p[0])>;
+    using T = typename V::Scalar;
     const auto speed = smooth_abs(view.template state<s_v_piston>(), T(speed_rounding)) - T(speed_rounding);
-    const T area = T(0.5) * (view.p[row::piston_area_a] + view.p[row::piston_area_b]);
-    const auto steady = view.template own<SupplyDroop>(0) * area * T(1.0 / state_pressure) * speed;
-    return std::make_tuple((steady - view.template own_state<SupplyDroop, 0>()) / view.template own<SupplyDroop>(1));
+    const auto area = T(0.5) * (pick<row::piston_area_a>(view.p) + pick<row::piston_area_b>(view.p));
+    const auto steady = view.template own<SupplyDroop, 0>() * area * T(1.0 / state_pressure) * speed;
+    return std::make_tuple((steady - view.template own_state<SupplyDroop, 0>()) / view.template own<SupplyDroop, 1>());
   }
 };
 

@@ -100,17 +100,16 @@ struct Unexplained {
   };
 
   // The codes are the same in all lanes of a pack.
-  template <class V>
-  static int code(const V& view, int which) {
-    using T = std::decay_t<decltype(view.p[0])>;
-    return static_cast<int>(std::lround(Lanes<T>::get(view.template own<Unexplained>(which), 0)));
+  template <int Which, class V>
+  static int code(const V& view) {
+    return static_cast<int>(std::lround(Lanes<typename V::Scalar>::get(view.template own<Unexplained, Which>(), 0)));
   }
   // The curve where it belongs, zero elsewhere.
   template <class V>
   static auto at(const V& view, Place where) {
-    using T = std::decay_t<decltype(view.p[0])>;
+    using T = typename V::Scalar;
     const auto is = [](bool yes) { return T(yes ? 1.0 : 0.0); };
-    const int variable = code(view, 1), factor = code(view, 2);
+    const int variable = code<1>(view), factor = code<2>(view);
     const auto load = view.template state<s_p_a>() - view.template state<s_p_b>();
     const auto x = is(variable == piston_position) * view.template state<s_x_piston>() +
                    is(variable == piston_velocity) * view.template state<s_v_piston>() +
@@ -118,22 +117,22 @@ struct Unexplained {
                    is(variable == spool_velocity) * view.template state<s_v_spool>() +
                    is(variable == load_pressure) * load +
                    is(variable == coil_current) * view.template state<s_current>();
-    const auto s = x / smooth_abs(x, view.template own<Unexplained>(3));
+    const auto s = x / smooth_abs(x, view.template own<Unexplained, 3>());
     T c[knots];
     for (int j = 0; j < knots; ++j) {
       c[j] = T(0.0);
-      for (int k = 0; k < knots; ++k) c[j] = c[j] + T(curve::powers[j][k]) * view.template own<Unexplained>(4 + k);
+      unroll<knots>([&](auto k) { c[j] = c[j] + T(curve::powers[j][k]) * view.template own<Unexplained, 4 + k>(); });
     }
     const auto curve = c[0] + s * (c[1] + s * (c[2] + s * (c[3] + s * (c[4] + s * (c[5] + s * c[6])))));
     const auto by = is(factor == one) + is(factor == by_load_pressure) * T(1.0 / factor_pressure) * load +
                     is(factor == by_direction) * smooth_sign(view.template state<s_v_piston>(), T(direction_speed)) +
                     is(factor == by_velocity) * T(1.0 / factor_speed) * view.template state<s_v_piston>();
-    return is(code(view, 0) == where) * (by * curve);
+    return is(code<0>(view) == where) * (by * curve);
   }
 
   template <class V>
   static auto flapper_force(const V& view) {
-    return view.p[row::torque_motor_gain] * at(view, drive);
+    return pick<row::torque_motor_gain>(view.p) * at(view, drive);
   }
   template <class V>
   static auto spool_force(const V& view) {

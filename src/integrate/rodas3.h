@@ -13,9 +13,10 @@ namespace servodx {
 // System: n; pattern (static constexpr Pattern<n>);
 //   void value(const std::array<T,n>& y, const T& t, std::array<T,n>& f)
 //   void value_and_jacobian(y, t, f, w, f_t): fills f, df/dt at fixed y, and w[slot(i,j)] = J(i,j) (0 on fill-in).
-// t runs from 0 to h within the step.
-template <class T, class System>
-__attribute__((noinline)) void rodas3_step(System& system, std::array<T, System::n>& y, double h) {
+// t runs from 0 to h within the step. `see` is told the factors and the stages k1 to k4, each with its sign turned:
+// y goes over y - 2 k1 and y - 2 k1 - k3, where the right-hand side is taken too, to y - 2 k1 - k3 - k4.
+template <class T, class System, class See>
+__attribute__((noinline)) void rodas3_step(System& system, std::array<T, System::n>& y, double h, See&& see) {
   constexpr int n = System::n;
   using Lu = SparseLu<n, System::pattern>;
   std::array<T, Lu::entries> w;
@@ -38,7 +39,12 @@ __attribute__((noinline)) void rodas3_step(System& system, std::array<T, System:
   system.value(z, h_t, f);
   unroll<n>([&](auto i) { k4[i] = multiply_add(eight, k3[i], multiply_add(inv_h, k2[i] - k1[i], f[i])); });
   Lu::template solve<T>(w, k4);
+  see(w, k1, k2, k3, k4);
   unroll<n>([&](auto i) { y[i] = z[i] - k4[i]; });
+}
+template <class T, class System>
+void rodas3_step(System& system, std::array<T, System::n>& y, double h) {
+  rodas3_step<T>(system, y, h, [](const auto&...) {});
 }
 
 }  // namespace servodx

@@ -28,8 +28,8 @@ struct SparseLu {
   static constexpr Plan make() {
     Plan plan;
     std::array<Mask, N> a = P.row;
-    for (int i = 0; i < N; ++i) a[i] |= Mask{1} << i;
-    Mask left = (N == 32) ? ~Mask{0} : ((Mask{1} << N) - 1);
+    for (int i = 0; i < N; ++i) a[i] |= only(i);
+    Mask left = range(0, N);
     for (int k = 0; k < N; ++k) {
       int best = -1;
       long best_cost = 0;
@@ -37,12 +37,12 @@ struct SparseLu {
         if (!holds(left, c)) continue;
         long rows = 0;
         for (int i = 0; i < N; ++i) rows += holds(left, i) && i != c && holds(a[i], c);
-        const long columns = std::popcount(a[c] & left) - 1;
+        const long columns = count(a[c] & left) - 1;
         const long cost = rows * columns;
         if (best < 0 || cost < best_cost) best = c, best_cost = cost;
       }
       plan.order[k] = best;
-      left &= ~(Mask{1} << best);
+      left &= ~only(best);
       for (int i = 0; i < N; ++i)
         if (holds(left, i) && holds(a[i], best)) a[i] |= a[best] & left;
     }
@@ -108,23 +108,23 @@ struct SparseLu {
     });
   }
 
-  // Solves in place with the factors of `factorise`.
-  template <class T>
-  static inline __attribute__((always_inline)) void solve(const std::array<T, entries>& w, std::array<T, N>& x) {
+  // Solves in place with the factors of `factorise`; W: as T, or one number for all of T's lanes.
+  template <class T, class W>
+  static inline __attribute__((always_inline)) void solve(const std::array<W, entries>& w, std::array<T, N>& x) {
     unroll<N>([&](auto k) {
       constexpr int p = plan.order[k];
       unroll<N>([&](auto l) {
         constexpr int i = plan.order[l];
-        if constexpr (l > k && plan.slot[i][p] >= 0) x[i] = subtract_product(x[i], w[plan.slot[i][p]], x[p]);
+        if constexpr (l > k && plan.slot[i][p] >= 0) x[i] = subtract_product(x[i], T(w[plan.slot[i][p]]), x[p]);
       });
     });
-    unroll<N>([&](auto k) { x[k] = x[k] * w[plan.slot[k][k]]; });
+    unroll<N>([&](auto k) { x[k] = x[k] * T(w[plan.slot[k][k]]); });
     unroll<N>([&](auto r) {
       constexpr int k = N - 1 - r;
       constexpr int p = plan.order[k];
       unroll<N>([&](auto l) {
         constexpr int j = plan.order[l];
-        if constexpr (l > k && plan.slot[p][j] >= 0) x[p] = subtract_product(x[p], w[plan.slot[p][j]], x[j]);
+        if constexpr (l > k && plan.slot[p][j] >= 0) x[p] = subtract_product(x[p], T(w[plan.slot[p][j]]), x[j]);
       });
     });
   }

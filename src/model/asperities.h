@@ -30,10 +30,10 @@ T dragged_anchor(const T& anchor, const T& x, const T& presliding) {
 // Share of the breakaway friction that is left at a speed [m/s]: 1 at rest, a half at that of 1 / `per_fall`
 // (Stribeck's curve). The speed is the last step's: a force that falls as speed rises is negative damping, which no
 // linearly implicit step bears.
-template <class T>
-T stribeck(const T& speed, const T& per_fall) {
-  const T ratio = speed * per_fall;
-  return inverse(T(1.0) + ratio * ratio);
+template <class X, class T>
+X stribeck(const X& speed, const T& per_fall) {
+  const X ratio = speed * per_fall;
+  return inverse(ratio * ratio + T(1.0));
 }
 
 // Of the rod's seals: how much more they hold than they drag.

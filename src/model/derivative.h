@@ -18,37 +18,44 @@
 namespace servodx {
 
 // Fixed orifice, behind the laminar drop of its own length. [m3/s]
-template <class P, class T>
-auto fixed_orifice_flow(const P& dp, const Derived<T>& d) {
+template <class P, class D>
+auto fixed_orifice_flow(const P& dp, const D& d) {
+  using T = typename D::Scalar;
   return d.orifice_conductance * signed_sqrt_behind(d.orifice_creep, dp, T(constants::orifice_transition));
 }
 
 // Nozzle: bore, land and curtain in series. opening [m] of the curtain; what roughness leaves open keeps a shut one's
 // land finite. The bore's jet presses on the flapper with two velocity heads, one of which the bore has lost, so the
 // force stays area times pressure drop (Merritt eq. 6-69 with the loss). [m3/s]
-template <class X, class P, class T>
-inline __attribute__((always_inline)) auto nozzle_flow(const X& opening, const P& dp, const Derived<T>& d) {
+template <class X, class P, class D>
+inline __attribute__((always_inline)) auto nozzle_flow(const X& opening, const P& dp, const D& d) {
+  using T = typename D::Scalar;
   constexpr double rough2 = constants::stop_rounding * constants::stop_rounding;
   const auto square = opening * opening, clear = square + T(rough2);
   const auto z = inverse_root((d.bore_loss * square + T(1.0)) * (clear * clear));  // of the bore's loss, over `clear`
   return d.nozzle_conductance * opening * (clear * z) *
          signed_sqrt_behind(d.nozzle_creep * z, dp, T(constants::orifice_transition));
 }
-template <class T, Mask A, Mask B>
-requires(A != 1 || B != 2) inline
-    __attribute__((always_inline)) auto nozzle_flow(const Dual<T, A>& opening, const Dual<T, B>& dp,
-                                                    const Derived<T>& d) {
-  const auto q = nozzle_flow(seed<0>(opening.v, T(1.0)), seed<1>(dp.v, T(1.0)), d);
-  return chain(q.v, opening, q.d[0], dp, q.d[1]);
+// With derivatives: taken in its own two variables, then carried to what those depend on.
+template <class T, Mask A, Mask B, class D>
+requires(A != only(0) || B != only(1)) inline
+    __attribute__((always_inline)) auto nozzle_flow(const Dual<T, A>& opening, const Dual<T, B>& dp, const D& d) {
+  return carried(nozzle_flow(seed<0>(opening.v, T(1.0)), seed<1>(dp.v, T(1.0)), d), opening, dp);
 }
 
-// One metering edge. opening [m] (negative: covered by that length), radius [m] of its corner, dp [Pa]; flow [m3/s] and
-// open height h [m].
+// Of a metering edge.
+template <class Q, class H>
+struct EdgeFlow {
+  Q flow;    // [m3/s]
+  H height;  // [m] open, what the jet's force acts on
+};
+
+// One metering edge. opening [m] (negative: covered by that length), radius [m] of its corner, dp [Pa].
 // Laminar slot, orifice and hose in series: dp = R q + K q|q|, so q = 2 dp / (R + sqrt(R^2 + 4 K |dp|)).
 // R: plane slot of the covered length and creeping flow at the edge; K: Bernoulli at the edge plus the hose.
-template <class X, class P, class T>
-inline __attribute__((always_inline)) auto metering_edge(const X& opening, const T& radius, const P& dp,
-                                                         const Derived<T>& d) {
+template <class X, class R, class P, class D>
+inline __attribute__((always_inline)) auto metering_edge(const X& opening, const R& radius, const P& dp, const D& d) {
+  using T = typename D::Scalar;
   const auto length = smooth_abs(opening, radius);
   const auto open = (opening + length) * T(0.5);
   const auto covered = (length - opening) * T(0.5);
@@ -57,22 +64,22 @@ inline __attribute__((always_inline)) auto metering_edge(const X& opening, const
   const auto r = (d.slot_per_length * covered + d.slot_corner) * per_h;  // [Pa s/m] times width and h
   const auto k = d.edge_loss + d.hose_loss * h2;
   const auto q = d.twice_width * h * dp * inverse(r + root(r * r + k * magnitude(dp)));
-  return std::make_tuple(q, h);
+  return EdgeFlow{q, h};
 }
 
-// With derivatives: taken in the edge's own two variables, then carried to what those depend on.
-template <class T, Mask A, Mask B>
-requires(A != 1 || B != 2) inline
-    __attribute__((always_inline)) auto metering_edge(const Dual<T, A>& opening, const T& radius, const Dual<T, B>& dp,
-                                                      const Derived<T>& d) {
+template <class T, Mask A, Mask B, class R, class D>
+requires(A != only(0) || B != only(1)) inline
+    __attribute__((always_inline)) auto metering_edge(const Dual<T, A>& opening, const R& radius, const Dual<T, B>& dp,
+                                                      const D& d) {
   const auto [q, h] = metering_edge(seed<0>(opening.v, T(1.0)), radius, seed<1>(dp.v, T(1.0)), d);
-  return std::make_tuple(chain(q.v, opening, q.d[0], dp, q.d[1]), chain(h.v, opening, h.d[0]));
+  return EdgeFlow{carried(q, opening, dp), carried(h, opening, dp)};
 }
 
 // Pilot flow through the filter, whose blocked part may differ with the direction of the spool, behind the laminar drop
 // of its pores: as many pass the flow as are open, so that drop stays in proportion to the root of the other. [m3/s]
-template <class P, class V, class T>
-auto filter_flow(const P& dp, const V& v_spool, const Derived<T>& d) {
+template <class P, class V, class D>
+auto filter_flow(const P& dp, const V& v_spool, const D& d) {
+  using T = typename D::Scalar;
   namespace c = constants;
   const auto direction = smooth_sign(v_spool, T(c::filter_direction_rounding));
   return (d.filter_conductance - d.filter_one_way * direction) *
@@ -80,12 +87,13 @@ auto filter_flow(const P& dp, const V& v_spool, const Derived<T>& d) {
 }
 
 // Stiffness of a chamber [Pa/m3]: oil, free air by the isothermal law, walls of the hose, all in one fraction.
-template <class V, class P, class T>
-auto chamber_stiffness(const V& volume, const P& pressure, const Derived<T>& d, const T* p) {
+template <class V, class P, class D, class Rows>
+auto chamber_stiffness(const V& volume, const P& pressure, const D& d, const Rows& p) {
+  using T = typename D::Scalar;
   namespace c = constants;
   const auto absolute = soft_positive(pressure + T(c::atmospheric_pressure), T(c::pressure_floor));
   const auto square = absolute * absolute;
-  return square * inverse((volume * d.inverse_bulk + p[row::hose_compliance]) * square + d.air * volume);
+  return square * inverse((volume * d.inverse_bulk + pick<row::hose_compliance>(p)) * square + d.air * volume);
 }
 
 // Share of a stop's damping that acts, 0 clear of it to 1 well inside: oil is squeezed out before there is contact. [m]
@@ -104,12 +112,13 @@ struct AtValve {
   decltype(In::load_force) load_force;
 };
 
-// Derivatives of all states, base states first, then the effects', as a tuple.
-// S: s.get<K>() gives state K. In: Inputs-like with members of dual or plain type.
-template <class Effects, class T, class S, class In>
-inline __attribute__((always_inline)) auto derivative(const S& s, const In& in, const T* p, const Derived<T>& d) {
+// Gives the derivatives of all states, base states first, then the effects', to `take` and returns what it returns.
+// S: s.get<K>() gives state K. In, Rows, D: like Inputs, a candidate and Derived, their numbers duals or plain.
+template <class Effects, class T, class S, class In, class Rows, class D, class Take>
+inline __attribute__((always_inline)) auto derivative(const S& s, const In& in, const Rows& p, const D& d,
+                                                      Take&& take) {
   namespace c = constants;
-  const View<Effects, S, In, T> view{s, in, p};
+  const View<Effects, T, S, In, Rows> view{s, in, p};
   const auto supply = in.supply_pressure + hook_supply_pressure(view, Effects{});
   const AtValve<In, std::decay_t<decltype(supply)>> u{in.current, supply, in.return_pressure, in.load_force};
   const auto z_f = s.template get<s_x_flapper>();
@@ -132,8 +141,8 @@ inline __attribute__((always_inline)) auto derivative(const S& s, const In& in, 
   // force would take a free flapper, and the flapper follows it up to the nozzle. That leaves out the impact (a few
   // tenths of a millisecond) and keeps a wall out of the equations, which no linearly implicit step sees coming.
   const auto x_f = flapper_travel(z_f, p);
-  const auto wire = p[row::feedback_wire_stiffness] * dead_zone(x_s + x_f, d.half_backlash, c::backlash_rounding);
-  const auto f_flapper = p[row::torque_motor_gain] * i - p[row::flapper_stiffness] * z_f - wire -
+  const auto wire = pick<row::feedback_wire_stiffness>(p) * dead_zone(x_s + x_f, d.half_backlash, c::backlash_rounding);
+  const auto f_flapper = pick<row::torque_motor_gain>(p) * i - pick<row::flapper_stiffness>(p) * z_f - wire -
                          d.nozzle_area * (p_1 - p_2) + hook_flapper_force(view, Effects{});
   const auto dv_f = d.flapper_rate2 * f_flapper - d.flapper_damping * v_f;
 
@@ -141,25 +150,25 @@ inline __attribute__((always_inline)) auto derivative(const S& s, const In& in, 
   const auto q_filter = filter_flow(u.supply_pressure - p_f, v_s, d);
   const auto q_orifice_1 = fixed_orifice_flow(p_f - p_1, d);
   const auto q_orifice_2 = fixed_orifice_flow(p_f - p_2, d);
-  const auto q_nozzle_1 = nozzle_flow(d.nozzle_1_share * (p[row::nozzle_gap] - x_f), p_1 - u.return_pressure, d);
-  const auto q_nozzle_2 = nozzle_flow(d.nozzle_2_share * (p[row::nozzle_gap] + x_f), p_2 - u.return_pressure, d);
+  const auto q_nozzle_1 = nozzle_flow(d.nozzle_1_share * (pick<row::nozzle_gap>(p) - x_f), p_1 - u.return_pressure, d);
+  const auto q_nozzle_2 = nozzle_flow(d.nozzle_2_share * (pick<row::nozzle_gap>(p) + x_f), p_2 - u.return_pressure, d);
   const auto dp_f = d.inverse_filter_compliance * (q_filter - q_orifice_1 - q_orifice_2);
   const auto dp_1 = d.inverse_pilot_compliance * (q_orifice_1 - q_nozzle_1 - d.spool_area * v_s);
   const auto dp_2 = d.inverse_pilot_compliance * (q_orifice_2 - q_nozzle_2 + d.spool_area * v_s);
 
   // Metering edges. Flows carry direction: pa from supply to A, at from A to return.
   const auto x_m = x_s + hook_metering_opening(view, Effects{});
-  const auto [q_pa, h_pa] = metering_edge(x_m - p[row::lap_pa], d.supply_edge, u.supply_pressure - p_a, d);
-  const auto [q_pb, h_pb] = metering_edge(-x_m - p[row::lap_pb], d.supply_edge, u.supply_pressure - p_b, d);
-  const auto [q_at, h_at] = metering_edge(-x_m - p[row::lap_at], d.return_edge, p_a - u.return_pressure, d);
-  const auto [q_bt, h_bt] = metering_edge(x_m - p[row::lap_bt], d.return_edge, p_b - u.return_pressure, d);
+  const auto [q_pa, h_pa] = metering_edge(x_m - pick<row::lap_pa>(p), d.supply_edge, u.supply_pressure - p_a, d);
+  const auto [q_pb, h_pb] = metering_edge(-x_m - pick<row::lap_pb>(p), d.supply_edge, u.supply_pressure - p_b, d);
+  const auto [q_at, h_at] = metering_edge(-x_m - pick<row::lap_at>(p), d.return_edge, p_a - u.return_pressure, d);
+  const auto [q_bt, h_bt] = metering_edge(x_m - pick<row::lap_bt>(p), d.return_edge, p_b - u.return_pressure, d);
 
   // Spool.
   const auto f_flow = d.flow_force * (h_pa * (u.supply_pressure - p_a) + h_bt * (p_b - u.return_pressure) -
                                       h_pb * (u.supply_pressure - p_b) - h_at * (p_a - u.return_pressure));
   const auto f_dry =
-      p[row::spool_friction] * asperities<T>((x_s - in.friction.spool_anchor) * T(1.0 / c::spool_presliding));
-  const auto beyond = x_s - p[row::spool_stop], behind = -x_s - p[row::spool_stop];
+      pick<row::spool_friction>(p) * asperities<T>((x_s - in.friction.spool_anchor) * T(1.0 / c::spool_presliding));
+  const auto beyond = x_s - pick<row::spool_stop>(p), behind = -x_s - pick<row::spool_stop>(p);
   const auto in_spool_stop =
       in_contact(contact_depth(beyond, c::spool_film), contact_depth(behind, c::spool_film), T(c::spool_film));
   const auto f_spool = d.spool_area * (p_1 - p_2) - f_flow - f_dry - d.spool_viscous * v_s -
@@ -171,11 +180,11 @@ inline __attribute__((always_inline)) auto derivative(const S& s, const In& in, 
   // Chambers. The body may move; volumes and the sensor see the rod relative to it.
   const auto v_rel = v_p - hook_body_velocity(view, Effects{});
   const auto q_leak = d.leak * (p_a - p_b);
-  const auto volume_a = d.middle_volume_a + p[row::piston_area_a] * x_p;
-  const auto volume_b = d.middle_volume_b - p[row::piston_area_b] * x_p;
-  const auto dp_a = (q_pa - q_at - q_leak - p[row::piston_area_a] * v_rel + hook_flow_a(view, Effects{})) *
+  const auto volume_a = d.middle_volume_a + pick<row::piston_area_a>(p) * x_p;
+  const auto volume_b = d.middle_volume_b - pick<row::piston_area_b>(p) * x_p;
+  const auto dp_a = (q_pa - q_at - q_leak - pick<row::piston_area_a>(p) * v_rel + hook_flow_a(view, Effects{})) *
                     chamber_stiffness(volume_a, p_a, d, p);
-  const auto dp_b = (q_pb - q_bt + q_leak + p[row::piston_area_b] * v_rel + hook_flow_b(view, Effects{})) *
+  const auto dp_b = (q_pb - q_bt + q_leak + pick<row::piston_area_b>(p) * v_rel + hook_flow_b(view, Effects{})) *
                     chamber_stiffness(volume_b, p_b, d, p);
 
   // Piston.
@@ -187,18 +196,26 @@ inline __attribute__((always_inline)) auto derivative(const S& s, const In& in, 
            T(1.0 / n_families);
   }
   (std::make_integer_sequence<int, n_families>{});
-  const auto f_friction = d.viscous * v_rel + seals * (p[row::piston_coulomb_friction] +
-                                                       p[row::piston_stribeck_friction] * in.friction.seal_breakaway);
+  const auto f_friction =
+      d.viscous * v_rel + seals * (pick<row::piston_coulomb_friction>(p) +
+                                   pick<row::piston_stribeck_friction>(p) * in.friction.seal_breakaway);
   const auto over = contact_depth(x_p - d.half_stroke, c::piston_stop_rounding);
   const auto under = contact_depth(-x_p - d.half_stroke, c::piston_stop_rounding);
   const auto in_stop = in_contact(over, under, T(c::piston_stop_rounding));
-  const auto f_piston = p[row::piston_area_a] * p_a - p[row::piston_area_b] * p_b - u.load_force - f_friction -
-                        T(c::piston_stop_stiffness) * (over - under) - T(c::piston_stop_damping) * (in_stop * v_rel) +
-                        hook_piston_force(view, Effects{});
+  const auto f_piston = pick<row::piston_area_a>(p) * p_a - pick<row::piston_area_b>(p) * p_b - u.load_force -
+                        f_friction - T(c::piston_stop_stiffness) * (over - under) -
+                        T(c::piston_stop_damping) * (in_stop * v_rel) + hook_piston_force(view, Effects{});
   const auto dv_p = d.inverse_mass * f_piston;
 
-  return std::tuple_cat(std::make_tuple(di, v_f, dv_f, dp_f, dp_1, dp_2, v_s, dv_s, dp_a, dp_b, v_rel, dv_p),
-                        effect_derivatives(view, Effects{}));
+  return effect_derivatives(
+      view, Effects{}, [&](const auto&... own) __attribute__((always_inline)) {
+        return take(di, v_f, dv_f, dp_f, dp_1, dp_2, v_s, dv_s, dp_a, dp_b, v_rel, dv_p, own...);
+      });
+}
+// The same as a tuple.
+template <class Effects, class T, class S, class In, class Rows, class D>
+inline __attribute__((always_inline)) auto derivative(const S& s, const In& in, const Rows& p, const D& d) {
+  return derivative<Effects, T>(s, in, p, d, [](const auto&... rates) { return std::make_tuple(rates...); });
 }
 
 }  // namespace servodx

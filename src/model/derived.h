@@ -9,48 +9,66 @@
 
 namespace servodx {
 
+// The numbers that the equations read. X(name, unit, meaning)
+// clang-format off
+#define SERVODX_DERIVED(X) \
+  /* first stage */ \
+  X(driver_rate,               "1/s",          "") \
+  X(flapper_rate2,             "1/s2/(N/m)",   "natural frequency squared over stiffness") \
+  X(flapper_damping,           "1/s",          "") \
+  X(nozzle_area,               "m2",           "facing the flapper") \
+  X(nozzle_1_share,            "-",            "open of nozzle 1's gap") \
+  X(nozzle_2_share,            "-",            "open of nozzle 2's gap") \
+  X(nozzle_conductance,        "m3/s/sqrt(Pa)/m", "per curtain opening") \
+  X(bore_loss,                 "1/m2",         "pressure lost in a nozzle's bore over that at its curtain, per opening squared") \
+  X(nozzle_creep,              "m2 sqrt(Pa)",  "half the laminar drop of a nozzle's land over the root of the turbulent one, times opening squared") \
+  X(orifice_conductance,       "m3/s/sqrt(Pa)", "") \
+  X(orifice_creep,             "sqrt(Pa)",     "half the laminar drop of a fixed orifice over the root of the turbulent one") \
+  X(filter_conductance,        "m3/s/sqrt(Pa)", "mean of both directions of the spool") \
+  X(filter_one_way,            "m3/s/sqrt(Pa)", "less while the spool moves positive, more while it moves negative") \
+  X(filter_creep,              "sqrt(Pa)",     "half the laminar drop of the clean filter over the root of its turbulent one") \
+  X(half_backlash,             "m",            "between wire and spool") \
+  X(inverse_filter_compliance, "Pa/m3",        "") \
+  X(inverse_pilot_compliance,  "Pa/m3",        "") \
+  /* second stage */ \
+  X(spool_area,                "m2",           "") \
+  X(inverse_spool_mass,        "1/kg",         "") \
+  X(spool_viscous,             "N s/m",        "shear in the annulus") \
+  X(flow_force,                "m",            "times open height and pressure drop") \
+  X(twice_width,               "m",            "") \
+  X(clearance2,                "m2",           "") \
+  X(slot_per_length,           "Pa s/m",       "laminar resistance of a covered edge per length, times width and opening squared") \
+  X(slot_corner,               "Pa s",         "the same of the corner of an open edge") \
+  X(supply_edge,               "m",            "corner radius of the metering edges from supply") \
+  X(return_edge,               "m",            "and of those to return") \
+  X(edge_loss,                 "Pa s2/m4",     "4 rho / (2 Cd^2)") \
+  X(hose_loss,                 "Pa s2/m4",     "4 hose_resistance width^2, per opening squared") \
+  /* actuator */ \
+  X(leak,                      "m3/s/Pa",      "") \
+  X(viscous,                   "N s/m",        "") \
+  X(inverse_mass,              "1/kg",         "") \
+  X(half_stroke,               "m",            "") \
+  X(middle_volume_a,           "m3",           "at mid-stroke") \
+  X(middle_volume_b,           "m3",           "at mid-stroke") \
+  X(inverse_bulk,              "1/Pa",         "") \
+  X(air,                       "Pa",           "free air fraction times atmospheric pressure")
+// clang-format on
+
+enum DerivedNumber : int {
+#define X(name, unit, meaning) number_##name,
+  SERVODX_DERIVED(X)
+#undef X
+      n_derived
+};
+
 template <class T>
 struct Derived {
-  // first stage
-  T driver_rate;                     // [1/s]
-  T flapper_rate2;                   // [1/s2] natural frequency squared over stiffness times stiffness
-  T inverse_flapper_stiffness;       // [m/N]
-  T flapper_damping;                 // [1/s]
-  T nozzle_area;                     // [m2] facing the flapper
-  T nozzle_1_share, nozzle_2_share;  // [-] open of each nozzle's gap
-  T nozzle_conductance;              // [m3/s/sqrt(Pa)/m] per curtain opening
-  T bore_loss;            // [1/m2] pressure lost in a nozzle's bore over that at its curtain, per opening squared
-  T nozzle_creep;         // [m2 sqrt(Pa)] half the laminar drop of a nozzle's land over the root of the turbulent
-                          // one, times opening squared
-  T orifice_conductance;  // [m3/s/sqrt(Pa)]
-  T orifice_creep;        // [sqrt(Pa)] half the laminar drop of a fixed orifice over the root of the turbulent one
-  T filter_conductance;   // [m3/s/sqrt(Pa)] mean of both directions of the spool
-  T filter_one_way;       // [m3/s/sqrt(Pa)] less while the spool moves positive, more while it moves negative
-  T filter_creep;         // [sqrt(Pa)] half the laminar drop of the clean filter over the root of its turbulent one
-  T half_backlash;        // [m] between wire and spool
-  T inverse_filter_compliance;  // [Pa/m3]
-  T inverse_pilot_compliance;   // [Pa/m3]
-  // second stage
-  T spool_area;          // [m2]
-  T inverse_spool_mass;  // [1/kg]
-  T spool_viscous;       // [N s/m] shear in the annulus
-  T flow_force;          // [m] times open height and pressure drop
-  T twice_width;         // [m]
-  T clearance2;          // [m2]
-  T slot_per_length;     // [Pa s/m] laminar resistance of a covered edge per length, times width and opening squared
-  T slot_corner;         // [Pa s] the same of the corner of an open edge
-  T supply_edge, return_edge;  // [m] corner radius of the metering edges from supply and to return
-  T edge_loss;                 // [Pa s2/m4] 4 rho / (2 Cd^2)
-  T hose_loss;                 // 4 hose_resistance width^2
-  // actuator
-  T leak;     // [m3/s/Pa]
-  T viscous;  // [N s/m]
+  using Scalar = T;
+#define X(name, unit, meaning) T name;
+  SERVODX_DERIVED(X)
+#undef X
+  T inverse_flapper_stiffness;  // [m/N]
   Breakaway<T> breakaway;
-  T inverse_mass;                      // [1/kg]
-  T half_stroke;                       // [m]
-  T middle_volume_a, middle_volume_b;  // [m3] at mid-stroke
-  T inverse_bulk;                      // [1/Pa]
-  T air;                               // [Pa] free air fraction times atmospheric pressure
 };
 
 // p: a candidate in SI.

@@ -68,10 +68,17 @@ struct EffectList {
   }
 };
 
+// A row of a candidate, p[I], SI. By number of the compiler's, as rows that carry derivatives have a type each
+// (simulate/step_derivative.h).
+template <int I, class T>
+const T& pick(const T* p) {
+  return p[I];
+}
+
 // Travel of the flapper [m]: `free` [m] is where the force would take it if no nozzle stopped it.
-template <class X, class T>
-auto flapper_travel(const X& free, const T* p) {
-  return saturate(free, p[row::nozzle_gap], constants::stop_rounding);
+template <class X, class Rows>
+auto flapper_travel(const X& free, const Rows& p) {
+  return saturate(free, pick<row::nozzle_gap>(p), constants::stop_rounding);
 }
 
 template <class List, class Last>
@@ -84,21 +91,22 @@ template <class List, class Last>
 using Append = typename AppendTo<List, Last>::type;
 
 // What a hook sees: states, inputs and rows.
-template <class List, class States, class In, class T>
+template <class List, class T, class States, class In, class Rows>
 struct View {
   using Effects = List;
+  using Scalar = T;  // double or a pack
   const States& s;
   const In& u;
-  const T* p;  // the 41 rows, then the effects' parameters in the order of the list
+  const Rows& p;  // the 41 rows, then the effects' parameters in the order of the list
 
   template <int K>
   auto state() const {
     return s.template get<K>();
   }
-  // j-th parameter of effect E, SI.
-  template <class E>
-  const T& own(int j) const {
-    return p[n_parameters + List::template parameter_offset<E>() + j];
+  // J-th parameter of effect E, SI.
+  template <class E, int J>
+  auto own() const {
+    return pick<n_parameters + List::template parameter_offset<E>() + J>(p);
   }
   // J-th state of effect E.
   template <class E, int J>
@@ -107,15 +115,15 @@ struct View {
   }
 };
 
-#define SERVODX_HOOK(name)                            \
-  template <class V, class... E>                      \
-  auto hook_##name(const V& view, EffectList<E...>) { \
-    return (Nothing{} + ... + [&](auto effect) {      \
-      if constexpr (requires { effect.name(view); })  \
-        return effect.name(view);                     \
-      else                                            \
-        return Nothing{};                             \
-    }(E{}));                                          \
+#define SERVODX_HOOK(name)                                                                  \
+  template <class V, class... E>                                                            \
+  inline __attribute__((always_inline)) auto hook_##name(const V& view, EffectList<E...>) { \
+    return (Nothing{} + ... + [&](auto effect) __attribute__((always_inline)) {             \
+      if constexpr (requires { effect.name(view); })                                        \
+        return effect.name(view);                                                           \
+      else                                                                                  \
+        return Nothing{};                                                                   \
+    }(E{}));                                                                                \
   }
 SERVODX_HOOK(supply_pressure)
 SERVODX_HOOK(flapper_force)
@@ -189,14 +197,26 @@ void effects_at_rest([[maybe_unused]] T* y, [[maybe_unused]] const T* p, EffectL
       ...);
 }
 
-template <class V, class... E>
-auto effect_derivatives(const V& view, EffectList<E...>) {
-  return std::tuple_cat([&](auto effect) {
-    if constexpr (requires { effect.derivative(view); })
-      return effect.derivative(view);
-    else
-      return std::tuple<>{};
-  }(E{})...);
+// Gives the derivatives of the effects' states, in the order of the list, to `take` and returns what it returns.
+template <class V, class Take>
+inline __attribute__((always_inline)) auto effect_derivatives(const V&, EffectList<>, Take&& take) {
+  return take();
+}
+template <class V, class E, class... Others, class Take>
+inline __attribute__((always_inline)) auto effect_derivatives(const V& view, EffectList<E, Others...>, Take&& take) {
+  if constexpr (requires { E::derivative(view); }) {
+    const auto own = E::derivative(view);
+    static_assert(std::tuple_size_v<std::remove_const_t<decltype(own)>> == E::n_states);
+    return effect_derivatives(
+        view, EffectList<Others...>{}, [&](const auto&... rest) __attribute__((always_inline)) {
+          return [&]<int... I>(std::integer_sequence<int, I...>) __attribute__((always_inline)) {
+            return take(std::get<I>(own)..., rest...);
+          }
+          (std::make_integer_sequence<int, E::n_states>{});
+        });
+  } else {
+    return effect_derivatives(view, EffectList<Others...>{}, take);
+  }
 }
 
 }  // namespace servodx

@@ -2,6 +2,7 @@
 #pragma once
 #include <array>
 #include <cmath>
+#include <memory>
 #include <tuple>
 #include <utility>
 
@@ -27,7 +28,7 @@ template <int N, class T>
 struct DualStates {
   const std::array<T, N>& y;
   template <int K>
-  Dual<T, Mask{1} << K> get() const {
+  Dual<T, only(K)> get() const {
     return seed<K>(y[K], T(1.0));
   }
 };
@@ -37,7 +38,7 @@ struct DualStates {
 template <class T, class Effects, bool Settling>
 struct System {
   static constexpr int n = n_base_states + Effects::n_states;
-  static constexpr Mask time_mask = Mask{1} << n;
+  static constexpr Mask time_mask = only(n);
   using TimeDual = Dual<T, time_mask>;
 
   const T* p;
@@ -80,7 +81,7 @@ struct System {
       decltype(std::declval<System>().evaluate(std::declval<DualStates<n, T>>(), std::declval<Inputs<TimeDual, T>>()));
   template <class X>
   struct MaskOf {
-    static constexpr Mask value = 0;
+    static constexpr Mask value{};
   };
   template <class U, Mask M>
   struct MaskOf<Dual<U, M>> {
@@ -205,69 +206,205 @@ struct Sensed<T, EffectList<E...>> {
 inline constexpr double tube_conductance = 1e-7;
 inline constexpr double drop_rounding = 1e-6;  // [m] of spool travel, where the drop passes to the other two edges
 
-// Sees each step of a run before it is taken; here, nobody does.
+// Sees the steps of a run; here, nobody does.
 struct Unwatched {
   void interval() {}  // the steps from one sample to the next begin, or begin again
   template <class... A>
-  void step(const A&...) {}
+  void step(const A&...) {}  // one is about to be taken: the system, the state, its length, what rodas3_step tells
   template <class... A>
-  void dragged(const A&...) {}  // friction's anchors, before and after
-  void sample() {}              // the next sample is reached
+  void taken(const A&...) {}  // the state after it, friction's memory before and after
 };
 
-// Runs `lanes` candidates (at most the width of T) over the log and writes their trajectories.
-template <class T, class Effects, class Watch>
-void run_watched(const Scenario& in, const ParameterVector* const* candidates, Trajectory* const* results, int lanes,
-                 const SimulateOptions& options, Watch&& watch) {
-  constexpr int n = System<T, Effects, false>::n;
-  constexpr int width = Lanes<T>::count;
-  const std::size_t samples = in.time.size();
+// Up to as many candidates as T has lanes on their way over a log; writes their trajectories. Idle lanes repeat the
+// first candidate.
+template <class T, class Effects>
+class Run {
+ public:
+  using Live = System<T, Effects, false>;
+  static constexpr int n = Live::n;
+  static constexpr int width = Lanes<T>::count;
 
-  std::array<T, n_candidate> p;
-  for (int k = 0; k < n_candidate; ++k)
-    for (int lane = 0; lane < width; ++lane) Lanes<T>::set(p[k], lane, (*candidates[lane < lanes ? lane : 0])[k]);
-  if (in.command_slope) p[nuisance::command_slope] = T(*in.command_slope);
-  if (in.current_measured) p[row::driver_bandwidth] = T(2e4);  // the amplifier is behind us
-  if (!in.supply_pressure.empty()) p[effect_row<SupplyDroop>(0)] = T(0.0);  // what is measured holds the droop
-  // On a test stand the piston is held and displaces nothing, and a tube takes the place of the seal's leakage.
-  const bool on_stand = in.ports != Ports::actuator;
-  if (on_stand) p[row::piston_area_a] = p[row::piston_area_b] = T(0.0);
-  Derived<T> d = derive<T, Effects>(p.data(), in.oil);
-  if (on_stand) d.leak = T(in.ports == Ports::free ? tube_conductance : 0.0);
-  // A port that empties within a step overshoots return; free air would expand there and hold it below.
-  if (on_stand) d.air = T(0.0);
-  bool sticks = false;
-  for (int lane = 0; lane < width; ++lane) sticks |= Lanes<T>::get(p[row::piston_stribeck_friction], lane) != 0.0;
-  const T rated = T(in.rated_current), null = p[row::servovalve_null] * rated;
+  // Ready at the first sample, which is reported.
+  Run(const Scenario& in, const ParameterVector* const* candidates, Trajectory* const* results, int lanes,
+      const SimulateOptions& options)
+      : live{p_.data(), d_, {}, {}, T(0.0), T(0.0), T(0.0), T(0.0)},
+        in_(in),
+        options_(options),
+        results_(results),
+        lanes_(lanes),
+        on_stand_(in.ports != Ports::actuator) {
+    fill_rows(candidates);
+    d_ = derive<T, Effects>(p_.data(), in.oil);
+    if (on_stand_) {
+      d_.leak = T(in.ports == Ports::free ? tube_conductance : 0.0);
+      // A port that empties within a step overshoots return; free air would expand there and hold it below.
+      d_.air = T(0.0);
+    }
+    for (int lane = 0; lane < width; ++lane) sticks |= Lanes<T>::get(p_[row::piston_stribeck_friction], lane) != 0.0;
+    rated_ = T(in.rated_current);
+    null_ = p_[row::servovalve_null] * rated_;
+    for (int lane = 0; lane < lanes; ++lane) results[lane]->ok = true;
+    settle();
+    drive_.rest(y[s_current], spring(), p_.data(),
+                rated_);  // the history that ends at the current which holds the spool
+    now_ = inputs_at(0, drive_(in.time[0], T(in.command[0]) + null_, spring(), p_.data(), rated_));
+    for (int lane = 0; lane < lanes; ++lane)
+      for (int c = 0; c < n_simulated; ++c) {
+        results[lane]->signals[c].clear();
+        if (options.wanted[c]) results[lane]->signals[c].resize(in.time.size());
+      }
+    friction.rest(y[s_x_spool], y[s_x_piston]);
+    lively_until_ = in.time[0];
+    impact_until_ = in.time[0] - 1.0;
+    any_left_ = report(now_);
+  }
+  Run(const Run&) = delete;
 
-  const auto input = [&](const std::vector<double>& series, std::size_t k, const T& table) {
-    return series.empty() ? table : T(series[k]);
-  };
-  const auto inputs_at = [&](std::size_t k, const T& current) {
-    return Inputs<T>{saturate(current, p[row::current_limit], constants::current_rounding),
-                     input(in.supply_pressure, k, p[row::supply_pressure]),
-                     input(in.return_pressure, k, p[row::return_pressure]),
-                     input(in.load_force, k, T(0.0)),
-                     T(0.0),
-                     T(0.0)};
-  };
+  bool under_way() const { return any_left_ && k_ + 1 < in_.time.size(); }
 
-  // Far beyond its stops, or at pressures that oil does not know, a lane has diverged: not below 1.
-  const T per_travel = T(0.1) / p[row::spool_stop];
-  const auto excess = [&](const std::array<T, n>& state) {
-    const T per_pressure = T(1e-9), x = state[s_x_spool] * per_travel, rod = state[s_x_piston] * T(1e-3),
-            p_1 = state[s_p_pilot_1] * per_pressure, p_2 = state[s_p_pilot_2] * per_pressure,
-            p_a = state[s_p_a] * per_pressure, p_b = state[s_p_b] * per_pressure;
-    return (x * x + rod * rod) + (p_1 * p_1 + p_2 * p_2) + (p_a * p_a + p_b * p_b);
-  };
-  const auto is_sane = [](const T& beyond, int lane) { return Lanes<T>::get(beyond, lane) < 1.0; };
-  // Lanes that are `due` (not below 0) take what `again` makes of them; the others keep what they have, so a lane's
-  // bits do not depend on its company.
+  // To the next sample, by the steps that the log, and stops that are near, ask for.
+  template <class Watch>
+  void next(Watch&& watch) {
+    const double dt = begin();
+    const int substeps = schedule(dt);
+    const auto y_before = y;
+    const auto friction_before = friction;
+    const T hit = impacts(dt);
+    advance(dt, substeps, watch);
+    if (const int finer = steps_of(dt, options_.impact_step); !on_stand_ && finer > substeps && any_due(hit))
+      redo(y_before, friction_before, hit, [&] { advance(dt, finer, watch); });
+    for (int finer = substeps * 8; finer <= substeps * 64; finer *= 8) {
+      const T due = lost();
+      if (!any_due(due)) break;
+      redo(y_before, friction_before, due, [&] { advance(dt, finer, watch); });
+    }
+    end();
+  }
+
+  // The same in parts, for a run whose steps another takes in between: its inputs move on, up to the next sample; they
+  // stand at a time after the last one; friction remembers a step; the sample is reported.
+  double begin() {
+    const double dt = in_.time[k_ + 1] - in_.time[k_];
+    const T current = drive_(in_.time[k_ + 1], T(in_.command[k_ + 1]) + null_, spring(), p_.data(), rated_);
+    next_ = inputs_at(k_ + 1, current);
+    const T per = T(1.0 / dt);
+    live.slope = {p_[nuisance::command_slope] * (next_.current - now_.current) * per,
+                  (next_.supply_pressure - now_.supply_pressure) * per,
+                  (next_.return_pressure - now_.return_pressure) * per, (next_.load_force - now_.load_force) * per};
+    return dt;
+  }
+  T current(double after) const { return now_.current + live.slope.current * T(after); }
+  void stand_at(double after) {
+    const T t = T(after);
+    live.at = {now_.current + live.slope.current * t, now_.supply_pressure + live.slope.supply_pressure * t,
+               now_.return_pressure + live.slope.return_pressure * t, now_.load_force + live.slope.load_force * t,
+               friction};
+  }
+  void remember(const T& spool_from, const T& rod_from, double h) {
+    friction.move(spool_from, y[s_x_spool], rod_from, y[s_x_piston], h, d_.breakaway, sticks);
+  }
+  void end() {
+    now_ = next_;
+    ++k_;
+    any_left_ = report(now_);
+  }
+
+  const T* p() const { return p_.data(); }
+  const Derived<T>& derived() const { return d_; }
+  const Inputs<T>& inputs() const { return now_; }  // at the last sample
+
   std::array<T, n> y{};
   FrictionMemory<T> friction;
-  const auto is_due = [](const T& due, int lane) { return !(Lanes<T>::get(due, lane) < 0.0); };
-  const auto redo = [&](const std::array<T, n>& y_before, const FrictionMemory<T>& friction_before, const T& due,
-                        auto&& again) {
+  Live live;
+  bool sticks = false;  // whether breakaway friction is followed; where there is none, the bits are the same
+
+ private:
+  // A linearly implicit step does not see a stop that it has not reached. After a jump the flapper crosses its gap in a
+  // tenth of a millisecond, so the steps are short until the spool has answered. This schedule comes from the log
+  // alone: every candidate takes the same steps. A rod that comes upon its stop is seen a sample before: that candidate
+  // takes the sample in short steps too, or is thrown back at many times its speed, or not, by the last digit of its
+  // values.
+  static constexpr double jump = 0.03;         // of rated current
+  static constexpr double impact_time = 4e-3;  // [s]
+  // Slower than full stroke in a second, the valve's own dynamics stay settled, and an L-stable step passes over them.
+  static constexpr double creep = 1.0;         // [1/s] rated current per time
+  static constexpr double settle_time = 0.05;  // [s]
+
+  static int steps_of(double dt, double largest) {
+    return std::max(1, static_cast<int>(std::ceil(dt / largest - 1e-6)));
+  }
+  int schedule(double dt) {
+    const double move = std::abs(in_.command[k_ + 1] - in_.command[k_]);
+    if (move > jump * in_.rated_current) impact_until_ = in_.time[k_ + 1] + impact_time;
+    if (move > creep * in_.rated_current * dt) lively_until_ = in_.time[k_ + 1] + settle_time;
+    const double usual = on_stand_ && in_.time[k_] >= lively_until_ ? options_.creep_step : options_.step;
+    return steps_of(dt, in_.time[k_] < impact_until_ ? std::min(options_.step, options_.impact_step) : usual);
+  }
+
+  template <class Watch>
+  void advance(double dt, int steps, Watch& watch) {
+    const double h = dt / steps;
+    watch.interval();
+    for (int j = 0; j < steps; ++j) {
+      stand_at(h * j);
+      const T spool_from = y[s_x_spool], rod_from = y[s_x_piston];
+      if (on_stand_) {
+        System<T, Effects, true> stand{p_.data(), d_, live.at, live.slope, T(0.0), T(0.0), T(1.0), T(0.0)};
+        rodas3_step<T>(stand, y, h);  // the piston alone is held
+      } else {
+        rodas3_step<T>(live, y, h, [&](const auto&... stages) { watch.step(live, y, h, stages...); });
+      }
+      remember(spool_from, rod_from, h);
+      watch.taken(y, live.at.friction, friction);
+    }
+  }
+
+  void fill_rows(const ParameterVector* const* candidates) {
+    for (int k = 0; k < n_candidate; ++k)
+      for (int lane = 0; lane < width; ++lane) Lanes<T>::set(p_[k], lane, (*candidates[lane < lanes_ ? lane : 0])[k]);
+    if (in_.command_slope) p_[nuisance::command_slope] = T(*in_.command_slope);
+    if (in_.current_measured) p_[row::driver_bandwidth] = T(2e4);               // the amplifier is behind us
+    if (!in_.supply_pressure.empty()) p_[effect_row<SupplyDroop>(0)] = T(0.0);  // what is measured holds the droop
+    // On a test stand the piston is held and displaces nothing, and a tube takes the place of the seal's leakage.
+    if (on_stand_) p_[row::piston_area_a] = p_[row::piston_area_b] = T(0.0);
+  }
+
+  T input(const std::vector<double>& series, std::size_t k, const T& table) const {
+    return series.empty() ? table : T(series[k]);
+  }
+  Inputs<T> inputs_at(std::size_t k, const T& current) const {
+    return {saturate(current, p_[row::current_limit], constants::current_rounding),
+            input(in_.supply_pressure, k, p_[row::supply_pressure]),
+            input(in_.return_pressure, k, p_[row::return_pressure]),
+            input(in_.load_force, k, T(0.0)),
+            T(0.0),
+            T(0.0)};
+  }
+  T spring() const {  // [A]
+    return flapper_travel(y[s_x_flapper], p_.data()) * (p_[row::flapper_stiffness] / p_[row::torque_motor_gain]);
+  }
+
+  // Far beyond its stops, or at pressures that oil does not know, a lane has diverged: not below 1.
+  T excess() const {
+    const T per_travel = T(0.1) / p_[row::spool_stop];
+    const T per_pressure = T(1e-9), x = y[s_x_spool] * per_travel, rod = y[s_x_piston] * T(1e-3),
+            p_1 = y[s_p_pilot_1] * per_pressure, p_2 = y[s_p_pilot_2] * per_pressure, p_a = y[s_p_a] * per_pressure,
+            p_b = y[s_p_b] * per_pressure;
+    return (x * x + rod * rod) + (p_1 * p_1 + p_2 * p_2) + (p_a * p_a + p_b * p_b);
+  }
+  T lost() const { return excess() - T(1.0); }
+  // Whose rod would be in a stop after `dt` at its speed, and further in than now by more than the face is rough.
+  T impacts(double dt) const {
+    const T rough = T(constants::piston_stop_rounding), deep = d_.half_stroke + rough;
+    const T here = y[s_x_piston], there = here + y[s_v_piston] * T(dt);
+    using std::min;
+    return min(there * there - deep * deep, there * there - here * here - T(2.0) * d_.half_stroke * rough);
+  }
+  // Lanes that are `due` (not below 0) take what `again` makes of them; the others keep what they have, so a lane's
+  // bits do not depend on its company.
+  static bool is_due(const T& due, int lane) { return !(Lanes<T>::get(due, lane) < 0.0); }
+  template <class Again>
+  void redo(const std::array<T, n>& y_before, const FrictionMemory<T>& friction_before, const T& due, Again&& again) {
     const auto y_first = std::exchange(y, y_before);
     const auto friction_first = std::exchange(friction, friction_before);
     again();
@@ -276,206 +413,132 @@ void run_watched(const Scenario& in, const ParameterVector* const* candidates, T
       for (int j = 0; j < n; ++j) take_lane(y[j], y_first[j], lane);
       friction.take_lane(friction_first, lane);
     }
-  };
-  const auto any_due = [&](const T& due) {
-    for (int lane = 0; lane < lanes; ++lane)
-      if (results[lane]->ok && is_due(due, lane)) return true;
+  }
+  bool any_due(const T& due) const {
+    for (int lane = 0; lane < lanes_; ++lane)
+      if (results_[lane]->ok && is_due(due, lane)) return true;
     return false;
-  };
-  const auto lost = [&] { return excess(y) - T(1.0); };
-  // Whose rod would be in a stop after `dt` at its speed, and further in than now by more than the face is rough.
-  const auto impacts = [&](double dt) {
-    const T rough = T(constants::piston_stop_rounding), deep = d.half_stroke + rough;
-    const T here = y[s_x_piston], there = here + y[s_v_piston] * T(dt);
-    using std::min;
-    return min(there * there - deep * deep, there * there - here * here - T(2.0) * d.half_stroke * rough);
-  };
-  for (int lane = 0; lane < lanes; ++lane) results[lane]->ok = true;
+  }
 
-  // Initial state.
-  Inputs<T> u = inputs_at(0, T(in.command[0]) + null);
-  const T half = T(0.5) * (u.supply_pressure + u.return_pressure);
-  y[s_p_filter] = u.supply_pressure;
-  y[s_p_pilot_1] = y[s_p_pilot_2] = half;
-  // Where measured: what stands behind the first sample, less the sensor's offset, and its noise put right.
-  const auto start = [&](int signal, const std::optional<double>& measured, int offset, int error, const T& otherwise) {
-    return measured ? Sensed<T, Effects>::behind(signal, T(*measured) - p[offset], p.data()) + p[error] : otherwise;
-  };
-  y[s_x_spool] = start(0, in.spool_start, nuisance::spool_offset, nuisance::spool_start, T(0.0));
-  y[s_p_a] = start(2, in.pressure_a_start, nuisance::pressure_a_offset, nuisance::pressure_a_start, half);
-  y[s_p_b] = start(3, in.pressure_b_start, nuisance::pressure_b_offset, nuisance::pressure_b_start, half);
-  y[s_x_piston] = T(in.piston_start.value_or(0.0)) / p[row::position_sensor_gain];
-  y[s_v_piston] = T(in.piston_velocity_start) + p[nuisance::piston_velocity_start];
-  y[s_current] = u.current;
-  {
-    System<T, Effects, true> settling{p.data(),
-                                      d,
+  // The initial state.
+  void settle() {
+    const Inputs<T> u = inputs_at(0, T(in_.command[0]) + null_);
+    const T half = T(0.5) * (u.supply_pressure + u.return_pressure);
+    y[s_p_filter] = u.supply_pressure;
+    y[s_p_pilot_1] = y[s_p_pilot_2] = half;
+    // Where measured: what stands behind the first sample, less the sensor's offset, and its noise put right.
+    const auto start = [&](int signal, const std::optional<double>& measured, int offset, int error,
+                           const T& otherwise) {
+      return measured ? Sensed<T, Effects>::behind(signal, T(*measured) - p_[offset], p_.data()) + p_[error]
+                      : otherwise;
+    };
+    y[s_x_spool] = start(0, in_.spool_start, nuisance::spool_offset, nuisance::spool_start, T(0.0));
+    y[s_p_a] = start(2, in_.pressure_a_start, nuisance::pressure_a_offset, nuisance::pressure_a_start, half);
+    y[s_p_b] = start(3, in_.pressure_b_start, nuisance::pressure_b_offset, nuisance::pressure_b_start, half);
+    y[s_x_piston] = T(in_.piston_start.value_or(0.0)) / p_[row::position_sensor_gain];
+    y[s_v_piston] = T(in_.piston_velocity_start) + p_[nuisance::piston_velocity_start];
+    y[s_current] = u.current;
+    System<T, Effects, true> settling{p_.data(),
+                                      d_,
                                       u,
                                       Inputs<T>{T(0.0), T(0.0), T(0.0), T(0.0)},
-                                      T(in.spool_start ? 1.0 : 0.0),
-                                      T(in.pressure_a_start && in.pressure_b_start ? 1.0 : 0.0),
+                                      T(in_.spool_start ? 1.0 : 0.0),
+                                      T(in_.pressure_a_start && in_.pressure_b_start ? 1.0 : 0.0),
                                       T(1.0),
                                       T(0.0)};
     // A spool out of balance by the force that one amp makes settles at this rate; the pilot's own poles are faster.
     constexpr double rate = 400.0;  // [1/s]
     const T force_per_amp =
-        p[row::torque_motor_gain] * d.inverse_flapper_stiffness * d.spool_area * half / p[row::nozzle_gap];
-    settling.settle_rate = T(rate) / (d.inverse_spool_mass * force_per_amp);
-    const auto settle = [&](int finer) {
-      for (int k = 0; k < 60 * finer; ++k) {
+        p_[row::torque_motor_gain] * d_.inverse_flapper_stiffness * d_.spool_area * half / p_[row::nozzle_gap];
+    settling.settle_rate = T(rate) / (d_.inverse_spool_mass * force_per_amp);
+    const auto steps = [&](int count, auto&& length) {
+      for (int k = 0; k < count; ++k) {
         settling.at.friction.rest(y[s_x_spool], y[s_x_piston]);
-        effects_at_rest(y.data(), p.data(), Effects{});
-        rodas3_step<T>(settling, y, (k < 20 * finer ? 2e-4 : 1e-3) / finer);
+        effects_at_rest(y.data(), p_.data(), Effects{});
+        rodas3_step<T>(settling, y, length(k));
       }
     };
+    const auto settle_in = [&](int finer) {
+      steps(60 * finer, [&](int k) { return (k < 20 * finer ? 2e-4 : 1e-3) / finer; });
+    };
     const auto unsettled = y;
-    settle(1);
-    if (const T due = lost(); any_due(due)) redo(unsettled, friction, due, [&] { settle(16); });
+    settle_in(1);
+    if (const T due = lost(); any_due(due)) redo(unsettled, friction, due, [&] { settle_in(16); });
     // The lines of a stand fill through the edges' leakage: some seconds.
-    if (on_stand)
-      for (int k = 0; k < 500; ++k) {
-        settling.at.friction.rest(y[s_x_spool], y[s_x_piston]);
-        effects_at_rest(y.data(), p.data(), Effects{});
-        rodas3_step<T>(settling, y, 1e-2);
-      }
+    if (on_stand_) steps(500, [](int) { return 1e-2; });
+    effects_at_rest(y.data(), p_.data(), Effects{});
   }
-  effects_at_rest(y.data(), p.data(), Effects{});
-  Drive<T, Effects> drive;
-  const T spring_rate = p[row::flapper_stiffness] / p[row::torque_motor_gain];  // [A/m]
-  const auto spring = [&] { return flapper_travel(y[s_x_flapper], p.data()) * spring_rate; };
-  drive.rest(y[s_current], spring(), p.data(), rated);  // the history that ends at the current which holds the spool
-  T current = drive(in.time[0], T(in.command[0]) + null, spring(), p.data(), rated);
-  Sensed<T, Effects> sensed;
-  SampledLag<T> position_lag;
 
-  for (int lane = 0; lane < lanes; ++lane)
-    for (int c = 0; c < n_simulated; ++c) {
-      results[lane]->signals[c].clear();
-      if (options.wanted[c]) results[lane]->signals[c].resize(samples);
-    }
-  const auto report = [&](std::size_t k, const Inputs<T>& now) {
+  // Writes the sample; false once no lane is left.
+  bool report(const Inputs<T>& now) {
     std::array<T, n_simulated> out{};
     out[0] = y[s_x_spool];
-    out[1] = p[row::position_sensor_gain] *
-             position_lag(in.time[k], y[s_x_piston], p[row::position_sensor_lag], y[s_v_piston]);
+    out[1] = p_[row::position_sensor_gain] *
+             position_lag_(in_.time[k_], y[s_x_piston], p_[row::position_sensor_lag], y[s_v_piston]);
     out[2] = y[s_p_a];
     out[3] = y[s_p_b];
     out[4] = y[s_p_pilot_1];
     out[5] = y[s_p_pilot_2];
-    if (options.wanted[6] || options.wanted[7] || options.wanted[10] || options.wanted[11]) {
+    if (options_.wanted[6] || options_.wanted[7] || options_.wanted[10] || options_.wanted[11]) {
       const auto flow = [&](const T& opening, const T& radius, const T& dp) {
-        return std::get<0>(metering_edge(opening, radius, dp, d));
+        return metering_edge(opening, radius, dp, d_).flow;
       };
-      const T q_pa = flow(y[s_x_spool] - p[row::lap_pa], d.supply_edge, now.supply_pressure - y[s_p_a]);
-      const T q_pb = flow(-y[s_x_spool] - p[row::lap_pb], d.supply_edge, now.supply_pressure - y[s_p_b]);
-      const T q_at = flow(-y[s_x_spool] - p[row::lap_at], d.return_edge, y[s_p_a] - now.return_pressure);
-      const T q_bt = flow(y[s_x_spool] - p[row::lap_bt], d.return_edge, y[s_p_b] - now.return_pressure);
+      const T q_pa = flow(y[s_x_spool] - p_[row::lap_pa], d_.supply_edge, now.supply_pressure - y[s_p_a]);
+      const T q_pb = flow(-y[s_x_spool] - p_[row::lap_pb], d_.supply_edge, now.supply_pressure - y[s_p_b]);
+      const T q_at = flow(-y[s_x_spool] - p_[row::lap_at], d_.return_edge, y[s_p_a] - now.return_pressure);
+      const T q_bt = flow(y[s_x_spool] - p_[row::lap_bt], d_.return_edge, y[s_p_b] - now.return_pressure);
       out[6] = q_pa - q_at;
       out[7] = q_pb - q_bt;
       out[10] = T(0.5) * (out[6] - out[7]);
       // In the return line; what passes the filter leaves through the nozzles.
-      out[11] = q_at + q_bt + filter_flow(now.supply_pressure - y[s_p_filter], y[s_v_spool], d);
+      out[11] = q_at + q_bt + filter_flow(now.supply_pressure - y[s_p_filter], y[s_v_spool], d_);
     }
     out[8] = y[s_p_a] - y[s_p_b];
     out[9] = now.supply_pressure - now.return_pressure - out[8] * smooth_sign(y[s_x_spool], T(drop_rounding));
-    sensed(in.time[k], out.data(), p.data());
-    out[0] = out[0] + p[nuisance::spool_offset];
-    out[2] = out[2] + p[nuisance::pressure_a_offset];
-    out[3] = out[3] + p[nuisance::pressure_b_offset];
-    out[4] = out[4] + p[nuisance::pilot_pressure_1_offset];
-    out[5] = out[5] + p[nuisance::pilot_pressure_2_offset];
+    sensed_(in_.time[k_], out.data(), p_.data());
+    out[0] = out[0] + p_[nuisance::spool_offset];
+    out[2] = out[2] + p_[nuisance::pressure_a_offset];
+    out[3] = out[3] + p_[nuisance::pressure_b_offset];
+    out[4] = out[4] + p_[nuisance::pilot_pressure_1_offset];
+    out[5] = out[5] + p_[nuisance::pilot_pressure_2_offset];
     bool any = false;
-    const T here = excess(y);
-    for (int lane = 0; lane < lanes; ++lane) {
-      if (!results[lane]->ok) continue;
-      if (!is_sane(here, lane)) {
-        results[lane]->ok = false;
-        results[lane]->failed_at = in.time[k];
+    const T here = excess();
+    for (int lane = 0; lane < lanes_; ++lane) {
+      if (!results_[lane]->ok) continue;
+      if (!(Lanes<T>::get(here, lane) < 1.0)) {
+        results_[lane]->ok = false;
+        results_[lane]->failed_at = in_.time[k_];
         continue;
       }
       any = true;
       for (int c = 0; c < n_simulated; ++c)
-        if (options.wanted[c]) results[lane]->signals[c][k] = Lanes<T>::get(out[c], lane);
+        if (options_.wanted[c]) results_[lane]->signals[c][k_] = Lanes<T>::get(out[c], lane);
     }
     return any;
-  };
-
-  Inputs<T> now = inputs_at(0, current);
-  System<T, Effects, false> live{p.data(), d, now, now, T(0.0), T(0.0), T(0.0), T(0.0)};
-  System<T, Effects, true> stand{p.data(), d, now, now, T(0.0), T(0.0), T(1.0), T(0.0)};  // the piston alone is held
-  if (!report(0, now)) return;
-  const auto steps_of = [](double dt, double largest) {
-    return std::max(1, static_cast<int>(std::ceil(dt / largest - 1e-6)));
-  };
-  // A linearly implicit step does not see a stop that it has not reached. After a jump the flapper crosses its gap in a
-  // tenth of a millisecond, so the steps are short until the spool has answered. This schedule comes from the log alone:
-  // every candidate takes the same steps. A rod that comes upon its stop is seen a sample before: that candidate takes
-  // the sample in short steps too, or is thrown back at many times its speed, or not, by the last digit of its values.
-  constexpr double jump = 0.03;         // of rated current
-  constexpr double impact_time = 4e-3;  // [s]
-  double impact_until = in.time[0] - 1.0;
-  friction.rest(y[s_x_spool], y[s_x_piston]);
-  // Slower than full stroke in a second, the valve's own dynamics stay settled, and an L-stable step passes over them.
-  constexpr double creep = 1.0;         // [1/s] rated current per time
-  constexpr double settle_time = 0.05;  // [s]
-  double lively_until = in.time[0];
-  for (std::size_t k = 0; k + 1 < samples; ++k) {
-    const double dt = in.time[k + 1] - in.time[k];
-    if (std::abs(in.command[k + 1] - in.command[k]) > jump * in.rated_current)
-      impact_until = in.time[k + 1] + impact_time;
-    if (std::abs(in.command[k + 1] - in.command[k]) > creep * in.rated_current * dt)
-      lively_until = in.time[k + 1] + settle_time;
-    const double usual = on_stand && in.time[k] >= lively_until ? options.creep_step : options.step;
-    const double largest = in.time[k] < impact_until ? std::min(options.step, options.impact_step) : usual;
-    const int substeps = steps_of(dt, largest);
-    const T next_current = drive(in.time[k + 1], T(in.command[k + 1]) + null, spring(), p.data(), rated);
-    const Inputs<T> next = inputs_at(k + 1, next_current);
-    const T per = T(1.0 / dt);
-    live.slope = {p[nuisance::command_slope] * (next.current - now.current) * per,
-                  (next.supply_pressure - now.supply_pressure) * per,
-                  (next.return_pressure - now.return_pressure) * per, (next.load_force - now.load_force) * per};
-    const auto advance = [&](int steps) {
-      const double h = dt / steps;
-      watch.interval();
-      for (int j = 0; j < steps; ++j) {
-        const T t = T(h * j);
-        live.at = {now.current + live.slope.current * t, now.supply_pressure + live.slope.supply_pressure * t,
-                   now.return_pressure + live.slope.return_pressure * t, now.load_force + live.slope.load_force * t,
-                   friction};
-        const T spool_from = y[s_x_spool], rod_from = y[s_x_piston];
-        if (on_stand) {
-          stand.at = live.at;
-          stand.slope = live.slope;
-          rodas3_step<T>(stand, y, h);
-        } else {
-          watch.step(live, y, h);
-          rodas3_step<T>(live, y, h);
-        }
-        friction.move(spool_from, y[s_x_spool], rod_from, y[s_x_piston], h, d.breakaway, sticks);
-        watch.dragged(live.at.friction, friction);
-      }
-    };
-    const auto y_before = y;
-    const auto friction_before = friction;
-    const T hit = impacts(dt);
-    advance(substeps);
-    if (const int finer = steps_of(dt, options.impact_step); !on_stand && finer > substeps && any_due(hit))
-      redo(y_before, friction_before, hit, [&] { advance(finer); });
-    for (int finer = substeps * 8; finer <= substeps * 64; finer *= 8) {
-      const T due = lost();
-      if (!any_due(due)) break;
-      redo(y_before, friction_before, due, [&] { advance(finer); });
-    }
-    watch.sample();
-    now = next;
-    if (!report(k + 1, now)) return;
   }
-}
+
+  const Scenario& in_;
+  const SimulateOptions& options_;
+  Trajectory* const* results_;
+  int lanes_;
+  bool on_stand_;
+  std::array<T, n_candidate> p_;
+  Derived<T> d_;
+  T rated_, null_;
+  Drive<T, Effects> drive_;
+  Sensed<T, Effects> sensed_;
+  SampledLag<T> position_lag_;
+  Inputs<T> now_, next_;
+  std::size_t k_ = 0;
+  bool any_left_ = false;
+  double impact_until_, lively_until_;
+};
 
 template <class T, class Effects>
 void run_pack(const Scenario& in, const ParameterVector* const* candidates, Trajectory* const* results, int lanes,
               const SimulateOptions& options) {
-  run_watched<T, Effects>(in, candidates, results, lanes, options, Unwatched{});
+  Run<T, Effects> run(in, candidates, results, lanes, options);
+  while (run.under_way()) run.next(Unwatched{});
 }
 
 using RunPack = void (*)(const Scenario&, const ParameterVector* const*, Trajectory* const*, int,
@@ -487,6 +550,24 @@ struct Kernels {
   RunPack base, extended;  // without effects, with all that have names
   RunPack corrected;       // with a learnt curve too; plain doubles only: it is rare, and an instance is slow to build
 };
+// A run, and candidates near it that follow its steps (step_derivative.h). It leads by a stretch of samples; they
+// follow over the one before the last turn.
+class NearRuns {
+ public:
+  virtual ~NearRuns() = default;
+  virtual int followers() const = 0;      // packs of candidates
+  virtual bool lead(int steps) = 0;       // to the sample behind so many; false at the end of the run
+  virtual void follow(int follower) = 0;  // any order, any thread, beside `lead`
+  virtual void turn() = 0;                // alone, between stretches
+  virtual void end() = 0;                 // alone, at last: a run that failed takes its followers along
+};
+struct NearKernels {
+  using Make = std::unique_ptr<NearRuns> (*)(const Scenario&, const ParameterVector& base, Trajectory& of_base,
+                                             const ParameterVector* const*, Trajectory* const*, int,
+                                             const SimulateOptions&);
+  Make base = nullptr, extended = nullptr;  // null: there are none
+};
+
 Kernels kernels_scalar();
 Kernels kernels_generic();
 Kernels kernels_avx2();
@@ -494,5 +575,7 @@ Kernels kernels_avx512();
 // Twice as many lanes, of floats: for ranking only.
 Kernels kernels_avx2_floats();
 Kernels kernels_avx512_floats();
+NearKernels kernels_avx2_near();
+NearKernels kernels_avx512_near();
 
 }  // namespace servodx

@@ -17,7 +17,7 @@ struct MissingInput {
   }
   template <class V>
   static auto flapper_force(const V& view) {
-    return view.p[row::torque_motor_gain] * at<drive>(view);
+    return pick<row::torque_motor_gain>(view.p) * at<drive>(view);
   }
   template <class V>
   static auto spool_force(const V& view) {
@@ -56,9 +56,8 @@ using Effects = Append<CorrectedEffects, MissingInput>;
 using Live = System<double, Effects, false>;
 constexpr int n_seals = static_cast<int>(std::size(constants::seal_presliding));
 constexpr int n_live = Live::n, n_anchors = 1 + n_seals, n_all = n_live + n_anchors;
-static_assert(n_all <= 32);
 
-constexpr Mask anchors_mask = ((Mask{1} << n_anchors) - 1) << n_live;
+constexpr Mask anchors_mask = range(n_live, n_live + n_anchors);
 using Anchored = Dual<double, anchors_mask>;
 
 // Inputs whose memory of friction carries derivatives by its anchors.
@@ -125,7 +124,7 @@ struct Linear {
   }
 };
 
-struct Columns {
+struct Columns : Unwatched {
   using T = Pack<2, 0>;
   using Lu = Linear<T>::Lu;
   static constexpr int packs = (n_all + T::lanes - 1) / T::lanes;
@@ -145,7 +144,8 @@ struct Columns {
     return b;
   }
   void interval() { x = begun; }
-  void step(const Live& live, const std::array<double, n_live>& y, double h) {
+  template <class... Stages>
+  void step(const Live& live, const std::array<double, n_live>& y, double h, const Stages&...) {
     const Rates rates = with_derivatives(live, y);
     std::array<double, Lu::entries> j{};
     unroll<n_live>([&](auto i) {
@@ -158,7 +158,8 @@ struct Columns {
     for (auto& column : x) rodas3_step<T>(linear, column, h);
   }
   // An anchor that was dragged goes where its part goes; one that held stays.
-  void dragged(const FrictionMemory<double>& before, const FrictionMemory<double>& after) {
+  template <class Y>
+  void taken(const Y&, const FrictionMemory<double>& before, const FrictionMemory<double>& after) {
     const auto follow = [&](bool moved, int anchor, int part) {
       if (moved)
         for (auto& column : x) column[n_live + anchor] = column[part];
@@ -197,7 +198,12 @@ Linearisation linearise(const Scenario& scenario, const ParameterVector& candida
   const ParameterVector* from = &candidate;
   Trajectory* to = &t;
   out.transition.reserve(scenario.time.size() / static_cast<std::size_t>(stride));
-  run_watched<double, Effects>(scenario, &from, &to, 1, silent, Columns{out.transition, stride});
+  Run<double, Effects> run(scenario, &from, &to, 1, silent);
+  Columns columns{{}, out.transition, stride};
+  while (run.under_way()) {
+    run.next(columns);
+    columns.sample();
+  }
   out.ok = t.ok;
   return out;
 }

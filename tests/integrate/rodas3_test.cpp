@@ -13,7 +13,7 @@ namespace {
 template <int N>
 constexpr Pattern<N> full_pattern() {
   Pattern<N> p;
-  for (int i = 0; i < N; ++i) p.row[i] = (Mask{1} << N) - 1;
+  for (int i = 0; i < N; ++i) p.row[i] = range(0, N);
   return p;
 }
 

@@ -53,13 +53,14 @@ LAW(ProductWithANumber, (a * b * 1.5) * (2.5 * c))
 LAW(QuotientWithANumber, (a * b / 1.5) * (2.5 / (c * c)))
 LAW(SquareRoot, sqrt(a* a + c))
 LAW(SmoothPrimitives, smooth_abs(a, 0.1) + soft_positive(b, 0.2) * smooth_sign(c, 0.3) + dead_zone(a * b, 0.5, 0.1) +
-                          saturate(b * c, 0.6, 0.2) + signed_sqrt_behind(0.4, b, 0.1) + signed_sqrt_behind(a * a, c, 0.1))
+                          saturate(b * c, 0.6, 0.2) + signed_sqrt_behind(0.4, b, 0.1) +
+                          signed_sqrt_behind(a * a, c, 0.1))
 LAW(FlatStep, flat_step(a) + flat_step(b * 0.4) * flat_step(c * 0.1))
 #undef LAW
 
 TEST(SparseDual, ExpressionCarriesTheUnionOfItsVariables) {
   const auto r = seed<1>(2.0, 1.0) * seed<4>(3.0, 1.0) + seed<1>(1.0, 1.0);
-  static_assert(std::is_same_v<decltype(r), const Dual<double, Mask{1} << 1 | Mask{1} << 4>>);
+  static_assert(std::is_same_v<decltype(r), const Dual<double, only(1) | only(4)>>);
   EXPECT_EQ(r.d[0], 4.0);
   EXPECT_EQ(r.d[1], 2.0);
 }

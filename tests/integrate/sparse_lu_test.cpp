@@ -16,12 +16,12 @@ constexpr int n = 11;
 constexpr Pattern<n> arrow() {
   Pattern<n> p;
   for (int i = 0; i < n; ++i) {
-    p.row[i] |= Mask{1} << i;
-    p.row[i] |= Mask{1} << ((i + 1) % n);
-    p.row[(i + 2) % n] |= Mask{1} << i;
+    p.row[i] |= only(i);
+    p.row[i] |= only((i + 1) % n);
+    p.row[(i + 2) % n] |= only(i);
     if (i % 3 == 0) {
-      p.row[i] |= Mask{1} << 5;
-      p.row[5] |= Mask{1} << i;
+      p.row[i] |= only(5);
+      p.row[5] |= only(i);
     }
   }
   return p;
@@ -29,8 +29,8 @@ constexpr Pattern<n> arrow() {
 constexpr Pattern<n> bidiagonal() {
   Pattern<n> p;
   for (int i = 0; i < n; ++i) {
-    p.row[i] |= Mask{1} << i;
-    if (i > 0) p.row[i] |= Mask{1} << (i - 1);
+    p.row[i] |= only(i);
+    if (i > 0) p.row[i] |= only(i - 1);
   }
   return p;
 }
@@ -90,9 +90,9 @@ void equals_dense_solve() {
 
 template <Pattern<n> P>
 int entries_of_pattern() {
-  int count = 0;
-  for (int i = 0; i < n; ++i) count += std::popcount(P.row[i] | (Mask{1} << i));
-  return count;
+  int entries = 0;
+  for (int i = 0; i < n; ++i) entries += count(P.row[i] | only(i));
+  return entries;
 }
 
 TEST(SparseLu, EqualsDenseSolveWithFillIn) {
@@ -108,9 +108,9 @@ TEST(SparseLu, TriangleNeedsNoFillIn) {
 }
 
 TEST(SparseLu, OrderOfEliminationHoldsEveryVariableOnce) {
-  Mask seen = 0;
-  for (int v : SparseLu<n, arrow()>::plan.order) seen |= Mask{1} << v;
-  EXPECT_EQ(seen, (Mask{1} << n) - 1);
+  Mask seen{};
+  for (int v : SparseLu<n, arrow()>::plan.order) seen |= only(v);
+  EXPECT_EQ(seen, range(0, n));
 }
 
 }  // namespace

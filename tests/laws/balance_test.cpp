@@ -27,7 +27,7 @@ void stored_rates_balance(const ParameterVector& v) {
     const double volume_b = p[row::dead_volume_b] + p[row::piston_area_b] * (p[row::piston_stroke] / 2 - y[s_x_piston]);
     const double stored_a = f[s_p_a] / chamber_stiffness(volume_a, y[s_p_a], d, p) + p[row::piston_area_a] * v_rel;
     const double stored_b = f[s_p_b] / chamber_stiffness(volume_b, y[s_p_b], d, p) - p[row::piston_area_b] * v_rel;
-    const auto edge = [&](double opening, double dp) { return std::get<0>(metering_edge(opening, d.supply_edge, dp, d)); };
+    const auto edge = [&](double opening, double dp) { return metering_edge(opening, d.supply_edge, dp, d).flow; };
     double lines = 0;  // what goes into the volumes behind the ports
     if constexpr (Effects::n_states > 0)
       for (int s : {0, 1}) lines += f[n_base_states + Effects::template state_offset<PortLine>() + s];
@@ -112,7 +112,7 @@ TEST(Balance, MirroredCurrentMirrorsMotion) {
       v = with_effects(v);
       for (int j = 0; j < 2 * MainsPickup::channels; ++j)
         v[effect_row<MainsPickup>(j)] = 0;  // the mains mirror nothing
-      v[effect_row<RodCavity>(0)] = 0;  // on one side only
+      v[effect_row<RodCavity>(0)] = 0;      // on one side only
     }
     v[row::lap_pa] = v[row::lap_pb] = 3e-6;
     v[row::lap_at] = v[row::lap_bt] = -2e-6;
