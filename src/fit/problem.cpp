@@ -222,13 +222,15 @@ bool FitProblem::jacobian(const Point& x, const Eigen::VectorXd& residual, Eigen
   for (std::size_t j = 0; j < free_.size(); ++j)  // what a log's own value does not touch
     if (free_[j].log >= 0) jac.col(static_cast<long>(j)).head(data_rows_).setZero();
   jac.bottomRows(total_rows_ - data_rows_).setZero();
-  // A log at a time keeps the trajectories of one log's columns in memory, not of all.
-  std::vector<char> failed(columns.size(), 0);
+  // Some logs at a time: what keeps the threads busy, and not all logs' trajectories in memory.
   std::size_t first = 0;
   Point moved = x;
   while (first < columns.size()) {
     std::size_t last = first;
-    while (last < columns.size() && (columns[last].log == columns[first].log || last - first < 64)) ++last;
+    const auto enough = [&] {
+      return last - first >= 64 && columns[last].log - columns[first].log >= std::min(threads(), 8);
+    };
+    while (last < columns.size() && (last == first || columns[last].log == columns[last - 1].log || !enough())) ++last;
     Workspace& w = workspace();
     w.hold(last - first);
     for (std::size_t c = first; c < last; ++c) {
@@ -237,14 +239,27 @@ bool FitProblem::jacobian(const Point& x, const Eigen::VectorXd& residual, Eigen
       moved[columns[c].j] = x[columns[c].j];
       w.jobs.push_back({&logs_[columns[c].log]->scenario, &w.candidates[c - first], &w.runs[c - first]});
     }
-    simulate(w.jobs, options_);
-    simulations_ += static_cast<long>(w.jobs.size());
+    std::vector<ParameterVector> bases(logs_.size());
+    std::vector<Trajectory> followed(logs_.size());
+    std::vector<NearJobs> near;
+    for (std::size_t c = first; c < last;) {
+      const std::size_t from = c;
+      const int l = columns[c].log;
+      while (c < last && columns[c].log == l) ++c;
+      candidate(x, l, bases[l]);
+      near.push_back({&bases[l], std::span(w.jobs).subspan(from - first, c - from), &followed[l]});
+    }
+    simulations_ += simulate_near(near, options_);
     for (std::size_t c = first; c < last; ++c)
       if (!w.runs[c - first].ok) {
         ++failed_;
         return false;
       }
     const std::vector<Trajectory>& runs = w.runs;
+    // Followers are compared with the very run that they followed.
+    Eigen::VectorXd from = residual;
+    for (const NearJobs& n : near)
+      if (n.of_base->ok) fill(static_cast<int>(n.of_base - followed.data()), *n.of_base, from);
 #pragma omp parallel for schedule(dynamic, 1) num_threads(threads())
     for (std::size_t c = first; c < last; ++c) {
       const int l = columns[c].log;
@@ -253,7 +268,7 @@ bool FitProblem::jacobian(const Point& x, const Eigen::VectorXd& residual, Eigen
         whitened(l, static_cast<int>(channel), runs[c - first], r);
         const long at = offset_[l][channel], samples = static_cast<long>(r.size());
         jac.col(columns[c].j).segment(at, samples) =
-            (Eigen::Map<const Eigen::VectorXd>(r.data(), samples) - residual.segment(at, samples)) / columns[c].dx;
+            (Eigen::Map<const Eigen::VectorXd>(r.data(), samples) - from.segment(at, samples)) / columns[c].dx;
       }
     }
     first = last;

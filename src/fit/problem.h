@@ -46,7 +46,8 @@ class FitProblem {
   // The candidate of a log at a point.
   ParameterVector candidate(const Point& x, int log) const;
 
-  // Step of the batched differences, of the unit interval. Wider where contacts and friction roughen the response.
+  // Step of the Jacobian, of the unit interval. Wider where contacts and friction roughen the response; where columns
+  // are so many that they follow the run (simulate_near), it moves only what is around the steps.
   double difference_step = 1e-4;
 
   // Whitening: sigma of (log, channel), the same at every sample, or sample by sample.

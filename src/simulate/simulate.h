@@ -20,6 +20,17 @@ struct Job {
 void simulate(std::span<const Job> jobs, const SimulateOptions& options = {});
 Trajectory simulate(const Scenario& scenario, const ParameterVector& candidate, const SimulateOptions& options = {});
 
+// Candidates over one log that lie near `base`.
+struct NearJobs {
+  const ParameterVector* base = nullptr;
+  std::span<const Job> jobs;
+  Trajectory* of_base = nullptr;  // the base's run, where it was followed; left empty elsewhere
+};
+// The same to first order in how far they are off it, where so many run sooner that way (step_derivative.h); on test
+// stands, with a learnt curve and in company (together.h) runs of their own, as where they are few. Returns how many
+// ran, bases that were followed included.
+long simulate_near(std::span<const NearJobs> logs, const SimulateOptions& options);
+
 // Name of the instruction set in use: "avx512", "avx2" or "generic".
 std::string instruction_set();
 int pack_width();

@@ -16,8 +16,8 @@ namespace {
 std::size_t bytes_asked_for = 0;
 }
 
-// Counted in this program, whose tests run one at a time. Eigen asks malloc; where that cannot be watched, what C++ asks
-// for is.
+// Counted in this program, whose tests run one at a time. Eigen asks malloc; where that cannot be watched, what C++
+// asks for is.
 #if defined(__GLIBC__) && !defined(__SANITIZE_ADDRESS__)
 constexpr bool sees_eigen = true;
 extern "C" void* __libc_malloc(std::size_t size);
@@ -57,7 +57,9 @@ TEST(SharedValues, AnEffectIsLikelyOfItsTypicalSizeAndARowWithinItsBounds) {
   add_effect_rows(table, {OrificeLength::name});
   bool met = false;
   for (const FreeValue& f : shared_values(table)) {
-    if (f.at < n_parameters) EXPECT_EQ(f.prior_sd, 0.5) << f.name;
+    if (f.at < n_parameters) {
+      EXPECT_EQ(f.prior_sd, 0.5) << f.name;
+    }
     if (f.name != OrificeLength::parameters[0].name) continue;
     met = true;
     EXPECT_NEAR(f.prior_sd * (f.upper - f.lower), OrificeLength::parameters[0].start, 1e-12);

@@ -1,0 +1,11 @@
+#include "simulate/step_derivative.h"
+
+namespace servodx {
+
+NearKernels kernels_avx2_near() {
+  using T = Pack<4, 2>;
+  using F = Pack<2 * T::lanes, 2, float>;
+  return {&RunAndFollowers<T, F, NoEffects>::make, &RunAndFollowers<T, F, AllEffects>::make};
+}
+
+}  // namespace servodx
