@@ -245,8 +245,8 @@ class Run {
     null_ = p_[row::servovalve_null] * rated_;
     for (int lane = 0; lane < lanes; ++lane) results[lane]->ok = true;
     settle();
-    drive_.rest(y[s_current], spring(), p_.data(),
-                rated_);  // the history that ends at the current which holds the spool
+    // The history that ends at the current which holds the spool.
+    drive_.rest(y[s_current], spring(), p_.data(), rated_);
     now_ = inputs_at(0, drive_(in.time[0], T(in.command[0]) + null_, spring(), p_.data(), rated_));
     for (int lane = 0; lane < lanes; ++lane)
       for (int c = 0; c < n_simulated; ++c) {

@@ -13,6 +13,15 @@ namespace servodx {
 // The shipped table's nominal values as a candidate, data sheet applied.
 inline ParameterVector nominal_candidate() { return candidate_of(shipped_table()); }
 
+// One in which a blocked screen, backlash and breakaway friction act, which a healthy valve has at zero.
+inline ParameterVector lively() {
+  ParameterVector v = nominal_candidate();
+  v[row::filter_blockage_positive] = 0.6, v[row::filter_blockage_negative] = 0.3;
+  v[row::valve_glitch] = 1e-5;
+  v[row::piston_stribeck_friction] = 300;
+  return v;
+}
+
 // The right-hand side and its Jacobian for one candidate. `Effects` must be the whole list or none: the candidate's
 // layout is that of the whole list.
 template <class Effects>

@@ -94,14 +94,6 @@ void jacobian_equals_differences(const ParameterVector& v) {
     for (int j = 0; j < n; ++j) EXPECT_TRUE(seen[i * n + j] || !holds(Live::pattern.row[i], j)) << i << ' ' << j;
 }
 
-ParameterVector lively() {
-  ParameterVector v = nominal_candidate();
-  v[row::filter_blockage_positive] = 0.6, v[row::filter_blockage_negative] = 0.3;
-  v[row::valve_glitch] = 1e-5;
-  v[row::piston_stribeck_friction] = 300;
-  return v;
-}
-
 TEST(Derivatives, JacobianEqualsDifferences) { jacobian_equals_differences<NoEffects>(lively()); }
 TEST(Derivatives, JacobianWithEveryEffectEqualsDifferences) {
   jacobian_equals_differences<AllEffects>(with_effects(lively()));

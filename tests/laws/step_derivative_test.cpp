@@ -14,13 +14,6 @@
 namespace servodx {
 namespace {
 
-ParameterVector lively() {
-  ParameterVector v = nominal_candidate();
-  v[row::filter_blockage_positive] = 0.3, v[row::filter_blockage_negative] = 0.1;
-  v[row::valve_glitch] = 5e-6;
-  v[row::piston_stribeck_friction] = 200;
-  return v;
-}
 ParameterVector with_named_effects(ParameterVector v) {
   const ParameterVector off = v;
   v = with_effects(v);
@@ -233,6 +226,7 @@ TEST(StepDerivative, AFewOnAStandWithACurveAndInCompanyRunByThemselves) {
 }
 
 TEST(StepDerivative, ARunThatFailsTakesItsFollowersWithIt) {
+  if (instruction_set() == "generic") GTEST_SKIP() << "no packs of floats here: followers are runs of their own";
   const Scenario s = lively_log();
   const ParameterVector sane = lively();
   ParameterVector broken = sane;
@@ -250,9 +244,7 @@ TEST(StepDerivative, ARunThatFailsTakesItsFollowersWithIt) {
   simulate_near(std::span(&of_log, 1), {});
   for (const Trajectory& one : t) {
     EXPECT_FALSE(one.ok);
-    if (instruction_set() != "generic") {
-      EXPECT_LE(one.failed_at, alone.failed_at);
-    }
+    EXPECT_LE(one.failed_at, alone.failed_at);
   }
 }
 
