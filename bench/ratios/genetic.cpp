@@ -1,4 +1,4 @@
-// The global search with its local stage on a log of 10 s, children ranked in floats and in doubles, and what a second
+// The global search with its local stage on a log of 10 s, children ranked by rough runs and by those of fits, and what a second
 // thread gives it.
 #include "optimise/genetic.h"
 
@@ -105,7 +105,7 @@ void genetic_rows(Report& report, const Choice& choice) {
   report.add({"genetic search 50 x 100 and local stage, 10 s log, one core", "15 s", "6 s",
               fmt::format("{:.1f} s", seconds),
               fmt::format("{} of {} draws arrive, {} from the first start of {}; {:.1f} s of it local, {:.0f} "
-                          "simulations; all in doubles {:.1f} s, {} arrive",
+                          "simulations; all as fits run {:.1f} s, {} arrive",
                           floats.arrived(most_starts), floats.all.size(), floats.arrived(1), most_starts,
                           floats.median(&Search::local), floats.median(&Search::simulations),
                           doubles.median(&Search::seconds), doubles.arrived(most_starts))});
@@ -128,7 +128,7 @@ void genetic_rows(Report& report, const Choice& choice) {
   const double gain = t[0].median / t[1].median, in_doubles_gain = t[3].median / t[4].median;
   const double machine = 2 * t[0].median / t[2].median, machine_in_doubles = 2 * t[3].median / t[5].median;
   report.add({"two threads against one, on the search", "1.8x", "1.95x", fmt::format("{:.2f}x", gain),
-              fmt::format("two searches side by side gain {:.2f}x; all in doubles {:.2f}x, side by side {:.2f}x",
+              fmt::format("two searches side by side gain {:.2f}x; all as fits run {:.2f}x, side by side {:.2f}x",
                           machine, in_doubles_gain, machine_in_doubles)});
   report.json["ga_two_thread_speedup"] = gain;
   report.json["ga_two_thread_speedup_in_doubles"] = in_doubles_gain;

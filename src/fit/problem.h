@@ -58,7 +58,7 @@ class FitProblem {
   std::vector<Evaluation> evaluate(std::span<const Point> points) const;
   // 0.5 * sum of the squared residuals as `loss` changes them (robust_loss.h); infinite where a run fails. Keeps no
   // residuals, and from the second call on asks for no memory but its result's, unless a channel has a moving average
-  // or a notch. `ranking`: fast and in floats, to compare points (SimulateOptions::ranking).
+  // or a notch. `ranking`: fast and rough, to compare points (SimulateOptions::ranking).
   std::vector<double> costs(std::span<const Point> points, RobustLoss loss, double scale, bool ranking = false) const;
   bool jacobian(const Point& x, const Eigen::VectorXd& residual, Eigen::MatrixXd& j) const;
   LeastSquaresProblem least_squares() const;

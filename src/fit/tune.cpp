@@ -223,7 +223,7 @@ std::vector<Point> breadth(Tuning& run, const Point& start) {
   hooks.screen = [&](std::span<const Point> points) { return costs(points, true); };
   hooks.generation = [&](const GeneticState& s) {
     if (!run.options.checkpoint.empty()) write_file(run.options.checkpoint, to_json(s));
-    // Children are ranked in floats; what is shown is counted in full.
+    // Children are ranked by rough runs; what is shown is counted in full.
     constexpr int shown_every = 10;
     if (!s.best.point.empty() && (s.generation % shown_every == 0 || s.generation == o.generations))
       run.convergence.push_back(

@@ -42,24 +42,29 @@ std::string in_quotes(const std::vector<std::string>& names) {
 // Smallest step between neighbours, and between the sorted values of an even sample of the record.
 double resolution(const std::vector<double>& x) {
   constexpr std::size_t sampled = 4096;
-  double largest = 0.0;
-#pragma omp simd reduction(max : largest)
-  for (std::size_t i = 0; i < x.size(); ++i)
-    largest = std::abs(x[i]) > largest ? std::abs(x[i]) : largest;  // NaN never replaces a number
-  const double rounding = 1e-12 * largest, infinity = std::numeric_limits<double>::infinity();
-  double smallest = infinity;
-  const auto step = [&](double a, double b) {
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  const auto step = [](double a, double b, double rounding) {
     const double d = std::abs(b - a);
-    return d > rounding ? d : infinity;
+    return d > rounding ? d : infinity;  // NaN is no step
   };
+  double largest = x.empty() || std::isnan(x[0]) ? 0.0 : std::abs(x[0]), smallest = infinity;
+#pragma omp simd reduction(max : largest) reduction(min : smallest)
+  for (std::size_t i = 1; i < x.size(); ++i) {
+    largest = std::abs(x[i]) > largest ? std::abs(x[i]) : largest;  // NaN never replaces a number
+    smallest = std::min(smallest, step(x[i - 1], x[i], 0.0));
+  }
+  const double rounding = 1e-12 * largest;
+  if (smallest <= rounding) {
+    smallest = infinity;
 #pragma omp simd reduction(min : smallest)
-  for (std::size_t i = 1; i < x.size(); ++i) smallest = std::min(smallest, step(x[i - 1], x[i]));
+    for (std::size_t i = 1; i < x.size(); ++i) smallest = std::min(smallest, step(x[i - 1], x[i], rounding));
+  }
   std::vector<double> some;
   const std::size_t stride = x.size() / sampled + 1;
   for (std::size_t i = 0; i < x.size(); i += stride)
     if (!std::isnan(x[i])) some.push_back(x[i]);
   std::sort(some.begin(), some.end());
-  for (std::size_t i = 1; i < some.size(); ++i) smallest = std::min(smallest, step(some[i - 1], some[i]));
+  for (std::size_t i = 1; i < some.size(); ++i) smallest = std::min(smallest, step(some[i - 1], some[i], rounding));
   return std::isfinite(smallest) ? smallest : 0.0;
 }
 

@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <iterator>
+#include <span>
 
 namespace servodx {
 namespace {
@@ -31,9 +32,28 @@ struct Run {
   std::size_t begin = 0, size = 0;
 };
 
+struct Extremes {
+  double low = INFINITY, high = -INFINITY;
+};
+
+// Missing samples have no part in it.
+Extremes extremes(std::span<const double> x) {
+  double low = INFINITY, high = -INFINITY;
+#pragma omp simd reduction(min : low) reduction(max : high)
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    low = x[i] < low ? x[i] : low;
+    high = x[i] > high ? x[i] : high;
+  }
+  return {low, high};
+}
+
 class Watch {
  public:
-  Watch(const Log& log, const RigFile& rig) : log_(log), rig_(rig) {}
+  Watch(const Log& log, const RigFile& rig)
+      : log_(log),
+        rig_(rig),
+        drive_(log.has(Signal::coil_current) ? log[Signal::coil_current] : log[Signal::command]),
+        drive_range_(extremes(drive_)) {}
 
   // Of the log as a whole.
   std::vector<std::string> notes() {
@@ -75,15 +95,6 @@ class Watch {
         fmt::format("{}: '{}': {}", log_.path, signal.name, fmt::format(text, std::forward<Args>(args)...)));
   }
 
-  static std::pair<double, double> extremes(const std::vector<double>& x, std::size_t begin, std::size_t end) {
-    double low = INFINITY, high = -INFINITY;
-    for (std::size_t i = begin; i < end; ++i) {
-      if (x[i] < low) low = x[i];
-      if (x[i] > high) high = x[i];
-    }
-    return {low, high};
-  }
-
   void gaps() {
     const auto& t = log_.time;
     if (t.size() < 3) return;
@@ -103,18 +114,12 @@ class Watch {
                                    count, count == 1 ? "" : "s", longest, usual));
   }
 
-  const std::vector<double>& drive() const {
-    return log_.has(Signal::coil_current) ? log_[Signal::coil_current] : log_[Signal::command];
-  }
-
   void excitation() {
-    const auto& x = drive();
-    if (x.empty()) return;
-    const auto [low, high] = extremes(x, 0, x.size());
+    if (drive_.empty()) return;
     const double limit = no_excitation * rig_.fact("valve.rated_current").value_or(0.0);
-    if (high - low <= limit)
+    if (drive_range_.high - drive_range_.low <= limit)
       note(info(log_.has(Signal::coil_current) ? Signal::coil_current : Signal::command),
-           "no excitation: it stays at {:.4g} A", low);
+           "no excitation: it stays at {:.4g} A", drive_range_.low);
   }
 
   // Outside these limits a wrong unit, gain or offset is likelier than the value.
@@ -150,6 +155,8 @@ class Watch {
     if (signal.signal == Signal::piston_position) symmetric("actuator.stroke", 0.55);
     if (std::isinf(high)) return;
     const auto& x = log_[signal.signal];
+    const Extremes found = extremes(x);
+    if (!(found.low < low || found.high > high)) return;
     std::size_t count = 0;
     double worst = 0.0;
     for (double v : x) {
@@ -157,17 +164,19 @@ class Watch {
       ++count;
       if (std::abs(v) > std::abs(worst)) worst = v;
     }
-    if (count > 0)
-      note(signal, "{} samples are hardly possible (up to {:.4g} {}): check unit, gain and offset", count, worst,
-           signal.si_unit);
+    note(signal, "{} samples are hardly possible (up to {:.4g} {}): check unit, gain and offset", count, worst,
+         signal.si_unit);
   }
 
   void frozen(const SignalInfo& signal) {
-    const auto& x = log_[signal.signal];
-    const auto& u = drive();
-    if (u.empty()) return;
-    const auto [u_low, u_high] = extremes(u, 0, u.size());
-    if (!(u_high > u_low)) return;
+    const std::span<const double> x = log_[signal.signal];
+    if (!(drive_range_.high > drive_range_.low)) return;
+    const std::size_t least =
+        std::max(frozen_least, static_cast<std::size_t>(frozen_part * static_cast<double>(x.size())));
+    std::size_t repeats = 0;  // no run is longer than all of them and one
+#pragma omp simd reduction(+ : repeats)
+    for (std::size_t i = 1; i < x.size(); ++i) repeats += x[i] == x[i - 1];
+    if (repeats + 1 < std::min(least, x.size())) return;
     Run longest;
     std::size_t runs = 0;
     for (std::size_t i = 0; i < x.size();) {
@@ -181,12 +190,10 @@ class Watch {
       note(signal, "never changes: frozen sensor?");
       return;
     }
-    const std::size_t least =
-        std::max(frozen_least, static_cast<std::size_t>(frozen_part * static_cast<double>(x.size())));
     if (longest.size < least || runs < 2) return;
     const double usual = static_cast<double>(x.size() - longest.size) / static_cast<double>(runs - 1);
-    const auto [low, high] = extremes(u, longest.begin, longest.begin + longest.size);
-    if (usual < frozen_usual_run && high - low > frozen_drive * (u_high - u_low))
+    const auto [low, high] = extremes(std::span(drive_).subspan(longest.begin, longest.size));
+    if (usual < frozen_usual_run && high - low > frozen_drive * (drive_range_.high - drive_range_.low))
       note(signal, "frozen sensor? It does not change for {:.4g} s from {:.4g} s on",
            log_.time[longest.begin + longest.size - 1] - log_.time[longest.begin], log_.time[longest.begin]);
   }
@@ -205,18 +212,23 @@ class Watch {
     const double high = quantile(some, 0.99);
     const double range = high - quantile(some, 0.01);
     const double limit = std::max(spike_over_range * range, spike_over_noise * step);
-    std::size_t count = 0, first = 0;
-    for (std::size_t i = 1; i + 1 < x.size(); ++i) {
+    const auto is_spike = [&](std::size_t i) {
       const double before = x[i] - x[i - 1], after = x[i] - x[i + 1];
-      if (std::abs(before) > limit && std::abs(after) > limit && before * after > 0.0 && ++count == 1) first = i;
-    }
-    if (count > 0)
-      note(signal, "{} spike{} of a single sample, the first at {:.4g} s", count, count == 1 ? "" : "s",
-           log_.time[first]);
+      return (std::abs(before) > limit) & (std::abs(after) > limit) & (before * after > 0.0);
+    };
+    std::size_t count = 0, first = 1;
+#pragma omp simd reduction(+ : count)
+    for (std::size_t i = 1; i < x.size() - 1; ++i) count += is_spike(i);
+    if (count == 0) return;
+    while (!is_spike(first)) ++first;
+    note(signal, "{} spike{} of a single sample, the first at {:.4g} s", count, count == 1 ? "" : "s",
+         log_.time[first]);
   }
 
   const Log& log_;
   const RigFile& rig_;
+  const std::vector<double>& drive_;
+  const Extremes drive_range_;
   std::vector<std::string> notes_;
 };
 
@@ -224,9 +236,10 @@ class Watch {
 
 std::vector<std::string> implausible_values(const Log& log, const RigFile& rig) {
   std::array<std::vector<std::string>, n_signals> found;
+  const Watch watch(log, rig);
 #pragma omp parallel for schedule(dynamic, 1)
-  for (int s = 0; s < n_signals; ++s) found[s] = Watch(log, rig).notes(signal_list[s]);
-  std::vector<std::string> notes = Watch(log, rig).notes();
+  for (int s = 0; s < n_signals; ++s) found[s] = Watch(watch).notes(signal_list[s]);
+  std::vector<std::string> notes = Watch(watch).notes();
   for (auto& each : found) std::move(each.begin(), each.end(), std::back_inserter(notes));
   return notes;
 }

@@ -337,8 +337,9 @@ class Run {
     const double move = std::abs(in_.command[k_ + 1] - in_.command[k_]);
     if (move > jump * in_.rated_current) impact_until_ = in_.time[k_ + 1] + impact_time;
     if (move > creep * in_.rated_current * dt) lively_until_ = in_.time[k_ + 1] + settle_time;
-    const double usual = on_stand_ && in_.time[k_] >= lively_until_ ? options_.creep_step : options_.step;
-    return steps_of(dt, in_.time[k_] < impact_until_ ? std::min(options_.step, options_.impact_step) : usual);
+    const double lively = options_.ranking ? options_.ranking_step : options_.step;
+    const double usual = on_stand_ && in_.time[k_] >= lively_until_ ? options_.creep_step : lively;
+    return steps_of(dt, in_.time[k_] < impact_until_ ? std::min(lively, options_.impact_step) : usual);
   }
 
   template <class Watch>

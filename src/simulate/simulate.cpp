@@ -92,7 +92,7 @@ struct Request {
 // Whether the runs of one come out as the other's: all but the threads.
 bool same_runs(const SimulateOptions& a, const SimulateOptions& b) {
   const auto what = [](const SimulateOptions& o) {
-    return std::tie(o.step, o.impact_step, o.creep_step, o.wanted, o.ranking);
+    return std::tie(o.step, o.impact_step, o.creep_step, o.wanted, o.ranking, o.ranking_step);
   };
   return what(a) == what(b);
 }
