@@ -32,7 +32,7 @@ GeneticResult breed(const Twin& twin, int seed, int generations, bool screened) 
   o.archive_distance = 0.2;  // half of what random points are apart: starts in other valleys than the best one's
   const BatchCost cost = [&](std::span<const Point> points) { return twin.costs(points, false); };
   GeneticHooks hooks;
-  if (screened) hooks.screen = [&](std::span<const Point> points) { return twin.costs(points, true); };
+  if (screened) hooks.screen = [&](std::span<const Point> points, auto) { return twin.costs(points, true); };
   return minimise_genetic(parameters, cost, o, {}, hooks);
 }
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 namespace servodx {
 namespace {
@@ -13,6 +14,7 @@ struct Workspace {
   std::vector<ParameterVector> candidates;
   std::vector<Trajectory> runs;
   std::vector<Job> jobs;
+  std::vector<std::size_t> which;  // of the points
 
   void hold(std::size_t n) {
     if (runs.size() < n) candidates.resize(n), runs.resize(n);
@@ -139,14 +141,15 @@ std::vector<Trajectory> FitProblem::trajectories(const Point& x) const {
   return t;
 }
 
-// All logs at all points, a log's points side by side; valid until this thread's next runs.
-std::span<const Trajectory> FitProblem::run_all(std::span<const Point> points, bool ranking) const {
-  const std::size_t n_logs = logs_.size(), n_points = points.size(), n = n_logs * n_points;
+// Logs [first, last) at some of the points, a log's points side by side; valid until this thread's next runs.
+std::span<const Trajectory> FitProblem::run(std::span<const Point> points, std::span<const std::size_t> which,
+                                            std::size_t first, std::size_t last, bool ranking) const {
+  const std::size_t n = (last - first) * which.size();
   Workspace& w = workspace();
   w.hold(n);
-  for (std::size_t l = 0; l < n_logs; ++l)
-    for (std::size_t k = 0; k < n_points; ++k) {
-      const std::size_t i = l * n_points + k;
+  for (std::size_t l = first; l < last; ++l)
+    for (const std::size_t k : which) {
+      const std::size_t i = w.jobs.size();
       candidate(points[k], static_cast<int>(l), w.candidates[i]);
       w.jobs.push_back({&logs_[l]->scenario, &w.candidates[i], &w.runs[i]});
     }
@@ -154,24 +157,20 @@ std::span<const Trajectory> FitProblem::run_all(std::span<const Point> points, b
   options.ranking = ranking;
   simulate(w.jobs, options);
   simulations_ += static_cast<long>(n);
-  for (std::size_t k = 0; k < n_points; ++k) failed_ += !all_ran({w.runs.data(), n}, n_points, k);
   return {w.runs.data(), n};
 }
 
-bool FitProblem::all_ran(std::span<const Trajectory> runs, std::size_t points, std::size_t k) const {
-  for (std::size_t i = k; i < runs.size(); i += points)
-    if (!runs[i].ok) return false;
-  return true;
-}
-
 std::vector<Evaluation> FitProblem::evaluate(std::span<const Point> points) const {
-  const auto runs = run_all(points, false);
   const auto n_points = static_cast<long>(points.size());
+  std::vector<std::size_t>& which = workspace().which;
+  which.resize(points.size());
+  std::iota(which.begin(), which.end(), 0);
+  const auto runs = run(points, which, 0, logs_.size(), false);
   std::vector<Evaluation> out(points.size());
 #pragma omp parallel for schedule(dynamic, 1) num_threads(threads())
   for (long i = 0; i < n_points; ++i) {
     const auto k = static_cast<std::size_t>(i);
-    out[k].ok = all_ran(runs, points.size(), k);
+    for (std::size_t l = 0; l < logs_.size(); ++l) out[k].ok = out[k].ok && runs[l * points.size() + k].ok;
     if (!out[k].ok) continue;
     out[k].residual.setZero(total_rows_);
     for (std::size_t l = 0; l < logs_.size(); ++l)
@@ -180,29 +179,49 @@ std::vector<Evaluation> FitProblem::evaluate(std::span<const Point> points) cons
     for (std::size_t j = 0; j < free_.size(); ++j)
       if (std::isfinite(free_[j].prior_sd)) out[k].residual[at++] = prior_residual(j, points[k][j]);
   }
+  for (const Evaluation& e : out) failed_ += !e.ok;
   return out;
 }
 
-std::vector<double> FitProblem::costs(std::span<const Point> points, RobustLoss loss, double scale,
-                                      bool ranking) const {
-  const auto runs = run_all(points, ranking);
-  const auto n_points = static_cast<long>(points.size());
-  std::vector<double> out(points.size(), std::numeric_limits<double>::infinity());
+std::vector<double> FitProblem::costs(std::span<const Point> points, RobustLoss loss, double scale, bool ranking,
+                                      std::span<const double> bounds) const {
+  constexpr double failed = std::numeric_limits<double>::infinity();
+  // With bounds, logs by so many runs at a time, the same on every machine: a pack of floats for each of eight threads.
+  constexpr std::size_t runs_at_once = 128;
+  std::vector<double> out(points.size(), 0.0);  // until the end twice the cost
+  std::vector<std::size_t>& left = workspace().which;
+  left.resize(points.size());
+  std::iota(left.begin(), left.end(), 0);
+  for (std::size_t first = 0, last; first < logs_.size() && !left.empty(); first = last) {
+    last = logs_.size();
+    if (!bounds.empty()) last = std::min(last, first + (runs_at_once + left.size() - 1) / left.size());
+    const auto runs = run(points, left, first, last, ranking);
+    const auto n_left = static_cast<long>(left.size());
 #pragma omp parallel for schedule(dynamic, 1) num_threads(threads())
-  for (long i = 0; i < n_points; ++i) {
-    const auto k = static_cast<std::size_t>(i);
-    if (!all_ran(runs, points.size(), k)) continue;
-    double sum = 0;
-    const auto count = [&](double e) { sum += robust_square(loss, scale, e); };
-    std::vector<double>& r = residual_space();
-    for (std::size_t l = 0; l < logs_.size(); ++l)
-      for (std::size_t c = 0; c < logs_[l]->channels.size(); ++c) {
-        whitened(static_cast<int>(l), static_cast<int>(c), runs[l * points.size() + k], r);
-        for (const double e : r) count(e);
+    for (long i = 0; i < n_left; ++i) {
+      const std::size_t k = left[static_cast<std::size_t>(i)];
+      double sum = out[k];
+      std::vector<double>& r = residual_space();
+      for (std::size_t l = first; l < last; ++l) {
+        const Trajectory& t = runs[(l - first) * left.size() + static_cast<std::size_t>(i)];
+        if (!t.ok) sum = failed;
+        for (std::size_t c = 0; c < logs_[l]->channels.size() && t.ok; ++c) {
+          whitened(static_cast<int>(l), static_cast<int>(c), t, r);
+          for (const double e : r) sum += robust_square(loss, scale, e);
+        }
       }
+      out[k] = sum;
+    }
+    // Squares only add up, so what is above its bound stays there.
+    std::erase_if(left, [&](std::size_t k) {
+      failed_ += out[k] == failed;
+      return out[k] == failed || (!bounds.empty() && 0.5 * out[k] > bounds[k]);
+    });
+  }
+  for (std::size_t k = 0; k < points.size(); ++k) {
     for (std::size_t j = 0; j < free_.size(); ++j)
-      if (std::isfinite(free_[j].prior_sd)) count(prior_residual(j, points[k][j]));
-    out[k] = 0.5 * sum;
+      if (std::isfinite(free_[j].prior_sd)) out[k] += robust_square(loss, scale, prior_residual(j, points[k][j]));
+    out[k] *= 0.5;
   }
   return out;
 }

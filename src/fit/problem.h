@@ -58,8 +58,10 @@ class FitProblem {
   std::vector<Evaluation> evaluate(std::span<const Point> points) const;
   // 0.5 * sum of the squared residuals as `loss` changes them (robust_loss.h); infinite where a run fails. Keeps no
   // residuals, and from the second call on asks for no memory but its result's, unless a channel has a moving average
-  // or a notch. `ranking`: fast and rough, to compare points (SimulateOptions::ranking).
-  std::vector<double> costs(std::span<const Point> points, RobustLoss loss, double scale, bool ranking = false) const;
+  // or a notch. `ranking`: fast and rough, to compare points (SimulateOptions::ranking). `bounds`, one a point or none:
+  // some logs are run at a time, and a point that they put above its bound is left at that.
+  std::vector<double> costs(std::span<const Point> points, RobustLoss loss, double scale, bool ranking = false,
+                            std::span<const double> bounds = {}) const;
   bool jacobian(const Point& x, const Eigen::VectorXd& residual, Eigen::MatrixXd& j) const;
   LeastSquaresProblem least_squares() const;
 
@@ -76,8 +78,8 @@ class FitProblem {
 
  private:
   void candidate(const Point& x, int log, ParameterVector& v) const;
-  std::span<const Trajectory> run_all(std::span<const Point> points, bool ranking) const;
-  bool all_ran(std::span<const Trajectory> runs, std::size_t points, std::size_t k) const;
+  std::span<const Trajectory> run(std::span<const Point> points, std::span<const std::size_t> which, std::size_t first,
+                                  std::size_t last, bool ranking) const;
   // Of one run, of a channel: raw, and whitened.
   void residual(int log, int channel, const Trajectory& t, std::vector<double>& r) const;
   void whitened(int log, int channel, const Trajectory& t, std::vector<double>& r) const;

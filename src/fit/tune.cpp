@@ -193,11 +193,11 @@ std::vector<Point> breadth(Tuning& run, const Point& start) {
     return x;
   };
   std::vector<Point> whole;  // kept: a generation asks for no memory
-  const auto costs = [&](std::span<const Point> points, bool ranking) {
+  const auto costs = [&](std::span<const Point> points, bool ranking, std::span<const double> bounds) {
     if (whole.size() < points.size()) whole.resize(points.size(), start);
     for (std::size_t k = 0; k < points.size(); ++k) std::copy(points[k].begin(), points[k].end(), whole[k].begin());
     // Compressed residuals: one channel far off must not hide the rest.
-    return problem.costs(std::span(whole).first(points.size()), RobustLoss::compressed, 3.0, ranking);
+    return problem.costs(std::span(whole).first(points.size()), RobustLoss::compressed, 3.0, ranking, bounds);
   };
   // Failure mode identifiers of a fault-free valve: as the table says; a slow first stage; much friction; worn edges.
   const Point nominal(start.begin(), start.begin() + static_cast<long>(n));
@@ -218,9 +218,11 @@ std::vector<Point> breadth(Tuning& run, const Point& start) {
   o.generations = run.options.generations;
   o.seed = run.options.seed;
   o.archive = 3;
-  const BatchCost cost = [&](std::span<const Point> points) { return costs(points, false); };
+  const BatchCost cost = [&](std::span<const Point> points) { return costs(points, false, {}); };
   GeneticHooks hooks;
-  hooks.screen = [&](std::span<const Point> points) { return costs(points, true); };
+  hooks.screen = [&](std::span<const Point> points, std::span<const double> bounds) {
+    return costs(points, true, bounds);
+  };
   hooks.generation = [&](const GeneticState& s) {
     if (!run.options.checkpoint.empty()) write_file(run.options.checkpoint, to_json(s));
     // Children are ranked by rough runs; what is shown is counted in full.

@@ -95,17 +95,20 @@ class Genetic {
       state_.best = {{}, kWorst};
       std::vector<Point> points;
       for (const Individual& one : screened) points.push_back(one.point);
-      const std::vector<double> costs = evaluate(cost_, points);
+      const std::vector<double> costs = evaluate(points);
       for (std::size_t k = 0; k < costs.size(); ++k) remember({points[k], costs[k]});
     }
     return {std::move(state_), reason};
   }
 
-  std::vector<double> rank() { return evaluate(hooks_.screen ? hooks_.screen : cost_, wave_points()); }
-  std::vector<double> evaluate(const BatchCost& cost_of, std::span<const Point> points) {
-    std::vector<double> costs = cost_of(points);
-    if (costs.size() != points.size()) throw std::logic_error("BatchCost returned another number of costs");
-    state_.evaluations += static_cast<long>(points.size());
+  std::vector<double> rank() {
+    return hooks_.screen ? checked(hooks_.screen(wave_points(), std::span(bounds_).first(asked_)), asked_)
+                         : evaluate(wave_points());
+  }
+  std::vector<double> evaluate(std::span<const Point> points) { return checked(cost_(points), points.size()); }
+  std::vector<double> checked(std::vector<double> costs, std::size_t points) {
+    if (costs.size() != points) throw std::logic_error("a batch's cost returned another number of costs");
+    state_.evaluations += static_cast<long>(points);
     for (double& cost : costs) {
       if (std::isfinite(cost) && cost < options_.failure_cost) continue;
       ++state_.failed;
@@ -120,9 +123,10 @@ class Genetic {
     state_.archive.reserve(static_cast<std::size_t>(options_.archive));
     spare_.reserve(static_cast<std::size_t>(options_.archive));
   }
-  Point& next_point() {
-    if (asked_ == points_.size()) points_.emplace_back();
+  Point& next_point(double bound = std::numeric_limits<double>::infinity()) {
+    if (asked_ == points_.size()) points_.emplace_back(), bounds_.emplace_back();
     points_[asked_].resize(static_cast<std::size_t>(state_.n));
+    bounds_[asked_] = bound;
     return points_[asked_++];
   }
   std::span<Point> wave_points() { return std::span(points_).first(asked_); }
@@ -276,7 +280,7 @@ class Genetic {
       brood.look_at(island, options_.tournament);
       for (int slot = s.first; slot < s.first + s.count; ++slot) {
         Random random(state_.seed, s.generation, static_cast<std::uint32_t>(first_slot(s.island) + slot), kChild);
-        children_.push_back(make_child(brood, slot, random, next_point()));
+        children_.push_back(make_child(brood, slot, random, next_point(island.population[slot].cost)));
       }
     }
     const std::vector<double> costs = rank();
@@ -414,6 +418,7 @@ class Genetic {
 
   // Kept from wave to wave for their memory only.
   std::vector<Point> points_;  // the first `asked_` are the wave's
+  std::vector<double> bounds_;
   std::size_t asked_ = 0;
   std::vector<Child> children_;
   std::vector<Stretch> stretches_;

@@ -56,8 +56,9 @@ struct GeneticHooks {
   std::function<std::vector<Individual>(const GeneticState&)> refine;
   int refine_every = 10;
   // A cheaper cost that ranks almost as the cost does: all comparisons are by it, and what is returned as best and in
-  // the archive is ranked anew by the cost itself. While the search runs, its state holds costs of the screen.
-  BatchCost screen;
+  // the archive is ranked anew by the cost itself. While the search runs, its state holds costs of the screen. A child's
+  // bound is the cost of the parent whose slot it asks for; a point that asks for nobody's has none (infinity).
+  BoundedCost screen;
 };
 
 struct GeneticResult {

@@ -119,6 +119,43 @@ TEST(FitProblem, CostsAreHalfTheSquaredResidualsAsTheLossChangesThem) {
   }
 }
 
+// The others come out to the last bit, and what is run does not depend on threads.
+TEST(FitProblem, APointAboveItsBoundIsLeftAtThat) {
+  const TwoLogs logs;
+  constexpr std::size_t n = 128;
+  Random random(5, 0, 0, 0);
+  std::vector<Point> points(n, FitProblem({&logs.a, &logs.b}, logs.truth, logs.free()).start());
+  for (Point& x : points)
+    for (double& v : x) v = 0.9 * v + 0.1 * random.uniform();
+  for (const bool ranking : {false, true}) {
+    const std::vector<double> whole =
+        FitProblem({&logs.a, &logs.b}, logs.truth, logs.free()).costs(points, RobustLoss::compressed, 3.0, ranking);
+    const std::vector<double> of_first =
+        FitProblem({&logs.a}, logs.truth, logs.free()).costs(points, RobustLoss::compressed, 3.0, ranking);
+    // Lost after the first log, lost after the second, at the bound, far from it, unbounded.
+    std::vector<double> bounds(n);
+    long lost_early = 0;
+    for (std::size_t k = 0; k < n; ++k) {
+      const double choices[] = {0.5 * of_first[k], std::nextafter(whole[k], 0.0), whole[k], 2 * whole[k],
+                                std::numeric_limits<double>::infinity()};
+      bounds[k] = choices[k % 5];
+      lost_early += of_first[k] > bounds[k];
+    }
+    ASSERT_GT(lost_early, 20);
+    for (const int threads : {1, 2, 3}) {
+      FitProblem problem({&logs.a, &logs.b}, logs.truth, logs.free(), {.threads = threads});
+      const std::vector<double> costs = problem.costs(points, RobustLoss::compressed, 3.0, ranking, bounds);
+      EXPECT_EQ(problem.simulations(), 2 * static_cast<long>(n) - lost_early);
+      for (std::size_t k = 0; k < n; ++k) {
+        if (whole[k] > bounds[k])
+          EXPECT_GT(costs[k], bounds[k]) << k;
+        else
+          EXPECT_EQ(costs[k], whole[k]) << k;
+      }
+    }
+  }
+}
+
 TEST(FitProblem, AGenerationsCostsAskForNoMemoryButTheirOwn) {
   const TwoLogs logs;
   FitProblem problem({&logs.a, &logs.b}, logs.truth, logs.free(), {.threads = 1});
@@ -144,8 +181,11 @@ TEST(FitProblem, AGenerationOfTheSearchAsksForNoMemoryButItsCosts) {
   o.stagnation_gain = 0.3;
   o.migrate_every = 2;
   GeneticHooks hooks;
-  hooks.screen = [&](std::span<const Point> points) {
-    return problem.costs(points, RobustLoss::compressed, 3.0, true);
+  hooks.screen = [&](std::span<const Point> points, std::span<const double> bounds) {
+    return problem.costs(points, RobustLoss::compressed, 3.0, true, bounds);
+  };
+  const BatchCost cost = [&](std::span<const Point> points) {
+    return problem.costs(points, RobustLoss::compressed, 3.0);
   };
   std::vector<std::size_t> asked;
   asked.reserve(100);
@@ -153,7 +193,7 @@ TEST(FitProblem, AGenerationOfTheSearchAsksForNoMemoryButItsCosts) {
     asked.push_back(bytes_asked_for);
     return true;
   };
-  const GeneticState end = minimise_genetic(problem.n(), hooks.screen, o, seeds, hooks).state;
+  const GeneticState end = minimise_genetic(problem.n(), cost, o, seeds, hooks).state;
   EXPECT_GT(end.restarts, 0);
   // Eigen takes a vector to turn the axes of each island that has children.
   const std::size_t costs = 64 * sizeof(double), eigen = sees_eigen ? seeds.size() * n * sizeof(double) : 0;

@@ -236,7 +236,7 @@ TEST(Genetic, ScreenedSearchReportsTrueCostsOnly) {
     return truth(points);
   };
   GeneticHooks hooks;
-  hooks.screen = [&](std::span<const Point> points) {
+  hooks.screen = [&](std::span<const Point> points, auto) {
     screened += static_cast<long>(points.size());
     std::vector<double> costs = truth(points);
     for (double& c : costs) c *= 1 + 1e-3 * std::sin(1e3 * c);
@@ -265,6 +265,46 @@ TEST(Genetic, ScreenedSearchReportsTrueCostsOnly) {
                          minimise_genetic(n, truth, options).state.best.cost);
   std::printf("screened over plain, mean of ten: 10^%.2f\n", digits / 10);
   EXPECT_LT(digits / 10, 1.0);
+}
+
+// What comes back for a child that has lost to its parent is no cost of it, only a number above the parent's: the search
+// takes the same path to the last bit, through restarts, migration and slots with two children in a wave.
+TEST(Genetic, ALosingChildMayBeLeftUncountedAndNothingChanges) {
+  constexpr int n = 6;
+  for (const Function& function : {rastrigin(n), rosenbrock(n)}) {
+    const BatchCost cost = cost_of(function);
+    GeneticOptions options;
+    options.generations = 150;
+    options.stagnation = 4;
+    options.stagnation_gain = 0.1;
+    options.migrate_every = 7;
+    const std::vector<std::vector<Point>> seeds = {{Point(n, 0.3)}, {}, {Point(n, 0.8)}};
+    const auto end = [&](auto&& left_at) {
+      GeneticHooks hooks;
+      hooks.screen = [&](std::span<const Point> points, std::span<const double> bounds) {
+        std::vector<double> costs = cost(points);
+        EXPECT_EQ(bounds.size(), points.size());
+        for (std::size_t k = 0; k < costs.size(); ++k) left_at(costs[k], bounds[k]);
+        return costs;
+      };
+      const GeneticState state = minimise_genetic(n, cost, options, seeds, hooks).state;
+      EXPECT_GT(state.restarts, 0) << function.name;
+      return to_json(state);
+    };
+    const std::string whole = end([](double, double) {});
+    long left = 0;
+    const auto leave = [&](auto&& at) {
+      return end([&](double& c, double bound) {
+        if (!(c > bound)) return;
+        ++left;
+        c = at(bound);
+      });
+    };
+    EXPECT_EQ(leave([](double bound) { return std::nextafter(bound, 1e300); }), whole) << function.name;
+    EXPECT_EQ(leave([](double) { return 1e29; }), whole) << function.name;
+    EXPECT_GT(left, 2 * 0.3 * 50 * 150) << function.name;
+    EXPECT_NE(leave([](double bound) { return bound; }), whole) << function.name;  // a tie is the child's
+  }
 }
 
 TEST(Genetic, WavesAreWholeBatchesAndServeEverySlotOnceAGeneration) {
