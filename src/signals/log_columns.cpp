@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -40,31 +41,27 @@ std::string in_quotes(const std::vector<std::string>& names) {
 }
 
 // Smallest step between neighbours, and between the sorted values of an even sample of the record.
-double resolution(const std::vector<double>& x) {
+double resolution(const std::vector<double>& x, const Sweep& sweep) {
   constexpr std::size_t sampled = 4096;
   constexpr double infinity = std::numeric_limits<double>::infinity();
-  const auto step = [](double a, double b, double rounding) {
+  if (sweep.low > sweep.high) return 0.0;  // all are missing
+  const double rounding = 1e-12 * std::max(std::abs(sweep.low), std::abs(sweep.high));
+  const auto step = [&](double a, double b) {
     const double d = std::abs(b - a);
     return d > rounding ? d : infinity;  // NaN is no step
   };
-  double largest = x.empty() || std::isnan(x[0]) ? 0.0 : std::abs(x[0]), smallest = infinity;
-#pragma omp simd reduction(max : largest) reduction(min : smallest)
-  for (std::size_t i = 1; i < x.size(); ++i) {
-    largest = std::abs(x[i]) > largest ? std::abs(x[i]) : largest;  // NaN never replaces a number
-    smallest = std::min(smallest, step(x[i - 1], x[i], 0.0));
-  }
-  const double rounding = 1e-12 * largest;
+  double smallest = sweep.least_step;
   if (smallest <= rounding) {
     smallest = infinity;
 #pragma omp simd reduction(min : smallest)
-    for (std::size_t i = 1; i < x.size(); ++i) smallest = std::min(smallest, step(x[i - 1], x[i], rounding));
+    for (std::size_t i = 1; i < x.size(); ++i) smallest = std::min(smallest, step(x[i - 1], x[i]));
   }
   std::vector<double> some;
   const std::size_t stride = x.size() / sampled + 1;
   for (std::size_t i = 0; i < x.size(); i += stride)
     if (!std::isnan(x[i])) some.push_back(x[i]);
   std::sort(some.begin(), some.end());
-  for (std::size_t i = 1; i < some.size(); ++i) smallest = std::min(smallest, step(some[i - 1], some[i], rounding));
+  for (std::size_t i = 1; i < some.size(); ++i) smallest = std::min(smallest, step(some[i - 1], some[i]));
   return std::isfinite(smallest) ? smallest : 0.0;
 }
 
@@ -248,6 +245,18 @@ void LogColumns::note_unmapped() {
   }
 }
 
+Sweep LogColumns::Column::into_si() {
+  const bool is_si = unit.multiply == 1.0 && unit.divide == 1.0 && unit.offset == 0.0 && gain == 1.0 && offset == 0.0;
+  Sweep sweep;
+  for (std::size_t from = 0, to; from < value.size(); from = to) {
+    to = std::min(value.size(), from + Sweep::stretch);
+    if (!is_si)
+      for (std::size_t i = from; i < to; ++i) value[i] = to_si(value[i]);
+    sweep.take(value, from, to);
+  }
+  return sweep;
+}
+
 Log LogColumns::finish(std::string sha256) {
   log_.sha256 = std::move(sha256);
   if (!ignored_.empty())
@@ -257,22 +266,20 @@ Log LogColumns::finish(std::string sha256) {
   note_unmapped();
   check_counts();
   const int n = static_cast<int>(columns_.size());
+  std::array<Sweep, n_signals> sweeps;
 #pragma omp parallel for schedule(dynamic, 1)
   for (int c = 0; c < n; ++c) {
     Column& column = columns_[c];
-    if (column.unit.multiply != 1.0 || column.unit.divide != 1.0 || column.unit.offset != 0.0)
-      for (double& x : column.value) x = column.unit.to_si(x);
-    if (column.gain != 1.0 || column.offset != 0.0)
-      for (double& x : column.value) x = column.gain * x + column.offset;
+    const Sweep& sweep = sweeps[index(column.signal)] = column.into_si();
     Channel& channel = log_.channels[index(column.signal)];
     channel.unit = column.written_unit;
     channel.full_scale = column.full_scale;
     channel.column = column.name;
     channel.missing = column.missing;
-    channel.resolution = resolution(column.value);
+    channel.resolution = resolution(column.value, sweep);
     (column.signal == Signal::time ? log_.time : channel.value) = std::move(column.value);
   }
-  for (std::string& text : implausible_values(log_, rig_)) note(std::move(text));
+  for (std::string& text : implausible_values(log_, rig_, sweeps)) note(std::move(text));
   return std::move(log_);
 }
 

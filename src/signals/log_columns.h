@@ -6,6 +6,7 @@
 
 #include "base/error.h"
 #include "signals/log.h"
+#include "signals/sweep.h"
 
 namespace servodx {
 
@@ -54,6 +55,7 @@ class LogColumns {
       const double si = unit.to_si(x);
       return gain == 1.0 && offset == 0.0 ? si : gain * si + offset;
     }
+    Sweep into_si();
   };
 
   Column resolve(Signal signal, const std::string& name, const std::string& unit, bool has_unit,

@@ -32,28 +32,14 @@ struct Run {
   std::size_t begin = 0, size = 0;
 };
 
-struct Extremes {
-  double low = INFINITY, high = -INFINITY;
-};
-
-// Missing samples have no part in it.
-Extremes extremes(std::span<const double> x) {
-  double low = INFINITY, high = -INFINITY;
-#pragma omp simd reduction(min : low) reduction(max : high)
-  for (std::size_t i = 0; i < x.size(); ++i) {
-    low = x[i] < low ? x[i] : low;
-    high = x[i] > high ? x[i] : high;
-  }
-  return {low, high};
-}
-
 class Watch {
  public:
-  Watch(const Log& log, const RigFile& rig)
+  Watch(const Log& log, const RigFile& rig, const std::array<Sweep, n_signals>& sweeps)
       : log_(log),
         rig_(rig),
-        drive_(log.has(Signal::coil_current) ? log[Signal::coil_current] : log[Signal::command]),
-        drive_range_(extremes(drive_)) {}
+        sweeps_(sweeps),
+        drive_(log.has(Signal::coil_current) ? Signal::coil_current : Signal::command),
+        drive_range_(sweeps[index(drive_)].high - sweeps[index(drive_)].low) {}
 
   // Of the log as a whole.
   std::vector<std::string> notes() {
@@ -99,27 +85,20 @@ class Watch {
     const auto& t = log_.time;
     if (t.size() < 3) return;
     std::vector<double> some;  // an even sample of the steps
-    double longest = 0;
     for (std::size_t i = 1, stride = t.size() / scale_samples + 1; i < t.size(); i += stride)
       some.push_back(t[i] - t[i - 1]);
-    const double usual = quantile(some, 0.5);
+    const double usual = quantile(some, 0.5), longest = sweeps_[index(Signal::time)].largest_step;
+    if (!(longest > gap_over_step * usual)) return;
     long count = 0;
-    for (std::size_t i = 1; i < t.size(); ++i) {
-      const double dt = t[i] - t[i - 1];
-      count += dt > gap_over_step * usual;
-      longest = std::max(longest, dt);
-    }
-    if (count > 0)
-      notes_.push_back(fmt::format("{}: {} gap{} in time, the longest {:.4g} s at a usual step of {:.4g} s", log_.path,
-                                   count, count == 1 ? "" : "s", longest, usual));
+    for (std::size_t i = 1; i < t.size(); ++i) count += t[i] - t[i - 1] > gap_over_step * usual;
+    notes_.push_back(fmt::format("{}: {} gap{} in time, the longest {:.4g} s at a usual step of {:.4g} s", log_.path,
+                                 count, count == 1 ? "" : "s", longest, usual));
   }
 
   void excitation() {
-    if (drive_.empty()) return;
-    const double limit = no_excitation * rig_.fact("valve.rated_current").value_or(0.0);
-    if (drive_range_.high - drive_range_.low <= limit)
-      note(info(log_.has(Signal::coil_current) ? Signal::coil_current : Signal::command),
-           "no excitation: it stays at {:.4g} A", drive_range_.low);
+    if (!log_.has(drive_)) return;
+    if (drive_range_ <= no_excitation * rig_.fact("valve.rated_current").value_or(0.0))
+      note(info(drive_), "no excitation: it stays at {:.4g} A", sweeps_[index(drive_)].low);
   }
 
   // Outside these limits a wrong unit, gain or offset is likelier than the value.
@@ -155,7 +134,7 @@ class Watch {
     if (signal.signal == Signal::piston_position) symmetric("actuator.stroke", 0.55);
     if (std::isinf(high)) return;
     const auto& x = log_[signal.signal];
-    const Extremes found = extremes(x);
+    const Sweep& found = sweeps_[index(signal.signal)];
     if (!(found.low < low || found.high > high)) return;
     std::size_t count = 0;
     double worst = 0.0;
@@ -170,13 +149,11 @@ class Watch {
 
   void frozen(const SignalInfo& signal) {
     const std::span<const double> x = log_[signal.signal];
-    if (!(drive_range_.high > drive_range_.low)) return;
+    if (!(drive_range_ > 0.0)) return;
     const std::size_t least =
         std::max(frozen_least, static_cast<std::size_t>(frozen_part * static_cast<double>(x.size())));
-    std::size_t repeats = 0;  // no run is longer than all of them and one
-#pragma omp simd reduction(+ : repeats)
-    for (std::size_t i = 1; i < x.size(); ++i) repeats += x[i] == x[i - 1];
-    if (repeats + 1 < std::min(least, x.size())) return;
+    // No run is longer than all repeats and one.
+    if (sweeps_[index(signal.signal)].repeats + 1 < std::min(least, x.size())) return;
     Run longest;
     std::size_t runs = 0;
     for (std::size_t i = 0; i < x.size();) {
@@ -192,8 +169,8 @@ class Watch {
     }
     if (longest.size < least || runs < 2) return;
     const double usual = static_cast<double>(x.size() - longest.size) / static_cast<double>(runs - 1);
-    const auto [low, high] = extremes(std::span(drive_).subspan(longest.begin, longest.size));
-    if (usual < frozen_usual_run && high - low > frozen_drive * (drive_range_.high - drive_range_.low))
+    const Sweep drive = sweep_of(std::span(log_[drive_]).subspan(longest.begin, longest.size));
+    if (usual < frozen_usual_run && drive.high - drive.low > frozen_drive * drive_range_)
       note(signal, "frozen sensor? It does not change for {:.4g} s from {:.4g} s on",
            log_.time[longest.begin + longest.size - 1] - log_.time[longest.begin], log_.time[longest.begin]);
   }
@@ -212,31 +189,31 @@ class Watch {
     const double high = quantile(some, 0.99);
     const double range = high - quantile(some, 0.01);
     const double limit = std::max(spike_over_range * range, spike_over_noise * step);
-    const auto is_spike = [&](std::size_t i) {
+    if (!(sweeps_[index(signal.signal)].lone > limit)) return;
+    std::size_t count = 0, first = 0;
+    for (std::size_t i = 1; i + 1 < x.size(); ++i) {
       const double before = x[i] - x[i - 1], after = x[i] - x[i + 1];
-      return (std::abs(before) > limit) & (std::abs(after) > limit) & (before * after > 0.0);
-    };
-    std::size_t count = 0, first = 1;
-#pragma omp simd reduction(+ : count)
-    for (std::size_t i = 1; i < x.size() - 1; ++i) count += is_spike(i);
-    if (count == 0) return;
-    while (!is_spike(first)) ++first;
+      if (!(std::abs(before) > limit && std::abs(after) > limit && before * after > 0.0)) continue;
+      if (count++ == 0) first = i;
+    }
     note(signal, "{} spike{} of a single sample, the first at {:.4g} s", count, count == 1 ? "" : "s",
          log_.time[first]);
   }
 
   const Log& log_;
   const RigFile& rig_;
-  const std::vector<double>& drive_;
-  const Extremes drive_range_;
+  const std::array<Sweep, n_signals>& sweeps_;
+  const Signal drive_;
+  const double drive_range_;
   std::vector<std::string> notes_;
 };
 
 }  // namespace
 
-std::vector<std::string> implausible_values(const Log& log, const RigFile& rig) {
+std::vector<std::string> implausible_values(const Log& log, const RigFile& rig,
+                                            const std::array<Sweep, n_signals>& sweeps) {
   std::array<std::vector<std::string>, n_signals> found;
-  const Watch watch(log, rig);
+  const Watch watch(log, rig, sweeps);
 #pragma omp parallel for schedule(dynamic, 1)
   for (int s = 0; s < n_signals; ++s) found[s] = Watch(watch).notes(signal_list[s]);
   std::vector<std::string> notes = Watch(watch).notes();
