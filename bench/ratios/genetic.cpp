@@ -1,5 +1,5 @@
-// The global search with its local stage on a log of 10 s, children ranked by rough runs and by those of fits, and what a second
-// thread gives it.
+// The global search with its local stage on a log of 10 s, children ranked by rough runs and by those of fits, and what
+// a second thread gives it.
 #include "optimise/genetic.h"
 
 #include <fmt/format.h>
@@ -123,11 +123,11 @@ void genetic_rows(Report& report, const Choice& choice) {
     breed(alone, 1, so_many, screened);
     beside.join();
   };
-  const std::vector<Timing> t = take_turns(
-      {[&] { breed(alone, 1, generations, true); }, [&] { breed(both, 1, generations, true); },
-       [&] { side_by_side(generations, true); }, [&] { breed(alone, 1, part, false); },
-       [&] { breed(both, 1, part, false); }, [&] { side_by_side(part, false); }},
-      choice.turns, wall_seconds);
+  const std::vector<Timing> t =
+      take_turns({[&] { breed(alone, 1, generations, true); }, [&] { breed(both, 1, generations, true); },
+                  [&] { side_by_side(generations, true); }, [&] { breed(alone, 1, part, false); },
+                  [&] { breed(both, 1, part, false); }, [&] { side_by_side(part, false); }},
+                 choice.turns, wall_seconds);
   const double gain = t[0].median / t[1].median, in_doubles_gain = t[3].median / t[4].median;
   const double machine = 2 * t[0].median / t[2].median, machine_in_doubles = 2 * t[3].median / t[5].median;
   report.add({"two threads against one, on the search", "1.8x", "1.95x", fmt::format("{:.2f}x", gain),

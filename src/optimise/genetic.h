@@ -1,9 +1,9 @@
 // Genetic algorithm on the unit cube, for breadth: which structure, which basin. It is real-coded and elitist (a slot
-// only ever gets better), keeps its children in the box by reflection, and asks for them in waves that go round the slots
-// of all islands: whole batches, however many the population has. Each island may start from its own seed points (the
-// fit passes one island per Failure-Mode Identifier).
-// An island whose best and median stop improving, or whose members have drawn together, gives its best to the archive
-// and starts afresh. The archive holds the best points that are apart: the starts of the local stage.
+// only ever gets better), keeps its children in the box by reflection, and asks for them in waves that go round the
+// slots of all islands: whole batches, however many the population has. Each island may start from its own seed points
+// (the fit passes one island per Failure-Mode Identifier). An island whose best and median stop improving, or whose
+// members have drawn together, gives its best to the archive and starts afresh. The archive holds the best points that
+// are apart: the starts of the local stage.
 //
 // Limits: it does not polish. In 41 dimensions 5,000 evaluations find a basin, not a minimum; box_least_squares.h does
 // the rest, at the end or, through `refine`, while it runs. Costs must be finite or are taken as failures; a failed
@@ -36,9 +36,9 @@ struct GeneticOptions {
   // Root mean square over the coordinates, of the box. Random points are some 0.4 apart; a population that has settled
   // in one valley is some 0.1 wide, so an archive that is to hold starts in others needs more.
   double archive_distance = 0.05;
-  double failure_cost = 1e30;      // at or above: counted as failed
-  long max_evaluations = 0;        // 0: no limit. No generation is begun that would pass it
-  double cost_goal = -1e300;       // stop once the best is at or below it
+  double failure_cost = 1e30;  // at or above: counted as failed
+  long max_evaluations = 0;    // 0: no limit. No generation is begun that would pass it
+  double cost_goal = -1e300;   // stop once the best is at or below it
 
   void validate() const;  // throws InputError with the option's name
 };
@@ -56,8 +56,8 @@ struct GeneticHooks {
   std::function<std::vector<Individual>(const GeneticState&)> refine;
   int refine_every = 10;
   // A cheaper cost that ranks almost as the cost does: all comparisons are by it, and what is returned as best and in
-  // the archive is ranked anew by the cost itself. While the search runs, its state holds costs of the screen. A child's
-  // bound is the cost of the parent whose slot it asks for; a point that asks for nobody's has none (infinity).
+  // the archive is ranked anew by the cost itself. While the search runs, its state holds costs of the screen. A
+  // child's bound is the cost of the parent whose slot it asks for; a point that asks for nobody's has none (infinity).
   BoundedCost screen;
 };
 

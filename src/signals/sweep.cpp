@@ -6,14 +6,13 @@
 namespace servodx {
 
 void Sweep::take(std::span<const double> x, std::size_t from, std::size_t to) {
-  constexpr double infinity = std::numeric_limits<double>::infinity();
   // In every comparison NaN is the one that loses.
   for (; from < std::min<std::size_t>(to, 2); ++from) {
     low = x[from] < low ? x[from] : low;
     high = x[from] > high ? x[from] : high;
     if (from == 0) continue;
     const double step = std::abs(x[1] - x[0]);
-    least_step = step > 0.0 ? step : infinity;
+    least_step = step > 0.0 ? step : infinite;
     largest_step = step > 0.0 ? step : 0.0;
     repeats = step == 0.0;
   }
@@ -22,7 +21,7 @@ void Sweep::take(std::span<const double> x, std::size_t from, std::size_t to) {
   for (std::size_t i = from; i < to; ++i) {
     const double here = x[i - 1], after = x[i] - here, before = x[i - 2] - here;
     const double step = std::abs(after), farther = std::abs(before);
-    const double distance = step > 0.0 ? step : infinity, nearer = step < farther ? step : farther;
+    const double distance = step > 0.0 ? step : infinite, nearer = step < farther ? step : farther;
     const double stands_off = after * before > 0.0 ? nearer : 0.0;
     lowest = x[i] < lowest ? x[i] : lowest;
     highest = x[i] > highest ? x[i] : highest;

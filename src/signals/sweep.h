@@ -9,13 +9,14 @@ namespace servodx {
 
 struct Sweep {
   static constexpr std::size_t stretch = 4096;
+  static constexpr double infinite = std::numeric_limits<double>::infinity();
 
   // Missing samples (NaN) have no part in any of these.
-  double low = std::numeric_limits<double>::infinity(), high = -low;
-  double least_step = low;     // between neighbours that differ; infinite: none do
-  double largest_step = 0.0;   // between neighbours
-  double lone = 0.0;           // the farthest that a sample stands off both its neighbours, on one side of them
-  std::size_t repeats = 0;     // samples that equal the one before
+  double low = infinite, high = -infinite;
+  double least_step = infinite;  // between neighbours that differ; infinite: none do
+  double largest_step = 0.0;     // between neighbours
+  double lone = 0.0;             // the farthest that a sample stands off both its neighbours, on one side of them
+  std::size_t repeats = 0;       // samples that equal the one before
 
   // Samples [from, to) of x, which come in order.
   void take(std::span<const double> x, std::size_t from, std::size_t to);

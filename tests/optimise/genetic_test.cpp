@@ -267,8 +267,8 @@ TEST(Genetic, ScreenedSearchReportsTrueCostsOnly) {
   EXPECT_LT(digits / 10, 1.0);
 }
 
-// What comes back for a child that has lost to its parent is no cost of it, only a number above the parent's: the search
-// takes the same path to the last bit, through restarts, migration and slots with two children in a wave.
+// What comes back for a child that has lost to its parent is no cost of it, only a number above the parent's: the
+// search takes the same path to the last bit, through restarts, migration and slots with two children in a wave.
 TEST(Genetic, ALosingChildMayBeLeftUncountedAndNothingChanges) {
   constexpr int n = 6;
   for (const Function& function : {rastrigin(n), rosenbrock(n)}) {
