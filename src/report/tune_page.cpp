@@ -108,7 +108,7 @@ Page tune_page(const Header& header, const TuneResult& result, const GoodEnough&
   if (enough.yes) v.reasons.push_back(sentence(line_of(enough)));
   for (const std::string& reason : enough.reasons) v.reasons.push_back(sentence(words(reason)));
   if (!enough.yes && !enough.exceptions.empty())
-    v.reasons.push_back("Predicted worse than fitted: " + join(enough.exceptions) + ", so logs of its kind are few.");
+    v.reasons.push_back("Predicted worse than fitted: " + join(enough.exceptions) + ", so such logs are few.");
   if (!at_end.empty())
     v.reasons.push_back(fmt::format("At an end of {} range: {}. Check the data sheet behind {}, or widen the bounds.",
                                     at_end.size() == 1 ? "its" : "their", join(at_end),

@@ -28,8 +28,8 @@ std::string end_of(const TuneResult& result) {
 }
 
 struct Prediction {
-  double usual = 0;         // held-out over fitted error, median over the logs
-  double worst = 0;         // and the log that is predicted worst
+  double usual = 0;  // held-out over fitted error, median over the logs
+  double worst = 0;  // and the log that is predicted worst
   const LogResult* log = nullptr;
 };
 
@@ -102,9 +102,10 @@ GoodEnough good_enough(const TuneResult& result, const std::vector<Promise>& pro
 
 std::string line_of(const GoodEnough& g) {
   const std::string but =
-      g.exceptions.empty() ? "" : "; predicted worse than fitted: " + join(g.exceptions) + ", so logs of its kind are few";
+      g.exceptions.empty() ? "" : "; predicted worse than fitted: " + join(g.exceptions) + ", so such logs are few";
   if (!g.yes) return fmt::format("with care: {}{}", fmt::join(g.reasons, "; "), but);
-  std::string line = "yes: it predicts as well as it fits, and the search has arrived";
+  std::string line = fmt::format("yes: it predicts {} as well as it fits, and the search has arrived",
+                                 g.exceptions.empty() ? "logs" : "most logs");
   if (!g.best.empty())
     line += fmt::format("; on logs like these a diagnosis sees every fault at its typical size{}",
                         g.faint.empty() ? ", and at its mildest" : ", and may miss at their mildest " + join(g.faint));
@@ -121,7 +122,8 @@ Json to_json(const GoodEnough& g) {
                       {"deviate_at_least", number(v.at_least)},
                       {"typical", v.typical},
                       {"deviate_at_typical", number(v.at_typical)}});
-  return {{"yes", g.yes}, {"reasons", g.reasons}, {"exceptions", g.exceptions}, {"hidden", g.hidden}, {"faint", g.faint}, {"visible_faults", faults}};
+  return {{"yes", g.yes},       {"reasons", g.reasons}, {"exceptions", g.exceptions},
+          {"hidden", g.hidden}, {"faint", g.faint},     {"visible_faults", faults}};
 }
 
 }  // namespace servodx::report

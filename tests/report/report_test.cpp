@@ -513,7 +513,7 @@ TEST(TuneReport, GoodEnoughIsWhatPredictsHasArrivedAndWouldSeeTheFaults) {
   EXPECT_TRUE(good.yes);
   EXPECT_EQ(good.errors, "error over noise on the held-out part: spool position 3");
   EXPECT_EQ(good.faint, std::vector<std::string>{"clogged_filter"});
-  EXPECT_TRUE(line_of(good).starts_with("yes: ")) << line_of(good);
+  EXPECT_TRUE(line_of(good).starts_with("yes: it predicts logs as well as it fits")) << line_of(good);
 
   good = good_enough(result, {log});
   EXPECT_FALSE(good.yes);
@@ -534,7 +534,7 @@ TEST(TuneReport, GoodEnoughIsWhatPredictsHasArrivedAndWouldSeeTheFaults) {
   };
   result.logs = {log_with("a.csv", 1e-6), log_with("b.csv", 1.1e-6), log_with("c.csv", 31e-6)};
   good = good_enough(result, {other});  // one log without its like is said, and judges nothing
-  EXPECT_TRUE(good.yes) << line_of(good);
+  EXPECT_TRUE(line_of(good).starts_with("yes: it predicts most logs as well as it fits")) << line_of(good);
   EXPECT_NE(line_of(good).find("spool position of c.csv (31 times)"), std::string::npos) << line_of(good);
   result.logs[1] = log_with("b.csv", 2.1e-6);
   reason("predicts worse than it fits (spool position 2.1 times)");
