@@ -204,8 +204,11 @@ std::vector<double> FitProblem::costs(std::span<const Point> points, RobustLoss 
       std::vector<double>& r = residual_space();
       for (std::size_t l = first; l < last; ++l) {
         const Trajectory& t = runs[(l - first) * left.size() + static_cast<std::size_t>(i)];
-        if (!t.ok) sum = failed;
-        for (std::size_t c = 0; c < logs_[l]->channels.size() && t.ok; ++c) {
+        if (!t.ok) {
+          sum = failed;
+          break;
+        }
+        for (std::size_t c = 0; c < logs_[l]->channels.size(); ++c) {
           whitened(static_cast<int>(l), static_cast<int>(c), t, r);
           for (const double e : r) sum += robust_square(loss, scale, e);
         }

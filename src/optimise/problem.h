@@ -22,8 +22,8 @@ using BatchEvaluate = std::function<std::vector<Evaluation>(std::span<const Poin
 // Costs only, for the genetic algorithm. A failed point has a large finite cost.
 using BatchCost = std::function<std::vector<double>(std::span<const Point>)>;
 
-// Costs of points that count only up to their bounds, one a point: for one that is sure to be above its own, any number
-// above it may come back.
+// Costs of points that count only up to their bounds, one a point, infinite where a cost always counts: for a point
+// that is sure to be above its own, any number above it may come back.
 using BoundedCost = std::function<std::vector<double>(std::span<const Point>, std::span<const double> bounds)>;
 
 }  // namespace servodx
