@@ -211,6 +211,24 @@ void LogColumns::append(std::span<const double> sample, long line) {
   }
 }
 
+void LogColumns::append_columns(const std::vector<std::span<const double>>& values) {
+  const std::size_t samples = values[static_cast<std::size_t>(time_)].size();
+  for (std::size_t c = 0; c < values.size(); ++c)
+    if (values[c].size() != samples)
+      refuse(0, columns_[c].name, fmt::format("has {} samples, the time has {}", values[c].size(), samples),
+             "save signals of one length; for a second recorder see 'servodx join'");
+  reserve(samples);
+  std::vector<double> row(values.size());
+  for (std::size_t k = 0; k < samples; ++k) {
+    for (std::size_t c = 0; c < row.size(); ++c) {
+      row[c] = values[c][k];
+      if (std::isinf(row[c]))
+        refuse(static_cast<long>(k + 1), columns_[c].name, "is infinite", "write NaN for a missing sample");
+    }
+    append(row, static_cast<long>(k + 1));
+  }
+}
+
 void LogColumns::check_counts() {
   const std::size_t rows = columns_[time_].value.size();
   for (const Column& column : columns_) {

@@ -31,6 +31,8 @@ class LogColumns {
   void reserve(std::size_t samples);
   // One sample of every column, in the file's units; NaN where missing. `line`: of the file, or the sample's number.
   void append(std::span<const double> sample, long line);
+  // All samples of all columns at once, in the order in which they were added; lengths and infinities are refused.
+  void append_columns(const std::vector<std::span<const double>>& values);
 
   [[noreturn]] void refuse(long line, const std::string& column, const std::string& rule,
                            const std::string& mend) const;

@@ -83,7 +83,7 @@ class MatReader {
       throw InputError({path_, 0, ""}, "is not a MAT file", "save it with MATLAB's 'save', or write a CSV log");
     while (Variable v{Mat_VarReadNext(file.get())}) take(*v);
     log_.require_signals();
-    feed();
+    log_.append_columns({values_.begin(), values_.end()});
     return log_.finish(std::move(hash));
   }
 
@@ -107,28 +107,6 @@ class MatReader {
                                                 : fmt::format("is not a vector: it is {}", shape_of(v)),
                   "save each signal as a vector of numbers, one a sample");
     values_.push_back(std::move(numbers));
-  }
-
-  void feed() {
-    std::size_t time = 0;
-    while (log_.signal(static_cast<int>(time)) != Signal::time) ++time;
-    const std::size_t samples = values_[time].size();
-    for (std::size_t c = 0; c < values_.size(); ++c)
-      if (values_[c].size() != samples)
-        log_.refuse(0, log_.name(static_cast<int>(c)),
-                    fmt::format("has {} samples, the time has {}", values_[c].size(), samples),
-                    "save signals of one length; for a second recorder see 'servodx join'");
-    log_.reserve(samples);
-    std::vector<double> row(values_.size());
-    for (std::size_t k = 0; k < samples; ++k) {
-      for (std::size_t c = 0; c < row.size(); ++c) {
-        row[c] = values_[c][k];
-        if (std::isinf(row[c]))
-          log_.refuse(static_cast<long>(k + 1), log_.name(static_cast<int>(c)), "is infinite",
-                      "write NaN for a missing sample");
-      }
-      log_.append(row, static_cast<long>(k + 1));
-    }
   }
 
   const std::string& path_;

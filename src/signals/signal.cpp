@@ -35,6 +35,8 @@ std::optional<Signal> find_signal(std::string_view name) {
   return std::nullopt;
 }
 
+std::string_view name_of(Signal s) { return info(s).name; }
+
 std::optional<RelativeUnit> relative_unit(Signal s) {
   if (info(s).dimension == current) return RelativeUnit{percent_of_rated, "valve.rated_current"};
   if (s == Signal::spool_position) return RelativeUnit{percent_of_stroke, "valve.spool_stroke"};

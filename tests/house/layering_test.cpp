@@ -35,6 +35,10 @@ const std::map<std::string, std::set<std::string>> allowed = {
     {"prognose", {"parameters", "signals", "simulate", "fit", "faults", "valve_maps"}},
 };
 
+// The front door (include/servodx): each of its headers is the folder's that makes what it declares.
+const std::map<std::string, std::string> door = {
+    {"servodx/error.h", "base"}, {"servodx/rig.h", "signals"}, {"servodx/log.h", "signals"}};
+
 struct Include {
   std::string from, to;  // folders
   std::string file;
@@ -67,9 +71,11 @@ std::vector<Include> includes_of(const fs::path& file, const fs::path& src) {
 }
 
 bool is_allowed(const Include& include) {
-  if (include.to == include.from || include.to == "base") return true;
+  const auto owner = door.find(include.text);
+  const std::string& to = owner == door.end() ? include.to : owner->second;
+  if (to == include.from || to == "base") return true;
   const auto row = allowed.find(include.from);
-  return row != allowed.end() && row->second.contains(include.to);
+  return row != allowed.end() && row->second.contains(to);
 }
 
 TEST(Layering, DirectIncludesFollowTheTable) {
@@ -83,7 +89,8 @@ TEST(Layering, DirectIncludesFollowTheTable) {
       EXPECT_FALSE(include.to.empty()) << place << "\"" << include.text << "\" has no folder; write \"" << include.from
                                        << "/" << include.text << "\"";
       if (include.to.empty()) continue;
-      EXPECT_TRUE(fs::exists(src / include.text)) << place << "\"" << include.text << "\" is not in src/";
+      const fs::path root = door.contains(include.text) ? src / "../include" : src;
+      EXPECT_TRUE(fs::exists(root / include.text)) << place << "\"" << include.text << "\" is not in src/";
       EXPECT_TRUE(is_allowed(include)) << place << include.from << " may not include " << include.to << " (\""
                                        << include.text << "\")";
     }
