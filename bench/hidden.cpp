@@ -15,6 +15,7 @@
 #include "fit/tune.h"
 #include "hidden/cases.h"
 #include "report/explain_report.h"
+#include "report/explain_words.h"
 
 using namespace servodx;
 
@@ -89,7 +90,7 @@ int main(int argc, char** argv) {
         if (remove) options.without = {effect};
         const ExplainResult answer = explain_logs(read(c.logs), tuned, bench.rig, &reference, options);
         sc = hidden::score(hidden::unseal(c.sealed), answer);  // opened after the answer
-        if (remove) sc.named = answer.verdict == "unexplained";
+        if (remove) sc.named = answer.verdict == ExplainVerdict::unexplained;
         std::ofstream(answer_path) << report::Json{{"score", hidden::to_json(sc)},
                                                    {"answer", report::explain_json(answer)}};
       }
@@ -97,8 +98,9 @@ int main(int argc, char** argv) {
       progress.update(static_cast<double>(scores.size()) / (cases + controls + unlisted),
                       static_cast<long>(scores.size()));
       fmt::print("v{} {} {:22} {:34} -> {:11} {:22} {:22} {} {} size {}{} gain {:.0f} %{}{}\n", valve, s,
-                 sc.truth.effect, sc.truth.size, sc.verdict, sc.first, sc.where, sc.named ? "named" : "-",
-                 sc.placed ? "placed" : "-", sc.size_inside ? (*sc.size_inside ? "in" : "out") : "?",
+                 sc.truth.effect, sc.truth.size, report::word_of(sc.verdict), sc.first, sc.where,
+                 sc.named ? "named" : "-", sc.placed ? "placed" : "-",
+                 sc.size_inside ? (*sc.size_inside ? "in" : "out") : "?",
                  sc.variable ? *sc.variable ? " variable" : " variable -" : "", 100 * sc.heldout_gain,
                  sc.gain_share ? fmt::format(", {:.0f} % of the true one's", 100 * *sc.gain_share) : "",
                  sc.note.empty() ? "" : "\n      " + sc.note);

@@ -616,7 +616,7 @@ Explanation explain(Subject& subject, const EngineOptions& options, const Explan
       if (scores[c].probes.empty()) continue;  // not looked at
       if (options.p_new) p[c] = options.p_new(scores[c], round);
       CandidateResult& r = out.candidates[c];
-      if (round == 0) r.predicted_gain = scores[c].gain, r.p_new = p[c], r.reason = "its score predicts too little";
+      if (round == 0) r.predicted_gain = scores[c].gain, r.p_new = p[c], r.fate = Fate::score_too_small;
     }
     // Where the data are abnormal as a whole, a cause need not be news by itself. Where they are not, what is found
     // suffices, and a rare cause beside it only takes some of its size.
@@ -680,7 +680,7 @@ Explanation explain(Subject& subject, const EngineOptions& options, const Explan
       CandidateResult later, &r = round == 0 ? out.candidates[static_cast<std::size_t>(c)] : later;
       r.fitted = true;
       r.delta_bic = delta_bic(now, fits[i], out.degrees);
-      r.reason = r.delta_bic <= 0 ? "not worth its numbers" : "others fit better";
+      r.fate = r.delta_bic <= 0 ? Fate::not_worth_its_numbers : Fate::others_fit_better;
       const bool rare = prior_of(fits[i]) < 1;
       int& counted = rare ? rare_judged : new_judged;
       if (r.delta_bic <= 0 || (is_new(c) && counted >= (rare ? options.judged / 2 : options.judged))) continue;
@@ -703,14 +703,14 @@ Explanation explain(Subject& subject, const EngineOptions& options, const Explan
       const bool restores = subject.causes()[static_cast<std::size_t>(c)].curve || news(c) || !is_new(c) ||
                             !abnormal_rows || options.p_left(fits[i], round + 1) > level;
       if (!restores) {
-        r.reason = "no news by itself, and the data stay abnormal with it";
+        r.fate = Fate::abnormal_with_it;
         if (round == 0 && r.heldout_gain.lower > 0) out.refused.push_back(fits[i]);
       } else if (retuned.ok && r.beyond_retuning.value <= 0) {
-        r.reason = "re-tuning alone does as well on held-out data";
+        r.fate = Fate::retuning_does_as_well;
       } else if (r.heldout_gain.lower > 0) {
         judged.push_back(static_cast<int>(i));
       } else {
-        r.reason = "no gain on held-out data beyond its interval";
+        r.fate = Fate::no_heldout_gain;
       }
     }
     const auto make_result = [&](std::size_t i, bool fresh) {
@@ -729,7 +729,7 @@ Explanation explain(Subject& subject, const EngineOptions& options, const Explan
       const std::size_t k = static_cast<std::size_t>(i);
       const int c = fits[k].causes.back();
       if (!is_new(c)) {
-        out.candidates[static_cast<std::size_t>(c)].reason = "not beyond what healthy logs show";
+        out.candidates[static_cast<std::size_t>(c)].fate = Fate::not_beyond_healthy;
         out.standing.push_back(make_result(k, false));
         continue;
       }
@@ -759,7 +759,7 @@ Explanation explain(Subject& subject, const EngineOptions& options, const Explan
           taken.delta_bic - delta_bic(now, fits[k], out.degrees) < odds)
         taken.confusable_with.push_back(fits[k].causes.back());
     }
-    out.candidates[static_cast<std::size_t>(taken.cause)].reason = "taken";
+    out.candidates[static_cast<std::size_t>(taken.cause)].fate = Fate::taken;
     steps.push_back(now);
     now = fits[b];
     if (retuned.ok) retuned = std::move(beside[b]);
@@ -773,7 +773,7 @@ Explanation explain(Subject& subject, const EngineOptions& options, const Explan
     if (f.ok) cross_validate(subject, f, options);
     const Interval worth = f.ok ? heldout_gain(f, now, options.seed) : Interval{1, 1, 1};
     if (worth.lower <= 0) {
-      out.candidates[static_cast<std::size_t>(out.causes[i].cause)].reason = "not missed once the others were in";
+      out.candidates[static_cast<std::size_t>(out.causes[i].cause)].fate = Fate::not_missed_later;
       out.causes.erase(out.causes.begin() + static_cast<long>(i));
       now = std::move(f);
     } else {

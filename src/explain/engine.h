@@ -13,6 +13,7 @@
 #include <string>
 #include <vector>
 
+#include "explain/outcome.h"
 #include "explain/subject.h"
 
 namespace servodx {
@@ -66,7 +67,7 @@ struct CandidateResult {
   bool fitted = false;
   Interval heldout_gain, beyond_retuning;
   double delta_bic = 0;
-  std::string reason;  // why not taken; "taken"
+  Fate fate = Fate::not_looked_at;
 };
 
 struct EngineOptions {

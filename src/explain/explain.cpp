@@ -301,7 +301,7 @@ ExplainResult explain_logs(const std::vector<Log>& logs, const Table& tuned, con
       for (std::size_t c = 0; c < e.candidates.size(); ++c)
         if (!subject.causes()[c].curve) {
           learnt_one.candidates[c] = e.candidates[c];
-          if (e.candidates[c].reason == "taken") learnt_one.candidates[c].reason = "a curve without a name does better";
+          if (e.candidates[c].fate == Fate::taken) learnt_one.candidates[c].fate = Fate::curve_does_better;
         }
       // Names that were refused because they leave the logs abnormal: where the curve does no better, they are as good
       // an answer as it, and where one does better the place is that name's.
@@ -349,11 +349,11 @@ ExplainResult explain_logs(const std::vector<Log>& logs, const Table& tuned, con
     const auto take = [&](Explanation& told, ExplainedFit after) {
       by_blocks = true;
       for (const CauseResult& r : e.causes)
-        e.candidates[static_cast<std::size_t>(r.cause)].reason = "the replay of the blocks tells another";
+        e.candidates[static_cast<std::size_t>(r.cause)].fate = Fate::blocks_tell_another;
       e.after = std::move(after);
       e.causes = std::move(told.causes);
       for (const CauseResult& r : e.causes)
-        e.candidates[static_cast<std::size_t>(r.cause)].reason = "taken: the replay of the blocks tells it";
+        e.candidates[static_cast<std::size_t>(r.cause)].fate = Fate::taken_by_blocks;
       out.curve.reset();
       better_place.clear();
     };
@@ -415,8 +415,8 @@ ExplainResult explain_logs(const std::vector<Log>& logs, const Table& tuned, con
   }
   for (const CandidateResult& r : e.candidates) {
     const Cause& c = subject.causes()[static_cast<std::size_t>(r.cause)];
-    if ((c.curve && !out.curve) || r.reason.empty()) continue;  // not looked at
-    out.candidates.push_back({c.effect, c.where, r.reason, r.predicted_gain,
+    if ((c.curve && !out.curve) || r.fate == Fate::not_looked_at) continue;
+    out.candidates.push_back({c.effect, c.where, r.fate, r.predicted_gain,
                               healthy ? std::optional<double>(r.p_new) : std::nullopt, r.fitted, r.heldout_gain,
                               r.delta_bic});
   }
@@ -433,9 +433,11 @@ ExplainResult explain_logs(const std::vector<Log>& logs, const Table& tuned, con
         "with it: held out it gains {:.0f} % ({:.0f} to {:.0f}).",
         out.causes.front().effect, 100 * out.heldout_gain.value, 100 * out.heldout_gain.lower,
         100 * out.heldout_gain.upper));
-  out.verdict = out.curve ? "unexplained" : !e.causes.empty() ? "extended" : "sufficient";
+  out.verdict = out.curve           ? ExplainVerdict::unexplained
+                : !e.causes.empty() ? ExplainVerdict::extended
+                                    : ExplainVerdict::sufficient;
   const bool no_name = !out.curve && !by_blocks && nameless();
-  if (no_name) out.verdict = "unexplained";
+  if (no_name) out.verdict = ExplainVerdict::unexplained;
   if (no_name && !out.blocks.empty()) {
     const auto least = std::min_element(out.blocks.begin(), out.blocks.end(),
                                         [](const auto& a, const auto& b) { return *a.p_new < *b.p_new; });

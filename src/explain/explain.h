@@ -11,6 +11,7 @@
 #include "explain/engine.h"
 #include "explain/healthy.h"
 #include "explain/missing.h"
+#include "explain/outcome.h"
 #include "explain/show.h"
 #include "parameters/table.h"
 #include "signals/log.h"
@@ -45,7 +46,8 @@ struct ExplainedCause {
   std::string meaning = {};  // as the lists of effects and of rows say it; empty where they do not
 };
 struct ExplainedCandidate {
-  std::string effect, where, reason;
+  std::string effect, where;
+  Fate fate = Fate::not_looked_at;
   double predicted_gain = 0;
   std::optional<double> p_new;
   bool fitted = false;
@@ -63,9 +65,9 @@ struct PlaceScore {
 
 struct ExplainResult {
   std::optional<LearntCurve> curve;  // of `unexplained`
-  std::string verdict;               // sufficient | extended | unexplained
-  std::string where;                 // of the first cause; empty: nowhere
-  std::string depends_on;            // of `unexplained`: the variable that it follows, "X by Y" where it takes two
+  ExplainVerdict verdict = ExplainVerdict::sufficient;
+  std::string where;       // of the first cause; empty: nowhere
+  std::string depends_on;  // of `unexplained`: the variable that it follows, "X by Y" where it takes two
   std::vector<ExplainedChannel> channels;
   std::vector<ShownChannel> shown;  // the residual as tuned
   std::vector<BlockReplay> blocks;  // what each block misses with measured signals in place of simulated ones

@@ -4,6 +4,7 @@
 
 #include "report/columns.h"
 #include "report/explain_report.h"
+#include "report/explain_words.h"
 #include "report/handy.h"
 #include "report/replay_part.h"
 
@@ -24,7 +25,7 @@ std::string size_of(const ExplainedParameter& p) {
 }
 
 std::string headline(const ExplainResult& r) {
-  if (r.verdict == "sufficient") return "The simulation misses nothing that healthy logs do not show";
+  if (r.verdict == ExplainVerdict::sufficient) return "The simulation misses nothing that healthy logs do not show";
   if (r.causes.empty())
     return "Something is missing that no cause in the list mends" + (r.where.empty() ? "" : ", near " + words(r.where));
   std::string text;
@@ -43,11 +44,6 @@ std::string with_meanings(const std::vector<ExplainedCause>& causes) {
   return join(all, "; ");
 }
 
-// The verdict as a person would say it; the JSON keeps its own word.
-const char* word_of(const ExplainResult& r) {
-  return r.verdict == "sufficient" ? "NOTHING NEW" : r.verdict == "extended" ? "FOUND" : "UNEXPLAINED";
-}
-
 std::vector<std::string> reasons(const ExplainResult& r) {
   std::vector<std::string> why;
   // The channel that shows it most.
@@ -64,7 +60,7 @@ std::vector<std::string> reasons(const ExplainResult& r) {
   const BlockReplay* newest = nullptr;
   for (const BlockReplay& b : r.blocks)
     if (b.p_new && (!newest || *b.p_new < *newest->p_new)) newest = &b;
-  if (newest && r.verdict != "sufficient")
+  if (newest && r.verdict != ExplainVerdict::sufficient)
     why.push_back(
         fmt::format("With measured signals at its ends, the block {} misses {} of {}; a healthy log misses "
                     "as much with a chance of {}.",
@@ -188,10 +184,12 @@ void add_missing(Page& page, const ExplainResult& r) {
 Page explain_page(const Header& header, const ExplainResult& r, const std::vector<Replay>& replays) {
   Page page(header, "What the simulation misses");
   Verdict v;
-  v.tone = r.verdict == "sufficient" ? Tone::good : r.verdict == "extended" ? Tone::bad : Tone::doubt;
-  v.word = word_of(r);
+  v.tone = r.verdict == ExplainVerdict::sufficient ? Tone::good
+           : r.verdict == ExplainVerdict::extended ? Tone::bad
+                                                   : Tone::doubt;
+  v.word = stamp_of(r.verdict);
   v.headline = headline(r);
-  if (r.verdict == "extended")
+  if (r.verdict == ExplainVerdict::extended)
     v.detail = "What the simulation has wrong on these logs: " + with_meanings(r.causes) + ".";
   if (r.curve) v.detail = "Nothing in the list mends it; a curve learnt from the logs does.";
   if (!r.depends_on.empty()) v.facts.push_back({"It follows", words(r.depends_on)});
@@ -277,9 +275,10 @@ Page explain_page(const Header& header, const ExplainResult& r, const std::vecto
   Bars bars{"Candidates", "cause", "predicted gain", {}, {}, {}};
   for (const ExplainedCandidate& c : r.candidates) {
     if (bars.rows.size() >= 15) break;
-    bars.rows.push_back({words(c.effect) + " at " + words(c.where), c.predicted_gain, digits(c.predicted_gain),
-                         c.reason + (c.p_new ? "; in health with a chance of " + chance(*c.p_new) : ""),
-                         c.reason == "taken" ? Tone::bad : Tone::plain, ""});
+    bars.rows.push_back(
+        {words(c.effect) + " at " + words(c.where), c.predicted_gain, digits(c.predicted_gain),
+         std::string(words_of(c.fate)) + (c.p_new ? "; in health with a chance of " + chance(*c.p_new) : ""),
+         is_taken(c.fate) ? Tone::bad : Tone::plain, ""});
   }
   page.add(bars);
   if (!r.standing.empty()) page.add(causes_table("Standing: healthy logs show it too", r.standing));

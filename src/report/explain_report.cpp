@@ -8,6 +8,7 @@
 #include "base/csv.h"
 #include "base/error.h"
 #include "report/columns.h"
+#include "report/explain_words.h"
 #include "report/handy.h"
 
 namespace servodx::report {
@@ -52,7 +53,7 @@ Json to_json(const LearntCurve& c) {
 Json to_json(const ExplainedCandidate& c) {
   return {{"effect", c.effect},
           {"where", c.where},
-          {"reason", c.reason},
+          {"reason", words_of(c.fate)},
           {"predicted_gain", number(c.predicted_gain)},
           {"p_new", c.p_new ? number(*c.p_new) : Json(nullptr)},
           {"fitted", c.fitted},
@@ -183,7 +184,7 @@ Json explain_json(const ExplainResult& r) {
                         {"heldout_before", number(f.heldout_rms)},
                         {"heldout_after", number(g.heldout_rms)}});
   }
-  return {{"verdict", r.verdict},
+  return {{"verdict", word_of(r.verdict)},
           {"where", r.where.empty() ? Json(nullptr) : Json(r.where)},
           {"depends_on", r.depends_on.empty() ? Json(nullptr) : Json(r.depends_on)},
           {"channels", channels},
@@ -210,7 +211,7 @@ std::string missing_in_words(const ExplainResult& r) {
   const auto named = [](const MissingInput& p) {
     return p.where == "drive" || p.quantity != "force" ? p.where + " (" + p.quantity + ")" : p.where;
   };
-  if (r.verdict == "sufficient" || m.places.empty() || !m.places.front().likely) return {};
+  if (r.verdict == ExplainVerdict::sufficient || m.places.empty() || !m.places.front().likely) return {};
   const MissingInput& p = m.places.front();
   std::string text =
       fmt::format("missing at {}: {} rms, give or take {}", named(p), handy(p.rms, p.unit), handy(p.std_error, p.unit));
@@ -224,14 +225,14 @@ std::string missing_in_words(const ExplainResult& r) {
 }
 
 std::string text_of(const ExplainResult& r, const TextOptions& options) {
-  std::string text = r.verdict;
-  if (r.verdict == "sufficient")
+  std::string text = word_of(r.verdict);
+  if (r.verdict == ExplainVerdict::sufficient)
     text += ": nothing is wrong that healthy logs do not show or that a cause in the list would mend";
-  if (r.verdict == "unexplained")
+  if (r.verdict == ExplainVerdict::unexplained)
     text += r.curve ? ": no cause in the list mends it; a learnt curve does"
                     : ": something is wrong, and no cause in the list mends it";
   if (!r.curve && !r.depends_on.empty()) text += "; at " + r.where + " it follows " + r.depends_on;
-  if (r.verdict == "extended") {
+  if (r.verdict == ExplainVerdict::extended) {
     text += ": ";
     for (std::size_t k = 0; k < r.causes.size(); ++k) text += (k ? ", " : "") + r.causes[k].effect;
   }
@@ -275,8 +276,8 @@ std::string text_of(const ExplainResult& r, const TextOptions& options) {
   tried.row({"tried", "where", "predicted gain", "p", "why not"});
   int shown = 0;
   for (const ExplainedCandidate& c : r.candidates) {
-    if (c.reason == "taken" || ++shown > 6) continue;
-    tried.row({c.effect, c.where, digits(c.predicted_gain), c.p_new ? digits(*c.p_new, 2) : "", c.reason});
+    if (is_taken(c.fate) || ++shown > 6) continue;
+    tried.row({c.effect, c.where, digits(c.predicted_gain), c.p_new ? digits(*c.p_new, 2) : "", words_of(c.fate)});
   }
   return text + tried.text();
 }

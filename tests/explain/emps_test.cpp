@@ -210,8 +210,8 @@ TEST(Emps, DirectionDependentFrictionIsFoundUnaided) {
                 100 * r.heldout_gain.value, 100 * r.heldout_gain.lower, 100 * r.heldout_gain.upper);
   }
   for (const CandidateResult& c : e.candidates)
-    std::printf("  tried %s: %.0f, %s\n", slide.causes()[static_cast<std::size_t>(c.cause)].effect.c_str(),
-                c.predicted_gain, c.reason.c_str());
+    std::printf("  tried %s: %.0f%s\n", slide.causes()[static_cast<std::size_t>(c.cause)].effect.c_str(),
+                c.predicted_gain, is_taken(c.fate) ? ", taken" : "");
   std::printf("  mass %.2f viscous %.1f coulomb %.2f offset %.2f\n", base[0], base[1], base[2], base[3]);
   ASSERT_FALSE(e.causes.empty());
   EXPECT_EQ(slide.causes()[static_cast<std::size_t>(e.causes[0].cause)].effect, "asymmetric_viscous_friction");

@@ -134,22 +134,35 @@ TEST(Engine, TiesCarryACurveStraightOnWhereTheDataDoNotReach) {
   }
 }
 
+// What is planted is a wave of 1 and a kink of 6; the list names the two, and their sum.
+const std::vector<Line::Shape> wave_and_kink = {
+    shapes[0], shapes[2], {"sum", "", [](double t) { return std::sin(40 * t) + 6 * std::abs(t - 0.5); }}};
+
 TEST(Engine, TwoCausesAreBothFound) {
-  // The second one is planted by hand: the first one's shape stays in the data of the second line.
-  std::vector<Line::Shape> both = {
-      shapes[0], shapes[2], {"sum", "", [](double t) { return std::sin(40 * t) + 6 * std::abs(t - 0.5); }}};
-  Line line(both, 11, 2, 1.0);
-  // The sum itself is in the list, so it is the better name; without it the two are.
-  const Explanation whole = explain(line, {});
-  ASSERT_EQ(whole.causes.size(), 1u);
-  EXPECT_EQ(whole.causes[0].cause, 2);
+  Line line(wave_and_kink, 11, 2, 1.0);
+  EngineOptions o;
+  o.among = [](const Cause& c) { return c.effect != "sum"; };
+  const Explanation e = explain(line, o);
+  ASSERT_EQ(e.causes.size(), 2u);
+  for (const CauseResult& r : e.causes) {
+    ASSERT_LT(r.cause, 2);
+    const double planted = r.cause == 0 ? 1.0 : 6.0;
+    EXPECT_NEAR(r.value[0], planted, 3 * r.std_error[0]) << r.cause;
+    EXPECT_EQ(e.candidates[static_cast<std::size_t>(r.cause)].fate, Fate::taken);
+  }
+  EXPECT_NE(e.causes[0].cause, e.causes[1].cause);
+}
+
+TEST(Engine, OneCauseThatIsTwoOthersTogetherStandsAlone) {
+  Line line(wave_and_kink, 11, 2, 1.0);
+  const Explanation e = explain(line, {});
+  ASSERT_EQ(e.causes.size(), 1u);
+  EXPECT_EQ(e.causes[0].cause, 2);
 }
 
 TEST(Engine, RareCauseIsNamedBesideAnotherOnlyWhereTheDataAreStillAbnormal) {
-  const std::vector<Line::Shape> both = {
-      shapes[0], shapes[2], {"sum", "", [](double t) { return std::sin(40 * t) + 6 * std::abs(t - 0.5); }}};
   for (const bool abnormal : {false, true}) {
-    Line line(both, 11, 2, 1.0);
+    Line line(wave_and_kink, 11, 2, 1.0);
     line.make_rare(1);
     EngineOptions o;
     o.among = [](const Cause& c) { return c.effect != "sum"; };

@@ -10,6 +10,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/random.h"
+#include "report/explain_words.h"
 #include "rig/rig_run.h"
 
 namespace servodx::hidden {
@@ -298,7 +299,7 @@ Score score(const Truth& truth, const ExplainResult& answer) {
   Score out;
   out.truth = truth;
   out.verdict = answer.verdict;
-  out.accused = answer.verdict != "sufficient";
+  out.accused = answer.verdict != ExplainVerdict::sufficient;
   out.where = answer.where;
   if (!answer.causes.empty()) {
     const ExplainedCause& first = answer.causes.front();
@@ -312,7 +313,7 @@ Score score(const Truth& truth, const ExplainResult& answer) {
         if (p.name == truth.parameter && std::isfinite(p.std_error))
           out.size_inside = std::abs(p.value - p.before - truth.change) <= 1.645 * p.std_error;
   }
-  if (truth.effect.starts_with("unlisted:")) out.named = answer.verdict == "unexplained";
+  if (truth.effect.starts_with("unlisted:")) out.named = answer.verdict == ExplainVerdict::unexplained;
   const auto one_of = [](const std::vector<std::string>& list, const std::string& name) {
     return std::find(list.begin(), list.end(), name) != list.end();
   };
@@ -324,8 +325,8 @@ Score score(const Truth& truth, const ExplainResult& answer) {
     if (c.fitted && c.heldout_gain.value > 0 && !answer.causes.empty())
       out.gain_share = out.heldout_gain / c.heldout_gain.value;
     if (!out.named)
-      out.note = fmt::format("{} {}: {} (gain {:.1f}, p {:.3g})", c.effect, c.where, c.reason, c.predicted_gain,
-                             c.p_new.value_or(-1));
+      out.note = fmt::format("{} {}: {} (gain {:.1f}, p {:.3g})", c.effect, c.where, report::words_of(c.fate),
+                             c.predicted_gain, c.p_new.value_or(-1));
     break;
   }
   return out;
@@ -383,7 +384,7 @@ nlohmann::json to_json(const Score& s) {
   return {{"effect", s.truth.effect},
           {"places", s.truth.where},
           {"size", s.truth.size},
-          {"verdict", s.verdict},
+          {"verdict", report::word_of(s.verdict)},
           {"first", s.first},
           {"where", s.where},
           {"named", s.named},
@@ -400,7 +401,9 @@ Score from_json(const nlohmann::json& j) {
   Score s;
   s.truth.effect = j.at("effect"), s.truth.where = j.at("places").get<std::vector<std::string>>();
   s.truth.size = j.at("size");
-  s.verdict = j.at("verdict"), s.first = j.at("first"), s.where = j.at("where");
+  for (const ExplainVerdict v : {ExplainVerdict::sufficient, ExplainVerdict::extended, ExplainVerdict::unexplained})
+    if (j.at("verdict") == report::word_of(v)) s.verdict = v;
+  s.first = j.at("first"), s.where = j.at("where");
   s.named = j.at("named"), s.placed = j.at("placed"), s.accused = j.at("accused");
   if (!j.at("size_inside").is_null()) s.size_inside = j.at("size_inside").get<bool>();
   if (const auto v = j.value("variable", Json(nullptr)); !v.is_null()) s.variable = v.get<bool>();

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "explain/explain.h"
+#include "explain/outcome.h"
 #include "signals/log.h"
 
 namespace servodx::hidden {
@@ -50,7 +51,8 @@ Truth unseal(const std::string& sealed);
 
 struct Score {
   Truth truth;
-  std::string verdict, first, where;
+  ExplainVerdict verdict = ExplainVerdict::sufficient;
+  std::string first, where;
   bool named = false;  // the right name first, or the first declares it confusable
   bool placed = false;
   bool accused = false;             // any cause, or unexplained

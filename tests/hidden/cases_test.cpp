@@ -54,7 +54,7 @@ TEST(Hidden, SameSeedSameCase) {
 
 TEST(Hidden, ScoreKnowsRightFromWrong) {
   ExplainResult answer;
-  answer.verdict = "extended";
+  answer.verdict = ExplainVerdict::extended;
   answer.where = "drive";
   answer.causes.push_back(
       {"transport_delay", "drive", "", {{"transport_delay", "s", 2.1e-3, 1e-4, 0.0}}, {}, {}, 0, {"sensor_lag"}});

@@ -7,6 +7,7 @@
 #include "hidden/cases.h"
 #include "parameters/table.h"
 #include "report/explain_report.h"
+#include "report/explain_words.h"
 #include "temporary_folder.h"
 
 namespace servodx::hidden {
@@ -29,7 +30,7 @@ class HiddenStudy : public testing::Test {
     const ExplainResult answer =
         explain_logs({read_log(c.logs.front(), bench_.rig)}, tuned_, bench_.rig, &healthy_, options);
     const Score s = score(unseal(c.sealed), answer);  // opened after the answer
-    std::printf("  %s %s -> %s %s %s %s\n", s.truth.effect.c_str(), s.truth.size.c_str(), s.verdict.c_str(),
+    std::printf("  %s %s -> %s %s %s %s\n", s.truth.effect.c_str(), s.truth.size.c_str(), report::word_of(s.verdict),
                 s.first.c_str(), s.where.c_str(), answer.depends_on.c_str());
     return s;
   }
@@ -67,15 +68,15 @@ TEST_F(HiddenStudy, ControlsAreLeftAlone) {
 
 // Nothing in the list is it: unexplained, at its place, by what it depends on.
 TEST_F(HiddenStudy, WhatIsNotInTheListIsPlacedAndItsVariableFound) {
-  for (const auto& [effect, excitation] :
-       std::vector<std::pair<std::string, std::string>>{{"unlisted:spring", "mixed"}, {"unlisted:saturation", "flight"}})
+  for (const auto& [effect, excitation] : std::vector<std::pair<std::string, std::string>>{
+           {"unlisted:spring", "mixed"}, {"unlisted:saturation", "flight"}})
     EXPECT_TRUE(judge(11, effect, excitation).variable.value_or(false)) << effect;
 }
 
 // Its file is left out of the list: no other name may take its place. Where one does is in docs/not_done.md.
 TEST_F(HiddenStudy, EffectWhoseFileIsRemovedIsUnexplained) {
   for (const char* effect : {"cross_piston_leakage", "mains_pickup", "sensor_lag"})
-    EXPECT_EQ(judge(11, effect, "flight", {effect}).verdict, "unexplained") << effect;
+    EXPECT_EQ(judge(11, effect, "flight", {effect}).verdict, ExplainVerdict::unexplained) << effect;
 }
 
 }  // namespace

@@ -138,7 +138,7 @@ TEST(CheckPage, OpensWithTheWearThatSurelyReadsAQuarterOfTheWay) {
 
 ExplainResult some_explanation() {
   ExplainResult r;
-  r.verdict = "extended";
+  r.verdict = ExplainVerdict::extended;
   r.where = "first_stage";
   r.channels = {{"pressure_a", "bar", 3e5, 2e5, 1e5, 3e5, 2e5}, {"spool_position", "um", 9e-6, 1e-6, 5e-7, 9e-6, 1e-6}};
   r.causes = {{"valve_glitch",
@@ -170,10 +170,41 @@ TEST(ExplainPage, OpensWithTheCauseItsSizeAndTheChannelThatShowsIt) {
   EXPECT_NE(html.find("What was found"), std::string::npos);
 
   ExplainResult nothing;
-  nothing.verdict = "sufficient";
+  nothing.verdict = ExplainVerdict::sufficient;
   EXPECT_NE(explain_page({}, nothing, {}).html().find("NOTHING NEW"), std::string::npos);
-  nothing.verdict = "unexplained";
+  nothing.verdict = ExplainVerdict::unexplained;
   EXPECT_NE(explain_page({}, nothing, {}).html().find("UNEXPLAINED"), std::string::npos);
+}
+
+ExplainedCandidate candidate(const char* effect, Fate fate) {
+  ExplainedCandidate c;
+  c.effect = effect, c.where = "spool", c.fate = fate, c.predicted_gain = 40;
+  return c;
+}
+
+// A cause is taken by the free run or by the replay of the blocks; either way no reason why not stands beside it.
+TEST(ExplainText, ListsUnderWhyNotOnlyWhatWasNotTaken) {
+  ExplainResult r = some_explanation();
+  for (const Fate fate : {Fate::taken, Fate::taken_by_blocks}) {
+    r.candidates = {candidate("valve_glitch", fate), candidate("flow_force", Fate::not_worth_its_numbers)};
+    const std::string text = text_of(r, {}), tried = text.substr(text.find("why not"));
+    EXPECT_EQ(tried.find("valve_glitch"), std::string::npos) << tried;
+    EXPECT_NE(tried.find("not worth its numbers"), std::string::npos) << tried;
+  }
+}
+
+// The page draws every candidate, and marks what was taken.
+TEST(ExplainPage, MarksACauseToldByTheBlocksAsTaken) {
+  const auto page_with = [](Fate fate) {
+    ExplainResult r = some_explanation();
+    r.candidates = {candidate("valve_glitch", fate)};
+    const std::string html = explain_page({}, r, {}).html();
+    return html.substr(html.find("What was tried"));
+  };
+  const auto marked = [&](Fate fate) { return page_with(fate).find("<tr data-tone=\"bad\"") != std::string::npos; };
+  EXPECT_TRUE(marked(Fate::taken));
+  EXPECT_TRUE(marked(Fate::taken_by_blocks));
+  EXPECT_FALSE(marked(Fate::others_fit_better));
 }
 
 // The likeliest place by name, size and what it follows, and what the channels do not tell it from; in health, nothing.
@@ -196,7 +227,7 @@ TEST(ExplainPage, SaysWhatIsMissingAndDrawsItWithItsBand) {
   const Json json = explain_json(r)["missing_input"];
   EXPECT_EQ(json["places"].size(), 2u);
   EXPECT_EQ(json["logs"][0]["value"][1], -320);
-  r.verdict = "sufficient";
+  r.verdict = ExplainVerdict::sufficient;
   EXPECT_EQ(text_of(r, {}).find("missing at"), std::string::npos);
   EXPECT_EQ(explain_page({}, r, {}).html().find("force missing at"), std::string::npos);
 }

@@ -1,0 +1,11 @@
+// The words of an explanation's outcomes, for people and for programs.
+#pragma once
+#include "explain/outcome.h"
+
+namespace servodx::report {
+
+const char* word_of(ExplainVerdict verdict);   // as JSON and text say it
+const char* stamp_of(ExplainVerdict verdict);  // as a page opens with it
+const char* words_of(Fate fate);               // why a candidate was not taken, or that it was
+
+}  // namespace servodx::report
