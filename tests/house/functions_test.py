@@ -1,0 +1,57 @@
+"""A function fits on a screen. Called by ctest."""
+import unittest
+
+import source
+
+LIMIT = 80  # lines, from the first of its declaration to its closing brace
+
+# (file, function): why it may be longer. Equations are read beside their source, in its order; cut, they are not.
+LONGER = {
+    ("src/diagnose/diagnose.cpp", "assess"): "to be split",
+    ("src/diagnose/hypotheses.cpp", "fit_hypotheses"): "to be split",
+    ("src/explain/engine.cpp", "explain"): "to be split",
+    ("src/explain/engine.cpp", "fit_causes"): "to be split",
+    ("src/explain/engine.cpp", "score_causes"): "to be split",
+    ("src/explain/explain.cpp", "explain_logs"): "to be split",
+    ("src/explain/show.cpp", "show"): "to be split",
+    ("src/explain/smoother.cpp", "KalmanFilter::run"): "to be split",
+    ("src/explain/valve.cpp", "ValveSubject::add_causes"): "to be split",
+    ("src/fit/selftest.cpp", "selftest"): "to be split",
+    ("src/fit/tune.cpp", "tune"): "to be split",
+    ("src/model/derivative.h", "derivative"): "equations of motion; each stage uses terms of those above it",
+    ("src/optimise/box_least_squares.cpp", "Search::pass"): "to be split",
+    ("src/prognose/check.cpp", "check"): "to be split",
+    ("src/prognose/growth.cpp", "GrowthModel::GrowthModel"): "to be split",
+    ("src/prognose/track.cpp", "track_parameters"): "to be split",
+    ("src/prognose/trend.cpp", "trend_of"): "to be split",
+    ("src/report/explain_page.cpp", "explain_page"): "to be split",
+    ("src/rig/plant.cpp", "Plant::rates"): "equations of motion of the virtual rig, one block a body",
+    ("src/signals/recorders.cpp", "fit_clock"): "to be split",
+    ("src/simulate/balance.cpp", "balance_with"): "to be split",
+}
+
+
+class Functions(unittest.TestCase):
+    def test_functions_fit_on_a_screen(self):
+        seen, long_ones = 0, {}
+        for path in source.files("src", "apps"):
+            for name, begins, ends in source.functions(path):
+                seen += 1
+                if ends - begins + 1 > LIMIT:
+                    long_ones[path, name] = f"{path}:{begins}: {name} has {ends - begins + 1} lines of {LIMIT} allowed"
+        self.assertGreater(seen, 1000)
+        self.assertFalse([said for key, said in long_ones.items() if key not in LONGER])
+        self.assertFalse(sorted(LONGER.keys() - long_ones.keys()), "not long, or not there: take them off the list")
+
+    def test_functions_are_found_with_their_lines(self):
+        """A sample of the ways in which C++ opens a function."""
+        made = source.ROOT / "tests/house/sample.inc"
+        wanted = [("plain", 2), ("Held::Held", 8), ("Held::get", 10), ("operator==", 14), ("table", 17),
+                  ("of_types", 21)]
+        found = source.functions(made.relative_to(source.ROOT).as_posix())
+        self.assertEqual([(name, begins) for name, begins, _ in found], wanted)
+        self.assertEqual([ends - begins + 1 for _, begins, ends in found], [3, 2, 1, 2, 3, 4])
+
+
+if __name__ == "__main__":
+    unittest.main(verbosity=2)

@@ -1,0 +1,177 @@
+"""Outcomes are types and meaning stands where the thing is: no result is compared to a string, no registry name is
+written outside its file. Called by ctest."""
+import collections, re, unittest
+
+import source
+
+# Calls that ask whether a text is, has or holds another.
+ASK = {"starts_with", "ends_with", "find", "rfind", "contains", "compare", "count", "strcmp", "strncmp", "find_if",
+       "equal", "search"}
+
+# Files that turn text from outside into types. Their comparisons are with what a user wrote.
+READERS = {
+    "apps/servodx/init_command.cpp": "notes of the reader of columns",
+    "apps/servodx/invocation.cpp": "`-` for standard output, names of options",
+    "apps/servodx/main.cpp": "words of the command line",
+    "apps/servodx/manifest.h": "reads a manifest",
+    "apps/servodx/manual_commands.cpp": "options by their CLI11 names, the names of shells",
+    "apps/servodx/map_command.cpp": "--model",
+    "apps/servodx/rerun_command.cpp": "reads a manifest",
+    "apps/servodx/trend_command.cpp": "--check",
+    "apps/servodx/tune_command.cpp": "--local, --effects",
+    "src/base/csv.cpp": "marks of the encoding",
+    "src/optimise/genetic_state.cpp": "reads a checkpoint",
+    "src/parameters/table.cpp": "reads a table",
+    "src/prognose/history_csv.cpp": "reads a history",
+    "src/rig/fleet.cpp": "reads the sets and excitations of a fleet",
+    "src/rig/rig_faults.cpp": "reads a fault's size and span",
+    "src/rig/rig_model.cpp": "reads a model's TOML",
+    "src/signals/guess.cpp": "reads headers of unknown logs",
+    "src/signals/log.cpp": "ending of a file's name",
+    "src/signals/log_columns.cpp": "reads units of columns",
+    "src/signals/rig_file.cpp": "reads a rig file",
+}
+
+# What is compared elsewhere, each text by itself: file, texts, why.
+COMPARED = {
+    "apps/servodx/diagnose_command.cpp": ({"unknown", "fault"}, "to be typed"),
+    "apps/servodx/history_command.cpp": ({"ok"}, "the word with which SQLite answers its check of integrity"),
+    "src/diagnose/diagnose.cpp": ({"healthy", "spool on both stops at small current", "feedback_wire_lost", "unknown"},
+                                  "to be typed"),
+    "src/diagnose/hypotheses.cpp": ({"null_shift"}, "to be typed"),
+    "src/diagnose/promise.cpp": ({"free", "null_shift"}, "to be typed"),
+    "src/diagnose/survey.cpp": ({"gap", "the rig file maps column", "temperature"}, "to be typed"),
+    "src/explain/curves.cpp": ({"current"}, "to be typed"),
+    "src/explain/explain.cpp": ({"sensor:"}, "to be typed"),
+    "src/explain/valve.cpp": ({", news"}, "to be typed"),
+    "src/fit/identifiability.cpp": ({"free"}, "to be typed"),
+    "src/fit/nominal.cpp": ({"-", "mount_compliance", "valve.first_stage", "jet_pipe"}, "to be typed"),
+    "src/fit/selftest.cpp": ({"free"}, "to be typed"),
+    "src/fit/tune.cpp": ({"flat", "confounded", "bounded"}, "to be typed"),
+    "src/prognose/history.cpp": ({"clogged_filter", "fidelity"}, "to be typed"),
+    "src/prognose/limits.cpp": ({"gain", "hysteresis", "phase_margin", "bandwidth"}, "to be typed"),
+    "src/prognose/monitor.cpp": ({"linear", "A"}, "names of the monitor's models, as its user gives them"),
+    "src/prognose/seeded.cpp": ({"parameter:", "oil_temperature [K]"}, "to be typed"),
+    "src/prognose/trend.cpp": ({"parameter:", "mean_error", "unknown"}, "to be typed"),
+    "src/rig/facts.cpp": ({","}, "layout of a line of text"),
+    "src/rig/rig_run.cpp": ({"piston_position"}, "signals of the rig go by name: it makes columns, not results"),
+}
+
+
+def call_of(tokens, at):
+    """The name of the call whose parentheses hold this token, and whether the token stands there at top level."""
+    depth = 0
+    for i in range(at - 1, max(-1, at - 120), -1):
+        kind, value, _ = tokens[i]
+        if kind == "op" and value in ")]}":
+            depth += 1
+        elif kind == "op" and value in "([{":
+            if depth == 0:
+                return tokens[i - 1][1] if value == "(" and i else ""
+            depth -= 1
+        elif kind == "op" and value == ";" and depth == 0:
+            return ""
+    return ""
+
+
+def compared(tokens):
+    """(text, line) of every literal that something is compared with."""
+    for i, (kind, value, line) in enumerate(tokens):
+        if kind != "string" or value.startswith("SELECT "):  # a question to a data base, which calls that `find` too
+            continue
+        first, last = i - 1, i + 1
+        if last < len(tokens) and tokens[last][1] in ("s", "sv"):
+            last += 1
+        if tokens[first][1] in "({" and tokens[first - 1][1] in ("string", "string_view") and tokens[last][1] in ")}":
+            first, last = first - 2, last + 1
+            while tokens[first][1] in ("::", "std"):
+                first -= 1
+        around = (tokens[first][1] if first >= 0 else "", tokens[last][1] if last < len(tokens) else "")
+        if {"==", "!="} & set(around) or call_of(tokens, i) in ASK:
+            yield value, line
+
+
+def registry_names():
+    """Every name of a fault, an effect, a row effect or a row, and the file that may write it."""
+    names = {}
+    for path in source.files("src/faults", "src/effects"):
+        pattern = r'\.name = "(\w+)"' if "/faults/" in path else r'\bname = "(\w+)"'
+        names.update((name, path) for name in re.findall(pattern, source.text(path)))
+    rows = "src/effects/row_effects.cpp"
+    for name in re.findall(r'^ +\{(?:\.name = )?"(\w+)",', source.text(rows), re.M):
+        names.setdefault(name, rows)
+    for name in re.findall(r"X\(\d+, *(\w+)", source.text("src/parameters/list.h")):
+        names[name] = "src/parameters/list.h"
+    return names
+
+
+# Where a registry's name is written outside its file: file, names, why.
+WRITTEN = {
+    "src/diagnose/diagnose.cpp": ({"feedback_wire_lost"}, "to become a field of the fault"),
+    "src/diagnose/hypotheses.cpp": ({"null_shift"}, "to become a field of the fault"),
+    "src/diagnose/promise.cpp": ({"null_shift"}, "to become a field of the fault"),
+    "src/effects/row_effects.cpp": ({"stiction", "hose_compliance", "cross_piston_leakage"},
+                                    "their own file: two are called as their row, one joins an effect's test"),
+    "src/explain/show.cpp": ({"supply_pressure"}, "to be looked at"),
+    "src/explain/valve.cpp": ({"stiction", "magnetic_hysteresis", "armature_angle", "transport_delay",
+                               "mount_compliance", "mains_pickup", "viscosity_change", "edge_transition",
+                               "orifice_length", "nozzle_land", "seal_shear", "screen_drop", "edge_radius", "port_line",
+                               "supply_droop", "hose_compliance", "cross_piston_leakage", "air_fraction",
+                               "stribeck_friction", "asymmetric_lap", "air_entrainment", "sensor_lag",
+                               "sensor_gain_error", "flow_force"}, "to become fields of the effects"),
+    "src/fit/free_values.cpp": ({"servovalve_null", "air_fraction"}, "to be looked at"),
+    "src/fit/nominal.cpp": ({"mount_compliance"}, "to be looked at"),
+    "src/fit/tune.cpp": ({"magnetic_hysteresis", "flow_meter_lag", "edge_radius", "port_line", "armature_angle",
+                          "mount_compliance", "edge_transition", "orifice_length", "screen_drop", "nozzle_land",
+                          "seal_shear", "nozzle_mismatch"}, "to become fields of the effects"),
+    "src/prognose/history.cpp": ({"clogged_filter"}, "to become a field of the fault"),
+    "src/report/explain_report.cpp": ({"air_fraction"}, "to be looked at"),
+    "src/report/explain_words.cpp": ({"unexplained"}, "to be looked at"),
+    "src/report/text.cpp": ({"servovalve_null"}, "to be looked at"),
+    "src/signals/signal.cpp": ({"supply_pressure", "return_pressure"}, "these two signals are called as their rows"),
+}
+# The virtual rig shares no list with the model, on purpose; its parameters and faults go by the field's words.
+OWN_WORDS = "src/rig/"
+
+
+class Words(unittest.TestCase):
+    def test_no_result_is_compared_to_a_string(self):
+        found, where = collections.defaultdict(set), []
+        for path in source.files("src", "apps"):
+            if path.startswith("src/report/"):
+                continue
+            for text, line in compared(source.tokens(path)):
+                found[path].add(text)
+                if path not in READERS and text not in COMPARED.get(path, ((), ""))[0]:
+                    where.append(f'{path}:{line}: compared with "{text}"; give the outcome a type')
+        self.assertFalse(where)
+        stale = [path for path in READERS if path not in found]
+        stale += [f'{path}: "{text}"' for path, (texts, _) in COMPARED.items() for text in texts - found[path]]
+        self.assertFalse(stale, "nothing like it there: take it off the list")
+        self.assertFalse(READERS.keys() & COMPARED.keys())
+
+    def test_comparisons_are_found_however_written(self):
+        made = source.tokens("tests/house/compared.inc")
+        self.assertEqual([text for text, _ in compared(made)], list("abcdefghijk"))
+
+    def test_registry_names_are_written_in_their_own_files_alone(self):
+        names = registry_names()
+        self.assertGreater(len(names), 70)
+        found, where = collections.defaultdict(set), []
+        for path in source.files("src", "apps", "include"):
+            if path.startswith(OWN_WORDS):
+                continue
+            for kind, text, line in source.tokens(path):
+                word = text.split(":")[-1]
+                if kind != "string" or names.get(word, path) == path:
+                    continue
+                found[path].add(word)
+                if word not in WRITTEN.get(path, ((), ""))[0]:
+                    where.append(f'{path}:{line}: "{text}" belongs to {names[word]} alone; say there what it means')
+        self.assertFalse(where)
+        stale = [f'{path}: "{name}"' for path, (names, _) in WRITTEN.items() for name in sorted(names - found[path])]
+        self.assertFalse(stale, "not written there: take it off the list")
+
+
+if __name__ == "__main__":
+    unittest.main(verbosity=2)
