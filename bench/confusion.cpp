@@ -17,9 +17,14 @@
 #include <sstream>
 
 #include "diagnose/diagnose.h"
+#include "fit/log_data.h"
+#include "fit/problem.h"
+#include "fit/replay.h"
 #include "fit/tune.h"
 #include "parameters/table.h"
+#include "servodx/rig.h"
 #include "signals/log.h"
+#include "simulate/scenario.h"
 
 using namespace servodx;
 namespace fs = std::filesystem;
@@ -58,8 +63,8 @@ std::vector<Replayed> replayed(const Assessment& a, const Log& log, const Table&
   LogData data = prepare(log, rig, moving_average_of(tuned));
   for (FitChannel& c : data.channels)
     if (c.signal == Signal::piston_position) c.filter.drift = piston_drift;
-  const auto healthy =
-      std::find_if(a.explanations.begin(), a.explanations.end(), [](const Candidate& c) { return c.name == "healthy"; });
+  const auto healthy = std::find_if(a.explanations.begin(), a.explanations.end(),
+                                    [](const Candidate& c) { return c.name == "healthy"; });
   std::vector<Replayed> out;
   if (healthy == a.explanations.end()) return out;
   const FitProblem problem({&data}, healthy->candidate, {});

@@ -12,10 +12,17 @@
 #include <nlohmann/json.hpp>
 
 #include "base/progress.h"
+#include "explain/explain.h"
+#include "explain/healthy.h"
+#include "explain/outcome.h"
 #include "fit/tune.h"
 #include "hidden/cases.h"
+#include "parameters/table.h"
 #include "report/explain_report.h"
 #include "report/explain_words.h"
+#include "report/json.h"
+#include "servodx/log.h"
+#include "servodx/rig.h"
 
 using namespace servodx;
 

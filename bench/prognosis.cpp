@@ -11,7 +11,10 @@
 #include <algorithm>
 #include <cstdio>
 
+#include "parameters/table.h"
 #include "prognosis/study.h"
+#include "rig/rig_model.h"
+#include "servodx/rig.h"
 
 namespace servodx::study {
 namespace {

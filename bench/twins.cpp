@@ -13,6 +13,8 @@
 #include <cstdlib>
 #include <map>
 
+#include "fit/tune.h"
+
 using namespace servodx;
 
 int main(int argc, char** argv) {

@@ -6,6 +6,10 @@
 #include "base/error.h"
 #include "fit/log_data.h"
 #include "fit/nominal.h"
+#include "parameters/table.h"
+#include "servodx/log.h"
+#include "servodx/rig.h"
+#include "simulate/scenario.h"
 #include "simulate/simulate.h"
 
 int main(int argc, char** argv) {

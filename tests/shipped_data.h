@@ -5,6 +5,7 @@
 #include "fit/log_data.h"
 #include "fit/nominal.h"
 #include "parameters/table.h"
+#include "servodx/rig.h"
 #include "signals/log.h"
 
 namespace servodx {

@@ -12,11 +12,17 @@
 #include <numbers>
 
 #include "base/atomic_file.h"
+#include "base/random.h"
+#include "parameters/list.h"
+#include "parameters/table.h"
+#include "prognose/check.h"
+#include "prognose/history.h"
 #include "prognose/limits.h"
 #include "prognose/monitor.h"
 #include "prognose/trend.h"
 #include "prognosis/study.h"
 #include "report/line_chart.h"
+#include "rig/rig_run.h"
 
 namespace servodx::study {
 namespace {

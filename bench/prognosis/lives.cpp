@@ -13,9 +13,15 @@
 #include <numeric>
 
 #include "base/atomic_file.h"
+#include "prognose/check.h"
+#include "prognose/history.h"
 #include "prognose/metrics.h"
+#include "prognose/seeded.h"
+#include "prognose/track.h"
 #include "prognose/trend.h"
+#include "prognosis/study.h"
 #include "prognosis/units.h"
+#include "rig/rig_model.h"
 
 namespace servodx::study {
 namespace {

@@ -6,8 +6,11 @@
 #include <cmath>
 #include <cstdio>
 
+#include "base/random.h"
+#include "prognose/history.h"
 #include "prognose/metrics.h"
 #include "prognose/trend.h"
+#include "prognosis/study.h"
 #include "prognosis/units.h"
 
 namespace servodx::study {

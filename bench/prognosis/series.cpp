@@ -7,9 +7,13 @@
 
 #include "base/atomic_file.h"
 #include "base/csv.h"
+#include "parameters/list.h"
+#include "prognose/check.h"
+#include "prognose/history.h"
 #include "prognose/history_csv.h"
 #include "prognose/trend.h"
 #include "prognosis/study.h"
+#include "servodx/log.h"
 
 namespace servodx::study {
 namespace {

@@ -5,6 +5,8 @@
 #include <cstdio>
 #include <filesystem>
 
+#include "base/random.h"
+#include "prognose/history.h"
 #include "prognose/trend.h"
 #include "prognosis/study.h"
 

@@ -6,6 +6,9 @@
 #include <exception>
 #include <mutex>
 
+#include "rig/rig_model.h"
+#include "servodx/log.h"
+
 namespace servodx::study {
 
 Condition random_condition(Random& random) {

@@ -6,9 +6,13 @@
 #include <vector>
 
 #include "base/random.h"
+#include "parameters/table.h"
 #include "prognose/check.h"
 #include "prognose/history.h"
+#include "rig/rig_model.h"
 #include "rig/rig_run.h"
+#include "servodx/log.h"
+#include "servodx/rig.h"
 #include "signals/rig_file.h"
 
 namespace servodx::study {

@@ -8,8 +8,14 @@
 
 #include "base/atomic_file.h"
 #include "base/csv.h"
+#include "base/random.h"
 #include "fit/tune.h"
+#include "parameters/list.h"
+#include "parameters/table.h"
+#include "prognose/check.h"
 #include "prognose/history_csv.h"
+#include "rig/rig_model.h"
+#include "rig/rig_run.h"
 #include "signals/log.h"
 
 namespace servodx::study {

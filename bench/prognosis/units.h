@@ -13,8 +13,10 @@
 #include <string>
 #include <vector>
 
+#include "parameters/table.h"
 #include "prognose/history.h"
 #include "prognosis/study.h"
+#include "rig/rig_model.h"
 
 namespace servodx::study {
 

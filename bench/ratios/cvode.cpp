@@ -6,7 +6,12 @@
 #include <sunlinsol/sunlinsol_dense.h>
 #include <sunmatrix/sunmatrix_dense.h>
 
+#include "integrate/sparse_lu.h"
+#include "model/derived.h"
+#include "parameters/list.h"
+#include "servodx/log.h"
 #include "simulate/kernel.h"
+#include "simulate/scenario.h"
 
 namespace servodx::bench {
 namespace {

@@ -4,6 +4,7 @@
 #pragma once
 #include <optional>
 
+#include "simulate/scenario.h"
 #include "simulate/simulate.h"
 
 namespace servodx::bench {

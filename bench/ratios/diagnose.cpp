@@ -6,9 +6,15 @@
 
 #include <filesystem>
 
+#include "fit/tune.h"
+#include "parameters/table.h"
 #include "ratios/measure.h"
 #include "ratios/rows.h"
+#include "rig/rig_faults.h"
+#include "rig/rig_model.h"
 #include "rig/rig_run.h"
+#include "servodx/log.h"
+#include "servodx/rig.h"
 
 namespace servodx::bench {
 

@@ -7,8 +7,11 @@
 
 #include "optimise/box_least_squares.h"
 #include "optimise/genetic.h"
+#include "optimise/genetic_state.h"
+#include "optimise/problem.h"
 #include "ratios/peers.h"
 #include "ratios/race.h"
+#include "ratios/rows.h"
 
 namespace servodx::bench {
 namespace {

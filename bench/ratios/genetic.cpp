@@ -8,9 +8,12 @@
 #include <thread>
 
 #include "optimise/box_least_squares.h"
+#include "optimise/genetic_state.h"
+#include "optimise/problem.h"
 #include "ratios/measure.h"
 #include "ratios/rows.h"
 #include "ratios/twin.h"
+#include "simulate/scenario.h"
 
 namespace servodx::bench {
 namespace {

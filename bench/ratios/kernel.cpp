@@ -3,11 +3,18 @@
 
 #include "base/random.h"
 #include "fit/free_values.h"
+#include "fit/log_data.h"
 #include "fit/problem.h"
+#include "optimise/problem.h"
+#include "parameters/list.h"
 #include "ratios/cvode.h"
 #include "ratios/measure.h"
 #include "ratios/rows.h"
 #include "ratios/trace.h"
+#include "servodx/log.h"
+#include "signals/filters.h"
+#include "simulate/scenario.h"
+#include "simulate/simulate.h"
 
 namespace servodx::bench {
 namespace {

@@ -8,11 +8,22 @@
 
 #include "base/atomic_file.h"
 #include "diagnose/hypotheses.h"
+#include "faults/registry.h"
+#include "fit/error_model.h"
 #include "fit/free_values.h"
+#include "fit/log_data.h"
+#include "fit/problem.h"
 #include "long_log.h"
+#include "optimise/problem.h"
 #include "ratios/measure.h"
 #include "ratios/rows.h"
+#include "ratios/trace.h"
 #include "ratios/twin.h"
+#include "report/line_chart.h"
+#include "servodx/log.h"
+#include "servodx/rig.h"
+#include "simulate/scenario.h"
+#include "simulate/simulate.h"
 
 namespace servodx::bench {
 namespace {

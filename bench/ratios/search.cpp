@@ -2,10 +2,16 @@
 // runs, whose floor is the truth's, and on the virtual rig's logs, whose floor is the least that anyone has found.
 #include <fmt/format.h>
 
+#include "fit/log_data.h"
 #include "optimise/box_least_squares.h"
+#include "optimise/problem.h"
 #include "ratios/measure.h"
 #include "ratios/race.h"
+#include "ratios/rows.h"
 #include "ratios/twin.h"
+#include "servodx/log.h"
+#include "servodx/rig.h"
+#include "simulate/scenario.h"
 #include "simulate/together.h"
 
 namespace servodx::bench {

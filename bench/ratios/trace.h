@@ -6,6 +6,9 @@
 #include "fit/log_data.h"
 #include "fit/nominal.h"
 #include "parameters/table.h"
+#include "servodx/log.h"
+#include "servodx/rig.h"
+#include "simulate/scenario.h"
 #include "simulate/simulate.h"
 
 namespace servodx::bench {

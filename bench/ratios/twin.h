@@ -8,8 +8,14 @@
 #include <vector>
 
 #include "base/random.h"
+#include "fit/log_data.h"
 #include "fit/problem.h"
+#include "optimise/problem.h"
+#include "optimise/robust_loss.h"
+#include "parameters/list.h"
+#include "ratios/rows.h"
 #include "ratios/trace.h"
+#include "simulate/scenario.h"
 
 namespace servodx::bench {
 

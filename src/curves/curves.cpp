@@ -9,6 +9,8 @@
 
 #include "base/key_error.h"
 #include "curves/sweep.h"
+#include "servodx/error.h"
+#include "servodx/rig.h"
 
 namespace servodx::curves {
 namespace {

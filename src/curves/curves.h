@@ -20,6 +20,7 @@
 #include <vector>
 
 #include "curves/frequency_response.h"
+#include "servodx/rig.h"
 #include "signals/log.h"
 #include "signals/rig_file.h"
 

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "servodx/log.h"
+
 namespace servodx::curves {
 namespace {
 

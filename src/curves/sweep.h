@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "curves/curves.h"
+#include "servodx/log.h"
 
 namespace servodx::curves {
 

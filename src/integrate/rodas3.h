@@ -6,6 +6,7 @@
 #pragma once
 #include <array>
 
+#include "base/pack.h"
 #include "integrate/sparse_lu.h"
 
 namespace servodx {

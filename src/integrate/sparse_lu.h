@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <utility>
 
+#include "base/pack.h"
 #include "base/sparse_dual.h"
 
 namespace servodx {

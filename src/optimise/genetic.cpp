@@ -7,7 +7,9 @@
 #include <utility>
 
 #include "base/error.h"
+#include "base/random.h"
 #include "optimise/genetic_variation.h"
+#include "optimise/problem.h"
 
 namespace servodx {
 namespace {

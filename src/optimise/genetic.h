@@ -14,6 +14,7 @@
 #include <string>
 
 #include "optimise/genetic_state.h"
+#include "optimise/problem.h"
 
 namespace servodx {
 

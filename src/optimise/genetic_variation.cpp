@@ -5,6 +5,8 @@
 #include <numbers>
 #include <numeric>
 
+#include "optimise/problem.h"
+
 namespace servodx {
 namespace {
 

@@ -15,6 +15,7 @@
 
 #include "base/random.h"
 #include "optimise/genetic_state.h"
+#include "optimise/problem.h"
 
 namespace servodx {
 

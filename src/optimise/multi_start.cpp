@@ -9,6 +9,7 @@
 
 #include "base/error.h"
 #include "base/meeting.h"
+#include "optimise/problem.h"
 
 namespace servodx {
 namespace {

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "optimise/box_least_squares.h"
+#include "optimise/problem.h"
 
 namespace servodx {
 

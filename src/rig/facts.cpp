@@ -9,7 +9,11 @@
 #include "base/csv.h"
 #include "base/error.h"
 #include "base/units.h"
+#include "rig/fluid.h"
+#include "rig/magnetics.h"
+#include "rig/passage.h"
 #include "rig/virtual_rig.h"
+#include "servodx/rig.h"
 
 namespace servodx::rig {
 namespace {

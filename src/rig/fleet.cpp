@@ -10,6 +10,11 @@
 
 #include "base/error.h"
 #include "base/random.h"
+#include "rig/fluid.h"
+#include "rig/passage.h"
+#include "rig/rig_faults.h"
+#include "rig/rig_model.h"
+#include "servodx/rig.h"
 
 namespace servodx::rig {
 namespace {

@@ -12,6 +12,7 @@
 #include <string>
 #include <vector>
 
+#include "rig/rig_model.h"
 #include "rig/rig_run.h"
 
 namespace servodx::rig {

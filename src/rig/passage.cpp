@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "rig/rig_model.h"
+
 namespace servodx::rig {
 using std::numbers::pi;
 

@@ -18,6 +18,7 @@
 
 #include "base/pack.h"
 #include "rig/fluid.h"
+#include "rig/rig_model.h"
 
 namespace servodx::rig {
 

@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "servodx/rig.h"
+
 // One arithmetic at every width: the vector unit's add, multiply, divide and root are the scalar ones. The sanitizers
 // cannot start before the loader has chosen a clone.
 #if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && !defined(__SANITIZE_ADDRESS__)
@@ -226,7 +228,8 @@ void Plant::rates(const State& s, const Inputs& in, const Hysteresis& hysteresis
            f.q_a - f.q_across),
       four(f.q_b + f.q_across, f.q_supply - f.q_filter - f.q_pa - f.q_pb,
            f.q_at + f.q_bt + f.q_nozzle_1 + f.q_nozzle_2 + q_end_1 + q_end_2 + q_bypass - f.q_return, -f.q_supply)};
-  const std::array<Four, 2> swell{four(0.0, end_growth, -end_growth, piston_area_a_ * v_rod), four(-piston_area_b_ * v_rod, 0.0, 0.0, 0.0)};
+  const std::array<Four, 2> swell{four(0.0, end_growth, -end_growth, piston_area_a_ * v_rod),
+                                  four(-piston_area_b_ * v_rod, 0.0, 0.0, 0.0)};
   double throttled = -f.q_return * tank_enthalpy_;  // enthalpy that the restrictions took
   double accumulator_enthalpy = 0.0;
   for (int k = 0; k < 2; ++k) {

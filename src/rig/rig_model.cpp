@@ -261,7 +261,11 @@ const std::vector<ParameterInfo>& rig_parameters() {
   static const std::vector<ParameterInfo> list{
 #define RIG_PARAMETER(group, name, unit, low, high, meaning) \
   {#group, #name, unit, low, high, meaning, &RigModel::group##_##name},
+#include "base/units.h"
 #include "rig/parameters.inc"
+#include "servodx/error.h"
+#include "servodx/log.h"
+#include "servodx/rig.h"
 #undef RIG_PARAMETER
   };
   return list;

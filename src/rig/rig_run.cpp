@@ -7,7 +7,11 @@
 
 #include "base/error.h"
 #include "base/random.h"
+#include "base/units.h"
+#include "rig/fluid.h"
+#include "rig/plant.h"
 #include "rig/sensors.h"
+#include "servodx/rig.h"
 
 namespace servodx::rig {
 namespace {

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "rig/excitations.h"
+#include "rig/fluid.h"
 #include "rig/rig_faults.h"
 #include "rig/rig_model.h"
 #include "rig/virtual_rig.h"

@@ -6,6 +6,8 @@
 #include <numbers>
 
 #include "base/error.h"
+#include "rig/plant.h"
+#include "rig/rig_model.h"
 
 namespace servodx::rig {
 

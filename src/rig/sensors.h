@@ -6,6 +6,7 @@
 
 #include "base/random.h"
 #include "base/units.h"
+#include "rig/rig_model.h"
 #include "rig/virtual_rig.h"
 #include "signals/log.h"
 

@@ -2,6 +2,10 @@
 
 #include <cmath>
 
+#include "rig/fluid.h"
+#include "rig/rig_model.h"
+#include "rig/wear.h"
+
 namespace servodx::rig {
 namespace {
 
@@ -15,7 +19,8 @@ State moved(const State& s, const State& ds, double h) {
 
 VirtualRig::VirtualRig(const RigModel& model, const Conditions& conditions)
     : model_(model),
-      plant_(model, Oil(model, conditions.temperature, conditions.air, conditions.viscosity), conditions.temperature, conditions.wear),
+      plant_(model, Oil(model, conditions.temperature, conditions.air, conditions.viscosity), conditions.temperature,
+             conditions.wear),
       hysteresis_(model),
       s_(plant_.rest()),
       position_gain_(conditions.wear.position_gain) {}

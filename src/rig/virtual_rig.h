@@ -4,7 +4,11 @@
 // supply line without flow (about 2 us each, hot oil); RK4 is stable to 2.8 time constants. tests/rig shows
 // convergence.
 #pragma once
+#include "rig/fluid.h"
+#include "rig/magnetics.h"
 #include "rig/plant.h"
+#include "rig/rig_model.h"
+#include "rig/wear.h"
 
 namespace servodx::rig {
 

@@ -6,6 +6,9 @@
 #include <functional>
 #include <string_view>
 
+#include "base/units.h"
+#include "servodx/log.h"
+
 namespace servodx {
 namespace {
 

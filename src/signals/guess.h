@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "base/csv.h"
+#include "servodx/log.h"
 #include "signals/signal.h"
 
 namespace servodx {

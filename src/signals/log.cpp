@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cctype>
 
+#include "servodx/rig.h"
 #include "signals/log_formats.h"
 
 namespace servodx {

@@ -8,6 +8,8 @@
 #include <limits>
 
 #include "base/nearest.h"
+#include "base/units.h"
+#include "servodx/rig.h"
 #include "signals/plausible.h"
 
 namespace servodx {

@@ -5,6 +5,8 @@
 #include <vector>
 
 #include "base/error.h"
+#include "base/units.h"
+#include "servodx/rig.h"
 #include "signals/log.h"
 #include "signals/sweep.h"
 

@@ -6,6 +6,10 @@
 
 #include "base/block_reader.h"
 #include "base/csv.h"
+#include "base/units.h"
+#include "servodx/error.h"
+#include "servodx/log.h"
+#include "servodx/rig.h"
 #include "signals/guess.h"
 #include "signals/log_columns.h"
 #include "signals/log_formats.h"

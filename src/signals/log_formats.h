@@ -1,5 +1,6 @@
 // The file formats behind read_log(), one function and one file each.
 #pragma once
+#include "servodx/rig.h"
 #include "signals/log.h"
 
 namespace servodx {

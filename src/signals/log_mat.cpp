@@ -7,6 +7,9 @@
 #include <memory>
 
 #include "base/sha256.h"
+#include "servodx/error.h"
+#include "servodx/log.h"
+#include "servodx/rig.h"
 #include "signals/log_columns.h"
 #include "signals/log_formats.h"
 

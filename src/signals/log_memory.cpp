@@ -2,6 +2,7 @@
 #include <span>
 
 #include "servodx/log.h"
+#include "servodx/rig.h"
 #include "signals/log_columns.h"
 
 namespace servodx {

@@ -8,6 +8,8 @@
 
 #include "base/atomic_file.h"
 #include "base/csv.h"
+#include "base/units.h"
+#include "servodx/error.h"
 #include "signals/log.h"
 
 namespace servodx {

@@ -8,6 +8,9 @@
 #include <iterator>
 #include <span>
 
+#include "base/units.h"
+#include "servodx/rig.h"
+
 namespace servodx {
 namespace {
 

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "servodx/rig.h"
 #include "signals/log.h"
 #include "signals/sweep.h"
 

@@ -10,6 +10,8 @@
 #include "base/key_error.h"
 #include "base/nearest.h"
 #include "base/sha256.h"
+#include "servodx/error.h"
+#include "servodx/log.h"
 
 namespace servodx {
 namespace {

@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "valve_maps/high_fidelity.h"
+#include "valve_maps/valve_numbers.h"
+
 namespace servodx::valve_maps {
 namespace {
 

@@ -13,7 +13,9 @@
 #include <string>
 #include <vector>
 
+#include "valve_maps/high_fidelity.h"
 #include "valve_maps/registry.h"
+#include "valve_maps/valve_numbers.h"
 
 namespace servodx::valve_maps {
 

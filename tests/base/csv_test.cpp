@@ -7,7 +7,9 @@
 #include <cmath>
 #include <vector>
 
+#include "base/decimal.h"
 #include "base/random.h"
+#include "servodx/error.h"
 
 namespace servodx {
 namespace {

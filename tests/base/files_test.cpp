@@ -7,6 +7,7 @@
 #include "base/csv.h"
 #include "base/progress.h"
 #include "base/sha256.h"
+#include "servodx/error.h"
 #include "temporary_folder.h"
 
 namespace servodx {

@@ -4,6 +4,8 @@
 
 #include <set>
 
+#include "servodx/error.h"
+
 namespace servodx {
 namespace {
 
@@ -66,8 +68,9 @@ TEST(Units, EachRefusalSaysRuleAndMend) {
   EXPECT_EQ(refusal("20", Dimension::current), place + "'20' has no unit; add one of A, mA");
   EXPECT_EQ(refusal("20 ma", Dimension::current), place + "unknown unit 'ma'; use one of A, mA");
   for (const char* range : {"2..5 um", "2-5 um", "2 to 5 um", "3,5 um"})
-    EXPECT_NE(refusal(range, Dimension::length).find("follows the number: a range, or a decimal comma; give one number"),
-              std::string::npos)
+    EXPECT_NE(
+        refusal(range, Dimension::length).find("follows the number: a range, or a decimal comma; give one number"),
+        std::string::npos)
         << refusal(range, Dimension::length);
   EXPECT_EQ(refusal("20 mm", Dimension::current), place + "'mm' is a unit of length, not of current; use one of A, mA");
   EXPECT_EQ(refusal("mA", Dimension::current),

@@ -9,6 +9,8 @@
 
 #include "base/error.h"
 #include "curves/sweep.h"
+#include "servodx/log.h"
+#include "servodx/rig.h"
 
 namespace servodx::curves {
 namespace {

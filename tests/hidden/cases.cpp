@@ -11,6 +11,8 @@
 
 #include "base/random.h"
 #include "report/explain_words.h"
+#include "rig/excitations.h"
+#include "rig/rig_model.h"
 #include "rig/rig_run.h"
 
 namespace servodx::hidden {

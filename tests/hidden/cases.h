@@ -14,6 +14,7 @@
 
 #include "explain/explain.h"
 #include "explain/outcome.h"
+#include "servodx/rig.h"
 #include "signals/log.h"
 
 namespace servodx::hidden {

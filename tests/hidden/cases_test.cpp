@@ -7,6 +7,9 @@
 #include <fstream>
 #include <sstream>
 
+#include "explain/explain.h"
+#include "explain/outcome.h"
+#include "servodx/rig.h"
 #include "temporary_folder.h"
 
 namespace servodx::hidden {

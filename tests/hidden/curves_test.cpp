@@ -3,9 +3,17 @@
 
 #include <gtest/gtest.h>
 
+#include "effects/registry.h"
+#include "effects/unexplained.h"
+#include "explain/subject.h"
+#include "explain/valve.h"
+#include "optimise/problem.h"
+#include "parameters/list.h"
 #include "parameters/table.h"
+#include "servodx/rig.h"
 #include "signals/log.h"
 #include "signals/rig_file.h"
+#include "simulate/scenario.h"
 
 namespace servodx {
 namespace {

@@ -2,11 +2,14 @@
 #include <gtest/gtest.h>
 
 #include "explain/curves.h"
+#include "explain/engine.h"
 #include "explain/healthy.h"
 #include "explain/replay.h"
 #include "explain/valve.h"
 #include "hidden/cases.h"
 #include "parameters/table.h"
+#include "servodx/log.h"
+#include "servodx/rig.h"
 #include "temporary_folder.h"
 
 namespace servodx::hidden {

@@ -4,10 +4,15 @@
 //   cp DIR/tuned_v1.csv tests/hidden/valve_1.csv; cp DIR/reference_v1.json tests/hidden/valve_1.json
 #include <gtest/gtest.h>
 
+#include "explain/explain.h"
+#include "explain/healthy.h"
+#include "explain/outcome.h"
 #include "hidden/cases.h"
 #include "parameters/table.h"
 #include "report/explain_report.h"
 #include "report/explain_words.h"
+#include "servodx/log.h"
+#include "servodx/rig.h"
 #include "temporary_folder.h"
 
 namespace servodx::hidden {

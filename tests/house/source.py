@@ -79,7 +79,7 @@ def outline(head):
         elif depth == 0:
             kept.append(token)
     for i in range(len(kept) - 3, -1, -1):
-        if kept[i][1] in ("__attribute__", "requires") and kept[i + 1][1] == "(":
+        if kept[i][1] in ("__attribute__", "requires", "alignas") and kept[i + 1][1] == "(":
             del kept[i:i + 3]
     return kept
 
@@ -188,3 +188,71 @@ def functions(path):
             types = [s.name for s in scopes[:-1] if s.kind == "type" and s.name]
             found.append(("::".join(types + [scopes[-1].name]), scopes[-1].begins, line))
     return found
+
+
+def registry_rows():
+    """Names of the 41 rows."""
+    return re.findall(r"X\(\d+, *(\w+)", text("src/parameters/list.h"))
+
+
+class Names(typing.NamedTuple):
+    """What a file declares: at namespace scope, by kind, and within types (members). Names in a namespace of their own
+    inside of the program's go as `space::name`."""
+    types: frozenset
+    functions: frozenset
+    constants: frozenset
+    members: frozenset
+    forward: frozenset  # types declared, not defined
+
+
+KEYWORDS = set("void bool char int long short float double auto struct alignas decltype const unsigned".split())
+
+
+def inner(space):
+    """A namespace without the program's own around it."""
+    return (space + "::").removeprefix("servodx::").removesuffix("::")
+
+
+def declared_by(head):
+    """(kind, name) of a declaration that ends in `;`, or None."""
+    flat = outline(head)
+    words = [text for _, text, _ in flat]
+    if words[:1] == ["template"]:
+        flat, words = flat[1:], words[1:]
+    if not words or words[0] in ("static_assert", "friend", "return") or words[:2] == ["using", "namespace"]:
+        return None
+    if words[0] == "using":
+        return "type", words[1] if "=" in words else words[-1]
+    if words[0] in ("struct", "class", "union", "enum") and all(kind == "name" for kind, _, _ in flat):
+        return "forward", words[-1]
+    if "operator" in words:
+        return None
+    if "(" in words and words.index("(") and "=" not in words[:words.index("(")]:
+        return "function", words[words.index("(") - 1]
+    name = name_before(flat, ("=", "{", "[", ":"))
+    return ("constant", name) if name not in ("", "struct", "default", "delete", "alignas") else None
+
+
+@functools.lru_cache(maxsize=None)
+def names(path):
+    kinds = {kind: set() for kind in ("type", "function", "constant", "member", "forward")}
+
+    def put(kind, name, scopes):
+        if any(scope.kind in BODY for scope in scopes) or not name or name in KEYWORDS:
+            return
+        if any(scope.kind in ("type", "enum", "list") for scope in scopes):
+            kinds["member"].add(name)
+            return
+        space = inner("::".join(scope.name for scope in scopes if scope.name))
+        kinds[kind].add(f"{space}::{name}" if space else name)
+
+    for event, scopes, head, _ in walk(path):
+        if event == "end":
+            made = declared_by(head)
+            if made:
+                put(*made, scopes)
+        elif event == "close" and scopes[-1].kind in ("type", "enum", "function"):
+            own = scopes[-1]
+            put("function" if own.kind == "function" else "type", own.name.split("::")[-1], scopes[:-1])
+    kinds["constant"].update(re.findall(r"^[ \t]*#[ \t]*define[ \t]+(\w{3,})", text(path), re.M))
+    return Names(*(frozenset(kinds[kind]) for kind in ("type", "function", "constant", "member", "forward")))

@@ -100,7 +100,7 @@ def registry_names():
     rows = "src/effects/row_effects.cpp"
     for name in re.findall(r'^ +\{(?:\.name = )?"(\w+)",', source.text(rows), re.M):
         names.setdefault(name, rows)
-    for name in re.findall(r"X\(\d+, *(\w+)", source.text("src/parameters/list.h")):
+    for name in source.registry_rows():
         names[name] = "src/parameters/list.h"
     return names
 

@@ -6,6 +6,7 @@
 
 #include "base/pack.h"
 #include "base/random.h"
+#include "integrate/sparse_lu.h"
 
 namespace servodx {
 namespace {

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "base/random.h"
+#include "base/sparse_dual.h"
 
 namespace servodx {
 namespace {

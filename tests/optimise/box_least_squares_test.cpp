@@ -10,6 +10,8 @@
 #include "functions.h"
 #include "optimise/box_quadratic.h"
 #include "optimise/multi_start.h"
+#include "optimise/problem.h"
+#include "optimise/robust_loss.h"
 
 namespace servodx::test {
 namespace {

@@ -8,6 +8,7 @@
 #include "base/random.h"
 #include "functions.h"
 #include "optimise/box_least_squares.h"
+#include "optimise/problem.h"
 
 namespace servodx::test {
 namespace {

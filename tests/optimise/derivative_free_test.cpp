@@ -5,6 +5,8 @@
 
 #include <cmath>
 
+#include "optimise/problem.h"
+
 namespace servodx {
 namespace {
 

@@ -6,7 +6,10 @@
 
 #include "base/error.h"
 #include "functions.h"
+#include "optimise/box_least_squares.h"
+#include "optimise/genetic_state.h"
 #include "optimise/multi_start.h"
+#include "optimise/problem.h"
 
 namespace servodx::test {
 namespace {

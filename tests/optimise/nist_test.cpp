@@ -3,6 +3,7 @@
 
 #include "nist_problems.h"
 #include "optimise/box_least_squares.h"
+#include "optimise/problem.h"
 
 namespace servodx::test {
 namespace {

@@ -11,6 +11,7 @@
 #include <sstream>
 
 #include "base/error.h"
+#include "parameters/list.h"
 
 namespace servodx {
 namespace {

@@ -5,7 +5,10 @@
 #include <cstdio>
 
 #include "fit/tune.h"
+#include "parameters/table.h"
+#include "rig/rig_model.h"
 #include "rig/rig_run.h"
+#include "servodx/log.h"
 #include "shipped_data.h"
 #include "temporary_folder.h"
 

@@ -11,8 +11,14 @@
 
 #include "base/random.h"
 #include "fit/free_values.h"
+#include "fit/log_data.h"
+#include "fit/problem.h"
 #include "fit/tune.h"
+#include "parameters/table.h"
+#include "servodx/log.h"
+#include "servodx/rig.h"
 #include "shipped_data.h"
+#include "simulate/scenario.h"
 #include "simulate/simulate.h"
 
 namespace servodx::twins {

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include "fit/tune.h"
+
 namespace servodx {
 namespace {
 

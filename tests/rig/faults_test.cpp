@@ -4,6 +4,13 @@
 #include <algorithm>
 
 #include "base/error.h"
+#include "rig/excitations.h"
+#include "rig/plant.h"
+#include "rig/rig_faults.h"
+#include "rig/rig_model.h"
+#include "rig/rig_run.h"
+#include "rig/virtual_rig.h"
+#include "rig/wear.h"
 #include "rig_test_support.h"
 
 namespace servodx::rig {

@@ -9,6 +9,8 @@
 #include <set>
 
 #include "base/error.h"
+#include "rig/rig_model.h"
+#include "rig/rig_run.h"
 #include "rig_test_support.h"
 
 namespace servodx::rig {

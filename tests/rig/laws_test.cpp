@@ -3,6 +3,14 @@
 
 #include <algorithm>
 
+#include "rig/contact.h"
+#include "rig/fluid.h"
+#include "rig/magnetics.h"
+#include "rig/passage.h"
+#include "rig/plant.h"
+#include "rig/rig_model.h"
+#include "rig/rig_run.h"
+#include "rig/virtual_rig.h"
 #include "rig_test_support.h"
 #include "signals/log.h"
 

@@ -5,7 +5,13 @@
 #include <set>
 
 #include "base/error.h"
+#include "rig/excitations.h"
+#include "rig/plant.h"
+#include "rig/rig_model.h"
+#include "rig/rig_run.h"
+#include "rig/virtual_rig.h"
 #include "rig_test_support.h"
+#include "servodx/log.h"
 
 namespace servodx::rig {
 namespace {

@@ -3,7 +3,12 @@
 #include <cmath>
 #include <string>
 
+#include "rig/fluid.h"
+#include "rig/passage.h"
+#include "rig/rig_faults.h"
+#include "rig/rig_model.h"
 #include "rig/rig_run.h"
+#include "rig/virtual_rig.h"
 
 namespace servodx::rig {
 

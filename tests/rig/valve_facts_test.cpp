@@ -6,6 +6,11 @@
 #include <filesystem>
 
 #include "rig/facts.h"
+#include "rig/fluid.h"
+#include "rig/magnetics.h"
+#include "rig/plant.h"
+#include "rig/rig_model.h"
+#include "rig/virtual_rig.h"
 #include "rig_test_support.h"
 
 namespace servodx::rig {

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include "base/csv.h"
+
 namespace servodx {
 namespace {
 

@@ -11,6 +11,9 @@
 #include "base/csv.h"
 #include "base/random.h"
 #include "base/sha256.h"
+#include "base/units.h"
+#include "servodx/error.h"
+#include "servodx/rig.h"
 #include "temporary_folder.h"
 
 namespace servodx {

@@ -8,6 +8,8 @@
 #include <map>
 
 #include "base/sha256.h"
+#include "servodx/error.h"
+#include "servodx/rig.h"
 #include "signals/log.h"
 #include "temporary_folder.h"
 

@@ -6,6 +6,7 @@
 
 #include "servodx/error.h"
 #include "servodx/log.h"
+#include "servodx/rig.h"
 #include "temporary_folder.h"
 
 namespace servodx {

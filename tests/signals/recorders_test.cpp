@@ -6,6 +6,8 @@
 #include <cmath>
 
 #include "base/random.h"
+#include "servodx/error.h"
+#include "servodx/log.h"
 
 namespace servodx {
 namespace {

@@ -4,6 +4,11 @@
 
 #include <numbers>
 
+#include "base/units.h"
+#include "servodx/error.h"
+#include "servodx/log.h"
+#include "servodx/rig.h"
+#include "signals/signal.h"
 #include "temporary_folder.h"
 
 namespace servodx {

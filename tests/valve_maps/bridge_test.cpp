@@ -1,4 +1,5 @@
-// Our closed form: exact for its own edges, near HF on valves and grids it was not read from. What it costs `servodx map` prints.
+// Our closed form: exact for its own edges, near HF on valves and grids it was not read from. What it costs `servodx
+// map` prints.
 #include "valve_maps/bridge.h"
 
 #include <gtest/gtest.h>
@@ -7,6 +8,8 @@
 
 #include "support.h"
 #include "valve_maps/compare.h"
+#include "valve_maps/high_fidelity.h"
+#include "valve_maps/valve_numbers.h"
 
 namespace servodx::valve_maps {
 namespace {

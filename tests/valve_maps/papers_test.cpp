@@ -5,12 +5,15 @@
 
 #include "support.h"
 #include "valve_maps/compare.h"
+#include "valve_maps/high_fidelity.h"
 #include "valve_maps/linear.h"
 #include "valve_maps/model_a.h"
 #include "valve_maps/model_c1.h"
 #include "valve_maps/model_c2.h"
 #include "valve_maps/model_c3.h"
 #include "valve_maps/model_c5.h"
+#include "valve_maps/registry.h"
+#include "valve_maps/valve_numbers.h"
 
 namespace servodx::valve_maps {
 namespace {

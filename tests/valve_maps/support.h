@@ -1,6 +1,7 @@
 // Valves to judge maps on.
 #pragma once
 #include "valve_maps/high_fidelity.h"
+#include "valve_maps/valve_numbers.h"
 
 namespace servodx::valve_maps {
 
