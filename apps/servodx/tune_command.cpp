@@ -78,17 +78,9 @@ std::map<std::string, double> priors_of(const std::vector<std::string>& list) {
 int run(const Options& options) {
   TuneOptions tune_options = options.tune;
   if (!options.effects.empty()) tune_options.effects = effects_of(options.effects);
-  require_option(!tune_options.resume || !tune_options.checkpoint.empty(), "--resume",
-                 "there is nothing to resume from", "add --checkpoint FILE");
-  require_option(!tune_options.resume || std::filesystem::exists(tune_options.checkpoint), "--checkpoint",
-                 "'" + tune_options.checkpoint + "' is not there to resume from", "leave out --resume to begin");
-  require_option(tune_options.population >= 24, "--population", "must be at least 24", "four islands of six each");
-  require_option(tune_options.generations >= 0, "--generations", "must not be negative",
-                 "0 leaves the genetic search out");
+  tune_options.validate();
   require_option(options.local == "least_squares" || options.local == "nlopt", "--local",
                  "unknown method '" + options.local + "'", "use least_squares or nlopt");
-  require_option(tune_options.rounds >= 1, "--rounds", "must be at least 1",
-                 std::to_string(TuneOptions{}.rounds) + " is the default");
   tune_options.derivative_free = options.local == "nlopt";
   tune_options.priors = priors_of(options.priors);
   tune_options.profile = CLI::detail::split(options.profile, ',');

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <sstream>
 
+#include "fit/tuning_comments.h"
+
 namespace servodx {
 namespace {
 
@@ -17,7 +19,6 @@ constexpr double prior_worth = 4;
 // nothing of the floor, and the next log may rest. A log speaks with so many independent samples.
 constexpr double prior_spread = 1;
 constexpr double log_worth = 20;
-constexpr const char* comment_key = "model error";
 
 double square(double x) { return x * x; }
 
@@ -178,20 +179,20 @@ void apply_error_model(FitProblem& problem, const ErrorModel& model, const Point
 std::vector<std::string> to_comments(const ErrorModel& model) {
   std::vector<std::string> lines;
   for (const ChannelError& c : model.channels)
-    lines.push_back(fmt::format("{} {}: floor {} {}, per activity {}, independent {} 1/s", comment_key,
+    lines.push_back(fmt::format("{} {}: floor {} {}, per activity {}, independent {} 1/s", error_key,
                                 info(c.signal).name, c.floor, info(c.signal).si_unit, c.per_activity, c.independent));
   return lines;
 }
 
 ErrorModel error_model_of(const Table& table) {
   ErrorModel model;
-  for (const std::string& line : table.comments) {
-    const std::size_t at = line.find(comment_key);
+  for (const std::string& line : newest_tuning(table.comments)) {
+    const std::size_t at = line.find(error_key);
     if (at == std::string::npos) continue;
     const std::size_t colon = line.find(':', at);
     if (colon == std::string::npos) continue;
     std::istringstream name(
-        line.substr(at + std::string(comment_key).size(), colon - at - std::string(comment_key).size()));
+        line.substr(at + std::string(error_key).size(), colon - at - std::string(error_key).size()));
     std::string word;
     name >> word;
     const auto signal = find_signal(word);

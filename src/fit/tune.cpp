@@ -18,6 +18,7 @@
 #include "fit/problem.h"
 #include "fit/profile.h"
 #include "fit/thin.h"
+#include "fit/tuning_comments.h"
 #include "fit/uncertainty.h"
 #include "optimise/derivative_free.h"
 #include "optimise/genetic.h"
@@ -27,8 +28,6 @@ namespace {
 
 constexpr double tuning_null_limit = 0.1;  // fault-free logs: a null may sit anywhere that calibration allows
 constexpr double independent_rate = 40;    // [1/s] samples that count before anything is known of their correlation
-constexpr const char* hash_key = "tuned by";
-constexpr const char* average_key = "moving average";
 
 double rms_of(const std::vector<double>& r, std::size_t from, std::size_t to) {
   double sum = 0;
@@ -286,7 +285,7 @@ std::vector<std::string> default_effects(bool on_stand) {
 }
 
 int moving_average_of(const Table& table) {
-  for (const std::string& line : table.comments)
+  for (const std::string& line : newest_tuning(table.comments))
     if (const std::size_t at = line.find(average_key); at != std::string::npos)
       return std::max(
           1, static_cast<int>(std::strtol(line.c_str() + at + std::string(average_key).size() + 1, nullptr, 10)));
@@ -295,10 +294,10 @@ int moving_average_of(const Table& table) {
 
 std::vector<std::string> tuned_by(const Table& table) {
   std::vector<std::string> out;
-  for (const std::string& line : table.comments) {
-    const std::size_t at = line.find(hash_key);
+  for (const std::string& line : newest_tuning(table.comments)) {
+    const std::size_t at = line.find(tuned_by_key);
     if (at == std::string::npos) continue;
-    std::istringstream words(line.substr(at + std::string(hash_key).size()));
+    std::istringstream words(line.substr(at + std::string(tuned_by_key).size()));
     std::string hash;
     words >> hash;
     out.push_back(hash);
@@ -306,13 +305,24 @@ std::vector<std::string> tuned_by(const Table& table) {
   return out;
 }
 
+void TuneOptions::validate() const {
+  const auto require = [](bool holds, const char* option, const std::string& rule, const std::string& mend) {
+    if (!holds) throw InputError({.file = option}, rule, mend);
+  };
+  require(!resume || !checkpoint.empty(), "--resume", "there is nothing to resume from", "add --checkpoint FILE");
+  require(!resume || std::filesystem::exists(checkpoint), "--checkpoint",
+          "'" + checkpoint + "' is not there to resume from", "leave out --resume to begin");
+  require(population >= 24, "--population", "must be at least 24", "four islands of six each");
+  require(generations >= 0, "--generations", "must not be negative", "0 leaves the genetic search out");
+  require(rounds >= 1, "--rounds", "must be at least 1", fmt::format("{} is the default", TuneOptions{}.rounds));
+  require(moving_average >= 1 && moving_average % 2 == 1, "--moving-average",
+          fmt::format("{} is not an odd number of samples", moving_average), "give 1 for none, or 3, 5, ...");
+}
+
 TuneResult tune(const std::vector<Log>& logs, const Table& nominal, const RigFile& rig, const TuneOptions& options) {
+  options.validate();
   Tuning run{options, Progress("tune", {.quiet = options.quiet}), {}, {}, nominal, {}, {}, {}, 0, 0, {}};
   TuneResult out;
-  if (options.moving_average < 1 || options.moving_average % 2 == 0)
-    throw InputError({.file = "--moving-average"},
-                     fmt::format("{} is not an odd number of samples", options.moving_average),
-                     "give 1 for none, or 3, 5, ...");
 
   // 1. What is fitted to what.
   for (const Log& log : logs) {
@@ -548,13 +558,13 @@ TuneResult tune(const std::vector<Log>& logs, const Table& nominal, const RigFil
   out.table[row::servovalve_null].nominal = median(nulls);
   out.table[row::air_fraction].nominal =
       std::clamp(median(airs), out.table[row::air_fraction].lower, out.table[row::air_fraction].upper);
-  out.table.comments = nominal.comments;
+  out.table.comments = without_tunings(nominal.comments);  // a new tune replaces what an older one said
   if (options.moving_average > 1)
     out.table.comments.push_back(fmt::format("{}: {} samples", average_key, options.moving_average));
   for (const std::string& line : to_comments(out.error)) out.table.comments.push_back(line);
   for (const LogData& d : run.data)
     out.table.comments.push_back(
-        fmt::format("{} {} {}", hash_key, d.sha256, std::filesystem::path(d.path).filename().string()));
+        fmt::format("{} {} {}", tuned_by_key, d.sha256, std::filesystem::path(d.path).filename().string()));
   out.convergence = run.convergence;
   out.notes.insert(out.notes.begin(), run.notes.begin(), run.notes.end());
   out.notes.push_back("local stage: " + end.stopped);

@@ -69,6 +69,9 @@ struct TuneOptions {
   std::string checkpoint;            // file saved every generation; empty: none
   bool resume = false;
   const std::atomic<bool>* stop = nullptr;  // set: finish with the best so far
+
+  // Throws InputError that names the option. tune() asks for it before any work.
+  void validate() const;
 };
 
 // What a tune frees unless told: of a valve on an actuator, and of one on a test stand.

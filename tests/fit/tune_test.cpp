@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include "base/error.h"
+#include "fit/error_model.h"
 #include "recovery/twins.h"
 
 namespace servodx {
@@ -31,6 +33,76 @@ TEST(Tune, ALosingChildDoesNotRunTheLogsThatAreLeft) {
   std::printf("%ld runs of %ld\n", shown[2] - shown[1], all + static_cast<long>(logs.size()));
   EXPECT_LT(shown[2] - shown[1], all);
   EXPECT_GT(shown[2] - shown[1], all / 6);  // the first logs are everybody's
+}
+
+// A tuned table of one row; the log is short, as only what the table carries beside its rows is looked at.
+TuneResult quick_tune(const Table& table) {
+  TuneOptions o;
+  o.quiet = true;
+  o.generations = 0;
+  o.rounds = 1;
+  o.effects.emplace();
+  return tune({twins::cut(shipped_log("healthy/h12_mixed"), 400)}, table, shipped_rig(), o);
+}
+
+Table one_free_row() {
+  Table table = shipped_table();
+  for (Row& row : table.rows) row.estimate = false;
+  table[row::driver_bandwidth].estimate = true;
+  return table;
+}
+
+const std::string old_log(64, 'a'), new_log(64, 'b');
+
+std::vector<std::string> old_set() {
+  return {"moving average: 5 samples", "model error spool_position: floor 1 m, per activity 2, independent 9.9 1/s",
+          "tuned by " + old_log + " old.csv"};
+}
+
+TEST(Tune, ATunedTableThatIsTunedAgainKeepsNothingOfTheOldErrorModelFilterAndLogs) {
+  Table table = one_free_row();
+  table.comments = old_set();
+  table.comments.insert(table.comments.begin(), "tuned by hand before that");
+  const TuneResult result = quick_tune(table);
+  const ErrorModel carried = error_model_of(result.table);
+  ASSERT_EQ(carried.channels.size(), result.error.channels.size());
+  for (std::size_t i = 0; i < carried.channels.size(); ++i)
+    EXPECT_EQ(carried.channels[i].independent, result.error.channels[i].independent);
+  EXPECT_EQ(moving_average_of(result.table), 1);
+  EXPECT_EQ(tuned_by(result.table), std::vector<std::string>{shipped_log("healthy/h12_mixed").sha256});
+  EXPECT_EQ(result.table.comments.front(), "tuned by hand before that");
+  EXPECT_EQ(result.table.comments.size(), 1 + result.error.channels.size() + 1);
+}
+
+TEST(Tune, OfATableThatHoldsTwoTuningsTheLastCounts) {
+  Table table = shipped_table();
+  table.comments = old_set();
+  table.comments.push_back("model error spool_position: floor 3 m, per activity 4, independent 178 1/s");
+  table.comments.push_back("tuned by " + new_log + " new.csv");
+  const ErrorModel error = error_model_of(table);
+  ASSERT_EQ(error.channels.size(), 1u);
+  EXPECT_EQ(error.channels[0].independent, 178);
+  EXPECT_EQ(moving_average_of(table), 1);
+  EXPECT_EQ(tuned_by(table), std::vector<std::string>{new_log});
+}
+
+TEST(Tune, OptionsAreRefusedByNameBeforeAnyWork) {
+  const auto refused = [](auto change) -> std::string {
+    TuneOptions o;
+    change(o);
+    try {
+      tune({}, Table{}, RigFile{}, o);
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "";
+  };
+  const auto names = [](const std::string& text, const char* option) { return text.find(option) != std::string::npos; };
+  EXPECT_TRUE(names(refused([](TuneOptions& o) { o.rounds = 0; }), "--rounds"));
+  EXPECT_TRUE(names(refused([](TuneOptions& o) { o.population = 23; }), "--population"));
+  EXPECT_TRUE(names(refused([](TuneOptions& o) { o.generations = -1; }), "--generations"));
+  EXPECT_TRUE(names(refused([](TuneOptions& o) { o.moving_average = 4; }), "--moving-average"));
+  EXPECT_TRUE(names(refused([](TuneOptions& o) { o.resume = true; }), "--resume"));
 }
 
 }  // namespace
