@@ -28,6 +28,7 @@ constexpr double kMostDamping = 1e12;
 constexpr double kGoodGain = 0.75;    // of what the undamped model promises; below it the trials are bent
 constexpr double kKeptPromise = 0.5;  // of what a step promised: its Jacobian serves once more
 constexpr double kRounding = 1e-12;   // of the cost: a promised gain below this cannot be seen
+constexpr double kSlowShare = 0.9;    // of the cost some iterations ago: a search that is above it is too slow
 constexpr double kBendFrom = 1e-6;    // of the box; shorter steps meet rounding, not curvature
 
 void require(bool good, const char* option, const char* rule) {
@@ -364,6 +365,87 @@ class Search {
     result_.stopped = std::move(words);
   }
 
+  // What a pass carries from step to step.
+  struct Pass {
+    double tolerance;
+    bool central;               // differences of the Jacobian
+    bool may_refine;            // central differences are still to be had where it ends
+    std::vector<double> costs;  // at each new Jacobian
+    int learnt = 0;             // steps that the Jacobian has learnt since its differences
+    bool fresh() const { return learnt == 0; }
+  };
+  enum class Next { step, again, pass_ends, search_ends };
+
+  std::string state() const {
+    return "cost " + number(cost_) + ", gradient cosine " + number(result_.gradient_cosine) + ", promised gain " +
+           number(result_.promised_gain);
+  }
+
+  Next end(Next how, StopReason reason, const std::string& words) {
+    stop(reason, words);
+    return how;
+  }
+
+  // With central differences once more, where the forward ones say that it is the end.
+  bool refine(Pass& pass) {
+    if (!pass.may_refine || !own_jacobian_ || pass.central) return false;
+    pass.central = true;
+    return true;
+  }
+
+  // Before a step: whether it is the end, by the caller, by the goal, by the promise or by a limit.
+  Next before_step(Pass& pass) {
+    if (options_.progress) {
+      const LeastSquaresProgress now{result_.iterations, result_.evaluations, cost_, result_.projected_gradient, &x_};
+      if (!options_.progress(now))
+        return end(Next::search_ends, StopReason::interrupted, "interrupted on request; " + state());
+    }
+    if (options_.cost_goal >= 0 && 0.5 * residual_.squaredNorm() <= options_.cost_goal)
+      return end(Next::search_ends, StopReason::goal, "the misfit goal was reached; " + state());
+    const bool flat_cost = cost_ <= options_.cost_floor;
+    const bool at_end = flat_cost || result_.promised_gain <= pass.tolerance * cost_ + options_.cost_floor;
+    if (at_end && !pass.fresh()) {  // only differences say that it is the end
+      pass.learnt = 0;
+      return Next::again;
+    }
+    if (at_end) {
+      if (!flat_cost && refine(pass)) return Next::again;
+      return end(Next::pass_ends, StopReason::converged, "converged; " + state());
+    }
+    return pass.fresh() ? within_limits(pass) : Next::step;
+  }
+
+  Next within_limits(Pass& pass) {
+    if (result_.iterations >= options_.max_iterations)
+      return end(Next::search_ends, StopReason::iteration_limit,
+                 "iteration limit of " + std::to_string(options_.max_iterations) + "; " + state());
+    if (options_.max_evaluations > 0 && result_.evaluations >= options_.max_evaluations)
+      return end(Next::search_ends, StopReason::evaluation_limit,
+                 "evaluation limit of " + std::to_string(options_.max_evaluations) + "; " + state());
+    pass.costs.push_back(cost_);
+    const auto slow = static_cast<std::size_t>(options_.slow_iterations);
+    if (slow > 0 && pass.costs.size() > slow && cost_ > kSlowShare * pass.costs[pass.costs.size() - 1 - slow])
+      return end(Next::search_ends, StopReason::stalled,
+                 "too slow: " + std::to_string(slow) + " iterations; " + state());
+    return Next::step;
+  }
+
+  // Where no step lowers the cost.
+  Next without_step(Pass& pass) {
+    if (!pass.fresh()) {
+      pass.learnt = 0;
+      return Next::again;
+    }
+    if (refine(pass)) return Next::again;
+    if (result_.promised_gain <= kRounding * cost_)
+      return end(Next::pass_ends, StopReason::converged, "converged to the rounding of the cost; " + state());
+    return end(
+        Next::pass_ends, StopReason::stalled,
+        "stalled: no step down to " + number(options_.step_tolerance) + " of the box lowers the cost; " + state() +
+            (result_.missing_columns > 0 ? ", " + std::to_string(result_.missing_columns) + " Jacobian columns missing"
+                                         : ""));
+  }
+
   // One loss, to its tolerance. False: the whole search ends here.
   bool pass(RobustLoss loss, double scale, double tolerance, bool last) {
     loss_ = loss;
@@ -371,82 +453,30 @@ class Search {
     cost_ = cost_of(residual_);
     damping_ = options_.first_damping;
     radius_ = options_.step_limit;
-    bool central = options_.difference == Difference::central;
-    std::vector<double> costs;  // of the pass
-    const bool may_refine = last && options_.difference == Difference::forward_then_central;
-    int learnt = 0;  // steps that the Jacobian has learnt since its differences
+    Pass pass{tolerance,
+              options_.difference == Difference::central,
+              last && options_.difference == Difference::forward_then_central,
+              {}};
     for (;;) {
-      if (learnt == 0) take_jacobian(central);
+      if (pass.fresh()) take_jacobian(pass.central);
       const Model m = model();
       result_.promised_gain = trial(m, m.gradient, kLeastDamping, options_.step_limit).promised;
-      if (learnt == 0) ++result_.iterations;
-      const double misfit = 0.5 * residual_.squaredNorm();
-      const std::string state = "cost " + number(cost_) + ", gradient cosine " + number(result_.gradient_cosine) +
-                                ", promised gain " + number(result_.promised_gain);
-      if (options_.progress) {
-        const LeastSquaresProgress now{result_.iterations, result_.evaluations, cost_, result_.projected_gradient, &x_};
-        if (!options_.progress(now)) {
-          stop(StopReason::interrupted, "interrupted on request; " + state);
-          return false;
+      if (pass.fresh()) ++result_.iterations;
+      Next next = before_step(pass);
+      if (next == Next::step) {
+        const Point x = x_;
+        const Eigen::VectorXd residual = residual_;
+        if (step(m) == Step::accepted) {
+          pass.learnt = own_jacobian_ && !pass.central && kept_promise_ && pass.learnt < options_.secant_steps
+                            ? pass.learnt + 1
+                            : 0;
+          if (pass.learnt > 0) learn(x, residual);
+        } else {
+          next = without_step(pass);
         }
       }
-      if (options_.cost_goal >= 0 && misfit <= options_.cost_goal) {
-        stop(StopReason::goal, "the misfit goal was reached; " + state);
-        return false;
-      }
-      const bool flat_cost = cost_ <= options_.cost_floor;
-      const bool at_end = flat_cost || result_.promised_gain <= tolerance * cost_ + options_.cost_floor;
-      if (learnt > 0 && at_end) {  // only differences say that it is the end
-        learnt = 0;
-        continue;
-      }
-      if (at_end) {
-        if (may_refine && own_jacobian_ && !central && !flat_cost) {
-          central = true;
-          continue;
-        }
-        stop(StopReason::converged, "converged; " + state);
-        return true;
-      }
-      if (learnt == 0 && result_.iterations >= options_.max_iterations) {
-        stop(StopReason::iteration_limit,
-             "iteration limit of " + std::to_string(options_.max_iterations) + "; " + state);
-        return false;
-      }
-      if (learnt == 0 && options_.max_evaluations > 0 && result_.evaluations >= options_.max_evaluations) {
-        stop(StopReason::evaluation_limit,
-             "evaluation limit of " + std::to_string(options_.max_evaluations) + "; " + state);
-        return false;
-      }
-      if (learnt == 0) costs.push_back(cost_);
-      const auto slow = static_cast<std::size_t>(options_.slow_iterations);
-      if (learnt == 0 && slow > 0 && costs.size() > slow && cost_ > 0.9 * costs[costs.size() - 1 - slow]) {
-        stop(StopReason::stalled, "too slow: " + std::to_string(slow) + " iterations; " + state);
-        return false;
-      }
-      const Point x = x_;
-      const Eigen::VectorXd residual = residual_;
-      if (step(m) == Step::accepted) {
-        learnt = own_jacobian_ && !central && kept_promise_ && learnt < options_.secant_steps ? learnt + 1 : 0;
-        if (learnt > 0) learn(x, residual);
-      } else if (learnt > 0) {
-        learnt = 0;
-      } else {
-        if (may_refine && own_jacobian_ && !central) {
-          central = true;
-          continue;
-        }
-        if (result_.promised_gain <= kRounding * cost_) {
-          stop(StopReason::converged, "converged to the rounding of the cost; " + state);
-          return true;
-        }
-        stop(StopReason::stalled,
-             "stalled: no step down to " + number(options_.step_tolerance) + " of the box lowers the cost; " + state +
-                 (result_.missing_columns > 0
-                      ? ", " + std::to_string(result_.missing_columns) + " Jacobian columns missing"
-                      : ""));
-        return true;
-      }
+      if (next == Next::pass_ends) return true;
+      if (next == Next::search_ends) return false;
     }
   }
 

@@ -158,43 +158,50 @@ Alignment align(const Series& first, const Series& second, double from, double t
   throw InputError({second.path, 0, ""}, rule, mend);
 }
 
-ClockFit fit_clock(const Log& one, const Log& two, Signal by, const JoinOptions& options) {
-  const std::string name(info(by).name);
-  const Series first(one.time, one[by]), second(two.time, two[by]);
-  const double step = std::max(usual_step(one.time), usual_step(two.time));
-  const double length =
-      std::min(piece_time, 0.5 * std::min(first.end() - first.begin(), second.end() - second.begin()));
-  const std::vector<double> whole = increments(first, first.begin(), first.end(), step);
-
-  // The second's pieces; the liveliest is looked for everywhere.
-  std::vector<double> starts;
-  const double span = second.end() - second.begin() - length;
-  const int count = std::clamp(static_cast<int>(span / (0.5 * length)) + 1, 2, most_pieces);
-  for (int k = 0; k < count; ++k) starts.push_back(second.begin() + span * k / (count - 1));
-  std::vector<std::vector<double>> pieces;
+// The second recorder's pieces, overlapping, and the increments of the first that they are looked for in.
+struct Pieces {
+  double length = 0, step = 0;                // [s] of a piece; of the even grid
+  double whole_from = 0;                      // [s] first's clock, where `whole` begins
+  std::vector<double> whole;                  // increments of the first
+  std::vector<double> starts;                 // [s] second's clock
+  std::vector<std::vector<double>> contents;  // increments, a piece each
   std::size_t liveliest = 0;
+
+  double middle(std::size_t k) const { return starts[k] + 0.5 * length; }
+  long lag_of(double offset, std::size_t k) const { return std::lround((starts[k] + offset - whole_from) / step); }
+  double offset_of(long lag, std::size_t k) const { return whole_from + static_cast<double>(lag) * step - starts[k]; }
+};
+
+Pieces cut_into_pieces(const Series& first, const Series& second, double step) {
+  Pieces p;
+  p.step = step;
+  p.length = std::min(piece_time, 0.5 * std::min(first.end() - first.begin(), second.end() - second.begin()));
+  p.whole_from = first.begin();
+  p.whole = increments(first, first.begin(), first.end(), step);
+  const double span = second.end() - second.begin() - p.length;
+  const int count = std::clamp(static_cast<int>(span / (0.5 * p.length)) + 1, 2, most_pieces);
+  for (int k = 0; k < count; ++k) p.starts.push_back(second.begin() + span * k / (count - 1));
   double most = -1;
-  for (std::size_t k = 0; k < starts.size(); ++k) {
-    pieces.push_back(increments(second, starts[k], starts[k] + length, step));
+  for (std::size_t k = 0; k < p.starts.size(); ++k) {
+    p.contents.push_back(increments(second, p.starts[k], p.starts[k] + p.length, step));
     double energy = 0;
-    for (double x : pieces.back()) energy += x * x;
+    for (double x : p.contents.back()) energy += x * x;
     // Not at the ends, where the first may not have run.
-    const bool inner = k > 0 && k + 1 < starts.size();
-    if (energy * (inner ? 1.0 : 0.5) > most) most = energy * (inner ? 1.0 : 0.5), liveliest = k;
+    const bool inner = k > 0 && k + 1 < p.starts.size();
+    if (energy * (inner ? 1.0 : 0.5) > most) most = energy * (inner ? 1.0 : 0.5), p.liveliest = k;
   }
-  const auto lag_of = [&](double offset, std::size_t k) {
-    return std::lround((starts[k] + offset - first.begin()) / step);
-  };
-  const auto offset_of = [&](long lag, std::size_t k) {
-    return first.begin() + static_cast<double>(lag) * step - starts[k];
-  };
-  const long apart = std::max(4L, std::lround(0.05 / step));
-  long from = 0, to = static_cast<long>(whole.size());
+  return p;
+}
+
+// Where the liveliest piece lies in the whole, looked for everywhere, or near where the caller says. [samples]
+long place_liveliest(const Pieces& p, const std::string& name, const Log& two, const JoinOptions& options) {
+  const long apart = std::max(4L, std::lround(0.05 / p.step));
+  long from = 0, to = static_cast<long>(p.whole.size());
   if (options.near) {
     const double at = *options.near, width = options.near_within;
-    from = lag_of(at - width, liveliest), to = lag_of(at + width, liveliest);
+    from = p.lag_of(at - width, p.liveliest), to = p.lag_of(at + width, p.liveliest);
   }
-  const Lag lag = best_lag(whole, pieces[liveliest], from, to, apart);
+  const Lag lag = best_lag(p.whole, p.contents[p.liveliest], from, to, apart);
   if (lag.correlation < least_correlation)
     refuse(two,
            fmt::format("the two recordings of '{}' are not alike: correlation {:.2f} at best", name, lag.correlation),
@@ -202,57 +209,88 @@ ClockFit fit_clock(const Log& one, const Log& two, Signal by, const JoinOptions&
   if (lag.rival > rival * lag.correlation)
     refuse(two,
            fmt::format("'{}' repeats itself: offsets of {:.4g} s and {:.4g} s fit alike", name,
-                       offset_of(lag.samples, liveliest), offset_of(lag.rival_samples, liveliest)),
+                       p.offset_of(lag.samples, p.liveliest), p.offset_of(lag.rival_samples, p.liveliest)),
            "give the offset roughly with --near, or name another shared signal with --by");
+  return lag.samples;
+}
 
-  // Outwards, each piece near where its neighbour was.
+// From the liveliest outwards, each piece near where its neighbour was.
+std::vector<Piece> follow_outwards(const Pieces& p, long liveliest_lag) {
   std::vector<Piece> found;
   const auto track = [&](std::size_t k, double offset) {
-    const long there = lag_of(offset, k);
-    const long reach = std::lround(largest_skew * length / step) + 3;
-    const Lag l = best_lag(whole, pieces[k], there - reach, there + reach, 1L << 40);
+    const long expected = p.lag_of(offset, k);
+    const long reach = std::lround(largest_skew * p.length / p.step) + 3;
+    const Lag l = best_lag(p.whole, p.contents[k], expected - reach, expected + reach, 1L << 40);
     if (l.correlation < least_correlation) return offset;
-    found.push_back({starts[k] + 0.5 * length, offset_of(l.samples, k)});
+    found.push_back({p.middle(k), p.offset_of(l.samples, k)});
     return found.back().offset;
   };
-  double offset = track(liveliest, offset_of(lag.samples, liveliest));
-  for (std::size_t k = liveliest + 1; k < starts.size(); ++k) offset = track(k, offset);
-  offset = offset_of(lag.samples, liveliest);
-  for (std::size_t k = liveliest; k-- > 0;) offset = track(k, offset);
+  double offset = track(p.liveliest, p.offset_of(liveliest_lag, p.liveliest));
+  for (std::size_t k = p.liveliest + 1; k < p.starts.size(); ++k) offset = track(k, offset);
+  offset = p.offset_of(liveliest_lag, p.liveliest);
+  for (std::size_t k = p.liveliest; k-- > 0;) offset = track(k, offset);
+  return found;
+}
 
+double mean_time(const std::vector<Piece>& pieces) {
   double middle = 0;
-  for (const Piece& p : found) middle += p.at / static_cast<double>(found.size());
+  for (const Piece& p : pieces) middle += p.at / static_cast<double>(pieces.size());
+  return middle;
+}
+
+// A straight line through the pieces' offsets, about their mean time.
+Alignment line_through(const std::vector<Piece>& found, double middle) {
   double sum = 0, sum_tt = 0, sum_to = 0;
   for (const Piece& p : found)
     sum += p.offset, sum_tt += std::pow(p.at - middle, 2), sum_to += (p.at - middle) * p.offset;
-  Alignment a{sum / static_cast<double>(found.size()), found.size() > 2 ? sum_to / sum_tt : 0.0, 0};
-  a = align(first, second, first.begin(), first.end(), middle, a, true);
+  return {sum / static_cast<double>(found.size()), found.size() > 2 ? sum_to / sum_tt : 0.0, 0};
+}
 
-  // Each piece alone, by its own delay: their scatter is the error.
-  std::vector<Piece> fine;
+// Each piece alone, by its own delay, less what the common line says of it: their scatter is the error.
+std::vector<Piece> scatter_about(const Series& first, const Series& second, const std::vector<Piece>& found,
+                                 double middle, double length, const Alignment& common) {
+  std::vector<Piece> apart;
   for (const Piece& p : found) {
-    Alignment own{a.delay + a.skew * (p.at - middle), a.skew, 0};
+    Alignment own{common.delay + common.skew * (p.at - middle), common.skew, 0};
     const double at = p.at + own.delay;
     own = align(first, second, at - 0.5 * length, at + 0.5 * length, p.at, own, false);
-    if (own.correlation > least_correlation) fine.push_back({p.at, own.delay - a.delay - a.skew * (p.at - middle)});
+    if (own.correlation > least_correlation)
+      apart.push_back({p.at, own.delay - common.delay - common.skew * (p.at - middle)});
   }
-  if (static_cast<int>(fine.size()) < fewest_pieces && found.size() > 1)
-    a = align(first, second, first.begin(), first.end(), middle, {a.delay, a.skew, 0}, true);
+  return apart;
+}
+
+ClockFit clock_of(const Alignment& a, double middle, const std::vector<Piece>& apart, Signal by) {
   double scatter = 0, spread = 0;
-  for (const Piece& p : fine) scatter += p.offset * p.offset, spread += std::pow(p.at - middle, 2);
+  for (const Piece& p : apart) scatter += p.offset * p.offset, spread += std::pow(p.at - middle, 2);
   // Pieces overlap by half, so half of them are independent; two numbers are fitted.
-  const double independent = 0.5 * static_cast<double>(fine.size());
+  const double independent = 0.5 * static_cast<double>(apart.size());
   ClockFit clock;
   clock.by = by;
-  clock.pieces = static_cast<int>(fine.size());
+  clock.pieces = static_cast<int>(apart.size());
   clock.skew = a.skew;
   clock.offset = a.delay - a.skew * middle;
   const double variance =
-      independent > 2 ? scatter / static_cast<double>(fine.size()) * independent / (independent - 2) : std::nan("");
+      independent > 2 ? scatter / static_cast<double>(apart.size()) * independent / (independent - 2) : std::nan("");
   clock.offset_error = std::sqrt(variance / independent);
   clock.skew_error = spread > 0 ? std::sqrt(variance / (0.5 * spread)) : std::nan("");
   clock.correlation = a.correlation;
   return clock;
+}
+
+ClockFit fit_clock(const Log& one, const Log& two, Signal by, const JoinOptions& options) {
+  const Series first(one.time, one[by]), second(two.time, two[by]);
+  const Pieces pieces = cut_into_pieces(first, second, std::max(usual_step(one.time), usual_step(two.time)));
+  const long lag = place_liveliest(pieces, std::string(name_of(by)), two, options);
+  const std::vector<Piece> found = follow_outwards(pieces, lag);
+  const double middle = mean_time(found);
+  const auto align_all = [&](const Alignment& from) {
+    return align(first, second, first.begin(), first.end(), middle, from, true);
+  };
+  Alignment a = align_all(line_through(found, middle));
+  const std::vector<Piece> apart = scatter_about(first, second, found, middle, pieces.length, a);
+  if (static_cast<int>(apart.size()) < fewest_pieces && found.size() > 1) a = align_all({a.delay, a.skew, 0});
+  return clock_of(a, middle, apart, by);
 }
 
 bool is_demand(Signal s) { return s == Signal::command || s == Signal::setpoint; }

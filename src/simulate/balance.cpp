@@ -65,110 +65,162 @@ std::vector<double> quiet(const std::vector<double>& time, const std::vector<dou
 
 namespace {
 
+// What the sensors stand for: noise out, offset, lag and gain undone. [SI] a sample each; spool empty: not logged.
+struct TrueSignals {
+  std::vector<double> piston, pressure_a, pressure_b, spool;
+};
+
+// Less its offset, then its lag and gain undone. `sensor`: of SensorResponse.
+std::vector<double> undone(const Scenario& in, const ParameterVector& p, const std::vector<double>& shown, int offset,
+                           int sensor) {
+  std::vector<double> v = bridged(shown);
+  for (double& value : v) value -= p[static_cast<std::size_t>(offset)];
+  const auto at = static_cast<std::size_t>(effect_row<SensorResponse>(2 * sensor));
+  const double gain = p[at], lag = p[at + 1];
+  if (gain == 1 && lag == 0) return v;
+  const std::size_t n = v.size();
+  std::vector<double> truth(n);
+  for (std::size_t k = 0; k < n; ++k) {
+    const std::size_t from = k > 0 ? k - 1 : 0, to = std::min(k + 1, n - 1);
+    truth[k] = (v[k] + lag * (v[to] - v[from]) / (in.time[to] - in.time[from])) / gain;
+  }
+  return truth;
+}
+
+// Taking noise out is linear and leaves a constant alone: what the sensor does can be undone behind it.
+TrueSignals true_signals(const Scenario& in, const Measured& measured, const ParameterVector& p) {
+  TrueSignals s;
+  s.piston = bridged(measured.quiet ? *measured.piston : quiet(in.time, *measured.piston));
+  for (double& v : s.piston) v /= p[row::position_sensor_gain];
+  s.pressure_a = undone(in, p, *measured.pressure_a, nuisance::pressure_a_offset, 1);
+  s.pressure_b = undone(in, p, *measured.pressure_b, nuisance::pressure_b_offset, 2);
+  if (measured.spool)
+    s.spool =
+        undone(in, p, measured.quiet ? *measured.spool : quiet(in.time, *measured.spool), nuisance::spool_offset, 0);
+  return s;
+}
+
+// Net flows over compliance and net force over mass at every sample, the rod at rest for the flows.
+struct Rates {
+  std::vector<double> flow_a, flow_b;              // [m3/s] that the edges and the seal let in
+  std::vector<double> force;                       // [N]
+  std::vector<double> compliance_a, compliance_b;  // [m3/Pa]
+  std::vector<double> supply;                      // [Pa] above its mean and the droop; empty: not measured
+
+  explicit Rates(std::size_t n) : flow_a(n), flow_b(n), force(n), compliance_a(n), compliance_b(n) {}
+};
+
+template <class Effects>
+Rates rates_along(const Scenario& in, const TrueSignals& of, const ParameterVector& p) {
+  const std::size_t n = in.time.size();
+  Rates out(n);
+  out.supply = in.supply_pressure;
+  const Derived<double> d = derive<double, Effects>(p.data(), in.oil);
+  const auto input = [&](const std::vector<double>& series, std::size_t k, double table) {
+    return series.empty() ? table : series[k];
+  };
+  const double mean_supply = std::accumulate(out.supply.begin(), out.supply.end(), 0.0) / static_cast<double>(n);
+  const double droop = p[effect_row<SupplyDroop>(0)] * 0.5 * (p[row::piston_area_a] + p[row::piston_area_b]);
+  SampledLag<double> drawn;
+  FrictionMemory<double> friction;
+  friction.rest(0.0, of.piston[0]);
+  for (std::size_t k = 0; k < n; ++k) {
+    const double dt = in.time[std::min(k + 1, n - 1)] - in.time[k > 0 ? k - 1 : 0];
+    States<Effects> s;
+    s.y[s_p_a] = of.pressure_a[k], s.y[s_p_b] = of.pressure_b[k];
+    s.y[s_x_spool] = of.spool.empty() ? 0.0 : of.spool[k];
+    s.y[s_x_piston] = of.piston[k];
+    s.y[s_v_piston] = (of.piston[std::min(k + 1, n - 1)] - of.piston[k > 0 ? k - 1 : 0]) / dt;
+    if (!out.supply.empty())
+      out.supply[k] +=
+          droop * drawn(in.time[k], std::abs(s.y[s_v_piston]), p[effect_row<SupplyDroop>(1)]) - mean_supply;
+    s.y[s_p_filter] = s.y[s_p_pilot_1] = s.y[s_p_pilot_2] = 0.5 * p[row::supply_pressure];
+    if (k > 0) friction.move(0.0, 0.0, of.piston[k - 1], of.piston[k], in.time[k] - in.time[k - 1], d.breakaway);
+    const Inputs<double> u{0.0, input(in.supply_pressure, k, p[row::supply_pressure]),
+                           input(in.return_pressure, k, p[row::return_pressure]), input(in.load_force, k, 0.0),
+                           friction};
+    const auto f = derivative<Effects, double>(s, u, p.data(), d);
+    out.force[k] = p[row::moving_mass] * std::get<s_v_piston>(f);
+    out.compliance_a[k] = 1.0 / chamber_stiffness(d.middle_volume_a + p[row::piston_area_a] * of.piston[k],
+                                                  of.pressure_a[k], d, p.data());
+    out.compliance_b[k] = 1.0 / chamber_stiffness(d.middle_volume_b - p[row::piston_area_b] * of.piston[k],
+                                                  of.pressure_b[k], d, p.data());
+    out.flow_a[k] = std::get<s_p_a>(f) * out.compliance_a[k] + p[row::piston_area_a] * s.y[s_v_piston];
+    out.flow_b[k] = std::get<s_p_b>(f) * out.compliance_b[k] - p[row::piston_area_b] * s.y[s_v_piston];
+  }
+  return out;
+}
+
+// Samples [from, to] of one window, `mid` its middle.
+struct Window {
+  std::size_t from, mid, to;
+};
+
+// No sample of the window is missing.
+bool is_whole(const Window& w, const Scenario& in, const Measured& measured, double step) {
+  bool whole = true;
+  for (std::size_t k = w.from; k <= w.to; ++k) {
+    whole = whole && (k == w.to || in.time[k + 1] - in.time[k] <= late * step);
+    for (const auto* x : {measured.piston, measured.pressure_a, measured.pressure_b, measured.spool})
+      whole = whole && (!x || std::isfinite((*x)[k]));
+  }
+  return whole;
+}
+
+// The rod slides all through the window, one way and clear of the cushions (Balance::slides).
+bool slides_through(const Window& w, const std::vector<double>& piston, double velocity, const ParameterVector& p) {
+  const double reach = *std::max_element(std::begin(constants::seal_presliding), std::end(constants::seal_presliding));
+  const double free_travel = (0.5 - cushion) * p[row::piston_stroke];
+  bool slides = std::abs(piston[w.mid]) < free_travel;
+  for (int quarter = 0; quarter < 4; ++quarter) {
+    const std::size_t start = w.from + (w.to - w.from) * quarter / 4,
+                      end = w.from + (w.to - w.from) * (quarter + 1) / 4;
+    slides = slides && 4 * (piston[end] - piston[start]) * (velocity < 0 ? -1 : 1) > reach;
+  }
+  return slides;
+}
+
+// Trapezoid rule for the flows, a hat for the force.
+void balance_window(Balance& out, const Window& w, const Scenario& in, const TrueSignals& of, const Rates& rates,
+                    const ParameterVector& p) {
+  const double span = in.time[w.to] - in.time[w.from], side = 0.5 * span;
+  double q_a = 0, q_b = 0, net = 0, hat = 0, above = 0;
+  for (std::size_t k = w.from; k <= w.to; ++k) {
+    const double edge = k == w.from || k == w.to ? 0.5 : 1.0;
+    q_a += edge * rates.flow_a[k], q_b += edge * rates.flow_b[k];
+    if (!rates.supply.empty()) above += edge * rates.supply[k];
+    const double weight = 1.0 - std::abs(in.time[k] - in.time[w.mid]) / side;
+    net += weight * rates.force[k], hat += weight;
+  }
+  const auto& [x, a, b, spool] = of;
+  const auto samples = static_cast<double>(w.to - w.from);
+  const double v = (x[w.to] - x[w.from]) / span;
+  out.time.push_back(in.time[w.mid]);
+  out.piston.push_back(x[w.mid]), out.velocity.push_back(v), out.load_pressure.push_back(a[w.mid] - b[w.mid]);
+  out.slides.push_back(slides_through(w, x, v, p));
+  out.force.push_back(p[row::moving_mass] * (x[w.to] - 2 * x[w.mid] + x[w.from]) / (side * side) - net / hat);
+  if (!rates.supply.empty()) out.supply.push_back(above / samples);
+  if (spool.empty()) return;
+  out.spool.push_back(spool[w.mid]);
+  out.flow_a.push_back(rates.compliance_a[w.mid] * (a[w.to] - a[w.from]) / span - q_a / samples +
+                       p[row::piston_area_a] * v);
+  out.flow_b.push_back(rates.compliance_b[w.mid] * (b[w.to] - b[w.from]) / span - q_b / samples -
+                       p[row::piston_area_b] * v);
+}
+
 template <class Effects>
 Balance balance_with(const Scenario& in, const Measured& measured, const ParameterVector& p, double window) {
   Balance out;
   const std::size_t n = in.time.size();
   if (!measured.piston || !measured.pressure_a || !measured.pressure_b || n < 8 || in.ports != Ports::actuator)
     return out;
-  // What a sensor stands for: less its offset, then its lag and gain undone. `shown`: of SensorResponse.
-  const auto less = [&](const std::vector<double>& x, int offset, int shown) {
-    std::vector<double> v = bridged(x);
-    for (double& value : v) value -= p[static_cast<std::size_t>(offset)];
-    const auto at = static_cast<std::size_t>(effect_row<SensorResponse>(2 * shown));
-    const double gain = p[at], lag = p[at + 1];
-    if (gain == 1 && lag == 0) return v;
-    std::vector<double> truth(n);
-    for (std::size_t k = 0; k < n; ++k) {
-      const std::size_t from = k > 0 ? k - 1 : 0, to = std::min(k + 1, n - 1);
-      truth[k] = (v[k] + lag * (v[to] - v[from]) / (in.time[to] - in.time[from])) / gain;
-    }
-    return truth;
-  };
-  // Taking noise out is linear and leaves a constant alone: what the sensor does can be undone behind it.
-  std::vector<double> smooth = bridged(measured.quiet ? *measured.piston : quiet(in.time, *measured.piston));
-  for (double& v : smooth) v /= p[row::position_sensor_gain];
-  const std::vector<double> a = less(*measured.pressure_a, nuisance::pressure_a_offset, 1),
-                            b = less(*measured.pressure_b, nuisance::pressure_b_offset, 2);
-  std::vector<double> spool;
-  if (measured.spool)
-    spool = less(measured.quiet ? *measured.spool : quiet(in.time, *measured.spool), nuisance::spool_offset, 0);
-  const Derived<double> d = derive<double, Effects>(p.data(), in.oil);
-  const auto input = [&](const std::vector<double>& series, std::size_t k, double table) {
-    return series.empty() ? table : series[k];
-  };
-
-  // Net flows over compliance and net force over mass at every sample, the rod at rest for the flows.
-  std::vector<double> rate_a(n), rate_b(n), force(n), compliance_a(n), compliance_b(n);
-  std::vector<double> supply = in.supply_pressure;
-  const double mean_supply = std::accumulate(supply.begin(), supply.end(), 0.0) / static_cast<double>(n);
-  const double droop = p[effect_row<SupplyDroop>(0)] * 0.5 * (p[row::piston_area_a] + p[row::piston_area_b]);
-  SampledLag<double> drawn;
-  FrictionMemory<double> friction;
-  friction.rest(0.0, smooth[0]);
-  for (std::size_t k = 0; k < n; ++k) {
-    const double dt = in.time[std::min(k + 1, n - 1)] - in.time[k > 0 ? k - 1 : 0];
-    States<Effects> s;
-    s.y[s_p_a] = a[k], s.y[s_p_b] = b[k];
-    s.y[s_x_spool] = spool.empty() ? 0.0 : spool[k];
-    s.y[s_x_piston] = smooth[k];
-    s.y[s_v_piston] = (smooth[std::min(k + 1, n - 1)] - smooth[k > 0 ? k - 1 : 0]) / dt;
-    if (!supply.empty())
-      supply[k] += droop * drawn(in.time[k], std::abs(s.y[s_v_piston]), p[effect_row<SupplyDroop>(1)]) - mean_supply;
-    s.y[s_p_filter] = s.y[s_p_pilot_1] = s.y[s_p_pilot_2] = 0.5 * p[row::supply_pressure];
-    if (k > 0) friction.move(0.0, 0.0, smooth[k - 1], smooth[k], in.time[k] - in.time[k - 1], d.breakaway);
-    const Inputs<double> u{0.0, input(in.supply_pressure, k, p[row::supply_pressure]),
-                           input(in.return_pressure, k, p[row::return_pressure]), input(in.load_force, k, 0.0),
-                           friction};
-    const auto f = derivative<Effects, double>(s, u, p.data(), d);
-    force[k] = p[row::moving_mass] * std::get<s_v_piston>(f);
-    compliance_a[k] = 1.0 / chamber_stiffness(d.middle_volume_a + p[row::piston_area_a] * smooth[k], a[k], d, p.data());
-    compliance_b[k] = 1.0 / chamber_stiffness(d.middle_volume_b - p[row::piston_area_b] * smooth[k], b[k], d, p.data());
-    rate_a[k] = std::get<s_p_a>(f) * compliance_a[k] + p[row::piston_area_a] * s.y[s_v_piston];
-    rate_b[k] = std::get<s_p_b>(f) * compliance_b[k] - p[row::piston_area_b] * s.y[s_v_piston];
-  }
-
+  const TrueSignals signals = true_signals(in, measured, p);
+  const Rates rates = rates_along<Effects>(in, signals, p);
   const double step = median_step(in.time);
   const auto half = std::max<std::size_t>(2, static_cast<std::size_t>(std::lround(0.5 * window / step)));
-  const double reach = *std::max_element(std::begin(constants::seal_presliding), std::end(constants::seal_presliding));
-  const double free_travel = (0.5 - cushion) * p[row::piston_stroke];
-  for (std::size_t mid = half; mid + half < n; mid += half) {
-    const std::size_t from = mid - half, to = mid + half;
-    const double span = in.time[to] - in.time[from], side = 0.5 * span;
-    bool whole = true;  // no sample is missing
-    for (std::size_t k = from; k <= to; ++k) {
-      whole = whole && (k == to || in.time[k + 1] - in.time[k] <= late * step);
-      for (const auto* x : {measured.piston, measured.pressure_a, measured.pressure_b, measured.spool})
-        whole = whole && (!x || std::isfinite((*x)[k]));
-    }
-    if (!whole) continue;
-    // Trapezoid rule for the flows, a hat for the force.
-    double q_a = 0, q_b = 0, net = 0, hat = 0, above = 0;
-    for (std::size_t k = from; k <= to; ++k) {
-      const double edge = k == from || k == to ? 0.5 : 1.0;
-      q_a += edge * rate_a[k], q_b += edge * rate_b[k];
-      if (!supply.empty()) above += edge * supply[k];
-      const double w = 1.0 - std::abs(in.time[k] - in.time[mid]) / side;
-      net += w * force[k], hat += w;
-    }
-    const auto samples = static_cast<double>(to - from);
-    out.time.push_back(in.time[mid]);
-    const double v = (smooth[to] - smooth[from]) / span;
-    out.piston.push_back(smooth[mid]), out.velocity.push_back(v), out.load_pressure.push_back(a[mid] - b[mid]);
-    bool slides = std::abs(smooth[mid]) < free_travel;
-    for (int quarter = 0; quarter < 4; ++quarter) {
-      const std::size_t start = from + (to - from) * quarter / 4, end = from + (to - from) * (quarter + 1) / 4;
-      slides = slides && 4 * (smooth[end] - smooth[start]) * (v < 0 ? -1 : 1) > reach;
-    }
-    out.slides.push_back(slides);
-    out.force.push_back(p[row::moving_mass] * (smooth[to] - 2 * smooth[mid] + smooth[from]) / (side * side) -
-                        net / hat);
-    if (!supply.empty()) out.supply.push_back(above / samples);
-    if (spool.empty()) continue;
-    out.spool.push_back(spool[mid]);
-    out.flow_a.push_back(compliance_a[mid] * (a[to] - a[from]) / span - q_a / samples + p[row::piston_area_a] * v);
-    out.flow_b.push_back(compliance_b[mid] * (b[to] - b[from]) / span - q_b / samples - p[row::piston_area_b] * v);
-  }
+  for (std::size_t mid = half; mid + half < n; mid += half)
+    if (const Window w{mid - half, mid, mid + half}; is_whole(w, in, measured, step))
+      balance_window(out, w, in, signals, rates, p);
   return out;
 }
 
