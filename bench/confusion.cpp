@@ -22,6 +22,7 @@
 #include "fit/replay.h"
 #include "fit/tune.h"
 #include "parameters/table.h"
+#include "report/diagnosis_words.h"
 #include "servodx/rig.h"
 #include "signals/log.h"
 #include "simulate/scenario.h"
@@ -64,7 +65,7 @@ std::vector<Replayed> replayed(const Assessment& a, const Log& log, const Table&
   for (FitChannel& c : data.channels)
     if (c.signal == Signal::piston_position) c.filter.drift = piston_drift;
   const auto healthy = std::find_if(a.explanations.begin(), a.explanations.end(),
-                                    [](const Candidate& c) { return c.name == "healthy"; });
+                                    [](const HypothesisPrediction& e) { return !e.fault; });
   std::vector<Replayed> out;
   if (healthy == a.explanations.end()) return out;
   const FitProblem problem({&data}, healthy->candidate, {});
@@ -150,19 +151,19 @@ int main(int argc, char** argv) {
       fmt::print("    baseline {:26s} score {:6.2f} adequacy {:.2f} gains", fs::path(s.log).filename().string(),
                  s.score, s.adequacy);
       for (const auto& [fault, gain] : s.gains)
-        if (gain > 1) fmt::print(" {} {:.1f}", fault, gain);
+        if (gain > 1) fmt::print(" {} {:.1f}", report::label_of(fault), gain);
       fmt::print("\n");
     }
     const auto show = [&](const Log& log, const Truth& t) {
-      const Diagnosis d = judge(assess(log, tuned, rig, options), baseline);
-      const std::string verdict = d.fault ? *d.fault : d.verdict;
+      const Diagnosis d = diagnose(log, tuned, rig, baseline, options);
+      const std::string verdict = report::name_of(d);
       ++confusion[{label_of(t.label), t.severity}][verdict];
       if (t.label == "healthy") {
         ++healthy_judged;
-        false_alarms += d.verdict != "healthy";
+        false_alarms += d.verdict != VerdictKind::healthy;
       }
       std::string ambiguous;
-      for (const std::string& a : d.ambiguous_with) ambiguous += " " + a;
+      for (const std::string& a : report::ambiguous_labels(d)) ambiguous += " " + a;
       fmt::print(
           "  {:28s} {:26s} {:7s} {:8.3g} -> {:22s} score {:8.2f} severity {:.3g} [{:.3g}, {:.3g}] adequacy "
           "{:.1f}{}{}{}\n",
@@ -173,7 +174,7 @@ int main(int argc, char** argv) {
               ->adequacy,
           ambiguous.empty() ? "" : " ambiguous with" + ambiguous,
           d.onset ? fmt::format(" onset {:.3f} (true {:.3f})", *d.onset, t.onset) : "",
-          d.assessment.gross.empty() ? "" : " [" + d.assessment.gross + "]");
+          d.assessment.gross == GrossFinding::none ? "" : " [" + report::words_of(d.assessment.gross) + "]");
       if (t.set == "healthy") {
         fmt::print("    replay");
         for (const auto& [signal, rms, noise] : replayed(d.assessment, log, tuned, rig)) {
@@ -185,7 +186,7 @@ int main(int argc, char** argv) {
       }
       fmt::print("    gains");
       for (const HypothesisResult& h : d.assessment.hypotheses)
-        if (h.gain > 1) fmt::print(" {} {:.1f}", h.name, h.gain);
+        if (h.gain > 1) fmt::print(" {} {:.1f}", report::label_of(h.fault), h.gain);
       fmt::print("\n");
       std::fflush(stdout);
     };

@@ -10,6 +10,7 @@
 #include "diagnose/diagnose.h"
 #include "explain/healthy.h"
 #include "invocation.h"
+#include "report/diagnosis_words.h"
 #include "report/explain_report.h"
 #include "report/pages.h"
 #include "report/text.h"
@@ -65,7 +66,8 @@ int run(const Options& options) {
   if (invocation.wants_report()) {
     std::vector<Replay> replays;
     for (std::size_t i = 0; i < std::min(baseline.scores.size(), report::most_replays); ++i)
-      replays.push_back(replay(logs[i], tuned, rig, {baseline.scores[i].healthy}));
+      if (const auto& healthy = baseline.scores[i].healthy)
+        replays.push_back(replay(logs[i], tuned, rig, report::candidates_of({*healthy})));
     invocation.write_report(report::baseline_page(header, baseline, replays));
   }
   report::Json body = report::baseline_json(baseline);

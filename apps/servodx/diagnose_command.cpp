@@ -11,6 +11,7 @@
 #include "diagnose/diagnose.h"
 #include "invocation.h"
 #include "report/baseline_file.h"
+#include "report/diagnosis_words.h"
 #include "report/pages.h"
 #include "report/text.h"
 
@@ -25,7 +26,15 @@ struct Options {
 };
 
 int code_of(const Diagnosis& diagnosis) {
-  return diagnosis.verdict == "unknown" ? found_unknown : diagnosis.verdict == "fault" ? found_fault : ran;
+  switch (diagnosis.verdict) {
+    case VerdictKind::healthy:
+      return ran;
+    case VerdictKind::fault:
+      return found_fault;
+    case VerdictKind::unknown:
+      return found_unknown;
+  }
+  return ran;
 }
 
 std::vector<Diagnosis> judge_each(const std::vector<Log>& logs, const Table& tuned, const RigFile& rig,
@@ -60,7 +69,7 @@ std::vector<Replay> replays(const std::vector<Log>& logs, const Table& tuned, co
   for (const Diagnosis* d : worst)
     for (const Log& log : logs)
       if (log.path == d->log) {
-        all.push_back(replay(log, tuned, rig, d->assessment.explanations));
+        all.push_back(replay(log, tuned, rig, report::candidates_of(d->assessment.explanations)));
         break;
       }
   return all;

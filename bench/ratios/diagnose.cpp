@@ -10,6 +10,7 @@
 #include "parameters/table.h"
 #include "ratios/measure.h"
 #include "ratios/rows.h"
+#include "report/diagnosis_words.h"
 #include "rig/rig_faults.h"
 #include "rig/rig_model.h"
 #include "rig/rig_run.h"
@@ -49,13 +50,13 @@ void diagnose_rows(Report& report, const Choice& choice) {
   report.add({"full diagnose of a 10 s log, all hypotheses, all cores", "60 s", "15 s",
               fmt::format("{:.1f} s", t.median),
               fmt::format("{:.1f} to {:.1f} s by the clock; {} simulations; finds {} {:.1f} for sticky_spool 12", t.low,
-                          t.high, seen.simulations, likeliest->name, likeliest->severity)});
+                          t.high, seen.simulations, servodx::report::label_of(likeliest->fault), likeliest->severity)});
   report.json["diagnose_seconds"] = t.median;
   report.json["diagnose"] = {{"lowest", t.low},
                              {"highest", t.high},
                              {"simulations", seen.simulations},
                              {"hypotheses", seen.hypotheses.size()},
-                             {"likeliest", likeliest->name},
+                             {"likeliest", servodx::report::label_of(likeliest->fault)},
                              {"severity", likeliest->severity}};
 }
 

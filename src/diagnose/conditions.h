@@ -18,7 +18,8 @@ struct TestConditions {
 
 TestConditions conditions_of(const Log& log);
 
-// How far apart two tests are: at most 1 where they are alike. A temperature that one log does not hold is no difference.
+// How far apart two tests are: at most 1 where they are alike. A temperature that one log does not hold is no
+// difference.
 double distance(const TestConditions& a, const TestConditions& b);
 
 }  // namespace servodx

@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "diagnose/constants.h"
 #include "faults/registry.h"
 #include "fit/error_model.h"
 #include "fit/problem.h"
@@ -31,10 +32,15 @@ struct HypothesisFit {
   std::vector<std::string> stops;        // how each start ended
 };
 
+struct FitWork {
+  long simulations = 0, failed = 0;
+  void add(const FitWork& other) { simulations += other.simulations, failed += other.failed; }
+};
+
 struct HypothesisSettings {
   double null_limit = 0.05;  // [fraction of rated]
   int threads = 0;
-  int iterations = 20;
+  int iterations = diagnose_constants::iterations;
   std::vector<const Fault*> among = {};     // weighed beside health; empty: all of the registry
   const std::atomic<bool>* stop = nullptr;  // set: give up; what comes back is worthless
   std::function<void(double part, long simulations)> progress = {};  // after every fit, from any thread
@@ -44,8 +50,11 @@ struct HypothesisFits {
   std::vector<HypothesisFit> fits;     // healthy first, then the faults in the order of the registry, or of `among`
   double degrees = 0;                  // independent samples of all channels
   std::vector<double> healthy_square;  // a sample: mean over the channels of the squared whitened residual under health
-  long simulations = 0, failed = 0;
+  FitWork work;
 };
+
+// Index of the fit with the least misfit.
+std::size_t best_fit(const HypothesisFits& fits);
 
 HypothesisFits fit_hypotheses(const LogData& log, const ParameterVector& base, const ErrorModel& error,
                               const HypothesisSettings& settings);
@@ -53,7 +62,6 @@ HypothesisFits fit_hypotheses(const LogData& log, const ParameterVector& base, c
 // The log's squared residual, a sample, under health as fitted to its beginning alone, the samples before `end`: what a
 // whole log's fit cannot show where a fault that steps in drags the nuisances along. Empty where the fit fails.
 std::vector<double> square_beyond_beginning(const LogData& log, std::size_t end, const ParameterVector& base,
-                                            const ErrorModel& error, const HypothesisSettings& settings,
-                                            long* simulations, long* failed);
+                                            const ErrorModel& error, const HypothesisSettings& settings, FitWork& work);
 
 }  // namespace servodx

@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "diagnose/constants.h"
+
 namespace servodx {
 namespace {
-
-constexpr double deviates_of_95 = 1.96;
 
 struct RowName {
   int id = 0;
@@ -38,7 +38,7 @@ std::vector<MovedRow> moved_rows(const HypothesisFit& fit, const LogData& log, c
     double deviates = 1.0;
     if (fault) {
       low[j] = fit.free[j].to_unit(fit.severity_lower), high[j] = fit.free[j].to_unit(fit.severity_upper);
-      deviates = deviates_of_95;
+      deviates = diagnose_constants::deviates_of_95;
     } else {
       low[j] = std::max(0.0, fit.point[j] - fit.standard_error[j]);
       high[j] = std::min(1.0, fit.point[j] + fit.standard_error[j]);

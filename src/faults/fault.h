@@ -5,8 +5,16 @@
 #include <vector>
 
 #include "effects/registry.h"
+#include "faults/gross_finding.h"
 
 namespace servodx {
+
+// A finding that names the fault without a fit. The severity then lies between `worst` and `mildest`, or the fit's own
+// bound where that is milder.
+struct SeenOutright {
+  GrossFinding finding = GrossFinding::none;
+  double mildest = 0;  // severity
+};
 
 struct Fault {
   std::string_view name;  // label of the verdict
@@ -28,6 +36,10 @@ struct Fault {
   // `check` tracks it, `trend` predicts it.
   std::optional<double> failed = {};
   bool part_lost = false;  // the severity is a part lost, and what is left of it acts
+  std::optional<SeenOutright> seen_outright = {};
+  // A row that health lets wander up to a limit of the rig file. The fault is that row beyond the limit: it begins
+  // there, not at `least`, and has no tolerance of its own.
+  std::optional<int> beyond_limit_of = {};
 };
 
 }  // namespace servodx

@@ -16,6 +16,7 @@ inline const Fault null_shift{
     .starts = {0.1, 0.2, -0.1, -0.2},
     .test = "rest at zero command and read the spool",
     .action = "abuse: recalibrate the null",
-    .apply = [](double* v, double s) { v[row::servovalve_null] += s; }};
+    .apply = [](double* v, double s) { v[row::servovalve_null] += s; },
+    .beyond_limit_of = row::servovalve_null};
 
 }  // namespace servodx

@@ -6,6 +6,7 @@
 #include "base/csv.h"
 #include "base/key_error.h"
 #include "base/sha256.h"
+#include "faults/registry.h"
 
 namespace servodx::report {
 namespace {
@@ -89,7 +90,6 @@ BaselineFile read_baseline(const std::string& path) {
   b.promised_95 = read.number(rate, "false_alarm.promised_95", 0, 1);
   b.logs = read.count(rate, "false_alarm.logs");
   b.logs_needed = read.count(rate, "false_alarm.logs_needed");
-  b.statement = read.text(rate, "false_alarm.statement");
   const Json& scores = read.at(file, "scores");
   if (!scores.is_array() || scores.empty()) read.refuse("scores", "holds no scores");
   for (const Json& s : scores) {
@@ -97,8 +97,10 @@ BaselineFile read_baseline(const std::string& path) {
                         read.number(s, "scores.score", -any, any), read.number(s, "scores.adequacy", 0, any)});
     const Json& gains = read.at(s, "scores.gains");
     if (!gains.is_object()) read.refuse("scores.gains", "is no object");
-    for (const auto& [fault, gain] : gains.items())
-      b.scores.back().gains[fault] = read.number(gains, "scores.gains." + fault, -any, any);
+    for (const auto& [name, value] : gains.items()) {
+      const double gain = read.number(gains, "scores.gains." + name, -any, any);
+      if (const Fault* fault = find_fault(name)) b.scores.back().gains[fault] = gain;
+    }
     if (s.contains("test")) b.scores.back().test = read_test(read, s["test"]);  // earlier versions wrote none
   }
   b.adequacy_limit = read.number(file, "adequacy_limit", 0, any);

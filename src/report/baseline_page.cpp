@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "report/diagnosis_words.h"
 #include "report/handy.h"
 #include "report/pages.h"
 #include "report/replay_part.h"
@@ -10,11 +11,11 @@ namespace servodx::report {
 
 Page baseline_page(const Header& header, const Baseline& b, const std::vector<Replay>& replays) {
   Page page(header, fmt::format("Baseline of {} fault-free logs", b.logs));
-  const bool kept = b.promised <= b.asked + 1e-12;
+  const bool kept = keeps_rate(b);
   Verdict v;
   v.tone = kept ? Tone::good : Tone::doubt;
   v.headline = fmt::format("A log is not healthy above an error of {}", digits(b.threshold));
-  v.detail = b.statement;
+  v.detail = statement_of(b);
   v.facts = {{"False alarms asked for", percent(b.asked)},
              {"Promised on average", percent(b.promised)},
              {"Below, with 95 % confidence", percent(b.promised_95)},

@@ -17,61 +17,58 @@ namespace servodx::report {
 namespace {
 
 Tone tone_of(const Diagnosis& d) {
-  if (d.verdict == "fault") return Tone::bad;
-  return d.verdict == "healthy" && !d.unlike ? Tone::good : Tone::doubt;
-}
-
-const HypothesisResult* find(const Diagnosis& d, const std::string& name) {
-  for (const HypothesisResult& h : d.assessment.hypotheses)
-    if (h.name == name) return &h;
-  return nullptr;
+  if (d.verdict == VerdictKind::fault) return Tone::bad;
+  return d.verdict == VerdictKind::healthy && !d.unlike ? Tone::good : Tone::doubt;
 }
 
 // The hypothesis that comes nearest beside health.
 const HypothesisResult* nearest_fault(const Diagnosis& d) {
   const HypothesisResult* best = nullptr;
   for (const HypothesisResult& h : d.assessment.hypotheses)
-    if (h.name != "healthy" && (!best || h.probability > best->probability)) best = &h;
+    if (h.fault && (!best || h.probability > best->probability)) best = &h;
   return best;
 }
 
 std::string headline(const Diagnosis& d) {
-  if (d.verdict == "healthy") return file_name(d.log) + " is like the fault-free logs";
-  if (d.verdict == "unknown") return file_name(d.log) + " is not healthy, and no known fault explains it";
+  if (d.verdict == VerdictKind::healthy) return file_name(d.log) + " is like the fault-free logs";
+  if (d.verdict == VerdictKind::unknown) return file_name(d.log) + " is not healthy, and no known fault explains it";
   const std::string size = size_words(d);
-  return words(d.fault.value_or("")) + (size.empty() ? "" : ", " + size);
+  return words(label_of(d.fault)) + (size.empty() ? "" : ", " + size);
 }
 
 std::vector<std::string> reasons(const Diagnosis& d, const Baseline& baseline) {
   std::vector<std::string> why;
   const bool above = d.error > d.threshold;
-  if (!d.assessment.gross.empty()) why.push_back("Seen without a fit: " + d.assessment.gross + ".");
+  const bool seen_outright = d.assessment.gross != GrossFinding::none;
+  if (seen_outright) why.push_back("Seen without a fit: " + words_of(d.assessment.gross) + ".");
   const std::size_t n = baseline.scores.size();
   why.push_back(
       fmt::format("Its error is {}; the threshold, set by {} fault-free logs, is {}. A fault-free log is as "
                   "far off with {}.",
                   digits(d.error), n, digits(d.threshold), chance_words(d)));
   if (d.unlike) why.push_back("Beware: " + unlike_words(d) + ". The threshold may not hold for it.");
-  const HypothesisResult* healthy = find(d, "healthy");
-  const HypothesisResult* best = d.fault ? find(d, *d.fault) : nearest_fault(d);
+  const HypothesisResult* healthy = result_of(d, nullptr);
+  const HypothesisResult* best = d.fault ? result_of(d, d.fault) : nearest_fault(d);
   if (above && healthy && best)
-    why.push_back(fmt::format(
-        "As healthy, the worst channel is {} times as wrong as on the tuning logs; with {} it is {}{}.",
-        digits(healthy->adequacy, 2), words(best->name), digits(best->adequacy, 2),
-        d.verdict == "unknown" ? fmt::format(" (fault-free logs reach {})", digits(baseline.adequacy_limit, 2)) : ""));
+    why.push_back(
+        fmt::format("As healthy, the worst channel is {} times as wrong as on the tuning logs; with {} it is {}{}.",
+                    digits(healthy->adequacy, 2), words(label_of(best->fault)), digits(best->adequacy, 2),
+                    d.verdict == VerdictKind::unknown
+                        ? fmt::format(" (fault-free logs reach {})", digits(baseline.adequacy_limit, 2))
+                        : ""));
   if (d.fault && !d.ambiguous_with.empty()) {
     std::vector<std::string> others;
-    for (const std::string& other : d.ambiguous_with)
-      others.push_back(words(other) + " " + chance(d.probabilities.at(other)));
-    why.push_back(
-        fmt::format("It cannot be told for certain from {}. To separate them: {}.", join(others), d.separating_test));
-  } else if (d.fault && d.assessment.gross.empty()) {
+    for (const Fault* other : ambiguous_by_label(d))
+      others.push_back(words(label_of(other)) + " " + chance(probability_of(d, other)));
+    why.push_back(fmt::format("It cannot be told for certain from {}. To separate them: {}.", join(others),
+                              separating_test_of(d)));
+  } else if (d.fault && !seen_outright) {
     const HypothesisResult* next = nullptr;
     for (const HypothesisResult& h : d.assessment.hypotheses)
-      if (h.name != *d.fault && (!next || h.probability > next->probability)) next = &h;
+      if (h.fault != d.fault && (!next || h.probability > next->probability)) next = &h;
     if (next)
-      why.push_back(
-          fmt::format("The next best explanation, {}, has {}.", words(next->name), chance(next->probability)));
+      why.push_back(fmt::format("The next best explanation, {}, has {}.", words(label_of(next->fault)),
+                                chance(next->probability)));
   }
   if (d.onset)
     why.push_back(fmt::format("Until {} s the log is healthy; the fault explains what follows.", digits(*d.onset, 4)));
@@ -81,15 +78,14 @@ std::vector<std::string> reasons(const Diagnosis& d, const Baseline& baseline) {
 Verdict verdict_of(const Diagnosis& d, const Baseline& baseline) {
   Verdict v;
   v.tone = tone_of(d);
-  v.word = d.verdict == "fault" ? "FAULT" : d.verdict == "unknown" ? "UNKNOWN" : "HEALTHY";
+  v.word = d.verdict == VerdictKind::fault ? "FAULT" : d.verdict == VerdictKind::unknown ? "UNKNOWN" : "HEALTHY";
   v.headline = headline(d);
-  if (const HypothesisResult* named = d.fault ? find(d, *d.fault) : nullptr; named && !named->meaning.empty())
-    v.detail = named->meaning + ", in " + d.log;
-  if (d.fault) v.facts.push_back({"Probability", chance(d.probabilities.at(*d.fault))});
+  if (d.fault) v.detail = meaning_of(d.fault) + ", in " + d.log;
+  if (d.fault) v.facts.push_back({"Probability", chance(probability_of(d, d.fault))});
   if (d.onset) v.facts.push_back({"Since", digits(*d.onset, 4) + " s"});
   v.facts.push_back({"Error / threshold", digits(d.error) + " / " + digits(d.threshold)});
   v.facts.push_back({"Null", percent(d.null) + " of rated"});
-  if (!d.action.empty()) v.facts.push_back({"Action", d.action});
+  if (d.fault) v.facts.push_back({"Action", action_of(d)});
   v.reasons = reasons(d, baseline);
   return v;
 }
@@ -103,21 +99,20 @@ void add_ranking(Page& page, const Diagnosis& d) {
   bars.shown = 4;
   auto order = d.assessment.hypotheses;
   const auto p_of = [&](const HypothesisResult& h) {  // of an unknown the verdict's probabilities say only that
-    const auto found = d.probabilities.find(h.name);
-    return d.verdict == "unknown" || found == d.probabilities.end() ? h.probability : found->second;
+    return d.verdict == VerdictKind::unknown ? h.probability : probability_of(d, h.fault);
   };
   std::stable_sort(order.begin(), order.end(), [&](const auto& a, const auto& b) { return p_of(a) > p_of(b); });
   for (const HypothesisResult& h : order) {
-    std::string note = h.name == "healthy" ? "" : size_words(h) + "; ";
+    std::string note = h.fault ? size_words(h) + "; " : "";
     note += fmt::format("worst channel {} times its usual error", digits(h.adequacy, 2));
-    bars.rows.push_back({words(h.name), p_of(h), chance(p_of(h)), note,
-                         d.fault == h.name     ? Tone::bad
-                         : h.name == "healthy" ? Tone::good
-                                               : Tone::plain,
+    bars.rows.push_back({words(label_of(h.fault)), p_of(h), chance(p_of(h)), note,
+                         !h.fault             ? Tone::good
+                         : d.fault == h.fault ? Tone::bad
+                                              : Tone::plain,
                          ""});
   }
   page.add(bars);
-  if (d.verdict == "unknown")
+  if (d.verdict == VerdictKind::unknown)
     page.text("None of them fits well enough to be named: the bars only rank them among each other.");
 }
 
@@ -125,24 +120,25 @@ void add_details(Page& page, const Diagnosis& d, const std::vector<Replay>& repl
   add_ranking(page, d);
   const auto [by_fault, in_health] = moved_parts(d);
   if (!by_fault.empty())
-    page.add(moves_of({by_fault.begin(), by_fault.end()},
-                      d.fault ? "What the fault moves, against the tuned table"
-                              : "What the nearest hypothesis, " + words(d.told) + ", moves against the tuned table"));
+    page.add(moves_of(
+        {by_fault.begin(), by_fault.end()},
+        d.fault ? "What the fault moves, against the tuned table"
+                : "What the nearest hypothesis, " + words(label_of(d.nearest)) + ", moves against the tuned table"));
   const auto r = std::find_if(replays.begin(), replays.end(), [&](const Replay& x) { return x.log == d.log; });
   if (r != replays.end()) {
     ReplayView view;
-    view.shown = {"healthy"};
+    view.shown = {label_of(nullptr)};
     const HypothesisResult* nearest = nearest_fault(d);
     if (d.fault)
-      view.shown.push_back(*d.fault);
-    else if (d.verdict == "unknown" && nearest)
-      view.shown.push_back(nearest->name);
-    for (const std::string& other : d.ambiguous_with)
-      if (view.shown.size() < 3 && other != "healthy") view.shown.push_back(other);
+      view.shown.push_back(label_of(d.fault));
+    else if (d.verdict == VerdictKind::unknown && nearest)
+      view.shown.push_back(label_of(nearest->fault));
+    for (const Fault* other : ambiguous_by_label(d))
+      if (view.shown.size() < 3 && other) view.shown.push_back(label_of(other));
     view.onset = d.onset;
     view.logs = drawn;
     page.text(
-        d.verdict == "healthy"
+        d.verdict == VerdictKind::healthy
             ? "Below, the tuned model, with null and air fitted to this log, against the measurement; the channel it "
               "misses most first."
             : "Below, dashed: the valve as healthy; full colour: with the fault. The channel that health misses most "
@@ -158,8 +154,6 @@ void add_details(Page& page, const Diagnosis& d, const std::vector<Replay>& repl
   }
 }
 
-std::string named(const Diagnosis& d) { return d.fault.value_or(d.verdict); }
-
 bool all_known(const std::vector<Diagnosis>& results, const std::vector<std::string>& truths) {
   return truths.size() == results.size() &&
          std::none_of(truths.begin(), truths.end(), [](const auto& t) { return t.empty(); });
@@ -170,9 +164,9 @@ void say_truth(Verdict& v, const std::vector<Diagnosis>& results, const std::vec
   if (!all_known(results, truths)) return;
   std::vector<std::string> wrong;
   for (std::size_t i = 0; i < results.size(); ++i)
-    if (named(results[i]) != truths[i])
+    if (name_of(results[i]) != truths[i])
       wrong.push_back(fmt::format("{}: the verdict is {}, the truth {}.", file_name(results[i].log),
-                                  words(named(results[i])), words(truths[i])));
+                                  words(name_of(results[i])), words(truths[i])));
   v.detail = fmt::format("{} of {} verdicts are what the truth files beside the logs say.",
                          results.size() - wrong.size(), results.size());
   constexpr std::size_t most = 8;
@@ -186,16 +180,16 @@ void add_confusion(Page& page, const std::vector<Diagnosis>& results, const std:
   // Rows and columns in one order, so that what is right lies on the diagonal: health, the faults, last what is no
   // truth (unknown).
   std::map<std::pair<std::string, std::string>, double> counts;
-  for (std::size_t i = 0; i < results.size(); ++i) ++counts[{words(truths[i]), words(named(results[i]))}];
+  for (std::size_t i = 0; i < results.size(); ++i) ++counts[{words(truths[i]), words(name_of(results[i]))}];
   const auto add = [](std::vector<std::string>& names, const std::string& name) {
     if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
   };
   for (const bool health : {true, false})
     for (const auto& [at, n] : counts)
-      if ((at.first == "healthy") == health) add(m.rows, at.first);
+      if ((at.first == label_of(nullptr)) == health) add(m.rows, at.first);
   m.columns = m.rows;
   for (const auto& [at, n] : counts)
-    if (at.second != "unknown") add(m.columns, at.second);
+    if (at.second != word_of(VerdictKind::unknown)) add(m.columns, at.second);
   for (const auto& [at, n] : counts) add(m.columns, at.second);
   for (const std::string& row : m.rows) {
     m.value.emplace_back();
@@ -226,7 +220,8 @@ Page diagnose_page(const Header& header, const std::vector<Diagnosis>& results, 
     return page;
   }
   long faults = 0, unknown = 0;
-  for (const Diagnosis& d : results) faults += d.verdict == "fault", unknown += d.verdict == "unknown";
+  for (const Diagnosis& d : results)
+    faults += d.verdict == VerdictKind::fault, unknown += d.verdict == VerdictKind::unknown;
   const auto total = static_cast<long>(results.size());
   Page page(header, fmt::format("Diagnosis of {} logs", total));
   Verdict all;
@@ -240,14 +235,14 @@ Page diagnose_page(const Header& header, const std::vector<Diagnosis>& results, 
   for (std::size_t i = 0; i < results.size(); ++i)
     scores.rows.push_back({results[i].log, std::min(results[i].error, 10 * baseline.threshold),
                            digits(results[i].error),
-                           results[i].verdict == "fault" ? headline(results[i]) : results[i].verdict,
-                           tone_of(results[i]), fmt::format("#log{}", i + 1)});
+                           results[i].fault ? headline(results[i]) : word_of(results[i].verdict), tone_of(results[i]),
+                           fmt::format("#log{}", i + 1)});
   page.add(scores);
   add_confusion(page, results, truths);
   for (std::size_t i = 0; i < results.size(); ++i) {
     page.verdict(verdict_of(results[i], baseline), fmt::format("log{}", i + 1));
     page.section("Traces, hypotheses and parameters of " + file_name(results[i].log), "",
-                 results[i].verdict == "healthy");
+                 results[i].verdict == VerdictKind::healthy);
     add_details(page, results[i], replays, std::max<std::size_t>(1, replays.size()));
   }
   return page;

@@ -20,13 +20,99 @@ double moved(const MovedRow& row) {
   return change > 0 ? change / std::max(std::abs(row.nominal), std::abs(row.estimate)) : 0.0;
 }
 
-const HypothesisResult* find(const Diagnosis& d, const std::string& name) {
+}  // namespace
+
+std::string word_of(VerdictKind verdict) {
+  switch (verdict) {
+    case VerdictKind::healthy:
+      return "healthy";
+    case VerdictKind::fault:
+      return "fault";
+    case VerdictKind::unknown:
+      return "unknown";
+  }
+  return "";
+}
+
+std::string words_of(GrossFinding finding) {
+  switch (finding) {
+    case GrossFinding::none:
+      return "";
+    case GrossFinding::spool_on_both_stops:
+      return "spool on both stops at small current";
+    case GrossFinding::spool_on_one_stop:
+      return "spool on one stop at small current";
+    case GrossFinding::no_response:
+      return "the spool does not respond";
+  }
+  return "";
+}
+
+std::string label_of(const Fault* hypothesis) {
+  return hypothesis ? std::string(hypothesis->name) : word_of(VerdictKind::healthy);
+}
+
+std::string name_of(const Diagnosis& d) { return d.fault ? label_of(d.fault) : word_of(d.verdict); }
+
+std::string meaning_of(const Fault* hypothesis) {
+  return hypothesis ? std::string(hypothesis->meaning) : "as the fault-free logs, within every fault's tolerance";
+}
+
+std::string unit_of(const Fault* hypothesis) { return hypothesis ? std::string(hypothesis->unit) : ""; }
+
+const HypothesisResult* result_of(const Diagnosis& d, const Fault* hypothesis) {
   for (const HypothesisResult& h : d.assessment.hypotheses)
-    if (h.name == name) return &h;
+    if (h.fault == hypothesis) return &h;
   return nullptr;
 }
 
-}  // namespace
+double probability_of(const Diagnosis& d, const Fault* hypothesis) {
+  for (const Diagnosis::Probability& p : d.probabilities)
+    if (p.of == hypothesis) return p.value;
+  return 0;
+}
+
+std::map<std::string, double> labelled_probabilities(const Diagnosis& d) {
+  std::map<std::string, double> out;
+  for (const Diagnosis::Probability& p : d.probabilities) out[label_of(p.of)] = p.value;
+  if (d.verdict == VerdictKind::unknown) out[word_of(d.verdict)] = 1.0;
+  return out;
+}
+
+std::vector<const Fault*> ambiguous_by_label(const Diagnosis& d) {
+  std::vector<const Fault*> out = d.ambiguous_with;
+  std::sort(out.begin(), out.end(), [](const Fault* a, const Fault* b) { return label_of(a) < label_of(b); });
+  return out;
+}
+
+std::vector<std::string> ambiguous_labels(const Diagnosis& d) {
+  std::vector<std::string> out;
+  for (const Fault* other : ambiguous_by_label(d)) out.push_back(label_of(other));
+  return out;
+}
+
+std::string action_of(const Diagnosis& d) { return d.fault ? std::string(d.fault->action) : ""; }
+
+std::string separating_test_of(const Diagnosis& d) {
+  return d.fault && !d.ambiguous_with.empty() ? std::string(d.fault->test) : "";
+}
+
+std::vector<Candidate> candidates_of(const std::vector<HypothesisPrediction>& explanations) {
+  std::vector<Candidate> out;
+  for (const HypothesisPrediction& e : explanations) out.push_back({label_of(e.fault), e.candidate, e.from});
+  return out;
+}
+
+std::string statement_of(const Baseline& b) {
+  if (b.logs == 0) return "";
+  std::string text = fmt::format(
+      "{} fault-free logs promise a false-alarm rate of {:.1f} % on average over baselines (below {:.0f} % with 95 % "
+      "confidence)",
+      b.logs, 100 * b.promised, 100 * b.promised_95);
+  if (!keeps_rate(b))
+    text += fmt::format("; {:.3g} % takes {} logs, {} more", 100 * b.asked, b.logs_needed, b.logs_needed - b.logs);
+  return text;
+}
 
 std::string chance_words(const Diagnosis& d) {
   std::string text = "p = " + digits(d.p_value, 2);
@@ -36,15 +122,16 @@ std::string chance_words(const Diagnosis& d) {
 }
 
 std::string size_words(const HypothesisResult& h) {
-  return h.at_least ? "none of it seen" : handy_interval(h.severity, h.severity_lower, h.severity_upper, h.unit);
+  return h.at_least ? "none of it seen"
+                    : handy_interval(h.severity, h.severity_lower, h.severity_upper, unit_of(h.fault));
 }
 
 std::string size_words(const Diagnosis& d) {
   if (!d.fault || !std::isfinite(d.severity.value)) return "";
-  const HypothesisResult* h = find(d, *d.fault);
+  const HypothesisResult* h = result_of(d, d.fault);
   if (h && h->at_least && h->severity == d.severity.value)
-    return "at its least, " + handy(d.severity.value, d.severity.unit);
-  return handy_interval(d.severity.value, d.severity.lower, d.severity.upper, d.severity.unit);
+    return "at its least, " + handy(d.severity.value, unit_of(d.fault));
+  return handy_interval(d.severity.value, d.severity.lower, d.severity.upper, unit_of(d.fault));
 }
 
 std::string test_words(const TestConditions& test) {

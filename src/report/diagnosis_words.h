@@ -1,11 +1,37 @@
 // What text and page of a diagnosis say in the same words.
 #pragma once
+#include <map>
 #include <string>
 #include <vector>
 
 #include "diagnose/diagnose.h"
+#include "fit/replay.h"
 
 namespace servodx::report {
+
+std::string word_of(VerdictKind verdict);       // healthy | fault | unknown
+std::string words_of(GrossFinding finding);     // "" of none
+std::string label_of(const Fault* hypothesis);  // its name; of null "healthy"
+std::string name_of(const Diagnosis& d);        // the fault named, else the verdict
+std::string meaning_of(const Fault* hypothesis);
+std::string unit_of(const Fault* hypothesis);  // of its severity; "" of health
+
+// Null where the assessment holds none.
+const HypothesisResult* result_of(const Diagnosis& d, const Fault* hypothesis);
+double probability_of(const Diagnosis& d, const Fault* hypothesis);
+// By label; an unknown state is a label of its own.
+std::map<std::string, double> labelled_probabilities(const Diagnosis& d);
+std::vector<const Fault*> ambiguous_by_label(const Diagnosis& d);
+std::vector<std::string> ambiguous_labels(const Diagnosis& d);
+// What the fault named asks for; the input that would separate it from what it is ambiguous with. "" where none.
+std::string action_of(const Diagnosis& d);
+std::string separating_test_of(const Diagnosis& d);
+
+// What the hypotheses say the log should be, under their labels.
+std::vector<Candidate> candidates_of(const std::vector<HypothesisPrediction>& explanations);
+
+// The rate of false alarms that a baseline promises, and how many more logs the rate asked for takes.
+std::string statement_of(const Baseline& baseline);
 
 // "p = 0.03", or, where no log of the baseline is as far off, "p = 0.1, the least that 9 logs can show".
 std::string chance_words(const Diagnosis& d);

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "report/diagnosis_words.h"
 #include "report/handy.h"
 
 namespace servodx::report {
@@ -85,11 +86,13 @@ Json tune_json(const TuneResult& result) {
 Json baseline_json(const Baseline& b) {
   Json scores = Json::array();
   for (const Baseline::Score& s : b.scores) {
+    Json gains = Json::object();
+    for (const auto& [fault, gain] : s.gains) gains[label_of(fault)] = gain;
     scores.push_back({{"log", s.log},
                       {"sha256", s.sha256},
                       {"score", number(s.score)},
                       {"adequacy", number(s.adequacy)},
-                      {"gains", s.gains}});
+                      {"gains", gains}});
     if (s.test) scores.back()["test"] = test_json(*s.test);
   }
   return {{"threshold", number(b.threshold)},
@@ -97,7 +100,7 @@ Json baseline_json(const Baseline& b) {
            {{"asked", number(b.asked)},
             {"promised", number(b.promised)},
             {"logs", b.logs},
-            {"statement", b.statement},
+            {"statement", statement_of(b)},
             {"promised_95", number(b.promised_95)},
             {"logs_needed", b.logs_needed}}},
           {"scores", scores},
@@ -107,7 +110,7 @@ Json baseline_json(const Baseline& b) {
 }
 
 Json to_json(const HypothesisResult& h) {
-  return {{"name", h.name},
+  return {{"name", label_of(h.fault)},
           {"probability", number(h.probability)},
           {"misfit", number(h.misfit)},
           {"gain", number(h.gain)},
@@ -116,34 +119,34 @@ Json to_json(const HypothesisResult& h) {
            {{"value", number(h.severity)},
             {"lower", number(h.severity_lower)},
             {"upper", number(h.severity_upper)},
-            {"unit", h.unit},
+            {"unit", unit_of(h.fault)},
             {"at_least", h.at_least}}},
           {"stops", h.stops}};
 }
 
 Json to_json(const Diagnosis& d) {
   Json probabilities = Json::object();
-  for (const auto& [label, p] : d.probabilities) probabilities[label] = number(p);
-  const bool sized = d.fault.has_value();
+  for (const auto& [label, p] : labelled_probabilities(d)) probabilities[label] = number(p);
+  const bool sized = d.fault != nullptr;
   return {{"log", d.log},
-          {"verdict", d.verdict},
+          {"verdict", word_of(d.verdict)},
           {"error", number(d.error)},
           {"threshold", number(d.threshold)},
           {"p_value", number(d.p_value)},
-          {"fault", d.fault ? Json(*d.fault) : Json(nullptr)},
+          {"fault", d.fault ? Json(label_of(d.fault)) : Json(nullptr)},
           {"probabilities", probabilities},
-          {"ambiguous_with", d.ambiguous_with},
-          {"separating_test", d.separating_test},
+          {"ambiguous_with", ambiguous_labels(d)},
+          {"separating_test", separating_test_of(d)},
           {"severity",
            {{"value", sized ? number(d.severity.value) : Json(nullptr)},
             {"lower", sized ? number(d.severity.lower) : Json(nullptr)},
             {"upper", sized ? number(d.severity.upper) : Json(nullptr)},
-            {"unit", d.severity.unit}}},
+            {"unit", unit_of(d.fault)}}},
           {"onset_time", d.onset ? number(*d.onset) : Json(nullptr)},
           {"parameters", moved_json(d.moved)},
-          {"action", d.action},
-          {"gross", d.assessment.gross},
-          {"hypothesis_told", d.told},
+          {"action", action_of(d)},
+          {"gross", words_of(d.assessment.gross)},
+          {"hypothesis_told", label_of(d.nearest)},
           {"test", test_json(d.assessment.test)},
           {"unlike_baseline",
            d.unlike ? Json{{"nearest", d.unlike->log}, {"test", test_json(d.unlike->test)}} : Json(nullptr)},

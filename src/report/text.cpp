@@ -40,9 +40,9 @@ std::string moves_table(const Rows& rows, std::size_t most) {
   return table.text();
 }
 
-std::string in_colour(const std::string& word, const std::string& verdict, bool colour) {
+std::string in_colour(const std::string& word, VerdictKind verdict, bool colour) {
   if (!colour) return word;
-  const char* code = verdict == "healthy" ? "32" : verdict == "fault" ? "31" : "33";
+  const char* code = verdict == VerdictKind::healthy ? "32" : verdict == VerdictKind::fault ? "31" : "33";
   return fmt::format("\033[1;{}m{}\033[0m", code, word);
 }
 
@@ -87,12 +87,13 @@ std::string held_rows(const std::vector<ParameterResult>& parameters) {
 // How the hypotheses stand: a named fault with its two runners-up, or the three that come nearest.
 std::pair<std::string, std::string> standing(const Diagnosis& d) {
   std::vector<std::pair<double, std::string>> order;
-  if (d.verdict == "unknown")  // its probabilities say only that
-    for (const HypothesisResult& h : d.assessment.hypotheses) order.emplace_back(h.probability, h.name);
+  if (d.verdict == VerdictKind::unknown)  // its probabilities say only that
+    for (const HypothesisResult& h : d.assessment.hypotheses) order.emplace_back(h.probability, label_of(h.fault));
   else
-    for (const auto& [label, p] : d.probabilities) order.emplace_back(p, label);
+    for (const auto& [label, p] : labelled_probabilities(d)) order.emplace_back(p, label);
+  const auto named = [&](const std::string& label) { return d.fault && label == label_of(d.fault); };
   std::stable_sort(order.begin(), order.end(), [&](const auto& a, const auto& b) {
-    return std::pair(a.second == d.fault, a.first) > std::pair(b.second == d.fault, b.first);
+    return std::pair(named(a.second), a.first) > std::pair(named(b.second), b.first);
   });
   if (order.size() > 3) order.resize(3);
   std::vector<std::string> words;
@@ -128,37 +129,38 @@ std::string text_of(const TuneResult& result, const GoodEnough& good, const Text
 std::string text_of(const Baseline& b, const TextOptions& options) {
   std::string text = fmt::format("threshold {} from {}", digits(b.threshold, 4), plural(b.logs, "fault-free log"));
   text += options.written_to.empty() ? "\n" : ": " + options.written_to + "\n";
-  text += fmt::format("  {}\n", b.statement);
+  text += fmt::format("  {}\n", statement_of(b));
   Columns table("lrr", 2);
   table.row({"log", "score", "adequacy"});
   for (const Baseline::Score& s : b.scores) table.row({s.log, digits(s.score, 4), digits(s.adequacy)});
   text += table.text();
   for (const Baseline::Score& s : b.scores)
     if (s.adequacy > far_off)
-      text += fmt::format("  {}: its worst channel is {} times as wrong as on the tuning logs: tune with a log of its kind\n",
-                          s.log, digits(s.adequacy, 2));
+      text += fmt::format(
+          "  {}: its worst channel is {} times as wrong as on the tuning logs: tune with a log of its kind\n", s.log,
+          digits(s.adequacy, 2));
   return text;
 }
 
 std::string text_of(const Diagnosis& d, const TextOptions& options) {
   std::string first = d.log + ": ";
-  if (d.verdict == "fault")
-    first += in_colour("FAULT", d.verdict, options.colour) + " " + d.fault.value_or("");
+  if (d.fault)
+    first += in_colour("FAULT", d.verdict, options.colour) + " " + label_of(d.fault);
   else
-    first += in_colour(d.verdict == "unknown" ? "UNKNOWN" : d.verdict, d.verdict, options.colour);
+    first += in_colour(d.verdict == VerdictKind::unknown ? "UNKNOWN" : word_of(d.verdict), d.verdict, options.colour);
   if (const std::string size = size_words(d); !size.empty()) first += ", " + size;
-  if (d.verdict == "unknown") first += ": not like the fault-free logs, and no known fault explains it";
+  if (d.verdict == VerdictKind::unknown) first += ": not like the fault-free logs, and no known fault explains it";
 
   Columns table("ll", 2);
   const auto [word, hypotheses] = standing(d);
   table.row({word, hypotheses});
   table.row({"error", fmt::format("{}, threshold {}; {}", digits(d.error), digits(d.threshold), chance_words(d))});
   if (d.unlike) table.row({"beware", unlike_words(d)});
-  if (!d.assessment.gross.empty()) table.row({"seen at once", d.assessment.gross});
+  if (const std::string seen = words_of(d.assessment.gross); !seen.empty()) table.row({"seen at once", seen});
   if (d.onset) table.row({"since", digits(*d.onset, 4) + " s"});
-  if (!d.ambiguous_with.empty()) table.row({"or else", join(d.ambiguous_with)});
-  if (!d.separating_test.empty()) table.row({"to separate", d.separating_test});
-  if (!d.action.empty()) table.row({"action", d.action});
+  if (!d.ambiguous_with.empty()) table.row({"or else", join(ambiguous_labels(d))});
+  if (const std::string test = separating_test_of(d); !test.empty()) table.row({"to separate", test});
+  if (const std::string action = action_of(d); !action.empty()) table.row({"action", action});
   table.row({"null", percent(d.null) + " of rated"});
 
   auto [by_fault, in_health] = moved_parts(d);
@@ -166,7 +168,7 @@ std::string text_of(const Diagnosis& d, const TextOptions& options) {
   constexpr std::size_t most = 4;
   std::string text = first + "\n" + table.text();
   if (!by_fault.empty())
-    text += fmt::format("  {}\n", d.fault ? "moved by the fault" : "moved by the nearest, " + d.told) +
+    text += fmt::format("  {}\n", d.fault ? "moved by the fault" : "moved by the nearest, " + label_of(d.nearest)) +
             moves_table(by_fault, most);
   if (!in_health.empty()) text += "  let wander, as in health\n" + moves_table(in_health, most);
   return text;

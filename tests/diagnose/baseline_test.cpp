@@ -101,12 +101,10 @@ TEST(Baseline, PromisesTheRatesThatItsNumberOfLogsAllows) {
   EXPECT_EQ(low.threshold, scores[2]);
   // One in a hundred takes 99 logs: 96 more.
   EXPECT_EQ(low.logs_needed, 99);
-  EXPECT_NE(low.statement.find("96 more"), std::string::npos) << low.statement;
   // A rate that three logs allow: two of four may lie above, so the threshold is the second score.
   const Baseline high = make_baseline(logs, as_tuned("0"), shipped_rig(), 0.5, quiet());
   EXPECT_DOUBLE_EQ(high.promised, 2.0 / 4);
   EXPECT_EQ(high.threshold, scores[1]);
-  EXPECT_EQ(high.statement.find("more"), std::string::npos) << high.statement;
 }
 
 TEST(Assess, AFaultsRowsAreItsOwnAndProgressIsToldFitByFit) {
@@ -132,24 +130,22 @@ TEST(Assess, AFaultsRowsAreItsOwnAndProgressIsToldFitByFit) {
       health_began |= !of_fault;
       if (of_fault) by_fault.insert(row.name);
     }
-    if (h.name == "healthy") {
+    if (!h.fault) {
       EXPECT_TRUE(by_fault.empty());
-    } else if (h.name == "clogged_filter") {
+    } else if (h.fault == find_fault("clogged_filter")) {
       EXPECT_EQ(by_fault, (std::set<std::string>{"filter_blockage_positive", "filter_blockage_negative"}));
-    } else if (h.name == "plugged_nozzle") {
+    } else if (h.fault == find_fault("plugged_nozzle")) {
       EXPECT_TRUE(by_fault.contains("nozzle_1_blockage") || by_fault.contains("nozzle_2_blockage"));
     }
   }
   // What the log has none of ends where its fault begins, and says so.
   int none_seen = 0;
   for (const HypothesisResult& h : a.hypotheses) {
-    const auto fault =
-        std::find_if(fault_list().begin(), fault_list().end(), [&](auto* f) { return f->name == h.name; });
-    if (fault == fault_list().end() || !h.at_least) continue;
+    if (!h.fault || !h.at_least) continue;
     ++none_seen;
-    const Fault& f = **fault;
+    const Fault& f = *h.fault;
     EXPECT_NEAR(std::abs(h.severity - f.healthy), std::abs(f.least - f.healthy), 0.01 * std::abs(f.worst - f.least))
-        << h.name;
+        << f.name;
   }
   EXPECT_GT(none_seen, 0);
   EXPECT_LT(none_seen, static_cast<int>(fault_list().size()));
@@ -164,7 +160,7 @@ TEST(Assess, SameResultAtAnyThreadCount) {
   EXPECT_EQ(score_of(a, {}), score_of(b, {}));
   ASSERT_EQ(a.hypotheses.size(), b.hypotheses.size());
   for (std::size_t i = 0; i < a.hypotheses.size(); ++i) {
-    EXPECT_EQ(a.hypotheses[i].name, b.hypotheses[i].name);
+    EXPECT_EQ(a.hypotheses[i].fault, b.hypotheses[i].fault);
     EXPECT_EQ(a.hypotheses[i].misfit, b.hypotheses[i].misfit);
     EXPECT_EQ(a.hypotheses[i].severity, b.hypotheses[i].severity);
   }

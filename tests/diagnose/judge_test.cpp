@@ -7,13 +7,13 @@
 namespace servodx {
 namespace {
 
+// No name: health.
 HypothesisResult hypothesis(const std::string& name, double probability, double adequacy = 1.0) {
   HypothesisResult h;
-  h.name = name;
+  h.fault = find_fault(name);
   h.probability = probability;
   h.adequacy = adequacy;
   h.severity = 0.6, h.severity_lower = 0.5, h.severity_upper = 0.7;
-  h.unit = "unit of " + name;
   return h;
 }
 
@@ -34,111 +34,112 @@ Baseline baseline() {
   return b;
 }
 
+double probability_of(const Diagnosis& d, const std::string& fault) {
+  for (const Diagnosis::Probability& p : d.probabilities)
+    if (p.of == find_fault(fault)) return p.value;
+  return -1;
+}
+
 TEST(Judge, ScoreAtTheThresholdIsHealthyWhateverTheHypothesesSay) {
   for (double score : {0.0, 2.9, 3.0}) {
     const Diagnosis d =
-        judge(assessment(score, {hypothesis("healthy", 0.01), hypothesis("clogged_filter", 0.99)}), baseline());
-    EXPECT_EQ(d.verdict, "healthy") << score;
-    EXPECT_FALSE(d.fault.has_value());
+        judge(assessment(score, {hypothesis("", 0.01), hypothesis("clogged_filter", 0.99)}), baseline());
+    EXPECT_EQ(d.verdict, VerdictKind::healthy) << score;
+    EXPECT_FALSE(d.fault);
     EXPECT_EQ(d.error, score);
     EXPECT_EQ(d.threshold, 3.0);
   }
 }
 
 TEST(Judge, ScoreAboveItNamesTheMostProbableFaultWithItsSize) {
-  const Diagnosis d = judge(assessment(3.001, {hypothesis("healthy", 0.001), hypothesis("sticky_spool", 0.001),
+  const Diagnosis d = judge(assessment(3.001, {hypothesis("", 0.001), hypothesis("sticky_spool", 0.001),
                                                hypothesis("clogged_filter", 0.998)}),
                             baseline());
-  EXPECT_EQ(d.verdict, "fault");
-  ASSERT_TRUE(d.fault.has_value());
-  EXPECT_EQ(*d.fault, "clogged_filter");
+  EXPECT_EQ(d.verdict, VerdictKind::fault);
+  ASSERT_TRUE(d.fault);
+  EXPECT_EQ(d.fault, find_fault("clogged_filter"));
   EXPECT_EQ(d.severity.value, 0.6);
   EXPECT_EQ(d.severity.lower, 0.5);
   EXPECT_EQ(d.severity.upper, 0.7);
-  EXPECT_EQ(d.severity.unit, "unit of clogged_filter");
-  EXPECT_EQ(d.action, find_fault("clogged_filter")->action);
   EXPECT_TRUE(d.ambiguous_with.empty());
-  EXPECT_TRUE(d.separating_test.empty());
-  EXPECT_EQ(d.probabilities.at("clogged_filter"), 0.998);
+  EXPECT_EQ(probability_of(d, "clogged_filter"), 0.998);
 }
 
 TEST(Judge, AFaultThatHealthGainsByTooMustGainTheMore) {
   // Where fault-free logs gain 24 by a leaking cylinder, one that gains 100 by it is 2 deviates off, not 10.
   Baseline b = baseline();
-  for (Baseline::Score& s : b.scores) s.gains = {{"cylinder_leakage", 24.0}, {"sticky_spool", 0.0}};
+  for (Baseline::Score& s : b.scores)
+    s.gains = {{find_fault("cylinder_leakage"), 24.0}, {find_fault("sticky_spool"), 0.0}};
   const auto verdict = [&](const char* fault) {
-    return judge(assessment(10.0, {hypothesis("healthy", 0.0), hypothesis(fault, 1.0)}), b);
+    return judge(assessment(10.0, {hypothesis("", 0.0), hypothesis(fault, 1.0)}), b);
   };
   EXPECT_DOUBLE_EQ(verdict("cylinder_leakage").error, 2.0);
-  EXPECT_EQ(verdict("cylinder_leakage").verdict, "healthy");
+  EXPECT_EQ(verdict("cylinder_leakage").verdict, VerdictKind::healthy);
   EXPECT_DOUBLE_EQ(verdict("sticky_spool").error, 10.0);
-  EXPECT_EQ(verdict("sticky_spool").verdict, "fault");
+  EXPECT_EQ(verdict("sticky_spool").verdict, VerdictKind::fault);
 }
 
 TEST(Judge, PValueIsTheRankAmongTheHealthyLogs) {
   // (1 + healthy logs at or above) / (n + 1)
   for (const auto& [score, p] : {std::pair{0.5, 1.0}, {1.5, 0.75}, {2.5, 0.5}, {3.0, 0.5}, {9.0, 0.25}})
-    EXPECT_DOUBLE_EQ(judge(assessment(score, {hypothesis("healthy", 1.0)}), baseline()).p_value, p) << score;
+    EXPECT_DOUBLE_EQ(judge(assessment(score, {hypothesis("", 1.0)}), baseline()).p_value, p) << score;
 }
 
 TEST(Judge, UnknownWhenTheBestHypothesisExplainsTooLittle) {
   // The best leaves as much as health does, ten times what healthy logs leave.
   const Diagnosis d =
-      judge(assessment(20.0, {hypothesis("healthy", 0.0, 15.0), hypothesis("clogged_filter", 1.0, 14.0)}), baseline());
-  EXPECT_EQ(d.verdict, "unknown");
-  EXPECT_FALSE(d.fault.has_value());
-  EXPECT_EQ(d.probabilities.at("unknown"), 1.0);
-  EXPECT_EQ(d.probabilities.at("clogged_filter"), 0.0);
-  EXPECT_TRUE(d.action.empty());
+      judge(assessment(20.0, {hypothesis("", 0.0, 15.0), hypothesis("clogged_filter", 1.0, 14.0)}), baseline());
+  EXPECT_EQ(d.verdict, VerdictKind::unknown);
+  EXPECT_FALSE(d.fault);
+  EXPECT_EQ(probability_of(d, "clogged_filter"), 0.0);
 }
 
 TEST(Judge, FaultThatLeavesNoMoreThanHealthyLogsDoIsNamedHoweverLarge) {
   const Diagnosis d =
-      judge(assessment(500.0, {hypothesis("healthy", 0.0, 300.0), hypothesis("sticky_spool", 1.0, 1.5)}), baseline());
-  EXPECT_EQ(d.verdict, "fault");
+      judge(assessment(500.0, {hypothesis("", 0.0, 300.0), hypothesis("sticky_spool", 1.0, 1.5)}), baseline());
+  EXPECT_EQ(d.verdict, VerdictKind::fault);
 }
 
 TEST(Judge, UnknownWhenHealthIsStillTheBestHypothesis) {
   const Diagnosis d =
-      judge(assessment(5.0, {hypothesis("healthy", 0.9, 4.0), hypothesis("sticky_spool", 0.1, 3.9)}), baseline());
-  EXPECT_EQ(d.verdict, "unknown");
+      judge(assessment(5.0, {hypothesis("", 0.9, 4.0), hypothesis("sticky_spool", 0.1, 3.9)}), baseline());
+  EXPECT_EQ(d.verdict, VerdictKind::unknown);
 }
 
 TEST(Judge, HypothesisThatCannotBeRuledOutIsListedWithTheTestThatSeparates) {
   const Diagnosis d =
-      judge(assessment(9.0, {hypothesis("healthy", 0.0), hypothesis("sticky_spool", 0.6),
+      judge(assessment(9.0, {hypothesis("", 0.0), hypothesis("sticky_spool", 0.6),
                              hypothesis("feedback_wire_backlash", 0.39), hypothesis("null_shift", 0.01)}),
             baseline());
-  EXPECT_EQ(*d.fault, "sticky_spool");
-  EXPECT_EQ(d.ambiguous_with, std::vector<std::string>{"feedback_wire_backlash"});
-  EXPECT_EQ(d.separating_test, find_fault("sticky_spool")->test);
+  EXPECT_EQ(d.fault, find_fault("sticky_spool"));
+  EXPECT_EQ(d.ambiguous_with, std::vector<const Fault*>{find_fault("feedback_wire_backlash")});
 }
 
 TEST(Judge, SpoolOnBothStopsIsALostWireWhateverTheFitsSay) {
-  Assessment a = assessment(1e3, {hypothesis("healthy", 0.5, 80.0), hypothesis("torque_motor_loss", 0.5, 70.0),
+  Assessment a = assessment(1e3, {hypothesis("", 0.5, 80.0), hypothesis("torque_motor_loss", 0.5, 70.0),
                                   hypothesis("feedback_wire_lost", 0.0, 90.0)});
-  a.gross = "spool on both stops at small current";
+  a.gross = GrossFinding::spool_on_both_stops;
   const Diagnosis d = judge(a, baseline());
-  EXPECT_EQ(d.verdict, "fault");
-  EXPECT_EQ(*d.fault, "feedback_wire_lost");
+  EXPECT_EQ(d.verdict, VerdictKind::fault);
+  EXPECT_EQ(d.fault, find_fault("feedback_wire_lost"));
   EXPECT_EQ(d.severity.value, 0.0);  // nothing left of it
   EXPECT_EQ(d.severity.lower, 0.0);
-  EXPECT_EQ(d.probabilities.at("feedback_wire_lost"), 1.0);
-  EXPECT_EQ(d.probabilities.at("torque_motor_loss"), 0.0);
+  EXPECT_EQ(probability_of(d, "feedback_wire_lost"), 1.0);
+  EXPECT_EQ(probability_of(d, "torque_motor_loss"), 0.0);
   EXPECT_TRUE(d.ambiguous_with.empty());
 }
 
 TEST(Judge, OtherGrossFindingsNameNothingByThemselves) {
-  for (const char* gross : {"spool on one stop at small current", "the spool does not respond"}) {
-    Assessment a = assessment(1e3, {hypothesis("healthy", 0.5, 80.0), hypothesis("torque_motor_loss", 0.5, 70.0),
+  for (const GrossFinding gross : {GrossFinding::spool_on_one_stop, GrossFinding::no_response}) {
+    Assessment a = assessment(1e3, {hypothesis("", 0.5, 80.0), hypothesis("torque_motor_loss", 0.5, 70.0),
                                     hypothesis("feedback_wire_lost", 0.0, 90.0)});
     a.gross = gross;
-    EXPECT_EQ(judge(a, baseline()).verdict, "unknown") << gross;
+    EXPECT_EQ(judge(a, baseline()).verdict, VerdictKind::unknown) << static_cast<int>(gross);
   }
 }
 
 TEST(Judge, RowsAndNullAreOfTheHypothesisThatTheVerdictIsOf) {
-  HypothesisResult healthy = hypothesis("healthy", 0.001), filter = hypothesis("clogged_filter", 0.998);
+  HypothesisResult healthy = hypothesis("", 0.001), filter = hypothesis("clogged_filter", 0.998);
   healthy.null = 0.01, filter.null = 0.02;
   MovedRow row;
   row.name = "air";
@@ -146,12 +147,12 @@ TEST(Judge, RowsAndNullAreOfTheHypothesisThatTheVerdictIsOf) {
   row.name = "filter_blockage_positive";
   filter.moved = {row};
   Assessment a = assessment(10, {healthy, filter});
-  EXPECT_EQ(judge(a, baseline()).told, "clogged_filter");
+  EXPECT_EQ(judge(a, baseline()).nearest, find_fault("clogged_filter"));
   EXPECT_EQ(judge(a, baseline()).null, 0.02);
   ASSERT_EQ(judge(a, baseline()).moved.size(), 1u);
   EXPECT_EQ(judge(a, baseline()).moved.front().name, "filter_blockage_positive");
   a.hypotheses.back().gain = 0;  // below the threshold the most probable fault is none
-  EXPECT_EQ(judge(a, baseline()).told, "healthy");
+  EXPECT_EQ(judge(a, baseline()).nearest, nullptr);
   EXPECT_EQ(judge(a, baseline()).null, 0.01);
   EXPECT_EQ(judge(a, baseline()).moved.front().name, "air");
 }
@@ -159,7 +160,7 @@ TEST(Judge, RowsAndNullAreOfTheHypothesisThatTheVerdictIsOf) {
 TEST(Judge, ATestUnlikeEveryLogOfTheBaselineIsSaidWithTheNearest) {
   Baseline b = baseline();
   const TestConditions warm{0.020, 6.0, 313.0}, cold{0.020, 6.0, 270.0}, large{0.045, 6.0, 313.0};
-  Assessment a = assessment(1, {hypothesis("healthy", 0.9), hypothesis("clogged_filter", 0.1)});
+  Assessment a = assessment(1, {hypothesis("", 0.9), hypothesis("clogged_filter", 0.1)});
   a.test = warm;
   EXPECT_FALSE(judge(a, b).unlike) << "a baseline of earlier versions knows of no tests";
   b.scores[0].test = cold, b.scores[1].test = large, b.scores[2].test = TestConditions{0.018, 11.0, 320.0};
@@ -172,7 +173,7 @@ TEST(Judge, ATestUnlikeEveryLogOfTheBaselineIsSaidWithTheNearest) {
 }
 
 TEST(Judge, OnsetIsHandedOn) {
-  Assessment a = assessment(9.0, {hypothesis("healthy", 0.0), hypothesis("sticky_spool", 1.0)});
+  Assessment a = assessment(9.0, {hypothesis("", 0.0), hypothesis("sticky_spool", 1.0)});
   a.onset = 1.25;
   EXPECT_EQ(judge(a, baseline()).onset, 1.25);
 }

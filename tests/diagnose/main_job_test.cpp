@@ -6,6 +6,7 @@
 #include <chrono>
 
 #include "diagnose/diagnose.h"
+#include "faults/registry.h"
 #include "shipped_data.h"
 
 namespace servodx {
@@ -46,35 +47,37 @@ TEST(MainJob, LostWireIsFoundAndSizedAndNoFaultTakenForAnother) {
   const Baseline baseline =
       make_baseline(pieces({"healthy/h15_no_supply_signals", "healthy/h05_prbs", "healthy/h03_sine_2hz"}), tuned.table,
                     rig, 0.01, quiet);
-  std::printf("baseline after %.1f s: threshold %.2f, adequacy limit %.2f; %s\n", seconds(), baseline.threshold,
-              baseline.adequacy_limit, baseline.statement.c_str());
+  std::printf("baseline after %.1f s: threshold %.2f, adequacy limit %.2f; %d logs\n", seconds(), baseline.threshold,
+              baseline.adequacy_limit, baseline.logs);
   struct Case {
-    std::string log, truth;
-    double left;  // of the wire
+    std::string log;
+    const Fault* truth;  // null: healthy
+    double left;         // of the wire
   };
-  const std::vector<Case> cases = {{"healthy/h06_sweep", "healthy", 1.0},
-                                   {"fault/f02_clogged_filter_severe", "clogged_filter", 1.0},
-                                   {"fault/f05_wire_lost_mild", "feedback_wire_lost", 0.5},
-                                   {"fault/f06_wire_lost_medium", "feedback_wire_lost", 0.2},
-                                   {"fault/f08_sticky_spool_severe", "sticky_spool", 1.0}};
+  const Fault* wire_lost = find_fault("feedback_wire_lost");
+  const std::vector<Case> cases = {{"healthy/h06_sweep", nullptr, 1.0},
+                                   {"fault/f02_clogged_filter_severe", find_fault("clogged_filter"), 1.0},
+                                   {"fault/f05_wire_lost_mild", wire_lost, 0.5},
+                                   {"fault/f06_wire_lost_medium", wire_lost, 0.2},
+                                   {"fault/f08_sticky_spool_severe", find_fault("sticky_spool"), 1.0}};
   int faults = 0, detected = 0, named = 0;
   for (const Case& c : cases) {
-    const Diagnosis d = judge(assess(piece(shipped_log(c.log), from, to), tuned.table, rig, quiet), baseline);
+    const Diagnosis d = diagnose(piece(shipped_log(c.log), from, to), tuned.table, rig, baseline, quiet);
     std::string ambiguous;
-    for (const std::string& other : d.ambiguous_with) ambiguous += " or " + other;
-    std::printf("%-34s -> %-8s %-24s score %7.2f size %.3g [%.3g, %.3g]%s  (%.1f s)\n", c.log.c_str(),
-                d.verdict.c_str(), d.fault.value_or("").c_str(), d.error, d.severity.value, d.severity.lower,
+    for (const Fault* other : d.ambiguous_with) ambiguous += " or " + std::string(other ? other->name : "health");
+    std::printf("%-34s -> %-24s score %7.2f size %.3g [%.3g, %.3g]%s  (%.1f s)\n", c.log.c_str(),
+                d.fault ? d.fault->name.data() : "no fault named", d.error, d.severity.value, d.severity.lower,
                 d.severity.upper, ambiguous.c_str(), seconds());
-    if (c.truth == "healthy") continue;  // one log in four may be called faulty: three baseline logs promise no more
+    if (!c.truth) continue;  // one log in four may be called faulty: three baseline logs promise no more
     ++faults;
-    detected += d.verdict != "healthy";
+    detected += d.verdict != VerdictKind::healthy;
     named += d.fault == c.truth;
     // A second of steps may be too little to see a fault; it must not show another one.
     const bool listed = std::find(d.ambiguous_with.begin(), d.ambiguous_with.end(), c.truth) != d.ambiguous_with.end();
-    EXPECT_TRUE(!d.fault || *d.fault == c.truth || listed) << c.log;
-    if (c.truth != "feedback_wire_lost") continue;
+    EXPECT_TRUE(!d.fault || d.fault == c.truth || listed) << c.log;
+    if (c.truth != wire_lost) continue;
     // The static gain doubles, or rises fivefold: far beyond what health leaves.
-    EXPECT_EQ(d.verdict, "fault") << c.log;
+    EXPECT_EQ(d.verdict, VerdictKind::fault) << c.log;
     EXPECT_GT(d.error, 3 * baseline.threshold) << c.log;
     EXPECT_NEAR(d.severity.value, c.left, 0.15) << c.log;
   }

@@ -30,9 +30,10 @@ const std::map<std::string, std::set<std::string>> allowed = {
     {"simulate", {"parameters", "model", "effects", "faults", "integrate", "signals"}},
     {"rig", {"integrate", "signals"}},
     {"fit", {"parameters", "model", "effects", "simulate", "signals", "optimise"}},
-    {"diagnose", {"parameters", "signals", "simulate", "optimise", "fit", "faults", "effects"}},
+    {"evidence", {"fit", "signals"}},
+    {"diagnose", {"parameters", "signals", "simulate", "optimise", "fit", "evidence", "faults", "effects"}},
     {"explain", {"parameters", "signals", "simulate", "optimise", "fit", "faults", "effects"}},
-    {"report", {"signals", "diagnose", "explain", "prognose", "fit", "valve_maps", "curves"}},
+    {"report", {"signals", "faults", "diagnose", "explain", "prognose", "fit", "valve_maps", "curves"}},
     {"prognose", {"parameters", "signals", "model", "simulate", "optimise", "fit", "faults", "valve_maps"}},
 };
 

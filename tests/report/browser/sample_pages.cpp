@@ -7,6 +7,7 @@
 
 #include "base/atomic_file.h"
 #include "base/random.h"
+#include "faults/registry.h"
 #include "report/pages.h"
 
 namespace {
@@ -64,43 +65,32 @@ std::vector<ParameterResult> some_parameters() {
           {30, "cross_piston_leakage", "m3/s/Pa", 1e-13, 1e-13, std::nan(""), "confounded", {"spool_friction"}, 0, 0}};
 }
 
-Diagnosis some_diagnosis(const std::string& log, const std::string& verdict) {
+Diagnosis some_diagnosis(const std::string& log, VerdictKind verdict) {
   Diagnosis d;
   d.log = log;
   d.verdict = verdict;
-  d.error = verdict == "healthy" ? 4 : 37;
+  d.error = verdict == VerdictKind::healthy ? 4 : 37;
   d.threshold = 9.45;
   d.p_value = 0.2;
   d.assessment.log = log;
   d.null = -0.0026;
-  d.told = "feedback_wire_backlash";
+  const Fault* backlash = find_fault("feedback_wire_backlash");
+  const Fault* sticky = find_fault("sticky_spool");
+  d.nearest = backlash;
   for (const ParameterResult& p : some_parameters())
     d.moved.push_back({p, p.name == "valve_glitch" ? MovedRow::By::fault : MovedRow::By::tolerance});
   d.baseline_logs = 4;
   d.assessment.test = {0.043, 5.6, 314.0};
   d.unlike = {hostile, {0.040, 2.0, 333.0}};
-  d.assessment.hypotheses = {
-      {"healthy", "as the fault-free logs", 900, 0, 1e-6, 0, 0, 0, "", 8.1, {}},
-      {"feedback_wire_backlash",
-       "clearance between the ball and the spool",
-       80,
-       820,
-       0.93,
-       2.07e-5,
-       1.76e-5,
-       2.39e-5,
-       "m",
-       1.3,
-       {}},
-      {"sticky_spool", "friction of the spool", 90, 810, 0.07, 4.1, 3.0, 5.2, "times the tuned friction", 1.6, {}}};
+  d.assessment.hypotheses = {{nullptr, 900, 0, 1e-6, 0, 0, 0, 8.1, {}},
+                             {backlash, 80, 820, 0.93, 2.07e-5, 1.76e-5, 2.39e-5, 1.3, {}},
+                             {sticky, 90, 810, 0.07, 4.1, 3.0, 5.2, 1.6, {}}};
   d.assessment.hypotheses.back().at_least = true;
-  for (const HypothesisResult& h : d.assessment.hypotheses) d.probabilities[h.name] = h.probability;
-  if (verdict == "fault") {
-    d.fault = "feedback_wire_backlash";
-    d.severity = {2.07e-5, 1.76e-5, 2.39e-5, "m"};
-    d.ambiguous_with = {"sticky_spool"};
-    d.separating_test = "small sine about null: the spool jumps through the clearance at each reversal";
-    d.action = "abnormal: call service";
+  for (const HypothesisResult& h : d.assessment.hypotheses) d.probabilities.push_back({h.fault, h.probability});
+  if (verdict == VerdictKind::fault) {
+    d.fault = backlash;
+    d.severity = {2.07e-5, 1.76e-5, 2.39e-5};
+    d.ambiguous_with = {sticky};
     d.onset = 1.5;
   }
   return d;
@@ -121,7 +111,6 @@ Baseline some_baseline() {
   b.promised_95 = 0.5;
   b.logs = 4;
   b.logs_needed = 99;
-  b.statement = "4 fault-free logs promise a false-alarm rate of 20 % on average over baselines";
   for (int i = 0; i < 4; ++i)
     b.scores.push_back(
         {i == 0 ? hostile : "h" + std::to_string(i) + ".csv", std::string(64, 'b'), 2.0 + 2.48 * i, 1.0 + i, {}});
@@ -151,14 +140,15 @@ int main(int argc, char** argv) {
   };
   const std::vector<std::string> both = {"healthy", "feedback_wire_backlash"};
   const std::string log = "bench/valve 3.csv";
-  write("diagnose", diagnose_page(some_header("diagnose", log), {some_diagnosis(log, "fault")}, some_baseline(),
-                                  {some_replay(log, 3000, both)}));
-  write("many", diagnose_page(some_header("diagnose", hostile),
-                              {some_diagnosis(hostile, "fault"), some_diagnosis("u.csv", "unknown"),
-                               some_diagnosis("h.csv", "healthy")},
-                              some_baseline(), {some_replay(hostile, 1500, both), some_replay("u.csv", 1500, both)},
-                              {"feedback_wire_backlash", "sticky_spool", "healthy"}));
-  write("long", diagnose_page(some_header("diagnose", log), {some_diagnosis(log, "fault")}, some_baseline(),
+  write("diagnose", diagnose_page(some_header("diagnose", log), {some_diagnosis(log, VerdictKind::fault)},
+                                  some_baseline(), {some_replay(log, 3000, both)}));
+  write("many",
+        diagnose_page(some_header("diagnose", hostile),
+                      {some_diagnosis(hostile, VerdictKind::fault), some_diagnosis("u.csv", VerdictKind::unknown),
+                       some_diagnosis("h.csv", VerdictKind::healthy)},
+                      some_baseline(), {some_replay(hostile, 1500, both), some_replay("u.csv", 1500, both)},
+                      {"feedback_wire_backlash", "sticky_spool", "healthy"}));
+  write("long", diagnose_page(some_header("diagnose", log), {some_diagnosis(log, VerdictKind::fault)}, some_baseline(),
                               {some_replay(log, 1'000'000, both)}));
   write("baseline",
         baseline_page(some_header("baseline", hostile), some_baseline(), {some_replay(hostile, 1500, {"healthy"})}));

@@ -1,0 +1,47 @@
+// What a log says of each hypothesis, before any threshold.
+#pragma once
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "diagnose/conditions.h"
+#include "diagnose/moved.h"
+#include "faults/fault.h"
+#include "fit/tune.h"
+
+namespace servodx {
+
+struct HypothesisResult {
+  const Fault* fault = nullptr;  // null: healthy
+  double misfit = 0;             // penalised -2 log likelihood
+  double gain = 0;               // misfit of healthy less this one
+  double probability = 0;
+  double severity = 0, severity_lower = 0, severity_upper = 0;  // [the fault's unit] 95 %
+  double adequacy = 0;               // whitened rms of the worst channel, 1 when like the healthy logs
+  std::vector<std::string> stops;    // how each start ended
+  bool at_least = false;             // at the mildest that is called this fault: the fit has found none of it
+  double null = 0;                   // [fraction of rated]
+  std::vector<MovedRow> moved = {};  // the fault's rows first
+};
+
+// What a hypothesis says the log should be.
+struct HypothesisPrediction {
+  const Fault* fault = nullptr;  // null: healthy
+  ParameterVector candidate = {};
+  std::size_t from = 0;  // first sample it speaks of: a fault that steps in explains what follows
+};
+
+struct Assessment {
+  std::string log, sha256;
+  std::vector<HypothesisResult> hypotheses;  // healthy first, then by probability
+  std::vector<ChannelResult> channels;       // replay under health: rms beside noise
+  GrossFinding gross = GrossFinding::none;
+  std::optional<double> onset;                     // [s] change point where one stands out
+  std::vector<HypothesisPrediction> explanations;  // of each hypothesis that could be fitted
+  TestConditions test;
+  std::vector<std::string> notes;
+  long simulations = 0, failed_simulations = 0;
+};
+
+}  // namespace servodx

@@ -1,0 +1,53 @@
+// What fault-free logs score, and the threshold that promises a false-alarm rate.
+//
+// The score of a log is how far it is from health in deviates: by the fault that explains most, or by what no fault
+// explains. The threshold is one of the scores (evidence/rank_promise.h).
+#pragma once
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "diagnose/assessment.h"
+
+namespace servodx {
+
+struct ByName {
+  bool operator()(const Fault* a, const Fault* b) const { return a->name < b->name; }
+};
+using FaultGains = std::map<const Fault*, double, ByName>;  // of each fault over health
+
+struct Baseline {
+  double threshold = 0;
+  double asked = 0.01, promised = 0, promised_95 = 0;  // false-alarm rates
+  int logs = 0, logs_needed = 0;
+  struct Score {
+    std::string log, sha256;
+    double score = 0, adequacy = 0;
+    FaultGains gains = {};
+    std::optional<TestConditions> test = {};           // files of earlier versions have none
+    std::optional<HypothesisPrediction> healthy = {};  // not in the file: for the report
+  };
+  std::vector<Score> scores;
+  double adequacy_limit = 0;  // largest adequacy of a healthy log
+  double null_limit = 0.05;
+  std::string tuned_sha256;  // of the table it was made with
+};
+
+// `usual`: what each fault gains on fault-free logs, on average; a fault that health shows too must gain the more.
+double score_of(const Assessment& assessment, const FaultGains& usual);
+
+// Mean gain of each fault over the baseline's logs, but for log `left_out` (-1: none).
+FaultGains usual_gains(const Baseline& baseline, int left_out = -1);
+
+// Scores every log by the others, and sets threshold and promise for the rate asked. Empty without assessments.
+Baseline baseline_of(const std::vector<Assessment>& healthy, double false_alarm);
+
+// Whether the rate promised is the rate asked for.
+bool keeps_rate(const Baseline& baseline);
+
+// The log of the baseline whose test is nearest, where none is of a test like this one. Empty also where the baseline
+// does not say what tests it holds.
+const Baseline::Score* nearest_of_unlike(const TestConditions& test, const Baseline& baseline);
+
+}  // namespace servodx

@@ -1,0 +1,75 @@
+#include "diagnose/decide.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "diagnose/constants.h"
+
+namespace servodx {
+namespace {
+
+namespace k = diagnose_constants;
+
+std::size_t most_probable(const std::vector<HypothesisEvidence>& hypotheses) {
+  std::size_t best = 0;
+  for (std::size_t i = 1; i < hypotheses.size(); ++i)
+    if (hypotheses[i].probability > hypotheses[best].probability) best = i;
+  return best;
+}
+
+bool shown_by(const Fault* fault, GrossFinding finding) {
+  return finding != GrossFinding::none && fault && fault->seen_outright && fault->seen_outright->finding == finding;
+}
+
+std::optional<std::size_t> seen_outright(const Evidence& e) {
+  for (std::size_t i = 0; i < e.hypotheses.size(); ++i)
+    if (shown_by(e.hypotheses[i].fault, e.gross)) return i;
+  return {};
+}
+
+Decision name_outright(Decision d, std::size_t fault) {
+  d.verdict = VerdictKind::fault;
+  d.hypothesis = fault;
+  d.severity = SeveritySource::seen_outright;
+  std::fill(d.probabilities.begin(), d.probabilities.end(), 0.0);
+  d.probabilities[fault] = 1.0;
+  return d;
+}
+
+Decision name_fitted(Decision d, std::size_t fault) {
+  d.verdict = VerdictKind::fault;
+  d.hypothesis = fault;
+  d.severity = SeveritySource::fit;
+  for (std::size_t i = 0; i < d.probabilities.size(); ++i)
+    if (i != fault && d.probabilities[i] > k::ambiguous_probability) d.ambiguous.push_back(i);
+  return d;
+}
+
+Decision name_nothing(Decision d, std::size_t nearest) {
+  d.verdict = VerdictKind::unknown;
+  d.hypothesis = nearest;
+  std::fill(d.probabilities.begin(), d.probabilities.end(), 0.0);
+  return d;
+}
+
+}  // namespace
+
+bool explains_enough(double adequacy, double healthy_adequacy, double usual_adequacy) {
+  return adequacy <=
+         std::hypot(k::fault_allowance * std::max(1.0, usual_adequacy), k::unexplained_part * healthy_adequacy);
+}
+
+Decision decide(const Evidence& e) {
+  Decision d;
+  for (const HypothesisEvidence& h : e.hypotheses) d.probabilities.push_back(h.probability);
+  if (e.error <= e.threshold) return d;
+  if (const auto outright = seen_outright(e)) return name_outright(std::move(d), *outright);
+  const std::size_t best = most_probable(e.hypotheses);
+  const HypothesisEvidence& h = e.hypotheses[best];
+  if (h.fault && explains_enough(h.adequacy, e.hypotheses.front().adequacy, e.usual_adequacy))
+    return name_fitted(std::move(d), best);
+  return name_nothing(std::move(d), best);
+}
+
+}  // namespace servodx

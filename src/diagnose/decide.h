@@ -1,0 +1,45 @@
+// The rules of the verdict: evidence in, decision out. No fit, no log, no registry.
+//
+//   error at or below the threshold              healthy
+//   a finding that names a fault outright        that fault
+//   the most probable is a fault that explains enough   that fault
+//   else                                         unknown
+#pragma once
+#include <cstddef>
+#include <vector>
+
+#include "faults/fault.h"
+
+namespace servodx {
+
+enum class VerdictKind { healthy, fault, unknown };
+
+struct HypothesisEvidence {
+  const Fault* fault = nullptr;  // null: healthy
+  double probability = 0;        // beside the other hypotheses
+  double adequacy = 0;           // whitened rms of the worst channel; 1 as on the tuning logs
+};
+
+struct Evidence {
+  double error = 0, threshold = 0;  // deviates from health
+  double usual_adequacy = 0;        // the largest of the baseline's logs
+  GrossFinding gross = GrossFinding::none;
+  std::vector<HypothesisEvidence> hypotheses;  // healthy first; at least that one
+};
+
+enum class SeveritySource { none, fit, seen_outright };
+
+struct Decision {
+  VerdictKind verdict = VerdictKind::healthy;
+  std::size_t hypothesis = 0;          // the one named; of an unknown state the most probable; else health
+  std::vector<double> probabilities;   // of each hypothesis; all 0 of an unknown state
+  std::vector<std::size_t> ambiguous;  // hypotheses that cannot be ruled out beside the fault named
+  SeveritySource severity = SeveritySource::none;
+};
+
+Decision decide(const Evidence& evidence);
+
+// Whether a hypothesis leaves little enough: a fault is known less well than health, and the less the larger it is.
+bool explains_enough(double adequacy, double healthy_adequacy, double usual_adequacy);
+
+}  // namespace servodx

@@ -1,0 +1,65 @@
+// Logs to a baseline: each assessed alone, then scored by the others.
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "base/error.h"
+#include "base/progress.h"
+#include "diagnose/diagnose.h"
+#include "fit/nominal.h"
+
+namespace servodx {
+namespace {
+
+constexpr std::size_t fewest_logs = 3;
+
+void check(const std::vector<Log>& logs, const Table& tuned, double false_alarm) {
+  if (!(false_alarm > 0 && false_alarm < 1))
+    throw InputError({.file = "--false-alarm"}, fmt::format("{} is not a rate", false_alarm),
+                     "give a number between 0 and 1, such as 0.01");
+  const std::vector<std::string> used = tuned_by(tuned);
+  for (std::size_t i = 0; i < logs.size(); ++i) {
+    if (std::find(used.begin(), used.end(), logs[i].sha256) != used.end())
+      throw InputError({.file = logs[i].path},
+                       "this log tuned " + tuned.path + ": its residual is smaller than a new log's",
+                       "give fault-free logs that the fit has not seen");
+    for (std::size_t j = 0; j < i; ++j)
+      if (logs[j].sha256 == logs[i].sha256)
+        throw InputError({.file = logs[i].path}, "the same log as " + logs[j].path,
+                         "give each log once: the rate counts independent logs");
+  }
+  if (logs.size() < fewest_logs)
+    throw InputError({}, fmt::format("{} logs cannot set a threshold", logs.size()),
+                     "give at least 3 fault-free logs; the rate that can be promised is 1/(n+1)");
+}
+
+}  // namespace
+
+Baseline make_baseline(const std::vector<Log>& logs, const Table& tuned, const RigFile& rig, double false_alarm,
+                       const DiagnoseOptions& options, long* simulations, long* failed) {
+  options.validate();
+  check(logs, tuned, false_alarm);
+  Progress progress("baseline", {.quiet = options.quiet});
+  const auto logs_in_all = static_cast<double>(logs.size());
+  long total = 0;
+  std::vector<Assessment> assessed;
+  for (std::size_t i = 0; i < logs.size(); ++i) {
+    DiagnoseOptions of_log = options;
+    of_log.progress = [&](double part, long so_far) {
+      progress.update((static_cast<double>(i) + part) / logs_in_all, total + so_far);
+    };
+    Assessment a = assess(logs[i], tuned, rig, of_log);
+    if (options.stop && options.stop->load()) break;
+    total += a.simulations;
+    if (simulations) *simulations += a.simulations;
+    if (failed) *failed += a.failed_simulations;
+    progress.update(static_cast<double>(i + 1) / logs_in_all, total);
+    assessed.push_back(std::move(a));
+  }
+  Baseline b = baseline_of(assessed, false_alarm);
+  b.null_limit = rig.null_limit;
+  b.tuned_sha256 = tuned.sha256;
+  return b;
+}
+
+}  // namespace servodx

@@ -1,0 +1,87 @@
+#include "diagnose/severity.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "diagnose/constants.h"
+#include "faults/registry.h"
+#include "fit/free_values.h"
+
+namespace servodx {
+namespace {
+
+namespace k = diagnose_constants;
+
+// Severity as a free number, from the mildest that is called a fault to the worst, on the side of the start.
+FreeValue severity_value(const Fault& fault, double start, double null_limit) {
+  FreeValue f;
+  f.name = "severity";
+  f.apply = fault.apply;
+  f.log_scale = fault.log_scale;
+  double least = fault.beyond_limit_of ? null_limit : fault.least, worst = fault.worst;
+  if (start < 0) least = -least, worst = -worst;
+  f.lower = std::min(least, worst);
+  f.upper = std::max(least, worst);
+  f.start = std::clamp(start, f.lower, f.upper);
+  return f;
+}
+
+bool two_sided(const Fault& fault) {
+  return std::any_of(fault.starts.begin(), fault.starts.end(), [](double s) { return s < 0; });
+}
+
+// The same severity within its tolerance. Where the healthy value is an end of the scale (nothing is less than clean),
+// the tolerance has one side.
+FreeValue tolerance_value(const Fault& fault) {
+  FreeValue f;
+  f.name = std::string("tolerance of ") + std::string(fault.name);
+  f.apply = fault.apply;
+  f.log_scale = fault.log_scale;
+  f.start = fault.healthy;
+  f.log = 0;
+  if (fault.log_scale) {
+    f.lower = std::min(fault.least, fault.healthy * fault.healthy / fault.least);
+    f.upper = std::max(fault.least, fault.healthy * fault.healthy / fault.least);
+    f.prior_sd = k::inside_prior;
+  } else if (fault.healthy != 0) {
+    const double width = std::abs(fault.least - fault.healthy);
+    f.lower = fault.healthy - width, f.upper = fault.healthy + width;
+    f.prior_sd = k::inside_prior;
+  } else if (two_sided(fault)) {
+    f.lower = -fault.least, f.upper = fault.least;
+    f.prior_sd = k::inside_prior;
+  } else {
+    f.lower = 0, f.upper = fault.least;
+    f.prior_sd = k::end_prior;
+  }
+  return f;
+}
+
+}  // namespace
+
+std::vector<FreeValue> hypothesis_values(const LogData& log, const ParameterVector& base, const Fault* fault,
+                                         double start, double null_limit) {
+  std::vector<FreeValue> free;
+  if (fault) free.push_back(severity_value(*fault, start, null_limit));
+  for (FreeValue& f : nuisance_values(log, 0, base, null_limit))
+    if (!(fault && f.at == fault->beyond_limit_of)) free.push_back(std::move(f));
+  // A row within its limit is a nuisance already.
+  for (const Fault* other : fault_list())
+    if (other != fault && !other->beyond_limit_of) free.push_back(tolerance_value(*other));
+  return free;
+}
+
+// The fault's own identifiers and an even grid over its range. Lanes are cheap, and a friction
+// or a backlash has more than one valley.
+std::vector<double> starting_severities(const Fault& fault, double null_limit) {
+  std::vector<double> severities = fault.starts;
+  for (double side : {1.0, -1.0}) {
+    if (side < 0 && !two_sided(fault)) continue;
+    const FreeValue range = severity_value(fault, side, null_limit);
+    for (int i = 0; i < k::severity_grid; ++i) severities.push_back(range.from_unit((i + 0.5) / k::severity_grid));
+  }
+  return severities;
+}
+
+}  // namespace servodx

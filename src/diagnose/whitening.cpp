@@ -1,0 +1,49 @@
+#include "diagnose/whitening.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "fit/identifiability.h"
+#include "simulate/together.h"
+
+namespace servodx {
+
+void whiten(FitProblem& problem, const ErrorModel& error, const Trajectory& reference) {
+  const LogData& log = *problem.logs().front();
+  for (std::size_t c = 0; c < log.channels.size(); ++c) {
+    const FitChannel& channel = log.channels[c];
+    const ChannelError* e = error.find(channel.signal);
+    std::vector<double> act =
+        activity(log.scenario.time, reference.ok ? reference.signals[channel.simulated] : channel.measured);
+    for (double& a : act)
+      if (std::isnan(a)) a = 0;
+    std::vector<double> sigma = sigma_of(e, channel.noise, act);
+    const double scale = 1.0 / std::sqrt(effective_of(e, log.scenario.time));
+    for (double& s : sigma) s *= scale;
+    problem.set_sigma(0, static_cast<int>(c), std::move(sigma));
+  }
+}
+
+std::vector<double> squares(const FitProblem& problem, const Eigen::VectorXd& residual, const ErrorModel& error) {
+  const LogData& log = *problem.logs().front();
+  std::vector<double> square(log.scenario.time.size(), 0.0);
+  for (std::size_t c = 0; c < log.channels.size(); ++c) {
+    const long at = problem.rows(0, static_cast<int>(c)).first;
+    const double effective = effective_of(error.find(log.channels[c].signal), log.scenario.time);
+    for (std::size_t k = 0; k < square.size(); ++k) {
+      const double r = residual[at + static_cast<long>(k)];
+      square[k] += r * r / effective / static_cast<double>(log.channels.size());
+    }
+  }
+  return square;
+}
+
+Trajectory reference_of(const LogData& log, const ParameterVector& base, int threads) {
+  SimulateOptions options;
+  options.threads = threads;
+  options.wanted.fill(false);
+  for (const FitChannel& c : log.channels) options.wanted[c.simulated] = true;
+  return simulate(log.scenario, base, options);
+}
+
+}  // namespace servodx

@@ -1,0 +1,202 @@
+// The rules of the verdict on made-up evidence, a row a case: no fit, no log, no registry.
+#include "diagnose/decide.h"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <string>
+#include <vector>
+
+namespace servodx {
+namespace {
+
+using enum GrossFinding;
+
+// Faults of no registry: the rules know them by what they state of themselves alone.
+Fault some_fault(std::string_view name, std::optional<SeenOutright> outright = {}) {
+  return {.name = name,
+          .meaning = "",
+          .unit = "",
+          .healthy = 0,
+          .worst = 1,
+          .log_scale = false,
+          .least = 0.1,
+          .spread = 0,
+          .starts = {},
+          .test = "",
+          .action = "",
+          .apply = nullptr,
+          .seen_outright = outright};
+}
+
+const Fault first = some_fault("first"), second = some_fault("second");
+const Fault runs_away = some_fault("runs away", SeenOutright{spool_on_both_stops, 0.1});
+
+constexpr std::size_t health = 0, one = 1, other = 2, away = 3;  // in the evidence
+
+struct Case {
+  std::string name;
+  double error;  // the threshold is 3
+  GrossFinding gross;
+  std::array<double, 4> probability, adequacy;  // of health, first, second, runs away
+  VerdictKind verdict;
+  std::size_t hypothesis;
+  std::vector<std::size_t> ambiguous;
+  SeveritySource severity;
+};
+
+Evidence evidence_of(const Case& c) {
+  Evidence e;
+  e.error = c.error;
+  e.threshold = 3;
+  e.usual_adequacy = 1.5;  // so a fault may leave hypot(3, a quarter of what health leaves)
+  e.gross = c.gross;
+  const Fault* faults[] = {nullptr, &first, &second, &runs_away};
+  for (std::size_t i = 0; i < 4; ++i) e.hypotheses.push_back({faults[i], c.probability[i], c.adequacy[i]});
+  return e;
+}
+
+const std::vector<Case> cases = {
+    {"at the threshold, whatever the hypotheses say",
+     3.0,
+     none,
+     {0.0, 1.0, 0.0, 0.0},
+     {8, 1, 9, 9},
+     VerdictKind::healthy,
+     health,
+     {},
+     SeveritySource::none},
+    {"just above it",
+     3.0001,
+     none,
+     {0.0, 1.0, 0.0, 0.0},
+     {8, 1, 9, 9},
+     VerdictKind::fault,
+     one,
+     {},
+     SeveritySource::fit},
+    {"health most probable and yet above",
+     5,
+     none,
+     {0.9, 0.1, 0.0, 0.0},
+     {4, 3.9, 9, 9},
+     VerdictKind::unknown,
+     health,
+     {},
+     SeveritySource::none},
+    {"the best just enough: 5 of hypot(3, 16 / 4)",
+     9,
+     none,
+     {0.0, 1.0, 0.0, 0.0},
+     {16, 5, 9, 9},
+     VerdictKind::fault,
+     one,
+     {},
+     SeveritySource::fit},
+    {"the best leaves too much",
+     9,
+     none,
+     {0.0, 1.0, 0.0, 0.0},
+     {16, 5.001, 9, 9},
+     VerdictKind::unknown,
+     one,
+     {},
+     SeveritySource::none},
+    {"a less probable one that fits is not taken for the best",
+     9,
+     none,
+     {0.0, 0.6, 0.4, 0.0},
+     {16, 6, 1, 9},
+     VerdictKind::unknown,
+     one,
+     {},
+     SeveritySource::none},
+    {"a pair that cannot be told apart",
+     9,
+     none,
+     {0.0, 0.39, 0.6, 0.01},
+     {16, 2, 1, 9},
+     VerdictKind::fault,
+     other,
+     {one},
+     SeveritySource::fit},
+    {"at the probability from which one is ambiguous",
+     9,
+     none,
+     {0.0, 0.95, 0.05, 0.0},
+     {16, 1, 1, 9},
+     VerdictKind::fault,
+     one,
+     {},
+     SeveritySource::fit},
+    {"health among what cannot be ruled out",
+     9,
+     none,
+     {0.3, 0.7, 0.0, 0.0},
+     {4, 1, 1, 9},
+     VerdictKind::fault,
+     one,
+     {health},
+     SeveritySource::fit},
+    {"seen outright, whatever the fits say",
+     1e3,
+     spool_on_both_stops,
+     {0.5, 0.5, 0.0, 0.0},
+     {80, 1, 9, 90},
+     VerdictKind::fault,
+     away,
+     {},
+     SeveritySource::seen_outright},
+    {"seen outright, but the threshold is higher still",
+     2,
+     spool_on_both_stops,
+     {0.5, 0.5, 0.0, 0.0},
+     {80, 1, 9, 90},
+     VerdictKind::healthy,
+     health,
+     {},
+     SeveritySource::none},
+    {"a finding that names nothing leaves it to the fits: none fits",
+     1e3,
+     spool_on_one_stop,
+     {0.4, 0.6, 0.0, 0.0},
+     {8, 70, 9, 9},
+     VerdictKind::unknown,
+     one,
+     {},
+     SeveritySource::none},
+    {"a finding that names nothing leaves it to the fits: one fits",
+     1e3,
+     no_response,
+     {0.0, 1.0, 0.0, 0.0},
+     {80, 1, 9, 9},
+     VerdictKind::fault,
+     one,
+     {},
+     SeveritySource::fit},
+};
+
+TEST(Decide, EachCaseOfTheTable) {
+  for (const Case& c : cases) {
+    const Decision d = decide(evidence_of(c));
+    EXPECT_EQ(d.verdict, c.verdict) << c.name;
+    EXPECT_EQ(d.hypothesis, c.hypothesis) << c.name;
+    EXPECT_EQ(d.ambiguous, c.ambiguous) << c.name;
+    EXPECT_EQ(d.severity, c.severity) << c.name;
+  }
+}
+
+TEST(Decide, ProbabilitiesAreTheFitsUnlessOneIsSeenOrNoneHolds) {
+  for (const Case& c : cases) {
+    const Decision d = decide(evidence_of(c));
+    for (std::size_t i = 0; i < 4; ++i) {
+      const double expected = d.verdict == VerdictKind::unknown             ? 0.0
+                              : d.severity == SeveritySource::seen_outright ? (i == d.hypothesis ? 1.0 : 0.0)
+                                                                            : c.probability[i];
+      EXPECT_EQ(d.probabilities[i], expected) << c.name << ", " << i;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace servodx
