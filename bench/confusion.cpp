@@ -16,7 +16,12 @@
 #include <map>
 #include <sstream>
 
+#include "diagnose/assessment.h"
+#include "diagnose/baseline.h"
+#include "diagnose/decide.h"
 #include "diagnose/diagnose.h"
+#include "diagnose/judge.h"
+#include "faults/gross_finding.h"
 #include "fit/log_data.h"
 #include "fit/problem.h"
 #include "fit/replay.h"

@@ -6,6 +6,7 @@
 
 #include <filesystem>
 
+#include "diagnose/assessment.h"
 #include "fit/tune.h"
 #include "parameters/table.h"
 #include "ratios/measure.h"

@@ -1,48 +1,67 @@
-// Numbers that decide a verdict. Each says what it is for and what halving and doubling it does.
+// Numbers that decide a verdict: what each is for, and what halving and doubling it does to the shipped bench.
+//
+// The bench: 24 logs (data/fault, data/sudden, and of data/healthy h03, h06, h10, h11, h13, h14, h15) with the table
+// and the baseline that scripts/digest makes. Scores, threshold and verdicts are judged again from the misfits and
+// adequacies of the stored results, so only numbers that act after the fits are examined; those that act in a fit say
+// "not examined". "None" means: of 24 logs no verdict, no fault named and no ambiguity changes.
 #pragma once
 #include <cstddef>
 
 namespace servodx::diagnose_constants {
 
-// The score (diagnose/score.cpp).
+// The score (diagnose/baseline.cpp).
+//
+// Brings the two ways of being unlike health to one scale: the root of a likelihood gain is a normal deviate; the log
+// of the worst channel's adequacy scatters by about this much among healthy logs of different excitation.
+// Halved: the threshold doubles (3.7 to 7.5), a severe clogged filter (f02) is called healthy. Doubled: none.
 inline constexpr double adequacy_spread = 0.3;
-inline constexpr double gross_score = 1e3;
+// What is seen without a fit is beyond any threshold of healthy logs. No log of the bench shows such a
+// finding: not felt there.
+inline constexpr double gross_score = 1e3;  // [deviates]
 
 // The verdict (diagnose/decide.cpp).
+//
+// A fault is known less well than health: its hypothesis may leave so many times the worst error of healthy logs.
+// Halved: a false alarm (h10) is unknown, no longer a fault. Doubled: an unknown (h11) is called a fault.
 inline constexpr double fault_allowance = 2.0;
+// And so much of what health leaves to be explained. Halved, doubled: none.
 inline constexpr double unexplained_part = 0.25;
+// From this probability on a hypothesis beside the named one is listed.
+// Halved: none. Doubled: three logs (f14, f15, h10) lose the names beside theirs.
 inline constexpr double ambiguous_probability = 0.05;
+// A fault's model is a textbook model too: its own error is some tenth of its effect. Two hypotheses that both explain
+// a large effect to within that are not told apart by what is left. Halved, doubled: none.
 inline constexpr double effect_error = 0.1;
 
-// The gross look (diagnose/gross.cpp).
-inline constexpr double near_stop = 0.95;
-inline constexpr double small_current = 0.5;
-inline constexpr long both_stops_one_in = 50;
-inline constexpr long one_stop_one_in = 4;
-inline constexpr double least_asked = 0.05;
-inline constexpr double no_response = 0.02;
+// The gross look (diagnose/gross.cpp). Chosen by hand; not examined: they act on the samples of a log.
+inline constexpr double near_stop = 0.95;         // of the stop's travel: on the stop
+inline constexpr double small_current = 0.5;      // of rated current
+inline constexpr long both_stops_one_in = 50;     // of the samples at small current, on each stop
+inline constexpr long one_stop_one_in = 4;        // the same, on one stop
+inline constexpr double least_asked = 0.05;       // of the stop's travel: less is no excitation
+inline constexpr double response_missing = 0.02;  // of the travel asked for: less is no response
 
-// The onset (diagnose/onset.cpp).
-inline constexpr std::size_t shortest_part = 200;
-inline constexpr std::size_t shortest_one_in = 10;
-inline constexpr std::size_t beginning_one_in = 4;
-inline constexpr double variance_step = 4.0;
-inline constexpr double change_gain = 30.0;
-inline constexpr double onset_gain = 25.0;
-inline constexpr double gain_before_part = 0.1;
+// The onset (diagnose/onset.cpp). Not examined: each trial refits parts of a log.
+inline constexpr std::size_t shortest_part = 200;   // samples on either side of a change
+inline constexpr std::size_t shortest_one_in = 10;  // of the log's samples, the same
+inline constexpr std::size_t beginning_one_in = 4;  // of the log's samples, to ask health of
+inline constexpr double variance_step = 4.0;        // twice the rms
+inline constexpr double change_gain = 30.0;         // of likelihood; far beyond a healthy log's own restlessness
+inline constexpr double onset_gain = 25.0;          // of misfit: a second set of nuisances and a time must pay
+inline constexpr double gain_before_part = 0.1;     // of the gain after: what gained more before was there before
 
-// The hypotheses (diagnose/hypotheses.cpp and what it calls).
-inline constexpr double inside_prior = 0.25;
-inline constexpr double end_prior = 0.5;
-inline constexpr int severity_grid = 6;
-inline constexpr int starts_kept = 2;
-inline constexpr int first_iterations = 5;
+// The hypotheses (diagnose/hypotheses.cpp, hypothesis_fit.cpp, severity.cpp). Not examined: they act in the fits.
+inline constexpr double inside_prior = 0.25;  // of a tolerance's range, one standard deviation; health lies inside it
+inline constexpr double end_prior = 0.5;      // the same where health is an end: nothing is cleaner than clean
+inline constexpr int severity_grid = 6;       // starts on either side; a friction or a backlash has several valleys
+inline constexpr int starts_kept = 2;         // of a fault, after screening
+inline constexpr int first_iterations = 5;    // of every start; the better one goes on
 inline constexpr int iterations = 20;
-inline constexpr double worth_another_start = 4.0;
-inline constexpr double difference_step = 1e-3;
-inline constexpr double cost_tolerance = 1e-4;
-inline constexpr double on_bound = 1e-6;
-inline constexpr double at_least_part = 1e-3;
-inline constexpr double deviates_of_95 = 1.96;
+inline constexpr double worth_another_start = 4.0;  // of misfit: two deviates
+inline constexpr double difference_step = 1e-3;     // of the range: a severity runs through contacts
+inline constexpr double cost_tolerance = 1e-4;      // relative
+inline constexpr double on_bound = 1e-6;            // of the range
+inline constexpr double at_least_part = 1e-3;       // of the range: nearer to the mild end nothing was found
+inline constexpr double deviates_of_95 = 1.96;      // of a normal distribution
 
 }  // namespace servodx::diagnose_constants

@@ -53,7 +53,7 @@ GrossFinding gross_finding(const LogData& log, const ParameterVector& base) {
   if (beyond(look.up, k::one_stop_one_in) || beyond(look.down, k::one_stop_one_in))
     return GrossFinding::spool_on_one_stop;
   const double asked = look.command.width() / log.scenario.rated_current * base[row::spool_stop];
-  if (asked > k::least_asked * base[row::spool_stop] && look.spool.width() < k::no_response * asked)
+  if (asked > k::least_asked * base[row::spool_stop] && look.spool.width() < k::response_missing * asked)
     return GrossFinding::no_response;
   return GrossFinding::none;
 }

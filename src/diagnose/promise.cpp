@@ -22,6 +22,8 @@ void whiten(FitProblem& problem, const ErrorModel& error, const Point& x) {
     problem.set_sigma(0, static_cast<int>(c), 2 * log.channels[c].noise / std::sqrt(effective));
 }
 
+double typical_of(const Fault& fault) { return std::abs(fault.starts.back()); }
+
 // Length of what is left of `r` when the columns of `j` (nuisances, their priors included) have taken their best.
 double left_over(const Eigen::VectorXd& r, const Eigen::MatrixXd& j) {
   if (j.cols() == 0) return r.norm();
@@ -53,6 +55,67 @@ std::vector<Identifiable> identifiable_rows(const FitProblem& problem, const Tab
   return rows;
 }
 
+// The log's nuisances and every fault's severity, as values of one problem.
+std::vector<FreeValue> with_faults(std::vector<FreeValue> nuisances) {
+  for (const Fault* fault : fault_list()) {
+    FreeValue f;
+    f.name = fault->name;
+    f.apply = fault->apply;
+    f.lower = std::min(fault->healthy, fault->worst);
+    f.upper = std::max(fault->healthy, fault->worst);
+    f.start = fault->healthy;
+    nuisances.push_back(std::move(f));
+  }
+  return nuisances;
+}
+
+// Health, then each fault at its least and at a typical size.
+std::vector<Point> points_of_faults(const FitProblem& problem, std::size_t nuisances) {
+  std::vector<Point> points = {problem.start()};
+  for (std::size_t k = 0; k < fault_list().size(); ++k) {
+    const Fault& fault = *fault_list()[k];
+    for (const double severity : {fault.least, typical_of(fault)}) {
+      Point p = points.front();
+      p[nuisances + k] = problem.free()[nuisances + k].to_unit(severity);
+      points.push_back(std::move(p));
+    }
+  }
+  return points;
+}
+
+// A row beyond its limit must not be fitted away by the log's own value of that row.
+Eigen::MatrixXd own_columns(const Eigen::MatrixXd& of_nuisances, const std::vector<FreeValue>& nuisances,
+                            const Fault& fault) {
+  Eigen::MatrixXd own = of_nuisances;
+  for (std::size_t j = 0; j < nuisances.size(); ++j)
+    if (nuisances[j].at == fault.beyond_limit_of) own.col(static_cast<long>(j)).setZero();
+  return own;
+}
+
+// What each fault adds to the residual, nuisances fitted away.
+std::vector<Visible> visible_faults(const LogData& data, const ParameterVector& base, const ErrorModel& error,
+                                    const std::vector<FreeValue>& nuisances, const Eigen::MatrixXd& jacobian,
+                                    const SimulateOptions& options, long& simulations) {
+  FitProblem problem({&data}, base, with_faults(nuisances), options);
+  whiten(problem, error, problem.start());
+  const std::vector<Evaluation> runs = problem.evaluate(points_of_faults(problem, nuisances.size()));
+  simulations += problem.simulations();
+  const long n = problem.data_rows();
+  const auto count = static_cast<long>(nuisances.size());
+  const Eigen::MatrixXd of_nuisances = jacobian.block(0, jacobian.cols() - count, n, count);
+  std::vector<Visible> out;
+  for (std::size_t k = 0; k < fault_list().size(); ++k) {
+    const Fault& fault = *fault_list()[k];
+    const Eigen::MatrixXd own = own_columns(of_nuisances, nuisances, fault);
+    const auto deviate = [&](const Evaluation& e) {
+      return e.ok && runs.front().ok ? left_over((e.residual - runs.front().residual).head(n), own) : std::nan("");
+    };
+    out.push_back({std::string(fault.name), std::string(fault.unit), fault.least, typical_of(fault),
+                   deviate(runs[1 + 2 * k]), deviate(runs[2 + 2 * k])});
+  }
+  return out;
+}
+
 }  // namespace
 
 Promise promise_of(const Log& log, const Table& table, const RigFile& rig, int threads) {
@@ -80,48 +143,7 @@ Promise promise_of(const Log& log, const Table& table, const RigFile& rig, int t
   promise.rows = identifiable_rows(problem, facts, jacobian, x);
   promise.simulations = problem.simulations();
 
-  // Each fault at two sizes, all of them as values of one problem: what it adds to the residual, nuisances fitted away.
-  std::vector<FreeValue> faulty = nuisances;
-  for (const Fault* fault : fault_list()) {
-    FreeValue f;
-    f.name = fault->name;
-    f.apply = fault->apply;
-    f.lower = std::min(fault->healthy, fault->worst);
-    f.upper = std::max(fault->healthy, fault->worst);
-    f.start = fault->healthy;
-    faulty.push_back(std::move(f));
-  }
-  FitProblem with(std::vector<const LogData*>{&data}, base, faulty, options);
-  const Point health = with.start();
-  whiten(with, error, health);
-  std::vector<Point> points = {health};
-  for (std::size_t k = 0; k < fault_list().size(); ++k) {
-    const Fault& fault = *fault_list()[k];
-    const std::size_t j = nuisances.size() + k;
-    const double typical = std::abs(fault.starts.back());
-    promise.faults.push_back({std::string(fault.name), std::string(fault.unit), fault.least, typical, 0, 0});
-    for (const double severity : {fault.least, typical}) {
-      Point p = health;
-      p[j] = faulty[j].to_unit(severity);
-      points.push_back(std::move(p));
-    }
-  }
-  const std::vector<Evaluation> runs = with.evaluate(points);
-  promise.simulations += with.simulations();
-  const long n = with.data_rows();
-  const auto first_nuisance = static_cast<long>(free.size() - nuisances.size());
-  const Eigen::MatrixXd own = jacobian.block(0, first_nuisance, n, static_cast<long>(nuisances.size()));
-  Eigen::MatrixXd without_null = own;  // a shifted null must not be fitted away by the log's own null
-  for (std::size_t j = 0; j < nuisances.size(); ++j)
-    if (nuisances[j].at == row::servovalve_null) without_null.col(static_cast<long>(j)).setZero();
-  for (std::size_t k = 0; k < promise.faults.size(); ++k) {
-    const Eigen::MatrixXd& nuisance = promise.faults[k].fault == "null_shift" ? without_null : own;
-    const auto deviate = [&](const Evaluation& e) {
-      return e.ok && runs.front().ok ? left_over((e.residual - runs.front().residual).head(n), nuisance) : std::nan("");
-    };
-    promise.faults[k].at_least = deviate(runs[1 + 2 * k]);
-    promise.faults[k].at_typical = deviate(runs[2 + 2 * k]);
-  }
+  promise.faults = visible_faults(data, base, error, nuisances, jacobian, options, promise.simulations);
   return promise;
 }
 

@@ -7,8 +7,6 @@ LIMIT = 80  # lines, from the first of its declaration to its closing brace
 
 # (file, function): why it may be longer. Equations are read beside their source, in its order; cut, they are not.
 LONGER = {
-    ("src/diagnose/diagnose.cpp", "assess"): "to be split",
-    ("src/diagnose/hypotheses.cpp", "fit_hypotheses"): "to be split",
     ("src/explain/engine.cpp", "explain"): "to be split",
     ("src/explain/engine.cpp", "fit_causes"): "to be split",
     ("src/explain/engine.cpp", "score_causes"): "to be split",

@@ -34,12 +34,8 @@ READERS = {
 
 # What is compared elsewhere, each text by itself: file, texts, why.
 COMPARED = {
-    "apps/servodx/diagnose_command.cpp": ({"unknown", "fault"}, "to be typed"),
     "apps/servodx/history_command.cpp": ({"ok"}, "the word with which SQLite answers its check of integrity"),
-    "src/diagnose/diagnose.cpp": ({"healthy", "spool on both stops at small current", "feedback_wire_lost", "unknown"},
-                                  "to be typed"),
-    "src/diagnose/hypotheses.cpp": ({"null_shift"}, "to be typed"),
-    "src/diagnose/promise.cpp": ({"free", "null_shift"}, "to be typed"),
+    "src/diagnose/promise.cpp": ({"free"}, "to be typed"),
     "src/diagnose/survey.cpp": ({"gap", "the rig file maps column", "temperature"}, "to be typed"),
     "src/explain/curves.cpp": ({"current"}, "to be typed"),
     "src/explain/explain.cpp": ({"sensor:"}, "to be typed"),
@@ -107,9 +103,6 @@ def registry_names():
 
 # Where a registry's name is written outside its file: file, names, why.
 WRITTEN = {
-    "src/diagnose/diagnose.cpp": ({"feedback_wire_lost"}, "to become a field of the fault"),
-    "src/diagnose/hypotheses.cpp": ({"null_shift"}, "to become a field of the fault"),
-    "src/diagnose/promise.cpp": ({"null_shift"}, "to become a field of the fault"),
     "src/effects/row_effects.cpp": ({"stiction", "hose_compliance", "cross_piston_leakage"},
                                     "their own file: two are called as their row, one joins an effect's test"),
     "src/explain/show.cpp": ({"supply_pressure"}, "to be looked at"),
