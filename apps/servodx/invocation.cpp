@@ -13,6 +13,7 @@
 #include "base/atomic_file.h"
 #include "base/csv.h"
 #include "base/error.h"
+#include "fit/tuned_state.h"
 #include "manifest.h"
 #include "report/columns.h"
 #include "report/handy.h"
@@ -217,6 +218,10 @@ Table Invocation::tuned_table(const std::string& path) {
   if (!tuned.has_std_error)
     throw InputError({path, 0, "std_error"}, "the table is not tuned: it has no such column",
                      "tune it with 'servodx tune LOG... --params " + path + " -o TUNED.csv' and give TUNED.csv");
+  if (has_old_state(tuned))
+    note({path +
+          ": a tuned table of an earlier version, which kept its model's error in comments; it is read as it is, "
+          "and a new tune writes the new form"});
   return tuned;
 }
 

@@ -85,6 +85,10 @@ struct LogColumn {
 Log make_log(const std::string& name, const std::vector<LogColumn>& columns, const RigFile& rig = {},
              const ReadOptions& options = {});
 
+// Hash of what the log says, signals and time: independent of its path, of comments, of the order of columns and of how
+// numbers are written. The same for a log in memory.
+std::string content_hash(const Log& log);
+
 struct OutputColumn {
   Signal signal;
   std::string unit;           // written in the header, "name [unit]"

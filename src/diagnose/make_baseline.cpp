@@ -7,6 +7,7 @@
 #include "base/progress.h"
 #include "diagnose/diagnose.h"
 #include "fit/nominal.h"
+#include "fit/tuned_state.h"
 
 namespace servodx {
 namespace {
@@ -17,14 +18,16 @@ void check(const std::vector<Log>& logs, const Table& tuned, double false_alarm)
   if (!(false_alarm > 0 && false_alarm < 1))
     throw InputError({.file = "--false-alarm"}, fmt::format("{} is not a rate", false_alarm),
                      "give a number between 0 and 1, such as 0.01");
-  const std::vector<std::string> used = tuned_by(tuned);
+  const TunedState state = tuned_state(tuned);
+  std::vector<std::string> content;
+  for (const Log& log : logs) content.push_back(content_hash(log));
   for (std::size_t i = 0; i < logs.size(); ++i) {
-    if (std::find(used.begin(), used.end(), logs[i].sha256) != used.end())
+    if (state.is_by(logs[i]))
       throw InputError({.file = logs[i].path},
                        "this log tuned " + tuned.path + ": its residual is smaller than a new log's",
                        "give fault-free logs that the fit has not seen");
     for (std::size_t j = 0; j < i; ++j)
-      if (logs[j].sha256 == logs[i].sha256)
+      if (content[j] == content[i])
         throw InputError({.file = logs[i].path}, "the same log as " + logs[j].path,
                          "give each log once: the rate counts independent logs");
   }

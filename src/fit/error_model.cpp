@@ -1,12 +1,7 @@
 #include "fit/error_model.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
-#include <sstream>
-
-#include "fit/tuning_comments.h"
 
 namespace servodx {
 namespace {
@@ -174,38 +169,6 @@ void apply_error_model(FitProblem& problem, const ErrorModel& model, const Point
       problem.set_sigma(static_cast<int>(l), static_cast<int>(c), std::move(sigma));
     }
   }
-}
-
-std::vector<std::string> to_comments(const ErrorModel& model) {
-  std::vector<std::string> lines;
-  for (const ChannelError& c : model.channels)
-    lines.push_back(fmt::format("{} {}: floor {} {}, per activity {}, independent {} 1/s", error_key,
-                                info(c.signal).name, c.floor, info(c.signal).si_unit, c.per_activity, c.independent));
-  return lines;
-}
-
-ErrorModel error_model_of(const Table& table) {
-  ErrorModel model;
-  for (const std::string& line : newest_tuning(table.comments)) {
-    const std::size_t at = line.find(error_key);
-    if (at == std::string::npos) continue;
-    const std::size_t colon = line.find(':', at);
-    if (colon == std::string::npos) continue;
-    std::istringstream name(
-        line.substr(at + std::string(error_key).size(), colon - at - std::string(error_key).size()));
-    std::string word;
-    name >> word;
-    const auto signal = find_signal(word);
-    const auto number_after = [&](const std::string& key) {
-      const std::size_t k = line.find(key, colon);
-      return k == std::string::npos ? std::nan("") : std::strtod(line.c_str() + k + key.size(), nullptr);
-    };
-    ChannelError c{signal.value_or(Signal::time), number_after("floor "), number_after("per activity "),
-                   number_after("independent ")};
-    if (signal && std::isfinite(c.floor) && std::isfinite(c.per_activity) && c.independent > 0)
-      model.channels.push_back(c);
-  }
-  return model;
 }
 
 }  // namespace servodx

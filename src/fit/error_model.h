@@ -47,8 +47,4 @@ ErrorModel learn_error_model(const FitProblem& problem, const Point& x);
 // it fits better for more; its variance has an inverse-gamma prior about the pooled one.
 void apply_error_model(FitProblem& problem, const ErrorModel& model, const Point& x, bool each_log = false);
 
-// As comment lines of a tuned table, and back.
-std::vector<std::string> to_comments(const ErrorModel& model);
-ErrorModel error_model_of(const Table& table);
-
 }  // namespace servodx

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "fit/tune.h"
+#include "fit/tuned_state.h"
 
 namespace servodx {
 namespace {
@@ -17,8 +17,9 @@ std::vector<double> behind_gap(std::size_t samples, const std::vector<double>& v
 }  // namespace
 
 Replay replay(const Log& log, const Table& tuned, const RigFile& rig, const std::vector<Candidate>& explanations) {
-  const LogData data = prepare(log, rig, moving_average_of(tuned));
-  const ErrorModel error = error_model_of(tuned);
+  const TunedState state = tuned_state(tuned);
+  const LogData data = prepare(log, rig, state.moving_average);
+  const ErrorModel& error = state.error;
   const std::size_t samples = data.scenario.time.size();
   Replay out{log.path, data.scenario.time, data.scenario.command, data.scenario.current_measured, {}};
   for (const FitChannel& c : data.channels)

@@ -18,7 +18,6 @@
 #include "fit/problem.h"
 #include "fit/profile.h"
 #include "fit/thin.h"
-#include "fit/tuning_comments.h"
 #include "fit/uncertainty.h"
 #include "optimise/derivative_free.h"
 #include "optimise/genetic.h"
@@ -284,27 +283,6 @@ std::vector<std::string> default_effects(bool on_stand) {
           "screen_drop",         "nozzle_land",    "seal_shear",       "nozzle_mismatch"};
 }
 
-int moving_average_of(const Table& table) {
-  for (const std::string& line : newest_tuning(table.comments))
-    if (const std::size_t at = line.find(average_key); at != std::string::npos)
-      return std::max(
-          1, static_cast<int>(std::strtol(line.c_str() + at + std::string(average_key).size() + 1, nullptr, 10)));
-  return 1;
-}
-
-std::vector<std::string> tuned_by(const Table& table) {
-  std::vector<std::string> out;
-  for (const std::string& line : newest_tuning(table.comments)) {
-    const std::size_t at = line.find(tuned_by_key);
-    if (at == std::string::npos) continue;
-    std::istringstream words(line.substr(at + std::string(tuned_by_key).size()));
-    std::string hash;
-    words >> hash;
-    out.push_back(hash);
-  }
-  return out;
-}
-
 void TuneOptions::validate() const {
   const auto require = [](bool holds, const char* option, const std::string& rule, const std::string& mend) {
     if (!holds) throw InputError({.file = option}, rule, mend);
@@ -315,6 +293,8 @@ void TuneOptions::validate() const {
   require(population >= 24, "--population", "must be at least 24", "four islands of six each");
   require(generations >= 0, "--generations", "must not be negative", "0 leaves the genetic search out");
   require(rounds >= 1, "--rounds", "must be at least 1", fmt::format("{} is the default", TuneOptions{}.rounds));
+  require(heldout >= 0 && heldout < 1, "--heldout", "is a part of each log, from 0 to below 1",
+          fmt::format("{} is the default", TuneOptions{}.heldout));
   require(moving_average >= 1 && moving_average % 2 == 1, "--moving-average",
           fmt::format("{} is not an odd number of samples", moving_average), "give 1 for none, or 3, 5, ...");
 }
@@ -558,13 +538,10 @@ TuneResult tune(const std::vector<Log>& logs, const Table& nominal, const RigFil
   out.table[row::servovalve_null].nominal = median(nulls);
   out.table[row::air_fraction].nominal =
       std::clamp(median(airs), out.table[row::air_fraction].lower, out.table[row::air_fraction].upper);
-  out.table.comments = without_tunings(nominal.comments);  // a new tune replaces what an older one said
-  if (options.moving_average > 1)
-    out.table.comments.push_back(fmt::format("{}: {} samples", average_key, options.moving_average));
-  for (const std::string& line : to_comments(out.error)) out.table.comments.push_back(line);
-  for (const LogData& d : run.data)
-    out.table.comments.push_back(
-        fmt::format("{} {} {}", tuned_by_key, d.sha256, std::filesystem::path(d.path).filename().string()));
+  TunedState state{out.error, options.moving_average, {}};
+  for (const Log& log : logs)
+    state.by.push_back({std::filesystem::path(log.path).filename().string(), log.sha256, content_hash(log)});
+  set_tuned_state(out.table, state);
   out.convergence = run.convergence;
   out.notes.insert(out.notes.begin(), run.notes.begin(), run.notes.end());
   out.notes.push_back("local stage: " + end.stopped);

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "fit/error_model.h"
+#include "fit/tuned_state.h"
 #include "parameters/table.h"
 #include "signals/log.h"
 #include "signals/rig_file.h"
@@ -93,11 +94,5 @@ struct TuneResult {
 
 // Throws InputError where the logs cannot be used.
 TuneResult tune(const std::vector<Log>& logs, const Table& nominal, const RigFile& rig, const TuneOptions& options);
-
-// Moving average that a table was tuned with. [samples]
-int moving_average_of(const Table& table);
-
-// Hashes of the logs that tuned a table.
-std::vector<std::string> tuned_by(const Table& table);
 
 }  // namespace servodx

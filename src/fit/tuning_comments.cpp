@@ -24,7 +24,6 @@ std::string_view after(std::string_view line, std::string_view key) {
 }
 
 TuningLine kind_of(std::string_view line) {
-  line.remove_prefix(std::min(line.find_first_not_of("# \t"), line.size()));
   if (line.starts_with(std::string(average_key) + ": ")) return TuningLine::average;
   const std::string_view error = after(line, error_key), hash = after(line, tuned_by_key);
   if (const std::size_t colon = error.find(':');

@@ -1,4 +1,4 @@
-// What a tune writes among a table's comments: "moving average: ...", "model error ...", "tuned by ...", in this order.
+// What a tune of earlier versions wrote among a table's comments: "moving average: ...", "model error ...", "tuned by ...", in this order.
 // A table that was tuned several times by a version that appended holds several such sets: the last is the newest, and
 // belongs to the rows. Comments of people are none of these lines.
 #pragma once

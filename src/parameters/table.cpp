@@ -3,6 +3,7 @@
 #include <charconv>
 #include <cmath>
 #include <map>
+#include <sstream>
 #include <string_view>
 
 #include "base/atomic_file.h"
@@ -18,6 +19,12 @@ constexpr std::array<std::string_view, 11> required_columns = {
     "id", "name", "group", "nominal", "lower", "upper", "scale", "estimate", "unit", "description", "source"};
 constexpr std::string_view std_error_column = "std_error";
 constexpr std::string_view effect_prefix = "effect:";
+constexpr std::string_view state_mark = "%";  // behind the '#' of a comment
+
+std::string trimmed_start(std::string text) {
+  if (text.starts_with(' ')) text.erase(0, 1);
+  return text;
+}
 
 std::string number_text(double value) {
   std::string text;
@@ -53,7 +60,11 @@ class Reader {
     Table table;
     table.path = file_;
     table.sha256 = sha256(text);
-    table.comments = csv.comments();
+    for (const std::string& comment : csv.comments())
+      if (comment.starts_with(state_mark))
+        table.state += trimmed_start(comment.substr(state_mark.size())) + "\n";
+      else
+        table.comments.push_back(comment);
     read_header({csv.header_line(), csv.header()});
     table.has_std_error = column_.contains(std::string(std_error_column));
 
@@ -237,6 +248,8 @@ Table parse_table(const std::string& text, const std::string& path) { return Rea
 void write_table(const std::string& path, const Table& table) {
   std::string out;
   for (const auto& comment : table.comments) out += "# " + comment + "\n";
+  std::istringstream state(table.state);
+  for (std::string line; std::getline(state, line);) out += "#% " + line + "\n";
   for (std::size_t i = 0; i < required_columns.size(); ++i) {
     if (i > 0) out += ',';
     out += required_columns[i];
@@ -272,6 +285,22 @@ void write_table(const std::string& path, const Table& table) {
     out += '\n';
   }
   write_file(path, out);
+}
+
+std::string content_hash(const Table& table) {
+  std::string text;
+  const auto number = [&](double value) {
+    append_number(text, value);
+    text += ',';
+  };
+  for (const Row& row : table.rows) {
+    text += row.name + "," + row.group + "," + row.unit + (row.log_scale ? ",log10" : ",lin") +
+            (row.estimate ? ",1," : ",0,");
+    number(row.nominal), number(row.lower), number(row.upper);
+    if (row.std_error) number(*row.std_error);
+    text += '\n';
+  }
+  return sha256(text + table.state);
 }
 
 double to_unit(const Row& row, double value) {

@@ -23,7 +23,8 @@ struct Table {
   std::string path;
   std::string sha256;
   std::vector<Row> rows;                 // the 41 in order of id, then the effects' rows
-  std::vector<std::string> comments;     // lines beginning with '#' before the header: provenance of a tuned table, "key: value"
+  std::vector<std::string> comments;     // lines beginning with '#' before the header, for people
+  std::string state;                     // lines beginning with '#%' there: what tuned the table, as TOML (fit/tuned_state.h)
   bool has_std_error = false;            // a tuned table
   const Row& operator[](int position) const { return rows[position]; }
   Row& operator[](int position) { return rows[position]; }
@@ -34,6 +35,9 @@ struct Table {
 Table read_table(const std::string& path);
 // Written to a temporary name and renamed; shortest round-trip digits.
 void write_table(const std::string& path, const Table& table);
+
+// Hash of what the table says, rows and state: independent of its path, of comments and of how numbers are written.
+std::string content_hash(const Table& table);
 
 // Unit cube <-> SI for one row, by its scale and bounds.
 double to_unit(const Row& row, double value);

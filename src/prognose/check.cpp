@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "fit/error_model.h"
+#include "fit/tuned_state.h"
 #include "fit/free_values.h"
 #include "simulate/simulate.h"
 

@@ -5,6 +5,7 @@
 #include <numeric>
 
 #include "fit/error_model.h"
+#include "fit/tuned_state.h"
 #include "fit/free_values.h"
 #include "fit/identifiability.h"
 

@@ -2,7 +2,10 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cmath>
+#include <limits>
 
+#include "base/sha256.h"
 #include "servodx/rig.h"
 #include "signals/log_formats.h"
 
@@ -12,6 +15,22 @@ Log read_log(const std::string& path, const RigFile& rig, const ReadOptions& opt
   std::string ending = path.substr(path.size() - std::min<std::size_t>(4, path.size()));
   for (char& c : ending) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
   return ending == ".mat" ? read_mat_log(path, rig, options) : read_csv_log(path, rig, options);
+}
+
+std::string content_hash(const Log& log) {
+  Sha256 hash;
+  const auto add = [&](std::string_view name, const std::vector<double>& values) {
+    hash.add(name);
+    for (double v : values) {
+      if (v == 0) v = 0;                                                // one zero
+      if (std::isnan(v)) v = std::numeric_limits<double>::quiet_NaN();  // one NaN
+      hash.add({reinterpret_cast<const char*>(&v), sizeof v});
+    }
+  };
+  add(name_of(Signal::time), log.time);
+  for (int s = 0; s < n_signals; ++s)
+    if (const auto signal = static_cast<Signal>(s); log.has(signal)) add(name_of(signal), log[signal]);
+  return hash.hex();
 }
 
 }  // namespace servodx

@@ -9,6 +9,7 @@
 #include "base/error.h"
 #include "diagnose/diagnose.h"
 #include "faults/registry.h"
+#include "fit/tuned_state.h"
 #include "shipped_data.h"
 
 namespace servodx {
@@ -41,8 +42,7 @@ Table as_tuned(const std::string& by) {
   ErrorModel error;
   for (Signal s : {Signal::spool_position, Signal::piston_position, Signal::pressure_a, Signal::pressure_b})
     error.channels.push_back({s, 0.0, 0.2, 0.05});
-  t.comments = to_comments(error);
-  t.comments.push_back("tuned by " + by + " log.csv");
+  set_tuned_state(t, {error, 1, {{"log.csv", by, ""}}});
   t.has_std_error = true;
   return t;
 }
@@ -83,7 +83,7 @@ TEST(Baseline, RefusesTwoLogsAndARateThatIsNone) {
 
 TEST(Baseline, RefusesATableThatDoesNotSayHowWrongItIs) {
   Table tuned = as_tuned("0");
-  tuned.comments.clear();
+  tuned.state.clear();
   const std::vector<Log> logs = cut_logs({"healthy/h03_sine_2hz", "healthy/h12_mixed", "healthy/h05_prbs"}, 100);
   EXPECT_NE(refusal([&] { make_baseline(logs, tuned, shipped_rig(), 0.01, quiet()); }), "");
 }

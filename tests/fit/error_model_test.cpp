@@ -14,27 +14,6 @@ std::vector<double> white(std::size_t n, unsigned seed) {
   return x;
 }
 
-TEST(ErrorModel, CommentsOfATableReadBackToTheSameBits) {
-  ErrorModel model;
-  model.channels = {{Signal::spool_position, 1.0 / 3e6, 0.7123456789012345, 0.0123456789},
-                    {Signal::pressure_a, 2e5 / 3, 0.0, 1.0},
-                    {Signal::piston_position, 0.0, 1e-300, 5e-5}};
-  Table table = shipped_table();
-  table.comments = {"written by something else", "model errors are not this line"};
-  for (const std::string& line : to_comments(model)) table.comments.push_back(line);
-  // As the file keeps them.
-  const ErrorModel read = error_model_of(table);
-  ASSERT_EQ(read.channels.size(), model.channels.size());
-  for (std::size_t i = 0; i < model.channels.size(); ++i) {
-    EXPECT_EQ(read.channels[i].signal, model.channels[i].signal);
-    EXPECT_EQ(read.channels[i].floor, model.channels[i].floor);
-    EXPECT_EQ(read.channels[i].per_activity, model.channels[i].per_activity);
-    EXPECT_EQ(read.channels[i].independent, model.channels[i].independent);
-  }
-  EXPECT_EQ(read.find(Signal::pressure_b), nullptr);
-  EXPECT_EQ(error_model_of(shipped_table()).channels.size(), 0u);
-}
-
 TEST(ErrorModel, WhiteNoiseIsIndependentSampleBySample) {
   for (unsigned seed = 0; seed < 10; ++seed) {
     const double fraction = effective_fraction(white(4000, seed));
@@ -142,8 +121,8 @@ TEST(ErrorModel, LogsThatAlwaysMoveLeaveAFloorForOneThatRests) {
     double sum = 0;
     for (double x : r) sum += x * x;
     const double rms = std::sqrt(sum / static_cast<double>(r.size()));
-    std::printf("%s: floor %.3g of the rms, per activity %.2f\n", std::string(info(e.signal).name).c_str(), e.floor / rms,
-                e.per_activity);
+    std::printf("%s: floor %.3g of the rms, per activity %.2f\n", std::string(info(e.signal).name).c_str(),
+                e.floor / rms, e.per_activity);
     EXPECT_GT(e.floor / rms, 1e-3) << info(e.signal).name;
     EXPECT_NEAR(e.per_activity, 1.0, 0.25) << info(e.signal).name;
   }

@@ -5,6 +5,7 @@
 
 #include "base/random.h"
 #include "fit/error_model.h"
+#include "fit/tuned_state.h"
 #include "rig/excitations.h"
 #include "support.h"
 
@@ -18,7 +19,7 @@ Table tuned_table() {
                           {Signal::piston_position, 14e-6, 0.2, 7},
                           {Signal::pressure_a, 0.4e5, 1.5, 5},
                           {Signal::pressure_b, 0.4e5, 1.5, 5}}};
-  for (std::string& line : to_comments(error)) table.comments.push_back(std::move(line));
+  set_tuned_state(table, {error, 1, {}});
   return table;
 }
 

@@ -1,0 +1,131 @@
+#include "fit/tuned_state.h"
+
+#include <fmt/format.h>
+#include <toml++/toml.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <sstream>
+
+#include "base/error.h"
+#include "fit/tuning_comments.h"
+
+namespace servodx {
+namespace {
+
+double number_after(const std::string& line, const std::string& key) {
+  const std::size_t at = line.find(key);
+  return at == std::string::npos ? std::nan("") : std::strtod(line.c_str() + at + key.size(), nullptr);
+}
+
+// "model error spool_position: floor 1e-6 m, per activity 0.1, independent 20 1/s"
+std::optional<ChannelError> old_channel(const std::string& line) {
+  const std::size_t name = std::string_view(error_key).size() + 1, colon = line.find(':');
+  const auto signal = find_signal(line.substr(name, colon - name));
+  if (!signal) return {};
+  const ChannelError c{*signal, number_after(line, "floor "), number_after(line, "per activity "),
+                       number_after(line, "independent ")};
+  const bool holds = std::isfinite(c.floor) && std::isfinite(c.per_activity) && c.independent > 0;
+  return holds ? std::optional(c) : std::nullopt;
+}
+
+void put(ErrorModel& model, const ChannelError& channel) {
+  const auto same = std::find_if(model.channels.begin(), model.channels.end(),
+                                 [&](const ChannelError& c) { return c.signal == channel.signal; });
+  if (same == model.channels.end())
+    model.channels.push_back(channel);
+  else
+    *same = channel;
+}
+
+TunedState of_comments(const std::vector<std::string>& comments) {
+  TunedState state;
+  for (const std::string& line : newest_tuning(comments)) {
+    if (line.starts_with(error_key)) {
+      if (const auto channel = old_channel(line)) put(state.error, *channel);
+    } else if (line.starts_with(average_key)) {
+      state.moving_average = std::max(1, std::atoi(line.c_str() + std::string_view(average_key).size() + 1));
+    } else {
+      std::istringstream words(line.substr(std::string_view(tuned_by_key).size()));
+      TunedBy by;
+      words >> by.sha256 >> by.log;
+      state.by.push_back(by);
+    }
+  }
+  return state;
+}
+
+[[noreturn]] void refuse(const Table& table, const std::string& rule) {
+  throw InputError({.file = table.path}, rule, "make the table again with 'servodx tune'");
+}
+
+TunedState of_section(const Table& table) {
+  toml::table section;
+  try {
+    section = toml::parse(table.state);
+  } catch (const toml::parse_error& error) {
+    refuse(table, fmt::format("its lines '#%' cannot be read: {}", std::string(error.description())));
+  }
+  const auto tuned = section["tuned"];
+  const int schema = tuned["schema"].value_or(0);
+  if (schema < 1 || schema > TunedState::schema)
+    refuse(table,
+           fmt::format("its lines '#%' are of schema {}, this program reads up to {}", schema, TunedState::schema));
+  TunedState state;
+  state.moving_average = tuned["moving_average"].value_or(1);
+  const auto text = [](const toml::table& from, std::string_view key) { return from[key].value_or(std::string()); };
+  if (const toml::array* channels = tuned["error"].as_array())
+    for (const toml::node& node : *channels) {
+      const toml::table* channel = node.as_table();
+      const auto signal = channel ? find_signal(text(*channel, "signal")) : std::nullopt;
+      if (!signal) refuse(table, "its lines '#%' name an unknown signal");
+      const auto number = [&](std::string_view key) { return (*channel)[key].value_or(std::nan("")); };
+      const ChannelError c{*signal, number("floor"), number("per_activity"), number("independent")};
+      if (!std::isfinite(c.floor) || !std::isfinite(c.per_activity) || !(c.independent > 0))
+        refuse(table, fmt::format("its lines '#%' hold no error of '{}'", name_of(*signal)));
+      put(state.error, c);
+    }
+  if (const toml::array* logs = tuned["by"].as_array())
+    for (const toml::node& node : *logs)
+      if (const toml::table* log = node.as_table())
+        state.by.push_back({text(*log, "log"), text(*log, "sha256"), text(*log, "content")});
+  return state;
+}
+
+}  // namespace
+
+bool TunedState::is_by(const Log& log) const {
+  const bool any_content = std::any_of(by.begin(), by.end(), [](const TunedBy& b) { return !b.content.empty(); });
+  const std::string content = any_content ? content_hash(log) : "";
+  return std::any_of(by.begin(), by.end(), [&](const TunedBy& b) {
+    return (!b.sha256.empty() && b.sha256 == log.sha256) || (!b.content.empty() && b.content == content);
+  });
+}
+
+TunedState tuned_state(const Table& table) {
+  return table.state.empty() ? of_comments(table.comments) : of_section(table);
+}
+
+void set_tuned_state(Table& table, const TunedState& state) {
+  table.comments = without_tunings(table.comments);
+  std::string& out = table.state;
+  out = fmt::format("[tuned]\nschema = {}\nmoving_average = {}\n", TunedState::schema, state.moving_average);
+  for (const ChannelError& c : state.error.channels)
+    out += fmt::format(
+        "[[tuned.error]]  # sigma^2 = noise^2 + floor^2 + (per_activity * movement in 1 ms)^2\n"
+        "signal = \"{}\"\nfloor = {}  # [{}]\nper_activity = {}\nindependent = {}  # samples a second\n",
+        name_of(c.signal), c.floor, info(c.signal).si_unit, c.per_activity, c.independent);
+  const auto quoted = [](const std::string& text) {
+    std::ostringstream s;
+    s << toml::value<std::string>(text);
+    return s.str();
+  };
+  for (const TunedBy& b : state.by)
+    out +=
+        fmt::format("[[tuned.by]]\nlog = {}\nsha256 = \"{}\"\ncontent = \"{}\"\n", quoted(b.log), b.sha256, b.content);
+}
+
+bool has_old_state(const Table& table) { return table.state.empty() && !newest_tuning(table.comments).empty(); }
+
+}  // namespace servodx

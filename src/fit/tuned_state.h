@@ -1,0 +1,40 @@
+// What a tuned table carries beside its rows: how wrong its model is, how its logs were filtered, and which they were.
+//
+// It stands in the table's own file, ahead of the header, as lines "#% ..." of TOML that other readers of CSV pass over
+// as comments. A tune replaces it whole. Tables of earlier versions carry the same as comments for people ("model error
+// ...", "moving average: ...", "tuned by ..."); these are read where there is no section (fit/tuning_comments.h).
+#pragma once
+#include <string>
+#include <vector>
+
+#include "fit/error_model.h"
+#include "parameters/table.h"
+
+namespace servodx {
+
+struct TunedBy {
+  std::string log;      // file name
+  std::string sha256;   // of the file's bytes; empty: the log came from memory
+  std::string content;  // content_hash of the log; empty: an earlier version did not keep it
+};
+
+struct TunedState {
+  static constexpr int schema = 1;
+  ErrorModel error;
+  int moving_average = 1;  // [samples]
+  std::vector<TunedBy> by;
+
+  bool is_by(const Log& log) const;
+};
+
+// Throws InputError where the section cannot be read or is of a newer schema.
+TunedState tuned_state(const Table& table);
+// Replaces the section; comments that carried it in earlier versions go.
+void set_tuned_state(Table& table, const TunedState& state);
+// Parts of it, where one is all that is asked for.
+inline ErrorModel error_model_of(const Table& table) { return tuned_state(table).error; }
+inline int moving_average_of(const Table& table) { return tuned_state(table).moving_average; }  // [samples]
+// The table's state stands in comments, as earlier versions wrote it.
+bool has_old_state(const Table& table);
+
+}  // namespace servodx

@@ -1,0 +1,113 @@
+// What a tuned table carries beside its rows is typed, replaced by a new tune, and bound to the content of its logs.
+#include "fit/tuned_state.h"
+
+#include <gtest/gtest.h>
+
+#include "base/error.h"
+#include "fit/tune.h"
+#include "recovery/twins.h"
+#include "temporary_folder.h"
+
+namespace servodx {
+namespace {
+
+const ErrorModel error{{{Signal::spool_position, 1.0 / 3e6, 0.7123456789012345, 0.0123456789},
+                        {Signal::pressure_a, 2e5 / 3, 0.0, 1.0},
+                        {Signal::piston_position, 0.0, 1e-300, 5e-5}}};
+
+TEST(TunedState, ReadsBackFromAFileToTheSameBits) {
+  const TemporaryFolder folder;
+  Table table = shipped_table();
+  table.has_std_error = true;
+  table.comments = {"written by something else"};
+  set_tuned_state(table, {error, 5, {{"a \"log\".csv", "ab12", "cd34"}}});
+  write_table(folder / "tuned.csv", table);
+  const Table again = read_table(folder / "tuned.csv");
+  EXPECT_EQ(again.comments, table.comments);
+  EXPECT_EQ(content_hash(again), content_hash(table));
+  const TunedState state = tuned_state(again);
+  EXPECT_EQ(state.moving_average, 5);
+  ASSERT_EQ(state.by.size(), 1u);
+  EXPECT_EQ(state.by[0].log, "a \"log\".csv");
+  EXPECT_EQ(state.by[0].sha256, "ab12");
+  EXPECT_EQ(state.by[0].content, "cd34");
+  ASSERT_EQ(state.error.channels.size(), error.channels.size());
+  for (std::size_t i = 0; i < error.channels.size(); ++i) {
+    EXPECT_EQ(state.error.channels[i].signal, error.channels[i].signal);
+    EXPECT_EQ(state.error.channels[i].floor, error.channels[i].floor);
+    EXPECT_EQ(state.error.channels[i].per_activity, error.channels[i].per_activity);
+    EXPECT_EQ(state.error.channels[i].independent, error.channels[i].independent);
+  }
+  EXPECT_TRUE(tuned_state(shipped_table()).error.channels.empty());
+}
+
+TEST(TunedState, TakesInWhatAnOlderVersionKeptInComments) {
+  Table table = shipped_table();
+  table.comments = {"model errors are not this line",
+                    "model error spool_position: floor 1e-06 m, per activity 0.1, independent 9.9 1/s",
+                    "tuned by " + std::string(64, 'a') + " h01.csv"};
+  EXPECT_TRUE(has_old_state(table));
+  set_tuned_state(table, tuned_state(table));
+  EXPECT_FALSE(has_old_state(table));
+  EXPECT_EQ(table.comments.size(), 1u);
+  const TunedState state = tuned_state(table);
+  EXPECT_EQ(state.error.channels.at(0).independent, 9.9);
+  EXPECT_EQ(state.by.at(0).log, "h01.csv");
+}
+
+TEST(TunedState, OfANewerSchemaOrDamagedIsRefused) {
+  Table table = shipped_table();
+  for (const char* text :
+       {"[tuned]\nschema = 99\n", "[tuned\n", "[tuned]\nschema = 1\n[[tuned.error]]\nsignal = \"x\"\n",
+        "[tuned]\nschema = 1\n[[tuned.error]]\nsignal = \"pressure_a\"\nfloor = 1\n"}) {
+    table.state = text;
+    EXPECT_THROW(tuned_state(table), InputError) << text;
+  }
+}
+
+TuneOptions quick() {
+  TuneOptions o;
+  o.quiet = true;
+  o.generations = 0;
+  o.rounds = 1;
+  o.effects.emplace();
+  return o;
+}
+
+Table with_few_rows() {
+  Table table = shipped_table();
+  for (Row& row : table.rows)
+    row.estimate = std::find(twins::rows().begin(), twins::rows().begin() + 4, row.name) != twins::rows().begin() + 4;
+  return table;
+}
+
+TEST(TunedState, ATuneOfATunedTableReplacesIt) {
+  const Log first = twins::cut(shipped_log("healthy/h08_preflight_cold"), 300);
+  const Log second = twins::cut(shipped_log("healthy/h09_preflight_hot"), 300);
+  TuneOptions smoothed = quick();
+  smoothed.moving_average = 3;
+  const TuneResult once = tune({first}, with_few_rows(), shipped_rig(), smoothed);
+  const TuneResult twice = tune({second}, once.table, shipped_rig(), quick());
+  const TunedState state = tuned_state(twice.table);
+  EXPECT_EQ(state.moving_average, 1);
+  ASSERT_EQ(state.by.size(), 1u);
+  EXPECT_TRUE(state.is_by(second));
+  EXPECT_FALSE(state.is_by(first));
+  ASSERT_EQ(state.error.channels.size(), twice.error.channels.size());
+  for (std::size_t i = 0; i < state.error.channels.size(); ++i)
+    EXPECT_EQ(state.error.channels[i].independent, twice.error.channels[i].independent);
+  EXPECT_NE(tuned_state(once.table).error.channels[0].independent, state.error.channels[0].independent);
+}
+
+TEST(TunedState, KnowsALogByItsContent) {
+  Log log = twins::cut(shipped_log("healthy/h08_preflight_cold"), 300);
+  TunedState state;
+  state.by = {{"h08.csv", "", content_hash(log)}};
+  log.path = "another name", log.sha256 = "other bytes", log.notes = {"a notice"};
+  EXPECT_TRUE(state.is_by(log));
+  log.channels[index(Signal::pressure_a)].value[7] += 1;
+  EXPECT_FALSE(state.is_by(log));
+}
+
+}  // namespace
+}  // namespace servodx
