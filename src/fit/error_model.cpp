@@ -3,6 +3,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "fit/log_data.h"
+#include "optimise/problem.h"
+#include "parameters/table.h"
+#include "servodx/log.h"
+#include "simulate/scenario.h"
+
 namespace servodx {
 namespace {
 
