@@ -67,7 +67,7 @@ long failures(bool all_rows) {
     for (std::size_t i = 0; i < v.size(); ++i) {
       Random random(71, static_cast<std::uint32_t>(from) + static_cast<std::uint32_t>(i));
       for (int r = 0; r < n_parameters; ++r)
-        if (all_rows || table()[r].estimate) v[i][r] = from_unit(table()[r], random.uniform());
+        if (all_rows || table()[r].estimate) v[i][r] = coordinate(table()[r]).from_unit(random.uniform());
       jobs.push_back({&s, &v[i], &t[i]});
     }
     simulate(jobs, {});
@@ -103,13 +103,7 @@ void kernel_rows(Report& report, const Choice& choice) {
   for (Signal signal : {Signal::spool_position, Signal::piston_position, Signal::pressure_a, Signal::pressure_b})
     log.channels.push_back({signal, simulated_index(signal), truth.signals[simulated_index(signal)], 1e-3, Filter{}});
   std::vector<FreeValue> free;
-  for (int r = 0; r < n_parameters; ++r)
-    free.push_back({.name = table()[r].name,
-                    .at = r,
-                    .lower = table()[r].lower,
-                    .upper = table()[r].upper,
-                    .log_scale = table()[r].log_scale,
-                    .start = table()[r].nominal});
+  for (int r = 0; r < n_parameters; ++r) free.emplace_back(coordinate(table()[r]), r);
   FitProblem problem({&log}, v, free, one_thread());
   const Point x = problem.start();
   const Eigen::VectorXd residual = problem.evaluate(std::span(&x, 1)).front().residual;

@@ -89,7 +89,7 @@ class Twin {
     for (int j = 0; j < count; ++j) {
       const int r = fitted_rows()[j];
       const servodx::Row& of = table()[r];
-      all.push_back({.name = of.name, .at = r, .lower = of.lower, .upper = of.upper, .log_scale = of.log_scale});
+      all.push_back({of.name, r, of.lower, of.upper, of.log_scale, 0.0});
       if (r == row::servovalve_null) all.back().lower = -null_limit, all.back().upper = null_limit;
     }
     return all;

@@ -46,7 +46,7 @@ std::vector<Identifiable> identifiable_rows(const FitProblem& problem, const Tab
     const double value = f.from_unit(x[j]);
     Identifiable row{f.name, table[at].unit, kept[j] ? "bounded" : id.verdict[j], value, std::nan(""), {}};
     const auto k = static_cast<long>(j);
-    const double per_unit = f.log_scale ? value * std::log(f.upper / f.lower) : f.upper - f.lower;
+    const double per_unit = f.slope(value);
     if (kept[j]) row.std_error = std::sqrt(std::max(0.0, covariance(k, k))) * per_unit;
     for (const int other : id.confounded_with[j])
       row.confounded_with.push_back(problem.free()[static_cast<std::size_t>(other)].name);

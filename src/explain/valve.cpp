@@ -175,7 +175,7 @@ ValveSubject::ValveSubject(const std::vector<Log>& logs, const Table& tuned, con
   for (FreeValue& f : shared_values(table_)) {
     if (f.at >= n_parameters) continue;  // effects of the table are causes
     const Row& row = table_[f.at];
-    const double slope = row.log_scale ? row.nominal * std::log(row.upper / row.lower) : row.upper - row.lower;
+    const double slope = coordinate(row).slope(row.nominal);
     f.prior_sd = std::max(least_sd, row.std_error.value_or(0.0) / slope);
     free_.push_back(std::move(f));
   }

@@ -35,14 +35,6 @@ std::vector<double>& residual_space() {
 
 }  // namespace
 
-double FreeValue::to_unit(double value) const {
-  const double v = std::clamp(value, lower, upper);
-  return log_scale ? std::log(v / lower) / std::log(upper / lower) : (v - lower) / (upper - lower);
-}
-double FreeValue::from_unit(double u) const {
-  return log_scale ? lower * std::pow(upper / lower, u) : lower + u * (upper - lower);
-}
-
 FitProblem::FitProblem(std::vector<const LogData*> logs, ParameterVector base, std::vector<FreeValue> free,
                        SimulateOptions options)
     : logs_(std::move(logs)), base_(std::move(base)), free_(std::move(free)), options_(std::move(options)) {

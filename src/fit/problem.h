@@ -7,12 +7,14 @@
 #include <limits>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "fit/log_data.h"
 #include "optimise/box_least_squares.h"
 #include "optimise/problem.h"
 #include "optimise/robust_loss.h"
+#include "parameters/coordinate.h"
 #include "signals/filters.h"
 #include "simulate/scenario.h"
 #include "simulate/simulate.h"
@@ -20,18 +22,17 @@
 namespace servodx {
 
 // A free number: which entry of a candidate, and how the unit interval maps onto it.
-struct FreeValue {
-  std::string name;
-  int at = 0;                   // position in a candidate
-  double lower = 0, upper = 1;  // [SI]
-  bool log_scale = false;
-  double start = 0;                                           // [SI]
-  double prior_sd = std::numeric_limits<double>::infinity();  // [of the unit interval] around `start`; infinite: none
-  int log = -1;                                               // index of the log it belongs to, or -1: shared by all
+struct FreeValue : Coordinate {
+  int at = 0;    // position in a candidate
+  int log = -1;  // index of the log it belongs to, or -1: shared by all
   std::function<void(double* candidate, double value)> apply = {};  // moves several entries at once, in place of `at`
 
-  double to_unit(double value) const;
-  double from_unit(double u) const;
+  FreeValue() = default;
+  FreeValue(Coordinate number, int position, int of_log = -1)
+      : Coordinate(std::move(number)), at(position), log(of_log) {}
+  FreeValue(std::string name_of_it, int position, double least, double most, bool in_log, double starts,
+            double sd = std::numeric_limits<double>::infinity(), int of_log = -1)
+      : FreeValue({std::move(name_of_it), "", least, most, in_log, starts, sd}, position, of_log) {}
 };
 
 class FitProblem {

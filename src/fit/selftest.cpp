@@ -154,7 +154,7 @@ struct Tally {
   }
   // `unit_error`: what the fit says of itself, of the unit interval.
   void add_stated(const FreeValue& f, double estimate, double truth, double unit_error) {
-    const double per_unit = f.log_scale ? f.from_unit(estimate) * std::log(f.upper / f.lower) : f.upper - f.lower;
+    const double per_unit = f.slope(f.from_unit(estimate));
     errors += unit_error * unit_error * per_unit * per_unit;
     covered += std::abs(estimate - truth) <= 1.96 * unit_error;
     ++counted;
@@ -164,7 +164,7 @@ struct Tally {
 void add_repeat(std::vector<Tally>& tallies, const Experiment& e, const FitProblem& problem,
                 const LeastSquaresResult& r, const Point& truth) {
   std::vector<char> kept(e.free.size());
-  for (std::size_t j = 0; j < e.free.size(); ++j) kept[j] = r.point[j] > 1e-6 && r.point[j] < 1 - 1e-6;
+  for (std::size_t j = 0; j < e.free.size(); ++j) kept[j] = off_walls(r.point[j]);
   const auto [point, covariance] = uncertainty(problem, r.point, r.jacobian, kept);
   for (std::size_t j = 0; j < e.rows; ++j) {
     tallies[j].add(e.free[j], point[j], truth[j]);

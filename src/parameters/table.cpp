@@ -306,18 +306,6 @@ std::string content_hash(const Table& table) {
   return sha256(text + table.state);
 }
 
-double to_unit(const Row& row, double value) {
-  const double span = row.log_scale ? std::log10(row.upper / row.lower) : row.upper - row.lower;
-  if (!(span > 0)) return 0.5;
-  const double u = row.log_scale ? std::log10(value / row.lower) / span : (value - row.lower) / span;
-  return std::clamp(u, 0.0, 1.0);
-}
-
-double from_unit(const Row& row, double u) {
-  const double value =
-      row.log_scale ? row.lower * std::pow(row.upper / row.lower, u) : row.lower + u * (row.upper - row.lower);
-  // Rounding must not carry a value past its bound: the table written with it would be refused.
-  return std::clamp(value, row.lower, row.upper);
-}
+Coordinate coordinate(const Row& row) { return {row.name, row.unit, row.lower, row.upper, row.log_scale, row.nominal}; }
 
 }  // namespace servodx

@@ -55,9 +55,9 @@ void operator delete(void* p, std::size_t) noexcept { std::free(p); }
 namespace servodx {
 namespace {
 
-TEST(FreeValue, UnitIntervalAndValueAreInverses) {
+TEST(Coordinate, UnitIntervalAndValueAreInverses) {
   for (const bool log_scale : {false, true}) {
-    const FreeValue f{.name = "value", .lower = 0.02, .upper = 5.0, .log_scale = log_scale};
+    const Coordinate f{.name = "value", .unit = "-", .lower = 0.02, .upper = 5.0, .log_scale = log_scale};
     EXPECT_DOUBLE_EQ(f.from_unit(0.0), 0.02);
     EXPECT_DOUBLE_EQ(f.from_unit(1.0), 5.0);
     for (double u : {0.1, 0.5, 0.9}) EXPECT_NEAR(f.to_unit(f.from_unit(u)), u, 1e-14);
@@ -326,7 +326,7 @@ TEST(FitProblem, MissingSampleWeighsNothing) {
 
 TEST(FitProblem, FailedSimulationIsCountedAndNotOk) {
   const TwoLogs logs;
-  FreeValue broken{.name = "broken", .at = row::bulk_modulus, .lower = 0, .upper = 1, .start = 0.5};
+  FreeValue broken({.name = "broken", .unit = "Pa", .start = 0.5}, row::bulk_modulus);
   broken.apply = [](double* v, double value) { v[row::bulk_modulus] = value > 0.9 ? std::nan("") : 1.4e9; };
   const FitProblem problem({&logs.a}, logs.truth, {broken});
   const std::vector<Point> points = {{0.5}, {0.95}, {0.2}};

@@ -28,9 +28,6 @@ inline LogData written_by_model(LogData log, const ParameterVector& truth, unsig
 }
 
 // A row as a free number within the table's bounds, without a prior.
-inline FreeValue free_row(const Table& table, int row) {
-  const Row& r = table[row];
-  return {.name = r.name, .at = row, .lower = r.lower, .upper = r.upper, .log_scale = r.log_scale, .start = r.nominal};
-}
+inline FreeValue free_row(const Table& table, int row) { return {coordinate(table[row]), row}; }
 
 }  // namespace servodx

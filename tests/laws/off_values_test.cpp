@@ -151,8 +151,8 @@ std::vector<ParameterVector> candidates(int count) {
     Random random(19, static_cast<std::uint32_t>(i));
     ParameterVector v = candidate_of(table);
     for (int r = 0; r < n_parameters; ++r) {
-      const double u = to_unit(table[r], table[r].nominal) + random.uniform(-0.1, 0.1);
-      v[r] = from_unit(table[r], std::clamp(u, 0.0, 1.0));
+      const double u = coordinate(table[r]).to_unit(table[r].nominal) + random.uniform(-0.1, 0.1);
+      v[r] = coordinate(table[r]).from_unit(std::clamp(u, 0.0, 1.0));
     }
     v[nuisance::command_slope] = random.uniform();
     v[nuisance::spool_offset] = random.uniform(-2e-6, 2e-6);

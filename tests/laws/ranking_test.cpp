@@ -59,8 +59,9 @@ Costs costs_of(const LogData& log, double width) {
     ParameterVector one = candidate_of(table);
     for (int r = 0; r < n_parameters; ++r) {
       if (!table[r].estimate) continue;
-      const double from = width < 1 ? to_unit(table[r], table[r].nominal) + width * random.normal() : random.uniform();
-      one[r] = from_unit(table[r], std::clamp(from, 0.0, 1.0));
+      const double from =
+          width < 1 ? coordinate(table[r]).to_unit(table[r].nominal) + width * random.normal() : random.uniform();
+      one[r] = coordinate(table[r]).from_unit(std::clamp(from, 0.0, 1.0));
     }
     if (i % 2)
       for (const char* name : {"magnetic_hysteresis", "armature_angle", "mount_compliance", "edge_transition",

@@ -122,7 +122,7 @@ int failures(const Table& table, const std::vector<ParameterVector>& v, const Si
     ++failed;
     std::printf("  candidate %zu fails at %.4f s; near a bound:", i, t[i].failed_at);
     for (int r = 0; r < n_parameters; ++r)
-      if (const double u = to_unit(table[r], v[i][r]); (u < 0.05 || u > 0.95) && v[i][r] != table[r].nominal)
+      if (const double u = coordinate(table[r]).to_unit(v[i][r]); (u < 0.05 || u > 0.95) && v[i][r] != table[r].nominal)
         std::printf(" %s=%.3g", table[r].name.c_str(), v[i][r]);
     std::printf("\n");
   }
@@ -136,7 +136,7 @@ ParameterVector random_candidate(const Table& table, std::uint32_t i, Moves move
   Random random(31, i);
   ParameterVector v = candidate_of(table);
   for (int r = 0; r < n_parameters; ++r)
-    if (const double u = random.uniform(); moves(r)) v[r] = from_unit(table[r], u);
+    if (const double u = random.uniform(); moves(r)) v[r] = coordinate(table[r]).from_unit(u);
   if (i % 2)
     for (const EffectInfo& e : effect_list())
       for (std::size_t j = 0; j < e.parameters.size() && e.name != Unexplained::name;
@@ -166,8 +166,8 @@ TEST(ShippedLogs, NoFailureAtAnySeverityOfAnyFault) {
       v.push_back(candidate_of(table));
       for (int r = 0; r < n_parameters; ++r)
         if (table[r].estimate)
-          v.back()[r] = from_unit(
-              table[r], std::clamp(to_unit(table[r], table[r].nominal) + random.uniform(-0.1, 0.1), 0.0, 1.0));
+          v.back()[r] = coordinate(table[r]).from_unit(
+              std::clamp(coordinate(table[r]).to_unit(table[r].nominal) + random.uniform(-0.1, 0.1), 0.0, 1.0));
       fault->apply(v.back().data(), fault->healthy + (fault->worst - fault->healthy) * random.uniform());
       v.push_back(candidate_of(table));
       fault->apply(v.back().data(), fault->worst);

@@ -122,7 +122,7 @@ TEST(Valve, StopHoldsTheRodThatComesUponIt) {
     for (std::uint32_t i = 0; i < v.size(); ++i) {
       Random random(3, i);
       for (int r = 0; r < n_parameters; ++r)
-        if (table[r].estimate) v[i][r] = from_unit(table[r], random.uniform());
+        if (table[r].estimate) v[i][r] = coordinate(table[r]).from_unit(random.uniform());
       jobs.push_back({&s, &v[i], &t[i]});
     }
     simulate(jobs, {});

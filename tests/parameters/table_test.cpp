@@ -325,11 +325,12 @@ TEST_F(TableFile, RowsOfEffectsAreKeptAfterThe41) {
 
 TEST(UnitCube, MapsBoundsToZeroAndOneAndBack) {
   for (const Row& row : read_table(borello).rows) {
-    EXPECT_EQ(to_unit(row, row.lower), 0) << row.name;
-    EXPECT_NEAR(to_unit(row, row.upper), 1, 1e-15) << row.name;
-    EXPECT_EQ(from_unit(row, 0), row.lower) << row.name;
-    EXPECT_LE(from_unit(row, 1), row.upper) << row.name;
-    EXPECT_NEAR(from_unit(row, to_unit(row, row.nominal)), row.nominal, 1e-14 * row.upper) << row.name;
+    EXPECT_EQ(coordinate(row).to_unit(row.lower), 0) << row.name;
+    EXPECT_NEAR(coordinate(row).to_unit(row.upper), 1, 1e-15) << row.name;
+    EXPECT_EQ(coordinate(row).from_unit(0), row.lower) << row.name;
+    EXPECT_NEAR(coordinate(row).from_unit(1), row.upper, 1e-15 * row.upper) << row.name;
+    EXPECT_NEAR(coordinate(row).from_unit(coordinate(row).to_unit(row.nominal)), row.nominal, 1e-14 * row.upper)
+        << row.name;
   }
 }
 

@@ -79,8 +79,8 @@ inline Twin make(int n, std::uint64_t seed, const std::vector<std::string>& ship
     Row& row = twin.table.rows[i];
     if (std::find(rows().begin(), rows().begin() + n, row.name) == rows().begin() + n) continue;
     row.estimate = true;
-    const double u = std::clamp(to_unit(row, row.nominal) + random.uniform(-spread, spread), 0.02, 0.98);
-    truth[i] = from_unit(row, u);
+    const double u = std::clamp(coordinate(row).to_unit(row.nominal) + random.uniform(-spread, spread), 0.02, 0.98);
+    truth[i] = coordinate(row).from_unit(u);
     twin.names.push_back(row.name);
     twin.truth.push_back(truth[i]);
   }

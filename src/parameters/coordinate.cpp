@@ -1,0 +1,19 @@
+#include "parameters/coordinate.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace servodx {
+
+double Coordinate::to_unit(double value) const {
+  const double v = std::clamp(value, lower, upper);
+  return log_scale ? std::log(v / lower) / std::log(upper / lower) : (v - lower) / (upper - lower);
+}
+
+double Coordinate::from_unit(double u) const {
+  return log_scale ? lower * std::pow(upper / lower, u) : lower + u * (upper - lower);
+}
+
+double Coordinate::slope(double value) const { return log_scale ? value * std::log(upper / lower) : upper - lower; }
+
+}  // namespace servodx

@@ -1,0 +1,31 @@
+// A number that a fit may move: its range, its scale and what is likely of it; and the way to the unit interval and
+// back.
+//
+// Linear: value = lower + u (upper - lower). Logarithmic, for positive ranges: value = lower (upper / lower)^u.
+#pragma once
+#include <limits>
+#include <string>
+
+namespace servodx {
+
+struct Coordinate {
+  std::string name, unit;
+  double lower = 0, upper = 1;                                // [unit]
+  bool log_scale = false;                                     // needs lower > 0
+  double start = 0;                                           // [unit]
+  double prior_sd = std::numeric_limits<double>::infinity();  // [of the unit interval] around `start`; infinite: none
+
+  // A value beyond the range is put at its end. [-]
+  double to_unit(double value) const;
+  // Rounding may carry the value of an end of a logarithmic range past it by a unit in the last place. [unit]
+  double from_unit(double u) const;
+  // d value / d u. [unit]
+  double slope(double value) const;
+};
+
+// Whether a fit left a number free: nearer than this to an end of its interval, the bound holds it, and curvature says
+// nothing of how well it is known.
+inline constexpr double wall = 1e-6;  // [of the unit interval] chosen by hand; not examined
+constexpr bool off_walls(double u) { return u > wall && u < 1 - wall; }
+
+}  // namespace servodx
