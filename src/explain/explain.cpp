@@ -11,6 +11,7 @@
 #include "effects/registry.h"
 #include "effects/row_effects.h"
 #include "explain/replay.h"
+#include "explain/score.h"
 #include "explain/valve.h"
 #include "fit/free_values.h"
 #include "parameters/list.h"
@@ -270,7 +271,7 @@ ExplainResult explain_logs(const std::vector<Log>& logs, const Table& tuned, con
     const int first = e.causes.front().cause;
     ExplainedFit one =
         fit_causes(subject, {first}, &e.before, &e.scores[static_cast<std::size_t>(first)], engine.iterations, false);
-    if (one.ok) cross_validate(subject, one, engine);
+    if (one.ok) cross_validate(subject, one, engine.hold_out());
     return one;
   };
   const auto first_alone = [&] {
@@ -343,7 +344,7 @@ ExplainResult explain_logs(const std::vector<Log>& logs, const Table& tuned, con
     const auto held = [&](const Explanation& told) {
       ExplainedFit after =
           hold_causes(subject, told.after.causes, numbers_of_causes(*blocks, told.after), e.before, engine.iterations);
-      if (after.ok) cross_validate(subject, after, engine);
+      if (after.ok) cross_validate(subject, after, engine.hold_out());
       return after;
     };
     const auto take = [&](Explanation& told, ExplainedFit after) {

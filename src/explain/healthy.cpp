@@ -6,6 +6,7 @@
 #include "base/student.h"
 #include "explain/curves.h"
 #include "explain/replay.h"
+#include "explain/score.h"
 #include "explain/valve.h"
 
 namespace servodx {

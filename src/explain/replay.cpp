@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "explain/ties.h"
 #include "fit/error_model.h"
 
 namespace servodx {

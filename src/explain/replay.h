@@ -10,8 +10,8 @@
 // they slip: what they hold before that hangs on a way that the log does not tell to the micrometre. Near the ends of
 // the stroke it does not count: cushions are no part of the model.
 //
-// A supply pressure that is measured drives the simulation, sag and all. Whether it sags by the flow that the rod draws,
-// and more than on healthy logs, is told here.
+// A supply pressure that is measured drives the simulation, sag and all. Whether it sags by the flow that the rod
+// draws, and more than on healthy logs, is told here.
 #pragma once
 #include <span>
 #include <vector>

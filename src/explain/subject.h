@@ -64,9 +64,6 @@ struct SubjectFit {
   LeastSquaresProblem problem;
 };
 
-// Appends the ties of these causes to the rows of a fit whose last numbers are theirs.
-void tie(SubjectFit& fit, const std::vector<Cause>& all, const std::vector<int>& causes);
-
 // How much one part of a replay misses: a block of the model (explain/blocks.h), or a channel against its usual error.
 struct Miss {
   std::string part;

@@ -10,6 +10,7 @@
 #include "base/error.h"
 #include "base/student.h"
 #include "effects/row_effects.h"
+#include "explain/ties.h"
 #include "fit/free_values.h"
 #include "fit/thin.h"
 #include "fit/tune.h"

@@ -6,6 +6,8 @@
 #include <cmath>
 
 #include "base/random.h"
+#include "explain/deviance.h"
+#include "explain/ties.h"
 
 namespace servodx {
 namespace {

@@ -11,6 +11,7 @@
 #include "explain/curves.h"
 #include "explain/engine.h"
 #include "explain/missing_support.h"
+#include "explain/score.h"
 
 namespace servodx {
 namespace {

@@ -5,6 +5,7 @@
 #include "explain/engine.h"
 #include "explain/healthy.h"
 #include "explain/replay.h"
+#include "explain/score.h"
 #include "explain/valve.h"
 #include "hidden/cases.h"
 #include "parameters/table.h"

@@ -32,8 +32,8 @@ const std::map<std::string, std::set<std::string>> allowed = {
     {"fit", {"parameters", "model", "effects", "simulate", "signals", "optimise"}},
     {"evidence", {"fit", "signals"}},
     {"diagnose", {"parameters", "signals", "simulate", "optimise", "fit", "evidence", "faults", "effects"}},
-    {"explain", {"parameters", "signals", "simulate", "optimise", "fit", "faults", "effects"}},
-    {"report", {"signals", "faults", "diagnose", "explain", "prognose", "fit", "valve_maps", "curves"}},
+    {"explain", {"parameters", "signals", "simulate", "optimise", "fit", "evidence", "faults", "effects"}},
+    {"report", {"signals", "faults", "diagnose", "explain", "evidence", "prognose", "fit", "valve_maps", "curves"}},
     {"prognose", {"parameters", "signals", "model", "simulate", "optimise", "fit", "faults", "valve_maps"}},
 };
 

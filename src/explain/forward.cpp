@@ -1,0 +1,258 @@
+#include "explain/forward.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <optional>
+#include <utility>
+
+#include "explain/constants.h"
+#include "explain/forward_rules.h"
+#include "explain/score.h"
+
+namespace servodx {
+namespace {
+
+using namespace explain_constants;
+
+std::size_t at(int i) { return static_cast<std::size_t>(i); }
+
+// What a round begins with.
+struct Round {
+  std::vector<CauseScore> scores;  // [cause]
+  WholeEvidence whole;
+  std::vector<ScoredEvidence> evidence;  // [cause]
+};
+
+// A cause that was tried: the fit with it, and what it gains.
+struct Trial {
+  ExplainedFit fit;
+  ExplainedFit retuned;  // the same on top of re-tuning
+  Interval heldout_gain, beyond_retuning;
+  double delta_bic = 0;
+  bool stands = false;  // judged, and not refused
+
+  int cause() const { return fit.causes.back(); }
+};
+
+// In already, or it goes by a number of one that is: two names of one number would leave the first without a say.
+bool is_in(const Subject& subject, const std::vector<int>& accepted, int cause) {
+  const std::vector<Number>& its = subject.causes()[at(cause)].numbers;
+  return std::any_of(accepted.begin(), accepted.end(), [&](int other) {
+    const std::vector<Number>& others = subject.causes()[at(other)].numbers;
+    return other == cause || std::any_of(its.begin(), its.end(), [&](const Number& a) {
+             return std::any_of(others.begin(), others.end(), [&](const Number& b) { return a.name == b.name; });
+           });
+  });
+}
+
+WholeEvidence whole_before(const EngineOptions& options, const Selected& so_far) {
+  WholeEvidence w;
+  w.accepted = so_far.rounds;
+  w.compared = static_cast<bool>(options.p_left);
+  w.level = level_of_round(options.level, w.compared, w.accepted);
+  if (w.compared) w.p_left = options.p_left(so_far.fit, so_far.rounds);
+  if (is_abnormal(w)) w.p_left_rows = options.p_left(so_far.fit, so_far.rounds + 1);
+  return w;
+}
+
+Round look(const Subject& subject, const EngineOptions& options, const Selected& so_far, Explanation& out) {
+  Round round;
+  round.scores = score_causes(subject, so_far.fit, options.among);
+  if (so_far.rounds == 0) out.scores = round.scores;
+  round.whole = whole_before(options, so_far);
+  for (std::size_t c = 0; c < round.scores.size(); ++c) {
+    const CauseScore& score = round.scores[c];
+    ScoredEvidence& e = round.evidence.emplace_back();
+    e.cause = score.cause;
+    e.looked_at = !score.probes.empty();
+    e.accepted_already = is_in(subject, so_far.fit.causes, score.cause);
+    e.prior = subject.causes()[c].prior;
+    e.predicted_gain = score.gain;
+    e.p_new = options.p_new ? 1.0 : 0.0;
+    if (!e.looked_at) continue;
+    if (options.p_new) e.p_new = options.p_new(score, so_far.rounds);
+    if (so_far.rounds > 0) continue;
+    CandidateResult& r = out.candidates[c];
+    r.predicted_gain = score.gain, r.p_new = e.p_new, r.fate = Fate::score_too_small;
+  }
+  return round;
+}
+
+// The first round also fits a few that are no news: what stands in healthy data is said.
+std::vector<Trial> fit_best(const Subject& subject, const EngineOptions& options, bool begun, const Round& round,
+                            const Selected& so_far, double degrees) {
+  const bool standing = so_far.rounds == 0 && options.p_new && !begun;
+  const Budget budget{options.fitted, options.fitted / rare_share, standing ? standing_tried : 0};
+  std::vector<Trial> out;
+  for (int c : order_of_trial(round.evidence, round.whole, budget, std::log(std::max(2.0, degrees)))) {
+    if (options.stopped()) break;
+    std::vector<int> causes = so_far.fit.causes;
+    causes.push_back(c);
+    ExplainedFit f = fit_causes(subject, causes, &so_far.fit, &round.scores[at(c)], quick_iterations, true);
+    if (f.ok) out.emplace_back().fit = std::move(f);
+    const double part = std::min(1.0, static_cast<double>(out.size()) / (1.5 * options.fitted));
+    options.tell(0.15 + 0.6 * (so_far.rounds + part) / options.most);
+  }
+  for (Trial& t : out) t.delta_bic = delta_bic(so_far.fit, t.fit, degrees);
+  return out;
+}
+
+// In full, on data that it has not seen, and on top of re-tuning.
+void measure(const Subject& subject, const EngineOptions& options, const Round& round, const Selected& so_far,
+             double degrees, Trial& t) {
+  ExplainedFit whole = fit_causes(subject, t.fit.causes, &t.fit, nullptr, full_iterations, false);
+  if (whole.ok && whole.deviance < t.fit.deviance) t.fit = std::move(whole);
+  t.delta_bic = delta_bic(so_far.fit, t.fit, degrees);
+  cross_validate(subject, t.fit, options.hold_out());
+  t.heldout_gain = heldout_gain(so_far.fit, t.fit, options.seed);
+  if (!so_far.retuned.ok) return;
+  const CauseScore& score = round.scores[at(t.cause())];
+  t.retuned = fit_causes(subject, t.fit.causes, &so_far.retuned, &score, quick_iterations, true);
+  if (!t.retuned.ok) return;
+  cross_validate(subject, t.retuned, options.hold_out());
+  t.beyond_retuning = heldout_gain(so_far.retuned, t.retuned, options.seed);
+}
+
+FittedEvidence fitted_evidence(const Round& round, const Trial& t) {
+  const ScoredEvidence& c = round.evidence[at(t.cause())];
+  return {c.prior, is_new(c, round.whole), is_news_by_itself(c, round.whole), t.delta_bic};
+}
+
+JudgedEvidence judged_evidence(const Subject& subject, const EngineOptions& options, const Round& round,
+                               const Selected& so_far, const Trial& t) {
+  const FittedEvidence f = fitted_evidence(round, t);
+  JudgedEvidence j;
+  j.curve = subject.causes()[at(t.cause())].curve;
+  j.is_new = f.is_new, j.news_by_itself = f.news_by_itself;
+  j.abnormal_rows = has_abnormal_rows(round.whole);
+  j.level = round.whole.level;
+  if (j.abnormal_rows) j.p_left_rows = options.p_left(t.fit, so_far.rounds + 1);
+  j.beside_retuning = so_far.retuned.ok;
+  j.beyond_retuning = t.beyond_retuning.value;
+  j.heldout_lower = t.heldout_gain.lower;
+  return j;
+}
+
+// The best are measured, in order of judging, which is the order that they are left in.
+void judge(const Subject& subject, const EngineOptions& options, const Round& round, const Selected& so_far,
+           std::vector<Trial>& trials, Explanation& out) {
+  std::vector<FittedEvidence> evidence;
+  for (const Trial& t : trials) evidence.push_back(fitted_evidence(round, t));
+  std::vector<Trial> ordered;
+  for (int i : order_of_judging(evidence)) ordered.push_back(std::move(trials[at(i)]));
+  trials = std::move(ordered);
+  JudgingBudget budget(options.judged, rare_share);
+  for (Trial& t : trials) {
+    if (options.stopped()) break;
+    CandidateResult later, &r = so_far.rounds == 0 ? out.candidates[at(t.cause())] : later;
+    r.fitted = true;
+    r.delta_bic = t.delta_bic;
+    r.fate = t.delta_bic <= 0 ? Fate::not_worth_its_numbers : Fate::others_fit_better;
+    if (!budget.takes(fitted_evidence(round, t))) continue;
+    measure(subject, options, round, so_far, out.degrees, t);
+    r.delta_bic = t.delta_bic, r.heldout_gain = t.heldout_gain, r.beyond_retuning = t.beyond_retuning;
+    const std::optional<Fate> refused = refusal_of(judged_evidence(subject, options, round, so_far, t));
+    t.stands = !refused;
+    if (refused) r.fate = *refused;
+    if (refused == Fate::abnormal_with_it && so_far.rounds == 0 && t.heldout_gain.lower > 0)
+      out.refused.push_back(t.fit);
+  }
+}
+
+CauseResult result_of(const Subject& subject, const Selected& so_far, const Trial& t, bool fresh) {
+  CauseResult r;
+  r.cause = t.cause();
+  r.is_new = fresh;
+  r.heldout_gain = t.heldout_gain;
+  r.delta_bic = t.delta_bic;
+  r.misfit_gain = so_far.fit.deviance - t.fit.deviance;
+  r.beyond_retuning = t.beyond_retuning;
+  CauseNumbers numbers = numbers_of(subject, t.fit, r.cause);
+  r.value = std::move(numbers.value), r.std_error = std::move(numbers.std_error);
+  return r;
+}
+
+Rivals rivals(const EngineOptions& options, const Round& round, const Selected& so_far, const Trial& first,
+              const Trial& second) {
+  const auto suffices = [&](const Trial& t) {
+    return options.p_left && options.p_left(t.fit, so_far.rounds + 1) > round.whole.level;
+  };
+  Rivals r;
+  r.first_prior = round.evidence[at(first.cause())].prior, r.second_prior = round.evidence[at(second.cause())].prior;
+  r.first_bic = first.delta_bic, r.second_bic = second.delta_bic;
+  if (r.first_prior == r.second_prior) return r;
+  const bool first_is_rarer = r.first_prior < r.second_prior;
+  const Trial &rarer = first_is_rarer ? first : second, &commoner = first_is_rarer ? second : first;
+  r.first_suffices = suffices(first), r.second_suffices = suffices(second);
+  r.rarer_lower = heldout_gain(commoner.fit, rarer.fit, options.seed).lower;
+  return r;
+}
+
+// The best of what is new; null: none stands.
+Trial* best_of(const EngineOptions& options, const Round& round, const Selected& so_far, std::vector<Trial>& trials) {
+  Trial* best = nullptr;
+  for (Trial& t : trials)
+    if (t.stands && is_new(round.evidence[at(t.cause())], round.whole))
+      if (!best || first_is_better(rivals(options, round, so_far, t, *best))) best = &t;
+  return best;
+}
+
+// Something is new, so one whose size healthy data show as well may be what it is.
+std::vector<int> in_place_of(const EngineOptions& options, const Trial& best, const std::vector<Trial>& trials) {
+  std::vector<int> out;
+  for (const Trial& t : trials)
+    if (t.stands && &t != &best &&
+        does_as_well(heldout_gain(t.fit, best.fit, options.seed).lower, best.delta_bic, t.delta_bic))
+      out.push_back(t.cause());
+  return out;
+}
+
+}  // namespace
+
+double delta_bic(const ExplainedFit& before, const ExplainedFit& after, double degrees) {
+  const double numbers = static_cast<double>(after.fit.numbers.size()) - static_cast<double>(before.fit.numbers.size());
+  return before.deviance - after.deviance - numbers * std::log(std::max(2.0, degrees));
+}
+
+bool accept_one_more(const Subject& subject, const EngineOptions& options, bool begun, Selected& so_far,
+                     Explanation& out) {
+  const Round round = look(subject, options, so_far, out);
+  std::vector<Trial> trials = fit_best(subject, options, begun, round, so_far, out.degrees);
+  judge(subject, options, round, so_far, trials, out);
+  for (const Trial& t : trials)
+    if (t.stands && !is_new(round.evidence[at(t.cause())], round.whole)) {
+      out.candidates[at(t.cause())].fate = Fate::not_beyond_healthy;
+      out.standing.push_back(result_of(subject, so_far, t, false));
+    }
+  Trial* best = best_of(options, round, so_far, trials);
+  if (!best) return false;
+  CauseResult accepted = result_of(subject, so_far, *best, true);
+  accepted.confusable_with = in_place_of(options, *best, trials);
+  out.candidates[at(accepted.cause)].fate = Fate::taken;
+  so_far.causes.push_back(std::move(accepted));
+  so_far.fit = std::move(best->fit);
+  if (so_far.retuned.ok) so_far.retuned = std::move(best->retuned);
+  ++so_far.rounds;
+  return true;
+}
+
+void leave_out_again(const Subject& subject, const EngineOptions& options, Selected& so_far, Explanation& out) {
+  for (std::size_t i = 0; so_far.causes.size() > 1 && i + 1 < so_far.causes.size() && !options.stopped();) {
+    std::vector<int> without = so_far.fit.causes;
+    std::erase(without, so_far.causes[i].cause);
+    ExplainedFit f = fit_causes(subject, without, &so_far.fit, nullptr, full_iterations, false);
+    if (f.ok) cross_validate(subject, f, options.hold_out());
+    const Interval worth = f.ok ? heldout_gain(f, so_far.fit, options.seed) : Interval{1, 1, 1};
+    if (is_missed(worth)) {
+      so_far.causes[i].heldout_gain = worth;
+      ++i;
+      continue;
+    }
+    out.candidates[at(so_far.causes[i].cause)].fate = Fate::not_missed_later;
+    so_far.causes.erase(so_far.causes.begin() + static_cast<long>(i));
+    so_far.fit = std::move(f);
+  }
+}
+
+}  // namespace servodx
