@@ -23,7 +23,7 @@ ErrorModel required_error_model(const Table& tuned) {
   ErrorModel error = error_model_of(tuned);
   if (error.channels.empty())
     throw InputError({.file = tuned.path}, "the table does not say how wrong its model is",
-                     "make it with 'servodx tune'; its header carries the lines 'model error ...'");
+                     "make it with 'servodx tune'; the file then carries lines '#% ...' ahead of its header");
   return error;
 }
 

@@ -156,7 +156,7 @@ ValveSubject::ValveSubject(const std::vector<Log>& logs, const Table& tuned, con
     : table_(tuned), base_(candidate_of(tuned)), error_(error_model_of(tuned)), known_(std::move(known)) {
   if (error_.channels.empty())
     throw InputError({.file = tuned.path}, "the table does not say how wrong its model is",
-                     "make it with 'servodx tune'; its header carries the lines 'model error ...'");
+                     "make it with 'servodx tune'; the file then carries lines '#% ...' ahead of its header");
   options_.threads = threads;
   options_.creep_step = creep_step_of(logs, rig);
   RigFile without_notch = rig;
