@@ -71,7 +71,7 @@ def options():
     """Every --option of the programs and scripts."""
     found = set()
     for path in tree():
-        if path.startswith(("apps/", "bench/", "scripts/", "tests/")) and not path.endswith("/") and not ours(path):
+        if path.startswith(("apps/", "bench/", "scripts/", "tests/")) and not path.endswith(("/", "docs_names_test.py")):
             found.update(re.findall(r"(?<![\w-])--[a-z][\w-]*", source.text(path)))
     return frozenset(found)
 
@@ -163,6 +163,32 @@ class Docs(unittest.TestCase):
                     said += [f"{page}:{number}: `{text}` {why}"] if why else []
         self.assertGreater(seen, 1000)
         self.assertFalse(said, "\n" + "\n".join(said))
+
+    def test_ways_through_the_code_are_there_and_never_turn_back(self):
+        """docs/reading_the_code.md: each step's function stands in its file, and no folder is come to twice."""
+        page = "docs/reading_the_code.md"
+        ways = re.split(r"^## ", source.text(page), flags=re.M)[1:]
+        self.assertEqual(len(ways), 3)
+        for way in ways:
+            steps = re.findall(r"^\d+\. `([\w:]+)` \(`([\w/.]+)`\)", way, re.M)
+            self.assertTrue(5 <= len(steps) <= 10, way[:60])
+            left, folder = set(), ""
+            for name, path in steps:
+                made = {function.split("::")[-1] for function, _, _ in source.functions(path)}
+                self.assertIn(name.split("::")[-1], made, f"{path} has no function {name}")
+                at = path.rsplit("/", 1)[0]
+                if at != folder:
+                    self.assertNotIn(at, left, f"{way.splitlines()[0]}: {name} goes back to {at}")
+                    left.add(folder)
+                folder = at
+
+    def test_prose_is_plain(self):
+        """Sentences of the ways: at most 25 words on average, none over 60."""
+        prose = re.sub(r"`[^`]*`", "it", source.text("docs/reading_the_code.md"))
+        lengths = [len(sentence.split()) for line in prose.splitlines() if not line.startswith("#")
+                   for sentence in re.split(r"(?<=[.:])\s", line) if len(sentence.split()) > 1]
+        self.assertLessEqual(sum(lengths) / len(lengths), 25)
+        self.assertLessEqual(max(lengths), 60)
 
     def test_names_that_are_nowhere_are_told(self):
         for text in ("src/fit/no_such.cpp", "no_such.h", "no_such.csv", "NoSuchType", "no_such_function()",
