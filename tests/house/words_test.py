@@ -20,6 +20,7 @@ READERS = {
     "apps/servodx/trend_command.cpp": "--check",
     "apps/servodx/tune_command.cpp": "--local, --effects",
     "src/base/csv.cpp": "marks of the encoding",
+    "src/fit/tuning_comments.cpp": "reads what a tune wrote into a table",
     "src/optimise/genetic_state.cpp": "reads a checkpoint",
     "src/parameters/table.cpp": "reads a table",
     "src/prognose/history_csv.cpp": "reads a history",
@@ -74,9 +75,19 @@ def call_of(tokens, at):
     return ""
 
 
+def named_texts(tokens):
+    """Constants of the file that are texts: `constexpr std::string_view taken = "taken"`."""
+    return {tokens[i - 2][1]: value for i, (kind, value, _) in enumerate(tokens)
+            if kind == "string" and i > 2 and tokens[i - 1][1] == "=" and tokens[i - 2][0] == "name"
+            and any(text == "constexpr" for _, text, _ in tokens[max(0, i - 9):i])}
+
+
 def compared(tokens):
-    """(text, line) of every literal that something is compared with."""
+    """(text, line) of every literal, or constant that stands for one, that something is compared with."""
+    named = named_texts(tokens)
     for i, (kind, value, line) in enumerate(tokens):
+        if kind == "name" and value in named and {"==", "!="} & {tokens[i - 1][1], tokens[i + 1][1]}:
+            yield named[value], line
         if kind != "string" or value.startswith("SELECT "):  # a question to a data base, which calls that `find` too
             continue
         first, last = i - 1, i + 1
@@ -152,7 +163,7 @@ class Words(unittest.TestCase):
 
     def test_comparisons_are_found_however_written(self):
         made = source.tokens("tests/house/compared.inc")
-        self.assertEqual([text for text, _ in compared(made)], list("abcdefghijk"))
+        self.assertEqual([text for text, _ in compared(made)], list("abcdefghijkl"))
 
     def test_registry_names_are_written_in_their_own_files_alone(self):
         names = registry_names()
