@@ -5,6 +5,7 @@
 #pragma once
 #include "effects/effect.h"
 #include "model/hooks.h"
+#include "parameters/list.h"
 
 namespace servodx {
 

@@ -6,6 +6,7 @@
 
 #include "effects/effect.h"
 #include "model/hooks.h"
+#include "parameters/list.h"
 
 namespace servodx {
 

@@ -13,6 +13,7 @@
 #include "base/smooth.h"
 #include "effects/effect.h"
 #include "model/hooks.h"
+#include "parameters/list.h"
 
 namespace servodx {
 

@@ -1,6 +1,8 @@
 #include "effects/row_effects.h"
 
 #include "effects/registry.h"
+#include "effects/seal_film.h"
+#include "parameters/list.h"
 
 namespace servodx {
 

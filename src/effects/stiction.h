@@ -6,6 +6,7 @@
 
 #include "effects/effect.h"
 #include "model/asperities.h"
+#include "model/constants.h"
 #include "model/hooks.h"
 
 namespace servodx {

@@ -10,6 +10,7 @@
 #include "base/smooth.h"
 #include "effects/effect.h"
 #include "model/hooks.h"
+#include "parameters/list.h"
 
 namespace servodx {
 

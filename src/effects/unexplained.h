@@ -15,6 +15,7 @@
 #include "base/smooth.h"
 #include "effects/effect.h"
 #include "model/hooks.h"
+#include "parameters/list.h"
 
 namespace servodx {
 

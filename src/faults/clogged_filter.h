@@ -2,6 +2,7 @@
 // the fixed orifices set the pilot flow until about half of the area is gone, so a mild one shows only in fast moves.
 #pragma once
 #include "faults/fault.h"
+#include "parameters/list.h"
 
 namespace servodx {
 

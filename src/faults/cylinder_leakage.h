@@ -1,6 +1,7 @@
 // Worn piston seal: oil crosses from chamber to chamber in proportion to the load pressure.
 #pragma once
 #include "faults/fault.h"
+#include "parameters/list.h"
 
 namespace servodx {
 

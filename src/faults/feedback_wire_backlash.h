@@ -1,6 +1,7 @@
 // Worn ball of the feedback wire: the spool moves through a clearance before the wire pulls.
 #pragma once
 #include "faults/fault.h"
+#include "parameters/list.h"
 
 namespace servodx {
 

@@ -2,6 +2,7 @@
 // the spool runs to its stop.
 #pragma once
 #include "faults/fault.h"
+#include "parameters/list.h"
 
 namespace servodx {
 

@@ -1,6 +1,7 @@
 // Null beyond what calibration covers. Within the rig's null limit a shifted null is adjusted, not a fault.
 #pragma once
 #include "faults/fault.h"
+#include "parameters/list.h"
 
 namespace servodx {
 

@@ -4,6 +4,8 @@
 #pragma once
 #include <algorithm>
 
+#include "effects/nozzle_plugging.h"
+#include "effects/registry.h"
 #include "faults/fault.h"
 
 namespace servodx {

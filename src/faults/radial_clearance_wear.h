@@ -2,6 +2,7 @@
 // and piston, hardly in the spool.
 #pragma once
 #include "faults/fault.h"
+#include "parameters/list.h"
 
 namespace servodx {
 

@@ -1,6 +1,7 @@
 // Drifted gain of the piston position sensor. A steady closed loop hides it; it scales every indicated velocity.
 #pragma once
 #include "faults/fault.h"
+#include "parameters/list.h"
 
 namespace servodx {
 

@@ -1,7 +1,9 @@
 // Sticky spool: silt or lacquer multiplies the friction between spool and sleeve.
 #pragma once
 #include "effects/registry.h"
+#include "effects/stiction.h"
 #include "faults/fault.h"
+#include "parameters/list.h"
 
 namespace servodx {
 

@@ -1,6 +1,7 @@
 // Loss of torque gain: shorted turns or weakened magnets. The spool's static gain and its slew fall together.
 #pragma once
 #include "faults/fault.h"
+#include "parameters/list.h"
 
 namespace servodx {
 

@@ -6,7 +6,9 @@
 #include <cmath>
 #include <sstream>
 
+#include "fit/log_data.h"
 #include "fit/tuning_comments.h"
+#include "simulate/scenario.h"
 
 namespace servodx {
 namespace {

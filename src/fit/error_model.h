@@ -10,6 +10,9 @@
 #include <vector>
 
 #include "fit/problem.h"
+#include "optimise/problem.h"
+#include "parameters/table.h"
+#include "servodx/log.h"
 
 namespace servodx {
 

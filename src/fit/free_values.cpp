@@ -4,6 +4,14 @@
 #include <cmath>
 
 #include "base/error.h"
+#include "effects/effect.h"
+#include "effects/registry.h"
+#include "effects/viscosity_change.h"
+#include "fit/log_data.h"
+#include "parameters/list.h"
+#include "servodx/log.h"
+#include "servodx/rig.h"
+#include "simulate/scenario.h"
 
 namespace servodx {
 namespace {

@@ -5,8 +5,11 @@
 #include <string>
 #include <vector>
 
+#include "fit/log_data.h"
 #include "fit/problem.h"
 #include "parameters/table.h"
+#include "servodx/rig.h"
+#include "simulate/scenario.h"
 
 namespace servodx {
 

@@ -6,6 +6,10 @@
 #include <cmath>
 
 #include "base/error.h"
+#include "effects/registry.h"
+#include "model/state.h"
+#include "parameters/list.h"
+#include "servodx/rig.h"
 #include "signals/smoother.h"
 
 namespace servodx {

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "parameters/table.h"
+#include "servodx/rig.h"
 #include "signals/filters.h"
 #include "signals/log.h"
 #include "simulate/scenario.h"

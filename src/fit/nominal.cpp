@@ -7,6 +7,8 @@
 
 #include "base/csv.h"
 #include "base/key_error.h"
+#include "parameters/list.h"
+#include "servodx/rig.h"
 
 namespace servodx {
 namespace {

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "parameters/table.h"
+#include "servodx/rig.h"
 #include "signals/rig_file.h"
 
 namespace servodx {

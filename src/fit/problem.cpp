@@ -6,6 +6,9 @@
 #include <cmath>
 #include <numeric>
 
+#include "signals/filters.h"
+#include "simulate/scenario.h"
+
 namespace servodx {
 namespace {
 

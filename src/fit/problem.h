@@ -13,6 +13,8 @@
 #include "optimise/box_least_squares.h"
 #include "optimise/problem.h"
 #include "optimise/robust_loss.h"
+#include "signals/filters.h"
+#include "simulate/scenario.h"
 #include "simulate/simulate.h"
 
 namespace servodx {

@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "optimise/box_least_squares.h"
+#include "optimise/problem.h"
+
 namespace servodx {
 namespace {
 

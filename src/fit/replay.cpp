@@ -2,7 +2,12 @@
 
 #include <cmath>
 
+#include "fit/log_data.h"
+#include "fit/problem.h"
 #include "fit/tune.h"
+#include "parameters/table.h"
+#include "servodx/rig.h"
+#include "simulate/scenario.h"
 
 namespace servodx {
 namespace {

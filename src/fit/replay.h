@@ -8,7 +8,10 @@
 #include <vector>
 
 #include "fit/error_model.h"
+#include "parameters/table.h"
+#include "servodx/rig.h"
 #include "signals/log.h"
+#include "simulate/scenario.h"
 
 namespace servodx {
 

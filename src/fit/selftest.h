@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "parameters/table.h"
+#include "servodx/rig.h"
 #include "signals/log.h"
 #include "signals/rig_file.h"
 

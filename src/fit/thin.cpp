@@ -5,6 +5,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "servodx/log.h"
+#include "servodx/rig.h"
+#include "simulate/scenario.h"
+
 namespace servodx {
 namespace {
 

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "fit/identifiability.h"
+#include "optimise/problem.h"
 
 namespace servodx {
 namespace {

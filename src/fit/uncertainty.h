@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "fit/problem.h"
+#include "optimise/problem.h"
 
 namespace servodx {
 

@@ -9,11 +9,13 @@
 #include <utility>
 
 #include "base/smooth.h"
+#include "base/sparse_dual.h"
 #include "model/asperities.h"
 #include "model/constants.h"
 #include "model/derived.h"
 #include "model/hooks.h"
 #include "model/state.h"
+#include "parameters/list.h"
 
 namespace servodx {
 

@@ -2,6 +2,7 @@
 #pragma once
 #include <cmath>
 
+#include "model/asperities.h"
 #include "model/constants.h"
 #include "model/hooks.h"
 #include "model/state.h"

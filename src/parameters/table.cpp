@@ -1,3 +1,5 @@
+#include "parameters/table.h"
+
 #include <algorithm>
 #include <array>
 #include <charconv>
@@ -9,6 +11,7 @@
 #include "base/csv.h"
 #include "base/error.h"
 #include "base/sha256.h"
+#include "parameters/list.h"
 #include "parameters/table_text.h"
 
 namespace servodx {

@@ -7,11 +7,21 @@
 #include <utility>
 
 #include "base/pack.h"
+#include "base/smooth.h"
 #include "base/sparse_dual.h"
 #include "effects/registry.h"
 #include "effects/sampled_lag.h"
+#include "effects/supply_droop.h"
 #include "integrate/rodas3.h"
+#include "integrate/sparse_lu.h"
+#include "model/asperities.h"
+#include "model/constants.h"
 #include "model/derivative.h"
+#include "model/derived.h"
+#include "model/hooks.h"
+#include "model/state.h"
+#include "parameters/list.h"
+#include "servodx/rig.h"
 #include "simulate/scenario.h"
 
 namespace servodx {

@@ -1,3 +1,5 @@
+#include "base/pack.h"
+#include "effects/registry.h"
 #include "simulate/kernel.h"
 
 namespace servodx {

@@ -1,3 +1,6 @@
+#include "base/pack.h"
+#include "effects/registry.h"
+#include "simulate/kernel.h"
 #include "simulate/step_derivative.h"
 
 namespace servodx {

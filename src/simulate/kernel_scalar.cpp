@@ -1,3 +1,4 @@
+#include "effects/registry.h"
 #include "simulate/kernel.h"
 
 namespace servodx {

@@ -1,6 +1,17 @@
 #include "simulate/linearise.h"
 
+#include "base/pack.h"
+#include "base/sparse_dual.h"
+#include "effects/registry.h"
+#include "integrate/rodas3.h"
+#include "integrate/sparse_lu.h"
+#include "model/asperities.h"
+#include "model/constants.h"
+#include "model/hooks.h"
+#include "parameters/list.h"
+#include "servodx/rig.h"
 #include "simulate/kernel.h"
+#include "simulate/scenario.h"
 
 namespace servodx {
 namespace {

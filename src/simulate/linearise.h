@@ -10,6 +10,7 @@
 #include <Eigen/Core>
 #include <vector>
 
+#include "simulate/scenario.h"
 #include "simulate/simulate.h"
 
 namespace servodx {

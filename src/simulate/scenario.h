@@ -7,6 +7,8 @@
 
 #include "effects/registry.h"
 #include "model/state.h"
+#include "servodx/log.h"
+#include "servodx/rig.h"
 #include "signals/rig_file.h"
 #include "signals/signal.h"
 

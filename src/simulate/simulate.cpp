@@ -9,6 +9,10 @@
 #include <utility>
 
 #include "base/meeting.h"
+#include "effects/registry.h"
+#include "effects/unexplained.h"
+#include "servodx/log.h"
+#include "servodx/rig.h"
 #include "simulate/kernel.h"
 #include "simulate/together.h"
 

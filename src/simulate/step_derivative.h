@@ -18,7 +18,17 @@
 #include <span>
 #include <vector>
 
+#include "base/pack.h"
+#include "base/sparse_dual.h"
+#include "integrate/sparse_lu.h"
+#include "model/asperities.h"
+#include "model/constants.h"
+#include "model/derived.h"
+#include "model/hooks.h"
+#include "model/state.h"
+#include "parameters/list.h"
 #include "simulate/kernel.h"
+#include "simulate/scenario.h"
 #if defined(__SSE2__)
 #include <xmmintrin.h>
 #endif

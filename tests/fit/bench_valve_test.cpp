@@ -7,7 +7,12 @@
 #include <filesystem>
 #include <map>
 
+#include "fit/log_data.h"
 #include "fit/support.h"
+#include "parameters/table.h"
+#include "servodx/log.h"
+#include "servodx/rig.h"
+#include "simulate/scenario.h"
 
 namespace servodx {
 namespace {

@@ -2,7 +2,16 @@
 
 #include <gtest/gtest.h>
 
+#include "base/random.h"
+#include "fit/log_data.h"
+#include "fit/problem.h"
 #include "fit/support.h"
+#include "optimise/problem.h"
+#include "parameters/list.h"
+#include "parameters/table.h"
+#include "servodx/log.h"
+#include "shipped_data.h"
+#include "simulate/scenario.h"
 
 namespace servodx {
 namespace {

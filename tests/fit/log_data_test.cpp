@@ -6,6 +6,9 @@
 
 #include "base/random.h"
 #include "fit/support.h"
+#include "servodx/log.h"
+#include "shipped_data.h"
+#include "simulate/scenario.h"
 
 namespace servodx {
 namespace {

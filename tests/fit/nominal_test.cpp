@@ -7,6 +7,9 @@
 
 #include "base/error.h"
 #include "model/constants.h"
+#include "parameters/list.h"
+#include "parameters/table.h"
+#include "servodx/rig.h"
 
 namespace servodx {
 namespace {

@@ -5,12 +5,26 @@
 #include <cstdlib>
 #include <new>
 
+#include "base/random.h"
+#include "effects/orifice_length.h"
+#include "effects/registry.h"
+#include "effects/viscosity_change.h"
 #include "fit/error_model.h"
 #include "fit/free_values.h"
 #include "fit/identifiability.h"
+#include "fit/log_data.h"
 #include "fit/support.h"
 #include "optimise/box_least_squares.h"
 #include "optimise/genetic.h"
+#include "optimise/genetic_state.h"
+#include "optimise/problem.h"
+#include "optimise/robust_loss.h"
+#include "parameters/list.h"
+#include "parameters/table.h"
+#include "servodx/log.h"
+#include "servodx/rig.h"
+#include "shipped_data.h"
+#include "simulate/scenario.h"
 
 namespace {
 std::size_t bytes_asked_for = 0;

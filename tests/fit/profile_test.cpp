@@ -4,7 +4,14 @@
 #include <gtest/gtest.h>
 
 #include "fit/identifiability.h"
+#include "fit/log_data.h"
+#include "fit/problem.h"
 #include "fit/support.h"
+#include "optimise/box_least_squares.h"
+#include "parameters/list.h"
+#include "parameters/table.h"
+#include "shipped_data.h"
+#include "simulate/scenario.h"
 
 namespace servodx {
 namespace {

@@ -4,8 +4,11 @@
 #include <cmath>
 
 #include "base/random.h"
+#include "fit/log_data.h"
 #include "fit/problem.h"
+#include "parameters/table.h"
 #include "shipped_data.h"
+#include "simulate/scenario.h"
 
 namespace servodx {
 

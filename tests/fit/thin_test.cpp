@@ -5,7 +5,17 @@
 
 #include <cmath>
 
+#include "effects/flow_meter_lag.h"
+#include "effects/magnetic_hysteresis.h"
+#include "effects/port_line.h"
+#include "effects/registry.h"
+#include "fit/log_data.h"
 #include "fit/support.h"
+#include "parameters/list.h"
+#include "servodx/log.h"
+#include "servodx/rig.h"
+#include "shipped_data.h"
+#include "simulate/scenario.h"
 
 namespace servodx {
 namespace {

@@ -4,7 +4,23 @@
 #include <cmath>
 #include <numbers>
 
+#include "base/random.h"
+#include "base/smooth.h"
+#include "effects/mains_pickup.h"
+#include "effects/nozzle_mismatch.h"
+#include "effects/port_line.h"
+#include "effects/registry.h"
+#include "effects/rod_cavity.h"
+#include "effects/supply_droop.h"
 #include "laws/bench.h"
+#include "model/asperities.h"
+#include "model/constants.h"
+#include "model/derivative.h"
+#include "model/derived.h"
+#include "model/state.h"
+#include "parameters/list.h"
+#include "servodx/log.h"
+#include "simulate/scenario.h"
 
 namespace servodx {
 namespace {

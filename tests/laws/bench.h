@@ -4,8 +4,16 @@
 #include <vector>
 
 #include "base/random.h"
+#include "effects/registry.h"
+#include "fit/log_data.h"
+#include "integrate/rodas3.h"
+#include "model/derived.h"
+#include "model/state.h"
+#include "parameters/list.h"
+#include "servodx/log.h"
 #include "shipped_data.h"
 #include "simulate/kernel.h"
+#include "simulate/scenario.h"
 #include "simulate/simulate.h"
 
 namespace servodx {

@@ -4,7 +4,16 @@
 
 #include <cmath>
 
+#include "base/random.h"
+#include "effects/registry.h"
+#include "integrate/sparse_lu.h"
 #include "laws/bench.h"
+#include "model/constants.h"
+#include "model/derived.h"
+#include "model/state.h"
+#include "parameters/list.h"
+#include "simulate/kernel.h"
+#include "simulate/scenario.h"
 
 namespace servodx {
 namespace {

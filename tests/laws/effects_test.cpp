@@ -5,8 +5,35 @@
 #include <numbers>
 #include <tuple>
 
+#include "base/random.h"
+#include "effects/armature_angle.h"
+#include "effects/edge_transition.h"
+#include "effects/magnetic_hysteresis.h"
+#include "effects/mains_pickup.h"
+#include "effects/mount_compliance.h"
+#include "effects/nozzle_land.h"
+#include "effects/nozzle_mismatch.h"
+#include "effects/orifice_length.h"
+#include "effects/registry.h"
+#include "effects/sampled_lag.h"
+#include "effects/screen_drop.h"
+#include "effects/seal_film.h"
+#include "effects/seal_shear.h"
+#include "effects/sensor_response.h"
+#include "effects/supply_droop.h"
+#include "effects/transport_delay.h"
+#include "effects/unexplained.h"
+#include "effects/viscosity_change.h"
 #include "laws/bench.h"
+#include "model/asperities.h"
+#include "model/constants.h"
+#include "model/derivative.h"
+#include "model/derived.h"
+#include "model/state.h"
+#include "parameters/list.h"
+#include "servodx/log.h"
 #include "shipped_data.h"
+#include "simulate/scenario.h"
 
 namespace servodx {
 namespace {

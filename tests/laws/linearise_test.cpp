@@ -7,6 +7,9 @@
 #include <numbers>
 
 #include "laws/bench.h"
+#include "parameters/list.h"
+#include "servodx/log.h"
+#include "simulate/scenario.h"
 
 namespace servodx {
 namespace {

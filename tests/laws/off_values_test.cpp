@@ -7,9 +7,22 @@
 #include <cstdint>
 #include <cstring>
 
+#include "base/random.h"
+#include "effects/registry.h"
 #include "effects/row_effects.h"
+#include "effects/unexplained.h"
+#include "faults/fault.h"
 #include "faults/registry.h"
+#include "fit/log_data.h"
 #include "laws/bench.h"
+#include "model/hooks.h"
+#include "model/state.h"
+#include "parameters/list.h"
+#include "parameters/table.h"
+#include "shipped_data.h"
+#include "simulate/kernel.h"
+#include "simulate/scenario.h"
+#include "simulate/simulate.h"
 #include "simulate/together.h"
 
 namespace servodx {

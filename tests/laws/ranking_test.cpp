@@ -6,7 +6,12 @@
 #include <numeric>
 
 #include "base/random.h"
+#include "effects/registry.h"
+#include "fit/log_data.h"
+#include "parameters/list.h"
+#include "parameters/table.h"
 #include "shipped_data.h"
+#include "simulate/scenario.h"
 #include "simulate/simulate.h"
 
 namespace servodx {

@@ -7,7 +7,15 @@
 #include <filesystem>
 #include <map>
 
+#include "fit/log_data.h"
+#include "fit/nominal.h"
 #include "laws/bench.h"
+#include "parameters/table.h"
+#include "servodx/log.h"
+#include "servodx/rig.h"
+#include "shipped_data.h"
+#include "simulate/scenario.h"
+#include "simulate/simulate.h"
 
 namespace servodx {
 namespace {

@@ -1,7 +1,17 @@
 // The third chamber of the actuator: what it adds and what it must not change.
+#include "effects/rod_cavity.h"
+
 #include <gtest/gtest.h>
 
+#include "base/random.h"
+#include "base/smooth.h"
+#include "effects/registry.h"
 #include "laws/bench.h"
+#include "model/derivative.h"
+#include "model/state.h"
+#include "parameters/list.h"
+#include "servodx/log.h"
+#include "simulate/scenario.h"
 
 namespace servodx {
 namespace {

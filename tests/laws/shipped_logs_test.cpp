@@ -5,8 +5,18 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/random.h"
+#include "effects/registry.h"
+#include "effects/unexplained.h"
+#include "faults/fault.h"
 #include "faults/registry.h"
+#include "fit/log_data.h"
 #include "laws/bench.h"
+#include "parameters/list.h"
+#include "parameters/table.h"
+#include "shipped_data.h"
+#include "simulate/scenario.h"
+#include "simulate/simulate.h"
 
 namespace servodx {
 namespace {

@@ -8,7 +8,20 @@
 #include <cmath>
 #include <set>
 
+#include "base/random.h"
+#include "effects/registry.h"
+#include "effects/transport_delay.h"
+#include "effects/unexplained.h"
 #include "laws/bench.h"
+#include "model/asperities.h"
+#include "model/constants.h"
+#include "model/derived.h"
+#include "model/state.h"
+#include "parameters/list.h"
+#include "servodx/rig.h"
+#include "simulate/kernel.h"
+#include "simulate/scenario.h"
+#include "simulate/simulate.h"
 #include "simulate/together.h"
 
 namespace servodx {

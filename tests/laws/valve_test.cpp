@@ -3,8 +3,19 @@
 
 #include <cmath>
 
+#include "base/random.h"
 #include "faults/registry.h"
+#include "fit/log_data.h"
 #include "laws/bench.h"
+#include "model/constants.h"
+#include "model/derivative.h"
+#include "model/derived.h"
+#include "parameters/list.h"
+#include "parameters/table.h"
+#include "servodx/log.h"
+#include "shipped_data.h"
+#include "simulate/scenario.h"
+#include "simulate/simulate.h"
 
 namespace servodx {
 namespace {
