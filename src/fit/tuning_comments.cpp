@@ -4,6 +4,7 @@
 #include <cctype>
 #include <string_view>
 
+#include "servodx/log.h"
 #include "signals/signal.h"
 
 namespace servodx {

@@ -5,7 +5,17 @@
 #include <numeric>
 
 #include "effects/registry.h"
+#include "effects/sampled_lag.h"
+#include "effects/sensor_response.h"
+#include "effects/supply_droop.h"
+#include "effects/unexplained.h"
+#include "model/asperities.h"
+#include "model/constants.h"
 #include "model/derivative.h"
+#include "model/derived.h"
+#include "model/state.h"
+#include "parameters/list.h"
+#include "servodx/rig.h"
 #include "signals/smoother.h"
 
 namespace servodx {

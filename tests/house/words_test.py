@@ -20,6 +20,7 @@ READERS = {
     "apps/servodx/trend_command.cpp": "--check",
     "apps/servodx/tune_command.cpp": "--local, --effects",
     "src/base/csv.cpp": "marks of the encoding",
+    "src/fit/tuning_comments.cpp": "reads what a tune wrote into a table",
     "src/optimise/genetic_state.cpp": "reads a checkpoint",
     "src/parameters/table.cpp": "reads a table",
     "src/prognose/history_csv.cpp": "reads a history",
