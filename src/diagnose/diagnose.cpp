@@ -10,6 +10,7 @@
 #include "diagnose/hypotheses.h"
 #include "diagnose/onset.h"
 #include "evidence/probabilities.h"
+#include "fit/chart.h"
 #include "fit/nominal.h"
 
 namespace servodx {
@@ -52,8 +53,8 @@ std::vector<ChannelResult> channels_of(const Log& log, const LogData& data, cons
   return out;
 }
 
-ParameterVector candidate_at(const LogData& data, const ParameterVector& base, const HypothesisFit& f) {
-  return FitProblem({&data}, base, f.free).candidate(f.point, 0);
+ParameterVector candidate_at(const ParameterVector& base, const HypothesisFit& f) {
+  return Chart(base, f.free).candidate(f.point, 0);
 }
 
 // Of a log with an onset, health speaks of the part before and the faults of the part after.
@@ -61,7 +62,7 @@ std::vector<HypothesisPrediction> explanations_of(const LogData& data, const Par
                                                   const HypothesisFits& fits, const std::optional<Onset>& onset) {
   std::vector<HypothesisPrediction> out;
   const auto add = [&](const HypothesisFit& f, std::size_t from) {
-    if (f.ok) out.push_back({f.fault, candidate_at(data, base, f), from});
+    if (f.ok) out.push_back({f.fault, candidate_at(base, f), from});
   };
   if (onset) add(onset->healthy_before, 0);
   for (const HypothesisFit& f : fits.fits)
@@ -94,7 +95,7 @@ std::vector<HypothesisResult> results_of(const HypothesisFits& fits, const LogDa
     r.at_least = f.at_least;
     r.adequacy = f.channel_adequacy.empty() ? failed_adequacy
                                             : *std::max_element(f.channel_adequacy.begin(), f.channel_adequacy.end());
-    if (f.ok) r.null = candidate_at(data, base, f)[row::servovalve_null];
+    if (f.ok) r.null = candidate_at(base, f)[row::servovalve_null];
     r.moved = moved_rows(f, data, base, tuned);
     r.stops = f.stops;
     out.push_back(std::move(r));

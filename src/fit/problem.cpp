@@ -37,7 +37,7 @@ std::vector<double>& residual_space() {
 
 FitProblem::FitProblem(std::vector<const LogData*> logs, ParameterVector base, std::vector<FreeValue> free,
                        SimulateOptions options)
-    : logs_(std::move(logs)), base_(std::move(base)), free_(std::move(free)), options_(std::move(options)) {
+    : logs_(std::move(logs)), chart_(std::move(base), std::move(free)), options_(std::move(options)) {
   options_.wanted.fill(false);
   long at = 0;
   for (const LogData* log : logs_) {
@@ -54,28 +54,8 @@ FitProblem::FitProblem(std::vector<const LogData*> logs, ParameterVector base, s
     }
   }
   data_rows_ = at;
-  for (const FreeValue& f : free_) at += std::isfinite(f.prior_sd);
+  for (const FreeValue& f : chart_.free()) at += std::isfinite(f.prior_sd);
   total_rows_ = at;
-}
-
-Point FitProblem::start() const {
-  Point x;
-  for (const FreeValue& f : free_) x.push_back(f.to_unit(f.start));
-  return x;
-}
-
-ParameterVector FitProblem::candidate(const Point& x, int log) const {
-  ParameterVector v;
-  candidate(x, log, v);
-  return v;
-}
-
-void FitProblem::candidate(const Point& x, int log, ParameterVector& v) const {
-  v = base_;
-  for (std::size_t j = 0; j < free_.size(); ++j)
-    if ((free_[j].log < 0 || free_[j].log == log) && !free_[j].apply) v[free_[j].at] = free_[j].from_unit(x[j]);
-  for (std::size_t j = 0; j < free_.size(); ++j)
-    if ((free_[j].log < 0 || free_[j].log == log) && free_[j].apply) free_[j].apply(v.data(), free_[j].from_unit(x[j]));
 }
 
 void FitProblem::set_sigma(int log, int channel, double sigma) {
@@ -118,7 +98,7 @@ void FitProblem::fill(int log, const Trajectory& t, Eigen::Ref<Eigen::VectorXd> 
 }
 
 double FitProblem::prior_residual(std::size_t j, double x) const {
-  return (x - free_[j].to_unit(free_[j].start)) / free_[j].prior_sd;
+  return (x - free()[j].to_unit(free()[j].start)) / free()[j].prior_sd;
 }
 
 int FitProblem::threads() const { return options_.threads > 0 ? options_.threads : omp_get_max_threads(); }
@@ -128,7 +108,7 @@ std::vector<Trajectory> FitProblem::trajectories(const Point& x) const {
   std::vector<ParameterVector> v(logs_.size());
   std::vector<Job> jobs;
   for (std::size_t l = 0; l < logs_.size(); ++l) {
-    v[l] = candidate(x, static_cast<int>(l));
+    v[l] = chart_.candidate(x, static_cast<int>(l));
     jobs.push_back({&logs_[l]->scenario, &v[l], &t[l]});
   }
   simulate(jobs, options_);
@@ -145,7 +125,7 @@ std::span<const Trajectory> FitProblem::run(std::span<const Point> points, std::
   for (std::size_t l = first; l < last; ++l)
     for (const std::size_t k : which) {
       const std::size_t i = w.jobs.size();
-      candidate(points[k], static_cast<int>(l), w.candidates[i]);
+      chart_.candidate(points[k], static_cast<int>(l), w.candidates[i]);
       w.jobs.push_back({&logs_[l]->scenario, &w.candidates[i], &w.runs[i]});
     }
   SimulateOptions options = options_;
@@ -171,8 +151,8 @@ std::vector<Evaluation> FitProblem::evaluate(std::span<const Point> points) cons
     for (std::size_t l = 0; l < logs_.size(); ++l)
       fill(static_cast<int>(l), runs[l * points.size() + k], out[k].residual);
     long at = data_rows_;
-    for (std::size_t j = 0; j < free_.size(); ++j)
-      if (std::isfinite(free_[j].prior_sd)) out[k].residual[at++] = prior_residual(j, points[k][j]);
+    for (std::size_t j = 0; j < free().size(); ++j)
+      if (std::isfinite(free()[j].prior_sd)) out[k].residual[at++] = prior_residual(j, points[k][j]);
   }
   for (const Evaluation& e : out) failed_ += !e.ok;
   return out;
@@ -217,8 +197,8 @@ std::vector<double> FitProblem::costs(std::span<const Point> points, RobustLoss 
     });
   }
   for (std::size_t k = 0; k < points.size(); ++k) {
-    for (std::size_t j = 0; j < free_.size(); ++j)
-      if (std::isfinite(free_[j].prior_sd)) out[k] += robust_square(loss, scale, prior_residual(j, points[k][j]));
+    for (std::size_t j = 0; j < free().size(); ++j)
+      if (std::isfinite(free()[j].prior_sd)) out[k] += robust_square(loss, scale, prior_residual(j, points[k][j]));
     out[k] *= 0.5;
   }
   return out;
@@ -232,12 +212,12 @@ bool FitProblem::jacobian(const Point& x, const Eigen::VectorXd& residual, Eigen
   };
   std::vector<Column> columns;
   for (std::size_t l = 0; l < logs_.size(); ++l)
-    for (std::size_t j = 0; j < free_.size(); ++j)
-      if (free_[j].log < 0 || free_[j].log == static_cast<int>(l))
+    for (std::size_t j = 0; j < free().size(); ++j)
+      if (free()[j].log < 0 || free()[j].log == static_cast<int>(l))
         columns.push_back({static_cast<int>(j), static_cast<int>(l), x[j] + step <= 1.0 ? step : -step});
   jac.resize(total_rows_, n());
-  for (std::size_t j = 0; j < free_.size(); ++j)  // what a log's own value does not touch
-    if (free_[j].log >= 0) jac.col(static_cast<long>(j)).head(data_rows_).setZero();
+  for (std::size_t j = 0; j < free().size(); ++j)  // what a log's own value does not touch
+    if (free()[j].log >= 0) jac.col(static_cast<long>(j)).head(data_rows_).setZero();
   jac.bottomRows(total_rows_ - data_rows_).setZero();
   // Some logs at a time: what keeps the threads busy, and not all logs' trajectories in memory.
   std::size_t first = 0;
@@ -252,7 +232,7 @@ bool FitProblem::jacobian(const Point& x, const Eigen::VectorXd& residual, Eigen
     w.hold(last - first);
     for (std::size_t c = first; c < last; ++c) {
       moved[columns[c].j] = x[columns[c].j] + columns[c].dx;
-      candidate(moved, columns[c].log, w.candidates[c - first]);
+      chart_.candidate(moved, columns[c].log, w.candidates[c - first]);
       moved[columns[c].j] = x[columns[c].j];
       w.jobs.push_back({&logs_[columns[c].log]->scenario, &w.candidates[c - first], &w.runs[c - first]});
     }
@@ -263,7 +243,7 @@ bool FitProblem::jacobian(const Point& x, const Eigen::VectorXd& residual, Eigen
       const std::size_t from = c;
       const int l = columns[c].log;
       while (c < last && columns[c].log == l) ++c;
-      candidate(x, l, bases[l]);
+      chart_.candidate(x, l, bases[l]);
       near.push_back({&bases[l], std::span(w.jobs).subspan(from - first, c - from), &followed[l]});
     }
     simulations_ += simulate_near(near, options_);
@@ -291,8 +271,8 @@ bool FitProblem::jacobian(const Point& x, const Eigen::VectorXd& residual, Eigen
     first = last;
   }
   long at = data_rows_;
-  for (std::size_t j = 0; j < free_.size(); ++j)
-    if (std::isfinite(free_[j].prior_sd)) jac(at++, static_cast<long>(j)) = 1.0 / free_[j].prior_sd;
+  for (std::size_t j = 0; j < free().size(); ++j)
+    if (std::isfinite(free()[j].prior_sd)) jac(at++, static_cast<long>(j)) = 1.0 / free()[j].prior_sd;
   return true;
 }
 

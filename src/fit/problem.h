@@ -3,37 +3,21 @@
 // residual = filtered (measured - simulated) / sigma, channel by channel, then the priors. All lanes of all logs are
 // filled in one batch; a nuisance's column costs only its own log's simulation.
 #pragma once
-#include <functional>
-#include <limits>
 #include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "fit/chart.h"
 #include "fit/log_data.h"
 #include "optimise/box_least_squares.h"
 #include "optimise/problem.h"
 #include "optimise/robust_loss.h"
-#include "parameters/coordinate.h"
 #include "signals/filters.h"
 #include "simulate/scenario.h"
 #include "simulate/simulate.h"
 
 namespace servodx {
-
-// A free number: which entry of a candidate, and how the unit interval maps onto it.
-struct FreeValue : Coordinate {
-  int at = 0;    // position in a candidate
-  int log = -1;  // index of the log it belongs to, or -1: shared by all
-  std::function<void(double* candidate, double value)> apply = {};  // moves several entries at once, in place of `at`
-
-  FreeValue() = default;
-  FreeValue(Coordinate number, int position, int of_log = -1)
-      : Coordinate(std::move(number)), at(position), log(of_log) {}
-  FreeValue(std::string name_of_it, int position, double least, double most, bool in_log, double starts,
-            double sd = std::numeric_limits<double>::infinity(), int of_log = -1)
-      : FreeValue({std::move(name_of_it), "", least, most, in_log, starts, sd}, position, of_log) {}
-};
 
 class FitProblem {
  public:
@@ -42,12 +26,13 @@ class FitProblem {
   FitProblem(std::vector<const LogData*> logs, ParameterVector base, std::vector<FreeValue> free,
              SimulateOptions options = {});
 
-  int n() const { return static_cast<int>(free_.size()); }
-  const std::vector<FreeValue>& free() const { return free_; }
+  int n() const { return chart_.n(); }
+  const Chart& chart() const { return chart_; }
+  const std::vector<FreeValue>& free() const { return chart_.free(); }
   const std::vector<const LogData*>& logs() const { return logs_; }
-  Point start() const;
+  Point start() const { return chart_.start(); }
   // The candidate of a log at a point.
-  ParameterVector candidate(const Point& x, int log) const;
+  ParameterVector candidate(const Point& x, int log) const { return chart_.candidate(x, log); }
 
   // Step of the Jacobian, of the unit interval. Wider where contacts and friction roughen the response; where columns
   // are so many that they follow the run (simulate_near), it moves only what is around the steps.
@@ -80,7 +65,6 @@ class FitProblem {
   long failed_simulations() const { return failed_; }
 
  private:
-  void candidate(const Point& x, int log, ParameterVector& v) const;
   std::span<const Trajectory> run(std::span<const Point> points, std::span<const std::size_t> which, std::size_t first,
                                   std::size_t last, bool ranking) const;
   // Of one run, of a channel: raw, and whitened.
@@ -90,8 +74,7 @@ class FitProblem {
   void fill(int log, const Trajectory& t, Eigen::Ref<Eigen::VectorXd> out) const;
   int threads() const;
   std::vector<const LogData*> logs_;
-  ParameterVector base_;
-  std::vector<FreeValue> free_;
+  Chart chart_;
   SimulateOptions options_;
   std::vector<std::vector<std::vector<double>>> sigma_;
   std::vector<std::vector<long>> offset_;

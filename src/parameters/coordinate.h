@@ -9,7 +9,7 @@
 namespace servodx {
 
 struct Coordinate {
-  std::string name, unit;
+  std::string name = {}, unit = {};
   double lower = 0, upper = 1;                                // [unit]
   bool log_scale = false;                                     // needs lower > 0
   double start = 0;                                           // [unit]
@@ -25,7 +25,7 @@ struct Coordinate {
 
 // Whether a fit left a number free: nearer than this to an end of its interval, the bound holds it, and curvature says
 // nothing of how well it is known.
-inline constexpr double wall = 1e-6;  // [of the unit interval] chosen by hand; not examined
-constexpr bool off_walls(double u) { return u > wall && u < 1 - wall; }
+inline constexpr double wall_width = 1e-6;  // [of the unit interval] chosen by hand; not examined
+constexpr bool off_walls(double u) { return u > wall_width && u < 1 - wall_width; }
 
 }  // namespace servodx
