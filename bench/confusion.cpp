@@ -31,6 +31,7 @@
 #include "servodx/rig.h"
 #include "signals/log.h"
 #include "simulate/scenario.h"
+#include "fit/tuned_state.h"
 
 using namespace servodx;
 namespace fs = std::filesystem;

@@ -15,6 +15,7 @@
 #include "signals/filters.h"
 #include "simulate/scenario.h"
 #include "simulate/simulate.h"
+#include "fit/chart.h"
 
 namespace servodx::bench {
 namespace {

@@ -24,6 +24,7 @@
 #include "servodx/rig.h"
 #include "simulate/scenario.h"
 #include "simulate/simulate.h"
+#include "fit/chart.h"
 
 namespace servodx::bench {
 namespace {

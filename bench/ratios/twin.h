@@ -16,6 +16,7 @@
 #include "ratios/rows.h"
 #include "ratios/trace.h"
 #include "simulate/scenario.h"
+#include "fit/chart.h"
 
 namespace servodx::bench {
 

@@ -3,6 +3,7 @@
 #pragma once
 #include "faults/fault.h"
 #include "parameters/list.h"
+#include "faults/gross_finding.h"
 
 namespace servodx {
 

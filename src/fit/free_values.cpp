@@ -12,6 +12,7 @@
 #include "servodx/log.h"
 #include "servodx/rig.h"
 #include "simulate/scenario.h"
+#include "fit/chart.h"
 
 namespace servodx {
 namespace {

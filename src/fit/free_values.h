@@ -10,6 +10,7 @@
 #include "parameters/table.h"
 #include "servodx/rig.h"
 #include "simulate/scenario.h"
+#include "fit/chart.h"
 
 namespace servodx {
 

@@ -18,6 +18,8 @@
 #include "optimise/problem.h"
 #include "servodx/rig.h"
 #include "simulate/scenario.h"
+#include "fit/chart.h"
+#include "parameters/coordinate.h"
 
 namespace servodx {
 namespace {

@@ -25,6 +25,8 @@
 #include "servodx/rig.h"
 #include "shipped_data.h"
 #include "simulate/scenario.h"
+#include "fit/chart.h"
+#include "parameters/coordinate.h"
 
 namespace {
 std::size_t bytes_asked_for = 0;

@@ -12,6 +12,7 @@
 #include "parameters/table.h"
 #include "shipped_data.h"
 #include "simulate/scenario.h"
+#include "fit/chart.h"
 
 namespace servodx {
 namespace {

@@ -12,6 +12,8 @@
 #include "servodx/log.h"
 #include "servodx/rig.h"
 #include "temporary_folder.h"
+#include "explain/cause_score.h"
+#include "explain/fit_causes.h"
 
 namespace servodx::hidden {
 namespace {

@@ -20,6 +20,7 @@
 #include "shipped_data.h"
 #include "simulate/scenario.h"
 #include "simulate/simulate.h"
+#include "fit/chart.h"
 
 namespace servodx::twins {
 
