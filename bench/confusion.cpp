@@ -26,12 +26,12 @@
 #include "fit/problem.h"
 #include "fit/replay.h"
 #include "fit/tune.h"
+#include "fit/tuned_state.h"
 #include "parameters/table.h"
 #include "report/diagnosis_words.h"
 #include "servodx/rig.h"
 #include "signals/log.h"
 #include "simulate/scenario.h"
-#include "fit/tuned_state.h"
 
 using namespace servodx;
 namespace fs = std::filesystem;

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include "base/random.h"
+#include "fit/chart.h"
 #include "fit/free_values.h"
 #include "fit/log_data.h"
 #include "fit/problem.h"
@@ -15,7 +16,6 @@
 #include "signals/filters.h"
 #include "simulate/scenario.h"
 #include "simulate/simulate.h"
-#include "fit/chart.h"
 
 namespace servodx::bench {
 namespace {

@@ -9,6 +9,7 @@
 #include "base/atomic_file.h"
 #include "diagnose/hypotheses.h"
 #include "faults/registry.h"
+#include "fit/chart.h"
 #include "fit/error_model.h"
 #include "fit/free_values.h"
 #include "fit/log_data.h"
@@ -24,7 +25,6 @@
 #include "servodx/rig.h"
 #include "simulate/scenario.h"
 #include "simulate/simulate.h"
-#include "fit/chart.h"
 
 namespace servodx::bench {
 namespace {

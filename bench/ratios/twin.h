@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "base/random.h"
+#include "fit/chart.h"
 #include "fit/log_data.h"
 #include "fit/problem.h"
 #include "optimise/problem.h"
@@ -16,7 +17,6 @@
 #include "ratios/rows.h"
 #include "ratios/trace.h"
 #include "simulate/scenario.h"
-#include "fit/chart.h"
 
 namespace servodx::bench {
 

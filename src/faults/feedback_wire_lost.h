@@ -2,8 +2,8 @@
 // the spool runs to its stop.
 #pragma once
 #include "faults/fault.h"
-#include "parameters/list.h"
 #include "faults/gross_finding.h"
+#include "parameters/list.h"
 
 namespace servodx {
 

@@ -7,12 +7,12 @@
 #include "effects/effect.h"
 #include "effects/registry.h"
 #include "effects/viscosity_change.h"
+#include "fit/chart.h"
 #include "fit/log_data.h"
 #include "parameters/list.h"
 #include "servodx/log.h"
 #include "servodx/rig.h"
 #include "simulate/scenario.h"
-#include "fit/chart.h"
 
 namespace servodx {
 namespace {

@@ -5,12 +5,12 @@
 #include <string>
 #include <vector>
 
+#include "fit/chart.h"
 #include "fit/log_data.h"
 #include "fit/problem.h"
 #include "parameters/table.h"
 #include "servodx/rig.h"
 #include "simulate/scenario.h"
-#include "fit/chart.h"
 
 namespace servodx {
 

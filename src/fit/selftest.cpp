@@ -7,6 +7,7 @@
 #include "base/error.h"
 #include "base/progress.h"
 #include "base/random.h"
+#include "fit/chart.h"
 #include "fit/free_values.h"
 #include "fit/identifiability.h"
 #include "fit/log_data.h"
@@ -16,10 +17,9 @@
 #include "fit/uncertainty.h"
 #include "optimise/box_least_squares.h"
 #include "optimise/problem.h"
+#include "parameters/coordinate.h"
 #include "servodx/rig.h"
 #include "simulate/scenario.h"
-#include "fit/chart.h"
-#include "parameters/coordinate.h"
 
 namespace servodx {
 namespace {

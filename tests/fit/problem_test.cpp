@@ -9,6 +9,7 @@
 #include "effects/orifice_length.h"
 #include "effects/registry.h"
 #include "effects/viscosity_change.h"
+#include "fit/chart.h"
 #include "fit/error_model.h"
 #include "fit/free_values.h"
 #include "fit/identifiability.h"
@@ -19,14 +20,13 @@
 #include "optimise/genetic_state.h"
 #include "optimise/problem.h"
 #include "optimise/robust_loss.h"
+#include "parameters/coordinate.h"
 #include "parameters/list.h"
 #include "parameters/table.h"
 #include "servodx/log.h"
 #include "servodx/rig.h"
 #include "shipped_data.h"
 #include "simulate/scenario.h"
-#include "fit/chart.h"
-#include "parameters/coordinate.h"
 
 namespace {
 std::size_t bytes_asked_for = 0;

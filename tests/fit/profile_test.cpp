@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "fit/chart.h"
 #include "fit/identifiability.h"
 #include "fit/log_data.h"
 #include "fit/problem.h"
@@ -12,7 +13,6 @@
 #include "parameters/table.h"
 #include "shipped_data.h"
 #include "simulate/scenario.h"
-#include "fit/chart.h"
 
 namespace servodx {
 namespace {

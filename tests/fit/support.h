@@ -4,12 +4,12 @@
 #include <cmath>
 
 #include "base/random.h"
+#include "fit/chart.h"
 #include "fit/log_data.h"
 #include "fit/problem.h"
 #include "parameters/table.h"
 #include "shipped_data.h"
 #include "simulate/scenario.h"
-#include "fit/chart.h"
 
 namespace servodx {
 

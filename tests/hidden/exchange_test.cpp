@@ -1,8 +1,10 @@
 // Healthy logs and a suspect are weighed alike, or the one's scatter says nothing of the other's.
 #include <gtest/gtest.h>
 
+#include "explain/cause_score.h"
 #include "explain/curves.h"
 #include "explain/engine.h"
+#include "explain/fit_causes.h"
 #include "explain/healthy.h"
 #include "explain/replay.h"
 #include "explain/score.h"
@@ -12,8 +14,6 @@
 #include "servodx/log.h"
 #include "servodx/rig.h"
 #include "temporary_folder.h"
-#include "explain/cause_score.h"
-#include "explain/fit_causes.h"
 
 namespace servodx::hidden {
 namespace {

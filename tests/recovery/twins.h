@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "base/random.h"
+#include "fit/chart.h"
 #include "fit/free_values.h"
 #include "fit/log_data.h"
 #include "fit/problem.h"
@@ -20,7 +21,6 @@
 #include "shipped_data.h"
 #include "simulate/scenario.h"
 #include "simulate/simulate.h"
-#include "fit/chart.h"
 
 namespace servodx::twins {
 
