@@ -25,7 +25,7 @@
 #include "fit/log_data.h"
 #include "fit/problem.h"
 #include "fit/replay.h"
-#include "fit/tune.h"
+#include "tune/tune.h"
 #include "fit/tuned_state.h"
 #include "parameters/table.h"
 #include "report/diagnosis_words.h"

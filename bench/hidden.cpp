@@ -15,7 +15,7 @@
 #include "explain/explain.h"
 #include "explain/healthy.h"
 #include "explain/outcome.h"
-#include "fit/tune.h"
+#include "tune/tune.h"
 #include "hidden/cases.h"
 #include "parameters/table.h"
 #include "report/explain_report.h"

@@ -13,7 +13,8 @@
 #include <cstdlib>
 #include <map>
 
-#include "fit/tune.h"
+#include "fit/identifiability.h"
+#include "tune/tune.h"
 
 using namespace servodx;
 
@@ -36,7 +37,7 @@ int main(int argc, char** argv) {
       simulations += result.simulations;
       for (const twins::Outcome& o : twins::outcomes(twin, result)) {
         for (Count* c : {&counts[o.name], &all}) {
-          const bool stated = twins::identifiable(o), at_bound = o.verdict == "at_bound";
+          const bool stated = twins::identifiable(o), at_bound = o.verdict == RowVerdict::at_bound;
           c->stated += stated;
           c->inside += stated && std::abs(o.z) <= 1.96;
           c->at_bound += at_bound;

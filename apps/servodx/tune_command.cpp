@@ -12,7 +12,7 @@
 #include "effects/registry.h"
 #include "fit/free_values.h"
 #include "fit/log_data.h"
-#include "fit/tune.h"
+#include "tune/tune.h"
 #include "invocation.h"
 #include "report/columns.h"
 #include "report/pages.h"

@@ -9,7 +9,7 @@
 #include "base/atomic_file.h"
 #include "base/csv.h"
 #include "base/random.h"
-#include "fit/tune.h"
+#include "tune/tune.h"
 #include "parameters/list.h"
 #include "parameters/table.h"
 #include "prognose/check.h"

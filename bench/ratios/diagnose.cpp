@@ -7,7 +7,7 @@
 #include <filesystem>
 
 #include "diagnose/assessment.h"
-#include "fit/tune.h"
+#include "tune/tune.h"
 #include "parameters/table.h"
 #include "ratios/measure.h"
 #include "ratios/rows.h"

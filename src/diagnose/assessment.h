@@ -8,7 +8,7 @@
 #include "diagnose/conditions.h"
 #include "diagnose/moved.h"
 #include "faults/fault.h"
-#include "fit/tune.h"
+#include "tune/tune.h"
 
 namespace servodx {
 

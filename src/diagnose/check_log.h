@@ -11,6 +11,7 @@
 
 #include "fit/identifiability.h"
 #include "parameters/table.h"
+#include "servodx/rig.h"
 #include "signals/log.h"
 #include "signals/rig_file.h"
 
@@ -54,8 +55,8 @@ void compare_surveys(std::vector<LogSurvey>& surveys);
 
 struct Identifiable {
   std::string name, unit;
-  std::string verdict;                // bounded | flat | confounded
-  double nominal = 0, std_error = 0;  // [unit]; NaN where held
+  RowVerdict verdict = RowVerdict::bounded;  // or flat, confounded
+  double nominal = 0, std_error = 0;         // [unit]; NaN where held
   std::vector<std::string> confounded_with;
 };
 

@@ -4,6 +4,13 @@
 #include <cmath>
 
 #include "diagnose/constants.h"
+#include "effects/registry.h"
+#include "fit/identifiability.h"
+#include "fit/log_data.h"
+#include "fit/problem.h"
+#include "optimise/problem.h"
+#include "parameters/list.h"
+#include "simulate/scenario.h"
 
 namespace servodx {
 namespace {
@@ -66,7 +73,7 @@ std::vector<MovedRow> moved_rows(const HypothesisFit& fit, const LogData& log, c
     m.id = row->id, m.name = row->name, m.unit = row->unit;
     m.nominal = base[i], m.estimate = best[i];
     m.std_error = on_bound[i] ? std::nan("") : std::sqrt(variance[i]);
-    m.verdict = on_bound[i] ? "at_bound" : "bounded";
+    m.verdict = on_bound[i] ? RowVerdict::at_bound : RowVerdict::bounded;
     m.by = by[i];
     rows.push_back(std::move(m));
   }

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "diagnose/hypotheses.h"
-#include "fit/tune.h"
+#include "tune/tune.h"
 #include "parameters/table.h"
 
 namespace servodx {

@@ -3,11 +3,22 @@
 
 #include "base/error.h"
 #include "diagnose/check_log.h"
+#include "faults/fault.h"
 #include "faults/registry.h"
+#include "fit/chart.h"
 #include "fit/error_model.h"
 #include "fit/free_values.h"
+#include "fit/identifiability.h"
+#include "fit/log_data.h"
 #include "fit/nominal.h"
-#include "fit/tune.h"
+#include "fit/problem.h"
+#include "fit/tuned_state.h"
+#include "optimise/problem.h"
+#include "parameters/table.h"
+#include "servodx/log.h"
+#include "servodx/rig.h"
+#include "simulate/scenario.h"
+#include "tune/tune.h"
 
 namespace servodx {
 namespace {
@@ -36,7 +47,7 @@ std::vector<Identifiable> identifiable_rows(const FitProblem& problem, const Tab
   for (const FreeValue& f : problem.free()) candidates.push_back(f.log < 0);
   const Identifiability id = identify(jacobian, candidates);
   std::vector<char> kept;
-  for (const std::string& verdict : id.verdict) kept.push_back(verdict == "free");
+  for (const RowVerdict verdict : id.verdict) kept.push_back(verdict == RowVerdict::bounded);
   const Eigen::MatrixXd covariance = covariance_of(jacobian, kept);
   std::vector<Identifiable> rows;
   for (std::size_t j = 0; j < kept.size(); ++j) {
@@ -44,7 +55,7 @@ std::vector<Identifiable> identifiable_rows(const FitProblem& problem, const Tab
     const int at = table.find(f.name);
     if (!candidates[j] || at < 0) continue;
     const double value = f.from_unit(x[j]);
-    Identifiable row{f.name, table[at].unit, kept[j] ? "bounded" : id.verdict[j], value, std::nan(""), {}};
+    Identifiable row{f.name, table[at].unit, kept[j] ? RowVerdict::bounded : id.verdict[j], value, std::nan(""), {}};
     const auto k = static_cast<long>(j);
     const double per_unit = f.slope(value);
     if (kept[j]) row.std_error = std::sqrt(std::max(0.0, covariance(k, k))) * per_unit;

@@ -13,7 +13,7 @@
 #include "explain/ties.h"
 #include "fit/free_values.h"
 #include "fit/thin.h"
-#include "fit/tune.h"
+#include "fit/tuned_state.h"
 
 namespace servodx {
 namespace {

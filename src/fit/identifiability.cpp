@@ -10,7 +10,7 @@ Identifiability identify(const Eigen::MatrixXd& jacobian, const std::vector<char
                          double collinearity_limit, double flat_limit, double enough) {
   const long n = jacobian.cols();
   Identifiability out;
-  out.verdict.assign(n, "free");
+  out.verdict.assign(n, RowVerdict::bounded);
   out.confounded_with.resize(n);
   out.norm.resize(n);
   // All that is needed is in the Gram matrix: n by n however long the logs.
@@ -26,7 +26,7 @@ Identifiability identify(const Eigen::MatrixXd& jacobian, const std::vector<char
   std::vector<long> kept;
   for (long j : order) {
     if (out.norm[j] < flat_limit) {
-      if (candidates[j]) out.verdict[j] = "flat";
+      if (candidates[j]) out.verdict[j] = RowVerdict::flat;
       if (out.norm[j] < 1e-12) continue;  // never kept: the Gram matrix of the kept ones must stay regular
     }
     double rest2 = gram(j, j);
@@ -43,15 +43,16 @@ Identifiability identify(const Eigen::MatrixXd& jacobian, const std::vector<char
       rest2 -= b.dot(weights);
     }
     const double rest = std::sqrt(std::max(0.0, rest2));
-    if (candidates[j] && out.verdict[j] == "free" && rest < std::min(enough, out.norm[j] / collinearity_limit)) {
-      out.verdict[j] = "confounded";
+    if (candidates[j] && out.verdict[j] == RowVerdict::bounded &&
+        rest < std::min(enough, out.norm[j] / collinearity_limit)) {
+      out.verdict[j] = RowVerdict::confounded;
       std::vector<std::pair<double, int>> strongest;
       for (long r = 0; r < weights.size(); ++r) strongest.push_back({-std::abs(weights[r]), static_cast<int>(kept[r])});
       std::sort(strongest.begin(), strongest.end());
       for (std::size_t r = 0; r < strongest.size() && r < 3; ++r)
         if (-strongest[r].first > 0.2 * out.norm[j]) out.confounded_with[j].push_back(strongest[r].second);
     }
-    if (out.verdict[j] == "free" && rest > 1e-9 * out.norm[j]) kept.push_back(j);
+    if (out.verdict[j] == RowVerdict::bounded && rest > 1e-9 * out.norm[j]) kept.push_back(j);
   }
   return out;
 }

@@ -7,9 +7,18 @@
 
 namespace servodx {
 
+// What logs say of a free number.
+enum class RowVerdict {
+  bounded,     // they tell it
+  one_sided,   // they tell how far it may go on one side
+  flat,        // it moves no channel
+  at_bound,    // the end of its range holds it
+  confounded,  // what it does others do, within the noise
+  frozen,      // it was not asked
+};
+
 struct Identifiability {
-  // free | flat (no effect on any channel) | confounded (its effect is that of others within the noise)
-  std::vector<std::string> verdict;
+  std::vector<RowVerdict> verdict;                // bounded, flat or confounded
   std::vector<std::vector<int>> confounded_with;  // columns that together do what this one does
   std::vector<double> norm;                       // of the column, in sigmas per unit interval
 };

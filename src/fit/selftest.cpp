@@ -13,7 +13,6 @@
 #include "fit/log_data.h"
 #include "fit/nominal.h"
 #include "fit/problem.h"
-#include "fit/tune.h"
 #include "fit/uncertainty.h"
 #include "optimise/box_least_squares.h"
 #include "optimise/problem.h"
@@ -98,7 +97,7 @@ void hold_what_the_log_does_not_tell(Experiment& e, const Table& table, Selftest
   const Identifiability id = identify(jacobian, candidates);
   std::vector<FreeValue> kept;
   for (std::size_t j = 0; j < e.rows; ++j)
-    if (id.verdict[j] == "free")
+    if (id.verdict[j] == RowVerdict::bounded)
       kept.push_back(e.free[j]);
     else
       out.held.push_back(e.free[j].name);

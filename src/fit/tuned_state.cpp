@@ -10,6 +10,7 @@
 
 #include "base/error.h"
 #include "fit/tuning_comments.h"
+#include "servodx/log.h"
 
 namespace servodx {
 namespace {

@@ -9,6 +9,7 @@
 
 #include "fit/error_model.h"
 #include "parameters/table.h"
+#include "servodx/log.h"
 
 namespace servodx {
 

@@ -6,9 +6,14 @@
 #include <cmath>
 
 #include "base/units.h"
+#include "fit/identifiability.h"
 #include "report/columns.h"
 #include "report/handy.h"
+#include "report/json.h"
+#include "report/parts.h"
 #include "report/replay_part.h"
+#include "report/row_verdict_word.h"
+#include "signals/signal.h"
 
 namespace servodx::report {
 namespace {
@@ -57,14 +62,14 @@ std::string visibility(double deviate) {
 }
 
 std::string verdict_words(const Identifiable& row) {
-  if (row.verdict == "flat") return "this log does not show it";
-  if (row.verdict == "confounded") return "only together with " + join(row.confounded_with);
+  if (row.verdict == RowVerdict::flat) return "this log does not show it";
+  if (row.verdict == RowVerdict::confounded) return "only together with " + join(row.confounded_with);
   return "";
 }
 
 std::pair<long, long> counts(const Promise& p) {
   long known = 0;
-  for (const Identifiable& row : p.rows) known += row.verdict == "bounded";
+  for (const Identifiable& row : p.rows) known += row.verdict == RowVerdict::bounded;
   return {known, static_cast<long>(p.rows.size())};
 }
 
@@ -150,7 +155,7 @@ Json check_log_json(const std::vector<LogCheck>& checks) {
       for (const Identifiable& r : check.promise->rows)
         rows.push_back({{"name", r.name},
                         {"unit", r.unit},
-                        {"verdict", r.verdict},
+                        {"verdict", word_of(r.verdict)},
                         {"nominal", number(r.nominal)},
                         {"std_error", number(r.std_error)},
                         {"confounded_with", r.confounded_with}});

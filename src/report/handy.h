@@ -4,7 +4,7 @@
 #pragma once
 #include <string>
 
-#include "fit/tune.h"
+#include "tune/tune.h"
 
 namespace servodx::report {
 

@@ -2,8 +2,14 @@
 
 #include <cmath>
 
+#include "diagnose/assessment.h"
+#include "diagnose/baseline.h"
+#include "diagnose/conditions.h"
+#include "diagnose/judge.h"
+#include "diagnose/moved.h"
 #include "report/diagnosis_words.h"
 #include "report/handy.h"
+#include "report/row_verdict_word.h"
 
 namespace servodx::report {
 namespace {
@@ -58,7 +64,7 @@ Json to_json(const ParameterResult& p) {
           {"estimate", number(p.estimate)},
           {"std_error", number(p.std_error)},
           {"profile", {{"lower", number(p.profile_lower)}, {"upper", number(p.profile_upper)}}},
-          {"verdict", p.verdict},
+          {"verdict", word_of(p.verdict)},
           {"confounded_with", p.confounded_with},
           {"effect_at_lower", number(p.effect_at_lower)},
           {"effect_at_upper", number(p.effect_at_upper)}};

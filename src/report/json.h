@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "diagnose/diagnose.h"
-#include "fit/tune.h"
+#include "tune/tune.h"
 
 namespace servodx::report {
 

@@ -5,7 +5,7 @@
 
 #include "diagnose/diagnose.h"
 #include "fit/replay.h"
-#include "fit/tune.h"
+#include "tune/tune.h"
 #include "report/page.h"
 #include "report/tune_words.h"
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "fit/identifiability.h"
 #include "report/columns.h"
 #include "report/handy.h"
 #include "report/replay_part.h"
@@ -14,11 +15,11 @@ std::string verdict_in_words(const ParameterResult& p) {
   std::vector<std::string> others;
   for (const std::string& name : p.confounded_with)
     if (std::find(others.begin(), others.end(), name) == others.end()) others.push_back(name);
-  if (p.verdict == "flat") return "the logs do not show it";
-  if (p.verdict == "confounded") return "held: the logs show it only together with " + words(join(others));
-  if (p.verdict == "at_bound") return "at the end of its range";
-  if (p.verdict == "one_sided") return "known on one side only";
-  if (p.verdict == "frozen") return "held";
+  if (p.verdict == RowVerdict::flat) return "the logs do not show it";
+  if (p.verdict == RowVerdict::confounded) return "held: the logs show it only together with " + words(join(others));
+  if (p.verdict == RowVerdict::at_bound) return "at the end of its range";
+  if (p.verdict == RowVerdict::one_sided) return "known on one side only";
+  if (p.verdict == RowVerdict::frozen) return "held";
   return "";
 }
 

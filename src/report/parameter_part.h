@@ -3,8 +3,8 @@
 #include <string>
 #include <vector>
 
-#include "fit/tune.h"
 #include "report/parts.h"
+#include "tune/tune.h"
 
 namespace servodx::report {
 

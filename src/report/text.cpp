@@ -5,9 +5,16 @@
 #include <algorithm>
 #include <cmath>
 
+#include "diagnose/assessment.h"
+#include "diagnose/baseline.h"
+#include "diagnose/decide.h"
+#include "diagnose/judge.h"
+#include "diagnose/moved.h"
+#include "fit/identifiability.h"
 #include "report/columns.h"
 #include "report/diagnosis_words.h"
 #include "report/handy.h"
+#include "report/row_verdict_word.h"
 
 namespace servodx::report {
 namespace {
@@ -15,7 +22,7 @@ namespace {
 constexpr double far_off = 10.0;  // times the usual error, from which a fault-free log is of another kind
 
 // A held row has no error of its own; one on a bound was fitted and has none either.
-bool was_fitted(const ParameterResult& p) { return std::isfinite(p.std_error) || p.verdict == "at_bound"; }
+bool was_fitted(const ParameterResult& p) { return std::isfinite(p.std_error) || p.verdict == RowVerdict::at_bound; }
 
 std::string plural(long n, const std::string& thing) { return fmt::format("{} {}{}", n, thing, n == 1 ? "" : "s"); }
 
@@ -63,7 +70,7 @@ std::string parameters_table(const std::vector<ParameterResult>& parameters) {
     if (!was_fitted(p)) continue;
     const InHandyUnit in(p);
     table.row({p.id > 0 ? std::to_string(p.id) : "", p.name, in(p.nominal), in(p.estimate), in(p.std_error, 2),
-               in.unit.name.empty() ? "-" : in.unit.name, p.verdict});
+               in.unit.name.empty() ? "-" : in.unit.name, word_of(p.verdict)});
   }
   return table.text();
 }
@@ -76,9 +83,10 @@ std::string held_rows(const std::vector<ParameterResult>& parameters) {
     std::vector<std::string> others;
     for (const std::string& name : p.confounded_with)
       if (std::find(others.begin(), others.end(), name) == others.end()) others.push_back(name);
-    const std::string reason = p.verdict == "flat"         ? "the logs do not show it"
-                               : p.verdict == "confounded" ? "the logs show it only together with " + join(others)
-                                                           : p.verdict;
+    const std::string reason = p.verdict == RowVerdict::flat ? "the logs do not show it"
+                               : p.verdict == RowVerdict::confounded
+                                   ? "the logs show it only together with " + join(others)
+                                   : word_of(p.verdict);
     table.row({"held: " + p.name, reason});
   }
   return table.text();

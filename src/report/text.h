@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "diagnose/diagnose.h"
-#include "fit/tune.h"
+#include "tune/tune.h"
 #include "report/tune_words.h"
 
 namespace servodx::report {

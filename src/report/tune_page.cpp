@@ -3,12 +3,19 @@
 #include <algorithm>
 #include <cmath>
 
+#include "fit/identifiability.h"
+#include "fit/replay.h"
 #include "report/check_log.h"
 #include "report/columns.h"
 #include "report/handy.h"
+#include "report/json.h"
+#include "report/page.h"
 #include "report/pages.h"
 #include "report/parameter_part.h"
+#include "report/parts.h"
 #include "report/replay_part.h"
+#include "report/tune_words.h"
+#include "tune/tune.h"
 
 namespace servodx::report {
 namespace {
@@ -92,8 +99,8 @@ Page tune_page(const Header& header, const TuneResult& result, const GoodEnough&
   std::vector<std::string> at_end;
   for (const ParameterResult& p : result.parameters) {
     known += std::isfinite(p.std_error);
-    if (p.verdict == "at_bound") at_end.push_back(words(p.name));
-    held += !std::isfinite(p.std_error) && p.verdict != "at_bound";
+    if (p.verdict == RowVerdict::at_bound) at_end.push_back(words(p.name));
+    held += !std::isfinite(p.std_error) && p.verdict != RowVerdict::at_bound;
   }
   Verdict v;
   v.tone = enough.yes ? Tone::good : Tone::doubt;

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "diagnose/check_log.h"
-#include "fit/tune.h"
+#include "tune/tune.h"
 #include "report/json.h"
 
 namespace servodx::report {

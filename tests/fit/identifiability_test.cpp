@@ -20,7 +20,7 @@ Eigen::MatrixXd random_jacobian(long rows, long columns, unsigned seed) {
 
 TEST(Identifiability, IndependentColumnsAreFree) {
   const Identifiability id = identify(random_jacobian(200, 5, 1), std::vector<char>(5, 1));
-  for (const std::string& v : id.verdict) EXPECT_EQ(v, "free");
+  for (const RowVerdict v : id.verdict) EXPECT_EQ(v, RowVerdict::bounded);
 }
 
 TEST(Identifiability, DuplicatedColumnIsConfoundedWithTheStrongerOne) {
@@ -28,7 +28,8 @@ TEST(Identifiability, DuplicatedColumnIsConfoundedWithTheStrongerOne) {
   j.col(1) *= 3.0;
   j.col(3) = 0.5 * j.col(1);
   const Identifiability id = identify(j, std::vector<char>(4, 1));
-  EXPECT_EQ(id.verdict, (std::vector<std::string>{"free", "free", "free", "confounded"}));
+  EXPECT_EQ(id.verdict, (std::vector<RowVerdict>{RowVerdict::bounded, RowVerdict::bounded, RowVerdict::bounded,
+                                                 RowVerdict::confounded}));
   EXPECT_EQ(id.confounded_with[3], std::vector<int>{1});
 }
 
@@ -38,7 +39,7 @@ TEST(Identifiability, SumOfTwoColumnsIsConfoundedWithBoth) {
   j.col(1) *= 2.0;
   j.col(2) = 0.4 * (j.col(0) + j.col(1));
   const Identifiability id = identify(j, std::vector<char>(4, 1));
-  EXPECT_EQ(id.verdict[2], "confounded");
+  EXPECT_EQ(id.verdict[2], RowVerdict::confounded);
   std::vector<int> with = id.confounded_with[2];
   std::sort(with.begin(), with.end());
   EXPECT_EQ(with, (std::vector<int>{0, 1}));
@@ -51,7 +52,7 @@ TEST(Identifiability, LimitIsTheCollinearityIndex) {
     j(0, 0) = 100.0;
     j(0, 1) = 50.0 * std::sqrt(1.0 - 1.0 / (index * index));
     j(1, 1) = 50.0 / index;
-    EXPECT_EQ(identify(j, {1, 1}).verdict[1], index < 15.0 ? "free" : "confounded") << index;
+    EXPECT_EQ(identify(j, {1, 1}).verdict[1], index < 15.0 ? RowVerdict::bounded : RowVerdict::confounded) << index;
   }
 }
 
@@ -60,7 +61,8 @@ TEST(Identifiability, ZeroColumnIsFlatAndSoIsAWeakOne) {
   j.col(1).setZero();
   j.col(2) *= 0.5 / j.col(2).norm();  // half a sigma over its whole interval
   const Identifiability id = identify(j, std::vector<char>(4, 1));
-  EXPECT_EQ(id.verdict, (std::vector<std::string>{"free", "flat", "flat", "free"}));
+  EXPECT_EQ(id.verdict,
+            (std::vector<RowVerdict>{RowVerdict::bounded, RowVerdict::flat, RowVerdict::flat, RowVerdict::bounded}));
   EXPECT_EQ(id.norm[1], 0.0);
 }
 
@@ -68,7 +70,7 @@ TEST(Identifiability, NuisanceIsNeverFrozenAndTakesItsTwinWithIt) {
   Eigen::MatrixXd j = random_jacobian(100, 3, 5);
   j.col(0) = 10.0 * j.col(2);
   const Identifiability id = identify(j, {1, 1, 0});
-  EXPECT_EQ(id.verdict, (std::vector<std::string>{"confounded", "free", "free"}));
+  EXPECT_EQ(id.verdict, (std::vector<RowVerdict>{RowVerdict::confounded, RowVerdict::bounded, RowVerdict::bounded}));
   EXPECT_EQ(id.confounded_with[0], std::vector<int>{2});
 }
 

@@ -11,7 +11,6 @@ LONGER = {
     ("src/explain/show.cpp", "show"): "to be split",
     ("src/explain/smoother.cpp", "KalmanFilter::run"): "to be split",
     ("src/explain/valve.cpp", "ValveSubject::add_causes"): "to be split",
-    ("src/fit/tune.cpp", "tune"): "to be split",
     ("src/model/derivative.h", "derivative"): "equations of motion; each stage uses terms of those above it",
     ("src/prognose/check.cpp", "check"): "to be split",
     ("src/prognose/growth.cpp", "GrowthModel::GrowthModel"): "to be split",

@@ -30,10 +30,11 @@ const std::map<std::string, std::set<std::string>> allowed = {
     {"simulate", {"parameters", "model", "effects", "faults", "integrate", "signals"}},
     {"rig", {"integrate", "signals"}},
     {"fit", {"parameters", "model", "effects", "simulate", "signals", "optimise"}},
+    {"tune", {"parameters", "effects", "signals", "simulate", "optimise", "fit"}},
     {"evidence", {"fit", "signals"}},
-    {"diagnose", {"parameters", "signals", "simulate", "optimise", "fit", "evidence", "faults", "effects"}},
-    {"explain", {"parameters", "signals", "simulate", "optimise", "fit", "evidence", "faults", "effects"}},
-    {"report", {"signals", "faults", "diagnose", "explain", "evidence", "prognose", "fit", "valve_maps", "curves"}},
+    {"diagnose", {"parameters", "signals", "simulate", "optimise", "fit", "tune", "evidence", "faults", "effects"}},
+    {"explain", {"parameters", "signals", "simulate", "optimise", "fit", "tune", "evidence", "faults", "effects"}},
+    {"report", {"signals", "faults", "diagnose", "explain", "evidence", "prognose", "fit", "tune", "valve_maps", "curves"}},
     {"prognose", {"parameters", "signals", "model", "simulate", "optimise", "fit", "faults", "valve_maps"}},
 };
 

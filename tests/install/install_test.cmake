@@ -50,7 +50,7 @@ if(DPKG_DEB AND SHLIBDEPS)
   step(${work}/servodx/usr/bin/servodx list faults)
   foreach(file servodx/usr/share/man/man1/servodx.1 servodx/usr/share/servodx/params/borello2009.csv
                servodx/usr/share/doc/servodx/docs/tutorial.md servodx/usr/share/doc/servodx/copyright
-               libservodx-dev/usr/include/servodx/fit/tune.h)
+               libservodx-dev/usr/include/servodx/tune/tune.h)
     file(GLOB found ${work}/${file} ${work}/${file}.gz)
     if(NOT found)
       message(FATAL_ERROR "${file} is not in its package")

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <cstdio>
 
-#include "fit/tune.h"
+#include "tune/tune.h"
 #include "parameters/table.h"
 #include "rig/rig_model.h"
 #include "rig/rig_run.h"

@@ -12,15 +12,16 @@
 #include "base/random.h"
 #include "fit/chart.h"
 #include "fit/free_values.h"
+#include "fit/identifiability.h"
 #include "fit/log_data.h"
 #include "fit/problem.h"
-#include "fit/tune.h"
 #include "parameters/table.h"
 #include "servodx/log.h"
 #include "servodx/rig.h"
 #include "shipped_data.h"
 #include "simulate/scenario.h"
 #include "simulate/simulate.h"
+#include "tune/tune.h"
 
 namespace servodx::twins {
 
@@ -140,7 +141,7 @@ inline std::vector<Outcome> outcomes(const Twin& twin, const TuneResult& result)
 
 // Whether the fit states an interval that is meant to be trusted.
 inline bool identifiable(const Outcome& o) {
-  return std::isfinite(o.z) && o.verdict != "confounded" && o.verdict != "flat";
+  return std::isfinite(o.z) && o.verdict != RowVerdict::confounded && o.verdict != RowVerdict::flat;
 }
 
 }  // namespace servodx::twins

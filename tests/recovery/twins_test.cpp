@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "fit/tune.h"
+#include "tune/tune.h"
 
 namespace servodx {
 namespace {

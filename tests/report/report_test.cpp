@@ -5,7 +5,20 @@
 #include <cmath>
 #include <limits>
 
+#include "diagnose/assessment.h"
+#include "diagnose/baseline.h"
+#include "diagnose/check_log.h"
+#include "diagnose/decide.h"
+#include "diagnose/judge.h"
+#include "diagnose/moved.h"
+#include "explain/explain.h"
+#include "explain/missing.h"
+#include "explain/outcome.h"
 #include "faults/registry.h"
+#include "fit/identifiability.h"
+#include "fit/selftest.h"
+#include "prognose/check.h"
+#include "prognose/trend.h"
 #include "report/baseline_file.h"
 #include "report/columns.h"
 #include "report/diagnosis_words.h"
@@ -18,7 +31,10 @@
 #include "report/selftest.h"
 #include "report/text.h"
 #include "report/tune_words.h"
+#include "servodx/error.h"
+#include "servodx/log.h"
 #include "temporary_folder.h"
+#include "tune/tune.h"
 
 namespace servodx::report {
 namespace {
@@ -65,7 +81,7 @@ Diagnosis some_diagnosis() {
   moved.unit = "m";
   moved.estimate = 12e-6;
   moved.std_error = 1.5e-6;
-  moved.verdict = "bounded";
+  moved.verdict = RowVerdict::bounded;
   d.moved = {moved};
   return d;
 }
@@ -305,7 +321,7 @@ TEST(TunePage, NamesTheParametersAtAnEndOfTheirRange) {
   result.logs = {{"h.csv", {}, 0.01, 0.0, {}}};
   ParameterResult p;
   p.name = "torque_motor_frequency", p.unit = "Hz", p.nominal = 700, p.estimate = 350, p.std_error = nan;
-  p.verdict = "at_bound";
+  p.verdict = RowVerdict::at_bound;
   result.parameters = {p};
   const std::string html = tune_page({}, result, good_enough(result, {}), {}).html();
   EXPECT_NE(html.find("At an end of its range: torque motor frequency."), std::string::npos);
@@ -515,12 +531,12 @@ TEST(TuneReport, HeldRowsSayWhyAndFittedOnesHaveErrors) {
   fitted.nominal = 100;
   fitted.estimate = 104.25;
   fitted.std_error = 0.5;
-  fitted.verdict = "bounded";
+  fitted.verdict = RowVerdict::bounded;
   held.id = 7;
   held.name = "nozzle_gap";
   held.unit = "m";
   held.std_error = nan;
-  held.verdict = "confounded";
+  held.verdict = RowVerdict::confounded;
   held.confounded_with = {"flapper_stiffness", "spool_offset", "spool_offset"};
   result.parameters = {fitted, held};
   result.logs = {{"h.csv", result.channels, 0.01}};

@@ -7,8 +7,22 @@
 
 #include "base/atomic_file.h"
 #include "base/random.h"
+#include "diagnose/assessment.h"
+#include "diagnose/baseline.h"
+#include "diagnose/check_log.h"
+#include "diagnose/decide.h"
+#include "diagnose/judge.h"
+#include "diagnose/moved.h"
+#include "faults/fault.h"
 #include "faults/registry.h"
+#include "fit/identifiability.h"
+#include "fit/replay.h"
+#include "report/json.h"
+#include "report/page.h"
 #include "report/pages.h"
+#include "report/tune_words.h"
+#include "servodx/log.h"
+#include "tune/tune.h"
 
 namespace {
 
@@ -59,10 +73,19 @@ report::Header some_header(const std::string& command, const std::string& log) {
 }
 
 std::vector<ParameterResult> some_parameters() {
-  return {{4, "flapper_stiffness", "N/m", 5000, 6200, 55, "bounded", {}, 0, 0},
-          {9, "valve_glitch", "m", 0, 2.07e-5, 1.6e-6, "bounded", {}, 0, 0},
-          {22, "radial_clearance", "m", 3e-6, 2.9e-6, 4e-7, "bounded", {}, 0, 0},
-          {30, "cross_piston_leakage", "m3/s/Pa", 1e-13, 1e-13, std::nan(""), "confounded", {"spool_friction"}, 0, 0}};
+  return {{4, "flapper_stiffness", "N/m", 5000, 6200, 55, RowVerdict::bounded, {}, 0, 0},
+          {9, "valve_glitch", "m", 0, 2.07e-5, 1.6e-6, RowVerdict::bounded, {}, 0, 0},
+          {22, "radial_clearance", "m", 3e-6, 2.9e-6, 4e-7, RowVerdict::bounded, {}, 0, 0},
+          {30,
+           "cross_piston_leakage",
+           "m3/s/Pa",
+           1e-13,
+           1e-13,
+           std::nan(""),
+           RowVerdict::confounded,
+           {"spool_friction"},
+           0,
+           0}};
 }
 
 Diagnosis some_diagnosis(const std::string& log, VerdictKind verdict) {

@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "base/error.h"
-#include "fit/tune.h"
+#include "tune/tune.h"
 #include "recovery/twins.h"
 #include "temporary_folder.h"
 

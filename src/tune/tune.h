@@ -9,10 +9,13 @@
 #include <vector>
 
 #include "fit/error_model.h"
+#include "fit/identifiability.h"
 #include "fit/tuned_state.h"
 #include "parameters/table.h"
+#include "servodx/rig.h"
 #include "signals/log.h"
 #include "signals/rig_file.h"
+#include "simulate/scenario.h"
 
 namespace servodx {
 
@@ -21,8 +24,7 @@ struct ParameterResult {
   std::string name, unit;
   double nominal = 0, estimate = 0;  // [unit]
   double std_error = 0;              // [unit]; NaN where there is none
-  // bounded | one_sided | flat | at_bound | confounded | frozen
-  std::string verdict;
+  RowVerdict verdict = RowVerdict::bounded;
   std::vector<std::string> confounded_with;
   double profile_lower =
              std::numeric_limits<double>::quiet_NaN(),  // [unit] 95 % by profile likelihood, where asked for

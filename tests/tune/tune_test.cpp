@@ -1,5 +1,5 @@
 // What a whole tune promises of its search.
-#include "fit/tune.h"
+#include "tune/tune.h"
 
 #include <gtest/gtest.h>
 

@@ -1,0 +1,134 @@
+#include "tune/breadth.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <optional>
+#include <span>
+#include <sstream>
+#include <utility>
+
+#include "base/atomic_file.h"
+#include "fit/chart.h"
+#include "fit/log_data.h"
+#include "fit/problem.h"
+#include "optimise/genetic.h"
+#include "optimise/genetic_state.h"
+#include "optimise/robust_loss.h"
+#include "parameters/list.h"
+#include "servodx/rig.h"
+#include "tune/tune.h"
+#include "tune/weights.h"
+
+namespace servodx {
+namespace {
+
+constexpr double excerpt = 1.5;            // [s] of each log: the search is for valleys, not for their floor
+constexpr double compression_scale = 3.0;  // [sigma] beyond it a residual counts by its logarithm
+constexpr int kept_points = 3;             // distinct ones that the local stage goes on from
+constexpr int shown_every = 10;  // generations: children are ranked by rough runs, what is shown is counted in full
+
+// The first seconds of each log, for the global search; of a test stand's slow sweep they show one end, so all of it.
+std::vector<LogData> excerpts(const std::vector<LogData>& logs, double seconds) {
+  std::vector<LogData> out;
+  for (const LogData& log : logs) {
+    if (log.scenario.ports != Ports::actuator) {
+      out.push_back(log);
+      continue;
+    }
+    const auto& t = log.scenario.time;
+    out.push_back(
+        slice(log, 0, static_cast<std::size_t>(std::lower_bound(t.begin(), t.end(), t.front() + seconds) - t.begin())));
+  }
+  return out;
+}
+
+// Costs of points in the shared values alone, the nuisances held where the search begins.
+class BroadCosts {
+ public:
+  BroadCosts(const FitProblem& problem, Point start) : problem_(problem), start_(std::move(start)) {}
+
+  // Compressed residuals: one channel far off must not hide the rest.
+  std::vector<double> operator()(std::span<const Point> points, bool ranking, std::span<const double> bounds) {
+    if (whole_.size() < points.size()) whole_.resize(points.size(), start_);
+    for (std::size_t k = 0; k < points.size(); ++k) std::copy(points[k].begin(), points[k].end(), whole_[k].begin());
+    return problem_.costs(std::span(whole_).first(points.size()), RobustLoss::compressed, compression_scale, ranking,
+                          bounds);
+  }
+  Point full(const Point& shared) const {
+    Point x = start_;
+    std::copy(shared.begin(), shared.end(), x.begin());
+    return x;
+  }
+
+ private:
+  const FitProblem& problem_;
+  Point start_;
+  std::vector<Point> whole_;  // kept: a generation asks for no memory
+};
+
+// Failure mode identifiers of a fault-free valve: as the table says; a slow first stage; much friction; worn edges.
+std::vector<std::vector<Point>> islands(const std::vector<FreeValue>& shared, const Point& start) {
+  const std::size_t n = shared.size();
+  const Point nominal(start.begin(), start.begin() + static_cast<long>(n));
+  const auto moved = [&](std::initializer_list<std::pair<int, double>> moves) {
+    Point p = nominal;
+    for (std::size_t j = 0; j < n; ++j)
+      for (const auto& [at, factor] : moves)
+        if (shared[j].at == at) p[j] = shared[j].to_unit(shared[j].from_unit(p[j]) * factor);
+    return p;
+  };
+  return {
+      {nominal},
+      {moved({{row::driver_bandwidth, 0.4}, {row::torque_motor_frequency, 0.7}, {row::fixed_orifice_diameter, 0.8}})},
+      {moved({{row::spool_friction, 5.0}, {row::piston_coulomb_friction, 3.0}})},
+      {moved({{row::radial_clearance, 2.0}, {row::hydraulic_amplifier_gain, 1.3}})}};
+}
+
+std::optional<GeneticState> saved_state(const TuneOptions& options) {
+  if (!options.resume || options.checkpoint.empty() || !std::filesystem::exists(options.checkpoint)) return {};
+  std::ifstream file(options.checkpoint);
+  std::stringstream text;
+  text << file.rdbuf();
+  return genetic_state_from_json(text.str());
+}
+
+}  // namespace
+
+std::vector<Point> search_broadly(const TuneScope& scope, const Point& start, TuneWatch& watch) {
+  const std::vector<LogData> parts = excerpts(scope.data, excerpt);
+  std::vector<const LogData*> logs;
+  for (const LogData& p : parts) logs.push_back(&p);
+  FitProblem problem(logs, scope.base, scope.all(), scope.simulate);
+  first_whitening(problem, start);
+  BroadCosts costs(problem, start);
+  const TuneOptions& options = watch.options;
+  GeneticOptions o;
+  o.population = options.population;
+  o.generations = options.generations;
+  o.seed = options.seed;
+  o.archive = kept_points;
+  const BatchCost cost = [&](std::span<const Point> points) { return costs(points, false, {}); };
+  GeneticHooks hooks;
+  hooks.screen = [&](std::span<const Point> points, std::span<const double> bounds) {
+    return costs(points, true, bounds);
+  };
+  hooks.generation = [&](const GeneticState& s) {
+    if (!options.checkpoint.empty()) write_file(options.checkpoint, to_json(s));
+    if (!s.best.point.empty() && (s.generation % shown_every == 0 || s.generation == o.generations))
+      watch.convergence.push_back(
+          {"genetic search", watch.simulations(problem), cost(std::span(&s.best.point, 1)).front()});
+    watch.tell(0.1 + 0.25 * s.generation / o.generations, problem);
+    return !watch.stopped();
+  };
+  const std::optional<GeneticState> saved = saved_state(options);
+  const GeneticResult found = minimise_genetic(static_cast<int>(scope.shared.size()), cost, o,
+                                               islands(scope.shared, start), hooks, saved ? &*saved : nullptr);
+  watch.done_with(problem);
+  std::vector<Point> out;
+  for (const Individual& i : found.state.archive) out.push_back(costs.full(i.point));
+  if (out.empty()) out.push_back(costs.full(found.state.best.point));
+  return out;
+}
+
+}  // namespace servodx

@@ -1,0 +1,90 @@
+#include "tune/scope.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "base/error.h"
+#include "fit/chart.h"
+#include "fit/free_values.h"
+#include "fit/nominal.h"
+#include "fit/thin.h"
+
+namespace servodx {
+namespace {
+
+constexpr double tuning_null_limit = 0.1;  // fault-free logs: a null may sit anywhere that calibration allows
+
+// Priors asked for, about the table's nominal.
+void take_priors(std::vector<FreeValue>& shared, const std::map<std::string, double>& priors) {
+  for (const auto& [name, sd] : priors) {
+    const auto f = std::find_if(shared.begin(), shared.end(), [&](const FreeValue& v) { return v.name == name; });
+    if (f == shared.end())
+      throw InputError({.file = "--prior"}, "'" + name + "' is not among the rows that are fitted",
+                       "name a row with estimate 1; row 41 and the air are each log's own");
+    const double slope = f->log_scale ? f->start * std::log(f->upper / f->lower) : f->upper - f->lower;
+    f->prior_sd = sd / slope;
+  }
+}
+
+// Clearances and frictions know their oil's viscosity as a factor only: without a temperature anywhere they hold for
+// the first log's oil.
+void settle_oil(TuneScope& scope) {
+  if (std::any_of(scope.data.begin(), scope.data.end(), [](const LogData& d) { return d.scenario.oil_known; })) return;
+  scope.data.front().scenario.oil_known = true;
+  scope.notes.push_back("no log holds the oil's temperature: the table holds for the oil of " +
+                        scope.data.front().path + ", taken as at 40 degC");
+}
+
+void take_logs(TuneScope& scope, const std::vector<Log>& logs, const RigFile& rig, const TuneOptions& options) {
+  for (const Log& log : logs) {
+    scope.data.push_back(prepare_thinned(log, rig, options.moving_average));
+    const std::vector<std::string>& notes = scope.data.back().notes;
+    scope.notes.insert(scope.notes.end(), notes.begin() + static_cast<long>(log.notes.size()), notes.end());
+  }
+  scope.simulate.threads = options.threads;
+  scope.simulate.creep_step = creep_step_of(logs, rig);
+  scope.on_stand = all_on_test_stand(logs, rig);
+  for (const LogData& d : scope.data) require_channels(d);
+}
+
+void take_nuisances(TuneScope& scope) {
+  for (std::size_t l = 0; l < scope.data.size(); ++l) {
+    for (FreeValue& f : nuisance_values(scope.data[l], static_cast<int>(l), scope.base, tuning_null_limit))
+      scope.nuisances.push_back(std::move(f));
+    for (FreeValue& f : start_values(scope.data[l], static_cast<int>(l))) scope.nuisances.push_back(std::move(f));
+  }
+}
+
+}  // namespace
+
+std::vector<const LogData*> TuneScope::logs() const {
+  std::vector<const LogData*> out;
+  for (const LogData& d : data) out.push_back(&d);
+  return out;
+}
+
+std::vector<FreeValue> TuneScope::all() const {
+  std::vector<FreeValue> free = shared;
+  free.insert(free.end(), nuisances.begin(), nuisances.end());
+  return free;
+}
+
+TuneScope scope_of(const std::vector<Log>& logs, const Table& nominal, const RigFile& rig, const TuneOptions& options) {
+  if (logs.empty()) throw InputError({}, "there is no log to tune on", "give fault-free logs of the valve");
+  TuneScope scope;
+  take_logs(scope, logs, rig, options);
+  scope.facts = rig;
+  if (scope.on_stand && rig.ports == Ports::actuator) scope.facts.ports = Ports::blocked;  // the logs say so
+  scope.table = nominal;
+  add_effect_rows(scope.table, options.effects.value_or(default_effects(scope.on_stand)));
+  scope.table = apply_rig_facts(scope.table, scope.facts);
+  scope.base = candidate_of(scope.table);
+  settle_oil(scope);
+  scope.shared = shared_values(scope.table);
+  take_priors(scope.shared, options.priors);
+  take_nuisances(scope);
+  return scope;
+}
+
+}  // namespace servodx

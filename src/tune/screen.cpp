@@ -1,0 +1,98 @@
+#include "tune/screen.h"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <optional>
+#include <span>
+
+#include "base/error.h"
+#include "fit/chart.h"
+#include "fit/free_values.h"
+#include "fit/identifiability.h"
+#include "optimise/problem.h"
+#include "tune/weights.h"
+
+namespace servodx {
+namespace {
+
+constexpr double least_effect = 2.0;      // [sigma] at a bound: a row that moves nothing anywhere is flat
+constexpr std::size_t most_at_once = 16;  // points of a batch: memory, not results
+constexpr double share_of_work = 0.05;    // of a tune
+
+// Change of the residual with each shared value at either end.
+void drive_to_bounds(std::vector<ScreenedRow>& rows, const FitProblem& problem, const Point& x,
+                     const Evaluation& at_nominal, TuneWatch& watch) {
+  std::vector<Point> extremes;
+  for (std::size_t j = 0; j < rows.size(); ++j)
+    for (double end : {0.0, 1.0}) {
+      Point p = x;
+      p[j] = end;
+      extremes.push_back(p);
+    }
+  for (std::size_t first = 0; first < extremes.size(); first += most_at_once) {
+    const std::size_t n = std::min(most_at_once, extremes.size() - first);
+    const std::vector<Evaluation> e = problem.evaluate(std::span(&extremes[first], n));
+    for (std::size_t i = 0; i < n; ++i)
+      if (e[i].ok)
+        rows[(first + i) / 2].effect[(first + i) % 2] =
+            (e[i].residual - at_nominal.residual).head(problem.data_rows()).norm();
+    watch.tell(share_of_work * static_cast<double>(first) / static_cast<double>(extremes.size()), problem);
+  }
+}
+
+// Far from nominal a row may matter that does not here.
+bool matters_anywhere(const ScreenedRow& row) {
+  return std::any_of(row.effect.begin(), row.effect.end(), [](double e) { return e > least_effect || std::isnan(e); });
+}
+
+// The priors' rows count: a nuisance that its prior holds cannot stand in for a row.
+void tell_apart(std::vector<ScreenedRow>& rows, const FitProblem& problem, const Eigen::MatrixXd& jacobian) {
+  std::vector<char> candidates(static_cast<std::size_t>(problem.n()), 0);
+  std::fill(candidates.begin(), candidates.begin() + static_cast<long>(rows.size()), 1);
+  const Identifiability id = identify(jacobian, candidates);
+  for (std::size_t j = 0; j < rows.size(); ++j) {
+    if (id.verdict[j] == RowVerdict::flat && !matters_anywhere(rows[j])) rows[j].verdict = RowVerdict::flat;
+    if (id.verdict[j] != RowVerdict::confounded) continue;
+    rows[j].verdict = RowVerdict::confounded;
+    for (int k : id.confounded_with[j])
+      rows[j].confounded_with.push_back(problem.free()[static_cast<std::size_t>(k)].name);
+  }
+}
+
+// An effect that the logs do not tell is not claimed: it goes to its off value.
+void hold(TuneScope& scope, const FreeValue& value) {
+  const std::optional<double> off = off_value(value.at);
+  if (!off) return;
+  scope.table.rows[static_cast<std::size_t>(scope.table.find(value.name))].nominal = *off;
+  scope.base[static_cast<std::size_t>(value.at)] = *off;
+}
+
+}  // namespace
+
+std::vector<ScreenedRow> screen_rows(TuneScope& scope, TuneWatch& watch) {
+  FitProblem problem = scope.problem();
+  const Point x = problem.start();
+  first_whitening(problem, x);
+  const Evaluation at_nominal = problem.evaluate(std::span(&x, 1)).front();
+  if (!at_nominal.ok)
+    throw InputError({.file = scope.table.path}, "the simulation fails at the table's nominal values",
+                     "check the table against the rig's data sheet");
+  std::vector<ScreenedRow> rows;
+  for (const FreeValue& f : scope.shared) rows.push_back({f.name, RowVerdict::bounded, {}});
+  drive_to_bounds(rows, problem, x, at_nominal, watch);
+  Eigen::MatrixXd jacobian;
+  if (problem.jacobian(x, at_nominal.residual, jacobian)) {
+    tell_apart(rows, problem, jacobian);
+    std::vector<FreeValue> kept;
+    for (std::size_t j = 0; j < rows.size(); ++j)
+      if (rows[j].verdict == RowVerdict::bounded)
+        kept.push_back(scope.shared[j]);
+      else
+        hold(scope, scope.shared[j]);
+    scope.shared = kept;
+  }
+  watch.done_with(problem);
+  return rows;
+}
+
+}  // namespace servodx

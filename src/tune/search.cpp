@@ -1,0 +1,109 @@
+#include "tune/search.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <span>
+
+#include "optimise/derivative_free.h"
+#include "optimise/problem.h"
+#include "tune/breadth.h"
+#include "tune/tune.h"
+#include "tune/weights.h"
+
+namespace servodx {
+namespace {
+
+constexpr int iterations_a_start = 6;   // of the local stage: enough to tell valleys apart; chosen by hand
+constexpr int iterations_a_round = 12;  // then the weights are learnt anew; chosen by hand
+constexpr double as_good = 1.05;        // of the best end's cost: another start that reached it
+
+// As many points as the other way spends on its Jacobians.
+LeastSquaresResult without_derivatives(const FitProblem& problem, const Point& from, int iterations, Share share,
+                                       TuneWatch& watch) {
+  DerivativeFreeOptions d;
+  d.max_evaluations = static_cast<long>(iterations) * (problem.n() + 8);
+  d.progress = [&](long evaluations, double) {
+    watch.tell(share.at(static_cast<double>(evaluations) / static_cast<double>(d.max_evaluations)), problem);
+    return !watch.stopped();
+  };
+  const BatchEvaluate evaluate = [&](std::span<const Point> points) { return problem.evaluate(points); };
+  const DerivativeFreeResult found = minimise_without_derivatives(problem.n(), evaluate, from, d);
+  LeastSquaresResult end;
+  end.point = found.point;
+  end.cost = end.misfit = found.cost;
+  end.stopped = found.stopped;
+  return end;
+}
+
+}  // namespace
+
+LeastSquaresResult search_locally(const FitProblem& problem, const Point& from, const std::string& stage,
+                                  int iterations, Start start, Share share, TuneWatch& watch) {
+  if (watch.options.derivative_free) return without_derivatives(problem, from, iterations, share, watch);
+  LeastSquaresOptions o;
+  o.max_iterations = iterations;
+  o.difference = Difference::forward;
+  o.cost_tolerance = 1e-6;
+  o.compressed_first_pass = start != Start::ended;
+  if (start == Start::found) o.least_metric = o.from_afar;
+  o.progress = [&](const LeastSquaresProgress& p) {
+    watch.mark(stage, problem, p.cost);
+    watch.tell(share.from + (share.to - share.from) * p.iteration / iterations, problem);
+    return !watch.stopped();
+  };
+  return minimise_least_squares(problem.least_squares(), from, o);
+}
+
+SearchEnds search_ends(const TuneScope& scope, FitProblem& problem, TuneWatch& watch) {
+  const TuneOptions& options = watch.options;
+  const Point x = problem.start();
+  scope.on_stand ? weigh_sweeps(problem, x) : first_whitening(problem, x);
+  std::vector<Point> starts = {x};
+  if (options.generations > 0 && !watch.stopped())
+    for (Point& p : search_broadly(scope, x, watch)) starts.push_back(std::move(p));
+  hold_out(problem, options.heldout);
+  SearchEnds out;
+  for (std::size_t s = 0; s < starts.size() && !(watch.stopped() && s > 0); ++s) {
+    const double from = 0.35 + 0.35 * static_cast<double>(s) / static_cast<double>(starts.size());
+    out.ends.push_back(search_locally(problem, starts[s], fmt::format("start {}", s + 1), iterations_a_start,
+                                      s == 0 ? Start::nominal : Start::found,
+                                      {from, from + 0.35 / static_cast<double>(starts.size())}, watch));
+    if (out.ends.back().cost < out.ends[out.best].cost) out.best = s;
+  }
+  for (const LeastSquaresResult& end : out.ends) out.reached_best += end.cost <= as_good * out.ends[out.best].cost;
+  return out;
+}
+
+// An error model that is learnt at an unfinished fit takes an offset not yet found for correlation; the channel would
+// count for so few samples that it is never mended. So on the way each counts for at least as many as the first
+// whitening takes, and only the last rounds weigh as learnt.
+// A stand's sweeps never do. Their residual is one slow curve of the command: by its memory a whole sweep would count
+// for a few samples, least where the meter reads finest; by its size beside the speed of the output the flat ends would
+// count, and the peak at null not. There weigh_sweeps() holds to the end, and only the errors of the values are taken
+// from what is learnt.
+LeastSquaresResult refine(FitProblem& problem, const Point& from, ErrorModel& error, double held, int rounds,
+                          bool on_stand, Share share, TuneWatch& watch) {
+  LeastSquaresResult r;
+  Point x = from;
+  for (int round = 0; round < rounds; ++round) {
+    if (on_stand) {
+      weigh_sweeps(problem, x);
+    } else {
+      error = learn_error_model(problem, x);
+      if (held > 0 || round == 0)
+        for (ChannelError& c : error.channels) c.independent = std::max(c.independent, least_independent_rate);
+      apply_error_model(problem, error, x, true);
+    }
+    if (held > 0) hold_out(problem, held);
+    const Share of_round = {share.from + (share.to - share.from) * round / rounds,
+                            share.from + (share.to - share.from) * (round + 1) / rounds};
+    r = search_locally(problem, x, held > 0 ? "weights" : "everything", iterations_a_round, Start::ended, of_round,
+                       watch);
+    x = r.point;
+    if (watch.stopped() || (round >= 1 && r.reason == StopReason::converged)) break;
+  }
+  return r;
+}
+
+}  // namespace servodx

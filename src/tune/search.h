@@ -1,0 +1,34 @@
+// Breadth, then depth: a genetic search over the shared values, and the local stage from its best distinct points and
+// from the table's own.
+#pragma once
+#include <string>
+#include <vector>
+
+#include "fit/error_model.h"
+#include "fit/problem.h"
+#include "optimise/box_least_squares.h"
+#include "optimise/problem.h"
+#include "tune/scope.h"
+#include "tune/watch.h"
+
+namespace servodx {
+
+// Where a local search begins: at the table's values, at a point that the genetic search found, or where one ended.
+enum class Start { nominal, found, ended };
+
+LeastSquaresResult search_locally(const FitProblem& problem, const Point& from, const std::string& stage,
+                                  int iterations, Start start, Share share, TuneWatch& watch);
+
+// Ends of the local stage, the last part of every log held out.
+struct SearchEnds {
+  std::vector<LeastSquaresResult> ends;  // from the table's values first
+  std::size_t best = 0;
+  int reached_best = 0;  // ends within 5 % of the best
+};
+SearchEnds search_ends(const TuneScope& scope, FitProblem& problem, TuneWatch& watch);
+
+// Alternates fit and error model until the weights settle. `held`: last part of every log that is left out.
+LeastSquaresResult refine(FitProblem& problem, const Point& from, ErrorModel& error, double held, int rounds,
+                          bool on_stand, Share share, TuneWatch& watch);
+
+}  // namespace servodx

@@ -1,0 +1,109 @@
+#include "tune/summary.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <functional>
+
+#include "effects/registry.h"
+#include "effects/viscosity_change.h"
+#include "fit/log_data.h"
+#include "optimise/problem.h"
+#include "parameters/list.h"
+#include "parameters/table.h"
+#include "simulate/scenario.h"
+#include "tune/weights.h"
+
+namespace servodx {
+namespace {
+
+double upper_median(std::vector<double> v) {
+  std::nth_element(v.begin(), v.begin() + static_cast<long>(v.size() / 2), v.end());
+  return v[v.size() / 2];
+}
+
+// "a.csv 0.12, b.csv 0.98"
+std::string by_log(const std::vector<LogResult>& logs, const std::function<bool(std::size_t)>& among,
+                   const std::function<double(const LogResult&)>& value) {
+  std::string text;
+  for (std::size_t l = 0; l < logs.size(); ++l)
+    if (among(l))
+      text += fmt::format("{}{} {:.2f}", text.empty() ? "" : ", ",
+                          std::filesystem::path(logs[l].path).filename().string(), value(logs[l]));
+  return text;
+}
+
+}  // namespace
+
+std::vector<LogResult> results_by_log(const std::vector<Log>& logs, const TuneScope& scope, const FitProblem& problem,
+                                      const Point& point, const std::vector<Trajectory>& settled,
+                                      const std::vector<Trajectory>& heldout, double heldout_part) {
+  std::vector<LogResult> out;
+  for (std::size_t l = 0; l < scope.data.size(); ++l) {
+    const LogData& data = scope.data[l];
+    const ParameterVector v = problem.candidate(point, static_cast<int>(l));
+    LogResult result{
+        data.path, {}, v[row::servovalve_null], data.scenario.command_slope.value_or(v[nuisance::command_slope]), v};
+    for (std::size_t c = 0; c < data.channels.size(); ++c) {
+      const FitChannel& channel = data.channels[c];
+      const auto n = channel.measured.size();
+      const auto from = static_cast<std::size_t>((1.0 - heldout_part) * static_cast<double>(n));
+      ChannelResult r{channel.signal, logs[l].channels[index(channel.signal)].unit, 0, channel.noise, 0};
+      const int li = static_cast<int>(l), ci = static_cast<int>(c);
+      if (settled[l].ok) r.rms = rms_of(problem.raw_residual(li, ci, settled[l]), 0, n);
+      if (heldout[l].ok) r.heldout_rms = rms_of(problem.raw_residual(li, ci, heldout[l]), from, n);
+      result.channels.push_back(r);
+    }
+    out.push_back(std::move(result));
+  }
+  return out;
+}
+
+std::vector<ChannelResult> pooled_channels(const std::vector<LogResult>& logs) {
+  std::vector<ChannelResult> pooled;
+  for (const LogResult& log : logs)
+    for (const ChannelResult& r : log.channels) {
+      auto it =
+          std::find_if(pooled.begin(), pooled.end(), [&](const ChannelResult& p) { return p.signal == r.signal; });
+      if (it == pooled.end()) it = pooled.insert(pooled.end(), {r.signal, r.unit, 0, 0, 0});
+      it->rms += r.rms * r.rms;
+      it->noise_rms += r.noise_rms * r.noise_rms;
+      it->heldout_rms += r.heldout_rms * r.heldout_rms;
+    }
+  for (ChannelResult& p : pooled) {
+    long n = 0;
+    for (const LogResult& log : logs)
+      for (const ChannelResult& c : log.channels) n += c.signal == p.signal;
+    for (double* v : {&p.rms, &p.noise_rms, &p.heldout_rms}) *v = std::sqrt(*v / static_cast<double>(n));
+  }
+  return pooled;
+}
+
+void take_medians(Table& table, const std::vector<LogResult>& logs) {
+  std::vector<double> nulls, airs;
+  for (const LogResult& log : logs) {
+    nulls.push_back(log.candidate[row::servovalve_null]);
+    airs.push_back(log.candidate[row::air_fraction]);
+  }
+  table[row::servovalve_null].nominal = upper_median(nulls);
+  Row& air = table[row::air_fraction];
+  air.nominal = std::clamp(upper_median(airs), air.lower, air.upper);
+}
+
+std::vector<std::string> notes_of_logs(const std::vector<LogResult>& logs, const TuneScope& scope, const RigFile& rig) {
+  std::vector<std::string> notes;
+  notes.push_back("command between samples, 0 held to 1 in a line" +
+                  std::string(rig.command_hold ? ", from the rig file: " : ", estimated log by log: ") +
+                  by_log(
+                      logs, [](std::size_t) { return true; }, [](const LogResult& l) { return l.command_slope; }));
+  const std::string viscosities = by_log(
+      logs, [&](std::size_t l) { return !scope.data[l].scenario.oil_known; },
+      [](const LogResult& l) { return l.candidate[effect_row<ViscosityChange>(0)]; });
+  if (!viscosities.empty())
+    notes.push_back("viscosity over that at 40 degC, where no temperature was logged: " + viscosities);
+  return notes;
+}
+
+}  // namespace servodx

@@ -1,0 +1,28 @@
+// What a tune leaves of each log and channel, and what it says beside its figures.
+#pragma once
+#include <string>
+#include <vector>
+
+#include "fit/problem.h"
+#include "optimise/problem.h"
+#include "parameters/table.h"
+#include "servodx/log.h"
+#include "servodx/rig.h"
+#include "simulate/scenario.h"
+#include "tune/scope.h"
+#include "tune/tune.h"
+
+namespace servodx {
+
+// `settled`: of the last fit. `heldout`: of the fit that had not seen the last part of every log.
+std::vector<LogResult> results_by_log(const std::vector<Log>& logs, const TuneScope& scope, const FitProblem& problem,
+                                      const Point& point, const std::vector<Trajectory>& settled,
+                                      const std::vector<Trajectory>& heldout, double heldout_part);
+// Root of the mean square over the logs that have the channel.
+std::vector<ChannelResult> pooled_channels(const std::vector<LogResult>& logs);
+// Nulls and air belong to the logs; the table keeps their medians.
+void take_medians(Table& table, const std::vector<LogResult>& logs);
+// How the command ran between samples, and the oil where no temperature was logged.
+std::vector<std::string> notes_of_logs(const std::vector<LogResult>& logs, const TuneScope& scope, const RigFile& rig);
+
+}  // namespace servodx

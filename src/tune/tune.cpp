@@ -1,0 +1,113 @@
+#include "tune/tune.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <span>
+
+#include "base/error.h"
+#include "fit/free_values.h"
+#include "fit/problem.h"
+#include "optimise/box_least_squares.h"
+#include "optimise/problem.h"
+#include "servodx/rig.h"
+#include "simulate/scenario.h"
+#include "tune/scope.h"
+#include "tune/screen.h"
+#include "tune/search.h"
+#include "tune/settle.h"
+#include "tune/summary.h"
+#include "tune/watch.h"
+
+namespace servodx {
+namespace {
+
+// The last fit on everything, its residual and derivatives weighed by what was learnt at its end.
+LeastSquaresResult weighed_as_learnt(FitProblem& problem, LeastSquaresResult end, ErrorModel& error) {
+  error = learn_error_model(problem, end.point);
+  apply_error_model(problem, error, end.point);
+  const Evaluation at_end = problem.evaluate(std::span(&end.point, 1)).front();
+  Eigen::MatrixXd jacobian;
+  if (problem.jacobian(end.point, at_end.residual, jacobian)) end.jacobian = jacobian;
+  return end;
+}
+
+TunedState state_of(const std::vector<Log>& logs, const ErrorModel& error, const TuneOptions& options) {
+  TunedState state{error, options.moving_average, {}};
+  for (const Log& log : logs)
+    state.by.push_back({std::filesystem::path(log.path).filename().string(), log.sha256, content_hash(log)});
+  return state;
+}
+
+void append(std::vector<std::string>& notes, const std::vector<std::string>& more) {
+  notes.insert(notes.end(), more.begin(), more.end());
+}
+
+}  // namespace
+
+std::vector<std::string> default_effects(bool on_stand) {
+  if (on_stand) return {"magnetic_hysteresis", "flow_meter_lag", "edge_radius", "port_line"};
+  return {"magnetic_hysteresis", "armature_angle", "mount_compliance", "edge_transition", "orifice_length",
+          "screen_drop",         "nozzle_land",    "seal_shear",       "nozzle_mismatch"};
+}
+
+void TuneOptions::validate() const {
+  const auto require = [](bool holds, const char* option, const std::string& rule, const std::string& mend) {
+    if (!holds) throw InputError({.file = option}, rule, mend);
+  };
+  require(!resume || !checkpoint.empty(), "--resume", "there is nothing to resume from", "add --checkpoint FILE");
+  require(!resume || std::filesystem::exists(checkpoint), "--checkpoint",
+          "'" + checkpoint + "' is not there to resume from", "leave out --resume to begin");
+  require(population >= 24, "--population", "must be at least 24", "four islands of six each");
+  require(generations >= 0, "--generations", "must not be negative", "0 leaves the genetic search out");
+  require(rounds >= 1, "--rounds", "must be at least 1", fmt::format("{} is the default", TuneOptions{}.rounds));
+  require(heldout >= 0 && heldout < 1, "--heldout", "is a part of each log, from 0 to below 1",
+          fmt::format("{} is the default", TuneOptions{}.heldout));
+  require(moving_average >= 1 && moving_average % 2 == 1, "--moving-average",
+          fmt::format("{} is not an odd number of samples", moving_average), "give 1 for none, or 3, 5, ...");
+}
+
+TuneResult tune(const std::vector<Log>& logs, const Table& nominal, const RigFile& rig, const TuneOptions& options) {
+  options.validate();
+  TuneWatch watch(options);
+  TuneScope scope = scope_of(logs, nominal, rig, options);
+  const std::vector<ScreenedRow> screened = screen_rows(scope, watch);
+  hold_to_drawings(scope.shared, scope.facts, options.priors);
+
+  FitProblem fit = scope.problem();
+  SearchEnds searched = search_ends(scope, fit, watch);
+  LeastSquaresResult end = std::move(searched.ends[searched.best]);
+  TuneResult out;
+  for (std::size_t s = 0; s < searched.ends.size(); ++s)
+    out.starts.push_back(s == searched.best ? end.cost : searched.ends[s].cost);
+  out.reached_best = searched.reached_best;
+
+  // Weights from the model's own error, alternating with the fit: first with the end of each log still held out.
+  if (!watch.stopped()) end = refine(fit, end.point, out.error, options.heldout, 1, scope.on_stand, {0.7, 0.8}, watch);
+  const std::vector<Trajectory> heldout_runs = fit.trajectories(end.point);
+  if (!watch.stopped()) end = refine(fit, end.point, out.error, 0.0, options.rounds, scope.on_stand, {0.8, 1.0}, watch);
+  end = weighed_as_learnt(fit, std::move(end), out.error);
+
+  Settled settled = settle(scope, screened, fit, end, watch);
+  out.logs =
+      results_by_log(logs, scope, fit, settled.point, fit.trajectories(settled.point), heldout_runs, options.heldout);
+  out.channels = pooled_channels(out.logs);
+  out.parameters = std::move(settled.parameters);
+  out.table = std::move(settled.table);
+  take_medians(out.table, out.logs);
+  out.table.comments = nominal.comments;
+  set_tuned_state(out.table, state_of(logs, out.error, options));
+
+  append(out.notes, scope.notes);
+  append(out.notes, settled.notes);
+  out.notes.push_back("local stage: " + end.stopped);
+  append(out.notes, notes_of_logs(out.logs, scope, rig));
+  out.convergence = watch.convergence;
+  out.simulations = watch.simulations(fit);
+  out.failed_simulations = watch.failed(fit);
+  out.interrupted = watch.stopped();
+  return out;
+}
+
+}  // namespace servodx

@@ -1,0 +1,42 @@
+// What the steps of a tune share: what was asked for, how far it is, what it has cost.
+#pragma once
+#include <string>
+#include <vector>
+
+#include "base/progress.h"
+#include "fit/problem.h"
+#include "tune/tune.h"
+
+namespace servodx {
+
+class TuneWatch {
+ public:
+  explicit TuneWatch(const TuneOptions& asked) : options(asked), progress_("tune", {.quiet = asked.quiet}) {}
+  const TuneOptions& options;
+  std::vector<ConvergencePoint> convergence;
+
+  bool stopped() const { return options.stop && options.stop->load(); }
+  // Simulations of problems that are done, and of one that is at work.
+  long simulations(const FitProblem& at_work) const { return simulations_ + at_work.simulations(); }
+  long failed(const FitProblem& at_work) const { return failed_ + at_work.failed_simulations(); }
+  void done_with(const FitProblem& problem) {
+    simulations_ += problem.simulations();
+    failed_ += problem.failed_simulations();
+  }
+  void tell(double part, const FitProblem& at_work) { progress_.update(part, simulations(at_work)); }
+  void mark(const std::string& stage, const FitProblem& at_work, double cost) {
+    convergence.push_back({stage, simulations(at_work), cost});
+  }
+
+ private:
+  Progress progress_;
+  long simulations_ = 0, failed_ = 0;
+};
+
+// A share of the whole work, from `from` to `to`.
+struct Share {
+  double from = 0, to = 1;
+  double at(double part) const { return from + (to - from) * part; }
+};
+
+}  // namespace servodx

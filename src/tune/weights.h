@@ -1,0 +1,28 @@
+// What a residual is weighed by on the way to a tuned model, and what of each log is left out of the misfit.
+#pragma once
+#include <cstddef>
+#include <vector>
+
+#include "fit/problem.h"
+#include "optimise/problem.h"
+
+namespace servodx {
+
+// Samples that count as independent before anything is known of their correlation; on the way to the last rounds a
+// channel counts for at least as many. [1/s] Chosen by hand; not examined.
+inline constexpr double least_independent_rate = 40;
+
+// Of the samples in [from, to) that are there. [SI] 0 where none is.
+double rms_of(const std::vector<double>& r, std::size_t from, std::size_t to);
+
+// Whitening before anything is known: the residual's own size, a few tens of independent samples a second.
+void first_whitening(FitProblem& problem, const Point& x);
+
+// On a stand the model's error is a curve of the command, not of time: a fast sweep tells as much of it as a slow one,
+// so each counts alike, by its own rms.
+void weigh_sweeps(FitProblem& problem, const Point& x);
+
+// Leaves the last part of each log out of the misfit.
+void hold_out(FitProblem& problem, double part);
+
+}  // namespace servodx
