@@ -36,15 +36,12 @@ READERS = {
 # What is compared elsewhere, each text by itself: file, texts, why.
 COMPARED = {
     "apps/servodx/history_command.cpp": ({"ok"}, "the word with which SQLite answers its check of integrity"),
-    "src/diagnose/promise.cpp": ({"free"}, "to be typed"),
     "src/diagnose/survey.cpp": ({"gap", "the rig file maps column", "temperature"}, "to be typed"),
     "src/explain/curves.cpp": ({"current"}, "to be typed"),
     "src/explain/explain.cpp": ({"sensor:"}, "to be typed"),
     "src/explain/valve.cpp": ({", news"}, "to be typed"),
-    "src/fit/identifiability.cpp": ({"free"}, "to be typed"),
     "src/fit/nominal.cpp": ({"-", "mount_compliance", "valve.first_stage", "jet_pipe"}, "to be typed"),
-    "src/fit/selftest.cpp": ({"free"}, "to be typed"),
-    "src/tune/tune.cpp": ({"flat", "confounded", "bounded"}, "to be typed"),
+    "src/tune/settle.cpp": ({"all"}, "a user's word: --profile all"),
     "src/prognose/history.cpp": ({"clogged_filter", "fidelity"}, "to be typed"),
     "src/prognose/limits.cpp": ({"gain", "hysteresis", "phase_margin", "bandwidth"}, "to be typed"),
     "src/prognose/monitor.cpp": ({"linear", "A"}, "names of the monitor's models, as its user gives them"),
