@@ -127,7 +127,7 @@ inline TuneResult tuned(const Twin& twin, int threads) {
 
 struct Outcome {
   std::string name;
-  std::string verdict;
+  RowVerdict verdict = RowVerdict::bounded;
   double z = 0;  // (estimate - truth) / standard error; NaN where there is none
 };
 
