@@ -39,6 +39,7 @@ set_target_properties(servodx_api PROPERTIES EXPORT_NAME servodx)
 install(TARGETS servodx_api ${folders} EXPORT servodx-targets ARCHIVE COMPONENT development)
 install(EXPORT servodx-targets NAMESPACE servodx:: DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/servodx
         COMPONENT development)
+install(DIRECTORY include/ DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} COMPONENT development FILES_MATCHING PATTERN "*.h")
 install(DIRECTORY src/ DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/servodx COMPONENT development
         FILES_MATCHING PATTERN "*.h" PATTERN "*.inc" PATTERN web EXCLUDE)
 install(DIRECTORY examples DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT development)
