@@ -19,6 +19,7 @@ struct Options {
   std::vector<std::string> logs;
   std::string params, baseline, output;
   std::vector<std::string> without;
+  bool keep_worse = false;
 };
 
 int run(const Options& options) {
@@ -33,6 +34,7 @@ int run(const Options& options) {
   std::optional<HealthyReference> healthy;
   ExplainOptions explain{.seed = options.common.seed, .threads = options.common.threads, .quiet = options.common.quiet};
   explain.without = options.without;
+  explain.keep_worse = options.keep_worse;
   if (!options.baseline.empty()) {
     const report::BaselineFile file = report::read_baseline(options.baseline);
     report::require_same_table(file.baseline, options.baseline, tuned.path, tuned.sha256);
@@ -81,6 +83,8 @@ void add_explain_command(CLI::App& app, int& exit_code) {
       ->add_option("--without", options->without,
                    "leave an effect out of the list: what is found then, if not its name")
       ->type_name("EFFECT");
+  command->add_flag("--keep-worse", options->keep_worse,
+                    "write the extension even where the simulation's held-out rms is worse with it");
   add_common_options(*command, options->common);
   command->callback([options, &exit_code] { exit_code = run(*options); });
 }

@@ -8,6 +8,8 @@
 #include "diagnose/conditions.h"
 #include "diagnose/moved.h"
 #include "faults/fault.h"
+#include "faults/gross_finding.h"
+#include "simulate/scenario.h"
 #include "tune/tune.h"
 
 namespace servodx {
@@ -20,6 +22,7 @@ struct HypothesisResult {
   double severity = 0, severity_lower = 0, severity_upper = 0;  // [the fault's unit] 95 %
   double adequacy = 0;               // whitened rms of the worst channel, 1 when like the healthy logs
   std::vector<std::string> stops;    // how each start ended
+  bool at_worst = false;             // at the far end of the range that was searched
   bool at_least = false;             // at the mildest that is called this fault: the fit has found none of it
   double null = 0;                   // [fraction of rated]
   std::vector<MovedRow> moved = {};  // the fault's rows first

@@ -3,15 +3,18 @@
 #include <algorithm>
 #include <cmath>
 
+#include "diagnose/conditions.h"
 #include "diagnose/constants.h"
+#include "diagnose/healthy_law.h"
 #include "evidence/rank_promise.h"
+#include "faults/gross_finding.h"
 
 namespace servodx {
 
 namespace k = diagnose_constants;
 
 double score_of(const Assessment& a, const FaultGains& usual) {
-  double score = std::log(std::max(1.0, a.hypotheses.front().adequacy)) / k::adequacy_spread;
+  double score = 0;
   for (const HypothesisResult& h : a.hypotheses) {
     const auto known = h.fault ? usual.find(h.fault) : usual.end();
     const double of_health = known == usual.end() ? 0.0 : known->second;
@@ -41,15 +44,15 @@ Baseline baseline_of(const std::vector<Assessment>& healthy, double false_alarm)
       if (h.fault) b.scores.back().gains[h.fault] = h.gain;
     b.adequacy_limit = std::max(b.adequacy_limit, adequacy);
   }
-  b.logs = static_cast<int>(b.scores.size());
   if (b.scores.empty()) return b;
-  std::vector<double> scores;
-  for (std::size_t i = 0; i < healthy.size(); ++i) {
+  for (std::size_t i = 0; i < healthy.size(); ++i)
     b.scores[i].score = score_of(healthy[i], usual_gains(b, static_cast<int>(i)));
-    scores.push_back(b.scores[i].score);
-  }
+  const HealthyLaw law(b, nullptr);
+  std::vector<double> scores;
+  for (const std::size_t i : law.positions()) scores.push_back(b.scores[i].score);
   const RankPromise promise = rank_promise(std::move(scores), false_alarm);
-  b.threshold = promise.threshold;
+  b.threshold = law.limit();
+  b.logs = law.logs();
   b.promised = promise.promised, b.promised_95 = promise.promised_95;
   b.logs_needed = promise.logs_needed;
   return b;

@@ -1,7 +1,7 @@
 // What fault-free logs score, and the threshold that promises a false-alarm rate.
 //
-// The score of a log is how far it is from health in deviates: by the fault that explains most, or by what no fault
-// explains. The threshold is one of the scores (evidence/rank_promise.h).
+// The score of a log is the largest gain of any fault over health, in deviates; what no fault explains is its adequacy.
+// healthy_law.h makes limits of them.
 #pragma once
 #include <map>
 #include <optional>
@@ -9,6 +9,8 @@
 #include <vector>
 
 #include "diagnose/assessment.h"
+#include "diagnose/conditions.h"
+#include "faults/fault.h"
 
 namespace servodx {
 
@@ -18,9 +20,11 @@ struct ByName {
 using FaultGains = std::map<const Fault*, double, ByName>;  // of each fault over health
 
 struct Baseline {
-  double threshold = 0;
+  double threshold =
+      0;  // of the score [deviates], for a suspect whose test is like none that the model does not follow
   double asked = 0.01, promised = 0, promised_95 = 0;  // false-alarm rates
-  int logs = 0, logs_needed = 0;
+  int logs = 0;                                        // that the model follows: these set the threshold
+  int logs_needed = 0;
   struct Score {
     std::string log, sha256;
     double score = 0, adequacy = 0;

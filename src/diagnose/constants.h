@@ -9,12 +9,21 @@
 
 namespace servodx::diagnose_constants {
 
-// The score (diagnose/baseline.cpp).
+// The null (diagnose/healthy_law.cpp).
 //
-// Brings the two ways of being unlike health to one scale: the root of a likelihood gain is a normal deviate; the log
-// of the worst channel's adequacy scatters by about this much among healthy logs of different excitation.
-// Halved: the threshold doubles (3.7 to 7.5), a severe clogged filter (f02) is called healthy. Doubled: none.
+// The log of the worst channel's adequacy scatters by about this much among healthy logs of different excitation.
 inline constexpr double adequacy_spread = 0.3;
+// Twice as wrong as on the tuning logs: three quarters of the squared error is nothing that tuning knew.
+inline constexpr double followed_adequacy = 2.0;
+// The mean of the largest of ten squared one-sided normal deviates: what noise alone lends the best of so many faults,
+// were each free. Faults are free from their least size on, so that healthy logs show less.
+inline constexpr double usual_gain = 2.7;
+// That mean, and the spread above, count as much as so many logs: a baseline of usual length weighs as much.
+inline constexpr double usual_logs = 10;
+// Of the rate of false alarms: the gain says what is wrong, the adequacy only that something is.
+inline constexpr double share_of_gain = 0.8;
+// Chance: what healthy logs show no more often than not is said, though it is no verdict.
+inline constexpr double worth_saying = 0.5;
 // What is seen without a fit is beyond any threshold of healthy logs. No log of the bench shows such a
 // finding: not felt there.
 inline constexpr double gross_score = 1e3;  // [deviates]
@@ -61,7 +70,7 @@ inline constexpr double worth_another_start = 4.0;  // of misfit: two deviates
 inline constexpr double difference_step = 1e-3;     // of the range: a severity runs through contacts
 inline constexpr double cost_tolerance = 1e-4;      // relative
 inline constexpr double on_bound = 1e-6;            // of the range
-inline constexpr double at_least_part = 1e-3;       // of the range: nearer to the mild end nothing was found
+inline constexpr double at_end_part = 1e-3;         // of the range: so near an end a size stands at it
 inline constexpr double deviates_of_95 = 1.96;      // of a normal distribution
 
 }  // namespace servodx::diagnose_constants

@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "diagnose/constants.h"
+#include "faults/gross_finding.h"
 
 namespace servodx {
 namespace {
@@ -26,6 +27,13 @@ std::optional<std::size_t> seen_outright(const Evidence& e) {
   for (std::size_t i = 0; i < e.hypotheses.size(); ++i)
     if (shown_by(e.hypotheses[i].fault, e.gross)) return i;
   return {};
+}
+
+// What stands first is kept: a log that cannot be told from healthy ones may be no healthy one.
+Decision call_healthy(Decision d, const Evidence& e) {
+  const std::size_t best = most_probable(e.hypotheses);
+  if (e.hypotheses[best].fault && e.hypotheses[best].gain > 0) d.suspected = best;
+  return d;
 }
 
 Decision name_outright(Decision d, std::size_t fault) {
@@ -55,19 +63,19 @@ Decision name_nothing(Decision d, std::size_t nearest) {
 
 }  // namespace
 
-bool explains_enough(double adequacy, double healthy_adequacy, double usual_adequacy) {
-  return adequacy <=
-         std::hypot(k::fault_allowance * std::max(1.0, usual_adequacy), k::unexplained_part * healthy_adequacy);
+bool explains_enough(const HypothesisEvidence& fault, double healthy_adequacy, double usual_adequacy) {
+  const double as_health = k::fault_allowance * std::max(1.0, usual_adequacy);
+  return fault.adequacy <= std::hypot(as_health, fault.at_worst ? 0.0 : k::unexplained_part * healthy_adequacy);
 }
 
 Decision decide(const Evidence& e) {
   Decision d;
   for (const HypothesisEvidence& h : e.hypotheses) d.probabilities.push_back(h.probability);
-  if (e.error <= e.threshold) return d;
+  if (e.error <= e.threshold) return call_healthy(std::move(d), e);
   if (const auto outright = seen_outright(e)) return name_outright(std::move(d), *outright);
   const std::size_t best = most_probable(e.hypotheses);
   const HypothesisEvidence& h = e.hypotheses[best];
-  if (h.fault && explains_enough(h.adequacy, e.hypotheses.front().adequacy, e.usual_adequacy))
+  if (h.fault && explains_enough(h, e.hypotheses.front().adequacy, e.usual_adequacy))
     return name_fitted(std::move(d), best);
   return name_nothing(std::move(d), best);
 }

@@ -5,13 +5,22 @@
 #include <algorithm>
 
 #include "base/error.h"
+#include "diagnose/conditions.h"
 #include "diagnose/constants.h"
 #include "diagnose/gross.h"
 #include "diagnose/hypotheses.h"
+#include "diagnose/moved.h"
 #include "diagnose/onset.h"
 #include "evidence/probabilities.h"
 #include "fit/chart.h"
+#include "fit/error_model.h"
+#include "fit/log_data.h"
 #include "fit/nominal.h"
+#include "fit/tuned_state.h"
+#include "parameters/list.h"
+#include "servodx/rig.h"
+#include "simulate/scenario.h"
+#include "tune/tune.h"
 
 namespace servodx {
 namespace {
@@ -92,7 +101,7 @@ std::vector<HypothesisResult> results_of(const HypothesisFits& fits, const LogDa
     r.severity = f.severity;
     r.severity_lower = std::min(f.severity_lower, f.severity_upper);
     r.severity_upper = std::max(f.severity_lower, f.severity_upper);
-    r.at_least = f.at_least;
+    r.at_least = f.at_least, r.at_worst = f.at_worst;
     r.adequacy = f.channel_adequacy.empty() ? failed_adequacy
                                             : *std::max_element(f.channel_adequacy.begin(), f.channel_adequacy.end());
     if (f.ok) r.null = candidate_at(base, f)[row::servovalve_null];
@@ -117,9 +126,10 @@ Assessment assess(const Log& log, const Table& tuned, const RigFile& rig, const 
   options.validate();
   Assessment out;
   out.log = log.path, out.sha256 = log.sha256, out.notes = log.notes;
-  const LogData data = prepare(log, rig, moving_average_of(tuned));
-  require_channels(data);
+  LogData data = prepare(log, rig, moving_average_of(tuned));
   const ErrorModel error = required_error_model(tuned);
+  for (std::string& note : leave_out_unknown_channels(data, error)) out.notes.push_back(std::move(note));
+  require_channels(data);
   const ParameterVector base = candidate_of(tuned);
   const HypothesisSettings settings = settings_of(rig, options);
   out.test = conditions_of(log);

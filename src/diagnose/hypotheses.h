@@ -11,9 +11,14 @@
 #include <vector>
 
 #include "diagnose/constants.h"
+#include "faults/fault.h"
 #include "faults/registry.h"
+#include "fit/chart.h"
 #include "fit/error_model.h"
+#include "fit/log_data.h"
 #include "fit/problem.h"
+#include "optimise/problem.h"
+#include "simulate/scenario.h"
 
 namespace servodx {
 
@@ -22,7 +27,7 @@ struct HypothesisFit {
   bool ok = false;
   double misfit = 1e300;                          // -2 log likelihood, priors included
   double severity = 0;                            // in the fault's unit
-  bool at_least = false;                          // it stands at the mild end of its range
+  bool at_least = false, at_worst = false;        // it stands at the mild, at the far end of its range
   double severity_lower = 0, severity_upper = 0;  // 95 %, from the curvature, cut at the range that was searched
   Point point;
   std::vector<FreeValue> free;

@@ -6,7 +6,15 @@
 #include "diagnose/constants.h"
 #include "diagnose/severity.h"
 #include "diagnose/whitening.h"
+#include "faults/fault.h"
+#include "fit/chart.h"
+#include "fit/error_model.h"
 #include "fit/identifiability.h"
+#include "fit/log_data.h"
+#include "fit/problem.h"
+#include "optimise/box_least_squares.h"
+#include "optimise/problem.h"
+#include "simulate/scenario.h"
 
 namespace servodx {
 namespace {
@@ -79,7 +87,9 @@ void measure_severity(HypothesisFit& fit, const Fault& fault) {
       k::deviates_of_95 * std::hypot(fit.standard_error[0] * std::max(1.0, worst), fault.spread / range);
   fit.severity = severity.from_unit(at);
   const auto beyond_health = [&](double u) { return std::abs(severity.from_unit(u) - fault.healthy); };
-  fit.at_least = std::abs(at - (beyond_health(0.0) < beyond_health(1.0) ? 0.0 : 1.0)) < k::at_least_part;
+  const double mild = beyond_health(0.0) < beyond_health(1.0) ? 0.0 : 1.0;
+  fit.at_least = std::abs(at - mild) < k::at_end_part;
+  fit.at_worst = std::abs(at - (1 - mild)) < k::at_end_part;
   fit.severity_lower = severity.from_unit(std::clamp(at - half, 0.0, 1.0));
   fit.severity_upper = severity.from_unit(std::clamp(at + half, 0.0, 1.0));
 }

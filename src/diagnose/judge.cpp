@@ -1,11 +1,20 @@
 #include "diagnose/judge.h"
 
 #include <algorithm>
+#include <cstddef>
+#include <numeric>
+#include <vector>
 
+#include "diagnose/conditions.h"
+#include "diagnose/constants.h"
+#include "diagnose/healthy_law.h"
+#include "evidence/posterior.h"
 #include "evidence/rank_promise.h"
 
 namespace servodx {
 namespace {
+
+namespace k = diagnose_constants;
 
 void size_by_fit(Diagnosis& d, const HypothesisResult& h) {
   d.severity = {h.severity, h.severity_lower, h.severity_upper};
@@ -25,34 +34,62 @@ std::optional<Diagnosis::Unlike> unlike_all(const TestConditions& test, const Ba
   return Diagnosis::Unlike{nearest->log, *nearest->test};
 }
 
-double p_value_of(double error, const Baseline& baseline) {
+double p_value_of(double error, const Baseline& baseline, const HealthyLaw& law) {
   std::vector<double> healthy;
-  for (const Baseline::Score& s : baseline.scores) healthy.push_back(s.score);
+  for (const std::size_t i : law.positions()) healthy.push_back(baseline.scores[i].score);
   return rank_p_value(error, healthy);
+}
+
+// Health against all faults together: even where the verdict turns, so that no probability contradicts it. The faults
+// share the rest as their fits do.
+void weigh_health(std::vector<double>& probabilities, double chance, double rate) {
+  const double odds = factor_for_nothing(chance) / factor_for_nothing(rate), healthy = odds / (1 + odds);
+  const double faults = std::accumulate(probabilities.begin() + 1, probabilities.end(), 0.0);
+  if (!(faults > 0)) return;
+  probabilities.front() = healthy;
+  for (std::size_t i = 1; i < probabilities.size(); ++i) probabilities[i] *= (1 - healthy) / faults;
+}
+
+Suspicion suspicion_of(const HypothesisResult& h, double gain, const HealthyLaw& law) {
+  return {h.fault,
+          h.severity,
+          h.severity_lower,
+          h.severity_upper,
+          std::min(1.0, law.chance_of_gain(gain) / k::share_of_gain),
+          law.logs(),
+          law.logs_needed(gain)};
 }
 
 }  // namespace
 
 Evidence evidence_of(const Assessment& a, const Baseline& baseline) {
+  const HealthyLaw law(baseline, &a.test);
   Evidence e;
-  e.error = score_of(a, usual_gains(baseline));
-  e.threshold = baseline.threshold;
+  e.error = law.error_of(score_of(a, usual_gains(baseline)), a.hypotheses.front().adequacy);
+  e.threshold = law.limit();
   e.usual_adequacy = baseline.adequacy_limit;
   e.gross = a.gross;
-  for (const HypothesisResult& h : a.hypotheses) e.hypotheses.push_back({h.fault, h.probability, h.adequacy});
+  for (const HypothesisResult& h : a.hypotheses)
+    e.hypotheses.push_back({h.fault, h.probability, h.adequacy, h.at_worst, h.gain});
   return e;
 }
 
 Diagnosis judge(Assessment a, const Baseline& baseline) {
   const Evidence evidence = evidence_of(a, baseline);
-  const Decision decision = decide(evidence);
+  Decision decision = decide(evidence);
   const HypothesisResult& told = a.hypotheses[decision.hypothesis];
   Diagnosis d;
   d.log = a.log;
   d.verdict = decision.verdict;
   d.error = evidence.error, d.threshold = evidence.threshold;
-  d.p_value = p_value_of(evidence.error, baseline);
-  d.baseline_logs = static_cast<int>(baseline.scores.size());
+  const HealthyLaw law(baseline, &a.test);
+  d.p_value = p_value_of(evidence.error, baseline, law);
+  d.baseline_logs = law.logs();
+  const double gain = score_of(a, usual_gains(baseline));
+  if (decision.verdict != VerdictKind::unknown && decision.severity != SeveritySource::seen_outright)
+    weigh_health(decision.probabilities, law.chance_of_gain(gain), law.rate());
+  if (decision.suspected && law.chance_of_gain(gain) <= k::worth_saying)
+    d.suspicion = suspicion_of(a.hypotheses[*decision.suspected], gain, law);
   d.unlike = unlike_all(a.test, baseline);
   for (std::size_t i = 0; i < a.hypotheses.size(); ++i)
     d.probabilities.push_back({a.hypotheses[i].fault, decision.probabilities[i]});

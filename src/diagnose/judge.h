@@ -6,9 +6,22 @@
 
 #include "diagnose/assessment.h"
 #include "diagnose/baseline.h"
+#include "diagnose/conditions.h"
 #include "diagnose/decide.h"
+#include "diagnose/moved.h"
+#include "faults/fault.h"
 
 namespace servodx {
+
+// What stands first in a log that cannot be told from healthy ones.
+struct Suspicion {
+  const Fault* fault = nullptr;
+  double severity = 0, lower = 0, upper = 0;  // [the fault's unit] 95 %
+  double rate = 1;                            // of false alarms at which it would be said, by the tail's law
+  int logs = 0;                               // healthy ones that set the limit
+  int logs_needed = 0;                        // until it would be said at the rate they can promise; 0: more do not
+                                              // help by themselves, -1: no number does
+};
 
 struct Diagnosis {
   std::string log;
@@ -21,7 +34,8 @@ struct Diagnosis {
     TestConditions test;
   };
   std::optional<Unlike> unlike;
-  const Fault* fault = nullptr;  // the one named
+  const Fault* fault = nullptr;        // the one named
+  std::optional<Suspicion> suspicion;  // of a healthy verdict
   struct Probability {
     const Fault* of = nullptr;  // null: healthy
     double value = 0;

@@ -10,6 +10,7 @@ namespace servodx::explain_constants {
 // Hold out.
 inline constexpr int folds = 5;                       // a fifth of the time is left out at once
 inline constexpr int blocks = 15;                     // of time, over all logs together: three a fold
+inline constexpr int blocks_of_sweep = 4;             // times as many on a test stand: null is passed in a moment
 inline constexpr int bootstrap_draws = 1000;          // for the 5 % and 95 % quantiles of a held-out gain
 inline constexpr double gauss_newton_damping = 1e-6;  // of the diagonal: a number that no row shows stays
 inline constexpr double gauss_newton_least = 1e-9;    // the same where the diagonal is zero
@@ -32,11 +33,25 @@ inline constexpr int curve_dampings = 3;         // tried at once: a curve's ker
 inline constexpr int fitted = 8;               // causes with a name that are fitted, each round
 inline constexpr int judged = 4;               // of these, judged on held-out data
 inline constexpr int rare_share = 2;           // rarer causes get this part of either
-inline constexpr int standing_tried = 2;       // causes that are no news, fitted to be said to stand
+inline constexpr int standing_tried = 2;       // causes that are no news, where their shares are not asked
+inline constexpr double least_worth = 0.05;    // of the held-out misfit: without healthy data to compare with, a name
+                                               // that removes less answers nothing
+inline constexpr double of_shares = 0.5;       // of the rate of false alarms; sizes and what is left have the rest
 inline constexpr int most_causes = 3;          // a fourth name would rest on what three left
 inline constexpr int curves_fitted = 3;        // learnt curves, fitted and judged: each has seven knots
 inline constexpr double both_questions = 0.5;  // of the level, each: is a size news, and is the log. By definition
 inline constexpr double odds = 5.99;           // 2 ln 20: at odds below twenty to one a cause does as well
 inline constexpr double alarm_by_mark = 0.05;  // of nothing being wrong where no level is asked
+
+// The null of shares (explain/healthy.cpp): -ln(1 - share) of the best cause of a healthy log, on the mean, and the
+// logs that this counts for. From the twenty logs of two foreign rigs' baselines.
+inline constexpr double usual_share = 0.15;
+inline constexpr double usual_logs = 10;
+
+// Verdict.
+inline constexpr double worth_saying = 0.5;   // chance: what healthy logs show less often than not is said
+inline constexpr double arrived = 3;          // times the noise: a tune that leaves more has not arrived
+inline constexpr double much_of_block = 0.2;  // of what passes through a block, chosen by hand
+inline constexpr double most_of_it = 0.5;     // of the held-out misfit: a name that removes less leaves most of it
 
 }  // namespace servodx::explain_constants

@@ -45,7 +45,9 @@ void size_up(const Subject& subject, const EngineOptions& options, Selected& sel
 
 // Where healthy data say that the base holds, re-tuning is only reported beside what was found.
 void compare_with_retuning(const Subject& subject, const EngineOptions& options, Explanation& out) {
-  if (out.causes.empty() || !subject.retunes() || !subject.holds() || options.stopped()) return;
+  if (!options.compare_with_retuning || out.causes.empty() || !subject.retunes() || !subject.holds() ||
+      options.stopped())
+    return;
   if (!out.wide.ok) out.wide = retuned_alone(subject, options, out.before);
   if (!out.wide.ok) return;
   out.retuned = heldout_gain(out.before, out.wide, options.seed);

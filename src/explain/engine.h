@@ -37,6 +37,7 @@ struct CandidateResult {
   double predicted_gain = 0, p_new = 1;
   bool fitted = false;
   Interval heldout_gain, beyond_retuning;
+  Interval share;  // of the held-out misfit of what it speaks of
   double delta_bic = 0;
   Fate fate = Fate::not_looked_at;
 };
@@ -58,7 +59,12 @@ struct EngineOptions {
   // and a cause need not be news by itself.
   std::function<double(const ExplainedFit&, int round)> p_left;
   double level = explain_constants::alarm_by_mark;  // something is new below this; both questions share it
-  std::function<bool(const Cause&)> among;          // causes to look at; empty: all
+  // Chance that some cause removes as large a share of what healthy data miss, held out; empty: not asked. Then a cause
+  // that is no news by its size is news by its share, where this lies below a level of its own.
+  std::function<double(double share)> p_share;
+  double level_of_shares = 0;
+  std::function<bool(const Cause&)> among;  // causes to look at; empty: all
+  bool compare_with_retuning = true;        // where the base holds: what a cause gains beyond re-tuning
 
   Folds hold_out() const { return {folds, blocks}; }
   bool stopped() const { return stop && stop->load(); }

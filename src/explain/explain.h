@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "evidence/heldout_gain.h"
 #include "explain/blocks.h"
 #include "explain/curves.h"
 #include "explain/engine.h"
@@ -14,8 +15,10 @@
 #include "explain/outcome.h"
 #include "explain/show.h"
 #include "parameters/table.h"
+#include "servodx/rig.h"
 #include "signals/log.h"
 #include "signals/rig_file.h"
+#include "simulate/scenario.h"
 
 namespace servodx {
 
@@ -25,6 +28,7 @@ struct ExplainOptions {
   bool quiet = false;
   double level = 0.01;                    // false-alarm rate at which a cause counts as new
   std::vector<std::string> without = {};  // effects that are left out of the list
+  bool keep_worse = false;  // write the extension even where the free simulation's held-out rms is worse with it
   const std::atomic<bool>* stop = nullptr;
 };
 
@@ -51,7 +55,7 @@ struct ExplainedCandidate {
   double predicted_gain = 0;
   std::optional<double> p_new;
   bool fitted = false;
-  Interval heldout_gain;
+  Interval heldout_gain, share;
   double delta_bic = 0;
 };
 
@@ -61,6 +65,24 @@ struct PlaceScore {
   std::string where, variable;
   double gain = 0;
   std::optional<double> p_new;
+};
+
+// What stands first in logs that cannot be told from healthy ones.
+struct ExplainSuspicion {
+  std::string effect, where;
+  std::optional<ExplainedParameter> size;  // its first number
+  Interval share;                          // of the held-out misfit of what it speaks of
+  double rate = 1;                         // of false alarms at which it would be said, by the tail's law
+  int logs = 0, logs_needed = 0;           // healthy ones; until it would be said at the rate they can promise; 0, -1:
+                                           // no number does
+};
+struct ExplainedProbability {
+  std::string cause;
+  double value = 0;
+};
+struct ExplainedProbabilities {  // evidence/posterior.h
+  std::vector<ExplainedProbability> causes;
+  double unlisted = 0, nothing = 1;
 };
 
 struct ExplainResult {
@@ -75,12 +97,15 @@ struct ExplainResult {
   MissingInputs missing;            // as tuned, what is missing over time, were it all at one place
   std::vector<ExplainedCause> causes, standing;
   std::vector<ExplainedCandidate> candidates;
-  Interval retuned;                                // held-out gain of re-tuning alone
-  Interval heldout_gain;                           // of all causes together over re-tuning alone
-  double adequacy_before = 0, adequacy_after = 0;  // misfit over independent samples
-  std::optional<double> p_adequacy;                // chance that a healthy log is left with as much, after
-  Table table;                                     // extended
-  std::vector<ParameterVector> before, after;      // candidates of each log, as tuned and with the causes
+  std::optional<ExplainSuspicion> suspicion;            // of a sufficient simulation
+  std::optional<ExplainedProbabilities> probabilities;  // where healthy logs are there to compare with
+  bool worse_withheld = false;                          // the table is as tuned: the extension's held-out rms is worse
+  Interval retuned;                                     // held-out gain of re-tuning alone
+  Interval heldout_gain;                                // of all causes together over re-tuning alone
+  double adequacy_before = 0, adequacy_after = 0;       // misfit over independent samples
+  std::optional<double> p_adequacy;                     // chance that a healthy log is left with as much, after
+  Table table;                                          // extended
+  std::vector<ParameterVector> before, after;           // candidates of each log, as tuned and with the causes
   std::vector<std::string> notes;
   long simulations = 0, failed_simulations = 0;
   bool interrupted = false;

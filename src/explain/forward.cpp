@@ -6,8 +6,12 @@
 #include <optional>
 #include <utility>
 
+#include "evidence/heldout_gain.h"
+#include "explain/cause_score.h"
 #include "explain/constants.h"
 #include "explain/forward_rules.h"
+#include "explain/hold_out.h"
+#include "explain/outcome.h"
 #include "explain/score.h"
 
 namespace servodx {
@@ -28,8 +32,9 @@ struct Round {
 struct Trial {
   ExplainedFit fit;
   ExplainedFit retuned;  // the same on top of re-tuning
-  Interval heldout_gain, beyond_retuning;
+  Interval heldout_gain, beyond_retuning, share;
   double delta_bic = 0;
+  bool is_new = false;  // by its size, by its share, or because the data are abnormal
   bool stands = false;  // judged, and not refused
 
   int cause() const { return fit.causes.back(); }
@@ -51,6 +56,7 @@ WholeEvidence whole_before(const EngineOptions& options, const Selected& so_far)
   w.accepted = so_far.rounds;
   w.compared = static_cast<bool>(options.p_left);
   w.level = level_of_round(options.level, w.compared, w.accepted);
+  if (options.p_share) w.level_of_shares = options.level_of_shares;
   if (w.compared) w.p_left = options.p_left(so_far.fit, so_far.rounds);
   if (is_abnormal(w)) w.p_left_rows = options.p_left(so_far.fit, so_far.rounds + 1);
   return w;
@@ -83,7 +89,8 @@ Round look(const Subject& subject, const EngineOptions& options, const Selected&
 std::vector<Trial> fit_best(const Subject& subject, const EngineOptions& options, bool begun, const Round& round,
                             const Selected& so_far, double degrees) {
   const bool standing = so_far.rounds == 0 && options.p_new && !begun;
-  const Budget budget{options.fitted, options.fitted / rare_share, standing ? standing_tried : 0};
+  const int old = options.p_share ? options.fitted : standing_tried;
+  const Budget budget{options.fitted, options.fitted / rare_share, standing ? old : 0};
   std::vector<Trial> out;
   for (int c : order_of_trial(round.evidence, round.whole, budget, std::log(std::max(2.0, degrees)))) {
     if (options.stopped()) break;
@@ -106,6 +113,7 @@ void measure(const Subject& subject, const EngineOptions& options, const Round& 
   t.delta_bic = delta_bic(so_far.fit, t.fit, degrees);
   cross_validate(subject, t.fit, options.hold_out());
   t.heldout_gain = heldout_gain(so_far.fit, t.fit, options.seed);
+  t.share = heldout_share(subject, subject.causes()[at(t.cause())], so_far.fit, t.fit, options.seed);
   if (!so_far.retuned.ok) return;
   const CauseScore& score = round.scores[at(t.cause())];
   t.retuned = fit_causes(subject, t.fit.causes, &so_far.retuned, &score, quick_iterations, true);
@@ -119,12 +127,21 @@ FittedEvidence fitted_evidence(const Round& round, const Trial& t) {
   return {c.prior, is_new(c, round.whole), is_news_by_itself(c, round.whole), t.delta_bic};
 }
 
+// Healthy data are asked the same of the causes that have a name.
+bool is_news_by_share(const Subject& subject, const EngineOptions& options, const Round& round, const Trial& t) {
+  const Cause& c = subject.causes()[at(t.cause())];
+  return options.p_share && !c.curve && c.prior >= 1 && is_news_by_share(options.p_share(t.share.value), round.whole);
+}
+
 JudgedEvidence judged_evidence(const Subject& subject, const EngineOptions& options, const Round& round,
                                const Selected& so_far, const Trial& t) {
   const FittedEvidence f = fitted_evidence(round, t);
+  const bool by_share = is_news_by_share(subject, options, round, t);
   JudgedEvidence j;
   j.curve = subject.causes()[at(t.cause())].curve;
-  j.is_new = f.is_new, j.news_by_itself = f.news_by_itself;
+  j.is_new = f.is_new || by_share, j.news_by_itself = f.news_by_itself || by_share;
+  j.compared = static_cast<bool>(options.p_new);
+  j.share = t.share.value;
   j.abnormal_rows = has_abnormal_rows(round.whole);
   j.level = round.whole.level;
   if (j.abnormal_rows) j.p_left_rows = options.p_left(t.fit, so_far.rounds + 1);
@@ -151,8 +168,11 @@ void judge(const Subject& subject, const EngineOptions& options, const Round& ro
     r.fate = t.delta_bic <= 0 ? Fate::not_worth_its_numbers : Fate::others_fit_better;
     if (!budget.takes(fitted_evidence(round, t))) continue;
     measure(subject, options, round, so_far, out.degrees, t);
-    r.delta_bic = t.delta_bic, r.heldout_gain = t.heldout_gain, r.beyond_retuning = t.beyond_retuning;
-    const std::optional<Fate> refused = refusal_of(judged_evidence(subject, options, round, so_far, t));
+    r.delta_bic = t.delta_bic, r.heldout_gain = t.heldout_gain, r.beyond_retuning = t.beyond_retuning,
+    r.share = t.share;
+    const JudgedEvidence judged = judged_evidence(subject, options, round, so_far, t);
+    const std::optional<Fate> refused = refusal_of(judged);
+    t.is_new = judged.is_new;
     t.stands = !refused;
     if (refused) r.fate = *refused;
     if (refused == Fate::abnormal_with_it && so_far.rounds == 0 && t.heldout_gain.lower > 0)
@@ -193,7 +213,7 @@ Rivals rivals(const EngineOptions& options, const Round& round, const Selected& 
 Trial* best_of(const EngineOptions& options, const Round& round, const Selected& so_far, std::vector<Trial>& trials) {
   Trial* best = nullptr;
   for (Trial& t : trials)
-    if (t.stands && is_new(round.evidence[at(t.cause())], round.whole))
+    if (t.stands && t.is_new)
       if (!best || first_is_better(rivals(options, round, so_far, t, *best))) best = &t;
   return best;
 }
@@ -221,7 +241,7 @@ bool accept_one_more(const Subject& subject, const EngineOptions& options, bool 
   std::vector<Trial> trials = fit_best(subject, options, begun, round, so_far, out.degrees);
   judge(subject, options, round, so_far, trials, out);
   for (const Trial& t : trials)
-    if (t.stands && !is_new(round.evidence[at(t.cause())], round.whole)) {
+    if (t.stands && !t.is_new) {
       out.candidates[at(t.cause())].fate = Fate::not_beyond_healthy;
       out.standing.push_back(result_of(subject, so_far, t, false));
     }

@@ -32,6 +32,10 @@ bool is_new(const ScoredEvidence& c, const WholeEvidence& w) {
   return is_news_by_itself(c, w) || is_abnormal(w);
 }
 
+bool is_news_by_share(double p_share, const WholeEvidence& w) {
+  return w.accepted == 0 && p_share <= w.level_of_shares;
+}
+
 std::vector<int> order_of_trial(const std::vector<ScoredEvidence>& causes, const WholeEvidence& whole, Budget budget,
                                 double least_gain) {
   std::vector<ScoredEvidence> order = causes;
@@ -44,7 +48,9 @@ std::vector<int> order_of_trial(const std::vector<ScoredEvidence>& causes, const
   std::vector<int> out;
   for (const ScoredEvidence& c : order) {
     if (!c.looked_at || c.accepted_already || c.predicted_gain < least_gain) continue;
-    int& left = !is_new(c, whole) ? budget.standing : is_rare(c.prior) ? budget.rare : budget.named;
+    const bool is_old = !is_new(c, whole);
+    if (is_old && is_rare(c.prior)) continue;
+    int& left = is_old ? budget.standing : is_rare(c.prior) ? budget.rare : budget.named;
     if (left-- > 0) out.push_back(c.cause);
   }
   return out;
@@ -64,7 +70,6 @@ std::vector<int> order_of_judging(const std::vector<FittedEvidence>& fitted) {
 
 bool JudgingBudget::takes(const FittedEvidence& f) {
   if (f.delta_bic <= 0) return false;
-  if (!f.is_new) return true;
   return (is_rare(f.prior) ? rare_ : named_)-- > 0;
 }
 
@@ -74,6 +79,7 @@ std::optional<Fate> refusal_of(const JudgedEvidence& j) {
   if (has_to_restore && !(j.p_left_rows > j.level)) return Fate::abnormal_with_it;
   if (j.beside_retuning && j.beyond_retuning <= 0) return Fate::retuning_does_as_well;
   if (!(j.heldout_lower > 0)) return Fate::no_heldout_gain;
+  if (!j.compared && j.share < least_worth) return Fate::removes_too_little;
   return {};
 }
 

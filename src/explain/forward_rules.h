@@ -15,11 +15,12 @@ namespace servodx {
 
 // The data as a whole, before a round.
 struct WholeEvidence {
-  int accepted = 0;        // causes so far
-  double level = 0;        // chance below which something is new, in this round
-  bool compared = false;   // with how healthy data are left; else the next two mean nothing
-  double p_left = 1;       // chance that healthy data are left as wrong
-  double p_left_rows = 1;  // the same by the simulation's channels alone, without the blocks
+  int accepted = 0;            // causes so far
+  double level = 0;            // chance below which something is new, in this round
+  bool compared = false;       // with how healthy data are left; else the next two mean nothing
+  double level_of_shares = 0;  // chance of a share below which it is news; 0: not asked
+  double p_left = 1;           // chance that healthy data are left as wrong
+  double p_left_rows = 1;      // the same by the simulation's channels alone, without the blocks
 };
 // A second false alarm on the same data shall be as rare as two.
 double level_of_round(double level, bool compared, int accepted);
@@ -41,8 +42,11 @@ bool is_news_by_itself(const ScoredEvidence& cause, const WholeEvidence& whole);
 // only takes some of its size.
 bool is_new(const ScoredEvidence& cause, const WholeEvidence& whole);
 
+// By what it removes of the held-out misfit. Asked of the first cause alone, as of healthy data.
+bool is_news_by_share(double p_share, const WholeEvidence& whole);
+
 struct Budget {
-  int named = 0, rare = 0, standing = 0;  // causes: new ones, new rare ones, and such as are no news
+  int named = 0, rare = 0, standing = 0;  // causes: new ones, new rare ones, and common ones that are no news
 };
 // Causes to fit, in order: what is new first, by itself before what is so because the data are abnormal; then by what
 // it promises. One that promises less than its one number costs is not fitted.
@@ -76,6 +80,8 @@ struct JudgedEvidence {
   bool beside_retuning = false;  // it has to gain on top of re-tuning
   double beyond_retuning = 0;    // held-out share that it removes there
   double heldout_lower = 0;      // lower end of the held-out share that it removes
+  bool compared = false;         // with healthy data
+  double share = 0;              // of the held-out misfit of what it speaks of
 };
 // Why it is not a candidate to be taken; none: it is.
 std::optional<Fate> refusal_of(const JudgedEvidence& judged);

@@ -4,10 +4,20 @@
 #include <cmath>
 
 #include "base/student.h"
+#include "evidence/log_scatter.h"
+#include "explain/cause_score.h"
+#include "explain/constants.h"
 #include "explain/curves.h"
+#include "explain/fit_causes.h"
+#include "explain/hold_out.h"
 #include "explain/replay.h"
 #include "explain/score.h"
+#include "explain/subject.h"
 #include "explain/valve.h"
+#include "optimise/problem.h"
+#include "parameters/list.h"
+#include "servodx/rig.h"
+#include "simulate/scenario.h"
 
 namespace servodx {
 namespace {
@@ -125,6 +135,24 @@ HealthyScore summarise(const Subject& subject, const CauseScore& score) {
   return out;
 }
 
+std::vector<HealthyShare> heldout_shares(ValveSubject& subject, const ExplainedFit& base) {
+  EngineOptions engine;
+  engine.most = 1;
+  engine.compare_with_retuning = false;
+  engine.among = [](const Cause& c) { return !c.curve && c.prior >= 1; };
+  Explanation begun;
+  begun.before = base;
+  cross_validate(subject, begun.before, engine.hold_out());
+  const Explanation e = explain(subject, engine, &begun);
+  std::vector<HealthyShare> out;
+  for (const CandidateResult& r : e.candidates) {
+    if (!r.fitted || r.delta_bic <= 0) continue;
+    const Cause& c = subject.causes()[static_cast<std::size_t>(r.cause)];
+    out.push_back({c.effect, c.where, r.share.value, r.share.lower, c.prior});
+  }
+  return out;
+}
+
 ScoredBlocks score_blocks(const ValveSubject& valve, const Point& at, const KnownRig& known) {
   ScoredBlocks out;
   ReplaySubject blocks(valve, at, known);
@@ -174,6 +202,7 @@ HealthyReference score_healthy(const std::vector<Log>& logs, const Table& tuned,
       ScoredBlocks blocks = score_blocks(subject, fit.point, all.known(static_cast<int>(l)));
       h.scores.insert(h.scores.end(), blocks.scores.begin(), blocks.scores.end());
       h.misses.insert(h.misses.end(), blocks.misses.begin(), blocks.misses.end());
+      h.shares = heldout_shares(subject, fit), h.has_shares = true;
     }
     count(subject);
     if (told && !told(0.2 + 0.8 * static_cast<double>(out.logs.size()) / n)) break;
@@ -193,7 +222,31 @@ KnownRig HealthyReference::known(int left_out) const {
   return out;
 }
 
-HealthyTest::HealthyTest(const HealthyReference& reference) : reference_(reference) {
+namespace {
+
+// Misfits are ratios: what removes nine tenths and then nine tenths of the rest is twice as much. [-]
+double excess_of(double share) {
+  constexpr double all_but = 1e-9;  // nothing removes all
+  return -std::log(std::max(all_but, 1 - share));
+}
+
+std::vector<double> best_shares(const HealthyReference& reference) {
+  std::vector<double> out;
+  for (const HealthyLog& l : reference.logs) {
+    if (!l.has_shares) continue;
+    double best = 0;
+    for (const HealthyShare& s : l.shares) best = std::max(best, s.share);
+    out.push_back(excess_of(best));
+  }
+  return out;
+}
+
+}  // namespace
+
+HealthyTest::HealthyTest(const HealthyReference& reference)
+    : reference_(reference),
+      logs_with_shares_(static_cast<int>(best_shares(reference).size())),
+      shares_(best_shares(reference), {explain_constants::usual_share, explain_constants::usual_logs}) {
   const std::size_t n = reference.logs.size();
   for (std::size_t i = 0; i < n; ++i)
     for (const HealthyScore& s : reference.logs[i].scores) {
@@ -290,15 +343,9 @@ double HealthyTest::together(double alone) const {
 
 namespace {
 
-// Chance that one more positive number of the same kind is as large: Student's predictive of the logarithms.
+// Chance that one more positive number of the same kind is as large.
 double chance_above(const std::vector<double>& healthy, double value) {
-  std::vector<double> logs;
-  for (double v : healthy)
-    if (v > 0) logs.push_back(std::log(v));
-  if (logs.size() < 3 || !(value > 0)) return 1;
-  const auto n = static_cast<double>(logs.size());
-  const double t = (std::log(value) - mean(logs)) / std::sqrt(std::max(1e-6, variance(logs)) * (1 + 1 / n));
-  return t > 0 ? 0.5 * student_tail(t, n - 1) : 1;
+  return deviate_of(value, healthy, {}).chance_above();
 }
 
 }  // namespace
@@ -307,6 +354,12 @@ double HealthyTest::adequacy(double value) const {
   std::vector<double> healthy;
   for (const HealthyLog& l : reference_.logs) healthy.push_back(l.adequacy);
   return chance_above(healthy, value);
+}
+
+double HealthyTest::share(double of_misfit) const { return shares_.chance(excess_of(of_misfit)); }
+
+int HealthyTest::logs_needed(double share, double asked) const {
+  return shares_.logs_needed(excess_of(share), asked, explain_constants::of_shares);
 }
 
 double HealthyTest::miss(const Miss& part) const {

@@ -16,9 +16,15 @@
 #include <utility>
 #include <vector>
 
+#include "evidence/tail_law.h"
 #include "explain/blocks.h"
+#include "explain/cause_score.h"
 #include "explain/engine.h"
+#include "explain/subject.h"
+#include "explain/valve.h"
+#include "optimise/problem.h"
 #include "parameters/table.h"
+#include "servodx/rig.h"
 #include "signals/log.h"
 #include "signals/rig_file.h"
 
@@ -32,11 +38,19 @@ struct HealthyScore {
   double prior = 1;                 // its share of the false alarms beside the others'
   double thickness = std::nan("");  // ln of the viscosity of the log's oil (Subject::thickness)
 };
+// What a cause removes of a healthy log's held-out misfit, found as a suspect's is.
+struct HealthyShare {
+  std::string effect, where;
+  double share = 0, lower = 0;  // and the lower end of its interval
+  double prior = 1;
+};
 struct HealthyLog {
   std::string log, sha256;
   double adequacy = 1;  // misfit over independent samples, re-tuned
   std::vector<HealthyScore> scores;
   std::vector<Miss> misses;
+  std::vector<HealthyShare> shares;
+  bool has_shares = false;  // they were looked for
   std::vector<UsualError> errors;
   double air = std::nan("");            // [-] free air, as fitted
   double command_slope = std::nan("");  // of the command between samples, as fitted
@@ -82,6 +96,11 @@ class HealthyTest {
   double spread(const HealthyScore& of, std::size_t probe) const;
   // Chance that a part misses as much in a healthy log; 1 where fewer than three speak of it.
   double miss(const Miss& part) const;
+  // Chance that some cause removes such a share of a healthy log's held-out misfit.
+  double share(double of_misfit) const;
+  int logs_with_shares() const { return logs_with_shares_; }
+  // Healthy logs that it takes until such a share is news at the rate they can promise (TailLaw::logs_needed).
+  int logs_needed(double share, double asked) const;
   // That any of these parts does, by Bonferroni.
   double any(const std::vector<Miss>& parts) const;
 
@@ -95,6 +114,8 @@ class HealthyTest {
   double believed(const OfCause& cause, double surprise, int left_out, double prior) const;
   const HealthyReference& reference_;
   std::map<std::pair<std::string, std::string>, OfCause> causes_;
+  int logs_with_shares_ = 0;
+  TailLaw shares_;
   std::vector<double> smallest_;  // [healthy log] of its chances beside the others
 };
 

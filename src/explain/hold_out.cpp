@@ -4,10 +4,12 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <string_view>
 #include <utility>
 
 #include "explain/constants.h"
 #include "explain/deviance.h"
+#include "optimise/problem.h"
 
 namespace servodx {
 namespace {
@@ -107,6 +109,17 @@ std::vector<double> by_block(const ExplainedFit& fit) {
   return out;
 }
 
+std::vector<double> by_block(const Subject& subject, const ExplainedFit& fit, std::string_view signal) {
+  std::vector<double> out;
+  for (const std::vector<double>& block : fit.heldout) {
+    double sum = 0;
+    for (std::size_t i = 0; i < block.size(); ++i)
+      if (subject.series()[i].signal == signal) sum += block[i];
+    out.push_back(sum);
+  }
+  return out;
+}
+
 }  // namespace
 
 void cross_validate(const Subject& subject, ExplainedFit& fit, const Folds& folds) {
@@ -138,6 +151,13 @@ void cross_validate(const Subject& subject, ExplainedFit& fit, const Folds& fold
 
 Interval heldout_gain(const ExplainedFit& before, const ExplainedFit& after, std::uint64_t seed) {
   return heldout_gain(by_block(before), by_block(after), seed, bootstrap_draws);
+}
+
+Interval heldout_share(const Subject& subject, const Cause& cause, const ExplainedFit& before,
+                       const ExplainedFit& after, std::uint64_t seed) {
+  if (!is_of_sensor(cause)) return heldout_gain(before, after, seed);
+  const std::string_view signal = std::string_view(cause.where).substr(sensor_place.size());
+  return heldout_gain(by_block(subject, before, signal), by_block(subject, after, signal), seed, bootstrap_draws);
 }
 
 }  // namespace servodx

@@ -22,5 +22,8 @@ struct Folds {
 void cross_validate(const Subject& subject, ExplainedFit& fit, const Folds& folds);
 // Fraction of `before`'s held-out misfit that `after` removes, with its block-bootstrap interval (90 %).
 Interval heldout_gain(const ExplainedFit& before, const ExplainedFit& after, std::uint64_t seed);
+// The same of what a cause speaks of: a sensor's fault of its own channel, any other cause of all.
+Interval heldout_share(const Subject& subject, const Cause& cause, const ExplainedFit& before,
+                       const ExplainedFit& after, std::uint64_t seed);
 
 }  // namespace servodx

@@ -18,6 +18,7 @@ enum class Fate {
   abnormal_with_it,       // no news by itself, and with it the data stay unlike healthy ones
   retuning_does_as_well,  // on held-out data
   no_heldout_gain,        // beyond its interval
+  removes_too_little,     // too small a share to be an answer, and no healthy data to compare with
   not_beyond_healthy,     // helps, and healthy logs show it too
   not_missed_later,       // taken, and left out again once others were in
   curve_does_better,      // taken, and replaced by a curve without a name

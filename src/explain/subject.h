@@ -7,9 +7,11 @@
 #include <cmath>
 #include <functional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "optimise/box_least_squares.h"
+#include "optimise/problem.h"
 
 namespace servodx {
 
@@ -44,6 +46,9 @@ struct Cause {
   // Name of the base's numbers that it goes on where they end, a factor on them: its size is then what they are in all.
   std::string atop = "";
 };
+
+inline constexpr std::string_view sensor_place = "sensor:";  // and the signal
+inline bool is_of_sensor(const Cause& cause) { return cause.where.starts_with(sensor_place); }
 
 // Rows of the residual that belong to one channel of one log, in order of time.
 struct Series {

@@ -9,11 +9,34 @@
 
 #include "base/error.h"
 #include "base/student.h"
+#include "effects/armature_angle.h"
+#include "effects/edge_transition.h"
+#include "effects/effect.h"
+#include "effects/flow_meter_lag.h"
+#include "effects/mains_pickup.h"
+#include "effects/mount_compliance.h"
+#include "effects/nozzle_land.h"
+#include "effects/orifice_length.h"
+#include "effects/registry.h"
+#include "effects/rod_cavity.h"
 #include "effects/row_effects.h"
+#include "effects/screen_drop.h"
+#include "effects/seal_shear.h"
+#include "effects/sensor_response.h"
+#include "effects/stiction.h"
+#include "effects/unexplained.h"
+#include "effects/viscosity_change.h"
 #include "explain/ties.h"
+#include "fit/chart.h"
 #include "fit/free_values.h"
+#include "fit/log_data.h"
 #include "fit/thin.h"
 #include "fit/tuned_state.h"
+#include "optimise/problem.h"
+#include "parameters/list.h"
+#include "servodx/log.h"
+#include "servodx/rig.h"
+#include "simulate/scenario.h"
 
 namespace servodx {
 namespace {
@@ -163,6 +186,8 @@ ValveSubject::ValveSubject(const std::vector<Log>& logs, const Table& tuned, con
   without_notch.mains_frequency.reset();
   for (const Log& log : logs) {
     logs_.push_back(prepare_thinned(log, without_notch, moving_average_of(tuned)));
+    for (std::string& note : leave_out_unknown_channels(logs_.back(), error_))
+      logs_.back().notes.push_back(std::move(note));
     require_channels(logs_.back());
   }
   add_causes(rig);

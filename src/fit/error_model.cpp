@@ -1,7 +1,11 @@
 #include "fit/error_model.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
+#include <string>
+#include <vector>
 
 #include "fit/log_data.h"
 #include "optimise/problem.h"
@@ -50,6 +54,19 @@ std::vector<double> sigma_of(const ChannelError* error, double noise, const std:
     for (std::size_t k = 0; k < s.size(); ++k)
       s[k] = std::sqrt(square(noise) + square(error->floor) + square(error->per_activity * act[k]));
   return s;
+}
+
+std::vector<std::string> leave_out_unknown_channels(LogData& log, const ErrorModel& model) {
+  std::vector<std::string> notes;
+  std::erase_if(log.channels, [&](const FitChannel& c) {
+    if (model.find(c.signal)) return false;
+    notes.push_back(fmt::format(
+        "{}: {} is left out: no tuning log held it, so how far the model is off there is not known; tune with logs "
+        "that have it",
+        log.path, info(c.signal).name));
+    return true;
+  });
+  return notes;
 }
 
 double effective_of(const ChannelError* error, const std::vector<double>& time) {
@@ -136,7 +153,8 @@ ErrorModel learn_error_model(const FitProblem& problem, const Point& x) {
         }
       }
     ChannelError error{signal, std::exp(lf), std::exp(ls), 0.0};
-    double correlation_time = 0;  // [s] mean over the logs: one that shows nothing but white noise must not hide the others'
+    double correlation_time =
+        0;  // [s] mean over the logs: one that shows nothing but white noise must not hide the others'
     for (std::size_t i = 0; i < residuals.size(); ++i) {
       const std::vector<double> sigma = sigma_of(&error, noises[i], activities[i]);
       std::vector<double> whitened(residuals[i].size());

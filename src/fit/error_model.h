@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "fit/log_data.h"
 #include "fit/problem.h"
 #include "optimise/problem.h"
 #include "parameters/table.h"
@@ -42,12 +43,16 @@ double effective_of(const ChannelError* error, const std::vector<double>& time);
 // sequence, Geyer 1992).
 double effective_fraction(const std::vector<double>& whitened);
 
+// Takes out the channels that no tuning log held, and says so, a note each: how wrong the model is there is not known,
+// and a sensor's noise is no measure of it.
+std::vector<std::string> leave_out_unknown_channels(LogData& log, const ErrorModel& model);
+
 // Maximum-likelihood floor and slope from the residuals of the problem's logs at x, pooled by signal.
 ErrorModel learn_error_model(const FitProblem& problem, const Point& x);
 
 // Sets the problem's whitening from the model at x: sigma(t) / sqrt(effective fraction), so that 0.5 |residual|^2 is a
-// log-likelihood. `each_log`: a channel of a log that the model fits worse than the others counts for less, and one that
-// it fits better for more; its variance has an inverse-gamma prior about the pooled one.
+// log-likelihood. `each_log`: a channel of a log that the model fits worse than the others counts for less, and one
+// that it fits better for more; its variance has an inverse-gamma prior about the pooled one.
 void apply_error_model(FitProblem& problem, const ErrorModel& model, const Point& x, bool each_log = false);
 
 }  // namespace servodx

@@ -134,6 +134,16 @@ std::string size_words(const Diagnosis& d) {
   return handy_interval(d.severity.value, d.severity.lower, d.severity.upper, unit_of(d.fault));
 }
 
+std::string suspicion_in_words(const Suspicion& s) {
+  const std::string more = s.logs_needed > 0 ? fmt::format("{} healthy logs like these would tell", s.logs_needed)
+                                             : "more healthy logs like these would not tell";
+  return fmt::format(
+      "first stands {}, {}, not beyond what {} fault-free logs can exclude: it would be said at a rate of {} false "
+      "alarms; {}",
+      words(label_of(s.fault)), handy_interval(s.severity, s.lower, s.upper, unit_of(s.fault)), s.logs, percent(s.rate),
+      more);
+}
+
 std::string test_words(const TestConditions& test) {
   std::string text =
       fmt::format("drive spans {} at about {} Hz", handy(test.drive_span, "A"), digits(test.drive_band, 2));

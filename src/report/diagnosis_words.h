@@ -41,6 +41,8 @@ std::string chance_words(const Diagnosis& d);
 std::string size_words(const HypothesisResult& hypothesis);
 std::string size_words(const Diagnosis& d);  // of the fault named; "" without a size
 
+// What stands first in a log that cannot be told from healthy ones.
+std::string suspicion_in_words(const Suspicion& suspicion);
 // "drive spans 43.1 mA at about 5.6 Hz, oil 41 degC"
 std::string test_words(const TestConditions& test);
 // Empty where a log of the baseline is of such a test.

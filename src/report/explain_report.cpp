@@ -58,6 +58,7 @@ Json to_json(const ExplainedCandidate& c) {
           {"p_new", c.p_new ? number(*c.p_new) : Json(nullptr)},
           {"fitted", c.fitted},
           {"heldout_gain", c.fitted ? to_json(c.heldout_gain) : Json(nullptr)},
+          {"heldout_share", c.fitted ? to_json(c.share) : Json(nullptr)},
           {"delta_bic", c.fitted ? number(c.delta_bic) : Json(nullptr)}};
 }
 
@@ -169,7 +170,47 @@ void add_causes(std::string& text, const std::vector<ExplainedCause>& causes) {
   }
 }
 
+Json to_json(const ExplainSuspicion& s) {
+  Json size = nullptr;
+  if (s.size)
+    size = {{"name", s.size->name},
+            {"value", number(s.size->value)},
+            {"std_error", number(s.size->std_error)},
+            {"unit", s.size->unit}};
+  return {{"name", s.effect},
+          {"where", s.where},
+          {"severity", size},
+          {"heldout_gain", to_json(s.share)},
+          {"rate", number(s.rate)},
+          {"logs", s.logs},
+          {"logs_needed", s.logs_needed > 0 ? Json(s.logs_needed) : Json(nullptr)}};
+}
+
+Json to_json(const ExplainedProbabilities& p) {
+  Json out = Json::object();
+  for (const ExplainedProbability& c : p.causes) out[c.cause] = number(c.value);
+  out["unlisted"] = number(p.unlisted), out["nothing"] = number(p.nothing);
+  return out;
+}
+
+// More logs, or why these do not help.
+std::string logs_words(int logs_needed) {
+  if (logs_needed > 0) return fmt::format("{} healthy logs like these would tell", logs_needed);
+  return "more healthy logs like these would not tell";
+}
+
 }  // namespace
+
+std::string suspicion_in_words(const ExplainSuspicion& s) {
+  std::string size;
+  if (s.size) size = fmt::format(", {} {}", s.size->name, handy(s.size->value, s.size->unit));
+  return fmt::format(
+      "first stands {} at {}{}: it removes {} of the held-out misfit{}, not beyond what {} healthy logs can exclude; "
+      "it "
+      "would be said at a rate of {} false alarms; {}",
+      s.effect, s.where, size, percent(s.share.value), s.where.starts_with(sensor_place) ? " of its channel" : "",
+      s.logs, percent(s.rate), logs_words(s.logs_needed));
+}
 
 Json explain_json(const ExplainResult& r) {
   Json channels = Json::array();
@@ -191,6 +232,9 @@ Json explain_json(const ExplainResult& r) {
           {"causes", array_of(r.causes)},
           {"standing", array_of(r.standing)},
           {"candidates", array_of(r.candidates)},
+          {"suspicion", r.suspicion ? to_json(*r.suspicion) : Json(nullptr)},
+          {"probabilities", r.probabilities ? to_json(*r.probabilities) : Json(nullptr)},
+          {"table_withheld", r.worse_withheld},
           {"heldout_gain", r.causes.empty() ? Json(nullptr) : to_json(r.heldout_gain)},
           {"residuals", array_of(r.shown)},
           {"blocks", array_of(r.blocks)},
@@ -238,6 +282,11 @@ std::string text_of(const ExplainResult& r, const TextOptions& options) {
   }
   if (!options.written_to.empty()) text += "; " + options.written_to;
   text += "\n";
+  if (r.suspicion) text += "  " + suspicion_in_words(*r.suspicion) + "\n";
+  if (r.worse_withheld)
+    text +=
+        "  the simulation's held-out rms is worse with it: the table is written as tuned; --keep-worse writes the "
+        "extension all the same\n";
   Columns table("lrrrrrl", 2);
   table.row({"channel", "rms before", "after", "noise", "held out", "after", "unit"});
   for (const ExplainedChannel& c : r.channels) {
@@ -294,6 +343,13 @@ Json healthy_json(const HealthyReference& healthy) {
     }
     Json misses = Json::object();
     for (const Miss& m : l.misses) misses[m.part] = number(m.size);
+    Json shares = Json::array();
+    for (const HealthyShare& h : l.shares)
+      shares.push_back({{"effect", h.effect},
+                        {"where", h.where},
+                        {"share", number(h.share)},
+                        {"lower", number(h.lower)},
+                        {"prior", h.prior}});
     Json errors = Json::array();
     for (const UsualError& e : l.errors)
       errors.push_back({{"signal", e.signal},
@@ -309,7 +365,8 @@ Json healthy_json(const HealthyReference& healthy) {
                     {"adequacy", number(l.adequacy)},
                     {"thickness", number(l.scores.empty() ? std::nan("") : l.scores.front().thickness)},
                     {"scores", scores},
-                    {"misses", misses}});
+                    {"misses", misses},
+                    {"shares", shares}});
   }
   return {{"logs", logs}};
 }
@@ -342,6 +399,11 @@ HealthyReference read_healthy(const std::string& path) {
       if (l.contains("command_slope")) log.command_slope = value(l.at("command_slope"));  // later than the rest
       if (l.contains("misses"))
         for (const auto& [part, size] : l.at("misses").items()) log.misses.push_back({part, value(size)});
+      log.has_shares = l.contains("shares");  // later than the rest
+      if (log.has_shares)
+        for (const Json& h : l.at("shares"))
+          log.shares.push_back({h.at("effect").get<std::string>(), h.at("where").get<std::string>(),
+                                value(h.at("share")), value(h.at("lower")), value(h.at("prior"))});
       out.logs.push_back(std::move(log));
     }
   } catch (const Json::exception&) {

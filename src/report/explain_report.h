@@ -15,6 +15,9 @@ Json explain_json(const ExplainResult& result);
 Page explain_page(const Header& header, const ExplainResult& result, const std::vector<Replay>& replays);
 // "missing at piston_force: 310 N rms, ..."; empty where nothing is wrong: no valve is its model, and a healthy one
 // misses something too.
+// What stands first though the simulation suffices.
+std::string suspicion_in_words(const ExplainSuspicion& suspicion);
+
 std::string missing_in_words(const ExplainResult& result);
 std::string text_of(const ExplainResult& result, const TextOptions& options);
 

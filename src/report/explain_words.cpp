@@ -42,6 +42,8 @@ const char* words_of(Fate fate) {
       return "re-tuning alone does as well on held-out data";
     case Fate::no_heldout_gain:
       return "no gain on held-out data beyond its interval";
+    case Fate::removes_too_little:
+      return "removes too little to be an answer";
     case Fate::not_beyond_healthy:
       return "not beyond what healthy logs show";
     case Fate::not_missed_later:

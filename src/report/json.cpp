@@ -130,6 +130,32 @@ Json to_json(const HypothesisResult& h) {
           {"stops", h.stops}};
 }
 
+Json to_json(const Suspicion& s) {
+  return {{"name", label_of(s.fault)},
+          {"severity",
+           {{"value", number(s.severity)},
+            {"lower", number(s.lower)},
+            {"upper", number(s.upper)},
+            {"unit", unit_of(s.fault)}}},
+          {"rate", number(s.rate)},
+          {"logs", s.logs},
+          {"logs_needed", s.logs_needed > 0 ? Json(s.logs_needed) : Json(nullptr)}};
+}
+
+// The likelier first: the one named, and no second.
+Json faults_json(const Diagnosis& d) {
+  Json out = Json::array();
+  if (d.fault)
+    out.push_back({{"name", label_of(d.fault)},
+                   {"probability", number(probability_of(d, d.fault))},
+                   {"severity",
+                    {{"value", number(d.severity.value)},
+                     {"lower", number(d.severity.lower)},
+                     {"upper", number(d.severity.upper)},
+                     {"unit", unit_of(d.fault)}}}});
+  return out;
+}
+
 Json to_json(const Diagnosis& d) {
   Json probabilities = Json::object();
   for (const auto& [label, p] : labelled_probabilities(d)) probabilities[label] = number(p);
@@ -140,7 +166,9 @@ Json to_json(const Diagnosis& d) {
           {"threshold", number(d.threshold)},
           {"p_value", number(d.p_value)},
           {"fault", d.fault ? Json(label_of(d.fault)) : Json(nullptr)},
+          {"faults", faults_json(d)},
           {"probabilities", probabilities},
+          {"suspicion", d.suspicion ? to_json(*d.suspicion) : Json(nullptr)},
           {"ambiguous_with", ambiguous_labels(d)},
           {"separating_test", separating_test_of(d)},
           {"severity",

@@ -157,6 +157,7 @@ std::string text_of(const Diagnosis& d, const TextOptions& options) {
   else
     first += in_colour(d.verdict == VerdictKind::unknown ? "UNKNOWN" : word_of(d.verdict), d.verdict, options.colour);
   if (const std::string size = size_words(d); !size.empty()) first += ", " + size;
+  if (d.suspicion) first += "; " + suspicion_in_words(*d.suspicion);
   if (d.verdict == VerdictKind::unknown) first += ": not like the fault-free logs, and no known fault explains it";
 
   Columns table("ll", 2);

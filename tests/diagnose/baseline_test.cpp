@@ -98,13 +98,14 @@ TEST(Baseline, PromisesTheRatesThatItsNumberOfLogsAllows) {
   std::sort(scores.begin(), scores.end());
   EXPECT_DOUBLE_EQ(low.promised, 1.0 / (3 + 1));
   EXPECT_DOUBLE_EQ(low.promised_95, 1 - std::pow(0.05, 1.0 / 3));
-  EXPECT_EQ(low.threshold, scores[2]);
+  EXPECT_GE(low.threshold, scores[2]) << "by rank; a law of the tail may ask for more";
   // One in a hundred takes 99 logs: 96 more.
   EXPECT_EQ(low.logs_needed, 99);
   // A rate that three logs allow: two of four may lie above, so the threshold is the second score.
   const Baseline high = make_baseline(logs, as_tuned("0"), shipped_rig(), 0.5, quiet());
   EXPECT_DOUBLE_EQ(high.promised, 2.0 / 4);
-  EXPECT_EQ(high.threshold, scores[1]);
+  EXPECT_GE(high.threshold, scores[1]);
+  EXPECT_LE(high.threshold, low.threshold);
 }
 
 TEST(Assess, AFaultsRowsAreItsOwnAndProgressIsToldFitByFit) {

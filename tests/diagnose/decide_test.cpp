@@ -186,6 +186,30 @@ TEST(Decide, EachCaseOfTheTable) {
   }
 }
 
+TEST(Decide, AFaultThatStandsFirstInAHealthyLogIsSuspectedWhereItGains) {
+  Evidence e;
+  e.error = 2, e.threshold = 3;
+  e.hypotheses = {{nullptr, 0.2, 1}, {&first, 0.7, 1}, {&second, 0.1, 1}};
+  EXPECT_EQ(decide(e).suspected, std::nullopt) << "it gains nothing";
+  e.hypotheses[1].gain = 4;
+  EXPECT_EQ(decide(e).suspected, one);
+  e.hypotheses[0].probability = 0.8;
+  EXPECT_EQ(decide(e).suspected, std::nullopt) << "health stands first";
+  e.hypotheses[0].probability = 0.2, e.error = 4;
+  EXPECT_EQ(decide(e).suspected, std::nullopt) << "it is the verdict";
+}
+
+TEST(Decide, ASizeAtTheEndOfItsRangeIsHeldToHealthsMeasure) {
+  Evidence e;
+  e.error = 9, e.threshold = 3, e.usual_adequacy = 1.5;
+  e.hypotheses = {{nullptr, 0, 40}, {&first, 1, 9}};
+  EXPECT_EQ(decide(e).verdict, VerdictKind::fault) << "9 of hypot(3, 40 / 4)";
+  e.hypotheses[1].at_worst = true;
+  EXPECT_EQ(decide(e).verdict, VerdictKind::unknown);
+  e.hypotheses[1].adequacy = 3;
+  EXPECT_EQ(decide(e).verdict, VerdictKind::fault);
+}
+
 TEST(Decide, ProbabilitiesAreTheFitsUnlessOneIsSeenOrNoneHolds) {
   for (const Case& c : cases) {
     const Decision d = decide(evidence_of(c));

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "diagnose/diagnose.h"
+#include "diagnose/healthy_law.h"
 #include "faults/registry.h"
 
 namespace servodx {
@@ -62,7 +63,48 @@ TEST(Judge, ScoreAboveItNamesTheMostProbableFaultWithItsSize) {
   EXPECT_EQ(d.severity.lower, 0.5);
   EXPECT_EQ(d.severity.upper, 0.7);
   EXPECT_TRUE(d.ambiguous_with.empty());
-  EXPECT_EQ(probability_of(d, "clogged_filter"), 0.998);
+  EXPECT_GT(probability_of(d, "clogged_filter"), 0.5) << "no probability contradicts the verdict";
+}
+
+TEST(Judge, NoProbabilityContradictsTheVerdict) {
+  // Fits at odds of a thousand to one for a fault: under a healthy verdict health is the likelier all the same.
+  for (double score = 0; score < 8; score += 0.25) {
+    const Diagnosis d =
+        judge(assessment(score, {hypothesis("", 0.001), hypothesis("clogged_filter", 0.999)}), baseline());
+    const double healthy = d.probabilities.front().value;
+    EXPECT_EQ(d.verdict == VerdictKind::healthy, healthy > 0.5) << score;
+    EXPECT_NEAR(healthy + probability_of(d, "clogged_filter"), 1, 1e-12) << score;
+  }
+}
+
+TEST(Judge, WhatStandsFirstInAHealthyLogIsSaidWithItsRate) {
+  const auto verdict = [](double score) {
+    return judge(assessment(score, {hypothesis("", 0.1), hypothesis("clogged_filter", 0.9)}), baseline());
+  };
+  const Diagnosis near = verdict(2.9);
+  ASSERT_EQ(near.verdict, VerdictKind::healthy);
+  ASSERT_TRUE(near.suspicion);
+  EXPECT_EQ(near.suspicion->fault, find_fault("clogged_filter"));
+  EXPECT_EQ(near.suspicion->logs, 3);
+  // One of three healthy logs shows as much: no rarer than two in four.
+  EXPECT_GE(near.suspicion->rate, 0.5);
+  EXPECT_FALSE(verdict(0.1).suspicion) << "healthy logs show as much more often than not";
+  EXPECT_FALSE(verdict(5.0).suspicion) << "it is the verdict";
+}
+
+TEST(Judge, AHealthyLogThatTheModelDoesNotFollowSetsTheLimitOfTestsLikeItsOwnAlone) {
+  Baseline b = baseline();
+  const TestConditions slow{0.01, 1, {}}, fast{0.01, 100, {}};
+  for (Baseline::Score& s : b.scores) s.test = slow;
+  b.scores.push_back({"d", "4", 9.0, 5.0, {}, fast});
+  ASSERT_FALSE(is_followed(b.scores.back()));
+  Assessment a = assessment(6.0, {hypothesis("", 0.0), hypothesis("clogged_filter", 1.0)});
+  a.test = slow;
+  EXPECT_EQ(judge(a, b).verdict, VerdictKind::fault);
+  EXPECT_EQ(judge(a, b).threshold, 3.0);
+  a.test = fast;
+  EXPECT_EQ(judge(a, b).verdict, VerdictKind::healthy);
+  EXPECT_EQ(judge(a, b).threshold, 9.0);
 }
 
 TEST(Judge, AFaultThatHealthGainsByTooMustGainTheMore) {

@@ -11,8 +11,14 @@ namespace {
 
 constexpr double level = 0.01;
 
-WholeEvidence normal(int accepted = 0) { return {accepted, level, true, 0.5, 0.5}; }
-WholeEvidence abnormal(int accepted = 0) { return {accepted, level, true, level / 2, level / 2}; }
+WholeEvidence whole(int accepted, double p_left, double p_left_rows, bool compared = true) {
+  WholeEvidence w;
+  w.accepted = accepted, w.level = level, w.compared = compared;
+  w.p_left = p_left, w.p_left_rows = p_left_rows;
+  return w;
+}
+WholeEvidence normal(int accepted = 0) { return whole(accepted, 0.5, 0.5); }
+WholeEvidence abnormal(int accepted = 0) { return whole(accepted, level / 2, level / 2); }
 ScoredEvidence scored(int cause, double p_new, double gain, double prior = 1) {
   return {cause, true, false, p_new, prior, gain};
 }
@@ -42,17 +48,17 @@ TEST(ForwardRules, ACauseIsNewByItselfOrBecauseTheDataAreAbnormal) {
       {"rare, first", scored(0, level / 2, 9, 0.1), normal(), true},
       {"rare, beside another that suffices", scored(0, level / 2, 9, 0.1), normal(1), false},
       {"rare, beside another that does not suffice", scored(0, level / 2, 9, 0.1), abnormal(1), true},
-      {"rare, where nothing says what suffices", scored(0, level / 2, 9, 0.1), {1, level, false, 1, 1}, true},
+      {"rare, where nothing says what suffices", scored(0, level / 2, 9, 0.1), whole(1, 1, 1, false), true},
       {"common, beside another that suffices", scored(0, level / 2, 9), normal(1), true},
   };
   for (const Case& c : cases) EXPECT_EQ(is_new(c.cause, c.whole), c.is_new) << c.what;
 }
 
 TEST(ForwardRules, AbnormalByTheBlocksAloneIsNotAbnormalByTheRows) {
-  EXPECT_TRUE(is_abnormal({0, level, true, level / 2, 0.5}));
-  EXPECT_FALSE(has_abnormal_rows({0, level, true, level / 2, 0.5}));
+  EXPECT_TRUE(is_abnormal(whole(0, level / 2, 0.5)));
+  EXPECT_FALSE(has_abnormal_rows(whole(0, level / 2, 0.5)));
   EXPECT_TRUE(has_abnormal_rows(abnormal()));
-  EXPECT_FALSE(is_abnormal({0, level, false, level / 2, level / 2})) << "not compared";
+  EXPECT_FALSE(is_abnormal(whole(0, level / 2, level / 2, false))) << "not compared";
 }
 
 TEST(ForwardRules, NewsIsTriedFirstThenWhatPromisesMoreWithinTheBudget) {
@@ -62,11 +68,22 @@ TEST(ForwardRules, NewsIsTriedFirstThenWhatPromisesMoreWithinTheBudget) {
   EXPECT_EQ(order_of_trial(causes, normal(), {8, 4, 0}, 7), (Order{3, 1})) << "4 promises too little, 0 and 2 are old";
   EXPECT_EQ(order_of_trial(causes, normal(), {8, 4, 1}, 7), (Order{3, 1, 0})) << "one that stands";
   EXPECT_EQ(order_of_trial(causes, normal(), {8, 0, 0}, 7), (Order{1})) << "no rare one";
+  EXPECT_EQ(order_of_trial({scored(0, 0.5, 90, 0.1)}, normal(), {8, 4, 1}, 7), Order{}) << "rare, and no news";
   EXPECT_EQ(order_of_trial(causes, abnormal(), {8, 4, 0}, 7), (Order{3, 1, 0, 2})) << "news by itself first";
   EXPECT_EQ(order_of_trial(causes, abnormal(), {2, 4, 0}, 7), (Order{3, 1, 0}));
   std::vector<ScoredEvidence> in = causes;
   in[3].accepted_already = true;
   EXPECT_EQ(order_of_trial(in, normal(), {8, 4, 0}, 7), (Order{1}));
+}
+
+TEST(ForwardRules, AShareIsAskedOfTheFirstCauseAlone) {
+  WholeEvidence w = normal();
+  EXPECT_FALSE(is_news_by_share(1e-9, w)) << "not asked";
+  w.level_of_shares = 0.05;
+  EXPECT_TRUE(is_news_by_share(0.05, w));
+  EXPECT_FALSE(is_news_by_share(0.051, w));
+  w.accepted = 1;
+  EXPECT_FALSE(is_news_by_share(1e-9, w));
 }
 
 TEST(ForwardRules, TheCommonerIsJudgedFirstAndEachKindHasItsShare) {
@@ -78,13 +95,13 @@ TEST(ForwardRules, TheCommonerIsJudgedFirstAndEachKindHasItsShare) {
   EXPECT_FALSE(budget.takes({1, true, true, 0})) << "not worth its numbers";
   EXPECT_TRUE(budget.takes(fitted[2]));
   EXPECT_FALSE(budget.takes(fitted[1])) << "two were judged";
-  EXPECT_TRUE(budget.takes({1, false, false, 1})) << "what stands takes no place";
+  EXPECT_FALSE(budget.takes({1, false, false, 1})) << "what stands takes a place, as a healthy log's causes do";
   EXPECT_TRUE(budget.takes(fitted[0]));
   EXPECT_FALSE(budget.takes(fitted[0])) << "one rare one was judged";
 }
 
 TEST(ForwardRules, WhyAJudgedCauseIsRefused) {
-  const JudgedEvidence good{false, true, false, true, 0.5, level, true, 0.1, 0.2};
+  const JudgedEvidence good{false, true, false, true, 0.5, level, true, 0.1, 0.2, true, 0.3};
   EXPECT_EQ(refusal_of(good), std::nullopt);
   struct Case {
     const char* what;
@@ -109,6 +126,9 @@ TEST(ForwardRules, WhyAJudgedCauseIsRefused) {
   with("re-tuning would, and is not asked", std::nullopt,
        [](JudgedEvidence& j) { j.beyond_retuning = 0, j.beside_retuning = false; });
   with("no gain beyond the interval", Fate::no_heldout_gain, [](JudgedEvidence& j) { j.heldout_lower = 0; });
+  with("it removes a percent of what healthy logs say is new", std::nullopt, [](JudgedEvidence& j) { j.share = 0.01; });
+  with("it removes a percent, and nothing says that it is new", Fate::removes_too_little,
+       [](JudgedEvidence& j) { j.share = 0.01, j.compared = false; });
   for (const Case& c : cases) EXPECT_EQ(refusal_of(c.judged), c.fate) << c.what;
 }
 

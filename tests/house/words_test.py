@@ -38,7 +38,6 @@ COMPARED = {
     "apps/servodx/history_command.cpp": ({"ok"}, "the word with which SQLite answers its check of integrity"),
     "src/diagnose/survey.cpp": ({"gap", "the rig file maps column", "temperature"}, "to be typed"),
     "src/explain/curves.cpp": ({"current"}, "to be typed"),
-    "src/explain/explain.cpp": ({"sensor:"}, "to be typed"),
     "src/explain/valve.cpp": ({", news"}, "to be typed"),
     "src/fit/nominal.cpp": ({"-", "mount_compliance", "valve.first_stage", "jet_pipe"}, "to be typed"),
     "src/tune/settle.cpp": ({"all"}, "a user's word: --profile all"),

@@ -1,0 +1,72 @@
+#include "diagnose/healthy_law.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "diagnose/constants.h"
+#include "evidence/rank_promise.h"
+
+namespace servodx {
+namespace {
+
+namespace k = diagnose_constants;
+
+constexpr std::size_t fewest_logs = 3;  // fewer set no limit: then all logs do
+
+std::vector<std::size_t> all_of(const Baseline& b) {
+  std::vector<std::size_t> out;
+  for (std::size_t i = 0; i < b.scores.size(); ++i) out.push_back(i);
+  return out;
+}
+
+std::vector<std::size_t> logs_for(const Baseline& b, const TestConditions* suspect) {
+  std::vector<std::size_t> out;
+  for (std::size_t i = 0; i < b.scores.size(); ++i) {
+    const Baseline::Score& s = b.scores[i];
+    const bool alike = suspect && s.test && distance(*suspect, *s.test) <= 1;
+    if (alike || is_followed(s)) out.push_back(i);
+  }
+  return out.size() < fewest_logs ? all_of(b) : out;
+}
+
+std::vector<double> squares_of(const Baseline& b, const std::vector<std::size_t>& logs) {
+  std::vector<double> out;
+  for (const std::size_t i : logs) out.push_back(b.scores[i].score * b.scores[i].score);
+  return out;
+}
+
+// Student's variable that one more log exceeds with this chance.
+double student_quantile(double rate, double degrees) {
+  double low = 0, high = 1e6;
+  for (int i = 0; i < 100; ++i) {
+    const double middle = 0.5 * (low + high);
+    (Deviate{middle, degrees}.chance_above() > rate ? low : high) = middle;
+  }
+  return high;
+}
+
+}  // namespace
+
+bool is_followed(const Baseline::Score& score) { return score.adequacy <= k::followed_adequacy; }
+
+HealthyLaw::HealthyLaw(const Baseline& b, const TestConditions* suspect)
+    : positions_(logs_for(b, suspect)),
+      gains_(squares_of(b, positions_), {k::usual_gain, k::usual_logs}),
+      asked_(b.asked) {
+  std::vector<double> ranked;
+  for (const std::size_t i : positions_) ranked.push_back(b.scores[i].score);
+  for (const Baseline::Score& s : b.scores) adequacies_.push_back(s.adequacy);
+  const double by_law = std::sqrt(gains_.excess_at(rate()));
+  limit_ = std::max(by_law, rank_promise(ranked, asked_).threshold);
+  const Deviate one = deviate_of(1, adequacies_, {k::adequacy_spread, k::usual_logs});
+  unlike_limit_ = student_quantile(rate_of_question(asked_, logs(), 1 - k::share_of_gain), one.degrees);
+}
+
+double HealthyLaw::error_of(double gain, double adequacy) const {
+  const Deviate unlike = deviate_of(adequacy, adequacies_, {k::adequacy_spread, k::usual_logs});
+  return std::max(gain, limit_ * unlike.t / unlike_limit_);
+}
+
+int HealthyLaw::logs_needed(double gain) const { return gains_.logs_needed(gain * gain, asked_, k::share_of_gain); }
+
+}  // namespace servodx

@@ -1,0 +1,45 @@
+// What fault-free logs say of a suspect's two questions, each with a null of its own and its own share of the rate.
+//
+//   like a fault    the largest gain of any fault over health, in deviates; healthy logs' largest gains (tail_law.h)
+//   unlike health   how wrong the worst channel is left under health; healthy logs' (log_scatter.h)
+//
+// A healthy log that the model does not follow is an answer about the model: it sets the limits of suspects of a test
+// like its own, and of no other.
+#pragma once
+#include <cstddef>
+#include <vector>
+
+#include "diagnose/baseline.h"
+#include "diagnose/conditions.h"
+#include "diagnose/constants.h"
+#include "evidence/log_scatter.h"
+#include "evidence/tail_law.h"
+
+namespace servodx {
+
+// Whether the model follows a healthy log about as well as it follows those that tuned it.
+bool is_followed(const Baseline::Score& score);
+
+class HealthyLaw {
+ public:
+  // `suspect` null: logs of any test that the model follows. At least one score.
+  HealthyLaw(const Baseline& baseline, const TestConditions* suspect);
+
+  int logs() const { return static_cast<int>(positions_.size()); }
+  const std::vector<std::size_t>& positions() const { return positions_; }  // of these logs among the scores
+  double limit() const { return limit_; }                                   // of a gain [deviates]
+  // How far a suspect is from health, on the scale of the gain: beyond the limit it is not healthy.
+  double error_of(double gain, double adequacy) const;
+  double chance_of_gain(double gain) const { return gains_.chance(gain * gain); }
+  double rate() const { return rate_of_question(asked_, logs(), diagnose_constants::share_of_gain); }  // of the gain
+  // Of such logs, until such a gain would be beyond the limit; 0: it is, or the limit is not set by their number.
+  int logs_needed(double gain) const;
+
+ private:
+  std::vector<std::size_t> positions_;
+  TailLaw gains_;
+  std::vector<double> adequacies_;
+  double asked_ = 0, limit_ = 0, unlike_limit_ = 0;
+};
+
+}  // namespace servodx

@@ -1,0 +1,33 @@
+#include "evidence/log_scatter.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+
+#include "base/student.h"
+
+namespace servodx {
+namespace {
+
+constexpr std::size_t fewest = 3;        // logs that tell a spread
+constexpr double least_variance = 1e-6;  // of logarithms: figures that are equal to rounding
+
+}  // namespace
+
+double Deviate::chance_above() const { return t > 0 ? 0.5 * student_tail(t, degrees) : 1.0; }
+
+Deviate deviate_of(double value, const std::vector<double>& healthy, UsualSpread usual) {
+  std::vector<double> logs;
+  for (const double v : healthy)
+    if (v > 0) logs.push_back(std::log(v));
+  if (logs.size() < fewest || !(value > 0)) return {};
+  const auto n = static_cast<double>(logs.size());
+  double mean = 0, square = usual.logs * usual.of_logarithm * usual.of_logarithm;
+  for (const double v : logs) mean += v / n;
+  for (const double v : logs) square += (v - mean) * (v - mean);
+  const double degrees = n - 1 + usual.logs;
+  const double spread = std::sqrt(std::max(least_variance, square / degrees) * (1 + 1 / n));
+  return {(std::log(value) - mean) / spread, degrees};
+}
+
+}  // namespace servodx

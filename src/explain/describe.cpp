@@ -1,0 +1,84 @@
+#include "explain/describe.h"
+
+#include <cmath>
+#include <cstddef>
+#include <string_view>
+
+#include "effects/registry.h"
+#include "effects/row_effects.h"
+#include "explain/fit_causes.h"
+#include "explain/healthy.h"
+#include "fit/free_values.h"
+#include "parameters/list.h"
+
+namespace servodx {
+namespace {
+
+// How a number of a cause scatters over healthy logs. [its unit] 0 where that is not known. `of`: what it is a factor
+// on.
+double healthy_spread(const Subject& subject, const HealthyTest& test, int cause, std::size_t number, double std_error,
+                      double of) {
+  const Cause& c = subject.causes()[static_cast<std::size_t>(cause)];
+  const Number& n = c.numbers[number];
+  HealthyScore here{c.effect, c.where + (c.family.empty() ? "" : "/" + c.family), {}, 0, 1, subject.thickness()};
+  for (std::size_t a = 0; n.size && a < c.probes.size(); ++a) {
+    const auto& probe = c.probes[a].front();
+    if (c.probes[a].size() > 1 || probe[number] == n.off) continue;
+    const double unit = c.atop.empty() ? std::abs(probe[number] - n.off) : 1 / of;  // as `summarise` counts
+    here.sizes.assign(a + 1, {0, std_error / unit});
+    return unit * test.spread(here, a);
+  }
+  return 0;
+}
+
+std::string meaning_of(const Cause& c) {
+  if (const int row = find_parameter(c.effect); row >= 0)
+    return std::string(parameter_list[static_cast<std::size_t>(row)].meaning);
+  for (const RowEffect& e : row_effects())
+    if (e.name == c.effect && e.where == c.where) return e.meaning;  // a lag of one sensor is not that of another
+  for (const EffectInfo& e : effect_list())
+    if (e.name == c.effect) return e.meaning;
+  return {};
+}
+
+std::vector<std::string> confusable_with(const Inquiry& q, const CauseResult& r) {
+  std::vector<std::string> out;
+  for (const int other : r.confusable_with) out.push_back(name_of(q.cause(other)));
+  const Cause& c = q.cause(r.cause);
+  for (const RowEffect& e : row_effects())
+    if (e.name == c.effect && e.where == c.where && e.also) out.push_back(e.also);
+  return out;
+}
+
+}  // namespace
+
+std::string name_of(const Cause& c) { return c.effect + (is_of_sensor(c) ? " at " + c.where : ""); }
+
+ExplainedCause described(const Inquiry& q, const Subject& told_by, const CauseResult& r, const ExplainedFit& fit) {
+  const Cause& c = q.cause(r.cause);
+  const bool by_blocks = &told_by != static_cast<const Subject*>(&q.subject());
+  ExplainedCause out{c.effect,          c.where,     c.test, {},        r.heldout_gain,
+                     r.beyond_retuning, r.delta_bic, {},     by_blocks, meaning_of(c)};
+  const auto& values = q.subject().values(r.cause);
+  const auto problem = q.subject().problem(fit.causes);
+  for (std::size_t j = 0; j < c.numbers.size(); ++j) {
+    double factor = 1;
+    if (values[j].apply && !c.curve)  // a factor on the log's own
+      factor = problem->candidate(fit.point, 0)[static_cast<std::size_t>(values[j].at)] / r.value[j];
+    const double scatter = q.test() ? healthy_spread(told_by, *q.test(), r.cause, j, r.std_error[j], factor) : 0.0;
+    const double error = std::hypot(r.std_error[j], scatter);
+    out.parameters.push_back(
+        {c.numbers[j].name, c.numbers[j].unit, factor * r.value[j], factor * error, factor * c.numbers[j].off});
+  }
+  out.confusable_with = confusable_with(q, r);
+  return out;
+}
+
+ExplainedCause described_standing(const Inquiry& q, const CauseResult& r) {
+  ExplainedFit alone;
+  alone.causes = {r.cause};
+  alone.point = q.subject().problem(alone.causes)->start();
+  return described(q, q.subject(), r, alone);
+}
+
+}  // namespace servodx

@@ -1,0 +1,24 @@
+// What was found, as a user reads it: a cause with its numbers in their units, and the error of each.
+#pragma once
+#include <string>
+
+#include "explain/answer.h"
+#include "explain/engine.h"
+#include "explain/explain.h"
+#include "explain/fit_causes.h"
+#include "explain/inquiry.h"
+#include "explain/subject.h"
+
+namespace servodx {
+
+// The effect, and of a sensor's fault which sensor.
+std::string name_of(const Cause& cause);
+
+// `told_by`: the subject that it was found on, the valve's or the replay of its blocks; `fit`: whose point the numbers
+// are taken at. The error of a number is that of the fit, and what healthy logs scatter.
+ExplainedCause described(const Inquiry& inquiry, const Subject& told_by, const CauseResult& cause,
+                         const ExplainedFit& fit);
+// A cause that healthy logs show too was fitted alone.
+ExplainedCause described_standing(const Inquiry& inquiry, const CauseResult& cause);
+
+}  // namespace servodx

@@ -1,0 +1,117 @@
+#include "explain/inquiry.h"
+
+#include <algorithm>
+#include <cstddef>
+#include <utility>
+
+#include "evidence/tail_law.h"
+#include "explain/constants.h"
+#include "explain/score.h"
+#include "fit/log_data.h"
+#include "simulate/scenario.h"
+
+namespace servodx {
+namespace {
+
+std::optional<KnownRig> known_of(const HealthyReference* healthy) {
+  return healthy ? std::optional<KnownRig>(healthy->known()) : std::nullopt;
+}
+
+}  // namespace
+
+LoneLog::LoneLog(const Log& log, const Table& tuned, const RigFile& rig, int threads,
+                 const std::optional<KnownRig>& known)
+    : subject({log}, tuned, rig, threads, known) {
+  const std::vector<Curve> curves = add_curves(subject);
+  fit = fit_base(subject, explain_constants::base_iterations);
+  if (fit.ok) guess_curves(subject, curves, fit.point);
+}
+
+Inquiry::Inquiry(const std::vector<Log>& logs, const Table& tuned, const RigFile& rig, const HealthyReference* healthy,
+                 const ExplainOptions& options)
+    : logs_(logs),
+      options_(options),
+      known_(known_of(healthy)),
+      subject_(logs, tuned, rig, options.threads, known_),
+      progress_("explain", {.quiet = options.quiet}),
+      sizes_(logs.size()) {
+  if (healthy) test_.emplace(*healthy);
+  if (healthy && logs.size() > 1)
+    for (const Log& log : logs) lone_.emplace_back(log, tuned, rig, options.threads, known_);
+  curves_ = add_curves(subject_);
+  engine_ = engine_options();
+  // A sweep says most in the few seconds that it is near null.
+  if (all_on_test_stand(logs, rig)) engine_.blocks *= explain_constants::blocks_of_sweep;
+}
+
+EngineOptions Inquiry::engine_options() const {
+  EngineOptions o;
+  o.seed = options_.seed;
+  o.stop = options_.stop;
+  o.level = options_.level;
+  if (!test_) return o;
+  if (const int logs = test_->logs_with_shares(); logs > 0) {
+    o.p_share = [this](double share) { return test_->share(share); };
+    o.level_of_shares = rate_of_question(options_.level, logs, explain_constants::of_shares);
+    o.level = std::min(options_.level, rate_of_question(options_.level, logs, 1 - explain_constants::of_shares));
+  }
+  o.p_new = chance_of_size(*test_, subject_, sizes_);
+  o.p_left = [this](const ExplainedFit& fit, int round) { return chance_left(fit, round == 0); };
+  return o;
+}
+
+const Curve& Inquiry::curve_of(int cause) const {
+  return *std::find_if(curves_.begin(), curves_.end(), [&](const Curve& c) { return c.cause == cause; });
+}
+
+bool Inquiry::has_name(const Cause& c) const {
+  return !c.curve && std::find(options_.without.begin(), options_.without.end(), c.effect) == options_.without.end();
+}
+
+void Inquiry::score_lone_logs(const std::function<bool(const Cause&)>& among) {
+  for (std::size_t l = 0; l < lone_.size(); ++l) {
+    if (!lone_[l].fit.ok) continue;
+    for (const CauseScore& s : score_causes(lone_[l].subject, lone_[l].fit, among))
+      if (!s.probes.empty()) sizes_[l].push_back(summarise(lone_[l].subject, s));
+  }
+}
+
+EngineOptions Inquiry::for_names() {
+  EngineOptions o = engine_;
+  o.progress = [this](double f) { progress_.update(f, subject_.simulations()); };
+  o.among = [this](const Cause& c) { return has_name(c); };
+  score_lone_logs(o.among);
+  return o;
+}
+
+EngineOptions Inquiry::for_curves() {
+  EngineOptions o = engine_;
+  o.progress = [this](double f) { progress_.update(f, subject_.simulations()); };
+  o.among = [](const Cause& c) { return c.curve; };
+  o.most = 1, o.fitted = o.judged = explain_constants::curves_fitted;
+  score_lone_logs(o.among);
+  return o;
+}
+
+double Inquiry::chance_left(const ExplainedFit& fit, bool as_tuned) const {
+  std::vector<Miss> misses = subject_.misses(fit.residual);
+  if (as_tuned)
+    for (const BlockReplay& b : replay_blocks(subject_, fit.point)) misses.push_back({b.block, b.missing});
+  return test_->any(misses);
+}
+
+std::function<double(const CauseScore&, int)> chance_of_size(const HealthyTest& test, const Subject& subject,
+                                                             const SizesByLog& by_log) {
+  return [&](const CauseScore& s, int round) {
+    std::vector<HealthyScore> scores;
+    const HealthyScore whole = summarise(subject, s);
+    if (round == 0)
+      for (const auto& log : by_log)
+        for (const HealthyScore& h : log)
+          if (h.effect == whole.effect && h.where == whole.where) scores.push_back(h);
+    if (scores.empty()) scores.push_back(whole);
+    return test.together(test.alone(scores));
+  };
+}
+
+}  // namespace servodx
