@@ -19,12 +19,13 @@ std::vector<std::size_t> all_of(const Baseline& b) {
   return out;
 }
 
-std::vector<std::size_t> logs_for(const Baseline& b, const TestConditions* suspect) {
+std::vector<std::size_t> logs_for(const Baseline& b, const SuspectLog* suspect) {
+  const bool lost = suspect && !is_followed(suspect->adequacy);
   std::vector<std::size_t> out;
   for (std::size_t i = 0; i < b.scores.size(); ++i) {
     const Baseline::Score& s = b.scores[i];
-    const bool alike = suspect && s.test && distance(*suspect, *s.test) <= 1;
-    if (alike || is_followed(s)) out.push_back(i);
+    const bool alike = lost && s.test && distance(suspect->test, *s.test) <= 1;
+    if (alike || is_followed(s.adequacy)) out.push_back(i);
   }
   return out.size() < fewest_logs ? all_of(b) : out;
 }
@@ -47,9 +48,15 @@ double student_quantile(double rate, double degrees) {
 
 }  // namespace
 
-bool is_followed(const Baseline::Score& score) { return score.adequacy <= k::followed_adequacy; }
+bool is_followed(double adequacy) { return adequacy <= k::followed_adequacy; }
 
-HealthyLaw::HealthyLaw(const Baseline& b, const TestConditions* suspect)
+SuspectLog suspect_of(const Assessment& a) {
+  SuspectLog out{a.test, a.hypotheses.front().adequacy};
+  for (const HypothesisResult& h : a.hypotheses) out.adequacy = std::min(out.adequacy, h.adequacy);
+  return out;
+}
+
+HealthyLaw::HealthyLaw(const Baseline& b, const SuspectLog* suspect)
     : positions_(logs_for(b, suspect)),
       gains_(squares_of(b, positions_), {k::usual_gain, k::usual_logs}),
       asked_(b.asked) {

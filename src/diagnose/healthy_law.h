@@ -4,11 +4,12 @@
 //   unlike health   how wrong the worst channel is left under health; healthy logs' (log_scatter.h)
 //
 // A healthy log that the model does not follow is an answer about the model: it sets the limits of suspects of a test
-// like its own, and of no other.
+// like its own that the model does not follow either, and of no other.
 #pragma once
 #include <cstddef>
 #include <vector>
 
+#include "diagnose/assessment.h"
 #include "diagnose/baseline.h"
 #include "diagnose/conditions.h"
 #include "diagnose/constants.h"
@@ -17,13 +18,20 @@
 
 namespace servodx {
 
-// Whether the model follows a healthy log about as well as it follows those that tuned it.
-bool is_followed(const Baseline::Score& score);
+// Whether the model follows a log about as well as those that tuned it, by its adequacy.
+bool is_followed(double adequacy);
+
+// What the law has to know of a suspect: its test, and the adequacy of the hypothesis that leaves least.
+struct SuspectLog {
+  TestConditions test;
+  double adequacy = 0;
+};
+SuspectLog suspect_of(const Assessment& assessment);
 
 class HealthyLaw {
  public:
   // `suspect` null: logs of any test that the model follows. At least one score.
-  HealthyLaw(const Baseline& baseline, const TestConditions* suspect);
+  HealthyLaw(const Baseline& baseline, const SuspectLog* suspect);
 
   int logs() const { return static_cast<int>(positions_.size()); }
   const std::vector<std::size_t>& positions() const { return positions_; }  // of these logs among the scores

@@ -63,7 +63,8 @@ Suspicion suspicion_of(const HypothesisResult& h, double gain, const HealthyLaw&
 }  // namespace
 
 Evidence evidence_of(const Assessment& a, const Baseline& baseline) {
-  const HealthyLaw law(baseline, &a.test);
+  const SuspectLog suspect = suspect_of(a);
+  const HealthyLaw law(baseline, &suspect);
   Evidence e;
   e.error = law.error_of(score_of(a, usual_gains(baseline)), a.hypotheses.front().adequacy);
   e.threshold = law.limit();
@@ -82,7 +83,8 @@ Diagnosis judge(Assessment a, const Baseline& baseline) {
   d.log = a.log;
   d.verdict = decision.verdict;
   d.error = evidence.error, d.threshold = evidence.threshold;
-  const HealthyLaw law(baseline, &a.test);
+  const SuspectLog suspect = suspect_of(a);
+  const HealthyLaw law(baseline, &suspect);
   d.p_value = p_value_of(evidence.error, baseline, law);
   d.baseline_logs = law.logs();
   const double gain = score_of(a, usual_gains(baseline));

@@ -4,8 +4,8 @@
 #include <vector>
 
 #include "diagnose/hypotheses.h"
-#include "tune/tune.h"
 #include "parameters/table.h"
+#include "tune/tune.h"
 
 namespace servodx {
 

@@ -45,7 +45,7 @@ inline constexpr double alarm_by_mark = 0.05;  // of nothing being wrong where n
 
 // The null of shares (explain/healthy.cpp): -ln(1 - share) of the best cause of a healthy log, on the mean, and the
 // logs that this counts for. From the twenty logs of two foreign rigs' baselines.
-inline constexpr double usual_share = 0.15;
+inline constexpr double usual_share = 0.12;
 inline constexpr double usual_logs = 10;
 
 // Verdict.

@@ -97,14 +97,16 @@ TEST(Judge, AHealthyLogThatTheModelDoesNotFollowSetsTheLimitOfTestsLikeItsOwnAlo
   const TestConditions slow{0.01, 1, {}}, fast{0.01, 100, {}};
   for (Baseline::Score& s : b.scores) s.test = slow;
   b.scores.push_back({"d", "4", 9.0, 5.0, {}, fast});
-  ASSERT_FALSE(is_followed(b.scores.back()));
-  Assessment a = assessment(6.0, {hypothesis("", 0.0), hypothesis("clogged_filter", 1.0)});
+  ASSERT_FALSE(is_followed(b.scores.back().adequacy));
+  Assessment a = assessment(6.0, {hypothesis("", 0.0, 4), hypothesis("clogged_filter", 1.0, 3)});
   a.test = slow;
   EXPECT_EQ(judge(a, b).verdict, VerdictKind::fault);
   EXPECT_EQ(judge(a, b).threshold, 3.0);
   a.test = fast;
   EXPECT_EQ(judge(a, b).verdict, VerdictKind::healthy);
   EXPECT_EQ(judge(a, b).threshold, 9.0);
+  a.hypotheses.back().adequacy = 1;
+  EXPECT_EQ(judge(a, b).threshold, 3.0) << "the model follows it with the fault";
 }
 
 TEST(Judge, AFaultThatHealthGainsByTooMustGainTheMore) {
