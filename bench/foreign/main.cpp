@@ -1,0 +1,56 @@
+// A foreign hydraulic test rig and its logs, from a seed: equations and numerics that are neither the fitted model's
+// nor the virtual rig's, so that tune, diagnose and explain are judged on what they do not know.
+//   servodx_foreign --seed N -o DIR [--only healthy|fault|hidden] [--logs assorted|acceptance|both] [--dry-run]
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <cstdint>
+#include <filesystem>
+#include <string>
+
+#include "design.h"
+#include "run.h"
+#include "set.h"
+#include "write.h"
+
+using namespace servodx::foreign;
+
+int main(int argc, char** argv) {
+  std::uint64_t seed = 1;
+  std::string out, only, logs = "both";
+  bool dry = false;
+  CLI::App app("a foreign hydraulic test rig and its logs");
+  app.add_option("--seed", seed, "of everything drawn")->capture_default_str();
+  app.add_option("-o,--output", out, "folder")->required();
+  app.add_option("--only", only, "one part of the logs")->check(CLI::IsMember({"healthy", "fault", "hidden"}));
+  app.add_option("--logs", logs, "which fault-free logs")
+      ->check(CLI::IsMember({"assorted", "acceptance", "both"}))
+      ->capture_default_str();
+  app.add_flag("--dry-run", dry, "write all but the logs");
+  CLI11_PARSE(app, argc, argv);
+  try {
+    const std::filesystem::path folder = out;
+    const Design design = draw_design(seed);
+    Wanted wanted;
+    wanted.healthy = only.empty() || only == "healthy";
+    wanted.fault = only.empty() || only == "fault";
+    wanted.hidden = only.empty() || only == "hidden";
+    wanted.assorted = logs != "acceptance";
+    wanted.acceptance = logs != "assorted";
+    std::string truth = truth_header();
+    const auto planned = plan(design, wanted);
+    for (const Planned& p : planned) {
+      truth += truth_row(design, p);
+      if (!dry) write_text(folder / p.truth.path, csv_of(design, run(design, p.job)));
+    }
+    write_text(folder / "rig.toml", rig_toml(design));
+    write_text(folder / "datasheet.md", datasheet(design));
+    write_text(folder / "design.txt", design_text(design));
+    write_text(folder / (only.empty() ? "truth.csv" : "truth_" + only + ".csv"), truth);
+    fmt::print("{} logs in {}\n", dry ? 0 : planned.size(), out);
+  } catch (const std::exception& error) {
+    fmt::print(stderr, "servodx_foreign: {}\n", error.what());
+    return 1;
+  }
+  return 0;
+}
