@@ -1,5 +1,5 @@
 // In what state a rig is in one log: oil, null, a fault or an effect beyond its healthy behaviour. Faults and effects
-// are changes of this struct, made in faults.cpp; plant and sensors read it.
+// are changes of this struct, made in faults.cpp; machine and sensors read it.
 #pragma once
 #include <array>
 

@@ -1,5 +1,5 @@
 // One foreign rig as it truly is, drawn from a seed, and what its user knows of it. Numbers are SI; laws that turn
-// them into motion are in plant.h. Sizes follow from the rated flow, so that a valve of 4 l/min and one of 200 l/min
+// them into motion are in machine.h. Sizes follow from the rated flow, so that a valve of 4 l/min and one of 200 l/min
 // are both likely machines; what a data sheet states differs from the truth by its tolerance.
 #pragma once
 #include <array>

@@ -54,12 +54,12 @@ class Bench {
         job_(job),
         substeps_(static_cast<int>(std::ceil(job.finer / (d.control_rate * d.step)))),
         h_(1.0 / (d.control_rate * substeps_)),
-        plant_(d, job.condition),
+        machine_(d, job.condition),
         sensors_(d, job.condition, h_),
         now_(job.condition),
         random_(d.seed, 2, job.noise),
         stamps_(d.seed, 3, job.noise),
-        state_(plant_.rest()) {}
+        state_(machine_.rest()) {}
 
   Recording run() {
     settle();
@@ -110,7 +110,7 @@ class Bench {
     for (long tick = 0; tick < ticks; ++tick) {
       drive_.demand = hold(e.closed ? e.demand.front() : 0.0);
       for (int k = 0; k < substeps_; ++k) {
-        plant_.step(state_, drive_, h_);
+        machine_.step(state_, drive_, h_);
         sensors_.pass(truth());
       }
     }
@@ -121,7 +121,7 @@ class Bench {
     if (turned_ || !job_.later || t < job_.onset) return;
     turned_ = true;
     now_ = *job_.later;
-    plant_ = Plant(d_, now_);
+    machine_ = Machine(d_, now_);
     Sensors next(d_, now_, h_);
     next.take_over(sensors_);
     sensors_ = next;
@@ -144,10 +144,10 @@ class Bench {
     if (job_.watch && t * d_.control_rate <= static_cast<double>(tick)) {
       State ds;
       Flows flows;
-      plant_.rates(state_, drive_, ds, flows);
+      machine_.rates(state_, drive_, ds, flows);
       job_.watch(t, state_, flows);
     }
-    plant_.step(state_, drive_, h_);
+    machine_.step(state_, drive_, h_);
     sensors_.pass(truth());
   }
 
@@ -178,7 +178,7 @@ class Bench {
   const Job& job_;
   int substeps_;
   double h_;
-  Plant plant_;
+  Machine machine_;
   Sensors sensors_;
   Condition now_;
   Random random_, stamps_;

@@ -1,4 +1,4 @@
-// One log of a foreign rig: settles the plant, drives it tick by tick, and reads its sensors at the log's rate.
+// One log of a foreign rig: settles the machine, drives it tick by tick, and reads its sensors at the log's rate.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -9,7 +9,7 @@
 #include "condition.h"
 #include "design.h"
 #include "excite.h"
-#include "plant.h"
+#include "machine.h"
 
 namespace servodx::foreign {
 

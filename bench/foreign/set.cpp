@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "base/random.h"
+#include "condition.h"
 #include "excite.h"
 #include "faults.h"
 

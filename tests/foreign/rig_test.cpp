@@ -13,8 +13,8 @@
 #include "foreign/design.h"
 #include "foreign/excite.h"
 #include "foreign/faults.h"
+#include "foreign/machine.h"
 #include "foreign/oil.h"
-#include "foreign/plant.h"
 #include "foreign/run.h"
 #include "foreign/set.h"
 #include "foreign/write.h"
@@ -26,19 +26,19 @@ namespace {
 
 constexpr std::uint64_t seeds[] = {2, 3, 5, 8, 19};
 
-// Runs the plant alone at a constant current from rest; the last state and its flows.
+// Runs the machine alone at a constant current from rest; the last state and its flows.
 struct Steady {
   State state, rates;
   Flows flows;
 };
 Steady steady(const Design& d, const Condition& c, double level, double seconds) {
-  const Plant plant(d, c);
-  Steady s{plant.rest(), {}, {}};
+  const Machine machine(d, c);
+  Steady s{machine.rest(), {}, {}};
   // Begins at the far end, so that the travel is there.
   s.state[x_piston] = -std::copysign(0.4 * d.actuator.stroke, level);
   const Drive in{level * d.rated_current};
-  for (long i = 0, n = std::lround(seconds / d.step); i < n; ++i) plant.step(s.state, in, d.step);
-  plant.rates(s.state, in, s.rates, s.flows);
+  for (long i = 0, n = std::lround(seconds / d.step); i < n; ++i) machine.step(s.state, in, d.step);
+  machine.rates(s.state, in, s.rates, s.flows);
   return s;
 }
 

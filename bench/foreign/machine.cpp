@@ -1,4 +1,4 @@
-#include "plant.h"
+#include "machine.h"
 
 #include <algorithm>
 #include <cmath>
@@ -32,7 +32,7 @@ Bristle lugre(double v, double z, double coulomb, double breakaway, double strib
 
 }  // namespace
 
-Plant::Plant(const Design& design, const Condition& condition)
+Machine::Machine(const Design& design, const Condition& condition)
     : d_(design),
       c_(condition),
       oil_(design.oil, condition.celsius, condition.air, condition.viscosity),
@@ -63,7 +63,7 @@ Plant::Plant(const Design& design, const Condition& condition)
   screen_b_ = d_.first.screen_drop * d_.first.screen_laminar * warmth / (flow * open);
 }
 
-double Plant::orifice(double area, double width, double discharge, double p_from, double p_to) const {
+double Machine::orifice(double area, double width, double discharge, double p_from, double p_to) const {
   const double dp = p_from - p_to, speed = std::sqrt(2.0 * std::abs(dp) / rho_);
   const double number = width * speed * rho_ / oil_.viscosity(0.5 * (p_from + p_to));
   const double flow = discharge * area * speed * number / (number + d_.first.transition);
@@ -71,7 +71,7 @@ double Plant::orifice(double area, double width, double discharge, double p_from
 }
 
 // A rounded orifice in series with the land that is left: opening < 0 is overlap.
-double Plant::edge_flow(double opening, double p_from, double p_to) const {
+double Machine::edge_flow(double opening, double p_from, double p_to) const {
   const Spool& e = d_.spool;
   const double dp = p_from - p_to, size = std::abs(dp);
   if (size == 0.0) return 0.0;
@@ -86,7 +86,7 @@ double Plant::edge_flow(double opening, double p_from, double p_to) const {
   return std::copysign(jet * film / (jet + film), dp);
 }
 
-void Plant::motor(const State& s, const Drive& in, State& ds) const {
+void Machine::motor(const State& s, const Drive& in, State& ds) const {
   const FirstStage& f = d_.first;
   const double rated = d_.rated_current, limit = d_.amplifier.limit * rated;
   const double asked = std::clamp(d_.amplifier.gain * in.demand, -limit, limit);
@@ -110,7 +110,7 @@ void Plant::motor(const State& s, const Drive& in, State& ds) const {
   ds[v_flapper] = (pull - f.stiffness * s[x_flapper] - f.damping * s[v_flapper] - f.arm * wire - jets + stop) / f.mass;
 }
 
-void Plant::pilot(const State& s, State& ds, Flows& flows) const {
+void Machine::pilot(const State& s, State& ds, Flows& flows) const {
   const FirstStage& f = d_.first;
   const double dp = s[p_supply] - s[p_screen];
   flows.screen = std::copysign(
@@ -130,7 +130,7 @@ void Plant::pilot(const State& s, State& ds, Flows& flows) const {
   ds[p_pilot_2] = oil_.stiffness(s[p_pilot_2]) / (f.chamber - moved) * (flows.orifice_2 - flows.nozzle_2 + swept);
 }
 
-void Plant::metering(const State& s, Flows& flows) const {
+void Machine::metering(const State& s, Flows& flows) const {
   const double x = s[x_spool];
   const auto lap = [&](Edge e) { return d_.spool.lap[e] + c_.lap[e]; };
   flows.edge[edge_pa] = edge_flow(x - lap(edge_pa), s[p_supply], s[p_valve_a]);
@@ -139,7 +139,7 @@ void Plant::metering(const State& s, Flows& flows) const {
   flows.edge[edge_at] = edge_flow(-x - lap(edge_at), s[p_valve_a], s[p_return]);
 }
 
-void Plant::spool(const State& s, State& ds, const Flows& flows) const {
+void Machine::spool(const State& s, State& ds, const Flows& flows) const {
   const Spool& e = d_.spool;
   const FirstStage& f = d_.first;
   const auto momentum = [&](Edge k, double dp) {
@@ -163,7 +163,7 @@ void Plant::spool(const State& s, State& ds, const Flows& flows) const {
                 e.mass;
 }
 
-void Plant::lines(const State& s, State& ds, const Flows& flows) const {
+void Machine::lines(const State& s, State& ds, const Flows& flows) const {
   const Lines& l = d_.lines;
   const double inertance = rho_ * l.length / line_area_;
   const auto drop = [&](double q) { return (line_laminar_ + line_turbulent_ * std::abs(q)) * q; };
@@ -176,7 +176,7 @@ void Plant::lines(const State& s, State& ds, const Flows& flows) const {
   ds[q_line_b] = (s[p_valve_b] - s[p_chamber_b] - drop(s[q_line_b])) / inertance;
 }
 
-void Plant::supply(const State& s, State& ds, const Flows& flows) const {
+void Machine::supply(const State& s, State& ds, const Flows& flows) const {
   const Supply& u = d_.supply;
   const double set = c_.supply * u.pressure;
   const double pump = std::clamp((set - s[p_accumulator]) / u.pump_droop, 0.0, u.pump_flow);
@@ -190,7 +190,7 @@ void Plant::supply(const State& s, State& ds, const Flows& flows) const {
   ds[p_return] = oil_.stiffness(s[p_return]) / u.return_volume * (given - out);
 }
 
-void Plant::cylinder(const State& s, const Drive& in, State& ds, Flows& flows) const {
+void Machine::cylinder(const State& s, const Drive& in, State& ds, Flows& flows) const {
   const Actuator& a = d_.actuator;
   const double travel = s[x_piston] - s[x_body], speed = s[v_piston] - s[v_body];
   flows.across = (a.leak + c_.leak) * (s[p_chamber_a] - s[p_chamber_b]);
@@ -215,7 +215,7 @@ void Plant::cylinder(const State& s, const Drive& in, State& ds, Flows& flows) c
   ds[v_body] = rigid ? 0.0 : (-push - mount_ * s[x_body] - mount_damping_ * s[v_body]) / a.body;
 }
 
-void Plant::rates(const State& s, const Drive& in, State& ds, Flows& flows) const {
+void Machine::rates(const State& s, const Drive& in, State& ds, Flows& flows) const {
   motor(s, in, ds);
   pilot(s, ds, flows);
   metering(s, flows);
@@ -225,7 +225,7 @@ void Plant::rates(const State& s, const Drive& in, State& ds, Flows& flows) cons
   cylinder(s, in, ds, flows);
 }
 
-void Plant::step(State& s, const Drive& in, double h) const {
+void Machine::step(State& s, const Drive& in, double h) const {
   State k1, k2, k3, k4, at;
   Flows flows;
   rates(s, in, k1, flows);
@@ -238,7 +238,7 @@ void Plant::step(State& s, const Drive& in, double h) const {
   for (int i = 0; i < n_vars; ++i) s[i] += h / 6.0 * (k1[i] + 2.0 * (k2[i] + k3[i]) + k4[i]);
 }
 
-State Plant::rest() const {
+State Machine::rest() const {
   State s{};
   const double supply = c_.supply * d_.supply.pressure, back = d_.supply.tank;
   const double ratio = d_.actuator.area_a / d_.actuator.area_b;

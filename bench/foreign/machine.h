@@ -60,9 +60,9 @@ struct Flows {
   double load;                                              // [N]
 };
 
-class Plant {
+class Machine {
  public:
-  Plant(const Design& design, const Condition& condition);
+  Machine(const Design& design, const Condition& condition);
   void rates(const State& s, const Drive& in, State& ds, Flows& flows) const;
   void step(State& s, const Drive& in, double h) const;
   State rest() const;
