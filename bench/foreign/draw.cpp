@@ -6,6 +6,7 @@
 
 #include "base/random.h"
 #include "design.h"
+#include "oil.h"
 
 namespace servodx::foreign {
 namespace {

@@ -19,13 +19,17 @@ double stop_force(double x, double v, double limit, double stiffness, double dam
   return 0.0;
 }
 
-// LuGre (Canudas de Wit, Olsson, Astrom, Lischinsky 1995): bristle rate and friction force.
+// The hyperbolic tangent by its Pade quotient, 1 from 3 on, where quotient and slope meet.
+double saturated(double x) { return x >= 3.0 ? 1.0 : x * (27.0 + x * x) / (27.0 + 9.0 * x * x); }
+
+// LuGre (Canudas de Wit, Olsson, Astrom, Lischinsky 1995): bristle rate and friction force; the Stribeck curve is that
+// of Hess and Soom (1990).
 struct Bristle {
   double rate, force;
 };
 Bristle lugre(double v, double z, double coulomb, double breakaway, double stribeck, double stiffness, double damping) {
   const double ratio = v / stribeck;
-  const double level = coulomb + (breakaway - coulomb) * std::exp(-ratio * ratio);
+  const double level = coulomb + (breakaway - coulomb) / (1.0 + ratio * ratio);
   const double rate = v - stiffness * std::abs(v) / level * z;
   return {rate, stiffness * z + damping * rate};
 }
@@ -80,7 +84,7 @@ double Machine::edge_flow(double opening, double p_from, double p_to) const {
   const double gap = std::sqrt(open * open + clearance_ * clearance_);
   const double speed = std::sqrt(2.0 * size / rho_), viscosity = oil_.viscosity(0.5 * (p_from + p_to));
   const double number = 2.0 * gap * speed * rho_ / viscosity;
-  const double jet = e.discharge * e.width * gap * speed * std::tanh(2.0 * number / e.transition);
+  const double jet = e.discharge * e.width * gap * speed * saturated(2.0 * number / e.transition);
   // The film is as thick as the clearance under a land, and opens with the edge.
   const double film = e.eccentricity * e.width * gap * gap * clearance_ * size / (12.0 * viscosity * land);
   return std::copysign(jet * film / (jet + film), dp);

@@ -1,10 +1,12 @@
 // A foreign hydraulic test rig and its logs, from a seed: equations and numerics that are neither the fitted model's
 // nor the virtual rig's, so that tune, diagnose and explain are judged on what they do not know.
-//   servodx_foreign --seed N -o DIR [--only healthy|fault|hidden] [--logs assorted|acceptance|both] [--dry-run]
+//   servodx_foreign --seed N -o DIR [--only healthy|fault|hidden] [--logs assorted|acceptance|both] [--keep]
+//   [--dry-run]
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
 #include <cstdint>
+#include <exception>
 #include <filesystem>
 #include <string>
 
@@ -18,7 +20,7 @@ using namespace servodx::foreign;
 int main(int argc, char** argv) {
   std::uint64_t seed = 1;
   std::string out, only, logs = "both";
-  bool dry = false;
+  bool dry = false, keep = false;
   CLI::App app("a foreign hydraulic test rig and its logs");
   app.add_option("--seed", seed, "of everything drawn")->capture_default_str();
   app.add_option("-o,--output", out, "folder")->required();
@@ -26,6 +28,7 @@ int main(int argc, char** argv) {
   app.add_option("--logs", logs, "which fault-free logs")
       ->check(CLI::IsMember({"assorted", "acceptance", "both"}))
       ->capture_default_str();
+  app.add_flag("--keep", keep, "leave logs that are there already");
   app.add_flag("--dry-run", dry, "write all but the logs");
   CLI11_PARSE(app, argc, argv);
   try {
@@ -38,16 +41,18 @@ int main(int argc, char** argv) {
     wanted.assorted = logs != "acceptance";
     wanted.acceptance = logs != "assorted";
     std::string truth = truth_header();
-    const auto planned = plan(design, wanted);
-    for (const Planned& p : planned) {
-      truth += truth_row(design, p);
-      if (!dry) write_text(folder / p.truth.path, csv_of(design, run(design, p.job)));
-    }
+    for (const Planned& p : plan(design, {})) truth += truth_row(design, p);
+    write_text(folder / "truth.csv", truth);
     write_text(folder / "rig.toml", rig_toml(design));
     write_text(folder / "datasheet.md", datasheet(design));
     write_text(folder / "design.txt", design_text(design));
-    write_text(folder / (only.empty() ? "truth.csv" : "truth_" + only + ".csv"), truth);
-    fmt::print("{} logs in {}\n", dry ? 0 : planned.size(), out);
+    int made = 0;
+    for (const Planned& p : plan(design, wanted)) {
+      if (dry || (keep && std::filesystem::exists(folder / p.truth.path))) continue;
+      write_text(folder / p.truth.path, csv_of(design, run(design, p.job)));
+      ++made;
+    }
+    fmt::print("{} logs in {}\n", made, out);
   } catch (const std::exception& error) {
     fmt::print(stderr, "servodx_foreign: {}\n", error.what());
     return 1;

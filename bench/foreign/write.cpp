@@ -162,10 +162,14 @@ std::string design_text(const Design& d) {
 
 void write_text(const std::filesystem::path& path, const std::string& text) {
   std::filesystem::create_directories(path.parent_path());
-  std::ofstream file(path, std::ios::binary);
+  // A file that is there is whole.
+  std::filesystem::path part = path;
+  part += ".part";
+  std::ofstream file(part, std::ios::binary);
   file << text;
   file.close();
   if (!file) throw std::runtime_error("cannot write " + path.string());
+  std::filesystem::rename(part, path);
 }
 
 }  // namespace servodx::foreign
