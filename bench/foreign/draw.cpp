@@ -188,7 +188,7 @@ void draw_actuator(Design& d, Draw& r) {
 
 void draw_supply(Design& d, Draw& r) {
   Supply& u = d.supply;
-  u.pump_droop = r.by_size(0.01, 0.15) * u.pressure / d.no_load_flow;
+  u.pump_droop = r.by_size(0.015, 0.25) * u.pressure / d.no_load_flow;
   u.pump_flow = d.no_load_flow * r.of(1.1, 1.6);
   const double gas = (r.chance(0.7) ? r.by_size(0.2e-3, 3e-3) : 0.05e-3) * grown(d, 1.0);
   u.accumulator = gas / (1.3 * u.pressure);

@@ -104,6 +104,19 @@ TEST(ForeignRig, HalvingTheStepChangesALogByLessThanItsNoise) {
   }
 }
 
+TEST(ForeignRig, EverySeedOfADozenStaysFiniteAndBetweenItsStops) {
+  for (std::uint64_t seed = 1; seed <= 12; ++seed) {
+    const Design d = draw_design(seed);
+    Job job{make_excitation(d, Trial::prbs, Random(seed)), Condition{}};
+    job.excitation.duration = 0.04;
+    job.settling = 0.03;
+    job.quiet = true;
+    const Recording log = run(d, job);
+    for (const double x : log.channel[ch_spool]) EXPECT_LT(std::abs(x), 1.05 * d.spool.stop) << seed;
+    for (const double p : log.channel[ch_pressure_a]) EXPECT_LT(p, 1.6 * d.supply.pressure) << seed;
+  }
+}
+
 TEST(ForeignRig, SameSeedSameBytesAndAnotherSeedAnotherRig) {
   const auto text = [](std::uint64_t seed) {
     const Design d = draw_design(seed);
