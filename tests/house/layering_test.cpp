@@ -34,7 +34,8 @@ const std::map<std::string, std::set<std::string>> allowed = {
     {"evidence", {"fit", "signals"}},
     {"diagnose", {"parameters", "signals", "simulate", "optimise", "fit", "tune", "evidence", "faults", "effects"}},
     {"explain", {"parameters", "signals", "simulate", "optimise", "fit", "tune", "evidence", "faults", "effects"}},
-    {"report", {"signals", "faults", "diagnose", "explain", "evidence", "prognose", "fit", "tune", "valve_maps", "curves"}},
+    {"report",
+     {"signals", "faults", "diagnose", "explain", "evidence", "prognose", "fit", "tune", "valve_maps", "curves"}},
     {"prognose", {"parameters", "signals", "model", "simulate", "optimise", "fit", "faults", "valve_maps"}},
 };
 
@@ -106,7 +107,7 @@ TEST(Layering, DirectIncludesFollowTheTable) {
 // What stands above the library: roots whose headers it may include, besides its own folder.
 const std::map<std::string, std::vector<std::string>> above = {{"apps", {"include", "src"}},
                                                                {"bench", {"include", "src", "bench", "tests"}},
-                                                               {"tests", {"include", "src", "tests"}},
+                                                               {"tests", {"include", "src", "tests", "bench"}},
                                                                {"examples", {"include", "src"}}};
 
 TEST(Layering, ProgramBenchesTestsAndExamplesIncludeWhatTheyMay) {
@@ -126,6 +127,22 @@ TEST(Layering, ProgramBenchesTestsAndExamplesIncludeWhatTheyMay) {
     }
     EXPECT_GT(seen, 0) << "no includes found under " << folder;
   }
+}
+
+// The rig that judges the program blind shares no equation with it.
+TEST(Layering, TheForeignRigKnowsBaseAlone) {
+  const fs::path root = SERVODX_SOURCE_DIR, folder = root / "bench/foreign";
+  int seen = 0;
+  for (const auto& entry : fs::directory_iterator(folder)) {
+    const auto kind = entry.path().extension();
+    if (kind != ".h" && kind != ".cpp") continue;
+    for (const Include& include : includes_of(entry.path(), root)) {
+      ++seen;
+      EXPECT_TRUE(include.to == "base" || fs::exists(folder / include.text))
+          << entry.path() << ":" << include.line << ": \"" << include.text << "\" is the program's";
+    }
+  }
+  EXPECT_GT(seen, 10);
 }
 
 TEST(Layering, EveryFolderOfSrcHasARow) {
