@@ -234,6 +234,10 @@ void draw_sensors(Design& d, Draw& r) {
 // The command's rates, what the acceptance test asks, and the step that the fastest of the stiff parts allows.
 void draw_test(Design& d, Draw& r) {
   d.rate = r.one({500.0, 1000.0, 1000.0, 1000.0, 1000.0, 2000.0, 2000.0, 5000.0, 10000.0});
+  // Nobody records a fast valve so slowly, nor pressures without a filter against what is faster than the samples.
+  if (d.rate < 6.0 * d.valve_bandwidth) d.rate = std::max(d.rate, 1000.0);
+  for (const Channel c : {ch_pressure_a, ch_pressure_b, ch_supply, ch_return})
+    d.sensors[c].lag = std::max(d.sensors[c].lag, 0.25 / d.rate);
   d.control_rate = std::max(d.rate, 1000.0);
   if (r.chance(0.2)) d.control_rate = std::min(10000.0, 4.0 * d.control_rate);
   d.acceptance_amplitude = r.of(0.25, 0.8);
