@@ -76,13 +76,6 @@ enum Channel : int {
   n_channels
 };
 
-// Data sheet: the same quantities with its tolerance.
-struct Sheet {
-  double rated_flow, stroke, stop, spool_diameter, clearance, nozzle, orifice, gap, lag_frequency, null_leakage,
-      pilot_leakage, motor_frequency, area_a, area_b, actuator_stroke, mass, mount, line_length, line_bore, pressure,
-      return_pressure, density, viscosity;
-};
-
 struct Design {
   std::uint64_t seed;
   OilKind oil;
@@ -104,7 +97,6 @@ struct Design {
   bool command_recorded, percent, loaded;
   double acceptance_amplitude, acceptance_frequency;  // [1], [Hz]
   double step;                                        // [s] of integration
-  Sheet sheet;
 };
 
 Design draw_design(std::uint64_t seed);

@@ -257,37 +257,6 @@ void draw_test(Design& d, Draw& r) {
   d.step = std::clamp(std::min(1.2 / decays, 0.5 / rings), 2e-6, 1e-5);
 }
 
-void draw_sheet(Design& d, Draw& r) {
-  Sheet& s = d.sheet;
-  const FirstStage& f = d.first;
-  const double small =
-      std::sqrt(d.valve_bandwidth * d.motor_frequency * d.motor_frequency * 2 * pi * f.mass / f.damping);
-  const double slew = f.pilot_flow / (pi / 2 * d.spool.diameter * d.spool.diameter);
-  s.rated_flow = r.about(d.rated_flow, 0.05);
-  s.stroke = r.about(d.spool.stroke, 0.03);
-  s.stop = s.stroke * r.about(d.spool.stop / d.spool.stroke, 0.02);
-  s.spool_diameter = r.about(d.spool.diameter, 0.01);
-  s.clearance = r.about(d.spool.clearance, 0.25);
-  s.nozzle = r.about(f.nozzle, 0.05);
-  s.orifice = r.about(f.orifice, 0.05);
-  s.gap = r.about(f.gap, 0.10);
-  s.lag_frequency = r.about(std::min(small, slew / (0.25 * d.spool.stroke) / (2 * pi)), 0.15);
-  s.pilot_leakage = f.pilot_flow * r.of(1.0, 1.15);
-  s.null_leakage = s.pilot_leakage + d.no_load_flow * r.of(0.015, 0.03);
-  s.motor_frequency = r.about(d.motor_frequency, 0.08);
-  s.area_a = r.about(d.actuator.area_a, 0.005);
-  s.area_b = d.actuator.area_b == d.actuator.area_a ? s.area_a : r.about(d.actuator.area_b, 0.005);
-  s.actuator_stroke = d.actuator.stroke;
-  s.mass = r.about(d.actuator.mass, 0.08);
-  s.mount = r.chance(0.5) ? r.about(d.actuator.mount, 0.2) : 0.0;
-  s.line_length = d.lines.length < 0.2 && r.chance(0.5) ? 0.0 : r.about(d.lines.length, 0.1);
-  s.line_bore = d.lines.bore;
-  s.pressure = r.about(d.supply.pressure, 0.01);
-  s.return_pressure = d.supply.tank + r.of(0.0, 1.0) * bar;
-  s.density = r.about(d.oil.density, 0.01);
-  s.viscosity = r.about(d.oil.viscosity_40, 0.06);
-}
-
 }  // namespace
 
 Design draw_design(std::uint64_t seed) {
@@ -302,7 +271,6 @@ Design draw_design(std::uint64_t seed) {
   draw_supply(d, r);
   draw_sensors(d, r);
   draw_test(d, r);
-  draw_sheet(d, r);
   return d;
 }
 

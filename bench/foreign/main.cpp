@@ -13,6 +13,7 @@
 #include "design.h"
 #include "run.h"
 #include "set.h"
+#include "sheet.h"
 #include "write.h"
 
 using namespace servodx::foreign;
@@ -40,11 +41,12 @@ int main(int argc, char** argv) {
     wanted.hidden = only.empty() || only == "hidden";
     wanted.assorted = logs != "acceptance";
     wanted.acceptance = logs != "assorted";
+    const Sheet sheet = draw_sheet(design);
     std::string truth = truth_header();
     for (const Planned& p : plan(design, {})) truth += truth_row(design, p);
     write_text(folder / "truth.csv", truth);
-    write_text(folder / "rig.toml", rig_toml(design));
-    write_text(folder / "datasheet.md", datasheet(design));
+    write_text(folder / "rig.toml", rig_toml(design, sheet));
+    write_text(folder / "datasheet.md", datasheet(design, sheet));
     write_text(folder / "design.txt", design_text(design));
     int made = 0;
     for (const Planned& p : plan(design, wanted)) {

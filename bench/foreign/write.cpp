@@ -42,8 +42,7 @@ std::string csv_of(const Design& d, const Recording& r) {
   return text;
 }
 
-std::string rig_toml(const Design& d) {
-  const Sheet& s = d.sheet;
+std::string rig_toml(const Design& d, const Sheet& s) {
   std::string text = fmt::format(
       "# Foreign rig {}. Data sheet knowledge only.\nname = \"foreign {}\"\nports = \"actuator\"\n", d.seed, d.seed);
   const auto line = [&](const char* key, double value, const char* unit) {
@@ -84,17 +83,16 @@ std::string rig_toml(const Design& d) {
   return text;
 }
 
-std::string datasheet(const Design& d) {
+std::string datasheet(const Design& d, const Sheet& s) {
   const auto none = [](bool recorded) { return recorded ? "recorded" : "not recorded"; };
   return fmt::format(
       "# Foreign rig {}\n\nTwo-stage flapper-nozzle valve, {:.3g} l/min at 70 bar +-5 %, {:.3g} mA; {} at {:.3g} bar; "
       "cylinder {:.4g} / {:.4g} cm2, moving mass {:.3g} kg.\nPressure taps {}, lines {:.2g} m. Sampled at {:g} Hz, "
       "controller and generator at {:g} Hz.\nSpool sensor {}, return pressure {}, supply pressure {}, temperature {}.\n"
       "Open-loop logs carry a centring term in the logged command; closed loops are proportional, {:.3g} 1/s.\n",
-      d.seed, d.sheet.rated_flow / litre_per_minute, d.rated_current * 1e3, d.oil.name, d.sheet.pressure / bar,
-      d.sheet.area_a * 1e4, d.sheet.area_b * 1e4, d.sheet.mass,
-      d.lines.taps_at_valve ? "in the manifold at the valve" : "at the cylinder", d.sheet.line_length, d.rate,
-      d.control_rate, none(d.recorded[ch_spool]), none(d.recorded[ch_return]), none(d.recorded[ch_supply]),
+      d.seed, s.rated_flow / litre_per_minute, d.rated_current * 1e3, d.oil.name, s.pressure / bar, s.area_a * 1e4,
+      s.area_b * 1e4, s.mass, d.lines.taps_at_valve ? "in the manifold at the valve" : "at the cylinder", s.line_length,
+      d.rate, d.control_rate, none(d.recorded[ch_spool]), none(d.recorded[ch_return]), none(d.recorded[ch_supply]),
       none(d.recorded[ch_temperature]), d.position_gain);
 }
 

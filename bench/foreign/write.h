@@ -6,12 +6,13 @@
 #include "design.h"
 #include "run.h"
 #include "set.h"
+#include "sheet.h"
 
 namespace servodx::foreign {
 
 std::string csv_of(const Design& design, const Recording& recording);
-std::string rig_toml(const Design& design);
-std::string datasheet(const Design& design);
+std::string rig_toml(const Design& design, const Sheet& sheet);
+std::string datasheet(const Design& design, const Sheet& sheet);
 std::string truth_header();
 std::string truth_row(const Design& design, const Planned& planned);
 // The design's true numbers, one a line; for those who judge, never for the program that is judged.
