@@ -254,7 +254,7 @@ void draw_test(Design& d, Draw& r) {
   const double decays =
       std::max({edge * 1.6e9 / manifold, e.bristle * slew / e.coulomb, 2 * pi * d.amplifier.bandwidth});
   const double rings = std::max(std::sqrt(3e7 / e.mass), std::sqrt(8e5 / d.first.mass));
-  d.step = std::clamp(std::min(1.2 / decays, 0.5 / rings), 2e-6, 1e-5);
+  d.step = std::clamp(std::min(1.9 / decays, 0.8 / rings), 2e-6, 1e-5);
 }
 
 }  // namespace
