@@ -70,7 +70,7 @@ void run(const Options& options) {
                    .version = SERVODX_VERSION,
                    .recorded_at = {},
                    .temperature = result.temperature.value,
-                   .temperature_source = result.temperature.source,
+                   .temperature_source = name_of(result.temperature.source),
                    .checks = result.checks},
                   read_file(options.params));
 

@@ -15,6 +15,7 @@
 #include "invocation.h"
 #include "prognose/history.h"
 #include "prognose/limits.h"
+#include "prognose/seeded_csv.h"
 #include "prognose/trend.h"
 #include "report/prognosis.h"
 
@@ -35,7 +36,7 @@ struct Options {
 // one standard deviation.
 void add_failure(const std::string& text, TrendOptions& to) {
   const auto equals = text.find('=');
-  const std::string name = text.substr(0, equals);
+  const CheckName name = text.substr(0, equals);
   std::string level = equals == std::string::npos ? "" : text.substr(equals + 1);
   const bool below = level.starts_with('<');
   if (below) level.erase(0, 1);
@@ -49,7 +50,7 @@ void add_failure(const std::string& text, TrendOptions& to) {
   const std::optional<double> value = parse_number(level);
   require_option(
       value && *value > 0 && equals > 0 && (tilde == std::string::npos || (spread && *spread > 0)) &&
-          !((times || current) && below) && !(current && name != fmt::format("parameter:{}", row::spool_friction + 1)),
+          !((times || current) && below) && !(current && name.row() != row::spool_friction),
       "--failure", "'" + text + "' is not NAME=VALUE above 0",
       "--failure fidelity=1.7, --failure 'parameter:3=<20' for a lower limit, --failure parameter:14=20x for "
       "20 times the tuned value, parameter:14=0.9e-3A for the current that the spool's friction takes, ~SPREAD "
@@ -64,17 +65,16 @@ void add_failure(const std::string& text, TrendOptions& to) {
 }
 
 // What checks are called; of the rest, what is only not in this history is told.
-void require_levels_of_checks(const std::vector<std::string>& failures, const std::set<std::string>& held,
+void require_levels_of_checks(const std::vector<std::string>& failures, const std::set<CheckName>& held,
                               Invocation& invocation) {
   for (const std::string& text : failures) {
-    const std::string name = text.substr(0, text.find('='));
+    const CheckName name = text.substr(0, text.find('='));
     if (held.contains(name)) continue;
-    bool known = name == "mean_error" || name == "fidelity" || name.starts_with("correlation@");
-    for (int id = 1; id <= n_parameters; ++id) known = known || name == fmt::format("parameter:{}", id);
+    const bool known = name.kind() == CheckKind::parameter ? name.row().has_value() : name.kind() != CheckKind::other;
     require_option(
-        known, "--failure", "'" + name + "' is no check",
+        known, "--failure", "'" + name.text() + "' is no check",
         fmt::format("use mean_error, fidelity, correlation@5Hz or parameter:1 to parameter:{}", n_parameters));
-    invocation.note({name + ": no check of this history reads it; its failure level changes nothing"});
+    invocation.note({name.text() + ": no check of this history reads it; its failure level changes nothing"});
   }
 }
 
@@ -95,7 +95,7 @@ void run(Options options) {
                  "--params TUNED");
   if (!options.params.empty()) {
     const Table tuned = invocation.tuned_table(options.params);
-    for (const std::string& text : options.limits) add_limit(text, tuned, options.loop, options.trend);
+    for (const std::string& text : options.limits) add_limit(read_limit(text), tuned, options.loop, options.trend);
   }
   for (const std::string& text : options.failures) add_failure(text, options.trend);
   if (!options.seeded.empty()) {
@@ -104,10 +104,10 @@ void run(Options options) {
   }
   const History history(options.history, false);
   std::optional<ValveHistory> one;
-  std::set<std::string> held;
+  std::set<CheckName> held;
   if (options.all) {
     if (!options.failures.empty())
-      for (std::string& name : history.figures()) held.insert(std::move(name));
+      for (const std::string& name : history.figures()) held.insert(name);
   } else {
     one = history.of(options.valve);  // refuses a name that is not there
     for (const Recording& r : one->recordings)

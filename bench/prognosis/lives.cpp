@@ -16,12 +16,13 @@
 #include "prognose/check.h"
 #include "prognose/history.h"
 #include "prognose/metrics.h"
-#include "prognose/seeded.h"
+#include "prognose/seeded_csv.h"
 #include "prognose/track.h"
 #include "prognose/trend.h"
 #include "prognosis/study.h"
 #include "prognosis/units.h"
 #include "rig/rig_model.h"
+#include "prognose/check_name.h"
 
 namespace servodx::study {
 namespace {
@@ -32,13 +33,13 @@ double median(std::vector<double> v) {
 }
 
 // Label of the fault that a tracked parameter stands for; empty for the paper's checks.
-std::string caused_by(const std::string& check) {
+std::string caused_by(const CheckName& check) {
   for (const Progressive& p : progressive_faults())
-    if (check == fmt::format("parameter:{}", p.row + 1)) return std::string(p.fault->name);
+    if (check.row() == p.row) return std::string(p.fault->name);
   return {};
 }
 
-int row_of(const std::string& check) { return std::stoi(check.substr(check.find(':') + 1)) - 1; }
+std::size_t row_of(const CheckName& check) { return static_cast<std::size_t>(check.row().value()); }
 
 double mean_of(const std::vector<double>& v) {
   return std::accumulate(v.begin(), v.end(), 0.0) / static_cast<double>(v.size());
@@ -69,7 +70,7 @@ std::string seeded_csv(const Bench& b, const std::string& folder) {
         for (const Recording& r : seeded_looks(b, v, fault, folder).recordings)
           for (const Check& c : r.checks)
             if (caused_by(c.name) == d.name)
-              csv += fmt::format("{},{},{:.6g},{:.6g},{:.1f}\n", v, c.name,
+              csv += fmt::format("{},{},{:.6g},{:.6g},{:.1f}\n", v, c.name.text(),
                                  truth_of(d, valve, severity_at(end_of(d, b.model, valve), fault ? seeded_part(r) : 0)),
                                  c.value, r.temperature - 273.15);
       }
@@ -81,15 +82,14 @@ std::string seeded_csv(const Bench& b, const std::string& folder) {
 // a user would set them: of the paper's checks a multiple of healthy; of the parameters as the degradation is stated.
 TrendOptions seeded_fault(const Bench& b, const Degradation& d, const std::string& folder) {
   constexpr double warm = 283;  // [K]
-  std::map<std::string, std::vector<double>> healthy, failed;
-  const auto add = [&](const ValveHistory& h, bool whole_way, std::map<std::string, std::vector<double>>& to) {
+  std::map<CheckName, std::vector<double>> healthy, failed;
+  const auto add = [&](const ValveHistory& h, bool whole_way, std::map<CheckName, std::vector<double>>& to) {
     for (const Recording& r : h.recordings)
       for (const Check& c : r.checks) {
         if ((whole_way && seeded_part(r) < 1) || r.temperature < warm) continue;
         double value = c.value;
         if (caused_by(c.name) == d.name && d.stated == Stated::current) value *= friction_current(h.tuned);
-        if (caused_by(c.name) == d.name && d.stated == Stated::multiple)
-          value /= h.tuned[static_cast<std::size_t>(row_of(c.name))];
+        if (caused_by(c.name) == d.name && d.stated == Stated::multiple) value /= h.tuned[row_of(c.name)];
         to[c.name].push_back(value);
       }
   };
@@ -130,7 +130,7 @@ std::string readings_csv(const Bench& b, const std::vector<Unit>& all, const std
         const double s = r.at / all[i].life;
         csv += fmt::format("{},{},{:.4f},{:.1f},{:.5g},{:.5g},{:.3g},{:.5g}\n", end.name, all[i].name, s,
                            r.temperature - 273.15, truth_of(end, valve, severity_at(end, all[i].progress(s))), c.value,
-                           c.std_error, histories[i].tuned[static_cast<std::size_t>(row_of(c.name))]);
+                           c.std_error, histories[i].tuned[row_of(c.name)]);
       }
   }
   return csv;
@@ -214,11 +214,13 @@ void lives(const Bench& b, const std::string& out, int units, int checks, int fi
   for (const Degradation& d : degradations) seeded.at(d.name) = seeded_fault(b, d, out);
   for (const auto& [name, o] : seeded) {
     std::fprintf(stderr, "\n%s fails at", name.c_str());
-    for (const auto& [check, ratio] : o.failure_ratio) std::fprintf(stderr, " %s x %.3g", check.c_str(), ratio);
-    for (const auto& [check, current] : o.failure_current) std::fprintf(stderr, " %s %.3gA", check.c_str(), current);
+    for (const auto& [check, ratio] : o.failure_ratio) std::fprintf(stderr, " %s x %.3g", check.text().c_str(), ratio);
+    for (const auto& [check, current] : o.failure_current)
+      std::fprintf(stderr, " %s %.3gA", check.text().c_str(), current);
     for (const auto& [check, l] : o.failure)
-      std::fprintf(stderr, " %s %.3g", check.c_str(), l.second.value_or(l.first.value_or(0)));
-    for (const auto& [check, spread] : o.failure_spread) std::fprintf(stderr, " (%s ~%.2g)", check.c_str(), spread);
+      std::fprintf(stderr, " %s %.3g", check.text().c_str(), l.second.value_or(l.first.value_or(0)));
+    for (const auto& [check, spread] : o.failure_spread)
+      std::fprintf(stderr, " (%s ~%.2g)", check.text().c_str(), spread);
   }
 
   std::vector<std::optional<double>> alarm(all.size());
@@ -229,7 +231,7 @@ void lives(const Bench& b, const std::string& out, int units, int checks, int fi
       const ValveTrend t = trend(until(histories[i], histories[i].recordings[k - 1].at), {});
       alarm[i] = t.alert_at;
       for (const CheckTrend& c : t.trends)
-        if (c.alert_at) alarmed[i] += " " + c.name;
+        if (c.alert_at) alarmed[i] += " " + c.name.text();
     }
   });
   int healthy = 0, alarms = 0;

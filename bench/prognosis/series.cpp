@@ -13,6 +13,7 @@
 #include "prognose/history_csv.h"
 #include "prognose/trend.h"
 #include "prognosis/study.h"
+#include "report/prognosis_words.h"
 #include "servodx/log.h"
 
 namespace servodx::study {
@@ -55,7 +56,7 @@ void series(const Bench& b, const std::string& out, const std::vector<std::strin
   for (const ValveHistory& h : histories) {
     const ValveTrend t = trend(h, {});
     const auto n = static_cast<double>(h.recordings.size());
-    std::printf("\n%s: %zu checks, %s", h.valve.c_str(), h.recordings.size(), t.state.c_str());
+    std::printf("\n%s: %zu checks, %s", h.valve.c_str(), h.recordings.size(), report::word_of(t.state));
     if (t.alert_at) std::printf(", alert at %g (lead %g checks to the last)", *t.alert_at, n - *t.alert_at);
     std::printf(", cause %s\n", t.cause.value_or("none").c_str());
     for (const double lambda : {0.5, 0.7, 0.9}) {
@@ -70,8 +71,9 @@ void series(const Bench& b, const std::string& out, const std::vector<std::strin
         std::printf("  at test %g: no alert\n", then.at);
     }
     for (const CheckTrend& c : t.trends)
-      std::printf("  %-18s %-8s ln BF %7.1f  %10.4g -> %10.4g  alert %s\n", c.name.c_str(), c.state.c_str(),
-                  c.log_bayes_factor, c.healthy, c.now, c.alert_at ? fmt::format("{}", *c.alert_at).c_str() : "-");
+      std::printf("  %-18s %-8s ln BF %7.1f  %10.4g -> %10.4g  alert %s\n", c.name.text().c_str(),
+                  report::word_of(c.state), c.log_bayes_factor, c.healthy, c.now,
+                  c.alert_at ? fmt::format("{}", *c.alert_at).c_str() : "-");
   }
 }
 

@@ -8,6 +8,7 @@
 
 #include "rig/rig_model.h"
 #include "servodx/log.h"
+#include "prognose/check_name.h"
 
 namespace servodx::study {
 
@@ -45,12 +46,12 @@ Recording recording_of(double at, const CheckResult& result) {
   Recording r;
   r.at = at;
   r.temperature = result.temperature.value;
-  r.temperature_source = result.temperature.source;
+  r.temperature_source = name_of(result.temperature.source);
   r.checks = result.checks;
   return r;
 }
 
-const Check* find(const std::vector<Check>& checks, const std::string& name) {
+const Check* find(const std::vector<Check>& checks, const CheckName& name) {
   for (const Check& c : checks)
     if (c.name == name) return &c;
   return nullptr;

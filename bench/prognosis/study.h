@@ -14,6 +14,7 @@
 #include "servodx/log.h"
 #include "servodx/rig.h"
 #include "signals/rig_file.h"
+#include "prognose/check_name.h"
 
 namespace servodx::study {
 
@@ -57,7 +58,7 @@ Log test_log(const rig::RigModel& valve, const std::string& fault, double severi
 rig::RigRun preflight(const std::string& test, std::uint64_t seed);
 
 Recording recording_of(double at, const CheckResult& result);
-const Check* find(const std::vector<Check>& checks, const std::string& name);
+const Check* find(const std::vector<Check>& checks, const CheckName& name);
 
 // On all threads that OpenMP has; progress to standard error.
 void for_each(int n, const std::string& what, const std::function<void(int)>& work);

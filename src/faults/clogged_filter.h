@@ -3,6 +3,7 @@
 #pragma once
 #include "faults/fault.h"
 #include "parameters/list.h"
+#include "faults/maintenance.h"
 
 namespace servodx {
 
@@ -20,6 +21,7 @@ inline const Fault clogged_filter{
     .action = "critical: stop the machine",
     .apply = [](double* v, double s) { v[row::filter_blockage_positive] = v[row::filter_blockage_negative] = s; },
     .failed = 0.75,  // the end of what Borello 2009 studies
-    .part_lost = true};
+    .part_lost = true,
+    .renewed_by = EventKind::filter_changed};
 
 }  // namespace servodx

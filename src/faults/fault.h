@@ -6,6 +6,7 @@
 
 #include "effects/registry.h"
 #include "faults/gross_finding.h"
+#include "faults/maintenance.h"
 
 namespace servodx {
 
@@ -40,6 +41,8 @@ struct Fault {
   // A row that health lets wander up to a limit of the rig file. The fault is that row beyond the limit: it begins
   // there, not at `least`, and has no tolerance of its own.
   std::optional<int> beyond_limit_of = {};
+  // Maintenance that renews the part, beside what renews the whole valve.
+  std::optional<EventKind> renewed_by = {};
 };
 
 }  // namespace servodx

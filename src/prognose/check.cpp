@@ -6,8 +6,8 @@
 #include <cmath>
 
 #include "fit/error_model.h"
-#include "fit/tuned_state.h"
 #include "fit/free_values.h"
+#include "fit/tuned_state.h"
 #include "simulate/simulate.h"
 
 namespace servodx {
@@ -76,46 +76,6 @@ Scenario at_reference(const Scenario& as_was, const RigFile& rig) {
   return s;
 }
 
-// Misfit of a healthy valve at an oil temperature, nuisances fitted.
-double misfit_at(const LogData& log, const Table& tuned, const ErrorModel& error, int threads, long* simulations) {
-  const ParameterVector base = candidate_of(tuned);
-  SimulateOptions options;
-  options.threads = threads;
-  FitProblem problem({&log}, base, nuisance_values(log, 0, base, 0.05), options);
-  problem.difference_step = 1e-3;
-  const Point start = problem.start();
-  apply_error_model(problem, error, start);
-  LeastSquaresOptions o;
-  o.max_iterations = 6;
-  o.difference = Difference::forward;
-  const LeastSquaresResult r = minimise_least_squares(problem.least_squares(), start, o);
-  *simulations += problem.simulations();
-  return r.reason == StopReason::start_failed ? 1e300 : 2 * r.misfit;
-}
-
-// Posterior mean and spread on a grid, flat between -40 and 100 degC.
-OilTemperature estimate_temperature(const LogData& log, const Table& tuned, const RigFile& rig, int threads,
-                                    long* simulations) {
-  const ErrorModel error = error_model_of(tuned);
-  std::vector<double> kelvin, misfit;
-  for (double celsius = -40; celsius <= 100; celsius += 10) {
-    LogData at = log;
-    kelvin.push_back(celsius + 273.15);
-    at.scenario.oil = oil_at(rig.fluid.density, rig.fluid.kinematic_viscosity, kelvin.back());
-    at.scenario.oil_known = true;
-    misfit.push_back(misfit_at(at, tuned, error, threads, simulations));
-  }
-  const double least = *std::min_element(misfit.begin(), misfit.end());
-  double sum = 0, first = 0, second = 0;
-  for (std::size_t i = 0; i < kelvin.size(); ++i) {
-    const double p = std::exp(-0.5 * (misfit[i] - least));
-    sum += p, first += p * kelvin[i], second += p * kelvin[i] * kelvin[i];
-  }
-  const double centre = first / sum;
-  constexpr double grid = 10.0 / 3.4641016151377544;  // [K] spread of a step of the grid
-  return {centre, std::hypot(std::sqrt(std::max(0.0, second / sum - centre * centre)), grid), "estimated"};
-}
-
 }  // namespace
 
 CheckResult check(const Log& log, const Table& tuned, const RigFile& rig, const CheckOptions& options) {
@@ -129,14 +89,14 @@ CheckResult check(const Log& log, const Table& tuned, const RigFile& rig, const 
 
   // 1. Oil.
   if (log.has(Signal::oil_temperature)) {
-    out.temperature = {mean(log[Signal::oil_temperature], log.samples()), 0.0, "given"};
+    out.temperature = {mean(log[Signal::oil_temperature], log.samples()), 0.0, OilSource::given};
   } else if (options.correct) {
     out.temperature = estimate_temperature(data, tuned, rig, options.threads, &out.simulations);
     data.scenario.oil = oil_at(rig.fluid.density, rig.fluid.kinematic_viscosity, out.temperature.value);
     data.scenario.oil_known = true;
     out.notes.push_back("oil temperature estimated from the response; wear that acts like cold oil would shift it");
   } else {
-    out.temperature = {reference_kelvin, std::nan(""), "assumed"};
+    out.temperature = {reference_kelvin, std::nan(""), OilSource::assumed};
   }
 
   // 2. The monitor beside the log: as it is for |e|, from rest for the preflight checks.
@@ -147,7 +107,7 @@ CheckResult check(const Log& log, const Table& tuned, const RigFile& rig, const 
   if (spool) {
     const MonitorRun run = run_monitor(monitor, law, data);
     out.mean_error = mean_error(time, spool->measured, run.spool);
-    out.checks.push_back({"mean_error", out.mean_error.figure.value, out.mean_error.figure.std_error, "m",
+    out.checks.push_back({CheckName::of_mean_error(), out.mean_error.figure.value, out.mean_error.figure.std_error, "m",
                           out.mean_error.figure.value, 1.0, ""});
   } else {
     out.notes.push_back("no spool sensor: |e| and r cannot be had; E(tau) takes the monitor's spool");
@@ -201,7 +161,7 @@ CheckResult check(const Log& log, const Table& tuned, const RigFile& rig, const 
         out.notes.push_back("the model's run failed: the checks are not corrected to the reference state");
       }
     }
-    const auto add = [&](std::string name, const Figure& figure, std::string unit, const Figure* expected,
+    const auto add = [&](CheckName name, const Figure& figure, std::string unit, const Figure* expected,
                          const Figure* at_40) {
       double ratio = 1.0;
       if (expected && at_40 && expected->value / at_40->value > 0) ratio = expected->value / at_40->value;
@@ -216,7 +176,7 @@ CheckResult check(const Log& log, const Table& tuned, const RigFile& rig, const 
         if (seen.fidelity->figure.value < 0)
           out.notes.push_back(
               "fidelity is below 0: the spool moved against the command; is the sign of its signal right?");
-        add("fidelity", seen.fidelity->figure, "1", here.fidelity ? &here.fidelity->figure : nullptr,
+        add(CheckName::of_fidelity(), seen.fidelity->figure, "1", here.fidelity ? &here.fidelity->figure : nullptr,
             reference.fidelity ? &reference.fidelity->figure : nullptr);
       }
     }
@@ -225,15 +185,15 @@ CheckResult check(const Log& log, const Table& tuned, const RigFile& rig, const 
       const auto figure = [&](const PreflightFigures& f) {
         return i < f.correlation.size() && f.correlation[i] ? &*f.correlation[i] : nullptr;
       };
-      add(fmt::format("correlation@{:.4g}Hz", std::round(test.sines[i].frequency * 20) / 20), *seen.correlation[i],
-          "m2", figure(here), figure(reference));
+      add(CheckName::of_correlation(test.sines[i].frequency), *seen.correlation[i], "m2", figure(here),
+          figure(reference));
     }
   } else {
     out.notes.push_back("no preflight test in this log (a small step from rest, or sines): no r, no E(tau)");
   }
 
   for (const TrackedParameter& p : track.parameters)
-    out.checks.push_back({fmt::format("parameter:{}", p.id), p.value, p.std_error,
+    out.checks.push_back({CheckName::of_row(p.id - 1), p.value, p.std_error,
                           std::string(parameter_list[static_cast<std::size_t>(p.id - 1)].unit), p.value, 1.0,
                           std::string(p.fault->name), p.tuned, p.failed});
   return out;

@@ -15,7 +15,9 @@
 #include <vector>
 
 #include "parameters/table.h"
+#include "prognose/check_name.h"
 #include "prognose/checks.h"
+#include "prognose/oil_temperature.h"
 #include "prognose/track.h"
 #include "signals/log.h"
 #include "signals/rig_file.h"
@@ -23,7 +25,7 @@
 namespace servodx {
 
 struct Check {
-  std::string name;  // mean_error, fidelity, correlation@5Hz, parameter:ID
+  CheckName name;  // mean_error, fidelity, correlation@5Hz, parameter:ID
   double value = 0, std_error = 0;
   std::string unit;
   double measured = 0;  // before the correction
@@ -38,11 +40,6 @@ struct CheckOptions {
   bool track = true;         // fit the parameters
   bool correct = true;       // to the reference state
   std::vector<double> last;  // see TrackOptions
-};
-
-struct OilTemperature {
-  double value = 0, std_error = 0;  // [K]
-  std::string source;               // given | estimated | assumed
 };
 
 struct CheckResult {

@@ -12,6 +12,7 @@
 #include <filesystem>
 
 #include "base/error.h"
+#include "faults/registry.h"
 #include "parameters/table_text.h"
 
 namespace servodx {
@@ -117,7 +118,7 @@ void insert(SQLite::Database& db, long long valve, long long table, const Record
                            "VALUES(?, ?, ?, ?, ?, ?, ?, ?)");
   for (const Check& c : r.checks) {
     figure.bind(1, static_cast<std::int64_t>(id));
-    figure.bind(2, c.name);
+    figure.bind(2, c.name.text());
     bind(figure, 3, c.value);
     bind(figure, 4, c.std_error);
     figure.bind(5, c.unit);
@@ -134,10 +135,10 @@ std::string unlike(SQLite::Database& db, long long recording, const std::vector<
   SQLite::Statement find(db, "SELECT value FROM figure WHERE recording = ? AND name = ?");
   for (const Check& c : checks) {
     find.bind(1, static_cast<std::int64_t>(recording));
-    find.bind(2, c.name);
-    if (!find.executeStep()) return c.name;
+    find.bind(2, c.name.text());
+    if (!find.executeStep()) return c.name.text();
     const double held = number(find.getColumn(0));
-    if (held != c.value && !(std::isnan(held) && std::isnan(c.value))) return c.name;
+    if (held != c.value && !(std::isnan(held) && std::isnan(c.value))) return c.name.text();
     find.reset();
   }
   return "";
@@ -187,9 +188,10 @@ std::vector<double> tracked_in(const Recording& recording) {
 }
 
 bool resets(EventKind kind, const Check& check) {
+  const Fault* fault = find_fault(check.cause);
   switch (kind) {
     case EventKind::filter_changed:
-      return check.cause == "clogged_filter" || check.name == "fidelity";
+      return (fault && fault->renewed_by == kind) || check.name.kind() == CheckKind::fidelity;
     case EventKind::note:
       return false;
     default:

@@ -12,6 +12,7 @@
 #include <string>
 #include <vector>
 
+#include "faults/maintenance.h"
 #include "prognose/check.h"
 
 namespace SQLite {
@@ -33,7 +34,6 @@ struct Recording {
 std::vector<double> tracked_in(const Recording& recording);
 
 // What a maintenance event resets: the trends of checks that it renews start again from it.
-enum class EventKind { filter_changed, valve_swapped, overhauled, retuned, note };
 const char* name_of(EventKind kind);
 std::optional<EventKind> find_event(const std::string& name);
 std::string event_names();

@@ -110,9 +110,16 @@ const ParameterInfo* row_of(const Cells& cells, const Place& row) {
 // The unit in which a history keeps a figure; empty for figures it does not know.
 std::string kept_in(const Cells& cells, const Place& row) {
   if (const ParameterInfo* parameter = row_of(cells, row)) return std::string(parameter->unit);
-  if (cells[figure] == "mean_error") return "m";
-  if (cells[figure] == "fidelity") return "1";
-  return cells[figure].starts_with("correlation@") ? "m2" : "";
+  switch (CheckName(cells[figure]).kind()) {
+    case CheckKind::mean_error:
+      return "m";
+    case CheckKind::fidelity:
+      return "1";
+    case CheckKind::correlation:
+      return "m2";
+    default:
+      return "";
+  }
 }
 
 // Factor from the row's unit to the kept one.
@@ -134,7 +141,7 @@ Recording recording_of(const Cells& cells, double hours, bool celsius, const Pla
   if (!std::isnan(cycled)) r.cycles = cycled;
   r.temperature = parsed(cells, temperature, row, false) + (celsius ? 273.15 : 0.0);
   r.temperature_source = cells[temperature_source];
-  if (std::isnan(r.temperature)) r.temperature = 313.15, r.temperature_source = "assumed";
+  if (std::isnan(r.temperature)) r.temperature = 313.15, r.temperature_source = name_of(OilSource::assumed);
   if (r.temperature < coldest_oil || r.temperature > hottest_oil)
     throw InputError({row.file, row.line, celsius ? "oil_temperature [degC]" : header[temperature]},
                      "'" + cells[temperature] + "' is no oil's temperature",
@@ -189,7 +196,7 @@ std::string history_csv(const HistoryContent& content) {
       cells[table_sha256] = r.table_sha256, cells[version] = r.version, cells[recorded_at] = r.recorded_at;
       if (r.checks.empty()) append_row(out, cells);
       for (const Check& c : r.checks) {
-        cells[figure] = c.name, cells[value] = number(c.value), cells[std_error] = number(c.std_error);
+        cells[figure] = c.name.text(), cells[value] = number(c.value), cells[std_error] = number(c.std_error);
         cells[unit] = c.unit, cells[measured] = number(c.measured), cells[expected] = number(c.expected),
         cells[cause] = c.cause;
         append_row(out, cells);
@@ -253,7 +260,7 @@ HistoryContent read_history_csv(const std::string& path) {
       continue;
     }
     std::vector<Check>& checks = v.recordings[check->second].checks;
-    if (std::any_of(checks.begin(), checks.end(), [&](const Check& c) { return c.name == cells[figure]; }))
+    if (std::any_of(checks.begin(), checks.end(), [&](const Check& c) { return c.name.text() == cells[figure]; }))
       throw InputError({path, row.line, "name"}, "'" + cells[figure] + "' stands twice in one check", "remove one");
     const std::string kept = kept_in(cells, row);
     const double factor = to_kept(cells, kept, row);

@@ -1,8 +1,9 @@
 #include "prognose/limits.h"
 
-#include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include "base/error.h"
 #include "base/units.h"
@@ -12,6 +13,11 @@
 namespace servodx {
 namespace {
 
+constexpr std::array<std::pair<LimitKind, const char*>, 4> names = {{{LimitKind::bandwidth, "bandwidth"},
+                                                                     {LimitKind::gain, "gain"},
+                                                                     {LimitKind::hysteresis, "hysteresis"},
+                                                                     {LimitKind::phase_margin, "phase_margin"}}};
+const Place where{.file = "--limit"};
 constexpr const char* known = "use bandwidth=0.5, gain=0.5, hysteresis=0.04 or phase_margin=45";
 
 // Blocked fraction of the filter at which the first stage has `part` of its bandwidth: it goes with the root of the
@@ -24,6 +30,47 @@ double blockage_for(const Table& tuned, double part) {
   const double clean = 1 / std::pow(nominal::clean_filter_area_ratio, 2);
   const double filter = (1 + nozzle + clean) / (part * part) - 1 - nozzle;
   return 1 - 1 / (nominal::clean_filter_area_ratio * std::sqrt(filter));
+}
+
+Supply supply_of(const Table& tuned) {
+  constexpr double rated = 0.02;  // [A] of the table's valve
+  return {tuned[row::supply_pressure].nominal, tuned[row::return_pressure].nominal, {}, rated};
+}
+
+// A part lies between 0 and 1, a phase margin between 0 and 90 deg.
+void require_range(const PerformanceLimit& limit) {
+  const double most = limit.kind == LimitKind::phase_margin ? 90 : 1;
+  if (!(limit.value > 0 && limit.value < most)) throw InputError(where, "'" + limit.text + "' is out of range", known);
+}
+
+void add_gain(double part, const Table& tuned, TrendOptions& options) {
+  options.failure[CheckName::of_row(row::torque_motor_gain)] = {part * tuned[row::torque_motor_gain].nominal,
+                                                                std::nullopt};
+  options.failure_ratio[CheckName::of_fidelity()] = 1 / part;
+}
+
+void add_hysteresis(double part, const Table& tuned, TrendOptions& options) {
+  const Supply at = supply_of(tuned);
+  const MonitorParameters m = monitor_parameters(tuned, at);
+  const double force = part * at.rated_current * m.motor_gain;  // [N] at the flapper
+  options.failure[CheckName::of_row(row::valve_glitch)] = {std::nullopt, force / m.wire_stiffness};
+  options.failure[CheckName::of_row(row::spool_friction)] = {std::nullopt, force / (2 * m.spool_force_gain)};
+}
+
+void add_bandwidth(double part, const Table& tuned, TrendOptions& options) {
+  options.failure[CheckName::of_row(row::filter_blockage_positive)] = {std::nullopt, blockage_for(tuned, part)};
+  options.failure_ratio[CheckName::of_fidelity()] = fidelity_of_slower(1 / part);
+}
+
+// Part of the bandwidth at which the position loop keeps a phase margin [deg].
+double part_of_bandwidth(double margin, const Table& tuned, double loop) {
+  if (!(loop > 0)) throw InputError(where, "a phase margin needs the position loop's velocity gain", "--loop 15");
+  const MonitorParameters m = monitor_parameters(tuned, supply_of(tuned));
+  const double bandwidth = m.first_stage_gain * m.wire_stiffness / m.flapper_stiffness;  // [1/s]
+  const double part = loop / std::tan((90 - margin) * std::numbers::pi / 180) / bandwidth;
+  if (!(part > 0 && part < 1))
+    throw InputError(where, "the healthy valve does not hold this phase margin", "check --loop, or ask for less");
+  return part;
 }
 
 }  // namespace
@@ -39,45 +86,28 @@ double fidelity_of_slower(double slower) {
   return cross / square;
 }
 
-void add_limit(const std::string& text, const Table& tuned, double loop, TrendOptions& options) {
+PerformanceLimit read_limit(const std::string& text) {
   const auto equals = text.find('=');
-  const std::string name = text.substr(0, equals);
   const auto value = equals == std::string::npos ? std::nullopt : parse_number(text.substr(equals + 1));
-  const Place where{.file = "--limit"};
   if (!value) throw InputError(where, "'" + text + "' is not NAME=VALUE", known);
-  const auto within = [&](double low, double high) {
-    if (!(*value > low && *value < high)) throw InputError(where, "'" + text + "' is out of range", known);
-  };
-  Supply at{tuned[row::supply_pressure].nominal, tuned[row::return_pressure].nominal, {}, 0.02};
-  const MonitorParameters m = monitor_parameters(tuned, at);
-  double part = *value;
-  if (name == "gain") {
-    within(0, 1);
-    options.failure["parameter:3"] = {part * tuned[row::torque_motor_gain].nominal, std::nullopt};
-    options.failure_ratio["fidelity"] = 1 / part;
-    return;
+  const std::string name = text.substr(0, equals);
+  for (const auto& [kind, called] : names)
+    if (name == called) return {kind, *value, text};
+  throw InputError(where, "unknown limit '" + name + "'", known);
+}
+
+void add_limit(const PerformanceLimit& limit, const Table& tuned, double loop, TrendOptions& options) {
+  require_range(limit);
+  switch (limit.kind) {
+    case LimitKind::gain:
+      return add_gain(limit.value, tuned, options);
+    case LimitKind::hysteresis:
+      return add_hysteresis(limit.value, tuned, options);
+    case LimitKind::bandwidth:
+      return add_bandwidth(limit.value, tuned, options);
+    case LimitKind::phase_margin:
+      return add_bandwidth(part_of_bandwidth(limit.value, tuned, loop), tuned, options);
   }
-  if (name == "hysteresis") {
-    within(0, 1);
-    const double force = part * at.rated_current * m.motor_gain;  // [N] at the flapper
-    options.failure["parameter:9"] = {std::nullopt, force / m.wire_stiffness};
-    options.failure["parameter:14"] = {std::nullopt, force / (2 * m.spool_force_gain)};
-    return;
-  }
-  if (name == "phase_margin") {
-    within(0, 90);
-    if (!(loop > 0)) throw InputError(where, "a phase margin needs the position loop's velocity gain", "--loop 15");
-    const double bandwidth = m.first_stage_gain * m.wire_stiffness / m.flapper_stiffness;  // [1/s]
-    part = loop / std::tan((90 - *value) * std::numbers::pi / 180) / bandwidth;
-    if (!(part > 0 && part < 1))
-      throw InputError(where, "the healthy valve does not hold this phase margin", "check --loop, or ask for less");
-  } else if (name == "bandwidth") {
-    within(0, 1);
-  } else {
-    throw InputError(where, "unknown limit '" + name + "'", known);
-  }
-  options.failure["parameter:1"] = {std::nullopt, blockage_for(tuned, part)};
-  options.failure_ratio["fidelity"] = fidelity_of_slower(1 / part);
 }
 
 }  // namespace servodx

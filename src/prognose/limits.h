@@ -16,8 +16,18 @@
 
 namespace servodx {
 
-// Adds to `options`. Throws InputError for an unknown limit or a value out of range.
-void add_limit(const std::string& text, const Table& tuned, double loop, TrendOptions& options);
+enum class LimitKind { bandwidth, gain, hysteresis, phase_margin };
+
+struct PerformanceLimit {
+  LimitKind kind = LimitKind::bandwidth;
+  double value = 0;
+  std::string text;  // as the user gave it
+};
+// Throws InputError for what is not NAME=VALUE of a known limit.
+PerformanceLimit read_limit(const std::string& text);
+
+// Adds to `options`. Throws InputError for a value out of range, or a limit that the healthy valve does not hold.
+void add_limit(const PerformanceLimit& limit, const Table& tuned, double loop, TrendOptions& options);
 
 // r of a first-order spool `slower` times slower than the monitor, at the monitor's 95 % response.
 double fidelity_of_slower(double slower);

@@ -9,20 +9,19 @@
 #include <string>
 #include <vector>
 
+#include "prognose/check_name.h"
+
 namespace servodx {
 
 // ln of an oil's viscosity over that at 40 degC, of 14 mm2/s there: as a regressor what matters is its course.
 double log_viscosity(double kelvin);
 
 struct SeededReading {
-  std::string check, valve;
+  CheckName check;
+  std::string valve;
   double truth = 0, reading = 0;  // [unit of the check]
   double log_viscosity = 0;       // over that at 40 degC
 };
-
-// CSV with the columns valve, name, truth, value, oil_temperature [degC] or [K]; others, as `servodx history export`
-// writes them, are passed over, and so are rows without a truth. Throws InputError with file, line and column.
-std::vector<SeededReading> read_seeded_csv(const std::string& path);
 
 // Of one check, in the coordinate of its growth. Between sizes and viscosities that were tried it is linear; beyond the
 // sizes it goes on as at the nearest, beyond the viscosities it stays.

@@ -43,7 +43,8 @@ double two_sided_quantile(double p) {
 // is wrong in the pilot's path adds to it. Other parameters as they are.
 struct Series {
   enum class Scale { plain, logarithm, drop };
-  std::string name, unit, cause;
+  CheckName name;
+  std::string unit, cause;
   const Fault* fault = nullptr;
   std::optional<double> tuned;       // the row's value in the table that the checks rest on
   std::optional<double> per_newton;  // [A/N] of the spool's friction
@@ -126,7 +127,7 @@ Series begun(const Check& check, const ValveHistory& history) {
   Series s;
   s.name = check.name, s.unit = check.unit, s.cause = check.cause;
   for (const Progressive& p : progressive_faults())
-    if (check.name == fmt::format("parameter:{}", p.row + 1)) {
+    if (check.name.row() == p.row) {
       if (s.cause.empty()) s.cause = p.fault->name;
       if (static_cast<std::size_t>(p.row) < history.tuned.size())
         s.tuned = history.tuned[static_cast<std::size_t>(p.row)];
@@ -141,7 +142,7 @@ Series begun(const Check& check, const ValveHistory& history) {
     return std::all_of(r.checks.begin(), r.checks.end(),
                        [&](const Check& c) { return c.name != check.name || !(c.measured <= 0); });
   };
-  if (!check.name.starts_with("parameter:") &&
+  if (check.name.kind() != CheckKind::parameter &&
       std::all_of(history.recordings.begin(), history.recordings.end(), positive))
     s.scale = Series::Scale::logarithm;
   return s;
@@ -296,7 +297,7 @@ GrowthPrior prior_of(const Series& s, std::size_t healthy, const FailureAt& fail
   GrowthPrior prior;
   prior.base = median(y);
   for (double& v : y) v = std::abs(v - prior.base);
-  prior.direction = s.name == "mean_error" ? 1 : 0;
+  prior.direction = s.name.kind() == CheckKind::mean_error ? 1 : 0;
   if (failure.upper && !failure.lower) prior.direction = 1;
   if (failure.lower && !failure.upper) prior.direction = -1;
   // A growth that matters: half as much again for the paper's checks, the way to failure for a parameter.
@@ -397,7 +398,6 @@ std::vector<GrowthPoint> set_aside(std::vector<GrowthPoint> points, const Growth
 CheckTrend trend_of(const Series& s, const TrendOptions& options, std::size_t names) {
   CheckTrend out;
   out.name = s.name, out.unit = s.unit, out.cause = s.cause;
-  out.state = "unknown";
   out.to_warning = infinite;
   const std::size_t n = s.points.size(), healthy = std::min(n, static_cast<std::size_t>(options.healthy));
   std::vector<double> first;
@@ -467,8 +467,8 @@ CheckTrend trend_of(const Series& s, const TrendOptions& options, std::size_t na
   out.now = s.out(g.now);
   out.now_error = s.stretch(out.now) * g.now_sd;
   out.slope = out.trend ? s.stretch(out.now) * g.slope : 0.0;
-  out.state = out.blind ? "blind" : "healthy";
-  if (out.trend || beyond(out.threshold, out.points.back().value)) out.state = "watch";
+  out.state = out.blind ? TrendState::blind : TrendState::healthy;
+  if (out.trend || beyond(out.threshold, out.points.back().value)) out.state = TrendState::watch;
   if (!out.trend || prior.direction * (g.now - g.base) < 0) return out;  // away from failure is no way to it
 
   // Since when the alert is due: by halves, as a growth that is seen stays seen.
@@ -485,9 +485,9 @@ CheckTrend trend_of(const Series& s, const TrendOptions& options, std::size_t na
   const bool passed = out.alert_at.has_value();
   out.to_warning =
       passed ? 0.0 : quantile(model.life({s.in(out.warning.upper), s.in(out.warning.lower)}, options.seed), 0.5);
-  if (passed) out.state = "warning";
+  if (passed) out.state = TrendState::warning;
   if (!out.failure.lower && !out.failure.upper) return out;
-  if (beyond(out.failure, out.now)) out.state = "failed";
+  if (beyond(out.failure, out.now)) out.state = TrendState::failed;
   if (const auto& end = g.grown > 0 ? failure.upper : failure.lower) {
     constexpr double one_sided = 1.645;  // 95 %
     out.surely = s.way(std::abs(g.grown) - one_sided * g.grown_sd) /
@@ -525,11 +525,6 @@ Life pooled(const std::vector<std::pair<const Life*, double>>& lives) {
     out.push_back(all[i].first);
   }
   return out;
-}
-
-int rank_of(const std::string& state) {
-  const char* order[] = {"unknown", "blind", "healthy", "watch", "warning", "failed"};
-  return static_cast<int>(std::find(std::begin(order), std::end(order), state) - std::begin(order));
 }
 
 }  // namespace
@@ -570,7 +565,6 @@ ValveTrend trend(const ValveHistory& history, const TrendOptions& options) {
   out.serial = history.serial;
   out.checks = history.recordings.size();
   out.at = history.recordings.empty() ? 0.0 : history.recordings.back().at;
-  out.state = "unknown";
   out.to_warning = infinite;
   std::vector<Series> all = series_of(history, out.notes);
   for (Series& s : all) take_seeded(s, options.seeded), take_clean(s, static_cast<std::size_t>(options.healthy));
@@ -582,20 +576,20 @@ ValveTrend trend(const ValveHistory& history, const TrendOptions& options) {
     out.trends[static_cast<std::size_t>(k)] = trend_of(all[static_cast<std::size_t>(k)], options, all.size());
   for (const Series& s : all)
     if (options.failure_current.contains(s.name) && !s.per_newton)
-      out.notes.push_back(fmt::format("{}: no tuned table says what friction takes that current", s.name));
+      out.notes.push_back(fmt::format("{}: no tuned table says what friction takes that current", s.name.text()));
 
   for (std::size_t k = 0; k < all.size(); ++k) {
     const CheckTrend& t = out.trends[k];
     if ((t.failure.upper && t.healthy > *t.failure.upper) || (t.failure.lower && t.healthy < *t.failure.lower))
-      out.notes.push_back(t.name + ": its first checks are beyond its failure level already");
+      out.notes.push_back(t.name.text() + ": its first checks are beyond its failure level already");
     if (options.failure_ratio.contains(t.name) && all[k].fault && !all[k].fault->log_scale)
-      out.notes.push_back(t.name + ": does not multiply, so its level is so many times its first checks");
+      out.notes.push_back(t.name.text() + ": does not multiply, so its level is so many times its first checks");
   }
 
   double furthest = -infinite;  // of what may be the cause, surely
   const auto may_be = [](const CheckTrend& t) { return !t.cause.empty() && t.trend && !t.life.empty(); };
   for (const CheckTrend& t : out.trends) {
-    if (rank_of(t.state) > rank_of(out.state)) out.state = t.state;
+    out.state = std::max(out.state, t.state);
     out.to_warning = std::min(out.to_warning, t.to_warning);
     if (t.alert_at && (!out.alert_at || *t.alert_at < *out.alert_at)) out.alert_at = t.alert_at;
     if (may_be(t)) furthest = std::max(furthest, t.surely);
@@ -610,7 +604,7 @@ ValveTrend trend(const ValveHistory& history, const TrendOptions& options) {
     if (t.blind && !t.trend)
       out.notes.push_back(fmt::format(
           "{}: a healthy check scatters beyond the failure level at this false-alarm rate; only a trend can warn",
-          t.name));
+          t.name.text()));
   std::vector<std::pair<const Life*, double>> lives;
   for (const CheckTrend& t : out.trends)
     if (!t.life.empty() && (cause ? &t == cause : t.cause.empty())) {
@@ -623,9 +617,10 @@ ValveTrend trend(const ValveHistory& history, const TrendOptions& options) {
     out.remaining = remaining_of(out.life, options.coverage);
   }
   for (const CheckTrend& t : out.trends)
-    if (t.state == "unknown" && t.points.size() >= least_checks)
-      out.notes.push_back(t.name + ": holds a reading that none can be, 0 or less of a ratio: no word on a trend");
-  if (out.state == "unknown" && out.checks < least_checks)
+    if (t.state == TrendState::unknown && t.points.size() >= least_checks)
+      out.notes.push_back(t.name.text() +
+                          ": holds a reading that none can be, 0 or less of a ratio: no word on a trend");
+  if (out.state == TrendState::unknown && out.checks < least_checks)
     out.notes.push_back(fmt::format("fewer than {} checks: no word on a trend", least_checks));
   return out;
 }

@@ -23,23 +23,25 @@
 #include <string>
 #include <vector>
 
+#include "prognose/check_name.h"
 #include "prognose/growth.h"
 #include "prognose/history.h"
 #include "prognose/seeded.h"
+#include "prognose/trend_state.h"
 
 namespace servodx {
 
 struct TrendOptions {
   double false_alarm = 0.01;  // of a healthy valve
   int healthy = 12;           // first checks after a start or a reset that are taken as healthy
-  std::map<std::string, std::pair<std::optional<double>, std::optional<double>>> failure;  // name -> lower, upper
+  std::map<CheckName, std::pair<std::optional<double>, std::optional<double>>> failure;  // name -> lower, upper
   // name -> times its healthy value, of a parameter that multiplies its tuned one, where `failure` has none
-  std::map<std::string, double> failure_ratio;
+  std::map<CheckName, double> failure_ratio;
   // name of the spool's friction -> [A] of coil current that it takes, see `friction_current`
-  std::map<std::string, double> failure_current;
+  std::map<CheckName, double> failure_current;
   // name of a parameter -> one standard deviation of that level, in the unit it is stated in; else by the fault's own
   // `spread`
-  std::map<std::string, double> failure_spread;
+  std::map<CheckName, double> failure_spread;
   // of valves of the type: parameters are read as these were
   std::vector<SeededReading> seeded;
   double coverage = 0.9;  // of the interval of the life left
@@ -68,8 +70,9 @@ struct TangentRule {
 };
 
 struct CheckTrend {
-  std::string name, unit, cause;
-  std::string state;   // unknown (no word: notes) | blind | healthy | watch | warning | failed
+  CheckName name;
+  std::string unit, cause;
+  TrendState state = TrendState::unknown;
   bool blind = false;  // one check cannot tell failure from health at this false-alarm rate: only a trend can
   Level threshold, warning, failure;
   double healthy = 0;                 // where it began
@@ -91,7 +94,8 @@ struct CheckTrend {
 };
 
 struct ValveTrend {
-  std::string valve, serial, state;
+  std::string valve, serial;
+  TrendState state = TrendState::unknown;
   double at = 0;  // [h] of the last check
   std::size_t checks = 0;
   std::optional<std::string> cause;  // label of a fault

@@ -6,18 +6,19 @@
 
 #include "report/columns.h"
 #include "report/handy.h"
+#include "report/prognosis_words.h"
 
 namespace servodx::report {
 namespace {
 
 Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
 
-std::string name_of(const Check& c) { return c.cause.empty() ? c.name : c.name + " (" + c.cause + ")"; }
+std::string name_of(const Check& c) { return c.cause.empty() ? c.name.text() : c.name.text() + " (" + c.cause + ")"; }
 
 }  // namespace
 
 Json to_json(const Check& c, double temperature) {
-  Json json = {{"name", c.name},
+  Json json = {{"name", c.name.text()},
                {"value", number(c.value)},
                {"std_error", number(c.std_error)},
                {"unit", c.unit},
@@ -37,7 +38,7 @@ Json check_json(const CheckResult& r) {
            {{"value", number(r.temperature.value)},
             {"std_error", number(r.temperature.std_error)},
             {"unit", "K"},
-            {"source", r.temperature.source}}},
+            {"source", name_of(r.temperature.source)}}},
           {"offset", number(r.offset)},
           {"null", r.null ? number(*r.null) : Json(nullptr)},
           {"no_response", r.no_response},
@@ -52,7 +53,7 @@ std::string text_of(const CheckResult& r) {
     rows.row({name_of(c), handy(c.value, c.unit), "+-", handy(c.std_error, c.unit),
               c.value != c.measured ? "measured " + handy(c.measured, c.unit) : ""});
   std::string text =
-      fmt::format("{}: oil at {:.1f} degC ({})\n", r.log, r.temperature.value - 273.15, r.temperature.source);
+      fmt::format("{}: oil at {:.1f} degC ({})\n", r.log, r.temperature.value - 273.15, name_of(r.temperature.source));
   return text + rows.text();
 }
 
@@ -79,10 +80,10 @@ Json to_json(const CheckTrend& t) {
   if (t.tangent)
     tangent = {
         {"alert_at", t.tangent->alert_at}, {"time_to_failure", number(t.tangent->time_to_failure)}, {"unit", "h"}};
-  return {{"name", t.name},
+  return {{"name", t.name.text()},
           {"unit", t.unit},
           {"cause", t.cause.empty() ? Json(nullptr) : Json(t.cause)},
-          {"state", t.state},
+          {"state", word_of(t.state)},
           {"blind", t.blind},
           {"trend", t.trend},
           {"log_bayes_factor", number(t.log_bayes_factor)},
@@ -114,7 +115,7 @@ Json to_json(const ValveTrend& v) {
   for (const CheckTrend& t : v.trends) checks.push_back(to_json(t));
   return {{"valve", v.valve},
           {"serial", v.serial},
-          {"state", v.state},
+          {"state", word_of(v.state)},
           {"at", v.at},
           {"unit", "h"},
           {"recorded", v.checks},
@@ -133,7 +134,7 @@ Json trend_json(const std::vector<ValveTrend>& trends, bool all) {
 }
 
 std::string text_of(const ValveTrend& v) {
-  std::string text = fmt::format("{}: {} at {} h, {} checks\n", v.valve, v.state, digits(v.at, 5), v.checks);
+  std::string text = fmt::format("{}: {} at {} h, {} checks\n", v.valve, word_of(v.state), digits(v.at, 5), v.checks);
   if (v.cause) text += fmt::format("  cause        {}\n", *v.cause);
   if (v.alert_at) text += fmt::format("  alert        at {} h\n", digits(*v.alert_at, 5));
   if (v.remaining) text += fmt::format("  life left    {}\n", life_text(*v.remaining));
@@ -146,9 +147,10 @@ std::string text_of(const ValveTrend& v) {
       if (l.upper) s += (s.empty() ? "over " : ", over ") + handy(*l.upper, t.unit);
       return s.empty() ? std::string("-") : s;
     };
-    rows.row({t.cause.empty() ? t.name : t.name + " (" + t.cause + ")", t.trend ? t.state : t.state + ", no trend",
-              handy(t.healthy, t.unit), std::isfinite(t.now) ? handy(t.now, t.unit) : "-", bounds(t.warning),
-              bounds(t.failure), t.remaining ? life_text(*t.remaining) : "-"});
+    rows.row({t.cause.empty() ? t.name.text() : t.name.text() + " (" + t.cause + ")",
+              t.trend ? word_of(t.state) : std::string(word_of(t.state)) + ", no trend", handy(t.healthy, t.unit),
+              std::isfinite(t.now) ? handy(t.now, t.unit) : "-", bounds(t.warning), bounds(t.failure),
+              t.remaining ? life_text(*t.remaining) : "-"});
   }
   return text + rows.text();
 }
@@ -157,7 +159,7 @@ std::string ranking(const std::vector<ValveTrend>& trends) {
   Columns rows("lllrll");
   rows.row({"valve", "state", "cause", "at", "to warning", "life left"});
   for (const ValveTrend& v : trends)
-    rows.row({v.valve, v.state, v.cause.value_or("-"), digits(v.at, 5) + " h",
+    rows.row({v.valve, word_of(v.state), v.cause.value_or("-"), digits(v.at, 5) + " h",
               v.to_warning > 0 ? in_hours(v.to_warning) : "passed", v.remaining ? life_text(*v.remaining) : "-"});
   return rows.text();
 }

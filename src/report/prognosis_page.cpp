@@ -2,28 +2,31 @@
 
 #include <algorithm>
 #include <cmath>
-#include <string_view>
 
 #include "report/handy.h"
 #include "report/prognosis.h"
+#include "report/prognosis_words.h"
 #include "report/replay_part.h"
 
 namespace servodx::report {
 namespace {
 
 // "clogged filter (row 1)", and the paper's checks by their symbols.
-std::string named(const std::string& check, const std::string& cause) {
-  const auto rest = [&](std::string_view start) {
-    return check.starts_with(start) ? check.substr(start.size()) : std::string();
-  };
+std::string named(const CheckName& check, const std::string& cause) {
   if (!cause.empty()) {
-    const std::string row = rest("parameter:");
-    return words(cause) + " (" + (row.empty() ? check : "row " + row) + ")";
+    const bool row = check.kind() == CheckKind::parameter && !check.detail().empty();
+    return words(cause) + " (" + (row ? "row " + check.detail() : check.text()) + ")";
   }
-  if (check == "mean_error") return "mean error |e|";
-  if (check == "fidelity") return "fidelity r";
-  if (const std::string at = rest("correlation@"); !at.empty()) return "correlation E(tau) at " + at;
-  return check;
+  switch (check.kind()) {
+    case CheckKind::mean_error:
+      return "mean error |e|";
+    case CheckKind::fidelity:
+      return "fidelity r";
+    case CheckKind::correlation:
+      return check.detail().empty() ? check.text() : "correlation E(tau) at " + check.detail();
+    default:
+      return check.text();
+  }
 }
 
 // A part lost (of the filter's area) reads as per cent.
@@ -41,9 +44,9 @@ std::string size_of(const C& check, double value) {
 
 std::string in_hours(double h) { return std::isfinite(h) ? digits(h) + " h" : "never"; }
 
-Tone tone_of(const std::string& state) {
-  if (state == "failed" || state == "warning") return Tone::bad;
-  return state == "healthy" ? Tone::good : Tone::doubt;
+Tone tone_of(TrendState state) {
+  if (state == TrendState::failed || state == TrendState::warning) return Tone::bad;
+  return state == TrendState::healthy ? Tone::good : Tone::doubt;
 }
 
 std::string left(const std::optional<Remaining>& r, double coverage) {
@@ -108,7 +111,7 @@ std::optional<Plot> life_plot(const Life& life, double now) {
 TablePart table_of(const ValveTrend& v, double coverage) {
   TablePart table{"Checks of " + v.valve, "llrrll", {"check", "state", "began", "now", "trend", "life left"}, {}, 0};
   for (const CheckTrend& t : v.trends) {
-    Cell state = t.state;
+    Cell state = word_of(t.state);
     state.tone = tone_of(t.state);
     table.rows.push_back({named(t.name, t.cause), state, Cell(size_of(t, t.healthy), t.healthy),
                           std::isfinite(t.now) ? Cell(size_of(t, t.now), t.now) : Cell("-"), growth(t),
@@ -136,7 +139,7 @@ void add_valve(Page& page, const ValveTrend& v, double coverage, bool folded) {
 Verdict verdict_of(const ValveTrend& v, double coverage) {
   Verdict verdict;
   verdict.tone = tone_of(v.state);
-  verdict.word = v.state;
+  verdict.word = word_of(v.state);
   std::transform(verdict.word.begin(), verdict.word.end(), verdict.word.begin(),
                  [](unsigned char c) { return std::toupper(c); });
   verdict.headline = v.cause      ? words(*v.cause) + " grows in " + v.valve
@@ -187,7 +190,7 @@ Page trend_page(const Header& header, const std::vector<ValveTrend>& trends, boo
                   {},
                   0};
   for (const ValveTrend& t : trends) {
-    Cell state = t.state;
+    Cell state = word_of(t.state);
     state.tone = tone_of(t.state);
     table.rows.push_back({t.valve, state, t.cause ? words(*t.cause) : "-", Cell(in_hours(t.at), t.at),
                           t.to_warning > 0 ? in_hours(t.to_warning) : "passed", left(t.remaining, coverage)});
@@ -240,7 +243,7 @@ Page check_page(const Header& header, const CheckResult& r, const std::vector<do
       "A reading, no verdict: healthy logs of other kinds or oils read apart by far more than the errors below. "
       "What it means for this valve, its history says (servodx trend).";
   v.facts = {{"Checks recorded", std::to_string(r.checks.size())},
-             {"Oil", digits(r.temperature.value - 273.15) + " degC, " + r.temperature.source},
+             {"Oil", digits(r.temperature.value - 273.15) + " degC, " + name_of(r.temperature.source)},
              {"Offset of the current", percent(r.offset) + " of rated"},
              {"Fit of the model", digits(r.adequacy, 2) + " times its usual error"}};
   if (r.null) v.facts.push_back({"Null", percent(*r.null) + " of rated"});

@@ -8,6 +8,7 @@
 
 #include "base/error.h"
 #include "base/random.h"
+#include "prognose/seeded_csv.h"
 #include "prognose/trend.h"
 #include "temporary_folder.h"
 

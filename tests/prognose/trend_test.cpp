@@ -33,10 +33,10 @@ ValveHistory a_life(double until, double onset, std::uint64_t seed, double growt
   return h;
 }
 
-const CheckTrend& find(const ValveTrend& t, const std::string& name) {
+const CheckTrend& find(const ValveTrend& t, const CheckName& name) {
   for (const CheckTrend& c : t.trends)
     if (c.name == name) return c;
-  throw std::runtime_error("no " + name);
+  throw std::runtime_error("no " + name.text());
 }
 
 TEST(Trend, AHealthyValveHasNoTrendAndNoAlert) {
@@ -44,13 +44,13 @@ TEST(Trend, AHealthyValveHasNoTrendAndNoAlert) {
     const ValveTrend t = trend(a_life(100, 1e9, seed), {});
     EXPECT_FALSE(t.alert_at) << seed;
     EXPECT_FALSE(t.remaining) << seed;
-    for (const CheckTrend& c : t.trends) EXPECT_FALSE(c.trend) << c.name << " " << seed;
+    for (const CheckTrend& c : t.trends) EXPECT_FALSE(c.trend) << c.name.text() << " " << seed;
   }
 }
 
 TEST(Trend, AWearingValveIsAlertedNamedAndGivenItsLife) {
   const ValveTrend t = trend(a_life(80, 24, 1), {});
-  EXPECT_EQ(t.state, "warning");
+  EXPECT_EQ(t.state, TrendState::warning);
   EXPECT_EQ(t.cause, "feedback_wire_backlash");
   ASSERT_TRUE(t.alert_at);
   EXPECT_GT(*t.alert_at, 24);
@@ -72,13 +72,13 @@ TEST(Trend, AColdPreflightIsNoAlarm) {
   h.recordings.back().checks[1].measured = h.recordings.back().checks[1].value = 1.1 * 1.1;
   const ValveTrend t = trend(h, {});
   const CheckTrend& c = find(t, "fidelity");
-  EXPECT_NE(c.state, "warning");
+  EXPECT_NE(c.state, TrendState::warning);
   EXPECT_NEAR(c.points.back().value, c.healthy, 0.03 * c.healthy);
 }
 
 TEST(Trend, TooFewChecksGiveNoWord) {
   const ValveTrend t = trend(a_life(6, 0, 1), {});
-  EXPECT_EQ(t.state, "unknown");
+  EXPECT_EQ(t.state, TrendState::unknown);
   EXPECT_FALSE(t.alert_at);
 }
 
@@ -344,7 +344,7 @@ TEST(Trend, ACheckThatScattersBeyondFailureInHealthSaysThatItIsBlind) {
                              {});
   const CheckTrend& c = find(t, "parameter:9");
   EXPECT_TRUE(c.blind);
-  EXPECT_EQ(c.state, "blind");
+  EXPECT_EQ(c.state, TrendState::blind);
   EXPECT_FALSE(c.threshold.upper);
   ASSERT_EQ(t.notes.size(), 1u);
   EXPECT_NE(t.notes.front().find("only a trend can warn"), std::string::npos);
@@ -354,7 +354,7 @@ TEST(Trend, WhatIsFailedByOneLevelIsFailedByEveryNearerOne) {
   for (const double level : {1.5e-6, 2e-6, 3e-6, 5e-6, 9e-6}) {
     TrendOptions o;
     o.failure["parameter:9"].second = level;
-    EXPECT_EQ(find(trend(a_life(100, 0, 1), o), "parameter:9").state, "failed") << level;
+    EXPECT_EQ(find(trend(a_life(100, 0, 1), o), "parameter:9").state, TrendState::failed) << level;
   }
 }
 
@@ -373,7 +373,7 @@ TEST(Trend, ReadingsThatAreNoneAreNotHealth) {
       "fidelity", [](double) { return 1.2; }, 0.01, 0.01);
   h.recordings[5].checks[0].value = 0;
   const ValveTrend t = trend(h, {});
-  EXPECT_EQ(t.state, "unknown");
+  EXPECT_EQ(t.state, TrendState::unknown);
   ASSERT_EQ(t.notes.size(), 1u);
   EXPECT_NE(t.notes.front().find("fidelity"), std::string::npos);
 }
@@ -384,7 +384,7 @@ TEST(Trend, OneOutlyingCheckRaisesNoAlert) {
   h.recordings.back().checks[0].value = 9e-6;
   const ValveTrend t = trend(h, {});
   EXPECT_FALSE(t.alert_at);
-  EXPECT_EQ(t.state, "watch");
+  EXPECT_EQ(t.state, TrendState::watch);
 }
 
 TEST(Trend, SameHistorySameTrendOnAnyThreads) {

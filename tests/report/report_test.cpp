@@ -252,9 +252,9 @@ TEST(ExplainPage, SaysWhatIsMissingAndDrawsItWithItsBand) {
 
 TEST(TrendPage, AFigureThatFallsIsNotSaidToRise) {
   ValveTrend v;
-  v.valve = "V7", v.state = "warning";
+  v.valve = "V7", v.state = TrendState::warning;
   CheckTrend t;
-  t.name = "fidelity", t.unit = "1", t.state = "warning";
+  t.name = "fidelity", t.unit = "1", t.state = TrendState::warning;
   t.healthy = 1.34, t.now = 1.15, t.trend = true, t.log_bayes_factor = 20;
   v.trends = {t};
   EXPECT_NE(trend_page({}, {v}, false).html().find("falls, over 1000 to 1"), std::string::npos);
@@ -265,9 +265,9 @@ TEST(TrendPage, AFigureThatFallsIsNotSaidToRise) {
 // A history may come from anywhere: a filter that gets cleaner has no life towards a blocked one.
 TEST(TrendPage, WhatMovesAwayFromFailureIsSaidToAndGetsNoLife) {
   ValveTrend v;
-  v.valve = "V7", v.state = "watch";
+  v.valve = "V7", v.state = TrendState::watch;
   CheckTrend t;
-  t.name = "parameter:1", t.unit = "-", t.cause = "clogged_filter", t.state = "watch";
+  t.name = "parameter:1", t.unit = "-", t.cause = "clogged_filter", t.state = TrendState::watch;
   t.healthy = 0.46, t.now = 0.10, t.trend = true, t.log_bayes_factor = 20;
   t.failure.upper = 0.87;
   t.remaining = Remaining{346, 65, 14074};

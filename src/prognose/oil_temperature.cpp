@@ -1,0 +1,67 @@
+#include "prognose/oil_temperature.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "fit/error_model.h"
+#include "fit/free_values.h"
+#include "fit/problem.h"
+#include "fit/tuned_state.h"
+
+namespace servodx {
+namespace {
+
+// Misfit of a healthy valve at an oil temperature, nuisances fitted.
+double misfit_at(const LogData& log, const Table& tuned, const ErrorModel& error, int threads, long* simulations) {
+  const ParameterVector base = candidate_of(tuned);
+  SimulateOptions options;
+  options.threads = threads;
+  FitProblem problem({&log}, base, nuisance_values(log, 0, base, 0.05), options);
+  problem.difference_step = 1e-3;
+  const Point start = problem.start();
+  apply_error_model(problem, error, start);
+  LeastSquaresOptions o;
+  o.max_iterations = 6;
+  o.difference = Difference::forward;
+  const LeastSquaresResult r = minimise_least_squares(problem.least_squares(), start, o);
+  *simulations += problem.simulations();
+  return r.reason == StopReason::start_failed ? 1e300 : 2 * r.misfit;
+}
+
+}  // namespace
+
+const char* name_of(OilSource source) {
+  switch (source) {
+    case OilSource::given:
+      return "given";
+    case OilSource::estimated:
+      return "estimated";
+    case OilSource::assumed:
+      return "assumed";
+  }
+  return "";
+}
+
+OilTemperature estimate_temperature(const LogData& log, const Table& tuned, const RigFile& rig, int threads,
+                                    long* simulations) {
+  const ErrorModel error = error_model_of(tuned);
+  std::vector<double> kelvin, misfit;
+  for (double celsius = -40; celsius <= 100; celsius += 10) {
+    LogData at = log;
+    kelvin.push_back(celsius + 273.15);
+    at.scenario.oil = oil_at(rig.fluid.density, rig.fluid.kinematic_viscosity, kelvin.back());
+    at.scenario.oil_known = true;
+    misfit.push_back(misfit_at(at, tuned, error, threads, simulations));
+  }
+  const double least = *std::min_element(misfit.begin(), misfit.end());
+  double sum = 0, first = 0, second = 0;
+  for (std::size_t i = 0; i < kelvin.size(); ++i) {
+    const double p = std::exp(-0.5 * (misfit[i] - least));
+    sum += p, first += p * kelvin[i], second += p * kelvin[i] * kelvin[i];
+  }
+  const double centre = first / sum;
+  constexpr double grid = 10.0 / 3.4641016151377544;  // [K] spread of a step of the grid
+  return {centre, std::hypot(std::sqrt(std::max(0.0, second / sum - centre * centre)), grid), OilSource::estimated};
+}
+
+}  // namespace servodx
