@@ -10,6 +10,7 @@
 #include "prognose/history.h"
 #include "prognose/metrics.h"
 #include "prognose/trend.h"
+#include "prognose/trend_options.h"
 #include "prognosis/study.h"
 #include "prognosis/units.h"
 

@@ -1,69 +1,24 @@
 #include "prognose/check.h"
 
-#include <fmt/format.h>
-
-#include <algorithm>
 #include <cmath>
+#include <string>
+#include <utility>
 
-#include "fit/error_model.h"
 #include "fit/free_values.h"
-#include "fit/tuned_state.h"
+#include "fit/log_data.h"
+#include "model/state.h"
+#include "parameters/list.h"
+#include "prognose/monitor.h"
+#include "prognose/preflight.h"
+#include "prognose/preflight_figures.h"
+#include "servodx/rig.h"
+#include "simulate/scenario.h"
 #include "simulate/simulate.h"
 
 namespace servodx {
 namespace {
 
 constexpr double reference_kelvin = 313.15;
-
-const FitChannel* channel(const LogData& log, Signal signal) {
-  for (const FitChannel& c : log.channels)
-    if (c.signal == signal) return &c;
-  return nullptr;
-}
-
-// The preflight figures of one pair of spool and piston traces, measured or simulated.
-struct Traces {
-  const std::vector<double>* spool = nullptr;  // null: none
-  const std::vector<double>* piston = nullptr;
-  double spool_noise = 0, piston_noise = 0;
-};
-struct PreflightFigures {
-  std::optional<Fidelity> fidelity;
-  std::vector<std::optional<Figure>> correlation;  // one a sine
-};
-
-double mean(const std::vector<double>& x, std::size_t n) {
-  double sum = 0;
-  long present = 0;
-  for (std::size_t k = 0; k < n; ++k)
-    if (!std::isnan(x[k])) sum += x[k], ++present;
-  return present ? sum / static_cast<double>(present) : 0.0;
-}
-
-PreflightFigures figures_of(const std::vector<double>& time, const Preflight& test, const Traces& traces,
-                            const std::vector<double>& monitor_spool) {
-  PreflightFigures out;
-  std::vector<double> spool;
-  if (traces.spool) {
-    spool = *traces.spool;
-    const double rest = mean(spool, test.rest);  // the offset, taken off before the checks
-    for (double& x : spool) x -= rest;
-    if (test.step) out.fidelity = fidelity(time, spool, monitor_spool, *test.step, traces.spool_noise);
-  }
-  for (const Preflight::Sine& sine : test.sines)
-    out.correlation.push_back(traces.piston
-                                  ? correlation(time, traces.spool ? spool : monitor_spool, *traces.piston, sine,
-                                                traces.spool ? traces.spool_noise : 0.0, traces.piston_noise)
-                                  : std::nullopt);
-  return out;
-}
-
-Traces traces_of(const Trajectory& t, const LogData& log) {
-  Traces traces;
-  if (const FitChannel* c = channel(log, Signal::spool_position)) traces.spool = &t.signals[c->simulated];
-  if (const FitChannel* c = channel(log, Signal::piston_position)) traces.piston = &t.signals[c->simulated];
-  return traces;
-}
 
 // The same current at the reference state.
 Scenario at_reference(const Scenario& as_was, const RigFile& rig) {
@@ -76,20 +31,19 @@ Scenario at_reference(const Scenario& as_was, const RigFile& rig) {
   return s;
 }
 
-}  // namespace
+// The monitor as the valve is in a log, and the pressure law that it goes by.
+struct Beside {
+  MonitorParameters monitor;
+  PressureLaw law;
+};
+Beside monitor_beside(const Table& tuned, const Supply& at, const std::string& model) {
+  return {monitor_parameters(tuned, at), pressure_law(model, tuned, at)};
+}
 
-CheckResult check(const Log& log, const Table& tuned, const RigFile& rig, const CheckOptions& options) {
-  LogData data = prepare(log, rig);
-  require_channels(data);
-  const std::vector<double>& time = data.scenario.time;
-  CheckResult out;
-  out.log = log.path;
-  out.sha256 = log.sha256;
-  out.notes = log.notes;
-
-  // 1. Oil.
+void take_oil(CheckResult& out, LogData& data, const Log& log, const Table& tuned, const RigFile& rig,
+              const CheckOptions& options) {
   if (log.has(Signal::oil_temperature)) {
-    out.temperature = {mean(log[Signal::oil_temperature], log.samples()), 0.0, OilSource::given};
+    out.temperature = {mean_of_first(log[Signal::oil_temperature], log.samples()), 0.0, OilSource::given};
   } else if (options.correct) {
     out.temperature = estimate_temperature(data, tuned, rig, options.threads, &out.simulations);
     data.scenario.oil = oil_at(rig.fluid.density, rig.fluid.kinematic_viscosity, out.temperature.value);
@@ -98,104 +52,141 @@ CheckResult check(const Log& log, const Table& tuned, const RigFile& rig, const 
   } else {
     out.temperature = {reference_kelvin, std::nan(""), OilSource::assumed};
   }
+}
 
-  // 2. The monitor beside the log: as it is for |e|, from rest for the preflight checks.
-  const MonitorParameters monitor = monitor_parameters(tuned, supply_of(data, tuned));
-  const PressureLaw law = pressure_law(options.model, tuned, supply_of(data, tuned));
-  const FitChannel* spool = channel(data, Signal::spool_position);
-  const FitChannel* piston = channel(data, Signal::piston_position);
-  if (spool) {
-    const MonitorRun run = run_monitor(monitor, law, data);
-    out.mean_error = mean_error(time, spool->measured, run.spool);
-    out.checks.push_back({CheckName::of_mean_error(), out.mean_error.figure.value, out.mean_error.figure.std_error, "m",
-                          out.mean_error.figure.value, 1.0, ""});
-  } else {
+// With the monitor as it is: null and offsets are part of what |e| shows.
+void add_mean_error(CheckResult& out, const LogData& data, const Beside& beside) {
+  const FitChannel* spool = channel_of(data, Signal::spool_position);
+  if (!spool) {
     out.notes.push_back("no spool sensor: |e| and r cannot be had; E(tau) takes the monitor's spool");
+    return;
   }
-  const Preflight test = find_preflight(data);
-  const bool has_test = test.step || !test.sines.empty();
-  if (test.step && spool)
-    out.offset = (test.rest_current + monitor.null_current -
-                  mean(spool->measured, test.rest) * monitor.wire_stiffness / monitor.motor_gain) /
-                 data.scenario.rated_current;
+  const MonitorRun run = run_monitor(beside.monitor, beside.law, data);
+  out.mean_error = mean_error(data.scenario.time, spool->measured, run.spool);
+  const Figure& figure = out.mean_error.figure;
+  out.checks.push_back({CheckName::of_mean_error(), figure.value, figure.std_error, "m", figure.value, 1.0, ""});
+}
 
-  // 3. What the parameters are.
+// [of rated] current at rest less what the spool at rest calls for.
+double offset_at_rest(const Preflight& test, const FitChannel& spool, const MonitorParameters& monitor, double rated) {
+  return (test.rest_current + monitor.null_current -
+          mean_of_first(spool.measured, test.rest) * monitor.wire_stiffness / monitor.motor_gain) /
+         rated;
+}
+
+Track tracked(CheckResult& out, const LogData& data, const Table& tuned, const RigFile& rig,
+              const CheckOptions& options) {
   Track track;
   track.healthy = candidate_of(tuned);
-  if (options.track) {
-    track =
-        track_parameters(data, tuned, {.null_limit = rig.null_limit, .threads = options.threads, .last = options.last});
-    out.simulations += track.simulations;
-    out.failed_simulations += track.failed;
-    out.adequacy = track.adequacy;
-    if (!track.parameters.empty()) out.null = track.null;
-    for (const TrackedParameter& p : track.parameters) out.tracked.push_back(p.value);
-  }
+  if (!options.track) return track;
+  track =
+      track_parameters(data, tuned, {.null_limit = rig.null_limit, .threads = options.threads, .last = options.last});
+  out.simulations += track.simulations;
+  out.failed_simulations += track.failed;
+  out.adequacy = track.adequacy;
+  if (!track.parameters.empty()) out.null = track.null;
+  for (const TrackedParameter& p : track.parameters) out.tracked.push_back(p.value);
+  return track;
+}
 
-  // 4. Preflight checks, measured and, where asked, as the model expects them here and at the reference state.
-  if (has_test) {
-    const MonitorRun at_rest = run_monitor(monitor, law, data, test.rest_current);
-    const Traces measured{spool ? &spool->measured : nullptr, piston ? &piston->measured : nullptr,
-                          spool ? spool->noise : 0.0, piston ? piston->noise : 0.0};
-    const PreflightFigures seen = figures_of(time, test, measured, at_rest.spool);
-    PreflightFigures here, reference;
-    if (options.correct) {
-      SimulateOptions how;
-      how.threads = options.threads;
-      const Trajectory was = simulate(data.scenario, track.healthy, how);
-      LogData other = data;
-      other.scenario = at_reference(data.scenario, rig);
-      ParameterVector clean = track.healthy;
-      clean[row::air_fraction] = tuned[row::air_fraction].nominal;
-      const Trajectory would = simulate(other.scenario, clean, how);
-      out.simulations += 2;
-      out.failed_simulations += !was.ok + !would.ok;
-      if (was.ok && would.ok) {
-        here = figures_of(time, test, traces_of(was, data), at_rest.spool);
-        const Supply standard{tuned[row::supply_pressure].nominal, tuned[row::return_pressure].nominal,
-                              other.scenario.oil, data.scenario.rated_current};
-        const MonitorRun run = run_monitor(monitor_parameters(tuned, standard),
-                                           pressure_law(options.model, tuned, standard), other, test.rest_current);
-        reference = figures_of(time, test, traces_of(would, data), run.spool);
-      } else {
-        out.notes.push_back("the model's run failed: the checks are not corrected to the reference state");
-      }
-    }
-    const auto add = [&](CheckName name, const Figure& figure, std::string unit, const Figure* expected,
-                         const Figure* at_40) {
-      double ratio = 1.0;
-      if (expected && at_40 && expected->value / at_40->value > 0) ratio = expected->value / at_40->value;
-      out.checks.push_back(
-          {std::move(name), figure.value / ratio, figure.std_error / ratio, std::move(unit), figure.value, ratio, ""});
+// What the model expects of a healthy valve in this log, and what it would at the reference state.
+struct Expected {
+  PreflightFigures here, reference;
+};
+
+Expected expected_of(CheckResult& out, const LogData& data, const Preflight& test, const ParameterVector& healthy,
+                     const MonitorRun& at_rest, const Table& tuned, const RigFile& rig, const CheckOptions& options) {
+  SimulateOptions how;
+  how.threads = options.threads;
+  const Trajectory was = simulate(data.scenario, healthy, how);
+  LogData other = data;
+  other.scenario = at_reference(data.scenario, rig);
+  ParameterVector clean = healthy;
+  clean[row::air_fraction] = tuned[row::air_fraction].nominal;
+  const Trajectory would = simulate(other.scenario, clean, how);
+  out.simulations += 2;
+  out.failed_simulations += !was.ok + !would.ok;
+  if (!was.ok || !would.ok) {
+    out.notes.push_back("the model's run failed: the checks are not corrected to the reference state");
+    return {};
+  }
+  const Supply standard{tuned[row::supply_pressure].nominal, tuned[row::return_pressure].nominal, other.scenario.oil,
+                        data.scenario.rated_current};
+  const Beside beside = monitor_beside(tuned, standard, options.model);
+  const MonitorRun run = run_monitor(beside.monitor, beside.law, other, test.rest_current);
+  const std::vector<double>& time = data.scenario.time;
+  return {figures_of(time, test, traces_of(was, data), at_rest.spool),
+          figures_of(time, test, traces_of(would, data), run.spool)};
+}
+
+// The measured figure over how the model says that it differs here from the reference state.
+void add_corrected(CheckResult& out, CheckName name, const Figure& figure, std::string unit, const Figure* here,
+                   const Figure* reference) {
+  const bool known = here && reference && here->value / reference->value > 0;
+  const double ratio = known ? here->value / reference->value : 1.0;
+  out.checks.push_back(
+      {std::move(name), figure.value / ratio, figure.std_error / ratio, std::move(unit), figure.value, ratio, ""});
+}
+
+void add_fidelity(CheckResult& out, const Fidelity& seen, const Expected& expected) {
+  out.no_response = seen.no_response;
+  if (out.no_response) {
+    out.notes.push_back("no response: the spool did not follow the preflight step");
+    return;
+  }
+  if (seen.figure.value < 0)
+    out.notes.push_back("fidelity is below 0: the spool moved against the command; is the sign of its signal right?");
+  const auto figure = [](const PreflightFigures& f) { return f.fidelity ? &f.fidelity->figure : nullptr; };
+  add_corrected(out, CheckName::of_fidelity(), seen.figure, "1", figure(expected.here), figure(expected.reference));
+}
+
+void add_correlations(CheckResult& out, const Preflight& test, const PreflightFigures& seen, const Expected& expected) {
+  for (std::size_t i = 0; i < test.sines.size(); ++i) {
+    if (!seen.correlation[i]) continue;
+    const auto figure = [&](const PreflightFigures& f) {
+      return i < f.correlation.size() && f.correlation[i] ? &*f.correlation[i] : nullptr;
     };
-    if (seen.fidelity) {
-      out.no_response = seen.fidelity->no_response;
-      if (out.no_response)
-        out.notes.push_back("no response: the spool did not follow the preflight step");
-      else {
-        if (seen.fidelity->figure.value < 0)
-          out.notes.push_back(
-              "fidelity is below 0: the spool moved against the command; is the sign of its signal right?");
-        add(CheckName::of_fidelity(), seen.fidelity->figure, "1", here.fidelity ? &here.fidelity->figure : nullptr,
-            reference.fidelity ? &reference.fidelity->figure : nullptr);
-      }
-    }
-    for (std::size_t i = 0; i < test.sines.size(); ++i) {
-      if (!seen.correlation[i]) continue;
-      const auto figure = [&](const PreflightFigures& f) {
-        return i < f.correlation.size() && f.correlation[i] ? &*f.correlation[i] : nullptr;
-      };
-      add(CheckName::of_correlation(test.sines[i].frequency), *seen.correlation[i], "m2", figure(here),
-          figure(reference));
-    }
-  } else {
-    out.notes.push_back("no preflight test in this log (a small step from rest, or sines): no r, no E(tau)");
+    add_corrected(out, CheckName::of_correlation(test.sines[i].frequency), *seen.correlation[i], "m2",
+                  figure(expected.here), figure(expected.reference));
   }
+}
 
-  for (const TrackedParameter& p : track.parameters)
+void add_parameters(CheckResult& out, const std::vector<TrackedParameter>& parameters) {
+  for (const TrackedParameter& p : parameters)
     out.checks.push_back({CheckName::of_row(p.id - 1), p.value, p.std_error,
                           std::string(parameter_list[static_cast<std::size_t>(p.id - 1)].unit), p.value, 1.0,
                           std::string(p.fault->name), p.tuned, p.failed});
+}
+
+}  // namespace
+
+CheckResult check(const Log& log, const Table& tuned, const RigFile& rig, const CheckOptions& options) {
+  LogData data = prepare(log, rig);
+  require_channels(data);
+  CheckResult out;
+  out.log = log.path;
+  out.sha256 = log.sha256;
+  out.notes = log.notes;
+  take_oil(out, data, log, tuned, rig, options);
+
+  const Beside beside = monitor_beside(tuned, supply_of(data, tuned), options.model);
+  add_mean_error(out, data, beside);
+  const Preflight test = find_preflight(data);
+  const FitChannel* spool = channel_of(data, Signal::spool_position);
+  if (test.step && spool) out.offset = offset_at_rest(test, *spool, beside.monitor, data.scenario.rated_current);
+  const Track track = tracked(out, data, tuned, rig, options);
+
+  if (test.step || !test.sines.empty()) {
+    const MonitorRun at_rest = run_monitor(beside.monitor, beside.law, data, test.rest_current);
+    const PreflightFigures seen = figures_of(data.scenario.time, test, measured_traces(data), at_rest.spool);
+    const Expected expected =
+        options.correct ? expected_of(out, data, test, track.healthy, at_rest, tuned, rig, options) : Expected{};
+    if (seen.fidelity) add_fidelity(out, *seen.fidelity, expected);
+    add_correlations(out, test, seen, expected);
+  } else {
+    out.notes.push_back("no preflight test in this log (a small step from rest, or sines): no r, no E(tau)");
+  }
+  add_parameters(out, track.parameters);
   return out;
 }
 

@@ -19,6 +19,7 @@
 #include "prognose/checks.h"
 #include "prognose/oil_temperature.h"
 #include "prognose/track.h"
+#include "servodx/rig.h"
 #include "signals/log.h"
 #include "signals/rig_file.h"
 

@@ -19,9 +19,12 @@
 // What else is wrong in the flow's path adds to the drop, and how large the part is in thick oil multiplies it. `lost`
 // is on the grid, m about 1. Limits: one growth, monotone but for its wander; what changes its law later is seen late.
 #pragma once
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <vector>
+
+#include "prognose/life.h"
 
 namespace servodx {
 
@@ -62,10 +65,6 @@ struct Growth {
   double null_noise = 0;             // the same without growth
 };
 
-// Sorted hours from now on to the passing of a level, each as likely as the other; infinite where it is never passed.
-using Life = std::vector<double>;
-double quantile(const Life& life, double p);
-
 // Where y has failed: at these values, at these multiples of where it began, or so far from there.
 struct FailureAt {
   enum class Of { value, times_base, beyond_base };
@@ -78,6 +77,8 @@ struct FailureAt {
   }
 };
 
+struct GrowthComponent;
+
 class GrowthModel {
  public:
   GrowthModel(std::vector<GrowthPoint> points, const GrowthPrior& prior);
@@ -89,18 +90,16 @@ class GrowthModel {
   // Hours until y at reference conditions passes a level; `upper` counts for growth upwards. Given growth.
   Life life(const FailureAt& level, std::uint64_t seed) const;
 
- private:
-  struct Component;
-  std::vector<Component> components_;
-  std::vector<std::size_t> added_;  // features that add
-  double by_conditions(const GrowthPoint& point) const;
-  double now_ = 0, length_ = 0;  // [h] of the last point, and since the first
-  Growth growth_;
-
- public:
   ~GrowthModel();
   GrowthModel(GrowthModel&&) noexcept;
   GrowthModel& operator=(GrowthModel&&) noexcept;
+
+ private:
+  double by_conditions(const GrowthPoint& point) const;
+  std::vector<GrowthComponent> components_;
+  std::vector<std::size_t> added_;  // features that add
+  double now_ = 0, length_ = 0;     // [h] of the last point, and since the first
+  Growth growth_;
 };
 
 }  // namespace servodx

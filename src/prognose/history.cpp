@@ -12,8 +12,13 @@
 #include <filesystem>
 
 #include "base/error.h"
+#include "faults/fault.h"
 #include "faults/registry.h"
+#include "parameters/list.h"
+#include "parameters/table.h"
 #include "parameters/table_text.h"
+#include "prognose/check_name.h"
+#include "prognose/track.h"
 
 namespace servodx {
 namespace {

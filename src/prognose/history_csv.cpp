@@ -12,7 +12,11 @@
 #include "base/csv.h"
 #include "base/error.h"
 #include "base/units.h"
+#include "model/state.h"
 #include "parameters/list.h"
+#include "prognose/check.h"
+#include "prognose/check_name.h"
+#include "prognose/oil_temperature.h"
 #include "simulate/scenario.h"
 
 namespace servodx {

@@ -8,7 +8,10 @@
 #include "base/error.h"
 #include "base/units.h"
 #include "fit/nominal.h"
+#include "parameters/list.h"
+#include "prognose/check_name.h"
 #include "prognose/monitor.h"
+#include "prognose/trend_options.h"
 
 namespace servodx {
 namespace {

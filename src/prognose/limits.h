@@ -13,6 +13,7 @@
 
 #include "parameters/table.h"
 #include "prognose/trend.h"
+#include "prognose/trend_options.h"
 
 namespace servodx {
 

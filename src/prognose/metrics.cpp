@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "prognose/life.h"
+
 namespace servodx {
 
 bool alpha_lambda(const Life& life, double remaining, double alpha) {

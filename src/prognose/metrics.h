@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "prognose/growth.h"
+#include "prognose/life.h"
 
 namespace servodx {
 

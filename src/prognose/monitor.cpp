@@ -6,7 +6,11 @@
 
 #include "base/error.h"
 #include "fit/nominal.h"
+#include "parameters/list.h"
+#include "simulate/scenario.h"
+#include "valve_maps/high_fidelity.h"
 #include "valve_maps/registry.h"
+#include "valve_maps/valve_numbers.h"
 
 namespace servodx {
 namespace {

@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "fit/log_data.h"
+#include "model/state.h"
 #include "parameters/table.h"
 
 namespace servodx {
@@ -52,7 +53,7 @@ MonitorParameters monitor_parameters(const Table& table, const Supply& at);
 // P12 [Pa] from spool position [m] and actuator flow [m3/s]; must not rise with the flow.
 using PressureLaw = std::function<double(double spool, double flow)>;
 PressureLaw linear_pressure(const MonitorParameters& p);  // GP XS - GP/GQ QJ within +-PSR
-void require_pressure_law(const std::string& name);  // throws InputError for one that is not there
+void require_pressure_law(const std::string& name);       // throws InputError for one that is not there
 // A valve map (`servodx list models`) in place of GP; the figure's limit +-PSR stays on those that have none. Throws
 // InputError for an unknown name.
 PressureLaw pressure_law(const std::string& name, const Table& table, const Supply& at);

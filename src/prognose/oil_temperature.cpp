@@ -7,6 +7,11 @@
 #include "fit/free_values.h"
 #include "fit/problem.h"
 #include "fit/tuned_state.h"
+#include "model/state.h"
+#include "optimise/box_least_squares.h"
+#include "optimise/problem.h"
+#include "servodx/rig.h"
+#include "simulate/scenario.h"
 
 namespace servodx {
 namespace {

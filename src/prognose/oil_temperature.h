@@ -8,6 +8,7 @@
 
 #include "fit/log_data.h"
 #include "parameters/table.h"
+#include "servodx/rig.h"
 #include "signals/rig_file.h"
 
 namespace servodx {

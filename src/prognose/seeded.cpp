@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "base/student.h"
+#include "model/state.h"
 #include "simulate/scenario.h"
 
 namespace servodx {

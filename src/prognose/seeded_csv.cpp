@@ -10,6 +10,8 @@
 #include "base/csv.h"
 #include "base/error.h"
 #include "base/units.h"
+#include "model/state.h"
+#include "prognose/check_name.h"
 #include "simulate/scenario.h"
 
 namespace servodx {

@@ -3,11 +3,20 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <optional>
+#include <utility>
 
+#include "faults/fault.h"
+#include "fit/chart.h"
 #include "fit/error_model.h"
-#include "fit/tuned_state.h"
 #include "fit/free_values.h"
 #include "fit/identifiability.h"
+#include "fit/log_data.h"
+#include "fit/tuned_state.h"
+#include "optimise/box_least_squares.h"
+#include "optimise/problem.h"
+#include "parameters/list.h"
+#include "simulate/scenario.h"
 
 namespace servodx {
 namespace {
@@ -15,7 +24,11 @@ namespace {
 constexpr double prior_sd = 0.5;   // [of a severity's range] about health: weak, it only holds what a log cannot tell
 constexpr std::size_t tried = 3;   // starts that are followed, those of least misfit
 constexpr int few = 4, many = 16;  // iterations of each, and of the best
-constexpr double healthier = 3;    // [spreads] by which a row may come out better than tuned
+constexpr double aside = 0.2;      // [of the unit interval] short of half way from health to the far end
+constexpr double cost_tolerance = 1e-4;   // of the cost: a severity's error is far wider
+constexpr double difference_step = 1e-3;  // [of the unit interval] through contacts and frictions
+constexpr double no_cost = 1e300;         // of what did not run
+constexpr double healthier = 3;           // [spreads] by which a row may come out better than tuned
 // What is lost of may be larger than the model has it, to half of the drop over a clean filter.
 constexpr double larger_clean = 0.41421356237309515;
 
@@ -78,6 +91,123 @@ double unit_of(const ParameterVector& base, const Progressive& p, const FreeValu
   return 0.5 * (low + high);
 }
 
+// The severities first, in the order of progressive_faults(), then the log's nuisances.
+std::vector<FreeValue> free_values(const LogData& log, const ParameterVector& base, double null_limit) {
+  std::vector<FreeValue> free;
+  for (const Progressive& p : progressive_faults()) free.push_back(severity_value(*p.fault));
+  for (FreeValue& f : nuisance_values(log, 0, base, null_limit)) free.push_back(std::move(f));
+  return free;
+}
+
+// Health, each fault half way, and where the last check ended.
+std::vector<Point> starts_from(const Point& health, const ParameterVector& base, const std::vector<FreeValue>& free,
+                               const std::vector<double>& last) {
+  const auto& faults = progressive_faults();
+  std::vector<Point> starts = {health};
+  for (std::size_t j = 0; j < faults.size(); ++j) {
+    Point x = health;
+    x[j] = x[j] < 0.5 ? 0.5 * (1 + x[j]) - aside : 0.5 * x[j] + aside;
+    starts.push_back(x);
+  }
+  if (last.size() != faults.size()) return starts;
+  Point x = health;
+  for (std::size_t j = 0; j < faults.size(); ++j)
+    if (std::isfinite(last[j])) x[j] = unit_of(base, faults[j], free[j], last[j]);
+  starts.push_back(x);
+  return starts;
+}
+
+// Those of least misfit, the least first.
+std::vector<Point> likeliest(FitProblem& problem, const std::vector<Point>& starts) {
+  const std::vector<Evaluation> at = problem.evaluate(starts);
+  std::vector<std::size_t> order(starts.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  const auto misfit = [&](std::size_t i) { return at[i].ok ? at[i].residual.squaredNorm() : no_cost; };
+  std::stable_sort(order.begin(), order.end(), [&](std::size_t i, std::size_t j) { return misfit(i) < misfit(j); });
+  order.resize(std::min(order.size(), tried));
+  std::vector<Point> first;
+  for (const std::size_t i : order) first.push_back(starts[i]);
+  return first;
+}
+
+// A few iterations from each start, more from the best end. None where every start failed.
+std::optional<LeastSquaresResult> fit_from(FitProblem& problem, const std::vector<Point>& starts) {
+  LeastSquaresOptions o;
+  o.difference = Difference::forward;
+  o.cost_tolerance = cost_tolerance;
+  o.max_iterations = few;
+  const LeastSquaresProblem least = problem.least_squares();
+  LeastSquaresResult best;
+  best.cost = no_cost;
+  for (const Point& start : likeliest(problem, starts)) {
+    LeastSquaresResult r = minimise_least_squares(least, start, o);
+    if (r.reason != StopReason::start_failed && r.cost < best.cost) best = std::move(r);
+  }
+  if (!(best.cost < no_cost)) return {};
+  o.max_iterations = many;
+  LeastSquaresResult r = minimise_least_squares(least, best.point, o);
+  if (r.reason != StopReason::start_failed) best = std::move(r);
+  if (!(best.cost < no_cost)) return {};
+  return best;
+}
+
+// Whitened rms of the worst channel.
+double adequacy_of(const FitProblem& problem, const LogData& log, const LeastSquaresResult& fit) {
+  double worst = 0;
+  for (std::size_t c = 0; c < log.channels.size(); ++c) {
+    const auto [first, n] = problem.rows(0, static_cast<int>(c));
+    worst = std::max(worst, std::sqrt(fit.residual.segment(first, n).squaredNorm() / static_cast<double>(n)));
+  }
+  return worst;
+}
+
+// [of the unit interval] of each number, widened where the fit is worse than on the tuning logs.
+std::vector<double> errors_of(const LeastSquaresResult& fit, double adequacy) {
+  const auto n = static_cast<std::size_t>(fit.jacobian.cols());
+  const Eigen::MatrixXd covariance = covariance_of(fit.jacobian, std::vector<char>(n, 1));
+  std::vector<double> errors;
+  for (long j = 0; j < fit.jacobian.cols(); ++j) {
+    const double se = std::sqrt(std::max(0.0, covariance(j, j)));
+    errors.push_back(se * std::max(1.0, adequacy));
+  }
+  return errors;
+}
+
+// One wearing parameter in the unit of its row, at `u` of its severity's unit interval.
+TrackedParameter parameter_at(const Progressive& p, const ParameterVector& base, const FreeValue& severity, double u,
+                              double error) {
+  TrackedParameter out;
+  out.id = p.row + 1;
+  out.fault = p.fault;
+  out.severity = severity.from_unit(u);
+  out.value = row_at(base, p, severity, u);
+  const double h = u < 0.5 ? difference_step : -difference_step;
+  out.std_error = std::abs((row_at(base, p, severity, u + h) - out.value) / h) * error;
+  ParameterVector failed = base;
+  p.fault->apply(failed.data(), *p.fault->failed);
+  out.tuned = base[p.row];
+  out.failed = failed[p.row];
+  return out;
+}
+
+// The fit as values of rows, and what a healthy valve would have done in this log.
+void take_fit(Track& out, const FitProblem& problem, const LogData& log, const ParameterVector& base,
+              const std::vector<FreeValue>& free, const Point& health, const LeastSquaresResult& fit) {
+  const auto& faults = progressive_faults();
+  out.adequacy = adequacy_of(problem, log, fit);
+  const std::vector<double> errors = errors_of(fit, out.adequacy);
+  Point nuisances = fit.point;
+  for (std::size_t j = 0; j < faults.size(); ++j) nuisances[j] = health[j];
+  out.healthy = problem.candidate(nuisances, 0);
+  for (std::size_t j = 0; j < free.size(); ++j)
+    if (!free[j].apply && free[j].at == row::servovalve_null) {
+      out.null = free[j].from_unit(fit.point[j]);
+      out.null_std_error = errors[j] * (free[j].upper - free[j].lower);
+    }
+  for (std::size_t j = 0; j < faults.size(); ++j)
+    out.parameters.push_back(parameter_at(faults[j], base, free[j], fit.point[j], errors[j]));
+}
+
 }  // namespace
 
 const std::vector<Progressive>& progressive_faults() {
@@ -92,95 +222,23 @@ const std::vector<Progressive>& progressive_faults() {
 
 Track track_parameters(const LogData& log, const Table& tuned, const TrackOptions& options) {
   const ParameterVector base = candidate_of(tuned);
-  const ErrorModel error = error_model_of(tuned);
-  const auto& faults = progressive_faults();
-  std::vector<FreeValue> free;
-  for (const Progressive& p : faults) free.push_back(severity_value(*p.fault));
-  for (FreeValue& f : nuisance_values(log, 0, base, options.null_limit)) free.push_back(std::move(f));
+  const std::vector<FreeValue> free = free_values(log, base, options.null_limit);
   SimulateOptions simulate_options;
   simulate_options.threads = options.threads;
   FitProblem problem({&log}, base, free, simulate_options);
-  problem.difference_step = 1e-3;
+  problem.difference_step = difference_step;
   const Point health = problem.start();
-  whiten(problem, log, error, problem.trajectories(health).front());
+  whiten(problem, log, error_model_of(tuned), problem.trajectories(health).front());
+  const auto fit = fit_from(problem, starts_from(health, base, free, options.last));
 
-  // Health, each fault half way, and where the last check ended.
-  std::vector<Point> starts = {health};
-  for (std::size_t j = 0; j < faults.size(); ++j) {
-    Point x = health;
-    x[j] = x[j] < 0.5 ? 0.5 * (1 + x[j]) - 0.2 : 0.5 * x[j] + 0.2;
-    starts.push_back(x);
-  }
-  if (options.last.size() == faults.size()) {
-    Point x = health;
-    for (std::size_t j = 0; j < faults.size(); ++j)
-      if (std::isfinite(options.last[j])) x[j] = unit_of(base, faults[j], free[j], options.last[j]);
-    starts.push_back(x);
-  }
-  LeastSquaresOptions o;
-  o.difference = Difference::forward;
-  o.cost_tolerance = 1e-4;
-  o.max_iterations = few;
-  const LeastSquaresProblem least = problem.least_squares();
-  LeastSquaresResult best;
-  best.cost = 1e300;
-  const std::vector<Evaluation> at = problem.evaluate(starts);
-  std::vector<std::size_t> order(starts.size());
-  std::iota(order.begin(), order.end(), std::size_t{0});
-  const auto misfit = [&](std::size_t i) { return at[i].ok ? at[i].residual.squaredNorm() : 1e300; };
-  std::stable_sort(order.begin(), order.end(), [&](std::size_t i, std::size_t j) { return misfit(i) < misfit(j); });
-  order.resize(std::min(order.size(), tried));
-  for (const std::size_t i : order) {
-    const Point& start = starts[i];
-    LeastSquaresResult r = minimise_least_squares(least, start, o);
-    if (r.reason != StopReason::start_failed && r.cost < best.cost) best = std::move(r);
-  }
   Track out;
-  if (best.cost < 1e300) {
-    o.max_iterations = many;
-    LeastSquaresResult r = minimise_least_squares(least, best.point, o);
-    if (r.reason != StopReason::start_failed) best = std::move(r);
-  }
   out.simulations = problem.simulations();
   out.failed = problem.failed_simulations();
   out.healthy = base;
-  if (!(best.cost < 1e300)) {
+  if (fit)
+    take_fit(out, problem, log, base, free, health, *fit);
+  else
     out.adequacy = out.null = out.null_std_error = std::nan("");
-    return out;
-  }
-
-  for (std::size_t c = 0; c < log.channels.size(); ++c) {
-    const auto [first, n] = problem.rows(0, static_cast<int>(c));
-    out.adequacy =
-        std::max(out.adequacy, std::sqrt(best.residual.segment(first, n).squaredNorm() / static_cast<double>(n)));
-  }
-  const Eigen::MatrixXd covariance = covariance_of(best.jacobian, std::vector<char>(free.size(), 1));
-  const auto error_of = [&](std::size_t j) {
-    const double se = std::sqrt(std::max(0.0, covariance(static_cast<long>(j), static_cast<long>(j))));
-    return se * std::max(1.0, out.adequacy);  // of the unit interval
-  };
-  Point nuisances = best.point;
-  for (std::size_t j = 0; j < faults.size(); ++j) nuisances[j] = health[j];
-  out.healthy = problem.candidate(nuisances, 0);
-  for (std::size_t j = 0; j < free.size(); ++j)
-    if (!free[j].apply && free[j].at == row::servovalve_null) {
-      out.null = free[j].from_unit(best.point[j]);
-      out.null_std_error = error_of(j) * (free[j].upper - free[j].lower);
-    }
-  for (std::size_t j = 0; j < faults.size(); ++j) {
-    TrackedParameter p;
-    p.id = faults[j].row + 1;
-    p.fault = faults[j].fault;
-    p.severity = free[j].from_unit(best.point[j]);
-    p.value = row_at(base, faults[j], free[j], best.point[j]);
-    const double h = best.point[j] < 0.5 ? 1e-3 : -1e-3;
-    p.std_error = std::abs((row_at(base, faults[j], free[j], best.point[j] + h) - p.value) / h) * error_of(j);
-    ParameterVector failed = base;
-    p.fault->apply(failed.data(), *p.fault->failed);
-    p.tuned = base[faults[j].row];
-    p.failed = failed[faults[j].row];
-    out.parameters.push_back(p);
-  }
   return out;
 }
 

@@ -10,9 +10,12 @@
 #include <string>
 #include <vector>
 
+#include "faults/fault.h"
 #include "faults/registry.h"
+#include "fit/log_data.h"
 #include "fit/problem.h"
 #include "parameters/table.h"
+#include "simulate/scenario.h"
 
 namespace servodx {
 

@@ -11,10 +11,6 @@ LONGER = {
     ("src/explain/smoother.cpp", "KalmanFilter::run"): "to be split",
     ("src/explain/valve.cpp", "ValveSubject::add_causes"): "to be split",
     ("src/model/derivative.h", "derivative"): "equations of motion; each stage uses terms of those above it",
-    ("src/prognose/check.cpp", "check"): "to be split",
-    ("src/prognose/growth.cpp", "GrowthModel::GrowthModel"): "to be split",
-    ("src/prognose/track.cpp", "track_parameters"): "to be split",
-    ("src/prognose/trend.cpp", "trend_of"): "to be split",
     ("src/report/explain_page.cpp", "explain_page"): "to be split",
     ("src/rig/plant.cpp", "Plant::rates"): "equations of motion of the virtual rig, one block a body",
 }

@@ -15,8 +15,8 @@ ROOTS = ("include", "src", "tests", "bench", "apps/servodx")
 FOLDERS = ("include", "src", "apps", "bench", "tests", "examples")
 
 # Files to be mended (or folders, with a slash at the end).
-LATER = ("apps/", "src/diagnose/", "src/explain/", "src/tune/tune", "src/prognose/", "src/report/", "tests/diagnose/",
-         "tests/explain/", "tests/tune/tune", "tests/prognose/", "tests/report/")
+LATER = ("apps/", "src/diagnose/", "src/explain/", "src/tune/tune", "src/report/", "tests/diagnose/",
+         "tests/explain/", "tests/tune/tune", "tests/report/")
 
 
 @functools.lru_cache(maxsize=None)

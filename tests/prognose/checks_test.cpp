@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 
 #include "base/random.h"
+#include "fit/log_data.h"
+#include "prognose/preflight.h"
 #include "support.h"
 
 namespace servodx {

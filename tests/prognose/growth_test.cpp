@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "base/random.h"
+#include "prognose/life.h"
 
 namespace servodx {
 namespace {

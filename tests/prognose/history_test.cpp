@@ -16,6 +16,8 @@
 
 #include "base/error.h"
 #include "base/random.h"
+#include "faults/maintenance.h"
+#include "prognose/check.h"
 #include "prognose/history_csv.h"
 #include "temporary_folder.h"
 

@@ -4,7 +4,10 @@
 #include <gtest/gtest.h>
 
 #include "base/error.h"
+#include "parameters/list.h"
+#include "parameters/table.h"
 #include "prognose/monitor.h"
+#include "prognose/trend_options.h"
 #include "support.h"
 
 namespace servodx {

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <limits>
 
+#include "prognose/life.h"
+
 namespace servodx {
 namespace {
 

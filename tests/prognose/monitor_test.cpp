@@ -4,6 +4,9 @@
 #include <gtest/gtest.h>
 
 #include "base/error.h"
+#include "model/state.h"
+#include "parameters/list.h"
+#include "parameters/table.h"
 #include "support.h"
 
 namespace servodx {

@@ -5,6 +5,7 @@
 
 #include "fit/log_data.h"
 #include "parameters/table.h"
+#include "simulate/scenario.h"
 
 namespace servodx {
 

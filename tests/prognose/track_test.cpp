@@ -4,9 +4,16 @@
 #include <gtest/gtest.h>
 
 #include "base/random.h"
+#include "faults/registry.h"
 #include "fit/error_model.h"
+#include "fit/log_data.h"
 #include "fit/tuned_state.h"
+#include "model/state.h"
+#include "parameters/table.h"
 #include "rig/excitations.h"
+#include "rig/rig_model.h"
+#include "servodx/log.h"
+#include "simulate/scenario.h"
 #include "support.h"
 
 namespace servodx {

@@ -7,7 +7,15 @@
 #include <numbers>
 
 #include "base/random.h"
+#include "faults/maintenance.h"
 #include "model/state.h"
+#include "prognose/check.h"
+#include "prognose/check_name.h"
+#include "prognose/history.h"
+#include "prognose/tangent_rule.h"
+#include "prognose/track.h"
+#include "prognose/trend_options.h"
+#include "prognose/trend_state.h"
 
 namespace servodx {
 namespace {
@@ -90,6 +98,21 @@ TEST(Trend, MaintenanceRestartsWhatItRenews) {
   const ValveTrend t = trend(h, {});
   EXPECT_EQ(t.trends.size(), 1u);  // r sees the filter, backlash does not
   EXPECT_EQ(t.cause, "feedback_wire_backlash");
+}
+
+// What is exchanged is renewed alone; what is done to the whole valve renews every check.
+TEST(Trend, AnExchangeRenewsTheFaultThatNamesItAndNoOther) {
+  int named = 0;
+  for (const Progressive& p : progressive_faults()) {
+    Check c;
+    c.name = CheckName::of_row(p.row), c.cause = p.fault->name;
+    EXPECT_EQ(resets(EventKind::filter_changed, c), p.fault->renewed_by == EventKind::filter_changed) << p.fault->name;
+    named += p.fault->renewed_by == EventKind::filter_changed;
+    for (const EventKind whole : {EventKind::valve_swapped, EventKind::overhauled, EventKind::retuned})
+      EXPECT_TRUE(resets(whole, c)) << p.fault->name;
+    EXPECT_FALSE(resets(EventKind::note, c)) << p.fault->name;
+  }
+  EXPECT_EQ(named, 1);
 }
 
 TEST(Trend, ChecksOnAnotherTunedTableAreSetApartAloud) {
