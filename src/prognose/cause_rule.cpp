@@ -5,12 +5,13 @@
 #include <limits>
 #include <utility>
 
-namespace servodx {
-namespace {
+#include "prognose/constants.h"
 
-constexpr double as_far = 0.5;        // of the furthest on its way to failure: what may be the cause instead
-constexpr double least_width = 1e-6;  // [h] an interval has one
-constexpr double open_width = 1e6;    // times its lower end: of an interval that never ends
+namespace servodx {
+
+using namespace prognose_constants;
+
+namespace {
 
 double weight_of(const Life& life, double coverage) {
   const Remaining r = remaining_of(life, coverage);

@@ -8,6 +8,7 @@
 #include "fit/log_data.h"
 #include "model/state.h"
 #include "parameters/list.h"
+#include "prognose/constants.h"
 #include "prognose/monitor.h"
 #include "prognose/preflight.h"
 #include "prognose/preflight_figures.h"
@@ -16,9 +17,10 @@
 #include "simulate/simulate.h"
 
 namespace servodx {
-namespace {
 
-constexpr double reference_kelvin = 313.15;
+using namespace prognose_constants;
+
+namespace {
 
 // The same current at the reference state.
 Scenario at_reference(const Scenario& as_was, const RigFile& rig) {

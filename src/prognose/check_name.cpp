@@ -9,8 +9,12 @@
 #include <utility>
 
 #include "parameters/list.h"
+#include "prognose/constants.h"
 
 namespace servodx {
+
+using namespace prognose_constants;
+
 namespace {
 
 constexpr std::string_view mean_error_text = "mean_error", fidelity_text = "fidelity";
@@ -36,8 +40,7 @@ CheckName::CheckName(std::string text) : text_(std::move(text)) {
 CheckName CheckName::of_mean_error() { return std::string(mean_error_text); }
 CheckName CheckName::of_fidelity() { return std::string(fidelity_text); }
 CheckName CheckName::of_correlation(double frequency) {
-  constexpr double steps = 20;  // [1/Hz]
-  return fmt::format("{}{:.4g}Hz", correlation_start, std::round(frequency * steps) / steps);
+  return fmt::format("{}{:.4g}Hz", correlation_start, std::round(frequency * frequency_steps) / frequency_steps);
 }
 CheckName CheckName::of_row(int row) { return fmt::format("{}{}", parameter_start, row + 1); }
 

@@ -9,17 +9,15 @@
 #include "faults/registry.h"
 #include "parameters/list.h"
 #include "prognose/check.h"
+#include "prognose/constants.h"
 #include "prognose/median.h"
 #include "prognose/track.h"
 
 namespace servodx {
-namespace {
 
-constexpr double at_end = 1.001;         // times the least drop: a reading nearer than this has no more to fall
-constexpr double laminar_part = 0.5;     // of the drop over a fine screen, at 40 degC
-constexpr double left_by_bores = 1.0;    // of a clean drop, one deviation: what bores known to 2 % leave open
-constexpr double left_by_screen = 0.25;  // the same of the screen's own size
-constexpr double no_such_screen = 2;     // [deviations] from the table's clean drop
+using namespace prognose_constants;
+
+namespace {
 
 // Part of what is wrong beside a filter, as a drop over the clean one, that shows in thick oil: the drop over a fine
 // screen is half laminar at 40 degC and all but laminar in the cold, that over the bores beside it is not.

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "prognose/alert_rule.h"
+#include "prognose/constants.h"
 #include "prognose/failure_level.h"
 #include "prognose/growth.h"
 #include "prognose/healthy_levels.h"
@@ -19,9 +20,10 @@
 #include "prognose/trend_prior.h"
 
 namespace servodx {
-namespace {
 
-constexpr double one_sided = 1.645;  // [deviations] 95 % of a normal distribution
+using namespace prognose_constants;
+
+namespace {
 
 std::size_t healthy_ones(const CheckSeries& s, const TrendOptions& options) {
   return std::min(s.points.size(), static_cast<std::size_t>(options.healthy));

@@ -8,8 +8,6 @@
 
 namespace servodx {
 
-inline constexpr std::size_t least_checks = 6;  // for a word on a trend: base, size, law and noise are four
-
 // `names`: checks of the valve, among which the rate of false alarms is shared.
 CheckTrend trend_of(const CheckSeries& series, const TrendOptions& options, std::size_t names);
 

@@ -3,7 +3,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "prognose/constants.h"
+
 namespace servodx {
+
+using namespace prognose_constants;
+
 namespace {
 
 // Linear between samples; NaN where one of the two is missing.
@@ -26,15 +31,14 @@ double weight(const std::vector<double>& t, std::size_t k) {
 MeanError mean_error(const std::vector<double>& time, const std::vector<double>& measured,
                      const std::vector<double>& monitor) {
   MeanError out;
-  constexpr int batches = 10;
-  double sum = 0, total = 0, batch_sum[batches] = {}, batch_time[batches] = {};
+  double sum = 0, total = 0, batch_sum[error_batches] = {}, batch_time[error_batches] = {};
   const double length = time.back() - time.front();
   out.running.reserve(time.size());
   for (std::size_t k = 0; k < time.size(); ++k) {
     const double w = weight(time, k);
     if (!std::isnan(measured[k])) {
       const double e = std::abs(measured[k] - monitor[k]);
-      const int b = std::min(batches - 1, static_cast<int>(batches * (time[k] - time.front()) / length));
+      const int b = std::min(error_batches - 1, static_cast<int>(error_batches * (time[k] - time.front()) / length));
       sum += w * e, total += w;
       batch_sum[b] += w * e, batch_time[b] += w;
     }
@@ -43,13 +47,13 @@ MeanError mean_error(const std::vector<double>& time, const std::vector<double>&
   out.figure.value = total > 0 ? sum / total : std::nan("");
   double square = 0;
   int n = 0;
-  for (int b = 0; b < batches; ++b)
+  for (int b = 0; b < error_batches; ++b)
     if (batch_time[b] > 0) square += std::pow(batch_sum[b] / batch_time[b] - out.figure.value, 2), ++n;
   out.figure.std_error = n > 1 ? std::sqrt(square / (n - 1) / n) : std::nan("");
   std::size_t k = time.size();
-  while (k > 0 && std::abs(out.running[k - 1] - out.figure.value) <= 0.1 * out.figure.value) --k;
+  while (k > 0 && std::abs(out.running[k - 1] - out.figure.value) <= settled_band * out.figure.value) --k;
   out.settled_at = time[std::min(k, time.size() - 1)] - time.front();
-  out.settled = out.settled_at <= 0.5 * length && out.figure.std_error < 0.1 * out.figure.value;
+  out.settled = out.settled_at <= settled_by * length && out.figure.std_error < settled_band * out.figure.value;
   return out;
 }
 
@@ -58,7 +62,7 @@ std::optional<Fidelity> fidelity(const std::vector<double>& time, const std::vec
   const double end_value = monitor[step.back - 1];
   if (end_value == 0) return {};
   std::size_t to = step.from;
-  while (to < step.back && std::abs(monitor[to]) < 0.95 * std::abs(end_value)) ++to;
+  while (to < step.back && std::abs(monitor[to]) < step_reached * std::abs(end_value)) ++to;
   if (to <= step.from + 1 || to >= step.back) return {};
   Fidelity out;
   out.duration = time[to] - time[step.from];
@@ -72,7 +76,8 @@ std::optional<Fidelity> fidelity(const std::vector<double>& time, const std::vec
     model += w * monitor[k] * monitor[k];
     ++n;
   }
-  if (n < 2 || square < std::max(0.02 * 0.02 * model, 9 * noise * noise * static_cast<double>(n))) {
+  if (n < 2 || square < std::max(least_motion * least_motion * model,
+                                 noise_deviations * noise_deviations * noise * noise * static_cast<double>(n))) {
     out.no_response = true;
     out.figure = {std::nan(""), std::nan("")};
     return out;

@@ -4,14 +4,16 @@
 #include <cmath>
 #include <utility>
 
+#include "prognose/constants.h"
 #include "prognose/growth_component.h"
 #include "prognose/growth_data.h"
 #include "prognose/growth_search.h"
 
 namespace servodx {
-namespace {
 
-constexpr double negligible = 1e-4;  // weight below which a component is left out
+using namespace prognose_constants;
+
+namespace {
 
 // Weighted means over components, and what they scatter by.
 class Averages {

@@ -8,17 +8,16 @@
 #include <utility>
 
 #include "base/random.h"
+#include "prognose/constants.h"
 #include "prognose/growth.h"
 #include "prognose/growth_component.h"
 #include "prognose/life.h"
 
 namespace servodx {
-namespace {
 
-constexpr double all_draws = 4000;         // shared among the components by their weights
-constexpr int least_draws = 16;            // of each component
-constexpr int most_tries = 20;             // for each draw: those to the wrong side of a one-sided prior are left out
-constexpr std::uint32_t life_stream = 21;  // of random numbers
+using namespace prognose_constants;
+
+namespace {
 
 // Hours until the component passes the level; infinite where it never does, none where the draw is to the wrong side.
 std::optional<double> hours_of(const GrowthComponent& c, const FailureAt& failure, const std::array<double, 5>& z,

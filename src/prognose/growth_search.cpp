@@ -5,33 +5,14 @@
 #include <cmath>
 #include <numbers>
 
+#include "prognose/constants.h"
 #include "prognose/growth_law.h"
 
 namespace servodx {
-namespace {
 
-// Onsets as parts of the record, and their weights: wear usually begins with use. Between coarser ones a growth that
-// began late looks like one that accelerates.
-constexpr auto all_onsets = [] {
-  std::array<std::pair<double, double>, 18> all{};
-  for (std::size_t k = 0; k < all.size(); ++k) all[k] = {0.05 * static_cast<double>(k), k ? 4.0 / 17.0 : 4.0};
-  return all;
-}();
-constexpr std::array<double, 9> noise_levels = {0.1, 0.18, 0.32, 0.56, 1, 1.8, 3.2, 5.6, 10};
-// Wander over the whole record, in parts of the growth that matters: no law is quite the wear's, and what lies between
-// two of those tried is off them by a hundredth at most. A healthy figure may wander by the lesser two.
-constexpr std::array<double, 3> wanders = {0.005, 0.03, 0.1};
-constexpr std::size_t healthy_wanders = 2;
-// Of the stated errors: most of one may be what the model's form gets wrong, which is the same from check to check.
-constexpr std::array<double, 2> repeated_parts = {1.0, 0.3};
-// A part lost so far, where it is one, by what the drop has grown: what is between two of them its size tells.
-constexpr auto losses = [] {
-  std::array<double, 13> drops{};
-  for (std::size_t k = 0; k < drops.size(); ++k) drops[k] = k ? 1.5 * drops[k - 1] : 0.2;
-  return drops;
-}();
-constexpr double least_tilted = 0.02;  // [scale] of a growth at which the oil's part in it is looked for
-constexpr double hopeless = 14;        // [nats] below the best noise level at which no further one is looked at
+using namespace prognose_constants;
+
+namespace {
 
 double normal_cdf(double x) { return 0.5 * std::erfc(-x / std::numbers::sqrt2); }
 

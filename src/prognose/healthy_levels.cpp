@@ -4,13 +4,14 @@
 #include <numbers>
 #include <optional>
 
+#include "prognose/constants.h"
 #include "prognose/median.h"
 
 namespace servodx {
-namespace {
 
-constexpr double latest_warning = 0.25;  // of the way to failure: three quarters are left to act in
-constexpr double per_checks = 100;       // the false-alarm rate of a valve is stated over this many checks
+using namespace prognose_constants;
+
+namespace {
 
 // x with P(|N(0,1)| > x) = p.
 double two_sided_quantile(double p) {

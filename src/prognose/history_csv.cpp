@@ -16,10 +16,14 @@
 #include "parameters/list.h"
 #include "prognose/check.h"
 #include "prognose/check_name.h"
+#include "prognose/constants.h"
 #include "prognose/oil_temperature.h"
 #include "simulate/scenario.h"
 
 namespace servodx {
+
+using namespace prognose_constants;
+
 namespace {
 
 enum Column {
@@ -145,7 +149,7 @@ Recording recording_of(const Cells& cells, double hours, bool celsius, const Pla
   if (!std::isnan(cycled)) r.cycles = cycled;
   r.temperature = parsed(cells, temperature, row, false) + (celsius ? 273.15 : 0.0);
   r.temperature_source = cells[temperature_source];
-  if (std::isnan(r.temperature)) r.temperature = 313.15, r.temperature_source = name_of(OilSource::assumed);
+  if (std::isnan(r.temperature)) r.temperature = reference_kelvin, r.temperature_source = name_of(OilSource::assumed);
   if (r.temperature < coldest_oil || r.temperature > hottest_oil)
     throw InputError({row.file, row.line, celsius ? "oil_temperature [degC]" : header[temperature]},
                      "'" + cells[temperature] + "' is no oil's temperature",

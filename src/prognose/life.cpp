@@ -4,12 +4,11 @@
 #include <cmath>
 #include <cstddef>
 
+#include "prognose/constants.h"
+
 namespace servodx {
-namespace {
 
-constexpr int kept = 200;  // hours of a life: its 90 % interval rests on ten beyond either end
-
-}  // namespace
+using namespace prognose_constants;
 
 double quantile(const Life& life, double p) {
   const double at = p * static_cast<double>(life.size()) - 0.5;
@@ -29,8 +28,8 @@ Life equally_likely(const std::vector<std::pair<double, double>>& weighted, doub
   Life life;
   double sum = 0;
   std::size_t i = 0;
-  for (int q = 0; q < kept && !weighted.empty(); ++q) {
-    const double target = (q + 0.5) / kept * total;
+  for (int q = 0; q < life_hours && !weighted.empty(); ++q) {
+    const double target = (q + 0.5) / life_hours * total;
     while (i + 1 < weighted.size() && sum + weighted[i].second < target) sum += weighted[i].second, ++i;
     life.push_back(weighted[i].first);
   }

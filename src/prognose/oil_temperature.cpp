@@ -10,10 +10,14 @@
 #include "model/state.h"
 #include "optimise/box_least_squares.h"
 #include "optimise/problem.h"
+#include "prognose/constants.h"
 #include "servodx/rig.h"
 #include "simulate/scenario.h"
 
 namespace servodx {
+
+using namespace prognose_constants;
+
 namespace {
 
 // Misfit of a healthy valve at an oil temperature, nuisances fitted.
@@ -21,12 +25,12 @@ double misfit_at(const LogData& log, const Table& tuned, const ErrorModel& error
   const ParameterVector base = candidate_of(tuned);
   SimulateOptions options;
   options.threads = threads;
-  FitProblem problem({&log}, base, nuisance_values(log, 0, base, 0.05), options);
-  problem.difference_step = 1e-3;
+  FitProblem problem({&log}, base, nuisance_values(log, 0, base, oil_null_limit), options);
+  problem.difference_step = difference_step;
   const Point start = problem.start();
   apply_error_model(problem, error, start);
   LeastSquaresOptions o;
-  o.max_iterations = 6;
+  o.max_iterations = oil_iterations;
   o.difference = Difference::forward;
   const LeastSquaresResult r = minimise_least_squares(problem.least_squares(), start, o);
   *simulations += problem.simulations();
@@ -51,7 +55,7 @@ OilTemperature estimate_temperature(const LogData& log, const Table& tuned, cons
                                     long* simulations) {
   const ErrorModel error = error_model_of(tuned);
   std::vector<double> kelvin, misfit;
-  for (double celsius = -40; celsius <= 100; celsius += 10) {
+  for (double celsius = coldest_celsius; celsius <= hottest_celsius; celsius += celsius_step) {
     LogData at = log;
     kelvin.push_back(celsius + 273.15);
     at.scenario.oil = oil_at(rig.fluid.density, rig.fluid.kinematic_viscosity, kelvin.back());
@@ -65,7 +69,7 @@ OilTemperature estimate_temperature(const LogData& log, const Table& tuned, cons
     sum += p, first += p * kelvin[i], second += p * kelvin[i] * kelvin[i];
   }
   const double centre = first / sum;
-  constexpr double grid = 10.0 / 3.4641016151377544;  // [K] spread of a step of the grid
+  const double grid = celsius_step / 3.4641016151377544;  // [K] spread of a step of the grid
   return {centre, std::hypot(std::sqrt(std::max(0.0, second / sum - centre * centre)), grid), OilSource::estimated};
 }
 

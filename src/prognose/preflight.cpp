@@ -6,14 +6,13 @@
 #include <numbers>
 #include <utility>
 
-namespace servodx {
-namespace {
+#include "prognose/constants.h"
 
-constexpr double least_jump = 0.02;     // [of rated] that begins a step
-constexpr double rest_band = 0.005;     // [of rated] within which a command is at rest
-constexpr double least_swing = 0.005;   // [of rated] between turning points of a sine
-constexpr double equal_periods = 0.15;  // half periods of one sine differ by less
-constexpr double purity = 0.1;          // rms left of a sine over its own
+namespace servodx {
+
+using namespace prognose_constants;
+
+namespace {
 
 std::optional<Preflight::Step> find_step(const std::vector<double>& u, std::size_t rest, double level, double rated) {
   if (rest == 0 || rest + 3 >= u.size()) return {};

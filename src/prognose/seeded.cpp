@@ -8,12 +8,14 @@
 
 #include "base/student.h"
 #include "model/state.h"
+#include "prognose/constants.h"
 #include "simulate/scenario.h"
 
 namespace servodx {
-namespace {
 
-constexpr double apart = 0.05;  // of their range: what lies closer was meant to be the same
+using namespace prognose_constants;
+
+namespace {
 
 // Means of values that were meant to be the same, rising.
 std::vector<double> levels_of(std::vector<double> values) {
@@ -130,7 +132,7 @@ ReadingCurve::ReadingCurve(const std::vector<SeededReading>& readings, std::opti
     }
     size.push_back(b[1]), tilt.push_back(b[2]), tilt.push_back(b[3]);
   }
-  if (size.size() < 3) return;
+  if (size.size() < least_valves) return;
   differing_ = {spread_of(size), spread_of(tilt)};
   for (std::size_t oil = 0; oil < cells.size(); ++oil)
     for (std::size_t k = 0; k < sizes_.size(); ++k)

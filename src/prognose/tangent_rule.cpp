@@ -4,7 +4,11 @@
 #include <algorithm>
 #include <cstddef>
 
+#include "prognose/constants.h"
+
 namespace servodx {
+
+using namespace prognose_constants;
 
 std::optional<TangentRule> tangent_rule(const std::vector<double>& time, const std::vector<double>& value,
                                         double threshold, double warning, double failure) {
@@ -19,7 +23,7 @@ std::optional<TangentRule> tangent_rule(const std::vector<double>& time, const s
     const Eigen::Vector3d row(1, s, s * s);
     normal += row * row.transpose();
     right += row * value[k];
-    if (++beyond < 4) continue;  // a quadratic through three points is no fit
+    if (++beyond < least_for_tangent) continue;
     const Eigen::Vector3d c = normal.ldlt().solve(right);
     const double curve = c[0] + c[1] * s + c[2] * s * s, slope = (c[1] + 2 * c[2] * s) / scale;
     if (curve >= warning && slope > 0) return TangentRule{time[k], (failure - warning) / slope};

@@ -6,21 +6,19 @@
 #include <numbers>
 #include <utility>
 
+#include "prognose/constants.h"
 #include "prognose/median.h"
 #include "prognose/reading_scale.h"
 
 namespace servodx {
-namespace {
 
-constexpr std::size_t most_points = 100;  // longer histories are averaged in blocks
-constexpr double outlying = 4;            // [spreads] from its neighbours at which a check is set aside
-constexpr int newton_steps = 2;           // of the likelihood of readings at the end of their scale
-constexpr double least_bend = 1e-3;       // of that likelihood: a reading far below its end says next to nothing
-constexpr std::size_t reach = 3;          // neighbours to either side
+using namespace prognose_constants;
+
+namespace {
 
 double median_of_neighbours(const std::vector<double>& y, std::size_t i) {
   std::vector<double> near;
-  for (std::size_t k = i >= reach ? i - reach : 0; k < std::min(y.size(), i + reach + 1); ++k)
+  for (std::size_t k = i >= neighbours ? i - neighbours : 0; k < std::min(y.size(), i + neighbours + 1); ++k)
     if (k != i) near.push_back(y[k]);
   return median(near);
 }

@@ -16,21 +16,16 @@
 #include "optimise/box_least_squares.h"
 #include "optimise/problem.h"
 #include "parameters/list.h"
+#include "prognose/constants.h"
 #include "simulate/scenario.h"
 
 namespace servodx {
+
+using namespace prognose_constants;
+
 namespace {
 
-constexpr double prior_sd = 0.5;   // [of a severity's range] about health: weak, it only holds what a log cannot tell
-constexpr std::size_t tried = 3;   // starts that are followed, those of least misfit
-constexpr int few = 4, many = 16;  // iterations of each, and of the best
-constexpr double aside = 0.2;      // [of the unit interval] short of half way from health to the far end
-constexpr double cost_tolerance = 1e-4;   // of the cost: a severity's error is far wider
-constexpr double difference_step = 1e-3;  // [of the unit interval] through contacts and frictions
-constexpr double no_cost = 1e300;         // of what did not run
-constexpr double healthier = 3;           // [spreads] by which a row may come out better than tuned
-// What is lost of may be larger than the model has it, to half of the drop over a clean filter.
-constexpr double larger_clean = 0.41421356237309515;
+constexpr double no_cost = 1e300;  // of what did not run
 
 // Whitened by how wrong the model is where things move, every sample for itself: what is constant in that error is the
 // same in every check of one kind, and a trend does not see it.
@@ -68,7 +63,7 @@ FreeValue severity_value(const Fault& fault) {
                                           : fault.healthy;
   f.lower = std::min(beyond, fault.worst);
   f.upper = std::max(beyond, fault.worst);
-  f.prior_sd = prior_sd;
+  f.prior_sd = severity_prior_sd;
   f.log = 0;
   return f;
 }
@@ -106,7 +101,7 @@ std::vector<Point> starts_from(const Point& health, const ParameterVector& base,
   std::vector<Point> starts = {health};
   for (std::size_t j = 0; j < faults.size(); ++j) {
     Point x = health;
-    x[j] = x[j] < 0.5 ? 0.5 * (1 + x[j]) - aside : 0.5 * x[j] + aside;
+    x[j] = x[j] < 0.5 ? 0.5 * (1 + x[j]) - short_of_half_way : 0.5 * x[j] + short_of_half_way;
     starts.push_back(x);
   }
   if (last.size() != faults.size()) return starts;
@@ -124,7 +119,7 @@ std::vector<Point> likeliest(FitProblem& problem, const std::vector<Point>& star
   std::iota(order.begin(), order.end(), std::size_t{0});
   const auto misfit = [&](std::size_t i) { return at[i].ok ? at[i].residual.squaredNorm() : no_cost; };
   std::stable_sort(order.begin(), order.end(), [&](std::size_t i, std::size_t j) { return misfit(i) < misfit(j); });
-  order.resize(std::min(order.size(), tried));
+  order.resize(std::min(order.size(), starts_followed));
   std::vector<Point> first;
   for (const std::size_t i : order) first.push_back(starts[i]);
   return first;
@@ -134,8 +129,8 @@ std::vector<Point> likeliest(FitProblem& problem, const std::vector<Point>& star
 std::optional<LeastSquaresResult> fit_from(FitProblem& problem, const std::vector<Point>& starts) {
   LeastSquaresOptions o;
   o.difference = Difference::forward;
-  o.cost_tolerance = cost_tolerance;
-  o.max_iterations = few;
+  o.cost_tolerance = track_cost_tolerance;
+  o.max_iterations = first_iterations;
   const LeastSquaresProblem least = problem.least_squares();
   LeastSquaresResult best;
   best.cost = no_cost;
@@ -144,7 +139,7 @@ std::optional<LeastSquaresResult> fit_from(FitProblem& problem, const std::vecto
     if (r.reason != StopReason::start_failed && r.cost < best.cost) best = std::move(r);
   }
   if (!(best.cost < no_cost)) return {};
-  o.max_iterations = many;
+  o.max_iterations = last_iterations;
   LeastSquaresResult r = minimise_least_squares(least, best.point, o);
   if (r.reason != StopReason::start_failed) best = std::move(r);
   if (!(best.cost < no_cost)) return {};

@@ -9,8 +9,12 @@
 #include "prognose/cause_rule.h"
 #include "prognose/check_series.h"
 #include "prognose/check_trend.h"
+#include "prognose/constants.h"
 
 namespace servodx {
+
+using namespace prognose_constants;
+
 namespace {
 
 std::vector<CheckTrend> trends_of(const std::vector<CheckSeries>& checks, const TrendOptions& options) {

@@ -6,25 +6,15 @@
 #include <vector>
 
 #include "prognose/check_name.h"
+#include "prognose/constants.h"
 #include "prognose/failure_level.h"
 #include "prognose/median.h"
 
 namespace servodx {
-namespace {
 
-constexpr double matters_of_paper = 0.5;  // of a paper's check, in its logarithm: half as much again
-constexpr double least_way = 0.5;  // of the way to the fault's own failure: a level near health keeps nothing from
-                                   // growing past it
-constexpr double noise_of_stated = 0.3;  // of the stated errors, at least: they repeat in part
-constexpr double noise_of_scale = 1e-4;  // of a growth that matters, at least: checks that agree to rounding
-constexpr double swing = 0.3;            // of the figure, by a unit of log viscosity; by its square a third: over three
-                                         // decades of viscosity twice itself
-constexpr double oil_in_growth = 0.15;   // over three e-folds of viscosity: half of itself
-constexpr double oil_in_drop = 0.3;      // how much of a screen's drop is laminar is on no data sheet: twice itself
-constexpr double expectation_spread = 0.5;  // the model's expectation is taken at its word within a half
-constexpr double beside_spread = 0.5;       // [clean drops] bores known to 2 % leave open as much as a clean screen
-                                            // takes; in thick oil, where the screen takes most, half of that
-constexpr double scatter = 0.15;            // of what the oil does to a growth, from check to check
+using namespace prognose_constants;
+
+namespace {
 
 // A growth that matters: half as much again for the paper's checks, the way to failure for a parameter.
 double way_to(const FailureAt& end, const CheckSeries& s, double base) {
@@ -43,8 +33,9 @@ int direction_of(const CheckSeries& s, const FailureAt& failure) {
 // What cold oil does to the estimate of a severity that adds knows nothing of the healthy value.
 void add_temperature(GrowthPrior& prior, const CheckSeries& s) {
   const bool adds = s.fault && !s.fault->log_scale;
-  const double by_oil =
-      s.scale.paper() ? swing : swing * (adds ? prior.scale : std::max(std::abs(prior.base), prior.noise));
+  const double by_oil = s.scale.paper()
+                            ? temperature_swing
+                            : temperature_swing * (adds ? prior.scale : std::max(std::abs(prior.base), prior.noise));
   prior.feature_mean = {0.0, 0.0};
   prior.feature_sd = {by_oil, by_oil / 3};
   prior.tilt = oil_in_growth;
@@ -78,7 +69,7 @@ GrowthPrior prior_of(const CheckSeries& s, std::size_t healthy, const FailureAt&
   prior.base_sd = prior.scale;
   add_temperature(prior, s);
   if (s.scale.of_drop()) take_drop(prior);
-  prior.scatter = scatter;
+  prior.scatter = oil_scatter;
   if (const auto& valves = s.curve.differing()) {
     prior.tilt = std::min(prior.tilt, valves->tilt);
     prior.size_sd = std::min(prior.size_sd, valves->size);
