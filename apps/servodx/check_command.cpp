@@ -11,9 +11,9 @@
 #include "commands.h"
 #include "invocation.h"
 #include "prognose/check.h"
-#include "prognose/history.h"
 #include "prognose/monitor.h"
 #include "report/prognosis.h"
+#include "store/history.h"
 
 namespace servodx {
 namespace {

@@ -10,9 +10,9 @@
 #include "base/atomic_file.h"
 #include "commands.h"
 #include "invocation.h"
-#include "prognose/history.h"
-#include "prognose/history_csv.h"
 #include "report/columns.h"
+#include "store/history.h"
+#include "store/history_csv.h"
 
 namespace servodx {
 namespace {

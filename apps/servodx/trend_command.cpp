@@ -13,11 +13,11 @@
 #include "base/units.h"
 #include "commands.h"
 #include "invocation.h"
-#include "prognose/history.h"
 #include "prognose/limits.h"
-#include "prognose/seeded_csv.h"
 #include "prognose/trend.h"
 #include "report/prognosis.h"
+#include "store/history.h"
+#include "store/seeded_csv.h"
 
 namespace servodx {
 namespace {

@@ -16,13 +16,14 @@
 #include "parameters/list.h"
 #include "parameters/table.h"
 #include "prognose/check.h"
-#include "prognose/history.h"
 #include "prognose/limits.h"
 #include "prognose/monitor.h"
 #include "prognose/trend.h"
+#include "prognose/valve_history.h"
 #include "prognosis/study.h"
 #include "report/line_chart.h"
 #include "rig/rig_run.h"
+#include "store/history.h"
 
 namespace servodx::study {
 namespace {

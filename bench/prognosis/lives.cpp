@@ -16,15 +16,16 @@
 #include "prognose/check.h"
 #include "prognose/check_name.h"
 #include "prognose/check_series.h"
-#include "prognose/history.h"
 #include "prognose/metrics.h"
-#include "prognose/seeded_csv.h"
 #include "prognose/track.h"
 #include "prognose/trend.h"
 #include "prognose/trend_options.h"
+#include "prognose/valve_history.h"
 #include "prognosis/study.h"
 #include "prognosis/units.h"
 #include "rig/rig_model.h"
+#include "store/history.h"
+#include "store/seeded_csv.h"
 
 namespace servodx::study {
 namespace {

@@ -9,12 +9,13 @@
 #include "base/csv.h"
 #include "parameters/list.h"
 #include "prognose/check.h"
-#include "prognose/history.h"
-#include "prognose/history_csv.h"
 #include "prognose/trend.h"
+#include "prognose/valve_history.h"
 #include "prognosis/study.h"
 #include "report/prognosis_words.h"
 #include "servodx/log.h"
+#include "store/history.h"
+#include "store/history_csv.h"
 
 namespace servodx::study {
 namespace {

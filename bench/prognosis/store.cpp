@@ -6,9 +6,10 @@
 #include <filesystem>
 
 #include "base/random.h"
-#include "prognose/history.h"
 #include "prognose/trend.h"
+#include "prognose/valve_history.h"
 #include "prognosis/study.h"
+#include "store/history.h"
 
 namespace servodx::study {
 

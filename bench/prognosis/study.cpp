@@ -6,9 +6,10 @@
 #include <exception>
 #include <mutex>
 
+#include "prognose/check_name.h"
+#include "prognose/valve_history.h"
 #include "rig/rig_model.h"
 #include "servodx/log.h"
-#include "prognose/check_name.h"
 
 namespace servodx::study {
 

@@ -8,13 +8,14 @@
 #include "base/random.h"
 #include "parameters/table.h"
 #include "prognose/check.h"
-#include "prognose/history.h"
+#include "prognose/check_name.h"
+#include "prognose/valve_history.h"
 #include "rig/rig_model.h"
 #include "rig/rig_run.h"
 #include "servodx/log.h"
 #include "servodx/rig.h"
 #include "signals/rig_file.h"
-#include "prognose/check_name.h"
+#include "store/history.h"
 
 namespace servodx::study {
 

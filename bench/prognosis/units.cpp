@@ -9,14 +9,15 @@
 #include "base/atomic_file.h"
 #include "base/csv.h"
 #include "base/random.h"
-#include "tune/tune.h"
 #include "parameters/list.h"
 #include "parameters/table.h"
 #include "prognose/check.h"
-#include "prognose/history_csv.h"
+#include "prognose/valve_history.h"
 #include "rig/rig_model.h"
 #include "rig/rig_run.h"
 #include "signals/log.h"
+#include "store/history_csv.h"
+#include "tune/tune.h"
 
 namespace servodx::study {
 namespace {

@@ -14,9 +14,10 @@
 #include <vector>
 
 #include "parameters/table.h"
-#include "prognose/history.h"
+#include "prognose/valve_history.h"
 #include "prognosis/study.h"
 #include "rig/rig_model.h"
+#include "store/history.h"
 
 namespace servodx::study {
 

@@ -11,9 +11,9 @@
 #include "faults/fault.h"
 #include "prognose/check_name.h"
 #include "prognose/growth.h"
-#include "prognose/history.h"
 #include "prognose/reading_scale.h"
 #include "prognose/seeded.h"
+#include "prognose/valve_history.h"
 
 namespace servodx {
 

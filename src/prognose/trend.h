@@ -5,7 +5,7 @@
 // the fault says (failure_level.h), a trend by the growth model (growth.h), and what follows of these by alert_rule.h.
 // No trend is an answer. Two-sided for r and E.
 //
-// The cause, and whose life counts: cause_rule.h. Maintenance events restart what they renew (history.h); so does
+// The cause, and whose life counts: cause_rule.h. Maintenance events restart what they renew (valve_history.h); so does
 // another tuned table.
 #pragma once
 #include <cmath>
@@ -15,12 +15,12 @@
 #include <vector>
 
 #include "prognose/check_name.h"
-#include "prognose/history.h"
 #include "prognose/level.h"
 #include "prognose/life.h"
 #include "prognose/tangent_rule.h"
 #include "prognose/trend_options.h"
 #include "prognose/trend_state.h"
+#include "prognose/valve_history.h"
 
 namespace servodx {
 

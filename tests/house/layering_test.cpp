@@ -37,6 +37,7 @@ const std::map<std::string, std::set<std::string>> allowed = {
     {"report",
      {"signals", "faults", "diagnose", "explain", "evidence", "prognose", "fit", "tune", "valve_maps", "curves"}},
     {"prognose", {"parameters", "signals", "model", "simulate", "optimise", "fit", "faults", "valve_maps"}},
+    {"store", {"parameters", "model", "simulate", "faults", "prognose"}},
 };
 
 // The front door (include/servodx): each of its headers is the folder's that makes what it declares.

@@ -23,8 +23,6 @@ READERS = {
     "src/optimise/genetic_state.cpp": "reads a checkpoint",
     "src/parameters/table.cpp": "reads a table",
     "src/prognose/check_name.cpp": "reads the names of checks",
-    "src/prognose/history_csv.cpp": "reads a history",
-    "src/prognose/seeded_csv.cpp": "reads a seeded-fault test",
     "src/rig/fleet.cpp": "reads the sets and excitations of a fleet",
     "src/rig/rig_faults.cpp": "reads a fault's size and span",
     "src/rig/rig_model.cpp": "reads a model's TOML",
@@ -32,6 +30,8 @@ READERS = {
     "src/signals/log.cpp": "ending of a file's name",
     "src/signals/log_columns.cpp": "reads units of columns",
     "src/signals/rig_file.cpp": "reads a rig file",
+    "src/store/history_csv.cpp": "reads a history",
+    "src/store/seeded_csv.cpp": "reads a seeded-fault test",
 }
 
 # What is compared elsewhere, each text by itself: file, texts, why.

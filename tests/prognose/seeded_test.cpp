@@ -8,10 +8,10 @@
 
 #include "base/error.h"
 #include "base/random.h"
-#include "prognose/history.h"
-#include "prognose/seeded_csv.h"
 #include "prognose/trend.h"
 #include "prognose/trend_options.h"
+#include "prognose/valve_history.h"
+#include "store/seeded_csv.h"
 #include "temporary_folder.h"
 
 namespace servodx {

@@ -11,11 +11,11 @@
 #include "model/state.h"
 #include "prognose/check.h"
 #include "prognose/check_name.h"
-#include "prognose/history.h"
 #include "prognose/tangent_rule.h"
 #include "prognose/track.h"
 #include "prognose/trend_options.h"
 #include "prognose/trend_state.h"
+#include "prognose/valve_history.h"
 
 namespace servodx {
 namespace {

@@ -1,4 +1,4 @@
-#include "prognose/seeded_csv.h"
+#include "store/seeded_csv.h"
 
 #include <fmt/format.h>
 

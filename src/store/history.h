@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "faults/maintenance.h"
-#include "prognose/check.h"
+#include "prognose/valve_history.h"
 
 namespace SQLite {
 class Database;
@@ -21,36 +21,9 @@ class Database;
 
 namespace servodx {
 
-struct Recording {
-  double at = 0;                 // [h] of use
-  std::optional<double> cycles;  // of use, where counted
-  std::string log, log_sha256, table_sha256, version, recorded_at;
-  double temperature = 0;  // [K]
-  std::string temperature_source;
-  std::vector<Check> checks;
-};
-
-// Values of the tracked parameters, in the order of progressive_faults(); NaN where missing.
-std::vector<double> tracked_in(const Recording& recording);
-
-// What a maintenance event resets: the trends of checks that it renews start again from it.
 const char* name_of(EventKind kind);
 std::optional<EventKind> find_event(const std::string& name);
 std::string event_names();
-bool resets(EventKind kind, const Check& check);
-
-struct Event {
-  double at = 0;  // [h]
-  EventKind kind = EventKind::note;
-  std::string text, recorded_at;
-};
-
-struct ValveHistory {
-  std::string valve, serial;
-  std::vector<Recording> recordings;  // by hours
-  std::vector<Event> events;
-  std::vector<double> tuned;  // the 41 rows of the last check's table; empty where the history does not hold it
-};
 
 // The rows of a stored table's text.
 std::vector<double> tuned_rows(const std::string& table_text);

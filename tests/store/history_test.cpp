@@ -1,5 +1,5 @@
 // The store: nothing acknowledged is lost, nothing foreign is touched.
-#include "prognose/history.h"
+#include "store/history.h"
 
 #include <SQLiteCpp/SQLiteCpp.h>
 #include <gtest/gtest.h>
@@ -18,7 +18,8 @@
 #include "base/random.h"
 #include "faults/maintenance.h"
 #include "prognose/check.h"
-#include "prognose/history_csv.h"
+#include "prognose/valve_history.h"
+#include "store/history_csv.h"
 #include "temporary_folder.h"
 
 namespace servodx {

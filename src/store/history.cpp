@@ -1,4 +1,4 @@
-#include "prognose/history.h"
+#include "store/history.h"
 
 #include <SQLiteCpp/SQLiteCpp.h>
 #include <fmt/format.h>
@@ -12,13 +12,11 @@
 #include <filesystem>
 
 #include "base/error.h"
-#include "faults/fault.h"
-#include "faults/registry.h"
 #include "parameters/list.h"
 #include "parameters/table.h"
 #include "parameters/table_text.h"
+#include "prognose/check.h"
 #include "prognose/check_name.h"
-#include "prognose/track.h"
 
 namespace servodx {
 namespace {
@@ -180,28 +178,6 @@ std::string event_names() {
   std::string names;
   for (const auto& [kind, name] : kinds) names += (names.empty() ? "" : ", ") + std::string(name);
   return names;
-}
-
-std::vector<double> tracked_in(const Recording& recording) {
-  std::vector<double> values;
-  for (const Progressive& p : progressive_faults()) {
-    values.push_back(std::nan(""));
-    for (const Check& c : recording.checks)
-      if (c.cause == p.fault->name) values.back() = c.value;
-  }
-  return values;
-}
-
-bool resets(EventKind kind, const Check& check) {
-  const Fault* fault = find_fault(check.cause);
-  switch (kind) {
-    case EventKind::filter_changed:
-      return (fault && fault->renewed_by == kind) || check.name.kind() == CheckKind::fidelity;
-    case EventKind::note:
-      return false;
-    default:
-      return true;
-  }
 }
 
 // SQLite's errors in the user's words.

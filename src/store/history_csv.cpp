@@ -1,4 +1,4 @@
-#include "prognose/history_csv.h"
+#include "store/history_csv.h"
 
 #include <fmt/format.h>
 
@@ -18,6 +18,7 @@
 #include "prognose/check_name.h"
 #include "prognose/constants.h"
 #include "prognose/oil_temperature.h"
+#include "prognose/valve_history.h"
 #include "simulate/scenario.h"
 
 namespace servodx {

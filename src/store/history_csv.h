@@ -10,7 +10,7 @@
 #pragma once
 #include <string>
 
-#include "prognose/history.h"
+#include "store/history.h"
 
 namespace servodx {
 
