@@ -3,7 +3,7 @@
 // The grid: wander, scatter, repeated part and level of the noise; onsets, laws and, of a drop, the part lost to now.
 // At each point of it the size and all else that is linear is integrated out (growth_regression.h). The evidence over
 // the noise level has one peak, so levels are looked at from it until nothing is left. Limits: what lies between two
-// points of the grid is told by neither; see constants there.
+// points of the grid (constants.h) is told by neither.
 #pragma once
 #include <Eigen/Dense>
 #include <cstddef>
