@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "diagnose/healthy_law.h"
 #include "report/diagnosis_words.h"
 #include "report/handy.h"
 #include "report/pages.h"
@@ -30,15 +31,17 @@ Page baseline_page(const Header& header, const Baseline& b, const std::vector<Re
 
   page.section(
       "What fault-free logs score",
-      "The threshold is one of these scores. A log far beyond the others deserves a look: is it fault-free, is its "
-      "excitation unlike the rest?");
+      "The threshold is made of these scores. A log far beyond the others deserves a look: is it fault-free, is its "
+      "excitation unlike the rest? One that the model does not follow sets limits for tests like its own alone: tune "
+      "with a log of its kind.");
   auto order = b.scores;
   std::stable_sort(order.begin(), order.end(), [](const auto& x, const auto& y) { return x.score > y.score; });
   Bars bars{"Scores", "log", "score", {}, Mark{b.threshold, "threshold"}, {}};
   for (const Baseline::Score& s : order)
     bars.rows.push_back({s.log, s.score, digits(s.score),
-                         fmt::format("worst channel {} times its usual error", digits(s.adequacy, 2)),
-                         s.score > b.threshold ? Tone::doubt : Tone::good, ""});
+                         fmt::format("worst channel {} times its usual error{}", digits(s.adequacy, 2),
+                                     is_followed(s.adequacy) ? "" : "; the model does not follow it"),
+                         s.score > b.threshold || !is_followed(s.adequacy) ? Tone::doubt : Tone::good, ""});
   page.add(bars);
   if (std::all_of(order.begin(), order.end(), [](const auto& s) { return s.test.has_value(); })) {
     TablePart tests{

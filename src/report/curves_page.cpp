@@ -37,7 +37,8 @@ std::vector<double> drawn_through(std::vector<double> y, const std::vector<doubl
 // What a first look asks for.
 std::vector<std::pair<std::string, std::string>> first_facts(const Sheet& sheet) {
   std::vector<std::pair<std::string, std::string>> facts;
-  for (const char* name : {"rated_flow", "null_bias", "hysteresis", "pressure_gain", "null_leakage", "phase_lag_90_frequency", "lap"})
+  for (const char* name :
+       {"rated_flow", "null_bias", "hysteresis", "pressure_gain", "null_leakage", "phase_lag_90_frequency", "lap"})
     for (const Figure& f : sheet.figures)
       if (f.name == name && std::isfinite(f.value) && facts.size() < 4)
         facts.push_back({words(f.name), readable(f, f.value)});

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <filesystem>
 #include <map>
@@ -34,6 +35,11 @@ std::string headline(const Diagnosis& d) {
   if (d.verdict == VerdictKind::unknown) return file_name(d.log) + " is not healthy, and no known fault explains it";
   const std::string size = size_words(d);
   return words(label_of(d.fault)) + (size.empty() ? "" : ", " + size);
+}
+
+std::string sentence(std::string words) {
+  words.front() = static_cast<char>(std::toupper(static_cast<unsigned char>(words.front())));
+  return words + ".";
 }
 
 std::vector<std::string> reasons(const Diagnosis& d, const Baseline& baseline) {
@@ -70,6 +76,7 @@ std::vector<std::string> reasons(const Diagnosis& d, const Baseline& baseline) {
       why.push_back(fmt::format("The next best explanation, {}, has {}.", words(label_of(next->fault)),
                                 chance(next->probability)));
   }
+  if (d.suspicion) why.push_back(sentence(suspicion_in_words(*d.suspicion)));
   if (d.onset)
     why.push_back(fmt::format("Until {} s the log is healthy; the fault explains what follows.", digits(*d.onset, 4)));
   return why;

@@ -179,10 +179,7 @@ void add_missing(Page& page, const ExplainResult& r) {
   }
 }
 
-}  // namespace
-
-Page explain_page(const Header& header, const ExplainResult& r, const std::vector<Replay>& replays) {
-  Page page(header, "What the simulation misses");
+Verdict verdict_of(const ExplainResult& r) {
   Verdict v;
   v.tone = r.verdict == ExplainVerdict::sufficient ? Tone::good
            : r.verdict == ExplainVerdict::extended ? Tone::bad
@@ -192,34 +189,34 @@ Page explain_page(const Header& header, const ExplainResult& r, const std::vecto
   if (r.verdict == ExplainVerdict::extended)
     v.detail = "What the simulation has wrong on these logs: " + with_meanings(r.causes) + ".";
   if (r.curve) v.detail = "Nothing in the list mends it; a curve learnt from the logs does.";
+  if (r.suspicion) v.detail = "Not beyond healthy logs: " + suspicion_in_words(*r.suspicion) + ".";
   if (!r.depends_on.empty()) v.facts.push_back({"It follows", words(r.depends_on)});
   if (!r.causes.empty()) v.facts.push_back({"Mending it removes, of the misfit", of_misfit(r.heldout_gain)});
   v.facts.push_back({"Re-tuning alone removes", of_misfit(r.retuned)});
   v.facts.push_back({"Misfit, times the tuning logs'",
                      digits(r.adequacy_before) + (r.causes.empty() ? "" : ", mended " + digits(r.adequacy_after))});
   v.reasons = reasons(r);
-  page.verdict(v);
-  if (!r.causes.empty() || r.curve)
-    page.section("What was found", "Its numbers, and what each is worth on data that the fit had not seen.");
-  if (!r.causes.empty()) page.add(causes_table("Causes", r.causes));
-  if (r.curve) {
-    Plot plot;
-    plot.title = fmt::format("learnt curve in {} [{}]{}", words(r.curve->where), r.curve->unit,
-                             r.curve->factor.empty() ? "" : ", by " + words(r.curve->factor));
-    plot.x_label = fmt::format("{} [{}]", words(r.curve->variable), r.curve->variable_unit);
-    Series s{"curve", {}, Role::named};
-    Band band{"standard error", {}, {}};
-    for (const CurvePoint& p : r.curve->points) {
-      plot.x.push_back(p.x), s.y.push_back(p.value);
-      band.lower.push_back(p.value - p.std_error), band.upper.push_back(p.value + p.std_error);
-    }
-    plot.series = {s};
-    plot.band = band;
-    page.add(plot);
-    if (!r.curve->closed_form.empty()) page.text("In short: " + r.curve->closed_form);
-  }
+  return v;
+}
 
-  page.section("How wrong it is", "Residual of each channel as tuned and with the causes, beside the sensor's noise.");
+void add_curve(Page& page, const LearntCurve& c) {
+  Plot plot;
+  plot.title = fmt::format("learnt curve in {} [{}]{}", words(c.where), c.unit,
+                           c.factor.empty() ? "" : ", by " + words(c.factor));
+  plot.x_label = fmt::format("{} [{}]", words(c.variable), c.variable_unit);
+  Series s{"curve", {}, Role::named};
+  Band band{"standard error", {}, {}};
+  for (const CurvePoint& p : c.points) {
+    plot.x.push_back(p.x), s.y.push_back(p.value);
+    band.lower.push_back(p.value - p.std_error), band.upper.push_back(p.value + p.std_error);
+  }
+  plot.series = {s};
+  plot.band = band;
+  page.add(plot);
+  if (!c.closed_form.empty()) page.text("In short: " + c.closed_form);
+}
+
+TablePart channels_table(const ExplainResult& r) {
   TablePart channels{"Channels",
                      "lrrrrrll",
                      {"channel", "before", "after", "noise", "held out, before", "held out, after", "unit",
@@ -243,35 +240,24 @@ Page explain_page(const Header& header, const ExplainResult& r, const std::vecto
                              before.unit,
                              words(summary)});
   }
-  page.add(channels);
-  for (const Replay& replay : replays) {
-    page.section(file_name(replay.log), "Measured, as tuned, and with the causes.", &replay != &replays.front());
-    add_replay(page, replay, {.shown = {}, .onset = {}, .logs = replays.size()});
-  }
+  return channels;
+}
 
-  if (!r.blocks.empty()) {
-    page.section("Where",
-                 "Each block of the model with measured signals at its ends, so that no other block's error enters: "
-                 "what it misses, as a part of what passes through it.");
-    Bars bars{"Blocks", "block", "missing over passing", {}, {}, {}};
-    for (const BlockReplay& b : r.blocks)
-      bars.rows.push_back({b.block, b.passing > 0 ? b.missing / b.passing : 0,
-                           fmt::format("{} of {}", handy(b.missing, b.unit), handy(b.passing, b.unit)),
-                           fmt::format("{} of it in line with {}{}", percent(b.share), words(b.variable),
-                                       b.p_new ? "; in health with a chance of " + chance(*b.p_new) : ""),
-                           b.p_new && *b.p_new < 0.05 ? Tone::doubt : Tone::plain, ""});
-    page.add(bars);
-  }
-  if (!missing_in_words(r).empty()) add_missing(page, r);
-  for (const ShownChannel& c : r.shown) {
-    page.section(words(c.signal) + ": residual maps", words(c.summary), true);
-    for (const ResidualMap& m : c.maps)
-      if (!m.bins.empty()) page.add(map_plot(c, m));
-    if (!c.spectrum.empty()) page.add(spectrum_plot(c));
-  }
+void add_blocks(Page& page, const ExplainResult& r) {
+  page.section("Where",
+               "Each block of the model with measured signals at its ends, so that no other block's error enters: "
+               "what it misses, as a part of what passes through it.");
+  Bars bars{"Blocks", "block", "missing over passing", {}, {}, {}};
+  for (const BlockReplay& b : r.blocks)
+    bars.rows.push_back({b.block, b.passing > 0 ? b.missing / b.passing : 0,
+                         fmt::format("{} of {}", handy(b.missing, b.unit), handy(b.passing, b.unit)),
+                         fmt::format("{} of it in line with {}{}", percent(b.share), words(b.variable),
+                                     b.p_new ? "; in health with a chance of " + chance(*b.p_new) : ""),
+                         b.p_new && *b.p_new < 0.05 ? Tone::doubt : Tone::plain, ""});
+  page.add(bars);
+}
 
-  page.section("What was tried",
-               "By the misfit that each would remove, as the slope of the residual predicts; the best were fitted.");
+Bars candidates_of(const ExplainResult& r) {
   Bars bars{"Candidates", "cause", "predicted gain", {}, {}, {}};
   for (const ExplainedCandidate& c : r.candidates) {
     if (bars.rows.size() >= 15) break;
@@ -280,7 +266,36 @@ Page explain_page(const Header& header, const ExplainResult& r, const std::vecto
          std::string(words_of(c.fate)) + (c.p_new ? "; in health with a chance of " + chance(*c.p_new) : ""),
          is_taken(c.fate) ? Tone::bad : Tone::plain, ""});
   }
-  page.add(bars);
+  return bars;
+}
+
+}  // namespace
+
+Page explain_page(const Header& header, const ExplainResult& r, const std::vector<Replay>& replays) {
+  Page page(header, "What the simulation misses");
+  page.verdict(verdict_of(r));
+  if (!r.causes.empty() || r.curve)
+    page.section("What was found", "Its numbers, and what each is worth on data that the fit had not seen.");
+  if (!r.causes.empty()) page.add(causes_table("Causes", r.causes));
+  if (r.curve) add_curve(page, *r.curve);
+
+  page.section("How wrong it is", "Residual of each channel as tuned and with the causes, beside the sensor's noise.");
+  page.add(channels_table(r));
+  for (const Replay& replay : replays) {
+    page.section(file_name(replay.log), "Measured, as tuned, and with the causes.", &replay != &replays.front());
+    add_replay(page, replay, {.shown = {}, .onset = {}, .logs = replays.size()});
+  }
+  if (!r.blocks.empty()) add_blocks(page, r);
+  if (!missing_in_words(r).empty()) add_missing(page, r);
+  for (const ShownChannel& c : r.shown) {
+    page.section(words(c.signal) + ": residual maps", words(c.summary), true);
+    for (const ResidualMap& m : c.maps)
+      if (!m.bins.empty()) page.add(map_plot(c, m));
+    if (!c.spectrum.empty()) page.add(spectrum_plot(c));
+  }
+  page.section("What was tried",
+               "By the misfit that each would remove, as the slope of the residual predicts; the best were fitted.");
+  page.add(candidates_of(r));
   if (!r.standing.empty()) page.add(causes_table("Standing: healthy logs show it too", r.standing));
   return page;
 }

@@ -115,8 +115,9 @@ void add_replay(Page& page, const Replay& replay, const ReplayView& view) {
     for (const auto* s : shown)
       figures +=
           fmt::format("{}{} {}", figures.empty() ? "" : ", ", words(s->name), digits(rms(s->residual) * small.factor));
-    const std::string filtered =
-        channel.signal == Signal::piston_position ? fmt::format(", drift below {:g} Hz left out", piston_high_pass) : "";
+    const std::string filtered = channel.signal == Signal::piston_position
+                                     ? fmt::format(", drift below {:g} Hz left out", piston_high_pass)
+                                     : "";
     Plot residual = plot(fmt::format("{}: measured less simulated{} [{}]; rms {}", name, filtered, small.name, figures),
                          next == order.back());
     residual.low = true;

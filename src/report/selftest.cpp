@@ -14,7 +14,8 @@ namespace servodx::report {
 namespace {
 
 constexpr double promised = 0.95;
-constexpr double chance_of_bias = 0.0027;  // of a row without bias: 3 sigmas; Student's, as the scatter is of few repeats
+constexpr double chance_of_bias =
+    0.0027;  // of a row without bias: 3 sigmas; Student's, as the scatter is of few repeats
 
 double share(const SelftestResult& r) {
   return r.counted ? static_cast<double>(r.covered) / static_cast<double>(r.counted) : NAN;
@@ -106,7 +107,8 @@ Page selftest_page(const Header& header, const SelftestResult& r) {
              {"Repeats", fmt::format("{}, {} failed", r.repeats, r.failed)},
              {"Biased parameters", fmt::format("{} of {}", biased(r), r.rows.size())}};
   page.verdict(v);
-  page.section("Parameter by parameter", "Sigmas: the bias over the scatter of its mean. Beyond 3, or more with few repeats, it is no chance.");
+  page.section("Parameter by parameter",
+               "Sigmas: the bias over the scatter of its mean. Beyond 3, or more with few repeats, it is no chance.");
   Bars bars{"Share of intervals that hold the truth", "parameter", "share", {}, Mark{promised, "95 %"}, 1.1};
   TablePart table{"Bias and error",
                   "lrrrrrl",

@@ -8,6 +8,7 @@
 #include "diagnose/assessment.h"
 #include "diagnose/baseline.h"
 #include "diagnose/decide.h"
+#include "diagnose/healthy_law.h"
 #include "diagnose/judge.h"
 #include "diagnose/moved.h"
 #include "fit/identifiability.h"
@@ -18,8 +19,6 @@
 
 namespace servodx::report {
 namespace {
-
-constexpr double far_off = 10.0;  // times the usual error, from which a fault-free log is of another kind
 
 // A held row has no error of its own; one on a bound was fitted and has none either.
 bool was_fitted(const ParameterResult& p) { return std::isfinite(p.std_error) || p.verdict == RowVerdict::at_bound; }
@@ -143,10 +142,12 @@ std::string text_of(const Baseline& b, const TextOptions& options) {
   for (const Baseline::Score& s : b.scores) table.row({s.log, digits(s.score, 4), digits(s.adequacy)});
   text += table.text();
   for (const Baseline::Score& s : b.scores)
-    if (s.adequacy > far_off)
+    if (!is_followed(s.adequacy))
       text += fmt::format(
-          "  {}: its worst channel is {} times as wrong as on the tuning logs: tune with a log of its kind\n", s.log,
-          digits(s.adequacy, 2));
+          "  {}: the model does not follow it, its worst channel is {} times as wrong as on the tuning logs; it sets "
+          "no "
+          "limit but for tests like its own: tune with a log of its kind\n",
+          s.log, digits(s.adequacy, 2));
   return text;
 }
 

@@ -11,7 +11,6 @@ LONGER = {
     ("src/explain/smoother.cpp", "KalmanFilter::run"): "to be split",
     ("src/explain/valve.cpp", "ValveSubject::add_causes"): "to be split",
     ("src/model/derivative.h", "derivative"): "equations of motion; each stage uses terms of those above it",
-    ("src/report/explain_page.cpp", "explain_page"): "to be split",
     ("src/rig/plant.cpp", "Plant::rates"): "equations of motion of the virtual rig, one block a body",
 }
 
