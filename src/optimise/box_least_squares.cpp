@@ -18,6 +18,8 @@
 
 #include "base/error.h"
 #include "optimise/box_quadratic.h"
+#include "optimise/differences.h"
+#include "optimise/normal_equations.h"
 
 namespace servodx {
 namespace {
@@ -41,10 +43,27 @@ std::string number(double value) {
   return text;
 }
 
+std::string state_words(double cost, double cosine, double promised) {
+  return "cost " + number(cost) + ", gradient cosine " + number(cosine) + ", promised gain " + number(promised);
+}
+
 class Search {
  public:
   Search(const LeastSquaresProblem& problem, const LeastSquaresOptions& options)
       : problem_(problem), options_(options) {}
+
+  // What the normal equations say of an end that is known.
+  void take_stock(LeastSquaresResult& end, NormalEquations equations) {
+    x_ = end.point;
+    cost_ = end.cost;
+    const Model m = scaled(std::move(equations));
+    end.promised_gain = trial(m, m.gradient, kLeastDamping, options_.step_limit).promised;
+    end.gradient = std::move(result_.gradient);
+    end.normal = std::move(result_.normal);
+    end.wall = std::move(result_.wall);
+    end.projected_gradient = result_.projected_gradient;
+    end.gradient_cosine = result_.gradient_cosine;
+  }
 
   LeastSquaresResult run(const Point& start) {
     if (begin(start)) {
@@ -83,15 +102,7 @@ class Search {
     return values;
   }
 
-  double cost_of(const Eigen::VectorXd& residual) const {
-    if (loss_ == RobustLoss::none) return 0.5 * residual.squaredNorm();
-    double sum = 0;
-    for (double e : residual) {
-      const double t = robust(loss_, loss_scale_, e).t;
-      sum += t * t;
-    }
-    return 0.5 * sum;
-  }
+  double cost_of(const Eigen::VectorXd& residual) const { return robust_cost(residual, loss_, loss_scale_); }
 
   bool begin(const Point& start) {
     if (static_cast<int>(start.size()) != problem_.n) throw std::logic_error("start point has the wrong length");
@@ -104,59 +115,8 @@ class Search {
       return false;
     }
     residual_ = std::move(first[0].residual);
+    result_.start_cost = robust_cost(residual_, options_.loss, options_.loss_scale);
     return true;
-  }
-
-  // One difference per column, steps taken into the box. A column whose points fail is tried on the other side, then
-  // given up (zero).
-  void differences(bool central) {
-    const int n = problem_.n;
-    const double h = options_.difference_step;
-    jacobian_.resize(residual_.size(), n);
-    std::vector<int> column(n);
-    for (int j = 0; j < n; ++j) column[j] = j;
-    result_.missing_columns = 0;
-    for (int attempt = 0; attempt < 2 && !column.empty(); ++attempt) {
-      const bool two = central && attempt == 0;
-      std::vector<Point> points;
-      std::vector<double> first(column.size()), second(column.size(), 0.0);
-      for (std::size_t k = 0; k < column.size(); ++k) {
-        const double x = x_[column[k]];
-        double step = x + h <= 1.0 ? h : -h;
-        if (attempt == 1 && x + h <= 1.0 && x - h >= 0.0) step = -h;
-        if (attempt == 1 && step == h) step = 0.1 * h;  // no room on the other side: closer in
-        const auto add = [&](double to) {
-          Point p = x_;
-          p[column[k]] = to;
-          points.push_back(std::move(p));
-          return to - x;
-        };
-        first[k] = add(x + step);
-        if (two) second[k] = add(x - step >= 0.0 && x - step <= 1.0 ? x - step : x + 2 * step);
-      }
-      const std::vector<Evaluation> values = evaluate(points);
-      std::vector<int> left;
-      for (std::size_t k = 0, at = 0; k < column.size(); ++k) {
-        const Evaluation& one = values[at++];
-        const Evaluation* other = two ? &values[at++] : nullptr;
-        auto slope = jacobian_.col(column[k]);
-        if (one.ok && other && other->ok) {
-          const double a = first[k],
-                       b = second[k];  // the parabola through three points, exact on either side or on both
-          slope =
-              (one.residual - residual_) * (-b / (a * (a - b))) + (other->residual - residual_) * (a / (b * (a - b)));
-        } else if (one.ok) {
-          slope = (one.residual - residual_) / first[k];
-        } else if (other && other->ok) {
-          slope = (other->residual - residual_) / second[k];
-        } else {
-          left.push_back(column[k]);
-        }
-      }
-      column = std::move(left);
-    }
-    for (int j : column) jacobian_.col(j).setZero();
-    result_.missing_columns = static_cast<int>(column.size());
   }
 
   void take_jacobian(bool central) {
@@ -170,32 +130,18 @@ class Search {
       }
     }
     own_jacobian_ = true;
-    differences(central);
+    result_.missing_columns = take_differences([this](const std::vector<Point>& points) { return evaluate(points); },
+                                               x_, residual_, {options_.difference_step, central}, jacobian_);
   }
 
-  Model model() {
+  Model model() { return scaled(normal_equations(jacobian_, residual_, loss_, loss_scale_)); }
+
+  Model scaled(NormalEquations equations) {
     const int n = problem_.n;
-    constexpr Eigen::Index kBlock = 1024;
-    Eigen::MatrixXd hessian = Eigen::MatrixXd::Zero(n, n);
-    Eigen::VectorXd gradient = Eigen::VectorXd::Zero(n);
-    Eigen::MatrixXd block;
-    Eigen::VectorXd changed;
-    for (Eigen::Index from = 0; from < residual_.size(); from += kBlock) {
-      const Eigen::Index rows = std::min(kBlock, residual_.size() - from);
-      block = jacobian_.middleRows(from, rows);
-      changed = residual_.segment(from, rows);
-      if (loss_ != RobustLoss::none) {
-        for (Eigen::Index i = 0; i < rows; ++i) {
-          const LossValue value = robust(loss_, loss_scale_, changed[i]);
-          changed[i] = value.t;
-          block.row(i) *= value.dt;
-        }
-      }
-      hessian.selfadjointView<Eigen::Lower>().rankUpdate(block.transpose());
-      gradient.noalias() += block.transpose() * changed;
-    }
-    hessian.triangularView<Eigen::StrictlyUpper>() = hessian.transpose();
-    result_.gradient = gradient;
+    result_.gradient = std::move(equations.gradient);
+    result_.normal = std::move(equations.matrix);
+    const Eigen::VectorXd& gradient = result_.gradient;
+    const Eigen::MatrixXd& hessian = result_.normal;
 
     Model m;
     const double largest = std::max(hessian.diagonal().maxCoeff(), std::numeric_limits<double>::min());
@@ -376,10 +322,7 @@ class Search {
   };
   enum class Next { step, again, pass_ends, search_ends };
 
-  std::string state() const {
-    return "cost " + number(cost_) + ", gradient cosine " + number(result_.gradient_cosine) + ", promised gain " +
-           number(result_.promised_gain);
-  }
+  std::string state() const { return state_words(cost_, result_.gradient_cosine, result_.promised_gain); }
 
   Next end(Next how, StopReason reason, const std::string& words) {
     stop(reason, words);
@@ -557,6 +500,17 @@ LeastSquaresResult minimise_least_squares(const LeastSquaresProblem& problem, co
                                           const LeastSquaresOptions& options) {
   options.validate();
   return Search(problem, options).run(start);
+}
+
+void take_stock(LeastSquaresResult& end, NormalEquations equations, const LeastSquaresOptions& options) {
+  end.misfit = 0.5 * end.residual.squaredNorm();
+  end.cost = robust_cost(end.residual, options.loss, options.loss_scale);
+  const LeastSquaresProblem problem{static_cast<int>(end.point.size()), {}, {}};
+  Search(problem, options).take_stock(end, std::move(equations));
+}
+
+std::string state_of(const LeastSquaresResult& end) {
+  return state_words(end.cost, end.gradient_cosine, end.promised_gain);
 }
 
 }  // namespace servodx

@@ -21,6 +21,7 @@
 #include <string>
 #include <vector>
 
+#include "optimise/normal_equations.h"
 #include "optimise/problem.h"
 #include "optimise/robust_loss.h"
 
@@ -84,10 +85,12 @@ enum class StopReason { converged, goal, stalled, iteration_limit, evaluation_li
 
 struct LeastSquaresResult {
   Point point;
-  double cost = 0;    // sum of rho(e_i); infinite when the start failed
-  double misfit = 0;  // 0.5*|residual|^2 without the loss
+  double start_cost = 0;  // of the start
+  double cost = 0;        // sum of rho(e_i); infinite when the start failed
+  double misfit = 0;      // 0.5*|residual|^2 without the loss
   Eigen::VectorXd residual;
   Eigen::MatrixXd jacobian;  // d residual / d x at `point`, without the loss; a column that could not be had is zero
+  Eigen::MatrixXd normal;    // J'J at `point`, rows as the loss changes them
   Eigen::VectorXd gradient;  // of the cost
   double projected_gradient = 0;  // largest |gradient_j| that a wall does not hold, cost per unit of the box
   double gradient_cosine = 0;     // the same over |J_j||e|: scale-free, 0 at a minimum
@@ -103,6 +106,12 @@ struct LeastSquaresResult {
 
 LeastSquaresResult minimise_least_squares(const LeastSquaresProblem& problem, const Point& start,
                                           const LeastSquaresOptions& options = {});
+
+// Cost, gradient, walls and promise of an end whose point, residual and Jacobian have moved.
+void take_stock(LeastSquaresResult& end, NormalEquations equations, const LeastSquaresOptions& options);
+
+// "cost 312, gradient cosine 1e-05, promised gain 0.002"
+std::string state_of(const LeastSquaresResult& end);
 
 const char* name(StopReason reason);
 

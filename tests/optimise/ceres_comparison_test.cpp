@@ -6,46 +6,12 @@
 #include <gtest/gtest.h>
 
 #include "base/random.h"
-#include "functions.h"
 #include "optimise/box_least_squares.h"
 #include "optimise/problem.h"
+#include "weak_problem.h"
 
 namespace servodx::test {
 namespace {
-
-struct Weak {
-  int n;
-  Eigen::MatrixXd shape;  // rows x n
-  Eigen::VectorXd bend;   // curvature of each effect
-  Eigen::VectorXd data;
-  Eigen::VectorXd residual(const double* x) const {
-    Eigen::VectorXd g(n);
-    for (int j = 0; j < n; ++j) g[j] = std::expm1(bend[j] * (x[j] - 0.5)) / bend[j];
-    Eigen::VectorXd r = shape * g;
-    r.array() += 0.3 * r.array().square() / (1 + r.array().abs());  // effects act on each other
-    return r - data;
-  }
-};
-
-Weak make_weak(int n, std::uint64_t seed) {
-  Random random(seed, 77);
-  const int rows = 400;
-  Weak weak{n, Eigen::MatrixXd(rows, n), Eigen::VectorXd(n), {}};
-  Eigen::VectorXd at(n);
-  for (int j = 0; j < n; ++j) {
-    for (double& v : weak.shape.col(j)) v = random.normal();
-    if (j % 3 == 2)
-      weak.shape.col(j) = 0.97 * weak.shape.col(j - 1).normalized() + 0.24 * weak.shape.col(j).normalized();
-    weak.shape.col(j).normalize();
-    weak.shape.col(j) *= std::pow(10, random.uniform(-1, std::log10(2400.0)));
-    weak.bend[j] = random.uniform(-4, 4);
-    at[j] = random.uniform() < 0.35 ? (random.uniform() < 0.5 ? -0.05 : 1.05) : random.uniform(0.1, 0.9);
-  }
-  weak.data = Eigen::VectorXd::Zero(rows);
-  weak.data = weak.residual(at.data());
-  for (double& v : weak.data) v += random.normal();
-  return weak;
-}
 
 struct Outcome {
   double misfit;
@@ -117,13 +83,7 @@ Outcome run_ceres(const Weak& weak, const Point& start, bool hold) {
 }
 
 Outcome run_ours(const Weak& weak, const Point& start) {
-  LeastSquaresProblem problem;
-  problem.n = weak.n;
-  problem.evaluate = [&](std::span<const Point> points) {
-    std::vector<Evaluation> values;
-    for (const Point& p : points) values.push_back({true, weak.residual(p.data())});
-    return values;
-  };
+  const LeastSquaresProblem problem = least_squares(weak);
   LeastSquaresOptions options;
   options.compressed_first_pass = true;
   const LeastSquaresResult result = minimise_least_squares(problem, start, options);

@@ -8,6 +8,9 @@
 #include <string>
 #include <vector>
 
+#include "optimise/box_least_squares.h"
+#include "optimise/problem.h"
+
 namespace servodx::test {
 
 struct NistProblem {
@@ -121,6 +124,34 @@ inline std::vector<NistProblem> nist_problems() {
        {0, 0, 0, 0, 0, 0, 0},
        {3000, 3000, 1500, 200, 2, 1, 0.2}},
   };
+}
+
+inline Point to_cube(const NistProblem& nist, const std::vector<double>& b) {
+  Point point(b.size());
+  for (std::size_t j = 0; j < b.size(); ++j) point[j] = (b[j] - nist.lower[j]) / (nist.upper[j] - nist.lower[j]);
+  return point;
+}
+
+inline std::vector<double> from_cube(const NistProblem& nist, const Point& point) {
+  std::vector<double> b(point.size());
+  for (std::size_t j = 0; j < b.size(); ++j) b[j] = nist.lower[j] + point[j] * (nist.upper[j] - nist.lower[j]);
+  return b;
+}
+
+inline LeastSquaresProblem least_squares(const NistProblem& nist) {
+  LeastSquaresProblem problem;
+  problem.n = static_cast<int>(nist.certified.size());
+  problem.evaluate = [&nist](std::span<const Point> points) {
+    std::vector<Evaluation> values(points.size());
+    for (std::size_t k = 0; k < points.size(); ++k) {
+      const std::vector<double> b = from_cube(nist, points[k]);
+      values[k].residual.resize(static_cast<Eigen::Index>(nist.x.size()));
+      for (std::size_t i = 0; i < nist.x.size(); ++i)
+        values[k].residual[static_cast<Eigen::Index>(i)] = nist.model(nist.x[i], b) - nist.y[i];
+    }
+    return values;
+  };
+  return problem;
 }
 
 }  // namespace servodx::test
