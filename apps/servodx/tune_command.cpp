@@ -12,12 +12,17 @@
 #include "effects/registry.h"
 #include "fit/free_values.h"
 #include "fit/log_data.h"
-#include "tune/tune.h"
+#include "fit/replay.h"
 #include "invocation.h"
+#include "parameters/table.h"
 #include "report/columns.h"
+#include "report/json.h"
 #include "report/pages.h"
 #include "report/text.h"
 #include "report/tune_words.h"
+#include "servodx/log.h"
+#include "servodx/rig.h"
+#include "tune/tune.h"
 
 namespace servodx {
 namespace {
@@ -79,9 +84,11 @@ int run(const Options& options) {
   TuneOptions tune_options = options.tune;
   if (!options.effects.empty()) tune_options.effects = effects_of(options.effects);
   tune_options.validate();
-  require_option(options.local == "least_squares" || options.local == "nlopt", "--local",
-                 "unknown method '" + options.local + "'", "use least_squares or nlopt");
-  tune_options.derivative_free = options.local == "nlopt";
+  const std::map<std::string, TuneLocal> methods = {
+      {"least_squares", TuneLocal::least_squares}, {"ceres", TuneLocal::ceres}, {"nlopt", TuneLocal::nlopt}};
+  require_option(methods.contains(options.local), "--local", "unknown method '" + options.local + "'",
+                 "use least_squares, ceres or nlopt");
+  tune_options.local = methods.at(options.local);
   tune_options.priors = priors_of(options.priors);
   tune_options.profile = CLI::detail::split(options.profile, ',');
   tune_options.seed = options.common.seed;
@@ -167,7 +174,8 @@ void add_tune_command(CLI::App& app, int& exit_code) {
                     report::join(default_effects(true), ","));
   command
       ->add_option("--local", options->local,
-                   "local stage: least_squares, or nlopt (without derivatives, slower) where friction sticks and slips")
+                   "local stage: least_squares (a search that knows the bounds, then Ceres), ceres alone, or nlopt "
+                   "(without derivatives, slower) where friction sticks and slips")
       ->type_name("METHOD")
       ->capture_default_str();
   command->add_option("--profile", options->profile, "check the 95 % intervals of these rows, or 'all', by refitting")

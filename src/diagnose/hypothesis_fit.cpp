@@ -13,6 +13,7 @@
 #include "fit/log_data.h"
 #include "fit/problem.h"
 #include "optimise/box_least_squares.h"
+#include "optimise/local.h"
 #include "optimise/problem.h"
 #include "simulate/scenario.h"
 
@@ -44,7 +45,9 @@ LeastSquaresResult minimise(FitProblem& problem, const Point& from, int iteratio
   o.cost_tolerance = k::cost_tolerance;
   o.damping_trials = 1;  // the hypotheses fill each other's packs: no lane is free
   o.progress = [&](const LeastSquaresProgress&) { return !(stop && stop->load()); };
-  return minimise_least_squares(problem.least_squares(), from, o);
+  LocalOptions local;
+  local.stop = [&] { return stop && stop->load(); };
+  return minimise_locally(problem.least_squares(), from, o, local).end;
 }
 
 // A value on its bound has no error; a fault's severity, the first, has one everywhere.

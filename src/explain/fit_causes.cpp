@@ -9,6 +9,7 @@
 #include "explain/constants.h"
 #include "explain/deviance.h"
 #include "optimise/box_least_squares.h"
+#include "optimise/local.h"
 
 namespace servodx {
 namespace {
@@ -103,7 +104,7 @@ void minimise(const Subject& subject, const LeastSquaresProblem& problem, Start 
   for (int pass = 0; pass < passes; ++pass) {
     const bool plain = passes == 1;
     const LeastSquaresResult r =
-        minimise_least_squares(plain ? problem : weighed(problem, *start.weights), start.point, options);
+        minimise_locally(plain ? problem : weighed(problem, *start.weights), start.point, options).end;
     if (r.reason == StopReason::start_failed) return;
     const Eigen::VectorXd residual = plain ? r.residual : r.residual.cwiseQuotient(*start.weights);
     const double deviance = deviance_of(subject, residual);
@@ -195,7 +196,7 @@ ExplainedFit hold_causes(const Subject& subject, const std::vector<int>& causes,
     return out.fit.problem.evaluate(all);
   };
   const Point start(from.point.begin(), from.point.begin() + static_cast<long>(base));
-  const LeastSquaresResult r = minimise_least_squares(held, start, least_squares_options(iterations, false));
+  const LeastSquaresResult r = minimise_locally(held, start, least_squares_options(iterations, false)).end;
   if (r.reason == StopReason::start_failed) return out;
   out.ok = true;
   out.point = whole(r.point);

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numeric>
 
+#include "optimise/ceres_covariance.h"
+
 namespace servodx {
 
 Identifiability identify(const Eigen::MatrixXd& jacobian, const std::vector<char>& candidates,
@@ -71,7 +73,8 @@ Eigen::MatrixXd covariance_of(const Eigen::MatrixXd& jacobian, const std::vector
   for (long r = 0; r < m; ++r) scale[r] = std::sqrt(std::max(gram(at[r], at[r]), 1e-300));
   for (long r = 0; r < m; ++r)
     for (long c = 0; c < m; ++c) g(r, c) = gram(at[r], at[c]) / (scale[r] * scale[c]);
-  const Eigen::MatrixXd inverse = g.completeOrthogonalDecomposition().pseudoInverse();
+  const std::optional<Eigen::MatrixXd> by_ceres = covariance_by_ceres(g);
+  const Eigen::MatrixXd inverse = by_ceres ? *by_ceres : g.completeOrthogonalDecomposition().pseudoInverse();
   for (long r = 0; r < m; ++r)
     for (long c = 0; c < m; ++c) full(at[r], at[c]) = inverse(r, c) / (scale[r] * scale[c]);
   return full;

@@ -31,7 +31,8 @@ struct Identifiability {
 Identifiability identify(const Eigen::MatrixXd& jacobian, const std::vector<char>& candidates,
                          double collinearity_limit = 15.0, double flat_limit = 1.0, double enough = 4.0);
 
-// Covariance of the free columns (inverse of J^T J); rows and columns of frozen ones are zero.
+// Covariance of the free columns (inverse of J^T J); rows and columns of frozen ones are zero. By Ceres; where columns
+// are alike to rounding, and J^T J has no inverse, its pseudo-inverse.
 Eigen::MatrixXd covariance_of(const Eigen::MatrixXd& jacobian, const std::vector<char>& kept);
 
 }  // namespace servodx

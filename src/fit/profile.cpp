@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "optimise/box_least_squares.h"
+#include "optimise/local.h"
 #include "optimise/problem.h"
 
 namespace servodx {
@@ -79,7 +80,7 @@ ProfileInterval profile(const FitProblem& problem, const Point& best, int j, con
       held.hold_at(centre + side * distance);
       const Point alone{centre + side * distance};
       const double misfit = problem.n() > 1
-                                ? minimise_least_squares(held.least_squares(), start, options).misfit
+                                ? minimise_locally(held.least_squares(), start, options).end.misfit
                                 : 0.5 * problem.evaluate(std::span(&alone, 1)).front().residual.squaredNorm();
       const double root = std::sqrt(std::max(0.0, 2 * (misfit - least)));
       open = distance >= room && root < root_of_chi2;

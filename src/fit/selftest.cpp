@@ -15,6 +15,7 @@
 #include "fit/problem.h"
 #include "fit/uncertainty.h"
 #include "optimise/box_least_squares.h"
+#include "optimise/local.h"
 #include "optimise/problem.h"
 #include "parameters/coordinate.h"
 #include "servodx/rig.h"
@@ -141,7 +142,10 @@ LeastSquaresResult fitted(const FitProblem& problem, const SelftestOptions& opti
     last_cost = now.cost;
     return idle < idle_steps && !wants_to_stop(options);
   };
-  return minimise_least_squares(problem.least_squares(), problem.start(), o);
+  LocalOptions local;
+  local.after_interruption = true;  // a search that idles has settled
+  local.stop = [&] { return wants_to_stop(options); };
+  return minimise_locally(problem.least_squares(), problem.start(), o, local).end;
 }
 
 // What the repeats say of one row.

@@ -9,6 +9,7 @@
 #include "fit/tuned_state.h"
 #include "model/state.h"
 #include "optimise/box_least_squares.h"
+#include "optimise/local.h"
 #include "optimise/problem.h"
 #include "prognose/constants.h"
 #include "servodx/rig.h"
@@ -32,7 +33,7 @@ double misfit_at(const LogData& log, const Table& tuned, const ErrorModel& error
   LeastSquaresOptions o;
   o.max_iterations = oil_iterations;
   o.difference = Difference::forward;
-  const LeastSquaresResult r = minimise_least_squares(problem.least_squares(), start, o);
+  const LeastSquaresResult r = minimise_locally(problem.least_squares(), start, o).end;
   *simulations += problem.simulations();
   return r.reason == StopReason::start_failed ? 1e300 : 2 * r.misfit;
 }

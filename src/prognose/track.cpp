@@ -14,6 +14,7 @@
 #include "fit/log_data.h"
 #include "fit/tuned_state.h"
 #include "optimise/box_least_squares.h"
+#include "optimise/local.h"
 #include "optimise/problem.h"
 #include "parameters/list.h"
 #include "prognose/constants.h"
@@ -135,12 +136,12 @@ std::optional<LeastSquaresResult> fit_from(FitProblem& problem, const std::vecto
   LeastSquaresResult best;
   best.cost = no_cost;
   for (const Point& start : likeliest(problem, starts)) {
-    LeastSquaresResult r = minimise_least_squares(least, start, o);
+    LeastSquaresResult r = minimise_locally(least, start, o).end;
     if (r.reason != StopReason::start_failed && r.cost < best.cost) best = std::move(r);
   }
   if (!(best.cost < no_cost)) return {};
   o.max_iterations = last_iterations;
-  LeastSquaresResult r = minimise_least_squares(least, best.point, o);
+  LeastSquaresResult r = minimise_locally(least, best.point, o).end;
   if (r.reason != StopReason::start_failed) best = std::move(r);
   if (!(best.cost < no_cost)) return {};
   return best;

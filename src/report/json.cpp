@@ -7,6 +7,7 @@
 #include "diagnose/conditions.h"
 #include "diagnose/judge.h"
 #include "diagnose/moved.h"
+#include "optimise/ceres_refinement.h"
 #include "report/diagnosis_words.h"
 #include "report/handy.h"
 #include "report/row_verdict_word.h"
@@ -37,6 +38,33 @@ Json moved_json(const std::vector<MovedRow>& rows) {
     array.back()["by"] = by_name[static_cast<std::size_t>(row.by)];
   }
   return array;
+}
+
+const char* word_of(StageMethod method) {
+  switch (method) {
+    case StageMethod::genetic:
+      return "genetic";
+    case StageMethod::least_squares:
+      return "least_squares";
+    case StageMethod::ceres:
+      return "ceres";
+    case StageMethod::nlopt:
+      return "nlopt";
+  }
+  return "";
+}
+
+Json ceres_json(const CeresSummary& c) {
+  return {{"end", name(c.end)},
+          {"solves", c.solves},
+          {"steps", c.steps},
+          {"refused_steps", c.refused},
+          {"released_walls", c.released},
+          {"jacobians", c.jacobians},
+          {"learnt_jacobians", c.learnt},
+          {"evaluations", c.evaluations},
+          {"initial_cost", number(c.initial_cost)},
+          {"final_cost", number(c.final_cost)}};
 }
 
 }  // namespace
@@ -83,10 +111,22 @@ Json tune_json(const TuneResult& result) {
   Json logs = Json::array();
   for (const LogResult& log : result.logs)
     logs.push_back({{"path", log.path}, {"null", number(log.null)}, {"channels", array_of(log.channels)}});
-  Json starts = Json::array();
+  Json starts = Json::array(), stages = Json::array();
+  for (const StageResult& s : result.stages)
+    stages.push_back({{"stage", s.stage},
+                      {"by", word_of(s.by)},
+                      {"cost_before", number(s.before)},
+                      {"cost_after", number(s.after)},
+                      {"simulations", s.simulations},
+                      {"jacobians", s.jacobians}});
   for (double cost : result.starts) starts.push_back(number(cost));
-  return {{"channels", array_of(result.channels)}, {"parameters", array_of(result.parameters)}, {"starts", starts},
-          {"reached_best", result.reached_best},   {"interrupted", result.interrupted},         {"logs", logs}};
+  return {{"channels", array_of(result.channels)},
+          {"parameters", array_of(result.parameters)},
+          {"starts", starts},
+          {"reached_best", result.reached_best},
+          {"interrupted", result.interrupted},
+          {"logs", logs},
+          {"local", {{"stages", stages}, {"ceres", ceres_json(result.ceres)}}}};
 }
 
 Json baseline_json(const Baseline& b) {

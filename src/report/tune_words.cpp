@@ -9,6 +9,7 @@
 #include "report/columns.h"
 #include "report/handy.h"
 #include "report/replay_part.h"
+#include "servodx/log.h"
 
 namespace servodx::report {
 namespace {
@@ -60,6 +61,36 @@ std::vector<Visible> best_of(const std::vector<Promise>& promises) {
 }
 
 }  // namespace
+
+std::string words_of(StageMethod method) {
+  switch (method) {
+    case StageMethod::genetic:
+      return "genetic search";
+    case StageMethod::least_squares:
+      return "bounded search";
+    case StageMethod::ceres:
+      return "Ceres";
+    case StageMethod::nlopt:
+      return "BOBYQA";
+  }
+  return "";
+}
+
+std::string gains_in_words(const TuneResult& result) {
+  std::vector<std::string> parts;
+  std::size_t from = result.stages.empty() ? 0 : result.stages.size() - 1;  // of the last fit, which our search begins
+  for (std::size_t i = 0; i < result.stages.size(); ++i)
+    if (result.stages[i].by == StageMethod::least_squares) from = i;
+  for (std::size_t i = 0; i < result.stages.size(); ++i) {
+    const StageResult& s = result.stages[i];
+    if (s.by != StageMethod::genetic && i < from) continue;
+    const std::string how = s.after < s.before ? fmt::format("{} to {}", digits(s.before, 5), digits(s.after, 5))
+                                               : "no lower than " + digits(s.before, 5);
+    parts.push_back(
+        fmt::format("{}: {} ({} simulations, {} Jacobians)", words_of(s.by), how, s.simulations, s.jacobians));
+  }
+  return parts.empty() ? "" : "cost by stage: " + join(parts, "; ");
+}
 
 GoodEnough good_enough(const TuneResult& result, const std::vector<Promise>& promises) {
   GoodEnough g;

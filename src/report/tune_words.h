@@ -11,20 +11,25 @@
 #include <vector>
 
 #include "diagnose/check_log.h"
-#include "tune/tune.h"
 #include "report/json.h"
+#include "tune/tune.h"
 
 namespace servodx::report {
 
 struct GoodEnough {
   bool yes = false;
-  std::string errors;                // "held-out error over noise: spool position 3.0, piston position 5.1"
-  std::vector<std::string> reasons;  // why not, or not quite
+  std::string errors;                   // "held-out error over noise: spool position 3.0, piston position 5.1"
+  std::vector<std::string> reasons;     // why not, or not quite
   std::vector<std::string> exceptions;  // single logs that are predicted worse than fitted
-  std::vector<std::string> hidden;   // faults that stay hidden at typical size on every log
-  std::vector<std::string> faint;    // that show then, and hide at the mildest that is called the fault
-  std::vector<Visible> best;         // of each fault, on the log that shows it best
+  std::vector<std::string> hidden;      // faults that stay hidden at typical size on every log
+  std::vector<std::string> faint;       // that show then, and hide at the mildest that is called the fault
+  std::vector<Visible> best;            // of each fault, on the log that shows it best
 };
+
+// "genetic search" ... as a user reads it.
+std::string words_of(StageMethod method);
+// What each method of the last fit has gained, and the genetic search: one line.
+std::string gains_in_words(const TuneResult& result);
 
 // `promises`: of the logs with the tuned table; without any nothing is said of faults.
 GoodEnough good_enough(const TuneResult& result, const std::vector<Promise>& promises);

@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <span>
 
+#include "optimise/ceres_refinement.h"
 #include "optimise/derivative_free.h"
+#include "optimise/local.h"
 #include "optimise/problem.h"
 #include "tune/breadth.h"
 #include "tune/tune.h"
@@ -17,30 +19,61 @@ namespace {
 constexpr int iterations_a_start = 6;   // of the local stage: enough to tell valleys apart; chosen by hand
 constexpr int iterations_a_round = 12;  // then the weights are learnt anew; chosen by hand
 constexpr double as_good = 1.05;        // of the best end's cost: another start that reached it
+// Of BOBYQA where derivatives prove false, for each free value. It lays out 2n + 1 points first; as many again let it
+// move.
+constexpr long rescue_points = 4;
 
 // As many points as the other way spends on its Jacobians.
-LeastSquaresResult without_derivatives(const FitProblem& problem, const Point& from, int iterations, Share share,
-                                       TuneWatch& watch) {
+LeastSquaresResult without_derivatives(const FitProblem& problem, const Point& from, const std::string& stage,
+                                       int iterations, Share share, TuneWatch& watch) {
   DerivativeFreeOptions d;
   d.max_evaluations = static_cast<long>(iterations) * (problem.n() + 8);
-  d.progress = [&](long evaluations, double) {
+  double first_cost = 0;
+  d.progress = [&](long evaluations, double cost) {
+    if (evaluations == 1) first_cost = cost;
     watch.tell(share.at(static_cast<double>(evaluations) / static_cast<double>(d.max_evaluations)), problem);
     return !watch.stopped();
   };
   const BatchEvaluate evaluate = [&](std::span<const Point> points) { return problem.evaluate(points); };
+  const long before = watch.simulations(problem);
   const DerivativeFreeResult found = minimise_without_derivatives(problem.n(), evaluate, from, d);
   LeastSquaresResult end;
   end.point = found.point;
   end.cost = end.misfit = found.cost;
   end.stopped = found.stopped;
+  watch.stages.push_back({stage, StageMethod::nlopt, first_cost, found.cost, watch.simulations(problem) - before, 0});
   return end;
+}
+
+LocalMethod method_of(TuneLocal local) {
+  return local == TuneLocal::ceres ? LocalMethod::ceres_alone : LocalMethod::search_then_ceres;
+}
+
+void tell_stages(TuneWatch& watch, const std::string& stage, const LocalResult& r) {
+  const auto add = [&](StageMethod by, const StageGain& gain) {
+    watch.stages.push_back({stage, by, gain.before, gain.after, gain.simulations, gain.jacobians});
+  };
+  if (r.search.jacobians > 0) add(StageMethod::least_squares, r.search);
+  if (r.ceres.end != CeresEnd::not_run) add(StageMethod::ceres, r.refinement);
+  if (r.distrust != Distrust::none) add(StageMethod::nlopt, r.rescue);
+  watch.ceres = r.ceres;
+  watch.distrust = r.distrust;
+}
+
+// How far the best of the generations lies below the first.
+void tell_genetic(TuneWatch& watch) {
+  if (watch.convergence.empty()) return;  // all that is there yet is the genetic search's
+  const ConvergencePoint &first = watch.convergence.front(), &last = watch.convergence.back();
+  watch.stages.push_back(
+      {first.stage, StageMethod::genetic, first.cost, last.cost, last.simulations - first.simulations, 0});
 }
 
 }  // namespace
 
 LeastSquaresResult search_locally(const FitProblem& problem, const Point& from, const std::string& stage,
-                                  int iterations, Start start, Share share, TuneWatch& watch) {
-  if (watch.options.derivative_free) return without_derivatives(problem, from, iterations, share, watch);
+                                  int iterations, Start start, Share share, TuneWatch& watch, Derivatives derivatives) {
+  if (watch.options.local == TuneLocal::nlopt)
+    return without_derivatives(problem, from, stage, iterations, share, watch);
   LeastSquaresOptions o;
   o.max_iterations = iterations;
   o.difference = Difference::forward;
@@ -52,7 +85,14 @@ LeastSquaresResult search_locally(const FitProblem& problem, const Point& from, 
     watch.tell(share.from + (share.to - share.from) * p.iteration / iterations, problem);
     return !watch.stopped();
   };
-  return minimise_least_squares(problem.least_squares(), from, o);
+  LocalOptions local;
+  local.method = method_of(watch.options.local);
+  local.rescue_evaluations = derivatives == Derivatives::on_trial ? rescue_points * problem.n() : 0;
+  local.stop = [&] { return watch.stopped(); };
+  local.simulations = [&] { return problem.simulations(); };
+  LocalResult r = minimise_locally(problem.least_squares(), from, o, local);
+  tell_stages(watch, stage, r);
+  return std::move(r.end);
 }
 
 SearchEnds search_ends(const TuneScope& scope, FitProblem& problem, TuneWatch& watch) {
@@ -60,8 +100,10 @@ SearchEnds search_ends(const TuneScope& scope, FitProblem& problem, TuneWatch& w
   const Point x = problem.start();
   scope.on_stand ? weigh_sweeps(problem, x) : first_whitening(problem, x);
   std::vector<Point> starts = {x};
-  if (options.generations > 0 && !watch.stopped())
+  if (options.generations > 0 && !watch.stopped()) {
     for (Point& p : search_broadly(scope, x, watch)) starts.push_back(std::move(p));
+    tell_genetic(watch);
+  }
   hold_out(problem, options.heldout);
   SearchEnds out;
   for (std::size_t s = 0; s < starts.size() && !(watch.stopped() && s > 0); ++s) {
@@ -98,8 +140,10 @@ LeastSquaresResult refine(FitProblem& problem, const Point& from, ErrorModel& er
     if (held > 0) hold_out(problem, held);
     const Share of_round = {share.from + (share.to - share.from) * round / rounds,
                             share.from + (share.to - share.from) * (round + 1) / rounds};
+    // Only the last round's end is kept as it is: there derivatives are judged.
+    const Derivatives derivatives = held > 0 || round + 1 < rounds ? Derivatives::trusted : Derivatives::on_trial;
     r = search_locally(problem, x, held > 0 ? "weights" : "everything", iterations_a_round, Start::ended, of_round,
-                       watch);
+                       watch, derivatives);
     x = r.point;
     if (watch.stopped() || (round >= 1 && r.reason == StopReason::converged)) break;
   }

@@ -16,8 +16,12 @@ namespace servodx {
 // Where a local search begins: at the table's values, at a point that the genetic search found, or where one ended.
 enum class Start { nominal, found, ended };
 
+// On trial: where they prove false (optimise/local.h), NLopt goes on without them.
+enum class Derivatives { trusted, on_trial };
+
 LeastSquaresResult search_locally(const FitProblem& problem, const Point& from, const std::string& stage,
-                                  int iterations, Start start, Share share, TuneWatch& watch);
+                                  int iterations, Start start, Share share, TuneWatch& watch,
+                                  Derivatives derivatives = Derivatives::trusted);
 
 // Ends of the local stage, the last part of every log held out.
 struct SearchEnds {

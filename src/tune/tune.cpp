@@ -10,6 +10,7 @@
 #include "fit/free_values.h"
 #include "fit/problem.h"
 #include "optimise/box_least_squares.h"
+#include "optimise/local.h"
 #include "optimise/problem.h"
 #include "servodx/rig.h"
 #include "simulate/scenario.h"
@@ -42,6 +43,14 @@ TunedState state_of(const std::vector<Log>& logs, const ErrorModel& error, const
 
 void append(std::vector<std::string>& notes, const std::vector<std::string>& more) {
   notes.insert(notes.end(), more.begin(), more.end());
+}
+
+std::string note_of_distrust(const TuneWatch& watch) {
+  const StageResult& s = watch.stages.back();
+  return fmt::format(
+      "derivatives were not to be trusted ({}): BOBYQA went on without them, cost {:.4g} to {:.4g}",
+      watch.distrust == Distrust::missing_columns ? "some could not be had" : "no step kept what they promised",
+      s.before, s.after);
 }
 
 }  // namespace
@@ -102,8 +111,11 @@ TuneResult tune(const std::vector<Log>& logs, const Table& nominal, const RigFil
   append(out.notes, scope.notes);
   append(out.notes, settled.notes);
   out.notes.push_back("local stage: " + end.stopped);
+  if (watch.distrust != Distrust::none) out.notes.push_back(note_of_distrust(watch));
   append(out.notes, notes_of_logs(out.logs, scope, rig));
   out.convergence = watch.convergence;
+  out.stages = watch.stages;
+  out.ceres = watch.ceres;
   out.simulations = watch.simulations(fit);
   out.failed_simulations = watch.failed(fit);
   out.interrupted = watch.stopped();

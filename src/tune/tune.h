@@ -11,6 +11,7 @@
 #include "fit/error_model.h"
 #include "fit/identifiability.h"
 #include "fit/tuned_state.h"
+#include "optimise/ceres_refinement.h"
 #include "parameters/table.h"
 #include "servodx/rig.h"
 #include "signals/log.h"
@@ -55,6 +56,20 @@ struct ConvergencePoint {
   double cost = 0;
 };
 
+enum class StageMethod { genetic, least_squares, ceres, nlopt };
+
+// What a method has gained in a stage, at that stage's weights.
+struct StageResult {
+  std::string stage;  // as in ConvergencePoint
+  StageMethod by = StageMethod::least_squares;
+  double before = 0, after = 0;  // cost
+  long simulations = 0;
+  int jacobians = 0;
+};
+
+// The local stage: our bounded search and then Ceres; Ceres alone; NLopt's BOBYQA alone, without derivatives.
+enum class TuneLocal { least_squares, ceres, nlopt };
+
 struct TuneOptions {
   std::uint64_t seed = 1;
   int threads = 0;
@@ -66,7 +81,7 @@ struct TuneOptions {
   std::optional<std::vector<std::string>> effects;  // freed beside the table's rows; empty: default_effects()
   // Priors asked for: by row, the standard deviation about the table's nominal [the table's unit].
   std::map<std::string, double> priors;
-  bool derivative_free = false;      // local stage by NLopt: where differences are not to be trusted
+  TuneLocal local = TuneLocal::least_squares;
   std::vector<std::string> profile;  // rows whose interval is checked by profile likelihood; "all": every one
   int moving_average = 1;            // [samples] odd; smooths measurement and simulation alike, also in later commands
   std::string checkpoint;            // file saved every generation; empty: none
@@ -89,6 +104,8 @@ struct TuneResult {
   std::vector<double> starts;  // final costs of all local starts
   int reached_best = 0;
   std::vector<ConvergencePoint> convergence;
+  std::vector<StageResult> stages;
+  CeresSummary ceres;  // of the last fit
   std::vector<std::string> notes;
   long simulations = 0, failed_simulations = 0;
   bool interrupted = false;

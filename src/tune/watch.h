@@ -5,6 +5,8 @@
 
 #include "base/progress.h"
 #include "fit/problem.h"
+#include "optimise/ceres_refinement.h"
+#include "optimise/local.h"
 #include "tune/tune.h"
 
 namespace servodx {
@@ -14,6 +16,9 @@ class TuneWatch {
   explicit TuneWatch(const TuneOptions& asked) : options(asked), progress_("tune", {.quiet = asked.quiet}) {}
   const TuneOptions& options;
   std::vector<ConvergencePoint> convergence;
+  std::vector<StageResult> stages;
+  CeresSummary ceres;                  // of the last fit
+  Distrust distrust = Distrust::none;  // of its derivatives
 
   bool stopped() const { return options.stop && options.stop->load(); }
   // Simulations of problems that are done, and of one that is at work.

@@ -170,6 +170,19 @@ TEST(Layering, TheTableItselfHasNoCycle) {
   EXPECT_TRUE(left.empty()) << "cycle through " << left.begin()->first;
 }
 
+// A fit that is minimised past optimise/local.h would not end with Ceres.
+TEST(Layering, FitsAreMinimisedThroughTheLocalStage) {
+  int through = 0;
+  for (const auto& entry : fs::recursive_directory_iterator(fs::path(SERVODX_SOURCE_DIR) / "src")) {
+    if (entry.path().extension() != ".cpp" || entry.path().parent_path().filename() == "optimise") continue;
+    std::ifstream file(entry.path());
+    const std::string text{std::istreambuf_iterator<char>(file), {}};
+    EXPECT_EQ(text.find("minimise_least_squares("), std::string::npos) << entry.path();
+    through += text.find("minimise_locally(") != std::string::npos;
+  }
+  EXPECT_GE(through, 7);  // tune, profile, selftest, diagnose, explain, check, track
+}
+
 TEST(Layering, TheModelKnowsNoEffectAndTheRigNoModel) {
   EXPECT_FALSE(allowed.at("model").contains("effects"));
   EXPECT_FALSE(allowed.at("rig").contains("model"));

@@ -127,6 +127,27 @@ TEST(Local, TrustedDerivativesAreLeftAlone) {
   EXPECT_EQ(r.rescue.simulations, 0);
 }
 
+TEST(Local, SameBitsForAnyNumberOfThreads) {
+  const Weak weak = make_weak(8, 2);
+  const auto run = [&](int threads) {
+    LeastSquaresProblem problem;
+    problem.n = 8;
+    problem.evaluate = [&weak, threads](std::span<const Point> points) {
+      std::vector<Evaluation> values(points.size());
+#pragma omp parallel for schedule(dynamic, 1) num_threads(threads)
+      for (std::size_t k = 0; k < points.size(); ++k) values[k].residual = weak.residual(points[k].data());
+      return values;
+    };
+    LeastSquaresOptions options;
+    options.max_iterations = 5;
+    return minimise_locally(problem, Point(8, 0.3), options);
+  };
+  const LocalResult one = run(1), four = run(4);
+  EXPECT_GT(one.ceres.steps, 0);
+  EXPECT_EQ(one.end.point, four.end.point);
+  EXPECT_EQ(one.end.cost, four.end.cost);
+}
+
 TEST(Local, AnInterruptedSearchIsLeftWhereItStopped) {
   const Weak weak = make_weak(6, 1);
   LeastSquaresOptions options;

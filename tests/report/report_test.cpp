@@ -35,6 +35,7 @@
 #include "servodx/log.h"
 #include "temporary_folder.h"
 #include "tune/tune.h"
+#include "optimise/ceres_refinement.h"
 
 namespace servodx::report {
 namespace {
@@ -551,6 +552,28 @@ TEST(TuneReport, HeldRowsSayWhyAndFittedOnesHaveErrors) {
   EXPECT_EQ(json["channels"][0]["unit"], "um");
   EXPECT_DOUBLE_EQ(json["channels"][0]["heldout_rms"].get<double>(), 2.0);
   EXPECT_EQ(json["starts"].size(), 2u);
+}
+
+TEST(TuneReport, SaysWhatEachMethodGained) {
+  TuneResult result;
+  result.stages = {{"genetic search", StageMethod::genetic, 900, 200, 1500, 0},
+                   {"start 1", StageMethod::least_squares, 200, 50, 300, 6},
+                   {"everything", StageMethod::least_squares, 60, 20, 400, 11},
+                   {"everything", StageMethod::ceres, 20, 19, 40, 1}};
+  result.ceres.end = CeresEnd::converged;
+  result.ceres.steps = 2;
+  const std::string text = text_of(result, good_enough(result, {}), {});
+  for (const char* words :
+       {"genetic search: 900 to 200 (1500 simulations, 0 Jacobians)",
+        "bounded search: 60 to 20 (400 simulations, 11 Jacobians)", "Ceres: 20 to 19 (40 simulations, 1 Jacobians)"})
+    EXPECT_NE(text.find(words), std::string::npos) << words << " is not in:\n" << text;
+  EXPECT_EQ(text.find("300 simulations"), std::string::npos) << "an earlier fit's";
+  const Json local = tune_json(result)["local"];
+  ASSERT_EQ(local["stages"].size(), 4u);
+  EXPECT_EQ(local["stages"][3]["by"], "ceres");
+  EXPECT_EQ(local["stages"][3]["cost_after"], 19.0);
+  EXPECT_EQ(local["ceres"]["end"], "converged");
+  EXPECT_EQ(local["ceres"]["steps"], 2);
 }
 
 TEST(TuneReport, GoodEnoughIsWhatPredictsHasArrivedAndWouldSeeTheFaults) {

@@ -5,7 +5,14 @@
 
 #include "base/error.h"
 #include "fit/error_model.h"
+#include "fit/tuned_state.h"
+#include "optimise/ceres_refinement.h"
+#include "parameters/list.h"
+#include "parameters/table.h"
 #include "recovery/twins.h"
+#include "servodx/log.h"
+#include "servodx/rig.h"
+#include "shipped_data.h"
 
 namespace servodx {
 namespace {
@@ -45,6 +52,14 @@ TuneResult quick_tune(const Table& table) {
   return tune({twins::cut(shipped_log("healthy/h12_mixed"), 400)}, table, shipped_rig(), o);
 }
 
+bool ends_with_ceres(const TuneResult& result, const std::string& stage) {
+  const auto by = [&](StageMethod method) {
+    return std::any_of(result.stages.begin(), result.stages.end(),
+                       [&](const StageResult& s) { return s.stage == stage && s.by == method && s.after <= s.before; });
+  };
+  return by(StageMethod::least_squares) && by(StageMethod::ceres);
+}
+
 Table one_free_row() {
   Table table = shipped_table();
   for (Row& row : table.rows) row.estimate = false;
@@ -77,6 +92,34 @@ TEST(Tune, ATunedTableThatIsTunedAgainKeepsNothingOfTheOldErrorModelFilterAndLog
   EXPECT_EQ(moving_average_of(result.table), 1);
   EXPECT_EQ(logs_of(result.table), std::vector<std::string>{shipped_log("healthy/h12_mixed").sha256});
   EXPECT_EQ(result.table.comments, std::vector<std::string>{"tuned by hand before that"});
+}
+
+TEST(Tune, EveryFitEndsWithCeresAndSaysWhatItGained) {
+  const TuneResult result = quick_tune(one_free_row());
+  for (const char* stage : {"start 1", "weights", "everything"}) EXPECT_TRUE(ends_with_ceres(result, stage)) << stage;
+  EXPECT_NE(result.ceres.end, CeresEnd::not_run);
+  EXPECT_GE(result.ceres.evaluations, 1);
+  EXPECT_EQ(result.ceres.final_cost, result.stages.back().after);
+  long told = 0;
+  for (const StageResult& s : result.stages) told += s.simulations;
+  EXPECT_GT(told, 0);
+  EXPECT_LE(told, result.simulations);
+}
+
+TEST(Tune, CeresAloneArrivesWhereBothArrive) {
+  TuneOptions o;
+  o.quiet = true;
+  o.generations = 0;
+  o.rounds = 2;
+  o.effects.emplace();
+  const std::vector<Log> logs = {twins::cut(shipped_log("healthy/h12_mixed"), 400)};
+  const TuneResult both = tune(logs, one_free_row(), shipped_rig(), o);
+  o.local = TuneLocal::ceres;
+  const TuneResult alone = tune(logs, one_free_row(), shipped_rig(), o);
+  for (const StageResult& s : alone.stages) EXPECT_EQ(s.by, StageMethod::ceres) << s.stage;
+  const double there = both.table[row::driver_bandwidth].nominal;
+  // Half a standard error: the valley is flat to that.
+  EXPECT_NEAR(alone.table[row::driver_bandwidth].nominal, there, 0.5 * both.table[row::driver_bandwidth].std_error);
 }
 
 TEST(Tune, OfATableThatHoldsTwoTuningsTheLastCounts) {

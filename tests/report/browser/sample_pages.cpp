@@ -149,6 +149,9 @@ TuneResult some_tuning() {
   t.starts = {120, 80, 81, 300};
   t.reached_best = 2;
   for (int k = 0; k < 30; ++k) t.convergence.push_back({"genetic search", 50 * k, 1000.0 / (1 + k)});
+  t.stages = {{"genetic search", StageMethod::genetic, 1000, 33, 1500, 0},
+              {"start 1", StageMethod::least_squares, 100, 17, 100, 6},
+              {"start 1", StageMethod::ceres, 17, 16.7, 12, 1}};
   for (int k = 0; k < 6; ++k) t.convergence.push_back({"start 1", 1500 + 20 * k, 100.0 / (1 + k)});
   return t;
 }
