@@ -23,12 +23,10 @@ bool promises(const LeastSquaresResult& end, const LeastSquaresOptions& options,
   return end.promised_gain > times * options.cost_tolerance * end.cost + options.cost_floor;
 }
 
-// Our search: all but the Jacobians that Ceres may take.
-LeastSquaresResult search(const LeastSquaresProblem& problem, const Point& start, LeastSquaresOptions options,
-                          const LocalOptions& local) {
-  if (local.method == LocalMethod::search_then_ceres)
-    options.max_iterations = std::max(1, options.max_iterations - local.ceres.max_jacobians);
-  return minimise_least_squares(problem, start, options);
+// Of the Jacobians that may be taken what our search has left.
+CeresBudget what_is_left(CeresBudget budget, const LeastSquaresResult& end, const LeastSquaresOptions& options) {
+  budget.max_jacobians = std::clamp(options.max_iterations - end.iterations, 0, budget.max_jacobians);
+  return budget;
 }
 
 bool may_refine(const LeastSquaresResult& end, const LocalOptions& local) {
@@ -113,13 +111,13 @@ LocalResult minimise_locally(const LeastSquaresProblem& problem, const Point& st
     tell(out.refinement);
     return out;
   }
-  end = search(problem, start, options, local);
+  end = minimise_least_squares(problem, start, options);
   before = end.start_cost;
   tell(out.search);
   if (may_refine(end, local)) {
     LeastSquaresOptions quiet = options;  // some steps: none of them is worth a word to the user
     quiet.progress = nullptr;
-    out.ceres = refine_by_ceres(problem, end, quiet, local.ceres);
+    out.ceres = refine_by_ceres(problem, end, quiet, what_is_left(local.ceres, end, options));
     say_end(end, out.ceres, options);
   }
   tell(out.refinement);

@@ -2,8 +2,8 @@
 // (ceres_refinement.h), and NLopt's BOBYQA (derivative_free.h) where the derivatives have proved false. Each goes on
 // from the best so far and none ends above it.
 //
-// The two share one budget of Jacobians: what Ceres may take our search leaves out. An end that has converged keeps its
-// bits: Ceres agrees after one evaluation.
+// The two share one budget of Jacobians: Ceres may take what our search has left, and has the step for which the last
+// one was never used. An end that has converged keeps its bits: Ceres agrees after one evaluation.
 //
 // Derivatives have proved false where columns of the Jacobian could not be had, or where no step down to the least
 // lowers the cost and yet the Jacobian promises a part of it that is far above the tolerance.
