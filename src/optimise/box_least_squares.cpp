@@ -1,5 +1,6 @@
 // Decisions.
-// - Not Ceres' minimiser. It meets bounds by projecting a step that was solved as if free, and it asks for
+// - Not Ceres' minimiser from afar (it takes over where this search ends: local.h). It meets bounds by projecting a
+// step that was solved as if free, and it asks for
 //   residuals one point at a time, which would leave seven of eight lanes empty. On weakly identified problems with
 //   walls (8 to 25 parameters, tests/optimise/ceres_comparison_test.cpp) all three reach the floor in 24 of 24 runs, in
 //   a mean of 237 evaluations here, 1779 with Ceres' bounds, 1186 with Ceres and the parameters at walls held constant

@@ -356,7 +356,7 @@ CeresEnd solve(Batch& batch, const LeastSquaresOptions& options, const CeresBudg
 }
 
 void add(CeresSummary& all, const CeresSummary& more) {
-  all.end = more.end;
+  all.end = more.end == CeresEnd::not_run ? CeresEnd::no_convergence : more.end;
   all.solves += more.solves;
   all.steps += more.steps;
   all.refused += more.refused;
@@ -447,13 +447,16 @@ LeastSquaresResult minimise_by_ceres(const LeastSquaresProblem& problem, const P
   }
   end.residual = std::move(first.residual);
   end.start_cost = robust_cost(end.residual, options.loss, options.loss_scale);
-  for (int pass = options.compressed_first_pass ? 0 : 1; pass < 2; ++pass) {
+  // One Jacobian shows nothing: then there is no first pass.
+  const bool two = options.compressed_first_pass && options.max_iterations > 2;
+  for (int pass = two ? 0 : 1; pass < 2; ++pass) {
     LeastSquaresOptions now = options;
     if (pass == 0) now.loss = RobustLoss::compressed, now.loss_scale = 3.0, now.cost_tolerance = first_tolerance;
     linearise(problem, end, now, summary);
-    const int left = options.max_iterations - end.iterations;
+    // Half of the Jacobians at most for the pass that only brings the start near.
+    const int left = std::max(0, (pass == 0 ? options.max_iterations / 2 : options.max_iterations) - end.iterations);
     add(summary, refine_by_ceres(problem, end, now, {trials_a_jacobian * left, left, false, line_search_trials}));
-    if (summary.end == CeresEnd::interrupted || left <= 0) break;
+    if (summary.end == CeresEnd::interrupted) break;
   }
   end.reason = reason_of(summary.end);
   end.stopped = std::string("Ceres: ") + name(summary.end) + "; " + state_of(end);

@@ -176,6 +176,21 @@ TEST(CeresRefinement, EachLossIsTheOneOfOurSearch) {
   }
 }
 
+TEST(CeresRefinement, AloneItKeepsJacobiansForTheLossThatWasAskedFor) {
+  const Weak weak = make_weak(6, 3);
+  for (const int iterations : {1, 3, 6}) {
+    LeastSquaresOptions options;
+    options.compressed_first_pass = true;
+    options.max_iterations = iterations;
+    CeresSummary said;
+    const LeastSquaresResult end = minimise_by_ceres(least_squares(weak), Point(6, 0.4), options, &said);
+    EXPECT_NE(said.end, CeresEnd::not_run) << iterations;
+    EXPECT_LE(end.iterations, iterations);
+    EXPECT_EQ(end.iterations, said.jacobians);
+    EXPECT_EQ(said.final_cost, 0.5 * end.residual.squaredNorm());
+  }
+}
+
 // A loss that begins far outside the residuals is none: row by row Ceres then sees what it sees turned.
 TEST(CeresRefinement, TurnedRowsAreTheRowsToCeres) {
   const Weak weak = make_weak(7, 4);
