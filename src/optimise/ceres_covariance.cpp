@@ -1,6 +1,9 @@
 #include "optimise/ceres_covariance.h"
 
-#include <ceres/ceres.h>
+#include <ceres/cost_function.h>
+#include <ceres/covariance.h>
+#include <ceres/problem.h>
+#include <ceres/types.h>
 
 #include <Eigen/Cholesky>
 #include <utility>
@@ -8,6 +11,9 @@
 
 namespace servodx {
 namespace {
+
+// Ceres refuses from 1e-14 on, and says so to stderr. The estimate of a condition may be off by some tens of columns.
+constexpr double least_condition = 1e-12;
 
 using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
@@ -33,9 +39,9 @@ class Root final : public ceres::CostFunction {
 
 std::optional<Eigen::MatrixXd> covariance_by_ceres(const Eigen::MatrixXd& information) {
   const Eigen::LLT<Eigen::MatrixXd> factor(information);
-  if (information.rows() == 0 || factor.info() != Eigen::Success) return std::nullopt;
+  if (information.rows() == 0 || factor.info() != Eigen::Success || !(factor.rcond() > least_condition))
+    return std::nullopt;
   RowMajor root = factor.matrixU();
-  if (!root.allFinite()) return std::nullopt;
   std::vector<double> x(static_cast<std::size_t>(information.rows()), 0.0);
   ceres::Problem problem;
   problem.AddResidualBlock(new Root(std::move(root)), nullptr, x.data());

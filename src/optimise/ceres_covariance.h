@@ -1,7 +1,7 @@
 // The covariance of a fit by ceres::Covariance.
 //
 // Ceres is given the Cholesky root of J'J, scaled to a unit diagonal, in place of J: n rows for any number of them, and
-// the same covariance. Limit: J'J must have full rank, to Ceres' own least reciprocal condition of 1e-14.
+// the same covariance. Limit: J'J must have full rank: a reciprocal condition above 1e-12.
 #pragma once
 #include <Eigen/Dense>
 #include <optional>
