@@ -83,13 +83,23 @@ void LogColumns::refuse(long line, const std::string& column, const std::string&
   throw InputError({path_, 0, column}, line > 0 ? fmt::format("sample {}: {}", line, rule) : rule, mend);
 }
 
+const ColumnMapping* LogColumns::mapping_of(const std::string& cell, const std::string& name) const {
+  auto mapping = rig_.columns.find(cell);
+  if (mapping == rig_.columns.end()) mapping = rig_.columns.find(name);
+  return mapping == rig_.columns.end() ? nullptr : &mapping->second;
+}
+
+bool LogColumns::knows(const std::string& cell) const {
+  const std::string name = format_.has_units ? parse_name(cell).name : cell;
+  const ColumnMapping* const mapping = mapping_of(cell, name);
+  return find_signal(mapping ? mapping->signal : name).has_value();
+}
+
 int LogColumns::add(const std::string& cell, long line) {
   header_line_ = line;
   const NameAndUnit written = format_.has_units ? parse_name(cell) : NameAndUnit{cell, "", false};
-  auto mapping = rig_.columns.find(cell);
-  if (mapping == rig_.columns.end()) mapping = rig_.columns.find(written.name);
-  const bool mapped = mapping != rig_.columns.end();
-  const auto signal = find_signal(mapped ? mapping->second.signal : written.name);
+  const ColumnMapping* const mapping = mapping_of(cell, written.name);
+  const auto signal = find_signal(mapping ? mapping->signal : written.name);
   if (!signal) {
     ignored_.push_back(written.name);
     return -1;
@@ -102,8 +112,7 @@ int LogColumns::add(const std::string& cell, long line) {
                  : fmt::format("duplicate column: '{}' is '{}' too", other.name, info(*signal).name),
              "keep one column of the signal");
   if (*signal == Signal::time) time_ = static_cast<int>(columns_.size());
-  columns_.push_back(
-      resolve(*signal, written.name, written.unit, written.has_unit, mapped ? &mapping->second : nullptr));
+  columns_.push_back(resolve(*signal, written.name, written.unit, written.has_unit, mapping));
   return static_cast<int>(columns_.size()) - 1;
 }
 

@@ -25,7 +25,8 @@ class LogColumns {
   // A column by its name in the file, in the file's order. Its position among the signals, or -1: it is no signal and
   // ignored. `line` is that of the header.
   int add(const std::string& name, long line);
-  void require_signals() const;  // after all are added
+  bool knows(const std::string& name) const;  // whether add() would take it for a signal
+  void require_signals() const;               // after all are added
   std::size_t size() const { return columns_.size(); }
   const std::string& name(int column) const { return columns_[column].name; }
   Signal signal(int column) const { return columns_[column].signal; }
@@ -62,6 +63,7 @@ class LogColumns {
     Sweep into_si();
   };
 
+  const ColumnMapping* mapping_of(const std::string& cell, const std::string& name) const;
   Column resolve(Signal signal, const std::string& name, const std::string& unit, bool has_unit,
                  const ColumnMapping* mapping) const;
   bool present(Signal signal) const;

@@ -1,77 +1,37 @@
-// MAT logs through matio. All of a file's signals are in memory at once, as matio gives them.
+// MAT logs: read in a box, since matio and HDF5 crash on files that are damaged or made to harm. All of a file's
+// signals are in memory at once, as matio gives them.
 #include <fmt/format.h>
-#include <matio.h>
 
-#include <cmath>
+#include <algorithm>
 #include <cstdint>
-#include <memory>
+#include <filesystem>
 
+#include "base/box.h"
 #include "base/sha256.h"
 #include "servodx/error.h"
 #include "servodx/log.h"
 #include "servodx/rig.h"
 #include "signals/log_columns.h"
 #include "signals/log_formats.h"
+#include "signals/mat_file.h"
 
 namespace servodx {
 namespace {
 
-struct CloseFile {
-  void operator()(mat_t* file) const { Mat_Close(file); }
-};
-struct FreeVariable {
-  void operator()(matvar_t* variable) const { Mat_VarFree(variable); }
-};
-using File = std::unique_ptr<mat_t, CloseFile>;
-using Variable = std::unique_ptr<matvar_t, FreeVariable>;
+// What the child gives: a word of what follows, then texts and numbers, each behind its length.
+enum class Part : std::uint64_t { variable = 1, refusal = 2 };
 
-std::string shape_of(const matvar_t& v) {
-  std::string shape;
-  for (int k = 0; k < v.rank; ++k) shape += (k ? " x " : "") + std::to_string(v.dims[k]);
-  return shape;
+void give_number(const Box::Give& give, std::uint64_t n) { give({reinterpret_cast<const char*>(&n), sizeof n}); }
+void give_text(const Box::Give& give, const std::string& text) {
+  give_number(give, text.size());
+  give(text);
 }
 
-std::size_t count_of(const matvar_t& v) {
-  std::size_t count = 1;
-  for (int k = 0; k < v.rank; ++k) count *= v.dims[k];
-  return count;
-}
-
-bool is_vector(const matvar_t& v) { return v.rank == 2 && (v.dims[0] == 1 || v.dims[1] == 1); }
-
-template <class T>
-std::vector<double> numbers_as(const matvar_t& v) {
-  const T* const first = static_cast<const T*>(v.data);
-  return {first, first + count_of(v)};
-}
-
-// Empty where the class is not one of real numbers.
-std::vector<double> numbers_of(const matvar_t& v) {
-  if (v.isComplex || !v.data) return {};
-  switch (v.class_type) {
-    case MAT_C_DOUBLE:
-      return numbers_as<double>(v);
-    case MAT_C_SINGLE:
-      return numbers_as<float>(v);
-    case MAT_C_INT8:
-      return numbers_as<std::int8_t>(v);
-    case MAT_C_UINT8:
-      return numbers_as<std::uint8_t>(v);
-    case MAT_C_INT16:
-      return numbers_as<std::int16_t>(v);
-    case MAT_C_UINT16:
-      return numbers_as<std::uint16_t>(v);
-    case MAT_C_INT32:
-      return numbers_as<std::int32_t>(v);
-    case MAT_C_UINT32:
-      return numbers_as<std::uint32_t>(v);
-    case MAT_C_INT64:
-      return numbers_as<std::int64_t>(v);
-    case MAT_C_UINT64:
-      return numbers_as<std::uint64_t>(v);
-    default:
-      return {};
-  }
+// A log packs its signals at most some ten times into a file, and matio holds them twice; a file of a kilobyte that
+// asks for gigabytes is no log. Inflating runs at 100 MB/s, ten times what is granted.
+BoxLimits limits_for(std::size_t file_size) {
+  constexpr std::size_t least = std::size_t{256} << 20, a_byte = 64, bytes_a_second = std::size_t{1} << 20;
+  return {.memory = least + a_byte * file_size, .seconds = 2 + file_size / bytes_a_second};
 }
 
 class MatReader {
@@ -81,39 +41,73 @@ class MatReader {
 
   Log read() {
     std::string hash = sha256_of_file(path_);  // refuses what cannot be read
-    const File file(Mat_Open(path_.c_str(), MAT_ACC_RDONLY));
-    if (!file)
-      throw InputError({path_, 0, ""}, "is not a MAT file", "save it with MATLAB's 'save', or write a CSV log");
-    while (Variable v{Mat_VarReadNext(file.get())}) take(*v);
+    std::error_code unknown;
+    const auto size = std::filesystem::file_size(path_, unknown);
+    limits_ = limits_for(unknown ? 0 : size);
+    Box box(limits_, [this](const Box::Give& give) { give_all(give); });
+    for (std::uint64_t part = 0; box.take(&part, sizeof part);)
+      if (!(part == static_cast<std::uint64_t>(Part::variable) ? take_variable(box) : refuse_as_told(box))) break;
+    require_whole(box.end());
     log_.require_signals();
     log_.append_columns({values_.begin(), values_.end()});
     return log_.finish(std::move(hash));
   }
 
  private:
-  void take(matvar_t& v) {
-    if (v.class_type == MAT_C_STRUCT && count_of(v) == 1) {
-      for (unsigned k = 0; k < Mat_VarGetNumberOfFields(&v); ++k)
-        if (const matvar_t* field = Mat_VarGetStructFieldByIndex(&v, k, 0))
-          take_signal(fmt::format("{}.{}", v.name, Mat_VarGetStructFieldnames(&v)[k]), *field);
-    } else {
-      take_signal(v.name ? v.name : "", v);
+  void give_all(const Box::Give& give) const {
+    try {
+      read_mat_file(path_, [&](const MatVariable& v) {
+        give_number(give, static_cast<std::uint64_t>(Part::variable));
+        give_text(give, v.name);
+        give_text(give, v.fault);
+        const std::size_t bytes = log_.knows(v.name) ? v.numbers.size() * sizeof(double) : 0;
+        give_number(give, bytes);
+        give({reinterpret_cast<const char*>(v.numbers.data()), bytes});
+      });
+    } catch (const InputError& error) {
+      give_number(give, static_cast<std::uint64_t>(Part::refusal));
+      give_text(give, error.rule);
+      give_text(give, error.mend);
     }
   }
 
-  void take_signal(const std::string& name, const matvar_t& v) {
-    if (log_.add(name, 0) < 0) return;
-    std::vector<double> numbers = numbers_of(v);
-    if (!is_vector(v) || numbers.size() != count_of(v))
-      log_.refuse(0, name,
-                  numbers.size() != count_of(v) ? "is not of real numbers"
-                                                : fmt::format("is not a vector: it is {}", shape_of(v)),
-                  "save each signal as a vector of numbers, one a sample");
+  // What a child gives is not trusted either: no more is taken than the child could hold.
+  template <class Values>
+  bool take_values(Box& box, Values& values) const {
+    std::uint64_t bytes = 0;
+    if (!box.take(&bytes, sizeof bytes) || bytes > limits_.memory) return false;
+    values.resize(bytes / sizeof values[0]);
+    return box.take(values.data(), values.size() * sizeof values[0]);
+  }
+
+  bool take_variable(Box& box) {
+    std::string name, fault;
+    std::vector<double> numbers;
+    if (!take_values(box, name) || !take_values(box, fault) || !take_values(box, numbers)) return false;
+    if (log_.add(name, 0) < 0) return true;
+    if (!fault.empty()) log_.refuse(0, name, fault, "save each signal as a vector of numbers, one a sample");
     values_.push_back(std::move(numbers));
+    return true;
+  }
+
+  bool refuse_as_told(Box& box) const {
+    std::string rule, mend;
+    if (take_values(box, rule) && take_values(box, mend)) throw InputError({path_, 0, ""}, rule, mend);
+    return false;
+  }
+
+  void require_whole(BoxEnd end) const {
+    if (end == BoxEnd::whole) return;
+    const std::string why =
+        end == BoxEnd::out_of_memory ? fmt::format("it asks for more than {} MB", limits_.memory >> 20)
+        : end == BoxEnd::out_of_time ? fmt::format("it takes more than {} s of processor", limits_.seconds)
+                                     : "the MAT library crashed on it";
+    throw InputError({path_, 0, ""}, "is damaged: " + why, "save it again with MATLAB's 'save', or write a CSV log");
   }
 
   const std::string& path_;
   LogColumns log_;
+  BoxLimits limits_;
   std::vector<std::vector<double>> values_;  // as in the file, in the order of the log's columns
 };
 

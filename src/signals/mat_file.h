@@ -1,0 +1,19 @@
+// The variables of a MAT file, through matio. matio trusts what a file says of itself: run this in a Box (base/box.h).
+#pragma once
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace servodx {
+
+struct MatVariable {
+  std::string name;             // "data.qm": the field of a structure
+  std::string fault;            // why it is no signal; empty: it is one
+  std::vector<double> numbers;  // of a signal
+};
+
+// Gives every variable, in the file's order. Throws InputError where the file's own sizes do not fit
+// it (it is cut off, or damaged) or a variable cannot be read.
+void read_mat_file(const std::string& path, const std::function<void(const MatVariable&)>& take);
+
+}  // namespace servodx
