@@ -66,6 +66,27 @@ void check_output(const std::string& path, const std::vector<std::string>& input
       throw InputError({path, 0, ""}, "is an input of this call and would be overwritten", "name another output");
 }
 
+fs::path resolved(const std::string& path) {
+  std::error_code ignored;
+  return fs::weakly_canonical(fs::absolute(path), ignored);
+}
+
+bool is_special(const std::string& path) {  // /dev/null, a pipe
+  std::error_code ignored;
+  return fs::exists(path, ignored) && !fs::is_regular_file(path, ignored);
+}
+
+// The manifest stands beside the first output that is a file, under a name that is nobody else's.
+void check_manifest(const std::vector<std::string>& inputs, const std::vector<std::string>& outputs) {
+  const auto first = std::find_if_not(outputs.begin(), outputs.end(), is_special);
+  if (first == outputs.end()) return;
+  const std::string manifest = *first + manifest_suffix;
+  check_output(manifest, inputs);
+  for (const std::string& output : outputs)
+    if (resolved(output) == resolved(manifest))
+      throw InputError({output, 0, ""}, "is the name of the manifest of " + *first, "name another output");
+}
+
 }  // namespace
 
 void add_common_options(CLI::App& command, CommonOptions& options) {
@@ -132,14 +153,12 @@ void Invocation::check_files(const std::vector<std::string>& inputs, const std::
   for (const std::string& output : all_outputs) {
     require_option(!output.empty(), "--output", "the name is empty", "name a file");
     check_output(output, all_inputs);
-    std::error_code ignored;
-    const fs::path resolved = fs::weakly_canonical(fs::absolute(output), ignored);
-    const bool special = fs::exists(resolved, ignored) && !fs::is_regular_file(resolved, ignored);  // /dev/null
-    for (const fs::path& other : seen)
-      if (!special && other == resolved)
-        throw InputError({output, 0, ""}, "is named for two outputs", "give each output its own file");
-    seen.push_back(resolved);
+    const fs::path place = resolved(output);
+    if (!is_special(output) && std::find(seen.begin(), seen.end(), place) != seen.end())
+      throw InputError({output, 0, ""}, "is named for two outputs", "give each output its own file");
+    seen.push_back(place);
   }
+  check_manifest(all_inputs, all_outputs);
   outputs_ = std::move(all_outputs);
 }
 

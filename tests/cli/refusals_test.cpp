@@ -168,6 +168,18 @@ const std::vector<Refusal>& refusals() {
        no_change,
        simulate + " --json folder/../sim.csv",
        {"sim.csv: ", "two outputs", "its own file"}},
+      {"JsonIsTheManifestOfTheOutput",
+       no_change,
+       simulate + " --json ./sim.csv.manifest.json",
+       {"sim.csv.manifest.json: ", "is the name of the manifest of sim.csv", "another output"}},
+      {"LogIsTheManifestOfTheOutput",
+       [](const Desk& d) { d.write("sim.csv.manifest.json", small_log()); },
+       "simulate sim.csv.manifest.json --params table.csv -o sim.csv",
+       {"sim.csv.manifest.json: ", "is an input", "another output"}},
+      {"LogIsTheManifestOfTheSecondOutput",
+       [](const Desk& d) { d.write("r.json.manifest.json", small_log()); },
+       "simulate r.json.manifest.json --params table.csv -o /dev/null --json r.json",
+       {"r.json.manifest.json: ", "is an input", "another output"}},
       {"JsonInNoFolder", no_change, simulate + " --json gone/result.json", {"gone/result.json: ", "no folder", "; "}},
   };
   return list;
