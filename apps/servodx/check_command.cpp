@@ -14,6 +14,10 @@
 #include "prognose/monitor.h"
 #include "report/prognosis.h"
 #include "store/history.h"
+#include "parameters/table.h"
+#include "report/json.h"
+#include "servodx/log.h"
+#include "servodx/rig.h"
 
 namespace servodx {
 namespace {
@@ -40,7 +44,7 @@ void run(const Options& options) {
   const Table tuned = invocation.tuned_table(options.params);
   const Log log = invocation.log(options.log, rig);
   std::optional<History> history;  // a new one is made only when there is something to store
-  if (std::filesystem::exists(options.history)) history.emplace(options.history, false);
+  if (History::there(options.history)) history.emplace(options.history, false);
 
   CheckOptions how = options.check;
   how.threads = options.common.threads;

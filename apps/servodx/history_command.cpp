@@ -13,6 +13,7 @@
 #include "report/columns.h"
 #include "store/history.h"
 #include "store/history_csv.h"
+#include "report/json.h"
 
 namespace servodx {
 namespace {
@@ -81,7 +82,7 @@ void read_csv(const Options& options) {
   invocation.check_files({options.file}, {options.history});
   const HistoryContent content = read_history_csv(options.file);
   std::optional<History> history;  // a new one is made only when there is something to store
-  if (std::filesystem::exists(options.history)) history.emplace(options.history, false);
+  if (History::there(options.history)) history.emplace(options.history, false);
   if (invocation.dry_run()) return;
   if (!history) history.emplace(options.history, true);
   const Restored count = history->restore(content);

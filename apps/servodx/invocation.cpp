@@ -18,6 +18,7 @@
 #include "report/columns.h"
 #include "report/handy.h"
 #include "report/plain_page.h"
+#include "servodx/rig.h"
 
 namespace servodx {
 namespace fs = std::filesystem;
@@ -68,7 +69,7 @@ void check_output(const std::string& path, const std::vector<std::string>& input
 
 fs::path resolved(const std::string& path) {
   std::error_code ignored;
-  return fs::weakly_canonical(fs::absolute(path), ignored);
+  return fs::weakly_canonical(fs::absolute(end_of_links(path)), ignored);
 }
 
 bool is_special(const std::string& path) {  // /dev/null, a pipe

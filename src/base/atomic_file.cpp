@@ -1,6 +1,7 @@
 #include "base/atomic_file.h"
 
 #include <fcntl.h>
+#include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -13,13 +14,40 @@
 
 namespace servodx {
 
-AtomicFile::AtomicFile(const std::string& path) : path_(path), target_(path) {
+namespace {
+
+// Takes away the temporary file of a writer that is gone; false: somebody holds it, or it cannot be told.
+bool take_away(const std::string& temporary) {
+  const int fd = ::open(temporary.c_str(), O_RDONLY | O_NOFOLLOW | O_CLOEXEC);
+  if (fd < 0) return errno == ENOENT;
+  struct stat held {
+  }, named{};
+  const bool free = ::flock(fd, LOCK_EX | LOCK_NB) == 0 && ::fstat(fd, &held) == 0;
+  // Under the lock the name cannot come to mean another file, where it means this one.
+  if (free && ::stat(temporary.c_str(), &named) == 0 && named.st_ino == held.st_ino && named.st_dev == held.st_dev)
+    ::unlink(temporary.c_str());
+  ::close(fd);
+  return free;
+}
+
+}  // namespace
+
+std::string end_of_links(const std::string& path) {
+  namespace fs = std::filesystem;
+  constexpr int most_links = 40;  // as the kernel follows
+  std::error_code none;
+  fs::path end = path;
+  for (int i = 0; i < most_links && fs::is_symlink(end, none); ++i) {
+    const fs::path next = fs::read_symlink(end, none);
+    if (none || next.empty()) break;
+    end = end.parent_path() / next;  // an absolute one replaces all
+  }
+  return end.string();
+}
+
+AtomicFile::AtomicFile(const std::string& path) : path_(path), target_(end_of_links(path)) {
   namespace fs = std::filesystem;
   std::error_code ignored;
-  if (fs::is_symlink(target_, ignored)) {
-    const fs::path resolved = fs::weakly_canonical(target_, ignored);
-    if (!ignored && !resolved.empty()) target_ = resolved;
-  }
   const auto refuse = [&](const std::string& why, const std::string& mend) {
     throw InputError({path_, 0, ""}, "cannot be written: " + why, mend);
   };
@@ -28,15 +56,29 @@ AtomicFile::AtomicFile(const std::string& path) : path_(path), target_(path) {
   if (fs::exists(status) && !fs::is_regular_file(status)) {
     fd_ = ::open(target_.c_str(), O_WRONLY | O_CLOEXEC);
   } else {
-    const std::string stem = target_ + ".tmp" + std::to_string(::getpid()) + "-";
-    for (int i = 0; fd_ < 0 && i < 1000; ++i) {
-      temporary_ = stem + std::to_string(i);
-      fd_ = ::open(temporary_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
-      if (fd_ < 0 && errno != EEXIST) break;
-    }
+    open_temporary();
     if (fd_ >= 0 && fs::exists(status)) ::fchmod(fd_, static_cast<mode_t>(status.permissions()));
   }
   if (fd_ < 0) refuse(std::strerror(errno), "check that the folder exists and may be written");
+}
+
+void AtomicFile::open_temporary() {
+  constexpr int most_writers = 1000;  // of one target at once
+  for (int i = 0; i < most_writers;) {
+    temporary_ = target_ + ".servodx-tmp" + std::to_string(i);
+    fd_ = ::open(temporary_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+    if (fd_ < 0 && errno != EEXIST) return;
+    if (fd_ < 0) {
+      if (!take_away(temporary_)) ++i;
+      continue;
+    }
+    ::flock(fd_, LOCK_EX);  // a file system without locks writes all the same
+    struct stat status {};
+    if (::fstat(fd_, &status) != 0 || status.st_nlink > 0) return;
+    ::close(fd_);  // taken for a leftover before it was locked
+  }
+  fd_ = -1;
+  errno = EBUSY;
 }
 
 AtomicFile::~AtomicFile() {
@@ -69,13 +111,29 @@ void AtomicFile::commit() {
   if (::rename(temporary_.c_str(), target_.c_str()) != 0) fail("cannot be renamed into place");
   ::close(fd_);
   fd_ = -1;
-  // The rename itself is durable once the folder is synced; a file system that cannot do so has still renamed.
+  sync_folder();
+}
+
+bool AtomicFile::commit_new() {
+  if (::fsync(fd_) != 0) fail("cannot be synced");
+  const char *const from = temporary_.c_str(), *const to = target_.c_str();
+  const bool made = ::renameat2(AT_FDCWD, from, AT_FDCWD, to, RENAME_NOREPLACE) == 0;
+  if (!made && errno == EEXIST) return false;
+  // A file system that cannot tell: two first writers at once are then told apart by neither.
+  if (!made && ::rename(from, to) != 0) fail("cannot be renamed into place");
+  ::close(fd_);
+  fd_ = -1;
+  sync_folder();
+  return true;
+}
+
+// A rename is durable once the folder is synced; a file system that cannot do so has still renamed.
+void AtomicFile::sync_folder() const {
   const std::filesystem::path folder = std::filesystem::path(target_).parent_path();
   const int dir = ::open(folder.empty() ? "." : folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-  if (dir >= 0) {
-    ::fsync(dir);
-    ::close(dir);
-  }
+  if (dir < 0) return;
+  ::fsync(dir);
+  ::close(dir);
 }
 
 void write_file(const std::string& path, std::string_view bytes) {

@@ -10,13 +10,16 @@
 #include <cmath>
 #include <ctime>
 #include <filesystem>
+#include <thread>
 
+#include "base/atomic_file.h"
 #include "base/error.h"
 #include "parameters/list.h"
 #include "parameters/table.h"
 #include "parameters/table_text.h"
 #include "prognose/check.h"
 #include "prognose/check_name.h"
+#include "prognose/track.h"
 
 namespace servodx {
 namespace {
@@ -208,23 +211,45 @@ auto History::guarded(const F& work) const {
 
 History::History(const std::string& path, bool create) : path_(path) {
   const char* const mend = "record a check with 'servodx check' first";
-  if (!create && !std::filesystem::exists(path)) throw InputError({.file = path}, "there is no such history", mend);
-  if (!create && std::filesystem::is_regular_file(path) && std::filesystem::file_size(path) == 0)
-    throw InputError({.file = path}, "is empty, no history", mend);
+  const bool exists = std::filesystem::exists(path);
+  if (!create && !exists) throw InputError({.file = path}, "there is no such history", mend);
+  if (!create && !there(path)) throw InputError({.file = path}, "is empty, no history", mend);
+  if (!exists) make_whole();
   guarded([&] {
-    db_ =
-        std::make_unique<SQLite::Database>(path, SQLite::OPEN_READWRITE | (create ? SQLite::OPEN_CREATE : 0), busy_ms);
+    db_ = std::make_unique<SQLite::Database>(path, SQLite::OPEN_READWRITE, busy_ms);
     migrate();
   });
+}
+
+bool History::there(const std::string& path) {
+  std::error_code none;
+  return std::filesystem::exists(path, none) &&
+         !(std::filesystem::is_regular_file(path, none) && std::filesystem::file_size(path, none) == 0);
+}
+
+// SQLite makes an empty file first. Under a name of its own it is nobody's history until it has its tables.
+void History::make_whole() {
+  AtomicFile file(path_);
+  guarded([&] {
+    db_ = std::make_unique<SQLite::Database>(file.temporary(), SQLite::OPEN_READWRITE, busy_ms);
+    migrate();
+    db_.reset();  // which takes the files beside it away
+  });
+  file.commit_new();  // or another first writer's stands there, as good
 }
 History::~History() = default;
 
 int History::schema_version() { return static_cast<int>(steps.size()); }
 
 void History::migrate() {
-  const int owner = db_->execAndGet("PRAGMA application_id").getInt();
-  int version = db_->execAndGet("PRAGMA user_version").getInt();
-  const bool blank = db_->execAndGet("SELECT count(*) FROM sqlite_master").getInt() == 0;
+  int owner = 0, version = 0;
+  bool blank = false;
+  {
+    const SQLite::Transaction at_once(*db_);  // another first writer may be filling it
+    blank = db_->execAndGet("SELECT count(*) FROM sqlite_master").getInt() == 0;
+    owner = db_->execAndGet("PRAGMA application_id").getInt();
+    version = db_->execAndGet("PRAGMA user_version").getInt();
+  }
   if (owner != application_id && !(blank && owner == 0))
     throw InputError({.file = path_}, "is an SQLite file of another program", "name another file");
   if (version > schema_version())
@@ -232,7 +257,7 @@ void History::migrate() {
         {.file = path_},
         fmt::format("was written by a newer servodx (schema {}, known up to {})", version, schema_version()),
         "use that version, or export it there as CSV and import it here");
-  db_->exec("PRAGMA journal_mode = WAL");
+  write_ahead();
   db_->exec("PRAGMA synchronous = FULL");
   db_->exec("PRAGMA foreign_keys = ON");
   if (version == schema_version()) return;
@@ -242,6 +267,18 @@ void History::migrate() {
   db_->exec(fmt::format("PRAGMA application_id = {}", application_id));
   db_->exec(fmt::format("PRAGMA user_version = {}", version));
   all.commit();
+}
+
+// The change of mode asks no busy handler: where two first writers fill an empty file, one is turned away at once.
+void History::write_ahead() {
+  constexpr int pause_ms = 10;
+  for (int waited = 0;; waited += pause_ms) try {
+      db_->exec("PRAGMA journal_mode = WAL");
+      return;
+    } catch (const SQLite::Exception& e) {
+      if (e.getErrorCode() != SQLITE_BUSY || waited >= busy_ms) throw;
+      std::this_thread::sleep_for(std::chrono::milliseconds(pause_ms));
+    }
 }
 
 void History::record(const std::string& valve, const std::string& serial, const Recording& recording,

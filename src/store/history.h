@@ -3,9 +3,10 @@
 //
 // A row is acknowledged when record() returns: written ahead (WAL) and synced, so a crash or a kill after that loses
 // nothing and one before it leaves nothing half. Writers of several processes queue for up to 30 s. A full disk
-// rolls the whole check back and throws. A damaged or foreign file is refused, never overwritten. Steps to newer
-// schemas run when a file is opened, each in one transaction; a file of a newer program is refused.
-// Limits: the file must lie on a local disk (SQLite's locks do not hold on most network mounts).
+// rolls the whole check back and throws. A file is made whole or not at all, by any number of first writers at once. A
+// damaged or foreign file is refused, never overwritten. Steps to newer schemas run when a file is opened, each in one
+// transaction; a file of a newer program is refused. Limits: the file must lie on a local disk (SQLite's locks do not
+// hold on most network mounts).
 #pragma once
 #include <memory>
 #include <optional>
@@ -40,8 +41,10 @@ struct Restored {
 
 class History {
  public:
-  // `create`: a missing file is made, otherwise refused.
+  // `create`: a file that is not there() is made, otherwise refused.
   History(const std::string& path, bool create);
+  // False also of an empty file: what is left where the first writer had no room, or was killed.
+  static bool there(const std::string& path);
   ~History();
 
   // All of it or nothing. Refuses a log that this valve's history holds already, unless at other hours or by another
@@ -62,7 +65,9 @@ class History {
   static int schema_version();
 
  private:
+  void make_whole();
   void migrate();
+  void write_ahead();
   std::vector<std::string> names(const char* query) const;
   template <class F>
   auto guarded(const F& work) const;

@@ -55,6 +55,59 @@ TEST(AtomicFile, ALinkStaysALinkAndPermissionsStay) {
   EXPECT_EQ(status.st_mode & 0777, 0640u);
 }
 
+TEST(AtomicFile, ALinkToNothingMakesWhatItPointsTo) {
+  const TemporaryFolder folder;
+  fs::create_directory(folder / "far");
+  fs::create_symlink("far/a", folder / "b");
+  fs::create_symlink("b", folder / "c");
+  write_file(folder / "c", "new");
+  EXPECT_TRUE(fs::is_symlink(folder / "b") && fs::is_symlink(folder / "c"));
+  EXPECT_EQ(read_file(folder / "far/a"), "new");
+  EXPECT_EQ(entries(folder.path / "far"), 1u);
+}
+
+TEST(AtomicFile, WhatAKilledWriterLeftIsTakenAwayByTheNext) {
+  const TemporaryFolder folder;
+  const std::string path = folder / "a.csv";
+  const pid_t child = ::fork();
+  if (child == 0) {
+    AtomicFile file(path);
+    file.write("half");
+    ::_exit(0);  // as a kill: no destructor runs
+  }
+  ::waitpid(child, nullptr, 0);
+  ASSERT_EQ(entries(folder.path), 1u);
+  write_file(path, "whole");
+  EXPECT_EQ(entries(folder.path), 1u);
+  EXPECT_EQ(read_file(path), "whole");
+}
+
+TEST(AtomicFile, WritersOfOneTargetDoNotMeet) {
+  const TemporaryFolder folder;
+  const std::string path = folder / "a.csv";
+  std::vector<std::thread> writers;
+  for (int w = 0; w < 4; ++w)
+    writers.emplace_back([&path, w] {
+      for (int k = 0; k < 25; ++k) write_file(path, std::string(1000, static_cast<char>('a' + w)));
+    });
+  for (std::thread& writer : writers) writer.join();
+  const std::string left = read_file(path);
+  EXPECT_EQ(left, std::string(1000, left.front()));
+  EXPECT_EQ(entries(folder.path), 1u);
+}
+
+TEST(AtomicFile, ANewFileTakesNobodysPlace) {
+  const TemporaryFolder folder;
+  const std::string path = folder / "a.db";
+  AtomicFile late(path);
+  AtomicFile first(path);
+  first.write("first");
+  late.write("late");
+  EXPECT_TRUE(first.commit_new());
+  EXPECT_FALSE(late.commit_new());
+  EXPECT_EQ(read_file(path), "first");
+}
+
 TEST(AtomicFile, ADeviceIsWrittenInPlace) {
   write_file("/dev/null", "x");
   EXPECT_FALSE(fs::is_regular_file("/dev/null"));

@@ -106,6 +106,13 @@ TEST_F(Prognosis, NothingWritesOverTheHistoryNorStoresWhereTheResultCannotGo) {
   EXPECT_TRUE(json("s.json")["valves"][0]["events"].empty());
 }
 
+TEST_F(Prognosis, ACheckFillsAHistoryThatIsEmpty) {
+  desk.write("h.db", "");
+  EXPECT_EQ(
+      desk.run("check hot.csv --params tuned.csv --rig rig.toml --history h.db --valve V7 --at 1 --no-track").code, 0);
+  EXPECT_EQ(desk.run("history verify --history h.db").code, 0);
+}
+
 TEST_F(Prognosis, AnotherSerialOfOneValveIsTold) {
   const std::string check = "check hot.csv --params tuned.csv --rig rig.toml --history h.db --valve V7 --no-track ";
   const auto told = [&](const std::string& call) {

@@ -182,6 +182,76 @@ TEST_F(HistoryFile, AnEmptyFileIsNoHistory) {
   EXPECT_EQ(std::filesystem::file_size(file("empty.db")), 0u);
 }
 
+TEST_F(HistoryFile, AnEmptyFileIsFilledAsIfItWereNotThere) {
+  std::ofstream(file()).flush();
+  EXPECT_FALSE(History::there(file()));
+  History(file(), true).record("v1", "", a_check(1), "");
+  EXPECT_TRUE(History::there(file()));
+  EXPECT_EQ(History(file(), false).of("v1").recordings.size(), 1u);
+}
+
+// A child that ends with 0 where `work` throws nothing.
+template <class Work>
+pid_t in_child(const Work& work) {
+  const pid_t child = fork();
+  if (child != 0) return child;
+  try {
+    work();
+  } catch (...) {
+    _exit(1);
+  }
+  _exit(0);
+}
+
+TEST_F(HistoryFile, OneWhoseMakerIsKilledIsWholeOrNotThere) {
+  Random random(12);
+  constexpr int kills = 20;
+  for (int k = 0; k < kills; ++k) {
+    const std::string path = file(std::string(1, static_cast<char>('a' + k)));
+    const pid_t child = in_child([&] { History(path, true); });
+    std::this_thread::sleep_for(std::chrono::microseconds(random.below(6000)));
+    kill(child, SIGKILL);
+    waitpid(child, nullptr, 0);
+    EXPECT_EQ(fs::exists(path), History::there(path)) << "an empty file after kill " << k;
+    if (fs::exists(path)) {
+      EXPECT_EQ(History(path, false).verify(), "ok");
+    }
+    History(path, true).record("v1", "", a_check(1), "");  // what is left of the first hinders nobody
+    EXPECT_EQ(History(path, false).of("v1").recordings.size(), 1u);
+  }
+  EXPECT_EQ(std::distance(fs::directory_iterator(folder.path), fs::directory_iterator()), kills);
+}
+
+TEST_F(HistoryFile, OneThatHasNoRoomIsNotThere) {
+  const pid_t child = in_child([&] {
+    signal(SIGXFSZ, SIG_IGN);
+    const rlimit limit{2000, 2000};
+    setrlimit(RLIMIT_FSIZE, &limit);
+    History(file(), true);
+  });
+  int status = 0;
+  waitpid(child, &status, 0);
+  EXPECT_EQ(WEXITSTATUS(status), 1) << "the failure was not reported";
+  EXPECT_TRUE(fs::is_empty(folder.path));
+}
+
+TEST_F(HistoryFile, FirstWritersAtOnceLoseNothing) {
+  constexpr int writers = 6;
+  for (const bool empty : {false, true}) {
+    const std::string path = file(empty ? "empty.db" : "new.db");
+    if (empty) std::ofstream(path).flush();
+    std::vector<pid_t> children;
+    for (int w = 0; w < writers; ++w)
+      children.push_back(in_child([&] { History(path, true).record("v" + std::to_string(w), "", a_check(w), ""); }));
+    for (const pid_t child : children) {
+      int status = 0;
+      waitpid(child, &status, 0);
+      EXPECT_EQ(WEXITSTATUS(status), 0);
+    }
+    EXPECT_EQ(History(path, false).valves().size(), static_cast<std::size_t>(writers));
+  }
+}
+
 TEST_F(HistoryFile, AnOlderSchemaIsBroughtUpAndKeepsItsRows) {
   {
     History h(file(), true);
