@@ -138,10 +138,10 @@ class Pages(unittest.TestCase):
         return super().run(script)  # unittest calls this one
 
     def wait(self, condition):
-        end = time.time() + 10
-        while not self.run("return Boolean(" + condition + ")"):
-            self.assertLess(time.time(), end, condition)
-            time.sleep(0.05)
+        for _ in browser.frames(self.driver):
+            if self.run("return Boolean(" + condition + ")"):
+                return
+        self.fail(f"{condition}: not after {browser.MOST_FRAMES} frames")
 
     def draw_all(self):
         browser.draw_all(self.driver)
@@ -264,7 +264,6 @@ class Pages(unittest.TestCase):
         # As where a chart taken down lets a scroll bar go: pages once drew for ever then.
         self.open("diagnose")
         self.draw_all()
-        self.driver.set_script_timeout(10)
         self.driver.execute_async_script("""
             const done = arguments[0], style = document.createElement('style');
             style.textContent = '.chart { width: 600px; } .chart:not(:has(.uplot)) { width: 580px; }';
