@@ -180,7 +180,10 @@ Quantity parse_quantity(std::string_view text, Dimension expected, const Place& 
                      quoted(unit.name) + " is a unit of " + std::string(name_of(unit.dimension)) + ", not of " +
                          std::string(name_of(expected)),
                      "use one of " + units_of(expected));
-  return {unit.to_si(parts->number), &unit};
+  const double si = unit.to_si(parts->number);
+  if (!std::isfinite(si))
+    throw InputError(where, quoted(text) + " is beyond 1.8e308 in SI", "write a quantity that something has");
+  return {si, &unit};
 }
 
 Gain parse_gain(std::string_view text, Dimension expected, const Place& where) {
@@ -201,7 +204,9 @@ Gain parse_gain(std::string_view text, Dimension expected, const Place& where) {
                      quoted(numerator.name) + " is a unit of " + std::string(name_of(numerator.dimension)) +
                          ", not of " + std::string(name_of(expected)),
                      "use one of " + units_of(expected));
-  return {parts->number * numerator.multiply / numerator.divide / denominator.scale(), &numerator, &denominator};
+  const double gain = parts->number * numerator.multiply / numerator.divide / denominator.scale();
+  if (!std::isfinite(gain) || gain == 0.0) throw InputError(where, quoted(text) + " is none or infinite in SI", mend);
+  return {gain, &numerator, &denominator};
 }
 
 }  // namespace servodx

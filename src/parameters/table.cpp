@@ -5,6 +5,7 @@
 #include <charconv>
 #include <cmath>
 #include <map>
+#include <span>
 #include <sstream>
 #include <string_view>
 
@@ -23,6 +24,35 @@ constexpr std::array<std::string_view, 11> required_columns = {
 constexpr std::string_view std_error_column = "std_error";
 constexpr std::string_view effect_prefix = "effect:";
 constexpr std::string_view state_mark = "%";  // behind the '#' of a comment
+
+// What cannot be zero or less: a chamber without volume or a piston without area runs away without a word.
+constexpr int above_zero[] = {row::torque_motor_frequency,
+                              row::hydraulic_amplifier_gain,
+                              row::nozzle_gap,
+                              row::fixed_orifice_diameter,
+                              row::driver_bandwidth,
+                              row::current_limit,
+                              row::spool_diameter,
+                              row::spool_stop,
+                              row::port_width,
+                              row::radial_clearance,
+                              row::piston_area_a,
+                              row::piston_area_b,
+                              row::piston_stroke,
+                              row::moving_mass,
+                              row::dead_volume_a,
+                              row::dead_volume_b,
+                              row::supply_pressure,
+                              row::bulk_modulus};
+// What cannot be less than zero.
+constexpr int not_negative[] = {
+    row::filter_blockage_positive, row::filter_blockage_negative, row::valve_glitch,
+    row::feedback_wire_stiffness,  row::spool_friction,           row::flow_force_coefficient,
+    row::position_sensor_lag,      row::cross_piston_leakage,     row::piston_viscous_friction,
+    row::piston_coulomb_friction,  row::piston_stribeck_friction, row::air_fraction,
+    row::return_pressure,          row::hose_resistance,          row::hose_compliance};
+
+bool is_in(std::span<const int> rows, int row) { return std::find(rows.begin(), rows.end(), row) != rows.end(); }
 
 std::string trimmed_start(std::string text) {
   if (text.starts_with(' ')) text.erase(0, 1);
@@ -106,6 +136,12 @@ class Reader {
     if (n_missing > 0)
       throw InputError({file_, 0, "id"}, "the table lacks " + std::to_string(n_missing) + " of its 41 rows: " + missing,
                        "add them, for example from params/borello2009.csv");
+    const double supply = known[row::supply_pressure]->nominal, back = known[row::return_pressure]->nominal;
+    if (back >= supply)
+      throw InputError({file_, known_line[row::return_pressure], "nominal"},
+                       "'return_pressure' (" + with_unit(back, "Pa") + ") is not below 'supply_pressure' (" +
+                           with_unit(supply, "Pa") + ", line " + std::to_string(known_line[row::supply_pressure]) + ")",
+                       "check both values");
     for (auto& row : known) table.rows.push_back(std::move(*row));
     for (auto& row : effects) table.rows.push_back(std::move(row));
     return table;
@@ -214,6 +250,7 @@ class Reader {
            "'" + row.name + "' nominal (" + with_unit(row.nominal, row.unit) + ") is outside its bounds (" + lower +
                " to " + upper + ")",
            std::string("move it inside or widen '") + (row.nominal < row.lower ? "lower'" : "upper'"));
+    if (row.id > 0) require_sign(record, row);
     if (row.log_scale && row.lower <= 0)
       fail(record, "lower", "'" + row.name + "' has scale log10 but its lower bound is " + lower,
            "write a positive lower bound or scale lin");
@@ -230,6 +267,19 @@ class Reader {
              "write a positive number, or leave it empty where it is not known");
     }
     return row;
+  }
+
+  // The bounds too: a fit goes where they let it.
+  void require_sign(const Record& record, const Row& row) const {
+    const bool positive = is_in(above_zero, row.id - 1), unsigned_row = positive || is_in(not_negative, row.id - 1);
+    if (positive && row.nominal <= 0)
+      fail(record, "nominal",
+           "'" + row.name + "' is " + with_unit(row.nominal, row.unit) + ", and there is none of 0 or less",
+           "write a positive value");
+    if (unsigned_row && row.lower < 0)
+      fail(record, "lower",
+           "'" + row.name + "' may go down to " + with_unit(row.lower, row.unit) + ", and is never negative",
+           "write a lower bound of 0 or more");
   }
 
   std::string file_;

@@ -79,6 +79,14 @@ TEST(Units, EachRefusalSaysRuleAndMend) {
             place + "'nan mA' is not a quantity; write a number and a unit of current (A, mA)");
 }
 
+TEST(Units, AQuantityThatIsInfiniteInSiIsRefused) {
+  EXPECT_EQ(refusal("1e305 bar", Dimension::pressure),
+            "rig.toml:5: column 'valve.rated_current': '1e305 bar' is beyond 1.8e308 in SI; write a quantity that "
+            "something has");
+  EXPECT_THROW(parse_gain("1e305 bar/V", Dimension::pressure, {}), InputError);
+  EXPECT_THROW(parse_gain("1e-323 mm/V", Dimension::length, {}), InputError);
+}
+
 TEST(Units, AGainDividesTheSignalsUnitByVolts) {
   EXPECT_DOUBLE_EQ(parse_gain("20 mm/V", Dimension::length, {}).value, 0.02);
   EXPECT_DOUBLE_EQ(parse_gain("2 l/min/V", Dimension::flow, {}).value, 2e-3 / 60);

@@ -236,6 +236,23 @@ TEST_F(TableFile, UpperBelowLowerIsRefusedWithPlaceRuleAndMend) {
   EXPECT_EQ(e.mend, "swap them or widen 'upper'");
 }
 
+TEST_F(TableFile, WhatNoMachineHasIsRefused) {
+  const auto area = refusal(edited(23, "0.000788,0.0006304,0.0009456,log10", "-0.000788,-0.0009,-0.0006,lin"));
+  EXPECT_EQ(area.where.line, line_of(23));
+  EXPECT_EQ(area.rule, "'piston_area_a' is -0.000788 m2, and there is none of 0 or less");
+  EXPECT_EQ(area.mend, "write a positive value");
+  const auto volume = refusal(edited(27, "2e-05,4e-06,0.0001,log10", "0,0,0.0001,lin"));
+  EXPECT_EQ(volume.where.line, line_of(27));
+  EXPECT_EQ(volume.rule, "'dead_volume_a' is 0 m3, and there is none of 0 or less");
+  const auto bound = refusal(edited(32, "150,0,2000", "150,-10,2000"));
+  EXPECT_EQ(bound.where.line, line_of(32));
+  EXPECT_EQ(bound.where.column, "lower");
+  EXPECT_EQ(bound.rule, "'piston_coulomb_friction' may go down to -10 N, and is never negative");
+  const auto back = refusal(edited(37, "500000,0,5000000", "3e7,0,4e7"));
+  EXPECT_EQ(back.where.line, line_of(37));
+  EXPECT_EQ(back.mend, "check both values");
+}
+
 TEST_F(TableFile, EachRefusalNamesPlaceRuleAndMend) {
   const struct {
     int id;
