@@ -18,6 +18,10 @@
 namespace servodx {
 namespace {
 
+// Limits beyond any log or table, so that a file without line ends, or of separators alone, costs no more than these.
+constexpr std::size_t longest_row = std::size_t{16} << 20;  // [byte]
+constexpr std::size_t most_columns = 10000;
+
 constexpr double missing_value = std::numeric_limits<double>::quiet_NaN();
 
 char sniff_separator(std::string_view line) {
@@ -160,7 +164,12 @@ void CsvCursor::take_header() {
   point_ = separator_ == ';' ? ',' : '.';
   header_line_ = line_;
   header_.clear();
-  for (std::string cell; next_cell(cell);) header_.push_back(as_utf8(std::move(cell)));
+  for (std::string cell; next_cell(cell);) {
+    if (header_.size() == most_columns)
+      throw InputError({path_, line_, ""}, "the header has more than " + std::to_string(most_columns) + " columns",
+                       "keep the columns that are needed");
+    header_.push_back(as_utf8(std::move(cell)));
+  }
 }
 
 void CsvCursor::next_header() {
@@ -177,6 +186,9 @@ bool CsvCursor::refill() {
   }
   const auto used = p_ ? static_cast<std::size_t>((cell_ ? cell_ : p_) - buffer_.data()) : 0;
   const auto at = p_ ? static_cast<std::size_t>(p_ - buffer_.data()) - used : 0;
+  if (buffer_.size() - used > longest_row)
+    throw InputError({path_, next_line_, ""}, "the row is longer than " + std::to_string(longest_row >> 20) + " MB",
+                     "end each row with a line end, and close quotes");
   buffer_.erase(0, used);
   dropped_ += used;
   buffer_ += more;
@@ -219,7 +231,7 @@ std::vector<std::string> CsvCursor::row_ahead() {
   if (!in_row_ || line_end == end_ || std::count(p_, line_end, '"') % 2 != 0) return {};
   const auto at = std::tuple(p_, cell_, cell_end_, next_line_, more_);
   std::vector<std::string> cells;
-  for (std::string cell; next_cell(cell);) cells.push_back(as_utf8(std::move(cell)));
+  for (std::string cell; cells.size() <= most_columns && next_cell(cell);) cells.push_back(as_utf8(std::move(cell)));
   std::tie(p_, cell_, cell_end_, next_line_, more_) = at;
   return cells;
 }

@@ -7,9 +7,11 @@
 #include <cmath>
 #include <vector>
 
+#include "base/block_reader.h"
 #include "base/decimal.h"
 #include "base/random.h"
 #include "servodx/error.h"
+#include "temporary_folder.h"
 
 namespace servodx {
 namespace {
@@ -173,6 +175,34 @@ TEST(Csv, OnlyALastRowWithoutLineEndIsSaidToEndWithTheFile) {
   EXPECT_FALSE(ends("a,b\n1,2\n"));
   EXPECT_FALSE(ends("a,b\n1,2\r\n"));
   EXPECT_FALSE(ends("a,b\n1,2\n3,4"));
+}
+
+// The files are as long as it takes to pass the limits; a reader that reads on would take them whole.
+TEST(Csv, RowsAndHeadersBeyondTheLimitsAreRefusedWhereTheyPassThem) {
+  const TemporaryFolder folder;
+  const std::string much(std::size_t{20} << 20, 'x');
+  const auto refusal = [&](const std::string& text) -> std::string {
+    const std::string path = folder.write("t.csv", text);
+    try {
+      BlockReader file(path);
+      CsvCursor csv(file, "t.csv");
+      while (csv.next_row())
+        while (csv.skip_cell()) {
+        }
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "accepted";
+  };
+  const std::string long_row = "the row is longer than 16 MB; end each row with a line end, and close quotes";
+  EXPECT_EQ(refusal(much), "t.csv:1: " + long_row);
+  EXPECT_EQ(refusal("a,b\n1,2\n" + much), "t.csv:3: " + long_row);
+  EXPECT_EQ(refusal("a,b\n1,\"" + much + "\"\n"), "t.csv:2: " + long_row);
+  EXPECT_EQ(refusal(std::string(much.size(), ',')), "t.csv:1: " + long_row);
+  const std::string wide = "t.csv:1: the header has more than 10000 columns; keep the columns that are needed";
+  EXPECT_EQ(refusal(std::string(10000, ',') + "\n"), wide);
+  EXPECT_EQ(refusal(std::string(9999, ',') + "\n"), "accepted");
+  EXPECT_EQ(refusal("a\n" + std::string(1000000, ',') + "\n"), "accepted");  // ragged: for the log to say
 }
 
 TEST(Csv, EachRefusalSaysRuleAndMend) {
