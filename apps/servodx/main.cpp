@@ -6,6 +6,7 @@
 #include "base/error.h"
 #include "base/keep_memory.h"
 #include "base/nearest.h"
+#include "base/sleep_while_waiting.h"
 #include "commands.h"
 #include "invocation.h"
 #include "rig_command.h"
@@ -39,6 +40,7 @@ std::string refusal(const CLI::App* app, const CLI::Error& error) {
 
 int main(int argc, char** argv) {
   using namespace servodx;
+  sleep_while_waiting(argv);
   keep_freed_memory();
   CLI::App app("Fault diagnosis of electrohydraulic servovalves from rig logs", "servodx");
   app.set_version_flag("--version", "servodx " SERVODX_VERSION);
