@@ -46,6 +46,8 @@ LeastSquaresResult minimise(FitProblem& problem, const Point& from, int iteratio
   o.damping_trials = 1;  // the hypotheses fill each other's packs: no lane is free
   o.progress = [&](const LeastSquaresProgress&) { return !(stop && stop->load()); };
   LocalOptions local;
+  local.ceres.max_steps = 1;  // one trial and no Jacobian: hypotheses are many, and their fits short
+  local.ceres.max_jacobians = 0;
   local.stop = [&] { return stop && stop->load(); };
   return minimise_locally(problem.least_squares(), from, o, local).end;
 }

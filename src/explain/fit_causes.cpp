@@ -25,6 +25,14 @@ LeastSquaresOptions least_squares_options(int iterations, bool curve) {
   return o;
 }
 
+// One trial and no Jacobian: candidates are many, and their fits a few iterations long.
+LocalOptions local_options() {
+  LocalOptions o;
+  o.ceres.max_steps = 1;
+  o.ceres.max_jacobians = 0;
+  return o;
+}
+
 const Cause& cause_of(const Subject& subject, int cause) { return subject.causes()[static_cast<std::size_t>(cause)]; }
 
 bool has_curve(const Subject& subject, const std::vector<int>& causes) {
@@ -104,7 +112,7 @@ void minimise(const Subject& subject, const LeastSquaresProblem& problem, Start 
   for (int pass = 0; pass < passes; ++pass) {
     const bool plain = passes == 1;
     const LeastSquaresResult r =
-        minimise_locally(plain ? problem : weighed(problem, *start.weights), start.point, options).end;
+        minimise_locally(plain ? problem : weighed(problem, *start.weights), start.point, options, local_options()).end;
     if (r.reason == StopReason::start_failed) return;
     const Eigen::VectorXd residual = plain ? r.residual : r.residual.cwiseQuotient(*start.weights);
     const double deviance = deviance_of(subject, residual);
@@ -196,7 +204,8 @@ ExplainedFit hold_causes(const Subject& subject, const std::vector<int>& causes,
     return out.fit.problem.evaluate(all);
   };
   const Point start(from.point.begin(), from.point.begin() + static_cast<long>(base));
-  const LeastSquaresResult r = minimise_locally(held, start, least_squares_options(iterations, false)).end;
+  const LeastSquaresResult r =
+      minimise_locally(held, start, least_squares_options(iterations, false), local_options()).end;
   if (r.reason == StopReason::start_failed) return out;
   out.ok = true;
   out.point = whole(r.point);
