@@ -119,7 +119,8 @@ TEST(Tune, CeresAloneArrivesWhereBothArrive) {
   for (const StageResult& s : alone.stages) EXPECT_EQ(s.by, StageMethod::ceres) << s.stage;
   const double there = both.table[row::driver_bandwidth].nominal;
   // Half a standard error: the valley is flat to that.
-  EXPECT_NEAR(alone.table[row::driver_bandwidth].nominal, there, 0.5 * both.table[row::driver_bandwidth].std_error);
+  EXPECT_NEAR(alone.table[row::driver_bandwidth].nominal, there,
+              0.5 * both.table[row::driver_bandwidth].std_error.value());
 }
 
 TEST(Tune, OfATableThatHoldsTwoTuningsTheLastCounts) {
