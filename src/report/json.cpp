@@ -7,7 +7,6 @@
 #include "diagnose/conditions.h"
 #include "diagnose/judge.h"
 #include "diagnose/moved.h"
-#include "optimise/ceres_refinement.h"
 #include "report/diagnosis_words.h"
 #include "report/handy.h"
 #include "report/row_verdict_word.h"
@@ -54,7 +53,8 @@ const char* word_of(StageMethod method) {
   return "";
 }
 
-Json ceres_json(const CeresSummary& c) {
+Json ceres_json(const TuneResult& result) {
+  const auto& c = result.ceres;
   return {{"end", name(c.end)},
           {"solves", c.solves},
           {"steps", c.steps},
@@ -126,7 +126,7 @@ Json tune_json(const TuneResult& result) {
           {"reached_best", result.reached_best},
           {"interrupted", result.interrupted},
           {"logs", logs},
-          {"local", {{"stages", stages}, {"ceres", ceres_json(result.ceres)}}}};
+          {"local", {{"stages", stages}, {"ceres", ceres_json(result)}}}};
 }
 
 Json baseline_json(const Baseline& b) {
