@@ -105,7 +105,8 @@ int run(const Options& options) {
   const Table nominal = invocation.table(options.params);  // tune() applies the facts, effects' rows included
   const std::vector<Log> logs = invocation.logs(options.logs, rig);
 
-  if (!tune_options.effects) tune_options.effects = default_effects(all_on_test_stand(logs, rig));
+  if (!tune_options.effects)
+    tune_options.effects = default_effects(all_on_test_stand(logs, rig), supply_is_measured(logs));
   for (const std::string& name : tune_options.profile)
     if (Table with_effects = nominal; name != "all" && !name.empty()) {
       add_effect_rows(with_effects, *tune_options.effects);
@@ -170,8 +171,9 @@ void add_tune_command(CLI::App& app, int& exit_code) {
       ->capture_default_str();
   command->add_option("--effects", options->effects, "effects freed beside the table's rows, or 'none'")
       ->type_name("A,B")
-      ->default_str(report::join(default_effects(false), ",") + "; on a test stand " +
-                    report::join(default_effects(true), ","));
+      ->default_str(report::join(default_effects(false, true), ",") +
+                    "; supply_droop where a log lacks the supply; on a test stand " +
+                    report::join(default_effects(true, true), ","));
   command
       ->add_option("--local", options->local,
                    "local stage: least_squares (a search that knows the bounds, then Ceres), ceres alone, or nlopt "

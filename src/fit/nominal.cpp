@@ -36,6 +36,9 @@ constexpr double stand_compliance = 1e-11;                      // [m3/Pa] a few
 constexpr double steel_modulus = 2.05e11;                       // [Pa]
 constexpr double lapped_fit_min = 2e-6, lapped_fit_max = 5e-6;  // [m]
 
+// Of stall force over no-load speed: a piston that loses half of its speed to viscous friction.
+constexpr double most_viscous = 0.5;
+
 double disc(double diameter) { return pi / 4 * diameter * diameter; }
 
 std::string text_of(double value, const std::string& unit) {
@@ -60,6 +63,22 @@ class Facts {
     stroke_ = rig_.fact("valve.spool_stroke")
                   .value_or(value(row::torque_motor_gain) * (value(row::current_limit) / limit_over_rated) /
                             value(row::feedback_wire_stiffness));
+    of_table_ = size(value(row::torque_motor_gain) * (value(row::current_limit) / limit_over_rated) /
+                     value(row::feedback_wire_stiffness));
+  }
+
+  // What an actuator's frictions and volumes go with, as the table stands.
+  struct Size {
+    double force = 0;                   // [N] at stall, of the mean area
+    double speed = 0;                   // [m/s] without load
+    double volume_a = 0, volume_b = 0;  // [m3] swept
+  };
+  Size size(double stroke_of_spool) const {
+    const double area = 0.5 * (value(row::piston_area_a) + value(row::piston_area_b));
+    const double flow = nominal::cd_metering * value(row::port_width) * stroke_of_spool *
+                        std::sqrt(differential() / rig_.fluid.density);
+    return {differential() * area, flow / area, value(row::piston_area_a) * value(row::piston_stroke),
+            value(row::piston_area_b) * value(row::piston_stroke)};
   }
 
   Table apply() {
@@ -262,11 +281,31 @@ class Facts {
       set_within(row::dead_volume_a, *v, volumes, "actuator.dead_volume_a", "");
     if (const auto v = fact("actuator.dead_volume_b"))
       set_within(row::dead_volume_b, *v, volumes, "actuator.dead_volume_b", "");
+    if (fact("actuator.area_a")) as_large_as_the_cylinder();
     // An effect's row: only an extended table has it.
     const int mount = table_.find("mount_compliance");
     if (const auto k = fact("actuator.mount_stiffness"); k && mount >= 0)
       set(mount, 1 / *k, table_[mount].lower, std::max(table_[mount].upper, 10 / *k), "actuator.mount_stiffness",
           "1 / mount_stiffness");
+  }
+  // No sheet gives frictions, and few the dead volumes: they keep the table's part of stall force, of that over no-load
+  // speed, and of the swept volume. A cylinder of 20 tons has not the seals of one of 2.
+  void as_large_as_the_cylinder() {
+    const Size now = size(stroke_);
+    const double force = now.force / of_table_.force, damping = force / (now.speed / of_table_.speed);
+    const auto scale = [&](int position, double factor, double least_upper, const char* formula) {
+      const Row& row = table_[position];
+      set(position, tidy(factor * row.nominal), factor * row.lower, std::max(factor * row.upper, least_upper),
+          "actuator.area_a", formula);
+    };
+    for (const int friction : {row::piston_coulomb_friction, row::piston_stribeck_friction})
+      scale(friction, force, 0, "the table's part of stall force");
+    scale(row::piston_viscous_friction, damping, most_viscous * now.force / now.speed,
+          "the table's part of stall force over no-load speed; up to half of it");
+    if (!fact("actuator.dead_volume_a"))
+      scale(row::dead_volume_a, now.volume_a / of_table_.volume_a, 0, "the table's part of the swept volume");
+    if (!fact("actuator.dead_volume_b"))
+      scale(row::dead_volume_b, now.volume_b / of_table_.volume_b, 0, "the table's part of the swept volume");
   }
   std::string area_key(const char* key) const {
     return fact("actuator.bore_diameter") ? "actuator.bore_diameter" : key;
@@ -308,6 +347,7 @@ class Facts {
   std::vector<std::string>* where_from_;
   double rated_current_ = 0;  // [A]
   double stroke_ = 0;         // [m] spool travel at rated current
+  Size of_table_;             // ahead of any fact
 };
 
 }  // namespace

@@ -55,10 +55,17 @@ std::string note_of_distrust(const TuneWatch& watch) {
 
 }  // namespace
 
-std::vector<std::string> default_effects(bool on_stand) {
+std::vector<std::string> default_effects(bool on_stand, bool supply_measured) {
   if (on_stand) return {"magnetic_hysteresis", "flow_meter_lag", "edge_radius", "port_line"};
-  return {"magnetic_hysteresis", "armature_angle", "mount_compliance", "edge_transition", "orifice_length",
-          "screen_drop",         "nozzle_land",    "seal_shear",       "nozzle_mismatch"};
+  std::vector<std::string> out = {"magnetic_hysteresis", "armature_angle", "mount_compliance",
+                                  "edge_transition",     "orifice_length", "screen_drop",
+                                  "nozzle_land",         "seal_shear",     "nozzle_mismatch"};
+  if (!supply_measured) out.push_back("supply_droop");  // a measured supply holds its droop
+  return out;
+}
+
+bool supply_is_measured(const std::vector<Log>& logs) {
+  return std::all_of(logs.begin(), logs.end(), [](const Log& l) { return l.has(Signal::supply_pressure); });
 }
 
 void TuneOptions::validate() const {

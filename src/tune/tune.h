@@ -93,7 +93,8 @@ struct TuneOptions {
 };
 
 // What a tune frees unless told: of a valve on an actuator, and of one on a test stand.
-std::vector<std::string> default_effects(bool on_stand);
+std::vector<std::string> default_effects(bool on_stand, bool supply_measured);
+bool supply_is_measured(const std::vector<Log>& logs);  // in every one
 
 struct TuneResult {
   Table table;  // the tuned table

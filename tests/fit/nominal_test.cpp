@@ -52,6 +52,26 @@ const std::map<std::string, double> flight_sheet = {
     {"supply.return_pressure", 5e5},
 };
 
+TEST(RigFacts, FrictionsAndVolumesGrowWithTheCylinder) {
+  // Twice the area, twice the flow: the same speed at twice the force.
+  std::map<std::string, double> sheet = flight_sheet, large = flight_sheet;
+  for (const char* key : {"actuator.area_a", "actuator.area_b", "valve.no_load_flow"}) large[key] *= 2;
+  const Table of_sheet = apply_rig_facts(shipped(), rig_with(sheet)),
+              of_large = apply_rig_facts(shipped(), rig_with(large));
+  for (const int r :
+       {row::piston_coulomb_friction, row::piston_viscous_friction, row::dead_volume_a, row::dead_volume_b}) {
+    EXPECT_NEAR(of_large[r].nominal / of_sheet[r].nominal, 2, 1e-3) << of_sheet[r].name;
+    EXPECT_NEAR(of_large[r].upper / of_sheet[r].upper, 2, 1e-3) << of_sheet[r].name;
+  }
+  large["actuator.dead_volume_a"] = 3e-5;
+  EXPECT_DOUBLE_EQ(apply_rig_facts(shipped(), rig_with(large))[row::dead_volume_a].nominal, 3e-5) << "as stated";
+  large.erase("actuator.area_a");
+  large.erase("actuator.area_b");
+  EXPECT_EQ(apply_rig_facts(shipped(), rig_with(large))[row::piston_coulomb_friction].nominal,
+            shipped()[row::piston_coulomb_friction].nominal)
+      << "nothing is known of the cylinder";
+}
+
 TEST(RigFacts, TheFlightSheetGivesTheShippedTable) {
   const Table before = shipped(), after = apply_rig_facts(before, rig_with(flight_sheet));
   for (int i = 0; i < n_parameters; ++i)
