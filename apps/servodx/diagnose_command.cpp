@@ -8,12 +8,21 @@
 #include "base/error.h"
 #include "base/progress.h"
 #include "commands.h"
+#include "diagnose/assessment.h"
+#include "diagnose/baseline.h"
+#include "diagnose/decide.h"
 #include "diagnose/diagnose.h"
+#include "diagnose/judge.h"
+#include "fit/replay.h"
 #include "invocation.h"
+#include "parameters/table.h"
 #include "report/baseline_file.h"
 #include "report/diagnosis_words.h"
+#include "report/json.h"
 #include "report/pages.h"
 #include "report/text.h"
+#include "servodx/log.h"
+#include "servodx/rig.h"
 
 namespace servodx {
 namespace {
@@ -90,6 +99,10 @@ int run(const Options& options) {
   report::Header& header = invocation.header();
   header.inputs.push_back({options.baseline, file.sha256});
 
+  std::vector<std::string> truths;
+  for (const Log& log : logs)
+    if (invocation.wants_report()) truths.push_back(report::truth_beside(log.path, log.sha256));
+
   header.settings = {{"false_alarm", file.baseline.asked}};
   invocation.tell_of_long_fits(logs);
   if (invocation.dry_run()) return ran;
@@ -110,8 +123,7 @@ int run(const Options& options) {
   if (results.size() < logs.size())
     invocation.note({fmt::format("interrupted: {} of {} logs were judged", results.size(), logs.size())});
   if (invocation.wants_report()) {
-    std::vector<std::string> truths;
-    for (const Diagnosis& d : results) truths.push_back(report::truth_beside(d.log, d.assessment.sha256));
+    truths.resize(results.size());
     invocation.write_report(
         report::diagnose_page(header, results, file.baseline, replays(logs, tuned, rig, results), truths));
   }

@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "base/json_text.h"
 #include "base/sha256.h"
 
 namespace servodx {
@@ -19,7 +20,7 @@ inline void without_wall_time(nlohmann::ordered_json& json) {
 
 // Of a file's bytes; of a result in JSON without its wall times.
 inline std::string fingerprint(const std::string& bytes) {
-  auto json = nlohmann::ordered_json::parse(bytes, nullptr, false);
+  auto json = json_or_discarded<nlohmann::ordered_json>(bytes);
   if (!json.is_object() || !json.contains("seconds")) return sha256(bytes);
   without_wall_time(json);
   return sha256(json.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace));

@@ -6,17 +6,28 @@
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cstdlib>
 #include <filesystem>
 #include <map>
 #include <memory>
+#include <optional>
+#include <set>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <vector>
 
 #include "base/atomic_file.h"
 #include "base/csv.h"
 #include "base/error.h"
+#include "base/json_text.h"
+#include "base/sha256.h"
 #include "commands.h"
 #include "invocation.h"
 #include "manifest.h"
 #include "report/columns.h"
+#include "report/json.h"
 
 namespace servodx {
 namespace fs = std::filesystem;
@@ -27,14 +38,29 @@ struct Options {
   std::string manifest;
 };
 
+bool has_the_types(const report::Json& m) {
+  const auto is_text = [](const report::Json& j) { return j.is_string(); };
+  const auto is_file = [](const report::Json& j) {
+    return j.is_object() && j.contains("path") && j["path"].is_string() && j.contains("sha256") &&
+           j["sha256"].is_string();
+  };
+  const auto all = [](const report::Json& list, const auto& holds) {
+    return list.is_array() && std::all_of(list.begin(), list.end(), holds);
+  };
+  return all(m["arguments"], is_text) && all(m["inputs"], is_file) && all(m["outputs"], is_file) &&
+         m["command"].is_string() && m["directory"].is_string() && m["version"].is_string() &&
+         m["interrupted"].is_boolean();
+}
+
 report::Json read_manifest(const std::string& path) {
-  const report::Json m = report::Json::parse(read_file(path), nullptr, false);
+  const auto m = json_or_discarded<report::Json>(read_file(path));
   const auto refuse = [&](const std::string& rule) {
     throw InputError({path, 0, ""}, rule, "name the file FILE.manifest.json beside a result of servodx");
   };
   if (!m.is_object() || !m.contains("manifest")) refuse("is no manifest");
   for (const char* key : {"command", "directory", "arguments", "inputs", "outputs", "version", "interrupted"})
     if (!m.contains(key)) refuse(fmt::format("has no '{}'", key));
+  if (!has_the_types(m)) refuse("is not as servodx writes it");
   if (m["interrupted"].get<bool>())
     throw InputError({path, 0, "interrupted"}, "that run was interrupted, and where cannot be repeated",
                      "make the result again with its command");
@@ -49,16 +75,16 @@ void require_same_inputs(const report::Json& manifest) {
   }
 }
 
-// Runs this program with the recorded arguments; its words go nowhere, its progress to standard error.
-int run_again(const report::Json& arguments) {
+// Runs this program with these arguments; its words go to `words_to`, its progress to standard error.
+int run_again(const std::vector<std::string>& arguments, const std::string& words_to) {
   std::vector<std::string> words = {"servodx"};
-  for (const report::Json& a : arguments) words.push_back(a.get<std::string>());
+  words.insert(words.end(), arguments.begin(), arguments.end());
   std::vector<char*> argv;
   for (std::string& word : words) argv.push_back(word.data());
   argv.push_back(nullptr);
   posix_spawn_file_actions_t quiet;
   posix_spawn_file_actions_init(&quiet);
-  posix_spawn_file_actions_addopen(&quiet, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
+  posix_spawn_file_actions_addopen(&quiet, STDOUT_FILENO, words_to.c_str(), O_WRONLY, 0);
   pid_t child = 0;
   const int failed = posix_spawn(&child, "/proc/self/exe", &quiet, nullptr, argv.data(), environ);
   posix_spawn_file_actions_destroy(&quiet);
@@ -66,6 +92,41 @@ int run_again(const report::Json& arguments) {
   int status = 0;
   ::waitpid(child, &status, 0);
   return WIFEXITED(status) ? WEXITSTATUS(status) : interrupted;
+}
+
+std::vector<std::string> texts(const report::Json& list) {
+  std::vector<std::string> all;
+  for (const report::Json& text : list) all.push_back(text.get<std::string>());
+  return all;
+}
+
+// The files that the call would write, as a rehearsal of it tells; the manifest may be edited.
+std::vector<std::string> outputs_of(const std::vector<std::string>& arguments) {
+  std::vector<std::string> rehearsal, outputs;
+  constexpr std::string_view option = "--json";
+  for (std::size_t i = 0; i < arguments.size(); ++i) {
+    const std::string& word = arguments[i];
+    if (word == option && i + 1 < arguments.size())
+      outputs.push_back(arguments[++i]);
+    else if (word.starts_with(option) && word.substr(option.size()).starts_with('='))
+      outputs.push_back(word.substr(option.size() + 1));
+    else
+      rehearsal.push_back(word);
+  }
+  rehearsal.insert(rehearsal.end(), {"--dry-run", "--json", "-"});
+  std::string told = (fs::temp_directory_path() / "servodx-rerun-XXXXXX").string();
+  const int made = ::mkstemp(told.data());
+  if (made < 0) throw std::runtime_error("no temporary file can be made");
+  ::close(made);
+  run_again(rehearsal, told);
+  const auto json = json_or_discarded<report::Json>(read_file(told));
+  fs::remove(told);
+  if (json.is_object() && json.contains("outputs"))
+    for (const std::string& output : texts(json["outputs"])) outputs.push_back(output);
+  std::erase(outputs, "-");
+  std::error_code none;
+  std::erase_if(outputs, [&](const std::string& o) { return fs::exists(o, none) && !fs::is_regular_file(o, none); });
+  return outputs;
 }
 
 // What stood there before, to be put back where the new bits are not better.
@@ -81,6 +142,10 @@ class Before {
       fs::remove(path);
   }
   bool was_there(const std::string& path) const { return bytes_.at(path).has_value(); }
+  bool is_as_it_was(const std::string& path) const {
+    const auto& bytes = bytes_.at(path);
+    return fs::exists(path) ? bytes && *bytes == read_file(path) : !bytes;
+  }
 
  private:
   std::map<std::string, std::optional<std::string>> bytes_;
@@ -101,21 +166,42 @@ int run(const Options& options) {
 
   Before before;
   before.keep(manifest_path);
-  for (const report::Json& output : manifest["outputs"]) before.keep(output.at("path").get<std::string>());
-  const int ended = run_again(manifest["arguments"]);
+  std::set<std::string> listed;
+  for (const report::Json& output : manifest["outputs"]) {
+    const auto path = output["path"].get<std::string>();
+    before.keep(path);
+    listed.insert(fs::weakly_canonical(path).string());
+  }
+  const std::vector<std::string> arguments = texts(manifest["arguments"]);
+  std::vector<std::string> unlisted = outputs_of(arguments);
+  if (!unlisted.empty()) unlisted.push_back(unlisted.front() + manifest_suffix);
+  std::erase_if(unlisted,
+                [&](const std::string& path) { return listed.contains(fs::weakly_canonical(path).string()); });
+  for (const std::string& path : unlisted) before.keep(path);
+  const int ended = run_again(arguments, "/dev/null");
   report::Json outputs = report::Json::array();
   report::Columns table("ll", 2);
   bool all_same = true;
   for (const report::Json& output : manifest["outputs"]) {
-    const auto path = output.at("path").get<std::string>();
+    const auto path = output["path"].get<std::string>();
     const bool written = fs::exists(path) && ended != refused && ended != failed_inside;
     const std::string again = written ? read_file(path) : "";
-    const bool same = written && fingerprint(again) == output.at("sha256").get<std::string>();
+    const bool same = written && fingerprint(again) == output["sha256"].get<std::string>();
     all_same = all_same && same;
     if (!same && written) write_file(path + ".rerun", again);
     if (!same || before.was_there(path)) before.put_back(path);
     table.row({same ? "same bits" : "DIFFERS", path + (same || !written ? "" : "; the new one is " + path + ".rerun")});
     outputs.push_back({{"path", path}, {"same", same}});
+  }
+  for (const std::string& path : unlisted) {
+    if (before.is_as_it_was(path)) continue;
+    if (!path.ends_with(manifest_suffix)) {
+      all_same = false;
+      write_file(path + ".rerun", read_file(path));
+      table.row({"NOT LISTED", path + " is written and not in the manifest; the new one is " + path + ".rerun"});
+      outputs.push_back({{"path", path}, {"same", false}, {"listed", false}});
+    }
+    before.put_back(path);
   }
   before.put_back(manifest_path);
   fs::current_path(home);

@@ -1,12 +1,19 @@
 #include "report/baseline_file.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
 #include "base/csv.h"
+#include "base/json_text.h"
 #include "base/key_error.h"
 #include "base/sha256.h"
+#include "diagnose/baseline.h"
+#include "diagnose/conditions.h"
+#include "faults/fault.h"
 #include "faults/registry.h"
+#include "servodx/error.h"
 
 namespace servodx::report {
 namespace {
@@ -18,12 +25,16 @@ class Reader {
   explicit Reader(const std::string& path) : path_(path) {}
 
   Json parse(const std::string& text) const {
+    if (!is_shallow_json(text))
+      throw InputError({path_, 0, ""}, fmt::format("nests deeper than {} levels", deepest_json), make_again);
     try {
       return Json::parse(text);
     } catch (const Json::parse_error& error) {
       const auto end = text.begin() + static_cast<long>(std::min(error.byte, text.size()));
       const long line = 1 + std::count(text.begin(), end, '\n');
       throw InputError({path_, line, ""}, "is not JSON", make_again);
+    } catch (const Json::out_of_range&) {
+      throw InputError({path_, 0, ""}, "holds a number beyond 1.8e308", make_again);
     }
   }
   // The value under a dotted key; `inside` is the object that holds its last part.

@@ -8,8 +8,10 @@
 
 #include "base/csv.h"
 #include "base/error.h"
+#include "base/json_text.h"
 #include "report/columns.h"
 #include "report/handy.h"
+#include "report/parts.h"
 #include "report/replay_part.h"
 
 namespace servodx::report {
@@ -20,9 +22,14 @@ constexpr double rounding = 1e-9;      // relative: sums in another order
 constexpr std::size_t longest = 40;    // characters of a text in a terminal's column
 constexpr std::size_t most_named = 3;  // in the headline
 
+bool is_result(const Json& json) {
+  const auto tool = json.is_object() ? json.find("tool") : json.end();
+  return json.is_object() && json.contains("command") && tool != json.end() && *tool == "servodx";
+}
+
 Json read_result(const std::string& path) {
-  Json json = Json::parse(read_file(path), nullptr, false);
-  if (!json.is_object() || !json.contains("command") || json.value("tool", "") != "servodx")
+  Json json = json_or_discarded<Json>(read_file(path));
+  if (!is_result(json))
     throw InputError({path, 0, ""}, "is no result of servodx", "name a file that --json wrote, or a baseline");
   return json;
 }

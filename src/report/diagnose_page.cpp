@@ -7,11 +7,23 @@
 #include <map>
 
 #include "base/csv.h"
+#include "base/json_text.h"
+#include "base/key_error.h"
+#include "diagnose/assessment.h"
+#include "diagnose/baseline.h"
+#include "diagnose/decide.h"
+#include "diagnose/judge.h"
+#include "faults/fault.h"
+#include "faults/gross_finding.h"
+#include "fit/replay.h"
 #include "report/columns.h"
 #include "report/diagnosis_words.h"
 #include "report/handy.h"
+#include "report/json.h"
+#include "report/page.h"
 #include "report/pages.h"
 #include "report/parameter_part.h"
+#include "report/parts.h"
 #include "report/replay_part.h"
 
 namespace servodx::report {
@@ -211,9 +223,14 @@ std::string truth_beside(const std::string& log, const std::string& sha256) {
   const std::string path = log.substr(0, log.rfind('.')) + ".truth.json";
   std::error_code ignored;
   if (!std::filesystem::is_regular_file(path, ignored)) return "";
-  const Json truth = Json::parse(read_file(path), nullptr, false);
-  const bool of_this_log = truth.is_object() && truth.value("sha256", "") == sha256;
-  return of_this_log ? truth.value("label", "") : "";
+  const Json truth = json_or_discarded<Json>(read_file(path));
+  const auto text = [&](const char* key) -> std::string {
+    if (!truth.is_object() || !truth.contains(key)) return "";
+    if (!truth[key].is_string())
+      throw key_error({path, 0, key}, "is not a text", "it stands beside a log of that name: mend it or move it away");
+    return truth[key].get<std::string>();
+  };
+  return text("sha256") == sha256 ? text("label") : "";
 }
 
 Page diagnose_page(const Header& header, const std::vector<Diagnosis>& results, const Baseline& baseline,

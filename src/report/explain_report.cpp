@@ -7,9 +7,23 @@
 
 #include "base/csv.h"
 #include "base/error.h"
+#include "base/json_text.h"
+#include "effects/unexplained.h"
+#include "evidence/heldout_gain.h"
+#include "explain/blocks.h"
+#include "explain/cause_score.h"
+#include "explain/curves.h"
+#include "explain/healthy.h"
+#include "explain/missing.h"
+#include "explain/outcome.h"
+#include "explain/show.h"
+#include "explain/subject.h"
+#include "explain/valve.h"
 #include "report/columns.h"
 #include "report/explain_words.h"
 #include "report/handy.h"
+#include "servodx/log.h"
+#include "tune/tune.h"
 
 namespace servodx::report {
 namespace {
@@ -377,7 +391,7 @@ HealthyReference read_healthy(const std::string& path) {
   };
   HealthyReference out;
   try {
-    const Json file = Json::parse(read_file(path));
+    const Json file = json_or_discarded<Json>(read_file(path));
     if (!file.contains("explain")) refuse("explain", "says nothing of what healthy logs show of each cause");
     const auto value = [](const Json& j) { return j.is_number() ? j.get<double>() : std::nan(""); };
     for (const Json& l : file.at("explain").at("logs")) {

@@ -151,6 +151,21 @@ TEST_F(MainJob, DiagnoseRefusesABaselineThatDoesNotServe) {
   expect_refused(desk().run(call + "cut.json"), "cut.json:3: is not JSON");
 }
 
+TEST_F(MainJob, DiagnoseRefusesATruthOfOtherTypesBeforeItsFits) {
+  ASSERT_EQ(tuned().code, 0) << tuned().err;
+  ASSERT_EQ(
+      desk()
+          .run("baseline b1.csv b2.csv b3.csv --params tuned.csv --rig rig.toml --quiet -o b.json --false-alarm 0.3")
+          .code,
+      0);
+  desk().write("s1.truth.json", R"({"sha256": 5})");
+  // A rehearsal fits nothing.
+  expect_refused(
+      desk().run("diagnose s1.csv --params tuned.csv --rig rig.toml --baseline b.json --report s1.html --dry-run"),
+      "s1.truth.json: key 'sha256': is not a text");
+  std::filesystem::remove(desk() / "s1.truth.json");
+}
+
 TEST_F(MainJob, BaselineAndDiagnoseWriteTheContractsKeys) {
   ASSERT_EQ(tuned().code, 0) << tuned().err;
   const Ended based = desk().run(

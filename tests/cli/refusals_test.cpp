@@ -77,6 +77,22 @@ const std::vector<Refusal>& refusals() {
        no_change,
        "baseline log.csv --params table.csv -o base.json",
        {"table.csv", "not tuned", "servodx tune"}},
+      {"ResultNestedTooDeep",
+       [](const Desk& d) {
+         d.write("a.json", R"({"tool": "servodx", "command": "x", "a": )" + std::string(100000, '[') +
+                               std::string(100000, ']') + "}");
+         d.write("b.json", bytes_of(d / "a.json"));
+       },
+       "compare a.json b.json",
+       {"a.json: ", "is no result of servodx", "; "}},
+      {"ManifestOfOtherTypes",
+       [](const Desk& d) {
+         d.write("m.json",
+                 R"({"manifest": 1, "command": "x", "directory": ".", "arguments": [5], "inputs": [], "outputs": [],
+                 "version": "1", "interrupted": false})");
+       },
+       "rerun m.json",
+       {"m.json: ", "is not as servodx writes it", "; "}},
       // Rig files
       {"RigFileWithAnUnknownKey",
        [](const Desk& d) { d.write("rig.toml", "[valve]\nrated_currant = \"20 mA\"\n"); },

@@ -331,6 +331,22 @@ TEST(Rerun, SaysWhereBitsDifferAndKeepsBoth) {
   EXPECT_TRUE(std::filesystem::exists(desk / "sim.csv.rerun"));
 }
 
+TEST(Rerun, WhatTheManifestDoesNotListIsNeitherReproducedNorOverwritten) {
+  const Simulated desk;
+  Json manifest = Json::parse(bytes_of(desk / "sim.csv.manifest.json"));
+  manifest["outputs"].erase(0);  // sim.csv
+  manifest["outputs"].erase(0);  // sim.json
+  desk.write("edited.manifest.json", manifest.dump());
+  desk.write("sim.csv", "mine\n");
+  desk.write("sim.json", "mine too\n");
+  const Ended ended = desk.run("rerun edited.manifest.json");
+  EXPECT_EQ(ended.code, 1);
+  EXPECT_NE(ended.out.find("NOT reproduced"), std::string::npos) << ended.out;
+  EXPECT_NE(ended.out.find("sim.csv is written and not in the manifest"), std::string::npos) << ended.out;
+  EXPECT_EQ(bytes_of(desk / "sim.csv"), "mine\n");
+  EXPECT_EQ(bytes_of(desk / "sim.json"), "mine too\n");
+}
+
 TEST(Rerun, RefusesChangedInputs) {
   const Simulated desk;
   desk.write("log.csv", small_log(240));

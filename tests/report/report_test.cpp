@@ -360,6 +360,23 @@ TEST(BaselineFile, ReadsBackToTheSameBits) {
   }
 }
 
+TEST(Truth, OfOtherTypesIsRefusedByKey) {
+  const TemporaryFolder folder;
+  const auto told = [&](const std::string& text) -> std::string {
+    folder.write("log.truth.json", text);
+    try {
+      return truth_beside(folder / "log.csv", "1");
+    } catch (const InputError& error) {
+      return error.rule;
+    }
+  };
+  EXPECT_EQ(told(R"({"sha256": "1", "label": "healthy"})"), "healthy");
+  EXPECT_EQ(told(R"({"sha256": "2", "label": "healthy"})"), "");
+  EXPECT_EQ(told(R"({"sha256": 1, "label": "healthy"})"), "key 'sha256': is not a text");
+  EXPECT_EQ(told(R"({"sha256": "1", "label": ["healthy"]})"), "key 'label': is not a text");
+  EXPECT_EQ(told("[1]"), "");
+}
+
 TEST(BaselineFile, RefusalsNameFileKeyAndMend) {
   const TemporaryFolder folder;
   Header header;
@@ -382,6 +399,8 @@ TEST(BaselineFile, RefusalsNameFileKeyAndMend) {
   EXPECT_EQ(refusal(good.dump()), "accepted");
   EXPECT_EQ(refusal("{\n\"threshold\": oops"), "base.json:2: is not JSON" + mend);
   EXPECT_EQ(refusal("[1]"), "base.json: is no object" + mend);
+  EXPECT_EQ(refusal("{\"threshold\": 1e999}"), "base.json: holds a number beyond 1.8e308" + mend);
+  EXPECT_EQ(refusal(std::string(100000, '[')), "base.json: nests deeper than 100 levels" + mend);
   EXPECT_EQ(refusal("{}"), "base.json: key 'command': is missing" + mend);
   EXPECT_EQ(edited([](Json& j) { j.erase("threshold"); }), "base.json: key 'threshold': is missing" + mend);
   EXPECT_EQ(edited([](Json& j) { j["threshold"] = nullptr; }), "base.json: key 'threshold': is not a number" + mend);
