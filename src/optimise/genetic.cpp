@@ -45,6 +45,14 @@ class Genetic {
     if (saved.n != state_.n || saved.seed != state_.seed || saved.islands.size() != islands())
       throw InputError({}, "the saved genetic search has other dimensions, another seed or other islands",
                        "resume with the options it was started with");
+    if (saved.turn >= options_.population || saved.archive.size() > static_cast<std::size_t>(options_.archive))
+      throw InputError({}, "the saved genetic search has another population or archive",
+                       "resume with the options it was started with");
+    for (std::size_t i = 0; i < islands(); ++i)
+      if (static_cast<int>(saved.islands[i].population.size()) != island_size(i) ||
+          saved.islands[i].reach.size() != kMemory)
+        throw InputError({}, "the saved genetic search has islands of other sizes",
+                         "resume with the options it was started with");
     state_ = saved;
     make_room();
   }

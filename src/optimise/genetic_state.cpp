@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/error.h"
+#include "base/json_text.h"
 
 namespace servodx {
 namespace {
@@ -21,6 +22,45 @@ std::vector<Individual> to_list(const json& j) {
   std::vector<Individual> list;
   for (const json& item : j) list.push_back(to_individual(item));
   return list;
+}
+
+[[noreturn]] void refuse(const std::string& why) {
+  throw InputError({}, "the saved genetic search " + why,
+                   "start without --resume, or give the file that the run wrote");
+}
+
+// json::get_to turns any number into any other: 2^70 generations become a number that never ends.
+int whole(const json& j, const char* key) {
+  constexpr std::int64_t most = 1'000'000'000;
+  const json& value = j.at(key);
+  const bool fits = value.is_number_integer() && value.get<double>() >= 0 && value.get<double>() <= most;
+  if (!fits) refuse(std::string("has no whole number up to 1e9 as '") + key + "'");
+  return value.get<int>();
+}
+std::int64_t count(const json& j, const char* key) {
+  const json& value = j.at(key);
+  if (!value.is_number_integer() || value.get<double>() < 0 || value.get<double>() > 1e15)
+    refuse(std::string("has no count as '") + key + "'");
+  return value.get<std::int64_t>();
+}
+
+void require_sound(const Individual& one, int n) {
+  if (static_cast<int>(one.point.size()) != n) refuse("holds a point of another dimension");
+  for (const double x : one.point)
+    if (!(x >= 0 && x <= 1)) refuse("holds a point outside its box");
+}
+
+void require_sound(const GeneticState& state) {
+  if (state.n < 1) refuse("has no dimension");
+  if (!state.best.point.empty()) require_sound(state.best, state.n);
+  for (const Individual& one : state.archive) require_sound(one, state.n);
+  for (const Island& island : state.islands) {
+    if (island.population.empty()) refuse("has an empty population");
+    for (const Individual& one : island.population) require_sound(one, state.n);
+    if (island.reach.empty() || island.reach.size() != island.mixing.size() ||
+        island.memory_at >= static_cast<int>(island.reach.size()))
+      refuse("has another memory");
+  }
 }
 
 }  // namespace
@@ -55,16 +95,15 @@ std::string to_json(const GeneticState& state) {
 
 GeneticState genetic_state_from_json(const std::string& text) {
   try {
-    const json j = json::parse(text);
-    if (j.at("format") != "servodx genetic state 2") throw InputError({}, "not a genetic state of format 2", "");
+    const json j = json_or_discarded<json>(text);
+    if (!j.is_object()) refuse("is no JSON object");
+    if (j.at("format") != "servodx genetic state 2") refuse("is of another format");
     GeneticState state;
-    j.at("n").get_to(state.n);
+    state.n = whole(j, "n");
     j.at("seed").get_to(state.seed);
-    j.at("generation").get_to(state.generation);
-    j.at("turn").get_to(state.turn);
-    j.at("evaluations").get_to(state.evaluations);
-    j.at("failed").get_to(state.failed);
-    j.at("restarts").get_to(state.restarts);
+    state.generation = whole(j, "generation"), state.turn = whole(j, "turn");
+    state.evaluations = count(j, "evaluations"), state.failed = count(j, "failed");
+    state.restarts = whole(j, "restarts");
     state.best = to_individual(j.at("best"));
     state.archive = to_list(j.at("archive"));
     for (const json& item : j.at("islands")) {
@@ -74,18 +113,18 @@ GeneticState genetic_state_from_json(const std::string& text) {
       item.at("wins").get_to(island.wins);
       item.at("reach").get_to(island.reach);
       item.at("mixing").get_to(island.mixing);
-      item.at("memory_at").get_to(island.memory_at);
+      island.memory_at = whole(item, "memory_at");
       item.at("gains").get_to(island.gains);
       item.at("best_since_start").get_to(island.best_since_start);
       item.at("mark").get_to(island.mark);
       item.at("median_mark").get_to(island.median_mark);
-      item.at("stagnant").get_to(island.stagnant);
+      island.stagnant = whole(item, "stagnant");
       state.islands.push_back(std::move(island));
     }
+    require_sound(state);
     return state;
   } catch (const json::exception& error) {
-    throw InputError({}, std::string("the saved genetic search cannot be read: ") + error.what(),
-                     "start without --resume, or give the file that the run wrote");
+    refuse(error.what());
   }
 }
 

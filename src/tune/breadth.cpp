@@ -16,6 +16,7 @@
 #include "optimise/genetic_state.h"
 #include "optimise/robust_loss.h"
 #include "parameters/list.h"
+#include "servodx/error.h"
 #include "servodx/rig.h"
 #include "tune/tune.h"
 #include "tune/weights.h"
@@ -90,7 +91,11 @@ std::optional<GeneticState> saved_state(const TuneOptions& options) {
   std::ifstream file(options.checkpoint);
   std::stringstream text;
   text << file.rdbuf();
-  return genetic_state_from_json(text.str());
+  try {
+    return genetic_state_from_json(text.str());
+  } catch (const InputError& error) {
+    throw InputError({options.checkpoint, 0, ""}, error.rule, error.mend);
+  }
 }
 
 }  // namespace

@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 #include <omp.h>
 
+#include <nlohmann/json.hpp>
+
 #include "base/error.h"
 #include "functions.h"
 #include "optimise/box_least_squares.h"
@@ -205,6 +207,42 @@ TEST(Genetic, DamagedOrForeignStateIsRefusedInWords) {
   options.generations = 1;
   const GeneticState other = minimise_genetic(3, cost_of(sphere(3)), options).state;
   EXPECT_THROW(minimise_genetic(4, cost_of(sphere(4)), options, {}, {}, &other), InputError);
+}
+
+// A number or a list of a saved state replaced by what a damaged file may hold.
+TEST(Genetic, AStateThatCannotGoOnIsRefusedNotResumed) {
+  GeneticOptions options;
+  options.generations = 1;
+  const BatchCost cost = cost_of(sphere(3));
+  const std::string good = to_json(minimise_genetic(3, cost, options).state);
+  const auto resumes = [&](const char* pointer, const char* value) {
+    auto json = nlohmann::json::parse(good);
+    json[nlohmann::json::json_pointer(pointer)] = nlohmann::json::parse(value);
+    GeneticOptions more = options;
+    more.generations = 2;
+    try {
+      const GeneticState state = genetic_state_from_json(json.dump());
+      minimise_genetic(3, cost, more, {}, {}, &state);
+    } catch (const InputError&) {
+      return false;
+    }
+    return true;
+  };
+  EXPECT_TRUE(resumes("/generation", "1"));
+  for (const char* number : {"1180591620717411303424", "-1", "1.5", "null", "\"1\""}) {
+    EXPECT_FALSE(resumes("/generation", number)) << number;
+    EXPECT_FALSE(resumes("/turn", number)) << number;
+    EXPECT_FALSE(resumes("/islands/0/memory_at", number)) << number;
+  }
+  EXPECT_FALSE(resumes("/turn", "1000000"));
+  EXPECT_FALSE(resumes("/islands/0/population", "[]"));
+  EXPECT_FALSE(resumes("/islands/0/population/0/point", "[0.5]"));
+  EXPECT_FALSE(resumes("/islands/0/population/0/point/1", "7"));
+  EXPECT_FALSE(resumes("/islands/0/population/0/cost", "null"));
+  EXPECT_FALSE(resumes("/islands/0/reach", "[]"));
+  EXPECT_FALSE(resumes("/islands/0/memory_at", "6"));
+  EXPECT_FALSE(resumes("/best/point", "[1, 2]"));
+  EXPECT_THROW(genetic_state_from_json(std::string(100000, '[')), InputError);
 }
 
 TEST(Genetic, FailedPointsAreCountedAndSurvived) {
