@@ -29,7 +29,7 @@ struct ChannelSurvey {
 };
 
 struct Finding {
-  // jitter | gaps | rate | temperature | repeats | saturation | quantisation | sign | values | columns | missing
+  // jitter, gaps, rate, temperature, repeats, saturation, quantisation, sign, response, values, columns or missing
   std::string kind;
   std::string text;
 };

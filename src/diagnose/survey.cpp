@@ -6,6 +6,10 @@
 #include "diagnose/check_log.h"
 #include "diagnose/conditions.h"
 #include "fit/log_data.h"
+#include "servodx/log.h"
+#include "servodx/rig.h"
+#include "signals/signal.h"
+#include "simulate/scenario.h"
 
 namespace servodx {
 namespace {
@@ -19,6 +23,8 @@ constexpr double many_repeats = 0.02;          // part of the rows that equal th
 constexpr double coarse_step = 1.0 / 500;      // resolution over range from which steps show
 constexpr double cold = 283.15, hot = 343.15;  // [K] beyond these oil is far from the table's 40 degC
 constexpr double other_rate = 1.2, other_temperature = 15.0;  // [K] beside the other logs
+// Extremes of 1e9 samples of white noise lie 12 sigmas apart; the least lively channel of the shipped logs moves 32.
+constexpr double of_noise_alone = 12.0;
 constexpr double kelvin = 273.15;
 constexpr double spool_lag = 4e-3, piston_lag = 10e-3;  // [s] within which each answers the drive
 constexpr double half_window = 10e-3;                   // [s] of the difference that stands for piston speed
@@ -139,6 +145,23 @@ void find_turned(const Log& log, LogSurvey& s) {
   turned(Signal::piston_position, speed, piston_lag);
 }
 
+// A verdict needs a response to judge: where all that is measured stands still or is noise, any would be nonsense.
+void find_no_response(LogSurvey& s) {
+  std::string still, noise;
+  for (const ChannelSurvey& c : s.channels) {
+    if (simulated_index(c.signal) < 0) continue;
+    const double range = c.highest - c.lowest;
+    if (range > of_noise_alone * c.noise) return;
+    std::string& list = range > 0 ? noise : still;
+    list += (list.empty() ? "'" : ", '") + std::string(info(c.signal).name) + "'";
+  }
+  if (still.empty() && noise.empty()) return;
+  std::string text = "nothing that is measured moves";
+  if (!still.empty()) text += ": " + still + " never changed";
+  if (!noise.empty()) text += (still.empty() ? ": " : ", ") + noise + " moved no further than noise does";
+  s.findings.push_back({"response", text + "; no pressure, no sensors, or another log?"});
+}
+
 void find_suspicious(const Log& log, LogSurvey& s) {
   const auto found = [&](const char* kind, std::string text) { s.findings.push_back({kind, std::move(text)}); };
   if (s.jitter > much_jitter)
@@ -172,6 +195,7 @@ void find_suspicious(const Log& log, LogSurvey& s) {
       found("quantisation", fmt::format("{}: steps of {:.2g} {} hide the noise and are {:.2g} % of what it moves", name,
                                         c.resolution, info(c.signal).si_unit, 100 * c.resolution / range));
   }
+  find_no_response(s);
   find_turned(log, s);
   for (const std::string& note : log.notes) {  // what the reader saw: limits, spikes, frozen sensors, no excitation
     if (note.find("gap") != std::string::npos && s.gaps > 0) continue;

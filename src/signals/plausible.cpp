@@ -23,6 +23,11 @@ constexpr double frozen_usual_run = 3.0;   // a live channel repeats a value for
 constexpr double no_excitation = 0.005;    // drive range per rated current
 constexpr double gap_over_step = 1.8;      // time step per usual step
 
+// A spool is through in 10 to 30 ms; a stand's slow sweeps are another matter.
+constexpr double slowest = 50.0;     // [Hz]
+constexpr double fastest = 200e3;    // [Hz] beyond what loggers of valves take
+constexpr double longest_log = 1e5;  // [s] a day
+constexpr double no_supply = 5e5;    // [Pa] what a return line holds
 constexpr std::size_t scale_samples = 10000;
 
 double quantile(std::vector<double>& x, double q) {
@@ -46,8 +51,10 @@ class Watch {
 
   // Of the log as a whole.
   std::vector<std::string> notes() {
+    clock();
     gaps();
     excitation();
+    supply();
     return std::move(notes_);
   }
 
@@ -84,13 +91,50 @@ class Watch {
         fmt::format("{}: '{}': {}", log_.path, signal.name, fmt::format(text, std::forward<Args>(args)...)));
   }
 
-  void gaps() {
+  double usual_step() const {
     const auto& t = log_.time;
-    if (t.size() < 3) return;
     std::vector<double> some;  // an even sample of the steps
     for (std::size_t i = 1, stride = t.size() / scale_samples + 1; i < t.size(); i += stride)
       some.push_back(t[i] - t[i - 1]);
-    const double usual = quantile(some, 0.5), longest = sweeps_[index(Signal::time)].largest_step;
+    return quantile(some, 0.5);
+  }
+
+  // Times in another unit than they were read in: everything after takes them at their word.
+  void clock() {
+    const auto& t = log_.time;
+    if (t.size() < 3) return;
+    const double rate = 1.0 / usual_step(), span = t.back() - t.front();
+    const bool on_a_stand =
+        rig_.ports != Ports::actuator || log_.has(Signal::leakage_flow) || log_.has(Signal::control_flow);
+    if (rate < slowest && !on_a_stand)
+      notes_.push_back(
+          fmt::format("{}: {:.3g} samples a second are too few to see a valve move: is the time in ms, and "
+                      "read as s?",
+                      log_.path, rate));
+    if (rate > fastest)
+      notes_.push_back(
+          fmt::format("{}: {:.3g} samples a second are more than loggers take: check the unit of time, or "
+                      "thin the log",
+                      log_.path, rate));
+    if (span > longest_log)
+      notes_.push_back(
+          fmt::format("{}: the log lasts {:.3g} s, over a day: check the unit of time, or cut the log to "
+                      "what matters",
+                      log_.path, span));
+  }
+
+  void supply() {
+    if (!log_.has(Signal::supply_pressure)) return;
+    const double most = sweeps_[index(Signal::supply_pressure)].high;
+    if (most < no_supply)
+      note(info(Signal::supply_pressure), "at most {:.3g} bar: is the rig without pressure, or the unit another?",
+           1e-5 * most);
+  }
+
+  void gaps() {
+    const auto& t = log_.time;
+    if (t.size() < 3) return;
+    const double usual = usual_step(), longest = sweeps_[index(Signal::time)].largest_step;
     if (!(longest > gap_over_step * usual)) return;
     long count = 0;
     for (std::size_t i = 1; i < t.size(); ++i) count += t[i] - t[i - 1] > gap_over_step * usual;

@@ -1,8 +1,10 @@
 // The ways in and out: check-log, init, compare, --dry-run, --report, manifest and rerun, completion and man.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <nlohmann/json.hpp>
 #include <sstream>
 #include <utility>
@@ -120,6 +122,49 @@ TEST(CheckLog, FindsASignalThatIsMappedAndNotThere) {
       for (const char* words : {"column 'P_a'", "'pressure_a'", "line 2", "is it 'P_aa'?"})
         EXPECT_NE(f["text"].get<std::string>().find(words), std::string::npos) << words << " is not in " << f;
     }
+}
+
+// A sine of 1000 samples; what the spool does is the test's.
+std::string sine_log(const std::string& step, const std::function<std::string(int)>& spool,
+                     const std::string& supply = "207") {
+  std::string text = "time [s],command [mA],spool_position [mm],supply_pressure [bar]\n";
+  for (int k = 0; k < 1000; ++k)
+    text += std::to_string(k) + step + "," + fmt::format("{:.4f}", 5 * std::sin(0.01 * k)) + "," + spool(k) + "," +
+            supply + "\n";
+  return text;
+}
+
+std::string follows(int k) { return fmt::format("{:.4f}", 0.2 * std::sin(0.01 * k)); }
+std::string noise(int k) { return std::to_string(k * 7919 % 1013 * 1e-4); }
+std::string nothing(int) { return "0.125"; }
+
+TEST(CheckLog, FindsAClockOrASupplyInAnotherUnit) {
+  const Desk desk;
+  const auto found = [&](const std::string& log, const std::string& words) {
+    desk.write("log.csv", log);
+    for (const Json& f : check(desk, "log.csv")["logs"][0]["suspicious"])
+      if (f["text"].get<std::string>().find(words) != std::string::npos) return true;
+    return false;
+  };
+  const std::string slow = "too few to see a valve move", fast = "more than loggers take", days = "over a day",
+                    pressure = "is the rig without pressure";
+  const std::string good = sine_log("e-3", follows);
+  for (const std::string& words : {slow, fast, days, pressure}) EXPECT_FALSE(found(good, words)) << words;
+  EXPECT_TRUE(found(sine_log("", follows), slow));  // ms read as s; 1 Hz
+  EXPECT_TRUE(found(sine_log("e-6", follows), fast));
+  EXPECT_TRUE(found(sine_log("e300", follows), days));
+  EXPECT_TRUE(found(sine_log("e-3", follows, "0"), pressure));
+}
+
+TEST(CheckLog, FindsALogInWhichNothingMovesOrNoiseIsAll) {
+  const Desk desk;
+  const auto found = [&](const std::string& log) {
+    desk.write("log.csv", log);
+    return has(kinds(check(desk, "log.csv")), "response");
+  };
+  EXPECT_FALSE(found(sine_log("e-3", follows)));
+  EXPECT_TRUE(found(sine_log("e-3", nothing)));
+  EXPECT_TRUE(found(sine_log("e-3", noise)));
 }
 
 TEST(CheckLog, FindsALogOfAnotherRateAmongOthers) {
