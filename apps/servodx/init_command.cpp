@@ -9,10 +9,15 @@
 #include "base/atomic_file.h"
 #include "base/csv.h"
 #include "base/sha256.h"
+#include "base/units.h"
 #include "commands.h"
 #include "invocation.h"
 #include "report/columns.h"
 #include "report/handy.h"
+#include "report/json.h"
+#include "servodx/error.h"
+#include "servodx/log.h"
+#include "servodx/rig.h"
 #include "shipped.h"
 #include "signals/guess.h"
 
@@ -52,7 +57,11 @@ std::string toml_quoted(const std::string& text) {
   std::string safe = "\"";
   for (const char c : text) {
     if (c == '"' || c == '\\') safe += '\\';
-    if (static_cast<unsigned char>(c) >= 0x20) safe += c;
+    // TOML wants these by their number.
+    if (const auto byte = static_cast<unsigned char>(c); byte < 0x20 || byte == 0x7F)
+      safe += fmt::format("\\u{:04X}", byte);
+    else
+      safe += c;
   }
   return safe + "\"";
 }
@@ -96,6 +105,11 @@ void run(const Options& options) {
   for (const std::string& output : {options.output, options.table})
     require_option(!std::filesystem::exists(output), output, "is there already, and may hold your work",
                    "name another file or remove it");
+  // Header, fingerprint and trial reading each read it from the beginning.
+  std::error_code none;
+  if (const auto status = std::filesystem::status(options.log, none);
+      std::filesystem::exists(status) && !std::filesystem::is_regular_file(status))
+    throw InputError({options.log, 0, ""}, "is no file, and can be read but once", "write the log to a file first");
   const Header header = read_header(options.log);
   invocation.header().inputs.push_back({options.log, sha256_of_file(options.log)});
   if (invocation.dry_run()) return;

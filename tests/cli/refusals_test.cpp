@@ -56,6 +56,10 @@ const std::vector<Refusal>& refusals() {
        [](const Desk& d) { d.write("log.csv", small_log(5)); },
        simulate,
        {"log.csv:6: ", "5 rows", "; "}},
+      {"LogOfTheRigBegunFromAPipe",
+       no_change,
+       "init /dev/null -o new.toml --table new.csv",
+       {"/dev/null: ", "can be read but once", "write the log to a file"}},
       // Tables
       {"TableWithSwappedBounds",
        [](const Desk& d) { d.write("table.csv", replaced(shipped_table(), "750,375,1500", "750,1500,375")); },

@@ -243,6 +243,18 @@ TEST(DryRun, PrintsTheSettingsAndWritesNothing) {
 }
 
 // What the header does not say is asked for on the screen, not only in the file.
+TEST(Init, AHeaderWithBytesThatTomlForbidsIsNamedSoThatItIsFound) {
+  const Desk desk;
+  desk.write("log.csv", replaced(replaced(small_log(), "command [mA]", "com\x7Fmand [mA]"), "spool", "sp\x01ool"));
+  ASSERT_EQ(desk.run("init log.csv -o rig.toml --table params.csv").code, 0);
+  const std::string rig = bytes_of(desk / "rig.toml");
+  EXPECT_NE(rig.find("com\\u007Fmand"), std::string::npos) << rig;
+  EXPECT_NE(rig.find("sp\\u0001ool"), std::string::npos) << rig;
+  // The reader of rig files takes it: what it refuses is the log, if anything.
+  const Ended checked = desk.run("check-log log.csv --rig rig.toml");
+  EXPECT_EQ(checked.err.find("is not TOML"), std::string::npos) << checked.err;
+}
+
 TEST(Init, SaysWhatTheHeaderDoesNotSay) {
   const Desk desk;
   std::string log = first_rows("healthy/h12_mixed.csv", 100);
