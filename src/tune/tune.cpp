@@ -7,6 +7,7 @@
 #include <span>
 
 #include "base/error.h"
+#include "effects/supply_droop.h"
 #include "fit/free_values.h"
 #include "fit/problem.h"
 #include "optimise/box_least_squares.h"
@@ -60,7 +61,7 @@ std::vector<std::string> default_effects(bool on_stand, bool supply_measured) {
   std::vector<std::string> out = {"magnetic_hysteresis", "armature_angle", "mount_compliance",
                                   "edge_transition",     "orifice_length", "screen_drop",
                                   "nozzle_land",         "seal_shear",     "nozzle_mismatch"};
-  if (!supply_measured) out.push_back("supply_droop");  // a measured supply holds its droop
+  if (!supply_measured) out.emplace_back(SupplyDroop::name);  // a measured supply holds its droop
   return out;
 }
 
