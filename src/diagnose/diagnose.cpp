@@ -67,8 +67,8 @@ ParameterVector candidate_at(const ParameterVector& base, const HypothesisFit& f
 }
 
 // Of a log with an onset, health speaks of the part before and the faults of the part after.
-std::vector<HypothesisPrediction> explanations_of(const LogData& data, const ParameterVector& base,
-                                                  const HypothesisFits& fits, const std::optional<Onset>& onset) {
+std::vector<HypothesisPrediction> explanations_of(const ParameterVector& base, const HypothesisFits& fits,
+                                                  const std::optional<Onset>& onset) {
   std::vector<HypothesisPrediction> out;
   const auto add = [&](const HypothesisFit& f, std::size_t from) {
     if (f.ok) out.push_back({f.fault, candidate_at(base, f), from});
@@ -145,7 +145,7 @@ Assessment assess(const Log& log, const Table& tuned, const RigFile& rig, const 
       out.onset = data.scenario.time[onset->at];
       fits = std::move(onset->after);
     }
-    out.explanations = explanations_of(data, base, fits, onset);
+    out.explanations = explanations_of(base, fits, onset);
     out.hypotheses = results_of(fits, data, base, tuned);
   }
   out.simulations = work.simulations, out.failed_simulations = work.failed;

@@ -57,8 +57,10 @@ std::string name_of(const Cause& c) { return c.effect + (is_of_sensor(c) ? " at 
 ExplainedCause described(const Inquiry& q, const Subject& told_by, const CauseResult& r, const ExplainedFit& fit) {
   const Cause& c = q.cause(r.cause);
   const bool by_blocks = &told_by != static_cast<const Subject*>(&q.subject());
-  ExplainedCause out{c.effect,          c.where,     c.test, {},        r.heldout_gain,
-                     r.beyond_retuning, r.delta_bic, {},     by_blocks, meaning_of(c)};
+  ExplainedCause out;
+  out.effect = c.effect, out.where = c.where, out.test = c.test, out.meaning = meaning_of(c);
+  out.heldout_gain = r.heldout_gain, out.beyond_retuning = r.beyond_retuning, out.delta_bic = r.delta_bic;
+  out.by_blocks = by_blocks, out.curve = c.curve;
   const auto& values = q.subject().values(r.cause);
   const auto problem = q.subject().problem(fit.causes);
   for (std::size_t j = 0; j < c.numbers.size(); ++j) {

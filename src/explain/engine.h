@@ -63,6 +63,7 @@ struct EngineOptions {
   // that is no news by its size is news by its share, where this lies below a level of its own.
   std::function<double(double share)> p_share;
   double level_of_shares = 0;
+  double least_share = 0;                   // of the held-out misfit: a cause that removes less is refused
   std::function<bool(const Cause&)> among;  // causes to look at; empty: all
   bool compare_with_retuning = true;        // where the base holds: what a cause gains beyond re-tuning
 

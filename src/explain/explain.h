@@ -47,6 +47,7 @@ struct ExplainedCause {
   double delta_bic = 0;
   std::vector<std::string> confusable_with;
   bool by_blocks = false;    // told by the blocks' replay, where the free run settles nothing; gain and BIC are of that
+  bool curve = false;        // learnt: its numbers are the knots
   std::string meaning = {};  // as the lists of effects and of rows say it; empty where they do not
 };
 struct ExplainedCandidate {

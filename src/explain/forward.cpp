@@ -140,7 +140,7 @@ JudgedEvidence judged_evidence(const Subject& subject, const EngineOptions& opti
   JudgedEvidence j;
   j.curve = subject.causes()[at(t.cause())].curve;
   j.is_new = f.is_new || by_share, j.news_by_itself = f.news_by_itself || by_share;
-  j.compared = static_cast<bool>(options.p_new);
+  j.least_share = options.least_share;
   j.share = t.share.value;
   j.abnormal_rows = has_abnormal_rows(round.whole);
   j.level = round.whole.level;

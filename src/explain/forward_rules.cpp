@@ -79,7 +79,7 @@ std::optional<Fate> refusal_of(const JudgedEvidence& j) {
   if (has_to_restore && !(j.p_left_rows > j.level)) return Fate::abnormal_with_it;
   if (j.beside_retuning && j.beyond_retuning <= 0) return Fate::retuning_does_as_well;
   if (!(j.heldout_lower > 0)) return Fate::no_heldout_gain;
-  if (!j.compared && j.share < least_worth) return Fate::removes_too_little;
+  if (j.share < j.least_share) return Fate::removes_too_little;
   return {};
 }
 

@@ -80,7 +80,7 @@ struct JudgedEvidence {
   bool beside_retuning = false;  // it has to gain on top of re-tuning
   double beyond_retuning = 0;    // held-out share that it removes there
   double heldout_lower = 0;      // lower end of the held-out share that it removes
-  bool compared = false;         // with healthy data
+  double least_share = 0;        // that it has to remove
   double share = 0;              // of the held-out misfit of what it speaks of
 };
 // Why it is not a candidate to be taken; none: it is.

@@ -49,7 +49,10 @@ EngineOptions Inquiry::engine_options() const {
   o.seed = options_.seed;
   o.stop = options_.stop;
   o.level = options_.level;
-  if (!test_) return o;
+  if (!test_) {
+    o.least_share = explain_constants::least_worth;
+    return o;
+  }
   if (const int logs = test_->logs_with_shares(); logs > 0) {
     o.p_share = [this](double share) { return test_->share(share); };
     o.level_of_shares = rate_of_question(options_.level, logs, explain_constants::of_shares);

@@ -8,7 +8,6 @@
 #include "base/csv.h"
 #include "base/error.h"
 #include "base/json_text.h"
-#include "effects/unexplained.h"
 #include "evidence/heldout_gain.h"
 #include "explain/blocks.h"
 #include "explain/cause_score.h"
@@ -171,7 +170,7 @@ void add_causes(std::string& text, const std::vector<ExplainedCause>& causes) {
     text += fmt::format("  {} at {}: removes {}{}\n", c.effect, c.where, gain_text(c.heldout_gain),
                         c.by_blocks ? ", of what the blocks miss with measured signals between them" : "");
     for (const ExplainedParameter& p : c.parameters) {
-      if (c.effect == Unexplained::name) break;  // its numbers stand as a curve below
+      if (c.curve) break;  // its numbers stand as a curve below
       const double half = 1.645 * p.std_error;
       text += fmt::format("    {} {}, before {}\n", p.name,
                           std::isfinite(half) ? handy(p.value, p.unit) + " (" + handy(p.value - half, p.unit) + " to " +

@@ -86,8 +86,9 @@ void add_search(Page& page, const TuneResult& result) {
         "What each method gained", "llrrrr", {"stage", "by", "cost from", "to", "simulations", "Jacobians"}, {}, 0};
     for (const StageResult& s : result.stages)
       table.rows.push_back({stage_words(s.stage), words_of(s.by), Cell(digits(s.before, 5), s.before),
-                            Cell(digits(s.after, 5), s.after), Cell(std::to_string(s.simulations), s.simulations),
-                            Cell(std::to_string(s.jacobians), s.jacobians)});
+                            Cell(digits(s.after, 5), s.after),
+                            Cell(std::to_string(s.simulations), static_cast<double>(s.simulations)),
+                            Cell(std::to_string(s.jacobians), static_cast<double>(s.jacobians))});
     page.add(table);
   }
   page.text("Each stage weighs the residuals in its own way: compare levels within a stage, not between stages.");

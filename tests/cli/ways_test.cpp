@@ -142,7 +142,8 @@ TEST(CheckLog, FindsAClockOrASupplyInAnotherUnit) {
   const Desk desk;
   const auto found = [&](const std::string& log, const std::string& words) {
     desk.write("log.csv", log);
-    for (const Json& f : check(desk, "log.csv")["logs"][0]["suspicious"])
+    const Json all = check(desk, "log.csv");
+    for (const Json& f : all["logs"][0]["suspicious"])
       if (f["text"].get<std::string>().find(words) != std::string::npos) return true;
     return false;
   };

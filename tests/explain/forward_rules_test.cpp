@@ -101,7 +101,7 @@ TEST(ForwardRules, TheCommonerIsJudgedFirstAndEachKindHasItsShare) {
 }
 
 TEST(ForwardRules, WhyAJudgedCauseIsRefused) {
-  const JudgedEvidence good{false, true, false, true, 0.5, level, true, 0.1, 0.2, true, 0.3};
+  const JudgedEvidence good{false, true, false, true, 0.5, level, true, 0.1, 0.2, 0.0, 0.3};
   EXPECT_EQ(refusal_of(good), std::nullopt);
   struct Case {
     const char* what;
@@ -126,9 +126,9 @@ TEST(ForwardRules, WhyAJudgedCauseIsRefused) {
   with("re-tuning would, and is not asked", std::nullopt,
        [](JudgedEvidence& j) { j.beyond_retuning = 0, j.beside_retuning = false; });
   with("no gain beyond the interval", Fate::no_heldout_gain, [](JudgedEvidence& j) { j.heldout_lower = 0; });
-  with("it removes a percent of what healthy logs say is new", std::nullopt, [](JudgedEvidence& j) { j.share = 0.01; });
-  with("it removes a percent, and nothing says that it is new", Fate::removes_too_little,
-       [](JudgedEvidence& j) { j.share = 0.01, j.compared = false; });
+  with("it removes a percent, and more is not asked", std::nullopt, [](JudgedEvidence& j) { j.share = 0.01; });
+  with("it removes a percent where a twentieth is asked", Fate::removes_too_little,
+       [](JudgedEvidence& j) { j.share = 0.01, j.least_share = 0.05; });
   for (const Case& c : cases) EXPECT_EQ(refusal_of(c.judged), c.fate) << c.what;
 }
 
