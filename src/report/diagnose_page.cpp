@@ -43,7 +43,9 @@ const HypothesisResult* nearest_fault(const Diagnosis& d) {
 }
 
 std::string headline(const Diagnosis& d) {
-  if (d.verdict == VerdictKind::healthy) return file_name(d.log) + " is like the fault-free logs";
+  if (d.verdict == VerdictKind::healthy)
+    return file_name(d.log) +
+           (d.suspicion ? " cannot be told from the fault-free logs" : " is like the fault-free logs");
   if (d.verdict == VerdictKind::unknown) return file_name(d.log) + " is not healthy, and no known fault explains it";
   const std::string size = size_words(d);
   return words(label_of(d.fault)) + (size.empty() ? "" : ", " + size);
@@ -59,11 +61,10 @@ std::vector<std::string> reasons(const Diagnosis& d, const Baseline& baseline) {
   const bool above = d.error > d.threshold;
   const bool seen_outright = d.assessment.gross != GrossFinding::none;
   if (seen_outright) why.push_back("Seen without a fit: " + words_of(d.assessment.gross) + ".");
-  const std::size_t n = baseline.scores.size();
   why.push_back(
       fmt::format("Its error is {}; the threshold, set by {} fault-free logs, is {}. A fault-free log is as "
                   "far off with {}.",
-                  digits(d.error), n, digits(d.threshold), chance_words(d)));
+                  digits(d.error), d.baseline_logs, digits(d.threshold), chance_words(d)));
   if (d.unlike) why.push_back("Beware: " + unlike_words(d) + ". The threshold may not hold for it.");
   const HypothesisResult* healthy = result_of(d, nullptr);
   const HypothesisResult* best = d.fault ? result_of(d, d.fault) : nearest_fault(d);
