@@ -75,7 +75,7 @@ Decision decide(const Evidence& e) {
   if (const auto outright = seen_outright(e)) return name_outright(std::move(d), *outright);
   const std::size_t best = most_probable(e.hypotheses);
   const HypothesisEvidence& h = e.hypotheses[best];
-  if (h.fault && explains_enough(h, e.hypotheses.front().adequacy, e.usual_adequacy))
+  if (h.fault && e.gain > e.threshold && explains_enough(h, e.hypotheses.front().adequacy, e.usual_adequacy))
     return name_fitted(std::move(d), best);
   return name_nothing(std::move(d), best);
 }

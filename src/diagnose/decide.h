@@ -2,7 +2,7 @@
 //
 //   error at or below the threshold              healthy; a fault that is the most probable is suspected
 //   a finding that names a fault outright        that fault
-//   the most probable is a fault that explains enough   that fault
+//   the gain is beyond the threshold, and the most probable is a fault that explains enough   that fault
 //   else                                         unknown
 #pragma once
 #include <cstddef>
@@ -26,6 +26,7 @@ struct HypothesisEvidence {
 
 struct Evidence {
   double error = 0, threshold = 0;  // deviates from health
+  double gain = 0;                  // of these, what the best fault explains: a name needs evidence of its own
   double usual_adequacy = 0;        // the largest of the baseline's logs
   GrossFinding gross = GrossFinding::none;
   std::vector<HypothesisEvidence> hypotheses;  // healthy first; at least that one

@@ -66,7 +66,8 @@ Evidence evidence_of(const Assessment& a, const Baseline& baseline) {
   const SuspectLog suspect = suspect_of(a);
   const HealthyLaw law(baseline, &suspect);
   Evidence e;
-  e.error = law.error_of(score_of(a, usual_gains(baseline)), a.hypotheses.front().adequacy);
+  e.gain = score_of(a, usual_gains(baseline));
+  e.error = law.error_of(e.gain, a.hypotheses.front().adequacy);
   e.threshold = law.limit();
   e.usual_adequacy = baseline.adequacy_limit;
   e.gross = a.gross;
@@ -87,11 +88,10 @@ Diagnosis judge(Assessment a, const Baseline& baseline) {
   const HealthyLaw law(baseline, &suspect);
   d.p_value = p_value_of(evidence.error, baseline, law);
   d.baseline_logs = law.logs();
-  const double gain = score_of(a, usual_gains(baseline));
   if (decision.verdict != VerdictKind::unknown && decision.severity != SeveritySource::seen_outright)
-    weigh_health(decision.probabilities, law.chance_of_gain(gain), law.rate());
-  if (decision.suspected && law.chance_of_gain(gain) <= k::worth_saying)
-    d.suspicion = suspicion_of(a.hypotheses[*decision.suspected], gain, law);
+    weigh_health(decision.probabilities, law.chance_of_gain(evidence.gain), law.rate());
+  if (decision.suspected && law.chance_of_gain(evidence.gain) <= k::worth_saying)
+    d.suspicion = suspicion_of(a.hypotheses[*decision.suspected], evidence.gain, law);
   d.unlike = unlike_all(a.test, baseline);
   for (std::size_t i = 0; i < a.hypotheses.size(); ++i)
     d.probabilities.push_back({a.hypotheses[i].fault, decision.probabilities[i]});

@@ -47,7 +47,7 @@ struct Case {
 
 Evidence evidence_of(const Case& c) {
   Evidence e;
-  e.error = c.error;
+  e.error = e.gain = c.error;
   e.threshold = 3;
   e.usual_adequacy = 1.5;  // so a fault may leave hypot(3, a quarter of what health leaves)
   e.gross = c.gross;
@@ -199,9 +199,19 @@ TEST(Decide, AFaultThatStandsFirstInAHealthyLogIsSuspectedWhereItGains) {
   EXPECT_EQ(decide(e).suspected, std::nullopt) << "it is the verdict";
 }
 
-TEST(Decide, ASizeAtTheEndOfItsRangeIsHeldToHealthsMeasure) {
+TEST(Decide, AFaultIsNotNamedForWhatNoFaultExplains) {
   Evidence e;
   e.error = 9, e.threshold = 3, e.usual_adequacy = 1.5;
+  e.hypotheses = {{nullptr, 0.3, 3}, {&first, 0.7, 2.9}};
+  e.gain = 0.8;
+  EXPECT_EQ(decide(e).verdict, VerdictKind::unknown) << "unlike health, and the fault gains nothing";
+  e.gain = 3.1;
+  EXPECT_EQ(decide(e).verdict, VerdictKind::fault);
+}
+
+TEST(Decide, ASizeAtTheEndOfItsRangeIsHeldToHealthsMeasure) {
+  Evidence e;
+  e.error = e.gain = 9, e.threshold = 3, e.usual_adequacy = 1.5;
   e.hypotheses = {{nullptr, 0, 40}, {&first, 1, 9}};
   EXPECT_EQ(decide(e).verdict, VerdictKind::fault) << "9 of hypot(3, 40 / 4)";
   e.hypotheses[1].at_worst = true;
