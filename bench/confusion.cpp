@@ -25,13 +25,13 @@
 #include "fit/log_data.h"
 #include "fit/problem.h"
 #include "fit/replay.h"
-#include "tune/tune.h"
 #include "fit/tuned_state.h"
 #include "parameters/table.h"
 #include "report/diagnosis_words.h"
 #include "servodx/rig.h"
 #include "signals/log.h"
 #include "simulate/scenario.h"
+#include "tune/tune.h"
 
 using namespace servodx;
 namespace fs = std::filesystem;
@@ -144,16 +144,16 @@ int main(int argc, char** argv) {
     } else {
       TuneOptions o;
       o.generations = generations;
-      const TuneResult t = tune(tune_logs, nominal, rig, o);
+      const TuneResult t = tune_table(tune_logs, nominal, rig, o);
       tuned = t.table;
       if (!kept.empty()) write_table(kept, tuned);
     }
     const DiagnoseOptions options;
-    const Baseline baseline = make_baseline(base_logs, tuned, rig, 0.01, options);
+    const DetectionBaseline baseline = make_baseline(base_logs, tuned, rig, 0.01, options);
     promised = baseline.promised;
     fmt::print("rotation {}: {} tune, {} baseline, {} held out; threshold {:.2f}, adequacy limit {:.2f}\n", r,
                tune_logs.size(), base_logs.size(), held.size(), baseline.threshold, baseline.adequacy_limit);
-    for (const Baseline::Score& s : baseline.scores) {
+    for (const DetectionBaseline::Score& s : baseline.scores) {
       fmt::print("    baseline {:26s} score {:6.2f} adequacy {:.2f} gains", fs::path(s.log).filename().string(),
                  s.score, s.adequacy);
       for (const auto& [fault, gain] : s.gains)

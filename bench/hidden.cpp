@@ -15,7 +15,6 @@
 #include "explain/explain.h"
 #include "explain/healthy.h"
 #include "explain/outcome.h"
-#include "tune/tune.h"
 #include "hidden/cases.h"
 #include "parameters/table.h"
 #include "report/explain_report.h"
@@ -23,6 +22,7 @@
 #include "report/json.h"
 #include "servodx/log.h"
 #include "servodx/rig.h"
+#include "tune/tune.h"
 
 using namespace servodx;
 
@@ -68,8 +68,8 @@ int main(int argc, char** argv) {
       options.generations = generations;
       options.seed = seed;
       write_table(table_path,
-                  tune(read(hidden::healthy_logs(bench, seed, tuning, fmt::format("tune_v{}", valve), seconds)),
-                       read_table(source + "/params/borello2009.csv"), bench.rig, options)
+                  tune_table(read(hidden::healthy_logs(bench, seed, tuning, fmt::format("tune_v{}", valve), seconds)),
+                             read_table(source + "/params/borello2009.csv"), bench.rig, options)
                       .table);
     }
     const Table tuned = read_table(table_path);

@@ -22,7 +22,7 @@ struct Options {
   CommonOptions common;
   std::vector<std::string> logs;
   std::string params, output;
-  double false_alarm = Baseline{}.asked;
+  double false_alarm = DetectionBaseline{}.asked;
 };
 
 // What `explain` asks of healthy logs.
@@ -56,7 +56,7 @@ int run(const Options& options) {
   if (invocation.dry_run()) return ran;
 
   const std::atomic<bool>& stop = stop_on_interrupt();
-  const Baseline baseline = make_baseline(
+  const DetectionBaseline baseline = make_baseline(
       logs, tuned, rig, options.false_alarm,
       {.seed = options.common.seed, .threads = options.common.threads, .quiet = options.common.quiet, .stop = &stop},
       &header.simulations, &header.failed_simulations);

@@ -10,14 +10,14 @@
 #include "base/csv.h"
 #include "commands.h"
 #include "invocation.h"
+#include "parameters/table.h"
 #include "prognose/check.h"
 #include "prognose/monitor.h"
-#include "report/prognosis.h"
-#include "store/history.h"
-#include "parameters/table.h"
 #include "report/json.h"
+#include "report/prognosis.h"
 #include "servodx/log.h"
 #include "servodx/rig.h"
+#include "store/history.h"
 
 namespace servodx {
 namespace {
@@ -43,8 +43,8 @@ void run(const Options& options) {
   const RigFile rig = invocation.rig();
   const Table tuned = invocation.tuned_table(options.params);
   const Log log = invocation.log(options.log, rig);
-  std::optional<History> history;  // a new one is made only when there is something to store
-  if (History::there(options.history)) history.emplace(options.history, false);
+  std::optional<HistoryFile> history;  // a new one is made only when there is something to store
+  if (HistoryFile::there(options.history)) history.emplace(options.history, false);
 
   CheckOptions how = options.check;
   how.threads = options.common.threads;

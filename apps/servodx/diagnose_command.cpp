@@ -47,7 +47,7 @@ int code_of(const Diagnosis& diagnosis) {
 }
 
 std::vector<Diagnosis> judge_each(const std::vector<Log>& logs, const Table& tuned, const RigFile& rig,
-                                  const Baseline& baseline, const DiagnoseOptions& options) {
+                                  const DetectionBaseline& baseline, const DiagnoseOptions& options) {
   Progress progress("diagnose", {.quiet = options.quiet});
   std::vector<Diagnosis> results;
   long simulations = 0;

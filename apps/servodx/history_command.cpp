@@ -11,9 +11,9 @@
 #include "commands.h"
 #include "invocation.h"
 #include "report/columns.h"
+#include "report/json.h"
 #include "store/history.h"
 #include "store/history_csv.h"
-#include "report/json.h"
 
 namespace servodx {
 namespace {
@@ -27,7 +27,7 @@ struct Options {
 void show(const Options& options) {
   Invocation invocation("history show", options.common);
   invocation.check_files({options.history}, {});
-  const History history(options.history, false);
+  const HistoryFile history(options.history, false);
   if (invocation.dry_run()) return;
   report::Columns rows("llrrr");
   rows.row({"valve", "serial", "checks", "hours", "events"});
@@ -46,7 +46,7 @@ void show(const Options& options) {
                       {"unit", "h"},
                       {"events", events}});
   }
-  invocation.finish(rows.text(), {{"schema", History::schema_version()}, {"valves", valves}});
+  invocation.finish(rows.text(), {{"schema", HistoryFile::schema_version()}, {"valves", valves}});
 }
 
 void add_event(const Options& options) {
@@ -56,7 +56,7 @@ void add_event(const Options& options) {
                  "--at 1250.5");
   Invocation invocation("history event", options.common);
   invocation.check_files({options.history}, {});
-  History history(options.history, false);
+  HistoryFile history(options.history, false);
   history.of(options.valve);  // refuses a name that is only mistyped
   invocation.header().settings = {{"valve", options.valve}, {"at", options.at}, {"kind", options.kind}};
   if (invocation.dry_run()) return;
@@ -68,7 +68,7 @@ void add_event(const Options& options) {
 void write_csv(const Options& options) {
   Invocation invocation("history export", options.common);
   invocation.check_files({options.history}, {options.file});
-  const History history(options.history, false);
+  const HistoryFile history(options.history, false);
   if (invocation.dry_run()) return;
   const HistoryContent content = history.content();
   write_file(options.file, history_csv(content));
@@ -81,8 +81,8 @@ void read_csv(const Options& options) {
   Invocation invocation("history import", options.common);
   invocation.check_files({options.file}, {options.history});
   const HistoryContent content = read_history_csv(options.file);
-  std::optional<History> history;  // a new one is made only when there is something to store
-  if (History::there(options.history)) history.emplace(options.history, false);
+  std::optional<HistoryFile> history;  // a new one is made only when there is something to store
+  if (HistoryFile::there(options.history)) history.emplace(options.history, false);
   if (invocation.dry_run()) return;
   if (!history) history.emplace(options.history, true);
   const Restored count = history->restore(content);
@@ -95,7 +95,7 @@ void read_csv(const Options& options) {
 void verify(const Options& options, int& exit_code) {
   Invocation invocation("history verify", options.common);
   invocation.check_files({options.history}, {});
-  const History history(options.history, false);
+  const HistoryFile history(options.history, false);
   if (invocation.dry_run()) return;
   const std::string found = history.verify();
   if (found != "ok") exit_code = failed_inside;

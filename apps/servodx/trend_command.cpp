@@ -28,13 +28,13 @@ struct Options {
   std::vector<std::string> failures, limits;
   double loop = 0;  // [1/s]
   bool all = false;
-  TrendOptions trend;
+  TrendSettings trend;
 };
 
 // "fidelity=1.7" above, "parameter:3=<20" below; "parameter:14=20x" times the tuned value (of the paper's checks: the
 // healthy one); "parameter:14=0.9e-3A" the current that the spool's friction takes; "parameter:22=30e-6~1e-6" known to
 // one standard deviation.
-void add_failure(const std::string& text, TrendOptions& to) {
+void add_failure(const std::string& text, TrendSettings& to) {
   const auto equals = text.find('=');
   const CheckName name = text.substr(0, equals);
   std::string level = equals == std::string::npos ? "" : text.substr(equals + 1);
@@ -102,7 +102,7 @@ void run(Options options) {
     options.trend.seeded = read_seeded_csv(options.seeded);
     invocation.header().inputs.push_back({options.seeded, sha256_of_file(options.seeded)});
   }
-  const History history(options.history, false);
+  const HistoryFile history(options.history, false);
   std::optional<ValveHistory> one;
   std::set<CheckName> held;
   if (options.all) {

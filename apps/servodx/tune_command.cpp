@@ -102,7 +102,7 @@ int run(const Options& options) {
   if (!tune_options.checkpoint.empty()) outputs.push_back(tune_options.checkpoint);
   invocation.check_files(inputs, outputs);
   const RigFile rig = invocation.rig();
-  const Table nominal = invocation.table(options.params);  // tune() applies the facts, effects' rows included
+  const Table nominal = invocation.table(options.params);  // tune_table() applies the facts, effects' rows included
   const std::vector<Log> logs = invocation.logs(options.logs, rig);
 
   if (!tune_options.effects)
@@ -127,7 +127,7 @@ int run(const Options& options) {
   if (invocation.dry_run()) return ran;
 
   tune_options.stop = &stop_on_interrupt();
-  const TuneResult result = tune(logs, nominal, rig, tune_options);
+  const TuneResult result = tune_table(logs, nominal, rig, tune_options);
   write_table(options.output, result.table);
 
   header.simulations = result.simulations;

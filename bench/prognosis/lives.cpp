@@ -83,7 +83,7 @@ std::string seeded_csv(const Bench& b, const std::string& folder) {
 
 // Failure levels of every check that a degradation moves, by a seeded-fault test of valves of the type in warm oil, as
 // a user would set them: of the paper's checks a multiple of healthy; of the parameters as the degradation is stated.
-TrendOptions seeded_fault(const Bench& b, const Degradation& d, const std::string& folder) {
+TrendSettings seeded_fault(const Bench& b, const Degradation& d, const std::string& folder) {
   constexpr double warm = 283;  // [K]
   std::map<CheckName, std::vector<double>> healthy, failed;
   const auto add = [&](const ValveHistory& h, bool whole_way, std::map<CheckName, std::vector<double>>& to) {
@@ -98,7 +98,7 @@ TrendOptions seeded_fault(const Bench& b, const Degradation& d, const std::strin
   };
   for (int v = 0; v < seeded_valves; ++v)
     add(seeded_looks(b, v, nullptr, folder), false, healthy), add(seeded_looks(b, v, &d, folder), true, failed);
-  TrendOptions options;
+  TrendSettings options;
   options.seeded = read_seeded_csv(folder + "/seeded.csv");
   for (const auto& [name, values] : healthy) {
     if (failed[name].empty()) continue;
@@ -153,7 +153,7 @@ struct Judged {
 
 constexpr double lambdas[] = {0.5, 0.7, 0.9};
 
-Judged judge(const Unit& unit, const ValveHistory& h, double lambda, const TrendOptions& options) {
+Judged judge(const Unit& unit, const ValveHistory& h, double lambda, const TrendSettings& options) {
   const ValveHistory seen = until(h, lambda * unit.life);
   const ValveTrend t = trend(seen, options);
   const double now = seen.recordings.back().at, remaining = unit.life - now, horizon = 5 * unit.life;
@@ -207,7 +207,7 @@ void lives(const Bench& b, const std::string& out, int units, int checks, int fi
   std::vector<ValveHistory> histories(all.size());
   for_each(n, "lives", [&](int i) { histories[i] = history_of(b, all[i], checks, out); });
   write_file(out + "/readings.csv", readings_csv(b, all, histories));
-  std::map<std::string, TrendOptions> seeded;
+  std::map<std::string, TrendSettings> seeded;
   for (const Degradation& d : degradations) seeded[d.name];
   for_each(seeded_valves, "seeded valves", [&](int v) { seeded_looks(b, v, nullptr, out); });
   for_each(std::size(degradations), "seeded faults", [&](int i) {
@@ -255,7 +255,7 @@ void lives(const Bench& b, const std::string& out, int units, int checks, int fi
       if (!all[i].degradation) return;
       for (std::size_t l = 0; l < std::size(lambdas); ++l)
         judged[i][l] =
-            judge(all[i], histories[i], lambdas[l], own ? TrendOptions{} : seeded.at(all[i].degradation->name));
+            judge(all[i], histories[i], lambdas[l], own ? TrendSettings{} : seeded.at(all[i].degradation->name));
     });
     std::map<double, Tally> of_all;
     std::map<std::string, std::map<double, Tally>> of_each;

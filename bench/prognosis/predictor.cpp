@@ -38,7 +38,7 @@ ValveHistory read_with(double noise, const Unit& unit, int checks) {
 void predictor(int units, int checks) {
   std::vector<Unit> all = plan(0, units);
   std::erase_if(all, [](const Unit& u) { return !u.degradation; });
-  TrendOptions options;
+  TrendSettings options;
   options.failure["parameter:9"] = {std::nullopt, 1.0};
   std::printf("%zu lives of %d checks, alpha 0.2; no alert counts as a miss\n%8s %8s %8s %8s %8s %8s\n", all.size(),
               checks, "noise", "lambda", "alerted", "met", "covered", "late");

@@ -19,7 +19,7 @@ void store(const std::string& file, long rows) {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - from).count();
   };
   constexpr long per_valve = 200, figures_of_one = 8;
-  History history(file, true);
+  HistoryFile history(file, true);
   HistoryContent content;
   Random random(3);
   long written = 0;

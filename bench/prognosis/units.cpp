@@ -72,7 +72,7 @@ Table own_table(const Bench& b, const std::string& name, const rig::RigModel& va
     options.priors = {{"fixed_orifice_diameter", 0.02 * b.tuned[row::fixed_orifice_diameter].nominal},
                       {"orifice_slenderness", 0.3},
                       {"screen_viscous_drop", 0.5e5}};
-    write_table(file, tune(logs, b.tuned, b.rig, options).table);
+    write_table(file, tune_table(logs, b.tuned, b.rig, options).table);
   }
   return read_table(file);
 }

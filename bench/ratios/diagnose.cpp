@@ -7,7 +7,6 @@
 #include <filesystem>
 
 #include "diagnose/assessment.h"
-#include "tune/tune.h"
 #include "parameters/table.h"
 #include "ratios/measure.h"
 #include "ratios/rows.h"
@@ -17,6 +16,7 @@
 #include "rig/rig_run.h"
 #include "servodx/log.h"
 #include "servodx/rig.h"
+#include "tune/tune.h"
 
 namespace servodx::bench {
 
@@ -29,7 +29,7 @@ void diagnose_rows(Report& report, const Choice& choice) {
   TuneOptions from_nominal;
   from_nominal.generations = 0;
   from_nominal.quiet = true;
-  const Table tuned = tune(healthy, read_table(folder + "params/borello2009.csv"), rig, from_nominal).table;
+  const Table tuned = tune_table(healthy, read_table(folder + "params/borello2009.csv"), rig, from_nominal).table;
 
   rig::RigRun run;
   run.duration = 10;

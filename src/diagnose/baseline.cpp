@@ -23,7 +23,7 @@ double score_of(const Assessment& a, const FaultGains& usual) {
   return a.gross == GrossFinding::none ? score : std::max(score, k::gross_score);
 }
 
-FaultGains usual_gains(const Baseline& baseline, int left_out) {
+FaultGains usual_gains(const DetectionBaseline& baseline, int left_out) {
   FaultGains usual;
   for (std::size_t i = 0; i < baseline.scores.size(); ++i)
     if (static_cast<int>(i) != left_out)
@@ -33,8 +33,8 @@ FaultGains usual_gains(const Baseline& baseline, int left_out) {
   return usual;
 }
 
-Baseline baseline_of(const std::vector<Assessment>& healthy, double false_alarm) {
-  Baseline b;
+DetectionBaseline baseline_of(const std::vector<Assessment>& healthy, double false_alarm) {
+  DetectionBaseline b;
   b.asked = false_alarm;
   for (const Assessment& a : healthy) {
     const double adequacy = a.hypotheses.front().adequacy;
@@ -58,12 +58,12 @@ Baseline baseline_of(const std::vector<Assessment>& healthy, double false_alarm)
   return b;
 }
 
-bool keeps_rate(const Baseline& b) { return promise_kept(b.promised, b.asked); }
+bool keeps_rate(const DetectionBaseline& b) { return promise_kept(b.promised, b.asked); }
 
-const Baseline::Score* nearest_of_unlike(const TestConditions& test, const Baseline& baseline) {
-  const Baseline::Score* nearest = nullptr;
+const DetectionBaseline::Score* nearest_of_unlike(const TestConditions& test, const DetectionBaseline& baseline) {
+  const DetectionBaseline::Score* nearest = nullptr;
   double least = HUGE_VAL;
-  for (const Baseline::Score& s : baseline.scores) {
+  for (const DetectionBaseline::Score& s : baseline.scores) {
     if (!s.test) return nullptr;
     if (const double d = distance(test, *s.test); !nearest || d < least) least = d, nearest = &s;
   }

@@ -19,7 +19,7 @@ struct ByName {
 };
 using FaultGains = std::map<const Fault*, double, ByName>;  // of each fault over health
 
-struct Baseline {
+struct DetectionBaseline {
   double threshold =
       0;  // of the score [deviates], for a suspect whose test is like none that the model does not follow
   double asked = 0.01, promised = 0, promised_95 = 0;  // false-alarm rates
@@ -42,16 +42,16 @@ struct Baseline {
 double score_of(const Assessment& assessment, const FaultGains& usual);
 
 // Mean gain of each fault over the baseline's logs, but for log `left_out` (-1: none).
-FaultGains usual_gains(const Baseline& baseline, int left_out = -1);
+FaultGains usual_gains(const DetectionBaseline& baseline, int left_out = -1);
 
 // Scores every log by the others, and sets threshold and promise for the rate asked. Empty without assessments.
-Baseline baseline_of(const std::vector<Assessment>& healthy, double false_alarm);
+DetectionBaseline baseline_of(const std::vector<Assessment>& healthy, double false_alarm);
 
 // Whether the rate promised is the rate asked for.
-bool keeps_rate(const Baseline& baseline);
+bool keeps_rate(const DetectionBaseline& baseline);
 
 // The log of the baseline whose test is nearest, where none is of a test like this one. Empty also where the baseline
 // does not say what tests it holds.
-const Baseline::Score* nearest_of_unlike(const TestConditions& test, const Baseline& baseline);
+const DetectionBaseline::Score* nearest_of_unlike(const TestConditions& test, const DetectionBaseline& baseline);
 
 }  // namespace servodx

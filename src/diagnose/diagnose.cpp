@@ -152,7 +152,7 @@ Assessment assess(const Log& log, const Table& tuned, const RigFile& rig, const 
   return out;
 }
 
-Diagnosis diagnose(const Log& log, const Table& tuned, const RigFile& rig, const Baseline& baseline,
+Diagnosis diagnose(const Log& log, const Table& tuned, const RigFile& rig, const DetectionBaseline& baseline,
                    const DiagnoseOptions& options) {
   return judge(assess(log, tuned, rig, options), baseline);
 }

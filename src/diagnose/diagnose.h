@@ -32,11 +32,12 @@ struct DiagnoseOptions {
 // Interrupted through options.stop, it returns at once with an assessment to be thrown away.
 Assessment assess(const Log& log, const Table& tuned, const RigFile& rig, const DiagnoseOptions& options);
 
-Diagnosis diagnose(const Log& log, const Table& tuned, const RigFile& rig, const Baseline& baseline,
+Diagnosis diagnose(const Log& log, const Table& tuned, const RigFile& rig, const DetectionBaseline& baseline,
                    const DiagnoseOptions& options);
 
 // Refuses logs that tuned the table (by hash) and fewer than three logs.
-Baseline make_baseline(const std::vector<Log>& logs, const Table& tuned, const RigFile& rig, double false_alarm,
-                       const DiagnoseOptions& options, long* simulations = nullptr, long* failed = nullptr);
+DetectionBaseline make_baseline(const std::vector<Log>& logs, const Table& tuned, const RigFile& rig,
+                                double false_alarm, const DiagnoseOptions& options, long* simulations = nullptr,
+                                long* failed = nullptr);
 
 }  // namespace servodx

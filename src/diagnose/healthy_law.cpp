@@ -13,24 +13,24 @@ namespace k = diagnose_constants;
 
 constexpr std::size_t fewest_logs = 3;  // fewer set no limit: then all logs do
 
-std::vector<std::size_t> all_of(const Baseline& b) {
+std::vector<std::size_t> all_of(const DetectionBaseline& b) {
   std::vector<std::size_t> out;
   for (std::size_t i = 0; i < b.scores.size(); ++i) out.push_back(i);
   return out;
 }
 
-std::vector<std::size_t> logs_for(const Baseline& b, const SuspectLog* suspect) {
+std::vector<std::size_t> logs_for(const DetectionBaseline& b, const SuspectLog* suspect) {
   const bool lost = suspect && !is_followed(suspect->adequacy);
   std::vector<std::size_t> out;
   for (std::size_t i = 0; i < b.scores.size(); ++i) {
-    const Baseline::Score& s = b.scores[i];
+    const DetectionBaseline::Score& s = b.scores[i];
     const bool alike = lost && s.test && distance(suspect->test, *s.test) <= 1;
     if (alike || is_followed(s.adequacy)) out.push_back(i);
   }
   return out.size() < fewest_logs ? all_of(b) : out;
 }
 
-std::vector<double> squares_of(const Baseline& b, const std::vector<std::size_t>& logs) {
+std::vector<double> squares_of(const DetectionBaseline& b, const std::vector<std::size_t>& logs) {
   std::vector<double> out;
   for (const std::size_t i : logs) out.push_back(b.scores[i].score * b.scores[i].score);
   return out;
@@ -56,13 +56,13 @@ SuspectLog suspect_of(const Assessment& a) {
   return out;
 }
 
-HealthyLaw::HealthyLaw(const Baseline& b, const SuspectLog* suspect)
+HealthyLaw::HealthyLaw(const DetectionBaseline& b, const SuspectLog* suspect)
     : positions_(logs_for(b, suspect)),
       gains_(squares_of(b, positions_), {k::usual_gain, k::usual_logs}),
       asked_(b.asked) {
   std::vector<double> ranked;
   for (const std::size_t i : positions_) ranked.push_back(b.scores[i].score);
-  for (const Baseline::Score& s : b.scores) adequacies_.push_back(s.adequacy);
+  for (const DetectionBaseline::Score& s : b.scores) adequacies_.push_back(s.adequacy);
   const double by_law = std::sqrt(gains_.excess_at(rate()));
   limit_ = std::max(by_law, rank_promise(ranked, asked_).threshold);
   const Deviate one = deviate_of(1, adequacies_, {k::adequacy_spread, k::usual_logs});

@@ -31,7 +31,7 @@ SuspectLog suspect_of(const Assessment& assessment);
 class HealthyLaw {
  public:
   // `suspect` null: logs of any test that the model follows. At least one score.
-  HealthyLaw(const Baseline& baseline, const SuspectLog* suspect);
+  HealthyLaw(const DetectionBaseline& baseline, const SuspectLog* suspect);
 
   int logs() const { return static_cast<int>(positions_.size()); }
   const std::vector<std::size_t>& positions() const { return positions_; }  // of these logs among the scores

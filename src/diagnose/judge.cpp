@@ -28,13 +28,13 @@ void size_outright(Diagnosis& d, const HypothesisResult& h) {
   d.severity.upper = worst < mildest ? std::max(mildest, h.severity_upper) : worst;
 }
 
-std::optional<Diagnosis::Unlike> unlike_all(const TestConditions& test, const Baseline& baseline) {
-  const Baseline::Score* nearest = nearest_of_unlike(test, baseline);
+std::optional<Diagnosis::Unlike> unlike_all(const TestConditions& test, const DetectionBaseline& baseline) {
+  const DetectionBaseline::Score* nearest = nearest_of_unlike(test, baseline);
   if (!nearest) return {};
   return Diagnosis::Unlike{nearest->log, *nearest->test};
 }
 
-double p_value_of(double error, const Baseline& baseline, const HealthyLaw& law) {
+double p_value_of(double error, const DetectionBaseline& baseline, const HealthyLaw& law) {
   std::vector<double> healthy;
   for (const std::size_t i : law.positions()) healthy.push_back(baseline.scores[i].score);
   return rank_p_value(error, healthy);
@@ -62,7 +62,7 @@ Suspicion suspicion_of(const HypothesisResult& h, double gain, const HealthyLaw&
 
 }  // namespace
 
-Evidence evidence_of(const Assessment& a, const Baseline& baseline) {
+Evidence evidence_of(const Assessment& a, const DetectionBaseline& baseline) {
   const SuspectLog suspect = suspect_of(a);
   const HealthyLaw law(baseline, &suspect);
   Evidence e;
@@ -76,7 +76,7 @@ Evidence evidence_of(const Assessment& a, const Baseline& baseline) {
   return e;
 }
 
-Diagnosis judge(Assessment a, const Baseline& baseline) {
+Diagnosis judge(Assessment a, const DetectionBaseline& baseline) {
   const Evidence evidence = evidence_of(a, baseline);
   Decision decision = decide(evidence);
   const HypothesisResult& told = a.hypotheses[decision.hypothesis];

@@ -54,8 +54,8 @@ struct Diagnosis {
 };
 
 // What the rules of the verdict look at.
-Evidence evidence_of(const Assessment& assessment, const Baseline& baseline);
+Evidence evidence_of(const Assessment& assessment, const DetectionBaseline& baseline);
 
-Diagnosis judge(Assessment assessment, const Baseline& baseline);
+Diagnosis judge(Assessment assessment, const DetectionBaseline& baseline);
 
 }  // namespace servodx

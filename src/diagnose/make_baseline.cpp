@@ -38,8 +38,8 @@ void check(const std::vector<Log>& logs, const Table& tuned, double false_alarm)
 
 }  // namespace
 
-Baseline make_baseline(const std::vector<Log>& logs, const Table& tuned, const RigFile& rig, double false_alarm,
-                       const DiagnoseOptions& options, long* simulations, long* failed) {
+DetectionBaseline make_baseline(const std::vector<Log>& logs, const Table& tuned, const RigFile& rig,
+                                double false_alarm, const DiagnoseOptions& options, long* simulations, long* failed) {
   options.validate();
   check(logs, tuned, false_alarm);
   Progress progress("baseline", {.quiet = options.quiet});
@@ -59,7 +59,7 @@ Baseline make_baseline(const std::vector<Log>& logs, const Table& tuned, const R
     progress.update(static_cast<double>(i + 1) / logs_in_all, total);
     assessed.push_back(std::move(a));
   }
-  Baseline b = baseline_of(assessed, false_alarm);
+  DetectionBaseline b = baseline_of(assessed, false_alarm);
   b.null_limit = rig.null_limit;
   b.tuned_sha256 = tuned.sha256;
   return b;

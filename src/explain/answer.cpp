@@ -9,7 +9,7 @@
 
 namespace servodx {
 
-ExplainedFit first_alone(const Inquiry& q, const Explanation& found) {
+ExplainedFit first_alone(const Inquiry& q, const FoundCauses& found) {
   if (found.causes.size() == 1) return found.after;
   const int first = found.causes.front().cause;
   ExplainedFit one = fit_causes(q.subject(), {first}, &found.before, &found.scores[static_cast<std::size_t>(first)],
@@ -18,20 +18,20 @@ ExplainedFit first_alone(const Inquiry& q, const Explanation& found) {
   return one;
 }
 
-double share_of_first(const Inquiry& q, const Explanation& found) {
+double share_of_first(const Inquiry& q, const FoundCauses& found) {
   if (found.causes.size() == 1) return heldout_gain(found.before, found.after, q.options().seed).value;
   return found.candidates[static_cast<std::size_t>(found.causes.front().cause)].heldout_gain.value;
 }
 
-bool left_like_healthy(const Inquiry& q, const Explanation& found) {
+bool left_like_healthy(const Inquiry& q, const FoundCauses& found) {
   return q.test() && q.test()->any(q.subject().misses(found.after.residual)) > q.level();
 }
 
-double chance_left(const Inquiry& q, const Explanation& found) {
+double chance_left(const Inquiry& q, const FoundCauses& found) {
   return found.causes.empty() ? q.chance_left(found.before, true) : q.chance_left(found.after, false);
 }
 
-bool is_nameless(const Inquiry& q, const Explanation& found) {
+bool is_nameless(const Inquiry& q, const FoundCauses& found) {
   if (!q.test()) return false;
   EndEvidence e;
   e.compared = true;

@@ -16,7 +16,7 @@
 namespace servodx {
 
 struct Answer {
-  Explanation found;
+  FoundCauses found;
   std::vector<CauseScore> curve_scores;   // empty: no curve was looked at
   std::optional<LearntCurve> curve;       // it stands in `found.causes` too
   std::string better_place;               // of a curve: where a refused name does better than it; empty: nowhere
@@ -30,16 +30,16 @@ struct Answer {
 };
 
 // Held-out share that the first cause removes by itself.
-double share_of_first(const Inquiry& inquiry, const Explanation& found);
+double share_of_first(const Inquiry& inquiry, const FoundCauses& found);
 // The fit with the first of several causes alone, judged on held-out data.
-ExplainedFit first_alone(const Inquiry& inquiry, const Explanation& found);
+ExplainedFit first_alone(const Inquiry& inquiry, const FoundCauses& found);
 // Whether the causes leave the logs as healthy ones are left. False without healthy logs.
-bool left_like_healthy(const Inquiry& inquiry, const Explanation& found);
+bool left_like_healthy(const Inquiry& inquiry, const FoundCauses& found);
 // Chance that healthy logs are left with as much as by what was found.
-double chance_left(const Inquiry& inquiry, const Explanation& found);
+double chance_left(const Inquiry& inquiry, const FoundCauses& found);
 // Left abnormal by names of which the first removes less than half of it: most of what is wrong has no name, and a heap
 // of names is none. False without healthy logs.
-bool is_nameless(const Inquiry& inquiry, const Explanation& found);
+bool is_nameless(const Inquiry& inquiry, const FoundCauses& found);
 
 // Names in the free run.
 Answer find_names(Inquiry& inquiry);

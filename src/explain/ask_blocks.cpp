@@ -48,20 +48,20 @@ class BlocksInquiry {
   BlocksInquiry(const BlocksInquiry&) = delete;
   BlocksInquiry& operator=(const BlocksInquiry&) = delete;
 
-  Explanation names() {
+  FoundCauses names() {
     engine_.among = [this](const Cause& c) { return q_.has_name(c); };
     return explain(*answer_.blocks, engine_);
   }
-  Explanation curves(const Explanation& begun) {
+  FoundCauses curves(const FoundCauses& begun) {
     engine_.among = [](const Cause& c) { return c.curve; };
     engine_.most = 1;
     return explain(*answer_.blocks, engine_, &begun);
   }
-  bool left_like_healthy(const Explanation& told) const {
+  bool left_like_healthy(const FoundCauses& told) const {
     return q_.test()->any(answer_.blocks->misses(told.after.residual)) > q_.level();
   }
   // What was told, held in the free run.
-  ExplainedFit held(const Explanation& told) const {
+  ExplainedFit held(const FoundCauses& told) const {
     ExplainedFit after = hold_causes(q_.subject(), told.after.causes, numbers_of_causes(*answer_.blocks, told.after),
                                      answer_.found.before, base_iterations);
     if (after.ok) cross_validate(q_.subject(), after, q_.folds());
@@ -75,8 +75,8 @@ class BlocksInquiry {
   EngineOptions engine_;
 };
 
-void take(Answer& answer, Explanation& told, ExplainedFit after) {
-  Explanation& found = answer.found;
+void take(Answer& answer, FoundCauses& told, ExplainedFit after) {
+  FoundCauses& found = answer.found;
   answer.told_by_blocks = true;
   for (const CauseResult& r : found.causes)
     found.candidates[static_cast<std::size_t>(r.cause)].fate = Fate::blocks_tell_another;
@@ -90,19 +90,19 @@ void take(Answer& answer, Explanation& told, ExplainedFit after) {
 
 // Nothing has a name yet, or not one that leaves the logs as healthy ones are left.
 bool is_open(const Inquiry& q, const Answer& answer) {
-  const Explanation& found = answer.found;
+  const FoundCauses& found = answer.found;
   if (found.causes.empty() || answer.curve || answer.bare(q)) return true;
   return q.test() && !left_like_healthy(q, found) && share_of_first(q, found) < most_of_it;
 }
 
 // Where something is wrong without a name, a curve that the blocks tell serves if the free run finds none, or follows
 // better with it than with its own. A bare row has to do better, as beside the free run's.
-void try_curve_of_blocks(Inquiry& q, Answer& answer, BlocksInquiry& blocks, const Explanation& told, bool bare) {
-  Explanation shape = blocks.curves(told);
+void try_curve_of_blocks(Inquiry& q, Answer& answer, BlocksInquiry& blocks, const FoundCauses& told, bool bare) {
+  FoundCauses shape = blocks.curves(told);
   if (shape.causes.empty()) return;
   ExplainedFit after = blocks.held(shape);
   if (!after.ok) return;
-  const Explanation& found = answer.found;
+  const FoundCauses& found = answer.found;
   const std::uint64_t seed = q.options().seed;
   if (heldout_gain(answer.curve ? found.after : found.before, after, seed).lower <= 0) return;
   if (bare && !answer.curve && heldout_gain(after, first_alone(q, found), seed).lower > 0) return;
@@ -114,14 +114,14 @@ void try_curve_of_blocks(Inquiry& q, Answer& answer, BlocksInquiry& blocks, cons
 }  // namespace
 
 void ask_blocks(Inquiry& q, Answer& answer) {
-  const Explanation& found = answer.found;
+  const FoundCauses& found = answer.found;
   if (!q.test() || !found.before.ok) return;
   const bool bare = answer.bare(q) && !answer.curve, open = is_open(q, answer);
   if (!open && found.causes.front().confusable_with.empty()) return;
   answer.blocks = std::make_unique<ReplaySubject>(q.subject(), found.before.point, *q.known());
   if (answer.blocks->empty()) return;
   BlocksInquiry blocks(q, answer);
-  Explanation told = blocks.names();
+  FoundCauses told = blocks.names();
   const bool stands = !told.causes.empty() && blocks.left_like_healthy(told);
   if (stands && (open || share_a_name(told.causes.front(), found.causes.front())))
     if (ExplainedFit after = blocks.held(told); after.ok) take(answer, told, std::move(after));

@@ -29,7 +29,7 @@ std::size_t position_of(const Series& s, const std::vector<Log>& logs, std::vect
 }  // namespace
 
 std::vector<ExplainedChannel> explained_channels(const ValveSubject& subject, const std::vector<Log>& logs,
-                                                 const Explanation& found) {
+                                                 const FoundCauses& found) {
   std::vector<ExplainedChannel> out;
   std::vector<Sum> sums;
   const Eigen::VectorXd before = subject.physical(found.before.residual);

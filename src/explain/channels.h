@@ -10,6 +10,6 @@
 namespace servodx {
 
 std::vector<ExplainedChannel> explained_channels(const ValveSubject& subject, const std::vector<Log>& logs,
-                                                 const Explanation& found);
+                                                 const FoundCauses& found);
 
 }  // namespace servodx

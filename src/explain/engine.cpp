@@ -16,7 +16,7 @@ ExplainedFit retuned_alone(const Subject& subject, const EngineOptions& options,
 }
 
 // As tuned, re-tuned alone, and no cause yet.
-void begin(Subject& subject, const EngineOptions& options, const Explanation* begun, Explanation& out) {
+void begin(Subject& subject, const EngineOptions& options, const FoundCauses* begun, FoundCauses& out) {
   if (!begun) cross_validate(subject, out.before, options.hold_out());
   options.tell(0.15);
   out.candidates.resize(subject.causes().size());
@@ -30,7 +30,7 @@ void begin(Subject& subject, const EngineOptions& options, const Explanation* be
 }
 
 // Numbers and gains with all that is left beside each other.
-void size_up(const Subject& subject, const EngineOptions& options, Selected& selected, Explanation& out) {
+void size_up(const Subject& subject, const EngineOptions& options, Selected& selected, FoundCauses& out) {
   for (CauseResult& r : selected.causes) {
     CauseNumbers numbers = numbers_of(subject, selected.fit, r.cause);
     r.value = std::move(numbers.value), r.std_error = std::move(numbers.std_error);
@@ -44,7 +44,7 @@ void size_up(const Subject& subject, const EngineOptions& options, Selected& sel
 }
 
 // Where healthy data say that the base holds, re-tuning is only reported beside what was found.
-void compare_with_retuning(const Subject& subject, const EngineOptions& options, Explanation& out) {
+void compare_with_retuning(const Subject& subject, const EngineOptions& options, FoundCauses& out) {
   if (!options.compare_with_retuning || out.causes.empty() || !subject.retunes() || !subject.holds() ||
       options.stopped())
     return;
@@ -56,8 +56,8 @@ void compare_with_retuning(const Subject& subject, const EngineOptions& options,
 
 }  // namespace
 
-Explanation explain(Subject& subject, const EngineOptions& options, const Explanation* begun) {
-  Explanation out;
+FoundCauses explain(Subject& subject, const EngineOptions& options, const FoundCauses* begun) {
+  FoundCauses out;
   out.before = begun ? begun->before : fit_base(subject, options.iterations);
   options.tell(0.1);
   out.after = out.before;

@@ -74,7 +74,7 @@ struct EngineOptions {
   }
 };
 
-struct Explanation {
+struct FoundCauses {
   ExplainedFit before, after;         // as tuned; with the causes
   ExplainedFit wide;                  // re-tuned alone
   Interval retuned;                   // its held-out gain
@@ -87,6 +87,6 @@ struct Explanation {
 };
 
 // `begun`: an explanation of the same data among other causes, whose base fit serves again.
-Explanation explain(Subject& subject, const EngineOptions& options, const Explanation* begun = nullptr);
+FoundCauses explain(Subject& subject, const EngineOptions& options, const FoundCauses* begun = nullptr);
 
 }  // namespace servodx

@@ -212,7 +212,7 @@ bool is_worse_in_rms(const std::vector<ExplainedChannel>& channels) {
 }
 
 void measure(const Inquiry& q, const Answer& answer, ExplainResult& out) {
-  const Explanation& found = answer.found;
+  const FoundCauses& found = answer.found;
   out.retuned = found.retuned;
   out.adequacy_before = q.subject().adequacy(found.before.residual);
   out.adequacy_after = q.subject().adequacy(found.after.residual);

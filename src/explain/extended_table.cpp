@@ -82,7 +82,7 @@ void write_cause(const CauseRows& rows, const std::string& effect, Table& table)
 
 }  // namespace
 
-Table extended_table(const ValveSubject& subject, const Explanation& found, const std::vector<ExplainedCause>& causes) {
+Table extended_table(const ValveSubject& subject, const FoundCauses& found, const std::vector<ExplainedCause>& causes) {
   Table table = subject.table();
   if (found.causes.empty()) return table;
   const ParameterVector fitted = subject.problem(found.after.causes)->candidate(found.after.point, 0);

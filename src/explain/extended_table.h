@@ -10,6 +10,6 @@
 namespace servodx {
 
 // `causes` describe those of `found`, in order.
-Table extended_table(const ValveSubject& subject, const Explanation& found, const std::vector<ExplainedCause>& causes);
+Table extended_table(const ValveSubject& subject, const FoundCauses& found, const std::vector<ExplainedCause>& causes);
 
 }  // namespace servodx

@@ -62,7 +62,7 @@ WholeEvidence whole_before(const EngineOptions& options, const Selected& so_far)
   return w;
 }
 
-Round look(const Subject& subject, const EngineOptions& options, const Selected& so_far, Explanation& out) {
+Round look(const Subject& subject, const EngineOptions& options, const Selected& so_far, FoundCauses& out) {
   Round round;
   round.scores = score_causes(subject, so_far.fit, options.among);
   if (so_far.rounds == 0) out.scores = round.scores;
@@ -153,7 +153,7 @@ JudgedEvidence judged_evidence(const Subject& subject, const EngineOptions& opti
 
 // The best are measured, in order of judging, which is the order that they are left in.
 void judge(const Subject& subject, const EngineOptions& options, const Round& round, const Selected& so_far,
-           std::vector<Trial>& trials, Explanation& out) {
+           std::vector<Trial>& trials, FoundCauses& out) {
   std::vector<FittedEvidence> evidence;
   for (const Trial& t : trials) evidence.push_back(fitted_evidence(round, t));
   std::vector<Trial> ordered;
@@ -236,7 +236,7 @@ double delta_bic(const ExplainedFit& before, const ExplainedFit& after, double d
 }
 
 bool accept_one_more(const Subject& subject, const EngineOptions& options, bool begun, Selected& so_far,
-                     Explanation& out) {
+                     FoundCauses& out) {
   const Round round = look(subject, options, so_far, out);
   std::vector<Trial> trials = fit_best(subject, options, begun, round, so_far, out.degrees);
   judge(subject, options, round, so_far, trials, out);
@@ -257,7 +257,7 @@ bool accept_one_more(const Subject& subject, const EngineOptions& options, bool 
   return true;
 }
 
-void leave_out_again(const Subject& subject, const EngineOptions& options, Selected& so_far, Explanation& out) {
+void leave_out_again(const Subject& subject, const EngineOptions& options, Selected& so_far, FoundCauses& out) {
   for (std::size_t i = 0; so_far.causes.size() > 1 && i + 1 < so_far.causes.size() && !options.stopped();) {
     std::vector<int> without = so_far.fit.causes;
     std::erase(without, so_far.causes[i].cause);

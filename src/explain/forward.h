@@ -22,8 +22,8 @@ double delta_bic(const ExplainedFit& before, const ExplainedFit& after, double d
 
 // One round: at most one more cause. False: none, and no further round. Fates, standing and refused names go to `out`.
 bool accept_one_more(const Subject& subject, const EngineOptions& options, bool begun, Selected& so_far,
-                     Explanation& out);
+                     FoundCauses& out);
 // Leaves each out again, the last one excepted: it has just shown its worth beside the others.
-void leave_out_again(const Subject& subject, const EngineOptions& options, Selected& so_far, Explanation& out);
+void leave_out_again(const Subject& subject, const EngineOptions& options, Selected& so_far, FoundCauses& out);
 
 }  // namespace servodx

@@ -140,10 +140,10 @@ std::vector<HealthyShare> heldout_shares(ValveSubject& subject, const ExplainedF
   engine.most = 1;
   engine.compare_with_retuning = false;
   engine.among = [](const Cause& c) { return !c.curve && c.prior >= 1; };
-  Explanation begun;
+  FoundCauses begun;
   begun.before = base;
   cross_validate(subject, begun.before, engine.hold_out());
-  const Explanation e = explain(subject, engine, &begun);
+  const FoundCauses e = explain(subject, engine, &begun);
   std::vector<HealthyShare> out;
   for (const CandidateResult& r : e.candidates) {
     if (!r.fitted || r.delta_bic <= 0) continue;

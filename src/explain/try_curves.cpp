@@ -13,12 +13,12 @@ namespace servodx {
 namespace {
 
 bool is_asked(const Inquiry& q, const Answer& answer) {
-  const Explanation& names = answer.found;
+  const FoundCauses& names = answer.found;
   if (!names.before.ok) return false;
   return names.causes.empty() || answer.bare(q) || (q.test() && !left_like_healthy(q, names));
 }
 
-bool does_better(const Inquiry& q, const Answer& answer, const Explanation& curve) {
+bool does_better(const Inquiry& q, const Answer& answer, const FoundCauses& curve) {
   if (curve.causes.empty()) return false;
   if (answer.found.causes.empty()) return true;
   const bool bare = answer.bare(q);
@@ -28,7 +28,7 @@ bool does_better(const Inquiry& q, const Answer& answer, const Explanation& curv
   return bare ? heldout_gain(curve.after, name, seed).lower <= 0 : heldout_gain(name, curve.after, seed).lower > 0;
 }
 
-void keep_fates_of_names(const Inquiry& q, const Explanation& names, Explanation& curve) {
+void keep_fates_of_names(const Inquiry& q, const FoundCauses& names, FoundCauses& curve) {
   for (std::size_t c = 0; c < names.candidates.size(); ++c) {
     if (q.cause(static_cast<int>(c)).curve) continue;
     curve.candidates[c] = names.candidates[c];
@@ -38,7 +38,7 @@ void keep_fates_of_names(const Inquiry& q, const Explanation& names, Explanation
 
 // Names that were refused because they leave the logs abnormal: where the curve does no better they are as good an
 // answer as it, and where one does better the place is that name's.
-void ask_refused_names(const Inquiry& q, const Explanation& names, Answer& curve) {
+void ask_refused_names(const Inquiry& q, const FoundCauses& names, Answer& curve) {
   double most = 0;
   for (const ExplainedFit& name : names.refused) {
     const int c = name.causes.back();
@@ -54,11 +54,11 @@ void ask_refused_names(const Inquiry& q, const Explanation& names, Answer& curve
 void try_curves(Inquiry& q, Answer& answer) {
   if (!is_asked(q, answer)) return;
   guess_curves(q.subject(), q.curves(), answer.found.before.point);
-  Explanation curve = explain(q.subject(), q.for_curves(), &answer.found);
+  FoundCauses curve = explain(q.subject(), q.for_curves(), &answer.found);
   answer.curve_scores = curve.scores;
   if (!does_better(q, answer, curve)) return;
   keep_fates_of_names(q, answer.found, curve);
-  Explanation names = std::move(answer.found);
+  FoundCauses names = std::move(answer.found);
   answer.found = std::move(curve);
   ask_refused_names(q, names, answer);
   answer.found.standing = std::move(names.standing);

@@ -25,7 +25,7 @@ using namespace prognose_constants;
 
 namespace {
 
-std::size_t healthy_ones(const CheckSeries& s, const TrendOptions& options) {
+std::size_t healthy_ones(const CheckSeries& s, const TrendSettings& options) {
   return std::min(s.points.size(), static_cast<std::size_t>(options.healthy));
 }
 
@@ -91,7 +91,7 @@ std::optional<TangentRule> by_the_paper(const CheckTrend& t) {
 
 }  // namespace
 
-CheckTrend trend_of(const CheckSeries& s, const TrendOptions& options, std::size_t names) {
+CheckTrend trend_of(const CheckSeries& s, const TrendSettings& options, std::size_t names) {
   const std::size_t healthy = healthy_ones(s, options);
   const FailureAt failure = failure_of(s, options);
   CheckTrend out = as_read(s, failure, healthy);

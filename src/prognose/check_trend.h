@@ -9,6 +9,6 @@
 namespace servodx {
 
 // `names`: checks of the valve, among which the rate of false alarms is shared.
-CheckTrend trend_of(const CheckSeries& series, const TrendOptions& options, std::size_t names);
+CheckTrend trend_of(const CheckSeries& series, const TrendSettings& options, std::size_t names);
 
 }  // namespace servodx

@@ -29,14 +29,14 @@ double left_open(const Fault& fault, double value) {
 }
 
 // How well a level is known at a value of the row: as who set it says, else as the model's form allows.
-double known_to(const CheckSeries& s, const TrendOptions& options, double value, double unit) {
+double known_to(const CheckSeries& s, const TrendSettings& options, double value, double unit) {
   const auto stated = options.failure_spread.find(s.name);
   if (stated != options.failure_spread.end()) return stated->second * unit;
   if (!s.curve.empty()) return s.curve.spread(s.scale.in(value)) * s.scale.stretch(value);
   return s.fault ? left_open(*s.fault, value) : 0.0;
 }
 
-FailureAt given_level(const CheckSeries& s, const TrendOptions& options, const OneOrTwoLevels& given) {
+FailureAt given_level(const CheckSeries& s, const TrendSettings& options, const OneOrTwoLevels& given) {
   FailureAt at;
   at.lower = s.scale.in(given.first), at.upper = s.scale.in(given.second);
   if (const auto& level = at.upper ? at.upper : at.lower; level && s.fault)
@@ -44,14 +44,14 @@ FailureAt given_level(const CheckSeries& s, const TrendOptions& options, const O
   return at;
 }
 
-FailureAt given_current(const CheckSeries& s, const TrendOptions& options, double current) {
+FailureAt given_current(const CheckSeries& s, const TrendSettings& options, double current) {
   FailureAt at;
   at.upper = current / *s.per_newton;
   at.sd = known_to(s, options, *at.upper, 1 / *s.per_newton);
   return at;
 }
 
-FailureAt given_ratio(const CheckSeries& s, const TrendOptions& options, double ratio) {
+FailureAt given_ratio(const CheckSeries& s, const TrendSettings& options, double ratio) {
   FailureAt at;
   auto& side = ratio > 1 ? at.upper : at.lower;
   if (s.fault && s.fault->log_scale && s.tuned) {  // its healthy checks may hardly see it: the tuning logs saw more
@@ -86,7 +86,7 @@ FailureAt own_failure(const CheckSeries& s) {
   return at;
 }
 
-FailureAt failure_of(const CheckSeries& s, const TrendOptions& options) {
+FailureAt failure_of(const CheckSeries& s, const TrendSettings& options) {
   if (const auto given = options.failure.find(s.name); given != options.failure.end())
     return given_level(s, options, given->second);
   if (const auto current = options.failure_current.find(s.name);

@@ -10,6 +10,6 @@
 namespace servodx {
 
 FailureAt own_failure(const CheckSeries& series);
-FailureAt failure_of(const CheckSeries& series, const TrendOptions& options);
+FailureAt failure_of(const CheckSeries& series, const TrendSettings& options);
 
 }  // namespace servodx

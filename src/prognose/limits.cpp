@@ -46,13 +46,13 @@ void require_range(const PerformanceLimit& limit) {
   if (!(limit.value > 0 && limit.value < most)) throw InputError(where, "'" + limit.text + "' is out of range", known);
 }
 
-void add_gain(double part, const Table& tuned, TrendOptions& options) {
+void add_gain(double part, const Table& tuned, TrendSettings& options) {
   options.failure[CheckName::of_row(row::torque_motor_gain)] = {part * tuned[row::torque_motor_gain].nominal,
                                                                 std::nullopt};
   options.failure_ratio[CheckName::of_fidelity()] = 1 / part;
 }
 
-void add_hysteresis(double part, const Table& tuned, TrendOptions& options) {
+void add_hysteresis(double part, const Table& tuned, TrendSettings& options) {
   const Supply at = supply_of(tuned);
   const MonitorParameters m = monitor_parameters(tuned, at);
   const double force = part * at.rated_current * m.motor_gain;  // [N] at the flapper
@@ -60,7 +60,7 @@ void add_hysteresis(double part, const Table& tuned, TrendOptions& options) {
   options.failure[CheckName::of_row(row::spool_friction)] = {std::nullopt, force / (2 * m.spool_force_gain)};
 }
 
-void add_bandwidth(double part, const Table& tuned, TrendOptions& options) {
+void add_bandwidth(double part, const Table& tuned, TrendSettings& options) {
   options.failure[CheckName::of_row(row::filter_blockage_positive)] = {std::nullopt, blockage_for(tuned, part)};
   options.failure_ratio[CheckName::of_fidelity()] = fidelity_of_slower(1 / part);
 }
@@ -99,7 +99,7 @@ PerformanceLimit read_limit(const std::string& text) {
   throw InputError(where, "unknown limit '" + name + "'", known);
 }
 
-void add_limit(const PerformanceLimit& limit, const Table& tuned, double loop, TrendOptions& options) {
+void add_limit(const PerformanceLimit& limit, const Table& tuned, double loop, TrendSettings& options) {
   require_range(limit);
   switch (limit.kind) {
     case LimitKind::gain:

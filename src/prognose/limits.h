@@ -28,7 +28,7 @@ struct PerformanceLimit {
 PerformanceLimit read_limit(const std::string& text);
 
 // Adds to `options`. Throws InputError for a value out of range, or a limit that the healthy valve does not hold.
-void add_limit(const PerformanceLimit& limit, const Table& tuned, double loop, TrendOptions& options);
+void add_limit(const PerformanceLimit& limit, const Table& tuned, double loop, TrendSettings& options);
 
 // r of a first-order spool `slower` times slower than the monitor, at the monitor's 95 % response.
 double fidelity_of_slower(double slower);

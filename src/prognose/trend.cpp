@@ -17,7 +17,7 @@ using namespace prognose_constants;
 
 namespace {
 
-std::vector<CheckTrend> trends_of(const std::vector<CheckSeries>& checks, const TrendOptions& options) {
+std::vector<CheckTrend> trends_of(const std::vector<CheckSeries>& checks, const TrendSettings& options) {
   std::vector<CheckTrend> out(checks.size());
   const auto n = static_cast<long>(checks.size());
   const int threads = options.threads > 0 ? options.threads : omp_get_max_threads();
@@ -28,7 +28,7 @@ std::vector<CheckTrend> trends_of(const std::vector<CheckSeries>& checks, const 
 }
 
 // What a user may have meant otherwise with a level.
-void note_levels(ValveTrend& out, const std::vector<CheckSeries>& checks, const TrendOptions& options) {
+void note_levels(ValveTrend& out, const std::vector<CheckSeries>& checks, const TrendSettings& options) {
   for (const CheckSeries& s : checks)
     if (options.failure_current.contains(s.name) && !s.per_newton)
       out.notes.push_back(fmt::format("{}: no tuned table says what friction takes that current", s.name.text()));
@@ -87,7 +87,7 @@ void take_cause_and_life(ValveTrend& out, double coverage) {
 
 }  // namespace
 
-ValveTrend trend(const ValveHistory& history, const TrendOptions& options) {
+ValveTrend trend(const ValveHistory& history, const TrendSettings& options) {
   ValveTrend out;
   out.valve = history.valve;
   out.serial = history.serial;

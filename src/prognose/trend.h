@@ -62,6 +62,6 @@ struct ValveTrend {
   std::vector<std::string> notes;
 };
 
-ValveTrend trend(const ValveHistory& history, const TrendOptions& options);
+ValveTrend trend(const ValveHistory& history, const TrendSettings& options);
 
 }  // namespace servodx

@@ -13,7 +13,7 @@ namespace servodx {
 
 using OneOrTwoLevels = std::pair<std::optional<double>, std::optional<double>>;  // lower, upper
 
-struct TrendOptions {
+struct TrendSettings {
   double false_alarm = 0.01;  // of a healthy valve
   int healthy = 12;           // first checks after a start or a reset that are taken as healthy
   std::map<CheckName, OneOrTwoLevels> failure;

@@ -93,7 +93,7 @@ BaselineFile read_baseline(const std::string& path) {
                     "name the file that 'servodx baseline -o' wrote");
 
   constexpr double any = HUGE_VAL;
-  Baseline b;
+  DetectionBaseline b;
   b.threshold = read.number(file, "threshold", 0, any);
   const Json& rate = read.at(file, "false_alarm");
   b.asked = read.number(rate, "false_alarm.asked", 0, 1);
@@ -120,8 +120,8 @@ BaselineFile read_baseline(const std::string& path) {
   return {std::move(b), sha256(bytes)};
 }
 
-void require_same_table(const Baseline& baseline, const std::string& baseline_path, const std::string& table_path,
-                        const std::string& table_sha256) {
+void require_same_table(const DetectionBaseline& baseline, const std::string& baseline_path,
+                        const std::string& table_path, const std::string& table_sha256) {
   if (baseline.tuned_sha256 == table_sha256) return;
   throw key_error({baseline_path, 0, "tuned_sha256"}, "was made with another table than " + table_path,
                   "give the table it was made with, or make a baseline with this one");

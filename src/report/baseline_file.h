@@ -8,7 +8,7 @@
 namespace servodx::report {
 
 struct BaselineFile {
-  Baseline baseline;
+  DetectionBaseline baseline;
   std::string sha256;
 };
 
@@ -17,7 +17,7 @@ BaselineFile read_baseline(const std::string& path);
 
 // Refuses a baseline that was made with another table than the one of this path and hash: its threshold is a statement
 // about that table's residuals.
-void require_same_table(const Baseline& baseline, const std::string& baseline_path, const std::string& table_path,
-                        const std::string& table_sha256);
+void require_same_table(const DetectionBaseline& baseline, const std::string& baseline_path,
+                        const std::string& table_path, const std::string& table_sha256);
 
 }  // namespace servodx::report

@@ -10,7 +10,7 @@
 
 namespace servodx::report {
 
-Page baseline_page(const Header& header, const Baseline& b, const std::vector<Replay>& replays) {
+Page baseline_page(const Header& header, const DetectionBaseline& b, const std::vector<Replay>& replays) {
   Page page(header, fmt::format("Baseline of {} fault-free logs", b.logs));
   const bool kept = keeps_rate(b);
   Verdict v;
@@ -37,7 +37,7 @@ Page baseline_page(const Header& header, const Baseline& b, const std::vector<Re
   auto order = b.scores;
   std::stable_sort(order.begin(), order.end(), [](const auto& x, const auto& y) { return x.score > y.score; });
   Bars bars{"Scores", "log", "score", {}, Mark{b.threshold, "threshold"}, {}};
-  for (const Baseline::Score& s : order)
+  for (const DetectionBaseline::Score& s : order)
     bars.rows.push_back({s.log, s.score, digits(s.score),
                          fmt::format("worst channel {} times its usual error{}", digits(s.adequacy, 2),
                                      is_followed(s.adequacy) ? "" : "; the model does not follow it"),
@@ -46,7 +46,7 @@ Page baseline_page(const Header& header, const Baseline& b, const std::vector<Re
   if (std::all_of(order.begin(), order.end(), [](const auto& s) { return s.test.has_value(); })) {
     TablePart tests{
         "What tests the promise covers", "lrrr", {"log", "drive spans [mA]", "at about [Hz]", "oil [degC]"}, {}, 0};
-    for (const Baseline::Score& s : order)
+    for (const DetectionBaseline::Score& s : order)
       tests.rows.push_back({s.log, Cell(digits(1e3 * s.test->drive_span), 1e3 * s.test->drive_span),
                             Cell(digits(s.test->drive_band, 2), s.test->drive_band),
                             s.test->temperature
@@ -54,7 +54,7 @@ Page baseline_page(const Header& header, const Baseline& b, const std::vector<Re
                                 : Cell("")});
     page.add(tests);
   }
-  for (const Baseline::Score& s : order)
+  for (const DetectionBaseline::Score& s : order)
     for (const Replay& r : replays) {
       if (r.log != s.log) continue;
       page.section(fmt::format("{}: score {}", file_name(s.log), digits(s.score)),

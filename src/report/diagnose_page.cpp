@@ -56,7 +56,7 @@ std::string sentence(std::string words) {
   return words + ".";
 }
 
-std::vector<std::string> reasons(const Diagnosis& d, const Baseline& baseline) {
+std::vector<std::string> reasons(const Diagnosis& d, const DetectionBaseline& baseline) {
   std::vector<std::string> why;
   const bool above = d.error > d.threshold;
   const bool seen_outright = d.assessment.gross != GrossFinding::none;
@@ -95,7 +95,7 @@ std::vector<std::string> reasons(const Diagnosis& d, const Baseline& baseline) {
   return why;
 }
 
-Verdict verdict_of(const Diagnosis& d, const Baseline& baseline) {
+Verdict verdict_of(const Diagnosis& d, const DetectionBaseline& baseline) {
   Verdict v;
   v.tone = tone_of(d);
   v.word = d.verdict == VerdictKind::fault ? "FAULT" : d.verdict == VerdictKind::unknown ? "UNKNOWN" : "HEALTHY";
@@ -234,7 +234,7 @@ std::string truth_beside(const std::string& log, const std::string& sha256) {
   return text("sha256") == sha256 ? text("label") : "";
 }
 
-Page diagnose_page(const Header& header, const std::vector<Diagnosis>& results, const Baseline& baseline,
+Page diagnose_page(const Header& header, const std::vector<Diagnosis>& results, const DetectionBaseline& baseline,
                    const std::vector<Replay>& replays, const std::vector<std::string>& truths) {
   if (results.size() == 1) {
     const Diagnosis& d = results.front();

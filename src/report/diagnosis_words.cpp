@@ -103,7 +103,7 @@ std::vector<Candidate> candidates_of(const std::vector<HypothesisPrediction>& ex
   return out;
 }
 
-std::string statement_of(const Baseline& b) {
+std::string statement_of(const DetectionBaseline& b) {
   if (b.logs == 0) return "";
   std::string text = fmt::format(
       "{} fault-free logs promise a false-alarm rate of {:.1f} % on average over baselines (below {:.0f} % with 95 % "

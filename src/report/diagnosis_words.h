@@ -31,7 +31,7 @@ std::string separating_test_of(const Diagnosis& d);
 std::vector<Candidate> candidates_of(const std::vector<HypothesisPrediction>& explanations);
 
 // The rate of false alarms that a baseline promises, and how many more logs the rate asked for takes.
-std::string statement_of(const Baseline& baseline);
+std::string statement_of(const DetectionBaseline& baseline);
 
 // "p = 0.03", or, where no log of the baseline is as far off, "p = 0.1, the least that 9 logs can show".
 std::string chance_words(const Diagnosis& d);

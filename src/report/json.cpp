@@ -129,9 +129,9 @@ Json tune_json(const TuneResult& result) {
           {"local", {{"stages", stages}, {"ceres", ceres_json(result)}}}};
 }
 
-Json baseline_json(const Baseline& b) {
+Json baseline_json(const DetectionBaseline& b) {
   Json scores = Json::array();
-  for (const Baseline::Score& s : b.scores) {
+  for (const DetectionBaseline::Score& s : b.scores) {
     Json gains = Json::object();
     for (const auto& [fault, gain] : s.gains) gains[label_of(fault)] = gain;
     scores.push_back({{"log", s.log},

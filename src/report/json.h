@@ -36,7 +36,7 @@ Json to_json(const Diagnosis& diagnosis);
 
 // The keys of one command, to stand behind the header's.
 Json tune_json(const TuneResult& result);
-Json baseline_json(const Baseline& baseline);
+Json baseline_json(const DetectionBaseline& baseline);
 Json diagnose_json(const std::vector<Diagnosis>& results);
 
 // Header, then body; ends in a line end. Bytes that are no UTF-8 (in paths) are replaced.

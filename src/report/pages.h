@@ -5,9 +5,9 @@
 
 #include "diagnose/diagnose.h"
 #include "fit/replay.h"
-#include "tune/tune.h"
 #include "report/page.h"
 #include "report/tune_words.h"
+#include "tune/tune.h"
 
 namespace servodx::report {
 
@@ -18,9 +18,9 @@ inline constexpr std::size_t most_replays = 12;
 Page tune_page(const Header& header, const TuneResult& result, const GoodEnough& good,
                const std::vector<Replay>& replays);
 Page simulate_page(const Header& header, const Replay& replay);
-Page baseline_page(const Header& header, const Baseline& baseline, const std::vector<Replay>& replays);
+Page baseline_page(const Header& header, const DetectionBaseline& baseline, const std::vector<Replay>& replays);
 // `truths`: what each log was made with, "" where that is not known; they enter the confusion table and nothing else.
-Page diagnose_page(const Header& header, const std::vector<Diagnosis>& results, const Baseline& baseline,
+Page diagnose_page(const Header& header, const std::vector<Diagnosis>& results, const DetectionBaseline& baseline,
                    const std::vector<Replay>& replays, const std::vector<std::string>& truths = {});
 
 // The label in LOG.truth.json beside a log of the virtual rig whose bytes it speaks of; "" without.

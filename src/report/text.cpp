@@ -134,15 +134,15 @@ std::string text_of(const TuneResult& result, const GoodEnough& good, const Text
   return text + nulls.text();
 }
 
-std::string text_of(const Baseline& b, const TextOptions& options) {
+std::string text_of(const DetectionBaseline& b, const TextOptions& options) {
   std::string text = fmt::format("threshold {} from {}", digits(b.threshold, 4), plural(b.logs, "fault-free log"));
   text += options.written_to.empty() ? "\n" : ": " + options.written_to + "\n";
   text += fmt::format("  {}\n", statement_of(b));
   Columns table("lrr", 2);
   table.row({"log", "score", "adequacy"});
-  for (const Baseline::Score& s : b.scores) table.row({s.log, digits(s.score, 4), digits(s.adequacy)});
+  for (const DetectionBaseline::Score& s : b.scores) table.row({s.log, digits(s.score, 4), digits(s.adequacy)});
   text += table.text();
-  for (const Baseline::Score& s : b.scores)
+  for (const DetectionBaseline::Score& s : b.scores)
     if (!is_followed(s.adequacy))
       text += fmt::format(
           "  {}: the model does not follow it, its worst channel is {} times as wrong as on the tuning logs; it sets "

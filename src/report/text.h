@@ -4,8 +4,8 @@
 #include <vector>
 
 #include "diagnose/diagnose.h"
-#include "tune/tune.h"
 #include "report/tune_words.h"
+#include "tune/tune.h"
 
 namespace servodx::report {
 
@@ -15,7 +15,7 @@ struct TextOptions {
 };
 
 std::string text_of(const TuneResult& result, const GoodEnough& good, const TextOptions& options);
-std::string text_of(const Baseline& baseline, const TextOptions& options);
+std::string text_of(const DetectionBaseline& baseline, const TextOptions& options);
 std::string text_of(const Diagnosis& diagnosis, const TextOptions& options);
 
 }  // namespace servodx::report

@@ -185,7 +185,7 @@ std::string event_names() {
 
 // SQLite's errors in the user's words.
 template <class F>
-auto History::guarded(const F& work) const {
+auto HistoryFile::guarded(const F& work) const {
   try {
     return work();
   } catch (const SQLite::Exception& e) {
@@ -209,7 +209,7 @@ auto History::guarded(const F& work) const {
   }
 }
 
-History::History(const std::string& path, bool create) : path_(path) {
+HistoryFile::HistoryFile(const std::string& path, bool create) : path_(path) {
   const char* const mend = "record a check with 'servodx check' first";
   const bool exists = std::filesystem::exists(path);
   if (!create && !exists) throw InputError({.file = path}, "there is no such history", mend);
@@ -221,14 +221,14 @@ History::History(const std::string& path, bool create) : path_(path) {
   });
 }
 
-bool History::there(const std::string& path) {
+bool HistoryFile::there(const std::string& path) {
   std::error_code none;
   return std::filesystem::exists(path, none) &&
          !(std::filesystem::is_regular_file(path, none) && std::filesystem::file_size(path, none) == 0);
 }
 
 // SQLite makes an empty file first. Under a name of its own it is nobody's history until it has its tables.
-void History::make_whole() {
+void HistoryFile::make_whole() {
   AtomicFile file(path_);
   guarded([&] {
     db_ = std::make_unique<SQLite::Database>(file.temporary(), SQLite::OPEN_READWRITE, busy_ms);
@@ -237,11 +237,11 @@ void History::make_whole() {
   });
   file.commit_new();  // or another first writer's stands there, as good
 }
-History::~History() = default;
+HistoryFile::~HistoryFile() = default;
 
-int History::schema_version() { return static_cast<int>(steps.size()); }
+int HistoryFile::schema_version() { return static_cast<int>(steps.size()); }
 
-void History::migrate() {
+void HistoryFile::migrate() {
   int owner = 0, version = 0;
   bool blank = false;
   {
@@ -270,7 +270,7 @@ void History::migrate() {
 }
 
 // The change of mode asks no busy handler: where two first writers fill an empty file, one is turned away at once.
-void History::write_ahead() {
+void HistoryFile::write_ahead() {
   constexpr int pause_ms = 10;
   for (int waited = 0;; waited += pause_ms) try {
       db_->exec("PRAGMA journal_mode = WAL");
@@ -281,8 +281,8 @@ void History::write_ahead() {
     }
 }
 
-void History::record(const std::string& valve, const std::string& serial, const Recording& recording,
-                     const std::string& table_text) {
+void HistoryFile::record(const std::string& valve, const std::string& serial, const Recording& recording,
+                         const std::string& table_text) {
   const bool added = guarded([&] {
     SQLite::Transaction all(*db_, SQLite::TransactionBehavior::IMMEDIATE);
     const long long id = id_of_valve(*db_, valve, serial);
@@ -298,7 +298,7 @@ void History::record(const std::string& valve, const std::string& serial, const 
                      "name the hours of this check with --at");
 }
 
-void History::add_event(const std::string& valve, const Event& event) {
+void HistoryFile::add_event(const std::string& valve, const Event& event) {
   const bool added = guarded([&] {
     SQLite::Transaction all(*db_, SQLite::TransactionBehavior::IMMEDIATE);
     const bool fresh = insert(*db_, id_of_valve(*db_, valve, ""), event);
@@ -323,11 +323,13 @@ std::vector<double> tuned_rows(const std::string& table_text) {
   return rows;
 }
 
-std::vector<std::string> History::valves() const { return names("SELECT name FROM valve ORDER BY name"); }
+std::vector<std::string> HistoryFile::valves() const { return names("SELECT name FROM valve ORDER BY name"); }
 
-std::vector<std::string> History::figures() const { return names("SELECT DISTINCT name FROM figure ORDER BY name"); }
+std::vector<std::string> HistoryFile::figures() const {
+  return names("SELECT DISTINCT name FROM figure ORDER BY name");
+}
 
-std::vector<std::string> History::names(const char* query) const {
+std::vector<std::string> HistoryFile::names(const char* query) const {
   return guarded([&] {
     std::vector<std::string> out;
     SQLite::Statement all(*db_, query);
@@ -336,7 +338,7 @@ std::vector<std::string> History::names(const char* query) const {
   });
 }
 
-std::string History::serial(const std::string& valve) const {
+std::string HistoryFile::serial(const std::string& valve) const {
   return guarded([&] {
     SQLite::Statement find(*db_, "SELECT serial FROM valve WHERE name = ?");
     find.bind(1, valve);
@@ -344,7 +346,7 @@ std::string History::serial(const std::string& valve) const {
   });
 }
 
-ValveHistory History::of(const std::string& valve) const {
+ValveHistory HistoryFile::of(const std::string& valve) const {
   ValveHistory out;
   out.valve = valve;
   const bool known = guarded([&] {
@@ -402,7 +404,7 @@ ValveHistory History::of(const std::string& valve) const {
                    names.empty() ? "it holds none yet" : "it holds " + names);
 }
 
-std::optional<Recording> History::last(const std::string& valve) const {
+std::optional<Recording> HistoryFile::last(const std::string& valve) const {
   const std::vector<std::string> known = valves();
   if (std::find(known.begin(), known.end(), valve) == known.end()) return {};
   ValveHistory all = of(valve);
@@ -410,7 +412,7 @@ std::optional<Recording> History::last(const std::string& valve) const {
   return std::move(all.recordings.back());
 }
 
-HistoryContent History::content() const {
+HistoryContent HistoryFile::content() const {
   HistoryContent all;
   for (const std::string& name : valves()) all.valves.push_back(of(name));
   guarded([&] {
@@ -421,7 +423,7 @@ HistoryContent History::content() const {
   return all;
 }
 
-Restored History::restore(const HistoryContent& content) {
+Restored HistoryFile::restore(const HistoryContent& content) {
   return guarded([&] {
     Restored count;
     SQLite::Transaction all(*db_, SQLite::TransactionBehavior::IMMEDIATE);
@@ -450,7 +452,7 @@ Restored History::restore(const HistoryContent& content) {
   });
 }
 
-std::string History::verify() const {
+std::string HistoryFile::verify() const {
   return guarded([&] { return db_->execAndGet("PRAGMA quick_check(1)").getString(); });
 }
 

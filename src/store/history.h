@@ -39,13 +39,13 @@ struct Restored {
   long recordings = 0, events = 0, present = 0;  // present: were there already, left alone
 };
 
-class History {
+class HistoryFile {
  public:
   // `create`: a file that is not there() is made, otherwise refused.
-  History(const std::string& path, bool create);
+  HistoryFile(const std::string& path, bool create);
   // False also of an empty file: what is left where the first writer had no room, or was killed.
   static bool there(const std::string& path);
-  ~History();
+  ~HistoryFile();
 
   // All of it or nothing. Refuses a log that this valve's history holds already, unless at other hours or by another
   // table.

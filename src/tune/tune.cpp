@@ -85,7 +85,8 @@ void TuneOptions::validate() const {
           fmt::format("{} is not an odd number of samples", moving_average), "give 1 for none, or 3, 5, ...");
 }
 
-TuneResult tune(const std::vector<Log>& logs, const Table& nominal, const RigFile& rig, const TuneOptions& options) {
+TuneResult tune_table(const std::vector<Log>& logs, const Table& nominal, const RigFile& rig,
+                      const TuneOptions& options) {
   options.validate();
   TuneWatch watch(options);
   TuneScope scope = scope_of(logs, nominal, rig, options);

@@ -88,7 +88,7 @@ struct TuneOptions {
   bool resume = false;
   const std::atomic<bool>* stop = nullptr;  // set: finish with the best so far
 
-  // Throws InputError that names the option. tune() asks for it before any work.
+  // Throws InputError that names the option. tune_table() asks for it before any work.
   void validate() const;
 };
 
@@ -113,6 +113,7 @@ struct TuneResult {
 };
 
 // Throws InputError where the logs cannot be used.
-TuneResult tune(const std::vector<Log>& logs, const Table& nominal, const RigFile& rig, const TuneOptions& options);
+TuneResult tune_table(const std::vector<Log>& logs, const Table& nominal, const RigFile& rig,
+                      const TuneOptions& options);
 
 }  // namespace servodx

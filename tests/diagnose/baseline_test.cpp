@@ -90,11 +90,11 @@ TEST(Baseline, RefusesATableThatDoesNotSayHowWrongItIs) {
 
 TEST(Baseline, PromisesTheRatesThatItsNumberOfLogsAllows) {
   const std::vector<Log> logs = cut_logs({"healthy/h02_steps_small", "healthy/h03_sine_2hz", "healthy/h12_mixed"}, 100);
-  const Baseline low = make_baseline(logs, as_tuned("0"), shipped_rig(), 0.01, quiet());
+  const DetectionBaseline low = make_baseline(logs, as_tuned("0"), shipped_rig(), 0.01, quiet());
   EXPECT_EQ(low.logs, 3);
   ASSERT_EQ(low.scores.size(), 3u);
   std::vector<double> scores;
-  for (const Baseline::Score& s : low.scores) scores.push_back(s.score);
+  for (const DetectionBaseline::Score& s : low.scores) scores.push_back(s.score);
   std::sort(scores.begin(), scores.end());
   EXPECT_DOUBLE_EQ(low.promised, 1.0 / (3 + 1));
   EXPECT_DOUBLE_EQ(low.promised_95, 1 - std::pow(0.05, 1.0 / 3));
@@ -102,7 +102,7 @@ TEST(Baseline, PromisesTheRatesThatItsNumberOfLogsAllows) {
   // One in a hundred takes 99 logs: 96 more.
   EXPECT_EQ(low.logs_needed, 99);
   // A rate that three logs allow: two of four may lie above, so the threshold is the second score.
-  const Baseline high = make_baseline(logs, as_tuned("0"), shipped_rig(), 0.5, quiet());
+  const DetectionBaseline high = make_baseline(logs, as_tuned("0"), shipped_rig(), 0.5, quiet());
   EXPECT_DOUBLE_EQ(high.promised, 2.0 / 4);
   EXPECT_GE(high.threshold, scores[1]);
   EXPECT_LE(high.threshold, low.threshold);

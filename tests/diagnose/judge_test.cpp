@@ -27,8 +27,8 @@ Assessment assessment(double score, std::vector<HypothesisResult> hypotheses) {
 }
 
 // Scores 1, 2, 3 and so a threshold of 3.
-Baseline baseline() {
-  Baseline b;
+DetectionBaseline baseline() {
+  DetectionBaseline b;
   b.threshold = 3.0;
   b.adequacy_limit = 1.5;
   b.scores = {{"a", "1", 1.0, 1.2}, {"b", "2", 2.0, 1.5}, {"c", "3", 3.0, 1.0}};
@@ -93,9 +93,9 @@ TEST(Judge, WhatStandsFirstInAHealthyLogIsSaidWithItsRate) {
 }
 
 TEST(Judge, AHealthyLogThatTheModelDoesNotFollowSetsTheLimitOfTestsLikeItsOwnAlone) {
-  Baseline b = baseline();
+  DetectionBaseline b = baseline();
   const TestConditions slow{0.01, 1, {}}, fast{0.01, 100, {}};
-  for (Baseline::Score& s : b.scores) s.test = slow;
+  for (DetectionBaseline::Score& s : b.scores) s.test = slow;
   b.scores.push_back({"d", "4", 9.0, 5.0, {}, fast});
   ASSERT_FALSE(is_followed(b.scores.back().adequacy));
   Assessment a = assessment(6.0, {hypothesis("", 0.0, 4), hypothesis("clogged_filter", 1.0, 3)});
@@ -111,8 +111,8 @@ TEST(Judge, AHealthyLogThatTheModelDoesNotFollowSetsTheLimitOfTestsLikeItsOwnAlo
 
 TEST(Judge, AFaultThatHealthGainsByTooMustGainTheMore) {
   // Where fault-free logs gain 24 by a leaking cylinder, one that gains 100 by it is 2 deviates off, not 10.
-  Baseline b = baseline();
-  for (Baseline::Score& s : b.scores)
+  DetectionBaseline b = baseline();
+  for (DetectionBaseline::Score& s : b.scores)
     s.gains = {{find_fault("cylinder_leakage"), 24.0}, {find_fault("sticky_spool"), 0.0}};
   const auto verdict = [&](const char* fault) {
     return judge(assessment(10.0, {hypothesis("", 0.0), hypothesis(fault, 1.0)}), b);
@@ -202,7 +202,7 @@ TEST(Judge, RowsAndNullAreOfTheHypothesisThatTheVerdictIsOf) {
 }
 
 TEST(Judge, ATestUnlikeEveryLogOfTheBaselineIsSaidWithTheNearest) {
-  Baseline b = baseline();
+  DetectionBaseline b = baseline();
   const TestConditions warm{0.020, 6.0, 313.0}, cold{0.020, 6.0, 270.0}, large{0.045, 6.0, 313.0};
   Assessment a = assessment(1, {hypothesis("", 0.9), hypothesis("clogged_filter", 0.1)});
   a.test = warm;

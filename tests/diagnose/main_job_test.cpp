@@ -39,12 +39,12 @@ TEST(MainJob, LostWireIsFoundAndSizedAndNoFaultTakenForAnother) {
   o.quiet = true;
   o.generations = 2;
   o.population = 24;  // the least that four islands take
-  const TuneResult tuned = tune(pieces({"healthy/h01_steps_large", "healthy/h12_mixed", "healthy/h04_multisine"}),
-                                read_table(shipped("params/borello2009.csv")), rig, o);
+  const TuneResult tuned = tune_table(pieces({"healthy/h01_steps_large", "healthy/h12_mixed", "healthy/h04_multisine"}),
+                                      read_table(shipped("params/borello2009.csv")), rig, o);
   std::printf("tuned after %.1f s\n", seconds());
   DiagnoseOptions quiet;
   quiet.quiet = true;
-  const Baseline baseline =
+  const DetectionBaseline baseline =
       make_baseline(pieces({"healthy/h15_no_supply_signals", "healthy/h05_prbs", "healthy/h03_sine_2hz"}), tuned.table,
                     rig, 0.01, quiet);
   std::printf("baseline after %.1f s: threshold %.2f, adequacy limit %.2f; %d logs\n", seconds(), baseline.threshold,

@@ -197,7 +197,7 @@ TEST(Emps, DirectionDependentFrictionIsFoundUnaided) {
   const Motion motion = read_emps();
   ASSERT_EQ(motion.time.size(), 24541u);
   Slide slide(motion);
-  const Explanation e = explain(slide, {});
+  const FoundCauses e = explain(slide, {});
   ASSERT_TRUE(e.before.ok && e.after.ok);
   const double before = slide.force_error(e.before.residual), after = slide.force_error(e.after.residual);
   std::printf("force error %.2f %% -> %.2f %%\n", 100 * before, 100 * after);

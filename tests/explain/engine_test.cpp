@@ -81,7 +81,7 @@ TEST(Engine, PlantedCauseIsNamedPlacedAndSized) {
   constexpr int trials = 20;
   for (int seed = 0; seed < trials; ++seed) {
     Line line({shapes[0], shapes[1], shapes[2], shapes[4]}, static_cast<std::uint64_t>(seed), 1, 0.5);
-    const Explanation e = explain(line, {});
+    const FoundCauses e = explain(line, {});
     if (e.causes.empty()) continue;
     named += line.causes()[static_cast<std::size_t>(e.causes[0].cause)].effect == "slow wave";
     inside += std::abs(e.causes[0].value[0] - 0.5) < 1.645 * e.causes[0].std_error[0];
@@ -93,14 +93,14 @@ TEST(Engine, PlantedCauseIsNamedPlacedAndSized) {
 
 TEST(Engine, WhatFitsAsWellIsSaidToBeConfusable) {
   Line line({shapes[0], shapes[3]}, 3, 0, 1.0);
-  const Explanation e = explain(line, {});
+  const FoundCauses e = explain(line, {});
   ASSERT_EQ(e.causes.size(), 1u);
   EXPECT_EQ(e.causes[0].confusable_with.size(), 1u);
 }
 
 TEST(Engine, CauseThatTheFreeNumbersImitateScoresNothing) {
   Line line(shapes, 5, 4, 2.0);  // a line, in a model that has a line, and within its bounds
-  const Explanation e = explain(line, {});
+  const FoundCauses e = explain(line, {});
   EXPECT_TRUE(e.causes.empty());
   EXPECT_LT(e.scores[4].gain, 1e-6);
 }
@@ -144,7 +144,7 @@ TEST(Engine, TwoCausesAreBothFound) {
   Line line(wave_and_kink, 11, 2, 1.0);
   EngineOptions o;
   o.among = [](const Cause& c) { return c.effect != "sum"; };
-  const Explanation e = explain(line, o);
+  const FoundCauses e = explain(line, o);
   ASSERT_EQ(e.causes.size(), 2u);
   for (const CauseResult& r : e.causes) {
     ASSERT_LT(r.cause, 2);
@@ -157,7 +157,7 @@ TEST(Engine, TwoCausesAreBothFound) {
 
 TEST(Engine, OneCauseThatIsTwoOthersTogetherStandsAlone) {
   Line line(wave_and_kink, 11, 2, 1.0);
-  const Explanation e = explain(line, {});
+  const FoundCauses e = explain(line, {});
   ASSERT_EQ(e.causes.size(), 1u);
   EXPECT_EQ(e.causes[0].cause, 2);
 }
@@ -187,7 +187,7 @@ TEST(Engine, WhatHealthyDataShowIsNotAccused) {
   Line line(shapes, 7, 1, 1.0);
   EngineOptions o;
   o.p_new = [](const CauseScore&, int) { return 0.5; };
-  const Explanation e = explain(line, o);
+  const FoundCauses e = explain(line, o);
   EXPECT_TRUE(e.causes.empty());
   ASSERT_FALSE(e.standing.empty());
   EXPECT_EQ(line.causes()[static_cast<std::size_t>(e.standing[0].cause)].effect, "slow wave");
@@ -197,7 +197,7 @@ TEST(Engine, WhatStandsInHealthyDataAndFitsAsWellIsSaidToBeConfusable) {
   Line line({shapes[0], shapes[3]}, 3, 0, 1.0);
   EngineOptions o;
   o.p_new = [](const CauseScore& s, int) { return s.cause == 0 ? 1e-6 : 0.5; };
-  const Explanation e = explain(line, o);
+  const FoundCauses e = explain(line, o);
   ASSERT_EQ(e.causes.size(), 1u);
   EXPECT_EQ(e.causes[0].cause, 0);
   EXPECT_EQ(e.causes[0].confusable_with, std::vector<int>{1});
@@ -216,7 +216,7 @@ TEST(Engine, NameThatHelpsAndLeavesTheDataAbnormalIsRefusedAndKept) {
   EngineOptions o;
   o.p_new = [](const CauseScore&, int) { return 0.5; };
   o.p_left = [](const ExplainedFit&, int) { return 1e-6; };
-  const Explanation e = explain(line, o);
+  const FoundCauses e = explain(line, o);
   EXPECT_TRUE(e.causes.empty());
   ASSERT_FALSE(e.refused.empty());
   EXPECT_GT(heldout_gain(e.before, e.refused.front(), o.seed).lower, 0);
@@ -231,7 +231,7 @@ TEST(Engine, FarBeyondWhatIsUsualHalvesCountAlike) {
 
 TEST(Engine, SameSeedSameResult) {
   Line a(shapes, 9, 0, 0.6), b(shapes, 9, 0, 0.6);
-  const Explanation x = explain(a, {}), y = explain(b, {});
+  const FoundCauses x = explain(a, {}), y = explain(b, {});
   ASSERT_EQ(x.causes.size(), y.causes.size());
   for (std::size_t k = 0; k < x.causes.size(); ++k) {
     EXPECT_EQ(x.causes[k].value, y.causes[k].value);

@@ -40,7 +40,7 @@ Read read_off(const Rehearsed& r, const std::string& cause) {
   EngineOptions options;
   options.among = [&](const Cause& c) { return c.effect == cause; };
   options.most = 1;
-  const Explanation e = explain(blocks, options);
+  const FoundCauses e = explain(blocks, options);
   if (e.causes.empty()) return out;
   out.value = e.causes.front().value, out.std_error = e.causes.front().std_error;
   out.gain = e.causes.front().heldout_gain.value;
@@ -149,7 +149,7 @@ TEST(Replay, WhatHasNoNameIsReadAsACurveOfItsOwnVariables) {
     EngineOptions options;
     options.among = [](const Cause& c) { return c.curve; };
     options.most = 1;
-    const Explanation e = explain(blocks, options);
+    const FoundCauses e = explain(blocks, options);
     ASSERT_EQ(e.causes.size(), 1u);
     EXPECT_EQ(blocks.causes()[static_cast<std::size_t>(e.causes.front().cause)].family, planted.family);
     const auto curve =

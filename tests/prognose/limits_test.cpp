@@ -22,7 +22,7 @@ TEST(Limits, FidelityOfASlowerSpoolIsThatOfTheory) {
 // The blockage that the limit names, put into the table, leaves that part of the monitor's bandwidth.
 TEST(Limits, BlockageForABandwidthLeavesThatBandwidth) {
   Table table = shipped_table();
-  TrendOptions options;
+  TrendSettings options;
   add_limit(read_limit("bandwidth=0.5"), table, 0, options);
   const Supply at{207e5, 5e5, {}, 0.02};
   const double healthy = monitor_parameters(table, at).first_stage_gain;
@@ -33,7 +33,7 @@ TEST(Limits, BlockageForABandwidthLeavesThatBandwidth) {
 
 TEST(Limits, ABacklashOfTheHysteresisLimitTakesThatMuchCurrent) {
   const Table table = shipped_table();
-  TrendOptions options;
+  TrendSettings options;
   add_limit(read_limit("hysteresis=0.04"), table, 0, options);
   // 4 % of rated current moves a spool of 0.5 mm stroke by 20 um at most: the flow force takes some.
   EXPECT_NEAR(*options.failure.at("parameter:9").second, 20e-6, 4e-6);
@@ -41,7 +41,7 @@ TEST(Limits, ABacklashOfTheHysteresisLimitTakesThatMuchCurrent) {
 
 TEST(Limits, WhatIsNoLimitIsRefused) {
   const Table table = shipped_table();
-  TrendOptions options;
+  TrendSettings options;
   for (const char* text : {"bandwidth", "bandwidth=2", "speed=0.5", "phase_margin=45"})
     EXPECT_THROW(add_limit(read_limit(text), table, 0, options), InputError) << text;
   add_limit(read_limit("phase_margin=85"), table, 15, options);

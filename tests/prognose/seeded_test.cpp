@@ -88,7 +88,7 @@ ValveHistory a_life(std::uint64_t seed) {
 
 // Readings that dip half way look like a late onset and a steep growth: the end is told a tenth and more too early.
 TEST(Seeded, AReadingThatDipsIsNoLateOnset) {
-  TrendOptions options;
+  TrendSettings options;
   options.failure["parameter:22"].second = failed;
   double with = 0, without = 0;
   for (std::uint64_t seed = 0; seed < 6; ++seed) {

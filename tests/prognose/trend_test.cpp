@@ -125,7 +125,7 @@ TEST(Trend, ChecksOnAnotherTunedTableAreSetApartAloud) {
 }
 
 TEST(Trend, AUsersFailureLevelCountsAndALowerOneToo) {
-  TrendOptions options;
+  TrendSettings options;
   options.failure["fidelity"] = {0.9, 1.7};
   const ValveTrend t = trend(a_life(80, 1e9, 2), options);
   EXPECT_EQ(find(t, "fidelity").failure.lower, 0.9);
@@ -181,7 +181,7 @@ TEST(Trend, AMultipleOfWhatMultipliesIsOfTheTunedValue) {
       "parameter:14", [](double s) { return 0.7 + 31.3 * s; }, 0.3, 0.1);
   h.tuned.assign(41, 0.0);
   h.tuned[13] = 1.6;
-  TrendOptions options;
+  TrendSettings options;
   options.failure_ratio["parameter:14"] = 20;
   const ValveTrend t = trend(h, options);
   EXPECT_NEAR(*find(t, "parameter:14").failure.upper, 32, 1e-9);
@@ -200,7 +200,7 @@ TEST(Trend, AFrictionsLevelAsACurrentKnowsNeitherBoreNorMotor) {
     h.tuned[2] = 100 * motor;
     h.tuned[13] = 1.6;
     h.tuned[5] = std::numbers::pi * bore * 0.35e-3, h.tuned[12] = 7e-3;  // nozzle 20 times narrower than the spool
-    TrendOptions options;
+    TrendSettings options;
     options.failure_current["parameter:14"] = 32.0 / 400 / 100;
     options.failure_spread["parameter:14"] = 0.32 / 400 / 100;
     const ValveTrend t = trend(h, options);
@@ -217,7 +217,7 @@ TEST(Trend, WhatMovesAwayFromFailureIsGivenNoLife) {
   const auto to = [](double last) {
     const ValveHistory h = of_one(
         "parameter:9", [&](double s) { return 10e-6 + (last - 10e-6) * s; }, 1e-7, 1e-7);
-    TrendOptions options;
+    TrendSettings options;
     options.failure["parameter:9"].second = 20e-6;
     return trend(h, options);
   };
@@ -234,7 +234,7 @@ TEST(Trend, TheStatedSpreadOfALevelSetsTheIntervalOfTheLife) {
   const ValveHistory h = of_one(
       "parameter:9", [](double s) { return 20e-6 * s; }, 1e-7, 1e-7);
   const auto width = [&](double spread) {
-    TrendOptions options;
+    TrendSettings options;
     options.failure["parameter:9"].second = 20e-6;
     options.failure_spread["parameter:9"] = spread;
     const ValveTrend t = trend(h, options);
@@ -296,7 +296,7 @@ TEST(Trend, AConstantErrorOfTheDropOverAFilterIsNoLateOnset) {
       c.value = c.measured = 1 - 1 / over_open;
       c.std_error = 0.1 / ((over_open + 0.5) * over_open * over_open);
     }
-    TrendOptions options;
+    TrendSettings options;
     options.failure["parameter:1"].second = 0.75;
     options.failure_spread["parameter:1"] = 0.005;
     const ValveTrend t = trend(h, options);
@@ -326,7 +326,7 @@ ValveHistory a_filter(double worn_at_end, int checks, std::uint64_t seed, double
 
 // Median and width of the life that is left at 84 h of 120, both in parts of the true one; means over four valves.
 std::pair<double, double> left_of_a_filter(double coldest) {
-  TrendOptions options;
+  TrendSettings options;
   options.failure["parameter:1"].second = 1 - 1 / std::sqrt(16 - 1.2);  // as such a valve reads three quarters
   options.failure_spread["parameter:1"] = 0.01;
   constexpr int valves = 4;
@@ -375,14 +375,14 @@ TEST(Trend, ACheckThatScattersBeyondFailureInHealthSaysThatItIsBlind) {
 
 TEST(Trend, WhatIsFailedByOneLevelIsFailedByEveryNearerOne) {
   for (const double level : {1.5e-6, 2e-6, 3e-6, 5e-6, 9e-6}) {
-    TrendOptions o;
+    TrendSettings o;
     o.failure["parameter:9"].second = level;
     EXPECT_EQ(find(trend(a_life(100, 0, 1), o), "parameter:9").state, TrendState::failed) << level;
   }
 }
 
 TEST(Trend, ALevelOnTheSideOfHealthIsTold) {
-  TrendOptions o;
+  TrendSettings o;
   o.failure["fidelity"].second = 0.5;
   const ValveTrend t = trend(of_one(
                                  "fidelity", [](double) { return 1.2; }, 0.01, 0.01),
@@ -411,7 +411,7 @@ TEST(Trend, OneOutlyingCheckRaisesNoAlert) {
 }
 
 TEST(Trend, SameHistorySameTrendOnAnyThreads) {
-  TrendOptions one, two;
+  TrendSettings one, two;
   one.threads = 1, two.threads = 2;
   const ValveTrend a = trend(a_life(80, 24, 1), one), b = trend(a_life(80, 24, 1), two);
   EXPECT_EQ(a.life, b.life);

@@ -4,13 +4,13 @@
 #include <cmath>
 #include <cstdio>
 
-#include "tune/tune.h"
 #include "parameters/table.h"
 #include "rig/rig_model.h"
 #include "rig/rig_run.h"
 #include "servodx/log.h"
 #include "shipped_data.h"
 #include "temporary_folder.h"
+#include "tune/tune.h"
 
 namespace servodx {
 namespace {
@@ -36,7 +36,7 @@ Excess tuned(double excess) {
   }
   TuneOptions options;
   options.quiet = true, options.generations = 0;
-  const Table table = tune(logs, shipped_table(), shipped_rig(), options).table;
+  const Table table = tune_table(logs, shipped_table(), shipped_rig(), options).table;
   const int row = table.find("nozzle_1_excess");
   return {table[row].nominal, table[row].std_error.value()};
 }

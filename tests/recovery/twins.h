@@ -122,7 +122,7 @@ inline TuneResult tuned(const Twin& twin, int threads) {
   const double rated = *rig.fact("valve.rated_current");
   rig.facts.clear();  // the table has the facts already, and only the experiment's rows may move
   rig.facts["valve.rated_current"] = rated;
-  return tune(twin.logs, nominal, rig, options);
+  return tune_table(twin.logs, nominal, rig, options);
 }
 
 struct Outcome {

@@ -17,6 +17,7 @@
 #include "faults/registry.h"
 #include "fit/identifiability.h"
 #include "fit/selftest.h"
+#include "optimise/ceres_refinement.h"
 #include "prognose/check.h"
 #include "prognose/trend.h"
 #include "report/baseline_file.h"
@@ -35,15 +36,14 @@
 #include "servodx/log.h"
 #include "temporary_folder.h"
 #include "tune/tune.h"
-#include "optimise/ceres_refinement.h"
 
 namespace servodx::report {
 namespace {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
-Baseline some_baseline() {
-  Baseline b;
+DetectionBaseline some_baseline() {
+  DetectionBaseline b;
   b.threshold = 3.1000000000000001;
   b.asked = 0.01;
   b.promised = 1.0 / 9.0;
@@ -336,10 +336,10 @@ TEST(Words, APortsLetterIsACapital) {
 
 TEST(BaselineFile, ReadsBackToTheSameBits) {
   const TemporaryFolder folder;
-  const Baseline b = some_baseline();
+  const DetectionBaseline b = some_baseline();
   Header header;
   header.command = "baseline";
-  const Baseline back = read_baseline(folder.write("base.json", dump(header, baseline_json(b)))).baseline;
+  const DetectionBaseline back = read_baseline(folder.write("base.json", dump(header, baseline_json(b)))).baseline;
   EXPECT_EQ(back.threshold, b.threshold);
   EXPECT_EQ(back.asked, b.asked);
   EXPECT_EQ(back.promised, b.promised);
@@ -417,7 +417,7 @@ TEST(BaselineFile, RefusalsNameFileKeyAndMend) {
 }
 
 TEST(BaselineFile, OfAnotherTableIsRefused) {
-  const Baseline b = some_baseline();
+  const DetectionBaseline b = some_baseline();
   EXPECT_NO_THROW(require_same_table(b, "base.json", "tuned.csv", b.tuned_sha256));
   EXPECT_THROW(require_same_table(b, "base.json", "tuned.csv", std::string(64, 'c')), InputError);
 }

@@ -50,12 +50,12 @@ Recording a_check(double at, double value = 1.25) {
 
 TEST_F(HistoryFile, WhatIsRecordedIsReadBackInOrderOfHours) {
   {
-    History h(file(), true);
+    HistoryFile h(file(), true);
     h.record("v1", "SN 7", a_check(20, 0.1 + 0.2), "text");
     h.record("v1", "", a_check(10), "text");
     h.add_event("v1", {15, EventKind::filter_changed, "new screen", ""});
   }
-  const History h(file(), false);
+  const HistoryFile h(file(), false);
   const ValveHistory v = h.of("v1");
   EXPECT_EQ(v.serial, "SN 7");
   ASSERT_EQ(v.recordings.size(), 2u);
@@ -69,19 +69,19 @@ TEST_F(HistoryFile, WhatIsRecordedIsReadBackInOrderOfHours) {
 }
 
 TEST_F(HistoryFile, TheSameLogAtTheSameHoursIsRefused) {
-  History h(file(), true);
+  HistoryFile h(file(), true);
   h.record("v1", "", a_check(10), "");
   EXPECT_THROW(h.record("v1", "", a_check(10), ""), InputError);
   EXPECT_EQ(h.of("v1").recordings.size(), 1u);
 }
 
 TEST_F(HistoryFile, CsvThereAndBackGivesTheSameBits) {
-  History h(file(), true);
+  HistoryFile h(file(), true);
   for (int k = 0; k < 5; ++k) h.record("valve, \"left\"", "SN", a_check(k / 3.0, k / 7.0), "id,name\n1,\"x\"\n");
   h.add_event("valve, \"left\"", {1.5, EventKind::note, "two\nlines; ü", ""});
   const std::string text = history_csv(h.content());
   std::ofstream(file("h.csv"), std::ios::binary) << text;
-  History other(file("other.db"), true);
+  HistoryFile other(file("other.db"), true);
   const Restored first = other.restore(read_history_csv(file("h.csv")));
   EXPECT_EQ(first.recordings, 5);
   EXPECT_EQ(first.events, 1);
@@ -92,7 +92,7 @@ TEST_F(HistoryFile, CsvThereAndBackGivesTheSameBits) {
 }
 
 TEST_F(HistoryFile, ABrokenCsvIsRefusedAtItsLineAndAddsNothing) {
-  History h(file(), true);
+  HistoryFile h(file(), true);
   h.record("v1", "", a_check(10), "");
   std::string text = history_csv(h.content());
   text.replace(text.rfind("10,"), 2, "ten");
@@ -110,7 +110,7 @@ TEST_F(HistoryFile, ACsvOfAnotherOriginNeedsValveHoursNameAndValue) {
   std::ofstream(file("other.csv")) << "at [h],valve,name,value,oil_temperature [degC]\n"
                                       "1,v1,fidelity,1.2,\n1,v1,parameter:9,3e-6,40\n5,v1,fidelity,1.3,-10\n";
   const HistoryContent content = read_history_csv(file("other.csv"));
-  History h(file(), true);
+  HistoryFile h(file(), true);
   EXPECT_EQ(h.restore(content).recordings, 2);
   const ValveHistory v = h.of("v1");
   ASSERT_EQ(v.recordings.size(), 2u);
@@ -125,7 +125,7 @@ TEST_F(HistoryFile, ACsvOfAnotherOriginNeedsValveHoursNameAndValue) {
 TEST_F(HistoryFile, RowsOfOneCheckNeedNotStandTogether) {
   std::ofstream(file("by_name.csv")) << "valve,at [h],name,value\nv1,1,fidelity,1.2\nv1,2,fidelity,1.3\n"
                                         "v1,1,parameter:9,3e-6\nv1,2,parameter:9,4e-6\n";
-  History h(file(), true);
+  HistoryFile h(file(), true);
   EXPECT_EQ(h.restore(read_history_csv(file("by_name.csv"))).recordings, 2);
   for (const Recording& r : h.of("v1").recordings) EXPECT_EQ(r.checks.size(), 2u);
   std::ofstream(file("twice.csv"))
@@ -138,7 +138,7 @@ TEST_F(HistoryFile, AnImportThatContradictsTheHistoryIsRefusedWhole) {
     std::ofstream(file("rows.csv")) << "valve,at [h],name,value\n" << rows;
     return read_history_csv(file("rows.csv"));
   };
-  History h(file(), true);
+  HistoryFile h(file(), true);
   h.restore(csv("v1,1,fidelity,1.2\n"));
   EXPECT_EQ(h.restore(csv("v1,1,fidelity,1.2\n")).present, 1);
   EXPECT_THROW(h.restore(csv("v1,2,fidelity,1.2\nv1,1,fidelity,1.3\n")), InputError) << "another value";
@@ -178,16 +178,16 @@ TEST_F(HistoryFile, AnImportRefusesWhatNoValveCanRead) {
 
 TEST_F(HistoryFile, AnEmptyFileIsNoHistory) {
   std::ofstream(file("empty.db")).flush();
-  EXPECT_THROW(History(file("empty.db"), false), InputError);
+  EXPECT_THROW(HistoryFile(file("empty.db"), false), InputError);
   EXPECT_EQ(std::filesystem::file_size(file("empty.db")), 0u);
 }
 
 TEST_F(HistoryFile, AnEmptyFileIsFilledAsIfItWereNotThere) {
   std::ofstream(file()).flush();
-  EXPECT_FALSE(History::there(file()));
-  History(file(), true).record("v1", "", a_check(1), "");
-  EXPECT_TRUE(History::there(file()));
-  EXPECT_EQ(History(file(), false).of("v1").recordings.size(), 1u);
+  EXPECT_FALSE(HistoryFile::there(file()));
+  HistoryFile(file(), true).record("v1", "", a_check(1), "");
+  EXPECT_TRUE(HistoryFile::there(file()));
+  EXPECT_EQ(HistoryFile(file(), false).of("v1").recordings.size(), 1u);
 }
 
 // A child that ends with 0 where `work` throws nothing.
@@ -208,16 +208,16 @@ TEST_F(HistoryFile, OneWhoseMakerIsKilledIsWholeOrNotThere) {
   constexpr int kills = 20;
   for (int k = 0; k < kills; ++k) {
     const std::string path = file(std::string(1, static_cast<char>('a' + k)));
-    const pid_t child = in_child([&] { History(path, true); });
+    const pid_t child = in_child([&] { HistoryFile(path, true); });
     std::this_thread::sleep_for(std::chrono::microseconds(random.below(6000)));
     kill(child, SIGKILL);
     waitpid(child, nullptr, 0);
-    EXPECT_EQ(fs::exists(path), History::there(path)) << "an empty file after kill " << k;
+    EXPECT_EQ(fs::exists(path), HistoryFile::there(path)) << "an empty file after kill " << k;
     if (fs::exists(path)) {
-      EXPECT_EQ(History(path, false).verify(), "ok");
+      EXPECT_EQ(HistoryFile(path, false).verify(), "ok");
     }
-    History(path, true).record("v1", "", a_check(1), "");  // what is left of the first hinders nobody
-    EXPECT_EQ(History(path, false).of("v1").recordings.size(), 1u);
+    HistoryFile(path, true).record("v1", "", a_check(1), "");  // what is left of the first hinders nobody
+    EXPECT_EQ(HistoryFile(path, false).of("v1").recordings.size(), 1u);
   }
   EXPECT_EQ(std::distance(fs::directory_iterator(folder.path), fs::directory_iterator()), kills);
 }
@@ -227,7 +227,7 @@ TEST_F(HistoryFile, OneThatHasNoRoomIsNotThere) {
     signal(SIGXFSZ, SIG_IGN);
     const rlimit limit{2000, 2000};
     setrlimit(RLIMIT_FSIZE, &limit);
-    History(file(), true);
+    HistoryFile(file(), true);
   });
   int status = 0;
   waitpid(child, &status, 0);
@@ -243,49 +243,49 @@ TEST_F(HistoryFile, FirstWritersAtOnceLoseNothing) {
     std::vector<pid_t> children;
     for (int w = 0; w < writers; ++w)
       children.push_back(in_child(
-          [&] { History(path, true).record(std::string(1, static_cast<char>('a' + w)), "", a_check(w), ""); }));
+          [&] { HistoryFile(path, true).record(std::string(1, static_cast<char>('a' + w)), "", a_check(w), ""); }));
     for (const pid_t child : children) {
       int status = 0;
       waitpid(child, &status, 0);
       EXPECT_EQ(WEXITSTATUS(status), 0);
     }
-    EXPECT_EQ(History(path, false).valves().size(), static_cast<std::size_t>(writers));
+    EXPECT_EQ(HistoryFile(path, false).valves().size(), static_cast<std::size_t>(writers));
   }
 }
 
 TEST_F(HistoryFile, AnOlderSchemaIsBroughtUpAndKeepsItsRows) {
   {
-    History h(file(), true);
+    HistoryFile h(file(), true);
     h.record("v1", "", a_check(10), "");
   }
   {
     SQLite::Database raw(file(), SQLite::OPEN_READWRITE);
     raw.exec("DROP INDEX recording_of_valve; DROP INDEX event_of_valve; PRAGMA user_version = 1");
   }
-  const History h(file(), false);
+  const HistoryFile h(file(), false);
   EXPECT_EQ(h.of("v1").recordings.size(), 1u);
   SQLite::Database raw(file());
-  EXPECT_EQ(raw.execAndGet("PRAGMA user_version").getInt(), History::schema_version());
+  EXPECT_EQ(raw.execAndGet("PRAGMA user_version").getInt(), HistoryFile::schema_version());
   EXPECT_EQ(raw.execAndGet("SELECT count(*) FROM sqlite_master WHERE name = 'recording_of_valve'").getInt(), 1);
 }
 
 TEST_F(HistoryFile, ANewerSchemaAnotherProgramsFileAndADamagedFileAreRefusedUntouched) {
-  { History h(file(), true); }
+  { HistoryFile h(file(), true); }
   { SQLite::Database(file(), SQLite::OPEN_READWRITE).exec("PRAGMA user_version = 99"); }
-  EXPECT_THROW(History(file(), true), InputError);
+  EXPECT_THROW(HistoryFile(file(), true), InputError);
   { SQLite::Database(file("other.db"), SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE).exec("CREATE TABLE mine(x)"); }
-  EXPECT_THROW(History(file("other.db"), true), InputError);
+  EXPECT_THROW(HistoryFile(file("other.db"), true), InputError);
   const std::string noise(4096, 'x');
   std::ofstream(file("noise.db")) << noise;
-  EXPECT_THROW(History(file("noise.db"), true), InputError);
+  EXPECT_THROW(HistoryFile(file("noise.db"), true), InputError);
   std::ifstream in(file("noise.db"));
   EXPECT_EQ(std::string(std::istreambuf_iterator<char>(in), {}), noise);
-  EXPECT_THROW(History(file("missing.db"), false), InputError);
+  EXPECT_THROW(HistoryFile(file("missing.db"), false), InputError);
 }
 
 TEST_F(HistoryFile, ADamagedPageIsReportedNotReadOver) {
   {
-    History h(file(), true);
+    HistoryFile h(file(), true);
     for (int k = 0; k < 200; ++k) h.record("v1", "", a_check(k), "");
   }
   {
@@ -295,7 +295,7 @@ TEST_F(HistoryFile, ADamagedPageIsReportedNotReadOver) {
     f.write(noise.data(), static_cast<long>(noise.size()));
   }
   const auto read_all = [&] {
-    const History h(file(), false);
+    const HistoryFile h(file(), false);
     if (h.verify() != "ok") throw InputError({}, "damaged", "");
     h.of("v1");
   };
@@ -304,7 +304,7 @@ TEST_F(HistoryFile, ADamagedPageIsReportedNotReadOver) {
 
 // A limit on the size of files stands for a full disk: the write fails in mid-transaction.
 TEST_F(HistoryFile, AWriteThatFailsLosesItsCheckSaysSoAndKeepsTheRest) {
-  { History h(file(), true); }
+  { HistoryFile h(file(), true); }
   int ends[2];
   ASSERT_EQ(pipe(ends), 0);
   const pid_t child = fork();
@@ -314,7 +314,7 @@ TEST_F(HistoryFile, AWriteThatFailsLosesItsCheckSaysSoAndKeepsTheRest) {
     setrlimit(RLIMIT_FSIZE, &limit);
     int code = 1;
     try {
-      History h(file(), true);
+      HistoryFile h(file(), true);
       for (int k = 0; k < 2000; ++k) {
         h.record("v1", "", a_check(k), std::string(500, 'x'));
         if (write(ends[1], "+", 1) != 1) _exit(2);
@@ -333,14 +333,14 @@ TEST_F(HistoryFile, AWriteThatFailsLosesItsCheckSaysSoAndKeepsTheRest) {
   int status = 0;
   waitpid(child, &status, 0);
   EXPECT_EQ(WEXITSTATUS(status), 0) << "the failure was not reported";
-  const History h(file(), false);
+  const HistoryFile h(file(), false);
   EXPECT_EQ(h.verify(), "ok");
   EXPECT_GT(acknowledged, 3u);
   EXPECT_EQ(h.of("v1").recordings.size(), acknowledged);
 }
 
 TEST_F(HistoryFile, WritersOfSeveralProcessesLoseNothing) {
-  { History h(file(), true); }
+  { HistoryFile h(file(), true); }
   constexpr int writers = 4, each = 25;
   std::vector<pid_t> children;
   for (int w = 0; w < writers; ++w) {
@@ -348,7 +348,7 @@ TEST_F(HistoryFile, WritersOfSeveralProcessesLoseNothing) {
     if (child == 0) {
       int code = 0;
       try {
-        History h(file(), true);
+        HistoryFile h(file(), true);
         for (int k = 0; k < each; ++k) h.record("v" + std::to_string(w), "", a_check(k), "");
       } catch (...) {
         code = 1;
@@ -362,7 +362,7 @@ TEST_F(HistoryFile, WritersOfSeveralProcessesLoseNothing) {
     waitpid(child, &status, 0);
     EXPECT_EQ(WEXITSTATUS(status), 0);
   }
-  const History h(file(), false);
+  const HistoryFile h(file(), false);
   for (int w = 0; w < writers; ++w) EXPECT_EQ(h.of("v" + std::to_string(w)).recordings.size(), 25u);
 }
 
@@ -380,7 +380,7 @@ TEST_F(HistoryFile, AKilledWriterLosesNoAcknowledgedCheck) {
     if (child == 0) {
       close(ends[0]);
       try {
-        History h(file(), true);
+        HistoryFile h(file(), true);
         for (int i = acknowledged;; ++i) {
           h.record("v1", "", a_check(i), "table text");
           if (write(ends[1], "+", 1) != 1) _exit(2);
@@ -400,7 +400,7 @@ TEST_F(HistoryFile, AKilledWriterLosesNoAcknowledgedCheck) {
     while (read(ends[0], &byte, 1) == 1) ++acknowledged;
     close(ends[0]);
     if (!fs::exists(file())) continue;
-    const History h(file(), false);
+    const HistoryFile h(file(), false);
     ASSERT_EQ(h.verify(), "ok") << "after kill " << k;
     const std::vector<std::string> valves = h.valves();
     const auto stored = valves.empty() ? 0 : static_cast<int>(h.of("v1").recordings.size());
@@ -412,7 +412,7 @@ TEST_F(HistoryFile, AKilledWriterLosesNoAcknowledgedCheck) {
 }
 
 TEST_F(HistoryFile, TheTrendOfOneValveIsReadThroughAnIndex) {
-  { History h(file(), true); }
+  { HistoryFile h(file(), true); }
   SQLite::Database raw(file());
   SQLite::Statement plan(raw,
                          "EXPLAIN QUERY PLAN SELECT r.id FROM recording r LEFT JOIN figure f ON f.recording = r.id "

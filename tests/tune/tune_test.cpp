@@ -31,7 +31,7 @@ TEST(Tune, ALosingChildDoesNotRunTheLogsThatAreLeft) {
   o.generations = 20;
   o.rounds = 1;
   o.effects.emplace();
-  const TuneResult result = tune(logs, table, shipped_rig(), o);
+  const TuneResult result = tune_table(logs, table, shipped_rig(), o);
   std::vector<long> shown;
   for (const ConvergencePoint& p : result.convergence)
     if (p.stage == "genetic search") shown.push_back(p.simulations);
@@ -49,7 +49,7 @@ TuneResult quick_tune(const Table& table) {
   o.generations = 0;
   o.rounds = 1;
   o.effects.emplace();
-  return tune({twins::cut(shipped_log("healthy/h12_mixed"), 400)}, table, shipped_rig(), o);
+  return tune_table({twins::cut(shipped_log("healthy/h12_mixed"), 400)}, table, shipped_rig(), o);
 }
 
 bool ends_with_ceres(const TuneResult& result, const std::string& stage) {
@@ -113,9 +113,9 @@ TEST(Tune, CeresAloneArrivesWhereBothArrive) {
   o.rounds = 2;
   o.effects.emplace();
   const std::vector<Log> logs = {twins::cut(shipped_log("healthy/h12_mixed"), 400)};
-  const TuneResult both = tune(logs, one_free_row(), shipped_rig(), o);
+  const TuneResult both = tune_table(logs, one_free_row(), shipped_rig(), o);
   o.local = TuneLocal::ceres;
-  const TuneResult alone = tune(logs, one_free_row(), shipped_rig(), o);
+  const TuneResult alone = tune_table(logs, one_free_row(), shipped_rig(), o);
   for (const StageResult& s : alone.stages) EXPECT_EQ(s.by, StageMethod::ceres) << s.stage;
   const double there = both.table[row::driver_bandwidth].nominal;
   // Half a standard error: the valley is flat to that.
@@ -140,7 +140,7 @@ TEST(Tune, OptionsAreRefusedByNameBeforeAnyWork) {
     TuneOptions o;
     change(o);
     try {
-      tune({}, Table{}, RigFile{}, o);
+      tune_table({}, Table{}, RigFile{}, o);
     } catch (const InputError& error) {
       return error.what();
     }

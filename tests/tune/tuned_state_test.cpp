@@ -4,9 +4,9 @@
 #include <gtest/gtest.h>
 
 #include "base/error.h"
-#include "tune/tune.h"
 #include "recovery/twins.h"
 #include "temporary_folder.h"
+#include "tune/tune.h"
 
 namespace servodx {
 namespace {
@@ -86,8 +86,8 @@ TEST(TunedState, ATuneOfATunedTableReplacesIt) {
   const Log second = twins::cut(shipped_log("healthy/h09_preflight_hot"), 300);
   TuneOptions smoothed = quick();
   smoothed.moving_average = 3;
-  const TuneResult once = tune({first}, with_few_rows(), shipped_rig(), smoothed);
-  const TuneResult twice = tune({second}, once.table, shipped_rig(), quick());
+  const TuneResult once = tune_table({first}, with_few_rows(), shipped_rig(), smoothed);
+  const TuneResult twice = tune_table({second}, once.table, shipped_rig(), quick());
   const TunedState state = tuned_state(twice.table);
   EXPECT_EQ(state.moving_average, 1);
   ASSERT_EQ(state.by.size(), 1u);

@@ -126,8 +126,8 @@ Promise some_promise() {
   return p;
 }
 
-Baseline some_baseline() {
-  Baseline b;
+DetectionBaseline some_baseline() {
+  DetectionBaseline b;
   b.threshold = 9.45;
   b.asked = 0.01;
   b.promised = 1.0 / 5;
