@@ -20,8 +20,10 @@
 #include "report/explain_report.h"
 #include "report/explain_words.h"
 #include "report/json.h"
+#include "servodx/explain.h"
 #include "servodx/log.h"
 #include "servodx/rig.h"
+#include "servodx/tune.h"
 #include "tune/tune.h"
 
 using namespace servodx;
@@ -93,7 +95,7 @@ int main(int argc, char** argv) {
       } else {
         const hidden::Case c = hidden::make_case(bench, s, effect, seconds);
         ExplainOptions options;
-        options.quiet = true, options.level = std::max(level, 1.0 / (healthy + 1.0));
+        options.level = std::max(level, 1.0 / (healthy + 1.0));
         if (remove) options.without = {effect};
         const ExplainResult answer = explain_logs(read(c.logs), tuned, bench.rig, &reference, options);
         sc = hidden::score(hidden::unseal(c.sealed), answer);  // opened after the answer

@@ -14,6 +14,7 @@
 #include <map>
 
 #include "fit/identifiability.h"
+#include "servodx/table.h"
 #include "tune/tune.h"
 
 using namespace servodx;

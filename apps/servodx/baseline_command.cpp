@@ -1,19 +1,25 @@
 // `servodx baseline LOG...`: what fault-free logs score, and the threshold that promises a false-alarm rate.
-#include <fmt/format.h>
-
 #include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cstddef>
 #include <memory>
+#include <string>
+#include <vector>
 
-#include "base/atomic_file.h"
-#include "base/progress.h"
 #include "commands.h"
-#include "diagnose/diagnose.h"
-#include "explain/healthy.h"
+#include "diagnose/baseline.h"
+#include "door/baseline_parts.h"
+#include "fit/replay.h"
 #include "invocation.h"
 #include "report/diagnosis_words.h"
 #include "report/explain_report.h"
+#include "report/json.h"
 #include "report/pages.h"
 #include "report/text.h"
+#include "servodx/baseline.h"
+#include "servodx/log.h"
+#include "servodx/rig.h"
+#include "servodx/tune.h"
 
 namespace servodx {
 namespace {
@@ -22,32 +28,19 @@ struct Options {
   CommonOptions common;
   std::vector<std::string> logs;
   std::string params, output;
-  double false_alarm = DetectionBaseline{}.asked;
+  double false_alarm = BaselineOptions{}.false_alarm;
 };
 
-// What `explain` asks of healthy logs.
-HealthyReference healthy(const std::vector<Log>& logs, const Table& tuned, const RigFile& rig, const Options& options,
-                         report::Header& header) {
-  Progress progress("baseline, causes", {.quiet = options.common.quiet});
-  HealthyCounts counts{header.simulations, header.failed_simulations};
-  const auto told = [&](double done) {
-    progress.update(done, counts.simulations);
-    return !stop_on_interrupt();
-  };
-  HealthyReference out = score_healthy(logs, tuned, rig, options.common.threads, counts, told);
-  header.simulations = counts.simulations, header.failed_simulations = counts.failed;
-  return out;
-}
-
 int run(const Options& options) {
-  require_option(options.false_alarm > 0 && options.false_alarm < 1, "--false-alarm", "is a rate between 0 and 1",
-                 "0.01 is one false alarm in a hundred fault-free logs");
+  BaselineOptions how{
+      .false_alarm = options.false_alarm, .seed = options.common.seed, .threads = options.common.threads, .watch = {}};
+  how.validate();
   Invocation invocation("baseline", options.common);
   auto inputs = options.logs;
   inputs.push_back(options.params);
   invocation.check_files(inputs, {options.output});
   const RigFile rig = invocation.rig();
-  const Table tuned = invocation.tuned_table(options.params);
+  const Tuned tuned = invocation.tuned(options.params);
   const std::vector<Log> logs = invocation.logs(options.logs, rig);
 
   report::Header& header = invocation.header();
@@ -55,26 +48,23 @@ int run(const Options& options) {
   invocation.tell_of_long_fits(logs);
   if (invocation.dry_run()) return ran;
 
-  const std::atomic<bool>& stop = stop_on_interrupt();
-  const DetectionBaseline baseline = make_baseline(
-      logs, tuned, rig, options.false_alarm,
-      {.seed = options.common.seed, .threads = options.common.threads, .quiet = options.common.quiet, .stop = &stop},
-      &header.simulations, &header.failed_simulations);
-  for (const Log& log : logs) invocation.note(log.notes);
-  if (baseline.scores.size() < logs.size())
-    invocation.note({fmt::format("interrupted: rests on {} of {} logs", baseline.scores.size(), logs.size())});
+  how.watch = invocation.watch();
+  const Baseline baseline = make_baseline(logs, tuned, rig, how);
+  const DetectionBaseline& detection = baseline.parts->detection;
+  header.simulations = baseline.simulations, header.failed_simulations = baseline.failed_simulations;
+  invocation.note(baseline.notes);
   if (invocation.wants_report()) {
     std::vector<Replay> replays;
-    for (std::size_t i = 0; i < std::min(baseline.scores.size(), report::most_replays); ++i)
-      if (const auto& healthy = baseline.scores[i].healthy)
-        replays.push_back(replay(logs[i], tuned, rig, report::candidates_of({*healthy})));
-    invocation.write_report(report::baseline_page(header, baseline, replays));
+    for (std::size_t i = 0; i < std::min(detection.scores.size(), report::most_replays); ++i)
+      if (const auto& healthy = detection.scores[i].healthy)
+        replays.push_back(replay(logs[i], tuned.table, rig, report::candidates_of({*healthy})));
+    invocation.write_report(report::baseline_page(header, detection, replays));
   }
-  report::Json body = report::baseline_json(baseline);
-  body["explain"] = report::healthy_json(healthy(logs, tuned, rig, options, header));
-  write_file(options.output, invocation.result(body));
-  invocation.finish(report::text_of(baseline, {.colour = colour_wanted(), .written_to = options.output}), body);
-  return stop ? interrupted : ran;
+  write_baseline(options.output, baseline);
+  report::Json body = report::baseline_json(detection);
+  body["explain"] = report::healthy_json(*baseline.parts->causes);
+  invocation.finish(report::text_of(detection, {.colour = colour_wanted(), .written_to = options.output}), body);
+  return baseline.interrupted ? interrupted : ran;
 }
 
 }  // namespace

@@ -3,20 +3,18 @@
 
 #include <CLI/CLI.hpp>
 #include <cmath>
-#include <filesystem>
 #include <memory>
 #include <optional>
 
-#include "base/csv.h"
 #include "commands.h"
 #include "invocation.h"
-#include "parameters/table.h"
 #include "prognose/check.h"
-#include "prognose/monitor.h"
 #include "report/json.h"
 #include "report/prognosis.h"
 #include "servodx/log.h"
 #include "servodx/rig.h"
+#include "servodx/trend.h"
+#include "servodx/tune.h"
 #include "store/history.h"
 
 namespace servodx {
@@ -39,45 +37,35 @@ void run(const Options& options) {
                  "must be a number, 0 or more", "--cycles 120000");
   Invocation invocation("check", options.common);
   invocation.check_files({options.log, options.params}, {options.history});
-  require_pressure_law(options.check.model);
-  const RigFile rig = invocation.rig();
-  const Table tuned = invocation.tuned_table(options.params);
-  const Log log = invocation.log(options.log, rig);
-  std::optional<HistoryFile> history;  // a new one is made only when there is something to store
-  if (HistoryFile::there(options.history)) history.emplace(options.history, false);
-
   CheckOptions how = options.check;
   how.threads = options.common.threads;
   how.track = !options.no_track;
   how.correct = !options.raw;
+  how.validate();
+  const RigFile rig = invocation.rig();
+  const Tuned tuned = invocation.tuned(options.params);
+  const Log log = invocation.log(options.log, rig);
+  std::optional<History> history;  // a new one is made only when there is something to store
+  if (HistoryFile::there(options.history)) history = History::open(options.history);
+
   report::Header& header = invocation.header();
   header.settings = {{"valve", options.valve}, {"at", options.at}, {"model", how.model}, {"history", options.history}};
   if (invocation.dry_run()) return;
 
   const std::string serial = options.serial.empty() ? rig.serial : options.serial;
   if (history) {
-    if (const auto last = history->last(options.valve)) how.last = tracked_in(*last);
-    if (const std::string was = history->serial(options.valve); !was.empty() && !serial.empty() && was != serial)
+    how.last = history->tracked(options.valve);
+    if (const std::string was = history->file().serial(options.valve); !was.empty() && !serial.empty() && was != serial)
       invocation.note(
           {fmt::format("'{}' was serial {} and is {} now: if the valve was swapped, "
                        "'servodx history event valve_swapped' starts its trends again",
                        options.valve, was, serial)});
   }
-  const CheckResult result = check(log, tuned, rig, how);
-  if (!history) history.emplace(options.history, true);
-  history->record(options.valve, serial,
-                  {.at = options.at,
-                   .cycles = options.cycles,
-                   .log = log.path,
-                   .log_sha256 = log.sha256,
-                   .table_sha256 = tuned.sha256,
-                   .version = SERVODX_VERSION,
-                   .recorded_at = {},
-                   .temperature = result.temperature.value,
-                   .temperature_source = name_of(result.temperature.source),
-                   .checks = result.checks},
-                  read_file(options.params));
+  const Checked checked = check(log, tuned, rig, how);
+  if (!history) history = History::open_or_make(options.history);
+  history->record(options.valve, {.at = options.at, .cycles = options.cycles, .serial = serial}, checked, tuned);
 
+  const CheckResult& result = *checked.whole;
   header.simulations = result.simulations;
   header.failed_simulations = result.failed_simulations;
   invocation.note(result.notes);

@@ -5,24 +5,23 @@
 #include <algorithm>
 #include <memory>
 
-#include "base/error.h"
-#include "base/progress.h"
 #include "commands.h"
-#include "diagnose/assessment.h"
-#include "diagnose/baseline.h"
 #include "diagnose/decide.h"
-#include "diagnose/diagnose.h"
 #include "diagnose/judge.h"
+#include "door/baseline_parts.h"
 #include "fit/replay.h"
 #include "invocation.h"
 #include "parameters/table.h"
-#include "report/baseline_file.h"
 #include "report/diagnosis_words.h"
 #include "report/json.h"
 #include "report/pages.h"
 #include "report/text.h"
+#include "servodx/baseline.h"
+#include "servodx/diagnose.h"
 #include "servodx/log.h"
 #include "servodx/rig.h"
+#include "servodx/tune.h"
+#include "servodx/watch.h"
 
 namespace servodx {
 namespace {
@@ -46,23 +45,24 @@ int code_of(const Diagnosis& diagnosis) {
   return ran;
 }
 
-std::vector<Diagnosis> judge_each(const std::vector<Log>& logs, const Table& tuned, const RigFile& rig,
-                                  const DetectionBaseline& baseline, const DiagnoseOptions& options) {
-  Progress progress("diagnose", {.quiet = options.quiet});
+// Of the logs that were judged before an interrupt.
+std::vector<Diagnosis> judge_each(const std::vector<Log>& logs, const Tuned& tuned, const RigFile& rig,
+                                  const Baseline& baseline, const CommonOptions& common, const Watch& watch) {
   std::vector<Diagnosis> results;
   long simulations = 0;
+  const auto tell = [&](double part, long so_far) {
+    watch.tell("diagnose", (static_cast<double>(results.size()) + part) / static_cast<double>(logs.size()),
+               simulations + so_far);
+  };
+  DiagnoseOptions of_log{.seed = common.seed, .threads = common.threads, .watch = watch};
+  of_log.watch.progress = [&](const WorkDone& done) { tell(done.part, done.simulations); };
   for (const Log& log : logs) {
-    if (*options.stop) break;
-    DiagnoseOptions of_log = options;
-    of_log.progress = [&](double part, long so_far) {
-      progress.update((static_cast<double>(results.size()) + part) / static_cast<double>(logs.size()),
-                      simulations + so_far);
-    };
-    Assessment assessment = assess(log, tuned, rig, of_log);
-    if (*options.stop) break;
-    results.push_back(judge(std::move(assessment), baseline));
-    simulations += results.back().assessment.simulations;
-    progress.update(static_cast<double>(results.size()) / static_cast<double>(logs.size()), simulations);
+    if (watch.stopped()) break;
+    const Verdict verdict = diagnose(log, tuned, rig, baseline, of_log);
+    if (verdict.interrupted) break;
+    results.push_back(*verdict.whole);
+    simulations += verdict.simulations;
+    tell(0, 0);
   }
   return results;
 }
@@ -91,26 +91,24 @@ int run(const Options& options) {
   inputs.insert(inputs.end(), {options.params, options.baseline});
   invocation.check_files(inputs, {});
   const RigFile rig = invocation.rig();
-  const Table tuned = invocation.tuned_table(options.params);
-  const report::BaselineFile file = report::read_baseline(options.baseline);
-  report::require_same_table(file.baseline, options.baseline, tuned.path, tuned.sha256);
+  const Tuned tuned = invocation.tuned(options.params);
+  const Baseline baseline = read_baseline(options.baseline);
+  require_same_table(baseline, tuned);
   std::vector<Log> logs;
   for (const std::string& path : options.logs) logs.push_back(invocation.log(path, rig));
   report::Header& header = invocation.header();
-  header.inputs.push_back({options.baseline, file.sha256});
+  header.inputs.push_back({options.baseline, baseline.parts->sha256});
 
   std::vector<std::string> truths;
   for (const Log& log : logs)
     if (invocation.wants_report()) truths.push_back(report::truth_beside(log.path, log.sha256));
 
-  header.settings = {{"false_alarm", file.baseline.asked}};
+  header.settings = {{"false_alarm", baseline.asked}};
   invocation.tell_of_long_fits(logs);
   if (invocation.dry_run()) return ran;
 
-  const std::atomic<bool>& stop = stop_on_interrupt();
-  const std::vector<Diagnosis> results = judge_each(
-      logs, tuned, rig, file.baseline,
-      {.seed = options.common.seed, .threads = options.common.threads, .quiet = options.common.quiet, .stop = &stop});
+  const Watch watch = invocation.watch();
+  const std::vector<Diagnosis> results = judge_each(logs, tuned, rig, baseline, options.common, watch);
   std::string text;
   int worst = ran;
   for (const Diagnosis& d : results) {
@@ -124,11 +122,11 @@ int run(const Options& options) {
     invocation.note({fmt::format("interrupted: {} of {} logs were judged", results.size(), logs.size())});
   if (invocation.wants_report()) {
     truths.resize(results.size());
-    invocation.write_report(
-        report::diagnose_page(header, results, file.baseline, replays(logs, tuned, rig, results), truths));
+    invocation.write_report(report::diagnose_page(header, results, baseline.parts->detection,
+                                                  replays(logs, tuned.table, rig, results), truths));
   }
   invocation.finish(text, report::diagnose_json(results));
-  return stop ? interrupted : options.exit_code ? worst : ran;
+  return watch.stopped() ? interrupted : options.exit_code ? worst : ran;
 }
 
 }  // namespace

@@ -3,13 +3,15 @@
 #include <memory>
 #include <optional>
 
-#include "base/error.h"
 #include "commands.h"
+#include "door/baseline_parts.h"
 #include "explain/explain.h"
 #include "invocation.h"
-#include "report/baseline_file.h"
 #include "report/explain_report.h"
 #include "report/pages.h"
+#include "servodx/baseline.h"
+#include "servodx/explain.h"
+#include "servodx/tune.h"
 
 namespace servodx {
 namespace {
@@ -23,32 +25,35 @@ struct Options {
 };
 
 int run(const Options& options) {
+  ExplainOptions how{.seed = options.common.seed,
+                     .threads = options.common.threads,
+                     .without = options.without,
+                     .keep_worse = options.keep_worse};
+  how.validate();
   Invocation invocation("explain", options.common);
   auto inputs = options.logs;
   inputs.push_back(options.params);
   if (!options.baseline.empty()) inputs.push_back(options.baseline);
   invocation.check_files(inputs, {options.output});
   const RigFile rig = invocation.rig();
-  const Table tuned = invocation.tuned_table(options.params);
+  const Tuned tuned = invocation.tuned(options.params);
   report::Header& header = invocation.header();
-  std::optional<HealthyReference> healthy;
-  ExplainOptions explain{.seed = options.common.seed, .threads = options.common.threads, .quiet = options.common.quiet};
-  explain.without = options.without;
-  explain.keep_worse = options.keep_worse;
+  std::optional<Baseline> baseline;
   if (!options.baseline.empty()) {
-    const report::BaselineFile file = report::read_baseline(options.baseline);
-    report::require_same_table(file.baseline, options.baseline, tuned.path, tuned.sha256);
-    header.inputs.push_back({options.baseline, file.sha256});
-    healthy = report::read_healthy(options.baseline);
-    explain.level = file.baseline.asked;
+    baseline = read_baseline(options.baseline);
+    require_same_table(*baseline, tuned);
+    header.inputs.push_back({options.baseline, baseline->parts->sha256});
+    causes_of(*baseline);  // refuses a file without them
+    how.level = baseline->asked;
   }
   const std::vector<Log> logs = invocation.logs(options.logs, rig);
-  header.settings = {{"level", explain.level}, {"baseline", options.baseline}, {"without", options.without}};
+  header.settings = {{"level", how.level}, {"baseline", options.baseline}, {"without", options.without}};
   invocation.tell_of_long_fits(logs);
   if (invocation.dry_run()) return ran;
 
-  explain.stop = &stop_on_interrupt();
-  const ExplainResult result = explain_logs(logs, tuned, rig, healthy ? &*healthy : nullptr, explain);
+  how.watch = invocation.watch();
+  const Explanation explanation = baseline ? explain(logs, tuned, rig, *baseline, how) : explain(logs, tuned, rig, how);
+  const ExplainResult& result = *explanation.whole;
   write_table(options.output, result.table);
   header.simulations = result.simulations;
   header.failed_simulations = result.failed_simulations;
@@ -59,7 +64,7 @@ int run(const Options& options) {
     for (std::size_t l = 0; l < std::min(logs.size(), report::most_replays); ++l) {
       std::vector<Candidate> candidates = {{"as tuned", result.before[l]}};
       if (!result.causes.empty()) candidates.push_back({"extended", result.after[l]});
-      replays.push_back(replay(logs[l], tuned, rig, candidates));
+      replays.push_back(replay(logs[l], tuned.table, rig, candidates));
     }
     invocation.write_report(report::explain_page(header, result, replays));
   }

@@ -8,12 +8,14 @@
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
+#include <mutex>
+#include <optional>
 #include <stdexcept>
 
 #include "base/atomic_file.h"
 #include "base/csv.h"
 #include "base/error.h"
-#include "fit/tuned_state.h"
+#include "base/progress.h"
 #include "manifest.h"
 #include "report/columns.h"
 #include "report/handy.h"
@@ -233,16 +235,36 @@ Table Invocation::table(const std::string& path) {
   return table;
 }
 
-Table Invocation::tuned_table(const std::string& path) {
-  Table tuned = table(path);
-  if (!tuned.has_std_error)
-    throw InputError({path, 0, "std_error"}, "the table is not tuned: it has no such column",
-                     "tune it with 'servodx tune LOG... --params " + path + " -o TUNED.csv' and give TUNED.csv");
-  if (has_old_state(tuned))
-    note({path +
-          ": a tuned table of an earlier version, which kept its model's error in comments; it is read as it is, "
-          "and a new tune writes the new form"});
+Tuned Invocation::tuned(const std::string& path) {
+  Tuned tuned = read_tuned(path);
+  header_.inputs.push_back({tuned.table.path, tuned.table.sha256});
+  note(tuned.notes);
   return tuned;
+}
+
+// The line of the work at hand.
+struct Invocation::Shown {
+  std::mutex mutex;
+  std::string work;
+  std::optional<Progress> line;
+
+  void update(const WorkDone& done) {
+    // Whoever finds another thread here has nothing to add.
+    const std::unique_lock lock(mutex, std::try_to_lock);
+    if (!lock) return;
+    if (work != done.work) work = done.work, line.reset();
+    if (!line) line.emplace(work);
+    line->update(done.part, done.simulations);
+  }
+};
+
+Watch Invocation::watch() {
+  Watch watch;
+  watch.stop = [&asked = stop_on_interrupt()] { return asked.load(); };
+  if (options_.quiet) return watch;
+  if (!shown_) shown_ = std::make_shared<Shown>();
+  watch.progress = [shown = shown_](const WorkDone& done) { shown->update(done); };
+  return watch;
 }
 
 void Invocation::note(const std::vector<std::string>& notices) {
@@ -288,6 +310,7 @@ void Invocation::write_manifest() const {
 }
 
 void Invocation::finish(const std::string& text, const report::Json& body) {
+  if (shown_) shown_->line.reset();
   if (!options_.json.empty() && options_.json != "-") write_file(options_.json, result(body));
   if (wants_report() && !reported_) {
     report::Json shown = body;

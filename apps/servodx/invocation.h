@@ -3,12 +3,15 @@
 #include <atomic>
 #include <chrono>
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "parameters/table.h"
 #include "report/json.h"
 #include "report/page.h"
+#include "servodx/tune.h"
+#include "servodx/watch.h"
 #include "signals/log.h"
 #include "signals/rig_file.h"
 
@@ -58,8 +61,13 @@ class Invocation {
   std::vector<Log> logs(const std::vector<std::string>& paths, const RigFile& rig);  // refuses the same log twice
   // Where fits of so many samples take long: how long, and what makes it shorter; to standard error.
   void tell_of_long_fits(const std::vector<Log>& logs) const;
-  Table table(const std::string& path);                                              // as the file says
-  Table tuned_table(const std::string& path);                                        // refuses one that is not tuned
+  Table table(const std::string& path);  // as the file says
+  Tuned tuned(const std::string& path);  // refuses one that is not tuned
+  Table tuned_table(const std::string& path) { return tuned(path).table; }
+
+  // Progress on standard error, unless quiet, and the first SIGINT as a wish to end. The line goes at the next kind of
+  // work and at finish().
+  Watch watch();
 
   // Notices for the end of the result; one that is there already is not repeated.
   void note(const std::vector<std::string>& notices);
@@ -75,10 +83,12 @@ class Invocation {
   void finish(const std::string& text, const report::Json& body);
 
  private:
+  struct Shown;
   CommonOptions options_;
   void write_manifest() const;
   report::Header header_;
   bool reported_ = false;
+  std::shared_ptr<Shown> shown_;
   std::vector<std::string> outputs_;  // checked; the command's own first
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };

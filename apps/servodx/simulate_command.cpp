@@ -3,22 +3,22 @@
 
 #include <CLI/CLI.hpp>
 #include <memory>
-#include <stdexcept>
+#include <string>
+#include <vector>
 
-#include "base/error.h"
 #include "commands.h"
+#include "door/simulation_steps.h"
 #include "fit/log_data.h"
 #include "fit/nominal.h"
 #include "invocation.h"
 #include "report/columns.h"
 #include "report/handy.h"
 #include "report/pages.h"
-#include "simulate/simulate.h"
+#include "servodx/simulate.h"
+#include "simulate/scenario.h"
 
 namespace servodx {
 namespace {
-
-constexpr double reference_step = 1e-5;  // [s] where the integrator's error is far below every sensor's
 
 struct Options {
   CommonOptions common;
@@ -27,57 +27,34 @@ struct Options {
   bool step_given = false, reference = false;
 };
 
-SimulateOptions simulate_options(const Options& options, const LogData& data) {
-  SimulateOptions to = fine_steps();
-  to.threads = options.common.threads;
-  if (options.reference) to.step = to.impact_step = to.creep_step = reference_step;
-  if (options.step_given) {
-    to.impact_step = std::min(to.impact_step, options.step);
-    to.step = options.step;
-    to.creep_step = options.step;
-  }
-  to.wanted.fill(false);
-  for (const FitChannel& channel : data.channels) to.wanted[channel.simulated] = true;
-  return to;
-}
-
 void run(const Options& options) {
-  require_option(options.step > 0 && options.step <= 0.1, "--step", "must lie between 0 and 0.1 s",
-                 "give it in seconds: 1e-4");
-  require_option(!options.step_given || !options.reference, "--reference", "sets the step, as --step does",
-                 "give one of them");
+  SimulationOptions how{.step = {}, .reference = options.reference, .threads = options.common.threads};
+  if (options.step_given) how.step = options.step;
+  how.validate();
   Invocation invocation("simulate", options.common);
   invocation.check_files({options.log, options.params}, {options.output});
   const RigFile rig = invocation.rig();
   const Table table = apply_rig_facts(invocation.table(options.params), rig);
   const Log log = invocation.log(options.log, rig);
-  const LogData data = prepare(log, rig);
-  require_channels(data);
-  const ParameterVector candidate = candidate_of(table);
-  const SimulateOptions how = simulate_options(options, data);
+  require_channels(prepare(log, rig));
+  const SimulateOptions steps = door::steps_of(how);
   report::Header& header = invocation.header();
-  header.settings = {{"step", how.step}, {"impact_step", how.impact_step}};
+  header.settings = {{"step", steps.step}, {"impact_step", steps.impact_step}};
   if (invocation.dry_run()) return;
-  Trajectory simulated = simulate(data.scenario, candidate, how);
-  if (!simulated.ok)
-    throw std::runtime_error(
-        fmt::format("the simulation left the finite numbers at {} s; check {} or give a smaller --step",
-                    simulated.failed_at, options.params));
-
-  std::vector<OutputColumn> columns = {output_column(log, Signal::time, log.time)};
-  std::vector<std::string> names;
-  for (const FitChannel& channel : data.channels) {
-    columns.push_back(output_column(log, channel.signal, std::move(simulated.signals[channel.simulated])));
-    names.emplace_back(info(channel.signal).name);
-  }
-  write_log(options.output, columns);
+  const Simulation simulated = simulate(log, table, rig, how);
+  write_simulation(options.output, log, simulated);
 
   header.simulations = 1;
-  invocation.note(data.notes);
+  invocation.note(simulated.notes);
   if (invocation.wants_report())
-    invocation.write_report(report::simulate_page(header, replay(log, table, rig, {{"simulated", candidate}})));
-  report::Json signals = report::Json::array();
-  for (const OutputColumn& c : columns) signals.push_back({{"signal", info(c.signal).name}, {"unit", c.unit}});
+    invocation.write_report(
+        report::simulate_page(header, replay(log, table, rig, {{"simulated", candidate_of(table)}})));
+  report::Json signals = {{{"signal", name_of(Signal::time)}, {"unit", output_column(log, Signal::time, {}).unit}}};
+  std::vector<std::string> names;
+  for (const OutputColumn& c : simulated.columns) {
+    signals.push_back({{"signal", name_of(c.signal)}, {"unit", c.unit}});
+    names.emplace_back(name_of(c.signal));
+  }
   invocation.finish(fmt::format("simulated {} at {} samples: {}\n", report::join(names), log.samples(), options.output),
                     {{"output", options.output}, {"samples", log.samples()}, {"signals", signals}});
 }

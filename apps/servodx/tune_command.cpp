@@ -4,8 +4,6 @@
 #include <memory>
 
 #include "base/error.h"
-#include "base/nearest.h"
-#include "base/progress.h"
 #include "base/units.h"
 #include "commands.h"
 #include "diagnose/check_log.h"
@@ -22,6 +20,8 @@
 #include "report/tune_words.h"
 #include "servodx/log.h"
 #include "servodx/rig.h"
+#include "servodx/tune.h"
+#include "servodx/watch.h"
 #include "tune/tune.h"
 
 namespace servodx {
@@ -37,32 +37,20 @@ struct Options {
   TuneOptions tune;
 };
 
-std::vector<std::string> effects_of(const std::string& list) {
-  std::vector<std::string> names;
-  if (list != "none") names = CLI::detail::split(list, ',');
-  std::vector<std::string> known = {"none"};
-  for (const EffectInfo& effect : effect_list()) known.push_back(effect.name);
-  for (const std::string& name : names)
-    require_option(std::find(known.begin() + 1, known.end(), name) != known.end(), "--effects",
-                   "unknown effect '" + name + "'",
-                   did_you_mean(name, known) + "use " + report::join(known) + ", with commas between");
-  return names;
-}
-
 // What a diagnosis with the tuned table would see on each log. Logs of a test stand are not diagnosed.
-std::vector<Promise> promises(const std::vector<Log>& logs, const TuneResult& result, const RigFile& rig,
-                              const Options& options, Invocation& invocation) {
+std::vector<Promise> promises(const std::vector<Log>& logs, const Tuned& tuned, const RigFile& rig, int threads,
+                              Invocation& invocation) {
   std::vector<Promise> all;
-  if (result.interrupted || all_on_test_stand(logs, rig)) return all;
-  Progress progress("faults in sight", {.quiet = options.common.quiet});
+  if (tuned.interrupted || all_on_test_stand(logs, rig)) return all;
+  const Watch watch = invocation.watch();
   for (const Log& log : logs) {
     try {
-      all.push_back(promise_of(log, result.table, rig, options.common.threads));
+      all.push_back(promise_of(log, tuned.table, rig, threads));
       invocation.header().simulations += all.back().simulations;
     } catch (const InputError& error) {  // the table is written: what is missing is said, and no more
       invocation.note({error.what()});
     }
-    progress.update(static_cast<double>(&log - logs.data() + 1) / static_cast<double>(logs.size()), 0);
+    watch.tell("faults in sight", static_cast<double>(&log - logs.data() + 1) / static_cast<double>(logs.size()), 0);
   }
   return all;
 }
@@ -82,7 +70,10 @@ std::map<std::string, double> priors_of(const std::vector<std::string>& list) {
 
 int run(const Options& options) {
   TuneOptions tune_options = options.tune;
-  if (!options.effects.empty()) tune_options.effects = effects_of(options.effects);
+  if (options.effects == "none")
+    tune_options.effects.emplace();
+  else if (!options.effects.empty())
+    tune_options.effects = CLI::detail::split(options.effects, ',');
   tune_options.validate();
   const std::map<std::string, TuneLocal> methods = {
       {"least_squares", TuneLocal::least_squares}, {"ceres", TuneLocal::ceres}, {"nlopt", TuneLocal::nlopt}};
@@ -93,7 +84,6 @@ int run(const Options& options) {
   tune_options.profile = CLI::detail::split(options.profile, ',');
   tune_options.seed = options.common.seed;
   tune_options.threads = options.common.threads;
-  tune_options.quiet = options.common.quiet;
 
   Invocation invocation("tune", options.common);
   auto inputs = options.logs;
@@ -126,15 +116,17 @@ int run(const Options& options) {
   invocation.tell_of_long_fits(logs);
   if (invocation.dry_run()) return ran;
 
-  tune_options.stop = &stop_on_interrupt();
-  const TuneResult result = tune_table(logs, nominal, rig, tune_options);
-  write_table(options.output, result.table);
+  tune_options.watch = invocation.watch();
+  const Tuned tuned = tune(logs, nominal, rig, tune_options);
+  write_tuned(options.output, tuned);
+  const TuneResult& result = *tuned.whole;
 
   header.simulations = result.simulations;
   header.failed_simulations = result.failed_simulations;
   for (const Log& log : logs) invocation.note(log.notes);
   invocation.note(result.notes);
-  const report::GoodEnough good = report::good_enough(result, promises(logs, result, rig, options, invocation));
+  const report::GoodEnough good =
+      report::good_enough(result, promises(logs, tuned, rig, options.common.threads, invocation));
   if (invocation.wants_report()) {
     std::vector<Replay> replays;
     for (std::size_t l = 0; l < std::min(logs.size(), report::most_replays); ++l)

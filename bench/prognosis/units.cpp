@@ -15,6 +15,7 @@
 #include "prognose/valve_history.h"
 #include "rig/rig_model.h"
 #include "rig/rig_run.h"
+#include "servodx/tune.h"
 #include "signals/log.h"
 #include "store/history_csv.h"
 #include "tune/tune.h"
@@ -65,7 +66,6 @@ Table own_table(const Bench& b, const std::string& name, const rig::RigModel& va
       logs.push_back(kept_log(b, fmt::format("{}/a{}.csv", tests, logs.size() + 1), valve, {.celsius = celsius},
                               preflight(b.test, random.bits64())));
     TuneOptions options;
-    options.quiet = true;
     options.threads = 1;
     options.generations = 0;  // it begins near
     // What drawings say of all valves of the type holds: logs of a few seconds would trade it for something else.

@@ -16,6 +16,7 @@
 #include "rig/rig_run.h"
 #include "servodx/log.h"
 #include "servodx/rig.h"
+#include "servodx/tune.h"
 #include "tune/tune.h"
 
 namespace servodx::bench {
@@ -28,7 +29,6 @@ void diagnose_rows(Report& report, const Choice& choice) {
     healthy.push_back(read_log(folder + "data/healthy/" + name + ".csv", rig));
   TuneOptions from_nominal;
   from_nominal.generations = 0;
-  from_nominal.quiet = true;
   const Table tuned = tune_table(healthy, read_table(folder + "params/borello2009.csv"), rig, from_nominal).table;
 
   rig::RigRun run;
@@ -43,8 +43,7 @@ void diagnose_rows(Report& report, const Choice& choice) {
 
   Assessment seen;
   const Timing t =
-      take_turns({[&] { seen = assess(log, tuned, rig, {.quiet = true}); }}, std::min(3, choice.turns), wall_seconds)
-          .front();
+      take_turns({[&] { seen = assess(log, tuned, rig, {}); }}, std::min(3, choice.turns), wall_seconds).front();
   const auto likeliest =
       std::min_element(seen.hypotheses.begin(), seen.hypotheses.end(),
                        [](const HypothesisResult& a, const HypothesisResult& b) { return a.misfit < b.misfit; });

@@ -41,7 +41,7 @@ HypothesisSettings settings_of(const RigFile& rig, const DiagnoseOptions& option
   HypothesisSettings settings;
   settings.null_limit = rig.null_limit;
   settings.threads = options.threads;
-  settings.stop = options.stop;
+  settings.stop = options.watch.stop;
   return settings;
 }
 
@@ -49,8 +49,10 @@ HypothesisSettings settings_of(const RigFile& rig, const DiagnoseOptions& option
 HypothesisFits fit_whole(const LogData& data, const ParameterVector& base, const ErrorModel& error,
                          HypothesisSettings settings, const DiagnoseOptions& options) {
   const double first_part = onset_possible(data) ? 0.75 : 1.0;
-  if (options.progress)
-    settings.progress = [&](double part, long simulations) { options.progress(first_part * part, simulations); };
+  if (options.watch.progress)
+    settings.progress = [&](double part, long simulations) {
+      options.watch.tell("diagnose", first_part * part, simulations);
+    };
   return fit_hypotheses(data, base, error, settings);
 }
 
@@ -136,7 +138,7 @@ Assessment assess(const Log& log, const Table& tuned, const RigFile& rig, const 
 
   HypothesisFits fits = fit_whole(data, base, error, settings, options);
   FitWork work = fits.work;
-  const bool stopped = options.stop && options.stop->load();
+  const bool stopped = options.watch.stopped();
   if (!stopped) {
     out.gross = gross_finding(data, base);
     out.channels = channels_of(log, data, fits.fits.front());

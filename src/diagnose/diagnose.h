@@ -4,32 +4,18 @@
 //   judge      the assessment beside a baseline: verdict, fault, size
 //   diagnose   both
 #pragma once
-#include <atomic>
-#include <cstdint>
-#include <functional>
 #include <vector>
 
 #include "diagnose/assessment.h"
 #include "diagnose/baseline.h"
 #include "diagnose/judge.h"
 #include "parameters/table.h"
+#include "servodx/diagnose.h"
 #include "signals/log.h"
 
 namespace servodx {
 
-struct DiagnoseOptions {
-  std::uint64_t seed = 1;
-  int threads = 0;  // 0: all cores
-  bool quiet = false;
-  const std::atomic<bool>* stop = nullptr;
-  // Part of a log's work that is done, its simulations so far. From any thread.
-  std::function<void(double part, long simulations)> progress = {};
-
-  // Throws InputError naming the option.
-  void validate() const;
-};
-
-// Interrupted through options.stop, it returns at once with an assessment to be thrown away.
+// Stopped by options.watch, it returns at once with an assessment to be thrown away.
 Assessment assess(const Log& log, const Table& tuned, const RigFile& rig, const DiagnoseOptions& options);
 
 Diagnosis diagnose(const Log& log, const Table& tuned, const RigFile& rig, const DetectionBaseline& baseline,

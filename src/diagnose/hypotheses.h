@@ -4,7 +4,6 @@
 // of that), the null within its limit. A fault's hypothesis lets its own severity run from `least` to the worst, all
 // else as in health. So a gain of a fault over health is what only a fault explains.
 #pragma once
-#include <atomic>
 #include <functional>
 #include <optional>
 #include <string>
@@ -46,8 +45,8 @@ struct HypothesisSettings {
   double null_limit = 0.05;  // [fraction of rated]
   int threads = 0;
   int iterations = diagnose_constants::iterations;
-  std::vector<const Fault*> among = {};     // weighed beside health; empty: all of the registry
-  const std::atomic<bool>* stop = nullptr;  // set: give up; what comes back is worthless
+  std::vector<const Fault*> among = {};  // weighed beside health; empty: all of the registry
+  std::function<bool()> stop = {};       // true: give up; what comes back is worthless
   std::function<void(double part, long simulations)> progress = {};  // after every fit, from any thread
 };
 

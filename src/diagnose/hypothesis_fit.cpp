@@ -38,17 +38,17 @@ Point starting_point(const HypothesisFit& so_far, const FitProblem& problem, con
   return x;
 }
 
-LeastSquaresResult minimise(FitProblem& problem, const Point& from, int iterations, const std::atomic<bool>* stop) {
+LeastSquaresResult minimise(FitProblem& problem, const Point& from, int iterations, const std::function<bool()>& stop) {
   LeastSquaresOptions o;
   o.max_iterations = iterations;
   o.difference = Difference::forward;
   o.cost_tolerance = k::cost_tolerance;
   o.damping_trials = 1;  // the hypotheses fill each other's packs: no lane is free
-  o.progress = [&](const LeastSquaresProgress&) { return !(stop && stop->load()); };
+  o.progress = [&](const LeastSquaresProgress&) { return !(stop && stop()); };
   LocalOptions local;
   local.ceres.max_steps = 1;  // one trial and no Jacobian: hypotheses are many, and their fits short
   local.ceres.max_jacobians = 0;
-  local.stop = [&] { return stop && stop->load(); };
+  local.stop = stop;
   return minimise_locally(problem.least_squares(), from, o, local).end;
 }
 
@@ -102,8 +102,8 @@ void measure_severity(HypothesisFit& fit, const Fault& fault) {
 }  // namespace
 
 void run(Attempt& a, const HypothesisData& data, const HypothesisFit* health, int iterations) {
-  const std::atomic<bool>* stop = data.settings.stop;
-  if (stop && stop->load()) return;
+  const std::function<bool()>& stop = data.settings.stop;
+  if (stop && stop()) return;
   HypothesisFit& fit = a.fit;
   fit.fault = a.fault;
   fit.free = hypothesis_values(data.log, data.base, a.fault, a.start, data.settings.null_limit);

@@ -4,7 +4,6 @@
 #include <algorithm>
 
 #include "base/error.h"
-#include "base/progress.h"
 #include "diagnose/diagnose.h"
 #include "fit/nominal.h"
 #include "fit/tuned_state.h"
@@ -42,21 +41,22 @@ DetectionBaseline make_baseline(const std::vector<Log>& logs, const Table& tuned
                                 double false_alarm, const DiagnoseOptions& options, long* simulations, long* failed) {
   options.validate();
   check(logs, tuned, false_alarm);
-  Progress progress("baseline", {.quiet = options.quiet});
   const auto logs_in_all = static_cast<double>(logs.size());
   long total = 0;
   std::vector<Assessment> assessed;
   for (std::size_t i = 0; i < logs.size(); ++i) {
     DiagnoseOptions of_log = options;
-    of_log.progress = [&](double part, long so_far) {
-      progress.update((static_cast<double>(i) + part) / logs_in_all, total + so_far);
-    };
+    if (options.watch.progress)
+      of_log.watch.progress = [&](const WorkDone& of_one) {
+        options.watch.tell("baseline", (static_cast<double>(i) + of_one.part) / logs_in_all,
+                           total + of_one.simulations);
+      };
     Assessment a = assess(logs[i], tuned, rig, of_log);
-    if (options.stop && options.stop->load()) break;
+    if (options.watch.stopped()) break;
     total += a.simulations;
     if (simulations) *simulations += a.simulations;
     if (failed) *failed += a.failed_simulations;
-    progress.update(static_cast<double>(i + 1) / logs_in_all, total);
+    options.watch.tell("baseline", static_cast<double>(i + 1) / logs_in_all, total);
     assessed.push_back(std::move(a));
   }
   DetectionBaseline b = baseline_of(assessed, false_alarm);

@@ -38,7 +38,7 @@ class BlocksInquiry {
     for (std::size_t l = 0; l < q.lone().size(); ++l)
       if (const LoneLog& lone = q.lone()[l]; lone.fit.ok)
         sizes_[l] = score_blocks(lone.subject, lone.fit.point, *q.known()).scores;
-    engine_.seed = q.options().seed, engine_.stop = q.options().stop, engine_.level = q.level();
+    engine_.seed = q.options().seed, engine_.stop = q.options().watch.stop, engine_.level = q.level();
     engine_.p_new = chance_of_size(*q.test(), *answer.blocks, sizes_);
     // Beside the question of the free run, which has most of its share.
     engine_.p_left = [this](const ExplainedFit& fit, int) {

@@ -6,7 +6,6 @@
 //    same.
 // 3. Forward, the best first (forward.h); then each is left out again, and what is not missed stays out.
 #pragma once
-#include <atomic>
 #include <cstdint>
 #include <functional>
 #include <vector>
@@ -50,7 +49,7 @@ struct EngineOptions {
   int judged = explain_constants::judged;     // of these, judged on held-out data; and half as many that are rarer
   int most = explain_constants::most_causes;  // causes accepted
   int iterations = explain_constants::base_iterations;  // of a fit
-  const std::atomic<bool>* stop = nullptr;
+  std::function<bool()> stop;
   std::function<void(double)> progress;
   // Chance that healthy data score a cause like this, all causes counted together; empty: no healthy data, all is new.
   // `round`: causes accepted so far.
@@ -68,7 +67,7 @@ struct EngineOptions {
   bool compare_with_retuning = true;        // where the base holds: what a cause gains beyond re-tuning
 
   Folds hold_out() const { return {folds, blocks}; }
-  bool stopped() const { return stop && stop->load(); }
+  bool stopped() const { return stop && stop(); }
   void tell(double done) const {
     if (progress) progress(done);
   }

@@ -7,7 +7,6 @@
 #include <cstddef>
 
 #include "base/error.h"
-#include "base/progress.h"
 #include "evidence/posterior.h"
 #include "explain/answer.h"
 #include "explain/cause_score.h"
@@ -41,10 +40,9 @@ void show_as_tuned(const Inquiry& q, const ExplainedFit& before, ExplainResult& 
   out.blocks = replay_blocks(q.subject(), before.point);
   if (q.test())
     for (BlockReplay& b : out.blocks) b.p_new = q.test()->miss({b.block, b.missing});
-  Progress progress("explain, missing input", {.quiet = q.options().quiet});
   out.missing = missing_inputs(q.subject(), before.point, [&](double f) {
-    progress.update(f, q.subject().simulations());
-    return !q.options().stop || !q.options().stop->load();
+    q.options().watch.tell("explain, missing input", f, q.subject().simulations());
+    return !q.options().watch.stopped();
   });
 }
 
@@ -232,7 +230,7 @@ void measure(const Inquiry& q, const Answer& answer, ExplainResult& out) {
 }
 
 void count_work(const Inquiry& q, ExplainResult& out) {
-  out.interrupted = q.options().stop && q.options().stop->load();
+  out.interrupted = q.options().watch.stopped();
   for (const LoneLog& lone : q.lone())
     out.simulations += lone.subject.simulations(), out.failed_simulations += lone.subject.failed_simulations();
   out.simulations += q.subject().simulations();
@@ -243,6 +241,7 @@ void count_work(const Inquiry& q, ExplainResult& out) {
 
 ExplainResult explain_logs(const std::vector<Log>& logs, const Table& tuned, const RigFile& rig,
                            const HealthyReference* healthy, const ExplainOptions& options) {
+  options.validate();
   Inquiry inquiry(logs, tuned, rig, healthy, options);
   Answer answer = find_names(inquiry);
   if (!answer.found.before.ok)

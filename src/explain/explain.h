@@ -1,7 +1,5 @@
 // `explain`: what the simulation gets wrong on these logs, where, why, and what mending it gains. docs/explain.md.
 #pragma once
-#include <atomic>
-#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
@@ -15,22 +13,13 @@
 #include "explain/outcome.h"
 #include "explain/show.h"
 #include "parameters/table.h"
+#include "servodx/explain.h"
 #include "servodx/rig.h"
 #include "signals/log.h"
 #include "signals/rig_file.h"
 #include "simulate/scenario.h"
 
 namespace servodx {
-
-struct ExplainOptions {
-  std::uint64_t seed = 1;
-  int threads = 0;
-  bool quiet = false;
-  double level = 0.01;                    // false-alarm rate at which a cause counts as new
-  std::vector<std::string> without = {};  // effects that are left out of the list
-  bool keep_worse = false;  // write the extension even where the free simulation's held-out rms is worse with it
-  const std::atomic<bool>* stop = nullptr;
-};
 
 struct ExplainedChannel {
   std::string signal, unit;  // unit as in the first log that has it

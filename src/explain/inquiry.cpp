@@ -33,7 +33,6 @@ Inquiry::Inquiry(const std::vector<Log>& logs, const Table& tuned, const RigFile
       options_(options),
       known_(known_of(healthy)),
       subject_(logs, tuned, rig, options.threads, known_),
-      progress_("explain", {.quiet = options.quiet}),
       sizes_(logs.size()) {
   if (healthy) test_.emplace(*healthy);
   if (healthy && logs.size() > 1)
@@ -47,7 +46,7 @@ Inquiry::Inquiry(const std::vector<Log>& logs, const Table& tuned, const RigFile
 EngineOptions Inquiry::engine_options() const {
   EngineOptions o;
   o.seed = options_.seed;
-  o.stop = options_.stop;
+  o.stop = options_.watch.stop;
   o.level = options_.level;
   if (!test_) {
     o.least_share = explain_constants::least_worth;
@@ -81,7 +80,7 @@ void Inquiry::score_lone_logs(const std::function<bool(const Cause&)>& among) {
 
 EngineOptions Inquiry::for_names() {
   EngineOptions o = engine_;
-  o.progress = [this](double f) { progress_.update(f, subject_.simulations()); };
+  o.progress = [this](double f) { options_.watch.tell("explain", f, subject_.simulations()); };
   o.among = [this](const Cause& c) { return has_name(c); };
   score_lone_logs(o.among);
   return o;
@@ -89,7 +88,7 @@ EngineOptions Inquiry::for_names() {
 
 EngineOptions Inquiry::for_curves() {
   EngineOptions o = engine_;
-  o.progress = [this](double f) { progress_.update(f, subject_.simulations()); };
+  o.progress = [this](double f) { options_.watch.tell("explain", f, subject_.simulations()); };
   o.among = [](const Cause& c) { return c.curve; };
   o.most = 1, o.fitted = o.judged = explain_constants::curves_fitted;
   score_lone_logs(o.among);

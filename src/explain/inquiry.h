@@ -6,7 +6,6 @@
 #include <optional>
 #include <vector>
 
-#include "base/progress.h"
 #include "explain/blocks.h"
 #include "explain/cause_score.h"
 #include "explain/curves.h"
@@ -72,7 +71,6 @@ class Inquiry {
   const ExplainOptions& options_;
   std::optional<KnownRig> known_;
   ValveSubject subject_;
-  Progress progress_;
   std::optional<HealthyTest> test_;
   std::deque<LoneLog> lone_;  // one log is itself: empty
   SizesByLog sizes_;

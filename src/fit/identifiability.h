@@ -5,17 +5,9 @@
 #include <string>
 #include <vector>
 
-namespace servodx {
+#include "servodx/table.h"
 
-// What logs say of a free number.
-enum class RowVerdict {
-  bounded,     // they tell it
-  one_sided,   // they tell how far it may go on one side
-  flat,        // it moves no channel
-  at_bound,    // the end of its range holds it
-  confounded,  // what it does others do, within the noise
-  frozen,      // it was not asked
-};
+namespace servodx {
 
 struct Identifiability {
   std::vector<RowVerdict> verdict;                // bounded, flat or confounded

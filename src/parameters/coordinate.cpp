@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "servodx/table.h"
+
 namespace servodx {
 
 double Coordinate::to_unit(double value) const {
@@ -15,5 +17,7 @@ double Coordinate::from_unit(double u) const {
 }
 
 double Coordinate::slope(double value) const { return log_scale ? value * std::log(upper / lower) : upper - lower; }
+
+Coordinate coordinate(const Row& row) { return {row.name, row.unit, row.lower, row.upper, row.log_scale, row.nominal}; }
 
 }  // namespace servodx

@@ -8,6 +8,8 @@
 
 namespace servodx {
 
+struct Row;
+
 struct Coordinate {
   std::string name = {}, unit = {};
   double lower = 0, upper = 1;                                // [unit]
@@ -22,6 +24,9 @@ struct Coordinate {
   // d value / d u. [unit]
   double slope(double value) const;
 };
+
+// A row of a parameter table as the free number that starts at its nominal value.
+Coordinate coordinate(const Row& row);
 
 // Whether a fit left a number free: nearer than this to an end of its interval, the bound holds it, and curvature says
 // nothing of how well it is known.

@@ -298,7 +298,7 @@ int Table::find(const std::string& name) const {
 Table read_table(const std::string& path) { return parse_table(read_file(path), path); }
 Table parse_table(const std::string& text, const std::string& path) { return Reader(path).read(text); }
 
-void write_table(const std::string& path, const Table& table) {
+std::string table_text(const Table& table) {
   std::string out;
   for (const auto& comment : table.comments) out += "# " + comment + "\n";
   std::istringstream state(table.state);
@@ -337,8 +337,10 @@ void write_table(const std::string& path, const Table& table) {
     }
     out += '\n';
   }
-  write_file(path, out);
+  return out;
 }
+
+void write_table(const std::string& path, const Table& table) { write_file(path, table_text(table)); }
 
 std::string content_hash(const Table& table) {
   std::string text;
@@ -355,7 +357,5 @@ std::string content_hash(const Table& table) {
   }
   return sha256(text + table.state);
 }
-
-Coordinate coordinate(const Row& row) { return {row.name, row.unit, row.lower, row.upper, row.log_scale, row.nominal}; }
 
 }  // namespace servodx

@@ -1,46 +1,5 @@
-// The parameter table file (params/*.csv, tuned tables): 41 rows, and further rows with group `effect:NAME`.
+// The parameter table is part of the library's front door.
 #pragma once
-#include <optional>
-#include <string>
-#include <vector>
-
 #include "parameters/coordinate.h"
 #include "parameters/list.h"
-
-namespace servodx {
-
-struct Row {
-  int id = 0;  // 1..41; 0 for a row of an effect
-  std::string name;
-  std::string group;                         // first_stage, ..., or effect:NAME
-  double nominal = 0, lower = 0, upper = 0;  // [unit]
-  bool log_scale = false;                    // searched in log10
-  bool estimate = false;                     // free in a fit
-  std::string unit, description, source;
-  std::optional<double> std_error;  // [unit], in a tuned table
-};
-
-struct Table {
-  std::string path;
-  std::string sha256;
-  std::vector<Row> rows;              // the 41 in order of id, then the effects' rows
-  std::vector<std::string> comments;  // lines beginning with '#' before the header, for people
-  std::string state;                  // lines beginning with '#%' there: what tuned the table (fit/tuned_state.h)
-  bool has_std_error = false;         // a tuned table
-  const Row& operator[](int position) const { return rows[position]; }
-  Row& operator[](int position) { return rows[position]; }
-  int find(const std::string& name) const;  // position, or -1
-};
-
-// Throws InputError with file, line, column, rule and mend.
-Table read_table(const std::string& path);
-// Written to a temporary name and renamed; shortest round-trip digits.
-void write_table(const std::string& path, const Table& table);
-
-// Hash of what the table says, rows and state: independent of its path, of comments and of how numbers are written.
-std::string content_hash(const Table& table);
-
-// The row as a free number that starts at its nominal value.
-Coordinate coordinate(const Row& row);
-
-}  // namespace servodx
+#include "servodx/table.h"

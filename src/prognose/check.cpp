@@ -163,6 +163,7 @@ void add_parameters(CheckResult& out, const std::vector<TrackedParameter>& param
 }  // namespace
 
 CheckResult check(const Log& log, const Table& tuned, const RigFile& rig, const CheckOptions& options) {
+  options.validate();
   LogData data = prepare(log, rig);
   require_channels(data);
   CheckResult out;

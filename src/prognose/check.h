@@ -20,6 +20,7 @@
 #include "prognose/oil_temperature.h"
 #include "prognose/track.h"
 #include "servodx/rig.h"
+#include "servodx/trend.h"
 #include "signals/log.h"
 #include "signals/rig_file.h"
 
@@ -33,14 +34,6 @@ struct Check {
   double expected = 1;  // what a healthy valve would measure here, over what it would at the reference state
   std::string cause;    // fault label of a parameter; empty for the paper's checks
   double tuned = NAN, failed = NAN;  // of a parameter, not stored: the table's value, and where the fault has failed
-};
-
-struct CheckOptions {
-  std::string model = "linear";  // pressure model of the monitor
-  int threads = 0;
-  bool track = true;         // fit the parameters
-  bool correct = true;       // to the reference state
-  std::vector<double> last;  // see TrackOptions
 };
 
 struct CheckResult {

@@ -120,11 +120,4 @@ BaselineFile read_baseline(const std::string& path) {
   return {std::move(b), sha256(bytes)};
 }
 
-void require_same_table(const DetectionBaseline& baseline, const std::string& baseline_path,
-                        const std::string& table_path, const std::string& table_sha256) {
-  if (baseline.tuned_sha256 == table_sha256) return;
-  throw key_error({baseline_path, 0, "tuned_sha256"}, "was made with another table than " + table_path,
-                  "give the table it was made with, or make a baseline with this one");
-}
-
 }  // namespace servodx::report

@@ -15,9 +15,4 @@ struct BaselineFile {
 // Throws InputError naming the file, the key, the rule and the mend.
 BaselineFile read_baseline(const std::string& path);
 
-// Refuses a baseline that was made with another table than the one of this path and hash: its threshold is a statement
-// about that table's residuals.
-void require_same_table(const DetectionBaseline& baseline, const std::string& baseline_path,
-                        const std::string& table_path, const std::string& table_sha256);
-
 }  // namespace servodx::report

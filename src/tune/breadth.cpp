@@ -18,6 +18,7 @@
 #include "parameters/list.h"
 #include "servodx/error.h"
 #include "servodx/rig.h"
+#include "servodx/tune.h"
 #include "tune/tune.h"
 #include "tune/weights.h"
 

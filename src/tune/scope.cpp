@@ -9,6 +9,7 @@
 #include "fit/free_values.h"
 #include "fit/nominal.h"
 #include "fit/thin.h"
+#include "servodx/tune.h"
 
 namespace servodx {
 namespace {

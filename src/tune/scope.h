@@ -10,6 +10,7 @@
 #include "parameters/table.h"
 #include "servodx/log.h"
 #include "servodx/rig.h"
+#include "servodx/tune.h"
 #include "simulate/scenario.h"
 #include "simulate/simulate.h"
 #include "tune/tune.h"

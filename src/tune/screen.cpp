@@ -10,6 +10,7 @@
 #include "fit/free_values.h"
 #include "fit/identifiability.h"
 #include "optimise/problem.h"
+#include "servodx/table.h"
 #include "tune/weights.h"
 
 namespace servodx {

@@ -8,6 +8,7 @@
 
 #include "fit/identifiability.h"
 #include "fit/problem.h"
+#include "servodx/table.h"
 #include "tune/scope.h"
 #include "tune/watch.h"
 

@@ -9,6 +9,7 @@
 #include "optimise/derivative_free.h"
 #include "optimise/local.h"
 #include "optimise/problem.h"
+#include "servodx/tune.h"
 #include "tune/breadth.h"
 #include "tune/tune.h"
 #include "tune/weights.h"

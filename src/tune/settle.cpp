@@ -14,6 +14,7 @@
 #include "fit/uncertainty.h"
 #include "parameters/coordinate.h"
 #include "parameters/table.h"
+#include "servodx/tune.h"
 #include "tune/tune.h"
 
 namespace servodx {

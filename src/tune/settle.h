@@ -6,6 +6,7 @@
 #include "optimise/box_least_squares.h"
 #include "optimise/problem.h"
 #include "parameters/table.h"
+#include "servodx/tune.h"
 #include "tune/scope.h"
 #include "tune/screen.h"
 #include "tune/tune.h"

@@ -13,6 +13,7 @@
 #include "optimise/problem.h"
 #include "parameters/list.h"
 #include "parameters/table.h"
+#include "servodx/tune.h"
 #include "simulate/scenario.h"
 #include "tune/weights.h"
 

@@ -8,6 +8,7 @@
 #include "parameters/table.h"
 #include "servodx/log.h"
 #include "servodx/rig.h"
+#include "servodx/tune.h"
 #include "simulate/scenario.h"
 #include "tune/scope.h"
 #include "tune/tune.h"

@@ -1,12 +1,16 @@
 #include "tune/tune.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <span>
 
 #include "base/error.h"
+#include "base/nearest.h"
+#include "effects/registry.h"
 #include "effects/supply_droop.h"
 #include "fit/free_values.h"
 #include "fit/problem.h"
@@ -69,6 +73,19 @@ bool supply_is_measured(const std::vector<Log>& logs) {
   return std::all_of(logs.begin(), logs.end(), [](const Log& l) { return l.has(Signal::supply_pressure); });
 }
 
+namespace {
+
+void require_known(const std::vector<std::string>& effects) {
+  std::vector<std::string> known = {"none"};
+  for (const EffectInfo& effect : effect_list()) known.push_back(effect.name);
+  for (const std::string& name : effects)
+    if (std::find(known.begin() + 1, known.end(), name) == known.end())
+      throw InputError({.file = "--effects"}, "unknown effect '" + name + "'",
+                       did_you_mean(name, known) + fmt::format("use {}, with commas between", fmt::join(known, ", ")));
+}
+
+}  // namespace
+
 void TuneOptions::validate() const {
   const auto require = [](bool holds, const char* option, const std::string& rule, const std::string& mend) {
     if (!holds) throw InputError({.file = option}, rule, mend);
@@ -83,6 +100,12 @@ void TuneOptions::validate() const {
           fmt::format("{} is the default", TuneOptions{}.heldout));
   require(moving_average >= 1 && moving_average % 2 == 1, "--moving-average",
           fmt::format("{} is not an odd number of samples", moving_average), "give 1 for none, or 3, 5, ...");
+  require(threads >= 0, "--threads", fmt::format("{} threads cannot run", threads),
+          "give 0 for all cores, or how many");
+  for (const auto& [name, sd] : priors)
+    require(sd > 0 && std::isfinite(sd), "--prior", fmt::format("'{}={}' is not NAME=SD", name, sd),
+            "a standard deviation about the table's nominal, above 0, in the table's unit");
+  if (effects) require_known(*effects);
 }
 
 TuneResult tune_table(const std::vector<Log>& logs, const Table& nominal, const RigFile& rig,

@@ -1,10 +1,5 @@
 // `tune`: nominal parameters from fault-free logs, pooled.
 #pragma once
-#include <atomic>
-#include <cstdint>
-#include <limits>
-#include <map>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -14,32 +9,12 @@
 #include "optimise/ceres_refinement.h"
 #include "parameters/table.h"
 #include "servodx/rig.h"
+#include "servodx/tune.h"
 #include "signals/log.h"
 #include "signals/rig_file.h"
 #include "simulate/scenario.h"
 
 namespace servodx {
-
-struct ParameterResult {
-  int id = 0;  // 0 for an effect's parameter
-  std::string name, unit;
-  double nominal = 0, estimate = 0;  // [unit]
-  double std_error = 0;              // [unit]; NaN where there is none
-  RowVerdict verdict = RowVerdict::bounded;
-  std::vector<std::string> confounded_with;
-  double profile_lower =
-             std::numeric_limits<double>::quiet_NaN(),  // [unit] 95 % by profile likelihood, where asked for
-      profile_upper = std::numeric_limits<double>::quiet_NaN();
-  double effect_at_lower = 0,
-         effect_at_upper = 0;  // whitened rms change of the simulation at the row's bounds, in sigmas
-};
-
-struct ChannelResult {
-  Signal signal;
-  std::string unit;  // as in the log
-  double rms = 0, noise_rms = 0,
-         heldout_rms = 0;  // [SI] over all logs; held out: the last part of each log, before the final fit
-};
 
 struct LogResult {
   std::string path;
@@ -66,35 +41,6 @@ struct StageResult {
   long simulations = 0;
   int jacobians = 0;
 };
-
-// The local stage: our bounded search and then Ceres; Ceres alone; NLopt's BOBYQA alone, without derivatives.
-enum class TuneLocal { least_squares, ceres, nlopt };
-
-struct TuneOptions {
-  std::uint64_t seed = 1;
-  int threads = 0;
-  bool quiet = false;
-  int population = 50;
-  int generations = 30;
-  int rounds = 4;        // most of the last stage (12 steps, then new weights); it ends early where it converges
-  double heldout = 0.2;  // last part of every log, kept out of the first fit
-  std::optional<std::vector<std::string>> effects;  // freed beside the table's rows; empty: default_effects()
-  // Priors asked for: by row, the standard deviation about the table's nominal [the table's unit].
-  std::map<std::string, double> priors;
-  TuneLocal local = TuneLocal::least_squares;
-  std::vector<std::string> profile;  // rows whose interval is checked by profile likelihood; "all": every one
-  int moving_average = 1;            // [samples] odd; smooths measurement and simulation alike, also in later commands
-  std::string checkpoint;            // file saved every generation; empty: none
-  bool resume = false;
-  const std::atomic<bool>* stop = nullptr;  // set: finish with the best so far
-
-  // Throws InputError that names the option. tune_table() asks for it before any work.
-  void validate() const;
-};
-
-// What a tune frees unless told: of a valve on an actuator, and of one on a test stand.
-std::vector<std::string> default_effects(bool on_stand, bool supply_measured);
-bool supply_is_measured(const std::vector<Log>& logs);  // in every one
 
 struct TuneResult {
   Table table;  // the tuned table

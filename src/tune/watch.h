@@ -3,24 +3,24 @@
 #include <string>
 #include <vector>
 
-#include "base/progress.h"
 #include "fit/problem.h"
 #include "optimise/ceres_refinement.h"
 #include "optimise/local.h"
+#include "servodx/tune.h"
 #include "tune/tune.h"
 
 namespace servodx {
 
 class TuneWatch {
  public:
-  explicit TuneWatch(const TuneOptions& asked) : options(asked), progress_("tune", {.quiet = asked.quiet}) {}
+  explicit TuneWatch(const TuneOptions& asked) : options(asked) {}
   const TuneOptions& options;
   std::vector<ConvergencePoint> convergence;
   std::vector<StageResult> stages;
   CeresSummary ceres;                  // of the last fit
   Distrust distrust = Distrust::none;  // of its derivatives
 
-  bool stopped() const { return options.stop && options.stop->load(); }
+  bool stopped() const { return options.watch.stopped(); }
   // Simulations of problems that are done, and of one that is at work.
   long simulations(const FitProblem& at_work) const { return simulations_ + at_work.simulations(); }
   long failed(const FitProblem& at_work) const { return failed_ + at_work.failed_simulations(); }
@@ -28,13 +28,12 @@ class TuneWatch {
     simulations_ += problem.simulations();
     failed_ += problem.failed_simulations();
   }
-  void tell(double part, const FitProblem& at_work) { progress_.update(part, simulations(at_work)); }
+  void tell(double part, const FitProblem& at_work) { options.watch.tell("tune", part, simulations(at_work)); }
   void mark(const std::string& stage, const FitProblem& at_work, double cost) {
     convergence.push_back({stage, simulations(at_work), cost});
   }
 
  private:
-  Progress progress_;
   long simulations_ = 0, failed_ = 0;
 };
 

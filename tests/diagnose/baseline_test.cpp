@@ -29,12 +29,6 @@ std::vector<Log> cut_logs(const std::vector<std::string>& names, std::size_t sam
   return out;
 }
 
-DiagnoseOptions quiet() {
-  DiagnoseOptions o;
-  o.quiet = true;
-  return o;
-}
-
 // A table as `tune` would leave it, without the work: an error model, and the hash of a log.
 Table as_tuned(const std::string& by) {
   Table t = shipped_table();
@@ -61,7 +55,7 @@ std::string refusal(F f) {
 TEST(Baseline, RefusesALogThatTunedTheTable) {
   const std::vector<Log> logs = cut_logs({"healthy/h03_sine_2hz", "healthy/h12_mixed", "healthy/h05_prbs"}, 100);
   const Table tuned = as_tuned(logs[1].sha256);
-  const std::string said = refusal([&] { make_baseline(logs, tuned, shipped_rig(), 0.01, quiet()); });
+  const std::string said = refusal([&] { make_baseline(logs, tuned, shipped_rig(), 0.01, {}); });
   EXPECT_NE(said.find("h12_mixed"), std::string::npos) << said;
   EXPECT_NE(said.find("tuned"), std::string::npos) << said;
 }
@@ -69,28 +63,28 @@ TEST(Baseline, RefusesALogThatTunedTheTable) {
 TEST(Baseline, RefusesTheSameLogTwice) {
   const std::vector<Log> logs =
       cut_logs({"healthy/h03_sine_2hz", "healthy/h05_prbs", "healthy/h12_mixed", "healthy/h05_prbs"}, 100);
-  const std::string said = refusal([&] { make_baseline(logs, as_tuned("0"), shipped_rig(), 0.01, quiet()); });
+  const std::string said = refusal([&] { make_baseline(logs, as_tuned("0"), shipped_rig(), 0.01, {}); });
   EXPECT_NE(said.find("same log"), std::string::npos) << said;
 }
 
 TEST(Baseline, RefusesTwoLogsAndARateThatIsNone) {
   const std::vector<Log> two = cut_logs({"healthy/h03_sine_2hz", "healthy/h05_prbs"}, 100);
-  const std::string said = refusal([&] { make_baseline(two, as_tuned("0"), shipped_rig(), 0.01, quiet()); });
+  const std::string said = refusal([&] { make_baseline(two, as_tuned("0"), shipped_rig(), 0.01, {}); });
   EXPECT_NE(said.find("2 logs"), std::string::npos) << said;
   for (double rate : {0.0, 1.0, -0.1})
-    EXPECT_NE(refusal([&] { make_baseline(two, as_tuned("0"), shipped_rig(), rate, quiet()); }), "") << rate;
+    EXPECT_NE(refusal([&] { make_baseline(two, as_tuned("0"), shipped_rig(), rate, {}); }), "") << rate;
 }
 
 TEST(Baseline, RefusesATableThatDoesNotSayHowWrongItIs) {
   Table tuned = as_tuned("0");
   tuned.state.clear();
   const std::vector<Log> logs = cut_logs({"healthy/h03_sine_2hz", "healthy/h12_mixed", "healthy/h05_prbs"}, 100);
-  EXPECT_NE(refusal([&] { make_baseline(logs, tuned, shipped_rig(), 0.01, quiet()); }), "");
+  EXPECT_NE(refusal([&] { make_baseline(logs, tuned, shipped_rig(), 0.01, {}); }), "");
 }
 
 TEST(Baseline, PromisesTheRatesThatItsNumberOfLogsAllows) {
   const std::vector<Log> logs = cut_logs({"healthy/h02_steps_small", "healthy/h03_sine_2hz", "healthy/h12_mixed"}, 100);
-  const DetectionBaseline low = make_baseline(logs, as_tuned("0"), shipped_rig(), 0.01, quiet());
+  const DetectionBaseline low = make_baseline(logs, as_tuned("0"), shipped_rig(), 0.01, {});
   EXPECT_EQ(low.logs, 3);
   ASSERT_EQ(low.scores.size(), 3u);
   std::vector<double> scores;
@@ -102,7 +96,7 @@ TEST(Baseline, PromisesTheRatesThatItsNumberOfLogsAllows) {
   // One in a hundred takes 99 logs: 96 more.
   EXPECT_EQ(low.logs_needed, 99);
   // A rate that three logs allow: two of four may lie above, so the threshold is the second score.
-  const DetectionBaseline high = make_baseline(logs, as_tuned("0"), shipped_rig(), 0.5, quiet());
+  const DetectionBaseline high = make_baseline(logs, as_tuned("0"), shipped_rig(), 0.5, {});
   EXPECT_DOUBLE_EQ(high.promised, 2.0 / 4);
   EXPECT_GE(high.threshold, scores[1]);
   EXPECT_LE(high.threshold, low.threshold);
@@ -110,12 +104,12 @@ TEST(Baseline, PromisesTheRatesThatItsNumberOfLogsAllows) {
 
 TEST(Assess, AFaultsRowsAreItsOwnAndProgressIsToldFitByFit) {
   const Log log = cut(shipped_log("fault/f02_clogged_filter_severe"), 250);
-  DiagnoseOptions options = quiet();
+  DiagnoseOptions options;
   std::mutex one;
   std::vector<double> parts;
-  options.progress = [&](double part, long) {
+  options.watch.progress = [&](const WorkDone& done) {
     const std::scoped_lock lock(one);
-    parts.push_back(part);
+    parts.push_back(done.part);
   };
   const Assessment a = assess(log, as_tuned("0"), shipped_rig(), options);
   EXPECT_GT(parts.size(), 2 * fault_list().size());
@@ -154,7 +148,7 @@ TEST(Assess, AFaultsRowsAreItsOwnAndProgressIsToldFitByFit) {
 
 TEST(Assess, SameResultAtAnyThreadCount) {
   const Log log = cut(shipped_log("fault/f02_clogged_filter_severe"), 250);
-  DiagnoseOptions one = quiet(), two = quiet();
+  DiagnoseOptions one, two;
   one.threads = 1, two.threads = 2;
   const Assessment a = assess(log, as_tuned("0"), shipped_rig(), one);
   const Assessment b = assess(log, as_tuned("0"), shipped_rig(), two);

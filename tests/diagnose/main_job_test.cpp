@@ -36,17 +36,14 @@ TEST(MainJob, LostWireIsFoundAndSizedAndNoFaultTakenForAnother) {
     return out;
   };
   TuneOptions o;
-  o.quiet = true;
   o.generations = 2;
   o.population = 24;  // the least that four islands take
   const TuneResult tuned = tune_table(pieces({"healthy/h01_steps_large", "healthy/h12_mixed", "healthy/h04_multisine"}),
                                       read_table(shipped("params/borello2009.csv")), rig, o);
   std::printf("tuned after %.1f s\n", seconds());
-  DiagnoseOptions quiet;
-  quiet.quiet = true;
   const DetectionBaseline baseline =
       make_baseline(pieces({"healthy/h15_no_supply_signals", "healthy/h05_prbs", "healthy/h03_sine_2hz"}), tuned.table,
-                    rig, 0.01, quiet);
+                    rig, 0.01, {});
   std::printf("baseline after %.1f s: threshold %.2f, adequacy limit %.2f; %d logs\n", seconds(), baseline.threshold,
               baseline.adequacy_limit, baseline.logs);
   struct Case {
@@ -62,7 +59,7 @@ TEST(MainJob, LostWireIsFoundAndSizedAndNoFaultTakenForAnother) {
                                    {"fault/f08_sticky_spool_severe", find_fault("sticky_spool"), 1.0}};
   int faults = 0, detected = 0, named = 0;
   for (const Case& c : cases) {
-    const Diagnosis d = diagnose(piece(shipped_log(c.log), from, to), tuned.table, rig, baseline, quiet);
+    const Diagnosis d = diagnose(piece(shipped_log(c.log), from, to), tuned.table, rig, baseline, {});
     std::string ambiguous;
     for (const Fault* other : d.ambiguous_with) ambiguous += " or " + std::string(other ? other->name : "health");
     std::printf("%-34s -> %-24s score %7.2f size %.3g [%.3g, %.3g]%s  (%.1f s)\n", c.log.c_str(),

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "base/random.h"
+#include "servodx/table.h"
 
 namespace servodx {
 namespace {

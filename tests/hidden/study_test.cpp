@@ -11,6 +11,7 @@
 #include "parameters/table.h"
 #include "report/explain_report.h"
 #include "report/explain_words.h"
+#include "servodx/explain.h"
 #include "servodx/log.h"
 #include "servodx/rig.h"
 #include "temporary_folder.h"
@@ -31,7 +32,7 @@ class HiddenStudy : public testing::Test {
               const std::vector<std::string>& without = {}) {
     const Case c = make_case(bench_, seed, effect, seconds, {excitation});
     ExplainOptions options;
-    options.quiet = true, options.level = level, options.without = without;
+    options.level = level, options.without = without;
     const ExplainResult answer =
         explain_logs({read_log(c.logs.front(), bench_.rig)}, tuned_, bench_.rig, &healthy_, options);
     const Score s = score(unseal(c.sealed), answer);  // opened after the answer

@@ -8,6 +8,7 @@
 #include "rig/rig_model.h"
 #include "rig/rig_run.h"
 #include "servodx/log.h"
+#include "servodx/tune.h"
 #include "shipped_data.h"
 #include "temporary_folder.h"
 #include "tune/tune.h"
@@ -35,7 +36,7 @@ Excess tuned(double excess) {
     logs.push_back(read_log(file, shipped_rig()));
   }
   TuneOptions options;
-  options.quiet = true, options.generations = 0;
+  options.generations = 0;
   const Table table = tune_table(logs, shipped_table(), shipped_rig(), options).table;
   const int row = table.find("nozzle_1_excess");
   return {table[row].nominal, table[row].std_error.value()};

@@ -18,6 +18,7 @@
 #include "parameters/table.h"
 #include "servodx/log.h"
 #include "servodx/rig.h"
+#include "servodx/tune.h"
 #include "shipped_data.h"
 #include "simulate/scenario.h"
 #include "simulate/simulate.h"
@@ -114,7 +115,6 @@ inline TuneResult tuned(const Twin& twin, int threads) {
   RigFile rig = shipped_rig();
   TuneOptions options;
   options.threads = threads;
-  options.quiet = true;
   options.effects = std::vector<std::string>{};
   options.generations = 0;  // the truth lies near nominal: breadth is not what is asked here
   Table nominal = twin.table;

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "servodx/tune.h"
 #include "tune/tune.h"
 
 namespace servodx {

@@ -416,12 +416,6 @@ TEST(BaselineFile, RefusalsNameFileKeyAndMend) {
       "-o' wrote");
 }
 
-TEST(BaselineFile, OfAnotherTableIsRefused) {
-  const DetectionBaseline b = some_baseline();
-  EXPECT_NO_THROW(require_same_table(b, "base.json", "tuned.csv", b.tuned_sha256));
-  EXPECT_THROW(require_same_table(b, "base.json", "tuned.csv", std::string(64, 'c')), InputError);
-}
-
 TEST(DiagnoseJson, HasTheContractsKeys) {
   const Json json = diagnose_json({some_diagnosis()});
   const Json& r = json.at("results").at(0);

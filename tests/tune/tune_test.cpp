@@ -27,7 +27,6 @@ TEST(Tune, ALosingChildDoesNotRunTheLogsThatAreLeft) {
   for (Row& row : table.rows)
     row.estimate = std::find(twins::rows().begin(), twins::rows().begin() + 8, row.name) != twins::rows().begin() + 8;
   TuneOptions o;
-  o.quiet = true;
   o.generations = 20;
   o.rounds = 1;
   o.effects.emplace();
@@ -45,7 +44,6 @@ TEST(Tune, ALosingChildDoesNotRunTheLogsThatAreLeft) {
 // A tuned table of one row; the log is short, as only what the table carries beside its rows is looked at.
 TuneResult quick_tune(const Table& table) {
   TuneOptions o;
-  o.quiet = true;
   o.generations = 0;
   o.rounds = 1;
   o.effects.emplace();
@@ -108,7 +106,6 @@ TEST(Tune, EveryFitEndsWithCeresAndSaysWhatItGained) {
 
 TEST(Tune, CeresAloneArrivesWhereBothArrive) {
   TuneOptions o;
-  o.quiet = true;
   o.generations = 0;
   o.rounds = 2;
   o.effects.emplace();

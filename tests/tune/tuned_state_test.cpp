@@ -67,7 +67,6 @@ TEST(TunedState, OfANewerSchemaOrDamagedIsRefused) {
 
 TuneOptions quick() {
   TuneOptions o;
-  o.quiet = true;
   o.generations = 0;
   o.rounds = 1;
   o.effects.emplace();

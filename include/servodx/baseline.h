@@ -1,0 +1,61 @@
+// Baseline: what fault-free logs score under a tuned table, and the threshold that promises a rate of false alarms.
+#pragma once
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "servodx/log.h"
+#include "servodx/rig.h"
+#include "servodx/tune.h"
+#include "servodx/watch.h"
+
+namespace servodx {
+
+struct BaselineParts;  // the library's own
+
+struct BaselineOptions {
+  double false_alarm = 0.01;  // asked for, of a healthy log; n logs promise no less than 1/(n + 1)
+  std::uint64_t seed = 1;
+  int threads = 0;  // 0: all cores; the result does not depend on it
+  Watch watch;      // stopped: of the logs done so far
+
+  // Throws InputError that names the option.
+  void validate() const;
+};
+
+struct Baseline {
+  struct Score {
+    std::string log, sha256;
+    double score = 0;                     // [deviates] largest gain of any fault over health, beside the other logs'
+    double adequacy = 0;                  // whitened rms of the worst channel; 1 as on the tuning logs
+    std::map<std::string, double> gains;  // of each fault over health
+  };
+  double threshold = 0;                                // of a score [deviates]
+  double asked = 0.01, promised = 0, promised_95 = 0;  // false-alarm rates; promised_95: at 95 % confidence
+  int logs = 0;                                        // that set the threshold
+  int logs_needed = 0;                                 // for the rate asked for
+  std::vector<Score> scores;
+  std::string tuned_sha256;  // of the table it speaks of
+  std::string path;          // of its file; empty where it was made in memory
+  std::vector<std::string> notes;
+  long simulations = 0, failed_simulations = 0;
+  bool interrupted = false;  // fewer logs than were given
+  std::shared_ptr<const BaselineParts> parts;
+};
+
+// Refuses logs that tuned the table (by content), the same log twice, fewer than three logs. Throws InputError.
+Baseline make_baseline(const std::vector<Log>& logs, const Tuned& tuned, const Rig& rig,
+                       const BaselineOptions& options = {});
+
+// Throws InputError naming the file, the key, the rule and the mend.
+Baseline read_baseline(const std::string& path);
+// As `servodx baseline -o` writes; one that was read is written back byte for byte.
+void write_baseline(const std::string& path, const Baseline& baseline);
+
+// Throws InputError where the baseline was made with another table: its threshold is a statement about that table's
+// residuals. Every call that takes both asks for it.
+void require_same_table(const Baseline& baseline, const Tuned& tuned);
+
+}  // namespace servodx

@@ -1,0 +1,69 @@
+// Diagnose: is a log like the fault-free ones, and if not, which fault, how large, since when. docs/diagnosis.md.
+#pragma once
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "servodx/baseline.h"
+#include "servodx/log.h"
+#include "servodx/rig.h"
+#include "servodx/tune.h"
+#include "servodx/watch.h"
+
+namespace servodx {
+
+struct Diagnosis;  // the library's own
+
+struct DiagnoseOptions {
+  std::uint64_t seed = 1;
+  int threads = 0;  // 0: all cores; the result does not depend on it
+  Watch watch;      // stopped: what comes back says `interrupted` and nothing else
+
+  // Throws InputError naming the option.
+  void validate() const;
+};
+
+struct Verdict {
+  enum class Kind { healthy, fault, unknown };
+  struct Severity {
+    double value = 0, lower = 0, upper = 0;  // [unit] 95 %
+    std::string unit;
+  };
+  // What stands first in a log that cannot be told from healthy ones.
+  struct Suspicion {
+    std::string name;
+    Severity severity;
+    double rate = 1;      // of false alarms at which it would be said
+    int logs_needed = 0;  // healthy ones, until it would be said; 0: more do not help by themselves, -1: no number does
+  };
+  std::string log;
+  bool interrupted = false;
+  Kind kind = Kind::healthy;
+  double error = 0, threshold = 0;              // [deviates] from health; beyond the threshold it is not healthy
+  double p_value = 1;                           // of such an error on a healthy log
+  std::string fault;                            // label of the one named; empty: none
+  std::optional<Severity> severity;             // of the fault named
+  std::map<std::string, double> probabilities;  // by label; "healthy" and "unknown" among them
+  std::vector<std::string> ambiguous_with;      // labels that cannot be ruled out beside the fault named
+  std::string separating_test;                  // input that would separate them; empty: none is needed
+  std::optional<double> onset;                  // [s] since when, where a change in mid-log stands out
+  std::optional<Suspicion> suspicion;           // of a healthy verdict
+  std::string action;                           // what the fault named asks for
+  std::vector<ParameterResult> parameters;      // rows that moved, the fault's first
+  std::vector<ChannelResult> channels;          // replay under health: rms beside noise
+  std::vector<std::string> notes;
+  long simulations = 0, failed_simulations = 0;
+  std::shared_ptr<const Diagnosis> whole;  // for the program's pages
+};
+
+// "healthy", "fault" or "unknown".
+std::string name_of(Verdict::Kind kind);
+
+// Refuses a baseline of another table and a log without a signal that the model reports. Throws InputError.
+Verdict diagnose(const Log& log, const Tuned& tuned, const Rig& rig, const Baseline& baseline,
+                 const DiagnoseOptions& options = {});
+
+}  // namespace servodx

@@ -1,0 +1,127 @@
+// Prognosis: the checks of one log, a valve's history of them, and from that its state and the life left.
+// docs/prognosis.md.
+#pragma once
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "servodx/log.h"
+#include "servodx/rig.h"
+#include "servodx/tune.h"
+
+namespace servodx {
+
+struct CheckResult;  // the library's own
+struct ValveTrend;
+class HistoryFile;
+
+struct CheckOptions {
+  std::string model = "linear";  // pressure model of the monitor: `servodx list models`
+  int threads = 0;               // 0: all cores; the result does not depend on it
+  bool track = true;             // fit the parameters that wear moves
+  bool correct = true;           // to oil at 40 degC and the table's supply
+  std::vector<double> last;      // History::tracked() of the valve: another start of the fit; may be empty
+
+  // Throws InputError naming the option.
+  void validate() const;
+};
+
+struct Checked {
+  struct Figure {
+    std::string name;                 // mean_error, fidelity, correlation@5Hz, parameter:ID
+    double value = 0, std_error = 0;  // [unit] corrected
+    std::string unit;
+  };
+  std::string log, sha256;
+  std::vector<Figure> figures;
+  double temperature = 0;  // [K] of the oil: the log's, or estimated
+  std::vector<std::string> notes;
+  long simulations = 0, failed_simulations = 0;
+  std::shared_ptr<const CheckResult> whole;  // for the program's pages
+};
+
+// One log's checks. Throws InputError.
+Checked check(const Log& log, const Tuned& tuned, const Rig& rig, const CheckOptions& options = {});
+
+// One file for many valves (SQLite). What record() has returned from survives a crash. Copies are the same history.
+class History {
+ public:
+  // Refuses a file that is not there.
+  static History open(const std::string& path);
+  // Makes it where it is not there.
+  static History open_or_make(const std::string& path);
+
+  struct Use {
+    double at = 0;  // [h] of use
+    std::optional<double> cycles = {};
+    std::string serial = {};  // number of the valve; empty: not known
+  };
+  // All of it or nothing. Refuses a log that this valve's history holds already, unless at other hours or by another
+  // table.
+  void record(const std::string& valve, const Use& use, const Checked& checked, const Tuned& tuned);
+  // kind: filter_changed, valve_swapped, overhauled, retuned or note. It restarts the trends that it renews.
+  void add_event(const std::string& valve, double at, const std::string& kind, const std::string& text = "");
+  std::vector<std::string> valves() const;
+  // For CheckOptions::last; empty where the valve is new.
+  std::vector<double> tracked(const std::string& valve) const;
+  const HistoryFile& file() const { return *file_; }
+
+ private:
+  explicit History(std::shared_ptr<HistoryFile> file) : file_(std::move(file)) {}
+  std::shared_ptr<HistoryFile> file_;
+};
+
+// Where a check says that the valve has failed; without one of the user's the fault's own level holds.
+struct FailureLevel {
+  std::string check;  // "fidelity", "parameter:22"
+  enum class Kind { above, below, times_healthy, current } kind = Kind::above;
+  double value = 0;  // [unit of the check]; times_healthy [1]; current [A] that the spool's friction takes
+  std::optional<double> spread = {};  // how well it is known: one standard deviation
+};
+
+struct TrendOptions {
+  double false_alarm = 0.01;  // part of healthy valves that may raise an alert
+  int healthy = 12;           // first checks taken as healthy
+  double coverage = 0.9;      // of the interval of the life left
+  std::vector<FailureLevel> failures = {};
+  std::uint64_t seed = 1;
+  int threads = 0;  // 0: all cores; the result does not depend on it
+
+  // Throws InputError that names the option, as the program calls it.
+  void validate() const;
+};
+
+struct Trend {
+  // How far it has come, in the order of what calls for more. blind: one check cannot tell failure from health at the
+  // false-alarm rate asked, only a trend can.
+  enum class State { unknown, blind, healthy, watch, warning, failed };
+  struct Remaining {
+    double median = 0, lower = 0, upper = 0;  // [h]; infinite where never
+  };
+  struct OfCheck {
+    std::string name, unit;
+    State state = State::unknown;
+    double slope = 0;                     // [unit / h]
+    std::optional<double> alert_at = {};  // [h]
+    std::optional<Remaining> remaining = {};
+  };
+  std::string valve, serial;
+  State state = State::unknown;
+  double at = 0;  // [h] of the last check
+  std::size_t checks = 0;
+  std::string cause;                   // label of a fault; empty: none
+  std::optional<double> alert_at;      // [h]
+  std::optional<Remaining> remaining;  // to failure
+  std::vector<OfCheck> trends;
+  std::vector<std::string> notes;
+  std::shared_ptr<const ValveTrend> whole;  // for the program's pages
+};
+
+std::string name_of(Trend::State state);
+
+// Refuses a valve that the history does not know. Throws InputError.
+Trend trend(const History& history, const std::string& valve, const TrendOptions& options = {});
+
+}  // namespace servodx

@@ -1,0 +1,90 @@
+// Tune: nominal parameters from fault-free logs, pooled.
+//
+// A genetic search and a least-squares fit, weighed by what the model itself gets wrong; docs/model.md and
+// docs/performance.md say how and how long. A tuned table speaks of one valve on one rig.
+#pragma once
+#include <cstdint>
+#include <limits>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "servodx/log.h"
+#include "servodx/rig.h"
+#include "servodx/table.h"
+#include "servodx/watch.h"
+
+namespace servodx {
+
+struct TuneResult;  // the library's own
+
+// The local stage: our bounded search and then Ceres; Ceres alone; NLopt's BOBYQA alone, without derivatives.
+enum class TuneLocal { least_squares, ceres, nlopt };
+
+struct TuneOptions {
+  std::uint64_t seed = 1;
+  int threads = 0;  // 0: all cores; the result does not depend on it
+  int population = 50;
+  int generations = 30;
+  int rounds = 4;        // most of the last stage (12 steps, then new weights); it ends early where it converges
+  double heldout = 0.2;  // last part of every log, kept out of the first fit
+  std::optional<std::vector<std::string>> effects;  // freed beside the table's rows; empty: default_effects()
+  // Priors asked for: by row, the standard deviation about the table's nominal [the table's unit].
+  std::map<std::string, double> priors;
+  TuneLocal local = TuneLocal::least_squares;
+  std::vector<std::string> profile;  // rows whose interval is checked by profile likelihood; "all": every one
+  int moving_average = 1;            // [samples] odd; smooths measurement and simulation alike, also in later commands
+  std::string checkpoint;            // file saved every generation; empty: none
+  bool resume = false;
+  Watch watch;  // stopped: finish with the best so far
+
+  // Throws InputError that names the option, as the program calls it. tune() asks for it before any work.
+  void validate() const;
+};
+
+// What a tune frees unless told: of a valve on an actuator, and of one on a test stand.
+std::vector<std::string> default_effects(bool on_stand, bool supply_measured);
+bool supply_is_measured(const std::vector<Log>& logs);  // in every one
+
+struct ParameterResult {
+  int id = 0;  // 0 for an effect's parameter
+  std::string name, unit;
+  double nominal = 0, estimate = 0;  // [unit]
+  double std_error = 0;              // [unit]; NaN where there is none
+  RowVerdict verdict = RowVerdict::bounded;
+  std::vector<std::string> confounded_with;
+  double profile_lower =
+             std::numeric_limits<double>::quiet_NaN(),  // [unit] 95 % by profile likelihood, where asked for
+      profile_upper = std::numeric_limits<double>::quiet_NaN();
+  double effect_at_lower = 0,
+         effect_at_upper = 0;  // whitened rms change of the simulation at the row's bounds, in sigmas
+};
+
+struct ChannelResult {
+  Signal signal;
+  std::string unit;  // as in the log
+  double rms = 0, noise_rms = 0,
+         heldout_rms = 0;  // [SI] over all logs; held out: the last part of each log, before the final fit
+};
+
+struct Tuned {
+  Table table;                              // with standard errors; what later calls rest on
+  std::vector<ChannelResult> channels;      // how well it follows the logs
+  std::vector<ParameterResult> parameters;  // free rows, effects included
+  std::vector<std::string> notes;
+  long simulations = 0, failed_simulations = 0;
+  bool interrupted = false;                 // the best so far
+  std::shared_ptr<const TuneResult> whole;  // for the program's pages; none of a table that was read
+};
+
+// `nominal`: where it begins; a tuned one is tuned on. Throws InputError where the logs cannot be used.
+Tuned tune(const std::vector<Log>& logs, const Table& nominal, const Rig& rig, const TuneOptions& options = {});
+
+// A tuned table from its file; `channels` and `parameters` are not in it. Refuses a table that is not tuned.
+Tuned read_tuned(const std::string& path);
+// The same bytes as `servodx tune -o` writes.
+void write_tuned(const std::string& path, const Tuned& tuned);
+
+}  // namespace servodx

@@ -1,0 +1,133 @@
+// The front door of `baseline`: both halves of it, what faults gain and what causes score on healthy logs, and its
+// file.
+#include "servodx/baseline.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <memory>
+#include <utility>
+
+#include "base/atomic_file.h"
+#include "base/csv.h"
+#include "base/key_error.h"
+#include "base/sha256.h"
+#include "diagnose/diagnose.h"
+#include "door/baseline_parts.h"
+#include "door/check_options.h"
+#include "explain/healthy.h"
+#include "report/baseline_file.h"
+#include "report/explain_report.h"
+#include "report/json.h"
+
+namespace servodx {
+namespace {
+
+Baseline of_parts(BaselineParts parts) {
+  const DetectionBaseline& d = parts.detection;
+  Baseline out;
+  out.threshold = d.threshold;
+  out.asked = d.asked, out.promised = d.promised, out.promised_95 = d.promised_95;
+  out.logs = d.logs, out.logs_needed = d.logs_needed;
+  for (const DetectionBaseline::Score& s : d.scores) {
+    out.scores.push_back({s.log, s.sha256, s.score, s.adequacy, {}});
+    for (const auto& [fault, gain] : s.gains) out.scores.back().gains[std::string(fault->name)] = gain;
+  }
+  out.tuned_sha256 = d.tuned_sha256;
+  out.parts = std::make_shared<BaselineParts>(std::move(parts));
+  return out;
+}
+
+void note(std::vector<std::string>& notes, const std::string& text) {
+  if (std::find(notes.begin(), notes.end(), text) == notes.end()) notes.push_back(text);
+}
+
+// The header of a result file of the program.
+report::Header header_of(const std::vector<Log>& logs, const Tuned& tuned, const Rig& rig,
+                         const BaselineOptions& options) {
+  report::Header header;
+  header.version = SERVODX_VERSION;
+  header.command = "baseline";
+  header.seed = options.seed;
+  header.settings = {{"false_alarm", options.false_alarm}};
+  if (!rig.path.empty()) header.inputs.push_back({rig.path, rig.sha256});
+  header.inputs.push_back({tuned.table.path, tuned.table.sha256});
+  for (const Log& log : logs) header.inputs.push_back({log.path, log.sha256});
+  return header;
+}
+
+}  // namespace
+
+void BaselineOptions::validate() const {
+  door::require_option(false_alarm > 0 && false_alarm < 1, "--false-alarm", "is a rate between 0 and 1",
+                       "0.01 is one false alarm in a hundred fault-free logs");
+  door::require_threads(threads);
+}
+
+Baseline make_baseline(const std::vector<Log>& logs, const Tuned& tuned, const Rig& rig,
+                       const BaselineOptions& options) {
+  options.validate();
+  const auto start = std::chrono::steady_clock::now();
+  report::Header header = header_of(logs, tuned, rig, options);
+  BaselineParts parts;
+  parts.detection = make_baseline(logs, tuned.table, rig, options.false_alarm,
+                                  {.seed = options.seed, .threads = options.threads, .watch = options.watch},
+                                  &header.simulations, &header.failed_simulations);
+  for (const std::string& text : tuned.notes)
+    if (!tuned.whole) note(header.notes, text);  // of its reader; what a tune has noted is not this result's
+  for (const Log& log : logs)
+    for (const std::string& text : log.notes) note(header.notes, text);
+  const std::size_t scored = parts.detection.scores.size();
+  if (scored < logs.size()) note(header.notes, fmt::format("interrupted: rests on {} of {} logs", scored, logs.size()));
+
+  HealthyCounts counts{header.simulations, header.failed_simulations};
+  parts.causes = score_healthy(logs, tuned.table, rig, options.threads, counts, [&](double done) {
+    options.watch.tell("baseline, causes", done, counts.simulations);
+    return !options.watch.stopped();
+  });
+  header.simulations = counts.simulations, header.failed_simulations = counts.failed;
+  header.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+
+  report::Json body = report::baseline_json(parts.detection);
+  body["explain"] = report::healthy_json(*parts.causes);
+  parts.text = report::dump(header, body);
+  parts.sha256 = sha256(parts.text);
+  Baseline out = of_parts(std::move(parts));
+  out.notes = header.notes;
+  out.simulations = header.simulations, out.failed_simulations = header.failed_simulations;
+  out.interrupted = options.watch.stopped();
+  return out;
+}
+
+Baseline read_baseline(const std::string& path) {
+  BaselineParts parts;
+  report::BaselineFile file = report::read_baseline(path);
+  parts.detection = std::move(file.baseline);
+  parts.sha256 = file.sha256;
+  parts.text = read_file(path);
+  try {
+    parts.causes = report::read_healthy(path);
+  } catch (const InputError& refused) {
+    parts.causes_refused = refused;
+  }
+  Baseline out = of_parts(std::move(parts));
+  out.path = path;
+  return out;
+}
+
+const HealthyReference& causes_of(const Baseline& baseline) {
+  if (!baseline.parts->causes) throw InputError(*baseline.parts->causes_refused);
+  return *baseline.parts->causes;
+}
+
+void write_baseline(const std::string& path, const Baseline& baseline) { write_file(path, baseline.parts->text); }
+
+void require_same_table(const Baseline& baseline, const Tuned& tuned) {
+  if (baseline.tuned_sha256 == tuned.table.sha256) return;
+  const std::string table = tuned.table.path.empty() ? "the one in memory" : tuned.table.path;
+  throw key_error({baseline.path, 0, "tuned_sha256"}, "was made with another table than " + table,
+                  "give the table it was made with, or make a baseline with this one");
+}
+
+}  // namespace servodx

@@ -1,0 +1,25 @@
+// What a Baseline of the front door carries: the limits that `diagnose` goes by, what healthy logs say of each cause,
+// and its file.
+#pragma once
+#include <optional>
+#include <string>
+
+#include "diagnose/baseline.h"
+#include "explain/healthy.h"
+#include "servodx/baseline.h"
+#include "servodx/error.h"
+
+namespace servodx {
+
+struct BaselineParts {
+  DetectionBaseline detection;
+  std::optional<HealthyReference> causes;    // earlier versions wrote none
+  std::optional<InputError> causes_refused;  // why not, where the file was read
+  std::string text;                          // of the file
+  std::string sha256;                        // of that text
+};
+
+// Throws InputError where the file says nothing of causes: `explain` needs it, `diagnose` does not.
+const HealthyReference& causes_of(const Baseline& baseline);
+
+}  // namespace servodx

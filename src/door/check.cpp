@@ -1,0 +1,80 @@
+// The front door of `check` and of the history that keeps what it finds.
+#include "prognose/check.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <memory>
+#include <utility>
+
+#include "base/csv.h"
+#include "base/sha256.h"
+#include "door/check_options.h"
+#include "parameters/table_text.h"
+#include "prognose/oil_temperature.h"
+#include "prognose/valve_history.h"
+#include "servodx/trend.h"
+#include "store/history.h"
+
+namespace servodx {
+namespace {
+
+// The bytes that the table's hash is of: a history keeps them.
+std::string text_of(const Table& table) {
+  std::string text = table_text(table);
+  return sha256(text) == table.sha256 ? text : read_file(table.path);
+}
+
+}  // namespace
+
+Checked check(const Log& log, const Tuned& tuned, const Rig& rig, const CheckOptions& options) {
+  auto result = std::make_shared<CheckResult>(check(log, tuned.table, rig, options));
+  Checked out;
+  out.log = result->log, out.sha256 = result->sha256;
+  for (const Check& c : result->checks) out.figures.push_back({c.name.text(), c.value, c.std_error, c.unit});
+  out.temperature = result->temperature.value;
+  out.notes = result->notes;
+  out.simulations = result->simulations, out.failed_simulations = result->failed_simulations;
+  out.whole = std::move(result);
+  return out;
+}
+
+History History::open(const std::string& path) { return History(std::make_shared<HistoryFile>(path, false)); }
+
+History History::open_or_make(const std::string& path) {
+  return History(std::make_shared<HistoryFile>(path, !HistoryFile::there(path)));
+}
+
+void History::record(const std::string& valve, const Use& use, const Checked& checked, const Tuned& tuned) {
+  using door::require_option;
+  require_option(!valve.empty(), "--valve", "the name is empty", "name the valve");
+  require_option(std::isfinite(use.at) && use.at >= 0, "--at", "must be the hours of use, 0 or more", "--at 1250.5");
+  require_option(!use.cycles || (std::isfinite(*use.cycles) && *use.cycles >= 0), "--cycles",
+                 "must be a number, 0 or more", "--cycles 120000");
+  Recording recording;
+  recording.at = use.at, recording.cycles = use.cycles;
+  recording.log = checked.log, recording.log_sha256 = checked.sha256;
+  recording.table_sha256 = tuned.table.sha256;
+  recording.version = SERVODX_VERSION;
+  recording.temperature = checked.whole->temperature.value;
+  recording.temperature_source = name_of(checked.whole->temperature.source);
+  recording.checks = checked.whole->checks;
+  file_->record(valve, use.serial, recording, text_of(tuned.table));
+}
+
+void History::add_event(const std::string& valve, double at, const std::string& kind, const std::string& text) {
+  const auto known = find_event(kind);
+  door::require_option(known.has_value(), "KIND", "'" + kind + "' is no event", "use one of: " + event_names());
+  door::require_option(std::isfinite(at) && at >= 0, "--at", "must be the hours of use, 0 or more", "--at 1250.5");
+  file_->of(valve);  // refuses a name that is only mistyped
+  file_->add_event(valve, {at, *known, text, {}});
+}
+
+std::vector<std::string> History::valves() const { return file_->valves(); }
+
+std::vector<double> History::tracked(const std::string& valve) const {
+  const auto last = file_->last(valve);
+  return last ? tracked_in(*last) : std::vector<double>();
+}
+
+}  // namespace servodx

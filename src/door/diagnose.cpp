@@ -1,0 +1,89 @@
+// The front door of `diagnose`: the verdict in words and numbers that need nothing of the library's inside.
+#include "servodx/diagnose.h"
+
+#include <memory>
+#include <utility>
+
+#include "diagnose/decide.h"
+#include "diagnose/diagnose.h"
+#include "diagnose/judge.h"
+#include "diagnose/moved.h"
+#include "door/baseline_parts.h"
+#include "faults/fault.h"
+#include "report/diagnosis_words.h"
+
+namespace servodx {
+namespace {
+
+Verdict::Kind kind_of(VerdictKind kind) {
+  switch (kind) {
+    case VerdictKind::healthy:
+      return Verdict::Kind::healthy;
+    case VerdictKind::fault:
+      return Verdict::Kind::fault;
+    case VerdictKind::unknown:
+      return Verdict::Kind::unknown;
+  }
+  return Verdict::Kind::unknown;
+}
+
+std::optional<Verdict::Suspicion> suspicion_of(const Diagnosis& d) {
+  if (!d.suspicion) return {};
+  const Suspicion& s = *d.suspicion;
+  return Verdict::Suspicion{
+      report::label_of(s.fault), {s.severity, s.lower, s.upper, report::unit_of(s.fault)}, s.rate, s.logs_needed};
+}
+
+Verdict verdict_of(Diagnosis d) {
+  Verdict out;
+  out.log = d.log;
+  out.kind = kind_of(d.verdict);
+  out.error = d.error, out.threshold = d.threshold, out.p_value = d.p_value;
+  if (d.fault) {
+    out.fault = report::label_of(d.fault);
+    out.severity = {d.severity.value, d.severity.lower, d.severity.upper, report::unit_of(d.fault)};
+  }
+  out.probabilities = report::labelled_probabilities(d);
+  out.ambiguous_with = report::ambiguous_labels(d);
+  out.separating_test = report::separating_test_of(d);
+  out.onset = d.onset;
+  out.suspicion = suspicion_of(d);
+  out.action = report::action_of(d);
+  for (const MovedRow& row : d.moved) out.parameters.push_back(row);
+  out.channels = d.assessment.channels;
+  out.notes = d.assessment.notes;
+  out.simulations = d.assessment.simulations, out.failed_simulations = d.assessment.failed_simulations;
+  out.whole = std::make_shared<Diagnosis>(std::move(d));
+  return out;
+}
+
+}  // namespace
+
+std::string name_of(Verdict::Kind kind) {
+  switch (kind) {
+    case Verdict::Kind::healthy:
+      return report::word_of(VerdictKind::healthy);
+    case Verdict::Kind::fault:
+      return report::word_of(VerdictKind::fault);
+    case Verdict::Kind::unknown:
+      return report::word_of(VerdictKind::unknown);
+  }
+  return "";
+}
+
+Verdict diagnose(const Log& log, const Tuned& tuned, const Rig& rig, const Baseline& baseline,
+                 const DiagnoseOptions& options) {
+  options.validate();
+  require_same_table(baseline, tuned);
+  Assessment assessment = assess(log, tuned.table, rig, options);
+  if (options.watch.stopped()) {
+    Verdict out;
+    out.log = log.path;
+    out.interrupted = true;
+    out.simulations = assessment.simulations, out.failed_simulations = assessment.failed_simulations;
+    return out;
+  }
+  return verdict_of(judge(std::move(assessment), baseline.parts->detection));
+}
+
+}  // namespace servodx

@@ -1,0 +1,91 @@
+// The front door of `explain`.
+#include "servodx/explain.h"
+
+#include <memory>
+#include <optional>
+#include <utility>
+
+#include "base/error.h"
+#include "door/baseline_parts.h"
+#include "evidence/heldout_gain.h"
+#include "explain/explain.h"
+#include "explain/healthy.h"
+#include "explain/outcome.h"
+#include "report/explain_words.h"
+
+namespace servodx {
+namespace {
+
+Explanation::Kind kind_of(ExplainVerdict verdict) {
+  switch (verdict) {
+    case ExplainVerdict::sufficient:
+      return Explanation::Kind::sufficient;
+    case ExplainVerdict::extended:
+      return Explanation::Kind::extended;
+    case ExplainVerdict::unexplained:
+      return Explanation::Kind::unexplained;
+  }
+  return Explanation::Kind::unexplained;
+}
+
+Explanation::Cause cause_of(const ExplainedCause& c) {
+  Explanation::Cause out{c.effect, c.where, {}, {}, c.delta_bic, c.confusable_with};
+  for (const ExplainedParameter& p : c.parameters) out.parameters[p.name] = {p.value, p.std_error, p.unit};
+  out.heldout_gain = {c.heldout_gain.value, c.heldout_gain.lower, c.heldout_gain.upper};
+  return out;
+}
+
+Explanation explanation_of(ExplainResult r) {
+  Explanation out;
+  out.kind = kind_of(r.verdict);
+  out.where = r.where, out.depends_on = r.depends_on;
+  for (const ExplainedChannel& c : r.channels)
+    out.channels.push_back(
+        {c.signal, c.unit, c.rms_before, c.rms_after, c.noise_rms, c.heldout_before, c.heldout_after});
+  for (const ExplainedCause& c : r.causes) out.causes.push_back(cause_of(c));
+  for (const ExplainedCause& c : r.standing) out.standing.push_back(cause_of(c));
+  for (const ExplainedCandidate& c : r.candidates)
+    out.candidates.push_back({c.effect, c.where, report::words_of(c.fate), is_taken(c.fate)});
+  if (r.probabilities) {
+    for (const ExplainedProbability& p : r.probabilities->causes) out.probabilities[p.cause] = p.value;
+    out.probabilities["unlisted"] = r.probabilities->unlisted;
+    out.probabilities["nothing"] = r.probabilities->nothing;
+  }
+  out.table = r.table;
+  out.notes = r.notes;
+  out.simulations = r.simulations, out.failed_simulations = r.failed_simulations;
+  out.interrupted = r.interrupted;
+  out.whole = std::make_shared<ExplainResult>(std::move(r));
+  return out;
+}
+
+}  // namespace
+
+std::string name_of(Explanation::Kind kind) {
+  switch (kind) {
+    case Explanation::Kind::sufficient:
+      return report::word_of(ExplainVerdict::sufficient);
+    case Explanation::Kind::extended:
+      return report::word_of(ExplainVerdict::extended);
+    case Explanation::Kind::unexplained:
+      return report::word_of(ExplainVerdict::unexplained);
+  }
+  return "";
+}
+
+Explanation explain(const std::vector<Log>& logs, const Tuned& tuned, const Rig& rig, const ExplainOptions& options) {
+  options.validate();
+  return explanation_of(explain_logs(logs, tuned.table, rig, nullptr, options));
+}
+
+Explanation explain(const std::vector<Log>& logs, const Tuned& tuned, const Rig& rig, const Baseline& baseline,
+                    const ExplainOptions& options) {
+  options.validate();
+  require_same_table(baseline, tuned);
+  const HealthyReference& causes = causes_of(baseline);
+  ExplainOptions at_its_rate = options;
+  at_its_rate.level = baseline.asked;
+  return explanation_of(explain_logs(logs, tuned.table, rig, &causes, at_its_rate));
+}
+
+}  // namespace servodx

@@ -1,0 +1,75 @@
+// The front door of `simulate`: a log's inputs drive the model, the log's measured signals come back.
+#include "servodx/simulate.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstddef>
+#include <stdexcept>
+#include <utility>
+
+#include "door/check_options.h"
+#include "door/simulation_steps.h"
+#include "fit/log_data.h"
+#include "fit/nominal.h"
+#include "simulate/scenario.h"
+#include "simulate/simulate.h"
+
+namespace servodx {
+namespace {
+
+constexpr double reference_step = 1e-5;  // [s] where the integrator's error is far below every sensor's
+
+}  // namespace
+
+void SimulationOptions::validate() const {
+  door::require_option(!step || (*step > 0 && *step <= 0.1), "--step", "must lie between 0 and 0.1 s",
+                       "give it in seconds: 1e-4");
+  door::require_option(!step || !reference, "--reference", "sets the step, as --step does", "give one of them");
+  door::require_threads(threads);
+}
+
+SimulateOptions door::steps_of(const SimulationOptions& options) {
+  SimulateOptions to = fine_steps();
+  to.threads = options.threads;
+  if (options.reference) to.step = to.impact_step = to.creep_step = reference_step;
+  if (options.step) {
+    to.impact_step = std::min(to.impact_step, *options.step);
+    to.step = to.creep_step = *options.step;
+  }
+  return to;
+}
+
+const OutputColumn* Simulation::find(Signal signal) const {
+  const auto at = std::find_if(columns.begin(), columns.end(), [&](const auto& c) { return c.signal == signal; });
+  return at == columns.end() ? nullptr : &*at;
+}
+
+Simulation simulate(const Log& log, const Table& table, const Rig& rig, const SimulationOptions& options) {
+  options.validate();
+  const LogData data = prepare(log, rig);
+  require_channels(data);
+  SimulateOptions how = door::steps_of(options);
+  how.wanted.fill(false);
+  for (const FitChannel& c : data.channels) how.wanted[static_cast<std::size_t>(c.simulated)] = true;
+  Trajectory run = simulate(data.scenario, candidate_of(apply_rig_facts(table, rig)), how);
+  if (!run.ok)
+    throw std::runtime_error(
+        fmt::format("the simulation left the finite numbers at {} s; check {} or give a smaller --step", run.failed_at,
+                    table.path.empty() ? "the table" : table.path));
+  Simulation out;
+  out.time = log.time;
+  for (const FitChannel& c : data.channels)
+    out.columns.push_back(output_column(log, c.signal, std::move(run.signals[static_cast<std::size_t>(c.simulated)])));
+  out.notes = data.notes;
+  out.step = how.step, out.impact_step = how.impact_step;
+  return out;
+}
+
+void write_simulation(const std::string& path, const Log& log, const Simulation& simulation) {
+  std::vector<OutputColumn> columns = {output_column(log, Signal::time, simulation.time)};
+  columns.insert(columns.end(), simulation.columns.begin(), simulation.columns.end());
+  write_log(path, columns);
+}
+
+}  // namespace servodx

@@ -1,0 +1,46 @@
+// The front door of `tune`: a table in memory gets the hash that its file will have, so that a baseline binds to it.
+#include "servodx/tune.h"
+
+#include <memory>
+#include <utility>
+
+#include "base/atomic_file.h"
+#include "base/sha256.h"
+#include "fit/tuned_state.h"
+#include "parameters/table_text.h"
+#include "servodx/error.h"
+#include "tune/tune.h"
+
+namespace servodx {
+
+Tuned tune(const std::vector<Log>& logs, const Table& nominal, const Rig& rig, const TuneOptions& options) {
+  auto result = std::make_shared<TuneResult>(tune_table(logs, nominal, rig, options));
+  Tuned out;
+  out.table = result->table;
+  out.table.path.clear();
+  out.table.sha256 = sha256(table_text(out.table));
+  out.channels = result->channels;
+  out.parameters = result->parameters;
+  out.notes = result->notes;
+  out.simulations = result->simulations, out.failed_simulations = result->failed_simulations;
+  out.interrupted = result->interrupted;
+  out.whole = std::move(result);
+  return out;
+}
+
+Tuned read_tuned(const std::string& path) {
+  Tuned out;
+  out.table = read_table(path);
+  if (!out.table.has_std_error)
+    throw InputError({path, 0, "std_error"}, "the table is not tuned: it has no such column",
+                     "tune it with 'servodx tune LOG... --params " + path + " -o TUNED.csv' and give TUNED.csv");
+  if (has_old_state(out.table))
+    out.notes.push_back(path +
+                        ": a tuned table of an earlier version, which kept its model's error in comments; it is read "
+                        "as it is, and a new tune writes the new form");
+  return out;
+}
+
+void write_tuned(const std::string& path, const Tuned& tuned) { write_table(path, tuned.table); }
+
+}  // namespace servodx
