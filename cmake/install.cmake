@@ -1,5 +1,5 @@
 # `cmake --install`: the program, its manual page and completions, the tables, and the library with its headers for
-# find_package(servodx). `cpack` makes Debian packages of the same: servodx and libservodx-dev.
+# find_package(servodx): the front door alone, include/servodx. `cpack` makes Debian packages of the same: servodx and libservodx-dev.
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 
@@ -31,17 +31,12 @@ install(FILES ${manual}/servodx.fish DESTINATION ${CMAKE_INSTALL_DATADIR}/fish/v
 get_property(folders GLOBAL PROPERTY servodx_libraries)
 add_library(servodx_api INTERFACE)
 target_link_libraries(servodx_api INTERFACE ${folders})
-# What keeps results the same bits must hold in the user's translation units too, where templates are instantiated.
-target_compile_definitions(servodx_api INTERFACE EIGEN_DONT_PARALLELIZE)
-target_compile_options(servodx_api INTERFACE -ffp-contract=off)
 target_compile_features(servodx_api INTERFACE cxx_std_20)
 set_target_properties(servodx_api PROPERTIES EXPORT_NAME servodx)
 install(TARGETS servodx_api ${folders} EXPORT servodx-targets ARCHIVE COMPONENT development)
 install(EXPORT servodx-targets NAMESPACE servodx:: DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/servodx
         COMPONENT development)
 install(DIRECTORY include/ DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} COMPONENT development FILES_MATCHING PATTERN "*.h")
-install(DIRECTORY src/ DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/servodx COMPONENT development
-        FILES_MATCHING PATTERN "*.h" PATTERN "*.inc" PATTERN web EXCLUDE)
 install(DIRECTORY examples DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT development)
 configure_file(cmake/servodx-config.cmake ${CMAKE_BINARY_DIR}/servodx-config.cmake COPYONLY)
 write_basic_package_version_file(${CMAKE_BINARY_DIR}/servodx-config-version.cmake COMPATIBILITY SameMinorVersion)

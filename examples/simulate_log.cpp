@@ -3,34 +3,26 @@
 #include <cmath>
 #include <cstdio>
 
-#include "base/error.h"
-#include "fit/log_data.h"
-#include "fit/nominal.h"
-#include "parameters/table.h"
-#include "servodx/log.h"
-#include "servodx/rig.h"
-#include "simulate/scenario.h"
-#include "simulate/simulate.h"
+#include "servodx/servodx.h"
 
 int main(int argc, char** argv) {
   if (argc < 3) return std::fprintf(stderr, "simulate_log LOG.csv PARAMS.csv [RIG.toml]\n"), 2;
   using namespace servodx;
   try {
-    const RigFile rig = argc > 3 ? read_rig_file(argv[3]) : RigFile{};
-    const LogData log = prepare(read_log(argv[1], rig), rig);
-    const Table table = apply_rig_facts(read_table(argv[2]), rig);
-    const Trajectory simulated = simulate(log.scenario, candidate_of(table));
-    for (const FitChannel& c : log.channels) {
-      const std::vector<double>& y = simulated.signals[static_cast<std::size_t>(c.simulated)];
-      if (y.empty()) continue;  // asked for by SimulateOptions::wanted
+    const Rig rig = argc > 3 ? read_rig_file(argv[3]) : Rig{};
+    const Log log = read_log(argv[1], rig);
+    const Simulation simulation = simulate(log, read_table(argv[2]), rig);
+    for (const OutputColumn& simulated : simulation.columns) {
+      const std::vector<double>& measured = log[simulated.signal];
       double square = 0;
-      for (std::size_t k = 0; k < y.size(); ++k) square += std::pow(c.measured[k] - y[k], 2);
-      std::printf("%s: rms error %.3g %s\n", info(c.signal).name.data(),
-                  std::sqrt(square / static_cast<double>(y.size())), info(c.signal).si_unit.data());
+      std::size_t present = 0;
+      for (std::size_t k = 0; k < measured.size(); ++k)
+        if (std::isfinite(measured[k])) square += std::pow(measured[k] - simulated.value[k], 2), ++present;
+      std::printf("%s: rms error %.3g in SI\n", name_of(simulated.signal).data(),
+                  std::sqrt(square / static_cast<double>(present)));
     }
-    return simulated.ok ? 0 : 1;
+    return 0;
   } catch (const InputError& error) {
-    std::fprintf(stderr, "%s\n", error.what());
-    return 2;
+    return std::fprintf(stderr, "%s\n", error.what()), 2;
   }
 }

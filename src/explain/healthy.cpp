@@ -205,7 +205,7 @@ HealthyReference score_healthy(const std::vector<Log>& logs, const Table& tuned,
       h.shares = heldout_shares(subject, fit), h.has_shares = true;
     }
     count(subject);
-    if (told && !told(0.2 + 0.8 * static_cast<double>(out.logs.size()) / n)) break;
+    if (told && !told(0.2 + 0.8 * (static_cast<double>(out.logs.size()) / n))) break;
   }
   return out;
 }

@@ -14,16 +14,6 @@ namespace {
 
 using Json = nlohmann::json;
 
-std::string excerpt(const std::string& log, int rows) {
-  std::istringstream in(bytes_of(std::filesystem::path(SERVODX_SOURCE_DIR) / "data" / log));
-  std::string text, line;
-  for (int k = 0; k <= rows && std::getline(in, line);) {
-    k += line.starts_with('#') ? 0 : 1;
-    text += line + "\n";
-  }
-  return text;
-}
-
 void expect_keys(const Json& object, std::initializer_list<const char*> keys) {
   for (const char* key : keys)
     EXPECT_TRUE(object.contains(key)) << key << " is not in " << object.dump().substr(0, 200);

@@ -48,6 +48,17 @@ inline std::string shipped_table() {
   return bytes_of(std::filesystem::path(SERVODX_SOURCE_DIR) / "params" / "borello2009.csv");
 }
 
+// The header and the first `rows` samples of a log of data/.
+inline std::string excerpt(const std::string& log, int rows) {
+  std::istringstream in(bytes_of(std::filesystem::path(SERVODX_SOURCE_DIR) / "data" / log));
+  std::string text, line;
+  for (int k = 0; k <= rows && std::getline(in, line);) {
+    k += line.starts_with('#') ? 0 : 1;
+    text += line + "\n";
+  }
+  return text;
+}
+
 // A quarter of a second of a rig at rest that is asked to move: columns in units other than SI, out of order.
 inline std::string small_log(int rows = 250) {
   std::ostringstream text;

@@ -1,4 +1,5 @@
-# Installs into a folder of its own, builds the examples against it with find_package, runs one.
+# Installs into a folder of its own, compiles every public header alone from there, builds the examples against it with
+# find_package and runs them.
 #   cmake -DBUILD=... -DSOURCE=... -DCOMPILER=... -P install_test.cmake
 set(work ${BUILD}/install_test)
 file(REMOVE_RECURSE ${work})
@@ -15,12 +16,30 @@ foreach(file bin/servodx share/man/man1/servodx.1 share/bash-completion/completi
     message(FATAL_ERROR "${file} is not installed")
   endif()
 endforeach()
+# The front door is all that is installed, under one root, and each header of it needs nothing but the standard library.
+file(GLOB_RECURSE headers RELATIVE ${work}/prefix/include ${work}/prefix/include/*)
+file(GLOB wanted RELATIVE ${SOURCE}/include ${SOURCE}/include/servodx/*.h)
+if(NOT "${headers}" STREQUAL "${wanted}")
+  message(FATAL_ERROR "installed headers: ${headers}\nthe front door: ${wanted}")
+endif()
+foreach(header ${headers})
+  file(WRITE ${work}/alone.cpp "#include \"${header}\"\n")
+  step(${COMPILER} -std=c++20 -fsyntax-only -Wall -Wextra -Werror -I ${work}/prefix/include ${work}/alone.cpp)
+endforeach()
+
 step(${CMAKE_COMMAND} -S ${SOURCE}/examples -B ${work}/build -G Ninja -DCMAKE_PREFIX_PATH=${work}/prefix
      -DCMAKE_BUILD_TYPE=Debug -DCMAKE_CXX_COMPILER=${COMPILER} -DCMAKE_CXX_COMPILER_LAUNCHER=${LAUNCHER})
 step(${CMAKE_COMMAND} --build ${work}/build)
 step(${work}/build/simulate_log ${SOURCE}/data/healthy/h08_preflight_cold.csv
      ${work}/prefix/share/servodx/params/borello2009.csv ${SOURCE}/data/rig.toml)
 if(NOT output MATCHES "spool_position: rms error")
+  message(FATAL_ERROR "the example printed: ${output}")
+endif()
+
+set(tutorial ${SOURCE}/data/tutorial)
+step(${work}/build/diagnose_log ${tutorial}/bench.toml ${work}/prefix/share/servodx/params/borello2009.csv ${tutorial}/suspect.csv
+     ${tutorial}/good_1.csv ${tutorial}/good_2.csv ${tutorial}/good_5.csv ${tutorial}/good_6.csv ${tutorial}/good_7.csv)
+if(NOT output MATCHES "suspect.csv: (healthy|fault|unknown)")
   message(FATAL_ERROR "the example printed: ${output}")
 endif()
 
@@ -50,7 +69,7 @@ if(DPKG_DEB AND SHLIBDEPS)
   step(${work}/servodx/usr/bin/servodx list faults)
   foreach(file servodx/usr/share/man/man1/servodx.1 servodx/usr/share/servodx/params/borello2009.csv
                servodx/usr/share/doc/servodx/docs/tutorial.md servodx/usr/share/doc/servodx/copyright
-               libservodx-dev/usr/include/servodx/tune/tune.h)
+               libservodx-dev/usr/include/servodx/servodx.h)
     file(GLOB found ${work}/${file} ${work}/${file}.gz)
     if(NOT found)
       message(FATAL_ERROR "${file} is not in its package")

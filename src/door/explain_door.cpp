@@ -1,6 +1,4 @@
 // The front door of `explain`.
-#include "servodx/explain.h"
-
 #include <memory>
 #include <optional>
 #include <utility>
@@ -12,6 +10,11 @@
 #include "explain/healthy.h"
 #include "explain/outcome.h"
 #include "report/explain_words.h"
+#include "servodx/baseline.h"
+#include "servodx/explain.h"
+#include "servodx/log.h"
+#include "servodx/rig.h"
+#include "servodx/tune.h"
 
 namespace servodx {
 namespace {

@@ -1,7 +1,5 @@
 // The front door of `baseline`: both halves of it, what faults gain and what causes score on healthy logs, and its
 // file.
-#include "servodx/baseline.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -13,13 +11,19 @@
 #include "base/csv.h"
 #include "base/key_error.h"
 #include "base/sha256.h"
+#include "diagnose/baseline.h"
 #include "diagnose/diagnose.h"
 #include "door/baseline_parts.h"
-#include "door/check_options.h"
+#include "door/require_setting.h"
 #include "explain/healthy.h"
 #include "report/baseline_file.h"
 #include "report/explain_report.h"
 #include "report/json.h"
+#include "servodx/baseline.h"
+#include "servodx/error.h"
+#include "servodx/log.h"
+#include "servodx/rig.h"
+#include "servodx/tune.h"
 
 namespace servodx {
 namespace {
@@ -60,8 +64,8 @@ report::Header header_of(const std::vector<Log>& logs, const Tuned& tuned, const
 }  // namespace
 
 void BaselineOptions::validate() const {
-  door::require_option(false_alarm > 0 && false_alarm < 1, "--false-alarm", "is a rate between 0 and 1",
-                       "0.01 is one false alarm in a hundred fault-free logs");
+  door::require_setting(false_alarm > 0 && false_alarm < 1, "--false-alarm", "is a rate between 0 and 1",
+                        "0.01 is one false alarm in a hundred fault-free logs");
   door::require_threads(threads);
 }
 

@@ -1,15 +1,14 @@
 // The front door of `trend`.
-#include "prognose/trend.h"
-
 #include <fmt/format.h>
 
 #include <memory>
 #include <utility>
 
-#include "door/check_options.h"
+#include "door/require_setting.h"
 #include "parameters/list.h"
 #include "prognose/check_name.h"
 #include "prognose/life.h"
+#include "prognose/trend.h"
 #include "prognose/trend_options.h"
 #include "prognose/trend_state.h"
 #include "report/prognosis_words.h"
@@ -45,16 +44,16 @@ std::optional<Trend::Remaining> remaining_of(const std::optional<Remaining>& r) 
 void require_level(const FailureLevel& level) {
   const CheckName name = level.check;
   const bool known = name.kind() == CheckKind::parameter ? name.row().has_value() : name.kind() != CheckKind::other;
-  door::require_option(
+  door::require_setting(
       known, "--failure", "'" + level.check + "' is no check",
       fmt::format("use mean_error, fidelity, correlation@5Hz or parameter:1 to parameter:{}", n_parameters));
-  door::require_option(level.value > 0, "--failure", fmt::format("the level of {} is not above 0", level.check),
-                       "give a level in the check's unit");
-  door::require_option(level.kind != FailureLevel::Kind::current || name.row() == row::spool_friction, "--failure",
-                       "a current is a level of the spool's friction alone", "name parameter:14");
-  door::require_option(!level.spread || *level.spread > 0, "--failure",
-                       fmt::format("the spread of {} is not above 0", level.check),
-                       "leave it out where it is not known");
+  door::require_setting(level.value > 0, "--failure", fmt::format("the level of {} is not above 0", level.check),
+                        "give a level in the check's unit");
+  door::require_setting(level.kind != FailureLevel::Kind::current || name.row() == row::spool_friction, "--failure",
+                        "a current is a level of the spool's friction alone", "name parameter:14");
+  door::require_setting(!level.spread || *level.spread > 0, "--failure",
+                        fmt::format("the spread of {} is not above 0", level.check),
+                        "leave it out where it is not known");
 }
 
 TrendSettings settings_of(const TrendOptions& options) {
@@ -85,11 +84,11 @@ TrendSettings settings_of(const TrendOptions& options) {
 }  // namespace
 
 void TrendOptions::validate() const {
-  using door::require_option;
-  require_option(false_alarm > 0 && false_alarm < 0.5, "--false-alarm", "is a rate between 0 and 0.5",
-                 "0.01 is one healthy valve in a hundred");
-  require_option(healthy >= 5, "--healthy", "needs at least 5 checks", "levels rest on them");
-  require_option(coverage > 0 && coverage < 1, "--coverage", "is between 0 and 1", "0.9");
+  using door::require_setting;
+  require_setting(false_alarm > 0 && false_alarm < 0.5, "--false-alarm", "is a rate between 0 and 0.5",
+                  "0.01 is one healthy valve in a hundred");
+  require_setting(healthy >= 5, "--healthy", "needs at least 5 checks", "levels rest on them");
+  require_setting(coverage > 0 && coverage < 1, "--coverage", "is between 0 and 1", "0.9");
   door::require_threads(threads);
   for (const FailureLevel& level : failures) require_level(level);
 }

@@ -1,9 +1,8 @@
 // The front door of `diagnose`: the verdict in words and numbers that need nothing of the library's inside.
-#include "servodx/diagnose.h"
-
 #include <memory>
 #include <utility>
 
+#include "diagnose/assessment.h"
 #include "diagnose/decide.h"
 #include "diagnose/diagnose.h"
 #include "diagnose/judge.h"
@@ -11,6 +10,11 @@
 #include "door/baseline_parts.h"
 #include "faults/fault.h"
 #include "report/diagnosis_words.h"
+#include "servodx/baseline.h"
+#include "servodx/diagnose.h"
+#include "servodx/log.h"
+#include "servodx/rig.h"
+#include "servodx/tune.h"
 
 namespace servodx {
 namespace {

@@ -1,6 +1,4 @@
 // The front door of `check` and of the history that keeps what it finds.
-#include "prognose/check.h"
-
 #include <fmt/format.h>
 
 #include <cmath>
@@ -9,11 +7,16 @@
 
 #include "base/csv.h"
 #include "base/sha256.h"
-#include "door/check_options.h"
+#include "door/require_setting.h"
 #include "parameters/table_text.h"
+#include "prognose/check.h"
 #include "prognose/oil_temperature.h"
 #include "prognose/valve_history.h"
+#include "servodx/log.h"
+#include "servodx/rig.h"
+#include "servodx/table.h"
 #include "servodx/trend.h"
+#include "servodx/tune.h"
 #include "store/history.h"
 
 namespace servodx {
@@ -46,11 +49,11 @@ History History::open_or_make(const std::string& path) {
 }
 
 void History::record(const std::string& valve, const Use& use, const Checked& checked, const Tuned& tuned) {
-  using door::require_option;
-  require_option(!valve.empty(), "--valve", "the name is empty", "name the valve");
-  require_option(std::isfinite(use.at) && use.at >= 0, "--at", "must be the hours of use, 0 or more", "--at 1250.5");
-  require_option(!use.cycles || (std::isfinite(*use.cycles) && *use.cycles >= 0), "--cycles",
-                 "must be a number, 0 or more", "--cycles 120000");
+  using door::require_setting;
+  require_setting(!valve.empty(), "--valve", "the name is empty", "name the valve");
+  require_setting(std::isfinite(use.at) && use.at >= 0, "--at", "must be the hours of use, 0 or more", "--at 1250.5");
+  require_setting(!use.cycles || (std::isfinite(*use.cycles) && *use.cycles >= 0), "--cycles",
+                  "must be a number, 0 or more", "--cycles 120000");
   Recording recording;
   recording.at = use.at, recording.cycles = use.cycles;
   recording.log = checked.log, recording.log_sha256 = checked.sha256;
@@ -64,8 +67,8 @@ void History::record(const std::string& valve, const Use& use, const Checked& ch
 
 void History::add_event(const std::string& valve, double at, const std::string& kind, const std::string& text) {
   const auto known = find_event(kind);
-  door::require_option(known.has_value(), "KIND", "'" + kind + "' is no event", "use one of: " + event_names());
-  door::require_option(std::isfinite(at) && at >= 0, "--at", "must be the hours of use, 0 or more", "--at 1250.5");
+  door::require_setting(known.has_value(), "KIND", "'" + kind + "' is no event", "use one of: " + event_names());
+  door::require_setting(std::isfinite(at) && at >= 0, "--at", "must be the hours of use, 0 or more", "--at 1250.5");
   file_->of(valve);  // refuses a name that is only mistyped
   file_->add_event(valve, {at, *known, text, {}});
 }

@@ -1,6 +1,4 @@
 // The front door of `simulate`: a log's inputs drive the model, the log's measured signals come back.
-#include "servodx/simulate.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -8,10 +6,14 @@
 #include <stdexcept>
 #include <utility>
 
-#include "door/check_options.h"
+#include "door/require_setting.h"
 #include "door/simulation_steps.h"
 #include "fit/log_data.h"
 #include "fit/nominal.h"
+#include "servodx/log.h"
+#include "servodx/rig.h"
+#include "servodx/simulate.h"
+#include "servodx/table.h"
 #include "simulate/scenario.h"
 #include "simulate/simulate.h"
 
@@ -23,9 +25,9 @@ constexpr double reference_step = 1e-5;  // [s] where the integrator's error is 
 }  // namespace
 
 void SimulationOptions::validate() const {
-  door::require_option(!step || (*step > 0 && *step <= 0.1), "--step", "must lie between 0 and 0.1 s",
-                       "give it in seconds: 1e-4");
-  door::require_option(!step || !reference, "--reference", "sets the step, as --step does", "give one of them");
+  door::require_setting(!step || (*step > 0 && *step <= 0.1), "--step", "must lie between 0 and 0.1 s",
+                        "give it in seconds: 1e-4");
+  door::require_setting(!step || !reference, "--reference", "sets the step, as --step does", "give one of them");
   door::require_threads(threads);
 }
 

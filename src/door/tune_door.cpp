@@ -1,6 +1,4 @@
 // The front door of `tune`: a table in memory gets the hash that its file will have, so that a baseline binds to it.
-#include "servodx/tune.h"
-
 #include <memory>
 #include <utility>
 
@@ -9,6 +7,10 @@
 #include "fit/tuned_state.h"
 #include "parameters/table_text.h"
 #include "servodx/error.h"
+#include "servodx/log.h"
+#include "servodx/rig.h"
+#include "servodx/table.h"
+#include "servodx/tune.h"
 #include "tune/tune.h"
 
 namespace servodx {

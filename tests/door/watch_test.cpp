@@ -1,0 +1,78 @@
+// Progress of the front door, and logs that never were in a file.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <map>
+#include <mutex>
+#include <string>
+#include <vector>
+
+#include "servodx/servodx.h"
+#include "shipped_data.h"
+
+namespace servodx {
+namespace {
+
+// What is told of each work: its parts, in the order in which they were told.
+struct Told {
+  std::mutex mutex;
+  std::map<std::string, std::vector<double>> parts;
+  Watch watch() {
+    return {.progress =
+                [this](const WorkDone& done) {
+                  const std::scoped_lock lock(mutex);
+                  parts[std::string(done.work)].push_back(done.part);
+                },
+            .stop = {}};
+  }
+};
+
+// The first samples of a shipped log, by way of columns in memory.
+Log in_memory(const std::string& name, std::size_t samples) {
+  const Log log = shipped_log(name);
+  const auto column = [&](const std::string& head, const std::vector<double>& values) {
+    return LogColumn{head, {values.begin(), values.begin() + static_cast<long>(samples)}};
+  };
+  std::vector<LogColumn> columns = {column("time [s]", log.time)};
+  for (const auto& [signal, unit] : {std::pair{Signal::command, "A"}, std::pair{Signal::spool_position, "m"},
+                                     std::pair{Signal::piston_position, "m"}, std::pair{Signal::pressure_a, "Pa"},
+                                     std::pair{Signal::pressure_b, "Pa"}})
+    columns.push_back(column(std::string(name_of(signal)) + " [" + unit + "]", log[signal]));
+  return make_log(name, columns, shipped_rig());
+}
+
+TEST(Watch, IsToldOfEveryWorkAndABaselineInMemoryBindsToItsTable) {
+  const Rig rig = shipped_rig();
+  Told told;
+  TuneOptions quick;
+  quick.generations = 0, quick.rounds = 1, quick.effects.emplace();
+  quick.watch = told.watch();
+  const Tuned tuned =
+      tune({in_memory("healthy/h12_mixed", 700)}, read_table(shipped("params/borello2009.csv")), rig, quick);
+  const Baseline baseline =
+      make_baseline({in_memory("healthy/h15_no_supply_signals", 300), in_memory("healthy/h04_multisine", 300),
+                     in_memory("healthy/h03_sine_2hz", 300)},
+                    tuned, rig, {.false_alarm = 0.3, .watch = told.watch()});
+  const Log suspect = in_memory("fault/f02_clogged_filter_severe", 300);
+  const Verdict verdict = diagnose(suspect, tuned, rig, baseline, {.watch = told.watch()});
+  EXPECT_FALSE(verdict.interrupted);
+  EXPECT_FALSE(verdict.probabilities.empty());
+  const Explanation explanation = explain({suspect}, tuned, rig, baseline, {.watch = told.watch()});
+  EXPECT_FALSE(explanation.interrupted);
+
+  for (const char* work : {"tune", "baseline", "baseline, causes", "diagnose", "explain", "explain, missing input"}) {
+    const std::vector<double>& parts = told.parts[work];
+    ASSERT_FALSE(parts.empty()) << work;
+    EXPECT_GE(*std::min_element(parts.begin(), parts.end()), 0) << work;
+    EXPECT_LE(*std::max_element(parts.begin(), parts.end()), 1) << work;
+  }
+  EXPECT_EQ(told.parts.size(), 6u);
+
+  Tuned other = tuned;
+  other.table.sha256 = std::string(64, '0');
+  EXPECT_THROW(diagnose(suspect, other, rig, baseline), InputError);
+  EXPECT_THROW(make_baseline({in_memory("healthy/h12_mixed", 700)}, tuned, rig), InputError) << "it tuned the table";
+}
+
+}  // namespace
+}  // namespace servodx
