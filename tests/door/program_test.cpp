@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 #include <regex>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include "servodx/servodx.h"
@@ -98,6 +99,22 @@ TEST_F(Door, JudgesAsTheProgramDoes) {
   EXPECT_EQ(v.parameters.size(), of_program.at("parameters").size());
 }
 
+TEST_F(Door, TwoCallsAtOnceDisturbNeither) {
+  const Tuned tuned = read_tuned("tuned.csv");
+  const Baseline baseline = read_baseline("base.json");
+  const std::vector<Log> both = logs({"s.csv", "b1.csv"});
+  std::vector<Verdict> alone, together(2);
+  for (const Log& log : both) alone.push_back(diagnose(log, tuned, rig(), baseline));
+  std::vector<std::thread> calls;
+  for (std::size_t i = 0; i < 2; ++i)
+    calls.emplace_back([&, i] { together[i] = diagnose(both[i], tuned, rig(), baseline); });
+  for (std::thread& call : calls) call.join();
+  for (std::size_t i = 0; i < 2; ++i) {
+    EXPECT_EQ(together[i].error, alone[i].error) << both[i].path;
+    EXPECT_EQ(together[i].probabilities, alone[i].probabilities) << both[i].path;
+  }
+}
+
 TEST_F(Door, ExplainsAsTheProgramDoes) {
   ran("explain s.csv --params tuned.csv --baseline base.json -o extended.csv --json explained.json");
   const Json of_program = Json::parse(bytes_of("explained.json"));
@@ -138,7 +155,7 @@ TEST_F(Door, ChecksAndTrendsAsTheProgramDoes) {
   EXPECT_EQ(history.valves(), std::vector<std::string>{"V"});
   EXPECT_FALSE(history.tracked("V").empty());
   EXPECT_THROW(history.add_event("V", 150, "no_such_event"), InputError);
-  EXPECT_THROW(History::open("no_such.db"), InputError);
+  EXPECT_THROW(History::open("nowhere.db"), InputError);
   ran("history event filter_changed --valve V --at 150 --history program.db");
   ran("trend --history program.db --valve V --json trend.json");
   const Trend found = trend(History::open("door.db"), "V");

@@ -27,6 +27,12 @@ foreach(header ${headers})
   step(${COMPILER} -std=c++20 -fsyntax-only -Wall -Wextra -Werror -I ${work}/prefix/include ${work}/alone.cpp)
 endforeach()
 
+# The page's program is one.
+file(READ ${SOURCE}/docs/library.md page)
+string(REGEX MATCH "```cpp\n([^`]*)```" fence "${page}")
+file(WRITE ${work}/page.cpp "${CMAKE_MATCH_1}")
+step(${COMPILER} -std=c++20 -fsyntax-only -Wall -Wextra -Werror -I ${work}/prefix/include ${work}/page.cpp)
+
 step(${CMAKE_COMMAND} -S ${SOURCE}/examples -B ${work}/build -G Ninja -DCMAKE_PREFIX_PATH=${work}/prefix
      -DCMAKE_BUILD_TYPE=Debug -DCMAKE_CXX_COMPILER=${COMPILER} -DCMAKE_CXX_COMPILER_LAUNCHER=${LAUNCHER})
 step(${CMAKE_COMMAND} --build ${work}/build)
