@@ -66,6 +66,8 @@ struct RigFile {
 
 // Throws InputError with file, line and key.
 RigFile read_rig_file(const std::string& path);
+// The same from memory: `text` is what a rig.toml holds; `name` stands for the file in errors and results.
+RigFile make_rig(const std::string& name, const std::string& text);
 using Rig = RigFile;
 
 }  // namespace servodx

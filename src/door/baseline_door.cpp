@@ -120,14 +120,21 @@ Baseline read_baseline(const std::string& path) {
   return out;
 }
 
-const HealthyReference& causes_of(const Baseline& baseline) {
-  if (!baseline.parts->causes) throw InputError(*baseline.parts->causes_refused);
-  return *baseline.parts->causes;
+const BaselineParts& parts_of(const Baseline& baseline) {
+  if (!baseline.parts) throw InputError({}, "the baseline is empty", "make one, or read one from its file");
+  return *baseline.parts;
 }
 
-void write_baseline(const std::string& path, const Baseline& baseline) { write_file(path, baseline.parts->text); }
+const HealthyReference& causes_of(const Baseline& baseline) {
+  const BaselineParts& parts = parts_of(baseline);
+  if (!parts.causes) throw InputError(*parts.causes_refused);
+  return *parts.causes;
+}
+
+void write_baseline(const std::string& path, const Baseline& baseline) { write_file(path, parts_of(baseline).text); }
 
 void require_same_table(const Baseline& baseline, const Tuned& tuned) {
+  parts_of(baseline);
   if (baseline.tuned_sha256 == tuned.table.sha256) return;
   const std::string table = tuned.table.path.empty() ? "the one in memory" : tuned.table.path;
   throw key_error({baseline.path, 0, "tuned_sha256"}, "was made with another table than " + table,

@@ -19,6 +19,8 @@ struct BaselineParts {
   std::string sha256;                        // of that text
 };
 
+// Throws InputError where there is nothing in it: a Baseline is made or read.
+const BaselineParts& parts_of(const Baseline& baseline);
 // Throws InputError where the file says nothing of causes: `explain` needs it, `diagnose` does not.
 const HealthyReference& causes_of(const Baseline& baseline);
 

@@ -12,6 +12,7 @@
 #include "prognose/check.h"
 #include "prognose/oil_temperature.h"
 #include "prognose/valve_history.h"
+#include "servodx/error.h"
 #include "servodx/log.h"
 #include "servodx/rig.h"
 #include "servodx/table.h"
@@ -54,6 +55,7 @@ void History::record(const std::string& valve, const Use& use, const Checked& ch
   require_setting(std::isfinite(use.at) && use.at >= 0, "--at", "must be the hours of use, 0 or more", "--at 1250.5");
   require_setting(!use.cycles || (std::isfinite(*use.cycles) && *use.cycles >= 0), "--cycles",
                   "must be a number, 0 or more", "--cycles 120000");
+  if (!checked.whole) throw InputError({}, "there are no checks to record", "take what check() returned");
   Recording recording;
   recording.at = use.at, recording.cycles = use.cycles;
   recording.log = checked.log, recording.log_sha256 = checked.sha256;

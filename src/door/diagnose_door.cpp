@@ -87,7 +87,7 @@ Verdict diagnose(const Log& log, const Tuned& tuned, const Rig& rig, const Basel
     out.simulations = assessment.simulations, out.failed_simulations = assessment.failed_simulations;
     return out;
   }
-  return verdict_of(judge(std::move(assessment), baseline.parts->detection));
+  return verdict_of(judge(std::move(assessment), parts_of(baseline).detection));
 }
 
 }  // namespace servodx

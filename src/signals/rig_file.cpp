@@ -55,8 +55,7 @@ class Reader {
  public:
   explicit Reader(const std::string& path) { rig_.path = path; }
 
-  RigFile read() {
-    const std::string text = read_file(rig_.path);
+  RigFile read(const std::string& text) {
     rig_.sha256 = sha256(text);
     try {
       root_ = toml::parse(text, rig_.path);
@@ -388,9 +387,11 @@ const std::vector<LimitInfo>& limit_list() {
   return list;
 }
 
-RigFile read_rig_file(const std::string& path) {
+RigFile read_rig_file(const std::string& path) { return make_rig(path, read_file(path)); }
+
+RigFile make_rig(const std::string& name, const std::string& text) {
   try {
-    return Reader(path).read();
+    return Reader(name).read(text);
   } catch (const InputError& error) {
     throw key_error(error);  // quantities are read by who knows of columns only
   }

@@ -183,7 +183,26 @@ TEST_F(Door, RefusesABaselineOfAnotherTableInTheProgramsWords) {
   EXPECT_THROW(explain({log}, other, rig(), baseline, ExplainOptions{}), InputError);
 }
 
-TEST_F(Door, RefusesATableThatIsNotTuned) { EXPECT_THROW(read_tuned("table.csv"), InputError); }
+TEST_F(Door, RefusesWhatIsNotTunedAndWhatIsEmpty) {
+  EXPECT_THROW(read_tuned("table.csv"), InputError);
+  const Tuned tuned = read_tuned("tuned.csv");
+  EXPECT_THROW(diagnose(read_log("s.csv", rig()), tuned, rig(), Baseline{}), InputError);
+  EXPECT_THROW(write_baseline("empty.json", {}), InputError);
+  EXPECT_THROW(History::open_or_make("empty.db").record("V", {}, {}, tuned), InputError);
+}
+
+TEST_F(Door, ARigInMemoryIsTheOneInItsFile) {
+  const Rig made = make_rig("rig.toml", bytes_of("rig.toml"));
+  EXPECT_EQ(made.sha256, rig().sha256);
+  EXPECT_EQ(made.facts, rig().facts);
+  try {
+    make_rig("in memory", "name = \"bench\"\nno_key = 1\n");
+    ADD_FAILURE() << "an unknown key";
+  } catch (const InputError& error) {
+    EXPECT_EQ(error.where.file, "in memory");
+    EXPECT_EQ(error.where.line, 2);
+  }
+}
 
 // A wish to end that is there from the beginning: what comes back has cost next to nothing and says so.
 TEST_F(Door, EndsWhereItIsAskedTo) {
