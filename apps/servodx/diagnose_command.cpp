@@ -9,6 +9,7 @@
 #include "diagnose/decide.h"
 #include "diagnose/judge.h"
 #include "door/baseline_parts.h"
+#include "diagnose_list.h"
 #include "fit/replay.h"
 #include "invocation.h"
 #include "parameters/table.h"
@@ -31,6 +32,7 @@ struct Options {
   std::vector<std::string> logs;
   std::string params, baseline;
   bool exit_code = false, pool = false;
+  ListOptions list;
 };
 
 int code_of(const Diagnosis& diagnosis) {
@@ -86,6 +88,11 @@ std::vector<Replay> replays(const std::vector<Log>& logs, const Table& tuned, co
 
 int run(const Options& options) {
   require_option(!options.pool, "--pool", "logs cannot be pooled yet", "leave it out: each log is judged alone");
+  require_option(options.logs.empty() != options.list.list.empty(), options.logs.empty() ? "LOG" : "--list",
+                 options.logs.empty() ? "no log is named" : "logs are named one by one too",
+                 "name the logs, or a file that lists them with --list FILE --out DIR");
+  if (!options.list.list.empty())
+    return diagnose_list(options.common, options.list, options.params, options.baseline, options.exit_code);
   Invocation invocation("diagnose", options.common);
   auto inputs = options.logs;
   inputs.insert(inputs.end(), {options.params, options.baseline});
@@ -134,13 +141,33 @@ int run(const Options& options) {
 void add_diagnose_command(CLI::App& app, int& exit_code) {
   auto options = std::make_shared<Options>();
   CLI::App* command = app.add_subcommand("diagnose", "Detect, name and size a fault; each log alone");
-  command->add_option("LOG", options->logs, "rig logs, CSV")->required();
+  command->add_option("LOG", options->logs, "rig logs, CSV");
+  CLI::Option* list =
+      command
+          ->add_option("--list", options->list.list,
+                       "in place of LOG: a file with one log a line, relative to the working directory ('#': a "
+                       "comment; '-': standard input)")
+          ->type_name("FILE");
+  command->add_option("--out", options->list.out, "with --list: folder of the results, one JSON a log; made if need be")
+      ->type_name("DIR")
+      ->needs(list);
+  command
+      ->add_option("--chunk", options->list.chunk,
+                   "with --list: every N-th log from the I-th on, as one of N processes on the same folder")
+      ->type_name("I/N")
+      ->needs(list)
+      ->capture_default_str();
   command->add_option("--params", options->params, "tuned table")->required()->type_name("TUNED");
   command->add_option("--baseline", options->baseline, "its baseline")->required()->type_name("BASE.json");
   command->add_flag("--exit-code", options->exit_code,
                     "end with 10 for a fault, 11 for unknown: the highest of the logs");
   command->add_flag("--pool", options->pool, "not yet: it is refused")->group("");  // the name is kept, help is silent
   add_common_options(*command, options->common);
+  command->footer(
+      "With --list a result that is there for the same log, table, baseline, rig, seed and version is kept; a log "
+      "that\n"
+      "is refused leaves its reason in DIR and the rest goes on: exit code 3, where neither 10 nor 11 is due.\n"
+      "Example: servodx diagnose --list logs.txt --out results --params tuned.csv --baseline base.json");
   command->callback([options, &exit_code] { exit_code = run(*options); });
 }
 

@@ -30,9 +30,9 @@ std::vector<std::string> call;
 std::atomic<bool> stop{false};
 static_assert(std::atomic<bool>::is_always_lock_free, "a signal handler may store it");
 
-void on_interrupt(int) {
+void on_interrupt(int signal) {
   stop.store(true);
-  std::signal(SIGINT, SIG_DFL);
+  std::signal(signal, SIG_DFL);
 }
 
 // CLI11 would wrap a negative seed round.
@@ -125,8 +125,9 @@ void require_option(bool holds, const std::string& option, const std::string& ru
 
 void remember_call(int argc, char** argv) { call.assign(argv + 1, argv + argc); }
 
-const std::atomic<bool>& stop_on_interrupt() {
+const std::atomic<bool>& stop_on_interrupt(bool or_on_termination) {
   std::signal(SIGINT, on_interrupt);
+  if (or_on_termination) std::signal(SIGTERM, on_interrupt);
   return stop;
 }
 

@@ -21,7 +21,16 @@ class App;
 
 namespace servodx {
 
-enum ExitCode { ran = 0, failed_inside = 1, refused = 2, found_fault = 10, found_unknown = 11, interrupted = 130 };
+// some_set_aside: of many inputs some were refused, the others done.
+enum ExitCode {
+  ran = 0,
+  failed_inside = 1,
+  refused = 2,
+  some_set_aside = 3,
+  found_fault = 10,
+  found_unknown = 11,
+  interrupted = 130
+};
 
 struct CommonOptions {
   std::string json;    // result file; "-": standard output, and no text there; empty: none
@@ -40,8 +49,8 @@ void require_option(bool holds, const std::string& option, const std::string& ru
 // The call as typed, for the manifest.
 void remember_call(int argc, char** argv);
 
-// Set by the first SIGINT from now on; a second one ends the program at once.
-const std::atomic<bool>& stop_on_interrupt();
+// Set by the first SIGINT from now on, and by SIGTERM where asked; a second one ends the program at once.
+const std::atomic<bool>& stop_on_interrupt(bool or_on_termination = false);
 
 class Invocation {
  public:
@@ -72,6 +81,7 @@ class Invocation {
   // Notices for the end of the result; one that is there already is not repeated.
   void note(const std::vector<std::string>& notices);
   report::Header& header() { return header_; }
+  const report::Header& header() const { return header_; }
   const CommonOptions& options() const { return options_; }
 
   // Header and body as a result file's bytes; the time so far is filled in.

@@ -211,7 +211,8 @@ std::string man(const CLI::App& app) {
   text +=
       ".SH EXIT STATUS\n.TP\n0\nit ran, whatever the verdict\n.TP\n1\nit failed inside\n.TP\n2\nthe call or an input "
       "was "
-      "refused; nothing is written\n.TP\n10, 11\nwith \\fBdiagnose \\-\\-exit\\-code\\fR: a fault; "
+      "refused; nothing is written\n.TP\n3\nof many inputs some were set aside with the reason, the others are "
+      "done\n.TP\n10, 11\nwith \\fBdiagnose \\-\\-exit\\-code\\fR: a fault; "
       "unknown\n.TP\n130\ninterrupted; "
       "the best so far is written\n";
   return text;

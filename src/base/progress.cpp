@@ -32,6 +32,15 @@ std::string progress_line(const std::string& label, double fraction, long evalua
   return line;
 }
 
+std::string logs_line(const std::string& label, std::size_t done, std::size_t of, std::size_t worked, double elapsed) {
+  std::string line = fmt::format("{}: {} of {} logs", label, done, of);
+  if (worked == 0 || elapsed <= 0.0) return line;
+  constexpr double minute = 60.0;  // [s]
+  const double rate = minute * static_cast<double>(worked) / elapsed;
+  line += rate < 10.0 ? fmt::format(", {:.1f} logs/min", rate) : fmt::format(", {:.0f} logs/min", rate);
+  return line + ", " + time_text(minute * static_cast<double>(of - done) / rate) + " left";
+}
+
 Progress::Progress(std::string label, ProgressOptions options)
     : label_(std::move(label)),
       options_(options),
@@ -45,6 +54,17 @@ Progress::~Progress() {
 }
 
 void Progress::update(double fraction, long evaluations) {
+  show([&](double elapsed) { return progress_line(label_, fraction, evaluations, elapsed); });
+}
+
+void Progress::say(const std::string& line) {
+  if (options_.quiet) return;
+  const std::lock_guard lock(mutex_);
+  std::fputs((shown_ && terminal_ ? "\r\033[K" + line + "\n" : line + "\n").c_str(), options_.to);
+  std::fflush(options_.to);
+}
+
+void Progress::show(const std::function<std::string(double elapsed)>& line) {
   if (options_.quiet) return;
   // Whoever finds another thread printing has nothing to add.
   const std::unique_lock lock(mutex_, std::try_to_lock);
@@ -53,9 +73,8 @@ void Progress::update(double fraction, long evaluations) {
   if (now < due_) return;
   const double every = terminal_ ? options_.every_terminal : options_.every_plain;
   due_ = now + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(every));
-  const std::string line =
-      progress_line(label_, fraction, evaluations, std::chrono::duration<double>(now - start_).count());
-  std::fputs((terminal_ ? "\r" + line + "\033[K" : line + "\n").c_str(), options_.to);
+  const std::string words = line(std::chrono::duration<double>(now - start_).count());
+  std::fputs((terminal_ ? "\r" + words + "\033[K" : words + "\n").c_str(), options_.to);
   std::fflush(options_.to);
   shown_ = true;
 }

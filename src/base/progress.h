@@ -4,7 +4,9 @@
 // plain line every ten seconds. update() may be called from any thread and costs a clock reading when nothing is due.
 #pragma once
 #include <chrono>
+#include <cstddef>
 #include <cstdio>
+#include <functional>
 #include <mutex>
 #include <optional>
 #include <string>
@@ -28,6 +30,9 @@ class Progress {
   Progress& operator=(const Progress&) = delete;
 
   void update(double fraction, long evaluations);  // fraction 0..1 of the work; evaluations so far
+  // A line of the caller's, made only when one is due. update() is this with progress_line().
+  void show(const std::function<std::string(double elapsed)>& line);
+  void say(const std::string& line);  // at once, on a line of its own that stays; nothing when quiet
 
  private:
   using Clock = std::chrono::steady_clock;
@@ -42,5 +47,8 @@ class Progress {
 
 // "tune: 42 %, 12000 evaluations/s, 1 min 5 s left"
 std::string progress_line(const std::string& label, double fraction, long evaluations, double elapsed);
+
+// "diagnose: 12 of 400 logs, 31 logs/min, 12 min 31 s left". `worked`: those of `done` that took work, in `elapsed`.
+std::string logs_line(const std::string& label, std::size_t done, std::size_t of, std::size_t worked, double elapsed);
 
 }  // namespace servodx

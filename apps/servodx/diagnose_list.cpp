@@ -1,0 +1,110 @@
+#include "diagnose_list.h"
+
+#include <atomic>
+#include <cstdio>
+#include <vector>
+
+#include "base/error.h"
+#include "base/progress.h"
+#include "diagnose/diagnose.h"
+#include "fleet/log_list.h"
+#include "fleet/result_file.h"
+#include "fleet/run.h"
+#include "fleet_judge.h"
+#include "report/fleet.h"
+#include "servodx/log.h"
+
+namespace servodx {
+namespace {
+
+void add(FleetRun& run, const FleetJudge::Outcome& outcome, Progress& progress) {
+  run.count(outcome.verdict);
+  switch (outcome.end) {
+    case FleetJudge::End::judged:
+      ++run.judged;
+      break;
+    case FleetJudge::End::stood:
+      ++run.stood;
+      break;
+    case FleetJudge::End::set_aside:
+      run.set_aside.push_back(*outcome.refusal);
+      progress.say("diagnose: set aside: " + report::words_of(*outcome.refusal));
+      break;
+    case FleetJudge::End::interrupted:
+      run.interrupted = true;
+      break;
+  }
+}
+
+FleetRun judge_all(const std::vector<std::string>& logs, FleetJudge& judge, const CommonOptions& common,
+                   report::Header& header) {
+  const std::atomic<bool>& stop = stop_on_interrupt(true);
+  Progress progress("diagnose", {.quiet = common.quiet});
+  FleetRun run;
+  run.logs = logs.size();
+  const auto tell = [&](double, long) {
+    progress.show([&](double elapsed) { return logs_line("diagnose", run.done(), run.logs, run.judged, elapsed); });
+  };
+  const DiagnoseOptions options{
+      .seed = common.seed, .threads = common.threads, .quiet = common.quiet, .stop = &stop, .progress = tell};
+  for (const std::string& log : logs) {
+    if (stop) run.interrupted = true;
+    if (run.interrupted) break;
+    const FleetJudge::Outcome outcome = judge.judge(log, result_name(log), options);
+    add(run, outcome, progress);
+    if (outcome.end == FleetJudge::End::judged) {
+      header.simulations += judge.header().simulations;
+      header.failed_simulations += judge.header().failed_simulations;
+    }
+    tell(1, 0);
+  }
+  return run;
+}
+
+// A rehearsal reads every log and says which would be set aside.
+void rehearse(const std::vector<std::string>& logs, const RigFile& rig, report::Header& header) {
+  std::size_t refused_logs = 0;
+  for (const std::string& path : logs) try {
+      read_log(path, rig);
+    } catch (const InputError& error) {
+      std::fprintf(stderr, "diagnose: would be set aside: %s\n", error.what());
+      ++refused_logs;
+    }
+  header.settings["logs"] = logs.size();
+  header.settings["would_be_set_aside"] = refused_logs;
+}
+
+int code_of(const FleetRun& run, bool exit_code) {
+  if (run.interrupted) return interrupted;
+  if (exit_code && run.unknown > 0) return found_unknown;
+  if (exit_code && run.fault > 0) return found_fault;
+  return run.set_aside.empty() ? ran : some_set_aside;
+}
+
+}  // namespace
+
+int diagnose_list(const CommonOptions& common, const ListOptions& options, const std::string& params,
+                  const std::string& baseline, bool exit_code) {
+  require_option(common.report.empty(), "--report", "a list has no page of its own",
+                 "'servodx gather " + (options.out.empty() ? "DIR" : options.out) + " --report FILE.html' makes it");
+  require_folder("--out", options.out);
+  Invocation invocation("diagnose", common);
+  std::vector<std::string> inputs = {params, baseline};
+  if (options.list != "-") inputs.push_back(options.list);
+  invocation.check_files(inputs, {});
+  const Chunk chunk = read_chunk(options.chunk);
+  const Judging judging = read_judging(invocation, params, baseline);
+  const std::vector<std::string> logs = read_log_list(options.list, chunk);
+  report::Header& header = invocation.header();
+  if (common.dry_run) rehearse(logs, judging.rig, header);
+  if (invocation.dry_run()) return ran;
+  FleetJudge judge(invocation, judging, options.out);
+  header.settings.update({{"list", options.list}, {"out", options.out}, {"chunk", options.chunk}});
+  FleetRun run = judge_all(logs, judge, common, header);
+  run.out = options.out;
+  if (run.interrupted) invocation.note({"interrupted: what is done is kept, and the same call goes on from there"});
+  invocation.finish(report::text_of(run), report::fleet_run_json(run));
+  return code_of(run, exit_code);
+}
+
+}  // namespace servodx

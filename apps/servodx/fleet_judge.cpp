@@ -1,0 +1,117 @@
+#include "fleet_judge.h"
+
+#include <algorithm>
+#include <chrono>
+#include <exception>
+#include <filesystem>
+#include <system_error>
+#include <utility>
+
+#include "base/atomic_file.h"
+#include "base/error.h"
+#include "base/sha256.h"
+#include "diagnose/decide.h"
+#include "report/fleet.h"
+#include "servodx/log.h"
+
+namespace servodx {
+namespace {
+
+namespace fs = std::filesystem;
+
+StandingVerdict standing(VerdictKind verdict) {
+  switch (verdict) {
+    case VerdictKind::healthy:
+      return StandingVerdict::healthy;
+    case VerdictKind::fault:
+      return StandingVerdict::fault;
+    case VerdictKind::unknown:
+      return StandingVerdict::unknown;
+  }
+  return StandingVerdict::none;
+}
+
+}  // namespace
+
+Judging read_judging(Invocation& invocation, const std::string& params, const std::string& baseline) {
+  Judging judging{invocation.rig(), invocation.tuned_table(params), report::read_baseline(baseline)};
+  report::require_same_table(judging.baseline.baseline, baseline, judging.tuned.path, judging.tuned.sha256);
+  invocation.header().inputs.push_back({baseline, judging.baseline.sha256});
+  invocation.header().settings = {{"false_alarm", judging.baseline.baseline.asked}};
+  return judging;
+}
+
+void require_folder(const std::string& option, const std::string& folder) {
+  std::error_code ignored;
+  require_option(!folder.empty(), option, "is required: the folder of the results", option + " results");
+  if (fs::is_directory(folder, ignored)) return;
+  const fs::path parent = fs::absolute(folder).lexically_normal().parent_path();
+  require_option(!fs::exists(folder, ignored), option, "'" + folder + "' is no folder", "name a folder");
+  require_option(fs::is_directory(parent, ignored), option, "there is no folder '" + parent.string() + "'",
+                 "make that folder, or name another");
+}
+
+FleetJudge::FleetJudge(const Invocation& invocation, const Judging& judging, std::string out)
+    : judging_(judging), of_call_(invocation.header()), out_(std::move(out)), baseline_(of_call_.inputs.back()) {
+  of_call_.inputs.pop_back();  // a result names its log between table and baseline
+  of_call_.command = "diagnose";
+  fs::create_directory(out_);
+}
+
+void FleetJudge::begin(const std::string& log) {
+  header_ = of_call_;
+  header_.inputs.push_back({log, sha256_of_file(log)});
+  header_.inputs.push_back(baseline_);
+}
+
+bool FleetJudge::stands(const std::string& name, Outcome& outcome) const {
+  ResultBasis basis{header_.version, header_.seed, {}};
+  for (const report::InputFile& input : header_.inputs) basis.inputs.push_back(input.sha256);
+  outcome.verdict = standing_verdict(result_path(name), basis);
+  return outcome.verdict != StandingVerdict::none;
+}
+
+FleetJudge::Outcome FleetJudge::set_aside(const std::string& log, const std::string& name, const InputError& error) {
+  write_file(refusal_path(name), report::dump(header_, report::refusal_json(log, error)));
+  std::error_code ignored;
+  fs::remove(result_path(name), ignored);  // of what the log was
+  return {.end = End::set_aside,
+          .refusal = SetAside{error.where.file, error.where.line, error.where.column, error.rule, error.mend}};
+}
+
+FleetJudge::Outcome FleetJudge::judge(const std::string& path, const std::string& name,
+                                      const DiagnoseOptions& options) {
+  const auto start = std::chrono::steady_clock::now();
+  Outcome outcome;
+  try {
+    header_ = of_call_;
+    begin(path);
+    if (stands(name, outcome)) {
+      outcome.end = End::stood;
+      return outcome;
+    }
+    outcome.log = read_log(path, judging_.rig);
+    header_.inputs[header_.inputs.size() - 2].sha256 = outcome.log->sha256;
+    Assessment assessment = assess(*outcome.log, judging_.tuned, judging_.rig, options);
+    if (options.stop && *options.stop) return {.end = End::interrupted};
+    outcome.diagnosis = servodx::judge(std::move(assessment), judging_.baseline.baseline);
+  } catch (const InputError& error) {
+    return set_aside(path, name, error);
+  } catch (const std::exception& failure) {
+    return set_aside(path, name, {{path, 0, ""}, std::string("failed inside: ") + failure.what(), "report it"});
+  }
+  const Diagnosis& d = *outcome.diagnosis;
+  outcome.verdict = standing(d.verdict);
+  header_.simulations += d.assessment.simulations;
+  header_.failed_simulations += d.assessment.failed_simulations;
+  for (const std::string& note : d.assessment.notes)
+    if (std::find(header_.notes.begin(), header_.notes.end(), note) == header_.notes.end())
+      header_.notes.push_back(note);
+  header_.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  write_file(result_path(name), report::dump(header_, report::diagnose_json({d})));
+  std::error_code ignored;
+  fs::remove(refusal_path(name), ignored);
+  return outcome;
+}
+
+}  // namespace servodx

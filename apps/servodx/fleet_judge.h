@@ -1,0 +1,64 @@
+// One log of a fleet judged into a folder: `diagnose --list` and `watch` go log by log through it.
+//
+// The result is what `diagnose LOG --json` writes, whole or absent. A log that is refused leaves its reason instead.
+#pragma once
+#include <functional>
+#include <optional>
+#include <string>
+
+#include "diagnose/diagnose.h"
+#include "diagnose/judge.h"
+#include "fleet/gather.h"
+#include "fleet/result_file.h"
+#include "invocation.h"
+#include "parameters/table.h"
+#include "report/baseline_file.h"
+#include "report/json.h"
+#include "servodx/log.h"
+#include "servodx/rig.h"
+
+namespace servodx {
+
+// What logs are judged with; read once, before any work.
+struct Judging {
+  RigFile rig;
+  Table tuned;
+  report::BaselineFile baseline;
+};
+// Notes the files among the inputs of the call, and refuses a baseline of another table.
+Judging read_judging(Invocation& invocation, const std::string& params, const std::string& baseline);
+
+// Refuses what is no folder and cannot become one; made by the first result.
+void require_folder(const std::string& option, const std::string& folder);
+
+class FleetJudge {
+ public:
+  FleetJudge(const Invocation& invocation, const Judging& judging, std::string out);
+
+  enum class End { judged, stood, set_aside, interrupted };
+  struct Outcome {
+    End end = End::judged;
+    StandingVerdict verdict = StandingVerdict::none;  // judged or stood
+    std::optional<SetAside> refusal = {};             // set aside
+    std::optional<Diagnosis> diagnosis = {};          // judged
+    std::optional<Log> log = {};                      // judged
+  };
+  // `name`: of its files in the folder, without ending. Throws only where a result cannot be written.
+  Outcome judge(const std::string& log, const std::string& name, const DiagnoseOptions& options);
+  // The header of a judged log's result.
+  const report::Header& header() const { return header_; }
+  std::string result_path(const std::string& name) const { return out_ + "/" + name + result_ending; }
+  std::string refusal_path(const std::string& name) const { return out_ + "/" + name + refusal_ending; }
+
+ private:
+  void begin(const std::string& log);
+  bool stands(const std::string& name, Outcome& outcome) const;
+  Outcome set_aside(const std::string& log, const std::string& name, const InputError& error);
+
+  const Judging& judging_;
+  report::Header of_call_, header_;
+  std::string out_;
+  report::InputFile baseline_;
+};
+
+}  // namespace servodx

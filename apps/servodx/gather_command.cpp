@@ -1,0 +1,80 @@
+// `servodx gather DIR`: the results of many logs as one table, and, with the truth, what they are worth.
+#include <CLI/CLI.hpp>
+#include <atomic>
+#include <memory>
+#include <optional>
+
+#include "base/atomic_file.h"
+#include "base/progress.h"
+#include "commands.h"
+#include "fleet/confusion.h"
+#include "fleet/gather.h"
+#include "invocation.h"
+#include "report/fleet.h"
+
+namespace servodx {
+namespace {
+
+struct Options {
+  CommonOptions common;
+  std::string folder, truth, output;
+};
+
+FleetTable read_folder(const Options& options) {
+  const std::atomic<bool>& stop = stop_on_interrupt();
+  Progress progress("gather", {.quiet = options.common.quiet});
+  return gather(options.folder, stop, [&](std::size_t done, std::size_t of) {
+    progress.update(static_cast<double>(done) / static_cast<double>(of), 0);
+  });
+}
+
+void note_counts(Invocation& invocation, const Confusion& confusion) {
+  if (confusion.without_truth > 0)
+    invocation.note({std::to_string(confusion.without_truth) + " results have no truth and are not in its counts"});
+  if (confusion.without_result > 0)
+    invocation.note({std::to_string(confusion.without_result) + " rows of the truth have no result"});
+}
+
+int run(const Options& options) {
+  Invocation invocation("gather", options.common);
+  std::vector<std::string> inputs, outputs;
+  if (!options.truth.empty()) inputs.push_back(options.truth);
+  if (!options.output.empty()) outputs.push_back(options.output);
+  invocation.check_files(inputs, outputs);
+  std::optional<FleetTruth> truth;
+  if (!options.truth.empty()) truth = read_truth(options.truth);
+  report::Header& header = invocation.header();
+  if (truth) header.inputs.push_back({truth->path, truth->sha256});
+  header.settings = {{"folder", options.folder}};
+  const FleetTable table = read_folder(options);
+  std::optional<Confusion> confusion;
+  if (truth) confusion = confusion_of(table, *truth);
+  if (invocation.dry_run()) return ran;
+  if (table.interrupted) return interrupted;  // a part of the folder is no table of it
+  if (confusion) note_counts(invocation, *confusion);
+  if (!options.output.empty()) write_file(options.output, csv_of(table));
+  if (invocation.wants_report()) invocation.write_report(report::fleet_page(header, table, confusion));
+  invocation.finish(report::text_of(table, confusion), report::fleet_json(table, confusion));
+  return table.unread.empty() ? ran : some_set_aside;
+}
+
+}  // namespace
+
+void add_gather_command(CLI::App& app, int& exit_code) {
+  auto options = std::make_shared<Options>();
+  CLI::App* command = app.add_subcommand("gather", "A folder of results as one table and page, worst first");
+  command->add_option("DIR", options->folder, "folder that 'diagnose --list' wrote")->required();
+  command->add_option("-o,--output", options->output, "the table as CSV, SI units")->type_name("FILE.csv");
+  command
+      ->add_option("--truth", options->truth,
+                   "CSV with the header log,class or log,class,severity: count what was found, named and falsely "
+                   "accused")
+      ->type_name("FILE.csv");
+  add_common_options(*command, options->common);
+  command->footer(
+      "Files that are no results are named and left out; the exit code is then 3.\n"
+      "Example: servodx gather results --truth truth.csv --report fleet.html -o fleet.csv");
+  command->callback([options, &exit_code] { exit_code = run(*options); });
+}
+
+}  // namespace servodx

@@ -1,0 +1,27 @@
+// Where the result of one log of a fleet lies, and whether what lies there still holds.
+#pragma once
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace servodx {
+
+inline constexpr const char* result_ending = ".json";
+inline constexpr const char* refusal_ending = ".refused.json";
+
+// "h12.3f0c...": the log's name and a hash of its path as written. Logs of one name in two folders stay apart, and the
+// same list gives the same names on every machine.
+std::string result_name(const std::string& log);
+
+// What a result rests on; one that rests on the same needs not be made again.
+struct ResultBasis {
+  std::string version;
+  std::uint64_t seed = 1;
+  std::vector<std::string> inputs;  // SHA-256 of all files read, in any order
+};
+
+enum class StandingVerdict { none, healthy, fault, unknown };  // none: no such result, or not of this basis
+
+StandingVerdict standing_verdict(const std::string& result_path, const ResultBasis& basis);
+
+}  // namespace servodx

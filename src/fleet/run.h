@@ -1,0 +1,28 @@
+// What one run over the logs of a fleet did.
+#pragma once
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "fleet/gather.h"
+#include "fleet/result_file.h"
+
+namespace servodx {
+
+struct FleetRun {
+  std::string out;                    // folder of the results
+  std::size_t logs = 0;               // of the list's chunk
+  std::size_t judged = 0, stood = 0;  // results made; results that were there
+  long healthy = 0, fault = 0, unknown = 0;
+  std::vector<SetAside> set_aside;  // logs without a result, `file` is the log's path
+  bool interrupted = false;
+
+  std::size_t done() const { return judged + stood + set_aside.size(); }
+  void count(StandingVerdict verdict) {
+    healthy += verdict == StandingVerdict::healthy;
+    fault += verdict == StandingVerdict::fault;
+    unknown += verdict == StandingVerdict::unknown;
+  }
+};
+
+}  // namespace servodx

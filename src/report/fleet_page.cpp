@@ -1,0 +1,151 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "base/wilson.h"
+#include "report/fleet.h"
+#include "report/fleet_words.h"
+#include "report/handy.h"
+#include "report/page.h"
+#include "report/parts.h"
+#include "report/replay_part.h"
+
+namespace servodx::report {
+namespace {
+
+constexpr std::size_t rows_shown = 50;  // of a table; the others open on a click
+
+struct VerdictCounts {
+  long healthy = 0, fault = 0, unknown = 0;
+};
+
+VerdictCounts counts_of(const FleetTable& table) {
+  VerdictCounts n;
+  for (const FleetRow& row : table.rows) {
+    n.healthy += row.verdict == "healthy";
+    n.fault += row.verdict == "fault";
+    n.unknown += row.verdict == "unknown";
+  }
+  return n;
+}
+
+void add_names(Page& page, const FleetTable& table) {
+  std::map<std::string, long> counts;
+  for (const FleetRow& row : table.rows) ++counts[row.name()];
+  Bars bars;
+  bars.title = "Verdicts";
+  bars.label = "verdict", bars.unit = "logs";
+  for (const auto& [name, n] : counts)
+    bars.rows.push_back({words(name), static_cast<double>(n), std::to_string(n), "",
+                         name == "healthy"   ? Tone::good
+                         : name == "unknown" ? Tone::doubt
+                                             : Tone::bad});
+  std::stable_sort(bars.rows.begin(), bars.rows.end(), [](const auto& a, const auto& b) { return a.value > b.value; });
+  if (!bars.rows.empty()) page.add(bars);
+}
+
+void add_rows(Page& page, const FleetTable& table) {
+  TablePart part{"Logs, worst first",
+                 "lllrrr",
+                 {"log", "verdict", "fault", "severity (95 %)", "probability", "error / threshold"},
+                 {},
+                 rows_shown};
+  for (const FleetRow& row : table.rows) {
+    Cell verdict(row.verdict);
+    verdict.tone = row.verdict == "healthy" ? Tone::good : row.verdict == "fault" ? Tone::bad : Tone::doubt;
+    const std::string size = severity_words(row);
+    part.rows.push_back({row.log, verdict, words(row.fault), size.empty() ? Cell("") : Cell(size, row.severity),
+                         Cell(chance(row.probability), row.probability), Cell(digits(row.excess()), row.excess())});
+  }
+  page.add(part);
+}
+
+void add_set_aside(Page& page, const std::string& title, const std::vector<SetAside>& files) {
+  if (files.empty()) return;
+  TablePart part{title, "lrlll", {"file", "line", "column", "rule", "mend"}, {}, rows_shown};
+  for (const SetAside& f : files)
+    part.rows.push_back({f.file, f.line > 0 ? std::to_string(f.line) : "", f.column, f.rule, f.mend});
+  page.add(part);
+}
+
+Cell rate_cell(const CountedRate& rate) {
+  if (rate.of == 0) return "";
+  return Cell(rate_words(rate), static_cast<double>(rate.counted) / static_cast<double>(rate.of));
+}
+
+void add_confusion(Page& page, const Confusion& confusion) {
+  page.section("Truth", "Rows are what the logs are, columns what was said of them.");
+  Matrix m{"Verdicts by truth", "truth", "verdict", {}, {}, {}, "", true};
+  for (const std::string& name : confusion.names) m.columns.push_back(words(name));
+  for (const std::string& label : confusion.classes) {
+    m.rows.push_back(words(label));
+    m.value.emplace_back();
+    for (const std::string& name : confusion.names)
+      m.value.back().push_back(static_cast<double>(count_of(confusion, label, name)));
+  }
+  page.add(m);
+  TablePart part{"Rates with Wilson's 95 % interval",
+                 "lllll",
+                 {"truth", "found", "named", "severity within its interval", "false alarms"},
+                 {},
+                 0};
+  for (const std::string& label : confusion.classes) {
+    const Confusion::OfClass& of = confusion.rates.at(label);
+    if (label == "healthy")
+      part.rows.push_back({words(label), "", "", "", rate_cell(of.detected)});
+    else
+      part.rows.push_back({words(label), rate_cell(of.detected), rate_cell(of.named), rate_cell(of.sized), ""});
+  }
+  page.add(part);
+}
+
+}  // namespace
+
+std::string fleet_headline(const FleetTable& table) {
+  const VerdictCounts n = counts_of(table);
+  std::string text =
+      fmt::format("{} logs: {} healthy, {} fault, {} unknown", table.rows.size(), n.healthy, n.fault, n.unknown);
+  if (!table.refused.empty()) text += fmt::format("; {} set aside", table.refused.size());
+  if (!table.unread.empty()) text += fmt::format("; {} files are no results", table.unread.size());
+  return text;
+}
+
+std::string severity_words(const FleetRow& row) {
+  if (row.fault.empty() || !std::isfinite(row.severity)) return "";
+  return handy_interval(row.severity, row.severity_lower, row.severity_upper, row.severity_unit);
+}
+
+std::string rate_words(const CountedRate& rate) {
+  if (rate.of == 0) return "none";
+  const auto of = static_cast<double>(rate.of);
+  const RateInterval interval = wilson_95(static_cast<double>(rate.counted), of);
+  return fmt::format("{} of {}, {} ({} to {})", rate.counted, rate.of, percent(static_cast<double>(rate.counted) / of),
+                     percent(interval.lower), percent(interval.upper));
+}
+
+long count_of(const Confusion& confusion, const std::string& label, const std::string& name) {
+  const auto row = confusion.counts.find(label);
+  if (row == confusion.counts.end()) return 0;
+  const auto cell = row->second.find(name);
+  return cell == row->second.end() ? 0 : cell->second;
+}
+
+Page fleet_page(const Header& header, const FleetTable& table, const std::optional<Confusion>& confusion) {
+  Page page(header, "Fleet");
+  const VerdictCounts n = counts_of(table);
+  Verdict v;
+  v.tone = n.fault > 0 ? Tone::bad : n.unknown > 0 ? Tone::doubt : Tone::good;
+  v.headline = fleet_headline(table);
+  page.verdict(v);
+  page.section("Logs");
+  add_names(page, table);
+  add_rows(page, table);
+  add_set_aside(page, "Logs that were set aside", table.refused);
+  add_set_aside(page, "Files of the folder that are no results", table.unread);
+  if (confusion) add_confusion(page, *confusion);
+  return page;
+}
+
+}  // namespace servodx::report

@@ -1,0 +1,15 @@
+// What text and page of a fleet say in the same words.
+#pragma once
+#include <string>
+
+#include "fleet/confusion.h"
+#include "fleet/gather.h"
+
+namespace servodx::report {
+
+std::string fleet_headline(const FleetTable& table);  // "400 logs: 380 healthy, 15 fault, 5 unknown; 2 set aside"
+std::string severity_words(const FleetRow& row);      // "" where the verdict has no size
+std::string rate_words(const CountedRate& rate);      // "19 of 20, 95 % (76 % to 99 %)"
+long count_of(const Confusion& confusion, const std::string& label, const std::string& name);
+
+}  // namespace servodx::report
