@@ -90,7 +90,7 @@ int diagnose_list(const CommonOptions& common, const ListOptions& options, const
   require_folder("--out", options.out);
   Invocation invocation("diagnose", common);
   std::vector<std::string> inputs = {params, baseline};
-  if (options.list != "-") inputs.push_back(options.list);
+  if (!is_standard_input(options.list)) inputs.push_back(options.list);
   invocation.check_files(inputs, {});
   const Chunk chunk = read_chunk(options.chunk);
   const Judging judging = read_judging(invocation, params, baseline);

@@ -19,16 +19,16 @@ namespace {
 
 namespace fs = std::filesystem;
 
-StandingVerdict standing(VerdictKind verdict) {
+FleetVerdict standing(VerdictKind verdict) {
   switch (verdict) {
     case VerdictKind::healthy:
-      return StandingVerdict::healthy;
+      return FleetVerdict::healthy;
     case VerdictKind::fault:
-      return StandingVerdict::fault;
+      return FleetVerdict::fault;
     case VerdictKind::unknown:
-      return StandingVerdict::unknown;
+      return FleetVerdict::unknown;
   }
-  return StandingVerdict::none;
+  return FleetVerdict::none;
 }
 
 }  // namespace
@@ -68,7 +68,7 @@ bool FleetJudge::stands(const std::string& name, Outcome& outcome) const {
   ResultBasis basis{header_.version, header_.seed, {}};
   for (const report::InputFile& input : header_.inputs) basis.inputs.push_back(input.sha256);
   outcome.verdict = standing_verdict(result_path(name), basis);
-  return outcome.verdict != StandingVerdict::none;
+  return outcome.verdict != FleetVerdict::none;
 }
 
 FleetJudge::Outcome FleetJudge::set_aside(const std::string& log, const std::string& name, const InputError& error) {

@@ -38,10 +38,10 @@ class FleetJudge {
   enum class End { judged, stood, set_aside, interrupted };
   struct Outcome {
     End end = End::judged;
-    StandingVerdict verdict = StandingVerdict::none;  // judged or stood
-    std::optional<SetAside> refusal = {};             // set aside
-    std::optional<Diagnosis> diagnosis = {};          // judged
-    std::optional<Log> log = {};                      // judged
+    FleetVerdict verdict = FleetVerdict::none;  // judged or stood
+    std::optional<SetAside> refusal = {};       // set aside
+    std::optional<Diagnosis> diagnosis = {};    // judged
+    std::optional<Log> log = {};                // judged
   };
   // `name`: of its files in the folder, without ending. Throws only where a result cannot be written.
   Outcome judge(const std::string& log, const std::string& name, const DiagnoseOptions& options);

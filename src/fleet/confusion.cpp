@@ -7,13 +7,14 @@
 #include "base/csv.h"
 #include "base/error.h"
 #include "base/sha256.h"
+#include "fleet/verdict.h"
 
 namespace servodx {
 namespace {
 
 namespace fs = std::filesystem;
-constexpr const char* healthy = "healthy";
-constexpr const char* unknown = "unknown";
+
+bool is_healthy(const std::string& label) { return verdict_named(label) == FleetVerdict::healthy; }
 
 struct Columns {
   std::size_t log, label;
@@ -76,7 +77,7 @@ void count(Confusion& all, const FleetRow& row, const FleetTruth::Row& truth) {
   Confusion::OfClass& rates = all.rates[truth.label];
   const bool is_named = row.name() == truth.label;
   ++rates.detected.of, ++rates.named.of;
-  rates.detected.counted += row.verdict != healthy;
+  rates.detected.counted += !row.is_healthy();
   rates.named.counted += is_named;
   if (!is_named || row.fault.empty() || !truth.severity) return;
   ++rates.sized.of;
@@ -87,12 +88,12 @@ void count(Confusion& all, const FleetRow& row, const FleetTruth::Row& truth) {
 void order(Confusion& all) {
   std::set<std::string> others;
   for (const auto& [label, names] : all.counts) {
-    if (label == healthy) all.classes.insert(all.classes.begin(), label);
-    if (label != healthy) all.classes.push_back(label);
+    all.classes.insert(is_healthy(label) ? all.classes.begin() : all.classes.end(), label);
     for (const auto& [name, n] : names) others.insert(name);
   }
   all.names = all.classes;
   for (const std::string& label : all.classes) others.erase(label);
+  const std::string unknown = word_of(FleetVerdict::unknown);
   const bool has_unknown = others.erase(unknown) > 0;
   all.names.insert(all.names.end(), others.begin(), others.end());
   if (has_unknown) all.names.push_back(unknown);

@@ -49,9 +49,9 @@ FleetRow row_of(const Json& result, const std::string& file) {
   FleetRow row;
   row.file = file;
   row.log = text_at(result, "log");
-  row.verdict = text_at(result, "verdict");
-  if (row.verdict != "healthy" && row.verdict != "fault" && row.verdict != "unknown")
-    throw Unfit{"'" + row.verdict + "' is no verdict", make_again};
+  const std::string verdict = text_at(result, "verdict");
+  row.verdict = verdict_named(verdict);
+  if (row.verdict == FleetVerdict::none) throw Unfit{"'" + verdict + "' is no verdict", make_again};
   if (!at(result, "fault").is_null()) row.fault = text_at(result, "fault");
   const Json& severity = at(result, "severity");
   row.severity = number_at(severity, "value");
@@ -115,7 +115,7 @@ double order_of(double excess) { return std::isnan(excess) ? HUGE_VAL : excess; 
 
 void sort(FleetTable& table) {
   std::sort(table.rows.begin(), table.rows.end(), [](const FleetRow& a, const FleetRow& b) {
-    const auto key = [](const FleetRow& r) { return std::tuple(r.verdict == "healthy", -order_of(r.excess())); };
+    const auto key = [](const FleetRow& r) { return std::tuple(r.is_healthy(), -order_of(r.excess())); };
     return key(a) != key(b) ? key(a) < key(b) : std::tie(a.log, a.file) < std::tie(b.log, b.file);
   });
   std::sort(table.refused.begin(), table.refused.end(),
@@ -164,7 +164,7 @@ std::string csv_of(const FleetTable& table) {
       "log,verdict,fault,severity,severity_lower,severity_upper,severity_unit,probability,error,threshold\n";
   for (const FleetRow& row : table.rows) {
     append_cell(text, row.log);
-    append(text, row.verdict);
+    append(text, word_of(row.verdict));
     append(text, row.fault);
     for (const double value : {row.severity, row.severity_lower, row.severity_upper}) append(text, value);
     append(text, row.severity_unit);

@@ -9,19 +9,22 @@
 #include <string>
 #include <vector>
 
+#include "fleet/verdict.h"
+
 namespace servodx {
 
 struct FleetRow {
-  std::string file;                                             // in the folder
-  std::string log;                                              // its path as the result says
-  std::string verdict;                                          // healthy | fault | unknown
+  std::string file;  // in the folder
+  std::string log;   // its path as the result says
+  FleetVerdict verdict = FleetVerdict::none;
   std::string fault;                                            // label; empty where none is named
   double severity = 0, severity_lower = 0, severity_upper = 0;  // [severity_unit] NaN where none is known; 95 %
   std::string severity_unit;
   double probability = 0;           // of the fault named, else of the verdict; NaN where none is known
   double error = 0, threshold = 0;  // [deviates] NaN where none is known
 
-  const std::string& name() const { return fault.empty() ? verdict : fault; }
+  bool is_healthy() const { return verdict == FleetVerdict::healthy; }
+  std::string name() const { return fault.empty() ? word_of(verdict) : fault; }
   double excess() const { return error / threshold; }
 };
 

@@ -24,6 +24,8 @@ bool read_count(const std::string& text, std::size_t& count) {
 
 }  // namespace
 
+bool is_standard_input(const std::string& path) { return path == "-"; }
+
 Chunk read_chunk(const std::string& text) {
   Chunk chunk;
   const auto slash = text.find('/');
@@ -36,7 +38,7 @@ Chunk read_chunk(const std::string& text) {
 
 std::vector<std::string> read_log_list(const std::string& path, const Chunk& chunk) {
   std::ifstream file;
-  const bool from_file = path != "-";
+  const bool from_file = !is_standard_input(path);
   if (from_file) file.open(path);
   std::istream& in = from_file ? file : std::cin;
   if (!in) throw InputError({path, 0, ""}, "the list cannot be read", "name a text file with one log a line");

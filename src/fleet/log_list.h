@@ -16,7 +16,9 @@ struct Chunk {
 // "3/20". Throws InputError naming --chunk.
 Chunk read_chunk(const std::string& text);
 
-// "-": standard input. Throws InputError where it cannot be read or names no log; a chunk may be empty.
+bool is_standard_input(const std::string& path);  // "-"
+
+// Throws InputError where it cannot be read or names no log; a chunk may be empty.
 std::vector<std::string> read_log_list(const std::string& path, const Chunk& chunk = {});
 
 }  // namespace servodx

@@ -41,14 +41,13 @@ bool rests_on(const Json& result, const ResultBasis& basis) {
   return there == wanted;
 }
 
-StandingVerdict verdict_of(const Json& result) {
+FleetVerdict verdict_of(const Json& result) {
   const auto results = result.find("results");
   if (results == result.end() || !results->is_array() || results->size() != 1 || !results->front().is_object())
-    return StandingVerdict::none;
-  const Json& log = results->front();
-  if (is_text(log, "verdict", "healthy")) return StandingVerdict::healthy;
-  if (is_text(log, "verdict", "fault")) return StandingVerdict::fault;
-  return is_text(log, "verdict", "unknown") ? StandingVerdict::unknown : StandingVerdict::none;
+    return FleetVerdict::none;
+  const auto verdict = results->front().find("verdict");
+  if (verdict == results->front().end() || !verdict->is_string()) return FleetVerdict::none;
+  return verdict_named(verdict->get<std::string>());
 }
 
 }  // namespace
@@ -63,11 +62,11 @@ std::string result_name(const std::string& log) {
   return name + "." + sha256(path.generic_string()).substr(0, hash_digits);
 }
 
-StandingVerdict standing_verdict(const std::string& result_path, const ResultBasis& basis) {
+FleetVerdict standing_verdict(const std::string& result_path, const ResultBasis& basis) {
   std::error_code ignored;
-  if (!fs::is_regular_file(result_path, ignored)) return StandingVerdict::none;
+  if (!fs::is_regular_file(result_path, ignored)) return FleetVerdict::none;
   const Json result = json_or_discarded<Json>(read_file(result_path));
-  return result.is_object() && rests_on(result, basis) ? verdict_of(result) : StandingVerdict::none;
+  return result.is_object() && rests_on(result, basis) ? verdict_of(result) : FleetVerdict::none;
 }
 
 }  // namespace servodx

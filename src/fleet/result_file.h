@@ -4,6 +4,8 @@
 #include <string>
 #include <vector>
 
+#include "fleet/verdict.h"
+
 namespace servodx {
 
 inline constexpr const char* result_ending = ".json";
@@ -20,8 +22,7 @@ struct ResultBasis {
   std::vector<std::string> inputs;  // SHA-256 of all files read, in any order
 };
 
-enum class StandingVerdict { none, healthy, fault, unknown };  // none: no such result, or not of this basis
-
-StandingVerdict standing_verdict(const std::string& result_path, const ResultBasis& basis);
+// none: no such result, or not of this basis.
+FleetVerdict standing_verdict(const std::string& result_path, const ResultBasis& basis);
 
 }  // namespace servodx

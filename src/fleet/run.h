@@ -6,6 +6,7 @@
 
 #include "fleet/gather.h"
 #include "fleet/result_file.h"
+#include "fleet/verdict.h"
 
 namespace servodx {
 
@@ -18,10 +19,10 @@ struct FleetRun {
   bool interrupted = false;
 
   std::size_t done() const { return judged + stood + set_aside.size(); }
-  void count(StandingVerdict verdict) {
-    healthy += verdict == StandingVerdict::healthy;
-    fault += verdict == StandingVerdict::fault;
-    unknown += verdict == StandingVerdict::unknown;
+  void count(FleetVerdict verdict) {
+    healthy += verdict == FleetVerdict::healthy;
+    fault += verdict == FleetVerdict::fault;
+    unknown += verdict == FleetVerdict::unknown;
   }
 };
 

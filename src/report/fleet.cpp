@@ -33,7 +33,7 @@ Json to_json(const CountedRate& rate) {
 Json to_json(const FleetRow& row) {
   return {{"log", row.log},
           {"file", row.file},
-          {"verdict", row.verdict},
+          {"verdict", word_of(row.verdict)},
           {"fault", row.fault.empty() ? Json(nullptr) : Json(row.fault)},
           {"severity",
            {{"value", number(row.severity)},
@@ -70,7 +70,8 @@ std::string rows_text(const FleetTable& table) {
   Columns columns("llllrr", 2);
   columns.row({"log", "verdict", "fault", "severity", "probability", "error/threshold"});
   for (const FleetRow& row : table.rows)
-    columns.row({row.log, row.verdict, row.fault, severity_words(row), chance(row.probability), digits(row.excess())});
+    columns.row(
+        {row.log, word_of(row.verdict), row.fault, severity_words(row), chance(row.probability), digits(row.excess())});
   return columns.text();
 }
 

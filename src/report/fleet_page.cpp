@@ -24,9 +24,9 @@ struct VerdictCounts {
 VerdictCounts counts_of(const FleetTable& table) {
   VerdictCounts n;
   for (const FleetRow& row : table.rows) {
-    n.healthy += row.verdict == "healthy";
-    n.fault += row.verdict == "fault";
-    n.unknown += row.verdict == "unknown";
+    n.healthy += row.is_healthy();
+    n.fault += row.verdict == FleetVerdict::fault;
+    n.unknown += row.verdict == FleetVerdict::unknown;
   }
   return n;
 }
@@ -53,8 +53,8 @@ void add_rows(Page& page, const FleetTable& table) {
                  {},
                  rows_shown};
   for (const FleetRow& row : table.rows) {
-    Cell verdict(row.verdict);
-    verdict.tone = row.verdict == "healthy" ? Tone::good : row.verdict == "fault" ? Tone::bad : Tone::doubt;
+    Cell verdict(word_of(row.verdict));
+    verdict.tone = row.is_healthy() ? Tone::good : row.verdict == FleetVerdict::fault ? Tone::bad : Tone::doubt;
     const std::string size = severity_words(row);
     part.rows.push_back({row.log, verdict, words(row.fault), size.empty() ? Cell("") : Cell(size, row.severity),
                          Cell(chance(row.probability), row.probability), Cell(digits(row.excess()), row.excess())});

@@ -300,6 +300,9 @@ TEST(DryRun, IsARehearsalWithEveryCommandThatTakesIt) {
   desk.write("base.json", empty_baseline(desk / "table.csv"));
   desk.write("lives.csv", "valve,at [h],name,value,std_error\nV7,10,fidelity,1.1,0.01\n");
   desk.write("other.csv", small_log(240));
+  std::filesystem::create_directory(desk / "results");
+  desk.write("results/log.json", R"({"command": "diagnose", "log": "log.csv", "refused": {"file": "log.csv", "line": 2,
+             "column": "", "rule": "ragged row", "mend": "mend it"}})");
   desk.write("a.json", R"({"tool": "servodx", "command": "tune"})");
   desk.write("rig.toml", "[valve]\nrated_current = \"20 mA\"\n");
   ASSERT_EQ(desk.run("history import lives.csv --history h.db").code, 0);
@@ -309,6 +312,7 @@ TEST(DryRun, IsARehearsalWithEveryCommandThatTakesIt) {
       {"tune", "log.csv --params table.csv -o out.csv"},
       {"baseline", "log.csv --params table.csv -o out.json"},
       {"diagnose", "log.csv --params table.csv --baseline base.json"},
+      {"gather", "results -o out.csv"},
       {"explain", "log.csv --params table.csv -o out.csv"},
       {"monitor", "log.csv --params table.csv -o out.csv"},
       {"check", "log.csv --params table.csv --history h.db --valve V7 --at 20"},

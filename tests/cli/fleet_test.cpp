@@ -1,0 +1,180 @@
+// diagnose --list and gather, as called: a list is its logs one by one, whatever the way it is cut.
+#include "fleet.h"
+
+#include <gtest/gtest.h>
+#include <sys/stat.h>
+
+#include <cstdlib>
+
+#include "cli/program.h"
+
+namespace servodx {
+namespace {
+
+using Json = nlohmann::json;
+
+// What the run says of itself.
+Json summary(const Ended& ended) { return Json::parse(ended.out); }
+
+TEST(Fleet, AListGivesTheResultsOfTheLogsOneByOne) {
+  const FleetDesk desk;
+  desk.write("list.txt", "# two of one name\na/log.csv\n\nb/log.csv\n");
+  const Ended ended = desk.list("list.txt --out res --json -");
+  ASSERT_EQ(ended.code, 0) << ended.err;
+  EXPECT_EQ(summary(ended)["judged"], 2);
+  const auto results = desk.results("res");
+  ASSERT_EQ(results.size(), 2u);
+  for (const auto& [log, result] : results) {
+    const Ended alone = desk.run("diagnose " + log + FleetDesk::judged_with + "--threads 1 --json -");
+    Json wanted = Json::parse(alone.out);
+    wanted.erase("seconds");
+    EXPECT_EQ(result, wanted) << log;
+  }
+}
+
+TEST(Fleet, ASecondRunKeepsWhatStandsAndMakesTheRestAnew) {
+  const FleetDesk desk;
+  desk.write("list.txt", "a/log.csv\nb/log.csv\n");
+  ASSERT_EQ(desk.list("list.txt --out res").code, 0);
+  const auto before = desk.contents();
+  const Ended again = desk.list("list.txt --out res --json -");
+  EXPECT_EQ(summary(again)["judged"], 0);
+  EXPECT_EQ(summary(again)["stood"], 2);
+  EXPECT_EQ(desk.contents(), before);
+
+  // Another log under the name, and a result that is cut short.
+  std::string damaged;
+  for (const auto& [name, bytes] : before)
+    if (name.starts_with("res/") && bytes.find("\"a/log.csv\"") != std::string::npos) damaged = name;
+  desk.write(damaged, before.at(damaged).substr(0, 1000));
+  EXPECT_EQ(summary(desk.list("list.txt --out res --json -"))["judged"], 1);
+  desk.write("b/log.csv", FleetDesk::excerpt("healthy/h04_multisine.csv", 100));
+  EXPECT_EQ(summary(desk.list("list.txt --out res --json -"))["judged"], 1);
+  EXPECT_EQ(summary(desk.list("list.txt --out res --json - --seed 2"))["judged"], 2);
+}
+
+TEST(Fleet, ABadLogIsSetAsideWithItsReasonAndTheRestIsJudged) {
+  const FleetDesk desk;
+  desk.write("bad.csv", with_line(FleetDesk::excerpt("healthy/h04_multisine.csv"), 9, "1,2"));
+  desk.write("list.txt", "bad.csv\ngone.csv\nb/log.csv\n");
+  const Ended ended = desk.list("list.txt --out res --json -");
+  EXPECT_EQ(ended.code, 3) << ended.err;
+  EXPECT_EQ(summary(ended)["judged"], 1);
+  EXPECT_EQ(summary(ended)["set_aside"].size(), 2u);
+  const auto results = desk.results("res");
+  const Json refused = results.at("bad.csv").at("refused");
+  EXPECT_EQ(refused["file"], "bad.csv");
+  EXPECT_EQ(refused["line"], 9);
+  EXPECT_NE(refused["rule"].get<std::string>().find("ragged row"), std::string::npos);
+  EXPECT_FALSE(refused["mend"].get<std::string>().empty());
+  EXPECT_TRUE(results.at("gone.csv").contains("refused"));
+  EXPECT_TRUE(results.at("b/log.csv").contains("results"));
+
+  // A log that was mended has a result and no reason any more.
+  desk.write("bad.csv", FleetDesk::excerpt("healthy/h04_multisine.csv"));
+  desk.write("gone.csv", FleetDesk::excerpt("healthy/h04_multisine.csv"));
+  EXPECT_EQ(desk.list("list.txt --out res").code, 0);
+  for (const auto& [log, result] : desk.results("res")) EXPECT_TRUE(result.contains("results")) << log;
+  EXPECT_EQ(desk.results("res").size(), 3u);
+}
+
+TEST(Fleet, TwoChunksAtOnceEqualOneRun) {
+  const FleetDesk desk;
+  desk.write("c.csv", FleetDesk::excerpt("healthy/h03_sine_2hz.csv"));
+  desk.write("list.txt", "a/log.csv\nb/log.csv\nc.csv\nbad.csv\n");
+  ASSERT_EQ(desk.list("list.txt --out one").code, 3);
+  const std::string call = "'" + std::string(SERVODX_PROGRAM) + "' diagnose --list list.txt --out two --chunk ";
+  const std::string both = "cd '" + desk.path.string() + "' && (" + call + "1/2" + FleetDesk::judged_with +
+                           ">1.out 2>&1 & " + call + "2/2" + FleetDesk::judged_with + ">2.out 2>&1; wait)";
+  ASSERT_EQ(std::system(both.c_str()), 0);
+  EXPECT_EQ(desk.results("two"), desk.results("one"));
+}
+
+TEST(Fleet, AListMayComeFromStandardInput) {
+  const FleetDesk desk;
+  desk.write("list.txt", "b/log.csv\n");
+  EXPECT_EQ(desk.list("- --out res <list.txt").code, 0);
+  EXPECT_TRUE(desk.results("res").contains("b/log.csv"));
+}
+
+TEST(Fleet, AnInterruptedRunKeepsWhatIsDoneAndTheNextGoesOn) {
+  const FleetDesk desk;
+  std::string list;
+  const std::string log = FleetDesk::excerpt("healthy/h04_multisine.csv", 30);
+  constexpr int logs = 40;
+  for (int k = 0; k < logs; ++k) {
+    const std::string name = "l" + std::to_string(k) + ".csv";
+    desk.write(name, log);
+    list += name + "\n";
+  }
+  desk.write("list.txt", list);
+  // Interrupted once the first result is there, however busy the machine.
+  desk.write("until_first",
+             "cd '" + desk.path.string() + "'\nset -m\n'" + SERVODX_PROGRAM + "' diagnose --list list.txt --out res" +
+                 FleetDesk::judged_with +
+                 ">out 2>&1 &\nuntil ls res/*.json >ls 2>&1; do sleep 0.01; done\nkill -INT $!\nwait $!\n");
+  const int status = std::system(("bash '" + (desk / "until_first") + "'").c_str());
+  EXPECT_EQ(WEXITSTATUS(status), 130) << bytes_of(desk / "out");
+  const auto kept = desk.results("res").size();
+  EXPECT_GE(kept, 1u);
+  ASSERT_LT(kept, static_cast<std::size_t>(logs));
+  const Ended rest = desk.list("list.txt --out res --json -");
+  EXPECT_EQ(summary(rest)["stood"], kept);
+  EXPECT_EQ(desk.results("res").size(), static_cast<std::size_t>(logs));
+}
+
+TEST(Fleet, ExitCodeIsOfAllLogsOfTheListJudgedOrStanding) {
+  const FleetDesk desk;
+  desk.write("list.txt", "a/log.csv\nb/log.csv\n");
+  const Ended first = desk.list("list.txt --out res --exit-code --json -");
+  const Json verdicts = summary(first)["verdicts"];
+  const int wanted = verdicts["unknown"] > 0 ? 11 : verdicts["fault"] > 0 ? 10 : 0;
+  EXPECT_EQ(first.code, wanted);
+  EXPECT_EQ(desk.list("list.txt --out res --exit-code").code, wanted);
+}
+
+TEST(Fleet, CallsThatCannotBeAreRefusedBeforeTheWork) {
+  const FleetDesk desk;
+  desk.write("list.txt", "b/log.csv\n");
+  desk.write("empty.txt", "# nothing\n");
+  const auto before = desk.contents();
+  for (const char* call :
+       {"list.txt", "list.txt --out list.txt", "list.txt --out no/where", "gone.txt --out res", "empty.txt --out res",
+        "list.txt --out res --chunk 3/2", "list.txt --out res b/log.csv", "list.txt --out res --report page.html"}) {
+    const Ended ended = desk.list(call);
+    EXPECT_EQ(ended.code, 2) << call << ": " << ended.err;
+    EXPECT_NE(ended.err.find("; "), std::string::npos) << ended.err;
+  }
+  const Ended none = desk.run("diagnose --params tuned.csv --baseline base.json");
+  EXPECT_EQ(none.code, 2);
+  EXPECT_EQ(desk.run("diagnose --out res --params tuned.csv --baseline base.json b/log.csv").code, 2);
+  EXPECT_EQ(desk.list("list.txt --out res --dry-run").code, 0);
+  EXPECT_EQ(desk.contents(), before);
+}
+
+TEST(Fleet, GatherShowsTheFolderAndSaysWhatIsNoResult) {
+  const FleetDesk desk;
+  desk.write("list.txt", "a/log.csv\nb/log.csv\ngone.csv\n");
+  ASSERT_EQ(desk.list("list.txt --out res").code, 3);
+  const std::string call = "gather res --truth truth.csv --quiet -o t.csv --report t.html --json t.json";
+  desk.write("truth.csv", "log,class,severity\na/log.csv,clogged_filter,0.75\nb/log.csv,healthy,\n");
+  const Ended ended = desk.run(call);
+  ASSERT_EQ(ended.code, 0) << ended.err;
+  EXPECT_TRUE(ended.out.starts_with("2 logs: ")) << ended.out;
+  const Json json = Json::parse(bytes_of(desk / "t.json"));
+  EXPECT_EQ(json["command"], "gather");
+  EXPECT_EQ(json["results"].size(), 2u);
+  EXPECT_EQ(json["set_aside"].size(), 1u);
+  EXPECT_EQ(json["confusion"]["classes"].size(), 2u);
+  for (const char* file : {"t.html", "t.csv"})
+    for (const char* log : {"a/log.csv", "b/log.csv"})
+      EXPECT_NE(bytes_of(desk / file).find(log), std::string::npos) << file;
+  desk.write("res/half.json", "{\"tool\": ");
+  const Ended damaged = desk.run(call);
+  EXPECT_EQ(damaged.code, 3);
+  EXPECT_NE(damaged.out.find("half.json: is no whole JSON; "), std::string::npos) << damaged.out;
+  EXPECT_EQ(Json::parse(bytes_of(desk / "t.json"))["results"].size(), 2u);
+}
+
+}  // namespace
+}  // namespace servodx
