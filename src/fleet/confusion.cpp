@@ -7,7 +7,7 @@
 #include "base/csv.h"
 #include "base/error.h"
 #include "base/sha256.h"
-#include "fleet/verdict.h"
+#include "fleet/fleet_verdict.h"
 
 namespace servodx {
 namespace {

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "fleet/verdict.h"
+#include "fleet/fleet_verdict.h"
 
 namespace servodx {
 

@@ -6,7 +6,7 @@
 
 #include "fleet/gather.h"
 #include "fleet/result_file.h"
-#include "fleet/verdict.h"
+#include "fleet/fleet_verdict.h"
 
 namespace servodx {
 

@@ -109,6 +109,12 @@ class Docs(unittest.TestCase):
             '"statement": ""}, "scores": [{"log": "h.csv", "sha256": "1", "score": 1, "adequacy": 1, "gains": {}}]}' % hash_of)
         for name in ("a.json", "b.json"):
             (folder / name).write_text('{"tool": "servodx", "command": "tune"}')
+        (folder / "logs.txt").write_text("".join(f"{log.relative_to(folder)}\n" for log in (folder / "healthy").iterdir()))
+        (folder / "results").mkdir()
+        (folder / "results" / "log.json").write_text(
+            '{"command": "diagnose", "log": "log.csv", "refused": {"file": "log.csv", "line": 2, "column": "", '
+            '"rule": "ragged row", "mend": "mend it"}}')
+        (folder / "truth.csv").write_text("log,class\nlog.csv,healthy\n")
         wear = "".join(f"V7,{10 * k},parameter:9,{1e-7 * k},1e-7\n" for k in range(20))
         (folder / "lives.csv").write_text("valve,at [h],name,value,std_error\n" + wear)
         (folder / "seeded.csv").write_text("valve,name,truth,value,oil_temperature [degC]\n" + "".join(
