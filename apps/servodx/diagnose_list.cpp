@@ -17,25 +17,6 @@
 namespace servodx {
 namespace {
 
-void add(FleetRun& run, const FleetJudge::Outcome& outcome, Progress& progress) {
-  run.count(outcome.verdict);
-  switch (outcome.end) {
-    case FleetJudge::End::judged:
-      ++run.judged;
-      break;
-    case FleetJudge::End::stood:
-      ++run.stood;
-      break;
-    case FleetJudge::End::set_aside:
-      run.set_aside.push_back(*outcome.refusal);
-      progress.say("diagnose: set aside: " + report::words_of(*outcome.refusal));
-      break;
-    case FleetJudge::End::interrupted:
-      run.interrupted = true;
-      break;
-  }
-}
-
 FleetRun judge_all(const std::vector<std::string>& logs, FleetJudge& judge, const CommonOptions& common,
                    report::Header& header) {
   const std::atomic<bool>& stop = stop_on_interrupt(true);
@@ -51,11 +32,7 @@ FleetRun judge_all(const std::vector<std::string>& logs, FleetJudge& judge, cons
     if (stop) run.interrupted = true;
     if (run.interrupted) break;
     const FleetJudge::Outcome outcome = judge.judge(log, result_name(log), options);
-    add(run, outcome, progress);
-    if (outcome.end == FleetJudge::End::judged) {
-      header.simulations += judge.header().simulations;
-      header.failed_simulations += judge.header().failed_simulations;
-    }
+    add(run, outcome, progress, header, judge.header());
     tell(1, 0);
   }
   return run;
@@ -72,13 +49,6 @@ void rehearse(const std::vector<std::string>& logs, const RigFile& rig, report::
     }
   header.settings["logs"] = logs.size();
   header.settings["would_be_set_aside"] = refused_logs;
-}
-
-int code_of(const FleetRun& run, bool exit_code) {
-  if (run.interrupted) return interrupted;
-  if (exit_code && run.unknown > 0) return found_unknown;
-  if (exit_code && run.fault > 0) return found_fault;
-  return run.set_aside.empty() ? ran : some_set_aside;
 }
 
 }  // namespace

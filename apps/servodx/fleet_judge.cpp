@@ -74,9 +74,17 @@ bool FleetJudge::stands(const std::string& name, Outcome& outcome) const {
 FleetJudge::Outcome FleetJudge::set_aside(const std::string& log, const std::string& name, const InputError& error) {
   write_file(refusal_path(name), report::dump(header_, report::refusal_json(log, error)));
   std::error_code ignored;
-  fs::remove(result_path(name), ignored);  // of what the log was
+  for (const std::string& was : {result_path(name), page_path(name)}) fs::remove(was, ignored);
   return {.end = End::set_aside,
           .refusal = SetAside{error.where.file, error.where.line, error.where.column, error.rule, error.mend}};
+}
+
+void FleetJudge::complete_header(const Diagnosis& d) {
+  header_.simulations += d.assessment.simulations;
+  header_.failed_simulations += d.assessment.failed_simulations;
+  for (const std::string& note : d.assessment.notes)
+    if (std::find(header_.notes.begin(), header_.notes.end(), note) == header_.notes.end())
+      header_.notes.push_back(note);
 }
 
 FleetJudge::Outcome FleetJudge::judge(const std::string& path, const std::string& name,
@@ -90,28 +98,53 @@ FleetJudge::Outcome FleetJudge::judge(const std::string& path, const std::string
       outcome.end = End::stood;
       return outcome;
     }
-    outcome.log = read_log(path, judging_.rig);
-    header_.inputs[header_.inputs.size() - 2].sha256 = outcome.log->sha256;
-    Assessment assessment = assess(*outcome.log, judging_.tuned, judging_.rig, options);
+    const Log log = read_log(path, judging_.rig);
+    header_.inputs[header_.inputs.size() - 2].sha256 = log.sha256;
+    Assessment assessment = assess(log, judging_.tuned, judging_.rig, options);
     if (options.stop && *options.stop) return {.end = End::interrupted};
     outcome.diagnosis = servodx::judge(std::move(assessment), judging_.baseline.baseline);
+    complete_header(*outcome.diagnosis);
+    header_.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    if (beside) beside(name, *outcome.diagnosis, log);
   } catch (const InputError& error) {
     return set_aside(path, name, error);
   } catch (const std::exception& failure) {
     return set_aside(path, name, {{path, 0, ""}, std::string("failed inside: ") + failure.what(), "report it"});
   }
-  const Diagnosis& d = *outcome.diagnosis;
-  outcome.verdict = standing(d.verdict);
-  header_.simulations += d.assessment.simulations;
-  header_.failed_simulations += d.assessment.failed_simulations;
-  for (const std::string& note : d.assessment.notes)
-    if (std::find(header_.notes.begin(), header_.notes.end(), note) == header_.notes.end())
-      header_.notes.push_back(note);
-  header_.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  write_file(result_path(name), report::dump(header_, report::diagnose_json({d})));
+  outcome.verdict = standing(outcome.diagnosis->verdict);
+  write_file(result_path(name), report::dump(header_, report::diagnose_json({*outcome.diagnosis})));
   std::error_code ignored;
   fs::remove(refusal_path(name), ignored);
   return outcome;
+}
+
+void add(FleetRun& run, const FleetJudge::Outcome& outcome, Progress& progress, report::Header& of_call,
+         const report::Header& of_log) {
+  run.count(outcome.verdict);
+  switch (outcome.end) {
+    case FleetJudge::End::judged:
+      ++run.judged;
+      of_call.simulations += of_log.simulations;
+      of_call.failed_simulations += of_log.failed_simulations;
+      break;
+    case FleetJudge::End::stood:
+      ++run.stood;
+      break;
+    case FleetJudge::End::set_aside:
+      run.set_aside.push_back(*outcome.refusal);
+      progress.say("set aside: " + report::words_of(*outcome.refusal));
+      break;
+    case FleetJudge::End::interrupted:
+      run.interrupted = true;
+      break;
+  }
+}
+
+int code_of(const FleetRun& run, bool exit_code) {
+  if (run.interrupted) return interrupted;
+  if (exit_code && run.unknown > 0) return found_unknown;
+  if (exit_code && run.fault > 0) return found_fault;
+  return run.set_aside.empty() ? ran : some_set_aside;
 }
 
 }  // namespace servodx

@@ -6,10 +6,12 @@
 #include <optional>
 #include <string>
 
+#include "base/progress.h"
 #include "diagnose/diagnose.h"
 #include "diagnose/judge.h"
 #include "fleet/gather.h"
 #include "fleet/result_file.h"
+#include "fleet/run.h"
 #include "invocation.h"
 #include "parameters/table.h"
 #include "report/baseline_file.h"
@@ -41,17 +43,20 @@ class FleetJudge {
     FleetVerdict verdict = FleetVerdict::none;  // judged or stood
     std::optional<SetAside> refusal = {};       // set aside
     std::optional<Diagnosis> diagnosis = {};    // judged
-    std::optional<Log> log = {};                // judged
   };
   // `name`: of its files in the folder, without ending. Throws only where a result cannot be written.
   Outcome judge(const std::string& log, const std::string& name, const DiagnoseOptions& options);
+  // Called with what a log gave just before its result is written.
+  std::function<void(const std::string& name, const Diagnosis& diagnosis, const Log& log)> beside = {};
   // The header of a judged log's result.
   const report::Header& header() const { return header_; }
   std::string result_path(const std::string& name) const { return out_ + "/" + name + result_ending; }
+  std::string page_path(const std::string& name) const { return out_ + "/" + name + page_ending; }
   std::string refusal_path(const std::string& name) const { return out_ + "/" + name + refusal_ending; }
 
  private:
   void begin(const std::string& log);
+  void complete_header(const Diagnosis& diagnosis);
   bool stands(const std::string& name, Outcome& outcome) const;
   Outcome set_aside(const std::string& log, const std::string& name, const InputError& error);
 
@@ -60,5 +65,11 @@ class FleetJudge {
   std::string out_;
   report::InputFile baseline_;
 };
+
+// Counts an outcome; says which log was set aside, and adds a judged one's simulations to the call's.
+void add(FleetRun& run, const FleetJudge::Outcome& outcome, Progress& progress, report::Header& of_call,
+         const report::Header& of_log);
+// Of the whole run; 10 and 11 only where asked for.
+int code_of(const FleetRun& run, bool exit_code);
 
 }  // namespace servodx

@@ -55,6 +55,7 @@ int main(int argc, char** argv) {
   add_baseline_command(app, exit_code);
   add_diagnose_command(app, exit_code);
   add_gather_command(app, exit_code);
+  add_watch_command(app, exit_code);
   add_explain_command(app, exit_code);
   add_selftest_command(app);
   add_simulate_command(app);

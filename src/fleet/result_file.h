@@ -9,6 +9,7 @@
 namespace servodx {
 
 inline constexpr const char* result_ending = ".json";
+inline constexpr const char* page_ending = ".html";
 inline constexpr const char* refusal_ending = ".refused.json";
 
 // "h12.3f0c...": the log's name and a hash of its path as written. Logs of one name in two folders stay apart, and the

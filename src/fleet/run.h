@@ -4,9 +4,9 @@
 #include <string>
 #include <vector>
 
+#include "fleet/fleet_verdict.h"
 #include "fleet/gather.h"
 #include "fleet/result_file.h"
-#include "fleet/fleet_verdict.h"
 
 namespace servodx {
 

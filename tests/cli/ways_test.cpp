@@ -313,6 +313,7 @@ TEST(DryRun, IsARehearsalWithEveryCommandThatTakesIt) {
       {"baseline", "log.csv --params table.csv -o out.json"},
       {"diagnose", "log.csv --params table.csv --baseline base.json"},
       {"gather", "results -o out.csv"},
+      {"watch", "results --out results --once --params table.csv --baseline base.json"},
       {"explain", "log.csv --params table.csv -o out.csv"},
       {"monitor", "log.csv --params table.csv -o out.csv"},
       {"check", "log.csv --params table.csv --history h.db --valve V7 --at 20"},

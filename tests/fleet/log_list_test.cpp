@@ -6,8 +6,8 @@
 #include <set>
 
 #include "base/error.h"
+#include "fleet/fleet_verdict.h"
 #include "fleet/result_file.h"
-#include "fleet/verdict.h"
 #include "temporary_folder.h"
 
 namespace servodx {

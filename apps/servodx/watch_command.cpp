@@ -1,0 +1,173 @@
+// `servodx watch DIR`: every new log of a folder diagnosed once it has settled.
+#include <CLI/CLI.hpp>
+#include <atomic>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <memory>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "base/atomic_file.h"
+#include "base/progress.h"
+#include "commands.h"
+#include "diagnose/diagnose.h"
+#include "fit/replay.h"
+#include "fleet/result_file.h"
+#include "fleet/run.h"
+#include "fleet/settling.h"
+#include "fleet_judge.h"
+#include "invocation.h"
+#include "report/diagnosis_words.h"
+#include "report/fleet.h"
+#include "report/pages.h"
+#include "report/text.h"
+
+namespace servodx {
+namespace {
+
+struct Options {
+  CommonOptions common;
+  std::string folder, out, params, baseline;
+  double settle = 2, interval = 1;  // [s]
+  bool once = false, pages = false, exit_code = false;
+};
+
+// A page a log, there before its result is: so a result that stands has its page.
+void write_page(const Judging& judging, const std::string& path, const Diagnosis& d, const Log& log,
+                const report::Header& header) {
+  const std::vector<Replay> replays = {
+      replay(log, judging.tuned, judging.rig, report::candidates_of(d.assessment.explanations))};
+  write_file(path, report::diagnose_page(header, {d}, judging.baseline.baseline, replays).html());
+}
+
+class Watching {
+ public:
+  Watching(const Options& options, const Judging& judging, Invocation& invocation)
+      : options_(options),
+        judge_(invocation, judging, options.out),
+        settling_(options.settle),
+        header_(invocation.header()),
+        progress_("watch", {.quiet = options.common.quiet}) {
+    run_.out = options.out;
+    if (options.pages)
+      judge_.beside = [this, &judging](const std::string& name, const Diagnosis& d, const Log& log) {
+        write_page(judging, judge_.page_path(name), d, log, judge_.header());
+      };
+  }
+
+  // Until it is stopped; `once`: until what is there has had the time to settle.
+  void go() {
+    look();
+    const double first_look = now();
+    while (!stop_ && (!options_.once || (settling_.unsettled() > 0 && now() < first_look + options_.settle))) {
+      const double left = first_look + options_.settle - now();
+      rest(options_.once ? std::min(options_.interval, std::max(0.0, left)) : options_.interval);
+      if (!stop_) look();
+    }
+    run_.interrupted = run_.interrupted || (options_.once && stop_);
+  }
+  const FleetRun& run() const { return run_; }
+  std::size_t unsettled() const { return settling_.unsettled(); }
+
+ private:
+  double now() const { return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count(); }
+
+  void rest(double seconds) const {
+    constexpr double slice = 0.05;  // [s] a signal is answered within it
+    for (const double end = now() + seconds; !stop_ && now() < end;)
+      std::this_thread::sleep_for(std::chrono::duration<double>(std::clamp(end - now(), 0.0, slice)));
+  }
+
+  void look() {
+    for (const std::string& name : settling_.settled(logs_in(options_.folder), now())) {
+      if (stop_) return;
+      judge(name);
+    }
+  }
+
+  void judge(const std::string& file) {
+    const FleetJudge::Outcome outcome =
+        judge_.judge(options_.folder + "/" + file, result_name(file),
+                     {.seed = options_.common.seed, .threads = options_.common.threads, .quiet = true, .stop = &stop_});
+    run_.logs += outcome.end != FleetJudge::End::interrupted;
+    add(run_, outcome, progress_, header_, judge_.header());
+    if (outcome.end == FleetJudge::End::judged) tell(*outcome.diagnosis);
+  }
+
+  // As they come: a pipe or a journal is read line by line.
+  void tell(const Diagnosis& d) const {
+    if (options_.common.json == "-") return;
+    const std::string text = report::text_of(d, {.colour = colour_wanted(), .written_to = ""});
+    std::printf("%s\n", text.substr(0, text.find('\n')).c_str());
+    std::fflush(stdout);
+  }
+
+  const Options& options_;
+  FleetJudge judge_;
+  Settling settling_;
+  report::Header& header_;
+  Progress progress_;
+  FleetRun run_;
+  const std::atomic<bool>& stop_ = stop_on_interrupt(true);
+  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+};
+
+int run(const Options& options) {
+  require_option(std::isfinite(options.settle) && options.settle >= 0, "--settle", "must be seconds, 0 or more",
+                 "--settle 2");
+  require_option(std::isfinite(options.interval) && options.interval > 0, "--interval", "must be seconds above 0",
+                 "--interval 1");
+  require_folder("--out", options.out);
+  Invocation invocation("watch", options.common);
+  invocation.check_files({options.params, options.baseline}, {});
+  const Judging judging = read_judging(invocation, options.params, options.baseline);
+  report::Header& header = invocation.header();
+  if (options.common.dry_run) header.settings["logs"] = logs_in(options.folder).size();
+  if (invocation.dry_run()) return ran;
+  logs_in(options.folder);  // refused before the folder of the results is made
+  Watching watching(options, judging, invocation);
+  header.settings.update({{"folder", options.folder},
+                          {"out", options.out},
+                          {"settle", options.settle},
+                          {"interval", options.interval},
+                          {"once", options.once}});
+  watching.go();
+  if (options.once && watching.unsettled() > 0 && !watching.run().interrupted)
+    invocation.note(
+        {std::to_string(watching.unsettled()) + " files were still growing and are left for the next time"});
+  invocation.finish(report::text_of(watching.run()), report::fleet_run_json(watching.run()));
+  return code_of(watching.run(), options.exit_code);
+}
+
+}  // namespace
+
+void add_watch_command(CLI::App& app, int& exit_code) {
+  auto options = std::make_shared<Options>();
+  CLI::App* command = app.add_subcommand("watch", "Every new log of a folder diagnosed once it has settled");
+  command->add_option("DIR", options->folder, "folder that logs come into (.csv .txt .tsv .dat .mat)")->required();
+  command->add_option("--out", options->out, "folder of the results, as of 'diagnose --list'; made if need be")
+      ->required()
+      ->type_name("DIR");
+  command->add_option("--params", options->params, "tuned table")->required()->type_name("TUNED");
+  command->add_option("--baseline", options->baseline, "its baseline")->required()->type_name("BASE.json");
+  command->add_option("--settle", options->settle, "for so long [s] a file's size and time must not change")
+      ->type_name("SECONDS")
+      ->capture_default_str();
+  command->add_option("--interval", options->interval, "between two looks at the folder [s]")
+      ->type_name("SECONDS")
+      ->capture_default_str();
+  command->add_flag("--once", options->once, "judge what is there, then end; what still grows is left");
+  command->add_flag("--pages", options->pages, "also a page a log beside its result");
+  command->add_flag("--exit-code", options->exit_code,
+                    "end with 10 for a fault, 11 for unknown: the highest of the logs");
+  add_common_options(*command, options->common);
+  command->footer(
+      "A log that is refused leaves its reason in the folder of the results and the rest goes on. What was judged is\n"
+      "known by its result: a watch that was killed goes on where it was. Ctrl-C or SIGTERM ends it, code 0.\n"
+      "Example: servodx watch incoming --out results --params tuned.csv --baseline base.json");
+  command->callback([options, &exit_code] { exit_code = run(*options); });
+}
+
+}  // namespace servodx
