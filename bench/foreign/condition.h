@@ -2,6 +2,7 @@
 // are changes of this struct, made in faults.cpp; machine and sensors read it.
 #pragma once
 #include <array>
+#include <cmath>
 
 #include "design.h"
 
@@ -22,6 +23,12 @@ struct Condition {
   double leak = 0.0;            // [m3/s/Pa] added across the piston
   double position_gain = 1.0;   // [1]
   double supply = 1.0;          // [1]
+  // driver and sensors
+  double driver = 1.0;             // [1] of the demand that the amplifier passes on
+  double driver_limit = HUGE_VAL;  // [1] of rated current
+  int sensor = -1;                 // the channel that is broken as follows; -1: none
+  bool frozen = false;             // it shows what it showed at first
+  double noise = 1.0;              // [1] of its noise
   // effects
   double delay = 0.0;                 // [s] of the command
   double hose = 0.0;                  // [m3/Pa] added at each chamber

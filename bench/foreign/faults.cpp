@@ -46,6 +46,20 @@ const std::vector<Fault>& faults() {
   return all;
 }
 
+const std::vector<Electric>& electrics() {
+  static const std::vector<Electric> all = {
+      {"driver_fault", "", 0.0, [](Condition& c) { c.driver = 0.0; }},
+      {"driver_fault", "", 0.5, [](Condition& c) { c.driver = 0.5; }},
+      {"driver_fault", "", 0.85, [](Condition& c) { c.driver = 0.85; }},
+      {"driver_fault", "", 0.3, [](Condition& c) { c.driver_limit = 0.3; }},
+      {"sensor_fault", "pressure_a", 0.0, [](Condition& c) { c.sensor = ch_pressure_a, c.frozen = true; }},
+      {"sensor_fault", "piston_position", 0.0, [](Condition& c) { c.sensor = ch_piston, c.frozen = true; }},
+      {"sensor_fault", "pressure_b", 8.0, [](Condition& c) { c.sensor = ch_pressure_b, c.noise = 8.0; }},
+      {"sensor_fault", "piston_position", 8.0, [](Condition& c) { c.sensor = ch_piston, c.noise = 8.0; }},
+  };
+  return all;
+}
+
 double severity_value(const Fault& fault, const Design& d, double severity) {
   return fault.name == leakage ? severity * leak_unit(d) : severity;
 }

@@ -17,6 +17,15 @@ struct Fault {
 };
 const std::vector<Fault>& faults();
 // The severity in the fault's unit: that of `cylinder_internal_leakage` is stated per rated flow and supply pressure.
+// Faults of driver and sensors, outside the table of three severities.
+struct Electric {
+  std::string name;     // driver_fault or sensor_fault
+  std::string channel;  // of a sensor
+  double value;         // current over demand, limit over rated, noise over the usual; 0: frozen
+  void (*apply)(Condition&);
+};
+const std::vector<Electric>& electrics();
+
 double severity_value(const Fault& fault, const Design& d, double severity);
 
 struct Effect {

@@ -1,6 +1,6 @@
 // A foreign hydraulic test rig and its logs, from a seed: equations and numerics that are neither the fitted model's
 // nor the virtual rig's, so that tune, diagnose and explain are judged on what they do not know.
-//   servodx_foreign --seed N -o DIR [--only healthy|fault|hidden] [--logs assorted|acceptance|both] [--keep]
+//   servodx_foreign --seed N -o DIR [--only healthy|fault|hidden|pair] [--logs assorted|acceptance|both] [--keep]
 //   [--dry-run]
 #include <fmt/format.h>
 
@@ -25,7 +25,7 @@ int main(int argc, char** argv) {
   CLI::App app("a foreign hydraulic test rig and its logs");
   app.add_option("--seed", seed, "of everything drawn")->capture_default_str();
   app.add_option("-o,--output", out, "folder")->required();
-  app.add_option("--only", only, "one part of the logs")->check(CLI::IsMember({"healthy", "fault", "hidden"}));
+  app.add_option("--only", only, "one part of the logs")->check(CLI::IsMember({"healthy", "fault", "hidden", "pair"}));
   app.add_option("--logs", logs, "which fault-free logs")
       ->check(CLI::IsMember({"assorted", "acceptance", "both"}))
       ->capture_default_str();
@@ -39,6 +39,7 @@ int main(int argc, char** argv) {
     wanted.healthy = only.empty() || only == "healthy";
     wanted.fault = only.empty() || only == "fault";
     wanted.hidden = only.empty() || only == "hidden";
+    wanted.pair = only.empty() || only == "pair";
     wanted.assorted = logs != "acceptance";
     wanted.acceptance = logs != "assorted";
     const Sheet sheet = draw_sheet(design);

@@ -17,16 +17,18 @@ constexpr double jitter = 0.2;     // [1] of a sample's time, either way
 // Lags of all sensors, read at the integration's pace.
 class Sensors {
  public:
-  Sensors(const Design& d, const Condition& c, double h) : d_(&d), pickup_(c.pickup) {
+  Sensors(const Design& d, const Condition& c, double h)
+      : d_(&d), pickup_(c.pickup), broken_(c.sensor), frozen_(c.frozen), noise_(c.noise) {
     for (int i = 0; i < n_channels; ++i) {
       gain_[i] = d.sensors[i].gain * (i == ch_piston ? c.position_gain : 1.0);
       const double lag = d.sensors[i].lag + (i == ch_piston ? c.position_lag : 0.0);
       part_[i] = lag > 0.0 ? -std::expm1(-h / lag) : 1.0;
     }
   }
-  void take_over(const Sensors& other) { shown_ = other.shown_; }
+  void take_over(const Sensors& other) { shown_ = other.shown_, still_ = other.shown_; }
   void start(const std::array<double, n_channels>& truth) {
     for (int i = 0; i < n_channels; ++i) shown_[i] = gain_[i] * truth[i];
+    still_ = shown_;
   }
   void pass(const std::array<double, n_channels>& truth) {
     for (int i = 0; i < n_channels; ++i) shown_[i] += part_[i] * (gain_[i] * truth[i] - shown_[i]);
@@ -35,7 +37,9 @@ class Sensors {
   double recorded(int c, double t, Random& r, bool quiet) const {
     if (quiet) return shown_[c];
     const Sensor& s = d_->sensors[c];
-    double value = shown_[c] + r.normal(0.0, s.noise);
+    const double normal = r.normal(0.0, s.noise);
+    if (c == broken_ && frozen_) return s.step > 0.0 ? std::round(still_[c] / s.step) * s.step : still_[c];
+    double value = shown_[c] + (c == broken_ ? noise_ : 1.0) * normal;
     // Each line picks up its own phase; sensors of slow or external quantities are left alone.
     if (c <= ch_pressure_b) value += pickup_ * s.noise * std::sin(2 * std::numbers::pi * mains * t + 1.3 * c);
     return s.step > 0.0 ? std::round(value / s.step) * s.step : value;
@@ -44,7 +48,10 @@ class Sensors {
  private:
   const Design* d_;
   double pickup_;
-  std::array<double, n_channels> gain_{}, part_{}, shown_{};
+  int broken_;
+  bool frozen_;
+  double noise_;
+  std::array<double, n_channels> gain_{}, part_{}, shown_{}, still_{};
 };
 
 class Bench {
@@ -140,7 +147,9 @@ class Bench {
 
   void advance(long tick, double t) {
     const double past = (t + 0.5 * h_ - now_.delay) * d_.control_rate;
-    drive_.demand = past < 0.0 ? before_ : asked_[std::min(static_cast<std::size_t>(past), asked_.size() - 1)];
+    const double asked = past < 0.0 ? before_ : asked_[std::min(static_cast<std::size_t>(past), asked_.size() - 1)];
+    const double most = now_.driver_limit * d_.rated_current;
+    drive_.demand = std::clamp(now_.driver * asked, -most, most);
     if (job_.watch && t * d_.control_rate <= static_cast<double>(tick)) {
       State ds;
       Flows flows;

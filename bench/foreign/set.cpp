@@ -16,7 +16,14 @@ namespace {
 
 constexpr int repeats = 12, suspects = 6, controls = 4, sudden_faults = 8;
 
-enum Stream : std::uint32_t { healthy_stream = 10, acceptance_stream, fault_stream, sudden_stream, hidden_stream };
+enum Stream : std::uint32_t {
+  healthy_stream = 10,
+  acceptance_stream,
+  fault_stream,
+  sudden_stream,
+  hidden_stream,
+  pair_stream
+};
 
 class Planner {
  public:
@@ -116,6 +123,52 @@ class Planner {
     }
   }
 
+  // Two faults of the valve at medium severity, no two of them alike in what they move.
+  void pairs() {
+    constexpr std::size_t of_valve = 7, count = 8;
+    std::vector<std::pair<const Fault*, const Fault*>> all;
+    for (std::size_t a = 0; a < of_valve; ++a)
+      for (std::size_t b = a + 1; b < of_valve; ++b) all.push_back({&faults()[a], &faults()[b]});
+    shuffle(all, pair_stream);
+    for (std::uint32_t i = 0; i < count; ++i) {
+      Random r(d_.seed, pair_stream, i);
+      Condition c = draw_condition(d_, r, false);
+      const auto [first, second] = all[i];
+      for (const Fault* f : {first, second}) f->apply(c, d_, f->medium);
+      for (const bool closed : {false, true}) {
+        Truth t = {
+            path("pair/p", i, closed), "pair", first->name + "+" + second->name, "pair", 0.0, false, "", -1.0, ""};
+        add(t, {closed ? flight(pair_stream, i) : accept(), c});
+      }
+    }
+  }
+
+  // From the start in the acceptance test, stepping in on a mixed one.
+  void electric() {
+    for (std::uint32_t i = 0; i < electrics().size(); ++i) {
+      const Electric& e = electrics()[i];
+      Random r(d_.seed, pair_stream, 100 + i);
+      const Condition healthy = draw_condition(d_, r, false);
+      Condition broken = healthy;
+      e.apply(broken);
+      for (const bool later : {false, true}) {
+        Job job = {later ? make_excitation(d_, Trial::mixed, Random(d_.seed, pair_stream, 100 + i, 1)) : accept(),
+                   later ? healthy : broken};
+        Truth t = {fmt::format("electric/e{:02}_{}.csv", i + 1, later ? "sudden" : "whole"),
+                   "electric",
+                   e.name,
+                   later ? "sudden" : "whole",
+                   e.value,
+                   true,
+                   "",
+                   -1.0,
+                   e.channel};
+        if (later) t.onset = job.onset = job.excitation.duration * r.uniform(0.4, 0.6), job.later = broken;
+        add(t, job);
+      }
+    }
+  }
+
   void hidden() {
     struct Case {
       const Effect* effect;
@@ -184,6 +237,8 @@ std::vector<Planned> plan(const Design& design, const Wanted& wanted) {
   if (wanted.fault) planner.faulty();
   if (wanted.fault) planner.stepping_in();
   if (wanted.hidden) planner.hidden();
+  if (wanted.pair) planner.pairs();
+  if (wanted.pair) planner.electric();
   return planner.take();
 }
 

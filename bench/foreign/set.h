@@ -15,7 +15,7 @@ struct Truth {
   bool with_value = false;
   std::string effect;
   double onset = -1.0;  // [s] negative: none
-  std::string size;     // of an effect: full, third
+  std::string size;     // of an effect: full, third; of a broken sensor its channel
 };
 
 struct Planned {
@@ -24,7 +24,7 @@ struct Planned {
 };
 
 struct Wanted {
-  bool healthy = true, fault = true, hidden = true;
+  bool healthy = true, fault = true, hidden = true, pair = true;  // pair: driver and sensors too
   bool assorted = true, acceptance = true;
 };
 
