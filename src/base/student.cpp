@@ -39,4 +39,14 @@ double student_tail(double t, double degrees) {
   return incomplete_beta(0.5 * degrees, 0.5, degrees / (degrees + t * t));
 }
 
+double student_quantile(double chance, double degrees) {
+  double low = 0, high = 1;
+  while (student_tail(high, degrees) > chance) low = high, high *= 2;
+  for (int halving = 0; halving < 60; ++halving) {
+    const double middle = 0.5 * (low + high);
+    (student_tail(middle, degrees) > chance ? low : high) = middle;
+  }
+  return high;
+}
+
 }  // namespace servodx

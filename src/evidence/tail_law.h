@@ -18,6 +18,7 @@ struct UsualExcess {
 class TailLaw {
  public:
   TailLaw(std::vector<double> healthy, UsualExcess usual);
+  int logs() const { return static_cast<int>(healthy_.size()); }
   // Chance that one more healthy log shows as much or more; 1 at zero and below.
   double chance(double excess) const;
   // Least excess whose chance by the law is at most `rate`, 0 < rate < 1. The ranks are not asked.

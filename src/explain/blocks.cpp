@@ -3,7 +3,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "fit/log_data.h"
+#include "optimise/problem.h"
+#include "parameters/list.h"
+#include "servodx/log.h"
 #include "simulate/balance.h"
+#include "simulate/scenario.h"
 
 namespace servodx {
 namespace {

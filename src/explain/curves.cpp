@@ -7,7 +7,15 @@
 #include <algorithm>
 #include <cmath>
 
+#include "effects/registry.h"
+#include "effects/unexplained.h"
 #include "explain/blocks.h"
+#include "explain/subject.h"
+#include "fit/chart.h"
+#include "fit/log_data.h"
+#include "optimise/problem.h"
+#include "parameters/list.h"
+#include "servodx/log.h"
 
 namespace servodx {
 namespace {

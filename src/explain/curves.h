@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "explain/valve.h"
+#include "optimise/problem.h"
 
 namespace servodx {
 

@@ -5,6 +5,8 @@
 #include <span>
 #include <vector>
 
+#include "optimise/problem.h"
+
 namespace servodx {
 
 double deviance_of(const Subject& subject, const Eigen::VectorXd& residual) {

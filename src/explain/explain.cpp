@@ -8,6 +8,7 @@
 
 #include "base/error.h"
 #include "evidence/posterior.h"
+#include "evidence/tail_law.h"
 #include "explain/answer.h"
 #include "explain/cause_score.h"
 #include "explain/channels.h"
@@ -169,7 +170,7 @@ ExplainedProbabilities probabilities_of(const Inquiry& q, const Answer& answer, 
   PosteriorEvidence e;
   ExplainedProbabilities out;
   e.chance = chance_of_answer(q, answer, evidence);
-  e.rate = rate_of_question(q.options().level, q.test()->logs_with_shares(), 1);
+  e.rate = rate_of_question(q.options().level, q.healthy_logs(), 1);
   for (const CandidateResult& c : answer.found.candidates) {
     const bool judged = c.fitted && c.delta_bic > 0 && c.heldout_gain.lower > 0;
     if (!judged || q.cause(c.cause).curve) continue;
@@ -198,7 +199,11 @@ void conclude(const Inquiry& q, const Answer& answer, ExplainResult& out) {
     for (const PlaceScore& p : out.places)
       if (p.where == out.where) out.depends_on = p.variable;
   if (out.verdict == ExplainVerdict::sufficient) out.suspicion = suspicion_of(q, answer, out.standing);
-  if (q.test()) out.probabilities = probabilities_of(q, answer, evidence);
+  if (q.test()) {
+    const int logs = q.healthy_logs();
+    out.false_alarm = {q.options().level, rate_of_question(q.options().level, logs, 1), logs, q.alike()};
+    out.probabilities = probabilities_of(q, answer, evidence);
+  }
 }
 
 // What a user sees is the free simulation: channels weigh alike, by the ratio of their held-out rms.

@@ -75,6 +75,14 @@ struct ExplainedProbabilities {  // evidence/posterior.h
   double unlisted = 0, nothing = 1;
 };
 
+// How often a healthy log is called wrong: asked for, and what so many healthy logs can promise. Of a test that none of
+// them is of, the rate is an assumption.
+struct ExplainedFalseAlarm {
+  double asked = 0, promised = 0;
+  int logs = 0;
+  bool alike = true;
+};
+
 struct ExplainResult {
   std::optional<LearntCurve> curve;  // of `unexplained`
   ExplainVerdict verdict = ExplainVerdict::sufficient;
@@ -87,6 +95,7 @@ struct ExplainResult {
   MissingInputs missing;            // as tuned, what is missing over time, were it all at one place
   std::vector<ExplainedCause> causes, standing;
   std::vector<ExplainedCandidate> candidates;
+  std::optional<ExplainedFalseAlarm> false_alarm;       // where healthy logs are there to compare with
   std::optional<ExplainSuspicion> suspicion;            // of a sufficient simulation
   std::optional<ExplainedProbabilities> probabilities;  // where healthy logs are there to compare with
   bool worse_withheld = false;                          // the table is as tuned: the extension's held-out rms is worse

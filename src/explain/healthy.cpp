@@ -22,18 +22,6 @@
 namespace servodx {
 namespace {
 
-double mean(const std::vector<double>& v) {
-  double sum = 0;
-  for (double x : v) sum += x;
-  return sum / static_cast<double>(v.size());
-}
-double variance(const std::vector<double>& v) {
-  const double m = mean(v);
-  double sum = 0;
-  for (double x : v) sum += (x - m) * (x - m);
-  return sum / static_cast<double>(v.size() - 1);
-}
-
 // Sizes over healthy logs, as random effects. How far they scatter beyond their standard errors has two faces: alike on
 // all logs (tau: DerSimonian & Laird 1986), or in proportion to the standard error, where a test that hardly shows a
 // cause lends it whatever else is wrong (Birge 1932). The likelier of the two is taken. Where the model's answer to the
@@ -174,7 +162,7 @@ HealthyReference score_healthy(const std::vector<Log>& logs, const Table& tuned,
   HealthyReference all, out;
   for (const Log& log : logs) {  // what is usual
     HealthyLog& h = all.logs.emplace_back();
-    h.log = log.path, h.sha256 = log.sha256;
+    h.log = log.path, h.sha256 = log.sha256, h.test = conditions_of(log);
     ValveSubject subject({log}, tuned, rig, threads, KnownRig{});
     const ExplainedFit fit = fit_base(subject, EngineOptions{}.iterations);
     if (fit.ok) {
@@ -245,7 +233,6 @@ std::vector<double> best_shares(const HealthyReference& reference) {
 
 HealthyTest::HealthyTest(const HealthyReference& reference)
     : reference_(reference),
-      logs_with_shares_(static_cast<int>(best_shares(reference).size())),
       shares_(best_shares(reference), {explain_constants::usual_share, explain_constants::usual_logs}) {
   const std::size_t n = reference.logs.size();
   for (std::size_t i = 0; i < n; ++i)

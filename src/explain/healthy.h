@@ -12,10 +12,12 @@
 #include <cmath>
 #include <functional>
 #include <map>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "evidence/conditions.h"
 #include "evidence/tail_law.h"
 #include "explain/blocks.h"
 #include "explain/cause_score.h"
@@ -46,7 +48,8 @@ struct HealthyShare {
 };
 struct HealthyLog {
   std::string log, sha256;
-  double adequacy = 1;  // misfit over independent samples, re-tuned
+  std::optional<TestConditions> test;  // files of earlier versions have none
+  double adequacy = 1;                 // misfit over independent samples, re-tuned
   std::vector<HealthyScore> scores;
   std::vector<Miss> misses;
   std::vector<HealthyShare> shares;
@@ -98,7 +101,7 @@ class HealthyTest {
   double miss(const Miss& part) const;
   // Chance that some cause removes such a share of a healthy log's held-out misfit.
   double share(double of_misfit) const;
-  int logs_with_shares() const { return logs_with_shares_; }
+  int logs_with_shares() const { return shares_.logs(); }
   // Healthy logs that it takes until such a share is news at the rate they can promise (TailLaw::logs_needed).
   int logs_needed(double share, double asked) const;
   // That any of these parts does, by Bonferroni.
@@ -114,7 +117,6 @@ class HealthyTest {
   double believed(const OfCause& cause, double surprise, int left_out, double prior) const;
   const HealthyReference& reference_;
   std::map<std::pair<std::string, std::string>, OfCause> causes_;
-  int logs_with_shares_ = 0;
   TailLaw shares_;
   std::vector<double> smallest_;  // [healthy log] of its chances beside the others
 };

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <utility>
 
+#include "evidence/conditions.h"
 #include "evidence/tail_law.h"
 #include "explain/constants.h"
 #include "explain/score.h"
@@ -34,7 +35,13 @@ Inquiry::Inquiry(const std::vector<Log>& logs, const Table& tuned, const RigFile
       known_(known_of(healthy)),
       subject_(logs, tuned, rig, options.threads, known_),
       sizes_(logs.size()) {
-  if (healthy) test_.emplace(*healthy);
+  if (healthy) {
+    std::vector<TestConditions> tests;
+    for (const Log& log : logs) tests.push_back(conditions_of(log));
+    speaking_ = logs_that_speak(*healthy, tests);
+    healthy_logs_ = static_cast<int>(healthy->logs.size());
+    test_.emplace(speaking_.logs);
+  }
   if (healthy && logs.size() > 1)
     for (const Log& log : logs) lone_.emplace_back(log, tuned, rig, options.threads, known_);
   curves_ = add_curves(subject_);
@@ -52,10 +59,11 @@ EngineOptions Inquiry::engine_options() const {
     o.least_share = explain_constants::least_worth;
     return o;
   }
-  if (const int logs = test_->logs_with_shares(); logs > 0) {
+  if (test_->logs_with_shares() > 0) {
     o.p_share = [this](double share) { return test_->share(share); };
-    o.level_of_shares = rate_of_question(options_.level, logs, explain_constants::of_shares);
-    o.level = std::min(options_.level, rate_of_question(options_.level, logs, 1 - explain_constants::of_shares));
+    o.level_of_shares = rate_of_question(options_.level, healthy_logs_, explain_constants::of_shares);
+    o.level =
+        std::min(options_.level, rate_of_question(options_.level, healthy_logs_, 1 - explain_constants::of_shares));
   }
   o.p_new = chance_of_size(*test_, subject_, sizes_);
   o.p_left = [this](const ExplainedFit& fit, int round) { return chance_left(fit, round == 0); };

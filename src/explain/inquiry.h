@@ -14,6 +14,7 @@
 #include "explain/fit_causes.h"
 #include "explain/healthy.h"
 #include "explain/hold_out.h"
+#include "explain/kin.h"
 #include "explain/subject.h"
 #include "explain/valve.h"
 #include "parameters/table.h"
@@ -46,6 +47,9 @@ class Inquiry {
   const Cause& cause(int cause) const { return subject_.causes()[static_cast<std::size_t>(cause)]; }
   const std::vector<Curve>& curves() const { return curves_; }
   const Curve& curve_of(int cause) const;
+  // Healthy logs of all tests: so many promise a rate of false alarms. Whether one of them is of the suspects' test.
+  int healthy_logs() const { return healthy_logs_; }
+  bool alike() const { return speaking_.alike; }
   const HealthyTest* test() const { return test_ ? &*test_ : nullptr; }
   const std::optional<KnownRig>& known() const { return known_; }
   const std::deque<LoneLog>& lone() const { return lone_; }
@@ -71,6 +75,8 @@ class Inquiry {
   const ExplainOptions& options_;
   std::optional<KnownRig> known_;
   ValveSubject subject_;
+  SpeakingLogs speaking_;  // the test points into it
+  int healthy_logs_ = 0;
   std::optional<HealthyTest> test_;
   std::deque<LoneLog> lone_;  // one log is itself: empty
   SizesByLog sizes_;

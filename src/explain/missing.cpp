@@ -4,8 +4,16 @@
 #include <cmath>
 #include <numbers>
 
+#include "effects/unexplained.h"
 #include "explain/smoother.h"
+#include "fit/log_data.h"
+#include "fit/problem.h"
+#include "optimise/problem.h"
+#include "parameters/list.h"
+#include "servodx/log.h"
+#include "servodx/rig.h"
 #include "simulate/linearise.h"
+#include "simulate/scenario.h"
 
 namespace servodx {
 namespace {

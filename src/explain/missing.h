@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "explain/valve.h"
+#include "optimise/problem.h"
 
 namespace servodx {
 

@@ -4,7 +4,12 @@
 #include <cmath>
 
 #include "explain/ties.h"
+#include "fit/chart.h"
 #include "fit/error_model.h"
+#include "fit/log_data.h"
+#include "optimise/problem.h"
+#include "servodx/log.h"
+#include "simulate/scenario.h"
 
 namespace servodx {
 namespace {

@@ -18,7 +18,9 @@
 
 #include "explain/subject.h"
 #include "explain/valve.h"
+#include "optimise/problem.h"
 #include "simulate/balance.h"
+#include "simulate/scenario.h"
 
 namespace servodx {
 

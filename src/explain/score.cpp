@@ -8,6 +8,7 @@
 
 #include "explain/constants.h"
 #include "explain/deviance.h"
+#include "optimise/problem.h"
 
 namespace servodx {
 namespace {

@@ -8,6 +8,10 @@
 #include <numeric>
 
 #include "fit/error_model.h"
+#include "fit/log_data.h"
+#include "optimise/problem.h"
+#include "servodx/log.h"
+#include "simulate/scenario.h"
 
 namespace servodx {
 namespace {

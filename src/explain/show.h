@@ -9,6 +9,8 @@
 #include <vector>
 
 #include "explain/valve.h"
+#include "optimise/problem.h"
+#include "servodx/log.h"
 
 namespace servodx {
 

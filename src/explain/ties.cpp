@@ -4,6 +4,8 @@
 #include <cstddef>
 #include <span>
 
+#include "optimise/problem.h"
+
 namespace servodx {
 namespace {
 

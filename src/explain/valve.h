@@ -17,10 +17,16 @@
 #include <vector>
 
 #include "explain/subject.h"
+#include "fit/chart.h"
 #include "fit/error_model.h"
+#include "fit/log_data.h"
 #include "fit/problem.h"
+#include "optimise/problem.h"
 #include "parameters/table.h"
+#include "servodx/log.h"
+#include "servodx/rig.h"
 #include "signals/rig_file.h"
+#include "simulate/scenario.h"
 
 namespace servodx {
 

@@ -40,13 +40,9 @@ std::size_t nearest(const std::vector<double>& levels, double value) {
 double spread_of(const std::vector<double>& off) {
   const auto n = static_cast<double>(off.size());
   if (n < 2) return 0;
-  double low = 1.6, high = 7, square = 0;
-  for (int k = 0; k < 50; ++k) {
-    const double mid = 0.5 * (low + high);
-    (student_tail(mid, n - 1) > 0.1 ? low : high) = mid;
-  }
+  double square = 0;
   for (double x : off) square += x * x;
-  return low / 1.645 * std::sqrt(square / (n - 1) * (1 + 1 / n));
+  return student_quantile(0.1, n - 1) / 1.645 * std::sqrt(square / (n - 1) * (1 + 1 / n));
 }
 
 double mean_of(const std::vector<double>& v) {

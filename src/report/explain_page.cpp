@@ -72,6 +72,11 @@ std::vector<std::string> reasons(const ExplainResult& r) {
                     "with a chance of {}.",
                     digits(r.adequacy_after), r.causes.empty() ? "" : " (" + digits(r.adequacy_before) + " before)",
                     chance(*r.p_adequacy)));
+  if (r.false_alarm) {
+    std::string rate = rate_in_words(*r.false_alarm);
+    rate.front() = 'A';
+    why.push_back(rate + ".");
+  }
   for (const ExplainedCause& c : r.causes) {
     std::vector<std::string> others;
     for (const std::string& o : c.confusable_with) others.push_back(words(o));

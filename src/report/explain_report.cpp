@@ -8,6 +8,7 @@
 #include "base/csv.h"
 #include "base/error.h"
 #include "base/json_text.h"
+#include "evidence/conditions.h"
 #include "evidence/heldout_gain.h"
 #include "explain/blocks.h"
 #include "explain/cause_score.h"
@@ -199,6 +200,14 @@ Json to_json(const ExplainSuspicion& s) {
           {"logs_needed", s.logs_needed > 0 ? Json(s.logs_needed) : Json(nullptr)}};
 }
 
+Json to_json(const ExplainedFalseAlarm& f) {
+  return {{"asked", f.asked},
+          {"promised", f.promised},
+          {"logs", f.logs},
+          {"alike", f.alike},
+          {"statement", rate_in_words(f)}};
+}
+
 Json to_json(const ExplainedProbabilities& p) {
   Json out = Json::object();
   for (const ExplainedProbability& c : p.causes) out[c.cause] = number(c.value);
@@ -213,6 +222,14 @@ std::string logs_words(int logs_needed) {
 }
 
 }  // namespace
+
+std::string rate_in_words(const ExplainedFalseAlarm& f) {
+  std::string text = fmt::format("a healthy log is called wrong at a rate of {}, {} {} healthy logs can promise",
+                                 percent(f.promised), f.alike ? "that" : "as for tests like their own", f.logs);
+  if (f.promised > f.asked) text += fmt::format("; asked was {}", percent(f.asked));
+  if (!f.alike) text += "; none of them is of such a test: names need more here, and the rate is an assumption";
+  return text;
+}
 
 std::string suspicion_in_words(const ExplainSuspicion& s) {
   std::string size;
@@ -245,6 +262,7 @@ Json explain_json(const ExplainResult& r) {
           {"causes", array_of(r.causes)},
           {"standing", array_of(r.standing)},
           {"candidates", array_of(r.candidates)},
+          {"false_alarm", r.false_alarm ? to_json(*r.false_alarm) : Json(nullptr)},
           {"suspicion", r.suspicion ? to_json(*r.suspicion) : Json(nullptr)},
           {"probabilities", r.probabilities ? to_json(*r.probabilities) : Json(nullptr)},
           {"table_withheld", r.worse_withheld},
@@ -296,6 +314,7 @@ std::string text_of(const ExplainResult& r, const TextOptions& options) {
   if (!options.written_to.empty()) text += "; " + options.written_to;
   text += "\n";
   if (r.suspicion) text += "  " + suspicion_in_words(*r.suspicion) + "\n";
+  if (r.false_alarm) text += "  " + rate_in_words(*r.false_alarm) + "\n";
   if (r.worse_withheld)
     text +=
         "  the simulation's held-out rms is worse with it: the table is written as tuned; --keep-worse writes the "
@@ -372,6 +391,7 @@ Json healthy_json(const HealthyReference& healthy) {
                         {"rate", number(e.rate)}});
     logs.push_back({{"log", l.log},
                     {"sha256", l.sha256},
+                    {"test", l.test ? test_json(*l.test) : Json(nullptr)},
                     {"errors", errors},
                     {"air_fraction", number(l.air)},
                     {"command_slope", number(l.command_slope)},
@@ -396,6 +416,12 @@ HealthyReference read_healthy(const std::string& path) {
     for (const Json& l : file.at("explain").at("logs")) {
       HealthyLog log;
       log.log = l.at("log").get<std::string>(), log.sha256 = l.at("sha256").get<std::string>();
+      if (l.contains("test") && l.at("test").is_object()) {  // later than the rest
+        const Json& test = l.at("test");
+        log.test =
+            TestConditions{value(test.at("drive_span")), value(test.at("drive_band")), {}, value(test.at("drive_rms"))};
+        if (test.at("temperature").is_number()) log.test->temperature = value(test.at("temperature"));
+      }
       log.adequacy = value(l.at("adequacy")), log.air = value(l.at("air_fraction"));
       for (const Json& e : l.at("errors"))
         log.errors.push_back({e.at("signal").get<std::string>(), value(e.at("size")), value(e.at("memory")),

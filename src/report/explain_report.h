@@ -13,11 +13,11 @@ namespace servodx::report {
 Json explain_json(const ExplainResult& result);
 // `replays`: of some of the logs, as tuned and with the causes.
 Page explain_page(const Header& header, const ExplainResult& result, const std::vector<Replay>& replays);
-// "missing at piston_force: 310 N rms, ..."; empty where nothing is wrong: no valve is its model, and a healthy one
-// misses something too.
 // What stands first though the simulation suffices.
 std::string suspicion_in_words(const ExplainSuspicion& suspicion);
-
+std::string rate_in_words(const ExplainedFalseAlarm& rate);
+// "missing at piston_force: 310 N rms, ..."; empty where nothing is wrong: no valve is its model, and a healthy one
+// misses something too.
 std::string missing_in_words(const ExplainResult& result);
 std::string text_of(const ExplainResult& result, const TextOptions& options);
 

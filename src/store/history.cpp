@@ -67,28 +67,25 @@ void bind(SQLite::Statement& s, int at, double value) {
 }
 double number(const SQLite::Column& c) { return c.isNull() ? std::nan("") : c.getDouble(); }
 
-long long id_of_valve(SQLite::Database& db, const std::string& name, const std::string& serial) {
-  SQLite::Statement add(db,
-                        "INSERT INTO valve(name, serial) VALUES(?, ?) ON CONFLICT(name) DO UPDATE SET serial = "
-                        "CASE WHEN excluded.serial = '' THEN serial ELSE excluded.serial END");
-  add.bind(1, name);
-  add.bind(2, serial);
+// The row of a key, made where there is none; `value` stands beside it unless it is empty.
+struct Keyed {
+  const char *add, *find;
+};
+constexpr Keyed by_name{
+    "INSERT INTO valve(name, serial) VALUES(?, ?) ON CONFLICT(name) DO UPDATE SET serial = "
+    "CASE WHEN excluded.serial = '' THEN serial ELSE excluded.serial END",
+    "SELECT id FROM valve WHERE name = ?"};
+constexpr Keyed by_content{
+    "INSERT INTO tuned_table(sha256, content) VALUES(?, ?) ON CONFLICT(sha256) DO UPDATE SET "
+    "content = CASE WHEN excluded.content = '' THEN content ELSE excluded.content END",
+    "SELECT id FROM tuned_table WHERE sha256 = ?"};
+long long id_of(SQLite::Database& db, const Keyed& keyed, const std::string& key, const std::string& value) {
+  SQLite::Statement add(db, keyed.add);
+  add.bind(1, key);
+  add.bind(2, value);
   add.exec();
-  SQLite::Statement find(db, "SELECT id FROM valve WHERE name = ?");
-  find.bind(1, name);
-  find.executeStep();
-  return find.getColumn(0).getInt64();
-}
-
-long long id_of_table(SQLite::Database& db, const std::string& sha256, const std::string& text) {
-  SQLite::Statement add(db,
-                        "INSERT INTO tuned_table(sha256, content) VALUES(?, ?) ON CONFLICT(sha256) DO UPDATE SET "
-                        "content = CASE WHEN excluded.content = '' THEN content ELSE excluded.content END");
-  add.bind(1, sha256);
-  add.bind(2, text);
-  add.exec();
-  SQLite::Statement find(db, "SELECT id FROM tuned_table WHERE sha256 = ?");
-  find.bind(1, sha256);
+  SQLite::Statement find(db, keyed.find);
+  find.bind(1, key);
   find.executeStep();
   return find.getColumn(0).getInt64();
 }
@@ -285,8 +282,8 @@ void HistoryFile::record(const std::string& valve, const std::string& serial, co
                          const std::string& table_text) {
   const bool added = guarded([&] {
     SQLite::Transaction all(*db_, SQLite::TransactionBehavior::IMMEDIATE);
-    const long long id = id_of_valve(*db_, valve, serial);
-    const long long table = id_of_table(*db_, recording.table_sha256, table_text);
+    const long long id = id_of(*db_, by_name, valve, serial);
+    const long long table = id_of(*db_, by_content, recording.table_sha256, table_text);
     const bool fresh = !find_recording(*db_, id, table, recording);
     if (fresh) insert(*db_, id, table, recording);
     if (fresh) all.commit();
@@ -301,7 +298,7 @@ void HistoryFile::record(const std::string& valve, const std::string& serial, co
 void HistoryFile::add_event(const std::string& valve, const Event& event) {
   const bool added = guarded([&] {
     SQLite::Transaction all(*db_, SQLite::TransactionBehavior::IMMEDIATE);
-    const bool fresh = insert(*db_, id_of_valve(*db_, valve, ""), event);
+    const bool fresh = insert(*db_, id_of(*db_, by_name, valve, ""), event);
     if (fresh) all.commit();
     return fresh;
   });
@@ -427,11 +424,11 @@ Restored HistoryFile::restore(const HistoryContent& content) {
   return guarded([&] {
     Restored count;
     SQLite::Transaction all(*db_, SQLite::TransactionBehavior::IMMEDIATE);
-    for (const auto& [sha256, text] : content.tables) id_of_table(*db_, sha256, text);
+    for (const auto& [sha256, text] : content.tables) id_of(*db_, by_content, sha256, text);
     for (const ValveHistory& valve : content.valves) {
-      const long long id = id_of_valve(*db_, valve.valve, valve.serial);
+      const long long id = id_of(*db_, by_name, valve.valve, valve.serial);
       for (const Recording& r : valve.recordings) {
-        const long long table = id_of_table(*db_, r.table_sha256, "");
+        const long long table = id_of(*db_, by_content, r.table_sha256, "");
         const auto held = find_recording(*db_, id, table, r);
         if (!held) {
           insert(*db_, id, table, r);

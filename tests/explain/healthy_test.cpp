@@ -36,6 +36,13 @@ TEST(Student, TailsAreThoseOfTheTables) {
   EXPECT_NEAR(student_tail(12.7062047, 1), 0.05, 1e-6);
 }
 
+TEST(Student, TheQuantileHasTheTailThatWasAskedFor) {
+  for (const double degrees : {1.0, 4.0, 9.0, 30.0})
+    for (const double chance : {0.5, 0.05, 1e-4})
+      EXPECT_NEAR(student_tail(student_quantile(chance, degrees), degrees), chance, 1e-9 * chance + 1e-12)
+          << degrees << " degrees, " << chance;
+}
+
 TEST(Healthy, FalseAlarmsComeAtTheRateStated) {
   constexpr int trials = 600, causes = 30;
   for (const double level : {0.1, 0.02}) {

@@ -226,6 +226,18 @@ TEST(ExplainPage, MarksACauseToldByTheBlocksAsTaken) {
   EXPECT_FALSE(marked(Fate::others_fit_better));
 }
 
+// Ten logs cannot promise the one per cent asked for: a reader learns what they can, wherever he looks.
+TEST(ExplainText, SaysTheRateOfFalseAlarmsThatItsHealthyLogsCanPromise) {
+  ExplainResult r = some_explanation();
+  EXPECT_TRUE(explain_json(r)["false_alarm"].is_null());
+  r.false_alarm = {0.01, 1.0 / 11, 10};
+  const std::string said =
+      "healthy log is called wrong at a rate of 9.1 %, that 10 healthy logs can promise; asked was 1 %";
+  EXPECT_NE(text_of(r, {}).find(said), std::string::npos) << text_of(r, {});
+  EXPECT_NE(explain_page({}, r, {}).html().find(said), std::string::npos);
+  EXPECT_DOUBLE_EQ(explain_json(r)["false_alarm"]["promised"], 1.0 / 11);
+}
+
 // The likeliest place by name, size and what it follows, and what the channels do not tell it from; in health, nothing.
 TEST(ExplainPage, SaysWhatIsMissingAndDrawsItWithItsBand) {
   ExplainResult r = some_explanation();

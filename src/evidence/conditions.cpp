@@ -1,4 +1,4 @@
-#include "diagnose/conditions.h"
+#include "evidence/conditions.h"
 
 #include <algorithm>
 #include <cmath>
@@ -9,6 +9,8 @@ namespace {
 
 constexpr double like_span = 2.0, like_band = 4.0;  // ratios
 constexpr double like_temperature = 15.0;           // [K]
+// A loop that closes over sensor noise changes a drive's numbers by some per cent from run to run.
+constexpr double same_size = 1.15, same_band = 1.3;  // ratios
 
 // Frequency of the sine that decorrelates as fast as the series: found as the stride at which the mean square
 // difference reaches a tenth of its end value, twice the variance; a sine is there at a tenth of its period.
@@ -43,6 +45,13 @@ double mean(const std::vector<double>& x) {
   return n > 0 ? sum / static_cast<double>(n) : std::nan("");
 }
 
+double deviation(const std::vector<double>& x) {
+  const double middle = mean(x);
+  std::vector<double> square;
+  for (const double v : x) square.push_back((v - middle) * (v - middle));
+  return std::sqrt(mean(square));
+}
+
 // Of two positive numbers, in powers of `like`; of a drive that stands still against one that moves: far.
 double ratio_distance(double a, double b, double like) {
   if (a == b) return 0;
@@ -59,6 +68,7 @@ TestConditions conditions_of(const Log& log) {
   for (const double v : drive)
     if (std::isfinite(v)) lowest = std::min(lowest, v), highest = std::max(highest, v);
   c.drive_span = std::max(0.0, highest - lowest);
+  c.drive_rms = deviation(drive);
   c.drive_band = band_of(log.time, drive);
   if (log.has(Signal::oil_temperature))
     if (const double t = mean(log[Signal::oil_temperature]); std::isfinite(t)) c.temperature = t;
@@ -70,6 +80,14 @@ double distance(const TestConditions& a, const TestConditions& b) {
                       ratio_distance(a.drive_band, b.drive_band, like_band));
   if (a.temperature && b.temperature) d = std::max(d, std::abs(*a.temperature - *b.temperature) / like_temperature);
   return d;
+}
+
+bool is_repeat(const TestConditions& a, const TestConditions& b) {
+  if (!(a.drive_rms > 0 && b.drive_rms > 0)) return false;
+  const bool same_drive = ratio_distance(a.drive_span, b.drive_span, same_size) <= 1 &&
+                          ratio_distance(a.drive_rms, b.drive_rms, same_size) <= 1 &&
+                          ratio_distance(a.drive_band, b.drive_band, same_band) <= 1;
+  return same_drive && distance(a, b) <= 1;
 }
 
 }  // namespace servodx

@@ -1,0 +1,59 @@
+// Which healthy logs speak of a suspect's test.
+#include "explain/kin.h"
+
+#include <gtest/gtest.h>
+
+#include "evidence/conditions.h"
+#include "explain/healthy.h"
+
+namespace servodx {
+namespace {
+
+TestConditions test(double span, double rms, double band = 10, double celsius = 40) {
+  return {span, band, celsius + 273.15, rms};
+}
+
+HealthyReference reference(const std::vector<TestConditions>& tests) {
+  HealthyReference r;
+  for (const TestConditions& t : tests) {
+    r.logs.emplace_back();
+    r.logs.back().log = std::to_string(r.logs.size());
+    r.logs.back().test = t;
+  }
+  return r;
+}
+
+const std::vector<TestConditions> twelve(12, test(40e-3, 8e-3));
+
+TEST(Kin, RepeatsOfTheSuspectsTestSpeakAlone) {
+  auto tests = twelve;
+  tests.push_back(test(5e-3, 1e-3));
+  const SpeakingLogs s = logs_that_speak(reference(tests), {test(41e-3, 8.2e-3)});
+  EXPECT_EQ(s.logs.logs.size(), 12u);
+  EXPECT_TRUE(s.alike);
+}
+
+TEST(Kin, RepeatsOfAnotherTestSpeakAsOneLog) {
+  const SpeakingLogs s = logs_that_speak(reference(twelve), {test(40e-3, 11e-3)});
+  EXPECT_EQ(s.logs.logs.size(), 1u);
+  EXPECT_FALSE(s.alike);
+}
+
+TEST(Kin, FewOfTheSuspectsTestAreJoinedByOneOfEveryOther) {
+  const SpeakingLogs s = logs_that_speak(
+      reference({test(40e-3, 8e-3), test(5e-3, 1e-3), test(5e-3, 1e-3), test(20e-3, 4e-3), test(40e-3, 8e-3)}),
+      {test(40e-3, 8e-3)});
+  EXPECT_EQ(s.logs.logs.size(), 4u);
+  EXPECT_TRUE(s.alike);
+}
+
+TEST(Kin, OtherOilIsAnotherTest) { EXPECT_FALSE(logs_that_speak(reference(twelve), {test(40e-3, 8e-3, 10, 0)}).alike); }
+
+TEST(Kin, AReferenceThatDoesNotSayItsTestsSpeaksWhole) {
+  auto tests = twelve;
+  tests.back().drive_rms = 0;
+  EXPECT_EQ(logs_that_speak(reference(tests), {test(1e-3, 1e-4)}).logs.logs.size(), 12u);
+}
+
+}  // namespace
+}  // namespace servodx
