@@ -3,8 +3,12 @@
 #include <memory>
 
 #include "commands.h"
+#include "diagnose/check_log.h"
 #include "invocation.h"
 #include "report/check_log.h"
+#include "servodx/log.h"
+#include "servodx/rig.h"
+#include "servodx/table.h"
 
 namespace servodx {
 namespace {

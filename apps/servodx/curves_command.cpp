@@ -7,6 +7,8 @@
 #include "curves/curves.h"
 #include "invocation.h"
 #include "report/curves.h"
+#include "servodx/log.h"
+#include "servodx/rig.h"
 
 namespace servodx {
 namespace {

@@ -1,4 +1,4 @@
-// `servodx diagnose LOG...`: detect, classify, size. Each log alone.
+// `servodx diagnose LOG...`: detect, classify, size. Each log alone, or as one (--pool).
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -8,8 +8,8 @@
 #include "commands.h"
 #include "diagnose/decide.h"
 #include "diagnose/judge.h"
-#include "door/baseline_parts.h"
 #include "diagnose_list.h"
+#include "door/baseline_parts.h"
 #include "fit/replay.h"
 #include "invocation.h"
 #include "parameters/table.h"
@@ -69,6 +69,14 @@ std::vector<Diagnosis> judge_each(const std::vector<Log>& logs, const Tuned& tun
   return results;
 }
 
+std::vector<Diagnosis> judge_pool(const std::vector<Log>& logs, const Tuned& tuned, const RigFile& rig,
+                                  const Baseline& baseline, const CommonOptions& common, const Watch& watch) {
+  const Verdict verdict =
+      diagnose_pool(logs, tuned, rig, baseline, {.seed = common.seed, .threads = common.threads, .watch = watch});
+  if (verdict.interrupted) return {};
+  return {*verdict.whole};
+}
+
 // Of the worst logs: a page of many would be too large to open.
 std::vector<Replay> replays(const std::vector<Log>& logs, const Table& tuned, const RigFile& rig,
                             const std::vector<Diagnosis>& results) {
@@ -79,7 +87,7 @@ std::vector<Replay> replays(const std::vector<Log>& logs, const Table& tuned, co
   std::vector<Replay> all;
   for (const Diagnosis* d : worst)
     for (const Log& log : logs)
-      if (log.path == d->log) {
+      if (log.path == d->assessment.logs.front()) {
         all.push_back(replay(log, tuned, rig, report::candidates_of(d->assessment.explanations)));
         break;
       }
@@ -87,7 +95,6 @@ std::vector<Replay> replays(const std::vector<Log>& logs, const Table& tuned, co
 }
 
 int run(const Options& options) {
-  require_option(!options.pool, "--pool", "logs cannot be pooled yet", "leave it out: each log is judged alone");
   require_option(options.logs.empty() != options.list.list.empty(), options.logs.empty() ? "LOG" : "--list",
                  options.logs.empty() ? "no log is named" : "logs are named one by one too",
                  "name the logs, or a file that lists them with --list FILE --out DIR");
@@ -115,7 +122,8 @@ int run(const Options& options) {
   if (invocation.dry_run()) return ran;
 
   const Watch watch = invocation.watch();
-  const std::vector<Diagnosis> results = judge_each(logs, tuned, rig, baseline, options.common, watch);
+  const std::vector<Diagnosis> results = options.pool ? judge_pool(logs, tuned, rig, baseline, options.common, watch)
+                                                      : judge_each(logs, tuned, rig, baseline, options.common, watch);
   std::string text;
   int worst = ran;
   for (const Diagnosis& d : results) {
@@ -125,7 +133,7 @@ int run(const Options& options) {
     text += (text.empty() ? "" : "\n") + report::text_of(d, {.colour = colour_wanted(), .written_to = ""});
     worst = std::max(worst, code_of(d));
   }
-  if (results.size() < logs.size())
+  if (results.size() < (options.pool ? 1 : logs.size()))
     invocation.note({fmt::format("interrupted: {} of {} logs were judged", results.size(), logs.size())});
   if (invocation.wants_report()) {
     truths.resize(results.size());
@@ -140,7 +148,7 @@ int run(const Options& options) {
 
 void add_diagnose_command(CLI::App& app, int& exit_code) {
   auto options = std::make_shared<Options>();
-  CLI::App* command = app.add_subcommand("diagnose", "Detect, name and size a fault; each log alone");
+  CLI::App* command = app.add_subcommand("diagnose", "Detect, name and size faults; each log alone, or all as one");
   command->add_option("LOG", options->logs, "rig logs, CSV");
   CLI::Option* list =
       command
@@ -161,7 +169,7 @@ void add_diagnose_command(CLI::App& app, int& exit_code) {
   command->add_option("--baseline", options->baseline, "its baseline")->required()->type_name("BASE.json");
   command->add_flag("--exit-code", options->exit_code,
                     "end with 10 for a fault, 11 for unknown: the highest of the logs");
-  command->add_flag("--pool", options->pool, "not yet: it is refused")->group("");  // the name is kept, help is silent
+  command->add_flag("--pool", options->pool, "the logs are of one valve in one state: one verdict for all of them");
   add_common_options(*command, options->common);
   command->footer(
       "With --list a result that is there for the same log, table, baseline, rig, seed and version is kept; a log "

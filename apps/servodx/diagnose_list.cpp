@@ -6,13 +6,16 @@
 
 #include "base/error.h"
 #include "base/progress.h"
-#include "diagnose/diagnose.h"
 #include "fleet/log_list.h"
 #include "fleet/result_file.h"
 #include "fleet/run.h"
 #include "fleet_judge.h"
 #include "report/fleet.h"
+#include "report/json.h"
+#include "servodx/diagnose.h"
 #include "servodx/log.h"
+#include "servodx/rig.h"
+#include "servodx/watch.h"
 
 namespace servodx {
 namespace {
@@ -23,17 +26,18 @@ FleetRun judge_all(const std::vector<std::string>& logs, FleetJudge& judge, cons
   Progress progress("diagnose", {.quiet = common.quiet});
   FleetRun run;
   run.logs = logs.size();
-  const auto tell = [&](double, long) {
+  const auto tell = [&](const WorkDone&) {
     progress.show([&](double elapsed) { return logs_line("diagnose", run.done(), run.logs, run.judged, elapsed); });
   };
-  const DiagnoseOptions options{
-      .seed = common.seed, .threads = common.threads, .quiet = common.quiet, .stop = &stop, .progress = tell};
+  const DiagnoseOptions options{.seed = common.seed,
+                                .threads = common.threads,
+                                .watch = {.progress = tell, .stop = [&stop] { return stop.load(); }}};
   for (const std::string& log : logs) {
     if (stop) run.interrupted = true;
     if (run.interrupted) break;
     const FleetJudge::Outcome outcome = judge.judge(log, result_name(log), options);
     add(run, outcome, progress, header, judge.header());
-    tell(1, 0);
+    tell({});
   }
   return run;
 }

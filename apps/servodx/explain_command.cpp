@@ -6,11 +6,16 @@
 #include "commands.h"
 #include "door/baseline_parts.h"
 #include "explain/explain.h"
+#include "fit/replay.h"
 #include "invocation.h"
 #include "report/explain_report.h"
+#include "report/json.h"
 #include "report/pages.h"
 #include "servodx/baseline.h"
 #include "servodx/explain.h"
+#include "servodx/log.h"
+#include "servodx/rig.h"
+#include "servodx/table.h"
 #include "servodx/tune.h"
 
 namespace servodx {

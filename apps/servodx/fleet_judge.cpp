@@ -11,6 +11,8 @@
 #include "base/error.h"
 #include "base/sha256.h"
 #include "diagnose/decide.h"
+#include "door/baseline_parts.h"
+#include "fleet/fleet_verdict.h"
 #include "report/fleet.h"
 #include "servodx/log.h"
 
@@ -34,10 +36,10 @@ FleetVerdict standing(VerdictKind verdict) {
 }  // namespace
 
 Judging read_judging(Invocation& invocation, const std::string& params, const std::string& baseline) {
-  Judging judging{invocation.rig(), invocation.tuned_table(params), report::read_baseline(baseline)};
-  report::require_same_table(judging.baseline.baseline, baseline, judging.tuned.path, judging.tuned.sha256);
-  invocation.header().inputs.push_back({baseline, judging.baseline.sha256});
-  invocation.header().settings = {{"false_alarm", judging.baseline.baseline.asked}};
+  Judging judging{invocation.rig(), invocation.tuned(params), read_baseline(baseline)};
+  require_same_table(judging.baseline, judging.tuned);
+  invocation.header().inputs.push_back({baseline, judging.baseline.parts->sha256});
+  invocation.header().settings = {{"false_alarm", judging.baseline.asked}};
   return judging;
 }
 
@@ -100,9 +102,9 @@ FleetJudge::Outcome FleetJudge::judge(const std::string& path, const std::string
     }
     const Log log = read_log(path, judging_.rig);
     header_.inputs[header_.inputs.size() - 2].sha256 = log.sha256;
-    Assessment assessment = assess(log, judging_.tuned, judging_.rig, options);
-    if (options.stop && *options.stop) return {.end = End::interrupted};
-    outcome.diagnosis = servodx::judge(std::move(assessment), judging_.baseline.baseline);
+    const Verdict verdict = diagnose(log, judging_.tuned, judging_.rig, judging_.baseline, options);
+    if (verdict.interrupted) return {.end = End::interrupted};
+    outcome.diagnosis = *verdict.whole;
     complete_header(*outcome.diagnosis);
     header_.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     if (beside) beside(name, *outcome.diagnosis, log);

@@ -9,23 +9,27 @@
 #include "base/progress.h"
 #include "diagnose/diagnose.h"
 #include "diagnose/judge.h"
+#include "fleet/fleet_verdict.h"
 #include "fleet/gather.h"
 #include "fleet/result_file.h"
 #include "fleet/run.h"
 #include "invocation.h"
 #include "parameters/table.h"
-#include "report/baseline_file.h"
 #include "report/json.h"
+#include "servodx/baseline.h"
+#include "servodx/diagnose.h"
+#include "servodx/error.h"
 #include "servodx/log.h"
 #include "servodx/rig.h"
+#include "servodx/tune.h"
 
 namespace servodx {
 
 // What logs are judged with; read once, before any work.
 struct Judging {
   RigFile rig;
-  Table tuned;
-  report::BaselineFile baseline;
+  Tuned tuned;
+  Baseline baseline;
 };
 // Notes the files among the inputs of the call, and refuses a baseline of another table.
 Judging read_judging(Invocation& invocation, const std::string& params, const std::string& baseline);

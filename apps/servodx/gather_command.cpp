@@ -11,6 +11,7 @@
 #include "fleet/gather.h"
 #include "invocation.h"
 #include "report/fleet.h"
+#include "report/json.h"
 
 namespace servodx {
 namespace {

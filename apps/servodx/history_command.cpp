@@ -10,6 +10,7 @@
 #include "base/atomic_file.h"
 #include "commands.h"
 #include "invocation.h"
+#include "prognose/valve_history.h"
 #include "report/columns.h"
 #include "report/json.h"
 #include "store/history.h"

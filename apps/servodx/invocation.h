@@ -10,6 +10,7 @@
 #include "parameters/table.h"
 #include "report/json.h"
 #include "report/page.h"
+#include "servodx/rig.h"
 #include "servodx/tune.h"
 #include "servodx/watch.h"
 #include "signals/log.h"

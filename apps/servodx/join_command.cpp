@@ -7,7 +7,10 @@
 
 #include "commands.h"
 #include "invocation.h"
+#include "servodx/log.h"
+#include "servodx/rig.h"
 #include "signals/recorders.h"
+#include "signals/signal.h"
 
 namespace servodx {
 namespace {

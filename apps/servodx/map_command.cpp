@@ -10,8 +10,16 @@
 #include "fit/nominal.h"
 #include "invocation.h"
 #include "model/state.h"
+#include "parameters/list.h"
 #include "report/columns.h"
+#include "report/json.h"
 #include "report/valve_maps.h"
+#include "servodx/rig.h"
+#include "servodx/table.h"
+#include "valve_maps/compare.h"
+#include "valve_maps/high_fidelity.h"
+#include "valve_maps/registry.h"
+#include "valve_maps/valve_numbers.h"
 
 namespace servodx {
 namespace {

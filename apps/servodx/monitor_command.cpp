@@ -5,12 +5,18 @@
 #include <chrono>
 #include <memory>
 
+#include "base/units.h"
 #include "commands.h"
 #include "fit/log_data.h"
 #include "fit/nominal.h"
 #include "invocation.h"
 #include "prognose/checks.h"
+#include "prognose/monitor.h"
 #include "report/handy.h"
+#include "report/json.h"
+#include "servodx/log.h"
+#include "servodx/rig.h"
+#include "servodx/table.h"
 
 namespace servodx {
 namespace {

@@ -5,7 +5,11 @@
 #include "commands.h"
 #include "fit/selftest.h"
 #include "invocation.h"
+#include "report/json.h"
 #include "report/selftest.h"
+#include "servodx/log.h"
+#include "servodx/rig.h"
+#include "servodx/table.h"
 
 namespace servodx {
 namespace {

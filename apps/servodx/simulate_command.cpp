@@ -13,8 +13,12 @@
 #include "invocation.h"
 #include "report/columns.h"
 #include "report/handy.h"
+#include "report/json.h"
 #include "report/pages.h"
+#include "servodx/log.h"
+#include "servodx/rig.h"
 #include "servodx/simulate.h"
+#include "servodx/table.h"
 #include "simulate/scenario.h"
 
 namespace servodx {

@@ -13,6 +13,8 @@
 #include "base/progress.h"
 #include "commands.h"
 #include "diagnose/diagnose.h"
+#include "diagnose/judge.h"
+#include "door/baseline_parts.h"
 #include "fit/replay.h"
 #include "fleet/result_file.h"
 #include "fleet/run.h"
@@ -21,8 +23,10 @@
 #include "invocation.h"
 #include "report/diagnosis_words.h"
 #include "report/fleet.h"
+#include "report/json.h"
 #include "report/pages.h"
 #include "report/text.h"
+#include "servodx/log.h"
 
 namespace servodx {
 namespace {
@@ -38,8 +42,8 @@ struct Options {
 void write_page(const Judging& judging, const std::string& path, const Diagnosis& d, const Log& log,
                 const report::Header& header) {
   const std::vector<Replay> replays = {
-      replay(log, judging.tuned, judging.rig, report::candidates_of(d.assessment.explanations))};
-  write_file(path, report::diagnose_page(header, {d}, judging.baseline.baseline, replays).html());
+      replay(log, judging.tuned.table, judging.rig, report::candidates_of(d.assessment.explanations))};
+  write_file(path, report::diagnose_page(header, {d}, parts_of(judging.baseline).detection, replays).html());
 }
 
 class Watching {
@@ -88,9 +92,10 @@ class Watching {
   }
 
   void judge(const std::string& file) {
-    const FleetJudge::Outcome outcome =
-        judge_.judge(options_.folder + "/" + file, result_name(file),
-                     {.seed = options_.common.seed, .threads = options_.common.threads, .quiet = true, .stop = &stop_});
+    const FleetJudge::Outcome outcome = judge_.judge(options_.folder + "/" + file, result_name(file),
+                                                     {.seed = options_.common.seed,
+                                                      .threads = options_.common.threads,
+                                                      .watch = {.stop = [this] { return stop_.load(); }}});
     run_.logs += outcome.end != FleetJudge::End::interrupted;
     add(run_, outcome, progress_, header_, judge_.header());
     if (outcome.end == FleetJudge::End::judged) tell(*outcome.diagnosis);

@@ -175,7 +175,7 @@ void scaling_rows(Report& report, const Choice& choice) {
       HypothesisSettings settings;
       settings.threads = 1;
       settings.among.assign(fault_list().begin(), fault_list().begin() + static_cast<long>(n));
-      fit_hypotheses(log, v, error, settings);
+      fit_hypotheses({&log}, v, error, settings);
     });
   add_times(report, "hypotheses beside health", hypotheses, tasks, turns);
 }

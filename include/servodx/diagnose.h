@@ -39,12 +39,19 @@ struct Verdict {
     double rate = 1;      // of false alarms at which it would be said
     int logs_needed = 0;  // healthy ones, until it would be said; 0: more do not help by themselves, -1: no number does
   };
+  struct Named {
+    std::string name;
+    double probability = 0;
+    Severity severity;    // not a number: it has no size
+    std::string channel;  // of a sensor's: which signal; else empty
+  };
   std::string log;
   bool interrupted = false;
   Kind kind = Kind::healthy;
   double error = 0, threshold = 0;              // [deviates] from health; beyond the threshold it is not healthy
   double p_value = 1;                           // of such an error on a healthy log
   std::string fault;                            // label of the one named; empty: none
+  std::vector<Named> faults;                    // none, one, or two; the first is the one named
   std::optional<Severity> severity;             // of the fault named
   std::map<std::string, double> probabilities;  // by label; "healthy" and "unknown" among them
   std::vector<std::string> ambiguous_with;      // labels that cannot be ruled out beside the fault named
@@ -62,7 +69,10 @@ struct Verdict {
 // "healthy", "fault" or "unknown".
 std::string name_of(Verdict::Kind kind);
 
-// Refuses a baseline of another table and a log without a signal that the model reports. Throws InputError.
+// Both refuse a baseline of another table and a log without a signal that the model reports. Throws InputError.
+// Several logs of one valve in one state: one verdict for all of them. At least one log.
+Verdict diagnose_pool(const std::vector<Log>& logs, const Tuned& tuned, const Rig& rig, const Baseline& baseline,
+                      const DiagnoseOptions& options = {});
 Verdict diagnose(const Log& log, const Tuned& tuned, const Rig& rig, const Baseline& baseline,
                  const DiagnoseOptions& options = {});
 

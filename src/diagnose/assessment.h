@@ -5,10 +5,13 @@
 #include <string>
 #include <vector>
 
-#include "diagnose/conditions.h"
+#include "diagnose/hypotheses.h"
 #include "diagnose/moved.h"
+#include "diagnose/records.h"
+#include "evidence/conditions.h"
 #include "faults/fault.h"
 #include "faults/gross_finding.h"
+#include "servodx/tune.h"
 #include "simulate/scenario.h"
 #include "tune/tune.h"
 
@@ -28,6 +31,15 @@ struct HypothesisResult {
   std::vector<MovedRow> moved = {};  // the fault's rows first
 };
 
+// A second fault beside a first.
+struct PairResult {
+  FaultSize first, second;
+  double misfit = 0;
+  double gain = 0;       // over the best single fault, less what the model's error may lend a second one
+  double of_effect = 0;  // that gain before the allowance, of what both together gain over health
+  double adequacy = 0;   // as a hypothesis'
+};
+
 // What a hypothesis says the log should be.
 struct HypothesisPrediction {
   const Fault* fault = nullptr;  // null: healthy
@@ -36,13 +48,18 @@ struct HypothesisPrediction {
 };
 
 struct Assessment {
-  std::string log, sha256;
+  std::string log, sha256;                   // of several, joined
+  std::vector<std::string> logs;             // paths
   std::vector<HypothesisResult> hypotheses;  // healthy first, then by probability
+  std::vector<PairResult> pairs;             // the best first; empty where no fault gains beyond doubt
   std::vector<ChannelResult> channels;       // replay under health: rms beside noise
   GrossFinding gross = GrossFinding::none;
   std::optional<double> onset;                     // [s] change point where one stands out
   std::vector<HypothesisPrediction> explanations;  // of each hypothesis that could be fitted
   TestConditions test;
+  std::vector<RecordFigure> figures;  // of the records alone
+  std::vector<BrokenSensor> broken;
+  bool current_recorded = false;
   std::vector<std::string> notes;
   long simulations = 0, failed_simulations = 0;
 };

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "diagnose/conditions.h"
 #include "diagnose/constants.h"
 #include "diagnose/healthy_law.h"
+#include "evidence/conditions.h"
 #include "evidence/rank_promise.h"
 #include "faults/gross_finding.h"
 
@@ -38,7 +38,7 @@ DetectionBaseline baseline_of(const std::vector<Assessment>& healthy, double fal
   b.asked = false_alarm;
   for (const Assessment& a : healthy) {
     const double adequacy = a.hypotheses.front().adequacy;
-    b.scores.push_back({a.log, a.sha256, 0.0, adequacy, {}, a.test, {}});
+    b.scores.push_back({a.log, a.sha256, 0.0, adequacy, {}, a.test, a.figures, {}});
     if (!a.explanations.empty()) b.scores.back().healthy = a.explanations.front();
     for (const HypothesisResult& h : a.hypotheses)
       if (h.fault) b.scores.back().gains[h.fault] = h.gain;

@@ -9,7 +9,8 @@
 #include <vector>
 
 #include "diagnose/assessment.h"
-#include "diagnose/conditions.h"
+#include "diagnose/records.h"
+#include "evidence/conditions.h"
 #include "faults/fault.h"
 
 namespace servodx {
@@ -30,6 +31,7 @@ struct DetectionBaseline {
     double score = 0, adequacy = 0;
     FaultGains gains = {};
     std::optional<TestConditions> test = {};           // files of earlier versions have none
+    std::vector<RecordFigure> figures = {};            // the same
     std::optional<HypothesisPrediction> healthy = {};  // not in the file: for the report
   };
   std::vector<Score> scores;

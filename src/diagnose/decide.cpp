@@ -6,6 +6,7 @@
 
 #include "diagnose/constants.h"
 #include "faults/gross_finding.h"
+#include "faults/record.h"
 
 namespace servodx {
 namespace {
@@ -68,16 +69,59 @@ bool explains_enough(const HypothesisEvidence& fault, double healthy_adequacy, d
   return fault.adequacy <= std::hypot(as_health, fault.at_worst ? 0.0 : k::unexplained_part * healthy_adequacy);
 }
 
-Decision decide(const Evidence& e) {
+namespace {
+
+// Both sizes are found, the second gains what a name needs, and the two leave the log as one fault may leave it.
+bool is_pair(const PairEvidence& p, const Evidence& e) {
+  const HypothesisEvidence both{e.hypotheses[p.first].fault, 0, p.adequacy, p.at_worst, e.gain};
+  return !p.at_least && e.gain > e.threshold && p.gain > e.threshold &&
+         explains_enough(both, e.hypotheses.front().adequacy, e.usual_adequacy);
+}
+
+Decision name_pair(Decision d, const PairEvidence& pair) {
+  d.verdict = VerdictKind::fault;
+  d.hypothesis = pair.first;
+  d.beside = pair.second;
+  d.severity = SeveritySource::fit;
+  return d;
+}
+
+Decision decide_on_valve(const Evidence& e) {
   Decision d;
   for (const HypothesisEvidence& h : e.hypotheses) d.probabilities.push_back(h.probability);
   if (e.error <= e.threshold) return call_healthy(std::move(d), e);
   if (const auto outright = seen_outright(e)) return name_outright(std::move(d), *outright);
+  if (e.pair && is_pair(*e.pair, e)) return name_pair(std::move(d), *e.pair);
   const std::size_t best = most_probable(e.hypotheses);
   const HypothesisEvidence& h = e.hypotheses[best];
   if (h.fault && e.gain > e.threshold && explains_enough(h, e.hypotheses.front().adequacy, e.usual_adequacy))
     return name_fitted(std::move(d), best);
   return name_nothing(std::move(d), best);
+}
+
+Decision name_by_record(Decision valve, std::size_t record) {
+  valve.valve_too = valve.verdict == VerdictKind::fault;
+  valve.verdict = VerdictKind::fault;
+  valve.record = record;
+  valve.suspected.reset();
+  valve.severity = SeveritySource::record;
+  return valve;
+}
+
+}  // namespace
+
+Decision decide(const Evidence& e) {
+  Decision valve = decide_on_valve(e);
+  if (e.records.empty()) return valve;
+  const RecordEvidence& first = e.records.front();
+  if (first.broken) {
+    valve.verdict = VerdictKind::unknown;  // no fault of the valve stands beside it
+    return name_by_record(std::move(valve), 0);
+  }
+  if (valve.severity == SeveritySource::seen_outright) return valve;
+  for (std::size_t i = 0; i < e.records.size(); ++i)
+    if (e.records[i].of != Record::sensor) return name_by_record(std::move(valve), i);
+  return valve.verdict == VerdictKind::fault ? valve : name_by_record(std::move(valve), 0);
 }
 
 }  // namespace servodx

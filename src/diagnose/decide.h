@@ -1,9 +1,14 @@
 // The rules of the verdict: evidence in, decision out. No fit, no log, no registry.
 //
-//   error at or below the threshold              healthy; a fault that is the most probable is suspected
-//   a finding that names a fault outright        that fault
-//   the gain is beyond the threshold, and the most probable is a fault that explains enough   that fault
-//   else                                         unknown
+//   broken sensor                    that sensor
+//   unusual supply or driver         that, and beside it the fault of the valve that the rules below name; but where a
+//                                    finding names that outright: such a valve draws what no healthy one draws
+//   unusually noisy sensor           that, unless the rules below name a fault of the valve
+//   error at or below the threshold  healthy; a fault that is the most probable is suspected
+//   a finding names a fault          that fault
+//   a second fault gains enough      both, where together they explain enough
+//   a fault gains enough             that fault, where it is the most probable and explains enough
+//   else                             unknown
 #pragma once
 #include <cstddef>
 #include <optional>
@@ -11,6 +16,7 @@
 
 #include "faults/fault.h"
 #include "faults/gross_finding.h"
+#include "faults/record.h"
 
 namespace servodx {
 
@@ -24,15 +30,31 @@ struct HypothesisEvidence {
   double gain = 0;               // of likelihood over health
 };
 
+// The best pair of faults.
+struct PairEvidence {
+  std::size_t first = 0, second = 0;  // of the hypotheses; the likelier alone first
+  double gain = 0;                    // over the first alone [deviates]
+  double adequacy = 0;
+  bool at_least = false, at_worst = false;  // the size of one of them
+};
+
+// A fault that a record of the log tells without the model, beyond what healthy logs show.
+struct RecordEvidence {
+  Record of = Record::supply;
+  bool broken = false;  // a sensor that does what no healthy one does: what the fits say of such a log is worth nothing
+};
+
 struct Evidence {
   double error = 0, threshold = 0;  // deviates from health
   double gain = 0;                  // of these, what the best fault explains: a name needs evidence of its own
   double usual_adequacy = 0;        // the largest of the baseline's logs
   GrossFinding gross = GrossFinding::none;
   std::vector<HypothesisEvidence> hypotheses;  // healthy first; at least that one
+  std::optional<PairEvidence> pair = {};
+  std::vector<RecordEvidence> records = {};  // the surest first
 };
 
-enum class SeveritySource { none, fit, seen_outright };
+enum class SeveritySource { none, fit, seen_outright, record };
 
 struct Decision {
   VerdictKind verdict = VerdictKind::healthy;
@@ -40,6 +62,9 @@ struct Decision {
   std::vector<double> probabilities;   // of each hypothesis; all 0 of an unknown state
   std::vector<std::size_t> ambiguous;  // hypotheses that cannot be ruled out beside the fault named
   SeveritySource severity = SeveritySource::none;
+  std::optional<std::size_t> beside;     // of a pair: the second fault
+  std::optional<std::size_t> record;     // that names the fault
+  bool valve_too = false;                // of a record's: the valve has the fault of `hypothesis` beside it
   std::optional<std::size_t> suspected;  // of a healthy log: the fault that stands first all the same
 };
 

@@ -5,13 +5,16 @@
 #include <algorithm>
 
 #include "base/error.h"
-#include "diagnose/conditions.h"
 #include "diagnose/constants.h"
 #include "diagnose/gross.h"
 #include "diagnose/hypotheses.h"
 #include "diagnose/moved.h"
 #include "diagnose/onset.h"
+#include "diagnose/records.h"
+#include "diagnose/whitening.h"
+#include "evidence/conditions.h"
 #include "evidence/probabilities.h"
+#include "faults/fault.h"
 #include "fit/chart.h"
 #include "fit/error_model.h"
 #include "fit/log_data.h"
@@ -19,6 +22,7 @@
 #include "fit/tuned_state.h"
 #include "parameters/list.h"
 #include "servodx/rig.h"
+#include "servodx/tune.h"
 #include "simulate/scenario.h"
 #include "tune/tune.h"
 
@@ -45,22 +49,51 @@ HypothesisSettings settings_of(const RigFile& rig, const DiagnoseOptions& option
   return settings;
 }
 
+// Logs of one valve in one state, made ready.
+struct Ready {
+  std::vector<LogData> data;
+  std::vector<const LogData*> pointers() const {
+    std::vector<const LogData*> out;
+    for (const LogData& d : data) out.push_back(&d);
+    return out;
+  }
+};
+
 // A change in mid-log has its parts fitted alone: about a third as much work again.
-HypothesisFits fit_whole(const LogData& data, const ParameterVector& base, const ErrorModel& error,
+HypothesisFits fit_whole(const Ready& ready, const ParameterVector& base, const ErrorModel& error,
                          HypothesisSettings settings, const DiagnoseOptions& options) {
-  const double first_part = onset_possible(data) ? 0.75 : 1.0;
+  const bool one = ready.data.size() == 1;
+  const double first_part = one && onset_possible(ready.data.front()) ? 0.75 : 1.0;
   if (options.watch.progress)
     settings.progress = [&](double part, long simulations) {
       options.watch.tell("diagnose", first_part * part, simulations);
     };
-  return fit_hypotheses(data, base, error, settings);
+  return fit_hypotheses(ready.pointers(), base, error, settings);
 }
 
-std::vector<ChannelResult> channels_of(const Log& log, const LogData& data, const HypothesisFit& healthy) {
+// Of several logs a channel's squares are pooled.
+std::vector<ChannelResult> channels_of(const std::vector<Log>& logs, const Ready& ready, const HypothesisFit& healthy) {
+  struct Sum {
+    double square = 0, noise = 0, logs = 0;
+    std::string unit;
+  };
+  std::map<Signal, Sum> sums;
+  std::size_t at = 0;
+  for (std::size_t l = 0; l < logs.size(); ++l)
+    for (const FitChannel& c : ready.data[l].channels) {
+      if (at >= healthy.channel_rms.size()) break;
+      Sum& s = sums[c.signal];
+      const double rms = healthy.channel_rms[at++];
+      s.square += rms * rms, s.noise += c.noise * c.noise, ++s.logs;
+      if (s.unit.empty()) s.unit = logs[l].channels[index(c.signal)].unit;
+    }
   std::vector<ChannelResult> out;
-  for (std::size_t c = 0; c < data.channels.size() && c < healthy.channel_rms.size(); ++c)
-    out.push_back({data.channels[c].signal, log.channels[index(data.channels[c].signal)].unit, healthy.channel_rms[c],
-                   data.channels[c].noise, healthy.channel_rms[c]});
+  for (const FitChannel& c : ready.data.front().channels)
+    if (const auto it = sums.find(c.signal); it != sums.end()) {
+      const Sum& s = it->second;
+      const double rms = std::sqrt(s.square / s.logs);
+      out.push_back({c.signal, s.unit, rms, std::sqrt(s.noise / s.logs), rms});
+    }
   return out;
 }
 
@@ -88,8 +121,34 @@ std::vector<double> weigh(const HypothesisFits& fits) {
       weighed, misfit_scale(fits.fits.front().misfit, fits.fits[best_fit(fits)].misfit, fits.degrees, k::effect_error));
 }
 
-std::vector<HypothesisResult> results_of(const HypothesisFits& fits, const LogData& data, const ParameterVector& base,
-                                         const Table& tuned) {
+double worst_channel(const HypothesisFit& f) {
+  return f.channel_adequacy.empty() ? failed_adequacy
+                                    : *std::max_element(f.channel_adequacy.begin(), f.channel_adequacy.end());
+}
+
+// The gain over the best single fault, but for what a model that errs by a part of the effect may lend a second.
+std::vector<PairResult> pairs_of(const HypothesisFits& fits) {
+  const auto alone = [&](const Fault* fault) {
+    const auto it = std::find_if(fits.fits.begin(), fits.fits.end(), [&](const auto& f) { return f.fault == fault; });
+    return it == fits.fits.end() ? fits.fits.front().misfit : it->misfit;
+  };
+  const double healthy = fits.fits.front().misfit, best = fits.fits[best_fit(fits)].misfit;
+  std::vector<PairResult> out;
+  for (const HypothesisFit& f : fits.pairs) {
+    PairResult p{f, *f.beside};
+    if (alone(p.second.fault) < alone(p.first.fault)) std::swap(p.first, p.second);
+    const double lent = k::lent_to_second * k::lent_to_second * std::max(0.0, healthy - f.misfit);
+    p.misfit = f.misfit;
+    p.gain = (best - f.misfit - lent) / misfit_scale(healthy, f.misfit, fits.degrees, k::effect_error);
+    p.of_effect = (best - f.misfit) / std::max(1e-9, healthy - f.misfit);
+    p.adequacy = worst_channel(f);
+    out.push_back(p);
+  }
+  std::stable_sort(out.begin(), out.end(), [](const auto& a, const auto& b) { return a.misfit < b.misfit; });
+  return out;
+}
+
+std::vector<HypothesisResult> results_of(const HypothesisFits& fits, const ParameterVector& base, const Table& tuned) {
   const double inflation = misfit_inflation(fits.fits[best_fit(fits)].misfit, fits.degrees);
   const std::vector<double> probability = weigh(fits);
   std::vector<HypothesisResult> out;
@@ -104,16 +163,43 @@ std::vector<HypothesisResult> results_of(const HypothesisFits& fits, const LogDa
     r.severity_lower = std::min(f.severity_lower, f.severity_upper);
     r.severity_upper = std::max(f.severity_lower, f.severity_upper);
     r.at_least = f.at_least, r.at_worst = f.at_worst;
-    r.adequacy = f.channel_adequacy.empty() ? failed_adequacy
-                                            : *std::max_element(f.channel_adequacy.begin(), f.channel_adequacy.end());
+    r.adequacy = worst_channel(f);
     if (f.ok) r.null = candidate_at(base, f)[row::servovalve_null];
-    r.moved = moved_rows(f, data, base, tuned);
+    r.moved = moved_rows(f, base, tuned);
     r.stops = f.stops;
     out.push_back(std::move(r));
   }
   std::stable_sort(out.begin() + 1, out.end(),
                    [](const auto& a, const auto& b) { return a.probability > b.probability; });
   return out;
+}
+
+// Of several logs each log's figures; the worst stands out among all.
+void look_at_records(const std::vector<Log>& logs, const Ready& ready, const ParameterVector& base, int threads,
+                     Assessment& out) {
+  out.current_recorded = true;
+  for (std::size_t l = 0; l < logs.size(); ++l) {
+    const LogData& data = ready.data[l];
+    for (RecordFigure& f : record_figures(logs[l], data, base)) out.figures.push_back(std::move(f));
+    for (const BrokenSensor& b : broken_sensors(data, reference_of(data, base, threads))) out.broken.push_back(b);
+    out.current_recorded = out.current_recorded && data.scenario.current_measured;
+  }
+}
+
+Ready make_ready(const std::vector<Log>& logs, const Table& tuned, const RigFile& rig, const ErrorModel& error,
+                 Assessment& out) {
+  Ready ready;
+  for (const Log& log : logs) {
+    out.log += (out.log.empty() ? "" : " + ") + log.path;
+    out.sha256 += log.sha256;
+    out.logs.push_back(log.path);
+    out.notes.insert(out.notes.end(), log.notes.begin(), log.notes.end());
+    ready.data.push_back(prepare(log, rig, moving_average_of(tuned)));
+    for (std::string& note : leave_out_unknown_channels(ready.data.back(), error)) out.notes.push_back(std::move(note));
+    require_channels(ready.data.back());
+  }
+  out.test = conditions_of(logs.front());
+  return ready;
 }
 
 }  // namespace
@@ -124,34 +210,39 @@ void DiagnoseOptions::validate() const {
                      "give 0 for all cores, or how many");
 }
 
-Assessment assess(const Log& log, const Table& tuned, const RigFile& rig, const DiagnoseOptions& options) {
+Assessment assess_pool(const std::vector<Log>& logs, const Table& tuned, const RigFile& rig,
+                       const DiagnoseOptions& options) {
   options.validate();
   Assessment out;
-  out.log = log.path, out.sha256 = log.sha256, out.notes = log.notes;
-  LogData data = prepare(log, rig, moving_average_of(tuned));
   const ErrorModel error = required_error_model(tuned);
-  for (std::string& note : leave_out_unknown_channels(data, error)) out.notes.push_back(std::move(note));
-  require_channels(data);
+  const Ready ready = make_ready(logs, tuned, rig, error, out);
   const ParameterVector base = candidate_of(tuned);
   const HypothesisSettings settings = settings_of(rig, options);
-  out.test = conditions_of(log);
 
-  HypothesisFits fits = fit_whole(data, base, error, settings, options);
+  HypothesisFits fits = fit_whole(ready, base, error, settings, options);
   FitWork work = fits.work;
   const bool stopped = options.watch.stopped();
   if (!stopped) {
-    out.gross = gross_finding(data, base);
-    out.channels = channels_of(log, data, fits.fits.front());
-    std::optional<Onset> onset = find_onset(data, base, error, settings, fits, work);
+    const LogData& first = ready.data.front();
+    out.gross = gross_finding(first, base);
+    look_at_records(logs, ready, base, options.threads, out);
+    out.channels = channels_of(logs, ready, fits.fits.front());
+    std::optional<Onset> onset;
+    if (logs.size() == 1) onset = find_onset(first, base, error, settings, fits, work);
     if (onset) {
-      out.onset = data.scenario.time[onset->at];
+      out.onset = first.scenario.time[onset->at];
       fits = std::move(onset->after);
     }
     out.explanations = explanations_of(base, fits, onset);
-    out.hypotheses = results_of(fits, data, base, tuned);
+    out.hypotheses = results_of(fits, base, tuned);
+    out.pairs = pairs_of(fits);
   }
   out.simulations = work.simulations, out.failed_simulations = work.failed;
   return out;
+}
+
+Assessment assess(const Log& log, const Table& tuned, const RigFile& rig, const DiagnoseOptions& options) {
+  return assess_pool({log}, tuned, rig, options);
 }
 
 Diagnosis diagnose(const Log& log, const Table& tuned, const RigFile& rig, const DetectionBaseline& baseline,

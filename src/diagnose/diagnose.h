@@ -11,12 +11,16 @@
 #include "diagnose/judge.h"
 #include "parameters/table.h"
 #include "servodx/diagnose.h"
+#include "servodx/rig.h"
 #include "signals/log.h"
 
 namespace servodx {
 
 // Stopped by options.watch, it returns at once with an assessment to be thrown away.
 Assessment assess(const Log& log, const Table& tuned, const RigFile& rig, const DiagnoseOptions& options);
+// Several logs of one valve in one state as one; an onset is not looked for. At least one log.
+Assessment assess_pool(const std::vector<Log>& logs, const Table& tuned, const RigFile& rig,
+                       const DiagnoseOptions& options);
 
 Diagnosis diagnose(const Log& log, const Table& tuned, const RigFile& rig, const DetectionBaseline& baseline,
                    const DiagnoseOptions& options);

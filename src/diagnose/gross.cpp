@@ -4,6 +4,9 @@
 #include <cmath>
 
 #include "diagnose/constants.h"
+#include "parameters/list.h"
+#include "servodx/log.h"
+#include "simulate/scenario.h"
 
 namespace servodx {
 namespace {

@@ -5,6 +5,7 @@
 #pragma once
 #include "faults/gross_finding.h"
 #include "fit/log_data.h"
+#include "simulate/scenario.h"
 
 namespace servodx {
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/student.h"
 #include "diagnose/constants.h"
 #include "evidence/rank_promise.h"
 
@@ -36,22 +37,12 @@ std::vector<double> squares_of(const DetectionBaseline& b, const std::vector<std
   return out;
 }
 
-// Student's variable that one more log exceeds with this chance.
-double student_quantile(double rate, double degrees) {
-  double low = 0, high = 1e6;
-  for (int i = 0; i < 100; ++i) {
-    const double middle = 0.5 * (low + high);
-    (Deviate{middle, degrees}.chance_above() > rate ? low : high) = middle;
-  }
-  return high;
-}
-
 }  // namespace
 
 bool is_followed(double adequacy) { return adequacy <= k::followed_adequacy; }
 
 SuspectLog suspect_of(const Assessment& a) {
-  SuspectLog out{a.test, a.hypotheses.front().adequacy};
+  SuspectLog out{a.test, a.hypotheses.front().adequacy, std::max<std::size_t>(1, a.logs.size())};
   for (const HypothesisResult& h : a.hypotheses) out.adequacy = std::min(out.adequacy, h.adequacy);
   return out;
 }
@@ -66,7 +57,10 @@ HealthyLaw::HealthyLaw(const DetectionBaseline& b, const SuspectLog* suspect)
   const double by_law = std::sqrt(gains_.excess_at(rate()));
   limit_ = std::max(by_law, rank_promise(ranked, asked_).threshold);
   const Deviate one = deviate_of(1, adequacies_, {k::adequacy_spread, k::usual_logs});
-  unlike_limit_ = student_quantile(rate_of_question(asked_, logs(), 1 - k::share_of_gain), one.degrees);
+  constexpr double sides = 2;  // the quantile's tail has two, an adequacy's one
+  const double worst_of = suspect ? static_cast<double>(suspect->logs) : 1.0;
+  unlike_limit_ =
+      student_quantile(sides * rate_of_question(asked_, logs(), k::share_of_adequacy) / worst_of, one.degrees);
 }
 
 double HealthyLaw::error_of(double gain, double adequacy) const {

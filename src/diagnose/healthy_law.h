@@ -11,8 +11,8 @@
 
 #include "diagnose/assessment.h"
 #include "diagnose/baseline.h"
-#include "diagnose/conditions.h"
 #include "diagnose/constants.h"
+#include "evidence/conditions.h"
 #include "evidence/log_scatter.h"
 #include "evidence/tail_law.h"
 
@@ -25,6 +25,7 @@ bool is_followed(double adequacy);
 struct SuspectLog {
   TestConditions test;
   double adequacy = 0;
+  std::size_t logs = 1;  // pooled: the worst of so many is compared with healthy logs one by one
 };
 SuspectLog suspect_of(const Assessment& assessment);
 

@@ -9,6 +9,8 @@
 #include "diagnose/hypothesis_fit.h"
 #include "diagnose/severity.h"
 #include "diagnose/whitening.h"
+#include "evidence/probabilities.h"
+#include "faults/record.h"
 #include "simulate/together.h"
 
 namespace servodx {
@@ -42,7 +44,9 @@ class Steps {
 // Side by side in the same packs, as many as memory holds: a fit keeps some 1.4 kB a sample.
 void side_by_side(std::size_t count, const HypothesisData& data, const std::function<void(std::size_t)>& task) {
   constexpr std::size_t samples_at_once = 1'000'000;
-  const auto group = static_cast<int>(std::max<std::size_t>(2, samples_at_once / data.log.scenario.time.size()));
+  std::size_t samples = 0;
+  for (const LogData* log : data.logs) samples += log->scenario.time.size();
+  const auto group = static_cast<int>(std::max<std::size_t>(2, samples_at_once / samples));
   const int n = static_cast<int>(count);
   for (int first = 0; first < n; first += group)
     together(std::min(group, n - first), data.settings.threads,
@@ -120,14 +124,82 @@ void begin_health_again(Attempt& health, const std::vector<Attempt>& faults, con
   }
 }
 
-double independent_samples(const LogData& log, const ErrorModel& error) {
+double independent_samples(const std::vector<const LogData*>& logs, const ErrorModel& error) {
   double sum = 0;
-  for (const FitChannel& c : log.channels)
-    sum += static_cast<double>(present_samples(c)) * effective_of(error.find(c.signal), log.scenario.time);
+  for (const LogData* log : logs)
+    for (const FitChannel& c : log->channels)
+      sum += static_cast<double>(present_samples(c)) * effective_of(error.find(c.signal), log->scenario.time);
   return sum;
 }
 
+// The single faults that a second one is tried beside: the likeliest, where each gains beyond doubt.
+std::vector<const HypothesisFit*> leading(const HypothesisFits& fits) {
+  std::vector<const HypothesisFit*> out;
+  const double inflation = misfit_inflation(fits.fits[best_fit(fits)].misfit, fits.degrees);
+  for (std::size_t i = 1; i < fits.fits.size(); ++i)
+    if (fits.fits[i].ok && fits.fits.front().misfit - fits.fits[i].misfit > k::worth_a_pair * inflation)
+      out.push_back(&fits.fits[i]);
+  std::stable_sort(out.begin(), out.end(), [](const auto* a, const auto* b) { return a->misfit < b->misfit; });
+  if (out.size() > k::pair_leaders) out.resize(k::pair_leaders);
+  return out;
+}
+
+// Each other fault beside a leading one, from the start that screens best.
+std::vector<Attempt> pair_attempts(const std::vector<const Fault*>& faults,
+                                   const std::vector<const HypothesisFit*>& led, const HypothesisData& data,
+                                   std::vector<const HypothesisFit*>& from, FitWork& work) {
+  std::vector<Screened> screened;
+  std::vector<const HypothesisFit*> by;
+  for (std::size_t l = 0; l < led.size(); ++l)
+    for (const Fault* fault : faults) {
+      const bool tried = fault == led[l]->fault || (l > 0 && fault == led[0]->fault);
+      if (tried) continue;
+      for (const double severity : starting_severities(*fault, data.settings.null_limit))
+        screened.push_back({led[l]->fault, severity, 1e300, fault}), by.push_back(led[l]);
+    }
+  side_by_side(screened.size(), data, [&](std::size_t i) { screen(screened[i], data, *by[i]); });
+  std::vector<Attempt> out;
+  double least = 0;
+  for (std::size_t i = 0; i < screened.size(); ++i) {
+    const Screened& s = screened[i];
+    work.add(s.work);
+    const bool same = !out.empty() && out.back().fault == s.fault && out.back().beside == s.beside;
+    if (same && s.misfit >= least) continue;
+    least = s.misfit;
+    Attempt a{s.fault, by[i]->severity, s.beside, s.severity};
+    if (same)
+      out.back() = std::move(a);
+    else
+      out.push_back(std::move(a)), from.push_back(by[i]);
+  }
+  return out;
+}
+
+void fit_pairs(const std::vector<const Fault*>& faults, const HypothesisData& data, HypothesisFits& fits) {
+  const std::vector<const HypothesisFit*> led = leading(fits);
+  std::vector<const HypothesisFit*> from;
+  std::vector<Attempt> attempts = pair_attempts(faults, led, data, from, fits.work);
+  side_by_side(attempts.size(), data,
+               [&](std::size_t i) { run(attempts[i], data, from[i], data.settings.iterations); });
+  for (Attempt& a : attempts) {
+    fits.work.add(a.work);
+    if (a.fit.ok) fits.pairs.push_back(std::move(a.fit));
+  }
+}
+
 }  // namespace
+
+std::vector<const Fault*> fitted_faults(const std::vector<const LogData*>& logs) {
+  const bool supply_recorded =
+      std::none_of(logs.begin(), logs.end(), [](const LogData* log) { return log->scenario.supply_pressure.empty(); });
+  std::vector<const Fault*> out;
+  for (const Fault* fault : fault_list()) {
+    const bool driver = fault->told_by == Record::driver;  // without its record its twin stands for it
+    const bool supply = fault->told_by == Record::supply && supply_recorded;
+    if (!driver && !supply) out.push_back(fault);
+  }
+  return out;
+}
 
 std::size_t best_fit(const HypothesisFits& fits) {
   std::size_t best = 0;
@@ -136,10 +208,10 @@ std::size_t best_fit(const HypothesisFits& fits) {
   return best;
 }
 
-HypothesisFits fit_hypotheses(const LogData& log, const ParameterVector& base, const ErrorModel& error,
-                              const HypothesisSettings& settings) {
-  const HypothesisData data{log, base, error, settings, reference_of(log, base, settings.threads)};
-  const std::vector<const Fault*>& faults = settings.among.empty() ? fault_list() : settings.among;
+HypothesisFits fit_hypotheses(const std::vector<const LogData*>& logs, const ParameterVector& base,
+                              const ErrorModel& error, const HypothesisSettings& settings) {
+  const HypothesisData data = hypothesis_data(logs, base, error, settings);
+  const std::vector<const Fault*> faults = settings.among.empty() ? fitted_faults(logs) : settings.among;
   Steps steps(settings, faults.size());
   Attempt health;
   run(health, data, nullptr, settings.iterations);
@@ -152,7 +224,7 @@ HypothesisFits fit_hypotheses(const LogData& log, const ParameterVector& base, c
   begin_health_again(health, attempts, data, steps);
 
   HypothesisFits out;
-  out.degrees = independent_samples(log, error);
+  out.degrees = independent_samples(logs, error);
   out.healthy_square = std::move(health.square);
   out.work = health.work;
   for (const Screened& s : screened) out.work.add(s.work);
@@ -161,6 +233,7 @@ HypothesisFits fit_hypotheses(const LogData& log, const ParameterVector& base, c
     out.work.add(a.work);
     out.fits.push_back(std::move(a.fit));
   }
+  if (settings.pairs) fit_pairs(faults, data, out);
   return out;
 }
 
@@ -169,12 +242,11 @@ std::vector<double> square_beyond_beginning(const LogData& log, std::size_t end,
                                             FitWork& work) {
   const LogData beginning = slice(log, 0, end);
   Attempt health;
-  run(health, {beginning, base, error, settings, reference_of(beginning, base, settings.threads)}, nullptr,
-      settings.iterations);
+  run(health, hypothesis_data({&beginning}, base, error, settings), nullptr, settings.iterations);
   work.add(health.work);
   if (!health.fit.ok) return {};
   FitProblem problem({&log}, base, health.fit.free);
-  whiten(problem, error, reference_of(log, base, settings.threads));
+  whiten(problem, 0, error, reference_of(log, base, settings.threads));
   const Evaluation e = problem.evaluate(std::span(&health.fit.point, 1)).front();
   work.add({problem.simulations(), problem.failed_simulations()});
   return e.ok ? squares(problem, e.residual, error) : std::vector<double>{};

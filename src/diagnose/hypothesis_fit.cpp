@@ -25,16 +25,21 @@ namespace k = diagnose_constants;
 FitProblem problem_of(const HypothesisData& data, const std::vector<FreeValue>& free) {
   SimulateOptions options;
   options.threads = 1;
-  return {{&data.log}, data.base, free, options};
+  FitProblem problem(data.logs, data.base, free, options);
+  for (std::size_t l = 0; l < data.logs.size(); ++l)
+    whiten(problem, static_cast<int>(l), data.error, data.references[l]);
+  return problem;
 }
 
-Point starting_point(const HypothesisFit& so_far, const FitProblem& problem, const HypothesisFit* health) {
+Point starting_point(const HypothesisFit& so_far, const FitProblem& problem, const HypothesisFit* from) {
   if (so_far.ok) return so_far.point;
   Point x = problem.start();
-  if (health && health->ok)
+  if (from && from->ok)
     for (std::size_t j = 0; j < x.size(); ++j)
-      for (std::size_t i = 0; i < health->free.size(); ++i)
-        if (problem.free()[j].name == health->free[i].name) x[j] = health->point[i];
+      for (std::size_t i = 0; i < from->free.size(); ++i) {
+        const FreeValue &a = problem.free()[j], &b = from->free[i];
+        if (a.name == b.name && a.log == b.log && a.lower == b.lower && a.upper == b.upper) x[j] = from->point[i];
+      }
   return x;
 }
 
@@ -53,10 +58,10 @@ LeastSquaresResult minimise(FitProblem& problem, const Point& from, int iteratio
 }
 
 // A value on its bound has no error; a fault's severity, the first, has one everywhere.
-std::vector<double> standard_errors(const LeastSquaresResult& r, bool of_fault) {
+std::vector<double> standard_errors(const LeastSquaresResult& r, std::size_t faults) {
   std::vector<char> kept(r.point.size());
   for (std::size_t j = 0; j < kept.size(); ++j)
-    kept[j] = (of_fault && j == 0) || (r.point[j] > k::on_bound && r.point[j] < 1 - k::on_bound);
+    kept[j] = j < faults || (r.point[j] > k::on_bound && r.point[j] < 1 - k::on_bound);
   const Eigen::MatrixXd covariance = covariance_of(r.jacobian, kept);
   std::vector<double> errors;
   for (std::size_t j = 0; j < kept.size(); ++j)
@@ -64,53 +69,69 @@ std::vector<double> standard_errors(const LeastSquaresResult& r, bool of_fault) 
   return errors;
 }
 
+void measure_channel(HypothesisFit& fit, const FitProblem& problem, const Eigen::VectorXd& residual,
+                     const HypothesisData& data, int log, int channel) {
+  const LogData& of = *data.logs[static_cast<std::size_t>(log)];
+  const FitChannel& c = of.channels[static_cast<std::size_t>(channel)];
+  const auto [at, n] = problem.rows(log, channel);
+  const double effective = effective_of(data.error.find(c.signal), of.scenario.time);
+  const auto present = static_cast<double>(std::max(1L, present_samples(c)));
+  fit.channel_adequacy.push_back(std::sqrt(residual.segment(at, n).squaredNorm() / present / effective));
+  const std::vector<double>& sigma = problem.sigma(log, channel);
+  double raw = 0;
+  for (std::size_t i = 0; i < sigma.size(); ++i) {
+    const double v = residual[at + static_cast<long>(i)] * sigma[i];
+    raw += v * v;
+  }
+  fit.channel_rms.push_back(std::sqrt(raw / present));
+}
+
 void measure_channels(HypothesisFit& fit, const FitProblem& problem, const Eigen::VectorXd& residual,
                       const HypothesisData& data) {
-  const std::size_t samples = data.log.scenario.time.size();
-  for (std::size_t c = 0; c < data.log.channels.size(); ++c) {
-    const auto [at, n] = problem.rows(0, static_cast<int>(c));
-    const ChannelError* e = data.error.find(data.log.channels[c].signal);
-    const double effective = effective_of(e, data.log.scenario.time);
-    const auto present = static_cast<double>(std::max(1L, present_samples(data.log.channels[c])));
-    fit.channel_adequacy.push_back(std::sqrt(residual.segment(at, n).squaredNorm() / present / effective));
-    double raw = 0;
-    for (std::size_t i = 0; i < samples; ++i) {
-      const double v = residual[at + static_cast<long>(i)] * problem.sigma(0, static_cast<int>(c))[i];
-      raw += v * v;
-    }
-    fit.channel_rms.push_back(std::sqrt(raw / present));
-  }
+  for (std::size_t l = 0; l < data.logs.size(); ++l)
+    for (std::size_t c = 0; c < data.logs[l]->channels.size(); ++c)
+      measure_channel(fit, problem, residual, data, static_cast<int>(l), static_cast<int>(c));
 }
 
 // The curvature at the end, inflated where the model does not fit as well as it should, and the fault's own spread.
-void measure_severity(HypothesisFit& fit, const Fault& fault) {
-  const FreeValue& severity = fit.free[0];
-  const double at = fit.point[0];
+FaultSize measure_severity(const HypothesisFit& fit, const Fault& fault, std::size_t j) {
+  const FreeValue& severity = fit.free[j];
+  const double at = fit.point[j];
   const double worst = *std::max_element(fit.channel_adequacy.begin(), fit.channel_adequacy.end());
   const double range = fault.log_scale ? std::log(severity.upper / severity.lower) : severity.upper - severity.lower;
   const double half =
-      k::deviates_of_95 * std::hypot(fit.standard_error[0] * std::max(1.0, worst), fault.spread / range);
-  fit.severity = severity.from_unit(at);
+      k::deviates_of_95 * std::hypot(fit.standard_error[j] * std::max(1.0, worst), fault.spread / range);
   const auto beyond_health = [&](double u) { return std::abs(severity.from_unit(u) - fault.healthy); };
   const double mild = beyond_health(0.0) < beyond_health(1.0) ? 0.0 : 1.0;
-  fit.at_least = std::abs(at - mild) < k::at_end_part;
-  fit.at_worst = std::abs(at - (1 - mild)) < k::at_end_part;
-  fit.severity_lower = severity.from_unit(std::clamp(at - half, 0.0, 1.0));
-  fit.severity_upper = severity.from_unit(std::clamp(at + half, 0.0, 1.0));
+  FaultSize size;
+  size.fault = &fault;
+  size.severity = severity.from_unit(at);
+  size.at_least = std::abs(at - mild) < k::at_end_part;
+  size.at_worst = std::abs(at - (1 - mild)) < k::at_end_part;
+  size.severity_lower = severity.from_unit(std::clamp(at - half, 0.0, 1.0));
+  size.severity_upper = severity.from_unit(std::clamp(at + half, 0.0, 1.0));
+  return size;
 }
 
 }  // namespace
 
-void run(Attempt& a, const HypothesisData& data, const HypothesisFit* health, int iterations) {
+HypothesisData hypothesis_data(const std::vector<const LogData*>& logs, const ParameterVector& base,
+                               const ErrorModel& error, const HypothesisSettings& settings) {
+  HypothesisData data{logs, base, error, settings, {}};
+  for (const LogData* log : logs) data.references.push_back(reference_of(*log, base, settings.threads));
+  return data;
+}
+
+void run(Attempt& a, const HypothesisData& data, const HypothesisFit* from, int iterations) {
   const std::function<bool()>& stop = data.settings.stop;
   if (stop && stop()) return;
   HypothesisFit& fit = a.fit;
   fit.fault = a.fault;
-  fit.free = hypothesis_values(data.log, data.base, a.fault, a.start, data.settings.null_limit);
+  fit.free = hypothesis_values(data.logs, data.base, {{a.fault, a.start}, {a.beside, a.start_beside}},
+                               data.settings.null_limit);
   FitProblem problem = problem_of(data, fit.free);
   problem.difference_step = k::difference_step;
-  whiten(problem, data.error, data.reference);
-  const LeastSquaresResult r = minimise(problem, starting_point(fit, problem, health), iterations, stop);
+  const LeastSquaresResult r = minimise(problem, starting_point(fit, problem, from), iterations, stop);
   a.work.add({problem.simulations(), problem.failed_simulations()});
   fit.stops = {r.stopped};
   fit.standard_error.clear(), fit.channel_adequacy.clear(), fit.channel_rms.clear();
@@ -118,18 +139,20 @@ void run(Attempt& a, const HypothesisData& data, const HypothesisFit* health, in
   fit.ok = true;
   fit.misfit = 2 * r.misfit;
   fit.point = r.point;
-  fit.standard_error = standard_errors(r, a.fault != nullptr);
+  fit.standard_error = standard_errors(r, a.beside ? 2 : a.fault ? 1 : 0);
   a.square = squares(problem, r.residual, data.error);
   measure_channels(fit, problem, r.residual, data);
-  if (a.fault) measure_severity(fit, *a.fault);
+  if (a.fault) static_cast<FaultSize&>(fit) = measure_severity(fit, *a.fault, 0);
+  if (a.beside) fit.beside = measure_severity(fit, *a.beside, 1);
 }
 
-void screen(Screened& s, const HypothesisData& data, const HypothesisFit& health) {
+void screen(Screened& s, const HypothesisData& data, const HypothesisFit& from) {
   // The unit interval of a severity depends on its sign.
-  FitProblem problem =
-      problem_of(data, hypothesis_values(data.log, data.base, s.fault, s.severity, data.settings.null_limit));
-  whiten(problem, data.error, data.reference);
-  const Point x = starting_point({}, problem, &health);
+  const std::vector<FaultStart> faults = s.beside
+                                             ? std::vector<FaultStart>{{s.fault, from.severity}, {s.beside, s.severity}}
+                                             : std::vector<FaultStart>{{s.fault, s.severity}};
+  FitProblem problem = problem_of(data, hypothesis_values(data.logs, data.base, faults, data.settings.null_limit));
+  const Point x = starting_point({}, problem, &from);
   const Evaluation e = problem.evaluate(std::span(&x, 1)).front();
   if (e.ok) s.misfit = e.residual.squaredNorm();
   s.work = {problem.simulations(), problem.failed_simulations()};

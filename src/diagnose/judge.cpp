@@ -1,32 +1,23 @@
 #include "diagnose/judge.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
-#include <numeric>
 #include <vector>
 
-#include "diagnose/conditions.h"
 #include "diagnose/constants.h"
 #include "diagnose/healthy_law.h"
-#include "evidence/posterior.h"
+#include "diagnose/naming.h"
+#include "diagnose/records.h"
+#include "evidence/conditions.h"
+#include "evidence/probabilities.h"
 #include "evidence/rank_promise.h"
+#include "evidence/tail_law.h"
 
 namespace servodx {
 namespace {
 
 namespace k = diagnose_constants;
-
-void size_by_fit(Diagnosis& d, const HypothesisResult& h) {
-  d.severity = {h.severity, h.severity_lower, h.severity_upper};
-}
-
-// The worst of the fault, up to the mildest that the finding leaves open.
-void size_outright(Diagnosis& d, const HypothesisResult& h) {
-  const double worst = h.fault->worst, mildest = h.fault->seen_outright->mildest;
-  d.severity.value = worst;
-  d.severity.lower = worst < mildest ? worst : std::min(mildest, h.severity_lower);
-  d.severity.upper = worst < mildest ? std::max(mildest, h.severity_upper) : worst;
-}
 
 std::optional<Diagnosis::Unlike> unlike_all(const TestConditions& test, const DetectionBaseline& baseline) {
   const DetectionBaseline::Score* nearest = nearest_of_unlike(test, baseline);
@@ -40,16 +31,6 @@ double p_value_of(double error, const DetectionBaseline& baseline, const Healthy
   return rank_p_value(error, healthy);
 }
 
-// Health against all faults together: even where the verdict turns, so that no probability contradicts it. The faults
-// share the rest as their fits do.
-void weigh_health(std::vector<double>& probabilities, double chance, double rate) {
-  const double odds = factor_for_nothing(chance) / factor_for_nothing(rate), healthy = odds / (1 + odds);
-  const double faults = std::accumulate(probabilities.begin() + 1, probabilities.end(), 0.0);
-  if (!(faults > 0)) return;
-  probabilities.front() = healthy;
-  for (std::size_t i = 1; i < probabilities.size(); ++i) probabilities[i] *= (1 - healthy) / faults;
-}
-
 Suspicion suspicion_of(const HypothesisResult& h, double gain, const HealthyLaw& law) {
   return {h.fault,
           h.severity,
@@ -60,50 +41,91 @@ Suspicion suspicion_of(const HypothesisResult& h, double gain, const HealthyLaw&
           law.logs_needed(gain)};
 }
 
+double rate_of_records(const DetectionBaseline& b) {
+  return rate_of_question(b.asked, static_cast<int>(b.scores.size()), k::share_of_records);
+}
+
+std::size_t position_of(const Fault* fault, const Assessment& a) {
+  std::size_t i = 0;
+  while (i + 1 < a.hypotheses.size() && a.hypotheses[i].fault != fault) ++i;
+  return i;
+}
+
+PairEvidence pair_of(const PairResult& p, const Assessment& a, const FaultGains& usual) {
+  const auto known = usual.find(p.second.fault);
+  const double of_health = known == usual.end() ? 0.0 : known->second;
+  return {position_of(p.first.fault, a),
+          position_of(p.second.fault, a),
+          std::sqrt(std::max(0.0, p.gain) / (1 + of_health)),
+          p.adequacy,
+          p.first.at_least || p.second.at_least,
+          p.first.at_worst || p.second.at_worst};
+}
+
+// What no log parts from the fault named that does not record the current.
+bool has_twin(const Diagnosis& d) { return d.fault && d.fault->twin && !d.assessment.current_recorded; }
+
+// Of the first fault named.
+void take_first(Diagnosis& d) {
+  if (d.faults.empty()) return;
+  const NamedFault& first = d.faults.front();
+  d.fault = first.fault;
+  d.severity = {first.severity, first.lower, first.upper};
+  if (first.record && first.record->since) d.onset = first.record->since;
+}
+
 }  // namespace
 
-Evidence evidence_of(const Assessment& a, const DetectionBaseline& baseline) {
-  const SuspectLog suspect = suspect_of(a);
-  const HealthyLaw law(baseline, &suspect);
+std::vector<RecordFinding> records_of(const Assessment& a, const DetectionBaseline& baseline) {
+  std::vector<std::vector<RecordFigure>> healthy;
+  for (const DetectionBaseline::Score& s : baseline.scores) healthy.push_back(s.figures);
+  return record_findings(a.figures, a.broken, healthy, rate_of_records(baseline));
+}
+
+Evidence evidence_of(const Assessment& a, const DetectionBaseline& baseline, const HealthyLaw& law) {
+  FaultGains usual = usual_gains(baseline);
+  for (auto& [fault, gain] : usual) gain *= static_cast<double>(std::max<std::size_t>(1, a.logs.size()));
   Evidence e;
-  e.gain = score_of(a, usual_gains(baseline));
+  e.gain = score_of(a, usual);
   e.error = law.error_of(e.gain, a.hypotheses.front().adequacy);
   e.threshold = law.limit();
   e.usual_adequacy = baseline.adequacy_limit;
   e.gross = a.gross;
   for (const HypothesisResult& h : a.hypotheses)
     e.hypotheses.push_back({h.fault, h.probability, h.adequacy, h.at_worst, h.gain});
+  if (!a.pairs.empty()) e.pair = pair_of(a.pairs.front(), a, usual);
+  for (const RecordFinding& f : records_of(a, baseline)) e.records.push_back({*f.fault->told_by, f.broken.has_value()});
   return e;
 }
 
 Diagnosis judge(Assessment a, const DetectionBaseline& baseline) {
-  const Evidence evidence = evidence_of(a, baseline);
-  Decision decision = decide(evidence);
-  const HypothesisResult& told = a.hypotheses[decision.hypothesis];
+  const SuspectLog suspect = suspect_of(a);
+  const HealthyLaw law(baseline, &suspect);
+  const Evidence evidence = evidence_of(a, baseline, law);
+  const Decision decision = decide(evidence);
   Diagnosis d;
   d.log = a.log;
   d.verdict = decision.verdict;
   d.error = evidence.error, d.threshold = evidence.threshold;
-  const SuspectLog suspect = suspect_of(a);
-  const HealthyLaw law(baseline, &suspect);
   d.p_value = p_value_of(evidence.error, baseline, law);
   d.baseline_logs = law.logs();
-  if (decision.verdict != VerdictKind::unknown && decision.severity != SeveritySource::seen_outright)
-    weigh_health(decision.probabilities, law.chance_of_gain(evidence.gain), law.rate());
+  d.records = records_of(a, baseline);
+  const Named named{
+      a, decision, d.records, law, evidence.gain, evidence.pair ? evidence.pair->gain : 0.0, rate_of_records(baseline)};
+  d.faults = name_faults(named);
+  d.probabilities = probabilities_of(named, d.faults);
   if (decision.suspected && law.chance_of_gain(evidence.gain) <= k::worth_saying)
     d.suspicion = suspicion_of(a.hypotheses[*decision.suspected], evidence.gain, law);
   d.unlike = unlike_all(a.test, baseline);
-  for (std::size_t i = 0; i < a.hypotheses.size(); ++i)
-    d.probabilities.push_back({a.hypotheses[i].fault, decision.probabilities[i]});
   for (const std::size_t i : decision.ambiguous) d.ambiguous_with.push_back(a.hypotheses[i].fault);
-  if (decision.verdict == VerdictKind::fault) d.fault = told.fault;
-  if (decision.severity == SeveritySource::fit) size_by_fit(d, told);
-  if (decision.severity == SeveritySource::seen_outright) size_outright(d, told);
-  d.onset = a.onset;
+  const HypothesisResult& told = a.hypotheses[decision.hypothesis];
   d.nearest = told.fault;
   d.null = told.null;
   d.moved = told.moved;
+  d.onset = a.onset;
   d.assessment = std::move(a);
+  take_first(d);
+  if (has_twin(d)) d.ambiguous_with.push_back(d.fault->twin);
   return d;
 }
 

@@ -6,12 +6,16 @@
 
 #include "diagnose/assessment.h"
 #include "diagnose/baseline.h"
-#include "diagnose/conditions.h"
 #include "diagnose/decide.h"
 #include "diagnose/moved.h"
+#include "diagnose/naming.h"
+#include "diagnose/record_law.h"
+#include "evidence/conditions.h"
 #include "faults/fault.h"
 
 namespace servodx {
+
+class HealthyLaw;
 
 // What stands first in a log that cannot be told from healthy ones.
 struct Suspicion {
@@ -34,14 +38,11 @@ struct Diagnosis {
     TestConditions test;
   };
   std::optional<Unlike> unlike;
-  const Fault* fault = nullptr;        // the one named
-  std::optional<Suspicion> suspicion;  // of a healthy verdict
-  struct Probability {
-    const Fault* of = nullptr;  // null: healthy
-    double value = 0;
-  };
-  std::vector<Probability> probabilities;    // all 0 of an unknown state: that none of them holds is certain
-  std::vector<const Fault*> ambiguous_with;  // null: healthy
+  const Fault* fault = nullptr;                 // the one named, the first of `faults`
+  std::vector<NamedFault> faults;               // none, one or two
+  std::optional<Suspicion> suspicion;           // of a healthy verdict
+  std::vector<FaultProbability> probabilities;  // all 0 of an unknown state: that none of them holds is certain
+  std::vector<const Fault*> ambiguous_with;     // null: healthy
   struct {
     double value = 0, lower = 0, upper = 0;  // [the fault's unit]
   } severity;
@@ -50,11 +51,15 @@ struct Diagnosis {
                                    // most probable; null: healthy
   double null = 0;                 // [fraction of rated]
   std::vector<MovedRow> moved;
+  std::vector<RecordFinding> records;  // all that are beyond what healthy logs show
   Assessment assessment;
 };
 
 // What the rules of the verdict look at.
-Evidence evidence_of(const Assessment& assessment, const DetectionBaseline& baseline);
+Evidence evidence_of(const Assessment& assessment, const DetectionBaseline& baseline, const HealthyLaw& law);
+
+// What the records tell beyond what healthy logs show.
+std::vector<RecordFinding> records_of(const Assessment& assessment, const DetectionBaseline& baseline);
 
 Diagnosis judge(Assessment assessment, const DetectionBaseline& baseline);
 

@@ -4,9 +4,16 @@
 #include <algorithm>
 
 #include "base/error.h"
+#include "diagnose/assessment.h"
+#include "diagnose/baseline.h"
 #include "diagnose/diagnose.h"
 #include "fit/nominal.h"
 #include "fit/tuned_state.h"
+#include "parameters/table.h"
+#include "servodx/diagnose.h"
+#include "servodx/log.h"
+#include "servodx/rig.h"
+#include "servodx/watch.h"
 
 namespace servodx {
 namespace {

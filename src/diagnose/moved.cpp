@@ -5,9 +5,8 @@
 
 #include "diagnose/constants.h"
 #include "effects/registry.h"
+#include "fit/chart.h"
 #include "fit/identifiability.h"
-#include "fit/log_data.h"
-#include "fit/problem.h"
 #include "optimise/problem.h"
 #include "parameters/list.h"
 #include "simulate/scenario.h"
@@ -30,11 +29,10 @@ std::optional<RowName> name_of(const Table& tuned, int position) {
 
 }  // namespace
 
-std::vector<MovedRow> moved_rows(const HypothesisFit& fit, const LogData& log, const ParameterVector& base,
-                                 const Table& tuned) {
+std::vector<MovedRow> moved_rows(const HypothesisFit& fit, const ParameterVector& base, const Table& tuned) {
   if (!fit.ok) return {};
-  const FitProblem problem({&log}, base, fit.free);
-  const ParameterVector best = problem.candidate(fit.point, 0);
+  const Chart chart(base, fit.free);
+  const ParameterVector best = chart.candidate(fit.point, 0);
   // Which free values move a position, and by how much within one error.
   std::vector<double> variance(best.size(), 0.0);
   std::vector<char> on_bound(best.size(), 0);
@@ -52,8 +50,7 @@ std::vector<MovedRow> moved_rows(const HypothesisFit& fit, const LogData& log, c
     }
     Point far = fit.point;  // whose rows these are does not hang on an error
     far[j] = fit.point[j] > 0.5 ? 0.0 : 1.0;
-    const ParameterVector from = problem.candidate(low, 0), to = problem.candidate(high, 0),
-                          away = problem.candidate(far, 0);
+    const ParameterVector from = chart.candidate(low, 0), to = chart.candidate(high, 0), away = chart.candidate(far, 0);
     for (std::size_t i = 0; i < best.size(); ++i) {
       if (away[i] == best[i]) continue;
       const double half = 0.5 * (to[i] - from[i]) / deviates;

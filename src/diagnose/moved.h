@@ -4,7 +4,10 @@
 #include <vector>
 
 #include "diagnose/hypotheses.h"
+#include "fit/log_data.h"
 #include "parameters/table.h"
+#include "servodx/tune.h"
+#include "simulate/scenario.h"
 #include "tune/tune.h"
 
 namespace servodx {
@@ -13,9 +16,8 @@ struct MovedRow : ParameterResult {
   enum class By { fault, tolerance, nuisance } by = By::nuisance;
 };
 
-// `base`: the tuned candidate. Rows of the table and of effects; a sensor's offset and the like are no valve's rows. A
-// value that ended on a bound has no error.
-std::vector<MovedRow> moved_rows(const HypothesisFit& fit, const LogData& log, const ParameterVector& base,
-                                 const Table& tuned);
+// `base`: the tuned candidate. Of several logs the first. Rows of the table and of effects; a sensor's offset and the
+// like are no valve's rows. A value that ended on a bound has no error.
+std::vector<MovedRow> moved_rows(const HypothesisFit& fit, const ParameterVector& base, const Table& tuned);
 
 }  // namespace servodx

@@ -5,6 +5,9 @@
 
 #include "diagnose/constants.h"
 #include "evidence/probabilities.h"
+#include "fit/error_model.h"
+#include "fit/log_data.h"
+#include "simulate/scenario.h"
 
 namespace servodx {
 namespace {
@@ -59,8 +62,11 @@ bool onset_possible(const LogData& log) { return log.scenario.time.size() >= 4 *
 std::optional<Onset> find_onset(const LogData& log, const ParameterVector& base, const ErrorModel& error,
                                 const HypothesisSettings& settings, const HypothesisFits& whole, FitWork& work) {
   for (const std::size_t at : likely_changes(log, base, error, settings, whole, work)) {
-    const HypothesisFits before = fit_hypotheses(slice(log, 0, at), base, error, settings);
-    HypothesisFits after = fit_hypotheses(slice(log, at, log.scenario.time.size()), base, error, settings);
+    const LogData first = slice(log, 0, at), rest = slice(log, at, log.scenario.time.size());
+    HypothesisSettings single = settings;
+    single.pairs = false;
+    const HypothesisFits before = fit_hypotheses({&first}, base, error, single);
+    HypothesisFits after = fit_hypotheses({&rest}, base, error, single);
     work.add(before.work), work.add(after.work);
     // What was gone before cannot be the fault that is there after: that fault gains next to nothing before.
     const std::size_t fault = best_fit(after);

@@ -8,6 +8,9 @@
 #include <vector>
 
 #include "diagnose/hypotheses.h"
+#include "fit/error_model.h"
+#include "fit/log_data.h"
+#include "simulate/scenario.h"
 
 namespace servodx {
 

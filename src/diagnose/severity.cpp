@@ -5,8 +5,12 @@
 #include <string>
 
 #include "diagnose/constants.h"
+#include "diagnose/hypotheses.h"
 #include "faults/registry.h"
+#include "fit/chart.h"
 #include "fit/free_values.h"
+#include "fit/log_data.h"
+#include "simulate/scenario.h"
 
 namespace servodx {
 namespace {
@@ -16,7 +20,7 @@ namespace k = diagnose_constants;
 // Severity as a free number, from the mildest that is called a fault to the worst, on the side of the start.
 FreeValue severity_value(const Fault& fault, double start, double null_limit) {
   FreeValue f;
-  f.name = "severity";
+  f.name = std::string("severity of ") + std::string(fault.name);
   f.apply = fault.apply;
   f.log_scale = fault.log_scale;
   double least = fault.beyond_limit_of ? null_limit : fault.least, worst = fault.worst;
@@ -39,7 +43,6 @@ FreeValue tolerance_value(const Fault& fault) {
   f.apply = fault.apply;
   f.log_scale = fault.log_scale;
   f.start = fault.healthy;
-  f.log = 0;
   if (fault.log_scale) {
     f.lower = std::min(fault.least, fault.healthy * fault.healthy / fault.least);
     f.upper = std::max(fault.least, fault.healthy * fault.healthy / fault.least);
@@ -60,15 +63,21 @@ FreeValue tolerance_value(const Fault& fault) {
 
 }  // namespace
 
-std::vector<FreeValue> hypothesis_values(const LogData& log, const ParameterVector& base, const Fault* fault,
-                                         double start, double null_limit) {
+std::vector<FreeValue> hypothesis_values(const std::vector<const LogData*>& logs, const ParameterVector& base,
+                                         const std::vector<FaultStart>& faults, double null_limit) {
   std::vector<FreeValue> free;
-  if (fault) free.push_back(severity_value(*fault, start, null_limit));
-  for (FreeValue& f : nuisance_values(log, 0, base, null_limit))
-    if (!(fault && f.at == fault->beyond_limit_of)) free.push_back(std::move(f));
+  const auto among = [&](const auto& matches) {
+    return std::any_of(faults.begin(), faults.end(), [&](const FaultStart& s) { return s.fault && matches(*s.fault); });
+  };
+  for (const FaultStart& s : faults)
+    if (s.fault) free.push_back(severity_value(*s.fault, s.severity, null_limit));
+  for (std::size_t l = 0; l < logs.size(); ++l)
+    for (FreeValue& f : nuisance_values(*logs[l], static_cast<int>(l), base, null_limit))
+      if (!among([&](const Fault& fault) { return f.at == fault.beyond_limit_of; })) free.push_back(std::move(f));
   // A row within its limit is a nuisance already.
-  for (const Fault* other : fault_list())
-    if (other != fault && !other->beyond_limit_of) free.push_back(tolerance_value(*other));
+  for (const Fault* other : fitted_faults(logs))
+    if (!among([&](const Fault& fault) { return &fault == other; }) && !other->beyond_limit_of)
+      free.push_back(tolerance_value(*other));
   return free;
 }
 

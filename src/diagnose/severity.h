@@ -6,13 +6,20 @@
 #include <vector>
 
 #include "faults/fault.h"
+#include "fit/chart.h"
+#include "fit/log_data.h"
 #include "fit/problem.h"
+#include "simulate/scenario.h"
 
 namespace servodx {
 
-// The severity first, where there is a fault. `start`: of the severity; its sign chooses the side.
-std::vector<FreeValue> hypothesis_values(const LogData& log, const ParameterVector& base, const Fault* fault,
-                                         double start, double null_limit);
+struct FaultStart {
+  const Fault* fault = nullptr;  // null: left out
+  double severity = 0;           // its sign chooses the side
+};
+// The faults' severities first. Shared by the logs but for each log's nuisances.
+std::vector<FreeValue> hypothesis_values(const std::vector<const LogData*>& logs, const ParameterVector& base,
+                                         const std::vector<FaultStart>& faults, double null_limit);
 
 // Severities to begin at.
 std::vector<double> starting_severities(const Fault& fault, double null_limit);

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "diagnose/check_log.h"
-#include "diagnose/conditions.h"
+#include "evidence/conditions.h"
 #include "fit/log_data.h"
 #include "servodx/log.h"
 #include "servodx/rig.h"

@@ -4,12 +4,14 @@
 #include <cmath>
 
 #include "fit/identifiability.h"
+#include "fit/log_data.h"
+#include "simulate/scenario.h"
 #include "simulate/together.h"
 
 namespace servodx {
 
-void whiten(FitProblem& problem, const ErrorModel& error, const Trajectory& reference) {
-  const LogData& log = *problem.logs().front();
+void whiten(FitProblem& problem, int of_log, const ErrorModel& error, const Trajectory& reference) {
+  const LogData& log = *problem.logs()[static_cast<std::size_t>(of_log)];
   for (std::size_t c = 0; c < log.channels.size(); ++c) {
     const FitChannel& channel = log.channels[c];
     const ChannelError* e = error.find(channel.signal);
@@ -20,7 +22,7 @@ void whiten(FitProblem& problem, const ErrorModel& error, const Trajectory& refe
     std::vector<double> sigma = sigma_of(e, channel.noise, act);
     const double scale = 1.0 / std::sqrt(effective_of(e, log.scenario.time));
     for (double& s : sigma) s *= scale;
-    problem.set_sigma(0, static_cast<int>(c), std::move(sigma));
+    problem.set_sigma(of_log, static_cast<int>(c), std::move(sigma));
   }
 }
 

@@ -7,11 +7,13 @@
 #include "diagnose/diagnose.h"
 #include "diagnose/judge.h"
 #include "diagnose/moved.h"
+#include "diagnose/naming.h"
 #include "door/baseline_parts.h"
 #include "faults/fault.h"
 #include "report/diagnosis_words.h"
 #include "servodx/baseline.h"
 #include "servodx/diagnose.h"
+#include "servodx/error.h"
 #include "servodx/log.h"
 #include "servodx/rig.h"
 #include "servodx/tune.h"
@@ -47,6 +49,11 @@ Verdict verdict_of(Diagnosis d) {
     out.fault = report::label_of(d.fault);
     out.severity = {d.severity.value, d.severity.lower, d.severity.upper, report::unit_of(d.fault)};
   }
+  for (const NamedFault& f : d.faults)
+    out.faults.push_back({report::label_of(f.fault),
+                          f.probability,
+                          {f.severity, f.lower, f.upper, report::unit_of(f.fault)},
+                          report::channel_of(f)});
   out.probabilities = report::labelled_probabilities(d);
   out.ambiguous_with = report::ambiguous_labels(d);
   out.separating_test = report::separating_test_of(d);
@@ -75,19 +82,25 @@ std::string name_of(Verdict::Kind kind) {
   return "";
 }
 
-Verdict diagnose(const Log& log, const Tuned& tuned, const Rig& rig, const Baseline& baseline,
-                 const DiagnoseOptions& options) {
+Verdict diagnose_pool(const std::vector<Log>& logs, const Tuned& tuned, const Rig& rig, const Baseline& baseline,
+                      const DiagnoseOptions& options) {
   options.validate();
+  if (logs.empty()) throw InputError({}, "no log is given", "give the logs of one valve in one state");
   require_same_table(baseline, tuned);
-  Assessment assessment = assess(log, tuned.table, rig, options);
+  Assessment assessment = assess_pool(logs, tuned.table, rig, options);
   if (options.watch.stopped()) {
     Verdict out;
-    out.log = log.path;
+    out.log = assessment.log;
     out.interrupted = true;
     out.simulations = assessment.simulations, out.failed_simulations = assessment.failed_simulations;
     return out;
   }
   return verdict_of(judge(std::move(assessment), parts_of(baseline).detection));
+}
+
+Verdict diagnose(const Log& log, const Tuned& tuned, const Rig& rig, const Baseline& baseline,
+                 const DiagnoseOptions& options) {
+  return diagnose_pool({log}, tuned, rig, baseline, options);
 }
 
 }  // namespace servodx

@@ -2,8 +2,8 @@
 // the fixed orifices set the pilot flow until about half of the area is gone, so a mild one shows only in fast moves.
 #pragma once
 #include "faults/fault.h"
-#include "parameters/list.h"
 #include "faults/maintenance.h"
+#include "parameters/list.h"
 
 namespace servodx {
 

@@ -7,6 +7,7 @@
 #include "effects/registry.h"
 #include "faults/gross_finding.h"
 #include "faults/maintenance.h"
+#include "faults/record.h"
 
 namespace servodx {
 
@@ -43,6 +44,11 @@ struct Fault {
   std::optional<int> beyond_limit_of = {};
   // Maintenance that renews the part, beside what renews the whole valve.
   std::optional<EventKind> renewed_by = {};
+  // Told by a record without the model. An input's fault (supply, driver) is fitted only where its record is missing,
+  // since the record drives the simulation.
+  std::optional<Record> told_by = {};
+  // What moves the same rows, so that no log parts the two that lacks the other's record.
+  const Fault* twin = nullptr;
 };
 
 }  // namespace servodx

@@ -2,6 +2,7 @@
 #pragma once
 #include "faults/fault.h"
 #include "parameters/list.h"
+#include "faults/record.h"
 
 namespace servodx {
 
@@ -17,6 +18,7 @@ inline const Fault sensor_fault{.name = "sensor_fault",
                                 .starts = {0.95, 0.8},
                                 .test = "full strokes open loop against a second position reference",
                                 .action = "abnormal: call service",
-                                .apply = [](double* v, double s) { v[row::position_sensor_gain] *= s; }};
+                                .apply = [](double* v, double s) { v[row::position_sensor_gain] *= s; },
+                                .told_by = Record::sensor};
 
 }  // namespace servodx

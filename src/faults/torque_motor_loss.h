@@ -1,5 +1,6 @@
 // Loss of torque gain: shorted turns or weakened magnets. The spool's static gain and its slew fall together.
 #pragma once
+#include "faults/driver_fault.h"
 #include "faults/fault.h"
 #include "parameters/list.h"
 
@@ -18,6 +19,7 @@ inline const Fault torque_motor_loss{
     .test = "small and full steps: static gain and slew fall together, where a soft wire raises the gain",
     .action = "abnormal: call service",
     .apply = [](double* v, double s) { v[row::torque_motor_gain] *= s; },
-    .failed = 0.2};  // the end of what Borello 2009 studies
+    .failed = 0.2,  // the end of what Borello 2009 studies
+    .twin = &driver_fault};
 
 }  // namespace servodx

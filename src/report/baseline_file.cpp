@@ -10,10 +10,13 @@
 #include "base/key_error.h"
 #include "base/sha256.h"
 #include "diagnose/baseline.h"
-#include "diagnose/conditions.h"
+#include "diagnose/records.h"
+#include "evidence/conditions.h"
 #include "faults/fault.h"
 #include "faults/registry.h"
+#include "report/diagnosis_words.h"
 #include "servodx/error.h"
+#include "servodx/log.h"
 
 namespace servodx::report {
 namespace {
@@ -75,10 +78,30 @@ class Reader {
 TestConditions read_test(const Reader& read, const Json& test) {
   TestConditions c;
   c.drive_span = read.number(test, "scores.test.drive_span", 0, HUGE_VAL);
+  if (test.contains("drive_rms")) c.drive_rms = read.number(test, "scores.test.drive_rms", 0, HUGE_VAL);  // later
   c.drive_band = read.number(test, "scores.test.drive_band", 0, HUGE_VAL);
   if (!read.at(test, "scores.test.temperature").is_null())
     c.temperature = read.number(test, "scores.test.temperature", 0, HUGE_VAL);
   return c;
+}
+
+std::optional<FigureKind> find_figure(const std::string& word) {
+  for (int k = 0; k < n_figure_kinds; ++k)
+    if (words_of(static_cast<FigureKind>(k)) == word) return static_cast<FigureKind>(k);
+  return {};
+}
+
+// A figure that this version does not know is left out.
+std::vector<RecordFigure> read_figures(const Reader& read, const Json& figures) {
+  if (!figures.is_array()) read.refuse("scores.figures", "is no array");
+  std::vector<RecordFigure> out;
+  for (const Json& f : figures) {
+    const auto kind = find_figure(read.text(f, "scores.figures.figure"));
+    const auto signal = find_signal(read.text(f, "scores.figures.signal"));
+    const double value = read.number(f, "scores.figures.value", 0, HUGE_VAL);
+    if (kind && signal) out.push_back({*kind, *signal, value});
+  }
+  return out;
 }
 
 }  // namespace
@@ -112,6 +135,7 @@ BaselineFile read_baseline(const std::string& path) {
       const double gain = read.number(gains, "scores.gains." + name, -any, any);
       if (const Fault* fault = find_fault(name)) b.scores.back().gains[fault] = gain;
     }
+    if (s.contains("figures")) b.scores.back().figures = read_figures(read, s["figures"]);  // nor these
     if (s.contains("test")) b.scores.back().test = read_test(read, s["test"]);  // earlier versions wrote none
   }
   b.adequacy_limit = read.number(file, "adequacy_limit", 0, any);

@@ -13,6 +13,7 @@
 #include "diagnose/baseline.h"
 #include "diagnose/decide.h"
 #include "diagnose/judge.h"
+#include "diagnose/record_law.h"
 #include "faults/fault.h"
 #include "faults/gross_finding.h"
 #include "fit/replay.h"
@@ -61,6 +62,9 @@ std::vector<std::string> reasons(const Diagnosis& d, const DetectionBaseline& ba
   const bool above = d.error > d.threshold;
   const bool seen_outright = d.assessment.gross != GrossFinding::none;
   if (seen_outright) why.push_back("Seen without a fit: " + words_of(d.assessment.gross) + ".");
+  for (const RecordFinding& f : d.records) why.push_back(sentence(record_in_words(f)));
+  for (std::size_t i = 1; i < d.faults.size(); ++i)
+    why.push_back("Beside it stands " + second_in_words(d.faults[i]) + ".");
   why.push_back(
       fmt::format("Its error is {}; the threshold, set by {} fault-free logs, is {}. A fault-free log is as "
                   "far off with {}.",

@@ -3,8 +3,20 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
+#include "diagnose/assessment.h"
+#include "diagnose/baseline.h"
+#include "diagnose/decide.h"
+#include "diagnose/judge.h"
+#include "diagnose/moved.h"
+#include "diagnose/record_law.h"
+#include "diagnose/records.h"
+#include "evidence/conditions.h"
+#include "faults/fault.h"
+#include "faults/gross_finding.h"
+#include "faults/record.h"
 #include "report/handy.h"
 #include "report/replay_part.h"
 
@@ -67,14 +79,14 @@ const HypothesisResult* result_of(const Diagnosis& d, const Fault* hypothesis) {
 }
 
 double probability_of(const Diagnosis& d, const Fault* hypothesis) {
-  for (const Diagnosis::Probability& p : d.probabilities)
+  for (const FaultProbability& p : d.probabilities)
     if (p.of == hypothesis) return p.value;
   return 0;
 }
 
 std::map<std::string, double> labelled_probabilities(const Diagnosis& d) {
   std::map<std::string, double> out;
-  for (const Diagnosis::Probability& p : d.probabilities) out[label_of(p.of)] = p.value;
+  for (const FaultProbability& p : d.probabilities) out[label_of(p.of)] = p.value;
   if (d.verdict == VerdictKind::unknown) out[word_of(d.verdict)] = 1.0;
   return out;
 }
@@ -132,6 +144,62 @@ std::string size_words(const Diagnosis& d) {
   if (h && h->at_least && h->severity == d.severity.value)
     return "at its least, " + handy(d.severity.value, unit_of(d.fault));
   return handy_interval(d.severity.value, d.severity.lower, d.severity.upper, unit_of(d.fault));
+}
+
+std::string words_of(FigureKind kind) {
+  constexpr std::array<const char*, n_figure_kinds> names = {
+      "supply_level", "supply_step", "supply_left", "driver_gain", "driver_offset", "driver_left", "sensor_noise"};
+  return names[static_cast<std::size_t>(kind)];
+}
+
+std::string record_in_words(const RecordFinding& f) {
+  if (f.broken) {
+    const std::string sensor = words(std::string(name_of(f.signal)));
+    switch (*f.broken) {
+      case SensorFinding::frozen:
+        return sensor + " shows one value while the command moves: its sensor or its cable";
+      case SensorFinding::turned:
+        return sensor + " moves against the simulation: its sign";
+      case SensorFinding::swapped_ports:
+        return sensor + " follows the other port's simulation: the two are swapped";
+    }
+  }
+  const std::string unit(info(f.signal).si_unit);
+  const auto beside = [&](double value, double usual) {
+    return fmt::format("{}, on healthy logs {}", handy(value, unit), handy(usual, unit));
+  };
+  switch (*f.figure) {
+    case FigureKind::supply_level:
+      return "supply pressure at no flow " + beside(f.value, f.usual);
+    case FigureKind::supply_step:
+      return fmt::format("the supply pressure steps to {} of itself", digits(f.value));
+    case FigureKind::supply_left:
+      return fmt::format("at its largest flow the supply is left with {} of its pressure, on healthy logs with {}",
+                         digits(f.value), digits(f.usual));
+    case FigureKind::driver_gain:
+      return fmt::format("the current that flows is {} of the command, on healthy logs {}", digits(f.value),
+                         digits(f.usual));
+    case FigureKind::driver_offset:
+      return fmt::format("the current has an offset of {} of rated, on healthy logs of {}", percent(f.value - 1),
+                         percent(f.usual - 1));
+    case FigureKind::driver_left:
+      return fmt::format("{} of the current does not follow the command, on healthy logs {}", percent(f.value),
+                         percent(f.usual));
+    case FigureKind::sensor_noise:
+      return fmt::format("{} scatters by {}", words(std::string(name_of(f.signal))), beside(f.value, f.usual));
+  }
+  return "";
+}
+
+std::string channel_of(const NamedFault& fault) {
+  return fault.fault && fault.fault->told_by == Record::sensor && fault.record
+             ? std::string(name_of(fault.record->signal))
+             : "";
+}
+
+std::string second_in_words(const NamedFault& f) {
+  return fmt::format("{}, {}, {}", label_of(f.fault), handy_interval(f.severity, f.lower, f.upper, unit_of(f.fault)),
+                     chance(f.probability));
 }
 
 std::string suspicion_in_words(const Suspicion& s) {

@@ -4,7 +4,17 @@
 #include <string>
 #include <vector>
 
+#include "diagnose/assessment.h"
+#include "diagnose/baseline.h"
+#include "evidence/conditions.h"
+#include "diagnose/decide.h"
 #include "diagnose/diagnose.h"
+#include "diagnose/judge.h"
+#include "diagnose/moved.h"
+#include "diagnose/record_law.h"
+#include "diagnose/records.h"
+#include "faults/fault.h"
+#include "faults/gross_finding.h"
 #include "fit/replay.h"
 
 namespace servodx::report {
@@ -40,6 +50,14 @@ std::string chance_words(const Diagnosis& d);
 // of it: as a hypothesis beside others "none of it seen"; named all the same, "at its least, 15 % ...".
 std::string size_words(const HypothesisResult& hypothesis);
 std::string size_words(const Diagnosis& d);  // of the fault named; "" without a size
+
+// What a record tells: "the supply pressure is 0.75 of what healthy logs have", "pressure_a shows one value ...".
+std::string words_of(FigureKind kind);  // for files: "supply_level"
+std::string record_in_words(const RecordFinding& finding);
+// The sensor that is meant; "" where no one is.
+std::string channel_of(const NamedFault& fault);
+// "cylinder_leakage, 1.2e-12 m3/s/Pa (...), 98 %" of a second fault beside the first.
+std::string second_in_words(const NamedFault& fault);
 
 // What stands first in a log that cannot be told from healthy ones.
 std::string suspicion_in_words(const Suspicion& suspicion);

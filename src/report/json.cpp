@@ -1,12 +1,17 @@
 #include "report/json.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "diagnose/assessment.h"
 #include "diagnose/baseline.h"
-#include "diagnose/conditions.h"
+#include "diagnose/hypotheses.h"
 #include "diagnose/judge.h"
 #include "diagnose/moved.h"
+#include "diagnose/naming.h"
+#include "diagnose/record_law.h"
+#include "diagnose/records.h"
+#include "evidence/conditions.h"
 #include "report/diagnosis_words.h"
 #include "report/handy.h"
 #include "report/row_verdict_word.h"
@@ -15,12 +20,6 @@ namespace servodx::report {
 namespace {
 
 Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
-
-Json test_json(const TestConditions& test) {
-  return {{"drive_span", number(test.drive_span)},
-          {"drive_band", number(test.drive_band)},
-          {"temperature", test.temperature ? number(*test.temperature) : Json(nullptr)}};
-}
 
 template <class Results>
 Json array_of(const Results& results) {
@@ -68,6 +67,13 @@ Json ceres_json(const TuneResult& result) {
 }
 
 }  // namespace
+
+Json test_json(const TestConditions& test) {
+  return {{"drive_span", number(test.drive_span)},
+          {"drive_rms", number(test.drive_rms)},
+          {"drive_band", number(test.drive_band)},
+          {"temperature", test.temperature ? number(*test.temperature) : Json(nullptr)}};
+}
 
 Json to_json(const Header& header) {
   Json inputs = Json::array();
@@ -140,6 +146,11 @@ Json baseline_json(const DetectionBaseline& b) {
                       {"adequacy", number(s.adequacy)},
                       {"gains", gains}});
     if (s.test) scores.back()["test"] = test_json(*s.test);
+    Json figures = Json::array();
+    for (const RecordFigure& f : s.figures)
+      figures.push_back(
+          {{"figure", words_of(f.kind)}, {"signal", std::string(name_of(f.signal))}, {"value", number(f.value)}});
+    scores.back()["figures"] = std::move(figures);
   }
   return {{"threshold", number(b.threshold)},
           {"false_alarm",
@@ -182,17 +193,59 @@ Json to_json(const Suspicion& s) {
           {"logs_needed", s.logs_needed > 0 ? Json(s.logs_needed) : Json(nullptr)}};
 }
 
-// The likelier first: the one named, and no second.
+Json channel_json(const NamedFault& f) {
+  const std::string channel = channel_of(f);
+  return channel.empty() ? Json(nullptr) : Json(channel);
+}
+
+// The one named first.
 Json faults_json(const Diagnosis& d) {
   Json out = Json::array();
-  if (d.fault)
-    out.push_back({{"name", label_of(d.fault)},
-                   {"probability", number(probability_of(d, d.fault))},
+  for (const NamedFault& f : d.faults)
+    out.push_back({{"name", label_of(f.fault)},
+                   {"channel", channel_json(f)},
+                   {"probability", number(f.probability)},
                    {"severity",
-                    {{"value", number(d.severity.value)},
-                     {"lower", number(d.severity.lower)},
-                     {"upper", number(d.severity.upper)},
-                     {"unit", unit_of(d.fault)}}}});
+                    {{"value", number(f.severity)},
+                     {"lower", number(f.lower)},
+                     {"upper", number(f.upper)},
+                     {"unit", unit_of(f.fault)}}}});
+  return out;
+}
+
+Json records_json(const Diagnosis& d) {
+  Json out = Json::array();
+  for (const RecordFinding& f : d.records)
+    out.push_back({{"fault", label_of(f.fault)},
+                   {"figure", f.figure ? Json(words_of(*f.figure)) : Json(nullptr)},
+                   {"signal", std::string(name_of(f.signal))},
+                   {"value", number(f.value)},
+                   {"usual", number(f.usual)},
+                   {"chance", number(f.chance)},
+                   {"statement", record_in_words(f)}});
+  return out;
+}
+
+Json to_json(const FaultSize& s) {
+  return {{"name", label_of(s.fault)},
+          {"severity",
+           {{"value", number(s.severity)},
+            {"lower", number(s.severity_lower)},
+            {"upper", number(s.severity_upper)},
+            {"unit", unit_of(s.fault)}}}};
+}
+
+// The best three: a page of them tells no more.
+Json pairs_json(const Diagnosis& d) {
+  constexpr std::size_t most = 3;
+  Json out = Json::array();
+  for (std::size_t i = 0; i < std::min(most, d.assessment.pairs.size()); ++i) {
+    const PairResult& p = d.assessment.pairs[i];
+    out.push_back({{"faults", {to_json(p.first), to_json(p.second)}},
+                   {"gain", number(p.gain)},
+                   {"of_effect", number(p.of_effect)},
+                   {"adequacy", number(p.adequacy)}});
+  }
   return out;
 }
 
@@ -201,12 +254,15 @@ Json to_json(const Diagnosis& d) {
   for (const auto& [label, p] : labelled_probabilities(d)) probabilities[label] = number(p);
   const bool sized = d.fault != nullptr;
   return {{"log", d.log},
+          {"logs", d.assessment.logs},
           {"verdict", word_of(d.verdict)},
           {"error", number(d.error)},
           {"threshold", number(d.threshold)},
           {"p_value", number(d.p_value)},
           {"fault", d.fault ? Json(label_of(d.fault)) : Json(nullptr)},
           {"faults", faults_json(d)},
+          {"channel", d.faults.empty() ? Json(nullptr) : channel_json(d.faults.front())},
+          {"records", records_json(d)},
           {"probabilities", probabilities},
           {"suspicion", d.suspicion ? to_json(*d.suspicion) : Json(nullptr)},
           {"ambiguous_with", ambiguous_labels(d)},
@@ -227,6 +283,7 @@ Json to_json(const Diagnosis& d) {
           {"null", number(d.null)},
           {"channels", array_of(d.assessment.channels)},
           {"hypotheses", array_of(d.assessment.hypotheses)},
+          {"pairs", pairs_json(d)},
           {"notes", d.assessment.notes}};
 }
 

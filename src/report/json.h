@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "diagnose/diagnose.h"
+#include "evidence/conditions.h"
 #include "tune/tune.h"
 
 namespace servodx::report {
@@ -33,6 +34,7 @@ Json to_json(const ParameterResult& parameter);
 Json to_json(const ChannelResult& channel);
 Json to_json(const HypothesisResult& hypothesis);
 Json to_json(const Diagnosis& diagnosis);
+Json test_json(const TestConditions& test);
 
 // The keys of one command, to stand behind the header's.
 Json tune_json(const TuneResult& result);

@@ -11,6 +11,7 @@
 #include "diagnose/healthy_law.h"
 #include "diagnose/judge.h"
 #include "diagnose/moved.h"
+#include "diagnose/record_law.h"
 #include "fit/identifiability.h"
 #include "report/columns.h"
 #include "report/diagnosis_words.h"
@@ -167,6 +168,8 @@ std::string text_of(const Diagnosis& d, const TextOptions& options) {
   table.row({word, hypotheses});
   table.row({"error", fmt::format("{}, threshold {}; {}", digits(d.error), digits(d.threshold), chance_words(d))});
   if (d.unlike) table.row({"beware", unlike_words(d)});
+  for (const RecordFinding& f : d.records) table.row({"record", record_in_words(f)});
+  for (std::size_t i = 1; i < d.faults.size(); ++i) table.row({"and", second_in_words(d.faults[i])});
   if (const std::string seen = words_of(d.assessment.gross); !seen.empty()) table.row({"seen at once", seen});
   if (d.onset) table.row({"since", digits(*d.onset, 4) + " s"});
   if (!d.ambiguous_with.empty()) table.row({"or else", join(ambiguous_labels(d))});

@@ -14,8 +14,8 @@ std::string map_csv(const std::vector<valve_maps::MapPoint>& points);
 
 struct MapPicture {
   std::string title;
-  std::vector<valve_maps::MapPoint> points;  // of valve_maps::grid
-  double supply = 0;                         // [Pa]
+  std::vector<valve_maps::MapPoint> points;         // of valve_maps::grid
+  double supply = 0;                                // [Pa]
   std::vector<valve_maps::MapPoint> detailed = {};  // HF at the same places, to set beside it; may be empty
 };
 // Load pressure over spool position, a line for every few flows: the paper's Figs. 1b and 3.

@@ -232,5 +232,93 @@ TEST(Decide, ProbabilitiesAreTheFitsUnlessOneIsSeenOrNoneHolds) {
   }
 }
 
+// Health 0.01, the first fault 0.98: beyond the threshold, and explained.
+Evidence first_fault() {
+  Evidence e;
+  e.error = e.gain = 10, e.threshold = 3, e.usual_adequacy = 1.5;
+  e.hypotheses = {{nullptr, 0.01, 8}, {&first, 0.98, 2}, {&second, 0.01, 6}, {&runs_away, 0.0, 8}};
+  return e;
+}
+PairEvidence a_pair(double gain) { return {one, other, gain, 1.2, false, false}; }
+
+TEST(Decide, ASecondFaultIsNamedOnlyWithAGainOfItsOwn) {
+  Evidence e = first_fault();
+  for (const double gain : {0.0, 2.9, 3.0}) {
+    e.pair = a_pair(gain);
+    EXPECT_FALSE(decide(e).beside) << gain;
+    EXPECT_EQ(decide(e).hypothesis, one);
+  }
+  e.pair = a_pair(3.1);
+  const Decision d = decide(e);
+  EXPECT_EQ(d.verdict, VerdictKind::fault);
+  EXPECT_EQ(d.hypothesis, one);
+  EXPECT_EQ(d.beside, other);
+}
+
+TEST(Decide, APairNamesWhatNoSingleFaultExplains) {
+  Evidence e = first_fault();
+  e.hypotheses[one].adequacy = e.hypotheses[other].adequacy = 7;
+  EXPECT_EQ(decide(e).verdict, VerdictKind::unknown);
+  e.pair = a_pair(5);
+  EXPECT_EQ(decide(e).verdict, VerdictKind::fault);
+  EXPECT_EQ(decide(e).beside, other);
+}
+
+TEST(Decide, NoPairInHealthNorWhereOneOfThemIsNotFoundNorWhereTheyLeaveMuch) {
+  Evidence healthy = first_fault();
+  healthy.pair = a_pair(5);
+  healthy.error = healthy.gain = 2;
+  EXPECT_EQ(decide(healthy).verdict, VerdictKind::healthy);
+  Evidence not_found = first_fault();
+  not_found.pair = a_pair(5), not_found.pair->at_least = true;
+  EXPECT_FALSE(decide(not_found).beside);
+  Evidence much_left = first_fault();
+  much_left.pair = a_pair(5), much_left.pair->adequacy = 7;
+  EXPECT_FALSE(decide(much_left).beside);
+}
+
+TEST(Decide, AnUnusualSupplyOrDriverIsNamedAndAFaultOfTheValveStandsBesideIt) {
+  for (const Record of : {Record::supply, Record::driver}) {
+    Evidence healthy = first_fault();
+    healthy.error = healthy.gain = 2;
+    healthy.records = {{of}};
+    Decision d = decide(healthy);
+    EXPECT_EQ(d.verdict, VerdictKind::fault);
+    EXPECT_EQ(d.record, 0u);
+    EXPECT_FALSE(d.valve_too);
+    Evidence both = first_fault();
+    both.records = {{of}};
+    d = decide(both);
+    EXPECT_EQ(d.record, 0u);
+    EXPECT_TRUE(d.valve_too);
+    EXPECT_EQ(d.hypothesis, one);
+  }
+}
+
+TEST(Decide, ANoisySensorGivesWayToAFaultOfTheValve) {
+  Evidence e = first_fault();
+  e.records = {{Record::sensor}};
+  EXPECT_FALSE(decide(e).record);
+  e.error = e.gain = 2;
+  EXPECT_EQ(decide(e).record, 0u);
+}
+
+TEST(Decide, ABrokenSensorIsNamedAlone) {
+  Evidence e = first_fault();
+  e.records = {{Record::sensor, true}};
+  const Decision d = decide(e);
+  EXPECT_EQ(d.record, 0u);
+  EXPECT_FALSE(d.valve_too);
+}
+
+TEST(Decide, ASpoolOnItsStopsIsNoSupplysFault) {
+  Evidence e = first_fault();
+  e.gross = spool_on_both_stops;
+  e.records = {{Record::supply}};
+  const Decision d = decide(e);
+  EXPECT_EQ(d.hypothesis, away);
+  EXPECT_FALSE(d.record);
+}
+
 }  // namespace
 }  // namespace servodx

@@ -36,7 +36,7 @@ DetectionBaseline baseline() {
 }
 
 double probability_of(const Diagnosis& d, const std::string& fault) {
-  for (const Diagnosis::Probability& p : d.probabilities)
+  for (const FaultProbability& p : d.probabilities)
     if (p.of == find_fault(fault)) return p.value;
   return -1;
 }

@@ -1,0 +1,265 @@
+#include "diagnose/records.h"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "diagnose/constants.h"
+#include "diagnose/onset.h"
+#include "parameters/list.h"
+
+namespace servodx {
+namespace {
+
+namespace k = diagnose_constants;
+
+constexpr double none = std::numeric_limits<double>::quiet_NaN();
+
+// Means over blocks of time: what rings or lags within a block averages out.
+struct Blocks {
+  std::vector<double> time, value;
+};
+Blocks means_of(const std::vector<double>& time, const std::vector<double>& x, bool of_size) {
+  Blocks out;
+  for (std::size_t from = 0; from < time.size();) {
+    double sum = 0;
+    std::size_t to = from, n = 0;
+    for (; to < time.size() && time[to] < time[from] + k::block; ++to)
+      if (std::isfinite(x[to])) sum += of_size ? std::abs(x[to]) : x[to], ++n;
+    out.time.push_back(time[from]);
+    out.value.push_back(n > 0 ? sum / static_cast<double>(n) : none);
+    from = to;
+  }
+  return out;
+}
+
+double range_of(const std::vector<double>& x, std::size_t from, std::size_t to) {
+  double low = HUGE_VAL, high = -HUGE_VAL;
+  for (std::size_t i = from; i < to; ++i)
+    if (std::isfinite(x[i])) low = std::min(low, x[i]), high = std::max(high, x[i]);
+  return high > low ? high - low : 0.0;
+}
+
+// Flow drawn from the supply, of about the most that the valve passes: by the piston's speed where it is recorded, else
+// by the drive.
+std::vector<double> demand_of(const Log& log, const LogData& data, const ParameterVector& base) {
+  if (log.has(Signal::piston_position)) {
+    const Blocks piston = means_of(log.time, log[Signal::piston_position], false);
+    const double area = 0.5 * (base[row::piston_area_a] + base[row::piston_area_b]);
+    const double most = base[row::port_width] * base[row::spool_stop] *
+                        std::sqrt(base[row::supply_pressure] / data.scenario.oil.density);
+    std::vector<double> out(piston.value.size(), 0.0);
+    for (std::size_t i = 1; i + 1 < out.size(); ++i)
+      out[i] =
+          std::abs(piston.value[i + 1] - piston.value[i - 1]) / (piston.time[i + 1] - piston.time[i - 1]) * area / most;
+    return out;
+  }
+  std::vector<double> out = means_of(log.time, data.scenario.command, true).value;
+  for (double& x : out) x /= data.scenario.rated_current;
+  return out;
+}
+
+// A level that falls in proportion to the demand and from some time on goes elsewhere, at once and further in
+// proportion to time: a valve that closes, a pump that stops beside an accumulator. Least squares.
+struct Levels {
+  double first = none, last = none, fall = 0, cost = HUGE_VAL;
+  std::size_t split = 0;
+};
+Levels levels_at(const Blocks& pressure, const std::vector<double>& demand, std::size_t split, bool falls) {
+  Eigen::Matrix4d normal = Eigen::Matrix4d::Zero();
+  Eigen::Vector4d right = Eigen::Vector4d::Zero();
+  double square = 0;
+  const double since = pressure.time[split], end = pressure.time.back();
+  const double scale = pressure.value.front();  // numbers of order one
+  for (std::size_t i = 0; i < pressure.value.size(); ++i) {
+    const double y = pressure.value[i] / scale;
+    if (!std::isfinite(y) || !std::isfinite(demand[i])) continue;
+    const double after = i >= split ? 1.0 : 0.0;
+    const Eigen::Vector4d row(1, after, after * (pressure.time[i] - since) / (end - since), falls ? -demand[i] : 0.0);
+    normal += row * row.transpose(), right += row * y, square += y * y;
+  }
+  const Eigen::Vector4d x = normal.completeOrthogonalDecomposition().solve(right);
+  if (falls && x[3] < 0) return levels_at(pressure, demand, split, false);
+  return {scale * x[0], scale * (x[0] + x[1] + x[2]), scale * x[3], square - right.dot(x), split};
+}
+Levels levels_of(const Blocks& pressure, const std::vector<double>& demand) {
+  Levels best;
+  const std::size_t n = pressure.value.size(), margin = std::max(k::fewest_blocks, n / k::shortest_one_in);
+  if (!std::isfinite(pressure.value.front())) return best;
+  for (std::size_t split = margin; split + margin <= n; ++split)
+    if (const Levels l = levels_at(pressure, demand, split, true); l.cost < best.cost) best = l;
+  return best;
+}
+
+void add_supply(const Log& log, const LogData& data, const ParameterVector& base, std::vector<RecordFigure>& out) {
+  if (!log.has(Signal::supply_pressure)) return;
+  const Blocks pressure = means_of(log.time, log[Signal::supply_pressure], false);
+  const std::vector<double> demand = demand_of(log, data, base);
+  const Levels l = levels_of(pressure, demand);
+  if (!(l.first > 0)) return;
+  out.push_back({FigureKind::supply_level, Signal::supply_pressure, l.first});
+  out.push_back({FigureKind::supply_step, Signal::supply_pressure, std::max(k::least_left, l.last / l.first),
+                 pressure.time[l.split]});
+  const double most = *std::max_element(demand.begin(), demand.end());
+  if (most > k::least_demand)
+    out.push_back(
+        {FigureKind::supply_left, Signal::supply_pressure, std::max(k::least_left, 1 - most * l.fall / l.first)});
+}
+
+struct Line {
+  double gain = none, offset = 0, left = 0, drive = 0;  // of current over command; rms of the rest and of the command
+};
+Line line_through(const std::vector<double>& x, const std::vector<double>& y, std::size_t from, std::size_t to) {
+  double n = 0, sx = 0, sy = 0, xx = 0, xy = 0, yy = 0;
+  for (std::size_t i = from; i < to; ++i)
+    if (std::isfinite(x[i]) && std::isfinite(y[i]))
+      ++n, sx += x[i], sy += y[i], xx += x[i] * x[i], xy += x[i] * y[i], yy += y[i] * y[i];
+  Line l;
+  const double within = xx - sx * sx / n;
+  if (n < k::fewest_blocks || !(within > 0)) return l;
+  l.gain = (xy - sx * sy / n) / within;
+  l.offset = (sy - l.gain * sx) / n;
+  l.left = std::sqrt(std::max(0.0, (yy - sy * sy / n) - l.gain * (xy - sx * sy / n)) / n);
+  l.drive = std::sqrt(within / n);
+  return l;
+}
+
+// When the current leaves the line of its best part; empty: it does not.
+std::optional<double> driver_since(const Blocks& command, const Blocks& current, const Line& best) {
+  std::vector<double> square;
+  std::vector<std::size_t> at;
+  for (std::size_t i = 0; i < command.value.size(); ++i) {
+    const double off = current.value[i] - best.offset - best.gain * command.value[i];
+    if (std::isfinite(off)) square.push_back(off * off), at.push_back(i);
+  }
+  std::size_t change = 0;
+  double least = HUGE_VAL, before = 0, all = 0;
+  for (const double s : square) all += s;
+  const auto n = static_cast<double>(square.size());
+  for (std::size_t i = 1; i < square.size(); ++i) {
+    before += square[i - 1];
+    const double m = static_cast<double>(i), after = all - before;
+    const double cost = m * std::log(before / m + 1e-300) + (n - m) * std::log(after / (n - m) + 1e-300);
+    if (after / (n - m) > k::variance_step * before / m && cost < least) least = cost, change = i;
+  }
+  return change > 0 ? std::optional<double>(command.time[at[change]]) : std::nullopt;
+}
+
+void add_driver(const Log& log, const LogData& data, std::vector<RecordFigure>& out) {
+  if (!log.has(Signal::command) || !log.has(Signal::coil_current)) return;
+  const Blocks command = means_of(log.time, log[Signal::command], false);
+  const Blocks current = means_of(log.time, log[Signal::coil_current], false);
+  const std::size_t n = command.value.size();
+  const Line whole = line_through(command.value, current.value, 0, n);
+  if (!(whole.drive > k::least_drive * data.scenario.rated_current)) return;
+  Line least = whole, best = whole;
+  for (std::size_t w = 0; w < k::parts; ++w) {
+    const Line l = line_through(command.value, current.value, w * n / k::parts, (w + 1) * n / k::parts);
+    if (!(l.drive > k::worth_a_part * whole.drive)) continue;
+    if (l.gain < least.gain) least = l;
+    if (l.gain > best.gain) best = l;
+  }
+  out.push_back({FigureKind::driver_gain, Signal::coil_current, std::max(k::least_left, least.gain),
+                 driver_since(command, current, best)});
+  out.push_back({FigureKind::driver_offset, Signal::coil_current,
+                 std::max(k::least_left, 1 + whole.offset / data.scenario.rated_current)});
+  out.push_back({FigureKind::driver_left, Signal::coil_current, std::max(k::least_residue, whole.left / whole.drive)});
+}
+
+double correlation(const std::vector<double>& a, const std::vector<double>& b) {
+  double n = 0, sa = 0, sb = 0, aa = 0, ab = 0, bb = 0;
+  for (std::size_t i = 0; i < std::min(a.size(), b.size()); ++i)
+    if (std::isfinite(a[i]) && std::isfinite(b[i]))
+      ++n, sa += a[i], sb += b[i], aa += a[i] * a[i], ab += a[i] * b[i], bb += b[i] * b[i];
+  const double va = aa - sa * sa / n, vb = bb - sb * sb / n;
+  return va > 0 && vb > 0 ? (ab - sa * sb / n) / std::sqrt(va * vb) : 0.0;
+}
+
+struct Run {
+  std::size_t from = 0, to = 0;
+};
+Run longest_still(const std::vector<double>& x) {
+  Run best;
+  for (std::size_t from = 0; from < x.size();) {
+    std::size_t to = from + 1;
+    while (to < x.size() && x[to] == x[from]) ++to;
+    if (to - from > best.to - best.from) best = {from, to};
+    from = to;
+  }
+  return best;
+}
+
+// One value for a good part of the log, while the command moves as it does elsewhere and the simulation's sensor would.
+bool is_frozen(const FitChannel& c, const LogData& data, const std::vector<double>& simulated) {
+  const Run still = longest_still(c.measured);
+  const std::size_t n = c.measured.size();
+  if (still.to - still.from < std::max<std::size_t>(k::fewest_still, n / k::still_one_in)) return false;
+  const double asked = range_of(data.scenario.command, still.from, still.to);
+  const double would = range_of(simulated, still.from, still.to);
+  return asked > k::moves_as_elsewhere * range_of(data.scenario.command, 0, n) && would > k::beyond_noise * c.noise &&
+         would > k::moves_as_elsewhere * range_of(simulated, 0, n);
+}
+
+}  // namespace
+
+std::vector<RecordFigure> record_figures(const Log& log, const LogData& data, const ParameterVector& base) {
+  std::vector<RecordFigure> out;
+  add_supply(log, data, base, out);
+  add_driver(log, data, out);
+  for (const FitChannel& c : data.channels)
+    if (c.noise > 0) out.push_back({FigureKind::sensor_noise, c.signal, c.noise});
+  return out;
+}
+
+std::vector<BrokenSensor> broken_sensors(const LogData& data, const Trajectory& healthy) {
+  std::vector<BrokenSensor> out;
+  if (!healthy.ok) return out;
+  struct Follows {
+    const FitChannel* channel;
+    const std::vector<double>* simulated;
+    double own;
+  };
+  std::vector<Follows> moving;
+  bool one_follows = false;
+  for (const FitChannel& c : data.channels) {
+    const std::vector<double>& y = healthy.signals[static_cast<std::size_t>(c.simulated)];
+    if (y.empty() || range_of(y, 0, y.size()) < k::beyond_noise * c.noise) continue;
+    moving.push_back({&c, &y, correlation(c.measured, y)});
+    one_follows = one_follows || moving.back().own > k::follows;
+  }
+  if (!one_follows) return out;  // then it is no one sensor
+  const auto of = [&](Signal s) {
+    return std::find_if(moving.begin(), moving.end(), [&](const Follows& f) { return f.channel->signal == s; });
+  };
+  const auto a = of(Signal::pressure_a), b = of(Signal::pressure_b);
+  const bool swapped = a != moving.end() && b != moving.end() && a->own < -k::follows && b->own < -k::follows &&
+                       correlation(a->channel->measured, *b->simulated) > k::follows;
+  for (const Follows& f : moving) {
+    if (is_frozen(*f.channel, data, *f.simulated))
+      out.push_back({SensorFinding::frozen, f.channel->signal});
+    else if (swapped && (f.channel == a->channel || f.channel == b->channel))
+      out.push_back({SensorFinding::swapped_ports, f.channel->signal});
+    else if (f.own < -k::follows)
+      out.push_back({SensorFinding::turned, f.channel->signal});
+  }
+  return out;
+}
+
+Record record_of(FigureKind kind) {
+  switch (kind) {
+    case FigureKind::supply_level:
+    case FigureKind::supply_step:
+    case FigureKind::supply_left:
+      return Record::supply;
+    case FigureKind::driver_gain:
+    case FigureKind::driver_offset:
+    case FigureKind::driver_left:
+      return Record::driver;
+    case FigureKind::sensor_noise:
+      return Record::sensor;
+  }
+  return Record::sensor;
+}
+
+}  // namespace servodx

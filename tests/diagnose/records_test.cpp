@@ -1,0 +1,194 @@
+// What the records tell without the model: laws on records made by hand.
+#include "diagnose/records.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <numbers>
+#include <random>
+
+#include "diagnose/record_law.h"
+#include "faults/registry.h"
+#include "fit/log_data.h"
+#include "shipped_data.h"
+#include "servodx/log.h"
+#include "simulate/scenario.h"
+
+namespace servodx {
+namespace {
+
+constexpr double duration = 4.0, rate = 1000.0;  // [s], [Hz]
+
+// A sine of the drive and of the piston, a supply that falls with the piston's speed, and what a case changes.
+struct Made {
+  std::vector<double> time, command, current, piston, supply, pressure_a, pressure_b;
+};
+Made made(unsigned seed, double hertz) {
+  Made m;
+  std::mt19937 random(seed);
+  std::normal_distribution<double> noise(0, 1);
+  for (int k = 0; k < duration * rate; ++k) {
+    const double t = k / rate, phase = 2 * std::numbers::pi * hertz * t;
+    m.time.push_back(t);
+    m.command.push_back(5e-3 * std::sin(phase));
+    m.current.push_back(0.995 * m.command.back() + 2e-6 * noise(random));
+    m.piston.push_back(-0.02 * std::cos(phase) + 1e-5 * noise(random));
+    m.supply.push_back(200e5 - 8e5 * std::abs(std::sin(phase)) + 2e4 * noise(random));
+    m.pressure_a.push_back(100e5 + 30e5 * std::sin(phase) + 1e4 * noise(random));
+    m.pressure_b.push_back(100e5 - 30e5 * std::sin(phase) + 1e4 * noise(random));
+  }
+  return m;
+}
+
+Log log_of(const Made& m) {
+  return make_log("made", {{"time [s]", m.time},
+                           {"command [A]", m.command},
+                           {"coil_current [A]", m.current},
+                           {"piston_position [m]", m.piston},
+                           {"supply_pressure [Pa]", m.supply},
+                           {"pressure_a [Pa]", m.pressure_a},
+                           {"pressure_b [Pa]", m.pressure_b}});
+}
+
+std::vector<RecordFigure> figures_of(const Made& m) {
+  const Log log = log_of(m);
+  return record_figures(log, prepare(log, {}), candidate_of(shipped_table()));
+}
+
+// Ten healthy logs of other speeds.
+std::vector<std::vector<RecordFigure>> healthy() {
+  std::vector<std::vector<RecordFigure>> out;
+  for (unsigned i = 0; i < 10; ++i) out.push_back(figures_of(made(i, 0.5 + 0.3 * i)));
+  return out;
+}
+
+std::vector<RecordFinding> findings_of(const Made& m) { return record_findings(figures_of(m), {}, healthy(), 0.005); }
+
+TEST(Records, ALogLikeTheHealthyOnesIsNoFinding) {
+  for (unsigned seed = 100; seed < 130; ++seed)
+    EXPECT_TRUE(findings_of(made(seed, 0.4 + 0.1 * (seed - 100))).empty()) << seed;
+}
+
+TEST(Records, ASupplyThatIsSetLowIsFoundWithItsSizeWhateverTheFlowTakes) {
+  for (const double hertz : {0.3, 1.0, 4.0})
+    for (const double left : {0.88, 0.7}) {
+      Made m = made(50, hertz);
+      for (double& p : m.supply) p -= (1 - left) * 200e5;
+      const auto found = findings_of(m);
+      ASSERT_FALSE(found.empty()) << hertz << " Hz, " << left;
+      EXPECT_EQ(found.front().fault, find_fault("supply_fault"));
+      EXPECT_LT(found.front().lower, left);
+      EXPECT_GT(found.front().upper, left);
+      EXPECT_NEAR(found.front().severity, left, 0.02);
+    }
+}
+
+TEST(Records, ASupplyThatFailsInTheLogIsFoundWithItsTime) {
+  Made m = made(51, 1.0);
+  for (std::size_t k = 0; k < m.supply.size(); ++k)
+    if (m.time[k] > 2.2) m.supply[k] -= 50e5 * (1 - std::exp(-(m.time[k] - 2.2) / 0.5));
+  const auto found = findings_of(m);
+  ASSERT_FALSE(found.empty());
+  EXPECT_EQ(found.front().figure, FigureKind::supply_step);
+  ASSERT_TRUE(found.front().since);
+  EXPECT_NEAR(*found.front().since, 2.2, 0.2);
+}
+
+TEST(Records, ASupplyThatDroopsWithTheFlowIsNotOneThatIsSetLow) {
+  Made m = made(52, 2.0);
+  for (std::size_t k = 0; k < m.supply.size(); ++k)
+    m.supply[k] -= 60e5 * std::abs(std::sin(4 * std::numbers::pi * m.time[k]));
+  for (const RecordFinding& f : findings_of(m)) EXPECT_EQ(f.figure, FigureKind::supply_left);
+  EXPECT_FALSE(findings_of(m).empty());
+}
+
+TEST(Records, ADriverThatPassesOnLessIsFoundFromTheStartAndFromMidLog) {
+  for (const double gain : {0.0, 0.5, 0.85})
+    for (const double from : {0.0, 1.7}) {
+      Made m = made(53, 1.0);
+      for (std::size_t k = 0; k < m.current.size(); ++k)
+        if (m.time[k] >= from) m.current[k] *= gain;
+      const auto found = findings_of(m);
+      ASSERT_FALSE(found.empty()) << gain << " from " << from;
+      EXPECT_EQ(found.front().fault, find_fault("driver_fault")) << gain << " from " << from;
+      if (from > 0) {
+        ASSERT_TRUE(found.front().since) << gain;
+        EXPECT_NEAR(*found.front().since, from, 0.1);
+      }
+    }
+}
+
+TEST(Records, AnAmplifierThatSaturatesIsADriverFault) {
+  Made m = made(54, 1.0);
+  for (double& i : m.current) i = std::clamp(i, -2e-3, 2e-3);
+  const auto found = findings_of(m);
+  ASSERT_FALSE(found.empty());
+  EXPECT_EQ(found.front().fault, find_fault("driver_fault"));
+}
+
+TEST(Records, ASensorThatScattersIsFoundByItsName) {
+  Made m = made(55, 1.0);
+  std::mt19937 random(1);
+  std::normal_distribution<double> noise(0, 8e4);
+  for (double& p : m.pressure_b) p += noise(random);
+  const auto found = findings_of(m);
+  ASSERT_EQ(found.size(), 1u);
+  EXPECT_EQ(found.front().fault, find_fault("sensor_fault"));
+  EXPECT_EQ(found.front().signal, Signal::pressure_b);
+}
+
+TEST(Records, TwoHealthyLogsSayNothing) {
+  Made low = made(56, 1.0);
+  for (double& p : low.supply) p *= 0.5;
+  auto few = healthy();
+  few.resize(2);
+  EXPECT_TRUE(record_findings(figures_of(low), {}, few, 0.005).empty());
+}
+
+// The simulation's sensors are the made ones without their noise.
+Trajectory simulated(const Made& m) {
+  Trajectory t;
+  t.ok = true;
+  t.signals[static_cast<std::size_t>(simulated_index(Signal::piston_position))] = m.piston;
+  t.signals[static_cast<std::size_t>(simulated_index(Signal::pressure_a))] = m.pressure_a;
+  t.signals[static_cast<std::size_t>(simulated_index(Signal::pressure_b))] = m.pressure_b;
+  return t;
+}
+
+std::vector<BrokenSensor> broken_of(const Made& m) {
+  return broken_sensors(prepare(log_of(m), {}), simulated(made(60, 1.0)));
+}
+
+TEST(Records, AFrozenATurnedAndASwappedSensorAreNamedAndHealthyOnesAreNot) {
+  EXPECT_TRUE(broken_of(made(61, 1.0)).empty());
+
+  Made frozen = made(61, 1.0);
+  for (std::size_t k = 1500; k < frozen.piston.size(); ++k) frozen.piston[k] = frozen.piston[1500];
+  auto found = broken_of(frozen);
+  ASSERT_EQ(found.size(), 1u);
+  EXPECT_EQ(found.front().finding, SensorFinding::frozen);
+  EXPECT_EQ(found.front().signal, Signal::piston_position);
+
+  Made turned = made(61, 1.0);
+  for (double& x : turned.piston) x = -x;
+  found = broken_of(turned);
+  ASSERT_EQ(found.size(), 1u);
+  EXPECT_EQ(found.front().finding, SensorFinding::turned);
+
+  Made swapped = made(61, 1.0);
+  std::swap(swapped.pressure_a, swapped.pressure_b);
+  found = broken_of(swapped);
+  ASSERT_EQ(found.size(), 2u);
+  for (const BrokenSensor& b : found) EXPECT_EQ(b.finding, SensorFinding::swapped_ports);
+}
+
+TEST(Records, WhereNothingFollowsItIsNoOneSensor) {
+  Made m = made(61, 1.0);
+  for (auto* x : {&m.piston, &m.pressure_a, &m.pressure_b})
+    for (double& v : *x) v = -v;
+  EXPECT_TRUE(broken_of(m).empty());
+}
+
+}  // namespace
+}  // namespace servodx
