@@ -1,5 +1,6 @@
 # `cmake --install`: the program, its manual page and completions, the tables, and the library with its headers for
-# find_package(servodx): the front door alone, include/servodx. `cpack` makes Debian packages of the same: servodx and libservodx-dev.
+# find_package(servodx): the front door alone, include/servodx. `cpack` makes Debian packages of the same: servodx and
+# libservodx-dev.
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 

@@ -18,8 +18,8 @@ struct BaselineParts;  // the library's own
 struct BaselineOptions {
   double false_alarm = 0.01;  // asked for, of a healthy log; n logs promise no less than 1/(n + 1)
   std::uint64_t seed = 1;
-  int threads = 0;  // 0: all cores; the result does not depend on it
-  Watch watch;      // stopped: of the logs done so far
+  int threads = 0;   // 0: all cores; the result does not depend on it
+  Watch watch = {};  // stopped: of the logs done so far
 
   // Throws InputError that names the option.
   void validate() const;

@@ -19,8 +19,8 @@ struct Diagnosis;  // the library's own
 
 struct DiagnoseOptions {
   std::uint64_t seed = 1;
-  int threads = 0;  // 0: all cores; the result does not depend on it
-  Watch watch;      // stopped: what comes back says `interrupted` and nothing else
+  int threads = 0;   // 0: all cores; the result does not depend on it
+  Watch watch = {};  // stopped: what comes back says `interrupted` and nothing else
 
   // Throws InputError naming the option.
   void validate() const;
@@ -68,6 +68,8 @@ struct Verdict {
 
 // "healthy", "fault" or "unknown".
 std::string name_of(Verdict::Kind kind);
+// As it stands among the `results` of `servodx diagnose --json`; "null" of an interrupted one.
+std::string json_of(const Verdict& verdict);
 
 // Both refuse a baseline of another table and a log without a signal that the model reports. Throws InputError.
 // Several logs of one valve in one state: one verdict for all of them. At least one log.

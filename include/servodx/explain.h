@@ -70,6 +70,8 @@ struct Explanation {
 
 // "sufficient", "extended" or "unexplained".
 std::string name_of(Explanation::Kind kind);
+// The keys that `servodx explain --json` writes behind its header.
+std::string json_of(const Explanation& explanation);
 
 // The logs are of one valve in one state. With a baseline it speaks of what is new against the healthy state, at the
 // baseline's rate; without one, of everything. Throws InputError.

@@ -18,11 +18,11 @@ struct ValveTrend;
 class HistoryFile;
 
 struct CheckOptions {
-  std::string model = "linear";  // pressure model of the monitor: `servodx list models`
-  int threads = 0;               // 0: all cores; the result does not depend on it
-  bool track = true;             // fit the parameters that wear moves
-  bool correct = true;           // to oil at 40 degC and the table's supply
-  std::vector<double> last;      // History::tracked() of the valve: another start of the fit; may be empty
+  std::string model = "linear";   // pressure model of the monitor: `servodx list models`
+  int threads = 0;                // 0: all cores; the result does not depend on it
+  bool track = true;              // fit the parameters that wear moves
+  bool correct = true;            // to oil at 40 degC and the table's supply
+  std::vector<double> last = {};  // History::tracked() of the valve: another start of the fit; may be empty
 
   // Throws InputError naming the option.
   void validate() const;
@@ -75,7 +75,7 @@ class History {
 
 // Where a check says that the valve has failed; without one of the user's the fault's own level holds.
 struct FailureLevel {
-  std::string check;  // "fidelity", "parameter:22"
+  std::string check = {};  // "fidelity", "parameter:22"
   enum class Kind { above, below, times_healthy, current } kind = Kind::above;
   double value = 0;  // [unit of the check]; times_healthy [1]; current [A] that the spool's friction takes
   std::optional<double> spread = {};  // how well it is known: one standard deviation

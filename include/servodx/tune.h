@@ -30,15 +30,15 @@ struct TuneOptions {
   int generations = 30;
   int rounds = 4;        // most of the last stage (12 steps, then new weights); it ends early where it converges
   double heldout = 0.2;  // last part of every log, kept out of the first fit
-  std::optional<std::vector<std::string>> effects;  // freed beside the table's rows; empty: default_effects()
+  std::optional<std::vector<std::string>> effects = {};  // freed beside the table's rows; empty: default_effects()
   // Priors asked for: by row, the standard deviation about the table's nominal [the table's unit].
-  std::map<std::string, double> priors;
+  std::map<std::string, double> priors = {};
   TuneLocal local = TuneLocal::least_squares;
-  std::vector<std::string> profile;  // rows whose interval is checked by profile likelihood; "all": every one
-  int moving_average = 1;            // [samples] odd; smooths measurement and simulation alike, also in later commands
-  std::string checkpoint;            // file saved every generation; empty: none
+  std::vector<std::string> profile = {};  // rows whose interval is checked by profile likelihood; "all": every one
+  int moving_average = 1;       // [samples] odd; smooths measurement and simulation alike, also in later commands
+  std::string checkpoint = {};  // file saved every generation; empty: none
   bool resume = false;
-  Watch watch;  // stopped: finish with the best so far
+  Watch watch = {};  // stopped: finish with the best so far
 
   // Throws InputError that names the option, as the program calls it. tune() asks for it before any work.
   void validate() const;

@@ -136,8 +136,7 @@ void write_baseline(const std::string& path, const Baseline& baseline) { write_f
 void require_same_table(const Baseline& baseline, const Tuned& tuned) {
   parts_of(baseline);
   if (baseline.tuned_sha256 == tuned.table.sha256) return;
-  const std::string table = tuned.table.path.empty() ? "the one in memory" : tuned.table.path;
-  throw key_error({baseline.path, 0, "tuned_sha256"}, "was made with another table than " + table,
+  throw key_error({baseline.path, 0, "tuned_sha256"}, "was made with another table than " + tuned.table.path,
                   "give the table it was made with, or make a baseline with this one");
 }
 

@@ -11,6 +11,7 @@
 #include "door/baseline_parts.h"
 #include "faults/fault.h"
 #include "report/diagnosis_words.h"
+#include "report/json.h"
 #include "servodx/baseline.h"
 #include "servodx/diagnose.h"
 #include "servodx/error.h"
@@ -81,6 +82,8 @@ std::string name_of(Verdict::Kind kind) {
   }
   return "";
 }
+
+std::string json_of(const Verdict& verdict) { return verdict.whole ? report::to_json(*verdict.whole).dump(2) : "null"; }
 
 Verdict diagnose_pool(const std::vector<Log>& logs, const Tuned& tuned, const Rig& rig, const Baseline& baseline,
                       const DiagnoseOptions& options) {

@@ -9,6 +9,7 @@
 #include "explain/explain.h"
 #include "explain/healthy.h"
 #include "explain/outcome.h"
+#include "report/explain_report.h"
 #include "report/explain_words.h"
 #include "servodx/baseline.h"
 #include "servodx/explain.h"
@@ -74,6 +75,10 @@ std::string name_of(Explanation::Kind kind) {
       return report::word_of(ExplainVerdict::unexplained);
   }
   return "";
+}
+
+std::string json_of(const Explanation& explanation) {
+  return explanation.whole ? report::explain_json(*explanation.whole).dump(2) : "null";
 }
 
 Explanation explain(const std::vector<Log>& logs, const Tuned& tuned, const Rig& rig, const ExplainOptions& options) {

@@ -19,7 +19,7 @@ Tuned tune(const std::vector<Log>& logs, const Table& nominal, const Rig& rig, c
   auto result = std::make_shared<TuneResult>(tune_table(logs, nominal, rig, options));
   Tuned out;
   out.table = result->table;
-  out.table.path.clear();
+  out.table.path = "the table in memory";  // for messages
   out.table.sha256 = sha256(table_text(out.table));
   out.channels = result->channels;
   out.parameters = result->parameters;

@@ -97,6 +97,7 @@ TEST_F(Door, JudgesAsTheProgramDoes) {
     EXPECT_EQ(v.severity->unit, of_program.at("severity").at("unit"));
   }
   EXPECT_EQ(v.parameters.size(), of_program.at("parameters").size());
+  EXPECT_EQ(Json::parse(json_of(v)), of_program);
 }
 
 TEST_F(Door, TwoCallsAtOnceDisturbNeither) {
@@ -124,6 +125,8 @@ TEST_F(Door, ExplainsAsTheProgramDoes) {
   EXPECT_EQ(e.causes.size(), of_program.at("causes").size());
   EXPECT_EQ(e.candidates.size(), of_program.at("candidates").size());
   EXPECT_EQ(e.probabilities.contains("nothing"), !of_program.at("probabilities").is_null());
+  const Json as_json = Json::parse(json_of(e));
+  for (const auto& [key, value] : as_json.items()) EXPECT_EQ(value, of_program.at(key)) << key;
   write_table("door_extended.csv", e.table);
   EXPECT_EQ(bytes_of("door_extended.csv"), bytes_of("extended.csv"));
 }

@@ -43,8 +43,8 @@ if(NOT output MATCHES "spool_position: rms error")
 endif()
 
 set(tutorial ${SOURCE}/data/tutorial)
-step(${work}/build/diagnose_log ${tutorial}/bench.toml ${work}/prefix/share/servodx/params/borello2009.csv ${tutorial}/suspect.csv
-     ${tutorial}/good_1.csv ${tutorial}/good_2.csv ${tutorial}/good_5.csv ${tutorial}/good_6.csv ${tutorial}/good_7.csv)
+step(${work}/build/diagnose_log ${tutorial}/bench.toml ${work}/prefix/share/servodx/params/borello2009.csv
+     ${tutorial}/suspect.csv ${tutorial}/good_1.csv ${tutorial}/good_2.csv ${tutorial}/good_5.csv ${tutorial}/good_6.csv ${tutorial}/good_7.csv)
 if(NOT output MATCHES "suspect.csv: (healthy|fault|unknown)")
   message(FATAL_ERROR "the example printed: ${output}")
 endif()
