@@ -3,7 +3,7 @@
 A text with a slash, or with the ending of a file, is a path: from the root, from the page, or the end of one path
 alone; what is in capitals stands for any name. `--option` is one that a program or script takes; `servodx NAME` a
 command. Of all else every name in it is a word of the code: a name or a word of a text in src, include, apps, bench,
-tests and scripts, or a word of the tables. Comments do not count."""
+tests, python and scripts, or a word of the tables. Comments do not count."""
 import fnmatch, functools, re, subprocess, unittest
 
 import source
@@ -19,7 +19,7 @@ FOREIGN = {
     "h17": "a log of the foreign rig", "fHz": "any frequency", "linux": "part of a compiler's name",
     "GOMP_SPINCOUNT": "libgomp's", "OMP_WAIT_POLICY": "OpenMP's", "passive": "OpenMP's",
     "fschedule": "g++'s", "insns": "g++'s", "fsched": "g++'s", "march": "g++'s", "native": "g++'s",
-    "aarch64": "a compiler's name", "perf": "Linux's", "gnu": "a compiler's name",
+    "aarch64": "a compiler's name", "perf": "Linux's", "ValueError": "Python's", "gnu": "a compiler's name",
 }
 
 
@@ -32,7 +32,7 @@ def pages():
 def tree():
     """Paths of the files, and of their folders with a slash at the end."""
     top = ("src", "include", "apps", "bench", "tests", "scripts", "docs", "data", "params", "examples", "cmake",
-           "third_party")
+           "python", "third_party")
     found = {path.relative_to(source.ROOT).as_posix() for folder in top for path in (source.ROOT / folder).rglob("*")
              if path.is_file() and "__pycache__" not in path.parts}
     found |= {path.name for path in source.ROOT.iterdir() if path.is_file()}
@@ -56,7 +56,8 @@ def words():
         found.update(re.findall(r"\w+", " ".join(re.findall(r"^[ \t]*#.*(?:\\\n.*)*", source.text(path), re.M))))
     for path in tree():
         found.update(part for name in path.split("/") for part in (name.split(".")[0], name.split("_")[0]))
-        plain = path.startswith(("scripts/", "cmake/", "params/")) or path.endswith((".txt", ".json", ".toml", ".js"))
+        plain = path.startswith(("scripts/", "cmake/", "params/", "python/"))
+        plain = plain or path.endswith((".txt", ".json", ".toml", ".js"))
         if plain and not path.endswith("/"):
             found.update(re.findall(r"\w+", source.text(path)))
         elif path.endswith(".csv"):

@@ -116,7 +116,8 @@ TEST(Layering, DirectIncludesFollowTheTable) {
 const std::map<std::string, std::vector<std::string>> above = {{"apps", {"include", "src"}},
                                                                {"bench", {"include", "src", "bench", "tests"}},
                                                                {"tests", {"include", "src", "tests", "bench"}},
-                                                               {"examples", {"include"}}};
+                                                               {"examples", {"include"}},
+                                                               {"python", {"include"}}};
 
 TEST(Layering, ProgramBenchesTestsAndExamplesIncludeWhatTheyMay) {
   const fs::path root = SERVODX_SOURCE_DIR;

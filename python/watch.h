@@ -1,0 +1,79 @@
+// A call of the library seen from Python: the interpreter is free while it runs, Ctrl-C ends it, progress is a
+// callable.
+#pragma once
+#include <pybind11/pybind11.h>
+
+#include <atomic>
+#include <chrono>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <thread>
+
+#include "servodx/watch.h"
+
+namespace servodx::python {
+
+class Call {
+ public:
+  // `progress`: None, or called as progress(work, part, simulations). What it raises ends the call.
+  explicit Call(pybind11::object progress) : progress_(std::move(progress)) {}
+
+  Watch watch() {
+    Watch out;
+    out.stop = [this] { return stopped_ || interrupted(); };
+    if (!progress_.is_none()) out.progress = [this](const WorkDone& done) { tell(done); };
+    return out;
+  }
+
+  // Runs `work` without the interpreter's lock; raises afterwards what Ctrl-C or the callable has raised.
+  template <class Work>
+  auto run(const Work& work) {
+    auto result = [&] {
+      pybind11::gil_scoped_release free;
+      return work(watch());
+    }();
+    if (raised_) throw pybind11::error_already_set(std::move(*raised_));
+    return result;
+  }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  static constexpr std::chrono::milliseconds pause{50};  // quick to a hand, and no cost to a fit
+
+  // Signals come to the interpreter's main thread alone; other threads find nothing.
+  bool interrupted() {
+    if (std::this_thread::get_id() != caller_ || Clock::now() < look_at_) return false;
+    look_at_ = Clock::now() + pause;
+    const pybind11::gil_scoped_acquire held;
+    if (PyErr_CheckSignals() == 0) return false;
+    keep(pybind11::error_already_set());
+    return true;
+  }
+
+  void tell(const WorkDone& done) {
+    const std::unique_lock lock(telling_, std::try_to_lock);
+    if (!lock || stopped_ || Clock::now() < tell_at_) return;
+    tell_at_ = Clock::now() + pause;
+    const pybind11::gil_scoped_acquire held;
+    try {
+      progress_(std::string(done.work), done.part, done.simulations);
+    } catch (pybind11::error_already_set& raised) {
+      keep(std::move(raised));
+    }
+  }
+
+  void keep(pybind11::error_already_set raised) {
+    if (!stopped_) raised_.emplace(std::move(raised));
+    stopped_ = true;
+  }
+
+  pybind11::object progress_;
+  std::atomic<bool> stopped_ = false;
+  std::optional<pybind11::error_already_set> raised_;
+  std::mutex telling_;
+  const std::thread::id caller_ = std::this_thread::get_id();
+  Clock::time_point look_at_ = Clock::now(), tell_at_ = Clock::now();
+};
+
+}  // namespace servodx::python
