@@ -27,7 +27,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-class HistoryFile : public testing::Test {
+class Histories : public testing::Test {
  protected:
   std::string file(const std::string& name = "h.db") const { return folder / name; }
   TemporaryFolder folder;
@@ -48,7 +48,7 @@ Recording a_check(double at, double value = 1.25) {
   return r;
 }
 
-TEST_F(HistoryFile, WhatIsRecordedIsReadBackInOrderOfHours) {
+TEST_F(Histories, WhatIsRecordedIsReadBackInOrderOfHours) {
   {
     HistoryFile h(file(), true);
     h.record("v1", "SN 7", a_check(20, 0.1 + 0.2), "text");
@@ -68,14 +68,14 @@ TEST_F(HistoryFile, WhatIsRecordedIsReadBackInOrderOfHours) {
   EXPECT_THROW(h.of("v2"), InputError);
 }
 
-TEST_F(HistoryFile, TheSameLogAtTheSameHoursIsRefused) {
+TEST_F(Histories, TheSameLogAtTheSameHoursIsRefused) {
   HistoryFile h(file(), true);
   h.record("v1", "", a_check(10), "");
   EXPECT_THROW(h.record("v1", "", a_check(10), ""), InputError);
   EXPECT_EQ(h.of("v1").recordings.size(), 1u);
 }
 
-TEST_F(HistoryFile, CsvThereAndBackGivesTheSameBits) {
+TEST_F(Histories, CsvThereAndBackGivesTheSameBits) {
   HistoryFile h(file(), true);
   for (int k = 0; k < 5; ++k) h.record("valve, \"left\"", "SN", a_check(k / 3.0, k / 7.0), "id,name\n1,\"x\"\n");
   h.add_event("valve, \"left\"", {1.5, EventKind::note, "two\nlines; ü", ""});
@@ -91,7 +91,7 @@ TEST_F(HistoryFile, CsvThereAndBackGivesTheSameBits) {
   EXPECT_EQ(second.present, 6);
 }
 
-TEST_F(HistoryFile, ABrokenCsvIsRefusedAtItsLineAndAddsNothing) {
+TEST_F(Histories, ABrokenCsvIsRefusedAtItsLineAndAddsNothing) {
   HistoryFile h(file(), true);
   h.record("v1", "", a_check(10), "");
   std::string text = history_csv(h.content());
@@ -106,7 +106,7 @@ TEST_F(HistoryFile, ABrokenCsvIsRefusedAtItsLineAndAddsNothing) {
   }
 }
 
-TEST_F(HistoryFile, ACsvOfAnotherOriginNeedsValveHoursNameAndValue) {
+TEST_F(Histories, ACsvOfAnotherOriginNeedsValveHoursNameAndValue) {
   std::ofstream(file("other.csv")) << "at [h],valve,name,value,oil_temperature [degC]\n"
                                       "1,v1,fidelity,1.2,\n1,v1,parameter:9,3e-6,40\n5,v1,fidelity,1.3,-10\n";
   const HistoryContent content = read_history_csv(file("other.csv"));
@@ -122,7 +122,7 @@ TEST_F(HistoryFile, ACsvOfAnotherOriginNeedsValveHoursNameAndValue) {
   EXPECT_THROW(read_history_csv(file("typo.csv")), InputError);
 }
 
-TEST_F(HistoryFile, RowsOfOneCheckNeedNotStandTogether) {
+TEST_F(Histories, RowsOfOneCheckNeedNotStandTogether) {
   std::ofstream(file("by_name.csv")) << "valve,at [h],name,value\nv1,1,fidelity,1.2\nv1,2,fidelity,1.3\n"
                                         "v1,1,parameter:9,3e-6\nv1,2,parameter:9,4e-6\n";
   HistoryFile h(file(), true);
@@ -133,7 +133,7 @@ TEST_F(HistoryFile, RowsOfOneCheckNeedNotStandTogether) {
   EXPECT_THROW(read_history_csv(file("twice.csv")), InputError);
 }
 
-TEST_F(HistoryFile, AnImportThatContradictsTheHistoryIsRefusedWhole) {
+TEST_F(Histories, AnImportThatContradictsTheHistoryIsRefusedWhole) {
   const auto csv = [&](const char* rows) {
     std::ofstream(file("rows.csv")) << "valve,at [h],name,value\n" << rows;
     return read_history_csv(file("rows.csv"));
@@ -146,7 +146,7 @@ TEST_F(HistoryFile, AnImportThatContradictsTheHistoryIsRefusedWhole) {
   EXPECT_EQ(h.of("v1").recordings.size(), 1u);
 }
 
-TEST_F(HistoryFile, AnImportTakesUnitsAtTheirWord) {
+TEST_F(Histories, AnImportTakesUnitsAtTheirWord) {
   const auto read = [&](const char* row) {
     std::ofstream(file("row.csv")) << "valve,at [h],name,value,std_error,unit\n" << row;
     return read_history_csv(file("row.csv")).valves.front().recordings.front().checks.front();
@@ -160,7 +160,7 @@ TEST_F(HistoryFile, AnImportTakesUnitsAtTheirWord) {
   EXPECT_THROW(read("v1,1,parameter:9,15,0.5,bananas\n"), InputError);
 }
 
-TEST_F(HistoryFile, AnImportRefusesWhatNoValveCanRead) {
+TEST_F(Histories, AnImportRefusesWhatNoValveCanRead) {
   for (const char* row : {"v1,-5,1,fidelity,1.2,0.1,313", "v1,5,-7,fidelity,1.2,0.1,313",
                           "v1,5,1,fidelity,1.2,-0.1,313", "v1,5,1,fidelity,1.2,0.1,40",
                           "v1,5,1,parameter:99,1.2,0.1,313", "v1,5,1,parameter:x,1.2,0.1,313", "v1,5,1,,1.2,0.1,313"}) {
@@ -176,13 +176,13 @@ TEST_F(HistoryFile, AnImportRefusesWhatNoValveCanRead) {
   }
 }
 
-TEST_F(HistoryFile, AnEmptyFileIsNoHistory) {
+TEST_F(Histories, AnEmptyFileIsNoHistory) {
   std::ofstream(file("empty.db")).flush();
   EXPECT_THROW(HistoryFile(file("empty.db"), false), InputError);
   EXPECT_EQ(std::filesystem::file_size(file("empty.db")), 0u);
 }
 
-TEST_F(HistoryFile, AnEmptyFileIsFilledAsIfItWereNotThere) {
+TEST_F(Histories, AnEmptyFileIsFilledAsIfItWereNotThere) {
   std::ofstream(file()).flush();
   EXPECT_FALSE(HistoryFile::there(file()));
   HistoryFile(file(), true).record("v1", "", a_check(1), "");
@@ -203,7 +203,7 @@ pid_t in_child(const Work& work) {
   _exit(0);
 }
 
-TEST_F(HistoryFile, OneWhoseMakerIsKilledIsWholeOrNotThere) {
+TEST_F(Histories, OneWhoseMakerIsKilledIsWholeOrNotThere) {
   Random random(12);
   constexpr int kills = 20;
   for (int k = 0; k < kills; ++k) {
@@ -222,7 +222,7 @@ TEST_F(HistoryFile, OneWhoseMakerIsKilledIsWholeOrNotThere) {
   EXPECT_EQ(std::distance(fs::directory_iterator(folder.path), fs::directory_iterator()), kills);
 }
 
-TEST_F(HistoryFile, OneThatHasNoRoomIsNotThere) {
+TEST_F(Histories, OneThatHasNoRoomIsNotThere) {
   const pid_t child = in_child([&] {
     signal(SIGXFSZ, SIG_IGN);
     const rlimit limit{2000, 2000};
@@ -235,7 +235,7 @@ TEST_F(HistoryFile, OneThatHasNoRoomIsNotThere) {
   EXPECT_TRUE(fs::is_empty(folder.path));
 }
 
-TEST_F(HistoryFile, FirstWritersAtOnceLoseNothing) {
+TEST_F(Histories, FirstWritersAtOnceLoseNothing) {
   constexpr int writers = 6;
   for (const bool empty : {false, true}) {
     const std::string path = file(empty ? "empty.db" : "new.db");
@@ -253,7 +253,7 @@ TEST_F(HistoryFile, FirstWritersAtOnceLoseNothing) {
   }
 }
 
-TEST_F(HistoryFile, AnOlderSchemaIsBroughtUpAndKeepsItsRows) {
+TEST_F(Histories, AnOlderSchemaIsBroughtUpAndKeepsItsRows) {
   {
     HistoryFile h(file(), true);
     h.record("v1", "", a_check(10), "");
@@ -269,7 +269,7 @@ TEST_F(HistoryFile, AnOlderSchemaIsBroughtUpAndKeepsItsRows) {
   EXPECT_EQ(raw.execAndGet("SELECT count(*) FROM sqlite_master WHERE name = 'recording_of_valve'").getInt(), 1);
 }
 
-TEST_F(HistoryFile, ANewerSchemaAnotherProgramsFileAndADamagedFileAreRefusedUntouched) {
+TEST_F(Histories, ANewerSchemaAnotherProgramsFileAndADamagedFileAreRefusedUntouched) {
   { HistoryFile h(file(), true); }
   { SQLite::Database(file(), SQLite::OPEN_READWRITE).exec("PRAGMA user_version = 99"); }
   EXPECT_THROW(HistoryFile(file(), true), InputError);
@@ -283,7 +283,7 @@ TEST_F(HistoryFile, ANewerSchemaAnotherProgramsFileAndADamagedFileAreRefusedUnto
   EXPECT_THROW(HistoryFile(file("missing.db"), false), InputError);
 }
 
-TEST_F(HistoryFile, ADamagedPageIsReportedNotReadOver) {
+TEST_F(Histories, ADamagedPageIsReportedNotReadOver) {
   {
     HistoryFile h(file(), true);
     for (int k = 0; k < 200; ++k) h.record("v1", "", a_check(k), "");
@@ -303,7 +303,7 @@ TEST_F(HistoryFile, ADamagedPageIsReportedNotReadOver) {
 }
 
 // A limit on the size of files stands for a full disk: the write fails in mid-transaction.
-TEST_F(HistoryFile, AWriteThatFailsLosesItsCheckSaysSoAndKeepsTheRest) {
+TEST_F(Histories, AWriteThatFailsLosesItsCheckSaysSoAndKeepsTheRest) {
   { HistoryFile h(file(), true); }
   int ends[2];
   ASSERT_EQ(pipe(ends), 0);
@@ -339,7 +339,7 @@ TEST_F(HistoryFile, AWriteThatFailsLosesItsCheckSaysSoAndKeepsTheRest) {
   EXPECT_EQ(h.of("v1").recordings.size(), acknowledged);
 }
 
-TEST_F(HistoryFile, WritersOfSeveralProcessesLoseNothing) {
+TEST_F(Histories, WritersOfSeveralProcessesLoseNothing) {
   { HistoryFile h(file(), true); }
   constexpr int writers = 4, each = 25;
   std::vector<pid_t> children;
@@ -368,7 +368,7 @@ TEST_F(HistoryFile, WritersOfSeveralProcessesLoseNothing) {
 
 // A child records and acknowledges each check through a pipe; it is killed at a random moment. SERVODX_KILLS=200 for
 // the full count.
-TEST_F(HistoryFile, AKilledWriterLosesNoAcknowledgedCheck) {
+TEST_F(Histories, AKilledWriterLosesNoAcknowledgedCheck) {
   const char* asked = std::getenv("SERVODX_KILLS");
   const int kills = asked ? std::atoi(asked) : 25;
   Random random(11);
@@ -411,7 +411,7 @@ TEST_F(HistoryFile, AKilledWriterLosesNoAcknowledgedCheck) {
   EXPECT_GT(acknowledged, 0);
 }
 
-TEST_F(HistoryFile, TheTrendOfOneValveIsReadThroughAnIndex) {
+TEST_F(Histories, TheTrendOfOneValveIsReadThroughAnIndex) {
   { HistoryFile h(file(), true); }
   SQLite::Database raw(file());
   SQLite::Statement plan(raw,
