@@ -2,10 +2,13 @@
 
 #include <atomic>
 #include <cstdio>
+#include <filesystem>
+#include <system_error>
 #include <vector>
 
 #include "base/error.h"
 #include "base/progress.h"
+#include "base/sha256.h"
 #include "fleet/log_list.h"
 #include "fleet/result_file.h"
 #include "fleet/run.h"
@@ -73,6 +76,10 @@ int diagnose_list(const CommonOptions& common, const ListOptions& options, const
   if (common.dry_run) rehearse(logs, judging.rig, header);
   if (invocation.dry_run()) return ran;
   FleetJudge judge(invocation, judging, options.out);
+  // What can be read but once has no hash.
+  std::error_code ignored;
+  if (std::filesystem::is_regular_file(options.list, ignored))
+    header.inputs.push_back({options.list, sha256_of_file(options.list)});
   header.settings.update({{"list", options.list}, {"out", options.out}, {"chunk", options.chunk}});
   FleetRun run = judge_all(logs, judge, common, header);
   run.out = options.out;

@@ -57,7 +57,10 @@ FleetJudge::FleetJudge(const Invocation& invocation, const Judging& judging, std
     : judging_(judging), of_call_(invocation.header()), out_(std::move(out)), baseline_(of_call_.inputs.back()) {
   of_call_.inputs.pop_back();  // a result names its log between table and baseline
   of_call_.command = "diagnose";
-  fs::create_directory(out_);
+  std::error_code failed;  // another process may make it at the same time
+  fs::create_directory(out_, failed);
+  if (!fs::is_directory(out_))
+    throw InputError({out_, 0, ""}, "cannot be made: " + failed.message(), "make the folder or name another");
 }
 
 void FleetJudge::begin(const std::string& log) {

@@ -279,6 +279,8 @@ std::string Invocation::result(const report::Json& body) {
   return report::dump(header_, body);
 }
 
+bool Invocation::prints_text() const { return options_.json != "-"; }
+
 void Invocation::write_report(report::Page page) {
   write_file(options_.report, page.html());
   reported_ = true;

@@ -87,6 +87,7 @@ class Invocation {
 
   // Header and body as a result file's bytes; the time so far is filled in.
   std::string result(const report::Json& body);
+  bool prints_text() const;  // standard output is not for the JSON
   bool wants_report() const { return !options_.report.empty(); }
   void write_report(report::Page page);  // without it, `finish` writes a plain one
   // The result to --json and the text to standard output, each where it is asked for; then the notes. Beside the first

@@ -52,7 +52,7 @@ class Watching {
       : options_(options),
         judge_(invocation, judging, options.out),
         settling_(options.settle),
-        header_(invocation.header()),
+        invocation_(invocation),
         progress_("watch", {.quiet = options.common.quiet}) {
     run_.out = options.out;
     if (options.pages)
@@ -97,13 +97,13 @@ class Watching {
                                                       .threads = options_.common.threads,
                                                       .watch = {.stop = [this] { return stop_.load(); }}});
     run_.logs += outcome.end != FleetJudge::End::interrupted;
-    add(run_, outcome, progress_, header_, judge_.header());
+    add(run_, outcome, progress_, invocation_.header(), judge_.header());
     if (outcome.end == FleetJudge::End::judged) tell(*outcome.diagnosis);
   }
 
   // As they come: a pipe or a journal is read line by line.
   void tell(const Diagnosis& d) const {
-    if (options_.common.json == "-") return;
+    if (!invocation_.prints_text()) return;
     const std::string text = report::text_of(d, {.colour = colour_wanted(), .written_to = ""});
     std::printf("%s\n", text.substr(0, text.find('\n')).c_str());
     std::fflush(stdout);
@@ -112,7 +112,7 @@ class Watching {
   const Options& options_;
   FleetJudge judge_;
   Settling settling_;
-  report::Header& header_;
+  Invocation& invocation_;
   Progress progress_;
   FleetRun run_;
   const std::atomic<bool>& stop_ = stop_on_interrupt(true);

@@ -111,6 +111,7 @@ class Docs(unittest.TestCase):
             (folder / name).write_text('{"tool": "servodx", "command": "tune"}')
         (folder / "logs.txt").write_text("".join(f"{log.relative_to(folder)}\n" for log in (folder / "healthy").iterdir()))
         (folder / "results").mkdir()
+        shutil.copytree(folder / "healthy", folder / "incoming")
         (folder / "results" / "log.json").write_text(
             '{"command": "diagnose", "log": "log.csv", "refused": {"file": "log.csv", "line": 2, "column": "", '
             '"rule": "ragged row", "mend": "mend it"}}')
