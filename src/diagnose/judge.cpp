@@ -51,12 +51,14 @@ std::size_t position_of(const Fault* fault, const Assessment& a) {
   return i;
 }
 
-PairEvidence pair_of(const PairResult& p, const Assessment& a, const FaultGains& usual) {
+// What the model errs by on the worst of healthy logs may gain a second name as well: it has to gain beyond that.
+PairEvidence pair_of(const PairResult& p, const Assessment& a, const FaultGains& usual, double usual_adequacy) {
   const auto known = usual.find(p.second.fault);
   const double of_health = known == usual.end() ? 0.0 : known->second;
+  const double errs = std::max(1.0, usual_adequacy * usual_adequacy);
   return {position_of(p.first.fault, a),
           position_of(p.second.fault, a),
-          std::sqrt(std::max(0.0, p.gain) / (1 + of_health)),
+          std::sqrt(std::max(0.0, p.gain) / errs / (1 + of_health)),
           p.adequacy,
           p.first.at_least || p.second.at_least,
           p.first.at_worst || p.second.at_worst};
@@ -93,7 +95,7 @@ Evidence evidence_of(const Assessment& a, const DetectionBaseline& baseline, con
   e.gross = a.gross;
   for (const HypothesisResult& h : a.hypotheses)
     e.hypotheses.push_back({h.fault, h.probability, h.adequacy, h.at_worst, h.gain});
-  if (!a.pairs.empty()) e.pair = pair_of(a.pairs.front(), a, usual);
+  if (!a.pairs.empty()) e.pair = pair_of(a.pairs.front(), a, usual, baseline.adequacy_limit);
   for (const RecordFinding& f : records_of(a, baseline)) e.records.push_back({*f.fault->told_by, f.broken.has_value()});
   return e;
 }

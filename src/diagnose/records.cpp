@@ -176,6 +176,14 @@ double correlation(const std::vector<double>& a, const std::vector<double>& b) {
   return va > 0 && vb > 0 ? (ab - sa * sb / n) / std::sqrt(va * vb) : 0.0;
 }
 
+// Means over blocks of time, less the one ahead: a piston that drifts elsewhere still moves with its simulation.
+std::vector<double> moves(const std::vector<double>& time, const std::vector<double>& x) {
+  const Blocks blocks = means_of(time, x, false);
+  std::vector<double> out;
+  for (std::size_t i = 1; i < blocks.value.size(); ++i) out.push_back(blocks.value[i] - blocks.value[i - 1]);
+  return out;
+}
+
 struct Run {
   std::size_t from = 0, to = 0;
 };
@@ -218,14 +226,17 @@ std::vector<BrokenSensor> broken_sensors(const LogData& data, const Trajectory& 
   struct Follows {
     const FitChannel* channel;
     const std::vector<double>* simulated;
-    double own;
+    std::vector<double> moves, would_move;
+    double own;  // correlation of the two
   };
   std::vector<Follows> moving;
   bool one_follows = false;
   for (const FitChannel& c : data.channels) {
     const std::vector<double>& y = healthy.signals[static_cast<std::size_t>(c.simulated)];
     if (y.empty() || range_of(y, 0, y.size()) < k::beyond_noise * c.noise) continue;
-    moving.push_back({&c, &y, correlation(c.measured, y)});
+    Follows f{&c, &y, moves(data.scenario.time, c.measured), moves(data.scenario.time, y), 0};
+    f.own = correlation(f.moves, f.would_move);
+    moving.push_back(std::move(f));
     one_follows = one_follows || moving.back().own > k::follows;
   }
   if (!one_follows) return out;  // then it is no one sensor
@@ -234,7 +245,7 @@ std::vector<BrokenSensor> broken_sensors(const LogData& data, const Trajectory& 
   };
   const auto a = of(Signal::pressure_a), b = of(Signal::pressure_b);
   const bool swapped = a != moving.end() && b != moving.end() && a->own < -k::follows && b->own < -k::follows &&
-                       correlation(a->channel->measured, *b->simulated) > k::follows;
+                       correlation(a->moves, b->would_move) > k::follows;
   for (const Follows& f : moving) {
     if (is_frozen(*f.channel, data, *f.simulated))
       out.push_back({SensorFinding::frozen, f.channel->signal});

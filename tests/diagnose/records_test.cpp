@@ -11,8 +11,8 @@
 #include "diagnose/record_law.h"
 #include "faults/registry.h"
 #include "fit/log_data.h"
-#include "shipped_data.h"
 #include "servodx/log.h"
+#include "shipped_data.h"
 #include "simulate/scenario.h"
 
 namespace servodx {
@@ -181,6 +181,16 @@ TEST(Records, AFrozenATurnedAndASwappedSensorAreNamedAndHealthyOnesAreNot) {
   found = broken_of(swapped);
   ASSERT_EQ(found.size(), 2u);
   for (const BrokenSensor& b : found) EXPECT_EQ(b.finding, SensorFinding::swapped_ports);
+}
+
+TEST(Records, APistonThatDriftsToTheOtherSideIsNotTurned) {
+  Made drifting = made(61, 1.0);
+  for (std::size_t k = 0; k < drifting.piston.size(); ++k)
+    drifting.piston[k] = 0.5 * drifting.piston[k] - 0.02 * drifting.time[k];
+  Trajectory upward = simulated(made(60, 1.0));
+  auto& piston = upward.signals[static_cast<std::size_t>(simulated_index(Signal::piston_position))];
+  for (std::size_t k = 0; k < piston.size(); ++k) piston[k] += 0.02 * drifting.time[k];
+  EXPECT_TRUE(broken_sensors(prepare(log_of(drifting), {}), upward).empty());
 }
 
 TEST(Records, WhereNothingFollowsItIsNoOneSensor) {
