@@ -15,12 +15,13 @@
 namespace servodx {
 namespace {
 
-// That something is there, by the chance that health shows as much: even where the verdict turns, so that no
-// probability contradicts it.
-double sure_of(double chance, double rate) {
+// Probability of nothing, by the chance that health shows as much: even where the verdict turns, so that no probability
+// contradicts it.
+double nothing_by(double chance, double rate) {
   const double odds = factor_for_nothing(chance) / factor_for_nothing(rate);
-  return 1 / (1 + odds);
+  return odds / (1 + odds);
 }
+double sure_of(double chance, double rate) { return 1 - nothing_by(chance, rate); }
 
 NamedFault seen_outright(const HypothesisResult& h) {  // the worst, up to the mildest that the finding leaves open
   const double worst = h.fault->worst, mildest = h.fault->seen_outright->mildest;
@@ -42,9 +43,8 @@ std::vector<double> beside_health(const Named& of) {
   const double faults = std::accumulate(p.begin() + 1, p.end(), 0.0);
   const bool settled = of.decision.severity == SeveritySource::seen_outright;
   if (settled || !(faults > 0)) return p;
-  const double sick = sure_of(of.law.chance_of_gain(of.gain), of.law.rate());
-  p.front() = 1 - sick;
-  for (std::size_t i = 1; i < p.size(); ++i) p[i] *= sick / faults;
+  p.front() = nothing_by(of.law.chance_of_gain(of.gain), of.law.rate());
+  for (std::size_t i = 1; i < p.size(); ++i) p[i] *= (1 - p.front()) / faults;
   return p;
 }
 

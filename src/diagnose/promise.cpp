@@ -3,6 +3,7 @@
 
 #include "base/error.h"
 #include "diagnose/check_log.h"
+#include "diagnose/hypotheses.h"
 #include "faults/fault.h"
 #include "faults/registry.h"
 #include "fit/chart.h"
@@ -67,8 +68,8 @@ std::vector<Identifiable> identifiable_rows(const FitProblem& problem, const Tab
 }
 
 // The log's nuisances and every fault's severity, as values of one problem.
-std::vector<FreeValue> with_faults(std::vector<FreeValue> nuisances) {
-  for (const Fault* fault : fault_list()) {
+std::vector<FreeValue> with_faults(std::vector<FreeValue> nuisances, const std::vector<const Fault*>& faults) {
+  for (const Fault* fault : faults) {
     FreeValue f;
     f.name = fault->name;
     f.apply = fault->apply;
@@ -81,10 +82,11 @@ std::vector<FreeValue> with_faults(std::vector<FreeValue> nuisances) {
 }
 
 // Health, then each fault at its least and at a typical size.
-std::vector<Point> points_of_faults(const FitProblem& problem, std::size_t nuisances) {
+std::vector<Point> points_of_faults(const FitProblem& problem, std::size_t nuisances,
+                                    const std::vector<const Fault*>& faults) {
   std::vector<Point> points = {problem.start()};
-  for (std::size_t k = 0; k < fault_list().size(); ++k) {
-    const Fault& fault = *fault_list()[k];
+  for (std::size_t k = 0; k < faults.size(); ++k) {
+    const Fault& fault = *faults[k];
     for (const double severity : {fault.least, typical_of(fault)}) {
       Point p = points.front();
       p[nuisances + k] = problem.free()[nuisances + k].to_unit(severity);
@@ -103,20 +105,21 @@ Eigen::MatrixXd own_columns(const Eigen::MatrixXd& of_nuisances, const std::vect
   return own;
 }
 
-// What each fault adds to the residual, nuisances fitted away.
+// What each fault that this log can show adds to the residual, nuisances fitted away.
 std::vector<Visible> visible_faults(const LogData& data, const ParameterVector& base, const ErrorModel& error,
                                     const std::vector<FreeValue>& nuisances, const Eigen::MatrixXd& jacobian,
                                     const SimulateOptions& options, long& simulations) {
-  FitProblem problem({&data}, base, with_faults(nuisances), options);
+  const std::vector<const Fault*> faults = fitted_faults({&data});
+  FitProblem problem({&data}, base, with_faults(nuisances, faults), options);
   whiten(problem, error, problem.start());
-  const std::vector<Evaluation> runs = problem.evaluate(points_of_faults(problem, nuisances.size()));
+  const std::vector<Evaluation> runs = problem.evaluate(points_of_faults(problem, nuisances.size(), faults));
   simulations += problem.simulations();
   const long n = problem.data_rows();
   const auto count = static_cast<long>(nuisances.size());
   const Eigen::MatrixXd of_nuisances = jacobian.block(0, jacobian.cols() - count, n, count);
   std::vector<Visible> out;
-  for (std::size_t k = 0; k < fault_list().size(); ++k) {
-    const Fault& fault = *fault_list()[k];
+  for (std::size_t k = 0; k < faults.size(); ++k) {
+    const Fault& fault = *faults[k];
     const Eigen::MatrixXd own = own_columns(of_nuisances, nuisances, fault);
     const auto deviate = [&](const Evaluation& e) {
       return e.ok && runs.front().ok ? left_over((e.residual - runs.front().residual).head(n), own) : std::nan("");

@@ -177,7 +177,7 @@ TEST_F(MainJob, BaselineAndDiagnoseWriteTheContractsKeys) {
   int worst = 0;
   for (const Json& r : result["results"]) {
     expect_keys(r, {"log", "verdict", "error", "threshold", "p_value", "fault", "probabilities", "ambiguous_with",
-                    "separating_test", "severity", "onset_time", "parameters"});
+                    "separating_test", "severity", "onset_time", "parameters", "faults", "channel", "records"});
     expect_keys(r["severity"], {"value", "lower", "upper", "unit"});
     const std::string verdict = r["verdict"];
     worst = std::max(worst, verdict == "fault" ? 10 : verdict == "unknown" ? 11 : 0);
@@ -192,6 +192,13 @@ TEST_F(MainJob, BaselineAndDiagnoseWriteTheContractsKeys) {
   Json again = Json::parse(ended.out), before = result;
   again.erase("seconds"), before.erase("seconds");
   EXPECT_EQ(again, before);
+
+  // Pooled: one verdict for both.
+  ASSERT_EQ(desk().run(call + "--pool --json pool.json --report pool.html").code, 0);
+  const Json pool = json("pool.json")["results"];
+  ASSERT_EQ(pool.size(), 1u);
+  EXPECT_EQ(pool[0]["logs"], Json({"s1.csv", "b1.csv"}));
+  EXPECT_EQ(pool[0]["log"], "s1.csv + b1.csv");
 }
 
 }  // namespace

@@ -79,6 +79,16 @@ TEST(MainJob, LostWireIsFoundAndSizedAndNoFaultTakenForAnother) {
     EXPECT_NEAR(d.severity.value, c.left, 0.15) << c.log;
   }
   std::printf("%d faults: %d detected, %d named\n", faults, detected, named);
+
+  // Two pieces of one valve in one state say together what each says, and more sharply.
+  const Log first = piece(shipped_log("fault/f06_wire_lost_medium"), from, 850);
+  const Log second = piece(shipped_log("fault/f06_wire_lost_medium"), 850, to);
+  const Diagnosis alone = judge(assess(first, tuned.table, rig, {}), baseline);
+  const Diagnosis pooled = judge(assess_pool({first, second}, tuned.table, rig, {}), baseline);
+  EXPECT_EQ(pooled.fault, wire_lost);
+  EXPECT_EQ(pooled.assessment.logs.size(), 2u);
+  EXPECT_NEAR(pooled.severity.value, 0.2, 0.15);
+  EXPECT_GT(pooled.error, alone.error);
 }
 
 }  // namespace

@@ -36,7 +36,8 @@ const std::map<std::string, std::set<std::string>> allowed = {
     {"diagnose", {"parameters", "signals", "simulate", "optimise", "fit", "tune", "evidence", "faults", "effects"}},
     {"explain", {"parameters", "signals", "simulate", "optimise", "fit", "tune", "evidence", "faults", "effects"}},
     {"report",
-     {"signals", "faults", "diagnose", "explain", "evidence", "prognose", "fit", "tune", "valve_maps", "curves", "fleet"}},
+     {"signals", "faults", "diagnose", "explain", "evidence", "prognose", "fit", "tune", "valve_maps", "curves",
+      "fleet"}},
     {"prognose", {"parameters", "signals", "model", "simulate", "optimise", "fit", "faults", "valve_maps"}},
     {"store", {"parameters", "model", "simulate", "faults", "prognose"}},
     // The front door is made of everything below the program; of report its words and files.
