@@ -46,6 +46,11 @@ bool is_fault_on(FigureKind kind, bool above) {
   }
 }
 
+// Whether a figure over its usual value is the fault's severity; the others say that something is wrong, and no size.
+bool is_size(FigureKind kind) {
+  return kind == FigureKind::supply_level || kind == FigureKind::supply_step || kind == FigureKind::driver_gain;
+}
+
 const RecordFigure* same(const RecordFigure& of, const std::vector<RecordFigure>& figures) {
   for (const RecordFigure& f : figures)
     if (f.kind == of.kind && f.signal == of.signal) return &f;
@@ -65,9 +70,9 @@ std::optional<RecordFinding> compare(const RecordFigure& figure,
   out.fault = fault_told_by(record_of(figure.kind));
   out.figure = figure.kind, out.signal = figure.signal;
   out.value = figure.value, out.usual = std::exp(mean);
-  out.severity = out.value / out.usual;
   const double spread = (std::log(figure.value) - mean) / d.t;
   const double factor = std::exp(student_quantile(1 - 0.95, d.degrees) * spread);
+  out.severity = is_size(figure.kind) ? out.value / out.usual : std::nan("");
   out.lower = out.severity / factor, out.upper = out.severity * factor;
   out.chance = 0.5 * student_tail(d.t, d.degrees);
   out.since = figure.since;

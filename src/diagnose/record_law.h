@@ -19,7 +19,7 @@ struct RecordFinding {
   std::optional<SensorFinding> broken;  // one of the two
   Signal signal = Signal::supply_pressure;
   double value = 0, usual = 0;                // [as the figure]; usual: the healthy logs' mean
-  double severity = 0, lower = 0, upper = 0;  // value over usual, 95 %
+  double severity = 0, lower = 0, upper = 0;  // value over usual, 95 %; NaN: the figure is no size of the fault
   double chance = 0;                          // that a healthy log's figure is as far off
   std::optional<double> since = {};           // [s]
 };

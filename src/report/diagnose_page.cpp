@@ -49,7 +49,7 @@ std::string headline(const Diagnosis& d) {
            (d.suspicion ? " cannot be told from the fault-free logs" : " is like the fault-free logs");
   if (d.verdict == VerdictKind::unknown) return file_name(d.log) + " is not healthy, and no known fault explains it";
   const std::string size = size_words(d);
-  return words(label_of(d.fault)) + (size.empty() ? "" : ", " + size);
+  return words(label_of(d.fault) + of_channel(d)) + (size.empty() ? "" : ", " + size);
 }
 
 std::string sentence(std::string words) {

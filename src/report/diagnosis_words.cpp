@@ -197,6 +197,11 @@ std::string channel_of(const NamedFault& fault) {
              : "";
 }
 
+std::string of_channel(const Diagnosis& d) {
+  const std::string channel = d.faults.empty() ? "" : channel_of(d.faults.front());
+  return channel.empty() ? "" : " of " + channel;
+}
+
 std::string second_in_words(const NamedFault& f) {
   return fmt::format("{}, {}, {}", label_of(f.fault), handy_interval(f.severity, f.lower, f.upper, unit_of(f.fault)),
                      chance(f.probability));

@@ -6,13 +6,13 @@
 
 #include "diagnose/assessment.h"
 #include "diagnose/baseline.h"
-#include "evidence/conditions.h"
 #include "diagnose/decide.h"
 #include "diagnose/diagnose.h"
 #include "diagnose/judge.h"
 #include "diagnose/moved.h"
 #include "diagnose/record_law.h"
 #include "diagnose/records.h"
+#include "evidence/conditions.h"
 #include "faults/fault.h"
 #include "faults/gross_finding.h"
 #include "fit/replay.h"
@@ -56,6 +56,7 @@ std::string words_of(FigureKind kind);  // for files: "supply_level"
 std::string record_in_words(const RecordFinding& finding);
 // The sensor that is meant; "" where no one is.
 std::string channel_of(const NamedFault& fault);
+std::string of_channel(const Diagnosis& d);  // " of pressure_a", where the fault named is a sensor's
 // "cylinder_leakage, 1.2e-12 m3/s/Pa (...), 98 %" of a second fault beside the first.
 std::string second_in_words(const NamedFault& fault);
 

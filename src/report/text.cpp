@@ -156,7 +156,7 @@ std::string text_of(const DetectionBaseline& b, const TextOptions& options) {
 std::string text_of(const Diagnosis& d, const TextOptions& options) {
   std::string first = d.log + ": ";
   if (d.fault)
-    first += in_colour("FAULT", d.verdict, options.colour) + " " + label_of(d.fault);
+    first += in_colour("FAULT", d.verdict, options.colour) + " " + label_of(d.fault) + of_channel(d);
   else
     first += in_colour(d.verdict == VerdictKind::unknown ? "UNKNOWN" : word_of(d.verdict), d.verdict, options.colour);
   if (const std::string size = size_words(d); !size.empty()) first += ", " + size;

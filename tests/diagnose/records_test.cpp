@@ -136,6 +136,7 @@ TEST(Records, ASensorThatScattersIsFoundByItsName) {
   ASSERT_EQ(found.size(), 1u);
   EXPECT_EQ(found.front().fault, find_fault("sensor_fault"));
   EXPECT_EQ(found.front().signal, Signal::pressure_b);
+  EXPECT_TRUE(std::isnan(found.front().severity)) << "a scatter is no gain";
 }
 
 TEST(Records, TwoHealthyLogsSayNothing) {
