@@ -57,6 +57,7 @@ inline constexpr double response_missing = 0.02;  // of the travel asked for: le
 // Of the rate of false alarms, for all figures together: they seldom err, as they compare like with like.
 inline constexpr double share_of_records = 0.05;
 inline constexpr double block = 0.02;              // [s] of a mean: ringing and the driver's lag pass in it
+inline constexpr double most_blocks = 500;         // each is tried as the time of a step: work grows with their square
 inline constexpr std::size_t fewest_blocks = 5;    // that make a level or a line
 inline constexpr double least_demand = 0.1;        // of the valve's flow: less shows no droop
 inline constexpr double least_left = 0.02;         // of a ratio: nothing, in a logarithm

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <utility>
 #include <vector>
 
 #include "diagnose/constants.h"
@@ -84,7 +85,8 @@ std::vector<RecordFinding> records_of(const Assessment& a, const DetectionBaseli
   return record_findings(a.figures, a.broken, healthy, rate_of_records(baseline));
 }
 
-Evidence evidence_of(const Assessment& a, const DetectionBaseline& baseline, const HealthyLaw& law) {
+Evidence evidence_of(const Assessment& a, const DetectionBaseline& baseline, const HealthyLaw& law,
+                     const std::vector<RecordFinding>& records) {
   FaultGains usual = usual_gains(baseline);
   for (auto& [fault, gain] : usual) gain *= static_cast<double>(std::max<std::size_t>(1, a.logs.size()));
   Evidence e;
@@ -96,14 +98,15 @@ Evidence evidence_of(const Assessment& a, const DetectionBaseline& baseline, con
   for (const HypothesisResult& h : a.hypotheses)
     e.hypotheses.push_back({h.fault, h.probability, h.adequacy, h.at_worst, h.gain});
   if (!a.pairs.empty()) e.pair = pair_of(a.pairs.front(), a, usual, baseline.adequacy_limit);
-  for (const RecordFinding& f : records_of(a, baseline)) e.records.push_back({*f.fault->told_by, f.broken.has_value()});
+  for (const RecordFinding& f : records) e.records.push_back({*f.fault->told_by, f.broken.has_value()});
   return e;
 }
 
 Diagnosis judge(Assessment a, const DetectionBaseline& baseline) {
   const SuspectLog suspect = suspect_of(a);
   const HealthyLaw law(baseline, &suspect);
-  const Evidence evidence = evidence_of(a, baseline, law);
+  std::vector<RecordFinding> records = records_of(a, baseline);
+  const Evidence evidence = evidence_of(a, baseline, law, records);
   const Decision decision = decide(evidence);
   Diagnosis d;
   d.log = a.log;
@@ -111,7 +114,7 @@ Diagnosis judge(Assessment a, const DetectionBaseline& baseline) {
   d.error = evidence.error, d.threshold = evidence.threshold;
   d.p_value = p_value_of(evidence.error, baseline, law);
   d.baseline_logs = law.logs();
-  d.records = records_of(a, baseline);
+  d.records = std::move(records);
   const Named named{
       a, decision, d.records, law, evidence.gain, evidence.pair ? evidence.pair->gain : 0.0, rate_of_records(baseline)};
   d.faults = name_faults(named);

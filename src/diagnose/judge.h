@@ -56,7 +56,8 @@ struct Diagnosis {
 };
 
 // What the rules of the verdict look at.
-Evidence evidence_of(const Assessment& assessment, const DetectionBaseline& baseline, const HealthyLaw& law);
+Evidence evidence_of(const Assessment& assessment, const DetectionBaseline& baseline, const HealthyLaw& law,
+                     const std::vector<RecordFinding>& records);
 
 // What the records tell beyond what healthy logs show.
 std::vector<RecordFinding> records_of(const Assessment& assessment, const DetectionBaseline& baseline);

@@ -6,7 +6,6 @@
 #include <limits>
 
 #include "diagnose/constants.h"
-#include "diagnose/onset.h"
 #include "parameters/list.h"
 
 namespace servodx {
@@ -22,10 +21,11 @@ struct Blocks {
 };
 Blocks means_of(const std::vector<double>& time, const std::vector<double>& x, bool of_size) {
   Blocks out;
+  const double length = std::max(k::block, (time.back() - time.front()) / k::most_blocks);
   for (std::size_t from = 0; from < time.size();) {
     double sum = 0;
     std::size_t to = from, n = 0;
-    for (; to < time.size() && time[to] < time[from] + k::block; ++to)
+    for (; to < time.size() && time[to] < time[from] + length; ++to)
       if (std::isfinite(x[to])) sum += of_size ? std::abs(x[to]) : x[to], ++n;
     out.time.push_back(time[from]);
     out.value.push_back(n > 0 ? sum / static_cast<double>(n) : none);

@@ -36,15 +36,7 @@ struct FleetDesk : Desk {
       if (!line.empty()) text += line + (line[0] == '#' ? "" : line.starts_with("id,") ? ",std_error" : ",") + "\n";
     return text;
   }
-  static std::string excerpt(const std::string& log, int rows = 120) {
-    std::istringstream in(bytes_of(std::filesystem::path(SERVODX_SOURCE_DIR) / "data" / log));
-    std::string text, line;
-    for (int k = 0; k <= rows && std::getline(in, line);) {
-      k += line.starts_with('#') ? 0 : 1;
-      text += line + "\n";
-    }
-    return text;
-  }
+  static std::string excerpt(const std::string& log, int rows = 120) { return servodx::excerpt(log, rows); }
   static constexpr const char* judged_with = " --params tuned.csv --baseline base.json --rig rig.toml --quiet ";
 
   Ended list(const std::string& more) const { return run("diagnose --list " + more + judged_with); }

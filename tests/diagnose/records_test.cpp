@@ -139,6 +139,27 @@ TEST(Records, ASensorThatScattersIsFoundByItsName) {
   EXPECT_TRUE(std::isnan(found.front().severity)) << "a scatter is no gain";
 }
 
+// Half an hour at 100 Hz: the search for a step does not grow with the square of the log.
+TEST(Records, ALongLogIsLookedAtInAsManyPartsAsAShortOne) {
+  std::vector<double> time, command, piston, supply;
+  for (int k = 0; k < 180000; ++k) {
+    time.push_back(k / 100.0);
+    command.push_back(5e-3 * std::sin(0.1 * time.back()));
+    piston.push_back(-0.02 * std::cos(0.1 * time.back()));
+    supply.push_back(time.back() < 900 ? 200e5 : 150e5);
+  }
+  const Log log = make_log("long", {{"time [s]", time},
+                                    {"command [A]", command},
+                                    {"piston_position [m]", piston},
+                                    {"supply_pressure [Pa]", supply}});
+  const auto figures = record_figures(log, prepare(log, {}), candidate_of(shipped_table()));
+  const auto step = std::find_if(figures.begin(), figures.end(),
+                                 [](const RecordFigure& f) { return f.kind == FigureKind::supply_step; });
+  ASSERT_NE(step, figures.end());
+  EXPECT_NEAR(step->value, 0.75, 0.01);
+  EXPECT_NEAR(*step->since, 900, 1800.0 / 500);
+}
+
 TEST(Records, TwoHealthyLogsSayNothing) {
   Made low = made(56, 1.0);
   for (double& p : low.supply) p *= 0.5;
