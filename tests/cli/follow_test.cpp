@@ -1,0 +1,130 @@
+// watch --follow FILE and watch -, as called: a log that grows, a pipe, a kill, an interrupt.
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <csignal>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <sstream>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "cli/program.h"
+#include "fleet.h"
+
+namespace servodx {
+namespace {
+
+using Json = nlohmann::json;
+
+// A flight in which the feedback wire fractures at 2.5 s, watched by a table that is not quite this valve's.
+struct FollowDesk : FleetDesk {
+  static constexpr int rows = 2900;
+  FollowDesk() {
+    write("h.csv", excerpt("healthy/h10_flight.csv", 3000));
+    write("whole.csv", excerpt("sudden/s01_wire_fractures.csv", rows));
+  }
+  static std::string with(const std::string& more) { return " --healthy h.csv " + more + judged_with; }
+  static std::vector<Json> lines(const std::string& text) {
+    std::vector<Json> out;
+    std::istringstream in(text);
+    for (std::string line; std::getline(in, line);) out.push_back(Json::parse(line));
+    return out;
+  }
+  // The last event of each number, without diagnoses: what a reader of events goes by.
+  static std::map<long, Json> by_number(const std::vector<Json>& events) {
+    std::map<long, Json> out;
+    for (const Json& e : events)
+      if (e["event"] != "diagnosis") out[e["number"]] = e;
+    return out;
+  }
+};
+
+TEST(Follow, AFractureInAGrowingLogIsAnAlarmInTime) {
+  const FollowDesk desk;
+  const Ended ended = desk.run("watch --follow whole.csv --until-idle 0.2 --json - " + FollowDesk::with(""));
+  ASSERT_EQ(ended.code, 0) << ended.err;
+  const Json result = Json::parse(ended.out);
+  EXPECT_EQ(result["alarms"], 1) << result["events"];
+  EXPECT_EQ(result["samples"]["taken"], FollowDesk::rows);
+  ASSERT_FALSE(result["events"].empty());
+  const Json& alarm = result["events"][0];
+  EXPECT_EQ(alarm["event"], "alarm");
+  EXPECT_GE(alarm["time"], 2.5);
+  EXPECT_LT(alarm["told_at"], 2.6);
+}
+
+TEST(Follow, APipeGivesTheEventsOfTheFile) {
+  const FollowDesk desk;
+  const Ended file = desk.run("watch --follow whole.csv --until-idle 0.2 --events - " + FollowDesk::with(""));
+  const Ended pipe = desk.run("watch - --events - <whole.csv " + FollowDesk::with(""));
+  EXPECT_EQ(file.code, 0) << file.err;
+  EXPECT_EQ(pipe.code, 0) << pipe.err;
+  EXPECT_FALSE(file.out.empty());
+  EXPECT_EQ(FollowDesk::by_number(FollowDesk::lines(file.out)), FollowDesk::by_number(FollowDesk::lines(pipe.out)));
+}
+
+TEST(Follow, ACallThatCannotBeMeantIsRefused) {
+  const FollowDesk desk;
+  const auto before = desk.contents();
+  for (const char* call :
+       {"watch ", "watch a --follow whole.csv ", "watch --follow whole.csv --out res ", "watch --follow none.csv ",
+        "watch --follow whole.csv --until-idle -1 ", "watch --follow whole.csv --alarms-per-hour 0 "}) {
+    EXPECT_EQ(desk.run(call + FollowDesk::with("")).code, 2) << call;
+    EXPECT_EQ(desk.contents(), before) << call;
+  }
+}
+
+// Runs the program in the background; its number.
+int begin(const FollowDesk& desk, const std::string& arguments) {
+  const std::string call = "cd '" + desk.path.string() + "' && { '" + SERVODX_PROGRAM + "' " + arguments +
+                           " >/dev/null 2>&1 & echo $! >pid; }";
+  if (std::system(call.c_str()) != 0) return 0;
+  int pid = 0;
+  std::ifstream(desk / "pid") >> pid;
+  return pid;
+}
+
+// Until the state has judged so many bytes; false after a minute.
+bool judged(const FollowDesk& desk, std::size_t bytes) {
+  for (int k = 0; k < 1200; ++k) {
+    const Json state = Json::parse(bytes_of(desk.path / "state.json"), nullptr, false);
+    if (state.is_object() && state["judged_until"] >= bytes) return true;
+    std::this_thread::sleep_for(std::chrono::milliseconds(50));
+  }
+  return false;
+}
+
+TEST(Follow, AKilledWatchGoesOnFromItsState) {
+  const FollowDesk desk;
+  const std::string whole = bytes_of(desk.path / "whole.csv");
+  const Ended unbroken = desk.run("watch --follow whole.csv --until-idle 0.2 --events - " + FollowDesk::with(""));
+  const std::size_t cut = whole.size() / 2;
+  desk.write("log.csv", whole.substr(0, cut));
+  const int pid = begin(desk, "watch --follow log.csv" + FollowDesk::with("--state state.json --events one.jsonl"));
+  ASSERT_GT(pid, 0);
+  ASSERT_TRUE(judged(desk, cut * 9 / 10));
+  kill(pid, SIGKILL);
+  std::ofstream(desk / "log.csv", std::ios::app) << whole.substr(cut);
+  const Ended second =
+      desk.run("watch --follow log.csv --until-idle 0.2" + FollowDesk::with("--state state.json --events two.jsonl"));
+  ASSERT_EQ(second.code, 0) << second.err;
+  auto events = FollowDesk::lines(bytes_of(desk.path / "one.jsonl") + bytes_of(desk.path / "two.jsonl"));
+  EXPECT_EQ(FollowDesk::by_number(events), FollowDesk::by_number(FollowDesk::lines(unbroken.out)));
+}
+
+TEST(Follow, AnInterruptEndsWith130AndItsStateWritten) {
+  const FollowDesk desk;
+  const int code =
+      std::system(("cd '" + desk.path.string() + "' && { timeout --preserve-status -s INT 3 '" + SERVODX_PROGRAM +
+                   "' watch --follow whole.csv" + FollowDesk::with("--state state.json") + ">/dev/null 2>&1; }")
+                      .c_str());
+  EXPECT_EQ(WEXITSTATUS(code), 130);
+  EXPECT_GT(Json::parse(bytes_of(desk.path / "state.json"))["judged_until"], 0);
+}
+
+}  // namespace
+}  // namespace servodx

@@ -1,0 +1,105 @@
+// A log that grows gives the samples of the whole log, in whatever pieces its bytes come.
+#include "signals/growing_log.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "base/csv.h"
+#include "servodx/error.h"
+#include "servodx/log.h"
+#include "servodx/rig.h"
+#include "shipped_data.h"
+#include "signals/sample.h"
+#include "signals/signal.h"
+
+namespace servodx {
+namespace {
+
+struct Taken {
+  std::vector<Sample> samples;
+  std::vector<std::uint64_t> ends;
+  long bad = 0;
+};
+
+Taken take(const std::string& text, std::size_t piece, const RigFile& rig) {
+  GrowingLog log("log.csv", rig);
+  Taken out;
+  const auto keep = [&](const Sample& s, std::uint64_t end) { out.samples.push_back(s), out.ends.push_back(end); };
+  for (std::size_t at = 0; at < text.size(); at += piece) log.feed(std::string_view(text).substr(at, piece), keep);
+  log.end(keep);
+  out.bad = log.bad_lines();
+  return out;
+}
+
+void expect_same(const std::vector<Sample>& samples, const Log& log) {
+  ASSERT_EQ(samples.size(), log.samples());
+  for (std::size_t k = 0; k < samples.size(); ++k) {
+    ASSERT_EQ(samples[k].time, log.time[k]);
+    for (const SignalInfo& s : signal_list) {
+      if (s.signal == Signal::time) continue;
+      const double x = samples[k][s.signal];
+      if (!log.has(s.signal) || std::isnan(log[s.signal][k]))
+        ASSERT_TRUE(std::isnan(x)) << s.name;
+      else
+        ASSERT_EQ(x, log[s.signal][k]) << s.name;
+    }
+  }
+}
+
+TEST(GrowingLog, AnyPiecesGiveTheSamplesOfTheWholeLog) {
+  const struct {
+    const char *log, *rig;
+  } logs[] = {{"data/healthy/h10_flight.csv", "data/rig.toml"},
+              {"data/tutorial/good_1.csv", "data/tutorial/bench.toml"}};
+  for (const auto& [path, rig_path] : logs) {
+    const RigFile rig = read_rig_file(shipped(rig_path));
+    const Log whole = read_log(shipped(path), rig);
+    const std::string text = read_file(shipped(path));
+    for (std::size_t piece : {std::size_t{7}, std::size_t{4096}, text.size()}) {
+      const Taken taken = take(text, piece, rig);
+      expect_same(taken.samples, whole);
+      EXPECT_EQ(taken.bad, 0);
+      EXPECT_EQ(taken.ends.back(), text.size());
+    }
+  }
+}
+
+constexpr const char* head = "time [s],command [mA],spool_position [mm]\n";
+
+TEST(GrowingLog, ALineThatIsNoSampleIsCountedAndPassedOver) {
+  const Taken taken = take(std::string(head) + "0,1,2\n0.001,1\n0.002,x,2\n,1,2\n0.003,1,2,3\n\n0.004,,3\n", 5, {});
+  ASSERT_EQ(taken.samples.size(), 2u);
+  EXPECT_EQ(taken.bad, 4);
+  EXPECT_EQ(taken.samples[1].time, 0.004);
+  EXPECT_TRUE(std::isnan(taken.samples[1][Signal::command]));
+  EXPECT_DOUBLE_EQ(taken.samples[1][Signal::spool_position], 3e-3);
+}
+
+TEST(GrowingLog, AUnitsRowIsNoSample) {
+  const Taken taken = take("time,command,spool_position\ns,mA,mm\n0,1,2\n0.001,1,2\n", 3, {});
+  ASSERT_EQ(taken.samples.size(), 2u);
+  EXPECT_DOUBLE_EQ(taken.samples[0][Signal::command], 1e-3);
+}
+
+TEST(GrowingLog, AHeaderWithoutADriveIsRefused) {
+  EXPECT_THROW(take("time [s],spool_position [mm]\n0,1\n", 100, {}), InputError);
+}
+
+TEST(GrowingLog, AHeaderThatWasReadBeforeServesLaterLines) {
+  const RigFile rig;
+  GrowingLog first("log.csv", rig), second("log.csv", rig);
+  std::uint64_t end = 0;
+  first.feed(std::string(head) + "0,1,2\n", [&](const Sample&, std::uint64_t at) { end = at; });
+  second.begin_with(first.head(), end);
+  std::vector<Sample> samples;
+  second.feed("0.001,1,2\n", [&](const Sample& s, std::uint64_t at) { samples.push_back(s), end = at; });
+  ASSERT_EQ(samples.size(), 1u);
+  EXPECT_EQ(samples[0].time, 0.001);
+  EXPECT_EQ(end, std::string(head).size() + 16);
+}
+
+}  // namespace
+}  // namespace servodx
