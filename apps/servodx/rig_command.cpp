@@ -21,6 +21,7 @@
 #include "rig/facts.h"
 #include "rig/fleet.h"
 #include "rig/fluid.h"
+#include "rig/played.h"
 #include "rig/rig_faults.h"
 #include "rig/rig_model.h"
 #include "rig/rig_run.h"
@@ -37,6 +38,9 @@ struct Options {
   std::optional<double> celsius;  // empty: 40 degC, or a fleet's own
   std::optional<double> duration;
   std::optional<std::string> excitation;
+  std::string command;              // file to play; empty: an excitation
+  std::optional<double> loop_gain;  // [mA/mm]
+  std::optional<double> rate;
   std::vector<std::string> faults, changes;
   std::uint64_t valve = 0;
   rig::RigRun run;
@@ -62,12 +66,14 @@ void write(const std::string& path, rig::RigLog& log, const std::string& model, 
   write_file(truth_path(path), log.truth.dump(2) + "\n");
 }
 
-int one_log(Options& options, Invocation& invocation, const rig::RigModel& model, const std::string& model_sha256) {
+int one_log(Options& options, Invocation& invocation, const rig::RigModel& model, const std::string& model_sha256,
+            const std::optional<rig::PlayedCommand>& played) {
   const std::atomic<bool>& stop = stop_on_interrupt();
   Progress progress("rig", {.quiet = options.common.quiet});
   options.run.stop = &stop;
   options.run.progress = [&](double fraction) { progress.update(fraction, 0); };
-  rig::RigLog log = rig::run_rig(model, options.run);
+  rig::RigLog log = played ? rig::run_rig(model, options.run, played->stimulus) : rig::run_rig(model, options.run);
+  if (played) log.truth["played"] = {{"path", options.command}, {"sha256", played->sha256}};
   write(options.output, log, options.model, model_sha256);
   invocation.header().simulations = 1;
   const std::size_t samples = log.columns.front().value.size();
@@ -78,6 +84,21 @@ int one_log(Options& options, Invocation& invocation, const rig::RigModel& model
   invocation.finish(fmt::format("wrote {} ({} samples) and {}\n", options.output, samples, truth),
                     {{"output", options.output}, {"truth_file", truth}, {"samples", samples}, {"truth", log.truth}});
   return stop ? interrupted : ran;
+}
+
+// A file's length and rate hold unless the call gives its own.
+std::optional<rig::PlayedCommand> command_to_play(Options& options, const rig::RigModel& model,
+                                                  report::Header& header) {
+  if (options.command.empty()) return {};
+  constexpr double amperes_a_metre = 1.0;  // mA/mm
+  std::optional<double> gain;
+  if (options.loop_gain) gain = *options.loop_gain * amperes_a_metre;
+  rig::PlayedCommand played = rig::played_command(options.command, model, gain);
+  options.run.excitation = options.loop_gain ? "setpoint" : "command";
+  if (!options.duration) options.run.duration = played.duration;
+  if (!options.rate) options.run.rate = played.rate;
+  header.inputs.push_back({options.command, played.sha256});
+  return played;
 }
 
 int labelled_set(const Options& options, Invocation& invocation, const rig::RigModel& model,
@@ -146,7 +167,21 @@ int torque_map(const Options& options, Invocation& invocation, const rig::RigMod
   return ran;
 }
 
+void check_played(const Options& options) {
+  require_option(!options.loop_gain || !options.command.empty(), "--loop-gain", "is for a file with a setpoint",
+                 "name it with --command FILE");
+  require_option(!options.loop_gain || *options.loop_gain > 0, "--loop-gain", "must lie above nought",
+                 "give it in mA/mm");
+  if (options.command.empty()) return;
+  require_option(!options.excitation, "--command", "drives the rig, and so does --excitation", "give one of them");
+  require_option(options.fleet.logs == 0 && !options.facts && options.torque.empty(), "--command",
+                 "makes one log of one valve", "leave out --fleet, --facts and --torque-map");
+  require_option(options.run.amplitude == 0 && options.run.frequency == 0, "--command", "is played as it is",
+                 "leave out --amplitude and --frequency");
+}
+
 void check_call(const Options& options) {
+  check_played(options);
   require_option(options.common.rig.empty(), "--rig", "is a data sheet, and the virtual rig is not made from one",
                  "name the rig's definition with --rig-model");
   if (options.facts || !options.torque.empty()) {
@@ -174,6 +209,7 @@ int run(Options& options) {
   options.run.temperature = options.celsius.value_or(40.0) + rig::zero_celsius;
   if (options.celsius) options.fleet.temperature = options.run.temperature;
   if (options.duration) options.run.duration = options.fleet.duration = *options.duration;
+  if (options.rate) options.run.rate = *options.rate;
   options.fleet.rate = options.run.rate;
   options.fleet.excitation = options.excitation;
   options.run.excitation = options.excitation.value_or(options.run.excitation);
@@ -184,13 +220,16 @@ int run(Options& options) {
   std::vector<std::string> outputs;
   if (!options.torque.empty()) outputs = {options.torque};
   if (!options.output.empty()) outputs = {options.output, truth_path(options.output)};
-  invocation.check_files({options.model}, outputs);
+  std::vector<std::string> inputs = {options.model};
+  if (!options.command.empty()) inputs.push_back(options.command);
+  invocation.check_files(inputs, outputs);
   rig::RigModel model = rig::another_valve(rig::read_rig_model(options.model), options.valve);
   for (const auto& change : options.changes) rig::set_value(model, change);
   const std::string model_sha256 = sha256_of_file(options.model);
 
   report::Header& header = invocation.header();
   header.inputs.push_back({options.model, model_sha256});
+  const std::optional<rig::PlayedCommand> played = command_to_play(options, model, header);
   header.settings = {{"excitation", options.run.excitation},
                      {"duration", fleet ? options.fleet.duration : options.run.duration},
                      {"rate", options.run.rate},
@@ -198,12 +237,14 @@ int run(Options& options) {
                      {"faults", options.faults},
                      {"changed", options.changes},
                      {"valve", options.valve}};
+  if (played) header.settings["command"] = options.command;
+  if (options.loop_gain) header.settings["loop_gain"] = *options.loop_gain;
   if (fleet) header.settings["fleet"] = options.fleet.logs;
   if (invocation.dry_run()) return ran;
   if (options.facts) return facts_of(options, invocation, model);
   if (!options.torque.empty()) return torque_map(options, invocation, model);
   return fleet ? labelled_set(options, invocation, model, model_sha256)
-               : one_log(options, invocation, model, model_sha256);
+               : one_log(options, invocation, model, model_sha256, played);
 }
 
 std::string names() {
@@ -221,8 +262,12 @@ void add_rig_command(CLI::App& app, int& exit_code) {
   CLI::App* command = app.add_subcommand("rig", "The virtual rig writes a log and LOG.truth.json");
   command->add_option("--rig-model", options->model, "the rig's definition, params/rigs/*.toml")->capture_default_str();
   command->add_option("--excitation", options->excitation, "what drives it; names below; without: mixed");
+  command->add_option("--command", options->command, "play this command ('servodx plan' writes such), CSV")
+      ->type_name("FILE");
+  command->add_option("--loop-gain", options->loop_gain,
+                      "play the file's setpoint in a proportional position loop of this gain [mA/mm]");
   command->add_option("--duration", options->duration, "length of a log [s]; without: 5, of a fleet 4");
-  command->add_option("--rate", options->run.rate, "samples and control ticks a second [Hz]")->capture_default_str();
+  command->add_option("--rate", options->rate, "samples and control ticks a second [Hz]; without: 1000");
   command->add_option("--temperature", options->celsius, "oil and valve [degC]; without: 40, of a fleet -20 to 65");
   command->add_option("--air", options->run.air, "free air in the oil, volume fraction")->capture_default_str();
   command->add_option("--viscosity", options->run.viscosity, "of the oil, over what the rig's definition says of it")
