@@ -32,7 +32,8 @@ struct MountCompliance {
   static auto derivative(const V& view) {
     using T = typename V::Scalar;
     const auto force = pick<row::piston_area_a>(view.p) * view.template state<s_p_a>() -
-                       pick<row::piston_area_b>(view.p) * view.template state<s_p_b>();
+                       pick<row::piston_area_b>(view.p) * view.template state<s_p_b>() +
+                       hook_pressure_force(view, typename V::Effects{});
     const auto travel = view.template own_state<MountCompliance, 0>(), speed = body_velocity(view);
     const auto compliance = view.template own<MountCompliance, 0>();
     const auto rate = inverse(compliance * view.template own<MountCompliance, 2>() + T(least_period2));

@@ -8,6 +8,7 @@
 #include "effects/edge_transition.h"
 #include "effects/effect.h"
 #include "effects/flow_meter_lag.h"
+#include "effects/line_inertia.h"
 #include "effects/magnetic_hysteresis.h"
 #include "effects/mains_pickup.h"
 #include "effects/mount_compliance.h"
@@ -52,8 +53,10 @@ using AllEffects = EffectList<MagneticHysteresis,  //
                               SealFilm,            //
                               SealShear,           //
                               NozzleMismatch>;
-// A learnt curve costs more than all effects: it has a kernel of its own.
-using CorrectedEffects = Append<AllEffects, Unexplained>;
+// Four states more than all others together, for rigs with long lines only: these have a kernel of their own.
+using LinedEffects = Append<AllEffects, LineInertia>;
+// A learnt curve costs more than all effects: the same.
+using CorrectedEffects = Append<LinedEffects, Unexplained>;
 inline constexpr int n_values = n_parameters + CorrectedEffects::n_parameters;  // length of a parameter vector
 
 struct EffectInfo {

@@ -29,6 +29,7 @@ constexpr double loop_over_phase_lag = 0.9;  // loop bandwidth over the frequenc
 constexpr double short_tube_cd = 0.8;        // Merritt 1967 ch. 3: fixed orifices are short tubes
 constexpr double darcy_friction = 0.03;      // smooth line, Re 3e3 to 3e4
 constexpr double fitting_losses = 2.0;       // entry, exit and bends, in velocity heads
+constexpr double part_ahead_of_tap = 0.1;    // of a line's drop: the manifold's
 constexpr double line_wall_over_bore = 0.1;
 constexpr double stand_volume = 1e-4;                           // [m3] manifold and a metre of pipe at each port
 constexpr double stand_resistance = 1e14;                       // [Pa s2/m6] 14 bar at 14 l/min in each line, times 4
@@ -322,11 +323,27 @@ class Facts {
     const double area = disc(*bore), volume = area * *length;
     const double resistance =
         (darcy_friction * *length / *bore + fitting_losses) * rig_.fluid.density / (2 * area * area);
-    set(row::hose_resistance, tidy(resistance), 0, 20 * resistance, "lines.length, lines.bore",
-        "(0.03 L/D + 2) density / (2 area^2)");
+    const bool of_its_own = lines_of_their_own(*length, *bore, resistance);
+    set(row::hose_resistance, tidy(of_its_own ? part_ahead_of_tap * resistance : resistance), 0, 20 * resistance,
+        "lines.length, lines.bore",
+        of_its_own ? "a tenth of line_loss, ahead of the tap" : "(0.03 L/D + 2) density / (2 area^2)");
     const double compliance = volume * (1 / value(row::bulk_modulus) + 1 / (line_wall_over_bore * steel_modulus));
     set(row::hose_compliance, tidy(compliance), 0, 30 * compliance, "lines.length, lines.bore",
         "volume (1 / bulk_modulus + D / (E wall)), steel, wall D/10; a hose within the bound");
+  }
+
+  // Rows of an effect that only an extended table has: then the drop stands behind the taps.
+  bool lines_of_their_own(double length, double bore, double resistance) {
+    const auto set_row = [&](const char* name, double nominal, double range, const char* formula) {
+      const int at = table_.find(name);
+      if (at >= 0) set(at, tidy(nominal), 0, range * nominal, "lines.length, lines.bore", formula);
+      return at >= 0;
+    };
+    constexpr double known = 4, wide = 20;  // geometry and fluid; what bends and a flow that is not developed add
+    const double viscosity = rig_.fluid.density * rig_.fluid.kinematic_viscosity;
+    set_row("line_resistance", 128 * viscosity * length / (pi * std::pow(bore, 4)), wide, "128 viscosity L / (pi D^4)");
+    set_row("line_loss", resistance, wide, "(0.03 L/D + 2) density / (2 area^2)");
+    return set_row("line_inertance", rig_.fluid.density * length / disc(bore), known, "density L / area");
   }
 
   // Between the valve and its blind flanges lie passages, hoses and gauges that no sheet tells: free within wide

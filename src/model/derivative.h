@@ -11,6 +11,7 @@
 #include "base/smooth.h"
 #include "base/sparse_dual.h"
 #include "model/asperities.h"
+#include "model/chamber.h"
 #include "model/constants.h"
 #include "model/derived.h"
 #include "model/hooks.h"
@@ -88,16 +89,6 @@ auto filter_flow(const P& dp, const V& v_spool, const D& d) {
          signed_sqrt_behind(d.filter_creep, dp, T(c::orifice_transition));
 }
 
-// Stiffness of a chamber [Pa/m3]: oil, free air by the isothermal law, walls of the hose, all in one fraction.
-template <class V, class P, class D, class Rows>
-auto chamber_stiffness(const V& volume, const P& pressure, const D& d, const Rows& p) {
-  using T = typename D::Scalar;
-  namespace c = constants;
-  const auto absolute = soft_positive(pressure + T(c::atmospheric_pressure), T(c::pressure_floor));
-  const auto square = absolute * absolute;
-  return square * inverse((volume * d.inverse_bulk + pick<row::hose_compliance>(p)) * square + d.air * volume);
-}
-
 // Share of a stop's damping that acts, 0 clear of it to 1 well inside: oil is squeezed out before there is contact. [m]
 template <class X, class T>
 auto in_contact(const X& over, const X& under, const T& rounding) {
@@ -120,7 +111,7 @@ template <class Effects, class T, class S, class In, class Rows, class D, class 
 inline __attribute__((always_inline)) auto derivative(const S& s, const In& in, const Rows& p, const D& d,
                                                       Take&& take) {
   namespace c = constants;
-  const View<Effects, T, S, In, Rows> view{s, in, p};
+  const View<Effects, T, S, In, Rows, D> view{s, in, p, d};
   const auto supply = in.supply_pressure + hook_supply_pressure(view, Effects{});
   const AtValve<In, std::decay_t<decltype(supply)>> u{in.current, supply, in.return_pressure, in.load_force};
   const auto z_f = s.template get<s_x_flapper>();
@@ -182,12 +173,13 @@ inline __attribute__((always_inline)) auto derivative(const S& s, const In& in, 
   // Chambers. The body may move; volumes and the sensor see the rod relative to it.
   const auto v_rel = v_p - hook_body_velocity(view, Effects{});
   const auto q_leak = d.leak * (p_a - p_b);
-  const auto volume_a = d.middle_volume_a + pick<row::piston_area_a>(p) * x_p;
-  const auto volume_b = d.middle_volume_b - pick<row::piston_area_b>(p) * x_p;
+  const auto volume_a = d.middle_volume_a + pick<row::piston_area_a>(p) * x_p + hook_volume_a(view, Effects{});
+  const auto volume_b = d.middle_volume_b - pick<row::piston_area_b>(p) * x_p + hook_volume_b(view, Effects{});
+  const auto walls = pick<row::hose_compliance>(p) + hook_wall_compliance(view, Effects{});
   const auto dp_a = (q_pa - q_at - q_leak - pick<row::piston_area_a>(p) * v_rel + hook_flow_a(view, Effects{})) *
-                    chamber_stiffness(volume_a, p_a, d, p);
+                    chamber_stiffness(volume_a, walls, p_a, d);
   const auto dp_b = (q_pb - q_bt + q_leak + pick<row::piston_area_b>(p) * v_rel + hook_flow_b(view, Effects{})) *
-                    chamber_stiffness(volume_b, p_b, d, p);
+                    chamber_stiffness(volume_b, walls, p_b, d);
 
   // Piston.
   constexpr int n_families = std::size(c::seal_presliding);
@@ -206,7 +198,8 @@ inline __attribute__((always_inline)) auto derivative(const S& s, const In& in, 
   const auto in_stop = in_contact(over, under, T(c::piston_stop_rounding));
   const auto f_piston = pick<row::piston_area_a>(p) * p_a - pick<row::piston_area_b>(p) * p_b - u.load_force -
                         f_friction - T(c::piston_stop_stiffness) * (over - under) -
-                        T(c::piston_stop_damping) * (in_stop * v_rel) + hook_piston_force(view, Effects{});
+                        T(c::piston_stop_damping) * (in_stop * v_rel) + hook_piston_force(view, Effects{}) +
+                        hook_pressure_force(view, Effects{});
   const auto dv_p = d.inverse_mass * f_piston;
 
   return effect_derivatives(

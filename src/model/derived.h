@@ -52,7 +52,8 @@ namespace servodx {
   X(middle_volume_a,           "m3",           "at mid-stroke") \
   X(middle_volume_b,           "m3",           "at mid-stroke") \
   X(inverse_bulk,              "1/Pa",         "") \
-  X(air,                       "Pa",           "free air fraction times atmospheric pressure")
+  X(air,                       "Pa",           "free air fraction times atmospheric pressure") \
+  X(viscosity_ratio,           "-",            "of the oil over that at 40 degC")
 // clang-format on
 
 enum DerivedNumber : int {
@@ -80,6 +81,7 @@ Derived<T> derive(const T* p, const Oil& oil) {
   Derived<T> d;
   const T factor = hook_viscosity(p, Effects{});
   const T dynamic_viscosity = factor * T(oil.dynamic_viscosity), viscosity_ratio = factor * T(oil.viscosity_ratio);
+  d.viscosity_ratio = viscosity_ratio;
   const T per_root_density = T(std::sqrt(2.0 / oil.density));
   const T omega = T(2.0 * c::pi) * p[row::torque_motor_frequency];
   d.driver_rate = T(2.0 * c::pi) * p[row::driver_bandwidth];

@@ -17,7 +17,10 @@
 //     spool_force(view)    [N]   added to the force on the spool
 //     metering_opening(view) [m] added to the spool's travel where the edges meter
 //     flow_a(view), flow_b(view) [m3/s]  added to the flow into the chamber
+//     volume_a(view), volume_b(view) [m3] added to the oil that the edges fill; wall_compliance(view) [m3/Pa] to its
+//     walls'
 //     piston_force(view)   [N]   added to the force on the piston
+//     pressure_force(view) [N]   added to the force of the chambers' pressures, on the piston and on the body
 //     body_velocity(view)  [m/s] of the cylinder body; the rod is measured relative to it
 //     derivative(view)     tuple of the derivatives of its own states
 //     at_rest(own, y, q, p)  sets its own states to where they rest beside the base states y, q: its own parameters, p:
@@ -91,13 +94,14 @@ template <class List, class Last>
 using Append = typename AppendTo<List, Last>::type;
 
 // What a hook sees: states, inputs and rows.
-template <class List, class T, class States, class In, class Rows>
+template <class List, class T, class States, class In, class Rows, class Numbers>
 struct View {
   using Effects = List;
   using Scalar = T;  // double or a pack
   const States& s;
   const In& u;
-  const Rows& p;  // the 41 rows, then the effects' parameters in the order of the list
+  const Rows& p;     // the 41 rows, then the effects' parameters in the order of the list
+  const Numbers& d;  // what follows from them (model/derived.h)
 
   template <int K>
   auto state() const {
@@ -131,7 +135,11 @@ SERVODX_HOOK(spool_force)
 SERVODX_HOOK(metering_opening)
 SERVODX_HOOK(flow_a)
 SERVODX_HOOK(flow_b)
+SERVODX_HOOK(volume_a)
+SERVODX_HOOK(volume_b)
+SERVODX_HOOK(wall_compliance)
 SERVODX_HOOK(piston_force)
+SERVODX_HOOK(pressure_force)
 SERVODX_HOOK(body_velocity)
 #undef SERVODX_HOOK
 

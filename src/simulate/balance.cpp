@@ -4,12 +4,14 @@
 #include <cmath>
 #include <numeric>
 
+#include "effects/line_inertia.h"
 #include "effects/registry.h"
 #include "effects/sampled_lag.h"
 #include "effects/sensor_response.h"
 #include "effects/supply_droop.h"
 #include "effects/unexplained.h"
 #include "model/asperities.h"
+#include "model/chamber.h"
 #include "model/constants.h"
 #include "model/derivative.h"
 #include "model/derived.h"
@@ -152,9 +154,9 @@ Rates rates_along(const Scenario& in, const TrueSignals& of, const ParameterVect
     const auto f = derivative<Effects, double>(s, u, p.data(), d);
     out.force[k] = p[row::moving_mass] * std::get<s_v_piston>(f);
     out.compliance_a[k] = 1.0 / chamber_stiffness(d.middle_volume_a + p[row::piston_area_a] * of.piston[k],
-                                                  of.pressure_a[k], d, p.data());
+                                                  p[row::hose_compliance], of.pressure_a[k], d);
     out.compliance_b[k] = 1.0 / chamber_stiffness(d.middle_volume_b - p[row::piston_area_b] * of.piston[k],
-                                                  of.pressure_b[k], d, p.data());
+                                                  p[row::hose_compliance], of.pressure_b[k], d);
     out.flow_a[k] = std::get<s_p_a>(f) * out.compliance_a[k] + p[row::piston_area_a] * s.y[s_v_piston];
     out.flow_b[k] = std::get<s_p_b>(f) * out.compliance_b[k] - p[row::piston_area_b] * s.y[s_v_piston];
   }
@@ -241,8 +243,10 @@ Balance balance(const Scenario& in, const Measured& measured, const ParameterVec
   bool curve = false;
   for (int k = 0; k < Unexplained::knots; ++k)
     curve = curve || p[static_cast<std::size_t>(effect_row<Unexplained>(4 + k))] != 0;
-  return curve ? balance_with<CorrectedEffects>(in, measured, p, window)
-               : balance_with<AllEffects>(in, measured, p, window);
+  if (!curve) return balance_with<AllEffects>(in, measured, p, window);
+  ParameterVector at_taps = p;  // what stands behind the lines is not measured
+  at_taps[static_cast<std::size_t>(effect_row<LineInertia>(0))] = 0;
+  return balance_with<CorrectedEffects>(in, measured, at_taps, window);
 }
 
 }  // namespace servodx

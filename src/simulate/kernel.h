@@ -22,6 +22,7 @@
 #include "model/state.h"
 #include "parameters/list.h"
 #include "servodx/rig.h"
+#include "simulate/run_in_parts.h"
 #include "simulate/scenario.h"
 
 namespace servodx {
@@ -319,6 +320,20 @@ class Run {
     any_left_ = report(now_);
   }
 
+  // Of a log that comes in parts: the sample reached stands first in what the scenario now holds.
+  void go_on() { k_ = 0; }
+  // What the run remembers of its way: another of the same candidate that takes it over goes on from here.
+  auto memory() {
+    return std::tie(y, friction, drive_.memory, sensed_.memory, position_lag_, now_, lively_until_, impact_until_);
+  }
+  // The rod stands elsewhere [m]; all else goes on as it was.
+  void shift_rod(const T& by) {
+    y[s_x_piston] = y[s_x_piston] + by;
+    for (T& anchor : friction.seal_anchor) anchor = anchor + by;
+    position_lag_.input = position_lag_.input + by;
+    position_lag_.output = position_lag_.output + by;
+  }
+
   const T* p() const { return p_.data(); }
   const Derived<T>& derived() const { return d_; }
   const Inputs<T>& inputs() const { return now_; }  // at the last sample
@@ -552,14 +567,20 @@ void run_pack(const Scenario& in, const ParameterVector* const* candidates, Traj
   while (run.under_way()) run.next(Unwatched{});
 }
 
+using MakeRunInParts = std::unique_ptr<RunInParts> (*)(const Scenario&, const ParameterVector&, Trajectory&,
+                                                       const SimulateOptions&);
 using RunPack = void (*)(const Scenario&, const ParameterVector* const*, Trajectory* const*, int,
                          const SimulateOptions&);
 
 struct Kernels {
   int width;
   const char* name;
-  RunPack base, extended;  // without effects, with all that have names
+  RunPack base, extended;  // without effects, with all that have names but long lines
+  RunPack lined;           // with these too
   RunPack corrected;       // with a learnt curve too; plain doubles only: it is rare, and an instance is slow to build
+  // One candidate over a log that comes in parts, the same four.
+  MakeRunInParts base_in_parts = nullptr, extended_in_parts = nullptr, lined_in_parts = nullptr,
+                 corrected_in_parts = nullptr;
 };
 // A run, and candidates near it that follow its steps (step_derivative.h). It leads by a stretch of samples; they
 // follow over the one before the last turn.

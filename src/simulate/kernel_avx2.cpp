@@ -1,12 +1,21 @@
 #include "base/pack.h"
 #include "effects/registry.h"
 #include "simulate/kernel.h"
+#include "simulate/run_in_parts_of.h"
 
 namespace servodx {
 
 Kernels kernels_avx2() {
   using T = Pack<4, 2>;
-  return {T::lanes, "avx2", &run_pack<T, NoEffects>, &run_pack<T, AllEffects>, nullptr};
+  return {T::lanes,
+          "avx2",
+          &run_pack<T, NoEffects>,
+          &run_pack<T, AllEffects>,
+          &run_pack<T, LinedEffects>,
+          nullptr,
+          &make_in_parts<T, NoEffects>,
+          &make_in_parts<T, AllEffects>,
+          &make_in_parts<T, LinedEffects>};
 }
 
 }  // namespace servodx

@@ -5,15 +5,18 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <memory>
 #include <tuple>
 #include <utility>
 
 #include "base/meeting.h"
+#include "effects/line_inertia.h"
 #include "effects/registry.h"
 #include "effects/unexplained.h"
 #include "servodx/log.h"
 #include "servodx/rig.h"
 #include "simulate/kernel.h"
+#include "simulate/run_in_parts.h"
 #include "simulate/together.h"
 
 namespace servodx {
@@ -44,35 +47,72 @@ bool is_off(const EffectInfo& e, const ParameterVector& v) {
 }
 
 // Which kernel a candidate needs, the cheapest that holds all that is not at its off value; only candidates of the same
-// need share a pack. 0: none of the effects; 1: effects that have a name; 2: a learnt curve, which runs alone.
-constexpr int learnt_curve = 2;
-int need_of(const ParameterVector& v) {
-  int need = 0;
-  for (const EffectInfo& e : effect_list()) {
-    if (is_off(e, v)) continue;
-    if (e.name != Unexplained::name) {
-      need = std::max(need, 1);
-      continue;
-    }
-    need = learnt_curve;
-  }
+// need share a pack.
+enum class Need { base, extended, lined, corrected };
+Need need_of(const ParameterVector& v) {
+  Need need = Need::base;
+  for (const EffectInfo& e : effect_list())
+    if (!is_off(e, v))
+      need = std::max(need, e.name == Unexplained::name   ? Need::corrected
+                            : e.name == LineInertia::name ? Need::lined
+                                                          : Need::extended);
   return need;
 }
 
-RunPack run_of(const Kernels& k, int need) { return need == 0 ? k.base : need == 1 ? k.extended : k.corrected; }
+RunPack run_of(const Kernels& k, Need need) {
+  switch (need) {
+    case Need::base:
+      return k.base;
+    case Need::extended:
+      return k.extended;
+    case Need::lined:
+      return k.lined;
+    case Need::corrected:
+      return k.corrected;
+  }
+  return nullptr;
+}
+
+MakeRunInParts in_parts_of(const Kernels& k, Need need) {
+  switch (need) {
+    case Need::base:
+      return k.base_in_parts;
+    case Need::extended:
+      return k.extended_in_parts;
+    case Need::lined:
+      return k.lined_in_parts;
+    case Need::corrected:
+      return k.corrected_in_parts;
+  }
+  return nullptr;
+}
+
+NearKernels::Make make_of(const NearKernels& k, Need need) {
+  switch (need) {
+    case Need::base:
+      return k.base;
+    case Need::extended:
+      return k.extended;
+    case Need::lined:  // a tap answers so fast that followers part from their run
+    case Need::corrected:
+      return nullptr;
+  }
+  return nullptr;
+}
 
 struct PackOfJobs {
   std::array<const Job*, 16> jobs;
-  int count = 0, need = 0;
+  int count = 0;
+  Need need = Need::base;
 };
 
 // Jobs of one log and one need share packs, wherever they stand. Longest logs first, so that no thread ends on a long
 // one; the result does not depend on the order.
 void pack(std::span<const Job> jobs, int width, std::vector<PackOfJobs>& packs) {
-  thread_local std::vector<std::pair<const Job*, int>> order;  // and its need
+  thread_local std::vector<std::pair<const Job*, Need>> order;  // and its need
   order.clear();
   for (const Job& job : jobs) order.push_back({&job, need_of(*job.candidate)});
-  const auto key = [](const std::pair<const Job*, int>& j) {
+  const auto key = [](const std::pair<const Job*, Need>& j) {
     return std::tuple(-static_cast<long>(j.first->scenario->time.size()), j.first->scenario, j.second);
   };
   std::sort(order.begin(), order.end(), [&](const auto& a, const auto& b) {
@@ -82,7 +122,7 @@ void pack(std::span<const Job> jobs, int width, std::vector<PackOfJobs>& packs) 
   packs.clear();
   for (std::size_t i = 0; i < order.size(); ++i) {
     const auto [job, need] = order[i];
-    if (i == 0 || key(order[i]) != key(order[i - 1]) || need == learnt_curve || packs.back().count == width)
+    if (i == 0 || key(order[i]) != key(order[i - 1]) || need == Need::corrected || packs.back().count == width)
       packs.push_back({{}, 0, need});
     packs.back().jobs[static_cast<std::size_t>(packs.back().count++)] = job;
   }
@@ -134,8 +174,8 @@ void simulate(std::span<const Job> jobs, const SimulateOptions& options) {
       results[lane] = pack.jobs[static_cast<std::size_t>(lane)]->result;
     }
     // One alone runs in a lane too: eight cost hardly more, and the bits are the same in any company.
-    run_of(pack.need == learnt_curve ? plain : kernels, pack.need)(*pack.jobs[0]->scenario, candidates, results,
-                                                                   pack.count, options);
+    run_of(pack.need == Need::corrected ? plain : kernels, pack.need)(*pack.jobs[0]->scenario, candidates, results,
+                                                                      pack.count, options);
   }
 }
 
@@ -148,9 +188,9 @@ constexpr std::size_t least_followers = 25;
 std::unique_ptr<NearRuns> near_runs(const NearJobs& near, const SimulateOptions& options) {
   if (near.jobs.size() < least_followers || near.jobs[0].scenario->ports != Ports::actuator) return nullptr;
   const NearKernels& kernels = best_kernels().near;
-  int need = need_of(*near.base);
+  Need need = need_of(*near.base);
   for (const Job& job : near.jobs) need = std::max(need, need_of(*job.candidate));
-  const auto make = need == 0 ? kernels.base : need == 1 ? kernels.extended : nullptr;
+  const NearKernels::Make make = make_of(kernels, need);
   if (!make) return nullptr;
   std::vector<const ParameterVector*> candidates;
   std::vector<Trajectory*> results;
@@ -228,6 +268,14 @@ void together(int tasks, int threads, const std::function<void(int)>& task) {
         task(i);
       },
       serve);
+}
+
+std::unique_ptr<RunInParts> run_in_parts(const Scenario& scenario, const ParameterVector& candidate, Trajectory& result,
+                                         const SimulateOptions& options) {
+  const Need need = need_of(candidate);
+  static const Kernels plain = kernels_scalar();
+  const Kernels& kernels = need == Need::corrected ? plain : best_kernels().doubles;
+  return in_parts_of(kernels, need)(scenario, candidate, result, options);
 }
 
 Trajectory simulate(const Scenario& scenario, const ParameterVector& candidate, const SimulateOptions& options) {

@@ -2,9 +2,11 @@
 // lanes of packs, packs are spread over threads, and a lane equals the run alone bit for bit.
 #pragma once
 #include <functional>
+#include <memory>
 #include <span>
 #include <string>
 
+#include "simulate/run_in_parts.h"
 #include "simulate/scenario.h"
 
 namespace servodx {
@@ -19,6 +21,11 @@ struct Job {
 // throws.
 void simulate(std::span<const Job> jobs, const SimulateOptions& options = {});
 Trajectory simulate(const Scenario& scenario, const ParameterVector& candidate, const SimulateOptions& options = {});
+
+// The same of a log that comes in parts, ready at the scenario's first sample, which is reported; the same bits. What
+// it is given must live as long as it (run_in_parts.h).
+std::unique_ptr<RunInParts> run_in_parts(const Scenario& scenario, const ParameterVector& candidate, Trajectory& result,
+                                         const SimulateOptions& options);
 
 // Candidates over one log that lie near `base`.
 struct NearJobs {

@@ -123,7 +123,7 @@ void each_runs_as_the_base_model(EffectList<E...>) {
   (runs_as_the_base_model<E>(), ...);
 }
 
-TEST(OffValues, KernelOfAnEffectAtItsOffValueRunsAsTheBaseModel) { each_runs_as_the_base_model(AllEffects{}); }
+TEST(OffValues, KernelOfAnEffectAtItsOffValueRunsAsTheBaseModel) { each_runs_as_the_base_model(LinedEffects{}); }
 
 TEST(OffValues, EveryFaultAtItsHealthySeverityChangesNoBit) {
   const ParameterVector healthy = nominal_candidate();

@@ -7,6 +7,7 @@
 #include "base/smooth.h"
 #include "effects/registry.h"
 #include "laws/bench.h"
+#include "model/chamber.h"
 #include "model/derivative.h"
 #include "model/state.h"
 #include "parameters/list.h"
@@ -45,7 +46,7 @@ TEST(RodCavity, OilThatEntersItLeftChamberA) {
     const double stored = length * f[cavity] + area * f[s_x_piston];
     const double volume =
         with.p(row::dead_volume_a) + with.p(row::piston_area_a) * (0.5 * with.p(row::piston_stroke) + y[s_x_piston]);
-    const double compliance = 1.0 / chamber_stiffness(volume, y[s_p_a], with.derived(), with.p());
+    const double compliance = 1.0 / chamber_stiffness(volume, with.p()[row::hose_compliance], y[s_p_a], with.derived());
     const double from_a = area * f[s_x_piston] - compliance * (f[s_p_a] - g[s_p_a]);
     EXPECT_NEAR(stored, from_a, 1e-3 * std::abs(from_a) + 1e-9 * std::abs(compliance * f[s_p_a])) << trial;
     EXPECT_NEAR(f[s_v_piston] - g[s_v_piston], area * (pressure - y[s_p_a]) / with.p(row::moving_mass),
