@@ -23,6 +23,8 @@
 #include "servodx/rig.h"
 #include "servodx/tune.h"
 #include "servodx/watch.h"
+#include "base/sha256.h"
+#include "servodx/actions.h"
 
 namespace servodx {
 namespace {
@@ -31,7 +33,7 @@ struct Options {
   CommonOptions common;
   std::vector<std::string> logs;
   std::string params, baseline;
-  bool exit_code = false, pool = false;
+  bool pool = false, exit_by_action = false;
   ListOptions list;
 };
 
@@ -47,16 +49,31 @@ int code_of(const Diagnosis& diagnosis) {
   return ran;
 }
 
+int code_of(ActionClass action) {
+  switch (action) {
+    case ActionClass::none:
+      return ran;
+    case ActionClass::abuse:
+      return asks_abuse;
+    case ActionClass::abnormal:
+      return asks_abnormal;
+    case ActionClass::critical:
+      return asks_critical;
+  }
+  return ran;
+}
+
 // Of the logs that were judged before an interrupt.
 std::vector<Diagnosis> judge_each(const std::vector<Log>& logs, const Tuned& tuned, const RigFile& rig,
-                                  const Baseline& baseline, const CommonOptions& common, const Watch& watch) {
+                                  const Baseline& baseline, const DiagnoseOptions& options) {
+  const Watch& watch = options.watch;
   std::vector<Diagnosis> results;
   long simulations = 0;
   const auto tell = [&](double part, long so_far) {
     watch.tell("diagnose", (static_cast<double>(results.size()) + part) / static_cast<double>(logs.size()),
                simulations + so_far);
   };
-  DiagnoseOptions of_log{.seed = common.seed, .threads = common.threads, .watch = watch};
+  DiagnoseOptions of_log = options;
   of_log.watch.progress = [&](const WorkDone& done) { tell(done.part, done.simulations); };
   for (const Log& log : logs) {
     if (watch.stopped()) break;
@@ -70,9 +87,8 @@ std::vector<Diagnosis> judge_each(const std::vector<Log>& logs, const Tuned& tun
 }
 
 std::vector<Diagnosis> judge_pool(const std::vector<Log>& logs, const Tuned& tuned, const RigFile& rig,
-                                  const Baseline& baseline, const CommonOptions& common, const Watch& watch) {
-  const Verdict verdict =
-      diagnose_pool(logs, tuned, rig, baseline, {.seed = common.seed, .threads = common.threads, .watch = watch});
+                                  const Baseline& baseline, const DiagnoseOptions& options) {
+  const Verdict verdict = diagnose_pool(logs, tuned, rig, baseline, options);
   if (verdict.interrupted) return {};
   return {*verdict.whole};
 }
@@ -98,11 +114,11 @@ int run(const Options& options) {
   require_option(options.logs.empty() != options.list.list.empty(), options.logs.empty() ? "LOG" : "--list",
                  options.logs.empty() ? "no log is named" : "logs are named one by one too",
                  "name the logs, or a file that lists them with --list FILE --out DIR");
-  if (!options.list.list.empty())
-    return diagnose_list(options.common, options.list, options.params, options.baseline, options.exit_code);
+  if (!options.list.list.empty()) return diagnose_list(options.common, options.list, options.params, options.baseline);
   Invocation invocation("diagnose", options.common);
   auto inputs = options.logs;
   inputs.insert(inputs.end(), {options.params, options.baseline});
+  if (!options.list.actions.empty()) inputs.push_back(options.list.actions);
   invocation.check_files(inputs, {});
   const RigFile rig = invocation.rig();
   const Tuned tuned = invocation.tuned(options.params);
@@ -112,6 +128,8 @@ int run(const Options& options) {
   for (const std::string& path : options.logs) logs.push_back(invocation.log(path, rig));
   report::Header& header = invocation.header();
   header.inputs.push_back({options.baseline, baseline.parts->sha256});
+  if (!options.list.actions.empty())
+    header.inputs.push_back({options.list.actions, sha256_of_file(options.list.actions)});
 
   std::vector<std::string> truths;
   for (const Log& log : logs)
@@ -122,8 +140,13 @@ int run(const Options& options) {
   if (invocation.dry_run()) return ran;
 
   const Watch watch = invocation.watch();
-  const std::vector<Diagnosis> results = options.pool ? judge_pool(logs, tuned, rig, baseline, options.common, watch)
-                                                      : judge_each(logs, tuned, rig, baseline, options.common, watch);
+  const DiagnoseOptions how{.seed = options.common.seed,
+                            .threads = options.common.threads,
+                            .watch = watch,
+                            .actions = actions_of(options.list.actions),
+                            .explain_unknown = options.list.explain_unknown};
+  const std::vector<Diagnosis> results =
+      options.pool ? judge_pool(logs, tuned, rig, baseline, how) : judge_each(logs, tuned, rig, baseline, how);
   std::string text;
   int worst = ran;
   for (const Diagnosis& d : results) {
@@ -131,7 +154,7 @@ int run(const Options& options) {
     header.failed_simulations += d.assessment.failed_simulations;
     invocation.note(d.assessment.notes);
     text += (text.empty() ? "" : "\n") + report::text_of(d, {.colour = colour_wanted(), .written_to = ""});
-    worst = std::max(worst, code_of(d));
+    worst = std::max(worst, options.exit_by_action ? code_of(d.action.of) : code_of(d));
   }
   if (results.size() < (options.pool ? 1 : logs.size()))
     invocation.note({fmt::format("interrupted: {} of {} logs were judged", results.size(), logs.size())});
@@ -141,7 +164,8 @@ int run(const Options& options) {
                                                   replays(logs, tuned.table, rig, results), truths));
   }
   invocation.finish(text, report::diagnose_json(results));
-  return watch.stopped() ? interrupted : options.exit_code ? worst : ran;
+  const bool tells = options.list.exit_code || options.exit_by_action;
+  return watch.stopped() ? interrupted : tells ? worst : ran;
 }
 
 }  // namespace
@@ -167,9 +191,20 @@ void add_diagnose_command(CLI::App& app, int& exit_code) {
       ->capture_default_str();
   command->add_option("--params", options->params, "tuned table")->required()->type_name("TUNED");
   command->add_option("--baseline", options->baseline, "its baseline")->required()->type_name("BASE.json");
-  command->add_flag("--exit-code", options->exit_code,
+  command->add_flag("--exit-code", options->list.exit_code,
                     "end with 10 for a fault, 11 for unknown: the highest of the logs");
   command->add_flag("--pool", options->pool, "the logs are of one valve in one state: one verdict for all of them");
+  command
+      ->add_option("--actions", options->list.actions,
+                   "TOML file of what to do by label, in place of the program's: clogged_filter = \"abnormal: flush\"")
+      ->type_name("FILE");
+  command
+      ->add_flag("--exit-by-action", options->exit_by_action,
+                 "end with 14 where the machine has to stop, 13 to call service, 12 to change its use: the most urgent "
+                 "of the logs")
+      ->excludes(list);
+  command->add_flag("!--no-explain", options->list.explain_unknown,
+                    "do not ask what stands first where no fault explains a log (saves seconds a log)");
   add_common_options(*command, options->common);
   command->footer(
       "With --list a result that is there for the same log, table, baseline, rig, seed and version is kept; a log "

@@ -24,7 +24,7 @@ namespace servodx {
 namespace {
 
 FleetRun judge_all(const std::vector<std::string>& logs, FleetJudge& judge, const CommonOptions& common,
-                   report::Header& header) {
+                   const ListOptions& list, report::Header& header) {
   const std::atomic<bool>& stop = stop_on_interrupt(true);
   Progress progress("diagnose", {.quiet = common.quiet});
   FleetRun run;
@@ -34,7 +34,9 @@ FleetRun judge_all(const std::vector<std::string>& logs, FleetJudge& judge, cons
   };
   const DiagnoseOptions options{.seed = common.seed,
                                 .threads = common.threads,
-                                .watch = {.progress = tell, .stop = [&stop] { return stop.load(); }}};
+                                .watch = {.progress = tell, .stop = [&stop] { return stop.load(); }},
+                                .actions = actions_of(list.actions),
+                                .explain_unknown = list.explain_unknown};
   for (const std::string& log : logs) {
     if (stop) run.interrupted = true;
     if (run.interrupted) break;
@@ -61,7 +63,7 @@ void rehearse(const std::vector<std::string>& logs, const RigFile& rig, report::
 }  // namespace
 
 int diagnose_list(const CommonOptions& common, const ListOptions& options, const std::string& params,
-                  const std::string& baseline, bool exit_code) {
+                  const std::string& baseline) {
   require_option(common.report.empty(), "--report", "a list has no page of its own",
                  "'servodx gather " + (options.out.empty() ? "DIR" : options.out) + " --report FILE.html' makes it");
   require_folder("--out", options.out);
@@ -81,11 +83,11 @@ int diagnose_list(const CommonOptions& common, const ListOptions& options, const
   if (std::filesystem::is_regular_file(options.list, ignored))
     header.inputs.push_back({options.list, sha256_of_file(options.list)});
   header.settings.update({{"list", options.list}, {"out", options.out}, {"chunk", options.chunk}});
-  FleetRun run = judge_all(logs, judge, common, header);
+  FleetRun run = judge_all(logs, judge, common, options, header);
   run.out = options.out;
   if (run.interrupted) invocation.note({"interrupted: what is done is kept, and the same call goes on from there"});
   invocation.finish(report::text_of(run), report::fleet_run_json(run));
-  return code_of(run, exit_code);
+  return code_of(run, options.exit_code);
 }
 
 }  // namespace servodx

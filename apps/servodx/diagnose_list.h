@@ -3,15 +3,22 @@
 #include <string>
 
 #include "invocation.h"
+#include "servodx/actions.h"
 
 namespace servodx {
 
 struct ListOptions {
   std::string list, out, chunk = "1/1";
+  bool exit_code = false;       // end with 10 for a fault, 11 for unknown
+  std::string actions;          // file of actions by label; empty: the program's
+  bool explain_unknown = true;  // ask what stands first where no fault explains a log
 };
+
+// The program's where no file is named.
+inline Actions actions_of(const std::string& file) { return file.empty() ? default_actions() : read_actions(file); }
 
 // The exit code.
 int diagnose_list(const CommonOptions& common, const ListOptions& options, const std::string& params,
-                  const std::string& baseline, bool exit_code);
+                  const std::string& baseline);
 
 }  // namespace servodx

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "servodx/actions.h"
 #include "servodx/baseline.h"
 #include "servodx/log.h"
 #include "servodx/rig.h"
@@ -19,8 +20,10 @@ struct Diagnosis;  // the library's own
 
 struct DiagnoseOptions {
   std::uint64_t seed = 1;
-  int threads = 0;   // 0: all cores; the result does not depend on it
-  Watch watch = {};  // stopped: what comes back says `interrupted` and nothing else
+  int threads = 0;                      // 0: all cores; the result does not depend on it
+  Watch watch = {};                     // stopped: what comes back says `interrupted` and nothing else
+  Actions actions = default_actions();  // by label
+  bool explain_unknown = true;          // ask `explain` what stands first where no fault explains the log
 
   // Throws InputError naming the option.
   void validate() const;
@@ -45,22 +48,36 @@ struct Verdict {
     Severity severity;    // not a number: it has no size
     std::string channel;  // of a sensor's: which signal; else empty
   };
+  // The least severity of a fault that would not have passed as healthy in 95 of 100 such logs.
+  struct Detectable {
+    std::optional<double> value;  // [unit] none: this log would not have shown the worst of it
+    std::string unit;
+  };
+  // What `explain` finds where no fault explains the log.
+  struct Beyond {
+    std::string first, where, depends_on;  // effect; place; of a curve without a name the variable it follows
+    double share = 0;                      // of the held-out misfit that it removes
+    bool taken = false;                    // beyond what healthy logs show
+  };
   std::string log;
   bool interrupted = false;
   Kind kind = Kind::healthy;
-  double error = 0, threshold = 0;              // [deviates] from health; beyond the threshold it is not healthy
-  double p_value = 1;                           // of such an error on a healthy log
-  std::string fault;                            // label of the one named; empty: none
-  std::vector<Named> faults;                    // none, one, or two; the first is the one named
-  std::optional<Severity> severity;             // of the fault named
-  std::map<std::string, double> probabilities;  // by label; "healthy" and "unknown" among them
-  std::vector<std::string> ambiguous_with;      // labels that cannot be ruled out beside the fault named
-  std::string separating_test;                  // input that would separate them; empty: none is needed
-  std::optional<double> onset;                  // [s] since when, where a change in mid-log stands out
-  std::optional<Suspicion> suspicion;           // of a healthy verdict
-  std::string action;                           // what the fault named asks for
-  std::vector<ParameterResult> parameters;      // rows that moved, the fault's first
-  std::vector<ChannelResult> channels;          // replay under health: rms beside noise
+  double error = 0, threshold = 0;               // [deviates] from health; beyond the threshold it is not healthy
+  double p_value = 1;                            // of such an error on a healthy log
+  std::string fault;                             // label of the one named; empty: none
+  std::vector<Named> faults;                     // none, one, or two; the first is the one named
+  std::optional<Severity> severity;              // of the fault named
+  std::map<std::string, double> probabilities;   // by label; "healthy" and "unknown" among them
+  std::vector<std::string> ambiguous_with;       // labels that cannot be ruled out beside the fault named
+  std::string separating_test;                   // input that would separate them; empty: none is needed
+  std::optional<double> onset;                   // [s] since when, where a change in mid-log stands out
+  std::optional<Suspicion> suspicion;            // of a healthy verdict
+  std::map<std::string, Detectable> detectable;  // what this log could have shown, by label
+  std::optional<Beyond> beyond;                  // of an unknown verdict
+  ActionClass action_class = ActionClass::none;
+  std::string action;                       // what the fault named asks for
+  std::vector<ParameterResult> parameters;  // rows that moved, the fault's first
+  std::vector<ChannelResult> channels;      // replay under health: rms beside noise
   std::vector<std::string> notes;
   long simulations = 0, failed_simulations = 0;
   std::shared_ptr<const Diagnosis> whole;  // for the program's pages

@@ -6,8 +6,10 @@
 #include <vector>
 
 #include "diagnose/hypotheses.h"
+#include "diagnose/judgeable.h"
 #include "diagnose/moved.h"
 #include "diagnose/records.h"
+#include "diagnose/visible.h"
 #include "evidence/conditions.h"
 #include "faults/fault.h"
 #include "faults/gross_finding.h"
@@ -52,8 +54,10 @@ struct Assessment {
   std::vector<std::string> logs;             // paths
   std::vector<HypothesisResult> hypotheses;  // healthy first, then by probability
   std::vector<PairResult> pairs;             // the best first; empty where no fault gains beyond doubt
+  std::vector<VisibleFault> visible;         // what each fault would have gained, as the gains of `hypotheses`
   std::vector<ChannelResult> channels;       // replay under health: rms beside noise
   GrossFinding gross = GrossFinding::none;
+  Unjudgeable unjudgeable = Unjudgeable::no;       // of several logs, of the first that is
   std::optional<double> onset;                     // [s] change point where one stands out
   std::vector<HypothesisPrediction> explanations;  // of each hypothesis that could be fitted
   TestConditions test;

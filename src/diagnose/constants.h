@@ -51,6 +51,17 @@ inline constexpr long one_stop_one_in = 4;        // the same, on one stop
 inline constexpr double least_asked = 0.05;       // of the stop's travel: less is no excitation
 inline constexpr double response_missing = 0.02;  // of the travel asked for: less is no response
 
+// Whether there is a response to judge (diagnose/judgeable.cpp). What no valve does; far from what logs of any rig
+// show. No log of the bench is near one of them: not felt there.
+inline constexpr double shortest_log = 0.05;    // [s] a spool's step response takes some hundredths
+inline constexpr double slowest_step = 0.02;    // [s] between samples: slower, a spool jumps from one to the next
+inline constexpr double command_beyond = 3.0;   // of rated current, half of the time; a pilot burns at less
+inline constexpr double nothing_asked = 1e-3;   // of rated current, of supply, of stall force
+inline constexpr double still_part = 0.995;     // of the samples: a dropped one may be filled in otherwise
+inline constexpr double no_memory = 0.3;        // correlation of neighbours; a valve at 500 Hz has more than 0.8
+inline constexpr double large_noise = 0.05;     // of stop, stroke and supply: no sensor is so noisy
+inline constexpr double pressure_beyond = 2.0;  // of the supply, half of the time: a load may intensify it for a while
+
 // The records (diagnose/records.cpp, record_law.cpp). Chosen by what such parts do; the shipped logs hold neither a
 // supply that sags nor a coil current, so that halving and doubling them changes nothing there.
 //
@@ -90,18 +101,21 @@ inline constexpr double gain_before_part = 0.1;     // of the gain after: what g
 inline constexpr double inside_prior = 0.25;  // of a tolerance's range, one standard deviation; health lies inside it
 inline constexpr double end_prior = 0.5;      // the same where health is an end: nothing is cleaner than clean
 inline constexpr int severity_grid = 6;       // starts on either side; a friction or a backlash has several valleys
+inline constexpr int health_starts = 4;       // side by side they fill a pack
+inline constexpr double scattered_by = 0.15;  // of each range, one standard deviation
 inline constexpr int starts_kept = 2;         // of a fault, after screening
 inline constexpr int first_iterations = 5;    // of every start; the better one goes on
 inline constexpr int iterations = 20;
 // Of the amplitude of what two faults explain: so much a model that errs may lend the second of them.
 inline constexpr double lent_to_second = 0.05;
-inline constexpr double worth_a_pair = 16.0;        // of misfit, inflated: a fault of four deviates
-inline constexpr std::size_t pair_leaders = 2;      // single faults that others are tried beside
-inline constexpr double worth_another_start = 4.0;  // of misfit: two deviates
-inline constexpr double difference_step = 1e-3;     // of the range: a severity runs through contacts
-inline constexpr double cost_tolerance = 1e-4;      // relative
-inline constexpr double on_bound = 1e-6;            // of the range
-inline constexpr double at_end_part = 1e-3;         // of the range: so near an end a size stands at it
-inline constexpr double deviates_of_95 = 1.96;      // of a normal distribution
+inline constexpr double worth_a_pair = 16.0;            // of misfit, inflated: a fault of four deviates
+inline constexpr std::size_t pair_leaders = 2;          // single faults that others are tried beside
+inline constexpr double worth_another_start = 4.0;      // of misfit: two deviates
+inline constexpr double difference_step = 1e-3;         // of the range: a severity runs through contacts
+inline constexpr double cost_tolerance = 1e-4;          // relative
+inline constexpr double on_bound = 1e-6;                // of the range
+inline constexpr double at_end_part = 1e-3;             // of the range: so near an end a size stands at it
+inline constexpr double deviates_of_95 = 1.96;          // of a normal distribution
+inline constexpr double deviates_of_one_in_20 = 1.645;  // the same, on one side
 
 }  // namespace servodx::diagnose_constants

@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "diagnose/constants.h"
+#include "diagnose/judgeable.h"
 #include "faults/gross_finding.h"
 #include "faults/record.h"
 
@@ -111,6 +112,11 @@ Decision name_by_record(Decision valve, std::size_t record) {
 }  // namespace
 
 Decision decide(const Evidence& e) {
+  if (e.unjudgeable != Unjudgeable::no) {
+    Decision none;
+    none.probabilities.resize(e.hypotheses.size());
+    return name_nothing(std::move(none), most_probable(e.hypotheses));
+  }
   Decision valve = decide_on_valve(e);
   if (e.records.empty()) return valve;
   const RecordEvidence& first = e.records.front();

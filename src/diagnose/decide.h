@@ -1,5 +1,6 @@
 // The rules of the verdict: evidence in, decision out. No fit, no log, no registry.
 //
+//   nothing to judge                 unknown, with the reason
 //   broken sensor                    that sensor
 //   unusual supply or driver         that, and beside it the fault of the valve that the rules below name; but where a
 //                                    finding names that outright: such a valve draws what no healthy one draws
@@ -14,6 +15,7 @@
 #include <optional>
 #include <vector>
 
+#include "diagnose/judgeable.h"
 #include "faults/fault.h"
 #include "faults/gross_finding.h"
 #include "faults/record.h"
@@ -49,6 +51,7 @@ struct Evidence {
   double gain = 0;                  // of these, what the best fault explains: a name needs evidence of its own
   double usual_adequacy = 0;        // the largest of the baseline's logs
   GrossFinding gross = GrossFinding::none;
+  Unjudgeable unjudgeable = Unjudgeable::no;
   std::vector<HypothesisEvidence> hypotheses;  // healthy first; at least that one
   std::optional<PairEvidence> pair = {};
   std::vector<RecordEvidence> records = {};  // the surest first

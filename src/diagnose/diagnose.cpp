@@ -8,9 +8,11 @@
 #include "diagnose/constants.h"
 #include "diagnose/gross.h"
 #include "diagnose/hypotheses.h"
+#include "diagnose/judgeable.h"
 #include "diagnose/moved.h"
 #include "diagnose/onset.h"
 #include "diagnose/records.h"
+#include "diagnose/visible.h"
 #include "diagnose/whitening.h"
 #include "evidence/conditions.h"
 #include "evidence/probabilities.h"
@@ -174,6 +176,15 @@ std::vector<HypothesisResult> results_of(const HypothesisFits& fits, const Param
   return out;
 }
 
+// As gains of hypotheses are: beside what the model errs by.
+std::vector<VisibleFault> visible_of(const HypothesisFits& fits) {
+  const double inflation = misfit_inflation(fits.fits[best_fit(fits)].misfit, fits.degrees);
+  std::vector<VisibleFault> out = fits.visible;
+  for (VisibleFault& side : out)
+    for (SeverityGain& g : side.gains) g.gain /= inflation;
+  return out;
+}
+
 // Of several logs each log's figures; the worst stands out among all.
 void look_at_records(const std::vector<Log>& logs, const Ready& ready, const ParameterVector& base, int threads,
                      Assessment& out) {
@@ -225,8 +236,11 @@ Assessment assess_pool(const std::vector<Log>& logs, const Table& tuned, const R
   if (!stopped) {
     const LogData& first = ready.data.front();
     out.gross = gross_finding(first, base);
+    for (const LogData& data : ready.data)
+      if (out.unjudgeable == Unjudgeable::no) out.unjudgeable = unjudgeable(data, base);
     look_at_records(logs, ready, base, options.threads, out);
     out.channels = channels_of(logs, ready, fits.fits.front());
+    out.visible = visible_of(fits);
     std::optional<Onset> onset;
     if (logs.size() == 1) onset = find_onset(first, base, error, settings, fits, work);
     if (onset) {

@@ -25,7 +25,7 @@ class Steps {
 
   Steps(const HypothesisSettings& settings, std::size_t faults)
       : settings_(settings),
-        whole_(settings.iterations +
+        whole_(k::health_starts * settings.iterations +
                static_cast<double>(faults) * (screening + 1.0 * k::starts_kept * k::first_iterations +
                                               (settings.iterations - k::first_iterations) + again)) {}
   void done(double steps, long simulations) {
@@ -55,18 +55,34 @@ void side_by_side(std::size_t count, const HypothesisData& data, const std::func
 
 // Every starting severity of every fault, run once with the rest as in health; the best first.
 std::vector<Screened> screen_starts(const std::vector<const Fault*>& faults, const HypothesisData& data,
-                                    const HypothesisFit& health, Steps& steps) {
+                                    const HypothesisFit& health, const HealthyEnd* end, Steps& steps) {
   std::vector<Screened> screened;
   for (const Fault* fault : faults)
     for (double severity : starting_severities(*fault, data.settings.null_limit)) screened.push_back({fault, severity});
   side_by_side(screened.size(), data, [&](std::size_t i) {
-    screen(screened[i], data, health);
+    screen(screened[i], data, health, end);
     steps.done(Steps::screening * static_cast<double>(faults.size()) / static_cast<double>(screened.size()),
                screened[i].work.simulations);
   });
   std::stable_sort(screened.begin(), screened.end(),
                    [](const Screened& a, const Screened& b) { return a.misfit < b.misfit; });
   return screened;
+}
+
+// What the screened severities would have gained, the mildest first; of a fault with two sides each by itself.
+std::vector<VisibleFault> visible_of(const std::vector<const Fault*>& faults, const std::vector<Screened>& screened) {
+  std::vector<VisibleFault> out;
+  for (const Fault* fault : faults)
+    for (const bool negative : {false, true}) {
+      VisibleFault side{fault, {}};
+      for (const Screened& s : screened)
+        if (s.fault == fault && (s.severity < 0) == negative && s.gain >= 0) side.gains.push_back({s.severity, s.gain});
+      const auto size = [&](const SeverityGain& g) { return std::abs(g.severity - fault->healthy); };
+      std::stable_sort(side.gains.begin(), side.gains.end(),
+                       [&](const SeverityGain& a, const SeverityGain& b) { return size(a) < size(b); });
+      if (!side.gains.empty()) out.push_back(std::move(side));
+    }
+  return out;
 }
 
 // Of each fault the starts that screened best, at least one.
@@ -107,7 +123,18 @@ std::vector<Attempt> best_of_each(std::vector<Attempt> attempts) {
   return best;
 }
 
-// Health had one start, the faults many: what one of them gained by better nuisances is no fault's. So health begins
+// Health from several starts side by side: a poor valley of it lends every fault a gain.
+Attempt fit_health(const HypothesisData& data, Steps& steps) {
+  std::vector<Attempt> attempts(k::health_starts);
+  for (int i = 0; i < k::health_starts; ++i) attempts[static_cast<std::size_t>(i)].scattered = i;
+  side_by_side(attempts.size(), data, [&](std::size_t i) {
+    run(attempts[i], data, nullptr, data.settings.iterations);
+    steps.done(data.settings.iterations, attempts[i].work.simulations);
+  });
+  return std::move(best_of_each(std::move(attempts)).front());
+}
+
+// Health had few starts, the faults many: what one of them gained by better nuisances is no fault's. So health begins
 // again where each fault ended.
 void begin_health_again(Attempt& health, const std::vector<Attempt>& faults, const HypothesisData& data, Steps& steps) {
   std::vector<Attempt> again(faults.size());
@@ -213,10 +240,9 @@ HypothesisFits fit_hypotheses(const std::vector<const LogData*>& logs, const Par
   const HypothesisData data = hypothesis_data(logs, base, error, settings);
   const std::vector<const Fault*> faults = settings.among.empty() ? fitted_faults(logs) : settings.among;
   Steps steps(settings, faults.size());
-  Attempt health;
-  run(health, data, nullptr, settings.iterations);
-  steps.done(settings.iterations, health.work.simulations);
-  const std::vector<Screened> screened = screen_starts(faults, data, health.fit, steps);
+  Attempt health = fit_health(data, steps);
+  const std::optional<HealthyEnd> end = healthy_end(health.fit, data, health.work);
+  const std::vector<Screened> screened = screen_starts(faults, data, health.fit, end ? &*end : nullptr, steps);
   std::vector<Attempt> attempts = best_starts(faults, screened);
   run_all(attempts, data, health.fit, k::first_iterations, steps);
   attempts = best_of_each(std::move(attempts));
@@ -225,6 +251,7 @@ HypothesisFits fit_hypotheses(const std::vector<const LogData*>& logs, const Par
 
   HypothesisFits out;
   out.degrees = independent_samples(logs, error);
+  out.visible = visible_of(faults, screened);
   out.healthy_square = std::move(health.square);
   out.work = health.work;
   for (const Screened& s : screened) out.work.add(s.work);

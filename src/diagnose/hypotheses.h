@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "diagnose/constants.h"
+#include "diagnose/visible.h"
 #include "faults/fault.h"
 #include "faults/registry.h"
 #include "fit/chart.h"
@@ -63,6 +64,7 @@ struct HypothesisFits {
   double degrees = 0;                  // independent samples of all channels
   std::vector<double> healthy_square;  // a sample of the first log: mean over the channels of the squared whitened
                                        // residual under health
+  std::vector<VisibleFault> visible;   // of each fault, each side of health
   FitWork work;
 };
 

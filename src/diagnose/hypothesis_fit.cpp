@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/random.h"
 #include "diagnose/constants.h"
 #include "diagnose/severity.h"
 #include "diagnose/whitening.h"
@@ -40,6 +41,13 @@ Point starting_point(const HypothesisFit& so_far, const FitProblem& problem, con
         const FreeValue &a = problem.free()[j], &b = from->free[i];
         if (a.name == b.name && a.log == b.log && a.lower == b.lower && a.upper == b.upper) x[j] = from->point[i];
       }
+  return x;
+}
+
+// Around the usual start, always the same.
+Point scattered_start(Point x, int which) {
+  Random random(static_cast<std::uint64_t>(which));
+  for (double& u : x) u = std::clamp(u + k::scattered_by * random.normal(), 0.0, 1.0);
   return x;
 }
 
@@ -131,7 +139,9 @@ void run(Attempt& a, const HypothesisData& data, const HypothesisFit* from, int 
                                data.settings.null_limit);
   FitProblem problem = problem_of(data, fit.free);
   problem.difference_step = k::difference_step;
-  const LeastSquaresResult r = minimise(problem, starting_point(fit, problem, from), iterations, stop);
+  Point start = starting_point(fit, problem, from);
+  if (a.scattered > 0 && !fit.ok) start = scattered_start(std::move(start), a.scattered);
+  const LeastSquaresResult r = minimise(problem, start, iterations, stop);
   a.work.add({problem.simulations(), problem.failed_simulations()});
   fit.stops = {r.stopped};
   fit.standard_error.clear(), fit.channel_adequacy.clear(), fit.channel_rms.clear();
@@ -146,7 +156,19 @@ void run(Attempt& a, const HypothesisData& data, const HypothesisFit* from, int 
   if (a.beside) fit.beside = measure_severity(fit, *a.beside, 1);
 }
 
-void screen(Screened& s, const HypothesisData& data, const HypothesisFit& from) {
+std::optional<HealthyEnd> healthy_end(const HypothesisFit& health, const HypothesisData& data, FitWork& work) {
+  if (!health.ok) return {};
+  FitProblem problem = problem_of(data, health.free);
+  problem.difference_step = k::difference_step;
+  const Evaluation e = problem.evaluate(std::span(&health.point, 1)).front();
+  Eigen::MatrixXd jacobian;
+  const bool had = e.ok && problem.jacobian(health.point, e.residual, jacobian);
+  work.add({problem.simulations(), problem.failed_simulations()});
+  if (!had) return {};
+  return HealthyEnd{e.residual.head(problem.data_rows()), {jacobian, health.point, problem.data_rows()}};
+}
+
+void screen(Screened& s, const HypothesisData& data, const HypothesisFit& from, const HealthyEnd* end) {
   // The unit interval of a severity depends on its sign.
   const std::vector<FaultStart> faults = s.beside
                                              ? std::vector<FaultStart>{{s.fault, from.severity}, {s.beside, s.severity}}
@@ -155,6 +177,7 @@ void screen(Screened& s, const HypothesisData& data, const HypothesisFit& from) 
   const Point x = starting_point({}, problem, &from);
   const Evaluation e = problem.evaluate(std::span(&x, 1)).front();
   if (e.ok) s.misfit = e.residual.squaredNorm();
+  if (e.ok && end) s.gain = end->answer.left_of(e.residual.head(problem.data_rows()) - end->residual);
   s.work = {problem.simulations(), problem.failed_simulations()};
 }
 

@@ -1,8 +1,11 @@
 // One hypothesis, fitted from one start.
 #pragma once
+#include <Eigen/Dense>
+#include <optional>
 #include <vector>
 
 #include "diagnose/hypotheses.h"
+#include "diagnose/visible.h"
 #include "faults/fault.h"
 #include "fit/error_model.h"
 #include "fit/log_data.h"
@@ -26,6 +29,7 @@ struct Attempt {
   double start = 0;  // of the severity
   const Fault* beside = nullptr;
   double start_beside = 0;
+  int scattered = 0;  // of health: which of the starts around the usual one; 0: that one
   HypothesisFit fit = {};
   std::vector<double> square =
       {};  // a sample of the first log: mean over the channels of the squared whitened residual
@@ -36,12 +40,22 @@ struct Attempt {
 // or the first fault alone.
 void run(Attempt& attempt, const HypothesisData& data, const HypothesisFit* from, int iterations);
 
+// Where health ended, and what it could make of a change there.
+struct HealthyEnd {
+  Eigen::VectorXd residual;  // of the logs, whitened
+  HealthyAnswer answer;
+};
+// None where the fit failed.
+std::optional<HealthyEnd> healthy_end(const HypothesisFit& health, const HypothesisData& data, FitWork& work);
+
 struct Screened {
   const Fault* fault = nullptr;
   double severity = 0, misfit = 1e300;  // with the rest as in health, or as with the first fault alone
   const Fault* beside = nullptr;        // then `severity` is of this one
+  double gain = -1;                     // over health, were this fault there (visible.h); negative: not known
   FitWork work = {};
 };
-void screen(Screened& screened, const HypothesisData& data, const HypothesisFit& from);
+// `end` null: not asked how visible the fault is.
+void screen(Screened& screened, const HypothesisData& data, const HypothesisFit& from, const HealthyEnd* end = nullptr);
 
 }  // namespace servodx

@@ -10,6 +10,7 @@
 #include "diagnose/healthy_law.h"
 #include "diagnose/naming.h"
 #include "diagnose/records.h"
+#include "diagnose/visible.h"
 #include "evidence/conditions.h"
 #include "evidence/probabilities.h"
 #include "evidence/rank_promise.h"
@@ -52,10 +53,21 @@ std::size_t position_of(const Fault* fault, const Assessment& a) {
   return i;
 }
 
+double gain_of(const FaultGains& usual, const Fault* fault) {
+  const auto known = usual.find(fault);
+  return known == usual.end() ? 0.0 : known->second;
+}
+
+// Of so many logs as the assessment holds.
+FaultGains usual_gains_of(const Assessment& a, const DetectionBaseline& baseline) {
+  FaultGains usual = usual_gains(baseline);
+  for (auto& [fault, gain] : usual) gain *= static_cast<double>(std::max<std::size_t>(1, a.logs.size()));
+  return usual;
+}
+
 // What the model errs by on the worst of healthy logs may gain a second name as well: it has to gain beyond that.
 PairEvidence pair_of(const PairResult& p, const Assessment& a, const FaultGains& usual, double usual_adequacy) {
-  const auto known = usual.find(p.second.fault);
-  const double of_health = known == usual.end() ? 0.0 : known->second;
+  const double of_health = gain_of(usual, p.second.fault);
   const double errs = std::max(1.0, usual_adequacy * usual_adequacy);
   return {position_of(p.first.fault, a),
           position_of(p.second.fault, a),
@@ -63,6 +75,20 @@ PairEvidence pair_of(const PairResult& p, const Assessment& a, const FaultGains&
           p.adequacy,
           p.first.at_least || p.second.at_least,
           p.first.at_worst || p.second.at_worst};
+}
+
+// A fault whose gain's root is expected so far beyond the limit is found in 95 of 100 logs: noise moves the root by one
+// deviate.
+std::vector<Detectable> detectable_of(const Assessment& a, const FaultGains& usual, double limit) {
+  const double needed = (limit + k::deviates_of_one_in_20) * (limit + k::deviates_of_one_in_20);
+  std::vector<Detectable> out;
+  for (auto side = a.visible.begin(); side != a.visible.end();) {
+    const Fault* fault = side->fault;
+    const auto next = std::find_if(side, a.visible.end(), [&](const VisibleFault& v) { return v.fault != fault; });
+    out.push_back({fault, least_found_either_side(std::span(side, next), needed * (1 + gain_of(usual, fault)))});
+    side = next;
+  }
+  return out;
 }
 
 // What no log parts from the fault named that does not record the current.
@@ -87,14 +113,14 @@ std::vector<RecordFinding> records_of(const Assessment& a, const DetectionBaseli
 
 Evidence evidence_of(const Assessment& a, const DetectionBaseline& baseline, const HealthyLaw& law,
                      const std::vector<RecordFinding>& records) {
-  FaultGains usual = usual_gains(baseline);
-  for (auto& [fault, gain] : usual) gain *= static_cast<double>(std::max<std::size_t>(1, a.logs.size()));
+  const FaultGains usual = usual_gains_of(a, baseline);
   Evidence e;
   e.gain = score_of(a, usual);
   e.error = law.error_of(e.gain, a.hypotheses.front().adequacy);
   e.threshold = law.limit();
   e.usual_adequacy = baseline.adequacy_limit;
   e.gross = a.gross;
+  e.unjudgeable = a.unjudgeable;
   for (const HypothesisResult& h : a.hypotheses)
     e.hypotheses.push_back({h.fault, h.probability, h.adequacy, h.at_worst, h.gain});
   if (!a.pairs.empty()) e.pair = pair_of(a.pairs.front(), a, usual, baseline.adequacy_limit);
@@ -122,6 +148,7 @@ Diagnosis judge(Assessment a, const DetectionBaseline& baseline) {
   if (decision.suspected && law.chance_of_gain(evidence.gain) <= k::worth_saying)
     d.suspicion = suspicion_of(a.hypotheses[*decision.suspected], evidence.gain, law);
   d.unlike = unlike_all(a.test, baseline);
+  d.detectable = detectable_of(a, usual_gains_of(a, baseline), law.limit());
   for (const std::size_t i : decision.ambiguous) d.ambiguous_with.push_back(a.hypotheses[i].fault);
   const HypothesisResult& told = a.hypotheses[decision.hypothesis];
   d.nearest = told.fault;

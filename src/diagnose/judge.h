@@ -12,6 +12,7 @@
 #include "diagnose/record_law.h"
 #include "evidence/conditions.h"
 #include "faults/fault.h"
+#include "servodx/actions.h"
 
 namespace servodx {
 
@@ -25,6 +26,20 @@ struct Suspicion {
   int logs = 0;                               // healthy ones that set the limit
   int logs_needed = 0;                        // until it would be said at the rate they can promise; 0: more do not
                                               // help by themselves, -1: no number does
+};
+
+// The least severity of a fault that would not have passed as healthy in 95 of 100 such logs.
+struct Detectable {
+  const Fault* fault = nullptr;
+  std::optional<double> severity;  // [the fault's unit] none: this log would not have shown the worst of it
+};
+
+// What the search for missing physics makes of a log that no fault explains.
+struct BeyondFaults {
+  std::string first;              // the effect, or the row of the table, that stands first; empty: none does
+  std::string where, depends_on;  // the place, and of a curve without a name the variable it follows
+  double share = 0;               // of the held-out misfit that it removes
+  bool taken = false;             // beyond what healthy logs show
 };
 
 struct Diagnosis {
@@ -41,6 +56,7 @@ struct Diagnosis {
   const Fault* fault = nullptr;                 // the one named, the first of `faults`
   std::vector<NamedFault> faults;               // none, one or two
   std::optional<Suspicion> suspicion;           // of a healthy verdict
+  std::vector<Detectable> detectable;           // of each fault that was looked for by a fit
   std::vector<FaultProbability> probabilities;  // all 0 of an unknown state: that none of them holds is certain
   std::vector<const Fault*> ambiguous_with;     // null: healthy
   struct {
@@ -51,6 +67,8 @@ struct Diagnosis {
                                    // most probable; null: healthy
   double null = 0;                 // [fraction of rated]
   std::vector<MovedRow> moved;
+  Action action;                       // what the fault named, or the verdict, asks for
+  std::optional<BeyondFaults> beyond;  // of an unknown verdict, where it was asked for
   std::vector<RecordFinding> records;  // all that are beyond what healthy logs show
   Assessment assessment;
 };

@@ -6,15 +6,19 @@
 #include "diagnose/decide.h"
 #include "diagnose/diagnose.h"
 #include "diagnose/judge.h"
+#include "diagnose/judgeable.h"
 #include "diagnose/moved.h"
 #include "diagnose/naming.h"
 #include "door/baseline_parts.h"
+#include "door/stands_first.h"
+#include "explain/explain.h"
 #include "faults/fault.h"
 #include "report/diagnosis_words.h"
 #include "report/json.h"
 #include "servodx/baseline.h"
 #include "servodx/diagnose.h"
 #include "servodx/error.h"
+#include "servodx/explain.h"
 #include "servodx/log.h"
 #include "servodx/rig.h"
 #include "servodx/tune.h"
@@ -41,6 +45,23 @@ std::optional<Verdict::Suspicion> suspicion_of(const Diagnosis& d) {
       report::label_of(s.fault), {s.severity, s.lower, s.upper, report::unit_of(s.fault)}, s.rate, s.logs_needed};
 }
 
+std::optional<BeyondFaults> explain_unknown(const std::vector<Log>& logs, const Tuned& tuned, const Rig& rig,
+                                            const Baseline& baseline, const DiagnoseOptions& options) {
+  ExplainOptions ask{.seed = options.seed, .threads = options.threads, .level = baseline.asked};
+  ask.watch.stop = options.watch.stop;
+  const ExplainResult r = explain_logs(logs, tuned.table, rig, &causes_of(baseline), ask);
+  if (r.interrupted) return {};
+  return stands_first(r);
+}
+
+Verdict interrupted_verdict(const Assessment& assessment) {
+  Verdict out;
+  out.log = assessment.log;
+  out.interrupted = true;
+  out.simulations = assessment.simulations, out.failed_simulations = assessment.failed_simulations;
+  return out;
+}
+
 Verdict verdict_of(Diagnosis d) {
   Verdict out;
   out.log = d.log;
@@ -60,7 +81,10 @@ Verdict verdict_of(Diagnosis d) {
   out.separating_test = report::separating_test_of(d);
   out.onset = d.onset;
   out.suspicion = suspicion_of(d);
-  out.action = report::action_of(d);
+  for (const Detectable& f : d.detectable)
+    out.detectable[report::label_of(f.fault)] = {f.severity, report::unit_of(f.fault)};
+  if (d.beyond) out.beyond = {d.beyond->first, d.beyond->where, d.beyond->depends_on, d.beyond->share, d.beyond->taken};
+  out.action_class = d.action.of, out.action = d.action.text;
   for (const MovedRow& row : d.moved) out.parameters.push_back(row);
   out.channels = d.assessment.channels;
   out.notes = d.assessment.notes;
@@ -91,14 +115,18 @@ Verdict diagnose_pool(const std::vector<Log>& logs, const Tuned& tuned, const Ri
   if (logs.empty()) throw InputError({}, "no log is given", "give the logs of one valve in one state");
   require_same_table(baseline, tuned);
   Assessment assessment = assess_pool(logs, tuned.table, rig, options);
-  if (options.watch.stopped()) {
-    Verdict out;
-    out.log = assessment.log;
-    out.interrupted = true;
-    out.simulations = assessment.simulations, out.failed_simulations = assessment.failed_simulations;
-    return out;
+  if (options.watch.stopped()) return interrupted_verdict(assessment);
+  Diagnosis d = judge(std::move(assessment), parts_of(baseline).detection);
+  const bool judged = d.assessment.unjudgeable == Unjudgeable::no;
+  const bool asks = judged && d.verdict == VerdictKind::unknown && options.explain_unknown;
+  if (asks && !parts_of(baseline).causes)
+    d.assessment.notes.push_back("the baseline says nothing of causes, so explain was not asked what stands first");
+  else if (asks) {
+    d.beyond = explain_unknown(logs, tuned, rig, baseline, options);
+    if (options.watch.stopped()) return interrupted_verdict(d.assessment);
   }
-  return verdict_of(judge(std::move(assessment), parts_of(baseline).detection));
+  d.action = options.actions.at(report::name_of(d));
+  return verdict_of(std::move(d));
 }
 
 Verdict diagnose(const Log& log, const Tuned& tuned, const Rig& rig, const Baseline& baseline,

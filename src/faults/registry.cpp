@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "faults/clogged_filter.h"
+#include "faults/corner_wear.h"
 #include "faults/cylinder_leakage.h"
 #include "faults/driver_fault.h"
 #include "faults/feedback_wire_backlash.h"
@@ -25,6 +26,7 @@ const std::vector<const Fault*>& fault_list() {
       &feedback_wire_lost,      //
       &sticky_spool,            //
       &radial_clearance_wear,   //
+      &corner_wear,             //
       &null_shift,              //
       &plugged_nozzle,          //
       &sensor_fault,            //

@@ -77,6 +77,22 @@ TEST(Judge, NoProbabilityContradictsTheVerdict) {
   }
 }
 
+TEST(Judge, ALogSaysTheLeastOfEachFaultThatItWouldHaveShown) {
+  // The limit is 3; 95 of 100 logs find a gain whose root is expected at 4.645.
+  const double needed = 4.645 * 4.645;
+  Assessment a = assessment(1.0, {hypothesis("", 0.9), hypothesis("clogged_filter", 0.1)});
+  a.visible = {{find_fault("clogged_filter"), {{0.2, 0}, {0.4, needed}, {0.8, 4 * needed}}},
+               {find_fault("sticky_spool"), {{4, 0}, {20, 0.9 * needed}}}};
+  DetectionBaseline b = baseline();
+  const Diagnosis d = judge(a, b);
+  ASSERT_EQ(d.detectable.size(), 2u);
+  EXPECT_NEAR(*d.detectable[0].severity, 0.4, 1e-3);
+  EXPECT_FALSE(d.detectable[1].severity);
+  // What healthy logs show of a fault hides it: three times the gain is asked for.
+  for (DetectionBaseline::Score& s : b.scores) s.gains[find_fault("clogged_filter")] = 2;
+  EXPECT_NEAR(*judge(a, b).detectable[0].severity, 0.4 + 0.4 * (std::sqrt(3.0) - 1), 1e-3);
+}
+
 TEST(Judge, WhatStandsFirstInAHealthyLogIsSaidWithItsRate) {
   const auto verdict = [](double score) {
     return judge(assessment(score, {hypothesis("", 0.1), hypothesis("clogged_filter", 0.9)}), baseline());

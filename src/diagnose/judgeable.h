@@ -1,0 +1,24 @@
+// Whether a log holds a response that can be judged at all. A verdict about a log in which nothing moves, or in which
+// noise is all, would be confident nonsense, whichever way it falls.
+//
+// By the samples alone: no fit, no hypothesis. Only what no valve and no fault of one can do counts; a jam or a dead
+// supply leaves the sensors' noise and is judged.
+#pragma once
+#include "fit/log_data.h"
+#include "simulate/scenario.h"
+
+namespace servodx {
+
+enum class Unjudgeable {
+  no,
+  nothing_asked,           // the command, and what else drives the valve, stands still
+  sensors_still,           // every compared channel shows one value while the command moves
+  noise_alone,             // no channel knows its own last sample, far beyond the sensors' noise
+  command_too_large,       // most of the time a multiple of what the valve is made for
+  pressure_beyond_supply,  // chambers far above any supply
+  too_short,               // shorter than a valve's answer, or sampled more slowly
+};
+
+Unjudgeable unjudgeable(const LogData& log, const ParameterVector& base);
+
+}  // namespace servodx

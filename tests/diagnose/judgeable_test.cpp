@@ -1,0 +1,114 @@
+// Logs that hold nothing to judge, each made of a shipped one; and all shipped ones, which do.
+#include "diagnose/judgeable.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+
+#include "base/random.h"
+#include "diagnose/decide.h"
+#include "faults/registry.h"
+#include "fit/log_data.h"
+#include "parameters/list.h"
+#include "shipped_data.h"
+
+namespace servodx {
+namespace {
+
+LogData usual() { return prepare(shipped_log("healthy/h12_mixed"), shipped_rig()); }
+
+Unjudgeable look(const LogData& log) { return unjudgeable(log, candidate_of(shipped_table())); }
+
+TEST(Judgeable, EveryShippedLogIs) {
+  int logs = 0;
+  for (const char* folder : {"healthy", "fault", "sudden"})
+    for (const auto& entry : std::filesystem::directory_iterator(shipped(std::string("data/") + folder))) {
+      if (entry.path().extension() != ".csv") continue;
+      const LogData log = prepare(read_log(entry.path().string(), shipped_rig()), shipped_rig());
+      EXPECT_EQ(look(log), Unjudgeable::no) << entry.path();
+      ++logs;
+    }
+  EXPECT_GT(logs, 20);
+}
+
+TEST(Judgeable, NotWhereNothingIsAsked) {
+  LogData log = usual();
+  std::fill(log.scenario.command.begin(), log.scenario.command.end(), 1e-3);
+  std::fill(log.scenario.supply_pressure.begin(), log.scenario.supply_pressure.end(), 2e7);
+  std::fill(log.scenario.load_force.begin(), log.scenario.load_force.end(), 0.0);
+  EXPECT_EQ(look(log), Unjudgeable::nothing_asked);
+}
+
+TEST(Judgeable, NotWhereEverySensorStandsStillButWhereOneDoes) {
+  LogData log = usual();
+  std::fill(log.channels[0].measured.begin(), log.channels[0].measured.end(), 0.0);
+  EXPECT_EQ(look(log), Unjudgeable::no);
+  for (FitChannel& c : log.channels) std::fill(c.measured.begin(), c.measured.end(), 3.0);
+  EXPECT_EQ(look(log), Unjudgeable::sensors_still);
+}
+
+TEST(Judgeable, NotWhereNoiseIsAll) {
+  const ParameterVector base = candidate_of(shipped_table());
+  LogData log = usual();
+  Random random(5);
+  for (FitChannel& c : log.channels) {
+    const double size = c.signal == Signal::spool_position    ? base[row::spool_stop]
+                        : c.signal == Signal::piston_position ? base[row::piston_stroke]
+                                                              : base[row::supply_pressure];
+    for (double& x : c.measured) x = 0.1 * size * random.normal();
+  }
+  EXPECT_EQ(look(log), Unjudgeable::noise_alone);
+}
+
+TEST(Judgeable, NotWhereTheRowsAreShuffled) {
+  LogData log = usual();
+  Random random(6);
+  for (std::size_t i = log.scenario.time.size() - 1; i > 0; --i) {
+    const auto j = static_cast<std::size_t>(random.below(static_cast<std::uint32_t>(i + 1)));
+    std::swap(log.scenario.command[i], log.scenario.command[j]);
+    for (FitChannel& c : log.channels) std::swap(c.measured[i], c.measured[j]);
+  }
+  EXPECT_EQ(look(log), Unjudgeable::noise_alone);
+}
+
+TEST(Judgeable, ASpoolThatIsJammedUnderADeadSupplyIs) {
+  // The sensors' noise is left, and the fits have to say what it is.
+  LogData log = usual();
+  Random random(7);
+  for (FitChannel& c : log.channels)
+    for (double& x : c.measured) x = c.noise * random.normal();
+  EXPECT_EQ(look(log), Unjudgeable::no);
+}
+
+TEST(Judgeable, NotWhereUnitsAreTakenForOthers) {
+  LogData large = usual(), high = usual(), slow = usual(), fast = usual();
+  for (double& i : large.scenario.command) i *= 100;
+  EXPECT_EQ(look(large), Unjudgeable::command_too_large);
+  for (FitChannel& c : high.channels)
+    if (c.signal == Signal::pressure_a || c.signal == Signal::pressure_b)
+      for (double& p : c.measured) p *= 14.5;
+  EXPECT_EQ(look(high), Unjudgeable::pressure_beyond_supply);
+  for (double& t : slow.scenario.time) t *= 1e3;
+  for (double& t : fast.scenario.time) t *= 1e-3;
+  EXPECT_EQ(look(slow), Unjudgeable::too_short);
+  EXPECT_EQ(look(fast), Unjudgeable::too_short);
+}
+
+// The fits say a fault without a doubt, and the verdict is that there is nothing to judge.
+TEST(Judgeable, NothingElseIsSaidOfALogThatIsNot) {
+  Evidence e;
+  e.error = e.gain = 90, e.threshold = 3, e.usual_adequacy = 1;
+  e.hypotheses = {{nullptr, 0.0, 50.0}, {find_fault("torque_motor_loss"), 1.0, 1.0, false, 8100.0}};
+  e.records = {{Record::sensor, true}};
+  EXPECT_EQ(decide(e).verdict, VerdictKind::fault);
+  e.unjudgeable = Unjudgeable::noise_alone;
+  const Decision d = decide(e);
+  EXPECT_EQ(d.verdict, VerdictKind::unknown);
+  EXPECT_FALSE(d.record);
+  e.error = e.gain = 1;
+  EXPECT_EQ(decide(e).verdict, VerdictKind::unknown) << "nor is it healthy";
+}
+
+}  // namespace
+}  // namespace servodx

@@ -1,0 +1,102 @@
+// What a log could have shown: the rule from made-up gains, and what is promised beside what fits find.
+#include "diagnose/visible.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "base/random.h"
+#include "diagnose/diagnose.h"
+#include "diagnose/hypotheses.h"
+#include "faults/registry.h"
+#include "fit/error_model.h"
+#include "shipped_data.h"
+#include "simulate/simulate.h"
+
+namespace servodx {
+namespace {
+
+VisibleFault filter_with(std::vector<SeverityGain> gains) { return {find_fault("clogged_filter"), std::move(gains)}; }
+
+TEST(Visible, LeastFoundIsWhereTheGainsRootPassesTheNeed) {
+  const VisibleFault v = filter_with({{0.2, 0}, {0.4, 4}, {0.6, 16}, {0.8, 64}});
+  EXPECT_NEAR(*least_found(v, 9), 0.5, 1e-12);
+  EXPECT_NEAR(*least_found(v, 16), 0.6, 1e-12);
+  EXPECT_NEAR(*least_found(v, 36), 0.7, 1e-12);
+  EXPECT_EQ(*least_found(filter_with({{0.2, 20}, {0.4, 30}}), 9), 0.2) << "nothing is promised below what was tried";
+}
+
+TEST(Visible, NothingIsPromisedWhereAWorseFaultWouldHide) {
+  EXPECT_FALSE(least_found(filter_with({{0.2, 0}, {0.8, 8.9}}), 9));
+  EXPECT_FALSE(least_found(filter_with({{0.2, 0}, {0.4, 20}, {0.8, 5}}), 9)) << "the worst is not seen";
+  EXPECT_NEAR(*least_found(filter_with({{0.2, 20}, {0.4, 4}, {0.8, 16}}), 9), 0.6, 1e-12);
+  EXPECT_FALSE(least_found(filter_with({}), 9));
+}
+
+TEST(Visible, OfTwoSidesTheOneSeenLaterCounts) {
+  const Fault* null = find_fault("null_shift");
+  const std::vector<VisibleFault> sides = {{null, {{0.05, 1}, {0.15, 9}}}, {null, {{-0.05, 1}, {-0.25, 9}}}};
+  EXPECT_NEAR(*least_found_either_side(sides, 9), 0.25, 1e-12);
+  const std::vector<VisibleFault> blind = {sides[0], {null, {{-0.25, 8}}}};
+  EXPECT_FALSE(least_found_either_side(blind, 9));
+}
+
+TEST(Visible, HealthTakesWhatItCanInsideItsBoundsAndAtItsPriorsCost) {
+  // One number that moves the first sample by 10 from end to end, with a prior of a quarter of its range; it is at 0.9.
+  Eigen::MatrixXd jacobian(3, 1);
+  jacobian << 10, 0, 4;  // two samples, then the prior
+  const HealthyAnswer health(jacobian, {0.9}, 2);
+  EXPECT_NEAR(health.left_of(Eigen::Vector2d(0, 3)), 9, 1e-9) << "it cannot move the second sample";
+  // Least of (5 + 10 s)^2 + (4 s)^2 over s, at s = -50/116.
+  EXPECT_NEAR(health.left_of(Eigen::Vector2d(5, 0)), 25 - 2500.0 / 116, 1e-9);
+  // It has a tenth of its range to its wall.
+  EXPECT_NEAR(health.left_of(Eigen::Vector2d(-5, 0)), 16 + 0.16, 1e-9);
+}
+
+// A log as the model itself would give it with a fault, and noise.
+LogData played(const LogData& like, const ParameterVector& base, const Fault* fault, double severity) {
+  ParameterVector v = base;
+  if (fault) fault->apply(v.data(), severity);
+  LogData out = like;
+  const Trajectory t = simulate(like.scenario, v, {});
+  Random random(7);
+  for (FitChannel& c : out.channels)
+    for (std::size_t i = 0; i < c.measured.size(); ++i)
+      c.measured[i] = t.signals[static_cast<std::size_t>(c.simulated)][i] + c.noise * random.normal();
+  return out;
+}
+
+// The promise is made on the healthy log; the fits are to logs that hold the fault. Noise alone moves a gain's root by
+// one deviate.
+TEST(Visible, PromisedGainsAreWhatFitsFind) {
+  const RigFile rig = shipped_rig();
+  const Table table = read_table(shipped("params/borello2009.csv"));
+  const LogData like = slice(prepare(shipped_log("healthy/h01_steps_large"), rig), 400, 1300);
+  const ParameterVector base = candidate_of(table);
+  ErrorModel error;
+  for (const FitChannel& c : like.channels) error.channels.push_back({c.signal, 20 * c.noise, 0.0, 50.0});
+  struct Case {
+    const char* name;
+    double severity;
+  };
+  for (const Case& c :
+       {Case{"radial_clearance_wear", 4.0}, Case{"torque_motor_loss", 0.8}, Case{"corner_wear", 3e-5}}) {
+    const Fault* fault = find_fault(c.name);
+    HypothesisSettings settings;
+    settings.pairs = false;
+    settings.among = {fault};
+    const LogData healthy = played(like, base, nullptr, 0), faulty = played(like, base, fault, c.severity);
+    const HypothesisFits asked = fit_hypotheses({&healthy}, base, error, settings);
+    const HypothesisFits found = fit_hypotheses({&faulty}, base, error, settings);
+    ASSERT_EQ(asked.visible.size(), 1u);
+    const double gain = found.fits[0].misfit - found.fits[1].misfit;
+    const std::optional<double> least = least_found(asked.visible.front(), gain);
+    std::printf("%s %.3g: gains %.1f, promised from %.3g on\n", c.name, c.severity, gain, least.value_or(-1));
+    ASSERT_TRUE(least) << c.name;
+    const auto size = [&](double s) { return std::abs(fault->log_scale ? std::log(s) : s - fault->healthy); };
+    EXPECT_NEAR(size(*least) / size(c.severity), 1, 0.25) << c.name;
+  }
+}
+
+}  // namespace
+}  // namespace servodx
