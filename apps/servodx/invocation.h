@@ -30,6 +30,9 @@ enum ExitCode {
   some_set_aside = 3,
   found_fault = 10,
   found_unknown = 11,
+  asks_abuse = 12,  // of --exit-by-action
+  asks_abnormal = 13,
+  asks_critical = 14,
   interrupted = 130
 };
 

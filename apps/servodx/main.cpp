@@ -54,6 +54,7 @@ int main(int argc, char** argv) {
   add_tune_command(app, exit_code);
   add_baseline_command(app, exit_code);
   add_diagnose_command(app, exit_code);
+  add_plan_command(app, exit_code);
   add_gather_command(app, exit_code);
   add_watch_command(app, exit_code);
   add_explain_command(app, exit_code);

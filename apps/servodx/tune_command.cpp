@@ -7,10 +7,13 @@
 #include "base/units.h"
 #include "commands.h"
 #include "diagnose/check_log.h"
+#include "diagnose/judge.h"
+#include "door/stands_first.h"
 #include "effects/registry.h"
 #include "fit/free_values.h"
 #include "fit/log_data.h"
 #include "fit/replay.h"
+#include "fit/tuned_state.h"
 #include "invocation.h"
 #include "parameters/table.h"
 #include "report/columns.h"
@@ -18,6 +21,7 @@
 #include "report/pages.h"
 #include "report/text.h"
 #include "report/tune_words.h"
+#include "servodx/explain.h"
 #include "servodx/log.h"
 #include "servodx/rig.h"
 #include "servodx/tune.h"
@@ -68,6 +72,27 @@ std::map<std::string, double> priors_of(const std::vector<std::string>& list) {
   return priors;
 }
 
+// The log that the tune follows worst, of the channels that it does not follow.
+const Log& worst_of(const std::vector<Log>& logs, const TuneResult& result) {
+  std::size_t worst = 0;
+  double most = 0;
+  for (std::size_t l = 0; l < logs.size(); ++l)
+    for (const ChannelResult& c : result.logs[l].channels)
+      for (const Unfollowed& u : result.unfollowed)
+        if (c.signal == u.signal && c.rms / c.noise_rms > most) most = c.rms / c.noise_rms, worst = l;
+  return logs[worst];
+}
+
+// What the simulation gets wrong there, where the tune is not good enough.
+std::optional<BeyondFaults> likeliest_of(const std::vector<Log>& logs, const Tuned& tuned, const RigFile& rig,
+                                         const TuneOptions& options) {
+  if (tuned.whole->unfollowed.empty() || options.watch.stopped()) return {};
+  const Explanation e = explain({worst_of(logs, *tuned.whole)}, tuned, rig,
+                                {.seed = options.seed, .threads = options.threads, .watch = options.watch});
+  if (e.interrupted) return {};
+  return stands_first(*e.whole);
+}
+
 int run(const Options& options) {
   TuneOptions tune_options = options.tune;
   if (options.effects == "none")
@@ -96,7 +121,7 @@ int run(const Options& options) {
   const std::vector<Log> logs = invocation.logs(options.logs, rig);
 
   if (!tune_options.effects)
-    tune_options.effects = default_effects(all_on_test_stand(logs, rig), supply_is_measured(logs));
+    tune_options.effects = default_effects(all_on_test_stand(logs, rig), supply_is_measured(logs), lines_are_long(rig));
   for (const std::string& name : tune_options.profile)
     if (Table with_effects = nominal; name != "all" && !name.empty()) {
       add_effect_rows(with_effects, *tune_options.effects);
@@ -125,8 +150,9 @@ int run(const Options& options) {
   header.failed_simulations = result.failed_simulations;
   for (const Log& log : logs) invocation.note(log.notes);
   invocation.note(result.notes);
-  const report::GoodEnough good =
-      report::good_enough(result, promises(logs, tuned, rig, options.common.threads, invocation));
+  const std::optional<BeyondFaults> likeliest = likeliest_of(logs, tuned, rig, tune_options);
+  const report::GoodEnough good = report::good_enough(
+      result, promises(logs, tuned, rig, options.common.threads, invocation), likeliest ? &*likeliest : nullptr);
   if (invocation.wants_report()) {
     std::vector<Replay> replays;
     for (std::size_t l = 0; l < std::min(logs.size(), report::most_replays); ++l)
@@ -163,9 +189,9 @@ void add_tune_command(CLI::App& app, int& exit_code) {
       ->capture_default_str();
   command->add_option("--effects", options->effects, "effects freed beside the table's rows, or 'none'")
       ->type_name("A,B")
-      ->default_str(report::join(default_effects(false, true), ",") +
+      ->default_str(report::join(default_effects(false, true, false), ",") +
                     "; supply_droop where a log lacks the supply; on a test stand " +
-                    report::join(default_effects(true, true), ","));
+                    report::join(default_effects(true, true, false), ","));
   command
       ->add_option("--local", options->local,
                    "local stage: least_squares (a search that knows the bounds, then Ceres), ceres alone, or nlopt "

@@ -1,4 +1,4 @@
-// `servodx watch DIR`: every new log of a folder diagnosed once it has settled.
+// `servodx watch DIR`: every new log of a folder diagnosed once it has settled. `--follow FILE` and `-`: follow.h.
 #include <CLI/CLI.hpp>
 #include <atomic>
 #include <chrono>
@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "base/atomic_file.h"
+#include "base/byte_tail.h"
 #include "base/progress.h"
 #include "commands.h"
 #include "diagnose/diagnose.h"
@@ -20,6 +21,7 @@
 #include "fleet/run.h"
 #include "fleet/settling.h"
 #include "fleet_judge.h"
+#include "follow.h"
 #include "invocation.h"
 #include "report/diagnosis_words.h"
 #include "report/fleet.h"
@@ -34,6 +36,7 @@ namespace {
 struct Options {
   CommonOptions common;
   std::string folder, out, params, baseline;
+  FollowOptions follow;
   double settle = 2, interval = 1;  // [s]
   bool once = false, pages = false, exit_code = false;
 };
@@ -119,7 +122,7 @@ class Watching {
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
-int run(const Options& options) {
+int run_folder(const Options& options) {
   require_option(std::isfinite(options.settle) && options.settle >= 0, "--settle", "must be seconds, 0 or more",
                  "--settle 2");
   require_option(std::isfinite(options.interval) && options.interval > 0, "--interval", "must be seconds above 0",
@@ -146,14 +149,42 @@ int run(const Options& options) {
   return code_of(watching.run(), options.exit_code);
 }
 
+int run(Options& options) {
+  FollowOptions& follow = options.follow;
+  const bool input = is_standard_stream(options.folder);
+  require_option(options.folder.empty() != follow.source.empty(), "--follow",
+                 "a folder, '-' or --follow FILE is watched, one of them", "servodx watch DIR, or --follow FILE");
+  if (!input && follow.source.empty()) return run_folder(options);
+  if (input) follow.source = options.folder;
+  require_option(options.out.empty(), "--out", "is of a folder's logs", "leave it out; --events FILE keeps the events");
+  follow.params = options.params, follow.baseline = options.baseline, follow.exit_code = options.exit_code;
+  return servodx::follow(follow, options.common);
+}
+
+void add_follow_options(CLI::App& command, FollowOptions& follow) {
+  command.add_option("--follow", follow.source, "log that grows (.csv), watched sample by sample")->type_name("FILE");
+  command.add_option("--healthy", follow.healthy, "healthy logs that the alarm's limits rest on; else the baseline's")
+      ->type_name("LOG");
+  command.add_option("--alarms-per-hour", follow.alarms_per_hour, "false alarms of a healthy valve in an hour of log")
+      ->type_name("RATE")
+      ->capture_default_str();
+  command.add_option("--state", follow.state, "written every second; a watch that was killed goes on from it")
+      ->type_name("FILE");
+  command.add_option("--events", follow.events, "a JSON line an event, appended; '-': to standard output")
+      ->type_name("FILE");
+  command.add_option("--until-idle", follow.until_idle, "end once nothing has come for so long [s]; 0: never")
+      ->type_name("SECONDS")
+      ->capture_default_str();
+}
+
 }  // namespace
 
 void add_watch_command(CLI::App& app, int& exit_code) {
   auto options = std::make_shared<Options>();
-  CLI::App* command = app.add_subcommand("watch", "Every new log of a folder diagnosed once it has settled");
-  command->add_option("DIR", options->folder, "folder that logs come into (.csv .txt .tsv .dat .mat)")->required();
+  CLI::App* command = app.add_subcommand("watch", "Logs judged as they come: a folder's, or one that grows");
+  command->add_option("DIR", options->folder,
+                      "folder that logs come into (.csv .txt .tsv .dat .mat), or '-': a log on standard input");
   command->add_option("--out", options->out, "folder of the results, as of 'diagnose --list'; made if need be")
-      ->required()
       ->type_name("DIR");
   command->add_option("--params", options->params, "tuned table")->required()->type_name("TUNED");
   command->add_option("--baseline", options->baseline, "its baseline")->required()->type_name("BASE.json");
@@ -167,11 +198,14 @@ void add_watch_command(CLI::App& app, int& exit_code) {
   command->add_flag("--pages", options->pages, "also a page a log beside its result");
   command->add_flag("--exit-code", options->exit_code,
                     "end with 10 for a fault, 11 for unknown: the highest of the logs");
+  add_follow_options(*command, options->follow);
   add_common_options(*command, options->common);
   command->footer(
       "A log that is refused leaves its reason in the folder of the results and the rest goes on. What was judged is\n"
       "known by its result: a watch that was killed goes on where it was. Ctrl-C or SIGTERM ends it, code 0.\n"
-      "Example: servodx watch incoming --out results --params tuned.csv --baseline base.json");
+      "A log that grows is watched until its input is closed, or idle; Ctrl-C or SIGTERM ends it with code 130.\n"
+      "Example: servodx watch incoming --out results --params tuned.csv --baseline base.json\n"
+      "         servodx watch --follow log.csv --state watch.json --params tuned.csv --baseline base.json");
   command->callback([options, &exit_code] { exit_code = run(*options); });
 }
 

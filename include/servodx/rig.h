@@ -45,6 +45,8 @@ struct RigFile {
   std::optional<CommandHold> command_hold;  // empty: the file is silent (the default hold is zero)
   std::optional<double> mains_frequency;    // [Hz]
   double null_limit = 0.05;                 // [fraction of rated current]
+  std::optional<double> oil_temperature;    // [K] of logs that do not record it
+  bool taps_at_cylinder = false;            // where the chambers' pressures are measured; else at the valve
   Fluid fluid;
   // facts by dotted key, SI: "valve.rated_current" [A], "valve.spool_stroke" [m], "actuator.area_a" [m2],
   // "supply.pressure" [Pa], ...; rig_facts() lists them all

@@ -45,8 +45,10 @@ struct TuneOptions {
 };
 
 // What a tune frees unless told: of a valve on an actuator, and of one on a test stand.
-std::vector<std::string> default_effects(bool on_stand, bool supply_measured);
+std::vector<std::string> default_effects(bool on_stand, bool supply_measured, bool lines_are_long);
 bool supply_is_measured(const std::vector<Log>& logs);  // in every one
+// Whether oil in the lines stands between the pressure taps and the cylinder, by the rig file.
+bool lines_are_long(const RigFile& rig);
 
 struct ParameterResult {
   int id = 0;  // 0 for an effect's parameter

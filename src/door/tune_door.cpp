@@ -12,6 +12,7 @@
 #include "servodx/table.h"
 #include "servodx/tune.h"
 #include "tune/tune.h"
+#include "report/tune_words.h"
 
 namespace servodx {
 
@@ -40,6 +41,9 @@ Tuned read_tuned(const std::string& path) {
     out.notes.push_back(path +
                         ": a tuned table of an earlier version, which kept its model's error in comments; it is read "
                         "as it is, and a new tune writes the new form");
+  if (const std::vector<Unfollowed> channels = tuned_state(out.table).unfollowed; !channels.empty())
+    out.notes.push_back(path + ": its tune was not good enough (" + report::unfollowed_in_words(channels) +
+                        "): what follows by this table is in doubt");
   return out;
 }
 

@@ -13,6 +13,7 @@
 #include "effects/edge_transition.h"
 #include "effects/effect.h"
 #include "effects/flow_meter_lag.h"
+#include "effects/line_inertia.h"
 #include "effects/mains_pickup.h"
 #include "effects/mount_compliance.h"
 #include "effects/nozzle_land.h"
@@ -79,6 +80,8 @@ const std::map<std::string, const char*> tests = {
     {"seal_shear", "the same fast strokes in cold and in hot oil"},
     {"screen_drop", "full steps in cold and in hot oil: in the cold the pilot pressures fall"},
     {"edge_radius", "the pressure's slope at null beside the leakage there: blunt edges leak more at the same slope"},
+    {LineInertia::name,
+     "fast steps with taps at the valve and at the cylinder: the two part by the piston's acceleration"},
     {"port_line", "leakage sweeps at two rates, ports blocked: a tail after null that lasts as long at either"},
     {"supply_droop", "full steps with the supply pressure measured at the valve"},
     {"stribeck_friction", "slow ramps through standstill, both ways"},

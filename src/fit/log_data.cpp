@@ -205,8 +205,10 @@ LogData prepare(const Log& log, const RigFile& rig, int window) {
   if (rig.command_hold) s.command_slope = *rig.command_hold == CommandHold::linear ? 1.0 : 0.0;
   constexpr double reference_temperature = 313.15;  // [K] where the table's values hold
   const bool measured = log.has(Signal::oil_temperature);
-  const double temperature = measured ? mean_of_present(log[Signal::oil_temperature]) : reference_temperature;
-  s.oil_known = measured || s.ports != Ports::actuator;  // a stand holds 40 degC within 6 K (ISO 10770-1)
+  const double temperature =
+      measured ? mean_of_present(log[Signal::oil_temperature]) : rig.oil_temperature.value_or(reference_temperature);
+  s.oil_known =
+      measured || rig.oil_temperature || s.ports != Ports::actuator;  // a stand holds 40 degC within 6 K (ISO 10770-1)
   if (!s.oil_known)
     out.notes.push_back(fmt::format("{}: no oil temperature: taken as 40 degC, give or take 20 K", log.path));
   s.oil = oil_at(rig.fluid.density, rig.fluid.kinematic_viscosity, temperature);

@@ -87,6 +87,14 @@ TunedState of_section(const Table& table) {
         refuse(table, fmt::format("its lines '#%' hold no error of '{}'", name_of(*signal)));
       put(state.error, c);
     }
+  if (const toml::array* channels = tuned["unfollowed"].as_array())
+    for (const toml::node& node : *channels) {
+      const toml::table* channel = node.as_table();
+      const auto signal = channel ? find_signal(text(*channel, "signal")) : std::nullopt;
+      const double over_noise = channel ? (*channel)["over_noise"].value_or(std::nan("")) : std::nan("");
+      if (!signal || !std::isfinite(over_noise)) refuse(table, "its lines '#%' name an unknown signal");
+      state.unfollowed.push_back({*signal, over_noise});
+    }
   if (const toml::array* logs = tuned["by"].as_array())
     for (const toml::node& node : *logs)
       if (const toml::table* log = node.as_table())
@@ -117,6 +125,8 @@ void set_tuned_state(Table& table, const TunedState& state) {
         "[[tuned.error]]  # sigma^2 = noise^2 + floor^2 + (per_activity * movement in 1 ms)^2\n"
         "signal = \"{}\"\nfloor = {}  # [{}]\nper_activity = {}\nindependent = {}  # samples a second\n",
         name_of(c.signal), c.floor, info(c.signal).si_unit, c.per_activity, c.independent);
+  for (const Unfollowed& u : state.unfollowed)
+    out += fmt::format("[[tuned.unfollowed]]\nsignal = \"{}\"\nover_noise = {}\n", name_of(u.signal), u.over_noise);
   const auto quoted = [](const std::string& text) {
     std::ostringstream s;
     s << toml::value<std::string>(text);

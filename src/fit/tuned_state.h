@@ -19,11 +19,18 @@ struct TunedBy {
   std::string content;  // content_hash of the log; empty: an earlier version did not keep it
 };
 
+// A channel that the tune did not bring near its logs.
+struct Unfollowed {
+  Signal signal;
+  double over_noise = 0;  // rms of what the fit leaves, over the sensor's noise
+};
+
 struct TunedState {
   static constexpr int schema = 1;
   ErrorModel error;
   int moving_average = 1;  // [samples]
   std::vector<TunedBy> by;
+  std::vector<Unfollowed> unfollowed;  // empty: the tune is good enough, or an earlier version did not ask
 
   bool is_by(const Log& log) const;
 };

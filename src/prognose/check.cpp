@@ -46,6 +46,8 @@ void take_oil(CheckResult& out, LogData& data, const Log& log, const Table& tune
               const CheckOptions& options) {
   if (log.has(Signal::oil_temperature)) {
     out.temperature = {mean_of_first(log[Signal::oil_temperature], log.samples()), 0.0, OilSource::given};
+  } else if (rig.oil_temperature) {
+    out.temperature = {*rig.oil_temperature, 0.0, OilSource::given};
   } else if (options.correct) {
     out.temperature = estimate_temperature(data, tuned, rig, options.threads, &out.simulations);
     data.scenario.oil = oil_at(rig.fluid.density, rig.fluid.kinematic_viscosity, out.temperature.value);

@@ -26,6 +26,8 @@
 #include "report/parameter_part.h"
 #include "report/parts.h"
 #include "report/replay_part.h"
+#include "servodx/actions.h"
+#include "diagnose/judgeable.h"
 
 namespace servodx::report {
 namespace {
@@ -47,6 +49,8 @@ std::string headline(const Diagnosis& d) {
   if (d.verdict == VerdictKind::healthy)
     return file_name(d.log) +
            (d.suspicion ? " cannot be told from the fault-free logs" : " is like the fault-free logs");
+  if (d.assessment.unjudgeable != Unjudgeable::no)
+    return file_name(d.log) + " cannot be judged: " + words_of(d.assessment.unjudgeable);
   if (d.verdict == VerdictKind::unknown) return file_name(d.log) + " is not healthy, and no known fault explains it";
   const std::string size = size_words(d);
   return words(label_of(d.fault) + of_channel(d)) + (size.empty() ? "" : ", " + size);
@@ -94,6 +98,7 @@ std::vector<std::string> reasons(const Diagnosis& d, const DetectionBaseline& ba
                                 chance(next->probability)));
   }
   if (d.suspicion) why.push_back(sentence(suspicion_in_words(*d.suspicion)));
+  if (d.beyond) why.push_back(sentence(beyond_in_words(*d.beyond)));
   if (d.onset)
     why.push_back(fmt::format("Until {} s the log is healthy; the fault explains what follows.", digits(*d.onset, 4)));
   return why;
@@ -109,7 +114,7 @@ Verdict verdict_of(const Diagnosis& d, const DetectionBaseline& baseline) {
   if (d.onset) v.facts.push_back({"Since", digits(*d.onset, 4) + " s"});
   v.facts.push_back({"Error / threshold", digits(d.error) + " / " + digits(d.threshold)});
   v.facts.push_back({"Null", percent(d.null) + " of rated"});
-  if (d.fault) v.facts.push_back({"Action", action_of(d)});
+  if (d.action.of != ActionClass::none) v.facts.push_back({"Action", d.action.text});
   v.reasons = reasons(d, baseline);
   return v;
 }
@@ -140,8 +145,22 @@ void add_ranking(Page& page, const Diagnosis& d) {
     page.text("None of them fits well enough to be named: the bars only rank them among each other.");
 }
 
+void add_detectable(Page& page, const Diagnosis& d) {
+  if (d.detectable.empty()) return;
+  TablePart table{"What this log could have shown: the least of each fault that 95 of 100 such logs would not pass",
+                  "ll",
+                  {"fault", "seen from"},
+                  {},
+                  0};
+  for (const Detectable& f : d.detectable)
+    table.rows.push_back(
+        {words(label_of(f.fault)), f.severity ? handy(*f.severity, unit_of(f.fault)) : "not even its worst"});
+  page.add(table);
+}
+
 void add_details(Page& page, const Diagnosis& d, const std::vector<Replay>& replays, std::size_t drawn) {
   add_ranking(page, d);
+  add_detectable(page, d);
   const auto [by_fault, in_health] = moved_parts(d);
   if (!by_fault.empty())
     page.add(moves_of(

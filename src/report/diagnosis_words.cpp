@@ -11,6 +11,7 @@
 #include "diagnose/decide.h"
 #include "diagnose/judge.h"
 #include "diagnose/moved.h"
+#include "diagnose/naming.h"
 #include "diagnose/record_law.h"
 #include "diagnose/records.h"
 #include "evidence/conditions.h"
@@ -60,6 +61,26 @@ std::string words_of(GrossFinding finding) {
   return "";
 }
 
+std::string words_of(Unjudgeable reason) {
+  switch (reason) {
+    case Unjudgeable::no:
+      return "";
+    case Unjudgeable::nothing_asked:
+      return "the command stands still: nothing is asked of the valve. Record a test that moves it";
+    case Unjudgeable::sensors_still:
+      return "every sensor shows one value while the command moves: no recording, no sensors, or another log's columns";
+    case Unjudgeable::noise_alone:
+      return "no channel knows its own last sample: noise, rows out of order, or columns of something else";
+    case Unjudgeable::command_too_large:
+      return "the command is a multiple of rated current: look at its unit and at valve.rated_current";
+    case Unjudgeable::pressure_beyond_supply:
+      return "the chambers are far above the supply: look at the pressures' units";
+    case Unjudgeable::too_short:
+      return "the log is shorter, or sampled more slowly, than a valve answers: look at the unit of time";
+  }
+  return "";
+}
+
 std::string label_of(const Fault* hypothesis) {
   return hypothesis ? std::string(hypothesis->name) : word_of(VerdictKind::healthy);
 }
@@ -103,10 +124,32 @@ std::vector<std::string> ambiguous_labels(const Diagnosis& d) {
   return out;
 }
 
-std::string action_of(const Diagnosis& d) { return d.fault ? std::string(d.fault->action) : ""; }
+namespace {
+
+// The likeliest of what cannot be ruled out.
+const Fault* rival_of(const Diagnosis& d) {
+  return *std::max_element(d.ambiguous_with.begin(), d.ambiguous_with.end(),
+                           [&](const Fault* a, const Fault* b) { return probability_of(d, a) < probability_of(d, b); });
+}
+
+// As `servodx plan` takes it: a fault that was fitted, at the size that was found.
+std::string planned_fault(const Diagnosis& d, const Fault* fault) {
+  const HypothesisResult* fitted = result_of(d, fault);
+  if (!fitted || fitted->at_least || !std::isfinite(fitted->severity)) return label_of(fault);
+  return fmt::format("{}={}", label_of(fault), digits(fitted->severity));
+}
+
+}  // namespace
 
 std::string separating_test_of(const Diagnosis& d) {
-  return d.fault && !d.ambiguous_with.empty() ? std::string(d.fault->test) : "";
+  if (!d.fault || d.ambiguous_with.empty()) return "";
+  const Fault* rival = rival_of(d);
+  // Only what a fit shows can be planned for, and no test parts twins.
+  const bool twins = rival && (rival->twin == d.fault || d.fault->twin == rival);
+  if (!result_of(d, d.fault) || (rival && !result_of(d, rival)) || twins) return std::string(d.fault->test);
+  const std::string wish = rival ? "--between " + planned_fault(d, d.fault) + "," + planned_fault(d, rival)
+                                 : "--faults " + planned_fault(d, d.fault);
+  return "servodx plan " + wish + " --params TUNED --rig RIG.toml --like LOG --seconds 2 -o COMMAND.csv";
 }
 
 std::vector<Candidate> candidates_of(const std::vector<HypothesisPrediction>& explanations) {
@@ -215,6 +258,26 @@ std::string suspicion_in_words(const Suspicion& s) {
       "alarms; {}",
       words(label_of(s.fault)), handy_interval(s.severity, s.lower, s.upper, unit_of(s.fault)), s.logs, percent(s.rate),
       more);
+}
+
+std::string beyond_in_words(const BeyondFaults& b) {
+  if (b.first.empty() && b.where.empty()) return "explain finds no cause either";
+  if (b.first.empty()) return fmt::format("explain finds no name; most is missing at {}", b.where);
+  const std::string what = b.depends_on.empty() ? fmt::format("{} at {}", words(b.first), b.where)
+                                                : fmt::format("something at {} that follows {}", b.where, b.depends_on);
+  const std::string removes =
+      fmt::format("explain puts first {}: it removes {} of what is left", what, percent(b.share));
+  return b.taken ? removes : removes + ", which healthy logs show too";
+}
+
+DetectableWords detectable_words(const Diagnosis& d) {
+  DetectableWords out;
+  for (const Detectable& f : d.detectable)
+    if (f.severity)
+      out.shown.push_back(fmt::format("{} from {}", words(label_of(f.fault)), handy(*f.severity, unit_of(f.fault))));
+    else
+      out.hidden.push_back(words(label_of(f.fault)));
+  return out;
 }
 
 std::string test_words(const TestConditions& test) {

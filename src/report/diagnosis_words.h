@@ -9,7 +9,9 @@
 #include "diagnose/decide.h"
 #include "diagnose/diagnose.h"
 #include "diagnose/judge.h"
+#include "diagnose/judgeable.h"
 #include "diagnose/moved.h"
+#include "diagnose/naming.h"
 #include "diagnose/record_law.h"
 #include "diagnose/records.h"
 #include "evidence/conditions.h"
@@ -21,6 +23,7 @@ namespace servodx::report {
 
 std::string word_of(VerdictKind verdict);       // healthy | fault | unknown
 std::string words_of(GrossFinding finding);     // "" of none
+std::string words_of(Unjudgeable reason);       // why there is nothing to judge, and what to look at; "" of no
 std::string label_of(const Fault* hypothesis);  // its name; of null "healthy"
 std::string name_of(const Diagnosis& d);        // the fault named, else the verdict
 std::string meaning_of(const Fault* hypothesis);
@@ -33,8 +36,7 @@ double probability_of(const Diagnosis& d, const Fault* hypothesis);
 std::map<std::string, double> labelled_probabilities(const Diagnosis& d);
 std::vector<const Fault*> ambiguous_by_label(const Diagnosis& d);
 std::vector<std::string> ambiguous_labels(const Diagnosis& d);
-// What the fault named asks for; the input that would separate it from what it is ambiguous with. "" where none.
-std::string action_of(const Diagnosis& d);
+// The input that would separate the fault named from what it is ambiguous with. "" where none.
 std::string separating_test_of(const Diagnosis& d);
 
 // What the hypotheses say the log should be, under their labels.
@@ -62,6 +64,13 @@ std::string second_in_words(const NamedFault& fault);
 
 // What stands first in a log that cannot be told from healthy ones.
 std::string suspicion_in_words(const Suspicion& suspicion);
+// What `explain` makes of a log that no fault explains.
+std::string beyond_in_words(const BeyondFaults& beyond);
+// Faults that this log would have shown, with the least of each, "clogged filter from 0.72"; and those it would not.
+struct DetectableWords {
+  std::vector<std::string> shown, hidden;
+};
+DetectableWords detectable_words(const Diagnosis& d);
 // "drive spans 43.1 mA at about 5.6 Hz, oil 41 degC"
 std::string test_words(const TestConditions& test);
 // Empty where a log of the baseline is of such a test.

@@ -15,6 +15,7 @@
 #include "report/diagnosis_words.h"
 #include "report/handy.h"
 #include "report/row_verdict_word.h"
+#include "servodx/tune.h"
 
 namespace servodx::report {
 namespace {
@@ -193,6 +194,21 @@ Json to_json(const Suspicion& s) {
           {"logs_needed", s.logs_needed > 0 ? Json(s.logs_needed) : Json(nullptr)}};
 }
 
+Json detectable_json(const Diagnosis& d) {
+  Json out = Json::object();
+  for (const Detectable& f : d.detectable)
+    out[label_of(f.fault)] = {{"value", f.severity ? number(*f.severity) : Json(nullptr)}, {"unit", unit_of(f.fault)}};
+  return out;
+}
+
+Json to_json(const BeyondFaults& b) {
+  return {{"effect", b.first.empty() ? Json(nullptr) : Json(b.first)},
+          {"where", b.where},
+          {"depends_on", b.depends_on},
+          {"heldout_share", number(b.share)},
+          {"taken", b.taken}};
+}
+
 Json channel_json(const NamedFault& f) {
   const std::string channel = channel_of(f);
   return channel.empty() ? Json(nullptr) : Json(channel);
@@ -265,6 +281,8 @@ Json to_json(const Diagnosis& d) {
           {"records", records_json(d)},
           {"probabilities", probabilities},
           {"suspicion", d.suspicion ? to_json(*d.suspicion) : Json(nullptr)},
+          {"detectable", detectable_json(d)},
+          {"explained", d.beyond ? to_json(*d.beyond) : Json(nullptr)},
           {"ambiguous_with", ambiguous_labels(d)},
           {"separating_test", separating_test_of(d)},
           {"severity",
@@ -274,8 +292,9 @@ Json to_json(const Diagnosis& d) {
             {"unit", unit_of(d.fault)}}},
           {"onset_time", d.onset ? number(*d.onset) : Json(nullptr)},
           {"parameters", moved_json(d.moved)},
-          {"action", action_of(d)},
+          {"action", d.action.text},
           {"gross", words_of(d.assessment.gross)},
+          {"unjudgeable", words_of(d.assessment.unjudgeable)},
           {"hypothesis_told", label_of(d.nearest)},
           {"test", test_json(d.assessment.test)},
           {"unlike_baseline",

@@ -17,6 +17,9 @@
 #include "report/diagnosis_words.h"
 #include "report/handy.h"
 #include "report/row_verdict_word.h"
+#include "servodx/actions.h"
+#include "servodx/tune.h"
+#include "diagnose/judgeable.h"
 
 namespace servodx::report {
 namespace {
@@ -161,12 +164,16 @@ std::string text_of(const Diagnosis& d, const TextOptions& options) {
     first += in_colour(d.verdict == VerdictKind::unknown ? "UNKNOWN" : word_of(d.verdict), d.verdict, options.colour);
   if (const std::string size = size_words(d); !size.empty()) first += ", " + size;
   if (d.suspicion) first += "; " + suspicion_in_words(*d.suspicion);
-  if (d.verdict == VerdictKind::unknown) first += ": not like the fault-free logs, and no known fault explains it";
+  if (d.assessment.unjudgeable != Unjudgeable::no)
+    first += ": " + words_of(d.assessment.unjudgeable);
+  else if (d.verdict == VerdictKind::unknown)
+    first += ": not like the fault-free logs, and no known fault explains it";
 
   Columns table("ll", 2);
   const auto [word, hypotheses] = standing(d);
   table.row({word, hypotheses});
   table.row({"error", fmt::format("{}, threshold {}; {}", digits(d.error), digits(d.threshold), chance_words(d))});
+  if (d.beyond) table.row({"but", beyond_in_words(*d.beyond)});
   if (d.unlike) table.row({"beware", unlike_words(d)});
   for (const RecordFinding& f : d.records) table.row({"record", record_in_words(f)});
   for (std::size_t i = 1; i < d.faults.size(); ++i) table.row({"and", second_in_words(d.faults[i])});
@@ -174,8 +181,14 @@ std::string text_of(const Diagnosis& d, const TextOptions& options) {
   if (d.onset) table.row({"since", digits(*d.onset, 4) + " s"});
   if (!d.ambiguous_with.empty()) table.row({"or else", join(ambiguous_labels(d))});
   if (const std::string test = separating_test_of(d); !test.empty()) table.row({"to separate", test});
-  if (const std::string action = action_of(d); !action.empty()) table.row({"action", action});
+  if (d.action.of != ActionClass::none) table.row({"action", d.action.text});
   table.row({"null", percent(d.null) + " of rated"});
+
+  if (!d.fault) {
+    const auto [shown, hidden] = detectable_words(d);
+    if (!shown.empty()) table.row({"would show", join(shown)});
+    if (!hidden.empty()) table.row({"cannot show", join(hidden)});
+  }
 
   auto [by_fault, in_health] = moved_parts(d);
   std::erase_if(in_health, [](const MovedRow& p) { return p.name == "servovalve_null"; });  // it has a line of its own

@@ -16,6 +16,7 @@
 #include "report/replay_part.h"
 #include "report/tune_words.h"
 #include "tune/tune.h"
+#include "servodx/tune.h"
 
 namespace servodx::report {
 namespace {
@@ -113,18 +114,21 @@ Page tune_page(const Header& header, const TuneResult& result, const GoodEnough&
     held += !std::isfinite(p.std_error) && p.verdict != RowVerdict::at_bound;
   }
   Verdict v;
-  v.tone = enough.yes ? Tone::good : Tone::doubt;
-  v.word = result.interrupted ? "INTERRUPTED" : enough.yes ? "GOOD ENOUGH" : "WITH CARE";
-  v.headline = enough.yes ? "Good enough to diagnose with" : "Diagnose with this table, but mind what follows";
+  const bool yes = enough.trust == Trust::yes, no = enough.trust == Trust::no;
+  v.tone = yes ? Tone::good : no ? Tone::bad : Tone::doubt;
+  v.word = result.interrupted ? "INTERRUPTED" : yes ? "GOOD ENOUGH" : no ? "NOT GOOD ENOUGH" : "WITH CARE";
+  v.headline = yes  ? "Good enough to diagnose with"
+               : no ? "The model does not follow these logs: do not diagnose with this table"
+                    : "Diagnose with this table, but mind what follows";
   v.detail = fmt::format("{} parameters fitted to {} log{}; {}.", known + static_cast<long>(at_end.size()), logs,
                          logs == 1 ? "" : "s", enough.errors);
   v.facts = {{"Known with an error", std::to_string(known)},
              {"At an end of their range", std::to_string(at_end.size())},
              {"Held: the logs cannot tell", std::to_string(held)},
              {"Starts that agree", fmt::format("{} of {}", result.reached_best, result.starts.size())}};
-  if (enough.yes) v.reasons.push_back(sentence(line_of(enough)));
+  if (yes) v.reasons.push_back(sentence(line_of(enough)));
   for (const std::string& reason : enough.reasons) v.reasons.push_back(sentence(words(reason)));
-  if (!enough.yes && !enough.exceptions.empty())
+  if (!yes && !enough.exceptions.empty())
     v.reasons.push_back("Predicted worse than fitted: " + join(enough.exceptions) + ", so such logs are few.");
   if (!at_end.empty())
     v.reasons.push_back(fmt::format("At an end of {} range: {}. Check the data sheet behind {}, or widen the bounds.",

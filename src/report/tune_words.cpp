@@ -7,9 +7,11 @@
 #include <cmath>
 
 #include "report/columns.h"
+#include "report/diagnosis_words.h"
 #include "report/handy.h"
 #include "report/replay_part.h"
 #include "servodx/log.h"
+#include "servodx/tune.h"
 
 namespace servodx::report {
 namespace {
@@ -92,7 +94,15 @@ std::string gains_in_words(const TuneResult& result) {
   return parts.empty() ? "" : "cost by stage: " + join(parts, "; ");
 }
 
-GoodEnough good_enough(const TuneResult& result, const std::vector<Promise>& promises) {
+std::string unfollowed_in_words(const std::vector<Unfollowed>& channels) {
+  std::vector<std::string> parts;
+  for (const Unfollowed& u : channels)
+    parts.push_back(fmt::format("{} is left with {} times its noise", words(std::string(name_of(u.signal))),
+                                digits(u.over_noise, 2)));
+  return join(parts);
+}
+
+GoodEnough good_enough(const TuneResult& result, const std::vector<Promise>& promises, const BeyondFaults* likeliest) {
   GoodEnough g;
   std::vector<std::string> errors, worse, far;
   for (const ChannelResult& c : result.channels) {
@@ -109,6 +119,9 @@ GoodEnough good_enough(const TuneResult& result, const std::vector<Promise>& pro
   }
   if (!errors.empty()) g.errors = "error over noise on the held-out part: " + join(errors);
   if (result.interrupted) g.reasons.push_back("it was interrupted");
+  if (!result.unfollowed.empty())
+    g.reasons.push_back("the model does not follow these logs: " + unfollowed_in_words(result.unfollowed) +
+                        (likeliest ? "; " + beyond_in_words(*likeliest) : ""));
   if (!far.empty())
     g.reasons.push_back("the model does not follow these logs (error over noise: " + join(far) +
                         "): check the rig file's data sheet (flow, areas, supply), signs and gains of sensors");
@@ -127,14 +140,15 @@ GoodEnough good_enough(const TuneResult& result, const std::vector<Promise>& pro
   }
   if (!g.hidden.empty())
     g.reasons.push_back("on logs like these it would not see, even at typical size: " + join(g.hidden));
-  g.yes = g.reasons.empty();
+  g.trust = !result.unfollowed.empty() ? Trust::no : g.reasons.empty() ? Trust::yes : Trust::with_care;
   return g;
 }
 
 std::string line_of(const GoodEnough& g) {
   const std::string but =
       g.exceptions.empty() ? "" : "; predicted worse than fitted: " + join(g.exceptions) + ", so such logs are few";
-  if (!g.yes) return fmt::format("with care: {}{}", fmt::join(g.reasons, "; "), but);
+  if (g.trust != Trust::yes)
+    return fmt::format("{}: {}{}", g.trust == Trust::no ? "no" : "with care", fmt::join(g.reasons, "; "), but);
   std::string line = fmt::format("yes: it predicts {} as well as it fits, and the search has arrived",
                                  g.exceptions.empty() ? "logs" : "most logs");
   if (!g.best.empty())
@@ -153,8 +167,9 @@ Json to_json(const GoodEnough& g) {
                       {"deviate_at_least", number(v.at_least)},
                       {"typical", v.typical},
                       {"deviate_at_typical", number(v.at_typical)}});
-  return {{"yes", g.yes},       {"reasons", g.reasons}, {"exceptions", g.exceptions},
-          {"hidden", g.hidden}, {"faint", g.faint},     {"visible_faults", faults}};
+  return {{"yes", g.trust == Trust::yes}, {"no", g.trust == Trust::no}, {"reasons", g.reasons},
+          {"exceptions", g.exceptions},   {"hidden", g.hidden},         {"faint", g.faint},
+          {"visible_faults", faults}};
 }
 
 }  // namespace servodx::report

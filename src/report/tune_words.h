@@ -1,6 +1,7 @@
 // Is a tune good enough to diagnose with? Said in one line, from what the tune and its logs know.
 //
-// Four questions. Does the model follow the logs at all: if not, the data sheet is another rig's. Does it predict what
+// Four questions. Does the model follow the logs: where a channel is left far beyond its noise (tune/summary.h) the
+// answer is no, and where it is left yet further the data sheet is another rig's. Does it predict what
 // it was not fitted to: of the median log the error on the held-out part against the fitted error, at most twice, as a
 // diagnosis lets a hypothesis leave twice the usual error and no more (judge); single logs that are predicted worse are
 // named, for they have no like among the others. Did the search arrive: its end, and a second start in the same valley.
@@ -11,13 +12,16 @@
 #include <vector>
 
 #include "diagnose/check_log.h"
+#include "diagnose/judge.h"
+#include "fit/tuned_state.h"
 #include "report/json.h"
 #include "tune/tune.h"
 
 namespace servodx::report {
 
+enum class Trust { yes, with_care, no };
 struct GoodEnough {
-  bool yes = false;
+  Trust trust = Trust::yes;
   std::string errors;                   // "held-out error over noise: spool position 3.0, piston position 5.1"
   std::vector<std::string> reasons;     // why not, or not quite
   std::vector<std::string> exceptions;  // single logs that are predicted worse than fitted
@@ -32,8 +36,12 @@ std::string words_of(StageMethod method);
 std::string gains_in_words(const TuneResult& result);
 
 // `promises`: of the logs with the tuned table; without any nothing is said of faults.
-GoodEnough good_enough(const TuneResult& result, const std::vector<Promise>& promises);
-std::string line_of(const GoodEnough& g);  // "yes: ..." or "with care: ..."
+// "pressure A is left with 11 times its noise, ..."
+std::string unfollowed_in_words(const std::vector<Unfollowed>& channels);
+// `likeliest`: what explain puts first, where the model does not follow; null: not asked.
+GoodEnough good_enough(const TuneResult& result, const std::vector<Promise>& promises,
+                       const BeyondFaults* likeliest = nullptr);
+std::string line_of(const GoodEnough& g);  // "yes: ...", "with care: ..." or "no: ..."
 Json to_json(const GoodEnough& g);
 
 }  // namespace servodx::report

@@ -31,6 +31,9 @@ class LogColumns {
   const std::string& name(int column) const { return columns_[column].name; }
   Signal signal(int column) const { return columns_[column].signal; }
 
+  const std::string& written_unit(int column) const { return columns_[column].written_unit; }
+  double si(int column, double x) const { return columns_[column].to_si(x); }  // [SI] of a number as in the file
+
   void reserve(std::size_t samples);
   // One sample of every column, in the file's units; NaN where missing. `line`: of the file, or the sample's number.
   void append(std::span<const double> sample, long line);

@@ -104,10 +104,14 @@ class Reader {
       rig_.command_hold = one_of(node, key, {"zero", "linear"}) == "linear" ? CommandHold::linear : CommandHold::zero;
     } else if (key == "mains_frequency") {
       rig_.mains_frequency = quantity(node, key, frequency, false);
+    } else if (key == "oil_temperature") {
+      rig_.oil_temperature = quantity(node, key, temperature, false);
     } else if (key == "null_limit") {
       rig_.null_limit = quantity(node, key, fraction, true);
     } else if (key == "valve.first_stage") {
       rig_.words[key] = one_of(node, key, {"flapper_nozzle", "jet_pipe"});
+    } else if (key == "lines.taps") {
+      rig_.taps_at_cylinder = one_of(node, key, {"valve", "cylinder"}) == "cylinder";
     } else {
       for (const RigFact& fact : rig_facts()) {
         if (fact.key != key) continue;
@@ -123,9 +127,11 @@ class Reader {
     const std::string folder = dot == std::string::npos ? "" : key.substr(0, dot + 1);
     std::vector<std::string> known;
     if (folder.empty())
-      known = {"name",    "serial",     "ports",   "command_hold", "mains_frequency", "null_limit", "fluid",
-               "[valve]", "[actuator]", "[lines]", "[supply]",     "[fluid]",         "[limits]",   "[columns]"};
+      known = {"name",       "serial",          "ports",   "command_hold", "mains_frequency",
+               "null_limit", "oil_temperature", "fluid",   "[valve]",      "[actuator]",
+               "[lines]",    "[supply]",        "[fluid]", "[limits]",     "[columns]"};
     if (folder == "valve.") known = {"first_stage", "dither"};
+    if (folder == "lines.") known = {"taps"};
     for (const RigFact& fact : rig_facts())
       if (!folder.empty() && fact.key.starts_with(folder) && fact.key.find('.', folder.size()) == fact.key.npos)
         known.emplace_back(fact.key.substr(folder.size()));

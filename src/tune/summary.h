@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "fit/problem.h"
+#include "fit/tuned_state.h"
 #include "optimise/problem.h"
 #include "parameters/table.h"
 #include "servodx/log.h"
@@ -21,6 +22,9 @@ std::vector<LogResult> results_by_log(const std::vector<Log>& logs, const TuneSc
                                       const std::vector<Trajectory>& heldout, double heldout_part);
 // Root of the mean square over the logs that have the channel.
 std::vector<ChannelResult> pooled_channels(const std::vector<LogResult>& logs);
+// Channels that are left so far beyond their sensor's noise, and by so much of what they can do, that a verdict by this
+// table means little. `tuned`: a candidate of it.
+std::vector<Unfollowed> unfollowed_channels(const std::vector<ChannelResult>& pooled, const ParameterVector& tuned);
 // Nulls and air belong to the logs; the table keeps their medians.
 void take_medians(Table& table, const std::vector<LogResult>& logs);
 // How the command ran between samples, and the oil where no temperature was logged.

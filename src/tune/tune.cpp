@@ -10,6 +10,7 @@
 
 #include "base/error.h"
 #include "base/nearest.h"
+#include "effects/line_inertia.h"
 #include "effects/registry.h"
 #include "effects/supply_droop.h"
 #include "fit/free_values.h"
@@ -25,6 +26,7 @@
 #include "tune/settle.h"
 #include "tune/summary.h"
 #include "tune/watch.h"
+#include "fit/log_data.h"
 
 namespace servodx {
 namespace {
@@ -39,8 +41,8 @@ LeastSquaresResult weighed_as_learnt(FitProblem& problem, LeastSquaresResult end
   return end;
 }
 
-TunedState state_of(const std::vector<Log>& logs, const ErrorModel& error, const TuneOptions& options) {
-  TunedState state{error, options.moving_average, {}};
+TunedState state_of(const std::vector<Log>& logs, const TuneResult& result, const TuneOptions& options) {
+  TunedState state{result.error, options.moving_average, {}, result.unfollowed};
   for (const Log& log : logs)
     state.by.push_back({std::filesystem::path(log.path).filename().string(), log.sha256, content_hash(log)});
   return state;
@@ -60,13 +62,22 @@ std::string note_of_distrust(const TuneWatch& watch) {
 
 }  // namespace
 
-std::vector<std::string> default_effects(bool on_stand, bool supply_measured) {
+std::vector<std::string> default_effects(bool on_stand, bool supply_measured, bool lines_are_long) {
   if (on_stand) return {"magnetic_hysteresis", "flow_meter_lag", "edge_radius", "port_line"};
   std::vector<std::string> out = {"magnetic_hysteresis", "armature_angle", "mount_compliance",
                                   "edge_transition",     "orifice_length", "screen_drop",
                                   "nozzle_land",         "seal_shear",     "nozzle_mismatch"};
   if (!supply_measured) out.emplace_back(SupplyDroop::name);  // a measured supply holds its droop
+  if (lines_are_long) out.emplace_back(LineInertia::name);
   return out;
+}
+
+// The quarter wave of oil at 1200 m/s is then 500 Hz: shorter lines answer above the band of logs of 1 kHz, and a fit
+// would give their numbers to what else rings there.
+constexpr double long_line = 0.6;  // [m]
+
+bool lines_are_long(const RigFile& rig) {
+  return !rig.taps_at_cylinder && rig.fact("lines.length").value_or(0.0) >= long_line && rig.fact("lines.bore");
 }
 
 bool supply_is_measured(const std::vector<Log>& logs) {
@@ -138,7 +149,8 @@ TuneResult tune_table(const std::vector<Log>& logs, const Table& nominal, const 
   out.table = std::move(settled.table);
   take_medians(out.table, out.logs);
   out.table.comments = nominal.comments;
-  set_tuned_state(out.table, state_of(logs, out.error, options));
+  out.unfollowed = unfollowed_channels(out.channels, candidate_of(out.table));
+  set_tuned_state(out.table, state_of(logs, out, options));
 
   append(out.notes, scope.notes);
   append(out.notes, settled.notes);

@@ -46,6 +46,7 @@ struct TuneResult {
   Table table;  // the tuned table
   ErrorModel error;
   std::vector<ChannelResult> channels;
+  std::vector<Unfollowed> unfollowed;  // of these; empty: good enough
   std::vector<LogResult> logs;
   std::vector<ParameterResult> parameters;
   std::vector<double> starts;  // final costs of all local starts

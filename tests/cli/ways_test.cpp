@@ -323,6 +323,7 @@ TEST(DryRun, IsARehearsalWithEveryCommandThatTakesIt) {
       {"history export", "--history h.db -o out.csv"},
       {"history import", "lives.csv --history new.db"},
       {"history verify", "--history h.db"},
+      {"plan", "--params table.csv --rig rig.toml --seconds 1 -o out.csv"},
       {"rig", "--rig-model " + std::string(SERVODX_SOURCE_DIR) + "/params/rigs/borello2009.toml -o out.csv"},
       {"curves", "log.csv --rig rig.toml --svg out.svg"},
       {"map", "--model C3 --params table.csv -o out.csv"},

@@ -92,7 +92,7 @@ class Docs(unittest.TestCase):
             (folder / own).mkdir()
             for log in some:
                 shutil.copy(log, folder / own)
-        for name in ("suspect.csv", "log.csv", "LOG.csv"):
+        for name in ("suspect.csv", "log.csv", "LOG.csv", "command.csv"):
             shutil.copy(SOURCE / "data/fault/f02_clogged_filter_severe.csv", folder / name)
         shutil.copy(SOURCE / "data/rig.toml", folder / "rig.toml")
         table = (SOURCE / "params/borello2009.csv").read_text().splitlines()

@@ -6,7 +6,9 @@
 
 #include "base/random.h"
 #include "fit/support.h"
+#include "model/state.h"
 #include "servodx/log.h"
+#include "servodx/rig.h"
 #include "shipped_data.h"
 #include "simulate/scenario.h"
 
@@ -151,6 +153,21 @@ TEST(LogData, MeasuredCurrentDrivesInPlaceOfTheCommand) {
 TEST(LogData, LogWithoutSupplyTakesTheTables) {
   EXPECT_TRUE(shipped_data("healthy/h15_no_supply_signals").scenario.supply_pressure.empty());
   EXPECT_FALSE(shipped_data("healthy/h12_mixed").scenario.supply_pressure.empty());
+}
+
+TEST(LogData, OilIsAsWarmAsTheLogSaysElseAsTheRigFileSays) {
+  RigFile rig = shipped_rig();
+  Log log = shipped_log("healthy/h12_mixed");
+  const LogData recorded = prepare(log, rig);
+  rig.oil_temperature = 353.15;
+  EXPECT_EQ(prepare(log, rig).scenario.oil.dynamic_viscosity, recorded.scenario.oil.dynamic_viscosity);
+  log.channels[index(Signal::oil_temperature)] = {};
+  const LogData stated = prepare(log, rig);
+  EXPECT_TRUE(stated.scenario.oil_known);
+  const Oil hot = oil_at(rig.fluid.density, rig.fluid.kinematic_viscosity, 353.15);
+  EXPECT_EQ(stated.scenario.oil.dynamic_viscosity, hot.dynamic_viscosity);
+  rig.oil_temperature.reset();
+  EXPECT_FALSE(prepare(log, rig).scenario.oil_known);
 }
 
 }  // namespace

@@ -35,24 +35,28 @@ const std::map<std::string, std::set<std::string>> allowed = {
     {"evidence", {"fit", "signals"}},
     {"diagnose", {"parameters", "signals", "simulate", "optimise", "fit", "tune", "evidence", "faults", "effects"}},
     {"explain", {"parameters", "signals", "simulate", "optimise", "fit", "tune", "evidence", "faults", "effects"}},
+    {"plan",
+     {"parameters", "signals", "simulate", "optimise", "fit", "tune", "evidence", "faults", "effects", "diagnose"}},
+    {"online", {"parameters", "signals", "model", "simulate", "fit", "evidence", "diagnose", "faults"}},
     {"report",
      {"signals", "faults", "diagnose", "explain", "evidence", "prognose", "fit", "tune", "valve_maps", "curves",
-      "fleet"}},
+      "fleet", "plan"}},
     {"prognose", {"parameters", "signals", "model", "simulate", "optimise", "fit", "faults", "valve_maps"}},
     {"store", {"parameters", "model", "simulate", "faults", "prognose"}},
     // The front door is made of everything below the program; of report its words and files.
     {"door",
      {"parameters", "signals", "simulate", "fit", "tune", "faults", "evidence", "diagnose", "explain", "prognose",
-      "store", "report"}},
+      "store", "report", "plan", "online"}},
 };
 
 // The front door (include/servodx): each of its headers is the folder's whose options and results it declares. The
 // calls themselves are made in src/door.
 const std::map<std::string, std::string> door = {
-    {"servodx/error.h", "base"},        {"servodx/watch.h", "base"},        {"servodx/rig.h", "signals"},
-    {"servodx/log.h", "signals"},       {"servodx/table.h", "parameters"},  {"servodx/tune.h", "tune"},
-    {"servodx/baseline.h", "diagnose"}, {"servodx/diagnose.h", "diagnose"}, {"servodx/explain.h", "explain"},
-    {"servodx/trend.h", "prognose"},    {"servodx/simulate.h", "door"},     {"servodx/servodx.h", "door"}};
+    {"servodx/error.h", "base"},       {"servodx/watch.h", "base"},        {"servodx/rig.h", "signals"},
+    {"servodx/log.h", "signals"},      {"servodx/table.h", "parameters"},  {"servodx/tune.h", "tune"},
+    {"servodx/actions.h", "diagnose"}, {"servodx/baseline.h", "diagnose"}, {"servodx/diagnose.h", "diagnose"},
+    {"servodx/explain.h", "explain"},  {"servodx/plan.h", "plan"},         {"servodx/trend.h", "prognose"},
+    {"servodx/simulate.h", "door"},    {"servodx/stepper.h", "online"},    {"servodx/servodx.h", "door"}};
 
 struct Include {
   std::string from, to;  // folders

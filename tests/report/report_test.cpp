@@ -19,7 +19,9 @@
 #include "fit/selftest.h"
 #include "optimise/ceres_refinement.h"
 #include "prognose/check.h"
+#include "prognose/life.h"
 #include "prognose/trend.h"
+#include "prognose/trend_state.h"
 #include "report/baseline_file.h"
 #include "report/columns.h"
 #include "report/diagnosis_words.h"
@@ -34,6 +36,8 @@
 #include "report/tune_words.h"
 #include "servodx/error.h"
 #include "servodx/log.h"
+#include "servodx/table.h"
+#include "servodx/tune.h"
 #include "temporary_folder.h"
 #include "tune/tune.h"
 
@@ -457,7 +461,9 @@ TEST(DiagnoseJson, WhatIsAbsentOrNotFiniteIsNull) {
 }
 
 TEST(DiagnoseText, TheFirstLineIsTheVerdictWithItsSize) {
-  const std::string text = text_of(some_diagnosis(), {});
+  Diagnosis of_fault = some_diagnosis();
+  of_fault.action = default_actions().at("feedback_wire_backlash");
+  const std::string text = text_of(of_fault, {});
   EXPECT_EQ(text.substr(0, text.find('\n')), "suspect.csv: FAULT feedback_wire_backlash, 12 um (9 to 15, 95 %)");
   EXPECT_NE(text.find("90 %; then sticky_spool 6 %, null_shift 3 %\n"), std::string::npos) << text;
   EXPECT_EQ(text.find("healthy"), std::string::npos) << "two runners-up only: " << text;
@@ -465,6 +471,34 @@ TEST(DiagnoseText, TheFirstLineIsTheVerdictWithItsSize) {
     EXPECT_NE(text.find(words), std::string::npos) << words << " is not in:\n" << text;
   EXPECT_EQ(text.find('\033'), std::string::npos);
   EXPECT_NE(text_of(some_diagnosis(), {.colour = true, .written_to = ""}).find('\033'), std::string::npos);
+}
+
+// The test is planned for the two that are hard to tell, at the sizes that were found; where no fit tells them, the
+// fault's own words stand.
+TEST(SeparatingTest, NamesTheOptionsOfAPlan) {
+  Diagnosis d = some_diagnosis();
+  EXPECT_EQ(separating_test_of(d), d.fault->test) << "nothing was fitted";
+  HypothesisResult backlash, sticky;
+  backlash.fault = d.fault, backlash.severity = 12e-6;
+  sticky.fault = find_fault("sticky_spool"), sticky.severity = 2.5, sticky.at_least = true;
+  d.assessment.hypotheses = {HypothesisResult{}, backlash, sticky};
+  EXPECT_NE(separating_test_of(d).find("servodx plan --between feedback_wire_backlash=1.2e-05,sticky_spool --params"),
+            std::string::npos)
+      << separating_test_of(d);
+  d.ambiguous_with = {nullptr};
+  EXPECT_NE(separating_test_of(d).find("--faults feedback_wire_backlash=1.2e-05 "), std::string::npos);
+  d.ambiguous_with.clear();
+  EXPECT_EQ(separating_test_of(d), "");
+}
+
+TEST(SeparatingTest, TwinsKeepTheirWords) {
+  Diagnosis d = some_diagnosis();
+  d.fault = find_fault("torque_motor_loss");
+  d.ambiguous_with = {d.fault->twin};
+  HypothesisResult motor, driver;
+  motor.fault = d.fault, driver.fault = d.fault->twin;
+  d.assessment.hypotheses = {HypothesisResult{}, motor, driver};
+  EXPECT_EQ(separating_test_of(d), d.fault->test);
 }
 
 // A rank among n logs ends at 1 / (n + 1): a small p is not to be read off few logs.
@@ -612,19 +646,27 @@ TEST(TuneReport, GoodEnoughIsWhatPredictsHasArrivedAndWouldSeeTheFaults) {
   Promise other = log;  // the fault that one log hides another may show
   other.faults[1].at_typical = 12;
   GoodEnough good = good_enough(result, {log, other});
-  EXPECT_TRUE(good.yes);
+  EXPECT_EQ(good.trust, Trust::yes);
   EXPECT_EQ(good.errors, "error over noise on the held-out part: spool position 3");
   EXPECT_EQ(good.faint, std::vector<std::string>{"clogged_filter"});
   EXPECT_TRUE(line_of(good).starts_with("yes: it predicts logs as well as it fits")) << line_of(good);
 
   good = good_enough(result, {log});
-  EXPECT_FALSE(good.yes);
+  EXPECT_EQ(good.trust, Trust::with_care);
   EXPECT_EQ(good.hidden, std::vector<std::string>{"clogged_filter"});
   const auto reason = [&](const char* words) {
     const GoodEnough g = good_enough(result, {other});
-    EXPECT_FALSE(g.yes) << words;
+    EXPECT_EQ(g.trust, Trust::with_care) << words;
     EXPECT_NE(line_of(g).find(words), std::string::npos) << line_of(g);
   };
+  result.unfollowed = {{Signal::pressure_a, 11.3}};
+  const BeyondFaults likeliest{"hose_compliance", "flow_a", "", 0.6, true};
+  good = good_enough(result, {other}, &likeliest);
+  EXPECT_EQ(good.trust, Trust::no);
+  EXPECT_TRUE(line_of(good).starts_with("no: ")) << line_of(good);
+  for (const char* words : {"pressure A is left with 11 times its noise", "hose compliance at flow_a"})
+    EXPECT_NE(line_of(good).find(words), std::string::npos) << line_of(good);
+  result.unfollowed.clear();
   result.notes = {"local stage: iteration limit of 40; cost 1"};
   reason("has not arrived (iteration limit of 40)");
   result.notes.clear();

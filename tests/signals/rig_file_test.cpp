@@ -38,6 +38,7 @@ ports = "blocked"
 command_hold = "linear"
 mains_frequency = "50 Hz"
 null_limit = "4 %"
+oil_temperature = "45 degC"
 fluid = "MIL-PRF-5606"
 [valve]
 rated_current = "20 mA"
@@ -68,6 +69,7 @@ mount_stiffness = "3.1e7 N/m"
 [lines]
 length = "0.45 m"
 bore = "10 mm"
+taps = "cylinder"
 [supply]
 pressure = "207 bar"
 return_pressure = "5 bar"
@@ -83,6 +85,8 @@ TEST(RigFile, EveryKeyIsKeptInSiWithItsLine) {
   EXPECT_EQ(rig.command_hold, CommandHold::linear);
   EXPECT_EQ(rig.mains_frequency, 50.0);
   EXPECT_EQ(rig.null_limit, 0.04);
+  EXPECT_DOUBLE_EQ(*rig.oil_temperature, 318.15);
+  EXPECT_TRUE(rig.taps_at_cylinder);
   EXPECT_EQ(rig.fact("valve.rated_current"), 0.02);
   EXPECT_EQ(rig.fact("valve.dither.amplitude"), 0.2e-3);
   EXPECT_EQ(rig.fact("valve.dither.frequency"), 200.0);
@@ -91,8 +95,8 @@ TEST(RigFile, EveryKeyIsKeptInSiWithItsLine) {
   EXPECT_EQ(rig.fact("actuator.mount_stiffness"), 3.1e7);
   EXPECT_EQ(rig.fact("lines.bore"), 0.01);
   EXPECT_EQ(rig.words.at("valve.first_stage"), "flapper_nozzle");
-  EXPECT_EQ(rig.line("valve.rated_current"), 9);
-  EXPECT_EQ(rig.line("supply.return_pressure"), 39);
+  EXPECT_EQ(rig.line("valve.rated_current"), 10);
+  EXPECT_EQ(rig.line("supply.return_pressure"), 41);
   const ColumnMapping& column = rig.columns.at("Pos fb");
   EXPECT_EQ(column.signal, "piston_position");
   EXPECT_EQ(column.column_unit, "V");
@@ -108,6 +112,8 @@ TEST(RigFile, AnEmptyFileSaysNothing) {
   EXPECT_FALSE(rig.command_hold.has_value());
   EXPECT_FALSE(rig.mains_frequency.has_value());
   EXPECT_EQ(rig.null_limit, 0.05);
+  EXPECT_FALSE(rig.oil_temperature);
+  EXPECT_FALSE(rig.taps_at_cylinder);
   EXPECT_FALSE(rig.fluid.given);
 }
 
@@ -144,7 +150,7 @@ TEST(RigFile, EachRefusalNamesPlaceRuleAndMend) {
       {"\nnmae = \"x\"\n",
        "rig.toml:2: key 'nmae': unknown key; did you mean 'name'? known here: name, serial, ports, command_hold, "
        "mains_frequency, "
-       "null_limit, "
+       "null_limit, oil_temperature, "
        "fluid, [valve], [actuator], [lines], [supply], [fluid], [limits], [columns]"},
       {"[supply]\npresure = \"207 bar\"\n",
        "rig.toml:2: key 'supply.presure': unknown key; did you mean 'pressure'? known here: pressure, return_pressure"},

@@ -13,6 +13,7 @@
 #include "servodx/log.h"
 #include "servodx/rig.h"
 #include "shipped_data.h"
+#include "tune/summary.h"
 
 namespace servodx {
 namespace {
@@ -149,6 +150,17 @@ TEST(Tune, OptionsAreRefusedByNameBeforeAnyWork) {
   EXPECT_TRUE(names(refused([](TuneOptions& o) { o.generations = -1; }), "--generations"));
   EXPECT_TRUE(names(refused([](TuneOptions& o) { o.moving_average = 4; }), "--moving-average"));
   EXPECT_TRUE(names(refused([](TuneOptions& o) { o.resume = true; }), "--resume"));
+}
+
+TEST(Tune, AChannelIsNotFollowedWhereItIsFarBeyondItsNoiseAndByMuchOfItsReach) {
+  const ParameterVector v = candidate_of(shipped_table());
+  const double supply = v[row::supply_pressure];
+  const auto followed = [&](double rms, double noise) {
+    return unfollowed_channels({{Signal::pressure_a, "bar", rms, noise, rms}}, v).empty();
+  };
+  EXPECT_FALSE(followed(0.01 * supply, 0.001 * supply));
+  EXPECT_TRUE(followed(0.01 * supply, 0.002 * supply)) << "five times its noise is what a textbook model leaves";
+  EXPECT_TRUE(followed(0.001 * supply, 1e-5 * supply)) << "a sensor better than it need be is no reason for doubt";
 }
 
 }  // namespace

@@ -20,7 +20,7 @@ TEST(TunedState, ReadsBackFromAFileToTheSameBits) {
   Table table = shipped_table();
   table.has_std_error = true;
   table.comments = {"written by something else"};
-  set_tuned_state(table, {error, 5, {{"a \"log\".csv", "ab12", "cd34"}}});
+  set_tuned_state(table, {error, 5, {{"a \"log\".csv", "ab12", "cd34"}}, {{Signal::pressure_b, 11.25}}});
   write_table(folder / "tuned.csv", table);
   const Table again = read_table(folder / "tuned.csv");
   EXPECT_EQ(again.comments, table.comments);
@@ -38,6 +38,9 @@ TEST(TunedState, ReadsBackFromAFileToTheSameBits) {
     EXPECT_EQ(state.error.channels[i].per_activity, error.channels[i].per_activity);
     EXPECT_EQ(state.error.channels[i].independent, error.channels[i].independent);
   }
+  ASSERT_EQ(state.unfollowed.size(), 1u);
+  EXPECT_EQ(state.unfollowed[0].signal, Signal::pressure_b);
+  EXPECT_EQ(state.unfollowed[0].over_noise, 11.25);
   EXPECT_TRUE(tuned_state(shipped_table()).error.channels.empty());
 }
 
