@@ -25,7 +25,7 @@ void write(const std::string& path, const PlannedTest& test, const std::vector<d
            const std::string& what) {
   std::vector<OutputColumn> columns = {{Signal::time, "s", test.time}, {Signal::command, "mA", command}};
   if (with_setpoint) columns.push_back({Signal::setpoint, "mm", test.setpoint});
-  write_log(path, columns, {"# " + what, "# each value is held until the next; 'servodx rig --command FILE' plays it"});
+  write_log(path, columns, {what, "each value is held until the next; 'servodx rig --command FILE' plays it"});
 }
 
 }  // namespace
