@@ -67,7 +67,7 @@ bool is_large(const FitChannel& c, const ParameterVector& base) {
 
 bool is_pressure_of_chamber(Signal s) { return s == Signal::pressure_a || s == Signal::pressure_b; }
 
-bool drives(const std::vector<double>& series, double usual) { return span_of(series) > k::nothing_asked * usual; }
+bool drives(const std::vector<double>& series, double usual) { return span_of(series) > k::nothing_driven * usual; }
 
 template <class Holds>
 bool all_channels(const LogData& log, const Holds& holds) {
@@ -86,8 +86,8 @@ Unjudgeable unjudgeable(const LogData& log, const ParameterVector& base) {
   for (const double i : in.command) size.push_back(std::abs(i));
   if (quantile(std::move(size), 0.5) > k::command_beyond * in.rated_current) return Unjudgeable::command_too_large;
   const double pressure = base[row::supply_pressure];
-  const bool asked = drives(in.command, in.rated_current) || drives(in.supply_pressure, pressure) ||
-                     drives(in.load_force, pressure * base[row::piston_area_a]);
+  const bool asked = span_of(in.command) > k::nothing_asked * in.rated_current ||
+                     drives(in.supply_pressure, pressure) || drives(in.load_force, pressure * base[row::piston_area_a]);
   if (!asked) return Unjudgeable::nothing_asked;
   if (all_channels(log, shows_one_value)) return Unjudgeable::sensors_still;
   // A jammed valve leaves its sensors' noise beside a command that knows its last sample.
