@@ -1,7 +1,7 @@
 // The numbers that decide what checks and trends say: value, unit and what each is for.
 //
 // Where a line names no source, the number was chosen by hand and not examined: no half and no double of it was run.
-// What stands behind all of them together is the study of 200 lives (docs/measured.md), made with these values.
+// What stands behind all of them together is the study of 200 lives (docs/accuracy.md), made with these values.
 #pragma once
 #include <array>
 #include <cstddef>
