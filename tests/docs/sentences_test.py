@@ -1,10 +1,11 @@
 """Prose of the docs is readable: sentences of at most 25 words on average and 60 at the longest, page by page; no
-relative link is dead. Called by ctest: sentences_test.py SOURCE [TEST...]
+relative link is dead. Called by ctest.
 
-Not prose: code fences, indented formulas, tables, headings, the targets of links. Lines of a paragraph go together, a list item stands by
-itself. A sentence ends at a full stop, question or exclamation mark before white space; a colon or a semicolon ends
-none. Code in backticks is one word. Pages of docs/lab are a diary: their links are followed, their prose is free."""
-import pathlib, re, sys, unittest
+Not prose: code fences, indented formulas, tables, headings, the targets of links. Lines of a paragraph go together, a
+list item stands by itself. A sentence ends at a full stop, question or exclamation mark before white space; a colon or
+a semicolon ends none. Code in backticks is one word. Pages of docs/lab are a diary: their links are followed, their
+prose is free."""
+import pathlib, re, unittest
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 AVERAGE, LONGEST = 25, 60  # words of a sentence
