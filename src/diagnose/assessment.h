@@ -30,6 +30,7 @@ struct HypothesisResult {
   bool at_worst = false;             // at the far end of the range that was searched
   bool at_least = false;             // at the mildest that is called this fault: the fit has found none of it
   double null = 0;                   // [fraction of rated]
+  std::optional<double> shape = {};  // of a fault that has one
   std::vector<MovedRow> moved = {};  // the fault's rows first
 };
 
@@ -53,6 +54,7 @@ struct Assessment {
   std::string log, sha256;                   // of several, joined
   std::vector<std::string> logs;             // paths
   std::vector<HypothesisResult> hypotheses;  // healthy first, then by probability
+  double misfit_scale = 1;                   // of the probabilities (evidence/probabilities.h)
   std::vector<PairResult> pairs;             // the best first; empty where no fault gains beyond doubt
   std::vector<VisibleFault> visible;         // what each fault would have gained, as the gains of `hypotheses`
   std::vector<ChannelResult> channels;       // replay under health: rms beside noise

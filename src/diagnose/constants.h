@@ -62,6 +62,8 @@ inline constexpr double still_part = 0.995;     // of the samples: a dropped one
 inline constexpr double no_memory = 0.3;        // correlation of neighbours; a valve at 500 Hz has more than 0.8
 inline constexpr double large_noise = 0.05;     // of stop, stroke and supply: no sensor is so noisy
 inline constexpr double pressure_beyond = 2.0;  // of the supply, half of the time: a load may intensify it for a while
+inline constexpr double travel_beyond =
+    2.0;  // of the stops' travel, a tenth of the time; no sensor's gain is so far off
 
 // The records (diagnose/records.cpp, record_law.cpp). Chosen by what such parts do; the shipped logs hold neither a
 // supply that sags nor a coil current, so that halving and doubling them changes nothing there.
@@ -82,6 +84,7 @@ inline constexpr std::size_t still_one_in = 10;    // of the log's samples, the 
 inline constexpr double moves_as_elsewhere = 0.3;  // of the range over the whole log
 inline constexpr double beyond_noise = 10.0;       // rms: a motion that no noise hides
 inline constexpr double follows = 0.7;             // correlation of sensor and simulation
+inline constexpr double swapped_leaves = 0.25;     // of the square of the chambers' moves
 inline constexpr double spread_of_level = 0.02;    // a relief valve is set to some per cent
 inline constexpr double spread_of_step = 0.015;    // the flow's share of it is taken out to about this
 inline constexpr double spread_of_left = 0.05;     // tests draw unlike flows
@@ -101,12 +104,15 @@ inline constexpr double gain_before_part = 0.1;     // of the gain after: what g
 // The hypotheses (diagnose/hypotheses.cpp, hypothesis_fit.cpp, severity.cpp). Not examined: they act in the fits.
 inline constexpr double inside_prior = 0.25;  // of a tolerance's range, one standard deviation; health lies inside it
 inline constexpr double end_prior = 0.5;      // the same where health is an end: nothing is cleaner than clean
+inline constexpr double shape_prior = 0.5;    // of a shape's range, one standard deviation: any is likely
 inline constexpr int severity_grid = 6;       // starts on either side; a friction or a backlash has several valleys
 inline constexpr int health_starts = 4;       // side by side they fill a pack
 inline constexpr double scattered_by = 0.15;  // of each range, one standard deviation
 inline constexpr int starts_kept = 2;         // of a fault, after screening
 inline constexpr int first_iterations = 5;    // of every start; the better one goes on
 inline constexpr int iterations = 20;
+inline constexpr int more_rounds = 3;      // of as many again, for a leader that is not there yet
+inline constexpr std::size_t leaders = 3;  // likeliest faults that go on
 // Of the amplitude of what two faults explain: so much a model that errs may lend the second of them.
 inline constexpr double lent_to_second = 0.05;
 inline constexpr double worth_a_pair = 16.0;            // of misfit, inflated: a fault of four deviates

@@ -109,6 +109,13 @@ Decision name_by_record(Decision valve, std::size_t record) {
   return valve;
 }
 
+// What the record tells is in the simulation, which is driven by it: what is left unlike health is something else.
+bool leaves_the_rest_as_health(const Decision& valve, const Evidence& e) {
+  HypothesisEvidence health = e.hypotheses.front();
+  health.at_worst = true;  // nothing is granted for what health leaves: it is health
+  return valve.verdict != VerdictKind::unknown || explains_enough(health, health.adequacy, e.usual_adequacy);
+}
+
 }  // namespace
 
 Decision decide(const Evidence& e) {
@@ -126,7 +133,8 @@ Decision decide(const Evidence& e) {
   }
   if (valve.severity == SeveritySource::seen_outright) return valve;
   for (std::size_t i = 0; i < e.records.size(); ++i)
-    if (e.records[i].of != Record::sensor) return name_by_record(std::move(valve), i);
+    if (e.records[i].of != Record::sensor)
+      return leaves_the_rest_as_health(valve, e) ? name_by_record(std::move(valve), i) : valve;
   return valve.verdict == VerdictKind::fault ? valve : name_by_record(std::move(valve), 0);
 }
 

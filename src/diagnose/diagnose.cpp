@@ -116,11 +116,14 @@ std::vector<HypothesisPrediction> explanations_of(const ParameterVector& base, c
   return out;
 }
 
+double scale_of(const HypothesisFits& fits) {
+  return misfit_scale(fits.fits.front().misfit, fits.fits[best_fit(fits)].misfit, fits.degrees, k::effect_error);
+}
+
 std::vector<double> weigh(const HypothesisFits& fits) {
   std::vector<WeighedHypothesis> weighed;
   for (const HypothesisFit& f : fits.fits) weighed.push_back({f.fault ? f.fault->prior : 1.0, f.misfit});
-  return probabilities_of(
-      weighed, misfit_scale(fits.fits.front().misfit, fits.fits[best_fit(fits)].misfit, fits.degrees, k::effect_error));
+  return probabilities_of(weighed, scale_of(fits));
 }
 
 double worst_channel(const HypothesisFit& f) {
@@ -164,7 +167,7 @@ std::vector<HypothesisResult> results_of(const HypothesisFits& fits, const Param
     r.severity = f.severity;
     r.severity_lower = std::min(f.severity_lower, f.severity_upper);
     r.severity_upper = std::max(f.severity_lower, f.severity_upper);
-    r.at_least = f.at_least, r.at_worst = f.at_worst;
+    r.at_least = f.at_least, r.at_worst = f.at_worst, r.shape = f.shape;
     r.adequacy = worst_channel(f);
     if (f.ok) r.null = candidate_at(base, f)[row::servovalve_null];
     r.moved = moved_rows(f, base, tuned);
@@ -213,6 +216,20 @@ Ready make_ready(const std::vector<Log>& logs, const Table& tuned, const RigFile
   return ready;
 }
 
+Unjudgeable unjudgeable_of(const Ready& ready, const ParameterVector& base) {
+  for (const LogData& data : ready.data)
+    if (const Unjudgeable why = unjudgeable(data, base); why != Unjudgeable::no) return why;
+  return Unjudgeable::no;
+}
+
+// Health alone, and nothing said of it: where there is nothing to judge there is nothing to fit.
+HypothesisResult not_fitted() {
+  HypothesisResult health;
+  health.probability = 1.0;
+  health.adequacy = failed_adequacy;
+  return health;
+}
+
 }  // namespace
 
 void DiagnoseOptions::validate() const {
@@ -229,6 +246,11 @@ Assessment assess_pool(const std::vector<Log>& logs, const Table& tuned, const R
   const Ready ready = make_ready(logs, tuned, rig, error, out);
   const ParameterVector base = candidate_of(tuned);
   const HypothesisSettings settings = settings_of(rig, options);
+  out.unjudgeable = unjudgeable_of(ready, base);
+  if (out.unjudgeable != Unjudgeable::no) {
+    out.hypotheses.push_back(not_fitted());
+    return out;
+  }
 
   HypothesisFits fits = fit_whole(ready, base, error, settings, options);
   FitWork work = fits.work;
@@ -236,8 +258,6 @@ Assessment assess_pool(const std::vector<Log>& logs, const Table& tuned, const R
   if (!stopped) {
     const LogData& first = ready.data.front();
     out.gross = gross_finding(first, base);
-    for (const LogData& data : ready.data)
-      if (out.unjudgeable == Unjudgeable::no) out.unjudgeable = unjudgeable(data, base);
     look_at_records(logs, ready, base, options.threads, out);
     out.channels = channels_of(logs, ready, fits.fits.front());
     out.visible = visible_of(fits);
@@ -249,6 +269,7 @@ Assessment assess_pool(const std::vector<Log>& logs, const Table& tuned, const R
     }
     out.explanations = explanations_of(base, fits, onset);
     out.hypotheses = results_of(fits, base, tuned);
+    out.misfit_scale = scale_of(fits);
     out.pairs = pairs_of(fits);
   }
   out.simulations = work.simulations, out.failed_simulations = work.failed;

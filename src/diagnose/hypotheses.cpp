@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <atomic>
 #include <functional>
+#include <numeric>
 #include <span>
 
 #include "diagnose/constants.h"
@@ -104,6 +105,27 @@ void run_all(std::vector<Attempt>& attempts, const HypothesisData& data, const H
     run(attempts[i], data, &health, iterations);
     steps.done(iterations, attempts[i].work.simulations - before);
   });
+}
+
+// The likeliest that promise more than another start is worth.
+std::vector<std::size_t> unfinished(const std::vector<Attempt>& attempts) {
+  std::vector<std::size_t> order(attempts.size());
+  std::iota(order.begin(), order.end(), 0);
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::size_t a, std::size_t b) { return attempts[a].fit.misfit < attempts[b].fit.misfit; });
+  order.resize(std::min(order.size(), k::leaders));
+  std::erase_if(order, [&](std::size_t i) { return attempts[i].fit.promised <= k::worth_another_start; });
+  return order;
+}
+
+// A null that moves the spool five times as far on a fifth of a wire takes the usual steps to get halfway: a leader
+// that is not there yet leaves much of the log, and a right name would be unknown.
+void finish_leaders(std::vector<Attempt>& attempts, const HypothesisData& data, const HypothesisFit& health,
+                    int iterations) {
+  for (int round = 0; round < k::more_rounds; ++round) {
+    const std::vector<std::size_t> open = unfinished(attempts);
+    side_by_side(open.size(), data, [&](std::size_t i) { run(attempts[open[i]], data, &health, iterations); });
+  }
 }
 
 // Of each fault the attempt that fits best, with the work of all of them.
@@ -247,6 +269,7 @@ HypothesisFits fit_hypotheses(const std::vector<const LogData*>& logs, const Par
   run_all(attempts, data, health.fit, k::first_iterations, steps);
   attempts = best_of_each(std::move(attempts));
   run_all(attempts, data, health.fit, settings.iterations - k::first_iterations, steps);
+  finish_leaders(attempts, data, health.fit, settings.iterations);
   begin_health_again(health, attempts, data, steps);
 
   HypothesisFits out;

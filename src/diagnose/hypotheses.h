@@ -28,6 +28,7 @@ struct FaultSize {
   double severity = 0;                            // in the fault's unit
   double severity_lower = 0, severity_upper = 0;  // 95 %, from the curvature, cut at the range that was searched
   bool at_least = false, at_worst = false;        // it stands at the mild, at the far end of its range
+  std::optional<double> shape = {};               // of a fault that has one
 };
 
 struct HypothesisFit : FaultSize {       // a null fault: healthy
@@ -41,6 +42,7 @@ struct HypothesisFit : FaultSize {       // a null fault: healthy
   std::vector<double> channel_adequacy;  // whitened rms of a channel; 1 when as wrong as on the tuning logs
   std::vector<double> channel_rms;       // [SI] of the residual, high-passed where the channel is
   std::vector<std::string> stops;        // how each start ended
+  double promised = 0;                   // misfit that steps would still gain, where they ran out
 };
 
 struct FitWork {

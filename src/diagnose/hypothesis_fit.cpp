@@ -148,12 +148,25 @@ void run(Attempt& a, const HypothesisData& data, const HypothesisFit* from, int 
   if (r.reason == StopReason::start_failed) return;
   fit.ok = true;
   fit.misfit = 2 * r.misfit;
+  fit.promised = r.reason == StopReason::iteration_limit ? 2 * r.promised_gain : 0.0;
   fit.point = r.point;
   fit.standard_error = standard_errors(r, a.beside ? 2 : a.fault ? 1 : 0);
   a.square = squares(problem, r.residual, data.error);
   measure_channels(fit, problem, r.residual, data);
-  if (a.fault) static_cast<FaultSize&>(fit) = measure_severity(fit, *a.fault, 0);
-  if (a.beside) fit.beside = measure_severity(fit, *a.beside, 1);
+  // The sizes come first, then the shapes of those that have one.
+  std::size_t at = a.beside ? 2 : 1;
+  const auto shape_of = [&](const Fault& fault) {
+    return fault.shape ? std::optional(fit.free[at].from_unit(fit.point[at])) : std::nullopt;
+  };
+  if (a.fault) {
+    static_cast<FaultSize&>(fit) = measure_severity(fit, *a.fault, 0);
+    fit.shape = shape_of(*a.fault);
+    at += fit.shape.has_value();
+  }
+  if (a.beside) {
+    fit.beside = measure_severity(fit, *a.beside, 1);
+    fit.beside->shape = shape_of(*a.beside);
+  }
 }
 
 std::optional<HealthyEnd> healthy_end(const HypothesisFit& health, const HypothesisData& data, FitWork& work) {

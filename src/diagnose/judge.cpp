@@ -58,6 +58,21 @@ double gain_of(const FaultGains& usual, const Fault* fault) {
   return known == usual.end() ? 0.0 : known->second;
 }
 
+// A hypothesis that gains on healthy logs as well takes up what the model has wrong: only what it gains beyond that
+// counts, for the name as for the verdict.
+void weigh_beside_usual(Assessment& a, const FaultGains& usual) {
+  const double healthy = a.hypotheses.front().misfit;
+  std::vector<WeighedHypothesis> weighed;
+  for (const HypothesisResult& h : a.hypotheses) {
+    const double gain = healthy - h.misfit;
+    weighed.push_back({h.fault ? h.fault->prior : 1.0, gain > 0 ? -gain / (1 + gain_of(usual, h.fault)) : -gain});
+  }
+  const std::vector<double> p = probabilities_of(weighed, a.misfit_scale);
+  for (std::size_t i = 0; i < p.size(); ++i) a.hypotheses[i].probability = p[i];
+  std::stable_sort(a.hypotheses.begin() + 1, a.hypotheses.end(),
+                   [](const auto& x, const auto& y) { return x.probability > y.probability; });
+}
+
 // Of so many logs as the assessment holds.
 FaultGains usual_gains_of(const Assessment& a, const DetectionBaseline& baseline) {
   FaultGains usual = usual_gains(baseline);
@@ -129,6 +144,7 @@ Evidence evidence_of(const Assessment& a, const DetectionBaseline& baseline, con
 }
 
 Diagnosis judge(Assessment a, const DetectionBaseline& baseline) {
+  weigh_beside_usual(a, usual_gains_of(a, baseline));
   const SuspectLog suspect = suspect_of(a);
   const HealthyLaw law(baseline, &suspect);
   std::vector<RecordFinding> records = records_of(a, baseline);

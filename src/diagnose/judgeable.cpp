@@ -65,6 +65,16 @@ bool is_large(const FitChannel& c, const ParameterVector& base) {
   return span_of(c.measured) > k::large_noise * usual_span_of(c.signal, base);
 }
 
+bool is_beyond_travel(const FitChannel& c, const ParameterVector& base) {
+  if (c.signal == Signal::piston_position) return span_of(c.measured) > k::travel_beyond * base[row::piston_stroke];
+  if (c.signal != Signal::spool_position) return false;
+  std::vector<double> travel = present(c.measured);
+  for (double& x : travel) x = std::abs(x);
+  return quantile(std::move(travel), 0.9) > k::travel_beyond * base[row::spool_stop];
+}
+
+bool is_noise(const FitChannel& c) { return memory_of(c.measured) < k::no_memory; }
+
 bool is_pressure_of_chamber(Signal s) { return s == Signal::pressure_a || s == Signal::pressure_b; }
 
 bool drives(const std::vector<double>& series, double usual) { return span_of(series) > k::nothing_driven * usual; }
@@ -72,6 +82,16 @@ bool drives(const std::vector<double>& series, double usual) { return span_of(se
 template <class Holds>
 bool all_channels(const LogData& log, const Holds& holds) {
   return !log.channels.empty() && std::all_of(log.channels.begin(), log.channels.end(), holds);
+}
+
+// A command asks something of a valve; a supply or a load that moves does only where a sensor answers it.
+bool asked_of(const LogData& log, const ParameterVector& base) {
+  const Scenario& in = log.scenario;
+  if (span_of(in.command) > k::nothing_asked * in.rated_current) return true;
+  const double pressure = base[row::supply_pressure];
+  const bool driven =
+      drives(in.supply_pressure, pressure) || drives(in.load_force, pressure * base[row::piston_area_a]);
+  return driven && !all_channels(log, is_noise);
 }
 
 }  // namespace
@@ -85,21 +105,18 @@ Unjudgeable unjudgeable(const LogData& log, const ParameterVector& base) {
   std::vector<double> size;
   for (const double i : in.command) size.push_back(std::abs(i));
   if (quantile(std::move(size), 0.5) > k::command_beyond * in.rated_current) return Unjudgeable::command_too_large;
-  const double pressure = base[row::supply_pressure];
-  const bool asked = span_of(in.command) > k::nothing_asked * in.rated_current ||
-                     drives(in.supply_pressure, pressure) || drives(in.load_force, pressure * base[row::piston_area_a]);
-  if (!asked) return Unjudgeable::nothing_asked;
+  if (!asked_of(log, base)) return Unjudgeable::nothing_asked;
   if (all_channels(log, shows_one_value)) return Unjudgeable::sensors_still;
   // A jammed valve leaves its sensors' noise beside a command that knows its last sample.
   const bool shuffled = memory_of(in.command) < k::no_memory;
-  if (all_channels(log, [&](const FitChannel& c) {
-        return memory_of(c.measured) < k::no_memory && (shuffled || is_large(c, base));
-      }))
+  if (all_channels(log, [&](const FitChannel& c) { return is_noise(c) && (shuffled || is_large(c, base)); }))
     return Unjudgeable::noise_alone;
-  const double highest = std::max(pressure, quantile(present(in.supply_pressure), 0.99));
-  for (const FitChannel& c : log.channels)
+  const double highest = std::max(base[row::supply_pressure], quantile(present(in.supply_pressure), 0.99));
+  for (const FitChannel& c : log.channels) {
     if (is_pressure_of_chamber(c.signal) && quantile(present(c.measured), 0.5) > k::pressure_beyond * highest)
       return Unjudgeable::pressure_beyond_supply;
+    if (is_beyond_travel(c, base)) return Unjudgeable::position_beyond_travel;
+  }
   return Unjudgeable::no;
 }
 

@@ -16,6 +16,7 @@ enum class Unjudgeable {
   noise_alone,             // no channel knows its own last sample, far beyond the sensors' noise
   command_too_large,       // most of the time a multiple of what the valve is made for
   pressure_beyond_supply,  // chambers far above any supply
+  position_beyond_travel,  // spool or piston far beyond where its stops let it go
   too_short,               // shorter than a valve's answer, or sampled more slowly
 };
 

@@ -7,6 +7,7 @@
 #include "diagnose/assessment.h"
 #include "diagnose/baseline.h"
 #include "diagnose/diagnose.h"
+#include "diagnose/judgeable.h"
 #include "fit/nominal.h"
 #include "fit/tuned_state.h"
 #include "parameters/table.h"
@@ -60,6 +61,11 @@ DetectionBaseline make_baseline(const std::vector<Log>& logs, const Table& tuned
       };
     Assessment a = assess(logs[i], tuned, rig, of_log);
     if (options.watch.stopped()) break;
+    if (a.unjudgeable != Unjudgeable::no)
+      throw InputError({.file = logs[i].path},
+                       "no valve answers in this log: its command or its sensors stand still, noise is all, or a unit "
+                       "is wrong",
+                       "see 'servodx check-log', and mend the rig file or leave the log out");
     total += a.simulations;
     if (simulations) *simulations += a.simulations;
     if (failed) *failed += a.failed_simulations;

@@ -209,6 +209,48 @@ bool is_frozen(const FitChannel& c, const LogData& data, const std::vector<doubl
          would > k::moves_as_elsewhere * range_of(simulated, 0, n);
 }
 
+struct Followed {
+  const FitChannel* channel;
+  const std::vector<double>* simulated;
+  std::vector<double> moves, would_move;
+  double own;  // correlation of the two
+};
+
+// The channels that the simulation moves beyond their noise.
+std::vector<Followed> followed(const LogData& data, const Trajectory& healthy) {
+  std::vector<Followed> out;
+  for (const FitChannel& c : data.channels) {
+    const std::vector<double>& y = healthy.signals[static_cast<std::size_t>(c.simulated)];
+    if (y.empty() || range_of(y, 0, y.size()) < k::beyond_noise * c.noise) continue;
+    Followed f{&c, &y, moves(data.scenario.time, c.measured), moves(data.scenario.time, y), 0};
+    f.own = correlation(f.moves, f.would_move);
+    out.push_back(std::move(f));
+  }
+  return out;
+}
+
+bool is_port(const Followed& f) {
+  return f.channel->signal == Signal::pressure_a || f.channel->signal == Signal::pressure_b;
+}
+
+double square_between(const std::vector<double>& a, const std::vector<double>& b) {
+  double sum = 0;
+  for (std::size_t i = 0; i < std::min(a.size(), b.size()); ++i)
+    if (std::isfinite(a[i]) && std::isfinite(b[i])) sum += (a[i] - b[i]) * (a[i] - b[i]);
+  return sum;
+}
+
+// Each chamber's sensor moves as the other chamber would.
+bool are_swapped(const std::vector<Followed>& moving) {
+  std::vector<const Followed*> ports;
+  for (const Followed& f : moving)
+    if (is_port(f)) ports.push_back(&f);
+  if (ports.size() != 2) return false;
+  const Followed &a = *ports[0], &b = *ports[1];
+  const double own = square_between(a.moves, a.would_move) + square_between(b.moves, b.would_move);
+  return square_between(a.moves, b.would_move) + square_between(b.moves, a.would_move) < k::swapped_leaves * own;
+}
+
 }  // namespace
 
 std::vector<RecordFigure> record_figures(const Log& log, const LogData& data, const ParameterVector& base) {
@@ -221,39 +263,24 @@ std::vector<RecordFigure> record_figures(const Log& log, const LogData& data, co
 }
 
 std::vector<BrokenSensor> broken_sensors(const LogData& data, const Trajectory& healthy) {
+  if (!healthy.ok) return {};
+  const std::vector<Followed> moving = followed(data, healthy);
+  const auto follows = [](const Followed& f) { return f.own > k::follows; };
+  if (std::none_of(moving.begin(), moving.end(), follows)) return {};  // then it is no one sensor
+  const bool swapped = are_swapped(moving);
   std::vector<BrokenSensor> out;
-  if (!healthy.ok) return out;
-  struct Follows {
-    const FitChannel* channel;
-    const std::vector<double>* simulated;
-    std::vector<double> moves, would_move;
-    double own;  // correlation of the two
-  };
-  std::vector<Follows> moving;
-  bool one_follows = false;
-  for (const FitChannel& c : data.channels) {
-    const std::vector<double>& y = healthy.signals[static_cast<std::size_t>(c.simulated)];
-    if (y.empty() || range_of(y, 0, y.size()) < k::beyond_noise * c.noise) continue;
-    Follows f{&c, &y, moves(data.scenario.time, c.measured), moves(data.scenario.time, y), 0};
-    f.own = correlation(f.moves, f.would_move);
-    moving.push_back(std::move(f));
-    one_follows = one_follows || moving.back().own > k::follows;
-  }
-  if (!one_follows) return out;  // then it is no one sensor
-  const auto of = [&](Signal s) {
-    return std::find_if(moving.begin(), moving.end(), [&](const Follows& f) { return f.channel->signal == s; });
-  };
-  const auto a = of(Signal::pressure_a), b = of(Signal::pressure_b);
-  const bool swapped = a != moving.end() && b != moving.end() && a->own < -k::follows && b->own < -k::follows &&
-                       correlation(a->moves, b->would_move) > k::follows;
-  for (const Follows& f : moving) {
+  std::size_t against = 0;
+  for (const Followed& f : moving) {
     if (is_frozen(*f.channel, data, *f.simulated))
       out.push_back({SensorFinding::frozen, f.channel->signal});
-    else if (swapped && (f.channel == a->channel || f.channel == b->channel))
+    else if (swapped && is_port(f))
       out.push_back({SensorFinding::swapped_ports, f.channel->signal});
     else if (f.own < -k::follows)
-      out.push_back({SensorFinding::turned, f.channel->signal});
+      out.push_back({SensorFinding::turned, f.channel->signal}), ++against;
   }
+  // Two that move against the simulation at once: the command's sign, or the rig file's, and no sensor.
+  if (against + swapped > 1)
+    std::erase_if(out, [](const BrokenSensor& b) { return b.finding != SensorFinding::frozen; });
   return out;
 }
 

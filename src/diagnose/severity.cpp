@@ -61,6 +61,18 @@ FreeValue tolerance_value(const Fault& fault) {
   return f;
 }
 
+// `tolerated`: of a fault within its tolerance. Its own hypothesis does not begin where that ended.
+FreeValue shape_value(const Fault& fault, bool tolerated) {
+  const FaultShape& shape = *fault.shape;
+  FreeValue f;
+  f.name = std::string(tolerated ? "tolerated shape of " : "shape of ") + std::string(fault.name);
+  f.apply = shape.apply;
+  f.lower = shape.lower, f.upper = shape.upper;
+  f.start = tolerated ? *shape.in_health : shape.start;
+  f.prior_sd = k::shape_prior;
+  return f;
+}
+
 }  // namespace
 
 std::vector<FreeValue> hypothesis_values(const std::vector<const LogData*>& logs, const ParameterVector& base,
@@ -71,13 +83,17 @@ std::vector<FreeValue> hypothesis_values(const std::vector<const LogData*>& logs
   };
   for (const FaultStart& s : faults)
     if (s.fault) free.push_back(severity_value(*s.fault, s.severity, null_limit));
+  for (const FaultStart& s : faults)
+    if (s.fault && s.fault->shape) free.push_back(shape_value(*s.fault, false));
   for (std::size_t l = 0; l < logs.size(); ++l)
     for (FreeValue& f : nuisance_values(*logs[l], static_cast<int>(l), base, null_limit))
       if (!among([&](const Fault& fault) { return f.at == fault.beyond_limit_of; })) free.push_back(std::move(f));
   // A row within its limit is a nuisance already.
   for (const Fault* other : fitted_faults(logs))
-    if (!among([&](const Fault& fault) { return &fault == other; }) && !other->beyond_limit_of)
+    if (!among([&](const Fault& fault) { return &fault == other; }) && !other->beyond_limit_of) {
       free.push_back(tolerance_value(*other));
+      if (other->shape && other->shape->in_health) free.push_back(shape_value(*other, true));
+    }
   return free;
 }
 

@@ -18,6 +18,18 @@ struct SeenOutright {
   double mildest = 0;  // severity
 };
 
+// How a fault of one size may look: a second number.
+struct FaultShape {
+  std::string_view name;  // what the number is
+  double lower, upper;
+  double start;  // where a search begins, and what is likely
+  // The same within the fault's tolerance, where a healthy valve may look so: that is no evidence of a fault. None
+  // where the shape is wear by itself.
+  std::optional<double> in_health = {};
+  // Moves the rows of a candidate that has the severity.
+  void (*apply)(double* candidate, double shape);
+};
+
 struct Fault {
   std::string_view name;  // label of the verdict
   std::string_view meaning;
@@ -47,6 +59,7 @@ struct Fault {
   // Told by a record without the model. An input's fault (supply, driver) is fitted only where its record is missing,
   // since the record drives the simulation.
   std::optional<Record> told_by = {};
+  std::optional<FaultShape> shape = {};
   // What moves the same rows, so that no log parts the two that lacks the other's record.
   const Fault* twin = nullptr;
 };

@@ -1,4 +1,5 @@
-// Sticky spool: silt or lacquer multiplies the friction between spool and sleeve.
+// Sticky spool: silt or lacquer multiplies the friction between spool and sleeve. Silt that packs while the spool
+// stands (silt lock) gives way once it moves; lacquer and a bent spool drag on: the shape says which.
 #pragma once
 #include "effects/registry.h"
 #include "effects/stiction.h"
@@ -26,6 +27,15 @@ inline const Fault sticky_spool{
           v[row::spool_friction] *= s;
           v[effect_row<Stiction>(0)] *= s;
         },
-    .failed = 20.0};  // the end of what Borello 2009 studies
+    .failed = 20.0,  // the end of what Borello 2009 studies
+    .shape = FaultShape{.name = "share that only holds the spool at rest",
+                        .lower = 0.0,
+                        .upper = 1.0,
+                        .start = 0.3,
+                        .in_health = 0.0,
+                        .apply = [](double* v, double share) {
+                          v[effect_row<Stiction>(0)] += share * v[row::spool_friction];
+                          v[row::spool_friction] *= 1.0 - share;
+                        }}};
 
 }  // namespace servodx

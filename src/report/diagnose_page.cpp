@@ -109,6 +109,10 @@ Verdict verdict_of(const Diagnosis& d, const DetectionBaseline& baseline) {
   v.tone = tone_of(d);
   v.word = d.verdict == VerdictKind::fault ? "FAULT" : d.verdict == VerdictKind::unknown ? "UNKNOWN" : "HEALTHY";
   v.headline = headline(d);
+  if (d.assessment.unjudgeable != Unjudgeable::no) {
+    v.facts.push_back({"Action", d.action.text});
+    return v;
+  }
   if (d.fault) v.detail = meaning_of(d.fault) + ", in " + d.log;
   if (d.fault) v.facts.push_back({"Probability", chance(probability_of(d, d.fault))});
   if (d.onset) v.facts.push_back({"Since", digits(*d.onset, 4) + " s"});
@@ -159,6 +163,7 @@ void add_detectable(Page& page, const Diagnosis& d) {
 }
 
 void add_details(Page& page, const Diagnosis& d, const std::vector<Replay>& replays, std::size_t drawn) {
+  if (d.assessment.unjudgeable != Unjudgeable::no) return;  // nothing was fitted
   add_ranking(page, d);
   add_detectable(page, d);
   const auto [by_fault, in_health] = moved_parts(d);

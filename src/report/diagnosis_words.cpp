@@ -75,6 +75,8 @@ std::string words_of(Unjudgeable reason) {
       return "the command is a multiple of rated current: look at its unit and at valve.rated_current";
     case Unjudgeable::pressure_beyond_supply:
       return "the chambers are far above the supply: look at the pressures' units";
+    case Unjudgeable::position_beyond_travel:
+      return "spool or piston is far beyond its stops: look at the column's signal, unit and gain";
     case Unjudgeable::too_short:
       return "the log is shorter, or sampled more slowly, than a valve answers: look at the unit of time";
   }

@@ -179,6 +179,7 @@ Json to_json(const HypothesisResult& h) {
             {"upper", number(h.severity_upper)},
             {"unit", unit_of(h.fault)},
             {"at_least", h.at_least}}},
+          {"shape", h.shape ? Json{{"name", h.fault->shape->name}, {"value", number(*h.shape)}} : Json(nullptr)},
           {"stops", h.stops}};
 }
 

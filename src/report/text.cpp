@@ -164,12 +164,13 @@ std::string text_of(const Diagnosis& d, const TextOptions& options) {
     first += in_colour(d.verdict == VerdictKind::unknown ? "UNKNOWN" : word_of(d.verdict), d.verdict, options.colour);
   if (const std::string size = size_words(d); !size.empty()) first += ", " + size;
   if (d.suspicion) first += "; " + suspicion_in_words(*d.suspicion);
-  if (d.assessment.unjudgeable != Unjudgeable::no)
-    first += ": " + words_of(d.assessment.unjudgeable);
-  else if (d.verdict == VerdictKind::unknown)
-    first += ": not like the fault-free logs, and no known fault explains it";
-
   Columns table("ll", 2);
+  if (d.assessment.unjudgeable != Unjudgeable::no) {
+    table.row({"action", d.action.text});
+    return first + ": " + words_of(d.assessment.unjudgeable) + "\n" + table.text();
+  }
+  if (d.verdict == VerdictKind::unknown) first += ": not like the fault-free logs, and no known fault explains it";
+
   const auto [word, hypotheses] = standing(d);
   table.row({word, hypotheses});
   table.row({"error", fmt::format("{}, threshold {}; {}", digits(d.error), digits(d.threshold), chance_words(d))});

@@ -295,6 +295,18 @@ TEST(Decide, AnUnusualSupplyOrDriverIsNamedAndAFaultOfTheValveStandsBesideIt) {
   }
 }
 
+// The record drives the simulation: another rig's log under another supply is no supply's fault.
+TEST(Decide, AnUnusualSupplyIsNotNamedWhereTheLogIsUnlikeHealthWithIt) {
+  Evidence e = first_fault();
+  for (HypothesisEvidence& h : e.hypotheses) h.adequacy = 50, h.gain = 0;
+  e.gain = 0;
+  e.records = {{Record::supply}};
+  EXPECT_EQ(decide(e).verdict, VerdictKind::unknown);
+  EXPECT_FALSE(decide(e).record);
+  e.hypotheses.front().adequacy = 1.9 * e.usual_adequacy;
+  EXPECT_EQ(decide(e).record, 0u) << "within what a fault may leave";
+}
+
 TEST(Decide, ANoisySensorGivesWayToAFaultOfTheValve) {
   Evidence e = first_fault();
   e.records = {{Record::sensor}};

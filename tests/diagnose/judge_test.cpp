@@ -1,6 +1,8 @@
 // The verdict from assessments made by hand: no simulation here.
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "diagnose/diagnose.h"
 #include "diagnose/healthy_law.h"
 #include "faults/registry.h"
@@ -13,6 +15,7 @@ HypothesisResult hypothesis(const std::string& name, double probability, double 
   HypothesisResult h;
   h.fault = find_fault(name);
   h.probability = probability;
+  h.misfit = -2 * std::log(probability / (h.fault ? h.fault->prior : 1.0));
   h.adequacy = adequacy;
   h.severity = 0.6, h.severity_lower = 0.5, h.severity_upper = 0.7;
   return h;
@@ -50,6 +53,21 @@ TEST(Judge, ScoreAtTheThresholdIsHealthyWhateverTheHypothesesSay) {
     EXPECT_EQ(d.error, score);
     EXPECT_EQ(d.threshold, 3.0);
   }
+}
+
+// Blunt corners take up what the model's edges have wrong, on every log of this rig.
+TEST(Judge, TheNameIsOfTheFaultThatGainsBeyondWhatItGainsOnHealthyLogs) {
+  const Fault *corners = find_fault("corner_wear"), *filter = find_fault("clogged_filter");
+  Assessment a =
+      assessment(5, {hypothesis("", 0.5), hypothesis("corner_wear", 0.5), hypothesis("clogged_filter", 0.5)});
+  a.hypotheses[0].misfit = 217, a.hypotheses[1].misfit = 160, a.hypotheses[2].misfit = 193;
+  a.hypotheses[1].gain = 57, a.hypotheses[2].gain = 24;
+  DetectionBaseline b = baseline();
+  EXPECT_EQ(judge(a, b).fault, corners);
+  for (DetectionBaseline::Score& s : b.scores) s.gains = {{corners, 26.0}, {filter, 0.8}};
+  const Diagnosis d = judge(a, b);
+  EXPECT_EQ(d.fault, filter);
+  EXPECT_GT(probability_of(d, "clogged_filter"), 0.9);
 }
 
 TEST(Judge, ScoreAboveItNamesTheMostProbableFaultWithItsSize) {

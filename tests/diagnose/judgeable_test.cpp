@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 
 #include "base/random.h"
@@ -38,6 +39,34 @@ TEST(Judgeable, NotWhereNothingIsAsked) {
   std::fill(log.scenario.supply_pressure.begin(), log.scenario.supply_pressure.end(), 2e7);
   std::fill(log.scenario.load_force.begin(), log.scenario.load_force.end(), 0.0);
   EXPECT_EQ(look(log), Unjudgeable::nothing_asked);
+}
+
+TEST(Judgeable, NotWhereOnlyTheSupplyMovesAndNoSensorAnswers) {
+  LogData log = usual();
+  std::fill(log.scenario.command.begin(), log.scenario.command.end(), 1e-3);
+  for (std::size_t i = 0; i < log.scenario.supply_pressure.size(); ++i)
+    log.scenario.supply_pressure[i] = 2e7 + 2e6 * std::sin(0.05 * static_cast<double>(i));
+  EXPECT_EQ(look(log), Unjudgeable::no) << "the sensors move";
+  Random random(8);
+  for (FitChannel& c : log.channels)
+    for (double& x : c.measured) x = c.noise * random.normal();
+  EXPECT_EQ(look(log), Unjudgeable::nothing_asked);
+}
+
+TEST(Judgeable, NotWhereASpoolIsBeyondItsStops) {
+  const double stop = candidate_of(shipped_table())[row::spool_stop];
+  LogData log = usual(), off = usual();
+  const auto spool = [](LogData& of) -> FitChannel& {
+    return *std::find_if(of.channels.begin(), of.channels.end(),
+                         [](const FitChannel& c) { return c.signal == Signal::spool_position; });
+  };
+  for (std::size_t i = 0; i < log.scenario.time.size(); ++i) {
+    const double swing = std::sin(0.01 * static_cast<double>(i));
+    spool(log).measured[i] = 5 * stop * swing;    // another column
+    spool(off).measured[i] = 1.5 * stop * swing;  // a sensor's gain
+  }
+  EXPECT_EQ(look(log), Unjudgeable::position_beyond_travel);
+  EXPECT_EQ(look(off), Unjudgeable::no);
 }
 
 TEST(Judgeable, NotWhereEverySensorStandsStillButWhereOneDoes) {

@@ -205,6 +205,31 @@ TEST(Records, AFrozenATurnedAndASwappedSensorAreNamedAndHealthyOnesAreNot) {
   for (const BrokenSensor& b : found) EXPECT_EQ(b.finding, SensorFinding::swapped_ports);
 }
 
+// A supply that swings moves both chambers the same way, so that each follows either simulation.
+TEST(Records, SwappedChambersAreNamedThoughBothMoveWithTheSupply) {
+  const auto swing = [](Made m) {
+    for (std::size_t k = 0; k < m.time.size(); ++k)
+      m.pressure_a[k] += 40e5 * std::sin(17 * m.time[k]), m.pressure_b[k] += 40e5 * std::sin(17 * m.time[k]);
+    return m;
+  };
+  const Trajectory healthy = simulated(swing(made(60, 1.0)));
+  Made m = swing(made(61, 1.0));
+  EXPECT_TRUE(broken_sensors(prepare(log_of(m), {}), healthy).empty());
+  std::swap(m.pressure_a, m.pressure_b);
+  EXPECT_EQ(broken_sensors(prepare(log_of(m), {}), healthy).size(), 2u);
+}
+
+TEST(Records, TwoThatMoveAgainstTheSimulationAreNoSensorsFault) {
+  Made m = made(61, 1.0);
+  for (double& x : m.pressure_a) x = 200e5 - x;
+  EXPECT_EQ(broken_of(m).size(), 1u);
+  for (double& x : m.pressure_b) x = 200e5 - x;
+  EXPECT_EQ(broken_of(m).size(), 2u) << "that is two swapped chambers";
+  for (double& x : m.pressure_b) x = 200e5 - x;
+  for (double& x : m.piston) x = -x;
+  EXPECT_TRUE(broken_of(m).empty()) << "the command's sign";
+}
+
 TEST(Records, APistonThatDriftsToTheOtherSideIsNotTurned) {
   Made drifting = made(61, 1.0);
   for (std::size_t k = 0; k < drifting.piston.size(); ++k)

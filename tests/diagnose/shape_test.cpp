@@ -1,0 +1,65 @@
+// The second number of a fault: what it may look like at one size.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <string>
+
+#include "diagnose/severity.h"
+#include "effects/registry.h"
+#include "effects/stiction.h"
+#include "faults/fault.h"
+#include "faults/registry.h"
+#include "fit/log_data.h"
+#include "parameters/list.h"
+#include "shipped_data.h"
+
+namespace servodx {
+namespace {
+
+ParameterVector with(const Fault& fault, double severity, double shape) {
+  ParameterVector v = candidate_of(shipped_table());
+  fault.apply(v.data(), severity);
+  fault.shape->apply(v.data(), shape);
+  return v;
+}
+
+TEST(FaultShape, AStickySpoolBreaksAwayAtOneForceHoweverMuchOfItLastsInMotion) {
+  const Fault& sticky = *find_fault("sticky_spool");
+  const double whole = with(sticky, 10, 0)[row::spool_friction];
+  EXPECT_EQ(with(sticky, 10, 0)[effect_row<Stiction>(0)], 0.0) << "as the paper has it: sliding friction alone";
+  for (const double share : {0.25, 0.5, 1.0}) {
+    const ParameterVector v = with(sticky, 10, share);
+    EXPECT_NEAR(v[row::spool_friction] + v[effect_row<Stiction>(0)], whole, 1e-12 * whole);
+    EXPECT_NEAR(v[row::spool_friction], (1 - share) * whole, 1e-12 * whole);
+  }
+}
+
+TEST(FaultShape, AFilterMayBeBlockedAtOneDirectionOfFlowAlone) {
+  const Fault& filter = *find_fault("clogged_filter");
+  const auto both = with(filter, 0.6, 0), positive = with(filter, 0.6, 1), negative = with(filter, 0.6, -1);
+  EXPECT_EQ(both[row::filter_blockage_positive], both[row::filter_blockage_negative]);
+  EXPECT_EQ(positive[row::filter_blockage_positive], 0.6);
+  EXPECT_EQ(positive[row::filter_blockage_negative], 0.0);
+  EXPECT_EQ(negative[row::filter_blockage_positive], 0.0);
+  EXPECT_EQ(negative[row::filter_blockage_negative], 0.6);
+}
+
+// Else a fault at its least size would gain by a shape that health was not asked for.
+TEST(FaultShape, IsFreeInHealthAsInEveryFault) {
+  const LogData log = prepare(shipped_log("healthy/h12_mixed"), shipped_rig());
+  const ParameterVector base = candidate_of(shipped_table());
+  const auto names = [&](const Fault* fault) {
+    std::vector<std::string> shapes;
+    for (const FreeValue& f : hypothesis_values({&log}, base, {{fault, fault ? fault->starts.front() : 0.0}}, 0.05))
+      if (const auto at = f.name.find("shape of "); at != std::string::npos) shapes.push_back(f.name.substr(at));
+    std::sort(shapes.begin(), shapes.end());
+    return shapes;
+  };
+  const std::vector<std::string> in_health = names(nullptr);
+  EXPECT_EQ(in_health.size(), 2u);
+  for (const Fault* fault : fault_list())
+    if (fault->told_by != Record::driver) EXPECT_EQ(names(fault), in_health) << fault->name;
+}
+
+}  // namespace
+}  // namespace servodx
