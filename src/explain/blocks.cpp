@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "fit/log_data.h"
 #include "optimise/problem.h"
@@ -55,76 +56,101 @@ BlockReplay pooled(ReplayedBlock& block) {
   return out;
 }
 
+ReplayedBlock to_spool() {
+  return {{"current -> spool", {"drive", "first_stage", "spool", "sensor:spool_position"}, "current", "A"}, {}};
+}
+ReplayedBlock to_flow_a() {
+  return {{"spool and pressures -> flow A",
+           {"metering", "flow_a", "supply", "sensor:spool_position", "sensor:pressure_a"},
+           "flow_a",
+           "m3/s"},
+          {}};
+}
+ReplayedBlock to_flow_b() {
+  return {{"spool and pressures -> flow B",
+           {"metering", "flow_b", "supply", "sensor:spool_position", "sensor:pressure_b"},
+           "flow_b",
+           "m3/s"},
+          {}};
+}
+ReplayedBlock to_motion() {
+  return {{"pressures -> motion", {"piston_force", "sensor:pressure_a", "sensor:pressure_b"}, "piston_force", "N"}, {}};
+}
+
+Measured measured_of(const LogData& data) {
+  Measured out;
+  for (const FitChannel& channel : data.channels) {
+    const std::vector<double>* m = &channel.measured;
+    if (channel.signal == Signal::spool_position) out.spool = m;
+    if (channel.signal == Signal::piston_position) out.piston = m;
+    if (channel.signal == Signal::pressure_a) out.pressure_a = m;
+    if (channel.signal == Signal::pressure_b) out.pressure_b = m;
+  }
+  return out;
+}
+
+// What is missing of the spool's travel, as the current that the feedback wire would balance.
+ReplayedPart spool_part(const Scenario& in, const std::vector<double>& residual, const std::vector<double>& simulated,
+                        const ParameterVector& candidate) {
+  const double per_metre = candidate[row::feedback_wire_stiffness] / candidate[row::torque_motor_gain];
+  ReplayedPart part;
+  std::vector<double> x, v;
+  for (std::size_t k = 1; k < residual.size(); ++k) {
+    if (!std::isfinite(residual[k])) continue;
+    part.missing.push_back(per_metre * residual[k]);
+    part.passing.push_back(in.command[k]);
+    x.push_back(simulated[k]);
+    v.push_back((simulated[k] - simulated[k - 1]) / (in.time[k] - in.time[k - 1]));
+  }
+  part.variables = {{"coil_current", part.passing},
+                    {"spool_position", x},
+                    {"spool_velocity", v},
+                    {"direction of the spool", signs(v)}};
+  return part;
+}
+
+// What a balance misses beside what passes, area times `by`: flow by the piston's velocity, force by the load pressure.
+ReplayedPart balance_part(const Balance& b, const std::vector<double>& missing, double area,
+                          const std::vector<double>& by) {
+  ReplayedPart part;
+  part.missing = missing;
+  for (double v : by) part.passing.push_back(area * v);
+  part.variables = {{"piston_position", b.piston},
+                    {"piston_velocity", b.velocity},
+                    {"direction of the piston", signs(b.velocity)},
+                    {"load_pressure", b.load_pressure}};
+  if (!b.spool.empty()) part.variables.push_back({"spool_position", b.spool});
+  return part;
+}
+
 }  // namespace
 
 std::vector<ReplayedBlock> replay_parts(const ValveSubject& subject, const Point& point, int log) {
   const auto problem = subject.problem({});
   const std::vector<Trajectory> runs = problem->trajectories(point);
-  std::vector<ReplayedBlock> blocks = {
-      {{"current -> spool", {"drive", "first_stage", "spool", "sensor:spool_position"}, "current", "A"}, {}},
-      {{"spool and pressures -> flow A",
-        {"metering", "flow_a", "supply", "sensor:spool_position", "sensor:pressure_a"},
-        "flow_a",
-        "m3/s"},
-       {}},
-      {{"spool and pressures -> flow B",
-        {"metering", "flow_b", "supply", "sensor:spool_position", "sensor:pressure_b"},
-        "flow_b",
-        "m3/s"},
-       {}},
-      {{"pressures -> motion", {"piston_force", "sensor:pressure_a", "sensor:pressure_b"}, "piston_force", "N"}, {}}};
+  ReplayedBlock spool = to_spool(), flow_a = to_flow_a(), flow_b = to_flow_b(), motion = to_motion();
   for (std::size_t l = 0; l < subject.logs().size(); ++l) {
     if (log >= 0 && static_cast<int>(l) != log) continue;
     const LogData& data = subject.logs()[l];
     const ParameterVector candidate = problem->candidate(point, static_cast<int>(l));
-    Measured measured;
     for (std::size_t c = 0; c < data.channels.size(); ++c) {
-      const FitChannel& channel = data.channels[c];
-      const std::vector<double>* m = &channel.measured;
-      if (channel.signal == Signal::piston_position) measured.piston = m;
-      if (channel.signal == Signal::pressure_a) measured.pressure_a = m;
-      if (channel.signal == Signal::pressure_b) measured.pressure_b = m;
-      if (channel.signal != Signal::spool_position) continue;
-      measured.spool = m;
-      if (!runs[l].ok) continue;
+      if (data.channels[c].signal != Signal::spool_position || !runs[l].ok) continue;
       const std::vector<double> residual = problem->raw_residual(static_cast<int>(l), static_cast<int>(c), runs[l]);
-      const std::vector<double>& simulated = runs[l].signals[static_cast<std::size_t>(channel.simulated)];
-      const double per_metre = candidate[row::feedback_wire_stiffness] / candidate[row::torque_motor_gain];
-      ReplayedPart part;
-      std::vector<double> x, v;
-      for (std::size_t k = 1; k < residual.size(); ++k) {
-        if (!std::isfinite(residual[k])) continue;
-        part.missing.push_back(per_metre * residual[k]);
-        part.passing.push_back(data.scenario.command[k]);
-        x.push_back(simulated[k]);
-        v.push_back((simulated[k] - simulated[k - 1]) / (data.scenario.time[k] - data.scenario.time[k - 1]));
-      }
-      part.variables = {{"coil_current", part.passing},
-                        {"spool_position", x},
-                        {"spool_velocity", v},
-                        {"direction of the spool", signs(v)}};
-      if (!part.missing.empty()) blocks[0].parts.push_back(std::move(part));
+      const auto simulated = static_cast<std::size_t>(data.channels[c].simulated);
+      ReplayedPart part = spool_part(data.scenario, residual, runs[l].signals[simulated], candidate);
+      if (!part.missing.empty()) spool.parts.push_back(std::move(part));
     }
-    const Balance b = balance(data.scenario, measured, candidate, window);
+    const Balance b = balance(data.scenario, measured_of(data), candidate, window);
     if (b.time.empty()) continue;
-    const auto part_of = [&](const std::vector<double>& missing, double area, const std::vector<double>& by) {
-      ReplayedPart part;
-      part.missing = missing;
-      for (double v : by) part.passing.push_back(area * v);
-      part.variables = {{"piston_position", b.piston},
-                        {"piston_velocity", b.velocity},
-                        {"direction of the piston", signs(b.velocity)},
-                        {"load_pressure", b.load_pressure}};
-      if (!b.spool.empty()) part.variables.push_back({"spool_position", b.spool});
-      return part;
-    };
     if (!b.flow_a.empty()) {
-      blocks[1].parts.push_back(part_of(b.flow_a, candidate[row::piston_area_a], b.velocity));
-      blocks[2].parts.push_back(part_of(b.flow_b, candidate[row::piston_area_b], b.velocity));
+      flow_a.parts.push_back(balance_part(b, b.flow_a, candidate[row::piston_area_a], b.velocity));
+      flow_b.parts.push_back(balance_part(b, b.flow_b, candidate[row::piston_area_b], b.velocity));
     }
-    blocks[3].parts.push_back(part_of(b.force, candidate[row::piston_area_a], b.load_pressure));
+    motion.parts.push_back(balance_part(b, b.force, candidate[row::piston_area_a], b.load_pressure));
   }
-  std::erase_if(blocks, [](const ReplayedBlock& b) { return b.parts.empty(); });
+  std::vector<ReplayedBlock> blocks;
+  for (ReplayedBlock* block : {&spool, &flow_a, &flow_b, &motion})
+    if (!block->parts.empty()) blocks.push_back(std::move(*block));
   return blocks;
 }
 

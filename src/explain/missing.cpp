@@ -59,77 +59,108 @@ std::vector<X> every(const std::vector<X>& x, int stride) {
   return out;
 }
 
-// One log as the smoother takes it; the high-pass of a channel is one more state. `series`: of its first channel.
+// A channel behind a high-pass, which is one more state.
+struct Filtered {
+  Eigen::VectorXd shows;  // of the model's states, ahead of the filter
+  double corner;          // [Hz]
+  double noise;           // [SI]
+};
+
+// How far the start of a run may be from where it is said to be: as far as the sensors' noise, and wide where nothing
+// is measured.
+struct StartNoise {
+  double piston, spool, pressure;  // [m], [m], [Pa]
+};
+StartNoise start_noise_of(const std::vector<FitChannel>& channels, const ParameterVector& p) {
+  StartNoise out{0, 0.05 * p[row::spool_stop], 0.2 * p[row::supply_pressure]};
+  for (const FitChannel& channel : channels) {
+    if (channel.signal == Signal::piston_position) out.piston = channel.noise;
+    if (channel.signal == Signal::spool_position) out.spool = channel.noise;
+    if (channel.signal == Signal::pressure_a) out.pressure = channel.noise;
+  }
+  return out;
+}
+
+// [states] of the model and of the filters behind them.
+Eigen::VectorXd start_of(const Linearisation& linear, const StartNoise& noise, const std::vector<Filtered>& filtered,
+                         const std::vector<double>& time) {
+  constexpr double anywhere = 1e3;  // where the signal stood before its first sample
+  const long own = linear.states - n_missing_places, extra = static_cast<long>(filtered.size());
+  Eigen::VectorXd out = Eigen::VectorXd::Zero(own + extra);
+  out.head(own) = linear.at_rest.head(own);
+  out[s_x_spool] = noise.spool;
+  out[s_p_a] = out[s_p_b] = noise.pressure;
+  out[s_x_piston] = noise.piston;
+  out[s_v_piston] = noise.piston * starting_slope_error(time);
+  for (long f = 0; f < extra; ++f) out[own + f] = anywhere * filtered[static_cast<std::size_t>(f)].noise;
+  return out;
+}
+
+// The model's step over dt [s], and that of the filters behind it. As signals/filters.h has it: y' = x' - rate y, x a
+// line between the samples.
+Eigen::MatrixXd step_with_filters(const Eigen::MatrixXd& from, const std::vector<Filtered>& filtered, double dt) {
+  const long own = from.rows() - n_missing_places, extra = static_cast<long>(filtered.size()), all = own + extra;
+  Eigen::MatrixXd to = Eigen::MatrixXd::Zero(all, all + n_missing_places);
+  to.topLeftCorner(own, own) = from.topLeftCorner(own, own);
+  to.topRightCorner(own, n_missing_places) = from.topRightCorner(own, n_missing_places);
+  for (long f = 0; f < extra; ++f) {
+    const Filtered& by = filtered[static_cast<std::size_t>(f)];
+    const double z = 2 * std::numbers::pi * by.corner * dt, passes = -std::expm1(-z) / z;
+    to.row(own + f).head(own) = passes * (by.shows.transpose() * from.topLeftCorner(own, own) - by.shows.transpose());
+    to.row(own + f).tail(n_missing_places) = passes * by.shows.transpose() * from.topRightCorner(own, n_missing_places);
+    to(own + f, own + f) = std::exp(-z);
+  }
+  return to;
+}
+
+// A channel's residual and what is known of its noise: as healthy logs have it, or the sensor's.
+LinearChannel weighed(const ValveSubject& subject, std::size_t series, const std::vector<double>& residual,
+                      double noise, int stride) {
+  LinearChannel out;
+  out.residual = every(residual, stride);
+  if (!subject.holds()) {
+    out.sigma.assign(out.residual.size(), noise);
+    return out;
+  }
+  out.sigma = every(*subject.series()[series].sigma, stride);
+  const double a = subject.memory(series);
+  out.memory = std::pow(a, stride);
+  for (double& s : out.sigma) s *= std::sqrt((1 - out.memory * out.memory) / (1 - a * a));
+  return out;
+}
+
+// One log as the smoother takes it. `series`: of its first channel.
 LinearRun linear_run(const ValveSubject& subject, const FitProblem& problem, const Trajectory& run, int log,
                      std::size_t series, const ParameterVector& p, int stride) {
   const LogData& data = subject.logs()[static_cast<std::size_t>(log)];
-  const Scenario& in = data.scenario;
-  LinearRun out;
-  out.time = every(in.time, stride);
-  Linearisation linear = linearise(in, p, {}, stride);
+  Linearisation linear = linearise(data.scenario, p, {}, stride);
   if (!linear.ok) return {};
-  struct Filtered {
-    Eigen::VectorXd shows;
-    double corner;  // [Hz]
-    double noise;
-  };
+  LinearRun out;
+  out.time = every(data.scenario.time, stride);
+  const long own = linear.states - n_missing_places;
   std::vector<Filtered> filtered;
-  const int own = linear.states - n_missing_places;
-  double piston_noise = 0, spool_noise = 0.05 * p[row::spool_stop],
-         pressure_noise = 0.2 * p[row::supply_pressure];  // where not measured
   for (std::size_t c = 0; c < data.channels.size(); ++c) {
     const FitChannel& channel = data.channels[c];
-    if (channel.signal == Signal::piston_position) piston_noise = channel.noise;
-    if (channel.signal == Signal::spool_position) spool_noise = channel.noise;
-    if (channel.signal == Signal::pressure_a) pressure_noise = channel.noise;
-    Eigen::VectorXd h = shown(channel.signal, own, p);
-    if (h.size() == 0) continue;
-    LinearChannel& to = out.channels.emplace_back();
-    to.residual = every(problem.raw_residual(log, static_cast<int>(c), run), stride);
-    if (subject.holds()) {
-      to.sigma = every(*subject.series()[series + c].sigma, stride);
-      const double a = subject.memory(series + c);
-      to.memory = std::pow(a, stride);
-      for (double& s : to.sigma) s *= std::sqrt((1 - to.memory * to.memory) / (1 - a * a));
-    } else {
-      to.sigma.assign(out.time.size(), channel.noise);
-    }
-    to.shows = std::move(h);
+    Eigen::VectorXd shows = shown(channel.signal, static_cast<int>(own), p);
+    if (shows.size() == 0) continue;
+    const std::vector<double> residual = problem.raw_residual(log, static_cast<int>(c), run);
+    LinearChannel& to = out.channels.emplace_back(weighed(subject, series + c, residual, channel.noise, stride));
     if (channel.filter.drift > 0) {
-      filtered.push_back({to.shows, channel.filter.drift, channel.noise});
-      to.shows = Eigen::VectorXd::Zero(own);
-      to.shows.conservativeResize(own + static_cast<long>(filtered.size()));
-      to.shows[own + static_cast<long>(filtered.size()) - 1] = 1;
+      filtered.push_back({std::move(shows), channel.filter.drift, channel.noise});
+      shows =
+          Eigen::VectorXd::Unit(own + static_cast<long>(filtered.size()), own + static_cast<long>(filtered.size()) - 1);
     }
+    to.shows = std::move(shows);
   }
-  const auto extra = static_cast<long>(filtered.size()), all = own + extra;
   for (LinearChannel& c : out.channels) {
-    const long had = c.shows.size();
+    const long had = c.shows.size(), all = own + static_cast<long>(filtered.size());
     c.shows.conservativeResize(all);
     c.shows.tail(all - had).setZero();
   }
-  out.start = Eigen::VectorXd::Zero(all);
-  out.start.head(own) = linear.at_rest.head(own);
-  out.start[s_x_spool] = spool_noise;
-  out.start[s_p_a] = out.start[s_p_b] = pressure_noise;
-  out.start[s_x_piston] = piston_noise;
-  out.start[s_v_piston] = piston_noise * starting_slope_error(in.time);
-  constexpr double anywhere = 1e3;  // where the signal stood before its first sample
-  for (long f = 0; f < extra; ++f) out.start[own + f] = anywhere * filtered[static_cast<std::size_t>(f)].noise;
+  out.start = start_of(linear, start_noise_of(data.channels, p), filtered, data.scenario.time);
   for (std::size_t k = 0; k < linear.transition.size(); ++k) {
-    Eigen::MatrixXd from = std::move(linear.transition[k]);
-    Eigen::MatrixXd& to = out.transition.emplace_back(Eigen::MatrixXd::Zero(all, all + n_missing_places));
-    to.topLeftCorner(own, own) = from.topLeftCorner(own, own);
-    to.topRightCorner(own, n_missing_places) = from.topRightCorner(own, n_missing_places);
-    for (long f = 0; f < extra; ++f) {
-      // As signals/filters.h has it: y' = x' - rate y, x a line between the samples.
-      const Filtered& by = filtered[static_cast<std::size_t>(f)];
-      const double z = 2 * std::numbers::pi * by.corner * (out.time[k + 1] - out.time[k]), passes = -std::expm1(-z) / z;
-      to.row(own + f).head(own) = passes * (by.shows.transpose() * from.topLeftCorner(own, own) - by.shows.transpose());
-      to.row(own + f).tail(n_missing_places) =
-          passes * by.shows.transpose() * from.topRightCorner(own, n_missing_places);
-      to(own + f, own + f) = std::exp(-z);
-    }
+    const Eigen::MatrixXd from = std::move(linear.transition[k]);
+    out.transition.push_back(step_with_filters(from, filtered, out.time[k + 1] - out.time[k]));
   }
   return out;
 }

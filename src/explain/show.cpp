@@ -18,6 +18,9 @@ namespace {
 
 constexpr double pi = 3.14159265358979323846;
 constexpr double near_event = 0.03;  // [s]
+constexpr double jump = 0.03;        // [of rated current] of the command, from sample to sample
+constexpr double white_band = 2.58;  // over sqrt(n): 99 % of white noise
+constexpr int lags = 50;             // over which residuals are correlated
 
 struct Piece {  // one log's part of a channel
   std::vector<double> time, residual, command;
@@ -25,6 +28,8 @@ struct Piece {  // one log's part of a channel
   std::vector<std::pair<std::string, std::vector<double>>> variables;  // "name|unit"
   std::vector<double> since_reversal, since_jump;                      // [s]
 };
+
+double step_of(const Piece& p) { return (p.time.back() - p.time.front()) / static_cast<double>(p.time.size() - 1); }
 
 std::vector<double> difference(const std::vector<double>& a, const std::vector<double>& b) {
   std::vector<double> d(a.size());
@@ -80,7 +85,6 @@ struct Welch {
 InputCorrelation correlate(const std::string& name, const std::vector<Piece>& pieces, std::size_t input) {
   InputCorrelation best{name, 0, 0, 0};
   double n = 0;
-  constexpr int lags = 50;
   std::vector<double> sum(lags + 1, 0);
   double rr = 0, uu = 0, dt = 1e-3;
   for (const Piece& p : pieces) {
@@ -91,9 +95,9 @@ InputCorrelation correlate(const std::string& name, const std::vector<Piece>& pi
     for (int lag = 0; lag <= lags; ++lag)
       for (std::size_t k = static_cast<std::size_t>(lag); k < r.size(); ++k)
         sum[static_cast<std::size_t>(lag)] += r[k] * u[k - static_cast<std::size_t>(lag)];
-    dt = (p.time.back() - p.time.front()) / static_cast<double>(p.time.size() - 1);
+    dt = step_of(p);
   }
-  best.band = 2.58 / std::sqrt(std::max(1.0, n));
+  best.band = white_band / std::sqrt(std::max(1.0, n));
   if (rr <= 0 || uu <= 0) return best;
   for (int lag = 0; lag <= lags; ++lag) {
     const double c = sum[static_cast<std::size_t>(lag)] / std::sqrt(rr * uu);
@@ -166,88 +170,131 @@ std::string summary_of(const std::vector<Piece>& pieces, const std::vector<Resid
                      100 * best->time);
 }
 
+std::vector<double> rate_of_change(const std::vector<double>& x, const std::vector<double>& time) {
+  std::vector<double> out(time.size(), 0.0);
+  for (std::size_t k = 1; k < out.size(); ++k) out[k] = (x[k] - x[k - 1]) / (time[k] - time[k - 1]);
+  return out;
+}
+
+// A log's part of a channel, by what drove the valve and where the simulation stood. Reversals are the piston's, or the
+// spool's where no piston was simulated, or the command's.
+Piece piece_of(const Scenario& s, const Trajectory& run, std::vector<double> residual) {
+  const auto simulated = [&](Signal which) -> const std::vector<double>* {
+    const auto& signal = run.signals[static_cast<std::size_t>(simulated_index(which))];
+    return signal.empty() ? nullptr : &signal;
+  };
+  const auto *piston = simulated(Signal::piston_position), *spool = simulated(Signal::spool_position),
+             *a = simulated(Signal::pressure_a), *b = simulated(Signal::pressure_b);
+  Piece p;
+  p.time = s.time;
+  p.residual = std::move(residual);
+  p.command = s.command;
+  p.inputs.push_back({"command", s.command});
+  if (!s.supply_pressure.empty()) p.inputs.push_back({"supply_pressure", s.supply_pressure});
+  if (!s.load_force.empty()) p.inputs.push_back({"load_force", s.load_force});
+  const std::vector<double> velocity = rate_of_change(piston ? *piston : spool ? *spool : s.command, s.time);
+  if (piston)
+    p.variables.push_back({"piston_position|m", *piston}), p.variables.push_back({"piston_velocity|m/s", velocity});
+  if (spool) p.variables.push_back({"spool_position|m", *spool});
+  if (a && b) p.variables.push_back({"load_pressure|Pa", difference(*a, *b)});
+  p.variables.push_back({"command|A", s.command});
+  p.since_reversal = since(s.time, [&](std::size_t k) { return velocity[k] * velocity[k - 1] < 0; });
+  p.since_jump =
+      since(s.time, [&](std::size_t k) { return std::abs(s.command[k] - s.command[k - 1]) > jump * s.rated_current; });
+  return p;
+}
+
+// A channel of all logs.
+struct Pooled {
+  std::string signal, unit;  // unit of the log
+  double noise = 0;          // [SI] the largest
+  std::vector<Piece> pieces;
+};
+Pooled& pool_of(std::vector<Pooled>& all, const std::string& signal, const std::string& unit) {
+  for (Pooled& p : all)
+    if (p.signal == signal) return p;
+  return all.emplace_back(Pooled{signal, unit, 0, {}});
+}
+
+// How large the residual is, and how it goes with what it was before.
+struct Whiteness {
+  std::vector<double> correlation = std::vector<double>(lags + 1, 0);  // lag by lag, a sum over all samples
+  double square = 0, n = 0;                                            // sum, and samples
+  double memory = 0;                                                   // [s] mean of the pieces
+};
+Whiteness whiteness_of(const std::vector<Piece>& pieces) {
+  Whiteness out;
+  for (const Piece& p : pieces) {
+    const std::vector<double> r = without_mean(p.residual);
+    for (double v : p.residual)
+      if (std::isfinite(v)) out.square += v * v, ++out.n;
+    for (std::size_t lag = 0; lag < out.correlation.size(); ++lag)
+      for (std::size_t k = lag; k < r.size(); ++k) out.correlation[lag] += r[k] * r[k - lag];
+    out.memory += step_of(p) / effective_fraction(r) / static_cast<double>(pieces.size());
+  }
+  return out;
+}
+// Share of the lags outside the band of white noise.
+double share_beyond_band(const Whiteness& of) {
+  double share = 0;
+  for (std::size_t lag = 1; lag < of.correlation.size(); ++lag)
+    share += std::abs(of.correlation[lag] / of.correlation[0]) > white_band / std::sqrt(of.n) ? 1.0 / lags : 0;
+  return share;
+}
+
+// Of the residual with the command.
+Welch spectra_of(const std::vector<Piece>& pieces) {
+  Welch out;
+  for (const Piece& p : pieces) out.add(without_mean(p.residual), without_mean(p.command), step_of(p));
+  return out;
+}
+void add_spectra(ShownChannel& to, const Welch& welch) {
+  for (int f = 1; f < Welch::length / 2 && welch.windows > 0; ++f) {
+    const auto k = static_cast<std::size_t>(f);
+    // Hann: mean square 3/8; one-sided density.
+    to.spectrum.push_back(
+        {welch.frequency(f), std::sqrt(2 * welch.dt * welch.xx[k] / (welch.windows * Welch::length * 0.375))});
+    to.coherence.push_back({welch.frequency(f), std::norm(welch.xy[k]) / std::max(1e-300, welch.xx[k] * welch.yy[k])});
+  }
+}
+
+ShownChannel shown(const Pooled& channel) {
+  const std::vector<Piece>& pieces = channel.pieces;
+  const Whiteness white = whiteness_of(pieces);
+  ShownChannel out;
+  out.signal = channel.signal, out.unit = channel.unit;
+  out.noise = channel.noise;
+  out.rms = std::sqrt(white.square / std::max(1.0, white.n));
+  out.memory = white.memory;
+  out.beyond_band = share_beyond_band(white);
+  for (std::size_t u = 0; u < pieces.front().inputs.size(); ++u)
+    out.inputs.push_back(correlate(pieces.front().inputs[u].first, pieces, u));
+  add_spectra(out, spectra_of(pieces));
+  for (std::size_t v = 0; v < pieces.front().variables.size(); ++v)
+    out.maps.push_back(map_of(pieces.front().variables[v].first, pieces, v, out.noise));
+  out.summary = summary_of(pieces, out.maps, out.noise);
+  return out;
+}
+
 }  // namespace
 
 std::vector<ShownChannel> show(const ValveSubject& subject, const std::vector<Log>& logs, const Point& point) {
   const auto problem = subject.problem({});
   const std::vector<Trajectory> runs = problem->trajectories(point);
-  std::vector<ShownChannel> out;
-  std::vector<std::vector<Piece>> pieces;
+  std::vector<Pooled> channels;
   for (std::size_t l = 0; l < logs.size(); ++l) {
     const LogData& data = subject.logs()[l];
-    const Scenario& s = data.scenario;
     if (!runs[l].ok) continue;
-    const auto channel = [&](Signal which) -> const std::vector<double>* {
-      const auto& simulated = runs[l].signals[static_cast<std::size_t>(simulated_index(which))];
-      return simulated.empty() ? nullptr : &simulated;
-    };
-    const auto *piston = channel(Signal::piston_position), *spool = channel(Signal::spool_position),
-               *a = channel(Signal::pressure_a), *b = channel(Signal::pressure_b);
     for (std::size_t c = 0; c < data.channels.size(); ++c) {
       const FitChannel& f = data.channels[c];
-      const std::string name(info(f.signal).name);
-      std::size_t at = 0;
-      while (at < out.size() && out[at].signal != name) ++at;
-      if (at == out.size()) {
-        out.push_back({});
-        out.back().signal = name;
-        out.back().unit = logs[l].channels[index(f.signal)].unit;
-        pieces.emplace_back();
-      }
-      Piece p;
-      p.time = s.time;
-      p.residual = problem->raw_residual(static_cast<int>(l), static_cast<int>(c), runs[l]);
-      p.command = s.command;
-      p.inputs.push_back({"command", s.command});
-      if (!s.supply_pressure.empty()) p.inputs.push_back({"supply_pressure", s.supply_pressure});
-      if (!s.load_force.empty()) p.inputs.push_back({"load_force", s.load_force});
-      std::vector<double> velocity(s.time.size(), 0.0);
-      const std::vector<double>& moving = piston ? *piston : spool ? *spool : s.command;
-      for (std::size_t k = 1; k < velocity.size(); ++k)
-        velocity[k] = (moving[k] - moving[k - 1]) / (s.time[k] - s.time[k - 1]);
-      if (piston)
-        p.variables.push_back({"piston_position|m", *piston}), p.variables.push_back({"piston_velocity|m/s", velocity});
-      if (spool) p.variables.push_back({"spool_position|m", *spool});
-      if (a && b) p.variables.push_back({"load_pressure|Pa", difference(*a, *b)});
-      p.variables.push_back({"command|A", s.command});
-      p.since_reversal = since(s.time, [&](std::size_t k) { return velocity[k] * velocity[k - 1] < 0; });
-      p.since_jump = since(
-          s.time, [&](std::size_t k) { return std::abs(s.command[k] - s.command[k - 1]) > 0.03 * s.rated_current; });
-      out[at].noise = std::max(out[at].noise, f.noise);
-      pieces[at].push_back(std::move(p));
+      Pooled& to = pool_of(channels, std::string(info(f.signal).name), logs[l].channels[index(f.signal)].unit);
+      to.noise = std::max(to.noise, f.noise);
+      to.pieces.push_back(
+          piece_of(data.scenario, runs[l], problem->raw_residual(static_cast<int>(l), static_cast<int>(c), runs[l])));
     }
   }
-  for (std::size_t i = 0; i < out.size(); ++i) {
-    ShownChannel& c = out[i];
-    double square = 0, n = 0, dt = 1e-3;
-    Welch welch;
-    std::vector<double> correlation(51, 0);
-    for (const Piece& p : pieces[i]) {
-      const std::vector<double> r = without_mean(p.residual);
-      dt = (p.time.back() - p.time.front()) / static_cast<double>(p.time.size() - 1);
-      for (double v : p.residual)
-        if (std::isfinite(v)) square += v * v, ++n;
-      welch.add(r, without_mean(p.command), dt);
-      for (std::size_t lag = 0; lag < correlation.size(); ++lag)
-        for (std::size_t k = lag; k < r.size(); ++k) correlation[lag] += r[k] * r[k - lag];
-      c.memory += dt / effective_fraction(r) / static_cast<double>(pieces[i].size());
-    }
-    c.rms = std::sqrt(square / std::max(1.0, n));
-    for (std::size_t lag = 1; lag < correlation.size(); ++lag)
-      c.beyond_band += std::abs(correlation[lag] / correlation[0]) > 2.58 / std::sqrt(n) ? 1.0 / 50 : 0;
-    for (std::size_t u = 0; u < pieces[i].front().inputs.size(); ++u)
-      c.inputs.push_back(correlate(pieces[i].front().inputs[u].first, pieces[i], u));
-    for (int f = 1; f < Welch::length / 2 && welch.windows > 0; ++f) {
-      const auto k = static_cast<std::size_t>(f);
-      // Hann: mean square 3/8; one-sided density.
-      c.spectrum.push_back(
-          {welch.frequency(f), std::sqrt(2 * dt * welch.xx[k] / (welch.windows * Welch::length * 0.375))});
-      c.coherence.push_back({welch.frequency(f), std::norm(welch.xy[k]) / std::max(1e-300, welch.xx[k] * welch.yy[k])});
-    }
-    for (std::size_t v = 0; v < pieces[i].front().variables.size(); ++v)
-      c.maps.push_back(map_of(pieces[i].front().variables[v].first, pieces[i], v, c.noise));
-    c.summary = summary_of(pieces[i], c.maps, c.noise);
-  }
+  std::vector<ShownChannel> out;
+  for (const Pooled& c : channels) out.push_back(shown(c));
   return out;
 }
 

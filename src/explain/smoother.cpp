@@ -92,6 +92,10 @@ auto best_product() {
   return &product_anywhere<N>;
 }
 
+// A sample of a channel is present, and it follows one: what the one before leaves is then differenced away.
+bool is_present(const LinearChannel& c, Index k) { return std::isfinite(c.residual[k]); }
+bool follows(const LinearChannel& c, Index k) { return k > 0 && is_present(c, k - 1); }
+
 // Filter and smoother of N states at most, two of them the missing input and its slope, the last.
 template <int N>
 class KalmanFilter {
@@ -143,6 +147,17 @@ class KalmanFilter {
     std::vector<std::vector<std::array<double, blocks>>> by_block;  // [run][channel] log likelihood but for a constant
     std::vector<std::vector<std::vector<double>>> innovations;      // [run][channel][sample], over their sigma
     std::vector<std::vector<double>> value, variance;               // [run][sample] of w; empty unless smoothed
+    void open_run(Index channels) {
+      for (auto* sums : {&surprise, &square, &samples, &own, &own_square}) sums->emplace_back(channels, 0.0);
+      innovations.emplace_back(channels), by_block.emplace_back(channels);
+    }
+    // An innovation of variance f, of which `noise` is the channel's own.
+    void add(Index l, Index c, Index block, double innovation, double f, double noise) {
+      const double e2 = innovation * innovation / f, share = noise / f, log_f = std::log(f);
+      by_block[l][c][block] -= 0.5 * (log_f + e2);
+      surprise[l][c] += log_f, square[l][c] += e2, samples[l][c] += 1;
+      own[l][c] += share, own_square[l][c] += share * e2;
+    }
     double log_likelihood(const std::vector<std::vector<double>>* counts = nullptr) const {
       double sum = 0;
       for (Index l = 0; l < surprise.size(); ++l)
@@ -168,7 +183,15 @@ class KalmanFilter {
   }
 
  private:
-  struct Update {  // by one sample of one channel
+  struct Belief {
+    Vector x;
+    Matrix p;  // its covariance
+  };
+  struct Reading {  // value = row x + noise of that variance
+    const Vector* row;
+    double value, variance;
+  };
+  struct Update {  // by one reading
     const Vector* row;
     Vector gain;
     double weighed, precision;  // innovation over its variance, 1 over its variance
@@ -178,93 +201,105 @@ class KalmanFilter {
     double w;
     Index lagged, fresh;  // updates up to here: before the step that led here, and after it
   };
+  struct History {  // what the smoother needs of a run
+    std::vector<Update> updates;
+    std::vector<Kept> kept;  // [sample]
+  };
+  struct Adjoint {  // what later samples say of the state
+    Vector value = Vector::Zero();
+    Matrix information = Matrix::Zero();
+  };
 
   void run(Index l, const Walk& walk, Keep keep, Pass& out) const {
     const LinearRun& r = runs_[l];
-    const auto n = static_cast<long>(states_of(runs_));
     const Index samples = r.time.size(), channels = r.channels.size();
-    const bool smoothed = keep == Keep::smoothed;
-    out.surprise.emplace_back(channels, 0.0), out.square.emplace_back(channels, 0.0);
-    out.samples.emplace_back(channels, 0.0), out.innovations.emplace_back(channels);
-    out.own.emplace_back(channels, 0.0), out.own_square.emplace_back(channels, 0.0);
-    out.by_block.emplace_back(channels);
-    Index block = 0;
-    std::vector<Vector> shows;
-    for (const LinearChannel& c : r.channels) {
-      shows.push_back(Vector::Zero());
-      shows.back().head(n) = c.shows;
-    }
-    std::vector<Update> updates;
-    std::vector<Kept> kept;
-    if (smoothed) updates.reserve(samples * channels), kept.reserve(samples);
-    Vector x = Vector::Zero();
-    Matrix p = Matrix::Zero();
-    p.diagonal().head(n) = r.start.cwiseAbs2();
-    p(w, w) = walk.start, p(slope, slope) = walk.slope_start;
-    const int walks = walk.by_slope ? slope : w;
-    const auto update = [&](Index c, const Vector& row, double innovation, double variance) {
-      const Vector ph = p * row;
-      const double f = row.dot(ph) + variance, e = innovation - row.dot(x);
+    const std::vector<Vector> shows = shown_by(r);
+    History history;
+    if (keep == Keep::smoothed) history.updates.reserve(samples * channels), history.kept.reserve(samples);
+    out.open_run(channels);
+    Belief now = before(r, walk);
+    const auto take = [&](Index c, Index k, const Reading& reading) {
+      const Vector ph = now.p * *reading.row;
+      const double f = reading.row->dot(ph) + reading.variance, e = reading.value - reading.row->dot(now.x);
       const Vector gain = ph / f;
-      x += gain * e;
-      p.noalias() -= gain * ph.transpose();
-      const double square = e * e / f, share = variance / f, surprise = std::log(f);
-      out.by_block[l][c][block] -= 0.5 * (surprise + square);
-      out.surprise[l][c] += surprise, out.square[l][c] += square, out.samples[l][c] += 1;
-      out.own[l][c] += share, out.own_square[l][c] += share * square;
+      now.x += gain * e;
+      now.p.noalias() -= gain * ph.transpose();
+      out.add(l, c, k * blocks / samples, e, f, reading.variance);
       if (keep != Keep::sums) out.innovations[l][c].push_back(e / std::sqrt(f));
-      if (smoothed) updates.push_back({&row, gain, e / f, 1 / f});
+      if (keep == Keep::smoothed) history.updates.push_back({reading.row, gain, e / f, 1 / f});
     };
     for (Index k = 0; k < samples; ++k) {
-      block = k * blocks / samples;
-      const auto follows = [&](const LinearChannel& c) { return k > 0 && std::isfinite(c.residual[k - 1]); };
-      if (k > 0) {
-        for (Index c = 0; c < channels; ++c) {
-          const LinearChannel& of = r.channels[c];
-          if (!std::isfinite(of.residual[k]) || !follows(of)) continue;
-          update(c, lagged_[l][(k - 1) * channels + c], of.residual[k] - of.memory * of.residual[k - 1],
-                 walk.noise[l][c] * of.sigma[k] * of.sigma[k]);
-        }
-      }
-      const Index lagged = updates.size();
-      if (k > 0) {
-        const Matrix& a = transition_[l][k - 1];
-        x = a * x;
-        p = times(a, times(a, p).transpose());
-        p(walks, walks) += walk.variance * (r.time[k] - r.time[k - 1]);
-      }
-      for (Index c = 0; c < channels; ++c) {
-        const LinearChannel& of = r.channels[c];
-        if (!std::isfinite(of.residual[k]) || follows(of)) continue;
-        update(c, shows[c], of.residual[k], walk.noise[l][c] * of.sigma[k] * of.sigma[k] / (1 - of.memory * of.memory));
-      }
-      if (smoothed) kept.push_back({p.col(w), x[w], lagged, updates.size()});
+      for (Index c = 0; c < channels; ++c)
+        if (is_present(r.channels[c], k) && follows(r.channels[c], k)) take(c, k, lagged_reading(l, c, k, walk));
+      const Index lagged = history.updates.size();
+      if (k > 0) step(l, k, walk, now);
+      for (Index c = 0; c < channels; ++c)
+        if (is_present(r.channels[c], k) && !follows(r.channels[c], k))
+          take(c, k, fresh_reading(l, c, k, walk, shows[c]));
+      if (keep == Keep::smoothed) history.kept.push_back({now.p.col(w), now.x[w], lagged, history.updates.size()});
     }
-    if (!smoothed) return;
+    if (keep == Keep::smoothed) smooth(l, history, out);
+  }
+
+  static std::vector<Vector> shown_by(const LinearRun& r) {
+    std::vector<Vector> out;
+    for (const LinearChannel& c : r.channels) out.emplace_back(Vector::Zero()).head(c.shows.size()) = c.shows;
+    return out;
+  }
+  // Of the first sample, before it is read.
+  static Belief before(const LinearRun& r, const Walk& walk) {
+    Belief out{Vector::Zero(), Matrix::Zero()};
+    out.p.diagonal().head(r.start.size()) = r.start.cwiseAbs2();
+    out.p(w, w) = walk.start, out.p(slope, slope) = walk.slope_start;
+    return out;
+  }
+  // What a sample says beyond the one before, of the state there.
+  Reading lagged_reading(Index l, Index c, Index k, const Walk& walk) const {
+    const LinearChannel& of = runs_[l].channels[c];
+    return {&lagged_[l][(k - 1) * runs_[l].channels.size() + c], of.residual[k] - of.memory * of.residual[k - 1],
+            walk.noise[l][c] * of.sigma[k] * of.sigma[k]};
+  }
+  // What a sample says by itself: noise that nothing is known of before has its whole variance.
+  Reading fresh_reading(Index l, Index c, Index k, const Walk& walk, const Vector& shows) const {
+    const LinearChannel& of = runs_[l].channels[c];
+    return {&shows, of.residual[k], walk.noise[l][c] * of.sigma[k] * of.sigma[k] / (1 - of.memory * of.memory)};
+  }
+  // From the sample before to the k-th.
+  void step(Index l, Index k, const Walk& walk, Belief& now) const {
+    const Matrix& a = transition_[l][k - 1];
+    const std::vector<double>& time = runs_[l].time;
+    const int walks = walk.by_slope ? slope : w;
+    now.x = a * now.x;
+    now.p = times(a, times(a, now.p).transpose());
+    now.p(walks, walks) += walk.variance * (time[k] - time[k - 1]);
+  }
+
+  // Backwards through the updates and steps of a run.
+  void smooth(Index l, const History& history, Pass& out) const {
+    const Index samples = history.kept.size();
     auto& value = out.value.emplace_back(samples);
     auto& variance = out.variance.emplace_back(samples);
-    Vector adjoint = Vector::Zero();
-    Matrix information = Matrix::Zero();
-    const auto undo = [&](Index from, Index to) {
-      while (to > from) {
-        const Update& u = updates[--to];
-        const Vector by = information * u.gain;
-        const Vector half = by - 0.5 * (u.gain.dot(by) + u.precision) * *u.row;
-        adjoint += *u.row * (u.weighed - u.gain.dot(adjoint));
-        information -= *u.row * half.transpose() + half * u.row->transpose();
-      }
-    };
+    Adjoint later;
     for (Index k = samples; k-- > 0;) {
-      const Kept& at = kept[k];
-      value[k] = at.w + at.covariance.dot(adjoint);
-      variance[k] = std::max(0.0, at.covariance[w] - at.covariance.dot(information * at.covariance));
-      undo(at.lagged, at.fresh);
+      const Kept& at = history.kept[k];
+      value[k] = at.w + at.covariance.dot(later.value);
+      variance[k] = std::max(0.0, at.covariance[w] - at.covariance.dot(later.information * at.covariance));
+      undo(history, at.lagged, at.fresh, later);
       if (k == 0) break;
       const Matrix& a = transition_[l][k - 1];
-      adjoint = a.transpose() * adjoint;
       const Matrix turned = a.transpose();
-      information = times(turned, times(turned, information).transpose());
-      undo(kept[k - 1].fresh, at.lagged);
+      later.value = a.transpose() * later.value;
+      later.information = times(turned, times(turned, later.information).transpose());
+      undo(history, history.kept[k - 1].fresh, at.lagged, later);
+    }
+  }
+  static void undo(const History& history, Index from, Index to, Adjoint& later) {
+    while (to > from) {
+      const Update& u = history.updates[--to];
+      const Vector by = later.information * u.gain;
+      const Vector half = by - 0.5 * (u.gain.dot(by) + u.precision) * *u.row;
+      later.value += *u.row * (u.weighed - u.gain.dot(later.value));
+      later.information -= *u.row * half.transpose() + half * u.row->transpose();
     }
   }
   static Matrix times(const Matrix& a, const Matrix& b) {

@@ -11,6 +11,7 @@
 // (Cochrane & Orcutt 1949): what comes and goes with the motion counts in full, and what merely drifts, once.
 // Not so on a test stand: what is wrong of a sweep is a slow curve of its command, and to be seen as that.
 #pragma once
+#include <cstddef>
 #include <memory>
 #include <optional>
 #include <string>
@@ -87,8 +88,18 @@ class ValveSubject : public Subject {
   const Table& table() const { return table_; }
 
  private:
-  void add_causes(const RigFile& rig);
+  // Steps of the constructor.
+  void prepare_logs(const std::vector<Log>& logs, const RigFile& rig);
+  void free_own(double null_limit);  // [fraction of rated current]
+  void free_rows();
+  void weigh_as_tuned();
+  void add_series(std::size_t log, std::size_t channel);
   std::size_t base_count(bool wide) const { return known_ && !wide ? own_ : free_.size(); }
+  struct PooledError {  // of a channel over all logs, in units of the tuned model's error
+    std::string signal;
+    double whole = 0, news = 0;  // rms; news: of what a sample says beyond the one before
+  };
+  std::vector<PooledError> pooled_errors(const Eigen::VectorXd& rows) const;
   Eigen::VectorXd in_tuned_errors(const Eigen::VectorXd& rows) const;
   bool of_stand(std::size_t log) const { return logs_[log].scenario.ports != Ports::actuator; }
   void remember(Eigen::Ref<Eigen::VectorXd> rows) const;  // r(k) to r(k) - a r(k-1), series by series

@@ -7,9 +7,6 @@ LIMIT = 80  # lines, from the first of its declaration to its closing brace
 
 # (file, function): why it may be longer. Equations are read beside their source, in its order; cut, they are not.
 LONGER = {
-    ("src/explain/show.cpp", "show"): "to be split",
-    ("src/explain/smoother.cpp", "KalmanFilter::run"): "to be split",
-    ("src/explain/valve.cpp", "ValveSubject::add_causes"): "to be split",
     ("src/model/derivative.h", "derivative"): "equations of motion; each stage uses terms of those above it",
     ("src/rig/plant.cpp", "Plant::rates"): "equations of motion of the virtual rig, one block a body",
 }

@@ -1,0 +1,223 @@
+#include "explain/valve_causes.h"
+
+#include <algorithm>
+#include <string>
+#include <utility>
+
+#include "effects/armature_angle.h"
+#include "effects/edge_transition.h"
+#include "effects/effect.h"
+#include "effects/flow_meter_lag.h"
+#include "effects/mains_pickup.h"
+#include "effects/mount_compliance.h"
+#include "effects/nozzle_land.h"
+#include "effects/orifice_length.h"
+#include "effects/rod_cavity.h"
+#include "effects/row_effects.h"
+#include "effects/screen_drop.h"
+#include "effects/seal_shear.h"
+#include "effects/sensor_response.h"
+#include "effects/stiction.h"
+#include "effects/unexplained.h"
+#include "effects/viscosity_change.h"
+#include "explain/sensor_causes.h"
+#include "fit/chart.h"
+#include "parameters/list.h"
+
+namespace servodx {
+namespace {
+
+constexpr double row_prior = 0.1;  // a row that was held for a reason, beside an effect that has a name
+constexpr std::string_view built_in[] = {ArmatureAngle::name, RodCavity::name,  EdgeTransition::name,
+                                         OrificeLength::name, ScreenDrop::name, NozzleLand::name,
+                                         SealShear::name};
+
+// Rows that an effect takes along; `grows`: they are a size of it, and no mere part of its shape.
+struct Along {
+  std::string_view effect;
+  int row;
+  bool grows;
+};
+constexpr Along rows_along[] = {
+    {Stiction::name, row::spool_friction, true},        // what sticks also drags: silt and lacquer
+    {MountCompliance::name, row::moving_mass, false}};  // structure that gives way swings with the rod
+
+const char* place_of_row(int at) {
+  switch (at) {
+    case row::driver_bandwidth:
+    case row::current_limit:
+    case row::servovalve_null:
+      return "drive";
+    case row::piston_area_a:
+    case row::piston_area_b:
+    case row::moving_mass:
+    case row::piston_viscous_friction:
+    case row::piston_coulomb_friction:
+    case row::piston_stribeck_friction:
+      return "piston_force";
+    case row::dead_volume_b:
+      return "flow_b";
+    case row::position_sensor_lag:
+    case row::position_sensor_gain:
+      return "sensor:piston_position";
+    case row::supply_pressure:
+    case row::return_pressure:
+      return "supply";
+    default:
+      break;
+  }
+  if (at < row::spool_diameter) return "first_stage";
+  if (at < row::port_width) return "spool";
+  if (at < row::piston_area_a || at == row::hose_resistance) return "metering";
+  return "flow_a";
+}
+
+// A shape that was found in tuning is this valve's own; let go, it takes on what any other cause does.
+bool was_found_in_tuning(const EffectParameter& p, const Table& table) {
+  const int at = table.find(p.name);
+  return at >= 0 && table[at].std_error;
+}
+
+// What switches an effect is its size; the others shape it.
+CauseNumber size_of_effect(const EffectInfo& e, std::size_t j, const CauseFacts& facts) {
+  const EffectParameter& p = e.parameters[j];
+  CauseNumber out{effect_value(e, j, facts.tuned), p.unit};
+  const double move = p.start - p.off, v = out.value.start;
+  out.sizes =
+      sizes_within(out.value, {v + move, v + 0.25 * move, v + 4 * move, v + 16 * move, v - 0.25 * move, v - move});
+  return out;
+}
+CauseNumber shape_of_effect(const EffectInfo& e, std::size_t j, const CauseFacts& facts) {
+  const EffectParameter& p = e.parameters[j];
+  CauseNumber out{effect_value(e, j, facts.tuned), p.unit, false};
+  if (facts.table.find(p.name) < 0) out.value.start = p.start;
+  if (out.value.start != p.start) out.typical = p.start;
+  return out;
+}
+
+CauseNumber number_along(const Along& along, const Table& table) {
+  const Row& r = table[along.row];
+  CauseNumber out{row_value(table, along.row), r.unit, along.grows};
+  if (along.grows) out.sizes = sizes_within(out.value, {2 * r.nominal, 5 * r.nominal});
+  return out;
+}
+
+SoughtCause effect_cause(const EffectInfo& e, const CauseFacts& facts) {
+  std::vector<CauseNumber> numbers;
+  for (std::size_t j = 0; j < e.parameters.size(); ++j)
+    if (e.parameters[j].switches)
+      numbers.push_back(size_of_effect(e, j, facts));
+    else if (!was_found_in_tuning(e.parameters[j], facts.table))
+      numbers.push_back(shape_of_effect(e, j, facts));
+  for (const Along& along : rows_along)
+    if (e.name == along.effect) numbers.push_back(number_along(along, facts.table));
+  return sought(named(e.name, e.place, prior_of_effect(e.name, facts.rig_known)), numbers);
+}
+
+// Air belongs to a log's oil: the cause is a factor on each log's own.
+CauseNumber factor_on_air(const Table& table) {
+  constexpr int at = row::air_fraction;
+  CauseNumber out{{std::string(parameter_list[at].name), at, 0.02, 50.0, true, 1.0}, table[at].unit};
+  out.value.apply = [](double* candidate, double factor) { candidate[row::air_fraction] *= factor; };
+  out.sizes = {2.0, 0.5, 8.0};
+  return out;
+}
+
+CauseNumber number_of_row(int at, const Table& table) {
+  CauseNumber out{row_value(table, at), table[at].unit};
+  out.sizes = sizes_of_row(out.value);
+  return out;
+}
+
+SoughtCause row_effect_cause(const RowEffect& e, const CauseFacts& facts) {
+  Cause cause = named(e.name, e.where);
+  std::vector<CauseNumber> numbers;
+  for (int at : e.rows) {
+    const bool air = at == row::air_fraction;
+    if (air) cause.atop = facts.table[at].name;
+    CauseNumber& n = numbers.emplace_back(air ? factor_on_air(facts.table) : number_of_row(at, facts.table));
+    n.value.upper = std::max(n.value.upper, e.worst);
+  }
+  for (const int at : e.shapes) {
+    const EffectParameter& p = parameter_at(at);
+    const double start = facts.table.find(p.name) >= 0 ? facts.tuned[static_cast<std::size_t>(at)] : p.start;
+    numbers.push_back({{p.name, at, p.lower, p.upper, true, start}, p.unit, false});
+  }
+  return sought(std::move(cause), numbers);
+}
+
+// A row that is tuned is let go of what tuning knows.
+SoughtCause row_cause(int at, const Table& table) {
+  return sought(named(table[at].name, place_of_row(at), row_prior), {number_of_row(at, table)});
+}
+
+bool is_of_row_effect(int at) {
+  return std::any_of(row_effects().begin(), row_effects().end(),
+                     [&](const RowEffect& e) { return std::find(e.rows.begin(), e.rows.end(), at) != e.rows.end(); });
+}
+
+std::vector<SoughtCause> causes_of_effect(const EffectInfo& e, const CauseFacts& facts) {
+  switch (sought_as(e, facts)) {
+    case SoughtAs::nothing:
+      break;
+    case SoughtAs::mains_pickup:
+      return mains_causes(e, facts);
+    case SoughtAs::sensors:
+      return sensor_causes(e, facts);
+    case SoughtAs::flow_meters:
+      return flow_meter_causes(e, facts);
+    case SoughtAs::whole:
+      return {effect_cause(e, facts)};
+  }
+  return {};
+}
+
+}  // namespace
+
+CauseFacts cause_facts(const std::vector<LogData>& logs, const Table& table, const ParameterVector& tuned,
+                       const RigFile& rig, bool rig_known) {
+  CauseFacts out{table, tuned, rig_known, rig.mains_frequency, logs.size(), {}, false, true, true, true};
+  for (const LogData& l : logs) {
+    for (const FitChannel& c : l.channels) out.compared.insert(c.signal);
+    out.on_stand |= l.scenario.ports != Ports::actuator;
+    out.oil_known &= l.scenario.oil_known;
+    out.supply_measured &= !l.scenario.supply_pressure.empty();
+    out.return_measured &= !l.scenario.return_pressure.empty();
+  }
+  return out;
+}
+
+SoughtAs sought_as(const EffectInfo& effect, const CauseFacts& facts) {
+  if (effect.name == MainsPickup::name) return SoughtAs::mains_pickup;
+  if (effect.name == SensorResponse::name) return SoughtAs::sensors;
+  if (effect.name == FlowMeterLag::name) return SoughtAs::flow_meters;
+  if (effect.name == Unexplained::name || effect.shapes_rows || effect.as_made) return SoughtAs::nothing;
+  if (effect.stand_only && !facts.on_stand) return SoughtAs::nothing;
+  if (effect.name == ViscosityChange::name && !facts.oil_known) return SoughtAs::nothing;  // each log's own
+  return SoughtAs::whole;
+}
+
+double prior_of_effect(std::string_view effect, bool rig_known) {
+  const bool of_construction = std::find(std::begin(built_in), std::end(built_in), effect) != std::end(built_in);
+  return rig_known && of_construction ? row_prior : 1.0;
+}
+
+bool is_sought_alone(int at, const CauseFacts& facts) {
+  if (is_of_row_effect(at) || at == row::servovalve_null) return false;
+  if (at == row::supply_pressure && facts.supply_measured) return false;
+  if (at == row::return_pressure && facts.return_measured) return false;
+  return facts.table[at].upper > facts.table[at].lower;
+}
+
+std::vector<SoughtCause> valve_causes(const CauseFacts& facts) {
+  std::vector<SoughtCause> all;
+  for (const EffectInfo& e : effect_list())
+    for (SoughtCause& c : causes_of_effect(e, facts)) all.push_back(std::move(c));
+  for (const RowEffect& e : row_effects()) all.push_back(row_effect_cause(e, facts));
+  for (int at = 0; at < n_parameters; ++at)
+    if (is_sought_alone(at, facts)) all.push_back(row_cause(at, facts.table));
+  std::erase_if(all, [](const SoughtCause& c) { return c.cause.probes.empty(); });
+  return all;
+}
+
+}  // namespace servodx
