@@ -11,6 +11,7 @@
 #include "diagnose/records.h"
 #include "diagnose/visible.h"
 #include "evidence/conditions.h"
+#include "evidence/operating_point.h"
 #include "faults/fault.h"
 #include "faults/gross_finding.h"
 #include "servodx/tune.h"
@@ -63,7 +64,8 @@ struct Assessment {
   std::optional<double> onset;                     // [s] change point where one stands out
   std::vector<HypothesisPrediction> explanations;  // of each hypothesis that could be fitted
   TestConditions test;
-  std::vector<RecordFigure> figures;  // of the records alone
+  OperatingPoint point = {}, sheet = {};  // where the first log was recorded; what the rig file says
+  std::vector<RecordFigure> figures;      // of the records alone
   std::vector<BrokenSensor> broken;
   bool current_recorded = false;
   std::vector<std::string> notes;

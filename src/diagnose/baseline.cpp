@@ -38,7 +38,7 @@ DetectionBaseline baseline_of(const std::vector<Assessment>& healthy, double fal
   b.asked = false_alarm;
   for (const Assessment& a : healthy) {
     const double adequacy = a.hypotheses.front().adequacy;
-    b.scores.push_back({a.log, a.sha256, 0.0, adequacy, {}, a.test, a.figures, {}});
+    b.scores.push_back({a.log, a.sha256, 0.0, adequacy, {}, a.test, a.figures, a.point, {}});
     if (!a.explanations.empty()) b.scores.back().healthy = a.explanations.front();
     for (const HypothesisResult& h : a.hypotheses)
       if (h.fault) b.scores.back().gains[h.fault] = h.gain;

@@ -11,6 +11,7 @@
 #include "diagnose/assessment.h"
 #include "diagnose/records.h"
 #include "evidence/conditions.h"
+#include "evidence/operating_point.h"
 #include "faults/fault.h"
 
 namespace servodx {
@@ -32,6 +33,7 @@ struct DetectionBaseline {
     FaultGains gains = {};
     std::optional<TestConditions> test = {};           // files of earlier versions have none
     std::vector<RecordFigure> figures = {};            // the same
+    OperatingPoint point = {};                         // the same
     std::optional<HypothesisPrediction> healthy = {};  // not in the file: for the report
   };
   std::vector<Score> scores;

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "evidence/operating_point.h"
 #include "fit/identifiability.h"
 #include "parameters/table.h"
 #include "servodx/rig.h"
@@ -37,14 +38,15 @@ struct Finding {
 struct LogSurvey {
   std::string path, sha256;
   std::size_t samples = 0;
-  double duration = 0, rate = 0;      // [s], [Hz] from the usual step
-  double jitter = 0;                  // rms of the steps about the usual one, gaps left out, over it
-  std::size_t gaps = 0, lost = 0;     // gaps in time; samples they took
-  double longest_gap = 0;             // [s]
-  std::optional<double> temperature;  // [K] mean
-  double drive_span = 0;              // [A] greatest less least drive
-  double drive_band = 0;              // [Hz] of the sine that changes as fast as the drive
-  bool closed_loop = false;           // it has a setpoint
+  double duration = 0, rate = 0;         // [s], [Hz] from the usual step
+  double jitter = 0;                     // rms of the steps about the usual one, gaps left out, over it
+  std::size_t gaps = 0, lost = 0;        // gaps in time; samples they took
+  double longest_gap = 0;                // [s]
+  std::optional<double> temperature;     // [K] mean
+  double drive_span = 0;                 // [A] greatest less least drive
+  double drive_band = 0;                 // [Hz] of the sine that changes as fast as the drive
+  std::vector<ConditionRow> conditions;  // where it was recorded, beside the sheet
+  bool closed_loop = false;              // it has a setpoint
   std::vector<ChannelSurvey> channels;
   std::vector<Finding> findings;
 };

@@ -25,6 +25,9 @@ inline constexpr double share_of_gain = 0.8;
 inline constexpr double share_of_adequacy = 0.15;
 // Chance: what healthy logs show no more often than not is said, though it is no verdict.
 inline constexpr double worth_saying = 0.5;
+// Nine times the mean gain of a fault on healthy logs, three deviates, the model's error does not lend it: of a larger
+// gain no more than that is taken off, or two faults that explain almost all would be told apart by what health lends.
+inline constexpr double most_lent = 9.0;
 // What is seen without a fit is beyond any threshold of healthy logs. No log of the bench shows such a
 // finding: not felt there.
 inline constexpr double gross_score = 1e3;  // [deviates]

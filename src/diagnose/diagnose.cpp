@@ -15,6 +15,7 @@
 #include "diagnose/visible.h"
 #include "diagnose/whitening.h"
 #include "evidence/conditions.h"
+#include "evidence/operating_point.h"
 #include "evidence/probabilities.h"
 #include "faults/fault.h"
 #include "fit/chart.h"
@@ -213,6 +214,8 @@ Ready make_ready(const std::vector<Log>& logs, const Table& tuned, const RigFile
     require_channels(ready.data.back());
   }
   out.test = conditions_of(logs.front());
+  out.point = operating_point_of(logs.front());
+  out.sheet = sheet_point(rig);
   return ready;
 }
 

@@ -12,6 +12,7 @@
 #include "diagnose/records.h"
 #include "diagnose/visible.h"
 #include "evidence/conditions.h"
+#include "evidence/operating_point.h"
 #include "evidence/probabilities.h"
 #include "evidence/rank_promise.h"
 #include "evidence/tail_law.h"
@@ -25,6 +26,12 @@ std::optional<Diagnosis::Unlike> unlike_all(const TestConditions& test, const De
   const DetectionBaseline::Score* nearest = nearest_of_unlike(test, baseline);
   if (!nearest) return {};
   return Diagnosis::Unlike{nearest->log, *nearest->test};
+}
+
+std::vector<ConditionRow> conditions_of(const Assessment& a, const DetectionBaseline& baseline) {
+  std::vector<OperatingPoint> healthy;
+  for (const DetectionBaseline::Score& s : baseline.scores) healthy.push_back(s.point);
+  return conditions_beside(a.point, a.sheet, healthy);
 }
 
 double p_value_of(double error, const DetectionBaseline& baseline, const HealthyLaw& law) {
@@ -58,6 +65,11 @@ double gain_of(const FaultGains& usual, const Fault* fault) {
   return known == usual.end() ? 0.0 : known->second;
 }
 
+// Of a gain [of misfit, inflated], beside the mean gain of the same fault on healthy logs.
+double part_beyond(double gain, double usual) {
+  return gain > 0 ? std::max(1 / (1 + usual), 1 - k::most_lent * usual / gain) : 1.0;
+}
+
 // A hypothesis that gains on healthy logs as well takes up what the model has wrong: only what it gains beyond that
 // counts, for the name as for the verdict.
 void weigh_beside_usual(Assessment& a, const FaultGains& usual) {
@@ -65,7 +77,8 @@ void weigh_beside_usual(Assessment& a, const FaultGains& usual) {
   std::vector<WeighedHypothesis> weighed;
   for (const HypothesisResult& h : a.hypotheses) {
     const double gain = healthy - h.misfit;
-    weighed.push_back({h.fault ? h.fault->prior : 1.0, gain > 0 ? -gain / (1 + gain_of(usual, h.fault)) : -gain});
+    weighed.push_back(
+        {h.fault ? h.fault->prior : 1.0, gain > 0 ? -gain * part_beyond(h.gain, gain_of(usual, h.fault)) : -gain});
   }
   const std::vector<double> p = probabilities_of(weighed, a.misfit_scale);
   for (std::size_t i = 0; i < p.size(); ++i) a.hypotheses[i].probability = p[i];
@@ -164,6 +177,7 @@ Diagnosis judge(Assessment a, const DetectionBaseline& baseline) {
   if (decision.suspected && law.chance_of_gain(evidence.gain) <= k::worth_saying)
     d.suspicion = suspicion_of(a.hypotheses[*decision.suspected], evidence.gain, law);
   d.unlike = unlike_all(a.test, baseline);
+  d.conditions = conditions_of(a, baseline);
   d.detectable = detectable_of(a, usual_gains_of(a, baseline), law.limit());
   for (const std::size_t i : decision.ambiguous) d.ambiguous_with.push_back(a.hypotheses[i].fault);
   const HypothesisResult& told = a.hypotheses[decision.hypothesis];

@@ -52,6 +52,7 @@ struct Diagnosis {
     std::string log;
     TestConditions test;
   };
+  std::vector<ConditionRow> conditions;  // where it was recorded, beside sheet and baseline
   std::optional<Unlike> unlike;
   const Fault* fault = nullptr;                 // the one named, the first of `faults`
   std::vector<NamedFault> faults;               // none, one or two

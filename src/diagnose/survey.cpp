@@ -5,6 +5,7 @@
 
 #include "diagnose/check_log.h"
 #include "evidence/conditions.h"
+#include "evidence/operating_point.h"
 #include "fit/log_data.h"
 #include "servodx/log.h"
 #include "servodx/rig.h"
@@ -207,7 +208,7 @@ void find_suspicious(const Log& log, LogSurvey& s) {
 
 }  // namespace
 
-LogSurvey survey(const Log& log, const RigFile&) {
+LogSurvey survey(const Log& log, const RigFile& rig) {
   LogSurvey s;
   s.path = log.path;
   s.sha256 = log.sha256;
@@ -217,6 +218,7 @@ LogSurvey survey(const Log& log, const RigFile&) {
   s.closed_loop = log.has(Signal::setpoint);
   const TestConditions test = conditions_of(log);
   s.temperature = test.temperature, s.drive_span = test.drive_span, s.drive_band = test.drive_band;
+  s.conditions = conditions_beside(operating_point_of(log), sheet_point(rig), {});
   for (const SignalInfo& signal : signal_list)
     if (signal.signal != Signal::time && log.has(signal.signal))
       s.channels.push_back(survey_channel(log, signal.signal));

@@ -85,6 +85,15 @@ TestConditions read_test(const Reader& read, const Json& test) {
   return c;
 }
 
+OperatingPoint read_point(const Reader& read, const Json& point) {
+  if (!point.is_object()) read.refuse("scores.operating_point", "is no object");
+  OperatingPoint out;
+  for (std::size_t i = 0; i < out.size(); ++i)
+    if (const std::string word = word_of(static_cast<Condition>(i)); point.contains(word))
+      out[i] = read.number(point, "scores.operating_point." + word, -HUGE_VAL, HUGE_VAL);
+  return out;
+}
+
 std::optional<FigureKind> find_figure(const std::string& word) {
   for (int k = 0; k < n_figure_kinds; ++k)
     if (words_of(static_cast<FigureKind>(k)) == word) return static_cast<FigureKind>(k);
@@ -136,6 +145,7 @@ BaselineFile read_baseline(const std::string& path) {
       if (const Fault* fault = find_fault(name)) b.scores.back().gains[fault] = gain;
     }
     if (s.contains("figures")) b.scores.back().figures = read_figures(read, s["figures"]);  // nor these
+    if (s.contains("operating_point")) b.scores.back().point = read_point(read, s["operating_point"]);
     if (s.contains("test")) b.scores.back().test = read_test(read, s["test"]);  // earlier versions wrote none
   }
   b.adequacy_limit = read.number(file, "adequacy_limit", 0, any);

@@ -8,6 +8,7 @@
 #include "base/units.h"
 #include "fit/identifiability.h"
 #include "report/columns.h"
+#include "report/diagnosis_words.h"
 #include "report/handy.h"
 #include "report/json.h"
 #include "report/parts.h"
@@ -97,6 +98,7 @@ std::string text_of(const std::vector<LogCheck>& checks) {
     }
     text += channels.text();
     text += "  drive " + drive_words(s) + "\n";
+    if (!s.conditions.empty()) text += "  at " + in_words(s.conditions) + "\n";
     for (const Finding& f : s.findings) text += fmt::format("  suspicious: {}: {}\n", f.kind, f.text);
     if (s.findings.empty()) text += "  nothing suspicious\n";
     if (!check.promise) continue;
@@ -147,6 +149,7 @@ Json check_log_json(const std::vector<LogCheck>& checks) {
                 {"temperature", s.temperature ? number(*s.temperature) : Json(nullptr)},
                 {"drive_span", number(s.drive_span)},
                 {"drive_band", number(s.drive_band)},
+                {"operating_point", conditions_json(s.conditions)},
                 {"closed_loop", s.closed_loop},
                 {"channels", channels},
                 {"suspicious", findings}};

@@ -13,6 +13,7 @@
 #include "diagnose/baseline.h"
 #include "diagnose/decide.h"
 #include "diagnose/judge.h"
+#include "diagnose/judgeable.h"
 #include "diagnose/record_law.h"
 #include "faults/fault.h"
 #include "faults/gross_finding.h"
@@ -27,7 +28,6 @@
 #include "report/parts.h"
 #include "report/replay_part.h"
 #include "servodx/actions.h"
-#include "diagnose/judgeable.h"
 
 namespace servodx::report {
 namespace {
@@ -73,6 +73,7 @@ std::vector<std::string> reasons(const Diagnosis& d, const DetectionBaseline& ba
       fmt::format("Its error is {}; the threshold, set by {} fault-free logs, is {}. A fault-free log is as "
                   "far off with {}.",
                   digits(d.error), d.baseline_logs, digits(d.threshold), chance_words(d)));
+  if (!d.conditions.empty()) why.push_back(sentence("recorded at " + in_words(d.conditions)));
   if (d.unlike) why.push_back("Beware: " + unlike_words(d) + ". The threshold may not hold for it.");
   const HypothesisResult* healthy = result_of(d, nullptr);
   const HypothesisResult* best = d.fault ? result_of(d, d.fault) : nearest_fault(d);

@@ -76,6 +76,20 @@ Json test_json(const TestConditions& test) {
           {"temperature", test.temperature ? number(*test.temperature) : Json(nullptr)}};
 }
 
+Json conditions_json(const std::vector<ConditionRow>& rows) {
+  Json out = Json::array();
+  const auto value = [](const std::optional<double>& x) { return x ? number(*x) : Json(nullptr); };
+  for (const ConditionRow& r : rows)
+    out.push_back({{"condition", word_of(r.of)},
+                   {"unit", si_unit_of(r.of)},
+                   {"value", value(r.value)},
+                   {"sheet", value(r.sheet)},
+                   {"lowest", value(r.lowest)},
+                   {"highest", value(r.highest)},
+                   {"beyond", r.beyond}});
+  return out;
+}
+
 Json to_json(const Header& header) {
   Json inputs = Json::array();
   for (const InputFile& file : header.inputs) inputs.push_back({{"path", file.path}, {"sha256", file.sha256}});
@@ -152,6 +166,10 @@ Json baseline_json(const DetectionBaseline& b) {
       figures.push_back(
           {{"figure", words_of(f.kind)}, {"signal", std::string(name_of(f.signal))}, {"value", number(f.value)}});
     scores.back()["figures"] = std::move(figures);
+    Json point = Json::object();
+    for (std::size_t i = 0; i < s.point.size(); ++i)
+      if (s.point[i]) point[word_of(static_cast<Condition>(i))] = number(*s.point[i]);
+    scores.back()["operating_point"] = std::move(point);
   }
   return {{"threshold", number(b.threshold)},
           {"false_alarm",
@@ -298,6 +316,7 @@ Json to_json(const Diagnosis& d) {
           {"unjudgeable", words_of(d.assessment.unjudgeable)},
           {"hypothesis_told", label_of(d.nearest)},
           {"test", test_json(d.assessment.test)},
+          {"operating_point", conditions_json(d.conditions)},
           {"unlike_baseline",
            d.unlike ? Json{{"nearest", d.unlike->log}, {"test", test_json(d.unlike->test)}} : Json(nullptr)},
           {"null", number(d.null)},

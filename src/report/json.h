@@ -35,6 +35,7 @@ Json to_json(const ChannelResult& channel);
 Json to_json(const HypothesisResult& hypothesis);
 Json to_json(const Diagnosis& diagnosis);
 Json test_json(const TestConditions& test);
+Json conditions_json(const std::vector<ConditionRow>& rows);
 
 // The keys of one command, to stand behind the header's.
 Json tune_json(const TuneResult& result);

@@ -10,6 +10,7 @@
 #include "diagnose/decide.h"
 #include "diagnose/healthy_law.h"
 #include "diagnose/judge.h"
+#include "diagnose/judgeable.h"
 #include "diagnose/moved.h"
 #include "diagnose/record_law.h"
 #include "fit/identifiability.h"
@@ -19,7 +20,6 @@
 #include "report/row_verdict_word.h"
 #include "servodx/actions.h"
 #include "servodx/tune.h"
-#include "diagnose/judgeable.h"
 
 namespace servodx::report {
 namespace {
@@ -165,6 +165,8 @@ std::string text_of(const Diagnosis& d, const TextOptions& options) {
   if (const std::string size = size_words(d); !size.empty()) first += ", " + size;
   if (d.suspicion) first += "; " + suspicion_in_words(*d.suspicion);
   Columns table("ll", 2);
+  const bool elsewhere = std::any_of(d.conditions.begin(), d.conditions.end(), [](const auto& c) { return c.beyond; });
+  if (!d.conditions.empty()) table.row({elsewhere ? "BEWARE, at" : "at", in_words(d.conditions)});
   if (d.assessment.unjudgeable != Unjudgeable::no) {
     table.row({"action", d.action.text});
     return first + ": " + words_of(d.assessment.unjudgeable) + "\n" + table.text();

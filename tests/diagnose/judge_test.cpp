@@ -70,6 +70,17 @@ TEST(Judge, TheNameIsOfTheFaultThatGainsBeyondWhatItGainsOnHealthyLogs) {
   EXPECT_GT(probability_of(d, "clogged_filter"), 0.9);
 }
 
+TEST(Judge, OfALargeGainNoMoreIsTakenOffThanHealthLends) {
+  const Fault *nozzle = find_fault("plugged_nozzle"), *motor = find_fault("torque_motor_loss");
+  Assessment a =
+      assessment(50, {hypothesis("", 0.5), hypothesis("torque_motor_loss", 0.5), hypothesis("plugged_nozzle", 0.5)});
+  a.hypotheses[0].misfit = 3000, a.hypotheses[1].misfit = 600, a.hypotheses[2].misfit = 400;
+  a.hypotheses[1].gain = 2400, a.hypotheses[2].gain = 2600;
+  DetectionBaseline b = baseline();
+  for (DetectionBaseline::Score& s : b.scores) s.gains = {{nozzle, 1.0}, {motor, 0.1}};
+  EXPECT_EQ(judge(a, b).fault, nozzle) << "half of its gain is no longer above the other's";
+}
+
 TEST(Judge, ScoreAboveItNamesTheMostProbableFaultWithItsSize) {
   const Diagnosis d = judge(assessment(3.001, {hypothesis("", 0.001), hypothesis("sticky_spool", 0.001),
                                                hypothesis("clogged_filter", 0.998)}),

@@ -1,0 +1,104 @@
+#include "evidence/operating_point.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <optional>
+#include <vector>
+
+#include "servodx/log.h"
+#include "servodx/rig.h"
+#include "signals/signal.h"
+
+namespace servodx {
+namespace {
+
+// So far beyond what the fault-free logs show, or the sheet says, a test is another one. A pump's setting drifts by
+// some per cent; a return line's pressure goes with the flow; the oil as in evidence/conditions.cpp; a load or a drive
+// that is larger by half reaches where no fault-free log was.
+constexpr double like_supply = 0.05, like_return_part = 0.5, like_return = 3e5;  // of it; of it; [Pa]
+constexpr double like_oil = 15.0;                                                // [K]
+constexpr double like_size = 0.5;                                                // of the largest
+
+std::vector<double> present(const std::vector<double>& x) {
+  std::vector<double> out;
+  for (const double v : x)
+    if (std::isfinite(v)) out.push_back(v);
+  return out;
+}
+
+std::optional<double> median_of(const Log& log, Signal s) {
+  if (!log.has(s)) return {};
+  std::vector<double> x = present(log[s]);
+  if (x.empty()) return {};
+  const auto middle = x.begin() + static_cast<std::ptrdiff_t>(x.size() / 2);
+  std::nth_element(x.begin(), middle, x.end());
+  return *middle;
+}
+
+std::optional<double> largest_of(const Log& log, Signal s) {
+  if (!log.has(s)) return {};
+  double most = -1;
+  for (const double v : present(log[s])) most = std::max(most, std::abs(v));
+  return most < 0 ? std::nullopt : std::optional(most);
+}
+
+double margin_of(Condition c, double around) {
+  switch (c) {
+    case Condition::supply:
+      return like_supply * around;
+    case Condition::return_pressure:
+      return std::max(like_return, like_return_part * around);
+    case Condition::oil:
+      return like_oil;
+    case Condition::load:
+    case Condition::drive:
+      return like_size * around;
+  }
+  return 0;
+}
+
+// A smaller load or drive is inside what a larger one showed.
+bool has_lower_end(Condition c) { return c != Condition::load && c != Condition::drive; }
+
+bool is_beyond(const ConditionRow& row) {
+  const std::optional<double> least = row.lowest ? row.lowest : row.sheet, most = row.highest ? row.highest : row.sheet;
+  if (!row.value || !least) return false;
+  return *row.value > *most + margin_of(row.of, *most) ||
+         (has_lower_end(row.of) && *row.value < *least - margin_of(row.of, *least));
+}
+
+}  // namespace
+
+OperatingPoint operating_point_of(const Log& log) {
+  return {median_of(log, Signal::supply_pressure), median_of(log, Signal::return_pressure),
+          median_of(log, Signal::oil_temperature), largest_of(log, Signal::load_force),
+          largest_of(log, log.has(Signal::coil_current) ? Signal::coil_current : Signal::command)};
+}
+
+OperatingPoint sheet_point(const RigFile& rig) {
+  return {rig.fact("supply.pressure"),
+          rig.fact("supply.return_pressure"),
+          rig.oil_temperature,
+          {},
+          rig.fact("valve.rated_current")};
+}
+
+std::vector<ConditionRow> conditions_beside(const OperatingPoint& log, const OperatingPoint& sheet,
+                                            const std::vector<OperatingPoint>& healthy) {
+  std::vector<ConditionRow> out;
+  for (int i = 0; i < n_conditions; ++i) {
+    const auto at = static_cast<std::size_t>(i);
+    ConditionRow row{static_cast<Condition>(i), log[at], sheet[at], {}, {}, false};
+    for (const OperatingPoint& h : healthy) {
+      if (!h[at]) continue;
+      row.lowest = std::min(row.lowest.value_or(*h[at]), *h[at]);
+      row.highest = std::max(row.highest.value_or(*h[at]), *h[at]);
+    }
+    row.beyond = is_beyond(row);
+    if (row.value || row.sheet) out.push_back(row);
+  }
+  return out;
+}
+
+}  // namespace servodx
