@@ -83,7 +83,7 @@ TEST(Baseline, RefusesATableThatDoesNotSayHowWrongItIs) {
 }
 
 TEST(Baseline, PromisesTheRatesThatItsNumberOfLogsAllows) {
-  const std::vector<Log> logs = cut_logs({"healthy/h02_steps_small", "healthy/h03_sine_2hz", "healthy/h12_mixed"}, 100);
+  const std::vector<Log> logs = cut_logs({"healthy/h02_steps_small", "healthy/h03_sine_2hz", "healthy/h12_mixed"}, 400);
   const DetectionBaseline low = make_baseline(logs, as_tuned("0"), shipped_rig(), 0.01, {});
   EXPECT_EQ(low.logs, 3);
   ASSERT_EQ(low.scores.size(), 3u);
