@@ -68,7 +68,7 @@ FreeValue shape_value(const Fault& fault, bool tolerated) {
   f.name = std::string(tolerated ? "tolerated shape of " : "shape of ") + std::string(fault.name);
   f.apply = shape.apply;
   f.lower = shape.lower, f.upper = shape.upper;
-  f.start = tolerated ? *shape.in_health : shape.start;
+  f.start = tolerated ? shape.in_health : shape.start;
   f.prior_sd = k::shape_prior;
   return f;
 }
@@ -92,7 +92,7 @@ std::vector<FreeValue> hypothesis_values(const std::vector<const LogData*>& logs
   for (const Fault* other : fitted_faults(logs))
     if (!among([&](const Fault& fault) { return &fault == other; }) && !other->beyond_limit_of) {
       free.push_back(tolerance_value(*other));
-      if (other->shape && other->shape->in_health) free.push_back(shape_value(*other, true));
+      if (other->shape) free.push_back(shape_value(*other, true));
     }
   return free;
 }

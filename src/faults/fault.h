@@ -18,14 +18,13 @@ struct SeenOutright {
   double mildest = 0;  // severity
 };
 
-// How a fault of one size may look: a second number.
+// How a fault of one size may look: a second number. It is free wherever the severity is, within its tolerance too:
+// what a healthy valve may look like is no evidence of a fault.
 struct FaultShape {
   std::string_view name;  // what the number is
   double lower, upper;
-  double start;  // where a search begins, and what is likely
-  // The same within the fault's tolerance, where a healthy valve may look so: that is no evidence of a fault. None
-  // where the shape is wear by itself.
-  std::optional<double> in_health = {};
+  double start;      // where a search begins, and what is likely
+  double in_health;  // the same within the fault's tolerance
   // Moves the rows of a candidate that has the severity.
   void (*apply)(double* candidate, double shape);
 };

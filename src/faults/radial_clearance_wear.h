@@ -1,8 +1,6 @@
 // Worn spool and sleeve: a larger radial clearance leaks at null, the pressure gain falls. Shows in chamber pressures
 // and piston, hardly in the spool.
 #pragma once
-#include "effects/edge_radius.h"
-#include "effects/registry.h"
 #include "faults/fault.h"
 #include "parameters/list.h"
 
@@ -21,16 +19,6 @@ inline const Fault radial_clearance_wear{
     .test = "small sine about null with ports loaded: pressure gain falls and leakage rises, more in hot oil",
     .action = "abnormal: call service",
     .apply = [](double* v, double s) { v[row::radial_clearance] *= s; },
-    .failed = 10.0,  // the end of what Borello 2009 studies
-    // What opens a clearance rounds its corners: 4 to 40 um at 3 to 10 times a new clearance (Borello 2009, fig. 12), a
-    // third to once the worn one.
-    .shape = FaultShape{.name = "radius of the corners over the worn clearance",
-                        .lower = 0.0,
-                        .upper = 2.0,
-                        .start = 0.0,
-                        .apply = [](double* v, double ratio) {
-                          v[effect_row<EdgeRadius>(0)] += ratio * v[row::radial_clearance];
-                          v[effect_row<EdgeRadius>(1)] += ratio * v[row::radial_clearance];
-                        }}};
+    .failed = 10.0};  // the end of what Borello 2009 studies
 
 }  // namespace servodx
