@@ -7,6 +7,7 @@
 #include "effects/edge_radius.h"
 #include "effects/registry.h"
 #include "faults/fault.h"
+#include "faults/radial_clearance_wear.h"
 
 namespace servodx {
 
@@ -25,9 +26,11 @@ inline const Fault corner_wear{
         "slow sweep through null with ports loaded, in cold and in hot oil: pressure gain falls alike in both, where "
         "a clearance makes it fall more in hot oil",
     .action = "abnormal: call service",
-    .apply = [](double* v, double s) {
-      v[effect_row<EdgeRadius>(0)] += s;
-      v[effect_row<EdgeRadius>(1)] += s;
-    }};
+    .apply =
+        [](double* v, double s) {
+          v[effect_row<EdgeRadius>(0)] += s;
+          v[effect_row<EdgeRadius>(1)] += s;
+        },
+    .twin = &radial_clearance_wear};  // both open the edges at null, and the laws of either err by as much
 
 }  // namespace servodx

@@ -82,6 +82,12 @@ TEST(Judge, OfALargeGainNoMoreIsTakenOffThanHealthLends) {
   EXPECT_EQ(judge(a, b).fault, nozzle) << "half of its gain is no longer above the other's";
 }
 
+TEST(Judge, WornCornersAreNamedTogetherWithTheClearanceThatWearsWithThem) {
+  const Diagnosis d = judge(assessment(9.0, {hypothesis("", 0.001), hypothesis("corner_wear", 0.999)}), baseline());
+  EXPECT_EQ(d.fault, find_fault("corner_wear"));
+  EXPECT_EQ(d.ambiguous_with, std::vector<const Fault*>{find_fault("radial_clearance_wear")});
+}
+
 TEST(Judge, ScoreAboveItNamesTheMostProbableFaultWithItsSize) {
   const Diagnosis d = judge(assessment(3.001, {hypothesis("", 0.001), hypothesis("sticky_spool", 0.001),
                                                hypothesis("clogged_filter", 0.998)}),
