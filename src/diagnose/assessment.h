@@ -21,10 +21,10 @@
 namespace servodx {
 
 struct HypothesisResult {
-  const Fault* fault = nullptr;  // null: healthy
-  double misfit = 0;             // penalised -2 log likelihood
-  double gain = 0;               // misfit of healthy less this one
-  double probability = 0;
+  const Fault* fault = nullptr;                                 // null: healthy
+  double misfit = 0;                                            // penalised -2 log likelihood
+  double gain = 0;                                              // misfit of healthy less this one
+  double probability = 0;                                       // by `judge`
   double severity = 0, severity_lower = 0, severity_upper = 0;  // [the fault's unit] 95 %
   double adequacy = 0;               // whitened rms of the worst channel, 1 when like the healthy logs
   std::vector<std::string> stops;    // how each start ended
@@ -54,8 +54,8 @@ struct HypothesisPrediction {
 struct Assessment {
   std::string log, sha256;                   // of several, joined
   std::vector<std::string> logs;             // paths
-  std::vector<HypothesisResult> hypotheses;  // healthy first, then by probability
-  double misfit_scale = 1;                   // of the probabilities (evidence/probabilities.h)
+  std::vector<HypothesisResult> hypotheses;  // healthy first; `judge` weighs and orders the faults
+  double misfit_scale = 1;                   // tempers their probabilities (evidence/probabilities.h)
   std::vector<PairResult> pairs;             // the best first; empty where no fault gains beyond doubt
   std::vector<VisibleFault> visible;         // what each fault would have gained, as the gains of `hypotheses`
   std::vector<ChannelResult> channels;       // replay under health: rms beside noise

@@ -2,10 +2,9 @@
 //
 //   nothing to judge                 unknown, with the reason
 //   broken sensor                    that sensor
-//   unusual supply or driver         that, and beside it the fault of the valve that the rules below name; but not
-//   where
-//                                    a finding names that outright (such a valve draws what no healthy one draws), nor
-//                                    where the simulation that it drives is left unlike health by what none explains
+//   unusual supply or driver         that, and beside it the fault of the valve that the rules below name. Not where a
+//                                    finding names that outright: such a valve draws what no healthy one draws. Nor
+//                                    where it leaves the log unlike health and no fault explains that
 //   unusually noisy sensor           that, unless the rules below name a fault of the valve
 //   error at or below the threshold  healthy; a fault that is the most probable is suspected
 //   a finding names a fault          that fault

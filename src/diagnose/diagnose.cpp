@@ -121,12 +121,6 @@ double scale_of(const HypothesisFits& fits) {
   return misfit_scale(fits.fits.front().misfit, fits.fits[best_fit(fits)].misfit, fits.degrees, k::effect_error);
 }
 
-std::vector<double> weigh(const HypothesisFits& fits) {
-  std::vector<WeighedHypothesis> weighed;
-  for (const HypothesisFit& f : fits.fits) weighed.push_back({f.fault ? f.fault->prior : 1.0, f.misfit});
-  return probabilities_of(weighed, scale_of(fits));
-}
-
 double worst_channel(const HypothesisFit& f) {
   return f.channel_adequacy.empty() ? failed_adequacy
                                     : *std::max_element(f.channel_adequacy.begin(), f.channel_adequacy.end());
@@ -156,7 +150,6 @@ std::vector<PairResult> pairs_of(const HypothesisFits& fits) {
 
 std::vector<HypothesisResult> results_of(const HypothesisFits& fits, const ParameterVector& base, const Table& tuned) {
   const double inflation = misfit_inflation(fits.fits[best_fit(fits)].misfit, fits.degrees);
-  const std::vector<double> probability = weigh(fits);
   std::vector<HypothesisResult> out;
   for (std::size_t i = 0; i < fits.fits.size(); ++i) {
     const HypothesisFit& f = fits.fits[i];
@@ -164,7 +157,6 @@ std::vector<HypothesisResult> results_of(const HypothesisFits& fits, const Param
     r.fault = f.fault;
     r.misfit = f.misfit;
     r.gain = f.ok ? (fits.fits.front().misfit - f.misfit) / inflation : 0.0;
-    r.probability = probability[i];
     r.severity = f.severity;
     r.severity_lower = std::min(f.severity_lower, f.severity_upper);
     r.severity_upper = std::max(f.severity_lower, f.severity_upper);
@@ -175,8 +167,6 @@ std::vector<HypothesisResult> results_of(const HypothesisFits& fits, const Param
     r.stops = f.stops;
     out.push_back(std::move(r));
   }
-  std::stable_sort(out.begin() + 1, out.end(),
-                   [](const auto& a, const auto& b) { return a.probability > b.probability; });
   return out;
 }
 
@@ -225,10 +215,9 @@ Unjudgeable unjudgeable_of(const Ready& ready, const ParameterVector& base) {
   return Unjudgeable::no;
 }
 
-// Health alone, and nothing said of it: where there is nothing to judge there is nothing to fit.
+// Health alone, and nothing known of it: where there is nothing to judge there is nothing to fit.
 HypothesisResult not_fitted() {
   HypothesisResult health;
-  health.probability = 1.0;
   health.adequacy = failed_adequacy;
   return health;
 }

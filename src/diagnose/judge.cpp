@@ -122,7 +122,7 @@ std::vector<Detectable> detectable_of(const Assessment& a, const FaultGains& usu
 // What no log parts from the fault named that does not record the current.
 bool has_twin(const Diagnosis& d) {
   if (!d.fault || !d.fault->twin) return false;
-  const bool told = d.fault->twin->told_by == Record::driver && d.assessment.current_recorded;
+  const bool told = d.fault->twin->told_by && d.assessment.current_recorded;
   const auto& others = d.ambiguous_with;
   return !told && std::find(others.begin(), others.end(), d.fault->twin) == others.end();
 }

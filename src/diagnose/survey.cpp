@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/median.h"
 #include "diagnose/check_log.h"
 #include "evidence/conditions.h"
 #include "evidence/operating_point.h"
@@ -30,13 +31,6 @@ constexpr double kelvin = 273.15;
 constexpr double spool_lag = 4e-3, piston_lag = 10e-3;  // [s] within which each answers the drive
 constexpr double half_window = 10e-3;                   // [s] of the difference that stands for piston speed
 constexpr double with = 0.3, against = -0.5;            // correlations: at most one way, at least the other
-
-double median(std::vector<double> v) {
-  if (v.empty()) return 0;
-  const auto middle = v.begin() + static_cast<std::ptrdiff_t>(v.size() / 2);
-  std::nth_element(v.begin(), middle, v.end());
-  return *middle;
-}
 
 bool is_measured(Signal s) { return s != Signal::time && s != Signal::command && s != Signal::setpoint; }
 

@@ -6,6 +6,7 @@
 #include <optional>
 #include <vector>
 
+#include "base/median.h"
 #include "servodx/log.h"
 #include "servodx/rig.h"
 #include "signals/signal.h"
@@ -29,11 +30,8 @@ std::vector<double> present(const std::vector<double>& x) {
 
 std::optional<double> median_of(const Log& log, Signal s) {
   if (!log.has(s)) return {};
-  std::vector<double> x = present(log[s]);
-  if (x.empty()) return {};
-  const auto middle = x.begin() + static_cast<std::ptrdiff_t>(x.size() / 2);
-  std::nth_element(x.begin(), middle, x.end());
-  return *middle;
+  const std::vector<double> x = present(log[s]);
+  return x.empty() ? std::nullopt : std::optional(median(x));
 }
 
 std::optional<double> largest_of(const Log& log, Signal s) {

@@ -59,7 +59,7 @@ struct Fault {
   // since the record drives the simulation.
   std::optional<Record> told_by = {};
   std::optional<FaultShape> shape = {};
-  // What moves the same rows, so that no log parts the two that lacks the other's record.
+  // What looks alike: the two are named together, but where the other has a record of its own and the log holds it.
   const Fault* twin = nullptr;
 };
 

@@ -6,11 +6,11 @@
 #include <numbers>
 #include <utility>
 
+#include "base/median.h"
 #include "faults/registry.h"
 #include "parameters/list.h"
 #include "prognose/check.h"
 #include "prognose/constants.h"
-#include "prognose/median.h"
 #include "prognose/track.h"
 
 namespace servodx {

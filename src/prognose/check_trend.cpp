@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "base/median.h"
 #include "prognose/alert_rule.h"
 #include "prognose/constants.h"
 #include "prognose/failure_level.h"
@@ -13,7 +14,6 @@
 #include "prognose/healthy_levels.h"
 #include "prognose/level.h"
 #include "prognose/life.h"
-#include "prognose/median.h"
 #include "prognose/reading_scale.h"
 #include "prognose/tangent_rule.h"
 #include "prognose/told_points.h"

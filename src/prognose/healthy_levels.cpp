@@ -4,8 +4,8 @@
 #include <numbers>
 #include <optional>
 
+#include "base/median.h"
 #include "prognose/constants.h"
-#include "prognose/median.h"
 
 namespace servodx {
 

@@ -6,8 +6,8 @@
 #include <numbers>
 #include <utility>
 
+#include "base/median.h"
 #include "prognose/constants.h"
-#include "prognose/median.h"
 #include "prognose/reading_scale.h"
 
 namespace servodx {

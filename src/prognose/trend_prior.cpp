@@ -5,10 +5,10 @@
 #include <optional>
 #include <vector>
 
+#include "base/median.h"
 #include "prognose/check_name.h"
 #include "prognose/constants.h"
 #include "prognose/failure_level.h"
-#include "prognose/median.h"
 
 namespace servodx {
 

@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <functional>
 
+#include "base/median.h"
 #include "effects/registry.h"
 #include "effects/viscosity_change.h"
 #include "fit/log_data.h"
@@ -19,11 +20,6 @@
 
 namespace servodx {
 namespace {
-
-double upper_median(std::vector<double> v) {
-  std::nth_element(v.begin(), v.begin() + static_cast<long>(v.size() / 2), v.end());
-  return v[v.size() / 2];
-}
 
 // "a.csv 0.12, b.csv 0.98"
 std::string by_log(const std::vector<LogResult>& logs, const std::function<bool(std::size_t)>& among,
@@ -123,9 +119,9 @@ void take_medians(Table& table, const std::vector<LogResult>& logs) {
     nulls.push_back(log.candidate[row::servovalve_null]);
     airs.push_back(log.candidate[row::air_fraction]);
   }
-  table[row::servovalve_null].nominal = upper_median(nulls);
+  table[row::servovalve_null].nominal = median(nulls);
   Row& air = table[row::air_fraction];
-  air.nominal = std::clamp(upper_median(airs), air.lower, air.upper);
+  air.nominal = std::clamp(median(airs), air.lower, air.upper);
 }
 
 std::vector<std::string> notes_of_logs(const std::vector<LogResult>& logs, const TuneScope& scope, const RigFile& rig) {

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "diagnose/diagnose.h"
 #include "diagnose/healthy_law.h"
@@ -56,30 +57,39 @@ TEST(Judge, ScoreAtTheThresholdIsHealthyWhateverTheHypothesesSay) {
   }
 }
 
+// Health and two faults by their misfits, with no error of the model beyond the usual.
+Assessment with_misfits(double healthy, std::pair<const char*, double> one, std::pair<const char*, double> other) {
+  Assessment a = assessment(0, {hypothesis("", 0.5), hypothesis(one.first, 0.5), hypothesis(other.first, 0.5)});
+  const double misfits[] = {healthy, one.second, other.second};
+  for (std::size_t i = 0; i < a.hypotheses.size(); ++i) {
+    a.hypotheses[i].misfit = misfits[i];
+    a.hypotheses[i].gain = healthy - misfits[i];
+  }
+  return a;
+}
+
+// Every healthy log gains so much by them.
+DetectionBaseline baseline_with(const FaultGains& gains) {
+  DetectionBaseline b = baseline();
+  for (DetectionBaseline::Score& s : b.scores) s.gains = gains;
+  return b;
+}
+
 // Blunt corners take up what the model's edges have wrong, on every log of this rig.
 TEST(Judge, TheNameIsOfTheFaultThatGainsBeyondWhatItGainsOnHealthyLogs) {
   const Fault *corners = find_fault("corner_wear"), *filter = find_fault("clogged_filter");
-  Assessment a =
-      assessment(5, {hypothesis("", 0.5), hypothesis("corner_wear", 0.5), hypothesis("clogged_filter", 0.5)});
-  a.hypotheses[0].misfit = 217, a.hypotheses[1].misfit = 160, a.hypotheses[2].misfit = 193;
-  a.hypotheses[1].gain = 57, a.hypotheses[2].gain = 24;
-  DetectionBaseline b = baseline();
-  EXPECT_EQ(judge(a, b).fault, corners);
-  for (DetectionBaseline::Score& s : b.scores) s.gains = {{corners, 26.0}, {filter, 0.8}};
-  const Diagnosis d = judge(a, b);
+  const Assessment a = with_misfits(217, {"corner_wear", 160}, {"clogged_filter", 193});
+  EXPECT_EQ(judge(a, baseline()).fault, corners);
+  const Diagnosis d = judge(a, baseline_with({{corners, 26.0}, {filter, 0.8}}));
   EXPECT_EQ(d.fault, filter);
   EXPECT_GT(probability_of(d, "clogged_filter"), 50 * probability_of(d, "corner_wear"));
 }
 
 TEST(Judge, OfALargeGainNoMoreIsTakenOffThanHealthLends) {
   const Fault *nozzle = find_fault("plugged_nozzle"), *motor = find_fault("torque_motor_loss");
-  Assessment a =
-      assessment(50, {hypothesis("", 0.5), hypothesis("torque_motor_loss", 0.5), hypothesis("plugged_nozzle", 0.5)});
-  a.hypotheses[0].misfit = 3000, a.hypotheses[1].misfit = 600, a.hypotheses[2].misfit = 400;
-  a.hypotheses[1].gain = 2400, a.hypotheses[2].gain = 2600;
-  DetectionBaseline b = baseline();
-  for (DetectionBaseline::Score& s : b.scores) s.gains = {{nozzle, 1.0}, {motor, 0.1}};
-  EXPECT_EQ(judge(a, b).fault, nozzle) << "half of its gain is no longer above the other's";
+  const Assessment a = with_misfits(3000, {"torque_motor_loss", 600}, {"plugged_nozzle", 400});
+  EXPECT_EQ(judge(a, baseline_with({{nozzle, 1.0}, {motor, 0.1}})).fault, nozzle)
+      << "half of its gain is no longer above the other's";
 }
 
 TEST(Judge, WornCornersAreNamedTogetherWithTheClearanceThatWearsWithThem) {

@@ -5,8 +5,9 @@
 
 namespace servodx {
 
-// Of no values undefined.
+// Of no values 0.
 inline double median(std::vector<double> v) {
+  if (v.empty()) return 0;
   std::nth_element(v.begin(), v.begin() + static_cast<long>(v.size() / 2), v.end());
   return v[v.size() / 2];
 }
