@@ -14,6 +14,7 @@
 #include "evidence/conditions.h"
 #include "faults/fault.h"
 #include "faults/registry.h"
+#include "report/conditions.h"
 #include "report/diagnosis_words.h"
 #include "servodx/error.h"
 #include "servodx/log.h"

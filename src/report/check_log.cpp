@@ -8,7 +8,7 @@
 #include "base/units.h"
 #include "fit/identifiability.h"
 #include "report/columns.h"
-#include "report/diagnosis_words.h"
+#include "report/conditions.h"
 #include "report/handy.h"
 #include "report/json.h"
 #include "report/parts.h"
@@ -20,8 +20,6 @@ namespace servodx::report {
 namespace {
 
 constexpr double seen = 3.0, plain = 8.0;  // deviates from which a fault may show, and shows
-
-Json number(double v) { return std::isfinite(v) ? Json(v) : Json(nullptr); }
 
 // In the unit of the file; of a part of a fact ("% of rated") too.
 struct InUnit {
@@ -98,7 +96,8 @@ std::string text_of(const std::vector<LogCheck>& checks) {
     }
     text += channels.text();
     text += "  drive " + drive_words(s) + "\n";
-    if (!s.conditions.empty()) text += "  at " + in_words(s.conditions) + "\n";
+    if (const std::string at = conditions_in_words(s.conditions); !at.empty()) text += "  at " + at + "\n";
+    if (const std::string far = beyond_in_words(s.conditions); !far.empty()) text += "  BEYOND: " + far + "\n";
     for (const Finding& f : s.findings) text += fmt::format("  suspicious: {}: {}\n", f.kind, f.text);
     if (s.findings.empty()) text += "  nothing suspicious\n";
     if (!check.promise) continue;

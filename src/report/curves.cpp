@@ -16,7 +16,6 @@ namespace {
 using curves::Figure;
 using curves::Sheet;
 
-Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
 Json numbers(const std::vector<double>& values) {
   Json array = Json::array();
   for (double v : values) array.push_back(number(v));

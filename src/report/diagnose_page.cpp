@@ -19,6 +19,7 @@
 #include "faults/gross_finding.h"
 #include "fit/replay.h"
 #include "report/columns.h"
+#include "report/conditions.h"
 #include "report/diagnosis_words.h"
 #include "report/handy.h"
 #include "report/json.h"
@@ -73,7 +74,8 @@ std::vector<std::string> reasons(const Diagnosis& d, const DetectionBaseline& ba
       fmt::format("Its error is {}; the threshold, set by {} fault-free logs, is {}. A fault-free log is as "
                   "far off with {}.",
                   digits(d.error), d.baseline_logs, digits(d.threshold), chance_words(d)));
-  if (!d.conditions.empty()) why.push_back(sentence("recorded at " + in_words(d.conditions)));
+  if (const std::string far = beyond_in_words(d.conditions); !far.empty())
+    why.push_back("Beware: recorded beyond what is known: " + far + ".");
   if (d.unlike) why.push_back("Beware: " + unlike_words(d) + ". The threshold may not hold for it.");
   const HypothesisResult* healthy = result_of(d, nullptr);
   const HypothesisResult* best = d.fault ? result_of(d, d.fault) : nearest_fault(d);
@@ -164,8 +166,9 @@ void add_detectable(Page& page, const Diagnosis& d) {
 }
 
 void add_details(Page& page, const Diagnosis& d, const std::vector<Replay>& replays, std::size_t drawn) {
-  if (d.assessment.unjudgeable != Unjudgeable::no) return;  // nothing was fitted
+  if (d.assessment.unjudgeable != Unjudgeable::no) return add_conditions(page, d.conditions);  // nothing was fitted
   add_ranking(page, d);
+  add_conditions(page, d.conditions);
   add_detectable(page, d);
   const auto [by_fault, in_health] = moved_parts(d);
   if (!by_fault.empty())
@@ -269,7 +272,7 @@ Page diagnose_page(const Header& header, const std::vector<Diagnosis>& results, 
     const Diagnosis& d = results.front();
     Page page(header, "Diagnosis of " + file_name(d.log));
     page.verdict(verdict_of(d, baseline));
-    page.section("Why");
+    page.section(d.assessment.unjudgeable == Unjudgeable::no ? "Why" : "This log");
     add_details(page, d, replays, 1);
     return page;
   }

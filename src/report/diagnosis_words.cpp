@@ -18,7 +18,6 @@
 #include "faults/fault.h"
 #include "faults/gross_finding.h"
 #include "faults/record.h"
-#include "report/columns.h"
 #include "report/handy.h"
 #include "report/replay_part.h"
 
@@ -288,37 +287,6 @@ std::string test_words(const TestConditions& test) {
       fmt::format("drive spans {} at about {} Hz", handy(test.drive_span, "A"), digits(test.drive_band, 2));
   if (test.temperature) text += fmt::format(", oil {} degC", std::lround(*test.temperature - kelvin));
   return text;
-}
-
-std::string word_of(Condition c) {
-  constexpr std::array<const char*, n_conditions> words = {"supply_pressure", "return_pressure", "oil_temperature",
-                                                           "load_force", "drive"};
-  return words[static_cast<std::size_t>(c)];
-}
-
-std::string si_unit_of(Condition c) {
-  constexpr std::array<const char*, n_conditions> units = {"Pa", "Pa", "K", "N", "A"};
-  return units[static_cast<std::size_t>(c)];
-}
-
-std::string in_words(const ConditionRow& row) {
-  const auto size = [&](double x) {
-    return row.of == Condition::oil ? fmt::format("{} degC", std::lround(x - kelvin)) : handy(x, si_unit_of(row.of));
-  };
-  std::vector<std::string> beside;
-  if (row.sheet) beside.push_back("sheet " + size(*row.sheet));
-  if (row.lowest) beside.push_back("fault-free logs " + size(*row.lowest) + " to " + size(*row.highest));
-  constexpr std::array<const char*, n_conditions> names = {"supply", "return", "oil", "load up to", "drive up to"};
-  std::string text = names[static_cast<std::size_t>(row.of)];
-  text += row.value ? " " + size(*row.value) : " not recorded";
-  for (std::size_t i = 0; i < beside.size(); ++i) text += (i == 0 ? " (" : "; ") + beside[i];
-  return text + (beside.empty() ? "" : ")") + (row.beyond ? ": BEYOND" : "");
-}
-
-std::string in_words(const std::vector<ConditionRow>& rows) {
-  std::vector<std::string> words;
-  for (const ConditionRow& r : rows) words.push_back(in_words(r));
-  return join(words);
 }
 
 std::string unlike_words(const Diagnosis& d) {

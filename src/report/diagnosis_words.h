@@ -15,7 +15,6 @@
 #include "diagnose/record_law.h"
 #include "diagnose/records.h"
 #include "evidence/conditions.h"
-#include "evidence/operating_point.h"
 #include "faults/fault.h"
 #include "faults/gross_finding.h"
 #include "fit/replay.h"
@@ -74,10 +73,6 @@ struct DetectableWords {
 DetectableWords detectable_words(const Diagnosis& d);
 // "drive spans 43.1 mA at about 5.6 Hz, oil 41 degC"
 std::string test_words(const TestConditions& test);
-std::string word_of(Condition condition);
-std::string si_unit_of(Condition condition);
-// "supply 139 bar (sheet 140 bar; fault-free logs 138 bar to 141 bar)", and so on for each.
-std::string in_words(const std::vector<ConditionRow>& rows);
 // Empty where a log of the baseline is of such a test.
 std::string unlike_words(const Diagnosis& d);
 

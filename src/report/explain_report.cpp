@@ -28,8 +28,6 @@
 namespace servodx::report {
 namespace {
 
-Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
-
 Json to_json(const Interval& i) {
   return {{"value", number(i.value)}, {"lower", number(i.lower)}, {"upper", number(i.upper)}};
 }

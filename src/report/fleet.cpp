@@ -13,8 +13,6 @@
 namespace servodx::report {
 namespace {
 
-Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
-
 Json to_json(const SetAside& s) {
   return {{"file", s.file}, {"line", s.line}, {"column", s.column}, {"rule", s.rule}, {"mend", s.mend}};
 }

@@ -12,6 +12,7 @@
 #include "diagnose/record_law.h"
 #include "diagnose/records.h"
 #include "evidence/conditions.h"
+#include "report/conditions.h"
 #include "report/diagnosis_words.h"
 #include "report/handy.h"
 #include "report/row_verdict_word.h"
@@ -19,8 +20,6 @@
 
 namespace servodx::report {
 namespace {
-
-Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
 
 template <class Results>
 Json array_of(const Results& results) {
@@ -76,19 +75,7 @@ Json test_json(const TestConditions& test) {
           {"temperature", test.temperature ? number(*test.temperature) : Json(nullptr)}};
 }
 
-Json conditions_json(const std::vector<ConditionRow>& rows) {
-  Json out = Json::array();
-  const auto value = [](const std::optional<double>& x) { return x ? number(*x) : Json(nullptr); };
-  for (const ConditionRow& r : rows)
-    out.push_back({{"condition", word_of(r.of)},
-                   {"unit", si_unit_of(r.of)},
-                   {"value", value(r.value)},
-                   {"sheet", value(r.sheet)},
-                   {"lowest", value(r.lowest)},
-                   {"highest", value(r.highest)},
-                   {"beyond", r.beyond}});
-  return out;
-}
+Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
 
 Json to_json(const Header& header) {
   Json inputs = Json::array();

@@ -29,13 +29,13 @@ struct Header {
   std::vector<std::string> notes;
 };
 
+Json number(double value);  // null where it is not finite: JSON has no word for it
 Json to_json(const Header& header);
 Json to_json(const ParameterResult& parameter);
 Json to_json(const ChannelResult& channel);
 Json to_json(const HypothesisResult& hypothesis);
 Json to_json(const Diagnosis& diagnosis);
 Json test_json(const TestConditions& test);
-Json conditions_json(const std::vector<ConditionRow>& rows);
 
 // The keys of one command, to stand behind the header's.
 Json tune_json(const TuneResult& result);

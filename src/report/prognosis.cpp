@@ -11,8 +11,6 @@
 namespace servodx::report {
 namespace {
 
-Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
-
 std::string name_of(const Check& c) { return c.cause.empty() ? c.name.text() : c.name.text() + " (" + c.cause + ")"; }
 
 }  // namespace

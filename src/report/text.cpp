@@ -15,6 +15,7 @@
 #include "diagnose/record_law.h"
 #include "fit/identifiability.h"
 #include "report/columns.h"
+#include "report/conditions.h"
 #include "report/diagnosis_words.h"
 #include "report/handy.h"
 #include "report/row_verdict_word.h"
@@ -165,8 +166,8 @@ std::string text_of(const Diagnosis& d, const TextOptions& options) {
   if (const std::string size = size_words(d); !size.empty()) first += ", " + size;
   if (d.suspicion) first += "; " + suspicion_in_words(*d.suspicion);
   Columns table("ll", 2);
-  const bool elsewhere = std::any_of(d.conditions.begin(), d.conditions.end(), [](const auto& c) { return c.beyond; });
-  if (!d.conditions.empty()) table.row({elsewhere ? "BEWARE, at" : "at", in_words(d.conditions)});
+  if (const std::string at = conditions_in_words(d.conditions); !at.empty()) table.row({"at", at});
+  if (const std::string far = beyond_in_words(d.conditions); !far.empty()) table.row({"BEYOND", far});
   if (d.assessment.unjudgeable != Unjudgeable::no) {
     table.row({"action", d.action.text});
     return first + ": " + words_of(d.assessment.unjudgeable) + "\n" + table.text();

@@ -116,7 +116,7 @@ WRITTEN = {
                                      "cross_piston_leakage", "sensor_lag", "sensor_gain_error", "flow_force"},
                                     "to become fields of the row effects"),
     "src/explain/show.cpp": ({"supply_pressure"}, "to be looked at"),
-    "src/report/diagnosis_words.cpp": ({"supply_pressure", "return_pressure"}, "conditions of a log, called as the signals"),
+    "src/report/conditions.cpp": ({"supply_pressure", "return_pressure"}, "conditions of a log, called as the signals"),
     "src/fit/free_values.cpp": ({"servovalve_null", "air_fraction"}, "to be looked at"),
     "src/fit/nominal.cpp": ({"mount_compliance"}, "to be looked at"),
     "src/tune/tune.cpp": ({"magnetic_hysteresis", "flow_meter_lag", "edge_radius", "port_line", "armature_angle",

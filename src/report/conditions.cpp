@@ -1,0 +1,81 @@
+#include "report/conditions.h"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <optional>
+
+#include "report/columns.h"
+#include "report/handy.h"
+#include "report/parts.h"
+
+namespace servodx::report {
+namespace {
+
+constexpr double kelvin = 273.15;
+
+struct Words {
+  const char *word, *name, *unit;
+};
+constexpr std::array<Words, n_conditions> words_of = {{{"supply_pressure", "supply", "Pa"},
+                                                       {"return_pressure", "return", "Pa"},
+                                                       {"oil_temperature", "oil", "K"},
+                                                       {"load_force", "load up to", "N"},
+                                                       {"drive", "drive up to", "A"}}};
+const Words& of(Condition c) { return words_of[static_cast<std::size_t>(c)]; }
+
+std::string size(Condition c, const std::optional<double>& x) {
+  if (!x) return "-";
+  return c == Condition::oil ? fmt::format("{} degC", std::lround(*x - kelvin)) : handy(*x, of(c).unit);
+}
+
+std::string range(const ConditionRow& row) {
+  return row.lowest ? size(row.of, row.lowest) + " to " + size(row.of, row.highest) : "-";
+}
+
+}  // namespace
+
+std::string word_of(Condition condition) { return of(condition).word; }
+
+std::string conditions_in_words(const std::vector<ConditionRow>& rows) {
+  std::vector<std::string> out;
+  for (const ConditionRow& r : rows)
+    if (r.value) out.push_back(std::string(of(r.of).name) + " " + size(r.of, r.value));
+  return join(out);
+}
+
+std::string beyond_in_words(const std::vector<ConditionRow>& rows) {
+  std::vector<std::string> out;
+  for (const ConditionRow& r : rows)
+    if (r.beyond)
+      out.push_back(fmt::format("{} {} ({})", of(r.of).name, size(r.of, r.value),
+                                r.lowest ? "fault-free logs " + range(r) : "sheet " + size(r.of, r.sheet)));
+  return join(out);
+}
+
+Json conditions_json(const std::vector<ConditionRow>& rows) {
+  Json out = Json::array();
+  const auto value = [](const std::optional<double>& x) { return x ? number(*x) : Json(nullptr); };
+  for (const ConditionRow& r : rows)
+    out.push_back({{"condition", word_of(r.of)},
+                   {"unit", of(r.of).unit},
+                   {"value", value(r.value)},
+                   {"sheet", value(r.sheet)},
+                   {"lowest", value(r.lowest)},
+                   {"highest", value(r.highest)},
+                   {"beyond", r.beyond}});
+  return out;
+}
+
+void add_conditions(Page& page, const std::vector<ConditionRow>& rows) {
+  if (rows.empty()) return;
+  TablePart table{
+      "Where it was recorded", "lllll", {"condition", "this log", "data sheet", "fault-free logs", ""}, {}, 0};
+  for (const ConditionRow& r : rows)
+    table.rows.push_back({of(r.of).name, size(r.of, r.value), size(r.of, r.sheet), range(r), r.beyond ? "beyond" : ""});
+  page.add(table);
+}
+
+}  // namespace servodx::report

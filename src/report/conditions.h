@@ -1,0 +1,20 @@
+// Where a log was recorded, for a person, for a program, and as a part of a page.
+#pragma once
+#include <string>
+#include <vector>
+
+#include "evidence/operating_point.h"
+#include "report/json.h"
+#include "report/page.h"
+
+namespace servodx::report {
+
+std::string word_of(Condition condition);  // supply_pressure | return_pressure | oil_temperature | load_force | drive
+// "supply 139 bar, oil 41 degC, drive up to 9.2 mA": what the log holds.
+std::string conditions_in_words(const std::vector<ConditionRow>& rows);
+// "load up to 7.48 kN (fault-free logs 24 N to 4.58 kN)": what is beyond; empty where nothing is.
+std::string beyond_in_words(const std::vector<ConditionRow>& rows);
+Json conditions_json(const std::vector<ConditionRow>& rows);
+void add_conditions(Page& page, const std::vector<ConditionRow>& rows);
+
+}  // namespace servodx::report

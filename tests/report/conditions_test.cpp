@@ -1,0 +1,38 @@
+#include "report/conditions.h"
+
+#include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
+
+namespace servodx::report {
+namespace {
+
+ConditionRow supply(double value, bool beyond) { return {Condition::supply, value, 207e5, 205e5, 208e5, beyond}; }
+
+TEST(ConditionWords, SayWhatTheLogHoldsAndLeaveOutWhatItDoesNot) {
+  const std::vector<ConditionRow> rows = {supply(206e5, false),
+                                          {Condition::return_pressure, {}, 5e5, {}, {}, false},
+                                          {Condition::oil, 314.15, {}, {}, {}, false}};
+  EXPECT_EQ(conditions_in_words(rows), "supply 206 bar, oil 41 degC");
+  EXPECT_EQ(beyond_in_words(rows), "");
+}
+
+TEST(ConditionWords, WhatIsBeyondStandsBesideTheLogsAndWithoutThemBesideTheSheet) {
+  EXPECT_EQ(beyond_in_words({supply(140e5, true)}), "supply 140 bar (fault-free logs 205 bar to 208 bar)");
+  ConditionRow alone = supply(140e5, true);
+  alone.lowest = alone.highest = {};
+  EXPECT_EQ(beyond_in_words({alone}), "supply 140 bar (sheet 207 bar)");
+}
+
+TEST(ConditionWords, JsonHoldsSiAndNullForWhatIsNotKnown) {
+  const Json j = conditions_json({{Condition::load, 7e3, {}, {}, {}, false}});
+  EXPECT_EQ(j[0]["condition"], "load_force");
+  EXPECT_EQ(j[0]["unit"], "N");
+  EXPECT_EQ(j[0]["value"], 7e3);
+  EXPECT_TRUE(j[0]["sheet"].is_null());
+  EXPECT_FALSE(j[0]["beyond"]);
+}
+
+}  // namespace
+}  // namespace servodx::report
