@@ -120,11 +120,11 @@ int run(const Options& options) {
   const Table nominal = invocation.table(options.params);  // tune_table() applies the facts, effects' rows included
   const std::vector<Log> logs = invocation.logs(options.logs, rig);
 
-  if (!tune_options.effects)
-    tune_options.effects = default_effects(all_on_test_stand(logs, rig), supply_is_measured(logs), lines_are_long(rig));
+  // Those asked for stay free; of the default ones the logs decide.
+  const std::vector<std::string> effects = tune_options.effects.value_or(default_effects(rig_kind(logs, rig)));
   for (const std::string& name : tune_options.profile)
     if (Table with_effects = nominal; name != "all" && !name.empty()) {
-      add_effect_rows(with_effects, *tune_options.effects);
+      add_effect_rows(with_effects, effects);
       require_option(with_effects.find(name) >= 0, "--profile", "the table has no row '" + name + "'",
                      "name rows of the table, with commas between, or 'all'");
     }
@@ -134,7 +134,7 @@ int run(const Options& options) {
                      {"generations", tune_options.generations},
                      {"heldout", tune_options.heldout},
                      {"moving_average", tune_options.moving_average},
-                     {"effects", *tune_options.effects},
+                     {"effects", effects},
                      {"local", options.local},
                      {"profile", options.profile},
                      {"prior", options.priors}};
@@ -189,9 +189,9 @@ void add_tune_command(CLI::App& app, int& exit_code) {
       ->capture_default_str();
   command->add_option("--effects", options->effects, "effects freed beside the table's rows, or 'none'")
       ->type_name("A,B")
-      ->default_str(report::join(default_effects(false, true, false), ",") +
-                    "; supply_droop where a log lacks the supply; on a test stand " +
-                    report::join(default_effects(true, true, false), ","));
+      ->default_str(report::join(default_effects({}), ",") +
+                    "; supply_droop and return_drop where a log lacks that pressure; on a test stand " +
+                    report::join(default_effects({.on_stand = true}), ","));
   command
       ->add_option("--local", options->local,
                    "local stage: least_squares (a search that knows the bounds, then Ceres), ceres alone, or nlopt "

@@ -44,11 +44,15 @@ struct TuneOptions {
   void validate() const;
 };
 
-// What a tune frees unless told: of a valve on an actuator, and of one on a test stand.
-std::vector<std::string> default_effects(bool on_stand, bool supply_measured, bool lines_are_long);
-bool supply_is_measured(const std::vector<Log>& logs);  // in every one
-// Whether oil in the lines stands between the pressure taps and the cylinder, by the rig file.
-bool lines_are_long(const RigFile& rig);
+// What decides which effects a rig's logs can tell.
+struct RigKind {
+  bool on_stand = false;                                // a valve on a test stand, not on an actuator
+  bool supply_measured = true, return_measured = true;  // in every log
+  bool long_lines = false;  // oil in the lines stands between the pressure taps and the cylinder, by the rig file
+};
+RigKind rig_kind(const std::vector<Log>& logs, const RigFile& rig);
+// What a tune frees unless told.
+std::vector<std::string> default_effects(const RigKind& kind);
 
 struct ParameterResult {
   int id = 0;  // 0 for an effect's parameter

@@ -13,6 +13,7 @@ struct ArmatureAngle {
   static constexpr const char* name = "armature_angle";
   static constexpr const char* place = "first_stage";
   static constexpr const char* meaning = "gain and magnetic spring of the torque motor grow with the armature's angle";
+  static constexpr Freed freed = Freed::on_actuators;
   static constexpr int n_states = 0;
   static constexpr int n_parameters = 1;
   static constexpr EffectParameter parameters[n_parameters] = {

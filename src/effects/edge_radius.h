@@ -15,6 +15,7 @@ struct EdgeRadius {
   static constexpr const char* place = "metering";
   static constexpr const char* meaning = "the metering edges are blunt";
   static constexpr bool stand_only = true;  // an actuator shows its valve's edges through its own friction at null
+  static constexpr Freed freed = Freed::on_stands;
   static constexpr int n_states = 0;
   static constexpr int n_parameters = 2;
   static constexpr EffectParameter parameters[n_parameters] = {

@@ -1,7 +1,10 @@
 // Where the flow through an open metering edge turns from laminar to turbulent. The base model takes the value that
-// theory gives for a sharp slot, C_d = delta sqrt(Re) with delta = 0.157 (Merritt 1967, sec. 3-4); rounded corners, burrs
-// and passages behind the edge move it. The laminar part costs an open edge a flow that grows with viscosity and hardly
-// with the opening: it acts like a lap that is wider in the cold. Bounds: delta from 0.08, half of the slot's, to 0.43.
+// theory gives for a sharp slot, C_d = delta sqrt(Re) with delta = 0.157 (Merritt 1967, sec. 3-4); rounded corners,
+// burrs and passages behind the edge move it. The laminar part costs an open edge a flow that grows with viscosity and
+// hardly with the opening: it acts like a lap that is wider in the cold. How fast the coefficient then meets its limit
+// differs as well: as 1/Re where both drops add, as 1/Re^2 by the law of Borutzky, Barnard and Thoma (2002), which real
+// orifices are near to (Wu, Burton, Schoenau 2002). Bounds: delta from 0.035, beyond the Re of 260 that McCloy and
+// Martin (1980) give for spool valves, to 0.43.
 #pragma once
 #include "effects/effect.h"
 #include "model/constants.h"
@@ -11,19 +14,27 @@ namespace servodx {
 struct EdgeTransition {
   static constexpr const char* name = "edge_transition";
   static constexpr const char* place = "metering";
-  static constexpr const char* meaning = "the flow through the edges turns turbulent elsewhere than through a sharp slot";
+  static constexpr const char* meaning =
+      "the flow through the edges turns turbulent elsewhere than through a sharp slot";
+  static constexpr Freed freed = Freed::on_actuators;
   static constexpr int n_states = 0;
-  static constexpr int n_parameters = 1;
+  static constexpr int n_parameters = 2;
   // Re_t = (C_d / delta)^2 with Re of the hydraulic diameter, twice the opening.
   static constexpr double per_length = 48.0 * constants::cd_metering * constants::cd_metering;
   static constexpr EffectParameter parameters[n_parameters] = {
-      {"transition_reynolds", "-", per_length* constants::slot_resistance, 2.0, 60.0, 30.0,
+      {"transition_reynolds", "-", per_length* constants::slot_resistance, 2.0, 300.0, 30.0,
        "Reynolds number, of twice the opening, at which laminar and turbulent drop are alike"},
+      {"transition_abruptness", "-", 0.0, 0.0, 1.0, 0.5,
+       "0: the two drops add; 1: the flow is turbulent as soon as that drop is the larger"},
   };
   // [-] added to the creeping-flow length of an open edge, in openings; q: own parameters.
   template <class T>
   static T edge_creep(const T* q) {
     return (q[0] - T(parameters[0].off)) * T(1.0 / per_length);
+  }
+  template <class T>
+  static T edge_abruptness(const T* q) {
+    return q[1];
   }
 };
 

@@ -1,7 +1,18 @@
-// What every effect states about a parameter of its own.
+// What every effect states about itself and about a parameter of its own.
 #pragma once
 
 namespace servodx {
+
+// When `tune` frees an effect unless told: where healthy logs can tell it.
+enum class Freed {
+  never,
+  everywhere,
+  on_stands,        // of a valve on a test stand
+  on_actuators,     // on all other rigs, and so the rest of these
+  without_supply,   // where a log lacks the supply pressure: a measured one holds its droop
+  without_return,   // the same of the return pressure
+  with_long_lines,  // oil in the lines stands between the pressure taps and the cylinder
+};
 
 struct EffectParameter {
   const char* name;
@@ -11,6 +22,8 @@ struct EffectParameter {
   double start;         // [unit] a typical size: where a search begins
   const char* meaning;
   bool switches = true;  // false: shapes an effect that another parameter switches
+  bool told = true;      // false: healthy logs cannot tell it from a row of the table; `tune` leaves it off
+  double likely = 0.0;   // [unit] how far from `off` healthy rigs are; 0: as far as `start`
 };
 
 }  // namespace servodx

@@ -24,6 +24,7 @@ struct LineInertia {
   static constexpr const char* name = "line_inertia";
   static constexpr const char* place = "piston_force";
   static constexpr const char* meaning = "oil in long lines between the pressure taps and the cylinder";
+  static constexpr Freed freed = Freed::with_long_lines;
   static constexpr int n_states = 4;  // flow in line A, pressure of chamber A, the same of B
   static constexpr int n_parameters = 3;
   static constexpr EffectParameter parameters[n_parameters] = {

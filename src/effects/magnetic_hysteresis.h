@@ -14,6 +14,7 @@ struct MagneticHysteresis {
   static constexpr const char* name = "magnetic_hysteresis";
   static constexpr const char* place = "drive";
   static constexpr const char* meaning = "torque lags the current by a loop that does not depend on rate";
+  static constexpr Freed freed = Freed::everywhere;
   static constexpr int n_states = 0;
   static constexpr int n_parameters = 4;
   static constexpr EffectParameter parameters[n_parameters] = {

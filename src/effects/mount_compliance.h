@@ -14,6 +14,7 @@ struct MountCompliance {
   static constexpr const char* name = "mount_compliance";
   static constexpr const char* place = "piston_force";
   static constexpr const char* meaning = "the cylinder's body moves against a mount of finite stiffness";
+  static constexpr Freed freed = Freed::on_actuators;
   static constexpr int n_states = 2;  // travel of the body, its velocity
   static constexpr int n_parameters = 3;
   static constexpr EffectParameter parameters[n_parameters] = {

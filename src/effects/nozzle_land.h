@@ -13,6 +13,7 @@ struct NozzleLand {
   static constexpr const char* name = "nozzle_land";
   static constexpr const char* place = "first_stage";
   static constexpr const char* meaning = "the nozzles pass less in thick oil, as faces of some width do";
+  static constexpr Freed freed = Freed::on_actuators;
   static constexpr int n_states = 0;
   static constexpr int n_parameters = 1;
   static constexpr EffectParameter parameters[n_parameters] = {

@@ -12,6 +12,7 @@ struct NozzleMismatch {
   static constexpr const char* place = "first_stage";
   static constexpr const char* meaning = "the two nozzles pass unlike flows at the same gap";
   static constexpr bool as_made = true;
+  static constexpr Freed freed = Freed::on_actuators;
   static constexpr int n_states = 0;
   static constexpr int n_parameters = 1;
   static constexpr EffectParameter parameters[n_parameters] = {

@@ -11,6 +11,7 @@ struct OrificeLength {
   static constexpr const char* name = "orifice_length";
   static constexpr const char* place = "first_stage";
   static constexpr const char* meaning = "the fixed orifices pass less in thick oil, as tubes of some length do";
+  static constexpr Freed freed = Freed::on_actuators;
   static constexpr int n_states = 0;
   static constexpr int n_parameters = 1;
   static constexpr EffectParameter parameters[n_parameters] = {

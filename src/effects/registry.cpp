@@ -13,6 +13,7 @@ std::vector<EffectInfo> describe(EffectList<E...>) {
         all.push_back({E::name, E::place, E::meaning, at, {E::parameters, E::parameters + E::n_parameters}});
         if constexpr (requires { E::stand_only; }) all.back().stand_only = E::stand_only;
         if constexpr (requires { E::as_made; }) all.back().as_made = E::as_made;
+        if constexpr (requires { E::freed; }) all.back().freed = E::freed;
         if constexpr (requires { E::shapes_rows; }) all.back().shapes_rows = E::shapes_rows;
         at += E::n_parameters;
       }(),

@@ -17,6 +17,7 @@
 #include "effects/nozzle_plugging.h"
 #include "effects/orifice_length.h"
 #include "effects/port_line.h"
+#include "effects/return_drop.h"
 #include "effects/rod_cavity.h"
 #include "effects/screen_drop.h"
 #include "effects/seal_film.h"
@@ -52,7 +53,8 @@ using AllEffects = EffectList<MagneticHysteresis,  //
                               NozzleLand,          //
                               SealFilm,            //
                               SealShear,           //
-                              NozzleMismatch>;
+                              NozzleMismatch,      //
+                              ReturnDrop>;
 // Four states more than all others together, for rigs with long lines only: these have a kernel of their own.
 using LinedEffects = Append<AllEffects, LineInertia>;
 // A learnt curve costs more than all effects: the same.
@@ -63,8 +65,9 @@ struct EffectInfo {
   std::string name, place, meaning;
   int first = 0;  // position of its first parameter in a parameter vector
   std::vector<EffectParameter> parameters;
-  bool stand_only = false;   // sought only in logs of a valve on a test stand
-  bool as_made = false;      // told by healthy logs; not sought
+  bool stand_only = false;  // sought only in logs of a valve on a test stand
+  bool as_made = false;     // told by healthy logs; not sought
+  Freed freed = Freed::never;
   bool shapes_rows = false;  // belongs to a row effect (row_effects.h) and means nothing without it
 };
 const std::vector<EffectInfo>& effect_list();

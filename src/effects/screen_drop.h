@@ -11,6 +11,7 @@ struct ScreenDrop {
   static constexpr const char* name = "screen_drop";
   static constexpr const char* place = "first_stage";
   static constexpr const char* meaning = "the pilot filter passes less in thick oil, as fine screens do";
+  static constexpr Freed freed = Freed::on_actuators;
   static constexpr int n_states = 0;
   static constexpr int n_parameters = 1;
   static constexpr EffectParameter parameters[n_parameters] = {

@@ -11,16 +11,20 @@ struct SensorResponse {
   static constexpr const char* name = "sensor_response";
   static constexpr const char* place = "sensor";
   static constexpr const char* meaning = "gain error and lag of the spool and pressure sensors";
+  static constexpr Freed freed = Freed::on_actuators;
   static constexpr int n_states = 0;
   static constexpr int channels = 3;
   static constexpr int shown_at[channels] = {0, 2, 3};  // spool, pressure a, pressure b
   static constexpr int n_parameters = 2 * channels;
+  static constexpr double transmitter_class = 0.01;  // of industrial pressure transmitters with what they drift
   static constexpr EffectParameter parameters[n_parameters] = {
-      {"spool_sensor_gain", "-", 1.0, 0.5, 1.5, 1.05, "indicated over true spool travel"},
-      {"spool_sensor_lag", "s", 0.0, 0.0, 0.02, 1e-3, "time constant of the spool sensor"},
-      {"pressure_a_sensor_gain", "-", 1.0, 0.5, 1.5, 1.05, "indicated over true pressure A"},
+      {"spool_sensor_gain", "-", 1.0, 0.5, 1.5, 1.05, "indicated over true spool travel", true, false},
+      {"spool_sensor_lag", "s", 0.0, 0.0, 0.02, 1e-3, "time constant of the spool sensor", true, false},
+      {"pressure_a_sensor_gain", "-", 1.0, 0.5, 1.5, 1.05, "indicated over true pressure A", true, true,
+       transmitter_class},
       {"pressure_a_sensor_lag", "s", 0.0, 0.0, 0.02, 2e-3, "time constant of the sensor of pressure A"},
-      {"pressure_b_sensor_gain", "-", 1.0, 0.5, 1.5, 1.05, "indicated over true pressure B"},
+      {"pressure_b_sensor_gain", "-", 1.0, 0.5, 1.5, 1.05, "indicated over true pressure B", true, true,
+       transmitter_class},
       {"pressure_b_sensor_lag", "s", 0.0, 0.0, 0.02, 2e-3, "time constant of the sensor of pressure B"},
   };
 

@@ -32,7 +32,8 @@ double prior_width(const Row& r, int at) {
   constexpr double half = 0.5;
   if (at < n_parameters) return half;
   const EffectParameter& e = parameter_at(at);
-  return e.switches && e.start != e.off ? std::min(half, std::abs(e.start - e.off) / (r.upper - r.lower)) : half;
+  const double likely = e.likely > 0 ? e.likely : std::abs(e.start - e.off);
+  return e.switches && likely > 0 ? std::min(half, likely / (r.upper - r.lower)) : half;
 }
 
 // What a drawing says of the pilot stage, and how well it holds, relative: bores below half a millimetre, the fixed
@@ -138,10 +139,10 @@ void add_effect_rows(Table& table, const std::vector<std::string>& effects) {
       r.name = p.name;
       r.group = "effect:" + name;
       const bool either_side = p.lower + p.upper == 2 * p.off;  // as likely on one side of nought as on the other
-      r.nominal = either_side ? p.off : p.start;
+      r.nominal = either_side || !p.told ? p.off : p.start;
       r.lower = p.lower;
       r.upper = p.upper;
-      r.estimate = true;
+      r.estimate = p.told;
       r.unit = p.unit;
       r.description = p.meaning;
       r.source = either_side ? "none, its sign unknown" : "typical size";

@@ -53,28 +53,46 @@ struct EdgeFlow {
   H height;  // [m] open, what the jet's force acts on
 };
 
-// One metering edge. opening [m] (negative: covered by that length), radius [m] of its corner, dp [Pa].
-// Laminar slot, orifice and hose in series: dp = R q + K q|q|, so q = 2 dp / (R + sqrt(R^2 + 4 K |dp|)).
-// R: plane slot of the covered length and creeping flow at the edge; K: Bernoulli at the edge plus the hose.
-template <class X, class R, class P, class D>
-inline __attribute__((always_inline)) auto metering_edge(const X& opening, const R& radius, const P& dp, const D& d) {
+// Edges that share a line.
+template <class R, class L>
+struct EdgeSide {
+  R radius;  // [m] of the corners
+  L line;    // [Pa s2/m4] of the hose and what else the flow passes, per opening squared
+};
+template <class D>
+auto from_supply(const D& d) {
+  return EdgeSide{d.supply_edge, d.hose_loss};
+}
+template <class D>
+auto to_return(const D& d) {
+  return EdgeSide{d.return_edge, d.return_loss};
+}
+
+// One metering edge. opening [m] (negative: covered by that length), dp [Pa].
+// Laminar slot, orifice and line in series: dp = R q + K q|q|, so q = 2 dp / (R + sqrt(R^2 + 4 K |dp|)).
+// R: plane slot of the covered length and creeping flow at the edge; K: Bernoulli at the edge plus the line.
+// An abrupt transition a in place of the sum: q = 2 dp / ((1 - a) R + sqrt((1 + a)^2 R^2 + 4 K |dp|)).
+template <class X, class R, class L, class P, class D>
+inline __attribute__((always_inline)) auto metering_edge(const X& opening, const EdgeSide<R, L>& side, const P& dp,
+                                                         const D& d) {
   using T = typename D::Scalar;
-  const auto length = smooth_abs(opening, radius);
+  const auto length = smooth_abs(opening, side.radius);
   const auto open = (opening + length) * T(0.5);
   const auto covered = (length - opening) * T(0.5);
   const auto h2 = open * open + d.clearance2;
   const auto [h, per_h] = both_roots(h2);
   const auto r = (d.slot_per_length * covered + d.slot_corner) * per_h;  // [Pa s/m] times width and h
-  const auto k = d.edge_loss + d.hose_loss * h2;
-  const auto q = d.twice_width * h * dp * inverse(r + root(r * r + k * magnitude(dp)));
+  const auto k = d.edge_loss + side.line * h2;
+  const auto q =
+      d.twice_width * h * dp * inverse(d.creep_added * r + root(d.creep_beside2 * (r * r) + k * magnitude(dp)));
   return EdgeFlow{q, h};
 }
 
-template <class T, Mask A, Mask B, class R, class D>
+template <class T, Mask A, Mask B, class R, class L, class D>
 requires(A != only(0) || B != only(1)) inline
-    __attribute__((always_inline)) auto metering_edge(const Dual<T, A>& opening, const R& radius, const Dual<T, B>& dp,
-                                                      const D& d) {
-  const auto [q, h] = metering_edge(seed<0>(opening.v, T(1.0)), radius, seed<1>(dp.v, T(1.0)), d);
+    __attribute__((always_inline)) auto metering_edge(const Dual<T, A>& opening, const EdgeSide<R, L>& side,
+                                                      const Dual<T, B>& dp, const D& d) {
+  const auto [q, h] = metering_edge(seed<0>(opening.v, T(1.0)), side, seed<1>(dp.v, T(1.0)), d);
   return EdgeFlow{carried(q, opening, dp), carried(h, opening, dp)};
 }
 
@@ -151,10 +169,10 @@ inline __attribute__((always_inline)) auto derivative(const S& s, const In& in, 
 
   // Metering edges. Flows carry direction: pa from supply to A, at from A to return.
   const auto x_m = x_s + hook_metering_opening(view, Effects{});
-  const auto [q_pa, h_pa] = metering_edge(x_m - pick<row::lap_pa>(p), d.supply_edge, u.supply_pressure - p_a, d);
-  const auto [q_pb, h_pb] = metering_edge(-x_m - pick<row::lap_pb>(p), d.supply_edge, u.supply_pressure - p_b, d);
-  const auto [q_at, h_at] = metering_edge(-x_m - pick<row::lap_at>(p), d.return_edge, p_a - u.return_pressure, d);
-  const auto [q_bt, h_bt] = metering_edge(x_m - pick<row::lap_bt>(p), d.return_edge, p_b - u.return_pressure, d);
+  const auto [q_pa, h_pa] = metering_edge(x_m - pick<row::lap_pa>(p), from_supply(d), u.supply_pressure - p_a, d);
+  const auto [q_pb, h_pb] = metering_edge(-x_m - pick<row::lap_pb>(p), from_supply(d), u.supply_pressure - p_b, d);
+  const auto [q_at, h_at] = metering_edge(-x_m - pick<row::lap_at>(p), to_return(d), p_a - u.return_pressure, d);
+  const auto [q_bt, h_bt] = metering_edge(x_m - pick<row::lap_bt>(p), to_return(d), p_b - u.return_pressure, d);
 
   // Spool.
   const auto f_flow = d.flow_force * (h_pa * (u.supply_pressure - p_a) + h_bt * (p_b - u.return_pressure) -

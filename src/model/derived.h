@@ -44,6 +44,9 @@ namespace servodx {
   X(return_edge,               "m",            "and of those to return") \
   X(edge_loss,                 "Pa s2/m4",     "4 rho / (2 Cd^2)") \
   X(hose_loss,                 "Pa s2/m4",     "4 hose_resistance width^2, per opening squared") \
+  X(return_loss,               "Pa s2/m4",     "the same with the return line") \
+  X(creep_added,               "-",            "share of an edge's laminar drop that adds to the turbulent one") \
+  X(creep_beside2,             "-",            "square of the share whose square adds to the square's") \
   /* actuator */ \
   X(leak,                      "m3/s/Pa",      "") \
   X(viscous,                   "N s/m",        "") \
@@ -131,9 +134,15 @@ Derived<T> derive(const T* p, const Oil& oil) {
   d.return_edge = T(c::edge_rounding) + hook_edge_rounding(p, true, Effects{});
   d.edge_loss = T(4.0 * oil.density / (2.0 * c::cd_metering * c::cd_metering));
   d.hose_loss = T(4.0) * p[row::hose_resistance] * p[row::port_width] * p[row::port_width];
+  const T per_stroke2 = T(1.0) / (p[row::spool_stop] * p[row::spool_stop]);
+  d.return_loss = d.hose_loss + hook_return_share(p, Effects{}) * d.edge_loss * per_stroke2;
+  const T abrupt = hook_edge_abruptness(p, Effects{}), beside = T(1.0) + abrupt;
+  d.creep_added = T(1.0) - abrupt;
+  d.creep_beside2 = beside * beside;
   d.leak = p[row::cross_piston_leakage] * (T(1.0) / viscosity_ratio);
-  const T sheared = hook_seal_shear(p, Effects{}), film = sqrt(viscosity_ratio);  // seals ride on a film of their own
-  d.viscous = p[row::piston_viscous_friction] * ((T(1.0) - sheared) * film + sheared * viscosity_ratio);
+  const T sheared = hook_seal_shear(p, Effects{}), dry = hook_seal_dry(p, Effects{});
+  const T film = sqrt(viscosity_ratio);  // seals ride on a film of their own
+  d.viscous = p[row::piston_viscous_friction] * ((T(1.0) - sheared - dry) * film + sheared * viscosity_ratio + dry);
   d.breakaway.per_film_speed = T(1.0) / (T(c::piston_stribeck_velocity) + hook_seal_film_speed(p, Effects{}));
   // A tenth of itself and a newton keep the ratio bounded where seals hardly drag.
   d.breakaway.over_sliding =

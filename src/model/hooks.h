@@ -6,12 +6,15 @@
 //     viscosity(p)         [-]   factor on the oil's viscosity
 //     edge_rounding(p, to_return) [m] added to the corner radius of the metering edges
 //     edge_creep(p)        [-]   added to the creeping-flow length of an open edge, in openings
+//     edge_abruptness(p)   [-]   how fast the flow through an open edge is turbulent, 0 to 1
+//     return_share(p)      [-]   drop of the return line over that of an edge at full stroke
 //     orifice_length(p)    [-]   added to the length of the fixed orifices, in diameters
 //     nozzle_1_share(p), nozzle_2_share(p)  [-]  added to the share of a nozzle's gap that is open
 //     nozzle_land(p)       [m]   added to the width of the nozzles' faces
 //     screen_drop(p)       [Pa]  laminar drop of the clean pilot filter at rest, in oil at 40 degC
 //     seal_film_speed(p)   [m/s] added to the speed at which the piston's seals slide on oil
 //     seal_shear(p)        [-]   share of the piston's viscous friction in proportion to the viscosity
+//     seal_dry(p)          [-]   share of it that the viscosity leaves alone
 //     supply_pressure(view) [Pa] added to the supply pressure at the valve
 //     flapper_force(view)  [N]   added to the torque motor's force
 //     spool_force(view)    [N]   added to the force on the spool
@@ -170,6 +173,8 @@ T hook_viscosity([[maybe_unused]] const T* p, EffectList<E...>) {
     return added;                                                                                          \
   }
 SERVODX_FIXED_HOOK(edge_creep)
+SERVODX_FIXED_HOOK(edge_abruptness)
+SERVODX_FIXED_HOOK(return_share)
 SERVODX_FIXED_HOOK(orifice_length)
 SERVODX_FIXED_HOOK(nozzle_1_share)
 SERVODX_FIXED_HOOK(nozzle_2_share)
@@ -177,6 +182,7 @@ SERVODX_FIXED_HOOK(nozzle_land)
 SERVODX_FIXED_HOOK(screen_drop)
 SERVODX_FIXED_HOOK(seal_film_speed)
 SERVODX_FIXED_HOOK(seal_shear)
+SERVODX_FIXED_HOOK(seal_dry)
 #undef SERVODX_FIXED_HOOK
 
 // What the effects add to the corner radius of the metering edges, those to return or those from supply. [m]

@@ -128,8 +128,12 @@ Json tune_json(const TuneResult& result) {
                       {"simulations", s.simulations},
                       {"jacobians", s.jacobians}});
   for (double cost : result.starts) starts.push_back(number(cost));
+  Json effects = Json::array();
+  for (const EarnedEffect& e : result.effects)
+    effects.push_back({{"effect", e.effect}, {"heldout_gain", number(e.gain)}, {"kept", e.kept}});
   return {{"channels", array_of(result.channels)},
           {"parameters", array_of(result.parameters)},
+          {"effects", effects},
           {"starts", starts},
           {"reached_best", result.reached_best},
           {"interrupted", result.interrupted},

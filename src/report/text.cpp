@@ -134,6 +134,7 @@ std::string text_of(const TuneResult& result, const GoodEnough& good, const Text
                         costs.size() > 1 ? " to " + digits(costs.back(), 4) : "");
   }
   if (const std::string gains = gains_in_words(result); !gains.empty()) text += "  " + gains + "\n";
+  if (const std::string effects = effects_in_words(result.effects); !effects.empty()) text += "  " + effects + "\n";
   Columns nulls("lr", 2);
   for (const LogResult& log : result.logs) nulls.row({"null of " + log.path, percent(log.null) + " of rated"});
   return text + nulls.text();

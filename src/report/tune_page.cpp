@@ -15,8 +15,8 @@
 #include "report/parts.h"
 #include "report/replay_part.h"
 #include "report/tune_words.h"
-#include "tune/tune.h"
 #include "servodx/tune.h"
+#include "tune/tune.h"
 
 namespace servodx::report {
 namespace {
@@ -49,6 +49,16 @@ std::string stage_words(const std::string& stage) {
   if (stage == "weights") return "on all but the end of each log";
   if (stage == "everything") return "on whole logs";
   return stage;
+}
+
+// Least missed first, as they were tried.
+void add_effects(Page& page, const std::vector<EarnedEffect>& effects) {
+  if (effects.empty()) return;
+  TablePart table{
+      "Effects, least missed first: the fall of the held-out cost with each", "lrl", {"effect", "gain", ""}, {}, 0};
+  for (const EarnedEffect& e : effects)
+    table.rows.push_back({words(e.effect), Cell(digits(e.gain, 3), e.gain), e.kept ? "free" : "off"});
+  page.add(table);
 }
 
 void add_search(Page& page, const TuneResult& result) {
@@ -173,6 +183,7 @@ Page tune_page(const Header& header, const TuneResult& result, const GoodEnough&
   page.section("Parameters",
                "From the table's value to the fitted one. Sigma is the standard error of the fitted value.");
   page.add(moves_of(result.parameters, "What moved"));
+  add_effects(page, result.effects);
   page.section("Did the search arrive?", "A valley that several starts reach is likelier the right one.");
   add_search(page, result);
   for (const Replay& r : replays) {

@@ -94,6 +94,17 @@ std::string gains_in_words(const TuneResult& result) {
   return parts.empty() ? "" : "cost by stage: " + join(parts, "; ");
 }
 
+std::string effects_in_words(const std::vector<EarnedEffect>& effects) {
+  std::vector<std::string> kept, off;
+  for (const EarnedEffect& e : effects)
+    (e.kept ? kept : off).push_back(fmt::format("{} {}", e.effect, digits(e.gain, 2)));
+  std::string text;
+  if (!kept.empty()) text = "effects, with what each gains on the held-out part: " + join(kept);
+  if (!off.empty())
+    text += (kept.empty() ? "effects" : "; ") + std::string("off, as no better with them: ") + join(off);
+  return text;
+}
+
 std::string unfollowed_in_words(const std::vector<Unfollowed>& channels) {
   std::vector<std::string> parts;
   for (const Unfollowed& u : channels)

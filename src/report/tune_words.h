@@ -35,6 +35,9 @@ std::string words_of(StageMethod method);
 // What each method of the last fit has gained, and the genetic search: one line.
 std::string gains_in_words(const TuneResult& result);
 
+// Which effects stay free and which are off, each with what it gains on the held-out part: one line, or nothing.
+std::string effects_in_words(const std::vector<EarnedEffect>& effects);
+
 // `promises`: of the logs with the tuned table; without any nothing is said of faults.
 // "pressure A is left with 11 times its noise, ..."
 std::string unfollowed_in_words(const std::vector<Unfollowed>& channels);

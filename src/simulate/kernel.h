@@ -10,6 +10,7 @@
 #include "base/smooth.h"
 #include "base/sparse_dual.h"
 #include "effects/registry.h"
+#include "effects/return_drop.h"
 #include "effects/sampled_lag.h"
 #include "effects/supply_droop.h"
 #include "integrate/rodas3.h"
@@ -391,6 +392,7 @@ class Run {
     if (in_.command_slope) p_[nuisance::command_slope] = T(*in_.command_slope);
     if (in_.current_measured) p_[row::driver_bandwidth] = T(2e4);               // the amplifier is behind us
     if (!in_.supply_pressure.empty()) p_[effect_row<SupplyDroop>(0)] = T(0.0);  // what is measured holds the droop
+    if (!in_.return_pressure.empty()) p_[effect_row<ReturnDrop>(0)] = T(0.0);
     // On a test stand the piston is held and displaces nothing, and a tube takes the place of the seal's leakage.
     if (on_stand_) p_[row::piston_area_a] = p_[row::piston_area_b] = T(0.0);
   }
@@ -506,13 +508,13 @@ class Run {
     out[4] = y[s_p_pilot_1];
     out[5] = y[s_p_pilot_2];
     if (options_.wanted[6] || options_.wanted[7] || options_.wanted[10] || options_.wanted[11]) {
-      const auto flow = [&](const T& opening, const T& radius, const T& dp) {
-        return metering_edge(opening, radius, dp, d_).flow;
+      const auto flow = [&](const T& opening, const auto& side, const T& dp) {
+        return metering_edge(opening, side, dp, d_).flow;
       };
-      const T q_pa = flow(y[s_x_spool] - p_[row::lap_pa], d_.supply_edge, now.supply_pressure - y[s_p_a]);
-      const T q_pb = flow(-y[s_x_spool] - p_[row::lap_pb], d_.supply_edge, now.supply_pressure - y[s_p_b]);
-      const T q_at = flow(-y[s_x_spool] - p_[row::lap_at], d_.return_edge, y[s_p_a] - now.return_pressure);
-      const T q_bt = flow(y[s_x_spool] - p_[row::lap_bt], d_.return_edge, y[s_p_b] - now.return_pressure);
+      const T q_pa = flow(y[s_x_spool] - p_[row::lap_pa], from_supply(d_), now.supply_pressure - y[s_p_a]);
+      const T q_pb = flow(-y[s_x_spool] - p_[row::lap_pb], from_supply(d_), now.supply_pressure - y[s_p_b]);
+      const T q_at = flow(-y[s_x_spool] - p_[row::lap_at], to_return(d_), y[s_p_a] - now.return_pressure);
+      const T q_bt = flow(y[s_x_spool] - p_[row::lap_bt], to_return(d_), y[s_p_b] - now.return_pressure);
       out[6] = q_pa - q_at;
       out[7] = q_pb - q_bt;
       out[10] = T(0.5) * (out[6] - out[7]);

@@ -78,8 +78,7 @@ TuneScope scope_of(const std::vector<Log>& logs, const Table& nominal, const Rig
   scope.facts = rig;
   if (scope.on_stand && rig.ports == Ports::actuator) scope.facts.ports = Ports::blocked;  // the logs say so
   scope.table = nominal;
-  add_effect_rows(scope.table, options.effects.value_or(
-                                   default_effects(scope.on_stand, supply_is_measured(logs), lines_are_long(rig))));
+  add_effect_rows(scope.table, options.effects.value_or(default_effects(rig_kind(logs, rig))));
   scope.table = apply_rig_facts(scope.table, scope.facts);
   scope.base = candidate_of(scope.table);
   settle_oil(scope);

@@ -10,9 +10,8 @@
 
 #include "base/error.h"
 #include "base/nearest.h"
-#include "effects/line_inertia.h"
+#include "effects/effect.h"
 #include "effects/registry.h"
-#include "effects/supply_droop.h"
 #include "fit/free_values.h"
 #include "fit/log_data.h"
 #include "fit/problem.h"
@@ -21,6 +20,7 @@
 #include "optimise/problem.h"
 #include "servodx/rig.h"
 #include "simulate/scenario.h"
+#include "tune/earned.h"
 #include "tune/scope.h"
 #include "tune/screen.h"
 #include "tune/search.h"
@@ -41,6 +41,26 @@ LeastSquaresResult weighed_as_learnt(FitProblem& problem, LeastSquaresResult end
   return end;
 }
 
+// The problem that is left is weighed anew.
+std::vector<EarnedEffect> drop_unearned(TuneScope& scope, FitProblem& fit, Point& end, const ErrorModel& error,
+                                        TuneWatch& watch) {
+  apply_error_model(fit, error, end, true);
+  std::vector<EarnedEffect> effects = keep_earned(scope, fit, watch.options.heldout, end, watch);
+  watch.done_with(fit);
+  fit = scope.problem();
+  return effects;
+}
+
+// A row of an effect that its held-out part does not need is one that the logs do not tell.
+void mark_unearned(std::vector<ScreenedRow>& rows, const std::vector<EarnedEffect>& effects) {
+  for (const EffectInfo& e : effect_list())
+    if (std::any_of(effects.begin(), effects.end(),
+                    [&](const EarnedEffect& t) { return !t.kept && t.effect == e.name; }))
+      for (const EffectParameter& p : e.parameters)
+        for (ScreenedRow& row : rows)
+          if (row.name == p.name && row.verdict == RowVerdict::bounded) row.verdict = RowVerdict::flat;
+}
+
 TunedState state_of(const std::vector<Log>& logs, const TuneResult& result, const TuneOptions& options) {
   TunedState state{result.error, options.moving_average, {}, result.unfollowed};
   for (const Log& log : logs)
@@ -59,32 +79,6 @@ std::string note_of_distrust(const TuneWatch& watch) {
       watch.distrust == Distrust::missing_columns ? "some could not be had" : "no step kept what they promised",
       s.before, s.after);
 }
-
-}  // namespace
-
-std::vector<std::string> default_effects(bool on_stand, bool supply_measured, bool lines_are_long) {
-  if (on_stand) return {"magnetic_hysteresis", "flow_meter_lag", "edge_radius", "port_line"};
-  std::vector<std::string> out = {"magnetic_hysteresis", "armature_angle", "mount_compliance",
-                                  "edge_transition",     "orifice_length", "screen_drop",
-                                  "nozzle_land",         "seal_shear",     "nozzle_mismatch"};
-  if (!supply_measured) out.emplace_back(SupplyDroop::name);  // a measured supply holds its droop
-  if (lines_are_long) out.emplace_back(LineInertia::name);
-  return out;
-}
-
-// The quarter wave of oil at 1200 m/s is then 500 Hz: shorter lines answer above the band of logs of 1 kHz, and a fit
-// would give their numbers to what else rings there. Chosen with rigs of 0.45, 0.68 and 1.08 m in view.
-constexpr double long_line = 0.6;  // [m]
-
-bool lines_are_long(const RigFile& rig) {
-  return !rig.taps_at_cylinder && rig.fact("lines.length").value_or(0.0) >= long_line && rig.fact("lines.bore");
-}
-
-bool supply_is_measured(const std::vector<Log>& logs) {
-  return std::all_of(logs.begin(), logs.end(), [](const Log& l) { return l.has(Signal::supply_pressure); });
-}
-
-namespace {
 
 void require_known(const std::vector<std::string>& effects) {
   std::vector<std::string> known = {"none"};
@@ -124,7 +118,7 @@ TuneResult tune_table(const std::vector<Log>& logs, const Table& nominal, const 
   options.validate();
   TuneWatch watch(options);
   TuneScope scope = scope_of(logs, nominal, rig, options);
-  const std::vector<ScreenedRow> screened = screen_rows(scope, watch);
+  std::vector<ScreenedRow> screened = screen_rows(scope, watch);
   hold_to_drawings(scope.shared, scope.facts, options.priors);
 
   FitProblem fit = scope.problem();
@@ -138,9 +132,11 @@ TuneResult tune_table(const std::vector<Log>& logs, const Table& nominal, const 
   // Weights from the model's own error, alternating with the fit: first with the end of each log still held out.
   if (!watch.stopped()) end = refine(fit, end.point, out.error, options.heldout, 1, scope.on_stand, {0.7, 0.8}, watch);
   const std::vector<Trajectory> heldout_runs = fit.trajectories(end.point);
+  if (!scope.on_stand && !options.effects) out.effects = drop_unearned(scope, fit, end.point, out.error, watch);
   if (!watch.stopped()) end = refine(fit, end.point, out.error, 0.0, options.rounds, scope.on_stand, {0.8, 1.0}, watch);
   end = weighed_as_learnt(fit, std::move(end), out.error);
 
+  mark_unearned(screened, out.effects);
   Settled settled = settle(scope, screened, fit, end, watch);
   out.logs =
       results_by_log(logs, scope, fit, settled.point, fit.trajectories(settled.point), heldout_runs, options.heldout);

@@ -42,6 +42,13 @@ struct StageResult {
   int jacobians = 0;
 };
 
+// What an effect that was freed is worth: the fall of the held-out cost with it.
+struct EarnedEffect {
+  std::string effect;
+  double gain = 0;
+  bool kept = false;
+};
+
 struct TuneResult {
   Table table;  // the tuned table
   ErrorModel error;
@@ -53,7 +60,8 @@ struct TuneResult {
   int reached_best = 0;
   std::vector<ConvergencePoint> convergence;
   std::vector<StageResult> stages;
-  CeresSummary ceres;  // of the last fit
+  std::vector<EarnedEffect> effects;  // in the order of trial
+  CeresSummary ceres;                 // of the last fit
   std::vector<std::string> notes;
   long simulations = 0, failed_simulations = 0;
   bool interrupted = false;

@@ -46,14 +46,16 @@ void stored_rates_balance(const ParameterVector& v) {
         f[s_p_a] / chamber_stiffness(volume_a, p[row::hose_compliance], y[s_p_a], d) + p[row::piston_area_a] * v_rel;
     const double stored_b =
         f[s_p_b] / chamber_stiffness(volume_b, p[row::hose_compliance], y[s_p_b], d) - p[row::piston_area_b] * v_rel;
-    const auto edge = [&](double opening, double dp) { return metering_edge(opening, d.supply_edge, dp, d).flow; };
+    const auto edge = [&](double opening, const auto& side, double dp) {
+      return metering_edge(opening, side, dp, d).flow;
+    };
     double lines = 0;  // what goes into the volumes behind the ports
     if constexpr (Effects::n_states > 0)
       for (int s : {0, 1}) lines += f[n_base_states + Effects::template state_offset<PortLine>() + s];
-    const double in = edge(y[s_x_spool] - p[row::lap_pa], u.supply_pressure - y[s_p_a]) +
-                      edge(-y[s_x_spool] - p[row::lap_pb], u.supply_pressure - y[s_p_b]);
-    const double out = edge(-y[s_x_spool] - p[row::lap_at], y[s_p_a] - u.return_pressure) +
-                       edge(y[s_x_spool] - p[row::lap_bt], y[s_p_b] - u.return_pressure);
+    const double in = edge(y[s_x_spool] - p[row::lap_pa], from_supply(d), u.supply_pressure - y[s_p_a]) +
+                      edge(-y[s_x_spool] - p[row::lap_pb], from_supply(d), u.supply_pressure - y[s_p_b]);
+    const double out = edge(-y[s_x_spool] - p[row::lap_at], to_return(d), y[s_p_a] - u.return_pressure) +
+                       edge(y[s_x_spool] - p[row::lap_bt], to_return(d), y[s_p_b] - u.return_pressure);
     double stored_rod = 0;  // in the rod cavity, which takes its area's room from chamber A
     if constexpr (Effects::n_states > 0) {
       const double length = p[effect_row<RodCavity>(1)] + p[row::piston_stroke] / 2 + y[s_x_piston];

@@ -15,6 +15,7 @@
 #include "effects/nozzle_mismatch.h"
 #include "effects/orifice_length.h"
 #include "effects/registry.h"
+#include "effects/return_drop.h"
 #include "effects/sampled_lag.h"
 #include "effects/screen_drop.h"
 #include "effects/seal_film.h"
@@ -290,6 +291,18 @@ TEST(SealShear, ItsShareOfTheViscousFrictionGrowsWithTheViscosityAndTheRestWithI
     }
 }
 
+TEST(SealShear, TheOilLeavesTheDryShareAlone) {
+  const auto drag = [](double viscosity_ratio, double dry) {
+    ParameterVector v = with<SealShear>(1, dry);
+    Oil oil;
+    oil.viscosity_ratio = viscosity_ratio;
+    return derive<double, AllEffects>(v.data(), oil).viscous / v[row::piston_viscous_friction];
+  };
+  EXPECT_NEAR(drag(9.0, 1.0), 1.0, 1e-12);
+  EXPECT_NEAR(drag(9.0, 0.5), 2.0, 1e-12);  // half of it as the root, 3
+  EXPECT_NEAR(drag(1.0, 0.5), 1.0, 1e-12);
+}
+
 TEST(SealFilm, AtItsSpeedHalfOfTheBreakawayFrictionIsLeft) {
   // What is left of the breakaway friction stands beside all else.
   const auto force = [](double breakaway, double film_speed, double current, double* speed) {
@@ -352,6 +365,45 @@ TEST(Oil, ColdOilIsStifferByHalfAPerCentAKelvin) {
     return chamber_stiffness(1e-4, v[row::hose_compliance], 7e6, d);
   };
   EXPECT_NEAR(stiffness(cold) / stiffness(hot), cold.stiffness_ratio / hot.stiffness_ratio, 1e-6);
+}
+
+// Of an open edge: flow over its turbulent limit, where the laminar drop at that limit is `share` of the turbulent one.
+double coefficient(double abruptness, double share) {
+  const ParameterVector v = with<EdgeTransition>(1, abruptness);
+  const Derived<double> d = derive<double, AllEffects>(v.data(), Oil{});
+  constexpr double opening = 1e-4;
+  const double h = std::sqrt(opening * opening + d.clearance2), r = d.slot_corner / h;
+  const double dp = r * r / (d.edge_loss * 0.25 * share * share);
+  const double flow = metering_edge(opening, EdgeSide{1e-12, 0.0}, dp, d).flow;
+  return flow / (d.twice_width * h * std::sqrt(dp / d.edge_loss));
+}
+
+TEST(EdgeTransition, AbruptFlowMeetsItsTurbulentLimitByTheSquareOfTheLaminarShare) {
+  for (const double share : {0.01, 0.03, 0.1}) {
+    EXPECT_NEAR((1 - coefficient(0, share)) / share, 0.5, 0.03) << share;
+    EXPECT_NEAR((1 - coefficient(1, share)) / (share * share), 0.5, 0.03) << share;
+  }
+  // Creeping flow is the same of both.
+  EXPECT_NEAR(coefficient(1, 1e3) / coefficient(0, 1e3), 1.0, 1e-3);
+}
+
+TEST(ReturnDrop, RaisesTheChambersByHalfOfItsShareUnlessTheReturnIsMeasured) {
+  // At a steady speed with no load: supply - p_A = p_B - return - drop, with an edge's drop each and no hose.
+  Scenario s = made(0.6, 1e-3, [](double t) { return t < 0.05 ? 0.0 : 18e-3; });
+  ParameterVector v = nominal_candidate();
+  v[row::hose_resistance] = 0;
+  const double share = 0.4;
+  ParameterVector w = v;
+  w[effect_row<ReturnDrop>(0)] = share;
+  const Trajectory free = simulate(s, v, all_signals()), dammed = simulate(s, w, all_signals());
+  const auto sum = [](const Trajectory& t) { return of(t, Signal::pressure_a)[500] + of(t, Signal::pressure_b)[500]; };
+  const double stroke = of(dammed, Signal::spool_position)[500] / v[row::spool_stop];
+  const double both = v[row::supply_pressure] - v[row::return_pressure];
+  const double edges = both / (2 + share * stroke * stroke);  // the drop of one edge
+  EXPECT_NEAR(sum(dammed) - sum(free), share * stroke * stroke * edges, 0.05 * share * edges);
+  s.return_pressure.assign(s.time.size(), v[row::return_pressure]);
+  EXPECT_NEAR(of(simulate(s, w, all_signals()), Signal::pressure_a)[500],
+              of(simulate(s, v, all_signals()), Signal::pressure_a)[500], 1.0);  // [Pa]
 }
 
 TEST(SupplyDroop, SteadySpeedCostsItsFlowTimesTheResistance) {

@@ -4,7 +4,16 @@
 #include <gtest/gtest.h>
 
 #include "base/error.h"
+#include "effects/line_inertia.h"
+#include "effects/magnetic_hysteresis.h"
+#include "effects/mount_compliance.h"
+#include "effects/port_line.h"
+#include "effects/return_drop.h"
+#include "effects/sensor_response.h"
+#include "effects/supply_droop.h"
+#include "effects/transport_delay.h"
 #include "fit/error_model.h"
+#include "fit/free_values.h"
 #include "fit/tuned_state.h"
 #include "optimise/ceres_refinement.h"
 #include "parameters/list.h"
@@ -40,6 +49,39 @@ TEST(Tune, ALosingChildDoesNotRunTheLogsThatAreLeft) {
   std::printf("%ld runs of %ld\n", shown[2] - shown[1], all + static_cast<long>(logs.size()));
   EXPECT_LT(shown[2] - shown[1], all);
   EXPECT_GT(shown[2] - shown[1], all / 6);  // the first logs are everybody's
+}
+
+bool frees(const RigKind& kind, const std::string& effect) {
+  const std::vector<std::string> freed = default_effects(kind);
+  return std::find(freed.begin(), freed.end(), effect) != freed.end();
+}
+
+TEST(DefaultEffects, AreThoseThatSuchLogsCanTell) {
+  EXPECT_TRUE(frees({}, MagneticHysteresis::name) && frees({.on_stand = true}, MagneticHysteresis::name));
+  EXPECT_TRUE(frees({}, MountCompliance::name) && !frees({.on_stand = true}, MountCompliance::name));
+  EXPECT_TRUE(!frees({}, PortLine::name) && frees({.on_stand = true}, PortLine::name));
+  EXPECT_TRUE(!frees({}, SupplyDroop::name) && frees({.supply_measured = false}, SupplyDroop::name));
+  EXPECT_TRUE(!frees({}, ReturnDrop::name) && frees({.return_measured = false}, ReturnDrop::name));
+  EXPECT_TRUE(!frees({}, LineInertia::name) && frees({.long_lines = true}, LineInertia::name));
+  EXPECT_FALSE(frees({.long_lines = true}, TransportDelay::name));
+}
+
+// The spool sensor's gain scales what torque gain and ports scale as well; those of two pressures have nothing beside.
+TEST(DefaultEffects, PressureSensorsHaveGainsWithinTheirClassAndTheSpoolsHasNone) {
+  Table table = shipped_table();
+  add_effect_rows(table, {SensorResponse::name});
+  const std::vector<FreeValue> shared = shared_values(table);
+  const auto find = [&](const char* name) {
+    return std::find_if(shared.begin(), shared.end(), [&](const FreeValue& f) { return f.name == name; });
+  };
+  EXPECT_EQ(find("spool_sensor_gain"), shared.end());
+  EXPECT_EQ(table[table.find("spool_sensor_gain")].nominal, 1.0);
+  for (const char* name : {"pressure_a_sensor_gain", "pressure_b_sensor_gain"}) {
+    const auto f = find(name);
+    ASSERT_NE(f, shared.end());
+    EXPECT_EQ(f->start, 1.0);
+    EXPECT_NEAR(f->prior_sd * (f->upper - f->lower), 0.01, 1e-12);
+  }
 }
 
 // A tuned table of one row; the log is short, as only what the table carries beside its rows is looked at.
