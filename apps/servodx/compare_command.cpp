@@ -22,6 +22,7 @@ void run(const Options& options) {
     invocation.header().inputs.push_back({path, sha256_of_file(path)});
   if (invocation.dry_run()) return;
   const report::Comparison comparison = report::compare(options.a, options.b);
+  invocation.note(comparison.notes);
   if (invocation.wants_report()) invocation.write_report(report::compare_page(invocation.header(), comparison));
   invocation.finish(report::text_of(comparison), report::compare_json(comparison));
 }

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <memory>
 
+#include "base/sha256.h"
+#include "baseline_beside.h"
 #include "commands.h"
 #include "diagnose/decide.h"
 #include "diagnose/judge.h"
@@ -17,14 +19,13 @@
 #include "report/json.h"
 #include "report/pages.h"
 #include "report/text.h"
+#include "servodx/actions.h"
 #include "servodx/baseline.h"
 #include "servodx/diagnose.h"
 #include "servodx/log.h"
 #include "servodx/rig.h"
 #include "servodx/tune.h"
 #include "servodx/watch.h"
-#include "base/sha256.h"
-#include "servodx/actions.h"
 
 namespace servodx {
 namespace {
@@ -122,7 +123,7 @@ int run(const Options& options) {
   invocation.check_files(inputs, {});
   const RigFile rig = invocation.rig();
   const Tuned tuned = invocation.tuned(options.params);
-  const Baseline baseline = read_baseline(options.baseline);
+  const Baseline baseline = baseline_beside(invocation, options.baseline, rig);
   require_same_table(baseline, tuned);
   std::vector<Log> logs;
   for (const std::string& path : options.logs) logs.push_back(invocation.log(path, rig));
@@ -135,6 +136,7 @@ int run(const Options& options) {
   for (const Log& log : logs)
     if (invocation.wants_report()) truths.push_back(report::truth_beside(log.path, log.sha256));
 
+  const Actions actions = actions_of(options.list.actions);
   header.settings = {{"false_alarm", baseline.asked}};
   invocation.tell_of_long_fits(logs);
   if (invocation.dry_run()) return ran;
@@ -143,7 +145,7 @@ int run(const Options& options) {
   const DiagnoseOptions how{.seed = options.common.seed,
                             .threads = options.common.threads,
                             .watch = watch,
-                            .actions = actions_of(options.list.actions),
+                            .actions = actions,
                             .explain_unknown = options.list.explain_unknown};
   const std::vector<Diagnosis> results =
       options.pool ? judge_pool(logs, tuned, rig, baseline, how) : judge_each(logs, tuned, rig, baseline, how);

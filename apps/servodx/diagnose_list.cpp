@@ -74,6 +74,7 @@ int diagnose_list(const CommonOptions& common, const ListOptions& options, const
   const Chunk chunk = read_chunk(options.chunk);
   const Judging judging = read_judging(invocation, params, baseline);
   const std::vector<std::string> logs = read_log_list(options.list, chunk);
+  actions_of(options.actions);  // refused before the first log
   report::Header& header = invocation.header();
   if (common.dry_run) rehearse(logs, judging.rig, header);
   if (invocation.dry_run()) return ran;

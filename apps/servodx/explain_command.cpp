@@ -3,6 +3,7 @@
 #include <memory>
 #include <optional>
 
+#include "baseline_beside.h"
 #include "commands.h"
 #include "door/baseline_parts.h"
 #include "explain/explain.h"
@@ -45,7 +46,7 @@ int run(const Options& options) {
   report::Header& header = invocation.header();
   std::optional<Baseline> baseline;
   if (!options.baseline.empty()) {
-    baseline = read_baseline(options.baseline);
+    baseline = baseline_beside(invocation, options.baseline, rig);
     require_same_table(*baseline, tuned);
     header.inputs.push_back({options.baseline, baseline->parts->sha256});
     causes_of(*baseline);  // refuses a file without them

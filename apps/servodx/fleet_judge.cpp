@@ -10,6 +10,7 @@
 #include "base/atomic_file.h"
 #include "base/error.h"
 #include "base/sha256.h"
+#include "baseline_beside.h"
 #include "diagnose/decide.h"
 #include "door/baseline_parts.h"
 #include "fleet/fleet_verdict.h"
@@ -36,7 +37,10 @@ FleetVerdict standing(VerdictKind verdict) {
 }  // namespace
 
 Judging read_judging(Invocation& invocation, const std::string& params, const std::string& baseline) {
-  Judging judging{invocation.rig(), invocation.tuned(params), read_baseline(baseline)};
+  RigFile rig = invocation.rig();
+  Tuned tuned = invocation.tuned(params);
+  Baseline judged = baseline_beside(invocation, baseline, rig);
+  Judging judging{std::move(rig), std::move(tuned), std::move(judged)};
   require_same_table(judging.baseline, judging.tuned);
   invocation.header().inputs.push_back({baseline, judging.baseline.parts->sha256});
   invocation.header().settings = {{"false_alarm", judging.baseline.asked}};

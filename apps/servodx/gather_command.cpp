@@ -53,6 +53,9 @@ int run(const Options& options) {
   if (invocation.dry_run()) return ran;
   if (table.interrupted) return interrupted;  // a part of the folder is no table of it
   if (confusion) note_counts(invocation, *confusion);
+  if (table.without_schema > 0)
+    invocation.note({std::to_string(table.without_schema) +
+                     " results carry no schema, as earlier versions wrote them; they are read as far as they go"});
   if (!options.output.empty()) write_file(options.output, csv_of(table));
   if (invocation.wants_report()) invocation.write_report(report::fleet_page(header, table, confusion));
   invocation.finish(report::text_of(table, confusion), report::fleet_json(table, confusion));

@@ -2,6 +2,7 @@
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <exception>
+#include <string>
 
 #include "base/error.h"
 #include "base/keep_memory.h"
@@ -33,6 +34,13 @@ std::string refusal(const CLI::App* app, const CLI::Error& error) {
         return call + ": no option is called '" + word + "'; " + servodx::did_you_mean(word, names) + "'" + call +
                " --help' lists what there is\n";
       }
+  // "Could not convert: --at = abc"
+  if (const std::string told = error.what(); dynamic_cast<const CLI::ConversionError*>(&error)) {
+    const auto name = told.find(": "), equals = told.find(" = ");
+    if (name != std::string::npos && equals != std::string::npos && name < equals)
+      return call + ": " + told.substr(name + 2, equals - name - 2) + ": '" + told.substr(equals + 3) +
+             "' is not a number; write one with a decimal point, like 12.5\n";
+  }
   return call + ": " + error.what() + "; '" + call + " --help' lists what there is\n";
 }
 

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "base/units.h"
+#include "baseline_beside.h"
 #include "commands.h"
 #include "door/baseline_parts.h"
 #include "invocation.h"
@@ -107,7 +108,7 @@ int run(const Options& options) {
   report::Header& header = invocation.header();
   std::optional<Baseline> baseline;
   if (!options.baseline.empty()) {
-    baseline = read_baseline(options.baseline);
+    baseline = baseline_beside(invocation, options.baseline, rig);
     require_same_table(*baseline, tuned);
     header.inputs.push_back({options.baseline, baseline->parts->sha256});
   }

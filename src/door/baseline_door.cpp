@@ -109,14 +109,17 @@ Baseline read_baseline(const std::string& path) {
   report::BaselineFile file = report::read_baseline(path);
   parts.detection = std::move(file.baseline);
   parts.sha256 = file.sha256;
+  parts.rig_file = file.rig_file;
   parts.text = read_file(path);
   try {
     parts.causes = report::read_healthy(path);
   } catch (const InputError& refused) {
+    if (file.has_causes) throw;  // what is there must be right
     parts.causes_refused = refused;
   }
   Baseline out = of_parts(std::move(parts));
   out.path = path;
+  out.notes = std::move(file.notes);
   return out;
 }
 

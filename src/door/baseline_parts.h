@@ -15,6 +15,7 @@ struct BaselineParts {
   DetectionBaseline detection;
   std::optional<HealthyReference> causes;    // earlier versions wrote none
   std::optional<InputError> causes_refused;  // why not, where the file was read
+  std::string rig_file;                      // that it was made with; empty: none
   std::string text;                          // of the file
   std::string sha256;                        // of that text
 };

@@ -11,6 +11,7 @@
 #include "base/csv.h"
 #include "base/error.h"
 #include "base/json_text.h"
+#include "base/result_schema.h"
 #include "fleet/result_file.h"
 
 namespace servodx {
@@ -84,6 +85,7 @@ void read_into(FleetTable& table, const std::string& path, const std::string& na
   if (command != "diagnose")
     throw Unfit{command.empty() ? "is no result of servodx" : "is a result of '" + command + "', not of 'diagnose'",
                 move_away};
+  table.without_schema += schema_notice(file, path).has_value();
   if (file.contains("refused")) return table.refused.push_back(refusal_of(file));
   const Json& results = at(file, "results");
   if (!results.is_array() || results.empty()) throw Unfit{"'results' is no list of results", make_again};

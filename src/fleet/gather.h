@@ -40,6 +40,7 @@ struct FleetTable {
   std::vector<SetAside> refused;  // logs that the list's run set aside, by path
   std::vector<SetAside> unread;   // files of the folder that are no results, by name
   bool interrupted = false;
+  std::size_t without_schema = 0;  // results of earlier versions
 };
 
 // Throws InputError where the folder is none or holds nothing of a fleet. `done`: files read so far, of how many.

@@ -123,8 +123,13 @@ GeneticState genetic_state_from_json(const std::string& text) {
     }
     require_sound(state);
     return state;
-  } catch (const json::exception& error) {
-    refuse(error.what());
+  } catch (const json::out_of_range& error) {
+    // "[json.exception.out_of_range.403] key 'archive' not found"
+    const std::string told = error.what();
+    const auto from = told.find('\''), to = told.rfind('\'');
+    refuse(from < to ? "has no " + told.substr(from, to - from + 1) : "lacks a part");
+  } catch (const json::exception&) {
+    refuse("holds a value of another type than the program writes");
   }
 }
 

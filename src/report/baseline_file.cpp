@@ -8,6 +8,7 @@
 #include "base/csv.h"
 #include "base/json_text.h"
 #include "base/key_error.h"
+#include "base/result_schema.h"
 #include "base/sha256.h"
 #include "diagnose/baseline.h"
 #include "diagnose/records.h"
@@ -114,6 +115,16 @@ std::vector<RecordFigure> read_figures(const Reader& read, const Json& figures) 
   return out;
 }
 
+// The rig file among the inputs of the call that made it.
+std::string rig_of(const Json& file) {
+  const auto inputs = file.find("inputs");
+  if (inputs == file.end() || !inputs->is_array()) return "";
+  for (const Json& input : *inputs)
+    if (input.is_object() && input.contains("path") && input["path"].is_string())
+      if (std::string path = input["path"].get<std::string>(); path.ends_with(".toml")) return path;
+  return "";
+}
+
 }  // namespace
 
 BaselineFile read_baseline(const std::string& path) {
@@ -124,6 +135,9 @@ BaselineFile read_baseline(const std::string& path) {
   if (const std::string command = read.text(file, "command"); command != "baseline")
     throw key_error({path, 0, "command"}, "is the result of '" + command + "', not of 'baseline'",
                     "name the file that 'servodx baseline -o' wrote");
+
+  std::vector<std::string> notes;
+  if (auto notice = schema_notice(file, path)) notes.push_back(std::move(*notice));
 
   constexpr double any = HUGE_VAL;
   DetectionBaseline b;
@@ -152,7 +166,7 @@ BaselineFile read_baseline(const std::string& path) {
   b.adequacy_limit = read.number(file, "adequacy_limit", 0, any);
   b.null_limit = read.number(file, "null_limit", 0, 1);
   b.tuned_sha256 = read.text(file, "tuned_sha256");
-  return {std::move(b), sha256(bytes)};
+  return {std::move(b), sha256(bytes), std::move(notes), rig_of(file), file.contains("explain")};
 }
 
 }  // namespace servodx::report

@@ -9,6 +9,7 @@
 #include "base/csv.h"
 #include "base/error.h"
 #include "base/json_text.h"
+#include "base/result_schema.h"
 #include "report/columns.h"
 #include "report/handy.h"
 #include "report/parts.h"
@@ -150,6 +151,8 @@ void compare_conditions(const Json& a, const Json& b, Comparison& to) {
 Comparison compare(const std::string& path_a, const std::string& path_b) {
   Json a = read_result(path_a), b = read_result(path_b);
   Comparison c;
+  for (const auto& [json, path] : {std::pair(&a, &path_a), std::pair(&b, &path_b)})
+    if (auto notice = schema_notice(*json, *path)) c.notes.push_back(std::move(*notice));
   c.command = a["command"].get<std::string>();
   c.a = path_a, c.b = path_b;
   if (b["command"].get<std::string>() != c.command)
@@ -158,7 +161,7 @@ Comparison compare(const std::string& path_a, const std::string& path_b) {
                      "compare results of one command");
   compare_conditions(a, b, c);
   for (Json* json : {&a, &b})
-    for (const char* key : {"tool", "version", "command", "seed", "settings", "inputs", "seconds", "notes",
+    for (const char* key : {"tool", "version", "schema", "command", "seed", "settings", "inputs", "seconds", "notes",
                             "simulations", "failed_simulations", "output"})
       json->erase(key);
   // One log against another: diagnoses of one log each compare though the logs differ.

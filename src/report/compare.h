@@ -14,6 +14,7 @@ namespace servodx::report {
 
 struct Comparison {
   std::string command, a, b;            // paths
+  std::vector<std::string> notes;       // of files of earlier versions
   std::vector<std::string> conditions;  // version, seed, settings and inputs that differ
   struct Difference {
     std::string what, a, b, change;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/result_schema.h"
 #include "diagnose/assessment.h"
 #include "diagnose/baseline.h"
 #include "diagnose/hypotheses.h"
@@ -82,6 +83,7 @@ Json to_json(const Header& header) {
   for (const InputFile& file : header.inputs) inputs.push_back({{"path", file.path}, {"sha256", file.sha256}});
   return {{"tool", "servodx"},
           {"version", header.version},
+          {"schema", result_schema},
           {"command", header.command},
           {"seed", header.seed},
           {"settings", header.settings},

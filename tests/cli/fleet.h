@@ -17,9 +17,10 @@ struct FleetDesk : Desk {
   FleetDesk() {
     write("tuned.csv", as_tuned());
     write("rig.toml", bytes_of(std::filesystem::path(SERVODX_SOURCE_DIR) / "data/rig.toml"));
-    write("base.json",
-          R"({"command": "baseline", "threshold": 3, "adequacy_limit": 1, "null_limit": 0.05, "tuned_sha256": ")" +
-              sha256(as_tuned()) + R"(", "false_alarm": {"asked": 0.1, "promised": 0.25, "promised_95": 0.6, "logs": 3,
+    write(
+        "base.json",
+        R"({"command": "baseline", "schema": 1, "threshold": 3, "adequacy_limit": 1, "null_limit": 0.05, "tuned_sha256": ")" +
+            sha256(as_tuned()) + R"(", "false_alarm": {"asked": 0.1, "promised": 0.25, "promised_95": 0.6, "logs": 3,
               "logs_needed": 9, "statement": ""},
               "scores": [{"log": "h.csv", "sha256": "1", "score": 1, "adequacy": 1, "gains": {}}]})");
     for (const char* folder : {"a", "b"}) std::filesystem::create_directory(path / folder);

@@ -202,6 +202,12 @@ TEST(Genetic, ResumedRunEndsAsTheUninterruptedOne) {
 TEST(Genetic, DamagedOrForeignStateIsRefusedInWords) {
   EXPECT_THROW(genetic_state_from_json("{\"format\": 3"), InputError);
   EXPECT_THROW(genetic_state_from_json("{}"), InputError);
+  try {
+    genetic_state_from_json(R"({"format": "servodx genetic state 2"})");
+    FAIL() << "a part is missing";
+  } catch (const InputError& told) {  // in the program's own words
+    EXPECT_EQ(told.rule, "the saved genetic search has no 'n'");
+  }
   EXPECT_THROW(genetic_state_from_json("[1, 2]"), InputError);
   GeneticOptions options;
   options.generations = 1;

@@ -1,0 +1,76 @@
+// What logs are judged by, as called: a baseline's schema, its rig file, the file of actions.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "cli/program.h"
+#include "fleet.h"
+
+namespace servodx {
+namespace {
+
+using Json = nlohmann::json;
+
+struct JudgingDesk : FleetDesk {
+  // The baseline with one key in its place; null: without it.
+  void set(const std::string& key, const Json& value) const {
+    Json base = Json::parse(bytes_of(path / "base.json"));
+    base.erase(key);
+    if (!value.is_null()) base[key] = value;
+    write("base.json", base.dump());
+  }
+  Ended dry(const std::string& more) const {
+    return run("diagnose b/log.csv --dry-run --params tuned.csv --baseline base.json " + more);
+  }
+  long notes_with(const std::string& words) const {
+    const Ended ended = run("diagnose b/log.csv --params tuned.csv --baseline base.json --no-explain --json - --quiet");
+    EXPECT_EQ(ended.code, 0) << ended.err;
+    const Json notes = Json::parse(ended.out)["notes"];
+    return std::count_if(notes.begin(), notes.end(),
+                         [&](const Json& n) { return n.get<std::string>().find(words) != std::string::npos; });
+  }
+};
+
+TEST(Judging, ANewerBaselineIsRefusedAnOlderOneIsReadWithOneNotice) {
+  const JudgingDesk desk;
+  EXPECT_EQ(desk.dry("--rig rig.toml").code, 0);
+  EXPECT_EQ(desk.notes_with("schema"), 0);
+  desk.set("schema", nullptr);
+  EXPECT_EQ(desk.notes_with("carries no schema"), 1);
+  desk.set("schema", 99);
+  const Ended newer = desk.dry("--rig rig.toml");
+  EXPECT_EQ(newer.code, 2);
+  EXPECT_NE(newer.err.find("base.json: key 'schema': 99 is newer"), std::string::npos) << newer.err;
+}
+
+TEST(Judging, ABaselineWithAWrongTypeIsRefusedInARehearsalToo) {
+  const JudgingDesk desk;
+  desk.set("explain", Json::array({1}));
+  const Ended ended = desk.dry("--rig rig.toml");
+  EXPECT_EQ(ended.code, 2);
+  EXPECT_NE(ended.err.find("is not as 'baseline' writes it"), std::string::npos) << ended.err;
+}
+
+TEST(Judging, ABaselineMadeWithARigFileIsNotUsedWithoutOneInSilence) {
+  const JudgingDesk desk;
+  EXPECT_EQ(desk.notes_with("MADE WITH A RIG FILE"), 0);
+  desk.set("inputs", {{{"path", "rig.toml"}, {"sha256", "1"}}, {{"path", "tuned.csv"}, {"sha256", "2"}}});
+  EXPECT_EQ(desk.notes_with("MADE WITH A RIG FILE"), 1);
+}
+
+TEST(Judging, ARehearsalReadsTheFileOfActions) {
+  const JudgingDesk desk;
+  desk.write("act.toml", "clogged_philtre = \"abnormal: flush\"\n");
+  for (const std::string call : {"diagnose b/log.csv --actions act.toml --dry-run",
+                                 "diagnose --list list.txt --out res --actions act.toml --dry-run"}) {
+    desk.write("list.txt", "b/log.csv\n");
+    const Ended ended = desk.run(call + FleetDesk::judged_with);
+    EXPECT_EQ(ended.code, 2) << call;
+    EXPECT_NE(ended.err.find("act.toml"), std::string::npos) << ended.err;
+  }
+}
+
+}  // namespace
+}  // namespace servodx
