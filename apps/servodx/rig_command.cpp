@@ -12,6 +12,7 @@
 
 #include "base/atomic_file.h"
 #include "base/progress.h"
+#include "base/result_schema.h"
 #include "base/sha256.h"
 #include "invocation.h"
 #include "report/columns.h"
@@ -60,6 +61,7 @@ std::string truth_path(const std::string& log) {
 // The log, and the truth with what the run was made of.
 void write(const std::string& path, rig::RigLog& log, const std::string& model, const std::string& model_sha256) {
   log.truth["version"] = SERVODX_VERSION;
+  log.truth["schema"] = result_schema;
   log.truth["inputs"] = {{{"path", model}, {"sha256", model_sha256}}};
   write_log(path, log.columns, log.comments);
   log.truth["sha256"] = sha256_of_file(path);
@@ -251,7 +253,7 @@ std::string names() {
   std::string text = "Excitations:\n";
   for (const auto& e : rig::excitations()) text += "  " + e.name + ": " + e.description + "\n";
   text += "Faults (severity: mild, medium, severe or a value):\n";
-  for (const auto& f : rig::rig_faults()) text += "  " + f.name + ": " + f.description + "\n";
+  for (const auto& f : rig::rig_faults()) text += "  " + rig::label_of(f.name) + ": " + f.description + "\n";
   return text;
 }
 

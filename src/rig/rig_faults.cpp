@@ -12,11 +12,23 @@
 namespace servodx::rig {
 namespace {
 
-const RigFault& find(const std::string& name) {
+// The contract's labels of faults that the rig calls by what it does.
+struct Label {
+  std::string label, name;
+};
+const std::vector<Label>& labels() {
+  static const std::vector<Label> list{{"corner_wear", "corner_radius_wear"}, {"driver_fault", "open_coil"}};
+  return list;
+}
+
+const RigFault& find(const std::string& wanted) {
+  std::string name = wanted;
+  for (const Label& l : labels())
+    if (l.label == wanted) name = l.name;
   std::vector<std::string> names;
   for (const auto& fault : rig_faults()) {
     if (fault.name == name) return fault;
-    names.push_back(fault.name);
+    names.push_back(label_of(fault.name));
   }
   throw InputError({.file = "--fault"}, fmt::format("unknown fault '{}'", name),
                    fmt::format("{}known are {}", did_you_mean(name, names), fmt::join(names, ", ")));
@@ -47,6 +59,12 @@ double severity_of(const RigFault& fault, const std::string& size, const std::st
 }
 
 }  // namespace
+
+std::string label_of(const std::string& name) {
+  for (const Label& l : labels())
+    if (l.name == name) return l.label;
+  return name;
+}
 
 const std::vector<RigFault>& rig_faults() {
   // clang-format off

@@ -23,6 +23,8 @@ struct RigFault {
   double Wear::*quantity;
 };
 const std::vector<RigFault>& rig_faults();
+// The contract's label of a fault that the rig calls by what it does ("driver_fault" of "open_coil"); else its name.
+std::string label_of(const std::string& name);
 
 struct FaultCourse {
   double severity = 0.0;  // at its end
@@ -40,7 +42,8 @@ inline constexpr double fully_grown = std::numeric_limits<double>::infinity();
 // Throws InputError for an unknown label (with the list of labels) or a value out of range.
 Wear wear_of(const FaultSet& faults, double time = fully_grown);
 
-// Into the set: "clogged_filter=0.5" or "clogged_filter=medium" from the start, "...=0.5@2" stepping in at 2 s,
+// Into the set, by name or label: "clogged_filter=0.5" or "clogged_filter=medium" from the start, "...=0.5@2" stepping
+// in at 2 s,
 // "...=0.5@2..10" growing from 2 to 10 s. Throws InputError.
 void add_fault(const std::string& text, FaultSet& faults);
 

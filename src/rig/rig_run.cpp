@@ -75,6 +75,16 @@ FaultSet with_onset(const RigRun& run) {
   return faults;
 }
 
+// A fault that begins behind the log's end would be in its truth alone.
+void check_onsets(const RigRun& run) {
+  for (const auto& [name, course] : with_onset(run))
+    if (course.start >= run.duration)
+      throw InputError(
+          {.file = "--fault"},
+          fmt::format("{} begins at {} s, and the log ends at {} s", label_of(name), course.start, run.duration),
+          "begin it within the log, or give a longer --duration");
+}
+
 bool any_changes(const FaultSet& faults) {
   return std::any_of(faults.begin(), faults.end(), [](const auto& fault) { return fault.second.changes(); });
 }
@@ -86,11 +96,12 @@ nlohmann::json truth_of(const RigModel& model, const RigRun& run, double h) {
   std::string label;
   double onset = -1.0;
   for (const auto& [name, course] : with_onset(run)) {
-    faults.push_back({{"label", name},
+    faults.push_back({{"label", label_of(name)},
                       {"severity", course.severity},
                       {"start", time_or_null(course.start)},
                       {"end", time_or_null(course.end)}});
-    label += (label.empty() ? "" : "+") + name;
+    if (!label.empty()) label += '+';
+    label += label_of(name);
     if (course.changes() && (onset < 0.0 || course.start < onset)) onset = course.start;
   }
   nlohmann::json truth{
@@ -277,6 +288,7 @@ class Recorder {
 
 RigLog run_rig(const RigModel& model, const RigRun& run, const Stimulus& stimulus, const Observer& observe) {
   check(run);
+  check_onsets(run);
   Recorder recorder(model, run, stimulus);
   RigLog log = recorder.record(observe);
   nlohmann::json truth = truth_of(model, run, recorder.step_size());
