@@ -46,7 +46,7 @@ void run(const Options& options) {
   header.settings = {{"step", steps.step}, {"impact_step", steps.impact_step}};
   if (invocation.dry_run()) return;
   const Simulation simulated = simulate(log, table, rig, how);
-  write_simulation(options.output, log, simulated);
+  write_simulation(options.output, log, simulated, rig);
 
   header.simulations = 1;
   invocation.note(simulated.notes);

@@ -35,7 +35,7 @@ struct Simulation {
 // signal that the model reports, std::runtime_error where the simulation leaves the finite numbers.
 Simulation simulate(const Log& log, const Table& table, const Rig& rig, const SimulationOptions& options = {});
 
-// As `servodx simulate -o` writes.
-void write_simulation(const std::string& path, const Log& log, const Simulation& simulation);
+// As `servodx simulate -o` writes: names, units, gains and offsets are those of the log's file, as `rig` maps them.
+void write_simulation(const std::string& path, const Log& log, const Simulation& simulation, const Rig& rig = {});
 
 }  // namespace servodx

@@ -14,6 +14,7 @@
 #include "servodx/rig.h"
 #include "servodx/simulate.h"
 #include "servodx/table.h"
+#include "signals/file_column.h"
 #include "simulate/scenario.h"
 #include "simulate/simulate.h"
 
@@ -68,10 +69,10 @@ Simulation simulate(const Log& log, const Table& table, const Rig& rig, const Si
   return out;
 }
 
-void write_simulation(const std::string& path, const Log& log, const Simulation& simulation) {
-  std::vector<OutputColumn> columns = {output_column(log, Signal::time, simulation.time)};
-  columns.insert(columns.end(), simulation.columns.begin(), simulation.columns.end());
-  write_log(path, columns);
+void write_simulation(const std::string& path, const Log& log, const Simulation& simulation, const Rig& rig) {
+  std::vector<FileColumn> columns = {file_column(log, rig, output_column(log, Signal::time, simulation.time))};
+  for (const OutputColumn& c : simulation.columns) columns.push_back(file_column(log, rig, c));
+  write_columns(path, columns);
 }
 
 }  // namespace servodx

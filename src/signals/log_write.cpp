@@ -1,6 +1,7 @@
 // Logs out: canonical CSV whose numbers read back to the same bits.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <limits>
@@ -10,6 +11,8 @@
 #include "base/csv.h"
 #include "base/units.h"
 #include "servodx/error.h"
+#include "servodx/rig.h"
+#include "signals/file_column.h"
 #include "signals/log.h"
 
 namespace servodx {
@@ -51,25 +54,60 @@ OutputColumn output_column(const Log& log, Signal signal, std::vector<double> va
           channel.full_scale};
 }
 
-void write_log(const std::string& path, const std::vector<OutputColumn>& columns,
-               const std::vector<std::string>& comments) {
+namespace {
+
+// Of a signal, under its canonical name. `path` is for the refusal.
+FileColumn canonical_column(const OutputColumn& column, const std::string& path) {
+  const SignalInfo& signal = info(column.signal);
+  const Unit* unit = find_unit(column.unit);
+  const auto relative = relative_unit(column.signal);
+  const bool is_relative = unit && relative && unit->dimension == relative->dimension && column.full_scale > 0.0;
+  if (!unit || (unit->dimension != signal.dimension && !is_relative))
+    throw InputError({path, 0, std::string(signal.name)}, "cannot be written in '" + column.unit + "'",
+                     "use one of " + units_of(signal.dimension));
+  FileColumn out{std::string(signal.name), column.unit, *unit, column.value};
+  if (is_relative) out.scale.multiply *= column.full_scale;
+  return out;
+}
+
+// "Pos fb [V]" with "Pos fb"
+bool begins_with_name(const std::string& cell, const std::string& name) {
+  return cell.size() > name.size() + 3 && cell.starts_with(name) && cell[name.size() + 1] == '[' && cell.back() == ']';
+}
+
+}  // namespace
+
+FileColumn file_column(const Log& log, const Rig& rig, const OutputColumn& column) {
+  FileColumn out = canonical_column(column, log.path);
+  const std::string& name = log.channels[index(column.signal)].column;
+  // The rig file names a column alone, or with the unit of its header cell.
+  const auto found = std::find_if(rig.columns.begin(), rig.columns.end(), [&](const auto& c) {
+    return find_signal(c.second.signal) == column.signal && (c.first == name || begins_with_name(c.first, name));
+  });
+  if (name.empty() || found == rig.columns.end()) return out;
+  const ColumnMapping& mapping = found->second;
+  out.name = name;
+  // With a gain that has a unit the file's numbers are in the mapping's own unit, else in the log's.
+  if (mapping.gain_has_unit && !mapping.column_unit.empty()) {
+    out.unit = mapping.column_unit;
+    out.scale = *find_unit(mapping.column_unit);
+  }
+  if (found->first != name) out.unit = found->first.substr(name.size() + 2, found->first.size() - name.size() - 3);
+  out.scale.multiply *= mapping.gain;
+  out.scale.offset = mapping.gain * out.scale.offset + mapping.offset;
+  return out;
+}
+
+void write_columns(const std::string& path, const std::vector<FileColumn>& columns,
+                   const std::vector<std::string>& comments) {
   constexpr std::size_t chunk = std::size_t{1} << 20;
-  std::vector<Unit> units;
   std::string text;
   for (const std::string& comment : comments) text += "# " + comment + "\n";
-  for (const OutputColumn& column : columns) {
-    const SignalInfo& signal = info(column.signal);
-    const Unit* unit = find_unit(column.unit);
-    const auto relative = relative_unit(column.signal);
-    const bool is_relative = unit && relative && unit->dimension == relative->dimension && column.full_scale > 0.0;
-    if (!unit || (unit->dimension != signal.dimension && !is_relative))
-      throw InputError({path, 0, std::string(signal.name)}, "cannot be written in '" + column.unit + "'",
-                       "use one of " + units_of(signal.dimension));
+  for (const FileColumn& column : columns) {
     if (column.value.size() != columns.front().value.size())
-      throw std::logic_error("write_log: columns of different length");
-    units.push_back(*unit);
-    if (is_relative) units.back().multiply *= column.full_scale;
-    text += fmt::format("{}{} [{}]", units.size() > 1 ? "," : "", signal.name, column.unit);
+      throw std::logic_error("write_columns: columns of different length");
+    if (&column != &columns.front()) text += ',';
+    append_cell(text, fmt::format("{} [{}]", column.name, column.unit));
   }
   text += '\n';
   AtomicFile file(path);
@@ -78,7 +116,7 @@ void write_log(const std::string& path, const std::vector<OutputColumn>& columns
     for (std::size_t c = 0; c < columns.size(); ++c) {
       if (c) text += ',';
       const double si = columns[c].value[i];
-      if (!std::isnan(si)) append_number(text, number_in_unit(si, units[c]));
+      if (!std::isnan(si)) append_number(text, number_in_unit(si, columns[c].scale));
     }
     text += '\n';
     if (text.size() >= chunk) {
@@ -88,6 +126,13 @@ void write_log(const std::string& path, const std::vector<OutputColumn>& columns
   }
   file.write(text);
   file.commit();
+}
+
+void write_log(const std::string& path, const std::vector<OutputColumn>& columns,
+               const std::vector<std::string>& comments) {
+  std::vector<FileColumn> as_written;
+  for (const OutputColumn& column : columns) as_written.push_back(canonical_column(column, path));
+  write_columns(path, as_written, comments);
 }
 
 }  // namespace servodx

@@ -1,4 +1,5 @@
 // `servodx simulate`: what it writes is a log again, with the columns of the log it was given.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -6,6 +7,7 @@
 #include <set>
 
 #include "program.h"
+#include "servodx/rig.h"
 #include "signals/log.h"
 
 namespace servodx {
@@ -38,6 +40,34 @@ TEST(Simulate, WritesTheLogsMeasuredSignalsInTheLogsUnits) {
   EXPECT_FALSE(sim.has(Signal::command));
   // 4 mA of 20 move the spool by a fifth of its half millimetre.
   EXPECT_NEAR(sim[Signal::spool_position][140], 1e-4, 1e-5);
+}
+
+// The rig file's names, volts, gains and offsets come back: the result stands beside the log column by column.
+TEST(Simulate, WritesTheLogsOwnNamesUnitsAndGains) {
+  const Bench bench;
+  ASSERT_EQ(bench.run(simulate).code, 0);
+  const ReadOptions any{.require_drive = false};
+  const Log canonical = read_log(bench / "sim.csv", {}, any);
+  bench.write(
+      "rig.toml",
+      "[columns]\n\"Pos fb\" = { signal = \"piston_position\", unit = \"V\", gain = \"20 mm/V\", offset = \"-100 "
+      "mm\" }\n\"Spool\" = { signal = \"spool_position\", gain = \"-1\" }\n\"pB\" = { signal = \"pressure_b\" }\n");
+  const Log log = read_log(bench / "log.csv");
+  std::string text = "time [ms],command [mA],Spool [um],pB [bar],Pos fb [V],pressure_a [MPa],supply_pressure [bar]\n";
+  for (std::size_t k = 0; k < log.samples(); ++k)
+    text += fmt::format("{},{},{},{},{},{},{}\n", log.time[k] * 1e3, log[Signal::command][k] * 1e3,
+                        -log[Signal::spool_position][k] * 1e6, log[Signal::pressure_b][k] * 1e-5,
+                        (log[Signal::piston_position][k] + 0.1) / 0.02, log[Signal::pressure_a][k] * 1e-6, 207);
+  bench.write("own.csv", text);
+  const Ended ended = bench.run("simulate own.csv --params table.csv --rig rig.toml -o own_sim.csv");
+  ASSERT_EQ(ended.code, 0) << ended.err;
+  const std::string written = bytes_of(bench / "own_sim.csv"), header = written.substr(0, written.find('\n'));
+  for (const char* column : {"time [ms]", "Spool [um]", "pB [bar]", "Pos fb [V]", "pressure_a [MPa]"})
+    EXPECT_NE(header.find(column), std::string::npos) << column << " is not in " << header;
+  const Log own = read_log(bench / "own_sim.csv", read_rig_file(bench / "rig.toml"), any);
+  for (Signal s : {Signal::spool_position, Signal::piston_position, Signal::pressure_a, Signal::pressure_b})
+    for (std::size_t k = 0; k < own.samples(); ++k)
+      ASSERT_NEAR(own[s][k], canonical[s][k], 1e-6 * (1e-6 + std::abs(canonical[s][k]))) << info(s).name << " " << k;
 }
 
 TEST(Simulate, TheNumberOfThreadsChangesNoByte) {
