@@ -7,6 +7,7 @@
 
 #include "base/csv.h"
 #include "base/sha256.h"
+#include "door/require_samples.h"
 #include "door/require_setting.h"
 #include "parameters/table_text.h"
 #include "prognose/check.h"
@@ -32,6 +33,7 @@ std::string text_of(const Table& table) {
 }  // namespace
 
 Checked check(const Log& log, const Tuned& tuned, const Rig& rig, const CheckOptions& options) {
+  door::require_samples({log}, rig);
   auto result = std::make_shared<CheckResult>(check(log, tuned.table, rig, options));
   Checked out;
   out.log = result->log, out.sha256 = result->sha256;

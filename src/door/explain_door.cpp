@@ -5,6 +5,7 @@
 
 #include "base/error.h"
 #include "door/baseline_parts.h"
+#include "door/require_samples.h"
 #include "evidence/heldout_gain.h"
 #include "explain/explain.h"
 #include "explain/healthy.h"
@@ -83,12 +84,14 @@ std::string json_of(const Explanation& explanation) {
 
 Explanation explain(const std::vector<Log>& logs, const Tuned& tuned, const Rig& rig, const ExplainOptions& options) {
   options.validate();
+  door::require_samples(logs, rig);
   return explanation_of(explain_logs(logs, tuned.table, rig, nullptr, options));
 }
 
 Explanation explain(const std::vector<Log>& logs, const Tuned& tuned, const Rig& rig, const Baseline& baseline,
                     const ExplainOptions& options) {
   options.validate();
+  door::require_samples(logs, rig);
   require_same_table(baseline, tuned);
   const HealthyReference& causes = causes_of(baseline);
   ExplainOptions at_its_rate = options;

@@ -4,19 +4,21 @@
 
 #include "base/atomic_file.h"
 #include "base/sha256.h"
+#include "door/require_samples.h"
 #include "fit/tuned_state.h"
 #include "parameters/table_text.h"
+#include "report/tune_words.h"
 #include "servodx/error.h"
 #include "servodx/log.h"
 #include "servodx/rig.h"
 #include "servodx/table.h"
 #include "servodx/tune.h"
 #include "tune/tune.h"
-#include "report/tune_words.h"
 
 namespace servodx {
 
 Tuned tune(const std::vector<Log>& logs, const Table& nominal, const Rig& rig, const TuneOptions& options) {
+  door::require_samples(logs, rig);
   auto result = std::make_shared<TuneResult>(tune_table(logs, nominal, rig, options));
   Tuned out;
   out.table = result->table;

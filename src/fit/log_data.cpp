@@ -55,6 +55,26 @@ std::vector<char> after_gaps(const std::vector<double>& t) {
   return unknown;
 }
 
+// A simulation takes every step of a gap, and over a long one valve and oil go where no sample says. A test stand may
+// be read point by point.
+constexpr double longest_gap = 10.0, longest_wait = 600.0;  // [s]
+
+void refuse_long_gaps(const Log& log, Ports ports) {
+  const double longest = ports == Ports::actuator ? longest_gap : longest_wait;
+  const std::vector<double>& t = log.time;
+  std::size_t first = 0, gaps = 0;
+  for (std::size_t k = 1; k < t.size(); ++k)
+    if (t[k] - t[k - 1] > longest && gaps++ == 0) first = k;
+  if (gaps == 0) return;
+  const double step = t[first] - t[first - 1];
+  if (2 * gaps >= t.size() - 1)
+    throw InputError({.file = log.path, .column = "time"}, fmt::format("its rows are {:.6g} s apart", step),
+                     "look at the unit of time: is it in ms or us, and read as s?");
+  throw InputError({.file = log.path, .column = "time"},
+                   fmt::format("a gap of {:.6g} s between rows {} and {}", step, first, first + 1),
+                   "cut the log there: each part is a log of its own");
+}
+
 double mean_of_present(const std::vector<double>& x) {
   double sum = 0;
   long n = 0;
@@ -197,6 +217,7 @@ LogData prepare(const Log& log, const RigFile& rig, int window) {
   s.return_pressure = input(Signal::return_pressure);
   s.load_force = input(Signal::load_force);
   s.ports = ports_of(log, rig);
+  refuse_long_gaps(log, s.ports);
   if (s.ports != rig.ports)
     out.notes.push_back(fmt::format("{}: taken as of a valve on a test stand with {} ports", log.path,
                                     s.ports == Ports::blocked ? "blocked" : "free"));

@@ -52,6 +52,11 @@ constexpr int not_negative[] = {
     row::piston_coulomb_friction,  row::piston_stribeck_friction, row::air_fraction,
     row::return_pressure,          row::hose_resistance,          row::hose_compliance};
 
+// What cannot be more than one: parts of a whole.
+constexpr int at_most_one[] = {row::filter_blockage_positive, row::filter_blockage_negative, row::air_fraction};
+// [Pa] stiffness of a liquid: the softest solvents and the stiffest melts lie well within.
+constexpr double softest_liquid = 1e7, stiffest_liquid = 1e11;
+
 bool is_in(std::span<const int> rows, int row) { return std::find(rows.begin(), rows.end(), row) != rows.end(); }
 
 std::string trimmed_start(std::string text) {
@@ -280,6 +285,16 @@ class Reader {
       fail(record, "lower",
            "'" + row.name + "' may go down to " + with_unit(row.lower, row.unit) + ", and is never negative",
            "write a lower bound of 0 or more");
+    if (is_in(at_most_one, row.id - 1) && row.upper > 1)
+      fail(record, row.nominal > 1 ? "nominal" : "upper",
+           "'" + row.name + "' " + (row.nominal > 1 ? "is " : "may go up to ") +
+               with_unit(row.nominal > 1 ? row.nominal : row.upper, row.unit) + ", and is a part of a whole",
+           "write a nominal value and an upper bound of 1 or less");
+    if (row.id - 1 == row::bulk_modulus && !(row.lower >= softest_liquid && row.upper <= stiffest_liquid))
+      fail(record, row.lower < softest_liquid ? "lower" : "upper",
+           "'" + row.name + "' is " + with_unit(row.nominal, row.unit) + ", from " + with_unit(row.lower, row.unit) +
+               " to " + with_unit(row.upper, row.unit) + ", and no liquid is as soft or as stiff",
+           "write values between 1e7 Pa and 1e11 Pa: oils have about 1.4e9 Pa");
   }
 
   std::string file_;

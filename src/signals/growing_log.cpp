@@ -148,6 +148,7 @@ bool GrowingLog::read_sample(std::string_view text, Sample& to) const {
     if (column >= 0) {
       if (!number_of(text.substr(0, end), separator_ == ';' ? ',' : '.', value)) return false;
       const double si = columns_->si(column, value);
+      if (std::isinf(si)) return false;
       const Signal signal = columns_->signal(column);
       if (signal == Signal::time)
         time = si;

@@ -15,6 +15,8 @@
 namespace servodx {
 namespace {
 
+constexpr double beyond_all_units = 1e100;  // a number up to here stays finite in SI, whatever its unit and gain
+
 struct NameAndUnit {
   std::string name;
   std::string unit;
@@ -211,6 +213,8 @@ void LogColumns::append(std::span<const double> sample, long line) {
   Column& time = columns_[time_];
   if (std::isnan(sample[time_])) return missing(time);
   const double now = time.to_si(sample[time_]);
+  if (!std::isfinite(now))
+    refuse(line, time.name, fmt::format("{} {} is no finite time", sample[time_], time.unit.name), "mend the number");
   if (!(now > previous_))
     refuse(line, time.name, fmt::format("time does not increase: {} s after {} s", now, previous_),
            "sort the rows and remove repeated ones");
@@ -218,6 +222,11 @@ void LogColumns::append(std::span<const double> sample, long line) {
   last_line_ = line;
   for (std::size_t c = 0; c < columns_.size(); ++c) {
     if (std::isnan(sample[c])) missing(columns_[c]);
+    if (std::abs(sample[c]) > beyond_all_units && !std::isfinite(columns_[c].to_si(sample[c])))
+      refuse(line, columns_[c].name,
+             fmt::format("{} {} is no finite number of {}", sample[c], columns_[c].unit.name,
+                         info(columns_[c].signal).si_unit),
+             "mend the number, or leave the cell empty where the sample is missing");
     columns_[c].value.push_back(sample[c]);
   }
 }

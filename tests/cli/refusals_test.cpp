@@ -1,7 +1,9 @@
 // What is refused names the place, the rule and the mend on standard error, ends with code 2, and writes nothing.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <functional>
+#include <sstream>
 
 #include "program.h"
 
@@ -20,6 +22,18 @@ struct Refusal {
 void PrintTo(const Refusal& refusal, std::ostream* to) { *to << refusal.call; }
 
 void no_change(const Desk&) {}
+
+// `small_log` with other times [ms].
+std::string with_times(const std::string& log, const std::function<double(int)>& time) {
+  std::istringstream in(log);
+  std::string out, line;
+  for (int k = -1; std::getline(in, line); ++k) {
+    const auto from = line.find(',') + 1, to = line.find(',', from);
+    out += k < 0 ? line : line.substr(0, from) + fmt::format("{}", time(k)) + line.substr(to);
+    out += '\n';
+  }
+  return out;
+}
 
 const std::vector<Refusal>& refusals() {
   static const std::vector<Refusal> list = {
@@ -60,7 +74,42 @@ const std::vector<Refusal>& refusals() {
        no_change,
        "init /dev/null -o new.toml --table new.csv",
        {"/dev/null: ", "can be read but once", "write the log to a file"}},
+      {"LogWithANumberThatNoUnitHolds",
+       [](const Desk& d) { d.write("log.csv", with_line(small_log(), 7, "0,5,1,1e305,0.1,10,207")); },
+       simulate,
+       {"log.csv:7: column 'pressure_b': ", "1e+305 bar is no finite number of Pa", "; "}},
+      {"LogWithADayInItsMiddle",
+       [](const Desk& d) {
+         d.write("log.csv", with_times(small_log(), [](int k) { return k + (k < 150 ? 0 : 864e5); }));
+       },
+       simulate,
+       {"log.csv: column 'time': ", "a gap of 86400 s between rows 150 and 151", "cut the log there"}},
+      {"LogOfAges",
+       [](const Desk& d) { d.write("log.csv", with_times(small_log(), [](int k) { return (k + 1) * 1e300; })); },
+       simulate,
+       {"log.csv: column 'time': ", "its rows are 1e+297 s apart", "unit of time"}},
+      {"TuneOfASampleASecond",
+       [](const Desk& d) { d.write("log.csv", with_times(small_log(), [](int k) { return 1e3 * k; })); },
+       "tune log.csv --params table.csv -o tuned.csv --quiet",
+       {"log.csv: column 'time': ", "1 samples a second are too few", "unit of time"}},
       // Tables
+      {"TableWithAFilterBlockedThrice",
+       [](const Desk& d) {
+         d.write("table.csv", replaced(shipped_table(), "1,filter_blockage_positive,first_stage,0,0,0.98",
+                                       "1,filter_blockage_positive,first_stage,3,0,5"));
+       },
+       simulate,
+       {"table.csv:5: column 'nominal': ", "'filter_blockage_positive' is 3, and is a part of a whole", "; "}},
+      {"TableWithMoreAirThanOil",
+       [](const Desk& d) { d.write("table.csv", replaced(shipped_table(), "0.005,0,0.1,lin", "0.005,0,5,lin")); },
+       simulate,
+       {"table.csv:39: column 'upper': ", "'air_fraction' may go up to 5, and is a part of a whole", "; "}},
+      {"TableWithOilAsSoftAsNothing",
+       [](const Desk& d) {
+         d.write("table.csv", replaced(shipped_table(), "1400000000,700000000,2200000000", "1,1,2200000000"));
+       },
+       simulate,
+       {"table.csv:42: column 'lower': ", "'bulk_modulus' is 1 Pa", "no liquid", "; "}},
       {"TableWithSwappedBounds",
        [](const Desk& d) { d.write("table.csv", replaced(shipped_table(), "750,375,1500", "750,1500,375")); },
        simulate,
@@ -89,6 +138,13 @@ const std::vector<Refusal>& refusals() {
        },
        "compare a.json b.json",
        {"a.json: ", "is no result of servodx", "; "}},
+      {"ResultOfANewerSchema",
+       [](const Desk& d) {
+         d.write("a.json", R"({"tool": "servodx", "command": "x", "schema": 99})");
+         d.write("b.json", R"({"tool": "servodx", "command": "x", "schema": 1})");
+       },
+       "compare a.json b.json",
+       {"a.json: ", "key 'schema': 99 is newer than this program", "; "}},
       {"ManifestOfOtherTypes",
        [](const Desk& d) {
          d.write("m.json",
@@ -127,6 +183,7 @@ const std::vector<Refusal>& refusals() {
        {"servodx simulate: ", "--params is required", "--help"}},
       {"NegativeSeed", no_change, simulate + " --seed -1", {"--seed", "'-1' is not a whole number", "--help"}},
       {"NegativeThreads", no_change, simulate + " --threads -2", {"--threads", "'-2' is not a whole number", "--help"}},
+      {"StepThatIsNoNumber", no_change, simulate + " --step abc", {"--step: ", "'abc' is not a number", "12.5"}},
       {"StepOfNoSize", no_change, simulate + " --step 0", {"--step: ", "between 0 and 0.1 s", "; "}},
       {"StepAndReference", no_change, simulate + " --step 1e-4 --reference", {"--reference: ", "; "}},
       {"UnknownEffect",
