@@ -78,6 +78,7 @@ struct PlannedTest {
     double current = 0;                          // [A]
     double stroke = 0, speed = 0;                // [m], [m/s]
     double pressure_low = 0, pressure_high = 0;  // [Pa] in the chambers
+    bool cavitates = false;                      // a chamber may fall to where oil holds no tension
   };
   struct Figures {
     double information = 0;  // the search's measure: of two tests the better one's is larger

@@ -42,6 +42,9 @@ inline constexpr double worth_a_round = 1e-3;      // of information: less ends 
 inline constexpr int batch = 6;                    // tests simulated at once: memory, not the result
 inline constexpr int random_tries = 200;           // draws until a random test keeps the limits
 
+// Below it oil parts: gas comes out and columns collapse. [Pa] gauge, an atmosphere below ours
+inline constexpr double no_tension = -1.0e5;
+
 // Of the way to the stop: a stroke limit where none is given.
 inline constexpr double usual_stroke = 0.75;
 

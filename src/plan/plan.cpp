@@ -169,6 +169,10 @@ PlannedTest plan_of(const Table& tuned, const RigFile& rig, const PlanOptions& o
   out.pieces = pieces_of(found.segments, timing);
   out.threshold = law.threshold;
   out.notes = bench.notes();
+  if (out.planned.extremes.cavitates)
+    out.notes.push_back(
+        "the chambers of a healthy valve within its tolerances may fall to -1 bar, where oil cavitates: the test is "
+        "harder on the actuator, and less like the model, than its figures say; lower --max-current or --max-speed");
   if (!baseline)
     out.notes.push_back(
         "no baseline is given: a finding has to pass what noise alone needs, not what healthy logs show");

@@ -93,6 +93,8 @@ PlannedTest::Extremes extremes_of(const LogData& log, const Trajectory& base, st
     out.pressure_low = std::min(out.pressure_low, *low - spread);
     out.pressure_high = std::max(out.pressure_high, *high + spread);
   }
+  out.cavitates = out.pressure_low < k::no_tension;
+  out.pressure_low = std::max(out.pressure_low, k::no_tension);
   return out;
 }
 

@@ -93,7 +93,8 @@ std::string extremes_words(const PlannedTest::Extremes& e) {
   std::string text = "current " + handy(e.current, "A");
   if (e.stroke > 0)
     text += fmt::format(", piston {} either way at {}, chambers {} to {}", handy(e.stroke, "m"), handy(e.speed, "m/s"),
-                        handy(e.pressure_low, "Pa"), handy(e.pressure_high, "Pa"));
+                        handy(e.pressure_low, "Pa") + (e.cavitates ? " (oil cavitates)" : ""),
+                        handy(e.pressure_high, "Pa"));
   return text;
 }
 
@@ -125,7 +126,8 @@ Json figures_json(const PlannedTest::Figures& f) {
             {"stroke", e.stroke},
             {"speed", e.speed},
             {"pressure_low", e.pressure_low},
-            {"pressure_high", e.pressure_high}}}};
+            {"pressure_high", e.pressure_high},
+            {"cavitates", e.cavitates}}}};
 }
 
 std::vector<double> scaled(std::vector<double> x, double by) {

@@ -1,6 +1,7 @@
 // plan and rig --command, as called: what is planned is what the rig plays.
 #include <gtest/gtest.h>
 
+#include <nlohmann/json.hpp>
 #include <set>
 #include <utility>
 
@@ -30,6 +31,9 @@ TEST(Plan, TheRigPlaysWhatWasPlanned) {
   const std::string call = "plan --params tuned.csv --rig rig.toml --faults sticky_spool --rounds 0 --seconds 0.5 ";
   const Ended planned = desk.run(call + "-o command.csv --quiet --json plan.json");
   ASSERT_EQ(planned.code, 0) << planned.err;
+  const auto extremes = nlohmann::json::parse(bytes_of(desk.path / "plan.json"))["planned"]["extremes"];
+  EXPECT_GE(extremes["pressure_low"], -1e5);  // oil holds no tension
+  EXPECT_EQ(extremes["cavitates"], extremes["pressure_low"] == -1e5);
   const std::vector<std::string> asked = column(bytes_of(desk.path / "command.csv"), 1);
   EXPECT_EQ(asked.size(), 500u);
   EXPECT_GT(std::set<std::string>(asked.begin(), asked.end()).size(), 2u);

@@ -104,6 +104,8 @@ TEST(Plan, KeepsItsLimits) {
     EXPECT_LE(e.stroke, 8e-3);
     EXPECT_LE(e.speed, 0.15);
     EXPECT_LE(e.pressure_high, 180e5);
+    EXPECT_GE(e.pressure_low, -1e5);  // oil holds no tension
+    EXPECT_EQ(e.cavitates, e.pressure_low == -1e5);
   }
 }
 
