@@ -31,6 +31,7 @@
 #include "faults/gross_finding.h"
 #include "fleet_judge.h"
 #include "online/arrivals.h"
+#include "online/constants.h"
 #include "online/limits.h"
 #include "online/watched_model.h"
 #include "online/watcher.h"
@@ -81,6 +82,7 @@ report::Json json_of(const WatchEvent& e) {
     out["window"] = e.window, out["level"] = e.level, out["limit"] = e.limit;
   }
   if (e.gross != GrossFinding::none) out["seen"] = word_of(e.gross);
+  if (e.supply) out["seen"] = "supply_out_of_band";
   return out;
 }
 
@@ -89,6 +91,9 @@ std::string text_of(const WatchEvent& e) {
   switch (e.kind) {
     case WatchEventKind::alarm:
       if (e.gross != GrossFinding::none) return fmt::format("{:.3f} s: ALARM, {}: {}", e.time, word_of(e.gross), name);
+      if (e.supply)
+        return fmt::format("{:.3f} s: ALARM, supply_pressure {:.3g} bar from its healthy level: looks like {}", e.time,
+                           e.level * 1e-5, name);
       return fmt::format("{:.3f} s: ALARM, {} {:.3g} times its limit: looks like {}, since {:.3f} s", e.time,
                          e.signal == Signal::coil_current ? "driver" : std::string(name_of(*e.signal)),
                          e.level / e.limit, name, e.onset);
@@ -125,6 +130,12 @@ std::vector<Log> healthy_logs(const FollowOptions& options, const Judging& judgi
   return out;
 }
 
+// A window that waits for its diagnosis: what a watch that goes on from a state makes it of again.
+struct Due {
+  long of = 0;                // number of the window's event
+  double begins = 0, at = 0;  // [s]
+};
+
 // Diagnoses of windows, one at a time, beside the watch.
 class Diagnoses {
  public:
@@ -132,17 +143,24 @@ class Diagnoses {
       : judging_(judging), common_(common), stop_(stop) {}
 
   struct Done {
-    long of = 0;  // number of the window's event
+    Due due;
     std::optional<Diagnosis> diagnosis;
-    std::string refused;
+    std::string refused;  // neither: it was stopped
   };
-  void add(long of, Log log) {
+  void add(const Due& due, Log log) {
     if (waiting_.size() >= most_pending) waiting_.pop_front();
-    waiting_.push_back({of, std::move(log)});
+    waiting_.push_back({due, std::move(log)});
+  }
+  std::vector<Due> due() const {
+    std::vector<Due> out;
+    if (running_.valid()) out.push_back(running_due_);
+    for (const Job& job : waiting_) out.push_back(job.due);
+    return out;
   }
   // One that is done; `wait`: for as long as it takes.
   std::optional<Done> next(bool wait) {
     if (!running_.valid() && !waiting_.empty()) {
+      running_due_ = waiting_.front().due;
       running_ = std::async(std::launch::async, [this, job = std::move(waiting_.front())] { return judge_one(job); });
       waiting_.pop_front();
     }
@@ -153,11 +171,11 @@ class Diagnoses {
 
  private:
   struct Job {
-    long of = 0;
+    Due due;
     Log log;
   };
   Done judge_one(const Job& job) const {
-    Done out{job.of, {}, ""};
+    Done out{job.due, {}, ""};
     try {
       DiagnoseOptions how{.seed = common_.seed, .threads = common_.threads};
       how.watch.stop = [this] { return stop_.load(); };
@@ -173,6 +191,7 @@ class Diagnoses {
   const CommonOptions& common_;
   const std::atomic<bool>& stop_;
   std::deque<Job> waiting_;
+  Due running_due_;
   std::future<Done> running_;
 };
 
@@ -187,13 +206,7 @@ class Following {
         invocation_(invocation),
         progress_("watch", {.quiet = common.quiet}),
         log_(options.source, judging.rig),
-        diagnoses_(judging, common, stop_) {
-    if (!options.events.empty() && !is_standard_stream(options.events)) {
-      events_file_.open(options.events, std::ios::app);
-      if (!events_file_)
-        throw InputError({.file = options.events}, "cannot be written", "name a file in a folder that is there");
-    }
-  }
+        diagnoses_(judging, common, stop_) {}
 
   void go() {
     std::uint64_t from = read_state();
@@ -239,23 +252,54 @@ class Following {
  private:
   void take(const Sample& sample, std::uint64_t end) {
     if (!watcher_) make_watcher();
-    if (sample.time <= remembered_until_) return watcher_->remember(sample);
+    if (sample.time <= remembered_until_) {
+      watcher_->remember(sample);
+      return make_due_until(sample.time);
+    }
+    make_due_until(sample.time);
     remembered_until_ = -1e300;
     if (first_time_ > sample.time) first_time_ = sample.time;
+    if (marks_.empty()) marks_.push_back({sample.time, end});
     const double before = watcher_->time();
     new_events_.clear();
     watcher_->take(sample, new_events_);
     if (watcher_->time() > before) {
       judged_end_ = end;
       seconds_ = watcher_->time() - first_time_;
-      if (marks_.empty() || watcher_->time() >= marks_.back().first + mark_every)
-        marks_.push_back({watcher_->time(), end});
-      while (marks_.size() > 1 && marks_[1].first <= watcher_->window_begins()) marks_.pop_front();
+      if (watcher_->time() >= marks_.back().first + mark_every) marks_.push_back({watcher_->time(), end});
+      double needed = watcher_->window_begins();
+      for (const Due& due : diagnoses_.due()) needed = std::min(needed, due.begins);
+      while (marks_.size() > 1 && marks_[1].first < needed) marks_.pop_front();
     }
     for (const WatchEvent& e : new_events_) tell(e);
   }
 
+  // The windows of a saved state that end by `time`: their samples have come again.
+  void make_due_until(double time) {
+    while (!resumed_due_.empty() && resumed_due_.front().at <= time) {
+      const Due due = resumed_due_.front();
+      resumed_due_.pop_front();
+      const std::vector<Sample> window = watcher_->window();
+      if (!window.empty() && window.front().time <= due.begins + online_constants::part && window.back().time >= due.at)
+        add_diagnosis(due, window);
+      else
+        tell({due, {}, "the samples of its window are gone"});
+    }
+  }
+
+  void add_diagnosis(const Due& due, const std::vector<Sample>& window) {
+    diagnoses_.add(due, log_of(fmt::format("{}@{:.3f}", options_.source, due.at), window));
+  }
+
+  void open_events() {
+    if (events_file_.is_open() || options_.events.empty() || is_standard_stream(options_.events)) return;
+    events_file_.open(options_.events, std::ios::app);
+    if (!events_file_)
+      throw InputError({.file = options_.events}, "cannot be written", "name a file in a folder that is there");
+  }
+
   void make_watcher() {
+    open_events();
     std::vector<Signal> recorded;
     for (const SignalInfo& s : signal_list)
       if (s.signal != Signal::time && log_.has(s.signal)) recorded.push_back(s.signal);
@@ -265,6 +309,7 @@ class Following {
 
   void forget() {
     resumed_ = nlohmann::json();
+    resumed_due_.clear();
     remembered_until_ = -1e300;
     log_ = GrowingLog(options_.source, judging_.rig);
   }
@@ -281,14 +326,14 @@ class Following {
     if (e.kind == WatchEventKind::alarm && worst_ != VerdictKind::fault)
       worst_ = e.name.empty() ? VerdictKind::unknown : VerdictKind::fault;
     if (e.kind == WatchEventKind::window) {
-      diagnoses_.add(e.number, log_of(fmt::format("{}@{:.3f}", options_.source, e.time), watcher_->window()));
+      add_diagnosis({e.number, watcher_->window_begins(), e.time}, watcher_->window());
       return;
     }
     write(json_of(e), text_of(e));
   }
 
   void tell(const Diagnoses::Done& done) {
-    report::Json out{{"number", done.of}, {"event", "diagnosis"}};
+    report::Json out{{"number", done.due.of}, {"event", "diagnosis"}};
     std::string text;
     if (done.diagnosis) {
       const Diagnosis& d = *done.diagnosis;
@@ -300,7 +345,8 @@ class Following {
       out["refused"] = done.refused;
       text = "no diagnosis: " + done.refused;
     } else {
-      return;  // stopped
+      resumed_due_.push_back(done.due);
+      return;
     }
     write(out, text);
   }
@@ -323,15 +369,23 @@ class Following {
   void finish() {
     if (!stop_) {
       log_.end([this](const Sample& s, std::uint64_t end) { take(s, end); });
+      if (!watcher_ && is_standard_stream(options_.source))
+        throw InputError({.file = "standard input"}, log_.begun() ? "has no rows" : "has no header row",
+                         "send a log: a header of names and units, then its rows");
       if (watcher_) {
+        make_due_until(1e300);
         new_events_.clear();
         // The state is that of whole parts: what is added to the log later goes on from there.
         const nlohmann::json whole_parts = options_.state.empty() ? nlohmann::json() : watcher_->state();
         write_state(whole_parts);
         watcher_->flush(new_events_);
         for (const WatchEvent& e : new_events_) tell(e);
+        for (auto done = diagnoses_.next(true); done; done = diagnoses_.next(true)) {
+          tell(*done);
+          if (stop_) break;
+        }
+        write_state(whole_parts);
       }
-      for (auto done = diagnoses_.next(true); done && !stop_; done = diagnoses_.next(true)) tell(*done);
     } else if (watcher_) {
       write_state();
     }
@@ -342,6 +396,12 @@ class Following {
   }
   void write_state(const nlohmann::json& watcher) {
     if (options_.state.empty()) return;
+    auto due = nlohmann::json::array();
+    const auto add = [&](const Due& d) {
+      if (d.at <= watcher.at("last")) due.push_back({d.of, d.begins, d.at});
+    };
+    for (const Due& d : resumed_due_) add(d);
+    for (const Due& d : diagnoses_.due()) add(d);
     nlohmann::ordered_json out{{"schema", state_schema},
                                {"tool", "servodx"},
                                {"version", SERVODX_VERSION},
@@ -353,6 +413,7 @@ class Following {
                                {"window_from", marks_.empty() ? judged_end_ : marks_.front().second},
                                {"first_time", first_time_},
                                {"alarms", alarms_},
+                               {"due", due},
                                {"watcher", watcher}};
     write_file(options_.state, out.dump() + "\n");
   }
@@ -373,12 +434,16 @@ class Following {
       resumed_ = json.at("watcher");
       remembered_until_ = resumed_.at("last");
       first_time_ = json.at("first_time"), alarms_ = json.at("alarms"), judged_end_ = json.at("judged_until");
+      seconds_ = remembered_until_ - first_time_;
+      for (const auto& d : json.value("due", nlohmann::json::array()))
+        resumed_due_.push_back({d.at(0), d.at(1), d.at(2)});
       if (is_standard_stream(options_.source)) {
         remembered_until_ = -1e300;
         return 0;
       }
       const std::uint64_t from = json.at("window_from");
       log_.begin_with(json.at("head"), from);
+      marks_.push_back({-1e300, from});
       return from;
     } catch (const nlohmann::json::exception&) {
       refuse("is damaged");
@@ -400,6 +465,7 @@ class Following {
   std::ofstream events_file_;
   report::Json told_ = report::Json::array();
   nlohmann::json resumed_;
+  std::deque<Due> resumed_due_;
   double remembered_until_ = -1e300, first_time_ = 1e300, seconds_ = 0;  // [s]
   std::uint64_t judged_end_ = 0;                                         // bytes
   std::deque<std::pair<double, std::uint64_t>> marks_;                   // time, and the bytes up to its sample

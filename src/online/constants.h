@@ -40,6 +40,11 @@ inline constexpr double cleared_time = 1.0;  // [s]
 inline constexpr std::array<double, 3> named_again = {0.03, 0.1,
                                                       0.3};  // [s] after an alarm the name is looked at again
 
+// The supply's own record: a mean over this time is held against its band. [s] A pump drops under flow; further from
+// its level than this part of it, or twice what healthy logs show, it has failed.
+inline constexpr double supply_window = 50e-3;
+inline constexpr double supply_strays = 0.1, supply_beyond_healthy = 2.0;
+
 // Limits (limits.cpp).
 inline constexpr double block = 0.5;           // [s] of healthy data: its largest level is one figure
 inline constexpr double beyond_healthy = 4.0;  // of the largest level of healthy data: the least limit

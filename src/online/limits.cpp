@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 #include <span>
 
+#include "base/median.h"
 #include "evidence/tail_law.h"
 #include "fit/log_data.h"
 #include "online/constants.h"
@@ -73,7 +75,46 @@ std::map<Signal, double> noise_in(const std::vector<Log>& logs) {
   return out;
 }
 
+std::optional<SupplyBand> supply_band(const std::vector<Log>& logs) {
+  std::vector<double> levels, means;
+  for (const Log& log : logs) {
+    if (!log.has(Signal::supply_pressure)) continue;
+    const std::vector<Sample> samples = samples_of(log);
+    std::vector<double> present;
+    for (const Sample& s : samples)
+      if (const double p = s[Signal::supply_pressure]; !std::isnan(p)) present.push_back(p);
+    levels.push_back(median(present));
+    double asked = samples.front().time;
+    std::size_t from = 0;
+    for (std::size_t i = 0; i < samples.size(); ++i) {
+      while (samples[from].time < samples[i].time - k::supply_window) ++from;
+      if (samples[i].time < asked + k::part) continue;
+      asked = samples[i].time;
+      if (const double mean = recent_supply(std::span(samples).subspan(from, i + 1 - from)); !std::isnan(mean))
+        means.push_back(mean);
+    }
+  }
+  if (means.empty()) return {};
+  SupplyBand out{.level = median(levels)};
+  for (const double m : means) out.healthy = std::max(out.healthy, std::abs(m - out.level));
+  out.limit = std::max(k::supply_strays * std::abs(out.level), k::supply_beyond_healthy * out.healthy);
+  return out;
+}
+
 }  // namespace
+
+double recent_supply(std::span<const Sample> samples) {
+  constexpr double none = std::numeric_limits<double>::quiet_NaN();
+  if (samples.empty()) return none;
+  const double last = samples.back().time;
+  double sum = 0, first = last;
+  int n = 0;
+  for (auto s = samples.rbegin(); s != samples.rend() && s->time >= last - k::supply_window; ++s) {
+    const double p = (*s)[Signal::supply_pressure];
+    if (!std::isnan(p)) sum += p, ++n, first = s->time;
+  }
+  return n >= 3 && last - first >= 0.9 * k::supply_window ? sum / n : none;
+}
 
 ChannelLimits usual_limits(double alarms_per_hour, std::size_t channels) {
   ChannelLimits out;
@@ -89,6 +130,7 @@ WatchLimits learn_limits(const std::vector<Log>& healthy, WatchedModel model, do
   out.alarms_per_hour = alarms_per_hour;
   out.logs = static_cast<int>(healthy.size());
   out.noise = model.noise = noise_in(healthy);
+  out.supply = supply_band(healthy);
   Blocks blocks;
   for (const Log& log : healthy) out.healthy_seconds += add_blocks(log, model, blocks);
   for (auto& [signal, of_windows] : blocks) {
@@ -112,6 +154,8 @@ nlohmann::ordered_json to_json(const WatchLimits& limits) {
                              {"limits", nlohmann::ordered_json::array()}};
   for (const auto& [signal, c] : limits.channels)
     out["limits"].push_back({{"signal", name_of(signal)}, {"limit", c.limit}, {"healthy", c.healthy}});
+  if (const auto& s = limits.supply)
+    out["supply"] = {{"level", s->level}, {"limit", s->limit}, {"healthy", s->healthy}, {"unit", "Pa"}};
   return out;
 }
 

@@ -7,12 +7,15 @@
 #pragma once
 #include <map>
 #include <nlohmann/json.hpp>
+#include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "online/evidence.h"
 #include "online/watched_model.h"
 #include "servodx/log.h"
+#include "signals/sample.h"
 
 namespace servodx {
 
@@ -21,16 +24,26 @@ struct ChannelLimits {
   Levels healthy{};  // largest of healthy data
 };
 
+// The measured supply needs no model: how far it may stray from its level on healthy logs.
+struct SupplyBand {
+  double level = 0;    // [Pa] median
+  double healthy = 0;  // [Pa] furthest that a short mean of healthy data strays
+  double limit = 0;    // [Pa]
+};
+
 struct WatchLimits {
   double alarms_per_hour = 0;
   double healthy_seconds = 0;  // that the limits rest on
   int logs = 0;
   std::map<Signal, ChannelLimits> channels;
-  std::map<Signal, double> noise;  // [SI] rms
+  std::map<Signal, double> noise;         // [SI] rms
+  std::optional<SupplyBand> supply = {};  // none: no healthy log recorded it
 };
 
 // Without a log the limits are those of the error model and the usual tail alone.
 WatchLimits learn_limits(const std::vector<Log>& healthy, WatchedModel model, double alarms_per_hour);
+// Mean supply pressure of the last short while. [Pa] NaN where so much is not there.
+double recent_supply(std::span<const Sample> samples);
 // Of a channel that no healthy log had: as one whose levels are usual.
 ChannelLimits usual_limits(double alarms_per_hour, std::size_t channels);
 

@@ -94,6 +94,8 @@ std::vector<NameScore> score_failures(const WatchedModel& model, std::span<const
 std::string name_of(const SuddenEvidence& e) {
   if (e.driver)
     if (const Fault* fault = fault_told_by(Record::driver)) return std::string(fault->name);
+  if (e.supply)
+    if (const Fault* fault = fault_told_by(Record::supply)) return std::string(fault->name);
   for (const Fault* fault : fault_list())
     if (fault->seen_outright && e.gross != GrossFinding::none && fault->seen_outright->finding == e.gross)
       return std::string(fault->name);

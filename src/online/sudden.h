@@ -24,6 +24,7 @@ struct NameScore {
 struct SuddenEvidence {
   std::vector<NameScore> scores;  // each fault's best, the nearest first; healthy among them
   bool driver = false;            // the alarm is the driver's record
+  bool supply = false;            // the alarm is the supply's record
   GrossFinding gross = GrossFinding::none;
   std::size_t samples = 0;
 };

@@ -36,7 +36,7 @@ Log log_of(const std::string& name, const std::vector<Sample>& samples) {
   Log log;
   log.path = name;
   for (const Sample& s : samples) log.time.push_back(s.time);
-  log.channels[static_cast<std::size_t>(index(Signal::time))].unit = "s";
+  log.channels[static_cast<std::size_t>(index(Signal::time))].unit = std::string(1, 's');
   for (const SignalInfo& s : signal_list) {
     if (s.signal == Signal::time) continue;
     const auto present =

@@ -41,7 +41,8 @@ Watcher::Watcher(WatchedModel model, WatchLimits limits, std::vector<Signal> rec
     : model_(with_noise(std::move(model), limits)),
       recorded_(std::move(recorded)),
       residuals_(model_, recorded_),
-      evidence_(residuals_.channels().size()) {
+      evidence_(residuals_.channels().size()),
+      supply_(limits.supply) {
   for (Signal s : residuals_.channels()) {
     const auto known = limits.channels.find(s);
     limit_.push_back(known == limits.channels.end()
@@ -83,6 +84,7 @@ void Watcher::judge(std::span<const Sample> part, std::vector<WatchEvent>& event
     evidence_.take(r, limit_);
     if (!alarm_ && r.comparable) judge_level(r, events);
   }
+  if (!alarm_) judge_supply(events);
   if (!alarm_) judge_gross(events);
   if (alarm_) follow_alarm(events);
 }
@@ -101,6 +103,21 @@ void Watcher::judge_level(const Residual& residual, std::vector<WatchEvent>& eve
       worst.onset = std::max(evidence_.quiet_until(c), window_begins());
     }
   if (most > 1) raise(worst, events);
+}
+
+double Watcher::supply_strays() const {
+  if (!supply_ || window_.empty()) return 0;
+  const double now = recent_supply(since(time() - k::supply_window));
+  return std::isnan(now) ? 0 : std::abs(now - supply_->level);
+}
+
+void Watcher::judge_supply(std::vector<WatchEvent>& events) {
+  const double strays = supply_strays();
+  if (!supply_ || !(strays > supply_->limit)) return;
+  const double onset = std::max(time() - k::supply_window, window_begins());
+  WatchEvent event{.time = time(), .signal = Signal::supply_pressure, .window = k::supply_window};
+  event.level = strays, event.limit = supply_->limit, event.supply = true, event.onset = onset;
+  raise(event, events);
 }
 
 void Watcher::judge_gross(std::vector<WatchEvent>& events) {
@@ -126,6 +143,7 @@ std::string Watcher::name_now(const WatchEvent& alarm) const {
   SuddenEvidence evidence;
   evidence.driver = alarm.signal == Signal::coil_current;
   evidence.gross = alarm.gross;
+  evidence.supply = alarm.supply;
   if (evidence.gross == GrossFinding::none) evidence.gross = gross_finding_in(model_, since(alarm.onset - k::lead));
   const auto samples = since(alarm.onset - k::lead);
   evidence.samples = samples.size();
@@ -163,6 +181,7 @@ void Watcher::follow_alarm(std::vector<WatchEvent>& events) {
   for (std::size_t c = 0; c < limit_.size(); ++c)
     for (std::size_t w = 0; w < limit_[c].size(); ++w)
       calm = calm && evidence_.levels()[c][w] < k::cleared_part * limit_[c][w];
+  calm = calm && !(supply_ && supply_strays() > k::cleared_part * supply_->limit);
   if (!calm) a.calm_since = now;
   if (a.window_given && now - a.calm_since >= k::cleared_time) {
     WatchEvent event{.number = ++events_, .kind = WatchEventKind::cleared, .time = now, .told_at = now};
@@ -191,6 +210,7 @@ nlohmann::json Watcher::state() const {
                     {"level", e.level},
                     {"limit", e.limit},
                     {"gross", static_cast<int>(e.gross)},
+                    {"supply", e.supply},
                     {"onset", e.onset},
                     {"name", e.name},
                     {"names_asked", alarm_->names_asked},
@@ -220,6 +240,7 @@ void Watcher::resume(const nlohmann::json& state) {
     if (const int s = a.at("signal"); s >= 0) e.signal = static_cast<Signal>(s);
     e.window = a.at("window"), e.level = a.at("level"), e.limit = a.at("limit");
     e.gross = static_cast<GrossFinding>(a.at("gross").get<int>());
+    e.supply = a.value("supply", false);
     e.onset = a.at("onset"), e.name = a.at("name");
     alarm.names_asked = a.at("names_asked"), alarm.window_given = a.at("window_given");
     alarm.calm_since = a.at("calm_since");

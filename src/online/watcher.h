@@ -41,8 +41,9 @@ struct WatchEvent {
   double window = 0;                        // [s] of that level
   double level = 0, limit = 0;              // [deviates^2]
   GrossFinding gross = GrossFinding::none;  // seen without a model
-  double onset = 0;                         // [s] of an alarm: the last time that all was quiet
-  std::string name = {};                    // label of the fault that the samples since then look like; empty: none
+  bool supply = false;  // the measured supply is out of its band: level and limit are its distance from the middle [Pa]
+  double onset = 0;     // [s] of an alarm: the last time that all was quiet
+  std::string name = {};  // label of the fault that the samples since then look like; empty: none
 };
 
 class Watcher {
@@ -77,6 +78,8 @@ class Watcher {
   void judge(std::span<const Sample> part, std::vector<WatchEvent>& events);
   void judge_level(const Residual& residual, std::vector<WatchEvent>& events);
   void judge_gross(std::vector<WatchEvent>& events);
+  void judge_supply(std::vector<WatchEvent>& events);
+  double supply_strays() const;  // [Pa] from the middle of its band
   void follow_alarm(std::vector<WatchEvent>& events);
   void raise(WatchEvent event, std::vector<WatchEvent>& events);
   std::string name_now(const WatchEvent& alarm) const;
@@ -88,6 +91,7 @@ class Watcher {
   Residuals residuals_;
   SlidingEvidence evidence_;
   std::vector<Levels> limit_;  // of each channel
+  std::optional<SupplyBand> supply_;
   Arrivals arrivals_;
   std::deque<Sample> window_;
   mutable std::vector<Sample> span_;

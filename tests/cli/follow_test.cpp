@@ -116,6 +116,41 @@ TEST(Follow, AKilledWatchGoesOnFromItsState) {
   EXPECT_EQ(FollowDesk::by_number(events), FollowDesk::by_number(FollowDesk::lines(unbroken.out)));
 }
 
+TEST(Follow, ADiagnosisThatIsDueIsMadeAfterAKill) {
+  FollowDesk desk;
+  desk.write("whole.csv", excerpt("sudden/s01_wire_fractures.csv", 3700));
+  const int pid = begin(desk, "watch --follow whole.csv" + FollowDesk::with("--state state.json --events one.jsonl"));
+  ASSERT_GT(pid, 0);
+  Json due;
+  for (int k = 0; k < 1200 && due.empty(); ++k) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(50));
+    const Json state = Json::parse(bytes_of(desk.path / "state.json"), nullptr, false);
+    if (state.is_object()) due = state["due"];
+  }
+  kill(pid, SIGKILL);
+  ASSERT_EQ(due.size(), 1u);
+  ASSERT_EQ(bytes_of(desk.path / "one.jsonl").find("diagnosis"), std::string::npos);
+  const Ended second =
+      desk.run("watch --follow whole.csv --until-idle 0.2" + FollowDesk::with("--state state.json --events two.jsonl"));
+  ASSERT_EQ(second.code, 0) << second.err;
+  std::vector<Json> made;
+  for (const Json& e : FollowDesk::lines(bytes_of(desk.path / "two.jsonl")))
+    if (e["event"] == "diagnosis") made.push_back(e);
+  ASSERT_EQ(made.size(), 1u);
+  EXPECT_EQ(made[0]["number"], due[0][0]);
+  EXPECT_TRUE(made[0].contains("result")) << made[0];
+  EXPECT_TRUE(Json::parse(bytes_of(desk.path / "state.json"))["due"].empty());
+}
+
+TEST(Follow, StandardInputWithoutALogIsRefused) {
+  const FollowDesk desk;
+  const auto before = desk.contents();
+  const Ended empty = desk.run("watch - --events e.jsonl </dev/null " + FollowDesk::with(""));
+  EXPECT_EQ(empty.code, 2);
+  EXPECT_NE(empty.err.find("no header row"), std::string::npos) << empty.err;
+  EXPECT_EQ(desk.contents(), before);
+}
+
 TEST(Follow, AnInterruptEndsWith130AndItsStateWritten) {
   const FollowDesk desk;
   const int code =

@@ -116,6 +116,38 @@ TEST(Watcher, ASavedStateGivesTheEventsThatWouldHaveBeen) {
   EXPECT_THROW(other.resume(nlohmann::json::object()), InputError);
 }
 
+// A record that needs no model: the twin's own run does not know of it.
+std::vector<Sample> with_supply(std::vector<Sample> samples, double from, double to, double at) {
+  for (Sample& s : samples) s[Signal::supply_pressure] = s.time < at ? from : to;
+  return samples;
+}
+
+TEST(Watcher, AMeasuredSupplyThatLeavesItsBandIsAnAlarmAtOnce) {
+  constexpr double bar = 1e5;
+  auto recorded = twin::recorded(false);
+  recorded.push_back(Signal::supply_pressure);
+  const WatchLimits known = learn_limits(
+      {log_of("healthy", with_supply(twin::samples(4, {}, false, 11), 207 * bar, 200 * bar, 3.0))}, twin::model(), 0.1);
+  ASSERT_TRUE(known.supply.has_value());
+  EXPECT_NEAR(known.supply->limit, 20.7 * bar, 0.2 * bar);
+  for (const auto& [pressure, alarms] : {std::pair{190 * bar, 0L}, {170 * bar, 1L}, {240 * bar, 1L}}) {
+    Watcher watcher(twin::model(), known, recorded);
+    std::vector<WatchEvent> events;
+    // The simulation's channels are left out: a supply that moves shows in them too.
+    for (Sample s : with_supply(twin::samples(3), 207 * bar, pressure, 2.0)) {
+      for (Signal other : {Signal::spool_position, Signal::piston_position, Signal::pressure_a, Signal::pressure_b})
+        if (s.time > 1.9) s[other] = std::nan("");
+      watcher.take(s, events);
+    }
+    watcher.flush(events);
+    ASSERT_EQ(count(events, WatchEventKind::alarm), alarms) << pressure;
+    if (alarms == 0) continue;
+    EXPECT_TRUE(events.front().supply);
+    EXPECT_EQ(events.front().name, "supply_fault");
+    EXPECT_LE(events.front().told_at, 2.0 + 0.07);
+  }
+}
+
 TEST(Watcher, WhatIsKeptDoesNotGrow) {
   Watcher watcher(twin::model(), limits(false), twin::recorded());
   std::vector<WatchEvent> events;
