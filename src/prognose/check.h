@@ -34,6 +34,8 @@ struct Check {
   double expected = 1;  // what a healthy valve would measure here, over what it would at the reference state
   std::string cause;    // fault label of a parameter; empty for the paper's checks
   double tuned = NAN, failed = NAN;  // of a parameter, not stored: the table's value, and where the fault has failed
+  double whole_error = NAN;  // of a parameter, not stored: with the model's own error, which a trend does not see
+  bool told = false;         // from the tuned value, by that error
 };
 
 struct CheckResult {

@@ -26,7 +26,9 @@ double beside_laminar(double log_viscosity) {
 }
 
 void append(CheckSeries& s, const Recording& r, const Check& c) {
-  const double value = s.scale.paper() ? c.measured : c.value;
+  // As it was in this log's oil; a value that is none is told by what was measured.
+  const double as_it_was = c.value > 0 ? c.value * c.expected : c.measured;
+  const double value = s.scale.paper() ? as_it_was : c.value;
   if (!std::isfinite(value) || (s.scale.paper() && value <= 0)) return;
   GrowthPoint p;
   p.time = r.at;

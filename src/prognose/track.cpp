@@ -18,6 +18,7 @@
 #include "optimise/problem.h"
 #include "parameters/list.h"
 #include "prognose/constants.h"
+#include "prognose/reading_scale.h"
 #include "simulate/scenario.h"
 
 namespace servodx {
@@ -169,29 +170,50 @@ std::vector<double> errors_of(const LeastSquaresResult& fit, double adequacy) {
   return errors;
 }
 
+// The same where samples in a row share the model's error: each channel counts for its independent samples alone.
+std::vector<double> whole_errors_of(const FitProblem& problem, const LogData& log, const ErrorModel& error,
+                                    LeastSquaresResult fit, double adequacy) {
+  for (std::size_t c = 0; c < log.channels.size(); ++c) {
+    const auto [first, n] = problem.rows(0, static_cast<int>(c));
+    fit.jacobian.middleRows(first, n) *= std::sqrt(effective_of(error.find(log.channels[c].signal), log.scenario.time));
+  }
+  return errors_of(fit, adequacy);
+}
+
 // One wearing parameter in the unit of its row, at `u` of its severity's unit interval.
 TrackedParameter parameter_at(const Progressive& p, const ParameterVector& base, const FreeValue& severity, double u,
-                              double error) {
+                              double error, double whole_error) {
   TrackedParameter out;
   out.id = p.row + 1;
   out.fault = p.fault;
   out.severity = severity.from_unit(u);
   out.value = row_at(base, p, severity, u);
   const double h = u < 0.5 ? difference_step : -difference_step;
-  out.std_error = std::abs((row_at(base, p, severity, u + h) - out.value) / h) * error;
+  const double slope = std::abs((row_at(base, p, severity, u + h) - out.value) / h);
+  out.std_error = slope * error;
+  out.whole_error = slope * std::max(error, whole_error);
   ParameterVector failed = base;
   p.fault->apply(failed.data(), *p.fault->failed);
   out.tuned = base[p.row];
   out.failed = failed[p.row];
+  // A part lost is told by the drop over what is left; near the end of the scale its own error is small, whatever it
+  // is.
+  ReadingScale scale;
+  if (p.fault->part_lost) scale.kind = ReadingScale::Kind::drop;
+  const double from_tuned = std::abs(scale.in(out.value) - scale.in(out.tuned)),
+               beside = p.fault->part_lost ? left_by_bores : 0.0;
+  out.told = from_tuned > 2 * std::hypot(out.whole_error / scale.stretch(out.value), beside);
   return out;
 }
 
 // The fit as values of rows, and what a healthy valve would have done in this log.
-void take_fit(Track& out, const FitProblem& problem, const LogData& log, const ParameterVector& base,
-              const std::vector<FreeValue>& free, const Point& health, const LeastSquaresResult& fit) {
+void take_fit(Track& out, const FitProblem& problem, const LogData& log, const ErrorModel& error,
+              const ParameterVector& base, const std::vector<FreeValue>& free, const Point& health,
+              const LeastSquaresResult& fit) {
   const auto& faults = progressive_faults();
   out.adequacy = adequacy_of(problem, log, fit);
-  const std::vector<double> errors = errors_of(fit, out.adequacy);
+  const std::vector<double> errors = errors_of(fit, out.adequacy),
+                            whole = whole_errors_of(problem, log, error, fit, out.adequacy);
   Point nuisances = fit.point;
   for (std::size_t j = 0; j < faults.size(); ++j) nuisances[j] = health[j];
   out.healthy = problem.candidate(nuisances, 0);
@@ -201,7 +223,7 @@ void take_fit(Track& out, const FitProblem& problem, const LogData& log, const P
       out.null_std_error = errors[j] * (free[j].upper - free[j].lower);
     }
   for (std::size_t j = 0; j < faults.size(); ++j)
-    out.parameters.push_back(parameter_at(faults[j], base, free[j], fit.point[j], errors[j]));
+    out.parameters.push_back(parameter_at(faults[j], base, free[j], fit.point[j], errors[j], whole[j]));
 }
 
 }  // namespace
@@ -232,7 +254,7 @@ Track track_parameters(const LogData& log, const Table& tuned, const TrackOption
   out.failed = problem.failed_simulations();
   out.healthy = base;
   if (fit)
-    take_fit(out, problem, log, base, free, health, *fit);
+    take_fit(out, problem, log, error_model_of(tuned), base, free, health, *fit);
   else
     out.adequacy = out.null = out.null_std_error = std::nan("");
   return out;

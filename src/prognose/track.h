@@ -5,7 +5,8 @@
 // Values are those of the row that a fault moves first, in its unit, so that `parameter:1` is row 1 of the table.
 // Limits: one log, constant severity within it; errors are of repetition (curvature of the fit, widened where it
 // fits worse than on the tuning logs), not of the model's form, which is the same from check to check and
-// cancels in a trend.
+// cancels in a trend. `whole_error` counts no more samples than are independent of one another in the tuned table's
+// error model: what a single check may be off by.
 #pragma once
 #include <string>
 #include <vector>
@@ -23,6 +24,8 @@ struct TrackedParameter {
   int id = 0;  // row 1..41
   const Fault* fault = nullptr;
   double value = 0, std_error = 0;  // [unit of the row]
+  double whole_error = 0;           // [unit of the row] with the model's own, which repeats from check to check
+  bool told = false;                // from the tuned value: more than two whole errors off
   double severity = 0;              // [unit of the fault]
   double tuned = 0, failed = 0;     // [unit of the row] where the valve began, and where the fault's `failed` lies
 };

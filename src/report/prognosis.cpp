@@ -24,6 +24,7 @@ Json to_json(const Check& c, double temperature) {
                {"measured", number(c.measured)},
                {"expected", number(c.expected)}};
   if (!c.cause.empty()) json["cause"] = c.cause;
+  if (std::isfinite(c.whole_error)) json["whole_error"] = c.whole_error, json["told"] = c.told;
   return json;
 }
 
@@ -49,7 +50,11 @@ std::string text_of(const CheckResult& r) {
   Columns rows("lrlrl", 2);
   for (const Check& c : r.checks)
     rows.row({name_of(c), handy(c.value, c.unit), "+-", handy(c.std_error, c.unit),
-              c.value != c.measured ? "measured " + handy(c.measured, c.unit) : ""});
+              std::isfinite(c.whole_error)
+                  ? fmt::format("with the model's own error +- {}{}", handy(c.whole_error, c.unit),
+                                c.told ? "" : ": not told from the tuned " + handy(c.tuned, c.unit))
+              : c.value != c.measured ? "measured " + handy(c.measured, c.unit)
+                                      : ""});
   std::string text =
       fmt::format("{}: oil at {:.1f} degC ({})\n", r.log, r.temperature.value - 273.15, name_of(r.temperature.source));
   return text + rows.text();

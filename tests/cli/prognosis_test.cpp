@@ -61,6 +61,15 @@ TEST_F(Prognosis, ACheckIsStoredOnceAndComesOutAsItWentIn) {
   }
   for (const char* name : {"mean_error", "fidelity", "correlation@5Hz", "parameter:1", "parameter:9"})
     EXPECT_NE(std::find(names.begin(), names.end(), name), names.end()) << name;
+  for (const Json& check : c["checks"]) {
+    // The monitor's missing lags are taken out, and a fitted row says what it may be off by.
+    if (check["name"] == "fidelity")
+      EXPECT_LT(check["value"].get<double>() * check["expected"].get<double>(), 0.95 * check["measured"].get<double>());
+    if (check["name"].get<std::string>().starts_with("parameter:")) {
+      EXPECT_GE(check["whole_error"], check["std_error"]) << check;
+      EXPECT_TRUE(check["told"].is_boolean()) << check;
+    }
+  }
   EXPECT_EQ(desk.run(call + "12.5").code, 2);  // the same log at the same hours
   EXPECT_EQ(desk.run(call + "-1").code, 2);
   ASSERT_EQ(desk.run("history export --history h.db -o h.csv").code, 0);

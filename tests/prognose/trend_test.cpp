@@ -35,7 +35,8 @@ ValveHistory a_life(double until, double onset, std::uint64_t seed, double growt
     r.checks.push_back(
         {"parameter:9", 1e-6 + play + 3e-7 * random.normal(), 2e-7, "m", 0, 1, "feedback_wire_backlash"});
     const double fidelity = 1.1 * (1 + 0.1 * cold) * (1 + 0.01 * random.normal());
-    r.checks.push_back({"fidelity", fidelity, 0.005, "1", fidelity, 1 + 0.1 * cold, ""});
+    const double expected = 1 + 0.1 * cold;
+    r.checks.push_back({"fidelity", fidelity / expected, 0.005 / expected, "1", fidelity, expected, ""});
     h.recordings.push_back(r);
   }
   return h;
@@ -77,7 +78,8 @@ TEST(Trend, AWearingValveIsAlertedNamedAndGivenItsLife) {
 TEST(Trend, AColdPreflightIsNoAlarm) {
   ValveHistory h = a_life(60, 1e9, 4);
   h.recordings.back().temperature = 243;
-  h.recordings.back().checks[1].measured = h.recordings.back().checks[1].value = 1.1 * 1.1;
+  h.recordings.back().checks[1].measured = 1.1 * 1.1;
+  h.recordings.back().checks[1].value = h.recordings.back().checks[1].measured / h.recordings.back().checks[1].expected;
   const ValveTrend t = trend(h, {});
   const CheckTrend& c = find(t, "fidelity");
   EXPECT_NE(c.state, TrendState::warning);
