@@ -14,6 +14,7 @@
 #include <tuple>
 
 #include "base/block_reader.h"
+#include "base/file_kind.h"
 
 namespace servodx {
 namespace {
@@ -138,6 +139,7 @@ CsvCursor::CsvCursor(BlockReader& file, std::string path) : path_(std::move(path
 
 void CsvCursor::read_header() {
   const std::string_view text(p_, static_cast<std::size_t>(end_ - p_));
+  refuse_binary(text, path_);
   if (text.starts_with("\xEF\xBB\xBF")) p_ += 3;
   if (text.starts_with("\xFF\xFE") || text.starts_with("\xFE\xFF"))
     throw InputError({path_, 1, ""}, "the text is UTF-16", "save the file as UTF-8");
@@ -153,15 +155,15 @@ void CsvCursor::read_header() {
       more_ = false;
       continue;
     }
-    return take_header();
+    return take_header(0);
   }
   throw InputError({path_, 0, ""}, "the file has no header row", "begin it with a row of column names");
 }
 
 // The row just begun.
-void CsvCursor::take_header() {
-  separator_ = sniff_separator({p_, static_cast<std::size_t>(std::find(p_, end_, '\n') - p_)});
-  point_ = separator_ == ';' ? ',' : '.';
+void CsvCursor::take_header(char separator) {
+  separator_ = separator ? separator : sniff_separator({p_, static_cast<std::size_t>(std::find(p_, end_, '\n') - p_)});
+  point_ = separator_ == ',' ? '.' : ',';
   header_line_ = line_;
   header_.clear();
   for (std::string cell; next_cell(cell);) {
@@ -172,8 +174,11 @@ void CsvCursor::take_header() {
   }
 }
 
-void CsvCursor::next_header() {
-  if (next_row()) take_header();
+void CsvCursor::header_at(std::size_t bytes_ahead, char separator) {
+  count_line_ends(p_, p_ + bytes_ahead);
+  p_ += bytes_ahead;
+  more_ = false;
+  if (next_row()) take_header(separator);
 }
 
 // Keeps what is unused, from the cell being read on.
@@ -315,7 +320,7 @@ Cell CsvCursor::next_odd_number(double& value) {
   }
   std::string text;
   next_cell(text);
-  return parse_cell(text, separator_ == ';', value);
+  return parse_cell(text, point_ == ',', value);
 }
 
 bool CsvCursor::row_ended_by_file() const {

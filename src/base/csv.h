@@ -2,10 +2,10 @@
 // needed to write one.
 //
 // Reads: separator ',' ';' or tab (the most frequent in the header line), decimal comma in numbers where the separator
-// is ';', UTF-8 BOM, LF and CRLF, '#' comment lines before the header, blank lines anywhere, RFC 4180 quoted cells
-// (which may hold separators, doubled quotes and line ends). Spaces around a cell are dropped. Words of a header that
-// are no UTF-8 are taken as Latin-1. Leaves out: UTF-16 (refused), thousands separators, escapes other than doubled
-// quotes.
+// is ';' or tab, UTF-8 BOM, LF and CRLF, '#' comment lines before the header, blank lines anywhere, RFC 4180 quoted
+// cells (which may hold separators, doubled quotes and line ends). Spaces around a cell are dropped. Words of a header
+// that are no UTF-8 are taken as Latin-1. Leaves out: UTF-16 and what is no text (refused), thousands separators,
+// escapes other than doubled quotes.
 //
 // No library: fast-cpp-csv-parser fixes separator and quoting at compile time, parses with its own float loop (not
 // correctly rounded) and throws its own errors, where logs need a sniffed separator and exact round trips.
@@ -39,13 +39,15 @@ class CsvCursor {
   long header_line() const { return header_line_; }
   const std::vector<std::string>& comments() const { return comments_; }  // without '#' and one space after it
   char separator() const { return separator_; }
-  void next_header();  // takes the next row as the header in place of this one
+  bool decimal_comma() const { return point_ == ','; }
+  // Takes the row that begins so many bytes ahead as the header in place of this one; its cells part at `separator`.
+  void header_at(std::size_t bytes_ahead, char separator);
   // What is read of the file and not yet passed; all of a text in memory.
   std::string_view ahead() const { return {p_, static_cast<std::size_t>(end_ - p_)}; }
 
-  bool next_row();                    // to the next line that is not blank; skips what is left of this one
+  bool next_row();                       // to the next line that is not blank; skips what is left of this one
   std::vector<std::string> row_ahead();  // cells of the row just begun, which stays to be read
-  bool next_cell(std::string& text);  // false: the row has no further cell
+  bool next_cell(std::string& text);     // false: the row has no further cell
   // NaN for missing; a finite number, or text (see last_text).
   Cell next_number(double& value) {
     if (!in_row_ || !more_) return Cell::none;
@@ -87,7 +89,7 @@ class CsvCursor {
 
  private:
   void read_header();
-  void take_header();
+  void take_header(char separator);  // 0: the most frequent in its line
   Cell next_odd_number(double& value);
   bool refill();  // more of the file behind what is left; false: there is no more
   bool row_is_whole() const { return p_ < whole_; }

@@ -2,6 +2,7 @@
 
 #include <charconv>
 #include <cmath>
+#include <utility>
 
 namespace servodx {
 namespace {
@@ -69,6 +70,23 @@ constexpr Unit table[] = {
     {"% of stroke", percent_of_stroke, 1, 100},
 };
 
+// Units with letters beyond ASCII, for those who can write them.
+constexpr std::pair<std::string_view, std::string_view> spellings[] = {
+    {"\xC2\xB0"
+     "C",
+     "degC"},
+    {"\xE2\x84\x83", "degC"},
+    {"\xC2\xB0"
+     "F",
+     "degF"},
+    {"\xE2\x84\x89", "degF"},
+    {"\xC2\xB5m", "um"},
+    {"\xCE\xBCm", "um"},
+    {"\xC2\xB5s", "us"},
+    {"\xCE\xBCs", "us"},
+    {"m\xC2\xB3/s", "m3/s"},
+};
+
 std::string_view trimmed(std::string_view text) {
   const auto first = text.find_first_not_of(" \t");
   if (first == std::string_view::npos) return {};
@@ -108,6 +126,8 @@ std::span<const Unit> unit_table() { return table; }
 const Unit* find_unit(std::string_view name) {
   for (const Unit& unit : table)
     if (unit.name == name) return &unit;
+  for (const auto& [spelling, plain] : spellings)
+    if (spelling == name) return find_unit(plain);
   return nullptr;
 }
 

@@ -30,9 +30,11 @@ struct ChannelSurvey {
 };
 
 struct Finding {
-  // jitter, gaps, rate, temperature, repeats, saturation, quantisation, sign, response, values, columns or missing
+  // jitter, gaps, rate, temperature, repeats, saturation, quantisation, sign, swapped, response, values, columns or
+  // missing
   std::string kind;
   std::string text;
+  std::vector<Signal> signals = {};  // whose columns may be meant wrongly; of 'sign' and 'swapped'
 };
 
 struct LogSurvey {

@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "base/median.h"
 #include "diagnose/check_log.h"
+#include "diagnose/swapped.h"
 #include "evidence/conditions.h"
 #include "evidence/operating_point.h"
 #include "fit/log_data.h"
@@ -127,9 +129,11 @@ void find_turned(const Log& log, LogSurvey& s) {
   const auto turned = [&](Signal signal, const std::vector<double>& answer, double lag) {
     const auto [least, greatest] = correlations(drive, answer, samples(lag));
     if (least > against || greatest > with) return;
-    s.findings.push_back({"sign", fmt::format("'{}' runs against the drive: give its column, or the drive's, "
-                                              "gain = \"-1\" in the rig file",
-                                              info(signal).name)});
+    s.findings.push_back({"sign",
+                          fmt::format("'{}' runs against the drive: give its column, or the drive's, "
+                                      "gain = \"-1\" in the rig file",
+                                      info(signal).name),
+                          {signal}});
   };
   if (log.has(Signal::spool_position)) turned(Signal::spool_position, log[Signal::spool_position], spool_lag);
   if (!log.has(Signal::piston_position)) return;
@@ -192,6 +196,7 @@ void find_suspicious(const Log& log, LogSurvey& s) {
   }
   find_no_response(s);
   find_turned(log, s);
+  for (Finding& each : swapped_channels(log, s.rate)) s.findings.push_back(std::move(each));
   for (const std::string& note : log.notes) {  // what the reader saw: limits, spikes, frozen sensors, no excitation
     if (note.find("gap") != std::string::npos && s.gaps > 0) continue;
     const std::string front = log.path + ": ";

@@ -1,5 +1,7 @@
 #include "signals/growing_log.h"
 
+#include <fmt/format.h>
+
 #include <charconv>
 #include <cmath>
 #include <cstdint>
@@ -8,15 +10,18 @@
 
 #include "base/csv.h"
 #include "base/decimal.h"
+#include "base/file_kind.h"
 #include "base/units.h"
 #include "servodx/error.h"
-#include "signals/guess.h"
+#include "signals/header.h"
 #include "signals/log_columns.h"
 
 namespace servodx {
 namespace {
 
-constexpr std::size_t longest_line = std::size_t{1} << 16;  // [bytes] more is no line of a log
+constexpr std::string_view stamps_from = "stamps in column ";  // a comment of the head: "3|2021-03-04 10:11:12"
+constexpr std::size_t most_above = 200;                        // lines before a row of numbers
+constexpr std::size_t longest_line = std::size_t{1} << 16;     // [bytes] more is no line of a log
 
 std::string_view trimmed(std::string_view text) {
   const auto blank = [](char c) { return c == ' ' || c == '\t' || c == '\r' || c == '"'; };
@@ -50,9 +55,9 @@ GrowingLog::GrowingLog(GrowingLog&&) noexcept = default;
 GrowingLog& GrowingLog::operator=(GrowingLog&&) noexcept = default;
 
 void GrowingLog::begin_with(const std::string& head, std::uint64_t at) {
-  head_.clear();
-  read_head(head);
   head_ = head;
+  stamps_.reset();
+  read_head("");
   half_.clear();
   fed_ = at;
 }
@@ -97,21 +102,10 @@ void GrowingLog::end(const Take& take) {
   line(whole, fed_, take);
 }
 
-// The header is known by the line below it, which is one of units or the first sample.
+// A header is known by the row of numbers below it, which is the first sample.
 void GrowingLog::line(std::string_view text, std::uint64_t end, const Take& take) {
   if (trimmed(text).empty()) return;
-  if (!columns_) {
-    if (trimmed(text).front() == '#') return;
-    if (head_.empty()) {
-      head_ = std::string(text) + "\n";
-      return;
-    }
-    const std::string both = head_ + std::string(text) + "\n";
-    if (read_head(both)) {
-      head_ = both;
-      return;
-    }
-  }
+  if (!columns_ && !begins_with(text)) return;
   Sample sample;
   if (read_sample(text, sample))
     take(sample, end);
@@ -119,46 +113,109 @@ void GrowingLog::line(std::string_view text, std::uint64_t end, const Take& take
     ++bad_lines_;
 }
 
-// Whether its second line is one of units.
-bool GrowingLog::read_head(const std::string& text) {
+// Whether this is the row of numbers that a header stands above.
+bool GrowingLog::begins_with(std::string_view text) {
+  if (trimmed(text).front() == '#') return false;
+  if (above_.empty()) refuse_binary(text, name_);
+  const bool numbers = is_row_of_numbers(text);
+  if (above_.empty() && numbers) require_names(CsvCursor(text, name_), name_);
+  // A header that is none has to be told before a log has grown long.
+  if (above_.empty() || (!numbers && above_.size() < most_above)) {
+    above_.emplace_back(text);
+    return false;
+  }
+  const std::string first = std::string(text) + "\n";
+  std::string all;
+  for (const std::string& each : above_) all += each + "\n";
+  all += first;
+  CsvCursor csv(std::string_view(all), name_);
+  const auto above = static_cast<std::size_t>(pass_lines_above_header(csv, name_));
+  head_ = above_[above] + "\n";
+  std::size_t taken = above + 1;
+  if (taken < above_.size() && csv.next_row() && !units_row(csv).empty()) head_ += above_[taken++] + "\n";
+  read_head(first);
+  bad_lines_ += static_cast<long>(above_.size() - taken);
+  above_.clear();
+  return true;
+}
+
+// `first`: the first row of numbers, empty where the head was read before.
+void GrowingLog::read_head(const std::string& first) {
+  const std::string text = head_ + first;
   CsvCursor csv(std::string_view(text), name_);
   auto columns = std::make_unique<LogColumns>(name_, *rig_, *options_, LogFormat{});
-  const std::vector<std::string> units = csv.next_row() ? units_row(csv) : std::vector<std::string>{};
+  bool in_row = csv.next_row();
+  const std::vector<std::string> units = in_row ? units_row(csv) : std::vector<std::string>{};
+  if (!units.empty()) in_row = csv.next_row();
+  std::vector<std::string> cells = in_row ? csv.row_ahead() : std::vector<std::string>{};
+  for (const std::string& comment : csv.comments())
+    if (comment.starts_with(stamps_from)) {
+      cells.resize(csv.header().size());
+      const auto bar = comment.find('|');
+      std::size_t column = 0;
+      std::from_chars(comment.data() + stamps_from.size(), comment.data() + comment.size(), column);
+      if (bar != comment.npos && column < cells.size()) cells[column] = comment.substr(bar + 1);
+    }
   target_.clear();
   for (std::size_t c = 0; c < csv.header().size(); ++c) {
     const std::string& cell = csv.header()[c];
-    const bool known = c < units.size() && find_unit(units[c]) && !cell.ends_with(']');
-    target_.push_back(columns->add(known ? cell + " [" + units[c] + "]" : cell, csv.header_line()));
+    const bool bare = !cell.ends_with(']');
+    const bool known = c < units.size() && find_unit(units[c]) && bare;
+    const auto stamp = c < cells.size() ? parse_time_stamp(cells[c]) : std::nullopt;
+    target_.push_back(columns->add(known           ? cell + " [" + units[c] + "]"
+                                   : stamp && bare ? cell + " [s]"
+                                                   : cell,
+                                   csv.header_line()));
+    if (!stamp || target_.back() < 0 || columns->signal(target_.back()) != Signal::time) continue;
+    stamps_.emplace(*stamp);
+    if (csv.comments().empty()) head_ = fmt::format("# {}{}|{}\n{}", stamps_from, c, cells[c], head_);
   }
+  if (columns->size() == 0) require_names(csv, name_);
   columns->require_signals();
+  may_lack_last_ = ends_with_comment(csv.header()) && target_.back() < 0;
   separator_ = csv.separator();
   columns_ = std::move(columns);
-  return !units.empty();
 }
 
-bool GrowingLog::read_sample(std::string_view text, Sample& to) const {
+// The time of a row: a number, or a stamp where the first row's is one. [s]
+bool GrowingLog::time_of(std::string_view cell, int column, double& time) {
+  if (stamps_) {
+    const auto stamp = parse_time_stamp(trimmed(cell));
+    const auto seconds = stamp ? stamps_->seconds(*stamp) : std::nullopt;
+    if (seconds) time = *seconds;
+    return seconds.has_value();
+  }
+  double value = 0;
+  if (!number_of(cell, point(), value)) return false;
+  time = columns_->si(column, value);
+  return true;
+}
+
+bool GrowingLog::read_sample(std::string_view text, Sample& to) {
   std::size_t cells = 0;
   double time = std::numeric_limits<double>::quiet_NaN();
   for (bool more = true; more; ++cells) {
     const auto end = text.find(separator_);
     more = end != std::string_view::npos;
-    if (cells >= target_.size()) return false;
-    const int column = target_[cells];
-    double value = 0;
+    if (cells > target_.size() - (may_lack_last_ ? 0 : 1)) return false;
+    const int column = cells < target_.size() ? target_[cells] : -1;
     if (column >= 0) {
-      if (!number_of(text.substr(0, end), separator_ == ';' ? ',' : '.', value)) return false;
-      const double si = columns_->si(column, value);
-      if (std::isinf(si)) return false;
       const Signal signal = columns_->signal(column);
-      if (signal == Signal::time)
-        time = si;
-      else
-        to[signal] = si;
+      double value = 0;
+      if (signal == Signal::time) {
+        if (!time_of(text.substr(0, end), column, time) || std::isinf(time)) return false;
+      } else if (number_of(text.substr(0, end), point(), value)) {
+        to[signal] = columns_->si(column, value);
+        if (std::isinf(to[signal])) return false;
+      } else {
+        return false;
+      }
     }
     if (more) text.remove_prefix(end + 1);
   }
   to.time = time;
-  return cells == target_.size() && std::isfinite(time);
+  const bool whole = cells == target_.size() || (may_lack_last_ && cells + 1 >= target_.size());
+  return whole && std::isfinite(time);
 }
 
 }  // namespace servodx

@@ -1,11 +1,12 @@
 // A CSV log that grows: bytes in, samples out, line by line.
 //
-// Header, units, separators and the rig file's columns are those of a whole log (log_csv.cpp). A line that is half
-// there waits for its rest. A line that is no sample (ragged, text in a column, no time) is counted and passed over: a
-// log that is judged as it comes cannot be refused in its middle. Memory does not grow.
+// Header, units, separators, time stamps and the rig file's columns are those of a whole log (log_csv.cpp). A line that
+// is half there waits for its rest. A line that is no sample (ragged, text in a column, no time) is counted and passed
+// over: a log that is judged as it comes cannot be refused in its middle. Memory does not grow.
 #pragma once
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -13,6 +14,7 @@
 #include "servodx/log.h"
 #include "servodx/rig.h"
 #include "signals/sample.h"
+#include "signals/time_stamp.h"
 
 namespace servodx {
 
@@ -33,8 +35,9 @@ class GrowingLog {
   // The same of a file whose end is reached: what is left is a line where it is whole.
   void end(const Take& take);
 
-  bool begun() const { return columns_ != nullptr; }           // the header is read
-  const std::string& head() const { return head_; }            // header, and a row of units where there is one
+  bool begun() const { return columns_ != nullptr; }  // the header is read
+  // Header, a row of units where there is one, and in a comment the stamp that the times count from.
+  const std::string& head() const { return head_; }
   void begin_with(const std::string& head, std::uint64_t at);  // one that was read before; the next byte is at `at`
   bool has(Signal signal) const;
   std::string unit_of(Signal signal) const;  // as written in the header; empty: not there
@@ -42,8 +45,11 @@ class GrowingLog {
 
  private:
   void line(std::string_view text, std::uint64_t end, const Take& take);
-  bool read_head(const std::string& text);
-  bool read_sample(std::string_view text, Sample& to) const;
+  bool begins_with(std::string_view text);
+  void read_head(const std::string& first);
+  bool read_sample(std::string_view text, Sample& to);
+  bool time_of(std::string_view cell, int column, double& time);
+  char point() const { return separator_ == ',' ? '.' : ','; }
 
   std::string name_;
   const RigFile* rig_;
@@ -51,6 +57,9 @@ class GrowingLog {
   std::unique_ptr<LogColumns> columns_;
   std::vector<int> target_;  // of each column of the file: its position among the signals, or -1
   char separator_ = ',';
+  std::vector<std::string> above_;    // lines before the first row of numbers
+  std::optional<StampClock> stamps_;  // the times are stamps
+  bool may_lack_last_ = false;
   std::string head_, half_;
   std::uint64_t fed_ = 0;
   long bad_lines_ = 0;

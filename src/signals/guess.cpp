@@ -3,218 +3,15 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
-#include <functional>
 #include <string_view>
+#include <utility>
 
 #include "base/units.h"
 #include "servodx/log.h"
+#include "signals/signal_words.h"
 
 namespace servodx {
 namespace {
-
-// Words that all must stand in a name, most telling patterns first within a signal.
-struct Pattern {
-  Signal signal;
-  std::string_view words;  // with blanks between
-};
-constexpr Pattern patterns[] = {
-    {Signal::time, "time"},
-    {Signal::time, "zeit"},
-    {Signal::time, "timestamp"},
-    {Signal::time, "t"},
-    {Signal::coil_current, "coil current"},
-    {Signal::coil_current, "current measured"},
-    {Signal::coil_current, "current fb"},
-    {Signal::coil_current, "current feedback"},
-    {Signal::coil_current, "spulenstrom"},
-    {Signal::coil_current, "i coil"},
-    {Signal::coil_current, "iststrom"},
-    {Signal::command, "command"},
-    {Signal::command, "cmd"},
-    {Signal::command, "current demand"},
-    {Signal::command, "current"},
-    {Signal::command, "i cmd"},
-    {Signal::command, "i ref"},
-    {Signal::command, "strom"},
-    {Signal::command, "sollstrom"},
-    {Signal::command, "ventilstrom"},
-    {Signal::command, "steuerstrom"},
-    {Signal::command, "i"},
-    {Signal::command, "isoll"},
-    {Signal::command, "i soll"},
-    {Signal::command, "i set"},
-    {Signal::command, "u soll"},
-    {Signal::command, "usoll"},
-    {Signal::command, "u"},
-    {Signal::command, "stellsignal"},
-    {Signal::command, "drive"},
-    {Signal::setpoint, "setpoint"},
-    {Signal::setpoint, "position demand"},
-    {Signal::setpoint, "pos demand"},
-    {Signal::setpoint, "pos ref"},
-    {Signal::setpoint, "position command"},
-    {Signal::setpoint, "pos cmd"},
-    {Signal::setpoint, "sollweg"},
-    {Signal::setpoint, "sollposition"},
-    {Signal::setpoint, "x ref"},
-    {Signal::setpoint, "x soll"},
-    {Signal::setpoint, "reference"},
-    {Signal::setpoint, "demand"},
-    {Signal::spool_position, "spool"},
-    {Signal::spool_position, "lvdt"},
-    {Signal::spool_position, "schieber"},
-    {Signal::spool_position, "schieberweg"},
-    {Signal::spool_position, "steuerkolben"},
-    {Signal::spool_position, "valve position"},
-    {Signal::spool_position, "valve pos"},
-    {Signal::spool_position, "valve stroke"},
-    {Signal::spool_position, "xs"},
-    {Signal::spool_position, "xv"},
-    {Signal::spool_position, "x s"},
-    {Signal::spool_position, "x v"},
-    {Signal::piston_position, "piston"},
-    {Signal::piston_position, "rod"},
-    {Signal::piston_position, "ram"},
-    {Signal::piston_position, "actuator position"},
-    {Signal::piston_position, "actuator pos"},
-    {Signal::piston_position, "pos fb"},
-    {Signal::piston_position, "position"},
-    {Signal::piston_position, "pos"},
-    {Signal::piston_position, "kolben"},
-    {Signal::piston_position, "kolbenweg"},
-    {Signal::piston_position, "cylinder"},
-    {Signal::piston_position, "cyl"},
-    {Signal::piston_position, "zylinder"},
-    {Signal::piston_position, "zylinderweg"},
-    {Signal::piston_position, "actuator"},
-    {Signal::piston_position, "xp"},
-    {Signal::piston_position, "x p"},
-    {Signal::piston_position, "xk"},
-    {Signal::piston_position, "x k"},
-    {Signal::pressure_a, "pressure a"},
-    {Signal::pressure_a, "press a"},
-    {Signal::pressure_a, "druck a"},
-    {Signal::pressure_a, "kammerdruck a"},
-    {Signal::pressure_a, "zylinderdruck a"},
-    {Signal::pressure_a, "p a"},
-    {Signal::pressure_a, "pa"},
-    {Signal::pressure_a, "port a"},
-    {Signal::pressure_a, "p1"},
-    {Signal::pressure_a, "p 1"},
-    {Signal::pressure_b, "pressure b"},
-    {Signal::pressure_b, "press b"},
-    {Signal::pressure_b, "druck b"},
-    {Signal::pressure_b, "kammerdruck b"},
-    {Signal::pressure_b, "zylinderdruck b"},
-    {Signal::pressure_b, "p b"},
-    {Signal::pressure_b, "pb"},
-    {Signal::pressure_b, "port b"},
-    {Signal::pressure_b, "p2"},
-    {Signal::pressure_b, "p 2"},
-    {Signal::supply_pressure, "supply"},
-    {Signal::supply_pressure, "psupply"},
-    {Signal::supply_pressure, "pump"},
-    {Signal::supply_pressure, "ps"},
-    {Signal::supply_pressure, "p s"},
-    {Signal::supply_pressure, "pp"},
-    {Signal::supply_pressure, "p p"},
-    {Signal::supply_pressure, "p0"},
-    {Signal::supply_pressure, "p 0"},
-    {Signal::supply_pressure, "p sup"},
-    {Signal::supply_pressure, "p sys"},
-    {Signal::supply_pressure, "system pressure"},
-    {Signal::supply_pressure, "pressure p"},
-    {Signal::supply_pressure, "versorgungsdruck"},
-    {Signal::supply_pressure, "systemdruck"},
-    {Signal::supply_pressure, "pumpendruck"},
-    {Signal::supply_pressure, "speisedruck"},
-    {Signal::supply_pressure, "druck p"},
-    {Signal::return_pressure, "return"},
-    {Signal::return_pressure, "preturn"},
-    {Signal::return_pressure, "tank"},
-    {Signal::return_pressure, "pt"},
-    {Signal::return_pressure, "p t"},
-    {Signal::return_pressure, "pr"},
-    {Signal::return_pressure, "pressure t"},
-    {Signal::return_pressure, "ruecklauf"},
-    {Signal::return_pressure, "ruecklaufdruck"},
-    {Signal::return_pressure, "druck t"},
-    {Signal::return_pressure, "tankdruck"},
-    {Signal::pilot_pressure_1, "pilot 1"},
-    {Signal::pilot_pressure_1, "nozzle 1"},
-    {Signal::pilot_pressure_2, "pilot 2"},
-    {Signal::pilot_pressure_2, "nozzle 2"},
-    {Signal::load_pressure, "load pressure"},
-    {Signal::load_pressure, "pl"},
-    {Signal::load_pressure, "p load"},
-    {Signal::load_pressure, "lastdruck"},
-    {Signal::valve_pressure_drop, "valve drop"},
-    {Signal::valve_pressure_drop, "drop"},
-    {Signal::load_force, "load force"},
-    {Signal::load_force, "force"},
-    {Signal::load_force, "load"},
-    {Signal::load_force, "kraft"},
-    {Signal::load_force, "f l"},
-    {Signal::load_force, "fl"},
-    {Signal::load_force, "f load"},
-    {Signal::load_force, "last"},
-    {Signal::leakage_flow, "leakage"},
-    {Signal::leakage_flow, "leak"},
-    {Signal::leakage_flow, "leckage"},
-    {Signal::flow_a, "flow a"},
-    {Signal::flow_a, "qa"},
-    {Signal::flow_a, "q a"},
-    {Signal::flow_b, "flow b"},
-    {Signal::flow_b, "qb"},
-    {Signal::flow_b, "q b"},
-    {Signal::control_flow, "flow"},
-    {Signal::control_flow, "q"},
-    {Signal::control_flow, "durchfluss"},
-    {Signal::oil_temperature, "oil temperature"},
-    {Signal::oil_temperature, "temperature"},
-    {Signal::oil_temperature, "temp"},
-    {Signal::oil_temperature, "oil"},
-    {Signal::oil_temperature, "oel"},
-    {Signal::oil_temperature, "oeltemp"},
-    {Signal::oil_temperature, "oeltemperatur"},
-    {Signal::oil_temperature, "temperatur"},
-};
-
-// How else people write units of the table, capitals aside.
-constexpr std::pair<std::string_view, std::string_view> unit_words[] = {
-    {"sec", "s"},
-    {"seconds", "s"},
-    {"msec", "ms"},
-    {"\xC2\xB5s", "us"},
-    {"\xC2\xB5m", "um"},
-    {"micron", "um"},
-    {"inch", "in"},
-    {"inches", "in"},
-    {"amp", "A"},
-    {"amps", "A"},
-    {"barg", "bar"},
-    {"bara", "bar"},
-    {"c", "degC"},
-    {"degc", "degC"},
-    {"\xC2\xB0"
-     "c",
-     "degC"},
-    {"deg c", "degC"},
-    {"celsius", "degC"},
-    {"f", "degF"},
-    {"degf", "degF"},
-    {"\xC2\xB0"
-     "f",
-     "degF"},
-    {"lpm", "l/min"},
-    {"volt", "V"},
-    {"volts", "V"},
-    {"mpa", "MPa"},
-    {"kpa", "kPa"},
-    {"kn", "kN"},
-    {"psig", "psi"},
-    {"ma", "mA"},
-};
 
 std::string trimmed(const std::string& text) {
   const auto first = text.find_first_not_of(" \t");
@@ -265,8 +62,21 @@ std::vector<std::string> words_of(const std::string& written) {
   return words;
 }
 
-// Number of words of the pattern if all are there, plus one where nothing else is; 0: no match.
+constexpr int by_own_name = 100;  // points: more than any words give
+
+bool is_ascii(std::string_view text) {
+  return std::all_of(text.begin(), text.end(), [](char c) { return static_cast<unsigned char>(c) < 0x80; });
+}
+
+// Two for each word of the pattern if all are there, and one where nothing else is; 0: no match. Chinese has no blanks
+// between words: there the pattern is a part of the name, and three letters are as good as a word.
 int match(std::vector<std::string> name, std::string_view pattern) {
+  if (!is_ascii(pattern)) {
+    for (const std::string& word : name)
+      if (word.find(pattern) != word.npos)
+        return 2 * (1 + static_cast<int>(pattern.size()) / 9) + (name.size() == 1 && word == pattern);
+    return 0;
+  }
   const std::size_t words = name.size();
   int matched = 0;
   while (!pattern.empty()) {
@@ -287,36 +97,70 @@ bool unit_fits(const std::string& unit, Signal signal) {
   return u->dimension == info(signal).dimension || (relative && (u->dimension == relative->dimension || unit == "%"));
 }
 
+bool is_own_unit(const std::string& unit, Signal signal) {
+  const Unit* u = find_unit(unit);
+  const auto relative = relative_unit(signal);
+  return u && (u->dimension == info(signal).dimension || (relative && u->dimension == relative->dimension));
+}
+
 struct Match {
   int points;
   std::size_t column;
   Signal signal;
+  bool weak = false;
 };
 
 // The signals that a name may stand for with this unit.
 std::vector<Match> matches_of(const std::string& name, const std::string& unit, std::size_t column) {
   std::vector<Match> matches;
   const std::vector<std::string> words = words_of(name);
-  for (const Pattern& p : patterns)
-    if (const int points = match(words, p.words); points > 0 && unit_fits(unit, p.signal))
-      matches.push_back({points, column, p.signal});
+  for (const SignalWords& known : signal_words())
+    if (const int points = match(words, known.words); points > 0 && unit_fits(unit, known.signal))
+      matches.push_back({points, column, known.signal, known.weak});
   return matches;
 }
 
 bool is_whole(const Match& m) { return m.points % 2 == 1; }
 
+// Where the bracket opens that the text's last letter closes.
+std::size_t opening(std::string_view text, char open, char close) {
+  int depth = 0;
+  for (std::size_t k = text.size(); k-- > 0;) {
+    depth += (text[k] == close) - (text[k] == open);
+    if (depth == 0) return k;
+  }
+  return text.npos;
+}
+
 // "name (unit)", "name [unit]".
 bool split_brackets(ColumnGuess& g) {
   for (const auto& [open, close] : {std::pair{'[', ']'}, std::pair{'(', ')'}}) {
-    const auto at = g.name.rfind(open);
-    if (at == std::string::npos || at == 0 || g.name.back() != close) continue;
-    const std::string written = trimmed(g.name.substr(at + 1, g.name.size() - at - 2));
-    g.unit = unit_meant(written);
-    g.unit_in_brackets = open == '[' && !g.unit.empty() && g.unit == written;
+    if (g.name.empty() || g.name.back() != close) continue;
+    const auto at = opening(g.name, open, close);
+    if (at == std::string::npos || at == 0) continue;
+    g.written_unit = trimmed(g.name.substr(at + 1, g.name.size() - at - 2));
+    g.unit = unit_meant(g.written_unit);
+    g.unit_in_brackets = open == '[' && !g.unit.empty() && g.unit == g.written_unit;
     g.name = trimmed(g.name.substr(0, at));
     return true;
   }
   return false;
+}
+
+const ForeignUnit* foreign_unit(const std::string& written) {
+  std::string low = small(written);
+  std::erase(low, ' ');
+  for (const ForeignUnit& unit : foreign_units())
+    if (unit.word == low) return &unit;
+  return nullptr;
+}
+
+// "(mm)" as Chinese writes it.
+std::string with_plain_brackets(std::string text) {
+  constexpr std::pair<std::string_view, std::string_view> wide[] = {{"\xEF\xBC\x88", "("}, {"\xEF\xBC\x89", ")"}};
+  for (const auto& [from, to] : wide)
+    for (auto at = text.find(from); at != text.npos; at = text.find(from)) text.replace(at, from.size(), to);
+  return text;
 }
 
 // "pressure_bar", "Q l/min": the last word is a unit; "p/bar": what follows the stroke is. A subscript is none: "p_A"
@@ -331,10 +175,49 @@ void split_last_word(ColumnGuess& g) {
     if (*marks != '/' && (std::any_of(whole.begin(), whole.end(), is_whole) ||
                           (!whole.empty() && matches_of(name, unit, 0).empty() && !find_signal(name))))
       continue;
+    g.written_unit = trimmed(g.name.substr(at + 1));
     g.name = name;
     g.unit = unit;
     return;
   }
+}
+
+// The unit that a match is judged by: of one beyond the table, the one that it would become.
+std::string unit_to_match(const ColumnGuess& g) {
+  if (!g.unit.empty() || g.written_unit.empty()) return g.unit;
+  const ForeignUnit* const foreign = foreign_unit(g.written_unit);
+  return foreign ? std::string(foreign->unit) : "";
+}
+
+ColumnGuess split(const std::string& cell, const std::string* unit_below) {
+  ColumnGuess g;
+  g.cell = cell;
+  g.name = trimmed(with_plain_brackets(cell));
+  if (split_brackets(g)) return g;
+  if (unit_below) {
+    g.written_unit = *unit_below;
+    g.unit = unit_meant(*unit_below);
+    g.unit_in_brackets = !g.unit.empty() && g.unit == *unit_below;
+  } else {
+    split_last_word(g);
+  }
+  return g;
+}
+
+// A unit that the table has not is the user's to confirm, with what would make it one of the table.
+void ask_unknown_unit(ColumnGuess& g) {
+  if (!g.signal || !g.unit.empty() || g.written_unit.empty()) return;
+  const ForeignUnit* const foreign = foreign_unit(g.written_unit);
+  if (!foreign) {
+    g.question = "unknown unit '" + g.written_unit + "': what is it in " + units_of(info(*g.signal).dimension) + "?";
+    return;
+  }
+  g.unit = foreign->unit;
+  if (foreign->gain != "1") g.gain = foreign->gain;
+  g.offset = foreign->offset;
+  g.question = "unknown unit '" + g.written_unit + "': " +
+               (g.offset.empty() ? "is it " + std::string(foreign->gain) + " " + g.unit + "?"
+                                 : "an absolute pressure, an atmosphere over the gauge pressure?");
 }
 
 }  // namespace
@@ -342,96 +225,35 @@ void split_last_word(ColumnGuess& g) {
 std::string unit_meant(const std::string& written) {
   if (find_unit(written)) return written;
   const std::string low = small(written);
-  for (const auto& [word, unit] : unit_words)
-    if (low == word) return std::string(unit);
+  for (const UnitWord& known : unit_words())
+    if (low == known.word) return std::string(known.unit);
   return find_unit(low) ? low : "";
-}
-
-namespace {
-
-bool is_number(std::string cell) {
-  std::replace(cell.begin(), cell.end(), ',', '.');
-  return parse_number(cell).has_value();
-}
-
-// The cells without their brackets, where one at least is a unit and none a number.
-std::vector<std::string> as_units(std::vector<std::string> units) {
-  bool any = false;
-  for (std::string& cell : units) {
-    if (is_number(cell)) return {};
-    const std::size_t n = cell.size();
-    if (n > 1 && ((cell[0] == '[' && cell[n - 1] == ']') || (cell[0] == '(' && cell[n - 1] == ')')))
-      cell = trimmed(cell.substr(1, n - 2));
-    any = any || !unit_meant(cell).empty();
-  }
-  return any ? units : std::vector<std::string>{};
-}
-
-}  // namespace
-
-std::vector<std::string> units_row(CsvCursor& csv) {
-  const std::vector<std::string> units = as_units(csv.row_ahead());
-  return units.size() == csv.header().size() ? units : std::vector<std::string>{};
-}
-
-long pass_lines_above_header(CsvCursor& csv) {
-  constexpr std::size_t most = 100;  // lines
-  std::vector<std::vector<std::string>> rows = {csv.header()};
-  const std::string_view text = csv.ahead();
-  for (std::size_t at = 0; at < text.size() && rows.size() <= most;) {
-    const std::size_t end = std::min(text.find('\n', at), text.size());
-    const std::string_view line = text.substr(at, end - at);
-    at = end + 1;
-    if (line.find_first_not_of(" \t\r") == line.npos) continue;
-    if (line.starts_with('#') || std::count(line.begin(), line.end(), '"') % 2 != 0) {
-      rows.emplace_back();
-      continue;
-    }
-    std::vector<std::string> cells = CsvCursor(line, "").header();
-    const auto empty = [](const std::string& cell) { return cell.empty(); };
-    const bool numbers = std::all_of(cells.begin(), cells.end(),
-                                     [&](const std::string& cell) { return cell.empty() || is_number(cell); });
-    if (!numbers || std::count_if(cells.begin(), cells.end(), std::not_fn(empty)) < 2) {
-      rows.push_back(std::move(cells));
-      continue;
-    }
-    const std::size_t width = cells.size(), last = rows.size() - 1;
-    if (rows.front().size() == width || rows[last].size() != width) return 0;
-    const bool units = rows[last - 1].size() == width && !as_units(rows[last]).empty();
-    const std::size_t above = units ? last - 1 : last;
-    for (std::size_t k = 0; k < above; ++k) csv.next_header();
-    return static_cast<long>(above);
-  }
-  return 0;
 }
 
 std::vector<ColumnGuess> guess_columns(const std::vector<std::string>& header, const std::vector<std::string>& units) {
   std::vector<ColumnGuess> guesses;
   std::vector<Match> matches;
   for (std::size_t i = 0; i < header.size(); ++i) {
-    ColumnGuess g;
-    g.cell = header[i];
-    g.name = trimmed(header[i]);
-    const bool bracketed = split_brackets(g);
-    if (!bracketed && i < units.size()) {
-      g.unit = unit_meant(units[i]);
-      g.unit_in_brackets = !g.unit.empty() && g.unit == units[i];
-    } else if (!bracketed) {
-      split_last_word(g);
-    }
-    if (const auto own = find_signal(g.name)) {
+    ColumnGuess g = split(header[i], i < units.size() ? &units[i] : nullptr);
+    const std::string unit = unit_to_match(g);
+    // "command [mm]" is no command: the unit decides.
+    if (const auto own = find_signal(g.name); own && unit_fits(unit, *own)) {
       g.canonical = true;
-      matches.push_back({100, i, *own});
+      matches.push_back({by_own_name, i, *own});
     }
-    const std::vector<Match> more = matches_of(g.name, g.unit, i);
-    matches.insert(matches.end(), more.begin(), more.end());
+    for (Match& m : matches_of(g.name, unit, i)) {
+      m.points += is_own_unit(unit, m.signal) ? 2 : 0;
+      matches.push_back(m);
+    }
     guesses.push_back(std::move(g));
   }
   std::stable_sort(matches.begin(), matches.end(), [](const Match& a, const Match& b) { return a.points > b.points; });
   std::array<bool, n_signals> taken{};
   for (const Match& m : matches) {
-    if (guesses[m.column].signal || taken[static_cast<std::size_t>(index(m.signal))]) continue;
-    guesses[m.column].signal = m.signal;
+    ColumnGuess& g = guesses[m.column];
+    if (g.signal || taken[static_cast<std::size_t>(index(m.signal))]) continue;
+    g.signal = m.signal;
+    g.weak = m.weak;
     taken[static_cast<std::size_t>(index(m.signal))] = true;
   }
   for (ColumnGuess& g : guesses) {
@@ -442,12 +264,14 @@ std::vector<ColumnGuess> guess_columns(const std::vector<std::string>& header, c
       g.signal = Signal::oil_temperature;
       oil = true;
     }
+    g.canonical = g.canonical && g.signal == find_signal(g.name);
     // Of what a per cent is a part, the signal says.
     if (const auto relative = g.signal ? relative_unit(*g.signal) : std::nullopt; relative && g.unit == "%") {
       for (const Unit& u : unit_table())
         if (u.dimension == relative->dimension) g.unit = u.name;
       g.unit_in_brackets = false;
     }
+    ask_unknown_unit(g);
   }
   return guesses;
 }

@@ -11,10 +11,14 @@
 
 namespace servodx {
 
-Log read_log(const std::string& path, const RigFile& rig, const ReadOptions& options) {
+bool is_mat_file(const std::string& path) {
   std::string ending = path.substr(path.size() - std::min<std::size_t>(4, path.size()));
   for (char& c : ending) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return ending == ".mat" ? read_mat_log(path, rig, options) : read_csv_log(path, rig, options);
+  return ending == ".mat";
+}
+
+Log read_log(const std::string& path, const RigFile& rig, const ReadOptions& options) {
+  return is_mat_file(path) ? read_mat_log(path, rig, options) : read_csv_log(path, rig, options);
 }
 
 std::string content_hash(const Log& log) {

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <cmath>
 #include <limits>
 
@@ -27,6 +28,11 @@ std::string trimmed(std::string text) {
   const auto first = text.find_first_not_of(" \t");
   if (first == std::string::npos) return {};
   return text.substr(first, text.find_last_not_of(" \t") - first + 1);
+}
+
+std::string in_small_letters(std::string text) {
+  for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return text;
 }
 
 NameAndUnit parse_name(const std::string& cell) {
@@ -182,8 +188,10 @@ void LogColumns::refuse_missing(Signal signal, const std::string& rule) const {
   mend += ", or map one of yours in [columns] of the rig file";
   if (format_.has_lines) mend += " ('servodx init LOG' begins one)";
   if (!ignored_.empty()) mend += "; not known: " + in_quotes(ignored_);
-  if (const std::string near = nearest_word(name, ignored_); !near.empty())
-    mend += fmt::format("; is '{}' '{}' misspelt?", near, name);
+  std::string near = nearest_word(name, ignored_);
+  for (const std::string& ignored : ignored_)
+    if (in_small_letters(ignored) == name) near = ignored;
+  if (!near.empty()) mend += fmt::format("; did you mean '{}' by '{}'?", name, near);
   refuse(format_.has_lines ? header_line_ : 0, name, rule, mend);
 }
 

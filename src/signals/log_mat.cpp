@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
+#include <utility>
 
 #include "base/box.h"
 #include "base/sha256.h"
@@ -34,33 +36,32 @@ BoxLimits limits_for(std::size_t file_size) {
   return {.memory = least + a_byte * file_size, .seconds = 2 + file_size / bytes_a_second};
 }
 
-class MatReader {
+// Reads a file's variables in a child, and hands them on one by one.
+class MatChild {
  public:
-  MatReader(const std::string& path, const RigFile& rig, const ReadOptions& options)
-      : path_(path), log_(path, rig, options, {.has_units = false, .has_lines = false}) {}
-
-  Log read() {
-    std::string hash = sha256_of_file(path_);  // refuses what cannot be read
+  explicit MatChild(const std::string& path) : path_(path), sha256_(sha256_of_file(path)) {
     std::error_code unknown;
-    const auto size = std::filesystem::file_size(path_, unknown);
+    const auto size = std::filesystem::file_size(path, unknown);
     limits_ = limits_for(unknown ? 0 : size);
-    Box box(limits_, [this](const Box::Give& give) { give_all(give); });
+  }
+  const std::string& sha256() const { return sha256_; }
+
+  // `wants`: whose numbers are wanted; of the others comes the name alone.
+  void read(const std::function<bool(const std::string& name)>& wants, const std::function<void(MatVariable&&)>& take) {
+    Box box(limits_, [&](const Box::Give& give) { give_all(wants, give); });
     for (std::uint64_t part = 0; box.take(&part, sizeof part);)
-      if (!(part == static_cast<std::uint64_t>(Part::variable) ? take_variable(box) : refuse_as_told(box))) break;
+      if (!(part == static_cast<std::uint64_t>(Part::variable) ? take_variable(box, take) : refuse_as_told(box))) break;
     require_whole(box.end());
-    log_.require_signals();
-    log_.append_columns({values_.begin(), values_.end()});
-    return log_.finish(std::move(hash));
   }
 
  private:
-  void give_all(const Box::Give& give) const {
+  void give_all(const std::function<bool(const std::string& name)>& wants, const Box::Give& give) const {
     try {
       read_mat_file(path_, [&](const MatVariable& v) {
         give_number(give, static_cast<std::uint64_t>(Part::variable));
         give_text(give, v.name);
         give_text(give, v.fault);
-        const std::size_t bytes = log_.knows(v.name) ? v.numbers.size() * sizeof(double) : 0;
+        const std::size_t bytes = wants(v.name) ? v.numbers.size() * sizeof(double) : 0;
         give_number(give, bytes);
         give({reinterpret_cast<const char*>(v.numbers.data()), bytes});
       });
@@ -80,13 +81,10 @@ class MatReader {
     return box.take(values.data(), values.size() * sizeof values[0]);
   }
 
-  bool take_variable(Box& box) {
-    std::string name, fault;
-    std::vector<double> numbers;
-    if (!take_values(box, name) || !take_values(box, fault) || !take_values(box, numbers)) return false;
-    if (log_.add(name, 0) < 0) return true;
-    if (!fault.empty()) log_.refuse(0, name, fault, "save each signal as a vector of numbers, one a sample");
-    values_.push_back(std::move(numbers));
+  bool take_variable(Box& box, const std::function<void(MatVariable&&)>& take) const {
+    MatVariable v;
+    if (!take_values(box, v.name) || !take_values(box, v.fault) || !take_values(box, v.numbers)) return false;
+    take(std::move(v));
     return true;
   }
 
@@ -106,15 +104,33 @@ class MatReader {
   }
 
   const std::string& path_;
-  LogColumns log_;
+  std::string sha256_;  // first, as it refuses what cannot be read
   BoxLimits limits_;
-  std::vector<std::vector<double>> values_;  // as in the file, in the order of the log's columns
 };
 
 }  // namespace
 
 Log read_mat_log(const std::string& path, const RigFile& rig, const ReadOptions& options) {
-  return MatReader(path, rig, options).read();
+  LogColumns log(path, rig, options, {.has_units = false, .has_lines = false});
+  MatChild child(path);
+  std::vector<std::vector<double>> values;  // as in the file, in the order of the log's columns
+  child.read([&](const std::string& name) { return log.knows(name); },
+             [&](MatVariable&& v) {
+               if (log.add(v.name, 0) < 0) return;
+               if (!v.fault.empty())
+                 log.refuse(0, v.name, v.fault, "save each signal as a vector of numbers, one a sample");
+               values.push_back(std::move(v.numbers));
+             });
+  log.require_signals();
+  log.append_columns({values.begin(), values.end()});
+  return log.finish(child.sha256());
+}
+
+std::vector<MatVariable> read_mat_variables(const std::string& path) {
+  std::vector<MatVariable> variables;
+  MatChild(path).read([](const std::string&) { return true; },
+                      [&](MatVariable&& v) { variables.push_back(std::move(v)); });
+  return variables;
 }
 
 }  // namespace servodx

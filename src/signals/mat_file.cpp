@@ -3,12 +3,15 @@
 #include <fmt/format.h>
 #include <matio.h>
 
+#include <algorithm>
 #include <bit>
 #include <cstdint>
 #include <cstring>
 #include <fstream>
 #include <memory>
 #include <optional>
+#include <string_view>
+#include <utility>
 
 #include "base/error.h"
 
@@ -173,28 +176,119 @@ MatVariable variable_of(const std::string& name, const matvar_t& v) {
   return out;
 }
 
+// A text of matio's, of one byte or two a letter, in UTF-8; `step` letters apart.
+std::string text_of(const matvar_t& v, std::size_t first, std::size_t step, std::size_t letters) {
+  std::string text;
+  for (std::size_t k = 0, at = first; k < letters; ++k, at += step) {
+    unsigned code = 0;
+    if (!v.data || (at + 1) * static_cast<std::size_t>(v.data_size) > v.nbytes) return {};
+    if (v.data_size == 1)
+      code = static_cast<const unsigned char*>(v.data)[at];
+    else if (v.data_size == 2)
+      code = static_cast<const std::uint16_t*>(v.data)[at];
+    if (code < 0x80 || v.data_type == MAT_T_UTF8) {
+      text += static_cast<char>(code);
+    } else if (code < 0x800) {
+      text += static_cast<char>(0xC0 | code >> 6);
+      text += static_cast<char>(0x80 | (code & 0x3F));
+    } else {
+      text += static_cast<char>(0xE0 | code >> 12);
+      text += static_cast<char>(0x80 | (code >> 6 & 0x3F));
+      text += static_cast<char>(0x80 | (code & 0x3F));
+    }
+  }
+  text.erase(text.find_last_not_of(std::string_view(" \0", 2)) + 1);
+  return text;
+}
+
+// The texts of a cell array, or the rows of a matrix of letters; empty where it is neither.
+std::vector<std::string> texts_of(const matvar_t& v) {
+  std::vector<std::string> texts;
+  if (v.class_type == MAT_C_CHAR && v.rank == 2) {
+    for (std::size_t row = 0; row < v.dims[0]; ++row) texts.push_back(text_of(v, row, v.dims[0], v.dims[1]));
+  } else if (v.class_type == MAT_C_CELL && v.dims && v.data) {
+    for (std::size_t k = 0; k < count_of(v); ++k) {
+      const matvar_t* cell = static_cast<matvar_t* const*>(v.data)[k];
+      if (!cell || cell->class_type != MAT_C_CHAR || !cell->dims || cell->rank < 1) return {};
+      texts.push_back(text_of(*cell, 0, 1, count_of(*cell)));
+    }
+  }
+  return texts;
+}
+
+// Matrices whose columns may be signals, and lists that may name them.
+class Matrices {
+ public:
+  void add(const std::string& name, const matvar_t& v) {
+    if (!v.dims || v.rank != 2) return;
+    if (auto texts = texts_of(v); texts.size() > 1) {
+      lists_.push_back(std::move(texts));
+      return;
+    }
+    const std::size_t rows = v.dims[0], columns = v.dims[1];
+    const std::size_t most = std::max(rows, columns), least = std::min(rows, columns);
+    if (least < 2 || least > most_columns || most < fewest_samples) return;
+    if (std::vector<double> numbers = numbers_of(v); numbers.size() == count_of(v))
+      matrices_.push_back({name, rows, columns, std::move(numbers)});
+  }
+
+  void give(const std::function<void(const MatVariable&)>& take) const {
+    for (const Matrix& m : matrices_) {
+      const bool standing = m.rows >= m.columns;
+      const std::size_t signals = standing ? m.columns : m.rows, samples = standing ? m.rows : m.columns;
+      const auto names = std::find_if(lists_.begin(), lists_.end(), [&](const auto& l) { return l.size() == signals; });
+      for (std::size_t k = 0; k < signals; ++k) {
+        MatVariable v{names != lists_.end() ? (*names)[k]
+                      : standing            ? fmt::format("{}(:,{})", m.name, k + 1)
+                                            : fmt::format("{}({},:)", m.name, k + 1),
+                      "",
+                      {}};
+        for (std::size_t i = 0; i < samples; ++i)
+          v.numbers.push_back(m.numbers[standing ? k * m.rows + i : i * m.rows + k]);
+        take(v);
+      }
+    }
+  }
+
+ private:
+  static constexpr std::size_t most_columns = 100, fewest_samples = 20;  // else it is no log
+  struct Matrix {
+    std::string name;
+    std::size_t rows, columns;
+    std::vector<double> numbers;  // column by column
+  };
+  std::vector<Matrix> matrices_;
+  std::vector<std::vector<std::string>> lists_;
+};
+
 }  // namespace
 
 void read_mat_file(const std::string& path, const std::function<void(const MatVariable&)>& take) {
   const std::optional<long> expected = Parts(path).count();
   const File file(Mat_Open(path.c_str(), MAT_ACC_RDONLY));
   if (!file) throw InputError({path, 0, ""}, "is not a MAT file", "save it with MATLAB's 'save', or write a CSV log");
+  Matrices matrices;
+  const auto take_variable = [&](const std::string& name, const matvar_t& v) {
+    matrices.add(name, v);
+    take(variable_of(name, v));
+  };
   long read = 0;
   for (; Variable v{Mat_VarReadNext(file.get())}; ++read) {
     const std::string name = v->name ? v->name : "";
     const bool one_deep = v->class_type == MAT_C_STRUCT && v->dims && v->rank > 0 && count_of(*v) == 1;
     char* const* const names = one_deep ? Mat_VarGetStructFieldnames(v.get()) : nullptr;
     if (!names) {
-      take(variable_of(name, *v));
+      take_variable(name, *v);
       continue;
     }
     for (unsigned k = 0; k < Mat_VarGetNumberOfFields(v.get()); ++k)
       if (const matvar_t* field = Mat_VarGetStructFieldByIndex(v.get(), k, 0); field && names[k])
-        take(variable_of(fmt::format("{}.{}", name, names[k]), *field));
+        take_variable(fmt::format("{}.{}", name, names[k]), *field);
   }
   if (expected && read < *expected)
     throw InputError({path, 0, ""},
                      fmt::format("is damaged: its variable {} of {} cannot be read", read + 1, *expected), save_again);
+  matrices.give(take);
 }
 
 }  // namespace servodx

@@ -7,12 +7,13 @@
 namespace servodx {
 
 struct MatVariable {
-  std::string name;             // "data.qm": the field of a structure
+  std::string name;             // "data.qm": the field of a structure; "data(:,2)": a matrix's column without a name
   std::string fault;            // why it is no signal; empty: it is one
   std::vector<double> numbers;  // of a signal
 };
 
-// Gives every variable, in the file's order. Throws InputError where the file's own sizes do not fit
+// Gives every variable, in the file's order, and behind them the columns of matrices: by their names where a list of as
+// many texts is in the file too, else by their number. Throws InputError where the file's own sizes do not fit
 // it (it is cut off, or damaged) or a variable cannot be read.
 void read_mat_file(const std::string& path, const std::function<void(const MatVariable&)>& take);
 

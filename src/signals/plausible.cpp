@@ -24,10 +24,11 @@ constexpr double no_excitation = 0.005;    // drive range per rated current
 constexpr double gap_over_step = 1.8;      // time step per usual step
 
 // A spool is through in 10 to 30 ms; a stand's slow sweeps are another matter.
-constexpr double slowest = 50.0;     // [Hz]
-constexpr double fastest = 200e3;    // [Hz] beyond what loggers of valves take
-constexpr double longest_log = 1e5;  // [s] a day
-constexpr double no_supply = 5e5;    // [Pa] what a return line holds
+constexpr double slowest = 50.0;          // [Hz]
+constexpr double fastest = 200e3;         // [Hz] beyond what loggers of valves take
+constexpr double longest_log = 1e5;       // [s] a day
+constexpr double least_of_stroke = 5e-4;  // a piston that uses less of it has another unit, or another column
+constexpr double no_supply = 5e5;         // [Pa] what a return line holds
 constexpr std::size_t scale_samples = 10000;
 
 double quantile(std::vector<double>& x, double q) {
@@ -62,6 +63,7 @@ class Watch {
   std::vector<std::string> notes(const SignalInfo& signal) {
     if (signal.signal == Signal::time || !log_.has(signal.signal)) return {};
     bounds(signal);
+    if (signal.signal == Signal::piston_position) use_of_stroke(signal);
     if (measures_response(signal.signal)) frozen(signal);
     if (signal.signal != Signal::command && signal.signal != Signal::setpoint) spikes(signal);
     return std::move(notes_);
@@ -192,6 +194,14 @@ class Watch {
     }
     note(signal, "{} samples are hardly possible (up to {:.4g} {}): check unit, gain and offset", count, worst,
          signal.si_unit);
+  }
+
+  void use_of_stroke(const SignalInfo& signal) {
+    const auto stroke = rig_.fact("actuator.stroke");
+    const Sweep& found = sweeps_[index(signal.signal)];
+    const double moved = found.high - found.low;
+    if (stroke && moved > 0 && moved < least_of_stroke * *stroke)
+      note(signal, "moves {:.2g} % of the stroke: check unit and gain", 100 * moved / *stroke);
   }
 
   void frozen(const SignalInfo& signal) {

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include "base/csv.h"
 #include "base/key_error.h"
@@ -56,6 +57,7 @@ class Reader {
   explicit Reader(const std::string& path) { rig_.path = path; }
 
   RigFile read(const std::string& text) {
+    text_ = text;
     rig_.sha256 = sha256(text);
     try {
       root_ = toml::parse(text, rig_.path);
@@ -122,8 +124,34 @@ class Reader {
     }
   }
 
+  // The last heading above a line that is still a comment, "# [valve]": its name, and its line.
+  std::pair<std::string, long> heading_left_out(long below) const {
+    std::pair<std::string, long> last;
+    long number = 0;
+    for (std::size_t at = 0; at < text_.size() && ++number < below;) {
+      const std::size_t end = std::min(text_.find('\n', at), text_.size());
+      std::string line = text_.substr(at, end - at);
+      at = end + 1;
+      std::erase_if(line, [](char c) { return c == ' ' || c == '\t'; });
+      const auto mark = line.find_first_not_of('#'), close = line.find(']');
+      if (mark == line.npos || line[mark] != '[' || close == line.npos) continue;
+      if (mark == 0)
+        last = {};
+      else
+        last = {line.substr(mark + 1, close - mark - 1), number};
+    }
+    return last;
+  }
+
   [[noreturn]] void refuse_unknown(const std::string& key) const {
     const auto dot = key.rfind('.');
+    const auto [heading, line] = heading_left_out(rig_.line(key));
+    for (const RigFact& fact : rig_facts())
+      if (!heading.empty() && fact.key == heading + "." + key.substr(dot + 1))
+        throw InputError(
+            place(key),
+            "belongs to [" + heading + "], whose heading in line " + std::to_string(line) + " is still a comment",
+            "take the '#' off that line too");
     const std::string folder = dot == std::string::npos ? "" : key.substr(0, dot + 1);
     std::vector<std::string> known;
     if (folder.empty())
@@ -331,6 +359,7 @@ class Reader {
   }
 
   RigFile rig_;
+  std::string text_;
   toml::table root_;
 };
 

@@ -115,7 +115,11 @@ TEST(Csv, ADecimalCommaCountsWhereTheSeparatorIsASemicolon) {
   EXPECT_EQ(semicolons.next_number(value), Cell::text);
   CsvCursor tabs("a\tb\n1,5\t2\n", "t.csv");
   tabs.next_row();
-  EXPECT_EQ(tabs.next_number(value), Cell::text);
+  EXPECT_EQ(tabs.next_number(value), Cell::number);
+  EXPECT_EQ(value, 1.5);
+  CsvCursor commas("a,b\n\"1,5\",2\n", "t.csv");
+  commas.next_row();
+  EXPECT_EQ(commas.next_number(value), Cell::text);
 }
 
 TEST(Csv, AnyDoubleIsWrittenAndReadBackBitForBit) {

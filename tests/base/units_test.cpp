@@ -23,6 +23,15 @@ TEST(Units, EachNameIsListedOnce) {
   for (const Unit& unit : unit_table()) EXPECT_TRUE(names.insert(unit.name).second) << unit.name;
 }
 
+TEST(Units, LettersBeyondAsciiSpellTheSameUnits) {
+  EXPECT_EQ(find_unit("\xC2\xB0"
+                      "C"),
+            find_unit("degC"));
+  EXPECT_EQ(find_unit("\xE2\x84\x83"), find_unit("degC"));
+  EXPECT_EQ(find_unit("\xC2\xB5m"), find_unit("um"));
+  EXPECT_EQ(find_unit("\xCE\xBCm"), find_unit("um"));
+}
+
 TEST(Units, EveryUnitGoesToSiAndBack) {
   for (const Unit& unit : unit_table())
     for (double x : {-40.0, 0.5, 123.456})

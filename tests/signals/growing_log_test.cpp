@@ -84,6 +84,38 @@ TEST(GrowingLog, AUnitsRowIsNoSample) {
   EXPECT_DOUBLE_EQ(taken.samples[0][Signal::command], 1e-3);
 }
 
+TEST(GrowingLog, LinesAboveTheHeaderAreNoSamples) {
+  const Taken taken = take(
+      "LabVIEW Measurement\nSeparator\tTab\n***End_of_Header***\n\ntime\tcommand\tspool_position\tComment\n"
+      "s\tmA\tmm\n0,0\t1\t0,5\n0,001\t2\t0,6\tnote\n",
+      9, {});
+  ASSERT_EQ(taken.samples.size(), 2u);
+  EXPECT_EQ(taken.bad, 0);
+  EXPECT_DOUBLE_EQ(taken.samples[1][Signal::spool_position], 0.6e-3);
+}
+
+TEST(GrowingLog, TimeStampsCountFromTheFirstRowAfterARestartToo) {
+  const std::string text =
+      "command [mA],time,spool_position [mm]\n1,2021-03-04 10:11:12.000,2\n1,2021-03-04 10:11:12.001,2\n";
+  const Taken taken = take(text, 11, {});
+  ASSERT_EQ(taken.samples.size(), 2u);
+  EXPECT_DOUBLE_EQ(taken.samples[1].time, 1e-3);
+  const RigFile rig;
+  GrowingLog first("log.csv", rig), second("log.csv", rig);
+  first.feed(text, [](const Sample&, std::uint64_t) {});
+  second.begin_with(first.head(), text.size());
+  std::vector<Sample> samples;
+  second.feed("1,2021-03-04 10:11:13.000,2\n0,5,2\n", [&](const Sample& s, std::uint64_t) { samples.push_back(s); });
+  ASSERT_EQ(samples.size(), 1u);
+  EXPECT_DOUBLE_EQ(samples[0].time, 1.0);
+  EXPECT_EQ(second.bad_lines(), 1);
+}
+
+TEST(GrowingLog, WhatIsNoTextOrHasNoHeaderIsRefused) {
+  EXPECT_THROW(take(std::string("TDSm") + std::string(100, '\0') + "\n1,2\n", 50, {}), InputError);
+  EXPECT_THROW(take("0,1,2\n1,1,2\n", 50, {}), InputError);
+}
+
 TEST(GrowingLog, AHeaderWithoutADriveIsRefused) {
   EXPECT_THROW(take("time [s],spool_position [mm]\n0,1\n", 100, {}), InputError);
 }

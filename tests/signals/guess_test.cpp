@@ -1,9 +1,13 @@
 // A user's header cells are taken for the signals that a person would take them for, and for none where they would not.
 #include "signals/guess.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include "base/csv.h"
+#include <string>
+#include <vector>
+
+#include "servodx/log.h"
 
 namespace servodx {
 namespace {
@@ -65,15 +69,7 @@ TEST(Guess, UnitsInAnyCapitalsAndThePerCentOfASignal) {
   EXPECT_EQ(taken({"Spool [%]"}), "spool_position in % of stroke");
 }
 
-TEST(Guess, ARowOfUnitsBelowTheHeaderIsNoRowOfSamples) {
-  const auto units_below = [](const std::string& text) {
-    CsvCursor csv(text, "log.csv");
-    return csv.next_row() ? units_row(csv) : std::vector<std::string>{};
-  };
-  EXPECT_EQ(units_below("t;p_A;x\n[s];(psi);mm\n0;1,5;2\n"), (std::vector<std::string>{"s", "psi", "mm"}));
-  EXPECT_EQ(units_below("t,id\n\"s\",\n0,1\n"), (std::vector<std::string>{"s", ""}));
-  EXPECT_TRUE(units_below("t;x\n0;1,5\n").empty());
-  EXPECT_TRUE(units_below("t,x\nstart,stop\n").empty());  // words, and none a unit
+TEST(Guess, UnitsOfARowBelowAreTheColumns) {
   const auto guesses = guess_columns({"t", "p_A", "u"}, {"s", "PSI", "V"});
   EXPECT_EQ(info(*guesses[1].signal).name, "pressure_a");
   EXPECT_EQ(guesses[1].unit, "psi");
@@ -96,22 +92,57 @@ TEST(Guess, UmlautsAndCompounds) {
   EXPECT_EQ(taken(header, 0), "command");
   EXPECT_EQ(taken(header, 1), "return_pressure");
   EXPECT_EQ(taken(header, 2), "oil_temperature");
-  EXPECT_EQ(taken(header, 3), "nothing");  // a stream of oil, no current
+  EXPECT_EQ(taken(header, 3), "control_flow");  // a stream of oil, no current
 }
 
-TEST(Guess, LinesOfARecorderAboveTheHeaderArePassed) {
-  const auto header_below = [](const std::string& text) {
-    CsvCursor csv(text, "log.csv");
-    const long above = pass_lines_above_header(csv);
-    return std::pair(above, csv.header());
-  };
-  const std::vector<std::string> three = {"t", "p_A", "x"};
-  EXPECT_EQ(header_below("Run 7\nrate,1000\n\nt;p_A;x\n0;1,5;2\n"), std::pair(2L, three));
-  EXPECT_EQ(header_below("# note\nRun 7\nt;p_A;x\ns;psi;mm\n0;1,5;2\n"), std::pair(1L, three));
-  EXPECT_EQ(header_below("a;b;c\nd\nt;p_A;x\n0;1,5;\n"), std::pair(0L, std::vector<std::string>{"a", "b", "c"}));
-  EXPECT_EQ(header_below("t;p_A;x\n0;1,5;2\n"), std::pair(0L, three));
-  EXPECT_EQ(header_below("t;p_A;x\n0;1,5\n"), std::pair(0L, three));  // ragged, and refused as such
-  EXPECT_EQ(header_below("t;p_A;x\nwords\n"), std::pair(0L, three));
+TEST(Guess, NamesInItalianFrenchAndChinese) {
+  EXPECT_EQ(taken({"tempo [s]"}), "time in s");
+  EXPECT_EQ(taken({"posizione cassetto [mm]"}), "spool_position in mm");
+  EXPECT_EQ(taken({"posizione pistone [mm]"}), "piston_position in mm");
+  EXPECT_EQ(taken({"pressione B [bar]"}), "pressure_b in bar");
+  EXPECT_EQ(taken({"pressione alimentazione [bar]"}), "supply_pressure in bar");
+  EXPECT_EQ(taken({"temperatura olio [\xC2\xB0"
+                   "C]"}),
+            "oil_temperature in \xC2\xB0"
+            "C");
+  EXPECT_EQ(taken({"courant (mA)"}), "command in mA");
+  EXPECT_EQ(taken({"\xE6\x97\xB6\xE9\x97\xB4(s)"}), "time in s");
+  EXPECT_EQ(taken({"\xE6\x8C\x87\xE4\xBB\xA4\xE7\x94\xB5\xE6\xB5\x81\xEF\xBC\x88mA\xEF\xBC\x89"}), "command in mA");
+  EXPECT_EQ(taken({"A\xE8\x85\x94\xE5\x8E\x8B\xE5\x8A\x9B(MPa)"}), "pressure_a in MPa");
+  EXPECT_EQ(taken({"\xE4\xBE\x9B\xE6\xB2\xB9\xE5\x8E\x8B\xE5\x8A\x9B(MPa)"}), "supply_pressure in MPa");
+}
+
+TEST(Guess, TheUnitDecidesBetweenSetpointAndCommand) {
+  const std::vector<std::string> header = {"command [mm]", "current [mA]", "Soll [mm]",
+                                           "Stellgr\xC3\xB6\xC3\x9F"
+                                           "e [mA]"};
+  EXPECT_EQ(taken(header, 0), "setpoint in mm");
+  EXPECT_EQ(taken(header, 1), "command in mA");
+  EXPECT_FALSE(guess_columns(header)[0].canonical);
+  EXPECT_EQ(taken({header[2], header[3]}, 0), "setpoint in mm");
+  EXPECT_EQ(taken({header[2], header[3]}, 1), "command in mA");
+}
+
+TEST(Guess, AUnitBeyondTheTableIsCalledUnknown) {
+  for (const char* unit : {"kp/cm2", "at", "mbar", "bara", "bar abs", "bar(a)", "furlong"}) {
+    const ColumnGuess g = guess_columns({fmt::format("pA [{}]", unit)})[0];
+    EXPECT_EQ(g.signal, Signal::pressure_a) << unit;
+    EXPECT_NE(g.question.find(fmt::format("unknown unit '{}'", unit)), std::string::npos) << g.question;
+    EXPECT_FALSE(g.unit_in_brackets) << unit;
+  }
+  EXPECT_EQ(guess_columns({"pA [kp/cm2]"})[0].gain, "0.980665");
+  EXPECT_EQ(guess_columns({"pA (bara)"})[0].offset, "-1.013 bar");
+  EXPECT_EQ(taken({"pA [N/mm2]"}), "pressure_a in MPa");  // another name of one
+  EXPECT_EQ(taken({"spool [micron]"}), "spool_position in um");
+}
+
+TEST(Guess, ANameThatSaysLittleIsWeak) {
+  for (const char* name :
+       {"P1 (bar)", "Cyl 1 Press (psi)", "p_head [bar]", "x [mm]", "Weg [mm]", "Displacement [mm]"}) {
+    const ColumnGuess g = guess_columns({name})[0];
+    EXPECT_TRUE(g.signal && g.weak) << name;
+  }
+  EXPECT_FALSE(guess_columns({"pA (bar)"})[0].weak);
 }
 
 TEST(Guess, WhatItDoesNotKnowIsNothing) {

@@ -122,6 +122,56 @@ TEST(Log, SeparatorDecimalCommaBomCrlfAndCommentsReadAlike) {
   }
 }
 
+TEST(Log, TabsWithDecimalCommasReadAsWithPoints) {
+  const std::string tabs = "time [s]\tcommand [mA]\tspool_position [mm]\n";
+  const Log points = read(tabs + "0.0\t1.5\t0.25\n0.001\t-1.5\t1e-1\n", {}, {.minimum_rows = 2});
+  const Log commas = read(tabs + "0,0\t1,5\t0,25\n0,001\t-1,5\t1e-1\n", {}, {.minimum_rows = 2});
+  EXPECT_TRUE(same_bits(points.time, commas.time));
+  EXPECT_TRUE(same_bits(points[Signal::command], commas[Signal::command]));
+  EXPECT_TRUE(same_bits(points[Signal::spool_position], commas[Signal::spool_position]));
+}
+
+TEST(Log, TimeStampsAreSecondsFromTheFirstRow) {
+  const std::string columns = "command [mA],spool_position [mm]\n";
+  const Log plain = read("time [s]," + columns + "0,1,2\n0.001,1,3\n0.5,2,2\n", {}, {.minimum_rows = 3});
+  for (const std::string& text :
+       {"time," + columns +
+            "2021-03-04 10:11:12.000000,1,2\n2021-03-04 10:11:12.001000,1,3\n2021-03-04 "
+            "10:11:12.500000,2,2\n",
+        "time [s]," + columns + "2021-03-04T10:11:12Z,1,2\n2021-03-04T10:11:12.001Z,1,3\n2021-03-04T10:11:12.5Z,2,2\n",
+        "time," + columns + "\"23:59:59.9\",1,2\n\"23:59:59.901\",1,3\n\"00:00:00.4\",2,2\n"}) {
+    const Log log = read(text, {}, {.minimum_rows = 3});
+    ASSERT_EQ(log.samples(), 3u) << text;
+    for (std::size_t k = 0; k < 3; ++k) EXPECT_DOUBLE_EQ(log.time[k], plain.time[k]) << text;
+  }
+  const RigFile rig = rig_with("[columns]\n\"Zeit\" = { signal = \"time\", unit = \"s\" }\n");
+  const Log german =
+      read("Zeit;command [mA];spool_position [mm]\n04.03.2021 10:11:12,000;0,5;1\n04.03.2021 10:11:12,250;0,5;1\n", rig,
+           {.minimum_rows = 2});
+  EXPECT_DOUBLE_EQ(german.time[1], 0.25);
+  EXPECT_EQ(refusal("time," + columns + "10:11:12,1,2\n0.5,1,2\n"),
+            "log.csv:3: column 'time': '0.5' is no time stamp like the first row's; write all times in one form");
+  EXPECT_EQ(refusal("time [s]," + columns + "0,1,2\n10:11:12,1,2\n"),
+            "log.csv:3: column 'time': '10:11:12' is not a number; write a number with a decimal point, or leave the "
+            "cell empty");
+}
+
+TEST(Log, LabViewsCommentColumnMayLackItsCells) {
+  const std::string text =
+      "LabVIEW Measurement\nSeparator\tTab\n***End_of_Header***\n\ntime\tcommand\tspool_position\tComment\n"
+      "s\tmA\tmm\n0,0\t1\t0,5\n0,001\t2\t0,6\n0,002\t3\t0,7\tend of run\n";
+  const Log log = read(text, {}, {.minimum_rows = 3});
+  EXPECT_EQ(log.samples(), 3u);
+  EXPECT_DOUBLE_EQ(log[Signal::spool_position][2], 0.7e-3);
+}
+
+TEST(Log, AFileWithoutAHeaderOrTextIsToldSo) {
+  EXPECT_EQ(refusal(rows(30)),
+            "log.csv:1: there is no header row: the first row is numbers; write a row of 'name [unit]' above it");
+  EXPECT_TRUE(refusal(std::string("TDSm") + std::string(500, '\0')).starts_with("log.csv: is a LabVIEW recording"));
+  EXPECT_NE(refusal("TIME [s],COMMAND [mA]\n0,1\n").find("did you mean 'time' by 'TIME'?"), std::string::npos);
+}
+
 TEST(Log, ARowOfUnitsBelowTheHeaderReadsAsIfInIt) {
   const Log plain = read("time [s],command [mA],spool_position [mm]\n" + rows(30));
   for (const std::string& text : {"time,command,spool_position\ns,mA,mm\n" + rows(30),
@@ -261,7 +311,7 @@ TEST(Log, EachRefusalNamesPlaceRuleAndMend) {
       {"", "log.csv: the file has no header row; begin it with a row of column names"},
       {"Time [s],command [mA],spool_position [mm]\n" + rows(30),
        "log.csv:1: column 'time': required signal is missing; add a column 'time [s]'" + mapping +
-           "; not known: 'Time'; is 'Time' 'time' misspelt?"},
+           "; not known: 'Time'; did you mean 'time' by 'Time'?"},
       {"time [s],spool_position [mm]\n",
        "log.csv:1: column 'command': required signal is missing, and so is 'coil_current'; add a column 'command [A]'" +
            mapping},
@@ -397,6 +447,11 @@ TEST(Log, ImplausibleValuesAreReadAndWarnedOf) {
   EXPECT_TRUE(mentions(read(noisy(1000, [](int, double x) { return 1000 * x; })), "check unit, gain and offset"));
   EXPECT_TRUE(mentions(read(header + rows(30, [](int i, std::string) { return fmt::format("{},2,{}\n", i, i % 5); })),
                        "'command': no excitation: it stays at 0.002 A"));
+  std::string piston = noisy(1000, [](int, double x) { return x; });
+  piston.replace(piston.find("spool_position"), 14, "piston_position");
+  EXPECT_TRUE(mentions(read(piston, rig_with("[actuator]\nstroke = \"2000 mm\"\n")),
+                       "'piston_position': moves 0.025 % of the stroke: check unit and gain"));
+  EXPECT_FALSE(mentions(read(piston, rig_with("[actuator]\nstroke = \"200 mm\"\n")), "of the stroke"));
   EXPECT_TRUE(mentions(read(header + rows(30) + "0.05,1,0.1\n"),
                        "1 gap in time, the longest 0.021 s at a usual step of 0.001 s"));
 }

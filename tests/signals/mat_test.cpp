@@ -96,6 +96,45 @@ TEST(Mat, RowsIntegersSinglesAndAStructureReadAlike) {
   EXPECT_EQ(log[Signal::command][1], -2e-3);
 }
 
+// A matrix of the three signals, and the texts that name its columns.
+void write_matrix(const std::string& path, const Vectors& v, bool named) {
+  mat_t* file = Mat_CreateVer(path.c_str(), nullptr, MAT_FT_MAT5);
+  std::vector<double> all;
+  for (const auto& each : v) all.insert(all.end(), each.second.begin(), each.second.end());
+  std::size_t shape[2] = {v[0].second.size(), v.size()}, cells[2] = {v.size(), 1};
+  matvar_t* matrix = Mat_VarCreate("run", MAT_C_DOUBLE, MAT_T_DOUBLE, 2, shape, all.data(), 0);
+  Mat_VarWrite(file, matrix, MAT_COMPRESSION_NONE);
+  Mat_VarFree(matrix);
+  if (named) {
+    matvar_t* names = Mat_VarCreate("names", MAT_C_CELL, MAT_T_CELL, 2, cells, nullptr, 0);
+    for (std::size_t k = 0; k < v.size(); ++k) {
+      std::size_t letters[2] = {1, v[k].first.size()};
+      Mat_VarSetCell(
+          names, static_cast<int>(k),
+          Mat_VarCreate(nullptr, MAT_C_CHAR, MAT_T_UINT8, 2, letters, const_cast<char*>(v[k].first.data()), 0));
+    }
+    Mat_VarWrite(file, names, MAT_COMPRESSION_NONE);
+    Mat_VarFree(names);
+  }
+  Mat_Close(file);
+}
+
+TEST(Mat, AMatrixIsItsColumnsByNameOrByNumber) {
+  const TemporaryFolder folder;
+  write_matrix(folder / "named.mat", plain(), true);
+  const Log named = read_log(folder / "named.mat", rig_of(folder));
+  EXPECT_EQ(named.samples(), 30u);
+  EXPECT_EQ(named[Signal::command][1], -2e-3);
+  write_matrix(folder / "bare.mat", plain(), false);
+  const Log bare = read_log(folder / "bare.mat", rig_of(folder, R"toml([columns]
+"run(:,1)" = { signal = "time", unit = "ms" }
+"run(:,2)" = { signal = "command", unit = "mA" }
+"run(:,3)" = { signal = "spool_position", unit = "mm" }
+)toml"));
+  EXPECT_EQ(bare.time[3], 0.003);
+  EXPECT_EQ(bare[Signal::command][1], -2e-3);
+}
+
 TEST(Mat, MissingSamplesAreCountedAndLeftOut) {
   const TemporaryFolder folder;
   Vectors v = plain(40);

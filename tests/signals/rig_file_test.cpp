@@ -212,6 +212,17 @@ TEST(RigFile, EachRefusalNamesPlaceRuleAndMend) {
   for (const auto& c : cases) EXPECT_EQ(refusal(c.text), c.message);
 }
 
+TEST(RigFile, AKeyBelowAHeadingThatIsStillACommentIsTold) {
+  EXPECT_EQ(refusal("name = \"x\"\n# [valve]   # the data sheet's\nspool_stroke = \"0.5 mm\"\n"),
+            "rig.toml:3: key 'spool_stroke': belongs to [valve], whose heading in line 2 is still a comment; take the "
+            "'#' off that line too");
+  EXPECT_EQ(
+      refusal("[supply]\npressure = \"207 bar\"\n# [fluid]\ndensity = \"860 kg/m3\"\n"),
+      "rig.toml:4: key 'supply.density': belongs to [fluid], whose heading in line 3 is still a comment; take the "
+      "'#' off that line too");
+  EXPECT_NE(refusal("# [valve]\n[supply]\nspool_stroke = \"0.5 mm\"\n").find("unknown key"), std::string::npos);
+}
+
 TEST(RigFile, ABrokenTomlNamesItsLine) {
   EXPECT_TRUE(refusal("name = \"x\"\nserial = SN\n").starts_with("rig.toml:2: is not TOML: "));
   EXPECT_TRUE(refusal("name = \"x\"\nname = \"y\"\n").starts_with("rig.toml:2: is not TOML: "));

@@ -1,0 +1,101 @@
+#include "diagnose/swapped.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "servodx/log.h"
+#include "signals/signal.h"
+
+namespace servodx {
+namespace {
+
+constexpr double most_of_the_time = 0.5;  // part of the samples
+constexpr double least_apart = 2e5;       // [Pa] by which one pressure is over another
+constexpr double part_apart = 0.02;       // and by this part of it
+constexpr double half_window = 4e-3;      // [s] about each sample
+constexpr double against = 0.25;          // partial correlation, either
+constexpr long fewest = 100;              // samples
+
+// Part of the samples in which `upper` lies below `lower`.
+double part_below(const std::vector<double>& upper, const std::vector<double>& lower) {
+  std::size_t below = 0, all = 0;
+  for (std::size_t k = 0; k < upper.size(); ++k) {
+    if (!std::isfinite(upper[k]) || !std::isfinite(lower[k])) continue;
+    ++all;
+    below += upper[k] < lower[k] - std::max(least_apart, part_apart * std::abs(lower[k]));
+  }
+  return all ? static_cast<double>(below) / static_cast<double>(all) : 0;
+}
+
+void find_order(const Log& log, std::vector<Finding>& found) {
+  const struct {
+    Signal upper, lower;
+  } order[] = {{Signal::supply_pressure, Signal::pressure_a},
+               {Signal::supply_pressure, Signal::pressure_b},
+               {Signal::pressure_a, Signal::return_pressure},
+               {Signal::pressure_b, Signal::return_pressure},
+               {Signal::supply_pressure, Signal::return_pressure}};
+  for (const auto& [upper, lower] : order) {
+    if (!log.has(upper) || !log.has(lower)) continue;
+    const double part = part_below(log[upper], log[lower]);
+    if (part < most_of_the_time) continue;
+    found.push_back({"swapped",
+                     fmt::format("'{}' is below '{}' in {:.0f} % of the samples: are the two columns exchanged?",
+                                 info(upper).name, info(lower).name, 100 * part),
+                     {upper, lower}});
+  }
+}
+
+// Partial correlations of the load pressure's change with the spool's position and with the piston's.
+void find_chambers(const Log& log, double rate, std::vector<Finding>& found) {
+  for (const Signal s : {Signal::pressure_a, Signal::pressure_b, Signal::spool_position, Signal::piston_position})
+    if (!log.has(s)) return;
+  const auto half = std::max(1L, std::lround(half_window * rate));
+  const auto samples = static_cast<long>(log.samples());
+  const std::vector<double>&a = log[Signal::pressure_a], &b = log[Signal::pressure_b];
+  const std::vector<double>&spool = log[Signal::spool_position], &piston = log[Signal::piston_position];
+  Eigen::Vector4d sum = Eigen::Vector4d::Zero();
+  Eigen::Matrix4d square = Eigen::Matrix4d::Zero();
+  double n = 0, spool_sum = 0;
+  const auto at = [](const std::vector<double>& x, long k) { return x[static_cast<std::size_t>(k)]; };
+  for (long k = 0; k < std::min(2 * half, samples); ++k) spool_sum += std::isfinite(at(spool, k)) ? at(spool, k) : 0;
+  for (long k = half; k + half < samples; ++k) {
+    const Eigen::Vector4d row(spool_sum / static_cast<double>(2 * half), at(piston, k + half) - at(piston, k - half),
+                              at(a, k) - at(b, k),
+                              at(a, k + half) - at(b, k + half) - at(a, k - half) + at(b, k - half));
+    const double comes = at(spool, k + half), goes = at(spool, k - half);
+    spool_sum += (std::isfinite(comes) ? comes : 0) - (std::isfinite(goes) ? goes : 0);
+    if (!row.allFinite()) continue;
+    sum += row, square += row * row.transpose(), ++n;
+  }
+  if (n < fewest) return;
+  Eigen::Matrix4d covariance = square / n - sum / n * (sum / n).transpose();
+  const Eigen::Vector4d scale = covariance.diagonal().cwiseSqrt();
+  if (!(scale.minCoeff() > 0)) return;
+  covariance = scale.cwiseInverse().asDiagonal() * covariance * scale.cwiseInverse().asDiagonal();
+  covariance.diagonal().array() += 1e-9;  // where two of them are one
+  const Eigen::Matrix4d inverse = covariance.inverse();
+  const auto partial = [&](int k) { return -inverse(k, 3) / std::sqrt(inverse(k, k) * inverse(3, 3)); };
+  if (!(partial(0) < -against && partial(1) > against)) return;
+  found.push_back({"swapped",
+                   "'pressure_a' - 'pressure_b' falls where the spool lets oil into A, and rises with the piston's "
+                   "speed: are the two columns exchanged?",
+                   {Signal::pressure_a, Signal::pressure_b}});
+}
+
+}  // namespace
+
+std::vector<Finding> swapped_channels(const Log& log, double rate) {
+  std::vector<Finding> found;
+  find_order(log, found);
+  if (found.empty()) find_chambers(log, rate, found);
+  return found;
+}
+
+}  // namespace servodx

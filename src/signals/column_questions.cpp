@@ -1,0 +1,267 @@
+#include "signals/column_questions.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "base/median.h"
+#include "base/units.h"
+#include "servodx/log.h"
+#include "signals/signal.h"
+
+namespace servodx {
+namespace {
+
+enum class Measure { size, span, level, step };
+
+// What a signal of a servovalve's rig measures in SI: surely, and at the utmost.
+struct Usual {
+  Measure measure;
+  double least, most;                     // likely: a unit is taken by it
+  double least_of_all, most_of_all;       // beyond it is absurd
+  std::array<std::string_view, 5> units;  // that people log it in, most usual first
+};
+
+Usual usual(Signal s) {
+  switch (s) {
+    case Signal::time:
+      return {Measure::step, 2e-5, 2e-2, 1e-6, 0.5, {"s", "ms", "us"}};
+    case Signal::command:
+    case Signal::coil_current:
+      return {Measure::size, 2e-3, 0.5, 1e-4, 5, {"mA", "A"}};
+    case Signal::spool_position:
+      return {Measure::span, 1e-4, 1e-2, 1e-6, 2e-2, {"mm", "um", "m", "in"}};
+    case Signal::setpoint:
+    case Signal::piston_position:
+      return {Measure::span, 5e-3, 1, 1e-3, 10, {"mm", "m", "in", "cm"}};
+    case Signal::return_pressure:
+      return {Measure::size, 1e4, 5e6, 0, 1e7, {"bar", "MPa", "psi", "kPa", "Pa"}};
+    case Signal::load_pressure:
+    case Signal::valve_pressure_drop:
+      return {Measure::size, 2e5, 1e8, 1e4, 1.5e8, {"bar", "MPa", "psi", "kPa", "Pa"}};
+    case Signal::pressure_a:
+    case Signal::pressure_b:
+    case Signal::supply_pressure:
+    case Signal::pilot_pressure_1:
+    case Signal::pilot_pressure_2:
+      return {Measure::size, 1e6, 1e8, 2e5, 1.5e8, {"bar", "MPa", "psi", "kPa", "Pa"}};
+    case Signal::load_force:
+      return {Measure::size, 50, 1e6, 0, 5e6, {"N", "kN", "lbf"}};
+    case Signal::flow_a:
+    case Signal::flow_b:
+    case Signal::control_flow:
+      return {Measure::size, 1e-5, 2e-2, 0, 0.1, {"l/min", "m3/s", "gpm", "cm3/s"}};
+    case Signal::leakage_flow:
+      return {Measure::size, 1e-7, 2e-4, 0, 0.01, {"l/min", "m3/s", "gpm", "cm3/s"}};
+    case Signal::oil_temperature:
+      return {Measure::level, 263, 393, 230, 420, {"degC", "K", "degF"}};
+  }
+  return {};
+}
+
+constexpr double unsigned_below = 0.02;  // of the highest value that a signed one may lack of zero
+constexpr double aside = 0.5;            // of what the piston moves: it is this far from the middle
+constexpr double long_way = 0.02;  // [m] a piston that goes so far to one side of the middle alone may begin at its end
+
+bool is_drive(Signal s) { return s == Signal::command || s == Signal::coil_current; }
+bool is_stroke(Signal s) { return s == Signal::piston_position || s == Signal::setpoint; }
+
+bool lies_within(const Unit& unit, const ColumnNumbers& n, Measure measure, double least, double most) {
+  const double low = unit.to_si(n.low), high = unit.to_si(n.high);
+  switch (measure) {
+    case Measure::size:
+      return std::max(std::abs(low), std::abs(high)) >= least && std::max(std::abs(low), std::abs(high)) <= most;
+    case Measure::span:
+      return high - low >= least && high - low <= most;
+    case Measure::level:
+      return low >= least && high <= most;
+    case Measure::step:
+      return n.step * unit.scale() >= least && n.step * unit.scale() <= most;
+  }
+  return false;
+}
+
+// The units in which the numbers are those of the signal, most usual first.
+std::vector<std::string> likely_units(Signal signal, const ColumnNumbers& n) {
+  const Usual u = usual(signal);
+  std::vector<std::string> likely;
+  for (const std::string_view name : u.units)
+    if (const Unit* unit = find_unit(name); unit && lies_within(*unit, n, u.measure, u.least, u.most))
+      likely.emplace_back(name);
+  if (is_drive(signal)) {
+    const double size = std::max(std::abs(n.low), std::abs(n.high));
+    if (size >= 1 && size <= 11) likely.emplace_back("V");
+    if (size >= 20 && size <= 110) likely.emplace_back("% of rated");
+  }
+  return likely;
+}
+
+std::string in_words(const std::vector<std::string>& units) {
+  std::string text;
+  for (std::size_t k = 0; k < units.size(); ++k)
+    text += (k == 0 ? "" : k + 1 < units.size() ? ", " : " or ") + units[k];
+  return text;
+}
+
+void ask(ColumnGuess& g, const std::string& question) { g.question += (g.question.empty() ? "" : "; ") + question; }
+
+void ask_missing_unit(ColumnGuess& g, const ColumnNumbers& n) {
+  const Signal signal = *g.signal;
+  const std::vector<std::string> likely = likely_units(signal, n);
+  if (signal == Signal::time && n.counts) {
+    ask(g, "counts rows: in which unit is it a time, or what is the gain, the time of a row?");
+    g.unit = likely.empty() ? "s" : likely.front();
+    return;
+  }
+  if (likely.size() == 1 && (signal == Signal::time || likely.front() == info(signal).si_unit)) {
+    g.unit = likely.front();
+    g.by_numbers = true;
+    return;
+  }
+  ask(g, likely.empty() ? fmt::format("no unit in the header, and the values are those of no {} in a usual unit",
+                                      info(signal).name)
+                        : "no unit in the header: by the values " + in_words(likely) + "?");
+  if (!likely.empty()) g.unit = likely.front();
+}
+
+void ask_absurd_numbers(ColumnGuess& g, const ColumnNumbers& n) {
+  const Usual u = usual(*g.signal);
+  const Unit* const unit = find_unit(g.unit);
+  if (!unit || unit->dimension != info(*g.signal).dimension) return;
+  if (is_drive(*g.signal) && n.low == n.high) return;  // no excitation, and said elsewhere
+  if (lies_within(*unit, n, u.measure, u.least_of_all, u.most_of_all)) return;
+  std::vector<std::string> likely = likely_units(*g.signal, n);
+  std::erase(likely, g.unit);
+  ask(g, fmt::format("hardly possible as {} in {}: {}?", info(*g.signal).name, g.unit,
+                     likely.empty() ? "another signal, or another unit" : in_words(likely)));
+}
+
+void ask_sign(ColumnGuess& g, const ColumnNumbers& n) {
+  if (!is_drive(*g.signal) || n.low == n.high || n.high <= 0 || n.low < -unsigned_below * n.high) return;
+  constexpr double transmitter[] = {3.5e-3, 21e-3};  // [A] 4 to 20 mA and what they overshoot
+  const Unit* const unit = find_unit(g.unit);
+  if (unit && unit->to_si(n.low) > transmitter[0] && unit->to_si(n.high) < transmitter[1])
+    ask(g, "the 4 to 20 mA of a transmitter, or the coil's current? A transmitter's needs gain and offset");
+  else
+    ask(g, "never negative: has it lost its sign, or an offset?");
+}
+
+void ask_middle(ColumnGuess& g, const ColumnNumbers& n) {
+  if (!is_stroke(*g.signal) || g.unit.empty() || !(n.high > n.low)) return;
+  const double span = n.high - n.low, off = std::max(n.low, -n.high);  // of the near end from zero
+  const Unit* const unit = find_unit(g.unit);
+  const bool goes_far = !g.canonical && unit && span * unit->scale() > long_way && off > -unsigned_below * span;
+  if (off < aside * span && !goes_far) return;
+  ask(g, "measured from an end, not from mid-stroke? Then the offset is half the stroke, with the other sign");
+  g.offset = fmt::format("-{:.4g} {}", std::abs(0.5 * (n.low + n.high)), g.unit);
+  if (n.high <= 0) g.offset.erase(0, 1);
+}
+
+void ask_column(ColumnGuess& g, const ColumnNumbers& n) {
+  if (n.stamps) {
+    if (*g.signal != Signal::time) ask(g, "holds time stamps");
+    g.unit = std::string("s");
+    return;
+  }
+  if (n.count == 0) return ask(g, "holds no numbers");
+  const bool told = g.question.empty();
+  if (g.unit.empty() && told)
+    ask_missing_unit(g, n);
+  else if (told)
+    ask_absurd_numbers(g, n);
+  if (const Unit* unit = find_unit(g.unit); unit && unit->dimension == Dimension::voltage && !g.by_numbers)
+    ask(g, fmt::format("which gain has the sensor, in {}/V, and which offset?", info(*g.signal).si_unit));
+  ask_sign(g, n);
+  ask_middle(g, n);
+  if (g.weak) ask(g, fmt::format("is '{}' the {}?", g.name, info(*g.signal).name));
+}
+
+// Pressures that are only numbered: which is the pump's and which the tank's, their values say.
+void sort_numbered_pressures(std::vector<ColumnGuess>& columns, const std::vector<ColumnNumbers>& numbers) {
+  constexpr double flat = 0.4, low = 0.25;  // of the highest value
+  std::vector<std::size_t> numbered;
+  for (std::size_t c = 0; c < columns.size(); ++c) {
+    std::string bare = columns[c].name.substr(0, columns[c].name.find_first_of("_ "));
+    if (bare.size() == 2 && (bare[0] == 'P' || bare[0] == 'p') && bare[1] >= '0' && bare[1] <= '9' &&
+        numbers[c].count > 0 && (!columns[c].signal || columns[c].weak))
+      numbered.push_back(c);
+  }
+  if (numbered.size() < 2) return;
+  const auto taken = [&](Signal s) {
+    return std::any_of(columns.begin(), columns.end(), [&](const ColumnGuess& g) { return g.signal == s; });
+  };
+  const auto highest = *std::max_element(numbered.begin(), numbered.end(), [&](std::size_t a, std::size_t b) {
+    return numbers[a].low + numbers[a].high < numbers[b].low + numbers[b].high;
+  });
+  const auto lowest = *std::min_element(numbered.begin(), numbered.end(), [&](std::size_t a, std::size_t b) {
+    return numbers[a].high < numbers[b].high;
+  });
+  std::vector<Signal> chambers = {Signal::pressure_b, Signal::pressure_a};
+  const bool pump = numbers[highest].high - numbers[highest].low < flat * numbers[highest].high;
+  const bool tank = numbers[lowest].high < low * numbers[highest].high;
+  for (const std::size_t c : numbered) columns[c].signal.reset();
+  for (const std::size_t c : numbered) {
+    std::optional<Signal> is;
+    if (c == highest && pump && !taken(Signal::supply_pressure)) {
+      is = Signal::supply_pressure;
+    } else if (c == lowest && tank && !taken(Signal::return_pressure)) {
+      is = Signal::return_pressure;
+    } else {
+      while (!chambers.empty() && taken(chambers.back())) chambers.pop_back();
+      if (!chambers.empty()) is = chambers.back();
+    }
+    columns[c].signal = is;
+    columns[c].weak = is.has_value();
+  }
+}
+
+void ask_of_exchanged_positions(std::vector<ColumnGuess>& columns, const std::vector<ColumnNumbers>& numbers) {
+  const auto span_of = [&](Signal s, ColumnGuess*& column) {
+    for (std::size_t c = 0; c < columns.size(); ++c)
+      if (const Unit* unit = find_unit(columns[c].unit);
+          columns[c].signal == s && numbers[c].count > 0 && unit && unit->dimension == Dimension::length) {
+        column = &columns[c];
+        return (numbers[c].high - numbers[c].low) * unit->scale();
+      }
+    return 0.0;
+  };
+  ColumnGuess *spool = nullptr, *piston = nullptr;
+  const double spool_span = span_of(Signal::spool_position, spool);
+  const double piston_span = span_of(Signal::piston_position, piston);
+  if (!spool || !piston || piston_span >= spool_span) return;
+  for (ColumnGuess* g : {spool, piston}) ask(*g, "the piston moves less than the spool: are the two exchanged?");
+}
+
+}  // namespace
+
+void NumbersCollector::take(double x) {
+  constexpr std::size_t looked_at = 10000;  // steps
+  if (std::isfinite(x)) {
+    low_ = count_ ? std::min(low_, x) : x, high_ = count_ ? std::max(high_, x) : x;
+    if (count_ > 0 && steps_.size() < looked_at) steps_.push_back(x - last_);
+    last_ = x;
+    ++count_;
+  }
+}
+
+ColumnNumbers NumbersCollector::numbers() const {
+  ColumnNumbers n{.count = count_, .low = low_, .high = high_};
+  if (steps_.empty()) return n;
+  n.counts = std::all_of(steps_.begin(), steps_.end(), [](double step) { return step == 1; });
+  n.step = median(steps_);
+  return n;
+}
+
+void ask_by_numbers(std::vector<ColumnGuess>& columns, const std::vector<ColumnNumbers>& numbers) {
+  sort_numbered_pressures(columns, numbers);
+  for (std::size_t c = 0; c < columns.size(); ++c)
+    if (columns[c].signal) ask_column(columns[c], numbers[c]);
+  ask_of_exchanged_positions(columns, numbers);
+}
+
+}  // namespace servodx

@@ -1,0 +1,34 @@
+// The words by which people name signals and units on their rigs: English, German, Italian, French, Chinese.
+#pragma once
+#include <span>
+#include <string_view>
+
+#include "servodx/log.h"
+
+namespace servodx {
+
+// Words that all must stand in a name, with blanks between; one with letters beyond ASCII as a part of it.
+struct SignalWords {
+  Signal signal;
+  std::string_view words;
+  bool weak = false;  // says little of which signal of its kind it is: to be asked
+};
+// Most telling first within a signal.
+std::span<const SignalWords> signal_words();
+
+// How else people write units of the table, in small letters.
+struct UnitWord {
+  std::string_view word, unit;
+};
+std::span<const UnitWord> unit_words();
+
+// Units beyond the table, in small letters and without blanks, and what would make them one of it.
+struct ForeignUnit {
+  std::string_view word;
+  std::string_view unit;    // of the table
+  std::string_view gain;    // as in a rig file
+  std::string_view offset;  // empty: none
+};
+std::span<const ForeignUnit> foreign_units();
+
+}  // namespace servodx

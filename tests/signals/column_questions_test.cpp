@@ -1,0 +1,105 @@
+// Nothing absurd is taken for a signal without a question; what the values settle is settled.
+#include "signals/column_questions.h"
+
+#include <gtest/gtest.h>
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "servodx/log.h"
+#include "signals/guess.h"
+#include "signals/signal.h"
+
+namespace servodx {
+namespace {
+
+struct Given {
+  std::string cell;
+  double low, high;
+};
+
+// A ramp from the lowest to the highest value in each column.
+std::vector<ColumnGuess> asked(const std::vector<Given>& given, int rows = 11) {
+  std::vector<std::string> header;
+  std::vector<ColumnNumbers> numbers;
+  for (const auto& [cell, low, high] : given) {
+    header.push_back(cell);
+    NumbersCollector collector;
+    for (int k = 0; k < rows; ++k) collector.take(low + (high - low) * k / (rows - 1));
+    numbers.push_back(collector.numbers());
+  }
+  std::vector<ColumnGuess> guesses = guess_columns(header);
+  ask_by_numbers(guesses, numbers);
+  return guesses;
+}
+
+std::string question(const Given& given) { return asked({given})[0].question; }
+
+TEST(ColumnQuestions, AbsurdValuesAreAsked) {
+  EXPECT_NE(question({"current [A]", -2000, 2114}).find("hardly possible as command in A"), std::string::npos);
+  EXPECT_NE(question({"temp [K]", 0, 12429}).find("hardly possible as oil_temperature in K"), std::string::npos);
+  EXPECT_NE(question({"pS [Pa]", 200, 207}).find("hardly possible as supply_pressure in Pa: bar"), std::string::npos);
+  EXPECT_NE(question({"piston [mm]", -0.04, 0.04}).find("hardly possible as piston_position in mm"), std::string::npos);
+  for (const Given& good : {Given{"current [mA]", -50, 50},
+                            {"temp [degC]", 20, 60},
+                            {"pS [bar]", 200, 207},
+                            {"piston [mm]", -40, 40},
+                            {"spool [mm]", -0.6, 0.6},
+                            {"time [s]", 0, 0.01},
+                            {"pT [bar]", -0.1, 13},
+                            {"current [mA]", 0, 0}})
+    EXPECT_EQ(question(good), "") << good.cell;
+}
+
+TEST(ColumnQuestions, ACurrentWithoutASignIsAsked) {
+  EXPECT_NE(question({"current [mA]", 0, 50}).find("never negative"), std::string::npos);
+  EXPECT_NE(question({"current [mA]", 4, 20}).find("transmitter"), std::string::npos);
+  EXPECT_NE(question({"command [mA]", 0, 50}).find("never negative"), std::string::npos);
+}
+
+TEST(ColumnQuestions, APistonMeasuredFromAnEndIsAskedForItsOffset) {
+  const ColumnGuess g = asked({{"piston [mm]", 105, 193}})[0];
+  EXPECT_NE(g.question.find("half the stroke"), std::string::npos);
+  EXPECT_EQ(g.offset, "-149 mm");
+  EXPECT_NE(question({"piston_position [mm]", 105, 193}), "");
+  EXPECT_EQ(question({"piston_position [mm]", 0, 40}), "");  // its name says from where
+  EXPECT_NE(question({"piston [mm]", 0, 40}), "");
+  EXPECT_EQ(question({"piston [mm]", 0, 4}), "");  // a small move from the middle
+}
+
+TEST(ColumnQuestions, AUnitIsTakenByTheValuesOnlyWhereTheyAgreeWithSiAlone) {
+  const ColumnGuess pascal = asked({{"pA", 2e6, 1.4e7}})[0];
+  EXPECT_EQ(pascal.unit, "Pa");
+  EXPECT_TRUE(pascal.by_numbers && pascal.question.empty());
+  const ColumnGuess psi = asked({{"PS", 1900, 2026}})[0];
+  EXPECT_NE(psi.question.find("psi or kPa"), std::string::npos) << psi.question;
+  EXPECT_NE(question({"current", 0, 50}), "");
+  EXPECT_NE(question({"temp", 12000, 12429}), "");
+  EXPECT_EQ(asked({{"Time", 0, 0.01}})[0].unit, "s");
+  EXPECT_EQ(asked({{"Time", 0, 5}})[0].unit, "ms");
+  EXPECT_NE(question({"Time", 0, 10}).find("counts rows"), std::string::npos);
+}
+
+TEST(ColumnQuestions, VoltsAskForAGain) {
+  const ColumnGuess g = asked({{"Valve Command (V)", -10, 10}})[0];
+  EXPECT_NE(g.question.find("which gain"), std::string::npos);
+  EXPECT_EQ(g.gain, "");
+}
+
+TEST(ColumnQuestions, NumberedPressuresAreSortedByWhatTheyDoAndAsked) {
+  const auto g = asked({{"P1_bar", 128, 149}, {"P2_bar", -1, 13}, {"P3_bar", 20, 130}, {"P4_bar", 15, 120}});
+  const Signal expected[] = {Signal::supply_pressure, Signal::return_pressure, Signal::pressure_a, Signal::pressure_b};
+  for (std::size_t c = 0; c < 4; ++c) {
+    EXPECT_EQ(g[c].signal, expected[c]) << c;
+    EXPECT_NE(g[c].question, "") << c;
+  }
+}
+
+TEST(ColumnQuestions, APistonThatMovesLessThanTheSpoolIsAsked) {
+  for (const ColumnGuess& g : asked({{"spool [mm]", -9, 9}, {"piston [mm]", -1, 1}}))
+    EXPECT_NE(g.question.find("exchanged"), std::string::npos) << g.cell;
+}
+
+}  // namespace
+}  // namespace servodx
