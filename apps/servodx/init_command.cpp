@@ -98,7 +98,10 @@ Header read_mat_header(const std::string& path) {
     header.numbers.push_back(collector.numbers());
   }
   header.columns = guess_columns(names);
-  for (ColumnGuess& g : header.columns) g.unit_in_brackets = false;  // a variable has no unit
+  for (ColumnGuess& g : header.columns) {
+    g.unit_in_brackets = false;                  // a variable has no unit
+    if (g.unit.empty()) g.written_unit.clear();  // nor is the index in "run(:,2)" one
+  }
   return header;
 }
 

@@ -51,7 +51,7 @@ Usual usual(Signal s) {
     case Signal::pilot_pressure_2:
       return {Measure::size, 1e6, 1e8, 2e5, 1.5e8, {"bar", "MPa", "psi", "kPa", "Pa"}};
     case Signal::load_force:
-      return {Measure::size, 50, 1e6, 0, 5e6, {"N", "kN", "lbf"}};
+      return {Measure::size, 5, 1e6, 0, 5e6, {"N", "kN", "lbf"}};
     case Signal::flow_a:
     case Signal::flow_b:
     case Signal::control_flow:
