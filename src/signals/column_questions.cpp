@@ -152,10 +152,10 @@ void ask_sign(ColumnGuess& g, const ColumnNumbers& n) {
 }
 
 void ask_middle(ColumnGuess& g, const ColumnNumbers& n) {
-  if (!is_stroke(*g.signal) || g.unit.empty() || !(n.high > n.low)) return;
-  const double span = n.high - n.low, off = std::max(n.low, -n.high);  // of the near end from zero
   const Unit* const unit = find_unit(g.unit);
-  const bool goes_far = !g.canonical && unit && span * unit->scale() > long_way && off > -unsigned_below * span;
+  if (!is_stroke(*g.signal) || !unit || unit->dimension != Dimension::length || !(n.high > n.low)) return;
+  const double span = n.high - n.low, off = std::max(n.low, -n.high);  // of the near end from zero
+  const bool goes_far = !g.canonical && span * unit->scale() > long_way && off > -unsigned_below * span;
   if (off < aside * span && !goes_far) return;
   ask(g, "measured from an end, not from mid-stroke? Then the offset is half the stroke, with the other sign");
   g.offset = fmt::format("-{:.4g} {}", std::abs(0.5 * (n.low + n.high)), g.unit);

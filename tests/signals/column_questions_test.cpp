@@ -85,6 +85,7 @@ TEST(ColumnQuestions, VoltsAskForAGain) {
   const ColumnGuess g = asked({{"Valve Command (V)", -10, 10}})[0];
   EXPECT_NE(g.question.find("which gain"), std::string::npos);
   EXPECT_EQ(g.gain, "");
+  EXPECT_EQ(asked({{"Pos fb [V]", 4.5, 5.5}})[0].offset, "");  // volts are from no middle
 }
 
 TEST(ColumnQuestions, NumberedPressuresAreSortedByWhatTheyDoAndAsked) {
