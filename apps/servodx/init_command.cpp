@@ -105,8 +105,6 @@ Header read_mat_header(const std::string& path) {
   return header;
 }
 
-void ask(ColumnGuess& g, const std::string& question) { g.question += (g.question.empty() ? "" : "; ") + question; }
-
 Header read_header(const std::string& path) {
   Header header = is_mat_file(path) ? read_mat_header(path) : read_csv_header(path);
   for (const ColumnNumbers& n : header.numbers)
@@ -117,7 +115,7 @@ Header read_header(const std::string& path) {
   for (ColumnGuess& g : header.columns) {
     const auto same = std::count_if(header.columns.begin(), header.columns.end(),
                                     [&](const ColumnGuess& other) { return other.cell == g.cell; });
-    if (g.signal && same > 1) ask(g, fmt::format("the name stands over {} columns: give each its own", same));
+    if (g.signal && same > 1) g.ask(fmt::format("the name stands over {} columns: give each its own", same));
   }
   return header;
 }
@@ -190,7 +188,7 @@ void ask_by_behaviour(const std::string& log, Header& header) {
     const RigFile rig = make_rig("guess.toml", text);
     for (const Finding& found : survey(read_log(log, rig), rig).findings)
       for (ColumnGuess& g : header.columns)
-        if (std::count(found.signals.begin(), found.signals.end(), g.signal) > 0) ask(g, found.text);
+        if (std::count(found.signals.begin(), found.signals.end(), g.signal) > 0) g.ask(found.text);
   } catch (const InputError&) {  // what keeps the log from being read is told of the rig file itself
   }
 }

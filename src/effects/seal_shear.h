@@ -3,7 +3,8 @@
 // that is sheared in a gap of given height, as about the rod in its bearings, drags in proportion to its viscosity
 // (Couette). What is lost in the seals' own material, and where they wipe the rod dry, grows with speed and not with
 // the oil (Nau 1999). The shares can be told where healthy logs were taken in cold and in warm oil, and decide what
-// another oil does to the actuator. Off: none of either.
+// another oil does to the actuator. Off: none of either. With both at one the friction still
+// grows with the viscosity and is positive.
 #pragma once
 #include "effects/effect.h"
 

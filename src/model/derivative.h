@@ -60,18 +60,18 @@ struct EdgeSide {
   L line;    // [Pa s2/m4] of the hose and what else the flow passes, per opening squared
 };
 template <class D>
-auto from_supply(const D& d) {
+inline __attribute__((always_inline)) auto from_supply(const D& d) {
   return EdgeSide{d.supply_edge, d.hose_loss};
 }
 template <class D>
-auto to_return(const D& d) {
+inline __attribute__((always_inline)) auto to_return(const D& d) {
   return EdgeSide{d.return_edge, d.return_loss};
 }
 
 // One metering edge. opening [m] (negative: covered by that length), dp [Pa].
 // Laminar slot, orifice and line in series: dp = R q + K q|q|, so q = 2 dp / (R + sqrt(R^2 + 4 K |dp|)).
 // R: plane slot of the covered length and creeping flow at the edge; K: Bernoulli at the edge plus the line.
-// An abrupt transition a in place of the sum: q = 2 dp / ((1 - a) R + sqrt((1 + a)^2 R^2 + 4 K |dp|)).
+// An abrupt transition a in place of the sum: q = 2 dp / ((1 - a) R + sqrt((1 + a)^2 R^2 + 4 K |dp|)); r holds 1 + a.
 template <class X, class R, class L, class P, class D>
 inline __attribute__((always_inline)) auto metering_edge(const X& opening, const EdgeSide<R, L>& side, const P& dp,
                                                          const D& d) {
@@ -83,8 +83,7 @@ inline __attribute__((always_inline)) auto metering_edge(const X& opening, const
   const auto [h, per_h] = both_roots(h2);
   const auto r = (d.slot_per_length * covered + d.slot_corner) * per_h;  // [Pa s/m] times width and h
   const auto k = d.edge_loss + side.line * h2;
-  const auto q =
-      d.twice_width * h * dp * inverse(d.creep_added * r + root(d.creep_beside2 * (r * r) + k * magnitude(dp)));
+  const auto q = d.twice_width * h * dp * inverse(d.creep_added * r + root(r * r + k * magnitude(dp)));
   return EdgeFlow{q, h};
 }
 

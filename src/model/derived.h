@@ -38,15 +38,14 @@ namespace servodx {
   X(flow_force,                "m",            "times open height and pressure drop") \
   X(twice_width,               "m",            "") \
   X(clearance2,                "m2",           "") \
-  X(slot_per_length,           "Pa s/m",       "laminar resistance of a covered edge per length, times width and opening squared") \
+  X(slot_per_length,           "Pa s/m",       "laminar resistance of a covered edge per length, times width, opening squared and 1 + a, a the abruptness") \
   X(slot_corner,               "Pa s",         "the same of the corner of an open edge") \
   X(supply_edge,               "m",            "corner radius of the metering edges from supply") \
   X(return_edge,               "m",            "and of those to return") \
   X(edge_loss,                 "Pa s2/m4",     "4 rho / (2 Cd^2)") \
   X(hose_loss,                 "Pa s2/m4",     "4 hose_resistance width^2, per opening squared") \
   X(return_loss,               "Pa s2/m4",     "the same with the return line") \
-  X(creep_added,               "-",            "share of an edge's laminar drop that adds to the turbulent one") \
-  X(creep_beside2,             "-",            "square of the share whose square adds to the square's") \
+  X(creep_added,               "-",            "share of the two resistances above that adds to the root: (1 - a) / (1 + a)") \
   /* actuator */ \
   X(leak,                      "m3/s/Pa",      "") \
   X(viscous,                   "N s/m",        "") \
@@ -127,7 +126,9 @@ Derived<T> derive(const T* p, const Oil& oil) {
   d.twice_width = T(2.0) * p[row::port_width];
   d.clearance2 = p[row::radial_clearance] * p[row::radial_clearance];
   // Plane Couette slot: dp = 12 mu L q / (w c^3); an open edge has a creeping-flow length of some openings.
-  const T slot = T(12.0) * dynamic_viscosity;
+  const T abrupt = hook_edge_abruptness(p, Effects{}), beside = T(1.0) + abrupt;
+  d.creep_added = (T(1.0) - abrupt) / beside;
+  const T slot = T(12.0) * dynamic_viscosity * beside;
   d.slot_per_length = slot / p[row::radial_clearance];
   d.slot_corner = slot * (T(c::slot_resistance) + hook_edge_creep(p, Effects{}));
   d.supply_edge = T(c::edge_rounding) + hook_edge_rounding(p, false, Effects{});
@@ -136,9 +137,6 @@ Derived<T> derive(const T* p, const Oil& oil) {
   d.hose_loss = T(4.0) * p[row::hose_resistance] * p[row::port_width] * p[row::port_width];
   const T per_stroke2 = T(1.0) / (p[row::spool_stop] * p[row::spool_stop]);
   d.return_loss = d.hose_loss + hook_return_share(p, Effects{}) * d.edge_loss * per_stroke2;
-  const T abrupt = hook_edge_abruptness(p, Effects{}), beside = T(1.0) + abrupt;
-  d.creep_added = T(1.0) - abrupt;
-  d.creep_beside2 = beside * beside;
   d.leak = p[row::cross_piston_leakage] * (T(1.0) / viscosity_ratio);
   const T sheared = hook_seal_shear(p, Effects{}), dry = hook_seal_dry(p, Effects{});
   const T film = sqrt(viscosity_ratio);  // seals ride on a film of their own

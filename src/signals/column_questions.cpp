@@ -108,13 +108,11 @@ std::string in_words(const std::vector<std::string>& units) {
   return text;
 }
 
-void ask(ColumnGuess& g, const std::string& question) { g.question += (g.question.empty() ? "" : "; ") + question; }
-
 void ask_missing_unit(ColumnGuess& g, const ColumnNumbers& n) {
   const Signal signal = *g.signal;
   const std::vector<std::string> likely = likely_units(signal, n);
   if (signal == Signal::time && n.counts) {
-    ask(g, "counts rows: in which unit is it a time, or what is the gain, the time of a row?");
+    g.ask("counts rows: in which unit is it a time, or what is the gain, the time of a row?");
     g.unit = likely.empty() ? "s" : likely.front();
     return;
   }
@@ -123,9 +121,9 @@ void ask_missing_unit(ColumnGuess& g, const ColumnNumbers& n) {
     g.by_numbers = true;
     return;
   }
-  ask(g, likely.empty() ? fmt::format("no unit in the header, and the values are those of no {} in a usual unit",
-                                      info(signal).name)
-                        : "no unit in the header: by the values " + in_words(likely) + "?");
+  g.ask(likely.empty()
+            ? fmt::format("no unit in the header, and the values are those of no {} in a usual unit", info(signal).name)
+            : "no unit in the header: by the values " + in_words(likely) + "?");
   if (!likely.empty()) g.unit = likely.front();
 }
 
@@ -137,8 +135,8 @@ void ask_absurd_numbers(ColumnGuess& g, const ColumnNumbers& n) {
   if (lies_within(*unit, n, u.measure, u.least_of_all, u.most_of_all)) return;
   std::vector<std::string> likely = likely_units(*g.signal, n);
   std::erase(likely, g.unit);
-  ask(g, fmt::format("hardly possible as {} in {}: {}?", info(*g.signal).name, g.unit,
-                     likely.empty() ? "another signal, or another unit" : in_words(likely)));
+  g.ask(fmt::format("hardly possible as {} in {}: {}?", info(*g.signal).name, g.unit,
+                    likely.empty() ? "another signal, or another unit" : in_words(likely)));
 }
 
 void ask_sign(ColumnGuess& g, const ColumnNumbers& n) {
@@ -146,9 +144,9 @@ void ask_sign(ColumnGuess& g, const ColumnNumbers& n) {
   constexpr double transmitter[] = {3.5e-3, 21e-3};  // [A] 4 to 20 mA and what they overshoot
   const Unit* const unit = find_unit(g.unit);
   if (unit && unit->to_si(n.low) > transmitter[0] && unit->to_si(n.high) < transmitter[1])
-    ask(g, "the 4 to 20 mA of a transmitter, or the coil's current? A transmitter's needs gain and offset");
+    g.ask("the 4 to 20 mA of a transmitter, or the coil's current? A transmitter's needs gain and offset");
   else
-    ask(g, "never negative: has it lost its sign, or an offset?");
+    g.ask("never negative: has it lost its sign, or an offset?");
 }
 
 void ask_middle(ColumnGuess& g, const ColumnNumbers& n) {
@@ -157,28 +155,28 @@ void ask_middle(ColumnGuess& g, const ColumnNumbers& n) {
   const double span = n.high - n.low, off = std::max(n.low, -n.high);  // of the near end from zero
   const bool goes_far = !g.canonical && span * unit->scale() > long_way && off > -unsigned_below * span;
   if (off < aside * span && !goes_far) return;
-  ask(g, "measured from an end, not from mid-stroke? Then the offset is half the stroke, with the other sign");
+  g.ask("measured from an end, not from mid-stroke? Then the offset is half the stroke, with the other sign");
   g.offset = fmt::format("-{:.4g} {}", std::abs(0.5 * (n.low + n.high)), g.unit);
   if (n.high <= 0) g.offset.erase(0, 1);
 }
 
 void ask_column(ColumnGuess& g, const ColumnNumbers& n) {
   if (n.stamps) {
-    if (*g.signal != Signal::time) ask(g, "holds time stamps");
+    if (*g.signal != Signal::time) g.ask("holds time stamps");
     g.unit = std::string("s");
     return;
   }
-  if (n.count == 0) return ask(g, "holds no numbers");
+  if (n.count == 0) return g.ask("holds no numbers");
   const bool told = g.question.empty();
   if (g.unit.empty() && told)
     ask_missing_unit(g, n);
   else if (told)
     ask_absurd_numbers(g, n);
   if (const Unit* unit = find_unit(g.unit); unit && unit->dimension == Dimension::voltage && !g.by_numbers)
-    ask(g, fmt::format("which gain has the sensor, in {}/V, and which offset?", info(*g.signal).si_unit));
+    g.ask(fmt::format("which gain has the sensor, in {}/V, and which offset?", info(*g.signal).si_unit));
   ask_sign(g, n);
   ask_middle(g, n);
-  if (g.weak) ask(g, fmt::format("is '{}' the {}?", g.name, info(*g.signal).name));
+  if (g.weak) g.ask(fmt::format("is '{}' the {}?", g.name, info(*g.signal).name));
 }
 
 // Pressures that are only numbered: which is the pump's and which the tank's, their values say.
@@ -234,7 +232,7 @@ void ask_of_exchanged_positions(std::vector<ColumnGuess>& columns, const std::ve
   const double spool_span = span_of(Signal::spool_position, spool);
   const double piston_span = span_of(Signal::piston_position, piston);
   if (!spool || !piston || piston_span >= spool_span) return;
-  for (ColumnGuess* g : {spool, piston}) ask(*g, "the piston moves less than the spool: are the two exchanged?");
+  for (ColumnGuess* g : {spool, piston}) g->ask("the piston moves less than the spool: are the two exchanged?");
 }
 
 }  // namespace

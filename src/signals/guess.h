@@ -24,6 +24,8 @@ struct ColumnGuess {
   bool weak = false;              // the name says little of which signal of its kind it is
   bool unit_in_brackets = false;  // a unit of the table, in "name [unit]" or in the row below: the reader takes it
   bool canonical = false;         // the name is the signal's own
+
+  void ask(const std::string& more) { question += (question.empty() ? "" : "; ") + more; }
 };
 
 // The unit of the closed table that people mean by a word: "PSI", "deg C", "lpm"; empty: none.

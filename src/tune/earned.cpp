@@ -7,6 +7,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <utility>
 
 #include "effects/effect.h"
 #include "effects/registry.h"
@@ -47,7 +48,36 @@ std::vector<FreedEffect> freed_effects(const std::vector<FreeValue>& free) {
   return out;
 }
 
-// The misfit in two parts, and how the seen one pulls.
+// A misfit to second order about a point.
+struct Valley {
+  Point at;
+  Eigen::MatrixXd curvature;
+  Eigen::VectorXd slope;
+
+  // Its floor once `gone` are off, inside the walls. What is gone already stands at its off value.
+  Point floor_without(const std::vector<const FreedEffect*>& gone) const {
+    const long n = slope.size();
+    Eigen::VectorXd step = Eigen::VectorXd::Zero(n);
+    std::vector<char> fixed(static_cast<std::size_t>(n), 0);
+    for (long j = 0; j < n; ++j) fixed[static_cast<std::size_t>(j)] = !off_walls(at[static_cast<std::size_t>(j)]);
+    for (const FreedEffect* f : gone)
+      for (std::size_t k = 0; k < f->at.size(); ++k) {
+        fixed[static_cast<std::size_t>(f->at[k])] = 1;
+        if (!std::isnan(f->off[k])) step[f->at[k]] = f->off[k] - at[static_cast<std::size_t>(f->at[k])];
+      }
+    std::vector<long> left;
+    for (long j = 0; j < n; ++j)
+      if (!fixed[static_cast<std::size_t>(j)]) left.push_back(j);
+    const Eigen::VectorXd pull = -(slope + curvature * step);
+    const Eigen::VectorXd moved = Eigen::MatrixXd(curvature(left, left)).ldlt().solve(Eigen::VectorXd(pull(left)));
+    for (std::size_t k = 0; k < left.size(); ++k) step[left[k]] = moved[static_cast<long>(k)];
+    Point out = at;
+    for (std::size_t j = 0; j < out.size(); ++j) out[j] = std::clamp(out[j] + step[static_cast<long>(j)], 0.0, 1.0);
+    return out;
+  }
+};
+
+// The misfit in two parts: what the fit has seen of each log, and what it has not.
 class Parts {
  public:
   Parts(const FitProblem& problem, double held) : problem_(problem), seen_(Eigen::VectorXd::Ones(rows())) {
@@ -58,47 +88,28 @@ class Parts {
         seen_.segment(first + from, n - from).setZero();
       }
   }
-  // False where there are no derivatives.
-  bool linearise(const Point& x) {
-    const Evaluation e = problem_.evaluate(std::span(&x, 1)).front();
-    Eigen::MatrixXd j;
-    if (!e.ok || !problem_.jacobian(x, e.residual, j)) return false;
-    Eigen::VectorXd weight = Eigen::VectorXd::Ones(e.residual.size());
-    weight.head(rows()) = seen_;
-    curvature_ = j.transpose() * weight.asDiagonal() * j;
-    return true;
-  }
+  // [half a sum of squares] infinite where a run fails.
   double held_cost(const Evaluation& e) const {
     if (!e.ok) return std::numeric_limits<double>::infinity();
     return 0.5 * ((1.0 - seen_.array()) * e.residual.head(rows()).array().square()).sum();
   }
-  // The others where the seen part is least once some numbers are moved, inside their walls.
-  Point without(const Point& x, const std::vector<const FreedEffect*>& gone) const {
-    const long n = curvature_.rows();
-    Eigen::VectorXd step = Eigen::VectorXd::Zero(n);
-    std::vector<char> fixed(static_cast<std::size_t>(n), 0);
-    for (long j = 0; j < n; ++j) fixed[static_cast<std::size_t>(j)] = !off_walls(x[static_cast<std::size_t>(j)]);
-    for (const FreedEffect* f : gone)
-      for (std::size_t k = 0; k < f->at.size(); ++k) {
-        fixed[static_cast<std::size_t>(f->at[k])] = 1;
-        if (!std::isnan(f->off[k])) step[f->at[k]] = f->off[k] - x[static_cast<std::size_t>(f->at[k])];
-      }
-    std::vector<long> left;
-    for (long j = 0; j < n; ++j)
-      if (!fixed[static_cast<std::size_t>(j)]) left.push_back(j);
-    const Eigen::VectorXd pull = -(curvature_ * step);
-    const Eigen::VectorXd moved = Eigen::MatrixXd(curvature_(left, left)).ldlt().solve(Eigen::VectorXd(pull(left)));
-    for (std::size_t k = 0; k < left.size(); ++k) step[left[k]] = moved[static_cast<long>(k)];
-    Point out = x;
-    for (std::size_t j = 0; j < out.size(); ++j) out[j] = std::clamp(out[j] + step[static_cast<long>(j)], 0.0, 1.0);
-    return out;
+  double seen_cost(const Evaluation& e) const {
+    return e.ok ? 0.5 * e.residual.squaredNorm() - held_cost(e) : std::numeric_limits<double>::infinity();
+  }
+  // The seen part and the priors to second order about a point; nothing where there are no derivatives.
+  std::optional<Valley> valley(const Point& x, const Evaluation& at) const {
+    Eigen::MatrixXd j;
+    if (!at.ok || !problem_.jacobian(x, at.residual, j)) return std::nullopt;
+    Eigen::VectorXd weight = Eigen::VectorXd::Ones(at.residual.size());
+    weight.head(rows()) = seen_;
+    const Eigen::MatrixXd weighed = weight.asDiagonal() * j;
+    return Valley{x, j.transpose() * weighed, weighed.transpose() * at.residual};
   }
 
  private:
   long rows() const { return problem_.data_rows(); }
   const FitProblem& problem_;
   Eigen::VectorXd seen_;  // 1 for a row of data that the fit has seen
-  Eigen::MatrixXd curvature_;
 };
 
 void take_out(TuneScope& scope, const FreedEffect& effect, const std::vector<FreeValue>& free) {
@@ -112,48 +123,97 @@ void take_out(TuneScope& scope, const FreedEffect& effect, const std::vector<Fre
   }
 }
 
+// Backward from all that are free: the one that is missed least goes, until each of the rest is missed.
+class Elimination {
+ public:
+  Elimination(const FitProblem& problem, double held, const std::vector<FreedEffect>& effects, const Point& end)
+      : problem_(problem), parts_(problem, held), here_(taken(end)) {
+    for (const FreedEffect& f : effects) asked_.push_back(&f);
+  }
+
+  std::vector<EarnedEffect> run(const TuneWatch& watch) {
+    std::vector<EarnedEffect> kept;
+    std::optional<Valley> valley = parts_.valley(here_.point, here_.run);
+    while (!asked_.empty() && valley && !watch.stopped()) {
+      auto [k, without] = least_missed(*valley);
+      if (missed(without) >= least_gain) without = nearer_floor(std::move(without), *asked_[k]);
+      const double gain = missed(without);
+      const FreedEffect* effect = asked_[k];
+      asked_.erase(asked_.begin() + static_cast<long>(k));
+      if (gain >= least_gain) {
+        kept.push_back({effect->name, gain, true});
+        continue;
+      }
+      out_.push_back({effect->name, gain, false});
+      gone_.push_back(effect);
+      here_ = std::move(without);
+      valley = parts_.valley(here_.point, here_.run);
+    }
+    out_.insert(out_.end(), kept.begin(), kept.end());
+    return out_;
+  }
+  const std::vector<const FreedEffect*>& gone() const { return gone_; }
+  const Point& point() const { return here_.point; }
+
+ private:
+  struct Place {
+    Point point;
+    Evaluation run;
+  };
+  Place taken(Point x) const {
+    Evaluation e = problem_.evaluate(std::span(&x, 1)).front();
+    return {std::move(x), std::move(e)};
+  }
+  double missed(const Place& without) const { return parts_.held_cost(without.run) - parts_.held_cost(here_.run); }
+  std::vector<const FreedEffect*> gone_with(const FreedEffect& f) const {
+    std::vector<const FreedEffect*> all = gone_;
+    all.push_back(&f);
+    return all;
+  }
+
+  // The free ones take the same step first, so that what is missed is the effect and not the step.
+  std::pair<std::size_t, Place> least_missed(const Valley& valley) {
+    std::vector<Point> points = {valley.floor_without(gone_)};
+    for (const FreedEffect* f : asked_) points.push_back(valley.floor_without(gone_with(*f)));
+    std::vector<Evaluation> runs = problem_.evaluate(points);
+    if (parts_.seen_cost(runs[0]) < parts_.seen_cost(here_.run)) here_ = {points[0], runs[0]};
+    std::size_t least = 1;
+    for (std::size_t k = 2; k < runs.size(); ++k)
+      if (parts_.held_cost(runs[k]) < parts_.held_cost(runs[least])) least = k;
+    return {least - 1, {std::move(points[least]), std::move(runs[least])}};
+  }
+  // A second step from there, where the seen part takes it.
+  Place nearer_floor(Place without, const FreedEffect& f) const {
+    const std::optional<Valley> valley = parts_.valley(without.point, without.run);
+    if (!valley) return without;
+    Place next = taken(valley->floor_without(gone_with(f)));
+    return parts_.seen_cost(next.run) < parts_.seen_cost(without.run) ? std::move(next) : without;
+  }
+
+  const FitProblem& problem_;
+  Parts parts_;
+  Place here_;
+  std::vector<const FreedEffect*> asked_, gone_;
+  std::vector<EarnedEffect> out_;
+};
+
 }  // namespace
 
 std::vector<EarnedEffect> keep_earned(TuneScope& scope, const FitProblem& problem, double held, Point& end,
                                       TuneWatch& watch) {
-  std::vector<EarnedEffect> out;
   const std::vector<FreeValue> free = problem.free();
   const std::vector<FreedEffect> effects = freed_effects(free);
-  Parts parts(problem, held);
-  if (effects.empty() || held <= 0 || watch.stopped() || !parts.linearise(end)) return out;
-  std::vector<const FreedEffect*> gone, left;
-  for (const FreedEffect& f : effects) left.push_back(&f);
-  Point x = end;
-  double cost = parts.held_cost(problem.evaluate(std::span(&x, 1)).front());
-  std::vector<double> gains;
-  while (!left.empty() && !watch.stopped()) {
-    std::vector<Point> points;
-    for (const FreedEffect* f : left) {
-      std::vector<const FreedEffect*> all = gone;
-      all.push_back(f);
-      points.push_back(parts.without(end, all));
-    }
-    gains.clear();
-    for (const Evaluation& e : problem.evaluate(points)) gains.push_back(parts.held_cost(e) - cost);
-    const auto least = std::min_element(gains.begin(), gains.end());
-    if (!(*least < least_gain)) break;
-    const auto k = static_cast<std::size_t>(least - gains.begin());
-    out.push_back({left[k]->name, *least, false});
-    x = points[k];
-    cost += *least;
-    gone.push_back(left[k]);
-    left.erase(left.begin() + static_cast<long>(k));
-    gains.erase(least);
+  if (effects.empty() || held <= 0 || watch.stopped()) return {};
+  Elimination elimination(problem, held, effects, end);
+  std::vector<EarnedEffect> out = elimination.run(watch);
+  std::vector<char> taken(free.size(), 0);
+  for (const FreedEffect* f : elimination.gone()) {
+    take_out(scope, *f, free);
+    for (const long j : f->at) taken[static_cast<std::size_t>(j)] = 1;
   }
-  for (std::size_t k = 0; k < left.size() && k < gains.size(); ++k) out.push_back({left[k]->name, gains[k], true});
-  for (const FreedEffect* f : gone) take_out(scope, *f, free);
   end.clear();
-  for (std::size_t j = 0; j < free.size(); ++j) {
-    const bool taken = std::any_of(gone.begin(), gone.end(), [&](const FreedEffect* f) {
-      return std::find(f->at.begin(), f->at.end(), static_cast<long>(j)) != f->at.end();
-    });
-    if (!taken) end.push_back(x[j]);
-  }
+  for (std::size_t j = 0; j < free.size(); ++j)
+    if (!taken[j]) end.push_back(elimination.point()[j]);
   return out;
 }
 

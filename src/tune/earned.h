@@ -2,10 +2,10 @@
 // it stands for: it takes up what the model has wrong. So an effect stays only where the last part of each log, which
 // the fit has not seen, is told better with it than without.
 //
-// Without an effect, the other numbers move where the derivatives at the fit's end say; that point is then run, and
-// its cost on the held-out part compared. The derivatives hold nearby alone, so an effect that is far from off is
-// rather kept: the point is worse than a fit without it would be. The effect that is missed least goes first, and the
-// others are asked again without it.
+// Without an effect, the other numbers move to the floor of the seen part, by the derivatives; the point is run, and
+// its cost on the held-out part compared. An effect that is missed there is asked once more from that point, as
+// derivatives hold nearby alone. The effect that is missed least goes first, and the others are asked again without it.
+// What two steps leave of the way to the floor speaks for an effect, so one too many rather stays.
 #pragma once
 #include <vector>
 

@@ -6,6 +6,7 @@
 #pragma once
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -71,13 +72,16 @@ inline Log cut(Log log, std::size_t samples) {
   return log;
 }
 
-inline Twin make(int n, std::uint64_t seed, const std::vector<std::string>& shipped_logs, std::size_t samples) {
+// `present`: what else the truth has, by position in a candidate.
+inline Twin make(int n, std::uint64_t seed, const std::vector<std::string>& shipped_logs, std::size_t samples,
+                 const std::map<int, double>& present = {}) {
   constexpr double spread = 0.08;  // of the row's range, either way: a third of a gain or a clearance
   Twin twin;
   twin.table = shipped_table();
   Random random(seed, static_cast<std::uint32_t>(n));
   for (Row& row : twin.table.rows) row.estimate = false;
   ParameterVector truth = candidate_of(twin.table);
+  for (const auto& [at, value] : present) truth[static_cast<std::size_t>(at)] = value;
   for (std::size_t i = 0; i < twin.table.rows.size(); ++i) {
     Row& row = twin.table.rows[i];
     if (std::find(rows().begin(), rows().begin() + n, row.name) == rows().begin() + n) continue;
