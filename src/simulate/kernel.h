@@ -281,14 +281,16 @@ class Run {
     const int substeps = schedule(dt);
     const auto y_before = y;
     const auto friction_before = friction;
-    const T hit = impacts(dt);
+    const T struck = impacts(dt), seated = on_nozzle();
     advance(dt, substeps, watch);
-    if (const int finer = steps_of(dt, options_.impact_step); !on_stand_ && finer > substeps && any_due(hit))
-      redo(y_before, friction_before, hit, [&] { advance(dt, finer, watch); });
-    for (int finer = substeps * 8; finer <= substeps * 64; finer *= 8) {
-      const T due = lost();
-      if (!any_due(due)) break;
+    using std::max;
+    const T due = max(struck, max(seated, on_nozzle()));
+    if (const int finer = steps_of(dt, options_.impact_step); !on_stand_ && finer > substeps && any_due(due))
       redo(y_before, friction_before, due, [&] { advance(dt, finer, watch); });
+    for (int finer = substeps * 8; finer <= substeps * 64; finer *= 8) {
+      const T astray = lost();
+      if (!any_due(astray)) break;
+      redo(y_before, friction_before, astray, [&] { advance(dt, finer, watch); });
     }
     end();
   }
@@ -349,7 +351,7 @@ class Run {
   // tenth of a millisecond, so the steps are short until the spool has answered. This schedule comes from the log
   // alone: every candidate takes the same steps. A rod that comes upon its stop is seen a sample before: that candidate
   // takes the sample in short steps too, or is thrown back at many times its speed, or not, by the last digit of its
-  // values.
+  // values. So does one whose flapper lies on a nozzle.
   static constexpr double jump = 0.03;         // of rated current
   static constexpr double impact_time = 4e-3;  // [s]
   // Slower than full stroke in a second, the valve's own dynamics stay settled, and an L-stable step passes over them.
@@ -428,6 +430,9 @@ class Run {
     using std::min;
     return min(there * there - deep * deep, there * there - here * here - T(2.0) * d_.half_stroke * rough);
   }
+  // Whose flapper lies on a nozzle. The spool slews then, for as long as filter and oil let it, and how the flapper
+  // leaves is settled within a tenth of a millisecond: by longer steps the spool arrives anywhere.
+  T on_nozzle() const { return y[s_x_flapper] * y[s_x_flapper] - p_[row::nozzle_gap] * p_[row::nozzle_gap]; }
   // Lanes that are `due` (not below 0) take what `again` makes of them; the others keep what they have, so a lane's
   // bits do not depend on its company.
   static bool is_due(const T& due, int lane) { return !(Lanes<T>::get(due, lane) < 0.0); }

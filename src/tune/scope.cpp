@@ -28,13 +28,13 @@ void take_priors(std::vector<FreeValue>& shared, const std::map<std::string, dou
   }
 }
 
-// Clearances and frictions know their oil's viscosity as a factor only: without a temperature anywhere they hold for
-// the first log's oil.
-void settle_oil(TuneScope& scope) {
+// Clearances and frictions know their oil's viscosity as a factor only. Each log's is its own, with the prior of rigs'
+// temperatures: a log held at 40 degC that was cold would set them all, and the data sheet's clearance could not agree.
+void say_oil(TuneScope& scope) {
   if (std::any_of(scope.data.begin(), scope.data.end(), [](const LogData& d) { return d.scenario.oil_known; })) return;
-  scope.data.front().scenario.oil_known = true;
-  scope.notes.push_back("no log holds the oil's temperature: the table holds for the oil of " +
-                        scope.data.front().path + ", taken as at 40 degC");
+  scope.notes.push_back(
+      "no log holds the oil's temperature: clearances and frictions hold for an oil as thick as these logs' on the "
+      "average, taken as at 40 degC; the rig file's oil_temperature says what it was");
 }
 
 void take_logs(TuneScope& scope, const std::vector<Log>& logs, const RigFile& rig, const TuneOptions& options) {
@@ -81,7 +81,7 @@ TuneScope scope_of(const std::vector<Log>& logs, const Table& nominal, const Rig
   add_effect_rows(scope.table, options.effects.value_or(default_effects(rig_kind(logs, rig))));
   scope.table = apply_rig_facts(scope.table, scope.facts);
   scope.base = candidate_of(scope.table);
-  settle_oil(scope);
+  say_oil(scope);
   scope.shared = shared_values(scope.table);
   take_priors(scope.shared, options.priors);
   take_nuisances(scope);

@@ -12,6 +12,7 @@
 #include "effects/sensor_response.h"
 #include "effects/supply_droop.h"
 #include "effects/transport_delay.h"
+#include "effects/viscosity_change.h"
 #include "fit/error_model.h"
 #include "fit/free_values.h"
 #include "fit/tuned_state.h"
@@ -22,6 +23,7 @@
 #include "servodx/log.h"
 #include "servodx/rig.h"
 #include "shipped_data.h"
+#include "tune/scope.h"
 #include "tune/summary.h"
 
 namespace servodx {
@@ -54,6 +56,22 @@ TEST(Tune, ALosingChildDoesNotRunTheLogsThatAreLeft) {
 bool frees(const RigKind& kind, const std::string& effect) {
   const std::vector<std::string> freed = default_effects(kind);
   return std::find(freed.begin(), freed.end(), effect) != freed.end();
+}
+
+// Else the log that comes first, and is cold, would set clearances and frictions for all.
+TEST(Tune, WithoutATemperatureAnywhereEachLogHasAViscosityOfItsOwn) {
+  std::vector<Log> logs;
+  for (const char* name : {"healthy/h01_steps_large", "healthy/h04_multisine"}) {
+    logs.push_back(twins::cut(shipped_log(name), 400));
+    logs.back().channels[index(Signal::oil_temperature)].value.clear();
+  }
+  const TuneScope scope = scope_of(logs, shipped_table(), shipped_rig(), {});
+  std::vector<int> whose;
+  for (const FreeValue& f : scope.nuisances)
+    if (f.name == ViscosityChange::parameters[0].name) whose.push_back(f.log);
+  EXPECT_EQ(whose, (std::vector<int>{0, 1}));
+  EXPECT_TRUE(std::any_of(scope.notes.begin(), scope.notes.end(),
+                          [](const std::string& n) { return n.find("oil's temperature") != std::string::npos; }));
 }
 
 TEST(DefaultEffects, AreThoseThatSuchLogsCanTell) {
