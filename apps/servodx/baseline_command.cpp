@@ -1,16 +1,25 @@
 // `servodx baseline LOG...`: what fault-free logs score, and the threshold that promises a false-alarm rate.
+#include <fmt/format.h>
+
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstddef>
+#include <filesystem>
 #include <memory>
 #include <string>
+#include <system_error>
 #include <vector>
 
+#include "base/csv.h"
+#include "base/json_text.h"
+#include "base/sha256.h"
 #include "commands.h"
 #include "diagnose/baseline.h"
 #include "door/baseline_parts.h"
 #include "fit/replay.h"
+#include "fit/tuned_state.h"
 #include "invocation.h"
+#include "manifest.h"
 #include "report/diagnosis_words.h"
 #include "report/explain_report.h"
 #include "report/json.h"
@@ -26,25 +35,54 @@ namespace {
 
 struct Options {
   CommonOptions common;
-  std::vector<std::string> logs;
+  std::vector<std::string> logs, others;
+  bool alone = false;
   std::string params, output;
   double false_alarm = BaselineOptions{}.false_alarm;
 };
 
+// The logs that tuned the table, where its manifest says they lie and they are as they were.
+std::vector<std::string> tuning_logs(const std::string& params, const TunedState& state) {
+  std::vector<std::string> out;
+  std::error_code absent;
+  const std::string manifest = params + manifest_suffix;
+  if (!std::filesystem::is_regular_file(manifest, absent)) return out;
+  const auto json = json_or_discarded<report::Json>(read_file(manifest));
+  if (!json.is_object() || !json.contains("inputs") || !json["inputs"].is_array()) return out;
+  for (const auto& input : json["inputs"]) {
+    if (!input.is_object() || !input.contains("path") || !input["path"].is_string()) continue;
+    const std::string path = input["path"].get<std::string>();
+    if (!std::filesystem::is_regular_file(path, absent)) continue;
+    const std::string hash = sha256(read_file(path));
+    if (std::any_of(state.by.begin(), state.by.end(), [&](const TunedBy& by) { return by.sha256 == hash; }))
+      out.push_back(path);
+  }
+  return out;
+}
+
 int run(const Options& options) {
-  BaselineOptions how{
-      .false_alarm = options.false_alarm, .seed = options.common.seed, .threads = options.common.threads, .watch = {}};
+  BaselineOptions how;
+  how.false_alarm = options.false_alarm, how.seed = options.common.seed, how.threads = options.common.threads;
   how.validate();
   Invocation invocation("baseline", options.common);
   auto inputs = options.logs;
+  inputs.insert(inputs.end(), options.others.begin(), options.others.end());
   inputs.push_back(options.params);
   invocation.check_files(inputs, {options.output});
   const RigFile rig = invocation.rig();
   const Tuned tuned = invocation.tuned(options.params);
   const std::vector<Log> logs = invocation.logs(options.logs, rig);
+  how.others = invocation.logs(
+      options.others.empty() && !options.alone ? tuning_logs(options.params, tuned_state(tuned.table)) : options.others,
+      rig);
 
   report::Header& header = invocation.header();
   header.settings = {{"false_alarm", options.false_alarm}};
+  if (!how.others.empty() && options.others.empty())
+    invocation.note(
+        {fmt::format("{} logs that tuned the table show how it errs on tests that are not given here; "
+                     "--alone leaves them out",
+                     how.others.size())});
   invocation.tell_of_long_fits(logs);
   if (invocation.dry_run()) return ran;
 
@@ -76,6 +114,12 @@ void add_baseline_command(CLI::App& app, int& exit_code) {
   command->add_option("LOG", options->logs, "fault-free rig logs, CSV")->required();
   command->add_option("--params", options->params, "tuned table")->required()->type_name("TUNED");
   command->add_option("-o,--output", options->output, "the baseline, JSON")->required()->type_name("BASE.json");
+  CLI::Option* others =
+      command->add_option("--others", options->others,
+                          "fault-free logs of other tests, those that tuned the table as well: how the model errs "
+                          "there; the tuning logs, where they still are, if none is given");
+  command->add_flag("--alone", options->alone, "no logs but those given, as of the baseline's own test")
+      ->excludes(others);
   command->add_option("--false-alarm", options->false_alarm, "rate of false alarms asked for, per log")
       ->type_name("RATE")
       ->capture_default_str();

@@ -33,20 +33,81 @@ FaultGains usual_gains(const DetectionBaseline& baseline, int left_out) {
   return usual;
 }
 
-DetectionBaseline baseline_of(const std::vector<Assessment>& healthy, double false_alarm) {
+namespace {
+
+// But for its score, which is a statement beside others'.
+DetectionBaseline::Score unscored(const Assessment& a) {
+  DetectionBaseline::Score s{a.log, a.sha256, 0.0, a.hypotheses.front().adequacy, {}, a.test, a.figures, a.point, {}};
+  if (!a.explanations.empty()) s.healthy = a.explanations.front();
+  for (const HypothesisResult& h : a.hypotheses)
+    if (h.fault) s.gains[h.fault] = h.gain;
+  return s;
+}
+
+// Logs of one test as one log: what they show on average.
+DetectionBaseline::Score as_one(const DetectionBaseline& b) {
+  DetectionBaseline::Score one = {.log = b.scores.front().log, .sha256 = "", .test = b.scores.front().test};
+  one.gains = usual_gains(b);
+  const auto n = static_cast<double>(b.scores.size());
+  double square = 0;
+  for (const DetectionBaseline::Score& s : b.scores) square += s.score * s.score / n, one.adequacy += s.adequacy / n;
+  one.score = std::sqrt(square);
+  return one;
+}
+
+double largest_adequacy(const std::vector<DetectionBaseline::Score>& scores) {
+  double most = 0;
+  for (const DetectionBaseline::Score& s : scores) most = std::max(most, s.adequacy);
+  return most;
+}
+
+// Tests of which the logs are repeats.
+std::size_t number_of_tests(const std::vector<DetectionBaseline::Score>& scores) {
+  std::vector<TestConditions> seen;
+  for (const DetectionBaseline::Score& s : scores)
+    if (std::none_of(seen.begin(), seen.end(), [&](const TestConditions& t) { return is_repeat(t, *s.test); }))
+      seen.push_back(*s.test);
+  return seen.size();
+}
+
+// Whether the baseline's own logs know how the model errs on such a test: they hold it, or tests like it among several.
+bool knows(const DetectionBaseline& b, const TestConditions& test) {
+  const auto any = [&](const auto& is) { return std::any_of(b.scores.begin(), b.scores.end(), is); };
+  if (any([](const DetectionBaseline::Score& s) { return !s.test; })) return true;  // it does not say its tests
+  if (any([&](const DetectionBaseline::Score& s) { return is_repeat(*s.test, test); })) return true;
+  return !nearest_of_unlike(test, b) && number_of_tests(b.scores) >= k::tests_that_scatter;
+}
+
+}  // namespace
+
+DetectionBaseline baseline_for(const TestConditions& test, const DetectionBaseline& b, int left_out) {
+  if (b.others.empty() || knows(b, test)) return b;
+  std::vector<DetectionBaseline::Score> all, like;
+  for (std::size_t i = 0; i < b.others.size(); ++i) {
+    if (static_cast<int>(i) == left_out) continue;
+    all.push_back(b.others[i]);
+    if (b.others[i].test && distance(test, *b.others[i].test) <= 1) like.push_back(b.others[i]);
+  }
+  all.push_back(as_one(b));
+  DetectionBaseline out = b;
+  out.scores = like.empty() ? std::move(all) : std::move(like);
+  out.others.clear();
+  out.adequacy_limit = std::max(largest_adequacy(b.scores), largest_adequacy(out.scores));
+  return out;
+}
+
+DetectionBaseline baseline_of(const std::vector<Assessment>& healthy, double false_alarm,
+                              const std::vector<Assessment>& others) {
   DetectionBaseline b;
   b.asked = false_alarm;
-  for (const Assessment& a : healthy) {
-    const double adequacy = a.hypotheses.front().adequacy;
-    b.scores.push_back({a.log, a.sha256, 0.0, adequacy, {}, a.test, a.figures, a.point, {}});
-    if (!a.explanations.empty()) b.scores.back().healthy = a.explanations.front();
-    for (const HypothesisResult& h : a.hypotheses)
-      if (h.fault) b.scores.back().gains[h.fault] = h.gain;
-    b.adequacy_limit = std::max(b.adequacy_limit, adequacy);
-  }
+  for (const Assessment& a : healthy) b.scores.push_back(unscored(a));
   if (b.scores.empty()) return b;
+  b.adequacy_limit = largest_adequacy(b.scores);
   for (std::size_t i = 0; i < healthy.size(); ++i)
     b.scores[i].score = score_of(healthy[i], usual_gains(b, static_cast<int>(i)));
+  for (const Assessment& a : others) b.others.push_back(unscored(a));
+  for (std::size_t i = 0; i < others.size(); ++i)
+    b.others[i].score = score_of(others[i], usual_gains(baseline_for(others[i].test, b, static_cast<int>(i))));
   const HealthyLaw law(b, nullptr);
   std::vector<double> scores;
   for (const std::size_t i : law.positions()) scores.push_back(b.scores[i].score);

@@ -37,6 +37,9 @@ struct DetectionBaseline {
     std::optional<HypothesisPrediction> healthy = {};  // not in the file: for the report
   };
   std::vector<Score> scores;
+  // Healthy logs of other tests, those that tuned the table among them: how the model errs where no log above is of the
+  // suspect's test. They promise nothing.
+  std::vector<Score> others;
   double adequacy_limit = 0;  // largest adequacy of a healthy log
   double null_limit = 0.05;
   std::string tuned_sha256;  // of the table it was made with
@@ -49,10 +52,17 @@ double score_of(const Assessment& assessment, const FaultGains& usual);
 FaultGains usual_gains(const DetectionBaseline& baseline, int left_out = -1);
 
 // Scores every log by the others, and sets threshold and promise for the rate asked. Empty without assessments.
-DetectionBaseline baseline_of(const std::vector<Assessment>& healthy, double false_alarm);
+DetectionBaseline baseline_of(const std::vector<Assessment>& healthy, double false_alarm,
+                              const std::vector<Assessment>& others = {});
 
 // Whether the rate promised is the rate asked for.
 bool keeps_rate(const DetectionBaseline& baseline);
+
+// What speaks of a suspect of this test: the baseline, where its logs know such a test or there are no others. Repeats
+// of one test know that test alone; several tests know those like them. Else the scores are the others', of a test like
+// this where some are; where none is, all of them, and one more in the place of all of the baseline's own. `left_out`:
+// of the others, -1: none.
+DetectionBaseline baseline_for(const TestConditions& test, const DetectionBaseline& baseline, int left_out = -1);
 
 // The log of the baseline whose test is nearest, where none is of a test like this one. Empty also where the baseline
 // does not say what tests it holds.

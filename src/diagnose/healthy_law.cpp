@@ -50,7 +50,8 @@ SuspectLog suspect_of(const Assessment& a) {
 HealthyLaw::HealthyLaw(const DetectionBaseline& b, const SuspectLog* suspect)
     : positions_(logs_for(b, suspect)),
       gains_(squares_of(b, positions_), {k::usual_gain, k::usual_logs}),
-      asked_(b.asked) {
+      asked_(b.asked),
+      promising_(std::max(static_cast<int>(positions_.size()), b.logs)) {
   std::vector<double> ranked;
   for (const std::size_t i : positions_) ranked.push_back(b.scores[i].score);
   for (const DetectionBaseline::Score& s : b.scores) adequacies_.push_back(s.adequacy);
@@ -60,7 +61,7 @@ HealthyLaw::HealthyLaw(const DetectionBaseline& b, const SuspectLog* suspect)
   constexpr double sides = 2;  // the quantile's tail has two, an adequacy's one
   const double worst_of = suspect ? static_cast<double>(suspect->logs) : 1.0;
   unlike_limit_ =
-      student_quantile(sides * rate_of_question(asked_, logs(), k::share_of_adequacy) / worst_of, one.degrees);
+      student_quantile(sides * rate_of_question(asked_, promising_, k::share_of_adequacy) / worst_of, one.degrees);
 }
 
 double HealthyLaw::error_of(double gain, double adequacy) const {

@@ -161,11 +161,12 @@ Evidence evidence_of(const Assessment& a, const DetectionBaseline& baseline, con
   return e;
 }
 
-Diagnosis judge(Assessment a, const DetectionBaseline& baseline) {
+Diagnosis judge(Assessment a, const DetectionBaseline& whole) {
+  const DetectionBaseline baseline = baseline_for(a.test, whole);
   weigh_beside_usual(a, usual_gains_of(a, baseline));
   const SuspectLog suspect = suspect_of(a);
   const HealthyLaw law(baseline, &suspect);
-  std::vector<RecordFinding> records = records_of(a, baseline);
+  std::vector<RecordFinding> records = records_of(a, whole);
   const Evidence evidence = evidence_of(a, baseline, law, records);
   const Decision decision = decide(evidence);
   Diagnosis d;
@@ -176,13 +177,14 @@ Diagnosis judge(Assessment a, const DetectionBaseline& baseline) {
   d.baseline_logs = law.logs();
   d.records = std::move(records);
   const Named named{
-      a, decision, d.records, law, evidence.gain, evidence.pair ? evidence.pair->gain : 0.0, rate_of_records(baseline)};
+      a, decision, d.records, law, evidence.gain, evidence.pair ? evidence.pair->gain : 0.0, rate_of_records(whole)};
   d.faults = name_faults(named);
   d.probabilities = probabilities_of(named, d.faults);
   if (decision.suspected && law.chance_of_gain(evidence.gain) <= k::worth_saying)
     d.suspicion = suspicion_of(a.hypotheses[*decision.suspected], evidence.gain, law);
-  d.unlike = unlike_all(a.test, baseline);
-  d.conditions = conditions_of(a, baseline);
+  d.unlike = unlike_all(a.test, whole);
+  if (whole.others.size() > baseline.others.size()) d.others = static_cast<int>(baseline.scores.size());
+  d.conditions = conditions_of(a, whole);
   d.detectable = detectable_of(a, usual_gains_of(a, baseline), law.limit());
   for (const std::size_t i : decision.ambiguous) d.ambiguous_with.push_back(a.hypotheses[i].fault);
   const HypothesisResult& told = a.hypotheses[decision.hypothesis];

@@ -54,8 +54,9 @@ struct Diagnosis {
   };
   std::vector<ConditionRow> conditions;  // where it was recorded, beside sheet and baseline
   std::optional<Unlike> unlike;
-  const Fault* fault = nullptr;                 // the one named, the first of `faults`
-  std::vector<NamedFault> faults;               // none, one or two
+  int others = 0;                  // healthy logs of other tests that it was compared with; 0: with the baseline's own
+  const Fault* fault = nullptr;    // the one named, the first of `faults`
+  std::vector<NamedFault> faults;  // none, one or two
   std::optional<Suspicion> suspicion;           // of a healthy verdict
   std::vector<Detectable> detectable;           // of each fault that was looked for by a fit
   std::vector<FaultProbability> probabilities;  // all 0 of an unknown state: that none of them holds is certain

@@ -2,6 +2,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <utility>
+#include <vector>
 
 #include "base/error.h"
 #include "diagnose/assessment.h"
@@ -21,7 +23,7 @@ namespace {
 
 constexpr std::size_t fewest_logs = 3;
 
-void check(const std::vector<Log>& logs, const Table& tuned, double false_alarm) {
+void check(const std::vector<Log>& logs, const std::vector<Log>& others, const Table& tuned, double false_alarm) {
   if (!(false_alarm > 0 && false_alarm < 1))
     throw InputError({.file = "--false-alarm"}, fmt::format("{} is not a rate", false_alarm),
                      "give a number between 0 and 1, such as 0.01");
@@ -38,6 +40,10 @@ void check(const std::vector<Log>& logs, const Table& tuned, double false_alarm)
         throw InputError({.file = logs[i].path}, "the same log as " + logs[j].path,
                          "give each log once: the rate counts independent logs");
   }
+  for (const Log& log : others)
+    if (std::find(content.begin(), content.end(), content_hash(log)) != content.end())
+      throw InputError({.file = log.path}, "is one of the baseline's own logs as well",
+                       "give each log once: to the baseline, or as one of other tests");
   if (logs.size() < fewest_logs)
     throw InputError({}, fmt::format("{} logs cannot set a threshold", logs.size()),
                      "give at least 3 fault-free logs; the rate that can be promised is 1/(n+1)");
@@ -45,34 +51,60 @@ void check(const std::vector<Log>& logs, const Table& tuned, double false_alarm)
 
 }  // namespace
 
-DetectionBaseline make_baseline(const std::vector<Log>& logs, const Table& tuned, const RigFile& rig,
-                                double false_alarm, const DiagnoseOptions& options, long* simulations, long* failed) {
-  options.validate();
-  check(logs, tuned, false_alarm);
-  const auto logs_in_all = static_cast<double>(logs.size());
-  long total = 0;
-  std::vector<Assessment> assessed;
-  for (std::size_t i = 0; i < logs.size(); ++i) {
-    DiagnoseOptions of_log = options;
-    if (options.watch.progress)
-      of_log.watch.progress = [&](const WorkDone& of_one) {
-        options.watch.tell("baseline", (static_cast<double>(i) + of_one.part) / logs_in_all,
-                           total + of_one.simulations);
-      };
-    Assessment a = assess(logs[i], tuned, rig, of_log);
-    if (options.watch.stopped()) break;
-    if (a.unjudgeable != Unjudgeable::no)
-      throw InputError({.file = logs[i].path},
-                       "no valve answers in this log: its command or its sensors stand still, noise is all, or a unit "
-                       "is wrong",
-                       "see 'servodx check-log', and mend the rig file or leave the log out");
-    total += a.simulations;
-    if (simulations) *simulations += a.simulations;
-    if (failed) *failed += a.failed_simulations;
-    options.watch.tell("baseline", static_cast<double>(i + 1) / logs_in_all, total);
-    assessed.push_back(std::move(a));
+namespace {
+
+// Each log assessed alone. Ended early: of those done so far.
+class Assessing {
+ public:
+  Assessing(const Table& tuned, const RigFile& rig, const DiagnoseOptions& options, std::size_t logs)
+      : tuned_(tuned), rig_(rig), options_(options), logs_(static_cast<double>(logs)) {}
+
+  std::vector<Assessment> all(const std::vector<Log>& logs) {
+    std::vector<Assessment> out;
+    for (const Log& log : logs) {
+      Assessment a = assess(log, tuned_, rig_, with_progress());
+      if (options_.watch.stopped()) break;
+      if (a.unjudgeable != Unjudgeable::no)
+        throw InputError({.file = log.path},
+                         "no valve answers in this log: its command or its sensors stand still, noise is all, or a "
+                         "unit is wrong",
+                         "see 'servodx check-log', and mend the rig file or leave the log out");
+      simulations += a.simulations, failed += a.failed_simulations;
+      options_.watch.tell("baseline", ++done_ / logs_, simulations);
+      out.push_back(std::move(a));
+    }
+    return out;
   }
-  DetectionBaseline b = baseline_of(assessed, false_alarm);
+  long simulations = 0, failed = 0;
+
+ private:
+  DiagnoseOptions with_progress() const {
+    DiagnoseOptions of_log = options_;
+    if (options_.watch.progress)
+      of_log.watch.progress = [this](const WorkDone& of_one) {
+        options_.watch.tell("baseline", (done_ + of_one.part) / logs_, simulations + of_one.simulations);
+      };
+    return of_log;
+  }
+
+  const Table& tuned_;
+  const RigFile& rig_;
+  const DiagnoseOptions& options_;
+  double logs_, done_ = 0;
+};
+
+}  // namespace
+
+DetectionBaseline make_baseline(const std::vector<Log>& logs, const Table& tuned, const RigFile& rig,
+                                double false_alarm, const DiagnoseOptions& options, long* simulations, long* failed,
+                                const std::vector<Log>& others) {
+  options.validate();
+  check(logs, others, tuned, false_alarm);
+  Assessing assessing(tuned, rig, options, logs.size() + others.size());
+  const std::vector<Assessment> healthy = assessing.all(logs), of_others = assessing.all(others);
+  if (simulations) *simulations += assessing.simulations;
+  if (failed) *failed += assessing.failed;
+  DetectionBaseline b = baseline_of(healthy, false_alarm, of_others);
   b.null_limit = rig.null_limit;
   b.tuned_sha256 = tuned.sha256;
   return b;

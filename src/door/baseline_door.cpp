@@ -58,6 +58,7 @@ report::Header header_of(const std::vector<Log>& logs, const Tuned& tuned, const
   if (!rig.path.empty()) header.inputs.push_back({rig.path, rig.sha256});
   header.inputs.push_back({tuned.table.path, tuned.table.sha256});
   for (const Log& log : logs) header.inputs.push_back({log.path, log.sha256});
+  for (const Log& log : options.others) header.inputs.push_back({log.path, log.sha256});
   return header;
 }
 
@@ -77,7 +78,7 @@ Baseline make_baseline(const std::vector<Log>& logs, const Tuned& tuned, const R
   BaselineParts parts;
   parts.detection = make_baseline(logs, tuned.table, rig, options.false_alarm,
                                   {.seed = options.seed, .threads = options.threads, .watch = options.watch},
-                                  &header.simulations, &header.failed_simulations);
+                                  &header.simulations, &header.failed_simulations, options.others);
   for (const std::string& text : tuned.notes)
     if (!tuned.whole) note(header.notes, text);  // of its reader; what a tune has noted is not this result's
   for (const Log& log : logs)
@@ -86,10 +87,13 @@ Baseline make_baseline(const std::vector<Log>& logs, const Tuned& tuned, const R
   if (scored < logs.size()) note(header.notes, fmt::format("interrupted: rests on {} of {} logs", scored, logs.size()));
 
   HealthyCounts counts{header.simulations, header.failed_simulations};
-  parts.causes = score_healthy(logs, tuned.table, rig, options.threads, counts, [&](double done) {
+  std::vector<Log> all = logs;
+  all.insert(all.end(), options.others.begin(), options.others.end());
+  parts.causes = score_healthy(all, tuned.table, rig, options.threads, counts, [&](double done) {
     options.watch.tell("baseline, causes", done, counts.simulations);
     return !options.watch.stopped();
   });
+  for (std::size_t i = logs.size(); i < parts.causes->logs.size(); ++i) parts.causes->logs[i].other = true;
   header.simulations = counts.simulations, header.failed_simulations = counts.failed;
   header.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 

@@ -198,6 +198,10 @@ HealthyReference score_healthy(const std::vector<Log>& logs, const Table& tuned,
   return out;
 }
 
+int HealthyReference::promising() const {
+  return static_cast<int>(std::count_if(logs.begin(), logs.end(), [](const HealthyLog& l) { return !l.other; }));
+}
+
 KnownRig HealthyReference::known(int left_out) const {
   KnownRig out;
   for (std::size_t i = 0; i < logs.size(); ++i) {

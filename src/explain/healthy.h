@@ -48,6 +48,7 @@ struct HealthyShare {
 };
 struct HealthyLog {
   std::string log, sha256;
+  bool other = false;                  // of another test than the baseline's own, or one that tuned: promises no rate
   std::optional<TestConditions> test;  // files of earlier versions have none
   double adequacy = 1;                 // misfit over independent samples, re-tuned
   std::vector<HealthyScore> scores;
@@ -61,6 +62,7 @@ struct HealthyLog {
 struct HealthyReference {
   std::vector<HealthyLog> logs;
   bool empty() const { return logs.empty(); }
+  int promising() const;  // logs: all but the others
   KnownRig known(int left_out = -1) const;
 };
 

@@ -39,7 +39,7 @@ Inquiry::Inquiry(const std::vector<Log>& logs, const Table& tuned, const RigFile
     std::vector<TestConditions> tests;
     for (const Log& log : logs) tests.push_back(conditions_of(log));
     speaking_ = logs_that_speak(*healthy, tests);
-    healthy_logs_ = static_cast<int>(healthy->logs.size());
+    healthy_logs_ = healthy->promising();
     test_.emplace(speaking_.logs);
   }
   if (healthy && logs.size() > 1)

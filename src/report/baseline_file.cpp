@@ -115,6 +115,26 @@ std::vector<RecordFigure> read_figures(const Reader& read, const Json& figures) 
   return out;
 }
 
+std::vector<DetectionBaseline::Score> read_scores(const Reader& read, const Json& scores) {
+  constexpr double any = HUGE_VAL;
+  if (!scores.is_array()) read.refuse("scores", "is no array");
+  std::vector<DetectionBaseline::Score> out;
+  for (const Json& s : scores) {
+    out.push_back({read.text(s, "scores.log"), read.text(s, "scores.sha256"), read.number(s, "scores.score", -any, any),
+                   read.number(s, "scores.adequacy", 0, any)});
+    const Json& gains = read.at(s, "scores.gains");
+    if (!gains.is_object()) read.refuse("scores.gains", "is no object");
+    for (const auto& [name, value] : gains.items()) {
+      const double gain = read.number(gains, "scores.gains." + name, -any, any);
+      if (const Fault* fault = find_fault(name)) out.back().gains[fault] = gain;
+    }
+    if (s.contains("figures")) out.back().figures = read_figures(read, s["figures"]);  // nor these
+    if (s.contains("operating_point")) out.back().point = read_point(read, s["operating_point"]);
+    if (s.contains("test")) out.back().test = read_test(read, s["test"]);  // earlier versions wrote none
+  }
+  return out;
+}
+
 // The rig file among the inputs of the call that made it.
 std::string rig_of(const Json& file) {
   const auto inputs = file.find("inputs");
@@ -150,19 +170,8 @@ BaselineFile read_baseline(const std::string& path) {
   b.logs_needed = read.count(rate, "false_alarm.logs_needed");
   const Json& scores = read.at(file, "scores");
   if (!scores.is_array() || scores.empty()) read.refuse("scores", "holds no scores");
-  for (const Json& s : scores) {
-    b.scores.push_back({read.text(s, "scores.log"), read.text(s, "scores.sha256"),
-                        read.number(s, "scores.score", -any, any), read.number(s, "scores.adequacy", 0, any)});
-    const Json& gains = read.at(s, "scores.gains");
-    if (!gains.is_object()) read.refuse("scores.gains", "is no object");
-    for (const auto& [name, value] : gains.items()) {
-      const double gain = read.number(gains, "scores.gains." + name, -any, any);
-      if (const Fault* fault = find_fault(name)) b.scores.back().gains[fault] = gain;
-    }
-    if (s.contains("figures")) b.scores.back().figures = read_figures(read, s["figures"]);  // nor these
-    if (s.contains("operating_point")) b.scores.back().point = read_point(read, s["operating_point"]);
-    if (s.contains("test")) b.scores.back().test = read_test(read, s["test"]);  // earlier versions wrote none
-  }
+  b.scores = read_scores(read, scores);
+  if (file.contains("others")) b.others = read_scores(read, file["others"]);  // earlier versions wrote none
   b.adequacy_limit = read.number(file, "adequacy_limit", 0, any);
   b.null_limit = read.number(file, "null_limit", 0, 1);
   b.tuned_sha256 = read.text(file, "tuned_sha256");

@@ -77,6 +77,7 @@ std::vector<std::string> reasons(const Diagnosis& d, const DetectionBaseline& ba
   if (const std::string far = beyond_in_words(d.conditions); !far.empty())
     why.push_back("Beware: recorded beyond what is known: " + far + ".");
   if (d.unlike) why.push_back("Beware: " + unlike_words(d) + ". The threshold may not hold for it.");
+  if (d.others > 0) why.push_back("Compared with " + others_words(d) + ".");
   const HypothesisResult* healthy = result_of(d, nullptr);
   const HypothesisResult* best = d.fault ? result_of(d, d.fault) : nearest_fault(d);
   if (above && healthy && best)

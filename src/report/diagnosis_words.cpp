@@ -295,6 +295,13 @@ std::string unlike_words(const Diagnosis& d) {
                      test_words(d.assessment.test), file_name(d.unlike->log), test_words(d.unlike->test));
 }
 
+std::string others_words(const Diagnosis& d) {
+  if (d.others == 0) return "";
+  return fmt::format(
+      "{} fault-free log{} of other tests, as the baseline's own do not hold this one; they promise no rate", d.others,
+      d.others == 1 ? "" : "s");
+}
+
 MovedParts moved_parts(const Diagnosis& d) {
   MovedParts parts;
   for (const MovedRow& row : d.moved) (row.by == MovedRow::By::fault ? parts.fault : parts.health).push_back(row);

@@ -75,6 +75,7 @@ DetectableWords detectable_words(const Diagnosis& d);
 std::string test_words(const TestConditions& test);
 // Empty where a log of the baseline is of such a test.
 std::string unlike_words(const Diagnosis& d);
+std::string others_words(const Diagnosis& d);  // empty: it was compared with the baseline's own logs
 
 // The rows that the fault moved; those of health's own, each farthest first.
 struct MovedParts {

@@ -389,6 +389,7 @@ Json healthy_json(const HealthyReference& healthy) {
                         {"rate", number(e.rate)}});
     logs.push_back({{"log", l.log},
                     {"sha256", l.sha256},
+                    {"other", l.other},
                     {"test", l.test ? test_json(*l.test) : Json(nullptr)},
                     {"errors", errors},
                     {"air_fraction", number(l.air)},
@@ -414,7 +415,8 @@ HealthyReference read_healthy(const std::string& path) {
     for (const Json& l : file.at("explain").at("logs")) {
       HealthyLog log;
       log.log = l.at("log").get<std::string>(), log.sha256 = l.at("sha256").get<std::string>();
-      if (l.contains("test") && l.at("test").is_object()) {  // later than the rest
+      if (l.contains("other")) log.other = l.at("other").get<bool>();  // later than the rest
+      if (l.contains("test") && l.at("test").is_object()) {            // the same
         const Json& test = l.at("test");
         log.test =
             TestConditions{value(test.at("drive_span")), value(test.at("drive_band")), {}, value(test.at("drive_rms"))};

@@ -143,27 +143,38 @@ Json tune_json(const TuneResult& result) {
           {"local", {{"stages", stages}, {"ceres", ceres_json(result)}}}};
 }
 
+namespace {
+
+Json to_json(const DetectionBaseline::Score& s) {
+  Json gains = Json::object();
+  for (const auto& [fault, gain] : s.gains) gains[label_of(fault)] = gain;
+  Json out = {{"log", s.log},
+              {"sha256", s.sha256},
+              {"score", number(s.score)},
+              {"adequacy", number(s.adequacy)},
+              {"gains", gains}};
+  if (s.test) out["test"] = test_json(*s.test);
+  Json figures = Json::array();
+  for (const RecordFigure& f : s.figures)
+    figures.push_back(
+        {{"figure", words_of(f.kind)}, {"signal", std::string(name_of(f.signal))}, {"value", number(f.value)}});
+  out["figures"] = std::move(figures);
+  Json point = Json::object();
+  for (std::size_t i = 0; i < s.point.size(); ++i)
+    if (s.point[i]) point[report::word_of(static_cast<Condition>(i))] = number(*s.point[i]);
+  out["operating_point"] = std::move(point);
+  return out;
+}
+
+Json to_json(const std::vector<DetectionBaseline::Score>& scores) {
+  Json out = Json::array();
+  for (const DetectionBaseline::Score& s : scores) out.push_back(to_json(s));
+  return out;
+}
+
+}  // namespace
+
 Json baseline_json(const DetectionBaseline& b) {
-  Json scores = Json::array();
-  for (const DetectionBaseline::Score& s : b.scores) {
-    Json gains = Json::object();
-    for (const auto& [fault, gain] : s.gains) gains[label_of(fault)] = gain;
-    scores.push_back({{"log", s.log},
-                      {"sha256", s.sha256},
-                      {"score", number(s.score)},
-                      {"adequacy", number(s.adequacy)},
-                      {"gains", gains}});
-    if (s.test) scores.back()["test"] = test_json(*s.test);
-    Json figures = Json::array();
-    for (const RecordFigure& f : s.figures)
-      figures.push_back(
-          {{"figure", words_of(f.kind)}, {"signal", std::string(name_of(f.signal))}, {"value", number(f.value)}});
-    scores.back()["figures"] = std::move(figures);
-    Json point = Json::object();
-    for (std::size_t i = 0; i < s.point.size(); ++i)
-      if (s.point[i]) point[word_of(static_cast<Condition>(i))] = number(*s.point[i]);
-    scores.back()["operating_point"] = std::move(point);
-  }
   return {{"threshold", number(b.threshold)},
           {"false_alarm",
            {{"asked", number(b.asked)},
@@ -172,7 +183,8 @@ Json baseline_json(const DetectionBaseline& b) {
             {"statement", statement_of(b)},
             {"promised_95", number(b.promised_95)},
             {"logs_needed", b.logs_needed}}},
-          {"scores", scores},
+          {"scores", to_json(b.scores)},
+          {"others", to_json(b.others)},
           {"adequacy_limit", number(b.adequacy_limit)},
           {"null_limit", number(b.null_limit)},
           {"tuned_sha256", b.tuned_sha256}};
@@ -312,6 +324,7 @@ Json to_json(const Diagnosis& d) {
           {"operating_point", conditions_json(d.conditions)},
           {"unlike_baseline",
            d.unlike ? Json{{"nearest", d.unlike->log}, {"test", test_json(d.unlike->test)}} : Json(nullptr)},
+          {"compared_with_others", d.others},
           {"null", number(d.null)},
           {"channels", array_of(d.assessment.channels)},
           {"hypotheses", array_of(d.assessment.hypotheses)},

@@ -128,6 +128,32 @@ TEST_F(MainJob, BaselineRefusesLogsThatTunedTheTableAndTooFewLogs) {
   EXPECT_FALSE(std::filesystem::exists(desk() / "base.json"));
 }
 
+// Found by the table's manifest, where they are as they were; else the baseline stands alone.
+TEST_F(MainJob, BaselineLooksAtTheLogsThatTunedAsAtOthers) {
+  ASSERT_EQ(tuned().code, 0) << tuned().err;
+  const std::string call = "baseline b1.csv b2.csv b3.csv --params tuned.csv --rig rig.toml -o with.json ";
+  const auto others = [&](const std::string& more) {
+    const Ended ended = desk().run(call + more);
+    EXPECT_EQ(ended.code, 0) << ended.err;
+    const Json made = json("with.json");
+    std::vector<std::string> out;
+    for (const Json& s : made.at("others")) out.push_back(s.at("log"));
+    return out;
+  };
+  EXPECT_EQ(others(""), (std::vector<std::string>{"t1.csv", "t2.csv"}));
+  const Json made = json("with.json");
+  EXPECT_EQ(made.at("scores").size(), 3u);
+  EXPECT_EQ(made.at("explain").at("logs").size(), 5u);
+  EXPECT_TRUE(made.at("explain").at("logs").back().at("other"));
+  EXPECT_EQ(made.at("false_alarm").at("logs"), 3) << "they promise nothing";
+  EXPECT_EQ(others("--alone"), std::vector<std::string>{});
+  EXPECT_EQ(json("with.json").at("threshold"), made.at("threshold"));
+  EXPECT_EQ(others("--others t2.csv"), std::vector<std::string>{"t2.csv"});
+  expect_refused(desk().run(call + "--others b2.csv"), "b2.csv: is one of the baseline's own logs as well");
+  desk().write("t1.csv", bytes_of(desk() / "t1.csv") + "# moved on\n");
+  EXPECT_EQ(others(""), std::vector<std::string>{"t2.csv"});
+}
+
 TEST_F(MainJob, DiagnoseRefusesABaselineThatDoesNotServe) {
   ASSERT_EQ(tuned().code, 0) << tuned().err;
   desk().write("other.json",

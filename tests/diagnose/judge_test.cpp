@@ -278,6 +278,65 @@ TEST(Judge, ATestUnlikeEveryLogOfTheBaselineIsSaidWithTheNearest) {
   EXPECT_FALSE(judge(a, b).unlike);
 }
 
+// Three repeats of one test, and two healthy logs of others: on a flight blunt corners gain on a healthy valve as well.
+constexpr TestConditions acceptance{0.04, 20.0, {}, 0.01}, flight{0.004, 2.0, {}, 0.001}, sine{0.3, 2.0, {}, 0.1};
+DetectionBaseline repeats_and_others() {
+  const Fault* corners = find_fault("corner_wear");
+  DetectionBaseline b = baseline();
+  for (DetectionBaseline::Score& s : b.scores) s.test = acceptance, s.gains[corners] = 2.0;
+  b.logs = 3;
+  b.others = {{"flight", "4", 1.0, 1.0}, {"sine", "5", 0.5, 1.0}};
+  b.others[0].test = flight, b.others[0].gains[corners] = 25.0;
+  b.others[1].test = sine, b.others[1].gains[corners] = 0.0;
+  return b;
+}
+Assessment of_corners(double gain, const TestConditions& test) {
+  Assessment a = with_misfits(300, {"corner_wear", 300 - gain}, {"clogged_filter", 300});
+  a.test = test;
+  return a;
+}
+
+TEST(Judge, OfATestThatTheBaselineDoesNotHoldHealthyLogsOfOtherTestsSpeak) {
+  const DetectionBaseline with = repeats_and_others();
+  DetectionBaseline without = with;
+  without.others.clear();
+  EXPECT_EQ(judge(of_corners(60, flight), without).verdict, VerdictKind::fault);
+  const Diagnosis d = judge(of_corners(60, flight), with);
+  EXPECT_EQ(d.verdict, VerdictKind::healthy) << "a healthy flight shows nearly half of it";
+  EXPECT_EQ(d.others, 1) << "the flight";
+  EXPECT_EQ(judge(of_corners(2000, flight), with).fault, find_fault("corner_wear")) << "no healthy flight shows that";
+}
+
+TEST(Judge, OfATestThatTheBaselineHoldsItsOwnLogsAloneSpeak) {
+  const DetectionBaseline with = repeats_and_others();
+  DetectionBaseline without = with;
+  without.others.clear();
+  const Diagnosis one = judge(of_corners(60, acceptance), with), other = judge(of_corners(60, acceptance), without);
+  EXPECT_EQ(one.error, other.error);
+  EXPECT_EQ(one.threshold, other.threshold);
+  EXPECT_EQ(one.verdict, VerdictKind::fault);
+  EXPECT_FALSE(one.unlike || one.others);
+}
+
+// Of like size and speed, and spending its time at other openings.
+TEST(BaselineFor, RepeatsOfOneTestDoNotKnowAnotherLikeItAndSeveralTestsDo) {
+  constexpr TestConditions similar{0.03, 30.0, {}, 0.004};
+  DetectionBaseline b = repeats_and_others();
+  EXPECT_EQ(baseline_for(similar, b).others.size(), 0u) << "the others speak";
+  b.scores[1].test = similar, b.scores[1].test->drive_rms = 0.006;
+  b.scores[2].test = sine;
+  EXPECT_EQ(baseline_for(similar, b).others.size(), 2u) << "three tests, of which some are like it";
+}
+
+TEST(BaselineFor, WhereNoOtherIsOfSuchATestRepeatsCountAsOneLogBesideThem) {
+  const TestConditions slow{0.04, 0.05, {}, 0.01};
+  const DetectionBaseline speaking = baseline_for(slow, repeats_and_others());
+  ASSERT_EQ(speaking.scores.size(), 3u);
+  EXPECT_NEAR(usual_gains(speaking).at(find_fault("corner_wear")), (25.0 + 0.0 + 2.0) / 3, 1e-12);
+  EXPECT_EQ(speaking.logs, 3) << "the rate is still promised by the baseline's own";
+  EXPECT_EQ(baseline_for(slow, repeats_and_others(), 0).scores.size(), 2u);
+}
+
 TEST(Judge, OnsetIsHandedOn) {
   Assessment a = assessment(9.0, {hypothesis("", 0.0), hypothesis("sticky_spool", 1.0)});
   a.onset = 1.25;
