@@ -11,7 +11,6 @@
 #include <vector>
 
 #include "base/csv.h"
-#include "base/json_text.h"
 #include "base/sha256.h"
 #include "commands.h"
 #include "diagnose/baseline.h"
@@ -45,13 +44,7 @@ struct Options {
 std::vector<std::string> tuning_logs(const std::string& params, const TunedState& state) {
   std::vector<std::string> out;
   std::error_code absent;
-  const std::string manifest = params + manifest_suffix;
-  if (!std::filesystem::is_regular_file(manifest, absent)) return out;
-  const auto json = json_or_discarded<report::Json>(read_file(manifest));
-  if (!json.is_object() || !json.contains("inputs") || !json["inputs"].is_array()) return out;
-  for (const auto& input : json["inputs"]) {
-    if (!input.is_object() || !input.contains("path") || !input["path"].is_string()) continue;
-    const std::string path = input["path"].get<std::string>();
+  for (const std::string& path : inputs_of_manifest(params + manifest_suffix)) {
     if (!std::filesystem::is_regular_file(path, absent)) continue;
     const std::string hash = sha256(read_file(path));
     if (std::any_of(state.by.begin(), state.by.end(), [&](const TunedBy& by) { return by.sha256 == hash; }))
