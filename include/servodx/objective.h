@@ -76,7 +76,7 @@ class Objective {
   const std::vector<Part>& parts() const;
   std::size_t size() const;  // entries of a residual
   std::vector<double> start() const;
-  // Point whose shared numbers are another table's values, and whose others are the start's.
+  // Point whose shared numbers are another table's values, by the rig's facts, and whose others are the start's.
   std::vector<double> point_of(const Table& table) const;
   // The unit of each number in place of the unit interval, and back.
   std::vector<double> values_at(std::span<const double> point) const;

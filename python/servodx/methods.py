@@ -10,6 +10,11 @@ PARAMETER_UNITS = dict.fromkeys(("nominal", "estimate", "std_error", "profile_lo
 CHANNEL = ["signal", "rms", "noise_rms", "heldout_rms"]
 
 
+def _signals_frame(self):
+    """A column a signal, in SI; index: time [s]."""
+    return frame_of(self)
+
+
 def _parameters(self):
     """Free rows, effects included: index name; estimate, std_error, verdict, ... in each row's `unit`."""
     return of_records(self._parameters, PARAMETER, PARAMETER_UNITS, "name")
@@ -189,7 +194,7 @@ def _property(function):
 
 def attach():
     """Puts them on the types of the module."""
-    core.Log.frame = core.Simulation.frame = frame_of
+    core.Log.frame = core.Simulation.frame = _signals_frame
     core.Table.frame = _table_frame
     core.Baseline.scores = _property(_scores)
     core.Tuned.parameters = _property(_parameters)

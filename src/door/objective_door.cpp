@@ -12,6 +12,7 @@
 #include "fit/error_model.h"
 #include "fit/free_values.h"
 #include "fit/log_data.h"
+#include "fit/nominal.h"
 #include "fit/problem.h"
 #include "fit/tuned_state.h"
 #include "optimise/box_least_squares.h"
@@ -62,7 +63,7 @@ TuneLocal local_of(Objective::Method method) {
 }
 
 std::vector<Point> points_of(std::span<const double> points, std::size_t n) {
-  if (n == 0 || points.size() % n != 0)
+  if (points.empty() || points.size() % n != 0)
     throw InputError({.file = "points"}, fmt::format("{} numbers are no points of {} each", points.size(), n),
                      fmt::format("give points of shape ({},) or (many, {})", n, n));
   std::vector<Point> out;
@@ -102,7 +103,9 @@ struct Objective::Inside {
       scope.on_stand ? weigh_sweeps(problem, start) : first_whitening(problem, start);
     rows = static_cast<std::size_t>(problem.data_rows());
     for (const FreeValue& f : problem.free()) {
-      numbers.push_back({f.name, f.unit, f.lower, f.upper, f.log_scale, f.start, f.prior_sd, f.log});
+      const int row = scope.table.find(f.name);
+      numbers.push_back({f.name, row < 0 ? f.unit : scope.table[row].unit, f.lower, f.upper, f.log_scale, f.start,
+                         f.prior_sd, f.log});
       rows += std::isfinite(f.prior_sd);
     }
     for (std::size_t l = 0; l < scope.data.size(); ++l)
@@ -147,10 +150,11 @@ long Objective::simulations() const { return inside_->problem.simulations() + in
 long Objective::failed_simulations() const { return inside_->problem.failed_simulations(); }
 
 std::vector<double> Objective::point_of(const Table& table) const {
+  const Table there = apply_rig_facts(table, inside_->scope.facts);
   std::vector<double> values;
   for (const Number& number : inside_->numbers) {
-    const int at = number.log < 0 ? table.find(number.name) : -1;
-    values.push_back(at < 0 ? number.start : table[at].nominal);
+    const int at = number.log < 0 ? there.find(number.name) : -1;
+    values.push_back(at < 0 ? number.start : there[at].nominal);
   }
   return point_at(values);
 }

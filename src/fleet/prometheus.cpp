@@ -33,7 +33,7 @@ void head(std::string& text, const char* name, const char* help) {
 }  // namespace
 
 std::string valve_of_log(const std::string& log) {
-  static const std::regex counted(R"((.+?)[ ._-]+[0-9][0-9TZ:._ -]*)");
+  static const std::regex counted(R"((.+?)(?:_[0-9][0-9TZ:. -]*)+)");
   const std::string name = fs::path(log).stem().string();
   std::smatch found;
   return std::regex_match(name, found, counted) ? found[1].str() : name;

@@ -12,8 +12,8 @@
 
 namespace servodx {
 
-// "V7_20261125T1200.csv", "in/V7-0031.csv": V7. The file's name without ending, and without a date, time or number at
-// its end.
+// "V7_20261125T1200.csv", "in/V7_0031.csv": V7. The file's name without ending, up to an underscore behind which only a
+// date, a time or a number stands.
 std::string valve_of_log(const std::string& log);
 
 class ValveGauges {

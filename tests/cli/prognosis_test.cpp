@@ -49,6 +49,42 @@ TEST_F(Prognosis, MonitorWritesItsRunAndItsSpeed) {
   EXPECT_EQ(desk.run("monitor flight.csv --params tuned.csv -o t.csv --model nonesuch").code, 2);
 }
 
+TEST_F(Prognosis, AFolderOfExportsIsImportedFileByFileEachWholeAndEachOnce) {
+  std::filesystem::create_directory(desk / "nodes");
+  const std::string head = "valve,at [h],name,value,std_error\n";
+  desk.write("nodes/a.csv", head + "V7,1,fidelity,0.9,0.01\nV7,2,fidelity,0.8,0.01\n");
+  desk.write("nodes/b.csv", head + "V8,1,fidelity,0.9,0.01\nV8,two,fidelity,0.8,0.01\n");
+  desk.write("nodes/c.csv", head + "V7,2,fidelity,0.8,0.01\nV9,3,fidelity,0.7,0.01\n");
+  desk.write("nodes/half.csv.servodx-tmp", head);
+  const std::string call = "history import nodes --history h.db --json i.json";
+  Ended ended = desk.run(call + " --dry-run");
+  EXPECT_EQ(ended.code, 3) << ended.err;
+  EXPECT_FALSE(std::filesystem::exists(desk / "h.db"));
+  ended = desk.run(call);
+  EXPECT_EQ(ended.code, 3) << ended.err;
+  EXPECT_NE(ended.err.find("nodes/b.csv"), std::string::npos) << ended.err;
+  Json i = json("i.json");
+  EXPECT_EQ(i["checks"], 3);
+  EXPECT_EQ(i["present"], 1);
+  EXPECT_EQ(i["files"], 3);
+  ASSERT_EQ(i["set_aside"].size(), 1u);
+  EXPECT_EQ(i["set_aside"][0]["file"], "nodes/b.csv");
+  ASSERT_EQ(desk.run("history show --history h.db --json s.json").code, 0);
+  std::vector<std::string> valves;
+  const Json shown = json("s.json");
+  for (const Json& v : shown["valves"]) valves.push_back(v["valve"]);
+  EXPECT_EQ(valves, (std::vector<std::string>{"V7", "V9"}));  // of b.csv nothing, not even its good row
+
+  desk.write("nodes/b.csv", head + "V8,1,fidelity,0.9,0.01\n");
+  ended = desk.run(call);
+  EXPECT_EQ(ended.code, 0) << ended.err;
+  i = json("i.json");
+  EXPECT_EQ(i["checks"], 1);
+  EXPECT_EQ(i["present"], 4);
+  std::filesystem::create_directory(desk / "nothing");
+  EXPECT_EQ(desk.run("history import nothing --history h.db").code, 2);
+}
+
 TEST_F(Prognosis, ACheckIsStoredOnceAndComesOutAsItWentIn) {
   const std::string call = "check hot.csv --params tuned.csv --rig rig.toml --history h.db --valve V7 --at ";
   const Ended ended = desk.run(call + "12.5 --json c.json");

@@ -7,6 +7,7 @@
 #include <set>
 #include <sstream>
 
+#include "fleet/fleet_verdict.h"
 #include "temporary_folder.h"
 
 namespace servodx {
@@ -21,7 +22,8 @@ bool has_line(const std::string& text, const std::string& wanted) {
 
 TEST(Prometheus, AValveIsItsLogsNameWithoutDateOrNumber) {
   EXPECT_EQ(valve_of_log("in/V7_20261125T1200Z.csv"), "V7");
-  EXPECT_EQ(valve_of_log("V7-0031.csv"), "V7");
+  EXPECT_EQ(valve_of_log("SN-5329_0031.csv"), "SN-5329");
+  EXPECT_EQ(valve_of_log("V7_20261125_1200.csv"), "V7");
   EXPECT_EQ(valve_of_log("rig 3_2026-11-25 12:00:31.csv"), "rig 3");
   EXPECT_EQ(valve_of_log("h12.csv"), "h12");
   EXPECT_EQ(valve_of_log("0031.csv"), "0031");

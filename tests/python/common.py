@@ -2,7 +2,7 @@
 import functools, pathlib, subprocess, sys, tempfile, unittest
 
 sys.path.insert(0, sys.argv[1])
-SOURCE, PROGRAM = pathlib.Path(sys.argv[2]), sys.argv[3]
+SOURCE, PROGRAM = pathlib.Path(sys.argv[2]).resolve(), str(pathlib.Path(sys.argv[3]).resolve())
 import pandas
 import servodx as sx
 

@@ -38,7 +38,7 @@ class Module(unittest.TestCase):
         ours = json.loads(verdict().json)
         self.assertEqual(verdict().kind.name, program["verdict"])
         self.assertEqual(verdict().error, program["error"])
-        self.assertEqual({**ours, "log": ""}, {**program, "log": ""})
+        self.assertEqual({**ours, "log": "", "logs": []}, {**program, "log": "", "logs": []})
         explained = tuned().explain([suspect()], baseline())
         self.assertIn("nothing", explained.probabilities)
         self.assertIsInstance(explained.kind, sx.Explanation.Kind)
