@@ -11,6 +11,12 @@ and Ctrl-C ends them. `progress` is True for a bar where a person looks on, Fals
 part, simulations). A bad input raises InputError with file, line, column, rule and mend. Start worker processes by
 "spawn": one that was forked works on one thread.
 """
+import os
+
+# Before the library's threads are there: where others run as well, threads that wait must sleep soon, as the program's do.
+if "OMP_WAIT_POLICY" not in os.environ:
+    os.environ.setdefault("GOMP_SPINCOUNT", "10000")
+
 from . import frames, methods, pages, plots
 from ._servodx import (ActionClass, Baseline, Checked, Curves, Explanation, Fleet, History, InputError, Log,
                        ObjectiveEnd, Plan, Replay, Rig, Row, RowVerdict, Severity, Simulation, Table, Trend, Tuned,
