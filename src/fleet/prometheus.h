@@ -1,12 +1,13 @@
 // What is known of each valve of a watched folder, as the text that Prometheus' node exporter collects from files.
 //
-// Metrics are gauges: servodx_valve_verdict (1 for the valve's verdict, 0 for the others), servodx_valve_error_ratio
-// (error over threshold: above 1 the log is not healthy), servodx_valve_last_seen_timestamp_seconds, and
-// servodx_logs_set_aside. A valve's figures are those of its latest log. Source: Prometheus text format 0.0.4.
+// Metrics are gauges. Of a folder: servodx_valve_verdict (1 for the valve's verdict, 0 for the others),
+// servodx_valve_error_ratio (error over threshold: above 1 the log is not healthy), both of the valve's latest log,
+// servodx_valve_last_seen_timestamp_seconds, and servodx_logs_set_aside. Source: Prometheus text format 0.0.4.
 #pragma once
 #include <cstddef>
 #include <map>
 #include <string>
+#include <vector>
 
 #include "fleet/fleet_verdict.h"
 
@@ -35,6 +36,14 @@ class ValveGauges {
   std::map<std::string, Reading> valves_;
   std::size_t set_aside_ = 0;
 };
+
+// Of a valve's history: what `trend --all` says.
+struct LifeGauge {
+  std::string valve, state;                 // "healthy", "warning", ...
+  double median = 0, lower = 0, upper = 0;  // [h] of life left; infinite where never, NaN where nothing is known
+};
+// servodx_valve_state (1 for the state the valve is in) and servodx_valve_life_left_hours by `bound`.
+std::string text_of(const std::vector<LifeGauge>& lives);
 
 // [s] since 1970 of a file's last change; 0 where it is not there.
 double time_of_file(const std::string& path);

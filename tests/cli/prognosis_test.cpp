@@ -2,6 +2,8 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
@@ -83,6 +85,22 @@ TEST_F(Prognosis, AFolderOfExportsIsImportedFileByFileEachWholeAndEachOnce) {
   EXPECT_EQ(i["present"], 4);
   std::filesystem::create_directory(desk / "nothing");
   EXPECT_EQ(desk.run("history import nothing --history h.db").code, 2);
+}
+
+TEST_F(Prognosis, PrometheusIsToldOfEveryValvesLife) {
+  std::string life = "valve,at [h],name,value,std_error\n";
+  for (int k = 0; k < 40; ++k)
+    life += fmt::format("V7,{},parameter:22,{},1e-7\nV8,{},parameter:22,3e-6,1e-7\n", 10 * k,
+                        3e-6 + 4e-8 * std::pow(std::max(0, k - 15), 1.5), 10 * k);
+  desk.write("life.csv", life);
+  ASSERT_EQ(desk.run("history import life.csv --history h.db").code, 0);
+  const Ended ended = desk.run("trend --history h.db --all --prometheus life.prom --json t.json");
+  ASSERT_EQ(ended.code, 0) << ended.err;
+  const std::string text = bytes_of(desk / "life.prom");
+  for (const char* line : {"servodx_valve_state{valve=\"V7\",state=", "servodx_valve_state{valve=\"V8\",state=",
+                           "servodx_valve_life_left_hours{valve=\"V7\",bound=\"median\"} "})
+    EXPECT_NE(text.find(line), std::string::npos) << line << "\n" << text;
+  EXPECT_EQ(desk.run("trend --history h.db --all --prometheus h.db").code, 2);
 }
 
 TEST_F(Prognosis, ACheckIsStoredOnceAndComesOutAsItWentIn) {
