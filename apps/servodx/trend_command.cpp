@@ -24,6 +24,7 @@
 #include "prognose/trend_options.h"
 #include "prognose/valve_history.h"
 #include "report/prognosis.h"
+#include "report/prognosis_words.h"
 #include "servodx/table.h"
 #include "store/history.h"
 #include "store/seeded_csv.h"
