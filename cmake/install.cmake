@@ -53,7 +53,6 @@ if(TARGET servodx_python)
   install(TARGETS servodx_python LIBRARY DESTINATION ${python_home} COMPONENT python)
   install(FILES ${python_files} DESTINATION ${python_home} COMPONENT python)
   install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DATAROOTDIR}/doc/python3-servodx RENAME copyright COMPONENT python)
-  install(DIRECTORY examples/notebooks DESTINATION ${CMAKE_INSTALL_DATAROOTDIR}/doc/python3-servodx COMPONENT python)
 endif()
 
 set(CPACK_GENERATOR DEB)

@@ -22,7 +22,7 @@ class Workflow(unittest.TestCase):
         with Desk() as desk:
             code, said = study(desk.name)
             self.assertEqual(code, 0, said[-3000:])
-            table = list(csv.DictReader(open(desk / "study.csv")))
+            table = list(csv.DictReader((desk / "study.csv").read_text().splitlines()))
             judged = (desk / "work/valve_01/judge.txt").read_text().splitlines()
             self.assertEqual(sum(int(row["logs"]) for row in table), len(judged))
             self.assertTrue((desk / "pages/valve_01.html").exists())
