@@ -1,6 +1,6 @@
 # `cmake --install`: the program, its manual page and completions, the tables, and the library with its headers for
-# find_package(servodx): the front door alone, include/servodx. `cpack` makes Debian packages of the same: servodx and
-# libservodx-dev.
+# find_package(servodx): the front door alone, include/servodx. The Python package goes where Debian's Python looks. `cpack`
+# makes Debian packages of the same: servodx, libservodx-dev and python3-servodx.
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 
@@ -44,12 +44,26 @@ write_basic_package_version_file(${CMAKE_BINARY_DIR}/servodx-config-version.cmak
 install(FILES ${CMAKE_BINARY_DIR}/servodx-config.cmake ${CMAKE_BINARY_DIR}/servodx-config-version.cmake
         DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/servodx COMPONENT development)
 
+# For a wheel the package is its root (pyproject.toml).
+if(TARGET servodx_python)
+  set(python_home lib/python3/dist-packages/servodx)
+  if(SKBUILD)
+    set(python_home servodx)
+  endif()
+  install(TARGETS servodx_python LIBRARY DESTINATION ${python_home} COMPONENT python)
+  install(FILES ${python_files} DESTINATION ${python_home} COMPONENT python)
+  install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DATAROOTDIR}/doc/python3-servodx RENAME copyright COMPONENT python)
+endif()
+
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_VENDOR servodx)
 set(CPACK_PACKAGE_CONTACT "servodx maintainers <servodx@localhost>")
 set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "fault diagnosis of electrohydraulic servovalves from rig logs")
 set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
 set(CPACK_COMPONENTS_ALL program development)
+if(TARGET servodx_python)
+  list(APPEND CPACK_COMPONENTS_ALL python)
+endif()
 set(CPACK_DEB_COMPONENT_INSTALL ON)
 set(CPACK_COMPONENTS_GROUPING ONE_PER_GROUP)
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
@@ -61,4 +75,11 @@ set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_NAME libservodx-dev)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SECTION libdevel)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS
     "libceres-dev, libnlopt-cxx-dev, libeigen3-dev, libfmt-dev, libtomlplusplus-dev, nlohmann-json3-dev, libssl-dev, libmatio-dev, libsqlitecpp-dev, libsqlite3-dev, pkg-config, g++")
+set(CPACK_DEBIAN_PYTHON_PACKAGE_NAME python3-servodx)
+set(CPACK_DEBIAN_PYTHON_PACKAGE_SECTION python)
+set(CPACK_DEBIAN_PYTHON_PACKAGE_SHLIBDEPS ON)
+math(EXPR next_python "${Python_VERSION_MINOR} + 1")
+set(CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS
+    "python3 (>= 3.${Python_VERSION_MINOR}), python3 (<< 3.${next_python}), python3-numpy, python3-pandas")
+set(CPACK_DEBIAN_PYTHON_PACKAGE_RECOMMENDS "python3-matplotlib, python3-scipy, servodx")
 include(CPack)

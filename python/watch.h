@@ -1,5 +1,5 @@
 // A call of the library seen from Python: the interpreter is free while it runs, Ctrl-C ends it, progress is a
-// callable.
+// callable or the package's own bar.
 #pragma once
 #include <pybind11/pybind11.h>
 
@@ -7,6 +7,7 @@
 #include <chrono>
 #include <mutex>
 #include <optional>
+#include <stdexcept>
 #include <string>
 #include <thread>
 
@@ -14,10 +15,29 @@
 
 namespace servodx::python {
 
+inline std::atomic<bool>& in_forked_child() {
+  static std::atomic<bool> forked = false;
+  return forked;
+}
+
+// Threads do not survive a fork: a team of several would wait for ever.
+inline int threads_here(int asked) {
+  if (in_forked_child() && asked > 1)
+    throw std::runtime_error(
+        "this process was forked from one that had used servodx and has one thread: start it by "
+        "multiprocessing.get_context('spawn'), or give threads=1");
+  return asked;
+}
+
 class Call {
  public:
-  // `progress`: None, or called as progress(work, part, simulations). What it raises ends the call.
-  explicit Call(pybind11::object progress) : progress_(std::move(progress)) {}
+  // `progress`: True for the bar where a person looks, None or False for none, or called as progress(work, part,
+  // simulations). What it raises ends the call.
+  explicit Call(pybind11::object progress) : progress_(std::move(progress)) {
+    if (progress_.is(pybind11::bool_(true)))
+      progress_ = pybind11::module_::import("servodx.progress").attr("default_bar")();
+    if (progress_.is(pybind11::bool_(false))) progress_ = pybind11::none();
+  }
 
   Watch watch() {
     Watch out;
@@ -34,6 +54,7 @@ class Call {
       return work(watch());
     }();
     if (raised_) throw pybind11::error_already_set(std::move(*raised_));
+    if (pybind11::hasattr(progress_, "close")) progress_.attr("close")();
     return result;
   }
 

@@ -112,6 +112,7 @@ FleetJudge::Outcome FleetJudge::judge(const std::string& path, const std::string
     const Verdict verdict = diagnose(log, judging_.tuned, judging_.rig, judging_.baseline, options);
     if (verdict.interrupted) return {.end = End::interrupted};
     outcome.diagnosis = *verdict.whole;
+    outcome.fault = verdict.fault, outcome.error_ratio = verdict.error / verdict.threshold;
     complete_header(*outcome.diagnosis);
     header_.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     if (beside) beside(name, *outcome.diagnosis, log);

@@ -46,7 +46,9 @@ class FleetJudge {
     End end = End::judged;
     FleetVerdict verdict = FleetVerdict::none;  // judged or stood
     std::optional<SetAside> refusal = {};       // set aside
-    std::optional<Diagnosis> diagnosis = {};    // judged
+    std::optional<Diagnosis> diagnosis = {};    // judged; the next two go with it
+    std::string fault = {};                     // label; empty: none is named
+    double error_ratio = 0;                     // error over threshold
   };
   // `name`: of its files in the folder, without ending. Throws only where a result cannot be written.
   Outcome judge(const std::string& log, const std::string& name, const DiagnoseOptions& options);

@@ -2,12 +2,17 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <filesystem>
 #include <memory>
 #include <optional>
+#include <string>
+#include <vector>
 
 #include "base/atomic_file.h"
+#include "base/error.h"
 #include "commands.h"
 #include "invocation.h"
 #include "prognose/valve_history.h"
@@ -93,6 +98,52 @@ void read_csv(const Options& options) {
                     {{"checks", count.recordings}, {"events", count.events}, {"present", count.present}});
 }
 
+// Files of a folder that may be exports, by name; one that is being written has another ending.
+std::vector<std::string> exports_in(const std::string& folder) {
+  std::vector<std::string> files;
+  for (const auto& entry : std::filesystem::directory_iterator(folder))
+    if (entry.is_regular_file() && entry.path().extension() == ".csv") files.push_back(entry.path().string());
+  std::sort(files.begin(), files.end());
+  if (files.empty())
+    throw InputError({.file = folder}, "holds no CSV", "name the folder that 'servodx history export' wrote into");
+  return files;
+}
+
+// Each file whole or not at all. A node that exports again writes all that it has: what is there is passed over, so a
+// folder may be imported as often as one likes.
+int read_folder(const Options& options) {
+  Invocation invocation("history import", options.common);
+  invocation.check_files({}, {options.history});
+  std::optional<HistoryFile> history;  // a new one is made only when there is something to store
+  if (HistoryFile::there(options.history)) history.emplace(options.history, false);
+  Restored all;
+  report::Json set_aside = report::Json::array();
+  const std::vector<std::string> files = exports_in(options.file);
+  for (const std::string& file : files) try {
+      const HistoryContent content = read_history_csv(file);
+      if (options.common.dry_run) continue;
+      if (!history) history.emplace(options.history, true);
+      const Restored count = history->restore(content);
+      all.recordings += count.recordings, all.events += count.events, all.present += count.present;
+    } catch (const InputError& error) {
+      std::fprintf(stderr, "history import: set aside: %s\n", (file + ": " + error.what()).c_str());
+      set_aside.push_back({{"file", file}, {"rule", error.rule}, {"mend", error.mend}});
+    }
+  invocation.header().settings = {{"folder", options.file}, {"files", files.size()}, {"set_aside", set_aside.size()}};
+  const int code = set_aside.empty() ? ran : some_set_aside;
+  if (invocation.dry_run()) return code;
+  if (all.present > 0)
+    invocation.note({fmt::format("{} rows were in the history already and are left as they are", all.present)});
+  invocation.finish(fmt::format("{} checks and {} events added from {} files, {} set aside\n", all.recordings,
+                                all.events, files.size() - set_aside.size(), set_aside.size()),
+                    {{"checks", all.recordings},
+                     {"events", all.events},
+                     {"present", all.present},
+                     {"files", files.size()},
+                     {"set_aside", set_aside}});
+  return code;
+}
+
 void verify(const Options& options, int& exit_code) {
   Invocation invocation("history verify", options.common);
   invocation.check_files({options.history}, {});
@@ -126,8 +177,13 @@ void add_history_command(CLI::App& app, int& exit_code) {
   out->add_option("-o,--output", options->file, "CSV")->required()->type_name("FILE");
   out->callback([options] { write_csv(*options); });
   CLI::App* in = part("import", "Adds what a CSV holds and the history does not; all of it or nothing");
-  in->add_option("FILE", options->file, "CSV of an export")->required();
-  in->callback([options] { read_csv(*options); });
+  in->add_option("FILE", options->file, "CSV of an export, or a folder of them: each whole or not at all")->required();
+  in->callback([options, &exit_code] {
+    if (std::filesystem::is_directory(options->file))
+      exit_code = read_folder(*options);
+    else
+      read_csv(*options);
+  });
   part("verify", "Looks for damage")->callback([options, &exit_code] { verify(*options, exit_code); });
 }
 

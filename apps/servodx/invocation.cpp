@@ -21,6 +21,7 @@
 #include "report/handy.h"
 #include "report/plain_page.h"
 #include "servodx/rig.h"
+#include "simulate/simulate.h"
 
 namespace servodx {
 namespace fs = std::filesystem;
@@ -300,6 +301,7 @@ void Invocation::write_manifest() const {
   const report::Json manifest = {{"manifest", 1},
                                  {"tool", "servodx"},
                                  {"version", header_.version},
+                                 {"instruction_set", instruction_set()},
                                  {"command", header_.command},
                                  {"directory", fs::proximate(fs::current_path(), beside, ignored).string()},
                                  {"arguments", call},

@@ -28,6 +28,7 @@
 #include "manifest.h"
 #include "report/columns.h"
 #include "report/json.h"
+#include "simulate/simulate.h"
 
 namespace servodx {
 namespace fs = std::filesystem;
@@ -65,6 +66,11 @@ report::Json read_manifest(const std::string& path) {
     throw InputError({path, 0, "interrupted"}, "that run was interrupted, and where cannot be repeated",
                      "make the result again with its command");
   return m;
+}
+
+// Manifests of earlier versions lack some keys.
+std::string text_or(const report::Json& manifest, const char* key, const std::string& without) {
+  return manifest.contains(key) && manifest[key].is_string() ? manifest[key].get<std::string>() : without;
 }
 
 void require_same_inputs(const report::Json& manifest) {
@@ -159,6 +165,9 @@ int run(const Options& options) {
   invocation.header().inputs.push_back({options.manifest, sha256_of_file(options.manifest)});
   if (const auto made_with = manifest["version"].get<std::string>(); made_with != SERVODX_VERSION)
     invocation.note({fmt::format("made with version {}, this is {}", made_with, SERVODX_VERSION)});
+  const std::string here = instruction_set(), there = text_or(manifest, "instruction_set", here);
+  if (there != here)
+    invocation.note({fmt::format("made by {}, this processor runs {}: the last digits may differ", there, here)});
   const fs::path home = fs::current_path();
   fs::current_path(fs::absolute(options.manifest).parent_path() / manifest["directory"].get<std::string>());
   require_same_inputs(manifest);

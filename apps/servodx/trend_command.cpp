@@ -3,15 +3,18 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <memory>
 #include <optional>
 #include <set>
 #include <utility>
 
+#include "base/atomic_file.h"
 #include "base/sha256.h"
 #include "base/units.h"
 #include "commands.h"
+#include "fleet/prometheus.h"
 #include "invocation.h"
 #include "parameters/list.h"
 #include "prognose/check.h"
@@ -21,6 +24,7 @@
 #include "prognose/trend_options.h"
 #include "prognose/valve_history.h"
 #include "report/prognosis.h"
+#include "report/prognosis_words.h"
 #include "servodx/table.h"
 #include "store/history.h"
 #include "store/seeded_csv.h"
@@ -30,7 +34,7 @@ namespace {
 
 struct Options {
   CommonOptions common;
-  std::string history, valve, params, seeded;
+  std::string history, valve, params, seeded, prometheus;
   std::vector<std::string> failures, limits;
   double loop = 0;  // [1/s]
   bool all = false;
@@ -84,6 +88,15 @@ void require_levels_of_checks(const std::vector<std::string>& failures, const st
   }
 }
 
+std::vector<LifeGauge> gauges_of(const std::vector<ValveTrend>& trends) {
+  std::vector<LifeGauge> out;
+  for (const ValveTrend& t : trends) {
+    const Remaining unknown{NAN, NAN, NAN}, left = t.remaining.value_or(unknown);
+    out.push_back({t.valve, report::word_of(t.state), left.median, left.lower, left.upper});
+  }
+  return out;
+}
+
 void run(Options options) {
   require_option(options.all != !options.valve.empty(), "--valve", "name one valve, or --all", "give one of the two");
   require_option(options.trend.false_alarm > 0 && options.trend.false_alarm < 0.5, "--false-alarm",
@@ -96,7 +109,9 @@ void run(Options options) {
   std::vector<std::string> inputs = {options.history};
   for (const std::string& file : {options.params, options.seeded})
     if (!file.empty()) inputs.push_back(file);
-  invocation.check_files(inputs, {});
+  std::vector<std::string> outputs;
+  if (!options.prometheus.empty()) outputs.push_back(options.prometheus);
+  invocation.check_files(inputs, outputs);
   require_option(options.limits.empty() || !options.params.empty(), "--limit", "needs the tuned table",
                  "--params TUNED");
   if (!options.params.empty()) {
@@ -137,6 +152,7 @@ void run(Options options) {
   };
   std::stable_sort(trends.begin(), trends.end(),
                    [&](const ValveTrend& a, const ValveTrend& b) { return urgency(a) < urgency(b); });
+  if (!options.prometheus.empty()) write_file(options.prometheus, text_of(gauges_of(trends)));
   if (invocation.wants_report()) invocation.write_report(report::trend_page(invocation.header(), trends, options.all));
   invocation.finish(options.all ? report::ranking(trends) : report::text_of(trends.front()),
                     report::trend_json(trends, options.all));
@@ -150,6 +166,10 @@ void add_trend_command(CLI::App& app) {
   command->add_option("--history", options->history, "history file")->required()->type_name("H.db");
   command->add_option("--valve", options->valve, "one valve")->type_name("ID");
   command->add_flag("--all", options->all, "all valves, the first to reach its warning level first");
+  command
+      ->add_option("--prometheus", options->prometheus,
+                   "text for Prometheus' textfile collector: state and life left of each valve")
+      ->type_name("FILE.prom");
   command
       ->add_option("--failure", options->failures,
                    "failure level of a check: NAME=VALUE, NAME=<VALUE below, NAME=20x times the tuned value, "

@@ -17,6 +17,7 @@
 #include "diagnose/judge.h"
 #include "door/baseline_parts.h"
 #include "fit/replay.h"
+#include "fleet/prometheus.h"
 #include "fleet/result_file.h"
 #include "fleet/run.h"
 #include "fleet/settling.h"
@@ -35,7 +36,7 @@ namespace {
 
 struct Options {
   CommonOptions common;
-  std::string folder, out, params, baseline;
+  std::string folder, out, params, baseline, prometheus;
   FollowOptions follow;
   double settle = 2, interval = 1;  // [s]
   bool once = false, pages = false, exit_code = false;
@@ -62,6 +63,7 @@ class Watching {
       judge_.beside = [this, &judging](const std::string& name, const Diagnosis& d, const Log& log) {
         write_page(judging, judge_.page_path(name), d, log, judge_.header());
       };
+    if (!options.prometheus.empty()) gauges_.take_results(options.out);
   }
 
   // Until it is stopped; `once`: until what is there has had the time to settle.
@@ -87,11 +89,13 @@ class Watching {
       std::this_thread::sleep_for(std::chrono::duration<double>(std::clamp(end - now(), 0.0, slice)));
   }
 
+  // The gauges are written at every look: a collector knows a watch that is down by the age of its file.
   void look() {
     for (const std::string& name : settling_.settled(logs_in(options_.folder), now())) {
       if (stop_) return;
       judge(name);
     }
+    if (!options_.prometheus.empty()) write_file(options_.prometheus, gauges_.text());
   }
 
   void judge(const std::string& file) {
@@ -102,6 +106,9 @@ class Watching {
     run_.logs += outcome.end != FleetJudge::End::interrupted;
     add(run_, outcome, progress_, invocation_.header(), judge_.header());
     if (outcome.end == FleetJudge::End::judged) tell(*outcome.diagnosis);
+    const std::string log = options_.folder + "/" + file;
+    if (outcome.diagnosis) gauges_.take(log, {outcome.verdict, outcome.fault, outcome.error_ratio, time_of_file(log)});
+    gauges_.set_aside(run_.set_aside.size());
   }
 
   // As they come: a pipe or a journal is read line by line.
@@ -118,6 +125,7 @@ class Watching {
   Invocation& invocation_;
   Progress progress_;
   FleetRun run_;
+  ValveGauges gauges_;
   const std::atomic<bool>& stop_ = stop_on_interrupt(true);
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
@@ -129,7 +137,9 @@ int run_folder(const Options& options) {
                  "--interval 1");
   require_folder("--out", options.out);
   Invocation invocation("watch", options.common);
-  invocation.check_files({options.params, options.baseline}, {});
+  std::vector<std::string> outputs;
+  if (!options.prometheus.empty()) outputs.push_back(options.prometheus);
+  invocation.check_files({options.params, options.baseline}, outputs);
   const Judging judging = read_judging(invocation, options.params, options.baseline);
   report::Header& header = invocation.header();
   if (options.common.dry_run) header.settings["logs"] = logs_in(options.folder).size();
@@ -156,6 +166,7 @@ int run(Options& options) {
                  "a folder, '-' or --follow FILE is watched, one of them", "servodx watch DIR, or --follow FILE");
   if (!input && follow.source.empty()) return run_folder(options);
   if (input) follow.source = options.folder;
+  require_option(options.prometheus.empty(), "--prometheus", "is of a folder's logs", "leave it out");
   require_option(options.out.empty(), "--out", "is of a folder's logs", "leave it out; --events FILE keeps the events");
   follow.params = options.params, follow.baseline = options.baseline, follow.exit_code = options.exit_code;
   return servodx::follow(follow, options.common);
@@ -196,6 +207,10 @@ void add_watch_command(CLI::App& app, int& exit_code) {
       ->capture_default_str();
   command->add_flag("--once", options->once, "judge what is there, then end; what still grows is left");
   command->add_flag("--pages", options->pages, "also a page a log beside its result");
+  command
+      ->add_option("--prometheus", options->prometheus,
+                   "text for Prometheus' textfile collector: verdict, error over threshold and last log of each valve")
+      ->type_name("FILE.prom");
   command->add_flag("--exit-code", options->exit_code,
                     "end with 10 for a fault, 11 for unknown: the highest of the logs");
   add_follow_options(*command, options->follow);

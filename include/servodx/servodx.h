@@ -2,10 +2,15 @@
 // it.
 #pragma once
 #include "servodx/baseline.h"
+#include "servodx/charts.h"
+#include "servodx/curves.h"
 #include "servodx/diagnose.h"
 #include "servodx/error.h"
 #include "servodx/explain.h"
+#include "servodx/fleet.h"
+#include "servodx/history.h"
 #include "servodx/log.h"
+#include "servodx/objective.h"
 #include "servodx/plan.h"
 #include "servodx/rig.h"
 #include "servodx/simulate.h"

@@ -6,26 +6,29 @@
     baseline = tuned.baseline([sx.read_log(p, rig) for p in others])
     print(tuned.diagnose(sx.read_log("suspect.csv", rig), baseline))
 
-Values are SI. Calls leave the interpreter free, Ctrl-C ends them, and `progress` is called as progress(work, part,
-simulations). A bad input raises InputError with file, line, column, rule and mend.
+Values are SI; a table is a DataFrame with the units of its columns in `attrs["units"]`. Calls leave the interpreter free
+and Ctrl-C ends them. `progress` is True for a bar where a person looks on, False for none, or called as progress(work,
+part, simulations). A bad input raises InputError with file, line, column, rule and mend. Start worker processes by
+"spawn": one that was forked works on one thread.
 """
-from ._servodx import (Baseline, Explanation, InputError, Log, Rig, Row, Severity, Table, Tuned, Verdict, make_log,
-                       read_log, simulate, tune)
+import os
 
-__all__ = ["Baseline", "Explanation", "InputError", "Log", "Rig", "Row", "Severity", "Table", "Tuned", "Verdict",
-           "frame_of", "log_of", "make_log", "read_log", "simulate", "tune"]
+# Before the library's threads are there: where others run as well, threads that wait must sleep soon, as the program's do.
+if "OMP_WAIT_POLICY" not in os.environ:
+    os.environ.setdefault("GOMP_SPINCOUNT", "10000")
 
+from . import frames, methods, pages, plots
+from ._servodx import (ActionClass, Baseline, Checked, Curves, Explanation, Fleet, History, InputError, Log,
+                       ObjectiveEnd, Plan, Replay, Rig, Row, RowVerdict, Severity, Simulation, Table, Trend, Tuned,
+                       Verdict, __version__, curves, make_log, read_log, replay, simulate, trend, tune)
+from .frames import UNITS, frame_of, log_of
+from .objective import Objective
 
-def log_of(data, units=None, rig=None, name="log in memory"):
-    """A log from a DataFrame or a mapping of columns, (samples,) each.
+__all__ = ["ActionClass", "Baseline", "Checked", "Curves", "Explanation", "Fleet", "History", "InputError", "Log",
+           "Objective", "ObjectiveEnd", "Plan", "Replay", "Rig", "Row", "RowVerdict", "Severity", "Simulation", "Table",
+           "Trend", "Tuned", "UNITS", "Verdict", "__version__", "curves", "frame_of", "log_of", "make_log", "read_log",
+           "replay", "simulate", "trend", "tune"]
 
-    Columns are named as in a file, "pressure_a [bar]"; or `units` gives the unit of a bare name."""
-    units = units or {}
-    columns = {f"{c} [{units[c]}]" if c in units else c: data[c] for c in data}
-    return make_log(name, columns, Rig() if rig is None else rig)
-
-
-def frame_of(log):
-    """The log as a DataFrame, a column a signal, in SI; index: time [s]."""
-    import pandas
-    return pandas.DataFrame(log.signals, index=pandas.Index(log.time, name="time"))
+methods.attach()
+plots.attach()
+pages.attach()

@@ -2,6 +2,8 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
@@ -47,6 +49,58 @@ TEST_F(Prognosis, MonitorWritesItsRunAndItsSpeed) {
   EXPECT_GT(m["mean_error"]["value"], 0);
   EXPECT_EQ(desk.run("monitor flight.csv --params tuned.csv -o s.csv --model C5").code, 0);
   EXPECT_EQ(desk.run("monitor flight.csv --params tuned.csv -o t.csv --model nonesuch").code, 2);
+}
+
+TEST_F(Prognosis, AFolderOfExportsIsImportedFileByFileEachWholeAndEachOnce) {
+  std::filesystem::create_directory(desk / "nodes");
+  const std::string head = "valve,at [h],name,value,std_error\n";
+  desk.write("nodes/a.csv", head + "V7,1,fidelity,0.9,0.01\nV7,2,fidelity,0.8,0.01\n");
+  desk.write("nodes/b.csv", head + "V8,1,fidelity,0.9,0.01\nV8,two,fidelity,0.8,0.01\n");
+  desk.write("nodes/c.csv", head + "V7,2,fidelity,0.8,0.01\nV9,3,fidelity,0.7,0.01\n");
+  desk.write("nodes/half.csv.servodx-tmp", head);
+  const std::string call = "history import nodes --history h.db --json i.json";
+  Ended ended = desk.run(call + " --dry-run");
+  EXPECT_EQ(ended.code, 3) << ended.err;
+  EXPECT_FALSE(std::filesystem::exists(desk / "h.db"));
+  ended = desk.run(call);
+  EXPECT_EQ(ended.code, 3) << ended.err;
+  EXPECT_NE(ended.err.find("nodes/b.csv"), std::string::npos) << ended.err;
+  Json i = json("i.json");
+  EXPECT_EQ(i["checks"], 3);
+  EXPECT_EQ(i["present"], 1);
+  EXPECT_EQ(i["files"], 3);
+  ASSERT_EQ(i["set_aside"].size(), 1u);
+  EXPECT_EQ(i["set_aside"][0]["file"], "nodes/b.csv");
+  ASSERT_EQ(desk.run("history show --history h.db --json s.json").code, 0);
+  std::vector<std::string> valves;
+  const Json shown = json("s.json");
+  for (const Json& v : shown["valves"]) valves.push_back(v["valve"]);
+  EXPECT_EQ(valves, (std::vector<std::string>{"V7", "V9"}));  // of b.csv nothing, not even its good row
+
+  desk.write("nodes/b.csv", head + "V8,1,fidelity,0.9,0.01\n");
+  ended = desk.run(call);
+  EXPECT_EQ(ended.code, 0) << ended.err;
+  i = json("i.json");
+  EXPECT_EQ(i["checks"], 1);
+  EXPECT_EQ(i["present"], 4);
+  std::filesystem::create_directory(desk / "nothing");
+  EXPECT_EQ(desk.run("history import nothing --history h.db").code, 2);
+}
+
+TEST_F(Prognosis, PrometheusIsToldOfEveryValvesLife) {
+  std::string life = "valve,at [h],name,value,std_error\n";
+  for (int k = 0; k < 40; ++k)
+    life += fmt::format("V7,{},parameter:22,{},1e-7\nV8,{},parameter:22,3e-6,1e-7\n", 10 * k,
+                        3e-6 + 4e-8 * std::pow(std::max(0, k - 15), 1.5), 10 * k);
+  desk.write("life.csv", life);
+  ASSERT_EQ(desk.run("history import life.csv --history h.db").code, 0);
+  const Ended ended = desk.run("trend --history h.db --all --prometheus life.prom --json t.json");
+  ASSERT_EQ(ended.code, 0) << ended.err;
+  const std::string text = bytes_of(desk / "life.prom");
+  for (const char* line : {"servodx_valve_state{valve=\"V7\",state=", "servodx_valve_state{valve=\"V8\",state=",
+                           "servodx_valve_life_left_hours{valve=\"V7\",bound=\"median\"} "})
+    EXPECT_NE(text.find(line), std::string::npos) << line << "\n" << text;
+  EXPECT_EQ(desk.run("trend --history h.db --all --prometheus h.db").code, 2);
 }
 
 TEST_F(Prognosis, ACheckIsStoredOnceAndComesOutAsItWentIn) {

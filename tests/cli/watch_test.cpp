@@ -53,6 +53,29 @@ TEST(Watch, WhatIsThereIsKeptWhatIsNewIsJudgedWhatIsBadIsSetAside) {
   EXPECT_EQ(desk.results("res").at("in/bad.csv")["refused"]["line"], 9);
 }
 
+TEST(Watch, PrometheusIsToldOfEachValveAlsoByAWatchThatGoesOn) {
+  const WatchDesk desk;
+  desk.write("in/V7_0001.csv", FleetDesk::excerpt("healthy/h04_multisine.csv"));
+  ASSERT_EQ(desk.once("--prometheus servodx.prom").code, 0);
+  const std::string first = bytes_of(desk / "servodx.prom");
+  EXPECT_NE(first.find("servodx_valve_error_ratio{valve=\"V7\"} "), std::string::npos) << first;
+  EXPECT_NE(first.find("servodx_valve_last_seen_timestamp_seconds{valve=\"V7\"} "), std::string::npos) << first;
+  EXPECT_NE(first.find("servodx_logs_set_aside 0"), std::string::npos) << first;
+  desk.write("in/V8_0001.csv", FleetDesk::excerpt("healthy/h03_sine_2hz.csv"));
+  desk.write("in/bad.csv", "no log\n");
+  EXPECT_EQ(desk.once("--prometheus servodx.prom").code, 3);
+  const std::string second = bytes_of(desk / "servodx.prom");
+  const auto line_of = [](const std::string& text, const std::string& of) {
+    const auto at = text.find(of);
+    return at == std::string::npos ? "" : text.substr(at, text.find('\n', at) - at);
+  };
+  const std::string ratio = "servodx_valve_error_ratio{valve=\"V7\"}";
+  EXPECT_EQ(line_of(second, ratio), line_of(first, ratio));  // judged by the watch that ended
+  EXPECT_NE(second.find("{valve=\"V8\"}"), std::string::npos) << second;
+  EXPECT_NE(second.find("servodx_logs_set_aside 1"), std::string::npos) << second;
+  EXPECT_EQ(desk.run("watch - --prometheus servodx.prom" + std::string(FleetDesk::judged_with)).code, 2);
+}
+
 TEST(Watch, PagesAreWrittenWhereAskedFor) {
   const WatchDesk desk;
   desk.write("in/one.csv", FleetDesk::excerpt("healthy/h04_multisine.csv"));

@@ -397,6 +397,18 @@ TEST(Rerun, SaysWhereBitsDifferAndKeepsBoth) {
   EXPECT_TRUE(std::filesystem::exists(desk / "sim.csv.rerun"));
 }
 
+TEST(Rerun, SaysWhereAnotherInstructionSetMadeTheResult) {
+  const Simulated desk;
+  Json manifest = Json::parse(bytes_of(desk / "sim.csv.manifest.json"));
+  EXPECT_EQ(desk.run("rerun sim.csv.manifest.json").out.find("made by"), std::string::npos);
+  manifest["instruction_set"] = "none_such";
+  desk.write("other.manifest.json", manifest.dump());
+  EXPECT_NE(desk.run("rerun other.manifest.json").out.find("made by none_such"), std::string::npos);
+  manifest.erase("instruction_set");  // as earlier versions wrote it
+  desk.write("other.manifest.json", manifest.dump());
+  EXPECT_EQ(desk.run("rerun other.manifest.json").code, 0);
+}
+
 TEST(Rerun, WhatTheManifestDoesNotListIsNeitherReproducedNorOverwritten) {
   const Simulated desk;
   Json manifest = Json::parse(bytes_of(desk / "sim.csv.manifest.json"));

@@ -118,6 +118,8 @@ class Docs(unittest.TestCase):
         (folder / "truth.csv").write_text("log,class\nlog.csv,healthy\n")
         wear = "".join(f"V7,{10 * k},parameter:9,{1e-7 * k},1e-7\n" for k in range(20))
         (folder / "lives.csv").write_text("valve,at [h],name,value,std_error\n" + wear)
+        (folder / "nodes").mkdir()
+        shutil.copy(folder / "lives.csv", folder / "nodes/node3.csv")
         (folder / "seeded.csv").write_text("valve,name,truth,value,oil_temperature [degC]\n" + "".join(
             f"S{v},parameter:9,{size},{size * (1 + v / 100)},{oil}\n" for v in (1, 2) for size in (5e-6, 1e-5, 2e-5) for oil in (20, 60)))
         ended = run("servodx history import lives.csv --history h.db", folder)

@@ -19,7 +19,7 @@ FOREIGN = {
     "h17": "a log of the foreign rig", "fHz": "any frequency", "linux": "part of a compiler's name",
     "GOMP_SPINCOUNT": "libgomp's", "OMP_WAIT_POLICY": "OpenMP's", "passive": "OpenMP's",
     "fschedule": "g++'s", "insns": "g++'s", "fsched": "g++'s", "march": "g++'s", "native": "g++'s",
-    "aarch64": "a compiler's name", "perf": "Linux's", "ValueError": "Python's", "gnu": "a compiler's name",
+    "aarch64": "a compiler's name", "perf": "Linux's", "ValueError": "Python's", "KeyboardInterrupt": "Python's", "gnu": "a compiler's name",
 }
 
 
@@ -123,8 +123,8 @@ def wrong(text, page):
     if command and not re.search(rf'add_subcommand\("{command[1]}"|"{command[1]}"', apps()):
         return f"is no command: {command[1]}"
     made = re.match(r"servodx_\w+", text)
-    if made and made[0] not in source.text("CMakeLists.txt"):
-        return "is no target"
+    if made and made[0] not in source.text("CMakeLists.txt") and made[0] not in words():
+        return "is no target and no metric"
     if re.match(r"scripts/\w+", text):
         return "" if text.split()[0] in tree() else "is no script"
     if text.startswith("servodx"):

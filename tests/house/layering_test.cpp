@@ -46,7 +46,7 @@ const std::map<std::string, std::set<std::string>> allowed = {
     // The front door is made of everything below the program; of report its words and files.
     {"door",
      {"parameters", "signals", "simulate", "fit", "tune", "faults", "evidence", "diagnose", "explain", "prognose",
-      "store", "report", "plan", "online"}},
+      "store", "report", "plan", "online", "optimise", "curves", "fleet"}},
 };
 
 // The front door (include/servodx): each of its headers is the folder's whose options and results it declares. The
@@ -56,7 +56,9 @@ const std::map<std::string, std::string> door = {
     {"servodx/log.h", "signals"},      {"servodx/table.h", "parameters"},  {"servodx/tune.h", "tune"},
     {"servodx/actions.h", "diagnose"}, {"servodx/baseline.h", "diagnose"}, {"servodx/diagnose.h", "diagnose"},
     {"servodx/explain.h", "explain"},  {"servodx/plan.h", "plan"},         {"servodx/trend.h", "prognose"},
-    {"servodx/simulate.h", "door"},    {"servodx/stepper.h", "online"},    {"servodx/servodx.h", "door"}};
+    {"servodx/simulate.h", "door"},    {"servodx/stepper.h", "online"},    {"servodx/servodx.h", "door"},
+    {"servodx/charts.h", "door"},      {"servodx/curves.h", "door"},       {"servodx/fleet.h", "door"},
+    {"servodx/history.h", "door"},     {"servodx/objective.h", "door"}};
 
 struct Include {
   std::string from, to;  // folders

@@ -41,7 +41,7 @@ READERS = {
 
 # What is compared elsewhere, each text by itself: file, texts, why.
 COMPARED = {
-    "apps/servodx/history_command.cpp": ({"ok"}, "the word with which SQLite answers its check of integrity"),
+    "apps/servodx/history_command.cpp": ({"ok", ".csv"}, "SQLite's answer to a check of integrity; the ending of a file"),
     "src/diagnose/survey.cpp": ({"gap", "the rig file maps column", "temperature"}, "to be typed"),
     "src/explain/curves.cpp": ({"current"}, "to be typed"),
     "src/fit/nominal.cpp": ({"-", "mount_compliance", "valve.first_stage", "jet_pipe"}, "to be typed"),

@@ -73,6 +73,22 @@ if(DPKG_DEB AND SHLIBDEPS)
   deb(libservodx-dev libceres-dev libeigen3-dev libfmt-dev libmatio-dev libnlopt-cxx-dev libsqlitecpp-dev libssl-dev
       libtomlplusplus-dev nlohmann-json3-dev pkg-config)
   step(${work}/servodx/usr/bin/servodx list faults)
+  if(EXISTS ${BUILD}/python/servodx)
+    deb(python3-servodx python3 python3-numpy python3-pandas libc6 libmatio libnlopt)
+    # Nothing of the build is in reach.
+    step(${CMAKE_COMMAND} -E chdir ${work} ${CMAKE_COMMAND} -E env
+         PYTHONPATH=${work}/python3-servodx/usr/lib/python3/dist-packages /usr/bin/python3 -B -c
+         "import servodx; print(servodx.__file__, len(servodx.Table.load('${SOURCE}/params/borello2009.csv')))")
+    if(NOT output MATCHES "python3-servodx/usr/lib/python3/dist-packages/servodx/__init__.py 41")
+      message(FATAL_ERROR "the package of Python says: ${output}")
+    endif()
+    foreach(file lib/python3/dist-packages/servodx/py.typed lib/python3/dist-packages/servodx/__init__.pyi
+                 share/doc/python3-servodx/copyright)
+      if(NOT EXISTS ${work}/python3-servodx/usr/${file})
+        message(FATAL_ERROR "${file} is not in python3-servodx")
+      endif()
+    endforeach()
+  endif()
   foreach(file servodx/usr/share/man/man1/servodx.1 servodx/usr/share/servodx/params/borello2009.csv
                servodx/usr/share/doc/servodx/docs/tutorial.md servodx/usr/share/doc/servodx/copyright
                libservodx-dev/usr/include/servodx/servodx.h)

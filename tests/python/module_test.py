@@ -1,35 +1,10 @@
-"""The Python module is the library: the program's bytes and verdicts, errors with their place, Ctrl-C.
-Called by ctest with the folder of the built package: module_test.py PACKAGES SOURCE PROGRAM"""
-import _thread, json, pathlib, subprocess, sys, tempfile, threading, unittest
+"""The Python module is the library: the program's bytes and verdicts, errors with their place, Ctrl-C."""
+import _thread, json, os, pathlib, signal, subprocess, sys, tempfile, threading, time, unittest
 
-sys.path.insert(0, sys.argv[1])
-SOURCE, PROGRAM = pathlib.Path(sys.argv[2]), sys.argv[3]
-import numpy, pandas
-import servodx as sx
-
-RIG = sx.Rig(str(SOURCE / "data/rig.toml"))
-PARAMS = sx.Table.load(str(SOURCE / "params/borello2009.csv"))
-QUICK = dict(params=PARAMS, rig=RIG, generations=0, rounds=1, effects=[])
-
-
-def excerpt(name, rows):
-    """The first samples of a shipped log, by way of a DataFrame."""
-    frame = pandas.read_csv(SOURCE / f"data/{name}.csv", comment="#").head(rows)
-    return sx.log_of(frame, rig=RIG, name=name)
+from common import *
 
 
 class Module(unittest.TestCase):
-    def test_a_log_goes_in_and_out_as_a_frame(self):
-        log = excerpt("healthy/h12_mixed", 50)
-        self.assertEqual(len(log), 50)
-        frame = sx.frame_of(log)
-        self.assertEqual(list(frame.index), list(log.time))
-        numpy.testing.assert_array_equal(frame["pressure_a"], log.signals["pressure_a"])
-        bar = sx.log_of({"time [s]": log.time, "pressure_a": log.signals["pressure_a"] / 1e5,
-                         "pressure_b": log.signals["pressure_b"] / 1e5, "command [A]": log.signals["command"]},
-                        units={"pressure_a": "bar", "pressure_b": "bar"}, rig=RIG)
-        numpy.testing.assert_allclose(bar.signals["pressure_a"], log.signals["pressure_a"], rtol=1e-12)
-
     def test_a_bad_input_says_where_what_and_how(self):
         with tempfile.TemporaryDirectory() as folder:
             path = pathlib.Path(folder) / "bad.csv"
@@ -43,52 +18,121 @@ class Module(unittest.TestCase):
         self.assertIn("spool_position", error.column)
         self.assertTrue(error.rule and error.mend)
         with self.assertRaises(sx.InputError) as caught:
-            sx.tune([], **{**QUICK, "rounds": 0})
+            sx.tune([], **{**quick(), "rounds": 0})
         self.assertEqual(caught.exception.file, "--rounds")
 
     def test_the_whole_job_gives_the_programs_verdict(self):
         told = []
-        tuned = sx.tune([excerpt("healthy/h12_mixed", 700)], progress=lambda *done: told.append(done), **QUICK)
+        again = sx.tune([excerpt(TUNED_ON, 700)], progress=lambda *done: told.append(done), **quick())
         self.assertTrue(told)
         self.assertEqual({work for work, _, _ in told}, {"tune"})
-        healthy = [excerpt(f"healthy/{n}", 300) for n in ("h15_no_supply_signals", "h04_multisine", "h03_sine_2hz")]
-        baseline = tuned.baseline(healthy, false_alarm=0.3)
-        verdict = tuned.diagnose(excerpt("fault/f02_clogged_filter_severe", 300), baseline)
-        with tempfile.TemporaryDirectory() as folder:
-            at = pathlib.Path(folder)
-            tuned.save(str(at / "tuned.csv"))
-            baseline.save(str(at / "base.json"))
-            rows = (SOURCE / "data/fault/f02_clogged_filter_severe.csv").read_text().splitlines(keepends=True)
-            begin = next(k for k, line in enumerate(rows) if not line.startswith("#"))
-            (at / "s.csv").write_text("".join(rows[:begin + 301]))
-            subprocess.run([PROGRAM, "diagnose", "s.csv", "--rig", str(SOURCE / "data/rig.toml"), "--params", "tuned.csv",
-                            "--baseline", "base.json", "--quiet", "--json", "v.json"], cwd=at, check=True,
-                           stdout=subprocess.DEVNULL)
-            program = json.loads((at / "v.json").read_text())["results"][0]
-            self.assertEqual(sx.Tuned.load(str(at / "tuned.csv")).table.sha256, tuned.table.sha256)
-        self.assertEqual(verdict.kind.name, program["verdict"])
-        self.assertEqual(verdict.error, program["error"])
-        self.assertEqual(verdict.probabilities, program["probabilities"])
-        explained = tuned.explain([excerpt("fault/f02_clogged_filter_severe", 300)], baseline)
+        self.assertEqual(again.table.sha256, tuned().table.sha256)
+        with Desk() as desk:
+            tuned().save(desk / "tuned.csv")
+            baseline().save(desk / "base.json")
+            (desk / "s.csv").write_text(excerpt_text(SUSPECT, 300))
+            desk.ran("diagnose", "s.csv", "--rig", SOURCE / "data/rig.toml", "--params", "tuned.csv", "--baseline",
+                     "base.json", "--json", "v.json")
+            program = json.loads((desk / "v.json").read_text())["results"][0]
+            self.assertEqual(sx.Tuned.load(desk / "tuned.csv").table.sha256, tuned().table.sha256)
+        ours = json.loads(verdict().json)
+        self.assertEqual(verdict().kind.name, program["verdict"])
+        self.assertEqual(verdict().error, program["error"])
+        self.assertEqual({**ours, "log": "", "logs": []}, {**program, "log": "", "logs": []})
+        explained = tuned().explain([suspect()], baseline())
         self.assertIn("nothing", explained.probabilities)
+        self.assertIsInstance(explained.kind, sx.Explanation.Kind)
 
     def test_a_simulation_has_the_logs_samples(self):
-        log = excerpt("healthy/h12_mixed", 100)
-        run = sx.simulate(log, params=PARAMS, rig=RIG)
+        log = excerpt(TUNED_ON, 100)
+        run = sx.simulate(log, params=params(), rig=rig())
         self.assertEqual(set(run), {"spool_position", "piston_position", "pressure_a", "pressure_b"})
         self.assertEqual(run["spool_position"].shape, (100,))
+        self.assertRaises(KeyError, lambda: run["flow_a"])
+
+    def test_several_logs_are_judged_together(self):
+        pool = tuned().diagnose([suspect(), excerpt("fault/f01_clogged_filter_medium", 300)], baseline())
+        self.assertIsInstance(pool.kind, sx.Verdict.Kind)
+        with self.assertRaises(sx.InputError):
+            tuned().diagnose([], baseline())
 
     def test_ctrl_c_ends_a_tune(self):
-        log = excerpt("healthy/h12_mixed", 700)
+        log = excerpt(TUNED_ON, 700)
         threading.Timer(0.5, _thread.interrupt_main).start()
         with self.assertRaises(KeyboardInterrupt):  # the timer's thread runs: the interpreter is free meanwhile
-            sx.tune([log], **{**QUICK, "generations": 1_000_000})
+            sx.tune([log], **{**quick(), "generations": 1_000_000})
+
+    def test_a_signal_ends_a_script_as_python_ends_it(self):
+        script = (f"import sys; sys.argv = {sys.argv[:4]!r}; sys.path.insert(0, {str(pathlib.Path(__file__).parent)!r})\n"
+                  "from common import *\nprint('ready', flush=True)\n"
+                  "sx.tune([excerpt(TUNED_ON, 700)], **{**quick(), 'generations': 1_000_000})\n")
+        run = subprocess.Popen([sys.executable, "-B", "-c", script], stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+                               text=True)
+        self.assertEqual(run.stdout.readline(), "ready\n")
+        time.sleep(0.5)
+        run.send_signal(signal.SIGINT)
+        err = run.communicate(timeout=600)[1]
+        self.assertEqual(run.returncode, -signal.SIGINT, err)
+        self.assertTrue(err.rstrip().endswith("KeyboardInterrupt"), err)
 
     def test_what_progress_raises_ends_the_call(self):
         def refuse(*_):
             raise ZeroDivisionError
         with self.assertRaises(ZeroDivisionError):
-            sx.tune([excerpt("healthy/h12_mixed", 700)], progress=refuse, **{**QUICK, "generations": 1_000_000})
+            sx.tune([excerpt(TUNED_ON, 700)], progress=refuse, **{**quick(), "generations": 1_000_000})
 
 
-unittest.main(argv=[sys.argv[0]], verbosity=2)
+class Progress(unittest.TestCase):
+    def test_scripts_and_pipes_show_no_bar(self):
+        from servodx import progress
+        self.assertFalse(progress.interactive())
+        self.assertIsNone(progress.default_bar())
+
+    def test_a_person_at_a_prompt_sees_one(self):
+        from servodx import progress
+        sys.ps1, was = ">>> ", sys.stderr
+        try:
+            class Terminal:
+                def isatty(self): return True
+            sys.stderr = Terminal()
+            self.assertIsInstance(progress.default_bar(), progress.Bar)
+        finally:
+            del sys.ps1
+            sys.stderr = was
+
+    def test_the_bar_writes_over_itself_and_leaves_nothing(self):
+        import io
+        from servodx import progress
+        clock, out = iter([0.0, 0.5, 2.0, 4.0]), io.StringIO()
+        bar = progress.Bar(out, lambda: next(clock))
+        bar("tune", 0.1, 10)
+        self.assertEqual(out.getvalue(), "")  # a quick call shows nothing
+        bar("tune", 0.5, 20)
+        self.assertIn("tune |############            |  50 % 0:02, 0:02 left, 20 simulations", out.getvalue())
+        bar("tune", 1.0, 30)
+        bar.close()
+        line = ""
+        for part in out.getvalue().split("\r"):
+            line = part + line[len(part):]
+        self.assertEqual(line.strip(), "")
+
+
+class Together(unittest.TestCase):
+    def test_two_interpreters_at_once_get_what_one_gets(self):
+        script = (f"import sys; sys.argv = {sys.argv[:4]!r}; sys.path.insert(0, {str(pathlib.Path(__file__).parent)!r})\n"
+                  "from common import *\nprint(tuned().table.sha256)\n")
+        both = [subprocess.Popen([sys.executable, "-B", "-c", script], stdout=subprocess.PIPE, text=True) for _ in "ab"]
+        self.assertEqual([run.communicate()[0].strip() for run in both], [tuned().table.sha256] * 2)
+
+    def test_two_threads_at_once_get_what_one_gets(self):
+        seen = [None, None]
+        def judge(i):
+            seen[i] = tuned().diagnose(suspect(), baseline()).json
+        baseline()
+        threads = [threading.Thread(target=judge, args=(i,)) for i in range(2)]
+        for thread in threads: thread.start()
+        for thread in threads: thread.join()
+        self.assertEqual(seen, [verdict().json] * 2)
+
+
+main()

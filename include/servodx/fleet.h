@@ -1,0 +1,54 @@
+// Fleet: a folder of results, one a log, as one table. docs/fleet.md.
+#pragma once
+#include <cstddef>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "servodx/diagnose.h"
+#include "servodx/watch.h"
+
+namespace servodx {
+
+struct Fleet {
+  struct Row {
+    std::string file, log;  // in the folder; the log's path as the result says
+    Verdict::Kind kind = Verdict::Kind::unknown;
+    std::string fault;                          // label; empty where none is named
+    std::optional<Verdict::Severity> severity;  // 95 %
+    double probability = 0;                     // of the fault named, else of the verdict; NaN where none is known
+    double error = 0, threshold = 0;            // [deviates] NaN where none is known
+  };
+  // A log that a list's run set aside, or a file that is no result.
+  struct Refused {
+    std::string file;
+    long line = 0;
+    std::string column, rule, mend;
+  };
+  std::vector<Row> rows;  // worst first: what is not healthy, then by error over threshold, then by path
+  std::vector<Refused> refused, unread;
+  bool interrupted = false;
+  std::string csv;  // the table as `servodx gather -o` writes it
+};
+// Throws InputError where the folder is none or holds nothing of a fleet.
+Fleet gather_results(const std::string& folder, const Watch& watch = {});
+
+// Verdicts beside a truth file, a CSV with the header log,class or log,class,severity.
+struct FleetCounts {
+  struct Rate {
+    long counted = 0, of = 0;
+  };
+  struct OfClass {
+    Rate detected;  // not found healthy; of the class healthy these are false alarms
+    Rate named;     // by the class's own word
+    Rate sized;     // of those named whose truth has a severity: it lies within the interval
+  };
+  std::map<std::string, std::map<std::string, long>> counts;  // [class][what the verdict says]
+  std::map<std::string, OfClass> rates;                       // by class
+  long without_truth = 0, without_result = 0;
+};
+// Throws InputError.
+FleetCounts count_fleet(const std::string& folder, const std::string& truth);
+
+}  // namespace servodx

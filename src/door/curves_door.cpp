@@ -1,0 +1,39 @@
+// The front door of `curves`.
+#include <algorithm>
+#include <utility>
+
+#include "curves/curves.h"
+#include "curves/frequency_response.h"
+#include "servodx/curves.h"
+#include "servodx/log.h"
+#include "servodx/rig.h"
+
+namespace servodx {
+namespace {
+
+AcceptanceSheet::Kind kind_of(const std::vector<AcceptanceSheet::Figure>& figures) {
+  const auto any = [&](bool pass) {
+    return std::any_of(figures.begin(), figures.end(), [&](const auto& f) { return f.pass == pass; });
+  };
+  if (any(false)) return AcceptanceSheet::Kind::fail;
+  return any(true) ? AcceptanceSheet::Kind::pass : AcceptanceSheet::Kind::not_judged;
+}
+
+}  // namespace
+
+AcceptanceSheet acceptance_sheet(const Log& log, const Rig& rig) {
+  curves::Sheet sheet = curves::read_curves(log, rig);
+  AcceptanceSheet out;
+  for (const curves::Figure& f : sheet.figures)
+    out.figures.push_back({f.name, f.signal, f.value, f.unit, f.limit, f.pass, f.note});
+  for (curves::SweepCurve& c : sheet.curves)
+    out.curves.push_back({c.signal, std::move(c.current), std::move(c.up), std::move(c.down), std::move(c.mean)});
+  for (const curves::ResponsePoint& p : sheet.response)
+    out.response.push_back({p.frequency, p.gain, p.phase, p.coherence});
+  out.response_signal = std::move(sheet.response_signal);
+  out.notes = std::move(sheet.notes);
+  out.kind = kind_of(out.figures);
+  return out;
+}
+
+}  // namespace servodx

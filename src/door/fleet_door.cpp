@@ -1,0 +1,73 @@
+// The front door of `gather`.
+#include <atomic>
+#include <cmath>
+#include <utility>
+
+#include "fleet/confusion.h"
+#include "fleet/fleet_verdict.h"
+#include "fleet/gather.h"
+#include "servodx/diagnose.h"
+#include "servodx/fleet.h"
+#include "servodx/watch.h"
+
+namespace servodx {
+namespace {
+
+Verdict::Kind kind_of(FleetVerdict verdict) {
+  switch (verdict) {
+    case FleetVerdict::healthy:
+      return Verdict::Kind::healthy;
+    case FleetVerdict::fault:
+      return Verdict::Kind::fault;
+    case FleetVerdict::unknown:
+    case FleetVerdict::none:
+      return Verdict::Kind::unknown;
+  }
+  return Verdict::Kind::unknown;
+}
+
+Fleet::Row row_of(const FleetRow& r) {
+  Fleet::Row out{r.file, r.log, kind_of(r.verdict), r.fault, {}, r.probability, r.error, r.threshold};
+  if (!std::isnan(r.severity)) out.severity = {r.severity, r.severity_lower, r.severity_upper, r.severity_unit};
+  return out;
+}
+
+std::vector<Fleet::Refused> refused_of(const std::vector<SetAside>& files) {
+  std::vector<Fleet::Refused> out;
+  for (const SetAside& f : files) out.push_back({f.file, f.line, f.column, f.rule, f.mend});
+  return out;
+}
+
+FleetTable read(const std::string& folder, const Watch& watch) {
+  std::atomic<bool> stop = false;
+  return gather(folder, stop, [&](std::size_t done, std::size_t of) {
+    watch.tell("gather", static_cast<double>(done) / static_cast<double>(of), 0);
+    if (watch.stopped()) stop = true;
+  });
+}
+
+FleetCounts::Rate rate_of(const CountedRate& r) { return {r.counted, r.of}; }
+
+}  // namespace
+
+Fleet gather_results(const std::string& folder, const Watch& watch) {
+  const FleetTable table = read(folder, watch);
+  Fleet out;
+  for (const FleetRow& r : table.rows) out.rows.push_back(row_of(r));
+  out.refused = refused_of(table.refused), out.unread = refused_of(table.unread);
+  out.interrupted = table.interrupted;
+  out.csv = csv_of(table);
+  return out;
+}
+
+FleetCounts count_fleet(const std::string& folder, const std::string& truth) {
+  const FleetTruth read_ahead = read_truth(truth);  // refused before the folder is read
+  const Confusion found = confusion_of(read(folder, {}), read_ahead);
+  FleetCounts out;
+  out.counts = found.counts;
+  for (const auto& [name, r] : found.rates) out.rates[name] = {rate_of(r.detected), rate_of(r.named), rate_of(r.sized)};
+  out.without_truth = found.without_truth, out.without_result = found.without_result;
+  return out;
+}
+
+}  // namespace servodx
