@@ -40,7 +40,11 @@ install(EXPORT servodx-targets NAMESPACE servodx:: DESTINATION ${CMAKE_INSTALL_L
 install(DIRECTORY include/ DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} COMPONENT development FILES_MATCHING PATTERN "*.h")
 install(DIRECTORY examples DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT development)
 configure_file(cmake/servodx-config.cmake ${CMAKE_BINARY_DIR}/servodx-config.cmake COPYONLY)
-write_basic_package_version_file(${CMAKE_BINARY_DIR}/servodx-config-version.cmake COMPATIBILITY SameMinorVersion)
+set(compatible SameMajorVersion)  # docs/releasing.md
+if(PROJECT_VERSION_MAJOR EQUAL 0)
+  set(compatible SameMinorVersion)
+endif()
+write_basic_package_version_file(${CMAKE_BINARY_DIR}/servodx-config-version.cmake COMPATIBILITY ${compatible})
 install(FILES ${CMAKE_BINARY_DIR}/servodx-config.cmake ${CMAKE_BINARY_DIR}/servodx-config-version.cmake
         DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/servodx COMPONENT development)
 

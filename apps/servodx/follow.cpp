@@ -22,6 +22,7 @@
 #include "base/json_text.h"
 #include "base/progress.h"
 #include "base/sha256.h"
+#include "base/trouble.h"
 #include "diagnose/assessment.h"
 #include "diagnose/decide.h"
 #include "diagnose/diagnose.h"
@@ -182,7 +183,7 @@ class Diagnoses {
       Assessment assessment = assess(job.log, judging_.tuned.table, judging_.rig, how);
       if (!stop_) out.diagnosis = judge(std::move(assessment), parts_of(judging_.baseline).detection);
     } catch (const std::exception& error) {
-      out.refused = error.what();
+      out.refused = told(error);
     }
     return out;
   }

@@ -16,11 +16,13 @@
 #include "base/csv.h"
 #include "base/error.h"
 #include "base/progress.h"
+#include "build.h"
 #include "manifest.h"
 #include "report/columns.h"
 #include "report/handy.h"
 #include "report/plain_page.h"
 #include "servodx/rig.h"
+#include "simulate/simulate.h"
 
 namespace servodx {
 namespace fs = std::filesystem;
@@ -300,6 +302,8 @@ void Invocation::write_manifest() const {
   const report::Json manifest = {{"manifest", 1},
                                  {"tool", "servodx"},
                                  {"version", header_.version},
+                                 {"commit", build_commit},
+                                 {"instruction_set", instruction_set()},
                                  {"command", header_.command},
                                  {"directory", fs::proximate(fs::current_path(), beside, ignored).string()},
                                  {"arguments", call},

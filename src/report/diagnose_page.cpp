@@ -9,6 +9,7 @@
 #include "base/csv.h"
 #include "base/json_text.h"
 #include "base/key_error.h"
+#include "base/trouble.h"
 #include "diagnose/assessment.h"
 #include "diagnose/baseline.h"
 #include "diagnose/decide.h"
@@ -76,7 +77,9 @@ std::vector<std::string> reasons(const Diagnosis& d, const DetectionBaseline& ba
                   digits(d.error), d.baseline_logs, digits(d.threshold), chance_words(d)));
   if (const std::string far = beyond_in_words(d.conditions); !far.empty())
     why.push_back("Beware: recorded beyond what is known: " + far + ".");
-  if (d.unlike) why.push_back("Beware: " + unlike_words(d) + ". The threshold may not hold for it.");
+  if (d.unlike)
+    why.push_back("Beware: " + unlike_words(d) + ". The threshold may not hold for it." +
+                  mark_of(Trouble::unlike_test));
   const HypothesisResult* healthy = result_of(d, nullptr);
   const HypothesisResult* best = d.fault ? result_of(d, d.fault) : nearest_fault(d);
   if (above && healthy && best)

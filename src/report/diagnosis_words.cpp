@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 
+#include "base/trouble.h"
 #include "diagnose/assessment.h"
 #include "diagnose/baseline.h"
 #include "diagnose/decide.h"
@@ -167,7 +168,8 @@ std::string statement_of(const DetectionBaseline& b) {
       "confidence)",
       b.logs, 100 * b.promised, 100 * b.promised_95);
   if (!keeps_rate(b))
-    text += fmt::format("; {:.3g} % takes {} logs, {} more", 100 * b.asked, b.logs_needed, b.logs_needed - b.logs);
+    text += fmt::format("; {:.3g} % takes {} logs, {} more", 100 * b.asked, b.logs_needed, b.logs_needed - b.logs) +
+            mark_of(Trouble::few_logs);
   return text;
 }
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/trouble.h"
 #include "diagnose/assessment.h"
 #include "diagnose/baseline.h"
 #include "diagnose/decide.h"
@@ -179,7 +180,7 @@ std::string text_of(const Diagnosis& d, const TextOptions& options) {
   table.row({word, hypotheses});
   table.row({"error", fmt::format("{}, threshold {}; {}", digits(d.error), digits(d.threshold), chance_words(d))});
   if (d.beyond) table.row({"but", beyond_in_words(*d.beyond)});
-  if (d.unlike) table.row({"beware", unlike_words(d)});
+  if (d.unlike) table.row({"beware", unlike_words(d) + mark_of(Trouble::unlike_test)});
   for (const RecordFinding& f : d.records) table.row({"record", record_in_words(f)});
   for (std::size_t i = 1; i < d.faults.size(); ++i) table.row({"and", second_in_words(d.faults[i])});
   if (const std::string seen = words_of(d.assessment.gross); !seen.empty()) table.row({"seen at once", seen});

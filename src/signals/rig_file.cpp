@@ -11,6 +11,7 @@
 #include "base/key_error.h"
 #include "base/nearest.h"
 #include "base/sha256.h"
+#include "base/trouble.h"
 #include "servodx/error.h"
 #include "servodx/log.h"
 
@@ -148,8 +149,8 @@ class Reader {
     const auto [heading, line] = heading_left_out(rig_.line(key));
     for (const RigFact& fact : rig_facts())
       if (!heading.empty() && fact.key == heading + "." + key.substr(dot + 1))
-        throw InputError(
-            place(key),
+        throw DocumentedError(
+            Trouble::key, place(key),
             "belongs to [" + heading + "], whose heading in line " + std::to_string(line) + " is still a comment",
             "take the '#' off that line too");
     const std::string folder = dot == std::string::npos ? "" : key.substr(0, dot + 1);
@@ -163,7 +164,7 @@ class Reader {
     for (const RigFact& fact : rig_facts())
       if (!folder.empty() && fact.key.starts_with(folder) && fact.key.find('.', folder.size()) == fact.key.npos)
         known.emplace_back(fact.key.substr(folder.size()));
-    throw InputError(place(key), "unknown key", known_here(key.substr(folder.size()), known));
+    throw DocumentedError(Trouble::key, place(key), "unknown key", known_here(key.substr(folder.size()), known));
   }
 
   const toml::table& section(const toml::node& node, const std::string& key) const {
@@ -187,8 +188,8 @@ class Reader {
 
   double quantity(const toml::node& node, const std::string& key, Dimension dimension, bool may_be_zero) const {
     if (node.is_number())
-      throw InputError(place(key), "a bare number has no unit",
-                       "write a quoted quantity with one of " + units_of(dimension));
+      throw DocumentedError(Trouble::unit, place(key), "a bare number has no unit",
+                            "write a quoted quantity with one of " + units_of(dimension));
     const double value = parse_quantity(word(node, key), dimension, place(key)).value;
     if (value < 0.0 || (value == 0.0 && !may_be_zero))
       throw InputError(place(key), may_be_zero ? "must not be negative" : "must be positive",
@@ -231,7 +232,8 @@ class Reader {
         for (const auto& [side, bound] : *node.as_table()) {
           const std::string word(side.str()), at = key + "." + word;
           rig_.lines[at] = side.source().begin.line;
-          if (word != "min" && word != "max") throw InputError(place(at), "unknown key", "known here: min, max");
+          if (word != "min" && word != "max")
+            throw DocumentedError(Trouble::key, place(at), "unknown key", "known here: min, max");
           (word == "min" ? limit.min : limit.max) = quantity(bound, at, known->dimension, true);
         }
         if (limit.min && limit.max && *limit.min > *limit.max)
@@ -259,8 +261,8 @@ class Reader {
       const std::string field(name.str());
       rig_.lines[key + "." + field] = name.source().begin.line;
       if (field != "signal" && field != "unit" && field != "gain" && field != "offset")
-        throw InputError(place(key + "." + field), "unknown key",
-                         known_here(field, {"signal", "unit", "gain", "offset"}));
+        throw DocumentedError(Trouble::key, place(key + "." + field), "unknown key",
+                              known_here(field, {"signal", "unit", "gain", "offset"}));
     }
     const toml::node* signal_node = table.get("signal");
     if (!signal_node) throw InputError(place(key), "names no signal", "add signal = \"...\"");
@@ -289,17 +291,20 @@ class Reader {
       const Place where = place(key + ".unit");
       const std::string name = word(*node, key + ".unit");
       const Unit* unit = find_unit(name);
-      if (!unit) throw InputError(where, "unknown unit '" + name + "'", "use one of " + accepted_units(*signal));
+      if (!unit)
+        throw DocumentedError(Trouble::unit, where, "unknown unit '" + name + "'",
+                              "use one of " + accepted_units(*signal));
       const auto relative = relative_unit(*signal);
       if (mapping.gain_has_unit) {
         if (unit->dimension != find_unit(mapping.column_unit)->dimension)
           throw InputError(where, "'" + name + "' is not what the gain divides by ('" + mapping.column_unit + "')",
                            "make unit and gain agree");
       } else if (unit->dimension == voltage) {
-        throw InputError(where, "volts need a gain", "add gain = \"... " + std::string(info(*signal).si_unit) + "/V\"");
+        throw DocumentedError(Trouble::unit, where, "volts need a gain",
+                              "add gain = \"... " + std::string(info(*signal).si_unit) + "/V\"");
       } else if (unit->dimension != dimension && !(relative && unit->dimension == relative->dimension)) {
-        throw InputError(where, "'" + name + "' is no unit of '" + mapping.signal + "'",
-                         "use one of " + accepted_units(*signal));
+        throw DocumentedError(Trouble::unit, where, "'" + name + "' is no unit of '" + mapping.signal + "'",
+                              "use one of " + accepted_units(*signal));
       }
       mapping.column_unit = name;
     }
@@ -428,7 +433,7 @@ RigFile make_rig(const std::string& name, const std::string& text) {
   try {
     return Reader(name).read(text);
   } catch (const InputError& error) {
-    throw key_error(error);  // quantities are read by who knows of columns only
+    throw_of_key(error);  // quantities are read by who knows of columns only
   }
 }
 
