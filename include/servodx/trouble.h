@@ -37,8 +37,8 @@ constexpr const char* code_of(Trouble trouble) {
 // A refusal with a page.
 class DocumentedError : public InputError {
  public:
-  DocumentedError(Trouble which, Place at, std::string rule, std::string mend)
-      : InputError(std::move(at), std::move(rule), std::move(mend)), trouble(which) {}
+  DocumentedError(Trouble which, Place at, std::string broken_rule, std::string how_to_mend)
+      : InputError(std::move(at), std::move(broken_rule), std::move(how_to_mend)), trouble(which) {}
   Trouble trouble;
 };
 

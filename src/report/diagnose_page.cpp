@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <filesystem>
 #include <map>
@@ -19,8 +18,10 @@
 #include "faults/fault.h"
 #include "faults/gross_finding.h"
 #include "fit/replay.h"
+#include "report/certificate.h"
 #include "report/columns.h"
 #include "report/conditions.h"
+#include "report/curves.h"
 #include "report/diagnosis_words.h"
 #include "report/handy.h"
 #include "report/json.h"
@@ -56,11 +57,6 @@ std::string headline(const Diagnosis& d) {
   if (d.verdict == VerdictKind::unknown) return file_name(d.log) + " is not healthy, and no known fault explains it";
   const std::string size = size_words(d);
   return words(label_of(d.fault) + of_channel(d)) + (size.empty() ? "" : ", " + size);
-}
-
-std::string sentence(std::string words) {
-  words.front() = static_cast<char>(std::toupper(static_cast<unsigned char>(words.front())));
-  return words + ".";
 }
 
 std::vector<std::string> reasons(const Diagnosis& d, const DetectionBaseline& baseline) {
@@ -209,6 +205,48 @@ void add_details(Page& page, const Diagnosis& d, const std::vector<Replay>& repl
   }
 }
 
+// Where the log was recorded, each with the uncertainty of the instrument that the sheet names for it.
+void certify_conditions(std::vector<CertifiedFigure>& figures, const Diagnosis& d, const Certificate& sheet) {
+  for (const ConditionFigure& c : condition_figures(d.conditions)) {
+    const Instrument* instrument = c.signal ? sheet.of(*c.signal) : nullptr;
+    figures.push_back({c.name, c.value, instrument ? instrument->uncertainty : "", "", "", Tone::plain});
+  }
+}
+
+constexpr int null_row = 41;  // id of servovalve_null, as every table has it
+
+void certify(Page& page, const Diagnosis& d, const DetectionBaseline& baseline, const Header& header,
+             const CertificateOf& certificate) {
+  const Certificate& sheet = *certificate.sheet;
+  std::vector<CertifiedFigure> figures = {
+      {"error", digits(d.error) + " deviates", "", "below " + digits(d.threshold), word_of(d.verdict), tone_of(d)}};
+  for (const NamedFault& f : d.faults)
+    figures.push_back(
+        {words(label_of(f.fault)), handy(f.severity, unit_of(f.fault)),
+         std::isfinite(f.lower) && std::isfinite(f.upper) ? handy(0.5 * (f.upper - f.lower), unit_of(f.fault)) : "", "",
+         chance(f.probability), Tone::plain});
+  CertifiedFigure null{"null",     percent(d.null) + " of rated", "", "below " + percent(baseline.null_limit), "",
+                       Tone::plain};
+  constexpr double k = 2;  // of an expanded uncertainty
+  for (const MovedRow& row : d.moved)
+    if (row.id == null_row && std::isfinite(row.std_error)) {
+      const double size = std::abs(d.null), band = sheet.guard * k * row.std_error;
+      const bool inside = size < baseline.null_limit, clear = size + band < baseline.null_limit;
+      null.uncertainty = percent(k * row.std_error);
+      null.judgement = word_of(clear    ? curves::Judgement::pass
+                               : inside ? curves::Judgement::too_near
+                                        : curves::Judgement::fail);
+      null.tone = clear ? Tone::good : inside ? Tone::doubt : Tone::bad;
+    }
+  figures.push_back(null);
+  certify_conditions(figures, d, sheet);
+  add_certificate(page, certificate, header, figures,
+                  "healthy is said where the error is below the threshold, unless the records show a fault by "
+                  "themselves. " +
+                      sentence(statement_of(baseline)) + " Of a figure with a limit: " + guard_words(sheet.guard) +
+                      ".");
+}
+
 bool all_known(const std::vector<Diagnosis>& results, const std::vector<std::string>& truths) {
   return truths.size() == results.size() &&
          std::none_of(truths.begin(), truths.end(), [](const auto& t) { return t.empty(); });
@@ -270,11 +308,14 @@ std::string truth_beside(const std::string& log, const std::string& sha256) {
 }
 
 Page diagnose_page(const Header& header, const std::vector<Diagnosis>& results, const DetectionBaseline& baseline,
-                   const std::vector<Replay>& replays, const std::vector<std::string>& truths) {
+                   const std::vector<Replay>& replays, const std::vector<std::string>& truths,
+                   const CertificateOf& certificate) {
   if (results.size() == 1) {
     const Diagnosis& d = results.front();
     Page page(header, "Diagnosis of " + file_name(d.log));
+    add_to_head(page, d.conditions);
     page.verdict(verdict_of(d, baseline));
+    if (certificate.sheet) certify(page, d, baseline, header, certificate);
     page.section(d.assessment.unjudgeable == Unjudgeable::no ? "Why" : "This log");
     add_details(page, d, replays, 1);
     return page;

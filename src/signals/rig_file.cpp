@@ -53,6 +53,15 @@ std::string known_here(const std::string& word, const std::vector<std::string>& 
   return did_you_mean(word, bare) + "known here: " + list;
 }
 
+// What the head of a page says beside the rig, in words (report/page_head.h).
+constexpr std::array<std::string_view, 5> page_words = {"logo", "lines", "customer", "operator", "date"};
+
+bool is_page_word(std::string_view key) {
+  constexpr std::string_view folder = "page.";
+  return key.starts_with(folder) &&
+         std::find(page_words.begin(), page_words.end(), key.substr(folder.size())) != page_words.end();
+}
+
 class Reader {
  public:
   explicit Reader(const std::string& path) { rig_.path = path; }
@@ -87,7 +96,7 @@ class Reader {
       } else if (key == "fluid" && node.is_string()) {
         read_preset(word(node, key));
       } else if (key == "valve" || key == "actuator" || key == "lines" || key == "supply" || key == "fluid" ||
-                 key == "valve.dither") {
+                 key == "valve.dither" || key == "page") {
         walk(section(node, key), key + ".");
       } else {
         read_key(key, node);
@@ -113,6 +122,10 @@ class Reader {
       rig_.null_limit = quantity(node, key, fraction, true);
     } else if (key == "valve.first_stage") {
       rig_.words[key] = one_of(node, key, {"flapper_nozzle", "jet_pipe"});
+    } else if (key == "page.lines") {
+      rig_.words[key] = lines(node, key);
+    } else if (is_page_word(key)) {
+      rig_.words[key] = word(node, key);
     } else if (key == "lines.taps") {
       rig_.taps_at_cylinder = one_of(node, key, {"valve", "cylinder"}) == "cylinder";
     } else {
@@ -156,11 +169,12 @@ class Reader {
     const std::string folder = dot == std::string::npos ? "" : key.substr(0, dot + 1);
     std::vector<std::string> known;
     if (folder.empty())
-      known = {"name",       "serial",          "ports",   "command_hold", "mains_frequency",
-               "null_limit", "oil_temperature", "fluid",   "[valve]",      "[actuator]",
-               "[lines]",    "[supply]",        "[fluid]", "[limits]",     "[columns]"};
+      known = {"name",      "serial",  "ports",      "command_hold", "mains_frequency", "null_limit", "oil_temperature",
+               "fluid",     "[valve]", "[actuator]", "[lines]",      "[supply]",        "[fluid]",    "[limits]",
+               "[columns]", "[page]"};
     if (folder == "valve.") known = {"first_stage", "dither"};
     if (folder == "lines.") known = {"taps"};
+    if (folder == "page.") known.assign(page_words.begin(), page_words.end());
     for (const RigFact& fact : rig_facts())
       if (!folder.empty() && fact.key.starts_with(folder) && fact.key.find('.', folder.size()) == fact.key.npos)
         known.emplace_back(fact.key.substr(folder.size()));
@@ -175,6 +189,15 @@ class Reader {
   std::string word(const toml::node& node, const std::string& key) const {
     if (!node.is_string()) throw InputError(place(key), "is not a string", "put the value in quotes");
     return node.as_string()->get();
+  }
+
+  // Texts of an array, one a line.
+  std::string lines(const toml::node& node, const std::string& key) const {
+    std::string all;
+    const toml::array* texts = node.as_array();
+    if (!texts) throw InputError(place(key), "is not a list", "write [\"first line\", \"second line\"]");
+    for (const toml::node& text : *texts) all += (all.empty() ? "" : "\n") + word(text, key);
+    return all;
   }
 
   std::string one_of(const toml::node& node, const std::string& key,
