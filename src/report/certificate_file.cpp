@@ -13,6 +13,7 @@
 #include "base/trouble.h"
 #include "base/units.h"
 #include "report/certificate.h"
+#include "report/columns.h"
 #include "report/handy.h"
 
 namespace servodx::report {

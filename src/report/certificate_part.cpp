@@ -3,6 +3,7 @@
 #include "report/certificate.h"
 #include "report/handy.h"
 #include "report/parts.h"
+#include "report/replay_part.h"
 
 namespace servodx::report {
 

@@ -113,6 +113,7 @@ Verdict verdict_of(const Diagnosis& d, const DetectionBaseline& baseline) {
   v.headline = headline(d);
   if (d.assessment.unjudgeable != Unjudgeable::no) {
     v.facts.push_back({"Action", d.action.text});
+    for (const std::string& call : next_calls(d)) v.reasons.push_back("Run next: " + call);
     return v;
   }
   if (d.fault) v.detail = meaning_of(d.fault) + ", in " + d.log;
@@ -122,10 +123,27 @@ Verdict verdict_of(const Diagnosis& d, const DetectionBaseline& baseline) {
   v.facts.push_back({"Null", percent(d.null) + " of rated"});
   if (d.action.of != ActionClass::none) v.facts.push_back({"Action", d.action.text});
   v.reasons = reasons(d, baseline);
+  for (const std::string& call : next_calls(d)) v.reasons.push_back("Run next: " + call);
   return v;
 }
 
+// Of a healthy log: what was tried beside health, and that it gained nothing. A bar of its probability would promise
+// more than the rate of false alarms that the baseline can.
+void add_tried(Page& page, const Diagnosis& d) {
+  TablePart table{"Faults that were tried: none gains more than on fault-free logs",
+                  "lll",
+                  {"fault", "size that fits best", "what it leaves"},
+                  {},
+                  4};
+  for (const HypothesisResult& h : d.assessment.hypotheses)
+    if (h.fault)
+      table.rows.push_back({words(label_of(h.fault)), size_words(h),
+                            fmt::format("worst channel {} times its usual error", digits(h.adequacy, 2))});
+  if (!table.rows.empty()) page.add(table);
+}
+
 void add_ranking(Page& page, const Diagnosis& d) {
+  if (d.verdict == VerdictKind::healthy) return add_tried(page, d);
   Bars bars;
   bars.title = "Hypotheses, each fitted to this log";
   bars.label = "hypothesis";

@@ -297,6 +297,14 @@ std::string unlike_words(const Diagnosis& d) {
                      test_words(d.assessment.test), file_name(d.unlike->log), test_words(d.unlike->test));
 }
 
+std::vector<std::string> next_calls(const Diagnosis& d) {
+  if (d.verdict != VerdictKind::unknown) return {};
+  const std::string look = "servodx check-log LOG --rig RIG.toml --params TUNED";
+  if (d.assessment.unjudgeable != Unjudgeable::no) return {look};
+  return {look,
+          "servodx explain LOG --rig RIG.toml --params TUNED --baseline BASE.json -o EXTENDED.csv --report PAGE.html"};
+}
+
 MovedParts moved_parts(const Diagnosis& d) {
   MovedParts parts;
   for (const MovedRow& row : d.moved) (row.by == MovedRow::By::fault ? parts.fault : parts.health).push_back(row);

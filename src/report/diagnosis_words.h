@@ -75,6 +75,7 @@ DetectableWords detectable_words(const Diagnosis& d);
 std::string test_words(const TestConditions& test);
 // Empty where a log of the baseline is of such a test.
 std::string unlike_words(const Diagnosis& d);
+std::vector<std::string> next_calls(const Diagnosis& d);  // of a verdict that names nothing: what to run next
 
 // The rows that the fault moved; those of health's own, each farthest first.
 struct MovedParts {

@@ -172,6 +172,7 @@ std::string text_of(const Diagnosis& d, const TextOptions& options) {
   if (const std::string far = beyond_in_words(d.conditions); !far.empty()) table.row({"BEYOND", far});
   if (d.assessment.unjudgeable != Unjudgeable::no) {
     table.row({"action", d.action.text});
+    for (const std::string& call : next_calls(d)) table.row({"next", call});
     return first + ": " + words_of(d.assessment.unjudgeable) + "\n" + table.text();
   }
   if (d.verdict == VerdictKind::unknown) first += ": not like the fault-free logs, and no known fault explains it";
@@ -188,6 +189,7 @@ std::string text_of(const Diagnosis& d, const TextOptions& options) {
   if (!d.ambiguous_with.empty()) table.row({"or else", join(ambiguous_labels(d))});
   if (const std::string test = separating_test_of(d); !test.empty()) table.row({"to separate", test});
   if (d.action.of != ActionClass::none) table.row({"action", d.action.text});
+  for (const std::string& call : next_calls(d)) table.row({"next", call});
   table.row({"null", percent(d.null) + " of rated"});
 
   if (!d.fault) {
