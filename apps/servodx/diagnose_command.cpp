@@ -115,6 +115,8 @@ int run(const Options& options) {
   require_option(options.logs.empty() != options.list.list.empty(), options.logs.empty() ? "LOG" : "--list",
                  options.logs.empty() ? "no log is named" : "logs are named one by one too",
                  "name the logs, or a file that lists them with --list FILE --out DIR");
+  require_option(options.list.list.empty() || options.certificate.empty(), "--certificate", "certifies one verdict",
+                 "name one log in place of --list");
   if (!options.list.list.empty()) return diagnose_list(options.common, options.list, options.params, options.baseline);
   Invocation invocation("diagnose", options.common);
   auto inputs = options.logs;

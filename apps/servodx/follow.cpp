@@ -182,8 +182,10 @@ class Diagnoses {
       how.watch.stop = [this] { return stop_.load(); };
       Assessment assessment = assess(job.log, judging_.tuned.table, judging_.rig, how);
       if (!stop_) out.diagnosis = judge(std::move(assessment), parts_of(judging_.baseline).detection);
-    } catch (const std::exception& error) {
+    } catch (const InputError& error) {
       out.refused = told(error);
+    } catch (const std::exception& error) {
+      out.refused = error.what();
     }
     return out;
   }
