@@ -73,8 +73,10 @@ const FieldGroup& shared_type(const std::string& name) {
 
 // Collects on the way the shared types that are asked for.
 Json type_schema(std::string type, std::set<std::string>& asked) {
-  const bool may_be_null = type.ends_with('?');
-  if (may_be_null) type.pop_back();
+  // Of a list or a map the mark at the end is its elements'; its own stands at the beginning.
+  const bool holds_others = type.find(of_list) < 2 || type.find(of_map) < 2;
+  const bool may_be_null = holds_others ? type.starts_with('?') : type.ends_with('?');
+  if (may_be_null) type.erase(holds_others ? 0 : type.size() - 1, 1);
   Json schema;
   if (type == "text")
     schema = {{"type", "string"}};
