@@ -9,7 +9,6 @@
 #include <filesystem>
 #include <sstream>
 #include <stdexcept>
-#include <string_view>
 #include <vector>
 
 #include "base/atomic_file.h"
@@ -64,14 +63,6 @@ bool ran_well(std::vector<std::string> words) {
   return WIFEXITED(status) && WEXITSTATUS(status) == 0;
 }
 
-// "/CreationDate (D:20261125171500+00'00')": digits to those of the epoch, so that no length changes.
-void forget_times(std::string& pdf) {
-  constexpr std::string_view epoch = "19700101000000";
-  for (const std::string_view key : {"/CreationDate (D:", "/ModDate (D:"})
-    for (std::size_t at = pdf.find(key); at != pdf.npos; at = pdf.find(key, at + 1))
-      if (at + key.size() + epoch.size() <= pdf.size()) pdf.replace(at + key.size(), epoch.size(), epoch);
-}
-
 }  // namespace
 
 void require_browser() {
@@ -92,9 +83,7 @@ void print_page(const std::string& html, const std::string& pdf) {
                               "--print-to-pdf=" + printed, "file://" + page});
   std::error_code ignored;
   if (!well || !fs::exists(printed, ignored)) throw std::runtime_error(browser() + " did not print the page");
-  std::string bytes = read_file(printed);
-  forget_times(bytes);
-  write_file(pdf, bytes);
+  write_file(pdf, read_file(printed));
 }
 
 }  // namespace servodx

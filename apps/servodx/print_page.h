@@ -1,7 +1,5 @@
 // A page on paper: HTML printed to PDF by the Chromium of this machine.
-//
-// The bytes are the same for the same page and browser: the two times that a browser writes into a PDF are set to the
-// epoch.
+// Its bytes differ from print to print: a copy to read, and no result that `rerun` compares.
 #pragma once
 #include <string>
 

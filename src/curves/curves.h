@@ -80,8 +80,8 @@ Sheet read_curves(const Log& log, const RigFile& rig, const SheetOptions& option
 
 // The figures by themselves, without uncertainty and judgement.
 Sheet read_figures(const Log& log, const RigFile& rig);
-// Expanded uncertainty of each figure: what noise, resolution and instruments do to it, by drawing them again
-// (JCGM 101, propagation of distributions). The valve's own scatter from test to test is not in it.
+// Expanded uncertainty of each figure: what noise and resolution do to it, by drawing them again (JCGM 101, propagation
+// of distributions), and each error of an instrument. The valve's own scatter from test to test is not in it.
 void add_uncertainty(Sheet& sheet, const Log& log, const RigFile& rig, const std::vector<InstrumentError>& instruments);
 void judge(Sheet& sheet, const RigFile& rig, double guard);
 
