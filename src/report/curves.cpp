@@ -50,6 +50,12 @@ std::string limit_text(const Figure& f) {
   return low + (low.empty() || high.empty() ? "" : ", ") + high;
 }
 
+std::string value_text(const Figure& f) {
+  if (!std::isfinite(f.value)) return "-";
+  constexpr double rounding = 1e-3;  // of the uncertainty: less is what arithmetic leaves of zero
+  return readable(f, std::fabs(f.value) < rounding * f.uncertainty ? 0.0 : f.value);
+}
+
 std::string uncertainty_text(const Figure& f) {
   return std::isfinite(f.uncertainty) ? readable(f, f.uncertainty, 2) : "";
 }
@@ -84,8 +90,7 @@ std::string text_of(const Sheet& sheet, const std::string& log, bool colour) {
   Columns table("lllllll", 2);
   table.row({"figure", "value", "+- (k = 2)", "limit", "", "from", ""});
   for (const Figure& f : sheet.figures)
-    table.row({f.name, std::isfinite(f.value) ? readable(f, f.value) : "-", uncertainty_text(f), limit_text(f),
-               word_of(f.judgement), f.signal, f.note});
+    table.row({f.name, value_text(f), uncertainty_text(f), limit_text(f), word_of(f.judgement), f.signal, f.note});
   return log + ": " + verdict + "\n" + table.text();
 }
 

@@ -12,6 +12,7 @@ namespace servodx::report {
 // A figure's value, and its limit, as a test engineer reads them.
 std::string readable(const curves::Figure& figure, double value, int significant = 4);
 std::string limit_text(const curves::Figure& figure);
+std::string value_text(const curves::Figure& figure);        // "-" where the log cannot tell
 std::string uncertainty_text(const curves::Figure& figure);  // "" where it is not known
 std::string word_of(curves::Judgement judgement);            // "" of what is not judged
 std::string guard_words(double guard);                       // the decision rule

@@ -52,7 +52,7 @@ Tone tone_of(Judgement judgement) {
 }
 
 std::string with_uncertainty(const Figure& f) {
-  const std::string value = readable(f, f.value), more = uncertainty_text(f);
+  const std::string value = value_text(f), more = uncertainty_text(f);
   return more.empty() ? value : value + " \u00b1 " + more;
 }
 
@@ -142,9 +142,9 @@ Page curves_page(const Header& header, const Sheet& sheet, const std::string& lo
     std::vector<CertifiedFigure> certified;
     for (const Figure& f : sheet.figures)
       if (std::isfinite(f.value))
-        certified.push_back({words(f.name), readable(f, f.value), uncertainty_text(f), limit_text(f),
-                             word_of(f.judgement), tone_of(f.judgement)});
-    add_certificate(page, certificate, header, certified, guard_words(guard));
+        certified.push_back({words(f.name), value_text(f), uncertainty_text(f), limit_text(f), word_of(f.judgement),
+                             tone_of(f.judgement)});
+    add_certificate(page, certificate, header, certified, guard_words(guard) + ".");
   }
 
   page.section("Figures", "As SAE ARP490 defines them. Percentages are of rated current.");
@@ -152,7 +152,7 @@ Page curves_page(const Header& header, const Sheet& sheet, const std::string& lo
   for (const Figure& f : sheet.figures) {
     Cell judgement = word_of(f.judgement);
     judgement.tone = tone_of(f.judgement);
-    table.rows.push_back({words(f.name), std::isfinite(f.value) ? Cell(readable(f, f.value), f.value) : Cell("-"),
+    table.rows.push_back({words(f.name), std::isfinite(f.value) ? Cell(value_text(f), f.value) : Cell("-"),
                           std::isfinite(f.uncertainty) ? Cell(uncertainty_text(f), f.uncertainty) : Cell(""),
                           limit_text(f), judgement, words(f.signal), f.note});
   }
