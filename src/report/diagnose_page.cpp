@@ -94,10 +94,10 @@ std::vector<std::string> reasons(const Diagnosis& d, const DetectionBaseline& ba
   } else if (d.fault && !seen_outright) {
     const HypothesisResult* next = nullptr;
     for (const HypothesisResult& h : d.assessment.hypotheses)
-      if (h.fault != d.fault && (!next || h.probability > next->probability)) next = &h;
+      if (h.fault != d.fault && (!next || probability_of(d, h.fault) > probability_of(d, next->fault))) next = &h;
     if (next)
       why.push_back(fmt::format("The next best explanation, {}, has {}.", words(label_of(next->fault)),
-                                chance(next->probability)));
+                                chance(probability_of(d, next->fault))));
   }
   if (d.suspicion) why.push_back(sentence(suspicion_in_words(*d.suspicion)));
   if (d.beyond) why.push_back(sentence(beyond_in_words(*d.beyond)));

@@ -65,7 +65,8 @@ TEST(Certificate, TheInstrumentsUncertaintyDecides) {
   const Stand stand;
   const auto judgement = [&](const std::string& options) {
     EXPECT_EQ(stand.run("curves flow.csv --rig rig.toml --json out.json " + options).code, 0);
-    for (const auto& f : nlohmann::json::parse(bytes_of(stand / "out.json"))["figures"])
+    const auto json = nlohmann::json::parse(bytes_of(stand / "out.json"));
+    for (const auto& f : json["figures"])
       if (f["name"] == "rated_flow") return f["judgement"].get<std::string>();
     return std::string();
   };
