@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "program.h"
+#include "temporary_folder.h"
 
 namespace servodx {
 namespace {
