@@ -9,7 +9,7 @@ install(DIRECTORY params DESTINATION ${CMAKE_INSTALL_DATADIR}/servodx COMPONENT 
 install(FILES README.md CHANGELOG.md DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT program)
 install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR} RENAME copyright COMPONENT program)
 install(FILES third_party/uplot/LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR} RENAME copyright.uplot COMPONENT program)
-install(DIRECTORY docs DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT program FILES_MATCHING PATTERN "*.md")
+install(DIRECTORY docs DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT program FILES_MATCHING PATTERN "*.md" PATTERN "*.schema.json")
 
 # Manual and completions come from the program itself, made with it: the target servodx is enough to install.
 set(manual ${CMAKE_BINARY_DIR}/manual)
@@ -40,7 +40,11 @@ install(EXPORT servodx-targets NAMESPACE servodx:: DESTINATION ${CMAKE_INSTALL_L
 install(DIRECTORY include/ DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} COMPONENT development FILES_MATCHING PATTERN "*.h")
 install(DIRECTORY examples DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT development)
 configure_file(cmake/servodx-config.cmake ${CMAKE_BINARY_DIR}/servodx-config.cmake COPYONLY)
-write_basic_package_version_file(${CMAKE_BINARY_DIR}/servodx-config-version.cmake COMPATIBILITY SameMinorVersion)
+set(compatible SameMajorVersion)  # docs/releasing.md
+if(PROJECT_VERSION_MAJOR EQUAL 0)
+  set(compatible SameMinorVersion)
+endif()
+write_basic_package_version_file(${CMAKE_BINARY_DIR}/servodx-config-version.cmake COMPATIBILITY ${compatible})
 install(FILES ${CMAKE_BINARY_DIR}/servodx-config.cmake ${CMAKE_BINARY_DIR}/servodx-config-version.cmake
         DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/servodx COMPONENT development)
 
@@ -71,6 +75,7 @@ set(CPACK_STRIP_FILES ON)
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_NAME servodx)
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_SECTION science)
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_SHLIBDEPS ON)
+set(CPACK_DEBIAN_PROGRAM_PACKAGE_SUGGESTS chromium)  # --pdf
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_NAME libservodx-dev)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SECTION libdevel)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "base/trouble.h"
 #include "door/baseline_parts.h"
 
 namespace servodx {
@@ -13,8 +14,8 @@ Baseline baseline_beside(Invocation& invocation, const std::string& path, const 
   if (rig.path.empty() && !made_with.empty())
     invocation.note(
         {fmt::format("{} WAS MADE WITH A RIG FILE AND THIS CALL NAMES NONE: oil, supply, null limit and columns are "
-                     "taken as the program's own, and what follows is in doubt; add --rig {}",
-                     path, made_with)});
+                     "taken as the program's own, and what follows is in doubt; add --rig {}{}",
+                     path, made_with, mark_of(Trouble::rig_forgotten))});
   return out;
 }
 

@@ -33,7 +33,7 @@ namespace {
 struct Options {
   CommonOptions common;
   std::vector<std::string> logs;
-  std::string params, baseline;
+  std::string params, baseline, certificate;
   bool pool = false, exit_by_action = false;
   ListOptions list;
 };
@@ -115,11 +115,14 @@ int run(const Options& options) {
   require_option(options.logs.empty() != options.list.list.empty(), options.logs.empty() ? "LOG" : "--list",
                  options.logs.empty() ? "no log is named" : "logs are named one by one too",
                  "name the logs, or a file that lists them with --list FILE --out DIR");
+  require_option(options.list.list.empty() || options.certificate.empty(), "--certificate", "certifies one verdict",
+                 "name one log in place of --list");
   if (!options.list.list.empty()) return diagnose_list(options.common, options.list, options.params, options.baseline);
   Invocation invocation("diagnose", options.common);
   auto inputs = options.logs;
   inputs.insert(inputs.end(), {options.params, options.baseline});
-  if (!options.list.actions.empty()) inputs.push_back(options.list.actions);
+  for (const std::string& more : {options.list.actions, options.certificate})
+    if (!more.empty()) inputs.push_back(more);
   invocation.check_files(inputs, {});
   const RigFile rig = invocation.rig();
   const Tuned tuned = invocation.tuned(options.params);
@@ -131,6 +134,10 @@ int run(const Options& options) {
   header.inputs.push_back({options.baseline, baseline.parts->sha256});
   if (!options.list.actions.empty())
     header.inputs.push_back({options.list.actions, sha256_of_file(options.list.actions)});
+
+  require_option(options.certificate.empty() || logs.size() == 1 || options.pool, "--certificate",
+                 "certifies one verdict", "name one log, or add --pool");
+  const auto certificate = invocation.certificate(options.certificate);
 
   std::vector<std::string> truths;
   for (const Log& log : logs)
@@ -163,7 +170,8 @@ int run(const Options& options) {
   if (invocation.wants_report()) {
     truths.resize(results.size());
     invocation.write_report(report::diagnose_page(header, results, baseline.parts->detection,
-                                                  replays(logs, tuned.table, rig, results), truths));
+                                                  replays(logs, tuned.table, rig, results), truths,
+                                                  {certificate ? &*certificate : nullptr, invocation.manifest()}));
   }
   invocation.finish(text, report::diagnose_json(results));
   const bool tells = options.list.exit_code || options.exit_by_action;
@@ -191,6 +199,7 @@ void add_diagnose_command(CLI::App& app, int& exit_code) {
       ->type_name("I/N")
       ->needs(list)
       ->capture_default_str();
+  add_certificate_option(*command, options->certificate);
   command->add_option("--params", options->params, "tuned table")->required()->type_name("TUNED");
   command->add_option("--baseline", options->baseline, "its baseline")->required()->type_name("BASE.json");
   command->add_flag("--exit-code", options->list.exit_code,

@@ -9,6 +9,7 @@
 #include "base/error.h"
 #include "base/progress.h"
 #include "base/sha256.h"
+#include "base/trouble.h"
 #include "fleet/log_list.h"
 #include "fleet/result_file.h"
 #include "fleet/run.h"
@@ -53,7 +54,7 @@ void rehearse(const std::vector<std::string>& logs, const RigFile& rig, report::
   for (const std::string& path : logs) try {
       read_log(path, rig);
     } catch (const InputError& error) {
-      std::fprintf(stderr, "diagnose: would be set aside: %s\n", error.what());
+      std::fprintf(stderr, "diagnose: would be set aside: %s\n", told(error).c_str());
       ++refused_logs;
     }
   header.settings["logs"] = logs.size();

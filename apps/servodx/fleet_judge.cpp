@@ -84,8 +84,7 @@ FleetJudge::Outcome FleetJudge::set_aside(const std::string& log, const std::str
   write_file(refusal_path(name), report::dump(header_, report::refusal_json(log, error)));
   std::error_code ignored;
   for (const std::string& was : {result_path(name), page_path(name)}) fs::remove(was, ignored);
-  return {.end = End::set_aside,
-          .refusal = SetAside{error.where.file, error.where.line, error.where.column, error.rule, error.mend}};
+  return {.end = End::set_aside, .refusal = report::set_aside_of(error)};
 }
 
 void FleetJudge::complete_header(const Diagnosis& d) {

@@ -22,6 +22,7 @@
 #include "base/json_text.h"
 #include "base/progress.h"
 #include "base/sha256.h"
+#include "base/trouble.h"
 #include "diagnose/assessment.h"
 #include "diagnose/decide.h"
 #include "diagnose/diagnose.h"
@@ -181,6 +182,8 @@ class Diagnoses {
       how.watch.stop = [this] { return stop_.load(); };
       Assessment assessment = assess(job.log, judging_.tuned.table, judging_.rig, how);
       if (!stop_) out.diagnosis = judge(std::move(assessment), parts_of(judging_.baseline).detection);
+    } catch (const InputError& error) {
+      out.refused = told(error);
     } catch (const std::exception& error) {
       out.refused = error.what();
     }

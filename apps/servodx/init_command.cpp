@@ -13,6 +13,7 @@
 #include "base/atomic_file.h"
 #include "base/csv.h"
 #include "base/sha256.h"
+#include "base/trouble.h"
 #include "base/units.h"
 #include "commands.h"
 #include "diagnose/check_log.h"
@@ -205,7 +206,7 @@ std::string reading(const Options& options, std::size_t questions) {
       if (note.find(": ignored ") == std::string::npos)
         text += "  beware: " + note + "\n";  // the ignored are told below
   } catch (const InputError& open) {
-    text = fmt::format("to be mended in {} before the log reads:\n  {}\n", options.output, open.what());
+    text = fmt::format("to be mended in {} before the log reads:\n  {}\n", options.output, told(open));
   }
   return text;
 }

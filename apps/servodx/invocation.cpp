@@ -16,7 +16,9 @@
 #include "base/csv.h"
 #include "base/error.h"
 #include "base/progress.h"
+#include "build.h"
 #include "manifest.h"
+#include "print_page.h"
 #include "report/columns.h"
 #include "report/handy.h"
 #include "report/plain_page.h"
@@ -101,6 +103,9 @@ void add_common_options(CLI::App& command, CommonOptions& options) {
       .add_option("--report", options.report, "write a page that shows the result and why it holds: one file, offline")
       ->type_name("FILE.html")
       ->group("Common");
+  command.add_option("--pdf", options.pdf, "the same page on paper, printed by the Chromium of this machine")
+      ->type_name("FILE.pdf")
+      ->group("Common");
   command.add_option("--rig", options.rig, "rig file: data-sheet facts and names of columns")
       ->type_name("RIG.toml")
       ->group("Common");
@@ -118,6 +123,13 @@ void add_common_options(CLI::App& command, CommonOptions& options) {
       .add_flag("--dry-run", options.dry_run, "read and check everything, print the effective settings, and end there")
       ->group("Common");
   command.add_flag("--quiet", options.quiet, "no progress and no notices")->group("Common");
+}
+
+void add_certificate_option(CLI::App& command, std::string& file) {
+  command
+      .add_option("--certificate", file,
+                  "sheet of a test certificate: customer, instruments, guard band; needs --report")
+      ->type_name("SHEET.toml");
 }
 
 void require_option(bool holds, const std::string& option, const std::string& rule, const std::string& mend) {
@@ -154,6 +166,7 @@ void Invocation::check_files(const std::vector<std::string>& inputs, const std::
   std::vector<std::string> all_outputs = outputs;
   if (!options_.json.empty() && options_.json != "-") all_outputs.push_back(options_.json);
   if (!options_.report.empty()) all_outputs.push_back(options_.report);
+  if (!options_.pdf.empty()) all_outputs.push_back(options_.pdf), require_browser();
   std::vector<fs::path> seen;
   for (const std::string& output : all_outputs) {
     require_option(!output.empty(), "--output", "the name is empty", "name a file");
@@ -163,6 +176,8 @@ void Invocation::check_files(const std::vector<std::string>& inputs, const std::
       throw InputError({output, 0, ""}, "is named for two outputs", "give each output its own file");
     seen.push_back(place);
   }
+  // A browser draws no page twice to the byte: what it printed is no output that a manifest could promise.
+  if (!options_.pdf.empty()) all_outputs.pop_back();
   check_manifest(all_inputs, all_outputs);
   outputs_ = std::move(all_outputs);
 }
@@ -210,6 +225,7 @@ bool Invocation::dry_run() const {
 RigFile Invocation::rig() {
   if (options_.rig.empty()) return {};
   RigFile rig = read_rig_file(options_.rig);
+  header_.head = report::head_of(rig);
   header_.inputs.push_back({rig.path, rig.sha256});
   return rig;
 }
@@ -218,6 +234,21 @@ Log Invocation::log(const std::string& path, const RigFile& rig, const ReadOptio
   Log log = read_log(path, rig, options);
   header_.inputs.push_back({log.path, log.sha256});
   return log;
+}
+
+std::optional<report::Certificate> Invocation::certificate(const std::string& path) {
+  if (path.empty()) return {};
+  require_option(!options_.report.empty(), "--certificate", "there is no page to put it on", "add --report FILE.html");
+  report::Certificate sheet = report::read_certificate(path);
+  header_.inputs.push_back({sheet.path, sheet.sha256});
+  report::add_to_head(header_.head, sheet);
+  note(sheet.overdue());
+  return sheet;
+}
+
+std::string Invocation::manifest() const {
+  const auto first = std::find_if_not(outputs_.begin(), outputs_.end(), is_special);
+  return first == outputs_.end() ? "" : *first + manifest_suffix;
 }
 
 std::vector<Log> Invocation::logs(const std::vector<std::string>& paths, const RigFile& rig) {
@@ -283,7 +314,9 @@ std::string Invocation::result(const report::Json& body) {
 bool Invocation::prints_text() const { return options_.json != "-"; }
 
 void Invocation::write_report(report::Page page) {
-  write_file(options_.report, page.html());
+  const std::string html = page.html();
+  if (!options_.report.empty()) write_file(options_.report, html);
+  if (!options_.pdf.empty()) print_page(html, options_.pdf);
   reported_ = true;
 }
 
@@ -301,6 +334,7 @@ void Invocation::write_manifest() const {
   const report::Json manifest = {{"manifest", 1},
                                  {"tool", "servodx"},
                                  {"version", header_.version},
+                                 {"commit", build_commit},
                                  {"instruction_set", instruction_set()},
                                  {"command", header_.command},
                                  {"directory", fs::proximate(fs::current_path(), beside, ignored).string()},

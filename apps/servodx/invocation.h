@@ -4,10 +4,12 @@
 #include <chrono>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "parameters/table.h"
+#include "report/certificate.h"
 #include "report/json.h"
 #include "report/page.h"
 #include "servodx/rig.h"
@@ -39,6 +41,7 @@ enum ExitCode {
 struct CommonOptions {
   std::string json;    // result file; "-": standard output, and no text there; empty: none
   std::string report;  // page, HTML; empty: none
+  std::string pdf;     // the same page on paper; empty: none
   std::string rig;     // rig.toml; empty: none
   int threads = 0;     // 0: all
   std::uint64_t seed = 1;
@@ -46,6 +49,7 @@ struct CommonOptions {
   bool dry_run = false;
 };
 void add_common_options(CLI::App& command, CommonOptions& options);
+void add_certificate_option(CLI::App& command, std::string& file);
 
 // Throws InputError naming the option, unless `holds`.
 void require_option(bool holds, const std::string& option, const std::string& rule, const std::string& mend);
@@ -74,6 +78,9 @@ class Invocation {
   std::vector<Log> logs(const std::vector<std::string>& paths, const RigFile& rig);  // refuses the same log twice
   // Where fits of so many samples take long: how long, and what makes it shorter; to standard error.
   void tell_of_long_fits(const std::vector<Log>& logs) const;
+  // The sheet beside the result, into the page's head too; nothing where no file is named.
+  std::optional<report::Certificate> certificate(const std::string& path);
+  std::string manifest() const;          // where it will stand; empty where no file is written
   Table table(const std::string& path);  // as the file says
   Tuned tuned(const std::string& path);  // refuses one that is not tuned
   Table tuned_table(const std::string& path) { return tuned(path).table; }
@@ -91,7 +98,7 @@ class Invocation {
   // Header and body as a result file's bytes; the time so far is filled in.
   std::string result(const report::Json& body);
   bool prints_text() const;  // standard output is not for the JSON
-  bool wants_report() const { return !options_.report.empty(); }
+  bool wants_report() const { return !options_.report.empty() || !options_.pdf.empty(); }
   void write_report(report::Page page);  // without it, `finish` writes a plain one
   // The result to --json and the text to standard output, each where it is asked for; then the notes. Beside the first
   // file that the call wrote goes its manifest, FILE.manifest.json: all that `rerun` needs.

@@ -5,6 +5,7 @@
 
 #include "base/error.h"
 #include "base/nearest.h"
+#include "base/trouble.h"
 #include "commands.h"
 #include "effects/effect.h"
 #include "effects/registry.h"
@@ -18,6 +19,8 @@
 #include "report/columns.h"
 #include "report/handy.h"
 #include "report/json.h"
+#include "report/schema.h"
+#include "report/trouble_words.h"
 #include "rig/excitations.h"
 #include "servodx/rig.h"
 #include "servodx/table.h"
@@ -198,16 +201,68 @@ Listing excitations(const Options&, Invocation&) {
   return out;
 }
 
+Listing errors(const Options&, Invocation&) {
+  Listing out;
+  Columns table("llll");
+  table.row({"code", "kind", "meaning", "what to do"});
+  for (int i = 0; i < n_troubles; ++i) {
+    const auto trouble = static_cast<Trouble>(i);
+    const char* kind = report::is_refusal(trouble) ? "refusal" : "warning";
+    table.row({code_of(trouble), kind, report::meaning_of(trouble), report::remedy_of(trouble)});
+    out.items.push_back({{"code", code_of(trouble)},
+                         {"kind", kind},
+                         {"meaning", report::meaning_of(trouble)},
+                         {"remedy", report::remedy_of(trouble)}});
+  }
+  out.text = table.text();
+  return out;
+}
+
+Listing fields(const Options&, Invocation&) {
+  Listing out;
+  Columns table("lllll");
+  table.row({"file", "field", "type", "unit", "meaning"});
+  for (const report::FieldGroup& group : report::field_groups())
+    for (const report::Field& f : group.fields) {
+      table.row({group.name, f.name, f.type, f.unit, f.meaning});
+      out.items.push_back({{"file", group.name},
+                           {"kind", report::kind_of(group)},
+                           {"field", f.name},
+                           {"type", f.type},
+                           {"unit", f.unit},
+                           {"meaning", f.meaning},
+                           {"may_be_missing", f.may_be_missing}});
+    }
+  out.text = table.text();
+  return out;
+}
+
+Listing schemas(const Options&, Invocation&) {
+  Listing out;
+  Columns table("ll");
+  table.row({"file", "meaning"});
+  for (const report::FieldGroup& group : report::field_groups()) {
+    if (!report::is_whole_file(group)) continue;
+    table.row({group.name, group.meaning});
+    out.items.push_back({{"name", group.name}, {"meaning", group.meaning}, {"schema", report::schema_of(group)}});
+  }
+  out.text = table.text() + "with --json: the JSON Schema of each\n";
+  return out;
+}
+
 struct Kind {
   const char* name;
   Listing (*make)(const Options&, Invocation&);
 };
-constexpr std::array<Kind, 6> kinds = {{{"faults", faults},
+constexpr std::array<Kind, 9> kinds = {{{"faults", faults},
                                         {"effects", effects},
                                         {"params", params},
                                         {"models", models},
                                         {"signals", signals},
-                                        {"excitations", excitations}}};
+                                        {"excitations", excitations},
+                                        {"errors", errors},
+                                        {"fields", fields},
+                                        {"schemas", schemas}}};
 
 void run(const Options& options) {
   std::vector<std::string> names;
@@ -230,9 +285,12 @@ void run(const Options& options) {
 
 void add_list_command(CLI::App& app) {
   auto options = std::make_shared<Options>();
-  CLI::App* command =
-      app.add_subcommand("list", "What there is: faults, effects, params, models, signals, excitations");
-  command->add_option("KIND", options->kind, "faults, effects, params, models, signals or excitations")->required();
+  CLI::App* command = app.add_subcommand(
+      "list", "What there is: faults, effects, params, models, signals, excitations, errors, fields, schemas");
+  command
+      ->add_option("KIND", options->kind,
+                   "faults, effects, params, models, signals, excitations, errors, fields or schemas")
+      ->required();
   command->add_option("--params", options->params, "with 'params': the values of this table and where they come from")
       ->type_name("P");
   add_common_options(*command, options->common);

@@ -8,6 +8,8 @@
 #include "base/keep_memory.h"
 #include "base/nearest.h"
 #include "base/sleep_while_waiting.h"
+#include "base/trouble.h"
+#include "build.h"
 #include "commands.h"
 #include "invocation.h"
 #include "rig_command.h"
@@ -51,7 +53,7 @@ int main(int argc, char** argv) {
   sleep_while_waiting(argv);
   keep_freed_memory();
   CLI::App app("Fault diagnosis of electrohydraulic servovalves from rig logs", "servodx");
-  app.set_version_flag("--version", "servodx " SERVODX_VERSION);
+  app.set_version_flag("--version", version_line, "version, commit of the sources, instruction set in use");
   app.require_subcommand(1);
   app.failure_message(refusal);
   int exit_code = ran;
@@ -86,7 +88,7 @@ int main(int argc, char** argv) {
   } catch (const CLI::Error& call) {  // --help and --version come this way too
     return app.exit(call) == 0 ? ran : refused;
   } catch (const InputError& input) {
-    std::fprintf(stderr, "servodx: %s\n", input.what());
+    std::fprintf(stderr, "servodx: %s\n", told(input).c_str());
     return refused;
   } catch (const std::exception& failure) {
     std::fprintf(stderr, "servodx: failed inside: %s\n", failure.what());

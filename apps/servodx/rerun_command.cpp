@@ -106,6 +106,18 @@ std::vector<std::string> texts(const report::Json& list) {
   return all;
 }
 
+// A PDF is the page on paper, whose bytes no browser repeats: it is not printed again.
+std::vector<std::string> without_pdf(const std::vector<std::string>& arguments) {
+  constexpr std::string_view option = "--pdf";
+  std::vector<std::string> kept;
+  for (std::size_t i = 0; i < arguments.size(); ++i)
+    if (arguments[i] == option)
+      ++i;
+    else if (!arguments[i].starts_with("--pdf="))
+      kept.push_back(arguments[i]);
+  return kept;
+}
+
 // The files that the call would write, as a rehearsal of it tells; the manifest may be edited.
 std::vector<std::string> outputs_of(const std::vector<std::string>& arguments) {
   std::vector<std::string> rehearsal, outputs;
@@ -181,7 +193,7 @@ int run(const Options& options) {
     before.keep(path);
     listed.insert(fs::weakly_canonical(path).string());
   }
-  const std::vector<std::string> arguments = texts(manifest["arguments"]);
+  const std::vector<std::string> arguments = without_pdf(texts(manifest["arguments"]));
   std::vector<std::string> unlisted = outputs_of(arguments);
   if (!unlisted.empty()) unlisted.push_back(unlisted.front() + manifest_suffix);
   std::erase_if(unlisted,

@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "base/error.h"
+#include "base/trouble.h"
 #include "base/units.h"
 #include "commands.h"
 #include "diagnose/check_log.h"
@@ -52,7 +53,7 @@ std::vector<Promise> promises(const std::vector<Log>& logs, const Tuned& tuned, 
       all.push_back(promise_of(log, tuned.table, rig, threads));
       invocation.header().simulations += all.back().simulations;
     } catch (const InputError& error) {  // the table is written: what is missing is said, and no more
-      invocation.note({error.what()});
+      invocation.note({told(error)});
     }
     watch.tell("faults in sight", static_cast<double>(&log - logs.data() + 1) / static_cast<double>(logs.size()), 0);
   }

@@ -17,5 +17,6 @@
 #include "servodx/stepper.h"
 #include "servodx/table.h"
 #include "servodx/trend.h"
+#include "servodx/trouble.h"
 #include "servodx/tune.h"
 #include "servodx/watch.h"

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "base/error.h"
+#include "base/trouble.h"
 
 namespace servodx {
 namespace {
@@ -68,7 +69,8 @@ bool is_control(char c) {
 void refuse_binary(std::string_view first, const std::string& path) {
   first = first.substr(0, looked_at);
   const auto refuse = [&](std::string_view what, std::string_view mend) {
-    throw InputError({path, 0, ""}, "is " + std::string(what) + ", and no text", std::string(mend));
+    throw DocumentedError(Trouble::binary, {path, 0, ""}, "is " + std::string(what) + ", and no text",
+                          std::string(mend));
   };
   if (first.starts_with(zip) || first.starts_with(empty_zip)) {
     const bool excel = first.find(of_excel[0]) != first.npos || first.find(of_excel[1]) != first.npos;
@@ -81,7 +83,8 @@ void refuse_binary(std::string_view first, const std::string& path) {
     if (first.starts_with(kind.mark)) {
       const bool text = kind.mark.front() == '<' || kind.mark.front() == '{';
       if (text)
-        throw InputError({path, 1, ""}, "is " + std::string(kind.what) + ", and no table", std::string(kind.mend));
+        throw DocumentedError(Trouble::binary, {path, 1, ""}, "is " + std::string(kind.what) + ", and no table",
+                              std::string(kind.mend));
       refuse(kind.what, kind.mend);
     }
   if (first.starts_with(utf16[0]) || first.starts_with(utf16[1])) return;  // refused by who reads text

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "base/error.h"
+#include "base/trouble.h"
 
 namespace servodx {
 
@@ -12,6 +13,9 @@ inline InputError key_error(const Place& at, const std::string& rule, std::strin
   return {{at.file, at.line, ""}, at.column.empty() ? rule : "key '" + at.column + "': " + rule, std::move(mend)};
 }
 // What a reader of quantities, which knows of columns only, said of a key.
-inline InputError key_error(const InputError& error) { return key_error(error.where, error.rule, error.mend); }
+[[noreturn]] inline void throw_of_key(const InputError& error) {
+  InputError of_key = key_error(error.where, error.rule, error.mend);
+  throw_like(error, of_key.where, of_key.rule, of_key.mend);
+}
 
 }  // namespace servodx

@@ -5,6 +5,7 @@
 #include <array>
 #include <stdexcept>
 
+#include "base/base64.h"
 #include "base/csv.h"
 
 namespace servodx {
@@ -45,12 +46,9 @@ std::string sha256_of_file(const std::string& path) { return sha256(read_file(pa
 
 std::string sha256_base64(std::string_view bytes) {
   const std::string hex = sha256(bytes);
-  std::array<unsigned char, 32> digest;
-  for (std::size_t i = 0; i < digest.size(); ++i)
-    digest[i] = static_cast<unsigned char>(std::stoi(hex.substr(2 * i, 2), nullptr, 16));
-  std::array<unsigned char, 45> text;  // 44 characters and a zero
-  const int size = EVP_EncodeBlock(text.data(), digest.data(), static_cast<int>(digest.size()));
-  return {text.begin(), text.begin() + size};
+  std::string digest;
+  for (std::size_t i = 0; i < hex.size(); i += 2) digest += static_cast<char>(std::stoi(hex.substr(i, 2), nullptr, 16));
+  return base64(digest);
 }
 
 }  // namespace servodx

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <utility>
 
+#include "base/trouble.h"
+
 namespace servodx {
 namespace {
 
@@ -115,7 +117,8 @@ const Unit& unit_or_throw(std::string_view name, Dimension expected, const Place
   if (!unit && name.find_first_of("0123456789") != std::string_view::npos && name.find_first_of(".,-t") == 0)
     throw InputError(where, quoted(name) + " follows the number: a range, or a decimal comma",
                      "give one number with a decimal point and its unit, as in \"3.5 um\"");
-  if (!unit) throw InputError(where, "unknown unit " + quoted(name), "use one of " + units_of(expected));
+  if (!unit)
+    throw DocumentedError(Trouble::unit, where, "unknown unit " + quoted(name), "use one of " + units_of(expected));
   return *unit;
 }
 
@@ -193,13 +196,13 @@ Quantity parse_quantity(std::string_view text, Dimension expected, const Place& 
         where, quoted(text) + " is not a quantity",
         "write a number and a unit of " + std::string(name_of(expected)) + " (" + units_of(expected) + ")");
   if (parts->rest.empty() && expected != fraction)
-    throw InputError(where, quoted(text) + " has no unit", "add one of " + units_of(expected));
+    throw DocumentedError(Trouble::unit, where, quoted(text) + " has no unit", "add one of " + units_of(expected));
   const Unit& unit = unit_or_throw(parts->rest.empty() ? "-" : parts->rest, expected, where);
   if (unit.dimension != expected)
-    throw InputError(where,
-                     quoted(unit.name) + " is a unit of " + std::string(name_of(unit.dimension)) + ", not of " +
-                         std::string(name_of(expected)),
-                     "use one of " + units_of(expected));
+    throw DocumentedError(Trouble::unit, where,
+                          quoted(unit.name) + " is a unit of " + std::string(name_of(unit.dimension)) + ", not of " +
+                              std::string(name_of(expected)),
+                          "use one of " + units_of(expected));
   const double si = unit.to_si(parts->number);
   if (!std::isfinite(si))
     throw InputError(where, quoted(text) + " is beyond 1.8e308 in SI", "write a quantity that something has");
@@ -220,10 +223,10 @@ Gain parse_gain(std::string_view text, Dimension expected, const Place& where) {
   const Unit& numerator = unit_or_throw(trimmed(parts->rest.substr(0, slash)), expected, where);
   const Unit& denominator = unit_or_throw(trimmed(parts->rest.substr(slash + 1)), voltage, where);
   if (numerator.dimension != expected)
-    throw InputError(where,
-                     quoted(numerator.name) + " is a unit of " + std::string(name_of(numerator.dimension)) +
-                         ", not of " + std::string(name_of(expected)),
-                     "use one of " + units_of(expected));
+    throw DocumentedError(Trouble::unit, where,
+                          quoted(numerator.name) + " is a unit of " + std::string(name_of(numerator.dimension)) +
+                              ", not of " + std::string(name_of(expected)),
+                          "use one of " + units_of(expected));
   const double gain = parts->number * numerator.multiply / numerator.divide / denominator.scale();
   if (!std::isfinite(gain) || gain == 0.0) throw InputError(where, quoted(text) + " is none or infinite in SI", mend);
   return {gain, &numerator, &denominator};

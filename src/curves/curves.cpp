@@ -103,7 +103,8 @@ class Reading {
   }
 
  private:
-  static constexpr double slow = 0.2;  // [1/s] rated current per time
+  static constexpr double slow = 0.2;     // [1/s] rated current per time
+  static constexpr double fastest = 1.0;  // [1/s] 2.5 ms of a valve's lag make half a per cent of hysteresis
 
   const SweepCurve& curve(Signal signal, const std::vector<double>& output) {
     sheet_.curves.push_back(curve_of(sweeps_, signal, output));
@@ -113,7 +114,7 @@ class Reading {
   void add(const std::string& name, const std::string& signal, double value, const std::string& unit,
            std::string note = "") {
     if (!std::isfinite(value) && note.empty()) return;
-    sheet_.figures.push_back({name, signal, value, unit, std::nullopt, std::nullopt, std::move(note)});
+    sheet_.figures.push_back({.name = name, .signal = signal, .value = value, .unit = unit, .note = std::move(note)});
   }
 
   // Largest distance of the branches in current at one output, over the inner part of the outputs that both reach.
@@ -137,6 +138,19 @@ class Reading {
     }
     return largest / rated_;
   }
+  bool too_fast() const { return sweeps_.rate > fastest * rated_; }
+
+  void add_hysteresis(const std::string& name, const SweepCurve& c) {
+    if (too_fast())
+      add("hysteresis", name, nan, "-",
+          fmt::format("cannot be told: the command sweeps {:.2g} times rated current a second, at most {:.2g} is slow "
+                      "enough",
+                      sweeps_.rate / rated_, fastest));
+    else if (sweeps_.both())
+      add("hysteresis", name, hysteresis(c), "-");
+    else
+      add("hysteresis", name, nan, "-", "cannot be told: the command sweeps one way only");
+  }
   static double distance(const std::vector<double>& current, const SweepCurve& c, double level) {
     return std::fabs(crossing(current, c.up, level) - crossing(current, c.down, level));
   }
@@ -144,8 +158,8 @@ class Reading {
   // Null, hysteresis and threshold are read alike from every output that follows the command.
   void follows(const SweepCurve& c, const std::string& name, const std::vector<double>& output, double gain) {
     add("null_bias", name, crossing(c.current, c.mean, 0.0) / rated_, "-");
-    add("hysteresis", name, hysteresis(c), "-");
-    threshold(name, output, gain);
+    add_hysteresis(name, c);
+    if (!too_fast()) threshold(name, output, gain);
   }
 
   // Smallest step of the output's readings near a sample: meters are coarser where they read more.
@@ -249,7 +263,7 @@ class Reading {
       note = "supply unknown: of the largest load pressure";
     }
     add("null_bias", name, crossing(c.current, c.mean, 0.0) / rated_, "-");
-    add("hysteresis", name, hysteresis(c), "-");
+    add_hysteresis(name, c);
     // Each branch by itself: their mean is flatter than either.
     const auto gain = [&](const std::vector<double>& branch) {
       const double from = crossing(c.current, branch, -0.4 * supply), to = crossing(c.current, branch, 0.4 * supply);
@@ -258,8 +272,10 @@ class Reading {
     const double up = gain(c.up), down = gain(c.down);
     const double value = std::isnan(up) ? down : std::isnan(down) ? up : 0.5 * (up + down);
     if (0.8 / value / 100.0 * rated_ < 2 * sweeps_.step)
-      note += fmt::format("{}a lower bound: the command's steps are {:.2g} % of rated", note.empty() ? "" : "; ",
-                          100 * sweeps_.step / rated_);
+      return add("pressure_gain", name, nan, "1/%",
+                 fmt::format("cannot be told: the command's steps are {:.2g} % of rated, and the gain is at least "
+                             "{:.3g} % of supply per 1 %",
+                             100 * sweeps_.step / rated_, 100 * value));
     add("pressure_gain", name, value, "1/%", note);
   }
 
@@ -326,33 +342,20 @@ class Reading {
   double rated_ = 0;
 };
 
-void judge(Sheet& sheet, const RigFile& rig) {
-  bool any = false, all = true;
-  for (Figure& f : sheet.figures) {
-    const auto limit = rig.limits.find(f.name);
-    if (limit == rig.limits.end()) continue;
-    f.limit = limit->second;
-    if (!std::isfinite(f.value)) continue;
-    const double size = std::fabs(f.value);
-    f.pass = !(f.limit->min && size < *f.limit->min) && !(f.limit->max && size > *f.limit->max);
-    any = true;
-    all = all && *f.pass;
-  }
-  sheet.verdict = !any ? "not_judged" : all ? "pass" : "fail";
-  for (const auto& [name, limit] : rig.limits)
-    if (std::none_of(sheet.figures.begin(), sheet.figures.end(),
-                     [&](const Figure& f) { return f.name == name && f.pass; }))
-      sheet.notes.push_back("limit '" + name + "' is not judged: the log does not show the figure");
-}
-
 }  // namespace
 
-Sheet read_curves(const Log& log, const RigFile& rig) {
+Sheet read_figures(const Log& log, const RigFile& rig) {
   Sheet sheet;
   sheet.notes = log.notes;
   sheet.curves.reserve(4);  // references to them are held while reading
   Reading(log, rig, sheet).read();
-  judge(sheet, rig);
+  return sheet;
+}
+
+Sheet read_curves(const Log& log, const RigFile& rig, const SheetOptions& options) {
+  Sheet sheet = read_figures(log, rig);
+  add_uncertainty(sheet, log, rig, options.instruments);
+  judge(sheet, rig, options.guard);
   return sheet;
 }
 

@@ -12,9 +12,10 @@
 //   lap            distance between the straight parts of both polarities where they meet zero flow
 //   pressure_gain  blocked-port load pressure within +-40 % of supply: part of supply per per cent of rated current
 //   null_leakage   largest flow from supply to return with the ports blocked; pilot_leakage the least, spool open
-// Limits: a sweep that is not slow adds the lag of valve and meter to the hysteresis, and says so; the output's
-// resolution and noise widen what a figure can tell.
+// Limits: a sweep that is not slow adds the lag of valve and meter to the hysteresis, and says so; from a fast one
+// neither hysteresis nor threshold is read. The uncertainty holds noise, resolution and instruments, and no method.
 #pragma once
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -33,14 +34,36 @@ struct SweepCurve {
   std::vector<double> up, down, mean;  // [SI]
 };
 
+// too_near: inside the limit, by less than the guard band. It is no pass.
+enum class Judgement { not_judged, pass, too_near, fail };
+
 struct Figure {
   std::string name;    // of limit_list, or a further one
   std::string signal;  // what it was read from
   double value = 0;    // [unit]
   std::string unit;    // SI; "-" for a fraction
-  std::optional<Limit> limit;
-  std::optional<bool> pass;  // empty: no limit, or the log cannot tell
   std::string note;
+  double uncertainty = std::numeric_limits<double>::quiet_NaN();  // [unit] expanded, k = 2; NaN: not known
+  std::optional<Limit> limit;
+  Judgement judgement = Judgement::not_judged;  // also where the log cannot tell
+
+  std::optional<bool> pass() const {
+    return judgement == Judgement::not_judged ? std::nullopt : std::optional(judgement == Judgement::pass);
+  }
+};
+
+// What is known of an instrument: expanded uncertainty, k = 2, from its calibration.
+struct InstrumentError {
+  Signal signal;
+  double absolute = 0;  // [SI]
+  double relative = 0;  // of the reading
+};
+
+// A figure passes where it is inside its limit by more than `guard` times its expanded uncertainty; on the limit it
+// never does. 0: simple acceptance.
+struct SheetOptions {
+  std::vector<InstrumentError> instruments;
+  double guard = 1.0;
 };
 
 struct Sheet {
@@ -53,6 +76,13 @@ struct Sheet {
 };
 
 // Throws InputError for a log or rig file from which no figure can be read.
-Sheet read_curves(const Log& log, const RigFile& rig);
+Sheet read_curves(const Log& log, const RigFile& rig, const SheetOptions& options = {});
+
+// The figures by themselves, without uncertainty and judgement.
+Sheet read_figures(const Log& log, const RigFile& rig);
+// Expanded uncertainty of each figure: what noise and resolution do to it, by drawing them again (JCGM 101, propagation
+// of distributions), and each error of an instrument. The valve's own scatter from test to test is not in it.
+void add_uncertainty(Sheet& sheet, const Log& log, const RigFile& rig, const std::vector<InstrumentError>& instruments);
+void judge(Sheet& sheet, const RigFile& rig, double guard);
 
 }  // namespace servodx::curves

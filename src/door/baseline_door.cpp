@@ -23,6 +23,7 @@
 #include "servodx/error.h"
 #include "servodx/log.h"
 #include "servodx/rig.h"
+#include "servodx/trouble.h"
 #include "servodx/tune.h"
 
 namespace servodx {
@@ -143,8 +144,10 @@ void write_baseline(const std::string& path, const Baseline& baseline) { write_f
 void require_same_table(const Baseline& baseline, const Tuned& tuned) {
   parts_of(baseline);
   if (baseline.tuned_sha256 == tuned.table.sha256) return;
-  throw key_error({baseline.path, 0, "tuned_sha256"}, "was made with another table than " + tuned.table.path,
-                  "give the table it was made with, or make a baseline with this one");
+  const InputError other =
+      key_error({baseline.path, 0, "tuned_sha256"}, "was made with another table than " + tuned.table.path,
+                "give the table it was made with, or make a baseline with this one");
+  throw DocumentedError(Trouble::other_table, other.where, other.rule, other.mend);
 }
 
 }  // namespace servodx

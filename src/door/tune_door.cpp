@@ -12,6 +12,7 @@
 #include "servodx/log.h"
 #include "servodx/rig.h"
 #include "servodx/table.h"
+#include "servodx/trouble.h"
 #include "servodx/tune.h"
 #include "tune/tune.h"
 
@@ -37,8 +38,8 @@ Tuned read_tuned(const std::string& path) {
   Tuned out;
   out.table = read_table(path);
   if (!out.table.has_std_error)
-    throw InputError({path, 0, "std_error"}, "the table is not tuned: it has no such column",
-                     "tune it with 'servodx tune LOG... --params " + path + " -o TUNED.csv' and give TUNED.csv");
+    throw DocumentedError(Trouble::untuned, {path, 0, "std_error"}, "the table is not tuned: it has no such column",
+                          "tune it with 'servodx tune LOG... --params " + path + " -o TUNED.csv' and give TUNED.csv");
   if (has_old_state(out.table))
     out.notes.push_back(path +
                         ": a tuned table of an earlier version, which kept its model's error in comments; it is read "

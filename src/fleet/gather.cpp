@@ -75,6 +75,7 @@ SetAside refusal_of(const Json& file) {
   log.column = text_at(refused, "column");
   log.rule = text_at(refused, "rule");
   log.mend = text_at(refused, "mend");
+  if (refused.contains("code") && !refused["code"].is_null()) log.code = text_at(refused, "code");
   return log;
 }
 

@@ -33,6 +33,7 @@ struct SetAside {
   long line = 0;       // 0 where none applies
   std::string column;  // empty where none applies
   std::string rule, mend;
+  std::string code = {};  // of docs/errors.md; empty where there is none
 };
 
 struct FleetTable {

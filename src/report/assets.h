@@ -4,6 +4,6 @@
 
 namespace servodx::report::assets {
 
-extern const std::string_view chart_script, chart_style, page_script, page_style;
+extern const std::string_view chart_script, chart_style, page_script, page_style, field_list;
 
 }  // namespace servodx::report::assets

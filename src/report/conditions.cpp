@@ -78,4 +78,21 @@ void add_conditions(Page& page, const std::vector<ConditionRow>& rows) {
   page.add(table);
 }
 
+std::vector<ConditionFigure> condition_figures(const std::vector<ConditionRow>& rows) {
+  constexpr std::array<std::optional<Signal>, n_conditions> signals = {
+      Signal::supply_pressure, Signal::return_pressure, Signal::oil_temperature, Signal::load_force, std::nullopt};
+  std::vector<ConditionFigure> out;
+  for (const ConditionRow& r : rows)
+    if (r.value) out.push_back({of(r.of).name, size(r.of, r.value), signals[static_cast<std::size_t>(r.of)]});
+  return out;
+}
+
+void add_to_head(Page& page, const std::vector<ConditionRow>& rows) {
+  for (const ConditionRow& r : rows) {
+    if (!r.value) continue;
+    if (r.of == Condition::oil) page.head("Oil", size(r.of, r.value));
+    if (r.of == Condition::supply) page.head("Supply", size(r.of, r.value));
+  }
+}
+
 }  // namespace servodx::report

@@ -1,11 +1,13 @@
 // Where a log was recorded, for a person, for a program, and as a part of a page.
 #pragma once
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "evidence/operating_point.h"
 #include "report/json.h"
 #include "report/page.h"
+#include "signals/signal.h"
 
 namespace servodx::report {
 
@@ -16,5 +18,13 @@ std::string conditions_in_words(const std::vector<ConditionRow>& rows);
 std::string beyond_in_words(const std::vector<ConditionRow>& rows);
 Json conditions_json(const std::vector<ConditionRow>& rows);
 void add_conditions(Page& page, const std::vector<ConditionRow>& rows);
+// What the log holds, one by one; `signal`: that it was read from.
+struct ConditionFigure {
+  std::string name, value;
+  std::optional<Signal> signal;
+};
+std::vector<ConditionFigure> condition_figures(const std::vector<ConditionRow>& rows);
+// Oil and supply of the test, into the page's head.
+void add_to_head(Page& page, const std::vector<ConditionRow>& rows);
 
 }  // namespace servodx::report

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -14,6 +15,7 @@ namespace servodx::report {
 namespace {
 
 using curves::Figure;
+using curves::Judgement;
 using curves::Sheet;
 
 Json numbers(const std::vector<double>& values) {
@@ -21,17 +23,22 @@ Json numbers(const std::vector<double>& values) {
   for (double v : values) array.push_back(number(v));
   return array;
 }
+const char* key_of(Judgement judgement) {
+  constexpr const char* keys[] = {"not_judged", "pass", "too_near", "fail"};
+  return keys[static_cast<std::size_t>(judgement)];
+}
 Json bound(const std::optional<double>& b) { return b ? Json(*b) : Json(nullptr); }
 
 }  // namespace
 
-std::string readable(const Figure& f, double value) {
-  if (f.unit == "-") return digits(100 * value, 3) + (f.name == "symmetry" ? " %" : " % of rated");
-  if (f.unit == "1/%") return digits(100 * value, 3) + " % of supply per 1 %";
-  if (f.unit == "m3/s") return digits(find_unit("l/min")->from_si(value), 4) + " l/min";
-  if (f.unit == "m3/s/A") return digits(value * 6e4 * 1e-3, 4) + " l/min/mA";
-  if (f.unit == "m") return digits(value * 1e3, 4) + " mm";
-  return digits(value, 4) + " " + f.unit;
+std::string readable(const Figure& f, double value, int significant) {
+  if (f.unit == "-")
+    return digits(100 * value, std::min(significant, 3)) + (f.name == "symmetry" ? " %" : " % of rated");
+  if (f.unit == "1/%") return digits(100 * value, std::min(significant, 3)) + " % of supply per 1 %";
+  if (f.unit == "m3/s") return digits(find_unit("l/min")->from_si(value), significant) + " l/min";
+  if (f.unit == "m3/s/A") return digits(value * 6e4 * 1e-3, significant) + " l/min/mA";
+  if (f.unit == "m") return digits(value * 1e3, significant) + " mm";
+  return digits(value, significant) + " " + f.unit;
 }
 
 std::string limit_text(const Figure& f) {
@@ -43,15 +50,47 @@ std::string limit_text(const Figure& f) {
   return low + (low.empty() || high.empty() ? "" : ", ") + high;
 }
 
+std::string value_text(const Figure& f) {
+  if (!std::isfinite(f.value)) return "-";
+  constexpr double rounding = 1e-3;  // of the uncertainty: less is what arithmetic leaves of zero
+  return readable(f, std::fabs(f.value) < rounding * f.uncertainty ? 0.0 : f.value);
+}
+
+std::string uncertainty_text(const Figure& f) {
+  return std::isfinite(f.uncertainty) ? readable(f, f.uncertainty, 2) : "";
+}
+
+std::string word_of(Judgement judgement) {
+  switch (judgement) {
+    case Judgement::not_judged:
+      return "";
+    case Judgement::pass:
+      return "pass";
+    case Judgement::too_near:
+      return "NO PASS, too near";
+    case Judgement::fail:
+      return "FAIL";
+  }
+  return "";
+}
+
+std::string guard_words(double guard) {
+  if (!(guard > 0)) return "a figure passes where it is inside its limit; on the limit it does not (simple acceptance)";
+  return fmt::format(
+      "a figure passes where it is inside its limit by more than {}its expanded uncertainty (k = 2), the guard band; "
+      "on "
+      "the limit it does not",
+      guard == 1 ? "" : digits(guard) + " times ");
+}
+
 std::string text_of(const Sheet& sheet, const std::string& log, bool colour) {
   const bool judged = sheet.verdict != "not_judged";
   std::string verdict = sheet.verdict == "pass" ? "PASS" : sheet.verdict == "fail" ? "FAIL" : "no limits given";
   if (colour && judged) verdict = fmt::format("\033[1;{}m{}\033[0m", sheet.verdict == "pass" ? "32" : "31", verdict);
-  Columns table("llllll", 2);
-  table.row({"figure", "value", "limit", "", "from", ""});
+  Columns table("lllllll", 2);
+  table.row({"figure", "value", "+- (k = 2)", "limit", "", "from", ""});
   for (const Figure& f : sheet.figures)
-    table.row({f.name, std::isfinite(f.value) ? readable(f, f.value) : "-", limit_text(f),
-               f.pass ? (*f.pass ? "pass" : "FAIL") : "", f.signal, f.note});
+    table.row({f.name, value_text(f), uncertainty_text(f), limit_text(f), word_of(f.judgement), f.signal, f.note});
   return log + ": " + verdict + "\n" + table.text();
 }
 
@@ -64,7 +103,9 @@ Json curves_json(const Sheet& sheet) {
          {"value", number(f.value)},
          {"unit", f.unit},
          {"limit", f.limit ? Json{{"min", bound(f.limit->min)}, {"max", bound(f.limit->max)}} : Json(nullptr)},
-         {"pass", f.pass ? Json(*f.pass) : Json(nullptr)},
+         {"pass", f.pass() ? Json(*f.pass()) : Json(nullptr)},
+         {"uncertainty", number(f.uncertainty)},
+         {"judgement", key_of(f.judgement)},
          {"note", f.note}});
   for (const curves::SweepCurve& c : sheet.curves)
     sweeps.push_back({{"signal", info(c.signal).name},

@@ -1,3 +1,5 @@
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -12,6 +14,7 @@ namespace servodx::report {
 namespace {
 
 using curves::Figure;
+using curves::Judgement;
 using curves::Sheet;
 
 std::string display_unit(Signal signal) {
@@ -34,6 +37,25 @@ std::vector<double> drawn_through(std::vector<double> y, const std::vector<doubl
   return y;
 }
 
+Tone tone_of(Judgement judgement) {
+  switch (judgement) {
+    case Judgement::not_judged:
+      return Tone::plain;
+    case Judgement::pass:
+      return Tone::good;
+    case Judgement::too_near:
+      return Tone::doubt;
+    case Judgement::fail:
+      return Tone::bad;
+  }
+  return Tone::plain;
+}
+
+std::string with_uncertainty(const Figure& f) {
+  const std::string value = value_text(f), more = uncertainty_text(f);
+  return more.empty() ? value : value + " \u00b1 " + more;
+}
+
 // What a first look asks for.
 std::vector<std::pair<std::string, std::string>> first_facts(const Sheet& sheet) {
   std::vector<std::pair<std::string, std::string>> facts;
@@ -41,7 +63,7 @@ std::vector<std::pair<std::string, std::string>> first_facts(const Sheet& sheet)
        {"rated_flow", "null_bias", "hysteresis", "pressure_gain", "null_leakage", "phase_lag_90_frequency", "lap"})
     for (const Figure& f : sheet.figures)
       if (f.name == name && std::isfinite(f.value) && facts.size() < 4)
-        facts.push_back({words(f.name), readable(f, f.value)});
+        facts.push_back({words(f.name), with_uncertainty(f)});
   return facts;
 }
 
@@ -91,30 +113,47 @@ void add_response(Page& page, const Sheet& sheet) {
 
 }  // namespace
 
-Page curves_page(const Header& header, const Sheet& sheet, const std::string& log, double rated_current) {
+Page curves_page(const Header& header, const Sheet& sheet, const std::string& log, double rated_current, double guard,
+                 const CertificateOf& certificate) {
   Page page(header, "Acceptance sheet of " + file_name(log));
   Verdict v;
   v.tone = sheet.verdict == "pass" ? Tone::good : sheet.verdict == "fail" ? Tone::bad : Tone::plain;
   v.word = sheet.verdict == "pass" ? "PASS" : sheet.verdict == "fail" ? "FAIL" : "NOT JUDGED";
-  const auto judged =
-      std::count_if(sheet.figures.begin(), sheet.figures.end(), [](auto& f) { return f.pass.has_value(); });
-  const auto failed =
-      std::count_if(sheet.figures.begin(), sheet.figures.end(), [](auto& f) { return f.pass && !*f.pass; });
+  const auto count = [&](Judgement judgement) {
+    return std::count_if(sheet.figures.begin(), sheet.figures.end(),
+                         [&](const Figure& f) { return f.judgement == judgement; });
+  };
+  const auto failed = count(Judgement::fail), near = count(Judgement::too_near);
+  const auto judged = failed + near + count(Judgement::pass);
   v.headline = judged == 0  ? file_name(log) + ": the rig file gives no limit for its figures"
-               : failed > 0 ? std::to_string(failed) + " of " + std::to_string(judged) + " limits are broken"
-                            : "All " + std::to_string(judged) + " limits are kept";
+               : failed > 0 ? fmt::format("{} of {} limits {} broken", failed, judged, failed == 1 ? "is" : "are")
+               : near > 0   ? fmt::format("{} of {} figures {} nearer to the limit than the guard band", near, judged,
+                                        near == 1 ? "is" : "are")
+                            : fmt::format("All {} limits are kept", judged);
   if (judged == 0) v.detail = "Limits go under [limits] of the rig file; the figures stand below.";
   v.facts = first_facts(sheet);
   for (const Figure& f : sheet.figures)
-    if (f.pass && !*f.pass) v.reasons.push_back(words(f.name) + ": " + readable(f, f.value) + ", " + limit_text(f));
+    if (f.judgement == Judgement::fail || f.judgement == Judgement::too_near)
+      v.reasons.push_back(words(f.name) + ": " + with_uncertainty(f) + ", " + limit_text(f) +
+                          (f.judgement == Judgement::too_near ? "; too near to pass" : ""));
+  if (judged > 0) v.detail = sentence(guard_words(guard));
   page.verdict(v);
+  if (certificate.sheet) {
+    std::vector<CertifiedFigure> certified;
+    for (const Figure& f : sheet.figures)
+      if (std::isfinite(f.value))
+        certified.push_back({words(f.name), value_text(f), uncertainty_text(f), limit_text(f), word_of(f.judgement),
+                             tone_of(f.judgement)});
+    add_certificate(page, certificate, header, certified, guard_words(guard) + ".");
+  }
 
   page.section("Figures", "As SAE ARP490 defines them. Percentages are of rated current.");
-  TablePart table{"Figures", "lrllll", {"figure", "value", "limit", "", "from", "note"}, {}, 0};
+  TablePart table{"Figures", "lrrllll", {"figure", "value", "+- (k = 2)", "limit", "", "from", "note"}, {}, 0};
   for (const Figure& f : sheet.figures) {
-    Cell judgement = f.pass ? (*f.pass ? "pass" : "FAIL") : "";
-    judgement.tone = f.pass ? (*f.pass ? Tone::good : Tone::bad) : Tone::plain;
-    table.rows.push_back({words(f.name), std::isfinite(f.value) ? Cell(readable(f, f.value), f.value) : Cell("-"),
+    Cell judgement = word_of(f.judgement);
+    judgement.tone = tone_of(f.judgement);
+    table.rows.push_back({words(f.name), std::isfinite(f.value) ? Cell(value_text(f), f.value) : Cell("-"),
+                          std::isfinite(f.uncertainty) ? Cell(uncertainty_text(f), f.uncertainty) : Cell(""),
                           limit_text(f), judgement, words(f.signal), f.note});
   }
   page.add(table);

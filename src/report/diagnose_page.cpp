@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <filesystem>
 #include <map>
@@ -9,6 +8,7 @@
 #include "base/csv.h"
 #include "base/json_text.h"
 #include "base/key_error.h"
+#include "base/trouble.h"
 #include "diagnose/assessment.h"
 #include "diagnose/baseline.h"
 #include "diagnose/decide.h"
@@ -18,8 +18,10 @@
 #include "faults/fault.h"
 #include "faults/gross_finding.h"
 #include "fit/replay.h"
+#include "report/certificate.h"
 #include "report/columns.h"
 #include "report/conditions.h"
+#include "report/curves.h"
 #include "report/diagnosis_words.h"
 #include "report/handy.h"
 #include "report/json.h"
@@ -57,11 +59,6 @@ std::string headline(const Diagnosis& d) {
   return words(label_of(d.fault) + of_channel(d)) + (size.empty() ? "" : ", " + size);
 }
 
-std::string sentence(std::string words) {
-  words.front() = static_cast<char>(std::toupper(static_cast<unsigned char>(words.front())));
-  return words + ".";
-}
-
 std::vector<std::string> reasons(const Diagnosis& d, const DetectionBaseline& baseline) {
   std::vector<std::string> why;
   const bool above = d.error > d.threshold;
@@ -76,7 +73,9 @@ std::vector<std::string> reasons(const Diagnosis& d, const DetectionBaseline& ba
                   digits(d.error), d.baseline_logs, digits(d.threshold), chance_words(d)));
   if (const std::string far = beyond_in_words(d.conditions); !far.empty())
     why.push_back("Beware: recorded beyond what is known: " + far + ".");
-  if (d.unlike) why.push_back("Beware: " + unlike_words(d) + ". The threshold may not hold for it.");
+  if (d.unlike)
+    why.push_back("Beware: " + unlike_words(d) + ". The threshold may not hold for it." +
+                  mark_of(Trouble::unlike_test));
   if (d.others > 0) why.push_back("Compared with " + others_words(d) + ".");
   const HypothesisResult* healthy = result_of(d, nullptr);
   const HypothesisResult* best = d.fault ? result_of(d, d.fault) : nearest_fault(d);
@@ -96,10 +95,10 @@ std::vector<std::string> reasons(const Diagnosis& d, const DetectionBaseline& ba
   } else if (d.fault && !seen_outright) {
     const HypothesisResult* next = nullptr;
     for (const HypothesisResult& h : d.assessment.hypotheses)
-      if (h.fault != d.fault && (!next || h.probability > next->probability)) next = &h;
+      if (h.fault != d.fault && (!next || probability_of(d, h.fault) > probability_of(d, next->fault))) next = &h;
     if (next)
       why.push_back(fmt::format("The next best explanation, {}, has {}.", words(label_of(next->fault)),
-                                chance(next->probability)));
+                                chance(probability_of(d, next->fault))));
   }
   if (d.suspicion) why.push_back(sentence(suspicion_in_words(*d.suspicion)));
   if (d.beyond) why.push_back(sentence(beyond_in_words(*d.beyond)));
@@ -115,6 +114,7 @@ Verdict verdict_of(const Diagnosis& d, const DetectionBaseline& baseline) {
   v.headline = headline(d);
   if (d.assessment.unjudgeable != Unjudgeable::no) {
     v.facts.push_back({"Action", d.action.text});
+    for (const std::string& call : next_calls(d)) v.reasons.push_back("Run next: " + call);
     return v;
   }
   if (d.fault) v.detail = meaning_of(d.fault) + ", in " + d.log;
@@ -124,10 +124,27 @@ Verdict verdict_of(const Diagnosis& d, const DetectionBaseline& baseline) {
   v.facts.push_back({"Null", percent(d.null) + " of rated"});
   if (d.action.of != ActionClass::none) v.facts.push_back({"Action", d.action.text});
   v.reasons = reasons(d, baseline);
+  for (const std::string& call : next_calls(d)) v.reasons.push_back("Run next: " + call);
   return v;
 }
 
+// Of a healthy log: what was tried beside health, and that it gained nothing. A bar of its probability would promise
+// more than the rate of false alarms that the baseline can.
+void add_tried(Page& page, const Diagnosis& d) {
+  TablePart table{"Faults that were tried: none gains more than on fault-free logs",
+                  "lll",
+                  {"fault", "size that fits best", "what it leaves"},
+                  {},
+                  4};
+  for (const HypothesisResult& h : d.assessment.hypotheses)
+    if (h.fault)
+      table.rows.push_back({words(label_of(h.fault)), size_words(h),
+                            fmt::format("worst channel {} times its usual error", digits(h.adequacy, 2))});
+  if (!table.rows.empty()) page.add(table);
+}
+
 void add_ranking(Page& page, const Diagnosis& d) {
+  if (d.verdict == VerdictKind::healthy) return add_tried(page, d);
   Bars bars;
   bars.title = "Hypotheses, each fitted to this log";
   bars.label = "hypothesis";
@@ -207,6 +224,48 @@ void add_details(Page& page, const Diagnosis& d, const std::vector<Replay>& repl
   }
 }
 
+// Where the log was recorded, each with the uncertainty of the instrument that the sheet names for it.
+void certify_conditions(std::vector<CertifiedFigure>& figures, const Diagnosis& d, const Certificate& sheet) {
+  for (const ConditionFigure& c : condition_figures(d.conditions)) {
+    const Instrument* instrument = c.signal ? sheet.of(*c.signal) : nullptr;
+    figures.push_back({c.name, c.value, instrument ? instrument->uncertainty : "", "", "", Tone::plain});
+  }
+}
+
+constexpr int null_row = 41;  // id of servovalve_null, as every table has it
+
+void certify(Page& page, const Diagnosis& d, const DetectionBaseline& baseline, const Header& header,
+             const CertificateOf& certificate) {
+  const Certificate& sheet = *certificate.sheet;
+  std::vector<CertifiedFigure> figures = {
+      {"error", digits(d.error) + " deviates", "", "below " + digits(d.threshold), word_of(d.verdict), tone_of(d)}};
+  for (const NamedFault& f : d.faults)
+    figures.push_back(
+        {words(label_of(f.fault)), handy(f.severity, unit_of(f.fault)),
+         std::isfinite(f.lower) && std::isfinite(f.upper) ? handy(0.5 * (f.upper - f.lower), unit_of(f.fault)) : "", "",
+         chance(f.probability), Tone::plain});
+  CertifiedFigure null{"null",     percent(d.null) + " of rated", "", "below " + percent(baseline.null_limit), "",
+                       Tone::plain};
+  constexpr double k = 2;  // of an expanded uncertainty
+  for (const MovedRow& row : d.moved)
+    if (row.id == null_row && std::isfinite(row.std_error)) {
+      const double size = std::abs(d.null), band = sheet.guard * k * row.std_error;
+      const bool inside = size < baseline.null_limit, clear = size + band < baseline.null_limit;
+      null.uncertainty = percent(k * row.std_error);
+      null.judgement = word_of(clear    ? curves::Judgement::pass
+                               : inside ? curves::Judgement::too_near
+                                        : curves::Judgement::fail);
+      null.tone = clear ? Tone::good : inside ? Tone::doubt : Tone::bad;
+    }
+  figures.push_back(null);
+  certify_conditions(figures, d, sheet);
+  add_certificate(page, certificate, header, figures,
+                  "healthy is said where the error is below the threshold, unless the records show a fault by "
+                  "themselves. " +
+                      sentence(statement_of(baseline)) + " Of a figure with a limit: " + guard_words(sheet.guard) +
+                      ".");
+}
+
 bool all_known(const std::vector<Diagnosis>& results, const std::vector<std::string>& truths) {
   return truths.size() == results.size() &&
          std::none_of(truths.begin(), truths.end(), [](const auto& t) { return t.empty(); });
@@ -268,11 +327,14 @@ std::string truth_beside(const std::string& log, const std::string& sha256) {
 }
 
 Page diagnose_page(const Header& header, const std::vector<Diagnosis>& results, const DetectionBaseline& baseline,
-                   const std::vector<Replay>& replays, const std::vector<std::string>& truths) {
+                   const std::vector<Replay>& replays, const std::vector<std::string>& truths,
+                   const CertificateOf& certificate) {
   if (results.size() == 1) {
     const Diagnosis& d = results.front();
     Page page(header, "Diagnosis of " + file_name(d.log));
+    add_to_head(page, d.conditions);
     page.verdict(verdict_of(d, baseline));
+    if (certificate.sheet) certify(page, d, baseline, header, certificate);
     page.section(d.assessment.unjudgeable == Unjudgeable::no ? "Why" : "This log");
     add_details(page, d, replays, 1);
     return page;

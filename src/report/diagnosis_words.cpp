@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 
+#include "base/trouble.h"
 #include "diagnose/assessment.h"
 #include "diagnose/baseline.h"
 #include "diagnose/decide.h"
@@ -167,7 +168,8 @@ std::string statement_of(const DetectionBaseline& b) {
       "confidence)",
       b.logs, 100 * b.promised, 100 * b.promised_95);
   if (!keeps_rate(b))
-    text += fmt::format("; {:.3g} % takes {} logs, {} more", 100 * b.asked, b.logs_needed, b.logs_needed - b.logs);
+    text += fmt::format("; {:.3g} % takes {} logs, {} more", 100 * b.asked, b.logs_needed, b.logs_needed - b.logs) +
+            mark_of(Trouble::few_logs);
   return text;
 }
 
@@ -300,6 +302,14 @@ std::string others_words(const Diagnosis& d) {
   return fmt::format(
       "{} fault-free log{} of other tests, as the baseline's own do not hold this one; they promise no rate", d.others,
       d.others == 1 ? "" : "s");
+}
+
+std::vector<std::string> next_calls(const Diagnosis& d) {
+  if (d.verdict != VerdictKind::unknown) return {};
+  const std::string look = "servodx check-log LOG --rig RIG.toml --params TUNED";
+  if (d.assessment.unjudgeable != Unjudgeable::no) return {look};
+  return {look,
+          "servodx explain LOG --rig RIG.toml --params TUNED --baseline BASE.json -o EXTENDED.csv --report PAGE.html"};
 }
 
 MovedParts moved_parts(const Diagnosis& d) {

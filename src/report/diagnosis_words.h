@@ -76,6 +76,7 @@ std::string test_words(const TestConditions& test);
 // Empty where a log of the baseline is of such a test.
 std::string unlike_words(const Diagnosis& d);
 std::string others_words(const Diagnosis& d);  // empty: it was compared with the baseline's own logs
+std::vector<std::string> next_calls(const Diagnosis& d);  // of a verdict that names nothing: what to run next
 
 // The rows that the fault moved; those of health's own, each farthest first.
 struct MovedParts {

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <map>
 
+#include "base/trouble.h"
 #include "base/wilson.h"
 #include "report/columns.h"
 #include "report/fleet_words.h"
@@ -14,7 +15,8 @@ namespace servodx::report {
 namespace {
 
 Json to_json(const SetAside& s) {
-  return {{"file", s.file}, {"line", s.line}, {"column", s.column}, {"rule", s.rule}, {"mend", s.mend}};
+  return {{"file", s.file}, {"line", s.line}, {"column", s.column},
+          {"rule", s.rule}, {"mend", s.mend}, {"code", s.code.empty() ? Json(nullptr) : Json(s.code)}};
 }
 
 Json to_json(const std::vector<SetAside>& files) {
@@ -98,8 +100,15 @@ std::string confusion_text(const Confusion& confusion) {
 
 }  // namespace
 
+SetAside set_aside_of(const InputError& error) {
+  SetAside out{error.where.file, error.where.line, error.where.column, error.rule, error.mend};
+  if (const auto trouble = trouble_of(error)) out.code = code_of(*trouble);
+  return out;
+}
+
 std::string words_of(const SetAside& file) {
-  return InputError({file.file, file.line, file.column}, file.rule, file.mend).what();
+  const std::string code = file.code.empty() ? "" : " [" + file.code + "]";
+  return InputError({file.file, file.line, file.column}, file.rule, file.mend).what() + code;
 }
 
 std::string text_of(const FleetRun& run) {
@@ -126,8 +135,7 @@ Json fleet_run_json(const FleetRun& run) {
 }
 
 Json refusal_json(const std::string& log, const InputError& error) {
-  Json refused = to_json(SetAside{error.where.file, error.where.line, error.where.column, error.rule, error.mend});
-  return {{"log", log}, {"refused", refused}};
+  return {{"log", log}, {"refused", to_json(set_aside_of(error))}};
 }
 
 std::string text_of(const FleetTable& table, const std::optional<Confusion>& confusion) {

@@ -12,7 +12,8 @@
 
 namespace servodx::report {
 
-std::string words_of(const SetAside& file);  // "log.csv:14: column 'time': rule; mend"
+SetAside set_aside_of(const InputError& error);
+std::string words_of(const SetAside& file);  // "log.csv:14: column 'time': rule; mend [E03]"
 
 std::string text_of(const FleetRun& run);
 Json fleet_run_json(const FleetRun& run);

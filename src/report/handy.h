@@ -22,9 +22,10 @@ std::string handy(double value, const std::string& unit);  // "12 um"
 // "12 um (9 to 15, 95 %)"; the interval is left out where it is not finite.
 std::string handy_interval(double value, double lower, double upper, const std::string& unit);
 
-std::string percent(double fraction);    // "41 %", "0.03 %"
-std::string chance(double probability);  // "41 %", "under 0.1 %"
-std::string duration(double seconds);    // "0.42 s", "3 min 12 s"
+std::string percent(double fraction);     // "41 %", "0.03 %"
+std::string chance(double probability);   // "41 %", "under 0.1 %"
+std::string sentence(std::string words);  // begins with a capital, ends in a full stop
+std::string duration(double seconds);     // "0.42 s", "3 min 12 s"
 
 // A channel's rms figures in the unit of the log; in SI where that unit is relative to a fact ('% of stroke').
 struct ChannelFigures {

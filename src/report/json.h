@@ -8,6 +8,7 @@
 
 #include "diagnose/diagnose.h"
 #include "evidence/conditions.h"
+#include "report/page_head.h"
 #include "tune/tune.h"
 
 namespace servodx::report {
@@ -27,6 +28,7 @@ struct Header {
   double seconds = 0;  // [s] wall time
   long simulations = 0, failed_simulations = 0;
   std::vector<std::string> notes;
+  PageHead head;  // of pages alone
 };
 
 Json number(double value);  // null where it is not finite: JSON has no word for it

@@ -293,6 +293,29 @@ void Page::add(const Matrix& m) {
   body_ += "</tbody></table></div></figure>\n";
 }
 
+void Page::head(const std::string& name, const std::string& value) { header_.head.say(name, value); }
+
+std::string Page::head_html() const {
+  const PageHead& head = header_.head;
+  std::string html = "<header>\n";
+  if (!head.logo.empty() || !head.lines.empty()) {
+    html += "<div class=\"house\">";
+    if (!head.logo.empty()) html += fmt::format("<img src=\"{}\" alt=\"\">", escape_html(head.logo));
+    html += "<p>";
+    for (const std::string& line : head.lines) html += escape_html(line) + "<br>";
+    html += "</p></div>\n";
+  }
+  html += fmt::format("<p><span class=\"tool\">servodx {}</span> <span class=\"title\">{}</span></p>\n",
+                      escape_html(header_.command), escape_html(title_));
+  if (!head.facts.empty()) {
+    html += "<dl class=\"head\">";
+    for (const auto& [name, value] : head.facts)
+      html += fmt::format("<div><dt>{}</dt><dd>{}</dd></div>", escape_html(name), escape_html(value));
+    html += "</dl>\n";
+  }
+  return html + "</header>\n";
+}
+
 std::string Page::html() {
   section("How this was made", "", true);
   std::string settings;
@@ -322,9 +345,7 @@ std::string Page::html() {
   page += "<meta name=\"color-scheme\" content=\"light dark\">\n<link rel=\"icon\" href=\"data:,\">\n";
   page += fmt::format("<title>{}</title>\n<style>{}\n{}</style>\n</head>\n<body>\n", escape_html(title_),
                       assets::chart_style, assets::page_style);
-  page +=
-      fmt::format("<header><span class=\"tool\">servodx {}</span> <span class=\"title\">{}</span></header>\n<main>\n",
-                  escape_html(header_.command), escape_html(title_));
+  page += head_html() + "<main>\n";
   page += body_;
   page += "</main>\n<noscript><p>The charts need JavaScript; words and tables do not.</p></noscript>\n";
   page += fmt::format("<script type=\"application/json\" id=\"data\">[{}]</script>\n", data_);

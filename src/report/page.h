@@ -31,10 +31,13 @@ class Page {
   void add(const Moves& moves);
   void add(const Matrix& matrix);
 
+  void head(const std::string& name, const std::string& value);  // a fact of the page's head
+
   std::string html();  // ends the page: inputs, settings and notes are its last section
 
  private:
   void end_section();
+  std::string head_html() const;
   std::string csv_button(const std::string& title) const;
   Header header_;
   std::string title_, body_, data_;

@@ -5,6 +5,7 @@
 
 #include "diagnose/diagnose.h"
 #include "fit/replay.h"
+#include "report/certificate.h"
 #include "report/page.h"
 #include "report/tune_words.h"
 #include "tune/tune.h"
@@ -21,7 +22,8 @@ Page simulate_page(const Header& header, const Replay& replay);
 Page baseline_page(const Header& header, const DetectionBaseline& baseline, const std::vector<Replay>& replays);
 // `truths`: what each log was made with, "" where that is not known; they enter the confusion table and nothing else.
 Page diagnose_page(const Header& header, const std::vector<Diagnosis>& results, const DetectionBaseline& baseline,
-                   const std::vector<Replay>& replays, const std::vector<std::string>& truths = {});
+                   const std::vector<Replay>& replays, const std::vector<std::string>& truths = {},
+                   const CertificateOf& certificate = {});
 
 // The label in LOG.truth.json beside a log of the virtual rig whose bytes it speaks of; "" without.
 std::string truth_beside(const std::string& log, const std::string& sha256);

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/trouble.h"
 #include "diagnose/assessment.h"
 #include "diagnose/baseline.h"
 #include "diagnose/decide.h"
@@ -171,6 +172,7 @@ std::string text_of(const Diagnosis& d, const TextOptions& options) {
   if (const std::string far = beyond_in_words(d.conditions); !far.empty()) table.row({"BEYOND", far});
   if (d.assessment.unjudgeable != Unjudgeable::no) {
     table.row({"action", d.action.text});
+    for (const std::string& call : next_calls(d)) table.row({"next", call});
     return first + ": " + words_of(d.assessment.unjudgeable) + "\n" + table.text();
   }
   if (d.verdict == VerdictKind::unknown) first += ": not like the fault-free logs, and no known fault explains it";
@@ -179,7 +181,7 @@ std::string text_of(const Diagnosis& d, const TextOptions& options) {
   table.row({word, hypotheses});
   table.row({"error", fmt::format("{}, threshold {}; {}", digits(d.error), digits(d.threshold), chance_words(d))});
   if (d.beyond) table.row({"but", beyond_in_words(*d.beyond)});
-  if (d.unlike) table.row({"beware", unlike_words(d)});
+  if (d.unlike) table.row({"beware", unlike_words(d) + mark_of(Trouble::unlike_test)});
   if (d.others > 0) table.row({"compared with", others_words(d)});
   for (const RecordFinding& f : d.records) table.row({"record", record_in_words(f)});
   for (std::size_t i = 1; i < d.faults.size(); ++i) table.row({"and", second_in_words(d.faults[i])});
@@ -188,6 +190,7 @@ std::string text_of(const Diagnosis& d, const TextOptions& options) {
   if (!d.ambiguous_with.empty()) table.row({"or else", join(ambiguous_labels(d))});
   if (const std::string test = separating_test_of(d); !test.empty()) table.row({"to separate", test});
   if (d.action.of != ActionClass::none) table.row({"action", d.action.text});
+  for (const std::string& call : next_calls(d)) table.row({"next", call});
   table.row({"null", percent(d.null) + " of rated"});
 
   if (!d.fault) {

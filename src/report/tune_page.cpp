@@ -105,11 +105,6 @@ void add_search(Page& page, const TuneResult& result) {
   page.text("Each stage weighs the residuals in its own way: compare levels within a stage, not between stages.");
 }
 
-std::string sentence(std::string text) {
-  if (!text.empty()) text.front() = static_cast<char>(std::toupper(static_cast<unsigned char>(text.front())));
-  return text + ".";
-}
-
 }  // namespace
 
 Page tune_page(const Header& header, const TuneResult& result, const GoodEnough& enough,

@@ -289,7 +289,7 @@ RigModel read_rig_model(const std::string& path) {
     check_whole(model);
     return model;
   } catch (const InputError& error) {
-    throw key_error(error);
+    throw_of_key(error);
   }
 }
 

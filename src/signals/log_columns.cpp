@@ -9,6 +9,7 @@
 #include <limits>
 
 #include "base/nearest.h"
+#include "base/trouble.h"
 #include "base/units.h"
 #include "servodx/rig.h"
 #include "signals/plausible.h"
@@ -86,9 +87,20 @@ LogColumns::LogColumns(std::string path, const RigFile& rig, const ReadOptions& 
   log_.path = path_;
 }
 
+void LogColumns::refuse_as(Trouble trouble, long line, const std::string& column, const std::string& rule,
+                           const std::string& mend) const {
+  const InputError error = refusal(line, column, rule, mend);
+  throw DocumentedError(trouble, error.where, error.rule, error.mend);
+}
+
 void LogColumns::refuse(long line, const std::string& column, const std::string& rule, const std::string& mend) const {
-  if (format_.has_lines) throw InputError({path_, line, column}, rule, mend);
-  throw InputError({path_, 0, column}, line > 0 ? fmt::format("sample {}: {}", line, rule) : rule, mend);
+  throw refusal(line, column, rule, mend);
+}
+
+InputError LogColumns::refusal(long line, const std::string& column, const std::string& rule,
+                               const std::string& mend) const {
+  if (format_.has_lines) return {{path_, line, column}, rule, mend};
+  return {{path_, 0, column}, line > 0 ? fmt::format("sample {}: {}", line, rule) : rule, mend};
 }
 
 const ColumnMapping* LogColumns::mapping_of(const std::string& cell, const std::string& name) const {
@@ -128,7 +140,7 @@ int LogColumns::add(const std::string& cell, long line) {
 LogColumns::Column LogColumns::resolve(Signal signal, const std::string& column_name, const std::string& written_unit,
                                        bool has_unit, const ColumnMapping* mapping) const {
   const auto refuse_here = [&](const std::string& rule, const std::string& mend) {
-    refuse(format_.has_lines ? header_line_ : 0, column_name, rule, mend);
+    refuse_as(Trouble::unit, format_.has_lines ? header_line_ : 0, column_name, rule, mend);
   };
   const std::string mapped_unit = mapping ? mapping->column_unit : "";
   const auto in_rig_file = [&](const std::string& what) {
@@ -192,7 +204,7 @@ void LogColumns::refuse_missing(Signal signal, const std::string& rule) const {
   for (const std::string& ignored : ignored_)
     if (in_small_letters(ignored) == name) near = ignored;
   if (!near.empty()) mend += fmt::format("; did you mean '{}' by '{}'?", name, near);
-  refuse(format_.has_lines ? header_line_ : 0, name, rule, mend);
+  refuse_as(Trouble::signal, format_.has_lines ? header_line_ : 0, name, rule, mend);
 }
 
 void LogColumns::require_signals() const {
@@ -224,8 +236,8 @@ void LogColumns::append(std::span<const double> sample, long line) {
   if (!std::isfinite(now))
     refuse(line, time.name, fmt::format("{} {} is no finite time", sample[time_], time.unit.name), "mend the number");
   if (!(now > previous_))
-    refuse(line, time.name, fmt::format("time does not increase: {} s after {} s", now, previous_),
-           "sort the rows and remove repeated ones");
+    refuse_as(Trouble::time, line, time.name, fmt::format("time does not increase: {} s after {} s", now, previous_),
+              "sort the rows and remove repeated ones");
   previous_ = now;
   last_line_ = line;
   for (std::size_t c = 0; c < columns_.size(); ++c) {
@@ -325,7 +337,7 @@ Log LogColumns::finish(std::string sha256) {
     channel.resolution = resolution(column.value, sweep);
     (column.signal == Signal::time ? log_.time : channel.value) = std::move(column.value);
   }
-  for (std::string& text : implausible_values(log_, rig_, sweeps)) note(std::move(text));
+  for (const std::string& text : implausible_values(log_, rig_, sweeps)) note(text + mark_of(Trouble::implausible));
   return std::move(log_);
 }
 

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "base/error.h"
+#include "base/trouble.h"
 #include "base/units.h"
 #include "servodx/rig.h"
 #include "signals/log.h"
@@ -40,6 +41,9 @@ class LogColumns {
   // All samples of all columns at once, in the order in which they were added; lengths and infinities are refused.
   void append_columns(const std::vector<std::span<const double>>& values);
 
+  // `trouble`: the page of docs/errors.md that says more.
+  [[noreturn]] void refuse_as(Trouble trouble, long line, const std::string& column, const std::string& rule,
+                              const std::string& mend) const;
   [[noreturn]] void refuse(long line, const std::string& column, const std::string& rule,
                            const std::string& mend) const;
   void note(std::string text) { log_.notes.push_back(std::move(text)); }
@@ -71,6 +75,7 @@ class LogColumns {
                  const ColumnMapping* mapping) const;
   bool present(Signal signal) const;
   [[noreturn]] void refuse_missing(Signal signal, const std::string& rule) const;
+  InputError refusal(long line, const std::string& column, const std::string& rule, const std::string& mend) const;
   void check_counts();
   void note_unmapped();
 

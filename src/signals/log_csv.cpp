@@ -6,6 +6,7 @@
 
 #include "base/block_reader.h"
 #include "base/csv.h"
+#include "base/trouble.h"
 #include "base/units.h"
 #include "servodx/error.h"
 #include "servodx/log.h"
@@ -78,7 +79,7 @@ class CsvReader {
   // Cell by cell; false: it is the file's last, and cut short.
   bool read_odd_row() {
     const std::size_t width = target_.size();
-    std::optional<InputError> fault;
+    std::optional<DocumentedError> fault;
     std::size_t cells = 0;
     bool last_is_empty = false;
     for (; cells < width; ++cells) {
@@ -92,11 +93,12 @@ class CsvReader {
       last_is_empty = kind == Cell::missing;
       if (stamps_ && to == stamped_ && kind != Cell::missing) {
         if (!take_stamp(to) && !fault)
-          fault.emplace(Place{path_, csv_.line(), log_.name(to)},
+          fault.emplace(Trouble::row, Place{path_, csv_.line(), log_.name(to)},
                         fmt::format("'{}' is no time stamp like the first row's", csv_.last_text()),
                         "write all times in one form");
       } else if (kind == Cell::text && !fault) {
-        fault.emplace(Place{path_, csv_.line(), log_.name(to)}, fmt::format("'{}' is not a number", csv_.last_text()),
+        fault.emplace(Trouble::row, Place{path_, csv_.line(), log_.name(to)},
+                      fmt::format("'{}' is not a number", csv_.last_text()),
                       csv_.decimal_comma() ? "write a number, or leave the cell empty"
                                            : "write a number with a decimal point, or leave the cell empty");
       }
@@ -109,10 +111,10 @@ class CsvReader {
       return false;
     }
     if (ragged)
-      log_.refuse(csv_.line(), "", fmt::format("ragged row: {} cells, the header has {}", found, width),
-                  found > width && csv_.separator() == ','
-                      ? "write one cell a column; a decimal comma needs ';' as separator"
-                      : "write one cell a column");
+      log_.refuse_as(
+          Trouble::row, csv_.line(), "", fmt::format("ragged row: {} cells, the header has {}", found, width),
+          found > width && csv_.separator() == ',' ? "write one cell a column; a decimal comma needs ';' as separator"
+                                                   : "write one cell a column");
     if (fault) throw *fault;
     return true;
   }

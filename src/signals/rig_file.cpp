@@ -11,6 +11,7 @@
 #include "base/key_error.h"
 #include "base/nearest.h"
 #include "base/sha256.h"
+#include "base/trouble.h"
 #include "servodx/error.h"
 #include "servodx/log.h"
 
@@ -52,6 +53,15 @@ std::string known_here(const std::string& word, const std::vector<std::string>& 
   return did_you_mean(word, bare) + "known here: " + list;
 }
 
+// What the head of a page says beside the rig, in words (report/page_head.h).
+constexpr std::array<std::string_view, 5> page_words = {"logo", "lines", "customer", "operator", "date"};
+
+bool is_page_word(std::string_view key) {
+  constexpr std::string_view folder = "page.";
+  return key.starts_with(folder) &&
+         std::find(page_words.begin(), page_words.end(), key.substr(folder.size())) != page_words.end();
+}
+
 class Reader {
  public:
   explicit Reader(const std::string& path) { rig_.path = path; }
@@ -86,7 +96,7 @@ class Reader {
       } else if (key == "fluid" && node.is_string()) {
         read_preset(word(node, key));
       } else if (key == "valve" || key == "actuator" || key == "lines" || key == "supply" || key == "fluid" ||
-                 key == "valve.dither") {
+                 key == "valve.dither" || key == "page") {
         walk(section(node, key), key + ".");
       } else {
         read_key(key, node);
@@ -112,6 +122,10 @@ class Reader {
       rig_.null_limit = quantity(node, key, fraction, true);
     } else if (key == "valve.first_stage") {
       rig_.words[key] = one_of(node, key, {"flapper_nozzle", "jet_pipe"});
+    } else if (key == "page.lines") {
+      rig_.words[key] = lines(node, key);
+    } else if (is_page_word(key)) {
+      rig_.words[key] = word(node, key);
     } else if (key == "lines.taps") {
       rig_.taps_at_cylinder = one_of(node, key, {"valve", "cylinder"}) == "cylinder";
     } else {
@@ -148,22 +162,23 @@ class Reader {
     const auto [heading, line] = heading_left_out(rig_.line(key));
     for (const RigFact& fact : rig_facts())
       if (!heading.empty() && fact.key == heading + "." + key.substr(dot + 1))
-        throw InputError(
-            place(key),
+        throw DocumentedError(
+            Trouble::key, place(key),
             "belongs to [" + heading + "], whose heading in line " + std::to_string(line) + " is still a comment",
             "take the '#' off that line too");
     const std::string folder = dot == std::string::npos ? "" : key.substr(0, dot + 1);
     std::vector<std::string> known;
     if (folder.empty())
-      known = {"name",       "serial",          "ports",   "command_hold", "mains_frequency",
-               "null_limit", "oil_temperature", "fluid",   "[valve]",      "[actuator]",
-               "[lines]",    "[supply]",        "[fluid]", "[limits]",     "[columns]"};
+      known = {"name",      "serial",  "ports",      "command_hold", "mains_frequency", "null_limit", "oil_temperature",
+               "fluid",     "[valve]", "[actuator]", "[lines]",      "[supply]",        "[fluid]",    "[limits]",
+               "[columns]", "[page]"};
     if (folder == "valve.") known = {"first_stage", "dither"};
     if (folder == "lines.") known = {"taps"};
+    if (folder == "page.") known.assign(page_words.begin(), page_words.end());
     for (const RigFact& fact : rig_facts())
       if (!folder.empty() && fact.key.starts_with(folder) && fact.key.find('.', folder.size()) == fact.key.npos)
         known.emplace_back(fact.key.substr(folder.size()));
-    throw InputError(place(key), "unknown key", known_here(key.substr(folder.size()), known));
+    throw DocumentedError(Trouble::key, place(key), "unknown key", known_here(key.substr(folder.size()), known));
   }
 
   const toml::table& section(const toml::node& node, const std::string& key) const {
@@ -174,6 +189,15 @@ class Reader {
   std::string word(const toml::node& node, const std::string& key) const {
     if (!node.is_string()) throw InputError(place(key), "is not a string", "put the value in quotes");
     return node.as_string()->get();
+  }
+
+  // Texts of an array, one a line.
+  std::string lines(const toml::node& node, const std::string& key) const {
+    std::string all;
+    const toml::array* texts = node.as_array();
+    if (!texts) throw InputError(place(key), "is not a list", "write [\"first line\", \"second line\"]");
+    for (const toml::node& text : *texts) all += (all.empty() ? "" : "\n") + word(text, key);
+    return all;
   }
 
   std::string one_of(const toml::node& node, const std::string& key,
@@ -187,8 +211,8 @@ class Reader {
 
   double quantity(const toml::node& node, const std::string& key, Dimension dimension, bool may_be_zero) const {
     if (node.is_number())
-      throw InputError(place(key), "a bare number has no unit",
-                       "write a quoted quantity with one of " + units_of(dimension));
+      throw DocumentedError(Trouble::unit, place(key), "a bare number has no unit",
+                            "write a quoted quantity with one of " + units_of(dimension));
     const double value = parse_quantity(word(node, key), dimension, place(key)).value;
     if (value < 0.0 || (value == 0.0 && !may_be_zero))
       throw InputError(place(key), may_be_zero ? "must not be negative" : "must be positive",
@@ -231,7 +255,8 @@ class Reader {
         for (const auto& [side, bound] : *node.as_table()) {
           const std::string word(side.str()), at = key + "." + word;
           rig_.lines[at] = side.source().begin.line;
-          if (word != "min" && word != "max") throw InputError(place(at), "unknown key", "known here: min, max");
+          if (word != "min" && word != "max")
+            throw DocumentedError(Trouble::key, place(at), "unknown key", "known here: min, max");
           (word == "min" ? limit.min : limit.max) = quantity(bound, at, known->dimension, true);
         }
         if (limit.min && limit.max && *limit.min > *limit.max)
@@ -259,8 +284,8 @@ class Reader {
       const std::string field(name.str());
       rig_.lines[key + "." + field] = name.source().begin.line;
       if (field != "signal" && field != "unit" && field != "gain" && field != "offset")
-        throw InputError(place(key + "." + field), "unknown key",
-                         known_here(field, {"signal", "unit", "gain", "offset"}));
+        throw DocumentedError(Trouble::key, place(key + "." + field), "unknown key",
+                              known_here(field, {"signal", "unit", "gain", "offset"}));
     }
     const toml::node* signal_node = table.get("signal");
     if (!signal_node) throw InputError(place(key), "names no signal", "add signal = \"...\"");
@@ -289,17 +314,20 @@ class Reader {
       const Place where = place(key + ".unit");
       const std::string name = word(*node, key + ".unit");
       const Unit* unit = find_unit(name);
-      if (!unit) throw InputError(where, "unknown unit '" + name + "'", "use one of " + accepted_units(*signal));
+      if (!unit)
+        throw DocumentedError(Trouble::unit, where, "unknown unit '" + name + "'",
+                              "use one of " + accepted_units(*signal));
       const auto relative = relative_unit(*signal);
       if (mapping.gain_has_unit) {
         if (unit->dimension != find_unit(mapping.column_unit)->dimension)
           throw InputError(where, "'" + name + "' is not what the gain divides by ('" + mapping.column_unit + "')",
                            "make unit and gain agree");
       } else if (unit->dimension == voltage) {
-        throw InputError(where, "volts need a gain", "add gain = \"... " + std::string(info(*signal).si_unit) + "/V\"");
+        throw DocumentedError(Trouble::unit, where, "volts need a gain",
+                              "add gain = \"... " + std::string(info(*signal).si_unit) + "/V\"");
       } else if (unit->dimension != dimension && !(relative && unit->dimension == relative->dimension)) {
-        throw InputError(where, "'" + name + "' is no unit of '" + mapping.signal + "'",
-                         "use one of " + accepted_units(*signal));
+        throw DocumentedError(Trouble::unit, where, "'" + name + "' is no unit of '" + mapping.signal + "'",
+                              "use one of " + accepted_units(*signal));
       }
       mapping.column_unit = name;
     }
@@ -428,7 +456,7 @@ RigFile make_rig(const std::string& name, const std::string& text) {
   try {
     return Reader(name).read(text);
   } catch (const InputError& error) {
-    throw key_error(error);  // quantities are read by who knows of columns only
+    throw_of_key(error);  // quantities are read by who knows of columns only
   }
 }
 

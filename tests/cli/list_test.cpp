@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
+#include <regex>
 #include <set>
 
 #include "program.h"
@@ -58,6 +59,11 @@ TEST(Program, TellsItsVersionAndHelps) {
   const Ended version = desk.run("--version");
   EXPECT_EQ(version.code, 0);
   EXPECT_TRUE(version.out.starts_with("servodx ")) << version.out;
+  EXPECT_TRUE(std::regex_match(version.out, std::regex("servodx \\d+\\.\\d+\\.\\d+ \\(commit [-\\w]+, \\w+\\)\n")))
+      << version.out;
+  const auto models = nlohmann::json::parse(desk.run("list models --json -").out);
+  EXPECT_NE(version.out.find(models.at("models").at(0).at("kernel")), std::string::npos) << version.out;
+  EXPECT_EQ(models.at("version").get<std::string>(), version.out.substr(8, version.out.find(' ', 8) - 8));
   for (const char* command : {"", "simulate ", "tune ", "baseline ", "diagnose ", "list ", "rig "}) {
     const Ended help = desk.run(std::string(command) + "--help");
     EXPECT_EQ(help.code, 0) << command;

@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "base/error.h"
+#include "base/random.h"
 #include "curves/sweep.h"
 #include "servodx/log.h"
 #include "servodx/rig.h"
@@ -113,9 +114,86 @@ TEST(Curves, LimitsPassAndFailOnTheirSide) {
   rig.limits["hysteresis"].max = 0.02;
   sheet = read_curves(log, rig);
   EXPECT_EQ(sheet.verdict, "fail");
-  EXPECT_EQ(find(sheet, "hysteresis")->pass, false);
-  EXPECT_EQ(find(sheet, "rated_flow")->pass, true);
+  EXPECT_EQ(find(sheet, "hysteresis")->pass(), false);
+  EXPECT_EQ(find(sheet, "rated_flow")->pass(), true);
   EXPECT_EQ(read_curves(log, rig_with()).verdict, "not_judged");
+}
+
+// A straight flow curve with white noise and a coarse meter.
+Log noisy(std::uint64_t seed, double noise, double resolution) {
+  Random random(seed);
+  Log log = swept(1.02 * rated, 20, Signal::control_flow, 0.02 * rated, [&](double i) {
+    const double y = 0.008 * i + random.normal(0, noise);
+    return resolution > 0 ? resolution * std::round(y / resolution) : y;
+  });
+  log.channels[index(Signal::control_flow)].resolution = resolution;
+  return log;
+}
+
+TEST(Uncertainty, IsTheScatterOfRepeatedReadings) {
+  constexpr int repeats = 40;
+  for (const char* name : {"rated_flow", "null_bias", "flow_gain", "hysteresis"}) {
+    double mean = 0, square = 0, stated = 0;
+    for (int k = 0; k < repeats; ++k) {
+      const Sheet sheet =
+          k < 3 ? read_curves(noisy(100 + k, 2e-6, 0), rig_with()) : read_figures(noisy(100 + k, 2e-6, 0), rig_with());
+      if (k < 3) stated += find(sheet, name)->uncertainty / 3;
+      mean += value(sheet, name) / repeats, square += value(sheet, name) * value(sheet, name) / repeats;
+    }
+    const double scatter = std::sqrt(square - mean * mean);
+    EXPECT_GT(stated, 2 * 0.6 * scatter) << name;
+    EXPECT_LT(stated, 2 * 2.5 * scatter) << name;  // drawn on top of the log's own noise: rather too large
+  }
+}
+
+TEST(Uncertainty, GrowsWithResolutionAndInstruments) {
+  const auto of = [](const Log& log, const SheetOptions& options) {
+    return find(read_curves(log, rig_with(), options), "rated_flow")->uncertainty;
+  };
+  const double fine = of(noisy(1, 1e-7, 0), {});
+  EXPECT_GT(of(noisy(1, 1e-7, 5e-6), {}), 1.5 * fine);
+  const double flow = 0.008 * rated,
+               by_meter = of(noisy(1, 1e-7, 0), {.instruments = {{Signal::control_flow, 0, 0.01}}});
+  EXPECT_NEAR(by_meter, 0.01 * flow, 0.004 * flow);
+}
+
+TEST(Judgement, AValueOnTheLimitIsNoPass) {
+  Sheet sheet;
+  RigFile rig = rig_with();
+  rig.limits["hysteresis"].max = 0.04;
+  rig.limits["rated_flow"].min = 1e-4;
+  const auto judged = [&](const char* name, double value, double uncertainty, double guard) {
+    sheet.figures = {{.name = name, .value = value, .uncertainty = uncertainty}};
+    judge(sheet, rig, guard);
+    return sheet.figures[0].judgement;
+  };
+  EXPECT_EQ(judged("hysteresis", 0.04, 0, 1), Judgement::fail);
+  EXPECT_EQ(judged("hysteresis", 0.04, 0, 0), Judgement::fail);
+  EXPECT_EQ(judged("hysteresis", 0.039, 0.002, 1), Judgement::too_near);
+  EXPECT_EQ(judged("hysteresis", 0.039, 0.002, 0), Judgement::pass);
+  EXPECT_EQ(judged("hysteresis", 0.037, 0.002, 1), Judgement::pass);
+  EXPECT_EQ(judged("rated_flow", 1.01e-4, 2e-6, 1), Judgement::too_near);
+  EXPECT_EQ(judged("rated_flow", -1.03e-4, 2e-6, 1), Judgement::pass);  // by its size
+  EXPECT_EQ(judged("rated_flow", 1.03e-4, std::nan(""), 1), Judgement::not_judged);
+  judged("hysteresis", 0.039, 0.002, 1);
+  EXPECT_EQ(sheet.verdict, "fail");
+}
+
+TEST(Curves, AFastOrOneWaySweepTellsNoHysteresis) {
+  const Log fast = swept(
+      1.02 * rated, 3, Signal::control_flow, 0.02 * rated, [](double i) { return 0.008 * i; }, 1e-3);
+  EXPECT_TRUE(std::isnan(value(read_curves(fast, rig_with()), "hysteresis")));
+  EXPECT_EQ(find(read_curves(fast, rig_with()), "threshold"), nullptr);
+  Log one_way;
+  for (int k = -1000; k <= 1000; ++k) {
+    one_way.time.push_back(0.05 * k);
+    one_way.channels[index(Signal::command)].value.push_back(1.02e-3 * rated * k);
+    one_way.channels[index(Signal::control_flow)].value.push_back(0.008 * 1.02e-3 * rated * k);
+  }
+  const Sheet sheet = read_curves(one_way, rig_with());
+  ASSERT_NE(find(sheet, "hysteresis"), nullptr);
+  EXPECT_TRUE(std::isnan(value(sheet, "hysteresis")));
+  EXPECT_GT(value(sheet, "rated_flow"), 0);
 }
 
 TEST(Curves, CoarseReadingsTellNoThreshold) {

@@ -14,13 +14,16 @@
   };
   const drawn = new Map();  // element -> { chart, group }
 
+  // All of a chart: dots at its ends are whole.
+  const all = (chart) => {
+    const x = chart.data[0], first = x[0], last = x[x.length - 1], room = chart.dots ? 0.02 * (last - first) : 0;
+    return { min: first - room, max: last + room };
+  };
+
   function zoom(group, range) {  // range null: all
     group.range = range;
     group.busy = true;
-    for (const chart of group.charts) {
-      const x = chart.data[0];
-      chart.setScale("x", range ? { min: range[0], max: range[1] } : { min: x[0], max: x[x.length - 1] });
-    }
+    for (const chart of group.charts) chart.setScale("x", range ? { min: range[0], max: range[1] } : all(chart));
     group.busy = false;
   }
 
@@ -133,8 +136,11 @@
         drag: { x: true, y: false },
         sync: key ? { key, scales: ["x", null], filters: { pub: (type) => !/^mouse(down|up)$|^dblclick$/.test(type) } } : undefined,
       },
+      // A box that is filled: an empty one looks as if its series were missing. What is dashed has a dashed rim.
+      legend: { markers: { fill: (u, i) => (i > 0 && i <= plot.series.length && !dash[plot.series[i - 1].role].length ? colour(plot.series[i - 1].role) : null) } },
       hooks: {
         draw: [marks(plot)],
+        setLegend: [(u) => u.root.classList.toggle("told", u.legend.idx != null)],
         setScale: [(u, scale) => {
           if (scale !== "x" || group.busy || u.status !== 1) return;
           const { min, max } = u.scales.x, x = u.data[0];
@@ -150,9 +156,14 @@
     const group = group_of(key || "p:" + number);
     erase(element);
     const chart = new uPlot(options(plot, element, group, key), plot.data, element);
+    chart.dots = plot.series.some((s) => s.points);
     group.charts.add(chart);
     drawn.set(element, { chart, group });
-    if (group.range) { group.busy = true; chart.setScale("x", { min: group.range[0], max: group.range[1] }); group.busy = false; }
+    if (group.range || chart.dots) {
+      group.busy = true;
+      chart.setScale("x", group.range ? { min: group.range[0], max: group.range[1] } : all(chart));
+      group.busy = false;
+    }
     for (const th of chart.root.querySelectorAll(".u-legend .u-series th")) {
       th.tabIndex = 0;
       th.setAttribute("role", "button");

@@ -1,0 +1,40 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "curves/curves.h"
+#include "servodx/rig.h"
+
+namespace servodx::curves {
+namespace {
+
+// By its size, as limits are.
+Judgement judged(const Figure& f, const Limit& limit, double guard) {
+  const double size = std::fabs(f.value), band = guard > 0 ? guard * f.uncertainty : 0.0;
+  if (!std::isfinite(size) || !std::isfinite(band)) return Judgement::not_judged;
+  if ((limit.min && !(size > *limit.min)) || (limit.max && !(size < *limit.max))) return Judgement::fail;
+  const bool inside = (!limit.min || size - band > *limit.min) && (!limit.max || size + band < *limit.max);
+  return inside ? Judgement::pass : Judgement::too_near;
+}
+
+}  // namespace
+
+void judge(Sheet& sheet, const RigFile& rig, double guard) {
+  bool any = false, all = true;
+  for (Figure& f : sheet.figures) {
+    const auto limit = rig.limits.find(f.name);
+    if (limit == rig.limits.end()) continue;
+    f.limit = limit->second;
+    f.judgement = judged(f, limit->second, guard);
+    any = any || f.judgement != Judgement::not_judged;
+    all = all && (f.judgement == Judgement::pass || f.judgement == Judgement::not_judged);
+  }
+  sheet.verdict = !any ? "not_judged" : all ? "pass" : "fail";
+  for (const auto& [name, limit] : rig.limits)
+    if (std::none_of(sheet.figures.begin(), sheet.figures.end(),
+                     [&](const Figure& f) { return f.name == name && f.judgement != Judgement::not_judged; }))
+      sheet.notes.push_back("limit '" + name + "' is not judged: the log does not show the figure");
+}
+
+}  // namespace servodx::curves
