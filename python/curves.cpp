@@ -13,6 +13,7 @@ py::list sheet_figures(const AcceptanceSheet& sheet) {
   for (const AcceptanceSheet::Figure& f : sheet.figures) {
     py::dict row;
     row["name"] = f.name, row["signal"] = f.signal, row["value"] = f.value, row["unit"] = f.unit;
+    row["uncertainty"] = f.uncertainty;
     row["min"] = f.limit ? f.limit->min : std::nullopt, row["max"] = f.limit ? f.limit->max : std::nullopt;
     row["pass"] = f.pass, row["note"] = f.note;
     out.append(row);

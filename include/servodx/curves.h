@@ -15,8 +15,9 @@ struct AcceptanceSheet {
     std::string name, signal;  // what it was read from
     double value = 0;          // [unit]
     std::string unit;          // SI; "-" for a fraction
+    double uncertainty = 0;    // [unit] expanded, k = 2; NaN: not known
     std::optional<Limit> limit;
-    std::optional<bool> pass;  // empty: no limit, or the log cannot tell
+    std::optional<bool> pass;  // empty: no limit, or the log cannot tell; on the limit is no pass
     std::string note;
   };
   // An output over the command, both branches and their mean on the same currents.

@@ -25,7 +25,7 @@ AcceptanceSheet acceptance_sheet(const Log& log, const Rig& rig) {
   curves::Sheet sheet = curves::read_curves(log, rig);
   AcceptanceSheet out;
   for (const curves::Figure& f : sheet.figures)
-    out.figures.push_back({f.name, f.signal, f.value, f.unit, f.limit, f.pass, f.note});
+    out.figures.push_back({f.name, f.signal, f.value, f.unit, f.uncertainty, f.limit, f.pass(), f.note});
   for (curves::SweepCurve& c : sheet.curves)
     out.curves.push_back({c.signal, std::move(c.current), std::move(c.up), std::move(c.down), std::move(c.mean)});
   for (const curves::ResponsePoint& p : sheet.response)
