@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include "diagnose/constants.h"
 #include "diagnose/healthy_law.h"
@@ -61,21 +62,14 @@ double largest_adequacy(const std::vector<DetectionBaseline::Score>& scores) {
   return most;
 }
 
-// Tests of which the logs are repeats.
-std::size_t number_of_tests(const std::vector<DetectionBaseline::Score>& scores) {
-  std::vector<TestConditions> seen;
-  for (const DetectionBaseline::Score& s : scores)
-    if (std::none_of(seen.begin(), seen.end(), [&](const TestConditions& t) { return is_repeat(t, *s.test); }))
-      seen.push_back(*s.test);
-  return seen.size();
-}
-
 // Whether the baseline's own logs know how the model errs on such a test: they hold it, or tests like it among several.
 bool knows(const DetectionBaseline& b, const TestConditions& test) {
   const auto any = [&](const auto& is) { return std::any_of(b.scores.begin(), b.scores.end(), is); };
   if (any([](const DetectionBaseline::Score& s) { return !s.test; })) return true;  // it does not say its tests
   if (any([&](const DetectionBaseline::Score& s) { return is_repeat(*s.test, test); })) return true;
-  return !nearest_of_unlike(test, b) && number_of_tests(b.scores) >= k::tests_that_scatter;
+  std::vector<TestConditions> tests;
+  for (const DetectionBaseline::Score& s : b.scores) tests.push_back(*s.test);
+  return !nearest_of_unlike(test, b) && number_of_tests(tests) >= tests_that_scatter;
 }
 
 }  // namespace

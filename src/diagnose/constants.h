@@ -29,9 +29,6 @@ inline constexpr double worth_saying = 0.5;
 // gain no more than that is taken off, or two faults that explain almost all would be told apart by what health lends.
 // Chosen with rig B's plugged nozzle in view; not examined on the bench.
 inline constexpr double most_lent = 9.0;
-// Different tests from which on a baseline shows how the model's error changes from test to test: fewer have no scatter.
-// Not examined.
-inline constexpr std::size_t tests_that_scatter = 3;
 // What is seen without a fit is beyond any threshold of healthy logs. No log of the bench shows such a
 // finding: not felt there.
 inline constexpr double gross_score = 1e3;  // [deviates]

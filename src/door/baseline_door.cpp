@@ -88,13 +88,13 @@ Baseline make_baseline(const std::vector<Log>& logs, const Tuned& tuned, const R
   if (scored < logs.size()) note(header.notes, fmt::format("interrupted: rests on {} of {} logs", scored, logs.size()));
 
   HealthyCounts counts{header.simulations, header.failed_simulations};
-  std::vector<Log> all = logs;
-  all.insert(all.end(), options.others.begin(), options.others.end());
-  parts.causes = score_healthy(all, tuned.table, rig, options.threads, counts, [&](double done) {
-    options.watch.tell("baseline, causes", done, counts.simulations);
-    return !options.watch.stopped();
-  });
-  for (std::size_t i = logs.size(); i < parts.causes->logs.size(); ++i) parts.causes->logs[i].other = true;
+  parts.causes = score_healthy(
+      logs, tuned.table, rig, options.threads, counts,
+      [&](double done) {
+        options.watch.tell("baseline, causes", done, counts.simulations);
+        return !options.watch.stopped();
+      },
+      options.others);
   header.simulations = counts.simulations, header.failed_simulations = counts.failed;
   header.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 

@@ -82,6 +82,14 @@ double distance(const TestConditions& a, const TestConditions& b) {
   return d;
 }
 
+std::size_t number_of_tests(const std::vector<TestConditions>& logs) {
+  std::vector<TestConditions> seen;
+  for (const TestConditions& log : logs)
+    if (std::none_of(seen.begin(), seen.end(), [&](const TestConditions& test) { return is_repeat(test, log); }))
+      seen.push_back(log);
+  return seen.size();
+}
+
 bool is_repeat(const TestConditions& a, const TestConditions& b) {
   if (!(a.drive_rms > 0 && b.drive_rms > 0)) return false;
   const bool same_drive = ratio_distance(a.drive_span, b.drive_span, same_size) <= 1 &&

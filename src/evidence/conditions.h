@@ -4,7 +4,9 @@
 // less than a factor of two in amplitude, of four in speed (a random sequence, a step beside a multisine) and by some
 // kelvin; beyond that the model's error may be another, and the threshold is none.
 #pragma once
+#include <cstddef>
 #include <optional>
+#include <vector>
 
 #include "signals/log.h"
 
@@ -22,6 +24,12 @@ TestConditions conditions_of(const Log& log);
 // How far apart two tests are: at most 1 where they are alike. A temperature that one log does not hold is no
 // difference.
 double distance(const TestConditions& a, const TestConditions& b);
+
+// Different tests from which on logs show how the model's error changes from test to test: fewer have no scatter. By
+// definition; no other number was tried.
+inline constexpr std::size_t tests_that_scatter = 3;
+// Tests of which these are repeats: how many are no repeat of one before them.
+std::size_t number_of_tests(const std::vector<TestConditions>& logs);
 
 // Whether one is a repeat of the other: the same programme run again, or as good as that. Two programmes of one span
 // and speed that spend their time at other openings are none. False where either does not say its rms.

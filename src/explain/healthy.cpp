@@ -153,8 +153,22 @@ ScoredBlocks score_blocks(const ValveSubject& valve, const Point& at, const Know
   return out;
 }
 
-HealthyReference score_healthy(const std::vector<Log>& logs, const Table& tuned, const RigFile& rig, int threads,
-                               HealthyCounts& counts, const std::function<bool(double)>& told) {
+namespace {
+
+std::vector<Log> logs_to_score(const std::vector<Log>& own, const std::vector<Log>& others) {
+  std::vector<TestConditions> tests;
+  for (const Log& log : own) tests.push_back(conditions_of(log));
+  std::vector<Log> out = own;
+  if (number_of_tests(tests) < tests_that_scatter) out.insert(out.end(), others.begin(), others.end());
+  return out;
+}
+
+}  // namespace
+
+HealthyReference score_healthy(const std::vector<Log>& own, const Table& tuned, const RigFile& rig, int threads,
+                               HealthyCounts& counts, const std::function<bool(double)>& told,
+                               const std::vector<Log>& others) {
+  const std::vector<Log> logs = logs_to_score(own, others);
   const auto n = static_cast<double>(logs.size());
   const auto count = [&](const ValveSubject& s) {
     counts.simulations += s.simulations(), counts.failed += s.failed_simulations();
@@ -163,6 +177,7 @@ HealthyReference score_healthy(const std::vector<Log>& logs, const Table& tuned,
   for (const Log& log : logs) {  // what is usual
     HealthyLog& h = all.logs.emplace_back();
     h.log = log.path, h.sha256 = log.sha256, h.test = conditions_of(log);
+    h.other = all.logs.size() > own.size();
     ValveSubject subject({log}, tuned, rig, threads, KnownRig{});
     const ExplainedFit fit = fit_base(subject, EngineOptions{}.iterations);
     if (fit.ok) {

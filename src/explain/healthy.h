@@ -77,9 +77,11 @@ struct HealthyCounts {
   long simulations = 0, failed = 0;
 };
 // Each log is scored as a suspect will be: weighed by what the other logs say is usual. `told`: fraction done; false
-// from it ends the work, and the logs that are done are returned.
+// from it ends the work, and the logs that are done are returned. `others`: of other tests, or those that tuned the
+// table; they are scored, as such, where `logs` are of too few tests to show how sizes scatter from test to test.
 HealthyReference score_healthy(const std::vector<Log>& logs, const Table& tuned, const RigFile& rig, int threads,
-                               HealthyCounts& counts, const std::function<bool(double)>& told = {});
+                               HealthyCounts& counts, const std::function<bool(double)>& told = {},
+                               const std::vector<Log>& others = {});
 
 // The tests that a reference answers.
 class HealthyTest {

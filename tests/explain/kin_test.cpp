@@ -47,6 +47,11 @@ TEST(Kin, FewOfTheSuspectsTestAreJoinedByOneOfEveryOther) {
   EXPECT_TRUE(s.alike);
 }
 
+TEST(Kin, RepeatsAreOneTest) {
+  EXPECT_EQ(number_of_tests({}), 0u);
+  EXPECT_EQ(number_of_tests({test(40e-3, 8e-3), test(41e-3, 8.2e-3), test(40e-3, 11e-3), test(41e-3, 8e-3)}), 2u);
+}
+
 TEST(Kin, OtherOilIsAnotherTest) { EXPECT_FALSE(logs_that_speak(reference(twelve), {test(40e-3, 8e-3, 10, 0)}).alike); }
 
 TEST(Kin, AReferenceThatDoesNotSayItsTestsSpeaksWhole) {

@@ -46,5 +46,23 @@ TEST(Exchange, HealthyLogIsScoredBesideTheOthersAsASuspectIs) {
   EXPECT_EQ(subject.misses(fit.residual).front().size, beside.misses.front().size);
 }
 
+// How sizes scatter from test to test is not seen in repeats of one.
+TEST(Exchange, OtherTestsAreScoredWhereTheLogsAreOfTooFew) {
+  const std::string source = SERVODX_SOURCE_DIR;
+  const TemporaryFolder folder;
+  const Bench bench{folder.path, source + "/params/rigs/borello2009.toml", read_rig_file(source + "/data/rig.toml"), 1};
+  const Table tuned = read_table(source + "/tests/hidden/valve_1.csv");
+  std::vector<Log> logs;
+  for (const std::string& path : healthy_logs(bench, 4, 4, "healthy", 0.3)) logs.push_back(read_log(path, bench.rig));
+  HealthyCounts counts;
+  const std::vector<Log> others = {logs[1]};
+  const HealthyReference repeats = score_healthy({logs[0], logs[0]}, tuned, bench.rig, 0, counts, {}, others);
+  ASSERT_EQ(repeats.logs.size(), 3u);
+  EXPECT_FALSE(repeats.logs[1].other);
+  EXPECT_TRUE(repeats.logs[2].other);
+  EXPECT_EQ(repeats.promising(), 2);
+  EXPECT_EQ(score_healthy({logs[0], logs[2], logs[3]}, tuned, bench.rig, 0, counts, {}, others).promising(), 3);
+}
+
 }  // namespace
 }  // namespace servodx::hidden
