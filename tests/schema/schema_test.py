@@ -21,7 +21,8 @@ RARE = {
     "truth.viscosity": "rig --viscosity", "truth.amplitude": "rig --amplitude", "truth.frequency": "rig --frequency",
     "truth.balance": "a rig whose facts do not change", "truth.played": "rig --command",
     "same_output.listed": "a manifest that was edited", "baseline.rig_file": "a baseline with a rig file",
-    "watch_event": "an alarm", "supply_limit": "a supply in the log", "watch_limits.supply": "a supply in the log",
+    "watch_event": "an alarm", "supply_limit": "a supply in the log",
+    "rig.logs": "rig of a fleet", "rig.valves": "rig of a fleet", "watch_limits.supply": "a supply in the log",
 }
 # Types that only a rare outcome holds, as a whole.
 RARE_TYPES = {
@@ -29,7 +30,7 @@ RARE_TYPES = {
     "explain_suspicion", "row_size", "curve", "curve_point", "missing_log", "tangent", "levels", "remaining", "refused",
     "watch_event", "supply_limit", "confusion", "true_class", "counted_rate", "settled_error", "block", "place",
     "missing_place", "candidate", "cause_score", "cause_share", "channel_error", "shown", "input_lag", "residual_map",
-    "bin", "earned", "finding", "identifiable", "visible", "true_fault",
+    "bin", "bode_point", "difference", "plan_pair", "plan_row", "earned", "finding", "identifiable", "visible", "true_fault",
 }
 
 
