@@ -78,7 +78,7 @@ if(DPKG_DEB AND SHLIBDEPS)
     # Nothing of the build is in reach.
     step(${CMAKE_COMMAND} -E chdir ${work} ${CMAKE_COMMAND} -E env
          PYTHONPATH=${work}/python3-servodx/usr/lib/python3/dist-packages /usr/bin/python3 -B -c
-         "import servodx; print(servodx.__file__, len(servodx.Table.load('${SOURCE}/params/borello2009.csv')))")
+         "print((sx := __import__('servodx')).__file__, len(sx.Table.load('${SOURCE}/params/borello2009.csv')))")
     if(NOT output MATCHES "python3-servodx/usr/lib/python3/dist-packages/servodx/__init__.py 41")
       message(FATAL_ERROR "the package of Python says: ${output}")
     endif()
