@@ -65,9 +65,13 @@ int run(const Options& options) {
   const RigFile rig = invocation.rig();
   const Tuned tuned = invocation.tuned(options.params);
   const std::vector<Log> logs = invocation.logs(options.logs, rig);
-  how.others = invocation.logs(
-      options.others.empty() && !options.alone ? tuning_logs(options.params, tuned_state(tuned.table)) : options.others,
-      rig);
+  std::vector<std::string> others = options.others;
+  if (others.empty() && !options.alone) {
+    others = tuning_logs(options.params, tuned_state(tuned.table));
+    inputs.insert(inputs.end(), others.begin(), others.end());
+    invocation.check_files(inputs, {options.output});  // found, not named: no output is one of them all the same
+  }
+  how.others = invocation.logs(others, rig);
 
   report::Header& header = invocation.header();
   header.settings = {{"false_alarm", options.false_alarm}};

@@ -8,6 +8,7 @@
 #include "curves/curves.h"
 #include "servodx/log.h"
 #include "servodx/rig.h"
+#include "signals/noise.h"
 
 namespace servodx::curves {
 namespace {
@@ -16,17 +17,6 @@ constexpr std::uint32_t draws = 40;   // the standard deviation is known to 11 %
 constexpr std::uint32_t fewest = 20;  // draws that show the figure
 constexpr double coverage = 2.0;      // k of an expanded uncertainty
 constexpr std::uint64_t seed = 1;     // fixed: a figure's uncertainty is a property of the log
-
-// [SI] of white noise, from second differences of the samples; 0 where the resolution hides it.
-double noise_of(const std::vector<double>& y) {
-  std::vector<double> d;
-  for (std::size_t k = 1; k + 1 < y.size(); ++k)
-    if (const double v = y[k - 1] - 2 * y[k] + y[k + 1]; !std::isnan(v)) d.push_back(std::fabs(v));
-  if (d.empty()) return 0;
-  const auto middle = d.begin() + static_cast<std::ptrdiff_t>(d.size() / 2);
-  std::nth_element(d.begin(), middle, d.end());
-  return *middle / (0.6745 * std::sqrt(6.0));
-}
 
 // Readings of one signal as they might have been. What was rounded to one value was rounded by one error.
 void draw(std::vector<double>& y, double noise, double resolution, Random& random) {
@@ -69,7 +59,7 @@ Log drawn_log(const Log& log, const std::vector<double>& noise, std::uint32_t nu
 std::vector<double> by_draws(const Sheet& sheet, const Log& log, const RigFile& rig) {
   std::vector<double> noise(n_signals, 0.0);
   for (int s = 0; s < n_signals; ++s)
-    if (const auto signal = static_cast<Signal>(s); log.has(signal)) noise[index(signal)] = noise_of(log[signal]);
+    if (const auto signal = static_cast<Signal>(s); log.has(signal)) noise[index(signal)] = noise_of(log[signal], 0);
   std::vector<std::vector<double>> drawn(sheet.figures.size());
   for (std::uint32_t n = 0; n < draws; ++n) {
     const Sheet read = figures_or_none(drawn_log(log, noise, n), rig);

@@ -45,15 +45,35 @@ DetectionBaseline::Score unscored(const Assessment& a) {
   return s;
 }
 
-// Logs of one test as one log: what they show on average.
-DetectionBaseline::Score as_one(const DetectionBaseline& b) {
-  DetectionBaseline::Score one = {.log = b.scores.front().log, .sha256 = "", .test = b.scores.front().test};
-  one.gains = usual_gains(b);
-  const auto n = static_cast<double>(b.scores.size());
+std::vector<TestConditions> tests_of(const std::vector<DetectionBaseline::Score>& scores) {
+  std::vector<TestConditions> out;
+  for (const DetectionBaseline::Score& s : scores) out.push_back(*s.test);
+  return out;
+}
+
+// Repeats of one programme as one log: what they show on average. At least one.
+DetectionBaseline::Score as_one(const std::vector<DetectionBaseline::Score>& repeats) {
+  DetectionBaseline::Score one = {.log = repeats.front().log, .sha256 = "", .test = repeats.front().test};
+  DetectionBaseline alone;
+  alone.scores = repeats;
+  one.gains = usual_gains(alone);
+  const auto n = static_cast<double>(repeats.size());
   double square = 0;
-  for (const DetectionBaseline::Score& s : b.scores) square += s.score * s.score / n, one.adequacy += s.adequacy / n;
+  for (const DetectionBaseline::Score& s : repeats) square += s.score * s.score / n, one.adequacy += s.adequacy / n;
   one.score = std::sqrt(square);
   return one;
+}
+
+std::vector<DetectionBaseline::Score> one_a_programme(const std::vector<DetectionBaseline::Score>& scores) {
+  const std::vector<std::size_t> of = programmes_of(tests_of(scores));
+  std::vector<std::vector<DetectionBaseline::Score>> programmes;
+  for (std::size_t i = 0; i < scores.size(); ++i) {
+    if (of[i] == programmes.size()) programmes.emplace_back();
+    programmes[of[i]].push_back(scores[i]);
+  }
+  std::vector<DetectionBaseline::Score> out;
+  for (const auto& repeats : programmes) out.push_back(as_one(repeats));
+  return out;
 }
 
 double largest_adequacy(const std::vector<DetectionBaseline::Score>& scores) {
@@ -67,22 +87,19 @@ bool knows(const DetectionBaseline& b, const TestConditions& test) {
   const auto any = [&](const auto& is) { return std::any_of(b.scores.begin(), b.scores.end(), is); };
   if (any([](const DetectionBaseline::Score& s) { return !s.test; })) return true;  // it does not say its tests
   if (any([&](const DetectionBaseline::Score& s) { return is_repeat(*s.test, test); })) return true;
-  std::vector<TestConditions> tests;
-  for (const DetectionBaseline::Score& s : b.scores) tests.push_back(*s.test);
-  return !nearest_of_unlike(test, b) && number_of_tests(tests) >= tests_that_scatter;
+  return !nearest_of_unlike(test, b) && show_scatter_of_tests(tests_of(b.scores));
 }
 
 }  // namespace
 
 DetectionBaseline baseline_for(const TestConditions& test, const DetectionBaseline& b, int left_out) {
   if (b.others.empty() || knows(b, test)) return b;
-  std::vector<DetectionBaseline::Score> all, like;
+  std::vector<DetectionBaseline::Score> all = one_a_programme(b.scores), like;
   for (std::size_t i = 0; i < b.others.size(); ++i) {
     if (static_cast<int>(i) == left_out) continue;
     all.push_back(b.others[i]);
     if (b.others[i].test && distance(test, *b.others[i].test) <= 1) like.push_back(b.others[i]);
   }
-  all.push_back(as_one(b));
   DetectionBaseline out = b;
   out.scores = like.empty() ? std::move(all) : std::move(like);
   out.others.clear();

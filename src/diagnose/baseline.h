@@ -59,9 +59,9 @@ DetectionBaseline baseline_of(const std::vector<Assessment>& healthy, double fal
 bool keeps_rate(const DetectionBaseline& baseline);
 
 // What speaks of a suspect of this test: the baseline, where its logs know such a test or there are no others. Repeats
-// of one test know that test alone; several tests know those like them. Else the scores are the others', of a test like
-// this where some are; where none is, all of them, and one more in the place of all of the baseline's own. `left_out`:
-// of the others, -1: none.
+// of one programme know that programme alone; several know tests like theirs. Else the scores are the others', of a
+// test like this where some are; where none is, all of them, and one for each programme of the baseline's own.
+// `left_out`: of the others, -1: none.
 DetectionBaseline baseline_for(const TestConditions& test, const DetectionBaseline& baseline, int left_out = -1);
 
 // The log of the baseline whose test is nearest, where none is of a test like this one. Empty also where the baseline

@@ -49,10 +49,6 @@ void check(const std::vector<Log>& logs, const std::vector<Log>& others, const T
                      "give at least 3 fault-free logs; the rate that can be promised is 1/(n+1)");
 }
 
-}  // namespace
-
-namespace {
-
 // Each log assessed alone. Ended early: of those done so far.
 class Assessing {
  public:

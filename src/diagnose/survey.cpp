@@ -12,6 +12,7 @@
 #include "fit/log_data.h"
 #include "servodx/log.h"
 #include "servodx/rig.h"
+#include "signals/noise.h"
 #include "signals/signal.h"
 #include "simulate/scenario.h"
 

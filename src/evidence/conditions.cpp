@@ -59,6 +59,13 @@ double ratio_distance(double a, double b, double like) {
   return std::abs(std::log(a / b)) / std::log(like);
 }
 
+bool same_programme(const TestConditions& a, const TestConditions& b) {
+  if (!(a.drive_rms > 0 && b.drive_rms > 0)) return false;
+  return ratio_distance(a.drive_span, b.drive_span, same_size) <= 1 &&
+         ratio_distance(a.drive_rms, b.drive_rms, same_size) <= 1 &&
+         ratio_distance(a.drive_band, b.drive_band, same_band) <= 1;
+}
+
 }  // namespace
 
 TestConditions conditions_of(const Log& log) {
@@ -82,20 +89,23 @@ double distance(const TestConditions& a, const TestConditions& b) {
   return d;
 }
 
-std::size_t number_of_tests(const std::vector<TestConditions>& logs) {
-  std::vector<TestConditions> seen;
-  for (const TestConditions& log : logs)
-    if (std::none_of(seen.begin(), seen.end(), [&](const TestConditions& test) { return is_repeat(test, log); }))
-      seen.push_back(log);
-  return seen.size();
+bool is_repeat(const TestConditions& a, const TestConditions& b) { return same_programme(a, b) && distance(a, b) <= 1; }
+
+std::vector<std::size_t> programmes_of(const std::vector<TestConditions>& logs) {
+  std::vector<TestConditions> first;
+  std::vector<std::size_t> out;
+  for (const TestConditions& log : logs) {
+    const auto known =
+        std::find_if(first.begin(), first.end(), [&](const auto& one) { return same_programme(one, log); });
+    out.push_back(static_cast<std::size_t>(known - first.begin()));
+    if (known == first.end()) first.push_back(log);
+  }
+  return out;
 }
 
-bool is_repeat(const TestConditions& a, const TestConditions& b) {
-  if (!(a.drive_rms > 0 && b.drive_rms > 0)) return false;
-  const bool same_drive = ratio_distance(a.drive_span, b.drive_span, same_size) <= 1 &&
-                          ratio_distance(a.drive_rms, b.drive_rms, same_size) <= 1 &&
-                          ratio_distance(a.drive_band, b.drive_band, same_band) <= 1;
-  return same_drive && distance(a, b) <= 1;
+bool show_scatter_of_tests(const std::vector<TestConditions>& logs) {
+  const std::vector<std::size_t> of = programmes_of(logs);
+  return !of.empty() && *std::max_element(of.begin(), of.end()) + 1 >= programmes_that_scatter;
 }
 
 }  // namespace servodx

@@ -25,14 +25,15 @@ TestConditions conditions_of(const Log& log);
 // difference.
 double distance(const TestConditions& a, const TestConditions& b);
 
-// Different tests from which on logs show how the model's error changes from test to test: fewer have no scatter. By
-// definition; no other number was tried.
-inline constexpr std::size_t tests_that_scatter = 3;
-// Tests of which these are repeats: how many are no repeat of one before them.
-std::size_t number_of_tests(const std::vector<TestConditions>& logs);
-
 // Whether one is a repeat of the other: the same programme run again, or as good as that. Two programmes of one span
 // and speed that spend their time at other openings are none. False where either does not say its rms.
 bool is_repeat(const TestConditions& a, const TestConditions& b);
+
+// Which programme each log is of, whatever its oil: numbers from 0 in the order of their first logs.
+std::vector<std::size_t> programmes_of(const std::vector<TestConditions>& logs);
+// Programmes from which on logs show how the model's error changes from test to test: fewer have no scatter. By
+// definition; no other number was tried.
+inline constexpr std::size_t programmes_that_scatter = 3;
+bool show_scatter_of_tests(const std::vector<TestConditions>& logs);
 
 }  // namespace servodx

@@ -159,7 +159,7 @@ std::vector<Log> logs_to_score(const std::vector<Log>& own, const std::vector<Lo
   std::vector<TestConditions> tests;
   for (const Log& log : own) tests.push_back(conditions_of(log));
   std::vector<Log> out = own;
-  if (number_of_tests(tests) < tests_that_scatter) out.insert(out.end(), others.begin(), others.end());
+  if (!show_scatter_of_tests(tests)) out.insert(out.end(), others.begin(), others.end());
   return out;
 }
 

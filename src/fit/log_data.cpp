@@ -10,6 +10,7 @@
 #include "model/state.h"
 #include "parameters/list.h"
 #include "servodx/rig.h"
+#include "signals/noise.h"
 #include "signals/smoother.h"
 
 namespace servodx {
@@ -128,19 +129,6 @@ double starting_slope_error(const std::vector<double>& t) {
   }
   const double spread = n * stt - st * st;
   return n >= 3 && spread > 0 ? std::sqrt(n / spread) : 0.0;
-}
-
-double noise_of(const std::vector<double>& x, double resolution) {
-  std::vector<double> d;
-  for (std::size_t k = 2; k + 2 < x.size(); ++k) {
-    const double v = x[k - 2] - 4 * x[k - 1] + 6 * x[k] - 4 * x[k + 1] + x[k + 2];
-    if (!std::isnan(v)) d.push_back(std::abs(v));
-  }
-  const double quantisation = resolution / std::sqrt(12.0);
-  if (d.empty()) return quantisation;
-  std::nth_element(d.begin(), d.begin() + static_cast<long>(d.size() / 2), d.end());
-  // Median of |N(0,1)| is 0.6745; the fourth difference of white noise has variance 70.
-  return std::max(d[d.size() / 2] / (0.6745 * std::sqrt(70.0)), quantisation);
 }
 
 Ports ports_of(const Log& log, const RigFile& rig) {

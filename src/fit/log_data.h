@@ -51,10 +51,6 @@ LogData slice(const LogData& log, std::size_t from, std::size_t to);
 // Standard error of the starting speed over that of one sample. [1/s]
 double starting_slope_error(const std::vector<double>& time);
 
-// Noise rms of a series, robust against motion: median absolute fourth difference over that of white noise. A second
-// difference takes a valve that moves at 50 Hz all the log, sampled at 1 kHz, for noise of a tenth of its amplitude.
-double noise_of(const std::vector<double>& x, double resolution);
-
 // The table's nominal values as a candidate: effects without a row at their off value, nuisances at zero.
 ParameterVector candidate_of(const Table& table);
 

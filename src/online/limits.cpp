@@ -11,6 +11,7 @@
 #include "fit/log_data.h"
 #include "online/constants.h"
 #include "online/residuals.h"
+#include "signals/noise.h"
 #include "signals/sample.h"
 #include "signals/signal.h"
 

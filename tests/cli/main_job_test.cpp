@@ -148,6 +148,7 @@ TEST_F(MainJob, BaselineLooksAtTheLogsThatTunedAsAtOthers) {
   EXPECT_EQ(others("--alone"), std::vector<std::string>{});
   EXPECT_EQ(json("with.json").at("threshold"), made.at("threshold"));
   EXPECT_EQ(others("--others t2.csv"), std::vector<std::string>{"t2.csv"});
+  expect_refused(desk().run("baseline b1.csv b2.csv b3.csv --params tuned.csv --rig rig.toml -o t1.csv"), "t1.csv");
   expect_refused(desk().run(call + "--others b2.csv"), "b2.csv: is one of the baseline's own logs as well");
   desk().write("t1.csv", bytes_of(desk() / "t1.csv") + "# moved on\n");
   EXPECT_EQ(others(""), std::vector<std::string>{"t2.csv"});

@@ -333,6 +333,9 @@ TEST(BaselineFor, WhereNoOtherIsOfSuchATestRepeatsCountAsOneLogBesideThem) {
   const DetectionBaseline speaking = baseline_for(slow, repeats_and_others());
   ASSERT_EQ(speaking.scores.size(), 3u);
   EXPECT_NEAR(usual_gains(speaking).at(find_fault("corner_wear")), (25.0 + 0.0 + 2.0) / 3, 1e-12);
+  DetectionBaseline two = repeats_and_others();
+  two.scores[2].test = sine;
+  EXPECT_EQ(baseline_for(slow, two).scores.size(), 4u) << "two programmes of its own are two logs";
   EXPECT_EQ(speaking.logs, 3) << "the rate is still promised by the baseline's own";
   EXPECT_EQ(baseline_for(slow, repeats_and_others(), 0).scores.size(), 2u);
 }

@@ -47,9 +47,13 @@ TEST(Kin, FewOfTheSuspectsTestAreJoinedByOneOfEveryOther) {
   EXPECT_TRUE(s.alike);
 }
 
-TEST(Kin, RepeatsAreOneTest) {
-  EXPECT_EQ(number_of_tests({}), 0u);
-  EXPECT_EQ(number_of_tests({test(40e-3, 8e-3), test(41e-3, 8.2e-3), test(40e-3, 11e-3), test(41e-3, 8e-3)}), 2u);
+TEST(Kin, RepeatsAreOneProgrammeWhateverTheirOil) {
+  const TestConditions cold = test(40e-3, 8e-3, 10, 0), warm = test(41e-3, 8.2e-3, 10, 60), other = test(40e-3, 11e-3);
+  EXPECT_FALSE(is_repeat(cold, warm));
+  EXPECT_EQ(programmes_of({cold, warm, other, cold}), (std::vector<std::size_t>{0, 0, 1, 0}));
+  EXPECT_FALSE(show_scatter_of_tests({}));
+  EXPECT_FALSE(show_scatter_of_tests({cold, warm, test(40e-3, 8e-3, 10, 30)})) << "one acceptance test, -10 to 60 degC";
+  EXPECT_TRUE(show_scatter_of_tests({cold, other, test(80e-3, 8e-3)}));
 }
 
 TEST(Kin, OtherOilIsAnotherTest) { EXPECT_FALSE(logs_that_speak(reference(twelve), {test(40e-3, 8e-3, 10, 0)}).alike); }

@@ -10,6 +10,7 @@
 #include "servodx/log.h"
 #include "servodx/rig.h"
 #include "shipped_data.h"
+#include "signals/noise.h"
 #include "simulate/scenario.h"
 
 namespace servodx {

@@ -18,13 +18,22 @@
 namespace servodx::hidden {
 namespace {
 
-TEST(Exchange, HealthyLogIsScoredBesideTheOthersAsASuspectIs) {
+class Exchange : public testing::Test {
+ protected:
+  std::vector<Log> healthy(int count, double seconds) {
+    std::vector<Log> logs;
+    for (const std::string& path : healthy_logs(bench, count, 4, "healthy", seconds))
+      logs.push_back(read_log(path, bench.rig));
+    return logs;
+  }
   const std::string source = SERVODX_SOURCE_DIR;
   const TemporaryFolder folder;
   const Bench bench{folder.path, source + "/params/rigs/borello2009.toml", read_rig_file(source + "/data/rig.toml"), 1};
   const Table tuned = read_table(source + "/tests/hidden/valve_1.csv");
-  std::vector<Log> logs;
-  for (const std::string& path : healthy_logs(bench, 3, 4, "healthy", 0.4)) logs.push_back(read_log(path, bench.rig));
+};
+
+TEST_F(Exchange, HealthyLogIsScoredBesideTheOthersAsASuspectIs) {
+  std::vector<Log> logs = healthy(3, 0.4);
   HealthyCounts counts;
   const HealthyLog beside = score_healthy(logs, tuned, bench.rig, 0, counts).logs.back();
 
@@ -47,13 +56,8 @@ TEST(Exchange, HealthyLogIsScoredBesideTheOthersAsASuspectIs) {
 }
 
 // How sizes scatter from test to test is not seen in repeats of one.
-TEST(Exchange, OtherTestsAreScoredWhereTheLogsAreOfTooFew) {
-  const std::string source = SERVODX_SOURCE_DIR;
-  const TemporaryFolder folder;
-  const Bench bench{folder.path, source + "/params/rigs/borello2009.toml", read_rig_file(source + "/data/rig.toml"), 1};
-  const Table tuned = read_table(source + "/tests/hidden/valve_1.csv");
-  std::vector<Log> logs;
-  for (const std::string& path : healthy_logs(bench, 4, 4, "healthy", 0.3)) logs.push_back(read_log(path, bench.rig));
+TEST_F(Exchange, OtherTestsAreScoredWhereTheLogsAreOfTooFew) {
+  std::vector<Log> logs = healthy(4, 0.3);
   HealthyCounts counts;
   const std::vector<Log> others = {logs[1]};
   const HealthyReference repeats = score_healthy({logs[0], logs[0]}, tuned, bench.rig, 0, counts, {}, others);
