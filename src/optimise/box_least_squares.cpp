@@ -127,15 +127,17 @@ class Search {
           jacobian_.cols() == problem_.n && jacobian_.allFinite()) {
         own_jacobian_ = false;
         result_.missing_columns = 0;
+        blocks_ = row_blocks(jacobian_);
         return;
       }
     }
     own_jacobian_ = true;
     result_.missing_columns = take_differences([this](const std::vector<Point>& points) { return evaluate(points); },
                                                x_, residual_, {options_.difference_step, central}, jacobian_);
+    blocks_ = row_blocks(jacobian_);
   }
 
-  Model model() { return scaled(normal_equations(jacobian_, residual_, loss_, loss_scale_)); }
+  Model model() { return scaled(normal_equations(jacobian_, blocks_, residual_, loss_, loss_scale_)); }
 
   Model scaled(NormalEquations equations) {
     const int n = problem_.n;
@@ -208,7 +210,7 @@ class Search {
       for (Eigen::Index i = 0; i < met.size(); ++i)
         weighted[i] = robust(loss_, loss_scale_, residual_[i]).dt * robust(loss_, loss_scale_, met[i]).t;
     }
-    Eigen::VectorXd gradient = m.scale.cwiseProduct(jacobian_.transpose() * weighted);
+    Eigen::VectorXd gradient = m.scale.cwiseProduct(transposed_product(jacobian_, blocks_, weighted));
     gradient -= m.hessian * from.scaled_step;
     return trial(m, gradient, from.damping, radius);
   }
@@ -254,12 +256,11 @@ class Search {
     return points;
   }
 
-  // The Jacobian after a step from (x, residual): right along the step, as it was across it.
+  // The Jacobian after a step from (x, residual).
   void learn(const Point& x, const Eigen::VectorXd& residual) {
     Eigen::VectorXd step(problem_.n);
     for (int j = 0; j < problem_.n; ++j) step[j] = x_[j] - x[j];
-    const Eigen::VectorXd missed = residual_ - residual - jacobian_ * step;
-    jacobian_.noalias() += missed * (step / step.squaredNorm()).transpose();
+    learn_step(jacobian_, blocks_, step, residual_ - residual - product(jacobian_, blocks_, step));
   }
 
   // Raises the damping and shortens the reach until a trial lowers the cost or the steps vanish.
@@ -411,7 +412,8 @@ class Search {
         const Point x = x_;
         const Eigen::VectorXd residual = residual_;
         if (step(m) == Step::accepted) {
-          pass.learnt = own_jacobian_ && !pass.central && kept_promise_ && pass.learnt < options_.secant_steps
+          const bool learns = own_jacobian_ || options_.given_learns;
+          pass.learnt = learns && !pass.central && kept_promise_ && pass.learnt < options_.secant_steps
                             ? pass.learnt + 1
                             : 0;
           if (pass.learnt > 0) learn(x, residual);
@@ -448,6 +450,7 @@ class Search {
   Point x_;
   Eigen::VectorXd residual_;
   Eigen::MatrixXd jacobian_;
+  RowBlocks blocks_;  // of the Jacobian
   RobustLoss loss_ = RobustLoss::none;
   double loss_scale_ = 1;
   double cost_ = kInfinity;

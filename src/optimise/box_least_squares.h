@@ -61,6 +61,8 @@ struct LeastSquaresOptions {
   // Steps taken on one set of differences while each keeps its promise: the Jacobian then learns from the step itself
   // (Broyden 1965). 0: differences after every step.
   int secant_steps = 3;
+  // So does a Jacobian that the problem gives: where it costs many evaluations.
+  bool given_learns = false;
   // Damping in every direction beside Marquardt's diagonal, as a part of the strongest column's: `from_afar` for starts
   // that no one chose, where it saves a fifth of the evaluations; 0 about a start that is known to be near.
   double least_metric = 0;

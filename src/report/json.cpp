@@ -137,7 +137,7 @@ Json tune_json(const TuneResult& result) {
           {"parameters", array_of(result.parameters)},
           {"effects", effects},
           {"starts", starts},
-          {"reached_best", result.reached_best},
+          {"reached_best", result.reached_best()},
           {"interrupted", result.interrupted},
           {"logs", logs},
           {"local", {{"stages", stages}, {"ceres", ceres_json(result)}}}};

@@ -130,7 +130,7 @@ std::string text_of(const TuneResult& result, const GoodEnough& good, const Text
   if (!result.starts.empty()) {
     auto costs = result.starts;
     std::sort(costs.begin(), costs.end());
-    text += fmt::format("  {} of {} reached the best basin; final costs {}{}\n", result.reached_best,
+    text += fmt::format("  {} of {} reached the best basin; final costs {}{}\n", result.reached_best(),
                         plural(static_cast<long>(costs.size()), "start"), digits(costs.front(), 4),
                         costs.size() > 1 ? " to " + digits(costs.back(), 4) : "");
   }

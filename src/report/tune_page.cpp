@@ -71,7 +71,7 @@ void add_search(Page& page, const TuneResult& result) {
     for (const std::size_t i : order)
       bars.rows.push_back({i == 0 ? "table's values" : fmt::format("genetic {}", i), result.starts[i],
                            digits(result.starts[i], 4), "",
-                           result.starts[i] <= 1.05 * result.starts[order.front()] ? Tone::good : Tone::plain, ""});
+                           result.arrived[i] ? Tone::good : Tone::plain, ""});
     page.add(bars);
   }
   if (result.convergence.empty()) return;
@@ -130,7 +130,7 @@ Page tune_page(const Header& header, const TuneResult& result, const GoodEnough&
   v.facts = {{"Known with an error", std::to_string(known)},
              {"At an end of their range", std::to_string(at_end.size())},
              {"Held: the logs cannot tell", std::to_string(held)},
-             {"Starts that agree", fmt::format("{} of {}", result.reached_best, result.starts.size())}};
+             {"Starts that agree", fmt::format("{} of {}", result.reached_best(), result.starts.size())}};
   if (yes) v.reasons.push_back(sentence(line_of(enough)));
   for (const std::string& reason : enough.reasons) v.reasons.push_back(sentence(words(reason)));
   if (!yes && !enough.exceptions.empty())

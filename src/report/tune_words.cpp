@@ -22,12 +22,11 @@ constexpr double seen = 3.0;            // deviates
 // rig pooled errors are 1 to 22 of it, with another valve's flow and cylinder 160 to 760 (piston, pressures).
 constexpr double follows = 50.0;
 
-// How the last stage ended, without the figures behind it.
-std::string end_of(const TuneResult& result) {
-  constexpr std::string_view front = "local stage: ";
-  for (const std::string& note : result.notes)
-    if (note.starts_with(front)) return note.substr(front.size(), note.find(';') - front.size());
-  return "";
+// Of a cost in units of likelihood: what chance lends each number that is free. A search that promises no more is there.
+constexpr double worth_going_on = 0.5;
+
+bool has_arrived(const TuneResult& result) {
+  return result.stop == StopReason::converged || result.still_promised <= worth_going_on;
 }
 
 struct Prediction {
@@ -138,9 +137,10 @@ GoodEnough good_enough(const TuneResult& result, const std::vector<Promise>& pro
                         "): check the rig file's data sheet (flow, areas, supply), signs and gains of sensors");
   if (!worse.empty())
     g.reasons.push_back("it predicts worse than it fits (" + join(worse) + "): tune with more logs, of more kinds");
-  if (const std::string end = end_of(result); !end.empty() && !end.starts_with("converged") && !result.interrupted)
-    g.reasons.push_back("the search has not arrived (" + end + "): more --rounds");
-  if (result.starts.size() > 1 && result.reached_best < 2)
+  if (!has_arrived(result) && !result.interrupted)
+    g.reasons.push_back(fmt::format("the search has not arrived ({}, {} of its cost still promised): more --rounds",
+                                    words(name(result.stop)), digits(result.still_promised, 2)));
+  if (result.starts.size() > 1 && result.reached_best() < 2)
     g.reasons.push_back("no second start reached the best valley: more --generations");
   g.best = best_of(promises);
   for (const Visible& v : g.best) {

@@ -27,7 +27,7 @@ namespace {
 
 constexpr double excerpt = 1.5;            // [s] of each log: the search is for valleys, not for their floor
 constexpr double compression_scale = 3.0;  // [sigma] beyond it a residual counts by its logarithm
-constexpr int kept_points = 3;             // distinct ones that the local stage goes on from
+constexpr int kept_points = 2;             // distinct ones that the local stage goes on from
 constexpr int shown_every = 10;  // generations: children are ranked by rough runs, what is shown is counted in full
 
 // The first seconds of each log, for the global search; of a test stand's slow sweep they show one end, so all of it.

@@ -14,6 +14,8 @@
 #include "fit/chart.h"
 #include "fit/free_values.h"
 #include "fit/log_data.h"
+#include "optimise/normal_equations.h"
+#include "optimise/robust_loss.h"
 #include "parameters/coordinate.h"
 #include "parameters/list.h"
 
@@ -48,15 +50,16 @@ std::vector<FreedEffect> freed_effects(const std::vector<FreeValue>& free) {
   return out;
 }
 
-// A misfit to second order about a point.
+// A misfit to second order about a point: the part that the fit has seen, and the priors.
 struct Valley {
   Point at;
-  Eigen::MatrixXd curvature;
-  Eigen::VectorXd slope;
+  Eigen::MatrixXd jacobian;  // rows that the fit has not seen are zero
+  RowBlocks blocks;
+  NormalEquations floor;
 
   // Its floor once `gone` are off, inside the walls. What is gone already stands at its off value.
   Point floor_without(const std::vector<const FreedEffect*>& gone) const {
-    const long n = slope.size();
+    const long n = floor.gradient.size();
     Eigen::VectorXd step = Eigen::VectorXd::Zero(n);
     std::vector<char> fixed(static_cast<std::size_t>(n), 0);
     for (long j = 0; j < n; ++j) fixed[static_cast<std::size_t>(j)] = !off_walls(at[static_cast<std::size_t>(j)]);
@@ -68,8 +71,8 @@ struct Valley {
     std::vector<long> left;
     for (long j = 0; j < n; ++j)
       if (!fixed[static_cast<std::size_t>(j)]) left.push_back(j);
-    const Eigen::VectorXd pull = -(slope + curvature * step);
-    const Eigen::VectorXd moved = Eigen::MatrixXd(curvature(left, left)).ldlt().solve(Eigen::VectorXd(pull(left)));
+    const Eigen::VectorXd pull = -(floor.gradient + floor.matrix * step);
+    const Eigen::VectorXd moved = Eigen::MatrixXd(floor.matrix(left, left)).ldlt().solve(Eigen::VectorXd(pull(left)));
     for (std::size_t k = 0; k < left.size(); ++k) step[left[k]] = moved[static_cast<long>(k)];
     Point out = at;
     for (std::size_t j = 0; j < out.size(); ++j) out[j] = std::clamp(out[j] + step[static_cast<long>(j)], 0.0, 1.0);
@@ -80,7 +83,7 @@ struct Valley {
 // The misfit in two parts: what the fit has seen of each log, and what it has not.
 class Parts {
  public:
-  Parts(const FitProblem& problem, double held) : problem_(problem), seen_(Eigen::VectorXd::Ones(rows())) {
+  Parts(const FitProblem& problem, double held) : problem_(problem), seen_(Eigen::VectorXd::Ones(problem.total_rows())) {
     for (std::size_t l = 0; l < problem.logs().size(); ++l)
       for (std::size_t c = 0; c < problem.logs()[l]->channels.size(); ++c) {
         const auto [first, n] = problem.rows(static_cast<int>(l), static_cast<int>(c));
@@ -91,25 +94,38 @@ class Parts {
   // [half a sum of squares] infinite where a run fails.
   double held_cost(const Evaluation& e) const {
     if (!e.ok) return std::numeric_limits<double>::infinity();
-    return 0.5 * ((1.0 - seen_.array()) * e.residual.head(rows()).array().square()).sum();
+    return 0.5 * ((1.0 - seen_.array()) * e.residual.array().square()).sum();
   }
   double seen_cost(const Evaluation& e) const {
     return e.ok ? 0.5 * e.residual.squaredNorm() - held_cost(e) : std::numeric_limits<double>::infinity();
   }
-  // The seen part and the priors to second order about a point; nothing where there are no derivatives.
+  // Nothing where there are no derivatives.
   std::optional<Valley> valley(const Point& x, const Evaluation& at) const {
     Eigen::MatrixXd j;
     if (!at.ok || !problem_.jacobian(x, at.residual, j)) return std::nullopt;
-    Eigen::VectorXd weight = Eigen::VectorXd::Ones(at.residual.size());
-    weight.head(rows()) = seen_;
-    const Eigen::MatrixXd weighed = weight.asDiagonal() * j;
-    return Valley{x, j.transpose() * weighed, weighed.transpose() * at.residual};
+    j.array().colwise() *= seen_.array();
+    RowBlocks blocks = row_blocks(j);
+    return valley(x, at, std::move(j), std::move(blocks));
+  }
+  // About a point nearby, by what the way there has taught: a Jacobian of its own costs a hundred runs of every log.
+  std::optional<Valley> next(const Valley& from, const Evaluation& at_from, const Point& x, const Evaluation& at) const {
+    if (!at.ok) return std::nullopt;
+    const auto n = static_cast<long>(x.size());
+    const Eigen::VectorXd step = Eigen::Map<const Eigen::VectorXd>(x.data(), n) -
+                                 Eigen::Map<const Eigen::VectorXd>(from.at.data(), n);
+    Eigen::MatrixXd j = from.jacobian;
+    learn_step(j, from.blocks, step,
+               seen_.cwiseProduct(at.residual - at_from.residual) - product(j, from.blocks, step));
+    return valley(x, at, std::move(j), from.blocks);
   }
 
  private:
-  long rows() const { return problem_.data_rows(); }
+  Valley valley(const Point& x, const Evaluation& at, Eigen::MatrixXd j, RowBlocks blocks) const {
+    NormalEquations floor = normal_equations(j, blocks, at.residual, RobustLoss::none, 1);
+    return {x, std::move(j), std::move(blocks), std::move(floor)};
+  }
   const FitProblem& problem_;
-  Eigen::VectorXd seen_;  // 1 for a row of data that the fit has seen
+  Eigen::VectorXd seen_;  // 1 for a row of data that the fit has seen, and for a prior's
 };
 
 void take_out(TuneScope& scope, const FreedEffect& effect, const std::vector<FreeValue>& free) {
@@ -133,9 +149,9 @@ class Elimination {
 
   std::vector<EarnedEffect> run(const TuneWatch& watch) {
     std::vector<EarnedEffect> kept;
-    std::optional<Valley> valley = parts_.valley(here_.point, here_.run);
-    while (!asked_.empty() && valley && !watch.stopped()) {
-      auto [k, without] = least_missed(*valley);
+    valley_ = parts_.valley(here_.point, here_.run);
+    while (!asked_.empty() && valley_ && !watch.stopped()) {
+      auto [k, without] = least_missed();
       if (missed(without) >= least_gain) without = nearer_floor(std::move(without), *asked_[k]);
       const double gain = missed(without);
       const FreedEffect* effect = asked_[k];
@@ -146,8 +162,7 @@ class Elimination {
       }
       out_.push_back({effect->name, gain, false});
       gone_.push_back(effect);
-      here_ = std::move(without);
-      valley = parts_.valley(here_.point, here_.run);
+      move(std::move(without));
     }
     out_.insert(out_.end(), kept.begin(), kept.end());
     return out_;
@@ -170,13 +185,17 @@ class Elimination {
     all.push_back(&f);
     return all;
   }
+  void move(Place to) {
+    valley_ = parts_.next(*valley_, here_.run, to.point, to.run);
+    here_ = std::move(to);
+  }
 
   // The free ones take the same step first, so that what is missed is the effect and not the step.
-  std::pair<std::size_t, Place> least_missed(const Valley& valley) {
-    std::vector<Point> points = {valley.floor_without(gone_)};
-    for (const FreedEffect* f : asked_) points.push_back(valley.floor_without(gone_with(*f)));
+  std::pair<std::size_t, Place> least_missed() {
+    std::vector<Point> points = {valley_->floor_without(gone_)};
+    for (const FreedEffect* f : asked_) points.push_back(valley_->floor_without(gone_with(*f)));
     std::vector<Evaluation> runs = problem_.evaluate(points);
-    if (parts_.seen_cost(runs[0]) < parts_.seen_cost(here_.run)) here_ = {points[0], runs[0]};
+    if (parts_.seen_cost(runs[0]) < parts_.seen_cost(here_.run)) move({points[0], runs[0]});
     std::size_t least = 1;
     for (std::size_t k = 2; k < runs.size(); ++k)
       if (parts_.held_cost(runs[k]) < parts_.held_cost(runs[least])) least = k;
@@ -184,7 +203,7 @@ class Elimination {
   }
   // A second step from there, where the seen part takes it.
   Place nearer_floor(Place without, const FreedEffect& f) const {
-    const std::optional<Valley> valley = parts_.valley(without.point, without.run);
+    const std::optional<Valley> valley = parts_.next(*valley_, here_.run, without.point, without.run);
     if (!valley) return without;
     Place next = taken(valley->floor_without(gone_with(f)));
     return parts_.seen_cost(next.run) < parts_.seen_cost(without.run) ? std::move(next) : without;
@@ -193,6 +212,7 @@ class Elimination {
   const FitProblem& problem_;
   Parts parts_;
   Place here_;
+  std::optional<Valley> valley_;  // about here
   std::vector<const FreedEffect*> asked_, gone_;
   std::vector<EarnedEffect> out_;
 };

@@ -17,9 +17,15 @@
 namespace servodx {
 namespace {
 
-constexpr int iterations_a_start = 6;   // of the local stage: enough to tell valleys apart; chosen by hand
-constexpr int iterations_a_round = 12;  // then the weights are learnt anew; chosen by hand
-constexpr double as_good = 1.05;        // of the best end's cost: another start that reached it
+// Of the local stage, a Jacobian each, which learns from up to three steps. Chosen with the logs of scripts/demo and the
+// tutorial in view.
+constexpr int iterations_a_start = 4;         // enough to tell valleys apart
+constexpr int iterations_a_round = 6;         // then the weights are learnt anew
+constexpr int iterations_of_last_round = 10;  // effects are judged where it ends, or it is what is kept
+constexpr double tells_valleys = 1e-3;  // of the cost: less promised is no other valley
+// Of a cost in units of likelihood: a fifth of what chance lends each number that is free.
+constexpr double worth_a_step = 0.1;
+constexpr double as_good = 1.05;  // of the best end's cost: another start that is there, or on its way
 // Of BOBYQA where derivatives prove false, for each free value. It lays out 2n + 1 points first; as many again let it
 // move.
 constexpr long rescue_points = 4;
@@ -78,7 +84,9 @@ LeastSquaresResult search_locally(const FitProblem& problem, const Point& from, 
   LeastSquaresOptions o;
   o.max_iterations = iterations;
   o.difference = Difference::forward;
-  o.cost_tolerance = 1e-6;
+  o.given_learns = true;
+  o.cost_tolerance = start == Start::ended ? 1e-6 : tells_valleys;
+  if (start == Start::ended) o.cost_floor = worth_a_step;
   o.compressed_first_pass = start != Start::ended;
   if (start == Start::found) o.least_metric = o.from_afar;
   o.progress = [&](const LeastSquaresProgress& p) {
@@ -114,7 +122,8 @@ SearchEnds search_ends(const TuneScope& scope, FitProblem& problem, TuneWatch& w
                                       {from, from + 0.35 / static_cast<double>(starts.size())}, watch));
     if (out.ends.back().cost < out.ends[out.best].cost) out.best = s;
   }
-  for (const LeastSquaresResult& end : out.ends) out.reached_best += end.cost <= as_good * out.ends[out.best].cost;
+  for (const LeastSquaresResult& end : out.ends)
+    out.arrived.push_back(end.cost - end.promised_gain <= as_good * out.ends[out.best].cost);
   return out;
 }
 
@@ -143,8 +152,10 @@ LeastSquaresResult refine(FitProblem& problem, const Point& from, ErrorModel& er
                             share.from + (share.to - share.from) * (round + 1) / rounds};
     // Only the last round's end is kept as it is: there derivatives are judged.
     const Derivatives derivatives = held > 0 || round + 1 < rounds ? Derivatives::trusted : Derivatives::on_trial;
-    r = search_locally(problem, x, held > 0 ? "weights" : "everything", iterations_a_round, Start::ended, of_round,
-                       watch, derivatives);
+    const bool last = held > 0 || round + 1 == rounds;
+    r = search_locally(problem, x, held > 0 ? "weights" : "everything",
+                       last ? iterations_of_last_round : iterations_a_round, Start::ended, of_round, watch,
+                       derivatives);
     x = r.point;
     if (watch.stopped() || (round >= 1 && r.reason == StopReason::converged)) break;
   }

@@ -27,7 +27,7 @@ LeastSquaresResult search_locally(const FitProblem& problem, const Point& from, 
 struct SearchEnds {
   std::vector<LeastSquaresResult> ends;  // from the table's values first
   std::size_t best = 0;
-  int reached_best = 0;  // ends within 5 % of the best
+  std::vector<char> arrived;  // of each, whether it is within 5 % of the best, or promises to be
 };
 SearchEnds search_ends(const TuneScope& scope, FitProblem& problem, TuneWatch& watch);
 

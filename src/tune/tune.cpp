@@ -127,7 +127,7 @@ TuneResult tune_table(const std::vector<Log>& logs, const Table& nominal, const 
   TuneResult out;
   for (std::size_t s = 0; s < searched.ends.size(); ++s)
     out.starts.push_back(s == searched.best ? end.cost : searched.ends[s].cost);
-  out.reached_best = searched.reached_best;
+  out.arrived = std::move(searched.arrived);
 
   // Weights from the model's own error, alternating with the fit: first with the end of each log still held out.
   if (!watch.stopped()) end = refine(fit, end.point, out.error, options.heldout, 1, scope.on_stand, {0.7, 0.8}, watch);
@@ -151,6 +151,7 @@ TuneResult tune_table(const std::vector<Log>& logs, const Table& nominal, const 
 
   append(out.notes, scope.notes);
   append(out.notes, settled.notes);
+  out.stop = end.reason, out.still_promised = end.promised_gain;
   out.notes.push_back("local stage: " + end.stopped);
   if (watch.distrust != Distrust::none) out.notes.push_back(note_of_distrust(watch));
   append(out.notes, notes_of_logs(out.logs, scope, rig));

@@ -1,11 +1,13 @@
 // `tune`: nominal parameters from fault-free logs, pooled.
 #pragma once
+#include <algorithm>
 #include <string>
 #include <vector>
 
 #include "fit/error_model.h"
 #include "fit/identifiability.h"
 #include "fit/tuned_state.h"
+#include "optimise/box_least_squares.h"
 #include "optimise/ceres_refinement.h"
 #include "parameters/table.h"
 #include "servodx/rig.h"
@@ -57,7 +59,10 @@ struct TuneResult {
   std::vector<LogResult> logs;
   std::vector<ParameterResult> parameters;
   std::vector<double> starts;  // final costs of all local starts
-  int reached_best = 0;
+  std::vector<char> arrived;   // of each, whether it is in the best valley
+  StopReason stop = StopReason::converged;  // of the last fit
+  double still_promised = 0;                // of its cost, half a sum of squares, by its derivatives
+  int reached_best() const { return static_cast<int>(std::count(arrived.begin(), arrived.end(), 1)); }
   std::vector<ConvergencePoint> convergence;
   std::vector<StageResult> stages;
   std::vector<EarnedEffect> effects;  // in the order of trial

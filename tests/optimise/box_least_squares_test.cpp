@@ -3,6 +3,8 @@
 #include "optimise/box_least_squares.h"
 
 #include <gtest/gtest.h>
+
+#include <utility>
 #include <omp.h>
 
 #include "base/error.h"
@@ -262,6 +264,29 @@ TEST(BoxLeastSquares, StepsThatTeachTheJacobianSaveEvaluationsAndEndAtTheSameMin
   const Eigen::VectorXd values = (a * truth).array().exp();
   EXPECT_LT((with.jacobian - values.asDiagonal() * a).cwiseAbs().maxCoeff(),
             1e-3 * with.jacobian.cwiseAbs().maxCoeff());
+}
+
+TEST(BoxLeastSquares, AGivenJacobianThatLearnsIsAskedForLessOftenAndIsTheEndsOwn) {
+  std::srand(6);
+  const int n = 12;
+  const Eigen::MatrixXd a = Eigen::MatrixXd::Random(40, n);
+  LeastSquaresProblem problem = exponentials(a, Eigen::VectorXd::LinSpaced(n, 0.3, 0.7));
+  long asked = 0;
+  problem.jacobian = [&](const Point& x, const Eigen::VectorXd&, Eigen::MatrixXd& jacobian) {
+    ++asked;
+    const Eigen::VectorXd values = (a * as_vector(x)).array().exp();
+    jacobian = values.asDiagonal() * a;
+    return true;
+  };
+  LeastSquaresOptions options;
+  minimise_least_squares(problem, Point(n, 0.9), options);
+  const long without = std::exchange(asked, 0);
+  options.given_learns = true;
+  const LeastSquaresResult with = minimise_least_squares(problem, Point(n, 0.9), options);
+  EXPECT_EQ(with.reason, StopReason::converged);
+  EXPECT_LT(asked, without);
+  const Eigen::VectorXd values = (a * as_vector(with.point)).array().exp();
+  EXPECT_LT((with.jacobian - values.asDiagonal() * a).cwiseAbs().maxCoeff(), 1e-9);
 }
 
 TEST(BoxLeastSquares, ALeastMetricHoldsWhatIsHardlySeenAndMovesNoMinimum) {

@@ -601,7 +601,7 @@ TEST(TuneReport, HeldRowsSayWhyAndFittedOnesHaveErrors) {
   result.parameters = {fitted, held};
   result.logs = {{"h.csv", result.channels, 0.01}};
   result.starts = {2.0, 1.0};
-  result.reached_best = 1;
+  result.arrived = {0, 1};
   const std::string text = text_of(result, good_enough(result, {}), {});
   for (const char* words : {"tuned 1 parameter from 1 log\n", "104.2", "held: nozzle_gap",
                             "together with flapper_stiffness, spool_offset\n", "1 of 2 starts", "1 to 2"})
@@ -639,8 +639,7 @@ TEST(TuneReport, GoodEnoughIsWhatPredictsHasArrivedAndWouldSeeTheFaults) {
   TuneResult result;
   result.channels = {{Signal::spool_position, "um", 1e-6, 5e-7, 1.5e-6}};
   result.starts = {1.0, 1.01};
-  result.reached_best = 2;
-  result.notes = {"local stage: converged; cost 1"};
+  result.arrived = {1, 1};
   Promise log;
   log.faults = {{"sticky_spool", "-", 2.5, 20, 4, 30}, {"clogged_filter", "-", 0.15, 0.8, 0.5, 1}};
   Promise other = log;  // the fault that one log hides another may show
@@ -667,12 +666,14 @@ TEST(TuneReport, GoodEnoughIsWhatPredictsHasArrivedAndWouldSeeTheFaults) {
   for (const char* words : {"pressure A is left with 11 times its noise", "hose compliance at flow_a"})
     EXPECT_NE(line_of(good).find(words), std::string::npos) << line_of(good);
   result.unfollowed.clear();
-  result.notes = {"local stage: iteration limit of 40; cost 1"};
-  reason("has not arrived (iteration limit of 40)");
-  result.notes.clear();
-  result.reached_best = 1;
+  result.stop = StopReason::iteration_limit, result.still_promised = 7;
+  reason("has not arrived (iteration limit, 7 of its cost still promised)");
+  result.still_promised = 0.3;
+  EXPECT_EQ(good_enough(result, {other}).trust, Trust::yes) << "no more than chance lends";
+  result.stop = StopReason::converged;
+  result.arrived = {1, 0};
   reason("no second start");
-  result.reached_best = 2;
+  result.arrived = {1, 1};
   const auto log_with = [&](const char* path, double heldout) {
     return LogResult{path, {{Signal::spool_position, "um", 1e-6, 5e-7, heldout}}, 0, 0, {}};
   };

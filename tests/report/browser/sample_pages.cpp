@@ -147,7 +147,7 @@ TuneResult some_tuning() {
   t.channels = {{Signal::spool_position, "mm", 1e-6, 4e-7, 1.1e-6}, {Signal::pressure_a, "bar", 1e5, 2e4, 1.3e5}};
   t.logs = {{hostile, t.channels, -0.004, 0.0, {}}, {"h2.csv", t.channels, 0.002, 1.0, {}}};
   t.starts = {120, 80, 81, 300};
-  t.reached_best = 2;
+  t.arrived = {0, 1, 1, 0};
   for (int k = 0; k < 30; ++k) t.convergence.push_back({"genetic search", 50 * k, 1000.0 / (1 + k)});
   t.stages = {{"genetic search", StageMethod::genetic, 1000, 33, 1500, 0},
               {"start 1", StageMethod::least_squares, 100, 17, 100, 6},
