@@ -4,6 +4,7 @@
 #include <atomic>
 #include <functional>
 #include <numeric>
+#include <optional>
 #include <span>
 
 #include "diagnose/constants.h"
@@ -22,13 +23,12 @@ namespace k = diagnose_constants;
 // Progress, counted in steps of least squares: a screening is about one, and few begin again.
 class Steps {
  public:
-  static constexpr double screening = 1, again = 2;  // a fault
+  static constexpr double screening = 1, approach = 1, again = 2;  // a fault
 
   Steps(const HypothesisSettings& settings, std::size_t faults)
       : settings_(settings),
         whole_(k::health_starts * settings.iterations +
-               static_cast<double>(faults) * (screening + 1.0 * k::starts_kept * k::first_iterations +
-                                              (settings.iterations - k::first_iterations) + again)) {}
+               static_cast<double>(faults) * (screening + k::starts_kept * approach + settings.iterations + again)) {}
   void done(double steps, long simulations) {
     const double so_far = done_.fetch_add(steps) + steps;
     const long all = simulated_.fetch_add(simulations) + simulations;
@@ -40,6 +40,11 @@ class Steps {
   double whole_;
   std::atomic<double> done_ = 0;
   std::atomic<long> simulated_ = 0;
+};
+
+struct Health {
+  Attempt attempt;
+  std::optional<FitEnd> end;  // none where the fit failed
 };
 
 // Side by side in the same packs, as many as memory holds: a fit keeps some 1.4 kB a sample.
@@ -56,7 +61,7 @@ void side_by_side(std::size_t count, const HypothesisData& data, const std::func
 
 // Every starting severity of every fault, run once with the rest as in health; the best first.
 std::vector<Screened> screen_starts(const std::vector<const Fault*>& faults, const HypothesisData& data,
-                                    const HypothesisFit& health, const HealthyEnd* end, Steps& steps) {
+                                    const HypothesisFit& health, const FitEnd* end, Steps& steps) {
   std::vector<Screened> screened;
   for (const Fault* fault : faults)
     for (double severity : starting_severities(*fault, data.settings.null_limit)) screened.push_back({fault, severity});
@@ -66,7 +71,7 @@ std::vector<Screened> screen_starts(const std::vector<const Fault*>& faults, con
                screened[i].work.simulations);
   });
   std::stable_sort(screened.begin(), screened.end(),
-                   [](const Screened& a, const Screened& b) { return a.misfit < b.misfit; });
+                   [](const Screened& a, const Screened& b) { return a.left < b.left; });
   return screened;
 }
 
@@ -92,18 +97,38 @@ std::vector<Attempt> best_starts(const std::vector<const Fault*>& faults, const 
   for (const Fault* fault : faults) {
     int begun = 0;
     for (const Screened& s : screened)
-      if (s.fault == fault && begun < k::starts_kept && (begun == 0 || s.misfit < 1e300))
+      if (s.fault == fault && begun < k::starts_kept && (begun == 0 || s.left < 1e300))
         attempts.push_back({fault, s.severity}), ++begun;
   }
   return attempts;
 }
 
-void run_all(std::vector<Attempt>& attempts, const HypothesisData& data, const HypothesisFit& health, int iterations,
-             Steps& steps) {
+// Near what health came to by the derivatives it left there; where it left none, by a few steps of its own.
+void approach_all(std::vector<Attempt>& attempts, const HypothesisData& data, const Health& health, Steps& steps) {
+  side_by_side(attempts.size(), data, [&](std::size_t i) {
+    if (health.end)
+      approach(attempts[i], data, health.attempt.fit, *health.end, k::approach_iterations);
+    else
+      run(attempts[i], data, &health.attempt.fit, k::first_iterations);
+    steps.done(Steps::approach, attempts[i].work.simulations);
+  });
+}
+
+// Whether it leaves more than health does, and so much more than the best that its chance is nothing: by how much is
+// then of no use to anyone.
+bool is_hopeless(const HypothesisFit& fit, const HypothesisFit& health, double best, double degrees) {
+  if (!fit.ok || fit.misfit <= health.misfit) return false;
+  return fit.misfit - best > k::hopeless * misfit_scale(health.misfit, best, degrees, k::effect_error);
+}
+
+void run_hopeful(std::vector<Attempt>& attempts, const HypothesisData& data, const HypothesisFit& health,
+                 double degrees, Steps& steps) {
+  double best = health.misfit;
+  for (const Attempt& a : attempts) best = std::min(best, a.fit.misfit);
   side_by_side(attempts.size(), data, [&](std::size_t i) {
     const long before = attempts[i].work.simulations;
-    run(attempts[i], data, &health, iterations);
-    steps.done(iterations, attempts[i].work.simulations - before);
+    if (!is_hopeless(attempts[i].fit, health, best, degrees)) run(attempts[i], data, &health, data.settings.iterations);
+    steps.done(data.settings.iterations, attempts[i].work.simulations - before);
   });
 }
 
@@ -146,14 +171,16 @@ std::vector<Attempt> best_of_each(std::vector<Attempt> attempts) {
 }
 
 // Health from several starts side by side: a poor valley of it lends every fault a gain.
-Attempt fit_health(const HypothesisData& data, Steps& steps) {
+Health fit_health(const HypothesisData& data, Steps& steps) {
   std::vector<Attempt> attempts(k::health_starts);
   for (int i = 0; i < k::health_starts; ++i) attempts[static_cast<std::size_t>(i)].scattered = i;
   side_by_side(attempts.size(), data, [&](std::size_t i) {
     run(attempts[i], data, nullptr, data.settings.iterations);
     steps.done(data.settings.iterations, attempts[i].work.simulations);
   });
-  return std::move(best_of_each(std::move(attempts)).front());
+  Health health = {std::move(best_of_each(std::move(attempts)).front()), {}};
+  health.end = end_of(health.attempt.fit, data, health.attempt.work);
+  return health;
 }
 
 // Health had few starts, the faults many: what one of them gained by better nuisances is no fault's. So health begins
@@ -204,7 +231,7 @@ std::vector<Attempt> pair_attempts(const std::vector<const Fault*>& faults,
       const bool tried = fault == led[l]->fault || (l > 0 && fault == led[0]->fault);
       if (tried) continue;
       for (const double severity : starting_severities(*fault, data.settings.null_limit))
-        screened.push_back({led[l]->fault, severity, 1e300, fault}), by.push_back(led[l]);
+        screened.push_back({.fault = led[l]->fault, .severity = severity, .beside = fault}), by.push_back(led[l]);
     }
   side_by_side(screened.size(), data, [&](std::size_t i) { screen(screened[i], data, *by[i]); });
   std::vector<Attempt> out;
@@ -224,12 +251,23 @@ std::vector<Attempt> pair_attempts(const std::vector<const Fault*>& faults,
   return out;
 }
 
+// Of all pairs those that came nearest are fitted by derivatives of their own.
 void fit_pairs(const std::vector<const Fault*>& faults, const HypothesisData& data, HypothesisFits& fits) {
+  const double best = fits.fits[best_fit(fits)].misfit;
+  if (best <= k::lent_to_second * k::lent_to_second * fits.fits.front().misfit) return;  // none could gain
   const std::vector<const HypothesisFit*> led = leading(fits);
+  std::vector<std::optional<FitEnd>> ends;
+  for (const HypothesisFit* fit : led) ends.push_back(end_of(*fit, data, fits.work));
   std::vector<const HypothesisFit*> from;
   std::vector<Attempt> attempts = pair_attempts(faults, led, data, from, fits.work);
-  side_by_side(attempts.size(), data,
-               [&](std::size_t i) { run(attempts[i], data, from[i], data.settings.iterations); });
+  side_by_side(attempts.size(), data, [&](std::size_t i) {
+    const auto of = static_cast<std::size_t>(std::find(led.begin(), led.end(), from[i]) - led.begin());
+    if (ends[of]) approach(attempts[i], data, *from[i], *ends[of], k::approach_iterations);
+  });
+  const auto nearer = [](const Attempt& a, const Attempt& b) { return a.fit.misfit < b.fit.misfit; };
+  std::stable_sort(attempts.begin(), attempts.end(), nearer);
+  side_by_side(std::min(k::pair_finalists, attempts.size()), data,
+               [&](std::size_t i) { run(attempts[i], data, nullptr, data.settings.iterations); });
   for (Attempt& a : attempts) {
     fits.work.add(a.work);
     if (a.fit.ok) fits.pairs.push_back(std::move(a.fit));
@@ -261,19 +299,21 @@ HypothesisFits fit_hypotheses(const std::vector<const LogData*>& logs, const Par
                               const ErrorModel& error, const HypothesisSettings& settings) {
   const HypothesisData data = hypothesis_data(logs, base, error, settings);
   const std::vector<const Fault*> faults = settings.among.empty() ? fitted_faults(logs) : settings.among;
+  const double degrees = independent_samples(logs, error);
   Steps steps(settings, faults.size());
-  Attempt health = fit_health(data, steps);
-  const std::optional<HealthyEnd> end = healthy_end(health.fit, data, health.work);
-  const std::vector<Screened> screened = screen_starts(faults, data, health.fit, end ? &*end : nullptr, steps);
+  Health healthy = fit_health(data, steps);
+  Attempt& health = healthy.attempt;
+  const std::vector<Screened> screened =
+      screen_starts(faults, data, health.fit, healthy.end ? &*healthy.end : nullptr, steps);
   std::vector<Attempt> attempts = best_starts(faults, screened);
-  run_all(attempts, data, health.fit, k::first_iterations, steps);
+  approach_all(attempts, data, healthy, steps);
   attempts = best_of_each(std::move(attempts));
-  run_all(attempts, data, health.fit, settings.iterations - k::first_iterations, steps);
+  run_hopeful(attempts, data, health.fit, degrees, steps);
   finish_leaders(attempts, data, health.fit, settings.iterations);
   begin_health_again(health, attempts, data, steps);
 
   HypothesisFits out;
-  out.degrees = independent_samples(logs, error);
+  out.degrees = degrees;
   out.visible = visible_of(faults, screened);
   out.healthy_square = std::move(health.square);
   out.work = health.work;

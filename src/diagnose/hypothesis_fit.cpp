@@ -32,15 +32,17 @@ FitProblem problem_of(const HypothesisData& data, const std::vector<FreeValue>& 
   return problem;
 }
 
+bool same_value(const FreeValue& a, const FreeValue& b) {
+  return a.name == b.name && a.log == b.log && a.lower == b.lower && a.upper == b.upper;
+}
+
 Point starting_point(const HypothesisFit& so_far, const FitProblem& problem, const HypothesisFit* from) {
   if (so_far.ok) return so_far.point;
   Point x = problem.start();
   if (from && from->ok)
     for (std::size_t j = 0; j < x.size(); ++j)
-      for (std::size_t i = 0; i < from->free.size(); ++i) {
-        const FreeValue &a = problem.free()[j], &b = from->free[i];
-        if (a.name == b.name && a.log == b.log && a.lower == b.lower && a.upper == b.upper) x[j] = from->point[i];
-      }
+      for (std::size_t i = 0; i < from->free.size(); ++i)
+        if (same_value(problem.free()[j], from->free[i])) x[j] = from->point[i];
   return x;
 }
 
@@ -51,18 +53,38 @@ Point scattered_start(Point x, int which) {
   return x;
 }
 
-LeastSquaresResult minimise(FitProblem& problem, const Point& from, int iterations, const std::function<bool()>& stop) {
+LeastSquaresOptions options_of(int iterations, const std::function<bool()>& stop) {
   LeastSquaresOptions o;
   o.max_iterations = iterations;
   o.difference = Difference::forward;
   o.cost_tolerance = k::cost_tolerance;
   o.damping_trials = 1;  // the hypotheses fill each other's packs: no lane is free
-  o.progress = [&](const LeastSquaresProgress&) { return !(stop && stop()); };
+  o.progress = [&stop](const LeastSquaresProgress&) { return !(stop && stop()); };
+  return o;
+}
+
+LeastSquaresResult minimise(FitProblem& problem, const Point& from, int iterations, const std::function<bool()>& stop) {
+  const LeastSquaresOptions o = options_of(iterations, stop);
   LocalOptions local;
   local.ceres.max_steps = 1;  // one trial and no Jacobian: hypotheses are many, and their fits short
   local.ceres.max_jacobians = 0;
   local.stop = stop;
   return minimise_locally(problem.least_squares(), from, o, local).end;
+}
+
+// The columns that are lent are filled in once.
+JacobianFunction lent_derivatives(const FitProblem& problem, const FitEnd& end, Eigen::MatrixXd rest) {
+  std::vector<char> own(problem.free().size(), 1);
+  for (std::size_t j = 0; j < own.size(); ++j)
+    for (std::size_t i = 0; i < end.free.size(); ++i)
+      if (same_value(problem.free()[j], end.free[i])) {
+        own[j] = 0;
+        rest.col(static_cast<long>(j)).head(problem.data_rows()) = end.answer.derivatives().col(static_cast<long>(i));
+      }
+  return [&problem, own, rest = std::move(rest)](const Point& x, const Eigen::VectorXd& residual, Eigen::MatrixXd& j) {
+    j = rest;
+    return problem.columns(x, residual, own, j);
+  };
 }
 
 // A value on its bound has no error; a fault's severity, the first, has one everywhere.
@@ -130,18 +152,25 @@ HypothesisData hypothesis_data(const std::vector<const LogData*>& logs, const Pa
   return data;
 }
 
-void run(Attempt& a, const HypothesisData& data, const HypothesisFit* from, int iterations) {
-  const std::function<bool()>& stop = data.settings.stop;
-  if (stop && stop()) return;
-  HypothesisFit& fit = a.fit;
-  fit.fault = a.fault;
-  fit.free = hypothesis_values(data.logs, data.base, {{a.fault, a.start}, {a.beside, a.start_beside}},
-                               data.settings.null_limit);
-  FitProblem problem = problem_of(data, fit.free);
+namespace {
+
+// The attempt's own problem.
+FitProblem begin(Attempt& a, const HypothesisData& data) {
+  a.fit.fault = a.fault;
+  a.fit.free = hypothesis_values(data.logs, data.base, {{a.fault, a.start}, {a.beside, a.start_beside}},
+                                 data.settings.null_limit);
+  FitProblem problem = problem_of(data, a.fit.free);
   problem.difference_step = k::difference_step;
-  Point start = starting_point(fit, problem, from);
-  if (a.scattered > 0 && !fit.ok) start = scattered_start(std::move(start), a.scattered);
-  const LeastSquaresResult r = minimise(problem, start, iterations, stop);
+  return problem;
+}
+
+Point start_of(const Attempt& a, const FitProblem& problem, const HypothesisFit* from) {
+  Point start = starting_point(a.fit, problem, from);
+  return a.scattered > 0 && !a.fit.ok ? scattered_start(std::move(start), a.scattered) : start;
+}
+
+void end_at(Attempt& a, const FitProblem& problem, const LeastSquaresResult& r, const HypothesisData& data) {
+  HypothesisFit& fit = a.fit;
   a.work.add({problem.simulations(), problem.failed_simulations()});
   fit.stops = {r.stopped};
   fit.standard_error.clear(), fit.channel_adequacy.clear(), fit.channel_rms.clear();
@@ -169,19 +198,41 @@ void run(Attempt& a, const HypothesisData& data, const HypothesisFit* from, int 
   }
 }
 
-std::optional<HealthyEnd> healthy_end(const HypothesisFit& health, const HypothesisData& data, FitWork& work) {
-  if (!health.ok) return {};
-  FitProblem problem = problem_of(data, health.free);
-  problem.difference_step = k::difference_step;
-  const Evaluation e = problem.evaluate(std::span(&health.point, 1)).front();
-  Eigen::MatrixXd jacobian;
-  const bool had = e.ok && problem.jacobian(health.point, e.residual, jacobian);
-  work.add({problem.simulations(), problem.failed_simulations()});
-  if (!had) return {};
-  return HealthyEnd{e.residual.head(problem.data_rows()), {jacobian, health.point, problem.data_rows()}};
+}  // namespace
+
+void run(Attempt& a, const HypothesisData& data, const HypothesisFit* from, int iterations) {
+  const std::function<bool()>& stop = data.settings.stop;
+  if (stop && stop()) return;
+  FitProblem problem = begin(a, data);
+  end_at(a, problem, minimise(problem, start_of(a, problem, from), iterations, stop), data);
 }
 
-void screen(Screened& s, const HypothesisData& data, const HypothesisFit& from, const HealthyEnd* end) {
+void approach(Attempt& a, const HypothesisData& data, const HypothesisFit& from, const FitEnd& end, int iterations) {
+  const std::function<bool()>& stop = data.settings.stop;
+  if (stop && stop()) return;
+  FitProblem problem = begin(a, data);
+  LeastSquaresProblem lent = problem.least_squares();
+  lent.jacobian = lent_derivatives(problem, end, Eigen::MatrixXd::Zero(problem.total_rows(), problem.n()));
+  const Point start = start_of(a, problem, &from);
+  end_at(a, problem, minimise_least_squares(lent, start, options_of(iterations, stop)), data);
+}
+
+std::optional<FitEnd> end_of(const HypothesisFit& fit, const HypothesisData& data, FitWork& work) {
+  if (!fit.ok) return {};
+  FitProblem problem = problem_of(data, fit.free);
+  problem.difference_step = k::difference_step;
+  const Evaluation e = problem.evaluate(std::span(&fit.point, 1)).front();
+  Eigen::MatrixXd jacobian;
+  const bool had = e.ok && problem.jacobian(fit.point, e.residual, jacobian);
+  work.add({problem.simulations(), problem.failed_simulations()});
+  if (!had) return {};
+  return FitEnd{e.residual.head(problem.data_rows()),
+                {jacobian, fit.point, problem.data_rows()},
+                jacobian.transpose() * e.residual,
+                fit.free};
+}
+
+void screen(Screened& s, const HypothesisData& data, const HypothesisFit& from, const FitEnd* end) {
   // The unit interval of a severity depends on its sign.
   const std::vector<FaultStart> faults = s.beside
                                              ? std::vector<FaultStart>{{s.fault, from.severity}, {s.beside, s.severity}}
@@ -189,8 +240,12 @@ void screen(Screened& s, const HypothesisData& data, const HypothesisFit& from, 
   FitProblem problem = problem_of(data, hypothesis_values(data.logs, data.base, faults, data.settings.null_limit));
   const Point x = starting_point({}, problem, &from);
   const Evaluation e = problem.evaluate(std::span(&x, 1)).front();
-  if (e.ok) s.misfit = e.residual.squaredNorm();
-  if (e.ok && end) s.gain = end->answer.left_of(e.residual.head(problem.data_rows()) - end->residual);
+  if (e.ok) s.misfit = s.left = e.residual.squaredNorm();
+  if (e.ok && end) {
+    const Eigen::VectorXd change = e.residual.head(problem.data_rows()) - end->residual;
+    s.gain = end->answer.left_of(change);
+    s.left -= end->answer.taken(end->gradient + end->answer.derivatives().transpose() * change);
+  }
   s.work = {problem.simulations(), problem.failed_simulations()};
 }
 

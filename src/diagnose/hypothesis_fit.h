@@ -40,22 +40,30 @@ struct Attempt {
 // or the first fault alone.
 void run(Attempt& attempt, const HypothesisData& data, const HypothesisFit* from, int iterations);
 
-// Where health ended, and what it could make of a change there.
-struct HealthyEnd {
+// Where a fit ended, of health mostly, and what it could make of a change there.
+struct FitEnd {
   Eigen::VectorXd residual;  // of the logs, whitened
   HealthyAnswer answer;
+  Eigen::VectorXd gradient;  // of half the misfit; not zero where a wall holds a value
+  std::vector<FreeValue> free;
 };
 // None where the fit failed.
-std::optional<HealthyEnd> healthy_end(const HypothesisFit& health, const HypothesisData& data, FitWork& work);
+std::optional<FitEnd> end_of(const HypothesisFit& fit, const HypothesisData& data, FitWork& work);
+
+// As `run`, by the derivatives that `from` left at its end: only those of what it lacks, a fault's own, are taken anew,
+// so that a step costs a few runs. Of a large fault it ends halfway, and `run` goes on from there.
+void approach(Attempt& attempt, const HypothesisData& data, const HypothesisFit& from, const FitEnd& end,
+              int iterations);
 
 struct Screened {
   const Fault* fault = nullptr;
   double severity = 0, misfit = 1e300;  // with the rest as in health, or as with the first fault alone
+  double left = 1e300;                  // of it, once the rest moves as its linear model there says
   const Fault* beside = nullptr;        // then `severity` is of this one
   double gain = -1;                     // over health, were this fault there (visible.h); negative: not known
   FitWork work = {};
 };
-// `end` null: not asked how visible the fault is.
-void screen(Screened& screened, const HypothesisData& data, const HypothesisFit& from, const HealthyEnd* end = nullptr);
+// `end` null: nothing moves, and it is not asked how visible the fault is.
+void screen(Screened& screened, const HypothesisData& data, const HypothesisFit& from, const FitEnd* end = nullptr);
 
 }  // namespace servodx

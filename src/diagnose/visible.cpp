@@ -31,10 +31,12 @@ HealthyAnswer::HealthyAnswer(const Eigen::MatrixXd& jacobian, const Point& at, l
   normal_.diagonal().array() += convex * std::max(most, 1.0);
 }
 
+double HealthyAnswer::taken(const Eigen::VectorXd& gradient) const {
+  return 2 * minimise_box_quadratic(normal_, gradient, lower_, upper_).decrease;
+}
+
 double HealthyAnswer::left_of(const Eigen::VectorXd& change) const {
-  const Eigen::VectorXd gradient = data_.transpose() * change;
-  const BoxQuadraticResult answer = minimise_box_quadratic(normal_, gradient, lower_, upper_);
-  return std::max(0.0, change.squaredNorm() - 2 * answer.decrease);
+  return std::max(0.0, change.squaredNorm() - taken(data_.transpose() * change));
 }
 
 std::optional<double> least_found(const VisibleFault& visible, double needed) {

@@ -35,6 +35,9 @@ class HealthyAnswer {
   HealthyAnswer(const Eigen::MatrixXd& jacobian, const Point& at, long data_rows);
   // Squared norm of what is left of a change [data_rows] of the whitened residual, priors included.
   double left_of(const Eigen::VectorXd& change) const;
+  // What it can take off a squared residual whose half has this gradient [free values].
+  double taken(const Eigen::VectorXd& gradient) const;
+  const Eigen::MatrixXd& derivatives() const { return data_; }  // [data_rows x free values]
 
  private:
   Eigen::MatrixXd data_, normal_;

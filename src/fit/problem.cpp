@@ -205,6 +205,12 @@ std::vector<double> FitProblem::costs(std::span<const Point> points, RobustLoss 
 }
 
 bool FitProblem::jacobian(const Point& x, const Eigen::VectorXd& residual, Eigen::MatrixXd& jac) const {
+  jac.resize(total_rows_, n());
+  return columns(x, residual, std::vector<char>(free().size(), 1), jac);
+}
+
+bool FitProblem::columns(const Point& x, const Eigen::VectorXd& residual, const std::vector<char>& asked,
+                         Eigen::MatrixXd& jac) const {
   const double step = difference_step;
   struct Column {
     int j, log;
@@ -213,11 +219,10 @@ bool FitProblem::jacobian(const Point& x, const Eigen::VectorXd& residual, Eigen
   std::vector<Column> columns;
   for (std::size_t l = 0; l < logs_.size(); ++l)
     for (std::size_t j = 0; j < free().size(); ++j)
-      if (free()[j].log < 0 || free()[j].log == static_cast<int>(l))
+      if (asked[j] && (free()[j].log < 0 || free()[j].log == static_cast<int>(l)))
         columns.push_back({static_cast<int>(j), static_cast<int>(l), x[j] + step <= 1.0 ? step : -step});
-  jac.resize(total_rows_, n());
   for (std::size_t j = 0; j < free().size(); ++j)  // what a log's own value does not touch
-    if (free()[j].log >= 0) jac.col(static_cast<long>(j)).head(data_rows_).setZero();
+    if (asked[j] && free()[j].log >= 0) jac.col(static_cast<long>(j)).head(data_rows_).setZero();
   jac.bottomRows(total_rows_ - data_rows_).setZero();
   // Some logs at a time: what keeps the threads busy, and not all logs' trajectories in memory.
   std::size_t first = 0;

@@ -51,6 +51,9 @@ class FitProblem {
   std::vector<double> costs(std::span<const Point> points, RobustLoss loss, double scale, bool ranking = false,
                             std::span<const double> bounds = {}) const;
   bool jacobian(const Point& x, const Eigen::VectorXd& residual, Eigen::MatrixXd& j) const;
+  // Of the free values that are `asked` for alone; the other columns of j, which has its size, stay as they are.
+  bool columns(const Point& x, const Eigen::VectorXd& residual, const std::vector<char>& asked,
+               Eigen::MatrixXd& j) const;
   LeastSquaresProblem least_squares() const;
 
   // Raw residual (measured - simulated, filtered as the channel is) of a log's channel. [SI] NaN where missing.
@@ -61,6 +64,7 @@ class FitProblem {
     return {offset_[log][channel], static_cast<long>(logs_[log]->scenario.time.size())};
   }
   long data_rows() const { return data_rows_; }
+  long total_rows() const { return total_rows_; }  // the priors' behind those of the data
   long simulations() const { return simulations_; }
   long failed_simulations() const { return failed_; }
 

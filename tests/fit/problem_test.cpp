@@ -115,6 +115,29 @@ struct TwoLogs {
   }
 };
 
+TEST(FitProblem, ColumnsThatAreAskedForAreTheJacobiansAndTheOthersStay) {
+  const TwoLogs logs;
+  const FitProblem problem({&logs.a, &logs.b}, logs.truth, logs.free());
+  const Point x = problem.start();
+  const Eigen::VectorXd residual = problem.evaluate(std::span(&x, 1)).front().residual;
+  Eigen::MatrixXd all;
+  ASSERT_TRUE(problem.jacobian(x, residual, all));
+  std::vector<char> asked(x.size(), 0);
+  asked.front() = asked.back() = 1;
+  Eigen::MatrixXd some = Eigen::MatrixXd::Constant(all.rows(), all.cols(), 7.0);
+  const long before = problem.simulations();
+  ASSERT_TRUE(problem.columns(x, residual, asked, some));
+  EXPECT_LT(problem.simulations() - before, before);
+  for (std::size_t j = 0; j < asked.size(); ++j) {
+    const auto rows = problem.data_rows();
+    const Eigen::VectorXd column = some.col(static_cast<long>(j)).head(rows);
+    if (asked[j])
+      EXPECT_TRUE(column == all.col(static_cast<long>(j)).head(rows)) << j;
+    else
+      EXPECT_TRUE((column.array() == 7.0).all()) << j;
+  }
+}
+
 TEST(FitProblem, CostsAreHalfTheSquaredResidualsAsTheLossChangesThem) {
   const TwoLogs logs;
   std::vector<FreeValue> free = logs.free();
