@@ -26,5 +26,8 @@ if(NOT SERVODX_SANITIZE)  # an interpreter without the sanitizers cannot load wh
     add_test(NAME python.${name} COMMAND ${Python_EXECUTABLE} -B ${test} ${python_packages} ${CMAKE_SOURCE_DIR}
                                          $<TARGET_FILE:servodx>)
     set_tests_properties(python.${name} PROPERTIES SKIP_RETURN_CODE 77 TIMEOUT 3600)
+    if(name IN_LIST nightly_python)
+      set_tests_properties(python.${name} PROPERTIES LABELS nightly)
+    endif()
   endforeach()
 endif()

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
+#include <vector>
 
 #include "base/random.h"
 #include "diagnose/constants.h"
@@ -72,17 +74,16 @@ LeastSquaresResult minimise(FitProblem& problem, const Point& from, int iteratio
   return minimise_locally(problem.least_squares(), from, o, local).end;
 }
 
-// The columns that are lent are filled in once.
-JacobianFunction lent_derivatives(const FitProblem& problem, const FitEnd& end, Eigen::MatrixXd rest) {
+// Columns that the fit which ended there had too are its own at that end; the others are taken where they are asked for.
+JacobianFunction lent_derivatives(const FitProblem& problem, const FitEnd& end) {
   std::vector<char> own(problem.free().size(), 1);
+  std::vector<std::pair<long, long>> lent;  // here, there
   for (std::size_t j = 0; j < own.size(); ++j)
     for (std::size_t i = 0; i < end.free.size(); ++i)
-      if (same_value(problem.free()[j], end.free[i])) {
-        own[j] = 0;
-        rest.col(static_cast<long>(j)).head(problem.data_rows()) = end.answer.derivatives().col(static_cast<long>(i));
-      }
-  return [&problem, own, rest = std::move(rest)](const Point& x, const Eigen::VectorXd& residual, Eigen::MatrixXd& j) {
-    j = rest;
+      if (same_value(problem.free()[j], end.free[i]))
+        own[j] = 0, lent.push_back({static_cast<long>(j), static_cast<long>(i)});
+  return [&problem, &end, own, lent](const Point& x, const Eigen::VectorXd& residual, Eigen::MatrixXd& j) {
+    for (const auto& [here, there] : lent) j.col(here).head(problem.data_rows()) = end.answer.derivatives().col(there);
     return problem.columns(x, residual, own, j);
   };
 }
@@ -212,9 +213,12 @@ void approach(Attempt& a, const HypothesisData& data, const HypothesisFit& from,
   if (stop && stop()) return;
   FitProblem problem = begin(a, data);
   LeastSquaresProblem lent = problem.least_squares();
-  lent.jacobian = lent_derivatives(problem, end, Eigen::MatrixXd::Zero(problem.total_rows(), problem.n()));
+  lent.jacobian = lent_derivatives(problem, end);
   const Point start = start_of(a, problem, &from);
-  end_at(a, problem, minimise_least_squares(lent, start, options_of(iterations, stop)), data);
+  LocalOptions local;
+  local.method = LocalMethod::search_alone;  // `run` ends with Ceres
+  local.stop = stop;
+  end_at(a, problem, minimise_locally(lent, start, options_of(iterations, stop), local).end, data);
 }
 
 std::optional<FitEnd> end_of(const HypothesisFit& fit, const HypothesisData& data, FitWork& work) {
