@@ -14,6 +14,7 @@
 #include "diagnose/records.h"
 #include "diagnose/visible.h"
 #include "diagnose/whitening.h"
+#include "diagnose/worth_fitting.h"
 #include "evidence/conditions.h"
 #include "evidence/operating_point.h"
 #include "evidence/probabilities.h"
@@ -126,7 +127,6 @@ double worst_channel(const HypothesisFit& f) {
                                     : *std::max_element(f.channel_adequacy.begin(), f.channel_adequacy.end());
 }
 
-// The gain over the best single fault, but for what a model that errs by a part of the effect may lend a second.
 std::vector<PairResult> pairs_of(const HypothesisFits& fits) {
   const auto alone = [&](const Fault* fault) {
     const auto it = std::find_if(fits.fits.begin(), fits.fits.end(), [&](const auto& f) { return f.fault == fault; });
@@ -137,9 +137,8 @@ std::vector<PairResult> pairs_of(const HypothesisFits& fits) {
   for (const HypothesisFit& f : fits.pairs) {
     PairResult p{f, *f.beside};
     if (alone(p.second.fault) < alone(p.first.fault)) std::swap(p.first, p.second);
-    const double lent = k::lent_to_second * k::lent_to_second * std::max(0.0, healthy - f.misfit);
     p.misfit = f.misfit;
-    p.gain = (best - f.misfit - lent) / misfit_scale(healthy, f.misfit, fits.degrees, k::effect_error);
+    p.gain = pair_gain(f.misfit, best, healthy) / misfit_scale(healthy, f.misfit, fits.degrees, k::effect_error);
     p.of_effect = (best - f.misfit) / std::max(1e-9, healthy - f.misfit);
     p.adequacy = worst_channel(f);
     out.push_back(p);

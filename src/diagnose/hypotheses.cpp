@@ -11,6 +11,7 @@
 #include "diagnose/hypothesis_fit.h"
 #include "diagnose/severity.h"
 #include "diagnose/whitening.h"
+#include "diagnose/worth_fitting.h"
 #include "evidence/probabilities.h"
 #include "faults/record.h"
 #include "simulate/together.h"
@@ -114,20 +115,15 @@ void approach_all(std::vector<Attempt>& attempts, const HypothesisData& data, co
   });
 }
 
-// Whether it leaves more than health does, and so much more than the best that its chance is nothing: by how much is
-// then of no use to anyone.
-bool is_hopeless(const HypothesisFit& fit, const HypothesisFit& health, double best, double degrees) {
-  if (!fit.ok || fit.misfit <= health.misfit) return false;
-  return fit.misfit - best > k::hopeless * misfit_scale(health.misfit, best, degrees, k::effect_error);
-}
-
 void run_hopeful(std::vector<Attempt>& attempts, const HypothesisData& data, const HypothesisFit& health,
                  double degrees, Steps& steps) {
   double best = health.misfit;
   for (const Attempt& a : attempts) best = std::min(best, a.fit.misfit);
   side_by_side(attempts.size(), data, [&](std::size_t i) {
     const long before = attempts[i].work.simulations;
-    if (!is_hopeless(attempts[i].fit, health, best, degrees)) run(attempts[i], data, &health, data.settings.iterations);
+    const HypothesisFit& fit = attempts[i].fit;
+    if (!fit.ok || !is_hopeless(fit.misfit, health.misfit, best, degrees))
+      run(attempts[i], data, &health, data.settings.iterations);
     steps.done(data.settings.iterations, attempts[i].work.simulations - before);
   });
 }
@@ -253,8 +249,7 @@ std::vector<Attempt> pair_attempts(const std::vector<const Fault*>& faults,
 
 // Of all pairs those that came nearest are fitted by derivatives of their own.
 void fit_pairs(const std::vector<const Fault*>& faults, const HypothesisData& data, HypothesisFits& fits) {
-  const double best = fits.fits[best_fit(fits)].misfit;
-  if (best <= k::lent_to_second * k::lent_to_second * fits.fits.front().misfit) return;  // none could gain
+  if (!pair_could_gain(fits.fits[best_fit(fits)].misfit, fits.fits.front().misfit)) return;
   const std::vector<const HypothesisFit*> led = leading(fits);
   std::vector<std::optional<FitEnd>> ends;
   for (const HypothesisFit* fit : led) ends.push_back(end_of(*fit, data, fits.work));

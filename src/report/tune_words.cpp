@@ -26,7 +26,26 @@ constexpr double follows = 50.0;
 constexpr double worth_going_on = 0.5;
 
 bool has_arrived(const TuneResult& result) {
-  return result.stop == StopReason::converged || result.still_promised <= worth_going_on;
+  switch (result.stop) {
+    case StopReason::converged:
+    case StopReason::goal:
+      return true;
+    case StopReason::stalled:
+    case StopReason::iteration_limit:
+    case StopReason::evaluation_limit:
+      return result.still_promised <= worth_going_on;
+    case StopReason::interrupted:
+    case StopReason::start_failed:
+      return false;
+  }
+  return false;
+}
+
+std::string end_in_words(const TuneResult& result) {
+  const std::string left = std::isfinite(result.still_promised)
+                               ? fmt::format("{} of its cost still promised", digits(result.still_promised, 2))
+                               : "without derivatives nothing says how much is left";
+  return fmt::format("{}, {}", words(name(result.stop)), left);
 }
 
 struct Prediction {
@@ -138,8 +157,7 @@ GoodEnough good_enough(const TuneResult& result, const std::vector<Promise>& pro
   if (!worse.empty())
     g.reasons.push_back("it predicts worse than it fits (" + join(worse) + "): tune with more logs, of more kinds");
   if (!has_arrived(result) && !result.interrupted)
-    g.reasons.push_back(fmt::format("the search has not arrived ({}, {} of its cost still promised): more --rounds",
-                                    words(name(result.stop)), digits(result.still_promised, 2)));
+    g.reasons.push_back("the search has not arrived (" + end_in_words(result) + "): more --rounds");
   if (result.starts.size() > 1 && result.reached_best() < 2)
     g.reasons.push_back("no second start reached the best valley: more --generations");
   g.best = best_of(promises);

@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 #include <span>
 
 #include "optimise/ceres_refinement.h"
@@ -48,6 +50,8 @@ LeastSquaresResult without_derivatives(const FitProblem& problem, const Point& f
   end.point = found.point;
   end.cost = end.misfit = found.cost;
   end.stopped = found.stopped;
+  end.reason = watch.stopped() ? StopReason::interrupted : StopReason::stalled;
+  end.promised_gain = std::numeric_limits<double>::infinity();  // nothing says how much is left
   watch.stages.push_back({stage, StageMethod::nlopt, first_cost, found.cost, watch.simulations(problem) - before, 0});
   return end;
 }
@@ -104,6 +108,13 @@ LeastSquaresResult search_locally(const FitProblem& problem, const Point& from, 
   return std::move(r.end);
 }
 
+// Of twelve starts on four sets of logs eight were in it, and ended within 5 % of each other when they went on; so did
+// three of the other four. `--generations 15` of the tutorial, foreign rigs of seeds 50 and 52, rig B.
+bool in_best_valley(const LeastSquaresResult& end, double best) {
+  const double promised = std::isfinite(end.promised_gain) ? end.promised_gain : 0.0;
+  return end.cost - promised <= as_good * best;
+}
+
 SearchEnds search_ends(const TuneScope& scope, FitProblem& problem, TuneWatch& watch) {
   const TuneOptions& options = watch.options;
   const Point x = problem.start();
@@ -123,7 +134,7 @@ SearchEnds search_ends(const TuneScope& scope, FitProblem& problem, TuneWatch& w
     if (out.ends.back().cost < out.ends[out.best].cost) out.best = s;
   }
   for (const LeastSquaresResult& end : out.ends)
-    out.arrived.push_back(end.cost - end.promised_gain <= as_good * out.ends[out.best].cost);
+    out.arrived.push_back(in_best_valley(end, out.ends[out.best].cost));
   return out;
 }
 

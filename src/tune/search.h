@@ -23,11 +23,15 @@ LeastSquaresResult search_locally(const FitProblem& problem, const Point& from, 
                                   int iterations, Start start, Share share, TuneWatch& watch,
                                   Derivatives derivatives = Derivatives::trusted);
 
+// Whether a start that ended so is in the valley whose end costs `best`: within 5 % of it, or promised to be by its own
+// derivatives.
+bool in_best_valley(const LeastSquaresResult& end, double best);
+
 // Ends of the local stage, the last part of every log held out.
 struct SearchEnds {
   std::vector<LeastSquaresResult> ends;  // from the table's values first
   std::size_t best = 0;
-  std::vector<char> arrived;  // of each, whether it is within 5 % of the best, or promises to be
+  std::vector<char> arrived;  // of each, whether it is in the best valley
 };
 SearchEnds search_ends(const TuneScope& scope, FitProblem& problem, TuneWatch& watch);
 

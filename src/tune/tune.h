@@ -61,7 +61,8 @@ struct TuneResult {
   std::vector<double> starts;  // final costs of all local starts
   std::vector<char> arrived;   // of each, whether it is in the best valley
   StopReason stop = StopReason::converged;  // of the last fit
-  double still_promised = 0;                // of its cost, half a sum of squares, by its derivatives
+  // Of its cost, half a sum of squares, by its derivatives; infinite where it had none.
+  double still_promised = 0;
   int reached_best() const { return static_cast<int>(std::count(arrived.begin(), arrived.end(), 1)); }
   std::vector<ConvergencePoint> convergence;
   std::vector<StageResult> stages;

@@ -670,6 +670,10 @@ TEST(TuneReport, GoodEnoughIsWhatPredictsHasArrivedAndWouldSeeTheFaults) {
   reason("has not arrived (iteration limit, 7 of its cost still promised)");
   result.still_promised = 0.3;
   EXPECT_EQ(good_enough(result, {other}).trust, Trust::yes) << "no more than chance lends";
+  result.stop = StopReason::start_failed, result.still_promised = 0;
+  reason("has not arrived (start failed");
+  result.stop = StopReason::stalled, result.still_promised = std::numeric_limits<double>::infinity();
+  reason("has not arrived (stalled, without derivatives nothing says how much is left)");
   result.stop = StopReason::converged;
   result.arrived = {1, 0};
   reason("no second start");

@@ -3,6 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <limits>
+
 #include "base/error.h"
 #include "effects/line_inertia.h"
 #include "effects/magnetic_hysteresis.h"
@@ -16,6 +19,7 @@
 #include "fit/error_model.h"
 #include "fit/free_values.h"
 #include "fit/tuned_state.h"
+#include "optimise/box_least_squares.h"
 #include "optimise/ceres_refinement.h"
 #include "parameters/list.h"
 #include "parameters/table.h"
@@ -24,6 +28,7 @@
 #include "servodx/rig.h"
 #include "shipped_data.h"
 #include "tune/scope.h"
+#include "tune/search.h"
 #include "tune/summary.h"
 
 namespace servodx {
@@ -163,6 +168,29 @@ TEST(Tune, EveryFitEndsWithCeresAndSaysWhatItGained) {
   for (const StageResult& s : result.stages) told += s.simulations;
   EXPECT_GT(told, 0);
   EXPECT_LE(told, result.simulations);
+}
+
+TEST(Tune, AStartIsInTheBestValleyByItsCostOrByItsOwnPromise) {
+  LeastSquaresResult end;
+  end.cost = 104;
+  EXPECT_TRUE(in_best_valley(end, 100));
+  end.cost = 140, end.promised_gain = 30;
+  EXPECT_FALSE(in_best_valley(end, 100)) << "its own derivatives promise it 110";
+  end.promised_gain = 36;
+  EXPECT_TRUE(in_best_valley(end, 100));
+  end.promised_gain = std::numeric_limits<double>::infinity();
+  EXPECT_FALSE(in_best_valley(end, 100)) << "nothing is promised without derivatives";
+}
+
+TEST(Tune, WithoutDerivativesNothingSaysThatItHasArrived) {
+  TuneOptions o;
+  o.generations = 0, o.rounds = 1;
+  o.effects.emplace();
+  o.local = TuneLocal::nlopt;
+  const TuneResult r =
+      tune_table({twins::cut(shipped_log("healthy/h12_mixed"), 400)}, one_free_row(), shipped_rig(), o);
+  EXPECT_NE(r.stop, StopReason::converged);
+  EXPECT_TRUE(std::isinf(r.still_promised));
 }
 
 TEST(Tune, CeresAloneArrivesWhereBothArrive) {
