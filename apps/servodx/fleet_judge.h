@@ -11,11 +11,11 @@
 #include "diagnose/judge.h"
 #include "fleet/fleet_verdict.h"
 #include "fleet/gather.h"
-#include "fleet/result_file.h"
 #include "fleet/run.h"
 #include "invocation.h"
 #include "parameters/table.h"
 #include "report/json.h"
+#include "result_folder.h"
 #include "servodx/baseline.h"
 #include "servodx/diagnose.h"
 #include "servodx/error.h"
@@ -34,19 +34,15 @@ struct Judging {
 // Notes the files among the inputs of the call, and refuses a baseline of another table.
 Judging read_judging(Invocation& invocation, const std::string& params, const std::string& baseline);
 
-// Refuses what is no folder and cannot become one; made by the first result.
-void require_folder(const std::string& option, const std::string& folder);
-
 class FleetJudge {
  public:
-  FleetJudge(const Invocation& invocation, const Judging& judging, std::string out);
+  FleetJudge(const Invocation& invocation, const Judging& judging, const std::string& out);
 
-  enum class End { judged, stood, set_aside, interrupted };
   struct Outcome {
-    End end = End::judged;
-    FleetVerdict verdict = FleetVerdict::none;  // judged or stood
+    RowEnd end = RowEnd::made;
+    FleetVerdict verdict = FleetVerdict::none;  // made or stood
     std::optional<SetAside> refusal = {};       // set aside
-    std::optional<Diagnosis> diagnosis = {};    // judged; the next two go with it
+    std::optional<Diagnosis> diagnosis = {};    // made; the next two go with it
     std::string fault = {};                     // label; empty: none is named
     double error_ratio = 0;                     // error over threshold
   };
@@ -56,9 +52,7 @@ class FleetJudge {
   std::function<void(const std::string& name, const Diagnosis& diagnosis, const Log& log)> beside = {};
   // The header of a judged log's result.
   const report::Header& header() const { return header_; }
-  std::string result_path(const std::string& name) const { return out_ + "/" + name + result_ending; }
-  std::string page_path(const std::string& name) const { return out_ + "/" + name + page_ending; }
-  std::string refusal_path(const std::string& name) const { return out_ + "/" + name + refusal_ending; }
+  const ResultFolder& folder() const { return folder_; }
 
  private:
   void begin(const std::string& log);
@@ -68,7 +62,7 @@ class FleetJudge {
 
   const Judging& judging_;
   report::Header of_call_, header_;
-  std::string out_;
+  ResultFolder folder_;
   report::InputFile baseline_;
 };
 

@@ -29,6 +29,7 @@
 #include "report/json.h"
 #include "report/pages.h"
 #include "report/text.h"
+#include "result_folder.h"
 #include "servodx/log.h"
 
 namespace servodx {
@@ -61,7 +62,7 @@ class Watching {
     run_.out = options.out;
     if (options.pages)
       judge_.beside = [this, &judging](const std::string& name, const Diagnosis& d, const Log& log) {
-        write_page(judging, judge_.page_path(name), d, log, judge_.header());
+        write_page(judging, judge_.folder().page_path(name), d, log, judge_.header());
       };
     if (!options.prometheus.empty()) gauges_.take_results(options.out);
   }
@@ -103,9 +104,9 @@ class Watching {
                                                      {.seed = options_.common.seed,
                                                       .threads = options_.common.threads,
                                                       .watch = {.stop = [this] { return stop_.load(); }}});
-    run_.logs += outcome.end != FleetJudge::End::interrupted;
+    run_.logs += outcome.end != RowEnd::interrupted;
     add(run_, outcome, progress_, invocation_.header(), judge_.header());
-    if (outcome.end == FleetJudge::End::judged) tell(*outcome.diagnosis);
+    if (outcome.end == RowEnd::made) tell(*outcome.diagnosis);
     const std::string log = options_.folder + "/" + file;
     if (outcome.diagnosis) gauges_.take(log, {outcome.verdict, outcome.fault, outcome.error_ratio, time_of_file(log)});
     gauges_.set_aside(run_.set_aside.size());

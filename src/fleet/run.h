@@ -1,4 +1,4 @@
-// What one run over the logs of a fleet did.
+// What one run over a list did.
 #pragma once
 #include <cstddef>
 #include <string>
@@ -10,15 +10,23 @@
 
 namespace servodx {
 
-struct FleetRun {
-  std::string out;                    // folder of the results
-  std::size_t logs = 0;               // of the list's chunk
-  std::size_t judged = 0, stood = 0;  // results made; results that were there
-  long healthy = 0, fault = 0, unknown = 0;
+// How the run over one log of a list ended. stood: what it would make was there.
+enum class RowEnd { made, stood, set_aside, interrupted };
+
+struct ListRun {
+  std::string out;                  // folder of the results; empty: none
+  std::size_t logs = 0;             // that the run goes over
+  std::size_t made = 0, stood = 0;  // results made; results that were there
   std::vector<SetAside> set_aside;  // logs without a result, `file` is the log's path
   bool interrupted = false;
 
-  std::size_t done() const { return judged + stood + set_aside.size(); }
+  std::size_t done() const { return made + stood + set_aside.size(); }
+};
+
+// Of `diagnose --list` and `watch`.
+struct FleetRun : ListRun {
+  long healthy = 0, fault = 0, unknown = 0;
+
   void count(FleetVerdict verdict) {
     healthy += verdict == FleetVerdict::healthy;
     fault += verdict == FleetVerdict::fault;

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 
@@ -65,6 +66,15 @@ std::string set_aside_text(const std::vector<SetAside>& files, const std::string
   return text;
 }
 
+// `rest`: where those stand that find no place on a screen.
+std::string first_set_aside_text(const std::vector<SetAside>& files, const std::string& rest) {
+  constexpr std::size_t most_named = 20;
+  const std::size_t named = std::min(files.size(), most_named);
+  std::string text = set_aside_text({files.begin(), files.begin() + static_cast<long>(named)}, "  set aside: ");
+  if (named < files.size()) text += fmt::format("  and {} more; {}\n", files.size() - named, rest);
+  return text;
+}
+
 std::string rows_text(const FleetTable& table) {
   if (table.rows.empty()) return "";
   Columns columns("llllrr", 2);
@@ -112,22 +122,16 @@ std::string words_of(const SetAside& file) {
 }
 
 std::string text_of(const FleetRun& run) {
-  constexpr std::size_t most_named = 20;  // of the logs set aside: a screen; `gather` names them all
-  std::string text = fmt::format("{} logs: {} judged, {} stood already, {} set aside; results in {}\n", run.logs,
-                                 run.judged, run.stood, run.set_aside.size(), run.out);
-  text += fmt::format("  {} healthy, {} fault, {} unknown\n", run.healthy, run.fault, run.unknown);
-  const bool all_named = run.set_aside.size() <= most_named;
-  const auto end = run.set_aside.begin() + static_cast<long>(all_named ? run.set_aside.size() : most_named);
-  text += set_aside_text({run.set_aside.begin(), end}, "  set aside: ");
-  if (!all_named)
-    text += fmt::format("  and {} more; 'servodx gather' names them\n", run.set_aside.size() - most_named);
-  return text;
+  return fmt::format("{} logs: {} judged, {} stood already, {} set aside; results in {}\n", run.logs, run.made,
+                     run.stood, run.set_aside.size(), run.out) +
+         fmt::format("  {} healthy, {} fault, {} unknown\n", run.healthy, run.fault, run.unknown) +
+         first_set_aside_text(run.set_aside, "'servodx gather' names them");
 }
 
 Json fleet_run_json(const FleetRun& run) {
   return {{"out", run.out},
           {"logs", run.logs},
-          {"judged", run.judged},
+          {"judged", run.made},
           {"stood", run.stood},
           {"verdicts", {{"healthy", run.healthy}, {"fault", run.fault}, {"unknown", run.unknown}}},
           {"set_aside", to_json(run.set_aside)},
