@@ -61,6 +61,8 @@ class History {
   // All of it or nothing. Refuses a log that this valve's history holds already, unless at other hours or by another
   // table.
   void record(const std::string& valve, const Use& use, const Checked& checked, const Tuned& tuned);
+  // Whether record() would refuse a log of these bytes.
+  bool holds(const std::string& valve, double at, const std::string& log_sha256, const Tuned& tuned) const;
   // kind: filter_changed, valve_swapped, overhauled, retuned or note. It restarts the trends that it renews.
   void add_event(const std::string& valve, double at, const std::string& kind, const std::string& text = "");
   std::vector<std::string> valves() const;

@@ -69,6 +69,12 @@ void History::record(const std::string& valve, const Use& use, const Checked& ch
   file_->record(valve, use.serial, recording, text_of(tuned.table));
 }
 
+bool History::holds(const std::string& valve, double at, const std::string& log_sha256, const Tuned& tuned) const {
+  Recording wanted;
+  wanted.at = at, wanted.log_sha256 = log_sha256, wanted.table_sha256 = tuned.table.sha256;
+  return file_->holds(valve, wanted);
+}
+
 void History::add_event(const std::string& valve, double at, const std::string& kind, const std::string& text) {
   const auto known = find_event(kind);
   door::require_setting(known.has_value(), "KIND", "'" + kind + "' is no event", "use one of: " + event_names());

@@ -295,6 +295,19 @@ void HistoryFile::record(const std::string& valve, const std::string& serial, co
                      "name the hours of this check with --at");
 }
 
+bool HistoryFile::holds(const std::string& valve, const Recording& recording) const {
+  return guarded([&] {
+    SQLite::Statement held(*db_,
+                           "SELECT 1 FROM recording r JOIN valve v ON v.id = r.valve JOIN tuned_table t ON t.id = "
+                           "r.tuned_table WHERE v.name = ? AND r.at = ? AND r.log_sha256 = ? AND t.sha256 = ?");
+    held.bind(1, valve);
+    held.bind(2, recording.at);
+    held.bind(3, recording.log_sha256);
+    held.bind(4, recording.table_sha256);
+    return held.executeStep();
+  });
+}
+
 void HistoryFile::add_event(const std::string& valve, const Event& event) {
   const bool added = guarded([&] {
     SQLite::Transaction all(*db_, SQLite::TransactionBehavior::IMMEDIATE);

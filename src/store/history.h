@@ -51,6 +51,8 @@ class HistoryFile {
   // table.
   void record(const std::string& valve, const std::string& serial, const Recording& recording,
               const std::string& table_text);
+  // Whether record() would refuse it: by valve, hours, hash of the log and hash of the table.
+  bool holds(const std::string& valve, const Recording& recording) const;
   void add_event(const std::string& valve, const Event& event);
   std::vector<std::string> valves() const;
   std::vector<std::string> figures() const;                       // names of all checks, of any valve

@@ -75,6 +75,23 @@ TEST_F(Histories, TheSameLogAtTheSameHoursIsRefused) {
   EXPECT_EQ(h.of("v1").recordings.size(), 1u);
 }
 
+TEST_F(Histories, HoldsWhatItWouldRefuseAndNothingElse) {
+  HistoryFile h(file(), true);
+  const Recording recorded = a_check(10);
+  EXPECT_FALSE(h.holds("v1", recorded));
+  h.record("v1", "", recorded, "");
+  EXPECT_TRUE(h.holds("v1", recorded));
+  EXPECT_FALSE(h.holds("v2", recorded));
+  for (const auto change : {+[](Recording& r) { r.at = 11; }, +[](Recording& r) { r.log_sha256 = "other"; },
+                            +[](Recording& r) { r.table_sha256 = "other"; }}) {
+    Recording other = recorded;
+    change(other);
+    EXPECT_FALSE(h.holds("v1", other));
+    h.record("v1", "", other, "");
+  }
+  EXPECT_EQ(h.of("v1").recordings.size(), 4u);
+}
+
 TEST_F(Histories, CsvThereAndBackGivesTheSameBits) {
   HistoryFile h(file(), true);
   for (int k = 0; k < 5; ++k) h.record("valve, \"left\"", "SN", a_check(k / 3.0, k / 7.0), "id,name\n1,\"x\"\n");
