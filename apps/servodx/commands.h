@@ -17,7 +17,7 @@ void add_watch_command(CLI::App& app, int& exit_code);
 void add_join_command(CLI::App& app);
 void add_explain_command(CLI::App& app, int& exit_code);
 void add_monitor_command(CLI::App& app);
-void add_check_command(CLI::App& app);
+void add_check_command(CLI::App& app, int& exit_code);
 void add_trend_command(CLI::App& app);
 void add_history_command(CLI::App& app, int& exit_code);
 void add_list_command(CLI::App& app);

@@ -70,7 +70,7 @@ int main(int argc, char** argv) {
   add_explain_command(app, exit_code);
   add_selftest_command(app);
   add_simulate_command(app);
-  add_check_command(app);
+  add_check_command(app, exit_code);
   add_trend_command(app);
   add_history_command(app, exit_code);
   add_monitor_command(app);

@@ -52,14 +52,15 @@ FleetVerdict verdict_of(const Json& result) {
 
 }  // namespace
 
-std::string result_name(const std::string& log) {
+std::string result_name(const std::string& log, const std::string& use) {
   constexpr std::size_t longest_stem = 100;  // characters: with hash and ending far below the 255 of a file name
   constexpr std::size_t hash_digits = 16;    // two of a million paths share them with a chance of 3e-8
   const fs::path path = fs::path(log).lexically_normal();
   std::string name = path.stem().string().substr(0, longest_stem);
   for (char& c : name)
     if (!std::isalnum(static_cast<unsigned char>(c)) && c != '_' && c != '-') c = '_';
-  return name + "." + sha256(path.generic_string()).substr(0, hash_digits);
+  const std::string hashed = path.generic_string() + (use.empty() ? "" : "\n" + use);
+  return name + "." + sha256(hashed).substr(0, hash_digits);
 }
 
 FleetVerdict standing_verdict(const std::string& result_path, const ResultBasis& basis) {

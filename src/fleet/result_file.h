@@ -13,8 +13,8 @@ inline constexpr const char* page_ending = ".html";
 inline constexpr const char* refusal_ending = ".refused.json";
 
 // "h12.3f0c...": the log's name and a hash of its path as written. Logs of one name in two folders stay apart, and the
-// same list gives the same names on every machine.
-std::string result_name(const std::string& log);
+// same list gives the same names on every machine. `use`: what sets several results of one log apart.
+std::string result_name(const std::string& log, const std::string& use = "");
 
 // What a result rests on; one that rests on the same needs not be made again.
 struct ResultBasis {

@@ -23,6 +23,11 @@ struct ListRun {
   std::size_t done() const { return made + stood + set_aside.size(); }
 };
 
+// Of `check --list`.
+struct CheckRun : ListRun {
+  std::string history;  // its file
+};
+
 // Of `diagnose --list` and `watch`.
 struct FleetRun : ListRun {
   long healthy = 0, fault = 0, unknown = 0;

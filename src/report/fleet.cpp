@@ -138,6 +138,22 @@ Json fleet_run_json(const FleetRun& run) {
           {"interrupted", run.interrupted}};
 }
 
+std::string text_of(const CheckRun& run) {
+  return fmt::format("{} checks: {} recorded, {} were in the history already, {} set aside; history in {}\n", run.logs,
+                     run.made, run.stood, run.set_aside.size(), run.history) +
+         first_set_aside_text(run.set_aside, "'--json FILE' names them");
+}
+
+Json check_run_json(const CheckRun& run) {
+  return {{"history", run.history},
+          {"out", run.out.empty() ? Json(nullptr) : Json(run.out)},
+          {"logs", run.logs},
+          {"recorded", run.made},
+          {"stood", run.stood},
+          {"set_aside", to_json(run.set_aside)},
+          {"interrupted", run.interrupted}};
+}
+
 Json refusal_json(const std::string& log, const InputError& error) {
   return {{"log", log}, {"refused", to_json(set_aside_of(error))}};
 }

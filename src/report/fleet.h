@@ -17,6 +17,8 @@ std::string words_of(const SetAside& file);  // "log.csv:14: column 'time': rule
 
 std::string text_of(const FleetRun& run);
 Json fleet_run_json(const FleetRun& run);
+std::string text_of(const CheckRun& run);
+Json check_run_json(const CheckRun& run);
 // The body of a result file of a log that was set aside.
 Json refusal_json(const std::string& log, const InputError& error);
 

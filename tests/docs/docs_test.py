@@ -110,6 +110,7 @@ class Docs(unittest.TestCase):
         for name in ("a.json", "b.json"):
             (folder / name).write_text('{"tool": "servodx", "command": "tune"}')
         (folder / "logs.txt").write_text("".join(f"{log.relative_to(folder)}\n" for log in (folder / "healthy").iterdir()))
+        (folder / "checks.csv").write_text("log,valve,hours\nlog.csv,V7,120\nsuspect.csv,V8,40\n")
         (folder / "results").mkdir()
         shutil.copytree(folder / "healthy", folder / "incoming")
         (folder / "results" / "log.json").write_text(

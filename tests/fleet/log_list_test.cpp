@@ -46,6 +46,12 @@ TEST(ResultName, LogsOfOneNameInTwoFoldersStayApart) {
   EXPECT_EQ(result_name("a/log.csv"), result_name("./a//x/../log.csv"));
 }
 
+TEST(ResultName, ResultsOfOneLogStayApartByTheirUse) {
+  EXPECT_NE(result_name("log.csv", "V7"), result_name("log.csv", "V8"));
+  EXPECT_NE(result_name("log.csv", "V7"), result_name("log.csv"));
+  EXPECT_EQ(result_name("log.csv", "V7"), result_name("./log.csv", "V7"));
+}
+
 TEST(ResultName, IsAPlainFileNameWhateverThePath) {
   for (const std::string& log : {std::string("a/b c;$(x)'.csv"), std::string(1000, 'x') + ".csv", std::string("/"),
                                  std::string("\xff\xfe.csv"), std::string("..")}) {

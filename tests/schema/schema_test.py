@@ -121,6 +121,8 @@ class Schemas(unittest.TestCase):
         keep("watch", "--follow", "c.csv", "--until-idle", 0.5, *judged)
         for at in (0, 10, 20):
             keep("check", "a.csv", *tuned, "--history", "h.db", "--valve", "V1", "--at", at)
+        put("checks.csv", "log,valve,hours\na.csv,V2,1\nbad.csv,V2,2\n")
+        keep("check", "--list", "checks.csv", *tuned, "--history", "h.db", "--out", "checked", codes=(3,))
         wear = "".join(f"V7,{10 * k},parameter:9,{2e-7 * k + 1e-7 * (7 * k % 5 - 2):.6g},1e-7\n" for k in range(24))
         put("lives.csv", "valve,at [h],name,value,std_error\n" + wear)
         keep("history", "import", "lives.csv", "--history", "lives.db")
