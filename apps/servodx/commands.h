@@ -28,6 +28,6 @@ void add_compare_command(CLI::App& app);
 void add_init_command(CLI::App& app);
 void add_selftest_command(CLI::App& app);
 void add_rerun_command(CLI::App& app, int& exit_code);
-void add_manual_commands(CLI::App& app);  // completion, man: made from what the other commands say of themselves
+void add_manual_commands(CLI::App& app);  // help, completion, man: made from what the other commands say of themselves
 
 }  // namespace servodx

@@ -218,10 +218,8 @@ void add_diagnose_command(CLI::App& app, int& exit_code) {
                     "do not ask what stands first where no fault explains a log (saves seconds a log)");
   add_common_options(*command, options->common);
   command->footer(
-      "With --list a result that is there for the same log, table, baseline, rig, seed and version is kept; a log "
-      "that\n"
-      "is refused leaves its reason in DIR and the rest goes on: exit code 3, where neither 10 nor 11 is due.\n"
-      "Example: servodx diagnose --list logs.txt --out results --params tuned.csv --baseline base.json");
+      "With --list a result that is there for the same log, table, baseline, rig, seed and version is kept; a log\n"
+      "that is refused leaves its reason in DIR and the rest goes on: exit code 3, where neither 10 nor 11 is due.");
   command->callback([options, &exit_code] { exit_code = run(*options); });
 }
 

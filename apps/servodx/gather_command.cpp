@@ -75,9 +75,7 @@ void add_gather_command(CLI::App& app, int& exit_code) {
                    "accused")
       ->type_name("FILE.csv");
   add_common_options(*command, options->common);
-  command->footer(
-      "Files that are no results are named and left out; the exit code is then 3.\n"
-      "Example: servodx gather results --truth truth.csv --report fleet.html -o fleet.csv");
+  command->footer("Files that are no results are named and left out; the exit code is then 3.");
   command->callback([options, &exit_code] { exit_code = run(*options); });
 }
 

@@ -1,4 +1,5 @@
-// `servodx completion SHELL` and `servodx man`: made from what the commands say of themselves, as --help is.
+// `servodx help`, `servodx completion SHELL` and `servodx man`: made from what the commands say of themselves, as
+// --help is. The examples are given to the commands here.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -7,7 +8,9 @@
 #include <memory>
 
 #include "base/error.h"
+#include "base/nearest.h"
 #include "commands.h"
+#include "examples.h"
 
 namespace servodx {
 namespace {
@@ -48,17 +51,35 @@ std::vector<std::string> option_names(const CLI::App& command) {
   return all;
 }
 
-std::string part_names(const CLI::App& command) {
+std::vector<std::string> command_names(const CLI::App& app) {
   std::vector<std::string> names;
-  for (const CLI::App* part : commands_of(command)) names.push_back(part->get_name());
-  return joined(names, " ");
+  for (const CLI::App* command : commands_of(app)) names.push_back(command->get_name());
+  return names;
+}
+
+// What may follow a command: its own commands; after `help`, the program's.
+std::string part_names(const CLI::App& command) {
+  return joined(command_names(command.get_name() == "help" ? *command.get_parent() : command), " ");
+}
+
+// "Example: servodx watch ..." and further ones below it; empty where the list has none.
+std::string examples_of(const std::string& command) {
+  std::string text;
+  for (const Example& example : examples)
+    if (example.call.starts_with("servodx " + command + " "))
+      text += (text.empty() ? "Example: " : "\n         ") + std::string(example.call);
+  return text;
+}
+
+void give_examples(CLI::App& app) {
+  for (CLI::App* command : app.get_subcommands([](CLI::App*) { return true; }))
+    if (const std::string given = examples_of(command->get_name()); !given.empty())
+      command->footer(command->get_footer().empty() ? given : command->get_footer() + "\n" + given);
 }
 
 std::string bash(const CLI::App& app) {
-  std::vector<std::string> names;
   std::string cases;
   for (const CLI::App* command : commands_of(app)) {
-    names.push_back(command->get_name());
     const std::string parts = part_names(*command);
     cases += fmt::format("    {}) options=\"{}\"{} ;;\n", command->get_name(), joined(option_names(*command), " "),
                          parts.empty() ? "" : " parts=\"" + parts + "\"");
@@ -83,7 +104,7 @@ _servodx() {{
 }}
 complete -F _servodx servodx
 )",
-                     joined(names, " "), cases);
+                     joined(command_names(app), " "), cases);
 }
 
 // A text between single quotes, for fish and zsh.
@@ -208,6 +229,10 @@ std::string man(const CLI::App& app) {
       add_man(text, common, *part, command->get_name() + " " + part->get_name());
   }
   text += ".SH COMMON OPTIONS\n" + common;
+  text += ".SH EXAMPLES\n";
+  for (const Example& example : examples)
+    text += fmt::format(".PP\n{}:\n.nf\n.RS\n{}\n.RE\n.fi\n", roff(std::string(example.purpose)),
+                        roff(std::string(example.call)));
   text +=
       ".SH EXIT STATUS\n.TP\n0\nit ran, whatever the verdict\n.TP\n1\nit failed inside\n.TP\n2\nthe call or an input "
       "was "
@@ -218,11 +243,41 @@ std::string man(const CLI::App& app) {
   return text;
 }
 
+// The command that `words` lead to, as in "history event".
+const CLI::App& command_at(const CLI::App& app, const std::vector<std::string>& words) {
+  const CLI::App* at = &app;
+  for (const std::string& word : words) {
+    const auto commands = commands_of(*at);
+    const auto found = std::find_if(commands.begin(), commands.end(),
+                                    [&](const CLI::App* command) { return command->get_name() == word; });
+    if (found == commands.end()) {
+      const auto near = near_words(word, command_names(*at));
+      throw InputError({}, "no command is called '" + word + "'",
+                       (near.empty() ? "" : "did you mean '" + joined(near, "' or '") + "'? ") +
+                           "'servodx help' lists what there is");
+    }
+    at = *found;
+  }
+  return *at;
+}
+
+// As --help prints it. The app's own help() would be that of the command `help`, which was called.
+std::string help(const CLI::App& app, const std::vector<std::string>& words) {
+  const CLI::App& command = command_at(app, words);
+  const std::string called = words.empty() ? app.get_name() : app.get_name() + " " + joined(words, " ");
+  return command.get_formatter()->make_help(&command, called, CLI::AppFormatMode::Normal);
+}
+
 void print(const std::string& text) { std::fwrite(text.data(), 1, text.size(), stdout); }
 
 }  // namespace
 
 void add_manual_commands(CLI::App& app) {
+  give_examples(app);
+  auto words = std::make_shared<std::vector<std::string>>();
+  CLI::App* helped = app.add_subcommand("help", "What there is, or the help of a command");
+  helped->add_option("COMMAND", *words, "a command, and its own one where it has some");
+  helped->callback([words, &app] { print(help(app, *words)); });
   auto shell = std::make_shared<std::string>();
   CLI::App* completion = app.add_subcommand("completion", "Print a completion script: bash, zsh or fish");
   completion->add_option("SHELL", *shell, "bash, zsh or fish")->required();

@@ -219,9 +219,7 @@ void add_watch_command(CLI::App& app, int& exit_code) {
   command->footer(
       "A log that is refused leaves its reason in the folder of the results and the rest goes on. What was judged is\n"
       "known by its result: a watch that was killed goes on where it was. Ctrl-C or SIGTERM ends it, code 0.\n"
-      "A log that grows is watched until its input is closed, or idle; Ctrl-C or SIGTERM ends it with code 130.\n"
-      "Example: servodx watch incoming --out results --params tuned.csv --baseline base.json\n"
-      "         servodx watch --follow log.csv --state watch.json --params tuned.csv --baseline base.json");
+      "A log that grows is watched until its input is closed, or idle; Ctrl-C or SIGTERM ends it with code 130.");
   command->callback([options, &exit_code] { exit_code = run(*options); });
 }
 

@@ -39,6 +39,18 @@ std::string nearest_word(std::string_view word, const Words& known) {
   return best;
 }
 
+// All that are near, nearest first.
+template <class Words>
+std::vector<std::string> near_words(std::string_view word, const Words& known) {
+  std::vector<std::string> near;
+  for (const auto& each : known)
+    if (edit_distance(word, each) <= std::max<std::size_t>(1, word.size() / 3)) near.emplace_back(each);
+  std::stable_sort(near.begin(), near.end(), [&](const std::string& a, const std::string& b) {
+    return edit_distance(word, a) < edit_distance(word, b);
+  });
+  return near;
+}
+
 // "did you mean 'rated_current'? " where one is near, else nothing: stands before the list of what is known.
 template <class Words>
 std::string did_you_mean(std::string_view word, const Words& known) {

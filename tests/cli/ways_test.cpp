@@ -343,13 +343,13 @@ TEST(DryRun, IsARehearsalWithEveryCommandThatTakesIt) {
     EXPECT_NE(ended.out.find(", dry run: "), std::string::npos) << command << " printed: " << ended.out;
     EXPECT_EQ(desk.contents(), before) << command;
   }
-  // None is missing above: `history` has commands of its own, the other two no options.
+  // None is missing above: `history` has commands of its own, the other three no options.
   std::istringstream man(desk.run("man").out);
   for (std::string line; std::getline(man, line);) {
     if (!line.starts_with(".SS ")) continue;
     std::string command = line.substr(4);
     command.erase(std::remove(command.begin(), command.end(), '\\'), command.end());
-    if (command != "history" && command != "completion" && command != "man") {
+    if (command != "history" && command != "completion" && command != "man" && command != "help") {
       EXPECT_TRUE(calls.contains(command)) << command;
     }
   }
@@ -537,6 +537,48 @@ TEST(Manual, NamesEveryCommandAndOption) {
   EXPECT_EQ(std::system(("bash -n '" + (desk / "c.bash") + "'").c_str()), 0);
 }
 
+TEST(Help, IsWhatTheOptionPrints) {
+  const Desk desk;
+  for (const char* command : {"", "diagnose", "check-log", "history", "history event"}) {
+    const Ended asked = desk.run(std::string("help ") + command), option = desk.run(std::string(command) + " --help");
+    EXPECT_EQ(asked.code, 0) << command << asked.err;
+    EXPECT_EQ(asked.out, option.out) << command;
+    EXPECT_FALSE(asked.out.empty());
+  }
+}
+
+TEST(Help, RefusesAnUnknownCommandWithTheNearestNames) {
+  const Desk desk;
+  const Ended near = desk.run("help chek"), far = desk.run("help frobnicate"), part = desk.run("help history evnt");
+  for (const Ended& ended : {near, far, part}) {
+    EXPECT_EQ(ended.code, 2);
+    EXPECT_EQ(ended.out, "");
+    EXPECT_NE(ended.err.find("no command is called"), std::string::npos) << ended.err;
+    EXPECT_NE(ended.err.find("'servodx help' lists what there is"), std::string::npos) << ended.err;
+  }
+  EXPECT_NE(near.err.find("did you mean 'check'?"), std::string::npos) << near.err;
+  EXPECT_NE(part.err.find("did you mean 'event'?"), std::string::npos) << part.err;
+  EXPECT_EQ(far.err.find("did you mean"), std::string::npos) << far.err;
+}
+
+// On an empty desk each fails for want of its files, never as a call. The manual has them all.
+TEST(Help, ExamplesAreCallsThatTheProgramTakes) {
+  const Desk desk;
+  std::string man = desk.run("man").out;
+  man.erase(std::remove(man.begin(), man.end(), '\\'), man.end());
+  std::istringstream section(man.substr(man.find(".SH EXAMPLES")));
+  int seen = 0;
+  for (std::string line; std::getline(section, line) && !line.starts_with(".SH EXIT");) {
+    if (!line.starts_with("servodx ")) continue;
+    ++seen;
+    const std::string call = line.substr(8), command = call.substr(0, call.find(' '));
+    const Ended ended = desk.run(call + " --dry-run");
+    EXPECT_EQ(ended.err.find("--help' lists what there is"), std::string::npos) << call << '\n' << ended.err;
+    EXPECT_NE(desk.run("help " + command).out.find(line), std::string::npos) << line;
+  }
+  EXPECT_GT(seen, 15);
+}
+
 TEST(Completion, BashCompletesCommandsTheirPartsAndOptions) {
   const Desk desk;
   desk.write("c.bash", desk.run("completion bash").out);
@@ -551,6 +593,7 @@ TEST(Completion, BashCompletesCommandsTheirPartsAndOptions) {
   EXPECT_EQ(completed("diag", 1), "diagnose");
   EXPECT_EQ(completed("tune --gen", 2), "--generations");
   EXPECT_EQ(completed("history ex", 2), "export");
+  EXPECT_EQ(completed("help gath", 2), "gather");
   EXPECT_EQ(completed("history export --hist", 3), "--history");
 }
 
