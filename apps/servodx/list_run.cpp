@@ -44,9 +44,7 @@ void run_list(const std::string& label, ListRun& run, bool quiet,
               const std::function<void(std::size_t place, Progress& progress, const Tell& tell)>& row) {
   const std::atomic<bool>& stop = stop_on_interrupt(true);
   Progress progress(label, {.quiet = quiet});
-  const Tell tell = [&] {
-    progress.show([&](double elapsed) { return logs_line(label, run.done(), run.logs, run.made, elapsed); });
-  };
+  const Tell tell = [&] { progress.update_logs(run.done(), run.logs, run.made); };
   for (std::size_t place = 0; place < run.logs; ++place) {
     if (stop) run.interrupted = true;
     if (run.interrupted) break;

@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 
 namespace servodx {
@@ -16,29 +17,36 @@ std::string time_text(double seconds) {
   return fmt::format("{} h {} min", s / 3600, s % 3600 / 60);
 }
 
+// ", 1 min 5 s left"
+std::string left_words(double undone, std::optional<double> rate) {
+  constexpr double longest = 1e7;  // [s] beyond it the time left is a guess
+  return rate && undone < longest * *rate ? ", " + time_text(undone / *rate) + " left" : "";
+}
+
+// One line of it in a run, whatever the number of works.
+std::atomic<bool> crowd_told{false};
+
 }  // namespace
 
-std::string progress_line(const std::string& label, double fraction, long evaluations, double elapsed) {
+std::string progress_line(const std::string& label, double fraction, long evaluations, double elapsed,
+                          std::optional<double> rate) {
   fraction = std::clamp(fraction, 0.0, 1.0);
   std::string line = fmt::format("{}: {} %", label, static_cast<int>(100.0 * fraction));
   if (evaluations > 0 && elapsed > 0.0) {
-    const double rate = static_cast<double>(evaluations) / elapsed;
-    line += rate < 10.0 ? fmt::format(", {:.1f} evaluations/s", rate) : fmt::format(", {:.0f} evaluations/s", rate);
+    const double each = static_cast<double>(evaluations) / elapsed;
+    line += each < 10.0 ? fmt::format(", {:.1f} evaluations/s", each) : fmt::format(", {:.0f} evaluations/s", each);
   }
-  constexpr double least_fraction = 0.001;  // below it the time left is a guess
-  constexpr double longest = 1e7;           // [s]
-  const double left = fraction > 0.0 ? elapsed * (1.0 - fraction) / fraction : longest;
-  if (fraction >= least_fraction && left < longest) line += ", " + time_text(left) + " left";
-  return line;
+  return line + left_words(1.0 - fraction, rate);
 }
 
-std::string logs_line(const std::string& label, std::size_t done, std::size_t of, std::size_t worked, double elapsed) {
+std::string logs_line(const std::string& label, std::size_t done, std::size_t of, std::size_t worked, double elapsed,
+                      std::optional<double> rate) {
   std::string line = fmt::format("{}: {} of {} logs", label, done, of);
   if (worked == 0 || elapsed <= 0.0) return line;
   constexpr double minute = 60.0;  // [s]
-  const double rate = minute * static_cast<double>(worked) / elapsed;
-  line += rate < 10.0 ? fmt::format(", {:.1f} logs/min", rate) : fmt::format(", {:.0f} logs/min", rate);
-  return line + ", " + time_text(minute * static_cast<double>(of - done) / rate) + " left";
+  const double each = minute * static_cast<double>(worked) / elapsed;
+  line += each < 10.0 ? fmt::format(", {:.1f} logs/min", each) : fmt::format(", {:.0f} logs/min", each);
+  return line + left_words(static_cast<double>(of - done), rate);
 }
 
 Progress::Progress(std::string label, ProgressOptions options)
@@ -54,7 +62,17 @@ Progress::~Progress() {
 }
 
 void Progress::update(double fraction, long evaluations) {
-  show([&](double elapsed) { return progress_line(label_, fraction, evaluations, elapsed); });
+  show([&](double elapsed) {
+    rate_.add(elapsed, fraction);
+    return progress_line(label_, fraction, evaluations, elapsed, rate_.per_second());
+  });
+}
+
+void Progress::update_logs(std::size_t done, std::size_t of, std::size_t worked) {
+  show([&](double elapsed) {
+    rate_.add(elapsed, static_cast<double>(worked));
+    return logs_line(label_, done, of, worked, elapsed, rate_.per_second());
+  });
 }
 
 void Progress::say(const std::string& line) {
@@ -62,6 +80,18 @@ void Progress::say(const std::string& line) {
   const std::lock_guard lock(mutex_);
   std::fputs((shown_ && terminal_ ? "\r\033[K" + line + "\n" : line + "\n").c_str(), options_.to);
   std::fflush(options_.to);
+}
+
+// A stretch between two readings is some seconds long: a shorter one is a moment's.
+void Progress::tell_of_crowd() {
+  constexpr double stretch = 8.0;  // [s] of all cores
+  if (crowd_told || !load_) return;
+  const auto now = cpu_times_now();
+  if (!now || now->all - load_->all < stretch) return;
+  const std::string line = crowd_line(*load_, *now);
+  load_ = now;
+  if (line.empty() || crowd_told.exchange(true)) return;
+  std::fputs((terminal_ ? "\r\033[K" + line + "\n" : line + "\n").c_str(), options_.to);
 }
 
 void Progress::show(const std::function<std::string(double elapsed)>& line) {
@@ -74,6 +104,7 @@ void Progress::show(const std::function<std::string(double elapsed)>& line) {
   const double every = terminal_ ? options_.every_terminal : options_.every_plain;
   due_ = now + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(every));
   const std::string words = line(std::chrono::duration<double>(now - start_).count());
+  tell_of_crowd();
   std::fputs((terminal_ ? "\r" + words + "\033[K" : words + "\n").c_str(), options_.to);
   std::fflush(options_.to);
   shown_ = true;

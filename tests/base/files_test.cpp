@@ -5,7 +5,9 @@
 
 #include "base/atomic_file.h"
 #include "base/csv.h"
+#include "base/machine_load.h"
 #include "base/progress.h"
+#include "base/recent_rate.h"
 #include "base/sha256.h"
 #include "servodx/error.h"
 #include "temporary_folder.h"
@@ -141,9 +143,74 @@ TEST(Sha256, GivesThePublishedDigests) {
 }
 
 TEST(Progress, SaysPartRateAndTimeLeft) {
-  EXPECT_EQ(progress_line("tune", 0.5, 1000, 10.0), "tune: 50 %, 100 evaluations/s, 10 s left");
-  EXPECT_EQ(progress_line("tune", 0.25, 30, 20.0), "tune: 25 %, 1.5 evaluations/s, 1 min 0 s left");
-  EXPECT_EQ(progress_line("tune", 0.0, 0, 2.0), "tune: 0 %");
+  EXPECT_EQ(progress_line("tune", 0.5, 1000, 10.0, 0.05), "tune: 50 %, 100 evaluations/s, 10 s left");
+  EXPECT_EQ(progress_line("tune", 0.25, 30, 20.0, 0.0125), "tune: 25 %, 1.5 evaluations/s, 1 min 0 s left");
+  EXPECT_EQ(progress_line("tune", 0.0, 0, 2.0, {}), "tune: 0 %");
+  EXPECT_EQ(progress_line("tune", 0.1, 0, 2.0, {}), "tune: 10 %");
+  EXPECT_EQ(logs_line("diagnose", 12, 24, 6, 60.0, 0.2), "diagnose: 12 of 24 logs, 6.0 logs/min, 1 min 0 s left");
+  EXPECT_EQ(logs_line("diagnose", 12, 24, 0, 60.0, {}), "diagnose: 12 of 24 logs");
+}
+
+// [s] left after `until`, where a run has done `part(t)` at t, looked at four times a second.
+double left_after(double until, const std::function<double(double)>& part) {
+  RecentRate rate;
+  for (double t = 0; t <= until; t += 0.25) rate.add(t, part(t));
+  const auto now = rate.per_second();
+  return now ? (1 - part(until)) / *now : -1;
+}
+
+TEST(TimeLeft, OfASteadyRunIsExact) {
+  const auto part = [](double t) { return t / 200; };
+  EXPECT_NEAR(left_after(50, part), 150, 1);
+  EXPECT_NEAR(left_after(190, part), 10, 1);
+}
+
+// Half is done in the first 50 s; the other half takes 450 s. The mean of the run would say 90 s, 140 s and 163 s.
+TEST(TimeLeft, FollowsARunThatSlowsDown) {
+  const auto part = [](double t) { return t < 50 ? t / 100 : 0.5 + (t - 50) / 900; };
+  EXPECT_NEAR(left_after(90, part), 410, 15);
+  EXPECT_NEAR(left_after(140, part), 360, 15);
+}
+
+TEST(TimeLeft, FollowsARunThatSpeedsUp) {
+  const auto part = [](double t) { return t < 450 ? t / 900 : 0.5 + (t - 450) / 100; };
+  EXPECT_LT(left_after(470, part), 70);  // the mean of the run would say 201 s
+  EXPECT_LT(left_after(490, part), 15);
+}
+
+TEST(TimeLeft, IsNotSaidUntilThereIsARate) {
+  EXPECT_EQ(left_after(0, [](double) { return 0.4; }), -1);
+  EXPECT_EQ(left_after(1, [](double t) { return 0.1 * t; }), -1);
+  EXPECT_EQ(left_after(100, [](double) { return 0.4; }), -1);  // what a resumed run begins with is no rate
+  EXPECT_NEAR(left_after(20, [](double t) { return 0.4 + 0.01 * t; }), 40, 1);
+}
+
+TEST(TimeLeft, GrowsWhileNothingIsDone) {
+  const auto part = [](double t) { return std::min(t, 50.0) / 100; };
+  EXPECT_GT(left_after(100, part), 80);
+  EXPECT_GT(left_after(150, part), left_after(100, part));
+}
+
+TEST(MachineLoad, ReadsTheKernelsCounters) {
+  const auto times = cpu_times_of("cpu  100 20 30 500 50 5 5 10 7 0", 100, 0.5);
+  ASSERT_TRUE(times);
+  EXPECT_DOUBLE_EQ(times->all, 7.2);  // a guest's time is in the user's
+  EXPECT_DOUBLE_EQ(times->busy, 1.7);
+  EXPECT_DOUBLE_EQ(times->own, 0.5);
+  for (const char* line : {"", "cpu", "cpu0 1 2 3 4 5 6 7 8", "cpu 1 2 3", "intr 1 2 3 4 5 6 7 8"})
+    EXPECT_FALSE(cpu_times_of(line, 100, 0)) << line;
+  EXPECT_FALSE(cpu_times_of("cpu  100 20 30 500 50 5 5 10", 0, 0));
+}
+
+TEST(MachineLoad, TellsOfOthersWhereTheyTakeMuchAndLeaveNoRoom) {
+  const CpuTimes from{1000, 400, 50};
+  EXPECT_EQ(crowd_line(from, {1100, 498, 58}), "other programs take 90 % of this machine: this takes longer");
+  EXPECT_EQ(crowd_line(from, {1100, 500, 149}), "");  // all of it is this program's
+  EXPECT_EQ(crowd_line(from, {1100, 500, 110}), "");  // 40 %
+  EXPECT_EQ(crowd_line(from, {1100, 480, 60}), "");   // cores are idle
+  EXPECT_EQ(crowd_line(from, {1001, 401, 50}), "");   // too near
+  EXPECT_EQ(crowd_line(from, from), "");
+  EXPECT_DOUBLE_EQ(part_of_others(from, {1100, 450, 120}).value(), 0.0);  // counters of two clocks: never below 0
 }
 
 std::string printed(ProgressOptions options) {
