@@ -4,21 +4,16 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstddef>
-#include <filesystem>
 #include <memory>
 #include <string>
-#include <system_error>
 #include <vector>
 
-#include "base/csv.h"
-#include "base/sha256.h"
 #include "commands.h"
 #include "diagnose/baseline.h"
 #include "door/baseline_parts.h"
 #include "fit/replay.h"
 #include "fit/tuned_state.h"
 #include "invocation.h"
-#include "manifest.h"
 #include "report/diagnosis_words.h"
 #include "report/explain_report.h"
 #include "report/json.h"
@@ -28,6 +23,7 @@
 #include "servodx/log.h"
 #include "servodx/rig.h"
 #include "servodx/tune.h"
+#include "tuning_logs.h"
 
 namespace servodx {
 namespace {
@@ -39,19 +35,6 @@ struct Options {
   std::string params, output;
   double false_alarm = BaselineOptions{}.false_alarm;
 };
-
-// The logs that tuned the table, where its manifest says they lie and they are as they were.
-std::vector<std::string> tuning_logs(const std::string& params, const TunedState& state) {
-  std::vector<std::string> out;
-  std::error_code absent;
-  for (const std::string& path : inputs_of_manifest(params + manifest_suffix)) {
-    if (!std::filesystem::is_regular_file(path, absent)) continue;
-    const std::string hash = sha256(read_file(path));
-    if (std::any_of(state.by.begin(), state.by.end(), [&](const TunedBy& by) { return by.sha256 == hash; }))
-      out.push_back(path);
-  }
-  return out;
-}
 
 int run(const Options& options) {
   BaselineOptions how;

@@ -1,14 +1,21 @@
 // `servodx check-log LOG...`: what is in a log, what it can identify, what is suspicious, before any fit.
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <memory>
 
+#include "base/sha256.h"
+#include "base/trouble.h"
 #include "commands.h"
 #include "diagnose/check_log.h"
+#include "evidence/operating_point.h"
+#include "fit/tuned_state.h"
 #include "invocation.h"
 #include "report/check_log.h"
 #include "servodx/log.h"
 #include "servodx/rig.h"
 #include "servodx/table.h"
+#include "tuning_logs.h"
+#include "servodx/error.h"
 
 namespace servodx {
 namespace {
@@ -19,6 +26,25 @@ struct Options {
   std::string params;
 };
 
+// Of the logs that tuned the table. One that this call's rig file does not fit is left out: it is not what was asked.
+std::vector<OperatingPoint> tuning_points(Invocation& invocation, const Options& options, const Table& table,
+                                          const RigFile& rig, const std::vector<Log>& logs) {
+  std::vector<OperatingPoint> points;
+  auto inputs = options.logs;
+  for (const std::string& path : tuning_logs(options.params, tuned_state(table))) {
+    inputs.push_back(path);
+    const std::string hash = sha256_of_file(path);
+    const auto same = std::find_if(logs.begin(), logs.end(), [&](const Log& log) { return log.sha256 == hash; });
+    try {
+      points.push_back(operating_point_of(same != logs.end() ? *same : invocation.log(path, rig)));
+    } catch (const InputError& other) {
+      invocation.note({"a log that tuned the table is left out of the operating points: " + told(other)});
+    }
+  }
+  invocation.check_files(inputs, {});  // found, not named: no output is one of them all the same
+  return points;
+}
+
 void run(const Options& options) {
   Invocation invocation("check-log", options.common);
   auto inputs = options.logs;
@@ -28,9 +54,11 @@ void run(const Options& options) {
   const std::optional<Table> table =
       options.params.empty() ? std::nullopt : std::optional<Table>(invocation.table(options.params));
   const std::vector<Log> logs = invocation.logs(options.logs, rig);
+  const std::vector<OperatingPoint> tuning =
+      table ? tuning_points(invocation, options, *table, rig, logs) : std::vector<OperatingPoint>();
   if (invocation.dry_run()) return;
   std::vector<LogSurvey> surveys;
-  for (const Log& log : logs) surveys.push_back(survey(log, rig));
+  for (const Log& log : logs) surveys.push_back(survey(log, rig)), set_beside_tuning(surveys.back().conditions, tuning);
   compare_surveys(surveys);
   std::vector<report::LogCheck> checks;
   for (std::size_t i = 0; i < logs.size(); ++i) {

@@ -1,6 +1,8 @@
 // The front door of `diagnose`: the verdict in words and numbers that need nothing of the library's inside.
+#include <algorithm>
 #include <memory>
 #include <utility>
+#include <vector>
 
 #include "diagnose/assessment.h"
 #include "diagnose/decide.h"
@@ -22,6 +24,10 @@
 #include "servodx/log.h"
 #include "servodx/rig.h"
 #include "servodx/tune.h"
+#include "diagnose/baseline.h"
+#include "evidence/operating_point.h"
+#include "fit/tuned_state.h"
+#include "servodx/table.h"
 
 namespace servodx {
 namespace {
@@ -52,6 +58,16 @@ std::optional<BeyondFaults> explain_unknown(const std::vector<Log>& logs, const 
   const ExplainResult r = explain_logs(logs, tuned.table, rig, &causes_of(baseline), ask);
   if (r.interrupted) return {};
   return stands_first(r);
+}
+
+// Where the logs that tuned the table were recorded: `baseline` keeps them among those of other tests.
+std::vector<OperatingPoint> tuning_points(const DetectionBaseline& baseline, const Table& tuned) {
+  std::vector<OperatingPoint> out;
+  const TunedState state = tuned_state(tuned);
+  for (const DetectionBaseline::Score& s : baseline.others)
+    if (std::any_of(state.by.begin(), state.by.end(), [&](const TunedBy& by) { return by.sha256 == s.sha256; }))
+      out.push_back(s.point);
+  return out;
 }
 
 Verdict interrupted_verdict(const Assessment& assessment) {
@@ -117,6 +133,7 @@ Verdict diagnose_pool(const std::vector<Log>& logs, const Tuned& tuned, const Ri
   Assessment assessment = assess_pool(logs, tuned.table, rig, options);
   if (options.watch.stopped()) return interrupted_verdict(assessment);
   Diagnosis d = judge(std::move(assessment), parts_of(baseline).detection);
+  set_beside_tuning(d.conditions, tuning_points(parts_of(baseline).detection, tuned.table));
   const bool judged = d.assessment.unjudgeable == Unjudgeable::no;
   const bool asks = judged && d.verdict == VerdictKind::unknown && options.explain_unknown;
   if (asks && !parts_of(baseline).causes)

@@ -60,10 +60,22 @@ double margin_of(Condition c, double around) {
 bool has_lower_end(Condition c) { return c != Condition::load && c != Condition::drive; }
 
 bool is_beyond(const ConditionRow& row) {
-  const std::optional<double> least = row.lowest ? row.lowest : row.sheet, most = row.highest ? row.highest : row.sheet;
+  const auto known = [&](const auto& healthy, const auto& tuned) {
+    return healthy ? healthy : tuned ? tuned : row.sheet;
+  };
+  const std::optional<double> least = known(row.lowest, row.tuned_lowest), most = known(row.highest, row.tuned_highest);
   if (!row.value || !least) return false;
   return *row.value > *most + margin_of(row.of, *most) ||
          (has_lower_end(row.of) && *row.value < *least - margin_of(row.of, *least));
+}
+
+void widen(std::optional<double>& lowest, std::optional<double>& highest, const std::vector<OperatingPoint>& points,
+           Condition of) {
+  for (const OperatingPoint& p : points)
+    if (const auto& x = p[static_cast<std::size_t>(of)]) {
+      lowest = std::min(lowest.value_or(*x), *x);
+      highest = std::max(highest.value_or(*x), *x);
+    }
 }
 
 }  // namespace
@@ -88,15 +100,18 @@ std::vector<ConditionRow> conditions_beside(const OperatingPoint& log, const Ope
   for (int i = 0; i < n_conditions; ++i) {
     const auto at = static_cast<std::size_t>(i);
     ConditionRow row{static_cast<Condition>(i), log[at], sheet[at], {}, {}, false};
-    for (const OperatingPoint& h : healthy) {
-      if (!h[at]) continue;
-      row.lowest = std::min(row.lowest.value_or(*h[at]), *h[at]);
-      row.highest = std::max(row.highest.value_or(*h[at]), *h[at]);
-    }
+    widen(row.lowest, row.highest, healthy, row.of);
     row.beyond = is_beyond(row);
     if (row.value || row.sheet) out.push_back(row);
   }
   return out;
+}
+
+void set_beside_tuning(std::vector<ConditionRow>& rows, const std::vector<OperatingPoint>& tuning) {
+  for (ConditionRow& row : rows) {
+    widen(row.tuned_lowest, row.tuned_highest, tuning, row.of);
+    row.beyond = is_beyond(row);
+  }
 }
 
 }  // namespace servodx

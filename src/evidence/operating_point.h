@@ -26,11 +26,14 @@ struct ConditionRow {
   Condition of = Condition::supply;
   std::optional<double> value, sheet;     // of this log; of the data sheet
   std::optional<double> lowest, highest;  // of the fault-free logs
-  bool beyond = false;                    // what those show; without them, what the sheet says
+  bool beyond = false;                    // what those show; without them the tuning logs, or what the sheet says
+  std::optional<double> tuned_lowest = {}, tuned_highest = {};  // of the logs that tuned the table
 };
 
 // The conditions that the log or the sheet knows, in the order of `Condition`.
 std::vector<ConditionRow> conditions_beside(const OperatingPoint& log, const OperatingPoint& sheet,
                                             const std::vector<OperatingPoint>& healthy);
+// Adds what the logs that tuned the table show, where they are known.
+void set_beside_tuning(std::vector<ConditionRow>& rows, const std::vector<OperatingPoint>& tuning);
 
 }  // namespace servodx

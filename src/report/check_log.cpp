@@ -15,6 +15,7 @@
 #include "report/replay_part.h"
 #include "report/row_verdict_word.h"
 #include "signals/signal.h"
+#include "servodx/table.h"
 
 namespace servodx::report {
 namespace {
@@ -47,10 +48,18 @@ std::string drive_words(const LogSurvey& s) {
   return fmt::format("spans {}, about {} Hz", handy(s.drive_span, "A"), digits(s.drive_band, 2));
 }
 
+// An operating point beyond what is known is one of them.
+std::vector<Finding> suspicious_in(const LogSurvey& s) {
+  std::vector<Finding> all = s.findings;
+  if (const std::string far = beyond_in_words(s.conditions); !far.empty())
+    all.push_back({"beyond", "recorded beyond what is known: " + far});
+  return all;
+}
+
 // Each kind once.
 std::string kinds_of(const LogSurvey& s) {
   std::vector<std::string> kinds;
-  for (const Finding& f : s.findings)
+  for (const Finding& f : suspicious_in(s))
     if (std::find(kinds.begin(), kinds.end(), f.kind) == kinds.end()) kinds.push_back(f.kind);
   return join(kinds);
 }
@@ -97,9 +106,11 @@ std::string text_of(const std::vector<LogCheck>& checks) {
     text += channels.text();
     text += "  drive " + drive_words(s) + "\n";
     if (const std::string at = conditions_in_words(s.conditions); !at.empty()) text += "  at " + at + "\n";
-    if (const std::string far = beyond_in_words(s.conditions); !far.empty()) text += "  BEYOND: " + far + "\n";
+    if (const std::string tuned = tuned_in_words(s.conditions); !tuned.empty()) text += "  tuned at " + tuned + "\n";
+    const std::string far = beyond_in_words(s.conditions);
+    if (!far.empty()) text += "  BEYOND: " + far + "\n";
     for (const Finding& f : s.findings) text += fmt::format("  suspicious: {}: {}\n", f.kind, f.text);
-    if (s.findings.empty()) text += "  nothing suspicious\n";
+    if (s.findings.empty()) text += far.empty() ? "  nothing suspicious\n" : "  nothing else suspicious\n";
     if (!check.promise) continue;
     text += "  can identify " + promise_lead(*check.promise) + "\n";
     Columns rows("lrrll", 4);
@@ -136,7 +147,7 @@ Json check_log_json(const std::vector<LogCheck>& checks) {
                           {"noise_rms", number(c.noise)},
                           {"resolution", number(c.resolution)},
                           {"clipped", number(c.clipped)}});
-    for (const Finding& f : s.findings) findings.push_back({{"kind", f.kind}, {"text", f.text}});
+    for (const Finding& f : suspicious_in(s)) findings.push_back({{"kind", f.kind}, {"text", f.text}});
     Json one = {{"log", s.path},
                 {"samples", s.samples},
                 {"duration", number(s.duration)},
@@ -197,7 +208,7 @@ void add_visible(Page& page, const std::vector<Visible>& faults) {
 
 Page check_log_page(const Header& header, const std::vector<LogCheck>& checks) {
   std::size_t suspicious = 0;
-  for (const LogCheck& c : checks) suspicious += !c.survey.findings.empty();
+  for (const LogCheck& c : checks) suspicious += !suspicious_in(c.survey).empty();
   const bool one = checks.size() == 1;
   Page page(header,
             one ? "Check of " + file_name(checks.front().survey.path) : fmt::format("Check of {} logs", checks.size()));
@@ -205,10 +216,10 @@ Page check_log_page(const Header& header, const std::vector<LogCheck>& checks) {
   v.tone = suspicious > 0 ? Tone::doubt : Tone::good;
   if (one) {
     const LogSurvey& s = checks.front().survey;
-    v.headline = s.findings.empty() ? "Nothing suspicious in " + file_name(s.path)
-                                    : "Suspicious in " + file_name(s.path) + ": " + kinds_of(s);
+    v.headline = suspicious == 0 ? "Nothing suspicious in " + file_name(s.path)
+                                 : "Suspicious in " + file_name(s.path) + ": " + kinds_of(s);
     v.detail = first_line(s);
-    for (const Finding& f : s.findings) v.reasons.push_back(f.kind + ": " + f.text);
+    for (const Finding& f : suspicious_in(s)) v.reasons.push_back(f.kind + ": " + f.text);
   } else {
     v.headline = suspicious == 0 ? fmt::format("Nothing suspicious in {} logs", checks.size())
                                  : fmt::format("{} of {} logs have something suspicious", suspicious, checks.size());
@@ -221,15 +232,15 @@ Page check_log_page(const Header& header, const std::vector<LogCheck>& checks) {
       const LogSurvey& s = c.survey;
       table.rows.push_back({s.path, Cell(digits(s.duration), s.duration), Cell(digits(s.rate, 4), s.rate),
                             s.temperature ? Cell(digits(*s.temperature - 273.15), *s.temperature - 273.15) : Cell(""),
-                            s.findings.empty() ? "nothing" : kinds_of(s)});
+                            suspicious_in(s).empty() ? "nothing" : kinds_of(s)});
     }
     page.add(table);
   }
   for (const LogCheck& check : checks) {
     const LogSurvey& s = check.survey;
-    page.section(one ? "What is in it" : s.path, one ? "" : first_line(s), !one && s.findings.empty());
+    page.section(one ? "What is in it" : s.path, one ? "" : first_line(s), !one && suspicious_in(s).empty());
     if (!one)
-      for (const Finding& f : s.findings) page.text(f.kind + ": " + f.text);
+      for (const Finding& f : suspicious_in(s)) page.text(f.kind + ": " + f.text);
     Plot drive{.title = "drive [mA], " + drive_words(s),
                .x_label = "time [s]",
                .x = check.time,
@@ -239,6 +250,7 @@ Page check_log_page(const Header& header, const std::vector<LogCheck>& checks) {
     drive.series.push_back({"drive", check.drive, Role::input});
     for (double& value : drive.series.front().y) value *= 1e3;
     page.add(drive);
+    add_conditions(page, s.conditions);
     TablePart table{
         "Signals", "llrrrrrl", {"signal", "column", "lowest", "highest", "noise", "step", "missing", "unit"}, {}, 0};
     for (const ChannelSurvey& c : s.channels) {

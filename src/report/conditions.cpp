@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
@@ -10,6 +11,7 @@
 #include "report/columns.h"
 #include "report/handy.h"
 #include "report/parts.h"
+#include "servodx/log.h"
 
 namespace servodx::report {
 namespace {
@@ -31,8 +33,23 @@ std::string size(Condition c, const std::optional<double>& x) {
   return c == Condition::oil ? fmt::format("{} degC", std::lround(*x - kelvin)) : handy(*x, of(c).unit);
 }
 
-std::string range(const ConditionRow& row) {
-  return row.lowest ? size(row.of, row.lowest) + " to " + size(row.of, row.highest) : "-";
+std::string range(Condition c, const std::optional<double>& lowest, const std::optional<double>& highest) {
+  if (!lowest) return "-";
+  const std::string from = size(c, lowest), to = size(c, highest);
+  return from == to ? from : from + " to " + to;
+}
+
+std::string range(const ConditionRow& row) { return range(row.of, row.lowest, row.highest); }
+std::string tuned_range(const ConditionRow& row) { return range(row.of, row.tuned_lowest, row.tuned_highest); }
+
+bool are_tuned_known(const std::vector<ConditionRow>& rows) {
+  return std::any_of(rows.begin(), rows.end(), [](const ConditionRow& r) { return r.tuned_lowest.has_value(); });
+}
+
+// What a condition is beyond.
+std::string known_of(const ConditionRow& r) {
+  if (r.lowest) return "fault-free logs " + range(r);
+  return r.tuned_lowest ? "tuning logs " + tuned_range(r) : "sheet " + size(r.of, r.sheet);
 }
 
 }  // namespace
@@ -49,9 +66,14 @@ std::string conditions_in_words(const std::vector<ConditionRow>& rows) {
 std::string beyond_in_words(const std::vector<ConditionRow>& rows) {
   std::vector<std::string> out;
   for (const ConditionRow& r : rows)
-    if (r.beyond)
-      out.push_back(fmt::format("{} {} ({})", of(r.of).name, size(r.of, r.value),
-                                r.lowest ? "fault-free logs " + range(r) : "sheet " + size(r.of, r.sheet)));
+    if (r.beyond) out.push_back(fmt::format("{} {} ({})", of(r.of).name, size(r.of, r.value), known_of(r)));
+  return join(out);
+}
+
+std::string tuned_in_words(const std::vector<ConditionRow>& rows) {
+  std::vector<std::string> out;
+  for (const ConditionRow& r : rows)
+    if (r.tuned_lowest) out.push_back(std::string(of(r.of).name) + " " + tuned_range(r));
   return join(out);
 }
 
@@ -65,16 +87,22 @@ Json conditions_json(const std::vector<ConditionRow>& rows) {
                    {"sheet", value(r.sheet)},
                    {"lowest", value(r.lowest)},
                    {"highest", value(r.highest)},
+                   {"tuned_lowest", value(r.tuned_lowest)},
+                   {"tuned_highest", value(r.tuned_highest)},
                    {"beyond", r.beyond}});
   return out;
 }
 
 void add_conditions(Page& page, const std::vector<ConditionRow>& rows) {
   if (rows.empty()) return;
+  const bool tuned = are_tuned_known(rows);
   TablePart table{
       "Where it was recorded", "lllll", {"condition", "this log", "data sheet", "fault-free logs", ""}, {}, 0};
-  for (const ConditionRow& r : rows)
+  if (tuned) table.alignment += "l", table.head.insert(table.head.end() - 1, "logs that tuned");
+  for (const ConditionRow& r : rows) {
     table.rows.push_back({of(r.of).name, size(r.of, r.value), size(r.of, r.sheet), range(r), r.beyond ? "beyond" : ""});
+    if (tuned) table.rows.back().insert(table.rows.back().end() - 1, Cell(tuned_range(r)));
+  }
   page.add(table);
 }
 

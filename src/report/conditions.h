@@ -8,6 +8,7 @@
 #include "report/json.h"
 #include "report/page.h"
 #include "signals/signal.h"
+#include "servodx/log.h"
 
 namespace servodx::report {
 
@@ -16,6 +17,8 @@ std::string word_of(Condition condition);  // supply_pressure | return_pressure 
 std::string conditions_in_words(const std::vector<ConditionRow>& rows);
 // "load up to 7.48 kN (fault-free logs 24 N to 4.58 kN)": what is beyond; empty where nothing is.
 std::string beyond_in_words(const std::vector<ConditionRow>& rows);
+// "supply 207 bar, oil 38 to 42 degC": what the logs that tuned the table show; empty where they are not known.
+std::string tuned_in_words(const std::vector<ConditionRow>& rows);
 Json conditions_json(const std::vector<ConditionRow>& rows);
 void add_conditions(Page& page, const std::vector<ConditionRow>& rows);
 // What the log holds, one by one; `signal`: that it was read from.

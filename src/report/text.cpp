@@ -22,6 +22,7 @@
 #include "report/row_verdict_word.h"
 #include "servodx/actions.h"
 #include "servodx/tune.h"
+#include "servodx/table.h"
 
 namespace servodx::report {
 namespace {
@@ -169,6 +170,7 @@ std::string text_of(const Diagnosis& d, const TextOptions& options) {
   if (d.suspicion) first += "; " + suspicion_in_words(*d.suspicion);
   Columns table("ll", 2);
   if (const std::string at = conditions_in_words(d.conditions); !at.empty()) table.row({"at", at});
+  if (const std::string tuned = tuned_in_words(d.conditions); !tuned.empty()) table.row({"tuned at", tuned});
   if (const std::string far = beyond_in_words(d.conditions); !far.empty()) table.row({"BEYOND", far});
   if (d.assessment.unjudgeable != Unjudgeable::no) {
     table.row({"action", d.action.text});

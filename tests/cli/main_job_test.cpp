@@ -154,6 +154,22 @@ TEST_F(MainJob, BaselineLooksAtTheLogsThatTunedAsAtOthers) {
   EXPECT_EQ(others(""), std::vector<std::string>{"t2.csv"});
 }
 
+TEST_F(MainJob, CheckLogShowsWhereTheTableWasTuned) {
+  ASSERT_EQ(tuned().code, 0) << tuned().err;
+  const std::string call = "check-log s1.csv --rig rig.toml --params tuned.csv --json look.json ";
+  const Ended ended = desk().run(call + "--report look.html");
+  ASSERT_EQ(ended.code, 0) << ended.err;
+  EXPECT_NE(ended.out.find("  tuned at supply "), std::string::npos) << ended.out;
+  EXPECT_NE(bytes_of(desk() / "look.html").find("logs that tuned"), std::string::npos);
+  EXPECT_GT(json("look.json")["logs"][0]["operating_point"][0]["tuned_lowest"], 1e7);
+  EXPECT_EQ(json("look.json")["inputs"].size(), 5u) << "rig, table, the log, the two that tuned";
+  const std::string manifest = bytes_of(desk() / "tuned.csv.manifest.json");
+  std::filesystem::remove(desk() / "tuned.csv.manifest.json");
+  EXPECT_EQ(desk().run(call).out.find("tuned at"), std::string::npos);
+  EXPECT_TRUE(json("look.json")["logs"][0]["operating_point"][0]["tuned_lowest"].is_null());
+  desk().write("tuned.csv.manifest.json", manifest);
+}
+
 TEST_F(MainJob, DiagnoseRefusesABaselineThatDoesNotServe) {
   ASSERT_EQ(tuned().code, 0) << tuned().err;
   desk().write("other.json",
@@ -205,6 +221,7 @@ TEST_F(MainJob, BaselineAndDiagnoseWriteTheContractsKeys) {
     expect_keys(r, {"log", "verdict", "error", "threshold", "p_value", "fault", "probabilities", "ambiguous_with",
                     "separating_test", "severity", "onset_time", "parameters", "faults", "channel", "records"});
     expect_keys(r["severity"], {"value", "lower", "upper", "unit"});
+    EXPECT_GT(r["operating_point"][0]["tuned_lowest"], 1e7) << "the baseline keeps the logs that tuned";
     const std::string verdict = r["verdict"];
     worst = std::max(worst, verdict == "fault" ? 10 : verdict == "unknown" ? 11 : 0);
   }

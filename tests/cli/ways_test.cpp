@@ -79,6 +79,22 @@ TEST(CheckLog, FindsJitterGapsAndCold) {
   EXPECT_TRUE(has(kinds(check(desk, "cold.csv")), "temperature"));
 }
 
+// In the last line, in JSON and in the page's headline.
+TEST(CheckLog, AnOperatingPointBeyondTheSheetIsNotNothing) {
+  const Desk desk;
+  desk.write("log.csv", first_rows("healthy/h12_mixed.csv", 1000));
+  desk.write("rig.toml", "[supply]\npressure = \"300 bar\"\n");
+  const Ended ended = desk.run("check-log log.csv --rig rig.toml --report page.html");
+  ASSERT_EQ(ended.code, 0) << ended.err;
+  EXPECT_NE(ended.out.find("  BEYOND: supply "), std::string::npos) << ended.out;
+  EXPECT_NE(ended.out.find("  nothing else suspicious\n"), std::string::npos) << ended.out;
+  EXPECT_EQ(ended.out.find("  nothing suspicious"), std::string::npos) << ended.out;
+  EXPECT_TRUE(has(kinds(check(desk, "log.csv --rig rig.toml")), "beyond"));
+  EXPECT_NE(bytes_of(desk / "page.html").find("Suspicious in log.csv: beyond"), std::string::npos);
+  const Ended alone = desk.run("check-log log.csv");
+  EXPECT_NE(alone.out.find("  nothing suspicious\n"), std::string::npos) << alone.out;
+}
+
 TEST(CheckLog, APartOfAFactIsToldInPerCent) {
   const Desk desk;
   desk.write("rig.toml", "[valve]\nrated_current = \"20 mA\"\n");

@@ -65,5 +65,23 @@ TEST(OperatingPoint, WhatFaultFreeLogsShowGoesBeforeTheSheet) {
       << "a smaller drive is inside what a larger one showed";
 }
 
+TEST(OperatingPoint, TheLogsThatTunedHaveAColumnAndStandForABaselineThatIsNotThere) {
+  const std::vector<OperatingPoint> tuning = {operating_point_of(recorded(140e5, 300, 5e-3)),
+                                              operating_point_of(recorded(145e5, 310, 8e-3))};
+  std::vector<ConditionRow> rows = beside(recorded(142e5, 340, 7e-3), {});
+  EXPECT_TRUE(row_of(rows, Condition::supply)->beyond) << "the sheet says 207 bar";
+  set_beside_tuning(rows, tuning);
+  EXPECT_EQ(row_of(rows, Condition::supply)->tuned_lowest, 140e5);
+  EXPECT_EQ(row_of(rows, Condition::supply)->tuned_highest, 145e5);
+  EXPECT_FALSE(row_of(rows, Condition::supply)->beyond);
+  EXPECT_TRUE(row_of(rows, Condition::oil)->beyond);
+  EXPECT_FALSE(row_of(rows, Condition::return_pressure)->tuned_lowest) << "none of them recorded it";
+
+  std::vector<ConditionRow> judged = beside(recorded(142e5, 340, 7e-3), {recorded(207e5, 340, 7e-3)});
+  set_beside_tuning(judged, tuning);
+  EXPECT_TRUE(row_of(judged, Condition::supply)->beyond) << "the baseline, which set the threshold, goes first";
+  EXPECT_EQ(row_of(judged, Condition::supply)->tuned_highest, 145e5);
+}
+
 }  // namespace
 }  // namespace servodx

@@ -1,4 +1,7 @@
 #include "report/conditions.h"
+#include "evidence/operating_point.h"
+#include "report/json.h"
+#include "report/page.h"
 
 #include <gtest/gtest.h>
 
@@ -23,6 +26,25 @@ TEST(ConditionWords, WhatIsBeyondStandsBesideTheLogsAndWithoutThemBesideTheSheet
   ConditionRow alone = supply(140e5, true);
   alone.lowest = alone.highest = {};
   EXPECT_EQ(beyond_in_words({alone}), "supply 140 bar (sheet 207 bar)");
+}
+
+TEST(ConditionWords, TheLogsThatTunedStandBesideTheOthersInTextJsonAndPage) {
+  ConditionRow row = supply(140e5, true), oil{Condition::oil, 314.15, {}, {}, {}, false};
+  EXPECT_EQ(tuned_in_words({row, oil}), "");
+  row.tuned_lowest = 206e5, row.tuned_highest = 209e5, oil.tuned_lowest = oil.tuned_highest = 313.15;
+  EXPECT_EQ(tuned_in_words({row, oil}), "supply 206 bar to 209 bar, oil 40 degC");
+  EXPECT_EQ(conditions_json({row})[0]["tuned_highest"], 209e5);
+  EXPECT_TRUE(conditions_json({supply(140e5, true)})[0]["tuned_lowest"].is_null());
+  const auto page_of = [](const std::vector<ConditionRow>& rows) {
+    Page page({}, "a page");
+    add_conditions(page, rows);
+    return page.html();
+  };
+  for (const char* words : {"logs that tuned", "206 bar to 209 bar", "40 degC", "beyond"})
+    EXPECT_NE(page_of({row, oil}).find(words), std::string::npos) << words;
+  EXPECT_EQ(page_of({supply(140e5, true)}).find("logs that tuned"), std::string::npos);
+  row.lowest = row.highest = {};
+  EXPECT_EQ(beyond_in_words({row}), "supply 140 bar (tuning logs 206 bar to 209 bar)");
 }
 
 TEST(ConditionWords, JsonHoldsSiAndNullForWhatIsNotKnown) {
