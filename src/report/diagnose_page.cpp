@@ -31,6 +31,7 @@
 #include "report/parts.h"
 #include "report/replay_part.h"
 #include "servodx/actions.h"
+#include "diagnose/blame.h"
 
 namespace servodx::report {
 namespace {
@@ -112,8 +113,9 @@ Verdict verdict_of(const Diagnosis& d, const DetectionBaseline& baseline) {
   v.tone = tone_of(d);
   v.word = d.verdict == VerdictKind::fault ? "FAULT" : d.verdict == VerdictKind::unknown ? "UNKNOWN" : "HEALTHY";
   v.headline = headline(d);
+  const std::string kind = words_of(blame_of(d));
   if (d.assessment.unjudgeable != Unjudgeable::no) {
-    v.facts.push_back({"Action", d.action.text});
+    v.facts = {{"Kind", kind}, {"Action", d.action.text}};
     for (const std::string& call : next_calls(d)) v.reasons.push_back("Run next: " + call);
     return v;
   }
@@ -122,6 +124,7 @@ Verdict verdict_of(const Diagnosis& d, const DetectionBaseline& baseline) {
   if (d.onset) v.facts.push_back({"Since", digits(*d.onset, 4) + " s"});
   v.facts.push_back({"Error / threshold", digits(d.error) + " / " + digits(d.threshold)});
   v.facts.push_back({"Null", percent(d.null) + " of rated"});
+  if (!kind.empty()) v.facts.push_back({"Kind", kind});
   if (d.action.of != ActionClass::none) v.facts.push_back({"Action", d.action.text});
   v.reasons = reasons(d, baseline);
   for (const std::string& call : next_calls(d)) v.reasons.push_back("Run next: " + call);

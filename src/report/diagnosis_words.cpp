@@ -9,6 +9,7 @@
 #include "base/trouble.h"
 #include "diagnose/assessment.h"
 #include "diagnose/baseline.h"
+#include "diagnose/blame.h"
 #include "diagnose/decide.h"
 #include "diagnose/judge.h"
 #include "diagnose/moved.h"
@@ -44,6 +45,38 @@ std::string word_of(VerdictKind verdict) {
       return "fault";
     case VerdictKind::unknown:
       return "unknown";
+  }
+  return "";
+}
+
+std::string word_of(Blame blame) {
+  switch (blame) {
+    case Blame::none:
+      return "none";
+    case Blame::component:
+      return "component";
+    case Blame::physics:
+      return "physics";
+    case Blame::surroundings:
+      return "surroundings";
+    case Blame::test:
+      return "test";
+  }
+  return "";
+}
+
+std::string words_of(Blame blame) {
+  switch (blame) {
+    case Blame::none:
+      return "";
+    case Blame::component:
+      return "a component failed";
+    case Blame::physics:
+      return "physics is missing in the model";
+    case Blame::surroundings:
+      return "a sensor, the supply or the driver is at fault";
+    case Blame::test:
+      return "this log does not tell: run another test";
   }
   return "";
 }

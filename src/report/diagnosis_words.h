@@ -6,6 +6,7 @@
 
 #include "diagnose/assessment.h"
 #include "diagnose/baseline.h"
+#include "diagnose/blame.h"
 #include "diagnose/decide.h"
 #include "diagnose/diagnose.h"
 #include "diagnose/judge.h"
@@ -22,6 +23,8 @@
 namespace servodx::report {
 
 std::string word_of(VerdictKind verdict);       // healthy | fault | unknown
+std::string word_of(Blame blame);               // none | component | physics | surroundings | test
+std::string words_of(Blame blame);              // "a component failed"; "" of none
 std::string words_of(GrossFinding finding);     // "" of none
 std::string words_of(Unjudgeable reason);       // why there is nothing to judge, and what to look at; "" of no
 std::string label_of(const Fault* hypothesis);  // its name; of null "healthy"
@@ -75,7 +78,7 @@ DetectableWords detectable_words(const Diagnosis& d);
 std::string test_words(const TestConditions& test);
 // Empty where a log of the baseline is of such a test.
 std::string unlike_words(const Diagnosis& d);
-std::string others_words(const Diagnosis& d);  // empty: it was compared with the baseline's own logs
+std::string others_words(const Diagnosis& d);             // empty: it was compared with the baseline's own logs
 std::vector<std::string> next_calls(const Diagnosis& d);  // of a verdict that names nothing: what to run next
 
 // The rows that the fault moved; those of health's own, each farthest first.

@@ -18,6 +18,7 @@
 #include "report/handy.h"
 #include "report/row_verdict_word.h"
 #include "servodx/tune.h"
+#include "diagnose/blame.h"
 
 namespace servodx::report {
 namespace {
@@ -296,6 +297,7 @@ Json to_json(const Diagnosis& d) {
   return {{"log", d.log},
           {"logs", d.assessment.logs},
           {"verdict", word_of(d.verdict)},
+          {"kind", word_of(blame_of(d))},
           {"error", number(d.error)},
           {"threshold", number(d.threshold)},
           {"p_value", number(d.p_value)},

@@ -8,6 +8,7 @@
 #include "base/trouble.h"
 #include "diagnose/assessment.h"
 #include "diagnose/baseline.h"
+#include "diagnose/blame.h"
 #include "diagnose/decide.h"
 #include "diagnose/healthy_law.h"
 #include "diagnose/judge.h"
@@ -21,8 +22,8 @@
 #include "report/handy.h"
 #include "report/row_verdict_word.h"
 #include "servodx/actions.h"
-#include "servodx/tune.h"
 #include "servodx/table.h"
+#include "servodx/tune.h"
 
 namespace servodx::report {
 namespace {
@@ -172,6 +173,7 @@ std::string text_of(const Diagnosis& d, const TextOptions& options) {
   if (const std::string at = conditions_in_words(d.conditions); !at.empty()) table.row({"at", at});
   if (const std::string tuned = tuned_in_words(d.conditions); !tuned.empty()) table.row({"tuned at", tuned});
   if (const std::string far = beyond_in_words(d.conditions); !far.empty()) table.row({"BEYOND", far});
+  if (const std::string kind = words_of(blame_of(d)); !kind.empty()) table.row({"kind", kind});
   if (d.assessment.unjudgeable != Unjudgeable::no) {
     table.row({"action", d.action.text});
     for (const std::string& call : next_calls(d)) table.row({"next", call});

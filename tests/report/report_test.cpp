@@ -40,6 +40,7 @@
 #include "servodx/tune.h"
 #include "temporary_folder.h"
 #include "tune/tune.h"
+#include "diagnose/judgeable.h"
 
 namespace servodx::report {
 namespace {
@@ -489,6 +490,24 @@ TEST(SeparatingTest, NamesTheOptionsOfAPlan) {
   EXPECT_NE(separating_test_of(d).find("--faults feedback_wire_backlash=1.2e-05 "), std::string::npos);
   d.ambiguous_with.clear();
   EXPECT_EQ(separating_test_of(d), "");
+}
+
+TEST(KindOfVerdict, IsSaidInTextJsonAndPage) {
+  Diagnosis d = some_diagnosis();
+  const auto page_of = [](const Diagnosis& of) { return diagnose_page({}, {of}, some_baseline(), {}).html(); };
+  EXPECT_NE(text_of(d, {}).find("a component failed"), std::string::npos) << text_of(d, {});
+  EXPECT_NE(page_of(d).find("a component failed"), std::string::npos);
+  EXPECT_EQ(diagnose_json({d})["results"][0]["kind"], "component");
+  d.fault = find_fault("supply_fault");
+  EXPECT_EQ(diagnose_json({d})["results"][0]["kind"], "surroundings");
+  EXPECT_NE(text_of(d, {}).find("a sensor, the supply or the driver is at fault"), std::string::npos);
+  d.verdict = VerdictKind::unknown, d.fault = nullptr;
+  d.assessment.unjudgeable = Unjudgeable::too_short;
+  EXPECT_NE(text_of(d, {}).find("run another test"), std::string::npos) << text_of(d, {});
+  EXPECT_NE(page_of(d).find("run another test"), std::string::npos);
+  d.verdict = VerdictKind::healthy, d.assessment.unjudgeable = Unjudgeable::no;
+  EXPECT_EQ(diagnose_json({d})["results"][0]["kind"], "none");
+  EXPECT_EQ(text_of(d, {}).find("kind "), std::string::npos) << text_of(d, {});
 }
 
 TEST(SeparatingTest, TwinsKeepTheirWords) {

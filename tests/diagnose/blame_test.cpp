@@ -1,0 +1,54 @@
+#include "diagnose/blame.h"
+
+#include <gtest/gtest.h>
+
+#include "diagnose/decide.h"
+#include "diagnose/judge.h"
+#include "faults/registry.h"
+#include "diagnose/judgeable.h"
+
+namespace servodx {
+namespace {
+
+Diagnosis of_fault(const char* label) {
+  Diagnosis d;
+  d.verdict = VerdictKind::fault;
+  d.fault = find_fault(label);
+  EXPECT_TRUE(d.fault) << label;
+  return d;
+}
+
+Diagnosis unexplained() {
+  Diagnosis d;
+  d.verdict = VerdictKind::unknown;
+  return d;
+}
+
+TEST(Blame, OfAHealthyLogIsNobodys) { EXPECT_EQ(blame_of({}), Blame::none); }
+
+TEST(Blame, ThreeFaultsAreNotTheValves) {
+  for (const char* label : {"sensor_fault", "supply_fault", "driver_fault"})
+    EXPECT_EQ(blame_of(of_fault(label)), Blame::surroundings) << label;
+  for (const char* label :
+       {"clogged_filter", "torque_motor_loss", "feedback_wire_backlash", "feedback_wire_lost", "sticky_spool",
+        "radial_clearance_wear", "null_shift", "plugged_nozzle", "cylinder_leakage", "corner_wear"})
+    EXPECT_EQ(blame_of(of_fault(label)), Blame::component) << label;
+}
+
+TEST(Blame, AnUnknownStateIsPhysicsOnlyWhereACauseWasTaken) {
+  Diagnosis d = unexplained();
+  EXPECT_EQ(blame_of(d), Blame::test) << "explain was not asked";
+  d.beyond = BeyondFaults{"stiction", "spool", "", 0.4, false};
+  EXPECT_EQ(blame_of(d), Blame::test) << "healthy logs show it too";
+  d.beyond->taken = true;
+  EXPECT_EQ(blame_of(d), Blame::physics);
+}
+
+TEST(Blame, NothingToJudgeAsksForATest) {
+  Diagnosis d = unexplained();
+  d.assessment.unjudgeable = Unjudgeable::nothing_asked;
+  EXPECT_EQ(blame_of(d), Blame::test);
+}
+
+}  // namespace
+}  // namespace servodx
