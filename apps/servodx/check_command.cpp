@@ -4,6 +4,7 @@
 #include <memory>
 #include <optional>
 
+#include "base/progress.h"
 #include "check_list.h"
 #include "commands.h"
 #include "invocation.h"
@@ -15,6 +16,7 @@
 #include "servodx/trend.h"
 #include "servodx/tune.h"
 #include "store/history.h"
+#include "servodx/watch.h"
 
 namespace servodx {
 namespace {
@@ -26,6 +28,13 @@ struct Options {
   CheckOptions check;
   bool no_track = false, raw = false;
 };
+
+// With its progress on standard error. An interrupt ends the program: nothing is stored until all is done.
+Checked checked_of(const Log& log, const Tuned& tuned, const RigFile& rig, CheckOptions how, bool quiet) {
+  Progress progress("check", {.quiet = quiet});
+  how.watch.progress = [&](const WorkDone& done) { progress.update(done.part, done.simulations); };
+  return check(log, tuned, rig, how);
+}
 
 CheckOptions check_options(const Options& options) {
   CheckOptions how = options.check;
@@ -69,7 +78,7 @@ void run_one(const Options& options) {
   const Before before = before_check(history, options.valve, serial);
   how.last = before.last;
   invocation.note(before.notices);
-  const Checked checked = check(log, tuned, rig, how);
+  const Checked checked = checked_of(log, tuned, rig, how, options.common.quiet);
   if (!history) history = History::open_or_make(options.history);
   history->record(options.valve, {.at = at, .cycles = options.cycles, .serial = serial}, checked, tuned);
 

@@ -10,6 +10,7 @@
 #include "servodx/log.h"
 #include "servodx/rig.h"
 #include "servodx/tune.h"
+#include "servodx/watch.h"
 
 namespace servodx {
 
@@ -23,6 +24,7 @@ struct CheckOptions {
   bool track = true;              // fit the parameters that wear moves
   bool correct = true;            // to oil at 40 degC and the table's supply
   std::vector<double> last = {};  // History::tracked() of the valve: another start of the fit; may be empty
+  Watch watch = {};               // its progress alone: a check is whole or not at all
 
   // Throws InputError naming the option.
   void validate() const;

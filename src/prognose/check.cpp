@@ -22,6 +22,9 @@ using namespace prognose_constants;
 
 namespace {
 
+// Of the work of a check: the fits of an oil that is not known; then that of what wears; the rest is its correction.
+constexpr double until_oil = 0.4, until_track = 0.95;
+
 // The same current at the reference state.
 Scenario at_reference(const Scenario& as_was, const RigFile& rig) {
   Scenario s = as_was;
@@ -49,7 +52,9 @@ void take_oil(CheckResult& out, LogData& data, const Log& log, const Table& tune
   } else if (rig.oil_temperature) {
     out.temperature = {*rig.oil_temperature, 0.0, OilSource::given};
   } else if (options.correct) {
-    out.temperature = estimate_temperature(data, tuned, rig, options.threads, &out.simulations);
+    out.temperature = estimate_temperature(data, tuned, rig, options.threads, &out.simulations, [&](double part) {
+      options.watch.tell("check", until_oil * part, out.simulations);
+    });
     data.scenario.oil = oil_at(rig.fluid.density, rig.fluid.kinematic_viscosity, out.temperature.value);
     data.scenario.oil_known = true;
     out.notes.push_back("oil temperature estimated from the response; wear that acts like cold oil would shift it");
@@ -83,8 +88,13 @@ Track tracked(CheckResult& out, const LogData& data, const Table& tuned, const R
   Track track;
   track.healthy = candidate_of(tuned);
   if (!options.track) return track;
-  track =
-      track_parameters(data, tuned, {.null_limit = rig.null_limit, .threads = options.threads, .last = options.last});
+  const long before = out.simulations;
+  const double from = before > 0 ? until_oil : 0;
+  const auto told = [&](double part, long simulations) {
+    options.watch.tell("check", from + (until_track - from) * part, before + simulations);
+  };
+  track = track_parameters(
+      data, tuned, {.null_limit = rig.null_limit, .threads = options.threads, .last = options.last, .told = told});
   out.simulations += track.simulations;
   out.failed_simulations += track.failed;
   out.adequacy = track.adequacy;
@@ -186,6 +196,7 @@ CheckResult check(const Log& log, const Table& tuned, const RigFile& rig, const 
   if (test.step && spool) out.offset = offset_at_rest(test, *spool, beside.monitor, data.scenario.rated_current);
   const Track track = tracked(out, data, tuned, rig, options);
 
+  options.watch.tell("check", until_track, out.simulations);
   if (test.step || !test.sines.empty()) {
     const MonitorRun at_rest = run_monitor(beside.monitor, beside.law, data, test.rest_current);
     const PreflightFigures seen = figures_of(data.scenario.time, test, measured_traces(data), at_rest.spool);
@@ -197,6 +208,7 @@ CheckResult check(const Log& log, const Table& tuned, const RigFile& rig, const 
     out.notes.push_back("no preflight test in this log (a small step from rest, or sines): no r, no E(tau)");
   }
   add_parameters(out, track.parameters);
+  options.watch.tell("check", 1, out.simulations);
   return out;
 }
 

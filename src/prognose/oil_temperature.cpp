@@ -53,7 +53,7 @@ const char* name_of(OilSource source) {
 }
 
 OilTemperature estimate_temperature(const LogData& log, const Table& tuned, const RigFile& rig, int threads,
-                                    long* simulations) {
+                                    long* simulations, const std::function<void(double part)>& told) {
   const ErrorModel error = error_model_of(tuned);
   std::vector<double> kelvin, misfit;
   for (double celsius = coldest_celsius; celsius <= hottest_celsius; celsius += celsius_step) {
@@ -62,6 +62,7 @@ OilTemperature estimate_temperature(const LogData& log, const Table& tuned, cons
     at.scenario.oil = oil_at(rig.fluid.density, rig.fluid.kinematic_viscosity, kelvin.back());
     at.scenario.oil_known = true;
     misfit.push_back(misfit_at(at, tuned, error, threads, simulations));
+    if (told) told((celsius - coldest_celsius + celsius_step) / (hottest_celsius - coldest_celsius + celsius_step));
   }
   const double least = *std::min_element(misfit.begin(), misfit.end());
   double sum = 0, first = 0, second = 0;

@@ -4,6 +4,7 @@
 // posterior over this grid is flat before and Gaussian in the misfit. Limits: wear that acts like cold oil shifts it;
 // nothing between two steps is tried, and the error says no less than the spread of a step.
 #pragma once
+#include <functional>
 #include <vector>
 
 #include "fit/log_data.h"
@@ -21,8 +22,8 @@ struct OilTemperature {
   OilSource source = OilSource::given;
 };
 
-// `simulations` counts on.
+// `simulations` counts on. `told`: what part is done.
 OilTemperature estimate_temperature(const LogData& log, const Table& tuned, const RigFile& rig, int threads,
-                                    long* simulations);
+                                    long* simulations, const std::function<void(double part)>& told = {});
 
 }  // namespace servodx

@@ -128,8 +128,16 @@ std::vector<Point> likeliest(FitProblem& problem, const std::vector<Point>& star
 }
 
 // A few iterations from each start, more from the best end. None where every start failed.
-std::optional<LeastSquaresResult> fit_from(FitProblem& problem, const std::vector<Point>& starts) {
+std::optional<LeastSquaresResult> fit_from(FitProblem& problem, const std::vector<Point>& starts,
+                                           const TrackOptions& options) {
+  constexpr double all = static_cast<double>(starts_followed) * first_iterations + last_iterations;
+  double done = 0, furthest = 0;  // iterations: those that a fit did not need are done at its end
   LeastSquaresOptions o;
+  o.progress = [&](const LeastSquaresProgress& now) {
+    furthest = std::max(furthest, done + std::min(now.iteration, o.max_iterations));
+    if (options.told) options.told(furthest / all, problem.simulations());
+    return true;
+  };
   o.difference = Difference::forward;
   o.cost_tolerance = track_cost_tolerance;
   o.max_iterations = first_iterations;
@@ -139,6 +147,7 @@ std::optional<LeastSquaresResult> fit_from(FitProblem& problem, const std::vecto
   for (const Point& start : likeliest(problem, starts)) {
     LeastSquaresResult r = minimise_locally(least, start, o).end;
     if (r.reason != StopReason::start_failed && r.cost < best.cost) best = std::move(r);
+    done += first_iterations;
   }
   if (!(best.cost < no_cost)) return {};
   o.max_iterations = last_iterations;
@@ -247,7 +256,7 @@ Track track_parameters(const LogData& log, const Table& tuned, const TrackOption
   problem.difference_step = difference_step;
   const Point health = problem.start();
   whiten(problem, log, error_model_of(tuned), problem.trajectories(health).front());
-  const auto fit = fit_from(problem, starts_from(health, base, free, options.last));
+  const auto fit = fit_from(problem, starts_from(health, base, free, options.last), options);
 
   Track out;
   out.simulations = problem.simulations();

@@ -8,6 +8,7 @@
 // cancels in a trend. `whole_error` counts no more samples than are independent of one another in the tuned table's
 // error model: what a single check may be off by.
 #pragma once
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -43,6 +44,7 @@ struct TrackOptions {
   double null_limit = 0.05;  // [of rated]
   int threads = 0;
   std::vector<double> last;  // values of the last check, in the order of progressive_faults(): another start
+  std::function<void(double part, long simulations)> told = {};  // what is done
 };
 
 // Those of the registry that grow with use, and the row that each moves first.

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstddef>
 #include <filesystem>
 #include <memory>
@@ -145,7 +146,13 @@ TEST_F(Door, SimulatesAsTheProgramDoes) {
 TEST_F(Door, ChecksAndTrendsAsTheProgramDoes) {
   ran("check s.csv --params tuned.csv --history program.db --valve V --at 100 --json check.json");
   const Tuned tuned = read_tuned("tuned.csv");
-  const Checked checked = check(read_log("s.csv", rig()), tuned, rig());
+  std::vector<double> parts;
+  CheckOptions watched;
+  watched.watch.progress = [&](const WorkDone& done) { parts.push_back(done.part); };
+  const Checked checked = check(read_log("s.csv", rig()), tuned, rig(), watched);
+  EXPECT_GT(parts.size(), 3u) << "a call of seconds shows that it works";
+  EXPECT_TRUE(std::is_sorted(parts.begin(), parts.end()));
+  EXPECT_EQ(parts.back(), 1);
   const Json of_program = Json::parse(bytes_of("check.json")).at("checks");
   ASSERT_EQ(checked.figures.size(), of_program.size());
   for (std::size_t i = 0; i < checked.figures.size(); ++i) {
