@@ -4,9 +4,12 @@
 #include <cmath>
 
 #include "fit/identifiability.h"
+#include "fit/row_meaning.h"
 #include "report/columns.h"
 #include "report/handy.h"
 #include "report/replay_part.h"
+#include "servodx/table.h"
+#include "servodx/tune.h"
 
 namespace servodx::report {
 namespace {
@@ -36,7 +39,9 @@ Moves moves_of(const std::vector<ParameterResult>& parameters, const std::string
     row.error = std::isfinite(p.std_error) ? digits(p.std_error * unit.factor, 2) : "";
     row.unit = unit.name;
     if (std::isfinite(p.std_error) && p.std_error > 0) row.sigmas = (p.estimate - p.nominal) / p.std_error;
-    row.note = verdict_in_words(p);
+    row.note = meaning_of_row(p.name);
+    if (const std::string verdict = verdict_in_words(p); !verdict.empty())
+      row.note += (row.note.empty() ? "" : "; ") + verdict;
     row.exact_from = p.nominal, row.exact_to = p.estimate, row.exact_error = p.std_error;
     row.exact_unit = p.unit == "-" ? "" : p.unit;
     moves.rows.push_back(std::move(row));

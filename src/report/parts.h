@@ -88,7 +88,7 @@ struct Moves {
   struct Row {
     std::string name = {}, from = {}, to = {}, error = {}, unit = {};
     double sigmas = NAN;                                     // signed; NaN: no error is known
-    std::string note = {};                                   // verdict, or how much it moved where sigmas are not known
+    std::string note = {};                                   // what it means; its verdict
     double exact_from = 0, exact_to = 0, exact_error = NAN;  // [exact_unit]
     std::string exact_unit = {};
   };

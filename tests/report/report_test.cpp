@@ -10,6 +10,7 @@
 #include "diagnose/check_log.h"
 #include "diagnose/decide.h"
 #include "diagnose/judge.h"
+#include "diagnose/judgeable.h"
 #include "diagnose/moved.h"
 #include "explain/explain.h"
 #include "explain/missing.h"
@@ -40,7 +41,6 @@
 #include "servodx/tune.h"
 #include "temporary_folder.h"
 #include "tune/tune.h"
-#include "diagnose/judgeable.h"
 
 namespace servodx::report {
 namespace {
@@ -490,6 +490,18 @@ TEST(SeparatingTest, NamesTheOptionsOfAPlan) {
   EXPECT_NE(separating_test_of(d).find("--faults feedback_wire_backlash=1.2e-05 "), std::string::npos);
   d.ambiguous_with.clear();
   EXPECT_EQ(separating_test_of(d), "");
+}
+
+TEST(MovedRows, HaveALineOfMeaningOnThePage) {
+  Diagnosis d = some_diagnosis();
+  d.moved.front().verdict = RowVerdict::at_bound;
+  EXPECT_NE(diagnose_page({}, {d}, some_baseline(), {})
+                .html()
+                .find("backlash between feedback wire and spool, full width; at the end of its range"),
+            std::string::npos);
+  d.moved.front().name = "of a table of one's own";
+  EXPECT_NE(diagnose_page({}, {d}, some_baseline(), {}).html().find("<td class=\"note\">at the end of its range"),
+            std::string::npos);
 }
 
 TEST(KindOfVerdict, IsSaidInTextJsonAndPage) {
