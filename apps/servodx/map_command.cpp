@@ -18,6 +18,7 @@
 #include "servodx/table.h"
 #include "valve_maps/compare.h"
 #include "valve_maps/high_fidelity.h"
+#include "valve_maps/papers_valve.h"
 #include "valve_maps/registry.h"
 #include "valve_maps/valve_numbers.h"
 
@@ -33,6 +34,7 @@ struct Options {
   CommonOptions common;
   std::string model, params = "params/borello2009.csv", output, svg;
   std::string supply, travel, flow;  // quantities; empty: from the valve
+  bool paper = false;
 };
 
 ValveGeometry geometry_of(const Table& table, const RigFile& rig) {
@@ -75,9 +77,14 @@ void run(const Options& options) {
   const RigFile rig = invocation.rig();
   const Table table = apply_rig_facts(invocation.table(params), rig);
 
-  HighFidelity reference(geometry_of(table, rig));
-  const ValveNumbers valve =
-      reference.measure(table[row::supply_pressure].nominal - table[row::return_pressure].nominal);
+  ValveGeometry geometry = geometry_of(table, rig);
+  double measured_at = table[row::supply_pressure].nominal - table[row::return_pressure].nominal;
+  if (options.paper) {
+    measured_at = papers_supply;
+    geometry = overlapped_to(geometry, papers_leak_share, measured_at);
+  }
+  HighFidelity reference(geometry);
+  const ValveNumbers valve = reference.measure(measured_at);
   const double supply = quantity_or(options.supply, "--supply", Dimension::pressure, valve.supply);
   const double travel = quantity_or(options.travel, "--travel", Dimension::length, default_travel(valve));
   const double flow = quantity_or(options.flow, "--flow", Dimension::flow, default_flow(valve));
@@ -86,6 +93,7 @@ void run(const Options& options) {
   };
 
   invocation.header().settings = {{"model", options.model}, {"supply", supply}, {"travel", travel}, {"flow", flow}};
+  if (options.paper) invocation.header().settings["paper"] = true;
   if (invocation.dry_run()) return;
 
   if (!options.output.empty()) write_file(options.output, report::map_csv(map_of(*find_map(options.model), supply)));
@@ -122,6 +130,8 @@ void add_map_command(CLI::App& app) {
   command->add_option("-o,--output", options->output, "the map")->type_name("MAP.csv");
   command->add_option("--svg", options->svg, "a picture: one model at falling supplies, or all at one")
       ->type_name("FILE.svg");
+  command->add_flag("--paper", options->paper,
+                    "the paper's numbers: 20 MPa, and edges overlapped until G_PQ C_LK is 0.2");
   command->add_option("--supply", options->supply, "supply less return, '100 bar'; the table's unless told")
       ->type_name("P");
   command->add_option("--travel", options->travel, "largest spool position, '50 um'; 5 x_SS unless told")

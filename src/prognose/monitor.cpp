@@ -99,7 +99,7 @@ MonitorParameters monitor_parameters(const Table& table, const Supply& at) {
 
   valve_maps::HighFidelity valve(geometry_of(table, at));
   const valve_maps::ValveNumbers numbers = valve.measure(drop);
-  p.pressure_gain = numbers.pressure_gain;
+  p.pressure_gain = numbers.null_slope;
   p.flow_gain = numbers.flow_gain;
   p.piston_area = 0.5 * (value(row::piston_area_a) + value(row::piston_area_b));
   p.viscous = value(row::piston_viscous_friction) * std::sqrt(at.oil.viscosity_ratio);

@@ -10,6 +10,7 @@
 #include "report/columns.h"
 #include "report/handy.h"
 #include "report/line_chart.h"
+#include "report/replay_part.h"
 
 namespace servodx::report {
 namespace {
@@ -71,8 +72,9 @@ std::string text_of(const ValveNumbers& v, const std::vector<MapError>& errors) 
     facts.row({name, digits(in(unit, si), 4), unit, meaning});
   };
   row("P_SR", v.supply, "bar", "supply less return");
-  row("x_SS", v.saturation_travel, "um", "spool travel that saturates the pressure");
-  facts.row({"G_P", digits(v.pressure_gain * 1e-11, 4), "bar/um", "pressure gain"});
+  facts.row({"slope", digits(v.null_slope * 1e-11, 4), "bar/um", "of the load pressure at null, blocked ports"});
+  facts.row({"G_P", digits(v.pressure_gain * 1e-11, 4), "bar/um", "pressure gain without leakage"});
+  row("x_SS", v.saturation_travel, "um", "spool travel that saturates the pressure by that gain");
   facts.row({"G_Q", digits(v.flow_gain * 6e4 * 1e-3, 4), "l/min/mm", "flow gain"});
   row("C_LK P_SR", v.leakage * v.supply, "l/min", "null leakage of the spool");
   facts.row({"G_PQ C_LK", digits(v.leak_share(), 3), "-", "leakage against flow gain"});
@@ -80,18 +82,21 @@ std::string text_of(const ValveNumbers& v, const std::vector<MapError>& errors) 
   std::string text = "valve, measured on HF\n" + facts.text();
 
   text += "rms error against HF, % of P_SR, on a grid that the numbers were not read from; cost per evaluation\n";
-  Columns table("lrrrrrr", 2);
-  table.row({"model", "null", "linear", "saturated", "water hammer", "ns in step", "ns in batch"});
-  const auto cell = [](const valve_maps::RegionError& r) {
-    return r.points ? digits(100 * r.rms, 3) : std::string("-");
-  };
-  for (const MapError& e : errors)
-    table.row({e.name, cell(e.regions[0]), cell(e.regions[1]), cell(e.regions[2]), cell(e.regions[3]),
-               digits(e.cost.in_step * 1e9, 3), digits(e.cost.in_batch * 1e9, 3)});
-  table.row({"points", fmt::format("{}", errors.front().regions[0].points),
-             fmt::format("{}", errors.front().regions[1].points), fmt::format("{}", errors.front().regions[2].points),
-             fmt::format("{}", errors.front().regions[3].points)});
+  Columns table("l" + std::string(valve_maps::region_names.size() + 2, 'r'), 2);
+  std::vector<std::string> head = {"model"}, points = {"points"};
+  for (const char* name : valve_maps::region_names) head.push_back(words(name));
+  head.insert(head.end(), {"ns in step", "ns in batch"});
+  table.row(head);
+  for (const MapError& e : errors) {
+    std::vector<std::string> cells = {e.name};
+    for (const valve_maps::RegionError& r : e.regions) cells.push_back(r.points ? digits(100 * r.rms, 3) : "-");
+    cells.insert(cells.end(), {digits(e.cost.in_step * 1e9, 3), digits(e.cost.in_batch * 1e9, 3)});
+    table.row(cells);
+  }
+  for (const valve_maps::RegionError& r : errors.front().regions) points.push_back(fmt::format("{}", r.points));
+  table.row(points);
   return text + table.text() +
+         "  linear, water hammer: near null, |xS| up to P_SR / slope; open, driven: beyond, driven above P_SR\n"
          "  in step: each evaluation waits for the one before, as in a simulation; in batch: independent points\n";
 }
 
@@ -110,6 +115,7 @@ Json maps_json(const ValveNumbers& v, const std::vector<MapError>& errors) {
   const auto value = [](double x, const char* unit) { return Json{{"value", x}, {"unit", unit}}; };
   return {{"valve",
            {{"supply_differential", value(v.supply, "Pa")},
+            {"null_slope", value(v.null_slope, "Pa/m")},
             {"pressure_gain", value(v.pressure_gain, "Pa/m")},
             {"flow_gain", value(v.flow_gain, "m2/s")},
             {"gain_ratio", value(v.gain_ratio(), "Pa s/m3")},

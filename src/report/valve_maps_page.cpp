@@ -110,10 +110,11 @@ Page maps_page(const Header& header, const valve_maps::ValveNumbers& valve,
                   {"Leakage share, G_PQ C_LK", digits(valve.leak_share(), 3)}});
   page.verdict(v);
   page.section("Error by region",
-               "rms over the points of the region, in % of P_SR. Water hammer: beyond the supply. Saturated: above 90 "
-               "% of it. Null: "
-               "within x_SS. Linear: the rest.");
-  TablePart table{"Error against HF, % of P_SR", "lrrrrr", {"map"}, {}, 0};
+               "rms over the points of the region, in % of P_SR. Linear and water hammer: near null, within P_SR over "
+               "the slope there. Saturated: from 90 % of P_SR to P_SR. Open: beyond null. Driven: the same, where the "
+               "load drives the pressure beyond P_SR, as the water hammer does near null.");
+  TablePart table{
+      "Error against HF, % of P_SR", "l" + std::string(valve_maps::region_names.size() + 1, 'r'), {"map"}, {}, 0};
   for (const char* name : valve_maps::region_names) table.head.push_back(words(name));
   table.head.push_back("largest");
   for (const auto& e : errors) {

@@ -17,7 +17,7 @@ Bridge::Bridge(const ValveNumbers& v) : lap(std::max(0.0, v.lap)), suction(v.suc
   const double height2 = 0.5 * v.supply / (v.flow_gain * v.flow_gain) / turbulent;
   null_height = std::sqrt(height2);
   // Blocked ports at 40 % of P_SR: 0.3 of it drops at the edge that opens, 0.7 at the other; one flow passes both.
-  const double x = 0.4 * v.supply / v.pressure_gain, uncovered = std::min(x, lap), open = x - uncovered;
+  const double x = 0.4 * v.supply / v.null_slope, uncovered = std::min(x, lap), open = x - uncovered;
   const double narrows = 1.0 + open * open / height2, share = uncovered / x;
   const double k = turbulent * (1.0 + share), r = laminar * (1.0 + share);
   const double dp = v.supply * (0.7 * share + 0.3 * narrows);

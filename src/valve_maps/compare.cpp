@@ -21,13 +21,13 @@ struct Sample {
 std::vector<Sample> samples_of(const ValveNumbers& v, const HighFidelity& reference, const CompareOptions& options) {
   constexpr int travels = 24, flows = 13;
   constexpr double most = 1.2;  // of the no-load flow
-  const double least = 0.1 * v.saturation_travel;
+  const double least = 0.1 * v.straight_travel();
   std::vector<Sample> out;
   for (double share : options.supply_shares) {
     const double supply = share * v.supply;
     for (int i = 0; i < travels; ++i) {
       const double x = least * std::pow(options.stop / least, (i + 0.5) / travels);
-      const double passes = v.flow_gain * (x + 0.5 * v.saturation_travel) * std::sqrt(share);
+      const double passes = v.flow_gain * (x + 0.5 * v.straight_travel()) * std::sqrt(share);
       for (int j = 0; j < flows; ++j)
         for (double side : {-1.0, 1.0}) {
           const double x_s = side * x, q_j = most * passes * (2.0 * (j + 0.5) / flows - 1.0) * 0.999;
@@ -43,9 +43,10 @@ std::vector<Sample> samples_of(const ValveNumbers& v, const HighFidelity& refere
 }  // namespace
 
 Region region_of(double p, double x_s, double supply, const ValveNumbers& v) {
-  if (std::fabs(p) > supply) return Region::water_hammer;
+  const bool near_null = std::fabs(x_s) <= v.straight_travel();
+  if (std::fabs(p) > supply) return near_null ? Region::water_hammer : Region::driven;
   if (std::fabs(p) > saturates * supply) return Region::saturated;
-  return std::fabs(x_s) <= v.saturation_travel ? Region::null : Region::linear;
+  return near_null ? Region::linear : Region::open;
 }
 
 std::vector<MapError> compare(const ValveNumbers& numbers, const HighFidelity& reference,
@@ -68,8 +69,8 @@ std::vector<MapError> compare(const ValveNumbers& numbers, const HighFidelity& r
   return out;
 }
 
-double default_travel(const ValveNumbers& v) { return 5.0 * v.saturation_travel; }
-double default_flow(const ValveNumbers& v) { return 2.0 * v.flow_gain * v.saturation_travel; }
+double default_travel(const ValveNumbers& v) { return 5.0 * v.straight_travel(); }
+double default_flow(const ValveNumbers& v) { return 2.0 * v.flow_gain * v.straight_travel(); }
 std::vector<double> falling_supplies(double supply, const ValveNumbers& v) {
   return {supply, 0.5 * supply, 0.1 * supply, v.vapour_pressure};
 }

@@ -2,11 +2,14 @@
 //
 // The grid is not the one that the numbers were read from (blocked ports and no load at full supply): load flows off
 // both lines, travels to the stop, and supplies that have fallen. Points beyond three times P_SR are left out: lines
-// would have burst. Regions by what HF says, in this order:
-//   water hammer  |P12| > P_SR
-//   saturated     |P12| > 0.9 P_SR
-//   null          |xS| <= x_SS
-//   linear        the rest: the spool is open, and pressure and flow trade against each other
+// would have burst. Regions by what HF says; near null is |xS| <= P_SR over the slope at null. The paper's own (section
+// 2): linear "when the spool is close to the null position", saturated as it "moves further away", water hammer "when
+// the valve is closed". The other two are open spools that its text leaves out.
+//   linear        near null, |P12| <= 0.9 P_SR
+//   saturated     |P12| above 0.9 P_SR and up to P_SR
+//   water hammer  near null, |P12| > P_SR
+//   open          beyond, |P12| <= 0.9 P_SR: pressure and flow trade against each other by the root
+//   driven        beyond, |P12| > P_SR: a load pushes oil back through the open edge
 #pragma once
 #include <array>
 #include <span>
@@ -19,8 +22,8 @@
 
 namespace servodx::valve_maps {
 
-enum class Region { null, linear, saturated, water_hammer };
-inline constexpr std::array<const char*, 4> region_names = {"null", "linear", "saturated", "water_hammer"};
+enum class Region { linear, saturated, water_hammer, open, driven };
+inline constexpr std::array<const char*, 5> region_names = {"linear", "saturated", "water_hammer", "open", "driven"};
 Region region_of(double load_pressure, double x_s, double supply, const ValveNumbers& numbers);
 
 struct RegionError {
@@ -30,8 +33,8 @@ struct RegionError {
 
 struct MapError {
   std::string name;
-  std::array<RegionError, 4> regions;  // by Region
-  Cost cost;                           // zero where it was not asked for
+  std::array<RegionError, region_names.size()> regions;  // by Region
+  Cost cost;                                             // zero where it was not asked for
 };
 
 struct CompareOptions {

@@ -82,16 +82,16 @@ ValveNumbers HighFidelity::measure(double supply) {
   null_ += travel_at(0.0);
   ValveNumbers v;
   v.supply = supply;
-  v.pressure_gain = 0.8 * supply / (travel_at(0.4 * supply) - travel_at(-0.4 * supply));
-  v.saturation_travel = supply / v.pressure_gain;
+  v.null_slope = 0.8 * supply / (travel_at(0.4 * supply) - travel_at(-0.4 * supply));
   // The straight part of the no-load curve: beyond the null region on both sides.
-  const double near = 10.0 * v.saturation_travel, far = 2.0 * near;
+  const double near = 10.0 * v.straight_travel(), far = 2.0 * near;
   const auto both = [&](double x) { return 0.5 * (no_load_flow(x, supply) - no_load_flow(-x, supply)); };
   v.flow_gain = (both(far) - both(near)) / (far - near);
   v.lap = near - both(near) / v.flow_gain;
   v.null_leakage = leakage(0.0, supply);
   v.quarter_leakage = leakage(0.0, 0.25 * supply);
   v.leakage = v.null_leakage / supply;
+  v.meet_slope();
   v.vapour_pressure = g_.vapour_pressure;
   v.return_pressure = g_.return_pressure + atmosphere;
   return v;

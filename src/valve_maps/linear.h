@@ -1,4 +1,4 @@
-// Linear map: P12 = G_P (xS - QJ / G_Q).
+// Linear map: P12 = G_P (xS - QJ / G_Q), with the slope read at null for G_P: the formula knows no leakage.
 // No saturation, no leakage, no dependence on the supply: valid near null at the supply the gains were measured at.
 #pragma once
 #include "valve_maps/valve_numbers.h"
@@ -6,10 +6,10 @@
 namespace servodx::valve_maps {
 
 struct Linear {
-  double pressure_gain;  // [Pa/m]
-  double gain_ratio;     // [Pa s/m3]
-  explicit Linear(const ValveNumbers& v) : pressure_gain(v.pressure_gain), gain_ratio(v.gain_ratio()) {}
-  double operator()(double x_s, double q_j, double /*supply*/) const { return pressure_gain * x_s - gain_ratio * q_j; }
+  double slope;           // [Pa/m]
+  double slope_per_flow;  // [Pa s/m3]
+  explicit Linear(const ValveNumbers& v) : slope(v.null_slope), slope_per_flow(v.null_slope / v.flow_gain) {}
+  double operator()(double x_s, double q_j, double /*supply*/) const { return slope * x_s - slope_per_flow * q_j; }
 };
 
 }  // namespace servodx::valve_maps

@@ -37,8 +37,8 @@ Cost cost_of(const ValveNumbers& numbers, const HighFidelity& reference) {
   for (std::size_t k = 0; k < points; ++k) {
     turn += 0.6180339887498949;
     turn -= static_cast<double>(static_cast<long>(turn));
-    x[k] = (2.0 * turn - 1.0) * 5.0 * numbers.saturation_travel;
-    q[k] = (2.0 * turn * turn - 0.8) * numbers.flow_gain * numbers.saturation_travel;
+    x[k] = (2.0 * turn - 1.0) * 5.0 * numbers.straight_travel();
+    q[k] = (2.0 * turn * turn - 0.8) * numbers.flow_gain * numbers.straight_travel();
   }
   const auto seconds_since = [](Clock::time_point start) {
     return std::chrono::duration<double>(Clock::now() - start).count() / static_cast<double>(points);

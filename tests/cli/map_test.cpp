@@ -39,6 +39,16 @@ TEST(Map, WritesTheContractsColumnsAndTheSameBytesAgain) {
   EXPECT_EQ(json["models"].size(), 8u);
 }
 
+TEST(Map, PaperIsTheSecondExampleOfSection4) {
+  const MapDesk desk;
+  ASSERT_EQ(desk.run("map --model C5 --params table.csv -o map.csv --paper --json map.json").code, 0);
+  const auto valve = nlohmann::json::parse(bytes_of(desk / "map.json"))["valve"];
+  const auto number = [&](const char* key) { return valve[key]["value"].get<double>(); };
+  EXPECT_DOUBLE_EQ(number("supply_differential"), 20e6);
+  EXPECT_NEAR(number("gain_ratio") * number("leakage"), 0.2, 1e-6);
+  EXPECT_NEAR(number("pressure_gain") / number("null_slope"), 1.2, 1e-6);
+}
+
 TEST(Map, DrawsOneModelAtFallingSuppliesAndAllSideBySide) {
   const MapDesk desk;
   ASSERT_EQ(desk.run("map --model HF --params table.csv --svg one.svg").code, 0);

@@ -58,7 +58,7 @@ TEST(Bridge, ReturnsTheNumbersItWasMadeFrom) {
   ValveNumbers v = HighFidelity(flight_valve()).measure(test_supply);
   v.lap = 0;
   const Bridge bridge(v);
-  EXPECT_NEAR(bridge(0.4 * v.supply / v.pressure_gain, 0, v.supply), 0.4 * v.supply, 1e-6 * v.supply);
+  EXPECT_NEAR(bridge(0.4 * v.straight_travel(), 0, v.supply), 0.4 * v.supply, 1e-6 * v.supply);
   const double far = 1e3 * bridge.null_height;  // no load: the flow gain
   EXPECT_NEAR(bridge(far, v.flow_gain * far, v.supply), 0.0, 2e-3 * v.supply);
 }
@@ -87,7 +87,8 @@ TEST(Bridge, IsNearHfInEveryRegionOnOtherValves) {
     }
     EXPECT_LT(ours.regions[static_cast<std::size_t>(Region::water_hammer)].rms, 0.2) << c.what;
     // Cold oil is laminar in open edges too, in proportions that no number of the black box tells.
-    EXPECT_LT(ours.regions[static_cast<std::size_t>(Region::linear)].rms, c.viscosity > 0.05 ? 0.2 : 0.1) << c.what;
+    EXPECT_LT(ours.regions[static_cast<std::size_t>(Region::open)].rms, c.viscosity > 0.05 ? 0.2 : 0.1) << c.what;
+    EXPECT_LT(ours.regions[static_cast<std::size_t>(Region::linear)].rms, 0.15) << c.what;
     for (const RegionError& r : of(errors, "HF").regions) EXPECT_EQ(r.largest, 0.0);
   }
 }

@@ -12,6 +12,7 @@
 #include "valve_maps/model_c2.h"
 #include "valve_maps/model_c3.h"
 #include "valve_maps/model_c5.h"
+#include "valve_maps/papers_valve.h"
 #include "valve_maps/registry.h"
 #include "valve_maps/valve_numbers.h"
 
@@ -24,13 +25,71 @@ const double saturating = 3.0 * v.flow_gain * v.saturation_travel;  // [m3/s] sa
 
 TEST(Papers, LinearFollowsItsTwoGains) {
   const Linear linear(v);
-  EXPECT_DOUBLE_EQ(linear(1e-5, 0, v.supply), v.pressure_gain * 1e-5);
+  EXPECT_DOUBLE_EQ(linear(1e-5, 0, v.supply), v.null_slope * 1e-5);
   EXPECT_NEAR(linear(1e-5, v.flow_gain * 1e-5, v.supply), 0.0, 1e-6 * v.supply);
 }
 
 TEST(Papers, LinearAndADoNotSaturate) {
-  EXPECT_GT(Linear(v)(10 * v.saturation_travel, 0, v.supply), 9.9 * v.supply);
+  EXPECT_GT(Linear(v)(10 * v.saturation_travel, 0, v.supply), 8 * v.supply);
   EXPECT_GT(ModelA(v)(10 * v.saturation_travel, 0, v.supply), 8 * v.supply);
+}
+
+// Section 2: G_P is read at zero flow. Leakage is in what is read, so each formula that divides by it must give it
+// back.
+TEST(Papers, EveryModelMeetsTheSlopeAtNullThatWasRead) {
+  HighFidelity hf(flight_valve());
+  for (const ValveNumbers& numbers : {hf.measure(test_supply), papers_numbers()}) {
+    const double x = 1e-3 * numbers.saturation_travel, read = numbers.null_slope * x;
+    for (const char* name : {"linear", "A", "C1", "C2", "C3", "C5"}) {
+      const Map map = find_map(name)->make(numbers, hf);
+      EXPECT_NEAR(map(x, 0, numbers.supply), read, 1e-9 * read) << name;
+      // The flow that the line at null takes back to no load pressure.
+      EXPECT_NEAR(map(x, numbers.flow_gain * x, numbers.supply), 0.0, 1e-9 * read) << name;
+    }
+  }
+}
+
+TEST(Papers, WithoutLeakageTheSlopeReadIsTheGain) {
+  ValveNumbers dry = papers_numbers();
+  dry.leakage = 0;
+  dry.meet_slope();
+  EXPECT_DOUBLE_EQ(dry.pressure_gain, dry.null_slope);
+  EXPECT_DOUBLE_EQ(dry.saturation_travel, dry.straight_travel());
+  EXPECT_DOUBLE_EQ(dry.leak_share(), 0.0);
+  const HighFidelity none(flight_valve());
+  for (const char* name : {"A", "C1", "C2", "C3", "C5"})
+    EXPECT_DOUBLE_EQ(find_map(name)->make(dry, none)(0.5 * dry.saturation_travel, 0, dry.supply), 0.5 * dry.supply)
+        << name;
+}
+
+// Merritt sec. 5-3: leakage alone bounds the slope to G_Q / C_LK. A slope read at that bound is met all the same.
+TEST(Papers, ASlopeAtTheBoundOfLeakageIsMet) {
+  ValveNumbers bound = papers_numbers();
+  bound.leakage = 1.2 * bound.flow_gain / bound.null_slope;
+  bound.meet_slope();
+  const double x = 1e-3 * bound.saturation_travel;
+  EXPECT_NEAR(ModelC5(bound)(x, 0, bound.supply), bound.null_slope * x, 1e-9 * bound.supply);
+}
+
+// Section 4: maps at 20 MPa, G_PQ C_LK = 0.2, here on a HF that reads as much.
+TEST(Papers, Section4TheSecondExampleReadsThePapersNumbers) {
+  HighFidelity hf(overlapped_to(flight_valve(), papers_leak_share, papers_supply));
+  const ValveNumbers read = hf.measure(papers_supply);
+  EXPECT_NEAR(read.leak_share(), papers_leak_share, 1e-6);
+  EXPECT_NEAR(ModelC5(read)(read.saturation_travel, 0, papers_supply) / papers_supply, 1 / 1.2, 1e-6);
+  EXPECT_NEAR(ModelC1(read)(1, 0, papers_supply) / papers_supply, 1 / 1.2, 1e-6);
+  EXPECT_GT(read.lap, 2 * flight_valve().radial_clearance);
+}
+
+// Section 2: linear is "close to the null position", water hammer is of the closed valve.
+TEST(Papers, Section2NamesTheRegions) {
+  const double p = v.supply, near = 0.9 * v.straight_travel(), far = 1.1 * v.straight_travel();
+  EXPECT_EQ(region_of(0.5 * p, near, p, v), Region::linear);
+  EXPECT_EQ(region_of(0.95 * p, near, p, v), Region::saturated);
+  EXPECT_EQ(region_of(0.95 * p, far, p, v), Region::saturated);
+  EXPECT_EQ(region_of(-1.5 * p, near, p, v), Region::water_hammer);
+  EXPECT_EQ(region_of(0.5 * p, far, p, v), Region::open);
+  EXPECT_EQ(region_of(-1.5 * p, far, p, v), Region::driven);
 }
 
 TEST(Papers, C1UnderestimatesTheLargestPressure) {
@@ -87,7 +146,7 @@ TEST(Papers, NoModelOfThePaperThatSaturatesExceedsTheSupply) {
 TEST(Papers, OnlyHfAndOursShowTheWaterHammer) {
   HighFidelity hf(flight_valve());
   const ValveNumbers measured = hf.measure(test_supply);
-  const double hammer = 2 * measured.flow_gain * measured.saturation_travel;
+  const double hammer = 2 * measured.flow_gain * measured.straight_travel();
   for (const char* name : {"HF", "bridge"}) {
     const Map map = find_map(name)->make(measured, hf);
     for (double supply : {test_supply, 0.3 * test_supply, measured.vapour_pressure}) {

@@ -1,6 +1,7 @@
 // Valves to judge maps on.
 #pragma once
 #include "valve_maps/high_fidelity.h"
+#include "valve_maps/papers_valve.h"
 #include "valve_maps/valve_numbers.h"
 
 namespace servodx::valve_maps {
@@ -21,11 +22,12 @@ inline ValveGeometry flight_valve() {
 // The paper's case: G_PQ C_LK = 0.2.
 inline ValveNumbers papers_numbers() {
   ValveNumbers v;
-  v.supply = 20e6;
-  v.saturation_travel = 1e-4;
-  v.pressure_gain = v.supply / v.saturation_travel;
+  v.supply = papers_supply;
+  const double pressure_gain = v.supply / 1e-4;
   v.flow_gain = 0.5;
-  v.leakage = 0.2 / v.gain_ratio();
+  v.leakage = papers_leak_share * v.flow_gain / pressure_gain;
+  v.null_slope = pressure_gain / (1 + papers_leak_share);
+  v.meet_slope();
   v.return_pressure = 5e5;
   v.null_leakage = v.leakage * v.supply;
   v.quarter_leakage = 0.4 * v.null_leakage;
