@@ -9,6 +9,7 @@ namespace servodx {
 
 void add_simulate_command(CLI::App& app);
 void add_tune_command(CLI::App& app, int& exit_code);
+void add_sensitivity_command(CLI::App& app, int& exit_code);
 void add_baseline_command(CLI::App& app, int& exit_code);
 void add_diagnose_command(CLI::App& app, int& exit_code);
 void add_plan_command(CLI::App& app, int& exit_code);

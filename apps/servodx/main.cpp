@@ -61,6 +61,7 @@ int main(int argc, char** argv) {
   add_init_command(app);
   add_check_log_command(app);
   add_join_command(app);
+  add_sensitivity_command(app, exit_code);
   add_tune_command(app, exit_code);
   add_baseline_command(app, exit_code);
   add_diagnose_command(app, exit_code);

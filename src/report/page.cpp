@@ -268,6 +268,31 @@ void Page::add(const Moves& moves) {
   body_ += "</tbody></table></div></figure>\n";
 }
 
+void Page::add(const Tornado& tornado) {
+  double full = 0;
+  for (const Tornado::Row& r : tornado.rows)
+    for (const double v : r.value)
+      if (std::isfinite(v)) full = std::max(full, std::log1p(v));
+  body_ += fmt::format(
+      "<figure class=\"moves\"{}><figcaption><span>{}</span>{}</figcaption><div class=\"wide\"><table>",
+      folded_rows(tornado.rows.size(), tornado.shown), escape_html(tornado.title), csv_button(tornado.title));
+  body_ += fmt::format(
+      "<thead><tr><th>{}</th><th class=\"r\">at minimum, {}</th><th class=\"bar\" aria-hidden=\"true\"></th>"
+      "<th>at maximum</th><th></th></tr></thead><tbody>\n",
+      escape_html(tornado.label), escape_html(tornado.unit));
+  for (const Tornado::Row& r : tornado.rows) {
+    body_ += fmt::format("<tr>{}<td class=\"r\" data-value=\"{}\">{}</td><td class=\"bar two\" aria-hidden=\"true\">",
+                         cell_html(r.name, 'l', "th"), exact(r.value[0]), escape_html(r.text[0]));
+    for (const std::size_t end : {0, 1})
+      if (full > 0 && std::isfinite(r.value[end]))
+        body_ += fmt::format("<span class=\"fill\" style=\"{}:50%;width:{:.2f}%\"></span>", end == 0 ? "right" : "left",
+                             50 * std::log1p(r.value[end]) / full);
+    body_ += fmt::format("</td><td data-value=\"{}\">{}</td><td class=\"note\">{}</td></tr>\n", exact(r.value[1]),
+                         escape_html(r.text[1]), escape_html(r.note));
+  }
+  body_ += "</tbody></table></div></figure>\n";
+}
+
 void Page::add(const Matrix& m) {
   double full = 0;
   for (const auto& row : m.value)

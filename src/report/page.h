@@ -29,6 +29,7 @@ class Page {
   void add(const TablePart& table);
   void add(const Bars& bars);
   void add(const Moves& moves);
+  void add(const Tornado& tornado);
   void add(const Matrix& matrix);
 
   void head(const std::string& name, const std::string& value);  // a fact of the page's head

@@ -2,6 +2,7 @@
 //
 // Every part is also a CSV: a plot its columns, a table its cells at full precision.
 #pragma once
+#include <array>
 #include <cmath>
 #include <optional>
 #include <string>
@@ -94,6 +95,20 @@ struct Moves {
   };
   std::vector<Row> rows;
   std::size_t shown = 0;
+};
+
+// What is driven both ways: a bar to the left for its minimum, to the right for its maximum, by the logarithm.
+struct Tornado {
+  std::string title;
+  std::string label, unit;  // heads of the columns: "row", "times the noise"
+  struct Row {
+    std::string name;
+    std::array<double, 2> value = {NAN, NAN};  // not negative; NaN: no bar
+    std::array<std::string, 2> text = {};      // the values as they are read
+    std::string note = {};
+  };
+  std::vector<Row> rows;
+  std::size_t shown = 0;  // as of a table
 };
 
 // A grid of numbers, darker where greater: confusion, residual maps.

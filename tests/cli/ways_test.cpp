@@ -347,6 +347,7 @@ TEST(DryRun, IsARehearsalWithEveryCommandThatTakesIt) {
       {"map", "--model C3 --params table.csv -o out.csv"},
       {"list", "faults"},
       {"check-log", "log.csv"},
+      {"sensitivity", "log.csv --params table.csv"},
       {"selftest", "log.csv --params table.csv"},
       {"compare", "a.json a.json"},
       {"join", "log.csv other.csv -o out.csv"},

@@ -100,6 +100,7 @@ class Schemas(unittest.TestCase):
         keep("rerun", "sim.csv.manifest.json")
         keep("check-log", "a.csv", "--params", table, *rig)
         keep("init", "a.csv", "-o", "new.toml", "--table", "new.csv")
+        keep("sensitivity", "a.csv", "--params", table, *rig)
         keep("monitor", "a.csv", "--params", table, *rig, "-o", "monitor.csv")
         keep("selftest", "a.csv", "--params", table, *rig, "--repeats", 2)
         keep("tune", "a.csv", "b.csv", "--params", table, *rig, "--generations", 0, "--rounds", 1, "--effects", "none",
