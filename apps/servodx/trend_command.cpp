@@ -178,7 +178,7 @@ void add_trend_command(CLI::App& app) {
   command
       ->add_option("--limit", options->limits,
                    "performance limit that sets failure levels: bandwidth, gain, hysteresis, "
-                   "phase_margin")
+                   "phase_margin, or margin=6dB (or deg) of the position loop for every degradation")
       ->type_name("NAME=VALUE");
   command
       ->add_option("--seeded", options->seeded,
@@ -186,7 +186,7 @@ void add_trend_command(CLI::App& app) {
                    "[degC]; parameters are taken to the wear at which these read the same")
       ->type_name("TEST.csv");
   command->add_option("--params", options->params, "tuned table, for --limit")->type_name("TUNED");
-  command->add_option("--loop", options->loop, "velocity gain of the position loop, for phase_margin [1/s]")
+  command->add_option("--loop", options->loop, "velocity gain of the position loop, for its margins [1/s]")
       ->type_name("GAIN");
   command->add_option("--false-alarm", options->trend.false_alarm, "part of healthy valves that may raise an alert")
       ->type_name("RATE")

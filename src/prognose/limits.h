@@ -7,7 +7,10 @@
 //                    current (row 14)
 //   phase_margin=P   [deg] of the position loop of a velocity gain (`loop`, [1/s]): integrator and first-order valve,
 //                    P = 90 deg - atan(loop / bandwidth); then as bandwidth
-// Linear theory at 40 degC and the table's supply. Leaves out: limit cycles, and what one degradation does to another.
+//   margin=G dB      what the position loop has to spare (loop_margins.h), in gain or in phase: every degradation
+//   margin=P deg     whose model row, alone, brings it down to that. Spool moving as in the preflight sine
+// Linear theory at 40 degC and the table's supply. Leaves out what one degradation does to another; all but margin
+// leave out limit cycles.
 #pragma once
 #include <string>
 
@@ -17,14 +20,14 @@
 
 namespace servodx {
 
-enum class LimitKind { bandwidth, gain, hysteresis, phase_margin };
+enum class LimitKind { bandwidth, gain, hysteresis, phase_margin, loop_gain_margin, loop_phase_margin };
 
 struct PerformanceLimit {
   LimitKind kind = LimitKind::bandwidth;
   double value = 0;
   std::string text;  // as the user gave it
 };
-// Throws InputError for what is not NAME=VALUE of a known limit.
+// Throws InputError for what is not NAME=VALUE of a known limit; a margin's value ends in dB or deg.
 PerformanceLimit read_limit(const std::string& text);
 
 // Adds to `options`. Throws InputError for a value out of range, or a limit that the healthy valve does not hold.

@@ -7,6 +7,7 @@
 #include "base/error.h"
 #include "fit/nominal.h"
 #include "parameters/list.h"
+#include "prognose/valve_geometry.h"
 #include "simulate/scenario.h"
 #include "valve_maps/high_fidelity.h"
 #include "valve_maps/registry.h"
@@ -42,20 +43,6 @@ double rising_root(const F& f, double guess, double width, double tolerance) {
     }
   }
   return (a * fb - b * fa) / (fb - fa != 0 ? fb - fa : 1);
-}
-
-valve_maps::ValveGeometry geometry_of(const Table& table, const Supply& at) {
-  valve_maps::ValveGeometry g;
-  g.port_width = table[row::port_width].nominal;
-  g.radial_clearance = table[row::radial_clearance].nominal;
-  g.lap_pa = table[row::lap_pa].nominal;
-  g.lap_pb = table[row::lap_pb].nominal;
-  g.lap_at = table[row::lap_at].nominal;
-  g.lap_bt = table[row::lap_bt].nominal;
-  g.density = at.oil.density;
-  g.dynamic_viscosity = at.oil.dynamic_viscosity;
-  g.return_pressure = at.return_;
-  return g;
 }
 
 }  // namespace
@@ -97,7 +84,7 @@ MonitorParameters monitor_parameters(const Table& table, const Supply& at) {
   p.spool_force_gain = (nozzle_area + p.flapper_stiffness / pilot_gain) / spool_area;
   p.wire_stiffness = value(row::feedback_wire_stiffness) + spring * p.spool_force_gain;
 
-  valve_maps::HighFidelity valve(geometry_of(table, at));
+  valve_maps::HighFidelity valve(geometry_of(candidate_of(table), at));
   const valve_maps::ValveNumbers numbers = valve.measure(drop);
   p.pressure_gain = numbers.null_slope;
   p.flow_gain = numbers.flow_gain;
@@ -126,7 +113,7 @@ PressureLaw pressure_law(const std::string& name, const Table& table, const Supp
   require_pressure_law(name);
   const valve_maps::MapInfo* info = valve_maps::find_map(name);
   const double drop = at.supply - at.return_;
-  valve_maps::HighFidelity valve(geometry_of(table, at));
+  valve_maps::HighFidelity valve(geometry_of(candidate_of(table), at));
   const valve_maps::ValveNumbers numbers = valve.measure(drop);
   const valve_maps::Map map = info->make(numbers, valve);
   if (name == "linear" || name == "A")
