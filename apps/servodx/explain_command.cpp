@@ -63,7 +63,7 @@ int run(const Options& options) {
   write_table(options.output, result.table);
   header.simulations = result.simulations;
   header.failed_simulations = result.failed_simulations;
-  for (const Log& log : logs) invocation.note(log.notes);
+  for (const Log& log : logs) invocation.note(texts_of(log.notes));
   invocation.note(result.notes);
   if (invocation.wants_report()) {
     std::vector<Replay> replays;

@@ -202,9 +202,9 @@ std::string reading(const Options& options, std::size_t questions) {
     text = fmt::format("{}: {} samples\n",
                        questions ? "without the columns asked about the log can be read" : "the log reads with it",
                        log.samples());
-    for (const std::string& note : log.notes)
-      if (note.find(": ignored ") == std::string::npos)
-        text += "  beware: " + note + "\n";  // the ignored are told below
+    for (const LogNote& note : log.notes)
+      if (note.kind != LogNote::Kind::ignored_columns)
+        text += "  beware: " + note.text + "\n";  // the ignored are told below
   } catch (const InputError& open) {
     text = fmt::format("to be mended in {} before the log reads:\n  {}\n", options.output, told(open));
   }

@@ -346,7 +346,7 @@ class Reading {
 
 Sheet read_figures(const Log& log, const RigFile& rig) {
   Sheet sheet;
-  sheet.notes = log.notes;
+  sheet.notes = texts_of(log.notes);
   sheet.curves.reserve(4);  // references to them are held while reading
   Reading(log, rig, sheet).read();
   return sheet;

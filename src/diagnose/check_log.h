@@ -29,12 +29,27 @@ struct ChannelSurvey {
   double clipped = 0;              // part of the samples that lie on the lowest or the highest value, in runs
 };
 
+enum class FindingKind {
+  jitter,        // of the time stamps
+  gaps,          // in time
+  rate,          // another than the other logs have
+  temperature,   // cold or hot oil, or another than the other logs have
+  repeats,       // rows that repeat the row before
+  missing,       // samples of a signal
+  saturation,    // a sensor or converter at its limit
+  quantisation,  // steps that hide the noise
+  sign,          // a signal runs against the drive
+  swapped,       // two columns exchanged
+  response,      // nothing that is measured moves
+  values,        // what the reader left out or found hardly possible
+  columns,       // the rig file maps one that the log lacks
+  beyond,        // the operating point, beyond what is known
+};
+
 struct Finding {
-  // jitter, gaps, rate, temperature, repeats, saturation, quantisation, sign, swapped, response, values, columns or
-  // missing
-  std::string kind;
+  FindingKind kind = FindingKind::values;
   std::string text;
-  std::vector<Signal> signals = {};  // whose columns may be meant wrongly; of 'sign' and 'swapped'
+  std::vector<Signal> signals = {};  // whose columns may be meant wrongly; of a sign and of exchanged columns
 };
 
 struct LogSurvey {

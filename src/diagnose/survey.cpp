@@ -130,7 +130,7 @@ void find_turned(const Log& log, LogSurvey& s) {
   const auto turned = [&](Signal signal, const std::vector<double>& answer, double lag) {
     const auto [least, greatest] = correlations(drive, answer, samples(lag));
     if (least > against || greatest > with) return;
-    s.findings.push_back({"sign",
+    s.findings.push_back({FindingKind::sign,
                           fmt::format("'{}' runs against the drive: give its column, or the drive's, "
                                       "gain = \"-1\" in the rig file",
                                       info(signal).name),
@@ -159,51 +159,58 @@ void find_no_response(LogSurvey& s) {
   std::string text = "nothing that is measured moves";
   if (!still.empty()) text += ": " + still + " never changed";
   if (!noise.empty()) text += (still.empty() ? ": " : ", ") + noise + " moved no further than noise does";
-  s.findings.push_back({"response", text + "; no pressure, no sensors, or another log?"});
+  s.findings.push_back({FindingKind::response, text + "; no pressure, no sensors, or another log?"});
+}
+
+// What the reader saw: limits, spikes, frozen sensors, no excitation. Gaps are told with more figures here.
+void add_notes_of_reader(const Log& log, LogSurvey& s) {
+  const std::string front = log.path + ": ";
+  for (const LogNote& note : log.notes) {
+    if (note.kind == LogNote::Kind::gaps && s.gaps > 0) continue;
+    s.findings.push_back({note.kind == LogNote::Kind::unmapped_column ? FindingKind::columns : FindingKind::values,
+                          note.text.starts_with(front) ? note.text.substr(front.size()) : note.text});
+  }
 }
 
 void find_suspicious(const Log& log, LogSurvey& s) {
-  const auto found = [&](const char* kind, std::string text) { s.findings.push_back({kind, std::move(text)}); };
+  const auto found = [&](FindingKind kind, std::string text) { s.findings.push_back({kind, std::move(text)}); };
   if (s.jitter > much_jitter)
-    found("jitter",
+    found(FindingKind::jitter,
           fmt::format("time stamps jitter by {:.2g} % of a step (rms): they are used as they are", 100 * s.jitter));
   if (s.gaps > 0)
     found(
-        "gaps",
+        FindingKind::gaps,
         fmt::format("{} gap{} in time, {} sample{} lost, the longest {:.3g} ms; the command across a gap is not known",
                     s.gaps, s.gaps == 1 ? "" : "s", s.lost, s.lost == 1 ? "" : "s", 1e3 * s.longest_gap));
   if (const double part = repeats(log); part > many_repeats)
-    found("repeats",
+    found(FindingKind::repeats,
           fmt::format("{:.2g} % of the rows repeat the row before in every measured signal: the source is slower "
                       "than the log",
                       100 * part));
   if (s.temperature && (*s.temperature < cold || *s.temperature > hot))
-    found("temperature", fmt::format("{} oil, {:.0f} degC: judge it against fault-free logs of like temperature",
-                                     *s.temperature < cold ? "cold" : "hot", *s.temperature - kelvin));
+    found(FindingKind::temperature,
+          fmt::format("{} oil, {:.0f} degC: judge it against fault-free logs of like temperature",
+                      *s.temperature < cold ? "cold" : "hot", *s.temperature - kelvin));
   for (const ChannelSurvey& c : s.channels) {
     const std::string name = fmt::format("'{}'", info(c.signal).name);
-    if (c.missing > 0) found("missing", fmt::format("{}: {} samples are missing", name, c.missing));
+    if (c.missing > 0) found(FindingKind::missing, fmt::format("{}: {} samples are missing", name, c.missing));
     if (!is_measured(c.signal)) continue;
     if (c.clipped > much_clipped)
-      found("saturation",
+      found(FindingKind::saturation,
             fmt::format("{}: {:.2g} % of the samples lie flat on its lowest or highest value: a sensor or "
                         "converter at its limit?",
                         name, 100 * c.clipped));
     const double range = c.highest - c.lowest;
     if (simulated_index(c.signal) >= 0 && range > 0 && c.resolution > coarse_step * range &&
         c.noise < 1.01 * c.resolution / std::sqrt(12.0))
-      found("quantisation", fmt::format("{}: steps of {:.2g} {} hide the noise and are {:.2g} % of what it moves", name,
-                                        c.resolution, info(c.signal).si_unit, 100 * c.resolution / range));
+      found(FindingKind::quantisation,
+            fmt::format("{}: steps of {:.2g} {} hide the noise and are {:.2g} % of what it moves", name, c.resolution,
+                        info(c.signal).si_unit, 100 * c.resolution / range));
   }
   find_no_response(s);
   find_turned(log, s);
   for (Finding& each : swapped_channels(log, s.rate)) s.findings.push_back(std::move(each));
-  for (const std::string& note : log.notes) {  // what the reader saw: limits, spikes, frozen sensors, no excitation
-    if (note.find("gap") != std::string::npos && s.gaps > 0) continue;
-    const std::string front = log.path + ": ";
-    const bool unmapped = note.find("the rig file maps column") != std::string::npos;
-    found(unmapped ? "columns" : "values", note.starts_with(front) ? note.substr(front.size()) : note);
-  }
+  add_notes_of_reader(log, s);
 }
 
 }  // namespace
@@ -236,12 +243,12 @@ void compare_surveys(std::vector<LogSurvey>& surveys) {
   const double rate = median(rates), temperature = median(temperatures);
   for (LogSurvey& s : surveys) {
     if (s.rate > other_rate * rate || s.rate < rate / other_rate)
-      s.findings.push_back({"rate", fmt::format("{:.4g} Hz, the other logs {:.4g} Hz", s.rate, rate)});
-    const bool said =
-        std::any_of(s.findings.begin(), s.findings.end(), [](const Finding& f) { return f.kind == "temperature"; });
+      s.findings.push_back({FindingKind::rate, fmt::format("{:.4g} Hz, the other logs {:.4g} Hz", s.rate, rate)});
+    const bool said = std::any_of(s.findings.begin(), s.findings.end(),
+                                  [](const Finding& f) { return f.kind == FindingKind::temperature; });
     if (s.temperature && !said && std::abs(*s.temperature - temperature) > other_temperature)
-      s.findings.push_back({"temperature", fmt::format("{:.0f} degC, the other logs about {:.0f} degC",
-                                                       *s.temperature - kelvin, temperature - kelvin)});
+      s.findings.push_back({FindingKind::temperature, fmt::format("{:.0f} degC, the other logs about {:.0f} degC",
+                                                                  *s.temperature - kelvin, temperature - kelvin)});
   }
 }
 

@@ -45,7 +45,7 @@ void find_order(const Log& log, std::vector<Finding>& found) {
     if (!log.has(upper) || !log.has(lower)) continue;
     const double part = part_below(log[upper], log[lower]);
     if (part < most_of_the_time) continue;
-    found.push_back({"swapped",
+    found.push_back({FindingKind::swapped,
                      fmt::format("'{}' is below '{}' in {:.0f} % of the samples: are the two columns exchanged?",
                                  info(upper).name, info(lower).name, 100 * part),
                      {upper, lower}});
@@ -83,7 +83,7 @@ void find_chambers(const Log& log, double rate, std::vector<Finding>& found) {
   const Eigen::Matrix4d inverse = covariance.inverse();
   const auto partial = [&](int k) { return -inverse(k, 3) / std::sqrt(inverse(k, k) * inverse(3, 3)); };
   if (!(partial(0) < -against && partial(1) > against)) return;
-  found.push_back({"swapped",
+  found.push_back({FindingKind::swapped,
                    "'pressure_a' - 'pressure_b' falls where the spool lets oil into A, and rises with the piston's "
                    "speed: are the two columns exchanged?",
                    {Signal::pressure_a, Signal::pressure_b}});

@@ -83,7 +83,7 @@ Baseline make_baseline(const std::vector<Log>& logs, const Tuned& tuned, const R
   for (const std::string& text : tuned.notes)
     if (!tuned.whole) note(header.notes, text);  // of its reader; what a tune has noted is not this result's
   for (const Log& log : logs)
-    for (const std::string& text : log.notes) note(header.notes, text);
+    for (const LogNote& found : log.notes) note(header.notes, found.text);
   const std::size_t scored = parts.detection.scores.size();
   if (scored < logs.size()) note(header.notes, fmt::format("interrupted: rests on {} of {} logs", scored, logs.size()));
 

@@ -193,7 +193,7 @@ LogData prepare(const Log& log, const RigFile& rig, int window) {
   LogData out;
   out.path = log.path;
   out.sha256 = log.sha256;
-  out.notes = log.notes;
+  out.notes = texts_of(log.notes);
   Scenario& s = out.scenario;
   s.time = log.time;
   s.current_measured = log.has(Signal::coil_current);

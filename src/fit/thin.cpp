@@ -33,8 +33,8 @@ double fastest(const std::vector<double>& t, const std::vector<double>& command,
   const auto half = static_cast<std::size_t>(std::max(1.0, std::round(0.5 / step)));
   double most = 0;
   for (std::size_t k = 0; k + 2 * half <= t.size(); k += std::max<std::size_t>(1, half / 4)) {
-    const double rate = (mean_of(command, k + half, k + 2 * half) - mean_of(command, k, k + half)) /
-                        (t[k + half] - t[k]);
+    const double rate =
+        (mean_of(command, k + half, k + 2 * half) - mean_of(command, k, k + half)) / (t[k + half] - t[k]);
     if (!std::isnan(rate)) most = std::max(most, std::abs(rate));
   }
   return most;
@@ -76,8 +76,9 @@ Log thinned(const Log& log, const RigFile& rig) {
       out.channels[c].missing += std::isnan(out.channels[c].value.back());
     }
   }
-  out.notes.push_back(fmt::format("{}: the command creeps; {} samples are taken as {} means over {:.2g} s", log.path,
-                                  log.samples(), out.samples(), static_cast<double>(group) * step));
+  out.notes.push_back({LogNote::Kind::left_out,
+                       fmt::format("{}: the command creeps; {} samples are taken as {} means over {:.2g} s", log.path,
+                                   log.samples(), out.samples(), static_cast<double>(group) * step)});
   return out;
 }
 

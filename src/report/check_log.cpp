@@ -48,11 +48,45 @@ std::string drive_words(const LogSurvey& s) {
   return fmt::format("spans {}, about {} Hz", handy(s.drive_span, "A"), digits(s.drive_band, 2));
 }
 
+std::string word_of(FindingKind kind) {
+  switch (kind) {
+    case FindingKind::jitter:
+      return "jitter";
+    case FindingKind::gaps:
+      return "gaps";
+    case FindingKind::rate:
+      return "rate";
+    case FindingKind::temperature:
+      return "temperature";
+    case FindingKind::repeats:
+      return "repeats";
+    case FindingKind::missing:
+      return "missing";
+    case FindingKind::saturation:
+      return "saturation";
+    case FindingKind::quantisation:
+      return "quantisation";
+    case FindingKind::sign:
+      return "sign";
+    case FindingKind::swapped:
+      return "swapped";
+    case FindingKind::response:
+      return "response";
+    case FindingKind::values:
+      return "values";
+    case FindingKind::columns:
+      return "columns";
+    case FindingKind::beyond:
+      return "beyond";
+  }
+  return "";
+}
+
 // An operating point beyond what is known is one of them.
 std::vector<Finding> suspicious_in(const LogSurvey& s) {
   std::vector<Finding> all = s.findings;
   if (const std::string far = beyond_in_words(s.conditions); !far.empty())
-    all.push_back({"beyond", "recorded beyond what is known: " + far});
+    all.push_back({FindingKind::beyond, "recorded beyond what is known: " + far});
   return all;
 }
 
@@ -60,7 +94,8 @@ std::vector<Finding> suspicious_in(const LogSurvey& s) {
 std::string kinds_of(const LogSurvey& s) {
   std::vector<std::string> kinds;
   for (const Finding& f : suspicious_in(s))
-    if (std::find(kinds.begin(), kinds.end(), f.kind) == kinds.end()) kinds.push_back(f.kind);
+    if (const std::string kind = word_of(f.kind); std::find(kinds.begin(), kinds.end(), kind) == kinds.end())
+      kinds.push_back(kind);
   return join(kinds);
 }
 
@@ -109,7 +144,7 @@ std::string text_of(const std::vector<LogCheck>& checks) {
     if (const std::string tuned = tuned_in_words(s.conditions); !tuned.empty()) text += "  tuned at " + tuned + "\n";
     const std::string far = beyond_in_words(s.conditions);
     if (!far.empty()) text += "  BEYOND: " + far + "\n";
-    for (const Finding& f : s.findings) text += fmt::format("  suspicious: {}: {}\n", f.kind, f.text);
+    for (const Finding& f : s.findings) text += fmt::format("  suspicious: {}: {}\n", word_of(f.kind), f.text);
     if (s.findings.empty()) text += far.empty() ? "  nothing suspicious\n" : "  nothing else suspicious\n";
     if (!check.promise) continue;
     text += "  can identify " + promise_lead(*check.promise) + "\n";
@@ -147,7 +182,7 @@ Json check_log_json(const std::vector<LogCheck>& checks) {
                           {"noise_rms", number(c.noise)},
                           {"resolution", number(c.resolution)},
                           {"clipped", number(c.clipped)}});
-    for (const Finding& f : suspicious_in(s)) findings.push_back({{"kind", f.kind}, {"text", f.text}});
+    for (const Finding& f : suspicious_in(s)) findings.push_back({{"kind", word_of(f.kind)}, {"text", f.text}});
     Json one = {{"log", s.path},
                 {"samples", s.samples},
                 {"duration", number(s.duration)},
@@ -219,7 +254,7 @@ Page check_log_page(const Header& header, const std::vector<LogCheck>& checks) {
     v.headline = suspicious == 0 ? "Nothing suspicious in " + file_name(s.path)
                                  : "Suspicious in " + file_name(s.path) + ": " + kinds_of(s);
     v.detail = first_line(s);
-    for (const Finding& f : suspicious_in(s)) v.reasons.push_back(f.kind + ": " + f.text);
+    for (const Finding& f : suspicious_in(s)) v.reasons.push_back(word_of(f.kind) + ": " + f.text);
   } else {
     v.headline = suspicious == 0 ? fmt::format("Nothing suspicious in {} logs", checks.size())
                                  : fmt::format("{} of {} logs have something suspicious", suspicious, checks.size());
@@ -240,7 +275,7 @@ Page check_log_page(const Header& header, const std::vector<LogCheck>& checks) {
     const LogSurvey& s = check.survey;
     page.section(one ? "What is in it" : s.path, one ? "" : first_line(s), !one && suspicious_in(s).empty());
     if (!one)
-      for (const Finding& f : suspicious_in(s)) page.text(f.kind + ": " + f.text);
+      for (const Finding& f : suspicious_in(s)) page.text(word_of(f.kind) + ": " + f.text);
     Plot drive{.title = "drive [mA], " + drive_words(s),
                .x_label = "time [s]",
                .x = check.time,

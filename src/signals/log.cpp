@@ -4,6 +4,8 @@
 #include <cctype>
 #include <cmath>
 #include <limits>
+#include <string>
+#include <vector>
 
 #include "base/sha256.h"
 #include "servodx/rig.h"
@@ -19,6 +21,12 @@ bool is_mat_file(const std::string& path) {
 
 Log read_log(const std::string& path, const RigFile& rig, const ReadOptions& options) {
   return is_mat_file(path) ? read_mat_log(path, rig, options) : read_csv_log(path, rig, options);
+}
+
+std::vector<std::string> texts_of(const std::vector<LogNote>& notes) {
+  std::vector<std::string> texts;
+  for (const LogNote& note : notes) texts.push_back(note.text);
+  return texts;
 }
 
 std::string content_hash(const Log& log) {

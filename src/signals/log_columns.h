@@ -46,7 +46,7 @@ class LogColumns {
                               const std::string& mend) const;
   [[noreturn]] void refuse(long line, const std::string& column, const std::string& rule,
                            const std::string& mend) const;
-  void note(std::string text) { log_.notes.push_back(std::move(text)); }
+  void note(LogNote::Kind kind, std::string text) { log_.notes.push_back({kind, std::move(text)}); }
 
   Log finish(std::string sha256);
 

@@ -51,7 +51,7 @@ class Watch {
         drive_range_(sweeps[index(drive_)].high - sweeps[index(drive_)].low) {}
 
   // Of the log as a whole.
-  std::vector<std::string> notes() {
+  std::vector<LogNote> notes() {
     clock();
     gaps();
     excitation();
@@ -60,7 +60,7 @@ class Watch {
   }
 
   // Of one signal.
-  std::vector<std::string> notes(const SignalInfo& signal) {
+  std::vector<LogNote> notes(const SignalInfo& signal) {
     if (signal.signal == Signal::time || !log_.has(signal.signal)) return {};
     bounds(signal);
     if (signal.signal == Signal::piston_position) use_of_stroke(signal);
@@ -87,10 +87,13 @@ class Watch {
     }
   }
 
+  void add(std::string text, LogNote::Kind kind = LogNote::Kind::implausible) {
+    notes_.push_back({kind, std::move(text)});
+  }
+
   template <class... Args>
   void note(const SignalInfo& signal, fmt::format_string<Args...> text, Args&&... args) {
-    notes_.push_back(
-        fmt::format("{}: '{}': {}", log_.path, signal.name, fmt::format(text, std::forward<Args>(args)...)));
+    add(fmt::format("{}: '{}': {}", log_.path, signal.name, fmt::format(text, std::forward<Args>(args)...)));
   }
 
   double usual_step() const {
@@ -109,17 +112,17 @@ class Watch {
     const bool on_a_stand =
         rig_.ports != Ports::actuator || log_.has(Signal::leakage_flow) || log_.has(Signal::control_flow);
     if (rate < slowest && !on_a_stand)
-      notes_.push_back(
+      add(
           fmt::format("{}: {:.3g} samples a second are too few to see a valve move: is the time in ms, and "
                       "read as s?",
                       log_.path, rate));
     if (rate > fastest)
-      notes_.push_back(
+      add(
           fmt::format("{}: {:.3g} samples a second are more than loggers take: check the unit of time, or "
                       "thin the log",
                       log_.path, rate));
     if (span > longest_log)
-      notes_.push_back(
+      add(
           fmt::format("{}: the log lasts {:.3g} s, over a day: check the unit of time, or cut the log to "
                       "what matters",
                       log_.path, span));
@@ -140,8 +143,9 @@ class Watch {
     if (!(longest > gap_over_step * usual)) return;
     long count = 0;
     for (std::size_t i = 1; i < t.size(); ++i) count += t[i] - t[i - 1] > gap_over_step * usual;
-    notes_.push_back(fmt::format("{}: {} gap{} in time, the longest {:.4g} s at a usual step of {:.4g} s", log_.path,
-                                 count, count == 1 ? "" : "s", longest, usual));
+    add(fmt::format("{}: {} gap{} in time, the longest {:.4g} s at a usual step of {:.4g} s", log_.path, count,
+                    count == 1 ? "" : "s", longest, usual),
+        LogNote::Kind::gaps);
   }
 
   void excitation() {
@@ -262,18 +266,18 @@ class Watch {
   const std::array<Sweep, n_signals>& sweeps_;
   const Signal drive_;
   const double drive_range_;
-  std::vector<std::string> notes_;
+  std::vector<LogNote> notes_;
 };
 
 }  // namespace
 
-std::vector<std::string> implausible_values(const Log& log, const RigFile& rig,
-                                            const std::array<Sweep, n_signals>& sweeps) {
-  std::array<std::vector<std::string>, n_signals> found;
+std::vector<LogNote> implausible_values(const Log& log, const RigFile& rig,
+                                        const std::array<Sweep, n_signals>& sweeps) {
+  std::array<std::vector<LogNote>, n_signals> found;
   const Watch watch(log, rig, sweeps);
 #pragma omp parallel for schedule(dynamic, 1)
   for (int s = 0; s < n_signals; ++s) found[s] = Watch(watch).notes(signal_list[s]);
-  std::vector<std::string> notes = Watch(watch).notes();
+  std::vector<LogNote> notes = Watch(watch).notes();
   for (auto& each : found) std::move(each.begin(), each.end(), std::back_inserter(notes));
   return notes;
 }

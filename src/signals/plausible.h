@@ -2,7 +2,6 @@
 // gaps in time. Nothing is changed; the limits are constants stated in the .cpp, loose on purpose.
 #pragma once
 #include <array>
-#include <string>
 #include <vector>
 
 #include "servodx/rig.h"
@@ -12,7 +11,6 @@
 namespace servodx {
 
 // `sweeps`: of the log's signals, in the order of signal_list.
-std::vector<std::string> implausible_values(const Log& log, const RigFile& rig,
-                                            const std::array<Sweep, n_signals>& sweeps);
+std::vector<LogNote> implausible_values(const Log& log, const RigFile& rig, const std::array<Sweep, n_signals>& sweeps);
 
 }  // namespace servodx

@@ -23,7 +23,7 @@ Log exchanged(Log log, Signal a, Signal b) {
 bool names(const Log& log, Signal a, Signal b) {
   const auto found = swapped_channels(log, 1000);
   return std::any_of(found.begin(), found.end(), [&](const Finding& f) {
-    return f.kind == "swapped" && std::count(f.signals.begin(), f.signals.end(), a) > 0 &&
+    return f.kind == FindingKind::swapped && std::count(f.signals.begin(), f.signals.end(), a) > 0 &&
            std::count(f.signals.begin(), f.signals.end(), b) > 0;
   });
 }

@@ -182,7 +182,7 @@ TEST(ForeignRig, LogsAndRigFilesAreReadWithoutRemark) {
     job.settling = 0.05;
     write_text(folder.path / "log.csv", csv_of(d, run(d, job)));
     const Log log = read_log(folder / "log.csv", rig);
-    EXPECT_TRUE(log.notes.empty()) << seed << ": " << log.notes.front();
+    EXPECT_TRUE(log.notes.empty()) << seed << ": " << log.notes.front().text;
     EXPECT_EQ(log.has(Signal::spool_position), d.recorded[ch_spool]);
   }
 }

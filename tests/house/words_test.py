@@ -10,7 +10,6 @@ ASK = {"starts_with", "ends_with", "find", "rfind", "contains", "compare", "coun
 
 # Files that turn text from outside into types. Their comparisons are with what a user wrote.
 READERS = {
-    "apps/servodx/init_command.cpp": "notes of the reader of columns",
     "apps/servodx/invocation.cpp": "`-` for standard output, names of options",
     "apps/servodx/main.cpp": "words of the command line",
     "apps/servodx/manifest.h": "reads a manifest",
@@ -43,7 +42,6 @@ READERS = {
 # What is compared elsewhere, each text by itself: file, texts, why.
 COMPARED = {
     "apps/servodx/history_command.cpp": ({"ok", ".csv"}, "SQLite's answer to a check of integrity; the ending of a file"),
-    "src/diagnose/survey.cpp": ({"gap", "the rig file maps column", "temperature"}, "to be typed"),
     "src/explain/curves.cpp": ({"current"}, "to be typed"),
     "src/fit/nominal.cpp": ({"-", "mount_compliance", "valve.first_stage", "jet_pipe"}, "to be typed"),
     "src/tune/settle.cpp": ({"all"}, "a user's word: --profile all"),

@@ -68,8 +68,8 @@ bool same_bits(const std::vector<double>& a, const std::vector<double>& b) {
 }
 
 bool mentions(const Log& log, const std::string& words) {
-  for (const std::string& note : log.notes)
-    if (note.find(words) != std::string::npos) return true;
+  for (const LogNote& note : log.notes)
+    if (note.text.find(words) != std::string::npos) return true;
   return false;
 }
 
@@ -191,8 +191,8 @@ TEST(Log, LinesOfARecorderAboveTheHeaderAreLeftOutAndTold) {
   const Log log = read("Recorder 5;V2\nrate;1000\n\n" + plain, {}, {.minimum_rows = 2});
   EXPECT_TRUE(same_bits(log[Signal::command], read(plain, {}, {.minimum_rows = 2})[Signal::command]));
   ASSERT_EQ(log.notes.size(), 1u);
-  EXPECT_NE(log.notes.front().find("log.csv:4: the header; left out 2 rows above it"), std::string::npos)
-      << log.notes.front();
+  EXPECT_NE(log.notes.front().text.find("log.csv:4: the header; left out 2 rows above it"), std::string::npos)
+      << log.notes.front().text;
 }
 
 TEST(Log, AUnitThatTheTableHasNotIsTheRigFilesToReplace) {

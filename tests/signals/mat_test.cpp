@@ -67,7 +67,8 @@ TEST(Mat, VariablesArriveInSiAtEveryLevelOfTheFormat) {
     EXPECT_DOUBLE_EQ(log[Signal::spool_position][1], 0.05 * 1e-4);
     EXPECT_EQ(log.sha256, sha256_of_file(path));
     ASSERT_FALSE(log.notes.empty());
-    EXPECT_NE(log.notes[0].find("ignored 1 further variable: 'gain_setting'"), std::string::npos) << log.notes[0];
+    EXPECT_NE(log.notes[0].text.find("ignored 1 further variable: 'gain_setting'"), std::string::npos)
+        << log.notes[0].text;
   }
 }
 

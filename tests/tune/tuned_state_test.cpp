@@ -105,7 +105,7 @@ TEST(TunedState, KnowsALogByItsContent) {
   Log log = twins::cut(shipped_log("healthy/h08_preflight_cold"), 300);
   TunedState state;
   state.by = {{"h08.csv", "", content_hash(log)}};
-  log.path = "another name", log.sha256 = "other bytes", log.notes = {"a notice"};
+  log.path = "another name", log.sha256 = "other bytes", log.notes = {{LogNote::Kind::gaps, "a notice"}};
   EXPECT_TRUE(state.is_by(log));
   log.channels[index(Signal::pressure_a)].value[7] += 1;
   EXPECT_FALSE(state.is_by(log));
