@@ -16,7 +16,8 @@ struct EffectTemplate {
   static constexpr const char* name = "effect_template";  // group "effect:NAME" in tables
   static constexpr const char* place = "spool";  // drive, first_stage, spool, metering, flow_a, piston_force, ...
   static constexpr const char* meaning = "drag of the spool that grows with the square of its speed";
-  static constexpr Freed freed = Freed::on_actuators;  // by `tune`, unless told
+  static constexpr Freed freed = Freed::on_actuators;                        // by `tune`, unless told
+  static constexpr const char* best_test = "fast strokes of several sizes";  // the input that shows it best
   static constexpr int n_states = 1;
   static constexpr int n_parameters = 2;
   // name, unit, off value, bounds, typical size where a search begins, meaning; false: does not switch the effect.

@@ -14,6 +14,8 @@ struct ArmatureAngle {
   static constexpr const char* place = "first_stage";
   static constexpr const char* meaning = "gain and magnetic spring of the torque motor grow with the armature's angle";
   static constexpr Freed freed = Freed::on_actuators;
+  static constexpr bool of_construction = true;
+  static constexpr const char* best_test = "full steps both ways: how long the spool slews before it slows down";
   static constexpr int n_states = 0;
   static constexpr int n_parameters = 1;
   static constexpr EffectParameter parameters[n_parameters] = {

@@ -14,6 +14,22 @@ enum class Freed {
   with_long_lines,  // oil in the lines stands between the pressure taps and the cylinder
 };
 
+// How `explain` seeks an effect.
+enum class SoughtAs {
+  whole,             // one cause of all its numbers
+  line_by_line,      // of each line with pick-up
+  sensor_by_sensor,  // gain and lag of each
+  meter_by_meter,    // lag of each flow meter
+  nothing,           // a part of another effect, or nothing that the logs could tell
+};
+
+// A row of the table that an effect takes along where it is sought. `grows`: the row is a size of it, and no mere part
+// of its shape.
+struct RowAlong {
+  int row;
+  bool grows;
+};
+
 struct EffectParameter {
   const char* name;
   const char* unit;

@@ -13,6 +13,7 @@ struct FlowMeterLag {
   static constexpr const char* meaning = "flow meters of a test stand follow late";
   static constexpr bool stand_only = true;
   static constexpr Freed freed = Freed::on_stands;
+  static constexpr SoughtAs sought_as = SoughtAs::meter_by_meter;
   static constexpr int n_states = 0;
   static constexpr int n_parameters = 2;
   static constexpr int shown_at[n_parameters] = {10, 11};  // control flow, leakage flow

@@ -25,6 +25,8 @@ struct LineInertia {
   static constexpr const char* place = "piston_force";
   static constexpr const char* meaning = "oil in long lines between the pressure taps and the cylinder";
   static constexpr Freed freed = Freed::with_long_lines;
+  static constexpr const char* best_test =
+      "fast steps with taps at the valve and at the cylinder: the two part by the piston's acceleration";
   static constexpr int n_states = 4;  // flow in line A, pressure of chamber A, the same of B
   static constexpr int n_parameters = 3;
   static constexpr EffectParameter parameters[n_parameters] = {

@@ -15,6 +15,7 @@ struct MagneticHysteresis {
   static constexpr const char* place = "drive";
   static constexpr const char* meaning = "torque lags the current by a loop that does not depend on rate";
   static constexpr Freed freed = Freed::everywhere;
+  static constexpr const char* best_test = "slow triangles of several amplitudes: a loop of the same width at any rate";
   static constexpr int n_states = 0;
   static constexpr int n_parameters = 4;
   static constexpr EffectParameter parameters[n_parameters] = {

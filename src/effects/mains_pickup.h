@@ -15,6 +15,8 @@ struct MainsPickup {
   static constexpr const char* name = "mains_pickup";
   static constexpr const char* place = "sensor";
   static constexpr const char* meaning = "the mains' frequency on the line of a sensor or of the command";
+  static constexpr SoughtAs sought_as = SoughtAs::line_by_line;
+  static constexpr const char* best_test = "rest: a line at the mains frequency with the valve still";
   static constexpr int n_states = 0;
   static constexpr int sensors = 4;  // spool, piston, pressure a, pressure b: the first of what the model reports
   static constexpr int current = sensors, channels = sensors + 1;

@@ -15,6 +15,8 @@ struct MountCompliance {
   static constexpr const char* place = "piston_force";
   static constexpr const char* meaning = "the cylinder's body moves against a mount of finite stiffness";
   static constexpr Freed freed = Freed::on_actuators;
+  static constexpr RowAlong along = {row::moving_mass, false};  // structure that gives way swings with the rod
+  static constexpr const char* best_test = "steps into a stiff load: the body's resonance in the load pressure";
   static constexpr int n_states = 2;  // travel of the body, its velocity
   static constexpr int n_parameters = 3;
   static constexpr EffectParameter parameters[n_parameters] = {

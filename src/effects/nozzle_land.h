@@ -14,6 +14,9 @@ struct NozzleLand {
   static constexpr const char* place = "first_stage";
   static constexpr const char* meaning = "the nozzles pass less in thick oil, as faces of some width do";
   static constexpr Freed freed = Freed::on_actuators;
+  static constexpr bool of_construction = true;
+  static constexpr const char* best_test =
+      "slow triangles in cold and in hot oil with pilot pressures: in the cold they rise";
   static constexpr int n_states = 0;
   static constexpr int n_parameters = 1;
   static constexpr EffectParameter parameters[n_parameters] = {

@@ -12,6 +12,8 @@ struct OrificeLength {
   static constexpr const char* place = "first_stage";
   static constexpr const char* meaning = "the fixed orifices pass less in thick oil, as tubes of some length do";
   static constexpr Freed freed = Freed::on_actuators;
+  static constexpr bool of_construction = true;
+  static constexpr const char* best_test = "full steps in cold and in hot oil: in the cold the spool slews slower";
   static constexpr int n_states = 0;
   static constexpr int n_parameters = 1;
   static constexpr EffectParameter parameters[n_parameters] = {

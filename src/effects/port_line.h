@@ -19,6 +19,8 @@ struct PortLine {
   static constexpr const char* meaning = "volumes behind restrictions at the control ports";
   static constexpr bool stand_only = true;  // in a circuit that moves its actuator they are hose_compliance
   static constexpr Freed freed = Freed::on_stands;
+  static constexpr const char* best_test =
+      "leakage sweeps at two rates, ports blocked: a tail after null that lasts as long at either";
   static constexpr int n_states = 2;
   static constexpr int n_parameters = 4;
   static constexpr EffectParameter parameters[n_parameters] = {

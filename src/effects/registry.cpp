@@ -2,19 +2,48 @@
 
 #include <stdexcept>
 
+#include "effects/stiction.h"
+#include "parameters/list.h"
+
 namespace servodx {
 namespace {
+
+// What an effect states about itself; what it does not state stays as EffectInfo has it.
+template <class E>
+struct Meaning : E {};
+template <>
+struct Meaning<Stiction> : Stiction {
+  static constexpr RowAlong along = {row::spool_friction, true};  // what sticks also drags: silt and lacquer
+  static constexpr const char* best_test =
+      "slow small triangle: the spool stands still at each reversal, longer the slower";
+};
+
+template <class E>
+void take_meaning(EffectInfo& e) {
+  using M = Meaning<E>;
+  if constexpr (requires { M::stand_only; }) e.stand_only = M::stand_only;
+  if constexpr (requires { M::as_made; }) e.as_made = M::as_made;
+  if constexpr (requires { M::freed; }) e.freed = M::freed;
+  if constexpr (requires { M::shapes_rows; }) e.shapes_rows = M::shapes_rows;
+  if constexpr (requires { M::sought_as; }) e.sought_as = M::sought_as;
+  if constexpr (requires { M::known_oil_only; }) e.known_oil_only = M::known_oil_only;
+  if constexpr (requires { M::of_construction; }) e.of_construction = M::of_construction;
+  if constexpr (requires { M::best_test; }) e.best_test = M::best_test;
+  if constexpr (requires { M::along; }) e.along = M::along;
+}
+
 template <class... E>
 std::vector<EffectInfo> describe(EffectList<E...>) {
   int at = n_parameters;
   std::vector<EffectInfo> all;
   (
       [&] {
-        all.push_back({E::name, E::place, E::meaning, at, {E::parameters, E::parameters + E::n_parameters}});
-        if constexpr (requires { E::stand_only; }) all.back().stand_only = E::stand_only;
-        if constexpr (requires { E::as_made; }) all.back().as_made = E::as_made;
-        if constexpr (requires { E::freed; }) all.back().freed = E::freed;
-        if constexpr (requires { E::shapes_rows; }) all.back().shapes_rows = E::shapes_rows;
+        all.push_back({.name = E::name,
+                       .place = E::place,
+                       .meaning = E::meaning,
+                       .first = at,
+                       .parameters = {E::parameters, E::parameters + E::n_parameters}});
+        take_meaning<E>(all.back());
         at += E::n_parameters;
       }(),
       ...);

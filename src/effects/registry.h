@@ -1,5 +1,6 @@
 // The visible list of effects: missing physics, one file and one line each.
 #pragma once
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -69,6 +70,11 @@ struct EffectInfo {
   bool as_made = false;     // told by healthy logs; not sought
   Freed freed = Freed::never;
   bool shapes_rows = false;  // belongs to a row effect (row_effects.h) and means nothing without it
+  SoughtAs sought_as = SoughtAs::whole;
+  bool known_oil_only = false;   // sought only where each log's oil is known
+  bool of_construction = false;  // there from the first day or never
+  std::string best_test = {};    // the input that shows it best, in words; empty: none stands out
+  std::optional<RowAlong> along = {};
 };
 const std::vector<EffectInfo>& effect_list();
 // What stands behind the 41 rows at a position of a parameter vector.

@@ -21,6 +21,7 @@ struct RodCavity {
   static constexpr const char* name = "rod_cavity";
   static constexpr const char* place = "piston_force";
   static constexpr const char* meaning = "the position sensor's cavity in the rod is a third chamber, filled from A";
+  static constexpr bool of_construction = true;
   static constexpr int n_states = 1;  // oil compressed into the cavity per length, area * pressure / bulk modulus [m2]
   static constexpr int n_parameters = 3;
   static constexpr EffectParameter parameters[n_parameters] = {

@@ -7,6 +7,7 @@ namespace servodx {
 
 struct RowEffect {
   const char *name, *where, *meaning;
+  const char* best_test;         // the input that shows it best, in words
   double off;                    // [SI] of every row
   std::vector<int> rows;         // positions in a parameter vector
   std::vector<int> shapes = {};  // the same, of effect parameters that say how the rows act

@@ -15,6 +15,8 @@ struct SealShear {
   static constexpr const char* place = "piston_force";
   static constexpr const char* meaning = "the piston's viscous friction follows the oil's viscosity more, or less";
   static constexpr Freed freed = Freed::on_actuators;
+  static constexpr bool of_construction = true;
+  static constexpr const char* best_test = "the same fast strokes in cold and in hot oil";
   static constexpr int n_states = 0;
   static constexpr int n_parameters = 2;
   static constexpr EffectParameter parameters[n_parameters] = {

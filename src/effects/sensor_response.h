@@ -12,6 +12,7 @@ struct SensorResponse {
   static constexpr const char* place = "sensor";
   static constexpr const char* meaning = "gain error and lag of the spool and pressure sensors";
   static constexpr Freed freed = Freed::on_actuators;
+  static constexpr SoughtAs sought_as = SoughtAs::sensor_by_sensor;
   static constexpr int n_states = 0;
   static constexpr int channels = 3;
   static constexpr int shown_at[channels] = {0, 2, 3};  // spool, pressure a, pressure b

@@ -19,6 +19,7 @@ struct SupplyDroop {
   static constexpr const char* place = "supply";
   static constexpr const char* meaning = "the supply pressure at the valve falls with the flow drawn";
   static constexpr Freed freed = Freed::without_supply;
+  static constexpr const char* best_test = "full steps with the supply pressure measured at the valve";
   static constexpr int n_states = 1;
   static constexpr int n_parameters = 2;
   static constexpr EffectParameter parameters[n_parameters] = {

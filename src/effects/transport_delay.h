@@ -14,6 +14,8 @@ struct TransportDelay {
   static constexpr const char* name = "transport_delay";
   static constexpr const char* place = "drive";
   static constexpr const char* meaning = "the torque motor feels the command some time later";
+  static constexpr const char* best_test =
+      "steps and a multisine: lag in proportion to frequency, no loss of amplitude";
   static constexpr int n_states = 0;
   static constexpr int n_parameters = 1;
   static constexpr EffectParameter parameters[n_parameters] = {

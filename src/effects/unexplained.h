@@ -46,6 +46,7 @@ struct Unexplained {
   static constexpr const char* name = "unexplained";
   static constexpr const char* place = "as its row curve_place says";
   static constexpr const char* meaning = "a learnt curve for what no named effect explains";
+  static constexpr SoughtAs sought_as = SoughtAs::nothing;
   static constexpr int n_states = 0;
   static constexpr int knots = curve::knots;
   static constexpr int n_parameters = 4 + knots;

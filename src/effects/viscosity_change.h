@@ -13,6 +13,8 @@ struct ViscosityChange {
   static constexpr const char* name = "viscosity_change";
   static constexpr const char* place = "metering";
   static constexpr const char* meaning = "the oil is thicker or thinner than its law says";
+  static constexpr bool known_oil_only = true;  // elsewhere each log has a viscosity of its own
+  static constexpr const char* best_test = "the same test in cold and in hot oil";
   static constexpr int n_states = 0;
   static constexpr int n_parameters = 1;
   static constexpr EffectParameter parameters[n_parameters] = {

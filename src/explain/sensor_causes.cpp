@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <optional>
+#include <stdexcept>
 #include <string>
 #include <utility>
 
@@ -22,15 +23,15 @@ namespace {
 std::string place_of(Signal sensor) { return std::string(sensor_place) + std::string(info(sensor).name); }
 
 // Gain and lag of a sensor carry one name whichever file has them: that of the piston sensor's row.
-const char* name_by_row(int at) {
+const RowEffect& effect_of_row(int at) {
   for (const RowEffect& e : row_effects())
     for (int row : e.rows)
-      if (row == at) return e.name;
-  return "";
+      if (row == at) return e;
+  throw std::out_of_range("no row effect has this row");
 }
 
 // One number of one sensor.
-void add_sensor(std::vector<SoughtCause>& to, const EffectInfo& e, int j, int shown_at, const char* name,
+void add_sensor(std::vector<SoughtCause>& to, const EffectInfo& e, int j, int shown_at, const RowEffect& known_as,
                 const CauseFacts& facts) {
   const Signal signal = simulated_signals[static_cast<std::size_t>(shown_at)];
   if (!facts.compared.contains(signal)) return;
@@ -38,7 +39,9 @@ void add_sensor(std::vector<SoughtCause>& to, const EffectInfo& e, int j, int sh
   CauseNumber n{effect_value(e, static_cast<std::size_t>(j), facts.tuned), p.unit};
   const double move = p.start - p.off, v = n.value.start;
   n.sizes = sizes_within(n.value, {v + move, v - move, v + 4 * move});
-  to.push_back(sought(named(name, place_of(signal)), {n}));
+  Cause cause = named(known_as.name, place_of(signal));
+  cause.test = known_as.best_test;
+  to.push_back(sought(std::move(cause), {n}));
 }
 
 // The line of pick-up channel `c`: a frequency, and of each log cosine and sine, since the phase belongs to a log.
@@ -83,8 +86,9 @@ std::vector<SoughtCause> mains_causes(const EffectInfo& pickup, const CauseFacts
     const bool of_sensor = c < MainsPickup::sensors;
     if (of_sensor && !facts.compared.contains(signals[c])) continue;
     const std::vector<CauseNumber> numbers = numbers_of_line(pickup, c, facts);
-    SoughtCause& line =
-        out.emplace_back(sought(named(pickup.name, of_sensor ? place_of(signals[c]) : "drive"), numbers));
+    Cause cause = named(pickup.name, of_sensor ? place_of(signals[c]) : "drive");
+    cause.test = pickup.best_test;
+    SoughtCause& line = out.emplace_back(sought(std::move(cause), numbers));
     line.cause.probes =
         probes_of_line(numbers, pickup.parameters[static_cast<std::size_t>(2 * c)].start, facts.mains_frequency);
   }
@@ -95,8 +99,8 @@ std::vector<SoughtCause> sensor_causes(const EffectInfo& response, const CauseFa
   std::vector<SoughtCause> out;
   for (int c = 0; c < SensorResponse::channels; ++c) {
     const int shown_at = SensorResponse::shown_at[c];
-    add_sensor(out, response, 2 * c, shown_at, name_by_row(row::position_sensor_gain), facts);
-    add_sensor(out, response, 2 * c + 1, shown_at, name_by_row(row::position_sensor_lag), facts);
+    add_sensor(out, response, 2 * c, shown_at, effect_of_row(row::position_sensor_gain), facts);
+    add_sensor(out, response, 2 * c + 1, shown_at, effect_of_row(row::position_sensor_lag), facts);
   }
   return out;
 }
@@ -104,7 +108,7 @@ std::vector<SoughtCause> sensor_causes(const EffectInfo& response, const CauseFa
 std::vector<SoughtCause> flow_meter_causes(const EffectInfo& lag, const CauseFacts& facts) {
   std::vector<SoughtCause> out;
   for (int k = 0; k < FlowMeterLag::n_parameters; ++k)
-    add_sensor(out, lag, k, FlowMeterLag::shown_at[k], name_by_row(row::position_sensor_lag), facts);
+    add_sensor(out, lag, k, FlowMeterLag::shown_at[k], effect_of_row(row::position_sensor_lag), facts);
   return out;
 }
 

@@ -6,7 +6,6 @@
 
 #include "base/error.h"
 #include "base/student.h"
-#include "explain/cause_tests.h"
 #include "explain/sought_cause.h"
 #include "explain/ties.h"
 #include "explain/valve_causes.h"
@@ -95,7 +94,6 @@ void ValveSubject::free_rows() {
 }
 
 int ValveSubject::add(Cause cause, std::vector<FreeValue> values) {
-  if (cause.test.empty()) cause.test = best_test_of(cause.effect);
   causes_.push_back(std::move(cause));
   values_.push_back(std::move(values));
   return static_cast<int>(causes_.size()) - 1;

@@ -4,22 +4,8 @@
 #include <string>
 #include <utility>
 
-#include "effects/armature_angle.h"
-#include "effects/edge_transition.h"
 #include "effects/effect.h"
-#include "effects/flow_meter_lag.h"
-#include "effects/mains_pickup.h"
-#include "effects/mount_compliance.h"
-#include "effects/nozzle_land.h"
-#include "effects/orifice_length.h"
-#include "effects/rod_cavity.h"
 #include "effects/row_effects.h"
-#include "effects/screen_drop.h"
-#include "effects/seal_shear.h"
-#include "effects/sensor_response.h"
-#include "effects/stiction.h"
-#include "effects/unexplained.h"
-#include "effects/viscosity_change.h"
 #include "explain/sensor_causes.h"
 #include "fit/chart.h"
 #include "parameters/list.h"
@@ -28,19 +14,6 @@ namespace servodx {
 namespace {
 
 constexpr double row_prior = 0.1;  // a row that was held for a reason, beside an effect that has a name
-constexpr std::string_view built_in[] = {ArmatureAngle::name, RodCavity::name,  EdgeTransition::name,
-                                         OrificeLength::name, ScreenDrop::name, NozzleLand::name,
-                                         SealShear::name};
-
-// Rows that an effect takes along; `grows`: they are a size of it, and no mere part of its shape.
-struct Along {
-  std::string_view effect;
-  int row;
-  bool grows;
-};
-constexpr Along rows_along[] = {
-    {Stiction::name, row::spool_friction, true},        // what sticks also drags: silt and lacquer
-    {MountCompliance::name, row::moving_mass, false}};  // structure that gives way swings with the rod
 
 const char* place_of_row(int at) {
   switch (at) {
@@ -95,7 +68,7 @@ CauseNumber shape_of_effect(const EffectInfo& e, std::size_t j, const CauseFacts
   return out;
 }
 
-CauseNumber number_along(const Along& along, const Table& table) {
+CauseNumber number_along(const RowAlong& along, const Table& table) {
   const Row& r = table[along.row];
   CauseNumber out{row_value(table, along.row), r.unit, along.grows};
   if (along.grows) out.sizes = sizes_within(out.value, {2 * r.nominal, 5 * r.nominal});
@@ -109,9 +82,10 @@ SoughtCause effect_cause(const EffectInfo& e, const CauseFacts& facts) {
       numbers.push_back(size_of_effect(e, j, facts));
     else if (!was_found_in_tuning(e.parameters[j], facts.table))
       numbers.push_back(shape_of_effect(e, j, facts));
-  for (const Along& along : rows_along)
-    if (e.name == along.effect) numbers.push_back(number_along(along, facts.table));
-  return sought(named(e.name, e.place, prior_of_effect(e.name, facts.rig_known)), numbers);
+  if (e.along) numbers.push_back(number_along(*e.along, facts.table));
+  Cause cause = named(e.name, e.place, prior_of_effect(e, facts.rig_known));
+  cause.test = e.best_test;
+  return sought(std::move(cause), numbers);
 }
 
 // Air belongs to a log's oil: the cause is a factor on each log's own.
@@ -131,6 +105,7 @@ CauseNumber number_of_row(int at, const Table& table) {
 
 SoughtCause row_effect_cause(const RowEffect& e, const CauseFacts& facts) {
   Cause cause = named(e.name, e.where);
+  cause.test = e.best_test;
   std::vector<CauseNumber> numbers;
   for (int at : e.rows) {
     const bool air = at == row::air_fraction;
@@ -158,16 +133,16 @@ bool is_of_row_effect(int at) {
 
 std::vector<SoughtCause> causes_of_effect(const EffectInfo& e, const CauseFacts& facts) {
   switch (sought_as(e, facts)) {
-    case SoughtAs::nothing:
-      break;
-    case SoughtAs::mains_pickup:
-      return mains_causes(e, facts);
-    case SoughtAs::sensors:
-      return sensor_causes(e, facts);
-    case SoughtAs::flow_meters:
-      return flow_meter_causes(e, facts);
     case SoughtAs::whole:
       return {effect_cause(e, facts)};
+    case SoughtAs::line_by_line:
+      return mains_causes(e, facts);
+    case SoughtAs::sensor_by_sensor:
+      return sensor_causes(e, facts);
+    case SoughtAs::meter_by_meter:
+      return flow_meter_causes(e, facts);
+    case SoughtAs::nothing:
+      break;
   }
   return {};
 }
@@ -188,18 +163,14 @@ CauseFacts cause_facts(const std::vector<LogData>& logs, const Table& table, con
 }
 
 SoughtAs sought_as(const EffectInfo& effect, const CauseFacts& facts) {
-  if (effect.name == MainsPickup::name) return SoughtAs::mains_pickup;
-  if (effect.name == SensorResponse::name) return SoughtAs::sensors;
-  if (effect.name == FlowMeterLag::name) return SoughtAs::flow_meters;
-  if (effect.name == Unexplained::name || effect.shapes_rows || effect.as_made) return SoughtAs::nothing;
-  if (effect.stand_only && !facts.on_stand) return SoughtAs::nothing;
-  if (effect.name == ViscosityChange::name && !facts.oil_known) return SoughtAs::nothing;  // each log's own
-  return SoughtAs::whole;
+  if (effect.sought_as != SoughtAs::whole) return effect.sought_as;
+  const bool told = !effect.shapes_rows && !effect.as_made && (facts.on_stand || !effect.stand_only) &&
+                    (facts.oil_known || !effect.known_oil_only);
+  return told ? SoughtAs::whole : SoughtAs::nothing;
 }
 
-double prior_of_effect(std::string_view effect, bool rig_known) {
-  const bool of_construction = std::find(std::begin(built_in), std::end(built_in), effect) != std::end(built_in);
-  return rig_known && of_construction ? row_prior : 1.0;
+double prior_of_effect(const EffectInfo& effect, bool rig_known) {
+  return rig_known && effect.of_construction ? row_prior : 1.0;
 }
 
 bool is_sought_alone(int at, const CauseFacts& facts) {

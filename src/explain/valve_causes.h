@@ -6,9 +6,9 @@
 #include <cstddef>
 #include <optional>
 #include <set>
-#include <string_view>
 #include <vector>
 
+#include "effects/effect.h"
 #include "effects/registry.h"
 #include "explain/sought_cause.h"
 #include "fit/log_data.h"
@@ -35,17 +35,11 @@ struct CauseFacts {
 CauseFacts cause_facts(const std::vector<LogData>& logs, const Table& table, const ParameterVector& tuned,
                        const RigFile& rig, bool rig_known);
 
-enum class SoughtAs {
-  nothing,       // a part of another effect, or nothing that these logs could tell
-  mains_pickup,  // line by line
-  sensors,       // gain and lag, sensor by sensor
-  flow_meters,   // lag, meter by meter
-  whole,         // one cause of all its numbers
-};
+// `nothing` where these logs could not tell the effect.
 SoughtAs sought_as(const EffectInfo& effect, const CauseFacts& facts);
 // What is of the construction is there from the first day or never: in a rig's healthy logs as well, and no likely
 // news.
-double prior_of_effect(std::string_view effect, bool rig_known);
+double prior_of_effect(const EffectInfo& effect, bool rig_known);
 // By itself: no row effect has it, it has a range, and it is neither measured nor a log's own.
 bool is_sought_alone(int at, const CauseFacts& facts);
 

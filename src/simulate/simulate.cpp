@@ -53,9 +53,9 @@ Need need_of(const ParameterVector& v) {
   Need need = Need::base;
   for (const EffectInfo& e : effect_list())
     if (!is_off(e, v))
-      need = std::max(need, e.name == Unexplained::name   ? Need::corrected
-                            : e.name == LineInertia::name ? Need::lined
-                                                          : Need::extended);
+      need = std::max(need, e.first == effect_row<Unexplained>(0)   ? Need::corrected
+                            : e.first == effect_row<LineInertia>(0) ? Need::lined
+                                                                    : Need::extended);
   return need;
 }
 

@@ -67,14 +67,14 @@ TEST(ValveCauses, EachIsTriedAtSizesWithinItsBoundsAndNeverWhereItIs) {
 TEST(ValveCauses, EffectIsSoughtWhereTheLogsCouldTellIt) {
   Shipped s;
   EXPECT_EQ(sought_as(effect(Stiction::name), s.facts), SoughtAs::whole);
-  EXPECT_EQ(sought_as(effect(MainsPickup::name), s.facts), SoughtAs::mains_pickup);
-  EXPECT_EQ(sought_as(effect(FlowMeterLag::name), s.facts), SoughtAs::flow_meters);
+  EXPECT_EQ(sought_as(effect(MainsPickup::name), s.facts), SoughtAs::line_by_line);
+  EXPECT_EQ(sought_as(effect(FlowMeterLag::name), s.facts), SoughtAs::meter_by_meter);
   EXPECT_EQ(sought_as(effect(Unexplained::name), s.facts), SoughtAs::nothing);
   EXPECT_EQ(sought_as(effect(ViscosityChange::name), s.facts), SoughtAs::whole);
   s.facts.oil_known = false;
   EXPECT_EQ(sought_as(effect(ViscosityChange::name), s.facts), SoughtAs::nothing);
   for (const EffectInfo& e : effect_list()) {
-    if (!e.stand_only || sought_as(e, s.facts) == SoughtAs::flow_meters) continue;
+    if (!e.stand_only || sought_as(e, s.facts) == SoughtAs::meter_by_meter) continue;
     s.facts.on_stand = false;
     EXPECT_EQ(sought_as(e, s.facts), SoughtAs::nothing) << e.name;
     s.facts.on_stand = true;
@@ -92,9 +92,9 @@ TEST(ValveCauses, MeasuredPressureIsNoCause) {
 }
 
 TEST(ValveCauses, ConstructionIsRareWhereHealthyLogsAreKnown) {
-  EXPECT_EQ(prior_of_effect(ArmatureAngle::name, false), 1.0);
-  EXPECT_LT(prior_of_effect(ArmatureAngle::name, true), 1.0);
-  EXPECT_EQ(prior_of_effect(Stiction::name, true), 1.0);
+  EXPECT_EQ(prior_of_effect(effect(ArmatureAngle::name), false), 1.0);
+  EXPECT_LT(prior_of_effect(effect(ArmatureAngle::name), true), 1.0);
+  EXPECT_EQ(prior_of_effect(effect(Stiction::name), true), 1.0);
 }
 
 TEST(ValveCauses, SensorThatNoLogComparesIsNoSuspect) {
