@@ -1,4 +1,5 @@
-// What to do about a verdict: one action a label, in a table that a shop may edit. Classes: the GA paper's.
+// What to do about a verdict: one action a label, in a table that a shop may edit. The classes are those of "Fault
+// Diagnosis of Electrohydraulic Systems", which diagnoses by a genetic algorithm and a simulation (docs/diagnosis.md).
 #pragma once
 #include <map>
 #include <string>

@@ -26,11 +26,11 @@ struct RecordedEvent {
   double at = 0;           // [h]
   std::string kind, text;  // filter_changed, valve_swapped, overhauled, retuned or note
 };
-// By hours. Both refuse a valve that the history does not know.
+// By hours. Both throw InputError for a valve that the history does not know.
 std::vector<Recorded> recordings_of(const History& history, const std::string& valve);
 std::vector<RecordedEvent> events_of(const History& history, const std::string& valve);
 
-// As `servodx history export` writes.
+// As `servodx history export` writes. Throws InputError where the file cannot be written.
 void export_history(const History& history, const std::string& path);
 struct Imported {
   long checks = 0, events = 0, present = 0;  // added; and rows that were there

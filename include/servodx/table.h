@@ -32,7 +32,7 @@ struct Table {
   std::string sha256;
   std::vector<Row> rows;              // the 41 in order of id, then the effects' rows
   std::vector<std::string> comments;  // lines beginning with '#' before the header, for people
-  std::string state;                  // lines beginning with '#%' there: what tuned the table (fit/tuned_state.h)
+  std::string state;                  // lines beginning with '#%' there: what tuned the table (docs/parameters.md)
   bool has_std_error = false;         // a tuned table
   const Row& operator[](int position) const { return rows[position]; }
   Row& operator[](int position) { return rows[position]; }

@@ -5,6 +5,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "servodx/log.h"
@@ -44,15 +45,17 @@ struct Checked {
   std::shared_ptr<const CheckResult> whole;  // for the program's pages
 };
 
-// One log's checks. Throws InputError.
+// One log's checks: mean error, fidelity and correlation of Borello, Dalla Vedova, Jacazio & Sorli, "A Prognostic Model
+// for Electrohydraulic Servovalves" (PHM Society 2009), section 6, and the parameters that wear moves. Throws
+// InputError for a log that holds no check and for an option out of range.
 Checked check(const Log& log, const Tuned& tuned, const Rig& rig, const CheckOptions& options = {});
 
 // One file for many valves (SQLite). What record() has returned from survives a crash. Copies are the same history.
 class History {
  public:
-  // Refuses a file that is not there.
+  // Throws InputError for a file that is not there, and for one that is no history.
   static History open(const std::string& path);
-  // Makes it where it is not there.
+  // Makes it where it is not there. Throws InputError for a file that is no history.
   static History open_or_make(const std::string& path);
 
   struct Use {
@@ -60,12 +63,13 @@ class History {
     std::optional<double> cycles = {};
     std::string serial = {};  // number of the valve; empty: not known
   };
-  // All of it or nothing. Refuses a log that this valve's history holds already, unless at other hours or by another
-  // table.
+  // All of it or nothing. Throws InputError for a log that this valve's history holds already, unless at other hours or
+  // by another table.
   void record(const std::string& valve, const Use& use, const Checked& checked, const Tuned& tuned);
   // Whether record() would refuse a log of these bytes.
   bool holds(const std::string& valve, double at, const std::string& log_sha256, const Tuned& tuned) const;
-  // kind: filter_changed, valve_swapped, overhauled, retuned or note. It restarts the trends that it renews.
+  // kind: filter_changed, valve_swapped, overhauled, retuned or note; InputError for another. It restarts the trends
+  // that it renews.
   void add_event(const std::string& valve, double at, const std::string& kind, const std::string& text = "");
   std::vector<std::string> valves() const;
   // For CheckOptions::last; empty where the valve is new.
@@ -125,7 +129,7 @@ struct Trend {
 
 std::string name_of(Trend::State state);
 
-// Refuses a valve that the history does not know. Throws InputError.
+// Throws InputError for a valve that the history does not know.
 Trend trend(const History& history, const std::string& valve, const TrendOptions& options = {});
 
 }  // namespace servodx

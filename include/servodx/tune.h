@@ -25,10 +25,11 @@ enum class TuneLocal { least_squares, ceres, nlopt };
 
 struct TuneOptions {
   std::uint64_t seed = 1;
-  int threads = 0;  // 0: all cores; the result does not depend on it
-  int population = 50;
-  int generations = 30;
-  int rounds = 4;        // most of the last stage (12 steps, then new weights); it ends early where it converges
+  int threads = 0;       // 0: all cores; the result does not depend on it
+  int population = 50;   // of the genetic search, which finds where the fits begin
+  int generations = 30;  // of it; 0: the fit begins at the table's values alone
+  int rounds = 4;        // most of the last stage: of 6 steps, the last of 10, new weights between them; it ends early
+                         // where it converges
   double heldout = 0.2;  // last part of every log, kept out of the first fit
   std::optional<std::vector<std::string>> effects = {};  // freed beside the table's rows; empty: default_effects()
   // Priors asked for: by row, the standard deviation about the table's nominal [the table's unit].
@@ -64,8 +65,9 @@ struct ParameterResult {
   double profile_lower =
              std::numeric_limits<double>::quiet_NaN(),  // [unit] 95 % by profile likelihood, where asked for
       profile_upper = std::numeric_limits<double>::quiet_NaN();
-  double effect_at_lower = 0,
-         effect_at_upper = 0;  // whitened rms change of the simulation at the row's bounds, in sigmas
+  // How far the simulation of all logs moves with the row at its bounds: root of the sum of the squares of all samples'
+  // moves, each over its sigma. NaN where the simulation fails there.
+  double effect_at_lower = 0, effect_at_upper = 0;
 };
 
 struct ChannelResult {

@@ -44,7 +44,8 @@ inline constexpr double odds = 5.99;           // 2 ln 20: at odds below twenty 
 inline constexpr double alarm_by_mark = 0.05;  // of nothing being wrong where no level is asked
 
 // The null of shares (explain/healthy.cpp): -ln(1 - share) of the best cause of a healthy log, on the mean, and the
-// logs that this counts for. From the twenty logs of two foreign rigs' baselines.
+// logs that this counts for. From the twenty logs of rig A's and rig B's baselines
+// (docs/lab/independent_rigs.md).
 inline constexpr double usual_share = 0.12;
 inline constexpr double usual_logs = 10;
 

@@ -42,7 +42,7 @@ struct Fault {
                           // the scale is log, else of the severity; enters every interval
   std::vector<double> starts;  // failure mode identifiers: severities from which a search begins
   std::string_view test;       // input that shows this fault best, for "what would separate these"
-  std::string_view action;     // critical: stop the machine; abnormal: call service; abuse: change mode (GA paper)
+  std::string_view action;     // begins with its class (servodx/actions.h): "critical: stop the machine"
   // Moves the rows of a candidate (SI) to the severity.
   void (*apply)(double* candidate, double severity);
   // Where a valve that wears so has failed, unless its user says another level. A fault with one grows with use:

@@ -16,8 +16,9 @@ inline const Fault sticky_spool{
     .worst = 60.0,
     .log_scale = true,
     .least = 2.5,
-    .spread = 0.9,  // the healthy friction that it multiplies is hardly seen: the eight sticky spools of two foreign
-                    // rigs were read a factor e^0.96 (rms) off, all of one rig to the same side
+    .spread =
+        0.9,  // the healthy friction that it multiplies is hardly seen: the eight sticky spools of rigs A and B
+              // (docs/lab/independent_rigs.md) were read a factor e^0.96 (rms) off, all of one rig to the same side
     .starts = {4.0, 20.0},
     .test =
         "slow small sine: the spool stands still at each reversal, longer the slower; backlash does not care for rate",

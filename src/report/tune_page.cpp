@@ -42,7 +42,7 @@ void add_channels(Page& page, const std::string& title, const std::vector<Channe
   page.add(table);
 }
 
-// As `fit/tune.h` calls its stages, for a reader who has not seen it.
+// As `tune/tune.h` calls its stages, for a reader who has not seen it.
 std::string stage_words(const std::string& stage) {
   if (stage == "start 1") return "from the table's values";
   if (stage.starts_with("start ")) return "from genetic " + std::to_string(std::stoi(stage.substr(6)) - 1);

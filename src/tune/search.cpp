@@ -19,12 +19,12 @@
 namespace servodx {
 namespace {
 
-// Of the local stage, a Jacobian each, which learns from up to three steps. Chosen with the logs of scripts/demo and the
-// tutorial in view.
+// Of the local stage, a Jacobian each, which learns from up to three steps. Chosen with the logs of scripts/demo and
+// the tutorial in view.
 constexpr int iterations_a_start = 4;         // enough to tell valleys apart
 constexpr int iterations_a_round = 6;         // then the weights are learnt anew
 constexpr int iterations_of_last_round = 10;  // effects are judged where it ends, or it is what is kept
-constexpr double tells_valleys = 1e-3;  // of the cost: less promised is no other valley
+constexpr double tells_valleys = 1e-3;        // of the cost: less promised is no other valley
 // Of a cost in units of likelihood: a fifth of what chance lends each number that is free.
 constexpr double worth_a_step = 0.1;
 constexpr double as_good = 1.05;  // of the best end's cost: another start that is there, or on its way
@@ -109,7 +109,8 @@ LeastSquaresResult search_locally(const FitProblem& problem, const Point& from, 
 }
 
 // Of twelve starts on four sets of logs eight were in it, and ended within 5 % of each other when they went on; so did
-// three of the other four. `--generations 15` of the tutorial, foreign rigs of seeds 50 and 52, rig B.
+// three of the other four. `--generations 15` of the tutorial, `servodx_foreign --seed 50` and `--seed 52`,
+// rig B (docs/accuracy.md).
 bool in_best_valley(const LeastSquaresResult& end, double best) {
   const double promised = std::isfinite(end.promised_gain) ? end.promised_gain : 0.0;
   return end.cost - promised <= as_good * best;
@@ -133,8 +134,7 @@ SearchEnds search_ends(const TuneScope& scope, FitProblem& problem, TuneWatch& w
                                       {from, from + 0.35 / static_cast<double>(starts.size())}, watch));
     if (out.ends.back().cost < out.ends[out.best].cost) out.best = s;
   }
-  for (const LeastSquaresResult& end : out.ends)
-    out.arrived.push_back(in_best_valley(end, out.ends[out.best].cost));
+  for (const LeastSquaresResult& end : out.ends) out.arrived.push_back(in_best_valley(end, out.ends[out.best].cost));
   return out;
 }
 

@@ -80,8 +80,9 @@ std::vector<ChannelResult> pooled_channels(const std::vector<LogResult>& logs) {
 
 namespace {
 
-// What a textbook model leaves of a rig that it can follow is 2 to 5 times the noise (two foreign rigs); 11 times made
-// a diagnosis blind on a third. A sensor that is quiet beyond need is no reason for doubt: then the part counts.
+// What a textbook model leaves of a rig that it can follow is 2 to 5 times the noise on two rigs; 11 times made a
+// diagnosis blind on a third (docs/diagnosis.md). A sensor that is quiet beyond need is no reason for doubt: then the
+// part counts.
 constexpr double unfollowed_over_noise = 8.0;
 constexpr double unfollowed_part = 0.005;  // of stop, stroke and supply
 
