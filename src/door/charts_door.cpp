@@ -6,6 +6,7 @@
 #include "fit/replay.h"
 #include "prognose/level.h"
 #include "prognose/trend.h"
+#include "report/tune_words.h"
 #include "servodx/charts.h"
 #include "servodx/log.h"
 #include "servodx/rig.h"
@@ -53,7 +54,7 @@ TuneChart chart_of(const Tuned& tuned) {
   TuneChart out;
   if (!tuned.whole) return out;
   for (const ConvergencePoint& p : tuned.whole->convergence)
-    out.convergence.push_back({p.stage, p.simulations, p.cost});
+    out.convergence.push_back({report::word_of(p.stage), p.simulations, p.cost});
   out.starts = tuned.whole->starts;
   return out;
 }

@@ -27,6 +27,7 @@
 #include "tune/breadth.h"
 #include "tune/scope.h"
 #include "tune/search.h"
+#include "tune/tune.h"
 #include "tune/watch.h"
 #include "tune/weights.h"
 
@@ -225,8 +226,8 @@ Objective::End Objective::minimise(Method method, std::span<const double> start,
   for (std::size_t s = 0; s < starts.size() && !(watch.stopped() && s > 0); ++s) {
     const double part = 1.0 / static_cast<double>(starts.size());
     const LeastSquaresResult end =
-        search_locally(inside_->problem, starts[s], fmt::format("start {}", s + 1), budget.iterations,
-                       s == 0 ? Start::nominal : Start::found,
+        search_locally(inside_->problem, starts[s], Stage{Stage::Kind::start, static_cast<int>(s) + 1},
+                       budget.iterations, s == 0 ? Start::nominal : Start::found,
                        {part * static_cast<double>(s), part * static_cast<double>(s + 1)}, watch);
     if (end.cost < best.cost) best = {end.point, end.cost, 0, end.stopped};
   }

@@ -17,6 +17,7 @@
 #include "report/diagnosis_words.h"
 #include "report/handy.h"
 #include "report/row_verdict_word.h"
+#include "report/tune_words.h"
 #include "servodx/tune.h"
 #include "diagnose/blame.h"
 
@@ -124,7 +125,7 @@ Json tune_json(const TuneResult& result) {
     logs.push_back({{"path", log.path}, {"null", number(log.null)}, {"channels", array_of(log.channels)}});
   Json starts = Json::array(), stages = Json::array();
   for (const StageResult& s : result.stages)
-    stages.push_back({{"stage", s.stage},
+    stages.push_back({{"stage", word_of(s.stage)},
                       {"by", word_of(s.by)},
                       {"cost_before", number(s.before)},
                       {"cost_after", number(s.after)},

@@ -42,13 +42,19 @@ void add_channels(Page& page, const std::string& title, const std::vector<Channe
   page.add(table);
 }
 
-// As `tune/tune.h` calls its stages, for a reader who has not seen it.
-std::string stage_words(const std::string& stage) {
-  if (stage == "start 1") return "from the table's values";
-  if (stage.starts_with("start ")) return "from genetic " + std::to_string(std::stoi(stage.substr(6)) - 1);
-  if (stage == "weights") return "on all but the end of each log";
-  if (stage == "everything") return "on whole logs";
-  return stage;
+// Where the stage begins or what it fits, for a reader of the page.
+std::string stage_words(const Stage& stage) {
+  switch (stage.kind) {
+    case Stage::Kind::genetic:
+      return word_of(stage);
+    case Stage::Kind::start:
+      return stage.start == 1 ? "from the table's values" : "from genetic " + std::to_string(stage.start - 1);
+    case Stage::Kind::weights:
+      return "on all but the end of each log";
+    case Stage::Kind::everything:
+      return "on whole logs";
+  }
+  return "";
 }
 
 // Least missed first, as they were tried.
@@ -70,8 +76,7 @@ void add_search(Page& page, const TuneResult& result) {
     Bars bars{"Where each start ended", "start", "cost", {}, {}, {}};
     for (const std::size_t i : order)
       bars.rows.push_back({i == 0 ? "table's values" : fmt::format("genetic {}", i), result.starts[i],
-                           digits(result.starts[i], 4), "",
-                           result.arrived[i] ? Tone::good : Tone::plain, ""});
+                           digits(result.starts[i], 4), "", result.arrived[i] ? Tone::good : Tone::plain, ""});
     page.add(bars);
   }
   if (result.convergence.empty()) return;
@@ -79,7 +84,7 @@ void add_search(Page& page, const TuneResult& result) {
   plot.title = "Cost, stage by stage";
   plot.x_label = "simulations";
   plot.log_y = true;
-  std::vector<std::string> stages;
+  std::vector<Stage> stages;
   for (const ConvergencePoint& c : result.convergence) {
     plot.x.push_back(static_cast<double>(c.simulations));
     if (std::find(stages.begin(), stages.end(), c.stage) == stages.end()) stages.push_back(c.stage);

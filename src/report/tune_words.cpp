@@ -22,7 +22,8 @@ constexpr double seen = 3.0;            // deviates
 // rig pooled errors are 1 to 22 of it, with another valve's flow and cylinder 160 to 760 (piston, pressures).
 constexpr double follows = 50.0;
 
-// Of a cost in units of likelihood: what chance lends each number that is free. A search that promises no more is there.
+// Of a cost in units of likelihood: what chance lends each number that is free. A search that promises no more is
+// there.
 constexpr double worth_going_on = 0.5;
 
 bool has_arrived(const TuneResult& result) {
@@ -92,6 +93,20 @@ std::string words_of(StageMethod method) {
       return "Ceres";
     case StageMethod::nlopt:
       return "BOBYQA";
+  }
+  return "";
+}
+
+std::string word_of(const Stage& stage) {
+  switch (stage.kind) {
+    case Stage::Kind::genetic:
+      return "genetic search";
+    case Stage::Kind::start:
+      return fmt::format("start {}", stage.start);
+    case Stage::Kind::weights:
+      return "weights";
+    case Stage::Kind::everything:
+      return "everything";
   }
   return "";
 }

@@ -30,6 +30,8 @@ struct GoodEnough {
   std::vector<Visible> best;            // of each fault, on the log that shows it best
 };
 
+// "genetic search", "start 1", "weights", "everything": as results call a stage.
+std::string word_of(const Stage& stage);
 // "genetic search" ... as a user reads it.
 std::string words_of(StageMethod method);
 // What each method of the last fit has gained, and the genetic search: one line.

@@ -123,7 +123,7 @@ std::vector<Point> search_broadly(const TuneScope& scope, const Point& start, Tu
     if (!options.checkpoint.empty()) write_file(options.checkpoint, to_json(s));
     if (!s.best.point.empty() && (s.generation % shown_every == 0 || s.generation == o.generations))
       watch.convergence.push_back(
-          {"genetic search", watch.simulations(problem), cost(std::span(&s.best.point, 1)).front()});
+          {Stage{Stage::Kind::genetic}, watch.simulations(problem), cost(std::span(&s.best.point, 1)).front()});
     watch.tell(0.1 + 0.25 * s.generation / o.generations, problem);
     return !watch.stopped();
   };

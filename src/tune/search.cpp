@@ -1,7 +1,5 @@
 #include "tune/search.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -33,8 +31,8 @@ constexpr double as_good = 1.05;  // of the best end's cost: another start that 
 constexpr long rescue_points = 4;
 
 // As many points as the other way spends on its Jacobians.
-LeastSquaresResult without_derivatives(const FitProblem& problem, const Point& from, const std::string& stage,
-                                       int iterations, Share share, TuneWatch& watch) {
+LeastSquaresResult without_derivatives(const FitProblem& problem, const Point& from, Stage stage, int iterations,
+                                       Share share, TuneWatch& watch) {
   DerivativeFreeOptions d;
   d.max_evaluations = static_cast<long>(iterations) * (problem.n() + 8);
   double first_cost = 0;
@@ -60,7 +58,7 @@ LocalMethod method_of(TuneLocal local) {
   return local == TuneLocal::ceres ? LocalMethod::ceres_alone : LocalMethod::search_then_ceres;
 }
 
-void tell_stages(TuneWatch& watch, const std::string& stage, const LocalResult& r) {
+void tell_stages(TuneWatch& watch, Stage stage, const LocalResult& r) {
   const auto add = [&](StageMethod by, const StageGain& gain) {
     watch.stages.push_back({stage, by, gain.before, gain.after, gain.simulations, gain.jacobians});
   };
@@ -81,8 +79,8 @@ void tell_genetic(TuneWatch& watch) {
 
 }  // namespace
 
-LeastSquaresResult search_locally(const FitProblem& problem, const Point& from, const std::string& stage,
-                                  int iterations, Start start, Share share, TuneWatch& watch, Derivatives derivatives) {
+LeastSquaresResult search_locally(const FitProblem& problem, const Point& from, Stage stage, int iterations,
+                                  Start start, Share share, TuneWatch& watch, Derivatives derivatives) {
   if (watch.options.local == TuneLocal::nlopt)
     return without_derivatives(problem, from, stage, iterations, share, watch);
   LeastSquaresOptions o;
@@ -129,8 +127,8 @@ SearchEnds search_ends(const TuneScope& scope, FitProblem& problem, TuneWatch& w
   SearchEnds out;
   for (std::size_t s = 0; s < starts.size() && !(watch.stopped() && s > 0); ++s) {
     const double from = 0.35 + 0.35 * static_cast<double>(s) / static_cast<double>(starts.size());
-    out.ends.push_back(search_locally(problem, starts[s], fmt::format("start {}", s + 1), iterations_a_start,
-                                      s == 0 ? Start::nominal : Start::found,
+    out.ends.push_back(search_locally(problem, starts[s], Stage{Stage::Kind::start, static_cast<int>(s) + 1},
+                                      iterations_a_start, s == 0 ? Start::nominal : Start::found,
                                       {from, from + 0.35 / static_cast<double>(starts.size())}, watch));
     if (out.ends.back().cost < out.ends[out.best].cost) out.best = s;
   }
@@ -164,7 +162,7 @@ LeastSquaresResult refine(FitProblem& problem, const Point& from, ErrorModel& er
     // Only the last round's end is kept as it is: there derivatives are judged.
     const Derivatives derivatives = held > 0 || round + 1 < rounds ? Derivatives::trusted : Derivatives::on_trial;
     const bool last = held > 0 || round + 1 == rounds;
-    r = search_locally(problem, x, held > 0 ? "weights" : "everything",
+    r = search_locally(problem, x, Stage{held > 0 ? Stage::Kind::weights : Stage::Kind::everything},
                        last ? iterations_of_last_round : iterations_a_round, Start::ended, of_round, watch,
                        derivatives);
     x = r.point;

@@ -1,7 +1,6 @@
 // Breadth, then depth: a genetic search over the shared values, and the local stage from its best distinct points and
 // from the table's own.
 #pragma once
-#include <string>
 #include <vector>
 
 #include "fit/error_model.h"
@@ -9,6 +8,7 @@
 #include "optimise/box_least_squares.h"
 #include "optimise/problem.h"
 #include "tune/scope.h"
+#include "tune/tune.h"
 #include "tune/watch.h"
 
 namespace servodx {
@@ -19,8 +19,8 @@ enum class Start { nominal, found, ended };
 // On trial: where they prove false (optimise/local.h), NLopt goes on without them.
 enum class Derivatives { trusted, on_trial };
 
-LeastSquaresResult search_locally(const FitProblem& problem, const Point& from, const std::string& stage,
-                                  int iterations, Start start, Share share, TuneWatch& watch,
+LeastSquaresResult search_locally(const FitProblem& problem, const Point& from, Stage stage, int iterations,
+                                  Start start, Share share, TuneWatch& watch,
                                   Derivatives derivatives = Derivatives::trusted);
 
 // Whether a start that ended so is in the valley whose end costs `best`: within 5 % of it, or promised to be by its own

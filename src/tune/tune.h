@@ -26,9 +26,22 @@ struct LogResult {
   ParameterVector candidate = {};  // what the fit says of this log
 };
 
+// A part of the search.
+struct Stage {
+  enum class Kind {
+    genetic,
+    start,      // a local search of its own, with the end of each log held out
+    weights,    // the best start goes on by what the model itself gets wrong, the same part held out
+    everything  // on whole logs
+  };
+  Kind kind = Kind::genetic;
+  int start = 0;  // 1: from the table's values; the others from points of the genetic search
+  bool operator==(const Stage&) const = default;
+};
+
 // How the misfit fell. Each stage weighs residuals in its own way: levels compare within a stage only.
 struct ConvergencePoint {
-  std::string stage;  // "genetic search", "start 1", ..., "refine"
+  Stage stage;
   long simulations = 0;
   double cost = 0;
 };
@@ -37,7 +50,7 @@ enum class StageMethod { genetic, least_squares, ceres, nlopt };
 
 // What a method has gained in a stage, at that stage's weights.
 struct StageResult {
-  std::string stage;  // as in ConvergencePoint
+  Stage stage;
   StageMethod by = StageMethod::least_squares;
   double before = 0, after = 0;  // cost
   long simulations = 0;
@@ -58,8 +71,8 @@ struct TuneResult {
   std::vector<Unfollowed> unfollowed;  // of these; empty: good enough
   std::vector<LogResult> logs;
   std::vector<ParameterResult> parameters;
-  std::vector<double> starts;  // final costs of all local starts
-  std::vector<char> arrived;   // of each, whether it is in the best valley
+  std::vector<double> starts;               // final costs of all local starts
+  std::vector<char> arrived;                // of each, whether it is in the best valley
   StopReason stop = StopReason::converged;  // of the last fit
   // Of its cost, half a sum of squares, by its derivatives; infinite where it had none.
   double still_promised = 0;

@@ -29,7 +29,7 @@ class TuneWatch {
     failed_ += problem.failed_simulations();
   }
   void tell(double part, const FitProblem& at_work) { options.watch.tell("tune", part, simulations(at_work)); }
-  void mark(const std::string& stage, const FitProblem& at_work, double cost) {
+  void mark(Stage stage, const FitProblem& at_work, double cost) {
     convergence.push_back({stage, simulations(at_work), cost});
   }
 

@@ -646,10 +646,10 @@ TEST(TuneReport, HeldRowsSayWhyAndFittedOnesHaveErrors) {
 
 TEST(TuneReport, SaysWhatEachMethodGained) {
   TuneResult result;
-  result.stages = {{"genetic search", StageMethod::genetic, 900, 200, 1500, 0},
-                   {"start 1", StageMethod::least_squares, 200, 50, 300, 6},
-                   {"everything", StageMethod::least_squares, 60, 20, 400, 11},
-                   {"everything", StageMethod::ceres, 20, 19, 40, 1}};
+  result.stages = {{{Stage::Kind::genetic}, StageMethod::genetic, 900, 200, 1500, 0},
+                   {{Stage::Kind::start, 1}, StageMethod::least_squares, 200, 50, 300, 6},
+                   {{Stage::Kind::everything}, StageMethod::least_squares, 60, 20, 400, 11},
+                   {{Stage::Kind::everything}, StageMethod::ceres, 20, 19, 40, 1}};
   result.ceres.end = CeresEnd::converged;
   result.ceres.steps = 2;
   const std::string text = text_of(result, good_enough(result, {}), {});

@@ -50,7 +50,7 @@ TEST(Tune, ALosingChildDoesNotRunTheLogsThatAreLeft) {
   const TuneResult result = tune_table(logs, table, shipped_rig(), o);
   std::vector<long> shown;
   for (const ConvergencePoint& p : result.convergence)
-    if (p.stage == "genetic search") shown.push_back(p.simulations);
+    if (p.stage.kind == Stage::Kind::genetic) shown.push_back(p.simulations);
   ASSERT_EQ(shown.size(), 3u);  // before the first generation, after 10 and 20
   const long all = 488 * static_cast<long>(logs.size());
   std::printf("%ld runs of %ld\n", shown[2] - shown[1], all + static_cast<long>(logs.size()));
@@ -116,7 +116,7 @@ TuneResult quick_tune(const Table& table) {
   return tune_table({twins::cut(shipped_log("healthy/h12_mixed"), 400)}, table, shipped_rig(), o);
 }
 
-bool ends_with_ceres(const TuneResult& result, const std::string& stage) {
+bool ends_with_ceres(const TuneResult& result, Stage stage) {
   const auto by = [&](StageMethod method) {
     return std::any_of(result.stages.begin(), result.stages.end(),
                        [&](const StageResult& s) { return s.stage == stage && s.by == method && s.after <= s.before; });
@@ -160,7 +160,8 @@ TEST(Tune, ATunedTableThatIsTunedAgainKeepsNothingOfTheOldErrorModelFilterAndLog
 
 TEST(Tune, EveryFitEndsWithCeresAndSaysWhatItGained) {
   const TuneResult result = quick_tune(one_free_row());
-  for (const char* stage : {"start 1", "weights", "everything"}) EXPECT_TRUE(ends_with_ceres(result, stage)) << stage;
+  for (const Stage stage : {Stage{Stage::Kind::start, 1}, Stage{Stage::Kind::weights}, Stage{Stage::Kind::everything}})
+    EXPECT_TRUE(ends_with_ceres(result, stage)) << static_cast<int>(stage.kind);
   EXPECT_NE(result.ceres.end, CeresEnd::not_run);
   EXPECT_GE(result.ceres.evaluations, 1);
   EXPECT_EQ(result.ceres.final_cost, result.stages.back().after);
@@ -202,7 +203,7 @@ TEST(Tune, CeresAloneArrivesWhereBothArrive) {
   const TuneResult both = tune_table(logs, one_free_row(), shipped_rig(), o);
   o.local = TuneLocal::ceres;
   const TuneResult alone = tune_table(logs, one_free_row(), shipped_rig(), o);
-  for (const StageResult& s : alone.stages) EXPECT_EQ(s.by, StageMethod::ceres) << s.stage;
+  for (const StageResult& s : alone.stages) EXPECT_EQ(s.by, StageMethod::ceres) << static_cast<int>(s.stage.kind);
   const double there = both.table[row::driver_bandwidth].nominal;
   // Half a standard error: the valley is flat to that.
   EXPECT_NEAR(alone.table[row::driver_bandwidth].nominal, there,

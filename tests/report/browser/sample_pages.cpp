@@ -148,11 +148,11 @@ TuneResult some_tuning() {
   t.logs = {{hostile, t.channels, -0.004, 0.0, {}}, {"h2.csv", t.channels, 0.002, 1.0, {}}};
   t.starts = {120, 80, 81, 300};
   t.arrived = {0, 1, 1, 0};
-  for (int k = 0; k < 30; ++k) t.convergence.push_back({"genetic search", 50 * k, 1000.0 / (1 + k)});
-  t.stages = {{"genetic search", StageMethod::genetic, 1000, 33, 1500, 0},
-              {"start 1", StageMethod::least_squares, 100, 17, 100, 6},
-              {"start 1", StageMethod::ceres, 17, 16.7, 12, 1}};
-  for (int k = 0; k < 6; ++k) t.convergence.push_back({"start 1", 1500 + 20 * k, 100.0 / (1 + k)});
+  for (int k = 0; k < 30; ++k) t.convergence.push_back({{Stage::Kind::genetic}, 50 * k, 1000.0 / (1 + k)});
+  t.stages = {{{Stage::Kind::genetic}, StageMethod::genetic, 1000, 33, 1500, 0},
+              {{Stage::Kind::start, 1}, StageMethod::least_squares, 100, 17, 100, 6},
+              {{Stage::Kind::start, 1}, StageMethod::ceres, 17, 16.7, 12, 1}};
+  for (int k = 0; k < 6; ++k) t.convergence.push_back({{Stage::Kind::start, 1}, 1500 + 20 * k, 100.0 / (1 + k)});
   return t;
 }
 
