@@ -41,7 +41,7 @@ class BlocksInquiry {
     engine_.seed = q.options().seed, engine_.stop = q.options().watch.stop, engine_.level = q.level();
     engine_.p_new = chance_of_size(*q.test(), *answer.blocks, sizes_);
     // Beside the question of the free run, which has most of its share.
-    engine_.p_left = [this](const ExplainedFit& fit, int) {
+    engine_.p_left = [this](const ExplainedFit& fit, LeftOf, int) {  // its rows are the blocks'
       return std::min(1.0, q_.test()->any(answer_.blocks->misses(fit.residual)) / both_questions);
     };
   }

@@ -41,6 +41,10 @@ struct CandidateResult {
   Fate fate = Fate::not_looked_at;
 };
 
+// What of a fit is compared with how healthy data are left: the rows of its residual, or beside these what the blocks
+// miss, where the subject has blocks and no cause is accepted yet.
+enum class LeftOf { rows_and_blocks, rows };
+
 struct EngineOptions {
   std::uint64_t seed = 1;
   int folds = explain_constants::folds;
@@ -55,8 +59,8 @@ struct EngineOptions {
   // `round`: causes accepted so far.
   std::function<double(const CauseScore&, int round)> p_new;
   // Chance that healthy data are left as wrong as by this fit; empty: not asked. Where it is small something is new,
-  // and a cause need not be news by itself.
-  std::function<double(const ExplainedFit&, int round)> p_left;
+  // and a cause need not be news by itself. `round`: causes accepted so far.
+  std::function<double(const ExplainedFit&, LeftOf what, int round)> p_left;
   double level = explain_constants::alarm_by_mark;  // something is new below this; both questions share it
   // Chance that some cause removes as large a share of what healthy data miss, held out; empty: not asked. Then a cause
   // that is no news by its size is news by its share, where this lies below a level of its own.

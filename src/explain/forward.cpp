@@ -57,8 +57,8 @@ WholeEvidence whole_before(const EngineOptions& options, const Selected& so_far)
   w.compared = static_cast<bool>(options.p_left);
   w.level = level_of_round(options.level, w.compared, w.accepted);
   if (options.p_share) w.level_of_shares = options.level_of_shares;
-  if (w.compared) w.p_left = options.p_left(so_far.fit, so_far.rounds);
-  if (is_abnormal(w)) w.p_left_rows = options.p_left(so_far.fit, so_far.rounds + 1);
+  if (w.compared) w.p_left = options.p_left(so_far.fit, LeftOf::rows_and_blocks, so_far.rounds);
+  if (is_abnormal(w)) w.p_left_rows = options.p_left(so_far.fit, LeftOf::rows, so_far.rounds);
   return w;
 }
 
@@ -144,7 +144,7 @@ JudgedEvidence judged_evidence(const Subject& subject, const EngineOptions& opti
   j.share = t.share.value;
   j.abnormal_rows = has_abnormal_rows(round.whole);
   j.level = round.whole.level;
-  if (j.abnormal_rows) j.p_left_rows = options.p_left(t.fit, so_far.rounds + 1);
+  if (j.abnormal_rows) j.p_left_rows = options.p_left(t.fit, LeftOf::rows, so_far.rounds);
   j.beside_retuning = so_far.retuned.ok;
   j.beyond_retuning = t.beyond_retuning.value;
   j.heldout_lower = t.heldout_gain.lower;
@@ -196,7 +196,7 @@ CauseResult result_of(const Subject& subject, const Selected& so_far, const Tria
 Rivals rivals(const EngineOptions& options, const Round& round, const Selected& so_far, const Trial& first,
               const Trial& second) {
   const auto suffices = [&](const Trial& t) {
-    return options.p_left && options.p_left(t.fit, so_far.rounds + 1) > round.whole.level;
+    return options.p_left && options.p_left(t.fit, LeftOf::rows, so_far.rounds) > round.whole.level;
   };
   Rivals r;
   r.first_prior = round.evidence[at(first.cause())].prior, r.second_prior = round.evidence[at(second.cause())].prior;

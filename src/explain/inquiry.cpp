@@ -66,7 +66,9 @@ EngineOptions Inquiry::engine_options() const {
         std::min(options_.level, rate_of_question(options_.level, healthy_logs_, 1 - explain_constants::of_shares));
   }
   o.p_new = chance_of_size(*test_, subject_, sizes_);
-  o.p_left = [this](const ExplainedFit& fit, int round) { return chance_left(fit, round == 0); };
+  o.p_left = [this](const ExplainedFit& fit, LeftOf what, int round) {
+    return chance_left(fit, what == LeftOf::rows_and_blocks && round == 0);
+  };
   return o;
 }
 

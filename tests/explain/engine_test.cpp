@@ -169,7 +169,10 @@ TEST(Engine, RareCauseIsNamedBesideAnotherOnlyWhereTheDataAreStillAbnormal) {
     EngineOptions o;
     o.among = [](const Cause& c) { return c.effect != "sum"; };
     o.p_new = [](const CauseScore&, int) { return 1e-6; };
-    o.p_left = [&](const ExplainedFit&, int round) { return round == 0 || (abnormal && round == 1) ? 1e-6 : 1.0; };
+    o.p_left = [&](const ExplainedFit&, LeftOf what, int round) {
+      const bool with_first = what == LeftOf::rows ? round == 0 : round == 1;
+      return (what == LeftOf::rows_and_blocks && round == 0) || (abnormal && with_first) ? 1e-6 : 1.0;
+    };
     EXPECT_EQ(explain(line, o).causes.size(), abnormal ? 2u : 1u);
   }
 }
@@ -207,7 +210,9 @@ TEST(Engine, WhereTheDataAreAbnormalACauseNeedNotBeNewsByItself) {
   Line line({shapes[0], shapes[1]}, 7, 1, 1.0);
   EngineOptions o;
   o.p_new = [](const CauseScore&, int) { return 0.5; };
-  o.p_left = [](const ExplainedFit&, int round) { return round == 0 ? 1e-6 : 1.0; };
+  o.p_left = [](const ExplainedFit&, LeftOf what, int round) {
+    return what == LeftOf::rows_and_blocks && round == 0 ? 1e-6 : 1.0;
+  };
   EXPECT_EQ(explain(line, o).causes.size(), 1u);
 }
 
@@ -215,7 +220,7 @@ TEST(Engine, NameThatHelpsAndLeavesTheDataAbnormalIsRefusedAndKept) {
   Line line({shapes[0], shapes[1]}, 7, 1, 1.0);
   EngineOptions o;
   o.p_new = [](const CauseScore&, int) { return 0.5; };
-  o.p_left = [](const ExplainedFit&, int) { return 1e-6; };
+  o.p_left = [](const ExplainedFit&, LeftOf, int) { return 1e-6; };
   const FoundCauses e = explain(line, o);
   EXPECT_TRUE(e.causes.empty());
   ASSERT_FALSE(e.refused.empty());
