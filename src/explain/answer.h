@@ -12,6 +12,7 @@
 #include "explain/fit_causes.h"
 #include "explain/inquiry.h"
 #include "explain/replay.h"
+#include "explain/subject.h"
 
 namespace servodx {
 
@@ -23,9 +24,9 @@ struct Answer {
   std::unique_ptr<ReplaySubject> blocks;  // null: not asked
   bool told_by_blocks = false;            // `found.causes` were told there, and are held in the free run
 
-  // A row without a name of its own, which takes on what the list does not have.
-  bool bare(const Inquiry& inquiry) const {
-    return !found.causes.empty() && inquiry.cause(found.causes.front().cause).prior < 1;
+  // The first cause is a row or, beside healthy logs, a part of the construction: such takes on what the list lacks.
+  bool first_is_rare(const Inquiry& inquiry) const {
+    return !found.causes.empty() && is_rare(inquiry.cause(found.causes.front().cause));
   }
 };
 
@@ -43,8 +44,8 @@ bool is_nameless(const Inquiry& inquiry, const FoundCauses& found);
 
 // Names in the free run.
 Answer find_names(Inquiry& inquiry);
-// A name has to leave the logs as healthy ones are left, or to do as well as a curve, which has none. A row without a
-// name has to do better than a curve beyond the interval.
+// A name has to leave the logs as healthy ones are left, or to do as well as a curve, which has none. A rare cause
+// has to do better than a curve beyond the interval.
 void try_curves(Inquiry& inquiry, Answer& answer);
 // What the free run leaves open, the replay of the blocks may tell: a name that is news there, is worth its numbers on
 // held-out windows, and leaves the blocks as healthy logs do. Where the free run has a name and others as good, it has

@@ -91,13 +91,13 @@ void take(Answer& answer, FoundCauses& told, ExplainedFit after) {
 // Nothing has a name yet, or not one that leaves the logs as healthy ones are left.
 bool is_open(const Inquiry& q, const Answer& answer) {
   const FoundCauses& found = answer.found;
-  if (found.causes.empty() || answer.curve || answer.bare(q)) return true;
+  if (found.causes.empty() || answer.curve || answer.first_is_rare(q)) return true;
   return q.test() && !left_like_healthy(q, found) && share_of_first(q, found) < most_of_it;
 }
 
 // Where something is wrong without a name, a curve that the blocks tell serves if the free run finds none, or follows
-// better with it than with its own. A bare row has to do better, as beside the free run's.
-void try_curve_of_blocks(Inquiry& q, Answer& answer, BlocksInquiry& blocks, const FoundCauses& told, bool bare) {
+// better with it than with its own. A rare cause has to do better, as beside the free run's.
+void try_curve_of_blocks(Inquiry& q, Answer& answer, BlocksInquiry& blocks, const FoundCauses& told, bool rare) {
   FoundCauses shape = blocks.curves(told);
   if (shape.causes.empty()) return;
   ExplainedFit after = blocks.held(shape);
@@ -105,7 +105,7 @@ void try_curve_of_blocks(Inquiry& q, Answer& answer, BlocksInquiry& blocks, cons
   const FoundCauses& found = answer.found;
   const std::uint64_t seed = q.options().seed;
   if (heldout_gain(answer.curve ? found.after : found.before, after, seed).lower <= 0) return;
-  if (bare && !answer.curve && heldout_gain(after, first_alone(q, found), seed).lower > 0) return;
+  if (rare && !answer.curve && heldout_gain(after, first_alone(q, found), seed).lower > 0) return;
   const CauseResult r = shape.causes.front();
   take(answer, shape, std::move(after));
   answer.curve = learnt(q.curve_of(r.cause), r.value, r.std_error);
@@ -116,7 +116,7 @@ void try_curve_of_blocks(Inquiry& q, Answer& answer, BlocksInquiry& blocks, cons
 void ask_blocks(Inquiry& q, Answer& answer) {
   const FoundCauses& found = answer.found;
   if (!q.test() || !found.before.ok) return;
-  const bool bare = answer.bare(q) && !answer.curve, open = is_open(q, answer);
+  const bool rare = answer.first_is_rare(q) && !answer.curve, open = is_open(q, answer);
   if (!open && found.causes.front().confusable_with.empty()) return;
   answer.blocks = std::make_unique<ReplaySubject>(q.subject(), found.before.point, *q.known());
   if (answer.blocks->empty()) return;
@@ -126,7 +126,7 @@ void ask_blocks(Inquiry& q, Answer& answer) {
   if (stands && (open || share_a_name(told.causes.front(), found.causes.front())))
     if (ExplainedFit after = blocks.held(told); after.ok) take(answer, told, std::move(after));
   if (answer.told_by_blocks || !told.before.ok) return;
-  if (answer.curve || bare || is_nameless(q, found)) try_curve_of_blocks(q, answer, blocks, told, bare);
+  if (answer.curve || rare || is_nameless(q, found)) try_curve_of_blocks(q, answer, blocks, told, rare);
 }
 
 }  // namespace servodx

@@ -135,7 +135,7 @@ std::string place_without_name(const Inquiry& q, const Answer& answer, const std
 const CandidateResult* first_of(const Inquiry& q, const Answer& answer) {
   const CandidateResult* best = nullptr;
   for (const CandidateResult& c : answer.found.candidates)
-    if (q.cause(c.cause).prior >= 1 && !q.cause(c.cause).curve && c.delta_bic > 0 && c.share.lower > 0)
+    if (!is_rare(q.cause(c.cause)) && !q.cause(c.cause).curve && c.delta_bic > 0 && c.share.lower > 0)
       if (!best || c.share.value > best->share.value) best = &c;
   return best;
 }

@@ -130,7 +130,7 @@ FittedEvidence fitted_evidence(const Round& round, const Trial& t) {
 // Healthy data are asked the same of the causes that have a name.
 bool is_news_by_share(const Subject& subject, const EngineOptions& options, const Round& round, const Trial& t) {
   const Cause& c = subject.causes()[at(t.cause())];
-  return options.p_share && !c.curve && c.prior >= 1 && is_news_by_share(options.p_share(t.share.value), round.whole);
+  return options.p_share && !c.curve && !is_rare(c) && is_news_by_share(options.p_share(t.share.value), round.whole);
 }
 
 JudgedEvidence judged_evidence(const Subject& subject, const EngineOptions& options, const Round& round,

@@ -5,13 +5,12 @@
 #include <numeric>
 
 #include "explain/constants.h"
+#include "explain/subject.h"
 
 namespace servodx {
 namespace {
 
 using namespace explain_constants;
-
-bool is_rare(double prior) { return prior < 1; }
 
 }  // namespace
 

@@ -127,7 +127,7 @@ std::vector<HealthyShare> heldout_shares(ValveSubject& subject, const ExplainedF
   EngineOptions engine;
   engine.most = 1;
   engine.compare_with_retuning = false;
-  engine.among = [](const Cause& c) { return !c.curve && c.prior >= 1; };
+  engine.among = [](const Cause& c) { return !c.curve && !is_rare(c); };
   FoundCauses begun;
   begun.before = base;
   cross_validate(subject, begun.before, engine.hold_out());

@@ -47,6 +47,10 @@ struct Cause {
   std::string atop = "";
 };
 
+// Rarer than a named effect before any data: a row that was held for a reason, or a part of the construction.
+inline bool is_rare(double prior) { return prior < 1; }
+inline bool is_rare(const Cause& cause) { return is_rare(cause.prior); }
+
 inline constexpr std::string_view sensor_place = "sensor:";  // and the signal
 inline bool is_of_sensor(const Cause& cause) { return cause.where.starts_with(sensor_place); }
 

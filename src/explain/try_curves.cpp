@@ -15,17 +15,17 @@ namespace {
 bool is_asked(const Inquiry& q, const Answer& answer) {
   const FoundCauses& names = answer.found;
   if (!names.before.ok) return false;
-  return names.causes.empty() || answer.bare(q) || (q.test() && !left_like_healthy(q, names));
+  return names.causes.empty() || answer.first_is_rare(q) || (q.test() && !left_like_healthy(q, names));
 }
 
 bool does_better(const Inquiry& q, const Answer& answer, const FoundCauses& curve) {
   if (curve.causes.empty()) return false;
   if (answer.found.causes.empty()) return true;
-  const bool bare = answer.bare(q);
-  const ExplainedFit name = bare ? first_alone(q, answer.found) : answer.found.after;
+  const bool rare = answer.first_is_rare(q);
+  const ExplainedFit name = rare ? first_alone(q, answer.found) : answer.found.after;
   if (!name.ok) return true;
   const std::uint64_t seed = q.options().seed;
-  return bare ? heldout_gain(curve.after, name, seed).lower <= 0 : heldout_gain(name, curve.after, seed).lower > 0;
+  return rare ? heldout_gain(curve.after, name, seed).lower <= 0 : heldout_gain(name, curve.after, seed).lower > 0;
 }
 
 void keep_fates_of_names(const Inquiry& q, const FoundCauses& names, FoundCauses& curve) {
