@@ -13,6 +13,7 @@ struct RowEffect {
   std::vector<int> shapes = {};  // the same, of effect parameters that say how the rows act
   double worst = 0;              // [SI] of every row: how far it may go if that is beyond the table's box
   const char* also = nullptr;    // a name that others give it
+  const char* of_channel = "";   // of a sensor: the channel that it shows in
 };
 const std::vector<RowEffect>& row_effects();
 

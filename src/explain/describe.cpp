@@ -20,7 +20,7 @@ double healthy_spread(const Subject& subject, const HealthyTest& test, int cause
                       double of) {
   const Cause& c = subject.causes()[static_cast<std::size_t>(cause)];
   const Number& n = c.numbers[number];
-  HealthyScore here{c.effect, c.where + (c.family.empty() ? "" : "/" + c.family), {}, 0, 1, subject.thickness()};
+  HealthyScore here{c.effect, place_key(c), {}, 0, 1, subject.thickness()};
   for (std::size_t a = 0; n.size && a < c.probes.size(); ++a) {
     const auto& probe = c.probes[a].front();
     if (c.probes[a].size() > 1 || probe[number] == n.off) continue;

@@ -149,6 +149,7 @@ std::optional<ExplainSuspicion> suspicion_of(const Inquiry& q, const Answer& ans
   for (const ExplainedCause& s : standing)
     if (s.effect == c.effect && s.where == c.where && !s.parameters.empty()) out.size = s.parameters.front();
   out.rate = std::min(1.0, q.test()->share(first->share.value) / explain_constants::of_shares);
+  out.of_sensor = is_of_sensor(c);
   out.logs = q.test()->logs_with_shares();
   out.logs_needed = q.test()->logs_needed(first->share.value, q.options().level);
   return out;

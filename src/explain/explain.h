@@ -65,6 +65,7 @@ struct ExplainSuspicion {
   double rate = 1;                         // of false alarms at which it would be said, by the tail's law
   int logs = 0, logs_needed = 0;           // healthy ones; until it would be said at the rate they can promise; 0, -1:
                                            // no number does
+  bool of_sensor = false;                  // the share is of its channel's misfit alone
 };
 struct ExplainedProbability {
   std::string cause;

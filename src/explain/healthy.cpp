@@ -94,11 +94,11 @@ Scatter scatter_of(const std::vector<Size>& sizes) {
 
 }  // namespace
 
+std::string place_key(const Cause& cause) { return cause.where + (cause.family.empty() ? "" : "/" + cause.family); }
+
 HealthyScore summarise(const Subject& subject, const CauseScore& score) {
   const Cause& cause = subject.causes()[static_cast<std::size_t>(score.cause)];
-  HealthyScore out{cause.effect, cause.where + (cause.family.empty() ? "" : "/" + cause.family),
-                   {},           score.gain,
-                   cause.prior,  subject.thickness()};
+  HealthyScore out{cause.effect, place_key(cause), {}, score.gain, cause.prior, subject.thickness()};
   if (cause.curve) {  // knots that the log does not reach are loose: what they gain together is what counts
     out.sizes.push_back({std::log1p(score.gain), 1.0});
     return out;

@@ -34,7 +34,7 @@ namespace servodx {
 
 // A cause's sizes on one log, one a probe; a probe of several directions is their root mean square.
 struct HealthyScore {
-  std::string effect, where;  // `where` with the family behind a slash where there is one
+  std::string effect, where;  // place_key of the cause
   std::vector<ProbeScore> sizes;
   double gain = 0;                  // predicted fall of the deviance
   double prior = 1;                 // its share of the false alarms beside the others'
@@ -66,6 +66,8 @@ struct HealthyReference {
   KnownRig known(int left_out = -1) const;
 };
 
+// The place of a cause among the scores: what tells a curve apart from others at its place stands behind a slash.
+std::string place_key(const Cause& cause);
 HealthyScore summarise(const Subject& subject, const CauseScore& score);
 // The same of the blocks' replay of a valve's logs; `at`: a point of valve.problem({}). Empty: no log shows the blocks.
 struct ScoredBlocks {

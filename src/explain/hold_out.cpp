@@ -156,8 +156,8 @@ Interval heldout_gain(const ExplainedFit& before, const ExplainedFit& after, std
 Interval heldout_share(const Subject& subject, const Cause& cause, const ExplainedFit& before,
                        const ExplainedFit& after, std::uint64_t seed) {
   if (!is_of_sensor(cause)) return heldout_gain(before, after, seed);
-  const std::string_view signal = std::string_view(cause.where).substr(sensor_place.size());
-  return heldout_gain(by_block(subject, before, signal), by_block(subject, after, signal), seed, bootstrap_draws);
+  return heldout_gain(by_block(subject, before, cause.of_channel), by_block(subject, after, cause.of_channel), seed,
+                      bootstrap_draws);
 }
 
 }  // namespace servodx

@@ -20,7 +20,12 @@
 namespace servodx {
 namespace {
 
-std::string place_of(Signal sensor) { return std::string(sensor_place) + std::string(info(sensor).name); }
+Cause of_sensor(std::string effect, Signal sensor) {
+  const std::string channel(info(sensor).name);
+  Cause cause = named(std::move(effect), "sensor:" + channel);
+  cause.of_channel = channel;
+  return cause;
+}
 
 // Gain and lag of a sensor carry one name whichever file has them: that of the piston sensor's row.
 const RowEffect& effect_of_row(int at) {
@@ -39,7 +44,7 @@ void add_sensor(std::vector<SoughtCause>& to, const EffectInfo& e, int j, int sh
   CauseNumber n{effect_value(e, static_cast<std::size_t>(j), facts.tuned), p.unit};
   const double move = p.start - p.off, v = n.value.start;
   n.sizes = sizes_within(n.value, {v + move, v - move, v + 4 * move});
-  Cause cause = named(known_as.name, place_of(signal));
+  Cause cause = of_sensor(known_as.name, signal);
   cause.test = known_as.best_test;
   to.push_back(sought(std::move(cause), {n}));
 }
@@ -83,10 +88,10 @@ std::vector<SoughtCause> mains_causes(const EffectInfo& pickup, const CauseFacts
                                                     Signal::pressure_b};
   std::vector<SoughtCause> out;
   for (int c = 0; c < MainsPickup::channels; ++c) {
-    const bool of_sensor = c < MainsPickup::sensors;
-    if (of_sensor && !facts.compared.contains(signals[c])) continue;
+    const bool is_sensor = c < MainsPickup::sensors;
+    if (is_sensor && !facts.compared.contains(signals[c])) continue;
     const std::vector<CauseNumber> numbers = numbers_of_line(pickup, c, facts);
-    Cause cause = named(pickup.name, of_sensor ? place_of(signals[c]) : "drive");
+    Cause cause = is_sensor ? of_sensor(pickup.name, signals[c]) : named(pickup.name, "drive");
     cause.test = pickup.best_test;
     SoughtCause& line = out.emplace_back(sought(std::move(cause), numbers));
     line.cause.probes =

@@ -45,14 +45,15 @@ struct Cause {
   std::vector<std::vector<double>> ties = {};
   // Name of the base's numbers that it goes on where they end, a factor on them: its size is then what they are in all.
   std::string atop = "";
+  // A sensor's cause: the channel that it shows in, and no other. Empty: a cause of the valve.
+  std::string of_channel = "";
 };
 
 // Rarer than a named effect before any data: a row that was held for a reason, or a part of the construction.
 inline bool is_rare(double prior) { return prior < 1; }
 inline bool is_rare(const Cause& cause) { return is_rare(cause.prior); }
 
-inline constexpr std::string_view sensor_place = "sensor:";  // and the signal
-inline bool is_of_sensor(const Cause& cause) { return cause.where.starts_with(sensor_place); }
+inline bool is_of_sensor(const Cause& cause) { return !cause.of_channel.empty(); }
 
 // Rows of the residual that belong to one channel of one log, in order of time.
 struct Series {

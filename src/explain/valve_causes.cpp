@@ -15,6 +15,7 @@ namespace {
 
 constexpr double row_prior = 0.1;  // a row that was held for a reason, beside an effect that has a name
 
+// Of a row that no row effect has.
 const char* place_of_row(int at) {
   switch (at) {
     case row::driver_bandwidth:
@@ -30,9 +31,6 @@ const char* place_of_row(int at) {
       return "piston_force";
     case row::dead_volume_b:
       return "flow_b";
-    case row::position_sensor_lag:
-    case row::position_sensor_gain:
-      return "sensor:piston_position";
     case row::supply_pressure:
     case row::return_pressure:
       return "supply";
@@ -105,6 +103,7 @@ CauseNumber number_of_row(int at, const Table& table) {
 
 SoughtCause row_effect_cause(const RowEffect& e, const CauseFacts& facts) {
   Cause cause = named(e.name, e.where);
+  cause.of_channel = e.of_channel;
   cause.test = e.best_test;
   std::vector<CauseNumber> numbers;
   for (int at : e.rows) {

@@ -236,8 +236,8 @@ std::string suspicion_in_words(const ExplainSuspicion& s) {
       "first stands {} at {}{}: it removes {} of the held-out misfit{}, not beyond what {} healthy logs can exclude; "
       "it "
       "would be said at a rate of {} false alarms; {}",
-      s.effect, s.where, size, percent(s.share.value), s.where.starts_with(sensor_place) ? " of its channel" : "",
-      s.logs, percent(s.rate), logs_words(s.logs_needed));
+      s.effect, s.where, size, percent(s.share.value), s.of_sensor ? " of its channel" : "", s.logs, percent(s.rate),
+      logs_words(s.logs_needed));
 }
 
 Json explain_json(const ExplainResult& r) {
