@@ -41,7 +41,7 @@ struct ReplayedBlock {
 };
 std::vector<ReplayedBlock> replay_parts(const ValveSubject& subject, const Point& point, int log = -1);
 
-// At a point of problem({}): `log` alone, or all pooled (negative).
+// At a point of fit({}): `log` alone, or all pooled (negative).
 std::vector<BlockReplay> replay_blocks(const ValveSubject& subject, const Point& point, int log = -1);
 
 }  // namespace servodx

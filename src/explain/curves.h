@@ -18,7 +18,7 @@ struct Curve {
 std::vector<Curve> add_curves(ValveSubject& subject);
 
 // Where the log shows what drives and moves a block, what it misses there, sample by sample, gives the curves of its
-// place a first guess, however far from a straight line the simulation's answer to them is. `point`: of problem({}).
+// place a first guess, however far from a straight line the simulation's answer to them is. `point`: of fit({}).
 void guess_curves(ValveSubject& subject, const std::vector<Curve>& curves, const Point& point);
 
 struct CurvePoint {

@@ -62,11 +62,10 @@ ExplainedCause described(const Inquiry& q, const Subject& told_by, const CauseRe
   out.heldout_gain = r.heldout_gain, out.beyond_retuning = r.beyond_retuning, out.delta_bic = r.delta_bic;
   out.by_blocks = by_blocks, out.curve = c.curve;
   const auto& values = q.subject().values(r.cause);
-  const auto problem = q.subject().problem(fit.causes);
   for (std::size_t j = 0; j < c.numbers.size(); ++j) {
     double factor = 1;
     if (values[j].apply && !c.curve)  // a factor on the log's own
-      factor = problem->candidate(fit.point, 0)[static_cast<std::size_t>(values[j].at)] / r.value[j];
+      factor = q.subject().candidate(fit.causes, fit.point, 0)[static_cast<std::size_t>(values[j].at)] / r.value[j];
     const double scatter = q.test() ? healthy_spread(told_by, *q.test(), r.cause, j, r.std_error[j], factor) : 0.0;
     const double error = std::hypot(r.std_error[j], scatter);
     out.parameters.push_back(
@@ -79,7 +78,7 @@ ExplainedCause described(const Inquiry& q, const Subject& told_by, const CauseRe
 ExplainedCause described_standing(const Inquiry& q, const CauseResult& r) {
   ExplainedFit alone;
   alone.causes = {r.cause};
-  alone.point = q.subject().problem(alone.causes)->start();
+  alone.point = q.subject().start(alone.causes);
   return described(q, q.subject(), r, alone);
 }
 

@@ -20,7 +20,6 @@
 #include "explain/inquiry.h"
 #include "explain/subject.h"
 #include "explain/verdict.h"
-#include "fit/problem.h"
 #include "servodx/rig.h"
 
 namespace servodx {
@@ -222,8 +221,8 @@ void measure(const Inquiry& q, const Answer& answer, ExplainResult& out) {
   out.adequacy_after = q.subject().adequacy(found.after.residual);
   if (!found.causes.empty()) out.heldout_gain = heldout_gain(found.before, found.after, q.options().seed);
   for (std::size_t l = 0; l < q.logs().size(); ++l) {
-    out.before.push_back(q.subject().problem({})->candidate(found.before.point, static_cast<int>(l)));
-    out.after.push_back(q.subject().problem(found.after.causes)->candidate(found.after.point, static_cast<int>(l)));
+    out.before.push_back(q.subject().candidate({}, found.before.point, static_cast<int>(l)));
+    out.after.push_back(q.subject().candidate(found.after.causes, found.after.point, static_cast<int>(l)));
   }
   out.worse_withheld = !q.options().keep_worse && is_worse_in_rms(out.channels);
   out.table = out.worse_withheld ? q.subject().table() : extended_table(q.subject(), found, out.causes);

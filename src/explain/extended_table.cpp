@@ -11,7 +11,6 @@
 #include "effects/unexplained.h"
 #include "fit/chart.h"
 #include "fit/free_values.h"
-#include "fit/problem.h"
 #include "parameters/list.h"
 #include "simulate/scenario.h"
 
@@ -85,7 +84,7 @@ void write_cause(const CauseRows& rows, const std::string& effect, Table& table)
 Table extended_table(const ValveSubject& subject, const FoundCauses& found, const std::vector<ExplainedCause>& causes) {
   Table table = subject.table();
   if (found.causes.empty()) return table;
-  const ParameterVector fitted = subject.problem(found.after.causes)->candidate(found.after.point, 0);
+  const ParameterVector fitted = subject.candidate(found.after.causes, found.after.point, 0);
   write_retuned_rows(fitted, subject.logs().size() > 1, table);
   for (std::size_t k = 0; k < causes.size(); ++k)
     write_cause(rows_of(subject, found.causes[k].cause, causes[k], fitted), causes[k].effect, table);

@@ -69,7 +69,7 @@ struct HealthyReference {
 // The place of a cause among the scores: what tells a curve apart from others at its place stands behind a slash.
 std::string place_key(const Cause& cause);
 HealthyScore summarise(const Subject& subject, const CauseScore& score);
-// The same of the blocks' replay of a valve's logs; `at`: a point of valve.problem({}). Empty: no log shows the blocks.
+// The same of the blocks' replay of a valve's logs; `at`: a point of valve.fit({}). Empty: no log shows the blocks.
 struct ScoredBlocks {
   std::vector<HealthyScore> scores;
   std::vector<Miss> misses;

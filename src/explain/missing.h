@@ -28,7 +28,7 @@ struct MissingInputs {
   std::vector<std::vector<double>> time;  // [log][sample] [s]
 };
 
-// At a point of problem({}). `told`: fraction done; false from it ends the work.
+// At a point of fit({}). `told`: fraction done; false from it ends the work.
 MissingInputs missing_inputs(const ValveSubject& subject, const Point& point,
                              const std::function<bool(double)>& told = {});
 

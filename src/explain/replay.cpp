@@ -40,10 +40,9 @@ ReplaySubject::ReplaySubject(const ValveSubject& valve, const Point& at, const K
     causes_.back().atop.clear();
     if (c.simulated) causes_.back().probes.clear();  // not looked at
   }
-  const auto problem = valve.problem({});
   long first = 0;
   for (std::size_t l = 0; l < valve.logs().size(); ++l) {
-    base_.push_back(problem->candidate(at, static_cast<int>(l)));
+    base_.push_back(valve.candidate({}, at, static_cast<int>(l)));
     Quiet& q = quiet_.emplace_back();
     for (const FitChannel& c : valve.logs()[l].channels) {
       if (c.signal == Signal::spool_position) q.spool = quiet(valve.logs()[l].scenario.time, c.measured);

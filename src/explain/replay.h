@@ -26,7 +26,7 @@ namespace servodx {
 
 class ReplaySubject : public Subject {
  public:
-  // `at`: a point of valve.problem({}); each log's own numbers hold there. `known`: the rig's healthy logs. The valve
+  // `at`: a point of valve.fit({}); each log's own numbers hold there. `known`: the rig's healthy logs. The valve
   // must outlive it.
   ReplaySubject(const ValveSubject& valve, const Point& at, const KnownRig& known = {});
   ReplaySubject(const ReplaySubject&) = delete;  // series point into it

@@ -41,7 +41,7 @@ struct ShownChannel {
   std::string summary;  // "78 % of the excess sits within 30 ms of a reversal (21 % of the time)"
 };
 
-// Of the residual at a point of problem({}); logs pooled.
+// Of the residual at a point of fit({}); logs pooled.
 std::vector<ShownChannel> show(const ValveSubject& subject, const std::vector<Log>& logs, const Point& point);
 
 }  // namespace servodx

@@ -99,15 +99,19 @@ int ValveSubject::add(Cause cause, std::vector<FreeValue> values) {
   return static_cast<int>(causes_.size()) - 1;
 }
 
-std::shared_ptr<FitProblem> ValveSubject::problem(const std::vector<int>& causes, bool wide) const {
+std::vector<FreeValue> ValveSubject::free_for(const std::vector<int>& causes, bool wide) const {
   std::vector<FreeValue> free(free_.begin(), free_.begin() + static_cast<long>(base_count(wide)));
   for (FreeValue& f : free)
     if (wide && f.log < 0) f.prior_sd = wide_sd;
   for (int c : causes)
     for (const FreeValue& f : values_[static_cast<std::size_t>(c)]) free.push_back(f);
+  return free;
+}
+
+std::shared_ptr<FitProblem> ValveSubject::problem(const std::vector<int>& causes, bool wide) const {
   std::vector<const LogData*> data;
   for (const LogData& l : logs_) data.push_back(&l);
-  const auto p = std::make_shared<FitProblem>(data, base_, std::move(free), options_);
+  const auto p = std::make_shared<FitProblem>(data, base_, free_for(causes, wide), options_);
   p->difference_step = 1e-3;  // through contacts and frictions, as in diagnose
   for (std::size_t l = 0; l < sigma_.size(); ++l)
     for (std::size_t c = 0; c < sigma_[l].size(); ++c)
@@ -148,7 +152,7 @@ SubjectFit ValveSubject::fit(const std::vector<int>& causes, bool wide) const {
 
 double ValveSubject::own(int log, int at, const Point& point) const {
   const bool stated = at == nuisance::command_slope && logs_[static_cast<std::size_t>(log)].scenario.command_slope;
-  return stated ? std::nan("") : problem({})->candidate(point, log)[static_cast<std::size_t>(at)];
+  return stated ? std::nan("") : candidate({}, point, log)[static_cast<std::size_t>(at)];
 }
 
 double ValveSubject::thickness() const {

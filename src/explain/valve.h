@@ -66,7 +66,12 @@ class ValveSubject : public Subject {
   // The same channel by channel, the root of it; and of what each sample says beyond the one before.
   std::vector<Miss> misses(const Eigen::VectorXd& rows) const;
   std::vector<UsualError> errors(const Eigen::VectorXd& rows) const;
-  // A nuisance of a log at a point of problem({}); NaN where the rig file states it.
+  // Where fit(causes) starts, and the candidate of a log at a point of it. Neither simulates.
+  Point start(const std::vector<int>& causes) const { return chart(causes).start(); }
+  ParameterVector candidate(const std::vector<int>& causes, const Point& point, int log) const {
+    return chart(causes).candidate(point, log);
+  }
+  // A nuisance of a log at a point of fit({}); NaN where the rig file states it.
   double own(int log, int at, const Point& point) const;
   long simulations() const override;
   long failed_simulations() const override;
@@ -95,6 +100,9 @@ class ValveSubject : public Subject {
   void weigh_as_tuned();
   void add_series(std::size_t log, std::size_t channel);
   std::size_t base_count(bool wide) const { return known_ && !wide ? own_ : free_.size(); }
+  // The base's free numbers, and those of the causes.
+  std::vector<FreeValue> free_for(const std::vector<int>& causes, bool wide) const;
+  Chart chart(const std::vector<int>& causes) const { return {base_, free_for(causes, false)}; }
   struct PooledError {  // of a channel over all logs, in units of the tuned model's error
     std::string signal;
     double whole = 0, news = 0;  // rms; news: of what a sample says beyond the one before

@@ -38,7 +38,7 @@ struct Rehearsed {
       if (row.name == "hysteresis_width") row.nominal = 0;
     if (!log.has(Signal::load_force)) log.channels[index(Signal::load_force)].value.assign(n, 0.0);
     const ValveSubject plain({log}, table, rig, 1, {});
-    ParameterVector p = plain.problem({})->candidate(plain.problem({})->start(), 0);
+    ParameterVector p = plain.candidate({}, plain.start({}), 0);
     const LogData data = plain.logs().front();
     Scenario s = data.scenario;
     p[row::cross_piston_leakage] += planted.leak, p[row::piston_coulomb_friction] += planted.seal;
@@ -80,7 +80,7 @@ struct Rehearsed {
   }
   MissingInputs missing() const {
     const ValveSubject subject({log}, table, rig, 1, {});
-    return missing_inputs(subject, subject.problem({})->start());
+    return missing_inputs(subject, subject.start({}));
   }
 };
 

@@ -26,7 +26,7 @@ struct Read {
 };
 Read read_off(const Rehearsed& r, const std::string& cause) {
   const ValveSubject valve({r.log}, r.table, r.rig, 1, {});
-  ReplaySubject blocks(valve, valve.problem({})->start());
+  ReplaySubject blocks(valve, valve.start({}));
   const ExplainedFit base = fit_base(blocks, 12);
   EXPECT_TRUE(base.ok);
   Read out;
@@ -124,7 +124,7 @@ TEST(Replay, WhatHasNoNameIsReadAsACurveOfItsOwnVariables) {
   for (std::uint32_t seed = 11; seed < 14; ++seed) {
     const Rehearsed healthy(log_name, {}, all, seed);
     const ValveSubject valve({healthy.log}, healthy.table, healthy.rig, 1, KnownRig{});
-    ReplaySubject blocks(valve, valve.problem({})->start());
+    ReplaySubject blocks(valve, valve.start({}));
     for (const UsualError& e : blocks.errors(fit_base(blocks, 12).residual)) known.errors.push_back(e);
   }
   struct Planted {
@@ -145,7 +145,7 @@ TEST(Replay, WhatHasNoNameIsReadAsACurveOfItsOwnVariables) {
     const Rehearsed r(log_name, {.change = put}, all, 7);
     ValveSubject valve({r.log}, r.table, r.rig, 1, KnownRig{});
     const std::vector<Curve> curves = add_curves(valve);
-    ReplaySubject blocks(valve, valve.problem({})->start(), known);
+    ReplaySubject blocks(valve, valve.start({}), known);
     EngineOptions options;
     options.among = [](const Cause& c) { return c.curve; };
     options.most = 1;
@@ -171,7 +171,7 @@ TEST(Replay, WhatHasNoNameIsReadAsACurveOfItsOwnVariables) {
 TEST(Replay, WithoutPressuresThereIsNone) {
   const Rehearsed r(log_name, {}, {Signal::spool_position, Signal::piston_position}, 6);
   const ValveSubject valve({r.log}, r.table, r.rig, 1, {});
-  EXPECT_TRUE(ReplaySubject(valve, valve.problem({})->start()).empty());
+  EXPECT_TRUE(ReplaySubject(valve, valve.start({})).empty());
 }
 
 }  // namespace
