@@ -74,7 +74,8 @@ LeastSquaresResult minimise(FitProblem& problem, const Point& from, int iteratio
   return minimise_locally(problem.least_squares(), from, o, local).end;
 }
 
-// Columns that the fit which ended there had too are its own at that end; the others are taken where they are asked for.
+// Columns that the fit which ended there had too are its own at that end; the others are taken where they are asked
+// for.
 JacobianFunction lent_derivatives(const FitProblem& problem, const FitEnd& end) {
   std::vector<char> own(problem.free().size(), 1);
   std::vector<std::pair<long, long>> lent;  // here, there
@@ -129,7 +130,7 @@ FaultSize measure_severity(const HypothesisFit& fit, const Fault& fault, std::si
   const FreeValue& severity = fit.free[j];
   const double at = fit.point[j];
   const double worst = *std::max_element(fit.channel_adequacy.begin(), fit.channel_adequacy.end());
-  const double range = fault.log_scale ? std::log(severity.upper / severity.lower) : severity.upper - severity.lower;
+  const double range = severity.range();
   const double half =
       k::deviates_of_95 * std::hypot(fit.standard_error[j] * std::max(1.0, worst), fault.spread / range);
   const auto beyond_health = [&](double u) { return std::abs(severity.from_unit(u) - fault.healthy); };

@@ -118,7 +118,7 @@ std::vector<Curve> add_curves(ValveSubject& subject) {
         v[at] = value;
       };
       values.push_back(f);
-      cause.numbers.push_back({f.name, at.unit, f.lower, f.upper, false, 0.0, true, ""});
+      cause.numbers.push_back({{f.name, at.unit, f.lower, f.upper}});
       together.emplace_back(static_cast<std::size_t>(U::knots), 0.0);
       together.back()[static_cast<std::size_t>(k)] = typical;
     }

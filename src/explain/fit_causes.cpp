@@ -237,8 +237,7 @@ CauseNumbers numbers_of(const Subject& subject, const ExplainedFit& f, int cause
     for (std::size_t j = 0; c == cause && j < numbers.size(); ++j) {
       const Number& number = numbers[j];
       const double value = number.from_unit(f.point[at + j]);
-      const double slope =
-          number.log_scale ? value * std::log(number.upper / number.lower) : number.upper - number.lower;
+      const double slope = number.slope(value);
       const auto k = static_cast<long>(at + j);
       out.value.push_back(value);
       out.std_error.push_back(free[at + j] ? worse * slope * std::sqrt(std::max(0.0, covariance(k, k))) : std::nan(""));

@@ -112,7 +112,7 @@ Eigen::VectorXd ReplaySubject::rows(const std::vector<int>& causes, std::span<co
 SubjectFit ReplaySubject::fit(const std::vector<int>& causes, bool) const {
   SubjectFit out;
   for (const Series& s : series_) {
-    out.numbers.push_back({s.signal, "sigma", -offset_range, offset_range, false, 0.0, true, ""});
+    out.numbers.push_back({{s.signal, "sigma", -offset_range, offset_range}});
     out.start.push_back(0.5);
   }
   for (int c : causes)

@@ -42,8 +42,9 @@ std::vector<double> sizes_of_row(const FreeValue& value) {
 }
 
 Number number_of(const CauseNumber& number) {
-  const FreeValue& v = number.value;
-  return {v.name, number.unit, v.lower, v.upper, v.log_scale, v.start, number.size, ""};
+  Number out{number.value, number.value.start, number.size};
+  out.unit = number.unit;
+  return out;
 }
 
 std::vector<std::vector<std::vector<double>>> probes_of(const std::vector<CauseNumber>& numbers) {

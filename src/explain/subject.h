@@ -7,25 +7,18 @@
 #include <cmath>
 #include <functional>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "optimise/box_least_squares.h"
 #include "optimise/problem.h"
+#include "parameters/coordinate.h"
 
 namespace servodx {
 
 // A free number, as it enters a fit.
-struct Number {
-  std::string name, unit;
-  double lower = 0, upper = 1;  // [unit]
-  bool log_scale = false;
-  double off = 0;     // [unit] where the model is the base model
-  bool size = true;   // false: shapes a cause that another number switches
-  std::string label;  // name in reports; empty: name
-
-  double to_unit(double value) const;
-  double from_unit(double u) const;
+struct Number : Coordinate {
+  double off = 0;    // [unit] where the model is the base model
+  bool size = true;  // false: shapes a cause that another number switches
 };
 
 // A physical cause, or a fault of a sensor or a clock.

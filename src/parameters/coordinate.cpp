@@ -16,7 +16,9 @@ double Coordinate::from_unit(double u) const {
   return log_scale ? lower * std::pow(upper / lower, u) : lower + u * (upper - lower);
 }
 
-double Coordinate::slope(double value) const { return log_scale ? value * std::log(upper / lower) : upper - lower; }
+double Coordinate::range() const { return log_scale ? std::log(upper / lower) : upper - lower; }
+
+double Coordinate::slope(double value) const { return log_scale ? value * range() : range(); }
 
 Coordinate coordinate(const Row& row) { return {row.name, row.unit, row.lower, row.upper, row.log_scale, row.nominal}; }
 

@@ -21,6 +21,8 @@ struct Coordinate {
   double to_unit(double value) const;
   // Rounding may carry the value of an end of a logarithmic range past it by a unit in the last place. [unit]
   double from_unit(double u) const;
+  // How far the range reaches: in the unit, or in the logarithm of the value.
+  double range() const;
   // d value / d u. [unit]
   double slope(double value) const;
 };

@@ -23,8 +23,7 @@ void take_priors(std::vector<FreeValue>& shared, const std::map<std::string, dou
     if (f == shared.end())
       throw InputError({.file = "--prior"}, "'" + name + "' is not among the rows that are fitted",
                        "name a row with estimate 1; row 41 and the air are each log's own");
-    const double slope = f->log_scale ? f->start * std::log(f->upper / f->lower) : f->upper - f->lower;
-    f->prior_sd = sd / slope;
+    f->prior_sd = sd / f->slope(f->start);
   }
 }
 

@@ -83,7 +83,7 @@ class Slide : public Subject {
     const auto n = static_cast<long>(m.time.size());
     series_ = {{"force", "N", 0, 0, n, &m_.time, &sigma_, 1.0, 1.0}};
     const auto cause = [&](const char* name, const char* where, double (*f)(const Motion&, std::size_t), double size) {
-      causes_.push_back({name, where, "", 1.0, {{name, "", -100 * size, 100 * size, false, 0, true, ""}}, {{{size}}}});
+      causes_.push_back({name, where, "", 1.0, {Number{{name, "", -100 * size, 100 * size}}}, {{{size}}}});
       forces_.push_back(f);
     };
     cause(
@@ -123,10 +123,10 @@ class Slide : public Subject {
   }
   SubjectFit fit(const std::vector<int>& causes, bool) const override {
     SubjectFit out;
-    out.numbers = {{"mass", "kg", 10, 200, false, 90, true, ""},
-                   {"viscous", "N s/m", 0, 1000, false, 200, true, ""},
-                   {"coulomb", "N", 0, 100, false, 20, true, ""},
-                   {"offset", "N", -50, 50, false, 0, true, ""}};
+    out.numbers = {{{"mass", "kg", 10, 200, false, 90}, 90},
+                   {{"viscous", "N s/m", 0, 1000, false, 200}, 200},
+                   {{"coulomb", "N", 0, 100, false, 20}, 20},
+                   {{"offset", "N", -50, 50, false, 0}, 0}};
     for (int c : causes) out.numbers.push_back(causes_[static_cast<std::size_t>(c)].numbers[0]);
     for (const Number& n : out.numbers) out.start.push_back(n.to_unit(n.off));
     out.problem.n = static_cast<int>(out.numbers.size());

@@ -32,7 +32,7 @@ class Line : public Subject {
           1.0 + 2.0 * t + random.normal() + (planted >= 0 ? size * shapes_[static_cast<std::size_t>(planted)].f(t) : 0);
     }
     for (const Shape& s : shapes_)
-      causes_.push_back({s.name, s.where, "", 1.0, {{s.name, "-", -50, 50, false, 0.0, true, ""}}, {{{1.0}}}});
+      causes_.push_back({s.name, s.where, "", 1.0, {Number{{s.name, "-", -50, 50}}}, {{{1.0}}}});
     series_.push_back({"y", "-", 0, 0, n, &time_, &sigma_, 1.0, 1.0});
   }
   const std::vector<Cause>& causes() const override { return causes_; }
@@ -40,7 +40,7 @@ class Line : public Subject {
   void make_rare(std::size_t cause) { causes_[cause].prior = 0.1; }
   SubjectFit fit(const std::vector<int>& causes, bool) const override {
     SubjectFit out;
-    out.numbers = {{"a", "-", -10, 10, false, 0, true, ""}, {"b", "-", -10, 10, false, 0, true, ""}};
+    out.numbers = {{{"a", "-", -10, 10, false, 0}, 0}, {{"b", "-", -10, 10, false, 0}, 0}};
     for (int c : causes) out.numbers.push_back(causes_[static_cast<std::size_t>(c)].numbers[0]);
     for (const Number& n : out.numbers) out.start.push_back(n.to_unit(n.off));
     out.problem.n = static_cast<int>(out.numbers.size());
@@ -108,7 +108,7 @@ TEST(Engine, CauseThatTheFreeNumbersImitateScoresNothing) {
 // Three knots of which the data show two: the third lies on their line. Without the tie it stays where it began.
 TEST(Engine, TiesCarryACurveStraightOnWhereTheDataDoNotReach) {
   Cause cause;
-  cause.numbers.assign(3, {"knot", "-", -10, 10, false, 0.0, true, ""});
+  cause.numbers.assign(3, {{"knot", "-", -10, 10, false, 0.0}, 0.0});
   cause.ties = {{1 / 0.1, -2 / 0.1, 1 / 0.1}};
   for (const bool exact : {false, true}) {
     SubjectFit fit;
