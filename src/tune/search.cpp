@@ -136,6 +136,8 @@ SearchEnds search_ends(const TuneScope& scope, FitProblem& problem, TuneWatch& w
   return out;
 }
 
+namespace {
+
 // An error model that is learnt at an unfinished fit takes an offset not yet found for correlation; the channel would
 // count for so few samples that it is never mended. So on the way each counts for at least as many as the first
 // whitening takes, and only the last rounds weigh as learnt.
@@ -143,28 +145,38 @@ SearchEnds search_ends(const TuneScope& scope, FitProblem& problem, TuneWatch& w
 // for a few samples, least where the meter reads finest; by its size beside the speed of the output the flat ends would
 // count, and the peak at null not. There weigh_sweeps() holds to the end, and only the errors of the values are taken
 // from what is learnt.
-LeastSquaresResult refine(FitProblem& problem, const Point& from, ErrorModel& error, double held, int rounds,
-                          bool on_stand, Share share, TuneWatch& watch) {
+void weigh(FitProblem& problem, const Point& x, ErrorModel& error, bool on_stand, bool on_the_way) {
+  if (on_stand) {
+    weigh_sweeps(problem, x);
+    return;
+  }
+  error = learn_error_model(problem, x);
+  if (on_the_way)
+    for (ChannelError& c : error.channels) c.independent = std::max(c.independent, least_independent_rate);
+  apply_error_model(problem, error, x, true);
+}
+
+}  // namespace
+
+LeastSquaresResult refine_held_out(FitProblem& problem, const Point& from, ErrorModel& error, double held,
+                                   bool on_stand, Share share, TuneWatch& watch) {
+  weigh(problem, from, error, on_stand, true);
+  hold_out(problem, held);
+  return search_locally(problem, from, {Stage::Kind::weights}, iterations_of_last_round, Start::ended, share, watch);
+}
+
+LeastSquaresResult refine_whole(FitProblem& problem, const Point& from, ErrorModel& error, int rounds, bool on_stand,
+                                Share share, TuneWatch& watch) {
   LeastSquaresResult r;
   Point x = from;
   for (int round = 0; round < rounds; ++round) {
-    if (on_stand) {
-      weigh_sweeps(problem, x);
-    } else {
-      error = learn_error_model(problem, x);
-      if (held > 0 || round == 0)
-        for (ChannelError& c : error.channels) c.independent = std::max(c.independent, least_independent_rate);
-      apply_error_model(problem, error, x, true);
-    }
-    if (held > 0) hold_out(problem, held);
+    weigh(problem, x, error, on_stand, round == 0);
     const Share of_round = {share.from + (share.to - share.from) * round / rounds,
                             share.from + (share.to - share.from) * (round + 1) / rounds};
+    const bool last = round + 1 == rounds;
     // Only the last round's end is kept as it is: there derivatives are judged.
-    const Derivatives derivatives = held > 0 || round + 1 < rounds ? Derivatives::trusted : Derivatives::on_trial;
-    const bool last = held > 0 || round + 1 == rounds;
-    r = search_locally(problem, x, Stage{held > 0 ? Stage::Kind::weights : Stage::Kind::everything},
-                       last ? iterations_of_last_round : iterations_a_round, Start::ended, of_round, watch,
-                       derivatives);
+    r = search_locally(problem, x, {Stage::Kind::everything}, last ? iterations_of_last_round : iterations_a_round,
+                       Start::ended, of_round, watch, last ? Derivatives::on_trial : Derivatives::trusted);
     x = r.point;
     if (watch.stopped() || (round >= 1 && r.reason == StopReason::converged)) break;
   }

@@ -35,8 +35,11 @@ struct SearchEnds {
 };
 SearchEnds search_ends(const TuneScope& scope, FitProblem& problem, TuneWatch& watch);
 
-// Alternates fit and error model until the weights settle. `held`: last part of every log that is left out.
-LeastSquaresResult refine(FitProblem& problem, const Point& from, ErrorModel& error, double held, int rounds,
-                          bool on_stand, Share share, TuneWatch& watch);
+// A fit by weights that are learnt at `from`, the last part `held` of every log left out.
+LeastSquaresResult refine_held_out(FitProblem& problem, const Point& from, ErrorModel& error, double held,
+                                   bool on_stand, Share share, TuneWatch& watch);
+// Alternates fit and error model on whole logs until the weights settle.
+LeastSquaresResult refine_whole(FitProblem& problem, const Point& from, ErrorModel& error, int rounds, bool on_stand,
+                                Share share, TuneWatch& watch);
 
 }  // namespace servodx
