@@ -61,14 +61,7 @@ Eigen::VectorXd without_fold(const Subject& subject, const std::vector<Block>& b
 
 // The step of the free numbers alone: the rest are held where they are.
 Eigen::VectorXd free_step(const Eigen::MatrixXd& h, const Eigen::VectorXd& g, const std::vector<long>& free) {
-  const auto m = static_cast<long>(free.size());
-  Eigen::MatrixXd hf(m, m);
-  Eigen::VectorXd gf(m);
-  for (long a = 0; a < m; ++a) {
-    gf[a] = g[free[static_cast<std::size_t>(a)]];
-    for (long b = 0; b < m; ++b) hf(a, b) = h(free[static_cast<std::size_t>(a)], free[static_cast<std::size_t>(b)]);
-  }
-  return -hf.ldlt().solve(gf);
+  return -Eigen::MatrixXd(h(free, free)).ldlt().solve(Eigen::VectorXd(g(free)));
 }
 
 // Where a fit goes with its rows weighed so: one Gauss-Newton step, walls held.
