@@ -105,14 +105,14 @@ inline constexpr double onset_gain = 25.0;          // of misfit: a second set o
 inline constexpr double gain_before_part = 0.1;     // of the gain after: what gained more before was there before
 
 // The hypotheses (diagnose/hypotheses.cpp, hypothesis_fit.cpp, severity.cpp). Not examined: they act in the fits.
-inline constexpr double inside_prior = 0.25;  // of a tolerance's range, one standard deviation; health lies inside it
-inline constexpr double end_prior = 0.5;      // the same where health is an end: nothing is cleaner than clean
-inline constexpr double shape_prior = 0.5;    // of a shape's range, one standard deviation: any is likely
-inline constexpr int severity_grid = 6;       // starts on either side; a friction or a backlash has several valleys
-inline constexpr int health_starts = 4;       // side by side they fill a pack
-inline constexpr double scattered_by = 0.15;  // of each range, one standard deviation
-inline constexpr int starts_kept = 2;         // of a fault, after screening
-inline constexpr int first_iterations = 5;    // of every start where health failed; the better one goes on
+inline constexpr double inside_prior = 0.25;    // of a tolerance's range, one standard deviation; health lies inside it
+inline constexpr double end_prior = 0.5;        // the same where health is an end: nothing is cleaner than clean
+inline constexpr double shape_prior = 0.5;      // of a shape's range, one standard deviation: any is likely
+inline constexpr int severity_grid = 6;         // starts on either side; a friction or a backlash has several valleys
+inline constexpr int health_starts = 4;         // side by side they fill a pack
+inline constexpr double scattered_by = 0.15;    // of each range, one standard deviation
+inline constexpr int starts_kept = 2;           // of a fault, after screening
+inline constexpr int first_iterations = 5;      // of every start where health failed; the better one goes on
 inline constexpr int approach_iterations = 10;  // the same by health's derivatives, a few runs each
 inline constexpr int iterations = 20;
 inline constexpr int more_rounds = 3;      // of as many again, for a leader that is not there yet
@@ -130,5 +130,24 @@ inline constexpr double on_bound = 1e-6;                // of the range
 inline constexpr double at_end_part = 1e-3;             // of the range: so near an end a size stands at it
 inline constexpr double deviates_of_95 = 1.96;          // of a normal distribution
 inline constexpr double deviates_of_one_in_20 = 1.645;  // the same, on one side
+
+// What check-log finds suspicious (diagnose/survey.cpp): it changes no verdict. Chosen by hand; not examined.
+namespace survey_of_log {
+inline constexpr double gap_over_step = 1.8;      // a step this much over the usual one lost a sample, as in the fit
+inline constexpr double much_jitter = 0.02;       // rms of the steps over the usual one
+inline constexpr double much_clipped = 0.01;      // part of the samples
+inline constexpr std::size_t clipped_run = 5;     // samples: shorter stays at an extreme are chance
+inline constexpr double restless_run = 3.0;       // samples: a live signal repeats a value for fewer, on average
+inline constexpr double many_repeats = 0.02;      // part of the rows that equal the one before in every measured signal
+inline constexpr double coarse_step = 1.0 / 500;  // resolution over range from which steps show
+inline constexpr double cold = 283.15, hot = 343.15;  // [K] beyond these oil is far from the table's 40 degC
+inline constexpr double other_rate = 1.2, other_temperature = 15.0;  // [K] beside the other logs
+// Extremes of 1e9 samples of white noise lie 12 sigmas apart; the least lively channel of the shipped logs moves 32.
+inline constexpr double of_noise_alone = 12.0;
+inline constexpr double kelvin = 273.15;
+inline constexpr double spool_lag = 4e-3, piston_lag = 10e-3;  // [s] within which each answers the drive
+inline constexpr double half_window = 10e-3;                   // [s] of the difference that stands for piston speed
+inline constexpr double with = 0.3, against = -0.5;            // correlations: at most one way, at least the other
+}  // namespace survey_of_log
 
 }  // namespace servodx::diagnose_constants

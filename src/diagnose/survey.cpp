@@ -6,6 +6,7 @@
 
 #include "base/median.h"
 #include "diagnose/check_log.h"
+#include "diagnose/constants.h"
 #include "diagnose/swapped.h"
 #include "evidence/conditions.h"
 #include "evidence/operating_point.h"
@@ -19,21 +20,7 @@
 namespace servodx {
 namespace {
 
-constexpr double gap_over_step = 1.8;          // a step this much over the usual one lost a sample, as in the fit
-constexpr double much_jitter = 0.02;           // rms of the steps over the usual one
-constexpr double much_clipped = 0.01;          // part of the samples
-constexpr std::size_t clipped_run = 5;         // samples: shorter stays at an extreme are chance
-constexpr double restless_run = 3.0;           // samples: a live signal repeats a value for fewer, on average
-constexpr double many_repeats = 0.02;          // part of the rows that equal the one before in every measured signal
-constexpr double coarse_step = 1.0 / 500;      // resolution over range from which steps show
-constexpr double cold = 283.15, hot = 343.15;  // [K] beyond these oil is far from the table's 40 degC
-constexpr double other_rate = 1.2, other_temperature = 15.0;  // [K] beside the other logs
-// Extremes of 1e9 samples of white noise lie 12 sigmas apart; the least lively channel of the shipped logs moves 32.
-constexpr double of_noise_alone = 12.0;
-constexpr double kelvin = 273.15;
-constexpr double spool_lag = 4e-3, piston_lag = 10e-3;  // [s] within which each answers the drive
-constexpr double half_window = 10e-3;                   // [s] of the difference that stands for piston speed
-constexpr double with = 0.3, against = -0.5;            // correlations: at most one way, at least the other
+using namespace diagnose_constants::survey_of_log;
 
 bool is_measured(Signal s) { return s != Signal::time && s != Signal::command && s != Signal::setpoint; }
 

@@ -59,4 +59,25 @@ inline constexpr double most_of_it = 0.5;     // of the held-out misfit: a name 
 // than other tests do. Not examined.
 inline constexpr std::size_t enough_kin = 6;
 
+// What is shown of a residual (explain/show.cpp).
+namespace shown {
+inline constexpr double near_event = 0.03;  // [s] a valve has answered a jump or a reversal by then
+inline constexpr double jump = 0.03;        // [of rated current] of the command, from sample to sample
+inline constexpr double white_band = 2.58;  // over sqrt(n): 99 % of white noise
+inline constexpr int lags = 50;             // over which residuals are correlated
+inline constexpr double least_told = 0.25;  // of the excess: a place that holds less says little
+inline constexpr double least_lift = 0.2;   // share ln(share / part of the time): below it the excess is spread evenly
+}  // namespace shown
+
+// The walk of a missing input (explain/smoother.cpp).
+namespace smoother {
+inline constexpr std::size_t blocks = 16;            // of time, of each run
+inline constexpr std::size_t search_samples = 1500;  // of all runs: the intensity is searched for on so many
+// Of the logarithm of the walk's variance: a factor of ten in intensity.
+inline constexpr double step = 4.6, finest = 0.5;
+inline constexpr int longest_path = 12;  // steps
+// The path begins where the walk gets so many times the typical over the run.
+inline constexpr double most_typical = 1e3, most_by_slope = 1e5;
+}  // namespace smoother
+
 }  // namespace servodx::explain_constants

@@ -7,6 +7,7 @@
 #include <complex>
 #include <numeric>
 
+#include "explain/constants.h"
 #include "fit/error_model.h"
 #include "fit/log_data.h"
 #include "optimise/problem.h"
@@ -17,10 +18,7 @@ namespace servodx {
 namespace {
 
 constexpr double pi = 3.14159265358979323846;
-constexpr double near_event = 0.03;  // [s]
-constexpr double jump = 0.03;        // [of rated current] of the command, from sample to sample
-constexpr double white_band = 2.58;  // over sqrt(n): 99 % of white noise
-constexpr int lags = 50;             // over which residuals are correlated
+using namespace explain_constants::shown;
 
 struct Piece {  // one log's part of a channel
   std::vector<double> time, residual, command;
@@ -153,19 +151,20 @@ std::string summary_of(const std::vector<Piece>& pieces, const std::vector<Resid
     std::string words;
     double share, time;
   };
-  std::vector<Place> places = {{"within 30 ms of a reversal", at_reversal / total, t_reversal / n},
-                               {"within 30 ms of a jump of the command", at_jump / total, t_jump / n}};
+  std::vector<Place> places = {
+      {fmt::format("within {:.0f} ms of a reversal", 1e3 * near_event), at_reversal / total, t_reversal / n},
+      {fmt::format("within {:.0f} ms of a jump of the command", 1e3 * near_event), at_jump / total, t_jump / n}};
   for (const ResidualMap& m : maps)
     for (const auto& [bin, words] : {std::pair{m.bins.empty() ? MapBin{} : m.bins.front(), "lowest"},
                                      std::pair{m.bins.empty() ? MapBin{} : m.bins.back(), "highest"}})
       if (bin.time > 0)
         places.push_back({fmt::format("in the {} eighth of {}", words, m.variable), bin.excess, bin.time});
   const auto lift = [](const Place& p) {
-    return p.share > 0.25 && p.time > 0 ? p.share * std::log(p.share / p.time) : 0;
+    return p.share > least_told && p.time > 0 ? p.share * std::log(p.share / p.time) : 0;
   };
   const auto best =
       std::max_element(places.begin(), places.end(), [&](const Place& a, const Place& b) { return lift(a) < lift(b); });
-  if (lift(*best) < 0.2) return "the excess is spread evenly";
+  if (lift(*best) < least_lift) return "the excess is spread evenly";
   return fmt::format("{:.0f} % of the excess sits {} ({:.0f} % of the time)", 100 * best->share, best->words,
                      100 * best->time);
 }

@@ -6,18 +6,14 @@
 #include <numbers>
 #include <optional>
 
+#include "explain/constants.h"
 #include "fit/error_model.h"
 
 namespace servodx {
 namespace {
 
 using Index = std::size_t;
-constexpr Index blocks = 16;                // of time, of each run
-constexpr Index search_samples = 1500;      // of all runs: the intensity is searched for on so many
-constexpr double step = 4.6, finest = 0.5;  // of the logarithm of the walk's variance: a factor of ten in intensity
-constexpr int longest_path = 12;
-// The path begins where the walk gets so many times the typical over the run.
-constexpr double most_typical = 1e3, most_by_slope = 1e5;
+using namespace explain_constants::smoother;
 
 Index states_of(const std::vector<LinearRun>& runs) { return static_cast<Index>(runs.front().start.size()); }
 Index samples_of(const std::vector<LinearRun>& runs) {

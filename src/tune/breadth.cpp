@@ -19,16 +19,14 @@
 #include "servodx/error.h"
 #include "servodx/rig.h"
 #include "servodx/tune.h"
+#include "tune/constants.h"
 #include "tune/tune.h"
 #include "tune/weights.h"
 
 namespace servodx {
 namespace {
 
-constexpr double excerpt = 1.5;            // [s] of each log: the search is for valleys, not for their floor
-constexpr double compression_scale = 3.0;  // [sigma] beyond it a residual counts by its logarithm
-constexpr int kept_points = 2;             // distinct ones that the local stage goes on from
-constexpr int shown_every = 10;  // generations: children are ranked by rough runs, what is shown is counted in full
+using namespace tune_constants;
 
 // The first seconds of each log, for the global search; of a test stand's slow sweep they show one end, so all of it.
 std::vector<LogData> excerpts(const std::vector<LogData>& logs, double seconds) {
@@ -124,7 +122,7 @@ std::vector<Point> search_broadly(const TuneScope& scope, const Point& start, Tu
     if (!s.best.point.empty() && (s.generation % shown_every == 0 || s.generation == o.generations))
       watch.convergence.push_back(
           {Stage{Stage::Kind::genetic}, watch.simulations(problem), cost(std::span(&s.best.point, 1)).front()});
-    watch.tell(0.1 + 0.25 * s.generation / o.generations, problem);
+    watch.tell(work.genetic.at(static_cast<double>(s.generation) / o.generations), problem);
     return !watch.stopped();
   };
   const std::optional<GeneticState> saved = saved_state(options);

@@ -11,14 +11,13 @@
 #include "fit/identifiability.h"
 #include "optimise/problem.h"
 #include "servodx/table.h"
+#include "tune/constants.h"
 #include "tune/weights.h"
 
 namespace servodx {
 namespace {
 
-constexpr double least_effect = 2.0;      // [sigma] at a bound: a row that moves nothing anywhere is flat
-constexpr std::size_t most_at_once = 16;  // points of a batch: memory, not results
-constexpr double share_of_work = 0.05;    // of a tune
+using namespace tune_constants;
 
 // Change of the residual with each shared value at either end.
 void drive_to_bounds(std::vector<ScreenedRow>& rows, const FitProblem& problem, const Point& x,
@@ -37,7 +36,7 @@ void drive_to_bounds(std::vector<ScreenedRow>& rows, const FitProblem& problem, 
       if (e[i].ok)
         rows[(first + i) / 2].effect[(first + i) % 2] =
             (e[i].residual - at_nominal.residual).head(problem.data_rows()).norm();
-    watch.tell(share_of_work * static_cast<double>(first) / static_cast<double>(extremes.size()), problem);
+    watch.tell(work.screen.at(static_cast<double>(first) / static_cast<double>(extremes.size())), problem);
   }
 }
 

@@ -11,24 +11,14 @@
 #include "optimise/problem.h"
 #include "servodx/tune.h"
 #include "tune/breadth.h"
+#include "tune/constants.h"
 #include "tune/tune.h"
 #include "tune/weights.h"
 
 namespace servodx {
 namespace {
 
-// Of the local stage, a Jacobian each, which learns from up to three steps. Chosen with the logs of scripts/demo and
-// the tutorial in view.
-constexpr int iterations_a_start = 4;         // enough to tell valleys apart
-constexpr int iterations_a_round = 6;         // then the weights are learnt anew
-constexpr int iterations_of_last_round = 10;  // effects are judged where it ends, or it is what is kept
-constexpr double tells_valleys = 1e-3;        // of the cost: less promised is no other valley
-// Of a cost in units of likelihood: a fifth of what chance lends each number that is free.
-constexpr double worth_a_step = 0.1;
-constexpr double as_good = 1.05;  // of the best end's cost: another start that is there, or on its way
-// Of BOBYQA where derivatives prove false, for each free value. It lays out 2n + 1 points first; as many again let it
-// move.
-constexpr long rescue_points = 4;
+using namespace tune_constants;
 
 // As many points as the other way spends on its Jacobians.
 LeastSquaresResult without_derivatives(const FitProblem& problem, const Point& from, Stage stage, int iterations,
@@ -93,7 +83,7 @@ LeastSquaresResult search_locally(const FitProblem& problem, const Point& from, 
   if (start == Start::found) o.least_metric = o.from_afar;
   o.progress = [&](const LeastSquaresProgress& p) {
     watch.mark(stage, problem, p.cost);
-    watch.tell(share.from + (share.to - share.from) * p.iteration / iterations, problem);
+    watch.tell(share.at(static_cast<double>(p.iteration) / iterations), problem);
     return !watch.stopped();
   };
   LocalOptions local;
@@ -126,10 +116,10 @@ SearchEnds search_ends(const TuneScope& scope, FitProblem& problem, TuneWatch& w
   hold_out(problem, options.heldout);
   SearchEnds out;
   for (std::size_t s = 0; s < starts.size() && !(watch.stopped() && s > 0); ++s) {
-    const double from = 0.35 + 0.35 * static_cast<double>(s) / static_cast<double>(starts.size());
+    const double begun = static_cast<double>(s), all = static_cast<double>(starts.size());
     out.ends.push_back(search_locally(problem, starts[s], Stage{Stage::Kind::start, static_cast<int>(s) + 1},
                                       iterations_a_start, s == 0 ? Start::nominal : Start::found,
-                                      {from, from + 0.35 / static_cast<double>(starts.size())}, watch));
+                                      {work.starts.at(begun / all), work.starts.at((begun + 1) / all)}, watch));
     if (out.ends.back().cost < out.ends[out.best].cost) out.best = s;
   }
   for (const LeastSquaresResult& end : out.ends) out.arrived.push_back(in_best_valley(end, out.ends[out.best].cost));
@@ -171,8 +161,7 @@ LeastSquaresResult refine_whole(FitProblem& problem, const Point& from, ErrorMod
   Point x = from;
   for (int round = 0; round < rounds; ++round) {
     weigh(problem, x, error, on_stand, round == 0);
-    const Share of_round = {share.from + (share.to - share.from) * round / rounds,
-                            share.from + (share.to - share.from) * (round + 1) / rounds};
+    const Share of_round = {share.at(static_cast<double>(round) / rounds), share.at((round + 1.0) / rounds)};
     const bool last = round + 1 == rounds;
     // Only the last round's end is kept as it is: there derivatives are judged.
     r = search_locally(problem, x, {Stage::Kind::everything}, last ? iterations_of_last_round : iterations_a_round,

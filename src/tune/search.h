@@ -7,6 +7,7 @@
 #include "fit/problem.h"
 #include "optimise/box_least_squares.h"
 #include "optimise/problem.h"
+#include "tune/constants.h"
 #include "tune/scope.h"
 #include "tune/tune.h"
 #include "tune/watch.h"

@@ -15,12 +15,13 @@
 #include "parameters/coordinate.h"
 #include "parameters/table.h"
 #include "servodx/tune.h"
+#include "tune/constants.h"
 #include "tune/tune.h"
 
 namespace servodx {
 namespace {
 
-constexpr double flat_error = 0.25;  // of the row's range: a row known no better is not known
+using tune_constants::flat_error;
 
 bool asks_for_profile(const TuneOptions& options, const std::string& name) {
   return std::any_of(options.profile.begin(), options.profile.end(),

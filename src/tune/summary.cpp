@@ -16,6 +16,7 @@
 #include "parameters/table.h"
 #include "servodx/tune.h"
 #include "simulate/scenario.h"
+#include "tune/constants.h"
 #include "tune/weights.h"
 
 namespace servodx {
@@ -80,11 +81,7 @@ std::vector<ChannelResult> pooled_channels(const std::vector<LogResult>& logs) {
 
 namespace {
 
-// What a textbook model leaves of a rig that it can follow is 2 to 5 times the noise on two rigs; 11 times made a
-// diagnosis blind on a third (docs/diagnosis.md). A sensor that is quiet beyond need is no reason for doubt: then the
-// part counts.
-constexpr double unfollowed_over_noise = 8.0;
-constexpr double unfollowed_part = 0.005;  // of stop, stroke and supply
+using namespace tune_constants;
 
 // [SI] 0: not asked.
 double reach_of(Signal signal, const ParameterVector& v) {

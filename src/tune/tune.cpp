@@ -132,13 +132,14 @@ TuneResult tune_table(const std::vector<Log>& logs, const Table& nominal, const 
   // Weights from the model's own error, alternating with the fit: first with the end of each log still held out.
   if (!watch.stopped())
     end = options.heldout > 0
-              ? refine_held_out(fit, end.point, out.error, options.heldout, scope.on_stand, {0.7, 0.8}, watch)
-              : refine_whole(fit, end.point, out.error, 1, scope.on_stand, {0.7, 0.8}, watch);
+              ? refine_held_out(fit, end.point, out.error, options.heldout, scope.on_stand,
+                                tune_constants::work.weights, watch)
+              : refine_whole(fit, end.point, out.error, 1, scope.on_stand, tune_constants::work.weights, watch);
   // Before the effects are judged by the held-out part: what it says of the fit is then out of sample.
   const std::vector<Trajectory> heldout_runs = fit.trajectories(end.point);
   if (!scope.on_stand && !options.effects) out.effects = drop_unearned(scope, fit, end.point, out.error, watch);
   if (!watch.stopped())
-    end = refine_whole(fit, end.point, out.error, options.rounds, scope.on_stand, {0.8, 1.0}, watch);
+    end = refine_whole(fit, end.point, out.error, options.rounds, scope.on_stand, tune_constants::work.whole, watch);
   end = weighed_as_learnt(fit, std::move(end), out.error);
 
   mark_unearned(screened, out.effects);

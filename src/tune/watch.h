@@ -7,6 +7,7 @@
 #include "optimise/ceres_refinement.h"
 #include "optimise/local.h"
 #include "servodx/tune.h"
+#include "tune/constants.h"
 #include "tune/tune.h"
 
 namespace servodx {
@@ -35,12 +36,6 @@ class TuneWatch {
 
  private:
   long simulations_ = 0, failed_ = 0;
-};
-
-// A share of the whole work, from `from` to `to`.
-struct Share {
-  double from = 0, to = 1;
-  double at(double part) const { return from + (to - from) * part; }
 };
 
 }  // namespace servodx

@@ -5,8 +5,11 @@
 
 #include "fit/log_data.h"
 #include "simulate/scenario.h"
+#include "tune/constants.h"
 
 namespace servodx {
+
+using tune_constants::failed_over_noise, tune_constants::least_over_noise, tune_constants::part_of_residual;
 
 double rms_of(const std::vector<double>& r, std::size_t from, std::size_t to) {
   double sum = 0;
@@ -26,8 +29,10 @@ void first_whitening(FitProblem& problem, const Point& x) {
     for (std::size_t c = 0; c < log.channels.size(); ++c) {
       const int li = static_cast<int>(l), ci = static_cast<int>(c);
       const double r = t[l].ok ? rms_of(problem.raw_residual(li, ci, t[l]), 0, log.scenario.time.size())
-                               : 100 * log.channels[c].noise;
-      problem.set_sigma(li, ci, std::max(2 * log.channels[c].noise, 0.7 * r) * std::sqrt(std::max(1.0, correlated)));
+                               : failed_over_noise * log.channels[c].noise;
+      problem.set_sigma(li, ci,
+                        std::max(least_over_noise * log.channels[c].noise, part_of_residual * r) *
+                            std::sqrt(std::max(1.0, correlated)));
     }
   }
 }
@@ -42,7 +47,8 @@ void weigh_sweeps(FitProblem& problem, const Point& x) {
     for (std::size_t c = 0; c < log.channels.size(); ++c) {
       const int li = static_cast<int>(l), ci = static_cast<int>(c);
       const std::size_t n = log.channels[c].measured.size();
-      const double r = t[l].ok ? rms_of(problem.raw_residual(li, ci, t[l]), 0, n) : 100 * log.channels[c].noise;
+      const double r =
+          t[l].ok ? rms_of(problem.raw_residual(li, ci, t[l]), 0, n) : failed_over_noise * log.channels[c].noise;
       problem.set_sigma(li, ci,
                         std::max(log.channels[c].noise, r) * std::sqrt(static_cast<double>(n) / (samples / sweeps)));
     }

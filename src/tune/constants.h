@@ -1,0 +1,63 @@
+// Numbers that decide where a tune ends: what each is for. "Not examined": chosen by hand, no run has measured what
+// another value does.
+#pragma once
+#include <cstddef>
+
+namespace servodx {
+
+// A share of the whole work, from `from` to `to`.
+struct Share {
+  double from = 0, to = 1;
+  double at(double part) const { return from + (to - from) * part; }
+};
+
+namespace tune_constants {
+
+// How a tune's work falls to its steps, for the progress that is told. Results do not depend on it.
+struct WorkShares {
+  Share screen = {0.0, 0.05};
+  Share genetic = {0.1, 0.35};
+  Share starts = {0.35, 0.7};  // the local searches together
+  Share weights = {0.7, 0.8};  // the best of them, the end of each log still held out
+  Share whole = {0.8, 1.0};    // on whole logs
+};
+inline constexpr WorkShares work;
+
+// The genetic search (tune/breadth.cpp). Not examined.
+inline constexpr double excerpt = 1.5;            // [s] of each log: the search is for valleys, not for their floor
+inline constexpr double compression_scale = 3.0;  // [sigma] beyond it a residual counts by its logarithm
+inline constexpr int kept_points = 2;             // distinct ones that the local stage goes on from
+inline constexpr int shown_every = 10;            // generations: what is shown is counted in full
+
+// The local stage (tune/search.cpp): iterations, a Jacobian each, which learns from up to three steps. Chosen with the
+// logs of scripts/demo and the tutorial in view.
+inline constexpr int iterations_a_start = 4;         // enough to tell valleys apart
+inline constexpr int iterations_a_round = 6;         // then the weights are learnt anew
+inline constexpr int iterations_of_last_round = 10;  // effects are judged where it ends, or it is what is kept
+inline constexpr double tells_valleys = 1e-3;        // of the cost: less promised is no other valley
+// Of a cost in units of likelihood: a fifth of what chance lends each number that is free.
+inline constexpr double worth_a_step = 0.1;
+inline constexpr double as_good = 1.05;  // of the best end's cost: another start that is there, or on its way
+// Of BOBYQA where derivatives prove false, for each free value. It lays out 2n + 1 points first; as many again let it
+// move.
+inline constexpr long rescue_points = 4;
+
+// Weights before anything is known (tune/weights.cpp). Not examined.
+inline constexpr double least_over_noise = 2.0;  // times the sensor's noise: no model follows closer at its start
+inline constexpr double part_of_residual = 0.7;  // of its rms: the fit is on its way to less
+inline constexpr double failed_over_noise =
+    100;  // times the noise, where the simulation fails and there is no residual
+
+// Rows (tune/screen.cpp, tune/settle.cpp). Not examined.
+inline constexpr double least_effect = 2.0;      // [sigma] at a bound: a row that moves nothing anywhere is flat
+inline constexpr std::size_t most_at_once = 16;  // points of a batch: memory, not results
+inline constexpr double flat_error = 0.25;       // of the row's range: a row known no better is not known
+
+// What a textbook model leaves of a rig that it can follow is 2 to 5 times the noise on two rigs; 11 times made a
+// diagnosis blind on a third (docs/diagnosis.md). A sensor that is quiet beyond need is no reason for doubt: then the
+// part counts.
+inline constexpr double unfollowed_over_noise = 8.0;
+inline constexpr double unfollowed_part = 0.005;  // of stop, stroke and supply
+
+}  // namespace tune_constants
+}  // namespace servodx
