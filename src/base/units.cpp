@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "base/celsius.h"
 #include "base/trouble.h"
 
 namespace servodx {
@@ -66,8 +67,8 @@ constexpr Unit table[] = {
     {"cm3/s", flow, 1, 1e6},
     {"gpm", flow, 3785411784.0, 6e13},
     {"K", temperature},
-    {"degC", temperature, 1, 1, 273.15},
-    {"degF", temperature, 5, 9, 273.15 - 160.0 / 9.0},
+    {"degC", temperature, 1, 1, zero_celsius},
+    {"degF", temperature, 5, 9, zero_celsius - 160.0 / 9.0},
     {"% of rated", percent_of_rated, 1, 100},
     {"% of stroke", percent_of_stroke, 1, 100},
 };

@@ -7,6 +7,10 @@
 #pragma once
 #include <cstddef>
 
+#include "base/normal.h"
+#include "fit/problem.h"
+#include "parameters/coordinate.h"
+
 namespace servodx::diagnose_constants {
 
 // The null (diagnose/healthy_law.cpp).
@@ -119,21 +123,20 @@ inline constexpr int more_rounds = 3;      // of as many again, for a leader tha
 inline constexpr std::size_t leaders = 3;  // likeliest faults that go on
 // Of the amplitude of what two faults explain: so much a model that errs may lend the second of them.
 inline constexpr double lent_to_second = 0.05;
-inline constexpr double worth_a_pair = 16.0;            // of misfit, inflated: a fault of four deviates
-inline constexpr std::size_t pair_leaders = 2;          // single faults that others are tried beside
-inline constexpr std::size_t pair_finalists = 4;        // pairs that are fitted by derivatives of their own
-inline constexpr double hopeless = 100.0;               // of misfit, scaled: a chance of e^-50
-inline constexpr double worth_another_start = 4.0;      // of misfit: two deviates
-inline constexpr double difference_step = 1e-3;         // of the range: a severity runs through contacts
-inline constexpr double cost_tolerance = 1e-4;          // relative
-inline constexpr double on_bound = 1e-6;                // of the range
-inline constexpr double at_end_part = 1e-3;             // of the range: so near an end a size stands at it
-inline constexpr double deviates_of_95 = 1.96;          // of a normal distribution
-inline constexpr double deviates_of_one_in_20 = 1.645;  // the same, on one side
+inline constexpr double worth_a_pair = 16.0;                      // of misfit, inflated: a fault of four deviates
+inline constexpr std::size_t pair_leaders = 2;                    // single faults that others are tried beside
+inline constexpr std::size_t pair_finalists = 4;                  // pairs that are fitted by derivatives of their own
+inline constexpr double hopeless = 100.0;                         // of misfit, scaled: a chance of e^-50
+inline constexpr double worth_another_start = 4.0;                // of misfit: two deviates
+inline constexpr double difference_step = step_through_contacts;  // of the range: a severity runs through contacts
+inline constexpr double cost_tolerance = 1e-4;                    // relative
+inline constexpr double on_bound = wall_width;                    // of the range
+inline constexpr double at_end_part = 1e-3;                       // of the range: so near an end a size stands at it
+inline constexpr double deviates_of_95 = normal_95;               // of a normal distribution
+inline constexpr double deviates_of_one_in_20 = normal_95_one_sided;  // the same, on one side
 
 // What check-log finds suspicious (diagnose/survey.cpp): it changes no verdict. Chosen by hand; not examined.
 namespace survey_of_log {
-inline constexpr double gap_over_step = 1.8;      // a step this much over the usual one lost a sample, as in the fit
 inline constexpr double much_jitter = 0.02;       // rms of the steps over the usual one
 inline constexpr double much_clipped = 0.01;      // part of the samples
 inline constexpr std::size_t clipped_run = 5;     // samples: shorter stays at an extreme are chance
@@ -144,7 +147,6 @@ inline constexpr double cold = 283.15, hot = 343.15;  // [K] beyond these oil is
 inline constexpr double other_rate = 1.2, other_temperature = 15.0;  // [K] beside the other logs
 // Extremes of 1e9 samples of white noise lie 12 sigmas apart; the least lively channel of the shipped logs moves 32.
 inline constexpr double of_noise_alone = 12.0;
-inline constexpr double kelvin = 273.15;
 inline constexpr double spool_lag = 4e-3, piston_lag = 10e-3;  // [s] within which each answers the drive
 inline constexpr double half_window = 10e-3;                   // [s] of the difference that stands for piston speed
 inline constexpr double with = 0.3, against = -0.5;            // correlations: at most one way, at least the other

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "base/celsius.h"
 #include "base/median.h"
 #include "diagnose/check_log.h"
 #include "diagnose/constants.h"
@@ -15,6 +16,7 @@
 #include "servodx/rig.h"
 #include "signals/noise.h"
 #include "signals/signal.h"
+#include "signals/usual_step.h"
 #include "simulate/scenario.h"
 
 namespace servodx {
@@ -177,7 +179,7 @@ void find_suspicious(const Log& log, LogSurvey& s) {
   if (s.temperature && (*s.temperature < cold || *s.temperature > hot))
     found(FindingKind::temperature,
           fmt::format("{} oil, {:.0f} degC: judge it against fault-free logs of like temperature",
-                      *s.temperature < cold ? "cold" : "hot", *s.temperature - kelvin));
+                      *s.temperature < cold ? "cold" : "hot", *s.temperature - zero_celsius));
   for (const ChannelSurvey& c : s.channels) {
     const std::string name = fmt::format("'{}'", info(c.signal).name);
     if (c.missing > 0) found(FindingKind::missing, fmt::format("{}: {} samples are missing", name, c.missing));
@@ -234,8 +236,9 @@ void compare_surveys(std::vector<LogSurvey>& surveys) {
     const bool said = std::any_of(s.findings.begin(), s.findings.end(),
                                   [](const Finding& f) { return f.kind == FindingKind::temperature; });
     if (s.temperature && !said && std::abs(*s.temperature - temperature) > other_temperature)
-      s.findings.push_back({FindingKind::temperature, fmt::format("{:.0f} degC, the other logs about {:.0f} degC",
-                                                                  *s.temperature - kelvin, temperature - kelvin)});
+      s.findings.push_back(
+          {FindingKind::temperature, fmt::format("{:.0f} degC, the other logs about {:.0f} degC",
+                                                 *s.temperature - zero_celsius, temperature - zero_celsius)});
   }
 }
 

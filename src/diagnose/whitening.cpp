@@ -13,14 +13,8 @@ namespace servodx {
 void whiten(FitProblem& problem, int of_log, const ErrorModel& error, const Trajectory& reference) {
   const LogData& log = *problem.logs()[static_cast<std::size_t>(of_log)];
   for (std::size_t c = 0; c < log.channels.size(); ++c) {
-    const FitChannel& channel = log.channels[c];
-    const ChannelError* e = error.find(channel.signal);
-    std::vector<double> act =
-        activity(log.scenario.time, reference.ok ? reference.signals[channel.simulated] : channel.measured);
-    for (double& a : act)
-      if (std::isnan(a)) a = 0;
-    std::vector<double> sigma = sigma_of(e, channel.noise, act);
-    const double scale = 1.0 / std::sqrt(effective_of(e, log.scenario.time));
+    std::vector<double> sigma = channel_sigma(error, log, c, reference);
+    const double scale = 1.0 / std::sqrt(effective_of(error.find(log.channels[c].signal), log.scenario.time));
     for (double& s : sigma) s *= scale;
     problem.set_sigma(of_log, static_cast<int>(c), std::move(sigma));
   }

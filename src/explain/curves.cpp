@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/normal.h"
 #include "effects/registry.h"
 #include "effects/unexplained.h"
 #include "explain/blocks.h"
@@ -234,7 +235,7 @@ LearntCurve learnt(const Curve& curve, const std::vector<double>& knots, const s
     const double left = (a * c - b).squaredNorm();
     // 95 % of chi-square, Wilson and Hilferty's cube root.
     const double f = static_cast<double>(n - m),
-                 limit = f * std::pow(1 - 2 / (9 * f) + 1.645 * std::sqrt(2 / (9 * f)), 3);
+                 limit = f * std::pow(1 - 2 / (9 * f) + normal_95_one_sided * std::sqrt(2 / (9 * f)), 3);
     if (left > limit) continue;
     for (long j = 0; j < m; ++j)
       out.closed_form += fmt::format("{}{:.3g}{}", j ? " + " : "", c[j], form.words[static_cast<std::size_t>(j)]);

@@ -6,6 +6,7 @@
 #include <numbers>
 #include <optional>
 
+#include "base/normal.h"
 #include "explain/constants.h"
 #include "fit/error_model.h"
 
@@ -478,7 +479,7 @@ bool preferred(const SmoothedInput& place, const SmoothedInput& to) {
   double square = 0;
   for (Index b = 0; b < place.by_block.size(); ++b)
     square += std::pow(place.by_block[b] - to.by_block[b] - mean, 2) / (n - 1);
-  return n * mean > std::log(20.0) && n * mean > 1.645 * std::sqrt(n * square);
+  return n * mean > std::log(20.0) && n * mean > normal_95_one_sided * std::sqrt(n * square);
 }
 
 LinearRun thinned(const LinearRun& run, int stride) {

@@ -69,6 +69,15 @@ std::vector<std::string> leave_out_unknown_channels(LogData& log, const ErrorMod
   return notes;
 }
 
+std::vector<double> channel_sigma(const ErrorModel& model, const LogData& log, std::size_t channel,
+                                  const Trajectory& run) {
+  const FitChannel& of = log.channels[channel];
+  std::vector<double> act = activity(log.scenario.time, run.ok ? run.signals[of.simulated] : of.measured);
+  for (double& a : act)
+    if (std::isnan(a)) a = 0;
+  return sigma_of(model.find(of.signal), of.noise, act);
+}
+
 double effective_of(const ChannelError* error, const std::vector<double>& time) {
   const double span = time.empty() ? 0.0 : time.back() - time.front();
   if (!(span > 0)) return 1.0;
@@ -172,14 +181,8 @@ void apply_error_model(FitProblem& problem, const ErrorModel& model, const Point
   for (std::size_t l = 0; l < t.size(); ++l) {
     const LogData& log = *problem.logs()[l];
     for (std::size_t c = 0; c < log.channels.size(); ++c) {
-      const FitChannel& channel = log.channels[c];
-      const ChannelError* error = model.find(channel.signal);
-      // The measured channel stands in where the simulation failed.
-      const std::vector<double>& moved = t[l].ok ? t[l].signals[channel.simulated] : channel.measured;
-      std::vector<double> act = activity(log.scenario.time, moved);
-      for (double& a : act)
-        if (std::isnan(a)) a = 0;
-      std::vector<double> sigma = sigma_of(error, channel.noise, act);
+      const ChannelError* error = model.find(log.channels[c].signal);
+      std::vector<double> sigma = channel_sigma(model, log, c, t[l]);
       const double fraction = effective_of(error, log.scenario.time);
       double scale = 1.0 / std::sqrt(fraction);
       if (each_log && t[l].ok) {

@@ -14,6 +14,7 @@
 #include "optimise/problem.h"
 #include "parameters/table.h"
 #include "servodx/log.h"
+#include "simulate/scenario.h"
 
 namespace servodx {
 
@@ -34,6 +35,10 @@ std::vector<double> activity(const std::vector<double>& time, const std::vector<
 
 // sigma(t) [SI] of a channel with sensor noise `noise`. `error` may be null: noise alone.
 std::vector<double> sigma_of(const ChannelError* error, double noise, const std::vector<double>& activity);
+
+// The same of a channel of a log beside a run of it. Where the run failed, the measured channel stands in for it.
+std::vector<double> channel_sigma(const ErrorModel& model, const LogData& log, std::size_t channel,
+                                  const Trajectory& run);
 
 // Fraction of the samples at `time` that count as independent, at most 1. `error` may be null: a channel that no tuning
 // log held.

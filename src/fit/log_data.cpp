@@ -12,6 +12,7 @@
 #include "servodx/rig.h"
 #include "signals/noise.h"
 #include "signals/smoother.h"
+#include "signals/usual_step.h"
 
 namespace servodx {
 namespace {
@@ -37,16 +38,12 @@ std::vector<double> bridged(const std::vector<double>& t, std::vector<double> x)
 
 // The command that passed in a gap is not known, and the valve remembers it for some milliseconds. As long as the gap
 // was, at most this long, what comes after is not compared: never more than half of a log is lost to it.
-constexpr double gap_memory = 10e-3;   // [s] several time constants of a first stage
-constexpr double gap_over_step = 1.8;  // time step per usual step
+constexpr double gap_memory = 10e-3;  // [s] several time constants of a first stage
 
 std::vector<char> after_gaps(const std::vector<double>& t) {
   std::vector<char> unknown(t.size(), 0);
   if (t.size() < 3) return unknown;
-  std::vector<double> steps;
-  for (std::size_t k = 1; k < t.size(); ++k) steps.push_back(t[k] - t[k - 1]);
-  std::nth_element(steps.begin(), steps.begin() + static_cast<long>(steps.size() / 2), steps.end());
-  const double usual = steps[steps.size() / 2];
+  const double usual = usual_step(t);
   double until = -1e300;
   for (std::size_t k = 1; k < t.size(); ++k) {
     const double step = t[k] - t[k - 1];

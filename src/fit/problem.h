@@ -19,10 +19,11 @@
 
 namespace servodx {
 
+// Step of a Jacobian through contacts and frictions, which roughen the response. [of the unit interval]
+inline constexpr double step_through_contacts = 1e-3;
+
 class FitProblem {
  public:
-  // sigma[log][channel]: [SI] rms that whitens the channel's residual; a vector entry a sample is allowed through
-  // `scale`.
   FitProblem(std::vector<const LogData*> logs, ParameterVector base, std::vector<FreeValue> free,
              SimulateOptions options = {});
 

@@ -7,17 +7,11 @@
 
 #include "servodx/log.h"
 #include "servodx/rig.h"
+#include "signals/usual_step.h"
 #include "simulate/scenario.h"
 
 namespace servodx {
 namespace {
-
-double usual_step(const std::vector<double>& t) {
-  std::vector<double> steps;
-  for (std::size_t k = 1; k < t.size(); ++k) steps.push_back(t[k] - t[k - 1]);
-  std::nth_element(steps.begin(), steps.begin() + static_cast<long>(steps.size() / 2), steps.end());
-  return steps[steps.size() / 2];
-}
 
 // Mean of what is present in [from, to).
 double mean_of(const std::vector<double>& x, std::size_t from, std::size_t to) {
@@ -68,7 +62,9 @@ Log thinned(const Log& log, const RigFile& rig) {
   for (Channel& c : out.channels) c.value.clear(), c.missing = 0;
   for (std::size_t from = 0, to = 0; from < log.samples(); from = to) {
     // A group ends at a gap: its mean would be of two places.
-    for (to = from + 1; to < log.samples() && to < from + group && log.time[to] - log.time[to - 1] < 1.8 * step;) ++to;
+    for (to = from + 1;
+         to < log.samples() && to < from + group && log.time[to] - log.time[to - 1] < gap_over_step * step;)
+      ++to;
     out.time.push_back(mean_of(log.time, from, to));
     for (std::size_t c = 0; c < out.channels.size(); ++c) {
       if (log.channels[c].value.empty()) continue;

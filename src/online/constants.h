@@ -17,7 +17,6 @@ inline constexpr double largest_square = 1e6;  // [deviates^2] of a sample: one 
 
 // The run beside the log (residuals.cpp).
 inline constexpr double activity_time = 20e-3;  // [s] as the error model's
-inline constexpr double gap_over_step = 1.8;    // time step per usual step: samples are missing
 inline constexpr double gap_memory = 10e-3;     // [s] a first stage remembers the command that passed in a gap
 inline constexpr double longest_gap = 0.25;     // [s] beyond it the valve may be anywhere: the run begins anew
 inline constexpr double settling = 0.1;         // [s] after a beginning: what was not measured has not settled

@@ -11,6 +11,7 @@
 #include "online/constants.h"
 #include "parameters/list.h"
 #include "servodx/error.h"
+#include "signals/usual_step.h"
 #include "simulate/scenario.h"
 
 namespace servodx {
@@ -108,7 +109,7 @@ std::span<const Residual> Residuals::take(std::span<const Sample> part) {
   for (std::size_t i = 0; i < rest.size(); ++i) {
     const double dt = rest[i].time - before;
     Residual& to = out_[i + (anew ? 1 : 0)];
-    if (usual_step_ > 0 && dt > k::gap_over_step * usual_step_)
+    if (usual_step_ > 0 && dt > gap_over_step * usual_step_)
       unknown_until_ = std::max(unknown_until_, rest[i].time + std::min(dt, k::gap_memory));
     // The usual step is found in a few samples, from whatever it is at first, and does not follow single gaps.
     usual_step_ = usual_step_ > 0 ? usual_step_ * (dt > usual_step_ ? 1.02 : dt < 0.98 * usual_step_ ? 0.9 : 1.0) : dt;

@@ -3,6 +3,8 @@
 #pragma once
 #include <array>
 
+#include "base/normal.h"
+
 namespace servodx::plan_constants {
 
 // The test's form (segments.cpp).
@@ -20,11 +22,11 @@ inline constexpr std::array<double, 4> rates = {4, 8, 15, 30};  // [Hz]
 inline constexpr double least_amplitude = 0.01;                 // [1 of rated current]
 
 // The figures (lanes.cpp, outlook.cpp).
-inline constexpr int grid = 4;                             // severities of a rival, on either side, in the search
-inline constexpr int fine_grid = 12;                       // the same where the least severity is looked for
-inline constexpr double grid_end = 0.85;                   // of the range: what is worse is seen without a test
-inline constexpr double longest_step = 0.5;                // of the unit interval: a nuisance's secant
-inline constexpr double deviates_of_95_one_sided = 1.645;  // of a normal distribution
+inline constexpr int grid = 4;               // severities of a rival, on either side, in the search
+inline constexpr int fine_grid = 12;         // the same where the least severity is looked for
+inline constexpr double grid_end = 0.85;     // of the range: what is worse is seen without a test
+inline constexpr double longest_step = 0.5;  // of the unit interval: a nuisance's secant
+inline constexpr double deviates_of_95_one_sided = normal_95_one_sided;  // of a normal distribution
 
 // What a distance is worth (goal.cpp): seven deviates are worth half of all, as a finding takes four and a name some
 // more that the model's own error eats. A plain logarithm let a stuck spool of a hundred deviates outweigh a filter of

@@ -8,6 +8,9 @@
 #include <cstdint>
 #include <utility>
 
+#include "base/normal.h"
+#include "fit/problem.h"
+
 namespace servodx::prognose_constants {
 
 inline constexpr double reference_kelvin = 313.15;  // [K] 40 degC: viscosity grades are stated there (ISO 3448)
@@ -42,8 +45,9 @@ inline constexpr int first_iterations = 4;            // of each start
 inline constexpr int last_iterations = 16;            // of the best end
 inline constexpr double short_of_half_way = 0.2;      // [of the unit interval] a fault's start from half way, to health
 inline constexpr double track_cost_tolerance = 1e-4;  // of the cost: a severity's error is far wider
-inline constexpr double difference_step = 1e-3;       // [of the unit interval] through contacts and frictions
-inline constexpr double healthier = 3;                // [spreads] by which a row may come out better than tuned
+inline constexpr double difference_step =
+    step_through_contacts;              // [of the unit interval] through contacts and frictions
+inline constexpr double healthier = 3;  // [spreads] by which a row may come out better than tuned
 // What is lost of may be larger than the model has it, to half of the drop over a clean filter: sqrt(2) - 1.
 inline constexpr double larger_clean = 0.41421356237309515;
 
@@ -117,10 +121,10 @@ inline constexpr int life_hours = 200;            // that a life keeps: 90 % int
 // Alerts and causes.
 inline constexpr double latest_warning = 0.25;  // of the way to failure: three quarters are left to act in
 inline constexpr double per_checks = 100;       // the false-alarm rate of a valve is stated over this many checks
-inline constexpr double one_sided = 1.645;      // [deviations] 95 % of a normal distribution
-inline constexpr double as_far = 0.5;           // of the furthest on its way to failure: what may be the cause instead
-inline constexpr double least_width = 1e-6;     // [h] an interval has one
-inline constexpr double open_width = 1e6;       // times its lower end: of an interval that never ends
-inline constexpr int least_for_tangent = 4;     // checks: a quadratic through three points is no fit
+inline constexpr double one_sided = normal_95_one_sided;  // [deviations] 95 % of a normal distribution
+inline constexpr double as_far = 0.5;        // of the furthest on its way to failure: what may be the cause instead
+inline constexpr double least_width = 1e-6;  // [h] an interval has one
+inline constexpr double open_width = 1e6;    // times its lower end: of an interval that never ends
+inline constexpr int least_for_tangent = 4;  // checks: a quadratic through three points is no fit
 
 }  // namespace servodx::prognose_constants

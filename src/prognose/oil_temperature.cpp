@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/celsius.h"
 #include "fit/error_model.h"
 #include "fit/free_values.h"
 #include "fit/problem.h"
@@ -58,7 +59,7 @@ OilTemperature estimate_temperature(const LogData& log, const Table& tuned, cons
   std::vector<double> kelvin, misfit;
   for (double celsius = coldest_celsius; celsius <= hottest_celsius; celsius += celsius_step) {
     LogData at = log;
-    kelvin.push_back(celsius + 273.15);
+    kelvin.push_back(celsius + zero_celsius);
     at.scenario.oil = oil_at(rig.fluid.density, rig.fluid.kinematic_viscosity, kelvin.back());
     at.scenario.oil_known = true;
     misfit.push_back(misfit_at(at, tuned, error, threads, simulations));

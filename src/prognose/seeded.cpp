@@ -6,6 +6,7 @@
 #include <map>
 #include <stdexcept>
 
+#include "base/normal.h"
 #include "base/student.h"
 #include "model/state.h"
 #include "prognose/constants.h"
@@ -42,7 +43,7 @@ double spread_of(const std::vector<double>& off) {
   if (n < 2) return 0;
   double square = 0;
   for (double x : off) square += x * x;
-  return student_quantile(0.1, n - 1) / 1.645 * std::sqrt(square / (n - 1) * (1 + 1 / n));
+  return student_quantile(0.1, n - 1) / normal_95_one_sided * std::sqrt(square / (n - 1) * (1 + 1 / n));
 }
 
 double mean_of(const std::vector<double>& v) {

@@ -32,14 +32,8 @@ constexpr double no_cost = 1e300;  // of what did not run
 // Whitened by how wrong the model is where things move, every sample for itself: what is constant in that error is the
 // same in every check of one kind, and a trend does not see it.
 void whiten(FitProblem& problem, const LogData& log, const ErrorModel& error, const Trajectory& healthy) {
-  for (std::size_t c = 0; c < log.channels.size(); ++c) {
-    const FitChannel& channel = log.channels[c];
-    std::vector<double> act =
-        activity(log.scenario.time, healthy.ok ? healthy.signals[channel.simulated] : channel.measured);
-    for (double& a : act)
-      if (std::isnan(a)) a = 0;
-    problem.set_sigma(0, static_cast<int>(c), sigma_of(error.find(channel.signal), channel.noise, act));
-  }
+  for (std::size_t c = 0; c < log.channels.size(); ++c)
+    problem.set_sigma(0, static_cast<int>(c), channel_sigma(error, log, c, healthy));
 }
 
 // Row that a fault moves first, in the order of the table.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "base/celsius.h"
 #include "diagnose/healthy_law.h"
 #include "report/diagnosis_words.h"
 #include "report/handy.h"
@@ -50,7 +51,7 @@ Page baseline_page(const Header& header, const DetectionBaseline& b, const std::
       tests.rows.push_back({s.log, Cell(digits(1e3 * s.test->drive_span), 1e3 * s.test->drive_span),
                             Cell(digits(s.test->drive_band, 2), s.test->drive_band),
                             s.test->temperature
-                                ? Cell(digits(*s.test->temperature - 273.15), *s.test->temperature - 273.15)
+                                ? Cell(digits(*s.test->temperature - zero_celsius), *s.test->temperature - zero_celsius)
                                 : Cell("")});
     page.add(tests);
   }

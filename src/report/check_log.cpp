@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/celsius.h"
 #include "base/units.h"
 #include "fit/identifiability.h"
 #include "report/columns.h"
@@ -39,7 +40,8 @@ struct InUnit {
 
 std::string first_line(const LogSurvey& s) {
   std::string line = fmt::format("{} samples, {} at {} Hz", s.samples, duration(s.duration), digits(s.rate, 4));
-  if (s.temperature) line += fmt::format(", oil {} degC", digits(0.1 * std::round(10 * (*s.temperature - 273.15)), 3));
+  if (s.temperature)
+    line += fmt::format(", oil {} degC", digits(0.1 * std::round(10 * (*s.temperature - zero_celsius)), 3));
   line += s.closed_loop ? ", closed loop" : "";
   return line;
 }
@@ -265,9 +267,10 @@ Page check_log_page(const Header& header, const std::vector<LogCheck>& checks) {
     TablePart table{"Logs", "lrrrl", {"log", "lasts [s]", "rate [Hz]", "oil [degC]", "suspicious"}, {}, 0};
     for (const LogCheck& c : checks) {
       const LogSurvey& s = c.survey;
-      table.rows.push_back({s.path, Cell(digits(s.duration), s.duration), Cell(digits(s.rate, 4), s.rate),
-                            s.temperature ? Cell(digits(*s.temperature - 273.15), *s.temperature - 273.15) : Cell(""),
-                            suspicious_in(s).empty() ? "nothing" : kinds_of(s)});
+      table.rows.push_back(
+          {s.path, Cell(digits(s.duration), s.duration), Cell(digits(s.rate, 4), s.rate),
+           s.temperature ? Cell(digits(*s.temperature - zero_celsius), *s.temperature - zero_celsius) : Cell(""),
+           suspicious_in(s).empty() ? "nothing" : kinds_of(s)});
     }
     page.add(table);
   }

@@ -8,6 +8,7 @@
 #include <cstddef>
 #include <optional>
 
+#include "base/celsius.h"
 #include "report/columns.h"
 #include "report/handy.h"
 #include "report/parts.h"
@@ -15,8 +16,6 @@
 
 namespace servodx::report {
 namespace {
-
-constexpr double kelvin = 273.15;
 
 struct Words {
   const char *word, *name, *unit;
@@ -30,7 +29,7 @@ const Words& of(Condition c) { return words_of[static_cast<std::size_t>(c)]; }
 
 std::string size(Condition c, const std::optional<double>& x) {
   if (!x) return "-";
-  return c == Condition::oil ? fmt::format("{} degC", std::lround(*x - kelvin)) : handy(*x, of(c).unit);
+  return c == Condition::oil ? fmt::format("{} degC", std::lround(*x - zero_celsius)) : handy(*x, of(c).unit);
 }
 
 std::string range(Condition c, const std::optional<double>& lowest, const std::optional<double>& highest) {

@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 
+#include "base/celsius.h"
 #include "base/trouble.h"
 #include "diagnose/assessment.h"
 #include "diagnose/baseline.h"
@@ -25,8 +26,6 @@
 
 namespace servodx::report {
 namespace {
-
-constexpr double kelvin = 273.15;
 
 // By its error where that is known, else by its size.
 double moved(const MovedRow& row) {
@@ -320,7 +319,7 @@ DetectableWords detectable_words(const Diagnosis& d) {
 std::string test_words(const TestConditions& test) {
   std::string text =
       fmt::format("drive spans {} at about {} Hz", handy(test.drive_span, "A"), digits(test.drive_band, 2));
-  if (test.temperature) text += fmt::format(", oil {} degC", std::lround(*test.temperature - kelvin));
+  if (test.temperature) text += fmt::format(", oil {} degC", std::lround(*test.temperature - zero_celsius));
   return text;
 }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "base/normal.h"
 #include "report/columns.h"
 #include "report/explain_report.h"
 #include "report/explain_words.h"
@@ -18,7 +19,7 @@ std::string of_misfit(const Interval& g) {
 // "20.3 um (19.9 to 20.6, 90 %)"
 std::string size_of(const ExplainedParameter& p) {
   const HandyUnit unit = handy_unit(p.unit, p.value);
-  const double half = 1.645 * p.std_error * unit.factor, value = p.value * unit.factor;
+  const double half = normal_95_one_sided * p.std_error * unit.factor, value = p.value * unit.factor;
   std::string text = digits(value) + (unit.name.empty() ? "" : " " + unit.name);
   if (std::isfinite(half)) text += fmt::format(" ({} to {}, 90 %)", digits(value - half), digits(value + half));
   return text;
@@ -100,7 +101,7 @@ TablePart causes_table(const std::string& title, const std::vector<ExplainedCaus
     for (const std::string& o : c.confusable_with) others.push_back(words(o));
     for (const ExplainedParameter& p : c.parameters) {
       const HandyUnit unit = handy_unit(p.unit, p.value);
-      const double half = 1.645 * p.std_error;
+      const double half = normal_95_one_sided * p.std_error;
       table.rows.push_back({words(c.effect),
                             words(c.where),
                             p.name == c.effect ? std::string() : words(p.name),
@@ -174,7 +175,7 @@ void add_missing(Page& page, const ExplainResult& r) {
     Series value{"missing", {}, Role::named};
     Band band{"90 %", {}, {}};
     for (std::size_t k = 0; k < best.value[l].size(); ++k) {
-      const double v = best.value[l][k], half = 1.645 * best.error[l][k];
+      const double v = best.value[l][k], half = normal_95_one_sided * best.error[l][k];
       value.y.push_back(v * unit.factor);
       band.lower.push_back((v - half) * unit.factor), band.upper.push_back((v + half) * unit.factor);
     }

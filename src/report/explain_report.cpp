@@ -8,6 +8,7 @@
 #include "base/csv.h"
 #include "base/error.h"
 #include "base/json_text.h"
+#include "base/normal.h"
 #include "evidence/conditions.h"
 #include "evidence/heldout_gain.h"
 #include "explain/blocks.h"
@@ -170,7 +171,7 @@ void add_causes(std::string& text, const std::vector<ExplainedCause>& causes) {
                         c.by_blocks ? ", of what the blocks miss with measured signals between them" : "");
     for (const ExplainedParameter& p : c.parameters) {
       if (c.curve) break;  // its numbers stand as a curve below
-      const double half = 1.645 * p.std_error;
+      const double half = normal_95_one_sided * p.std_error;
       text += fmt::format("    {} {}, before {}\n", p.name,
                           std::isfinite(half) ? handy(p.value, p.unit) + " (" + handy(p.value - half, p.unit) + " to " +
                                                     handy(p.value + half, p.unit) + ", 90 %)"

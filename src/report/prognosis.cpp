@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "base/celsius.h"
 #include "report/columns.h"
 #include "report/handy.h"
 #include "report/prognosis_words.h"
@@ -55,8 +56,8 @@ std::string text_of(const CheckResult& r) {
                                 c.told ? "" : ": not told from the tuned " + handy(c.tuned, c.unit))
               : c.value != c.measured ? "measured " + handy(c.measured, c.unit)
                                       : ""});
-  std::string text =
-      fmt::format("{}: oil at {:.1f} degC ({})\n", r.log, r.temperature.value - 273.15, name_of(r.temperature.source));
+  std::string text = fmt::format("{}: oil at {:.1f} degC ({})\n", r.log, r.temperature.value - zero_celsius,
+                                 name_of(r.temperature.source));
   return text + rows.text();
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/celsius.h"
 #include "report/handy.h"
 #include "report/prognosis.h"
 #include "report/prognosis_words.h"
@@ -243,7 +244,7 @@ Page check_page(const Header& header, const CheckResult& r, const std::vector<do
       "A reading, no verdict: healthy logs of other kinds or oils read apart by far more than the errors below. "
       "What it means for this valve, its history says (servodx trend).";
   v.facts = {{"Checks recorded", std::to_string(r.checks.size())},
-             {"Oil", digits(r.temperature.value - 273.15) + " degC, " + name_of(r.temperature.source)},
+             {"Oil", digits(r.temperature.value - zero_celsius) + " degC, " + name_of(r.temperature.source)},
              {"Offset of the current", percent(r.offset) + " of rated"},
              {"Fit of the model", digits(r.adequacy, 2) + " times its usual error"}};
   if (r.null) v.facts.push_back({"Null", percent(*r.null) + " of rated"});

@@ -10,6 +10,7 @@
 
 #include "base/units.h"
 #include "servodx/rig.h"
+#include "signals/usual_step.h"
 
 namespace servodx {
 namespace {
@@ -21,7 +22,6 @@ constexpr std::size_t frozen_least = 50;   // samples
 constexpr double frozen_drive = 0.05;      // of the drive's range is swept meanwhile
 constexpr double frozen_usual_run = 3.0;   // a live channel repeats a value for fewer samples than this, on average
 constexpr double no_excitation = 0.005;    // drive range per rated current
-constexpr double gap_over_step = 1.8;      // time step per usual step
 
 // A spool is through in 10 to 30 ms; a stand's slow sweeps are another matter.
 constexpr double slowest = 50.0;          // [Hz]

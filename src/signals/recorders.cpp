@@ -9,6 +9,7 @@
 #include <unsupported/Eigen/FFT>
 
 #include "base/error.h"
+#include "signals/usual_step.h"
 
 namespace servodx {
 namespace {
@@ -19,14 +20,7 @@ constexpr int fewest_pieces = 4;           // to state an error
 constexpr double largest_skew = 1e-3;      // [-]
 constexpr double least_correlation = 0.7;  // of increments in a piece
 constexpr double rival = 0.9;              // another lag with this share of the best correlation: the signal repeats
-constexpr double gap_over_step = 3.0;
-
-double usual_step(const std::vector<double>& t) {
-  std::vector<double> d;
-  for (std::size_t k = 1; k < t.size(); ++k) d.push_back(t[k] - t[k - 1]);
-  std::nth_element(d.begin(), d.begin() + static_cast<long>(d.size() / 2), d.end());
-  return d[d.size() / 2];
-}
+constexpr double far_apart = 3.0;          // usual steps between two samples: nothing is said between them
 
 // A series that can be asked at any time; missing samples are bridged.
 class Series {
@@ -347,7 +341,7 @@ Log join_recorders(const Log& first, const Log& second, const JoinOptions& optio
     for (std::size_t k = 0; k < out.time.size(); ++k) {
       while (j + 2 < mapped.size() && mapped[j + 1] <= out.time[k]) ++j;
       const double width = mapped[j + 1] - mapped[j], part = (out.time[k] - mapped[j]) / width;
-      if (width > gap_over_step * usual)
+      if (width > far_apart * usual)
         channel.value[k] = part <= 0 ? x[j] : part >= 1 ? x[j + 1] : std::nan("");
       else
         channel.value[k] = is_demand(s) ? (part >= 1 ? x[j + 1] : x[j]) : x[j] + part * (x[j + 1] - x[j]);

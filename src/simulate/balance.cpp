@@ -19,6 +19,7 @@
 #include "parameters/list.h"
 #include "servodx/rig.h"
 #include "signals/smoother.h"
+#include "signals/usual_step.h"
 
 namespace servodx {
 namespace {
@@ -48,13 +49,6 @@ std::vector<double> bridged(const std::vector<double>& x) {
 
 namespace {
 
-double median_step(const std::vector<double>& time) {
-  std::vector<double> d;
-  for (std::size_t k = 1; k < time.size(); ++k) d.push_back(time[k] - time[k - 1]);
-  const auto middle = d.begin() + static_cast<long>(d.size() / 2);
-  std::nth_element(d.begin(), middle, d.end());
-  return *middle;
-}
 constexpr double cushion = 0.05;  // of the stroke
 constexpr double late = 1.5;      // median steps from one sample to the next: some are missing between them
 
@@ -64,7 +58,7 @@ constexpr double late = 1.5;      // median steps from one sample to the next: s
 std::vector<double> quiet(const std::vector<double>& time, const std::vector<double>& measured) {
   std::vector<double> out = measured;
   if (time.size() < 3) return out;
-  const double step = median_step(time);
+  const double step = usual_step(time);
   for (std::size_t from = 0, to; from < out.size(); from = std::max(to, from + 1)) {
     to = from;
     while (to < out.size() && std::isfinite(measured[to]) && (to == from || time[to] - time[to - 1] <= late * step))
@@ -228,7 +222,7 @@ Balance balance_with(const Scenario& in, const Measured& measured, const Paramet
     return out;
   const TrueSignals signals = true_signals(in, measured, p);
   const Rates rates = rates_along<Effects>(in, signals, p);
-  const double step = median_step(in.time);
+  const double step = usual_step(in.time);
   const auto half = std::max<std::size_t>(2, static_cast<std::size_t>(std::lround(0.5 * window / step)));
   for (std::size_t mid = half; mid + half < n; mid += half)
     if (const Window w{mid - half, mid, mid + half}; is_whole(w, in, measured, step))

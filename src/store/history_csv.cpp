@@ -9,6 +9,7 @@
 #include <string_view>
 #include <tuple>
 
+#include "base/celsius.h"
 #include "base/csv.h"
 #include "base/error.h"
 #include "base/units.h"
@@ -148,7 +149,7 @@ Recording recording_of(const Cells& cells, double hours, bool celsius, const Pla
   r.at = hours;
   const double cycled = counted(cells, cycles, row, false);
   if (!std::isnan(cycled)) r.cycles = cycled;
-  r.temperature = parsed(cells, temperature, row, false) + (celsius ? 273.15 : 0.0);
+  r.temperature = parsed(cells, temperature, row, false) + (celsius ? zero_celsius : 0.0);
   r.temperature_source = cells[temperature_source];
   if (std::isnan(r.temperature)) r.temperature = reference_kelvin, r.temperature_source = name_of(OilSource::assumed);
   if (r.temperature < coldest_oil || r.temperature > hottest_oil)

@@ -7,6 +7,7 @@
 #include <map>
 #include <stdexcept>
 
+#include "base/celsius.h"
 #include "base/csv.h"
 #include "base/error.h"
 #include "base/units.h"
@@ -53,7 +54,7 @@ std::vector<SeededReading> read_seeded_csv(const std::string& path) {
     const auto refuse = [&](std::size_t c, const std::string& mend) {
       throw InputError({path, cursor.line(), needed[c]}, "'" + cells[place[c]] + "' cannot be", mend);
     };
-    const double kelvins = number(temperature) + (kelvin ? 0.0 : 273.15);
+    const double kelvins = number(temperature) + (kelvin ? 0.0 : zero_celsius);
     if (kelvins < coldest_oil || kelvins > hottest_oil)
       refuse(temperature, "give the oil's temperature in the header's unit");
     if (number(truth) < 0) refuse(truth, "wear is 0 or more");
