@@ -7,10 +7,10 @@
 #include <cstdio>
 
 #include "base/random.h"
-#include "prognose/metrics.h"
 #include "prognose/trend.h"
 #include "prognose/trend_options.h"
 #include "prognose/valve_history.h"
+#include "prognosis/metrics.h"
 #include "prognosis/study.h"
 #include "prognosis/units.h"
 

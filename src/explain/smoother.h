@@ -56,7 +56,7 @@ SmootherResult smooth(const std::vector<LinearRun>& runs, const std::vector<doub
                       const std::function<bool(double)>& told = {});
 
 // One place with its intensity given, the walk `start` [unit] wide at the first sample, every sample counted in full
-// and the news as large as said.
+// and the news as large as said: for tests against exact answers.
 SmoothedInput smooth_at(const std::vector<LinearRun>& runs, int place, double intensity, double start);
 
 // Every `stride`-th sample of a run.

@@ -8,8 +8,8 @@
 // n points of the Jacobian, and a ladder of dampings tried at once, since lanes of a pack are nearly free.
 //
 // Limits: dense, n up to a few hundred, any number of rows (J, one block of it and the residuals of one ladder are
-// held). The residual must be smooth on the scale of `difference_step`. Finds one local minimum; genetic.h and
-// multi_start.h give the breadth. Why not Ceres' minimiser: decisions in box_least_squares.cpp.
+// held). The residual must be smooth on the scale of `difference_step`. Finds one local minimum; genetic.h gives
+// the breadth. Why not Ceres' minimiser: decisions in box_least_squares.cpp.
 //
 // Between two sets of differences the Jacobian learns from the steps that keep their promise (Broyden 1965); what ends
 // a search is always differences.

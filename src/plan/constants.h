@@ -42,7 +42,6 @@ inline constexpr double margin = 0.03;             // of a limit, kept free
 inline constexpr double tolerance_deviates = 2.0;  // of a healthy valve's tolerances that the limits hold for
 inline constexpr double worth_a_round = 1e-3;      // of information: less ends the search
 inline constexpr int batch = 6;                    // tests simulated at once: memory, not the result
-inline constexpr int random_tries = 200;           // draws until a random test keeps the limits
 
 // Below it oil parts: gas comes out and columns collapse. [Pa] gauge, an atmosphere below ours
 inline constexpr double no_tension = -1.0e5;

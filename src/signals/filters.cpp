@@ -155,11 +155,6 @@ void HighPass::operator()(std::span<double> x) const {
   for (std::size_t k = 0; k < x.size(); ++k) x[k] -= along / own_ * start_[k];
 }
 
-void copy_missing(std::span<const double> like, std::span<double> x) {
-  for (std::size_t k = 0; k < std::min(like.size(), x.size()); ++k)
-    if (std::isnan(like[k])) x[k] = missing_value;
-}
-
 std::vector<double> Filter::operator()(std::span<const double> time, std::span<const double> x) const {
   std::vector<double> y(x.begin(), x.end());
   if (window != 1) y = moving_average(y, window);

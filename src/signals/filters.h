@@ -3,7 +3,7 @@
 //
 // Each output is a linear function of the samples, with weights that depend on the time stamps and on which samples are
 // missing (NaN), never on the values. The identity above therefore holds where both have the same stamps and the same
-// samples missing: give the simulation the measurement's NaN first (copy_missing). A missing sample stays missing.
+// samples missing: give the simulation the measurement's NaN first. A missing sample stays missing.
 // Sources: the moving average and the mains notch of the GA fault-diagnosis paper; the high-pass removes drift.
 #pragma once
 #include <span>
@@ -44,9 +44,6 @@ class HighPass {
   std::vector<double> start_;        // what the state before the first sample has become; NaN where missing
   double own_ = 0;
 };
-
-// NaN into `x` wherever `like` has it.
-void copy_missing(std::span<const double> like, std::span<double> x);
 
 // The chain in this order; what is off costs nothing.
 struct Filter {

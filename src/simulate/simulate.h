@@ -41,7 +41,7 @@ long simulate_near(std::span<const NearJobs> logs, const SimulateOptions& option
 // Name of the instruction set in use: "avx512", "avx2" or "generic".
 std::string instruction_set();
 int pack_width();
-// Packs that this process has run so far; beside the runs asked for it tells how full they were.
+// Packs that this process has run so far: by it tests know that runs in company share packs.
 long packs_run();
 
 }  // namespace servodx

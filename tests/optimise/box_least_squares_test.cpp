@@ -3,15 +3,14 @@
 #include "optimise/box_least_squares.h"
 
 #include <gtest/gtest.h>
+#include <omp.h>
 
 #include <utility>
-#include <omp.h>
 
 #include "base/error.h"
 #include "base/random.h"
 #include "functions.h"
 #include "optimise/box_quadratic.h"
-#include "optimise/multi_start.h"
 #include "optimise/problem.h"
 #include "optimise/robust_loss.h"
 
@@ -371,65 +370,6 @@ TEST(BoxLeastSquares, ALongLogOfFortyParametersStaysModest) {
   const LeastSquaresResult result = minimise_least_squares(problem, Point(n, 0.6));
   EXPECT_EQ(result.reason, StopReason::converged);
   EXPECT_LT(result.evaluations, 400);
-}
-
-TEST(MultiStart, EachRunIsTheRunItWouldHaveBeenAloneAndAgreementIsCounted) {
-  const int n = 3;
-  LeastSquaresProblem problem{n, residuals_of(rastrigin(n)), {}};
-  std::vector<Point> starts;
-  Random random(2);
-  for (int k = 0; k < 12; ++k) {
-    Point p(n);
-    for (double& v : p) v = random.uniform();
-    starts.push_back(p);
-  }
-  long batches = 0;
-  const BatchEvaluate inner = problem.evaluate;
-  problem.evaluate = [&](std::span<const Point> points) {
-    ++batches;
-    return inner(points);
-  };
-  const MultiStartResult together = minimise_from_starts(problem, starts);
-  const long batches_together = std::exchange(batches, 0);
-  int agreeing = 0;
-  for (std::size_t k = 0; k < starts.size(); ++k) {
-    const LeastSquaresResult alone = minimise_least_squares(problem, starts[k]);
-    EXPECT_EQ(alone.point, together.runs[k].point);
-    EXPECT_EQ(alone.evaluations, together.runs[k].evaluations);
-    agreeing += alone.cost <= together.best.cost * 1.001 + 1e-9;
-  }
-  EXPECT_EQ(together.reached, agreeing);
-  EXPECT_GE(together.reached, 1);
-  EXPECT_LT(together.reached, 12);
-  EXPECT_LT(3 * batches_together, batches);
-  EXPECT_NE(together.summary.find(" of 12 starts"), std::string::npos);
-}
-
-TEST(MultiStart, ErrorsOfTheEvaluatorComeThrough) {
-  LeastSquaresProblem problem;
-  problem.n = 2;
-  long calls = 0;
-  problem.evaluate = [&](std::span<const Point> points) {
-    if (++calls == 3) throw std::runtime_error("disk full");
-    return residuals_of(rosenbrock(2))(points);
-  };
-  EXPECT_THROW(minimise_from_starts(problem, {{0.1, 0.2}, {0.9, 0.3}, {0.5, 0.5}}), std::runtime_error);
-}
-
-TEST(MultiStart, FailedStartsDoNotCountAsAgreement) {
-  LeastSquaresProblem problem;
-  problem.n = 1;
-  problem.evaluate = [](std::span<const Point> points) {
-    std::vector<Evaluation> values;
-    for (const Point& p : points) values.push_back({p[0] < 0.8, Eigen::VectorXd::Constant(1, p[0] - 0.2)});
-    return values;
-  };
-  const MultiStartResult result = minimise_from_starts(problem, {{0.5}, {0.9}, {0.1}});
-  EXPECT_EQ(result.reached, 2);
-  EXPECT_EQ(result.runs[1].reason, StopReason::start_failed);
-  const MultiStartResult none = minimise_from_starts(problem, {{0.9}});
-  EXPECT_EQ(none.best_run, -1);
-  EXPECT_EQ(none.reached, 0);
 }
 
 }  // namespace

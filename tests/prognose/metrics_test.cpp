@@ -1,5 +1,5 @@
 // Metrics of a life prediction against their definitions.
-#include "prognose/metrics.h"
+#include "prognosis/metrics.h"
 
 #include <gtest/gtest.h>
 

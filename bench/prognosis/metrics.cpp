@@ -1,4 +1,4 @@
-#include "prognose/metrics.h"
+#include "prognosis/metrics.h"
 
 #include <algorithm>
 #include <cmath>
