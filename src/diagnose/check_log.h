@@ -81,8 +81,8 @@ struct Identifiable {
 
 struct Visible {
   std::string fault, unit;
-  double least = 0, typical = 0;        // severities
-  double at_least = 0, at_typical = 0;  // deviates
+  double least = 0, typical = 0;  // severities
+  double deviates_at_least = 0, deviates_at_typical = 0;
 };
 
 struct Promise {

@@ -161,8 +161,8 @@ std::string text_of(const std::vector<LogCheck>& checks) {
     Columns faults("lrrrr", 4);
     faults.row({"fault", "at", "", "at", ""});
     for (const Visible& v : check.promise->faults)
-      faults.row(
-          {v.fault, handy(v.least, v.unit), digits(v.at_least, 2), handy(v.typical, v.unit), digits(v.at_typical, 2)});
+      faults.row({v.fault, handy(v.least, v.unit), digits(v.deviates_at_least, 2), handy(v.typical, v.unit),
+                  digits(v.deviates_at_typical, 2)});
     text += faults.text();
   }
   return text;
@@ -213,9 +213,9 @@ Json check_log_json(const std::vector<LogCheck>& checks) {
         faults.push_back({{"fault", v.fault},
                           {"unit", v.unit},
                           {"least", number(v.least)},
-                          {"deviate_at_least", number(v.at_least)},
+                          {"deviate_at_least", number(v.deviates_at_least)},
                           {"typical", number(v.typical)},
-                          {"deviate_at_typical", number(v.at_typical)}});
+                          {"deviate_at_typical", number(v.deviates_at_typical)}});
       one["identifiable"] = rows;
       one["visible_faults"] = faults;
       one["model_error_known"] = check.promise->error_known;
@@ -233,7 +233,8 @@ void add_visible(Page& page, const std::vector<Visible>& faults) {
             Mark{seen, "may show"},
             20.0};
   for (const Visible& f : faults)
-    for (const auto& [size, deviate] : {std::pair(f.least, f.at_least), std::pair(f.typical, f.at_typical)})
+    for (const auto& [size, deviate] :
+         {std::pair(f.least, f.deviates_at_least), std::pair(f.typical, f.deviates_at_typical)})
       bars.rows.push_back({words(f.fault) + ", " + handy(size, f.unit), deviate, digits(deviate, 2),
                            visibility(deviate),
                            deviate >= plain  ? Tone::good

@@ -74,9 +74,11 @@ std::vector<Visible> best_of(const std::vector<Promise>& promises) {
   std::vector<Visible> best;
   for (const Promise& p : promises)
     for (std::size_t k = 0; k < p.faults.size(); ++k) {
-      if (best.size() <= k) best.push_back(p.faults[k]), best.back().at_least = best.back().at_typical = 0;
-      best[k].at_least = std::fmax(best[k].at_least, p.faults[k].at_least);  // NaN where a simulation failed
-      best[k].at_typical = std::fmax(best[k].at_typical, p.faults[k].at_typical);
+      if (best.size() <= k)
+        best.push_back(p.faults[k]), best.back().deviates_at_least = best.back().deviates_at_typical = 0;
+      best[k].deviates_at_least =
+          std::fmax(best[k].deviates_at_least, p.faults[k].deviates_at_least);  // NaN where a simulation failed
+      best[k].deviates_at_typical = std::fmax(best[k].deviates_at_typical, p.faults[k].deviates_at_typical);
     }
   return best;
 }
@@ -177,9 +179,9 @@ GoodEnough good_enough(const TuneResult& result, const std::vector<Promise>& pro
     g.reasons.push_back("no second start reached the best valley: more --generations");
   g.best = best_of(promises);
   for (const Visible& v : g.best) {
-    if (!(v.at_typical >= seen))
+    if (!(v.deviates_at_typical >= seen))
       g.hidden.push_back(v.fault);
-    else if (!(v.at_least >= seen))
+    else if (!(v.deviates_at_least >= seen))
       g.faint.push_back(v.fault);
   }
   if (!g.hidden.empty())
@@ -208,9 +210,9 @@ Json to_json(const GoodEnough& g) {
     faults.push_back({{"fault", v.fault},
                       {"unit", v.unit},
                       {"least", v.least},
-                      {"deviate_at_least", number(v.at_least)},
+                      {"deviate_at_least", number(v.deviates_at_least)},
                       {"typical", v.typical},
-                      {"deviate_at_typical", number(v.at_typical)}});
+                      {"deviate_at_typical", number(v.deviates_at_typical)}});
   return {{"yes", g.trust == Trust::yes}, {"no", g.trust == Trust::no}, {"reasons", g.reasons},
           {"exceptions", g.exceptions},   {"hidden", g.hidden},         {"faint", g.faint},
           {"visible_faults", faults}};

@@ -674,7 +674,7 @@ TEST(TuneReport, GoodEnoughIsWhatPredictsHasArrivedAndWouldSeeTheFaults) {
   Promise log;
   log.faults = {{"sticky_spool", "-", 2.5, 20, 4, 30}, {"clogged_filter", "-", 0.15, 0.8, 0.5, 1}};
   Promise other = log;  // the fault that one log hides another may show
-  other.faults[1].at_typical = 12;
+  other.faults[1].deviates_at_typical = 12;
   GoodEnough good = good_enough(result, {log, other});
   EXPECT_EQ(good.trust, Trust::yes);
   EXPECT_EQ(good.errors, "error over noise on the held-out part: spool position 3");
