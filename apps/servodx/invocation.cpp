@@ -21,6 +21,7 @@
 #include "print_page.h"
 #include "report/columns.h"
 #include "report/handy.h"
+#include "report/page_head.h"
 #include "report/plain_page.h"
 #include "servodx/rig.h"
 #include "simulate/simulate.h"

@@ -19,6 +19,7 @@
 #include "parameters/list.h"
 #include "prognose/check.h"
 #include "prognose/check_name.h"
+#include "prognose/life.h"
 #include "prognose/limits.h"
 #include "prognose/trend.h"
 #include "prognose/trend_options.h"

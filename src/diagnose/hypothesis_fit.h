@@ -7,6 +7,7 @@
 #include "diagnose/hypotheses.h"
 #include "diagnose/visible.h"
 #include "faults/fault.h"
+#include "fit/chart.h"
 #include "fit/error_model.h"
 #include "fit/log_data.h"
 #include "simulate/scenario.h"

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "effects/unexplained.h"
 #include "fit/log_data.h"
 #include "optimise/problem.h"
 #include "parameters/list.h"
@@ -57,24 +58,30 @@ BlockReplay pooled(ReplayedBlock& block) {
 }
 
 ReplayedBlock to_spool() {
-  return {{"current -> spool", {"drive", "first_stage", "spool", "sensor:spool_position"}, "current", "A"}, {}};
+  return {{"current -> spool", {"drive", "first_stage", "spool", "sensor:spool_position"}, "current", "A"},
+          {},
+          Unexplained::drive};
 }
 ReplayedBlock to_flow_a() {
   return {{"spool and pressures -> flow A",
            {"metering", "flow_a", "supply", "sensor:spool_position", "sensor:pressure_a"},
            "flow_a",
            "m3/s"},
-          {}};
+          {},
+          Unexplained::at_a};
 }
 ReplayedBlock to_flow_b() {
   return {{"spool and pressures -> flow B",
            {"metering", "flow_b", "supply", "sensor:spool_position", "sensor:pressure_b"},
            "flow_b",
            "m3/s"},
-          {}};
+          {},
+          Unexplained::at_b};
 }
 ReplayedBlock to_motion() {
-  return {{"pressures -> motion", {"piston_force", "sensor:pressure_a", "sensor:pressure_b"}, "piston_force", "N"}, {}};
+  return {{"pressures -> motion", {"piston_force", "sensor:pressure_a", "sensor:pressure_b"}, "piston_force", "N"},
+          {},
+          Unexplained::piston};
 }
 
 Measured measured_of(const LogData& data) {

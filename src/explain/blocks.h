@@ -38,6 +38,7 @@ struct ReplayedPart {
 struct ReplayedBlock {
   BlockReplay about;
   std::vector<ReplayedPart> parts;
+  int curve_place = -1;  // the place of Unexplained whose curve adds what the block misses
 };
 std::vector<ReplayedBlock> replay_parts(const ValveSubject& subject, const Point& point, int log = -1);
 

@@ -144,9 +144,8 @@ void guess_curves(ValveSubject& subject, const std::vector<Curve>& curves, const
   for (const Curve& curve : curves) {
     const U::PlaceInfo& place = U::places[curve.place];
     // The block whose missing quantity is what the curve adds.
-    const auto block = std::find_if(blocks.begin(), blocks.end(), [&](const ReplayedBlock& b) {
-      return curve.place == U::drive ? b.about.quantity == "current" : b.about.quantity == place.where;
-    });
+    const auto block = std::find_if(blocks.begin(), blocks.end(),
+                                    [&](const ReplayedBlock& b) { return b.curve_place == curve.place; });
     if (block == blocks.end()) continue;
     // Least squares on the knots; a knot that the logs do not reach stays at rest.
     constexpr double rest = 1e-6;

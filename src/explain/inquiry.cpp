@@ -9,6 +9,7 @@
 #include "explain/constants.h"
 #include "explain/score.h"
 #include "fit/log_data.h"
+#include "servodx/explain.h"
 #include "simulate/scenario.h"
 
 namespace servodx {

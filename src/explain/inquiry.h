@@ -18,6 +18,7 @@
 #include "explain/subject.h"
 #include "explain/valve.h"
 #include "parameters/table.h"
+#include "servodx/explain.h"
 #include "servodx/log.h"
 #include "servodx/rig.h"
 

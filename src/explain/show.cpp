@@ -12,6 +12,7 @@
 #include "fit/log_data.h"
 #include "optimise/problem.h"
 #include "servodx/log.h"
+#include "signals/signal.h"
 #include "simulate/scenario.h"
 
 namespace servodx {
@@ -189,7 +190,8 @@ Piece piece_of(const Scenario& s, const Trajectory& run, std::vector<double> res
   p.residual = std::move(residual);
   p.command = s.command;
   p.inputs.push_back({"command", s.command});
-  if (!s.supply_pressure.empty()) p.inputs.push_back({"supply_pressure", s.supply_pressure});
+  if (!s.supply_pressure.empty())
+    p.inputs.push_back({std::string(info(Signal::supply_pressure).name), s.supply_pressure});
   if (!s.load_force.empty()) p.inputs.push_back({"load_force", s.load_force});
   const std::vector<double> velocity = rate_of_change(piston ? *piston : spool ? *spool : s.command, s.time);
   if (piston)

@@ -7,6 +7,7 @@
 #include "effects/effect.h"
 #include "effects/row_effects.h"
 #include "explain/sensor_causes.h"
+#include "explain/subject.h"
 #include "fit/chart.h"
 #include "parameters/list.h"
 

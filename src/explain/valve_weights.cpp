@@ -5,6 +5,7 @@
 #include <string>
 #include <utility>
 
+#include "explain/subject.h"
 #include "explain/valve.h"
 #include "fit/error_model.h"
 #include "fit/log_data.h"

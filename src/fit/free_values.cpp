@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
 
 #include "base/error.h"
 #include "effects/effect.h"
@@ -16,6 +17,8 @@
 
 namespace servodx {
 namespace {
+
+std::string name_of_row(int at) { return std::string(parameter_list[static_cast<std::size_t>(at)].name); }
 
 // Position of a table row in a candidate.
 int candidate_position(const Table& table, int row) {
@@ -77,8 +80,8 @@ std::vector<FreeValue> nuisance_values(const LogData& log, int l, const Paramete
   const bool pressures = has(Signal::pressure_a) && has(Signal::pressure_b);
   // Valves are delivered nulled within 2 % and move by some per cent with temperature.
   const double null = base[row::servovalve_null];
-  out.push_back({"servovalve_null", row::servovalve_null, null - null_limit, null + null_limit, false, null,
-                 0.02 / (2 * null_limit), l});
+  out.push_back({name_of_row(row::servovalve_null), row::servovalve_null, null - null_limit, null + null_limit, false,
+                 null, 0.02 / (2 * null_limit), l});
   if (!log.scenario.command_slope)
     out.push_back({"command_slope", nuisance::command_slope, 0.0, 1.0, false, 0.5, 1.0, l});
   // Rigs run some 20 K about 40 degC, where a mineral oil is 2.2 times as thick, or as thin; -20 degC is 30 times.
@@ -88,7 +91,7 @@ std::vector<FreeValue> nuisance_values(const LogData& log, int l, const Paramete
     out.push_back({ViscosityChange::parameters[0].name, at, thinnest, thickest, true,
                    std::clamp(base[at], thinnest, thickest), std::log(2.2) / std::log(thickest / thinnest), l});
   }
-  if (pressures) out.push_back({"air_fraction", row::air_fraction, 2e-4, 0.08, true, 0.005, 0.2, l});
+  if (pressures) out.push_back({name_of_row(row::air_fraction), row::air_fraction, 2e-4, 0.08, true, 0.005, 0.2, l});
   // Offset of the spool sensor against the hydraulic null: 1 % of a stroke bounds it; its spread is a tenth of that.
   if (has(Signal::spool_position))
     out.push_back({"spool_offset", nuisance::spool_offset, -5e-6, 5e-6, false, 0.0, 0.1, l});

@@ -7,6 +7,7 @@
 
 #include "base/csv.h"
 #include "base/key_error.h"
+#include "effects/mount_compliance.h"
 #include "parameters/list.h"
 #include "servodx/rig.h"
 
@@ -284,7 +285,7 @@ class Facts {
       set_within(row::dead_volume_b, *v, volumes, "actuator.dead_volume_b", "");
     if (fact("actuator.area_a")) as_large_as_the_cylinder();
     // An effect's row: only an extended table has it.
-    const int mount = table_.find("mount_compliance");
+    const int mount = table_.find(MountCompliance::parameters[0].name);
     if (const auto k = fact("actuator.mount_stiffness"); k && mount >= 0)
       set(mount, 1 / *k, table_[mount].lower, std::max(table_[mount].upper, 10 / *k), "actuator.mount_stiffness",
           "1 / mount_stiffness");

@@ -13,6 +13,7 @@
 #include "diagnose/baseline.h"
 #include "diagnose/records.h"
 #include "evidence/conditions.h"
+#include "evidence/operating_point.h"
 #include "faults/fault.h"
 #include "faults/registry.h"
 #include "report/conditions.h"

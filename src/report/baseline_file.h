@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "diagnose/baseline.h"
 #include "diagnose/diagnose.h"
 #include "report/json.h"
 

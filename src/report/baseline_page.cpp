@@ -3,10 +3,15 @@
 #include <algorithm>
 
 #include "base/celsius.h"
+#include "diagnose/baseline.h"
 #include "diagnose/healthy_law.h"
+#include "fit/replay.h"
 #include "report/diagnosis_words.h"
 #include "report/handy.h"
+#include "report/json.h"
+#include "report/page.h"
 #include "report/pages.h"
+#include "report/parts.h"
 #include "report/replay_part.h"
 
 namespace servodx::report {

@@ -8,6 +8,9 @@
 #include "curves/curves.h"
 #include "report/json.h"
 #include "report/page.h"
+#include "report/page_head.h"
+#include "report/parts.h"
+#include "servodx/log.h"
 #include "signals/signal.h"
 
 namespace servodx::report {

@@ -12,9 +12,12 @@
 #include "base/sha256.h"
 #include "base/trouble.h"
 #include "base/units.h"
+#include "curves/curves.h"
 #include "report/certificate.h"
 #include "report/columns.h"
 #include "report/handy.h"
+#include "servodx/error.h"
+#include "servodx/log.h"
 
 namespace servodx::report {
 namespace {

@@ -1,7 +1,11 @@
 #include <fmt/format.h>
 
 #include "report/certificate.h"
+#include "report/diagnosis_words.h"
 #include "report/handy.h"
+#include "report/json.h"
+#include "report/page.h"
+#include "report/page_head.h"
 #include "report/parts.h"
 #include "report/replay_part.h"
 

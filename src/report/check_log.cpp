@@ -15,6 +15,7 @@
 #include "report/parts.h"
 #include "report/replay_part.h"
 #include "report/row_verdict_word.h"
+#include "servodx/table.h"
 #include "signals/signal.h"
 #include "servodx/table.h"
 

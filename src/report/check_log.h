@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "diagnose/check_log.h"
+#include "report/json.h"
 #include "report/page.h"
 
 namespace servodx::report {

@@ -7,6 +7,7 @@
 #include "evidence/operating_point.h"
 #include "report/json.h"
 #include "report/page.h"
+#include "servodx/log.h"
 #include "signals/signal.h"
 #include "servodx/log.h"
 

@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "base/units.h"
+#include "curves/frequency_response.h"
 #include "report/columns.h"
 #include "report/handy.h"
 #include "report/line_chart.h"

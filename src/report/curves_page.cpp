@@ -6,9 +6,16 @@
 #include <optional>
 
 #include "base/units.h"
+#include "curves/curves.h"
+#include "curves/frequency_response.h"
+#include "report/certificate.h"
 #include "report/curves.h"
 #include "report/handy.h"
+#include "report/json.h"
+#include "report/page.h"
+#include "report/parts.h"
 #include "report/replay_part.h"
+#include "servodx/log.h"
 
 namespace servodx::report {
 namespace {

@@ -3,11 +3,24 @@
 #include <algorithm>
 
 #include "base/normal.h"
+#include "evidence/heldout_gain.h"
+#include "explain/blocks.h"
+#include "explain/curves.h"
+#include "explain/explain.h"
+#include "explain/missing.h"
+#include "explain/outcome.h"
+#include "explain/show.h"
+#include "fit/replay.h"
 #include "report/columns.h"
 #include "report/explain_report.h"
 #include "report/explain_words.h"
 #include "report/handy.h"
+#include "report/json.h"
+#include "report/page.h"
+#include "report/parts.h"
 #include "report/replay_part.h"
+#include "servodx/log.h"
+#include "servodx/tune.h"
 
 namespace servodx::report {
 namespace {

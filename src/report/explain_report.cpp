@@ -24,6 +24,7 @@
 #include "report/explain_words.h"
 #include "report/handy.h"
 #include "servodx/log.h"
+#include "servodx/tune.h"
 #include "tune/tune.h"
 
 namespace servodx::report {

@@ -3,6 +3,7 @@
 #include <string>
 
 #include "explain/explain.h"
+#include "explain/healthy.h"
 #include "fit/replay.h"
 #include "report/json.h"
 #include "report/page.h"

@@ -8,6 +8,7 @@
 
 #include "base/trouble.h"
 #include "base/wilson.h"
+#include "fleet/fleet_verdict.h"
 #include "report/columns.h"
 #include "report/fleet_words.h"
 #include "report/handy.h"

@@ -5,9 +5,13 @@
 #include <map>
 
 #include "base/wilson.h"
+#include "fleet/confusion.h"
+#include "fleet/fleet_verdict.h"
+#include "fleet/gather.h"
 #include "report/fleet.h"
 #include "report/fleet_words.h"
 #include "report/handy.h"
+#include "report/json.h"
 #include "report/page.h"
 #include "report/parts.h"
 #include "report/replay_part.h"

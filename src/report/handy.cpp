@@ -8,6 +8,8 @@
 #include <string_view>
 
 #include "base/units.h"
+#include "servodx/tune.h"
+#include "signals/signal.h"
 
 namespace servodx::report {
 namespace {

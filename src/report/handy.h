@@ -4,6 +4,7 @@
 #pragma once
 #include <string>
 
+#include "servodx/tune.h"
 #include "tune/tune.h"
 
 namespace servodx::report {

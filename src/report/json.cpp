@@ -13,6 +13,7 @@
 #include "diagnose/record_law.h"
 #include "diagnose/records.h"
 #include "evidence/conditions.h"
+#include "evidence/operating_point.h"
 #include "report/conditions.h"
 #include "report/diagnosis_words.h"
 #include "report/handy.h"

@@ -6,9 +6,13 @@
 #include <string>
 #include <vector>
 
+#include "diagnose/assessment.h"
+#include "diagnose/baseline.h"
 #include "diagnose/diagnose.h"
+#include "diagnose/judge.h"
 #include "evidence/conditions.h"
 #include "report/page_head.h"
+#include "servodx/tune.h"
 #include "tune/tune.h"
 
 namespace servodx::report {

@@ -10,6 +10,7 @@
 #include "report/assets.h"
 #include "report/handy.h"
 #include "report/html.h"
+#include "report/page_head.h"
 #include "report/thin.h"
 
 namespace servodx::report {

@@ -12,6 +12,7 @@
 #include "base/csv.h"
 #include "base/key_error.h"
 #include "report/handy.h"
+#include "servodx/error.h"
 
 namespace servodx::report {
 namespace {

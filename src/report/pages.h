@@ -3,9 +3,12 @@
 #include <string>
 #include <vector>
 
+#include "diagnose/baseline.h"
 #include "diagnose/diagnose.h"
+#include "diagnose/judge.h"
 #include "fit/replay.h"
 #include "report/certificate.h"
+#include "report/json.h"
 #include "report/page.h"
 #include "report/tune_words.h"
 #include "tune/tune.h"

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "report/parts.h"
+#include "servodx/tune.h"
 #include "tune/tune.h"
 
 namespace servodx::report {

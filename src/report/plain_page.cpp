@@ -4,7 +4,10 @@
 
 #include "base/units.h"
 #include "report/handy.h"
+#include "report/json.h"
+#include "report/parts.h"
 #include "report/replay_part.h"
+#include "servodx/log.h"
 
 namespace servodx::report {
 namespace {

@@ -4,7 +4,9 @@
 #include <vector>
 
 #include "fit/log_data.h"
+#include "report/json.h"
 #include "report/page.h"
+#include "servodx/log.h"
 
 namespace servodx::report {
 

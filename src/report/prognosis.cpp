@@ -5,6 +5,8 @@
 #include <cmath>
 
 #include "base/celsius.h"
+#include "prognose/level.h"
+#include "prognose/life.h"
 #include "report/columns.h"
 #include "report/handy.h"
 #include "report/prognosis_words.h"

@@ -4,7 +4,17 @@
 #include <cmath>
 
 #include "base/celsius.h"
+#include "prognose/check.h"
+#include "prognose/check_name.h"
+#include "prognose/level.h"
+#include "prognose/life.h"
+#include "prognose/trend.h"
+#include "prognose/trend_state.h"
+#include "report/diagnosis_words.h"
 #include "report/handy.h"
+#include "report/json.h"
+#include "report/page.h"
+#include "report/parts.h"
 #include "report/prognosis.h"
 #include "report/prognosis_words.h"
 #include "report/replay_part.h"

@@ -9,6 +9,9 @@
 #include "base/units.h"
 #include "fit/log_data.h"
 #include "report/handy.h"
+#include "report/parts.h"
+#include "servodx/log.h"
+#include "signals/signal.h"
 
 namespace servodx::report {
 namespace {

@@ -3,6 +3,7 @@
 #include <string>
 
 #include "fit/identifiability.h"
+#include "servodx/table.h"
 
 namespace servodx::report {
 

@@ -8,6 +8,8 @@
 #include "base/student.h"
 #include "report/columns.h"
 #include "report/handy.h"
+#include "report/json.h"
+#include "report/parts.h"
 #include "report/replay_part.h"
 
 namespace servodx::report {

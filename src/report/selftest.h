@@ -3,6 +3,7 @@
 #include <string>
 
 #include "fit/selftest.h"
+#include "report/json.h"
 #include "report/page.h"
 
 namespace servodx::report {

@@ -16,6 +16,7 @@
 #include "diagnose/moved.h"
 #include "diagnose/record_law.h"
 #include "fit/identifiability.h"
+#include "parameters/list.h"
 #include "report/columns.h"
 #include "report/conditions.h"
 #include "report/diagnosis_words.h"
@@ -204,7 +205,9 @@ std::string text_of(const Diagnosis& d, const TextOptions& options) {
   }
 
   auto [by_fault, in_health] = moved_parts(d);
-  std::erase_if(in_health, [](const MovedRow& p) { return p.name == "servovalve_null"; });  // it has a line of its own
+  std::erase_if(in_health, [](const MovedRow& p) {
+    return p.name == parameter_list[row::servovalve_null].name;  // it has a line of its own
+  });
   constexpr std::size_t most = 4;
   std::string text = first + "\n" + table.text();
   if (!by_fault.empty())

@@ -3,7 +3,9 @@
 #include <string>
 #include <vector>
 
+#include "diagnose/baseline.h"
 #include "diagnose/diagnose.h"
+#include "diagnose/judge.h"
 #include "report/tune_words.h"
 #include "tune/tune.h"
 

@@ -15,6 +15,7 @@
 #include "report/parts.h"
 #include "report/replay_part.h"
 #include "report/tune_words.h"
+#include "servodx/table.h"
 #include "servodx/tune.h"
 #include "tune/tune.h"
 

@@ -11,6 +11,7 @@
 #include "report/handy.h"
 #include "report/line_chart.h"
 #include "report/replay_part.h"
+#include "valve_maps/valve_numbers.h"
 
 namespace servodx::report {
 namespace {

@@ -6,6 +6,7 @@
 #include "report/json.h"
 #include "report/page.h"
 #include "valve_maps/compare.h"
+#include "valve_maps/valve_numbers.h"
 
 namespace servodx::report {
 

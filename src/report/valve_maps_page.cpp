@@ -4,8 +4,13 @@
 #include "base/units.h"
 #include "report/columns.h"
 #include "report/handy.h"
+#include "report/json.h"
+#include "report/page.h"
+#include "report/parts.h"
 #include "report/replay_part.h"
 #include "report/valve_maps.h"
+#include "valve_maps/compare.h"
+#include "valve_maps/valve_numbers.h"
 
 namespace servodx::report {
 namespace {

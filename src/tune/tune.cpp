@@ -20,6 +20,7 @@
 #include "optimise/problem.h"
 #include "servodx/rig.h"
 #include "simulate/scenario.h"
+#include "tune/constants.h"
 #include "tune/earned.h"
 #include "tune/scope.h"
 #include "tune/screen.h"

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "faults/fault.h"
 #include "faults/registry.h"
 #include "servodx/error.h"
 #include "temporary_folder.h"

@@ -9,10 +9,13 @@
 
 #include "base/random.h"
 #include "diagnose/decide.h"
+#include "faults/record.h"
 #include "faults/registry.h"
 #include "fit/log_data.h"
 #include "parameters/list.h"
+#include "servodx/log.h"
 #include "shipped_data.h"
+#include "simulate/scenario.h"
 
 namespace servodx {
 namespace {

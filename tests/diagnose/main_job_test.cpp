@@ -5,9 +5,18 @@
 #include <algorithm>
 #include <chrono>
 
+#include "diagnose/baseline.h"
+#include "diagnose/decide.h"
 #include "diagnose/diagnose.h"
+#include "diagnose/judge.h"
+#include "faults/fault.h"
 #include "faults/registry.h"
+#include "servodx/log.h"
+#include "servodx/rig.h"
+#include "servodx/table.h"
+#include "servodx/tune.h"
 #include "shipped_data.h"
+#include "tune/tune.h"
 
 namespace servodx {
 namespace {

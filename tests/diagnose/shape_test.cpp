@@ -8,10 +8,13 @@
 #include "effects/registry.h"
 #include "effects/stiction.h"
 #include "faults/fault.h"
+#include "faults/record.h"
 #include "faults/registry.h"
+#include "fit/chart.h"
 #include "fit/log_data.h"
 #include "parameters/list.h"
 #include "shipped_data.h"
+#include "simulate/scenario.h"
 
 namespace servodx {
 namespace {

@@ -9,9 +9,14 @@
 #include "diagnose/diagnose.h"
 #include "diagnose/hypotheses.h"
 #include "diagnose/hypothesis_fit.h"
+#include "faults/fault.h"
 #include "faults/registry.h"
 #include "fit/error_model.h"
+#include "fit/log_data.h"
+#include "servodx/rig.h"
+#include "servodx/table.h"
 #include "shipped_data.h"
+#include "simulate/scenario.h"
 #include "simulate/simulate.h"
 
 namespace servodx {

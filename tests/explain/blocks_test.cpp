@@ -3,8 +3,13 @@
 
 #include <cmath>
 
+#include "fit/log_data.h"
 #include "fit/support.h"
+#include "parameters/list.h"
+#include "servodx/log.h"
+#include "shipped_data.h"
 #include "simulate/balance.h"
+#include "simulate/scenario.h"
 
 namespace servodx {
 namespace {

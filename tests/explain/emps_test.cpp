@@ -14,6 +14,10 @@
 #include <filesystem>
 
 #include "explain/engine.h"
+#include "explain/fit_causes.h"
+#include "explain/outcome.h"
+#include "explain/subject.h"
+#include "optimise/problem.h"
 
 namespace servodx {
 namespace {

@@ -6,8 +6,14 @@
 #include <cmath>
 
 #include "base/random.h"
+#include "explain/cause_score.h"
 #include "explain/deviance.h"
+#include "explain/fit_causes.h"
+#include "explain/outcome.h"
+#include "explain/subject.h"
 #include "explain/ties.h"
+#include "optimise/box_least_squares.h"
+#include "optimise/problem.h"
 
 namespace servodx {
 namespace {

@@ -6,6 +6,8 @@
 #include <optional>
 #include <vector>
 
+#include "explain/outcome.h"
+
 namespace servodx {
 namespace {
 

@@ -8,7 +8,13 @@
 
 #include "base/random.h"
 #include "explain/missing.h"
+#include "explain/valve.h"
+#include "fit/log_data.h"
+#include "parameters/list.h"
+#include "servodx/rig.h"
+#include "servodx/table.h"
 #include "signals/log.h"
+#include "simulate/scenario.h"
 
 namespace servodx {
 

@@ -7,6 +7,8 @@
 #include <cmath>
 
 #include "explain/missing_support.h"
+#include "servodx/log.h"
+#include "servodx/rig.h"
 
 namespace servodx {
 namespace {

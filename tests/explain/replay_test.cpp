@@ -8,10 +8,21 @@
 #include <cmath>
 
 #include "effects/registry.h"
+#include "effects/sampled_lag.h"
+#include "effects/sensor_response.h"
+#include "effects/unexplained.h"
+#include "effects/viscosity_change.h"
+#include "explain/cause_score.h"
 #include "explain/curves.h"
 #include "explain/engine.h"
+#include "explain/fit_causes.h"
 #include "explain/missing_support.h"
 #include "explain/score.h"
+#include "explain/subject.h"
+#include "explain/valve.h"
+#include "parameters/list.h"
+#include "servodx/log.h"
+#include "simulate/scenario.h"
 
 namespace servodx {
 namespace {

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "effects/armature_angle.h"
+#include "effects/effect.h"
 #include "effects/flow_meter_lag.h"
 #include "effects/mains_pickup.h"
 #include "effects/registry.h"
@@ -14,6 +15,7 @@
 #include "effects/unexplained.h"
 #include "effects/viscosity_change.h"
 #include "explain/sought_cause.h"
+#include "explain/subject.h"
 #include "fit/log_data.h"
 #include "parameters/list.h"
 #include "parameters/table.h"

@@ -42,8 +42,7 @@ READERS = {
 # What is compared elsewhere, each text by itself: file, texts, why.
 COMPARED = {
     "apps/servodx/history_command.cpp": ({"ok", ".csv"}, "SQLite's answer to a check of integrity; the ending of a file"),
-    "src/explain/curves.cpp": ({"current"}, "to be typed"),
-    "src/fit/nominal.cpp": ({"-", "mount_compliance", "valve.first_stage", "jet_pipe"}, "to be typed"),
+    "src/fit/nominal.cpp": ({"-", "valve.first_stage", "jet_pipe"}, "the unit of a pure number; a word of the rig file"),
     "src/tune/settle.cpp": ({"all"}, "a user's word: --profile all"),
     "src/prognose/monitor.cpp": ({"linear", "A"}, "names of the monitor's models, as its user gives them"),
     "src/rig/facts.cpp": ({","}, "layout of a line of text"),
@@ -115,13 +114,9 @@ def registry_names():
 WRITTEN = {
     "src/effects/row_effects.cpp": ({"stiction", "hose_compliance", "cross_piston_leakage"},
                                     "their own file: two are called as their row, one joins an effect's test"),
-    "src/explain/show.cpp": ({"supply_pressure"}, "to be looked at"),
     "src/report/conditions.cpp": ({"supply_pressure", "return_pressure"}, "conditions of a log, called as the signals"),
-    "src/fit/free_values.cpp": ({"servovalve_null", "air_fraction"}, "to be looked at"),
-    "src/fit/nominal.cpp": ({"mount_compliance"}, "to be looked at"),
-    "src/report/explain_report.cpp": ({"air_fraction"}, "to be looked at"),
-    "src/report/explain_words.cpp": ({"unexplained"}, "to be looked at"),
-    "src/report/text.cpp": ({"servovalve_null"}, "to be looked at"),
+    "src/report/explain_report.cpp": ({"air_fraction"}, "a key of a baseline's file, whatever the row is called"),
+    "src/report/explain_words.cpp": ({"unexplained"}, "a verdict's word, not the effect's"),
     "src/signals/signal.cpp": ({"supply_pressure", "return_pressure"}, "these two signals are called as their rows"),
 }
 # The virtual rig shares no list with the model, on purpose; its parameters and faults go by the field's words.

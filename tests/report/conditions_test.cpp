@@ -8,6 +8,9 @@
 #include <string>
 #include <vector>
 
+#include "evidence/operating_point.h"
+#include "report/json.h"
+
 namespace servodx::report {
 namespace {
 

@@ -8,6 +8,8 @@
 #include <limits>
 
 #include "report/html.h"
+#include "report/json.h"
+#include "report/parts.h"
 #include "report/thin.h"
 
 namespace servodx::report {

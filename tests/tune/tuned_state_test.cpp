@@ -4,7 +4,12 @@
 #include <gtest/gtest.h>
 
 #include "base/error.h"
+#include "fit/error_model.h"
 #include "recovery/twins.h"
+#include "servodx/log.h"
+#include "servodx/table.h"
+#include "servodx/tune.h"
+#include "shipped_data.h"
 #include "temporary_folder.h"
 #include "tune/tune.h"
 

@@ -22,6 +22,8 @@
 #include "report/pages.h"
 #include "report/tune_words.h"
 #include "servodx/log.h"
+#include "servodx/table.h"
+#include "servodx/tune.h"
 #include "tune/tune.h"
 
 namespace {
