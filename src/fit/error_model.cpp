@@ -24,6 +24,11 @@ constexpr double prior_worth = 4;
 // nothing of the floor, and the next log may rest. A log speaks with so many independent samples.
 constexpr double prior_spread = 1;
 constexpr double log_worth = 20;
+// The descent to floor and slope, in their logs: steps from a factor of five to one of 10 %, the last above last_step.
+// Not examined.
+constexpr double first_step = 1.6, last_step = 0.05;
+constexpr double least_fall = 1e-9;  // of the cost: less is rounding
+constexpr double lowest = 12;        // below the residual's own size: e^-12 of it is nothing
 
 double square(double x) { return x * x; }
 
@@ -106,71 +111,109 @@ double effective_fraction(const std::vector<double>& w) {
   return std::clamp(1.0 / tau, 1.0 / static_cast<double>(n), 1.0);
 }
 
+namespace {
+
+// What the logs that have a channel say of it.
+struct PooledChannel {
+  std::vector<std::vector<double>> residuals, activities;  // [log][sample]
+  std::vector<double> noises, rates;                       // [log] [SI], [1/s]
+};
+
+PooledChannel pooled(const FitProblem& problem, const std::vector<Trajectory>& t, Signal signal) {
+  PooledChannel out;
+  for (std::size_t l = 0; l < t.size(); ++l) {
+    if (!t[l].ok) continue;
+    const auto& channels = problem.logs()[l]->channels;
+    const std::vector<double>& time = problem.logs()[l]->scenario.time;
+    for (std::size_t c = 0; c < channels.size(); ++c)
+      if (channels[c].signal == signal) {
+        out.residuals.push_back(problem.raw_residual(static_cast<int>(l), static_cast<int>(c), t[l]));
+        out.activities.push_back(activity(time, t[l].signals[channels[c].simulated]));
+        out.noises.push_back(channels[c].noise);
+        out.rates.push_back(static_cast<double>(time.size() - 1) / (time.back() - time.front()));
+      }
+  }
+  return out;
+}
+
+// -2 ln of likelihood and prior of a channel's floor and slope, over the samples. Each log weighs the same in it: a
+// long quiet one must not drown a short lively one.
+class ChannelCost {
+ public:
+  explicit ChannelCost(const PooledChannel& channel) : channel_(channel) {
+    double sum_r2 = 0, sum_a2 = 0, n = 0;
+    for (std::size_t i = 0; i < channel.residuals.size(); ++i)
+      for (std::size_t k = 0; k < channel.residuals[i].size(); ++k)
+        if (!std::isnan(channel.residuals[i][k]))
+          sum_r2 += square(channel.residuals[i][k]), sum_a2 += square(channel.activities[i][k]), ++n;
+    rms = std::sqrt(sum_r2 / n), rms_activity = std::sqrt(sum_a2 / n);
+  }
+  double operator()(double floor, double slope) const {
+    double total = 0;
+    for (std::size_t i = 0; i < channel_.residuals.size(); ++i) {
+      double one = 0;
+      long count = 0;
+      for (std::size_t k = 0; k < channel_.residuals[i].size(); ++k) {
+        if (std::isnan(channel_.residuals[i][k])) continue;
+        const double s2 = square(channel_.noises[i]) + square(floor) + square(slope * channel_.activities[i][k]);
+        one += std::log(s2) + square(channel_.residuals[i][k]) / s2;
+        ++count;
+      }
+      total += one / static_cast<double>(std::max(1L, count));
+    }
+    for (double share : {floor / rms, slope * rms_activity / rms})
+      total += square(std::log(std::sqrt(2.0) * share)) / square(prior_spread) / log_worth;
+    return total;
+  }
+  double rms = 0, rms_activity = 0;  // of all logs' samples
+
+ private:
+  const PooledChannel& channel_;
+};
+
+// Floor and slope of the least cost. Two numbers, a smooth bowl in their logs: coarse grid, then halving.
+std::pair<double, double> descend(const ChannelCost& cost) {
+  const double rms = cost.rms, rms_activity = cost.rms_activity;
+  double lf = std::log(std::max(rms, 1e-300)), ls = std::log(rms / std::max(rms_activity, 1e-300));
+  double best = cost(std::exp(lf), std::exp(ls));
+  for (double step = first_step; step > last_step; step *= 0.5)
+    for (bool moved = true; moved;) {
+      moved = false;
+      for (const auto& [df, ds] : {std::pair{step, 0.0}, {-step, 0.0}, {0.0, step}, {0.0, -step}}) {
+        const double trial = cost(std::exp(lf + df), std::exp(ls + ds));
+        if (trial < best - least_fall && lf + df > std::log(rms) - lowest &&
+            ls + ds > std::log(rms / rms_activity) - lowest)
+          best = trial, lf += df, ls += ds, moved = true;
+      }
+    }
+  return {std::exp(lf), std::exp(ls)};
+}
+
+// By the mean over the logs of how long their errors last: one that shows nothing but white noise must not hide the
+// others'. [1/s]
+double independent_rate(const PooledChannel& channel, const ChannelError& error) {
+  double correlation_time = 0;  // [s]
+  for (std::size_t i = 0; i < channel.residuals.size(); ++i) {
+    const std::vector<double> sigma = sigma_of(&error, channel.noises[i], channel.activities[i]);
+    std::vector<double> whitened(channel.residuals[i].size());
+    for (std::size_t k = 0; k < whitened.size(); ++k) whitened[k] = channel.residuals[i][k] / sigma[k];
+    correlation_time +=
+        1 / (effective_fraction(whitened) * channel.rates[i] * static_cast<double>(channel.residuals.size()));
+  }
+  return 1 / correlation_time;
+}
+
+}  // namespace
+
 ErrorModel learn_error_model(const FitProblem& problem, const Point& x) {
   const std::vector<Trajectory> t = problem.trajectories(x);
   ErrorModel model;
   for (Signal signal : simulated_signals) {
-    // Pool the logs that have this channel.
-    std::vector<std::vector<double>> residuals, activities;
-    std::vector<double> noises, rates;
-    for (std::size_t l = 0; l < t.size(); ++l) {
-      if (!t[l].ok) continue;
-      const auto& channels = problem.logs()[l]->channels;
-      for (std::size_t c = 0; c < channels.size(); ++c)
-        if (channels[c].signal == signal) {
-          residuals.push_back(problem.raw_residual(static_cast<int>(l), static_cast<int>(c), t[l]));
-          activities.push_back(activity(problem.logs()[l]->scenario.time, t[l].signals[channels[c].simulated]));
-          noises.push_back(channels[c].noise);
-          const std::vector<double>& time = problem.logs()[l]->scenario.time;
-          rates.push_back(static_cast<double>(time.size() - 1) / (time.back() - time.front()));
-        }
-    }
-    if (residuals.empty()) continue;
-    double sum_r2 = 0, sum_a2 = 0, n = 0;
-    for (std::size_t i = 0; i < residuals.size(); ++i)
-      for (std::size_t k = 0; k < residuals[i].size(); ++k)
-        if (!std::isnan(residuals[i][k])) sum_r2 += square(residuals[i][k]), sum_a2 += square(activities[i][k]), ++n;
-    const double rms = std::sqrt(sum_r2 / n), rms_activity = std::sqrt(sum_a2 / n);
-    // Each log weighs the same in the likelihood: a long quiet one must not drown a short lively one.
-    const auto cost = [&](double floor, double slope) {
-      double total = 0;
-      for (std::size_t i = 0; i < residuals.size(); ++i) {
-        double one = 0;
-        long count = 0;
-        for (std::size_t k = 0; k < residuals[i].size(); ++k) {
-          if (std::isnan(residuals[i][k])) continue;
-          const double s2 = square(noises[i]) + square(floor) + square(slope * activities[i][k]);
-          one += std::log(s2) + square(residuals[i][k]) / s2;
-          ++count;
-        }
-        total += one / static_cast<double>(std::max(1L, count));
-      }
-      for (double share : {floor / rms, slope * rms_activity / rms})
-        total += square(std::log(std::sqrt(2.0) * share)) / square(prior_spread) / log_worth;
-      return total;
-    };
-    // Two numbers, a smooth bowl in their logs: coarse grid, then halving.
-    double lf = std::log(std::max(rms, 1e-300)), ls = std::log(rms / std::max(rms_activity, 1e-300));
-    double best = cost(std::exp(lf), std::exp(ls));
-    for (double step = 1.6; step > 0.05; step *= 0.5)
-      for (bool moved = true; moved;) {
-        moved = false;
-        for (const auto& [df, ds] : {std::pair{step, 0.0}, {-step, 0.0}, {0.0, step}, {0.0, -step}}) {
-          const double trial = cost(std::exp(lf + df), std::exp(ls + ds));
-          if (trial < best - 1e-9 && lf + df > std::log(rms) - 12 && ls + ds > std::log(rms / rms_activity) - 12)
-            best = trial, lf += df, ls += ds, moved = true;
-        }
-      }
-    ChannelError error{signal, std::exp(lf), std::exp(ls), 0.0};
-    double correlation_time =
-        0;  // [s] mean over the logs: one that shows nothing but white noise must not hide the others'
-    for (std::size_t i = 0; i < residuals.size(); ++i) {
-      const std::vector<double> sigma = sigma_of(&error, noises[i], activities[i]);
-      std::vector<double> whitened(residuals[i].size());
-      for (std::size_t k = 0; k < whitened.size(); ++k) whitened[k] = residuals[i][k] / sigma[k];
-      correlation_time += 1 / (effective_fraction(whitened) * rates[i] * static_cast<double>(residuals.size()));
-    }
-    error.independent = 1 / correlation_time;
+    const PooledChannel channel = pooled(problem, t, signal);
+    if (channel.residuals.empty()) continue;
+    const auto [floor, slope] = descend(ChannelCost(channel));
+    ChannelError error{signal, floor, slope, 0.0};
+    error.independent = independent_rate(channel, error);
     model.channels.push_back(error);
   }
   return model;
