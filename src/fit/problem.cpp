@@ -209,75 +209,93 @@ bool FitProblem::jacobian(const Point& x, const Eigen::VectorXd& residual, Eigen
   return columns(x, residual, std::vector<char>(free().size(), 1), jac);
 }
 
-bool FitProblem::columns(const Point& x, const Eigen::VectorXd& residual, const std::vector<char>& asked,
-                         Eigen::MatrixXd& jac) const {
+std::vector<FitProblem::Column> FitProblem::columns_asked(const Point& x, const std::vector<char>& asked) const {
   const double step = difference_step;
-  struct Column {
-    int j, log;
-    double dx;
-  };
   std::vector<Column> columns;
   for (std::size_t l = 0; l < logs_.size(); ++l)
     for (std::size_t j = 0; j < free().size(); ++j)
       if (asked[j] && (free()[j].log < 0 || free()[j].log == static_cast<int>(l)))
         columns.push_back({static_cast<int>(j), static_cast<int>(l), x[j] + step <= 1.0 ? step : -step});
-  for (std::size_t j = 0; j < free().size(); ++j)  // what a log's own value does not touch
-    if (asked[j] && free()[j].log >= 0) jac.col(static_cast<long>(j)).head(data_rows_).setZero();
-  jac.bottomRows(total_rows_ - data_rows_).setZero();
-  // Some logs at a time: what keeps the threads busy, and not all logs' trajectories in memory.
-  std::size_t first = 0;
+  return columns;
+}
+
+// Some logs at a time: what keeps the threads busy, and not all logs' trajectories in memory.
+std::size_t FitProblem::end_of_batch(std::span<const Column> columns, std::size_t first) const {
+  std::size_t last = first;
+  const auto enough = [&] {
+    return last - first >= 64 && columns[last].log - columns[first].log >= std::min(threads(), 8);
+  };
+  while (last < columns.size() && (last == first || columns[last].log == columns[last - 1].log || !enough())) ++last;
+  return last;
+}
+
+bool FitProblem::run_moved(const Point& x, std::span<const Column> columns, Eigen::VectorXd& from) const {
+  Workspace& w = workspace();
+  w.hold(columns.size());
   Point moved = x;
-  while (first < columns.size()) {
-    std::size_t last = first;
-    const auto enough = [&] {
-      return last - first >= 64 && columns[last].log - columns[first].log >= std::min(threads(), 8);
-    };
-    while (last < columns.size() && (last == first || columns[last].log == columns[last - 1].log || !enough())) ++last;
-    Workspace& w = workspace();
-    w.hold(last - first);
-    for (std::size_t c = first; c < last; ++c) {
-      moved[columns[c].j] = x[columns[c].j] + columns[c].dx;
-      chart_.candidate(moved, columns[c].log, w.candidates[c - first]);
-      moved[columns[c].j] = x[columns[c].j];
-      w.jobs.push_back({&logs_[columns[c].log]->scenario, &w.candidates[c - first], &w.runs[c - first]});
-    }
-    std::vector<ParameterVector> bases(logs_.size());
-    std::vector<Trajectory> followed(logs_.size());
-    std::vector<NearJobs> near;
-    for (std::size_t c = first; c < last;) {
-      const std::size_t from = c;
-      const int l = columns[c].log;
-      while (c < last && columns[c].log == l) ++c;
-      chart_.candidate(x, l, bases[l]);
-      near.push_back({&bases[l], std::span(w.jobs).subspan(from - first, c - from), &followed[l]});
-    }
-    simulations_ += simulate_near(near, options_);
-    for (std::size_t c = first; c < last; ++c)
-      if (!w.runs[c - first].ok) {
-        ++failed_;
-        return false;
-      }
-    const std::vector<Trajectory>& runs = w.runs;
-    // Followers are compared with the very run that they followed.
-    Eigen::VectorXd from = residual;
-    for (const NearJobs& n : near)
-      if (n.of_base->ok) fill(static_cast<int>(n.of_base - followed.data()), *n.of_base, from);
-#pragma omp parallel for schedule(dynamic, 1) num_threads(threads())
-    for (std::size_t c = first; c < last; ++c) {
-      const int l = columns[c].log;
-      std::vector<double>& r = residual_space();
-      for (std::size_t channel = 0; channel < logs_[l]->channels.size(); ++channel) {
-        whitened(l, static_cast<int>(channel), runs[c - first], r);
-        const long at = offset_[l][channel], samples = static_cast<long>(r.size());
-        jac.col(columns[c].j).segment(at, samples) =
-            (Eigen::Map<const Eigen::VectorXd>(r.data(), samples) - from.segment(at, samples)) / columns[c].dx;
-      }
-    }
-    first = last;
+  for (std::size_t c = 0; c < columns.size(); ++c) {
+    moved[columns[c].j] = x[columns[c].j] + columns[c].dx;
+    chart_.candidate(moved, columns[c].log, w.candidates[c]);
+    moved[columns[c].j] = x[columns[c].j];
+    w.jobs.push_back({&logs_[columns[c].log]->scenario, &w.candidates[c], &w.runs[c]});
   }
+  std::vector<ParameterVector> bases(logs_.size());
+  std::vector<Trajectory> followed(logs_.size());
+  std::vector<NearJobs> near;
+  for (std::size_t c = 0; c < columns.size();) {
+    const std::size_t begin = c;
+    const int l = columns[c].log;
+    while (c < columns.size() && columns[c].log == l) ++c;
+    chart_.candidate(x, l, bases[l]);
+    near.push_back({&bases[l], std::span(w.jobs).subspan(begin, c - begin), &followed[l]});
+  }
+  simulations_ += simulate_near(near, options_);
+  for (std::size_t c = 0; c < columns.size(); ++c)
+    if (!w.runs[c].ok) {
+      ++failed_;
+      return false;
+    }
+  // Followers are compared with the very run that they followed.
+  for (const NearJobs& n : near)
+    if (n.of_base->ok) fill(static_cast<int>(n.of_base - followed.data()), *n.of_base, from);
+  return true;
+}
+
+void FitProblem::difference(std::span<const Column> columns, const Eigen::VectorXd& from, Eigen::MatrixXd& jac) const {
+  const std::vector<Trajectory>& runs = workspace().runs;
+#pragma omp parallel for schedule(dynamic, 1) num_threads(threads())
+  for (std::size_t c = 0; c < columns.size(); ++c) {
+    const int l = columns[c].log;
+    std::vector<double>& r = residual_space();
+    for (std::size_t channel = 0; channel < logs_[l]->channels.size(); ++channel) {
+      whitened(l, static_cast<int>(channel), runs[c], r);
+      const long at = offset_[l][channel], samples = static_cast<long>(r.size());
+      jac.col(columns[c].j).segment(at, samples) =
+          (Eigen::Map<const Eigen::VectorXd>(r.data(), samples) - from.segment(at, samples)) / columns[c].dx;
+    }
+  }
+}
+
+void FitProblem::prior_rows(Eigen::MatrixXd& jac) const {
+  jac.bottomRows(total_rows_ - data_rows_).setZero();
   long at = data_rows_;
   for (std::size_t j = 0; j < free().size(); ++j)
     if (std::isfinite(free()[j].prior_sd)) jac(at++, static_cast<long>(j)) = 1.0 / free()[j].prior_sd;
+}
+
+bool FitProblem::columns(const Point& x, const Eigen::VectorXd& residual, const std::vector<char>& asked,
+                         Eigen::MatrixXd& jac) const {
+  const std::vector<Column> all = columns_asked(x, asked);
+  for (std::size_t j = 0; j < free().size(); ++j)  // what a log's own value does not touch
+    if (asked[j] && free()[j].log >= 0) jac.col(static_cast<long>(j)).head(data_rows_).setZero();
+  prior_rows(jac);
+  for (std::size_t first = 0, last; first < all.size(); first = last) {
+    last = end_of_batch(all, first);
+    const std::span<const Column> batch = std::span(all).subspan(first, last - first);
+    Eigen::VectorXd from = residual;
+    if (!run_moved(x, batch, from)) return false;
+    difference(batch, from, jac);
+  }
   return true;
 }
 

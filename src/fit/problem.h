@@ -4,6 +4,7 @@
 // filled in one batch; a nuisance's column costs only its own log's simulation.
 #pragma once
 #include <optional>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -77,6 +78,17 @@ class FitProblem {
   void whitened(int log, int channel, const Trajectory& t, std::vector<double>& r) const;
   double prior_residual(std::size_t j, double x) const;
   void fill(int log, const Trajectory& t, Eigen::Ref<Eigen::VectorXd> out) const;
+  // Of a Jacobian: a number of the point, moved by dx in the run of one log.
+  struct Column {
+    int j, log;
+    double dx;
+  };
+  std::vector<Column> columns_asked(const Point& x, const std::vector<char>& asked) const;
+  std::size_t end_of_batch(std::span<const Column> columns, std::size_t first) const;
+  // Runs them. False where one fails; else `from` becomes the residual that they differ from.
+  bool run_moved(const Point& x, std::span<const Column> columns, Eigen::VectorXd& from) const;
+  void difference(std::span<const Column> columns, const Eigen::VectorXd& from, Eigen::MatrixXd& jac) const;
+  void prior_rows(Eigen::MatrixXd& jac) const;
   int threads() const;
   std::vector<const LogData*> logs_;
   Chart chart_;
