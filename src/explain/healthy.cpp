@@ -163,6 +163,35 @@ std::vector<Log> logs_to_score(const std::vector<Log>& own, const std::vector<Lo
   return out;
 }
 
+// What of a log is usual, as tuned and with nothing known of the rig: how its channels and blocks err, and its own
+// numbers.
+void see_what_is_usual(ValveSubject& subject, HealthyLog& h) {
+  const ExplainedFit fit = fit_base(subject, EngineOptions{}.iterations);
+  if (!fit.ok) return;
+  h.errors = subject.errors(fit.residual);
+  if (ReplaySubject blocks(subject, fit.point); !blocks.empty())
+    if (const ExplainedFit replayed = fit_base(blocks, EngineOptions{}.iterations); replayed.ok)
+      for (UsualError& e : blocks.errors(replayed.residual)) h.errors.push_back(std::move(e));
+  h.air = subject.own(0, row::air_fraction, fit.point);
+  h.command_slope = subject.own(0, nuisance::command_slope, fit.point);
+}
+
+// Scores, misses and shares of a log, weighed by what is `known` of the rig from the others.
+void score(ValveSubject& subject, const KnownRig& known, HealthyLog& h) {
+  const std::vector<Curve> curves = add_curves(subject);
+  const ExplainedFit fit = fit_base(subject, EngineOptions{}.iterations);
+  if (!fit.ok) return;
+  guess_curves(subject, curves, fit.point);
+  h.adequacy = subject.adequacy(fit.residual);
+  for (const CauseScore& s : score_causes(subject, fit)) h.scores.push_back(summarise(subject, s));
+  h.misses = subject.misses(fit.residual);
+  for (const BlockReplay& b : replay_blocks(subject, fit.point)) h.misses.push_back({b.block, b.missing});
+  ScoredBlocks blocks = score_blocks(subject, fit.point, known);
+  h.scores.insert(h.scores.end(), blocks.scores.begin(), blocks.scores.end());
+  h.misses.insert(h.misses.end(), blocks.misses.begin(), blocks.misses.end());
+  h.shares = heldout_shares(subject, fit), h.has_shares = true;
+}
+
 }  // namespace
 
 HealthyReference score_healthy(const std::vector<Log>& own, const Table& tuned, const RigFile& rig, int threads,
@@ -174,39 +203,19 @@ HealthyReference score_healthy(const std::vector<Log>& own, const Table& tuned, 
     counts.simulations += s.simulations(), counts.failed += s.failed_simulations();
   };
   HealthyReference all, out;
-  for (const Log& log : logs) {  // what is usual
+  for (const Log& log : logs) {
     HealthyLog& h = all.logs.emplace_back();
     h.log = log.path, h.sha256 = log.sha256, h.test = conditions_of(log);
     h.other = all.logs.size() > own.size();
     ValveSubject subject({log}, tuned, rig, threads, KnownRig{});
-    const ExplainedFit fit = fit_base(subject, EngineOptions{}.iterations);
-    if (fit.ok) {
-      h.errors = subject.errors(fit.residual);
-      if (ReplaySubject blocks(subject, fit.point); !blocks.empty())
-        if (const ExplainedFit replayed = fit_base(blocks, EngineOptions{}.iterations); replayed.ok)
-          for (UsualError& e : blocks.errors(replayed.residual)) h.errors.push_back(std::move(e));
-      h.air = subject.own(0, row::air_fraction, fit.point);
-      h.command_slope = subject.own(0, nuisance::command_slope, fit.point);
-    }
+    see_what_is_usual(subject, h);
     count(subject);
     if (told && !told(0.2 * static_cast<double>(all.logs.size()) / n)) return out;
   }
   for (std::size_t l = 0; l < logs.size(); ++l) {
-    ValveSubject subject({logs[l]}, tuned, rig, threads, all.known(static_cast<int>(l)));
-    HealthyLog& h = out.logs.emplace_back(all.logs[l]);
-    const std::vector<Curve> curves = add_curves(subject);
-    const ExplainedFit fit = fit_base(subject, EngineOptions{}.iterations);
-    if (fit.ok) {
-      guess_curves(subject, curves, fit.point);
-      h.adequacy = subject.adequacy(fit.residual);
-      for (const CauseScore& s : score_causes(subject, fit)) h.scores.push_back(summarise(subject, s));
-      h.misses = subject.misses(fit.residual);
-      for (const BlockReplay& b : replay_blocks(subject, fit.point)) h.misses.push_back({b.block, b.missing});
-      ScoredBlocks blocks = score_blocks(subject, fit.point, all.known(static_cast<int>(l)));
-      h.scores.insert(h.scores.end(), blocks.scores.begin(), blocks.scores.end());
-      h.misses.insert(h.misses.end(), blocks.misses.begin(), blocks.misses.end());
-      h.shares = heldout_shares(subject, fit), h.has_shares = true;
-    }
+    const KnownRig known = all.known(static_cast<int>(l));
+    ValveSubject subject({logs[l]}, tuned, rig, threads, known);
+    score(subject, known, out.logs.emplace_back(all.logs[l]));
     count(subject);
     if (told && !told(0.2 + 0.8 * (static_cast<double>(out.logs.size()) / n))) break;
   }

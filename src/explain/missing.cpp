@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <optional>
 
 #include "effects/unexplained.h"
 #include "explain/smoother.h"
@@ -210,61 +211,81 @@ struct LineShare {
   }
 };
 
-}  // namespace
+// The logs' linear runs, thinned to so many samples as are looked at, and what the missing inputs may follow.
+struct LinearLogs {
+  std::vector<LinearRun> runs;
+  std::vector<std::vector<std::pair<std::string, std::vector<double>>>> variables;  // [log]
+};
 
-MissingInputs missing_inputs(const ValveSubject& subject, const Point& point, const std::function<bool(double)>& told) {
-  MissingInputs out;
+// None where a log has no block to look at. `time` takes those of the logs that have.
+std::optional<LinearLogs> linear_logs(const ValveSubject& subject, const Point& point,
+                                      std::vector<std::vector<double>>& time) {
   const auto problem = subject.problem({});
   std::size_t samples = 0, series = 0;
   for (const LogData& l : subject.logs()) samples += l.scenario.time.size();
   const auto stride = static_cast<int>(samples / most_samples) + 1;
-  std::vector<LinearRun> linear;
-  std::vector<std::vector<std::pair<std::string, std::vector<double>>>> variables;
   // The steps of a fit are too coarse for what is looked at sample by sample; for its derivatives they do.
   SimulateOptions fine = fine_steps();
   fine.wanted.fill(true);
+  LinearLogs out;
   for (std::size_t l = 0; l < subject.logs().size(); ++l) {
     const LogData& log = subject.logs()[l];
-    if (log.scenario.ports != Ports::actuator) return out;
+    if (log.scenario.ports != Ports::actuator) return {};
     const ParameterVector p = problem->candidate(point, static_cast<int>(l));
     const Trajectory run = simulate(log.scenario, p, fine);
-    if (!run.ok) return out;
-    linear.push_back(linear_run(subject, *problem, run, static_cast<int>(l), series, p, stride));
-    if (linear.back().channels.empty()) return out;
+    if (!run.ok) return {};
+    out.runs.push_back(linear_run(subject, *problem, run, static_cast<int>(l), series, p, stride));
+    if (out.runs.back().channels.empty()) return {};
     series += log.channels.size();
-    variables.push_back(variables_of(log.scenario, run, stride));
-    out.time.push_back(linear.back().time);
+    out.variables.push_back(variables_of(log.scenario, run, stride));
+    time.push_back(out.runs.back().time);
   }
+  return out;
+}
+
+// What a place misses, how large it is over the logs, and the variable that it follows most closely.
+MissingInput described(const SmoothedInput& from, const MissingPlace& place, double cost, const LinearLogs& logs) {
+  MissingInput to{place.where, place.quantity, place.unit};
+  to.gain = from.gain - cost;
+  to.value = from.value, to.error = from.std_error;
+  double n = 0, square = 0, error = 0;
+  for (std::size_t l = 0; l < to.value.size(); ++l)
+    for (std::size_t k = 0; k < to.value[l].size(); ++k)
+      n += 1, square += std::pow(to.value[l][k], 2), error += std::pow(to.error[l][k], 2);
+  to.rms = std::sqrt(square / n), to.std_error = std::sqrt(error / n);
+  for (std::size_t v = 0; v < logs.variables.front().size(); ++v) {
+    LineShare line;
+    for (std::size_t l = 0; l < to.value.size(); ++l)
+      for (std::size_t k = 0; k < to.value[l].size(); ++k) {
+        const double e = to.error[l][k], w = 1 / (e * e + to.std_error * to.std_error);
+        if (std::isfinite(w)) line.add(logs.variables[l][v].second[k], to.value[l][k], w);
+      }
+    if (const double share = line.value(); share > to.share)
+      to.share = share, to.variable = logs.variables.front()[v].first;
+  }
+  return to;
+}
+
+void mark_likely(const std::vector<SmoothedInput>& smoothed, std::vector<MissingInput>& places) {
+  const auto best =
+      std::max_element(smoothed.begin(), smoothed.end(), [](const auto& a, const auto& b) { return a.gain < b.gain; });
+  for (std::size_t i = 0; i < places.size(); ++i)
+    places[i].likely = places[i].gain > told_apart && !preferred(*best, smoothed[i]);
+}
+
+}  // namespace
+
+MissingInputs missing_inputs(const ValveSubject& subject, const Point& point, const std::function<bool(double)>& told) {
+  MissingInputs out;
+  const std::optional<LinearLogs> logs = linear_logs(subject, point, out.time);
+  if (!logs) return out;
   std::vector<double> typical;
   for (const MissingPlace& place : missing_places) typical.push_back(place.typical);
-  const SmootherResult smoothed = smooth(linear, typical, told);
+  const SmootherResult smoothed = smooth(logs->runs, typical, told);
   const double cost = 0.5 * std::log(std::max(2.0, smoothed.independent));
-  for (std::size_t i = 0; i < smoothed.places.size(); ++i) {
-    const SmoothedInput& from = smoothed.places[i];
-    const MissingPlace& place = missing_places[i];
-    MissingInput& to = out.places.emplace_back(MissingInput{place.where, place.quantity, place.unit});
-    to.gain = from.gain - cost;
-    to.value = from.value, to.error = from.std_error;
-    double n = 0, square = 0, error = 0;
-    for (std::size_t l = 0; l < to.value.size(); ++l)
-      for (std::size_t k = 0; k < to.value[l].size(); ++k)
-        n += 1, square += std::pow(to.value[l][k], 2), error += std::pow(to.error[l][k], 2);
-    to.rms = std::sqrt(square / n), to.std_error = std::sqrt(error / n);
-    for (std::size_t v = 0; v < variables.front().size(); ++v) {
-      LineShare line;
-      for (std::size_t l = 0; l < to.value.size(); ++l)
-        for (std::size_t k = 0; k < to.value[l].size(); ++k) {
-          const double e = to.error[l][k], w = 1 / (e * e + to.std_error * to.std_error);
-          if (std::isfinite(w)) line.add(variables[l][v].second[k], to.value[l][k], w);
-        }
-      if (const double share = line.value(); share > to.share)
-        to.share = share, to.variable = variables.front()[v].first;
-    }
-  }
-  const auto best = std::max_element(smoothed.places.begin(), smoothed.places.end(),
-                                     [](const auto& a, const auto& b) { return a.gain < b.gain; });
-  for (std::size_t i = 0; i < out.places.size(); ++i)
-    out.places[i].likely = out.places[i].gain > told_apart && !preferred(*best, smoothed.places[i]);
+  for (std::size_t i = 0; i < smoothed.places.size(); ++i)
+    out.places.push_back(described(smoothed.places[i], missing_places[i], cost, *logs));
+  mark_likely(smoothed.places, out.places);
   std::stable_sort(out.places.begin(), out.places.end(), [](const auto& a, const auto& b) { return a.gain > b.gain; });
   return out;
 }
