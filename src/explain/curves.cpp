@@ -7,10 +7,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/normal.h"
 #include "effects/registry.h"
 #include "effects/unexplained.h"
 #include "explain/blocks.h"
+#include "explain/closed_form.h"
 #include "explain/subject.h"
 #include "fit/chart.h"
 #include "fit/log_data.h"
@@ -192,58 +192,18 @@ LearntCurve learnt(const Curve& curve, const std::vector<double>& knots, const s
                   U::places[curve.place].unit,
                   {},
                   ""};
-  std::vector<double> x, y, w;
+  std::vector<Knot> known;
   for (int k = 0; k < U::knots; ++k) {
     const auto i = static_cast<std::size_t>(k);
     out.points.push_back({curve.scale * reach(k), knots[i], std_error[i]});
     if (std::isfinite(std_error[i]) && std_error[i] > 0)
-      x.push_back(out.points.back().x), y.push_back(knots[i]), w.push_back(1 / std_error[i]);
+      known.push_back({out.points.back().x, knots[i], 1 / std_error[i]});
   }
-  // Shortest first; a form serves when it misses the knots by no more than their errors do.
-  struct Form {
-    std::vector<double (*)(double)> terms;
-    std::vector<std::string> words;  // of each term, behind its unit
-  };
-  const auto line = [](double v) { return v; };
-  const auto sign = [](double v) { return v > 0 ? 1.0 : v < 0 ? -1.0 : 0.0; };
-  const auto square = [](double v) { return v * std::abs(v); };
-  const auto cube = [](double v) { return v * v * v; };
-  const auto one = [](double) { return 1.0; };
-  const std::string per = std::string(" ") + out.unit + " per " + out.variable_unit;
-  const std::string plain = std::string(" ") + out.unit;
-  const std::vector<Form> forms = {
-      {{line}, {per + " x"}},
-      {{sign}, {plain + " sign(x)"}},
-      {{square}, {plain + "/(" + out.variable_unit + ")2 x|x|"}},
-      {{cube}, {plain + "/(" + out.variable_unit + ")3 x3"}},
-      {{one, line}, {plain, per + " x"}},
-      {{sign, line}, {plain + " sign(x)", per + " x"}},
-      {{line, cube}, {per + " x", plain + "/(" + out.variable_unit + ")3 x3"}},
-  };
-  for (const Form& form : forms) {
-    const auto n = static_cast<long>(x.size()), m = static_cast<long>(form.terms.size());
-    if (n < m + 2) break;
-    Eigen::MatrixXd a(n, m);
-    Eigen::VectorXd b(n);
-    for (long i = 0; i < n; ++i) {
-      const auto k = static_cast<std::size_t>(i);
-      b[i] = w[k] * y[k];
-      for (long j = 0; j < m; ++j) a(i, j) = w[k] * form.terms[static_cast<std::size_t>(j)](x[k]);
-    }
-    const Eigen::VectorXd c = a.colPivHouseholderQr().solve(b);
-    const double left = (a * c - b).squaredNorm();
-    // 95 % of chi-square, Wilson and Hilferty's cube root.
-    const double f = static_cast<double>(n - m),
-                 limit = f * std::pow(1 - 2 / (9 * f) + normal_95_one_sided * std::sqrt(2 / (9 * f)), 3);
-    if (left > limit) continue;
-    for (long j = 0; j < m; ++j)
-      out.closed_form += fmt::format("{}{:.3g}{}", j ? " + " : "", c[j], form.words[static_cast<std::size_t>(j)]);
-    if (!out.factor.empty())
-      out.closed_form += curve.factor == U::by_load_pressure ? ", times the load pressure over 100 bar"
-                         : curve.factor == U::by_velocity    ? ", times the piston's velocity over 0.1 m/s"
-                                                             : ", times the direction of the piston";
-    break;
-  }
+  out.closed_form = closed_form(known, out.unit, out.variable_unit);
+  if (!out.closed_form.empty() && !out.factor.empty())
+    out.closed_form += curve.factor == U::by_load_pressure ? ", times the load pressure over 100 bar"
+                       : curve.factor == U::by_velocity    ? ", times the piston's velocity over 0.1 m/s"
+                                                           : ", times the direction of the piston";
   return out;
 }
 
