@@ -57,6 +57,13 @@ double mean_of(const std::vector<double>& v) {
 double log_viscosity(double kelvin) { return std::log(oil_at(860, 14e-6, kelvin).viscosity_ratio); }
 
 ReadingCurve::ReadingCurve(const std::vector<SeededReading>& readings, std::optional<double> origin) {
+  learn_readings(readings);
+  const std::vector<Off> offs = offs_of(readings);
+  learn_spreads(offs);
+  learn_errors(offs, origin.value_or(sizes_.front()));
+}
+
+void ReadingCurve::learn_readings(const std::vector<SeededReading>& readings) {
   std::vector<double> truths, oils;
   for (const SeededReading& r : readings) truths.push_back(r.truth), oils.push_back(r.log_viscosity);
   sizes_ = levels_of(truths), viscosities_ = levels_of(oils);
@@ -74,57 +81,57 @@ ReadingCurve::ReadingCurve(const std::vector<SeededReading>& readings, std::opti
     if (!(means.back() > means.front())) throw std::invalid_argument("reads no more of the largest than of the least");
     readings_.push_back(std::move(means));
   }
-  // How far each reading is off, by cell, by size and valve, and by valve.
-  for (auto& of_oil : cells)
-    for (std::vector<double>& cell : of_oil) cell.clear();
+}
+
+std::vector<ReadingCurve::Off> ReadingCurve::offs_of(const std::vector<SeededReading>& readings) const {
+  std::vector<Off> out;
+  for (const SeededReading& r : readings)
+    out.push_back({r.valve, nearest(viscosities_, r.log_viscosity), nearest(sizes_, r.truth), r.truth, r.log_viscosity,
+                   at(r.reading, r.log_viscosity).truth - r.truth});
+  return out;
+}
+
+// Of each size, by the means of the valves over their oils.
+void ReadingCurve::learn_spreads(const std::vector<Off>& offs) {
   std::vector<std::map<std::string, std::vector<double>>> of_size(sizes_.size());
-  struct Off {
-    std::size_t oil, size;
-    double truth, log_viscosity, by;
-  };
-  std::map<std::string, std::vector<Off>> of_valve;
-  for (const SeededReading& r : readings) {
-    const Off off{nearest(viscosities_, r.log_viscosity), nearest(sizes_, r.truth), r.truth, r.log_viscosity,
-                  at(r.reading, r.log_viscosity).truth - r.truth};
-    cells[off.oil][off.size].push_back(off.by);
-    of_size[off.size][r.valve].push_back(off.by);
-    of_valve[r.valve].push_back(off);
-  }
+  for (const Off& off : offs) of_size[off.size][off.valve].push_back(off.by);
   for (const auto& of_valves : of_size) {
     std::vector<double> means;
     for (const auto& [valve, by] : of_valves) means.push_back(mean_of(by));
     spreads_.push_back(spread_of(means));
   }
+}
 
-  // Each valve by itself: off = base + size * grown + (d1 z + d2 z2) acted, by how far valves are off there.
+// Each valve by itself: off = base + size * grown + (d1 z + d2 z2) acted, by how far valves are off there.
+void ReadingCurve::learn_errors(const std::vector<Off>& offs, double origin) {
   constexpr long unknowns = 4;
   const double least = 1e-6 * (sizes_.back() - sizes_.front());
-  auto left = cells;
-  std::vector<double> size, tilt;
+  using Cells = std::vector<std::vector<std::vector<double>>>;  // [oil][size]
+  Cells cells(viscosities_.size(), std::vector<std::vector<double>>(sizes_.size())), left = cells;
+  std::map<std::string, std::vector<Off>> of_valve;
+  for (const Off& off : offs) cells[off.oil][off.size].push_back(off.by), of_valve[off.valve].push_back(off);
   std::vector<std::vector<double>> scatter;
-  for (std::size_t oil = 0; oil < cells.size(); ++oil) {
+  for (const auto& of_oil : cells) {
     scatter.emplace_back();
-    for (std::size_t k = 0; k < sizes_.size(); ++k) {
-      scatter.back().push_back(std::max(spread_of(cells[oil][k]), least));
-      left[oil][k].clear();
-    }
+    for (const std::vector<double>& cell : of_oil) scatter.back().push_back(std::max(spread_of(cell), least));
   }
-  for (const auto& [valve, offs] : of_valve) {
-    Eigen::MatrixXd x(std::ssize(offs), unknowns);
-    Eigen::VectorXd y(std::ssize(offs));
-    for (long i = 0; i < std::ssize(offs); ++i) {
-      const Off& off = offs[static_cast<std::size_t>(i)];
-      const double z = off.log_viscosity, acted = off.truth - origin.value_or(sizes_.front());
+  std::vector<double> size, tilt;
+  for (const auto& [valve, its] : of_valve) {
+    Eigen::MatrixXd x(std::ssize(its), unknowns);
+    Eigen::VectorXd y(std::ssize(its));
+    for (long i = 0; i < std::ssize(its); ++i) {
+      const Off& off = its[static_cast<std::size_t>(i)];
+      const double z = off.log_viscosity, acted = off.truth - origin;
       const double known_to = scatter[off.oil][off.size];
       x.row(i) << 1, off.truth - sizes_.front(), z * acted, z * z * acted;
       x.row(i) /= known_to, y[i] = off.by / known_to;
     }
     const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(x);
-    if (qr.rank() < unknowns || std::ssize(offs) <= unknowns) continue;
+    if (qr.rank() < unknowns || std::ssize(its) <= unknowns) continue;
     const Eigen::VectorXd b = qr.solve(y), residual = y - x * b;
-    const auto n = static_cast<double>(offs.size());
-    for (long i = 0; i < std::ssize(offs); ++i) {
-      const Off& off = offs[static_cast<std::size_t>(i)];
+    const auto n = static_cast<double>(its.size());
+    for (long i = 0; i < std::ssize(its); ++i) {
+      const Off& off = its[static_cast<std::size_t>(i)];
       left[off.oil][off.size].push_back(std::sqrt(n / (n - unknowns)) * residual[i] * scatter[off.oil][off.size]);
     }
     size.push_back(b[1]), tilt.push_back(b[2]), tilt.push_back(b[3]);

@@ -5,6 +5,7 @@
 // history tells that from a wear that began late. Valves with parts of measured wear do: what a check reads is taken to
 // the wear at which they read the same, in oil of the same viscosity.
 #pragma once
+#include <cstddef>
 #include <optional>
 #include <string>
 #include <vector>
@@ -49,6 +50,16 @@ class ReadingCurve {
   const std::optional<Differing>& differing() const { return differing_; }
 
  private:
+  // A reading of the test: how far it is off, and where.
+  struct Off {
+    std::string valve;
+    std::size_t oil, size;  // positions among viscosities and sizes
+    double truth, log_viscosity, by;
+  };
+  void learn_readings(const std::vector<SeededReading>& readings);
+  std::vector<Off> offs_of(const std::vector<SeededReading>& readings) const;
+  void learn_spreads(const std::vector<Off>& offs);
+  void learn_errors(const std::vector<Off>& offs, double origin);
   std::vector<double> sizes_, viscosities_;    // rising
   std::vector<std::vector<double>> readings_;  // of each viscosity, by sizes
   std::vector<std::vector<double>> errors_;    // of each reading, see Worn
