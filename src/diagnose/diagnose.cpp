@@ -197,7 +197,7 @@ Ready make_ready(const std::vector<Log>& logs, const Table& tuned, const RigFile
     out.log += (out.log.empty() ? "" : " + ") + log.path;
     out.sha256 += log.sha256;
     out.logs.push_back(log.path);
-    out.notes.insert(out.notes.end(), log.notes.begin(), log.notes.end());
+    for (const LogNote& note : log.notes) out.notes.push_back(note.text);
     ready.data.push_back(prepare(log, rig, moving_average_of(tuned)));
     for (std::string& note : leave_out_unknown_channels(ready.data.back(), error)) out.notes.push_back(std::move(note));
     require_channels(ready.data.back());

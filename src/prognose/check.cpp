@@ -186,7 +186,7 @@ CheckResult check(const Log& log, const Table& tuned, const RigFile& rig, const 
   CheckResult out;
   out.log = log.path;
   out.sha256 = log.sha256;
-  out.notes = log.notes;
+  out.notes = texts_of(log.notes);
   take_oil(out, data, log, tuned, rig, options);
 
   const Beside beside = monitor_beside(tuned, supply_of(data, tuned), options.model);
