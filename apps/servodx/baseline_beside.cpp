@@ -10,6 +10,7 @@ namespace servodx {
 Baseline baseline_beside(Invocation& invocation, const std::string& path, const RigFile& rig) {
   Baseline out = read_baseline(path);
   invocation.note(out.notes);
+  invocation.header().call.baseline = path;
   const std::string& made_with = parts_of(out).rig_file;
   if (rig.path.empty() && !made_with.empty())
     invocation.note(

@@ -162,7 +162,8 @@ int run(const Options& options) {
     header.simulations += d.assessment.simulations;
     header.failed_simulations += d.assessment.failed_simulations;
     invocation.note(d.assessment.notes);
-    text += (text.empty() ? "" : "\n") + report::text_of(d, {.colour = colour_wanted(), .written_to = ""});
+    text += (text.empty() ? "" : "\n") +
+            report::text_of(d, {.colour = colour_wanted(), .written_to = "", .call = header.call});
     worst = std::max(worst, options.exit_by_action ? code_of(d.action.of) : code_of(d));
   }
   if (results.size() < (options.pool ? 1 : logs.size()))

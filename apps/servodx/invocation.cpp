@@ -159,6 +159,7 @@ Invocation::Invocation(std::string command, CommonOptions options) : options_(st
   header_.version = SERVODX_VERSION;
   header_.command = std::move(command);
   header_.seed = options_.seed;
+  header_.call.rig = options_.rig;
 }
 
 void Invocation::check_files(const std::vector<std::string>& inputs, const std::vector<std::string>& outputs) {
@@ -272,6 +273,7 @@ Table Invocation::table(const std::string& path) {
 Tuned Invocation::tuned(const std::string& path) {
   Tuned tuned = read_tuned(path);
   header_.inputs.push_back({tuned.table.path, tuned.table.sha256});
+  header_.call.table = path;
   note(tuned.notes);
   return tuned;
 }

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include "base/celsius.h"
 #include "base/units.h"
@@ -102,6 +103,28 @@ std::string kinds_of(const LogSurvey& s) {
   return join(kinds);
 }
 
+// Of many logs, what is easily scrolled past: how many are suspicious, and of what.
+std::string summary_of(const std::vector<LogCheck>& checks) {
+  std::vector<std::pair<std::string, int>> kinds;
+  std::size_t suspicious = 0;
+  for (const LogCheck& check : checks) {
+    suspicious += !check.survey.findings.empty();
+    std::set<std::string> once;
+    for (const Finding& f : check.survey.findings) {
+      if (!once.insert(f.kind).second) continue;
+      const auto known = std::find_if(kinds.begin(), kinds.end(), [&](const auto& k) { return k.first == f.kind; });
+      if (known == kinds.end())
+        kinds.emplace_back(f.kind, 1);
+      else
+        ++known->second;
+    }
+  }
+  if (suspicious == 0) return fmt::format("nothing suspicious in {} logs", checks.size());
+  std::vector<std::string> parts;
+  for (const auto& [kind, logs] : kinds) parts.push_back(fmt::format("{} in {}", kind, logs));
+  return fmt::format("{} of {} logs have something suspicious: {}", suspicious, checks.size(), join(parts));
+}
+
 std::string visibility(double deviate) {
   if (!std::isfinite(deviate)) return "the simulation fails";
   return deviate < seen ? "hidden" : deviate < plain ? "may show" : "shows";
@@ -166,6 +189,7 @@ std::string text_of(const std::vector<LogCheck>& checks) {
                   digits(v.deviates_at_typical, 2)});
     text += faults.text();
   }
+  if (checks.size() > 1) text += "\n" + summary_of(checks) + "\n";
   return text;
 }
 

@@ -54,8 +54,9 @@ const HypothesisResult* nearest_fault(const Diagnosis& d) {
 
 std::string headline(const Diagnosis& d) {
   if (d.verdict == VerdictKind::healthy)
-    return file_name(d.log) +
-           (d.suspicion ? " cannot be told from the fault-free logs" : " is like the fault-free logs");
+    return file_name(d.log) + (d.suspicion ? " cannot be told from the fault-free logs"
+                               : d.unlike  ? " is like the fault-free logs, though of another test"
+                                           : " is like the fault-free logs");
   if (d.assessment.unjudgeable != Unjudgeable::no)
     return file_name(d.log) + " cannot be judged: " + words_of(d.assessment.unjudgeable);
   if (d.verdict == VerdictKind::unknown) return file_name(d.log) + " is not healthy, and no known fault explains it";
@@ -63,7 +64,7 @@ std::string headline(const Diagnosis& d) {
   return words(label_of(d.fault) + of_channel(d)) + (size.empty() ? "" : ", " + size);
 }
 
-std::vector<std::string> reasons(const Diagnosis& d, const DetectionBaseline& baseline) {
+std::vector<std::string> reasons(const Diagnosis& d, const DetectionBaseline& baseline, const CallNames& call) {
   std::vector<std::string> why;
   const bool above = d.error > d.threshold;
   const bool seen_outright = d.assessment.gross != GrossFinding::none;
@@ -71,10 +72,10 @@ std::vector<std::string> reasons(const Diagnosis& d, const DetectionBaseline& ba
   for (const RecordFinding& f : d.records) why.push_back(sentence(record_in_words(f)));
   for (std::size_t i = 1; i < d.faults.size(); ++i)
     why.push_back("Beside it stands " + second_in_words(d.faults[i]) + ".");
-  why.push_back(
-      fmt::format("Its error is {}; the threshold, set by {} fault-free logs, is {}. A fault-free log is as "
-                  "far off with {}.",
-                  digits(d.error), d.baseline_logs, digits(d.threshold), chance_words(d)));
+  why.push_back(fmt::format(
+      "Its error is {}; the threshold, set by {} fault-free log{}, is {}. A fault-free log is as "
+      "far off with {}.",
+      digits(d.error), d.baseline_logs, d.baseline_logs == 1 ? "" : "s", digits(d.threshold), chance_words(d)));
   if (const std::string far = beyond_in_words(d.conditions); !far.empty())
     why.push_back("Beware: recorded beyond what is known: " + far + ".");
   if (d.unlike)
@@ -92,10 +93,10 @@ std::vector<std::string> reasons(const Diagnosis& d, const DetectionBaseline& ba
                         : ""));
   if (d.fault && !d.ambiguous_with.empty()) {
     std::vector<std::string> others;
-    for (const Fault* other : ambiguous_by_label(d))
-      others.push_back(words(label_of(other)) + " " + chance(probability_of(d, other)));
+    for (const Fault* other : ambiguous_by_label(d))  // a twin is not fitted, and has no probability of its own
+      others.push_back(words(label_of(other)) + (result_of(d, other) ? " " + chance(probability_of(d, other)) : ""));
     why.push_back(fmt::format("It cannot be told for certain from {}. To separate them: {}.", join(others),
-                              separating_test_of(d)));
+                              separating_test_of(d, call)));
   } else if (d.fault && !seen_outright) {
     const HypothesisResult* next = nullptr;
     for (const HypothesisResult& h : d.assessment.hypotheses)
@@ -105,13 +106,12 @@ std::vector<std::string> reasons(const Diagnosis& d, const DetectionBaseline& ba
                                 chance(probability_of(d, next->fault))));
   }
   if (d.suspicion) why.push_back(sentence(suspicion_in_words(*d.suspicion)));
-  if (d.beyond) why.push_back(sentence(beyond_in_words(*d.beyond)));
   if (d.onset)
     why.push_back(fmt::format("Until {} s the log is healthy; the fault explains what follows.", digits(*d.onset, 4)));
   return why;
 }
 
-Verdict verdict_of(const Diagnosis& d, const DetectionBaseline& baseline) {
+Verdict verdict_of(const Diagnosis& d, const DetectionBaseline& baseline, const CallNames& call) {
   Verdict v;
   v.tone = tone_of(d);
   v.word = d.verdict == VerdictKind::fault ? "FAULT" : d.verdict == VerdictKind::unknown ? "UNKNOWN" : "HEALTHY";
@@ -119,18 +119,19 @@ Verdict verdict_of(const Diagnosis& d, const DetectionBaseline& baseline) {
   const std::string kind = words_of(blame_of(d));
   if (d.assessment.unjudgeable != Unjudgeable::no) {
     v.facts = {{"Kind", kind}, {"Action", d.action.text}};
-    for (const std::string& call : next_calls(d)) v.reasons.push_back("Run next: " + call);
+    for (const std::string& next : next_calls(d, call)) v.reasons.push_back("Run next: " + next);
     return v;
   }
   if (d.fault) v.detail = meaning_of(d.fault) + ", in " + d.log;
+  if (d.beyond) v.detail = sentence(beyond_in_words(*d.beyond));
   if (d.fault) v.facts.push_back({"Probability", chance(probability_of(d, d.fault))});
   if (d.onset) v.facts.push_back({"Since", digits(*d.onset, 4) + " s"});
   v.facts.push_back({"Error / threshold", digits(d.error) + " / " + digits(d.threshold)});
   v.facts.push_back({"Null", percent(d.null) + " of rated"});
   if (!kind.empty()) v.facts.push_back({"Kind", kind});
   if (d.action.of != ActionClass::none) v.facts.push_back({"Action", d.action.text});
-  v.reasons = reasons(d, baseline);
-  for (const std::string& call : next_calls(d)) v.reasons.push_back("Run next: " + call);
+  for (const std::string& next : next_calls(d, call)) v.reasons.push_back("Run next: " + next);
+  for (std::string& reason : reasons(d, baseline, call)) v.reasons.push_back(std::move(reason));
   return v;
 }
 
@@ -182,7 +183,7 @@ void add_detectable(Page& page, const Diagnosis& d) {
                   "ll",
                   {"fault", "seen from"},
                   {},
-                  0};
+                  d.verdict == VerdictKind::healthy ? 0u : 4u};  // a verdict that names something has more to show
   for (const Detectable& f : d.detectable)
     table.rows.push_back(
         {words(label_of(f.fault)), f.severity ? handy(*f.severity, unit_of(f.fault)) : "not even its worst"});
@@ -217,9 +218,13 @@ void add_details(Page& page, const Diagnosis& d, const std::vector<Replay>& repl
         d.verdict == VerdictKind::healthy
             ? "Below, the tuned model, with null and air fitted to this log, against the measurement; the channel it "
               "misses most first."
-            : "Below, dashed: the valve as healthy; full colour: with the fault. The channel that health misses most "
+        : d.fault
+            ? "Below, dashed: the valve as healthy; full colour: with the fault. The channel that health misses most "
               "comes first. Where the dashed residual leaves the band and the coloured one stays in it, the fault "
-              "explains what health cannot.");
+              "explains what health cannot."
+            : "Below, dashed: the valve as healthy; full colour: with the hypothesis that comes nearest, which does "
+              "not "
+              "explain the log either. The channel that health misses most comes first.");
     add_replay(page, *r, view);
   }
   if (!in_health.empty()) {
@@ -339,7 +344,7 @@ Page diagnose_page(const Header& header, const std::vector<Diagnosis>& results, 
     const Diagnosis& d = results.front();
     Page page(header, "Diagnosis of " + file_name(d.log));
     add_to_head(page, d.conditions);
-    page.verdict(verdict_of(d, baseline));
+    page.verdict(verdict_of(d, baseline, header.call));
     if (certificate.sheet) certify(page, d, baseline, header, certificate);
     page.section(d.assessment.unjudgeable == Unjudgeable::no ? "Why" : "This log");
     add_details(page, d, replays, 1);
@@ -366,7 +371,7 @@ Page diagnose_page(const Header& header, const std::vector<Diagnosis>& results, 
   page.add(scores);
   add_confusion(page, results, truths);
   for (std::size_t i = 0; i < results.size(); ++i) {
-    page.verdict(verdict_of(results[i], baseline), fmt::format("log{}", i + 1));
+    page.verdict(verdict_of(results[i], baseline, header.call), fmt::format("log{}", i + 1));
     page.section("Traces, hypotheses and parameters of " + file_name(results[i].log), "",
                  results[i].verdict == VerdictKind::healthy);
     add_details(page, results[i], replays, std::max<std::size_t>(1, replays.size()));

@@ -21,6 +21,7 @@
 #include "faults/fault.h"
 #include "faults/gross_finding.h"
 #include "faults/record.h"
+#include "report/columns.h"
 #include "report/handy.h"
 #include "report/replay_part.h"
 
@@ -174,9 +175,21 @@ std::string planned_fault(const Diagnosis& d, const Fault* fault) {
   return fmt::format("{}={}", label_of(fault), digits(fitted->severity));
 }
 
+// Log, rig and table, as the calls that follow a verdict take them.
+std::string given(const CallNames& names) {
+  return "--params " + shell_word(names.table) + (names.rig.empty() ? "" : " --rig " + shell_word(names.rig));
+}
+
+std::string logs_of(const Diagnosis& d) {
+  if (d.assessment.logs.empty()) return d.log.empty() ? "LOG" : shell_word(d.log);
+  std::vector<std::string> words;
+  for (const std::string& log : d.assessment.logs) words.push_back(shell_word(log));
+  return join(words, " ");
+}
+
 }  // namespace
 
-std::string separating_test_of(const Diagnosis& d) {
+std::string separating_test_of(const Diagnosis& d, const CallNames& names) {
   if (!d.fault || d.ambiguous_with.empty()) return "";
   const Fault* rival = rival_of(d);
   // Only what a fit shows can be planned for, and no test parts twins.
@@ -184,7 +197,8 @@ std::string separating_test_of(const Diagnosis& d) {
   if (!result_of(d, d.fault) || (rival && !result_of(d, rival)) || twins) return std::string(d.fault->test);
   const std::string wish = rival ? "--between " + planned_fault(d, d.fault) + "," + planned_fault(d, rival)
                                  : "--faults " + planned_fault(d, d.fault);
-  return "servodx plan " + wish + " --params TUNED --rig RIG.toml --like LOG --seconds 2 -o COMMAND.csv";
+  const std::string like = d.assessment.logs.empty() ? logs_of(d) : shell_word(d.assessment.logs.front());
+  return "servodx plan " + wish + " " + given(names) + " --like " + like + " --seconds 2 -o command.csv";
 }
 
 std::vector<Candidate> candidates_of(const std::vector<HypothesisPrediction>& explanations) {
@@ -208,7 +222,7 @@ std::string statement_of(const DetectionBaseline& b) {
 std::string chance_words(const Diagnosis& d) {
   std::string text = "p = " + digits(d.p_value, 2);
   if (d.baseline_logs > 0 && d.p_value * (d.baseline_logs + 1) < 1.5)
-    text += fmt::format(", the least that {} logs can show", d.baseline_logs);
+    text += fmt::format(", the least that {} log{} can show", d.baseline_logs, d.baseline_logs == 1 ? "" : "s");
   return text;
 }
 
@@ -298,9 +312,10 @@ std::string suspicion_in_words(const Suspicion& s) {
 
 std::string beyond_in_words(const BeyondFaults& b) {
   if (b.first.empty() && b.where.empty()) return "explain finds no cause either";
-  if (b.first.empty()) return fmt::format("explain finds no name; most is missing at {}", b.where);
-  const std::string what = b.depends_on.empty() ? fmt::format("{} at {}", words(b.first), b.where)
-                                                : fmt::format("something at {} that follows {}", b.where, b.depends_on);
+  if (b.first.empty()) return fmt::format("explain finds no name; most is missing at {}", words(b.where));
+  const std::string what = b.depends_on.empty()
+                               ? fmt::format("{} at {}", words(b.first), words(b.where))
+                               : fmt::format("something at {} that follows {}", words(b.where), words(b.depends_on));
   const std::string removes =
       fmt::format("explain puts first {}: it removes {} of what is left", what, percent(b.share));
   return b.taken ? removes : removes + ", which healthy logs show too";
@@ -336,12 +351,21 @@ std::string others_words(const Diagnosis& d) {
       d.others == 1 ? "" : "s");
 }
 
-std::vector<std::string> next_calls(const Diagnosis& d) {
+std::string shell_word(const std::string& text) {
+  constexpr const char* plain = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_./-+=,:@%";
+  if (!text.empty() && text.find_first_not_of(plain) == std::string::npos) return text;
+  std::string quoted = "'";
+  for (const char c : text) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return quoted + "'";
+}
+
+std::vector<std::string> next_calls(const Diagnosis& d, const CallNames& names) {
   if (d.verdict != VerdictKind::unknown) return {};
-  const std::string look = "servodx check-log LOG --rig RIG.toml --params TUNED";
+  const std::string logs = logs_of(d) + " " + given(names);
+  const std::string look = "servodx check-log " + logs;
   if (d.assessment.unjudgeable != Unjudgeable::no) return {look};
-  return {look,
-          "servodx explain LOG --rig RIG.toml --params TUNED --baseline BASE.json -o EXTENDED.csv --report PAGE.html"};
+  return {look, "servodx explain " + logs + " --baseline " + shell_word(names.baseline) +
+                    " -o extended.csv --report explain.html"};
 }
 
 MovedParts moved_parts(const Diagnosis& d) {

@@ -19,6 +19,7 @@
 #include "faults/fault.h"
 #include "faults/gross_finding.h"
 #include "fit/replay.h"
+#include "report/call_names.h"
 
 namespace servodx::report {
 
@@ -40,7 +41,7 @@ std::map<std::string, double> labelled_probabilities(const Diagnosis& d);
 std::vector<const Fault*> ambiguous_by_label(const Diagnosis& d);
 std::vector<std::string> ambiguous_labels(const Diagnosis& d);
 // The input that would separate the fault named from what it is ambiguous with. "" where none.
-std::string separating_test_of(const Diagnosis& d);
+std::string separating_test_of(const Diagnosis& d, const CallNames& names = {});
 
 // What the hypotheses say the log should be, under their labels.
 std::vector<Candidate> candidates_of(const std::vector<HypothesisPrediction>& explanations);
@@ -78,8 +79,9 @@ DetectableWords detectable_words(const Diagnosis& d);
 std::string test_words(const TestConditions& test);
 // Empty where a log of the baseline is of such a test.
 std::string unlike_words(const Diagnosis& d);
-std::string others_words(const Diagnosis& d);             // empty: it was compared with the baseline's own logs
-std::vector<std::string> next_calls(const Diagnosis& d);  // of a verdict that names nothing: what to run next
+std::string others_words(const Diagnosis& d);  // empty: it was compared with the baseline's own logs
+// Of a verdict that names nothing: what to run next.
+std::vector<std::string> next_calls(const Diagnosis& d, const CallNames& names = {});
 
 // The rows that the fault moved; those of health's own, each farthest first.
 struct MovedParts {

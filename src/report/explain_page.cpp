@@ -29,6 +29,9 @@ std::string of_misfit(const Interval& g) {
   return fmt::format("{} ({} to {}, 90 %)", percent(g.value), percent(g.lower), percent(g.upper));
 }
 
+// For the head of a page: what a fit loses there is no gain, and its minus would have to be explained.
+std::string gain_in_words(const Interval& g) { return g.value > 0 ? of_misfit(g) : "nothing"; }
+
 // "20.3 um (19.9 to 20.6, 90 %)"
 std::string size_of(const ExplainedParameter& p) {
   const HandyUnit unit = handy_unit(p.unit, p.value);
@@ -42,11 +45,15 @@ std::string headline(const ExplainResult& r) {
   if (r.verdict == ExplainVerdict::sufficient) return "The simulation misses nothing that healthy logs do not show";
   if (r.causes.empty())
     return "Something is missing that no cause in the list mends" + (r.where.empty() ? "" : ", near " + words(r.where));
-  std::string text;
-  for (const ExplainedCause& c : r.causes) {
-    text += fmt::format("{}{} at {}", text.empty() ? "" : "; ", words(c.effect), words(c.where));
-    if (c.parameters.size() == 1) text += ", " + size_of(c.parameters.front());
+  const ExplainedCause& best = r.causes.front();
+  std::string text = fmt::format("{} at {}", words(best.effect), words(best.where));
+  if (best.parameters.size() == 1) {
+    const ExplainedParameter& p = best.parameters.front();
+    const HandyUnit unit = handy_unit(p.unit, p.value);
+    text += fmt::format(", {}; tuned {}{}{}", size_of(p), digits(p.before * unit.factor), unit.name.empty() ? "" : " ",
+                        unit.name);
   }
+  if (r.causes.size() > 1) text += fmt::format("; and {} more", r.causes.size() - 1);
   return text;
 }
 
@@ -65,11 +72,13 @@ std::vector<std::string> reasons(const ExplainResult& r) {
   for (const ExplainedChannel& c : r.channels)
     if (!worst || c.rms_before * worst->noise_rms > worst->rms_before * c.noise_rms) worst = &c;
   if (worst) {
-    const std::string unit(info(*find_signal(worst->signal)).si_unit);
+    const ChannelFigures f =  // the last stands for what is left
+        figures({*find_signal(worst->signal), worst->unit, worst->rms_before, worst->noise_rms, worst->rms_after});
+    const auto in_unit = [&](double value) { return digits(value) + " " + f.unit; };
     why.push_back(fmt::format("It shows most in the {}: off by {} rms as tuned{}; the sensor's noise is {}.",
-                              words(worst->signal), handy(worst->rms_before, unit),
-                              r.causes.empty() ? "" : ", by " + handy(worst->rms_after, unit) + " with what was found",
-                              handy(worst->noise_rms, unit)));
+                              words(worst->signal), in_unit(f.rms),
+                              r.causes.empty() ? "" : ", by " + in_unit(f.heldout_rms) + " with what was found",
+                              in_unit(f.noise_rms)));
   }
   const BlockReplay* newest = nullptr;
   for (const BlockReplay& b : r.blocks)
@@ -96,19 +105,22 @@ std::vector<std::string> reasons(const ExplainResult& r) {
     for (const std::string& o : c.confusable_with) others.push_back(words(o));
     if (c.by_blocks)
       why.push_back(
-          fmt::format("{} was told by the blocks with measured signals between them, where it removes {} of "
-                      "what they miss; the simulation alone does not settle it.",
-                      words(c.effect), percent(c.heldout_gain.value)));
+          sentence(fmt::format("{} was told by the blocks with measured signals between them, where it removes {} of "
+                               "what they miss; the simulation alone does not settle it",
+                               words(c.effect), percent(c.heldout_gain.value))));
     if (!others.empty())
       why.push_back(fmt::format("In place of {} it may be {}.", words(c.effect), join(others, " or ")));
-    if (!c.test.empty()) why.push_back(words(c.effect) + " shows best in " + c.test + ".");
+    if (!c.test.empty()) why.push_back(sentence(words(c.effect) + " shows best in " + c.test));
   }
   return why;
 }
 
 TablePart causes_table(const std::string& title, const std::vector<ExplainedCause>& causes) {
   TablePart table{
-      title, "llrrrlll", {"cause", "where", "number", "value", "90 %", "unit", "gain held out", "or else"}, {}, 0};
+      title, "lllrrrll", {"cause", "where", "number", "tuned", "value", "90 %", "unit", "gain held out"}, {}, 0};
+  const bool rivals =
+      std::any_of(causes.begin(), causes.end(), [](const auto& c) { return !c.confusable_with.empty(); });
+  if (rivals) table.alignment += 'l', table.head.push_back("or else");
   for (const ExplainedCause& c : causes) {
     std::vector<std::string> others;
     for (const std::string& o : c.confusable_with) others.push_back(words(o));
@@ -118,11 +130,12 @@ TablePart causes_table(const std::string& title, const std::vector<ExplainedCaus
       table.rows.push_back({words(c.effect),
                             words(c.where),
                             p.name == c.effect ? std::string() : words(p.name),
+                            {digits(p.before * unit.factor), p.before},
                             {digits(p.value * unit.factor), p.value},
                             {std::isfinite(half) ? "+-" + digits(half * unit.factor, 2) : "at a bound", half},
                             unit.name,
-                            {of_misfit(c.heldout_gain), c.heldout_gain.value},
-                            join(others)});
+                            {of_misfit(c.heldout_gain), c.heldout_gain.value}});
+      if (rivals) table.rows.back().push_back(join(others));
     }
   }
   return table;
@@ -210,8 +223,8 @@ Verdict verdict_of(const ExplainResult& r) {
   if (r.curve) v.detail = "Nothing in the list mends it; a curve learnt from the logs does.";
   if (r.suspicion) v.detail = "Not beyond healthy logs: " + suspicion_in_words(*r.suspicion) + ".";
   if (!r.depends_on.empty()) v.facts.push_back({"It follows", words(r.depends_on)});
-  if (!r.causes.empty()) v.facts.push_back({"Mending it removes, of the misfit", of_misfit(r.heldout_gain)});
-  v.facts.push_back({"Re-tuning alone removes", of_misfit(r.retuned)});
+  if (!r.causes.empty()) v.facts.push_back({"Mending it removes, of the misfit", gain_in_words(r.heldout_gain)});
+  v.facts.push_back({"Re-tuning alone removes", gain_in_words(r.retuned)});
   v.facts.push_back({"Misfit, times the tuning logs'",
                      digits(r.adequacy_before) + (r.causes.empty() ? "" : ", mended " + digits(r.adequacy_after))});
   v.reasons = reasons(r);

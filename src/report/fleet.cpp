@@ -82,7 +82,7 @@ std::string rows_text(const FleetTable& table) {
   columns.row({"log", "verdict", "fault", "severity", "probability", "error/threshold"});
   for (const FleetRow& row : table.rows)
     columns.row(
-        {row.log, word_of(row.verdict), row.fault, severity_words(row), chance(row.probability), digits(row.excess())});
+        {row.log, word_of(row.verdict), row.fault, severity_words(row), probability_words(row), digits(row.excess())});
   return columns.text();
 }
 

@@ -66,7 +66,7 @@ void add_rows(Page& page, const FleetTable& table) {
     verdict.tone = row.is_healthy() ? Tone::good : row.verdict == FleetVerdict::fault ? Tone::bad : Tone::doubt;
     const std::string size = severity_words(row);
     part.rows.push_back({row.log, verdict, words(row.fault), size.empty() ? Cell("") : Cell(size, row.severity),
-                         Cell(chance(row.probability), row.probability), Cell(digits(row.excess()), row.excess())});
+                         Cell(probability_words(row), row.probability), Cell(digits(row.excess()), row.excess())});
   }
   page.add(part);
 }
@@ -124,6 +124,10 @@ std::string fleet_headline(const FleetTable& table) {
 std::string severity_words(const FleetRow& row) {
   if (row.fault.empty() || !std::isfinite(row.severity)) return "";
   return handy_interval(row.severity, row.severity_lower, row.severity_upper, row.severity_unit);
+}
+
+std::string probability_words(const FleetRow& row) {
+  return row.verdict == FleetVerdict::fault ? chance(row.probability) : "-";
 }
 
 std::string rate_words(const CountedRate& rate) {

@@ -9,7 +9,9 @@ namespace servodx::report {
 
 std::string fleet_headline(const FleetTable& table);  // "400 logs: 380 healthy, 15 fault, 5 unknown; 2 set aside"
 std::string severity_words(const FleetRow& row);      // "" where the verdict has no size
-std::string rate_words(const CountedRate& rate);      // "19 of 20, 95 % (76 % to 99 %)"
+// Of a fault alone: of health it would promise more than a baseline can, of an unknown state it says nothing.
+std::string probability_words(const FleetRow& row);
+std::string rate_words(const CountedRate& rate);  // "19 of 20, 95 % (76 % to 99 %)"
 long count_of(const Confusion& confusion, const std::string& label, const std::string& name);
 
 }  // namespace servodx::report

@@ -11,6 +11,7 @@
 #include "diagnose/diagnose.h"
 #include "diagnose/judge.h"
 #include "evidence/conditions.h"
+#include "report/call_names.h"
 #include "report/page_head.h"
 #include "servodx/tune.h"
 #include "tune/tune.h"
@@ -33,6 +34,7 @@ struct Header {
   long simulations = 0, failed_simulations = 0;
   std::vector<std::string> notes;
   PageHead head;  // of pages alone
+  CallNames call = {};
 };
 
 Json number(double value);  // null where it is not finite: JSON has no word for it

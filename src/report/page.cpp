@@ -63,6 +63,9 @@ std::string cell_html(const Cell& cell, char alignment, const char* element = "t
   if (cell.tone != Tone::plain) attributes += fmt::format(" data-tone=\"{}\"", name_of(cell.tone));
   if (cell.value) attributes += fmt::format(" data-value=\"{}\"", exact(*cell.value));
   std::string text = escape_html(cell.text);
+  if (cell.text.size() > short_words && cell.text.find(' ') == std::string::npos)  // a path breaks behind its folders
+    for (std::size_t at = text.find('/'); at != std::string::npos; at = text.find('/', at + 1))
+      text.insert(at + 1, "<wbr>");
   if (!cell.link.empty()) text = fmt::format("<a href=\"{}\">{}</a>", escape_html(cell.link), text);
   return fmt::format("<{0}{1}>{2}</{0}>", element, attributes, text);
 }

@@ -49,13 +49,23 @@ Json check_json(const CheckResult& r) {
            {{"settled", r.mean_error.settled}, {"settled_at", number(r.mean_error.settled_at)}, {"unit", "s"}}}};
 }
 
+namespace {
+
+// A part lost is told by the drop over what is left, and that of a clean screen is known no better than the bores.
+std::string untold(const Check& c) {
+  if (c.told) return "";
+  const bool apart = std::abs(c.value - c.tuned) > 2 * c.whole_error;
+  return fmt::format(": {}not told from the tuned {}", apart ? "by the drop over it " : "", handy(c.tuned, c.unit));
+}
+
+}  // namespace
+
 std::string text_of(const CheckResult& r) {
   Columns rows("lrlrl", 2);
   for (const Check& c : r.checks)
     rows.row({name_of(c), handy(c.value, c.unit), "+-", handy(c.std_error, c.unit),
               std::isfinite(c.whole_error)
-                  ? fmt::format("with the model's own error +- {}{}", handy(c.whole_error, c.unit),
-                                c.told ? "" : ": not told from the tuned " + handy(c.tuned, c.unit))
+                  ? fmt::format("with the model's own error +- {}{}", handy(c.whole_error, c.unit), untold(c))
               : c.value != c.measured ? "measured " + handy(c.measured, c.unit)
                                       : ""});
   std::string text = fmt::format("{}: oil at {:.1f} degC ({})\n", r.log, r.temperature.value - zero_celsius,
@@ -140,7 +150,8 @@ Json trend_json(const std::vector<ValveTrend>& trends, bool all) {
 }
 
 std::string text_of(const ValveTrend& v) {
-  std::string text = fmt::format("{}: {} at {} h, {} checks\n", v.valve, word_of(v.state), digits(v.at, 5), v.checks);
+  std::string text =
+      fmt::format("{}: {}; last check at {} h, {} checks\n", v.valve, word_of(v.state), digits(v.at, 5), v.checks);
   if (v.cause) text += fmt::format("  cause        {}\n", *v.cause);
   if (v.alert_at) text += fmt::format("  alert        at {} h\n", digits(*v.alert_at, 5));
   if (v.remaining) text += fmt::format("  life left    {}\n", life_text(*v.remaining));

@@ -94,7 +94,8 @@ Plot history_of(const CheckTrend& t) {
     healthy.y.push_back(p.healthy ? p.value * unit.factor : std::nan(""));
     watched.y.push_back(p.healthy ? std::nan("") : p.value * unit.factor);
   }
-  plot.series = {healthy, watched};
+  for (const Series& s : {healthy, watched})  // a legend of what is not there would look for dots
+    if (std::any_of(s.y.begin(), s.y.end(), [](double y) { return std::isfinite(y); })) plot.series.push_back(s);
   const auto mark = [&](const Level& level, const char* label) {
     for (const auto& bound : {level.lower, level.upper})
       if (bound && std::isfinite(*bound)) plot.y_marks.push_back({*bound * unit.factor, label});
@@ -157,6 +158,9 @@ Verdict verdict_of(const ValveTrend& v, double coverage) {
                      : v.alert_at ? "A check of " + v.valve + " grows; no parameter names the cause"
                      : std::any_of(v.trends.begin(), v.trends.end(), moves_away)
                          ? v.valve + " shows no growth towards failure, but a check that moves away from it"
+                     : v.state == TrendState::unknown
+                         ? fmt::format("Nothing is known yet of how {} wears, after {} check{}", v.valve, v.checks,
+                                       v.checks == 1 ? "" : "s")
                          : v.valve + " shows no growth that would be acted on";
   if (v.cause && v.remaining && std::isfinite(v.remaining->median))
     verdict.headline += ", about " + digits(v.remaining->median, 2) + " h left";
@@ -167,7 +171,10 @@ Verdict verdict_of(const ValveTrend& v, double coverage) {
                    {"Life left", left(v.remaining, coverage)}};
   for (const CheckTrend& t : v.trends)
     if (t.alert_at)
-      verdict.reasons.push_back(named(t.name, t.cause) + " passed its warning level at " + in_hours(*t.alert_at));
+      verdict.reasons.push_back(
+          sentence(named(t.name, t.cause) + " passed its warning level at " + in_hours(*t.alert_at)));
+  if (v.state == TrendState::unknown)
+    for (const std::string& note : v.notes) verdict.reasons.push_back(sentence(note));
   return verdict;
 }
 
@@ -224,6 +231,11 @@ const Check* worn(const CheckResult& r) {
   return most;
 }
 
+std::string capital(std::string text) {
+  text.front() = static_cast<char>(std::toupper(static_cast<unsigned char>(text.front())));
+  return text;
+}
+
 void add_ways(Page& page, const CheckResult& r) {
   Bars bars{"From the tuned table to failure", "wear", "of the way", {}, Mark{1.0, "failed"}, 1.15};
   for (const Check& c : r.checks)
@@ -245,8 +257,8 @@ Page check_page(const Header& header, const CheckResult& r, const std::vector<do
   const Check* most = worn(r);
   v.tone = r.no_response ? Tone::bad : Tone::plain;
   v.headline = r.no_response ? "The spool did not follow the step"
-               : most        ? fmt::format("{} reads {} of the way to failure: {}", words(most->cause),
-                                           percent(way(*most, most->value)), size_of(*most, most->value))
+               : most        ? capital(fmt::format("{} reads {} of the way to failure: {}", words(most->cause),
+                                                   percent(way(*most, most->value)), size_of(*most, most->value)))
                : std::any_of(r.checks.begin(), r.checks.end(), [](const Check& c) { return !c.cause.empty(); })
                    ? "No wear reads a quarter of the way to failure or more"
                    : fmt::format("{} checks; wear was not estimated", r.checks.size());

@@ -177,7 +177,7 @@ std::string text_of(const Diagnosis& d, const TextOptions& options) {
   if (const std::string kind = words_of(blame_of(d)); !kind.empty()) table.row({"kind", kind});
   if (d.assessment.unjudgeable != Unjudgeable::no) {
     table.row({"action", d.action.text});
-    for (const std::string& call : next_calls(d)) table.row({"next", call});
+    for (const std::string& call : next_calls(d, options.call)) table.row({"next", call});
     return first + ": " + words_of(d.assessment.unjudgeable) + "\n" + table.text();
   }
   if (d.verdict == VerdictKind::unknown) first += ": not like the fault-free logs, and no known fault explains it";
@@ -193,9 +193,9 @@ std::string text_of(const Diagnosis& d, const TextOptions& options) {
   if (const std::string seen = words_of(d.assessment.gross); !seen.empty()) table.row({"seen at once", seen});
   if (d.onset) table.row({"since", digits(*d.onset, 4) + " s"});
   if (!d.ambiguous_with.empty()) table.row({"or else", join(ambiguous_labels(d))});
-  if (const std::string test = separating_test_of(d); !test.empty()) table.row({"to separate", test});
+  if (const std::string test = separating_test_of(d, options.call); !test.empty()) table.row({"to separate", test});
   if (d.action.of != ActionClass::none) table.row({"action", d.action.text});
-  for (const std::string& call : next_calls(d)) table.row({"next", call});
+  for (const std::string& call : next_calls(d, options.call)) table.row({"next", call});
   table.row({"null", percent(d.null) + " of rated"});
 
   if (!d.fault) {

@@ -6,6 +6,7 @@
 #include "diagnose/baseline.h"
 #include "diagnose/diagnose.h"
 #include "diagnose/judge.h"
+#include "report/call_names.h"
 #include "report/tune_words.h"
 #include "tune/tune.h"
 
@@ -14,6 +15,7 @@ namespace servodx::report {
 struct TextOptions {
   bool colour = false;     // the verdict's word, for a terminal
   std::string written_to;  // the command's output file, if any
+  CallNames call = {};     // of the calls that are advised
 };
 
 std::string text_of(const TuneResult& result, const GoodEnough& good, const TextOptions& options);

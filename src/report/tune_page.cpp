@@ -128,7 +128,7 @@ Page tune_page(const Header& header, const TuneResult& result, const GoodEnough&
   const bool yes = enough.trust == Trust::yes, no = enough.trust == Trust::no;
   v.tone = yes ? Tone::good : no ? Tone::bad : Tone::doubt;
   v.word = result.interrupted ? "INTERRUPTED" : yes ? "GOOD ENOUGH" : no ? "NOT GOOD ENOUGH" : "WITH CARE";
-  v.headline = yes  ? "Good enough to diagnose with"
+  v.headline = yes  ? "to diagnose with"
                : no ? "The model does not follow these logs: do not diagnose with this table"
                     : "Diagnose with this table, but mind what follows";
   v.detail = fmt::format("{} parameters fitted to {} log{}; {}.", known + static_cast<long>(at_end.size()), logs,
@@ -137,9 +137,9 @@ Page tune_page(const Header& header, const TuneResult& result, const GoodEnough&
              {"At an end of their range", std::to_string(at_end.size())},
              {"Held: the logs cannot tell", std::to_string(held)},
              {"Starts that agree", fmt::format("{} of {}", result.reached_best(), result.starts.size())}};
-  if (yes) v.reasons.push_back(sentence(line_of(enough)));
+  for (const std::string& part : praise_of(enough)) v.reasons.push_back(sentence(words(part)));
   for (const std::string& reason : enough.reasons) v.reasons.push_back(sentence(words(reason)));
-  if (!yes && !enough.exceptions.empty())
+  if (!enough.exceptions.empty())
     v.reasons.push_back("Predicted worse than fitted: " + join(enough.exceptions) + ", so such logs are few.");
   if (!at_end.empty())
     v.reasons.push_back(fmt::format("At an end of {} range: {}. Check the data sheet behind {}, or widen the bounds.",

@@ -191,17 +191,22 @@ GoodEnough good_enough(const TuneResult& result, const std::vector<Promise>& pro
   return g;
 }
 
+std::vector<std::string> praise_of(const GoodEnough& g) {
+  if (g.trust != Trust::yes) return {};
+  std::vector<std::string> parts = {fmt::format("it predicts {} as well as it fits, and the search has arrived",
+                                                g.exceptions.empty() ? "logs" : "most logs")};
+  if (!g.best.empty())
+    parts.push_back("on logs like these a diagnosis sees every fault at its typical size, and " +
+                    (g.faint.empty() ? "at its mildest" : "may miss at their mildest " + join(g.faint)));
+  return parts;
+}
+
 std::string line_of(const GoodEnough& g) {
   const std::string but =
       g.exceptions.empty() ? "" : "; predicted worse than fitted: " + join(g.exceptions) + ", so such logs are few";
   if (g.trust != Trust::yes)
     return fmt::format("{}: {}{}", g.trust == Trust::no ? "no" : "with care", fmt::join(g.reasons, "; "), but);
-  std::string line = fmt::format("yes: it predicts {} as well as it fits, and the search has arrived",
-                                 g.exceptions.empty() ? "logs" : "most logs");
-  if (!g.best.empty())
-    line += fmt::format("; on logs like these a diagnosis sees every fault at its typical size{}",
-                        g.faint.empty() ? ", and at its mildest" : ", and may miss at their mildest " + join(g.faint));
-  return line + but;
+  return "yes: " + join(praise_of(g), "; ") + but;
 }
 
 Json to_json(const GoodEnough& g) {

@@ -46,7 +46,8 @@ std::string unfollowed_in_words(const std::vector<Unfollowed>& channels);
 // `likeliest`: what explain puts first, where the model does not follow; null: not asked.
 GoodEnough good_enough(const TuneResult& result, const std::vector<Promise>& promises,
                        const BeyondFaults* likeliest = nullptr);
-std::string line_of(const GoodEnough& g);  // "yes: ...", "with care: ..." or "no: ..."
+std::vector<std::string> praise_of(const GoodEnough& g);  // of a 'yes', part by part; else empty
+std::string line_of(const GoodEnough& g);                 // "yes: ...", "with care: ..." or "no: ..."
 Json to_json(const GoodEnough& g);
 
 }  // namespace servodx::report

@@ -144,6 +144,7 @@ TuneResult tune_table(const std::vector<Log>& logs, const Table& nominal, const 
   end = weighed_as_learnt(fit, std::move(end), out.error);
 
   mark_unearned(screened, out.effects);
+  watch.tell(tune_constants::work.whole.to, fit);  // the rows' errors are still to come
   Settled settled = settle(scope, screened, fit, end, watch);
   out.logs =
       results_by_log(logs, scope, fit, settled.point, fit.trajectories(settled.point), heldout_runs, options.heldout);

@@ -96,6 +96,14 @@ TEST(Page, RowsBeyondThoseShownAreFoldedAndStillThere) {
   EXPECT_EQ(all.html().find("class=\"bars\" data-shown"), std::string::npos);
 }
 
+// On a narrow screen "data/tutorial/good_1.csv" else breaks within its last word.
+TEST(Page, APathInATableBreaksBehindItsFolders) {
+  Page page({}, "paths");
+  page.add(TablePart{"t", "ll", {"log", "leakage"}, {{"data/tutorial/good_1.csv", "0.02 l/min/bar"}}, 0});
+  EXPECT_NE(page.html().find("data/<wbr>tutorial/<wbr>good_1.csv"), std::string::npos);
+  EXPECT_NE(page.html().find("0.02 l/min/bar"), std::string::npos);
+}
+
 TEST(Page, SameResultSameBytes) {
   const auto make = [] {
     Page page({}, "t");

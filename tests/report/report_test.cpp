@@ -25,9 +25,11 @@
 #include "prognose/trend.h"
 #include "prognose/trend_state.h"
 #include "report/baseline_file.h"
+#include "report/check_log.h"
 #include "report/columns.h"
 #include "report/diagnosis_words.h"
 #include "report/explain_report.h"
+#include "report/fleet.h"
 #include "report/handy.h"
 #include "report/json.h"
 #include "report/pages.h"
@@ -159,7 +161,7 @@ TEST(CheckPage, OpensWithTheWearThatSurelyReadsAQuarterOfTheWay) {
   EXPECT_NE(check_page({}, r, {}).html().find("No wear reads a quarter of the way"), std::string::npos);
   r.checks.back() = {"parameter:9", 12e-6, 1e-7, "m", 12e-6, 1, "feedback_wire_backlash", 0.0, 20e-6};
   const std::string html = check_page({}, r, {}).html();
-  EXPECT_NE(html.find("feedback wire backlash reads 60 % of the way to failure: 12 um"), std::string::npos);
+  EXPECT_NE(html.find("Feedback wire backlash reads 60 % of the way to failure: 12 um"), std::string::npos);
 }
 
 ExplainResult some_explanation() {
@@ -187,10 +189,10 @@ TEST(ExplainPage, OpensWithTheCauseItsSizeAndTheChannelThatShowsIt) {
   const std::string html = explain_page({}, some_explanation(), {}).html();
   const std::string opening = html.substr(0, html.find("<section class=\"part\""));
   for (const char* shown :
-       {"FOUND", "valve glitch at first stage, 20.3 um (20 to 20.6, 90 %)",
+       {"FOUND", "valve glitch at first stage, 20.3 um (20 to 20.6, 90 %); tuned 0 um",
         "It shows most in the spool position: off by 9 um rms as tuned, by 1 um with what was found", "(346 before)",
         "valve glitch (backlash between feedback wire and spool, full width)",
-        "In place of valve glitch it may be asymmetric lap", "shows best in small sines"})
+        "In place of valve glitch it may be asymmetric lap", "Valve glitch shows best in small sines."})
     EXPECT_NE(opening.find(shown), std::string::npos)
         << shown << " is not in " << opening.substr(opening.find("<main>"));
   EXPECT_NE(html.find("What was found"), std::string::npos);
@@ -200,6 +202,24 @@ TEST(ExplainPage, OpensWithTheCauseItsSizeAndTheChannelThatShowsIt) {
   EXPECT_NE(explain_page({}, nothing, {}).html().find("NOTHING NEW"), std::string::npos);
   nothing.verdict = ExplainVerdict::unexplained;
   EXPECT_NE(explain_page({}, nothing, {}).html().find("UNEXPLAINED"), std::string::npos);
+}
+
+// The head is read in ten seconds: one size, in the units of the log, and no gain below nothing.
+TEST(ExplainPage, TheHeadIsShortAndInTheLogsUnits) {
+  ExplainResult r = some_explanation();
+  r.channels.front() = {"pressure_a", "psi", 272e3, 145e3, 1e3, 3e5, 2e5};
+  r.causes.push_back(r.causes.front());
+  r.causes.push_back(r.causes.front());
+  r.retuned = {-0.2, -0.3, -0.1};
+  const std::string html = explain_page({}, r, {}).html();
+  const std::string opening = html.substr(0, html.find("<section class=\"part\""));
+  EXPECT_NE(opening.find("tuned 0 um; and 2 more"), std::string::npos) << opening;
+  EXPECT_NE(opening.find("It shows most in the pressure A: off by 39.5 psi rms as tuned, by 21 psi"), std::string::npos)
+      << opening;
+  EXPECT_EQ(opening.find("-20 %"), std::string::npos) << opening;
+  EXPECT_NE(html.find(">or else<"), std::string::npos);
+  for (ExplainedCause& c : r.causes) c.confusable_with.clear();
+  EXPECT_EQ(explain_page({}, r, {}).html().find(">or else<"), std::string::npos) << "an empty column";
 }
 
 ExplainedCandidate candidate(const char* effect, Fate fate) {
@@ -282,6 +302,39 @@ TEST(TrendPage, AFigureThatFallsIsNotSaidToRise) {
   EXPECT_NE(trend_page({}, {v}, false).html().find("rises, over 1000 to 1"), std::string::npos);
 }
 
+// Few checks are no sign of health, and a legend names nothing that is not drawn.
+TEST(TrendPage, FewChecksSayNothingOfWear) {
+  ValveTrend v;
+  v.valve = "V7", v.state = TrendState::unknown, v.checks = 2, v.notes = {"fewer than 6 checks: no word on a trend"};
+  CheckTrend t;
+  t.name = "fidelity", t.unit = "1";
+  t.points.resize(2);
+  for (CheckTrend::Point& p : t.points) p.healthy = true;
+  t.points[1].at = 10;
+  v.trends = {t};
+  const std::string html = trend_page({}, {v}, false).html();
+  EXPECT_NE(html.find("Nothing is known yet of how V7 wears, after 2 checks"), std::string::npos);
+  EXPECT_NE(html.find("Fewer than 6 checks: no word on a trend."), std::string::npos);
+  EXPECT_EQ(html.find("shows no growth"), std::string::npos);
+  EXPECT_EQ(html.find("\"watched\""), std::string::npos);
+}
+
+// A filter may read far from the tuned value and not be told from it: what is compared is the drop over it.
+TEST(CheckText, SaysByWhatAFilterIsNotTold) {
+  CheckResult r;
+  r.checks.push_back({"parameter:1", 0.85, 0.005, "-", 0.85, 1, "clogged_filter", 0.0, 0.75, 0.05, false});
+  EXPECT_NE(text_of(r).find(": by the drop over it not told from the tuned 0"), std::string::npos) << text_of(r);
+  r.checks.front().value = 0.06;
+  EXPECT_NE(text_of(r).find(": not told from the tuned 0"), std::string::npos) << text_of(r);
+}
+
+// The hour behind the state is that of the last check, not of the warning.
+TEST(TrendText, TheHourIsThatOfTheLastCheck) {
+  ValveTrend v;
+  v.valve = "V7", v.state = TrendState::warning, v.at = 700, v.checks = 36, v.alert_at = 340;
+  EXPECT_TRUE(text_of(v).starts_with("V7: warning; last check at 700 h, 36 checks\n")) << text_of(v);
+}
+
 // A history may come from anywhere: a filter that gets cleaner has no life towards a blocked one.
 TEST(TrendPage, WhatMovesAwayFromFailureIsSaidToAndGetsNoLife) {
   ValveTrend v;
@@ -345,6 +398,43 @@ TEST(TunePage, NamesTheParametersAtAnEndOfTheirRange) {
   result.parameters = {p};
   const std::string html = tune_page({}, result, good_enough(result, {}), {}).html();
   EXPECT_NE(html.find("At an end of its range: torque motor frequency."), std::string::npos);
+}
+
+TEST(TunePage, SaysOnceThatItIsGoodEnoughAndCallsFaultsByTheirWords) {
+  TuneResult result;
+  result.channels = {{Signal::spool_position, "um", 1e-6, 5e-7, 1.5e-6}};
+  result.starts = {1.0, 1.01};
+  result.arrived = {1, 1};
+  Promise log;
+  log.faults = {{"clogged_filter", "-", 0.15, 0.8, 0.5, 12}};
+  const std::string html = tune_page({}, result, good_enough(result, {log}), {}).html();
+  const std::string opening = html.substr(0, html.find("<section class=\"part\""));
+  EXPECT_EQ(opening.find("Good enough"), std::string::npos) << opening;
+  EXPECT_NE(opening.find("may miss at their mildest clogged filter."), std::string::npos) << opening;
+}
+
+TEST(CheckLogText, EndsWithHowManyOfManyLogsAreSuspicious) {
+  LogCheck cold, fine;
+  cold.survey.path = "cold.csv", fine.survey.path = "fine.csv";
+  cold.survey.findings = {{"temperature", "cold oil"}, {"gaps", "one"}, {"gaps", "two"}};
+  EXPECT_TRUE(text_of({cold, fine}).ends_with("\n1 of 2 logs have something suspicious: temperature in 1, gaps in 1\n"))
+      << text_of({cold, fine});
+  EXPECT_TRUE(text_of({fine, fine}).ends_with("\nnothing suspicious in 2 logs\n"));
+  EXPECT_EQ(text_of({cold}).find("of 1 log"), std::string::npos) << "one log has said it";
+}
+
+// Of health a probability would promise more than a baseline can; of an unknown state it says nothing.
+TEST(FleetPage, OnlyAFaultHasAProbability) {
+  FleetTable table;
+  FleetRow healthy, unknown, fault;
+  healthy.log = "a.csv", healthy.verdict = FleetVerdict::healthy, healthy.probability = 0.9999;
+  unknown.log = "b.csv", unknown.verdict = FleetVerdict::unknown, unknown.probability = 1;
+  fault.log = "c.csv", fault.verdict = FleetVerdict::fault, fault.fault = "sticky_spool", fault.probability = 0.87;
+  table.rows = {fault, unknown, healthy};
+  for (const std::string& said : {text_of(table, {}), fleet_page({}, table, {}).html()}) {
+    EXPECT_NE(said.find("87 %"), std::string::npos) << said;
+    EXPECT_EQ(said.find("99.9 %"), std::string::npos) << said;
+  }
 }
 
 TEST(Words, APortsLetterIsACapital) {
@@ -534,6 +624,22 @@ TEST(SeparatingTest, TwinsKeepTheirWords) {
   EXPECT_EQ(separating_test_of(d), d.fault->test);
 }
 
+// A twin is not fitted: "under 0.1 %" would say that it is ruled out.
+TEST(DiagnosePage, ATwinHasNoProbabilityAndALogIsNotLikeTestsThatAreMissing) {
+  Diagnosis d = some_diagnosis();
+  d.fault = find_fault("torque_motor_loss");
+  d.ambiguous_with = {d.fault->twin};
+  d.baseline_logs = 1, d.p_value = 0.5;
+  std::string html = diagnose_page({}, {d}, some_baseline(), {}).html();
+  EXPECT_NE(html.find("It cannot be told for certain from driver fault. "), std::string::npos) << html;
+  EXPECT_NE(html.find("set by 1 fault-free log, is"), std::string::npos);
+  EXPECT_NE(html.find("the least that 1 log can show"), std::string::npos);
+  d.verdict = VerdictKind::healthy, d.fault = nullptr, d.ambiguous_with.clear();
+  d.unlike = {"logs/h11.csv", {0.04, 1.96, 333.0}};
+  html = diagnose_page({}, {d}, some_baseline(), {}).html();
+  EXPECT_NE(html.find("is like the fault-free logs, though of another test"), std::string::npos);
+}
+
 // A rank among n logs ends at 1 / (n + 1): a small p is not to be read off few logs.
 TEST(DiagnoseText, ThePValueSaysWhereTheLogsCanShowNoLess) {
   Diagnosis d = some_diagnosis();
@@ -601,6 +707,26 @@ TEST(DiagnoseText, AnUnknownStateNamesWhatComesNearest) {
   const std::string text = text_of(d, {});
   EXPECT_TRUE(text.starts_with("odd.csv: UNKNOWN: ")) << text;
   EXPECT_NE(text.find("sticky_spool over 99.9 %, healthy under 0.1 %"), std::string::npos) << text;
+}
+
+// What is advised is run as it stands.
+TEST(DiagnoseText, WhatToRunNextNamesTheFilesOfTheCall) {
+  Diagnosis d;
+  d.log = "logs/odd one.csv";
+  d.verdict = VerdictKind::unknown;
+  const CallNames call{"bench.toml", "tuned.csv", "base.json"};
+  const std::vector<std::string> calls = next_calls(d, call);
+  ASSERT_EQ(calls.size(), 2u);
+  EXPECT_EQ(calls[0], "servodx check-log 'logs/odd one.csv' --params tuned.csv --rig bench.toml");
+  EXPECT_EQ(calls[1],
+            "servodx explain 'logs/odd one.csv' --params tuned.csv --rig bench.toml --baseline base.json "
+            "-o extended.csv --report explain.html");
+  EXPECT_NE(text_of(d, {.call = call}).find(calls[1]), std::string::npos) << text_of(d, {.call = call});
+  Header header;
+  header.call = call;
+  EXPECT_NE(diagnose_page(header, {d}, some_baseline(), {}).html().find("--baseline base.json"), std::string::npos);
+  EXPECT_EQ(next_calls(d, {"", "t.csv", "b.json"})[0], "servodx check-log 'logs/odd one.csv' --params t.csv");
+  EXPECT_EQ(shell_word("it's"), "'it'\\''s'");
 }
 
 TEST(BaselineText, SaysWhatIsPromised) {
@@ -696,7 +822,7 @@ TEST(TuneReport, GoodEnoughIsWhatPredictsHasArrivedAndWouldSeeTheFaults) {
   good = good_enough(result, {other}, &likeliest);
   EXPECT_EQ(good.trust, Trust::no);
   EXPECT_TRUE(line_of(good).starts_with("no: ")) << line_of(good);
-  for (const char* words : {"pressure A is left with 11 times its noise", "hose compliance at flow_a"})
+  for (const char* words : {"pressure A is left with 11 times its noise", "hose compliance at flow A"})
     EXPECT_NE(line_of(good).find(words), std::string::npos) << line_of(good);
   result.unfollowed.clear();
   result.stop = StopReason::iteration_limit, result.still_promised = 7;

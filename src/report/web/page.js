@@ -5,6 +5,7 @@
   const root = document.documentElement;
   const colour = (name) => getComputedStyle(root).getPropertyValue("--" + name).trim();
   const dash = { measured: [], reference: [6, 4], named: [], other: [2, 3], input: [] };
+  const dashed = (series) => !series.points && dash[series.role].length > 0;
 
   // Plots of one group share the range of x; a plot without a group is a group of its own.
   const groups = new Map();
@@ -121,6 +122,9 @@
       series.push({ ...edge, label: plot.band, class: "lower" }, { ...edge, label: plot.band, class: "band" });
       bands.push({ series: [n + 1, n], fill: colour("band") });
     }
+    // Without words below the axis its last tick carries the unit.
+    const unit = plot.x_shown ? null : / \[(.+)\]$/.exec(plot.x || "")?.[1];
+    const ticks_x = unit ? (u, ticks) => ticks.map((v, k) => short(v) + (k === ticks.length - 1 ? " " + unit : "")) : undefined;
     const axis = { stroke: colour("muted"), grid: { stroke: colour("grid"), width: 1 }, ticks: { stroke: colour("grid"), width: 1 }, font: "12px system-ui, sans-serif", labelFont: "12px system-ui, sans-serif" };
     return {
       width: element.clientWidth,
@@ -129,7 +133,7 @@
       padding: [null, gutter(plot), null, null],
       scales: { x: { time: false }, y: plot.log ? { distr: 3 } : { range: range_with(plot.ymarks || []) } },
       axes: [
-        { ...axis, label: plot.x_shown ? plot.x : null, labelSize: 16, size: 30 },
+        { ...axis, label: plot.x_shown ? plot.x : null, labelSize: 16, size: 30, values: ticks_x },
         { ...axis, space: 26, size: (u, ticks) => Math.max(u.width < 520 ? 48 : 64, 16 + 7 * Math.max(0, ...(ticks || []).map((t) => String(t ?? "").length))), values: plot.log ? undefined : (u, ticks) => ticks.map((v) => short(v)) },
       ],
       cursor: {
@@ -137,7 +141,10 @@
         sync: key ? { key, scales: ["x", null], filters: { pub: (type) => !/^mouse(down|up)$|^dblclick$/.test(type) } } : undefined,
       },
       // A box that is filled: an empty one looks as if its series were missing. What is dashed has a dashed rim.
-      legend: { markers: { fill: (u, i) => (i > 0 && i <= plot.series.length && !dash[plot.series[i - 1].role].length ? colour(plot.series[i - 1].role) : null) } },
+      legend: { markers: {
+        fill: (u, i) => (i > 0 && i <= plot.series.length && !dashed(plot.series[i - 1]) ? colour(plot.series[i - 1].role) : null),
+        dash: (u, i) => (i > 0 && i <= plot.series.length && dashed(plot.series[i - 1]) ? "dashed" : "solid"),
+      } },
       hooks: {
         draw: [marks(plot)],
         setLegend: [(u) => u.root.classList.toggle("told", u.legend.idx != null)],

@@ -12,7 +12,7 @@ from selenium.webdriver.common.keys import Keys
 # A log may have any name.
 HOSTILE = "<script>alert('log')<_script><img src=x onerror=alert(1)>.csv"
 MADE_UP = ["diagnose", "many", "baseline", "tune"]
-REAL = ["explain", "check", "trend", "map", "curves", "check-log", "simulate", "compare"]
+REAL = ["explain", "check", "trend", "map", "curves", "check-log", "check-logs", "simulate", "compare"]
 PAGES = MADE_UP + REAL
 
 # Relative luminance and contrast as WCAG 2 defines them, of every element that holds text of its own.
@@ -67,8 +67,8 @@ class Pages(unittest.TestCase):
             head = next(i for i, line in enumerate(lines) if line.startswith("time"))
             return "".join(lines[head:head + 1 + round(1000 * seconds)])
 
-        def servodx(command, *arguments):
-            call = [PROGRAM, command, *arguments, "--report", str(cls.folder / f"{command}.html"), "--quiet"]
+        def servodx(command, *arguments, page=""):
+            call = [PROGRAM, command, *arguments, "--report", str(cls.folder / f"{page or command}.html"), "--quiet"]
             ended = subprocess.run(call, cwd=desk, text=True, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE)
             if ended.returncode:
                 raise RuntimeError(f"servodx {command} ended with {ended.returncode}\n{ended.stderr}")
@@ -85,6 +85,11 @@ class Pages(unittest.TestCase):
 
         log.write_text(rows("healthy/h12_mixed.csv", 0.6))
         servodx("check-log", HOSTILE, *given)
+        far = desk / "a_folder_whose_name_is_longer_than_a_phone_is_wide"
+        far.mkdir()
+        for name in ("one.csv", "two.csv"):
+            shutil.copy(log, far / name)
+        servodx("check-log", *(f"{far.name}/{name}" for name in ("one.csv", "two.csv")), page="check-logs")
         servodx("simulate", HOSTILE, *given, "-o", "simulated.csv")
         servodx("explain", HOSTILE, *given, "-o", "extended.csv", "--json", HOSTILE + ".json")
         # The same result but for a name, a size and a verdict.
@@ -272,6 +277,26 @@ class Pages(unittest.TestCase):
             setTimeout(done, 300);""")
         widths = self.run("return [...servodx.drawn.values()].map(({chart}) => chart.width)")
         self.assertEqual(set(widths), {600})
+
+    def test_every_axis_of_time_says_its_unit(self):
+        self.open("diagnose")
+        self.draw_all()
+        last = self.run("""return [...servodx.drawn.values()].map(({chart}) => chart.axes[0])
+            .map((axis) => axis.label || axis._values.filter((v) => v != null).at(-1))""")
+        self.assertTrue(last)
+        self.assertEqual([text for text in last if not str(text).endswith((" s", "[s]"))], [])
+
+    def test_a_legend_shows_dots_filled_and_dashes_dashed(self):
+        def marker(page, series):
+            self.open(page)
+            self.draw_all()
+            return self.run("""const row = [...document.querySelectorAll('.u-series')].find((e) => e.textContent.includes(arguments[0]));
+                const style = getComputedStyle(row.querySelector('.u-marker'));
+                return [style.backgroundColor, style.borderTopStyle];""", series)
+        fill, _ = marker("trend", "taken as healthy")
+        self.assertNotIn(fill, ("transparent", "rgba(0, 0, 0, 0)"))
+        _, rim = marker("diagnose", "healthy")
+        self.assertEqual(rim, "dashed")
 
     def test_every_figure_has_a_csv_that_reads_back(self):
         for name in PAGES:
