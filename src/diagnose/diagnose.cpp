@@ -159,7 +159,7 @@ std::vector<HypothesisResult> results_of(const HypothesisFits& fits, const Param
     r.severity = f.severity;
     r.severity_lower = std::min(f.severity_lower, f.severity_upper);
     r.severity_upper = std::max(f.severity_lower, f.severity_upper);
-    r.at_least = f.at_least, r.at_worst = f.at_worst, r.shape = f.shape;
+    r.at_least = f.at_least, r.at_worst = f.at_worst, r.shapes = f.shapes;
     r.adequacy = worst_channel(f);
     if (f.ok) r.null = candidate_at(base, f)[row::servovalve_null];
     r.moved = moved_rows(f, base, tuned);

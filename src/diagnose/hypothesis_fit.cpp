@@ -184,19 +184,20 @@ void end_at(Attempt& a, const FitProblem& problem, const LeastSquaresResult& r, 
   fit.standard_error = standard_errors(r, a.beside ? 2 : a.fault ? 1 : 0);
   a.square = squares(problem, r.residual, data.error);
   measure_channels(fit, problem, r.residual, data);
-  // The sizes come first, then the shapes of those that have one.
+  // The sizes come first, then the shapes.
   std::size_t at = a.beside ? 2 : 1;
-  const auto shape_of = [&](const Fault& fault) {
-    return fault.shape ? std::optional(fit.free[at].from_unit(fit.point[at])) : std::nullopt;
+  const auto shapes_of = [&](const Fault& fault) {
+    std::vector<double> shapes;
+    for (std::size_t i = 0; i < fault.shapes.size(); ++i, ++at) shapes.push_back(fit.free[at].from_unit(fit.point[at]));
+    return shapes;
   };
   if (a.fault) {
     static_cast<FaultSize&>(fit) = measure_severity(fit, *a.fault, 0);
-    fit.shape = shape_of(*a.fault);
-    at += fit.shape.has_value();
+    fit.shapes = shapes_of(*a.fault);
   }
   if (a.beside) {
     fit.beside = measure_severity(fit, *a.beside, 1);
-    fit.beside->shape = shape_of(*a.beside);
+    fit.beside->shapes = shapes_of(*a.beside);
   }
 }
 

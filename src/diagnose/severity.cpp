@@ -62,10 +62,10 @@ FreeValue tolerance_value(const Fault& fault) {
 }
 
 // `tolerated`: of a fault within its tolerance. Its own hypothesis does not begin where that ended.
-FreeValue shape_value(const Fault& fault, bool tolerated) {
-  const FaultShape& shape = *fault.shape;
+FreeValue shape_value(const Fault& fault, const FaultShape& shape, bool tolerated) {
   FreeValue f;
-  f.name = std::string(tolerated ? "tolerated shape of " : "shape of ") + std::string(fault.name);
+  f.name = std::string(tolerated ? "tolerated shape of " : "shape of ") + std::string(fault.name) + ": " +
+           std::string(shape.name);
   f.apply = shape.apply;
   f.lower = shape.lower, f.upper = shape.upper;
   f.start = tolerated ? shape.in_health : shape.start;
@@ -84,7 +84,8 @@ std::vector<FreeValue> hypothesis_values(const std::vector<const LogData*>& logs
   for (const FaultStart& s : faults)
     if (s.fault) free.push_back(severity_value(*s.fault, s.severity, null_limit));
   for (const FaultStart& s : faults)
-    if (s.fault && s.fault->shape) free.push_back(shape_value(*s.fault, false));
+    if (s.fault)
+      for (const FaultShape& shape : s.fault->shapes) free.push_back(shape_value(*s.fault, shape, false));
   for (std::size_t l = 0; l < logs.size(); ++l)
     for (FreeValue& f : nuisance_values(*logs[l], static_cast<int>(l), base, null_limit))
       if (!among([&](const Fault& fault) { return f.at == fault.beyond_limit_of; })) free.push_back(std::move(f));
@@ -92,7 +93,7 @@ std::vector<FreeValue> hypothesis_values(const std::vector<const LogData*>& logs
   for (const Fault* other : fitted_faults(logs))
     if (!among([&](const Fault& fault) { return &fault == other; }) && !other->beyond_limit_of) {
       free.push_back(tolerance_value(*other));
-      if (other->shape) free.push_back(shape_value(*other, true));
+      for (const FaultShape& shape : other->shapes) free.push_back(shape_value(*other, shape, true));
     }
   return free;
 }

@@ -25,14 +25,14 @@ inline const Fault clogged_filter{
     .failed = 0.75,  // the end of what Borello 2009 studies
     .part_lost = true,
     .renewed_by = EventKind::filter_changed,
-    .shape = FaultShape{.name = "part of it at one direction of flow only, negative for the other",
-                        .lower = -1.0,
-                        .upper = 1.0,
-                        .start = 0.0,
-                        .in_health = 0.0,
-                        .apply = [](double* v, double one_way) {
-                          v[row::filter_blockage_negative] *= 1.0 - std::max(0.0, one_way);
-                          v[row::filter_blockage_positive] *= 1.0 - std::max(0.0, -one_way);
-                        }}};
+    .shapes = {{.name = "part of it at one direction of flow only, negative for the other",
+                .lower = -1.0,
+                .upper = 1.0,
+                .start = 0.0,
+                .in_health = 0.0,
+                .apply = [](double* v, double one_way) {
+                  v[row::filter_blockage_negative] *= 1.0 - std::max(0.0, one_way);
+                  v[row::filter_blockage_positive] *= 1.0 - std::max(0.0, -one_way);
+                }}}};
 
 }  // namespace servodx

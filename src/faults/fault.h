@@ -18,14 +18,14 @@ struct SeenOutright {
   double mildest = 0;  // severity
 };
 
-// How a fault of one size may look: a second number. It is free wherever the severity is, within its tolerance too:
+// How a fault of one size may look: a further number. It is free wherever the severity is, within its tolerance too:
 // what a healthy valve may look like is no evidence of a fault.
 struct FaultShape {
   std::string_view name;  // what the number is
   double lower, upper;
   double start;      // where a search begins, and what is likely
   double in_health;  // the same within the fault's tolerance
-  // Moves the rows of a candidate that has the severity.
+  // Moves the rows of a candidate that has the severity, and the shapes stated before this one.
   void (*apply)(double* candidate, double shape);
 };
 
@@ -58,7 +58,7 @@ struct Fault {
   // Told by a record without the model. An input's fault (supply, driver) is fitted only where its record is missing,
   // since the record drives the simulation.
   std::optional<Record> told_by = {};
-  std::optional<FaultShape> shape = {};
+  std::vector<FaultShape> shapes = {};
   // What looks alike: the two are named together, but where the other has a record of its own and the log holds it.
   const Fault* twin = nullptr;
 };

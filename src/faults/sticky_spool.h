@@ -29,14 +29,24 @@ inline const Fault sticky_spool{
           v[effect_row<Stiction>(0)] *= s;
         },
     .failed = 20.0,  // the end of what Borello 2009 studies
-    .shape = FaultShape{.name = "share that only holds the spool at rest",
-                        .lower = 0.0,
-                        .upper = 1.0,
-                        .start = 0.3,
-                        .in_health = 0.0,
-                        .apply = [](double* v, double share) {
-                          v[effect_row<Stiction>(0)] += share * v[row::spool_friction];
-                          v[row::spool_friction] *= 1.0 - share;
-                        }}};
+    .shapes = {{.name = "share that only holds the spool at rest",
+                .lower = 0.0,
+                .upper = 1.0,
+                .start = 0.3,
+                .in_health = 0.0,
+                .apply =
+                    [](double* v, double share) {
+                      v[effect_row<Stiction>(0)] += share * v[row::spool_friction];
+                      v[row::spool_friction] *= 1.0 - share;
+                    }},
+               // Friction laws differ in it: a bristle of one stiffness yields in proportion to the force it holds,
+               // asperities of one size not at all. Of the logs of rig B 5 times the friction wants none of it, 20
+               // times it 5 um.
+               {.name = "way over which it yields before it slips, above a clean one's [m]",
+                .lower = 0.0,
+                .upper = 1.5e-5,
+                .start = 3e-6,
+                .in_health = 0.0,
+                .apply = [](double* v, double yield) { v[effect_row<Stiction>(1)] += yield; }}}};
 
 }  // namespace servodx

@@ -61,8 +61,8 @@ struct FrictionMemory {
   }
   // After a step of h [s] between two places [m]. `sticks` false where no breakaway is above 0: the same bits, sooner.
   void move(const T& spool_from, const T& x_spool, const T& rod_from, const T& x_rod, double h,
-            const Breakaway<T>& breakaway, bool sticks = true) {
-    spool_anchor = dragged_anchor(spool_anchor, x_spool, T(constants::spool_presliding));
+            const T& spool_presliding, const Breakaway<T>& breakaway, bool sticks = true) {
+    spool_anchor = dragged_anchor(spool_anchor, x_spool, spool_presliding);
     spool_speed = (x_spool - spool_from) * T(1.0 / h);
     rod_speed = (x_rod - rod_from) * T(1.0 / h);
     T reach = T(1.0);

@@ -177,7 +177,7 @@ inline __attribute__((always_inline)) auto derivative(const S& s, const In& in, 
   const auto f_flow = d.flow_force * (h_pa * (u.supply_pressure - p_a) + h_bt * (p_b - u.return_pressure) -
                                       h_pb * (u.supply_pressure - p_b) - h_at * (p_a - u.return_pressure));
   const auto f_dry =
-      pick<row::spool_friction>(p) * asperities<T>((x_s - in.friction.spool_anchor) * T(1.0 / c::spool_presliding));
+      pick<row::spool_friction>(p) * asperities<T>((x_s - in.friction.spool_anchor) * d.per_spool_presliding);
   const auto beyond = x_s - pick<row::spool_stop>(p), behind = -x_s - pick<row::spool_stop>(p);
   const auto in_spool_stop =
       in_contact(contact_depth(beyond, c::spool_film), contact_depth(behind, c::spool_film), T(c::spool_film));

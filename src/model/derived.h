@@ -35,6 +35,8 @@ namespace servodx {
   X(spool_area,                "m2",           "") \
   X(inverse_spool_mass,        "1/kg",         "") \
   X(spool_viscous,             "N s/m",        "shear in the annulus") \
+  X(spool_presliding,          "m",            "way over which the spool's dry friction is taken up") \
+  X(per_spool_presliding,      "1/m",          "") \
   X(flow_force,                "m",            "times open height and pressure drop") \
   X(twice_width,               "m",            "") \
   X(clearance2,                "m2",           "") \
@@ -122,6 +124,8 @@ Derived<T> derive(const T* p, const Oil& oil) {
   const T spool_length = p[row::spool_diameter] * T(c::spool_length_in_diameters);
   d.inverse_spool_mass = T(1.0) / (T(c::steel_density) * d.spool_area * spool_length);
   d.spool_viscous = T(c::pi) * dynamic_viscosity * p[row::spool_diameter] * spool_length / p[row::radial_clearance];
+  d.spool_presliding = T(c::spool_presliding) + hook_spool_yield(p, Effects{});
+  d.per_spool_presliding = T(1.0) / d.spool_presliding;
   d.flow_force = T(c::jet_angle_factor) * p[row::flow_force_coefficient] * p[row::port_width];
   d.twice_width = T(2.0) * p[row::port_width];
   d.clearance2 = p[row::radial_clearance] * p[row::radial_clearance];

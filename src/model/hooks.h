@@ -15,6 +15,7 @@
 //     seal_film_speed(p)   [m/s] added to the speed at which the piston's seals slide on oil
 //     seal_shear(p)        [-]   share of the piston's viscous friction in proportion to the viscosity
 //     seal_dry(p)          [-]   share of it that the viscosity leaves alone
+//     spool_yield(p)       [m]   added to the way over which the spool's dry friction is taken up
 //     supply_pressure(view) [Pa] added to the supply pressure at the valve
 //     flapper_force(view)  [N]   added to the torque motor's force
 //     spool_force(view)    [N]   added to the force on the spool
@@ -183,6 +184,7 @@ SERVODX_FIXED_HOOK(screen_drop)
 SERVODX_FIXED_HOOK(seal_film_speed)
 SERVODX_FIXED_HOOK(seal_shear)
 SERVODX_FIXED_HOOK(seal_dry)
+SERVODX_FIXED_HOOK(spool_yield)
 #undef SERVODX_FIXED_HOOK
 
 // What the effects add to the corner radius of the metering edges, those to return or those from supply. [m]

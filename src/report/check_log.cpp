@@ -18,7 +18,6 @@
 #include "report/row_verdict_word.h"
 #include "servodx/table.h"
 #include "signals/signal.h"
-#include "servodx/table.h"
 
 namespace servodx::report {
 namespace {

@@ -194,6 +194,9 @@ Json baseline_json(const DetectionBaseline& b) {
 }
 
 Json to_json(const HypothesisResult& h) {
+  Json shapes = Json::array();
+  for (std::size_t i = 0; i < h.shapes.size(); ++i)
+    shapes.push_back({{"name", h.fault->shapes[i].name}, {"value", number(h.shapes[i])}});
   return {{"name", label_of(h.fault)},
           {"probability", number(h.probability)},
           {"misfit", number(h.misfit)},
@@ -205,7 +208,8 @@ Json to_json(const HypothesisResult& h) {
             {"upper", number(h.severity_upper)},
             {"unit", unit_of(h.fault)},
             {"at_least", h.at_least}}},
-          {"shape", h.shape ? Json{{"name", h.fault->shape->name}, {"value", number(*h.shape)}} : Json(nullptr)},
+          {"shape", shapes.empty() ? Json(nullptr) : shapes.front()},
+          {"shapes", shapes},
           {"stops", h.stops}};
 }
 

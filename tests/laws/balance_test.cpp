@@ -176,7 +176,7 @@ Inputs<double> dragged(const Bench<Effects>& bench, const typename Bench<Effects
   const double h = 1.0;                             // far enough for all to slip
   u.friction.rest(y[s_x_spool] - y[s_v_spool] * h, y[s_x_piston] - rod * h);
   u.friction.move(y[s_x_spool] - y[s_v_spool] * h, y[s_x_spool], y[s_x_piston] - rod * h, y[s_x_piston], h,
-                  bench.derived().breakaway);
+                  bench.derived().spool_presliding, bench.derived().breakaway);
   return u;
 }
 
@@ -223,7 +223,8 @@ TEST(Balance, SealsThatHoldMoreHoldLongerAndAreNoStiffer) {
     auto u = bench.inputs(random);
     u.friction.rest(y[s_x_spool], y[s_x_piston] - push);
     const double h = push / 1e-5;  // [s] at 10 um/s
-    u.friction.move(y[s_x_spool], y[s_x_spool], y[s_x_piston] - push, y[s_x_piston], h, bench.derived().breakaway);
+    u.friction.move(y[s_x_spool], y[s_x_spool], y[s_x_piston] - push, y[s_x_piston], h,
+                    bench.derived().spool_presliding, bench.derived().breakaway);
     auto free = u;
     free.friction.rest(y[s_x_spool], y[s_x_piston]);
     return v[row::moving_mass] * (bench.rate(y, free)[s_v_piston] - bench.rate(y, u)[s_v_piston]);
