@@ -112,8 +112,8 @@ std::optional<Trajectory> run_cvode(const Scenario& in, const ParameterVector& p
     while (good && t < in.time[k] * (1 - 1e-12)) {
       const double spool = x[s_x_spool], rod = x[s_x_piston], from = t;
       good = CVode(cvode, in.time[k], y, &t, CV_ONE_STEP) >= 0;
-      if (good && t > from) run.live.at.friction.move(spool, x[s_x_spool], rod, x[s_x_piston], t - from,
-                                                                  d.spool_presliding, d.breakaway);
+      if (good && t > from)
+        run.live.at.friction.move(spool, x[s_x_spool], rod, x[s_x_piston], t - from, d.spool_presliding, d.breakaway);
     }
     good = good && CVodeGetDky(cvode, in.time[k], 0, found) == CV_SUCCESS;
     if (good) report(state_of(found));

@@ -15,7 +15,7 @@ struct EdgeRadius {
   static constexpr const char* place = "metering";
   static constexpr const char* meaning = "the metering edges are blunt";
   static constexpr bool stand_only = true;  // an actuator shows its valve's edges through its own friction at null
-  static constexpr Freed freed = Freed::on_stands;
+  static constexpr Freed freed = Freed::everywhere;
   static constexpr const char* best_test =
       "the pressure's slope at null beside the leakage there: blunt edges leak more at the same slope";
   static constexpr int n_states = 0;

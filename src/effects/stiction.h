@@ -1,8 +1,8 @@
 // Stiction of the spool: what it takes to break away, above what it takes to keep sliding (silt, lacquer, a dry land).
 // The asperities that hold the spool bear it as they bear Coulomb friction, and it falls away with speed (Stribeck
-// 1902; Armstrong-Helouvry, Dupont & Canudas de Wit, Automatica 30, 1994). What holds more also yields further before it
-// slips: contacts are as stiff as their load to the power of a third (Mindlin 1949), packed silt is softer than steel.
-// Left out: growth with the time at rest.
+// 1902; Armstrong-Helouvry, Dupont & Canudas de Wit, Automatica 30, 1994). What holds more also yields further before
+// it slips: contacts are as stiff as their load to the power of a third (Mindlin 1949), packed silt is softer than
+// steel. Left out: growth with the time at rest.
 #pragma once
 #include <type_traits>
 

@@ -39,16 +39,18 @@ double prior_width(const Row& r, int at) {
   return e.switches && likely > 0 ? std::min(half, likely / (r.upper - r.lower)) : half;
 }
 
-// What a drawing says of the pilot stage, and how well it holds, relative: bores below half a millimetre, the fixed
-// orifices' with the discharge of short tubes (0.6 to 0.88); the gap is set in assembly.
+// What a drawing says, and how well it holds, relative: bores below half a millimetre, the fixed orifices' with the
+// discharge of short tubes (0.6 to 0.88); the gap is set in assembly; sheets give the clearance of a new spool as a
+// range (2 to 5 um), and overlapped edges leak alike with less of it and blunter corners.
 struct Drawing {
   int row;
   const char* fact;
   double tolerance;
 };
-constexpr Drawing pilot_drawings[] = {{row::hydraulic_amplifier_gain, "valve.nozzle_diameter", 0.05},
-                                      {row::fixed_orifice_diameter, "valve.fixed_orifice_diameter", 0.05},
-                                      {row::nozzle_gap, "valve.nozzle_gap", 0.15}};
+constexpr Drawing drawings[] = {{row::hydraulic_amplifier_gain, "valve.nozzle_diameter", 0.05},
+                                {row::fixed_orifice_diameter, "valve.fixed_orifice_diameter", 0.05},
+                                {row::nozzle_gap, "valve.nozzle_gap", 0.15},
+                                {row::radial_clearance, "valve.radial_clearance", 0.25}};
 
 bool log_nuisance(int position) { return position == row::servovalve_null || position == row::air_fraction; }
 
@@ -66,7 +68,7 @@ std::vector<FreeValue> shared_values(const Table& table) {
 }
 
 void hold_to_drawings(std::vector<FreeValue>& shared, const RigFile& rig, const std::map<std::string, double>& asked) {
-  for (const Drawing& d : pilot_drawings)
+  for (const Drawing& d : drawings)
     if (rig.fact(d.fact))
       for (FreeValue& f : shared)
         if (f.at == d.row && !asked.contains(f.name)) f.prior_sd = d.tolerance / std::log(f.upper / f.lower);

@@ -141,8 +141,9 @@ Rates rates_along(const Scenario& in, const TrueSignals& of, const ParameterVect
       out.supply[k] +=
           droop * drawn(in.time[k], std::abs(s.y[s_v_piston]), p[effect_row<SupplyDroop>(1)]) - mean_supply;
     s.y[s_p_filter] = s.y[s_p_pilot_1] = s.y[s_p_pilot_2] = 0.5 * p[row::supply_pressure];
-    if (k > 0) friction.move(0.0, 0.0, of.piston[k - 1], of.piston[k], in.time[k] - in.time[k - 1],
-                             d.spool_presliding, d.breakaway);
+    if (k > 0)
+      friction.move(0.0, 0.0, of.piston[k - 1], of.piston[k], in.time[k] - in.time[k - 1], d.spool_presliding,
+                    d.breakaway);
     const Inputs<double> u{0.0, input(in.supply_pressure, k, p[row::supply_pressure]),
                            input(in.return_pressure, k, p[row::return_pressure]), input(in.load_force, k, 0.0),
                            friction};

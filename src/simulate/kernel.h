@@ -315,8 +315,7 @@ class Run {
                friction};
   }
   void remember(const T& spool_from, const T& rod_from, double h) {
-    friction.move(spool_from, y[s_x_spool], rod_from, y[s_x_piston], h, d_.spool_presliding, d_.breakaway,
-                  sticks);
+    friction.move(spool_from, y[s_x_spool], rod_from, y[s_x_piston], h, d_.spool_presliding, d_.breakaway, sticks);
   }
   void end() {
     now_ = next_;

@@ -1,4 +1,4 @@
-// The second number of a fault: what it may look like at one size.
+// The further numbers of a fault: what it may look like at one size.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -12,6 +12,9 @@
 #include "faults/registry.h"
 #include "fit/chart.h"
 #include "fit/log_data.h"
+#include "model/constants.h"
+#include "model/derived.h"
+#include "model/state.h"
 #include "parameters/list.h"
 #include "shipped_data.h"
 #include "simulate/scenario.h"
@@ -19,10 +22,10 @@
 namespace servodx {
 namespace {
 
-ParameterVector with(const Fault& fault, double severity, double shape) {
+ParameterVector with(const Fault& fault, double severity, double shape, std::size_t which = 0) {
   ParameterVector v = candidate_of(shipped_table());
   fault.apply(v.data(), severity);
-  fault.shape->apply(v.data(), shape);
+  fault.shapes[which].apply(v.data(), shape);
   return v;
 }
 
@@ -35,6 +38,16 @@ TEST(FaultShape, AStickySpoolBreaksAwayAtOneForceHoweverMuchOfItLastsInMotion) {
     EXPECT_NEAR(v[row::spool_friction] + v[effect_row<Stiction>(0)], whole, 1e-12 * whole);
     EXPECT_NEAR(v[row::spool_friction], (1 - share) * whole, 1e-12 * whole);
   }
+}
+
+TEST(FaultShape, AStickySpoolThatYieldsHoldsAsMuchOverALongerWay) {
+  const Fault& sticky = *find_fault("sticky_spool");
+  const ParameterVector stiff = with(sticky, 10, 0.0, 1), soft = with(sticky, 10, 6e-6, 1);
+  EXPECT_EQ(stiff[row::spool_friction], soft[row::spool_friction]);
+  using List = AllEffects;
+  const auto reach = [](const ParameterVector& v) { return derive<double, List>(v.data(), oil_at(860.0, 14e-6, 313.15)).spool_presliding; };
+  EXPECT_EQ(reach(stiff), constants::spool_presliding);
+  EXPECT_NEAR(reach(soft), constants::spool_presliding + 6e-6, 1e-18);
 }
 
 TEST(FaultShape, AFilterMayBeBlockedAtOneDirectionOfFlowAlone) {
@@ -59,7 +72,7 @@ TEST(FaultShape, IsFreeInHealthAsInEveryFault) {
     return shapes;
   };
   const std::vector<std::string> in_health = names(nullptr);
-  EXPECT_EQ(in_health.size(), 2u);
+  EXPECT_EQ(in_health.size(), 3u);
   for (const Fault* fault : fault_list())
     if (fault->told_by != Record::driver) EXPECT_EQ(names(fault), in_health) << fault->name;
 }

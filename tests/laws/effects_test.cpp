@@ -329,7 +329,8 @@ TEST(SealFilm, FrictionFollowsASpeedOverTheWayOnWhichContactsAreRenewed) {
     FrictionMemory<double> m;
     m.rest(0, 0);
     double x = 0;
-    while (x < constants::seal_renewal) m.move(0, 0, x, x + step, step / speed, constants::spool_presliding, {2, per_film_speed}), x += step;
+    while (x < constants::seal_renewal)
+      m.move(0, 0, x, x + step, step / speed, constants::spool_presliding, {2, per_film_speed}), x += step;
     const double steady = stribeck(speed, per_film_speed);
     EXPECT_NEAR(m.seal_breakaway, steady + (1 - steady) * std::exp(-1.0), 2e-3);
   }
