@@ -107,13 +107,15 @@ std::string summary_of(const std::vector<LogCheck>& checks) {
   std::vector<std::pair<std::string, int>> kinds;
   std::size_t suspicious = 0;
   for (const LogCheck& check : checks) {
-    suspicious += !check.survey.findings.empty();
-    std::set<std::string> once;
-    for (const Finding& f : check.survey.findings) {
+    const std::vector<Finding> found = suspicious_in(check.survey);
+    suspicious += !found.empty();
+    std::set<FindingKind> once;
+    for (const Finding& f : found) {
       if (!once.insert(f.kind).second) continue;
-      const auto known = std::find_if(kinds.begin(), kinds.end(), [&](const auto& k) { return k.first == f.kind; });
+      const std::string kind = word_of(f.kind);
+      const auto known = std::find_if(kinds.begin(), kinds.end(), [&](const auto& k) { return k.first == kind; });
       if (known == kinds.end())
-        kinds.emplace_back(f.kind, 1);
+        kinds.emplace_back(kind, 1);
       else
         ++known->second;
     }
