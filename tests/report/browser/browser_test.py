@@ -87,9 +87,9 @@ class Pages(unittest.TestCase):
         servodx("check-log", HOSTILE, *given)
         far = desk / "a_folder_whose_name_is_longer_than_a_phone_is_wide"
         far.mkdir()
-        for name in ("one.csv", "two.csv"):
-            shutil.copy(log, far / name)
-        servodx("check-log", *(f"{far.name}/{name}" for name in ("one.csv", "two.csv")), page="check-logs")
+        for name, seconds in ((HOSTILE, 0.6), ("two.csv", 0.7)):
+            (far / name).write_text(rows("healthy/h12_mixed.csv", seconds))
+        servodx("check-log", *(f"{far.name}/{name}" for name in (HOSTILE, "two.csv")), page="check-logs")
         servodx("simulate", HOSTILE, *given, "-o", "simulated.csv")
         servodx("explain", HOSTILE, *given, "-o", "extended.csv", "--json", HOSTILE + ".json")
         # The same result but for a name, a size and a verdict.
