@@ -13,6 +13,7 @@
 #include "base/progress.h"
 #include "base/sha256.h"
 #include "fleet/check_list.h"
+#include "fleet/gather.h"
 #include "fleet/log_list.h"
 #include "fleet/result_file.h"
 #include "fleet/run.h"

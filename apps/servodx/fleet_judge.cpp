@@ -10,6 +10,7 @@
 #include "diagnose/decide.h"
 #include "door/baseline_parts.h"
 #include "fleet/fleet_verdict.h"
+#include "fleet/result_file.h"
 #include "list_run.h"
 #include "report/fleet.h"
 #include "servodx/log.h"

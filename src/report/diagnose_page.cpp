@@ -12,6 +12,7 @@
 #include "curves/curves.h"
 #include "diagnose/assessment.h"
 #include "diagnose/baseline.h"
+#include "diagnose/blame.h"
 #include "diagnose/decide.h"
 #include "diagnose/judge.h"
 #include "diagnose/judgeable.h"
@@ -21,6 +22,7 @@
 #include "faults/fault.h"
 #include "faults/gross_finding.h"
 #include "fit/replay.h"
+#include "report/call_names.h"
 #include "report/certificate.h"
 #include "report/columns.h"
 #include "report/conditions.h"
@@ -34,7 +36,6 @@
 #include "report/parts.h"
 #include "report/replay_part.h"
 #include "servodx/actions.h"
-#include "diagnose/blame.h"
 
 namespace servodx::report {
 namespace {

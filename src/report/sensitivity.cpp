@@ -7,7 +7,9 @@
 
 #include "report/columns.h"
 #include "report/handy.h"
+#include "report/parts.h"
 #include "report/replay_part.h"
+#include "servodx/log.h"
 
 namespace servodx::report {
 namespace {
