@@ -419,7 +419,8 @@ TEST(TunePage, SaysOnceThatItIsGoodEnoughAndCallsFaultsByTheirWords) {
 TEST(CheckLogText, EndsWithHowManyOfManyLogsAreSuspicious) {
   LogCheck cold, fine;
   cold.survey.path = "cold.csv", fine.survey.path = "fine.csv";
-  cold.survey.findings = {{"temperature", "cold oil"}, {"gaps", "one"}, {"gaps", "two"}};
+  cold.survey.findings = {
+      {FindingKind::temperature, "cold oil"}, {FindingKind::gaps, "one"}, {FindingKind::gaps, "two"}};
   EXPECT_TRUE(text_of({cold, fine}).ends_with("\n1 of 2 logs have something suspicious: temperature in 1, gaps in 1\n"))
       << text_of({cold, fine});
   EXPECT_TRUE(text_of({fine, fine}).ends_with("\nnothing suspicious in 2 logs\n"));
