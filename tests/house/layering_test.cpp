@@ -38,9 +38,10 @@ const std::map<std::string, std::set<std::string>> allowed = {
     {"plan",
      {"parameters", "signals", "simulate", "optimise", "fit", "tune", "evidence", "faults", "effects", "diagnose"}},
     {"online", {"parameters", "signals", "model", "simulate", "fit", "evidence", "diagnose", "faults"}},
+    // Words are made of every outcome: of a row's verdict and of why a search stopped, too.
     {"report",
-     {"signals", "faults", "diagnose", "explain", "evidence", "prognose", "fit", "tune", "valve_maps", "curves",
-      "fleet", "plan"}},
+     {"parameters", "signals", "optimise", "faults", "diagnose", "explain", "evidence", "prognose", "fit", "tune",
+      "valve_maps", "curves", "fleet", "plan"}},
     {"prognose", {"parameters", "signals", "model", "simulate", "optimise", "fit", "faults", "valve_maps"}},
     {"store", {"parameters", "model", "simulate", "faults", "prognose"}},
     // The front door is made of everything below the program; of report its words and files.
