@@ -83,15 +83,25 @@ TEST(SharedValues, AnEffectIsLikelyOfItsTypicalSizeAndARowWithinItsBounds) {
   EXPECT_TRUE(met);
 }
 
+// Relative width of a row's prior.
+double width_of(int at, const std::map<std::string, double>& facts, const std::map<std::string, double>& asked) {
+  RigFile rig;
+  rig.facts = facts;
+  std::vector<FreeValue> shared = shared_values(shipped_table());
+  hold_to_drawings(shared, rig, asked);
+  const auto f = std::find_if(shared.begin(), shared.end(), [&](const FreeValue& v) { return v.at == at; });
+  return f->prior_sd * std::log(f->upper / f->lower);
+}
+
+// Else blunt corners take the place of a clearance in overlapped edges.
+TEST(SharedValues, AClearanceIsHeldToAQuarterOfItsDrawing) {
+  EXPECT_NEAR(width_of(row::radial_clearance, {{"valve.radial_clearance", 3e-6}}, {}), 0.25, 1e-12);
+  EXPECT_GT(width_of(row::radial_clearance, {}, {}), 0.5);
+}
+
 TEST(SharedValues, WhatADrawingGivesOfThePilotStageIsHeldUnlessAPriorIsAskedFor) {
   const auto width = [](const std::map<std::string, double>& facts, const std::map<std::string, double>& asked) {
-    RigFile rig;
-    rig.facts = facts;
-    std::vector<FreeValue> shared = shared_values(shipped_table());
-    hold_to_drawings(shared, rig, asked);
-    const auto f = std::find_if(shared.begin(), shared.end(),
-                                [](const FreeValue& v) { return v.at == row::fixed_orifice_diameter; });
-    return f->prior_sd * std::log(f->upper / f->lower);  // relative
+    return width_of(row::fixed_orifice_diameter, facts, asked);
   };
   const std::map<std::string, double> drawing = {{"valve.fixed_orifice_diameter", 0.2e-3}};
   EXPECT_NEAR(width(drawing, {}), 0.05, 1e-12);

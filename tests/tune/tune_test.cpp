@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "base/error.h"
+#include "effects/edge_radius.h"
 #include "effects/line_inertia.h"
 #include "effects/magnetic_hysteresis.h"
 #include "effects/mount_compliance.h"
@@ -65,6 +66,12 @@ TEST(Tune, ALosingChildDoesNotRunTheLogsThatAreLeft) {
 bool frees(const RigKind& kind, const std::string& effect) {
   const std::vector<std::string> freed = default_effects(kind);
   return std::find(freed.begin(), freed.end(), effect) != freed.end();
+}
+
+// Overlap and clearance alone would take what rounded corners do near null: flights then accuse corners that are made
+// so.
+TEST(Tune, FreesTheCornersOfTheEdgesOnStandsAndActuators) {
+  for (const bool on_stand : {false, true}) EXPECT_TRUE(frees({.on_stand = on_stand}, EdgeRadius::name));
 }
 
 // Else the log that comes first, and is cold, would set clearances and frictions for all.
