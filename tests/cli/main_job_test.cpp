@@ -162,7 +162,7 @@ TEST_F(MainJob, CheckLogShowsWhereTheTableWasTuned) {
   EXPECT_NE(ended.out.find("  tuned at supply "), std::string::npos) << ended.out;
   EXPECT_NE(bytes_of(desk() / "look.html").find("logs that tuned"), std::string::npos);
   EXPECT_GT(json("look.json")["logs"][0]["operating_point"][0]["tuned_lowest"], 1e7);
-  EXPECT_EQ(json("look.json")["inputs"].size(), 5u) << "rig, table, the log, the two that tuned";
+  EXPECT_NE(json("look.json")["inputs"].dump().find("\"t2.csv\""), std::string::npos) << "a log that tuned";
   const std::string manifest = bytes_of(desk() / "tuned.csv.manifest.json");
   std::filesystem::remove(desk() / "tuned.csv.manifest.json");
   EXPECT_EQ(desk().run(call).out.find("tuned at"), std::string::npos);
