@@ -21,6 +21,7 @@
 #include "effects/seal_film.h"
 #include "effects/seal_shear.h"
 #include "effects/sensor_response.h"
+#include "effects/stiction.h"
 #include "effects/supply_droop.h"
 #include "effects/transport_delay.h"
 #include "effects/unexplained.h"
@@ -352,6 +353,37 @@ TEST(SealFilm, SlowPistonCreepsOnFallingFriction) {
   EXPECT_GT(least, 1e-3);
   EXPECT_LT(most, 8e-3);  // below the film's speed, where friction falls
   EXPECT_LT(most, 1.2 * least);
+}
+
+// A spool held by 20 N, and a way over which that is taken up.
+ParameterVector held(double yield) {
+  ParameterVector v = with<Stiction>(1, yield);
+  v[row::spool_friction] = 20.0;
+  return v;
+}
+
+// What holds it is a spring up to there: force over the spool's area is in proportion to motor less wire.
+TEST(Stiction, ACurrentThatDoesNotFreeTheSpoolMovesItAsItsFrictionYields) {
+  constexpr double current = 2e-4;
+  const Scenario s = made(0.3, 1e-3, [](double t) { return t < 0.05 ? 0.0 : current; });
+  const auto given = [&](double yield) {  // [m/N] at the ball
+    const ParameterVector v = held(yield);
+    const auto x = of(simulate(s, v, all_signals()), Signal::spool_position);
+    const double moved = x.back() - x.front();
+    EXPECT_LT(std::abs(moved), constants::spool_presliding + yield) << "it slips";
+    return moved / (v[row::torque_motor_gain] * current - v[row::feedback_wire_stiffness] * moved);
+  };
+  EXPECT_NEAR(given(6e-6) / given(0.0), (constants::spool_presliding + 6e-6) / constants::spool_presliding, 0.1);
+}
+
+TEST(Stiction, OnceItSlidesFrictionIsWhatItWasHoweverFarItYielded) {
+  const Scenario s = made(0.6, 1e-3, [](double t) { return t < 0.05 ? 0.0 : 8e-3 * (t - 0.05) / 0.55; });
+  const auto end = [&](const ParameterVector& v) {
+    return of(simulate(s, v, all_signals()), Signal::spool_position).back();
+  };
+  const double stiff = end(held(0.0)), soft = end(held(6e-6)), without = end(nominal_candidate());
+  EXPECT_GT(without - stiff, 1e-6) << "friction holds it back";
+  EXPECT_NEAR(soft, stiff, 0.05 * (without - stiff));
 }
 
 TEST(Oil, ColdOilIsStifferByHalfAPerCentAKelvin) {
