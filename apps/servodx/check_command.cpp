@@ -15,8 +15,8 @@
 #include "servodx/rig.h"
 #include "servodx/trend.h"
 #include "servodx/tune.h"
-#include "store/history.h"
 #include "servodx/watch.h"
+#include "store/history.h"
 
 namespace servodx {
 namespace {

@@ -11,11 +11,11 @@
 #include "fit/tuned_state.h"
 #include "invocation.h"
 #include "report/check_log.h"
+#include "servodx/error.h"
 #include "servodx/log.h"
 #include "servodx/rig.h"
 #include "servodx/table.h"
 #include "tuning_logs.h"
-#include "servodx/error.h"
 
 namespace servodx {
 namespace {

@@ -31,7 +31,7 @@ struct HypothesisResult {
   bool at_worst = false;             // at the far end of the range that was searched
   bool at_least = false;             // at the mildest that is called this fault: the fit has found none of it
   double null = 0;                   // [fraction of rated]
-  std::vector<double> shapes = {};  // of the fault, in its order
+  std::vector<double> shapes = {};   // of the fault, in its order
   std::vector<MovedRow> moved = {};  // the fault's rows first
 };
 

@@ -28,7 +28,7 @@ struct FaultSize {
   double severity = 0;                            // in the fault's unit
   double severity_lower = 0, severity_upper = 0;  // 95 %, from the curvature, cut at the range that was searched
   bool at_least = false, at_worst = false;        // it stands at the mild, at the far end of its range
-  std::vector<double> shapes = {};  // of the fault, in its order
+  std::vector<double> shapes = {};                // of the fault, in its order
 };
 
 struct HypothesisFit : FaultSize {       // a null fault: healthy

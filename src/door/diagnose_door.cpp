@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "diagnose/assessment.h"
+#include "diagnose/baseline.h"
 #include "diagnose/decide.h"
 #include "diagnose/diagnose.h"
 #include "diagnose/judge.h"
@@ -13,8 +14,10 @@
 #include "diagnose/naming.h"
 #include "door/baseline_parts.h"
 #include "door/stands_first.h"
+#include "evidence/operating_point.h"
 #include "explain/explain.h"
 #include "faults/fault.h"
+#include "fit/tuned_state.h"
 #include "report/diagnosis_words.h"
 #include "report/json.h"
 #include "servodx/baseline.h"
@@ -23,11 +26,8 @@
 #include "servodx/explain.h"
 #include "servodx/log.h"
 #include "servodx/rig.h"
-#include "servodx/tune.h"
-#include "diagnose/baseline.h"
-#include "evidence/operating_point.h"
-#include "fit/tuned_state.h"
 #include "servodx/table.h"
+#include "servodx/tune.h"
 
 namespace servodx {
 namespace {

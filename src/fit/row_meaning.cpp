@@ -2,9 +2,9 @@
 
 #include <cstddef>
 
+#include "effects/effect.h"
 #include "effects/registry.h"
 #include "parameters/list.h"
-#include "effects/effect.h"
 
 namespace servodx {
 

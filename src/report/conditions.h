@@ -9,7 +9,6 @@
 #include "report/page.h"
 #include "servodx/log.h"
 #include "signals/signal.h"
-#include "servodx/log.h"
 
 namespace servodx::report {
 

@@ -6,6 +6,7 @@
 #include "base/result_schema.h"
 #include "diagnose/assessment.h"
 #include "diagnose/baseline.h"
+#include "diagnose/blame.h"
 #include "diagnose/hypotheses.h"
 #include "diagnose/judge.h"
 #include "diagnose/moved.h"
@@ -20,7 +21,6 @@
 #include "report/row_verdict_word.h"
 #include "report/tune_words.h"
 #include "servodx/tune.h"
-#include "diagnose/blame.h"
 
 namespace servodx::report {
 namespace {

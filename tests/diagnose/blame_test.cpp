@@ -4,8 +4,8 @@
 
 #include "diagnose/decide.h"
 #include "diagnose/judge.h"
-#include "faults/registry.h"
 #include "diagnose/judgeable.h"
+#include "faults/registry.h"
 
 namespace servodx {
 namespace {

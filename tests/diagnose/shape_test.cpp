@@ -45,7 +45,9 @@ TEST(FaultShape, AStickySpoolThatYieldsHoldsAsMuchOverALongerWay) {
   const ParameterVector stiff = with(sticky, 10, 0.0, 1), soft = with(sticky, 10, 6e-6, 1);
   EXPECT_EQ(stiff[row::spool_friction], soft[row::spool_friction]);
   using List = AllEffects;
-  const auto reach = [](const ParameterVector& v) { return derive<double, List>(v.data(), oil_at(860.0, 14e-6, 313.15)).spool_presliding; };
+  const auto reach = [](const ParameterVector& v) {
+    return derive<double, List>(v.data(), oil_at(860.0, 14e-6, 313.15)).spool_presliding;
+  };
   EXPECT_EQ(reach(stiff), constants::spool_presliding);
   EXPECT_NEAR(reach(soft), constants::spool_presliding + 6e-6, 1e-18);
 }

@@ -1,7 +1,4 @@
 #include "report/conditions.h"
-#include "evidence/operating_point.h"
-#include "report/json.h"
-#include "report/page.h"
 
 #include <gtest/gtest.h>
 
@@ -10,6 +7,7 @@
 
 #include "evidence/operating_point.h"
 #include "report/json.h"
+#include "report/page.h"
 
 namespace servodx::report {
 namespace {
