@@ -38,7 +38,8 @@ struct Options {
 };
 
 ValveGeometry geometry_of(const Table& table, const RigFile& rig) {
-  const Oil oil = oil_at(rig.fluid.density, rig.fluid.kinematic_viscosity, reference_temperature);
+  const Oil oil = oil_at(rig.fluid.density, rig.fluid.kinematic_viscosity, reference_temperature,
+                         rig.fluid.kinematic_viscosity_100);
   ValveGeometry g;
   g.port_width = table[row::port_width].nominal;
   g.radial_clearance = table[row::radial_clearance].nominal;

@@ -27,6 +27,7 @@ struct ColumnMapping {
 struct Fluid {
   double density = 860.0;              // [kg/m3] at 20 degC
   double kinematic_viscosity = 14e-6;  // [m2/s] at 40 degC
+  double kinematic_viscosity_100 = 0;  // [m2/s] at 100 degC; 0: not said
   bool given = false;                  // true where the rig file says a fluid
   std::string name;                    // preset name, if one
 };

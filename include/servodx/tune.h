@@ -49,6 +49,7 @@ struct TuneOptions {
 struct RigKind {
   bool on_stand = false;                                // a valve on a test stand, not on an actuator
   bool supply_measured = true, return_measured = true;  // in every log
+  bool temperatures_differ = false;                     // of the oil, by the logs
   bool long_lines = false;  // oil in the lines stands between the pressure taps and the cylinder, by the rig file
 };
 RigKind rig_kind(const std::vector<Log>& logs, const RigFile& rig);

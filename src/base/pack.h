@@ -109,6 +109,11 @@ struct Pack {
     for (int i = 0; i < W; ++i) r.v[i] = std::sqrt(a.v[i]);  // one vector instruction
     return r;
   }
+  friend Pack exp(Pack a) {
+    Pack r;
+    for (int i = 0; i < W; ++i) r.v[i] = std::exp(a.v[i]);  // a few times a run
+    return r;
+  }
   // a*b + c and c - a*b, fused where the machine can.
   friend Pack multiply_add(Pack a, Pack b, Pack c) {
     if constexpr (refined)

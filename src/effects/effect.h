@@ -7,11 +7,12 @@ namespace servodx {
 enum class Freed {
   never,
   everywhere,
-  on_stands,        // of a valve on a test stand
-  on_actuators,     // on all other rigs, and so the rest of these
-  without_supply,   // where a log lacks the supply pressure: a measured one holds its droop
-  without_return,   // the same of the return pressure
-  with_long_lines,  // oil in the lines stands between the pressure taps and the cylinder
+  on_stands,            // of a valve on a test stand
+  on_actuators,         // on all other rigs, and so the rest of these
+  without_supply,       // where a log lacks the supply pressure: a measured one holds its droop
+  without_return,       // the same of the return pressure
+  across_temperatures,  // where logs of known temperatures differ
+  with_long_lines,      // oil in the lines stands between the pressure taps and the cylinder
 };
 
 // How `explain` seeks an effect.

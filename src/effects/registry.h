@@ -29,6 +29,7 @@
 #include "effects/transport_delay.h"
 #include "effects/unexplained.h"
 #include "effects/viscosity_change.h"
+#include "effects/viscosity_slope.h"
 #include "model/hooks.h"
 
 namespace servodx {
@@ -55,7 +56,8 @@ using AllEffects = EffectList<MagneticHysteresis,  //
                               SealFilm,            //
                               SealShear,           //
                               NozzleMismatch,      //
-                              ReturnDrop>;
+                              ReturnDrop,          //
+                              ViscositySlope>;
 // Four states more than all others together, for rigs with long lines only: these have a kernel of their own.
 using LinedEffects = Append<AllEffects, LineInertia>;
 // A learnt curve costs more than all effects: the same.

@@ -6,6 +6,7 @@
 // friction of the piston. Density is left alone.
 #pragma once
 #include "effects/effect.h"
+#include "model/state.h"
 
 namespace servodx {
 
@@ -22,7 +23,7 @@ struct ViscosityChange {
   };
   // Factor on the oil's viscosity; q: own parameters.
   template <class T>
-  static T viscosity(const T* q) {
+  static T viscosity(const T* q, const Oil&) {
     return q[0];
   }
 };

@@ -118,6 +118,11 @@ void take_start(LogData& log) {
 
 }  // namespace
 
+std::optional<double> measured_oil_temperature(const Log& log) {
+  if (!log.has(Signal::oil_temperature)) return std::nullopt;
+  return mean_of_present(log[Signal::oil_temperature]);
+}
+
 double starting_slope_error(const std::vector<double>& t) {
   double st = 0, stt = 0, n = 0;
   for (std::size_t k = 0; k < t.size() && t[k] - t[0] < start_span; ++k) {
@@ -210,14 +215,13 @@ LogData prepare(const Log& log, const RigFile& rig, int window) {
   s.rated_current = rig.fact("valve.rated_current").value_or(0.02);
   if (rig.command_hold) s.command_slope = *rig.command_hold == CommandHold::linear ? 1.0 : 0.0;
   constexpr double reference_temperature = 313.15;  // [K] where the table's values hold
-  const bool measured = log.has(Signal::oil_temperature);
-  const double temperature =
-      measured ? mean_of_present(log[Signal::oil_temperature]) : rig.oil_temperature.value_or(reference_temperature);
-  s.oil_known =
-      measured || rig.oil_temperature || s.ports != Ports::actuator;  // a stand holds 40 degC within 6 K (ISO 10770-1)
+  const std::optional<double> measured = measured_oil_temperature(log);
+  const double temperature = measured.value_or(rig.oil_temperature.value_or(reference_temperature));
+  s.oil_known = measured.has_value() || rig.oil_temperature.has_value() ||
+                s.ports != Ports::actuator;  // a stand holds 40 degC within 6 K (ISO 10770-1)
   if (!s.oil_known)
     out.notes.push_back(fmt::format("{}: no oil temperature: taken as 40 degC, give or take 20 K", log.path));
-  s.oil = oil_at(rig.fluid.density, rig.fluid.kinematic_viscosity, temperature);
+  s.oil = oil_at(rig.fluid.density, rig.fluid.kinematic_viscosity, temperature, rig.fluid.kinematic_viscosity_100);
   const std::vector<char> unknown = after_gaps(log.time);
   for (Signal which : simulated_signals) {
     if (!log.has(which)) continue;

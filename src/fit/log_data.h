@@ -38,6 +38,9 @@ inline constexpr double piston_high_pass = 1.0;  // [Hz]
 Ports ports_of(const Log& log, const RigFile& rig);
 bool all_on_test_stand(const std::vector<Log>& logs, const RigFile& rig);
 
+// [K] mean of what the log measured of its oil; none where it did not.
+std::optional<double> measured_oil_temperature(const Log& log);
+
 // `window` [samples]: moving average of every channel, 1 for none. The rig file's mains frequency is notched out.
 // What follows a gap in time is not compared until the valve has forgotten what passed in it.
 LogData prepare(const Log& log, const RigFile& rig, int window = 1);

@@ -83,7 +83,7 @@ Derived<T> derive(const T* p, const Oil& oil) {
   using std::sqrt;
   namespace c = constants;
   Derived<T> d;
-  const T factor = hook_viscosity(p, Effects{});
+  const T factor = hook_viscosity(p, oil, Effects{});
   const T dynamic_viscosity = factor * T(oil.dynamic_viscosity), viscosity_ratio = factor * T(oil.viscosity_ratio);
   d.viscosity_ratio = viscosity_ratio;
   const T per_root_density = T(std::sqrt(2.0 / oil.density));

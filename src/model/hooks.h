@@ -3,7 +3,7 @@
 //     struct Memory, drive(memory, time, command, spring, p)  [A]  applied to the command at each sample, with
 //     memory of its past; struct Sensors, observe(sensors, time, shown, p)  [SI]  applied to what is reported at each
 //     sample
-//     viscosity(p)         [-]   factor on the oil's viscosity
+//     viscosity(p, oil)    [-]   factor on the oil's viscosity
 //     edge_rounding(p, to_return) [m] added to the corner radius of the metering edges
 //     edge_creep(p)        [-]   added to the creeping-flow length of an open edge, in openings
 //     edge_abruptness(p)   [-]   how fast the flow through an open edge is turbulent, 0 to 1
@@ -149,12 +149,12 @@ SERVODX_HOOK(body_velocity)
 
 // Factor on the oil's viscosity, 1 without an effect; p: a candidate.
 template <class T, class... E>
-T hook_viscosity([[maybe_unused]] const T* p, EffectList<E...>) {
+T hook_viscosity([[maybe_unused]] const T* p, [[maybe_unused]] const Oil& oil, EffectList<E...>) {
   T factor = T(1.0);
   (
       [&] {
-        if constexpr (requires { E::viscosity(p); })
-          factor = factor * E::viscosity(p + n_parameters + EffectList<E...>::template parameter_offset<E>());
+        if constexpr (requires { E::viscosity(p, oil); })
+          factor = factor * E::viscosity(p + n_parameters + EffectList<E...>::template parameter_offset<E>(), oil);
       }(),
       ...);
   return factor;

@@ -41,8 +41,10 @@ struct Oil {
 
 inline constexpr double coldest_oil = 173.15, hottest_oil = 573.15;  // [K] beyond what any oil bears
 
-// Density, viscosity and stiffness at a temperature: Walther's law (ASTM D341) through the viscosity at 40 degC; the
-// bulk modulus of mineral oils falls by a factor of 10^0.0024 a kelvin (Hodges 1996, "Hydraulic Fluids").
-Oil oil_at(double density_20, double kinematic_viscosity_40, double temperature_kelvin);
+// Density, viscosity and stiffness at a temperature: Walther's law (ASTM D341) through the viscosities at 40 and
+// 100 degC, the latter 0 where it is not known; the bulk modulus of mineral oils falls by a factor of 10^0.0024 a
+// kelvin (Hodges 1996, "Hydraulic Fluids").
+Oil oil_at(double density_20, double kinematic_viscosity_40, double temperature_kelvin,
+           double kinematic_viscosity_100 = 0.0);
 
 }  // namespace servodx

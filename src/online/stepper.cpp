@@ -68,7 +68,8 @@ Scenario scenario_of(const Rig& rig, const StepperInputs& first, const StepperSt
   s.ports = rig.ports;
   s.rated_current = rig.fact("valve.rated_current").value_or(s.rated_current);
   if (rig.command_hold) s.command_slope = *rig.command_hold == CommandHold::linear ? 1.0 : 0.0;
-  s.oil = oil_at(rig.fluid.density, rig.fluid.kinematic_viscosity, options.oil_temperature);
+  s.oil = oil_at(rig.fluid.density, rig.fluid.kinematic_viscosity, options.oil_temperature,
+                 rig.fluid.kinematic_viscosity_100);
   s.spool_start = start.spool_position;
   s.piston_start = start.piston_position;
   s.pressure_a_start = start.pressure_a;

@@ -20,18 +20,19 @@ namespace {
 
 using enum Dimension;
 
-// Typical new oil; a [fluid] section overrides. Density [kg/m3] at 20 degC, viscosity [m2/s] at 40 degC.
+// Typical new oil; a [fluid] section overrides. Density [kg/m3] at 20 degC, viscosity [m2/s] at 40 and 100 degC.
 // 5606, 83282: MIL-PRF-5606 (at least 13.2 mm2/s) and MIL-PRF-83282 (at least 14.0 mm2/s), makers' typical densities.
 // AS1241: SAE AS1241 type IV phosphate ester, makers' typical values. ISO VG: ISO 3448 mid-point, typical mineral oil.
 struct Preset {
   std::string_view name;
   std::string_view spellings[4];  // upper case, without blanks and dashes
   double density, kinematic_viscosity;
+  double kinematic_viscosity_100 = 0;  // 0: by the usual slope of such an oil
 };
 constexpr Preset presets[] = {
     {"MIL-PRF-5606", {"5606", "MILPRF5606", "MILH5606"}, 870.0, 14e-6},
-    {"MIL-PRF-83282", {"83282", "MILPRF83282", "MILH83282"}, 840.0, 14.5e-6},
-    {"AS1241", {"AS1241", "SAEAS1241"}, 1010.0, 11e-6},
+    {"MIL-PRF-83282", {"83282", "MILPRF83282", "MILH83282"}, 840.0, 14.5e-6, 3.5e-6},
+    {"AS1241", {"AS1241", "SAEAS1241"}, 1010.0, 11e-6, 3.7e-6},
     {"ISO VG 32", {"ISOVG32", "VG32"}, 868.0, 32e-6},
     {"ISO VG 46", {"ISOVG46", "VG46"}, 873.0, 46e-6},
 };
@@ -227,7 +228,8 @@ class Reader {
     for (const Preset& preset : presets) {
       for (auto each : preset.spellings) {
         if (each.empty() || each != spelling) continue;
-        rig_.fluid = {preset.density, preset.kinematic_viscosity, true, std::string(preset.name)};
+        rig_.fluid = {preset.density, preset.kinematic_viscosity, preset.kinematic_viscosity_100, true,
+                      std::string(preset.name)};
         return;
       }
     }
@@ -379,6 +381,12 @@ class Reader {
     const auto density = rig_.fact("fluid.density"), viscosity = rig_.fact("fluid.kinematic_viscosity");
     if (density) rig_.fluid.density = *density;
     if (viscosity) rig_.fluid.kinematic_viscosity = *viscosity;
+    if (const auto hot = rig_.fact("fluid.kinematic_viscosity_100")) {
+      if (*hot >= rig_.fluid.kinematic_viscosity)
+        throw InputError(place("fluid.kinematic_viscosity_100"), "is not below the viscosity at 40 degC",
+                         "give the viscosity at 100 degC, as the oil's sheet states it");
+      rig_.fluid.kinematic_viscosity_100 = *hot;
+    }
     rig_.fluid.given = rig_.fluid.given || density || viscosity;
     if (rig_.fluid.name.empty()) return;
     rig_.facts["fluid.density"] = rig_.fluid.density;
@@ -428,6 +436,7 @@ const std::vector<RigFact>& rig_facts() {
       {"supply.return_pressure", pressure, true},
       {"fluid.density", density, false},
       {"fluid.kinematic_viscosity", kinematic_viscosity, false},
+      {"fluid.kinematic_viscosity_100", kinematic_viscosity, false},
   };
   return facts;
 }

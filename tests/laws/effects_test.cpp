@@ -26,6 +26,7 @@
 #include "effects/transport_delay.h"
 #include "effects/unexplained.h"
 #include "effects/viscosity_change.h"
+#include "effects/viscosity_slope.h"
 #include "laws/bench.h"
 #include "model/asperities.h"
 #include "model/chamber.h"
@@ -384,6 +385,31 @@ TEST(Stiction, OnceItSlidesFrictionIsWhatItWasHoweverFarItYielded) {
   const double stiff = end(held(0.0)), soft = end(held(6e-6)), without = end(nominal_candidate());
   EXPECT_GT(without - stiff, 1e-6) << "friction holds it back";
   EXPECT_NEAR(soft, stiff, 0.05 * (without - stiff));
+}
+
+// Walther's law (ASTM D341): a straight line of lg lg (nu + 0.7) over lg T.
+TEST(Oil, AViscosityAt100DegreesIsMetAndMakesAnOilThinInTheHeatThickInTheCold) {
+  const auto viscosity = [](double kelvin, double at_100) {
+    const Oil oil = oil_at(860, 14e-6, kelvin, at_100);
+    return oil.dynamic_viscosity / oil.density;
+  };
+  for (const double at_100 : {5.1e-6, 3.5e-6}) EXPECT_NEAR(viscosity(373.15, at_100), at_100, 1e-12);
+  EXPECT_NEAR(viscosity(313.15, 3.5e-6), 14e-6, 1e-12);
+  EXPECT_GT(viscosity(253.15, 3.5e-6), 3 * viscosity(253.15, 5.1e-6));
+}
+
+TEST(Oil, AFreedSlopeIsTheLawsOfAnOilOfThatSlope) {
+  // The slopes of two oils by their own viscosities at 100 degC; the one over the other is the effect's number.
+  const auto slope = [](double at_100) {
+    const auto w = [](double nu) { return std::log10(std::log10(nu * 1e6 + 0.7)); };
+    return (w(14e-6) - w(at_100)) / std::log10(373.15 / 313.15);
+  };
+  const double flat = 5.1e-6, steep = 3.5e-6, ratio = slope(steep) / slope(flat), none = 1.0;
+  for (const double kelvin : {243.15, 273.15, 313.15, 353.15}) {
+    const Oil oil = oil_at(860, 14e-6, kelvin, flat), meant = oil_at(860, 14e-6, kelvin, steep);
+    EXPECT_NEAR(ViscositySlope::viscosity(&ratio, oil) * oil.dynamic_viscosity / meant.dynamic_viscosity, 1.0, 1e-9);
+    EXPECT_EQ(ViscositySlope::viscosity(&none, oil), 1.0);
+  }
 }
 
 TEST(Oil, ColdOilIsStifferByHalfAPerCentAKelvin) {

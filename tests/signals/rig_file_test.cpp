@@ -135,11 +135,15 @@ TEST(RigFile, AFluidIsAPresetOrItsProperties) {
     EXPECT_LT(rig.fluid.density, 1100.0);
   }
   EXPECT_EQ(read("fluid = \"VG 46\"\n").fluid.kinematic_viscosity, 46e-6);
+  EXPECT_EQ(read("fluid = \"83282\"\n").fluid.kinematic_viscosity_100, 3.5e-6);
   const RigFile own = read("[fluid]\ndensity = \"850 kg/m3\"\nkinematic_viscosity = \"15 cSt\"\n");
   EXPECT_TRUE(own.fluid.given);
   EXPECT_EQ(own.fluid.density, 850.0);
   EXPECT_EQ(own.fluid.kinematic_viscosity, 15e-6);
   EXPECT_EQ(own.fact("fluid.kinematic_viscosity"), 15e-6);
+  EXPECT_EQ(own.fluid.kinematic_viscosity_100, 0.0) << "not said";
+  const RigFile both = read("[fluid]\nkinematic_viscosity = \"15 cSt\"\nkinematic_viscosity_100 = \"4 cSt\"\n");
+  EXPECT_EQ(both.fluid.kinematic_viscosity_100, 4e-6);
 }
 
 TEST(RigFile, EachRefusalNamesPlaceRuleAndMend) {
@@ -179,6 +183,9 @@ TEST(RigFile, EachRefusalNamesPlaceRuleAndMend) {
        "rig.toml:1: key 'fluid': unknown fluid 'water'; use one of MIL-PRF-5606, MIL-PRF-83282, AS1241, ISO VG 32, "
        "ISO VG "
        "46, or a [fluid] section with density and kinematic_viscosity"},
+      {"[fluid]\nkinematic_viscosity = \"14 cSt\"\nkinematic_viscosity_100 = \"14 cSt\"\n",
+       "rig.toml:3: key 'fluid.kinematic_viscosity_100': is not below the viscosity at 40 degC; give the viscosity at "
+       "100 degC, as the oil's sheet states it"},
       {"[actuator]\narea_a = \"1 cm2\"\nbore_diameter = \"40 mm\"\n",
        "rig.toml:2: key 'actuator.area_a': given beside actuator.bore_diameter; keep areas or diameters, not both"},
       {"[actuator]\nrod_diameter_a = \"4 mm\"\n",

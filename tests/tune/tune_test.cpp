@@ -17,6 +17,7 @@
 #include "effects/supply_droop.h"
 #include "effects/transport_delay.h"
 #include "effects/viscosity_change.h"
+#include "effects/viscosity_slope.h"
 #include "fit/chart.h"
 #include "fit/error_model.h"
 #include "fit/free_values.h"
@@ -98,6 +99,21 @@ TEST(DefaultEffects, AreThoseThatSuchLogsCanTell) {
   EXPECT_TRUE(!frees({}, ReturnDrop::name) && frees({.return_measured = false}, ReturnDrop::name));
   EXPECT_TRUE(!frees({}, LineInertia::name) && frees({.long_lines = true}, LineInertia::name));
   EXPECT_FALSE(frees({.long_lines = true}, TransportDelay::name));
+  EXPECT_TRUE(!frees({}, ViscositySlope::name) && frees({.temperatures_differ = true}, ViscositySlope::name));
+}
+
+TEST(DefaultEffects, LogsInColdAndInWarmOilTellTheSlopeOfItsViscosity) {
+  std::vector<Log> logs = {twins::cut(shipped_log("healthy/h01_steps_large"), 400)};
+  logs.push_back(logs.front());
+  const auto differ = [&](double kelvin) {
+    logs.back().channels[index(Signal::oil_temperature)].value.assign(400, kelvin);
+    return rig_kind(logs, shipped_rig()).temperatures_differ;
+  };
+  logs.front().channels[index(Signal::oil_temperature)].value.assign(400, 313.15);
+  EXPECT_FALSE(differ(303.15));
+  EXPECT_TRUE(differ(263.15) && differ(353.15));
+  logs.back().channels[index(Signal::oil_temperature)].value.clear();
+  EXPECT_FALSE(rig_kind(logs, shipped_rig()).temperatures_differ) << "one log alone says nothing of a slope";
 }
 
 // The spool sensor's gain scales what torque gain and ports scale as well; those of two pressures have nothing beside.
