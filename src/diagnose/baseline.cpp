@@ -103,6 +103,7 @@ DetectionBaseline baseline_for(const TestConditions& test, const DetectionBaseli
   DetectionBaseline out = b;
   out.scores = like.empty() ? std::move(all) : std::move(like);
   out.others.clear();
+  out.of_other_tests = true;
   out.adequacy_limit = std::max(largest_adequacy(b.scores), largest_adequacy(out.scores));
   return out;
 }

@@ -40,6 +40,7 @@ struct DetectionBaseline {
   // Healthy logs of other tests, those that tuned the table among them: how the model errs where no log above is of the
   // suspect's test. They promise nothing.
   std::vector<Score> others;
+  bool of_other_tests = false;  // the scores stand in for logs of a test that the baseline does not hold
   double adequacy_limit = 0;  // largest adequacy of a healthy log
   double null_limit = 0.05;
   std::string tuned_sha256;  // of the table it was made with

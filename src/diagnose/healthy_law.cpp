@@ -50,8 +50,8 @@ SuspectLog suspect_of(const Assessment& a) {
 HealthyLaw::HealthyLaw(const DetectionBaseline& b, const SuspectLog* suspect)
     : positions_(logs_for(b, suspect)),
       gains_(squares_of(b, positions_), {k::usual_gain, k::usual_logs}),
-      asked_(b.asked),
-      promising_(std::max(static_cast<int>(positions_.size()), b.logs)) {
+      asked_(b.asked) {
+  if (!b.of_other_tests) promising_ = std::max(static_cast<int>(positions_.size()), b.logs);
   std::vector<double> ranked;
   for (const std::size_t i : positions_) ranked.push_back(b.scores[i].score);
   for (const DetectionBaseline::Score& s : b.scores) adequacies_.push_back(s.adequacy);
@@ -61,7 +61,13 @@ HealthyLaw::HealthyLaw(const DetectionBaseline& b, const SuspectLog* suspect)
   constexpr double sides = 2;  // the quantile's tail has two, an adequacy's one
   const double worst_of = suspect ? static_cast<double>(suspect->logs) : 1.0;
   unlike_limit_ =
-      student_quantile(sides * rate_of_question(asked_, promising_, k::share_of_adequacy) / worst_of, one.degrees);
+      student_quantile(sides * rate_of(k::share_of_adequacy) / worst_of, one.degrees);
+}
+
+// Where nothing is promised, the law alone speaks: it is asked for the rate itself, not for what so many logs could
+// promise.
+double HealthyLaw::rate_of(double share) const {
+  return promising_ ? rate_of_question(asked_, *promising_, share) : share * asked_;
 }
 
 double HealthyLaw::error_of(double gain, double adequacy) const {

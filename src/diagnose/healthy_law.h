@@ -7,6 +7,7 @@
 // like its own that the model does not follow either, and of no other.
 #pragma once
 #include <cstddef>
+#include <optional>
 #include <vector>
 
 #include "diagnose/assessment.h"
@@ -40,18 +41,18 @@ class HealthyLaw {
   // How far a suspect is from health, on the scale of the gain: beyond the limit it is not healthy.
   double error_of(double gain, double adequacy) const;
   double chance_of_gain(double gain) const { return gains_.chance(gain * gain); }
-  double rate() const {
-    return rate_of_question(asked_, promising_, diagnose_constants::share_of_gain);
-  }  // of the gain
+  double rate() const { return rate_of(diagnose_constants::share_of_gain); }  // of the gain
   // Of such logs, until such a gain would be beyond the limit; 0: it is, or the limit is not set by their number.
   int logs_needed(double gain) const;
 
  private:
+  double rate_of(double share) const;  // of a question
+
   std::vector<std::size_t> positions_;
   TailLaw gains_;
   std::vector<double> adequacies_;
   double asked_ = 0, limit_ = 0, unlike_limit_ = 0;
-  int promising_ = 0;  // logs that the rate is promised by: the baseline's own, where others speak in their place
+  std::optional<int> promising_;  // logs that promise a rate; logs of other tests promise none
 };
 
 }  // namespace servodx

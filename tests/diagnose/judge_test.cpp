@@ -307,6 +307,21 @@ TEST(Judge, OfATestThatTheBaselineDoesNotHoldHealthyLogsOfOtherTestsSpeak) {
   EXPECT_EQ(judge(of_corners(2000, flight), with).fault, find_fault("corner_wear")) << "no healthy flight shows that";
 }
 
+// Logs of other tests promise no rate, so their number is no reason to ask for less than the rate.
+TEST(Judge, LogsOfOtherTestsAreAskedForTheRateItself) {
+  DetectionBaseline own = repeats_and_others();
+  own.others.clear();
+  own.of_other_tests = false, own.logs = 3;
+  DetectionBaseline strange = own;
+  strange.of_other_tests = true;
+  const HealthyLaw promised(own, nullptr), asked(strange, nullptr);
+  EXPECT_NEAR(promised.rate(), 0.8 / 4, 1e-12) << "one of four, as three logs promise";
+  EXPECT_NEAR(asked.rate(), 0.8 * own.asked, 1e-12);
+  EXPECT_GT(asked.limit(), promised.limit());
+  EXPECT_LT(asked.error_of(0.0, 3.0) / asked.limit(), promised.error_of(0.0, 3.0) / promised.limit())
+      << "nor is such a log so soon unlike health";
+}
+
 TEST(Judge, OfATestThatTheBaselineHoldsItsOwnLogsAloneSpeak) {
   const DetectionBaseline with = repeats_and_others();
   DetectionBaseline without = with;
@@ -336,7 +351,7 @@ TEST(BaselineFor, WhereNoOtherIsOfSuchATestRepeatsCountAsOneLogBesideThem) {
   DetectionBaseline two = repeats_and_others();
   two.scores[2].test = sine;
   EXPECT_EQ(baseline_for(slow, two).scores.size(), 4u) << "two programmes of its own are two logs";
-  EXPECT_EQ(speaking.logs, 3) << "the rate is still promised by the baseline's own";
+  EXPECT_TRUE(speaking.of_other_tests);
   EXPECT_EQ(baseline_for(slow, repeats_and_others(), 0).scores.size(), 2u);
 }
 
