@@ -41,14 +41,16 @@ struct LineInertia {
   static constexpr double half = 0.5;             // of the line's compliance, at either end
   static constexpr double flow_rounding = 1e-6;   // [m3/s] of the turbulent drop about no flow
 
-  // 0 without the effect, else 1: a part in a hundred thousand less at a centimetre of line.
+  // 0 without the effect and 1 with it; half at a few millimetres of line, a part in ten thousand less than 1 at a
+  // tenth of a line that matters. Level at 0: a fit that wants no line must see none there, nor a step beside it.
   template <class V>
   static auto acts(const V& view) {
     using T = typename V::Scalar;
     const auto inertance = view.template own<LineInertia, 0>();
-    return inertance * inverse(inertance + T(least_off));
+    const auto square = inertance * inertance;
+    return square * inverse(square + T(half_on * half_on));
   }
-  static constexpr double least_off = 1.0;  // [kg/m4]
+  static constexpr double half_on = 1e4;  // [kg/m4] a thousandth of a typical line's
 
   // Line S (0: A, 1: B).
   template <int S, class V>

@@ -6,7 +6,7 @@
 //     viscosity(p, oil)    [-]   factor on the oil's viscosity
 //     edge_rounding(p, to_return) [m] added to the corner radius of the metering edges
 //     edge_creep(p)        [-]   added to the creeping-flow length of an open edge, in openings
-//     edge_abruptness(p)   [-]   how fast the flow through an open edge is turbulent, 0 to 1
+//     edge_abruptness(p)   [-]   how fast the flow through an open edge is turbulent, 0 to 2
 //     return_share(p)      [-]   drop of the return line over that of an edge at full stroke
 //     orifice_length(p)    [-]   added to the length of the fixed orifices, in diameters
 //     nozzle_1_share(p), nozzle_2_share(p)  [-]  added to the share of a nozzle's gap that is open

@@ -442,8 +442,19 @@ TEST(EdgeTransition, AbruptFlowMeetsItsTurbulentLimitByTheSquareOfTheLaminarShar
     EXPECT_NEAR((1 - coefficient(0, share)) / share, 0.5, 0.03) << share;
     EXPECT_NEAR((1 - coefficient(1, share)) / (share * share), 0.5, 0.03) << share;
   }
-  // Creeping flow is the same of both.
-  EXPECT_NEAR(coefficient(1, 1e3) / coefficient(0, 1e3), 1.0, 1e-3);
+  // Creeping flow is the same of all.
+  for (const double a : {1.0, 2.0}) EXPECT_NEAR(coefficient(a, 1e3) / coefficient(0, 1e3), 1.0, 1e-3);
+}
+
+// As measured discharge coefficients do (Wu, Burton, Schoenau 2002).
+TEST(EdgeTransition, BeyondAbruptTheCoefficientOvershootsItsLimitBySixPerCent) {
+  double most = 0, most_at_1 = 0;
+  for (double share = 0.01; share < 10; share *= 1.05) {
+    most = std::max(most, coefficient(EdgeTransition::parameters[1].upper, share));
+    most_at_1 = std::max(most_at_1, coefficient(1, share));
+  }
+  EXPECT_NEAR(most, 1.06, 0.003);
+  EXPECT_LT(most_at_1, 1.0);
 }
 
 TEST(ReturnDrop, RaisesTheChambersByHalfOfItsShareUnlessTheReturnIsMeasured) {
