@@ -8,6 +8,7 @@
 #include "base/csv.h"
 #include "base/key_error.h"
 #include "effects/mount_compliance.h"
+#include "fit/sheet.h"
 #include "parameters/list.h"
 #include "servodx/rig.h"
 
@@ -368,6 +369,22 @@ class Facts {
   Size of_table_;             // ahead of any fact
 };
 
+// The rows that the sheet's step and frequency response tell, in place of what the formulas made of them.
+void meet_sheet(Table& table, const RigFile& rig, std::vector<std::string>* where_from) {
+  std::string keys;
+  for (const auto& [key, given] :
+       {std::pair{"valve.step_rise_time", rig.fact("valve.step_rise_time").has_value()},
+        std::pair{"valve.frequency_response", !rig.response.empty()},
+        std::pair{"valve.phase_lag_90_frequency", rig.fact("valve.phase_lag_90_frequency").has_value()}})
+    if (given) keys += (keys.empty() ? "" : ", ") + std::string(key);
+  for (const SheetRow& met : beside_sheet(table, rig, true).rows) {
+    Row& row = table[met.position];
+    row.nominal = std::clamp(tidy(met.after), row.lower, row.upper);
+    row.source = "rig.toml: " + keys + "; from " + text_of(met.before, row.unit);
+    if (where_from) where_from->push_back(row.name + " = " + text_of(row.nominal, row.unit) + ": " + row.source);
+  }
+}
+
 }  // namespace
 
 Table apply_rig_facts(const Table& table, const RigFile& rig, std::vector<std::string>* where_from) {
@@ -380,7 +397,14 @@ Table apply_rig_facts(const Table& table, const RigFile& rig, std::vector<std::s
     if (where_from) where_from->push_back(table.path + " is tuned: its values stand, the facts are not applied");
     return table;
   }
-  return Facts(table, rig, where_from).apply();
+  Table out = Facts(table, rig, where_from).apply();
+  if (states_dynamics(rig)) meet_sheet(out, rig, where_from);
+  return out;
+}
+
+SheetFit data_sheet(const Table& table, const RigFile& rig) {
+  if (table.has_std_error) return beside_sheet(table, rig, false);
+  return beside_sheet(Facts(table, rig, nullptr).apply(), rig, states_dynamics(rig));
 }
 
 }  // namespace servodx
