@@ -1,7 +1,7 @@
 // Genetic algorithm on the unit cube, for breadth: which structure, which basin. It is real-coded and elitist (a slot
 // only ever gets better), keeps its children in the box by reflection, and asks for them in waves that go round the
 // slots of all islands: whole batches, however many the population has. Each island may start from its own seed points
-// (the fit passes one island per Failure-Mode Identifier). An island whose best and median stop improving, or whose
+// (a tune passes starts of a healthy valve). An island whose best and median stop improving, or whose
 // members have drawn together, gives its best to the archive and starts afresh. The archive holds the best points that
 // are apart: the starts of the local stage.
 //
