@@ -14,9 +14,12 @@
 #include "fit/log_data.h"
 #include "fit/problem.h"
 #include "model/state.h"
+#include "optimise/box_least_squares.h"
 #include "optimise/local.h"
+#include "optimise/problem.h"
 #include "parameters/list.h"
 #include "servodx/log.h"
+#include "simulate/scenario.h"
 #include "simulate/simulate.h"
 
 namespace servodx {

@@ -8,6 +8,7 @@
 #include "base/units.h"
 #include "curves/curves.h"
 #include "curves/frequency_response.h"
+#include "fit/sheet.h"
 #include "report/certificate.h"
 #include "report/curves.h"
 #include "report/data_sheet.h"

@@ -50,11 +50,12 @@ std::string at(const SheetFit& sheet, const std::vector<double>& simulated, std:
   return simulated.empty() ? "-" : readable(sheet.figures[k].kind, simulated[k]);
 }
 
-std::string met(const SheetFit& sheet, std::size_t k) {
-  if (sheet.after.empty()) return "NOT MET";
+bool is_met(const SheetFit& sheet, std::size_t k) {
+  if (sheet.after.empty()) return false;
   const SheetFigure& f = sheet.figures[k];
-  return std::fabs(sheet.after[k] - f.stated) <= fit_constants::met_within * f.tolerance ? "met" : "NOT MET";
+  return std::fabs(sheet.after[k] - f.stated) <= fit_constants::met_within * f.tolerance;
 }
+std::string word_of(bool met) { return met ? "met" : "NOT MET"; }
 
 const char* words_of(SheetRows rows) {
   switch (rows) {
@@ -86,7 +87,7 @@ std::string text_of(const SheetFit& sheet) {
   for (std::size_t k = 0; k < sheet.figures.size(); ++k)
     figures.row({key_of(sheet.figures[k].kind), of_what(sheet.figures[k]),
                  readable(sheet.figures[k].kind, sheet.figures[k].stated), fitted ? at(sheet, sheet.before, k) : "",
-                 at(sheet, sheet.after, k), met(sheet, k)});
+                 at(sheet, sheet.after, k), word_of(is_met(sheet, k))});
   Columns rows("lrrlr", 2);
   rows.row({"row", fitted ? "by formulas" : "", "value", "unit", tells_head});
   for (const SheetRow& r : sheet.rows)
@@ -110,7 +111,7 @@ Json data_sheet_json(const SheetFit& sheet) {
                        {"simulated", value(sheet.after, k)},
                        {"tolerance", f.tolerance},
                        {"unit", si_unit(f.kind)},
-                       {"met", met(sheet, k) == "met"}});
+                       {"met", is_met(sheet, k)}});
   }
   for (const SheetRow& r : sheet.rows)
     rows.push_back({{"name", name_of(r)},
@@ -126,8 +127,8 @@ void add_data_sheet(Page& page, const SheetFit& sheet) {
                                  words_of(sheet.rows_are));
   TablePart figures{"Dynamics", "llrrrl", {"figure", "at", "stated", "by formulas", "simulated", ""}, {}, 0};
   for (std::size_t k = 0; k < sheet.figures.size(); ++k) {
-    Cell judgement = met(sheet, k);
-    judgement.tone = judgement.text == "met" ? Tone::good : Tone::bad;
+    Cell judgement = word_of(is_met(sheet, k));
+    judgement.tone = is_met(sheet, k) ? Tone::good : Tone::bad;
     figures.rows.push_back({words(key_of(sheet.figures[k].kind)), of_what(sheet.figures[k]),
                             readable(sheet.figures[k].kind, sheet.figures[k].stated), at(sheet, sheet.before, k),
                             at(sheet, sheet.after, k), judgement});
@@ -144,7 +145,7 @@ void add_data_sheet(Page& page, const SheetFit& sheet) {
 Page data_sheet_page(const Header& header, const SheetFit& sheet) {
   Page page(header, "Data sheet and table");
   long met_ones = 0;
-  for (std::size_t k = 0; k < sheet.figures.size(); ++k) met_ones += met(sheet, k) == "met";
+  for (std::size_t k = 0; k < sheet.figures.size(); ++k) met_ones += is_met(sheet, k);
   const bool all = met_ones == static_cast<long>(sheet.figures.size());
   Verdict v;
   v.tone = all ? Tone::good : Tone::bad;
