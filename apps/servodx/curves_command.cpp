@@ -36,7 +36,9 @@ void run_without_log(const Options& options) {
   if (invocation.dry_run()) return;
   const SheetFit stated = data_sheet(table, rig);
   if (invocation.wants_report()) invocation.write_report(report::data_sheet_page(invocation.header(), stated));
-  report::Json json = report::curves_json(curves::Sheet{.verdict = "not_judged"});
+  curves::Sheet none;
+  none.verdict = "not_judged";
+  report::Json json = report::curves_json(none);
   json["data_sheet"] = report::data_sheet_json(stated);
   invocation.finish(report::text_of(stated), json);
 }

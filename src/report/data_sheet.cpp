@@ -11,6 +11,7 @@
 #include "report/columns.h"
 #include "report/handy.h"
 #include "report/parts.h"
+#include "report/replay_part.h"
 
 namespace servodx::report {
 namespace {
