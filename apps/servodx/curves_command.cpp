@@ -13,6 +13,7 @@
 #include "report/curves.h"
 #include "report/data_sheet.h"
 #include "report/json.h"
+#include "servodx/error.h"
 #include "servodx/log.h"
 #include "servodx/rig.h"
 #include "servodx/table.h"
@@ -33,6 +34,9 @@ void run_without_log(const Options& options) {
   invocation.check_files({options.params}, {});
   const RigFile rig = invocation.rig();
   const Table table = invocation.table(options.params);
+  if (sheet_figures(rig).empty())
+    throw InputError({.file = rig.path.empty() ? "--rig" : rig.path}, "states no dynamics of the valve",
+                     "add step_rise_time, frequency_response or phase_lag_90_frequency under [valve], or name a log");
   if (invocation.dry_run()) return;
   const SheetFit stated = data_sheet(table, rig);
   if (invocation.wants_report()) invocation.write_report(report::data_sheet_page(invocation.header(), stated));

@@ -385,14 +385,18 @@ void meet_sheet(Table& table, const RigFile& rig, std::vector<std::string>* wher
   }
 }
 
-}  // namespace
-
-Table apply_rig_facts(const Table& table, const RigFile& rig, std::vector<std::string>* where_from) {
+void refuse_jet_pipe(const RigFile& rig) {
   if (const auto it = rig.words.find("valve.first_stage"); it != rig.words.end() && it->second == "jet_pipe")
     throw key_error({rig.path, rig.line("valve.first_stage"), "valve.first_stage"},
                     "a jet pipe cannot be fitted: the model's pilot pressures come from two nozzles and a flapper, and "
                     "no setting of rows 3 to 10 recovers a jet's",
                     "use the virtual rig for jet pipes, or leave the key out for a flapper-nozzle valve");
+}
+
+}  // namespace
+
+Table apply_rig_facts(const Table& table, const RigFile& rig, std::vector<std::string>* where_from) {
+  refuse_jet_pipe(rig);
   if (table.has_std_error) {
     if (where_from) where_from->push_back(table.path + " is tuned: its values stand, the facts are not applied");
     return table;
@@ -403,6 +407,7 @@ Table apply_rig_facts(const Table& table, const RigFile& rig, std::vector<std::s
 }
 
 SheetFit data_sheet(const Table& table, const RigFile& rig) {
+  refuse_jet_pipe(rig);
   if (table.has_std_error) return beside_sheet(table, rig, false);
   return beside_sheet(Facts(table, rig, nullptr).apply(), rig, states_dynamics(rig));
 }
