@@ -3,6 +3,7 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <map>
 #include <memory>
 
 #include "base/sha256.h"
@@ -34,6 +35,9 @@ struct Options {
   CommonOptions common;
   std::vector<std::string> logs;
   std::string params, baseline, certificate;
+  FaultSearch search = FaultSearch::by_fault;
+  int population = 50;
+  bool genetic() const { return search == FaultSearch::genetic; }
   bool pool = false, exit_by_action = false;
   ListOptions list;
 };
@@ -115,6 +119,8 @@ int run(const Options& options) {
   require_option(options.logs.empty() != options.list.list.empty(), options.logs.empty() ? "LOG" : "--list",
                  options.logs.empty() ? "no log is named" : "logs are named one by one too",
                  "name the logs, or a file that lists them with --list FILE --out DIR");
+  require_option(options.list.list.empty() || !options.genetic(), "--search", "is of logs that are named one by one",
+                 "name the logs in place of --list");
   require_option(options.list.list.empty() || options.certificate.empty(), "--certificate", "certifies one verdict",
                  "name one log in place of --list");
   if (!options.list.list.empty()) return diagnose_list(options.common, options.list, options.params, options.baseline);
@@ -145,6 +151,7 @@ int run(const Options& options) {
 
   const Actions actions = actions_of(options.list.actions);
   header.settings = {{"false_alarm", baseline.asked}};
+  if (options.genetic()) header.settings.update({{"search", "genetic"}, {"population", options.population}});
   invocation.tell_of_long_fits(logs);
   if (invocation.dry_run()) return ran;
 
@@ -153,6 +160,8 @@ int run(const Options& options) {
                             .threads = options.common.threads,
                             .watch = watch,
                             .actions = actions,
+                            .search = options.search,
+                            .population = options.population,
                             .explain_unknown = options.list.explain_unknown};
   const std::vector<Diagnosis> results =
       options.pool ? judge_pool(logs, tuned, rig, baseline, how) : judge_each(logs, tuned, rig, baseline, how);
@@ -210,6 +219,16 @@ void add_diagnose_command(CLI::App& app, int& exit_code) {
       ->add_option("--actions", options->list.actions,
                    "TOML file of what to do by label, in place of the program's: clogged_filter = \"abnormal: flush\"")
       ->type_name("FILE");
+  command
+      ->add_option("--search", options->search,
+                   "where a fault's fit begins: by-fault, from the severities that screen best; genetic, from a search "
+                   "over sub-groups, one a failure mode")
+      ->transform(CLI::CheckedTransformer(
+          std::map<std::string, FaultSearch>{{"by-fault", FaultSearch::by_fault}, {"genetic", FaultSearch::genetic}}))
+      ->default_str("by-fault");
+  command->add_option("--population", options->population, "with --search genetic: individuals of each sub-group")
+      ->type_name("N")
+      ->capture_default_str();
   command
       ->add_flag("--exit-by-action", options->exit_by_action,
                  "end with 14 where the machine has to stop, 13 to call service, 12 to change its use: the most urgent "

@@ -18,12 +18,18 @@ namespace servodx {
 
 struct Diagnosis;  // the library's own
 
+// How a fault's fit finds where to begin: the severities that screen best, approached by the derivatives of health; or
+// a genetic search over sub-groups, one a failure mode (GA paper). The local refinement behind either is the same.
+enum class FaultSearch { by_fault, genetic };
+
 struct DiagnoseOptions {
   std::uint64_t seed = 1;
   int threads = 0;                      // 0: all cores; the result does not depend on it
   Watch watch = {};                     // stopped: what comes back says `interrupted` and nothing else
   Actions actions = default_actions();  // by label
-  bool explain_unknown = true;          // ask `explain` what stands first where no fault explains the log
+  FaultSearch search = FaultSearch::by_fault;
+  int population = 50;          // of each sub-group of a genetic search
+  bool explain_unknown = true;  // ask `explain` what stands first where no fault explains the log
 
   // Throws InputError naming the option.
   void validate() const;

@@ -7,6 +7,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace servodx {
 
@@ -37,6 +38,16 @@ struct Fluid {
 struct Limit {
   std::optional<double> min, max;  // [SI]
 };
+
+// A point of the frequency response that the sheet states ([[valve.frequency_response]]): the spool, or the flow
+// without load, against a sine of the current. At least one of gain and lag is stated.
+struct ResponseFact {
+  double frequency = 0;             // [Hz]
+  double amplitude = 0.4;           // [fraction of rated current] of the sine, peak: catalogues' usual +-40 %
+  std::optional<double> gain;       // [dB] over the gain at low frequency
+  std::optional<double> phase_lag;  // [rad]
+};
+
 // Facts in SI; empty where the file is silent.
 struct RigFile {
   std::string path;
@@ -52,6 +63,7 @@ struct RigFile {
   // facts by dotted key, SI: "valve.rated_current" [A], "valve.spool_stroke" [m], "actuator.area_a" [m2],
   // "supply.pressure" [Pa], ...; rig_facts() lists them all
   std::map<std::string, double> facts;
+  std::vector<ResponseFact> response;        // as listed
   std::map<std::string, Limit> limits;       // by figure
   std::map<std::string, std::string> words;  // string facts: "valve.first_stage"
   std::map<std::string, long> lines;         // line of each key given, for errors

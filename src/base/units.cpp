@@ -2,6 +2,7 @@
 
 #include <charconv>
 #include <cmath>
+#include <numbers>
 #include <utility>
 
 #include "base/celsius.h"
@@ -71,6 +72,9 @@ constexpr Unit table[] = {
     {"degF", temperature, 5, 9, zero_celsius - 160.0 / 9.0},
     {"% of rated", percent_of_rated, 1, 100},
     {"% of stroke", percent_of_stroke, 1, 100},
+    {"deg", angle, std::numbers::pi, 180},
+    {"rad", angle},
+    {"dB", level},
 };
 
 // Units with letters beyond ASCII, for those who can write them.
@@ -173,6 +177,10 @@ std::string_view name_of(Dimension dimension) {
       return "percent of rated current";
     case percent_of_stroke:
       return "percent of spool stroke";
+    case angle:
+      return "angle";
+    case level:
+      return "level";
   }
   return "";
 }

@@ -31,8 +31,10 @@ enum class Dimension {
   stiffness,
   flow,
   temperature,
-  percent_of_rated,  // of the rated current; SI value is the fraction
-  percent_of_stroke  // of the spool stroke at rated current; SI value is the fraction
+  percent_of_rated,   // of the rated current; SI value is the fraction
+  percent_of_stroke,  // of the spool stroke at rated current; SI value is the fraction
+  angle,
+  level  // of a gain, [dB]: no other unit
 };
 
 // SI = x * multiply / divide + offset. Two exact factors keep "20 mA" equal to 0.02 bit for bit.

@@ -119,8 +119,14 @@ inline constexpr int starts_kept = 2;           // of a fault, after screening
 inline constexpr int first_iterations = 5;      // of every start where health failed; the better one goes on
 inline constexpr int approach_iterations = 10;  // the same by health's derivatives, a few runs each
 inline constexpr int iterations = 20;
-inline constexpr int more_rounds = 3;      // of as many again, for a leader that is not there yet
-inline constexpr std::size_t leaders = 3;  // likeliest faults that go on
+// The genetic search over sub-groups (diagnose/sub_groups.cpp). The paper's 50 individuals; generations until the best
+// of a sub-group improves by less than the local refinement gains in one step (docs/diagnosis.md has the table).
+inline constexpr int generations = 15;
+inline constexpr int least_population = 8;    // a pack of doubles
+inline constexpr int most_population = 2000;  // beyond it memory is the limit
+inline constexpr double cloud = 0.1;          // of each range, one standard deviation about the identifier
+inline constexpr int more_rounds = 3;         // of as many again, for a leader that is not there yet
+inline constexpr std::size_t leaders = 3;     // likeliest faults that go on
 // Of the amplitude of what two faults explain: so much a model that errs may lend the second of them.
 inline constexpr double lent_to_second = 0.05;
 inline constexpr double worth_a_pair = 16.0;                      // of misfit, inflated: a fault of four deviates

@@ -50,6 +50,7 @@ HypothesisSettings settings_of(const RigFile& rig, const DiagnoseOptions& option
   settings.null_limit = rig.null_limit;
   settings.threads = options.threads;
   settings.stop = options.watch.stop;
+  if (options.search == FaultSearch::genetic) settings.genetic = {options.population, options.seed};
   return settings;
 }
 
@@ -227,6 +228,9 @@ void DiagnoseOptions::validate() const {
   if (threads < 0)
     throw InputError({.file = "DiagnoseOptions.threads"}, fmt::format("{} threads cannot run", threads),
                      "give 0 for all cores, or how many");
+  if (population < k::least_population || population > k::most_population)
+    throw InputError({.file = "DiagnoseOptions.population"}, fmt::format("a sub-group of {}", population),
+                     fmt::format("give {} to {}", k::least_population, k::most_population));
 }
 
 Assessment assess_pool(const std::vector<Log>& logs, const Table& tuned, const RigFile& rig,

@@ -10,6 +10,7 @@
 #include "diagnose/constants.h"
 #include "diagnose/hypothesis_fit.h"
 #include "diagnose/severity.h"
+#include "diagnose/sub_groups.h"
 #include "diagnose/whitening.h"
 #include "diagnose/worth_fitting.h"
 #include "evidence/probabilities.h"
@@ -112,6 +113,34 @@ void approach_all(std::vector<Attempt>& attempts, const HypothesisData& data, co
     else
       run(attempts[i], data, &health.attempt.fit, k::first_iterations);
     steps.done(Steps::approach, attempts[i].work.simulations);
+  });
+}
+
+// Each side of each fault, the failure modes that sub-groups are made of, beginning where it screened best.
+std::vector<Attempt> sub_groups(const std::vector<const Fault*>& faults, const std::vector<Screened>& screened) {
+  std::vector<Attempt> attempts;
+  for (const Fault* fault : faults)
+    for (const bool negative : {false, true}) {
+      const auto best = std::find_if(screened.begin(), screened.end(), [&](const Screened& s) {
+        return s.fault == fault && (s.severity < 0) == negative;
+      });
+      if (best != screened.end()) attempts.push_back({fault, best->severity});
+    }
+  return attempts;
+}
+
+// One after another: each sub-group's children fill packs by themselves. The local refinement goes on from the best.
+void evolve_all(std::vector<Attempt>& attempts, const HypothesisData& data, const HypothesisFit& health,
+                const HypothesisSettings::Genetic& how, Steps& steps) {
+  for (Attempt& a : attempts) {
+    const long before = a.work.simulations;
+    evolve(a, data, health, how);
+    steps.done(0, a.work.simulations - before);
+  }
+  side_by_side(attempts.size(), data, [&](std::size_t i) {
+    const long before = attempts[i].work.simulations;
+    run(attempts[i], data, &health, k::first_iterations);
+    steps.done(Steps::approach, attempts[i].work.simulations - before);
   });
 }
 
@@ -300,8 +329,11 @@ HypothesisFits fit_hypotheses(const std::vector<const LogData*>& logs, const Par
   Attempt& health = healthy.attempt;
   const std::vector<Screened> screened =
       screen_starts(faults, data, health.fit, healthy.end ? &*healthy.end : nullptr, steps);
-  std::vector<Attempt> attempts = best_starts(faults, screened);
-  approach_all(attempts, data, healthy, steps);
+  std::vector<Attempt> attempts = settings.genetic ? sub_groups(faults, screened) : best_starts(faults, screened);
+  if (settings.genetic)
+    evolve_all(attempts, data, health.fit, *settings.genetic, steps);
+  else
+    approach_all(attempts, data, healthy, steps);
   attempts = best_of_each(std::move(attempts));
   run_hopeful(attempts, data, health.fit, degrees, steps);
   finish_leaders(attempts, data, health.fit, settings.iterations);

@@ -5,6 +5,7 @@
 // of that), the null within its limit. A fault's hypothesis lets its own severity run from `least` to the worst, all
 // else as in health. So a gain of a fault over health is what only a fault explains.
 #pragma once
+#include <cstdint>
 #include <functional>
 #include <optional>
 #include <string>
@@ -54,6 +55,12 @@ struct HypothesisSettings {
   double null_limit = 0.05;  // [fraction of rated]
   int threads = 0;
   int iterations = diagnose_constants::iterations;
+  // Of a genetic search in place of the screened starts (sub_groups.h).
+  struct Genetic {
+    int population = 50;  // of each sub-group
+    std::uint64_t seed = 1;
+  };
+  std::optional<Genetic> genetic = {};
   bool pairs = true;                     // tried where a fault gains beyond doubt
   std::vector<const Fault*> among = {};  // weighed beside health; empty: all that are fitted
   std::function<bool()> stop = {};       // true: give up; what comes back is worthless

@@ -25,9 +25,9 @@ namespace {
 
 namespace k = diagnose_constants;
 
-FitProblem problem_of(const HypothesisData& data, const std::vector<FreeValue>& free) {
+FitProblem problem_of(const HypothesisData& data, const std::vector<FreeValue>& free, int threads = 1) {
   SimulateOptions options;
-  options.threads = 1;
+  options.threads = threads;
   FitProblem problem(data.logs, data.base, free, options);
   for (std::size_t l = 0; l < data.logs.size(); ++l)
     whiten(problem, static_cast<int>(l), data.error, data.references[l]);
@@ -154,14 +154,11 @@ HypothesisData hypothesis_data(const std::vector<const LogData*>& logs, const Pa
   return data;
 }
 
-namespace {
-
-// The attempt's own problem.
-FitProblem begin(Attempt& a, const HypothesisData& data) {
+FitProblem problem_of(Attempt& a, const HypothesisData& data, int threads) {
   a.fit.fault = a.fault;
   a.fit.free = hypothesis_values(data.logs, data.base, {{a.fault, a.start}, {a.beside, a.start_beside}},
                                  data.settings.null_limit);
-  FitProblem problem = problem_of(data, a.fit.free);
+  FitProblem problem = problem_of(data, a.fit.free, threads);
   problem.difference_step = k::difference_step;
   return problem;
 }
@@ -170,6 +167,8 @@ Point start_of(const Attempt& a, const FitProblem& problem, const HypothesisFit*
   Point start = starting_point(a.fit, problem, from);
   return a.scattered > 0 && !a.fit.ok ? scattered_start(std::move(start), a.scattered) : start;
 }
+
+namespace {
 
 void end_at(Attempt& a, const FitProblem& problem, const LeastSquaresResult& r, const HypothesisData& data) {
   HypothesisFit& fit = a.fit;
@@ -206,14 +205,14 @@ void end_at(Attempt& a, const FitProblem& problem, const LeastSquaresResult& r, 
 void run(Attempt& a, const HypothesisData& data, const HypothesisFit* from, int iterations) {
   const std::function<bool()>& stop = data.settings.stop;
   if (stop && stop()) return;
-  FitProblem problem = begin(a, data);
+  FitProblem problem = problem_of(a, data);
   end_at(a, problem, minimise(problem, start_of(a, problem, from), iterations, stop), data);
 }
 
 void approach(Attempt& a, const HypothesisData& data, const HypothesisFit& from, const FitEnd& end, int iterations) {
   const std::function<bool()>& stop = data.settings.stop;
   if (stop && stop()) return;
-  FitProblem problem = begin(a, data);
+  FitProblem problem = problem_of(a, data);
   LeastSquaresProblem lent = problem.least_squares();
   lent.jacobian = lent_derivatives(problem, end);
   const Point start = start_of(a, problem, &from);

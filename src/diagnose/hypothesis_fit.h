@@ -10,6 +10,8 @@
 #include "fit/chart.h"
 #include "fit/error_model.h"
 #include "fit/log_data.h"
+#include "fit/problem.h"
+#include "optimise/problem.h"
 #include "simulate/scenario.h"
 
 namespace servodx {
@@ -36,6 +38,10 @@ struct Attempt {
       {};  // a sample of the first log: mean over the channels of the squared whitened residual
   FitWork work = {};
 };
+
+// The attempt's own problem, over so many threads; and where it begins: health's end, or what `from` came to.
+FitProblem problem_of(Attempt& attempt, const HypothesisData& data, int threads = 1);
+Point start_of(const Attempt& attempt, const FitProblem& problem, const HypothesisFit* from);
 
 // Goes on where the attempt got to before; else begins at its start and, for the rest, at what `from` came to, health
 // or the first fault alone.

@@ -8,6 +8,7 @@
 #include "base/csv.h"
 #include "base/key_error.h"
 #include "effects/mount_compliance.h"
+#include "fit/sheet.h"
 #include "parameters/list.h"
 #include "servodx/rig.h"
 
@@ -368,19 +369,47 @@ class Facts {
   Size of_table_;             // ahead of any fact
 };
 
-}  // namespace
+// The rows that the sheet's step and frequency response tell, in place of what the formulas made of them.
+void meet_sheet(Table& table, const RigFile& rig, std::vector<std::string>* where_from) {
+  std::string keys;
+  for (const auto& [key, given] :
+       {std::pair{"valve.step_rise_time", rig.fact("valve.step_rise_time").has_value()},
+        std::pair{"valve.frequency_response", !rig.response.empty()},
+        std::pair{"valve.phase_lag_90_frequency", rig.fact("valve.phase_lag_90_frequency").has_value()}})
+    if (given) keys += (keys.empty() ? "" : ", ") + std::string(key);
+  for (const SheetRow& met : beside_sheet(table, rig, true).rows) {
+    Row& row = table[met.position];
+    row.nominal = std::clamp(tidy(met.after), row.lower, row.upper);
+    row.source = "rig.toml: " + keys + "; from " + text_of(met.before, row.unit);
+    if (where_from) where_from->push_back(row.name + " = " + text_of(row.nominal, row.unit) + ": " + row.source);
+  }
+}
 
-Table apply_rig_facts(const Table& table, const RigFile& rig, std::vector<std::string>* where_from) {
+void refuse_jet_pipe(const RigFile& rig) {
   if (const auto it = rig.words.find("valve.first_stage"); it != rig.words.end() && it->second == "jet_pipe")
     throw key_error({rig.path, rig.line("valve.first_stage"), "valve.first_stage"},
                     "a jet pipe cannot be fitted: the model's pilot pressures come from two nozzles and a flapper, and "
                     "no setting of rows 3 to 10 recovers a jet's",
                     "use the virtual rig for jet pipes, or leave the key out for a flapper-nozzle valve");
+}
+
+}  // namespace
+
+Table apply_rig_facts(const Table& table, const RigFile& rig, std::vector<std::string>* where_from) {
+  refuse_jet_pipe(rig);
   if (table.has_std_error) {
     if (where_from) where_from->push_back(table.path + " is tuned: its values stand, the facts are not applied");
     return table;
   }
-  return Facts(table, rig, where_from).apply();
+  Table out = Facts(table, rig, where_from).apply();
+  if (states_dynamics(rig)) meet_sheet(out, rig, where_from);
+  return out;
+}
+
+SheetFit data_sheet(const Table& table, const RigFile& rig) {
+  refuse_jet_pipe(rig);
+  if (table.has_std_error) return beside_sheet(table, rig, false);
+  return beside_sheet(Facts(table, rig, nullptr).apply(), rig, states_dynamics(rig));
 }
 
 }  // namespace servodx

@@ -1,6 +1,8 @@
 // Data-sheet facts of a rig file into a parameter table: each fact sets the nominal value and the bounds of the rows
 // that follow from it, by the formulas of docs/parameters.md.
 //
+// Where the sheet states a step or a frequency response, the rows that these tell are then fitted to it (fit/sheet.h).
+//
 // Valid for two-stage flapper-nozzle valves with a feedback wire; a jet pipe is refused. Leaves out: everything that a
 // data sheet does not say (frictions, laps, lags), which keeps the table's values. The bounds that a fact sets are the
 // spread of real parts about a data sheet, widened where a fault moves the row.
@@ -8,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "fit/sheet.h"
 #include "parameters/table.h"
 #include "servodx/rig.h"
 #include "signals/rig_file.h"
@@ -29,5 +32,8 @@ inline constexpr double jet_angle_factor = 0.43;
 // A tuned table (with std_error) keeps its values: they were measured, the data sheet only promises.
 // Throws InputError at the fact that cannot hold.
 Table apply_rig_facts(const Table& table, const RigFile& rig, std::vector<std::string>* where_from = nullptr);
+
+// The dynamics that the sheet states beside those of the table's valve, its rows as apply_rig_facts makes them.
+SheetFit data_sheet(const Table& table, const RigFile& rig);
 
 }  // namespace servodx

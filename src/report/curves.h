@@ -3,6 +3,7 @@
 #include <string>
 
 #include "curves/curves.h"
+#include "fit/sheet.h"
 #include "report/certificate.h"
 #include "report/json.h"
 #include "report/page.h"
@@ -21,6 +22,6 @@ std::string text_of(const curves::Sheet& sheet, const std::string& log, bool col
 Json curves_json(const curves::Sheet& sheet);
 std::string curves_svg(const curves::Sheet& sheet, double rated_current);
 Page curves_page(const Header& header, const curves::Sheet& sheet, const std::string& log, double rated_current,
-                 double guard, const CertificateOf& certificate = {});
+                 double guard, const CertificateOf& certificate = {}, const SheetFit* stated = nullptr);
 
 }  // namespace servodx::report

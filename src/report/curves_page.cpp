@@ -8,8 +8,10 @@
 #include "base/units.h"
 #include "curves/curves.h"
 #include "curves/frequency_response.h"
+#include "fit/sheet.h"
 #include "report/certificate.h"
 #include "report/curves.h"
+#include "report/data_sheet.h"
 #include "report/handy.h"
 #include "report/json.h"
 #include "report/page.h"
@@ -121,7 +123,7 @@ void add_response(Page& page, const Sheet& sheet) {
 }  // namespace
 
 Page curves_page(const Header& header, const Sheet& sheet, const std::string& log, double rated_current, double guard,
-                 const CertificateOf& certificate) {
+                 const CertificateOf& certificate, const SheetFit* stated) {
   Page page(header, "Acceptance sheet of " + file_name(log));
   Verdict v;
   v.tone = sheet.verdict == "pass" ? Tone::good : sheet.verdict == "fail" ? Tone::bad : Tone::plain;
@@ -174,6 +176,7 @@ Page curves_page(const Header& header, const Sheet& sheet, const std::string& lo
       page.add(*gap);
   }
   if (!sheet.response.empty()) add_response(page, sheet);
+  if (stated) add_data_sheet(page, *stated);
   return page;
 }
 

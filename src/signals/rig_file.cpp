@@ -37,6 +37,12 @@ constexpr Preset presets[] = {
     {"ISO VG 46", {"ISOVG46", "VG46"}, 873.0, 46e-6},
 };
 
+// Ends of what a sheet may state of the dynamics: amplifiers end at 1.5 times rated current; beyond 40 dB and a whole
+// turn nothing of a valve can be read.
+constexpr double most_amplitude = 1.5;             // [fraction of rated current]
+constexpr double most_decibels = 40;               // [dB]
+constexpr double most_lag = 2 * std::numbers::pi;  // [rad]
+
 std::string listed(std::initializer_list<std::string_view> words) {
   std::string list;
   for (auto word : words) list += (list.empty() ? "'" : ", '") + std::string(word) + "'";
@@ -96,6 +102,8 @@ class Reader {
         read_limits(section(node, key));
       } else if (key == "fluid" && node.is_string()) {
         read_preset(word(node, key));
+      } else if (key == "valve.frequency_response") {
+        read_response(node, key);
       } else if (key == "valve" || key == "actuator" || key == "lines" || key == "supply" || key == "fluid" ||
                  key == "valve.dither" || key == "page") {
         walk(section(node, key), key + ".");
@@ -173,7 +181,7 @@ class Reader {
       known = {"name",      "serial",  "ports",      "command_hold", "mains_frequency", "null_limit", "oil_temperature",
                "fluid",     "[valve]", "[actuator]", "[lines]",      "[supply]",        "[fluid]",    "[limits]",
                "[columns]", "[page]"};
-    if (folder == "valve.") known = {"first_stage", "dither"};
+    if (folder == "valve.") known = {"first_stage", "dither", "frequency_response"};
     if (folder == "lines.") known = {"taps"};
     if (folder == "page.") known.assign(page_words.begin(), page_words.end());
     for (const RigFact& fact : rig_facts())
@@ -211,14 +219,65 @@ class Reader {
   }
 
   double quantity(const toml::node& node, const std::string& key, Dimension dimension, bool may_be_zero) const {
-    if (node.is_number())
-      throw DocumentedError(Trouble::unit, place(key), "a bare number has no unit",
-                            "write a quoted quantity with one of " + units_of(dimension));
-    const double value = parse_quantity(word(node, key), dimension, place(key)).value;
+    const double value = signed_quantity(node, key, dimension);
     if (value < 0.0 || (value == 0.0 && !may_be_zero))
       throw InputError(place(key), may_be_zero ? "must not be negative" : "must be positive",
                        "check the sign, or leave the key out");
     return value;
+  }
+
+  // One [[valve.frequency_response]] a point.
+  void read_response(const toml::node& node, const std::string& key) {
+    const toml::array* points = node.as_array();
+    if (!points) throw InputError(place(key), "is not a list of points", "write each as [[" + key + "]]");
+    for (const toml::node& point : *points) {
+      const std::string at = key + "[" + std::to_string(rig_.response.size() + 1) + "]";
+      rig_.lines[at] = point.source().begin.line;
+      rig_.response.push_back(response_point(section(point, at), at));
+    }
+  }
+
+  ResponseFact response_point(const toml::table& table, const std::string& at) {
+    ResponseFact fact;
+    for (const auto& [name, node] : table) {
+      const std::string field(name.str()), key = at + "." + field;
+      rig_.lines[key] = name.source().begin.line;
+      if (field == "frequency") {
+        fact.frequency = quantity(node, key, frequency, false);
+      } else if (field == "amplitude") {
+        fact.amplitude = quantity(node, key, fraction, false);
+        require_drivable(fact.amplitude, key);
+      } else if (field == "gain") {
+        fact.gain = signed_quantity(node, key, level);
+        if (std::abs(*fact.gain) > most_decibels)
+          throw InputError(place(key), "is beyond 40 dB",
+                           "give the gain over that at low frequency, such as \"-3 dB\"");
+      } else if (field == "phase_lag") {
+        fact.phase_lag = quantity(node, key, angle, true);
+        if (*fact.phase_lag > most_lag)
+          throw InputError(place(key), "is beyond 360 deg", "give the lag as a positive angle, such as \"90 deg\"");
+      } else {
+        throw DocumentedError(Trouble::key, place(key), "unknown key",
+                              known_here(field, {"frequency", "amplitude", "gain", "phase_lag"}));
+      }
+    }
+    if (fact.frequency == 0) throw InputError(place(at), "states no frequency", "add frequency = \"... Hz\"");
+    if (!fact.gain && !fact.phase_lag)
+      throw InputError(place(at), "states neither gain nor phase_lag", "add one of them, or leave the point out");
+    return fact;
+  }
+
+  void require_drivable(double amplitude, const std::string& key) const {
+    if (amplitude > most_amplitude)
+      throw InputError(place(key), "is beyond 150 % of rated current, where amplifiers end",
+                       "give the peak of the current as a part of rated, such as \"40 %\"");
+  }
+
+  double signed_quantity(const toml::node& node, const std::string& key, Dimension dimension) const {
+    if (node.is_number())
+      throw DocumentedError(Trouble::unit, place(key), "a bare number has no unit",
+                            "write a quoted quantity with one of " + units_of(dimension));
+    return parse_quantity(word(node, key), dimension, place(key)).value;
   }
 
   void read_preset(const std::string& name) {
@@ -354,6 +413,12 @@ class Reader {
     if (has("valve.rated_pressure_drop") && !has("valve.rated_flow"))
       throw InputError(place("valve.rated_pressure_drop"), "given without valve.rated_flow",
                        "add rated_flow or leave it out");
+    if (has("valve.step_amplitude")) {
+      if (!has("valve.step_rise_time"))
+        throw InputError(place("valve.step_amplitude"), "given without valve.step_rise_time",
+                         "add step_rise_time or leave it out");
+      require_drivable(*rig_.fact("valve.step_amplitude"), "valve.step_amplitude");
+    }
     if (has("supply.pressure") && has("supply.return_pressure") &&
         !(*rig_.fact("supply.return_pressure") < *rig_.fact("supply.pressure")))
       throw InputError(place("supply.return_pressure"), "is not below supply.pressure", "check both values");
@@ -413,6 +478,8 @@ const std::vector<RigFact>& rig_facts() {
       {"valve.rated_flow", flow, false},
       {"valve.rated_pressure_drop", pressure, false},
       {"valve.phase_lag_90_frequency", frequency, false},
+      {"valve.step_rise_time", Dimension::time, false},
+      {"valve.step_amplitude", fraction, false},
       {"valve.null_leakage", flow, true},
       {"valve.pilot_leakage", flow, true},
       {"valve.radial_clearance", length, false},

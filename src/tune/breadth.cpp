@@ -67,8 +67,9 @@ class BroadCosts {
   std::vector<Point> whole_;  // kept: a generation asks for no memory
 };
 
-// Failure mode identifiers of a fault-free valve: as the table says; a slow first stage; much friction; worn edges.
-std::vector<std::vector<Point>> islands(const std::vector<FreeValue>& shared, const Point& start) {
+// Starts of a healthy valve, an island each: as the table says; a slow first stage; much friction; wide edges. What
+// fails is no part of a tune; sub-groups with a failure mode identifier each are diagnose's (diagnose/sub_groups.h).
+std::vector<std::vector<Point>> healthy_starts(const std::vector<FreeValue>& shared, const Point& start) {
   const std::size_t n = shared.size();
   const Point nominal(start.begin(), start.begin() + static_cast<long>(n));
   const auto moved = [&](std::initializer_list<std::pair<int, double>> moves) {
@@ -127,7 +128,7 @@ std::vector<Point> search_broadly(const TuneScope& scope, const Point& start, Tu
   };
   const std::optional<GeneticState> saved = saved_state(options);
   const GeneticResult found = minimise_genetic(static_cast<int>(scope.shared.size()), cost, o,
-                                               islands(scope.shared, start), hooks, saved ? &*saved : nullptr);
+                                               healthy_starts(scope.shared, start), hooks, saved ? &*saved : nullptr);
   watch.done_with(problem);
   std::vector<Point> out;
   for (const Individual& i : found.state.archive) out.push_back(costs.full(i.point));

@@ -99,7 +99,7 @@ void TuneOptions::validate() const {
   require(!resume || !checkpoint.empty(), "--resume", "there is nothing to resume from", "add --checkpoint FILE");
   require(!resume || std::filesystem::exists(checkpoint), "--checkpoint",
           "'" + checkpoint + "' is not there to resume from", "leave out --resume to begin");
-  require(population >= 24, "--population", "must be at least 24", "four islands of six each");
+  require(population >= 24, "--population", "must be at least 24", "four starts of a healthy valve, six each");
   require(generations >= 0, "--generations", "must not be negative", "0 leaves the genetic search out");
   require(rounds >= 1, "--rounds", "must be at least 1", fmt::format("{} is the default", TuneOptions{}.rounds));
   require(heldout >= 0 && heldout < 1, "--heldout", "is a part of each log, from 0 to below 1",

@@ -11,6 +11,7 @@
 #include "diagnose/judge.h"
 #include "faults/fault.h"
 #include "faults/registry.h"
+#include "servodx/diagnose.h"
 #include "servodx/log.h"
 #include "servodx/rig.h"
 #include "servodx/table.h"
@@ -74,6 +75,15 @@ TEST(MainJob, LostWireIsFoundAndSizedAndNoFaultTakenForAnother) {
     std::printf("%-34s -> %-24s score %7.2f size %.3g [%.3g, %.3g]%s  (%.1f s)\n", c.log.c_str(),
                 d.fault ? d.fault->name.data() : "no fault named", d.error, d.severity.value, d.severity.lower,
                 d.severity.upper, ambiguous.c_str(), seconds());
+    // GA paper, "Parameter finding approach": sub-groups, each with a failure mode identifier, come to the same
+    // verdict.
+    DiagnoseOptions by_genes;
+    by_genes.search = FaultSearch::genetic;
+    by_genes.population = 24;
+    const Diagnosis g = diagnose(piece(shipped_log(c.log), from, to), tuned.table, rig, baseline, by_genes);
+    EXPECT_EQ(g.verdict, d.verdict) << c.log;
+    EXPECT_EQ(g.fault, d.fault) << c.log;
+    EXPECT_NE(g.assessment.simulations, d.assessment.simulations) << "another search";
     if (!c.truth) continue;  // one log in four may be called faulty: three baseline logs promise no more
     ++faults;
     detected += d.verdict != VerdictKind::healthy;

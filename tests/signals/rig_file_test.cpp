@@ -146,6 +146,26 @@ TEST(RigFile, AFluidIsAPresetOrItsProperties) {
   EXPECT_EQ(both.fluid.kinematic_viscosity_100, 4e-6);
 }
 
+TEST(RigFile, TheSheetsDynamicsAreKeptAsListed) {
+  const RigFile rig = read(
+      "[valve]\nstep_rise_time = \"8 ms\"\nstep_amplitude = \"50 %\"\n"
+      "frequency_response = [{ frequency = \"50 Hz\", gain = \"-1.5 dB\" }]\n");
+  EXPECT_DOUBLE_EQ(*rig.fact("valve.step_rise_time"), 8e-3);
+  EXPECT_DOUBLE_EQ(*rig.fact("valve.step_amplitude"), 0.5);
+  ASSERT_EQ(rig.response.size(), 1u);
+  EXPECT_EQ(rig.response[0].gain, -1.5);
+  EXPECT_EQ(rig.response[0].amplitude, 0.4) << "catalogues' usual";
+  const RigFile tables = read(
+      "[[valve.frequency_response]]\nfrequency = \"20 Hz\"\namplitude = \"100 %\"\nphase_lag = \"30 deg\"\n"
+      "[[valve.frequency_response]]\nfrequency = \"0.1 kHz\"\ngain = \"0 dB\"\nphase_lag = \"90 deg\"\n");
+  ASSERT_EQ(tables.response.size(), 2u);
+  EXPECT_DOUBLE_EQ(*tables.response[0].phase_lag, std::numbers::pi / 6);
+  EXPECT_FALSE(tables.response[0].gain);
+  EXPECT_EQ(tables.response[0].amplitude, 1.0);
+  EXPECT_EQ(tables.response[1].frequency, 100.0);
+  EXPECT_EQ(tables.line("valve.frequency_response[2].gain"), 7);
+}
+
 TEST(RigFile, EachRefusalNamesPlaceRuleAndMend) {
   const std::string lengths = "m, cm, mm, um, in";
   const struct {
@@ -177,6 +197,39 @@ TEST(RigFile, EachRefusalNamesPlaceRuleAndMend) {
        "rated_pressure_drop = \"70 bar\""},
       {"[valve]\nfirst_stage = \"jet\"\n",
        "rig.toml:2: key 'valve.first_stage': unknown value 'jet'; use one of 'flapper_nozzle', 'jet_pipe'"},
+      {"[valve]\nstep_amplitude = \"50 %\"\n",
+       "rig.toml:2: key 'valve.step_amplitude': given without valve.step_rise_time; add step_rise_time or leave it "
+       "out"},
+      {"[valve]\nstep_rise_time = \"8 ms\"\nstep_amplitude = \"200 %\"\n",
+       "rig.toml:3: key 'valve.step_amplitude': is beyond 150 % of rated current, where amplifiers end; give the peak "
+       "of "
+       "the current as a part of rated, such as \"40 %\""},
+      {"[valve]\nstep_rise_time = \"8 mm\"\n",
+       "rig.toml:2: key 'valve.step_rise_time': 'mm' is a unit of length, not of time; use one of s, ms, us, min, h"},
+      {"[valve]\nfrequency_response = \"50 Hz\"\n",
+       "rig.toml:2: key 'valve.frequency_response': is not a list of points; write each as "
+       "[[valve.frequency_response]]"},
+      {"[[valve.frequency_response]]\nfrequency = \"50 Hz\"\n",
+       "rig.toml:1: key 'valve.frequency_response[1]': states neither gain nor phase_lag; add one of them, or leave "
+       "the "
+       "point out"},
+      {"[[valve.frequency_response]]\ngain = \"-3 dB\"\n",
+       "rig.toml:1: key 'valve.frequency_response[1]': states no frequency; add frequency = \"... Hz\""},
+      {"[[valve.frequency_response]]\nphase = \"90 deg\"\n",
+       "rig.toml:2: key 'valve.frequency_response[1].phase': unknown key; known here: frequency, amplitude, gain, "
+       "phase_lag"},
+      {"[[valve.frequency_response]]\nphase_lag = \"-90 deg\"\n",
+       "rig.toml:2: key 'valve.frequency_response[1].phase_lag': must not be negative; check the sign, or leave the "
+       "key "
+       "out"},
+      {"[[valve.frequency_response]]\nphase_lag = \"500 deg\"\n",
+       "rig.toml:2: key 'valve.frequency_response[1].phase_lag': is beyond 360 deg; give the lag as a positive angle, "
+       "such as \"90 deg\""},
+      {"[[valve.frequency_response]]\ngain = \"-60 dB\"\n",
+       "rig.toml:2: key 'valve.frequency_response[1].gain': is beyond 40 dB; give the gain over that at low frequency, "
+       "such as \"-3 dB\""},
+      {"[[valve.frequency_response]]\ngain = \"0.7\"\n",
+       "rig.toml:2: key 'valve.frequency_response[1].gain': '0.7' has no unit; add one of dB"},
       {"ports = \"open\"\n", "rig.toml:1: key 'ports': unknown value 'open'; use one of 'actuator', 'blocked', 'free'"},
       {"valve = \"x\"\n", "rig.toml:1: key 'valve': is not a section; write it as [valve]"},
       {"fluid = \"water\"\n",
