@@ -1,7 +1,6 @@
 #include "signals/mat_file.h"
 
 #include <fmt/format.h>
-#include <matio.h>
 
 #include <algorithm>
 #include <bit>
@@ -14,6 +13,7 @@
 #include <utility>
 
 #include "base/error.h"
+#include "signals/matio_library.h"
 
 namespace servodx {
 namespace {
@@ -21,10 +21,10 @@ namespace {
 constexpr const char* save_again = "copy or save it again, or write a CSV log";
 
 struct CloseFile {
-  void operator()(mat_t* file) const { Mat_Close(file); }
+  void operator()(mat_t* file) const { matio().close(file); }
 };
 struct FreeVariable {
-  void operator()(matvar_t* variable) const { Mat_VarFree(variable); }
+  void operator()(matvar_t* variable) const { matio().free_variable(variable); }
 };
 using File = std::unique_ptr<mat_t, CloseFile>;
 using Variable = std::unique_ptr<matvar_t, FreeVariable>;
@@ -264,8 +264,9 @@ class Matrices {
 }  // namespace
 
 void read_mat_file(const std::string& path, const std::function<void(const MatVariable&)>& take) {
+  load_matio(path);
   const std::optional<long> expected = Parts(path).count();
-  const File file(Mat_Open(path.c_str(), MAT_ACC_RDONLY));
+  const File file(matio().open(path.c_str(), MAT_ACC_RDONLY));
   if (!file) throw InputError({path, 0, ""}, "is not a MAT file", "save it with MATLAB's 'save', or write a CSV log");
   Matrices matrices;
   const auto take_variable = [&](const std::string& name, const matvar_t& v) {
@@ -273,16 +274,16 @@ void read_mat_file(const std::string& path, const std::function<void(const MatVa
     take(variable_of(name, v));
   };
   long read = 0;
-  for (; Variable v{Mat_VarReadNext(file.get())}; ++read) {
+  for (; Variable v{matio().read_next(file.get())}; ++read) {
     const std::string name = v->name ? v->name : "";
     const bool one_deep = v->class_type == MAT_C_STRUCT && v->dims && v->rank > 0 && count_of(*v) == 1;
-    char* const* const names = one_deep ? Mat_VarGetStructFieldnames(v.get()) : nullptr;
+    char* const* const names = one_deep ? matio().field_names(v.get()) : nullptr;
     if (!names) {
       take_variable(name, *v);
       continue;
     }
-    for (unsigned k = 0; k < Mat_VarGetNumberOfFields(v.get()); ++k)
-      if (const matvar_t* field = Mat_VarGetStructFieldByIndex(v.get(), k, 0); field && names[k])
+    for (unsigned k = 0; k < matio().number_of_fields(v.get()); ++k)
+      if (const matvar_t* field = matio().field(v.get(), k, 0); field && names[k])
         take_variable(fmt::format("{}.{}", name, names[k]), *field);
   }
   if (expected && read < *expected)
