@@ -9,6 +9,7 @@
 
 #include <cerrno>
 #include <csignal>
+#include <cstdint>
 #include <cstring>
 #include <iterator>
 #include <memory>
@@ -89,9 +90,13 @@ class Rules {
   bool good_;
 };
 
+// The argument at `place` (from 0) of a call. The library's own macros leave a field out.
+scmp_arg_cmp is(unsigned place, std::uint64_t value) { return {place, SCMP_CMP_EQ, value, 0}; }
+scmp_arg_cmp is_not(unsigned place, std::uint64_t value) { return {place, SCMP_CMP_NE, value, 0}; }
+scmp_arg_cmp lacks(unsigned place, std::uint64_t bits) { return {place, SCMP_CMP_MASKED_EQ, bits, 0}; }
+
 void allow_memory(Rules& rules) {
-  const auto no_code = [](unsigned argument) { return SCMP_CMP(argument, SCMP_CMP_MASKED_EQ, PROT_EXEC, 0); };
-  for (const int call : {SCMP_SYS(mmap), SCMP_SYS(mprotect)}) rules.rule(SCMP_ACT_ALLOW, call, no_code(2));
+  for (const int call : {SCMP_SYS(mmap), SCMP_SYS(mprotect)}) rules.rule(SCMP_ACT_ALLOW, call, lacks(2, PROT_EXEC));
   for (const int call : {SCMP_SYS(brk), SCMP_SYS(munmap), SCMP_SYS(mremap), SCMP_SYS(madvise)})
     rules.rule(SCMP_ACT_ALLOW, call);
 }
@@ -103,14 +108,14 @@ void allow_files(Rules& rules, int give) {
     rules.rule(SCMP_ACT_ALLOW, call);
   // The two streams lead nowhere.
   for (const int to : {give, STDOUT_FILENO, STDERR_FILENO})
-    rules.rule(SCMP_ACT_ALLOW, SCMP_SYS(write), SCMP_A0(SCMP_CMP_EQ, static_cast<scmp_datum_t>(to)));
+    rules.rule(SCMP_ACT_ALLOW, SCMP_SYS(write), is(0, static_cast<unsigned>(to)));
   for (const int what : {F_GETFL, F_GETFD, F_SETFD, F_DUPFD_CLOEXEC})
-    rules.rule(SCMP_ACT_ALLOW, SCMP_SYS(fcntl), SCMP_A1(SCMP_CMP_EQ, static_cast<scmp_datum_t>(what)));
+    rules.rule(SCMP_ACT_ALLOW, SCMP_SYS(fcntl), is(1, static_cast<unsigned>(what)));
 #ifdef SERVODX_ANSWERS_OPEN
   for (const int call : {SCMP_SYS(open), SCMP_SYS(openat)}) rules.rule(SCMP_ACT_TRAP, call);
 #else
-  rules.rule(SCMP_ACT_ALLOW, SCMP_SYS(open), SCMP_A1(SCMP_CMP_MASKED_EQ, O_ACCMODE | O_CREAT | O_TRUNC, O_RDONLY));
-  rules.rule(SCMP_ACT_ALLOW, SCMP_SYS(openat), SCMP_A2(SCMP_CMP_MASKED_EQ, O_ACCMODE | O_CREAT | O_TRUNC, O_RDONLY));
+  rules.rule(SCMP_ACT_ALLOW, SCMP_SYS(open), lacks(1, O_ACCMODE | O_CREAT | O_TRUNC));
+  rules.rule(SCMP_ACT_ALLOW, SCMP_SYS(openat), lacks(2, O_ACCMODE | O_CREAT | O_TRUNC));
 #endif
   // Asked by the way; a no is as good an answer.
   for (const int call : {SCMP_SYS(access), SCMP_SYS(faccessat), SCMP_SYS(faccessat2), SCMP_SYS(readlink),
@@ -141,9 +146,9 @@ void allow_rest(Rules& rules) {
                          SCMP_SYS(rseq)})
     rules.rule(SCMP_ACT_ALLOW, call);
   // abort(): a crash is to be told as one.
-  rules.rule(SCMP_ACT_ALLOW, SCMP_SYS(tgkill), SCMP_A0(SCMP_CMP_EQ, static_cast<scmp_datum_t>(::getpid())));
-  rules.rule(SCMP_ACT_ALLOW, SCMP_SYS(rt_sigaction), SCMP_A0(SCMP_CMP_NE, SIGSYS));
-  rules.rule(SCMP_ACT_ALLOW, SCMP_SYS(prlimit64), SCMP_A2(SCMP_CMP_EQ, 0));
+  rules.rule(SCMP_ACT_ALLOW, SCMP_SYS(tgkill), is(0, static_cast<unsigned>(::getpid())));
+  rules.rule(SCMP_ACT_ALLOW, SCMP_SYS(rt_sigaction), is_not(0, SIGSYS));
+  rules.rule(SCMP_ACT_ALLOW, SCMP_SYS(prlimit64), is(2, 0));
 }
 
 }  // namespace

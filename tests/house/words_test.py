@@ -15,6 +15,7 @@ READERS = {
     "apps/servodx/manifest.h": "reads a manifest",
     "apps/servodx/manual_commands.cpp": "options by their CLI11 names, the names of shells",
     "apps/servodx/map_command.cpp": "--model",
+    "apps/servodx/read_manifest.cpp": "reads a manifest",
     "apps/servodx/rerun_command.cpp": "reads a manifest",
     "apps/servodx/tune_command.cpp": "--local, --effects",
     "src/base/csv.cpp": "marks of the encoding",
