@@ -179,12 +179,14 @@ MatVariable variable_of(const std::string& name, const matvar_t& v) {
 // A text of matio's, of one byte or two a letter, in UTF-8; `step` letters apart.
 std::string text_of(const matvar_t& v, std::size_t first, std::size_t step, std::size_t letters) {
   std::string text;
+  if (!v.data || (v.data_size != 1 && v.data_size != 2)) return {};
+  const std::size_t there = v.nbytes / static_cast<std::size_t>(v.data_size);
   for (std::size_t k = 0, at = first; k < letters; ++k, at += step) {
     unsigned code = 0;
-    if (!v.data || (at + 1) * static_cast<std::size_t>(v.data_size) > v.nbytes) return {};
+    if (at >= there) return {};
     if (v.data_size == 1)
       code = static_cast<const unsigned char*>(v.data)[at];
-    else if (v.data_size == 2)
+    else
       code = static_cast<const std::uint16_t*>(v.data)[at];
     if (code < 0x80 || v.data_type == MAT_T_UTF8) {
       text += static_cast<char>(code);
@@ -201,12 +203,16 @@ std::string text_of(const matvar_t& v, std::size_t first, std::size_t step, std:
   return text;
 }
 
-// The texts of a cell array, or the rows of a matrix of letters; empty where it is neither.
+constexpr std::size_t most_columns = 100;  // of a matrix of signals; more is no log
+
+// The texts of a cell array, or the rows of a matrix of letters; empty where it is neither, or names more than a matrix
+// may have. (A matrix of a billion rows of no letters takes no byte of its file.)
 std::vector<std::string> texts_of(const matvar_t& v) {
   std::vector<std::string> texts;
-  if (v.class_type == MAT_C_CHAR && v.rank == 2) {
+  if (!v.dims || v.rank != 2 || v.dims[0] > most_columns || v.dims[1] > v.nbytes) return {};
+  if (v.class_type == MAT_C_CHAR) {
     for (std::size_t row = 0; row < v.dims[0]; ++row) texts.push_back(text_of(v, row, v.dims[0], v.dims[1]));
-  } else if (v.class_type == MAT_C_CELL && v.dims && v.data) {
+  } else if (v.class_type == MAT_C_CELL && v.data && count_of(v) <= v.nbytes / sizeof(matvar_t*)) {
     for (std::size_t k = 0; k < count_of(v); ++k) {
       const matvar_t* cell = static_cast<matvar_t* const*>(v.data)[k];
       if (!cell || cell->class_type != MAT_C_CHAR || !cell->dims || cell->rank < 1) return {};
@@ -251,7 +257,7 @@ class Matrices {
   }
 
  private:
-  static constexpr std::size_t most_columns = 100, fewest_samples = 20;  // else it is no log
+  static constexpr std::size_t fewest_samples = 20;  // else it is no log
   struct Matrix {
     std::string name;
     std::size_t rows, columns;
