@@ -12,8 +12,8 @@ void read(std::string_view input) {
   const std::string a = folder.write("a.json", input.substr(0, part));
   const std::string b = part == std::string_view::npos ? a : folder.write("b.json", input.substr(part + 1));
   const report::Comparison all = report::compare(a, b);
-  text_of(all);
-  compare_json(all).dump();
+  report::text_of(all);
+  report::compare_json(all).dump();
 }
 
 }  // namespace servodx::fuzz

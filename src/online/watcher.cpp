@@ -253,7 +253,7 @@ void Watcher::resume(const nlohmann::json& state) {
     if (a.at("signal") != -1) e.signal = static_cast<Signal>(position_in(a.at("signal"), n_signals));
     e.window = a.at("window"), e.level = a.at("level"), e.limit = a.at("limit");
     e.gross = static_cast<GrossFinding>(position_in(a.at("gross"), 1 + static_cast<int>(GrossFinding::no_response)));
-    if (a.contains("supply")) e.supply = a.at("supply");
+    e.supply = a.value("supply", false);
     e.onset = a.at("onset"), e.name = a.at("name");
     alarm.names_asked = a.at("names_asked"), alarm.window_given = a.at("window_given");
     alarm.calm_since = a.at("calm_since");

@@ -19,6 +19,7 @@ READERS = {
     "apps/servodx/rerun_command.cpp": "reads a manifest",
     "apps/servodx/tune_command.cpp": "--local, --effects",
     "src/base/csv.cpp": "marks of the encoding",
+    "src/base/json_text.h": "reads the schema of JSON",
     "src/base/machine_load.cpp": "reads the counters of the kernel",
     "src/base/result_schema.h": "reads the schema of a result",
     "src/fit/tuning_comments.cpp": "reads what a tune wrote into a table",
