@@ -19,7 +19,7 @@
 namespace servodx {
 namespace {
 
-constexpr BoxLimits small{.memory = std::size_t{64} << 20, .seconds = 1};
+const BoxLimits small{.memory = std::size_t{64} << 20, .seconds = 1};
 
 TEST(Box, ACrashALoopAndAHungerForMemoryEndTheChildAlone) {
   const auto ended = [](const std::function<void(const Box::Give&)>& work) {
