@@ -59,8 +59,6 @@ struct EdgeSide {
   R radius;  // [m] of the corners
   L line;    // [Pa s2/m4] of the hose and what else the flow passes, per opening squared
 };
-template <class R, class L>
-EdgeSide(R, L) -> EdgeSide<R, L>;  // clang 14 does not make it for an aggregate
 template <class D>
 inline __attribute__((always_inline)) auto from_supply(const D& d) {
   return EdgeSide{d.supply_edge, d.hose_loss};
