@@ -75,16 +75,17 @@ set(CPACK_STRIP_FILES ON)
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_NAME servodx)
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_SECTION science)
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_SHLIBDEPS ON)
+set(CPACK_DEBIAN_PROGRAM_PACKAGE_DEPENDS "${matio_package}")  # loaded at need, so dpkg-shlibdeps does not see it
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_SUGGESTS chromium)  # --pdf
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_NAME libservodx-dev)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SECTION libdevel)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS
-    "libceres-dev, libnlopt-cxx-dev, libeigen3-dev, libfmt-dev, libtomlplusplus-dev, nlohmann-json3-dev, libssl-dev, libmatio-dev, libsqlitecpp-dev, libsqlite3-dev, pkg-config, g++")
+    "libceres-dev, libnlopt-cxx-dev, libeigen3-dev, libfmt-dev, libtomlplusplus-dev, nlohmann-json3-dev, libssl-dev, libseccomp-dev, ${matio_package}, libsqlitecpp-dev, libsqlite3-dev, pkg-config, g++")
 set(CPACK_DEBIAN_PYTHON_PACKAGE_NAME python3-servodx)
 set(CPACK_DEBIAN_PYTHON_PACKAGE_SECTION python)
 set(CPACK_DEBIAN_PYTHON_PACKAGE_SHLIBDEPS ON)
 math(EXPR next_python "${Python_VERSION_MINOR} + 1")
 set(CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS
-    "python3 (>= 3.${Python_VERSION_MINOR}), python3 (<< 3.${next_python}), python3-numpy, python3-pandas")
+    "${matio_package}, python3 (>= 3.${Python_VERSION_MINOR}), python3 (<< 3.${next_python}), python3-numpy, python3-pandas")
 set(CPACK_DEBIAN_PYTHON_PACKAGE_RECOMMENDS "python3-matplotlib, python3-scipy, servodx")
 include(CPack)

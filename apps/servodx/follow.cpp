@@ -429,7 +429,7 @@ class Following {
     const auto refuse = [&](const std::string& rule) {
       throw InputError({.file = options_.state}, rule, "remove the file to begin anew, or name another");
     };
-    if (!json.is_object() || json.value("schema", 0) != state_schema) refuse("is no state of a watch");
+    if (!has_schema(json, state_schema)) refuse("is no state of a watch");
     try {
       if (json.at("source") != options_.source) refuse("is the state of a watch of another log");
       if (json.at("table") != judging_.tuned.table.sha256 || json.at("baseline") != judging_.baseline.parts->sha256)

@@ -1,6 +1,7 @@
 // servodx: fault diagnosis of electrohydraulic servovalves from rig logs.
 #include <CLI/CLI.hpp>
 #include <cstdio>
+#include <cstring>
 #include <exception>
 #include <string>
 
@@ -46,11 +47,19 @@ std::string refusal(const CLI::App* app, const CLI::Error& error) {
   return call + ": " + error.what() + "; '" + call + " --help' lists what there is\n";
 }
 
+// Whether the call computes: one that only tells (--version, help, list) has no threads, and need not begin twice.
+bool computes(int argc, char** argv) {
+  if (argc < 2 || argv[1][0] == '-') return false;
+  for (const char* tells : {"help", "completion", "man", "list"})
+    if (std::strcmp(argv[1], tells) == 0) return false;
+  return true;
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
   using namespace servodx;
-  sleep_while_waiting(argv);
+  if (computes(argc, argv)) sleep_while_waiting(argv);
   keep_freed_memory();
   CLI::App app("Fault diagnosis of electrohydraulic servovalves from rig logs", "servodx");
   app.set_version_flag("--version", version_line, "version, commit of the sources, instruction set in use");

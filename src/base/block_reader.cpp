@@ -4,6 +4,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
 
@@ -30,7 +31,14 @@ BlockReader::BlockReader(std::string path) : path_(std::move(path)) {
     refuse(path_, why);
   }
   if (S_ISREG(status.st_mode)) size_ = static_cast<std::size_t>(status.st_size);
-  reader_ = std::thread([this] { read_ahead(); });
+  // A file of one block is read at once: a thread takes longer to begin than that.
+  try {
+    const bool more = size_ == 0 || size_ >= block_size || read_block();
+    if (more) reader_ = std::thread([this] { read_ahead(); });
+  } catch (...) {
+    ::close(fd_);
+    throw;
+  }
 }
 
 BlockReader::~BlockReader() {
@@ -39,41 +47,41 @@ BlockReader::~BlockReader() {
     stop_ = true;
   }
   changed_.notify_all();
-  reader_.join();
+  if (reader_.joinable()) reader_.join();
   ::close(fd_);
+}
+
+bool BlockReader::read_block() {
+  std::string& block = block_[filled_ % blocks];
+  block.resize(size_ > 0 ? std::min(block_size, size_ + 1) : block_size);
+  std::size_t size = 0;
+  while (size < block.size()) {
+    const ssize_t got = ::read(fd_, block.data() + size, block.size() - size);
+    if (got < 0 && errno == EINTR) continue;
+    if (got < 0) refuse(path_, std::strerror(errno));
+    if (got == 0) break;
+    size += static_cast<std::size_t>(got);
+  }
+  const bool last = size < block.size();
+  block.resize(size);
+  hash_.add(block);
+  const std::lock_guard lock(mutex_);
+  ++filled_;
+  if (last) {
+    sha256_ = hash_.hex();
+    end_ = true;
+  }
+  changed_.notify_all();
+  return !last;
 }
 
 void BlockReader::read_ahead() {
   try {
-    Sha256 hash;
-    while (true) {
-      {
-        std::unique_lock lock(mutex_);
-        changed_.wait(lock, [&] { return stop_ || filled_ - taken_ < blocks; });
-        if (stop_) return;
-      }
-      std::string& block = block_[filled_ % blocks];
-      block.resize(block_size);
-      std::size_t size = 0;
-      while (size < block_size) {
-        const ssize_t got = ::read(fd_, block.data() + size, block_size - size);
-        if (got < 0 && errno == EINTR) continue;
-        if (got < 0) refuse(path_, std::strerror(errno));
-        if (got == 0) break;
-        size += static_cast<std::size_t>(got);
-      }
-      block.resize(size);
-      hash.add(block);
-      const std::lock_guard lock(mutex_);
-      ++filled_;
-      if (size < block_size) {
-        sha256_ = hash.hex();
-        end_ = true;
-        changed_.notify_all();
-        return;
-      }
-      changed_.notify_all();
-    }
+    do {
+      std::unique_lock lock(mutex_);
+      changed_.wait(lock, [&] { return stop_ || filled_ - taken_ < blocks; });
+      if (stop_) return;
+    } while (read_block());
   } catch (...) {
     const std::lock_guard lock(mutex_);
     error_ = std::current_exception();

@@ -1,5 +1,6 @@
 // A file in blocks of fixed size, read ahead by a second thread and hashed on the way: what a long log costs in memory
-// for its text is two blocks, and the hash costs no time where a second core is free.
+// for its text is two blocks, and the hash costs no time where a second core is free. A file of one block needs no
+// thread.
 #pragma once
 #include <condition_variable>
 #include <exception>
@@ -7,6 +8,8 @@
 #include <string>
 #include <string_view>
 #include <thread>
+
+#include "base/sha256.h"
 
 namespace servodx {
 
@@ -26,6 +29,7 @@ class BlockReader {
  private:
   static constexpr int blocks = 2;
   void read_ahead();
+  bool read_block();  // false: it was the last
 
   std::string path_;
   int fd_ = -1;
@@ -34,6 +38,7 @@ class BlockReader {
   std::size_t filled_ = 0, taken_ = 0;  // blocks read, and blocks given back
   bool end_ = false, given_ = false, stop_ = false;
   std::exception_ptr error_;
+  Sha256 hash_;
   std::string sha256_;
   std::mutex mutex_;
   std::condition_variable changed_;

@@ -12,6 +12,8 @@
 #include <new>
 #include <stdexcept>
 
+#include "base/call_filter.h"
+
 namespace servodx {
 namespace {
 
@@ -37,7 +39,8 @@ std::size_t mapped() {
   return pages * static_cast<std::size_t>(::sysconf(_SC_PAGESIZE));
 }
 
-void confine(const BoxLimits& limits) {
+// `fd` is all that is left of the parent's open files.
+void leave_the_parent(int fd) {
   ::prctl(PR_SET_PDEATHSIG, SIGKILL);
   // Sanitizers take a signal for a report; here it is an end like any other.
   for (const int signal : {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT, SIGXCPU, SIGPIPE, SIGINT, SIGTERM})
@@ -45,10 +48,18 @@ void confine(const BoxLimits& limits) {
   const int nowhere = ::open("/dev/null", O_WRONLY);
   ::dup2(nowhere, STDOUT_FILENO);
   ::dup2(nowhere, STDERR_FILENO);
+  const auto own = static_cast<unsigned>(fd);
+  if (own > STDERR_FILENO + 1) ::close_range(STDERR_FILENO + 1, own - 1, 0);
+  ::close_range(own + 1, ~0U, 0);
+}
+
+// Whether calls of the system are filtered; the rest holds everywhere.
+bool confine(const BoxLimits& limits, int fd) {
   limit(RLIMIT_CORE, 0);
   limit(RLIMIT_FSIZE, 0);
   limit(RLIMIT_CPU, limits.seconds);
   if (const std::size_t there = mapped()) limit(RLIMIT_AS, there + limits.memory);
+  return filter_calls(fd, limits.file);
 }
 
 void write_all(int fd, std::string_view bytes) {
@@ -61,9 +72,13 @@ void write_all(int fd, std::string_view bytes) {
 }
 
 // _exit: neither the parent's buffers nor its destructors are the child's to run.
-[[noreturn]] void run_child(int fd, const BoxLimits& limits, const std::function<void(const Box::Give&)>& work) {
-  confine(limits);
+[[noreturn]] void run_child(int fd, const BoxLimits& limits, const std::function<void(const Box::Give&)>& work,
+                            const std::function<void()>& prepare) {
+  leave_the_parent(fd);
   try {
+    prepare();
+    const char filters = confine(limits, fd) ? 1 : 0;
+    write_all(fd, {&filters, 1});
     work([fd](std::string_view bytes) { write_all(fd, bytes); });
   } catch (const std::bad_alloc&) {
     ::_exit(no_memory);
@@ -75,16 +90,19 @@ void write_all(int fd, std::string_view bytes) {
 
 }  // namespace
 
-Box::Box(const BoxLimits& limits, const std::function<void(const Give&)>& work) {
+Box::Box(const BoxLimits& limits, const std::function<void(const Give&)>& work, const std::function<void()>& prepare) {
   int ends[2];
   if (::pipe2(ends, O_CLOEXEC) != 0) throw std::runtime_error("no pipe can be made");
   child_ = ::fork();
-  if (child_ == 0) run_child(ends[1], limits, work);
+  if (child_ == 0) run_child(ends[1], limits, work, prepare);
   ::close(ends[1]);
   pipe_ = ends[0];
-  if (child_ > 0) return;
-  ::close(pipe_);
-  throw std::runtime_error("no process can be started");
+  if (child_ <= 0) {
+    ::close(pipe_);
+    throw std::runtime_error("no process can be started");
+  }
+  char filters = 0;
+  filters_calls_ = take(&filters, 1) && filters != 0;
 }
 
 Box::~Box() {
@@ -116,6 +134,7 @@ BoxEnd Box::end() {
   if (WIFEXITED(status) && WEXITSTATUS(status) == no_memory) return BoxEnd::out_of_memory;
   if (WIFSIGNALED(status) && WTERMSIG(status) == SIGXCPU) return BoxEnd::out_of_time;
   if (WIFSIGNALED(status) && WTERMSIG(status) == SIGKILL) return BoxEnd::out_of_memory;  // the kernel was short of it
+  if (WIFSIGNALED(status) && WTERMSIG(status) == SIGSYS) return BoxEnd::forbidden_call;
   return BoxEnd::crashed;
 }
 

@@ -32,4 +32,19 @@ Json json_or_discarded(const std::string& text) {
   return is_shallow_json(text) ? Json::parse(text, nullptr, false) : Json(Json::value_t::discarded);
 }
 
+// Whether it is an object whose `schema` is this number. (`value()` throws where the key is there with another type.)
+template <class Json>
+bool has_schema(const Json& json, int schema) {
+  if (!json.is_object()) return false;
+  const auto at = json.find("schema");
+  return at != json.end() && at->is_number_integer() && *at == schema;
+}
+
+// The text under a key of an object; empty where there is none, or something else.
+template <class Json>
+std::string text_or_empty(const Json& object, const char* key) {
+  const auto at = object.is_object() ? object.find(key) : object.end();
+  return object.is_object() && at != object.end() && at->is_string() ? at->template get<std::string>() : "";
+}
+
 }  // namespace servodx

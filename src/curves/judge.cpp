@@ -32,8 +32,9 @@ void judge(Sheet& sheet, const RigFile& rig, double guard) {
   }
   sheet.verdict = !any ? "not_judged" : all ? "pass" : "fail";
   for (const auto& [name, limit] : rig.limits)
-    if (std::none_of(sheet.figures.begin(), sheet.figures.end(),
-                     [&](const Figure& f) { return f.name == name && f.judgement != Judgement::not_judged; }))
+    if (std::none_of(sheet.figures.begin(), sheet.figures.end(), [&name = name](const Figure& f) {
+          return f.name == name && f.judgement != Judgement::not_judged;
+        }))
       sheet.notes.push_back("limit '" + name + "' is not judged: the log does not show the figure");
 }
 

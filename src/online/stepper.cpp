@@ -200,8 +200,8 @@ std::string Stepper::state() const {
 Stepper Stepper::resume(const Table& table, const Rig& rig, const std::string& state, const StepperOptions& options) {
   options.validate();
   const std::string mend = "begin anew, or give what it was saved with";
-  const auto json = nlohmann::json::parse(state, nullptr, false);
-  require(json.is_object() && json.value("schema", 0) == state_schema, "this is no state of a stepper", mend);
+  const auto json = json_or_discarded<nlohmann::json>(state);
+  require(has_schema(json, state_schema), "this is no state of a stepper", mend);
   try {
     StepperInputs first{.time = json.at("time"), .command = json.at("command")};
     for (const Series& series : optional_series) first.*series.from = json.value(series.name(), first.*series.from);

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "faults/gross_finding.h"
 #include "online/constants.h"
 #include "servodx/error.h"
 #include "servodx/log.h"
@@ -220,6 +221,18 @@ nlohmann::json Watcher::state() const {
   return out;
 }
 
+namespace {
+
+// Of a list that has so many; a file may hold any number.
+int position_in(const nlohmann::json& number, int count) {
+  const auto n = number.get<double>();
+  if (!(n >= 0 && n < count))
+    throw InputError({.file = "--state"}, "the state is damaged", "remove the state file and begin anew");
+  return static_cast<int>(n);
+}
+
+}  // namespace
+
 void Watcher::resume(const nlohmann::json& state) {
   try {
     std::vector<std::string> names;
@@ -237,9 +250,9 @@ void Watcher::resume(const nlohmann::json& state) {
     Alarm alarm;
     WatchEvent& e = alarm.event;
     e.number = a.at("number"), e.time = a.at("time"), e.told_at = a.at("told_at");
-    if (const int s = a.at("signal"); s >= 0) e.signal = static_cast<Signal>(s);
+    if (a.at("signal") != -1) e.signal = static_cast<Signal>(position_in(a.at("signal"), n_signals));
     e.window = a.at("window"), e.level = a.at("level"), e.limit = a.at("limit");
-    e.gross = static_cast<GrossFinding>(a.at("gross").get<int>());
+    e.gross = static_cast<GrossFinding>(position_in(a.at("gross"), 1 + static_cast<int>(GrossFinding::no_response)));
     e.supply = a.value("supply", false);
     e.onset = a.at("onset"), e.name = a.at("name");
     alarm.names_asked = a.at("names_asked"), alarm.window_given = a.at("window_given");

@@ -41,18 +41,6 @@ double misfit_at(const LogData& log, const Table& tuned, const ErrorModel& error
 
 }  // namespace
 
-const char* name_of(OilSource source) {
-  switch (source) {
-    case OilSource::given:
-      return "given";
-    case OilSource::estimated:
-      return "estimated";
-    case OilSource::assumed:
-      return "assumed";
-  }
-  return "";
-}
-
 OilTemperature estimate_temperature(const LogData& log, const Table& tuned, const RigFile& rig, int threads,
                                     long* simulations, const std::function<void(double part)>& told) {
   const ErrorModel error = error_model_of(tuned);

@@ -85,7 +85,7 @@ class Comparing {
     }
     const double error = std::hypot(number(a, "std_error"), number(b, "std_error"));
     const double sigmas = error > 0 ? (to - from) / error : std::nan("");
-    const std::string unit = a.value("unit", "");
+    const std::string unit = text_or_empty(a, "unit");
     to_.differences.push_back({name, handy(from, unit), handy(to, unit), relative_change(from, to), sigmas,
                                std::abs(sigmas) > certain_sigmas});
   }
@@ -141,9 +141,9 @@ void compare_conditions(const Json& a, const Json& b, Comparison& to) {
   const Json files_a = a.value("inputs", Json::array()), files_b = b.value("inputs", Json::array());
   const auto ia = by(files_a, "sha256"), ib = by(files_b, "sha256");
   for (const auto& [hash, file] : ia)
-    if (!ib.contains(hash)) to.conditions.push_back("input only of A: " + file->value("path", ""));
+    if (!ib.contains(hash)) to.conditions.push_back("input only of A: " + text_or_empty(*file, "path"));
   for (const auto& [hash, file] : ib)
-    if (!ia.contains(hash)) to.conditions.push_back("input only of B: " + file->value("path", ""));
+    if (!ia.contains(hash)) to.conditions.push_back("input only of B: " + text_or_empty(*file, "path"));
 }
 
 }  // namespace

@@ -2,12 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
 #include <map>
 
-#include "base/csv.h"
-#include "base/json_text.h"
-#include "base/key_error.h"
 #include "base/trouble.h"
 #include "curves/curves.h"
 #include "diagnose/assessment.h"
@@ -323,20 +319,6 @@ void add_confusion(Page& page, const std::vector<Diagnosis>& results, const std:
 }
 
 }  // namespace
-
-std::string truth_beside(const std::string& log, const std::string& sha256) {
-  const std::string path = log.substr(0, log.rfind('.')) + ".truth.json";
-  std::error_code ignored;
-  if (!std::filesystem::is_regular_file(path, ignored)) return "";
-  const Json truth = json_or_discarded<Json>(read_file(path));
-  const auto text = [&](const char* key) -> std::string {
-    if (!truth.is_object() || !truth.contains(key)) return "";
-    if (!truth[key].is_string())
-      throw key_error({path, 0, key}, "is not a text", "it stands beside a log of that name: mend it or move it away");
-    return truth[key].get<std::string>();
-  };
-  return text("sha256") == sha256 ? text("label") : "";
-}
 
 Page diagnose_page(const Header& header, const std::vector<Diagnosis>& results, const DetectionBaseline& baseline,
                    const std::vector<Replay>& replays, const std::vector<std::string>& truths,

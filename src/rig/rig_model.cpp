@@ -27,6 +27,8 @@ struct Word {
   const char* text;
   E value;
 };
+template <class E>
+Word(const char*, E) -> Word<E>;  // clang 14 does not make it for an aggregate
 constexpr std::array first_stages{Word{"flapper_nozzle", FirstStage::flapper_nozzle},
                                   Word{"jet_pipe", FirstStage::jet_pipe}};
 constexpr std::array wirings{Word{"series", CoilWiring::series}, Word{"parallel", CoilWiring::parallel},

@@ -145,7 +145,7 @@ long pass_lines_above_header(CsvCursor& csv, const std::string& path) {
   const Above above = look_ahead(csv);
   if (!above.numbers) return 0;
   const auto [separator, width] = *above.numbers;
-  const auto fits = [width](const std::vector<std::string>& cells) {
+  const auto fits = [width = width](const std::vector<std::string>& cells) {
     return cells.size() == width || (cells.size() == width + 1 && ends_with_comment(cells));
   };
   if (fits(csv.header()) || above.lines.empty()) return 0;

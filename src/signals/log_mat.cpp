@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <optional>
 #include <utility>
 
 #include "base/box.h"
@@ -16,6 +17,7 @@
 #include "signals/log_columns.h"
 #include "signals/log_formats.h"
 #include "signals/mat_file.h"
+#include "signals/matio_library.h"
 
 namespace servodx {
 namespace {
@@ -43,18 +45,36 @@ class MatChild {
     std::error_code unknown;
     const auto size = std::filesystem::file_size(path, unknown);
     limits_ = limits_for(unknown ? 0 : size);
+    limits_.file = path;
   }
   const std::string& sha256() const { return sha256_; }
+  bool filters_calls() const { return filters_calls_; }
 
   // `wants`: whose numbers are wanted; of the others comes the name alone.
   void read(const std::function<bool(const std::string& name)>& wants, const std::function<void(MatVariable&&)>& take) {
-    Box box(limits_, [&](const Box::Give& give) { give_all(wants, give); });
+    std::optional<InputError> unread;
+    Box box(
+        limits_, [&](const Box::Give& give) { unread ? give_refusal(*unread, give) : give_all(wants, give); },
+        [&] {
+          try {
+            load_matio(path_);
+          } catch (const InputError& error) {
+            unread = error;
+          }
+        });
+    filters_calls_ = box.filters_calls();
     for (std::uint64_t part = 0; box.take(&part, sizeof part);)
       if (!(part == static_cast<std::uint64_t>(Part::variable) ? take_variable(box, take) : refuse_as_told(box))) break;
     require_whole(box.end());
   }
 
  private:
+  static void give_refusal(const InputError& error, const Box::Give& give) {
+    give_number(give, static_cast<std::uint64_t>(Part::refusal));
+    give_text(give, error.rule);
+    give_text(give, error.mend);
+  }
+
   void give_all(const std::function<bool(const std::string& name)>& wants, const Box::Give& give) const {
     try {
       read_mat_file(path_, [&](const MatVariable& v) {
@@ -66,9 +86,7 @@ class MatChild {
         give({reinterpret_cast<const char*>(v.numbers.data()), bytes});
       });
     } catch (const InputError& error) {
-      give_number(give, static_cast<std::uint64_t>(Part::refusal));
-      give_text(give, error.rule);
-      give_text(give, error.mend);
+      give_refusal(error, give);
     }
   }
 
@@ -97,15 +115,17 @@ class MatChild {
   void require_whole(BoxEnd end) const {
     if (end == BoxEnd::whole) return;
     const std::string why =
-        end == BoxEnd::out_of_memory ? fmt::format("it asks for more than {} MB", limits_.memory >> 20)
-        : end == BoxEnd::out_of_time ? fmt::format("it takes more than {} s of processor", limits_.seconds)
-                                     : "the MAT library crashed on it";
+        end == BoxEnd::out_of_memory    ? fmt::format("it asks for more than {} MB", limits_.memory >> 20)
+        : end == BoxEnd::out_of_time    ? fmt::format("it takes more than {} s of processor", limits_.seconds)
+        : end == BoxEnd::forbidden_call ? "it makes the MAT library ask the system for what reading does not need"
+                                        : "the MAT library crashed on it";
     throw InputError({path_, 0, ""}, "is damaged: " + why, "save it again with MATLAB's 'save', or write a CSV log");
   }
 
   const std::string& path_;
   std::string sha256_;  // first, as it refuses what cannot be read
   BoxLimits limits_;
+  bool filters_calls_ = false;
 };
 
 }  // namespace
@@ -123,6 +143,10 @@ Log read_mat_log(const std::string& path, const RigFile& rig, const ReadOptions&
              });
   log.require_signals();
   log.append_columns({values.begin(), values.end()});
+  if (!child.filters_calls())
+    log.note(LogNote::Kind::implausible,
+             "the MAT library read this file without a filter of system calls, which this system refuses: its memory, "
+             "time and open files were limited; read files that you do not trust elsewhere");
   return log.finish(child.sha256());
 }
 

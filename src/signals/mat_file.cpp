@@ -1,7 +1,6 @@
 #include "signals/mat_file.h"
 
 #include <fmt/format.h>
-#include <matio.h>
 
 #include <algorithm>
 #include <bit>
@@ -14,6 +13,7 @@
 #include <utility>
 
 #include "base/error.h"
+#include "signals/matio_library.h"
 
 namespace servodx {
 namespace {
@@ -21,10 +21,10 @@ namespace {
 constexpr const char* save_again = "copy or save it again, or write a CSV log";
 
 struct CloseFile {
-  void operator()(mat_t* file) const { Mat_Close(file); }
+  void operator()(mat_t* file) const { matio().close(file); }
 };
 struct FreeVariable {
-  void operator()(matvar_t* variable) const { Mat_VarFree(variable); }
+  void operator()(matvar_t* variable) const { matio().free_variable(variable); }
 };
 using File = std::unique_ptr<mat_t, CloseFile>;
 using Variable = std::unique_ptr<matvar_t, FreeVariable>;
@@ -179,12 +179,14 @@ MatVariable variable_of(const std::string& name, const matvar_t& v) {
 // A text of matio's, of one byte or two a letter, in UTF-8; `step` letters apart.
 std::string text_of(const matvar_t& v, std::size_t first, std::size_t step, std::size_t letters) {
   std::string text;
+  if (!v.data || (v.data_size != 1 && v.data_size != 2)) return {};
+  const std::size_t there = v.nbytes / static_cast<std::size_t>(v.data_size);
   for (std::size_t k = 0, at = first; k < letters; ++k, at += step) {
     unsigned code = 0;
-    if (!v.data || (at + 1) * static_cast<std::size_t>(v.data_size) > v.nbytes) return {};
+    if (at >= there) return {};
     if (v.data_size == 1)
       code = static_cast<const unsigned char*>(v.data)[at];
-    else if (v.data_size == 2)
+    else
       code = static_cast<const std::uint16_t*>(v.data)[at];
     if (code < 0x80 || v.data_type == MAT_T_UTF8) {
       text += static_cast<char>(code);
@@ -201,12 +203,16 @@ std::string text_of(const matvar_t& v, std::size_t first, std::size_t step, std:
   return text;
 }
 
-// The texts of a cell array, or the rows of a matrix of letters; empty where it is neither.
+constexpr std::size_t most_columns = 100;  // of a matrix of signals; more is no log
+
+// The texts of a cell array, or the rows of a matrix of letters; empty where it is neither, or names more than a matrix
+// may have. (A matrix of a billion rows of no letters takes no byte of its file.)
 std::vector<std::string> texts_of(const matvar_t& v) {
   std::vector<std::string> texts;
-  if (v.class_type == MAT_C_CHAR && v.rank == 2) {
+  if (!v.dims || v.rank != 2 || v.dims[0] > most_columns || v.dims[1] > v.nbytes) return {};
+  if (v.class_type == MAT_C_CHAR) {
     for (std::size_t row = 0; row < v.dims[0]; ++row) texts.push_back(text_of(v, row, v.dims[0], v.dims[1]));
-  } else if (v.class_type == MAT_C_CELL && v.dims && v.data) {
+  } else if (v.class_type == MAT_C_CELL && v.data && count_of(v) <= v.nbytes / sizeof(matvar_t*)) {
     for (std::size_t k = 0; k < count_of(v); ++k) {
       const matvar_t* cell = static_cast<matvar_t* const*>(v.data)[k];
       if (!cell || cell->class_type != MAT_C_CHAR || !cell->dims || cell->rank < 1) return {};
@@ -251,7 +257,7 @@ class Matrices {
   }
 
  private:
-  static constexpr std::size_t most_columns = 100, fewest_samples = 20;  // else it is no log
+  static constexpr std::size_t fewest_samples = 20;  // else it is no log
   struct Matrix {
     std::string name;
     std::size_t rows, columns;
@@ -264,8 +270,9 @@ class Matrices {
 }  // namespace
 
 void read_mat_file(const std::string& path, const std::function<void(const MatVariable&)>& take) {
+  load_matio(path);
   const std::optional<long> expected = Parts(path).count();
-  const File file(Mat_Open(path.c_str(), MAT_ACC_RDONLY));
+  const File file(matio().open(path.c_str(), MAT_ACC_RDONLY));
   if (!file) throw InputError({path, 0, ""}, "is not a MAT file", "save it with MATLAB's 'save', or write a CSV log");
   Matrices matrices;
   const auto take_variable = [&](const std::string& name, const matvar_t& v) {
@@ -273,16 +280,16 @@ void read_mat_file(const std::string& path, const std::function<void(const MatVa
     take(variable_of(name, v));
   };
   long read = 0;
-  for (; Variable v{Mat_VarReadNext(file.get())}; ++read) {
+  for (; Variable v{matio().read_next(file.get())}; ++read) {
     const std::string name = v->name ? v->name : "";
     const bool one_deep = v->class_type == MAT_C_STRUCT && v->dims && v->rank > 0 && count_of(*v) == 1;
-    char* const* const names = one_deep ? Mat_VarGetStructFieldnames(v.get()) : nullptr;
+    char* const* const names = one_deep ? matio().field_names(v.get()) : nullptr;
     if (!names) {
       take_variable(name, *v);
       continue;
     }
-    for (unsigned k = 0; k < Mat_VarGetNumberOfFields(v.get()); ++k)
-      if (const matvar_t* field = Mat_VarGetStructFieldByIndex(v.get(), k, 0); field && names[k])
+    for (unsigned k = 0; k < matio().number_of_fields(v.get()); ++k)
+      if (const matvar_t* field = matio().field(v.get(), k, 0); field && names[k])
         take_variable(fmt::format("{}.{}", name, names[k]), *field);
   }
   if (expected && read < *expected)

@@ -14,7 +14,7 @@ struct MatVariable {
 
 // Gives every variable, in the file's order, and behind them the columns of matrices: by their names where a list of as
 // many texts is in the file too, else by their number. Throws InputError where the file's own sizes do not fit
-// it (it is cut off, or damaged) or a variable cannot be read.
+// it (it is cut off, or damaged), a variable cannot be read, or there is no libmatio.
 void read_mat_file(const std::string& path, const std::function<void(const MatVariable&)>& take);
 
 }  // namespace servodx

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace servodx {
 
@@ -30,9 +31,12 @@ void Sweep::take(std::span<const double> x, std::size_t from, std::size_t to) {
     off = stands_off > off ? stands_off : off;
     equal += step == 0.0 ? 1.0 : 0.0;
   }
-  low = lowest;
-  high = highest;
-  least_step = least;
+  // Reductions begin at infinity with g++ and at the largest double with clang: where nothing was found, it is
+  // infinity.
+  constexpr double most = std::numeric_limits<double>::max();
+  low = lowest < most ? lowest : infinite;
+  high = highest > -most ? highest : -infinite;
+  least_step = least < most ? least : infinite;
   largest_step = largest;
   lone = off;
   repeats += static_cast<std::size_t>(equal);

@@ -475,6 +475,16 @@ TEST(Compare, LongTextsAreCutAndRoundingIsNoDifference) {
   for (std::string line; std::getline(lines, line);) EXPECT_LT(line.size(), 160u) << line;
 }
 
+TEST(Compare, AUnitOrPathThatIsNoTextIsNone) {
+  const Desk desk;
+  desk.write("a.json", R"({"tool": "servodx", "command": "x", "inputs": [{"sha256": "1", "path": 7}],
+                           "row": {"estimate": 1, "std_error": 0.1, "unit": 5}})");
+  desk.write("b.json", R"({"tool": "servodx", "command": "x", "row": {"estimate": 2, "std_error": 0.1}})");
+  const Ended ended = desk.run("compare a.json b.json");
+  EXPECT_EQ(ended.code, 0) << ended.err;
+  EXPECT_NE(ended.out.find("row"), std::string::npos) << ended.out;
+}
+
 TEST(Compare, TellsWhatDiffersAndWhatDoesNot) {
   const Simulated desk;
   const Ended same = desk.run("compare sim.json sim.json");

@@ -32,7 +32,7 @@ def pages():
 def tree():
     """Paths of the files, and of their folders with a slash at the end."""
     top = ("src", "include", "apps", "bench", "tests", "scripts", "docs", "data", "params", "examples", "cmake",
-           "python", "third_party")
+           "python", "third_party", "fuzz")
     found = {path.relative_to(source.ROOT).as_posix() for folder in top for path in (source.ROOT / folder).rglob("*")
              if path.is_file() and "__pycache__" not in path.parts}
     found |= {path.name for path in source.ROOT.iterdir() if path.is_file()}

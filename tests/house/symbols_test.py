@@ -11,8 +11,8 @@ import collections, functools, re, sys, unittest
 
 import source
 
-ROOTS = ("include", "src", "tests", "bench", "apps/servodx")
-FOLDERS = ("include", "src", "apps", "bench", "tests", "examples")
+ROOTS = ("include", "src", "tests", "bench", "apps/servodx", "fuzz")
+FOLDERS = ("include", "src", "apps", "bench", "tests", "examples", "fuzz")
 
 # Files to be mended (or folders, with a slash at the end).
 LATER = ("src/diagnose/judge.h", "tests/diagnose/baseline_test.cpp", "tests/diagnose/decide_test.cpp",

@@ -69,8 +69,8 @@ if(DPKG_DEB AND SHLIBDEPS)
     endforeach()
     step(${DPKG_DEB} -x ${file} ${work}/${name})
   endfunction()
-  deb(servodx libc6 libfmt libmatio libgomp1 libnlopt libssl libsqlite3)
-  deb(libservodx-dev libceres-dev libeigen3-dev libfmt-dev libmatio-dev libnlopt-cxx-dev libsqlitecpp-dev libssl-dev
+  deb(servodx libc6 libfmt libmatio libgomp1 libnlopt libseccomp2 libssl libsqlite3)
+  deb(libservodx-dev libceres-dev libeigen3-dev libfmt-dev libmatio libnlopt-cxx-dev libseccomp-dev libsqlitecpp-dev libssl-dev
       libtomlplusplus-dev nlohmann-json3-dev pkg-config)
   step(${work}/servodx/usr/bin/servodx list faults)
   if(EXISTS ${BUILD}/python/servodx)

@@ -140,6 +140,7 @@ TEST(Stepper, AStateOfAnotherTableIsRefused) {
   other[other.find("spool_friction")].nominal *= 1.01;
   EXPECT_THROW(Stepper::resume(other, bench.rig, state, bench.options), InputError);
   EXPECT_THROW(Stepper::resume(bench.table, bench.rig, "{}", bench.options), InputError);
+  EXPECT_THROW(Stepper::resume(bench.table, bench.rig, R"({"schema": "one"})", bench.options), InputError);
   EXPECT_THROW(Stepper::resume(bench.table, bench.rig, state.substr(0, state.size() / 2), bench.options), InputError);
 }
 

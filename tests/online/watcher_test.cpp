@@ -116,6 +116,25 @@ TEST(Watcher, ASavedStateGivesTheEventsThatWouldHaveBeen) {
   EXPECT_THROW(other.resume(nlohmann::json::object()), InputError);
 }
 
+TEST(Watcher, AStateWithASignalOrFindingThatThereIsNotIsRefused) {
+  const auto samples = twin::samples(3, {"feedback_wire_lost", 0.0, 2.0});
+  Watcher first(twin::model(), limits(false), twin::recorded());
+  std::vector<WatchEvent> events;
+  nlohmann::json state;
+  for (std::size_t i = 0; i < samples.size() && (!state.is_object() || state["alarm"].is_null()); ++i) {
+    first.take(samples[i], events);
+    if (i > 1990) state = first.state();
+  }
+  ASSERT_TRUE(state["alarm"].is_object());
+  for (const char* key : {"signal", "gross"})
+    for (const double wrong : {-7.0, 1000.0, 1e300}) {
+      nlohmann::json damaged = state;
+      damaged["alarm"][key] = wrong;
+      Watcher watcher(twin::model(), limits(false), twin::recorded());
+      EXPECT_THROW(watcher.resume(damaged), InputError) << key << " " << wrong;
+    }
+}
+
 // A record that needs no model: the twin's own run does not know of it.
 std::vector<Sample> with_supply(std::vector<Sample> samples, double from, double to, double at) {
   for (Sample& s : samples) s[Signal::supply_pressure] = s.time < at ? from : to;

@@ -136,6 +136,23 @@ TEST(Mat, AMatrixIsItsColumnsByNameOrByNumber) {
   EXPECT_EQ(bare[Signal::command][1], -2e-3);
 }
 
+TEST(Mat, ABillionRowsOfNoLettersAreNoListOfNamesAndCostNothing) {
+  const TemporaryFolder folder;
+  const std::string path = folder / "log.mat";
+  mat_t* file = Mat_CreateVer(path.c_str(), nullptr, MAT_FT_MAT5);
+  std::size_t shape[2] = {std::size_t{1} << 30, 0};
+  matvar_t* list = Mat_VarCreate("names", MAT_C_CHAR, MAT_T_UINT8, 2, shape, nullptr, 0);
+  Mat_VarWrite(file, list, MAT_COMPRESSION_NONE);
+  Mat_VarFree(list);
+  for (const auto& [name, x] : plain()) {
+    matvar_t* v = column(name, x);
+    Mat_VarWrite(file, v, MAT_COMPRESSION_NONE);
+    Mat_VarFree(v);
+  }
+  Mat_Close(file);
+  EXPECT_EQ(read_log(path, rig_of(folder)).samples(), 30u);
+}
+
 TEST(Mat, MissingSamplesAreCountedAndLeftOut) {
   const TemporaryFolder folder;
   Vectors v = plain(40);

@@ -1,0 +1,19 @@
+// Two results beside each other, parted by a byte of zero.
+#include "report/compare.h"
+
+#include "harness.h"
+#include "report/json.h"
+
+namespace servodx::fuzz {
+
+void read(std::string_view input) {
+  const InputFolder folder;
+  const std::size_t part = input.find('\0');
+  const std::string a = folder.write("a.json", input.substr(0, part));
+  const std::string b = part == std::string_view::npos ? a : folder.write("b.json", input.substr(part + 1));
+  const report::Comparison all = report::compare(a, b);
+  report::text_of(all);
+  report::compare_json(all).dump();
+}
+
+}  // namespace servodx::fuzz
