@@ -202,6 +202,7 @@ Json to_json(const HypothesisResult& h) {
           {"misfit", number(h.misfit)},
           {"gain", number(h.gain)},
           {"adequacy", number(h.adequacy)},
+          {"motion_left", number(h.motion_left)},
           {"severity",
            {{"value", number(h.severity)},
             {"lower", number(h.severity_lower)},
@@ -296,6 +297,12 @@ Json pairs_json(const Diagnosis& d) {
   return out;
 }
 
+Json to_json(const Reading& r) {
+  Json signals = Json::array();
+  for (const Signal s : r.of) signals.push_back(std::string(name_of(s)));
+  return {{"reason", word_of(r.kind)}, {"signals", signals}, {"factor", number(r.factor)}, {"left", number(r.left)}};
+}
+
 Json to_json(const Diagnosis& d) {
   Json probabilities = Json::object();
   for (const auto& [label, p] : labelled_probabilities(d)) probabilities[label] = number(p);
@@ -327,6 +334,8 @@ Json to_json(const Diagnosis& d) {
           {"action", d.action.text},
           {"gross", words_of(d.assessment.gross)},
           {"unjudgeable", words_of(d.assessment.unjudgeable)},
+          {"reason", reason_of(d)},
+          {"reading", d.assessment.reading ? to_json(*d.assessment.reading) : Json(nullptr)},
           {"hypothesis_told", label_of(d.nearest)},
           {"test", test_json(d.assessment.test)},
           {"operating_point", conditions_json(d.conditions)},
