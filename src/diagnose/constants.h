@@ -89,10 +89,12 @@ inline constexpr double misread_leaves = 0.25;  // of the motion, at most
 inline constexpr double misread_beside = 0.5;   // of what the best hypothesis leaves of the log as it was read
 // Whether anything moves as the log does (diagnose/decide.cpp), part of the motion left.
 inline constexpr double unrelated_leaves = 0.5;  // half: two motions without anything in common leave 1
-inline constexpr double others_follow = 0.5;     // of the sensors that are not broken
-inline constexpr double lag_step = 2e-3;         // [s] a spool's lag is some
-inline constexpr double longest_lag = 0.5;       // [s] two recorders without a common trigger
-inline constexpr double worth_a_lag = 10e-3;     // [s] a valve that is slow by less is known as slow
+inline constexpr double moves_by_itself = 0.25;  // of the log's motion and health's: less is a valve that hardly moves
+inline constexpr double no_better_than_still = 0.9;  // of what a constant leaves
+inline constexpr double others_follow = 0.5;         // of the sensors that are not broken
+inline constexpr double lag_step = 2e-3;             // [s] a spool's lag is some
+inline constexpr double longest_lag = 0.5;           // [s] two recorders without a common trigger
+inline constexpr double worth_a_lag = 10e-3;         // [s] a valve that is slow by less is known as slow
 
 // The records (diagnose/records.cpp, record_law.cpp). Chosen by what such parts do; the shipped logs hold neither a
 // supply that sags nor a coil current, so that halving and doubling them changes nothing there.

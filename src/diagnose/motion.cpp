@@ -83,9 +83,12 @@ std::vector<MotionLeft> motion_left(const LogData& log, const Trajectory& health
     const std::vector<double> would = moves(time, from_on(healthy.signals[at], from));
     const std::vector<double> does = moves(time, from_on(simulated.signals[at], from));
     const double noise = square_of_noise(c, time.size(), measured.size());
-    const double all = square_of(measured) + square_of(would) - noise;
+    const double own = square_of(measured), all = own + square_of(would) - noise;
     if (all < k::beyond_noise * noise || !(all > 0)) continue;
-    out.push_back({c.signal, std::max(0.0, square_of(difference(measured, does)) - noise) / all});
+    const double still = std::max(0.0, own - noise) / all;
+    const double part = std::max(0.0, square_of(difference(measured, does)) - noise) / all;
+    const bool says_nothing = still > k::moves_by_itself && part > k::no_better_than_still * still;
+    out.push_back({c.signal, says_nothing ? std::max(1.0, part) : part});
   }
   return out;
 }

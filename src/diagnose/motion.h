@@ -3,7 +3,8 @@
 //
 // A part that is left is of the motion measured and of the motion that a healthy valve would show, together: 0 where
 // the simulation moves as the log does, about 1 where the two have nothing in common, 2 where they are opposite. A
-// valve that hardly moves though it should leaves little to a simulation that hardly moves either.
+// valve that hardly moves though it should leaves little to a simulation that hardly moves either. Where the log does
+// move, a simulation that leaves as much of a channel as a constant would has said nothing of it, and leaves all.
 #pragma once
 #include <vector>
 

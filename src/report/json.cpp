@@ -297,7 +297,10 @@ Json pairs_json(const Diagnosis& d) {
   return out;
 }
 
-Json to_json(const Reading& r) {
+// Of a log that was read wrongly, and of no other: any has a reading that leaves least.
+Json reading_json(const Diagnosis& d) {
+  if (d.doubt != Doubt::misread || !d.assessment.reading) return nullptr;
+  const Reading& r = *d.assessment.reading;
   Json signals = Json::array();
   for (const Signal s : r.of) signals.push_back(std::string(name_of(s)));
   return {{"reason", word_of(r.kind)}, {"signals", signals}, {"factor", number(r.factor)}, {"left", number(r.left)}};
@@ -335,7 +338,7 @@ Json to_json(const Diagnosis& d) {
           {"gross", words_of(d.assessment.gross)},
           {"unjudgeable", words_of(d.assessment.unjudgeable)},
           {"reason", reason_of(d)},
-          {"reading", d.assessment.reading ? to_json(*d.assessment.reading) : Json(nullptr)},
+          {"reading", reading_json(d)},
           {"hypothesis_told", label_of(d.nearest)},
           {"test", test_json(d.assessment.test)},
           {"operating_point", conditions_json(d.conditions)},

@@ -139,6 +139,9 @@ TEST(Judgeable, NotWherePressuresAreInNoOrder) {
   for (double& p : channel(negative, Signal::pressure_b).measured) p = -p;
   EXPECT_EQ(look(negative), Unjudgeable::pressures_out_of_order);
   std::fill(dead.scenario.supply_pressure.begin(), dead.scenario.supply_pressure.end(), 1e5);
+  EXPECT_EQ(look(dead), Unjudgeable::no) << "the chambers hardly move";
+  const double first = channel(dead, Signal::pressure_a).measured.front();
+  for (double& p : channel(dead, Signal::pressure_a).measured) p = first + 5 * (p - first);
   EXPECT_EQ(look(dead), Unjudgeable::pressures_out_of_order) << "the chambers move";
   for (const Signal s : {Signal::pressure_a, Signal::pressure_b})
     std::fill(channel(dead, s).measured.begin(), channel(dead, s).measured.end(), 9e6);
