@@ -129,11 +129,12 @@ bool explains(const std::optional<ReadingEvidence>& reading) {
   return reading && reading->motion_left <= k::misread_leaves;
 }
 
-// What the valve or a sensor is accused of must leave more of the log than the mistake does, by far.
-bool is_misread(const Evidence& e) {
+// What the verdict would be of must leave more of the log than the mistake does, by far.
+bool is_misread(const Decision& valve, const Evidence& e) {
   if (!explains(e.reading)) return false;
   if (e.reading->of_a_sensor && !e.records.empty() && e.records.front().broken) return false;
-  return e.reading->motion_left < k::misread_beside * least_left(e);
+  const double told = valve.beside ? least_left(e) : e.hypotheses[valve.hypothesis].motion_left;
+  return e.reading->motion_left < k::misread_beside * told;
 }
 
 // A spool on its stops, or at rest, is seen without a simulation.
@@ -154,8 +155,8 @@ Decision unknown_for(Doubt why, const Evidence& e) {
 Decision decide(const Evidence& e) {
   if (e.unjudgeable != Unjudgeable::no)
     return unknown_for(explains(e.reading) ? Doubt::misread : Doubt::unjudgeable, e);
-  if (is_misread(e)) return unknown_for(Doubt::misread, e);
   Decision valve = decide_on_valve(e);
+  if (is_misread(valve, e)) return unknown_for(Doubt::misread, e);
   if (!e.records.empty() && e.records.front().broken && e.others_left <= k::others_follow) {
     valve.verdict = VerdictKind::unknown;  // no fault of the valve stands beside it
     return name_by_record(std::move(valve), 0);

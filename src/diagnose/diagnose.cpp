@@ -225,10 +225,11 @@ void look_at_motion(const LogData& data, const ParameterVector& base, int thread
   }
 }
 
-double least_left(const Assessment& a) {
-  double least = 1;
-  for (const HypothesisResult& h : a.hypotheses) least = std::min(least, h.motion_left);
-  return least;
+// Of the motion, by the hypothesis that fits best.
+double left_by_best(const Assessment& a) {
+  return std::min_element(a.hypotheses.begin(), a.hypotheses.end(),
+                          [](const auto& x, const auto& y) { return x.misfit < y.misfit; })
+      ->motion_left;
 }
 
 Unjudgeable unjudgeable_of(const Ready& ready, const ParameterVector& base, const OperatingPoint& point) {
@@ -289,7 +290,7 @@ Assessment assess_pool(const std::vector<Log>& logs, const Table& tuned, const R
     out.misfit_scale = scale_of(fits);
     out.pairs = pairs_of(fits);
     look_at_motion(first, base, options.threads, out);
-    if (logs.size() == 1 && least_left(out) > k::worth_reading)
+    if (logs.size() == 1 && left_by_best(out) > k::worth_reading)
       out.reading = best_reading(logs.front(), Unjudgeable::no, trial);
   }
   out.simulations = work.simulations, out.failed_simulations = work.failed;

@@ -20,6 +20,7 @@
 #include "report/handy.h"
 #include "report/row_verdict_word.h"
 #include "report/tune_words.h"
+#include "servodx/log.h"
 #include "servodx/tune.h"
 
 namespace servodx::report {

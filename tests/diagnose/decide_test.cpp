@@ -342,6 +342,8 @@ TEST(Decide, AMistakeAboutTheLogGoesBeforeAFaultThatLeavesMore) {
   e.reading = {.motion_left = 0.02};
   EXPECT_EQ(decide(e).verdict, VerdictKind::unknown);
   EXPECT_EQ(decide(e).doubt, Doubt::misread);
+  e.hypotheses[other].motion_left = 0.03;
+  EXPECT_EQ(decide(e).doubt, Doubt::misread) << "what is not named explains nothing";
   e.hypotheses[one].motion_left = 0.03;
   EXPECT_EQ(decide(e).verdict, VerdictKind::fault) << "the fault explains the log as it was read";
   e.hypotheses[one].motion_left = 0.9, e.reading->motion_left = 0.4;

@@ -9,6 +9,7 @@
 
 #include "base/random.h"
 #include "diagnose/decide.h"
+#include "evidence/operating_point.h"
 #include "faults/record.h"
 #include "faults/registry.h"
 #include "fit/log_data.h"

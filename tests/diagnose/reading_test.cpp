@@ -8,10 +8,14 @@
 #include <vector>
 
 #include "diagnose/constants.h"
+#include "diagnose/judgeable.h"
 #include "diagnose/motion.h"
 #include "diagnose/whitening.h"
+#include "fit/error_model.h"
 #include "fit/log_data.h"
 #include "servodx/log.h"
+#include "servodx/rig.h"
+#include "servodx/table.h"
 #include "shipped_data.h"
 #include "simulate/scenario.h"
 
