@@ -8,6 +8,7 @@
 #include "diagnose/hypotheses.h"
 #include "diagnose/judgeable.h"
 #include "diagnose/moved.h"
+#include "diagnose/reading.h"
 #include "diagnose/records.h"
 #include "diagnose/visible.h"
 #include "evidence/conditions.h"
@@ -33,6 +34,7 @@ struct HypothesisResult {
   double null = 0;                   // [fraction of rated]
   std::vector<double> shapes = {};   // of the fault, in its order
   std::vector<MovedRow> moved = {};  // the fault's rows first
+  double motion_left = 0;            // of the log's motion (diagnose/motion.h)
 };
 
 // A second fault beside a first.
@@ -61,12 +63,14 @@ struct Assessment {
   std::vector<ChannelResult> channels;       // replay under health: rms beside noise
   GrossFinding gross = GrossFinding::none;
   Unjudgeable unjudgeable = Unjudgeable::no;       // of several logs, of the first that is
+  std::optional<Reading> reading;                  // of one log: what would leave least of its motion, read so
   std::optional<double> onset;                     // [s] change point where one stands out
   std::vector<HypothesisPrediction> explanations;  // of each hypothesis that could be fitted
   TestConditions test;
   OperatingPoint point = {}, sheet = {};  // where the first log was recorded; what the rig file says
   std::vector<RecordFigure> figures;      // of the records alone
   std::vector<BrokenSensor> broken;
+  double others_left = 0;  // of the motion of the sensors that are not broken, by the tuned valve
   bool current_recorded = false;
   std::vector<std::string> notes;
   long simulations = 0, failed_simulations = 0;

@@ -5,6 +5,7 @@
 // adequacies of the stored results, so only numbers that act after the fits are examined; those that act in a fit say
 // "not examined". "None" means: of 24 logs no verdict, no fault named and no ambiguity changes.
 #pragma once
+#include <array>
 #include <cstddef>
 
 #include "base/normal.h"
@@ -71,6 +72,29 @@ inline constexpr double no_memory = 0.3;        // correlation of neighbours; a 
 inline constexpr double large_noise = 0.05;     // of stop, stroke and supply: no sensor is so noisy
 inline constexpr double pressure_beyond = 2.0;  // of the supply, half of the time: a load may intensify it for a while
 inline constexpr double travel_beyond = 2.0;    // of the stops' travel, a tenth of the time: no gain is so wrong
+inline constexpr double order_margin = 0.02;    // of the supply: class of two pressure sensors
+inline constexpr double out_of_order_part = 0.5;      // of the samples: cavitation and overshoot last moments
+inline constexpr std::size_t jump_samples = 5;        // before and after: a spike is no jump
+inline constexpr double jump_noise = 12.0;            // rms: two extremes of noise lie no further apart
+inline constexpr std::size_t handful_of_values = 16;  // 4 bits; a 12-bit sensor shows 200 on a twentieth of its range
+
+// Whether a log was read wrongly (diagnose/reading.cpp). The factors are those between units in use; a log's numbers
+// are multiplied by them.
+inline constexpr std::array time_factors = {1e-3, 1e3, 1.0 / 60, 60.0, 0.5, 2.0};           // ms, minutes; another rate
+inline constexpr std::array drive_factors = {1e-3, 1e3, 1e-2, 1e2};                         // mA, A; per cent
+inline constexpr std::array length_factors = {1 / 25.4, 25.4, 0.1, 10.0, 1e-3, 1e3};        // inch, cm, m beside mm
+inline constexpr std::array pressure_factors = {0.0689476, 14.5038, 0.1, 10.0, 1e-2, 1e2};  // psi, MPa, kPa beside bar
+inline constexpr double worth_reading = 0.05;   // of the motion left by the best fit: less needs no other reading
+inline constexpr double misread_leaves = 0.25;  // of the motion, at most
+inline constexpr double misread_beside = 0.5;   // of what the hypothesis leaves that the verdict would tell
+// Whether anything moves as the log does (diagnose/decide.cpp), part of the motion left.
+inline constexpr double unrelated_leaves = 0.5;  // half: two motions without anything in common leave 1
+inline constexpr double moves_by_itself = 0.25;  // of the log's motion and health's: less is a valve that hardly moves
+inline constexpr double no_better_than_still = 0.9;  // of what a constant leaves
+inline constexpr double others_follow = 0.5;         // of the sensors that are not broken
+inline constexpr double lag_step = 2e-3;             // [s] a spool's lag is some
+inline constexpr double longest_lag = 0.5;           // [s] two recorders without a common trigger
+inline constexpr double worth_a_lag = 10e-3;         // [s] a valve that is slow by less is known as slow
 
 // The records (diagnose/records.cpp, record_law.cpp). Chosen by what such parts do; the shipped logs hold neither a
 // supply that sags nor a coil current, so that halving and doubling them changes nothing there.
@@ -92,12 +116,15 @@ inline constexpr double moves_as_elsewhere = 0.3;  // of the range over the whol
 inline constexpr double beyond_noise = 10.0;       // rms: a motion that no noise hides
 inline constexpr double follows = 0.7;             // correlation of sensor and simulation
 inline constexpr double swapped_leaves = 0.25;     // of the square of the chambers' moves; rig B: 0.04, others over 1
-inline constexpr double spread_of_level = 0.02;    // a relief valve is set to some per cent
-inline constexpr double spread_of_step = 0.015;    // the flow's share of it is taken out to about this
-inline constexpr double spread_of_left = 0.05;     // tests draw unlike flows
-inline constexpr double spread_of_driver = 0.01;   // class of a shunt and of an amplifier
-inline constexpr double spread_of_residue = 0.5;   // what a 20 ms mean leaves of the lag hangs on the test
-inline constexpr double spread_of_noise = 0.3;     // its estimate, on tests that move unlike
+inline constexpr double clipped_part = 0.05;       // of the samples at the limit
+inline constexpr double clipped_beyond = 0.1;      // of the range: by so much the simulation goes on
+inline constexpr double clipped_while_beyond = 0.5;  // of the samples at the limit
+inline constexpr double spread_of_level = 0.02;      // a relief valve is set to some per cent
+inline constexpr double spread_of_step = 0.015;      // the flow's share of it is taken out to about this
+inline constexpr double spread_of_left = 0.05;       // tests draw unlike flows
+inline constexpr double spread_of_driver = 0.01;     // class of a shunt and of an amplifier
+inline constexpr double spread_of_residue = 0.5;     // what a 20 ms mean leaves of the lag hangs on the test
+inline constexpr double spread_of_noise = 0.3;       // its estimate, on tests that move unlike
 
 // The onset (diagnose/onset.cpp). Not examined: each trial refits parts of a log.
 inline constexpr std::size_t shortest_part = 200;   // samples on either side of a change

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <optional>
 
 #include "diagnose/constants.h"
@@ -56,8 +57,9 @@ Decision name_fitted(Decision d, std::size_t fault) {
   return d;
 }
 
-Decision name_nothing(Decision d, std::size_t nearest) {
+Decision name_nothing(Decision d, std::size_t nearest, Doubt why) {
   d.verdict = VerdictKind::unknown;
+  d.doubt = why;
   d.hypothesis = nearest;
   std::fill(d.probabilities.begin(), d.probabilities.end(), 0.0);
   return d;
@@ -97,12 +99,13 @@ Decision decide_on_valve(const Evidence& e) {
   const HypothesisEvidence& h = e.hypotheses[best];
   if (h.fault && e.gain > e.threshold && explains_enough(h, e.hypotheses.front().adequacy, e.usual_adequacy))
     return name_fitted(std::move(d), best);
-  return name_nothing(std::move(d), best);
+  return name_nothing(std::move(d), best, Doubt::no_fault);
 }
 
 Decision name_by_record(Decision valve, std::size_t record) {
   valve.valve_too = valve.verdict == VerdictKind::fault;
   valve.verdict = VerdictKind::fault;
+  valve.doubt = Doubt::none;
   valve.record = record;
   valve.suspected.reset();
   valve.severity = SeveritySource::record;
@@ -116,26 +119,59 @@ bool leaves_the_rest_as_health(const Decision& valve, const Evidence& e) {
   return valve.verdict != VerdictKind::unknown || explains_enough(health, health.adequacy, e.usual_adequacy);
 }
 
+double least_left(const Evidence& e) {
+  double least = 1;
+  for (const HypothesisEvidence& h : e.hypotheses) least = std::min(least, h.motion_left);
+  return least;
+}
+
+bool explains(const std::optional<ReadingEvidence>& reading) {
+  return reading && reading->motion_left <= k::misread_leaves;
+}
+
+// What the verdict would be of must leave more of the log than the mistake does, by far.
+bool is_misread(const Decision& valve, const Evidence& e) {
+  if (!explains(e.reading)) return false;
+  if (e.reading->of_a_sensor && !e.records.empty() && e.records.front().broken) return false;
+  const double told = valve.beside ? least_left(e) : e.hypotheses[valve.hypothesis].motion_left;
+  return e.reading->motion_left < k::misread_beside * told;
+}
+
+// A spool on its stops, or at rest, is seen without a simulation.
+bool is_unrelated(const Decision& valve, const Evidence& e) {
+  if (valve.severity == SeveritySource::seen_outright || e.gross != GrossFinding::none) return false;
+  const bool alone = valve.verdict == VerdictKind::fault && !valve.beside;
+  return (alone ? e.hypotheses[valve.hypothesis].motion_left : least_left(e)) > k::unrelated_leaves;
+}
+
+Decision unknown_for(Doubt why, const Evidence& e) {
+  Decision none;
+  none.probabilities.resize(e.hypotheses.size());
+  return name_nothing(std::move(none), most_probable(e.hypotheses), why);
+}
+
 }  // namespace
 
 Decision decide(const Evidence& e) {
-  if (e.unjudgeable != Unjudgeable::no) {
-    Decision none;
-    none.probabilities.resize(e.hypotheses.size());
-    return name_nothing(std::move(none), most_probable(e.hypotheses));
-  }
+  if (e.unjudgeable != Unjudgeable::no)
+    return unknown_for(explains(e.reading) ? Doubt::misread : Doubt::unjudgeable, e);
   Decision valve = decide_on_valve(e);
-  if (e.records.empty()) return valve;
-  const RecordEvidence& first = e.records.front();
-  if (first.broken) {
+  if (is_misread(valve, e)) return unknown_for(Doubt::misread, e);
+  if (!e.records.empty() && e.records.front().broken && e.others_left <= k::others_follow) {
     valve.verdict = VerdictKind::unknown;  // no fault of the valve stands beside it
     return name_by_record(std::move(valve), 0);
   }
+  if (is_unrelated(valve, e)) return unknown_for(Doubt::unrelated, e);
   if (valve.severity == SeveritySource::seen_outright) return valve;
-  for (std::size_t i = 0; i < e.records.size(); ++i)
-    if (e.records[i].of != Record::sensor)
-      return leaves_the_rest_as_health(valve, e) ? name_by_record(std::move(valve), i) : valve;
-  return valve.verdict == VerdictKind::fault ? valve : name_by_record(std::move(valve), 0);
+  const auto record = std::find_if(e.records.begin(), e.records.end(),
+                                   [](const RecordEvidence& r) { return !r.broken && r.of != Record::sensor; });
+  if (record != e.records.end())
+    return leaves_the_rest_as_health(valve, e)
+               ? name_by_record(std::move(valve), static_cast<std::size_t>(record - e.records.begin()))
+               : valve;
+  const bool noisy = !e.records.empty() && !e.records.front().broken;
+  const bool names_a_sensor = noisy && valve.verdict != VerdictKind::fault;
+  return names_a_sensor ? name_by_record(std::move(valve), 0) : valve;
 }
 
 }  // namespace servodx

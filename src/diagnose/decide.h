@@ -1,7 +1,9 @@
 // The rules of the verdict: evidence in, decision out. No fit, no log, no registry.
 //
 //   nothing to judge                 unknown, with the reason
-//   broken sensor                    that sensor
+//   a mistake explains the log       unknown, with the mistake: as it was read no hypothesis leaves nearly as little
+//   nothing moves as the log does    unknown
+//   broken sensor                    that sensor, where the others move as the valve would
 //   unusual supply or driver         that, and beside it the fault of the valve that the rules below name. Not where a
 //                                    finding names that outright: such a valve draws what no healthy one draws. Nor
 //                                    where it leaves the log unlike health and no fault explains that
@@ -25,12 +27,22 @@ namespace servodx {
 
 enum class VerdictKind { healthy, fault, unknown };
 
+// Why a log is unknown.
+enum class Doubt {
+  none,         // it is not
+  unjudgeable,  // there is nothing to judge
+  misread,      // a healthy valve leaves less of it, read otherwise, than any hypothesis as it was read
+  unrelated,    // no hypothesis moves as the log does
+  no_fault,     // it is unlike health, and nothing in the list explains it well enough
+};
+
 struct HypothesisEvidence {
   const Fault* fault = nullptr;  // null: healthy
   double probability = 0;        // beside the other hypotheses
   double adequacy = 0;           // whitened rms of the worst channel; 1 as on the tuning logs
   bool at_worst = false;         // its size stands at the far end of the range
   double gain = 0;               // of likelihood over health
+  double motion_left = 0;        // of what moves in the log (diagnose/motion.h)
 };
 
 // The best pair of faults.
@@ -47,6 +59,12 @@ struct RecordEvidence {
   bool broken = false;  // a sensor that does what no healthy one does: what the fits say of such a log is worth nothing
 };
 
+// The log, read as it would be were one mistake made about it.
+struct ReadingEvidence {
+  double motion_left = 1;
+  bool of_a_sensor = false;  // the mistake is what a broken sensor shows as well: a sign, two columns
+};
+
 struct Evidence {
   double error = 0, threshold = 0;  // deviates from health
   double gain = 0;                  // of these, what the best fault explains: a name needs evidence of its own
@@ -56,12 +74,15 @@ struct Evidence {
   std::vector<HypothesisEvidence> hypotheses;  // healthy first; at least that one
   std::optional<PairEvidence> pair = {};
   std::vector<RecordEvidence> records = {};  // the surest first
+  std::optional<ReadingEvidence> reading = {};
+  double others_left = 0;  // of the motion of the sensors that are not broken, by the tuned valve
 };
 
 enum class SeveritySource { none, fit, seen_outright, record };
 
 struct Decision {
   VerdictKind verdict = VerdictKind::healthy;
+  Doubt doubt = Doubt::none;
   std::size_t hypothesis = 0;          // the one named; of an unknown state the most probable; else health
   std::vector<double> probabilities;   // of each hypothesis; all 0 of an unknown state
   std::vector<std::size_t> ambiguous;  // hypotheses that cannot be ruled out beside the fault named

@@ -9,8 +9,10 @@
 #include "diagnose/gross.h"
 #include "diagnose/hypotheses.h"
 #include "diagnose/judgeable.h"
+#include "diagnose/motion.h"
 #include "diagnose/moved.h"
 #include "diagnose/onset.h"
+#include "diagnose/reading.h"
 #include "diagnose/records.h"
 #include "diagnose/visible.h"
 #include "diagnose/whitening.h"
@@ -209,7 +211,30 @@ Ready make_ready(const std::vector<Log>& logs, const Table& tuned, const RigFile
   return ready;
 }
 
-Unjudgeable unjudgeable_of(const Ready& ready, const ParameterVector& base) {
+// What each hypothesis leaves of what moves, in the part of the log that it speaks of.
+void look_at_motion(const LogData& data, const ParameterVector& base, int threads, Assessment& out) {
+  const Trajectory healthy = reference_of(data, base, threads);
+  std::vector<MotionLeft> left = motion_left(data, healthy, healthy);
+  std::erase_if(left, [&](const MotionLeft& m) {
+    return std::any_of(out.broken.begin(), out.broken.end(), [&](const auto& b) { return b.signal == m.signal; });
+  });
+  out.others_left = mean_left(left, 0);
+  for (const HypothesisPrediction& e : out.explanations) {
+    const double part = mean_left(motion_left(data, healthy, reference_of(data, e.candidate, threads), e.from), 0);
+    for (HypothesisResult& h : out.hypotheses)
+      if (h.fault == e.fault) h.motion_left = part;
+  }
+}
+
+// Of the motion, by the hypothesis that fits best.
+double left_by_best(const Assessment& a) {
+  return std::min_element(a.hypotheses.begin(), a.hypotheses.end(),
+                          [](const auto& x, const auto& y) { return x.misfit < y.misfit; })
+      ->motion_left;
+}
+
+Unjudgeable unjudgeable_of(const Ready& ready, const ParameterVector& base, const OperatingPoint& point) {
+  if (const Unjudgeable why = unjudgeable(point); why != Unjudgeable::no) return why;
   for (const LogData& data : ready.data)
     if (const Unjudgeable why = unjudgeable(data, base); why != Unjudgeable::no) return why;
   return Unjudgeable::no;
@@ -241,9 +266,11 @@ Assessment assess_pool(const std::vector<Log>& logs, const Table& tuned, const R
   const Ready ready = make_ready(logs, tuned, rig, error, out);
   const ParameterVector base = candidate_of(tuned);
   const HypothesisSettings settings = settings_of(rig, options);
-  out.unjudgeable = unjudgeable_of(ready, base);
+  const ReadingTrial trial{tuned, rig, error, options.threads};
+  out.unjudgeable = unjudgeable_of(ready, base, out.point);
   if (out.unjudgeable != Unjudgeable::no) {
     out.hypotheses.push_back(not_fitted());
+    if (logs.size() == 1) out.reading = best_reading(logs.front(), out.unjudgeable, trial);
     return out;
   }
 
@@ -266,6 +293,9 @@ Assessment assess_pool(const std::vector<Log>& logs, const Table& tuned, const R
     out.hypotheses = results_of(fits, base, tuned);
     out.misfit_scale = scale_of(fits);
     out.pairs = pairs_of(fits);
+    look_at_motion(first, base, options.threads, out);
+    if (logs.size() == 1 && left_by_best(out) > k::worth_reading)
+      out.reading = best_reading(logs.front(), Unjudgeable::no, trial);
   }
   out.simulations = work.simulations, out.failed_simulations = work.failed;
   return out;

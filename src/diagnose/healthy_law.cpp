@@ -57,6 +57,8 @@ HealthyLaw::HealthyLaw(const DetectionBaseline& b, const SuspectLog* suspect)
   for (const DetectionBaseline::Score& s : b.scores) adequacies_.push_back(s.adequacy);
   const double by_law = std::sqrt(gains_.excess_at(rate()));
   limit_ = std::max(by_law, rank_promise(ranked, asked_).threshold);
+  // A baseline of one or two logs of such tests: as wrong as on the tuning logs is 1 by definition.
+  while (adequacies_.size() < fewest_logs) adequacies_.push_back(1.0);
   const Deviate one = deviate_of(1, adequacies_, {k::adequacy_spread, k::usual_logs});
   constexpr double sides = 2;  // the quantile's tail has two, an adequacy's one
   const double worst_of = suspect ? static_cast<double>(suspect->logs) : 1.0;

@@ -119,6 +119,13 @@ std::vector<Detectable> detectable_of(const Assessment& a, const FaultGains& usu
   return out;
 }
 
+// One sensor's sign, or the two chambers': a broken sensor is found by them as well.
+bool shows_a_broken_sensor(const Reading& r) {
+  const auto is_chamber = [](Signal s) { return s == Signal::pressure_a || s == Signal::pressure_b; };
+  if (r.kind == Misreading::turned) return r.of.size() == 1 && r.of.front() != Signal::command;
+  return r.kind == Misreading::exchanged && std::all_of(r.of.begin(), r.of.end(), is_chamber);
+}
+
 // What no log parts from the fault named that does not record the current.
 bool has_twin(const Diagnosis& d) {
   if (!d.fault || !d.fault->twin) return false;
@@ -155,7 +162,9 @@ Evidence evidence_of(const Assessment& a, const DetectionBaseline& baseline, con
   e.gross = a.gross;
   e.unjudgeable = a.unjudgeable;
   for (const HypothesisResult& h : a.hypotheses)
-    e.hypotheses.push_back({h.fault, h.probability, h.adequacy, h.at_worst, h.gain});
+    e.hypotheses.push_back({h.fault, h.probability, h.adequacy, h.at_worst, h.gain, h.motion_left});
+  e.others_left = a.others_left;
+  if (a.reading) e.reading = {a.reading->left, shows_a_broken_sensor(*a.reading)};
   if (!a.pairs.empty()) e.pair = pair_of(a.pairs.front(), a, usual, baseline.adequacy_limit);
   for (const RecordFinding& f : records) e.records.push_back({*f.fault->told_by, f.broken.has_value()});
   return e;
@@ -171,7 +180,7 @@ Diagnosis judge(Assessment a, const DetectionBaseline& whole) {
   const Decision decision = decide(evidence);
   Diagnosis d;
   d.log = a.log;
-  d.verdict = decision.verdict;
+  d.verdict = decision.verdict, d.doubt = decision.doubt;
   d.error = evidence.error, d.threshold = evidence.threshold;
   d.p_value = p_value_of(evidence.error, baseline, law);
   d.baseline_logs = law.logs();

@@ -45,6 +45,7 @@ struct BeyondFaults {
 struct Diagnosis {
   std::string log;
   VerdictKind verdict = VerdictKind::healthy;
+  Doubt doubt = Doubt::none;
   double error = 0, threshold = 0, p_value = 1;
   int baseline_logs = 0;
   // Set where no log of the baseline is of a test like this one: the nearest. The threshold was set by other tests.

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "diagnose/constants.h"
+#include "model/state.h"
 #include "parameters/list.h"
 #include "servodx/log.h"
 #include "servodx/rig.h"
@@ -73,7 +74,19 @@ bool is_beyond_travel(const FitChannel& c, const ParameterVector& base) {
   return quantile(std::move(travel), 0.9) > k::travel_beyond * base[row::spool_stop];
 }
 
+const FitChannel* channel_of(const LogData& log, Signal signal) {
+  for (const FitChannel& c : log.channels)
+    if (c.signal == signal) return &c;
+  return nullptr;
+}
+
 bool is_noise(const FitChannel& c) { return memory_of(c.measured) < k::no_memory; }
+
+// Something asks it to.
+bool spool_moves(const LogData& log, const ParameterVector& base) {
+  const FitChannel* spool = channel_of(log, Signal::spool_position);
+  return spool && is_large(*spool, base) && !is_noise(*spool);
+}
 
 bool is_pressure_of_chamber(Signal s) { return s == Signal::pressure_a || s == Signal::pressure_b; }
 
@@ -84,17 +97,120 @@ bool all_channels(const LogData& log, const Holds& holds) {
   return !log.channels.empty() && std::all_of(log.channels.begin(), log.channels.end(), holds);
 }
 
+bool commands_something(const Scenario& in) { return span_of(in.command) > k::nothing_asked * in.rated_current; }
+
 // A command asks something of a valve; a supply or a load that moves does only where a sensor answers it.
 bool asked_of(const LogData& log, const ParameterVector& base) {
   const Scenario& in = log.scenario;
-  if (span_of(in.command) > k::nothing_asked * in.rated_current) return true;
+  if (commands_something(in)) return true;
   const double pressure = base[row::supply_pressure];
   const bool driven =
       drives(in.supply_pressure, pressure) || drives(in.load_force, pressure * base[row::piston_area_a]);
   return driven && !all_channels(log, is_noise);
 }
 
+// Part of the samples in which a pressure lies below another, by more than two sensors err.
+double part_below(const std::vector<double>& upper, const std::vector<double>& lower, double margin) {
+  std::size_t below = 0, all = 0;
+  for (std::size_t i = 0; i < std::min(upper.size(), lower.size()); ++i) {
+    if (!std::isfinite(upper[i]) || !std::isfinite(lower[i])) continue;
+    ++all;
+    below += upper[i] < lower[i] - margin;
+  }
+  return all ? static_cast<double>(below) / static_cast<double>(all) : 0;
+}
+
+// A chamber lies between return and supply but for moments. One that is shut in may be above a supply that is off; it
+// does not move then.
+bool out_of_order(const LogData& log, const ParameterVector& base) {
+  const Scenario& in = log.scenario;
+  const double margin = k::order_margin * base[row::supply_pressure];
+  const auto most = [&](const std::vector<double>& upper, const std::vector<double>& lower) {
+    return part_below(upper, lower, margin) > k::out_of_order_part;
+  };
+  if (most(in.supply_pressure, in.return_pressure)) return true;
+  return std::any_of(log.channels.begin(), log.channels.end(), [&](const FitChannel& c) {
+    if (!is_pressure_of_chamber(c.signal)) return false;
+    return most(c.measured, in.return_pressure) || (is_large(c, base) && most(in.supply_pressure, c.measured));
+  });
+}
+
+// The flow through the valve's widest opening under twice the supply moves no piston so far in one step. Before and
+// after a jump the piston is where several samples say.
+bool jumps(const LogData& log, const ParameterVector& base) {
+  const FitChannel* piston = channel_of(log, Signal::piston_position);
+  if (!piston) return false;
+  const std::vector<double>&t = log.scenario.time, &x = piston->measured;
+  const double area = std::min(base[row::piston_area_a], base[row::piston_area_b]);
+  const double fastest = base[row::port_width] * base[row::spool_stop] *
+                         std::sqrt(2 * base[row::supply_pressure] / log.scenario.oil.density) / area;
+  const auto about = [&](std::size_t from) {
+    return quantile(
+        present({x.begin() + static_cast<long>(from), x.begin() + static_cast<long>(from + k::jump_samples)}), 0.5);
+  };
+  for (std::size_t i = k::jump_samples; i + k::jump_samples <= x.size(); ++i) {
+    const double least = k::jump_noise * piston->noise;
+    if (!(std::abs(x[i] - x[i - 1]) > least + fastest * (t[i] - t[i - 1]))) continue;
+    const double took = t[i + k::jump_samples - 1] - t[i - k::jump_samples];
+    if (std::abs(about(i) - about(i - k::jump_samples)) > least + fastest * took) return true;
+  }
+  return false;
+}
+
+bool are_one(const FitChannel& a, const FitChannel& b) {
+  std::size_t same = 0;
+  for (std::size_t i = 0; i < a.measured.size(); ++i) same += a.measured[i] == b.measured[i];
+  return static_cast<double>(same) >= k::still_part * static_cast<double>(a.measured.size());
+}
+
+bool holds_a_copy(const LogData& log) {
+  for (std::size_t i = 0; i < log.channels.size(); ++i)
+    for (std::size_t j = i + 1; j < log.channels.size(); ++j)
+      if (!shows_one_value(log.channels[i]) && are_one(log.channels[i], log.channels[j])) return true;
+  return false;
+}
+
+bool is_coarse(const FitChannel& c) {
+  std::vector<double> seen;
+  for (const double x : c.measured) {
+    if (!std::isfinite(x) || std::find(seen.begin(), seen.end(), x) != seen.end()) continue;
+    seen.push_back(x);
+    if (seen.size() > k::handful_of_values) return false;
+  }
+  return true;
+}
+
+bool all_moving_are_coarse(const LogData& log, const ParameterVector& base) {
+  std::size_t moving = 0;
+  for (const FitChannel& c : log.channels) {
+    if (!is_large(c, base)) continue;
+    if (!is_coarse(c)) return false;
+    ++moving;
+  }
+  return moving > 0;
+}
+
+// What no row of a valve's log is.
+Unjudgeable unjudgeable_channels(const LogData& log, const ParameterVector& base) {
+  const Scenario& in = log.scenario;
+  const double highest = std::max(base[row::supply_pressure], quantile(present(in.supply_pressure), 0.99));
+  for (const FitChannel& c : log.channels) {
+    if (is_pressure_of_chamber(c.signal) && quantile(present(c.measured), 0.5) > k::pressure_beyond * highest)
+      return Unjudgeable::pressure_beyond_supply;
+    if (is_beyond_travel(c, base)) return Unjudgeable::position_beyond_travel;
+  }
+  if (out_of_order(log, base)) return Unjudgeable::pressures_out_of_order;
+  if (all_moving_are_coarse(log, base)) return Unjudgeable::coarse;
+  if (holds_a_copy(log)) return Unjudgeable::copied;
+  return jumps(log, base) ? Unjudgeable::rows_jump : Unjudgeable::no;
+}
+
 }  // namespace
+
+Unjudgeable unjudgeable(const OperatingPoint& point) {
+  const auto& oil = point[static_cast<std::size_t>(Condition::oil)];
+  return oil && (*oil < coldest_oil || *oil > hottest_oil) ? Unjudgeable::oil_beyond : Unjudgeable::no;
+}
 
 Unjudgeable unjudgeable(const LogData& log, const ParameterVector& base) {
   const Scenario& in = log.scenario;
@@ -106,18 +222,13 @@ Unjudgeable unjudgeable(const LogData& log, const ParameterVector& base) {
   for (const double i : in.command) size.push_back(std::abs(i));
   if (quantile(std::move(size), 0.5) > k::command_beyond * in.rated_current) return Unjudgeable::command_too_large;
   if (!asked_of(log, base)) return Unjudgeable::nothing_asked;
+  if (!commands_something(in) && spool_moves(log, base)) return Unjudgeable::command_missing;
   if (all_channels(log, shows_one_value)) return Unjudgeable::sensors_still;
   // A jammed valve leaves its sensors' noise beside a command that knows its last sample.
   const bool shuffled = memory_of(in.command) < k::no_memory;
   if (all_channels(log, [&](const FitChannel& c) { return is_noise(c) && (shuffled || is_large(c, base)); }))
     return Unjudgeable::noise_alone;
-  const double highest = std::max(base[row::supply_pressure], quantile(present(in.supply_pressure), 0.99));
-  for (const FitChannel& c : log.channels) {
-    if (is_pressure_of_chamber(c.signal) && quantile(present(c.measured), 0.5) > k::pressure_beyond * highest)
-      return Unjudgeable::pressure_beyond_supply;
-    if (is_beyond_travel(c, base)) return Unjudgeable::position_beyond_travel;
-  }
-  return Unjudgeable::no;
+  return unjudgeable_channels(log, base);
 }
 
 }  // namespace servodx

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "diagnose/constants.h"
+#include "diagnose/motion.h"
 #include "parameters/list.h"
 
 namespace servodx {
@@ -14,25 +15,6 @@ namespace {
 namespace k = diagnose_constants;
 
 constexpr double none = std::numeric_limits<double>::quiet_NaN();
-
-// Means over blocks of time: what rings or lags within a block averages out.
-struct Blocks {
-  std::vector<double> time, value;
-};
-Blocks means_of(const std::vector<double>& time, const std::vector<double>& x, bool of_size) {
-  Blocks out;
-  const double length = std::max(k::block, (time.back() - time.front()) / k::most_blocks);
-  for (std::size_t from = 0; from < time.size();) {
-    double sum = 0;
-    std::size_t to = from, n = 0;
-    for (; to < time.size() && time[to] < time[from] + length; ++to)
-      if (std::isfinite(x[to])) sum += of_size ? std::abs(x[to]) : x[to], ++n;
-    out.time.push_back(time[from]);
-    out.value.push_back(n > 0 ? sum / static_cast<double>(n) : none);
-    from = to;
-  }
-  return out;
-}
 
 double range_of(const std::vector<double>& x, std::size_t from, std::size_t to) {
   double low = HUGE_VAL, high = -HUGE_VAL;
@@ -167,23 +149,6 @@ void add_driver(const Log& log, const LogData& data, std::vector<RecordFigure>& 
   out.push_back({FigureKind::driver_left, Signal::coil_current, std::max(k::least_residue, whole.left / whole.drive)});
 }
 
-double correlation(const std::vector<double>& a, const std::vector<double>& b) {
-  double n = 0, sa = 0, sb = 0, aa = 0, ab = 0, bb = 0;
-  for (std::size_t i = 0; i < std::min(a.size(), b.size()); ++i)
-    if (std::isfinite(a[i]) && std::isfinite(b[i]))
-      ++n, sa += a[i], sb += b[i], aa += a[i] * a[i], ab += a[i] * b[i], bb += b[i] * b[i];
-  const double va = aa - sa * sa / n, vb = bb - sb * sb / n;
-  return va > 0 && vb > 0 ? (ab - sa * sb / n) / std::sqrt(va * vb) : 0.0;
-}
-
-// Means over blocks of time, less the one ahead: a piston that drifts elsewhere still moves with its simulation.
-std::vector<double> moves(const std::vector<double>& time, const std::vector<double>& x) {
-  const Blocks blocks = means_of(time, x, false);
-  std::vector<double> out;
-  for (std::size_t i = 1; i < blocks.value.size(); ++i) out.push_back(blocks.value[i] - blocks.value[i - 1]);
-  return out;
-}
-
 struct Run {
   std::size_t from = 0, to = 0;
 };
@@ -207,6 +172,29 @@ bool is_frozen(const FitChannel& c, const LogData& data, const std::vector<doubl
   const double would = range_of(simulated, still.from, still.to);
   return asked > k::moves_as_elsewhere * range_of(data.scenario.command, 0, n) && would > k::beyond_noise * c.noise &&
          would > k::moves_as_elsewhere * range_of(simulated, 0, n);
+}
+
+// At its lowest or highest value, again and again, where the simulation goes far beyond. A spool at its stop is where
+// the simulation's stops as well; a piston drifts, and says nothing here.
+bool is_clipped(const FitChannel& c, const std::vector<double>& simulated) {
+  if (c.signal == Signal::piston_position) return false;
+  const auto [low, high] = std::minmax_element(c.measured.begin(), c.measured.end(), [](double a, double b) {
+    return std::isfinite(a) && (!std::isfinite(b) || a < b);
+  });
+  const double least = k::clipped_beyond * range_of(c.measured, 0, c.measured.size());
+  std::size_t beyond = 0, at_limit = 0;
+  for (std::size_t from = 0; from < c.measured.size();) {
+    std::size_t to = from + 1;
+    while (to < c.measured.size() && c.measured[to] == c.measured[from]) ++to;
+    const double at = c.measured[from];
+    for (std::size_t i = from; i < to && to - from >= k::survey_of_log::clipped_run; ++i) {
+      at_limit += at == *low || at == *high;
+      beyond += (at == *high && simulated[i] > at + least) || (at == *low && simulated[i] < at - least);
+    }
+    from = to;
+  }
+  const auto part = [](std::size_t n, std::size_t of) { return static_cast<double>(n) / static_cast<double>(of); };
+  return part(at_limit, c.measured.size()) > k::clipped_part && part(beyond, at_limit) > k::clipped_while_beyond;
 }
 
 struct Followed {
@@ -275,12 +263,16 @@ std::vector<BrokenSensor> broken_sensors(const LogData& data, const Trajectory& 
       out.push_back({SensorFinding::frozen, f.channel->signal});
     else if (swapped && is_port(f))
       out.push_back({SensorFinding::swapped_ports, f.channel->signal});
+    else if (f.own > k::follows && is_clipped(*f.channel, *f.simulated))
+      out.push_back({SensorFinding::clipped, f.channel->signal});
     else if (f.own < -k::follows)
       out.push_back({SensorFinding::turned, f.channel->signal}), ++against;
   }
   // Two that move against the simulation at once: the command's sign, or the rig file's, and no sensor.
   if (against + swapped > 1)
-    std::erase_if(out, [](const BrokenSensor& b) { return b.finding != SensorFinding::frozen; });
+    std::erase_if(out, [](const BrokenSensor& b) {
+      return b.finding == SensorFinding::turned || b.finding == SensorFinding::swapped_ports;
+    });
   return out;
 }
 

@@ -42,6 +42,7 @@ enum class SensorFinding {
   frozen,         // it shows one value while the command moves and the simulation's sensor would
   turned,         // it moves against the simulation
   swapped_ports,  // each pressure follows the other's simulation
+  clipped,        // it stays at one limit while the simulation goes on
 };
 struct BrokenSensor {
   SensorFinding finding = SensorFinding::frozen;

@@ -134,8 +134,7 @@ Verdict diagnose_pool(const std::vector<Log>& logs, const Tuned& tuned, const Ri
   if (options.watch.stopped()) return interrupted_verdict(assessment);
   Diagnosis d = judge(std::move(assessment), parts_of(baseline).detection);
   set_beside_tuning(d.conditions, tuning_points(parts_of(baseline).detection, tuned.table));
-  const bool judged = d.assessment.unjudgeable == Unjudgeable::no;
-  const bool asks = judged && d.verdict == VerdictKind::unknown && options.explain_unknown;
+  const bool asks = d.doubt == Doubt::no_fault && options.explain_unknown;
   if (asks && !parts_of(baseline).causes)
     d.assessment.notes.push_back("the baseline says nothing of causes, so explain was not asked what stands first");
   else if (asks) {

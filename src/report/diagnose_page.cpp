@@ -54,8 +54,8 @@ std::string headline(const Diagnosis& d) {
     return file_name(d.log) + (d.suspicion ? " cannot be told from the fault-free logs"
                                : d.unlike  ? " is like the fault-free logs, though of another test"
                                            : " is like the fault-free logs");
-  if (d.assessment.unjudgeable != Unjudgeable::no)
-    return file_name(d.log) + " cannot be judged: " + words_of(d.assessment.unjudgeable);
+  if (d.doubt == Doubt::unjudgeable || d.doubt == Doubt::misread || d.doubt == Doubt::unrelated)
+    return file_name(d.log) + " cannot be judged: " + words_of_doubt(d);
   if (d.verdict == VerdictKind::unknown) return file_name(d.log) + " is not healthy, and no known fault explains it";
   const std::string size = size_words(d);
   return words(label_of(d.fault) + of_channel(d)) + (size.empty() ? "" : ", " + size);

@@ -95,6 +95,113 @@ std::string words_of(GrossFinding finding) {
   return "";
 }
 
+std::string word_of(Misreading kind) {
+  switch (kind) {
+    case Misreading::time_scale:
+      return "time_scale";
+    case Misreading::reversed:
+      return "reversed";
+    case Misreading::late:
+      return "late";
+    case Misreading::turned:
+      return "turned";
+    case Misreading::unit:
+      return "unit";
+    case Misreading::exchanged:
+      return "exchanged";
+  }
+  return "";
+}
+
+std::string word_of(Unjudgeable reason) {
+  switch (reason) {
+    case Unjudgeable::no:
+      return "";
+    case Unjudgeable::nothing_asked:
+      return "nothing_asked";
+    case Unjudgeable::sensors_still:
+      return "sensors_still";
+    case Unjudgeable::command_missing:
+      return "command_missing";
+    case Unjudgeable::noise_alone:
+      return "noise_alone";
+    case Unjudgeable::command_too_large:
+      return "command_too_large";
+    case Unjudgeable::pressure_beyond_supply:
+      return "pressure_beyond_supply";
+    case Unjudgeable::position_beyond_travel:
+      return "position_beyond_travel";
+    case Unjudgeable::too_short:
+      return "too_short";
+    case Unjudgeable::pressures_out_of_order:
+      return "pressures_out_of_order";
+    case Unjudgeable::rows_jump:
+      return "rows_jump";
+    case Unjudgeable::copied:
+      return "copied";
+    case Unjudgeable::coarse:
+      return "coarse";
+    case Unjudgeable::oil_beyond:
+      return "oil_beyond";
+  }
+  return "";
+}
+
+std::string reason_of(const Diagnosis& d) {
+  switch (d.doubt) {
+    case Doubt::none:
+      return "";
+    case Doubt::unjudgeable:
+      return word_of(d.assessment.unjudgeable);
+    case Doubt::misread:
+      return d.assessment.reading ? word_of(d.assessment.reading->kind) : "";
+    case Doubt::unrelated:
+      return "unrelated";
+    case Doubt::no_fault:
+      return "no_fault_explains";
+  }
+  return "";
+}
+
+std::string words_of(const Reading& r) {
+  std::vector<std::string> of;
+  for (const Signal s : r.of) of.push_back("'" + std::string(name_of(s)) + "'");
+  const std::string names = join(of), by = digits(r.factor, 4);
+  switch (r.kind) {
+    case Misreading::time_scale:
+      return "with its time times " + by + ": look at the unit of time and the rate";
+    case Misreading::reversed:
+      return "with its rows the other way round, the last first";
+    case Misreading::late:
+      return fmt::format("with its sensors {} s {}: look at the recorders' clocks and triggers",
+                         digits(std::abs(r.factor), 3), r.factor > 0 ? "earlier" : "later");
+    case Misreading::turned:
+      return "with the sign of " + names + " turned: look at the wiring and at the gain in the rig file";
+    case Misreading::unit:
+      return "with " + names + " times " + by + ": look at the unit and at the gain in the rig file";
+    case Misreading::exchanged:
+      return "with the columns of " + names + " exchanged: look at the plugs and at the names of the columns";
+  }
+  return "";
+}
+
+std::string words_of_doubt(const Diagnosis& d) {
+  switch (d.doubt) {
+    case Doubt::none:
+      return "";
+    case Doubt::unjudgeable:
+      return words_of(d.assessment.unjudgeable);
+    case Doubt::misread:
+      return "it would be a healthy valve's " + (d.assessment.reading ? words_of(*d.assessment.reading) : "");
+    case Doubt::unrelated:
+      return "nothing that the valve could do moves as this log does: another test's, another valve's, or columns of "
+             "something else";
+    case Doubt::no_fault:
+      return "not like the fault-free logs, and no known fault explains it";
+  }
+  return "";
+}
+
 std::string words_of(Unjudgeable reason) {
   switch (reason) {
     case Unjudgeable::no:
@@ -111,6 +218,18 @@ std::string words_of(Unjudgeable reason) {
       return "the chambers are far above the supply: look at the pressures' units";
     case Unjudgeable::position_beyond_travel:
       return "spool or piston is far beyond its stops: look at the column's signal, unit and gain";
+    case Unjudgeable::command_missing:
+      return "the spool moves while the command stands still: look at the command's column and unit";
+    case Unjudgeable::pressures_out_of_order:
+      return "the pressures are not in the order return, chambers, supply: look at their columns, units and signs";
+    case Unjudgeable::rows_jump:
+      return "the piston is elsewhere from one row to the next: two records in one file, or rows out of order";
+    case Unjudgeable::copied:
+      return "two channels show the same values: one signal was recorded twice";
+    case Unjudgeable::coarse:
+      return "every channel that moves shows only a handful of values: look at the recorder's range and bits";
+    case Unjudgeable::oil_beyond:
+      return "no oil bears the temperature: look at its column and unit";
     case Unjudgeable::too_short:
       return "the log is shorter, or sampled more slowly, than a valve answers: look at the unit of time";
   }
@@ -253,6 +372,8 @@ std::string record_in_words(const RecordFinding& f) {
         return sensor + " shows one value while the command moves: its sensor or its cable";
       case SensorFinding::turned:
         return sensor + " moves against the simulation: its sign";
+      case SensorFinding::clipped:
+        return sensor + " stays at one limit while the simulation goes beyond: its range, or the recorder's";
       case SensorFinding::swapped_ports:
         return sensor + " follows the other port's simulation: the two are swapped";
     }

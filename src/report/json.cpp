@@ -20,6 +20,7 @@
 #include "report/handy.h"
 #include "report/row_verdict_word.h"
 #include "report/tune_words.h"
+#include "servodx/log.h"
 #include "servodx/tune.h"
 
 namespace servodx::report {
@@ -202,6 +203,7 @@ Json to_json(const HypothesisResult& h) {
           {"misfit", number(h.misfit)},
           {"gain", number(h.gain)},
           {"adequacy", number(h.adequacy)},
+          {"motion_left", number(h.motion_left)},
           {"severity",
            {{"value", number(h.severity)},
             {"lower", number(h.severity_lower)},
@@ -296,6 +298,15 @@ Json pairs_json(const Diagnosis& d) {
   return out;
 }
 
+// Of a log that was read wrongly, and of no other: any has a reading that leaves least.
+Json reading_json(const Diagnosis& d) {
+  if (d.doubt != Doubt::misread || !d.assessment.reading) return nullptr;
+  const Reading& r = *d.assessment.reading;
+  Json signals = Json::array();
+  for (const Signal s : r.of) signals.push_back(std::string(name_of(s)));
+  return {{"reason", word_of(r.kind)}, {"signals", signals}, {"factor", number(r.factor)}, {"left", number(r.left)}};
+}
+
 Json to_json(const Diagnosis& d) {
   Json probabilities = Json::object();
   for (const auto& [label, p] : labelled_probabilities(d)) probabilities[label] = number(p);
@@ -327,6 +338,8 @@ Json to_json(const Diagnosis& d) {
           {"action", d.action.text},
           {"gross", words_of(d.assessment.gross)},
           {"unjudgeable", words_of(d.assessment.unjudgeable)},
+          {"reason", reason_of(d)},
+          {"reading", reading_json(d)},
           {"hypothesis_told", label_of(d.nearest)},
           {"test", test_json(d.assessment.test)},
           {"operating_point", conditions_json(d.conditions)},

@@ -178,12 +178,12 @@ std::string text_of(const Diagnosis& d, const TextOptions& options) {
   if (d.assessment.unjudgeable != Unjudgeable::no) {
     table.row({"action", d.action.text});
     for (const std::string& call : next_calls(d, options.call)) table.row({"next", call});
-    return first + ": " + words_of(d.assessment.unjudgeable) + "\n" + table.text();
+    return first + ": " + words_of_doubt(d) + "\n" + table.text();
   }
-  if (d.verdict == VerdictKind::unknown) first += ": not like the fault-free logs, and no known fault explains it";
+  if (const std::string why = words_of_doubt(d); !why.empty()) first += ": " + why;
 
   const auto [word, hypotheses] = standing(d);
-  table.row({word, hypotheses});
+  if (d.doubt == Doubt::none || d.doubt == Doubt::no_fault) table.row({word, hypotheses});
   table.row({"error", fmt::format("{}, threshold {}; {}", digits(d.error), digits(d.threshold), chance_words(d))});
   if (d.beyond) table.row({"but", beyond_in_words(*d.beyond)});
   if (d.unlike) table.row({"beware", unlike_words(d) + mark_of(Trouble::unlike_test)});

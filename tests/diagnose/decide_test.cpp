@@ -323,6 +323,61 @@ TEST(Decide, ABrokenSensorIsNamedAlone) {
   EXPECT_FALSE(d.valve_too);
 }
 
+TEST(Decide, ABrokenSensorIsNotNamedWhereTheOthersDoNotMoveAsTheValveWould) {
+  Evidence e = first_fault();
+  e.records = {{Record::sensor, true}};
+  e.others_left = 0.9;
+  EXPECT_FALSE(decide(e).record);
+  e.error = e.gain = 90;
+  for (HypothesisEvidence& h : e.hypotheses) h.adequacy = 50;
+  EXPECT_EQ(decide(e).verdict, VerdictKind::unknown) << "nor as a noisy one";
+}
+
+// A fault over 99 %, and a reading of the log under which a healthy valve leaves a twentieth of it.
+TEST(Decide, AMistakeAboutTheLogGoesBeforeAFaultThatLeavesMore) {
+  Evidence e = first_fault();
+  for (HypothesisEvidence& h : e.hypotheses) h.motion_left = 0.4;
+  EXPECT_EQ(decide(e).verdict, VerdictKind::fault);
+  EXPECT_EQ(decide(e).doubt, Doubt::none);
+  e.reading = {.motion_left = 0.02};
+  EXPECT_EQ(decide(e).verdict, VerdictKind::unknown);
+  EXPECT_EQ(decide(e).doubt, Doubt::misread);
+  e.hypotheses[other].motion_left = 0.03;
+  EXPECT_EQ(decide(e).doubt, Doubt::misread) << "what is not named explains nothing";
+  e.hypotheses[one].motion_left = 0.03;
+  EXPECT_EQ(decide(e).verdict, VerdictKind::fault) << "the fault explains the log as it was read";
+  e.hypotheses[one].motion_left = 0.9, e.reading->motion_left = 0.4;
+  EXPECT_NE(decide(e).doubt, Doubt::misread) << "no reading explains it";
+}
+
+TEST(Decide, AMistakeAboutTheLogGoesBeforeHealthAndARecord) {
+  Evidence e = first_fault();
+  for (HypothesisEvidence& h : e.hypotheses) h.motion_left = 0.4;
+  e.error = e.gain = 1;
+  EXPECT_EQ(decide(e).verdict, VerdictKind::healthy);
+  e.records = {{Record::sensor, true}};
+  e.reading = {.motion_left = 0.02, .of_a_sensor = true};
+  EXPECT_EQ(decide(e).record, 0u) << "the same, said of the sensor";
+  e.reading->of_a_sensor = false;
+  EXPECT_EQ(decide(e).doubt, Doubt::misread);
+  EXPECT_FALSE(decide(e).record);
+}
+
+TEST(Decide, WhereNoHypothesisMovesAsTheLogDoesNoneIsNamed) {
+  Evidence e = first_fault();
+  for (HypothesisEvidence& h : e.hypotheses) h.motion_left = 0.9;
+  EXPECT_EQ(decide(e).doubt, Doubt::unrelated);
+  e.hypotheses[other].motion_left = 0.1;
+  EXPECT_EQ(decide(e).doubt, Doubt::unrelated) << "it is another fault that does";
+  e.hypotheses[one].motion_left = 0.1;
+  EXPECT_EQ(decide(e).verdict, VerdictKind::fault);
+  for (HypothesisEvidence& h : e.hypotheses) h.motion_left = 0.9;
+  e.error = e.gain = 1;
+  EXPECT_EQ(decide(e).doubt, Doubt::unrelated) << "nor is it healthy";
+  e.error = e.gain = 90, e.gross = spool_on_both_stops;
+  EXPECT_EQ(decide(e).verdict, VerdictKind::fault) << "seen without a simulation";
+}
+
 TEST(Decide, ASpoolOnItsStopsIsNoSupplysFault) {
   Evidence e = first_fault();
   e.gross = spool_on_both_stops;

@@ -57,6 +57,17 @@ TEST(Judge, ScoreAtTheThresholdIsHealthyWhateverTheHypothesesSay) {
   }
 }
 
+// Two logs of other tests speak in place of the baseline's own; how unlike health a log is they tell as well.
+TEST(Judge, ALogFarFromHealthIsUnknownThoughOnlyTwoHealthyLogsAreOfItsTest) {
+  DetectionBaseline b = baseline();
+  b.scores.resize(2);
+  Assessment a = assessment(0.1, {hypothesis("", 0.999), hypothesis("clogged_filter", 0.001)});
+  a.hypotheses.front().adequacy = 1.3;
+  EXPECT_EQ(judge(a, b).verdict, VerdictKind::healthy);
+  for (HypothesisResult& h : a.hypotheses) h.adequacy = 140;
+  EXPECT_EQ(judge(a, b).verdict, VerdictKind::unknown);
+}
+
 // Health and two faults by their misfits, with no error of the model beyond the usual.
 Assessment with_misfits(double healthy, std::pair<const char*, double> one, std::pair<const char*, double> other) {
   Assessment a = assessment(0, {hypothesis("", 0.5), hypothesis(one.first, 0.5), hypothesis(other.first, 0.5)});

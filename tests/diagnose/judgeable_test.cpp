@@ -9,6 +9,7 @@
 
 #include "base/random.h"
 #include "diagnose/decide.h"
+#include "evidence/operating_point.h"
 #include "faults/record.h"
 #include "faults/registry.h"
 #include "fit/log_data.h"
@@ -49,7 +50,7 @@ TEST(Judgeable, NotWhereOnlyTheSupplyMovesAndNoSensorAnswers) {
   std::fill(log.scenario.command.begin(), log.scenario.command.end(), 1e-3);
   for (std::size_t i = 0; i < log.scenario.supply_pressure.size(); ++i)
     log.scenario.supply_pressure[i] = 2e7 + 2e6 * std::sin(0.05 * static_cast<double>(i));
-  EXPECT_EQ(look(log), Unjudgeable::no) << "the sensors move";
+  EXPECT_EQ(look(log), Unjudgeable::command_missing) << "the spool moves";
   Random random(8);
   for (FitChannel& c : log.channels)
     for (double& x : c.measured) x = c.noise * random.normal();
@@ -125,6 +126,65 @@ TEST(Judgeable, NotWhereUnitsAreTakenForOthers) {
   for (double& t : fast.scenario.time) t *= 1e-3;
   EXPECT_EQ(look(slow), Unjudgeable::too_short);
   EXPECT_EQ(look(fast), Unjudgeable::too_short);
+}
+
+FitChannel& channel(LogData& log, Signal signal) {
+  return *std::find_if(log.channels.begin(), log.channels.end(),
+                       [&](const FitChannel& c) { return c.signal == signal; });
+}
+
+TEST(Judgeable, NotWherePressuresAreInNoOrder) {
+  LogData swapped = usual(), negative = usual(), dead = usual();
+  std::swap(channel(swapped, Signal::pressure_a).measured, swapped.scenario.return_pressure);
+  EXPECT_EQ(look(swapped), Unjudgeable::pressures_out_of_order);
+  for (double& p : channel(negative, Signal::pressure_b).measured) p = -p;
+  EXPECT_EQ(look(negative), Unjudgeable::pressures_out_of_order);
+  std::fill(dead.scenario.supply_pressure.begin(), dead.scenario.supply_pressure.end(), 1e5);
+  EXPECT_EQ(look(dead), Unjudgeable::no) << "the chambers hardly move";
+  const double first = channel(dead, Signal::pressure_a).measured.front();
+  for (double& p : channel(dead, Signal::pressure_a).measured) p = first + 5 * (p - first);
+  EXPECT_EQ(look(dead), Unjudgeable::pressures_out_of_order) << "the chambers move";
+  for (const Signal s : {Signal::pressure_a, Signal::pressure_b})
+    std::fill(channel(dead, s).measured.begin(), channel(dead, s).measured.end(), 9e6);
+  EXPECT_EQ(look(dead), Unjudgeable::no) << "shut in, with the pump off";
+}
+
+TEST(Judgeable, NotWhereThePistonIsElsewhereFromOneRowToTheNext) {
+  LogData log = usual(), spike = usual();
+  std::vector<double>& x = channel(log, Signal::piston_position).measured;
+  for (std::size_t i = x.size() / 2; i < x.size(); ++i) x[i] += 0.05;
+  EXPECT_EQ(look(log), Unjudgeable::rows_jump);
+  channel(spike, Signal::piston_position).measured[500] += 0.05;
+  EXPECT_EQ(look(spike), Unjudgeable::no);
+}
+
+TEST(Judgeable, NotWhereTwoChannelsAreOne) {
+  LogData log = usual();
+  channel(log, Signal::pressure_b).measured = channel(log, Signal::pressure_a).measured;
+  EXPECT_EQ(look(log), Unjudgeable::copied);
+}
+
+TEST(Judgeable, NotWhereEveryChannelThatMovesShowsAHandfulOfValues) {
+  LogData log = usual();
+  const auto in_steps = [](FitChannel& c) {
+    const auto [low, high] = std::minmax_element(c.measured.begin(), c.measured.end());
+    const double from = *low, step = (*high - *low) / 7;
+    for (double& x : c.measured) x = from + step * std::round((x - from) / step);
+  };
+  for (FitChannel& c : log.channels) in_steps(c);
+  EXPECT_EQ(look(log), Unjudgeable::coarse);
+  LogData one = usual();
+  in_steps(channel(one, Signal::spool_position));
+  EXPECT_EQ(look(one), Unjudgeable::no) << "the others tell";
+}
+
+TEST(Judgeable, NotInOilThatNoOilIs) {
+  OperatingPoint point = {};
+  EXPECT_EQ(unjudgeable(point), Unjudgeable::no);
+  point[static_cast<std::size_t>(Condition::oil)] = 353.0;
+  EXPECT_EQ(unjudgeable(point), Unjudgeable::no);
+  point[static_cast<std::size_t>(Condition::oil)] = 673.0;
+  EXPECT_EQ(unjudgeable(point), Unjudgeable::oil_beyond);
 }
 
 // The fits say a fault without a doubt, and the verdict is that there is nothing to judge.

@@ -205,6 +205,18 @@ TEST(Records, AFrozenATurnedAndASwappedSensorAreNamedAndHealthyOnesAreNot) {
   for (const BrokenSensor& b : found) EXPECT_EQ(b.finding, SensorFinding::swapped_ports);
 }
 
+TEST(Records, ASensorAtItsLimitIsNamedWhereTheSimulationGoesOn) {
+  Made clipped = made(61, 1.0);
+  for (double& p : clipped.pressure_a) p = std::min(p, 112e5);
+  const auto found = broken_of(clipped);
+  ASSERT_EQ(found.size(), 1u);
+  EXPECT_EQ(found.front().finding, SensorFinding::clipped);
+  EXPECT_EQ(found.front().signal, Signal::pressure_a);
+  Trajectory as_measured = simulated(made(60, 1.0));
+  as_measured.signals[static_cast<std::size_t>(simulated_index(Signal::pressure_a))] = clipped.pressure_a;
+  EXPECT_TRUE(broken_sensors(prepare(log_of(clipped), {}), as_measured).empty()) << "a stop";
+}
+
 // A supply that swings moves both chambers the same way, so that each follows either simulation.
 TEST(Records, SwappedChambersAreNamedThoughBothMoveWithTheSupply) {
   const auto swing = [](Made m) {
