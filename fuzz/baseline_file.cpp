@@ -1,6 +1,7 @@
 // A baseline: what diagnose takes of it, and what explain does.
-#include "harness.h"
 #include "report/baseline_file.h"
+
+#include "harness.h"
 #include "report/explain_report.h"
 
 namespace servodx::fuzz {

@@ -41,7 +41,7 @@ struct DetectionBaseline {
   // suspect's test. They promise nothing.
   std::vector<Score> others;
   bool of_other_tests = false;  // the scores stand in for logs of a test that the baseline does not hold
-  double adequacy_limit = 0;  // largest adequacy of a healthy log
+  double adequacy_limit = 0;    // largest adequacy of a healthy log
   double null_limit = 0.05;
   std::string tuned_sha256;  // of the table it was made with
 };

@@ -62,8 +62,7 @@ HealthyLaw::HealthyLaw(const DetectionBaseline& b, const SuspectLog* suspect)
   const Deviate one = deviate_of(1, adequacies_, {k::adequacy_spread, k::usual_logs});
   constexpr double sides = 2;  // the quantile's tail has two, an adequacy's one
   const double worst_of = suspect ? static_cast<double>(suspect->logs) : 1.0;
-  unlike_limit_ =
-      student_quantile(sides * rate_of(k::share_of_adequacy) / worst_of, one.degrees);
+  unlike_limit_ = student_quantile(sides * rate_of(k::share_of_adequacy) / worst_of, one.degrees);
 }
 
 // Where nothing is promised, the law alone speaks: it is asked for the rate itself, not for what so many logs could

@@ -9,6 +9,7 @@
 #include "diagnose/constants.h"
 #include "diagnose/healthy_law.h"
 #include "diagnose/naming.h"
+#include "diagnose/reading.h"
 #include "diagnose/records.h"
 #include "diagnose/visible.h"
 #include "evidence/conditions.h"
@@ -16,6 +17,7 @@
 #include "evidence/probabilities.h"
 #include "evidence/rank_promise.h"
 #include "evidence/tail_law.h"
+#include "servodx/log.h"
 
 namespace servodx {
 namespace {

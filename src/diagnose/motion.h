@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "fit/log_data.h"
+#include "servodx/log.h"
 #include "signals/signal.h"
 #include "simulate/scenario.h"
 

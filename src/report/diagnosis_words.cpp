@@ -15,6 +15,7 @@
 #include "diagnose/judge.h"
 #include "diagnose/moved.h"
 #include "diagnose/naming.h"
+#include "diagnose/reading.h"
 #include "diagnose/record_law.h"
 #include "diagnose/records.h"
 #include "evidence/conditions.h"
@@ -24,6 +25,7 @@
 #include "report/columns.h"
 #include "report/handy.h"
 #include "report/replay_part.h"
+#include "servodx/log.h"
 
 namespace servodx::report {
 namespace {

@@ -13,6 +13,7 @@
 #include "diagnose/judgeable.h"
 #include "diagnose/moved.h"
 #include "diagnose/naming.h"
+#include "diagnose/reading.h"
 #include "diagnose/record_law.h"
 #include "diagnose/records.h"
 #include "evidence/conditions.h"
