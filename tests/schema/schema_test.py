@@ -110,6 +110,9 @@ class Schemas(unittest.TestCase):
         judged = (*tuned, "--baseline", "base.json")
         keep("diagnose", "f.csv", *judged)
         keep("explain", "f.csv", *judged, "-o", "extended.csv")
+        header, *rows = [line for line in (cls.folder / "e.csv").read_text().splitlines() if line[0] != "#"]
+        put("slow.csv", "\n".join([header] + [f"{2 * float(t):.9g},{rest}" for t, rest in (r.split(",", 1) for r in rows)]))
+        keep("diagnose", "slow.csv", *judged)
         put("logs.txt", "c.csv\nbad.csv\n")
         run("diagnose", "--list", "logs.txt", "--out", "results", *judged, codes=(3,))
         refusal = next((cls.folder / "results").glob("*.refused.json"))
@@ -138,6 +141,11 @@ class Schemas(unittest.TestCase):
             f"{t},{u:.3f},{0.7 * u + 0.01 * (k % 7):.3f}\n" for k, (t, u) in enumerate(sweep)))
         put("stand.toml", 'ports = "free"\n[valve]\nrated_current = "20 mA"\n[limits]\nhysteresis = "4 %"\n')
         keep("curves", "flow.csv", "--rig", "stand.toml")
+        rated = (SOURCE / "data/rig.toml").read_text().replace(
+            "[valve]\n", '[valve]\nstep_rise_time = "7.3 ms"\nstep_amplitude = "100 %"\nfrequency_response = '
+            '[{ frequency = "60 Hz", amplitude = "40 %", gain = "-3 dB" }]\n', 1)
+        put("rated.toml", rated)
+        keep("curves", "--params", table, "--rig", "rated.toml")
         keep("plan", *tuned, "--faults", "clogged_filter", "--seconds", 0.5, "--rounds", 1, "-o", "plan.csv")
         keep("map", "--model", "C2", "-o", "map.csv")
         model = "params/rigs/borello2009.toml"
