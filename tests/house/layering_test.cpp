@@ -33,7 +33,9 @@ const std::map<std::string, std::set<std::string>> allowed = {
     {"fit", {"parameters", "model", "effects", "simulate", "signals", "optimise"}},
     {"tune", {"parameters", "effects", "signals", "simulate", "optimise", "fit"}},
     {"evidence", {"fit", "signals"}},
-    {"diagnose", {"parameters", "signals", "simulate", "optimise", "fit", "tune", "evidence", "faults", "effects"}},
+    // Of the model the temperatures that an oil bears.
+    {"diagnose",
+     {"parameters", "signals", "model", "simulate", "optimise", "fit", "tune", "evidence", "faults", "effects"}},
     {"explain", {"parameters", "signals", "simulate", "optimise", "fit", "tune", "evidence", "faults", "effects"}},
     {"plan",
      {"parameters", "signals", "simulate", "optimise", "fit", "tune", "evidence", "faults", "effects", "diagnose"}},

@@ -702,7 +702,7 @@ TEST(DiagnoseText, AHealthyLogSaysSoFirst) {
 TEST(DiagnoseText, AnUnknownStateNamesWhatComesNearest) {
   Diagnosis d;
   d.log = "odd.csv";
-  d.verdict = VerdictKind::unknown;
+  d.verdict = VerdictKind::unknown, d.doubt = Doubt::no_fault;
   d.probabilities = {{nullptr, 0.0}, {find_fault("sticky_spool"), 0.0}};
   d.assessment.hypotheses.resize(2);
   d.assessment.hypotheses[0].probability = 1e-200;
