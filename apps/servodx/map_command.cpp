@@ -8,6 +8,7 @@
 #include "base/units.h"
 #include "commands.h"
 #include "fit/nominal.h"
+#include "fit/oil_of.h"
 #include "invocation.h"
 #include "model/state.h"
 #include "parameters/list.h"
@@ -38,8 +39,7 @@ struct Options {
 };
 
 ValveGeometry geometry_of(const Table& table, const RigFile& rig) {
-  const Oil oil = oil_at(rig.fluid.density, rig.fluid.kinematic_viscosity, reference_temperature,
-                         rig.fluid.kinematic_viscosity_100);
+  const Oil oil = oil_of(rig.fluid, reference_temperature);
   ValveGeometry g;
   g.port_width = table[row::port_width].nominal;
   g.radial_clearance = table[row::radial_clearance].nominal;

@@ -7,6 +7,7 @@
 
 #include "base/error.h"
 #include "effects/registry.h"
+#include "fit/oil_of.h"
 #include "model/state.h"
 #include "parameters/list.h"
 #include "servodx/rig.h"
@@ -221,7 +222,7 @@ LogData prepare(const Log& log, const RigFile& rig, int window) {
                 s.ports != Ports::actuator;  // a stand holds 40 degC within 6 K (ISO 10770-1)
   if (!s.oil_known)
     out.notes.push_back(fmt::format("{}: no oil temperature: taken as 40 degC, give or take 20 K", log.path));
-  s.oil = oil_at(rig.fluid.density, rig.fluid.kinematic_viscosity, temperature, rig.fluid.kinematic_viscosity_100);
+  s.oil = oil_of(rig.fluid, temperature);
   const std::vector<char> unknown = after_gaps(log.time);
   for (Signal which : simulated_signals) {
     if (!log.has(which)) continue;

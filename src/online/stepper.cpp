@@ -14,6 +14,7 @@
 #include "base/sha256.h"
 #include "fit/log_data.h"
 #include "fit/nominal.h"
+#include "fit/oil_of.h"
 #include "model/state.h"
 #include "online/hex.h"
 #include "servodx/error.h"
@@ -68,8 +69,7 @@ Scenario scenario_of(const Rig& rig, const StepperInputs& first, const StepperSt
   s.ports = rig.ports;
   s.rated_current = rig.fact("valve.rated_current").value_or(s.rated_current);
   if (rig.command_hold) s.command_slope = *rig.command_hold == CommandHold::linear ? 1.0 : 0.0;
-  s.oil = oil_at(rig.fluid.density, rig.fluid.kinematic_viscosity, options.oil_temperature,
-                 rig.fluid.kinematic_viscosity_100);
+  s.oil = oil_of(rig.fluid, options.oil_temperature);
   s.spool_start = start.spool_position;
   s.piston_start = start.piston_position;
   s.pressure_a_start = start.pressure_a;

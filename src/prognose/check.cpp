@@ -6,6 +6,7 @@
 
 #include "fit/free_values.h"
 #include "fit/log_data.h"
+#include "fit/oil_of.h"
 #include "model/state.h"
 #include "parameters/list.h"
 #include "prognose/constants.h"
@@ -31,7 +32,7 @@ Scenario at_reference(const Scenario& as_was, const RigFile& rig) {
   s.supply_pressure.clear();
   s.return_pressure.clear();
   s.load_force.clear();
-  s.oil = oil_at(rig.fluid.density, rig.fluid.kinematic_viscosity, reference_kelvin, rig.fluid.kinematic_viscosity_100);
+  s.oil = oil_of(rig.fluid, reference_kelvin);
   s.pressure_a_start.reset(), s.pressure_b_start.reset();
   return s;
 }
@@ -55,8 +56,7 @@ void take_oil(CheckResult& out, LogData& data, const Log& log, const Table& tune
     out.temperature = estimate_temperature(data, tuned, rig, options.threads, &out.simulations, [&](double part) {
       options.watch.tell("check", until_oil * part, out.simulations);
     });
-    data.scenario.oil = oil_at(rig.fluid.density, rig.fluid.kinematic_viscosity, out.temperature.value,
-                               rig.fluid.kinematic_viscosity_100);
+    data.scenario.oil = oil_of(rig.fluid, out.temperature.value);
     data.scenario.oil_known = true;
     out.notes.push_back("oil temperature estimated from the response; wear that acts like cold oil would shift it");
   } else {

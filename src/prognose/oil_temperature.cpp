@@ -6,6 +6,7 @@
 #include "base/celsius.h"
 #include "fit/error_model.h"
 #include "fit/free_values.h"
+#include "fit/oil_of.h"
 #include "fit/problem.h"
 #include "fit/tuned_state.h"
 #include "model/state.h"
@@ -48,8 +49,7 @@ OilTemperature estimate_temperature(const LogData& log, const Table& tuned, cons
   for (double celsius = coldest_celsius; celsius <= hottest_celsius; celsius += celsius_step) {
     LogData at = log;
     kelvin.push_back(celsius + zero_celsius);
-    at.scenario.oil =
-        oil_at(rig.fluid.density, rig.fluid.kinematic_viscosity, kelvin.back(), rig.fluid.kinematic_viscosity_100);
+    at.scenario.oil = oil_of(rig.fluid, kelvin.back());
     at.scenario.oil_known = true;
     misfit.push_back(misfit_at(at, tuned, error, threads, simulations));
     if (told) told((celsius - coldest_celsius + celsius_step) / (hottest_celsius - coldest_celsius + celsius_step));

@@ -167,6 +167,10 @@ TEST(LogData, OilIsAsWarmAsTheLogSaysElseAsTheRigFileSays) {
   EXPECT_TRUE(stated.scenario.oil_known);
   const Oil hot = oil_at(rig.fluid.density, rig.fluid.kinematic_viscosity, 353.15);
   EXPECT_EQ(stated.scenario.oil.dynamic_viscosity, hot.dynamic_viscosity);
+  rig.fluid.kinematic_viscosity_100 = 3.5e-6;  // a steeper oil than is taken where the rig file does not say
+  const Oil steep = oil_at(rig.fluid.density, rig.fluid.kinematic_viscosity, 353.15, 3.5e-6);
+  EXPECT_EQ(prepare(log, rig).scenario.oil.dynamic_viscosity, steep.dynamic_viscosity);
+  EXPECT_LT(steep.dynamic_viscosity, hot.dynamic_viscosity);
   rig.oil_temperature.reset();
   EXPECT_FALSE(prepare(log, rig).scenario.oil_known);
 }
