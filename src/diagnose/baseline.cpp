@@ -82,18 +82,17 @@ double largest_adequacy(const std::vector<DetectionBaseline::Score>& scores) {
   return most;
 }
 
-// Whether the baseline's own logs know how the model errs on such a test: they hold it, or tests like it among several.
-bool knows(const DetectionBaseline& b, const TestConditions& test) {
+}  // namespace
+
+bool knows_test(const DetectionBaseline& b, const TestConditions& test) {
   const auto any = [&](const auto& is) { return std::any_of(b.scores.begin(), b.scores.end(), is); };
   if (any([](const DetectionBaseline::Score& s) { return !s.test; })) return true;  // it does not say its tests
   if (any([&](const DetectionBaseline::Score& s) { return is_repeat(*s.test, test); })) return true;
   return !nearest_of_unlike(test, b) && show_scatter_of_tests(tests_of(b.scores));
 }
 
-}  // namespace
-
 DetectionBaseline baseline_for(const TestConditions& test, const DetectionBaseline& b, int left_out) {
-  if (b.others.empty() || knows(b, test)) return b;
+  if (b.others.empty() || knows_test(b, test)) return b;
   std::vector<DetectionBaseline::Score> all = one_a_programme(b.scores), like;
   for (std::size_t i = 0; i < b.others.size(); ++i) {
     if (static_cast<int>(i) == left_out) continue;

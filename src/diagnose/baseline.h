@@ -59,6 +59,9 @@ DetectionBaseline baseline_of(const std::vector<Assessment>& healthy, double fal
 // Whether the rate promised is the rate asked for.
 bool keeps_rate(const DetectionBaseline& baseline);
 
+// Whether the baseline's own logs know how the model errs on such a test: they hold it, or tests like it among several.
+bool knows_test(const DetectionBaseline& baseline, const TestConditions& test);
+
 // What speaks of a suspect of this test: the baseline, where its logs know such a test or there are no others. Repeats
 // of one programme know that programme alone; several know tests like theirs. Else the scores are the others', of a
 // test like this where some are; where none is, all of them, and one for each programme of the baseline's own.

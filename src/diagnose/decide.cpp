@@ -67,9 +67,13 @@ Decision name_nothing(Decision d, std::size_t nearest, Doubt why) {
 
 }  // namespace
 
-bool explains_enough(const HypothesisEvidence& fault, double healthy_adequacy, double usual_adequacy) {
-  const double as_health = k::fault_allowance * std::max(1.0, usual_adequacy);
-  return fault.adequacy <= std::hypot(as_health, fault.at_worst ? 0.0 : k::unexplained_part * healthy_adequacy);
+bool explains_enough(const HypothesisEvidence& fault, const Evidence& e) {
+  const double usual = std::max(1.0, e.usual_adequacy), by_health = e.hypotheses.front().adequacy;
+  const auto within = [&](double allowance, double part) {
+    return fault.adequacy <= std::hypot(allowance * usual, fault.at_worst ? 0.0 : part * by_health);
+  };
+  return within(k::fault_allowance, k::unexplained_part) &&
+         (e.known_test || within(k::fault_allowance_elsewhere, k::unexplained_part_elsewhere));
 }
 
 namespace {
@@ -77,8 +81,7 @@ namespace {
 // Both sizes are found, the second gains what a name needs, and the two leave the log as one fault may leave it.
 bool is_pair(const PairEvidence& p, const Evidence& e) {
   const HypothesisEvidence both{e.hypotheses[p.first].fault, 0, p.adequacy, p.at_worst, e.gain};
-  return !p.at_least && e.gain > e.threshold && p.gain > e.threshold &&
-         explains_enough(both, e.hypotheses.front().adequacy, e.usual_adequacy);
+  return !p.at_least && e.gain > e.threshold && p.gain > e.threshold && explains_enough(both, e);
 }
 
 Decision name_pair(Decision d, const PairEvidence& pair) {
@@ -97,8 +100,7 @@ Decision decide_on_valve(const Evidence& e) {
   if (e.pair && is_pair(*e.pair, e)) return name_pair(std::move(d), *e.pair);
   const std::size_t best = most_probable(e.hypotheses);
   const HypothesisEvidence& h = e.hypotheses[best];
-  if (h.fault && e.gain > e.threshold && explains_enough(h, e.hypotheses.front().adequacy, e.usual_adequacy))
-    return name_fitted(std::move(d), best);
+  if (h.fault && e.gain > e.threshold && explains_enough(h, e)) return name_fitted(std::move(d), best);
   return name_nothing(std::move(d), best, Doubt::no_fault);
 }
 
@@ -114,9 +116,8 @@ Decision name_by_record(Decision valve, std::size_t record) {
 
 // What the record tells is in the simulation, which is driven by it: what is left unlike health is something else.
 bool leaves_the_rest_as_health(const Decision& valve, const Evidence& e) {
-  HypothesisEvidence health = e.hypotheses.front();
-  health.at_worst = true;  // nothing is granted for what health leaves: it is health
-  return valve.verdict != VerdictKind::unknown || explains_enough(health, health.adequacy, e.usual_adequacy);
+  return valve.verdict != VerdictKind::unknown ||
+         e.hypotheses.front().adequacy <= k::fault_allowance * std::max(1.0, e.usual_adequacy);
 }
 
 double least_left(const Evidence& e) {

@@ -69,6 +69,7 @@ struct Evidence {
   double error = 0, threshold = 0;  // deviates from health
   double gain = 0;                  // of these, what the best fault explains: a name needs evidence of its own
   double usual_adequacy = 0;        // the largest of the baseline's logs
+  bool known_test = true;           // the baseline holds such a test: how the model errs on it is known
   GrossFinding gross = GrossFinding::none;
   Unjudgeable unjudgeable = Unjudgeable::no;
   std::vector<HypothesisEvidence> hypotheses;  // healthy first; at least that one
@@ -95,8 +96,10 @@ struct Decision {
 
 Decision decide(const Evidence& evidence);
 
-// Whether a hypothesis leaves little enough: a fault is known less well than health, and the less the larger it is. A
-// size at the end of its range stands there because something else pulls: then only health's measure counts.
-bool explains_enough(const HypothesisEvidence& fault, double healthy_adequacy, double usual_adequacy);
+// Whether a hypothesis leaves little enough: a fault is known less well than health, and the less the larger it is. Of a
+// test that the baseline does not hold the model's own error may be all that is unlike health: there a fault also has
+// to take more than it leaves. A size at the end of its range stands there because something else pulls: then only
+// health's measure counts.
+bool explains_enough(const HypothesisEvidence& fault, const Evidence& evidence);
 
 }  // namespace servodx

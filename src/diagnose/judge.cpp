@@ -72,6 +72,32 @@ double part_beyond(double gain, double usual) {
   return gain > 0 ? std::max(1 / (1 + usual), 1 - k::most_lent * usual / gain) : 1.0;
 }
 
+// Inside its range and of the others of its kind the likeliest: a fault that takes nearly as much as the one given.
+std::optional<std::size_t> rival_inside(const Assessment& a, const std::vector<WeighedHypothesis>& weighed,
+                                        std::size_t at_end) {
+  const double healthy = a.hypotheses.front().misfit;
+  const double near = (1 - k::effect_error) * (1 - k::effect_error) * (healthy - a.hypotheses[at_end].misfit);
+  std::optional<std::size_t> out;
+  for (std::size_t i = 1; i < weighed.size(); ++i) {
+    const HypothesisResult& h = a.hypotheses[i];
+    if (i == at_end || h.at_worst || healthy - h.misfit < near) continue;
+    if (!out || weighed[i].misfit < weighed[*out].misfit) out = i;
+  }
+  return out;
+}
+
+// A size at the far end of its range stands there because something else pulls. Where a fault inside its range takes as
+// much, to what a model errs by of its own effect, that one stands before it.
+void put_ends_behind(const Assessment& a, std::vector<WeighedHypothesis>& weighed) {
+  const std::vector<WeighedHypothesis> as_fitted = weighed;
+  for (std::size_t i = 1; i < weighed.size(); ++i) {
+    if (!a.hypotheses[i].at_worst) continue;
+    if (const auto rival = rival_inside(a, as_fitted, i))
+      weighed[i].misfit =
+          std::max(weighed[i].misfit, as_fitted[*rival].misfit - 2 * a.misfit_scale * std::log(k::end_of_range_odds));
+  }
+}
+
 // A hypothesis that gains on healthy logs as well takes up what the model has wrong: only what it gains beyond that
 // counts, for the name as for the verdict.
 void weigh_beside_usual(Assessment& a, const FaultGains& usual) {
@@ -82,6 +108,7 @@ void weigh_beside_usual(Assessment& a, const FaultGains& usual) {
     weighed.push_back(
         {h.fault ? h.fault->prior : 1.0, gain > 0 ? -gain * part_beyond(h.gain, gain_of(usual, h.fault)) : -gain});
   }
+  put_ends_behind(a, weighed);
   const std::vector<double> p = probabilities_of(weighed, a.misfit_scale);
   for (std::size_t i = 0; i < p.size(); ++i) a.hypotheses[i].probability = p[i];
   std::stable_sort(a.hypotheses.begin() + 1, a.hypotheses.end(),
@@ -161,6 +188,7 @@ Evidence evidence_of(const Assessment& a, const DetectionBaseline& baseline, con
   e.error = law.error_of(e.gain, a.hypotheses.front().adequacy);
   e.threshold = law.limit();
   e.usual_adequacy = baseline.adequacy_limit;
+  e.known_test = !baseline.of_other_tests && knows_test(baseline, a.test);
   e.gross = a.gross;
   e.unjudgeable = a.unjudgeable;
   for (const HypothesisResult& h : a.hypotheses)

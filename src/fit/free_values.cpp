@@ -10,6 +10,7 @@
 #include "effects/viscosity_change.h"
 #include "fit/chart.h"
 #include "fit/log_data.h"
+#include "parameters/coordinate.h"
 #include "parameters/list.h"
 #include "servodx/log.h"
 #include "servodx/rig.h"
@@ -52,6 +53,12 @@ constexpr Drawing drawings[] = {{row::hydraulic_amplifier_gain, "valve.nozzle_di
                                 {row::nozzle_gap, "valve.nozzle_gap", 0.15},
                                 {row::radial_clearance, "valve.radial_clearance", 0.25}};
 
+bool is_stated(int row, const RigFile& rig) {
+  if (row == row::port_width) return states_width(rig);
+  return std::any_of(std::begin(drawings), std::end(drawings),
+                     [&](const Drawing& d) { return d.row == row && rig.fact(d.fact); });
+}
+
 bool log_nuisance(int position) { return position == row::servovalve_null || position == row::air_fraction; }
 
 }  // namespace
@@ -72,6 +79,21 @@ void hold_to_drawings(std::vector<FreeValue>& shared, const RigFile& rig, const 
     if (rig.fact(d.fact))
       for (FreeValue& f : shared)
         if (f.at == d.row && !asked.contains(f.name)) f.prior_sd = d.tolerance / std::log(f.upper / f.lower);
+}
+
+bool states_width(const RigFile& rig) {
+  return rig.fact("valve.spool_stroke") && (rig.fact("valve.rated_flow") || rig.fact("valve.no_load_flow"));
+}
+
+std::vector<OffDrawing> rows_off_drawing(const Table& tuned, const Table& nominal, const RigFile& rig) {
+  std::vector<OffDrawing> out;
+  for (int at = 0; at < n_parameters; ++at) {
+    const Row& r = tuned[at];
+    if (!r.estimate || !is_stated(at, rig)) continue;
+    const double from_end = std::min(r.nominal - r.lower, r.upper - r.nominal);
+    if (from_end <= wall_width * (r.upper - r.lower)) out.push_back({r.name, r.nominal / nominal[at].nominal});
+  }
+  return out;
 }
 
 std::vector<FreeValue> nuisance_values(const LogData& log, int l, const ParameterVector& base, double null_limit) {

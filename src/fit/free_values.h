@@ -25,6 +25,17 @@ std::vector<FreeValue> shared_values(const Table& table);
 // A row that a prior is `asked` for keeps it.
 void hold_to_drawings(std::vector<FreeValue>& shared, const RigFile& rig, const std::map<std::string, double>& asked);
 
+// Whether the rig file states what the width of the ports follows from.
+bool states_width(const RigFile& rig);
+
+// A row that the rig file states, whose tuned value stands at the end of what the table allows: it does duty for
+// something that the model lacks.
+struct OffDrawing {
+  std::string row;
+  double times = 1;  // the tuned value over the drawing's
+};
+std::vector<OffDrawing> rows_off_drawing(const Table& tuned, const Table& nominal, const RigFile& rig);
+
 // A log's own: null, free air, viscosity where no temperature was logged, command between samples, offsets of spool and
 // pressure sensors; only those that the log can show. `null_limit` [fraction of rated] bounds the null about the
 // base's. Prior widths: docs/model.md, "Nuisances".

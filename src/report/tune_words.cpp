@@ -141,6 +141,16 @@ std::string effects_in_words(const std::vector<EarnedEffect>& effects) {
   return text;
 }
 
+namespace {
+
+std::string off_drawing_in_words(const std::vector<OffDrawing>& rows) {
+  std::vector<std::string> parts;
+  for (const OffDrawing& r : rows) parts.push_back(fmt::format("{} {} times", words(r.row), digits(r.times, 2)));
+  return join(parts);
+}
+
+}  // namespace
+
 std::string unfollowed_in_words(const std::vector<Unfollowed>& channels) {
   std::vector<std::string> parts;
   for (const Unfollowed& u : channels)
@@ -172,6 +182,10 @@ GoodEnough good_enough(const TuneResult& result, const std::vector<Promise>& pro
   if (!far.empty())
     g.reasons.push_back("the model does not follow these logs (error over noise: " + join(far) +
                         "): check the rig file's data sheet (flow, areas, supply), signs and gains of sensors");
+  if (!result.off_drawing.empty())
+    g.reasons.push_back("what the data sheet states ended at the end of its range (" +
+                        off_drawing_in_words(result.off_drawing) +
+                        " the sheet's): something that the model lacks pulls; trust verdicts at small openings less");
   if (!worse.empty())
     g.reasons.push_back("it predicts worse than it fits (" + join(worse) + "): tune with more logs, of more kinds");
   if (!has_arrived(result) && !result.interrupted)

@@ -1,10 +1,11 @@
 // Is a tune good enough to diagnose with? Said in one line, from what the tune and its logs know.
 //
-// Four questions. Does the model follow the logs: where a channel is left far beyond its noise (tune/summary.h) the
+// Five questions. Does the model follow the logs: where a channel is left far beyond its noise (tune/summary.h) the
 // answer is no, and where it is left yet further the data sheet is another rig's. Does it predict what
 // it was not fitted to: of the median log the error on the held-out part against the fitted error, at most twice, as a
 // diagnosis lets a hypothesis leave twice the usual error and no more (judge); single logs that are predicted worse are
-// named, for they have no like among the others. Did the search arrive: its end, and a second start in the same valley.
+// named, for they have no like among the others. Does it keep to the data sheet: a stated size at the end of its range
+// does duty for something else. Did the search arrive: its end, and a second start in the same valley.
 // And would a fault be seen: each at its typical size on the log of these that shows it best, against the errors that
 // the table now says its model makes (check-log's deviates; below 3 it stays hidden).
 #pragma once

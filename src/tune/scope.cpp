@@ -9,6 +9,8 @@
 #include "fit/free_values.h"
 #include "fit/nominal.h"
 #include "fit/thin.h"
+#include "parameters/list.h"
+#include "servodx/log.h"
 #include "servodx/tune.h"
 
 namespace servodx {
@@ -34,6 +36,26 @@ void say_oil(TuneScope& scope) {
   scope.notes.push_back(
       "no log holds the oil's temperature: clearances and frictions hold for an oil as thick as these logs' on the "
       "average, taken as at 40 degC; the rig file's oil_temperature says what it was");
+}
+
+bool hold_spool(const LogData& log) {
+  return std::any_of(log.channels.begin(), log.channels.end(),
+                     [](const FitChannel& c) { return c.signal == Signal::spool_position; });
+}
+
+// Without the spool's position only the product of its travel and the ports' width is told. Left alone, the travel
+// scales with whatever the null has that the model lacks, and with it laps, clearance and the play at the ball.
+void keep_width_without_spool(TuneScope& scope) {
+  constexpr double tolerance = 0.1 / 3;  // sheets state a flow to 10 % (ISO 10770-1), taken as three deviates
+  if (scope.on_stand || !states_width(scope.facts)) return;
+  if (std::any_of(scope.data.begin(), scope.data.end(), hold_spool)) return;
+  for (FreeValue& f : scope.shared) {
+    if (f.at != row::port_width) continue;
+    f.prior_sd = tolerance / std::log(f.upper / f.lower);
+    scope.notes.push_back(
+        "no log holds the spool's position, so the logs tell only the product of its travel and the ports' width: "
+        "the width is kept near the data sheet's; '--prior port_width=SD' sets how near");
+  }
 }
 
 void take_logs(TuneScope& scope, const std::vector<Log>& logs, const RigFile& rig, const TuneOptions& options) {
@@ -82,6 +104,7 @@ TuneScope scope_of(const std::vector<Log>& logs, const Table& nominal, const Rig
   scope.base = candidate_of(scope.table);
   say_oil(scope);
   scope.shared = shared_values(scope.table);
+  keep_width_without_spool(scope);
   take_priors(scope.shared, options.priors);
   take_nuisances(scope);
   return scope;

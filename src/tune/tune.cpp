@@ -154,6 +154,7 @@ TuneResult tune_table(const std::vector<Log>& logs, const Table& nominal, const 
   take_medians(out.table, out.logs);
   out.table.comments = nominal.comments;
   out.unfollowed = unfollowed_channels(out.channels, candidate_of(out.table));
+  out.off_drawing = rows_off_drawing(out.table, scope.table, rig);
   set_tuned_state(out.table, state_of(logs, out, options));
 
   append(out.notes, scope.notes);

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "fit/error_model.h"
+#include "fit/free_values.h"
 #include "fit/identifiability.h"
 #include "fit/tuned_state.h"
 #include "optimise/box_least_squares.h"
@@ -69,6 +70,7 @@ struct TuneResult {
   ErrorModel error;
   std::vector<ChannelResult> channels;
   std::vector<Unfollowed> unfollowed;  // of these; empty: good enough
+  std::vector<OffDrawing> off_drawing;
   std::vector<LogResult> logs;
   std::vector<ParameterResult> parameters;
   std::vector<double> starts;               // final costs of all local starts

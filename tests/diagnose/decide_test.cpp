@@ -220,6 +220,20 @@ TEST(Decide, ASizeAtTheEndOfItsRangeIsHeldToHealthsMeasure) {
   EXPECT_EQ(decide(e).verdict, VerdictKind::fault);
 }
 
+TEST(Decide, OfATestThatTheBaselineDoesNotHoldAFaultHasToTakeMost) {
+  Evidence e;
+  e.error = e.gain = 9, e.threshold = 3, e.usual_adequacy = 1.5;
+  const auto named = [&](double by_health, double by_fault) {
+    e.hypotheses = {{nullptr, 0, by_health}, {&first, 1, by_fault}};
+    return decide(e).verdict == VerdictKind::fault;
+  };
+  EXPECT_TRUE(named(3.5, 2.6)) << "below hypot(3, 3.5 / 4)";
+  e.known_test = false;
+  EXPECT_FALSE(named(3.5, 2.6)) << "above hypot(1.5, 3.5 / 2): it leaves more than it takes";
+  EXPECT_TRUE(named(3.5, 2.2));
+  EXPECT_FALSE(named(20, 6)) << "above hypot(3, 20 / 4), as of any test";
+}
+
 TEST(Decide, ProbabilitiesAreTheFitsUnlessOneIsSeenOrNoneHolds) {
   for (const Case& c : cases) {
     const Decision d = decide(evidence_of(c));

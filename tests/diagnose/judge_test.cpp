@@ -103,6 +103,22 @@ TEST(Judge, OfALargeGainNoMoreIsTakenOffThanHealthLends) {
       << "half of its gain is no longer above the other's";
 }
 
+// A spool that sticks makes the simulation slew late, as does a filter that is all but closed.
+TEST(Judge, AFaultAtTheEndOfItsRangeStandsBehindOneInsideThatTakesAsMuch) {
+  const auto of = [](double left_by_sticky, bool filter_at_end, bool sticky_at_end) {
+    Assessment a = with_misfits(3000, {"clogged_filter", 600}, {"sticky_spool", left_by_sticky});
+    a.hypotheses[1].at_worst = filter_at_end, a.hypotheses[2].at_worst = sticky_at_end;
+    return judge(a, baseline());
+  };
+  const Fault *filter = find_fault("clogged_filter"), *sticky = find_fault("sticky_spool");
+  EXPECT_EQ(of(700, false, false).fault, filter);
+  const Diagnosis d = of(700, true, false);
+  EXPECT_EQ(d.fault, sticky) << "it takes 98 % of the amplitude";
+  EXPECT_EQ(d.ambiguous_with, std::vector<const Fault*>{filter}) << "and the other is named beside it";
+  EXPECT_EQ(of(1200, true, false).fault, filter) << "87 % is less than a model errs by";
+  EXPECT_EQ(of(700, true, true).fault, filter) << "both are at their ends";
+}
+
 TEST(Judge, WornCornersAreNamedTogetherWithTheClearanceThatWearsWithThem) {
   const Diagnosis d = judge(assessment(9.0, {hypothesis("", 0.001), hypothesis("corner_wear", 0.999)}), baseline());
   EXPECT_EQ(d.fault, find_fault("corner_wear"));

@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "base/error.h"
+#include "fit/free_values.h"
 #include "model/constants.h"
 #include "parameters/list.h"
 #include "parameters/table.h"
@@ -70,6 +71,27 @@ TEST(RigFacts, FrictionsAndVolumesGrowWithTheCylinder) {
   EXPECT_EQ(apply_rig_facts(shipped(), rig_with(large))[row::piston_coulomb_friction].nominal,
             shipped()[row::piston_coulomb_friction].nominal)
       << "nothing is known of the cylinder";
+}
+
+TEST(RowsOffDrawing, AreThoseThatTheSheetStatesAndThatEndedAtTheEndOfTheirRange) {
+  const RigFile rig = rig_with(flight_sheet);
+  const Table nominal = apply_rig_facts(shipped(), rig);
+  Table tuned = nominal;
+  EXPECT_TRUE(rows_off_drawing(tuned, nominal, rig).empty());
+  tuned[row::radial_clearance].nominal = tuned[row::radial_clearance].lower;
+  tuned[row::port_width].nominal = tuned[row::port_width].upper;
+  tuned[row::cross_piston_leakage].nominal = tuned[row::cross_piston_leakage].lower;  // no sheet states it
+  const auto off = rows_off_drawing(tuned, nominal, rig);
+  ASSERT_EQ(off.size(), 2u);
+  for (const OffDrawing& one : off) {
+    const int at = one.row == "port_width" ? row::port_width : row::radial_clearance;
+    EXPECT_DOUBLE_EQ(one.times, tuned[at].nominal / nominal[at].nominal) << one.row;
+  }
+  auto silent = flight_sheet;
+  silent.erase("valve.radial_clearance");
+  EXPECT_EQ(rows_off_drawing(tuned, nominal, rig_with(silent)).size(), 1u) << "a sheet that does not state it";
+  tuned[row::port_width].estimate = false;
+  EXPECT_EQ(rows_off_drawing(tuned, nominal, rig_with(silent)).size(), 0u) << "it was held";
 }
 
 TEST(RigFacts, TheFlightSheetGivesTheShippedTable) {

@@ -829,6 +829,9 @@ TEST(TuneReport, GoodEnoughIsWhatPredictsHasArrivedAndWouldSeeTheFaults) {
   for (const char* words : {"pressure A is left with 11 times its noise", "hose compliance at flow A"})
     EXPECT_NE(line_of(good).find(words), std::string::npos) << line_of(good);
   result.unfollowed.clear();
+  result.off_drawing = {{"radial_clearance", 0.333}};
+  reason("(radial clearance 0.33 times the sheet's)");
+  result.off_drawing.clear();
   result.stop = StopReason::iteration_limit, result.still_promised = 7;
   reason("has not arrived (iteration limit, 7 of its cost still promised)");
   result.still_promised = 0.3;

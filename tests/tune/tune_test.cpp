@@ -91,6 +91,23 @@ TEST(Tune, WithoutATemperatureAnywhereEachLogHasAViscosityOfItsOwn) {
                           [](const std::string& n) { return n.find("oil's temperature") != std::string::npos; }));
 }
 
+TEST(Tune, WithoutTheSpoolsPositionTheWidthOfThePortsStaysNearTheSheets) {
+  const auto prior = [](bool with_spool, RigFile rig) {
+    std::vector<Log> logs = {twins::cut(shipped_log("healthy/h01_steps_large"), 400)};
+    if (!with_spool) logs.back().channels[index(Signal::spool_position)].value.clear();
+    const TuneScope scope = scope_of(logs, shipped_table(), rig, {});
+    for (const FreeValue& f : scope.shared)
+      if (f.at == row::port_width) return f.prior_sd * std::log(f.upper / f.lower);
+    return 0.0;
+  };
+  const double told = prior(true, shipped_rig()), kept = prior(false, shipped_rig());
+  EXPECT_GT(told, 0.3) << "the spool's travel tells the width";
+  EXPECT_NEAR(kept, 0.033, 0.001);
+  RigFile silent = shipped_rig();
+  silent.facts.erase("valve.spool_stroke");
+  EXPECT_EQ(prior(false, silent), told) << "no sheet to keep to";
+}
+
 TEST(DefaultEffects, AreThoseThatSuchLogsCanTell) {
   EXPECT_TRUE(frees({}, MagneticHysteresis::name) && frees({.on_stand = true}, MagneticHysteresis::name));
   EXPECT_TRUE(frees({}, MountCompliance::name) && !frees({.on_stand = true}, MountCompliance::name));
