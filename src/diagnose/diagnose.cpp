@@ -23,6 +23,7 @@
 #include "faults/fault.h"
 #include "fit/chart.h"
 #include "fit/error_model.h"
+#include "fit/fast_log.h"
 #include "fit/log_data.h"
 #include "fit/nominal.h"
 #include "fit/tuned_state.h"
@@ -59,6 +60,8 @@ HypothesisSettings settings_of(const RigFile& rig, const DiagnoseOptions& option
 // Logs of one valve in one state, made ready.
 struct Ready {
   std::vector<LogData> data;
+  std::vector<LogData> recorded;  // the same sample by sample, where a fast log is fitted at points; else empty
+  const LogData& every_sample(std::size_t log) const { return recorded[log].path.empty() ? data[log] : recorded[log]; }
   std::vector<const LogData*> pointers() const {
     std::vector<const LogData*> out;
     for (const LogData& d : data) out.push_back(&d);
@@ -186,7 +189,7 @@ void look_at_records(const std::vector<Log>& logs, const Ready& ready, const Par
                      Assessment& out) {
   out.current_recorded = true;
   for (std::size_t l = 0; l < logs.size(); ++l) {
-    const LogData& data = ready.data[l];
+    const LogData& data = ready.every_sample(l);
     for (RecordFigure& f : record_figures(logs[l], data, base)) out.figures.push_back(std::move(f));
     for (const BrokenSensor& b : broken_sensors(data, reference_of(data, base, threads))) out.broken.push_back(b);
     out.current_recorded = out.current_recorded && data.scenario.current_measured;
@@ -201,7 +204,11 @@ Ready make_ready(const std::vector<Log>& logs, const Table& tuned, const RigFile
     out.sha256 += log.sha256;
     out.logs.push_back(log.path);
     for (const LogNote& note : log.notes) out.notes.push_back(note.text);
-    ready.data.push_back(prepare(log, rig, moving_average_of(tuned)));
+    const bool fast = is_fast(log);
+    ready.recorded.push_back(fast ? prepare(log, rig, moving_average_of(tuned)) : LogData{});
+    ready.data.push_back(fast ? at_points(log, ready.recorded.back()) : prepare(log, rig, moving_average_of(tuned)));
+    if (fast) out.notes.push_back(ready.data.back().notes.back());
+    leave_out_unknown_channels(ready.recorded.back(), error);
     for (std::string& note : leave_out_unknown_channels(ready.data.back(), error)) out.notes.push_back(std::move(note));
     require_channels(ready.data.back());
   }
@@ -235,8 +242,8 @@ double left_by_best(const Assessment& a) {
 
 Unjudgeable unjudgeable_of(const Ready& ready, const ParameterVector& base, const OperatingPoint& point) {
   if (const Unjudgeable why = unjudgeable(point); why != Unjudgeable::no) return why;
-  for (const LogData& data : ready.data)
-    if (const Unjudgeable why = unjudgeable(data, base); why != Unjudgeable::no) return why;
+  for (std::size_t l = 0; l < ready.data.size(); ++l)
+    if (const Unjudgeable why = unjudgeable(ready.every_sample(l), base); why != Unjudgeable::no) return why;
   return Unjudgeable::no;
 }
 
@@ -279,7 +286,7 @@ Assessment assess_pool(const std::vector<Log>& logs, const Table& tuned, const R
   const bool stopped = options.watch.stopped();
   if (!stopped) {
     const LogData& first = ready.data.front();
-    out.gross = gross_finding(first, base);
+    out.gross = gross_finding(ready.every_sample(0), base);
     look_at_records(logs, ready, base, options.threads, out);
     out.channels = channels_of(logs, ready, fits.fits.front());
     out.visible = visible_of(fits);

@@ -10,6 +10,7 @@
 #include "fit/error_model.h"
 #include "fit/free_values.h"
 #include "fit/identifiability.h"
+#include "fit/fast_log.h"
 #include "fit/log_data.h"
 #include "fit/nominal.h"
 #include "fit/problem.h"
@@ -133,7 +134,7 @@ std::vector<Visible> visible_faults(const LogData& data, const ParameterVector& 
 }  // namespace
 
 Promise promise_of(const Log& log, const Table& table, const RigFile& rig, int threads) {
-  const LogData data = prepare(log, rig, moving_average_of(table));
+  const LogData data = prepare_at_points(log, rig, moving_average_of(table));
   require_channels(data);
   const Table facts = apply_rig_facts(table, rig);
   const ParameterVector base = candidate_of(facts);

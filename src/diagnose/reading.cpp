@@ -9,6 +9,7 @@
 #include "diagnose/constants.h"
 #include "diagnose/motion.h"
 #include "diagnose/whitening.h"
+#include "fit/fast_log.h"
 #include "fit/log_data.h"
 #include "fit/tuned_state.h"
 #include "simulate/simulate.h"
@@ -179,7 +180,7 @@ bool is_sampled_as_a_valve_is(const Log& log) {
 }
 
 LogData ready(const Log& log, const ReadingTrial& trial) {
-  LogData data = prepare(log, trial.rig, moving_average_of(trial.tuned));
+  LogData data = prepare_at_points(log, trial.rig, moving_average_of(trial.tuned));
   leave_out_unknown_channels(data, trial.error);
   return data;
 }

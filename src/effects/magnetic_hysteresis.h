@@ -6,6 +6,7 @@
 // at the samples but for the angle, which is the last sample's; adds no state to the equations. Leaves out the pinching
 // of the loop near saturation.
 #pragma once
+#include "base/pack.h"
 #include "effects/effect.h"
 
 namespace servodx {
@@ -36,6 +37,9 @@ struct MagneticHysteresis {
   template <class T>
   struct Memory {
     T play[elements];
+    void take_lane(const Memory& from, int lane) {
+      for (int j = 0; j < elements; ++j) servodx::take_lane(play[j], from.play[j], lane);
+    }
   };
   // History that ends here with the loop closed. spring: current [A] that holds the flapper where it is against the
   // armature's net stiffness; q: own parameters; rated [A].

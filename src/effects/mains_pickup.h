@@ -58,7 +58,9 @@ struct MainsPickup {
     for (int k = 0; k < sensors; ++k) shown[k] = shown[k] + picked_up(q, k, time);
   }
   template <class T>
-  struct Memory {};
+  struct Memory {
+    void take_lane(const Memory&, int) {}
+  };
   template <class T>
   static void rest(Memory<T>&, const T&, const T&, const T*, const T&) {}
   // [A] what the torque motor feels.

@@ -6,6 +6,7 @@
 // a jump of the command, which follow the log's time and not the delayed one. (Any text on sampled systems:
 // Astrom & Wittenmark, Computer-Controlled Systems, 1997, ch. 3.)
 #pragma once
+#include "base/pack.h"
 #include "effects/effect.h"
 
 namespace servodx {
@@ -28,6 +29,9 @@ struct TransportDelay {
     double time[history];  // [s] newest first
     T current[history];    // [A]
     bool begun = false;
+    void take_lane(const Memory& from, int lane) {
+      for (int j = 0; j < history; ++j) servodx::take_lane(current[j], from.current[j], lane);
+    }
   };
   // History of a current that stood still.
   template <class T>

@@ -103,7 +103,8 @@ double starting_slope(const std::vector<double>& t, const std::vector<double>& x
   return n >= 3 && spread > 0 ? (n * stx - st * sx) / spread : 0.0;
 }
 
-// Where the simulation starts: what is measured first.
+}  // namespace
+
 void take_start(LogData& log) {
   Scenario& s = log.scenario;
   for (const FitChannel& c : log.channels) {
@@ -116,8 +117,6 @@ void take_start(LogData& log) {
     }
   }
 }
-
-}  // namespace
 
 std::optional<double> measured_oil_temperature(const Log& log) {
   if (!log.has(Signal::oil_temperature)) return std::nullopt;
@@ -261,7 +260,8 @@ LogData slice(const LogData& log, std::size_t from, std::size_t to) {
     v.erase(v.begin(), v.begin() + static_cast<long>(from));
   };
   Scenario& s = out.scenario;
-  for (auto* v : {&s.time, &s.command, &s.supply_pressure, &s.return_pressure, &s.load_force}) cut(*v);
+  for (auto* v : {&s.time, &s.command, &s.supply_pressure, &s.return_pressure, &s.load_force, &s.fast.move}) cut(*v);
+  if (s.fast) s.fast.at = {s.fast.at.begin() + static_cast<long>(from), s.fast.at.begin() + static_cast<long>(to)};
   for (FitChannel& c : out.channels) cut(c.measured);
   take_start(out);
   return out;

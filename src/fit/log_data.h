@@ -45,6 +45,9 @@ std::optional<double> measured_oil_temperature(const Log& log);
 // What follows a gap in time is not compared until the valve has forgotten what passed in it.
 LogData prepare(const Log& log, const RigFile& rig, int window = 1);
 
+// Has the simulation start where the channels were measured first.
+void take_start(LogData& log);
+
 // Refuses a log without any signal that the model reports.
 void require_channels(const LogData& log);
 

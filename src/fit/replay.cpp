@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "fit/fast_log.h"
 #include "fit/log_data.h"
 #include "fit/problem.h"
 #include "fit/tuned_state.h"
@@ -23,7 +24,7 @@ std::vector<double> behind_gap(std::size_t samples, const std::vector<double>& v
 
 Replay replay(const Log& log, const Table& tuned, const RigFile& rig, const std::vector<Candidate>& explanations) {
   const TunedState state = tuned_state(tuned);
-  const LogData data = prepare(log, rig, state.moving_average);
+  const LogData data = prepare_at_points(log, rig, state.moving_average);
   const ErrorModel& error = state.error;
   const std::size_t samples = data.scenario.time.size();
   Replay out{log.path, data.scenario.time, data.scenario.command, data.scenario.current_measured, {}};

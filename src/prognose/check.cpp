@@ -4,6 +4,7 @@
 #include <string>
 #include <utility>
 
+#include "fit/fast_log.h"
 #include "fit/free_values.h"
 #include "fit/log_data.h"
 #include "fit/oil_of.h"
@@ -182,20 +183,22 @@ void add_parameters(CheckResult& out, const std::vector<TrackedParameter>& param
 
 CheckResult check(const Log& log, const Table& tuned, const RigFile& rig, const CheckOptions& options) {
   options.validate();
-  LogData data = prepare(log, rig);
+  LogData data = prepare(log, rig), fitted = is_fast(log) ? prepare_at_points(log, rig) : data;
   require_channels(data);
   CheckResult out;
   out.log = log.path;
   out.sha256 = log.sha256;
   out.notes = texts_of(log.notes);
-  take_oil(out, data, log, tuned, rig, options);
+  take_oil(out, fitted, log, tuned, rig, options);
+  data.scenario.oil = fitted.scenario.oil, data.scenario.oil_known = fitted.scenario.oil_known;
+  if (is_fast(log)) out.notes.push_back(fitted.notes.back());
 
   const Beside beside = monitor_beside(tuned, supply_of(data, tuned), options.model);
   add_mean_error(out, data, beside);
   const Preflight test = find_preflight(data);
   const FitChannel* spool = channel_of(data, Signal::spool_position);
   if (test.step && spool) out.offset = offset_at_rest(test, *spool, beside.monitor, data.scenario.rated_current);
-  const Track track = tracked(out, data, tuned, rig, options);
+  const Track track = tracked(out, fitted, tuned, rig, options);
 
   options.watch.tell("check", until_track, out.simulations);
   if (test.step || !test.sines.empty()) {

@@ -33,13 +33,18 @@ std::vector<double> smoothed(std::span<const double> x, double lambda) {
   return z;
 }
 
-// Trace of the smoother's matrix: D'D has the eigenvalues (2 - 2 cos(pi k / n))^2, ends aside.
-double freedom(std::size_t n, double lambda) {
+// Of the first difference times its transpose, ends aside.
+std::vector<double> eigenvalues(std::size_t n) {
+  std::vector<double> out(n);
+  for (std::size_t k = 0; k < n; ++k)
+    out[k] = 2.0 - 2.0 * std::cos(std::numbers::pi * static_cast<double>(k) / static_cast<double>(n));
+  return out;
+}
+
+// Trace of the smoother's matrix: D'D has the squares of these eigenvalues.
+double freedom(const std::vector<double>& eigenvalues, double lambda) {
   double sum = 0.0;
-  for (std::size_t k = 0; k < n; ++k) {
-    const double c = 2.0 - 2.0 * std::cos(std::numbers::pi * static_cast<double>(k) / static_cast<double>(n));
-    sum += 1.0 / (1.0 + lambda * c * c);
-  }
+  for (const double c : eigenvalues) sum += 1.0 / (1.0 + lambda * c * c);
   return sum;
 }
 
@@ -49,6 +54,7 @@ std::vector<double> without_noise(std::span<const double> x) {
   const std::size_t n = x.size();
   std::vector<double> best(x.begin(), x.end());
   if (n < 8) return best;
+  const std::vector<double> of_difference = eigenvalues(n);
   // lambda is a length in samples to the fourth power; half-decades from a tenth of a sample to the whole series.
   double least = std::numeric_limits<double>::infinity();
   for (double length = 0.1; length < static_cast<double>(n); length *= std::sqrt(std::sqrt(10.0))) {
@@ -56,7 +62,7 @@ std::vector<double> without_noise(std::span<const double> x) {
     std::vector<double> z = smoothed(x, lambda);
     double misfit = 0.0;
     for (std::size_t i = 0; i < n; ++i) misfit += (x[i] - z[i]) * (x[i] - z[i]);
-    const double left = 1.0 - freedom(n, lambda) / static_cast<double>(n);
+    const double left = 1.0 - freedom(of_difference, lambda) / static_cast<double>(n);
     const double score = misfit / (left * left);
     if (score < least) {
       least = score;

@@ -23,6 +23,7 @@
 #include "model/state.h"
 #include "parameters/list.h"
 #include "servodx/rig.h"
+#include "simulate/fast_command.h"
 #include "simulate/run_in_parts.h"
 #include "simulate/scenario.h"
 
@@ -152,6 +153,7 @@ struct Drive<T, EffectList<E...>> {
       return Nothing{};
   }
   std::tuple<decltype(memory_of(E{}))...> memory;
+  static constexpr bool acts = (requires { typename E::template Memory<T>; } || ... || false);
   void rest([[maybe_unused]] const T& current, [[maybe_unused]] const T& spring, [[maybe_unused]] const T* p,
             [[maybe_unused]] const T& rated) {
     (
@@ -159,6 +161,14 @@ struct Drive<T, EffectList<E...>> {
           if constexpr (requires { typename E::template Memory<T>; })
             E::rest(std::get<index_of<E>()>(memory), current, spring,
                     p + n_parameters + EffectList<E...>::template parameter_offset<E>(), rated);
+        }(),
+        ...);
+  }
+  void take_lane([[maybe_unused]] const Drive& from, [[maybe_unused]] int lane) {
+    (
+        [&] {
+          if constexpr (requires { typename E::template Memory<T>; })
+            std::get<index_of<E>()>(memory).take_lane(std::get<index_of<E>()>(from.memory), lane);
         }(),
         ...);
   }
@@ -259,7 +269,7 @@ class Run {
     settle();
     // The history that ends at the current which holds the spool.
     drive_.rest(y[s_current], spring(), p_.data(), rated_);
-    now_ = inputs_at(0, drive_(in.time[0], T(in.command[0]) + null_, spring(), p_.data(), rated_));
+    now_ = inputs_at(0, drive_(in.time[0], T(first_command()) + null_, spring(), p_.data(), rated_));
     for (int lane = 0; lane < lanes; ++lane)
       for (int c = 0; c < n_simulated; ++c) {
         results[lane]->signals[c].clear();
@@ -290,7 +300,13 @@ class Run {
     for (int finer = substeps * 8; finer <= substeps * 64; finer *= 8) {
       const T astray = lost();
       if (!any_due(astray)) break;
-      redo(y_before, friction_before, astray, [&] { advance(dt, finer, watch); });
+      const auto drive_first = drive_;
+      redo(y_before, friction_before, astray, [&] {
+        if (in_.fast) drive_ = drive_before_, felt_ = 0;  // what a lost flapper did to the iron
+        advance(dt, finer, watch);
+      });
+      for (int lane = 0; in_.fast && lane < width; ++lane)
+        if (!is_due(astray, lane)) drive_.take_lane(drive_first, lane);
     }
     end();
   }
@@ -299,8 +315,10 @@ class Run {
   // stand at a time after the last one; friction remembers a step; the sample is reported.
   double begin() {
     const double dt = in_.time[k_ + 1] - in_.time[k_];
-    const T current = drive_(in_.time[k_ + 1], T(in_.command[k_ + 1]) + null_, spring(), p_.data(), rated_);
-    next_ = inputs_at(k_ + 1, current);
+    const T commanded = T(in_.command[k_ + 1]) + null_;
+    if (in_.fast) drive_before_ = drive_;
+    felt_ = 0, felt_per_second_ = std::min(steps_of(dt, options_.step), felt_parts) / dt;
+    next_ = inputs_at(k_ + 1, in_.fast ? commanded : drive_(in_.time[k_ + 1], commanded, spring(), p_.data(), rated_));
     const T per = T(1.0 / dt);
     live.slope = {p_[nuisance::command_slope] * (next_.current - now_.current) * per,
                   (next_.supply_pressure - now_.supply_pressure) * per,
@@ -308,6 +326,25 @@ class Run {
     return dt;
   }
   T current(double after) const { return now_.current + live.slope.current * T(after); }
+  // Of a fast log the line over the step from `after` on that is `h` long; of any other there is one to the sample.
+  void take_command(double after, double h) {
+    if (!in_.fast) return;
+    const double t = in_.time[k_] + after;
+    const CommandLines lines = in_.fast.over(k_, t, t + h);
+    T off = null_;
+    if constexpr (Drive<T, Effects>::acts) {
+      const int part = std::min(static_cast<int>((after + 0.5 * h) * felt_per_second_), felt_parts - 1);
+      feel(part);
+      off = off + felt_off_[static_cast<std::size_t>(part)];
+    }
+    const auto at = [&](double held, double joined) {
+      return saturate(T(held) + p_[nuisance::command_slope] * T(joined - held) + off, p_[row::current_limit],
+                      constants::current_rounding);
+    };
+    const T from = at(lines.held.from, lines.joined.from), to = at(lines.held.to, lines.joined.to);
+    live.slope.current = (to - from) * T(1.0 / h);
+    now_.current = from - live.slope.current * T(after);
+  }
   void stand_at(double after) {
     const T t = T(after);
     live.at = {now_.current + live.slope.current * t, now_.supply_pressure + live.slope.supply_pressure * t,
@@ -362,9 +399,10 @@ class Run {
     return std::max(1, static_cast<int>(std::ceil(dt / largest - 1e-6)));
   }
   int schedule(double dt) {
-    const double move = std::abs(in_.command[k_ + 1] - in_.command[k_]);
-    if (move > jump * in_.rated_current) impact_until_ = in_.time[k_ + 1] + impact_time;
-    if (move > creep * in_.rated_current * dt) lively_until_ = in_.time[k_ + 1] + settle_time;
+    const double moved = std::abs(in_.command[k_ + 1] - in_.command[k_]);
+    const double jumped = in_.fast ? in_.fast.move[k_] : moved;
+    if (jumped > jump * in_.rated_current) impact_until_ = in_.time[k_ + 1] + impact_time;
+    if (std::max(moved, jumped) > creep * in_.rated_current * dt) lively_until_ = in_.time[k_ + 1] + settle_time;
     const double lively = options_.ranking ? options_.ranking_step : options_.step;
     const double usual = on_stand_ && in_.time[k_] >= lively_until_ ? options_.creep_step : lively;
     return steps_of(dt, in_.time[k_] < impact_until_ ? std::min(lively, options_.impact_step) : usual);
@@ -375,6 +413,7 @@ class Run {
     const double h = dt / steps;
     watch.interval();
     for (int j = 0; j < steps; ++j) {
+      take_command(h * j, h);
       stand_at(h * j);
       const T spool_from = y[s_x_spool], rod_from = y[s_x_piston];
       if (on_stand_) {
@@ -397,6 +436,21 @@ class Run {
     if (!in_.return_pressure.empty()) p_[effect_row<ReturnDrop>(0)] = T(0.0);
     // On a test stand the piston is held and displaces nothing, and a tube takes the place of the seal's leakage.
     if (on_stand_) p_[row::piston_area_a] = p_[row::piston_area_b] = T(0.0);
+  }
+
+  // [A] that stood before the log began.
+  double first_command() const { return in_.fast ? in_.fast.samples->value[in_.fast.at[0]] : in_.command[0]; }
+  // What the effects of the drive make of the command of a fast log, as what the motor feels beyond it: of the mean
+  // over each usual step, at its middle, once the run is there. Finer steps over the same stretch find it as it was, so
+  // a lane does not depend on another's.
+  void feel(int part) {
+    for (; felt_ <= part; ++felt_) {
+      const double h = 1.0 / felt_per_second_, t = in_.time[k_] + h * felt_;
+      const CommandLines lines = in_.fast.over(k_, t, t + h);
+      const double held = 0.5 * (lines.held.from + lines.held.to), joined = 0.5 * (lines.joined.from + lines.joined.to);
+      const T mean = T(held) + p_[nuisance::command_slope] * T(joined - held) + null_;
+      felt_off_[static_cast<std::size_t>(felt_)] = drive_(t + 0.5 * h, mean, spring(), p_.data(), rated_) - mean;
+    }
   }
 
   T input(const std::vector<double>& series, std::size_t k, const T& table) const {
@@ -455,7 +509,7 @@ class Run {
 
   // The initial state.
   void settle() {
-    const Inputs<T> u = inputs_at(0, T(in_.command[0]) + null_);
+    const Inputs<T> u = inputs_at(0, T(first_command()) + null_);
     const T half = T(0.5) * (u.supply_pressure + u.return_pressure);
     y[s_p_filter] = u.supply_pressure;
     y[s_p_pilot_1] = y[s_p_pilot_2] = half;
@@ -558,10 +612,15 @@ class Run {
   std::array<T, n_candidate> p_;
   Derived<T> d_;
   T rated_, null_;
-  Drive<T, Effects> drive_;
+  Drive<T, Effects> drive_, drive_before_;  // the other: of a fast log at the last point
   Sensed<T, Effects> sensed_;
   SampledLag<T> position_lag_;
   Inputs<T> now_, next_;
+  // Of a fast log (feel): a point is three usual steps from the next, or as far as a gap is long.
+  static constexpr int felt_parts = 4;
+  std::array<T, felt_parts> felt_off_{};  // [A]
+  int felt_ = 0;                          // parts that are known
+  double felt_per_second_ = 0;
   std::size_t k_ = 0;
   bool any_left_ = false;
   double impact_until_, lively_until_;

@@ -11,6 +11,7 @@
 #include "servodx/rig.h"
 #include "signals/rig_file.h"
 #include "signals/signal.h"
+#include "simulate/fast_command.h"
 
 namespace servodx {
 
@@ -34,9 +35,10 @@ inline constexpr int piston_velocity_start = n_values + 9;
 inline constexpr int n_candidate = n_values + 10;
 
 struct Scenario {
-  std::vector<double> time;             // [s]
-  std::vector<double> command;          // [A]
-  bool current_measured = false;        // `command` is the coil current: it drives the model behind the amplifier
+  std::vector<double> time;       // [s] the points at which a run is reported: the samples, or some of a fast log
+  std::vector<double> command;    // [A]
+  FastCommand fast;               // of a log of many samples a step; `command` then holds the means between points
+  bool current_measured = false;  // `command` is the coil current: it drives the model behind the amplifier
   std::vector<double> supply_pressure;  // [Pa] empty: the table's
   std::vector<double> return_pressure;  // [Pa] empty: the table's
   std::vector<double> load_force;       // [N] empty: none

@@ -367,6 +367,7 @@ class Followers {
       return true;
     }());
     const T at = T(s.at.current);
+    low_.take_command(s.after, s.h), high_.take_command(s.after, s.h);
     const F current = joined(low_.current(s.after) - at, high_.current(s.after) - at);
     const F slope =
         joined(low_.live.slope.current - T(s.slope.current), high_.live.slope.current - T(s.slope.current)) * F(s.h);

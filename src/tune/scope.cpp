@@ -6,6 +6,7 @@
 
 #include "base/error.h"
 #include "fit/chart.h"
+#include "fit/fast_log.h"
 #include "fit/free_values.h"
 #include "fit/nominal.h"
 #include "fit/thin.h"
@@ -60,7 +61,7 @@ void keep_width_without_spool(TuneScope& scope) {
 
 void take_logs(TuneScope& scope, const std::vector<Log>& logs, const RigFile& rig, const TuneOptions& options) {
   for (const Log& log : logs) {
-    scope.data.push_back(prepare_thinned(log, rig, options.moving_average));
+    scope.data.push_back(prepare_to_fit(log, rig, options.moving_average));
     const std::vector<std::string>& notes = scope.data.back().notes;
     scope.notes.insert(scope.notes.end(), notes.begin() + static_cast<long>(log.notes.size()), notes.end());
   }

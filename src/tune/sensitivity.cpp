@@ -7,6 +7,7 @@
 #include "base/error.h"
 #include "effects/registry.h"
 #include "fit/chart.h"
+#include "fit/fast_log.h"
 #include "fit/log_data.h"
 #include "fit/problem.h"
 #include "fit/thin.h"
@@ -124,7 +125,7 @@ Sensitivity drive_rows(const std::vector<Log>& logs, const Table& table, const R
   }
   std::vector<LogData> data;
   for (const Log& log : logs) {
-    data.push_back(prepare(log, rig, moving_average_of(table)));
+    data.push_back(prepare_at_points(log, rig, moving_average_of(table)));
     require_channels(data.back());
     for (const FitChannel& c : data.back().channels)
       if (std::find(out.channels.begin(), out.channels.end(), c.signal) == out.channels.end())
