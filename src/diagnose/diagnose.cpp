@@ -206,7 +206,7 @@ Ready make_ready(const std::vector<Log>& logs, const Table& tuned, const RigFile
     for (const LogNote& note : log.notes) out.notes.push_back(note.text);
     const bool fast = is_fast(log);
     ready.recorded.push_back(fast ? prepare(log, rig, moving_average_of(tuned)) : LogData{});
-    ready.data.push_back(fast ? at_points(log, ready.recorded.back()) : prepare(log, rig, moving_average_of(tuned)));
+    ready.data.push_back(fast ? at_points(ready.recorded.back()) : prepare(log, rig, moving_average_of(tuned)));
     if (fast) out.notes.push_back(ready.data.back().notes.back());
     leave_out_unknown_channels(ready.recorded.back(), error);
     for (std::string& note : leave_out_unknown_channels(ready.data.back(), error)) out.notes.push_back(std::move(note));

@@ -9,18 +9,17 @@
 #include <optional>
 #include <utility>
 
-#include "base/median.h"
 #include "fit/thin.h"
 #include "servodx/log.h"
 #include "signals/usual_step.h"
-#include "simulate/scenario.h"
 #include "simulate/fast_command.h"
+#include "simulate/scenario.h"
 
 namespace servodx {
 namespace {
 
 constexpr int steps_a_point = 3;      // as between the samples of 1 kHz, at which the error of the step is known
-constexpr double samples_a_step = 2;  // from so many on a step is longer than a sample: else there is nothing to save
+constexpr double samples_a_step = 2;  // from so many on steps save half; a sample of 5 kHz is a step of 0.2 ms
 constexpr double slack = 1e-6;        // of a time: stamps are rounded
 constexpr std::size_t fewest = 4;     // samples that a parabola is drawn through
 
@@ -30,14 +29,13 @@ bool steps_span_samples(const std::vector<double>& time) {
   return time.size() > fewest && usual_step(time) * samples_a_step <= step_of_fits() * (1 + slack);
 }
 
-// The samples that are points: as far apart as a point may be, and on both sides of a gap.
+// The samples that are points: as far apart as a point may be, so on both sides of a gap.
 std::vector<std::size_t> points_of(const std::vector<double>& t) {
-  const double gap = gap_over_step * usual_step(t), reach = steps_a_point * step_of_fits() * (1 + slack);
+  const double reach = steps_a_point * step_of_fits() * (1 + slack);
   std::vector<std::size_t> out = {0};
   for (std::size_t k = 0; k + 1 < t.size(); out.push_back(k)) {
     const std::size_t from = k++;
-    if (t[k] - t[from] >= gap) continue;
-    while (k + 1 < t.size() && t[k + 1] - t[from] <= reach && t[k + 1] - t[k] < gap) ++k;
+    while (k + 1 < t.size() && t[k + 1] - t[from] <= reach) ++k;
   }
   return out;
 }
@@ -53,31 +51,26 @@ struct Around {
   std::size_t point, from, to;
 };
 
-// Half way to the points beside it; not across a gap.
+// Half way to the points beside it.
 std::vector<Around> around_points(const std::vector<double>& t, const std::vector<std::size_t>& points) {
-  const double gap = gap_over_step * usual_step(t);
   std::vector<Around> out;
   for (std::size_t k = 0; k < points.size(); ++k) {
     const std::size_t p = points[k];
     Around a{p, p, p + 1};
     const double before = k > 0 ? 0.5 * (t[points[k - 1]] + t[p]) : t[p];
     const double after = k + 1 < points.size() ? 0.5 * (t[p] + t[points[k + 1]]) : t[p];
-    while (a.from > 0 && t[a.from - 1] >= before && t[a.from] - t[a.from - 1] < gap) --a.from;
-    while (a.to < t.size() && t[a.to] <= after && t[a.to] - t[a.to - 1] < gap) ++a.to;
+    while (a.from > 0 && t[a.from - 1] >= before) --a.from;
+    while (a.to < t.size() && t[a.to] <= after) ++a.to;
     out.push_back(a);
   }
   return out;
 }
 
-// Least squares of a parabola at a point.
-struct AtPoint {
-  double value = std::numeric_limits<double>::quiet_NaN();
-  double noise = 1;  // of the value over one sample's
-};
-
-// None where most of the samples are missing. A signal that stands still passes bit for bit.
-AtPoint parabola_at(const std::vector<double>& t, const std::vector<double>& x, const Around& a) {
-  double s[5] = {}, y[3] = {}, about = std::numeric_limits<double>::quiet_NaN();
+// Least squares of a parabola, at the point; NaN where most of the samples are missing. A signal that stands still
+// passes bit for bit.
+double parabola_at(const std::vector<double>& t, const std::vector<double>& x, const Around& a) {
+  constexpr double none = std::numeric_limits<double>::quiet_NaN();
+  double s[5] = {}, y[3] = {}, about = none;
   std::size_t present = 0;
   const double width = t[a.to - 1] - t[a.from];
   for (std::size_t j = a.from; j < a.to; ++j) {
@@ -90,42 +83,26 @@ AtPoint parabola_at(const std::vector<double>& t, const std::vector<double>& x, 
       if (i < 3) y[i] += power * (x[j] - about);
     }
   }
-  if (present < fewest || 2 * present < a.to - a.from) return {};
+  if (present < fewest || 2 * present < a.to - a.from) return none;
   // The first row of the normal matrix's inverse.
   const double c0 = s[2] * s[4] - s[3] * s[3], c1 = s[2] * s[3] - s[1] * s[4], c2 = s[1] * s[3] - s[2] * s[2];
   const double determinant = s[0] * c0 + s[1] * c1 + s[2] * c2;
-  if (!(determinant > 0)) return {};
-  return {about + (c0 * y[0] + c1 * y[1] + c2 * y[2]) / determinant, std::sqrt(c0 / determinant)};
+  return determinant > 0 ? about + (c0 * y[0] + c1 * y[1] + c2 * y[2]) / determinant : none;
 }
 
-struct Smoothed {
-  std::vector<double> value;
-  double noise = 1;  // of a usual point over one sample's
-};
-Smoothed smoothed(const std::vector<double>& t, const std::vector<double>& x, const std::vector<Around>& around) {
-  Smoothed out;
-  std::vector<double> noise;
-  for (const Around& a : around) {
-    const AtPoint at = parabola_at(t, x, a);
-    out.value.push_back(at.value);
-    if (!std::isnan(at.value)) noise.push_back(at.noise);
-  }
-  if (!noise.empty()) out.noise = median(noise);
+std::vector<double> smoothed(const std::vector<double>& t, const std::vector<double>& x,
+                             const std::vector<Around>& around) {
+  std::vector<double> out;
+  for (const Around& a : around) out.push_back(parabola_at(t, x, a));
   return out;
-}
-
-// Rounding that no noise stirs is the same sample after sample, and a mean does not lessen it.
-double noise_at_points(double noise, double of_points, double resolution) {
-  return noise > resolution / std::sqrt(12.0) ? noise * of_points : noise;
 }
 
 // The most that the command moves within a usual step, from sample `from` to `to`.
 double move_within_step(const CommandSamples& c, std::size_t from, std::size_t to) {
   double most = 0;
-  for (std::size_t j = from, behind = from; j <= to; ++j) {
-    while (c.time[j] - c.time[behind] > step_of_fits() * (1 + slack)) ++behind;
-    most =
-        std::max({most, std::abs(c.value[j] - c.value[behind]), j > from ? std::abs(c.value[j] - c.value[j - 1]) : 0});
+  for (std::size_t j = from + 1, behind = from; j <= to; ++j) {
+    while (behind + 1 < j && c.time[j] - c.time[behind] > step_of_fits() * (1 + slack)) ++behind;
+    most = std::max({most, std::abs(c.value[j] - c.value[behind]), std::abs(c.value[j] - c.value[j - 1])});
   }
   return most;
 }
@@ -155,14 +132,14 @@ void take_command(Scenario& s, const std::vector<std::size_t>& points, const std
 
 // The same time, in points.
 int window_of_points(int window, double step, double between) {
-  return 2 * static_cast<int>(std::lround(0.5 * (window * step / between - 1))) + 1;
+  return std::max(1, 2 * static_cast<int>(std::lround(0.5 * (window * step / between - 1))) + 1);
 }
 
 }  // namespace
 
 bool is_fast(const Log& log) { return steps_span_samples(log.time); }
 
-LogData at_points(const Log& log, const LogData& every_sample) {
+LogData at_points(const LogData& every_sample) {
   LogData out = every_sample;
   Scenario& s = out.scenario;
   const std::vector<double>& t = every_sample.scenario.time;
@@ -173,22 +150,20 @@ LogData at_points(const Log& log, const LogData& every_sample) {
   for (auto* series : {&s.supply_pressure, &s.return_pressure, &s.load_force})
     if (!series->empty()) *series = at(*series, points);
   for (FitChannel& c : out.channels) {
-    Smoothed smooth = smoothed(t, c.measured, around);
-    c.measured = std::move(smooth.value);
-    const double noise = c.noise * std::sqrt(static_cast<double>(c.filter.window));  // of one sample
-    c.filter.window = window_of_points(c.filter.window, usual_step(t), usual_step(s.time));
-    c.noise = noise_at_points(noise, smooth.noise, log.channels[index(c.signal)].resolution) /
-              std::sqrt(static_cast<double>(c.filter.window));
+    c.measured = smoothed(t, c.measured, around);
+    const int window = window_of_points(c.filter.window, usual_step(t), usual_step(s.time));
+    c.noise *= std::sqrt(static_cast<double>(c.filter.window) / window);
+    c.filter.window = window;
   }
   take_start(out);
   out.notes.push_back(
-      fmt::format("{}: sampled at {:.4g} Hz: compared at {} points of {} rows; the command is taken whole", log.path,
-                  1 / usual_step(t), points.size(), t.size()));
+      fmt::format("{}: sampled at {:.4g} Hz: compared at {} points of {} rows; the command drives the model row by row",
+                  out.path, 1 / usual_step(t), points.size(), t.size()));
   return out;
 }
 
 LogData prepare_at_points(const Log& log, const RigFile& rig, int window) {
-  return is_fast(log) ? at_points(log, prepare(log, rig, window)) : prepare(log, rig, window);
+  return is_fast(log) ? at_points(prepare(log, rig, window)) : prepare(log, rig, window);
 }
 
 LogData prepare_to_fit(const Log& log, const RigFile& rig, int window) {

@@ -6,9 +6,12 @@
 // - The command drives the model at its own rate (simulate/fast_command.h).
 // - A measured signal at a point is that of the parabola through the samples around it, half way to the next points, by
 //   least squares. It passes what is smooth over a millisecond, so the simulation needs no such smoothing: a wave of
-//   100 Hz is off by 4e-5 of itself. Noise becomes less as in any mean, and the point's sigma says so.
+//   100 Hz is off by 4e-5 of itself. A point has a third of a sample's noise at 20 kHz. It
+//   weighs as a sample all the same: `independent` was learnt with that noise, and a fast log is to tell no more.
 // - Supply, return and load, freed of noise at their own rate, run in lines from point to point.
-// What it leaves out: what the load or the supply does above some 300 Hz, and what the sensors show of it.
+// Effects of the drive answer the mean of each step: hysteresis comes out within 0.05 % of range, a transport delay,
+// which shifts the edges within a step with it, within 0.4 %. What it leaves out: what the load or the supply does
+// above some 300 Hz, and what the sensors show of it.
 #pragma once
 #include "fit/log_data.h"
 #include "servodx/log.h"
@@ -25,6 +28,6 @@ LogData prepare_at_points(const Log& log, const RigFile& rig, int window = 1);
 LogData prepare_to_fit(const Log& log, const RigFile& rig, int window = 1);
 
 // The same of a fast log of which every sample is made ready.
-LogData at_points(const Log& log, const LogData& every_sample);
+LogData at_points(const LogData& every_sample);
 
 }  // namespace servodx

@@ -22,7 +22,7 @@
 namespace servodx {
 namespace {
 
-// Edges of 20 % of rated on a sine, at 20 kHz for two thirds of a second, as the model writes it with a fault.
+// Edges of 20 % of rated on a sine, at 20 kHz for 0.4 s, as the model writes it with a fault.
 Log written(const ParameterVector& base, const Fault* fault, double severity) {
   constexpr std::array signals = {Signal::spool_position, Signal::piston_position, Signal::pressure_a,
                                   Signal::pressure_b};
@@ -31,7 +31,7 @@ Log written(const ParameterVector& base, const Fault* fault, double severity) {
   log.path = "fast.csv";
   Random random(3);
   double level = 0.1, until = 0;
-  for (int k = 0; k < 13'000; ++k) {
+  for (int k = 0; k < 8000; ++k) {
     const double t = k / 20e3;
     if (t >= until) level = -level, until = t + random.uniform(5e-3, 40e-3);
     log.time.push_back(t);
@@ -54,26 +54,24 @@ Log written(const ParameterVector& base, const Fault* fault, double severity) {
 
 TEST(DiagnoseFastLog, AFaultIsOfTheSameSizeAndGainAtPoints) {
   const ParameterVector base = candidate_of(shipped_table());
-  for (const auto& [name, severity] : {std::pair{"torque_motor_loss", 0.8}, {"radial_clearance_wear", 4.0}}) {
-    const Fault* fault = find_fault(name);
-    const Log log = written(base, fault, severity);
-    const LogData all = prepare(log, shipped_rig()), few = prepare_at_points(log, shipped_rig());
-    ASSERT_LT(20 * few.scenario.time.size(), all.scenario.time.size() + 40);
-    ErrorModel error;
-    for (const FitChannel& c : all.channels) error.channels.push_back({c.signal, 5 * c.noise, 0.0, 50.0});
-    HypothesisSettings settings;
-    settings.pairs = false;
-    settings.among = {fault};
-    const HypothesisFits by_sample = fit_hypotheses({&all}, base, error, settings);
-    const HypothesisFits at_points = fit_hypotheses({&few}, base, error, settings);
-    const HypothesisFit &whole = by_sample.fits[1], &taken = at_points.fits[1];
-    ASSERT_TRUE(whole.ok && taken.ok) << name;
-    EXPECT_NEAR(taken.point[0], whole.point[0], 0.1 * whole.standard_error[0]) << name;
-    EXPECT_NEAR(taken.standard_error[0] / whole.standard_error[0], 1, 0.1) << name;
-    const auto gain = [](const HypothesisFits& f) { return f.fits[0].misfit - f.fits[1].misfit; };
-    ASSERT_GT(gain(by_sample), 20) << name;
-    EXPECT_NEAR(gain(at_points) / gain(by_sample), 1, 0.1) << name;
-  }
+  const Fault* fault = find_fault("torque_motor_loss");
+  const Log log = written(base, fault, 0.8);
+  const LogData all = prepare(log, shipped_rig()), few = prepare_at_points(log, shipped_rig());
+  ASSERT_LT(20 * few.scenario.time.size(), all.scenario.time.size() + 40);
+  ErrorModel error;
+  for (const FitChannel& c : all.channels) error.channels.push_back({c.signal, 5 * c.noise, 0.0, 50.0});
+  HypothesisSettings settings;
+  settings.pairs = false;
+  settings.among = {fault};
+  const HypothesisFits by_sample = fit_hypotheses({&all}, base, error, settings);
+  const HypothesisFits at_points = fit_hypotheses({&few}, base, error, settings);
+  const HypothesisFit &whole = by_sample.fits[1], &taken = at_points.fits[1];
+  ASSERT_TRUE(whole.ok && taken.ok);
+  EXPECT_NEAR(taken.point[0], whole.point[0], 0.1 * whole.standard_error[0]);
+  EXPECT_NEAR(taken.standard_error[0] / whole.standard_error[0], 1, 0.1);
+  const auto gain = [](const HypothesisFits& f) { return f.fits[0].misfit - f.fits[1].misfit; };
+  ASSERT_GT(gain(by_sample), 20);
+  EXPECT_NEAR(gain(at_points) / gain(by_sample), 1, 0.1);
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
-// Logs that are sampled faster than a fit steps, compared at points: the command keeps its edges, a mean says how noisy
-// it is, and a fit finds what the fit of every sample finds.
+// Logs that are sampled faster than a fit steps, compared at points: the command keeps its edges, noise becomes
+// less, and a fit finds what the fit of every sample finds.
 #include "fit/fast_log.h"
 
 #include <gtest/gtest.h>
@@ -12,21 +12,22 @@
 #include "effects/magnetic_hysteresis.h"
 #include "effects/registry.h"
 #include "effects/transport_delay.h"
+#include "fit/chart.h"
 #include "fit/error_model.h"
 #include "fit/free_values.h"
 #include "fit/identifiability.h"
+#include "fit/log_data.h"
+#include "fit/problem.h"
 #include "fit/support.h"
 #include "optimise/box_least_squares.h"
+#include "optimise/problem.h"
 #include "parameters/list.h"
 #include "servodx/log.h"
 #include "servodx/rig.h"
-#include "shipped_data.h"
-#include "simulate/scenario.h"
-#include "fit/chart.h"
-#include "fit/log_data.h"
-#include "fit/problem.h"
-#include "optimise/problem.h"
 #include "servodx/table.h"
+#include "shipped_data.h"
+#include "signals/filters.h"
+#include "simulate/scenario.h"
 #include "simulate/simulate.h"
 
 namespace servodx {
@@ -71,7 +72,8 @@ Log written(Log log, const ParameterVector& truth, unsigned seed = 0) {
 
 ParameterVector nominal() { return candidate_of(shipped_table()); }
 
-// Rms of what a run at points differs by from the run of every sample, in ranges of the signal; the largest of four.
+// Rms of what a run at points differs by from the run of every sample, in ranges of the signal and filtered as it is in
+// fits; the largest of four.
 double off_at_points(const LogData& few, const LogData& all, const ParameterVector& v) {
   const Trajectory a = simulate(few.scenario, v), b = simulate(all.scenario, v);
   EXPECT_TRUE(a.ok && b.ok);
@@ -79,11 +81,14 @@ double off_at_points(const LogData& few, const LogData& all, const ParameterVect
   for (std::size_t c = 0; c < measured.size(); ++c) {
     const std::vector<double>&x = a.signals[c], &y = b.signals[c];
     const auto [low, high] = std::minmax_element(y.begin(), y.end());
-    double square = 0;
+    std::vector<double> off(x.size());
     for (std::size_t k = 0, j = 0; k < x.size(); ++k) {
       while (all.scenario.time[j] < few.scenario.time[k]) ++j;
-      square += std::pow((x[k] - y[j]) / (*high - *low), 2);
+      off[k] = (x[k] - y[j]) / (*high - *low);
     }
+    if (few.channels[c].filter.drift > 0) off = high_pass(few.scenario.time, off, few.channels[c].filter.drift);
+    double square = 0;
+    for (const double e : off) square += e * e;
     worst = std::max(worst, std::sqrt(square / static_cast<double>(x.size())));
   }
   return worst;
@@ -111,7 +116,7 @@ TEST(FastLog, PointsAreAMillisecondApartAtAnyRate) {
   }
 }
 
-TEST(FastLog, TheNoiseOfAPointIsWhatItSaysAndWhatIsSmoothPasses) {
+TEST(FastLog, APointHasAThirdOfTheNoiseAndWhatIsSmoothPasses) {
   Log log = commanded(20'000, 2);
   Random random(5);
   const auto smooth = [](double t) { return 1e-4 * std::sin(2 * std::numbers::pi * 40 * t); };
@@ -131,8 +136,8 @@ TEST(FastLog, TheNoiseOfAPointIsWhatItSaysAndWhatIsSmoothPasses) {
     EXPECT_EQ(taken.channels[2].measured[k], 1e7 / 3);
   }
   const double rms = std::sqrt(square / static_cast<double>(n));
-  EXPECT_NEAR(taken.channels[0].noise / rms, 1, 0.05);
-  EXPECT_LT(rms, 0.4e-6);
+  EXPECT_NEAR(rms, 0.33e-6, 0.02e-6);
+  EXPECT_NEAR(taken.channels[0].noise, 1e-6, 0.05e-6) << "and weighs as a sample";
   EXPECT_LT(bias, 2e-3 * 1e-4) << "at the ends the parabola has one side only";
 }
 
@@ -158,7 +163,7 @@ TEST(FastLog, ARunAtPointsIsTheRunOfEverySample) {
   v[effect_row<MagneticHysteresis>(0)] = 0.015;
   EXPECT_LT(off_at_points(few, all, v), 1e-3) << "with hysteresis";
   v[effect_row<TransportDelay>(0)] = 0.9e-3;
-  EXPECT_LT(off_at_points(few, all, v), 2e-3) << "with a delay";
+  EXPECT_LT(off_at_points(few, all, v), 5e-3) << "a delay moves the steps' means";
   LogData held = few;
   held.scenario.fast = {};
   v = nominal();
@@ -211,6 +216,7 @@ Found fitted(const LogData& log) {
   std::vector<FreeValue> free;
   for (const int at : {row::torque_motor_gain, row::port_width, row::bulk_modulus}) free.push_back(free_row(table, at));
   for (FreeValue& f : nuisance_values(log, 0, nominal(), 0.05)) free.push_back(std::move(f));
+  for (FreeValue& f : start_values(log, 0)) free.push_back(std::move(f));
   FitProblem problem({&log}, nominal(), free);
   for (std::size_t c = 0; c < measured.size(); ++c) {
     const ChannelError error{measured[c], 3 * noise[c], 0, 50};
@@ -238,8 +244,9 @@ TEST(FastLog, AFitAtPointsFindsWhatTheFitOfEverySampleFinds) {
   const Log log = written(commanded(20'000, 1.5, 3), truth, 7);
   const Found all = fitted(prepare(log, shipped_rig())), few = fitted(prepare_to_fit(log, shipped_rig()));
   for (std::size_t j = 0; j < 3; ++j) {
-    EXPECT_NEAR(few.value[j], all.value[j], 0.1 * all.error[j]) << j;
-    EXPECT_NEAR(few.error[j] / all.error[j], 1, 0.1) << j;
+    // The step of 1/3 ms, as at 1 kHz, is off by 0.09 of it on the width of the port, the noise of a start by the rest.
+    EXPECT_NEAR(few.value[j], all.value[j], 0.15 * all.error[j]) << j;
+    EXPECT_NEAR(few.error[j] / all.error[j], 1, 0.03) << j;
   }
 }
 
