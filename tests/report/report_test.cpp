@@ -192,7 +192,7 @@ TEST(ExplainPage, OpensWithTheCauseItsSizeAndTheChannelThatShowsIt) {
   const std::string html = explain_page({}, some_explanation(), {}).html();
   const std::string opening = html.substr(0, html.find("<section class=\"part\""));
   for (const char* shown :
-       {"FOUND", "valve glitch at first stage, 20.3 um (20 to 20.6, 90 %); tuned 0 um",
+       {"FOUND", "Mending valve glitch at first stage removes ", "20.3 um (20 to 20.6, 90 %), tuned 0 um",
         "It shows most in the spool position: off by 9 um rms as tuned, by 1 um with what was found", "(346 before)",
         "valve glitch (backlash between feedback wire and spool, full width)",
         "In place of valve glitch it may be asymmetric lap", "Valve glitch shows best in small sines."})
@@ -216,7 +216,7 @@ TEST(ExplainPage, TheHeadIsShortAndInTheLogsUnits) {
   r.retuned = {-0.2, -0.3, -0.1};
   const std::string html = explain_page({}, r, {}).html();
   const std::string opening = html.substr(0, html.find("<section class=\"part\""));
-  EXPECT_NE(opening.find("tuned 0 um; and 2 more"), std::string::npos) << opening;
+  EXPECT_NE(opening.find("valve glitch at first stage and 2 more removes"), std::string::npos) << opening;
   EXPECT_NE(opening.find("It shows most in the pressure A: off by 39.5 psi rms as tuned, by 21 psi"), std::string::npos)
       << opening;
   EXPECT_EQ(opening.find("-20 %"), std::string::npos) << opening;
