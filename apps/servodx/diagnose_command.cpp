@@ -13,6 +13,7 @@
 #include "diagnose/assessment.h"
 #include "diagnose/decide.h"
 #include "diagnose/judge.h"
+#include "diagnose/lateral_force.h"
 #include "diagnose_list.h"
 #include "door/baseline_parts.h"
 #include "fit/bode.h"
@@ -22,6 +23,7 @@
 #include "parameters/table.h"
 #include "report/conditions.h"
 #include "report/diagnosis_words.h"
+#include "report/friction_words.h"
 #include "report/json.h"
 #include "report/pages.h"
 #include "report/result_file.h"
@@ -132,6 +134,10 @@ std::vector<Bode> bodes_beside(const Diagnosis& d, const Table& tuned, const Rig
   return {};
 }
 
+std::string friction_line(const std::optional<FrictionBesideForce>& beside) {
+  return beside ? "  " + report::friction_in_words(*beside) + "\n" : "";
+}
+
 // `now`: of one verdict.
 report::TwoTests since(const std::string& last_path, const report::Json& last, const report::Header& header,
                        const report::Json& now) {
@@ -212,12 +218,15 @@ int run(const Options& options) {
     header.failed_simulations += d.assessment.failed_simulations;
     invocation.note(d.assessment.notes);
     text += (text.empty() ? "" : "\n") +
-            report::text_of(d, {.colour = colour_wanted(), .written_to = "", .call = header.call});
+            report::text_of(d, {.colour = colour_wanted(), .written_to = "", .call = header.call}) +
+            friction_line(friction_beside_force(d, tuned.table, rig));
     worst = std::max(worst, options.exit_by_action ? code_of(d.action.of) : code_of(d));
   }
   if (results.size() < (options.pool ? 1 : logs.size()))
     invocation.note({fmt::format("interrupted: {} of {} logs were judged", results.size(), logs.size())});
   report::Json json = report::diagnose_json(results);
+  for (std::size_t k = 0; k < results.size(); ++k)
+    json["results"][k]["lateral_force"] = report::friction_json(friction_beside_force(results[k], tuned.table, rig));
   report::BesideVerdict beside;
   if (last && results.size() == 1) {
     beside.last = since(options.against, *last, header, json);
@@ -226,6 +235,7 @@ int run(const Options& options) {
   }
   if (invocation.wants_report()) {
     if (results.size() == 1) beside.bodes = bodes_beside(results.front(), tuned.table, rig);
+    if (results.size() == 1) beside.friction = friction_beside_force(results.front(), tuned.table, rig);
     truths.resize(results.size());
     invocation.write_report(
         report::diagnose_page(header, results, baseline.parts->detection, replays(logs, tuned.table, rig, results),

@@ -37,7 +37,7 @@ double number(const Json& object, const char* key) {
 
 std::string relative_change(double a, double b) {
   if (!std::isfinite(a) || !std::isfinite(b) || a == 0) return "";
-  return fmt::format("{}{} %", b > a ? "+" : "", digits(100 * (b / a - 1), 2));
+  return fmt::format("{}{} %", b > a ? "+" : "", digits(100 * (b - a) / std::abs(a), 2));
 }
 
 bool is_rounding(double a, double b) { return a == b || std::abs(a - b) <= rounding * std::abs(a); }

@@ -305,6 +305,21 @@ TEST(TrendPage, AFigureThatFallsIsNotSaidToRise) {
   EXPECT_NE(trend_page({}, {v}, false).html().find("rises, over 1000 to 1"), std::string::npos);
 }
 
+// What was read last stands beside what the fitted law says of that hour.
+TEST(TrendPage, TheLastReadingStandsBesideTheLaw) {
+  ValveTrend v;
+  v.valve = "V7", v.state = TrendState::warning;
+  CheckTrend t;
+  t.name = "fidelity", t.unit = "1", t.now = 1.5;
+  t.points = {{0, 1.0, 300, true}, {10, 1.44, 300, false}};
+  v.trends = {t};
+  const std::string html = trend_page({}, {v}, false).html();
+  EXPECT_LT(html.find(">last reading<"), html.find(">by its law<"));
+  EXPECT_NE(html.find("data-value=\"1.44\">1.44<"), std::string::npos);
+  EXPECT_NE(html.find("data-value=\"1.5\">1.5<"), std::string::npos);
+  EXPECT_NE(text_of(v).find("1.44"), std::string::npos) << text_of(v);
+}
+
 // Few checks are no sign of health, and a legend names nothing that is not drawn.
 TEST(TrendPage, FewChecksSayNothingOfWear) {
   ValveTrend v;
