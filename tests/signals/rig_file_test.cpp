@@ -201,7 +201,7 @@ TEST(RigFile, EachRefusalNamesPlaceRuleAndMend) {
        "rig.toml:2: key 'nmae': unknown key; did you mean 'name'? known here: name, serial, ports, command_hold, "
        "mains_frequency, "
        "null_limit, oil_temperature, "
-       "fluid, [valve], [actuator], [lines], [supply], [fluid], [limits], [columns], [page]"},
+       "fluid, [valve], [actuator], [lines], [supply], [fluid], [limits], [columns], [page], [measurement]"},
       {"[supply]\npresure = \"207 bar\"\n",
        "rig.toml:2: key 'supply.presure': unknown key; did you mean 'pressure'? known here: pressure, return_pressure"},
       {"[valve]\ndither = { amplitude = \"1 mA\", phase = \"0\" }\n",
