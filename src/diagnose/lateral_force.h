@@ -2,8 +2,8 @@
 // with (GA paper, "Experimental analysis: Sticky spool").
 //
 // A land of length l and diameter d, its gap wider by t towards the low pressure, touches the sleeve on one side. The
-// film there holds the pressure longer than the wide side opposite, and pushes the land onto the wall (Merritt 1967,
-// Hydraulic Control Systems, sec. 10; Blackburn, Reethof & Shearer 1960, ch. 10):
+// film there loses its pressure at once, the wide side opposite holds it and pushes the land onto the wall (Merritt
+// 1967, Hydraulic Control Systems; Blackburn, Reethof & Shearer 1960, Fluid Power Control):
 //   F = pi l d dp t/(4 c) [ (2 + t/c) / sqrt((t/c)^2 + 4 t/c) - 1 ]
 // and no taper gives more than 0.27 l d dp, which is at t = 0.9 c. Limits: one land without grooves, which lower it by
 // far; laminar film; contact without dirt.
