@@ -3,6 +3,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "diagnose/assessment.h"
 #include "effects/registry.h"
 #include "effects/stiction.h"
 #include "evidence/operating_point.h"
