@@ -14,6 +14,7 @@
 #include "fit/replay.h"
 #include "fit/tuned_state.h"
 #include "invocation.h"
+#include "report/conditions.h"
 #include "report/diagnosis_words.h"
 #include "report/explain_report.h"
 #include "report/json.h"
@@ -48,6 +49,7 @@ int run(const Options& options) {
   const RigFile rig = invocation.rig();
   const Tuned tuned = invocation.tuned(options.params);
   const std::vector<Log> logs = invocation.logs(options.logs, rig);
+  report::add_to_head(invocation.header().head, logs);
   std::vector<std::string> others = options.others;
   if (others.empty() && !options.alone) {
     others = tuning_logs(options.params, tuned_state(tuned.table));

@@ -9,6 +9,7 @@
 #include "commands.h"
 #include "invocation.h"
 #include "prognose/check.h"
+#include "report/conditions.h"
 #include "report/json.h"
 #include "report/prognosis.h"
 #include "servodx/log.h"
@@ -67,6 +68,7 @@ void run_one(const Options& options) {
   const RigFile rig = invocation.rig();
   const Tuned tuned = invocation.tuned(options.params);
   const Log log = invocation.log(options.log, rig);
+  report::add_to_head(invocation.header().head, {log});
   std::optional<History> history;  // a new one is made only when there is something to store
   if (HistoryFile::there(options.history)) history = History::open(options.history);
 

@@ -10,6 +10,7 @@
 #include "fit/nominal.h"
 #include "fit/sheet.h"
 #include "invocation.h"
+#include "report/conditions.h"
 #include "report/curves.h"
 #include "report/data_sheet.h"
 #include "report/json.h"
@@ -58,6 +59,7 @@ void run(const Options& options) {
   invocation.check_files(inputs, outputs);
   const RigFile rig = invocation.rig();
   const Log log = invocation.log(options.log, rig);
+  report::add_to_head(invocation.header().head, {log});
   const auto certificate = invocation.certificate(options.certificate);
   curves::SheetOptions how;
   if (certificate) how = {certificate->errors(), certificate->guard};

@@ -5,21 +5,30 @@
 #include <algorithm>
 #include <map>
 #include <memory>
+#include <optional>
 
 #include "base/sha256.h"
 #include "baseline_beside.h"
 #include "commands.h"
+#include "diagnose/assessment.h"
 #include "diagnose/decide.h"
 #include "diagnose/judge.h"
+#include "diagnose/lateral_force.h"
 #include "diagnose_list.h"
 #include "door/baseline_parts.h"
+#include "fit/bode.h"
+#include "fit/log_data.h"
 #include "fit/replay.h"
 #include "invocation.h"
 #include "parameters/table.h"
+#include "report/conditions.h"
 #include "report/diagnosis_words.h"
+#include "report/friction_words.h"
 #include "report/json.h"
 #include "report/pages.h"
+#include "report/result_file.h"
 #include "report/text.h"
+#include "report/two_tests.h"
 #include "servodx/actions.h"
 #include "servodx/baseline.h"
 #include "servodx/diagnose.h"
@@ -34,7 +43,7 @@ namespace {
 struct Options {
   CommonOptions common;
   std::vector<std::string> logs;
-  std::string params, baseline, certificate;
+  std::string params, baseline, certificate, against;
   FaultSearch search = FaultSearch::by_fault;
   int population = 50;
   bool genetic() const { return search == FaultSearch::genetic; }
@@ -115,7 +124,41 @@ std::vector<Replay> replays(const std::vector<Log>& logs, const Table& tuned, co
   return all;
 }
 
-int run(const Options& options) {
+// Of a verdict that holds a valve: as tuned, and as the log has it. An unknown state has none.
+std::vector<Bode> bodes_beside(const Diagnosis& d, const Table& tuned, const RigFile& rig) {
+  if (d.verdict == VerdictKind::unknown) return {};
+  for (const HypothesisPrediction& h : d.assessment.explanations)
+    if (h.fault == d.fault && !h.candidate.empty())
+      return bode_of(
+          {{"as tuned", candidate_of(tuned)}, {d.fault ? report::label_of(d.fault) : "this log", h.candidate}}, rig);
+  return {};
+}
+
+std::string friction_line(const std::optional<FrictionBesideForce>& beside) {
+  return beside ? "  " + report::friction_in_words(*beside) + "\n" : "";
+}
+
+void draw_beside(report::BesideVerdict& beside, const Diagnosis& d, const Table& tuned, const RigFile& rig) {
+  beside.bodes = bodes_beside(d, tuned, rig);
+  beside.friction = friction_beside_force(d, tuned, rig);
+}
+
+report::Json whole_json(const std::vector<Diagnosis>& results, const Table& tuned, const RigFile& rig) {
+  report::Json json = report::diagnose_json(results);
+  for (std::size_t k = 0; k < results.size(); ++k)
+    json["results"][k]["lateral_force"] = report::friction_json(friction_beside_force(results[k], tuned, rig));
+  return json;
+}
+
+// `now`: of one verdict.
+report::TwoTests since(const std::string& last_path, const report::Json& last, const report::Header& header,
+                       const report::Json& now) {
+  report::Json whole = report::to_json(header);
+  whole.update(now);
+  return report::two_tests(last_path, last, whole);
+}
+
+void require_consistent(const Options& options) {
   require_option(options.logs.empty() != options.list.list.empty(), options.logs.empty() ? "LOG" : "--list",
                  options.logs.empty() ? "no log is named" : "logs are named one by one too",
                  "name the logs, or a file that lists them with --list FILE --out DIR");
@@ -123,11 +166,21 @@ int run(const Options& options) {
                  "name the logs in place of --list");
   require_option(options.list.list.empty() || options.certificate.empty(), "--certificate", "certifies one verdict",
                  "name one log in place of --list");
+  require_option(options.list.list.empty() || options.against.empty(), "--against", "is of one verdict",
+                 "name one log in place of --list");
+  const bool one = options.logs.size() == 1 || options.pool || !options.list.list.empty();
+  require_option(options.certificate.empty() || one, "--certificate", "certifies one verdict",
+                 "name one log, or add --pool");
+  require_option(options.against.empty() || one, "--against", "is of one verdict", "name one log, or add --pool");
+}
+
+int run(const Options& options) {
+  require_consistent(options);
   if (!options.list.list.empty()) return diagnose_list(options.common, options.list, options.params, options.baseline);
   Invocation invocation("diagnose", options.common);
   auto inputs = options.logs;
   inputs.insert(inputs.end(), {options.params, options.baseline});
-  for (const std::string& more : {options.list.actions, options.certificate})
+  for (const std::string& more : {options.list.actions, options.certificate, options.against})
     if (!more.empty()) inputs.push_back(more);
   invocation.check_files(inputs, {});
   const RigFile rig = invocation.rig();
@@ -137,13 +190,17 @@ int run(const Options& options) {
   std::vector<Log> logs;
   for (const std::string& path : options.logs) logs.push_back(invocation.log(path, rig));
   report::Header& header = invocation.header();
+  report::add_to_head(header.head, logs);
   header.inputs.push_back({options.baseline, baseline.parts->sha256});
   if (!options.list.actions.empty())
     header.inputs.push_back({options.list.actions, sha256_of_file(options.list.actions)});
 
-  require_option(options.certificate.empty() || logs.size() == 1 || options.pool, "--certificate",
-                 "certifies one verdict", "name one log, or add --pool");
   const auto certificate = invocation.certificate(options.certificate);
+  std::optional<report::Json> last;
+  if (!options.against.empty()) {
+    last = report::read_one_verdict(options.against);
+    header.inputs.push_back({options.against, sha256_of_file(options.against)});
+  }
 
   std::vector<std::string> truths;
   for (const Log& log : logs)
@@ -151,6 +208,7 @@ int run(const Options& options) {
 
   const Actions actions = actions_of(options.list.actions);
   header.settings = {{"false_alarm", baseline.asked}};
+  if (last) header.settings.update({{"against", options.against}});
   if (options.genetic()) header.settings.update({{"search", "genetic"}, {"population", options.population}});
   invocation.tell_of_long_fits(logs);
   if (invocation.dry_run()) return ran;
@@ -172,18 +230,27 @@ int run(const Options& options) {
     header.failed_simulations += d.assessment.failed_simulations;
     invocation.note(d.assessment.notes);
     text += (text.empty() ? "" : "\n") +
-            report::text_of(d, {.colour = colour_wanted(), .written_to = "", .call = header.call});
+            report::text_of(d, {.colour = colour_wanted(), .written_to = "", .call = header.call}) +
+            friction_line(friction_beside_force(d, tuned.table, rig));
     worst = std::max(worst, options.exit_by_action ? code_of(d.action.of) : code_of(d));
   }
   if (results.size() < (options.pool ? 1 : logs.size()))
     invocation.note({fmt::format("interrupted: {} of {} logs were judged", results.size(), logs.size())});
-  if (invocation.wants_report()) {
-    truths.resize(results.size());
-    invocation.write_report(report::diagnose_page(header, results, baseline.parts->detection,
-                                                  replays(logs, tuned.table, rig, results), truths,
-                                                  {certificate ? &*certificate : nullptr, invocation.manifest()}));
+  report::Json json = whole_json(results, tuned.table, rig);
+  report::BesideVerdict beside;
+  if (last && results.size() == 1) {
+    beside.last = since(options.against, *last, header, json);
+    text += "\n" + report::text_of(*beside.last);
+    json["last_test"] = report::to_json(*beside.last);
   }
-  invocation.finish(text, report::diagnose_json(results));
+  if (invocation.wants_report()) {
+    if (results.size() == 1) draw_beside(beside, results.front(), tuned.table, rig);
+    truths.resize(results.size());
+    invocation.write_report(
+        report::diagnose_page(header, results, baseline.parts->detection, replays(logs, tuned.table, rig, results),
+                              truths, {certificate ? &*certificate : nullptr, invocation.manifest()}, beside));
+  }
+  invocation.finish(text, json);
   const bool tells = options.list.exit_code || options.exit_by_action;
   return watch.stopped() ? interrupted : tells ? worst : ran;
 }
@@ -210,6 +277,10 @@ void add_diagnose_command(CLI::App& app, int& exit_code) {
       ->needs(list)
       ->capture_default_str();
   add_certificate_option(*command, options->certificate);
+  command
+      ->add_option("--against", options->against,
+                   "the last test of this valve, as --json wrote it: what has become of it since")
+      ->type_name("LAST.json");
   command->add_option("--params", options->params, "tuned table")->required()->type_name("TUNED");
   command->add_option("--baseline", options->baseline, "its baseline")->required()->type_name("BASE.json");
   command->add_flag("--exit-code", options->list.exit_code,

@@ -9,6 +9,7 @@
 #include "explain/explain.h"
 #include "fit/replay.h"
 #include "invocation.h"
+#include "report/conditions.h"
 #include "report/explain_report.h"
 #include "report/json.h"
 #include "report/pages.h"
@@ -53,6 +54,7 @@ int run(const Options& options) {
     how.level = baseline->asked;
   }
   const std::vector<Log> logs = invocation.logs(options.logs, rig);
+  report::add_to_head(invocation.header().head, logs);
   header.settings = {{"level", how.level}, {"baseline", options.baseline}, {"without", options.without}};
   invocation.tell_of_long_fits(logs);
   if (invocation.dry_run()) return ran;

@@ -12,6 +12,7 @@
 #include "invocation.h"
 #include "prognose/checks.h"
 #include "prognose/monitor.h"
+#include "report/conditions.h"
 #include "report/handy.h"
 #include "report/json.h"
 #include "servodx/log.h"
@@ -32,6 +33,7 @@ void run(const Options& options) {
   const RigFile rig = invocation.rig();
   const Table table = apply_rig_facts(invocation.table(options.params), rig);
   const Log log = invocation.log(options.log, rig);
+  report::add_to_head(invocation.header().head, {log});
   const LogData data = prepare(log, rig);
   MonitorParameters monitor = monitor_parameters(table, supply_of(data, table));
   const PressureLaw law = pressure_law(options.model, table, supply_of(data, table));

@@ -12,6 +12,7 @@
 #include "fit/nominal.h"
 #include "invocation.h"
 #include "report/columns.h"
+#include "report/conditions.h"
 #include "report/handy.h"
 #include "report/json.h"
 #include "report/pages.h"
@@ -40,6 +41,7 @@ void run(const Options& options) {
   const RigFile rig = invocation.rig();
   const Table table = apply_rig_facts(invocation.table(options.params), rig);
   const Log log = invocation.log(options.log, rig);
+  report::add_to_head(invocation.header().head, {log});
   require_channels(prepare(log, rig));
   const SimulateOptions steps = door::steps_of(how);
   report::Header& header = invocation.header();

@@ -18,6 +18,7 @@
 #include "invocation.h"
 #include "parameters/table.h"
 #include "report/columns.h"
+#include "report/conditions.h"
 #include "report/json.h"
 #include "report/pages.h"
 #include "report/text.h"
@@ -120,6 +121,7 @@ int run(const Options& options) {
   const RigFile rig = invocation.rig();
   const Table nominal = invocation.table(options.params);  // tune_table() applies the facts, effects' rows included
   const std::vector<Log> logs = invocation.logs(options.logs, rig);
+  report::add_to_head(invocation.header().head, logs);
 
   // Those asked for stay free; of the default ones the logs decide.
   const std::vector<std::string> effects = tune_options.effects.value_or(default_effects(rig_kind(logs, rig)));

@@ -25,15 +25,19 @@ constexpr std::size_t most_columns = 10000;
 
 constexpr double missing_value = std::numeric_limits<double>::quiet_NaN();
 
+// A comma with a blank behind it ("pressure, bar") is a part of a name where semicolons or tabs stand as well.
 char sniff_separator(std::string_view line) {
-  long counts[3] = {};
+  long counts[3] = {}, in_names = 0;
   const char candidates[3] = {';', '\t', ','};
   bool quoted = false;
-  for (char c : line) {
+  for (std::size_t k = 0; k < line.size(); ++k) {
+    const char c = line[k];
     if (c == '"') quoted = !quoted;
     if (quoted) continue;
     for (int i = 0; i < 3; ++i) counts[i] += c == candidates[i];
+    in_names += c == ',' && k + 1 < line.size() && line[k + 1] == ' ';
   }
+  if (counts[0] + counts[1] > 0) counts[2] -= in_names;
   const auto best = std::max_element(counts, counts + 3) - counts;
   return counts[best] > 0 ? candidates[best] : ',';
 }

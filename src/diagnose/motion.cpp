@@ -80,8 +80,8 @@ std::vector<MotionLeft> motion_left(const LogData& log, const Trajectory& health
       continue;
     }
     const std::vector<double> measured = moves(time, from_on(c.measured, from));
-    const std::vector<double> would = moves(time, from_on(healthy.signals[at], from));
-    const std::vector<double> does = moves(time, from_on(simulated.signals[at], from));
+    const std::vector<double> would = moves(time, from_on(c.shown(healthy.signals[at]), from));
+    const std::vector<double> does = moves(time, from_on(c.shown(simulated.signals[at]), from));
     const double noise = square_of_noise(c, time.size(), measured.size());
     const double own = square_of(measured), all = own + square_of(would) - noise;
     if (all < k::beyond_noise * noise || !(all > 0)) continue;

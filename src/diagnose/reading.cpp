@@ -198,7 +198,7 @@ double lag_of(const LogData& data, const Trajectory& healthy) {
   };
   std::vector<std::array<std::vector<double>, 2>> pairs;
   for (const FitChannel& c : data.channels)
-    pairs.push_back({changes(c.measured), changes(healthy.signals[static_cast<std::size_t>(c.simulated)])});
+    pairs.push_back({changes(c.measured), changes(c.shown(healthy.signals[static_cast<std::size_t>(c.simulated)]))});
   const auto most = static_cast<long>(k::longest_lag / (step * static_cast<double>(stride)));
   double best = 0;
   long at = 0;

@@ -62,8 +62,11 @@ Simulation simulate(const Log& log, const Table& table, const Rig& rig, const Si
                     table.path.empty() ? "the table" : table.path));
   Simulation out;
   out.time = log.time;
-  for (const FitChannel& c : data.channels)
-    out.columns.push_back(output_column(log, c.signal, std::move(run.signals[static_cast<std::size_t>(c.simulated)])));
+  for (const FitChannel& c : data.channels) {
+    std::vector<double>& simulated = run.signals[static_cast<std::size_t>(c.simulated)];
+    c.show(simulated);
+    out.columns.push_back(output_column(log, c.signal, std::move(simulated)));
+  }
   out.notes = data.notes;
   out.step = how.step, out.impact_step = how.impact_step;
   return out;

@@ -185,6 +185,17 @@ bool is_redundant(Signal which, const Log& log, Ports ports) {
   }
 }
 
+// As the rig file states it of this signal, or of all.
+std::optional<LowPass> low_pass_of(Signal which, const std::vector<double>& time, const RigFile& rig) {
+  const std::string all = "measurement.low_pass";
+  const auto own = rig.fact(all + "." + std::string(info(which).name)), cutoff = own ? own : rig.fact(all);
+  if (!cutoff) return std::nullopt;
+  constexpr int usual_order = 2;  // Sallen and Key's stage, as signal conditioners have it
+  constexpr const char* order_key = "measurement.low_pass_order";
+  const auto order = rig.words.find(order_key);
+  return LowPass(time, *cutoff, order == rig.words.end() ? usual_order : order->second.front() - '0');
+}
+
 }  // namespace
 
 long present_samples(const FitChannel& c) {
@@ -240,6 +251,7 @@ LogData prepare(const Log& log, const RigFile& rig, int window) {
     c.filter.window = window;
     c.filter.mains = rig.mains_frequency.value_or(0.0);
     if (which == Signal::piston_position) c.filter.drift = piston_high_pass;
+    c.low_pass = low_pass_of(which, s.time, rig);
     out.channels.push_back(std::move(c));
   }
   take_start(out);
@@ -262,7 +274,10 @@ LogData slice(const LogData& log, std::size_t from, std::size_t to) {
   Scenario& s = out.scenario;
   for (auto* v : {&s.time, &s.command, &s.supply_pressure, &s.return_pressure, &s.load_force, &s.fast.move}) cut(*v);
   if (s.fast) s.fast.at = {s.fast.at.begin() + static_cast<long>(from), s.fast.at.begin() + static_cast<long>(to)};
-  for (FitChannel& c : out.channels) cut(c.measured);
+  for (FitChannel& c : out.channels) {
+    cut(c.measured);
+    if (c.low_pass) c.low_pass->cut(from, to);
+  }
   take_start(out);
   return out;
 }

@@ -8,6 +8,7 @@
 #include "servodx/rig.h"
 #include "signals/filters.h"
 #include "signals/log.h"
+#include "signals/low_pass.h"
 #include "simulate/scenario.h"
 
 namespace servodx {
@@ -18,6 +19,16 @@ struct FitChannel {
   std::vector<double> measured;  // [SI] NaN where missing
   double noise = 0;              // [SI] rms of the sensor noise, from fourth differences, at least the quantisation's
   Filter filter;                 // applied to measurement and simulation alike, that is, to their difference
+  std::optional<LowPass> low_pass = {};  // of the rig, ahead of its recorder: the simulation has to pass it too
+
+  // What the recorder would have seen of a simulated signal: in place, and as a copy.
+  void show(std::vector<double>& simulated) const {
+    if (low_pass && simulated.size() == measured.size()) (*low_pass)(simulated);
+  }
+  std::vector<double> shown(std::vector<double> simulated) const {
+    show(simulated);
+    return simulated;
+  }
 };
 
 long present_samples(const FitChannel& channel);
@@ -41,8 +52,9 @@ bool all_on_test_stand(const std::vector<Log>& logs, const RigFile& rig);
 // [K] mean of what the log measured of its oil; none where it did not.
 std::optional<double> measured_oil_temperature(const Log& log);
 
-// `window` [samples]: moving average of every channel, 1 for none. The rig file's mains frequency is notched out.
-// What follows a gap in time is not compared until the valve has forgotten what passed in it.
+// `window` [samples]: moving average of every channel, 1 for none. The rig file's mains frequency is notched out, and
+// its low-pass is put on what is simulated. What follows a gap in time is not compared until the valve has forgotten
+// what passed in it.
 LogData prepare(const Log& log, const RigFile& rig, int window = 1);
 
 // Has the simulation start where the channels were measured first.

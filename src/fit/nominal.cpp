@@ -1,5 +1,7 @@
 #include "fit/nominal.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -319,24 +321,36 @@ class Facts {
 
   void lines() {
     const auto length = fact("lines.length"), bore = fact("lines.bore");
+    if (!length && !bore && fact("lines.loss"))
+      refuse("lines.fittings", "fittings are of a line with a length and a bore", "add [lines] length and bore");
     if (!length && !bore) return;
     if (!length) refuse("lines.bore", "a line has a length too", "add [lines] length");
     if (!bore) refuse("lines.length", "a line has a bore too", "add [lines] bore");
     const double area = disc(*bore), volume = area * *length;
-    const double resistance =
-        (darcy_friction * *length / *bore + fitting_losses) * rig_.fluid.density / (2 * area * area);
+    const double losses = fact("lines.loss").value_or(fitting_losses);
+    const double resistance = (darcy_friction * *length / *bore + losses) * rig_.fluid.density / (2 * area * area);
     const bool of_its_own = lines_of_their_own(*length, *bore, resistance);
     set(row::hose_resistance, tidy(of_its_own ? part_ahead_of_tap * resistance : resistance), 0, 20 * resistance,
-        "lines.length, lines.bore",
-        of_its_own ? "a tenth of line_loss, ahead of the tap" : "(0.03 L/D + 2) density / (2 area^2)");
+        line_keys(), of_its_own ? "a tenth of line_loss, ahead of the tap" : line_formula());
     const double compliance = volume * (1 / value(row::bulk_modulus) + 1 / (line_wall_over_bore * steel_modulus));
     set(row::hose_compliance, tidy(compliance), 0, 30 * compliance, "lines.length, lines.bore",
         "volume (1 / bulk_modulus + D / (E wall)), steel, wall D/10; a hose within the bound");
   }
 
+  const char* line_keys() const {
+    return fact("lines.loss") ? "lines.length, lines.bore, lines.fittings" : "lines.length, lines.bore";
+  }
+  std::string line_formula() const {
+    const double losses = fact("lines.loss").value_or(fitting_losses);
+    constexpr const char* list_key = "lines.fittings";
+    const auto listed = rig_.words.find(list_key);
+    return fmt::format("(0.03 L/D + {:.4g}) density / (2 area^2)", losses) +
+           (listed == rig_.words.end() ? "" : ", of " + listed->second);
+  }
+
   // Rows of an effect that only an extended table has: then the drop stands behind the taps.
   bool lines_of_their_own(double length, double bore, double resistance) {
-    const auto set_row = [&](const char* name, double nominal, double range, const char* formula) {
+    const auto set_row = [&](const char* name, double nominal, double range, const std::string& formula) {
       const int at = table_.find(name);
       if (at >= 0) set(at, tidy(nominal), 0, range * nominal, "lines.length, lines.bore", formula);
       return at >= 0;
@@ -344,7 +358,7 @@ class Facts {
     constexpr double known = 4, wide = 20;  // geometry and fluid; what bends and a flow that is not developed add
     const double viscosity = rig_.fluid.density * rig_.fluid.kinematic_viscosity;
     set_row("line_resistance", 128 * viscosity * length / (pi * std::pow(bore, 4)), wide, "128 viscosity L / (pi D^4)");
-    set_row("line_loss", resistance, wide, "(0.03 L/D + 2) density / (2 area^2)");
+    set_row("line_loss", resistance, wide, line_formula());
     return set_row("line_inertance", rig_.fluid.density * length / disc(bore), known, "density L / area");
   }
 

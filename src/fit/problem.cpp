@@ -65,9 +65,9 @@ void FitProblem::set_sigma(int log, int channel, std::vector<double> sigma) { si
 
 void FitProblem::residual(int log, int channel, const Trajectory& t, std::vector<double>& r) const {
   const FitChannel& c = logs_[log]->channels[channel];
-  const std::vector<double>& simulated = t.signals[c.simulated];
-  r.resize(c.measured.size());
-  for (std::size_t k = 0; k < r.size(); ++k) r[k] = c.measured[k] - simulated[k];
+  r.assign(t.signals[c.simulated].begin(), t.signals[c.simulated].end());
+  c.show(r);
+  for (std::size_t k = 0; k < r.size(); ++k) r[k] = c.measured[k] - r[k];
   Filter before = c.filter;
   before.drift = 0.0;
   if (before.window != 1 || before.mains > 0.0) r = before(logs_[log]->scenario.time, r);

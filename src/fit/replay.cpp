@@ -37,7 +37,7 @@ Replay replay(const Log& log, const Table& tuned, const RigFile& rig, const std:
     const Trajectory t = problem.trajectories({}).front();
     if (!t.ok) continue;
     for (std::size_t c = 0; c < data.channels.size(); ++c) {
-      const std::vector<double>& simulated = t.signals[data.channels[c].simulated];
+      const std::vector<double> simulated = part.channels[c].shown(t.signals[data.channels[c].simulated]);
       out.channels[c].simulated.push_back({e.name, behind_gap(samples, simulated),
                                            behind_gap(samples, problem.raw_residual(0, static_cast<int>(c), t))});
       if (out.channels[c].sigma.empty() && e.from == 0)

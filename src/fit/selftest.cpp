@@ -39,7 +39,7 @@ LogData twin_of(const LogData& log, const Trajectory& truth, const std::vector<d
   LogData twin = log;
   for (std::size_t c = 0; c < log.channels.size(); ++c) {
     std::vector<double>& y = twin.channels[c].measured;
-    const std::vector<double>& x = truth.signals[log.channels[c].simulated];
+    const std::vector<double> x = log.channels[c].shown(truth.signals[log.channels[c].simulated]);
     for (std::size_t k = 0; k < y.size(); ++k) {
       const double indicated = random.normal(x[k], noise[c]);
       if (std::isnan(y[k])) continue;

@@ -11,16 +11,15 @@
 #include "fit/chart.h"
 #include "fit/constants.h"
 #include "fit/free_values.h"
-#include "fit/log_data.h"
 #include "fit/problem.h"
-#include "model/state.h"
+#include "fit/stand.h"
 #include "optimise/box_least_squares.h"
 #include "optimise/local.h"
 #include "optimise/problem.h"
 #include "parameters/list.h"
-#include "servodx/log.h"
 #include "simulate/scenario.h"
 #include "simulate/simulate.h"
+#include "fit/log_data.h"
 
 namespace servodx {
 namespace {
@@ -30,49 +29,6 @@ using namespace fit_constants;
 constexpr double two_pi = 2 * std::numbers::pi;
 constexpr std::array fitted_rows = {row::flapper_stiffness, row::torque_motor_frequency, row::hydraulic_amplifier_gain,
                                     row::fixed_orifice_diameter, row::driver_bandwidth};
-
-// A test at the stand, and what it was made for: a step, or a sine of one frequency and amplitude.
-struct StandTest {
-  Scenario scenario;
-  double frequency = 0;   // [Hz] of the sine; 0: a step
-  std::size_t first = 0;  // sample of the step, or where a sine is read from
-};
-
-Scenario at_stand(const RigFile& rig) {
-  constexpr double reference_temperature = 313.15;  // [K] where a table's values hold
-  Scenario s;
-  s.ports = Ports::free;
-  s.oil = oil_at(rig.fluid.density, rig.fluid.kinematic_viscosity, reference_temperature);
-  s.spool_start = 0;
-  return s;
-}
-
-StandTest step_test(const RigFile& rig, double rated, double amplitude, double stated) {
-  StandTest test{at_stand(rig)};
-  const double h = stated / samples_a_rise;
-  test.first = static_cast<std::size_t>(rest_before_step * samples_a_rise);
-  const auto n = test.first + static_cast<std::size_t>(seen_after_step * samples_a_rise) + 1;
-  for (std::size_t k = 0; k < n; ++k) {
-    test.scenario.time.push_back(static_cast<double>(k) * h);
-    test.scenario.command.push_back(k < test.first ? 0 : amplitude * rated);
-  }
-  test.scenario.command_slope = 0;
-  test.scenario.rated_current = rated;
-  return test;
-}
-
-StandTest sine_test(const RigFile& rig, double rated, double amplitude, double frequency, int cycles) {
-  StandTest test{at_stand(rig), frequency};
-  test.first = static_cast<std::size_t>(cycles * samples_a_cycle);
-  for (std::size_t k = 0; k <= 2 * test.first; ++k) {
-    const double turn = static_cast<double>(k) / samples_a_cycle;
-    test.scenario.time.push_back(turn / frequency);
-    test.scenario.command.push_back(amplitude * rated * std::sin(two_pi * turn));
-  }
-  test.scenario.command_slope = 1;
-  test.scenario.rated_current = rated;
-  return test;
-}
 
 // [s] from the step until the spool has made its way; of one that is still on it at the end, as if it went on in a
 // line, so that a search sees which way is faster.
@@ -84,17 +40,6 @@ double rise_time(const StandTest& test, const std::vector<double>& spool) {
     if (part >= risen) return t[k - 1] + (t[k] - t[k - 1]) * (risen - before) / (part - before) - t[test.first];
   }
   return t.back() - t[test.first];
-}
-
-// Spool over command, relative to a valve of the stroke per current of 1. Phase negative where it lags.
-std::complex<double> response(const StandTest& test, const std::vector<double>& spool) {
-  std::complex<double> in = 0, out = 0;
-  for (std::size_t k = test.first; k + 1 < spool.size(); ++k) {
-    const auto turn = std::polar(1.0, -two_pi * test.frequency * test.scenario.time[k]);
-    in += turn * test.scenario.command[k];
-    out += turn * spool[k];
-  }
-  return out / in;
 }
 
 double decibel(double ratio) { return 20 * std::log10(ratio); }
@@ -113,28 +58,19 @@ class Stand {
         at_[{0, f.amplitude}] = tests_.size() - 1;
         continue;
       }
-      add(rig, rated, f.amplitude, f.frequency,
-          std::max(least_cycles, static_cast<int>(std::ceil(settled_after * f.frequency))));
+      add(rig, rated, f.amplitude, f.frequency, settling_cycles(f.frequency));
       if (f.kind == SheetKind::gain) add(rig, rated, f.amplitude, low_, 1);
     }
   }
 
   std::vector<std::vector<double>> figures(const std::vector<ParameterVector>& candidates) const {
-    const std::size_t n = candidates.size();
-    std::vector<Trajectory> runs(n * tests_.size());
-    std::vector<Job> jobs;
-    for (std::size_t test = 0; test < tests_.size(); ++test)
-      for (std::size_t k = 0; k < n; ++k) jobs.push_back({&tests_[test].scenario, &candidates[k], &runs[test * n + k]});
-    SimulateOptions how;  // the usual steps: finer ones move no figure by a tenth of a per cent
-    how.wanted.fill(false);
-    how.wanted[static_cast<std::size_t>(simulated_index(Signal::spool_position))] = true;
-    simulate(jobs, how);
-    std::vector<std::vector<double>> out(n);
-    for (std::size_t k = 0; k < n; ++k) {
-      const auto run = [&](std::size_t test) -> const Trajectory& { return runs[test * n + k]; };
+    const auto runs = spools(tests_, candidates);
+    std::vector<std::vector<double>> out(candidates.size());
+    for (std::size_t k = 0; k < candidates.size(); ++k) {
+      const auto spool = [&](std::size_t test) -> const std::vector<double>& { return runs[test][k]; };
       bool ok = true;
-      for (std::size_t test = 0; test < tests_.size(); ++test) ok = ok && run(test).ok;
-      for (std::size_t f = 0; ok && f < figures_.size(); ++f) out[k].push_back(read(figures_[f], run));
+      for (std::size_t test = 0; test < tests_.size(); ++test) ok = ok && !spool(test).empty();
+      for (std::size_t f = 0; ok && f < figures_.size(); ++f) out[k].push_back(read(figures_[f], spool));
     }
     return out;
   }
@@ -145,11 +81,8 @@ class Stand {
     tests_.push_back(sine_test(rig, rated, amplitude, frequency, cycles));
   }
 
-  template <class Run>
-  double read(const SheetFigure& f, const Run& run) const {
-    const auto spool = [&](std::size_t test) -> const std::vector<double>& {
-      return run(test).signals[static_cast<std::size_t>(simulated_index(Signal::spool_position))];
-    };
+  template <class Spool>
+  double read(const SheetFigure& f, const Spool& spool) const {
     const auto at = [&](double frequency) { return at_.at({frequency, f.amplitude}); };
     if (f.kind == SheetKind::step_rise_time) return rise_time(tests_[at(0)], spool(at(0)));
     const auto g = response(tests_[at(f.frequency)], spool(at(f.frequency)));
@@ -164,11 +97,6 @@ class Stand {
   std::map<std::pair<double, double>, std::size_t> at_;  // by frequency and amplitude
   double low_ = 0;                                       // [Hz]
 };
-
-double rated_current(const RigFile& rig, const ParameterVector& candidate) {
-  constexpr double limit_over_rated = 1.5;  // as nominal.cpp has it
-  return rig.fact("valve.rated_current").value_or(candidate[row::current_limit] / limit_over_rated);
-}
 
 std::vector<FreeValue> free_rows(Table table, const RigFile& rig) {
   for (std::size_t k = 0; k < table.rows.size(); ++k)

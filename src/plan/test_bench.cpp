@@ -153,7 +153,7 @@ TestRun TestBench::measure(LogData log, const Trajectory& base, std::span<const 
   TestRun out;
   if (!base.ok) return out;
   for (FitChannel& c : log.channels) {
-    c.measured = base.signals[static_cast<std::size_t>(c.simulated)];
+    c.measured = c.shown(base.signals[static_cast<std::size_t>(c.simulated)]);
     std::fill_n(c.measured.begin(), unseen_samples(rate_), std::nan(""));
   }
   FitProblem problem({&log}, set.base, {});

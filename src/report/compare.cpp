@@ -6,7 +6,6 @@
 #include <cmath>
 #include <map>
 
-#include "base/csv.h"
 #include "base/error.h"
 #include "base/json_text.h"
 #include "base/result_schema.h"
@@ -14,6 +13,8 @@
 #include "report/handy.h"
 #include "report/parts.h"
 #include "report/replay_part.h"
+#include "report/result_file.h"
+#include "report/two_tests.h"
 
 namespace servodx::report {
 namespace {
@@ -22,18 +23,6 @@ constexpr double certain_sigmas = 3.0;
 constexpr double rounding = 1e-9;      // relative: sums in another order
 constexpr std::size_t longest = 40;    // characters of a text in a terminal's column
 constexpr std::size_t most_named = 3;  // in the headline
-
-bool is_result(const Json& json) {
-  const auto tool = json.is_object() ? json.find("tool") : json.end();
-  return json.is_object() && json.contains("command") && tool != json.end() && *tool == "servodx";
-}
-
-Json read_result(const std::string& path) {
-  Json json = json_or_discarded<Json>(read_file(path));
-  if (!is_result(json))
-    throw InputError({path, 0, ""}, "is no result of servodx", "name a file that --json wrote, or a baseline");
-  return json;
-}
 
 std::string shown(const Json& value) {
   if (value.is_string()) return value.get<std::string>();
@@ -48,7 +37,7 @@ double number(const Json& object, const char* key) {
 
 std::string relative_change(double a, double b) {
   if (!std::isfinite(a) || !std::isfinite(b) || a == 0) return "";
-  return fmt::format("{}{} %", b > a ? "+" : "", digits(100 * (b / a - 1), 2));
+  return fmt::format("{}{} %", b > a ? "+" : "", digits(100 * (b - a) / std::abs(a), 2));
 }
 
 bool is_rounding(double a, double b) { return a == b || std::abs(a - b) <= rounding * std::abs(a); }
@@ -160,13 +149,13 @@ Comparison compare(const std::string& path_a, const std::string& path_b) {
                      fmt::format("is a result of '{}', the other of '{}'", shown(b["command"]), c.command),
                      "compare results of one command");
   compare_conditions(a, b, c);
+  if (holds_one_verdict(a) && holds_one_verdict(b)) c.tests = two_tests(path_a, a, b);
   for (Json* json : {&a, &b})
     for (const char* key : {"tool", "version", "schema", "command", "seed", "settings", "inputs", "seconds", "notes",
                             "simulations", "failed_simulations", "output"})
       json->erase(key);
   // One log against another: diagnoses of one log each compare though the logs differ.
-  if (c.command == "diagnose" && a["results"].size() == 1 && b["results"].size() == 1)
-    a = a["results"][0], b = b["results"][0];
+  if (c.tests) a = a["results"][0], b = b["results"][0];
   Comparing(c).tree("", a, b);
   std::stable_sort(c.differences.begin(), c.differences.end(), [](const auto& x, const auto& y) {
     const auto rank = [](const Comparison::Difference& d) {
@@ -180,6 +169,7 @@ Comparison compare(const std::string& path_a, const std::string& path_b) {
 namespace {
 
 std::string headline(const Comparison& c) {
+  if (c.tests) return finding_of(*c.tests);
   if (c.differences.empty()) return fmt::format("The two results of '{}' are the same", c.command);
   std::vector<std::string> matter;
   for (const Comparison::Difference& d : c.differences)
@@ -230,8 +220,13 @@ Json compare_json(const Comparison& c) {
                            {"change", d.change},
                            {"sigmas", std::isfinite(d.sigmas) ? Json(d.sigmas) : Json(nullptr)},
                            {"matters", d.matters}});
-  return {{"a", c.a},       {"b", c.b}, {"of", c.command}, {"conditions", c.conditions}, {"differences", differences},
-          {"equal", c.same}};
+  return {{"a", c.a},
+          {"b", c.b},
+          {"of", c.command},
+          {"conditions", c.conditions},
+          {"differences", differences},
+          {"equal", c.same},
+          {"tests", c.tests ? to_json(*c.tests) : Json(nullptr)}};
 }
 
 Page compare_page(const Header& header, const Comparison& c) {
@@ -240,12 +235,16 @@ Page compare_page(const Header& header, const Comparison& c) {
   v.headline = words(headline(c));
   v.detail = c.a + "  (A) and  " + c.b + "  (B)";
   const bool any = std::any_of(c.differences.begin(), c.differences.end(), [](const auto& d) { return d.matters; });
-  v.tone = any ? Tone::doubt : Tone::good;
+  v.tone = c.tests ? tone_of(*c.tests) : any ? Tone::doubt : Tone::good;
   v.facts = {{"Differ", std::to_string(c.differences.size())}, {"Equal", std::to_string(c.same)}};
   for (const std::string& condition : c.conditions) v.reasons.push_back("Conditions differ: " + condition);
   page.verdict(v);
+  if (c.tests) {
+    page.section("Since the last test", "A is taken for the last test of the valve, B for this one.");
+    add_two_tests(page, *c.tests);
+  }
   if (c.differences.empty()) return page;
-  page.section("Differences");
+  page.section("Differences", "", c.tests.has_value());
   TablePart table{"From A to B", "lrrrr", {"", "A", "B", "change", "sigmas"}, {}, 40};
   for (const auto& d : c.differences) {
     Cell name = words(d.what);

@@ -4,11 +4,13 @@
 // standard errors of the difference (independent fits: sqrt(a^2 + b^2)); verdicts log by log; whatever else a command
 // reports number by number.
 #pragma once
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "report/json.h"
 #include "report/page.h"
+#include "report/two_tests.h"
 
 namespace servodx::report {
 
@@ -23,6 +25,7 @@ struct Comparison {
   };
   std::vector<Difference> differences;  // those that matter first
   std::size_t same = 0;                 // things compared that are equal
+  std::optional<TwoTests> tests;        // of two verdicts about one log each
 };
 
 // Throws InputError where the files are not results of one command.

@@ -11,6 +11,7 @@
 #include "base/celsius.h"
 #include "report/columns.h"
 #include "report/handy.h"
+#include "report/page_head.h"
 #include "report/parts.h"
 #include "servodx/log.h"
 
@@ -112,6 +113,19 @@ std::vector<ConditionFigure> condition_figures(const std::vector<ConditionRow>& 
   for (const ConditionRow& r : rows)
     if (r.value) out.push_back({of(r.of).name, size(r.of, r.value), signals[static_cast<std::size_t>(r.of)]});
   return out;
+}
+
+void add_to_head(PageHead& head, const std::vector<Log>& logs) {
+  for (const auto& [condition, name] : {std::pair(Condition::oil, "Oil"), std::pair(Condition::supply, "Supply")}) {
+    std::optional<double> lowest, highest;
+    for (const Log& log : logs) {
+      const std::optional<double> value = operating_point_of(log)[static_cast<std::size_t>(condition)];
+      if (!value) continue;
+      lowest = std::min(lowest.value_or(*value), *value);
+      highest = std::max(highest.value_or(*value), *value);
+    }
+    if (lowest) head.say(name, range(condition, lowest, highest));
+  }
 }
 
 void add_to_head(Page& page, const std::vector<ConditionRow>& rows) {

@@ -9,6 +9,7 @@
 #include "report/page.h"
 #include "servodx/log.h"
 #include "signals/signal.h"
+#include "report/page_head.h"
 
 namespace servodx::report {
 
@@ -28,6 +29,8 @@ struct ConditionFigure {
 };
 std::vector<ConditionFigure> condition_figures(const std::vector<ConditionRow>& rows);
 // Oil and supply of the test, into the page's head.
+// Oil and supply of these logs, "208 bar to 210 bar" of several.
+void add_to_head(PageHead& head, const std::vector<Log>& logs);
 void add_to_head(Page& page, const std::vector<ConditionRow>& rows);
 
 }  // namespace servodx::report

@@ -104,8 +104,8 @@ std::optional<Plot> between(const Plot& sweep, const std::string& name, const st
 }
 
 void add_response(Page& page, const Sheet& sheet) {
-  Plot gain{.title = "amplitude ratio [dB]", .x_label = "frequency [Hz]", .group = "bode"};
-  Plot phase{.title = "phase [deg]", .x_label = "frequency [Hz]", .group = "bode"};
+  Plot gain{.title = "amplitude ratio [dB]", .x_label = "frequency [Hz]", .group = "bode", .log_x = true};
+  Plot phase{.title = "phase [deg]", .x_label = "frequency [Hz]", .group = "bode", .log_x = true};
   Series a{"amplitude", {}, Role::measured}, p{"phase", {}, Role::measured};
   for (const curves::ResponsePoint& r : sheet.response) {
     gain.x.push_back(r.frequency), phase.x.push_back(r.frequency);

@@ -18,12 +18,14 @@
 #include "faults/fault.h"
 #include "faults/gross_finding.h"
 #include "fit/replay.h"
+#include "report/bode_part.h"
 #include "report/call_names.h"
 #include "report/certificate.h"
 #include "report/columns.h"
 #include "report/conditions.h"
 #include "report/curves.h"
 #include "report/diagnosis_words.h"
+#include "report/friction_words.h"
 #include "report/handy.h"
 #include "report/json.h"
 #include "report/page.h"
@@ -31,6 +33,7 @@
 #include "report/parameter_part.h"
 #include "report/parts.h"
 #include "report/replay_part.h"
+#include "report/two_tests.h"
 #include "servodx/actions.h"
 
 namespace servodx::report {
@@ -322,15 +325,29 @@ void add_confusion(Page& page, const std::vector<Diagnosis>& results, const std:
 
 Page diagnose_page(const Header& header, const std::vector<Diagnosis>& results, const DetectionBaseline& baseline,
                    const std::vector<Replay>& replays, const std::vector<std::string>& truths,
-                   const CertificateOf& certificate) {
+                   const CertificateOf& certificate, const BesideVerdict& beside) {
   if (results.size() == 1) {
     const Diagnosis& d = results.front();
     Page page(header, "Diagnosis of " + file_name(d.log));
     add_to_head(page, d.conditions);
-    page.verdict(verdict_of(d, baseline, header.call));
+    Verdict verdict = verdict_of(d, baseline, header.call);
+    if (beside.last) verdict.facts.push_back({"Since the last test", words_of(*beside.last)});
+    if (beside.friction) verdict.reasons.push_back(sentence(friction_in_words(*beside.friction)));
+    page.verdict(verdict);
     if (certificate.sheet) certify(page, d, baseline, header, certificate);
+    if (beside.last) {
+      page.section("Since the last test",
+                   "Both verdicts and what moved between them; " + beside.last->last_name + " has the last one.");
+      add_two_tests(page, *beside.last);
+    }
     page.section(d.assessment.unjudgeable == Unjudgeable::no ? "Why" : "This log");
     add_details(page, d, replays, 1);
+    if (!beside.bodes.empty()) {
+      page.section("Frequency response",
+                   "By simulation on a test stand with free ports and oil at 40 degC: the valve as tuned, and as this "
+                   "log has it. Both are set over the tuned valve at its lowest frequency.");
+      add_bode(page, beside.bodes);
+    }
     return page;
   }
   long faults = 0, unknown = 0;

@@ -46,14 +46,22 @@ std::string headline(const ExplainResult& r) {
   if (r.causes.empty())
     return "Something is missing that no cause in the list mends" + (r.where.empty() ? "" : ", near " + words(r.where));
   const ExplainedCause& best = r.causes.front();
-  std::string text = fmt::format("{} at {}", words(best.effect), words(best.where));
+  const std::string more = r.causes.size() > 1 ? fmt::format(" and {} more", r.causes.size() - 1) : "";
+  const std::string name = words(best.effect) + " at " + words(best.where) + more;
+  if (r.heldout_gain.value <= 0) return name;  // told by the blocks alone
+  return fmt::format("Mending {} removes {} of the misfit", name, percent(r.heldout_gain.value));
+}
+
+// "610 N (596 to 623, 90 %); tuned 150 N"
+std::string size_of_first(const ExplainResult& r) {
+  std::string text;
+  const ExplainedCause& best = r.causes.front();
   if (best.parameters.size() == 1) {
     const ExplainedParameter& p = best.parameters.front();
     const HandyUnit unit = handy_unit(p.unit, p.value);
-    text += fmt::format(", {}; tuned {}{}{}", size_of(p), digits(p.before * unit.factor), unit.name.empty() ? "" : " ",
-                        unit.name);
+    text = fmt::format("{}, tuned {}{}{}", size_of(p), digits(p.before * unit.factor), unit.name.empty() ? "" : " ",
+                       unit.name);
   }
-  if (r.causes.size() > 1) text += fmt::format("; and {} more", r.causes.size() - 1);
   return text;
 }
 
@@ -220,6 +228,9 @@ Verdict verdict_of(const ExplainResult& r) {
   v.headline = headline(r);
   if (r.verdict == ExplainVerdict::extended)
     v.detail = "What the simulation has wrong on these logs: " + with_meanings(r.causes) + ".";
+  if (!r.causes.empty())
+    if (const std::string size = size_of_first(r); !size.empty())
+      v.facts.push_back({words(r.causes.front().effect), size});
   if (r.curve) v.detail = "Nothing in the list mends it; a curve learnt from the logs does.";
   if (r.suspicion) v.detail = "Not beyond healthy logs: " + suspicion_in_words(*r.suspicion) + ".";
   if (!r.depends_on.empty()) v.facts.push_back({"It follows", words(r.depends_on)});

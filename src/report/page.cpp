@@ -152,7 +152,8 @@ void Page::add(const Plot& plot) {
                {"x_shown", plot.x_label_shown},
                {"group", plot.group},
                {"low", plot.low},
-               {"log", plot.log_y}};
+               {"log", plot.log_y},
+               {"log_x", plot.log_x}};
   head["title"] = plot.title;
   Json series = Json::array();
   for (const Series& s : plot.series)

@@ -42,7 +42,7 @@ struct Plot {
   std::vector<Mark> x_marks = {}, y_marks = {};
   std::string group = {};  // plots of one group share zoom and cursor; empty: alone
   bool low = false;        // half the height
-  bool log_y = false;
+  bool log_x = false, log_y = false;
   std::size_t most_rows = 8000;  // beyond this, thinned (report/thin.h)
 };
 

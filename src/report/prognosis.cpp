@@ -155,8 +155,8 @@ std::string text_of(const ValveTrend& v) {
   if (v.cause) text += fmt::format("  cause        {}\n", *v.cause);
   if (v.alert_at) text += fmt::format("  alert        at {} h\n", digits(*v.alert_at, 5));
   if (v.remaining) text += fmt::format("  life left    {}\n", life_text(*v.remaining));
-  Columns rows("lllllll", 2);
-  rows.row({"check", "state", "began", "now", "warning", "failure", "life left"});
+  Columns rows("llllllll", 2);
+  rows.row({"check", "state", "began", "last", "by law", "warning", "failure", "life left"});
   for (const CheckTrend& t : v.trends) {
     const auto bounds = [&](const Level& l) {
       std::string s;
@@ -166,6 +166,7 @@ std::string text_of(const ValveTrend& v) {
     };
     rows.row({t.cause.empty() ? t.name.text() : t.name.text() + " (" + t.cause + ")",
               t.trend ? word_of(t.state) : std::string(word_of(t.state)) + ", no trend", handy(t.healthy, t.unit),
+              t.points.empty() ? "-" : handy(t.points.back().value, t.unit),
               std::isfinite(t.now) ? handy(t.now, t.unit) : "-", bounds(t.warning), bounds(t.failure),
               t.remaining ? life_text(*t.remaining) : "-"});
   }

@@ -121,11 +121,16 @@ std::optional<Plot> life_plot(const Life& life, double now) {
 }
 
 TablePart table_of(const ValveTrend& v, double coverage) {
-  TablePart table{"Checks of " + v.valve, "llrrll", {"check", "state", "began", "now", "trend", "life left"}, {}, 0};
+  TablePart table{"Checks of " + v.valve,
+                  "llrrrll",
+                  {"check", "state", "began", "last reading", "by its law", "trend", "life left"},
+                  {},
+                  0};
   for (const CheckTrend& t : v.trends) {
     Cell state = word_of(t.state);
     state.tone = tone_of(t.state);
     table.rows.push_back({named(t.name, t.cause), state, Cell(size_of(t, t.healthy), t.healthy),
+                          t.points.empty() ? Cell("-") : Cell(size_of(t, t.points.back().value), t.points.back().value),
                           std::isfinite(t.now) ? Cell(size_of(t, t.now), t.now) : Cell("-"), growth(t),
                           moves_away(t) ? "not towards failure" : left(t.remaining, coverage)});
   }

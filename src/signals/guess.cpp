@@ -23,20 +23,46 @@ std::string small(std::string text) {
   return text;
 }
 
-// Umlauts as they are written without: "Oeltemperatur".
-std::string without_umlauts(std::string text) {
-  constexpr std::pair<std::string_view, std::string_view> umlauts[] = {
-      {"\xC3\xA4", "ae"}, {"\xC3\xB6", "oe"}, {"\xC3\xBC", "ue"}, {"\xC3\x9F", "ss"},
-      {"\xC3\x84", "Ae"}, {"\xC3\x96", "Oe"}, {"\xC3\x9C", "Ue"}};
-  for (const auto& [umlaut, letters] : umlauts)
-    for (auto at = text.find(umlaut); at != text.npos; at = text.find(umlaut, at))
-      text.replace(at, umlaut.size(), letters);
+// Umlauts as they are written without, "Oeltemperatur", and letters without their accents, "presion".
+std::string without_accents(std::string text) {
+  constexpr std::pair<std::string_view, std::string_view> letters[] = {
+      {"\xC3\xA4", "ae"}, {"\xC3\xB6", "oe"}, {"\xC3\xBC", "ue"}, {"\xC3\x9F", "ss"}, {"\xC3\x84", "Ae"},
+      {"\xC3\x96", "Oe"}, {"\xC3\x9C", "Ue"}, {"\xC3\xA0", "a"},  {"\xC3\x80", "A"},  {"\xC3\xA1", "a"},
+      {"\xC3\x81", "A"},  {"\xC3\xA2", "a"},  {"\xC3\x82", "A"},  {"\xC3\xA3", "a"},  {"\xC3\x83", "A"},
+      {"\xC3\xA5", "a"},  {"\xC3\x85", "A"},  {"\xC4\x85", "a"},  {"\xC4\x84", "A"},  {"\xC3\xA7", "c"},
+      {"\xC3\x87", "C"},  {"\xC4\x87", "c"},  {"\xC4\x86", "C"},  {"\xC4\x8D", "c"},  {"\xC4\x8C", "C"},
+      {"\xC3\xA8", "e"},  {"\xC3\x88", "E"},  {"\xC3\xA9", "e"},  {"\xC3\x89", "E"},  {"\xC3\xAA", "e"},
+      {"\xC3\x8A", "E"},  {"\xC3\xAB", "e"},  {"\xC3\x8B", "E"},  {"\xC4\x99", "e"},  {"\xC4\x98", "E"},
+      {"\xC4\x9B", "e"},  {"\xC4\x9A", "E"},  {"\xC3\xAC", "i"},  {"\xC3\x8C", "I"},  {"\xC3\xAD", "i"},
+      {"\xC3\x8D", "I"},  {"\xC3\xAE", "i"},  {"\xC3\x8E", "I"},  {"\xC3\xAF", "i"},  {"\xC3\x8F", "I"},
+      {"\xC5\x82", "l"},  {"\xC5\x81", "L"},  {"\xC3\xB1", "n"},  {"\xC3\x91", "N"},  {"\xC5\x84", "n"},
+      {"\xC5\x83", "N"},  {"\xC5\x88", "n"},  {"\xC5\x87", "N"},  {"\xC3\xB2", "o"},  {"\xC3\x92", "O"},
+      {"\xC3\xB3", "o"},  {"\xC3\x93", "O"},  {"\xC3\xB4", "o"},  {"\xC3\x94", "O"},  {"\xC3\xB5", "o"},
+      {"\xC3\x95", "O"},  {"\xC3\xB8", "o"},  {"\xC3\x98", "O"},  {"\xC5\x9B", "s"},  {"\xC5\x9A", "S"},
+      {"\xC5\xA1", "s"},  {"\xC5\xA0", "S"},  {"\xC3\xB9", "u"},  {"\xC3\x99", "U"},  {"\xC3\xBA", "u"},
+      {"\xC3\x9A", "U"},  {"\xC3\xBB", "u"},  {"\xC3\x9B", "U"},  {"\xC5\xAF", "u"},  {"\xC5\xAE", "U"},
+      {"\xC5\xBA", "z"},  {"\xC5\xB9", "Z"},  {"\xC5\xBC", "z"},  {"\xC5\xBB", "Z"},  {"\xC5\xBE", "z"},
+      {"\xC5\xBD", "Z"},  {"\xC3\xBD", "y"},  {"\xC3\x9D", "Y"},  {"\xC5\x99", "r"},  {"\xC5\x98", "R"}};
+  for (const auto& [accented, plain] : letters)
+    for (auto at = text.find(accented); at != text.npos; at = text.find(accented, at))
+      text.replace(at, accented.size(), plain);
+  return text;
+}
+
+// Cyrillic capitals as small letters.
+std::string small_cyrillic(std::string text) {
+  for (std::size_t k = 0; k + 1 < text.size(); ++k) {
+    const auto low = static_cast<unsigned char>(text[k + 1]);
+    if (static_cast<unsigned char>(text[k]) != 0xD0 || low < 0x90 || low > 0xAF) continue;
+    if (low >= 0xA0) text[k] = static_cast<char>(0xD1);
+    text[k + 1] = static_cast<char>(low >= 0xA0 ? low - 0x20 : low + 0x20);
+  }
   return text;
 }
 
 // Lower-case words: cut at everything that is no letter or digit, and where camelCase turns.
 std::vector<std::string> words_of(const std::string& written) {
-  const std::string name = without_umlauts(written);
+  const std::string name = small_cyrillic(without_accents(written));
   std::vector<std::string> words;
   std::string word;
   bool was_lower = false;
@@ -71,7 +97,7 @@ bool is_ascii(std::string_view text) {
 // Two for each word of the pattern if all are there, and one where nothing else is; 0: no match. Chinese has no blanks
 // between words: there the pattern is a part of the name, and three letters are as good as a word.
 int match(std::vector<std::string> name, std::string_view pattern) {
-  if (!is_ascii(pattern)) {
+  if (!is_ascii(pattern) && pattern.find(' ') == pattern.npos) {
     for (const std::string& word : name)
       if (word.find(pattern) != word.npos)
         return 2 * (1 + static_cast<int>(pattern.size()) / 9) + (name.size() == 1 && word == pattern);
@@ -103,6 +129,14 @@ bool is_own_unit(const std::string& unit, Signal signal) {
   return u && (u->dimension == info(signal).dimension || (relative && u->dimension == relative->dimension));
 }
 
+// Whether the name holds words by which it is no such signal of the valve's.
+bool is_other(const std::vector<std::string>& name, Signal signal) {
+  return std::any_of(other_words().begin(), other_words().end(), [&](const OtherWords& other) {
+    return (!other.of || *other.of == info(signal).dimension) && match(name, other.words) > 0 &&
+           (other.unless.empty() || match(name, other.unless) == 0);
+  });
+}
+
 struct Match {
   int points;
   std::size_t column;
@@ -115,7 +149,8 @@ std::vector<Match> matches_of(const std::string& name, const std::string& unit, 
   std::vector<Match> matches;
   const std::vector<std::string> words = words_of(name);
   for (const SignalWords& known : signal_words())
-    if (const int points = match(words, known.words); points > 0 && unit_fits(unit, known.signal))
+    if (const int points = match(words, known.words);
+        points > 0 && unit_fits(unit, known.signal) && !is_other(words, known.signal))
       matches.push_back({points, column, known.signal, known.weak});
   return matches;
 }
@@ -170,7 +205,9 @@ void split_last_word(ColumnGuess& g) {
   for (const char* marks : {"_ ", "/"}) {
     const auto at = g.name.find_last_of(marks);
     if (at == std::string::npos || at == 0) continue;
-    const std::string name = trimmed(g.name.substr(0, at)), unit = unit_meant(g.name.substr(at + 1));
+    std::string name = trimmed(g.name.substr(0, at));
+    if (name.ends_with(',')) name.pop_back();  // "pressure, bar"
+    const std::string unit = unit_meant(g.name.substr(at + 1));
     if (unit.empty() || (unit.size() == 1 && unit != "V" && unit != "A" && unit != "s")) continue;
     if (*marks != '/' && (std::any_of(whole.begin(), whole.end(), is_whole) ||
                           (!whole.empty() && matches_of(name, unit, 0).empty() && !find_signal(name))))
@@ -202,6 +239,21 @@ ColumnGuess split(const std::string& cell, const std::string* unit_below) {
     split_last_word(g);
   }
   return g;
+}
+
+// Of two columns whose names say as much of a signal, "Cyl1 pos" and "Cyl2 pos", the first is taken, and the user
+// asked.
+void ask_which(std::vector<ColumnGuess>& guesses, const std::vector<Match>& matches) {
+  std::array<const Match*, n_signals> first{};
+  for (const Match& m : matches) {
+    const Match*& best = first[static_cast<std::size_t>(index(m.signal))];
+    ColumnGuess& taken = guesses[best ? best->column : m.column];
+    if (!best && taken.signal == m.signal) best = &m;
+    if (!best || best->column == m.column || best->points != m.points || guesses[m.column].signal) continue;
+    if (!taken.question.empty()) continue;  // one other is enough to ask by
+    taken.ask("is it '" + taken.name + "' or '" + guesses[m.column].name + "' that is the " +
+              std::string(info(m.signal).name) + "?");
+  }
 }
 
 // A unit that the table has not is the user's to confirm, with what would make it one of the table.
@@ -256,13 +308,15 @@ std::vector<ColumnGuess> guess_columns(const std::vector<std::string>& header, c
     g.weak = m.weak;
     taken[static_cast<std::size_t>(index(m.signal))] = true;
   }
+  ask_which(guesses, matches);
   for (ColumnGuess& g : guesses) {
     // A name in no list, but a unit that only one signal has; or T, where the time is another column.
     const Unit* unit = find_unit(g.unit);
     bool& oil = taken[static_cast<std::size_t>(index(Signal::oil_temperature))];
-    if (!g.signal && !oil && (unit ? unit->dimension == Dimension::temperature : g.name == "T")) {
+    if (!g.signal && !oil && !is_other(words_of(g.name), Signal::oil_temperature) &&
+        (unit ? unit->dimension == Dimension::temperature : g.name == "T")) {
       g.signal = Signal::oil_temperature;
-      oil = true;
+      g.weak = oil = true;
     }
     g.canonical = g.canonical && g.signal == find_signal(g.name);
     // Of what a per cent is a part, the signal says.

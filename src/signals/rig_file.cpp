@@ -3,6 +3,7 @@
 #include <toml++/toml.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <utility>
@@ -14,6 +15,7 @@
 #include "base/trouble.h"
 #include "servodx/error.h"
 #include "servodx/log.h"
+#include "signals/fittings.h"
 
 namespace servodx {
 namespace {
@@ -69,6 +71,10 @@ bool is_page_word(std::string_view key) {
          std::find(page_words.begin(), page_words.end(), key.substr(folder.size())) != page_words.end();
 }
 
+constexpr std::array not_simulated = {Signal::time,       Signal::command,         Signal::coil_current,
+                                      Signal::setpoint,   Signal::supply_pressure, Signal::return_pressure,
+                                      Signal::load_force, Signal::oil_temperature};
+
 class Reader {
  public:
   explicit Reader(const std::string& path) { rig_.path = path; }
@@ -105,7 +111,7 @@ class Reader {
       } else if (key == "valve.frequency_response") {
         read_response(node, key);
       } else if (key == "valve" || key == "actuator" || key == "lines" || key == "supply" || key == "fluid" ||
-                 key == "valve.dither" || key == "page") {
+                 key == "valve.dither" || key == "page" || key == "measurement") {
         walk(section(node, key), key + ".");
       } else {
         read_key(key, node);
@@ -135,6 +141,12 @@ class Reader {
       rig_.words[key] = lines(node, key);
     } else if (is_page_word(key)) {
       rig_.words[key] = word(node, key);
+    } else if (key == "measurement.low_pass" && node.is_table()) {
+      read_low_passes(*node.as_table(), key);
+    } else if (key == "measurement.low_pass_order") {
+      rig_.words[key] = one_of(node, key, {"1", "2", "3", "4", "5", "6", "7", "8"});
+    } else if (key == "lines.fittings") {
+      read_fittings(node, key);
     } else if (key == "lines.taps") {
       rig_.taps_at_cylinder = one_of(node, key, {"valve", "cylinder"}) == "cylinder";
     } else {
@@ -144,6 +156,72 @@ class Reader {
         return;
       }
       refuse_unknown(key);
+    }
+  }
+
+  // Names of the list, or tables that state a loss of their own: all together are `lines.loss`, and what they are in
+  // words.
+  void read_fittings(const toml::node& node, const std::string& key) {
+    const toml::array* list = node.as_array();
+    if (!list)
+      throw InputError(place(key), "is not a list", "write [\"entrance\", \"elbow_90\", \"elbow_90\", \"exit\"]");
+    double loss = 0;
+    int number = 0;
+    std::string words;
+    for (const toml::node& each : *list) {
+      const std::string at = key + "[" + std::to_string(++number) + "]";
+      rig_.lines[at] = each.source().begin.line;
+      const auto [name, of_it] = fitting(each, at);
+      loss += of_it;
+      words += (words.empty() ? "" : ", ") + name;
+    }
+    rig_.facts["lines.loss"] = loss;
+    rig_.words[key] = words;
+  }
+
+  std::pair<std::string, double> fitting(const toml::node& node, const std::string& at) {
+    if (!node.is_table()) {
+      const std::string name = word(node, at);
+      std::vector<std::string> names;
+      for (const Fitting& known : known_fittings) {
+        if (known.name == name) return {name, known.loss};
+        names.emplace_back(known.name);
+      }
+      throw InputError(place(at), "unknown fitting '" + name + "'",
+                       known_here(name, names) + "; or give { name = \"...\", loss = \"0.8\", source = \"...\" }");
+    }
+    std::string name, source;
+    std::optional<double> loss;
+    for (const auto& [field_name, field] : *node.as_table()) {
+      const std::string field_key(field_name.str()), of = at + "." + field_key;
+      rig_.lines[of] = field_name.source().begin.line;
+      if (field_key == "name")
+        name = word(field, of);
+      else if (field_key == "source")
+        source = word(field, of);
+      else if (field_key == "loss")
+        loss = quantity(field, of, fraction, true);
+      else
+        throw DocumentedError(Trouble::key, place(of), "unknown key",
+                              known_here(field_key, {"name", "loss", "source"}));
+    }
+    if (name.empty() || source.empty() || !loss)
+      throw InputError(place(at), "states not name, loss and source",
+                       "a loss coefficient without a source cannot be looked up: add all three");
+    return {name + " (" + source + ")", *loss};
+  }
+
+  // Of each signal that is named.
+  void read_low_passes(const toml::table& table, const std::string& key) {
+    for (const auto& [name, node] : table) {
+      const std::string signal(name.str()), of = key + "." + signal;
+      rig_.lines[of] = name.source().begin.line;
+      const auto found = find_signal(signal);
+      if (!found) throw InputError(place(of), "'" + signal + "' is no signal", "take one of 'servodx list signals'");
+      if (std::find(not_simulated.begin(), not_simulated.end(), *found) != not_simulated.end())
+        throw InputError(place(of), "'" + signal + "' is not simulated: it drives the model as it was recorded",
+                         "leave it out");
+      rig_.facts[of] = quantity(node, of, frequency, false);
     }
   }
 
@@ -178,11 +256,13 @@ class Reader {
     const std::string folder = dot == std::string::npos ? "" : key.substr(0, dot + 1);
     std::vector<std::string> known;
     if (folder.empty())
-      known = {"name",      "serial",  "ports",      "command_hold", "mains_frequency", "null_limit", "oil_temperature",
-               "fluid",     "[valve]", "[actuator]", "[lines]",      "[supply]",        "[fluid]",    "[limits]",
-               "[columns]", "[page]"};
+      known = {"name",       "serial",          "ports",   "command_hold", "mains_frequency",
+               "null_limit", "oil_temperature", "fluid",   "[valve]",      "[actuator]",
+               "[lines]",    "[supply]",        "[fluid]", "[limits]",     "[columns]",
+               "[page]",     "[measurement]"};
     if (folder == "valve.") known = {"first_stage", "dither", "frequency_response"};
-    if (folder == "lines.") known = {"taps"};
+    if (folder == "lines.") known = {"taps", "fittings"};
+    if (folder == "measurement.") known = {"low_pass_order"};
     if (folder == "page.") known.assign(page_words.begin(), page_words.end());
     for (const RigFact& fact : rig_facts())
       if (!folder.empty() && fact.key.starts_with(folder) && fact.key.find('.', folder.size()) == fact.key.npos)
@@ -474,6 +554,7 @@ const std::vector<RigFact>& rig_facts() {
       {"valve.spool_stroke", length, false},
       {"valve.spool_stop", length, false},
       {"valve.spool_diameter", length, false},
+      {"valve.land_length", length, false},
       {"valve.no_load_flow", flow, false},
       {"valve.rated_flow", flow, false},
       {"valve.rated_pressure_drop", pressure, false},
@@ -499,6 +580,7 @@ const std::vector<RigFact>& rig_facts() {
       {"actuator.mount_stiffness", stiffness, false},
       {"lines.length", length, true},
       {"lines.bore", length, false},
+      {"measurement.low_pass", frequency, false},
       {"supply.pressure", pressure, false},
       {"supply.return_pressure", pressure, true},
       {"fluid.density", density, false},

@@ -1,13 +1,17 @@
-// The words by which people name signals and units on their rigs: English, German, Italian, French, Chinese.
+// The words by which people name signals and units on their rigs: English, German, Italian, French, Spanish,
+// Portuguese, Polish, Swedish, Dutch, Russian, Chinese, Japanese, Korean.
 #pragma once
+#include <optional>
 #include <span>
 #include <string_view>
 
+#include "base/units.h"
 #include "servodx/log.h"
 
 namespace servodx {
 
-// Words that all must stand in a name, with blanks between; one with letters beyond ASCII as a part of it.
+// Words that all must stand in a name, with blanks between, in small letters without accents; a single one with letters
+// of another alphabet as a part of it.
 struct SignalWords {
   Signal signal;
   std::string_view words;
@@ -15,6 +19,15 @@ struct SignalWords {
 };
 // Most telling first within a signal.
 std::span<const SignalWords> signal_words();
+
+// Words of a name that is no signal of the valve's, whatever else it holds: an error of the control loop, a motor's
+// current, the temperature of the room.
+struct OtherWords {
+  std::string_view words;
+  std::optional<Dimension> of = {};  // of signals of this kind alone; none: of every signal
+  std::string_view unless = {};      // with this word it may be the valve's all the same: its torque motor
+};
+std::span<const OtherWords> other_words();
 
 // How else people write units of the table, in small letters.
 struct UnitWord {

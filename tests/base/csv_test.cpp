@@ -38,6 +38,11 @@ TEST(Csv, SeparatorsLineEndsBomAndBlanksDoNotChangeTheCells) {
     EXPECT_EQ(rows_of(text), expected) << text;
 }
 
+TEST(Csv, ACommaBeforeABlankIsAPartOfANameWhereSemicolonsStand) {
+  EXPECT_EQ(rows_of("t, s;p, bar\n1;2\n").front(), (std::vector<std::string>{"t, s", "p, bar"}));
+  EXPECT_EQ(rows_of("t, p\n1, 2\n").front(), (std::vector<std::string>{"t", "p"}));
+}
+
 TEST(Csv, HeadersInLatin1AreTheSameWordsInUtf8) {
   EXPECT_EQ(rows_of("\xD6l;T (\xB0"
                     "C)\n1;2\n")

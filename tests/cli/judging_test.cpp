@@ -72,5 +72,38 @@ TEST(Judging, ARehearsalReadsTheFileOfActions) {
   }
 }
 
+TEST(Judging, TheLastTestIsOneVerdictBesideOneVerdict) {
+  const JudgingDesk desk;
+  const auto refusal = [&](const std::string& call, const std::string& words) {
+    const Ended ended = desk.run(call + " --against last.json --dry-run" + FleetDesk::judged_with);
+    EXPECT_EQ(ended.code, 2) << call;
+    EXPECT_NE(ended.err.find(words), std::string::npos) << ended.err;
+  };
+  desk.write("list.txt", "b/log.csv\n");
+  desk.write("last.json", R"({"tool": "servodx", "command": "diagnose", "results": [{"log": "x.csv"}]})");
+  refusal("diagnose b/log.csv b/log.csv", "--against");
+  refusal("diagnose --list list.txt --out res", "--against");
+  desk.write("last.json", R"({"tool": "servodx", "command": "tune"})");
+  refusal("diagnose b/log.csv", "last.json: column 'results': is no result of 'diagnose'");
+}
+
+// The page has the last test, the valve's frequency response and the place of the test in its head; the JSON the change.
+TEST(Judging, AVerdictStandsBesideTheLastOneAndTheTunedValve) {
+  const JudgingDesk desk;
+  const std::string call = std::string("diagnose b/log.csv --no-explain --quiet") + FleetDesk::judged_with;
+  ASSERT_EQ(desk.run(call + " --json last.json").code, 0);
+  const Ended ended = desk.run(call + " --against last.json --json now.json --report now.html");
+  ASSERT_EQ(ended.code, 0) << ended.err;
+  EXPECT_NE(ended.out.find("since the last test, last.json: as in the last test"), std::string::npos) << ended.out;
+  const Json now = Json::parse(bytes_of(desk.path / "now.json"));
+  EXPECT_EQ(now["last_test"]["change"], "alike");
+  EXPECT_EQ(now["last_test"]["same_reference"], true);
+  EXPECT_FALSE(Json::parse(bytes_of(desk.path / "last.json")).contains("last_test"));
+  const std::string page = bytes_of(desk.path / "now.html");
+  EXPECT_NE(page.find("<h2>Since the last test</h2>"), std::string::npos);
+  const bool holds_a_valve = now["results"][0]["verdict"] != "unknown";
+  EXPECT_EQ(page.find("<h2>Frequency response</h2>") != std::string::npos, holds_a_valve);
+}
+
 }  // namespace
 }  // namespace servodx

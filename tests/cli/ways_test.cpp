@@ -506,6 +506,12 @@ TEST(Compare, TellsWhatDiffersAndWhatDoesNot) {
   EXPECT_EQ(result["conditions"].size(), 1u);
   EXPECT_EQ(desk.run("compare a.json sim.json").code, 2);  // of different commands
 
+  // A change is of the size of the first, upwards with a plus.
+  for (const auto& [name, value] : {std::pair("e.json", "-2.0"), std::pair("f.json", "1.0")})
+    desk.write(name, std::string(R"({"tool": "servodx", "command": "x", "null": )") + value + "}");
+  EXPECT_EQ(Json::parse(desk.run("compare e.json f.json --json -").out)["differences"][0]["change"], "+150 %");
+  EXPECT_EQ(Json::parse(desk.run("compare f.json e.json --json -").out)["differences"][0]["change"], "-300 %");
+
   // Another verdict matters; another number without an error is told.
   for (const auto& [name, verdict] : {std::pair("c.json", "healthy"), std::pair("d.json", "fault")})
     desk.write(name, std::string(R"({"tool": "servodx", "command": "diagnose", "version": "1", "seed": 1, "results":

@@ -2,14 +2,21 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
 #include <numbers>
+#include <vector>
 
 #include "base/random.h"
+#include "fit/problem.h"
 #include "fit/support.h"
 #include "model/state.h"
 #include "servodx/log.h"
 #include "servodx/rig.h"
+#include "servodx/table.h"
 #include "shipped_data.h"
+#include "signals/low_pass.h"
 #include "signals/noise.h"
 #include "simulate/scenario.h"
 
@@ -139,6 +146,48 @@ TEST(LogData, WhatFollowsAGapIsNotComparedAsLongAsItWasOrTheValveRemembers) {
   EXPECT_NEAR(static_cast<double>(lost(without(1000, 1004))), 5, 1);   // 4 samples lost: a step of 5 ms
   EXPECT_NEAR(static_cast<double>(lost(without(1000, 1500))), 10, 1);  // 10 ms
   EXPECT_TRUE(std::isnan(channel(without(1000, 1500), Signal::pressure_a).measured[1000]));
+}
+
+// A log as a rig with a low-pass would have recorded it: the simulation meets it where the rig file says so, and lags
+// behind nothing where it does not.
+TEST(LogData, TheRigsLowPassIsPutOnWhatIsSimulated) {
+  Log log = shipped_log("healthy/h01_steps_large");
+  RigFile rig = shipped_rig();
+  const Table table = shipped_table();
+  const LogData as_seen = prepare(log, rig);
+  const Trajectory run = FitProblem({&as_seen}, candidate_of(table), {}).trajectories({}).front();
+  ASSERT_TRUE(run.ok);
+  rig.facts["measurement.low_pass"] = 80;
+  rig.facts["measurement.low_pass.piston_position"] = 20;
+  rig.words["measurement.low_pass_order"] = "4";
+  const LogData behind = prepare(log, rig);
+  for (const FitChannel& c : behind.channels) {
+    std::vector<double>& of_log = log.channels[index(c.signal)].value;
+    of_log = run.signals[static_cast<std::size_t>(c.simulated)];
+    LowPass(log.time, c.signal == Signal::piston_position ? 20 : 80, 4)(of_log);
+  }
+  const auto left = [&](const RigFile& with) {
+    LogData data = prepare(log, with);
+    data.scenario = as_seen.scenario;  // started alike
+    const FitProblem problem({&data}, candidate_of(table), {});
+    double worst = 0;
+    for (std::size_t c = 0; c < data.channels.size(); ++c)
+      for (const double r : problem.raw_residual(0, static_cast<int>(c), run))
+        worst = std::max(worst, std::abs(r) / data.channels[c].noise);
+    return worst;
+  };
+  EXPECT_LT(left(rig), 1e-6);
+  EXPECT_GT(left(shipped_rig()), 10);
+}
+
+TEST(LogData, APartOfALogKeepsItsLowPass) {
+  RigFile rig = shipped_rig();
+  rig.facts["measurement.low_pass"] = 80;
+  const Log log = shipped_log("healthy/h01_steps_large");
+  const LogData part = slice(prepare(log, rig), 100, 400);
+  const std::vector<double> ramp = std::vector<double>(part.channels[0].measured.size(), 2.0);
+  ASSERT_EQ(ramp.size(), 300u);
+  for (const double v : part.channels[0].shown(ramp)) EXPECT_NEAR(v, 2.0, 1e-12);
 }
 
 TEST(LogData, MeasuredCurrentDrivesInPlaceOfTheCommand) {

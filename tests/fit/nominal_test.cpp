@@ -119,6 +119,22 @@ TEST(RigFacts, EveryFactOfTheSheetMovesARow) {
   }
 }
 
+// A velocity head each: half the density over the area squared.
+TEST(RigFacts, FittingsTakeThePlaceOfTheUsualLosses) {
+  const double area = std::numbers::pi / 4 * 1e-4;
+  std::map<std::string, double> facts = {{"lines.length", 0.45}, {"lines.bore", 10e-3}};
+  RigFile usual = rig_with(facts);
+  facts["lines.loss"] = 5;
+  RigFile listed = rig_with(facts);
+  listed.words["lines.fittings"] = "entrance, elbow_90, elbow_90, elbow_90";
+  std::vector<std::string> where_from;
+  const double before = apply_rig_facts(shipped(), usual)[row::hose_resistance].nominal,
+               after = apply_rig_facts(shipped(), listed, &where_from)[row::hose_resistance].nominal;
+  EXPECT_NEAR(after - before, 3 * usual.fluid.density / (2 * area * area), 1e-3 * after);
+  EXPECT_NE(where_from.front().find("elbow_90"), std::string::npos) << where_from.front();
+  EXPECT_THROW(apply_rig_facts(shipped(), rig_with({{"lines.loss", 5}})), InputError);
+}
+
 TEST(RigFacts, OverriddenRowsNameTheirKeyAndTheRestKeepTheirSource) {
   std::vector<std::string> where_from;
   const Table before = shipped();

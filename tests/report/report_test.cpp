@@ -192,7 +192,7 @@ TEST(ExplainPage, OpensWithTheCauseItsSizeAndTheChannelThatShowsIt) {
   const std::string html = explain_page({}, some_explanation(), {}).html();
   const std::string opening = html.substr(0, html.find("<section class=\"part\""));
   for (const char* shown :
-       {"FOUND", "valve glitch at first stage, 20.3 um (20 to 20.6, 90 %); tuned 0 um",
+       {"FOUND", "Mending valve glitch at first stage removes ", "20.3 um (20 to 20.6, 90 %), tuned 0 um",
         "It shows most in the spool position: off by 9 um rms as tuned, by 1 um with what was found", "(346 before)",
         "valve glitch (backlash between feedback wire and spool, full width)",
         "In place of valve glitch it may be asymmetric lap", "Valve glitch shows best in small sines."})
@@ -216,7 +216,7 @@ TEST(ExplainPage, TheHeadIsShortAndInTheLogsUnits) {
   r.retuned = {-0.2, -0.3, -0.1};
   const std::string html = explain_page({}, r, {}).html();
   const std::string opening = html.substr(0, html.find("<section class=\"part\""));
-  EXPECT_NE(opening.find("tuned 0 um; and 2 more"), std::string::npos) << opening;
+  EXPECT_NE(opening.find("valve glitch at first stage and 2 more removes"), std::string::npos) << opening;
   EXPECT_NE(opening.find("It shows most in the pressure A: off by 39.5 psi rms as tuned, by 21 psi"), std::string::npos)
       << opening;
   EXPECT_EQ(opening.find("-20 %"), std::string::npos) << opening;
@@ -303,6 +303,21 @@ TEST(TrendPage, AFigureThatFallsIsNotSaidToRise) {
   EXPECT_NE(trend_page({}, {v}, false).html().find("falls, over 1000 to 1"), std::string::npos);
   v.trends.front().now = 1.5;
   EXPECT_NE(trend_page({}, {v}, false).html().find("rises, over 1000 to 1"), std::string::npos);
+}
+
+// What was read last stands beside what the fitted law says of that hour.
+TEST(TrendPage, TheLastReadingStandsBesideTheLaw) {
+  ValveTrend v;
+  v.valve = "V7", v.state = TrendState::warning;
+  CheckTrend t;
+  t.name = "fidelity", t.unit = "1", t.now = 1.5;
+  t.points = {{0, 1.0, 300, true}, {10, 1.44, 300, false}};
+  v.trends = {t};
+  const std::string html = trend_page({}, {v}, false).html();
+  EXPECT_LT(html.find(">last reading<"), html.find(">by its law<"));
+  EXPECT_NE(html.find("data-value=\"1.44\">1.44<"), std::string::npos);
+  EXPECT_NE(html.find("data-value=\"1.5\">1.5<"), std::string::npos);
+  EXPECT_NE(text_of(v).find("1.44"), std::string::npos) << text_of(v);
 }
 
 // Few checks are no sign of health, and a legend names nothing that is not drawn.

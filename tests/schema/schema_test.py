@@ -111,6 +111,8 @@ class Schemas(unittest.TestCase):
         keep("diagnose", "f.csv", *judged)
         keep("explain", "f.csv", *judged, "-o", "extended.csv")
         header, *rows = [line for line in (cls.folder / "e.csv").read_text().splitlines() if line[0] != "#"]
+        put("last.json", json.dumps(cls.outputs["diagnose"][0][1]))
+        keep("diagnose", "e.csv", *judged, "--against", "last.json")
         put("slow.csv", "\n".join([header] + [f"{2 * float(t):.9g},{rest}" for t, rest in (r.split(",", 1) for r in rows)]))
         keep("diagnose", "slow.csv", *judged)
         put("logs.txt", "c.csv\nbad.csv\n")

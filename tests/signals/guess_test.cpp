@@ -145,6 +145,37 @@ TEST(Guess, ANameThatSaysLittleIsWeak) {
   EXPECT_FALSE(guess_columns({"pA (bar)"})[0].weak);
 }
 
+// A control error, a motor's current and the room are recorded beside the valve; its torque motor is its own.
+TEST(Guess, WhatIsMeasuredBesideTheValveIsNoSignalOfIt) {
+  for (const char* cell : {"Position error [mm]", "Motor current [A]", "Pump flow [l/min]",
+                           "Ambient temperature [degC]", "Load cylinder position [mm]", "Stroke RMS [mm]"})
+    EXPECT_FALSE(guess_columns({cell})[0].signal) << cell;
+  EXPECT_EQ(taken({"Torque motor current [mA]"}), "command in mA");
+  const std::vector<std::string> header = {"Position error [mm]", "Position actual [mm]"};
+  EXPECT_EQ(taken(header, 1), "piston_position in mm");
+}
+
+TEST(Guess, OfTwoColumnsThatSayAsMuchOneIsAsked) {
+  const auto guesses = guess_columns({"Cyl1 pos [mm]", "Cyl2 pos [mm]", "pA [bar]"});
+  EXPECT_NE(guesses[0].question.find("'Cyl1 pos' or 'Cyl2 pos'"), std::string::npos) << guesses[0].question;
+  EXPECT_TRUE(guesses[2].question.empty()) << guesses[2].question;
+  // A name that says more decides by itself.
+  EXPECT_TRUE(guess_columns({"Pressure A [bar]", "Pressure A raw [bar]"})[0].question.empty());
+}
+
+TEST(Guess, ATemperatureByItsUnitAloneIsAsked) {
+  EXPECT_TRUE(guess_columns({"Fluid 3 (C)"})[0].weak);
+  EXPECT_FALSE(guess_columns({"T oil (C)"})[0].weak);
+}
+
+TEST(Guess, LettersWithoutTheirAccentsAndInOtherAlphabets) {
+  EXPECT_EQ(taken({"Presi\xC3\xB3n A [bar]"}), "pressure_a in bar");
+  EXPECT_EQ(taken({"T\xC5\x82oczysko [mm]"}), "piston_position in mm");
+  EXPECT_EQ(taken({"\xD0\x97\xD0\xBE\xD0\xBB\xD0\xBE\xD1\x82\xD0\xBD\xD0\xB8\xD0\xBA, "
+                   "\xD0\xBC\xD0\xBC"}),  // "spool, mm" in Cyrillic, its first letter a capital
+            "spool_position in mm");
+}
+
 TEST(Guess, WhatItDoesNotKnowIsNothing) {
   EXPECT_EQ(taken({"note"}), "nothing");
   EXPECT_EQ(taken({"operator id"}), "nothing");

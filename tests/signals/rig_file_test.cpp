@@ -105,6 +105,32 @@ TEST(RigFile, EveryKeyIsKeptInSiWithItsLine) {
   EXPECT_DOUBLE_EQ(column.offset, -0.1);
 }
 
+TEST(RigFile, TheLowPassIsOfAllSignalsOrOfEach) {
+  const RigFile all = read("[measurement]\nlow_pass = \"300 Hz\"\nlow_pass_order = \"4\"\n");
+  EXPECT_EQ(all.fact("measurement.low_pass"), 300.0);
+  EXPECT_EQ(all.words.at("measurement.low_pass_order"), "4");
+  const RigFile each = read("[measurement]\nlow_pass = { spool_position = \"1 kHz\", pressure_a = \"200 Hz\" }\n");
+  EXPECT_EQ(each.fact("measurement.low_pass.pressure_a"), 200.0);
+  EXPECT_FALSE(each.fact("measurement.low_pass"));
+  EXPECT_THROW(read("[measurement]\nlow_pass = { spool = \"1 kHz\" }\n"), InputError);
+  EXPECT_THROW(read("[measurement]\nlow_pass = { coil_current = \"1 kHz\" }\n"), InputError);
+  EXPECT_THROW(read("[measurement]\nlow_pass = \"0 Hz\"\n"), InputError);
+  EXPECT_THROW(read("[measurement]\nlow_pass_order = \"9\"\n"), InputError);
+  EXPECT_THROW(read("[measurement]\nlowpass = \"1 kHz\"\n"), InputError);
+}
+
+TEST(RigFile, FittingsAddUpByTheirLossesEachWithItsSource) {
+  const RigFile rig = read(
+      "[lines]\nfittings = [\"entrance\", \"elbow_90\", \"elbow_90\", { name = \"coupling\", loss = "
+      "\"0.8\", source = \"maker's sheet\" }]\n");
+  EXPECT_DOUBLE_EQ(*rig.fact("lines.loss"), 0.5 + 1.5 + 1.5 + 0.8);
+  EXPECT_EQ(rig.words.at("lines.fittings"), "entrance, elbow_90, elbow_90, coupling (maker's sheet)");
+  EXPECT_EQ(read("[lines]\nfittings = []\n").fact("lines.loss"), 0.0);
+  EXPECT_THROW(read("[lines]\nfittings = \"elbow_90\"\n"), InputError);
+  EXPECT_THROW(read("[lines]\nfittings = [\"elbow\"]\n"), InputError);
+  EXPECT_THROW(read("[lines]\nfittings = [{ name = \"coupling\", loss = \"0.8\" }]\n"), InputError);
+}
+
 TEST(RigFile, AnEmptyFileSaysNothing) {
   const RigFile rig = read("");
   EXPECT_TRUE(rig.facts.empty());
@@ -175,7 +201,7 @@ TEST(RigFile, EachRefusalNamesPlaceRuleAndMend) {
        "rig.toml:2: key 'nmae': unknown key; did you mean 'name'? known here: name, serial, ports, command_hold, "
        "mains_frequency, "
        "null_limit, oil_temperature, "
-       "fluid, [valve], [actuator], [lines], [supply], [fluid], [limits], [columns], [page]"},
+       "fluid, [valve], [actuator], [lines], [supply], [fluid], [limits], [columns], [page], [measurement]"},
       {"[supply]\npresure = \"207 bar\"\n",
        "rig.toml:2: key 'supply.presure': unknown key; did you mean 'pressure'? known here: pressure, return_pressure"},
       {"[valve]\ndither = { amplitude = \"1 mA\", phase = \"0\" }\n",

@@ -131,7 +131,7 @@
       height: (plot.low ? 140 : 200) * ("print" in root.dataset ? 0.8 : 1),
       series, bands,
       padding: [null, gutter(plot), null, null],
-      scales: { x: { time: false }, y: plot.log ? { distr: 3 } : { range: range_with(plot.ymarks || []) } },
+      scales: { x: plot.log_x ? { time: false, distr: 3, range: (u, min, max) => [min, max] } : { time: false }, y: plot.log ? { distr: 3 } : { range: range_with(plot.ymarks || []) } },
       axes: [
         { ...axis, label: plot.x_shown ? plot.x : null, labelSize: 16, size: 30, values: ticks_x },
         { ...axis, space: 26, size: (u, ticks) => Math.max(u.width < 520 ? 48 : 64, 16 + 7 * Math.max(0, ...(ticks || []).map((t) => String(t ?? "").length))), values: plot.log ? undefined : (u, ticks) => ticks.map((v) => short(v)) },
