@@ -1,5 +1,6 @@
 // Decisions.
-// - Not Ceres' minimiser from afar; it takes over where this search ends (local.h). It meets bounds by projecting a step
+// - Not Ceres' minimiser from afar; it takes over where this search ends (local.h). It meets bounds by projecting a
+// step
 //   that was solved as if free, and it asks for residuals one point at a time, which would leave seven of eight lanes
 //   empty. On weakly identified problems with walls (8 to 25 parameters, tests/optimise/ceres_comparison_test.cpp) all
 //   three reach the floor in 24 of 24 runs, in a mean of 244 evaluations here, 1779 with Ceres' bounds, 1186 with Ceres
@@ -54,6 +55,16 @@ class Search {
       : problem_(problem), options_(options) {}
 
   // What the normal equations say of an end that is known.
+  SearchEnd without_rows(const LeastSquaresResult& end) {
+    return {end.point,      end.start_cost, end.promised_gain, end.central, end.evaluations, end.failed_evaluations,
+            end.iterations, end.reason,     end.stopped};
+  }
+
+  LeastSquaresResult with_rows(const SearchEnd& end, const LeastSquaresProblem& problem,
+                               const LeastSquaresOptions& options) {
+    return Search(problem, options).again(end);
+  }
+
   void take_stock(LeastSquaresResult& end, NormalEquations equations) {
     x_ = end.point;
     cost_ = end.cost;
@@ -64,6 +75,27 @@ class Search {
     end.wall = std::move(result_.wall);
     end.projected_gradient = result_.projected_gradient;
     end.gradient_cosine = result_.gradient_cosine;
+  }
+
+  // The rows of an end that is known; what they say of it as the search had it.
+  LeastSquaresResult again(const SearchEnd& end) {
+    if (end.reason != StopReason::start_failed) {
+      std::vector<Evaluation> at = evaluate({end.point});
+      if (!at[0].ok) throw std::logic_error("the end of a search that was kept cannot be evaluated");
+      x_ = end.point;
+      residual_ = std::move(at[0].residual);
+      take_jacobian(end.central);
+      loss_ = options_.loss, loss_scale_ = options_.loss_scale;
+      cost_ = cost_of(residual_);
+      model();
+    }
+    result_.start_cost = end.start_cost, result_.promised_gain = end.promised_gain;
+    result_.iterations = end.iterations;
+    result_.reason = end.reason, result_.stopped = end.stopped;
+    LeastSquaresResult out = finish();
+    out.point = end.point;
+    out.evaluations = end.evaluations, out.failed_evaluations = end.failed_evaluations;
+    return out;
   }
 
   LeastSquaresResult run(const Point& start) {
@@ -121,6 +153,7 @@ class Search {
   }
 
   void take_jacobian(bool central) {
+    result_.central = central;
     if (problem_.jacobian) {
       jacobian_.resize(residual_.size(), problem_.n);
       if (problem_.jacobian(x_, residual_, jacobian_) && jacobian_.rows() == residual_.size() &&
@@ -413,9 +446,8 @@ class Search {
         const Eigen::VectorXd residual = residual_;
         if (step(m) == Step::accepted) {
           const bool learns = own_jacobian_ || options_.given_learns;
-          pass.learnt = learns && !pass.central && kept_promise_ && pass.learnt < options_.secant_steps
-                            ? pass.learnt + 1
-                            : 0;
+          pass.learnt =
+              learns && !pass.central && kept_promise_ && pass.learnt < options_.secant_steps ? pass.learnt + 1 : 0;
           if (pass.learnt > 0) learn(x, residual);
         } else {
           next = without_step(pass);

@@ -7,6 +7,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <tuple>
 #include <utility>
 
 #include "effects/effect.h"
@@ -18,6 +19,7 @@
 #include "optimise/robust_loss.h"
 #include "parameters/coordinate.h"
 #include "parameters/list.h"
+#include "tune/kept.h"
 
 namespace servodx {
 namespace {
@@ -83,7 +85,8 @@ struct Valley {
 // The misfit in two parts: what the fit has seen of each log, and what it has not.
 class Parts {
  public:
-  Parts(const FitProblem& problem, double held) : problem_(problem), seen_(Eigen::VectorXd::Ones(problem.total_rows())) {
+  Parts(const FitProblem& problem, double held)
+      : problem_(problem), seen_(Eigen::VectorXd::Ones(problem.total_rows())) {
     for (std::size_t l = 0; l < problem.logs().size(); ++l)
       for (std::size_t c = 0; c < problem.logs()[l]->channels.size(); ++c) {
         const auto [first, n] = problem.rows(static_cast<int>(l), static_cast<int>(c));
@@ -108,11 +111,12 @@ class Parts {
     return valley(x, at, std::move(j), std::move(blocks));
   }
   // About a point nearby, by what the way there has taught: a Jacobian of its own costs a hundred runs of every log.
-  std::optional<Valley> next(const Valley& from, const Evaluation& at_from, const Point& x, const Evaluation& at) const {
+  std::optional<Valley> next(const Valley& from, const Evaluation& at_from, const Point& x,
+                             const Evaluation& at) const {
     if (!at.ok) return std::nullopt;
     const auto n = static_cast<long>(x.size());
-    const Eigen::VectorXd step = Eigen::Map<const Eigen::VectorXd>(x.data(), n) -
-                                 Eigen::Map<const Eigen::VectorXd>(from.at.data(), n);
+    const Eigen::VectorXd step =
+        Eigen::Map<const Eigen::VectorXd>(x.data(), n) - Eigen::Map<const Eigen::VectorXd>(from.at.data(), n);
     Eigen::MatrixXd j = from.jacobian;
     learn_step(j, from.blocks, step,
                seen_.cwiseProduct(at.residual - at_from.residual) - product(j, from.blocks, step));
@@ -167,7 +171,6 @@ class Elimination {
     out_.insert(out_.end(), kept.begin(), kept.end());
     return out_;
   }
-  const std::vector<const FreedEffect*>& gone() const { return gone_; }
   const Point& point() const { return here_.point; }
 
  private:
@@ -217,6 +220,16 @@ class Elimination {
   std::vector<EarnedEffect> out_;
 };
 
+struct Trials {
+  std::vector<EarnedEffect> effects;  // in the order of trial
+  Point point;
+  KeptWork work;
+};
+auto fields(Trials& t) {
+  auto& [effects, point, work] = t;
+  return std::tie(effects, point, work);
+}
+
 }  // namespace
 
 std::vector<EarnedEffect> keep_earned(TuneScope& scope, const FitProblem& problem, double held, Point& end,
@@ -224,17 +237,25 @@ std::vector<EarnedEffect> keep_earned(TuneScope& scope, const FitProblem& proble
   const std::vector<FreeValue> free = problem.free();
   const std::vector<FreedEffect> effects = freed_effects(free);
   if (effects.empty() || held <= 0 || watch.stopped()) return {};
-  Elimination elimination(problem, held, effects, end);
-  std::vector<EarnedEffect> out = elimination.run(watch);
+  const auto trials = [&] {
+    Elimination elimination(problem, held, effects, end);
+    std::vector<EarnedEffect> tried = elimination.run(watch);
+    return Trials{std::move(tried), elimination.point(), {problem.simulations(), problem.failed_simulations()}};
+  };
+  const std::string weights = watch.kept.keeps() ? problem.content_hash() : "";
+  Trials out = watch.kept.made("effects", trials, weights, end, held, watch.work_so_far(problem));
+  problem.recount(out.work.simulations, out.work.failed);
   std::vector<char> taken(free.size(), 0);
-  for (const FreedEffect* f : elimination.gone()) {
-    take_out(scope, *f, free);
-    for (const long j : f->at) taken[static_cast<std::size_t>(j)] = 1;
-  }
+  for (const EarnedEffect& tried : out.effects)
+    for (const FreedEffect& f : effects) {
+      if (tried.kept || tried.effect != f.name) continue;
+      take_out(scope, f, free);
+      for (const long j : f.at) taken[static_cast<std::size_t>(j)] = 1;
+    }
   end.clear();
   for (std::size_t j = 0; j < free.size(); ++j)
-    if (!taken[j]) end.push_back(elimination.point()[j]);
-  return out;
+    if (!taken[j]) end.push_back(out.point[j]);
+  return std::move(out.effects);
 }
 
 }  // namespace servodx
