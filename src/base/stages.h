@@ -15,7 +15,6 @@
 #include "base/bytes.h"
 #include "base/checkpoint.h"
 #include "base/sha256.h"
-#include "model/state.h"
 #include "servodx/watch.h"
 
 namespace servodx {
@@ -23,8 +22,8 @@ namespace servodx {
 class Stages {
  public:
   Stages() = default;  // keeps nothing
-  template <class... Inputs>
-  Stages(const Watch& watch, std::string_view call, const Inputs&... inputs) : watch_(watch) {
+  template <class... Input>
+  Stages(const Watch& watch, std::string_view call, const Input&... inputs) : watch_(watch) {
     watch_.progress = nullptr;
     if (keeps()) of_ = key(call, watch_.checkpoint->build(), inputs...);
   }
@@ -32,15 +31,15 @@ class Stages {
   bool keeps() const { return watch_.checkpoint != nullptr; }
 
   // Of a part of what these are about.
-  template <class... Inputs>
-  Stages part(std::string_view name, const Inputs&... inputs) const {
+  template <class... Input>
+  Stages part(std::string_view name, const Input&... inputs) const {
     Stages out = *this;
     if (keeps()) out.of_ = key(name, inputs...);
     return out;
   }
 
-  template <class Make, class... Inputs>
-  std::invoke_result_t<Make> made(std::string_view name, const Make& make, const Inputs&... inputs) const {
+  template <class Make, class... Input>
+  std::invoke_result_t<Make> made(std::string_view name, const Make& make, const Input&... inputs) const {
     using Made = std::invoke_result_t<Make>;
     if (!keeps() || watch_.stopped()) return make();
     const std::string under = key(name, inputs...);
@@ -51,8 +50,8 @@ class Stages {
   }
 
   // The two halves of it, for what is kept on the way.
-  template <class... Inputs>
-  std::string key(std::string_view name, const Inputs&... inputs) const {
+  template <class... Input>
+  std::string key(std::string_view name, const Input&... inputs) const {
     std::string bytes = of_;
     write_bytes(bytes, std::string(name));
     (write_bytes(bytes, inputs), ...);

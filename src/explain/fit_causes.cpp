@@ -11,7 +11,6 @@
 #include "explain/constants.h"
 #include "explain/deviance.h"
 #include "explain/kept.h"
-#include "model/state.h"
 #include "optimise/box_least_squares.h"
 #include "optimise/local.h"
 
@@ -112,9 +111,9 @@ LeastSquaresProblem keeping_derivatives(const LeastSquaresProblem& p, const Eige
 std::vector<double> values_of(const Eigen::VectorXd& v) { return {v.data(), v.data() + v.size()}; }
 
 // What a search was before, at its end: made again from there, or made.
-template <class... Inputs>
+template <class... Input>
 LocalOptions through_checkpoint(const Subject& subject, const Stages& stages, const LeastSquaresProblem& problem,
-                                const LeastSquaresOptions& options, const Inputs&... inputs) {
+                                const LeastSquaresOptions& options, const Input&... inputs) {
   LocalOptions o = local_options();
   if (!stages.keeps()) return o;
   o.through = [&subject, &stages, &problem, &options, inputs...](const auto& search) {

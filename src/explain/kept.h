@@ -13,7 +13,6 @@
 #include "explain/missing.h"
 #include "explain/subject.h"
 #include "explain/valve.h"
-#include "model/state.h"
 #include "optimise/box_least_squares.h"
 
 namespace servodx {
@@ -79,9 +78,9 @@ auto fields(Counted<T>& c) {
 }
 
 // A stage of the subject's. Its simulations count, be they run now or not.
-template <class Make, class... Inputs>
+template <class Make, class... Input>
 auto counted(const Subject& subject, const Stages& stages, std::string_view name, const Make& make,
-             const Inputs&... inputs) {
+             const Input&... inputs) {
   if (!stages.keeps()) return make();
   const long simulations = subject.simulations(), failed = subject.failed_simulations();
   const auto with_work = [&] {

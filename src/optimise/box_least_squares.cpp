@@ -1,6 +1,5 @@
 // Decisions.
-// - Not Ceres' minimiser from afar; it takes over where this search ends (local.h). It meets bounds by projecting a
-// step
+// - Not Ceres' minimiser from afar; it takes over where this search ends (local.h). It meets bounds by projecting a step
 //   that was solved as if free, and it asks for residuals one point at a time, which would leave seven of eight lanes
 //   empty. On weakly identified problems with walls (8 to 25 parameters, tests/optimise/ceres_comparison_test.cpp) all
 //   three reach the floor in 24 of 24 runs, in a mean of 244 evaluations here, 1779 with Ceres' bounds, 1186 with Ceres
@@ -55,16 +54,6 @@ class Search {
       : problem_(problem), options_(options) {}
 
   // What the normal equations say of an end that is known.
-  SearchEnd without_rows(const LeastSquaresResult& end) {
-    return {end.point,      end.start_cost, end.promised_gain, end.central, end.evaluations, end.failed_evaluations,
-            end.iterations, end.reason,     end.stopped};
-  }
-
-  LeastSquaresResult with_rows(const SearchEnd& end, const LeastSquaresProblem& problem,
-                               const LeastSquaresOptions& options) {
-    return Search(problem, options).again(end);
-  }
-
   void take_stock(LeastSquaresResult& end, NormalEquations equations) {
     x_ = end.point;
     cost_ = end.cost;
@@ -446,8 +435,9 @@ class Search {
         const Eigen::VectorXd residual = residual_;
         if (step(m) == Step::accepted) {
           const bool learns = own_jacobian_ || options_.given_learns;
-          pass.learnt =
-              learns && !pass.central && kept_promise_ && pass.learnt < options_.secant_steps ? pass.learnt + 1 : 0;
+          pass.learnt = learns && !pass.central && kept_promise_ && pass.learnt < options_.secant_steps
+                            ? pass.learnt + 1
+                            : 0;
           if (pass.learnt > 0) learn(x, residual);
         } else {
           next = without_step(pass);
@@ -536,6 +526,16 @@ LeastSquaresResult minimise_least_squares(const LeastSquaresProblem& problem, co
                                           const LeastSquaresOptions& options) {
   options.validate();
   return Search(problem, options).run(start);
+}
+
+SearchEnd without_rows(const LeastSquaresResult& end) {
+  return {end.point,      end.start_cost, end.promised_gain, end.central, end.evaluations, end.failed_evaluations,
+          end.iterations, end.reason,     end.stopped};
+}
+
+LeastSquaresResult with_rows(const SearchEnd& end, const LeastSquaresProblem& problem,
+                             const LeastSquaresOptions& options) {
+  return Search(problem, options).again(end);
 }
 
 void take_stock(LeastSquaresResult& end, NormalEquations equations, const LeastSquaresOptions& options) {
