@@ -39,7 +39,7 @@ struct TuneOptions {
   int moving_average = 1;       // [samples] odd; smooths measurement and simulation alike, also in later commands
   std::string checkpoint = {};  // file of a checkpoint, opened where `watch` has none; empty: none
   bool resume = false;          // go on from that file
-  Watch watch = {};  // stopped: finish with the best so far
+  Watch watch = {};             // stopped: finish with the best so far
 
   // Throws InputError that names the option, as the program calls it. tune() asks for it before any work.
   void validate() const;
