@@ -17,6 +17,7 @@
 #include "report/conditions.h"
 #include "report/diagnosis_words.h"
 #include "report/explain_report.h"
+#include "report/going_on.h"
 #include "report/json.h"
 #include "report/pages.h"
 #include "report/text.h"
@@ -35,13 +36,14 @@ struct Options {
   bool alone = false;
   std::string params, output;
   double false_alarm = BaselineOptions{}.false_alarm;
+  RunOptions run;
 };
 
 int run(const Options& options) {
   BaselineOptions how;
   how.false_alarm = options.false_alarm, how.seed = options.common.seed, how.threads = options.common.threads;
   how.validate();
-  Invocation invocation("baseline", options.common);
+  Invocation invocation("baseline", options.common, options.run);
   auto inputs = options.logs;
   inputs.insert(inputs.end(), options.others.begin(), options.others.end());
   inputs.push_back(options.params);
@@ -73,6 +75,12 @@ int run(const Options& options) {
   const DetectionBaseline& detection = baseline.parts->detection;
   header.simulations = baseline.simulations, header.failed_simulations = baseline.failed_simulations;
   invocation.note(baseline.notes);
+  if (baseline.interrupted) invocation.note_how_to_go_on();
+  constexpr std::size_t fewest = 3;  // that set a threshold
+  if (baseline.interrupted && detection.scores.size() < fewest) {
+    invocation.finish_without_result(report::too_few_for_a_baseline(detection.scores.size(), logs.size()) + "\n");
+    return interrupted;
+  }
   if (invocation.wants_report()) {
     std::vector<Replay> replays;
     for (std::size_t i = 0; i < std::min(detection.scores.size(), report::most_replays); ++i)
@@ -105,6 +113,7 @@ void add_baseline_command(CLI::App& app, int& exit_code) {
   command->add_option("--false-alarm", options->false_alarm, "rate of false alarms asked for, per log")
       ->type_name("RATE")
       ->capture_default_str();
+  add_run_options(*command, options->run);
   add_common_options(*command, options->common);
   command->callback([options, &exit_code] { exit_code = run(*options); });
 }

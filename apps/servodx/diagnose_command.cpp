@@ -49,6 +49,7 @@ struct Options {
   bool genetic() const { return search == FaultSearch::genetic; }
   bool pool = false, exit_by_action = false;
   ListOptions list;
+  RunOptions run;
 };
 
 int code_of(const Diagnosis& diagnosis) {
@@ -168,6 +169,8 @@ void require_consistent(const Options& options) {
                  "name one log in place of --list");
   require_option(options.list.list.empty() || options.against.empty(), "--against", "is of one verdict",
                  "name one log in place of --list");
+  require_option(options.list.list.empty() || options.run.checkpoint.empty(), "--checkpoint",
+                 "is of logs that are named one by one", "leave it out: the same call with --list goes on by itself");
   const bool one = options.logs.size() == 1 || options.pool || !options.list.list.empty();
   require_option(options.certificate.empty() || one, "--certificate", "certifies one verdict",
                  "name one log, or add --pool");
@@ -176,8 +179,9 @@ void require_consistent(const Options& options) {
 
 int run(const Options& options) {
   require_consistent(options);
-  if (!options.list.list.empty()) return diagnose_list(options.common, options.list, options.params, options.baseline);
-  Invocation invocation("diagnose", options.common);
+  if (!options.list.list.empty())
+    return diagnose_list(options.common, options.run, options.list, options.params, options.baseline);
+  Invocation invocation("diagnose", options.common, options.run);
   auto inputs = options.logs;
   inputs.insert(inputs.end(), {options.params, options.baseline});
   for (const std::string& more : {options.list.actions, options.certificate, options.against})
@@ -236,6 +240,7 @@ int run(const Options& options) {
   }
   if (results.size() < (options.pool ? 1 : logs.size()))
     invocation.note({fmt::format("interrupted: {} of {} logs were judged", results.size(), logs.size())});
+  if (watch.stopped()) invocation.note_how_to_go_on();
   report::Json json = whole_json(results, tuned.table, rig);
   report::BesideVerdict beside;
   if (last && results.size() == 1) {
@@ -307,6 +312,7 @@ void add_diagnose_command(CLI::App& app, int& exit_code) {
       ->excludes(list);
   command->add_flag("!--no-explain", options->list.explain_unknown,
                     "do not ask what stands first where no fault explains a log (saves seconds a log)");
+  add_run_options(*command, options->run);
   add_common_options(*command, options->common);
   command->footer(
       "With --list a result that is there for the same log, table, baseline, rig, seed and version is kept; a log\n"

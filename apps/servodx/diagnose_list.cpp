@@ -42,12 +42,12 @@ FleetRun judge_all(const std::vector<std::string>& logs, FleetJudge& judge, cons
 
 }  // namespace
 
-int diagnose_list(const CommonOptions& common, const ListOptions& options, const std::string& params,
-                  const std::string& baseline) {
+int diagnose_list(const CommonOptions& common, const RunOptions& run_options, const ListOptions& options,
+                  const std::string& params, const std::string& baseline) {
   require_option(common.report.empty(), "--report", "a list has no page of its own",
                  "'servodx gather " + (options.out.empty() ? "DIR" : options.out) + " --report FILE.html' makes it");
   require_folder("--out", options.out);
-  Invocation invocation("diagnose", common);
+  Invocation invocation("diagnose", common, run_options);
   std::vector<std::string> inputs = {params, baseline};
   if (!is_standard_input(options.list)) inputs.push_back(options.list);
   invocation.check_files(inputs, {});

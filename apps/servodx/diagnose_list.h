@@ -18,7 +18,7 @@ struct ListOptions {
 inline Actions actions_of(const std::string& file) { return file.empty() ? default_actions() : read_actions(file); }
 
 // The exit code.
-int diagnose_list(const CommonOptions& common, const ListOptions& options, const std::string& params,
-                  const std::string& baseline);
+int diagnose_list(const CommonOptions& common, const RunOptions& run, const ListOptions& options,
+                  const std::string& params, const std::string& baseline);
 
 }  // namespace servodx

@@ -29,6 +29,7 @@ struct Options {
   std::string params, baseline, output;
   std::vector<std::string> without;
   bool keep_worse = false;
+  RunOptions run;
 };
 
 int run(const Options& options) {
@@ -37,7 +38,7 @@ int run(const Options& options) {
                      .without = options.without,
                      .keep_worse = options.keep_worse};
   how.validate();
-  Invocation invocation("explain", options.common);
+  Invocation invocation("explain", options.common, options.run);
   auto inputs = options.logs;
   inputs.push_back(options.params);
   if (!options.baseline.empty()) inputs.push_back(options.baseline);
@@ -67,6 +68,7 @@ int run(const Options& options) {
   header.failed_simulations = result.failed_simulations;
   for (const Log& log : logs) invocation.note(texts_of(log.notes));
   invocation.note(result.notes);
+  if (result.interrupted) invocation.note_how_to_go_on();
   if (invocation.wants_report()) {
     std::vector<Replay> replays;
     for (std::size_t l = 0; l < std::min(logs.size(), report::most_replays); ++l) {
@@ -98,6 +100,7 @@ void add_explain_command(CLI::App& app, int& exit_code) {
       ->type_name("EFFECT");
   command->add_flag("--keep-worse", options->keep_worse,
                     "write the extension even where the simulation's held-out rms is worse with it");
+  add_run_options(*command, options->run);
   add_common_options(*command, options->common);
   command->callback([options, &exit_code] { exit_code = run(*options); });
 }

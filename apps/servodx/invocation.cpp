@@ -1,9 +1,11 @@
 #include "invocation.h"
 
+#include <sys/time.h>
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <cmath>
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
@@ -11,18 +13,23 @@
 #include <mutex>
 #include <optional>
 #include <stdexcept>
+#include <string_view>
+#include <utility>
 
 #include "base/atomic_file.h"
 #include "base/csv.h"
 #include "base/error.h"
 #include "base/progress.h"
+#include "base/units.h"
 #include "build.h"
 #include "manifest.h"
 #include "print_page.h"
 #include "report/columns.h"
+#include "report/going_on.h"
 #include "report/handy.h"
 #include "report/page_head.h"
 #include "report/plain_page.h"
+#include "servodx/checkpoint.h"
 #include "servodx/rig.h"
 #include "simulate/simulate.h"
 
@@ -31,12 +38,40 @@ namespace fs = std::filesystem;
 namespace {
 
 std::vector<std::string> call;
-std::atomic<bool> stop{false};
+std::atomic<bool> stop{false}, out_of_time{false};
 static_assert(std::atomic<bool>::is_always_lock_free, "a signal handler may store it");
 
 void on_interrupt(int signal) {
   stop.store(true);
   std::signal(signal, SIG_DFL);
+}
+
+void on_time_limit(int) {
+  out_of_time.store(true);
+  stop.store(true);
+}
+
+// [s]
+double duration_of(const std::string& text) {
+  constexpr std::pair<std::string_view, double> units[] = {{"ms", 1e-3}, {"s", 1}, {"min", 60}, {"h", 3600}};
+  const std::size_t space = text.find(' ');
+  const std::string_view number = std::string_view(text).substr(0, space);
+  const std::string_view unit = space == std::string::npos ? "" : std::string_view(text).substr(space + 1);
+  constexpr double longest = 1e8;  // [s] three years: no timer is wrapped
+  for (const auto& [name, seconds] : units)
+    if (const auto value = parse_number(number); unit == name && value && *value > 0 && *value * seconds <= longest)
+      return *value * seconds;
+  throw InputError({"--time-limit", 0, ""}, "'" + text + "' is no duration",
+                   "give one such as '90 s', '10 min' or '2 h'");
+}
+
+void stop_after(double seconds) {
+  std::signal(SIGALRM, on_time_limit);
+  itimerval timer{};
+  timer.it_value.tv_sec = static_cast<time_t>(seconds);
+  timer.it_value.tv_usec = static_cast<suseconds_t>((seconds - std::floor(seconds)) * 1e6);
+  if (timer.it_value.tv_sec == 0 && timer.it_value.tv_usec == 0) timer.it_value.tv_usec = 1;  // zero: never
+  ::setitimer(ITIMER_REAL, &timer, nullptr);
 }
 
 // CLI11 would wrap a negative seed round.
@@ -126,6 +161,21 @@ void add_common_options(CLI::App& command, CommonOptions& options) {
   command.add_flag("--quiet", options.quiet, "no progress and no notices")->group("Common");
 }
 
+void add_run_options(CLI::App& command, RunOptions& options) {
+  command
+      .add_option("--checkpoint", options.checkpoint,
+                  "keep what is finished in FILE, so that a call that is broken off can be gone on with")
+      ->type_name("FILE")
+      ->group("Common");
+  command.add_flag("--resume", options.resume, "go on from the checkpoint, to the same bits as an unbroken call")
+      ->group("Common");
+  command
+      .add_option("--time-limit", options.time_limit,
+                  "end after so long with the best so far and exit code 130: '90 s', '10 min', '2 h'")
+      ->type_name("DURATION")
+      ->group("Common");
+}
+
 void add_certificate_option(CLI::App& command, std::string& file) {
   command
       .add_option("--certificate", file,
@@ -155,7 +205,13 @@ std::string shipped_path(const std::string& path) {
 
 bool colour_wanted() { return ::isatty(STDOUT_FILENO) == 1 && !std::getenv("NO_COLOR"); }
 
-Invocation::Invocation(std::string command, CommonOptions options) : options_(std::move(options)) {
+Invocation::Invocation(std::string command, CommonOptions options, RunOptions run)
+    : options_(std::move(options)), run_(std::move(run)) {
+  require_option(!run_.resume || !run_.checkpoint.empty(), "--resume", "there is nothing to resume from",
+                 "add --checkpoint FILE");
+  require_option(!run_.resume || fs::exists(run_.checkpoint), "--checkpoint",
+                 "'" + run_.checkpoint + "' is not there to resume from", "leave out --resume to begin");
+  if (!run_.time_limit.empty()) stop_after(duration_of(run_.time_limit));
   header_.version = SERVODX_VERSION;
   header_.command = std::move(command);
   header_.seed = options_.seed;
@@ -178,9 +234,18 @@ void Invocation::check_files(const std::vector<std::string>& inputs, const std::
       throw InputError({output, 0, ""}, "is named for two outputs", "give each output its own file");
     seen.push_back(place);
   }
-  // A browser draws no page twice to the byte: what it printed is no output that a manifest could promise.
+  // A browser draws no page twice to the byte: what it printed is no output that a manifest could promise. No more is a
+  // checkpoint, whose stages stand in the order they were finished in.
   if (!options_.pdf.empty()) all_outputs.pop_back();
-  check_manifest(all_inputs, all_outputs);
+  if (!run_.checkpoint.empty()) {
+    check_output(run_.checkpoint, all_inputs);
+    for (const std::string& output : all_outputs)
+      if (resolved(output) == resolved(run_.checkpoint))
+        throw InputError({output, 0, ""}, "is named for two outputs", "give each output its own file");
+  }
+  std::vector<std::string> all_files = all_outputs;
+  if (!run_.checkpoint.empty()) all_files.push_back(run_.checkpoint);
+  check_manifest(all_inputs, all_files);
   outputs_ = std::move(all_outputs);
 }
 
@@ -297,10 +362,17 @@ struct Invocation::Shown {
 Watch Invocation::watch() {
   Watch watch;
   watch.stop = [&asked = stop_on_interrupt()] { return asked.load(); };
+  if (!run_.checkpoint.empty() && !checkpoint_)
+    checkpoint_ = open_checkpoint(run_.checkpoint, run_.resume ? CheckpointUse::go_on : CheckpointUse::begin);
+  watch.checkpoint = checkpoint_;
   if (options_.quiet) return watch;
   if (!shown_) shown_ = std::make_shared<Shown>();
   watch.progress = [shown = shown_](const WorkDone& done) { shown->update(done); };
   return watch;
+}
+
+void Invocation::note_how_to_go_on() {
+  note({report::how_to_go_on(out_of_time ? run_.time_limit : "", run_.checkpoint)});
 }
 
 void Invocation::note(const std::vector<std::string>& notices) {
@@ -351,8 +423,25 @@ void Invocation::write_manifest() const {
   write_file(path, manifest.dump(2, ' ', false, report::Json::error_handler_t::replace) + "\n");
 }
 
-void Invocation::finish(const std::string& text, const report::Json& body) {
+void Invocation::end_progress() {
   if (shown_) shown_->line.reset();
+  if (checkpoint_ && !options_.quiet)
+    std::fputs(report::words_of(report_of(*checkpoint_), run_.checkpoint, run_.resume).c_str(), stderr);
+}
+
+void Invocation::print_with_notes(std::string text) const {
+  if (!options_.quiet)
+    for (const std::string& note : header_.notes) text += "note: " + note + "\n";
+  print(text);
+}
+
+void Invocation::finish_without_result(const std::string& text) {
+  end_progress();
+  print_with_notes(text);
+}
+
+void Invocation::finish(const std::string& text, const report::Json& body) {
+  end_progress();
   if (!options_.json.empty() && options_.json != "-") write_file(options_.json, result(body));
   if (wants_report() && !reported_) {
     report::Json shown = body;
@@ -361,10 +450,7 @@ void Invocation::finish(const std::string& text, const report::Json& body) {
   }
   write_manifest();
   if (options_.json == "-") return print(result(body));
-  std::string all = text;
-  if (!options_.quiet)
-    for (const std::string& note : header_.notes) all += "note: " + note + "\n";
-  print(all);
+  print_with_notes(text);
 }
 
 }  // namespace servodx

@@ -24,6 +24,8 @@ class App;
 
 namespace servodx {
 
+class Checkpoint;
+
 // some_set_aside: of many inputs some were refused, the others done.
 enum ExitCode {
   ran = 0,
@@ -49,6 +51,14 @@ struct CommonOptions {
   bool dry_run = false;
 };
 void add_common_options(CLI::App& command, CommonOptions& options);
+
+// Of commands that take long: how they may end early and be gone on with.
+struct RunOptions {
+  std::string checkpoint;  // empty: none
+  bool resume = false;
+  std::string time_limit;  // "90 s"; empty: none
+};
+void add_run_options(CLI::App& command, RunOptions& options);
 void add_certificate_option(CLI::App& command, std::string& file);
 
 // Throws InputError naming the option, unless `holds`.
@@ -57,12 +67,14 @@ void require_option(bool holds, const std::string& option, const std::string& ru
 // The call as typed, for the manifest.
 void remember_call(int argc, char** argv);
 
-// Set by the first SIGINT from now on, and by SIGTERM where asked; a second one ends the program at once.
+// Set by the first SIGINT from now on, and by SIGTERM where asked; a second one ends the program at once. A limit of
+// time sets it too.
 const std::atomic<bool>& stop_on_interrupt(bool or_on_termination = false);
 
 class Invocation {
  public:
-  Invocation(std::string command, CommonOptions options);
+  // From here on the limit of time counts.
+  Invocation(std::string command, CommonOptions options, RunOptions run = {});
 
   // Before any work: refuses outputs whose folder is missing or closed, that are a folder, an input, or the same file
   // twice. The --json and --report files are among the outputs.
@@ -85,9 +97,11 @@ class Invocation {
   Tuned tuned(const std::string& path);  // refuses one that is not tuned
   Table tuned_table(const std::string& path) { return tuned(path).table; }
 
-  // Progress on standard error, unless quiet, and the first SIGINT as a wish to end. The line goes at the next kind of
-  // work and at finish().
+  // Progress on standard error, unless quiet, the first SIGINT or the limit of time as a wish to end, and the
+  // checkpoint, which is opened at the first call. The line goes at the next kind of work and at finish().
   Watch watch();
+  // For the end of a result that was cut short.
+  void note_how_to_go_on();
 
   // Notices for the end of the result; one that is there already is not repeated.
   void note(const std::vector<std::string>& notices);
@@ -103,11 +117,17 @@ class Invocation {
   // The result to --json and the text to standard output, each where it is asked for; then the notes. Beside the first
   // file that the call wrote goes its manifest, FILE.manifest.json: all that `rerun` needs.
   void finish(const std::string& text, const report::Json& body);
+  // Where there is no result to write: the text and the notes alone.
+  void finish_without_result(const std::string& text);
 
  private:
   struct Shown;
   CommonOptions options_;
+  RunOptions run_;
+  std::shared_ptr<Checkpoint> checkpoint_;
   void write_manifest() const;
+  void end_progress();
+  void print_with_notes(std::string text) const;
   report::Header header_;
   bool reported_ = false;
   std::shared_ptr<Shown> shown_;

@@ -78,15 +78,23 @@ std::vector<std::string> texts(const report::Json& list) {
   return all;
 }
 
-// A PDF is the page on paper, whose bytes no browser repeats: it is not printed again.
-std::vector<std::string> without_pdf(const std::vector<std::string>& arguments) {
-  constexpr std::string_view option = "--pdf";
+// What does not go into the result's bytes. A PDF is the page on paper, whose bytes no browser repeats: it is not
+// printed again. A checkpoint would give back what is to be made again, and a limit of time that was kept limits
+// nothing.
+std::vector<std::string> without_aids(const std::vector<std::string>& arguments) {
+  constexpr std::string_view options[] = {"--pdf", "--checkpoint", "--time-limit"};
   std::vector<std::string> kept;
-  for (std::size_t i = 0; i < arguments.size(); ++i)
-    if (arguments[i] == option)
+  for (std::size_t i = 0; i < arguments.size(); ++i) {
+    const std::string_view word = arguments[i];
+    const auto is = [&](std::string_view option) { return word == option; };
+    const auto has = [&](std::string_view option) {
+      return word.starts_with(option) && word.substr(option.size()).starts_with('=');
+    };
+    if (std::any_of(std::begin(options), std::end(options), is))
       ++i;
-    else if (!arguments[i].starts_with("--pdf="))
+    else if (word != "--resume" && std::none_of(std::begin(options), std::end(options), has))
       kept.push_back(arguments[i]);
+  }
   return kept;
 }
 
@@ -165,7 +173,7 @@ int run(const Options& options) {
     before.keep(path);
     listed.insert(fs::weakly_canonical(path).string());
   }
-  const std::vector<std::string> arguments = without_pdf(texts(manifest["arguments"]));
+  const std::vector<std::string> arguments = without_aids(texts(manifest["arguments"]));
   std::vector<std::string> unlisted = outputs_of(arguments);
   if (!unlisted.empty()) unlisted.push_back(unlisted.front() + manifest_suffix);
   std::erase_if(unlisted,

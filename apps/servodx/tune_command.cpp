@@ -41,6 +41,7 @@ struct Options {
   std::string local = "least_squares", profile;
   std::vector<std::string> priors;
   TuneOptions tune;
+  RunOptions run;
 };
 
 // What a diagnosis with the tuned table would see on each log. Logs of a test stand are not diagnosed.
@@ -112,12 +113,10 @@ int run(const Options& options) {
   tune_options.seed = options.common.seed;
   tune_options.threads = options.common.threads;
 
-  Invocation invocation("tune", options.common);
+  Invocation invocation("tune", options.common, options.run);
   auto inputs = options.logs;
   inputs.push_back(options.params);
-  std::vector<std::string> outputs = {options.output};
-  if (!tune_options.checkpoint.empty()) outputs.push_back(tune_options.checkpoint);
-  invocation.check_files(inputs, outputs);
+  invocation.check_files(inputs, {options.output});
   const RigFile rig = invocation.rig();
   const Table nominal = invocation.table(options.params);  // tune_table() applies the facts, effects' rows included
   const std::vector<Log> logs = invocation.logs(options.logs, rig);
@@ -156,6 +155,7 @@ int run(const Options& options) {
   const std::optional<BeyondFaults> likeliest = likeliest_of(logs, tuned, rig, tune_options);
   const report::GoodEnough good = report::good_enough(
       result, promises(logs, tuned, rig, options.common.threads, invocation), likeliest ? &*likeliest : nullptr);
+  if (tune_options.watch.stopped()) invocation.note_how_to_go_on();
   if (invocation.wants_report()) {
     std::vector<Replay> replays;
     for (std::size_t l = 0; l < std::min(logs.size(), report::most_replays); ++l)
@@ -165,7 +165,7 @@ int run(const Options& options) {
   report::Json body = report::tune_json(result);
   body["good_enough"] = report::to_json(good);
   invocation.finish(report::text_of(result, good, {.colour = colour_wanted(), .written_to = options.output}), body);
-  return result.interrupted ? interrupted : ran;
+  return tune_options.watch.stopped() ? interrupted : ran;
 }
 
 }  // namespace
@@ -207,8 +207,7 @@ void add_tune_command(CLI::App& app, int& exit_code) {
       ->add_option("--prior", options->priors,
                    "hold a row to its nominal, give or take SD in the table's unit; may be repeated")
       ->type_name("NAME=SD");
-  command->add_option("--checkpoint", tune.checkpoint, "save the search to FILE every generation")->type_name("FILE");
-  command->add_flag("--resume", tune.resume, "go on from the checkpoint");
+  add_run_options(*command, options->run);
   add_common_options(*command, options->common);
   command->callback([options, &exit_code] { exit_code = run(*options); });
 }

@@ -3,6 +3,7 @@
 #pragma once
 #include "servodx/baseline.h"
 #include "servodx/charts.h"
+#include "servodx/checkpoint.h"
 #include "servodx/curves.h"
 #include "servodx/diagnose.h"
 #include "servodx/error.h"

@@ -37,9 +37,9 @@ struct TuneOptions {
   TuneLocal local = TuneLocal::least_squares;
   std::vector<std::string> profile = {};  // rows whose interval is checked by profile likelihood; "all": every one
   int moving_average = 1;       // [samples] odd; smooths measurement and simulation alike, also in later commands
-  std::string checkpoint = {};  // file saved every generation; empty: none
-  bool resume = false;
-  Watch watch = {};  // stopped: finish with the best so far
+  std::string checkpoint = {};  // file of a checkpoint, opened where `watch` has none; empty: none
+  bool resume = false;          // go on from that file
+  Watch watch = {};             // stopped: finish with the best so far
 
   // Throws InputError that names the option, as the program calls it. tune() asks for it before any work.
   void validate() const;

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "base/error.h"
+#include "base/stages.h"
 #include "diagnose/constants.h"
 #include "diagnose/gross.h"
 #include "diagnose/hypotheses.h"
@@ -28,8 +29,11 @@
 #include "fit/nominal.h"
 #include "fit/tuned_state.h"
 #include "parameters/list.h"
+#include "servodx/log.h"
 #include "servodx/rig.h"
+#include "servodx/table.h"
 #include "servodx/tune.h"
+#include "signals/rig_content.h"
 #include "simulate/scenario.h"
 #include "tune/tune.h"
 
@@ -55,6 +59,21 @@ HypothesisSettings settings_of(const RigFile& rig, const DiagnoseOptions& option
   settings.stop = options.watch.stop;
   if (options.search == FaultSearch::genetic) settings.genetic = {options.population, options.seed};
   return settings;
+}
+
+// The seed is of the genetic search alone, which the attempts' stages do not name.
+Stages stages_of(const std::vector<Log>& logs, const Table& tuned, const RigFile& rig, const DiagnoseOptions& options) {
+  if (!options.watch.checkpoint) return {};
+  std::vector<std::string> content;
+  for (const Log& log : logs) content.push_back(content_hash(log));
+  const bool genetic = options.search == FaultSearch::genetic;
+  return {options.watch,
+          "assess",
+          content,
+          content_hash(tuned),
+          content_bytes(rig),
+          options.search,
+          genetic ? options.seed : 0};
 }
 
 // Logs of one valve in one state, made ready.
@@ -272,7 +291,8 @@ Assessment assess_pool(const std::vector<Log>& logs, const Table& tuned, const R
   const ErrorModel error = required_error_model(tuned);
   const Ready ready = make_ready(logs, tuned, rig, error, out);
   const ParameterVector base = candidate_of(tuned);
-  const HypothesisSettings settings = settings_of(rig, options);
+  HypothesisSettings settings = settings_of(rig, options);
+  settings.stages = stages_of(logs, tuned, rig, options);
   const ReadingTrial trial{tuned, rig, error, options.threads};
   out.unjudgeable = unjudgeable_of(ready, base, out.point);
   if (out.unjudgeable != Unjudgeable::no) {

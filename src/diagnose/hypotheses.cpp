@@ -9,6 +9,7 @@
 
 #include "diagnose/constants.h"
 #include "diagnose/hypothesis_fit.h"
+#include "diagnose/kept.h"
 #include "diagnose/severity.h"
 #include "diagnose/sub_groups.h"
 #include "diagnose/whitening.h"
@@ -67,11 +68,15 @@ std::vector<Screened> screen_starts(const std::vector<const Fault*>& faults, con
   std::vector<Screened> screened;
   for (const Fault* fault : faults)
     for (double severity : starting_severities(*fault, data.settings.null_limit)) screened.push_back({fault, severity});
-  side_by_side(screened.size(), data, [&](std::size_t i) {
-    screen(screened[i], data, health, end);
-    steps.done(Steps::screening * static_cast<double>(faults.size()) / static_cast<double>(screened.size()),
-               screened[i].work.simulations);
-  });
+  const auto run_all = [&] {
+    side_by_side(screened.size(), data, [&](std::size_t i) {
+      screen(screened[i], data, health, end);
+      steps.done(Steps::screening * static_cast<double>(faults.size()) / static_cast<double>(screened.size()),
+                 screened[i].work.simulations);
+    });
+    return screened;
+  };
+  screened = data.settings.stages.made("screen", run_all, screened, health, end != nullptr);
   std::stable_sort(screened.begin(), screened.end(),
                    [](const Screened& a, const Screened& b) { return a.left < b.left; });
   return screened;
@@ -134,7 +139,7 @@ void evolve_all(std::vector<Attempt>& attempts, const HypothesisData& data, cons
                 const HypothesisSettings::Genetic& how, Steps& steps) {
   for (Attempt& a : attempts) {
     const long before = a.work.simulations;
-    evolve(a, data, health, how);
+    through_checkpoint(a, data, "evolve", &health, how.population, [&] { evolve(a, data, health, how); });
     steps.done(0, a.work.simulations - before);
   }
   side_by_side(attempts.size(), data, [&](std::size_t i) {
@@ -258,7 +263,13 @@ std::vector<Attempt> pair_attempts(const std::vector<const Fault*>& faults,
       for (const double severity : starting_severities(*fault, data.settings.null_limit))
         screened.push_back({.fault = led[l]->fault, .severity = severity, .beside = fault}), by.push_back(led[l]);
     }
-  side_by_side(screened.size(), data, [&](std::size_t i) { screen(screened[i], data, *by[i]); });
+  const auto run_all = [&] {
+    side_by_side(screened.size(), data, [&](std::size_t i) { screen(screened[i], data, *by[i]); });
+    return screened;
+  };
+  std::vector<HypothesisFit> beside;
+  for (const HypothesisFit* fit : led) beside.push_back(*fit);
+  screened = data.settings.stages.made("screen pairs", run_all, screened, beside);
   std::vector<Attempt> out;
   double least = 0;
   for (std::size_t i = 0; i < screened.size(); ++i) {
@@ -358,8 +369,10 @@ std::vector<double> square_beyond_beginning(const LogData& log, std::size_t end,
                                             const ErrorModel& error, const HypothesisSettings& settings,
                                             FitWork& work) {
   const LogData beginning = slice(log, 0, end);
+  HypothesisSettings of_it = settings;
+  of_it.stages = settings.stages.part("beginning", end);
   Attempt health;
-  run(health, hypothesis_data({&beginning}, base, error, settings), nullptr, settings.iterations);
+  run(health, hypothesis_data({&beginning}, base, error, of_it), nullptr, settings.iterations);
   work.add(health.work);
   if (!health.fit.ok) return {};
   FitProblem problem({&log}, base, health.fit.free);

@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "base/stages.h"
 #include "diagnose/constants.h"
 #include "diagnose/visible.h"
 #include "faults/fault.h"
@@ -65,6 +66,7 @@ struct HypothesisSettings {
   std::vector<const Fault*> among = {};  // weighed beside health; empty: all that are fitted
   std::function<bool()> stop = {};       // true: give up; what comes back is worthless
   std::function<void(double part, long simulations)> progress = {};  // after every fit, from any thread
+  Stages stages = {};  // that a checkpoint keeps: of these logs, this base and error model
 };
 
 struct HypothesisFits {

@@ -6,7 +6,9 @@
 #include <vector>
 
 #include "base/random.h"
+#include "base/stages.h"
 #include "diagnose/constants.h"
+#include "diagnose/kept.h"
 #include "diagnose/severity.h"
 #include "diagnose/whitening.h"
 #include "faults/fault.h"
@@ -154,10 +156,18 @@ HypothesisData hypothesis_data(const std::vector<const LogData*>& logs, const Pa
   return data;
 }
 
+namespace {
+
+std::vector<FreeValue> free_of(const Attempt& a, const HypothesisData& data) {
+  return hypothesis_values(data.logs, data.base, {{a.fault, a.start}, {a.beside, a.start_beside}},
+                           data.settings.null_limit);
+}
+
+}  // namespace
+
 FitProblem problem_of(Attempt& a, const HypothesisData& data, int threads) {
   a.fit.fault = a.fault;
-  a.fit.free = hypothesis_values(data.logs, data.base, {{a.fault, a.start}, {a.beside, a.start_beside}},
-                                 data.settings.null_limit);
+  a.fit.free = free_of(a, data);
   FitProblem problem = problem_of(data, a.fit.free, threads);
   problem.difference_step = k::difference_step;
   return problem;
@@ -205,21 +215,42 @@ void end_at(Attempt& a, const FitProblem& problem, const LeastSquaresResult& r, 
 void run(Attempt& a, const HypothesisData& data, const HypothesisFit* from, int iterations) {
   const std::function<bool()>& stop = data.settings.stop;
   if (stop && stop()) return;
-  FitProblem problem = problem_of(a, data);
-  end_at(a, problem, minimise(problem, start_of(a, problem, from), iterations, stop), data);
+  through_checkpoint(a, data, "run", from, iterations, [&] {
+    FitProblem problem = problem_of(a, data);
+    end_at(a, problem, minimise(problem, start_of(a, problem, from), iterations, stop), data);
+  });
 }
 
 void approach(Attempt& a, const HypothesisData& data, const HypothesisFit& from, const FitEnd& end, int iterations) {
   const std::function<bool()>& stop = data.settings.stop;
   if (stop && stop()) return;
-  FitProblem problem = problem_of(a, data);
-  LeastSquaresProblem lent = problem.least_squares();
-  lent.jacobian = lent_derivatives(problem, end);
-  const Point start = start_of(a, problem, &from);
-  LocalOptions local;
-  local.method = LocalMethod::search_alone;  // `run` ends with Ceres
-  local.stop = stop;
-  end_at(a, problem, minimise_locally(lent, start, options_of(iterations, stop), local).end, data);
+  through_checkpoint(a, data, "approach", &from, iterations, [&] {
+    FitProblem problem = problem_of(a, data);
+    LeastSquaresProblem lent = problem.least_squares();
+    lent.jacobian = lent_derivatives(problem, end);
+    const Point start = start_of(a, problem, &from);
+    LocalOptions local;
+    local.method = LocalMethod::search_alone;  // `run` ends with Ceres
+    local.stop = stop;
+    end_at(a, problem, minimise_locally(lent, start, options_of(iterations, stop), local).end, data);
+  });
+}
+
+void through_checkpoint(Attempt& a, const HypothesisData& data, std::string_view how, const HypothesisFit* from,
+                        int iterations, const std::function<void()>& work) {
+  const Stages& stages = data.settings.stages;
+  if (!stages.keeps()) return work();
+  // Of a fault no one asks for the squares.
+  const auto as_it_is = [&] { return KeptAttempt{a.fit, a.fault ? std::vector<double>{} : a.square, a.work}; };
+  const auto made = [&] {
+    work();
+    return as_it_is();
+  };
+  const std::optional<HypothesisFit> start = from ? std::optional(*from) : std::nullopt;
+  KeptAttempt kept =
+      stages.made(how, made, a.fault, a.start, a.beside, a.start_beside, a.scattered, as_it_is(), start, iterations);
+  a.fit = std::move(kept.fit), a.square = std::move(kept.square), a.work = kept.work;
+  a.fit.free = free_of(a, data);
 }
 
 std::optional<FitEnd> end_of(const HypothesisFit& fit, const HypothesisData& data, FitWork& work) {

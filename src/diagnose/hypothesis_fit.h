@@ -1,7 +1,9 @@
 // One hypothesis, fitted from one start.
 #pragma once
 #include <Eigen/Dense>
+#include <functional>
 #include <optional>
+#include <string_view>
 #include <vector>
 
 #include "diagnose/hypotheses.h"
@@ -46,6 +48,10 @@ Point start_of(const Attempt& attempt, const FitProblem& problem, const Hypothes
 // Goes on where the attempt got to before; else begins at its start and, for the rest, at what `from` came to, health
 // or the first fault alone.
 void run(Attempt& attempt, const HypothesisData& data, const HypothesisFit* from, int iterations);
+
+// The attempt's work, or what a checkpoint has of it. `how`: it goes on; `from`: as run() and approach() take it.
+void through_checkpoint(Attempt& attempt, const HypothesisData& data, std::string_view how, const HypothesisFit* from,
+                        int iterations, const std::function<void()>& work);
 
 // Where a fit ended, of health mostly, and what it could make of a change there.
 struct FitEnd {

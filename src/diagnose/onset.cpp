@@ -65,7 +65,9 @@ std::optional<Onset> find_onset(const LogData& log, const ParameterVector& base,
     const LogData first = slice(log, 0, at), rest = slice(log, at, log.scenario.time.size());
     HypothesisSettings single = settings;
     single.pairs = false;
+    single.stages = settings.stages.part("before", at);
     const HypothesisFits before = fit_hypotheses({&first}, base, error, single);
+    single.stages = settings.stages.part("after", at);
     HypothesisFits after = fit_hypotheses({&rest}, base, error, single);
     work.add(before.work), work.add(after.work);
     // What was gone before cannot be the fault that is there after: that fault gains next to nothing before.

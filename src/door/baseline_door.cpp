@@ -11,6 +11,7 @@
 #include "base/csv.h"
 #include "base/key_error.h"
 #include "base/sha256.h"
+#include "base/stages.h"
 #include "diagnose/baseline.h"
 #include "diagnose/diagnose.h"
 #include "door/baseline_parts.h"
@@ -23,8 +24,10 @@
 #include "servodx/error.h"
 #include "servodx/log.h"
 #include "servodx/rig.h"
+#include "servodx/table.h"
 #include "servodx/trouble.h"
 #include "servodx/tune.h"
+#include "signals/rig_content.h"
 
 namespace servodx {
 namespace {
@@ -63,6 +66,11 @@ report::Header header_of(const std::vector<Log>& logs, const Tuned& tuned, const
   return header;
 }
 
+Stages stages_of_causes(const Tuned& tuned, const Rig& rig, const BaselineOptions& options) {
+  if (!options.watch.checkpoint) return {};
+  return {options.watch, "healthy causes", content_hash(tuned.table), content_bytes(rig)};
+}
+
 }  // namespace
 
 void BaselineOptions::validate() const {
@@ -94,7 +102,7 @@ Baseline make_baseline(const std::vector<Log>& logs, const Tuned& tuned, const R
         options.watch.tell("baseline, causes", done, counts.simulations);
         return !options.watch.stopped();
       },
-      options.others);
+      options.others, stages_of_causes(tuned, rig, options));
   header.simulations = counts.simulations, header.failed_simulations = counts.failed;
   header.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 

@@ -54,7 +54,8 @@ std::optional<Verdict::Suspicion> suspicion_of(const Diagnosis& d) {
 std::optional<BeyondFaults> explain_unknown(const std::vector<Log>& logs, const Tuned& tuned, const Rig& rig,
                                             const Baseline& baseline, const DiagnoseOptions& options) {
   ExplainOptions ask{.seed = options.seed, .threads = options.threads, .level = baseline.asked};
-  ask.watch.stop = options.watch.stop;
+  ask.watch = options.watch;
+  ask.watch.progress = nullptr;  // the diagnosis has its own
   const ExplainResult r = explain_logs(logs, tuned.table, rig, &causes_of(baseline), ask);
   if (r.interrupted) return {};
   return stands_first(r);

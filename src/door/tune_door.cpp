@@ -8,6 +8,7 @@
 #include "fit/tuned_state.h"
 #include "parameters/table_text.h"
 #include "report/tune_words.h"
+#include "servodx/checkpoint.h"
 #include "servodx/error.h"
 #include "servodx/log.h"
 #include "servodx/rig.h"
@@ -18,9 +19,21 @@
 
 namespace servodx {
 
+namespace {
+
+TuneOptions with_checkpoint(TuneOptions options) {
+  if (!options.watch.checkpoint && !options.checkpoint.empty())
+    options.watch.checkpoint =
+        open_checkpoint(options.checkpoint, options.resume ? CheckpointUse::go_on : CheckpointUse::begin);
+  return options;
+}
+
+}  // namespace
+
 Tuned tune(const std::vector<Log>& logs, const Table& nominal, const Rig& rig, const TuneOptions& options) {
+  options.validate();
   door::require_samples(logs, rig);
-  auto result = std::make_shared<TuneResult>(tune_table(logs, nominal, rig, options));
+  auto result = std::make_shared<TuneResult>(tune_table(logs, nominal, rig, with_checkpoint(options)));
   Tuned out;
   out.table = result->table;
   out.table.path = "the table in memory";  // for messages

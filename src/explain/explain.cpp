@@ -18,6 +18,7 @@
 #include "explain/fit_causes.h"
 #include "explain/hold_out.h"
 #include "explain/inquiry.h"
+#include "explain/kept.h"
 #include "explain/subject.h"
 #include "explain/verdict.h"
 #include "servodx/rig.h"
@@ -40,10 +41,13 @@ void show_as_tuned(const Inquiry& q, const ExplainedFit& before, ExplainResult& 
   out.blocks = replay_blocks(q.subject(), before.point);
   if (q.test())
     for (BlockReplay& b : out.blocks) b.p_new = q.test()->miss({b.block, b.missing});
-  out.missing = missing_inputs(q.subject(), before.point, [&](double f) {
-    q.options().watch.tell("explain, missing input", f, q.subject().simulations());
-    return !q.options().watch.stopped();
-  });
+  const auto missing = [&] {
+    return missing_inputs(q.subject(), before.point, [&](double f) {
+      q.options().watch.tell("explain, missing input", f, q.subject().simulations());
+      return !q.options().watch.stopped();
+    });
+  };
+  out.missing = q.subject().stages.made("missing input", missing, before.point, before.deviance);
 }
 
 // Of the curves that were scored the best at each place.

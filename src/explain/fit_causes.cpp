@@ -5,9 +5,12 @@
 #include <cmath>
 #include <optional>
 #include <span>
+#include <string_view>
 
+#include "base/stages.h"
 #include "explain/constants.h"
 #include "explain/deviance.h"
+#include "explain/kept.h"
 #include "optimise/box_least_squares.h"
 #include "optimise/local.h"
 
@@ -105,14 +108,52 @@ LeastSquaresProblem keeping_derivatives(const LeastSquaresProblem& p, const Eige
   return out;
 }
 
+std::vector<double> values_of(const Eigen::VectorXd& v) { return {v.data(), v.data() + v.size()}; }
+
+// What a search was before, at its end: made again from there, or made.
+template <class... Input>
+LocalOptions through_checkpoint(const Subject& subject, const Stages& stages, const LeastSquaresProblem& problem,
+                                const LeastSquaresOptions& options, const Input&... inputs) {
+  LocalOptions o = local_options();
+  if (!stages.keeps()) return o;
+  o.through = [&subject, &stages, &problem, &options, inputs...](const auto& search) {
+    std::optional<LeastSquaresResult> made;
+    const auto make = [&] {
+      made = search();
+      return without_rows(*made);
+    };
+    const SearchEnd end = counted(subject, stages, "search", make, inputs...);
+    if (made) return std::move(*made);
+    const long all = subject.simulations(), all_failed = subject.failed_simulations();
+    LeastSquaresResult again = with_rows(end, problem, options);
+    subject.recount(all, all_failed);
+    return again;
+  };
+  return o;
+}
+
+// Of a fit, all that goes into it: where an earlier one got to stands for that fit.
+Stages stages_of(const Subject& subject, std::string_view what, const std::vector<int>& causes,
+                 const ExplainedFit* from, int iterations, bool quick, bool wide) {
+  if (!subject.stages.keeps()) return {};
+  std::vector<std::vector<double>> weights;
+  for (const Series& s : subject.series()) weights.push_back(*s.sigma);
+  Stages out = subject.stages.part(what, causes, iterations, quick, wide, weights);
+  return from ? out.part("from", from->causes, from->wide, from->point, from->deviance) : out;
+}
+
 // Twice where weights are in play: what is left of a channel once the cause is in it is not what it began with.
-void minimise(const Subject& subject, const LeastSquaresProblem& problem, Start start,
+void minimise(const Subject& subject, const Stages& stages, const LeastSquaresProblem& problem, Start start,
               const LeastSquaresOptions& options, ExplainedFit& out) {
   const int passes = start.weights && start.weights->minCoeff() < 1 ? 2 : 1;
   for (int pass = 0; pass < passes; ++pass) {
     const bool plain = passes == 1;
+    const LeastSquaresProblem of_pass = plain ? problem : weighed(problem, *start.weights);
+    const std::vector<double> weights = plain || !stages.keeps() ? std::vector<double>() : values_of(*start.weights);
     const LeastSquaresResult r =
-        minimise_locally(plain ? problem : weighed(problem, *start.weights), start.point, options, local_options()).end;
+        minimise_locally(of_pass, start.point, options,
+                         through_checkpoint(subject, stages, of_pass, options, start.point, weights, pass))
+            .end;
     if (r.reason == StopReason::start_failed) return;
     const Eigen::VectorXd residual = plain ? r.residual : r.residual.cwiseQuotient(*start.weights);
     const double deviance = deviance_of(subject, residual);
@@ -175,7 +216,8 @@ ExplainedFit fit_causes(const Subject& subject, const std::vector<int>& causes, 
   const Start start = from ? best_of(subject, out.fit.problem, starts) : Start{starts.front(), {}};
   const LeastSquaresProblem problem =
       score && quick ? keeping_derivatives(out.fit.problem, from->jacobian) : out.fit.problem;
-  minimise(subject, problem, start, least_squares_options(iterations, has_curve(subject, causes)), out);
+  minimise(subject, stages_of(subject, "fit", causes, from, iterations, score && quick, out.wide), problem, start,
+           least_squares_options(iterations, has_curve(subject, causes)), out);
   return out;
 }
 
@@ -204,8 +246,10 @@ ExplainedFit hold_causes(const Subject& subject, const std::vector<int>& causes,
     return out.fit.problem.evaluate(all);
   };
   const Point start(from.point.begin(), from.point.begin() + static_cast<long>(base));
+  const Stages stages = stages_of(subject, "held", causes, &from, iterations, false, out.wide);
+  const LeastSquaresOptions options = least_squares_options(iterations, false);
   const LeastSquaresResult r =
-      minimise_locally(held, start, least_squares_options(iterations, false), local_options()).end;
+      minimise_locally(held, start, options, through_checkpoint(subject, stages, held, options, start, numbers)).end;
   if (r.reason == StopReason::start_failed) return out;
   out.ok = true;
   out.point = whole(r.point);

@@ -10,12 +10,14 @@
 #include "explain/curves.h"
 #include "explain/fit_causes.h"
 #include "explain/hold_out.h"
+#include "explain/kept.h"
 #include "explain/replay.h"
 #include "explain/score.h"
 #include "explain/subject.h"
 #include "explain/valve.h"
 #include "optimise/problem.h"
 #include "parameters/list.h"
+#include "servodx/log.h"
 #include "servodx/rig.h"
 #include "simulate/scenario.h"
 
@@ -196,27 +198,38 @@ void score(ValveSubject& subject, const KnownRig& known, HealthyLog& h) {
 
 HealthyReference score_healthy(const std::vector<Log>& own, const Table& tuned, const RigFile& rig, int threads,
                                HealthyCounts& counts, const std::function<bool(double)>& told,
-                               const std::vector<Log>& others) {
+                               const std::vector<Log>& others, const Stages& stages) {
   const std::vector<Log> logs = logs_to_score(own, others);
   const auto n = static_cast<double>(logs.size());
-  const auto count = [&](const ValveSubject& s) {
-    counts.simulations += s.simulations(), counts.failed += s.failed_simulations();
+  // One log's, of a subject of its own, and what that has run.
+  const auto of_log = [&](const char* what, const Log& log, const KnownRig& known, const HealthyLog& so_far,
+                          const auto& work) {
+    Stages of_it;
+    if (stages.keeps()) of_it = stages.part(what, content_hash(log), known);
+    const auto make = [&] {
+      Counted<HealthyLog> out{so_far};
+      ValveSubject subject({log}, tuned, rig, threads, known);
+      subject.stages = of_it;
+      work(subject, out.made);
+      out.simulations = subject.simulations(), out.failed = subject.failed_simulations();
+      return out;
+    };
+    Counted<HealthyLog> kept = of_it.made("whole", make, so_far);
+    counts.simulations += kept.simulations, counts.failed += kept.failed;
+    return std::move(kept.made);
   };
   HealthyReference all, out;
   for (const Log& log : logs) {
     HealthyLog& h = all.logs.emplace_back();
     h.log = log.path, h.sha256 = log.sha256, h.test = conditions_of(log);
     h.other = all.logs.size() > own.size();
-    ValveSubject subject({log}, tuned, rig, threads, KnownRig{});
-    see_what_is_usual(subject, h);
-    count(subject);
+    h = of_log("usual", log, KnownRig{}, h, see_what_is_usual);
     if (told && !told(0.2 * static_cast<double>(all.logs.size()) / n)) return out;
   }
   for (std::size_t l = 0; l < logs.size(); ++l) {
     const KnownRig known = all.known(static_cast<int>(l));
-    ValveSubject subject({logs[l]}, tuned, rig, threads, known);
-    score(subject, known, out.logs.emplace_back(all.logs[l]));
-    count(subject);
+    out.logs.push_back(of_log("score", logs[l], known, all.logs[l],
+                              [&](ValveSubject& subject, HealthyLog& h) { score(subject, known, h); }));
     if (told && !told(0.2 + 0.8 * (static_cast<double>(out.logs.size()) / n))) break;
   }
   return out;

@@ -17,6 +17,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/stages.h"
 #include "evidence/conditions.h"
 #include "evidence/tail_law.h"
 #include "explain/blocks.h"
@@ -81,9 +82,10 @@ struct HealthyCounts {
 // Each log is scored as a suspect will be: weighed by what the other logs say is usual. `told`: fraction done; false
 // from it ends the work, and the logs that are done are returned. `others`: of other tests, or those that tuned the
 // table; they are scored, as such, where `logs` are of too few tests to show how sizes scatter from test to test.
+// `stages`: of this table and rig.
 HealthyReference score_healthy(const std::vector<Log>& logs, const Table& tuned, const RigFile& rig, int threads,
                                HealthyCounts& counts, const std::function<bool(double)>& told = {},
-                               const std::vector<Log>& others = {});
+                               const std::vector<Log>& others = {}, const Stages& stages = {});
 
 // The tests that a reference answers.
 class HealthyTest {

@@ -4,12 +4,18 @@
 #include <cstddef>
 #include <utility>
 
+#include "base/stages.h"
 #include "evidence/conditions.h"
 #include "evidence/tail_law.h"
 #include "explain/constants.h"
+#include "explain/kept.h"
 #include "explain/score.h"
 #include "fit/log_data.h"
 #include "servodx/explain.h"
+#include "servodx/log.h"
+#include "servodx/rig.h"
+#include "servodx/table.h"
+#include "signals/rig_content.h"
 #include "simulate/scenario.h"
 
 namespace servodx {
@@ -19,11 +25,20 @@ std::optional<KnownRig> known_of(const HealthyReference* healthy) {
   return healthy ? std::optional<KnownRig>(healthy->known()) : std::nullopt;
 }
 
+Stages stages_of(const std::vector<Log>& logs, const Table& tuned, const RigFile& rig,
+                 const std::optional<KnownRig>& known, const ExplainOptions& options) {
+  if (!options.watch.checkpoint) return {};
+  std::vector<std::string> content;
+  for (const Log& log : logs) content.push_back(content_hash(log));
+  return {options.watch, "explain", content, content_hash(tuned), content_bytes(rig), known};
+}
+
 }  // namespace
 
 LoneLog::LoneLog(const Log& log, const Table& tuned, const RigFile& rig, int threads,
-                 const std::optional<KnownRig>& known)
+                 const std::optional<KnownRig>& known, const Stages& stages)
     : subject({log}, tuned, rig, threads, known) {
+  if (stages.keeps()) subject.stages = stages.part("one log", content_hash(log));
   const std::vector<Curve> curves = add_curves(subject);
   fit = fit_base(subject, explain_constants::base_iterations);
   if (fit.ok) guess_curves(subject, curves, fit.point);
@@ -36,6 +51,7 @@ Inquiry::Inquiry(const std::vector<Log>& logs, const Table& tuned, const RigFile
       known_(known_of(healthy)),
       subject_(logs, tuned, rig, options.threads, known_),
       sizes_(logs.size()) {
+  subject_.stages = stages_of(logs, tuned, rig, known_, options);
   if (healthy) {
     std::vector<TestConditions> tests;
     for (const Log& log : logs) tests.push_back(conditions_of(log));
@@ -44,7 +60,7 @@ Inquiry::Inquiry(const std::vector<Log>& logs, const Table& tuned, const RigFile
     test_.emplace(speaking_.logs);
   }
   if (healthy && logs.size() > 1)
-    for (const Log& log : logs) lone_.emplace_back(log, tuned, rig, options.threads, known_);
+    for (const Log& log : logs) lone_.emplace_back(log, tuned, rig, options.threads, known_, subject_.stages);
   curves_ = add_curves(subject_);
   engine_ = engine_options();
   // A sweep says most in the few seconds that it is near null.

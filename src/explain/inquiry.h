@@ -6,6 +6,7 @@
 #include <optional>
 #include <vector>
 
+#include "base/stages.h"
 #include "explain/blocks.h"
 #include "explain/cause_score.h"
 #include "explain/curves.h"
@@ -28,7 +29,8 @@ using SizesByLog = std::vector<std::vector<HealthyScore>>;  // [log][cause]
 
 // One of several logs by itself, as healthy logs are taken.
 struct LoneLog {
-  LoneLog(const Log& log, const Table& tuned, const RigFile& rig, int threads, const std::optional<KnownRig>& known);
+  LoneLog(const Log& log, const Table& tuned, const RigFile& rig, int threads, const std::optional<KnownRig>& known,
+          const Stages& stages);
   ValveSubject subject;
   ExplainedFit fit;
 };

@@ -8,6 +8,7 @@
 
 #include "explain/constants.h"
 #include "explain/deviance.h"
+#include "explain/kept.h"
 #include "optimise/problem.h"
 
 namespace servodx {
@@ -135,15 +136,10 @@ class CauseScorer {
   double deviance_;  // of the fit
 };
 
-}  // namespace
-
-std::vector<CauseScore> score_causes(const Subject& subject, const ExplainedFit& at,
-                                     const std::function<bool(const Cause&)>& among) {
+std::vector<CauseScore> scored(const Subject& subject, const ExplainedFit& at, const std::vector<char>& looked_at) {
   const std::vector<Cause>& causes = subject.causes();
   std::vector<int> all(causes.size());
   std::iota(all.begin(), all.end(), 0);
-  std::vector<char> looked_at;
-  for (const Cause& c : causes) looked_at.push_back(!among || among(c));
   const SubjectFit whole = subject.fit(all, at.wide);
   const std::vector<Evaluation> e =
       whole.problem.evaluate(probe_points(subject, whole, carried(subject, at, whole, all), looked_at));
@@ -165,6 +161,22 @@ std::vector<CauseScore> score_causes(const Subject& subject, const ExplainedFit&
     }
   }
   return out;
+}
+
+}  // namespace
+
+std::vector<CauseScore> score_causes(const Subject& subject, const ExplainedFit& at,
+                                     const std::function<bool(const Cause&)>& among) {
+  std::vector<char> looked_at;
+  for (const Cause& c : subject.causes()) looked_at.push_back(!among || among(c));
+  const auto make = [&] { return scored(subject, at, looked_at); };
+  if (!subject.stages.keeps()) return make();
+  std::vector<std::vector<double>> weights;
+  for (const Series& s : subject.series()) weights.push_back(*s.sigma);
+  std::vector<std::vector<std::vector<std::vector<double>>>> probes;
+  for (const Cause& c : subject.causes()) probes.push_back(c.probes);
+  return counted(subject, subject.stages, "score", make, at.causes, at.wide, at.point, at.deviance, looked_at, weights,
+                 probes);
 }
 
 }  // namespace servodx

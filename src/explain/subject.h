@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "base/stages.h"
 #include "optimise/box_least_squares.h"
 #include "optimise/problem.h"
 #include "parameters/coordinate.h"
@@ -102,6 +103,10 @@ class Subject {
   }
   virtual long simulations() const { return 0; }
   virtual long failed_simulations() const { return 0; }
+  // As though so many had been run: what a checkpoint holds is not run again, and counts all the same.
+  virtual void recount(long simulations, long failed) const { (void)simulations, (void)failed; }
+
+  Stages stages;  // that a checkpoint keeps, of this subject; none unless set
 };
 
 }  // namespace servodx

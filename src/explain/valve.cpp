@@ -166,14 +166,18 @@ double ValveSubject::thickness() const {
 }
 
 long ValveSubject::simulations() const {
-  long n = 0;
+  long n = not_run_;
   for (const auto& p : made_) n += p->simulations();
   return n;
 }
 long ValveSubject::failed_simulations() const {
-  long n = 0;
+  long n = not_failed_;
   for (const auto& p : made_) n += p->failed_simulations();
   return n;
+}
+void ValveSubject::recount(long simulations, long failed) const {
+  not_run_ += simulations - this->simulations();
+  not_failed_ += failed - failed_simulations();
 }
 
 }  // namespace servodx

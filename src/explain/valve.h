@@ -75,6 +75,7 @@ class ValveSubject : public Subject {
   double own(int log, int at, const Point& point) const;
   long simulations() const override;
   long failed_simulations() const override;
+  void recount(long simulations, long failed) const override;
 
   const std::vector<LogData>& logs() const { return logs_; }
   // The least-squares problem behind fit().
@@ -128,6 +129,7 @@ class ValveSubject : public Subject {
   std::vector<std::vector<char>> afresh_;                // [series][sample] nothing is known of the sample before
   std::vector<Series> series_;
   mutable std::vector<std::shared_ptr<FitProblem>> made_;
+  mutable long not_run_ = 0, not_failed_ = 0;  // simulations that count beside those of `made_`
 };
 
 }  // namespace servodx

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <numeric>
 
+#include "base/bytes.h"
+#include "base/sha256.h"
 #include "signals/filters.h"
 #include "simulate/scenario.h"
 
@@ -56,6 +58,19 @@ FitProblem::FitProblem(std::vector<const LogData*> logs, ParameterVector base, s
   data_rows_ = at;
   for (const FreeValue& f : chart_.free()) at += std::isfinite(f.prior_sd);
   total_rows_ = at;
+}
+
+std::string FitProblem::content_hash() const {
+  std::string bytes;
+  write_bytes(bytes, chart_.candidate(start(), 0));
+  for (const FreeValue& f : free()) {
+    write_bytes(bytes, f.name);
+    for (const double x : {f.lower, f.upper, f.start, f.prior_sd}) write_bytes(bytes, x);
+    write_bytes(bytes, f.log_scale), write_bytes(bytes, f.at), write_bytes(bytes, f.log);
+  }
+  write_bytes(bytes, sigma_);
+  write_bytes(bytes, difference_step);
+  return sha256(bytes);
 }
 
 void FitProblem::set_sigma(int log, int channel, double sigma) {

@@ -69,6 +69,10 @@ class FitProblem {
   long total_rows() const { return total_rows_; }  // the priors' behind those of the data
   long simulations() const { return simulations_; }
   long failed_simulations() const { return failed_; }
+  // As though so many had been run: what a checkpoint holds is not run again, and counts all the same.
+  void recount(long simulations, long failed) const { simulations_ = simulations, failed_ = failed; }
+  // Hash of what its costs rest on beside the logs' samples: the base, the free values and the weights.
+  std::string content_hash() const;
 
  private:
   std::span<const Trajectory> run(std::span<const Point> points, std::span<const std::size_t> which, std::size_t first,

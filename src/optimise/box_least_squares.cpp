@@ -66,6 +66,27 @@ class Search {
     end.gradient_cosine = result_.gradient_cosine;
   }
 
+  // The rows of an end that is known; what they say of it as the search had it.
+  LeastSquaresResult again(const SearchEnd& end) {
+    if (end.reason != StopReason::start_failed) {
+      std::vector<Evaluation> at = evaluate({end.point});
+      if (!at[0].ok) throw std::logic_error("the end of a search that was kept cannot be evaluated");
+      x_ = end.point;
+      residual_ = std::move(at[0].residual);
+      take_jacobian(end.central);
+      loss_ = options_.loss, loss_scale_ = options_.loss_scale;
+      cost_ = cost_of(residual_);
+      model();
+    }
+    result_.start_cost = end.start_cost, result_.promised_gain = end.promised_gain;
+    result_.iterations = end.iterations;
+    result_.reason = end.reason, result_.stopped = end.stopped;
+    LeastSquaresResult out = finish();
+    out.point = end.point;
+    out.evaluations = end.evaluations, out.failed_evaluations = end.failed_evaluations;
+    return out;
+  }
+
   LeastSquaresResult run(const Point& start) {
     if (begin(start)) {
       bool go_on = true;
@@ -121,6 +142,7 @@ class Search {
   }
 
   void take_jacobian(bool central) {
+    result_.central = central;
     if (problem_.jacobian) {
       jacobian_.resize(residual_.size(), problem_.n);
       if (problem_.jacobian(x_, residual_, jacobian_) && jacobian_.rows() == residual_.size() &&
@@ -504,6 +526,16 @@ LeastSquaresResult minimise_least_squares(const LeastSquaresProblem& problem, co
                                           const LeastSquaresOptions& options) {
   options.validate();
   return Search(problem, options).run(start);
+}
+
+SearchEnd without_rows(const LeastSquaresResult& end) {
+  return {end.point,      end.start_cost, end.promised_gain, end.central, end.evaluations, end.failed_evaluations,
+          end.iterations, end.reason,     end.stopped};
+}
+
+LeastSquaresResult with_rows(const SearchEnd& end, const LeastSquaresProblem& problem,
+                             const LeastSquaresOptions& options) {
+  return Search(problem, options).again(end);
 }
 
 void take_stock(LeastSquaresResult& end, NormalEquations equations, const LeastSquaresOptions& options) {

@@ -100,6 +100,7 @@ struct LeastSquaresResult {
   std::vector<int> wall;          // -1 at 0, +1 at 1, 0 free; a wall counts only while the gradient pushes into it
   long evaluations = 0;           // every point asked for, Jacobian points included
   long failed_evaluations = 0;
+  bool central = false;     // differences of the Jacobian
   int missing_columns = 0;  // Jacobian columns at the end for which both sides failed
   int iterations = 0;
   StopReason reason = StopReason::start_failed;
@@ -108,6 +109,22 @@ struct LeastSquaresResult {
 
 LeastSquaresResult minimise_least_squares(const LeastSquaresProblem& problem, const Point& start,
                                           const LeastSquaresOptions& options = {});
+
+// A search's end without its rows. They are a function of the point, as what ends a search is always fresh derivatives;
+// but for a search that was interrupted or has a `cost_goal`.
+struct SearchEnd {
+  Point point;
+  double start_cost = 0, promised_gain = 0;
+  bool central = false;
+  long evaluations = 0, failed_evaluations = 0;
+  int iterations = 0;
+  StopReason reason = StopReason::start_failed;
+  std::string stopped;
+};
+SearchEnd without_rows(const LeastSquaresResult& end);
+// The same bits as the search with these options came to, for one evaluation and one Jacobian.
+LeastSquaresResult with_rows(const SearchEnd& end, const LeastSquaresProblem& problem,
+                             const LeastSquaresOptions& options);
 
 // Cost, gradient, walls and promise of an end whose point, residual and Jacobian have moved.
 void take_stock(LeastSquaresResult& end, NormalEquations equations, const LeastSquaresOptions& options);

@@ -111,7 +111,8 @@ LocalResult minimise_locally(const LeastSquaresProblem& problem, const Point& st
     tell(out.refinement);
     return out;
   }
-  end = minimise_least_squares(problem, start, options);
+  const auto search = [&] { return minimise_least_squares(problem, start, options); };
+  end = local.through ? local.through(search) : search();
   before = end.start_cost;
   tell(out.search);
   if (may_refine(end, local)) {

@@ -27,7 +27,9 @@ struct LocalOptions {
   bool after_interruption = false;
   // Of BOBYQA, where derivatives have proved false; 0: never. Only where the loss is none.
   long rescue_evaluations = 0;
-  std::function<bool()> stop;         // true: no further stage begins
+  std::function<bool()> stop;  // true: no further stage begins
+  // Makes our search, or brings its end from elsewhere; empty: it is made.
+  std::function<LeastSquaresResult(const std::function<LeastSquaresResult()>& search)> through = {};
   std::function<long()> simulations;  // runs so far, for what each stage has cost; empty: evaluations are counted
 };
 

@@ -155,8 +155,8 @@ struct Columns : Unwatched {
     return b;
   }
   void interval() { x = begun; }
-  template <class... Stages>
-  void step(const Live& live, const std::array<double, n_live>& y, double h, const Stages&...) {
+  template <class... OfStages>
+  void step(const Live& live, const std::array<double, n_live>& y, double h, const OfStages&...) {
     const Rates rates = with_derivatives(live, y);
     std::array<double, Lu::entries> j{};
     unroll<n_live>([&](auto i) {

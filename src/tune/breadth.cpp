@@ -1,14 +1,12 @@
 #include "tune/breadth.h"
 
 #include <algorithm>
-#include <filesystem>
-#include <fstream>
 #include <optional>
 #include <span>
-#include <sstream>
+#include <string>
 #include <utility>
 
-#include "base/atomic_file.h"
+#include "base/stages.h"
 #include "fit/chart.h"
 #include "fit/log_data.h"
 #include "fit/problem.h"
@@ -20,6 +18,7 @@
 #include "servodx/rig.h"
 #include "servodx/tune.h"
 #include "tune/constants.h"
+#include "tune/kept.h"
 #include "tune/tune.h"
 #include "tune/weights.h"
 
@@ -86,17 +85,38 @@ std::vector<std::vector<Point>> healthy_starts(const std::vector<FreeValue>& sha
       {moved({{row::radial_clearance, 2.0}, {row::hydraulic_amplifier_gain, 1.3}})}};
 }
 
-std::optional<GeneticState> saved_state(const TuneOptions& options) {
-  if (!options.resume || options.checkpoint.empty() || !std::filesystem::exists(options.checkpoint)) return {};
-  std::ifstream file(options.checkpoint);
-  std::stringstream text;
-  text << file.rdbuf();
-  try {
-    return genetic_state_from_json(text.str());
-  } catch (const InputError& error) {
-    throw InputError({options.checkpoint, 0, ""}, error.rule, error.mend);
+// The generations of one search, as a checkpoint keeps them.
+class KeptGenerations {
+ public:
+  KeptGenerations(const TuneWatch& watch, const FitProblem& problem, const Point& start, const GeneticOptions& options)
+      : watch_(watch), problem_(problem), options_(options) {
+    if (watch.kept.keeps())
+      stages_ = watch.kept.part("generations", problem.content_hash(), start, options.population, options.seed,
+                                watch.work_so_far(problem));
   }
-}
+
+  void keep(const GeneticState& state, const std::vector<ConvergencePoint>& convergence) const {
+    if (!stages_.keeps()) return;
+    const KeptWork work{problem_.simulations(), problem_.failed_simulations()};
+    stages_.keep(key(state.generation), KeptGeneration{to_json(state), convergence, work});
+  }
+
+  std::optional<KeptGeneration> last() const {
+    for (int g = options_.generations; stages_.keeps() && !watch_.stopped() && g >= 0; --g)
+      if (auto kept = stages_.find<KeptGeneration>(key(g))) return kept;
+    return {};
+  }
+
+ private:
+  // A search's last wave ends with its last generation: what that leaves is no part of a longer search.
+  std::string key(int generation) const {
+    return stages_.key("generation", generation, generation == options_.generations);
+  }
+  const TuneWatch& watch_;
+  const FitProblem& problem_;
+  const GeneticOptions& options_;
+  Stages stages_;
+};
 
 }  // namespace
 
@@ -118,15 +138,21 @@ std::vector<Point> search_broadly(const TuneScope& scope, const Point& start, Tu
   hooks.screen = [&](std::span<const Point> points, std::span<const double> bounds) {
     return costs(points, true, bounds);
   };
+  const KeptGenerations generations(watch, problem, start, o);
   hooks.generation = [&](const GeneticState& s) {
-    if (!options.checkpoint.empty()) write_file(options.checkpoint, to_json(s));
     if (!s.best.point.empty() && (s.generation % shown_every == 0 || s.generation == o.generations))
       watch.convergence.push_back(
           {Stage{Stage::Kind::genetic}, watch.simulations(problem), cost(std::span(&s.best.point, 1)).front()});
+    generations.keep(s, watch.convergence);
     watch.tell(work.genetic.at(static_cast<double>(s.generation) / o.generations), problem);
     return !watch.stopped();
   };
-  const std::optional<GeneticState> saved = saved_state(options);
+  std::optional<GeneticState> saved;
+  if (std::optional<KeptGeneration> kept = generations.last()) {
+    saved = genetic_state_from_json(kept->state);
+    watch.convergence = std::move(kept->convergence);
+    problem.recount(kept->work.simulations, kept->work.failed);
+  }
   const GeneticResult found = minimise_genetic(static_cast<int>(scope.shared.size()), cost, o,
                                                healthy_starts(scope.shared, start), hooks, saved ? &*saved : nullptr);
   watch.done_with(problem);

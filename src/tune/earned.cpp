@@ -7,6 +7,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <tuple>
 #include <utility>
 
 #include "effects/effect.h"
@@ -18,6 +19,7 @@
 #include "optimise/robust_loss.h"
 #include "parameters/coordinate.h"
 #include "parameters/list.h"
+#include "tune/kept.h"
 
 namespace servodx {
 namespace {
@@ -167,7 +169,6 @@ class Elimination {
     out_.insert(out_.end(), kept.begin(), kept.end());
     return out_;
   }
-  const std::vector<const FreedEffect*>& gone() const { return gone_; }
   const Point& point() const { return here_.point; }
 
  private:
@@ -217,6 +218,16 @@ class Elimination {
   std::vector<EarnedEffect> out_;
 };
 
+struct Trials {
+  std::vector<EarnedEffect> effects;  // in the order of trial
+  Point point;
+  KeptWork work;
+};
+auto fields(Trials& t) {
+  auto& [effects, point, work] = t;
+  return std::tie(effects, point, work);
+}
+
 }  // namespace
 
 std::vector<EarnedEffect> keep_earned(TuneScope& scope, const FitProblem& problem, double held, Point& end,
@@ -224,17 +235,25 @@ std::vector<EarnedEffect> keep_earned(TuneScope& scope, const FitProblem& proble
   const std::vector<FreeValue> free = problem.free();
   const std::vector<FreedEffect> effects = freed_effects(free);
   if (effects.empty() || held <= 0 || watch.stopped()) return {};
-  Elimination elimination(problem, held, effects, end);
-  std::vector<EarnedEffect> out = elimination.run(watch);
+  const auto trials = [&] {
+    Elimination elimination(problem, held, effects, end);
+    std::vector<EarnedEffect> tried = elimination.run(watch);
+    return Trials{std::move(tried), elimination.point(), {problem.simulations(), problem.failed_simulations()}};
+  };
+  const std::string weights = watch.kept.keeps() ? problem.content_hash() : "";
+  Trials out = watch.kept.made("effects", trials, weights, end, held, watch.work_so_far(problem));
+  problem.recount(out.work.simulations, out.work.failed);
   std::vector<char> taken(free.size(), 0);
-  for (const FreedEffect* f : elimination.gone()) {
-    take_out(scope, *f, free);
-    for (const long j : f->at) taken[static_cast<std::size_t>(j)] = 1;
-  }
+  for (const EarnedEffect& tried : out.effects)
+    for (const FreedEffect& f : effects) {
+      if (tried.kept || tried.effect != f.name) continue;
+      take_out(scope, f, free);
+      for (const long j : f.at) taken[static_cast<std::size_t>(j)] = 1;
+    }
   end.clear();
   for (std::size_t j = 0; j < free.size(); ++j)
-    if (!taken[j]) end.push_back(elimination.point()[j]);
-  return out;
+    if (!taken[j]) end.push_back(out.point[j]);
+  return std::move(out.effects);
 }
 
 }  // namespace servodx

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <optional>
 #include <span>
+#include <tuple>
 
 #include "base/error.h"
 #include "fit/chart.h"
@@ -12,6 +13,7 @@
 #include "optimise/problem.h"
 #include "servodx/table.h"
 #include "tune/constants.h"
+#include "tune/kept.h"
 #include "tune/weights.h"
 
 namespace servodx {
@@ -69,6 +71,32 @@ void hold(TuneScope& scope, const FreeValue& value) {
 
 }  // namespace
 
+namespace {
+
+struct Screening {
+  std::vector<ScreenedRow> rows;
+  bool told = false;  // their sensitivities could be had
+  KeptWork work;
+};
+auto fields(Screening& s) {
+  auto& [rows, told, work] = s;
+  return std::tie(rows, told, work);
+}
+
+Screening screened(const TuneScope& scope, TuneWatch& watch, const FitProblem& problem, const Point& x,
+                   const Evaluation& at_nominal) {
+  Screening out;
+  for (const FreeValue& f : scope.shared) out.rows.push_back({f.name, RowVerdict::bounded, {}});
+  drive_to_bounds(out.rows, problem, x, at_nominal, watch);
+  Eigen::MatrixXd jacobian;
+  out.told = problem.jacobian(x, at_nominal.residual, jacobian);
+  if (out.told) tell_apart(out.rows, problem, jacobian);
+  out.work = {problem.simulations(), problem.failed_simulations()};
+  return out;
+}
+
+}  // namespace
+
 std::vector<ScreenedRow> screen_rows(TuneScope& scope, TuneWatch& watch) {
   FitProblem problem = scope.problem();
   const Point x = problem.start();
@@ -77,22 +105,19 @@ std::vector<ScreenedRow> screen_rows(TuneScope& scope, TuneWatch& watch) {
   if (!at_nominal.ok)
     throw InputError({.file = scope.table.path}, "the simulation fails at the table's nominal values",
                      "check the table against the rig's data sheet");
-  std::vector<ScreenedRow> rows;
-  for (const FreeValue& f : scope.shared) rows.push_back({f.name, RowVerdict::bounded, {}});
-  drive_to_bounds(rows, problem, x, at_nominal, watch);
-  Eigen::MatrixXd jacobian;
-  if (problem.jacobian(x, at_nominal.residual, jacobian)) {
-    tell_apart(rows, problem, jacobian);
+  Screening out = watch.kept.made("screen", [&] { return screened(scope, watch, problem, x, at_nominal); });
+  problem.recount(out.work.simulations, out.work.failed);
+  if (out.told) {
     std::vector<FreeValue> kept;
-    for (std::size_t j = 0; j < rows.size(); ++j)
-      if (rows[j].verdict == RowVerdict::bounded)
+    for (std::size_t j = 0; j < out.rows.size(); ++j)
+      if (out.rows[j].verdict == RowVerdict::bounded)
         kept.push_back(scope.shared[j]);
       else
         hold(scope, scope.shared[j]);
     scope.shared = kept;
   }
   watch.done_with(problem);
-  return rows;
+  return std::move(out.rows);
 }
 
 }  // namespace servodx

@@ -12,6 +12,7 @@
 #include "servodx/tune.h"
 #include "tune/breadth.h"
 #include "tune/constants.h"
+#include "tune/kept.h"
 #include "tune/tune.h"
 #include "tune/weights.h"
 
@@ -69,8 +70,10 @@ void tell_genetic(TuneWatch& watch) {
 
 }  // namespace
 
-LeastSquaresResult search_locally(const FitProblem& problem, const Point& from, Stage stage, int iterations,
-                                  Start start, Share share, TuneWatch& watch, Derivatives derivatives) {
+namespace {
+
+LeastSquaresResult search(const FitProblem& problem, const Point& from, Stage stage, int iterations, Start start,
+                          Share share, TuneWatch& watch, Derivatives derivatives) {
   if (watch.options.local == TuneLocal::nlopt)
     return without_derivatives(problem, from, stage, iterations, share, watch);
   LeastSquaresOptions o;
@@ -94,6 +97,51 @@ LeastSquaresResult search_locally(const FitProblem& problem, const Point& from, 
   LocalResult r = minimise_locally(problem.least_squares(), from, o, local);
   tell_stages(watch, stage, r);
   return std::move(r.end);
+}
+
+template <class T>
+std::vector<T> behind(const std::vector<T>& list, std::size_t first) {
+  return {list.begin() + static_cast<long>(first), list.end()};
+}
+template <class T>
+void set_behind(std::vector<T>& list, std::size_t first, const std::vector<T>& more) {
+  list.resize(first);
+  list.insert(list.end(), more.begin(), more.end());
+}
+
+}  // namespace
+
+LeastSquaresResult search_locally(const FitProblem& problem, const Point& from, Stage stage, int iterations,
+                                  Start start, Share share, TuneWatch& watch, Derivatives derivatives) {
+  const auto made = [&] { return search(problem, from, stage, iterations, start, share, watch, derivatives); };
+  if (!watch.kept.keeps()) return made();
+  const std::size_t points = watch.convergence.size(), stages = watch.stages.size();
+  LeastSquaresResult end;
+  const auto keep = [&] {
+    end = made();
+    return KeptSearch{end.point,
+                      end.cost,
+                      end.misfit,
+                      end.promised_gain,
+                      end.reason,
+                      end.stopped,
+                      watch.ceres,
+                      watch.distrust,
+                      behind(watch.convergence, points),
+                      behind(watch.stages, stages),
+                      {problem.simulations(), problem.failed_simulations()}};
+  };
+  const KeptSearch kept = watch.kept.made("search", keep, problem.content_hash(), from, stage, iterations, start,
+                                          derivatives, watch.work_so_far(problem));
+  end.point = kept.point;
+  end.cost = kept.cost, end.misfit = kept.misfit, end.promised_gain = kept.promised_gain;
+  end.reason = kept.reason, end.stopped = kept.stopped;
+  watch.ceres = kept.ceres, watch.distrust = kept.distrust;
+  set_behind(watch.convergence, points, kept.convergence);
+  set_behind(watch.stages, stages, kept.stages);
+  problem.recount(kept.work.simulations, kept.work.failed);
+  watch.tell(share.to, problem);
+  return end;
 }
 
 // Of twelve starts on four sets of logs eight were in it, and ended within 5 % of each other when they went on; so did

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <span>
+#include <tuple>
 
 #include "fit/chart.h"
 #include "fit/identifiability.h"
@@ -16,6 +17,7 @@
 #include "parameters/table.h"
 #include "servodx/tune.h"
 #include "tune/constants.h"
+#include "tune/kept.h"
 #include "tune/tune.h"
 
 namespace servodx {
@@ -61,6 +63,27 @@ std::string profile_note(const ParameterResult& p, const ProfileInterval& interv
                      p.estimate + 1.96 * p.std_error);
 }
 
+struct KeptProfile {
+  ProfileInterval interval;
+  KeptWork work;
+};
+auto fields(KeptProfile& p) {
+  auto& [lower, upper, lower_open, upper_open] = p.interval;
+  return std::tie(lower, upper, lower_open, upper_open, p.work);
+}
+
+KeptProfile profile_through(const TuneWatch& watch, const FitProblem& problem, const Point& best, int j,
+                            const Eigen::MatrixXd& covariance) {
+  const auto made = [&] {
+    const ProfileInterval interval = profile(problem, best, j, covariance);
+    return KeptProfile{interval, {problem.simulations(), problem.failed_simulations()}};
+  };
+  if (!watch.kept.keeps()) return made();
+  KeptProfile out = watch.kept.made("profile", made, problem.content_hash(), best, j, watch.work_so_far(problem));
+  problem.recount(out.work.simulations, out.work.failed);
+  return out;
+}
+
 ParameterResult begun(const Row& row, const ScreenedRow& screened) {
   ParameterResult p;
   p.id = row.id;
@@ -96,7 +119,8 @@ Settled settle(const TuneScope& scope, const std::vector<ScreenedRow>& screened,
       const double variance = covariance(static_cast<long>(j), static_cast<long>(j));
       take_estimate(p, row, {*free, j, point[j], std::sqrt(std::max(0.0, variance)), !off_bounds[j]});
       if (off_bounds[j] && asks_for_profile(watch.options, row.name) && !watch.stopped()) {
-        const ProfileInterval interval = profile(problem, point, static_cast<int>(j), covariance);
+        const KeptProfile kept = profile_through(watch, problem, point, static_cast<int>(j), covariance);
+        const ProfileInterval& interval = kept.interval;
         p.profile_lower = free->from_unit(interval.lower);
         p.profile_upper = free->from_unit(interval.upper);
         out.notes.push_back(profile_note(p, interval));

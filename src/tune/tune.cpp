@@ -16,12 +16,14 @@
 #include "fit/log_data.h"
 #include "fit/problem.h"
 #include "optimise/box_least_squares.h"
+#include "optimise/differences.h"
 #include "optimise/local.h"
 #include "optimise/problem.h"
 #include "servodx/rig.h"
 #include "simulate/scenario.h"
 #include "tune/constants.h"
 #include "tune/earned.h"
+#include "tune/kept.h"
 #include "tune/scope.h"
 #include "tune/screen.h"
 #include "tune/search.h"
@@ -38,7 +40,12 @@ LeastSquaresResult weighed_as_learnt(FitProblem& problem, LeastSquaresResult end
   apply_error_model(problem, error, end.point);
   const Evaluation at_end = problem.evaluate(std::span(&end.point, 1)).front();
   Eigen::MatrixXd jacobian;
-  if (problem.jacobian(end.point, at_end.residual, jacobian)) end.jacobian = jacobian;
+  if (problem.jacobian(end.point, at_end.residual, jacobian)) {
+    end.jacobian = jacobian;
+  } else if (at_end.ok) {  // column by column; zero where one cannot be had
+    const EvaluatePoints evaluate = [&](const std::vector<Point>& points) { return problem.evaluate(points); };
+    take_differences(evaluate, end.point, at_end.residual, {}, end.jacobian);
+  }
   return end;
 }
 
@@ -118,6 +125,7 @@ TuneResult tune_table(const std::vector<Log>& logs, const Table& nominal, const 
                       const TuneOptions& options) {
   options.validate();
   TuneWatch watch(options);
+  watch.kept = stages_of_tune(logs, nominal, rig, options);
   TuneScope scope = scope_of(logs, nominal, rig, options);
   std::vector<ScreenedRow> screened = screen_rows(scope, watch);
   hold_to_drawings(scope.shared, scope.facts, options.priors);

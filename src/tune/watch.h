@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "base/stages.h"
 #include "fit/problem.h"
 #include "optimise/ceres_refinement.h"
 #include "optimise/local.h"
@@ -20,11 +21,16 @@ class TuneWatch {
   std::vector<StageResult> stages;
   CeresSummary ceres;                  // of the last fit
   Distrust distrust = Distrust::none;  // of its derivatives
+  Stages kept;                         // by a checkpoint: of these logs, this table and rig
 
   bool stopped() const { return options.watch.stopped(); }
   // Simulations of problems that are done, and of one that is at work.
   long simulations(const FitProblem& at_work) const { return simulations_ + at_work.simulations(); }
   long failed(const FitProblem& at_work) const { return failed_ + at_work.failed_simulations(); }
+  // What a stage begins with: points of convergence that it leaves count from the first run on.
+  std::vector<long> work_so_far(const FitProblem& at_work) const {
+    return {simulations_, failed_, at_work.simulations(), at_work.failed_simulations()};
+  }
   void done_with(const FitProblem& problem) {
     simulations_ += problem.simulations();
     failed_ += problem.failed_simulations();

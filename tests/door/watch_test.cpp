@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <atomic>
 #include <map>
 #include <mutex>
 #include <string>
@@ -9,6 +10,7 @@
 
 #include "servodx/servodx.h"
 #include "shipped_data.h"
+#include "temporary_folder.h"
 
 namespace servodx {
 namespace {
@@ -77,6 +79,35 @@ TEST(Watch, IsToldOfEveryWorkAndABaselineInMemoryBindsToItsTable) {
     EXPECT_NE(error.rule.find("another table than the table in memory"), std::string::npos) << error.what();
   }
   EXPECT_THROW(make_baseline({in_memory("healthy/h12_mixed", 700)}, tuned, rig), InputError) << "it tuned the table";
+}
+
+// Stopped where it may be, and gone on with in another call: by `Watch::checkpoint` or by the tune's own options.
+TEST(Checkpoints, AStoppedTuneGoesOnToTheSameTable) {
+  const Rig rig = shipped_rig();
+  const Table table = read_table(shipped("params/borello2009.csv"));
+  const std::vector<Log> logs = {in_memory("healthy/h12_mixed", 400)};
+  TuneOptions quick;
+  quick.generations = 2, quick.rounds = 1, quick.effects.emplace();
+  const Tuned whole = tune(logs, table, rig, quick);
+  const TemporaryFolder folder;
+  for (const int stopped_at : {12, 30}) {
+    std::atomic<int> told = 0;
+    std::atomic<bool> stop = false;
+    TuneOptions broken = quick;
+    broken.watch = {.progress = [&](const WorkDone&) { stop = stop || ++told >= stopped_at; },
+                    .stop = [&] { return stop.load(); },
+                    .checkpoint = open_checkpoint(folder / "tune.ckpt", CheckpointUse::begin)};
+    EXPECT_TRUE(tune(logs, table, rig, broken).interrupted) << stopped_at;
+    const long kept = report_of(*broken.watch.checkpoint).kept;
+    EXPECT_GT(kept, 0) << stopped_at;
+    broken.watch = {};
+    broken.checkpoint = folder / "tune.ckpt", broken.resume = true;
+    const Tuned resumed = tune(logs, table, rig, broken);
+    EXPECT_EQ(resumed.table.sha256, whole.table.sha256) << stopped_at;
+    EXPECT_EQ(resumed.simulations, whole.simulations) << stopped_at;
+    EXPECT_EQ(resumed.failed_simulations, whole.failed_simulations) << stopped_at;
+    EXPECT_FALSE(resumed.interrupted);
+  }
 }
 
 }  // namespace

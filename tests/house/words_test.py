@@ -18,6 +18,7 @@ READERS = {
     "apps/servodx/read_manifest.cpp": "reads a manifest",
     "apps/servodx/rerun_command.cpp": "reads a manifest",
     "apps/servodx/tune_command.cpp": "--local, --effects",
+    "src/base/checkpoint.cpp": "reads a checkpoint",
     "src/base/csv.cpp": "marks of the encoding",
     "src/base/json_text.h": "reads the schema of JSON",
     "src/base/machine_load.cpp": "reads the counters of the kernel",

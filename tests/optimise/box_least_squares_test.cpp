@@ -13,6 +13,7 @@
 #include "optimise/box_quadratic.h"
 #include "optimise/problem.h"
 #include "optimise/robust_loss.h"
+#include "weak_problem.h"
 
 namespace servodx::test {
 namespace {
@@ -370,6 +371,47 @@ TEST(BoxLeastSquares, ALongLogOfFortyParametersStaysModest) {
   const LeastSquaresResult result = minimise_least_squares(problem, Point(n, 0.6));
   EXPECT_EQ(result.reason, StopReason::converged);
   EXPECT_LT(result.evaluations, 400);
+}
+
+// A checkpoint keeps the end alone: whatever ended the search, and by whatever differences.
+TEST(BoxLeastSquares, AnEndWhoseRowsAreMadeAgainIsTheSearchsOwn) {
+  const Weak weak = make_weak(12, 5);
+  const LeastSquaresProblem problem = least_squares(weak);
+  std::vector<LeastSquaresOptions> all;
+  for (const int iterations : {1, 2, 3, 5, 100})
+    for (const Difference difference : {Difference::forward, Difference::forward_then_central})
+      for (const RobustLoss loss : {RobustLoss::none, RobustLoss::soft_l1})
+        for (const bool compressed : {false, true}) {
+          LeastSquaresOptions o;
+          o.max_iterations = iterations, o.difference = difference, o.loss = loss;
+          o.compressed_first_pass = compressed;
+          all.push_back(o);
+        }
+  for (std::size_t k = 0; k < all.size(); ++k) {
+    const LeastSquaresResult end = minimise_least_squares(problem, Point(12, 0.4), all[k]);
+    long asked = 0;
+    LeastSquaresProblem counted = problem;
+    counted.evaluate = [&](std::span<const Point> points) {
+      asked += static_cast<long>(points.size());
+      return problem.evaluate(points);
+    };
+    const LeastSquaresResult again = with_rows(without_rows(end), counted, all[k]);
+    EXPECT_LE(asked, 1 + 2 * 12) << k;
+    EXPECT_EQ(again.point, end.point) << k;
+    for (const auto figure : {&LeastSquaresResult::start_cost, &LeastSquaresResult::cost, &LeastSquaresResult::misfit,
+                              &LeastSquaresResult::projected_gradient, &LeastSquaresResult::gradient_cosine,
+                              &LeastSquaresResult::promised_gain})
+      EXPECT_EQ(again.*figure, end.*figure) << k;
+    EXPECT_EQ(again.residual, end.residual) << k;
+    EXPECT_EQ(again.jacobian, end.jacobian) << k;
+    EXPECT_EQ(again.normal, end.normal) << k;
+    EXPECT_EQ(again.gradient, end.gradient) << k;
+    EXPECT_EQ(again.wall, end.wall) << k;
+    EXPECT_EQ(again.evaluations, end.evaluations) << k;
+    EXPECT_EQ(again.iterations, end.iterations) << k;
+    EXPECT_EQ(again.reason, end.reason) << k;
+    EXPECT_EQ(again.stopped, end.stopped) << k;
+  }
 }
 
 }  // namespace

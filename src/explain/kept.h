@@ -1,0 +1,96 @@
+// What a checkpoint keeps of `explain` and of the healthy logs' scores, field by field (base/bytes.h).
+//
+// A fit is known by where it ended: its rows, a few megabytes, are made again from that point (SearchEnd). To keep them
+// would take as long as to make them.
+#pragma once
+#include <tuple>
+
+#include "base/bytes.h"
+#include "base/stages.h"
+#include "evidence/conditions.h"
+#include "explain/cause_score.h"
+#include "explain/healthy.h"
+#include "explain/missing.h"
+#include "explain/subject.h"
+#include "explain/valve.h"
+#include "optimise/box_least_squares.h"
+
+namespace servodx {
+
+inline auto fields(SearchEnd& e) {
+  auto& [point, start_cost, promised, central, evaluations, failed, iterations, reason, stopped] = e;
+  return std::tie(point, start_cost, promised, central, evaluations, failed, iterations, reason, stopped);
+}
+inline auto fields(ProbeScore& p) {
+  auto& [size, std_error] = p;
+  return std::tie(size, std_error);
+}
+inline auto fields(CauseScore& s) {
+  auto& [cause, gain, alternative, probes, of] = s;
+  return std::tie(cause, gain, alternative, probes, of);
+}
+inline auto fields(Miss& m) {
+  auto& [part, size] = m;
+  return std::tie(part, size);
+}
+inline auto fields(UsualError& e) {
+  auto& [signal, size, memory, effective, rate] = e;
+  return std::tie(signal, size, memory, effective, rate);
+}
+inline auto fields(KnownRig& k) {
+  auto& [errors, air, command_slope] = k;
+  return std::tie(errors, air, command_slope);
+}
+inline auto fields(TestConditions& t) {
+  auto& [span, band, temperature, rms] = t;
+  return std::tie(span, band, temperature, rms);
+}
+inline auto fields(HealthyScore& s) {
+  auto& [effect, where, sizes, gain, prior, thickness] = s;
+  return std::tie(effect, where, sizes, gain, prior, thickness);
+}
+inline auto fields(HealthyShare& s) {
+  auto& [effect, where, share, lower, prior] = s;
+  return std::tie(effect, where, share, lower, prior);
+}
+inline auto fields(HealthyLog& l) {
+  auto& [log, sha256, other, test, adequacy, scores, misses, shares, has_shares, errors, air, slope] = l;
+  return std::tie(log, sha256, other, test, adequacy, scores, misses, shares, has_shares, errors, air, slope);
+}
+inline auto fields(MissingInput& m) {
+  auto& [where, quantity, unit, rms, std_error, gain, likely, variable, share, value, error] = m;
+  return std::tie(where, quantity, unit, rms, std_error, gain, likely, variable, share, value, error);
+}
+inline auto fields(MissingInputs& m) {
+  auto& [places, time] = m;
+  return std::tie(places, time);
+}
+
+// What a stage came to, and the simulations that it took.
+template <class T>
+struct Counted {
+  T made;
+  long simulations = 0, failed = 0;
+};
+template <class T>
+auto fields(Counted<T>& c) {
+  return std::tie(c.made, c.simulations, c.failed);
+}
+
+// A stage of the subject's. Its simulations count, be they run now or not.
+template <class Make, class... Input>
+auto counted(const Subject& subject, const Stages& stages, std::string_view name, const Make& make,
+             const Input&... inputs) {
+  if (!stages.keeps()) return make();
+  const long simulations = subject.simulations(), failed = subject.failed_simulations();
+  const auto with_work = [&] {
+    Counted<std::invoke_result_t<Make>> out{make()};
+    out.simulations = subject.simulations() - simulations, out.failed = subject.failed_simulations() - failed;
+    return out;
+  };
+  auto kept = stages.made(name, with_work, inputs...);
+  subject.recount(simulations + kept.simulations, failed + kept.failed);
+  return std::move(kept.made);
+}
+
+}  // namespace servodx
