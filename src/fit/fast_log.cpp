@@ -151,6 +151,7 @@ LogData at_points(const LogData& every_sample) {
     if (!series->empty()) *series = at(*series, points);
   for (FitChannel& c : out.channels) {
     c.measured = smoothed(t, c.measured, around);
+    if (c.low_pass) c.low_pass = c.low_pass->at(s.time);
     const int window = window_of_points(c.filter.window, usual_step(t), usual_step(s.time));
     c.noise *= std::sqrt(static_cast<double>(c.filter.window) / window);
     c.filter.window = window;

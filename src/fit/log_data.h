@@ -22,12 +22,12 @@ struct FitChannel {
   std::optional<LowPass> low_pass = {};  // of the rig, ahead of its recorder: the simulation has to pass it too
 
   // What the recorder would have seen of a simulated signal: in place, and as a copy.
-  void show(std::vector<double>& simulated) const {
-    if (low_pass && simulated.size() == measured.size()) (*low_pass)(simulated);
+  void show(std::vector<double>& run) const {
+    if (low_pass && run.size() == measured.size()) (*low_pass)(run);
   }
-  std::vector<double> shown(std::vector<double> simulated) const {
-    show(simulated);
-    return simulated;
+  std::vector<double> shown(std::vector<double> run) const {
+    show(run);
+    return run;
   }
 };
 

@@ -69,13 +69,13 @@ double PositionLoop::over_null_slope(const ParameterVector& candidate, std::opti
   valve_maps::HighFidelity valve(geometry_of(candidate, at_));
   const valve_maps::ValveNumbers numbers = valve.measure(drop);
   constexpr int points = 32;
-  const auto first_harmonic = [&](const valve_maps::HighFidelity& of, double amplitude) {
+  const auto first_harmonic = [&](const valve_maps::HighFidelity& of, double size) {
     double sum = 0;
     for (int k = 0; k < points; ++k) {
       const double sine = std::sin(std::numbers::pi * (k + 0.5) / points);
-      sum += 2.0 / points * of.no_load_flow(amplitude * sine, drop) * sine;
+      sum += 2.0 / points * of.no_load_flow(size * sine, drop) * sine;
     }
-    return sum / amplitude;
+    return sum / size;
   };
   ParameterVector lapped_off = candidate;
   take_off_laps(lapped_off);

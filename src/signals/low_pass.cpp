@@ -20,7 +20,8 @@ bool are_even(std::span<const double> time) {
 
 }  // namespace
 
-LowPass::LowPass(std::span<const double> time, double cutoff, int order) : even_(are_even(time)) {
+LowPass::LowPass(std::span<const double> time, double cutoff, int order)
+    : cutoff_(cutoff), order_(order), even_(are_even(time)) {
   if (!(cutoff > 0) || order < 1 || order > highest_low_pass_order)
     throw std::invalid_argument("LowPass: the cutoff must be positive and the order 1 to 8");
   using Complex = std::complex<double>;

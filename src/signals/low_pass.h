@@ -21,7 +21,8 @@ class LowPass {
   LowPass(std::span<const double> time, double cutoff, int order);
   // In place; as many samples as stamps, none missing.
   void operator()(std::span<double> x) const;
-  void cut(std::size_t from, std::size_t to);  // to the stamps [from, to)
+  void cut(std::size_t from, std::size_t to);                                         // to the stamps [from, to)
+  LowPass at(std::span<const double> time) const { return {time, cutoff_, order_}; }  // the same, at other stamps
 
  private:
   struct Step {
@@ -32,6 +33,8 @@ class LowPass {
     std::complex<double> weight;   // of the state in the output; the conjugate's counted with it
     std::vector<Step> steps;       // from each sample to the next; of even stamps one
   };
+  double cutoff_ = 0;  // [Hz]
+  int order_ = 1;
   std::vector<Mode> modes_;
   bool even_ = false;
 };

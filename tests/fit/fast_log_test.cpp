@@ -105,6 +105,26 @@ TEST(FastLog, ALogWhoseSamplesAreStepsIsTakenWhole) {
   }
 }
 
+// Built for the samples' stamps, the filter would take a point for a sample: a cutoff some twenty times lower.
+TEST(FastLog, TheRigsLowPassIsTheSameAtPoints) {
+  RigFile rig = shipped_rig();
+  rig.facts["measurement.low_pass"] = 150;
+  const Log log = commanded(20'000, 0.3);
+  const LogData whole = prepare(log, rig), taken = prepare_to_fit(log, rig);
+  const auto wave = [](const std::vector<double>& time) {
+    std::vector<double> out;
+    for (const double t : time) out.push_back(std::sin(2 * std::numbers::pi * 30 * t));
+    return out;
+  };
+  ASSERT_TRUE(taken.scenario.fast && taken.channels.front().low_pass);
+  const std::vector<double> few = taken.channels.front().shown(wave(taken.scenario.time)),
+                            all = whole.channels.front().shown(wave(whole.scenario.time));
+  for (std::size_t k = 0, j = 0; k < few.size(); ++k) {
+    while (whole.scenario.time[j] < taken.scenario.time[k]) ++j;
+    EXPECT_NEAR(few[k], all[j], 0.01) << taken.scenario.time[k] << " s";
+  }
+}
+
 TEST(FastLog, PointsAreAMillisecondApartAtAnyRate) {
   for (const double rate : {6000.0, 10'000.0, 20'000.0, 50'000.0}) {
     const LogData taken = prepare_to_fit(commanded(rate, 0.3), shipped_rig());
