@@ -177,6 +177,12 @@ void require_consistent(const Options& options) {
   require_option(options.against.empty() || one, "--against", "is of one verdict", "name one log, or add --pool");
 }
 
+std::vector<std::string> truths_beside(const std::vector<Log>& logs) {
+  std::vector<std::string> out;
+  for (const Log& log : logs) out.push_back(report::truth_beside(log.path, log.sha256));
+  return out;
+}
+
 int run(const Options& options) {
   require_consistent(options);
   if (!options.list.list.empty())
@@ -206,9 +212,7 @@ int run(const Options& options) {
     header.inputs.push_back({options.against, sha256_of_file(options.against)});
   }
 
-  std::vector<std::string> truths;
-  for (const Log& log : logs)
-    if (invocation.wants_report()) truths.push_back(report::truth_beside(log.path, log.sha256));
+  std::vector<std::string> truths = invocation.wants_report() ? truths_beside(logs) : std::vector<std::string>{};
 
   const Actions actions = actions_of(options.list.actions);
   header.settings = {{"false_alarm", baseline.asked}};

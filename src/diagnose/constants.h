@@ -58,9 +58,9 @@ inline constexpr double ambiguous_probability = 0.05;
 // a large effect to within that are not told apart by what is left. Halved, doubled: none.
 inline constexpr double effect_error = 0.1;
 
-// Odds of a fault at the far end of its range beside one inside that takes as much. Of six such verdicts, on rigs 51, 54
-// and 70, none had the fault at its end: (0 + 1) / (6 + 2) by the rule of succession. No log of the bench shows such a
-// pair: not felt there.
+// Odds of a fault at the far end of its range beside one inside that takes as much. Of six such verdicts, on rigs 51,
+// 54 and 70, none had the fault at its end: (0 + 1) / (6 + 2) by the rule of succession. No log of the bench shows such
+// a pair: not felt there.
 inline constexpr double end_of_range_odds = 1.0 / 8;
 
 // The gross look (diagnose/gross.cpp). Chosen by hand; not examined: they act on the samples of a log.

@@ -96,8 +96,8 @@ struct Decision {
 
 Decision decide(const Evidence& evidence);
 
-// Whether a hypothesis leaves little enough: a fault is known less well than health, and the less the larger it is. Of a
-// test that the baseline does not hold the model's own error may be all that is unlike health: there a fault also has
+// Whether a hypothesis leaves little enough: a fault is known less well than health, and the less the larger it is. Of
+// a test that the baseline does not hold the model's own error may be all that is unlike health: there a fault also has
 // to take more than it leaves. A size at the end of its range stands there because something else pulls: then only
 // health's measure counts.
 bool explains_enough(const HypothesisEvidence& fault, const Evidence& evidence);

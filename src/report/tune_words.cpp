@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "fit/free_values.h"
 #include "optimise/box_least_squares.h"
 #include "report/columns.h"
 #include "report/diagnosis_words.h"
