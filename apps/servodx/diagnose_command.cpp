@@ -139,18 +139,6 @@ std::string friction_line(const std::optional<FrictionBesideForce>& beside) {
   return beside ? "  " + report::friction_in_words(*beside) + "\n" : "";
 }
 
-void draw_beside(report::BesideVerdict& beside, const Diagnosis& d, const Table& tuned, const RigFile& rig) {
-  beside.bodes = bodes_beside(d, tuned, rig);
-  beside.friction = friction_beside_force(d, tuned, rig);
-}
-
-report::Json whole_json(const std::vector<Diagnosis>& results, const Table& tuned, const RigFile& rig) {
-  report::Json json = report::diagnose_json(results);
-  for (std::size_t k = 0; k < results.size(); ++k)
-    json["results"][k]["lateral_force"] = report::friction_json(friction_beside_force(results[k], tuned, rig));
-  return json;
-}
-
 // `now`: of one verdict.
 report::TwoTests since(const std::string& last_path, const report::Json& last, const report::Header& header,
                        const report::Json& now) {
@@ -239,13 +227,13 @@ int run(const Options& options) {
     invocation.note(d.assessment.notes);
     text += (text.empty() ? "" : "\n") +
             report::text_of(d, {.colour = colour_wanted(), .written_to = "", .call = header.call}) +
-            friction_line(friction_beside_force(d, tuned.table, rig));
+            friction_line(d.friction);
     worst = std::max(worst, options.exit_by_action ? code_of(d.action.of) : code_of(d));
   }
   if (results.size() < (options.pool ? 1 : logs.size()))
     invocation.note({fmt::format("interrupted: {} of {} logs were judged", results.size(), logs.size())});
   if (watch.stopped()) invocation.note_how_to_go_on();
-  report::Json json = whole_json(results, tuned.table, rig);
+  report::Json json = report::diagnose_json(results);
   report::BesideVerdict beside;
   if (last && results.size() == 1) {
     beside.last = since(options.against, *last, header, json);
@@ -253,7 +241,7 @@ int run(const Options& options) {
     json["last_test"] = report::to_json(*beside.last);
   }
   if (invocation.wants_report()) {
-    if (results.size() == 1) draw_beside(beside, results.front(), tuned.table, rig);
+    if (results.size() == 1) beside.bodes = bodes_beside(results.front(), tuned.table, rig);
     truths.resize(results.size());
     invocation.write_report(
         report::diagnose_page(header, results, baseline.parts->detection, replays(logs, tuned.table, rig, results),

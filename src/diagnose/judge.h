@@ -7,6 +7,7 @@
 #include "diagnose/assessment.h"
 #include "diagnose/baseline.h"
 #include "diagnose/decide.h"
+#include "diagnose/lateral_force.h"
 #include "diagnose/moved.h"
 #include "diagnose/naming.h"
 #include "diagnose/record_law.h"
@@ -70,9 +71,10 @@ struct Diagnosis {
                                    // most probable; null: healthy
   double null = 0;                 // [fraction of rated]
   std::vector<MovedRow> moved;
-  Action action;                       // what the fault named, or the verdict, asks for
-  std::optional<BeyondFaults> beyond;  // of an unknown verdict, where it was asked for
-  std::vector<RecordFinding> records;  // all that are beyond what healthy logs show
+  Action action;                                // what the fault named, or the verdict, asks for
+  std::optional<FrictionBesideForce> friction;  // of a named fault that moves the spool's
+  std::optional<BeyondFaults> beyond;           // of an unknown verdict, where it was asked for
+  std::vector<RecordFinding> records;           // all that are beyond what healthy logs show
   Assessment assessment;
 };
 

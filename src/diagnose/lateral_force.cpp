@@ -4,6 +4,7 @@
 #include <numbers>
 
 #include "diagnose/assessment.h"
+#include "diagnose/judge.h"
 #include "effects/registry.h"
 #include "effects/stiction.h"
 #include "evidence/operating_point.h"

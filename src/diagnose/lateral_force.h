@@ -10,11 +10,12 @@
 #pragma once
 #include <optional>
 
-#include "diagnose/judge.h"
 #include "parameters/table.h"
 #include "servodx/rig.h"
 
 namespace servodx {
+
+struct Diagnosis;
 
 // `taper` over `clearance`, both of the radius [m]; force [N].
 double lateral_force(double land_length, double diameter, double drop, double clearance, double taper);

@@ -10,6 +10,7 @@
 #include "diagnose/diagnose.h"
 #include "diagnose/judge.h"
 #include "diagnose/judgeable.h"
+#include "diagnose/lateral_force.h"
 #include "diagnose/moved.h"
 #include "diagnose/naming.h"
 #include "door/baseline_parts.h"
@@ -142,6 +143,7 @@ Verdict diagnose_pool(const std::vector<Log>& logs, const Tuned& tuned, const Ri
     d.beyond = explain_unknown(logs, tuned, rig, baseline, options);
     if (options.watch.stopped()) return interrupted_verdict(d.assessment);
   }
+  d.friction = friction_beside_force(d, tuned.table, rig);
   d.action = options.actions.at(report::name_of(d));
   return verdict_of(std::move(d));
 }

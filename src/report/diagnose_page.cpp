@@ -332,7 +332,7 @@ Page diagnose_page(const Header& header, const std::vector<Diagnosis>& results, 
     add_to_head(page, d.conditions);
     Verdict verdict = verdict_of(d, baseline, header.call);
     if (beside.last) verdict.facts.push_back({"Since the last test", words_of(*beside.last)});
-    if (beside.friction) verdict.reasons.push_back(sentence(friction_in_words(*beside.friction)));
+    if (d.friction) verdict.reasons.push_back(sentence(friction_in_words(*d.friction)));
     page.verdict(verdict);
     if (certificate.sheet) certify(page, d, baseline, header, certificate);
     if (beside.last) {

@@ -19,6 +19,7 @@
 #include "evidence/operating_point.h"
 #include "report/conditions.h"
 #include "report/diagnosis_words.h"
+#include "report/friction_words.h"
 #include "report/handy.h"
 #include "report/row_verdict_word.h"
 #include "report/tune_words.h"
@@ -327,6 +328,7 @@ Json to_json(const Diagnosis& d) {
           {"probabilities", probabilities},
           {"suspicion", d.suspicion ? to_json(*d.suspicion) : Json(nullptr)},
           {"detectable", detectable_json(d)},
+          {"lateral_force", friction_json(d.friction)},
           {"explained", d.beyond ? to_json(*d.beyond) : Json(nullptr)},
           {"ambiguous_with", ambiguous_labels(d)},
           {"separating_test", separating_test_of(d)},

@@ -7,7 +7,6 @@
 #include "diagnose/baseline.h"
 #include "diagnose/diagnose.h"
 #include "diagnose/judge.h"
-#include "diagnose/lateral_force.h"
 #include "fit/bode.h"
 #include "fit/replay.h"
 #include "report/certificate.h"
@@ -26,7 +25,6 @@ inline constexpr std::size_t most_replays = 12;
 struct BesideVerdict {
   std::optional<TwoTests> last;  // since the last test of this valve
   std::vector<Bode> bodes;       // of the valve as tuned, and as this log has it
-  std::optional<FrictionBesideForce> friction;
 };
 
 // `replays`: of some of the result's logs, by path; what is not there is not drawn.

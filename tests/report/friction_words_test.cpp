@@ -28,10 +28,9 @@ TEST(FrictionWords, SayWhetherOiledSteelCouldRubSo) {
 TEST(FrictionWords, StandAmongTheReasonsOfTheVerdict) {
   Diagnosis d;
   d.log = "log.csv", d.verdict = VerdictKind::fault, d.fault = find_fault("sticky_spool");
-  BesideVerdict beside;
-  EXPECT_EQ(diagnose_page({}, {d}, {}, {}, {}, {}, beside).html().find("Merritt"), std::string::npos);
-  beside.friction = FrictionBesideForce{20, 200};
-  const std::string html = diagnose_page({}, {d}, {}, {}, {}, {}, beside).html();
+  EXPECT_EQ(diagnose_page({}, {d}, {}, {}, {}).html().find("Merritt"), std::string::npos);
+  d.friction = FrictionBesideForce{20, 200};
+  const std::string html = diagnose_page({}, {d}, {}, {}, {}).html();
   EXPECT_NE(html.substr(0, html.find("<section class=\"part\"")).find("Merritt"), std::string::npos);
 }
 
