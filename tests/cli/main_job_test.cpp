@@ -35,13 +35,9 @@ class MainJob : public testing::Test {
   static const Desk& desk() {
     static const std::unique_ptr<Desk> made = [] {
       auto desk = std::make_unique<Desk>();
-      desk->write("table.csv", shipped_table());
-      desk->write("rig.toml", bytes_of(std::filesystem::path(SERVODX_SOURCE_DIR) / "data" / "rig.toml"));
+      write_rig_and_baseline_logs(*desk);
       desk->write("t1.csv", excerpt("healthy/h12_mixed.csv", 700));
       desk->write("t2.csv", excerpt("healthy/h01_steps_large.csv", 700));
-      desk->write("b1.csv", excerpt("healthy/h15_no_supply_signals.csv", 300));
-      desk->write("b2.csv", excerpt("healthy/h04_multisine.csv", 300));
-      desk->write("b3.csv", excerpt("healthy/h03_sine_2hz.csv", 300));
       desk->write("s1.csv", excerpt("fault/f02_clogged_filter_severe.csv", 300));
       return desk;
     }();

@@ -117,8 +117,9 @@ TEST_F(Prognosis, ACheckIsStoredOnceAndComesOutAsItWentIn) {
     EXPECT_NE(std::find(names.begin(), names.end(), name), names.end()) << name;
   for (const Json& check : c["checks"]) {
     // The monitor's missing lags are taken out, and a fitted row says what it may be off by.
-    if (check["name"] == "fidelity")
+    if (check["name"] == "fidelity") {
       EXPECT_LT(check["value"].get<double>() * check["expected"].get<double>(), 0.95 * check["measured"].get<double>());
+    }
     if (check["name"].get<std::string>().starts_with("parameter:")) {
       EXPECT_GE(check["whole_error"], check["std_error"]) << check;
       EXPECT_TRUE(check["told"].is_boolean()) << check;

@@ -59,6 +59,15 @@ inline std::string excerpt(const std::string& log, int rows) {
   return text;
 }
 
+// What the main job needs beside the logs that tune and the suspect: table, rig file, logs of a baseline.
+inline void write_rig_and_baseline_logs(const Desk& desk) {
+  desk.write("table.csv", shipped_table());
+  desk.write("rig.toml", bytes_of(std::filesystem::path(SERVODX_SOURCE_DIR) / "data" / "rig.toml"));
+  desk.write("b1.csv", excerpt("healthy/h15_no_supply_signals.csv", 300));
+  desk.write("b2.csv", excerpt("healthy/h04_multisine.csv", 300));
+  desk.write("b3.csv", excerpt("healthy/h03_sine_2hz.csv", 300));
+}
+
 // A quarter of a second of a rig at rest that is asked to move: columns in units other than SI, out of order.
 inline std::string small_log(int rows = 250) {
   std::ostringstream text;

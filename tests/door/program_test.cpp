@@ -30,12 +30,8 @@ class Door : public testing::Test {
  protected:
   static void SetUpTestSuite() {
     desk = std::make_unique<Desk>();
-    desk->write("table.csv", shipped_table());
-    desk->write("rig.toml", bytes_of(std::filesystem::path(SERVODX_SOURCE_DIR) / "data" / "rig.toml"));
+    write_rig_and_baseline_logs(*desk);
     desk->write("t.csv", excerpt("healthy/h12_mixed.csv", 700));
-    desk->write("b1.csv", excerpt("healthy/h15_no_supply_signals.csv", 300));
-    desk->write("b2.csv", excerpt("healthy/h04_multisine.csv", 300));
-    desk->write("b3.csv", excerpt("healthy/h03_sine_2hz.csv", 300));
     desk->write("s.csv", excerpt("fault/f02_clogged_filter_severe.csv", 300));
     ran("tune t.csv --params table.csv --generations 0 --rounds 1 --effects none -o tuned.csv");
     ran("baseline b1.csv b2.csv b3.csv --params tuned.csv --false-alarm 0.3 -o base.json");
