@@ -5,6 +5,7 @@
 #include <array>
 #include <bit>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <type_traits>
 #include <utility>
@@ -106,24 +107,48 @@ inline __attribute__((always_inline)) Dual<T, A> chain(T value, const Dual<T, A>
   return r;
 }
 
-// f was taken with the variables 0 and 1 in place of a and b: its derivatives by what a and b depend on, and by what
-// else it depended on itself.
-template <class T, Mask F, Mask A, Mask B>
-inline __attribute__((always_inline)) auto carried(const Dual<T, F>& f, const Dual<T, A>& a, const Dual<T, B>& b) {
-  constexpr Mask rest = F & ~range(0, 2);
-  constexpr Mask all = rest | (holds(F, 0) ? A : Mask{}) | (holds(F, 1) ? B : Mask{});
+namespace detail {
+// f's derivative by variable K, by way of a and what follows it, which f has as its variables I, I + 1, ...
+template <int K, int I, class T, Mask F, Mask A, class... Others>
+inline __attribute__((always_inline)) auto by_way_of(const Dual<T, F>& f, const Dual<T, A>& a,
+                                                     const Others&... others) {
+  const auto later = [&] {
+    if constexpr (sizeof...(Others) > 0)
+      return by_way_of<K, I + 1>(f, others...);
+    else
+      return nullptr;
+  }();
+  constexpr bool adds = !std::is_same_v<decltype(later), const std::nullptr_t>;
+  if constexpr (!holds(F, I) || !holds(A, K))
+    return later;
+  else if constexpr (adds)
+    return multiply_add(f.d[slot(F, I)], a.d[slot(A, K)], later);
+  else
+    return f.d[slot(F, I)] * a.d[slot(A, K)];
+}
+template <Mask F, Mask... A>
+constexpr Mask carried_mask() {
+  Mask all = F & ~range(0, sizeof...(A));
+  int i = 0;
+  ((all = all | (holds(F, i++) ? A : Mask{})), ...);
+  return all;
+}
+}  // namespace detail
+
+// f was taken with the variables 0, 1, ... in place of those of `of`: its derivatives by what these depend on, and by
+// what else it depended on itself.
+template <class T, Mask F, Mask... A>
+inline __attribute__((always_inline)) auto carried(const Dual<T, F>& f, const Dual<T, A>&... of) {
+  constexpr Mask rest = F & ~range(0, sizeof...(A)), all = detail::carried_mask<F, A...>();
   Dual<T, all> r;
   r.v = f.v;
   unroll<Dual<T, all>::slots>([&](auto i) {
     constexpr int k = variable(all, i);
-    constexpr bool by_a = holds(F, 0) && holds(A, k), by_b = holds(F, 1) && holds(B, k);
-    static_assert(!holds(rest, k) || !(by_a || by_b));
-    if constexpr (by_a && by_b)
-      r.d[i] = multiply_add(f.d[0], a.d[slot(A, k)], f.d[slot(F, 1)] * b.d[slot(B, k)]);
-    else if constexpr (by_a)
-      r.d[i] = f.d[0] * a.d[slot(A, k)];
-    else if constexpr (by_b)
-      r.d[i] = f.d[slot(F, 1)] * b.d[slot(B, k)];
+    const auto by_way = detail::by_way_of<k, 0>(f, of...);
+    constexpr bool is_by_way = !std::is_same_v<decltype(by_way), const std::nullptr_t>;
+    static_assert(is_by_way != holds(rest, k));
+    if constexpr (is_by_way)
+      r.d[i] = by_way;
     else
       r.d[i] = f.d[slot(F, k)];
   });

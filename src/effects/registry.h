@@ -18,6 +18,7 @@
 #include "effects/nozzle_plugging.h"
 #include "effects/orifice_length.h"
 #include "effects/port_line.h"
+#include "effects/pressure_viscosity.h"
 #include "effects/return_drop.h"
 #include "effects/rod_cavity.h"
 #include "effects/screen_drop.h"
@@ -57,7 +58,8 @@ using AllEffects = EffectList<MagneticHysteresis,  //
                               SealShear,           //
                               NozzleMismatch,      //
                               ReturnDrop,          //
-                              ViscositySlope>;
+                              ViscositySlope,      //
+                              PressureViscosity>;
 // Four states more than all others together, for rigs with long lines only: these have a kernel of their own.
 using LinedEffects = Append<AllEffects, LineInertia>;
 // A learnt curve costs more than all effects: the same.

@@ -44,6 +44,7 @@ namespace servodx {
   X(slot_corner,               "Pa s",         "the same of the corner of an open edge") \
   X(supply_edge,               "m",            "corner radius of the metering edges from supply") \
   X(return_edge,               "m",            "and of those to return") \
+  X(viscosity_rise,            "1/Pa",         "of the oil in the metering edges with pressure") \
   X(edge_loss,                 "Pa s2/m4",     "4 rho / (2 Cd^2)") \
   X(hose_loss,                 "Pa s2/m4",     "4 hose_resistance width^2, per opening squared") \
   X(return_loss,               "Pa s2/m4",     "the same with the return line") \
@@ -137,6 +138,7 @@ Derived<T> derive(const T* p, const Oil& oil) {
   d.slot_corner = slot * (T(c::slot_resistance) + hook_edge_creep(p, Effects{}));
   d.supply_edge = T(c::edge_rounding) + hook_edge_rounding(p, false, Effects{});
   d.return_edge = T(c::edge_rounding) + hook_edge_rounding(p, true, Effects{});
+  d.viscosity_rise = hook_viscosity_rise(p, Effects{});
   d.edge_loss = T(4.0 * oil.density / (2.0 * c::cd_metering * c::cd_metering));
   d.hose_loss = T(4.0) * p[row::hose_resistance] * p[row::port_width] * p[row::port_width];
   const T per_stroke2 = T(1.0) / (p[row::spool_stop] * p[row::spool_stop]);

@@ -4,6 +4,7 @@
 //     memory of its past; struct Sensors, observe(sensors, time, shown, p)  [SI]  applied to what is reported at each
 //     sample
 //     viscosity(p, oil)    [-]   factor on the oil's viscosity
+//     viscosity_rise(p)    [1/Pa] relative rise of the oil's viscosity with pressure, in the metering edges
 //     edge_rounding(p, to_return) [m] added to the corner radius of the metering edges
 //     edge_creep(p)        [-]   added to the creeping-flow length of an open edge, in openings
 //     edge_abruptness(p)   [-]   how fast the flow through an open edge is turbulent, 0 to 2
@@ -173,6 +174,7 @@ T hook_viscosity([[maybe_unused]] const T* p, [[maybe_unused]] const Oil& oil, E
         ...);                                                                                              \
     return added;                                                                                          \
   }
+SERVODX_FIXED_HOOK(viscosity_rise)
 SERVODX_FIXED_HOOK(edge_creep)
 SERVODX_FIXED_HOOK(edge_abruptness)
 SERVODX_FIXED_HOOK(return_share)
@@ -186,6 +188,12 @@ SERVODX_FIXED_HOOK(seal_shear)
 SERVODX_FIXED_HOOK(seal_dry)
 SERVODX_FIXED_HOOK(spool_yield)
 #undef SERVODX_FIXED_HOOK
+
+// Whether any effect lets the viscosity rise with pressure: where none does, nothing asks for the pressure.
+template <class... E>
+consteval bool thickens_under_pressure(EffectList<E...>) {
+  return (requires(const double* q) { E::viscosity_rise(q); } || ...);
+}
 
 // What the effects add to the corner radius of the metering edges, those to return or those from supply. [m]
 template <class T, class... E>

@@ -570,10 +570,12 @@ class Run {
       const auto flow = [&](const T& opening, const auto& side, const T& dp) {
         return metering_edge(opening, side, dp, d_).flow;
       };
-      const T q_pa = flow(y[s_x_spool] - p_[row::lap_pa], from_supply(d_), now.supply_pressure - y[s_p_a]);
-      const T q_pb = flow(-y[s_x_spool] - p_[row::lap_pb], from_supply(d_), now.supply_pressure - y[s_p_b]);
-      const T q_at = flow(-y[s_x_spool] - p_[row::lap_at], to_return(d_), y[s_p_a] - now.return_pressure);
-      const T q_bt = flow(y[s_x_spool] - p_[row::lap_bt], to_return(d_), y[s_p_b] - now.return_pressure);
+      const auto from = from_supply<Effects>(d_, now.supply_pressure);
+      const auto to = to_return<Effects>(d_, now.return_pressure);
+      const T q_pa = flow(y[s_x_spool] - p_[row::lap_pa], from, now.supply_pressure - y[s_p_a]);
+      const T q_pb = flow(-y[s_x_spool] - p_[row::lap_pb], from, now.supply_pressure - y[s_p_b]);
+      const T q_at = flow(-y[s_x_spool] - p_[row::lap_at], to, y[s_p_a] - now.return_pressure);
+      const T q_bt = flow(y[s_x_spool] - p_[row::lap_bt], to, y[s_p_b] - now.return_pressure);
       out[6] = q_pa - q_at;
       out[7] = q_pb - q_bt;
       out[10] = T(0.5) * (out[6] - out[7]);

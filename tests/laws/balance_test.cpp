@@ -49,13 +49,15 @@ void stored_rates_balance(const ParameterVector& v) {
     const auto edge = [&](double opening, const auto& side, double dp) {
       return metering_edge(opening, side, dp, d).flow;
     };
+    const auto from = from_supply<Effects>(d, u.supply_pressure);
+    const auto to = to_return<Effects>(d, u.return_pressure);
     double lines = 0;  // what goes into the volumes behind the ports
     if constexpr (Effects::n_states > 0)
       for (int s : {0, 1}) lines += f[n_base_states + Effects::template state_offset<PortLine>() + s];
-    const double in = edge(y[s_x_spool] - p[row::lap_pa], from_supply(d), u.supply_pressure - y[s_p_a]) +
-                      edge(-y[s_x_spool] - p[row::lap_pb], from_supply(d), u.supply_pressure - y[s_p_b]);
-    const double out = edge(-y[s_x_spool] - p[row::lap_at], to_return(d), y[s_p_a] - u.return_pressure) +
-                       edge(y[s_x_spool] - p[row::lap_bt], to_return(d), y[s_p_b] - u.return_pressure);
+    const double in = edge(y[s_x_spool] - p[row::lap_pa], from, u.supply_pressure - y[s_p_a]) +
+                      edge(-y[s_x_spool] - p[row::lap_pb], from, u.supply_pressure - y[s_p_b]);
+    const double out = edge(-y[s_x_spool] - p[row::lap_at], to, y[s_p_a] - u.return_pressure) +
+                       edge(y[s_x_spool] - p[row::lap_bt], to, y[s_p_b] - u.return_pressure);
     double stored_rod = 0;  // in the rod cavity, which takes its area's room from chamber A
     if constexpr (Effects::n_states > 0) {
       const double length = p[effect_row<RodCavity>(1)] + p[row::piston_stroke] / 2 + y[s_x_piston];

@@ -14,6 +14,7 @@
 #include "effects/nozzle_land.h"
 #include "effects/nozzle_mismatch.h"
 #include "effects/orifice_length.h"
+#include "effects/pressure_viscosity.h"
 #include "effects/registry.h"
 #include "effects/return_drop.h"
 #include "effects/sampled_lag.h"
@@ -455,6 +456,39 @@ TEST(EdgeTransition, BeyondAbruptTheCoefficientOvershootsItsLimitBySixPerCent) {
   }
   EXPECT_NEAR(most, 1.06, 0.003);
   EXPECT_LT(most_at_1, 1.0);
+}
+
+// Flow of an edge in oil that thickens over the flow in oil that does not; the edge ends at 100 and 140 bar.
+double thickened_flow(double opening, double rise, double dynamic_viscosity) {
+  const auto flow = [&](double of_oil) {
+    const ParameterVector v = with<PressureViscosity>(0, of_oil);
+    const Derived<double> d = derive<double, AllEffects>(v.data(), Oil{.dynamic_viscosity = dynamic_viscosity});
+    constexpr double from = 14e6, to = 10e6;
+    return metering_edge(opening, from_supply<AllEffects>(d, from), from - to, d).flow;
+  };
+  return flow(rise) / flow(0);
+}
+
+TEST(PressureViscosity, CreepingFlowFallsByBarusLawAtTheMeanPressureAndTurbulentFlowDoesNot) {
+  constexpr double rise = 2e-8, mean = 12e6;
+  for (const double opening : {-5e-6, 0.0, 5e-6})
+    EXPECT_NEAR(thickened_flow(opening, rise, 10.0), std::exp(-rise * mean), 3e-3) << opening;
+  EXPECT_NEAR(thickened_flow(3e-4, rise, 1e-3), 1.0, 1e-3);
+}
+
+TEST(PressureViscosity, InColdOilTheChambersRestLowerAsTheEdgesFromSupplyPassLess) {
+  Scenario s = made(12.0, 1e-3, [](double) { return 0.0; });  // the chambers fill through the leakage at null
+  const auto resting = [&](double thicker, double rise) {
+    Scenario cold = s;
+    cold.oil.dynamic_viscosity *= thicker;
+    const Trajectory t = simulate(cold, with<PressureViscosity>(0, rise), all_signals());
+    return of(t, Signal::pressure_a).back() + of(t, Signal::pressure_b).back();
+  };
+  // Creeping flows share the supply as exp(-rise p) of their mean pressures, a quarter and three quarters of it: the
+  // middle falls by some rise p / 8 of the supply.
+  const ParameterVector v = nominal_candidate();
+  const double supply = v[row::supply_pressure], rise = 2e-8, fall = 2 * supply * rise * supply / 8;
+  EXPECT_NEAR(resting(10, 0) - resting(10, rise), fall, 0.25 * fall);
 }
 
 TEST(ReturnDrop, RaisesTheChambersByHalfOfItsShareUnlessTheReturnIsMeasured) {
