@@ -3,10 +3,14 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <cstddef>
 #include <map>
 #include <memory>
 #include <optional>
+#include <utility>
+#include <vector>
 
+#include "base/parts_done.h"
 #include "base/sha256.h"
 #include "baseline_beside.h"
 #include "commands.h"
@@ -36,6 +40,7 @@
 #include "servodx/rig.h"
 #include "servodx/tune.h"
 #include "servodx/watch.h"
+#include "simulate/side_by_side.h"
 
 namespace servodx {
 namespace {
@@ -78,26 +83,24 @@ int code_of(ActionClass action) {
   return ran;
 }
 
-// Of the logs that were judged before an interrupt.
+// Side by side, of the logs that were judged before an interrupt.
 std::vector<Diagnosis> judge_each(const std::vector<Log>& logs, const Tuned& tuned, const RigFile& rig,
                                   const Baseline& baseline, const DiagnoseOptions& options) {
-  const Watch& watch = options.watch;
+  PartsDone told(options.watch, "diagnose", logs.size());
+  std::vector<std::optional<Diagnosis>> judged(logs.size());
+  side_by_side(static_cast<int>(logs.size()), options.threads, [&](int piece, int threads) {
+    if (options.watch.stopped()) return;
+    const auto at = static_cast<std::size_t>(piece);
+    DiagnoseOptions of_log = options;
+    of_log.threads = threads;
+    of_log.watch = told.of(at);
+    const Verdict verdict = diagnose(logs[at], tuned, rig, baseline, of_log);
+    if (!verdict.interrupted) judged[at] = *verdict.whole;
+    told.tell(at, 1, verdict.simulations);
+  });
   std::vector<Diagnosis> results;
-  long simulations = 0;
-  const auto tell = [&](double part, long so_far) {
-    watch.tell("diagnose", (static_cast<double>(results.size()) + part) / static_cast<double>(logs.size()),
-               simulations + so_far);
-  };
-  DiagnoseOptions of_log = options;
-  of_log.watch.progress = [&](const WorkDone& done) { tell(done.part, done.simulations); };
-  for (const Log& log : logs) {
-    if (watch.stopped()) break;
-    const Verdict verdict = diagnose(log, tuned, rig, baseline, of_log);
-    if (verdict.interrupted) break;
-    results.push_back(*verdict.whole);
-    simulations += verdict.simulations;
-    tell(0, 0);
-  }
+  for (std::optional<Diagnosis>& d : judged)
+    if (d) results.push_back(std::move(*d));
   return results;
 }
 

@@ -2,10 +2,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstddef>
+#include <optional>
 #include <utility>
 #include <vector>
 
 #include "base/error.h"
+#include "base/parts_done.h"
 #include "diagnose/assessment.h"
 #include "diagnose/baseline.h"
 #include "diagnose/diagnose.h"
@@ -17,6 +20,7 @@
 #include "servodx/log.h"
 #include "servodx/rig.h"
 #include "servodx/watch.h"
+#include "simulate/side_by_side.h"
 
 namespace servodx {
 namespace {
@@ -49,44 +53,51 @@ void check(const std::vector<Log>& logs, const std::vector<Log>& others, const T
                      "give at least 3 fault-free logs; the rate that can be promised is 1/(n+1)");
 }
 
-// Each log assessed alone. Ended early: of those done so far.
+// Logs assessed alone, side by side. Ended early: those done so far.
 class Assessing {
  public:
   Assessing(const Table& tuned, const RigFile& rig, const DiagnoseOptions& options, std::size_t logs)
-      : tuned_(tuned), rig_(rig), options_(options), logs_(static_cast<double>(logs)) {}
+      : tuned_(tuned), rig_(rig), options_(options), told_(options.watch, "baseline", logs) {}
 
   std::vector<Assessment> all(const std::vector<Log>& logs) {
+    std::vector<std::optional<Assessment>> done(logs.size());
+    side_by_side(static_cast<int>(logs.size()), options_.threads, [&](int piece, int threads) {
+      const auto at = static_cast<std::size_t>(piece);
+      if (!options_.watch.stopped()) done[at] = one(logs[at], before_ + at, threads);
+    });
+    before_ += logs.size();
     std::vector<Assessment> out;
-    for (const Log& log : logs) {
-      Assessment a = assess(log, tuned_, rig_, with_progress());
-      if (options_.watch.stopped()) break;
-      if (a.unjudgeable != Unjudgeable::no)
-        throw InputError({.file = log.path},
-                         "no valve answers in this log: its command or its sensors stand still, noise is all, or a "
-                         "unit is wrong",
-                         "see 'servodx check-log', and mend the rig file or leave the log out");
-      simulations += a.simulations, failed += a.failed_simulations;
-      options_.watch.tell("baseline", ++done_ / logs_, simulations);
-      out.push_back(std::move(a));
+    for (std::optional<Assessment>& a : done) {
+      if (!a) continue;
+      simulations += a->simulations, failed += a->failed_simulations;
+      out.push_back(std::move(*a));
     }
     return out;
   }
   long simulations = 0, failed = 0;
 
  private:
-  DiagnoseOptions with_progress() const {
+  // None where it was stopped on the way. `place`: among all logs.
+  std::optional<Assessment> one(const Log& log, std::size_t place, int threads) {
     DiagnoseOptions of_log = options_;
-    if (options_.watch.progress)
-      of_log.watch.progress = [this](const WorkDone& of_one) {
-        options_.watch.tell("baseline", (done_ + of_one.part) / logs_, simulations + of_one.simulations);
-      };
-    return of_log;
+    of_log.threads = threads;
+    of_log.watch = told_.of(place);
+    Assessment a = assess(log, tuned_, rig_, of_log);
+    if (options_.watch.stopped()) return {};
+    if (a.unjudgeable != Unjudgeable::no)
+      throw InputError({.file = log.path},
+                       "no valve answers in this log: its command or its sensors stand still, noise is all, or a "
+                       "unit is wrong",
+                       "see 'servodx check-log', and mend the rig file or leave the log out");
+    told_.tell(place, 1, a.simulations);
+    return a;
   }
 
   const Table& tuned_;
   const RigFile& rig_;
   const DiagnoseOptions& options_;
-  double logs_, done_ = 0;
+  PartsDone told_;
+  std::size_t before_ = 0;  // logs of earlier calls
 };
 
 }  // namespace

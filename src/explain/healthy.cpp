@@ -1,7 +1,13 @@
 #include "explain/healthy.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
+#include <cstddef>
+#include <mutex>
+#include <optional>
+#include <utility>
+#include <vector>
 
 #include "base/student.h"
 #include "evidence/log_scatter.h"
@@ -20,6 +26,7 @@
 #include "servodx/log.h"
 #include "servodx/rig.h"
 #include "simulate/scenario.h"
+#include "simulate/side_by_side.h"
 
 namespace servodx {
 namespace {
@@ -194,44 +201,88 @@ void score(ValveSubject& subject, const KnownRig& known, HealthyLog& h) {
   h.shares = heldout_shares(subject, fit), h.has_shares = true;
 }
 
+// Passes over the logs, side by side: each log's work has a subject of its own.
+class Passes {
+ public:
+  Passes(const std::vector<Log>& logs, const Table& tuned, const RigFile& rig, int threads, const Stages& stages,
+         const std::function<bool(double)>& told, HealthyCounts& counts)
+      : logs_(logs), tuned_(tuned), rig_(rig), threads_(threads), stages_(stages), told_(told), counts_(counts) {}
+
+  // work(subject, known, h) for each log, from its `so_far` on; `known_of` it from the others. `share`: of all passes,
+  // for the progress. What is not done when the call is stopped is none.
+  template <class KnownOf, class Work>
+  std::vector<std::optional<HealthyLog>> pass(const char* what, double share, const std::vector<HealthyLog>& so_far,
+                                              const KnownOf& known_of, const Work& work) {
+    std::vector<std::optional<HealthyLog>> out(logs_.size());
+    side_by_side(static_cast<int>(logs_.size()), threads_, [&](int piece, int threads) {
+      if (stopped_) return;
+      const auto at = static_cast<std::size_t>(piece);
+      const KnownRig known = known_of(piece);
+      Stages of_it;
+      if (stages_.keeps()) of_it = stages_.part(what, content_hash(logs_[at]), known);
+      const auto make = [&] {
+        Counted<HealthyLog> made{so_far[at]};
+        ValveSubject subject({logs_[at]}, tuned_, rig_, threads, known);
+        subject.stages = of_it;
+        work(subject, known, made.made);
+        made.simulations = subject.simulations(), made.failed = subject.failed_simulations();
+        return made;
+      };
+      Counted<HealthyLog> kept = of_it.made("whole", make, so_far[at]);
+      out[at] = std::move(kept.made);
+      tell(share / static_cast<double>(logs_.size()), kept.simulations, kept.failed);
+    });
+    return out;
+  }
+  bool stopped() const { return stopped_; }
+
+ private:
+  void tell(double share, long simulations, long failed) {
+    const std::lock_guard lock(telling_);
+    counts_.simulations += simulations, counts_.failed += failed;
+    done_ += share;
+    if (told_ && !told_(done_)) stopped_ = true;
+  }
+
+  const std::vector<Log>& logs_;
+  const Table& tuned_;
+  const RigFile& rig_;
+  int threads_;
+  const Stages& stages_;
+  const std::function<bool(double)>& told_;
+  HealthyCounts& counts_;
+  std::mutex telling_;
+  double done_ = 0;
+  std::atomic<bool> stopped_ = false;
+};
+
+std::vector<HealthyLog> those_done(std::vector<std::optional<HealthyLog>> logs) {
+  std::vector<HealthyLog> out;
+  for (std::optional<HealthyLog>& h : logs)
+    if (h) out.push_back(std::move(*h));
+  return out;
+}
+
 }  // namespace
 
 HealthyReference score_healthy(const std::vector<Log>& own, const Table& tuned, const RigFile& rig, int threads,
                                HealthyCounts& counts, const std::function<bool(double)>& told,
                                const std::vector<Log>& others, const Stages& stages) {
   const std::vector<Log> logs = logs_to_score(own, others);
-  const auto n = static_cast<double>(logs.size());
-  // One log's, of a subject of its own, and what that has run.
-  const auto of_log = [&](const char* what, const Log& log, const KnownRig& known, const HealthyLog& so_far,
-                          const auto& work) {
-    Stages of_it;
-    if (stages.keeps()) of_it = stages.part(what, content_hash(log), known);
-    const auto make = [&] {
-      Counted<HealthyLog> out{so_far};
-      ValveSubject subject({log}, tuned, rig, threads, known);
-      subject.stages = of_it;
-      work(subject, out.made);
-      out.simulations = subject.simulations(), out.failed = subject.failed_simulations();
-      return out;
-    };
-    Counted<HealthyLog> kept = of_it.made("whole", make, so_far);
-    counts.simulations += kept.simulations, counts.failed += kept.failed;
-    return std::move(kept.made);
-  };
-  HealthyReference all, out;
+  std::vector<HealthyLog> begun;
   for (const Log& log : logs) {
-    HealthyLog& h = all.logs.emplace_back();
+    HealthyLog& h = begun.emplace_back();
     h.log = log.path, h.sha256 = log.sha256, h.test = conditions_of(log);
-    h.other = all.logs.size() > own.size();
-    h = of_log("usual", log, KnownRig{}, h, see_what_is_usual);
-    if (told && !told(0.2 * static_cast<double>(all.logs.size()) / n)) return out;
+    h.other = begun.size() > own.size();
   }
-  for (std::size_t l = 0; l < logs.size(); ++l) {
-    const KnownRig known = all.known(static_cast<int>(l));
-    out.logs.push_back(of_log("score", logs[l], known, all.logs[l],
-                              [&](ValveSubject& subject, HealthyLog& h) { score(subject, known, h); }));
-    if (told && !told(0.2 + 0.8 * (static_cast<double>(out.logs.size()) / n))) break;
-  }
+  Passes passes(logs, tuned, rig, threads, stages, told, counts);
+  HealthyReference usual, out;
+  usual.logs = those_done(passes.pass(
+      "usual", 0.2, begun, [](int) { return KnownRig{}; },
+      [](ValveSubject& subject, const KnownRig&, HealthyLog& h) { see_what_is_usual(subject, h); }));
+  if (passes.stopped()) return out;
+  out.logs = those_done(passes.pass(
+      "score", 0.8, usual.logs, [&](int log) { return usual.known(log); }, score));
   return out;
 }
 
