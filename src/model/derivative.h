@@ -47,10 +47,10 @@ requires(A != only(0) || B != only(1)) inline
 }
 
 // Of a metering edge.
-template <class Q, class H>
+template <class Q, class J>
 struct EdgeFlow {
-  Q flow;    // [m3/s]
-  H height;  // [m] open, what the jet's force acts on
+  Q flow;  // [m3/s]
+  J jet;   // [N/m] its height times the velocity head of its flow: what the force on the spool grows with
 };
 
 // The mean pressure of an edge lies half the drop from that of the line which its side shares.
@@ -110,16 +110,16 @@ inline __attribute__((always_inline)) auto metering_edge(const X& opening, const
   const auto slot = thickened<T>(d.slot_per_length * covered + d.slot_corner, side.oil, dp);
   const auto r = slot * per_h;  // [Pa s/m] times width and h
   const auto k = d.edge_loss + side.line * h2;
-  const auto q = d.twice_width * h * dp * inverse(d.creep_added * r + root(r * r + k * magnitude(dp)));
-  return EdgeFlow{q, h};
+  const auto speed = dp * inverse(d.creep_added * r + root(r * r + k * magnitude(dp)));  // [m/s] half the mean one
+  return EdgeFlow{d.twice_width * h * speed, h * (d.edge_loss * speed * magnitude(speed))};
 }
 
 template <class T, Mask A, Mask B, class R, class L, class O, class D>
 requires(A != only(0) || B != only(1)) inline
     __attribute__((always_inline)) auto metering_edge(const Dual<T, A>& opening, const EdgeSide<R, L, O>& side,
                                                       const Dual<T, B>& dp, const D& d) {
-  const auto [q, h] = metering_edge(seed<0>(opening.v, T(1.0)), side, seed<1>(dp.v, T(1.0)), d);
-  return EdgeFlow{carried(q, opening, dp), carried(h, opening, dp)};
+  const auto [q, jet] = metering_edge(seed<0>(opening.v, T(1.0)), side, seed<1>(dp.v, T(1.0)), d);
+  return EdgeFlow{carried(q, opening, dp), carried(jet, opening, dp)};
 }
 // The line's pressure is a third variable where it depends on any itself.
 template <class T, Mask A, Mask B, Mask C, class R, class L, class V, class D>
@@ -129,8 +129,8 @@ requires(A != only(0) || B != only(1) || C != only(2)) inline
                                                       const Dual<T, B>& dp, const D& d) {
   const auto& oil = side.oil;
   const EdgeSide seeded{side.radius, side.line, Thickening{seed<2>(oil.line.v, T(1.0)), oil.rise, oil.per_drop}};
-  const auto [q, h] = metering_edge(seed<0>(opening.v, T(1.0)), seeded, seed<1>(dp.v, T(1.0)), d);
-  return EdgeFlow{carried(q, opening, dp, oil.line), carried(h, opening, dp, oil.line)};
+  const auto [q, jet] = metering_edge(seed<0>(opening.v, T(1.0)), seeded, seed<1>(dp.v, T(1.0)), d);
+  return EdgeFlow{carried(q, opening, dp, oil.line), carried(jet, opening, dp, oil.line)};
 }
 
 // Pilot flow through the filter, whose blocked part may differ with the direction of the spool, behind the laminar drop
@@ -208,14 +208,14 @@ inline __attribute__((always_inline)) auto derivative(const S& s, const In& in, 
   const auto x_m = x_s + hook_metering_opening(view, Effects{});
   const auto from = from_supply<Effects>(d, u.supply_pressure);
   const auto to = to_return<Effects>(d, u.return_pressure);
-  const auto [q_pa, h_pa] = metering_edge(x_m - pick<row::lap_pa>(p), from, u.supply_pressure - p_a, d);
-  const auto [q_pb, h_pb] = metering_edge(-x_m - pick<row::lap_pb>(p), from, u.supply_pressure - p_b, d);
-  const auto [q_at, h_at] = metering_edge(-x_m - pick<row::lap_at>(p), to, p_a - u.return_pressure, d);
-  const auto [q_bt, h_bt] = metering_edge(x_m - pick<row::lap_bt>(p), to, p_b - u.return_pressure, d);
+  const auto [q_pa, jet_pa] = metering_edge(x_m - pick<row::lap_pa>(p), from, u.supply_pressure - p_a, d);
+  const auto [q_pb, jet_pb] = metering_edge(-x_m - pick<row::lap_pb>(p), from, u.supply_pressure - p_b, d);
+  const auto [q_at, jet_at] = metering_edge(-x_m - pick<row::lap_at>(p), to, p_a - u.return_pressure, d);
+  const auto [q_bt, jet_bt] = metering_edge(x_m - pick<row::lap_bt>(p), to, p_b - u.return_pressure, d);
 
   // Spool.
-  const auto f_flow = d.flow_force * (h_pa * (u.supply_pressure - p_a) + h_bt * (p_b - u.return_pressure) -
-                                      h_pb * (u.supply_pressure - p_b) - h_at * (p_a - u.return_pressure));
+  // Steady, by the momentum of the jets: laminar ones have less than their pressure drop would give a turbulent one.
+  const auto f_flow = d.flow_force * (jet_pa + jet_bt - jet_pb - jet_at);
   const auto f_dry =
       pick<row::spool_friction>(p) * asperities<T>((x_s - in.friction.spool_anchor) * d.per_spool_presliding);
   const auto beyond = x_s - pick<row::spool_stop>(p), behind = -x_s - pick<row::spool_stop>(p);

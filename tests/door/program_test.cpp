@@ -68,7 +68,7 @@ TEST_F(Door, WritesTheProgramsTableAndBaselineByteForByte) {
   EXPECT_EQ(bytes_of("door.csv"), bytes_of("tuned.csv"));
   EXPECT_EQ(tuned.table.sha256, read_tuned("tuned.csv").table.sha256);
   const Baseline baseline = make_baseline(logs({"b1.csv", "b2.csv", "b3.csv"}), read_tuned("tuned.csv"), rig(),
-                                          {.false_alarm = 0.3, .others = logs({"t.csv"})});
+                                          {.false_alarm = 0.3, .others = logs({"t.csv"}), .threads = 1});
   write_baseline("door.json", baseline);
   EXPECT_EQ(without_seconds(bytes_of("door.json")), without_seconds(bytes_of("base.json")));
   write_baseline("again.json", read_baseline("base.json"));

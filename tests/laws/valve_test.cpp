@@ -150,6 +150,24 @@ TEST(Valve, NozzlePassesItsCurtainWhenNarrowAndItsBoreWhenWide) {
   EXPECT_NEAR(nozzle_flow(0.1, dp, d) / bore, 1.0, 1e-3);
 }
 
+// 2 Cd w times J is the flux of momentum rho q^2 / (Cc w h), with Cc = Cd where the jet loses no speed (Merritt 1967,
+// sec. 5-6).
+TEST(Valve, AJetPushesByItsMomentumSoThatACreepingOneHardlyDoes) {
+  const ParameterVector v = nominal_candidate();
+  const Oil oil{};
+  const Derived<double> d = derive<double>(v.data(), oil);
+  constexpr double opening = 1e-4, cd = constants::cd_metering;
+  const double height = std::sqrt(opening * opening + d.clearance2), width = v[row::port_width];
+  const auto jet_of = [&](double dp) {
+    const auto [flow, jet] = metering_edge(opening, EdgeSide{1e-12, 0.0}, dp, d);
+    EXPECT_NEAR(2 * cd * width * jet / (oil.density * flow * flow / (cd * width * height)), dp > 0 ? 1 : -1, 1e-9);
+    return jet / (height * dp);
+  };
+  EXPECT_NEAR(jet_of(2e7), 1.0, 0.05);
+  EXPECT_NEAR(jet_of(-2e7), 1.0, 0.05);
+  EXPECT_LT(jet_of(10.0), 0.05);
+}
+
 TEST(Valve, FlowRisesWithPortWidth) {
   ParameterVector v = nominal_candidate();
   const Scenario s = made(0.2, 1e-3, [](double t) { return t < 0.01 ? 0.0 : 0.01; });
