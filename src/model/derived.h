@@ -128,8 +128,7 @@ Derived<T> derive(const T* p, const Oil& oil) {
   d.spool_presliding = T(c::spool_presliding) + hook_spool_yield(p, Effects{});
   d.per_spool_presliding = T(1.0) / d.spool_presliding;
   d.flow_force = T(c::jet_angle_factor) * p[row::flow_force_coefficient] * p[row::port_width];
-  d.twice_width = T(2.0) * p[row::port_width];
-  d.clearance2 = p[row::radial_clearance] * p[row::radial_clearance];
+  d.twice_width = T(2.0) * p[row::port_width], d.clearance2 = p[row::radial_clearance] * p[row::radial_clearance];
   // Plane Couette slot: dp = 12 mu L q / (w c^3); an open edge has a creeping-flow length of some openings.
   const T abrupt = hook_edge_abruptness(p, Effects{}), beside = T(1.0) + abrupt;
   d.creep_added = (T(1.0) - abrupt) / beside;
