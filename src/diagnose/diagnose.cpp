@@ -245,10 +245,20 @@ void look_at_motion(const LogData& data, const ParameterVector& base, int thread
     return std::any_of(out.broken.begin(), out.broken.end(), [&](const auto& b) { return b.signal == m.signal; });
   });
   out.others_left = mean_left(left, 0);
+  // A fault that steps in is simulated from there on, as it was fitted: from the beginning it would drive the piston to
+  // where the log's never was.
+  std::optional<LogData> since;
+  Trajectory healthy_since;
   for (const HypothesisPrediction& e : out.explanations) {
-    const double part = mean_left(motion_left(data, healthy, reference_of(data, e.candidate, threads), e.from), 0);
+    if (e.from > 0 && !since) {
+      since = slice(data, e.from, data.scenario.time.size());
+      healthy_since = reference_of(*since, base, threads);
+    }
+    const LogData& part = e.from > 0 ? *since : data;
+    const Trajectory of_it = reference_of(part, e.candidate, threads);
+    const double left_by_it = mean_left(motion_left(part, e.from > 0 ? healthy_since : healthy, of_it), 0);
     for (HypothesisResult& h : out.hypotheses)
-      if (h.fault == e.fault) h.motion_left = part;
+      if (h.fault == e.fault) h.motion_left = left_by_it;
   }
 }
 

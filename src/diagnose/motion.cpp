@@ -30,11 +30,6 @@ double square_of_noise(const FitChannel& c, std::size_t samples, std::size_t blo
   return 2 * c.noise * c.noise * n * n / static_cast<double>(samples);
 }
 
-std::vector<double> from_on(std::vector<double> x, std::size_t from) {
-  x.erase(x.begin(), x.begin() + static_cast<long>(std::min(from, x.size())));
-  return x;
-}
-
 }  // namespace
 
 Blocks means_of(const std::vector<double>& time, const std::vector<double>& x, bool of_size) {
@@ -68,20 +63,18 @@ double correlation(const std::vector<double>& a, const std::vector<double>& b) {
   return va > 0 && vb > 0 ? (ab - sa * sb / n) / std::sqrt(va * vb) : 0.0;
 }
 
-std::vector<MotionLeft> motion_left(const LogData& log, const Trajectory& healthy, const Trajectory& simulated,
-                                    std::size_t from) {
+std::vector<MotionLeft> motion_left(const LogData& log, const Trajectory& healthy, const Trajectory& simulated) {
   std::vector<MotionLeft> out;
-  if (from >= log.scenario.time.size()) return out;
-  const std::vector<double> time = from_on(log.scenario.time, from);
+  const std::vector<double>& time = log.scenario.time;
   for (const FitChannel& c : log.channels) {
     const auto at = static_cast<std::size_t>(c.simulated);
     if (!healthy.ok || !simulated.ok) {
       out.push_back({c.signal, 1});
       continue;
     }
-    const std::vector<double> measured = moves(time, from_on(c.measured, from));
-    const std::vector<double> would = moves(time, from_on(c.shown(healthy.signals[at]), from));
-    const std::vector<double> does = moves(time, from_on(c.shown(simulated.signals[at]), from));
+    const std::vector<double> measured = moves(time, c.measured);
+    const std::vector<double> would = moves(time, c.shown(healthy.signals[at]));
+    const std::vector<double> does = moves(time, c.shown(simulated.signals[at]));
     const double noise = square_of_noise(c, time.size(), measured.size());
     const double own = square_of(measured), all = own + square_of(would) - noise;
     if (all < k::beyond_noise * noise || !(all > 0)) continue;

@@ -31,10 +31,8 @@ struct MotionLeft {
   Signal signal = Signal::spool_position;
   double part = 1;
 };
-// Of each channel that moves, or would in health, beyond its noise; from the sample `from` on. A simulation that failed
-// leaves all.
-std::vector<MotionLeft> motion_left(const LogData& log, const Trajectory& healthy, const Trajectory& simulated,
-                                    std::size_t from = 0);
+// Of each channel that moves, or would in health, beyond its noise. A simulation that failed leaves all.
+std::vector<MotionLeft> motion_left(const LogData& log, const Trajectory& healthy, const Trajectory& simulated);
 // Their mean; of no channel `none`.
 double mean_left(const std::vector<MotionLeft>& left, double none);
 

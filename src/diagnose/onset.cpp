@@ -61,6 +61,8 @@ bool onset_possible(const LogData& log) { return log.scenario.time.size() >= 4 *
 
 std::optional<Onset> find_onset(const LogData& log, const ParameterVector& base, const ErrorModel& error,
                                 const HypothesisSettings& settings, const HypothesisFits& whole, FitWork& work) {
+  std::optional<Onset> onset;  // of the changes the one that leaves least
+  double least = 0;
   for (const std::size_t at : likely_changes(log, base, error, settings, whole, work)) {
     const LogData first = slice(log, 0, at), rest = slice(log, at, log.scenario.time.size());
     HypothesisSettings single = settings;
@@ -77,9 +79,11 @@ std::optional<Onset> find_onset(const LogData& log, const ParameterVector& base,
     gains.split = before.fits.front().misfit + after.fits[fault].misfit;
     gains.before = before.fits.front().misfit - before.fits[fault].misfit;
     gains.after = after.fits.front().misfit - after.fits[fault].misfit;
-    if (is_onset(gains, whole.degrees)) return Onset{at, before.fits.front(), std::move(after)};
+    if (!is_onset(gains, whole.degrees) || (onset && gains.split >= least)) continue;
+    least = gains.split;
+    onset = Onset{at, before.fits.front(), std::move(after)};
   }
-  return {};
+  return onset;
 }
 
 }  // namespace servodx
