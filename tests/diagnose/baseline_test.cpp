@@ -7,10 +7,17 @@
 #include <set>
 
 #include "base/error.h"
+#include "base/random.h"
 #include "diagnose/diagnose.h"
+#include "diagnose/whitening.h"
 #include "faults/registry.h"
+#include "fit/log_data.h"
 #include "fit/tuned_state.h"
+#include "parameters/list.h"
+#include "parameters/table.h"
+#include "servodx/log.h"
 #include "shipped_data.h"
+#include "simulate/scenario.h"
 
 namespace servodx {
 namespace {
@@ -30,12 +37,12 @@ std::vector<Log> cut_logs(const std::vector<std::string>& names, std::size_t sam
 }
 
 // A table as `tune` would leave it, without the work: an error model, and the hash of a log.
-Table as_tuned(const std::string& by) {
+Table as_tuned(const std::string& by, double independent = 0.05) {
   Table t = shipped_table();
   t.path = "tuned.csv";
   ErrorModel error;
   for (Signal s : {Signal::spool_position, Signal::piston_position, Signal::pressure_a, Signal::pressure_b})
-    error.channels.push_back({s, 0.0, 0.2, 0.05});
+    error.channels.push_back({s, 0.0, 0.2, independent});
   set_tuned_state(t, {error, 1, {{"log.csv", by, ""}}});
   t.has_std_error = true;
   return t;
@@ -144,6 +151,43 @@ TEST(Assess, AFaultsRowsAreItsOwnAndProgressIsToldFitByFit) {
   }
   EXPECT_GT(none_seen, 0);
   EXPECT_LT(none_seen, static_cast<int>(fault_list().size()));
+}
+
+// Healthy until row `at`, and then by `after`, as the model has it: the piston goes on from where it is.
+Log stepping_in(Log log, std::size_t at, const ParameterVector& after) {
+  Random random(5, 1);
+  const auto filled = [&](std::size_t from, const ParameterVector& candidate) {
+    Log part = log;
+    part.time.erase(part.time.begin(), part.time.begin() + static_cast<long>(from));
+    for (Channel& c : part.channels)
+      if (!c.value.empty()) c.value.erase(c.value.begin(), c.value.begin() + static_cast<long>(from));
+    const LogData data = prepare(part, shipped_rig());
+    const Trajectory run = reference_of(data, candidate, 1);
+    for (const FitChannel& c : data.channels) {
+      std::vector<double> shown = c.shown(run.signals[static_cast<std::size_t>(c.simulated)]);
+      for (double& x : shown) x += c.noise * random.normal();
+      std::copy(shown.begin(), shown.end(), log.channels[index(c.signal)].value.begin() + static_cast<long>(from));
+    }
+  };
+  filled(0, candidate_of(shipped_table()));
+  filled(at, after);
+  return log;
+}
+
+// A null that had shifted at the beginning would have the piston at its stop, where this one's never is.
+TEST(Assess, AFaultThatStepsInIsAskedForTheMotionSinceThen) {
+  ParameterVector after = candidate_of(shipped_table());
+  after[row::servovalve_null] = 0.3;
+  constexpr std::size_t at = 3000;
+  const Log log = stepping_in(cut(shipped_log("healthy/h12_mixed"), 4000), at, after);
+  const Assessment a = assess(log, as_tuned("0", 50), shipped_rig(), {});
+  ASSERT_TRUE(a.onset);
+  EXPECT_NEAR(*a.onset, log.time[at], 0.05);
+  const auto best = std::min_element(a.hypotheses.begin(), a.hypotheses.end(),
+                                     [](const auto& x, const auto& y) { return x.misfit < y.misfit; });
+  ASSERT_EQ(best->fault, find_fault("null_shift"));
+  std::printf("leaves %.4f of the motion\n", best->motion_left);
+  EXPECT_LT(best->motion_left, 0.05);
 }
 
 TEST(Assess, SameResultAtAnyThreadCount) {
