@@ -50,7 +50,7 @@ requires(A != only(0) || B != only(1)) inline
 template <class Q, class J>
 struct EdgeFlow {
   Q flow;  // [m3/s]
-  J jet;   // [N/m] its height times the velocity head of its flow: what the force on the spool grows with
+  J jet;   // [m3/s2] its flow times its speed over the port's width: what the force on the spool grows with
 };
 
 // The mean pressure of an edge lies half the drop from that of the line which its side shares.
@@ -102,16 +102,18 @@ template <class X, class R, class L, class O, class P, class D>
 inline __attribute__((always_inline)) auto metering_edge(const X& opening, const EdgeSide<R, L, O>& side, const P& dp,
                                                          const D& d) {
   using T = typename D::Scalar;
+  // Twice what is open and what is covered: their halves would be products that the constants can hold.
   const auto length = smooth_abs(opening, side.radius);
-  const auto open = (opening + length) * T(0.5);
-  const auto covered = (length - opening) * T(0.5);
+  const auto open = opening + length, covered = length - opening;
   const auto h2 = open * open + d.clearance2;
   const auto [h, per_h] = both_roots(h2);
   const auto slot = thickened<T>(d.slot_per_length * covered + d.slot_corner, side.oil, dp);
   const auto r = slot * per_h;  // [Pa s/m] times width and h
   const auto k = d.edge_loss + side.line * h2;
-  const auto speed = dp * inverse(d.creep_added * r + root(r * r + k * magnitude(dp)));  // [m/s] half the mean one
-  return EdgeFlow{d.twice_width * h * speed, h * (d.edge_loss * speed * magnitude(speed))};
+  const auto size = magnitude(dp);
+  const auto per = inverse(d.creep_added * r + root(r * r + k * size));  // [m/s/Pa] half the mean speed over dp
+  const auto through = h * (dp * per);                                   // [m2/s] the flow over the port's width
+  return EdgeFlow{d.width * through, through * (size * per)};
 }
 
 template <class T, Mask A, Mask B, class R, class L, class O, class D>

@@ -37,16 +37,16 @@ namespace servodx {
   X(spool_viscous,             "N s/m",        "shear in the annulus") \
   X(spool_presliding,          "m",            "way over which the spool's dry friction is taken up") \
   X(per_spool_presliding,      "1/m",          "") \
-  X(flow_force,                "m",            "times open height and pressure drop") \
-  X(twice_width,               "m",            "") \
-  X(clearance2,                "m2",           "") \
+  X(flow_force,                "kg/m2",        "times an edge's flow and half its speed over the port's width") \
+  X(width,                     "m",            "of the ports") \
+  X(clearance2,                "m2",           "of twice the radial clearance") \
   X(slot_per_length,           "Pa s/m",       "laminar resistance of a covered edge per length, times width, opening squared and 1 + a, a the abruptness") \
-  X(slot_corner,               "Pa s",         "the same of the corner of an open edge") \
+  X(slot_corner,               "Pa s",         "twice the same of the corner of an open edge") \
   X(supply_edge,               "m",            "corner radius of the metering edges from supply") \
   X(return_edge,               "m",            "and of those to return") \
   X(viscosity_rise,            "1/Pa",         "of the oil in the metering edges with pressure") \
   X(edge_loss,                 "Pa s2/m4",     "4 rho / (2 Cd^2)") \
-  X(hose_loss,                 "Pa s2/m4",     "4 hose_resistance width^2, per opening squared") \
+  X(hose_loss,                 "Pa s2/m4",     "hose_resistance width^2, per twice the opening squared") \
   X(return_loss,               "Pa s2/m4",     "the same with the return line") \
   X(creep_added,               "-",            "share of the two resistances above that adds to the root: (1 - a) / (1 + a)") \
   /* actuator */ \
@@ -127,20 +127,20 @@ Derived<T> derive(const T* p, const Oil& oil) {
   d.spool_viscous = T(c::pi) * dynamic_viscosity * p[row::spool_diameter] * spool_length / p[row::radial_clearance];
   d.spool_presliding = T(c::spool_presliding) + hook_spool_yield(p, Effects{});
   d.per_spool_presliding = T(1.0) / d.spool_presliding;
-  d.flow_force = T(c::jet_angle_factor) * p[row::flow_force_coefficient] * p[row::port_width];
-  d.twice_width = T(2.0) * p[row::port_width], d.clearance2 = p[row::radial_clearance] * p[row::radial_clearance];
+  d.width = p[row::port_width], d.clearance2 = T(4.0) * p[row::radial_clearance] * p[row::radial_clearance];
   // Plane Couette slot: dp = 12 mu L q / (w c^3); an open edge has a creeping-flow length of some openings.
   const T abrupt = hook_edge_abruptness(p, Effects{}), beside = T(1.0) + abrupt;
   d.creep_added = (T(1.0) - abrupt) / beside;
   const T slot = T(12.0) * dynamic_viscosity * beside;
   d.slot_per_length = slot / p[row::radial_clearance];
-  d.slot_corner = slot * (T(c::slot_resistance) + hook_edge_creep(p, Effects{}));
+  d.slot_corner = T(2.0) * slot * (T(c::slot_resistance) + hook_edge_creep(p, Effects{}));
   d.supply_edge = T(c::edge_rounding) + hook_edge_rounding(p, false, Effects{});
   d.return_edge = T(c::edge_rounding) + hook_edge_rounding(p, true, Effects{});
   d.viscosity_rise = hook_viscosity_rise(p, Effects{});
   d.edge_loss = T(4.0 * oil.density / (2.0 * c::cd_metering * c::cd_metering));
-  d.hose_loss = T(4.0) * p[row::hose_resistance] * p[row::port_width] * p[row::port_width];
-  const T per_stroke2 = T(1.0) / (p[row::spool_stop] * p[row::spool_stop]);
+  d.flow_force = T(0.5 * c::jet_angle_factor) * p[row::flow_force_coefficient] * d.width * d.edge_loss;
+  d.hose_loss = p[row::hose_resistance] * d.width * d.width;
+  const T per_stroke2 = T(0.25) / (p[row::spool_stop] * p[row::spool_stop]);
   d.return_loss = d.hose_loss + hook_return_share(p, Effects{}) * d.edge_loss * per_stroke2;
   d.leak = p[row::cross_piston_leakage] * (T(1.0) / viscosity_ratio);
   const T sheared = hook_seal_shear(p, Effects{}), dry = hook_seal_dry(p, Effects{});

@@ -433,10 +433,10 @@ double coefficient(double abruptness, double share) {
   const ParameterVector v = with<EdgeTransition>(1, abruptness);
   const Derived<double> d = derive<double, AllEffects>(v.data(), Oil{});
   constexpr double opening = 1e-4;
-  const double h = std::sqrt(opening * opening + d.clearance2), r = d.slot_corner / (1 + abruptness) / h;
+  const double h = std::hypot(2 * opening, std::sqrt(d.clearance2)), r = d.slot_corner / (1 + abruptness) / h;
   const double dp = r * r / (d.edge_loss * 0.25 * share * share);
   const double flow = metering_edge(opening, EdgeSide{1e-12, 0.0}, dp, d).flow;
-  return flow / (d.twice_width * h * std::sqrt(dp / d.edge_loss));
+  return flow / (d.width * h * std::sqrt(dp / d.edge_loss));
 }
 
 TEST(EdgeTransition, AbruptFlowMeetsItsTurbulentLimitByTheSquareOfTheLaminarShare) {

@@ -157,11 +157,12 @@ TEST(Valve, AJetPushesByItsMomentumSoThatACreepingOneHardlyDoes) {
   const Oil oil{};
   const Derived<double> d = derive<double>(v.data(), oil);
   constexpr double opening = 1e-4, cd = constants::cd_metering;
-  const double height = std::sqrt(opening * opening + d.clearance2), width = v[row::port_width];
+  const double height = std::sqrt(opening * opening + 0.25 * d.clearance2), width = v[row::port_width];
   const auto jet_of = [&](double dp) {
     const auto [flow, jet] = metering_edge(opening, EdgeSide{1e-12, 0.0}, dp, d);
-    EXPECT_NEAR(2 * cd * width * jet / (oil.density * flow * flow / (cd * width * height)), dp > 0 ? 1 : -1, 1e-9);
-    return jet / (height * dp);
+    const double j = oil.density / (cd * cd) * jet;  // [N/m] that the model's force grows with
+    EXPECT_NEAR(2 * cd * width * j / (oil.density * flow * flow / (cd * width * height)), dp > 0 ? 1 : -1, 1e-9);
+    return j / (height * dp);
   };
   EXPECT_NEAR(jet_of(2e7), 1.0, 0.05);
   EXPECT_NEAR(jet_of(-2e7), 1.0, 0.05);
