@@ -5,6 +5,7 @@
 #include <string>
 #include <utility>
 
+#include "base/stopwatch.h"
 #include "optimise/derivative_free.h"
 #include "optimise/normal_equations.h"
 #include "optimise/robust_loss.h"
@@ -101,8 +102,9 @@ LocalResult minimise_locally(const LeastSquaresProblem& problem, const Point& st
   long simulations = spent();
   int jacobians = 0;
   double before = 0;
+  Stopwatch watch;
   const auto tell = [&](StageGain& stage) {
-    stage = {before, end.cost, spent() - simulations, end.iterations - jacobians};
+    stage = {before, end.cost, spent() - simulations, end.iterations - jacobians, watch.lap()};
     before = end.cost, simulations = spent(), jacobians = end.iterations;
   };
   if (local.method == LocalMethod::ceres_alone) {

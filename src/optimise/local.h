@@ -38,6 +38,7 @@ struct StageGain {
   double before = 0, after = 0;  // cost
   long simulations = 0;
   int jacobians = 0;
+  double seconds = 0;
 };
 
 struct LocalResult {

@@ -56,6 +56,8 @@ const char* word_of(StageMethod method) {
       return "ceres";
     case StageMethod::nlopt:
       return "nlopt";
+    case StageMethod::none:
+      return "none";
   }
   return "";
 }
@@ -134,8 +136,10 @@ Json tune_json(const TuneResult& result) {
                       {"by", word_of(s.by)},
                       {"cost_before", number(s.before)},
                       {"cost_after", number(s.after)},
+                      {"heldout_over_noise", number(s.heldout_over_noise)},
                       {"simulations", s.simulations},
-                      {"jacobians", s.jacobians}});
+                      {"jacobians", s.jacobians},
+                      {"seconds", s.seconds}});
   for (double cost : result.starts) starts.push_back(number(cost));
   Json effects = Json::array();
   for (const EarnedEffect& e : result.effects)

@@ -46,14 +46,19 @@ void add_channels(Page& page, const std::string& title, const std::vector<Channe
 // Where the stage begins or what it fits, for a reader of the page.
 std::string stage_words(const Stage& stage) {
   switch (stage.kind) {
+    case Stage::Kind::screening:
     case Stage::Kind::genetic:
       return word_of(stage);
     case Stage::Kind::start:
       return stage.start == 1 ? "from the table's values" : "from genetic " + std::to_string(stage.start - 1);
     case Stage::Kind::weights:
       return "on all but the end of each log";
+    case Stage::Kind::effects:
+      return "trial of the effects";
     case Stage::Kind::everything:
       return "on whole logs";
+    case Stage::Kind::errors:
+      return "errors of the rows";
   }
   return "";
 }
@@ -67,6 +72,8 @@ void add_effects(Page& page, const std::vector<EarnedEffect>& effects) {
     table.rows.push_back({words(e.effect), Cell(digits(e.gain, 3), e.gain), e.kept ? "free" : "off"});
   page.add(table);
 }
+
+Cell cell_if_any(double value, int n) { return std::isfinite(value) ? Cell(digits(value, n), value) : Cell(""); }
 
 void add_search(Page& page, const TuneResult& result) {
   if (result.starts.size() > 1) {
@@ -99,16 +106,22 @@ void add_search(Page& page, const TuneResult& result) {
   }
   page.add(plot);
   if (!result.stages.empty()) {
-    TablePart table{
-        "What each method gained", "llrrrr", {"stage", "by", "cost from", "to", "simulations", "Jacobians"}, {}, 0};
+    TablePart table{"What each step cost and gained",
+                    "llrrrrr",
+                    {"stage", "by", "cost from", "to", "held out over noise", "simulations", "Jacobians"},
+                    {},
+                    0};
     for (const StageResult& s : result.stages)
-      table.rows.push_back({stage_words(s.stage), words_of(s.by), Cell(digits(s.before, 5), s.before),
-                            Cell(digits(s.after, 5), s.after),
+      table.rows.push_back({stage_words(s.stage), words_of(s.by), cell_if_any(s.before, 5), cell_if_any(s.after, 5),
+                            cell_if_any(s.heldout_over_noise, 3),
                             Cell(std::to_string(s.simulations), static_cast<double>(s.simulations)),
                             Cell(std::to_string(s.jacobians), static_cast<double>(s.jacobians))});
     page.add(table);
   }
-  page.text("Each stage weighs the residuals in its own way: compare levels within a stage, not between stages.");
+  page.text(
+      "Each stage weighs the residuals in its own way: compare levels within a stage, not between stages. What was "
+      "held "
+      "out compares between all. The JSON result has each step's seconds.");
 }
 
 }  // namespace

@@ -97,20 +97,28 @@ std::string words_of(StageMethod method) {
       return "Ceres";
     case StageMethod::nlopt:
       return "BOBYQA";
+    case StageMethod::none:
+      return "";
   }
   return "";
 }
 
 std::string word_of(const Stage& stage) {
   switch (stage.kind) {
+    case Stage::Kind::screening:
+      return "screening";
     case Stage::Kind::genetic:
       return "genetic search";
     case Stage::Kind::start:
       return fmt::format("start {}", stage.start);
     case Stage::Kind::weights:
       return "weights";
+    case Stage::Kind::effects:
+      return "effects";
     case Stage::Kind::everything:
       return "everything";
+    case Stage::Kind::errors:
+      return "errors";
   }
   return "";
 }
@@ -122,7 +130,7 @@ std::string gains_in_words(const TuneResult& result) {
     if (result.stages[i].by == StageMethod::least_squares) from = i;
   for (std::size_t i = 0; i < result.stages.size(); ++i) {
     const StageResult& s = result.stages[i];
-    if (s.by != StageMethod::genetic && i < from) continue;
+    if (s.by == StageMethod::none || (s.by != StageMethod::genetic && i < from)) continue;
     const std::string how = s.after < s.before ? fmt::format("{} to {}", digits(s.before, 5), digits(s.after, 5))
                                                : "no lower than " + digits(s.before, 5);
     parts.push_back(

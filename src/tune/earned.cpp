@@ -85,7 +85,8 @@ struct Valley {
 // The misfit in two parts: what the fit has seen of each log, and what it has not.
 class Parts {
  public:
-  Parts(const FitProblem& problem, double held) : problem_(problem), seen_(Eigen::VectorXd::Ones(problem.total_rows())) {
+  Parts(const FitProblem& problem, double held)
+      : problem_(problem), seen_(Eigen::VectorXd::Ones(problem.total_rows())) {
     for (std::size_t l = 0; l < problem.logs().size(); ++l)
       for (std::size_t c = 0; c < problem.logs()[l]->channels.size(); ++c) {
         const auto [first, n] = problem.rows(static_cast<int>(l), static_cast<int>(c));
@@ -110,11 +111,12 @@ class Parts {
     return valley(x, at, std::move(j), std::move(blocks));
   }
   // About a point nearby, by what the way there has taught: a Jacobian of its own costs a hundred runs of every log.
-  std::optional<Valley> next(const Valley& from, const Evaluation& at_from, const Point& x, const Evaluation& at) const {
+  std::optional<Valley> next(const Valley& from, const Evaluation& at_from, const Point& x,
+                             const Evaluation& at) const {
     if (!at.ok) return std::nullopt;
     const auto n = static_cast<long>(x.size());
-    const Eigen::VectorXd step = Eigen::Map<const Eigen::VectorXd>(x.data(), n) -
-                                 Eigen::Map<const Eigen::VectorXd>(from.at.data(), n);
+    const Eigen::VectorXd step =
+        Eigen::Map<const Eigen::VectorXd>(x.data(), n) - Eigen::Map<const Eigen::VectorXd>(from.at.data(), n);
     Eigen::MatrixXd j = from.jacobian;
     learn_step(j, from.blocks, step,
                seen_.cwiseProduct(at.residual - at_from.residual) - product(j, from.blocks, step));

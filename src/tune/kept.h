@@ -29,8 +29,8 @@ inline auto fields(ConvergencePoint& p) {
   return std::tie(stage, simulations, cost);
 }
 inline auto fields(StageResult& r) {
-  auto& [stage, by, before, after, simulations, jacobians] = r;
-  return std::tie(stage, by, before, after, simulations, jacobians);
+  auto& [stage, by, before, after, simulations, jacobians, seconds, heldout] = r;
+  return std::tie(stage, by, before, after, simulations, jacobians, seconds, heldout);
 }
 inline auto fields(CeresSummary& c) {
   auto& [end, solves, steps, refused, released, jacobians, learnt, evaluations, initial, final] = c;

@@ -98,6 +98,7 @@ Screening screened(const TuneScope& scope, TuneWatch& watch, const FitProblem& p
 }  // namespace
 
 std::vector<ScreenedRow> screen_rows(TuneScope& scope, TuneWatch& watch) {
+  Stopwatch clock;
   FitProblem problem = scope.problem();
   const Point x = problem.start();
   first_whitening(problem, x);
@@ -116,6 +117,7 @@ std::vector<ScreenedRow> screen_rows(TuneScope& scope, TuneWatch& watch) {
         hold(scope, scope.shared[j]);
     scope.shared = kept;
   }
+  watch.add_step(Stage::Kind::screening, 0, clock, problem);
   watch.done_with(problem);
   return std::move(out.rows);
 }

@@ -5,6 +5,7 @@
 #include <limits>
 #include <span>
 
+#include "base/stopwatch.h"
 #include "optimise/ceres_refinement.h"
 #include "optimise/derivative_free.h"
 #include "optimise/local.h"
@@ -13,6 +14,7 @@
 #include "tune/breadth.h"
 #include "tune/constants.h"
 #include "tune/kept.h"
+#include "tune/summary.h"
 #include "tune/tune.h"
 #include "tune/weights.h"
 
@@ -34,6 +36,7 @@ LeastSquaresResult without_derivatives(const FitProblem& problem, const Point& f
   };
   const BatchEvaluate evaluate = [&](std::span<const Point> points) { return problem.evaluate(points); };
   const long before = watch.simulations(problem);
+  Stopwatch clock;
   const DerivativeFreeResult found = minimise_without_derivatives(problem.n(), evaluate, from, d);
   LeastSquaresResult end;
   end.point = found.point;
@@ -41,7 +44,8 @@ LeastSquaresResult without_derivatives(const FitProblem& problem, const Point& f
   end.stopped = found.stopped;
   end.reason = watch.stopped() ? StopReason::interrupted : StopReason::stalled;
   end.promised_gain = std::numeric_limits<double>::infinity();  // nothing says how much is left
-  watch.stages.push_back({stage, StageMethod::nlopt, first_cost, found.cost, watch.simulations(problem) - before, 0});
+  watch.stages.push_back(
+      {stage, StageMethod::nlopt, first_cost, found.cost, watch.simulations(problem) - before, 0, clock.lap()});
   return end;
 }
 
@@ -51,7 +55,7 @@ LocalMethod method_of(TuneLocal local) {
 
 void tell_stages(TuneWatch& watch, Stage stage, const LocalResult& r) {
   const auto add = [&](StageMethod by, const StageGain& gain) {
-    watch.stages.push_back({stage, by, gain.before, gain.after, gain.simulations, gain.jacobians});
+    watch.stages.push_back({stage, by, gain.before, gain.after, gain.simulations, gain.jacobians, gain.seconds});
   };
   if (r.search.jacobians > 0) add(StageMethod::least_squares, r.search);
   if (r.ceres.end != CeresEnd::not_run) add(StageMethod::ceres, r.refinement);
@@ -61,11 +65,17 @@ void tell_stages(TuneWatch& watch, Stage stage, const LocalResult& r) {
 }
 
 // How far the best of the generations lies below the first.
-void tell_genetic(TuneWatch& watch) {
+void tell_genetic(TuneWatch& watch, double seconds) {
   if (watch.convergence.empty()) return;  // all that is there yet is the genetic search's
   const ConvergencePoint &first = watch.convergence.front(), &last = watch.convergence.back();
   watch.stages.push_back(
-      {first.stage, StageMethod::genetic, first.cost, last.cost, last.simulations - first.simulations, 0});
+      {first.stage, StageMethod::genetic, first.cost, last.cost, last.simulations - first.simulations, 0, seconds});
+}
+
+void tell_heldout(TuneWatch& watch, const TuneScope& scope, const FitProblem& problem, const Point& end) {
+  if (watch.stages.empty() || watch.stopped()) return;
+  watch.stages.back().heldout_over_noise =
+      heldout_over_noise(scope, problem, problem.trajectories(end), watch.options.heldout);
 }
 
 }  // namespace
@@ -158,8 +168,9 @@ SearchEnds search_ends(const TuneScope& scope, FitProblem& problem, TuneWatch& w
   scope.on_stand ? weigh_sweeps(problem, x) : first_whitening(problem, x);
   std::vector<Point> starts = {x};
   if (options.generations > 0 && !watch.stopped()) {
+    Stopwatch clock;
     for (Point& p : search_broadly(scope, x, watch)) starts.push_back(std::move(p));
-    tell_genetic(watch);
+    tell_genetic(watch, clock.lap());
   }
   hold_out(problem, options.heldout);
   SearchEnds out;
@@ -168,6 +179,7 @@ SearchEnds search_ends(const TuneScope& scope, FitProblem& problem, TuneWatch& w
     out.ends.push_back(search_locally(problem, starts[s], Stage{Stage::Kind::start, static_cast<int>(s) + 1},
                                       iterations_a_start, s == 0 ? Start::nominal : Start::found,
                                       {work.starts.at(begun / all), work.starts.at((begun + 1) / all)}, watch));
+    tell_heldout(watch, scope, problem, out.ends.back().point);
     if (out.ends.back().cost < out.ends[out.best].cost) out.best = s;
   }
   for (const LeastSquaresResult& end : out.ends) out.arrived.push_back(in_best_valley(end, out.ends[out.best].cost));

@@ -10,6 +10,7 @@
 
 #include "base/error.h"
 #include "base/nearest.h"
+#include "base/stopwatch.h"
 #include "effects/effect.h"
 #include "effects/registry.h"
 #include "fit/free_values.h"
@@ -53,7 +54,10 @@ LeastSquaresResult weighed_as_learnt(FitProblem& problem, LeastSquaresResult end
 std::vector<EarnedEffect> drop_unearned(TuneScope& scope, FitProblem& fit, Point& end, const ErrorModel& error,
                                         TuneWatch& watch) {
   apply_error_model(fit, error, end, true);
+  Stopwatch clock;
+  const long before = watch.simulations(fit);
   std::vector<EarnedEffect> effects = keep_earned(scope, fit, watch.options.heldout, end, watch);
+  watch.add_step(Stage::Kind::effects, before, clock, fit);
   watch.done_with(fit);
   fit = scope.problem();
   return effects;
@@ -146,6 +150,8 @@ TuneResult tune_table(const std::vector<Log>& logs, const Table& nominal, const 
               : refine_whole(fit, end.point, out.error, 1, scope.on_stand, tune_constants::work.weights, watch);
   // Before the effects are judged by the held-out part: what it says of the fit is then out of sample.
   const std::vector<Trajectory> heldout_runs = fit.trajectories(end.point);
+  if (!watch.stages.empty())
+    watch.stages.back().heldout_over_noise = heldout_over_noise(scope, fit, heldout_runs, options.heldout);
   if (!scope.on_stand && !options.effects) out.effects = drop_unearned(scope, fit, end.point, out.error, watch);
   if (!watch.stopped())
     end = refine_whole(fit, end.point, out.error, options.rounds, scope.on_stand, tune_constants::work.whole, watch);
@@ -153,7 +159,10 @@ TuneResult tune_table(const std::vector<Log>& logs, const Table& nominal, const 
 
   mark_unearned(screened, out.effects);
   watch.tell(tune_constants::work.whole.to, fit);  // the rows' errors are still to come
+  Stopwatch clock;
+  const long before = watch.simulations(fit);
   Settled settled = settle(scope, screened, fit, end, watch);
+  watch.add_step(Stage::Kind::errors, before, clock, fit);
   out.logs =
       results_by_log(logs, scope, fit, settled.point, fit.trajectories(settled.point), heldout_runs, options.heldout);
   out.channels = pooled_channels(out.logs);

@@ -1,6 +1,7 @@
 // `tune`: nominal parameters from fault-free logs, pooled.
 #pragma once
 #include <algorithm>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -30,10 +31,13 @@ struct LogResult {
 // A part of the search.
 struct Stage {
   enum class Kind {
+    screening,  // what each row moves, alone and beside the others
     genetic,
-    start,      // a local search of its own, with the end of each log held out
-    weights,    // the best start goes on by what the model itself gets wrong, the same part held out
-    everything  // on whole logs
+    start,       // a local search of its own, with the end of each log held out
+    weights,     // the best start goes on by what the model itself gets wrong, the same part held out
+    effects,     // whether the held-out part needs each of those that were freed
+    everything,  // on whole logs
+    errors       // of the rows
   };
   Kind kind = Kind::genetic;
   int start = 0;  // 1: from the table's values; the others from points of the genetic search
@@ -47,15 +51,19 @@ struct ConvergencePoint {
   double cost = 0;
 };
 
-enum class StageMethod { genetic, least_squares, ceres, nlopt };
+enum class StageMethod { genetic, least_squares, ceres, nlopt, none };
 
-// What a method has gained in a stage, at that stage's weights.
+// What a method has cost and gained in a stage, at that stage's weights.
 struct StageResult {
   Stage stage;
-  StageMethod by = StageMethod::least_squares;
-  double before = 0, after = 0;  // cost
+  StageMethod by = StageMethod::least_squares;  // none: nothing is minimised there
+  double before = 0, after = 0;                 // cost
   long simulations = 0;
   int jacobians = 0;
+  double seconds = 0;
+  // [-] rms of what was held out over the sensors' noise, geometric mean over the channels; NaN: not looked at, or not
+  // held out.
+  double heldout_over_noise = std::numeric_limits<double>::quiet_NaN();
 };
 
 // What an effect that was freed is worth: the fall of the held-out cost with it.

@@ -1,9 +1,11 @@
 // What the steps of a tune share: what was asked for, how far it is, what it has cost.
 #pragma once
+#include <limits>
 #include <string>
 #include <vector>
 
 #include "base/stages.h"
+#include "base/stopwatch.h"
 #include "fit/problem.h"
 #include "optimise/ceres_refinement.h"
 #include "optimise/local.h"
@@ -34,6 +36,11 @@ class TuneWatch {
   void done_with(const FitProblem& problem) {
     simulations_ += problem.simulations();
     failed_ += problem.failed_simulations();
+  }
+  // A step in which nothing is minimised: what it has cost since `simulations` had run.
+  void add_step(Stage::Kind kind, long simulations, Stopwatch& clock, const FitProblem& at_work) {
+    const double none = std::numeric_limits<double>::quiet_NaN();
+    stages.push_back({{kind}, StageMethod::none, none, none, this->simulations(at_work) - simulations, 0, clock.lap()});
   }
   void tell(double part, const FitProblem& at_work) { options.watch.tell("tune", part, simulations(at_work)); }
   void mark(Stage stage, const FitProblem& at_work, double cost) {

@@ -208,11 +208,30 @@ TEST(Tune, EveryFitEndsWithCeresAndSaysWhatItGained) {
     EXPECT_TRUE(ends_with_ceres(result, stage)) << static_cast<int>(stage.kind);
   EXPECT_NE(result.ceres.end, CeresEnd::not_run);
   EXPECT_GE(result.ceres.evaluations, 1);
-  EXPECT_EQ(result.ceres.final_cost, result.stages.back().after);
+  const auto last = std::find_if(result.stages.rbegin(), result.stages.rend(),
+                                 [](const StageResult& s) { return s.by == StageMethod::ceres; });
+  EXPECT_EQ(result.ceres.final_cost, last->after);
+}
+
+// All but what stands between the steps: the runs that learn an error model, and those that show what is held out.
+TEST(Tune, ItsStepsAccountForNineTenthsOfItsSimulations) {
+  const TuneResult result = quick_tune(one_free_row());
   long told = 0;
   for (const StageResult& s : result.stages) told += s.simulations;
-  EXPECT_GT(told, 0);
   EXPECT_LE(told, result.simulations);
+  EXPECT_GE(static_cast<double>(told), 0.9 * static_cast<double>(result.simulations));
+  EXPECT_EQ(result.stages.front().stage.kind, Stage::Kind::screening);
+  EXPECT_EQ(result.stages.back().stage.kind, Stage::Kind::errors);
+}
+
+TEST(Tune, EachStepThatHoldsAPartOutSaysHowThatIsMet) {
+  const TuneResult result = quick_tune(one_free_row());
+  for (const Stage::Kind kind : {Stage::Kind::start, Stage::Kind::weights})
+    EXPECT_TRUE(std::any_of(result.stages.begin(), result.stages.end(), [&](const StageResult& s) {
+      return s.stage.kind == kind && std::isfinite(s.heldout_over_noise);
+    })) << static_cast<int>(kind);
+  for (const StageResult& s : result.stages)
+    if (s.stage.kind == Stage::Kind::everything) EXPECT_TRUE(std::isnan(s.heldout_over_noise));
 }
 
 TEST(Tune, AStartIsInTheBestValleyByItsCostOrByItsOwnPromise) {
