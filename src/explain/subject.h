@@ -35,7 +35,8 @@ struct Cause {
   std::string family = "";  // tells apart causes of one name and place: the variable of a learnt curve
   bool curve = false;       // its numbers are a curve's knots: judged by what they gain together
   bool simulated = false;   // of what a block's own balance ties to it: with measured signals it would explain itself
-  // What is likely of its numbers before any data: each row, a weight a number [1/unit], sums to zero give or take one.
+  // What is likely of its numbers before any data: each row, a weight a number [1/unit] times how far it is from off,
+  // sums to zero give or take one.
   std::vector<std::vector<double>> ties = {};
   // Name of the base's numbers that it goes on where they end, a factor on them: its size is then what they are in all.
   std::string atop = "";

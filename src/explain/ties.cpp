@@ -41,7 +41,8 @@ void tie(SubjectFit& fit, const std::vector<Cause>& all, const std::vector<int>&
         const TieRow& row = rows[static_cast<std::size_t>(i)];
         double sum = 0;
         for (std::size_t j = 0; j < row.weights.size(); ++j)
-          sum += row.weights[j] * numbers[row.first + j].from_unit(points[k][row.first + j]);
+          sum += row.weights[j] *
+                 (numbers[row.first + j].from_unit(points[k][row.first + j]) - numbers[row.first + j].off);
         r[r.size() - m + i] = sum;
       }
     }

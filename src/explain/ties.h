@@ -1,5 +1,6 @@
-// What is likely of a cause's numbers before any data, as rows of its fit: each row a weighted sum of them that is zero
-// give or take one. A learnt curve goes on in a straight line by these where no sample holds it.
+// What is likely of a cause's numbers before any data, as rows of its fit: each row a weighted sum of how far they are
+// from off, zero give or take one. A learnt curve goes on in a straight line by these where no sample holds it; a shape
+// that tuning has found stays within its error.
 #pragma once
 #include <vector>
 

@@ -1,6 +1,7 @@
 #include "explain/valve_causes.h"
 
 #include <algorithm>
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -44,10 +45,11 @@ const char* place_of_row(int at) {
   return "flow_a";
 }
 
-// A shape that was found in tuning is this valve's own; let go, it takes on what any other cause does.
-bool was_found_in_tuning(const EffectParameter& p, const Table& table) {
+// A shape that was found in tuning is this valve's own: let go, it takes on what any other cause does, and held, it
+// spoils the cause where tuning has it wrong. So it stays within its error. [unit] None: it was not found.
+std::optional<double> error_from_tuning(const EffectParameter& p, const Table& table) {
   const int at = table.find(p.name);
-  return at >= 0 && table[at].std_error;
+  return at >= 0 && table[at].std_error > 0 ? table[at].std_error : std::nullopt;
 }
 
 // What switches an effect is its size; the others shape it.
@@ -76,13 +78,19 @@ CauseNumber number_along(const RowAlong& along, const Table& table) {
 
 SoughtCause effect_cause(const EffectInfo& e, const CauseFacts& facts) {
   std::vector<CauseNumber> numbers;
-  for (std::size_t j = 0; j < e.parameters.size(); ++j)
-    if (e.parameters[j].switches)
-      numbers.push_back(size_of_effect(e, j, facts));
-    else if (!was_found_in_tuning(e.parameters[j], facts.table))
-      numbers.push_back(shape_of_effect(e, j, facts));
-  if (e.along) numbers.push_back(number_along(*e.along, facts.table));
   Cause cause = named(e.name, e.place, prior_of_effect(e, facts.rig_known));
+  for (std::size_t j = 0; j < e.parameters.size(); ++j) {
+    if (e.parameters[j].switches) {
+      numbers.push_back(size_of_effect(e, j, facts));
+      continue;
+    }
+    numbers.push_back(shape_of_effect(e, j, facts));
+    if (const std::optional<double> error = error_from_tuning(e.parameters[j], facts.table)) {
+      numbers.back().typical.reset();
+      cause.ties.emplace_back(j, 0.0).push_back(1 / *error);
+    }
+  }
+  if (e.along) numbers.push_back(number_along(*e.along, facts.table));
   cause.test = e.best_test;
   return sought(std::move(cause), numbers);
 }

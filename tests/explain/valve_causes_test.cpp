@@ -9,6 +9,7 @@
 #include "effects/armature_angle.h"
 #include "effects/effect.h"
 #include "effects/flow_meter_lag.h"
+#include "effects/magnetic_hysteresis.h"
 #include "effects/mains_pickup.h"
 #include "effects/registry.h"
 #include "effects/stiction.h"
@@ -134,6 +135,20 @@ TEST(ValveCauses, SizesGoOneByOneThenTogetherThenWithATypicalShape) {
     expected.push_back(alternative);
   }
   EXPECT_EQ(probes_of(numbers), expected);
+}
+
+TEST(ValveCauses, AShapeThatTuningHasFoundMayMoveByItsErrorAndOneThatItHasNotFreely) {
+  Shipped s;
+  Row fading;
+  fading.name = "hysteresis_fading", fading.nominal = 0.9, fading.std_error = 0.04;
+  s.table.rows.push_back(fading);
+  s.tuned[static_cast<std::size_t>(effect_row<MagneticHysteresis>(2))] = 0.9;
+  const std::vector<SoughtCause> all = valve_causes(s.facts);
+  const auto hysteresis = std::find_if(all.begin(), all.end(),
+                                       [](const SoughtCause& c) { return c.cause.effect == MagneticHysteresis::name; });
+  ASSERT_NE(hysteresis, all.end());
+  EXPECT_EQ(hysteresis->values.size(), std::size_t{MagneticHysteresis::n_parameters});
+  EXPECT_EQ(hysteresis->cause.ties, (std::vector<std::vector<double>>{{0, 0, 1 / 0.04}}));
 }
 
 }  // namespace
