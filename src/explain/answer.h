@@ -8,6 +8,7 @@
 
 #include "explain/cause_score.h"
 #include "explain/curves.h"
+#include "explain/drive.h"
 #include "explain/engine.h"
 #include "explain/fit_causes.h"
 #include "explain/inquiry.h"
@@ -23,6 +24,8 @@ struct Answer {
   std::string better_place;               // of a curve: where a refused name does better than it; empty: nowhere
   std::unique_ptr<ReplaySubject> blocks;  // null: not asked
   bool told_by_blocks = false;            // `found.causes` were told there, and are held in the free run
+  std::unique_ptr<DriveSubject> drive;    // null: the logs have not both command and coil current
+  FoundCauses of_drive;                   // told between these two
 
   // The first cause is a row or, beside healthy logs, a part of the construction: such takes on what the list lacks.
   bool first_is_rare(const Inquiry& inquiry) const {
@@ -51,5 +54,8 @@ void try_curves(Inquiry& inquiry, Answer& answer);
 // held-out windows, and leaves the blocks as healthy logs do. Where the free run has a name and others as good, it has
 // to be about one of these.
 void ask_blocks(Inquiry& inquiry, Answer& answer);
+// Where the coil current is measured it drives the simulation, which then knows nothing of what the driver does. It is
+// asked by itself, beside the healthy logs.
+void ask_drive(Inquiry& inquiry, Answer& answer);
 
 }  // namespace servodx

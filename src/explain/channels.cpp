@@ -28,7 +28,7 @@ std::size_t position_of(const Series& s, const std::vector<Log>& logs, std::vect
 
 }  // namespace
 
-std::vector<ExplainedChannel> explained_channels(const ValveSubject& subject, const std::vector<Log>& logs,
+std::vector<ExplainedChannel> explained_channels(const Subject& subject, const std::vector<Log>& logs,
                                                  const FoundCauses& found) {
   std::vector<ExplainedChannel> out;
   std::vector<Sum> sums;

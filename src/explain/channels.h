@@ -4,12 +4,12 @@
 
 #include "explain/engine.h"
 #include "explain/explain.h"
-#include "explain/valve.h"
+#include "explain/subject.h"
 #include "servodx/log.h"
 
 namespace servodx {
 
-std::vector<ExplainedChannel> explained_channels(const ValveSubject& subject, const std::vector<Log>& logs,
+std::vector<ExplainedChannel> explained_channels(const Subject& subject, const std::vector<Log>& logs,
                                                  const FoundCauses& found);
 
 }  // namespace servodx

@@ -28,9 +28,9 @@ inline constexpr int quick_iterations = 4;     // of a candidate, the base's der
 inline constexpr int full_iterations = 4;      // after the quick ones, all derivatives anew
 inline constexpr double difference_step = step_through_contacts;  // [of the unit interval] through contacts and
                                                                   // frictions, as in `diagnose`
-inline constexpr double cost_tolerance = 1e-4;  // of the cost: a candidate is compared, not published
-inline constexpr int curve_dampings = 3;        // tried at once: a curve's kernel runs no wide batch, so each costs a
-                                                // run
+inline constexpr double cost_tolerance = 1e-4;                    // of the cost: a candidate is compared, not published
+inline constexpr int curve_dampings = 3;  // tried at once: a curve's kernel runs no wide batch, so each costs a
+                                          // run
 
 // Forward.
 inline constexpr int fitted = 8;               // causes with a name that are fitted, each round
@@ -61,6 +61,18 @@ inline constexpr double most_of_it = 0.5;     // of the held-out misfit: a name 
 // Healthy logs of the suspect's own test from which on they speak alone (explain/kin.cpp): fewer tell a scatter worse
 // than other tests do. Not examined.
 inline constexpr std::size_t enough_kin = 6;
+
+// Between command and coil current (explain/drive.cpp). Not examined.
+namespace drive {
+inline constexpr std::size_t fewest = 100;   // samples of a log that is looked at
+inline constexpr double first_error = 1e-2;  // of the command's span, until the residual is seen
+inline constexpr double least_error = 1e-6;  // of the same: a current that was computed has no noise
+inline constexpr double least_gain = 0.2, most_gain = 5.0;
+inline constexpr double slowest = 2.0, at_once = 5000.0;  // [Hz] of the lag: beyond, no log tells it from none
+// Sizes at which a score looks. Of the delay's typical size, 1 ms; and [Hz].
+inline constexpr double tried_delays[] = {1.0, 0.25, 4.0};
+inline constexpr double tried_bandwidths[] = {200.0, 1000.0, 40.0};
+}  // namespace drive
 
 // What is shown of a residual (explain/show.cpp).
 namespace shown {

@@ -12,10 +12,7 @@
 #include "parameters/list.h"
 
 namespace servodx {
-namespace {
 
-// How a number of a cause scatters over healthy logs. [its unit] 0 where that is not known. `of`: what it is a factor
-// on.
 double healthy_spread(const Subject& subject, const HealthyTest& test, int cause, std::size_t number, double std_error,
                       double of) {
   const Cause& c = subject.causes()[static_cast<std::size_t>(cause)];
@@ -41,6 +38,8 @@ std::string meaning_of(const Cause& c) {
   return {};
 }
 
+namespace {
+
 std::vector<std::string> confusable_with(const Inquiry& q, const CauseResult& r) {
   std::vector<std::string> out;
   for (const int other : r.confusable_with) out.push_back(name_of(q.cause(other)));
@@ -56,11 +55,11 @@ std::string name_of(const Cause& c) { return c.effect + (is_of_sensor(c) ? " at 
 
 ExplainedCause described(const Inquiry& q, const Subject& told_by, const CauseResult& r, const ExplainedFit& fit) {
   const Cause& c = q.cause(r.cause);
-  const bool by_blocks = &told_by != static_cast<const Subject*>(&q.subject());
+  const bool by_simulation = &told_by == static_cast<const Subject*>(&q.subject());
   ExplainedCause out;
   out.effect = c.effect, out.where = c.where, out.test = c.test, out.meaning = meaning_of(c);
   out.heldout_gain = r.heldout_gain, out.beyond_retuning = r.beyond_retuning, out.delta_bic = r.delta_bic;
-  out.by_blocks = by_blocks, out.curve = c.curve;
+  out.told_by = by_simulation ? ToldBy::simulation : ToldBy::blocks, out.curve = c.curve;
   const auto& values = q.subject().values(r.cause);
   for (std::size_t j = 0; j < c.numbers.size(); ++j) {
     double factor = 1;

@@ -6,6 +6,7 @@
 #include "explain/engine.h"
 #include "explain/explain.h"
 #include "explain/fit_causes.h"
+#include "explain/healthy.h"
 #include "explain/inquiry.h"
 #include "explain/subject.h"
 
@@ -18,6 +19,13 @@ std::string name_of(const Cause& cause);
 // are taken at. The error of a number is that of the fit, and what healthy logs scatter.
 ExplainedCause described(const Inquiry& inquiry, const Subject& told_by, const CauseResult& cause,
                          const ExplainedFit& fit);
+// One that was told between command and coil current (explain/ask_drive.cpp).
+ExplainedCause described_of_drive(const Inquiry& inquiry, const Answer& answer, const CauseResult& cause);
+std::string meaning_of(const Cause& cause);
+// How a number of a cause scatters over healthy logs. [its unit] 0 where that is not known. `of`: what it is a factor
+// on.
+double healthy_spread(const Subject& subject, const HealthyTest& test, int cause, std::size_t number, double std_error,
+                      double of = 1);
 // A cause that healthy logs show too was fitted alone.
 ExplainedCause described_standing(const Inquiry& inquiry, const CauseResult& cause);
 

@@ -113,6 +113,7 @@ EndEvidence evidence_of(const Inquiry& q, const Answer& answer, const ExplainRes
   if (e.causes > 0) e.share_of_first = share_of_first(q, answer.found);
   e.curve = answer.curve.has_value();
   e.told_by_blocks = answer.told_by_blocks;
+  e.told_of_drive = !answer.of_drive.causes.empty();
   e.over_noise = over_noise(so_far.channels);
   if (const BlockReplay* worst = worst_block(so_far.blocks)) e.block_misses = missing_part(*worst);
   return e;
@@ -238,6 +239,24 @@ void measure(const Inquiry& q, const Answer& answer, ExplainResult& out) {
         100 * out.heldout_gain.upper));
 }
 
+// First: it is ahead of all else. The table has no row of it, as the measured current drives the simulation.
+void add_drive(const Inquiry& q, const Answer& answer, ExplainResult& out) {
+  if (!answer.drive) return;
+  std::vector<ExplainedCause> causes;
+  for (const CauseResult& r : answer.of_drive.causes) causes.push_back(described_of_drive(q, answer, r));
+  for (const CandidateResult& r : answer.of_drive.candidates) {
+    const Cause& c = answer.drive->causes()[static_cast<std::size_t>(r.cause)];
+    if (!is_taken(r.fate)) continue;
+    out.candidates.insert(out.candidates.begin(), {c.effect, c.where, r.fate, r.predicted_gain, r.p_new, r.fitted,
+                                                   r.heldout_gain, r.share, r.delta_bic});
+  }
+  if (causes.empty()) return;
+  if (out.verdict == ExplainVerdict::extended) out.where = causes.front().where;
+  out.causes.insert(out.causes.begin(), causes.begin(), causes.end());
+  const std::vector<ExplainedChannel> channels = explained_channels(*answer.drive, q.logs(), answer.of_drive);
+  out.channels.insert(out.channels.begin(), channels.begin(), channels.end());
+}
+
 void count_work(const Inquiry& q, ExplainResult& out) {
   out.interrupted = q.options().watch.stopped();
   for (const LoneLog& lone : q.lone())
@@ -258,6 +277,7 @@ ExplainResult explain_logs(const std::vector<Log>& logs, const Table& tuned, con
                      "check that the table is of this rig");
   try_curves(inquiry, answer);
   ask_blocks(inquiry, answer);
+  ask_drive(inquiry, answer);
 
   ExplainResult out;
   out.notes = notes_of_subject(inquiry);
@@ -267,6 +287,7 @@ ExplainResult explain_logs(const std::vector<Log>& logs, const Table& tuned, con
   out.channels = explained_channels(inquiry.subject(), inquiry.logs(), answer.found);
   conclude(inquiry, answer, out);
   measure(inquiry, answer, out);
+  add_drive(inquiry, answer, out);
   count_work(inquiry, out);
   return out;
 }

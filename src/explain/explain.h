@@ -35,7 +35,7 @@ struct ExplainedCause {
   Interval heldout_gain, beyond_retuning;
   double delta_bic = 0;
   std::vector<std::string> confusable_with;
-  bool by_blocks = false;    // told by the blocks' replay, where the free run settles nothing; gain and BIC are of that
+  ToldBy told_by = ToldBy::simulation;
   bool curve = false;        // learnt: its numbers are the knots
   std::string meaning = {};  // as the lists of effects and of rows say it; empty where they do not
 };

@@ -14,6 +14,7 @@
 #include "explain/cause_score.h"
 #include "explain/constants.h"
 #include "explain/curves.h"
+#include "explain/drive.h"
 #include "explain/fit_causes.h"
 #include "explain/hold_out.h"
 #include "explain/kept.h"
@@ -150,6 +151,16 @@ std::vector<HealthyShare> heldout_shares(ValveSubject& subject, const ExplainedF
   return out;
 }
 
+std::vector<HealthyScore> score_drive(const Log& log) {
+  std::vector<HealthyScore> out;
+  DriveSubject drive({log});
+  if (drive.empty()) return out;
+  const ExplainedFit fit = fit_base(drive, EngineOptions{}.iterations);
+  if (!fit.ok) return out;
+  for (const CauseScore& s : score_causes(drive, fit)) out.push_back(summarise(drive, s));
+  return out;
+}
+
 ScoredBlocks score_blocks(const ValveSubject& valve, const Point& at, const KnownRig& known) {
   ScoredBlocks out;
   ReplaySubject blocks(valve, at, known);
@@ -186,7 +197,7 @@ void see_what_is_usual(ValveSubject& subject, HealthyLog& h) {
 }
 
 // Scores, misses and shares of a log, weighed by what is `known` of the rig from the others.
-void score(ValveSubject& subject, const KnownRig& known, HealthyLog& h) {
+void score(ValveSubject& subject, const Log& log, const KnownRig& known, HealthyLog& h) {
   const std::vector<Curve> curves = add_curves(subject);
   const ExplainedFit fit = fit_base(subject, EngineOptions{}.iterations);
   if (!fit.ok) return;
@@ -198,6 +209,7 @@ void score(ValveSubject& subject, const KnownRig& known, HealthyLog& h) {
   ScoredBlocks blocks = score_blocks(subject, fit.point, known);
   h.scores.insert(h.scores.end(), blocks.scores.begin(), blocks.scores.end());
   h.misses.insert(h.misses.end(), blocks.misses.begin(), blocks.misses.end());
+  for (HealthyScore& s : score_drive(log)) h.scores.push_back(std::move(s));
   h.shares = heldout_shares(subject, fit), h.has_shares = true;
 }
 
@@ -208,8 +220,8 @@ class Passes {
          const std::function<bool(double)>& told, HealthyCounts& counts)
       : logs_(logs), tuned_(tuned), rig_(rig), threads_(threads), stages_(stages), told_(told), counts_(counts) {}
 
-  // work(subject, known, h) for each log, from its `so_far` on; `known_of` it from the others. `share`: of all passes,
-  // for the progress. What is not done when the call is stopped is none.
+  // work(subject, log, known, h) for each log, from its `so_far` on; `known_of` it from the others. `share`: of all
+  // passes, for the progress. What is not done when the call is stopped is none.
   template <class KnownOf, class Work>
   std::vector<std::optional<HealthyLog>> pass(const char* what, double share, const std::vector<HealthyLog>& so_far,
                                               const KnownOf& known_of, const Work& work) {
@@ -224,7 +236,7 @@ class Passes {
         Counted<HealthyLog> made{so_far[at]};
         ValveSubject subject({logs_[at]}, tuned_, rig_, threads, known);
         subject.stages = of_it;
-        work(subject, known, made.made);
+        work(subject, logs_[at], known, made.made);
         made.simulations = subject.simulations(), made.failed = subject.failed_simulations();
         return made;
       };
@@ -279,7 +291,7 @@ HealthyReference score_healthy(const std::vector<Log>& own, const Table& tuned, 
   HealthyReference usual, out;
   usual.logs = those_done(passes.pass(
       "usual", 0.2, begun, [](int) { return KnownRig{}; },
-      [](ValveSubject& subject, const KnownRig&, HealthyLog& h) { see_what_is_usual(subject, h); }));
+      [](ValveSubject& subject, const Log&, const KnownRig&, HealthyLog& h) { see_what_is_usual(subject, h); }));
   if (passes.stopped()) return out;
   out.logs = those_done(passes.pass(
       "score", 0.8, usual.logs, [&](int log) { return usual.known(log); }, score));

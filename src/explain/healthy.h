@@ -76,6 +76,8 @@ struct ScoredBlocks {
   std::vector<Miss> misses;
 };
 ScoredBlocks score_blocks(const ValveSubject& valve, const Point& at, const KnownRig& known);
+// What the driver shows of each cause; empty where the log has not both command and coil current.
+std::vector<HealthyScore> score_drive(const Log& log);
 struct HealthyCounts {
   long simulations = 0, failed = 0;
 };

@@ -28,4 +28,11 @@ enum class Fate {
 };
 constexpr bool is_taken(Fate fate) { return fate == Fate::taken || fate == Fate::taken_by_blocks; }
 
+// What shows a cause.
+enum class ToldBy {
+  simulation,
+  blocks,    // the blocks' replay, where the free run settles nothing: gain and BIC are of that
+  currents,  // command and coil current beside each other, ahead of the simulation: the same
+};
+
 }  // namespace servodx

@@ -17,7 +17,7 @@ bool misses_without_name(const EndEvidence& e) {
 
 ExplainVerdict verdict_of(const EndEvidence& e) {
   if (e.curve || misses_without_name(e) || (!e.told_by_blocks && has_no_name(e))) return ExplainVerdict::unexplained;
-  return e.causes > 0 ? ExplainVerdict::extended : ExplainVerdict::sufficient;
+  return e.causes > 0 || e.told_of_drive ? ExplainVerdict::extended : ExplainVerdict::sufficient;
 }
 
 }  // namespace servodx

@@ -14,8 +14,9 @@ struct EndEvidence {
   double share_of_first = 0;  // of the held-out misfit, that the first removes by itself
   bool curve = false;         // one of them is a learnt curve
   bool told_by_blocks = false;
-  double over_noise = 0;    // held-out rms over the sensor's noise, of the worst of spool and pressures
-  double block_misses = 0;  // of what passes through the block that misses most, the part that it misses
+  bool told_of_drive = false;  // a cause ahead of the simulation, which says nothing of it
+  double over_noise = 0;       // held-out rms over the sensor's noise, of the worst of spool and pressures
+  double block_misses = 0;     // of what passes through the block that misses most, the part that it misses
 };
 
 // Left abnormal by names of which the first removes less than half of it: most of what is wrong has no name, and a heap

@@ -111,7 +111,12 @@ std::vector<std::string> reasons(const ExplainResult& r) {
   for (const ExplainedCause& c : r.causes) {
     std::vector<std::string> others;
     for (const std::string& o : c.confusable_with) others.push_back(words(o));
-    if (c.by_blocks)
+    if (c.told_by == ToldBy::currents)
+      why.push_back(
+          sentence(fmt::format("{} was told between the command and the coil current, where it removes {} of what is "
+                               "missed; the simulation is driven by the measured current, and knows nothing of it",
+                               words(c.effect), percent(c.heldout_gain.value))));
+    if (c.told_by == ToldBy::blocks)
       why.push_back(
           sentence(fmt::format("{} was told by the blocks with measured signals between them, where it removes {} of "
                                "what they miss; the simulation alone does not settle it",

@@ -41,7 +41,7 @@ Json to_json(const ExplainedCause& c) {
         {"value", number(p.value)}, {"std_error", number(p.std_error)}, {"unit", p.unit}, {"before", number(p.before)}};
   return {{"effect", c.effect},
           {"where", c.where},
-          {"told_by", c.by_blocks ? "blocks" : "simulation"},
+          {"told_by", word_of(c.told_by)},
           {"parameters", parameters},
           {"heldout_gain", number(c.heldout_gain.value)},
           {"heldout_gain_interval", {number(c.heldout_gain.lower), number(c.heldout_gain.upper)}},
@@ -169,7 +169,7 @@ ChannelFigures in_log_unit(const ExplainedChannel& c, double a, double b, double
 void add_causes(std::string& text, const std::vector<ExplainedCause>& causes) {
   for (const ExplainedCause& c : causes) {
     text += fmt::format("  {} at {}: removes {}{}\n", c.effect, c.where, gain_text(c.heldout_gain),
-                        c.by_blocks ? ", of what the blocks miss with measured signals between them" : "");
+                        words_of_share(c.told_by));
     for (const ExplainedParameter& p : c.parameters) {
       if (c.curve) break;  // its numbers stand as a curve below
       const double half = normal_95_one_sided * p.std_error;

@@ -26,6 +26,30 @@ const char* stamp_of(ExplainVerdict verdict) {
   return "";
 }
 
+const char* word_of(ToldBy told_by) {
+  switch (told_by) {
+    case ToldBy::simulation:
+      return "simulation";
+    case ToldBy::blocks:
+      return "blocks";
+    case ToldBy::currents:
+      return "currents";
+  }
+  return "";
+}
+
+const char* words_of_share(ToldBy told_by) {
+  switch (told_by) {
+    case ToldBy::simulation:
+      return "";
+    case ToldBy::blocks:
+      return ", of what the blocks miss with measured signals between them";
+    case ToldBy::currents:
+      return ", of what lies between the command and the coil current; the measured current drives the simulation";
+  }
+  return "";
+}
+
 const char* words_of(Fate fate) {
   switch (fate) {
     case Fate::not_looked_at:

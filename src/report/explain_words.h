@@ -6,6 +6,8 @@ namespace servodx::report {
 
 const char* word_of(ExplainVerdict verdict);   // as JSON and text say it
 const char* stamp_of(ExplainVerdict verdict);  // as a page opens with it
+const char* word_of(ToldBy told_by);           // as JSON says it
+const char* words_of_share(ToldBy told_by);    // after the share that a cause removes: of what; "" of the misfit
 const char* words_of(Fate fate);               // why a candidate was not taken, or that it was
 
 }  // namespace servodx::report

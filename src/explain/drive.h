@@ -1,0 +1,44 @@
+// Between the command and the coil current, where a log has both: what the driver and the line to it do needs no valve
+// to be told, and the valve's simulation, which the measured current drives, shows nothing of it.
+//
+// Felt = gain times the command as it was a delay ago, behind a first-order lag, and an offset. The command goes in a
+// line from sample to sample. Gain and offset are free in every log: `diagnose` judges them (diagnose/records.h).
+// Leaves out: clipping, dead zones, a lag of second order.
+#pragma once
+#include <span>
+#include <vector>
+
+#include "explain/subject.h"
+#include "servodx/log.h"
+
+namespace servodx {
+
+// The command of a log, sent through a driver. delay, lag [s]; the result begins settled. [A]
+std::vector<double> through_driver(const std::vector<double>& time, const std::vector<double>& command, double delay,
+                                   double lag);
+
+class DriveSubject : public Subject {
+ public:
+  explicit DriveSubject(const std::vector<Log>& logs);
+  DriveSubject(const DriveSubject&) = delete;  // series point into it
+  DriveSubject& operator=(const DriveSubject&) = delete;
+  bool empty() const { return series_.empty(); }  // a log lacks one of the two, or its command stands still
+
+  const std::vector<Cause>& causes() const override { return causes_; }
+  const std::vector<Series>& series() const override { return series_; }
+  SubjectFit fit(const std::vector<int>& causes, bool wide) const override;
+  bool holds() const override { return true; }  // what healthy drivers do is seen on healthy logs
+  bool rescale(const Eigen::VectorXd& residual) override;
+
+ private:
+  struct Pair {  // of a log
+    std::vector<double> time, command, current, sigma;
+    double span = 0;  // [A] of the command
+  };
+  Eigen::VectorXd rows(const Point& x, const std::vector<int>& causes, const std::vector<Number>& numbers) const;
+  std::vector<Pair> pairs_;
+  std::vector<Series> series_;
+  std::vector<Cause> causes_;
+};
+
+}  // namespace servodx
