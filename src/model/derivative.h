@@ -208,7 +208,7 @@ inline __attribute__((always_inline)) auto derivative(const S& s, const In& in, 
 
   // Metering edges. Flows carry direction: pa from supply to A, at from A to return.
   const auto x_m = x_s + hook_metering_opening(view, Effects{});
-  const auto from = from_supply<Effects>(d, u.supply_pressure);
+  const auto from = from_supply<Effects>(d, in.supply_pressure);  // a sag of the supply hardly thins the oil
   const auto to = to_return<Effects>(d, u.return_pressure);
   const auto [q_pa, jet_pa] = metering_edge(x_m - pick<row::lap_pa>(p), from, u.supply_pressure - p_a, d);
   const auto [q_pb, jet_pb] = metering_edge(-x_m - pick<row::lap_pb>(p), from, u.supply_pressure - p_b, d);
