@@ -24,6 +24,7 @@
 #include "servodx/log.h"
 #include "servodx/rig.h"
 #include "servodx/tune.h"
+#include "store/healthy_file.h"
 #include "tune/tune.h"
 
 using namespace servodx;
@@ -84,7 +85,7 @@ int main(int argc, char** argv) {
       for (HealthyLog& l : reference.logs) l.log = std::filesystem::path(l.log).filename();  // they stand beside it
       std::ofstream(reference_path) << report::Json{{"explain", report::healthy_json(reference)}};
     }
-    const HealthyReference reference = report::read_healthy(reference_path);
+    const HealthyReference reference = store::read_healthy(reference_path);
     const auto judge = [&](std::uint64_t s, const std::string& effect) {
       const std::string answer_path =
           fmt::format("{}/answer_v{}_{}_{}{}.json", out, valve, s, effect, remove ? "_removed" : "");

@@ -30,7 +30,6 @@
 #include "report/friction_words.h"
 #include "report/json.h"
 #include "report/pages.h"
-#include "report/result_file.h"
 #include "report/text.h"
 #include "report/two_tests.h"
 #include "servodx/actions.h"
@@ -41,6 +40,8 @@
 #include "servodx/tune.h"
 #include "servodx/watch.h"
 #include "simulate/side_by_side.h"
+#include "store/truth_file.h"
+#include "store/verdict_file.h"
 
 namespace servodx {
 namespace {
@@ -143,11 +144,11 @@ std::string friction_line(const std::optional<FrictionBesideForce>& beside) {
 }
 
 // `now`: of one verdict.
-report::TwoTests since(const std::string& last_path, const report::Json& last, const report::Header& header,
+report::TwoTests since(const std::string& last_path, const store::StoredVerdict& last, const report::Header& header,
                        const report::Json& now) {
   report::Json whole = report::to_json(header);
   whole.update(now);
-  return report::two_tests(last_path, last, whole);
+  return report::two_tests(last_path, last, store::verdict_of(whole));
 }
 
 void require_consistent(const Options& options) {
@@ -170,7 +171,7 @@ void require_consistent(const Options& options) {
 
 std::vector<std::string> truths_beside(const std::vector<Log>& logs) {
   std::vector<std::string> out;
-  for (const Log& log : logs) out.push_back(report::truth_beside(log.path, log.sha256));
+  for (const Log& log : logs) out.push_back(store::truth_beside(log.path, log.sha256));
   return out;
 }
 
@@ -197,9 +198,9 @@ int run(const Options& options) {
     header.inputs.push_back({options.list.actions, sha256_of_file(options.list.actions)});
 
   const auto certificate = invocation.certificate(options.certificate);
-  std::optional<report::Json> last;
+  std::optional<store::StoredVerdict> last;
   if (!options.against.empty()) {
-    last = report::read_one_verdict(options.against);
+    last = store::read_one_verdict(options.against);
     header.inputs.push_back({options.against, sha256_of_file(options.against)});
   }
 

@@ -24,6 +24,7 @@
 #include "build.h"
 #include "manifest.h"
 #include "print_page.h"
+#include "report/certificate_part.h"
 #include "report/columns.h"
 #include "report/going_on.h"
 #include "report/handy.h"
@@ -32,6 +33,7 @@
 #include "servodx/checkpoint.h"
 #include "servodx/rig.h"
 #include "simulate/simulate.h"
+#include "store/logo_file.h"
 
 namespace servodx {
 namespace fs = std::filesystem;
@@ -292,7 +294,7 @@ bool Invocation::dry_run() const {
 RigFile Invocation::rig() {
   if (options_.rig.empty()) return {};
   RigFile rig = read_rig_file(options_.rig);
-  header_.head = report::head_of(rig);
+  header_.head = report::head_of(rig, store::read_logo(rig));
   header_.inputs.push_back({rig.path, rig.sha256});
   return rig;
 }
@@ -303,10 +305,10 @@ Log Invocation::log(const std::string& path, const RigFile& rig, const ReadOptio
   return log;
 }
 
-std::optional<report::Certificate> Invocation::certificate(const std::string& path) {
+std::optional<store::Certificate> Invocation::certificate(const std::string& path) {
   if (path.empty()) return {};
   require_option(!options_.report.empty(), "--certificate", "there is no page to put it on", "add --report FILE.html");
-  report::Certificate sheet = report::read_certificate(path);
+  store::Certificate sheet = store::read_certificate(path);
   header_.inputs.push_back({sheet.path, sheet.sha256});
   report::add_to_head(header_.head, sheet);
   note(sheet.overdue());

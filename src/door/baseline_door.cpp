@@ -17,7 +17,6 @@
 #include "door/baseline_parts.h"
 #include "door/require_setting.h"
 #include "explain/healthy.h"
-#include "report/baseline_file.h"
 #include "report/explain_report.h"
 #include "report/json.h"
 #include "servodx/baseline.h"
@@ -28,6 +27,8 @@
 #include "servodx/trouble.h"
 #include "servodx/tune.h"
 #include "signals/rig_content.h"
+#include "store/baseline_file.h"
+#include "store/healthy_file.h"
 
 namespace servodx {
 namespace {
@@ -119,13 +120,13 @@ Baseline make_baseline(const std::vector<Log>& logs, const Tuned& tuned, const R
 
 Baseline read_baseline(const std::string& path) {
   BaselineParts parts;
-  report::BaselineFile file = report::read_baseline(path);
+  store::BaselineFile file = store::read_baseline(path);
   parts.detection = std::move(file.baseline);
   parts.sha256 = file.sha256;
   parts.rig_file = file.rig_file;
   parts.text = read_file(path);
   try {
-    parts.causes = report::read_healthy(path);
+    parts.causes = store::read_healthy(path);
   } catch (const InputError& refused) {
     if (file.has_causes) throw;  // what is there must be right
     parts.causes_refused = refused;

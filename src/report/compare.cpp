@@ -13,8 +13,8 @@
 #include "report/handy.h"
 #include "report/parts.h"
 #include "report/replay_part.h"
-#include "report/result_file.h"
 #include "report/two_tests.h"
+#include "store/verdict_file.h"
 
 namespace servodx::report {
 namespace {
@@ -137,8 +137,7 @@ void compare_conditions(const Json& a, const Json& b, Comparison& to) {
 
 }  // namespace
 
-Comparison compare(const std::string& path_a, const std::string& path_b) {
-  Json a = read_result(path_a), b = read_result(path_b);
+Comparison compare(const std::string& path_a, Json a, const std::string& path_b, Json b) {
   Comparison c;
   for (const auto& [json, path] : {std::pair(&a, &path_a), std::pair(&b, &path_b)})
     if (auto notice = schema_notice(*json, *path)) c.notes.push_back(std::move(*notice));
@@ -149,7 +148,8 @@ Comparison compare(const std::string& path_a, const std::string& path_b) {
                      fmt::format("is a result of '{}', the other of '{}'", shown(b["command"]), c.command),
                      "compare results of one command");
   compare_conditions(a, b, c);
-  if (holds_one_verdict(a) && holds_one_verdict(b)) c.tests = two_tests(path_a, a, b);
+  if (store::holds_one_verdict(a) && store::holds_one_verdict(b))
+    c.tests = two_tests(path_a, store::verdict_of(a), store::verdict_of(b));
   for (Json* json : {&a, &b})
     for (const char* key : {"tool", "version", "schema", "command", "seed", "settings", "inputs", "seconds", "notes",
                             "simulations", "failed_simulations", "output"})

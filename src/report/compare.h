@@ -28,8 +28,8 @@ struct Comparison {
   std::optional<TwoTests> tests;        // of two verdicts about one log each
 };
 
-// Throws InputError where the files are not results of one command.
-Comparison compare(const std::string& path_a, const std::string& path_b);
+// `a`, `b`: what the files hold (store/result_json.h). Throws InputError where they are not results of one command.
+Comparison compare(const std::string& path_a, Json a, const std::string& path_b, Json b);
 
 std::string text_of(const Comparison& comparison);
 Json compare_json(const Comparison& comparison);

@@ -14,18 +14,16 @@
 #include "report/page_head.h"
 #include "report/parts.h"
 #include "servodx/log.h"
+#include "store/baseline_keys.h"
 
 namespace servodx::report {
 namespace {
 
 struct Words {
-  const char *word, *name, *unit;
+  const char *name, *unit;
 };
-constexpr std::array<Words, n_conditions> words_of = {{{"supply_pressure", "supply", "Pa"},
-                                                       {"return_pressure", "return", "Pa"},
-                                                       {"oil_temperature", "oil", "K"},
-                                                       {"load_force", "load up to", "N"},
-                                                       {"drive", "drive up to", "A"}}};
+constexpr std::array<Words, n_conditions> words_of = {
+    {{"supply", "Pa"}, {"return", "Pa"}, {"oil", "K"}, {"load up to", "N"}, {"drive up to", "A"}}};
 const Words& of(Condition c) { return words_of[static_cast<std::size_t>(c)]; }
 
 std::string size(Condition c, const std::optional<double>& x) {
@@ -54,8 +52,6 @@ std::string known_of(const ConditionRow& r) {
 
 }  // namespace
 
-std::string word_of(Condition condition) { return of(condition).word; }
-
 std::string conditions_in_words(const std::vector<ConditionRow>& rows) {
   std::vector<std::string> out;
   for (const ConditionRow& r : rows)
@@ -81,7 +77,7 @@ Json conditions_json(const std::vector<ConditionRow>& rows) {
   Json out = Json::array();
   const auto value = [](const std::optional<double>& x) { return x ? number(*x) : Json(nullptr); };
   for (const ConditionRow& r : rows)
-    out.push_back({{"condition", word_of(r.of)},
+    out.push_back({{"condition", store::key_of(r.of)},
                    {"unit", of(r.of).unit},
                    {"value", value(r.value)},
                    {"sheet", value(r.sheet)},

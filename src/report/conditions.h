@@ -7,13 +7,12 @@
 #include "evidence/operating_point.h"
 #include "report/json.h"
 #include "report/page.h"
+#include "report/page_head.h"
 #include "servodx/log.h"
 #include "signals/signal.h"
-#include "report/page_head.h"
 
 namespace servodx::report {
 
-std::string word_of(Condition condition);  // supply_pressure | return_pressure | oil_temperature | load_force | drive
 // "supply 139 bar, oil 41 degC, drive up to 9.2 mA": what the log holds.
 std::string conditions_in_words(const std::vector<ConditionRow>& rows);
 // "load up to 7.48 kN (fault-free logs 24 N to 4.58 kN)": what is beyond; empty where nothing is.

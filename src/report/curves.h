@@ -4,7 +4,7 @@
 
 #include "curves/curves.h"
 #include "fit/sheet.h"
-#include "report/certificate.h"
+#include "report/certificate_part.h"
 #include "report/json.h"
 #include "report/page.h"
 

@@ -9,7 +9,7 @@
 #include "curves/curves.h"
 #include "curves/frequency_response.h"
 #include "fit/sheet.h"
-#include "report/certificate.h"
+#include "report/certificate_part.h"
 #include "report/curves.h"
 #include "report/data_sheet.h"
 #include "report/handy.h"

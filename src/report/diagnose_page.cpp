@@ -20,7 +20,7 @@
 #include "fit/replay.h"
 #include "report/bode_part.h"
 #include "report/call_names.h"
-#include "report/certificate.h"
+#include "report/certificate_part.h"
 #include "report/columns.h"
 #include "report/conditions.h"
 #include "report/curves.h"
@@ -35,6 +35,7 @@
 #include "report/replay_part.h"
 #include "report/two_tests.h"
 #include "servodx/actions.h"
+#include "store/certificate_file.h"
 
 namespace servodx::report {
 namespace {
@@ -236,9 +237,9 @@ void add_details(Page& page, const Diagnosis& d, const std::vector<Replay>& repl
 }
 
 // Where the log was recorded, each with the uncertainty of the instrument that the sheet names for it.
-void certify_conditions(std::vector<CertifiedFigure>& figures, const Diagnosis& d, const Certificate& sheet) {
+void certify_conditions(std::vector<CertifiedFigure>& figures, const Diagnosis& d, const store::Certificate& sheet) {
   for (const ConditionFigure& c : condition_figures(d.conditions)) {
-    const Instrument* instrument = c.signal ? sheet.of(*c.signal) : nullptr;
+    const store::Instrument* instrument = c.signal ? sheet.of(*c.signal) : nullptr;
     figures.push_back({c.name, c.value, instrument ? instrument->uncertainty : "", "", "", Tone::plain});
   }
 }
@@ -247,7 +248,7 @@ constexpr int null_row = 41;  // id of servovalve_null, as every table has it
 
 void certify(Page& page, const Diagnosis& d, const DetectionBaseline& baseline, const Header& header,
              const CertificateOf& certificate) {
-  const Certificate& sheet = *certificate.sheet;
+  const store::Certificate& sheet = *certificate.sheet;
   std::vector<CertifiedFigure> figures = {
       {"error", digits(d.error) + " deviates", "", "below " + digits(d.threshold), word_of(d.verdict), tone_of(d)}};
   for (const NamedFault& f : d.faults)

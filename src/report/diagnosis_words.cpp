@@ -360,12 +360,6 @@ std::string size_words(const Diagnosis& d) {
   return handy_interval(d.severity.value, d.severity.lower, d.severity.upper, unit_of(d.fault));
 }
 
-std::string words_of(FigureKind kind) {
-  constexpr std::array<const char*, n_figure_kinds> names = {
-      "supply_level", "supply_step", "supply_left", "driver_gain", "driver_offset", "driver_left", "sensor_noise"};
-  return names[static_cast<std::size_t>(kind)];
-}
-
 std::string record_in_words(const RecordFinding& f) {
   if (f.broken) {
     const std::string sensor = words(std::string(name_of(f.signal)));

@@ -64,7 +64,6 @@ std::string size_words(const HypothesisResult& hypothesis);
 std::string size_words(const Diagnosis& d);  // of the fault named; "" without a size
 
 // What a record tells: "the supply pressure is 0.75 of what healthy logs have", "pressure_a shows one value ...".
-std::string words_of(FigureKind kind);  // for files: "supply_level"
 std::string record_in_words(const RecordFinding& finding);
 // The sensor that is meant; "" where no one is.
 std::string channel_of(const NamedFault& fault);

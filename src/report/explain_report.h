@@ -24,7 +24,5 @@ std::string text_of(const ExplainResult& result, const TextOptions& options);
 
 // The part of a baseline file that `explain` reads, under the key "explain".
 Json healthy_json(const HealthyReference& healthy);
-// Throws InputError where the file has none.
-HealthyReference read_healthy(const std::string& path);
 
 }  // namespace servodx::report

@@ -25,6 +25,7 @@
 #include "report/tune_words.h"
 #include "servodx/log.h"
 #include "servodx/tune.h"
+#include "store/baseline_keys.h"
 
 namespace servodx::report {
 namespace {
@@ -164,11 +165,11 @@ Json to_json(const DetectionBaseline::Score& s) {
   Json figures = Json::array();
   for (const RecordFigure& f : s.figures)
     figures.push_back(
-        {{"figure", words_of(f.kind)}, {"signal", std::string(name_of(f.signal))}, {"value", number(f.value)}});
+        {{"figure", store::key_of(f.kind)}, {"signal", std::string(name_of(f.signal))}, {"value", number(f.value)}});
   out["figures"] = std::move(figures);
   Json point = Json::object();
   for (std::size_t i = 0; i < s.point.size(); ++i)
-    if (s.point[i]) point[report::word_of(static_cast<Condition>(i))] = number(*s.point[i]);
+    if (s.point[i]) point[store::key_of(static_cast<Condition>(i))] = number(*s.point[i]);
   out["operating_point"] = std::move(point);
   return out;
 }
@@ -269,7 +270,7 @@ Json records_json(const Diagnosis& d) {
   Json out = Json::array();
   for (const RecordFinding& f : d.records)
     out.push_back({{"fault", label_of(f.fault)},
-                   {"figure", f.figure ? Json(words_of(*f.figure)) : Json(nullptr)},
+                   {"figure", f.figure ? Json(store::key_of(*f.figure)) : Json(nullptr)},
                    {"signal", std::string(name_of(f.signal))},
                    {"value", number(f.value)},
                    {"usual", number(f.usual)},

@@ -17,7 +17,7 @@ struct PageHead {
   void say(const std::string& name, const std::string& value);
 };
 
-// Of a rig file: name, serial, oil, supply, and its section [page]. Throws InputError where the logo is no picture.
-PageHead head_of(const RigFile& rig);
+// Of a rig file: name, serial, oil, supply, and its section [page]; `logo`: the picture it names (store/logo_file.h).
+PageHead head_of(const RigFile& rig, std::string logo);
 
 }  // namespace servodx::report

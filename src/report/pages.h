@@ -9,7 +9,7 @@
 #include "diagnose/judge.h"
 #include "fit/bode.h"
 #include "fit/replay.h"
-#include "report/certificate.h"
+#include "report/certificate_part.h"
 #include "report/json.h"
 #include "report/page.h"
 #include "report/tune_words.h"
@@ -36,8 +36,5 @@ Page baseline_page(const Header& header, const DetectionBaseline& baseline, cons
 Page diagnose_page(const Header& header, const std::vector<Diagnosis>& results, const DetectionBaseline& baseline,
                    const std::vector<Replay>& replays, const std::vector<std::string>& truths = {},
                    const CertificateOf& certificate = {}, const BesideVerdict& beside = {});
-
-// The label in LOG.truth.json beside a log of the virtual rig whose bytes it speaks of; "" without.
-std::string truth_beside(const std::string& log, const std::string& sha256);
 
 }  // namespace servodx::report

@@ -5,52 +5,28 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <filesystem>
 #include <map>
-#include <set>
 #include <string_view>
-#include <utility>
 
 #include "base/celsius.h"
-#include "base/json_text.h"
 #include "faults/fault.h"
 #include "faults/registry.h"
 #include "fit/row_meaning.h"
 #include "report/columns.h"
 #include "report/handy.h"
 #include "report/replay_part.h"
+#include "store/verdict_file.h"
 
 namespace servodx::report {
+
+using store::StoredVerdict;
+using store::TestPlace;
+using store::TestRow;
+using store::TestSide;
+
 namespace {
 
 constexpr double certain_sigmas = 3.0;  // as `compare` has it
-
-double number_or_nan(const Json& object, const char* key) {
-  const auto at = object.find(key);
-  return at != object.end() && at->is_number() ? at->get<double>() : std::nan("");
-}
-
-const Json& array_or_empty(const Json& object, const char* key) {
-  static const Json none = Json::array();
-  const auto at = object.find(key);
-  return at != object.end() && at->is_array() ? *at : none;
-}
-
-// What judged a log, by hash: all that was read but the logs and what only words come from (rig file, sheet, actions).
-std::set<std::string> reference_of(const Json& result) {
-  std::set<std::string> logs, out;
-  const auto settings = result.find("settings");
-  if (settings != result.end()) logs.insert(text_or_empty(*settings, "against"));  // judges nothing
-  for (const Json& verdict : array_or_empty(result, "results"))
-    for (const Json& log : array_or_empty(verdict, "logs"))
-      if (log.is_string()) logs.insert(log.get<std::string>());
-  for (const Json& file : array_or_empty(result, "inputs")) {
-    const std::string path = text_or_empty(file, "path");
-    if (!logs.contains(path) && std::filesystem::path(path).extension() != ".toml")
-      out.insert(text_or_empty(file, "sha256"));
-  }
-  return out;
-}
 
 // A row that a side left alone is at its nominal value there, without an error.
 std::vector<TwoTests::Row> rows_of(const TestSide& last, const TestSide& now, bool same_reference) {
@@ -133,27 +109,6 @@ std::string word_of(TestChange change) {
 
 }  // namespace
 
-TestSide side_of(const Json& verdict) {
-  TestSide side;
-  side.log = text_or_empty(verdict, "log");
-  side.verdict = text_or_empty(verdict, "verdict");
-  side.fault = text_or_empty(verdict, "fault");
-  side.error = number_or_nan(verdict, "error");
-  side.threshold = number_or_nan(verdict, "threshold");
-  side.null = number_or_nan(verdict, "null");
-  const auto size = verdict.find("severity");
-  if (!side.fault.empty() && size != verdict.end() && size->is_object() && std::isfinite(number_or_nan(*size, "value")))
-    side.size = TestSize{number_or_nan(*size, "value"), number_or_nan(*size, "lower"), number_or_nan(*size, "upper"),
-                         text_or_empty(*size, "unit")};
-  for (const Json& row : array_or_empty(verdict, "parameters"))
-    side.rows.push_back({text_or_empty(row, "name"), text_or_empty(row, "unit"), number_or_nan(row, "nominal"),
-                         number_or_nan(row, "estimate"), number_or_nan(row, "std_error")});
-  for (const Json& place : array_or_empty(verdict, "operating_point"))
-    if (const double value = number_or_nan(place, "value"); std::isfinite(value))
-      side.places.push_back({text_or_empty(place, "condition"), text_or_empty(place, "unit"), value});
-  return side;
-}
-
 TestChange change_of(const TestSide& last, const TestSide& now) {
   const std::string healthy = "healthy";
   if (last.name() == healthy || now.name() == healthy)
@@ -169,12 +124,12 @@ TestChange change_of(const TestSide& last, const TestSide& now) {
   return above == worse_upwards ? TestChange::grown : TestChange::lessened;
 }
 
-TwoTests two_tests(const std::string& last_path, const Json& last, const Json& now) {
+TwoTests two_tests(const std::string& last_path, const StoredVerdict& last, const StoredVerdict& now) {
   TwoTests t;
   t.last_name = last_path;
-  t.last = side_of(last["results"].front()), t.now = side_of(now["results"].front());
+  t.last = last.side, t.now = now.side;
   t.change = change_of(t.last, t.now);
-  t.same_reference = reference_of(last) == reference_of(now);
+  t.same_reference = last.reference == now.reference;
   t.rows = rows_of(t.last, t.now, t.same_reference);
   return t;
 }

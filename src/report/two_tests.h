@@ -1,16 +1,16 @@
 // Two verdicts about one valve beside each other: what has become of it since its last test.
 //
-// Both come as `diagnose` wrote them, so a last test that an earlier version judged serves too. A row that one of the
-// two hypotheses left alone stands there at its tuned value, without an error of its own: true where both were judged
-// by one table, and left out where they were not.
+// Both come as `diagnose` wrote them (store/verdict_file.h), so a last test that an earlier version judged serves too.
+// A row that one of the two hypotheses left alone stands there at its tuned value, without an error of its own: true
+// where both were judged by one table, and left out where they were not.
 #pragma once
-#include <optional>
 #include <string>
 #include <vector>
 
 #include "report/json.h"
 #include "report/page.h"
 #include "report/parts.h"
+#include "store/verdict_file.h"
 
 namespace servodx::report {
 
@@ -18,41 +18,12 @@ namespace servodx::report {
 // lessened: the same fault. another: another fault, or an unknown state in place of one.
 enum class TestChange { alike, failed, mended, grown, lessened, another };
 
-struct TestSize {
-  double value = 0, lower = 0, upper = 0;  // [unit] 95 %
-  std::string unit;
-};
-
-struct TestRow {
-  std::string name, unit;
-  double nominal = 0, estimate = 0, std_error = 0;  // [unit] NaN: no error is known
-};
-
-// A place where a test was recorded: "supply_pressure", [unit].
-struct TestPlace {
-  std::string condition, unit;
-  double value = 0;
-};
-
-// What a verdict says, as its file holds it.
-struct TestSide {
-  std::string log, verdict, fault;  // fault: empty where none is named
-  double error = 0, threshold = 0, null = 0;
-  std::optional<TestSize> size;
-  std::vector<TestRow> rows;
-  std::vector<TestPlace> places;
-
-  const std::string& name() const { return fault.empty() ? verdict : fault; }
-};
-
-TestSide side_of(const Json& verdict);
-
 // Two 95 % intervals that do not touch differ with over 99 %; a size without an interval is as it was.
-TestChange change_of(const TestSide& last, const TestSide& now);
+TestChange change_of(const store::TestSide& last, const store::TestSide& now);
 
 struct TwoTests {
   std::string last_name;  // of the result
-  TestSide last, now;
+  store::TestSide last, now;
   TestChange change = TestChange::alike;
   bool same_reference = true;  // judged by the same table and baseline
   struct Row {
@@ -64,8 +35,8 @@ struct TwoTests {
   std::vector<Row> rows;  // those that moved most first
 };
 
-// The files of two results of `diagnose`, of one log each.
-TwoTests two_tests(const std::string& last_path, const Json& last, const Json& now);
+// `last_path`: the result that holds the last one.
+TwoTests two_tests(const std::string& last_path, const store::StoredVerdict& last, const store::StoredVerdict& now);
 
 std::string words_of(const TwoTests& tests);    // "new: the last test was healthy"
 std::string finding_of(const TwoTests& tests);  // "sticky spool, 5.2 times the tuned friction; new: ..."

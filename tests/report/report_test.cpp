@@ -26,7 +26,6 @@
 #include "prognose/life.h"
 #include "prognose/trend.h"
 #include "prognose/trend_state.h"
-#include "report/baseline_file.h"
 #include "report/call_names.h"
 #include "report/check_log.h"
 #include "report/columns.h"
@@ -46,6 +45,8 @@
 #include "servodx/log.h"
 #include "servodx/table.h"
 #include "servodx/tune.h"
+#include "store/baseline_file.h"
+#include "store/truth_file.h"
 #include "temporary_folder.h"
 #include "tune/tune.h"
 
@@ -467,7 +468,8 @@ TEST(BaselineFile, ReadsBackToTheSameBits) {
   const DetectionBaseline b = some_baseline();
   Header header;
   header.command = "baseline";
-  const DetectionBaseline back = read_baseline(folder.write("base.json", dump(header, baseline_json(b)))).baseline;
+  const DetectionBaseline back =
+      store::read_baseline(folder.write("base.json", dump(header, baseline_json(b)))).baseline;
   EXPECT_EQ(back.threshold, b.threshold);
   EXPECT_EQ(back.asked, b.asked);
   EXPECT_EQ(back.promised, b.promised);
@@ -493,7 +495,7 @@ TEST(Truth, OfOtherTypesIsRefusedByKey) {
   const auto told = [&](const std::string& text) -> std::string {
     folder.write("log.truth.json", text);
     try {
-      return truth_beside(folder / "log.csv", "1");
+      return store::truth_beside(folder / "log.csv", "1");
     } catch (const InputError& error) {
       return error.rule;
     }
@@ -512,7 +514,7 @@ TEST(BaselineFile, RefusalsNameFileKeyAndMend) {
   const Json good = Json::parse(dump(header, baseline_json(some_baseline())));
   const auto refusal = [&](const std::string& text) -> std::string {
     try {
-      read_baseline(folder.write("base.json", text));
+      store::read_baseline(folder.write("base.json", text));
     } catch (const InputError& error) {
       return std::string(error.what()).substr((folder / "").size());
     }

@@ -1,3 +1,6 @@
+#include "store/certificate_file.h"
+
+#include <fmt/format.h>
 #include <toml++/toml.h>
 
 #include <algorithm>
@@ -13,13 +16,10 @@
 #include "base/trouble.h"
 #include "base/units.h"
 #include "curves/curves.h"
-#include "report/certificate.h"
-#include "report/columns.h"
-#include "report/handy.h"
 #include "servodx/error.h"
 #include "servodx/log.h"
 
-namespace servodx::report {
+namespace servodx::store {
 namespace {
 
 bool is_date(const std::string& text) {
@@ -68,7 +68,8 @@ class CertificateReader {
   [[noreturn]] void refuse_key(const toml::node& node, const std::string& key, const std::string& name,
                                const std::vector<std::string>& known) const {
     const InputError error =
-        key_error(at(node, key), "unknown key", did_you_mean(name, known) + "known here: " + join(known));
+        key_error(at(node, key), "unknown key",
+                  fmt::format("{}known here: {}", did_you_mean(name, known), fmt::join(known, ", ")));
     throw DocumentedError(Trouble::key, error.where, error.rule, error.mend);
   }
 
@@ -194,4 +195,4 @@ Certificate read_certificate(const std::string& path) {
   }
 }
 
-}  // namespace servodx::report
+}  // namespace servodx::store

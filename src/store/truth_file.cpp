@@ -1,21 +1,21 @@
-// The truth that the virtual rig writes beside a log.
+#include "store/truth_file.h"
+
 #include <filesystem>
+#include <nlohmann/json.hpp>
 #include <string>
 #include <system_error>
 
 #include "base/csv.h"
 #include "base/json_text.h"
 #include "base/key_error.h"
-#include "report/json.h"
-#include "report/pages.h"
 
-namespace servodx::report {
+namespace servodx::store {
 
 std::string truth_beside(const std::string& log, const std::string& sha256) {
   const std::string path = log.substr(0, log.rfind('.')) + ".truth.json";
   std::error_code ignored;
   if (!std::filesystem::is_regular_file(path, ignored)) return "";
-  const Json truth = json_or_discarded<Json>(read_file(path));
+  const auto truth = json_or_discarded<nlohmann::ordered_json>(read_file(path));
   const auto text = [&](const char* key) -> std::string {
     if (!truth.is_object() || !truth.contains(key)) return "";
     if (!truth[key].is_string())
@@ -25,4 +25,4 @@ std::string truth_beside(const std::string& log, const std::string& sha256) {
   return text("sha256") == sha256 ? text("label") : "";
 }
 
-}  // namespace servodx::report
+}  // namespace servodx::store

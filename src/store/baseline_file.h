@@ -5,9 +5,8 @@
 
 #include "diagnose/baseline.h"
 #include "diagnose/diagnose.h"
-#include "report/json.h"
 
-namespace servodx::report {
+namespace servodx::store {
 
 struct BaselineFile {
   DetectionBaseline baseline;
@@ -20,4 +19,4 @@ struct BaselineFile {
 // Throws InputError naming the file, the key, the rule and the mend.
 BaselineFile read_baseline(const std::string& path);
 
-}  // namespace servodx::report
+}  // namespace servodx::store

@@ -6,14 +6,10 @@
 #include <vector>
 
 #include "curves/curves.h"
-#include "report/json.h"
-#include "report/page.h"
-#include "report/page_head.h"
-#include "report/parts.h"
 #include "servodx/log.h"
 #include "signals/signal.h"
 
-namespace servodx::report {
+namespace servodx::store {
 
 struct Instrument {
   std::string name, serial;
@@ -35,27 +31,7 @@ struct Certificate {
   std::vector<std::string> overdue() const;   // in words
 };
 
-// A certificate that is asked for, and the manifest by which its result is made again.
-struct CertificateOf {
-  const Certificate* sheet = nullptr;  // null: none
-  std::string manifest;
-};
-
 // Throws InputError with file, line, key, rule and mend.
 Certificate read_certificate(const std::string& path);
 
-// Customer, date and number into the page's head.
-void add_to_head(PageHead& head, const Certificate& certificate);
-
-// What is certified, a figure a row.
-struct CertifiedFigure {
-  std::string name, value, uncertainty, limit;
-  std::string judgement = {};
-  Tone tone = Tone::plain;
-};
-
-// The section of the page: figures, rule, instruments, inputs by their hash, and the call that makes it again.
-void add_certificate(Page& page, const CertificateOf& certificate, const Header& header,
-                     const std::vector<CertifiedFigure>& figures, const std::string& rule);
-
-}  // namespace servodx::report
+}  // namespace servodx::store

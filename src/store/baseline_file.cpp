@@ -1,9 +1,10 @@
-#include "report/baseline_file.h"
+#include "store/baseline_file.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
+#include <nlohmann/json.hpp>
 
 #include "base/csv.h"
 #include "base/json_text.h"
@@ -16,13 +17,14 @@
 #include "evidence/operating_point.h"
 #include "faults/fault.h"
 #include "faults/registry.h"
-#include "report/conditions.h"
-#include "report/diagnosis_words.h"
 #include "servodx/error.h"
 #include "servodx/log.h"
+#include "store/baseline_keys.h"
 
-namespace servodx::report {
+namespace servodx::store {
 namespace {
+
+using Json = nlohmann::ordered_json;
 
 constexpr const char* make_again = "make it again with 'servodx baseline'";
 
@@ -92,14 +94,14 @@ OperatingPoint read_point(const Reader& read, const Json& point) {
   if (!point.is_object()) read.refuse("scores.operating_point", "is no object");
   OperatingPoint out;
   for (std::size_t i = 0; i < out.size(); ++i)
-    if (const std::string word = word_of(static_cast<Condition>(i)); point.contains(word))
-      out[i] = read.number(point, "scores.operating_point." + word, -HUGE_VAL, HUGE_VAL);
+    if (const std::string key = key_of(static_cast<Condition>(i)); point.contains(key))
+      out[i] = read.number(point, "scores.operating_point." + key, -HUGE_VAL, HUGE_VAL);
   return out;
 }
 
-std::optional<FigureKind> find_figure(const std::string& word) {
+std::optional<FigureKind> find_figure(const std::string& key) {
   for (int k = 0; k < n_figure_kinds; ++k)
-    if (words_of(static_cast<FigureKind>(k)) == word) return static_cast<FigureKind>(k);
+    if (key_of(static_cast<FigureKind>(k)) == key) return static_cast<FigureKind>(k);
   return {};
 }
 
@@ -179,4 +181,4 @@ BaselineFile read_baseline(const std::string& path) {
   return {std::move(b), sha256(bytes), std::move(notes), rig_of(file), file.contains("explain")};
 }
 
-}  // namespace servodx::report
+}  // namespace servodx::store
