@@ -1,8 +1,8 @@
 // Two results beside each other, parted by a byte of zero.
-#include "report/compare.h"
+#include "report/compare/compare.h"
 
 #include "harness.h"
-#include "report/json.h"
+#include "report/shared/json.h"
 #include "store/result_json.h"
 
 namespace servodx::fuzz {

@@ -10,7 +10,7 @@
 #include "evidence/operating_point.h"
 #include "fit/tuned_state.h"
 #include "invocation.h"
-#include "report/check_log.h"
+#include "report/check_log/check_log.h"
 #include "servodx/error.h"
 #include "servodx/log.h"
 #include "servodx/rig.h"

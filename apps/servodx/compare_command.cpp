@@ -5,7 +5,7 @@
 #include "base/sha256.h"
 #include "commands.h"
 #include "invocation.h"
-#include "report/compare.h"
+#include "report/compare/compare.h"
 #include "store/result_json.h"
 
 namespace servodx {

@@ -12,7 +12,8 @@
 #include "fleet/fleet_verdict.h"
 #include "fleet/result_file.h"
 #include "list_run.h"
-#include "report/fleet.h"
+#include "report/diagnose/diagnosis_json.h"
+#include "report/fleet/fleet.h"
 #include "servodx/log.h"
 
 namespace servodx {

@@ -10,8 +10,8 @@
 #include "fleet/confusion.h"
 #include "fleet/gather.h"
 #include "invocation.h"
-#include "report/fleet.h"
-#include "report/json.h"
+#include "report/fleet/fleet.h"
+#include "report/shared/json.h"
 
 namespace servodx {
 namespace {

@@ -16,8 +16,8 @@
 #include "commands.h"
 #include "invocation.h"
 #include "prognose/valve_history.h"
-#include "report/columns.h"
-#include "report/json.h"
+#include "report/shared/columns.h"
+#include "report/shared/json.h"
 #include "store/history.h"
 #include "store/history_csv.h"
 

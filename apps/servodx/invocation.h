@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "parameters/table.h"
-#include "report/json.h"
-#include "report/page.h"
+#include "report/shared/json.h"
+#include "report/shared/page.h"
 #include "servodx/rig.h"
 #include "servodx/tune.h"
 #include "servodx/watch.h"

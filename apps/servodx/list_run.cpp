@@ -6,7 +6,7 @@
 
 #include "base/error.h"
 #include "base/trouble.h"
-#include "report/fleet.h"
+#include "report/fleet/fleet.h"
 #include "servodx/log.h"
 
 namespace servodx {

@@ -27,8 +27,8 @@
 #include "invocation.h"
 #include "manifest.h"
 #include "read_manifest.h"
-#include "report/columns.h"
-#include "report/json.h"
+#include "report/shared/columns.h"
+#include "report/shared/json.h"
 #include "simulate/simulate.h"
 
 namespace servodx {

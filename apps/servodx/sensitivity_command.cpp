@@ -5,7 +5,7 @@
 #include "commands.h"
 #include "fit/nominal.h"
 #include "invocation.h"
-#include "report/sensitivity.h"
+#include "report/sensitivity/sensitivity.h"
 #include "servodx/log.h"
 #include "servodx/rig.h"
 #include "servodx/table.h"

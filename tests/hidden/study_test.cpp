@@ -9,7 +9,7 @@
 #include "explain/outcome.h"
 #include "hidden/cases.h"
 #include "parameters/table.h"
-#include "report/explain_words.h"
+#include "report/explain/explain_words.h"
 #include "servodx/explain.h"
 #include "servodx/log.h"
 #include "servodx/rig.h"

@@ -123,8 +123,8 @@ def registry_names():
 WRITTEN = {
     "src/effects/row_effects.cpp": ({"stiction", "hose_compliance", "cross_piston_leakage"},
                                     "their own file: two are called as their row, one joins an effect's test"),
-    "src/report/explain_report.cpp": ({"air_fraction"}, "a key of a baseline's file, whatever the row is called"),
-    "src/report/explain_words.cpp": ({"unexplained"}, "a verdict's word, not the effect's"),
+    "src/report/explain/explain_report.cpp": ({"air_fraction"}, "a key of a baseline's file, whatever the row is called"),
+    "src/report/explain/explain_words.cpp": ({"unexplained"}, "a verdict's word, not the effect's"),
     "src/signals/signal.cpp": ({"supply_pressure", "return_pressure"}, "these two signals are called as their rows"),
     "src/store/baseline_keys.cpp": ({"supply_pressure", "return_pressure"},
                                     "conditions of a log, called as the signals"),

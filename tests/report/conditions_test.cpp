@@ -1,4 +1,4 @@
-#include "report/conditions.h"
+#include "report/shared/conditions.h"
 
 #include <gtest/gtest.h>
 
@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "evidence/operating_point.h"
-#include "report/json.h"
-#include "report/page.h"
+#include "report/shared/json.h"
+#include "report/shared/page.h"
 
 namespace servodx::report {
 namespace {

@@ -1,5 +1,5 @@
 // A sticking spool's friction beside what leakage can press a land with, as a person and a program read it.
-#include "report/friction_words.h"
+#include "report/diagnose/friction_words.h"
 
 #include <gtest/gtest.h>
 
@@ -9,9 +9,9 @@
 #include "diagnose/judge.h"
 #include "diagnose/lateral_force.h"
 #include "faults/registry.h"
-#include "report/json.h"
-#include "report/page.h"
-#include "report/pages.h"
+#include "report/diagnose/diagnose_page.h"
+#include "report/shared/json.h"
+#include "report/shared/page.h"
 
 namespace servodx::report {
 namespace {

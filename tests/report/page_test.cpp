@@ -1,5 +1,5 @@
 // A page's text is escaped, its data cannot end their element, and no peak is lost to thinning.
-#include "report/page.h"
+#include "report/shared/page.h"
 
 #include <gtest/gtest.h>
 
@@ -7,10 +7,10 @@
 #include <cmath>
 #include <limits>
 
-#include "report/html.h"
-#include "report/json.h"
-#include "report/parts.h"
-#include "report/thin.h"
+#include "report/shared/html.h"
+#include "report/shared/json.h"
+#include "report/shared/parts.h"
+#include "report/shared/thin.h"
 
 namespace servodx::report {
 namespace {

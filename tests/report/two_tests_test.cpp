@@ -1,5 +1,5 @@
 // A verdict beside the last one of the valve: what is said to have changed, by made-up verdicts.
-#include "report/two_tests.h"
+#include "report/diagnose/two_tests.h"
 
 #include <gtest/gtest.h>
 
@@ -7,8 +7,8 @@
 #include <string>
 
 #include "base/error.h"
-#include "report/json.h"
-#include "report/page.h"
+#include "report/shared/json.h"
+#include "report/shared/page.h"
 #include "store/verdict_file.h"
 #include "temporary_folder.h"
 
