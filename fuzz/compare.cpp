@@ -1,6 +1,8 @@
 // Two results beside each other, parted by a byte of zero.
 #include "report/compare/compare.h"
 
+#include <nlohmann/json.hpp>
+
 #include "harness.h"
 #include "report/shared/json.h"
 #include "store/result_json.h"

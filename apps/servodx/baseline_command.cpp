@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <memory>
+#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
@@ -64,7 +65,7 @@ int run(const Options& options) {
   how.others = invocation.logs(others, rig);
 
   report::Header& header = invocation.header();
-  header.settings = {{"false_alarm", options.false_alarm}};
+  *header.settings = {{"false_alarm", options.false_alarm}};
   if (!how.others.empty() && options.others.empty())
     invocation.note(
         {fmt::format("{} logs that tuned the table show how it errs on tests that are not given here; "

@@ -1,6 +1,7 @@
 // `servodx compare A.json B.json`: two results of one command beside each other.
 #include <CLI/CLI.hpp>
 #include <memory>
+#include <nlohmann/json.hpp>
 
 #include "base/sha256.h"
 #include "commands.h"

@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <map>
 #include <memory>
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -210,9 +211,9 @@ int run(const Options& options) {
   std::vector<std::string> truths = invocation.wants_report() ? truths_beside(logs) : std::vector<std::string>{};
 
   const Actions actions = actions_of(options.list.actions);
-  header.settings = {{"false_alarm", baseline.asked}};
-  if (last) header.settings.update({{"against", options.against}});
-  if (options.genetic()) header.settings.update({{"search", "genetic"}, {"population", options.population}});
+  *header.settings = {{"false_alarm", baseline.asked}};
+  if (last) header.settings->update({{"against", options.against}});
+  if (options.genetic()) header.settings->update({{"search", "genetic"}, {"population", options.population}});
   invocation.tell_of_long_fits(logs);
   if (invocation.dry_run()) return ran;
 

@@ -1,6 +1,7 @@
 // `servodx explain LOG...`: what the simulation gets wrong, where, why, and what mending it gains; logs pooled.
 #include <CLI/CLI.hpp>
 #include <memory>
+#include <nlohmann/json.hpp>
 #include <optional>
 
 #include "baseline_beside.h"
@@ -56,7 +57,7 @@ int run(const Options& options) {
   }
   const std::vector<Log> logs = invocation.logs(options.logs, rig);
   report::add_to_head(invocation.header().head, logs);
-  header.settings = {{"level", how.level}, {"baseline", options.baseline}, {"without", options.without}};
+  *header.settings = {{"level", how.level}, {"baseline", options.baseline}, {"without", options.without}};
   invocation.tell_of_long_fits(logs);
   if (invocation.dry_run()) return ran;
 

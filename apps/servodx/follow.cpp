@@ -493,10 +493,10 @@ int follow(const FollowOptions& options, const CommonOptions& common) {
   invocation.check_files(inputs, outputs);
   const Judging judging = read_judging(invocation, options.params, options.baseline);
   report::Header& header = invocation.header();
-  header.settings.update({{"source", options.source},
-                          {"alarms_per_hour", options.alarms_per_hour},
-                          {"until_idle", options.until_idle},
-                          {"state", options.state}});
+  header.settings->update({{"source", options.source},
+                           {"alarms_per_hour", options.alarms_per_hour},
+                           {"until_idle", options.until_idle},
+                           {"state", options.state}});
   if (invocation.dry_run()) return ran;
   const WatchLimits limits = learn_limits(healthy_logs(options, judging, invocation),
                                           watched_model(judging.tuned.table, judging.rig), options.alarms_per_hour);

@@ -11,6 +11,7 @@
 #include <cstdlib>
 #include <filesystem>
 #include <mutex>
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <stdexcept>
 #include <string_view>
@@ -267,7 +268,7 @@ void Invocation::tell_of_long_fits(const std::vector<Log>& logs) const {
 bool Invocation::dry_run() const {
   if (!options_.dry_run) return false;
   report::Json settings = {{"seed", header_.seed}, {"threads", options_.threads}};
-  settings.update(header_.settings);
+  settings.update(*header_.settings);
   if (options_.json == "-") {
     print(report::Json{{"command", header_.command},
                        {"dry_run", true},
@@ -418,7 +419,7 @@ void Invocation::write_manifest() const {
                                  {"arguments", call},
                                  {"seed", header_.seed},
                                  {"threads", options_.threads},
-                                 {"settings", header_.settings},
+                                 {"settings", *header_.settings},
                                  {"interrupted", stop.load()},
                                  {"inputs", header["inputs"]},
                                  {"outputs", outputs}};

@@ -2,6 +2,7 @@
 #include <CLI/CLI.hpp>
 #include <array>
 #include <memory>
+#include <nlohmann/json.hpp>
 
 #include "base/error.h"
 #include "base/nearest.h"
@@ -271,7 +272,7 @@ void run(const Options& options) {
     if (options.kind != kind.name) continue;
     Invocation invocation("list", options.common);
     invocation.check_files({options.params}, {});
-    invocation.header().settings = {{"kind", options.kind}};
+    *invocation.header().settings = {{"kind", options.kind}};
     const Listing listing = kind.make(options, invocation);
     if (invocation.dry_run()) return;
     invocation.finish(listing.text, {{options.kind, listing.items}});

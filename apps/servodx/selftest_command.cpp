@@ -1,6 +1,7 @@
 // `servodx selftest LOG`: known truths on the user's own input; bias and coverage of the fit.
 #include <CLI/CLI.hpp>
 #include <memory>
+#include <nlohmann/json.hpp>
 
 #include "commands.h"
 #include "fit/selftest.h"
@@ -31,7 +32,7 @@ void run(const Options& options) {
   const Table table = invocation.table(options.params);
   const Log log = invocation.log(options.log, rig);
   report::Header& header = invocation.header();
-  header.settings = {{"repeats", how.repeats}, {"spread", how.spread}};
+  *header.settings = {{"repeats", how.repeats}, {"spread", how.spread}};
   if (invocation.dry_run()) return;
   how.seed = options.common.seed;
   how.threads = options.common.threads;

@@ -1,6 +1,7 @@
 // `servodx sensitivity LOG...`: every row of the table at its minimum and maximum, ranked by what that changes.
 #include <CLI/CLI.hpp>
 #include <memory>
+#include <nlohmann/json.hpp>
 
 #include "commands.h"
 #include "fit/nominal.h"

@@ -3,6 +3,7 @@
 
 #include <CLI/CLI.hpp>
 #include <memory>
+#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
@@ -45,7 +46,7 @@ void run(const Options& options) {
   require_channels(prepare(log, rig));
   const SimulateOptions steps = door::steps_of(how);
   report::Header& header = invocation.header();
-  header.settings = {{"step", steps.step}, {"impact_step", steps.impact_step}};
+  *header.settings = {{"step", steps.step}, {"impact_step", steps.impact_step}};
   if (invocation.dry_run()) return;
   const Simulation simulated = simulate(log, table, rig, how);
   write_simulation(options.output, log, simulated, rig);

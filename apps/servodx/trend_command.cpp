@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <memory>
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <set>
 #include <utility>
@@ -136,10 +137,10 @@ void run(Options options) {
       for (const Check& c : r.checks) held.insert(c.name);
   }
   require_levels_of_checks(options.failures, held, invocation);
-  invocation.header().settings = {{"history", options.history},       {"false_alarm", options.trend.false_alarm},
-                                  {"healthy", options.trend.healthy}, {"coverage", options.trend.coverage},
-                                  {"failure", options.failures},      {"limit", options.limits},
-                                  {"seeded", options.seeded}};
+  *invocation.header().settings = {{"history", options.history},       {"false_alarm", options.trend.false_alarm},
+                                   {"healthy", options.trend.healthy}, {"coverage", options.trend.coverage},
+                                   {"failure", options.failures},      {"limit", options.limits},
+                                   {"seeded", options.seeded}};
   if (invocation.dry_run()) return;
 
   std::vector<ValveTrend> trends;

@@ -2,6 +2,7 @@
 #include <CLI/CLI.hpp>
 #include <filesystem>
 #include <memory>
+#include <nlohmann/json.hpp>
 
 #include "base/error.h"
 #include "base/trouble.h"
@@ -135,14 +136,14 @@ int run(const Options& options) {
     }
 
   report::Header& header = invocation.header();
-  header.settings = {{"population", tune_options.population},
-                     {"generations", tune_options.generations},
-                     {"heldout", tune_options.heldout},
-                     {"moving_average", tune_options.moving_average},
-                     {"effects", effects},
-                     {"local", options.local},
-                     {"profile", options.profile},
-                     {"prior", options.priors}};
+  *header.settings = {{"population", tune_options.population},
+                      {"generations", tune_options.generations},
+                      {"heldout", tune_options.heldout},
+                      {"moving_average", tune_options.moving_average},
+                      {"effects", effects},
+                      {"local", options.local},
+                      {"profile", options.profile},
+                      {"prior", options.priors}};
   invocation.tell_of_long_fits(logs);
   if (invocation.dry_run()) return ran;
 

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdio>
 #include <memory>
+#include <nlohmann/json.hpp>
 #include <string>
 #include <thread>
 #include <vector>
@@ -144,15 +145,15 @@ int run_folder(const Options& options) {
   invocation.check_files({options.params, options.baseline}, outputs);
   const Judging judging = read_judging(invocation, options.params, options.baseline);
   report::Header& header = invocation.header();
-  if (options.common.dry_run) header.settings["logs"] = logs_in(options.folder).size();
+  if (options.common.dry_run) (*header.settings)["logs"] = logs_in(options.folder).size();
   if (invocation.dry_run()) return ran;
   logs_in(options.folder);  // refused before the folder of the results is made
   Watching watching(options, judging, invocation);
-  header.settings.update({{"folder", options.folder},
-                          {"out", options.out},
-                          {"settle", options.settle},
-                          {"interval", options.interval},
-                          {"once", options.once}});
+  header.settings->update({{"folder", options.folder},
+                           {"out", options.out},
+                           {"settle", options.settle},
+                           {"interval", options.interval},
+                           {"once", options.once}});
   watching.go();
   if (options.once && watching.unsettled() > 0 && !watching.run().interrupted)
     invocation.note(

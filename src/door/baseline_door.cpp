@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <chrono>
 #include <memory>
+#include <nlohmann/json.hpp>
 #include <utility>
 
 #include "base/atomic_file.h"
@@ -60,7 +61,7 @@ report::Header header_of(const std::vector<Log>& logs, const Tuned& tuned, const
   header.version = SERVODX_VERSION;
   header.command = "baseline";
   header.seed = options.seed;
-  header.settings = {{"false_alarm", options.false_alarm}};
+  *header.settings = {{"false_alarm", options.false_alarm}};
   if (!rig.path.empty()) header.inputs.push_back({rig.path, rig.sha256});
   header.inputs.push_back({tuned.table.path, tuned.table.sha256});
   for (const Log& log : logs) header.inputs.push_back({log.path, log.sha256});

@@ -1,6 +1,7 @@
 // The front door of `diagnose`: the verdict in words and numbers that need nothing of the library's inside.
 #include <algorithm>
 #include <memory>
+#include <nlohmann/json.hpp>
 #include <utility>
 #include <vector>
 

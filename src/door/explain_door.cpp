@@ -1,5 +1,6 @@
 // The front door of `explain`.
 #include <memory>
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <utility>
 

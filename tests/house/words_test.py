@@ -12,7 +12,7 @@ ASK = {"starts_with", "ends_with", "find", "rfind", "contains", "compare", "coun
 READERS = {
     "apps/servodx/invocation.cpp": "`-` for standard output, names of options",
     "apps/servodx/main.cpp": "words of the command line",
-    "apps/servodx/manifest.h": "reads a manifest",
+    "apps/servodx/manifest.cpp": "reads a manifest",
     "apps/servodx/manual_commands.cpp": "options by their CLI11 names, the names of shells",
     "apps/servodx/map_command.cpp": "--model",
     "apps/servodx/read_manifest.cpp": "reads a manifest",

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <nlohmann/json.hpp>
 
 #include "report/shared/html.h"
 #include "report/shared/json.h"
@@ -36,7 +37,7 @@ TEST(Page, EveryPartEscapesEveryText) {
   header.version = hostile;
   header.inputs = {{hostile, hostile}};
   header.notes = {hostile};
-  header.settings = {{hostile, hostile}};
+  *header.settings = {{hostile, hostile}};
   Page page(header, hostile);
   page.verdict({Tone::bad, hostile, hostile, hostile, {{hostile, hostile}}, {hostile}}, hostile);
   page.section(hostile, hostile);

@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <limits>
+#include <nlohmann/json.hpp>
 
 #include "diagnose/assessment.h"
 #include "diagnose/baseline.h"

@@ -1,5 +1,7 @@
 #include "report/baseline/baseline_json.h"
 
+#include <nlohmann/json.hpp>
+
 #include "diagnose/record_law.h"
 #include "diagnose/records.h"
 #include "evidence/conditions.h"

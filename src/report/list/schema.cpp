@@ -1,6 +1,7 @@
 #include "report/list/schema.h"
 
 #include <array>
+#include <nlohmann/json.hpp>
 #include <set>
 #include <sstream>
 #include <stdexcept>

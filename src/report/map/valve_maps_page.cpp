@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <nlohmann/json.hpp>
 
 #include "base/units.h"
 #include "report/map/valve_maps.h"
@@ -96,7 +97,7 @@ Page maps_page(const Header& header, const valve_maps::ValveNumbers& valve,
            words(std::string(valve_maps::region_names[worst_region(e)])) + ")";
   };
   const valve_maps::MapError *best = nullptr, *asked = nullptr;
-  const std::string model = header.settings.value("model", "");
+  const std::string model = header.settings->value("model", "");
   for (const auto& e : errors) {
     if (e.name != "HF" && (!best || worst(e) < worst(*best))) best = &e;
     if (e.name != "HF" && e.name == model) asked = &e;

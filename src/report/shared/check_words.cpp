@@ -29,4 +29,5 @@ std::string size_of_check(const std::string& unit, const std::string& cause, dou
   const HandyUnit in = unit_of_check(unit, cause, value);
   return digits(value * in.factor) + (in.name.empty() ? "" : " " + in.name);
 }
+
 }  // namespace servodx::report

@@ -1,5 +1,7 @@
 #include "report/shared/html.h"
 
+#include <nlohmann/json.hpp>
+
 namespace servodx::report {
 
 std::string escape_html(std::string_view text) {

@@ -1,6 +1,6 @@
 // Text that came from anywhere, made safe for a page: nothing of it can become markup or script.
 #pragma once
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <string_view>
 

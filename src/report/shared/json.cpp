@@ -1,6 +1,7 @@
 #include "report/shared/json.h"
 
 #include <cmath>
+#include <nlohmann/json.hpp>
 
 #include "base/result_schema.h"
 #include "evidence/conditions.h"
@@ -27,7 +28,7 @@ Json to_json(const Header& header) {
           {"schema", result_schema},
           {"command", header.command},
           {"seed", header.seed},
-          {"settings", header.settings},
+          {"settings", *header.settings},
           {"inputs", inputs},
           {"seconds", number(header.seconds)},
           {"simulations", header.simulations},

@@ -2,12 +2,13 @@
 // stands beside them; what is not finite becomes null.
 #pragma once
 #include <cstdint>
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <vector>
 
 #include "evidence/conditions.h"
 #include "report/shared/call_names.h"
+#include "report/shared/held_json.h"
 #include "report/shared/page_head.h"
 #include "servodx/tune.h"
 #include "tune/tune.h"
@@ -24,7 +25,7 @@ struct InputFile {
 struct Header {
   std::string version, command;
   std::uint64_t seed = 1;
-  Json settings = Json::object();  // the options in effect that a result depends on; the number of threads is none
+  HeldJson settings;  // the options in effect that a result depends on; the number of threads is none
   std::vector<InputFile> inputs;
   double seconds = 0;  // [s] wall time
   long simulations = 0, failed_simulations = 0;

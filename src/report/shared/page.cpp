@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <nlohmann/json.hpp>
 
 #include "base/csv.h"
 #include "base/sha256.h"
@@ -346,7 +347,7 @@ std::string Page::head_html() const {
 std::string Page::html() {
   section("How this was made", "", true);
   std::string settings;
-  for (const auto& [key, value] : header_.settings.items())
+  for (const auto& [key, value] : header_.settings->items())
     settings +=
         (settings.empty() ? "" : ", ") + key + " = " + value.dump(-1, ' ', false, Json::error_handler_t::replace);
   text(fmt::format("servodx {} {}, seed {}{}; {} simulations, {} of them failed.", header_.version, header_.command,

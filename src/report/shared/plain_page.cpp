@@ -1,6 +1,7 @@
 #include "report/shared/plain_page.h"
 
 #include <algorithm>
+#include <nlohmann/json.hpp>
 
 #include "base/units.h"
 #include "report/shared/handy.h"

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <nlohmann/json.hpp>
 
 #include "prognose/check_name.h"
 #include "prognose/level.h"
@@ -53,7 +54,7 @@ std::string growth(const CheckTrend& t) {
          (odds > most ? "over 1000 to 1" : digits(odds, 2) + " to 1");
 }
 
-double coverage_of(const Header& header) { return header.settings.value("coverage", 0.9); }
+double coverage_of(const Header& header) { return header.settings->value("coverage", 0.9); }
 
 // A check over its hours, with what it must not pass.
 Plot history_of(const CheckTrend& t) {

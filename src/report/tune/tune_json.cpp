@@ -1,5 +1,7 @@
 #include "report/tune/tune_json.h"
 
+#include <nlohmann/json.hpp>
+
 #include "report/tune/tune_words.h"
 #include "servodx/tune.h"
 

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <nlohmann/json.hpp>
 
 #include "fit/free_values.h"
 #include "optimise/box_least_squares.h"

@@ -2,6 +2,7 @@
 // do.
 #include <cmath>
 #include <cstdio>
+#include <nlohmann/json.hpp>
 #include <numbers>
 #include <string>
 
@@ -71,7 +72,7 @@ report::Header some_header(const std::string& command, const std::string& log) {
   header.command = command;
   header.inputs = {{log, std::string(64, 'a')}};
   header.notes = {log + ": 3 gaps in time"};
-  header.settings = {{"name", log}};
+  *header.settings = {{"name", log}};
   header.simulations = 1234;
   return header;
 }
