@@ -27,7 +27,7 @@
 #include "fit/replay.h"
 #include "fit/tuned_state.h"
 #include "parameters/table.h"
-#include "report/diagnosis_words.h"
+#include "report/diagnose/diagnosis_words.h"
 #include "servodx/diagnose.h"
 #include "servodx/rig.h"
 #include "servodx/tune.h"

@@ -17,13 +17,14 @@
 #include "explain/outcome.h"
 #include "hidden/cases.h"
 #include "parameters/table.h"
-#include "report/explain_report.h"
-#include "report/explain_words.h"
-#include "report/json.h"
+#include "report/explain/explain_report.h"
+#include "report/explain/explain_words.h"
+#include "report/shared/json.h"
 #include "servodx/explain.h"
 #include "servodx/log.h"
 #include "servodx/rig.h"
 #include "servodx/tune.h"
+#include "store/healthy_file.h"
 #include "tune/tune.h"
 
 using namespace servodx;
@@ -84,7 +85,7 @@ int main(int argc, char** argv) {
       for (HealthyLog& l : reference.logs) l.log = std::filesystem::path(l.log).filename();  // they stand beside it
       std::ofstream(reference_path) << report::Json{{"explain", report::healthy_json(reference)}};
     }
-    const HealthyReference reference = report::read_healthy(reference_path);
+    const HealthyReference reference = store::read_healthy(reference_path);
     const auto judge = [&](std::uint64_t s, const std::string& effect) {
       const std::string answer_path =
           fmt::format("{}/answer_v{}_{}_{}{}.json", out, valve, s, effect, remove ? "_removed" : "");

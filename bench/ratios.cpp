@@ -14,7 +14,7 @@
 #include "base/keep_memory.h"
 #include "ratios/measure.h"
 #include "ratios/rows.h"
-#include "report/line_chart.h"
+#include "report/shared/line_chart.h"
 #include "simulate/simulate.h"
 
 using namespace servodx;

@@ -1,6 +1,8 @@
 // The manifest beside a result: as `rerun` reads it, and as who looks for its inputs does.
 #include "manifest.h"
 
+#include <nlohmann/json.hpp>
+
 #include "harness.h"
 #include "read_manifest.h"
 

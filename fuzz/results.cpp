@@ -4,7 +4,7 @@
 #include "fleet/gather.h"
 #include "fleet/result_file.h"
 #include "harness.h"
-#include "report/pages.h"
+#include "store/truth_file.h"
 
 namespace servodx::fuzz {
 
@@ -14,7 +14,7 @@ void read(std::string_view input) {
   refusing([&] { csv_of(gather(folder.path(), std::atomic<bool>(false))); });
   standing_verdict(result, {.version = "0.1.0", .seed = 1, .inputs = {"a"}});
   folder.write("log.truth.json", input);
-  report::truth_beside(folder.path() + "/log.csv", "a");
+  store::truth_beside(folder.path() + "/log.csv", "a");
 }
 
 }  // namespace servodx::fuzz

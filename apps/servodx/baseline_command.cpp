@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <memory>
+#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
@@ -14,13 +15,16 @@
 #include "fit/replay.h"
 #include "fit/tuned_state.h"
 #include "invocation.h"
-#include "report/conditions.h"
-#include "report/diagnosis_words.h"
-#include "report/explain_report.h"
-#include "report/going_on.h"
-#include "report/json.h"
-#include "report/pages.h"
-#include "report/text.h"
+#include "report/baseline/baseline_json.h"
+#include "report/baseline/baseline_page.h"
+#include "report/baseline/baseline_text.h"
+#include "report/diagnose/diagnosis_words.h"
+#include "report/explain/explain_report.h"
+#include "report/shared/conditions.h"
+#include "report/shared/going_on.h"
+#include "report/shared/json.h"
+#include "report/shared/replay_part.h"
+#include "report/shared/text_options.h"
 #include "servodx/baseline.h"
 #include "servodx/log.h"
 #include "servodx/rig.h"
@@ -61,7 +65,7 @@ int run(const Options& options) {
   how.others = invocation.logs(others, rig);
 
   report::Header& header = invocation.header();
-  header.settings = {{"false_alarm", options.false_alarm}};
+  *header.settings = {{"false_alarm", options.false_alarm}};
   if (!how.others.empty() && options.others.empty())
     invocation.note(
         {fmt::format("{} logs that tuned the table show how it errs on tests that are not given here; "

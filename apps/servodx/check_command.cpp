@@ -2,6 +2,7 @@
 #include <CLI/CLI.hpp>
 #include <cmath>
 #include <memory>
+#include <nlohmann/json.hpp>
 #include <optional>
 
 #include "base/progress.h"
@@ -9,9 +10,9 @@
 #include "commands.h"
 #include "invocation.h"
 #include "prognose/check.h"
-#include "report/conditions.h"
-#include "report/json.h"
-#include "report/prognosis.h"
+#include "report/check/check_report.h"
+#include "report/shared/conditions.h"
+#include "report/shared/json.h"
 #include "servodx/log.h"
 #include "servodx/rig.h"
 #include "servodx/trend.h"
@@ -73,7 +74,7 @@ void run_one(const Options& options) {
   if (HistoryFile::there(options.history)) history = History::open(options.history);
 
   report::Header& header = invocation.header();
-  header.settings = check_settings(options.valve, at, how.model, options.history);
+  *header.settings = check_settings(options.valve, at, how.model, options.history);
   if (invocation.dry_run()) return;
 
   const std::string serial = options.serial.empty() ? rig.serial : options.serial;

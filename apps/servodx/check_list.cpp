@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <filesystem>
 #include <map>
+#include <nlohmann/json.hpp>
 #include <system_error>
 #include <utility>
 
@@ -19,8 +20,8 @@
 #include "fleet/run.h"
 #include "list_run.h"
 #include "prognose/check.h"
-#include "report/fleet.h"
-#include "report/prognosis.h"
+#include "report/check/check_report.h"
+#include "report/fleet/fleet.h"
 #include "result_folder.h"
 #include "servodx/error.h"
 #include "servodx/log.h"
@@ -106,7 +107,7 @@ ListedChecks::Outcome ListedChecks::check(const CheckRow& row) {
   const auto start = std::chrono::steady_clock::now();
   const Tuned& tuned = tables_.at(row.params);
   report::Header header = of_call_;
-  header.settings = check_settings(row.valve, row.hours, options_.check.model, options_.history);
+  *header.settings = check_settings(row.valve, row.hours, options_.check.model, options_.history);
   header.inputs.push_back({tuned.table.path, tuned.table.sha256});
   note(header, tuned.notes);
   std::string sha256;
@@ -211,7 +212,7 @@ int check_list(const CommonOptions& common, const CheckListOptions& options) {
   std::error_code ignored;
   if (std::filesystem::is_regular_file(options.list, ignored))
     header.inputs.push_back({options.list, sha256_of_file(options.list)});
-  header.settings = {
+  *header.settings = {
       {"list", options.list}, {"out", options.out}, {"model", options.check.model}, {"history", options.history}};
   if (common.dry_run) rehearse_list(paths_of(list, &CheckRow::log), rig, header);
   if (invocation.dry_run()) return ran;

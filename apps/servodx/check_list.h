@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "invocation.h"
-#include "report/json.h"
+#include "report/shared/json.h"
 #include "servodx/trend.h"
 
 namespace servodx {

@@ -2,6 +2,7 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <memory>
+#include <nlohmann/json.hpp>
 
 #include "base/sha256.h"
 #include "base/trouble.h"
@@ -10,7 +11,7 @@
 #include "evidence/operating_point.h"
 #include "fit/tuned_state.h"
 #include "invocation.h"
-#include "report/check_log.h"
+#include "report/check_log/check_log.h"
 #include "servodx/error.h"
 #include "servodx/log.h"
 #include "servodx/rig.h"

@@ -1,11 +1,13 @@
 // `servodx compare A.json B.json`: two results of one command beside each other.
 #include <CLI/CLI.hpp>
 #include <memory>
+#include <nlohmann/json.hpp>
 
 #include "base/sha256.h"
 #include "commands.h"
 #include "invocation.h"
-#include "report/compare.h"
+#include "report/compare/compare.h"
+#include "store/result_json.h"
 
 namespace servodx {
 namespace {
@@ -21,7 +23,8 @@ void run(const Options& options) {
   for (const std::string& path : {options.a, options.b})
     invocation.header().inputs.push_back({path, sha256_of_file(path)});
   if (invocation.dry_run()) return;
-  const report::Comparison comparison = report::compare(options.a, options.b);
+  const auto a = store::read_result(options.a), b = store::read_result(options.b);
+  const report::Comparison comparison = report::compare(options.a, a, options.b, b);
   invocation.note(comparison.notes);
   if (invocation.wants_report()) invocation.write_report(report::compare_page(invocation.header(), comparison));
   invocation.finish(report::text_of(comparison), report::compare_json(comparison));

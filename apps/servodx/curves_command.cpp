@@ -2,6 +2,7 @@
 // the dynamics that the rig file states, beside those of the table's valve.
 #include <CLI/CLI.hpp>
 #include <memory>
+#include <nlohmann/json.hpp>
 #include <optional>
 
 #include "base/atomic_file.h"
@@ -10,10 +11,10 @@
 #include "fit/nominal.h"
 #include "fit/sheet.h"
 #include "invocation.h"
-#include "report/conditions.h"
-#include "report/curves.h"
-#include "report/data_sheet.h"
-#include "report/json.h"
+#include "report/curves/curves.h"
+#include "report/curves/data_sheet.h"
+#include "report/shared/conditions.h"
+#include "report/shared/json.h"
 #include "servodx/error.h"
 #include "servodx/log.h"
 #include "servodx/rig.h"
@@ -63,7 +64,7 @@ void run(const Options& options) {
   const auto certificate = invocation.certificate(options.certificate);
   curves::SheetOptions how;
   if (certificate) how = {certificate->errors(), certificate->guard};
-  invocation.header().settings = {{"guard_band", how.guard}};
+  *invocation.header().settings = {{"guard_band", how.guard}};
   std::optional<Table> table;
   if (!options.params.empty()) table = invocation.table(options.params);
   if (invocation.dry_run()) return;

@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <map>
 #include <memory>
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -25,14 +26,16 @@
 #include "fit/replay.h"
 #include "invocation.h"
 #include "parameters/table.h"
-#include "report/conditions.h"
-#include "report/diagnosis_words.h"
-#include "report/friction_words.h"
-#include "report/json.h"
-#include "report/pages.h"
-#include "report/result_file.h"
-#include "report/text.h"
-#include "report/two_tests.h"
+#include "report/diagnose/diagnose_page.h"
+#include "report/diagnose/diagnosis_json.h"
+#include "report/diagnose/diagnosis_text.h"
+#include "report/diagnose/diagnosis_words.h"
+#include "report/diagnose/friction_words.h"
+#include "report/diagnose/two_tests.h"
+#include "report/shared/conditions.h"
+#include "report/shared/json.h"
+#include "report/shared/replay_part.h"
+#include "report/shared/text_options.h"
 #include "servodx/actions.h"
 #include "servodx/baseline.h"
 #include "servodx/diagnose.h"
@@ -41,6 +44,8 @@
 #include "servodx/tune.h"
 #include "servodx/watch.h"
 #include "simulate/side_by_side.h"
+#include "store/truth_file.h"
+#include "store/verdict_file.h"
 
 namespace servodx {
 namespace {
@@ -143,11 +148,11 @@ std::string friction_line(const std::optional<FrictionBesideForce>& beside) {
 }
 
 // `now`: of one verdict.
-report::TwoTests since(const std::string& last_path, const report::Json& last, const report::Header& header,
+report::TwoTests since(const std::string& last_path, const store::StoredVerdict& last, const report::Header& header,
                        const report::Json& now) {
   report::Json whole = report::to_json(header);
   whole.update(now);
-  return report::two_tests(last_path, last, whole);
+  return report::two_tests(last_path, last, store::verdict_of(whole));
 }
 
 void require_consistent(const Options& options) {
@@ -170,7 +175,7 @@ void require_consistent(const Options& options) {
 
 std::vector<std::string> truths_beside(const std::vector<Log>& logs) {
   std::vector<std::string> out;
-  for (const Log& log : logs) out.push_back(report::truth_beside(log.path, log.sha256));
+  for (const Log& log : logs) out.push_back(store::truth_beside(log.path, log.sha256));
   return out;
 }
 
@@ -197,18 +202,18 @@ int run(const Options& options) {
     header.inputs.push_back({options.list.actions, sha256_of_file(options.list.actions)});
 
   const auto certificate = invocation.certificate(options.certificate);
-  std::optional<report::Json> last;
+  std::optional<store::StoredVerdict> last;
   if (!options.against.empty()) {
-    last = report::read_one_verdict(options.against);
+    last = store::read_one_verdict(options.against);
     header.inputs.push_back({options.against, sha256_of_file(options.against)});
   }
 
   std::vector<std::string> truths = invocation.wants_report() ? truths_beside(logs) : std::vector<std::string>{};
 
   const Actions actions = actions_of(options.list.actions);
-  header.settings = {{"false_alarm", baseline.asked}};
-  if (last) header.settings.update({{"against", options.against}});
-  if (options.genetic()) header.settings.update({{"search", "genetic"}, {"population", options.population}});
+  *header.settings = {{"false_alarm", baseline.asked}};
+  if (last) header.settings->update({{"against", options.against}});
+  if (options.genetic()) header.settings->update({{"search", "genetic"}, {"population", options.population}});
   invocation.tell_of_long_fits(logs);
   if (invocation.dry_run()) return ran;
 

@@ -3,6 +3,7 @@
 #include <atomic>
 #include <cstddef>
 #include <filesystem>
+#include <nlohmann/json.hpp>
 #include <system_error>
 #include <vector>
 
@@ -13,8 +14,8 @@
 #include "fleet/run.h"
 #include "fleet_judge.h"
 #include "list_run.h"
-#include "report/fleet.h"
-#include "report/json.h"
+#include "report/fleet/fleet.h"
+#include "report/shared/json.h"
 #include "result_folder.h"
 #include "servodx/diagnose.h"
 #include "servodx/watch.h"
@@ -63,7 +64,7 @@ int diagnose_list(const CommonOptions& common, const RunOptions& run_options, co
   std::error_code ignored;
   if (std::filesystem::is_regular_file(options.list, ignored))
     header.inputs.push_back({options.list, sha256_of_file(options.list)});
-  header.settings.update({{"list", options.list}, {"out", options.out}, {"chunk", options.chunk}});
+  header.settings->update({{"list", options.list}, {"out", options.out}, {"chunk", options.chunk}});
   const FleetRun run = judge_all(logs, judge, common, options, header);
   invocation.note(interrupt_notice(run));
   invocation.finish(report::text_of(run), report::fleet_run_json(run));

@@ -1,6 +1,7 @@
 // `servodx explain LOG...`: what the simulation gets wrong, where, why, and what mending it gains; logs pooled.
 #include <CLI/CLI.hpp>
 #include <memory>
+#include <nlohmann/json.hpp>
 #include <optional>
 
 #include "baseline_beside.h"
@@ -9,10 +10,10 @@
 #include "explain/explain.h"
 #include "fit/replay.h"
 #include "invocation.h"
-#include "report/conditions.h"
-#include "report/explain_report.h"
-#include "report/json.h"
-#include "report/pages.h"
+#include "report/explain/explain_report.h"
+#include "report/shared/conditions.h"
+#include "report/shared/json.h"
+#include "report/shared/replay_part.h"
 #include "servodx/baseline.h"
 #include "servodx/explain.h"
 #include "servodx/log.h"
@@ -56,7 +57,7 @@ int run(const Options& options) {
   }
   const std::vector<Log> logs = invocation.logs(options.logs, rig);
   report::add_to_head(invocation.header().head, logs);
-  header.settings = {{"level", how.level}, {"baseline", options.baseline}, {"without", options.without}};
+  *header.settings = {{"level", how.level}, {"baseline", options.baseline}, {"without", options.without}};
   invocation.tell_of_long_fits(logs);
   if (invocation.dry_run()) return ran;
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <nlohmann/json.hpp>
 #include <utility>
 
 #include "base/error.h"
@@ -12,7 +13,8 @@
 #include "fleet/fleet_verdict.h"
 #include "fleet/result_file.h"
 #include "list_run.h"
-#include "report/fleet.h"
+#include "report/diagnose/diagnosis_json.h"
+#include "report/fleet/fleet.h"
 #include "servodx/log.h"
 
 namespace servodx {
@@ -39,7 +41,7 @@ Judging read_judging(Invocation& invocation, const std::string& params, const st
   Judging judging{std::move(rig), std::move(tuned), std::move(judged)};
   require_same_table(judging.baseline, judging.tuned);
   invocation.header().inputs.push_back({baseline, judging.baseline.parts->sha256});
-  invocation.header().settings = {{"false_alarm", judging.baseline.asked}};
+  *invocation.header().settings = {{"false_alarm", judging.baseline.asked}};
   return judging;
 }
 

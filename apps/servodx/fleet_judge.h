@@ -14,7 +14,7 @@
 #include "fleet/run.h"
 #include "invocation.h"
 #include "parameters/table.h"
-#include "report/json.h"
+#include "report/shared/json.h"
 #include "result_folder.h"
 #include "servodx/baseline.h"
 #include "servodx/diagnose.h"

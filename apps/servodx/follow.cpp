@@ -36,9 +36,11 @@
 #include "online/limits.h"
 #include "online/watched_model.h"
 #include "online/watcher.h"
-#include "report/diagnosis_words.h"
-#include "report/json.h"
-#include "report/text.h"
+#include "report/diagnose/diagnosis_json.h"
+#include "report/diagnose/diagnosis_text.h"
+#include "report/diagnose/diagnosis_words.h"
+#include "report/shared/json.h"
+#include "report/shared/text_options.h"
 #include "servodx/baseline.h"
 #include "servodx/diagnose.h"
 #include "servodx/error.h"
@@ -491,10 +493,10 @@ int follow(const FollowOptions& options, const CommonOptions& common) {
   invocation.check_files(inputs, outputs);
   const Judging judging = read_judging(invocation, options.params, options.baseline);
   report::Header& header = invocation.header();
-  header.settings.update({{"source", options.source},
-                          {"alarms_per_hour", options.alarms_per_hour},
-                          {"until_idle", options.until_idle},
-                          {"state", options.state}});
+  header.settings->update({{"source", options.source},
+                           {"alarms_per_hour", options.alarms_per_hour},
+                           {"until_idle", options.until_idle},
+                           {"state", options.state}});
   if (invocation.dry_run()) return ran;
   const WatchLimits limits = learn_limits(healthy_logs(options, judging, invocation),
                                           watched_model(judging.tuned.table, judging.rig), options.alarms_per_hour);

@@ -2,6 +2,7 @@
 #include <CLI/CLI.hpp>
 #include <atomic>
 #include <memory>
+#include <nlohmann/json.hpp>
 #include <optional>
 
 #include "base/atomic_file.h"
@@ -10,8 +11,8 @@
 #include "fleet/confusion.h"
 #include "fleet/gather.h"
 #include "invocation.h"
-#include "report/fleet.h"
-#include "report/json.h"
+#include "report/fleet/fleet.h"
+#include "report/shared/json.h"
 
 namespace servodx {
 namespace {
@@ -46,7 +47,7 @@ int run(const Options& options) {
   if (!options.truth.empty()) truth = read_truth(options.truth);
   report::Header& header = invocation.header();
   if (truth) header.inputs.push_back({truth->path, truth->sha256});
-  header.settings = {{"folder", options.folder}};
+  *header.settings = {{"folder", options.folder}};
   const FleetTable table = read_folder(options);
   std::optional<Confusion> confusion;
   if (truth) confusion = confusion_of(table, *truth);

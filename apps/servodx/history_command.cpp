@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <memory>
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <vector>
@@ -16,8 +17,8 @@
 #include "commands.h"
 #include "invocation.h"
 #include "prognose/valve_history.h"
-#include "report/columns.h"
-#include "report/json.h"
+#include "report/shared/columns.h"
+#include "report/shared/json.h"
 #include "store/history.h"
 #include "store/history_csv.h"
 
@@ -64,7 +65,7 @@ void add_event(const Options& options) {
   invocation.check_files({options.history}, {});
   HistoryFile history(options.history, false);
   history.of(options.valve);  // refuses a name that is only mistyped
-  invocation.header().settings = {{"valve", options.valve}, {"at", options.at}, {"kind", options.kind}};
+  *invocation.header().settings = {{"valve", options.valve}, {"at", options.at}, {"kind", options.kind}};
   if (invocation.dry_run()) return;
   history.add_event(options.valve, {options.at, *kind, options.text, {}});
   invocation.finish(fmt::format("{} at {} h: {}\n", options.valve, options.at, options.kind),
@@ -129,7 +130,7 @@ int read_folder(const Options& options) {
       std::fprintf(stderr, "history import: set aside: %s\n", (file + ": " + error.what()).c_str());
       set_aside.push_back({{"file", file}, {"rule", error.rule}, {"mend", error.mend}});
     }
-  invocation.header().settings = {{"folder", options.file}, {"files", files.size()}, {"set_aside", set_aside.size()}};
+  *invocation.header().settings = {{"folder", options.file}, {"files", files.size()}, {"set_aside", set_aside.size()}};
   const int code = set_aside.empty() ? ran : some_set_aside;
   if (invocation.dry_run()) return code;
   if (all.present > 0)

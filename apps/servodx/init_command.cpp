@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <map>
 #include <memory>
+#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
@@ -18,9 +19,9 @@
 #include "commands.h"
 #include "diagnose/check_log.h"
 #include "invocation.h"
-#include "report/columns.h"
-#include "report/handy.h"
-#include "report/json.h"
+#include "report/shared/columns.h"
+#include "report/shared/handy.h"
+#include "report/shared/json.h"
 #include "servodx/error.h"
 #include "servodx/log.h"
 #include "servodx/rig.h"

@@ -11,6 +11,7 @@
 #include <cstdlib>
 #include <filesystem>
 #include <mutex>
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <stdexcept>
 #include <string_view>
@@ -24,14 +25,16 @@
 #include "build.h"
 #include "manifest.h"
 #include "print_page.h"
-#include "report/columns.h"
-#include "report/going_on.h"
-#include "report/handy.h"
-#include "report/page_head.h"
-#include "report/plain_page.h"
+#include "report/shared/certificate_part.h"
+#include "report/shared/columns.h"
+#include "report/shared/going_on.h"
+#include "report/shared/handy.h"
+#include "report/shared/page_head.h"
+#include "report/shared/plain_page.h"
 #include "servodx/checkpoint.h"
 #include "servodx/rig.h"
 #include "simulate/simulate.h"
+#include "store/logo_file.h"
 
 namespace servodx {
 namespace fs = std::filesystem;
@@ -265,7 +268,7 @@ void Invocation::tell_of_long_fits(const std::vector<Log>& logs) const {
 bool Invocation::dry_run() const {
   if (!options_.dry_run) return false;
   report::Json settings = {{"seed", header_.seed}, {"threads", options_.threads}};
-  settings.update(header_.settings);
+  settings.update(*header_.settings);
   if (options_.json == "-") {
     print(report::Json{{"command", header_.command},
                        {"dry_run", true},
@@ -292,7 +295,7 @@ bool Invocation::dry_run() const {
 RigFile Invocation::rig() {
   if (options_.rig.empty()) return {};
   RigFile rig = read_rig_file(options_.rig);
-  header_.head = report::head_of(rig);
+  header_.head = report::head_of(rig, store::read_logo(rig));
   header_.inputs.push_back({rig.path, rig.sha256});
   return rig;
 }
@@ -303,10 +306,10 @@ Log Invocation::log(const std::string& path, const RigFile& rig, const ReadOptio
   return log;
 }
 
-std::optional<report::Certificate> Invocation::certificate(const std::string& path) {
+std::optional<store::Certificate> Invocation::certificate(const std::string& path) {
   if (path.empty()) return {};
   require_option(!options_.report.empty(), "--certificate", "there is no page to put it on", "add --report FILE.html");
-  report::Certificate sheet = report::read_certificate(path);
+  store::Certificate sheet = store::read_certificate(path);
   header_.inputs.push_back({sheet.path, sheet.sha256});
   report::add_to_head(header_.head, sheet);
   note(sheet.overdue());
@@ -416,7 +419,7 @@ void Invocation::write_manifest() const {
                                  {"arguments", call},
                                  {"seed", header_.seed},
                                  {"threads", options_.threads},
-                                 {"settings", header_.settings},
+                                 {"settings", *header_.settings},
                                  {"interrupted", stop.load()},
                                  {"inputs", header["inputs"]},
                                  {"outputs", outputs}};

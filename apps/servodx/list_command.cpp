@@ -2,6 +2,7 @@
 #include <CLI/CLI.hpp>
 #include <array>
 #include <memory>
+#include <nlohmann/json.hpp>
 
 #include "base/error.h"
 #include "base/nearest.h"
@@ -16,11 +17,11 @@
 #include "invocation.h"
 #include "model/state.h"
 #include "parameters/list.h"
-#include "report/columns.h"
-#include "report/handy.h"
-#include "report/json.h"
-#include "report/schema.h"
-#include "report/trouble_words.h"
+#include "report/list/schema.h"
+#include "report/list/trouble_words.h"
+#include "report/shared/columns.h"
+#include "report/shared/handy.h"
+#include "report/shared/json.h"
 #include "rig/excitations.h"
 #include "servodx/rig.h"
 #include "servodx/table.h"
@@ -271,7 +272,7 @@ void run(const Options& options) {
     if (options.kind != kind.name) continue;
     Invocation invocation("list", options.common);
     invocation.check_files({options.params}, {});
-    invocation.header().settings = {{"kind", options.kind}};
+    *invocation.header().settings = {{"kind", options.kind}};
     const Listing listing = kind.make(options, invocation);
     if (invocation.dry_run()) return;
     invocation.finish(listing.text, {{options.kind, listing.items}});

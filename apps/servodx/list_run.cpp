@@ -3,10 +3,11 @@
 #include <atomic>
 #include <cstdio>
 #include <exception>
+#include <nlohmann/json.hpp>
 
 #include "base/error.h"
 #include "base/trouble.h"
-#include "report/fleet.h"
+#include "report/fleet/fleet.h"
 #include "servodx/log.h"
 
 namespace servodx {
@@ -61,8 +62,8 @@ void rehearse_list(const std::vector<std::string>& logs, const RigFile& rig, rep
       std::fprintf(stderr, "%s: would be set aside: %s\n", header.command.c_str(), told(error).c_str());
       ++refused_logs;
     }
-  header.settings["logs"] = logs.size();
-  header.settings["would_be_set_aside"] = refused_logs;
+  (*header.settings)["logs"] = logs.size();
+  (*header.settings)["would_be_set_aside"] = refused_logs;
 }
 
 std::vector<std::string> interrupt_notice(const ListRun& run) {

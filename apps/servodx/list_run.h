@@ -10,7 +10,7 @@
 #include "fleet/gather.h"
 #include "fleet/run.h"
 #include "invocation.h"
-#include "report/json.h"
+#include "report/shared/json.h"
 #include "servodx/error.h"
 #include "servodx/rig.h"
 

@@ -3,6 +3,7 @@
 
 #include <CLI/CLI.hpp>
 #include <memory>
+#include <nlohmann/json.hpp>
 
 #include "base/atomic_file.h"
 #include "base/units.h"
@@ -12,9 +13,9 @@
 #include "invocation.h"
 #include "model/state.h"
 #include "parameters/list.h"
-#include "report/columns.h"
-#include "report/json.h"
-#include "report/valve_maps.h"
+#include "report/map/valve_maps.h"
+#include "report/shared/columns.h"
+#include "report/shared/json.h"
 #include "servodx/rig.h"
 #include "servodx/table.h"
 #include "valve_maps/compare.h"
@@ -93,8 +94,8 @@ void run(const Options& options) {
     return grid(info.make(valve, reference), travel, travels, flow, flows, at);
   };
 
-  invocation.header().settings = {{"model", options.model}, {"supply", supply}, {"travel", travel}, {"flow", flow}};
-  if (options.paper) invocation.header().settings["paper"] = true;
+  *invocation.header().settings = {{"model", options.model}, {"supply", supply}, {"travel", travel}, {"flow", flow}};
+  if (options.paper) (*invocation.header().settings)["paper"] = true;
   if (invocation.dry_run()) return;
 
   if (!options.output.empty()) write_file(options.output, report::map_csv(map_of(*find_map(options.model), supply)));

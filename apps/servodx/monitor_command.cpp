@@ -4,6 +4,7 @@
 #include <CLI/CLI.hpp>
 #include <chrono>
 #include <memory>
+#include <nlohmann/json.hpp>
 
 #include "base/units.h"
 #include "commands.h"
@@ -12,9 +13,9 @@
 #include "invocation.h"
 #include "prognose/checks.h"
 #include "prognose/monitor.h"
-#include "report/conditions.h"
-#include "report/handy.h"
-#include "report/json.h"
+#include "report/shared/conditions.h"
+#include "report/shared/handy.h"
+#include "report/shared/json.h"
 #include "servodx/log.h"
 #include "servodx/rig.h"
 #include "servodx/table.h"
@@ -43,7 +44,7 @@ void run(const Options& options) {
                    "leave it away: the measured current drives the monitor");
     monitor.control_gain = parse_gain(options.loop_gain, Dimension::current, {.file = "--loop-gain"}).value;
   }
-  invocation.header().settings = {{"model", options.model}, {"loop_gain", monitor.control_gain}};
+  *invocation.header().settings = {{"model", options.model}, {"loop_gain", monitor.control_gain}};
   if (invocation.dry_run()) return;
 
   const auto before = std::chrono::steady_clock::now();

@@ -2,6 +2,7 @@
 #include <CLI/CLI.hpp>
 #include <cmath>
 #include <memory>
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -12,8 +13,8 @@
 #include "commands.h"
 #include "door/baseline_parts.h"
 #include "invocation.h"
-#include "report/json.h"
-#include "report/plan.h"
+#include "report/plan/plan.h"
+#include "report/shared/json.h"
 #include "servodx/baseline.h"
 #include "servodx/log.h"
 #include "servodx/plan.h"
@@ -114,7 +115,7 @@ int run(const Options& options) {
   }
   std::optional<Log> like;
   if (!options.like.empty()) like = invocation.log(options.like, rig);
-  header.settings = settings_of(options);
+  *header.settings = settings_of(options);
   if (invocation.dry_run()) return ran;
 
   how.watch = invocation.watch();

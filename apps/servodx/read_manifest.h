@@ -2,7 +2,7 @@
 #pragma once
 #include <string>
 
-#include "report/json.h"
+#include "report/shared/json.h"
 
 namespace servodx {
 

@@ -11,6 +11,7 @@
 #include <filesystem>
 #include <map>
 #include <memory>
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <set>
 #include <stdexcept>
@@ -27,8 +28,8 @@
 #include "invocation.h"
 #include "manifest.h"
 #include "read_manifest.h"
-#include "report/columns.h"
-#include "report/json.h"
+#include "report/shared/columns.h"
+#include "report/shared/json.h"
 #include "simulate/simulate.h"
 
 namespace servodx {

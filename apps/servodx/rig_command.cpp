@@ -15,9 +15,9 @@
 #include "base/result_schema.h"
 #include "base/sha256.h"
 #include "invocation.h"
-#include "report/columns.h"
-#include "report/json.h"
-#include "report/plain_page.h"
+#include "report/shared/columns.h"
+#include "report/shared/json.h"
+#include "report/shared/plain_page.h"
 #include "rig/excitations.h"
 #include "rig/facts.h"
 #include "rig/fleet.h"
@@ -232,16 +232,16 @@ int run(Options& options) {
   report::Header& header = invocation.header();
   header.inputs.push_back({options.model, model_sha256});
   const std::optional<rig::PlayedCommand> played = command_to_play(options, model, header);
-  header.settings = {{"excitation", options.run.excitation},
-                     {"duration", fleet ? options.fleet.duration : options.run.duration},
-                     {"rate", options.run.rate},
-                     {"temperature", options.celsius.value_or(40.0)},
-                     {"faults", options.faults},
-                     {"changed", options.changes},
-                     {"valve", options.valve}};
-  if (played) header.settings["command"] = options.command;
-  if (options.loop_gain) header.settings["loop_gain"] = *options.loop_gain;
-  if (fleet) header.settings["fleet"] = options.fleet.logs;
+  *header.settings = {{"excitation", options.run.excitation},
+                      {"duration", fleet ? options.fleet.duration : options.run.duration},
+                      {"rate", options.run.rate},
+                      {"temperature", options.celsius.value_or(40.0)},
+                      {"faults", options.faults},
+                      {"changed", options.changes},
+                      {"valve", options.valve}};
+  if (played) (*header.settings)["command"] = options.command;
+  if (options.loop_gain) (*header.settings)["loop_gain"] = *options.loop_gain;
+  if (fleet) (*header.settings)["fleet"] = options.fleet.logs;
   if (invocation.dry_run()) return ran;
   if (options.facts) return facts_of(options, invocation, model);
   if (!options.torque.empty()) return torque_map(options, invocation, model);

@@ -1,12 +1,13 @@
 // `servodx selftest LOG`: known truths on the user's own input; bias and coverage of the fit.
 #include <CLI/CLI.hpp>
 #include <memory>
+#include <nlohmann/json.hpp>
 
 #include "commands.h"
 #include "fit/selftest.h"
 #include "invocation.h"
-#include "report/json.h"
-#include "report/selftest.h"
+#include "report/selftest/selftest.h"
+#include "report/shared/json.h"
 #include "servodx/log.h"
 #include "servodx/rig.h"
 #include "servodx/table.h"
@@ -31,7 +32,7 @@ void run(const Options& options) {
   const Table table = invocation.table(options.params);
   const Log log = invocation.log(options.log, rig);
   report::Header& header = invocation.header();
-  header.settings = {{"repeats", how.repeats}, {"spread", how.spread}};
+  *header.settings = {{"repeats", how.repeats}, {"spread", how.spread}};
   if (invocation.dry_run()) return;
   how.seed = options.common.seed;
   how.threads = options.common.threads;

@@ -1,11 +1,12 @@
 // `servodx sensitivity LOG...`: every row of the table at its minimum and maximum, ranked by what that changes.
 #include <CLI/CLI.hpp>
 #include <memory>
+#include <nlohmann/json.hpp>
 
 #include "commands.h"
 #include "fit/nominal.h"
 #include "invocation.h"
-#include "report/sensitivity.h"
+#include "report/sensitivity/sensitivity.h"
 #include "servodx/log.h"
 #include "servodx/rig.h"
 #include "servodx/table.h"

@@ -3,6 +3,7 @@
 
 #include <CLI/CLI.hpp>
 #include <memory>
+#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
@@ -11,11 +12,11 @@
 #include "fit/log_data.h"
 #include "fit/nominal.h"
 #include "invocation.h"
-#include "report/columns.h"
-#include "report/conditions.h"
-#include "report/handy.h"
-#include "report/json.h"
-#include "report/pages.h"
+#include "report/shared/columns.h"
+#include "report/shared/conditions.h"
+#include "report/shared/handy.h"
+#include "report/shared/json.h"
+#include "report/simulate/simulate_page.h"
 #include "servodx/log.h"
 #include "servodx/rig.h"
 #include "servodx/simulate.h"
@@ -45,7 +46,7 @@ void run(const Options& options) {
   require_channels(prepare(log, rig));
   const SimulateOptions steps = door::steps_of(how);
   report::Header& header = invocation.header();
-  header.settings = {{"step", steps.step}, {"impact_step", steps.impact_step}};
+  *header.settings = {{"step", steps.step}, {"impact_step", steps.impact_step}};
   if (invocation.dry_run()) return;
   const Simulation simulated = simulate(log, table, rig, how);
   write_simulation(options.output, log, simulated, rig);

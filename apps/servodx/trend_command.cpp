@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <memory>
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <set>
 #include <utility>
@@ -24,8 +25,8 @@
 #include "prognose/trend.h"
 #include "prognose/trend_options.h"
 #include "prognose/valve_history.h"
-#include "report/prognosis.h"
-#include "report/prognosis_words.h"
+#include "report/trend/trend_report.h"
+#include "report/trend/trend_words.h"
 #include "servodx/table.h"
 #include "store/history.h"
 #include "store/seeded_csv.h"
@@ -136,10 +137,10 @@ void run(Options options) {
       for (const Check& c : r.checks) held.insert(c.name);
   }
   require_levels_of_checks(options.failures, held, invocation);
-  invocation.header().settings = {{"history", options.history},       {"false_alarm", options.trend.false_alarm},
-                                  {"healthy", options.trend.healthy}, {"coverage", options.trend.coverage},
-                                  {"failure", options.failures},      {"limit", options.limits},
-                                  {"seeded", options.seeded}};
+  *invocation.header().settings = {{"history", options.history},       {"false_alarm", options.trend.false_alarm},
+                                   {"healthy", options.trend.healthy}, {"coverage", options.trend.coverage},
+                                   {"failure", options.failures},      {"limit", options.limits},
+                                   {"seeded", options.seeded}};
   if (invocation.dry_run()) return;
 
   std::vector<ValveTrend> trends;

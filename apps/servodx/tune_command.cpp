@@ -2,6 +2,7 @@
 #include <CLI/CLI.hpp>
 #include <filesystem>
 #include <memory>
+#include <nlohmann/json.hpp>
 
 #include "base/error.h"
 #include "base/trouble.h"
@@ -17,12 +18,15 @@
 #include "fit/tuned_state.h"
 #include "invocation.h"
 #include "parameters/table.h"
-#include "report/columns.h"
-#include "report/conditions.h"
-#include "report/json.h"
-#include "report/pages.h"
-#include "report/text.h"
-#include "report/tune_words.h"
+#include "report/shared/columns.h"
+#include "report/shared/conditions.h"
+#include "report/shared/json.h"
+#include "report/shared/replay_part.h"
+#include "report/shared/text_options.h"
+#include "report/tune/tune_json.h"
+#include "report/tune/tune_page.h"
+#include "report/tune/tune_text.h"
+#include "report/tune/tune_words.h"
 #include "servodx/explain.h"
 #include "servodx/log.h"
 #include "servodx/rig.h"
@@ -132,14 +136,14 @@ int run(const Options& options) {
     }
 
   report::Header& header = invocation.header();
-  header.settings = {{"population", tune_options.population},
-                     {"generations", tune_options.generations},
-                     {"heldout", tune_options.heldout},
-                     {"moving_average", tune_options.moving_average},
-                     {"effects", effects},
-                     {"local", options.local},
-                     {"profile", options.profile},
-                     {"prior", options.priors}};
+  *header.settings = {{"population", tune_options.population},
+                      {"generations", tune_options.generations},
+                      {"heldout", tune_options.heldout},
+                      {"moving_average", tune_options.moving_average},
+                      {"effects", effects},
+                      {"local", options.local},
+                      {"profile", options.profile},
+                      {"prior", options.priors}};
   invocation.tell_of_long_fits(logs);
   if (invocation.dry_run()) return ran;
 

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdio>
 #include <memory>
+#include <nlohmann/json.hpp>
 #include <string>
 #include <thread>
 #include <vector>
@@ -24,11 +25,12 @@
 #include "fleet_judge.h"
 #include "follow.h"
 #include "invocation.h"
-#include "report/diagnosis_words.h"
-#include "report/fleet.h"
-#include "report/json.h"
-#include "report/pages.h"
-#include "report/text.h"
+#include "report/diagnose/diagnose_page.h"
+#include "report/diagnose/diagnosis_text.h"
+#include "report/diagnose/diagnosis_words.h"
+#include "report/fleet/fleet.h"
+#include "report/shared/json.h"
+#include "report/shared/text_options.h"
 #include "result_folder.h"
 #include "servodx/log.h"
 
@@ -143,15 +145,15 @@ int run_folder(const Options& options) {
   invocation.check_files({options.params, options.baseline}, outputs);
   const Judging judging = read_judging(invocation, options.params, options.baseline);
   report::Header& header = invocation.header();
-  if (options.common.dry_run) header.settings["logs"] = logs_in(options.folder).size();
+  if (options.common.dry_run) (*header.settings)["logs"] = logs_in(options.folder).size();
   if (invocation.dry_run()) return ran;
   logs_in(options.folder);  // refused before the folder of the results is made
   Watching watching(options, judging, invocation);
-  header.settings.update({{"folder", options.folder},
-                          {"out", options.out},
-                          {"settle", options.settle},
-                          {"interval", options.interval},
-                          {"once", options.once}});
+  header.settings->update({{"folder", options.folder},
+                           {"out", options.out},
+                           {"settle", options.settle},
+                           {"interval", options.interval},
+                           {"once", options.once}});
   watching.go();
   if (options.once && watching.unsettled() > 0 && !watching.run().interrupted)
     invocation.note(

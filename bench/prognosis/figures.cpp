@@ -21,7 +21,7 @@
 #include "prognose/trend.h"
 #include "prognose/valve_history.h"
 #include "prognosis/study.h"
-#include "report/line_chart.h"
+#include "report/shared/line_chart.h"
 #include "rig/rig_run.h"
 #include "store/history.h"
 

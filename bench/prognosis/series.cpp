@@ -12,7 +12,7 @@
 #include "prognose/trend.h"
 #include "prognose/valve_history.h"
 #include "prognosis/study.h"
-#include "report/prognosis_words.h"
+#include "report/trend/trend_words.h"
 #include "servodx/log.h"
 #include "store/history.h"
 #include "store/history_csv.h"

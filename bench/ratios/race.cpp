@@ -1,6 +1,7 @@
 #include "ratios/race.h"
 
 #include <algorithm>
+#include <nlohmann/json.hpp>
 #include <span>
 
 #include "base/random.h"

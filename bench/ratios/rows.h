@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "report/line_chart.h"
+#include "report/shared/line_chart.h"
 
 namespace servodx::bench {
 

@@ -20,7 +20,7 @@
 #include "ratios/rows.h"
 #include "ratios/trace.h"
 #include "ratios/twin.h"
-#include "report/line_chart.h"
+#include "report/shared/line_chart.h"
 #include "servodx/log.h"
 #include "servodx/rig.h"
 #include "simulate/scenario.h"

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <chrono>
 #include <memory>
+#include <nlohmann/json.hpp>
 #include <utility>
 
 #include "base/atomic_file.h"
@@ -17,9 +18,9 @@
 #include "door/baseline_parts.h"
 #include "door/require_setting.h"
 #include "explain/healthy.h"
-#include "report/baseline_file.h"
-#include "report/explain_report.h"
-#include "report/json.h"
+#include "report/baseline/baseline_json.h"
+#include "report/explain/explain_report.h"
+#include "report/shared/json.h"
 #include "servodx/baseline.h"
 #include "servodx/error.h"
 #include "servodx/log.h"
@@ -28,6 +29,8 @@
 #include "servodx/trouble.h"
 #include "servodx/tune.h"
 #include "signals/rig_content.h"
+#include "store/baseline_file.h"
+#include "store/healthy_file.h"
 
 namespace servodx {
 namespace {
@@ -58,7 +61,7 @@ report::Header header_of(const std::vector<Log>& logs, const Tuned& tuned, const
   header.version = SERVODX_VERSION;
   header.command = "baseline";
   header.seed = options.seed;
-  header.settings = {{"false_alarm", options.false_alarm}};
+  *header.settings = {{"false_alarm", options.false_alarm}};
   if (!rig.path.empty()) header.inputs.push_back({rig.path, rig.sha256});
   header.inputs.push_back({tuned.table.path, tuned.table.sha256});
   for (const Log& log : logs) header.inputs.push_back({log.path, log.sha256});
@@ -119,13 +122,13 @@ Baseline make_baseline(const std::vector<Log>& logs, const Tuned& tuned, const R
 
 Baseline read_baseline(const std::string& path) {
   BaselineParts parts;
-  report::BaselineFile file = report::read_baseline(path);
+  store::BaselineFile file = store::read_baseline(path);
   parts.detection = std::move(file.baseline);
   parts.sha256 = file.sha256;
   parts.rig_file = file.rig_file;
   parts.text = read_file(path);
   try {
-    parts.causes = report::read_healthy(path);
+    parts.causes = store::read_healthy(path);
   } catch (const InputError& refused) {
     if (file.has_causes) throw;  // what is there must be right
     parts.causes_refused = refused;

@@ -6,7 +6,7 @@
 #include "fit/replay.h"
 #include "prognose/level.h"
 #include "prognose/trend.h"
-#include "report/tune_words.h"
+#include "report/tune/tune_words.h"
 #include "servodx/charts.h"
 #include "servodx/log.h"
 #include "servodx/rig.h"

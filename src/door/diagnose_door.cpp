@@ -1,6 +1,7 @@
 // The front door of `diagnose`: the verdict in words and numbers that need nothing of the library's inside.
 #include <algorithm>
 #include <memory>
+#include <nlohmann/json.hpp>
 #include <utility>
 #include <vector>
 
@@ -19,8 +20,9 @@
 #include "explain/explain.h"
 #include "faults/fault.h"
 #include "fit/tuned_state.h"
-#include "report/diagnosis_words.h"
-#include "report/json.h"
+#include "report/diagnose/diagnosis_json.h"
+#include "report/diagnose/diagnosis_words.h"
+#include "report/shared/json.h"
 #include "servodx/baseline.h"
 #include "servodx/diagnose.h"
 #include "servodx/error.h"

@@ -1,5 +1,6 @@
 // The front door of `explain`.
 #include <memory>
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <utility>
 
@@ -10,8 +11,8 @@
 #include "explain/explain.h"
 #include "explain/healthy.h"
 #include "explain/outcome.h"
-#include "report/explain_report.h"
-#include "report/explain_words.h"
+#include "report/explain/explain_report.h"
+#include "report/explain/explain_words.h"
 #include "servodx/baseline.h"
 #include "servodx/explain.h"
 #include "servodx/log.h"

@@ -11,7 +11,7 @@
 #include "prognose/trend.h"
 #include "prognose/trend_options.h"
 #include "prognose/trend_state.h"
-#include "report/prognosis_words.h"
+#include "report/trend/trend_words.h"
 #include "servodx/trend.h"
 #include "store/history.h"
 

@@ -7,7 +7,7 @@
 #include "door/require_samples.h"
 #include "fit/tuned_state.h"
 #include "parameters/table_text.h"
-#include "report/tune_words.h"
+#include "report/tune/tune_words.h"
 #include "servodx/checkpoint.h"
 #include "servodx/error.h"
 #include "servodx/log.h"

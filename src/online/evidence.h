@@ -1,7 +1,7 @@
 // How far off the log is lately: squared deviates of each channel, averaged over times from short to long.
 #pragma once
 #include <array>
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 #include <vector>
 
 #include "online/constants.h"

@@ -6,7 +6,7 @@
 // than these logs may have a heavier tail: the logs should hold what the valve does all day.
 #pragma once
 #include <map>
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <span>
 #include <string>

@@ -4,7 +4,7 @@
 // is drawn to the measured one below 1 Hz: it integrates every error of flow, and a run of hours would drift away. The
 // driver is compared too, where command and coil current are both recorded: it has no simulation, but a lag.
 #pragma once
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <span>
 #include <vector>

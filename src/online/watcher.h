@@ -5,7 +5,7 @@
 // for a diagnosis, which is the caller's to make.
 #pragma once
 #include <deque>
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <span>
 #include <string>

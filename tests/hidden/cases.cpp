@@ -10,7 +10,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/random.h"
-#include "report/explain_words.h"
+#include "report/explain/explain_words.h"
 #include "rig/excitations.h"
 #include "rig/rig_model.h"
 #include "rig/rig_run.h"

@@ -9,11 +9,11 @@
 #include "explain/outcome.h"
 #include "hidden/cases.h"
 #include "parameters/table.h"
-#include "report/explain_report.h"
-#include "report/explain_words.h"
+#include "report/explain/explain_words.h"
 #include "servodx/explain.h"
 #include "servodx/log.h"
 #include "servodx/rig.h"
+#include "store/healthy_file.h"
 #include "temporary_folder.h"
 
 namespace servodx::hidden {
@@ -26,7 +26,7 @@ class HiddenStudy : public testing::Test {
   HiddenStudy()
       : bench_{folder_.path, source + "/params/rigs/borello2009.toml", read_rig_file(source + "/data/rig.toml"), 1},
         tuned_(read_table(source + "/tests/hidden/valve_1.csv")),
-        healthy_(report::read_healthy(source + "/tests/hidden/valve_1.json")) {}
+        healthy_(store::read_healthy(source + "/tests/hidden/valve_1.json")) {}
 
   Score judge(std::uint64_t seed, const std::string& effect, const std::string& excitation,
               const std::vector<std::string>& without = {}) {

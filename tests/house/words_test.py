@@ -12,7 +12,7 @@ ASK = {"starts_with", "ends_with", "find", "rfind", "contains", "compare", "coun
 READERS = {
     "apps/servodx/invocation.cpp": "`-` for standard output, names of options",
     "apps/servodx/main.cpp": "words of the command line",
-    "apps/servodx/manifest.h": "reads a manifest",
+    "apps/servodx/manifest.cpp": "reads a manifest",
     "apps/servodx/manual_commands.cpp": "options by their CLI11 names, the names of shells",
     "apps/servodx/map_command.cpp": "--model",
     "apps/servodx/read_manifest.cpp": "reads a manifest",
@@ -38,8 +38,14 @@ READERS = {
     "src/signals/log.cpp": "ending of a file's name",
     "src/signals/log_columns.cpp": "reads units of columns",
     "src/signals/rig_file.cpp": "reads a rig file",
+    "src/store/baseline_file.cpp": "reads a baseline",
+    "src/store/certificate_file.cpp": "reads a certificate sheet",
+    "src/store/healthy_file.cpp": "reads a baseline",
     "src/store/history_csv.cpp": "reads a history",
+    "src/store/logo_file.cpp": "reads a rig file's picture",
+    "src/store/result_json.cpp": "reads a result",
     "src/store/seeded_csv.cpp": "reads a seeded-fault test",
+    "src/store/verdict_file.cpp": "reads a verdict",
 }
 
 # What is compared elsewhere, each text by itself: file, texts, why.
@@ -117,10 +123,12 @@ def registry_names():
 WRITTEN = {
     "src/effects/row_effects.cpp": ({"stiction", "hose_compliance", "cross_piston_leakage"},
                                     "their own file: two are called as their row, one joins an effect's test"),
-    "src/report/conditions.cpp": ({"supply_pressure", "return_pressure"}, "conditions of a log, called as the signals"),
-    "src/report/explain_report.cpp": ({"air_fraction"}, "a key of a baseline's file, whatever the row is called"),
-    "src/report/explain_words.cpp": ({"unexplained"}, "a verdict's word, not the effect's"),
+    "src/report/explain/explain_report.cpp": ({"air_fraction"}, "a key of a baseline's file, whatever the row is called"),
+    "src/report/explain/explain_words.cpp": ({"unexplained"}, "a verdict's word, not the effect's"),
     "src/signals/signal.cpp": ({"supply_pressure", "return_pressure"}, "these two signals are called as their rows"),
+    "src/store/baseline_keys.cpp": ({"supply_pressure", "return_pressure"},
+                                    "conditions of a log, called as the signals"),
+    "src/store/healthy_file.cpp": ({"air_fraction"}, "a key of a baseline's file, whatever the row is called"),
 }
 # The virtual rig shares no list with the model, on purpose; its parameters and faults go by the field's words.
 OWN_WORDS = "src/rig/"

@@ -1,13 +1,14 @@
-#include "report/conditions.h"
+#include "report/shared/conditions.h"
 
 #include <gtest/gtest.h>
 
+#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
 #include "evidence/operating_point.h"
-#include "report/json.h"
-#include "report/page.h"
+#include "report/shared/json.h"
+#include "report/shared/page.h"
 
 namespace servodx::report {
 namespace {

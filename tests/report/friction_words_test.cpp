@@ -1,17 +1,18 @@
 // A sticking spool's friction beside what leakage can press a land with, as a person and a program read it.
-#include "report/friction_words.h"
+#include "report/diagnose/friction_words.h"
 
 #include <gtest/gtest.h>
 
+#include <nlohmann/json.hpp>
 #include <string>
 
 #include "diagnose/decide.h"
 #include "diagnose/judge.h"
 #include "diagnose/lateral_force.h"
 #include "faults/registry.h"
-#include "report/json.h"
-#include "report/page.h"
-#include "report/pages.h"
+#include "report/diagnose/diagnose_page.h"
+#include "report/shared/json.h"
+#include "report/shared/page.h"
 
 namespace servodx::report {
 namespace {

@@ -1,16 +1,17 @@
 // A page's text is escaped, its data cannot end their element, and no peak is lost to thinning.
-#include "report/page.h"
+#include "report/shared/page.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <nlohmann/json.hpp>
 
-#include "report/html.h"
-#include "report/json.h"
-#include "report/parts.h"
-#include "report/thin.h"
+#include "report/shared/html.h"
+#include "report/shared/json.h"
+#include "report/shared/parts.h"
+#include "report/shared/thin.h"
 
 namespace servodx::report {
 namespace {
@@ -36,7 +37,7 @@ TEST(Page, EveryPartEscapesEveryText) {
   header.version = hostile;
   header.inputs = {{hostile, hostile}};
   header.notes = {hostile};
-  header.settings = {{hostile, hostile}};
+  *header.settings = {{hostile, hostile}};
   Page page(header, hostile);
   page.verdict({Tone::bad, hostile, hostile, hostile, {{hostile, hostile}}, {hostile}}, hostile);
   page.section(hostile, hostile);

@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <limits>
+#include <nlohmann/json.hpp>
 
 #include "diagnose/assessment.h"
 #include "diagnose/baseline.h"
@@ -26,26 +27,35 @@
 #include "prognose/life.h"
 #include "prognose/trend.h"
 #include "prognose/trend_state.h"
-#include "report/baseline_file.h"
-#include "report/call_names.h"
-#include "report/check_log.h"
-#include "report/columns.h"
-#include "report/diagnosis_words.h"
-#include "report/explain_report.h"
-#include "report/fleet.h"
-#include "report/handy.h"
-#include "report/json.h"
-#include "report/pages.h"
-#include "report/prognosis.h"
-#include "report/replay_part.h"
-#include "report/selftest.h"
-#include "report/text.h"
-#include "report/tune_words.h"
+#include "report/baseline/baseline_json.h"
+#include "report/baseline/baseline_text.h"
+#include "report/check/check_report.h"
+#include "report/check_log/check_log.h"
+#include "report/diagnose/diagnose_page.h"
+#include "report/diagnose/diagnosis_json.h"
+#include "report/diagnose/diagnosis_text.h"
+#include "report/diagnose/diagnosis_words.h"
+#include "report/explain/explain_report.h"
+#include "report/fleet/fleet.h"
+#include "report/selftest/selftest.h"
+#include "report/shared/call_names.h"
+#include "report/shared/columns.h"
+#include "report/shared/handy.h"
+#include "report/shared/json.h"
+#include "report/shared/replay_part.h"
+#include "report/shared/text_options.h"
+#include "report/trend/trend_report.h"
+#include "report/tune/tune_json.h"
+#include "report/tune/tune_page.h"
+#include "report/tune/tune_text.h"
+#include "report/tune/tune_words.h"
 #include "servodx/actions.h"
 #include "servodx/error.h"
 #include "servodx/log.h"
 #include "servodx/table.h"
 #include "servodx/tune.h"
+#include "store/baseline_file.h"
+#include "store/truth_file.h"
 #include "temporary_folder.h"
 #include "tune/tune.h"
 
@@ -467,7 +477,8 @@ TEST(BaselineFile, ReadsBackToTheSameBits) {
   const DetectionBaseline b = some_baseline();
   Header header;
   header.command = "baseline";
-  const DetectionBaseline back = read_baseline(folder.write("base.json", dump(header, baseline_json(b)))).baseline;
+  const DetectionBaseline back =
+      store::read_baseline(folder.write("base.json", dump(header, baseline_json(b)))).baseline;
   EXPECT_EQ(back.threshold, b.threshold);
   EXPECT_EQ(back.asked, b.asked);
   EXPECT_EQ(back.promised, b.promised);
@@ -493,7 +504,7 @@ TEST(Truth, OfOtherTypesIsRefusedByKey) {
   const auto told = [&](const std::string& text) -> std::string {
     folder.write("log.truth.json", text);
     try {
-      return truth_beside(folder / "log.csv", "1");
+      return store::truth_beside(folder / "log.csv", "1");
     } catch (const InputError& error) {
       return error.rule;
     }
@@ -512,7 +523,7 @@ TEST(BaselineFile, RefusalsNameFileKeyAndMend) {
   const Json good = Json::parse(dump(header, baseline_json(some_baseline())));
   const auto refusal = [&](const std::string& text) -> std::string {
     try {
-      read_baseline(folder.write("base.json", text));
+      store::read_baseline(folder.write("base.json", text));
     } catch (const InputError& error) {
       return std::string(error.what()).substr((folder / "").size());
     }

@@ -1,19 +1,24 @@
 // A verdict beside the last one of the valve: what is said to have changed, by made-up verdicts.
-#include "report/two_tests.h"
+#include "report/diagnose/two_tests.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <nlohmann/json.hpp>
 #include <string>
 
 #include "base/error.h"
-#include "report/json.h"
-#include "report/page.h"
-#include "report/result_file.h"
+#include "report/shared/json.h"
+#include "report/shared/page.h"
+#include "store/verdict_file.h"
 #include "temporary_folder.h"
 
 namespace servodx::report {
 namespace {
+
+using store::TestSide;
+using store::TestSize;
+using store::verdict_of;
 
 TestSide side(const std::string& verdict, const std::string& fault = "", double lower = 0, double upper = 0) {
   TestSide s;
@@ -70,7 +75,7 @@ TEST(TwoTests, ARowThatOneLeftAloneStandsAtItsTunedValueThere) {
   const Json last = result("healthy", Json::array({row("spool_friction", 1, 1.1, 0.3)}));
   const Json now =
       result("unknown", Json::array({row("spool_friction", 1, 1.5, 0.4), row("moving_mass", 10, 13, 0.5)}));
-  const TwoTests t = two_tests("last.json", last, now);
+  const TwoTests t = two_tests("last.json", verdict_of(last), verdict_of(now));
   ASSERT_EQ(t.rows.size(), 2u);
   EXPECT_EQ(t.rows[0].name, "moving_mass");
   EXPECT_EQ(t.rows[0].last, 10);
@@ -84,8 +89,8 @@ TEST(TwoTests, ARowThatOneLeftAloneStandsAtItsTunedValueThere) {
 TEST(TwoTests, OtherTablesAreToldAndTheirUnsharedRowsLeftOut) {
   const Json last = result("healthy", Json::array({row("spool_friction", 1, 1.1, 0.3)}));
   const Json rows = Json::array({row("moving_mass", 10, 13, 0.5)});
-  EXPECT_TRUE(two_tests("last.json", last, result("fault", rows)).same_reference);
-  const TwoTests other = two_tests("last.json", last, result("fault", rows, "another"));
+  EXPECT_TRUE(two_tests("last.json", verdict_of(last), verdict_of(result("fault", rows))).same_reference);
+  const TwoTests other = two_tests("last.json", verdict_of(last), verdict_of(result("fault", rows, "another")));
   EXPECT_FALSE(other.same_reference);
   EXPECT_TRUE(other.rows.empty());
   EXPECT_NE(text_of(other).find("judged by another table"), std::string::npos) << text_of(other);
@@ -94,7 +99,8 @@ TEST(TwoTests, OtherTablesAreToldAndTheirUnsharedRowsLeftOut) {
 TEST(TwoTests, TextJsonAndPageSayTheSame) {
   Json last = result("fault", Json::array());
   last["results"][0]["fault"] = "sticky_spool";
-  const TwoTests t = two_tests("last.json", last, result("healthy", Json::array({row("moving_mass", 10, 13, 0.5)})));
+  const Json now = result("healthy", Json::array({row("moving_mass", 10, 13, 0.5)}));
+  const TwoTests t = two_tests("last.json", verdict_of(last), verdict_of(now));
   EXPECT_NE(text_of(t).find("last.json: gone: the last test showed sticky spool"), std::string::npos) << text_of(t);
   EXPECT_EQ(to_json(t)["change"], "mended");
   EXPECT_EQ(to_json(t)["parameters"].size(), 1u);
@@ -110,7 +116,7 @@ TEST(LastTest, IsOneVerdictOrRefused) {
   const auto refusal = [&](const std::string& text) {
     folder.write("last.json", text);
     try {
-      read_one_verdict(folder / "last.json");
+      store::read_one_verdict(folder / "last.json");
     } catch (const InputError& error) {
       return std::string(error.what());
     }

@@ -1,7 +1,7 @@
 """Real outputs of every command keep the JSON Schemas that the program prints, and nothing stands in one that the other
 lacks. Called by ctest: schema_test.py SERVODX SOURCE [TEST...]
 
-A schema lets further fields pass, as readers do. Here it is closed: a field that the list lacks (src/report/fields.txt)
+A schema lets further fields pass, as readers do. Here it is closed: a field that the list lacks (src/report/list/fields.txt)
 fails, and so does one of the list that no output holds."""
 import copy, json, pathlib, shutil, subprocess, sys, tempfile, unittest
 

@@ -2,6 +2,7 @@
 // do.
 #include <cmath>
 #include <cstdio>
+#include <nlohmann/json.hpp>
 #include <numbers>
 #include <string>
 
@@ -17,10 +18,12 @@
 #include "faults/registry.h"
 #include "fit/identifiability.h"
 #include "fit/replay.h"
-#include "report/json.h"
-#include "report/page.h"
-#include "report/pages.h"
-#include "report/tune_words.h"
+#include "report/baseline/baseline_page.h"
+#include "report/diagnose/diagnose_page.h"
+#include "report/shared/json.h"
+#include "report/shared/page.h"
+#include "report/tune/tune_page.h"
+#include "report/tune/tune_words.h"
 #include "servodx/log.h"
 #include "servodx/table.h"
 #include "servodx/tune.h"
@@ -69,7 +72,7 @@ report::Header some_header(const std::string& command, const std::string& log) {
   header.command = command;
   header.inputs = {{log, std::string(64, 'a')}};
   header.notes = {log + ": 3 gaps in time"};
-  header.settings = {{"name", log}};
+  *header.settings = {{"name", log}};
   header.simulations = 1234;
   return header;
 }

@@ -1,0 +1,97 @@
+// What text and page of a diagnosis say in the same words.
+#pragma once
+#include <map>
+#include <string>
+#include <vector>
+
+#include "diagnose/assessment.h"
+#include "diagnose/baseline.h"
+#include "diagnose/blame.h"
+#include "diagnose/decide.h"
+#include "diagnose/diagnose.h"
+#include "diagnose/judge.h"
+#include "diagnose/judgeable.h"
+#include "diagnose/moved.h"
+#include "diagnose/naming.h"
+#include "diagnose/reading.h"
+#include "diagnose/record_law.h"
+#include "diagnose/records.h"
+#include "evidence/conditions.h"
+#include "faults/fault.h"
+#include "faults/gross_finding.h"
+#include "fit/replay.h"
+#include "report/shared/call_names.h"
+
+namespace servodx::report {
+
+std::string word_of(VerdictKind verdict);    // healthy | fault | unknown
+std::string word_of(Blame blame);            // none | component | physics | surroundings | test
+std::string words_of(Blame blame);           // "a component failed"; "" of none
+std::string words_of(GrossFinding finding);  // "" of none
+std::string word_of(Misreading kind);
+std::string word_of(Unjudgeable reason);    // one word, of no and of an unknown log alike what JSON says
+std::string reason_of(const Diagnosis& d);  // one word: why it is unknown; "" where it is not
+std::string words_of(const Reading& reading);
+std::string words_of_doubt(const Diagnosis& d);  // why it is unknown, and what to look at; "" where it is not
+std::string words_of(Unjudgeable reason);        // why there is nothing to judge, and what to look at; "" of no
+std::string label_of(const Fault* hypothesis);   // its name; of null "healthy"
+std::string name_of(const Diagnosis& d);         // the fault named, else the verdict
+std::string meaning_of(const Fault* hypothesis);
+std::string unit_of(const Fault* hypothesis);  // of its severity; "" of health
+
+// Null where the assessment holds none.
+const HypothesisResult* result_of(const Diagnosis& d, const Fault* hypothesis);
+double probability_of(const Diagnosis& d, const Fault* hypothesis);
+// By label; an unknown state is a label of its own.
+std::map<std::string, double> labelled_probabilities(const Diagnosis& d);
+std::vector<const Fault*> ambiguous_by_label(const Diagnosis& d);
+std::vector<std::string> ambiguous_labels(const Diagnosis& d);
+// The input that would separate the fault named from what it is ambiguous with. "" where none.
+std::string separating_test_of(const Diagnosis& d, const CallNames& names = {});
+
+// What the hypotheses say the log should be, under their labels.
+std::vector<Candidate> candidates_of(const std::vector<HypothesisPrediction>& explanations);
+
+// The rate of false alarms that a baseline promises, and how many more logs the rate asked for takes.
+std::string statement_of(const DetectionBaseline& baseline);
+
+// "p = 0.03", or, where no log of the baseline is as far off, "p = 0.1, the least that 9 logs can show".
+std::string chance_words(const Diagnosis& d);
+
+// "18.6 times the tuned friction (10.3 to 33.4, 95 %)". At the mildest that is called the fault the fit has found none
+// of it: as a hypothesis beside others "none of it seen"; named all the same, "at its least, 15 % ...".
+std::string size_words(const HypothesisResult& hypothesis);
+std::string size_words(const Diagnosis& d);  // of the fault named; "" without a size
+
+// What a record tells: "the supply pressure is 0.75 of what healthy logs have", "pressure_a shows one value ...".
+std::string record_in_words(const RecordFinding& finding);
+// The sensor that is meant; "" where no one is.
+std::string channel_of(const NamedFault& fault);
+std::string of_channel(const Diagnosis& d);  // " of pressure_a", where the fault named is a sensor's
+// "cylinder_leakage, 1.2e-12 m3/s/Pa (...), 98 %" of a second fault beside the first.
+std::string second_in_words(const NamedFault& fault);
+
+// What stands first in a log that cannot be told from healthy ones.
+std::string suspicion_in_words(const Suspicion& suspicion);
+// What `explain` makes of a log that no fault explains.
+std::string beyond_in_words(const BeyondFaults& beyond);
+// Faults that this log would have shown, with the least of each, "clogged filter from 0.72"; and those it would not.
+struct DetectableWords {
+  std::vector<std::string> shown, hidden;
+};
+DetectableWords detectable_words(const Diagnosis& d);
+// "drive spans 43.1 mA at about 5.6 Hz, oil 41 degC"
+std::string test_words(const TestConditions& test);
+// Empty where a log of the baseline is of such a test.
+std::string unlike_words(const Diagnosis& d);
+std::string others_words(const Diagnosis& d);  // empty: it was compared with the baseline's own logs
+// Of a verdict that names nothing: what to run next.
+std::vector<std::string> next_calls(const Diagnosis& d, const CallNames& names = {});
+
+// The rows that the fault moved; those of health's own, each farthest first.
+struct MovedParts {
+  std::vector<MovedRow> fault, health;
+};
+MovedParts moved_parts(const Diagnosis& d);
+
+}  // namespace servodx::report

@@ -1,0 +1,87 @@
+#include "report/explain/explain_words.h"
+
+namespace servodx::report {
+
+const char* word_of(ExplainVerdict verdict) {
+  switch (verdict) {
+    case ExplainVerdict::sufficient:
+      return "sufficient";
+    case ExplainVerdict::extended:
+      return "extended";
+    case ExplainVerdict::unexplained:
+      return "unexplained";
+  }
+  return "";
+}
+
+const char* stamp_of(ExplainVerdict verdict) {
+  switch (verdict) {
+    case ExplainVerdict::sufficient:
+      return "NOTHING NEW";
+    case ExplainVerdict::extended:
+      return "FOUND";
+    case ExplainVerdict::unexplained:
+      return "UNEXPLAINED";
+  }
+  return "";
+}
+
+const char* word_of(ToldBy told_by) {
+  switch (told_by) {
+    case ToldBy::simulation:
+      return "simulation";
+    case ToldBy::blocks:
+      return "blocks";
+    case ToldBy::currents:
+      return "currents";
+  }
+  return "";
+}
+
+const char* words_of_share(ToldBy told_by) {
+  switch (told_by) {
+    case ToldBy::simulation:
+      return "";
+    case ToldBy::blocks:
+      return ", of what the blocks miss with measured signals between them";
+    case ToldBy::currents:
+      return ", of what lies between the command and the coil current; the measured current drives the simulation";
+  }
+  return "";
+}
+
+const char* words_of(Fate fate) {
+  switch (fate) {
+    case Fate::not_looked_at:
+      return "";
+    case Fate::score_too_small:
+      return "its score predicts too little";
+    case Fate::not_worth_its_numbers:
+      return "not worth its numbers";
+    case Fate::others_fit_better:
+      return "others fit better";
+    case Fate::abnormal_with_it:
+      return "no news by itself, and the data stay abnormal with it";
+    case Fate::retuning_does_as_well:
+      return "re-tuning alone does as well on held-out data";
+    case Fate::no_heldout_gain:
+      return "no gain on held-out data beyond its interval";
+    case Fate::removes_too_little:
+      return "removes too little to be an answer";
+    case Fate::not_beyond_healthy:
+      return "not beyond what healthy logs show";
+    case Fate::not_missed_later:
+      return "not missed once the others were in";
+    case Fate::curve_does_better:
+      return "a curve without a name does better";
+    case Fate::blocks_tell_another:
+      return "the replay of the blocks tells another";
+    case Fate::taken:
+      return "taken";
+    case Fate::taken_by_blocks:
+      return "taken: the replay of the blocks tells it";
+  }
+  return "";
+}
+
+}  // namespace servodx::report

@@ -1,0 +1,55 @@
+#include "report/list/trouble_words.h"
+
+namespace servodx::report {
+namespace {
+
+struct Words {
+  const char* meaning;
+  const char* remedy;
+};
+
+Words words_of(Trouble trouble) {
+  switch (trouble) {
+    case Trouble::unit:
+      return {"a column or a quantity has no unit, or one that is not known",
+              "write it as 'name [unit]', or map the column in the rig file"};
+    case Trouble::signal:
+      return {"the log lacks time, the drive or every response",
+              "map your column's name to the signal in [columns] of the rig file; 'servodx init LOG' begins one"};
+    case Trouble::time:
+      return {"a time stamp is not after the one above it", "sort the rows, remove repeated ones, look at the unit"};
+    case Trouble::row:
+      return {"a row has another number of cells than the header, or a cell is no number",
+              "mend the line that is named; a decimal comma needs ';' between the cells"};
+    case Trouble::binary:
+      return {"the file is a workbook, an archive or a recorder's own form, and no text", "export it as CSV"};
+    case Trouble::key:
+      return {"a key of a TOML file is not known there", "correct its spelling, or move it to its section"};
+    case Trouble::untuned:
+      return {"the table has no standard errors: it was not made by 'servodx tune'",
+              "tune it on fault-free logs, and give the tuned table"};
+    case Trouble::other_table:
+      return {"the baseline was made with another table than the one that is given",
+              "give that table, or make a baseline with this one"};
+    case Trouble::unlike_test:
+      return {"no fault-free log of the baseline is of a test like this one",
+              "record fault-free logs of this test, and make a baseline with them"};
+    case Trouble::few_logs:
+      return {"the rate of false alarms that was asked for takes more fault-free logs",
+              "record as many more as the message says, or ask for a higher rate"};
+    case Trouble::implausible:
+      return {"a log holds values that can be read but hardly believed",
+              "look at the signal's unit, sign, gain and sensor; 'servodx check-log LOG' says more"};
+    case Trouble::rig_forgotten:
+      return {"the baseline was made with a rig file, and this call names none", "add --rig RIG.toml"};
+  }
+  return {"", ""};
+}
+
+}  // namespace
+
+bool is_refusal(Trouble trouble) { return trouble <= Trouble::other_table; }
+std::string meaning_of(Trouble trouble) { return words_of(trouble).meaning; }
+std::string remedy_of(Trouble trouble) { return words_of(trouble).remedy; }
+
+}  // namespace servodx::report

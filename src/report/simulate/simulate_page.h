@@ -1,0 +1,11 @@
+// The page of `simulate`.
+#pragma once
+#include "fit/replay.h"
+#include "report/shared/json.h"
+#include "report/shared/page.h"
+
+namespace servodx::report {
+
+Page simulate_page(const Header& header, const Replay& replay);
+
+}  // namespace servodx::report

@@ -1,0 +1,22 @@
+// The file that `baseline` writes and `diagnose` reads: the result JSON of `baseline`, complete enough to judge with.
+#pragma once
+#include <string>
+#include <vector>
+
+#include "diagnose/baseline.h"
+#include "diagnose/diagnose.h"
+
+namespace servodx::store {
+
+struct BaselineFile {
+  DetectionBaseline baseline;
+  std::string sha256;
+  std::vector<std::string> notes;
+  std::string rig_file;     // that it was made with; empty: none
+  bool has_causes = false;  // says what healthy logs show of each cause
+};
+
+// Throws InputError naming the file, the key, the rule and the mend.
+BaselineFile read_baseline(const std::string& path);
+
+}  // namespace servodx::store

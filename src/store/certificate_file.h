@@ -1,0 +1,37 @@
+// The certificate sheet: what a test certificate says beside the result, as ISO/IEC 17025 (7.8) asks for it: customer,
+// test, instruments with their calibration, and the rule by which conformity is stated. Read from a TOML file.
+#pragma once
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "curves/curves.h"
+#include "servodx/log.h"
+#include "signals/signal.h"
+
+namespace servodx::store {
+
+struct Instrument {
+  std::string name, serial;
+  std::string calibrated, due;                   // "2026-05-02"; empty: not said
+  std::string uncertainty;                       // as written: "0.5 %" of the reading, or a quantity; expanded, k = 2
+  std::optional<curves::InstrumentError> error;  // where it names its signal
+
+  bool overdue(const std::string& date) const { return !due.empty() && due < date; }
+};
+
+struct Certificate {
+  std::string path, sha256;
+  std::string number, date, customer, order, valve, place, person;
+  double guard = 1.0;  // guard band, in expanded uncertainties; 0: simple acceptance
+  std::vector<Instrument> instruments;
+
+  std::vector<curves::InstrumentError> errors() const;
+  const Instrument* of(Signal signal) const;  // null: none is named
+  std::vector<std::string> overdue() const;   // in words
+};
+
+// Throws InputError with file, line, key, rule and mend.
+Certificate read_certificate(const std::string& path);
+
+}  // namespace servodx::store
