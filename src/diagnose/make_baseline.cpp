@@ -19,6 +19,7 @@
 #include "servodx/diagnose.h"
 #include "servodx/log.h"
 #include "servodx/rig.h"
+#include "servodx/table.h"
 #include "servodx/watch.h"
 #include "simulate/side_by_side.h"
 
@@ -113,7 +114,7 @@ DetectionBaseline make_baseline(const std::vector<Log>& logs, const Table& tuned
   if (failed) *failed += assessing.failed;
   DetectionBaseline b = baseline_of(healthy, false_alarm, of_others);
   b.null_limit = rig.null_limit;
-  b.tuned_sha256 = tuned.sha256;
+  b.tuned_sha256 = content_hash(tuned);
   return b;
 }
 
