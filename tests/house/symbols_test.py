@@ -141,6 +141,14 @@ class Symbols(unittest.TestCase):
         self.assertGreater(seen, 300)
         self.assertFalse(wrong, "\n" + "\n".join(wrong))
 
+    def test_a_name_without_its_header_is_told(self):
+        """A type, a function, a constant and a macro that are owed; what is included, or declared here, is not."""
+        owed = owes("tests/house/owing.inc")
+        self.assertEqual({name: (line, *have) for name, (line, have) in owed.items()},
+                         {"ErrorModel": (7, "src/fit/error_model.h"), "wilson_95": (8, "src/base/wilson.h"),
+                          "n_parameters": (9, "src/parameters/list.h"),
+                          "SERVODX_PARAMETERS": (10, "src/parameters/list.h")})
+
 
 def include_of(header):
     """How a header is written in an #include."""
