@@ -10,7 +10,6 @@
 
 #include "base/normal.h"
 #include "fit/problem.h"
-#include "parameters/coordinate.h"
 
 namespace servodx::diagnose_constants {
 
@@ -174,7 +173,6 @@ inline constexpr double hopeless = 100.0;                         // of misfit, 
 inline constexpr double worth_another_start = 4.0;                // of misfit: two deviates
 inline constexpr double difference_step = step_through_contacts;  // of the range: a severity runs through contacts
 inline constexpr double cost_tolerance = 1e-4;                    // relative
-inline constexpr double on_bound = wall_width;                    // of the range
 inline constexpr double at_end_part = 1e-3;                       // of the range: so near an end a size stands at it
 inline constexpr double deviates_of_95 = normal_95;               // of a normal distribution
 inline constexpr double deviates_of_one_in_20 = normal_95_one_sided;  // the same, on one side

@@ -6,7 +6,6 @@
 #include <cstddef>
 
 #include "fit/problem.h"
-#include "parameters/coordinate.h"
 
 namespace servodx::explain_constants {
 
@@ -21,16 +20,15 @@ inline constexpr int wall_rounds = 8;                 // walls met one after ano
 inline constexpr double failed_square = 1e12;         // held-out square of a run that fails: never chosen
 
 // Score and fit.
-inline constexpr double at_wall = wall_width;  // [of the unit interval] so near a bound a number is held by it
-inline constexpr double least_square = 1e-12;  // a probe's answer below this is rounding
-inline constexpr int base_iterations = 12;     // of the fit without causes; chosen by hand
-inline constexpr int quick_iterations = 4;     // of a candidate, the base's derivatives kept
-inline constexpr int full_iterations = 4;      // after the quick ones, all derivatives anew
+inline constexpr double least_square = 1e-12;                     // a probe's answer below this is rounding
+inline constexpr int base_iterations = 12;                        // of the fit without causes; chosen by hand
+inline constexpr int quick_iterations = 4;                        // of a candidate, the base's derivatives kept
+inline constexpr int full_iterations = 4;                         // after the quick ones, all derivatives anew
 inline constexpr double difference_step = step_through_contacts;  // [of the unit interval] through contacts and
                                                                   // frictions, as in `diagnose`
-inline constexpr double cost_tolerance = 1e-4;  // of the cost: a candidate is compared, not published
-inline constexpr int curve_dampings = 3;        // tried at once: a curve's kernel runs no wide batch, so each costs a
-                                                // run
+inline constexpr double cost_tolerance = 1e-4;                    // of the cost: a candidate is compared, not published
+inline constexpr int curve_dampings = 3;  // tried at once: a curve's kernel runs no wide batch, so each costs a
+                                          // run
 
 // Forward.
 inline constexpr int fitted = 8;               // causes with a name that are fitted, each round
