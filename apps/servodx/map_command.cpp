@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "base/atomic_file.h"
+#include "base/celsius.h"
 #include "base/units.h"
 #include "commands.h"
 #include "fit/nominal.h"
@@ -28,7 +29,6 @@ namespace {
 
 using namespace valve_maps;
 
-constexpr double reference_temperature = 313.15;  // [K] where the table's values hold
 constexpr int travels = 81, flows = 41;
 
 struct Options {
@@ -39,7 +39,7 @@ struct Options {
 };
 
 ValveGeometry geometry_of(const Table& table, const RigFile& rig) {
-  const Oil oil = oil_of(rig.fluid, reference_temperature);
+  const Oil oil = oil_of(rig.fluid, reference_oil_temperature);
   ValveGeometry g;
   g.port_width = table[row::port_width].nominal;
   g.radial_clearance = table[row::radial_clearance].nominal;

@@ -13,8 +13,6 @@
 
 namespace servodx::prognose_constants {
 
-inline constexpr double reference_kelvin = 313.15;  // [K] 40 degC: viscosity grades are stated there (ISO 3448)
-
 // The preflight test in the command.
 inline constexpr double least_jump = 0.02;     // [of rated] that begins a step; tests of the paper have 0.1
 inline constexpr double rest_band = 0.005;     // [of rated] within which a command is at rest
