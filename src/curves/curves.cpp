@@ -6,8 +6,10 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <utility>
 
 #include "base/key_error.h"
+#include "base/median.h"
 #include "curves/sweep.h"
 #include "servodx/error.h"
 #include "servodx/rig.h"
@@ -65,8 +67,7 @@ double trusted_step(const std::vector<double>& y, double resolution) {
   for (std::size_t k = 1; k + 1 < y.size(); ++k)
     if (const double v = y[k - 1] - 2 * y[k] + y[k + 1]; !std::isnan(v)) d.push_back(std::fabs(v));
   if (d.empty()) return resolution;
-  std::nth_element(d.begin(), d.begin() + static_cast<long>(d.size() / 2), d.end());
-  return std::max(1.5 * resolution, 3.0 * d[d.size() / 2] / (0.6745 * std::sqrt(6.0)));
+  return std::max(1.5 * resolution, 3.0 * median(std::move(d)) / (0.6745 * std::sqrt(6.0)));
 }
 
 class Reading {

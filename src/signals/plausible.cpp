@@ -8,6 +8,7 @@
 #include <iterator>
 #include <span>
 
+#include "base/median.h"
 #include "base/units.h"
 #include "servodx/rig.h"
 #include "signals/usual_step.h"
@@ -30,12 +31,6 @@ constexpr double longest_log = 1e5;       // [s] a day
 constexpr double least_of_stroke = 5e-4;  // a piston that uses less of it has another unit, or another column
 constexpr double no_supply = 5e5;         // [Pa] what a return line holds
 constexpr std::size_t scale_samples = 10000;
-
-double quantile(std::vector<double>& x, double q) {
-  const auto at = x.begin() + static_cast<std::ptrdiff_t>(q * static_cast<double>(x.size() - 1));
-  std::nth_element(x.begin(), at, x.end());
-  return *at;
-}
 
 struct Run {
   std::size_t begin = 0, size = 0;
