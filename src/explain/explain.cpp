@@ -99,7 +99,7 @@ const BlockReplay* worst_block(const std::vector<BlockReplay>& blocks) {
 double over_noise(const std::vector<ExplainedChannel>& channels) {
   double worst = 0;
   for (const ExplainedChannel& c : channels)
-    if (c.noise_rms > 0 && c.signal != info(Signal::piston_position).name)
+    if (c.noise_rms > 0 && c.id != Signal::piston_position)
       worst = std::max(worst, c.heldout_after / c.noise_rms);
   return worst;
 }

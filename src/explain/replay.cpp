@@ -149,8 +149,11 @@ std::vector<Miss> ReplaySubject::misses(const Eigen::VectorXd& rows) const {
   std::vector<Miss> out;
   for (const Kind& k : kinds) {
     double square = 0, n = 0;
-    for (const Series& s : series_)
-      if (s.signal == k.name) square += r.segment(s.first, s.count).squaredNorm(), n += static_cast<double>(s.count);
+    for (std::size_t i = 0; i < series_.size(); ++i) {
+      const Series& s = series_[i];
+      if (parts_[i].missing != k.missing) continue;
+      square += r.segment(s.first, s.count).squaredNorm(), n += static_cast<double>(s.count);
+    }
     if (n > 0) out.push_back({k.name, std::sqrt(square / n)});
   }
   return out;
