@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "diagnose/constants.h"
 #include "diagnose/part_below.h"
 #include "servodx/log.h"
 #include "signals/signal.h"
@@ -16,12 +17,7 @@
 namespace servodx {
 namespace {
 
-constexpr double most_of_the_time = 0.5;  // part of the samples
-constexpr double least_apart = 2e5;       // [Pa] by which one pressure is over another
-constexpr double part_apart = 0.02;       // and by this part of it
-constexpr double half_window = 4e-3;      // [s] about each sample
-constexpr double against = 0.25;          // partial correlation, either
-constexpr long fewest = 100;              // samples
+using namespace diagnose_constants::exchanged;
 
 double margin_of(double pressure) { return std::max(least_apart, part_apart * std::abs(pressure)); }
 
