@@ -45,6 +45,7 @@
 #include "servodx/diagnose.h"
 #include "servodx/error.h"
 #include "servodx/log.h"
+#include "servodx/table.h"
 #include "signals/growing_log.h"
 #include "signals/sample.h"
 #include "signals/signal.h"
@@ -411,7 +412,7 @@ class Following {
                                {"tool", "servodx"},
                                {"version", SERVODX_VERSION},
                                {"source", options_.source},
-                               {"table", judging_.tuned.table.sha256},
+                               {"table", content_hash(judging_.tuned.table)},
                                {"baseline", judging_.baseline.parts->sha256},
                                {"head", log_.head()},
                                {"judged_until", judged_end_},
@@ -434,7 +435,9 @@ class Following {
     if (!has_schema(json, state_schema)) refuse("is no state of a watch");
     try {
       if (json.at("source") != options_.source) refuse("is the state of a watch of another log");
-      if (json.at("table") != judging_.tuned.table.sha256 || json.at("baseline") != judging_.baseline.parts->sha256)
+      const Table& table = judging_.tuned.table;  // earlier versions kept the hash of its file
+      const bool same_table = json.at("table") == content_hash(table) || json.at("table") == table.sha256;
+      if (!same_table || json.at("baseline") != judging_.baseline.parts->sha256)
         refuse("was saved with another table or baseline");
       resumed_ = json.at("watcher");
       remembered_until_ = resumed_.at("last");

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/atomic_file.h"
+#include "base/celsius.h"
 #include "base/units.h"
 #include "commands.h"
 #include "fit/nominal.h"
@@ -29,7 +30,6 @@ namespace {
 
 using namespace valve_maps;
 
-constexpr double reference_temperature = 313.15;  // [K] where the table's values hold
 constexpr int travels = 81, flows = 41;
 
 struct Options {
@@ -40,7 +40,7 @@ struct Options {
 };
 
 ValveGeometry geometry_of(const Table& table, const RigFile& rig) {
-  const Oil oil = oil_of(rig.fluid, reference_temperature);
+  const Oil oil = oil_of(rig.fluid, reference_oil_temperature);
   ValveGeometry g;
   g.port_width = table[row::port_width].nominal;
   g.radial_clearance = table[row::radial_clearance].nominal;

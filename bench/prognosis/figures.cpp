@@ -12,6 +12,7 @@
 #include <numbers>
 
 #include "base/atomic_file.h"
+#include "base/celsius.h"
 #include "base/random.h"
 #include "parameters/list.h"
 #include "parameters/table.h"
@@ -108,7 +109,7 @@ ChartPanel figure_13(const Bench& b, std::string& csv) {
     ChartLine seen{"checks, corrected", {}, {}, "", true};
     for (const auto& p : c.points) {
       seen.x.push_back(p.at), seen.y.push_back(um * p.value);
-      csv += fmt::format("13,feedback_wire_backlash,{},{},{},,,,,{}\n", p.at, p.temperature - 273.15, p.value,
+      csv += fmt::format("13,feedback_wire_backlash,{},{},{},,,,,{}\n", p.at, p.temperature - zero_celsius, p.value,
                          p.healthy ? 1 : 0);
     }
     panel.lines.push_back(seen);

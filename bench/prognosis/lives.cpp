@@ -13,6 +13,8 @@
 #include <numeric>
 
 #include "base/atomic_file.h"
+#include "base/celsius.h"
+#include "base/median.h"
 #include "prognose/check.h"
 #include "prognose/check_name.h"
 #include "prognose/check_series.h"
@@ -29,11 +31,6 @@
 
 namespace servodx::study {
 namespace {
-
-double median(std::vector<double> v) {
-  std::sort(v.begin(), v.end());
-  return v.empty() ? std::nan("") : v[v.size() / 2];
-}
 
 // Label of the fault that a tracked parameter stands for; empty for the paper's checks.
 std::string caused_by(const CheckName& check) {
@@ -75,7 +72,7 @@ std::string seeded_csv(const Bench& b, const std::string& folder) {
             if (caused_by(c.name) == d.name)
               csv += fmt::format("{},{},{:.6g},{:.6g},{:.1f}\n", v, c.name.text(),
                                  truth_of(d, valve, severity_at(end_of(d, b.model, valve), fault ? seeded_part(r) : 0)),
-                                 c.value, r.temperature - 273.15);
+                                 c.value, r.temperature - zero_celsius);
       }
   }
   return csv;
@@ -132,8 +129,8 @@ std::string readings_csv(const Bench& b, const std::vector<Unit>& all, const std
         if (caused_by(c.name) != end.name) continue;
         const double s = r.at / all[i].life;
         csv += fmt::format("{},{},{:.4f},{:.1f},{:.5g},{:.5g},{:.3g},{:.5g}\n", end.name, all[i].name, s,
-                           r.temperature - 273.15, truth_of(end, valve, severity_at(end, all[i].progress(s))), c.value,
-                           c.std_error, histories[i].tuned[row_of(c.name)]);
+                           r.temperature - zero_celsius, truth_of(end, valve, severity_at(end, all[i].progress(s))),
+                           c.value, c.std_error, histories[i].tuned[row_of(c.name)]);
       }
   }
   return csv;

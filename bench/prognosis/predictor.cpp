@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "base/celsius.h"
 #include "base/random.h"
 #include "prognose/trend.h"
 #include "prognose/trend_options.h"
@@ -26,7 +27,7 @@ ValveHistory read_with(double noise, const Unit& unit, int checks) {
     const double s = 0.95 * k / (checks - 1.0), read = unit.progress(s) + noise * random.normal();
     Recording r;
     r.at = s * unit.life, r.table_sha256 = "-";
-    r.temperature = random_condition(random).celsius + 273.15;
+    r.temperature = random_condition(random).celsius + zero_celsius;
     r.checks = {{"parameter:9", read, noise, "1", read, 1.0, "feedback_wire_backlash"}};
     h.recordings.push_back(std::move(r));
   }

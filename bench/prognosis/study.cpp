@@ -6,6 +6,7 @@
 #include <exception>
 #include <mutex>
 
+#include "base/celsius.h"
 #include "prognose/check_name.h"
 #include "prognose/valve_history.h"
 #include "rig/rig_model.h"
@@ -20,7 +21,7 @@ Condition random_condition(Random& random) {
 
 Log test_log(const rig::RigModel& valve, const std::string& fault, double severity, const Condition& at,
              rig::RigRun run) {
-  run.temperature = at.celsius + 273.15;
+  run.temperature = at.celsius + zero_celsius;
   run.air = at.air;
   if (!fault.empty()) run.faults[fault] = severity;
   rig::RigModel here = valve;

@@ -7,6 +7,7 @@
 #include <functional>
 
 #include "base/atomic_file.h"
+#include "base/celsius.h"
 #include "base/csv.h"
 #include "base/random.h"
 #include "parameters/list.h"
@@ -29,7 +30,7 @@ Log kept_log(const Bench& b, const std::string& file, const rig::RigModel& valve
              const rig::RigRun& run) {
   if (!fs::exists(file)) {
     rig::RigRun here = run;
-    here.temperature = at.celsius + 273.15;
+    here.temperature = at.celsius + zero_celsius;
     here.air = at.air;
     rig::RigModel moved = valve;
     moved.armature_null += at.null;

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -40,7 +41,7 @@ struct Baseline {
   int logs = 0;                                        // that set the threshold
   int logs_needed = 0;                                 // for the rate asked for
   std::vector<Score> scores;
-  std::string tuned_sha256;  // of the table it speaks of
+  std::string tuned_sha256;  // content_hash of the table it speaks of; earlier versions wrote that of its file
   std::string path;          // of its file; empty where it was made in memory
   std::vector<std::string> notes;
   long simulations = 0, failed_simulations = 0;
@@ -58,7 +59,8 @@ Baseline read_baseline(const std::string& path);
 void write_baseline(const std::string& path, const Baseline& baseline);
 
 // Throws InputError where the baseline was made with another table: its threshold is a statement about that table's
-// residuals. Every call that takes both asks for it.
-void require_same_table(const Baseline& baseline, const Tuned& tuned);
+// residuals. Every call that takes both asks for it. A comment in the table is no change, a row is, in memory too.
+// Returns a note where an earlier version bound the baseline to the bytes of the table's file.
+std::optional<std::string> require_same_table(const Baseline& baseline, const Tuned& tuned);
 
 }  // namespace servodx

@@ -29,7 +29,7 @@ struct Row {
 
 struct Table {
   std::string path;
-  std::string sha256;
+  std::string sha256;                 // of the file's bytes; a baseline is bound by content_hash() in its place
   std::vector<Row> rows;              // the 41 in order of id, then the effects' rows
   std::vector<std::string> comments;  // lines beginning with '#' before the header, for people
   std::string state;                  // lines beginning with '#%' there: what tuned the table (docs/parameters.md)

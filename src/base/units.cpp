@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "base/celsius.h"
+#include "base/trimmed.h"
 #include "base/trouble.h"
 
 namespace servodx {
@@ -93,12 +94,6 @@ constexpr std::pair<std::string_view, std::string_view> spellings[] = {
     {"\xCE\xBCs", "us"},
     {"m\xC2\xB3/s", "m3/s"},
 };
-
-std::string_view trimmed(std::string_view text) {
-  const auto first = text.find_first_not_of(" \t");
-  if (first == std::string_view::npos) return {};
-  return text.substr(first, text.find_last_not_of(" \t") - first + 1);
-}
 
 std::string quoted(std::string_view text) { return "'" + std::string(text) + "'"; }
 

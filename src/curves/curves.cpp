@@ -6,14 +6,19 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <utility>
 
 #include "base/key_error.h"
+#include "base/median.h"
+#include "curves/constants.h"
 #include "curves/sweep.h"
 #include "servodx/error.h"
 #include "servodx/rig.h"
 
 namespace servodx::curves {
 namespace {
+
+using namespace curves_constants;
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
@@ -65,8 +70,7 @@ double trusted_step(const std::vector<double>& y, double resolution) {
   for (std::size_t k = 1; k + 1 < y.size(); ++k)
     if (const double v = y[k - 1] - 2 * y[k] + y[k + 1]; !std::isnan(v)) d.push_back(std::fabs(v));
   if (d.empty()) return resolution;
-  std::nth_element(d.begin(), d.begin() + static_cast<long>(d.size() / 2), d.end());
-  return std::max(1.5 * resolution, 3.0 * d[d.size() / 2] / (0.6745 * std::sqrt(6.0)));
+  return std::max(1.5 * resolution, 3.0 * median(std::move(d)) / (0.6745 * std::sqrt(6.0)));
 }
 
 class Reading {
@@ -103,9 +107,6 @@ class Reading {
   }
 
  private:
-  static constexpr double slow = 0.2;     // [1/s] rated current per time
-  static constexpr double fastest = 1.0;  // [1/s] 2.5 ms of a valve's lag make half a per cent of hysteresis
-
   const SweepCurve& curve(Signal signal, const std::vector<double>& output) {
     sheet_.curves.push_back(curve_of(sweeps_, signal, output));
     return sheet_.curves.back();
@@ -129,11 +130,10 @@ class Reading {
     const auto [up_low, up_high] = range(c.up);
     const auto [down_low, down_high] = range(c.down);
     const double low = std::max(up_low, down_low), high = std::min(up_high, down_high);
-    constexpr double inner = 0.9;
-    constexpr int levels = 60;
     double largest = nan;
-    for (int k = 0; k <= levels; ++k) {
-      const double level = 0.5 * (low + high) + inner * (high - low) * (static_cast<double>(k) / levels - 0.5);
+    for (int k = 0; k <= hysteresis_levels; ++k) {
+      const double level =
+          0.5 * (low + high) + inner_outputs * (high - low) * (static_cast<double>(k) / hysteresis_levels - 0.5);
       largest = std::fmax(largest, distance(c.current, c, level));
     }
     return largest / rated_;
@@ -164,9 +164,9 @@ class Reading {
 
   // Smallest step of the output's readings near a sample: meters are coarser where they read more.
   static double resolution_near(const std::vector<double>& y, std::size_t at) {
-    constexpr std::size_t reach = 2000;
     double least = 0, last = nan;
-    for (std::size_t k = at > reach ? at - reach : 0; k < std::min(y.size(), at + reach); ++k) {
+    for (std::size_t k = at > resolution_reach ? at - resolution_reach : 0;
+         k < std::min(y.size(), at + resolution_reach); ++k) {
       if (std::isnan(y[k])) continue;
       if (const double step = std::fabs(y[k] - last); step > 0 && (least == 0 || step < least)) least = step;
       last = y[k];
@@ -175,7 +175,6 @@ class Reading {
   }
 
   void threshold(const std::string& name, const std::vector<double>& y, double gain) {
-    constexpr double coarsest = 0.01;  // of rated: beyond, nothing is said of a figure of some tenths of a per cent
     double sum = 0, finest = std::numeric_limits<double>::infinity(), widest = 0;
     long n = 0;
     for (std::size_t turn : sweeps_.reversals) {
@@ -183,7 +182,7 @@ class Reading {
       const double seen = trusted_step(y, resolution_near(y, turn));
       const double in_current = std::max(seen / std::fabs(gain), sweeps_.resolution) / rated_;
       finest = std::min(finest, in_current);
-      if (!(in_current < coarsest)) continue;
+      if (!(in_current < coarsest_threshold)) continue;
       const double way = sweeps_.direction[turn] > 0 ? 1.0 : -1.0, sign = gain > 0 ? way : -way;
       double extreme = y[turn];
       for (std::size_t k = turn; k < y.size() && sweeps_.direction[k] == sweeps_.direction[turn]; ++k) {
@@ -236,10 +235,8 @@ class Reading {
     if (std::isnan(all.slope)) return;
     add("flow_gain", name, std::fabs(all.slope), "m3/s/A");
     double largest = 0;
-    // At the ends of the sweep the loop closes, and the mean of its branches bends.
-    constexpr double inner = 0.95;
     for (std::size_t k = 0; k < c.current.size(); ++k)
-      if (!std::isnan(c.mean[k]) && std::fabs(c.current[k]) <= inner * top)
+      if (!std::isnan(c.mean[k]) && std::fabs(c.current[k]) <= inner_sweep * top)
         largest = std::max(largest, std::fabs(c.mean[k] - all.at_zero - all.slope * c.current[k]));
     add("linearity", name, largest / std::fabs(all.slope) / rated_, "-");
     // Straight parts of both polarities, clear of the null region.
@@ -315,8 +312,6 @@ class Reading {
     if (y.empty()) return;
     const Signal drive = log_.has(Signal::command) ? Signal::command : Signal::coil_current;
     auto points = frequency_response(log_.time, log_[drive], y);
-    // A slow sweep has no response to speak of.
-    constexpr double lively = 10.0;  // [Hz]
     if (points.size() < 8 || points.back().frequency < lively) return;
     // A held command acts half a sample late: that is the log's lag and not the valve's.
     if (drive == Signal::command && rig_.command_hold.value_or(CommandHold::zero) == CommandHold::zero) {

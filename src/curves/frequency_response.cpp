@@ -6,11 +6,13 @@
 #include <limits>
 #include <numbers>
 
+#include "curves/constants.h"
+
 namespace servodx::curves {
 namespace {
 
-constexpr double cycles = 10.0;  // a window
-constexpr int per_decade = 24;   // frequencies
+using namespace curves_constants;
+
 constexpr double two_pi = 2.0 * std::numbers::pi;
 
 double between(double f0, double f1, double v0, double v1, double wanted) {
@@ -65,11 +67,9 @@ std::vector<ResponsePoint> frequency_response(std::span<const double> time, std:
     points.push_back({f, std::abs(s_xy) / s_xx, std::arg(s_xy), c});
     power.push_back(per);
   }
-  // What leaks through the windows' skirts of a strong neighbour is no excitation.
-  constexpr double quiet = 1e-4;
   std::vector<ResponsePoint> kept;
   for (std::size_t k = 0; k < points.size(); ++k)
-    if (power[k] > quiet * largest_input) kept.push_back(points[k]);
+    if (power[k] > quiet_input * largest_input) kept.push_back(points[k]);
   for (std::size_t k = 1; k < kept.size(); ++k)
     kept[k].phase -= two_pi * std::round((kept[k].phase - kept[k - 1].phase) / two_pi);
   return kept;

@@ -4,16 +4,14 @@
 #include <cmath>
 #include <limits>
 
+#include "curves/constants.h"
 #include "servodx/log.h"
 
 namespace servodx::curves {
 namespace {
 
-constexpr double turn = 0.01;          // of rated: the command has turned when it came back by this
-constexpr double least_range = 0.02;   // of rated
-constexpr double curve_step = 0.0025;  // of rated
-constexpr double fastest = 5.0;        // [1/s] rated current per time: beyond, the curve is the dynamics'
-constexpr double covered = 0.6;        // of the steps of the range that the command must visit
+using namespace curves_constants;
+
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 }  // namespace
@@ -53,15 +51,14 @@ std::optional<Sweeps> sweeps_of(const Log& log, double rated) {
   for (std::size_t j = begin; j < s.current.size(); ++j) s.direction[j] = direction;
   travelled += std::fabs(s.current.back() - s.current[begin]);
   s.rate = travelled / (log.time.back() - log.time.front());
-  if (direction == 0 || s.rate > fastest * rated) return std::nullopt;
+  if (direction == 0 || s.rate > fastest_sweep * rated) return std::nullopt;
 
   double shortest = std::numeric_limits<double>::infinity(), longest = 0;
   for (std::size_t k = 1; k < s.reversals.size(); ++k) {
     const double branch = log.time[s.reversals[k]] - log.time[s.reversals[k - 1]];
     shortest = std::min(shortest, branch), longest = std::max(longest, branch);
   }
-  constexpr double alike = 1.5;
-  s.periodic = longest <= alike * shortest;
+  s.periodic = longest <= alike_branches * shortest;
 
   // Steps of the command's own resolution where that is coarse, so that no step is empty by rounding.
   s.step = s.resolution > 0.8 * curve_step * rated ? s.resolution : curve_step * rated;

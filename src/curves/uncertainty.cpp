@@ -5,6 +5,7 @@
 
 #include "base/error.h"
 #include "base/random.h"
+#include "curves/constants.h"
 #include "curves/curves.h"
 #include "servodx/log.h"
 #include "servodx/rig.h"
@@ -13,10 +14,7 @@
 namespace servodx::curves {
 namespace {
 
-constexpr std::uint32_t draws = 40;   // the standard deviation is known to 11 %
-constexpr std::uint32_t fewest = 20;  // draws that show the figure
-constexpr double coverage = 2.0;      // k of an expanded uncertainty
-constexpr std::uint64_t seed = 1;     // fixed: a figure's uncertainty is a property of the log
+using namespace curves_constants;
 
 // Readings of one signal as they might have been. What was rounded to one value was rounded by one error.
 void draw(std::vector<double>& y, double noise, double resolution, Random& random) {
@@ -71,8 +69,9 @@ std::vector<double> by_draws(const Sheet& sheet, const Log& log, const RigFile& 
     double mean = 0, square = 0;
     for (double v : values) mean += v / static_cast<double>(values.size());
     for (double v : values) square += (v - mean) * (v - mean);
-    squares.push_back(values.size() < fewest ? std::nan("")
-                                             : coverage * coverage * square / static_cast<double>(values.size() - 1));
+    squares.push_back(values.size() < fewest_draws
+                          ? std::nan("")
+                          : coverage * coverage * square / static_cast<double>(values.size() - 1));
   }
   return squares;
 }

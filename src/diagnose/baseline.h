@@ -43,7 +43,7 @@ struct DetectionBaseline {
   bool of_other_tests = false;  // the scores stand in for logs of a test that the baseline does not hold
   double adequacy_limit = 0;    // largest adequacy of a healthy log
   double null_limit = 0.05;
-  std::string tuned_sha256;  // of the table it was made with
+  std::string tuned_sha256;  // content_hash of the table it was made with; earlier versions wrote that of its file
 };
 
 // `usual`: what each fault gains on fault-free logs, on average; a fault that health shows too must gain the more.

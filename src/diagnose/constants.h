@@ -10,7 +10,6 @@
 
 #include "base/normal.h"
 #include "fit/problem.h"
-#include "parameters/coordinate.h"
 
 namespace servodx::diagnose_constants {
 
@@ -174,10 +173,27 @@ inline constexpr double hopeless = 100.0;                         // of misfit, 
 inline constexpr double worth_another_start = 4.0;                // of misfit: two deviates
 inline constexpr double difference_step = step_through_contacts;  // of the range: a severity runs through contacts
 inline constexpr double cost_tolerance = 1e-4;                    // relative
-inline constexpr double on_bound = wall_width;                    // of the range
 inline constexpr double at_end_part = 1e-3;                       // of the range: so near an end a size stands at it
 inline constexpr double deviates_of_95 = normal_95;               // of a normal distribution
 inline constexpr double deviates_of_one_in_20 = normal_95_one_sided;  // the same, on one side
+
+// Fault-free logs that a baseline needs at least, and that set its limits where the model follows so many of them (else
+// all do): three are the fewest that show a spread. By definition.
+inline constexpr std::size_t fewest_logs = 3;
+inline constexpr double failed_adequacy = 1e3;  // of a hypothesis whose fit failed. Not examined
+// [of rated current] of the null on the tuning logs' rig, where a tune asks what faults its logs would show
+// (diagnose/promise.cpp): as a tune frees it. Not examined.
+inline constexpr double tuned_null_limit = 0.1;
+
+// Columns that are exchanged (diagnose/swapped.cpp): it changes no verdict. Chosen by hand; not examined.
+namespace exchanged {
+inline constexpr double most_of_the_time = 0.5;  // part of the samples
+inline constexpr double least_apart = 2e5;       // [Pa] by which one pressure is over another
+inline constexpr double part_apart = 0.02;       // and by this part of it
+inline constexpr double half_window = 4e-3;      // [s] about each sample
+inline constexpr double against = 0.25;          // partial correlation, either
+inline constexpr long fewest = 100;              // samples
+}  // namespace exchanged
 
 // What check-log finds suspicious (diagnose/survey.cpp): it changes no verdict. Chosen by hand; not examined.
 namespace survey_of_log {

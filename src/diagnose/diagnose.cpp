@@ -42,8 +42,6 @@ namespace {
 
 namespace k = diagnose_constants;
 
-constexpr double failed_adequacy = 1e3;  // of a hypothesis whose fit failed
-
 ErrorModel required_error_model(const Table& tuned) {
   ErrorModel error = error_model_of(tuned);
   if (error.channels.empty())
@@ -148,7 +146,7 @@ double scale_of(const HypothesisFits& fits) {
 }
 
 double worst_channel(const HypothesisFit& f) {
-  return f.channel_adequacy.empty() ? failed_adequacy
+  return f.channel_adequacy.empty() ? k::failed_adequacy
                                     : *std::max_element(f.channel_adequacy.begin(), f.channel_adequacy.end());
 }
 
@@ -279,7 +277,7 @@ Unjudgeable unjudgeable_of(const Ready& ready, const ParameterVector& base, cons
 // Health alone, and nothing known of it: where there is nothing to judge there is nothing to fit.
 HypothesisResult not_fitted() {
   HypothesisResult health;
-  health.adequacy = failed_adequacy;
+  health.adequacy = k::failed_adequacy;
   return health;
 }
 

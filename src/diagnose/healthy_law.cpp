@@ -12,8 +12,6 @@ namespace {
 
 namespace k = diagnose_constants;
 
-constexpr std::size_t fewest_logs = 3;  // fewer set no limit: then all logs do
-
 std::vector<std::size_t> all_of(const DetectionBaseline& b) {
   std::vector<std::size_t> out;
   for (std::size_t i = 0; i < b.scores.size(); ++i) out.push_back(i);
@@ -28,7 +26,7 @@ std::vector<std::size_t> logs_for(const DetectionBaseline& b, const SuspectLog* 
     const bool alike = lost && s.test && distance(suspect->test, *s.test) <= 1;
     if (alike || is_followed(s.adequacy)) out.push_back(i);
   }
-  return out.size() < fewest_logs ? all_of(b) : out;
+  return out.size() < k::fewest_logs ? all_of(b) : out;
 }
 
 std::vector<double> squares_of(const DetectionBaseline& b, const std::vector<std::size_t>& logs) {
@@ -58,7 +56,7 @@ HealthyLaw::HealthyLaw(const DetectionBaseline& b, const SuspectLog* suspect)
   const double by_law = std::sqrt(gains_.excess_at(rate()));
   limit_ = std::max(by_law, rank_promise(ranked, asked_).threshold);
   // A baseline of one or two logs of such tests: as wrong as on the tuning logs is 1 by definition.
-  while (adequacies_.size() < fewest_logs) adequacies_.push_back(1.0);
+  while (adequacies_.size() < k::fewest_logs) adequacies_.push_back(1.0);
   const Deviate one = deviate_of(1, adequacies_, {k::adequacy_spread, k::usual_logs});
   constexpr double sides = 2;  // the quantile's tail has two, an adequacy's one
   const double worst_of = suspect ? static_cast<double>(suspect->logs) : 1.0;

@@ -20,6 +20,7 @@
 #include "optimise/box_least_squares.h"
 #include "optimise/local.h"
 #include "optimise/problem.h"
+#include "parameters/coordinate.h"
 #include "simulate/scenario.h"
 
 namespace servodx {
@@ -94,8 +95,7 @@ JacobianFunction lent_derivatives(const FitProblem& problem, const FitEnd& end) 
 // A value on its bound has no error; a fault's severity, the first, has one everywhere.
 std::vector<double> standard_errors(const LeastSquaresResult& r, std::size_t faults) {
   std::vector<char> kept(r.point.size());
-  for (std::size_t j = 0; j < kept.size(); ++j)
-    kept[j] = j < faults || (r.point[j] > k::on_bound && r.point[j] < 1 - k::on_bound);
+  for (std::size_t j = 0; j < kept.size(); ++j) kept[j] = j < faults || off_walls(r.point[j]);
   const Eigen::MatrixXd covariance = covariance_of(r.jacobian, kept);
   std::vector<double> errors;
   for (std::size_t j = 0; j < kept.size(); ++j)

@@ -12,6 +12,7 @@
 #include "diagnose/naming.h"
 #include "diagnose/record_law.h"
 #include "evidence/conditions.h"
+#include "evidence/operating_point.h"
 #include "faults/fault.h"
 #include "servodx/actions.h"
 

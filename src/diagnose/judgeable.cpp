@@ -4,7 +4,9 @@
 #include <cmath>
 #include <vector>
 
+#include "base/median.h"
 #include "diagnose/constants.h"
+#include "diagnose/part_below.h"
 #include "model/state.h"
 #include "parameters/list.h"
 #include "servodx/log.h"
@@ -20,13 +22,6 @@ std::vector<double> present(const std::vector<double>& x) {
   for (const double v : x)
     if (std::isfinite(v)) out.push_back(v);
   return out;
-}
-
-double quantile(std::vector<double> x, double part) {
-  if (x.empty()) return 0;
-  const auto at = x.begin() + static_cast<long>(part * static_cast<double>(x.size() - 1));
-  std::nth_element(x.begin(), at, x.end());
-  return *at;
 }
 
 // Between the first and the last hundredth: a spike is no motion.
@@ -109,24 +104,13 @@ bool asked_of(const LogData& log, const ParameterVector& base) {
   return driven && !all_channels(log, is_noise);
 }
 
-// Part of the samples in which a pressure lies below another, by more than two sensors err.
-double part_below(const std::vector<double>& upper, const std::vector<double>& lower, double margin) {
-  std::size_t below = 0, all = 0;
-  for (std::size_t i = 0; i < std::min(upper.size(), lower.size()); ++i) {
-    if (!std::isfinite(upper[i]) || !std::isfinite(lower[i])) continue;
-    ++all;
-    below += upper[i] < lower[i] - margin;
-  }
-  return all ? static_cast<double>(below) / static_cast<double>(all) : 0;
-}
-
 // A chamber lies between return and supply but for moments. One that is shut in may be above a supply that is off; it
 // does not move then.
 bool out_of_order(const LogData& log, const ParameterVector& base) {
   const Scenario& in = log.scenario;
-  const double margin = k::order_margin * base[row::supply_pressure];
+  const double two_sensors_err = k::order_margin * base[row::supply_pressure];
   const auto most = [&](const std::vector<double>& upper, const std::vector<double>& lower) {
-    return part_below(upper, lower, margin) > k::out_of_order_part;
+    return part_below(upper, lower, [&](double) { return two_sensors_err; }) > k::out_of_order_part;
   };
   if (most(in.supply_pressure, in.return_pressure)) return true;
   return std::any_of(log.channels.begin(), log.channels.end(), [&](const FitChannel& c) {

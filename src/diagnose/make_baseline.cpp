@@ -11,6 +11,7 @@
 #include "base/parts_done.h"
 #include "diagnose/assessment.h"
 #include "diagnose/baseline.h"
+#include "diagnose/constants.h"
 #include "diagnose/diagnose.h"
 #include "diagnose/judgeable.h"
 #include "fit/nominal.h"
@@ -19,13 +20,12 @@
 #include "servodx/diagnose.h"
 #include "servodx/log.h"
 #include "servodx/rig.h"
+#include "servodx/table.h"
 #include "servodx/watch.h"
 #include "simulate/side_by_side.h"
 
 namespace servodx {
 namespace {
-
-constexpr std::size_t fewest_logs = 3;
 
 void check(const std::vector<Log>& logs, const std::vector<Log>& others, const Table& tuned, double false_alarm) {
   if (!(false_alarm > 0 && false_alarm < 1))
@@ -48,7 +48,7 @@ void check(const std::vector<Log>& logs, const std::vector<Log>& others, const T
     if (std::find(content.begin(), content.end(), content_hash(log)) != content.end())
       throw InputError({.file = log.path}, "is one of the baseline's own logs as well",
                        "give each log once: to the baseline, or as one of other tests");
-  if (logs.size() < fewest_logs)
+  if (logs.size() < diagnose_constants::fewest_logs)
     throw InputError({}, fmt::format("{} logs cannot set a threshold", logs.size()),
                      "give at least 3 fault-free logs; the rate that can be promised is 1/(n+1)");
 }
@@ -113,7 +113,7 @@ DetectionBaseline make_baseline(const std::vector<Log>& logs, const Table& tuned
   if (failed) *failed += assessing.failed;
   DetectionBaseline b = baseline_of(healthy, false_alarm, of_others);
   b.null_limit = rig.null_limit;
-  b.tuned_sha256 = tuned.sha256;
+  b.tuned_sha256 = content_hash(tuned);
   return b;
 }
 

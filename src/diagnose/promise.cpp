@@ -3,14 +3,15 @@
 
 #include "base/error.h"
 #include "diagnose/check_log.h"
+#include "diagnose/constants.h"
 #include "diagnose/hypotheses.h"
 #include "faults/fault.h"
 #include "faults/registry.h"
 #include "fit/chart.h"
 #include "fit/error_model.h"
+#include "fit/fast_log.h"
 #include "fit/free_values.h"
 #include "fit/identifiability.h"
-#include "fit/fast_log.h"
 #include "fit/log_data.h"
 #include "fit/nominal.h"
 #include "fit/problem.h"
@@ -24,8 +25,6 @@
 
 namespace servodx {
 namespace {
-
-constexpr double default_null_limit = 0.1;
 
 void whiten(FitProblem& problem, const ErrorModel& error, const Point& x) {
   if (!error.channels.empty()) return apply_error_model(problem, error, x);
@@ -145,7 +144,7 @@ Promise promise_of(const Log& log, const Table& table, const RigFile& rig, int t
   promise.error_known = !error.channels.empty();
 
   std::vector<FreeValue> free = shared_values(facts);
-  const std::vector<FreeValue> nuisances = nuisance_values(data, 0, base, default_null_limit);
+  const std::vector<FreeValue> nuisances = nuisance_values(data, 0, base, diagnose_constants::tuned_null_limit);
   free.insert(free.end(), nuisances.begin(), nuisances.end());
   FitProblem problem({&data}, base, free, options);
   const Point x = problem.start();

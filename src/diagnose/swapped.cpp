@@ -9,29 +9,17 @@
 #include <string>
 #include <vector>
 
+#include "diagnose/constants.h"
+#include "diagnose/part_below.h"
 #include "servodx/log.h"
 #include "signals/signal.h"
 
 namespace servodx {
 namespace {
 
-constexpr double most_of_the_time = 0.5;  // part of the samples
-constexpr double least_apart = 2e5;       // [Pa] by which one pressure is over another
-constexpr double part_apart = 0.02;       // and by this part of it
-constexpr double half_window = 4e-3;      // [s] about each sample
-constexpr double against = 0.25;          // partial correlation, either
-constexpr long fewest = 100;              // samples
+using namespace diagnose_constants::exchanged;
 
-// Part of the samples in which `upper` lies below `lower`.
-double part_below(const std::vector<double>& upper, const std::vector<double>& lower) {
-  std::size_t below = 0, all = 0;
-  for (std::size_t k = 0; k < upper.size(); ++k) {
-    if (!std::isfinite(upper[k]) || !std::isfinite(lower[k])) continue;
-    ++all;
-    below += upper[k] < lower[k] - std::max(least_apart, part_apart * std::abs(lower[k]));
-  }
-  return all ? static_cast<double>(below) / static_cast<double>(all) : 0;
-}
+double margin_of(double pressure) { return std::max(least_apart, part_apart * std::abs(pressure)); }
 
 void find_order(const Log& log, std::vector<Finding>& found) {
   const struct {
@@ -43,7 +31,7 @@ void find_order(const Log& log, std::vector<Finding>& found) {
                {Signal::supply_pressure, Signal::return_pressure}};
   for (const auto& [upper, lower] : order) {
     if (!log.has(upper) || !log.has(lower)) continue;
-    const double part = part_below(log[upper], log[lower]);
+    const double part = part_below(log[upper], log[lower], &margin_of);
     if (part < most_of_the_time) continue;
     found.push_back({FindingKind::swapped,
                      fmt::format("'{}' is below '{}' in {:.0f} % of the samples: are the two columns exchanged?",

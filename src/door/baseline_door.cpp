@@ -4,8 +4,10 @@
 
 #include <algorithm>
 #include <chrono>
+#include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <utility>
 
 #include "base/atomic_file.h"
@@ -18,6 +20,7 @@
 #include "door/baseline_parts.h"
 #include "door/require_setting.h"
 #include "explain/healthy.h"
+#include "parameters/table_text.h"
 #include "report/baseline/baseline_json.h"
 #include "report/explain/explain_report.h"
 #include "report/shared/json.h"
@@ -72,6 +75,15 @@ report::Header header_of(const std::vector<Log>& logs, const Tuned& tuned, const
 Stages stages_of_causes(const Tuned& tuned, const Rig& rig, const BaselineOptions& options) {
   if (!options.watch.checkpoint) return {};
   return {options.watch, "healthy causes", content_hash(tuned.table), content_bytes(rig)};
+}
+
+// Whether the table says what the bytes say that its `sha256` is of: rows can be changed in memory.
+bool is_as_read(const Table& table) {
+  if (sha256(table_text(table)) == table.sha256) return true;
+  std::error_code none;
+  if (!std::filesystem::is_regular_file(table.path, none)) return false;
+  const std::string text = read_file(table.path);
+  return sha256(text) == table.sha256 && content_hash(parse_table(text, table.path)) == content_hash(table);
 }
 
 }  // namespace
@@ -152,9 +164,13 @@ const HealthyReference& causes_of(const Baseline& baseline) {
 
 void write_baseline(const std::string& path, const Baseline& baseline) { write_file(path, parts_of(baseline).text); }
 
-void require_same_table(const Baseline& baseline, const Tuned& tuned) {
+std::optional<std::string> require_same_table(const Baseline& baseline, const Tuned& tuned) {
   parts_of(baseline);
-  if (baseline.tuned_sha256 == tuned.table.sha256) return;
+  if (baseline.tuned_sha256 == content_hash(tuned.table)) return {};
+  if (baseline.tuned_sha256 == tuned.table.sha256 && is_as_read(tuned.table))
+    return baseline.path +
+           ": a baseline of an earlier version, bound to the bytes of the table's file: a comment added there will "
+           "refuse it; make it again with 'servodx baseline'";
   const InputError other =
       key_error({baseline.path, 0, "tuned_sha256"}, "was made with another table than " + tuned.table.path,
                 "give the table it was made with, or make a baseline with this one");

@@ -2,6 +2,8 @@
 #include <algorithm>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -133,9 +135,10 @@ Verdict diagnose_pool(const std::vector<Log>& logs, const Tuned& tuned, const Ri
                       const DiagnoseOptions& options) {
   options.validate();
   if (logs.empty()) throw InputError({}, "no log is given", "give the logs of one valve in one state");
-  require_same_table(baseline, tuned);
+  const std::optional<std::string> of_baseline = require_same_table(baseline, tuned);
   Assessment assessment = assess_pool(logs, tuned.table, rig, options);
   if (options.watch.stopped()) return interrupted_verdict(assessment);
+  if (of_baseline) assessment.notes.push_back(*of_baseline);
   Diagnosis d = judge(std::move(assessment), parts_of(baseline).detection);
   set_beside_tuning(d.conditions, tuning_points(parts_of(baseline).detection, tuned.table));
   const bool asks = d.doubt == Doubt::no_fault && options.explain_unknown;

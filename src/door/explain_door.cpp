@@ -2,6 +2,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <string>
 #include <utility>
 
 #include "base/error.h"
@@ -93,11 +94,13 @@ Explanation explain(const std::vector<Log>& logs, const Tuned& tuned, const Rig&
                     const ExplainOptions& options) {
   options.validate();
   door::require_samples(logs, rig);
-  require_same_table(baseline, tuned);
+  const std::optional<std::string> of_baseline = require_same_table(baseline, tuned);
   const HealthyReference& causes = causes_of(baseline);
   ExplainOptions at_its_rate = options;
   at_its_rate.level = baseline.asked;
-  return explanation_of(explain_logs(logs, tuned.table, rig, &causes, at_its_rate));
+  ExplainResult result = explain_logs(logs, tuned.table, rig, &causes, at_its_rate);
+  if (of_baseline) result.notes.push_back(*of_baseline);
+  return explanation_of(std::move(result));
 }
 
 }  // namespace servodx

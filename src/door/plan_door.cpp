@@ -1,6 +1,7 @@
 // The front door of `plan`: options checked, the test planned, its commands written.
 #include <fmt/format.h>
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -54,8 +55,11 @@ void PlanOptions::validate() const {
 PlannedTest plan_test(const Tuned& tuned, const Rig& rig, const PlanOptions& options, const Baseline* baseline,
                       const Log* like) {
   options.validate();
-  if (baseline) require_same_table(*baseline, tuned);
-  return plan_of(tuned.table, rig, options, baseline ? &parts_of(*baseline).detection : nullptr, like);
+  std::optional<std::string> of_baseline;
+  if (baseline) of_baseline = require_same_table(*baseline, tuned);
+  PlannedTest out = plan_of(tuned.table, rig, options, baseline ? &parts_of(*baseline).detection : nullptr, like);
+  if (of_baseline) out.notes.push_back(*of_baseline);
+  return out;
 }
 
 void write_command(const std::string& path, const PlannedTest& test) {

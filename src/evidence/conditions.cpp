@@ -4,13 +4,12 @@
 #include <cmath>
 #include <vector>
 
+#include "evidence/constants.h"
+
 namespace servodx {
 namespace {
 
-constexpr double like_span = 2.0, like_band = 4.0;  // ratios
-constexpr double like_temperature = 15.0;           // [K]
-// A loop that closes over sensor noise changes a drive's numbers by some per cent from run to run.
-constexpr double same_size = 1.15, same_band = 1.3;  // ratios
+using namespace evidence_constants;
 
 // Frequency of the sine that decorrelates as fast as the series: found as the stride at which the mean square
 // difference reaches a tenth of its end value, twice the variance; a sine is there at a tenth of its period.

@@ -5,12 +5,14 @@
 #include <numeric>
 
 #include "base/random.h"
+#include "evidence/constants.h"
 
 namespace servodx {
 namespace {
 
+using namespace evidence_constants;
+
 constexpr std::uint32_t bootstrap_stream = 0xb00f;  // of the seed's random numbers
-constexpr int tail = 20;                            // a draw in so many lies below the interval, and one above
 
 double share_removed(double before, double after) { return before > 0 ? 1.0 - after / before : 0.0; }
 

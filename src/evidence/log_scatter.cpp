@@ -5,14 +5,10 @@
 #include <cstddef>
 
 #include "base/student.h"
+#include "evidence/constants.h"
 
 namespace servodx {
-namespace {
-
-constexpr std::size_t fewest = 3;        // logs that tell a spread
-constexpr double least_variance = 1e-6;  // of logarithms: figures that are equal to rounding
-
-}  // namespace
+using namespace evidence_constants;
 
 double Deviate::chance_above() const { return t > 0 ? 0.5 * student_tail(t, degrees) : 1.0; }
 
@@ -20,7 +16,7 @@ Deviate deviate_of(double value, const std::vector<double>& healthy, UsualSpread
   std::vector<double> logs;
   for (const double v : healthy)
     if (v > 0) logs.push_back(std::log(v));
-  if (logs.size() < fewest || !(value > 0)) return {};
+  if (logs.size() < fewest_of_spread || !(value > 0)) return {};
   const auto n = static_cast<double>(logs.size());
   double mean = 0, square = usual.logs * usual.of_logarithm * usual.of_logarithm;
   for (const double v : logs) mean += v / n;

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "base/median.h"
+#include "evidence/constants.h"
 #include "servodx/log.h"
 #include "servodx/rig.h"
 #include "signals/signal.h"
@@ -14,12 +15,7 @@
 namespace servodx {
 namespace {
 
-// So far beyond what the fault-free logs show, or the sheet says, a test is another one. A pump's setting drifts by
-// some per cent; a return line's pressure goes with the flow; the oil as in evidence/conditions.cpp; a load or a drive
-// that is larger by half reaches where no fault-free log was.
-constexpr double like_supply = 0.05, like_return_part = 0.5, like_return = 3e5;  // of it; of it; [Pa]
-constexpr double like_oil = 15.0;                                                // [K]
-constexpr double like_size = 0.5;                                                // of the largest
+using namespace evidence_constants;
 
 std::vector<double> present(const std::vector<double>& x) {
   std::vector<double> out;
@@ -48,7 +44,7 @@ double margin_of(Condition c, double around) {
     case Condition::return_pressure:
       return std::max(like_return, like_return_part * around);
     case Condition::oil:
-      return like_oil;
+      return like_temperature;
     case Condition::load:
     case Condition::drive:
       return like_size * around;

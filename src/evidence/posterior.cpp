@@ -4,12 +4,10 @@
 #include <cmath>
 #include <numbers>
 
+#include "evidence/constants.h"
+
 namespace servodx {
-namespace {
-
-constexpr double effect_error = 0.1;  // of its effect, that a cause's model errs: a textbook model's
-
-}  // namespace
+using namespace evidence_constants;
 
 double factor_for_nothing(double chance) {
   if (chance >= 1 / std::numbers::e) return 1;

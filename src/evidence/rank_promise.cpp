@@ -4,13 +4,10 @@
 #include <cmath>
 #include <cstddef>
 
+#include "evidence/constants.h"
+
 namespace servodx {
-namespace {
-
-constexpr double rate_rounding = 1e-12;  // of rates that are equal on paper
-constexpr double count_rounding = 1e-9;  // of counts of logs that are whole on paper
-
-}  // namespace
+using namespace evidence_constants;
 
 RankPromise rank_promise(std::vector<double> scores, double false_alarm) {
   std::sort(scores.begin(), scores.end());

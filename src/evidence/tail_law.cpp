@@ -5,12 +5,10 @@
 #include <cstddef>
 #include <utility>
 
+#include "evidence/constants.h"
+
 namespace servodx {
-namespace {
-
-constexpr int most_logs = 1000;  // asked for: beyond, the answer is that no number of logs does
-
-}  // namespace
+using namespace evidence_constants;
 
 TailLaw::TailLaw(std::vector<double> healthy, UsualExcess usual) : healthy_(std::move(healthy)) {
   sum_ = usual.mean * usual.logs;

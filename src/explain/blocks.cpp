@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "effects/unexplained.h"
+#include "explain/constants.h"
 #include "fit/log_data.h"
 #include "optimise/problem.h"
 #include "parameters/list.h"
@@ -14,8 +15,6 @@
 
 namespace servodx {
 namespace {
-
-constexpr double window = 20e-3;  // [s] short against a stroke, long against the noise of a position
 
 double mean_square(const std::vector<double>& x) {
   double sum = 0;
@@ -147,7 +146,7 @@ std::vector<ReplayedBlock> replay_parts(const ValveSubject& subject, const Point
       ReplayedPart part = spool_part(data.scenario, residual, runs[l].signals[simulated], candidate);
       if (!part.missing.empty()) spool.parts.push_back(std::move(part));
     }
-    const Balance b = balance(data.scenario, measured_of(data), candidate, window);
+    const Balance b = balance(data.scenario, measured_of(data), candidate, explain_constants::window);
     if (b.time.empty()) continue;
     if (!b.flow_a.empty()) {
       flow_a.parts.push_back(balance_part(b, b.flow_a, candidate[row::piston_area_a], b.velocity));

@@ -17,11 +17,12 @@ struct Sum {
 };
 
 std::size_t position_of(const Series& s, const std::vector<Log>& logs, std::vector<ExplainedChannel>& channels) {
+  const auto signal = find_signal(s.signal);
   std::size_t at = 0;
-  while (at < channels.size() && channels[at].signal != s.signal) ++at;
+  while (at < channels.size() && channels[at].id != signal) ++at;
   if (at == channels.size()) {
-    const Signal signal = *find_signal(s.signal);
-    channels.push_back({s.signal, logs[static_cast<std::size_t>(s.log)].channels[index(signal)].unit});
+    channels.push_back({s.signal, logs[static_cast<std::size_t>(s.log)].channels[index(*signal)].unit});
+    channels.back().id = signal;
   }
   return at;
 }

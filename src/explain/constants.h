@@ -6,7 +6,6 @@
 #include <cstddef>
 
 #include "fit/problem.h"
-#include "parameters/coordinate.h"
 
 namespace servodx::explain_constants {
 
@@ -21,11 +20,10 @@ inline constexpr int wall_rounds = 8;                 // walls met one after ano
 inline constexpr double failed_square = 1e12;         // held-out square of a run that fails: never chosen
 
 // Score and fit.
-inline constexpr double at_wall = wall_width;  // [of the unit interval] so near a bound a number is held by it
-inline constexpr double least_square = 1e-12;  // a probe's answer below this is rounding
-inline constexpr int base_iterations = 12;     // of the fit without causes; chosen by hand
-inline constexpr int quick_iterations = 4;     // of a candidate, the base's derivatives kept
-inline constexpr int full_iterations = 4;      // after the quick ones, all derivatives anew
+inline constexpr double least_square = 1e-12;                     // a probe's answer below this is rounding
+inline constexpr int base_iterations = 12;                        // of the fit without causes; chosen by hand
+inline constexpr int quick_iterations = 4;                        // of a candidate, the base's derivatives kept
+inline constexpr int full_iterations = 4;                         // after the quick ones, all derivatives anew
 inline constexpr double difference_step = step_through_contacts;  // [of the unit interval] through contacts and
                                                                   // frictions, as in `diagnose`
 inline constexpr double cost_tolerance = 1e-4;                    // of the cost: a candidate is compared, not published
@@ -58,6 +56,36 @@ inline constexpr double arrived = 3;          // times the noise: a tune that le
 inline constexpr double much_of_block = 0.2;  // of what passes through a block, chosen by hand
 inline constexpr double most_of_it = 0.5;     // of the held-out misfit: a name that removes less leaves most of it
 
+inline constexpr double questions = 3;  // size, share, and what is left, by Bonferroni. By definition
+
+// What healthy logs show of a cause's size (explain/healthy.cpp).
+inline constexpr std::size_t fewest_for_a_line = 6;  // logs from which on a scatter may go with the misfit's thickness
+inline constexpr double all_but = 1e-9;              // of a misfit: nothing removes all
+inline constexpr double law_logs = 10;               // the normal law of sizes counts as much as so many logs
+
+// The valve (explain/valve.cpp, explain/valve_causes.cpp, explain/valve_weights.cpp).
+//
+// The logs are of the rig that was tuned: its rows are known as well as the tuned table says, and not better than this
+// part of their range. Freed further, they take up what a missing effect does, differently on every log.
+inline constexpr double least_sd = 2e-3;
+inline constexpr double wide_sd = 0.1;       // [of the range] re-tuning alone, to compare with
+inline constexpr double row_prior = 0.1;     // a row that was held for a reason, beside an effect that has a name
+inline constexpr double effect_growth = 10;  // an effect may grow beyond what this rig shows when healthy by this
+inline constexpr double longest_memory = 1 - 1e-6;  // of a channel's residual, from sample to sample
+// Laps, corners and hysteresis are about a per cent of rated current wide: so finely a sweep tells them apart.
+inline constexpr double sweep_detail = 0.01;      // [of rated current]
+inline constexpr std::size_t enough_healthy = 3;  // healthy logs that say what is usual of a channel or a number
+
+// The replay of the blocks (explain/blocks.cpp, explain/replay.cpp).
+inline constexpr double window = 20e-3;            // [s] short against a stroke, long against the noise of a position
+inline constexpr std::size_t fewest_windows = 10;  // of a series
+inline constexpr double offset_range = 10;         // [sigma] that a series may be off on the mean
+inline constexpr double knot_at_rest = 1e-6;       // of a curve's curvature: a knot that no log reaches stays at rest
+
+// What is missing over time (explain/missing.cpp).
+inline constexpr std::size_t most_samples = 20000;  // of all logs; of more, every second and so on
+inline constexpr double odds_of_a_place = 20;       // at which a place is preferred to none
+
 // Healthy logs of the suspect's own test from which on they speak alone (explain/kin.cpp): fewer tell a scatter worse
 // than other tests do. Not examined.
 inline constexpr std::size_t enough_kin = 6;
@@ -76,12 +104,14 @@ inline constexpr double tried_bandwidths[] = {200.0, 1000.0, 40.0};
 
 // What is shown of a residual (explain/show.cpp).
 namespace shown {
-inline constexpr double near_event = 0.03;  // [s] a valve has answered a jump or a reversal by then
-inline constexpr double jump = 0.03;        // [of rated current] of the command, from sample to sample
-inline constexpr double white_band = 2.58;  // over sqrt(n): 99 % of white noise
-inline constexpr int lags = 50;             // over which residuals are correlated
-inline constexpr double least_told = 0.25;  // of the excess: a place that holds less says little
-inline constexpr double least_lift = 0.2;   // share ln(share / part of the time): below it the excess is spread evenly
+inline constexpr double near_event = 0.03;    // [s] a valve has answered a jump or a reversal by then
+inline constexpr double jump = 0.03;          // [of rated current] of the command, from sample to sample
+inline constexpr double white_band = 2.58;    // over sqrt(n): 99 % of white noise
+inline constexpr int lags = 50;               // over which residuals are correlated
+inline constexpr int spectrum_samples = 256;  // of a Hann window
+inline constexpr std::size_t map_parts = 8;   // that a residual's map is cut into, of as many samples each
+inline constexpr double least_told = 0.25;    // of the excess: a place that holds less says little
+inline constexpr double least_lift = 0.2;  // share ln(share / part of the time): below it the excess is spread evenly
 }  // namespace shown
 
 // The walk of a missing input (explain/smoother.cpp).
@@ -91,6 +121,7 @@ inline constexpr std::size_t search_samples = 1500;  // of all runs: the intensi
 // Of the logarithm of the walk's variance: a factor of ten in intensity.
 inline constexpr double step = 4.6, finest = 0.5;
 inline constexpr int longest_path = 12;  // steps
+inline constexpr double little = 0.01;   // of a channel's noise: so little from pass to pass, and it has settled
 // The path begins where the walk gets so many times the typical over the run.
 inline constexpr double most_typical = 1e3, most_by_slope = 1e5;
 }  // namespace smoother

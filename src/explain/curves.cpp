@@ -11,6 +11,7 @@
 #include "effects/unexplained.h"
 #include "explain/blocks.h"
 #include "explain/closed_form.h"
+#include "explain/constants.h"
 #include "explain/subject.h"
 #include "fit/chart.h"
 #include "fit/log_data.h"
@@ -148,7 +149,6 @@ void guess_curves(ValveSubject& subject, const std::vector<Curve>& curves, const
                                     [&](const ReplayedBlock& b) { return b.curve_place == curve.place; });
     if (block == blocks.end()) continue;
     // Least squares on the knots; a knot that the logs do not reach stays at rest.
-    constexpr double rest = 1e-6;
     Eigen::MatrixXd gram = Eigen::MatrixXd::Zero(U::knots, U::knots);
     Eigen::VectorXd right = Eigen::VectorXd::Zero(U::knots);
     bool shown = true;
@@ -177,7 +177,7 @@ void guess_curves(ValveSubject& subject, const std::vector<Curve>& curves, const
       }
     }
     if (!shown || !(gram.trace() > 0)) continue;
-    gram.diagonal().array() += rest * gram.trace();
+    gram.diagonal().array() += explain_constants::knot_at_rest * gram.trace();
     const Eigen::VectorXd knots = gram.ldlt().solve(right).cwiseMax(-place.largest).cwiseMin(place.largest);
     subject.try_at(curve.cause, {knots.data(), knots.data() + U::knots});
   }

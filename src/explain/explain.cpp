@@ -99,8 +99,7 @@ const BlockReplay* worst_block(const std::vector<BlockReplay>& blocks) {
 double over_noise(const std::vector<ExplainedChannel>& channels) {
   double worst = 0;
   for (const ExplainedChannel& c : channels)
-    if (c.noise_rms > 0 && c.signal != info(Signal::piston_position).name)
-      worst = std::max(worst, c.heldout_after / c.noise_rms);
+    if (c.noise_rms > 0 && c.id != Signal::piston_position) worst = std::max(worst, c.heldout_after / c.noise_rms);
   return worst;
 }
 
@@ -167,8 +166,7 @@ double chance_of_answer(const Inquiry& q, const Answer& answer, const EndEvidenc
   };
   if (const CandidateResult* first = first_of(q, answer)) ask(*first);
   for (const CauseResult& r : answer.found.causes) ask(answer.found.candidates[static_cast<std::size_t>(r.cause)]);
-  constexpr double questions = 3;  // size, share, and what is left, by Bonferroni
-  return std::min(1.0, questions * least);
+  return std::min(1.0, explain_constants::questions * least);
 }
 
 ExplainedProbabilities probabilities_of(const Inquiry& q, const Answer& answer, const EndEvidence& evidence) {

@@ -24,6 +24,7 @@ namespace servodx {
 struct ExplainedChannel {
   std::string signal, unit;  // unit as in the first log that has it
   double rms_before = 0, rms_after = 0, noise_rms = 0, heldout_before = 0, heldout_after = 0;  // [SI]
+  std::optional<Signal> id = {};                                                               // that `signal` names
 };
 struct ExplainedParameter {
   std::string name, unit;

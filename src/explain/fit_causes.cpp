@@ -13,6 +13,7 @@
 #include "explain/kept.h"
 #include "optimise/box_least_squares.h"
 #include "optimise/local.h"
+#include "parameters/coordinate.h"
 
 namespace servodx {
 namespace {
@@ -267,7 +268,7 @@ CauseNumbers numbers_of(const Subject& subject, const ExplainedFit& f, int cause
   std::vector<char> free(static_cast<std::size_t>(n));
   for (long j = 0; j < n; ++j) {
     const double u = f.point[static_cast<std::size_t>(j)];
-    free[static_cast<std::size_t>(j)] = u > at_wall && u < 1 - at_wall;
+    free[static_cast<std::size_t>(j)] = off_walls(u);
     if (!free[static_cast<std::size_t>(j)]) gram.row(j).setZero(), gram.col(j).setZero(), gram(j, j) = 1;
   }
   gram.diagonal().array() += 1e-12 * gram.diagonal().maxCoeff();

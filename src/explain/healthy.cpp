@@ -94,8 +94,7 @@ Scatter scatter_of(const std::vector<Size>& sizes) {
   const Scatter mean = scatter_of(sizes, false);
   double low = 1e300, high = -1e300;
   for (const Size& z : sizes) low = std::min(low, z.thickness), high = std::max(high, z.thickness);
-  constexpr std::size_t fewest = 6;
-  if (sizes.size() < fewest || !std::isfinite(low + high) || !(high > low)) return mean;
+  if (sizes.size() < explain_constants::fewest_for_a_line || !std::isfinite(low + high) || !(high > low)) return mean;
   for (const Size& z : sizes)
     if (!std::isfinite(z.thickness)) return mean;
   const Scatter line = scatter_of(sizes, true);
@@ -317,10 +316,7 @@ KnownRig HealthyReference::known(int left_out) const {
 namespace {
 
 // Misfits are ratios: what removes nine tenths and then nine tenths of the rest is twice as much. [-]
-double excess_of(double share) {
-  constexpr double all_but = 1e-9;  // nothing removes all
-  return -std::log(std::max(all_but, 1 - share));
-}
+double excess_of(double share) { return -std::log(std::max(explain_constants::all_but, 1 - share)); }
 
 std::vector<double> best_shares(const HealthyReference& reference) {
   std::vector<double> out;
@@ -369,7 +365,7 @@ double HealthyTest::alone(const std::vector<HealthyScore>& logs) const {
 // If the law holds, surprises are exponential with mean one, and so it is believed until the logs say otherwise: their
 // mean is the inverse of a gamma, and the next surprise Lomax's. A law that is too careful is left as it is.
 double HealthyTest::believed(const OfCause& cause, double surprise, int left_out, double prior) const {
-  constexpr double law = 10;  // counts as much as so many logs
+  constexpr double law = explain_constants::law_logs;
   double n = 0, sum = 0;
   for (std::size_t i = 0; i < cause.score.size(); ++i)
     if (cause.score[i] && static_cast<int>(i) != left_out) ++n, sum += cause.surprise[i];

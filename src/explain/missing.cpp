@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "effects/unexplained.h"
+#include "explain/constants.h"
 #include "explain/smoother.h"
 #include "fit/log_data.h"
 #include "fit/problem.h"
@@ -18,9 +19,6 @@
 
 namespace servodx {
 namespace {
-
-constexpr std::size_t most_samples = 20000;  // of all logs; of more, every second and so on
-const double told_apart = std::log(20.0);    // odds at which a place is preferred to none
 
 // What a channel shows of the model's states; empty: of none that the smoother knows.
 Eigen::VectorXd shown(Signal signal, int states, const ParameterVector& p) {
@@ -223,7 +221,7 @@ std::optional<LinearLogs> linear_logs(const ValveSubject& subject, const Point& 
   const auto problem = subject.problem({});
   std::size_t samples = 0, series = 0;
   for (const LogData& l : subject.logs()) samples += l.scenario.time.size();
-  const auto stride = static_cast<int>(samples / most_samples) + 1;
+  const auto stride = static_cast<int>(samples / explain_constants::most_samples) + 1;
   // The steps of a fit are too coarse for what is looked at sample by sample; for its derivatives they do.
   SimulateOptions fine = fine_steps();
   fine.wanted.fill(true);
@@ -270,7 +268,7 @@ void mark_likely(const std::vector<SmoothedInput>& smoothed, std::vector<Missing
   const auto best =
       std::max_element(smoothed.begin(), smoothed.end(), [](const auto& a, const auto& b) { return a.gain < b.gain; });
   for (std::size_t i = 0; i < places.size(); ++i)
-    places[i].likely = places[i].gain > told_apart && !preferred(*best, smoothed[i]);
+    places[i].likely = places[i].gain > std::log(explain_constants::odds_of_a_place) && !preferred(*best, smoothed[i]);
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "explain/constants.h"
 #include "explain/ties.h"
 #include "fit/chart.h"
 #include "fit/error_model.h"
@@ -14,9 +15,7 @@
 namespace servodx {
 namespace {
 
-constexpr double window = 20e-3;     // [s] short against a stroke, long against the noise of a position
-constexpr std::size_t fewest = 10;   // windows of a series
-constexpr double offset_range = 10;  // [sigma]
+namespace k = explain_constants;
 
 struct Kind {
   const char *name, *unit;
@@ -49,12 +48,12 @@ ReplaySubject::ReplaySubject(const ValveSubject& valve, const Point& at, const K
       if (c.signal == Signal::piston_position) q.piston = quiet(valve.logs()[l].scenario.time, c.measured);
     }
     const Balance b = balance_of(l, base_.back());
-    for (const Kind& k : kinds) {
-      const std::vector<double>& missing = b.*k.missing;
-      Part part{l, k.missing, {}};
+    for (const Kind& kind : kinds) {
+      const std::vector<double>& missing = b.*kind.missing;
+      Part part{l, kind.missing, {}};
       for (std::size_t i = 0; i < missing.size(); ++i)
-        if (!k.sliding || b.slides[i]) part.windows.push_back(i);
-      if (part.windows.size() < fewest) continue;
+        if (!kind.sliding || b.slides[i]) part.windows.push_back(i);
+      if (part.windows.size() < k::fewest_windows) continue;
       std::vector<double> time;
       for (std::size_t i : part.windows) time.push_back(b.time[i]);
       const auto n = static_cast<long>(part.windows.size());
@@ -62,7 +61,7 @@ ReplaySubject::ReplaySubject(const ValveSubject& valve, const Point& at, const K
       for (long i = 0; i < n; ++i) here[i] = missing[part.windows[static_cast<std::size_t>(i)]];
       sigma_.emplace_back(part.windows.size(), std::max(1e-300, root_mean_square(here)));
       time_.push_back(std::move(time));
-      series_.push_back({k.name, k.unit, static_cast<int>(l), first, n, nullptr, nullptr});
+      series_.push_back({kind.name, kind.unit, static_cast<int>(l), first, n, nullptr, nullptr});
       parts_.push_back(std::move(part));
       first += n;
     }
@@ -81,7 +80,7 @@ Balance ReplaySubject::balance_of(std::size_t log, const ParameterVector& candid
     if (c.signal == Signal::pressure_a) measured.pressure_a = &c.measured;
     if (c.signal == Signal::pressure_b) measured.pressure_b = &c.measured;
   }
-  return balance(data.scenario, measured, candidate, window);
+  return balance(data.scenario, measured, candidate, k::window);
 }
 
 Eigen::VectorXd ReplaySubject::rows(const std::vector<int>& causes, std::span<const double> of_causes) const {
@@ -112,7 +111,7 @@ Eigen::VectorXd ReplaySubject::rows(const std::vector<int>& causes, std::span<co
 SubjectFit ReplaySubject::fit(const std::vector<int>& causes, bool) const {
   SubjectFit out;
   for (const Series& s : series_) {
-    out.numbers.push_back({{s.signal, "sigma", -offset_range, offset_range}});
+    out.numbers.push_back({{s.signal, "sigma", -k::offset_range, k::offset_range}});
     out.start.push_back(0.5);
   }
   for (int c : causes)
@@ -127,7 +126,7 @@ SubjectFit ReplaySubject::fit(const std::vector<int>& causes, bool) const {
       const Point& x = points[k];
       e[k].residual = rows(causes, std::span(x).subspan(series_.size()));
       for (std::size_t i = 0; i < series_.size(); ++i)
-        e[k].residual.segment(series_[i].first, series_[i].count).array() -= offset_range * (2 * x[i] - 1);
+        e[k].residual.segment(series_[i].first, series_[i].count).array() -= k::offset_range * (2 * x[i] - 1);
       e[k].ok = e[k].residual.allFinite();
     }
     return e;
@@ -140,18 +139,21 @@ std::vector<UsualError> ReplaySubject::errors(const Eigen::VectorXd& rows) const
   const Eigen::VectorXd r = physical(rows);
   std::vector<UsualError> out;
   for (const Series& s : series_)
-    out.push_back({s.signal, root_mean_square(r.segment(s.first, s.count)), 0.0, s.effective, 2 / window});
+    out.push_back({s.signal, root_mean_square(r.segment(s.first, s.count)), 0.0, s.effective, 2 / k::window});
   return out;
 }
 
 std::vector<Miss> ReplaySubject::misses(const Eigen::VectorXd& rows) const {
   const Eigen::VectorXd r = physical(rows);
   std::vector<Miss> out;
-  for (const Kind& k : kinds) {
+  for (const Kind& kind : kinds) {
     double square = 0, n = 0;
-    for (const Series& s : series_)
-      if (s.signal == k.name) square += r.segment(s.first, s.count).squaredNorm(), n += static_cast<double>(s.count);
-    if (n > 0) out.push_back({k.name, std::sqrt(square / n)});
+    for (std::size_t i = 0; i < series_.size(); ++i) {
+      const Series& s = series_[i];
+      if (parts_[i].missing != kind.missing) continue;
+      square += r.segment(s.first, s.count).squaredNorm(), n += static_cast<double>(s.count);
+    }
+    if (n > 0) out.push_back({kind.name, std::sqrt(square / n)});
   }
   return out;
 }
@@ -167,7 +169,7 @@ bool ReplaySubject::rescale(const Eigen::VectorXd& rows) {
     std::vector<std::pair<double, double>> usual;
     for (const UsualError& e : usual_)
       if (e.signal == s.signal) usual.emplace_back(e.size, e.effective);
-    if (usual.size() >= 3) {
+    if (usual.size() >= k::enough_healthy) {
       const auto middle = usual.begin() + static_cast<long>(usual.size() / 2);
       std::nth_element(usual.begin(), middle, usual.end());
       if (middle->first < size) size = middle->first, s.effective = middle->second;

@@ -10,11 +10,12 @@
 #include "explain/deviance.h"
 #include "explain/kept.h"
 #include "optimise/problem.h"
+#include "parameters/coordinate.h"
 
 namespace servodx {
 namespace {
 
-using explain_constants::at_wall, explain_constants::least_square;
+using explain_constants::least_square;
 
 // What the free numbers of a fit, priors included, cannot imitate of a change.
 struct Imitation {
@@ -31,7 +32,7 @@ Imitation imitation_of(const ExplainedFit& at, const std::string& but) {
   Eigen::MatrixXd imitated(at.jacobian.rows(), 0);
   for (long j = 0; j < at.jacobian.cols(); ++j) {
     const double u = at.point[static_cast<std::size_t>(j)];
-    if (u < at_wall || u > 1 - at_wall) continue;  // a wall holds it
+    if (!off_walls(u)) continue;  // a wall holds it
     if (!but.empty() && at.fit.numbers[static_cast<std::size_t>(j)].name == but) continue;
     imitated.conservativeResize(Eigen::NoChange, imitated.cols() + 1);
     imitated.col(imitated.cols() - 1) = at.jacobian.col(j);

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <complex>
+#include <numbers>
 #include <numeric>
 
 #include "explain/constants.h"
@@ -18,7 +19,6 @@
 namespace servodx {
 namespace {
 
-constexpr double pi = 3.14159265358979323846;
 using namespace explain_constants::shown;
 
 struct Piece {  // one log's part of a channel
@@ -58,7 +58,7 @@ std::vector<double> without_mean(std::vector<double> x) {
 
 // Cross- and auto-spectra of half-overlapping Hann windows, summed over all pieces.
 struct Welch {
-  static constexpr int length = 256;
+  static constexpr int length = spectrum_samples;
   std::vector<double> xx = std::vector<double>(length / 2, 0), yy = xx;
   std::vector<std::complex<double>> xy = std::vector<std::complex<double>>(length / 2);
   double windows = 0, dt = 1e-3;
@@ -67,10 +67,10 @@ struct Welch {
     for (std::size_t first = 0; first + length <= x.size(); first += length / 2, ++windows)
       for (int f = 0; f < length / 2; ++f) {
         std::complex<double> a, b;
-        const std::complex<double> turn = std::polar(1.0, -2 * pi * f / length);
+        const std::complex<double> turn = std::polar(1.0, -2 * std::numbers::pi * f / length);
         std::complex<double> w = 1;
         for (int k = 0; k < length; ++k, w *= turn) {
-          const double hann = 0.5 - 0.5 * std::cos(2 * pi * (k + 0.5) / length);
+          const double hann = 0.5 - 0.5 * std::cos(2 * std::numbers::pi * (k + 0.5) / length);
           a += hann * x[first + static_cast<std::size_t>(k)] * w;
           b += hann * y[first + static_cast<std::size_t>(k)] * w;
         }
@@ -106,7 +106,6 @@ InputCorrelation correlate(const std::string& name, const std::vector<Piece>& pi
 }
 
 ResidualMap map_of(const std::string& name, const std::vector<Piece>& pieces, std::size_t variable, double noise) {
-  constexpr std::size_t wanted = 8;
   ResidualMap out{name.substr(0, name.find('|')), name.substr(name.find('|') + 1), {}};
   std::vector<std::pair<double, double>> points;  // variable, residual
   double total = 0;
@@ -120,8 +119,8 @@ ResidualMap map_of(const std::string& name, const std::vector<Piece>& pieces, st
       }
   }
   std::sort(points.begin(), points.end());
-  for (std::size_t b = 0; b < wanted && points.size() >= wanted; ++b) {
-    const std::size_t from = b * points.size() / wanted, to = (b + 1) * points.size() / wanted;
+  for (std::size_t b = 0; b < map_parts && points.size() >= map_parts; ++b) {
+    const std::size_t from = b * points.size() / map_parts, to = (b + 1) * points.size() / map_parts;
     MapBin bin{points[from].first, points[to - 1].first};
     for (std::size_t k = from; k < to; ++k) {
       const double r = points[k].second;

@@ -398,7 +398,6 @@ class Search {
     return best;
   }
   static bool alike(const std::vector<std::vector<double>>& a, const std::vector<std::vector<double>>& b) {
-    constexpr double little = 0.01;
     for (Index l = 0; l < a.size(); ++l)
       for (Index c = 0; c < a[l].size(); ++c)
         if (std::abs(a[l][c] - b[l][c]) > little * b[l][c]) return false;

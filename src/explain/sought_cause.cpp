@@ -4,19 +4,16 @@
 #include <utility>
 
 #include "effects/effect.h"
+#include "explain/constants.h"
 
 namespace servodx {
-namespace {
-
-constexpr double slack = 10;  // an effect may grow beyond what this rig shows when healthy by this
-
-}  // namespace
 
 FreeValue effect_value(const EffectInfo& effect, std::size_t j, const ParameterVector& tuned) {
   const EffectParameter& p = effect.parameters[j];
   const int at = effect.first + static_cast<int>(j);
   const double v = tuned[static_cast<std::size_t>(at)];
-  const double upper = p.switches && p.off == p.lower ? std::max(p.upper, slack * v) : p.upper;
+  const double upper =
+      p.switches && p.off == p.lower ? std::max(p.upper, explain_constants::effect_growth * v) : p.upper;
   return {p.name, at, std::min(p.lower, v), std::max(upper, v), false, v};
 }
 

@@ -6,6 +6,7 @@
 
 #include "base/error.h"
 #include "base/student.h"
+#include "explain/constants.h"
 #include "explain/sought_cause.h"
 #include "explain/ties.h"
 #include "explain/valve_causes.h"
@@ -24,16 +25,13 @@
 namespace servodx {
 namespace {
 
-// The logs are of the rig that was tuned: its rows are known as well as the tuned table says, and not better than this
-// part of their range. Freed further, they take up what a missing effect does, differently on every log.
-constexpr double least_sd = 2e-3;
-constexpr double wide_sd = 0.1;  // re-tuning alone, to compare with
+namespace k = explain_constants;
 
 // What healthy logs have had of a nuisance, by Student's 99 %, is where it goes; beyond is a cause, and no log's own
 // affair. A log's air is a number of its oil, and counts by how soft it makes it: little air and none are alike. The
 // command between samples is the logger's, and a delay in its place.
 void limit(FreeValue& own, const std::vector<double>& healthy) {
-  if (healthy.size() < 3) return;
+  if (healthy.size() < k::enough_healthy) return;
   double mean = 0, square = 0;
   const auto n = static_cast<double>(healthy.size());
   for (double v : healthy) mean += v / n;
@@ -89,7 +87,7 @@ void ValveSubject::free_rows() {
     if (f.at >= n_parameters) continue;  // effects of the table are causes
     const Row& row = table_[f.at];
     const double slope = coordinate(row).slope(row.nominal);
-    f.prior_sd = std::max(least_sd, row.std_error.value_or(0.0) / slope);
+    f.prior_sd = std::max(k::least_sd, row.std_error.value_or(0.0) / slope);
     free_.push_back(std::move(f));
   }
 }
@@ -103,7 +101,7 @@ int ValveSubject::add(Cause cause, std::vector<FreeValue> values) {
 std::vector<FreeValue> ValveSubject::free_for(const std::vector<int>& causes, bool wide) const {
   std::vector<FreeValue> free(free_.begin(), free_.begin() + static_cast<long>(base_count(wide)));
   for (FreeValue& f : free)
-    if (wide && f.log < 0) f.prior_sd = wide_sd;
+    if (wide && f.log < 0) f.prior_sd = k::wide_sd;
   for (int c : causes)
     for (const FreeValue& f : values_[static_cast<std::size_t>(c)]) free.push_back(f);
   return free;

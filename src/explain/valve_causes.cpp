@@ -7,6 +7,7 @@
 
 #include "effects/effect.h"
 #include "effects/row_effects.h"
+#include "explain/constants.h"
 #include "explain/sensor_causes.h"
 #include "explain/subject.h"
 #include "fit/chart.h"
@@ -15,7 +16,7 @@
 namespace servodx {
 namespace {
 
-constexpr double row_prior = 0.1;  // a row that was held for a reason, beside an effect that has a name
+namespace k = explain_constants;
 
 // Of a row that no row effect has.
 const char* place_of_row(int at) {
@@ -131,7 +132,7 @@ SoughtCause row_effect_cause(const RowEffect& e, const CauseFacts& facts) {
 
 // A row that is tuned is let go of what tuning knows.
 SoughtCause row_cause(int at, const Table& table) {
-  return sought(named(table[at].name, place_of_row(at), row_prior), {number_of_row(at, table)});
+  return sought(named(table[at].name, place_of_row(at), k::row_prior), {number_of_row(at, table)});
 }
 
 bool is_of_row_effect(int at) {
@@ -178,7 +179,7 @@ SoughtAs sought_as(const EffectInfo& effect, const CauseFacts& facts) {
 }
 
 double prior_of_effect(const EffectInfo& effect, bool rig_known) {
-  return rig_known && effect.of_construction ? row_prior : 1.0;
+  return rig_known && effect.of_construction ? k::row_prior : 1.0;
 }
 
 bool is_sought_alone(int at, const CauseFacts& facts) {

@@ -5,6 +5,7 @@
 #include <string>
 #include <utility>
 
+#include "explain/constants.h"
 #include "explain/subject.h"
 #include "explain/valve.h"
 #include "fit/error_model.h"
@@ -18,7 +19,7 @@
 namespace servodx {
 namespace {
 
-constexpr double longest_memory = 1 - 1e-6;
+namespace k = explain_constants;
 
 // All samples of a sweep on a stand count alike, as in `tune`.
 void make_alike(std::vector<double>& sigma) {
@@ -27,15 +28,14 @@ void make_alike(std::vector<double>& sigma) {
   std::fill(sigma.begin(), sigma.end(), std::sqrt(square / static_cast<double>(sigma.size())));
 }
 
-// Laps, corners and hysteresis are about a per cent of rated current wide: so finely a sweep tells them apart.
-constexpr double sweep_detail = 0.01;  // of rated current
 double travel_of(const Scenario& s) {
   double sum = 0;
   for (std::size_t k = 1; k < s.command.size(); ++k) sum += std::abs(s.command[k] - s.command[k - 1]);
   return sum / s.rated_current;
 }
 
-double median(std::vector<double> v) {
+// Of an even number the mean of the two in the middle: of four logs the upper one would lean.
+double middle_of(std::vector<double> v) {
   std::sort(v.begin(), v.end());
   return v.empty() ? 0 : 0.5 * (v[v.size() / 2] + v[(v.size() - 1) / 2]);
 }
@@ -56,7 +56,6 @@ std::vector<char> afresh_in(const std::vector<double>& measured) {
 struct UsualNews {
   double memory, size, effective;
 };
-constexpr std::size_t enough_healthy = 3;
 std::optional<UsualNews> usual_news(const std::vector<UsualError>& healthy, const UsualError& of) {
   std::vector<UsualError> same;
   std::vector<double> memories, fractions, sizes;
@@ -66,10 +65,10 @@ std::optional<UsualNews> usual_news(const std::vector<UsualError>& healthy, cons
       memories.push_back(e.memory), fractions.push_back(std::min(1.0, e.effective * e.rate / of.rate));
       same.push_back(e);
     }
-  if (same.size() < enough_healthy) return {};
-  const double a = median(memories);
+  if (same.size() < k::enough_healthy) return {};
+  const double a = middle_of(memories);
   for (const UsualError& e : same) sizes.push_back(e.size * std::sqrt(std::max(0.0, 1 - 2 * a * e.memory + a * a)));
-  return UsualNews{a, median(sizes), median(fractions)};
+  return UsualNews{a, middle_of(sizes), middle_of(fractions)};
 }
 
 // News of a channel: how large they are, and how much of them counts as independent.
@@ -164,7 +163,7 @@ std::vector<UsualError> ValveSubject::errors(const Eigen::VectorXd& rows) const 
       if (!afresh_[i][static_cast<std::size_t>(k)]) neighbours += r[at] * r[at - 1];
     }
     out.push_back({s.signal, std::sqrt(square / static_cast<double>(s.count)),
-                   square > 0 ? std::clamp(neighbours / square, 0.0, longest_memory) : 0.0, s.effective,
+                   square > 0 ? std::clamp(neighbours / square, 0.0, k::longest_memory) : 0.0, s.effective,
                    rate_of(*s.time)});
   }
   return out;
@@ -224,7 +223,7 @@ bool ValveSubject::rescale(const Eigen::VectorXd& rows) {
       const News news = at_most_usual(news_of({white.data() + s.first, white.data() + s.first + s.count}), usual[i]);
       s.effective = news.effective;
       if (const auto l = static_cast<std::size_t>(s.log); of_stand(l)) {
-        const double points = travel_of(logs_[l].scenario) / sweep_detail;
+        const double points = travel_of(logs_[l].scenario) / k::sweep_detail;
         s.effective = std::clamp(points / static_cast<double>(s.count), s.effective, 1.0);
       }
       for (std::size_t k = 0; k < sigma.size(); ++k)

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/celsius.h"
 #include "base/error.h"
 #include "effects/registry.h"
 #include "fit/oil_of.h"
@@ -225,9 +226,8 @@ LogData prepare(const Log& log, const RigFile& rig, int window) {
   take_valve_drop(s, log, rig, out.notes);
   s.rated_current = rig.fact("valve.rated_current").value_or(0.02);
   if (rig.command_hold) s.command_slope = *rig.command_hold == CommandHold::linear ? 1.0 : 0.0;
-  constexpr double reference_temperature = 313.15;  // [K] where the table's values hold
   const std::optional<double> measured = measured_oil_temperature(log);
-  const double temperature = measured.value_or(rig.oil_temperature.value_or(reference_temperature));
+  const double temperature = measured.value_or(rig.oil_temperature.value_or(reference_oil_temperature));
   s.oil_known = measured.has_value() || rig.oil_temperature.has_value() ||
                 s.ports != Ports::actuator;  // a stand holds 40 degC within 6 K (ISO 10770-1)
   if (!s.oil_known)

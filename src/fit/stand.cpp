@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "base/celsius.h"
 #include "fit/constants.h"
 #include "fit/oil_of.h"
 #include "model/state.h"
@@ -18,10 +19,9 @@ using namespace fit_constants;
 constexpr double two_pi = 2 * std::numbers::pi;
 
 Scenario at_stand(const RigFile& rig) {
-  constexpr double reference_temperature = 313.15;  // [K] where a table's values hold
   Scenario s;
   s.ports = Ports::free;
-  s.oil = oil_of(rig.fluid, reference_temperature);
+  s.oil = oil_of(rig.fluid, reference_oil_temperature);
   s.spool_start = 0;
   return s;
 }

@@ -9,8 +9,10 @@
 #include <sstream>
 
 #include "base/error.h"
+#include "base/sha256.h"
 #include "fit/tuning_comments.h"
 #include "servodx/log.h"
+#include "servodx/table.h"
 
 namespace servodx {
 namespace {
@@ -135,6 +137,25 @@ void set_tuned_state(Table& table, const TunedState& state) {
   for (const TunedBy& b : state.by)
     out +=
         fmt::format("[[tuned.by]]\nlog = {}\nsha256 = \"{}\"\ncontent = \"{}\"\n", quoted(b.log), b.sha256, b.content);
+}
+
+// What the bits of a result follow from: rows as they are read, and the state's values. Files' names are left out.
+std::string content_hash(const Table& table) {
+  std::string text;
+  for (const Row& row : table.rows) {
+    text += fmt::format("{},{},{},{},{},{},{},{},", row.name, row.group, row.unit, row.log_scale ? "log10" : "lin",
+                        row.estimate ? 1 : 0, row.nominal, row.lower, row.upper);
+    if (row.std_error) text += fmt::format("{}", *row.std_error);
+    text += '\n';
+  }
+  const TunedState state = tuned_state(table);
+  text += fmt::format("moving average {}\n", state.moving_average);
+  for (const ChannelError& c : state.error.channels)
+    text += fmt::format("error {} {} {} {}\n", name_of(c.signal), c.floor, c.per_activity, c.independent);
+  for (const Unfollowed& u : state.unfollowed)
+    text += fmt::format("unfollowed {} {}\n", name_of(u.signal), u.over_noise);
+  for (const TunedBy& b : state.by) text += fmt::format("by {} {}\n", b.sha256, b.content);
+  return sha256(text);
 }
 
 bool has_old_state(const Table& table) { return table.state.empty() && !newest_tuning(table.comments).empty(); }

@@ -58,7 +58,6 @@ class Watcher {
   void remember(const Sample& sample);
 
   std::vector<Sample> window() const { return {window_.begin(), window_.end()}; }
-  bool alarmed() const { return alarm_.has_value(); }
   double time() const { return arrivals_.last_taken; }  // [s] of the last sample that was judged
   double window_begins() const { return window_.empty() ? time() : window_.front().time; }
   const ArrivalCounts& counts() const { return arrivals_.counts; }

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "base/error.h"
+#include "base/median.h"
 #include "base/random.h"
 #include "optimise/genetic_variation.h"
 #include "optimise/problem.h"
@@ -191,7 +192,7 @@ class Genetic {
       remember(island.population[k]);
     }
     island.mark = island.best_since_start;
-    island.median_mark = median(island);
+    island.median_mark = median_cost(island);
   }
 
   void begin() {
@@ -351,7 +352,7 @@ class Genetic {
       island.memory_at = (island.memory_at + 1) % kMemory;
     }
     const auto gained = [&](double now, double mark) { return now < mark - options_.stagnation_gain * std::abs(mark); };
-    const double middle = median(island);
+    const double middle = median_cost(island);
     const bool progress = gained(island.best_since_start, island.mark) || gained(middle, island.median_mark);
     if (!progress) {
       ++island.stagnant;
@@ -362,12 +363,10 @@ class Genetic {
     island.stagnant = 0;
   }
 
-  double median(const Island& island) {
-    sorted_.clear();
-    for (const Individual& one : island.population) sorted_.push_back(one.cost);
-    const auto middle = sorted_.begin() + static_cast<std::ptrdiff_t>(sorted_.size() / 2);
-    std::nth_element(sorted_.begin(), middle, sorted_.end());
-    return *middle;
+  static double median_cost(const Island& island) {
+    std::vector<double> costs;
+    for (const Individual& one : island.population) costs.push_back(one.cost);
+    return median(std::move(costs));
   }
 
   static Individual& worst(Island& island) {
@@ -436,7 +435,6 @@ class Genetic {
   std::vector<Brood> broods_;  // an island each
   std::vector<Individual> guests_, spare_;
   std::vector<int> cell_;
-  std::vector<double> sorted_;
 };
 
 }  // namespace

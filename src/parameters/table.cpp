@@ -357,20 +357,4 @@ std::string table_text(const Table& table) {
 
 void write_table(const std::string& path, const Table& table) { write_file(path, table_text(table)); }
 
-std::string content_hash(const Table& table) {
-  std::string text;
-  const auto number = [&](double value) {
-    append_number(text, value);
-    text += ',';
-  };
-  for (const Row& row : table.rows) {
-    text += row.name + "," + row.group + "," + row.unit + (row.log_scale ? ",log10" : ",lin") +
-            (row.estimate ? ",1," : ",0,");
-    number(row.nominal), number(row.lower), number(row.upper);
-    if (row.std_error) number(*row.std_error);
-    text += '\n';
-  }
-  return sha256(text + table.state);
-}
-
 }  // namespace servodx

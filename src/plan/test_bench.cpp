@@ -6,6 +6,7 @@
 #include <cmath>
 #include <utility>
 
+#include "base/celsius.h"
 #include "diagnose/whitening.h"
 #include "fit/problem.h"
 #include "fit/tuned_state.h"
@@ -25,9 +26,8 @@ Log blank_log(const ErrorModel& error, double rate) {
   log.path = "the planned test";
   for (std::size_t n = 0; n < pattern_samples; ++n) log.time.push_back(static_cast<double>(n) / rate);
   const auto fill = [&](Signal s, double value) { log.channels[index(s)].value.assign(pattern_samples, value); };
-  constexpr double usual_oil = 313.15;  // [K]
   fill(Signal::command, 0);
-  fill(Signal::oil_temperature, usual_oil);
+  fill(Signal::oil_temperature, reference_oil_temperature);
   for (const ChannelError& e : error.channels) fill(e.signal, 0);
   return log;
 }

@@ -4,6 +4,7 @@
 #include <string>
 #include <utility>
 
+#include "base/celsius.h"
 #include "fit/fast_log.h"
 #include "fit/free_values.h"
 #include "fit/log_data.h"
@@ -33,7 +34,7 @@ Scenario at_reference(const Scenario& as_was, const RigFile& rig) {
   s.supply_pressure.clear();
   s.return_pressure.clear();
   s.load_force.clear();
-  s.oil = oil_of(rig.fluid, reference_kelvin);
+  s.oil = oil_of(rig.fluid, reference_oil_temperature);
   s.pressure_a_start.reset(), s.pressure_b_start.reset();
   return s;
 }
@@ -61,7 +62,7 @@ void take_oil(CheckResult& out, LogData& data, const Log& log, const Table& tune
     data.scenario.oil_known = true;
     out.notes.push_back("oil temperature estimated from the response; wear that acts like cold oil would shift it");
   } else {
-    out.temperature = {reference_kelvin, std::nan(""), OilSource::assumed};
+    out.temperature = {reference_oil_temperature, std::nan(""), OilSource::assumed};
   }
 }
 

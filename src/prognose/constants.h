@@ -13,8 +13,6 @@
 
 namespace servodx::prognose_constants {
 
-inline constexpr double reference_kelvin = 313.15;  // [K] 40 degC: viscosity grades are stated there (ISO 3448)
-
 // The preflight test in the command.
 inline constexpr double least_jump = 0.02;     // [of rated] that begins a step; tests of the paper have 0.1
 inline constexpr double rest_band = 0.005;     // [of rated] within which a command is at rest
@@ -85,6 +83,19 @@ inline constexpr double expectation_spread = 0.5;  // the model's expectation is
 inline constexpr double beside_spread = 0.5;       // [clean drops] bores known to 2 % leave open as much as a clean
                                                    // screen takes; in thick oil, where it takes most, half of that
 inline constexpr double oil_scatter = 0.15;        // of what the oil does to a growth, from check to check
+
+// Margins of the position loop (loop_margins.cpp).
+namespace loop {
+inline constexpr double interval = 1e-4;               // [s] of the linear model: its fastest poles are beyond interest
+inline constexpr int samples = 20;                     // settled from the first on
+inline constexpr int frequencies = 160;                // from the lowest to the highest: 3 % apart
+inline constexpr double lowest = 0.1, highest = 1000;  // [Hz]
+inline constexpr double no_friction = 1e-6;            // of the row's own: the asperities' spring goes with it
+inline constexpr int harmonic_points = 32;             // of a half wave, for its first harmonic
+inline constexpr int cycles_scanned = 24, cycle_halvings = 20;         // of a limit cycle's amplitude
+inline constexpr int severities_scanned = 12, severity_halvings = 16;  // of the range: to 1.3e-6 of it
+inline constexpr double judged_share = 0.04;  // [of rated current] amplitude that a margin is judged at
+}  // namespace loop
 
 // The grid of growths.
 // Onsets as parts of the record, and their weights: wear usually begins with use. Between coarser ones a growth that

@@ -10,6 +10,7 @@
 #include "fit/log_data.h"
 #include "model/state.h"
 #include "parameters/list.h"
+#include "prognose/constants.h"
 #include "prognose/valve_geometry.h"
 #include "simulate/linearise.h"
 #include "valve_maps/high_fidelity.h"
@@ -20,11 +21,7 @@ namespace {
 
 using Complex = std::complex<double>;
 constexpr double two_pi = 2 * std::numbers::pi;
-constexpr double interval = 1e-4;  // [s] of the linear model: its fastest poles are beyond interest
-constexpr int samples = 20;        // settled from the first on
-constexpr int frequencies = 160;
-constexpr double lowest = 0.1, highest = 1000;   // [Hz]
-constexpr double no_friction = 1e-6;             // of the row's own: the asperities' spring goes with it
+using namespace prognose_constants::loop;
 constexpr int drive_place = 0, spool_place = 1;  // in missing_places
 
 double frequency_at(int k) { return lowest * std::pow(highest / lowest, k / (frequencies - 1.0)); }
@@ -68,12 +65,11 @@ double PositionLoop::over_null_slope(const ParameterVector& candidate, std::opti
   const double drop = at_.supply - at_.return_;
   valve_maps::HighFidelity valve(geometry_of(candidate, at_));
   const valve_maps::ValveNumbers numbers = valve.measure(drop);
-  constexpr int points = 32;
   const auto first_harmonic = [&](const valve_maps::HighFidelity& of, double size) {
     double sum = 0;
-    for (int k = 0; k < points; ++k) {
-      const double sine = std::sin(std::numbers::pi * (k + 0.5) / points);
-      sum += 2.0 / points * of.no_load_flow(size * sine, drop) * sine;
+    for (int k = 0; k < harmonic_points; ++k) {
+      const double sine = std::sin(std::numbers::pi * (k + 0.5) / harmonic_points);
+      sum += 2.0 / harmonic_points * of.no_load_flow(size * sine, drop) * sine;
     }
     return sum / size;
   };
@@ -162,17 +158,16 @@ Margins PositionLoop::margins(const ParameterVector& candidate, double amplitude
 std::optional<LimitCycle> PositionLoop::limit_cycle(const ParameterVector& candidate, double largest) const {
   const double least = std::max(0.5 * candidate[row::valve_glitch], 1e-9) * 1.001;
   if (!(largest > least)) return {};
-  constexpr int scanned = 24, halvings = 20;
   const auto gain_at = [&](double amplitude) { return margins(candidate, amplitude).gain; };
   double stable = largest;
   if (gain_at(stable) < 0) return {};  // it grows beyond what is asked for
   double cycling = 0;
-  for (int k = 1; k <= scanned && cycling == 0; ++k) {
-    const double amplitude = largest * std::pow(least / largest, k / static_cast<double>(scanned));
+  for (int k = 1; k <= cycles_scanned && cycling == 0; ++k) {
+    const double amplitude = largest * std::pow(least / largest, k / static_cast<double>(cycles_scanned));
     (gain_at(amplitude) < 0 ? cycling : stable) = amplitude;
   }
   if (cycling == 0) return {};
-  for (int k = 0; k < halvings; ++k) {
+  for (int k = 0; k < cycle_halvings; ++k) {
     const double middle = std::sqrt(stable * cycling);
     (gain_at(middle) < 0 ? cycling : stable) = middle;
   }
@@ -184,9 +179,8 @@ std::optional<LimitCycle> PositionLoop::limit_cycle(const ParameterVector& candi
 }
 
 double judged_amplitude(const Table& tuned, const Supply& at) {
-  constexpr double share = 0.04;  // of rated current
   const MonitorParameters m = monitor_parameters(tuned, at);
-  return share * at.rated_current * m.motor_gain / m.wire_stiffness;
+  return judged_share * at.rated_current * m.motor_gain / m.wire_stiffness;
 }
 
 std::optional<double> severity_at_margin(const PositionLoop& loop, const Fault& fault, MarginKind kind, double wanted,
@@ -201,11 +195,10 @@ std::optional<double> severity_at_margin(const PositionLoop& loop, const Fault& 
     return fault.log_scale ? fault.healthy * std::pow(fault.worst / fault.healthy, part)
                            : fault.healthy + part * (fault.worst - fault.healthy);
   };
-  constexpr int scanned = 12, halvings = 16;
-  for (int k = 1; k <= scanned; ++k) {
-    double good = (k - 1.0) / scanned, bad = k / static_cast<double>(scanned);
+  for (int k = 1; k <= severities_scanned; ++k) {
+    double good = (k - 1.0) / severities_scanned, bad = k / static_cast<double>(severities_scanned);
     if (to_spare(severity_of(bad)) >= 0) continue;
-    for (int i = 0; i < halvings; ++i) {
+    for (int i = 0; i < severity_halvings; ++i) {
       const double middle = 0.5 * (good + bad);
       (to_spare(severity_of(middle)) < 0 ? bad : good) = middle;
     }

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "base/celsius.h"
 #include "base/csv.h"
 #include "base/error.h"
 #include "base/units.h"

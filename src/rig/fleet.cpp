@@ -8,6 +8,7 @@
 #include <exception>
 #include <mutex>
 
+#include "base/celsius.h"
 #include "base/error.h"
 #include "base/random.h"
 #include "rig/fluid.h"

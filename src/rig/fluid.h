@@ -12,12 +12,12 @@
 #pragma once
 #include <cmath>
 
+#include "base/celsius.h"
 #include "rig/rig_model.h"
 
 namespace servodx::rig {
 
 inline constexpr double atmosphere = 101325.0;  // [Pa]
-inline constexpr double zero_celsius = 273.15;  // [K]
 
 struct Oil {
   double density;         // [kg/m3] at zero gauge

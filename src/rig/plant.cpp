@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "base/celsius.h"
 #include "servodx/rig.h"
 
 // One arithmetic at every width: the vector unit's add, multiply, divide and root are the scalar ones. The sanitizers

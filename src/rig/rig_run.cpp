@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/celsius.h"
 #include "base/error.h"
 #include "base/random.h"
 #include "base/units.h"

@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "base/celsius.h"
 #include "rig/excitations.h"
 #include "rig/fluid.h"
 #include "rig/rig_faults.h"

@@ -4,6 +4,7 @@
 // supply line without flow (about 2 us each, hot oil); RK4 is stable to 2.8 time constants. tests/rig shows
 // convergence.
 #pragma once
+#include "base/celsius.h"
 #include "rig/fluid.h"
 #include "rig/magnetics.h"
 #include "rig/plant.h"

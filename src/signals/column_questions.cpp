@@ -12,10 +12,13 @@
 #include "base/median.h"
 #include "base/units.h"
 #include "servodx/log.h"
+#include "signals/constants.h"
 #include "signals/signal.h"
 
 namespace servodx {
 namespace {
+
+using namespace signals_constants;
 
 enum class Measure { size, span, level, step };
 
@@ -63,10 +66,6 @@ Usual usual(Signal s) {
   }
   return {};
 }
-
-constexpr double unsigned_below = 0.02;  // of the highest value that a signed one may lack of zero
-constexpr double aside = 0.5;            // of what the piston moves: it is this far from the middle
-constexpr double long_way = 0.02;  // [m] a piston that goes so far to one side of the middle alone may begin at its end
 
 bool is_drive(Signal s) { return s == Signal::command || s == Signal::coil_current; }
 bool is_stroke(Signal s) { return s == Signal::piston_position || s == Signal::setpoint; }
@@ -141,7 +140,6 @@ void ask_absurd_numbers(ColumnGuess& g, const ColumnNumbers& n) {
 
 void ask_sign(ColumnGuess& g, const ColumnNumbers& n) {
   if (!is_drive(*g.signal) || n.low == n.high || n.high <= 0 || n.low < -unsigned_below * n.high) return;
-  constexpr double transmitter[] = {3.5e-3, 21e-3};  // [A] 4 to 20 mA and what they overshoot
   const Unit* const unit = find_unit(g.unit);
   if (unit && unit->to_si(n.low) > transmitter[0] && unit->to_si(n.high) < transmitter[1])
     g.ask("the 4 to 20 mA of a transmitter, or the coil's current? A transmitter's needs gain and offset");
@@ -181,7 +179,6 @@ void ask_column(ColumnGuess& g, const ColumnNumbers& n) {
 
 // Pressures that are only numbered: which is the pump's and which the tank's, their values say.
 void sort_numbered_pressures(std::vector<ColumnGuess>& columns, const std::vector<ColumnNumbers>& numbers) {
-  constexpr double flat = 0.4, low = 0.25;  // of the highest value
   std::vector<std::size_t> numbered;
   for (std::size_t c = 0; c < columns.size(); ++c) {
     std::string bare = columns[c].name.substr(0, columns[c].name.find_first_of("_ "));
@@ -200,8 +197,8 @@ void sort_numbered_pressures(std::vector<ColumnGuess>& columns, const std::vecto
     return numbers[a].high < numbers[b].high;
   });
   std::vector<Signal> chambers = {Signal::pressure_b, Signal::pressure_a};
-  const bool pump = numbers[highest].high - numbers[highest].low < flat * numbers[highest].high;
-  const bool tank = numbers[lowest].high < low * numbers[highest].high;
+  const bool pump = numbers[highest].high - numbers[highest].low < flat_pressure * numbers[highest].high;
+  const bool tank = numbers[lowest].high < low_pressure * numbers[highest].high;
   for (const std::size_t c : numbered) columns[c].signal.reset();
   for (const std::size_t c : numbered) {
     std::optional<Signal> is;
@@ -238,10 +235,9 @@ void ask_of_exchanged_positions(std::vector<ColumnGuess>& columns, const std::ve
 }  // namespace
 
 void NumbersCollector::take(double x) {
-  constexpr std::size_t looked_at = 10000;  // steps
   if (std::isfinite(x)) {
     low_ = count_ ? std::min(low_, x) : x, high_ = count_ ? std::max(high_, x) : x;
-    if (count_ > 0 && steps_.size() < looked_at) steps_.push_back(x - last_);
+    if (count_ > 0 && steps_.size() < steps_looked_at) steps_.push_back(x - last_);
     last_ = x;
     ++count_;
   }

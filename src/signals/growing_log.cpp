@@ -11,6 +11,7 @@
 #include "base/csv.h"
 #include "base/decimal.h"
 #include "base/file_kind.h"
+#include "base/trimmed.h"
 #include "base/units.h"
 #include "servodx/error.h"
 #include "signals/header.h"
@@ -23,16 +24,11 @@ constexpr std::string_view stamps_from = "stamps in column ";  // a comment of t
 constexpr std::size_t most_above = 200;                        // lines before a row of numbers
 constexpr std::size_t longest_line = std::size_t{1} << 16;     // [bytes] more is no line of a log
 
-std::string_view trimmed(std::string_view text) {
-  const auto blank = [](char c) { return c == ' ' || c == '\t' || c == '\r' || c == '"'; };
-  while (!text.empty() && blank(text.front())) text.remove_prefix(1);
-  while (!text.empty() && blank(text.back())) text.remove_suffix(1);
-  return text;
-}
+constexpr std::string_view blanks = " \t\r\"";
 
 // False where the cell is text; a missing number is NaN.
 bool number_of(std::string_view cell, char point, double& value) {
-  cell = trimmed(cell);
+  cell = trimmed(cell, blanks);
   value = std::numeric_limits<double>::quiet_NaN();
   if (cell.empty()) return true;
   double x = 0;
@@ -104,7 +100,7 @@ void GrowingLog::end(const Take& take) {
 
 // A header is known by the row of numbers below it, which is the first sample.
 void GrowingLog::line(std::string_view text, std::uint64_t end, const Take& take) {
-  if (trimmed(text).empty()) return;
+  if (trimmed(text, blanks).empty()) return;
   if (!columns_ && !begins_with(text)) return;
   Sample sample;
   if (read_sample(text, sample))
@@ -115,7 +111,7 @@ void GrowingLog::line(std::string_view text, std::uint64_t end, const Take& take
 
 // Whether this is the row of numbers that a header stands above.
 bool GrowingLog::begins_with(std::string_view text) {
-  if (trimmed(text).front() == '#') return false;
+  if (trimmed(text, blanks).front() == '#') return false;
   if (above_.empty()) refuse_binary(text, name_);
   const bool numbers = is_row_of_numbers(text);
   if (above_.empty() && numbers) require_names(CsvCursor(text, name_), name_);
@@ -180,7 +176,7 @@ void GrowingLog::read_head(const std::string& first) {
 // The time of a row: a number, or a stamp where the first row's is one. [s]
 bool GrowingLog::time_of(std::string_view cell, int column, double& time) {
   if (stamps_) {
-    const auto stamp = parse_time_stamp(trimmed(cell));
+    const auto stamp = parse_time_stamp(trimmed(cell, blanks));
     const auto seconds = stamp ? stamps_->seconds(*stamp) : std::nullopt;
     if (seconds) time = *seconds;
     return seconds.has_value();

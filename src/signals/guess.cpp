@@ -6,17 +6,13 @@
 #include <string_view>
 #include <utility>
 
+#include "base/trimmed.h"
 #include "base/units.h"
 #include "servodx/log.h"
 #include "signals/signal_words.h"
 
 namespace servodx {
 namespace {
-
-std::string trimmed(const std::string& text) {
-  const auto first = text.find_first_not_of(" \t");
-  return first == std::string::npos ? "" : text.substr(first, text.find_last_not_of(" \t") - first + 1);
-}
 
 std::string small(std::string text) {
   for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
@@ -173,10 +169,10 @@ bool split_brackets(ColumnGuess& g) {
     if (g.name.empty() || g.name.back() != close) continue;
     const auto at = opening(g.name, open, close);
     if (at == std::string::npos || at == 0) continue;
-    g.written_unit = trimmed(g.name.substr(at + 1, g.name.size() - at - 2));
+    g.written_unit = trimmed(std::string_view(g.name).substr(at + 1, g.name.size() - at - 2));
     g.unit = unit_meant(g.written_unit);
     g.unit_in_brackets = open == '[' && !g.unit.empty() && g.unit == g.written_unit;
-    g.name = trimmed(g.name.substr(0, at));
+    g.name = std::string(trimmed(std::string_view(g.name).substr(0, at)));
     return true;
   }
   return false;
@@ -205,14 +201,14 @@ void split_last_word(ColumnGuess& g) {
   for (const char* marks : {"_ ", "/"}) {
     const auto at = g.name.find_last_of(marks);
     if (at == std::string::npos || at == 0) continue;
-    std::string name = trimmed(g.name.substr(0, at));
+    std::string name(trimmed(std::string_view(g.name).substr(0, at)));
     if (name.ends_with(',')) name.pop_back();  // "pressure, bar"
     const std::string unit = unit_meant(g.name.substr(at + 1));
     if (unit.empty() || (unit.size() == 1 && unit != "V" && unit != "A" && unit != "s")) continue;
     if (*marks != '/' && (std::any_of(whole.begin(), whole.end(), is_whole) ||
                           (!whole.empty() && matches_of(name, unit, 0).empty() && !find_signal(name))))
       continue;
-    g.written_unit = trimmed(g.name.substr(at + 1));
+    g.written_unit = trimmed(std::string_view(g.name).substr(at + 1));
     g.name = name;
     g.unit = unit;
     return;

@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "base/error.h"
+#include "base/trimmed.h"
 #include "base/units.h"
 #include "signals/guess.h"
 #include "signals/time_stamp.h"
@@ -15,12 +16,7 @@ namespace {
 
 constexpr std::size_t most_lines = 200;  // above a header
 
-std::string_view trimmed(std::string_view text) {
-  const auto blank = [](char c) { return c == ' ' || c == '\t' || c == '\r'; };
-  while (!text.empty() && blank(text.front())) text.remove_prefix(1);
-  while (!text.empty() && blank(text.back())) text.remove_suffix(1);
-  return text;
-}
+constexpr std::string_view blanks = " \t\r";
 
 std::vector<std::string> cells_of(std::string_view line, char separator) {
   if (line.ends_with('\r')) line.remove_suffix(1);
@@ -29,7 +25,7 @@ std::vector<std::string> cells_of(std::string_view line, char separator) {
     bool quoted = false;
     std::size_t end = 0;
     for (; end < line.size() && (quoted || line[end] != separator); ++end) quoted ^= line[end] == '"';
-    std::string_view cell = trimmed(line.substr(0, end));
+    std::string_view cell = trimmed(line.substr(0, end), blanks);
     if (cell.size() > 1 && cell.front() == '"' && cell.back() == '"') cell = cell.substr(1, cell.size() - 2);
     cells.emplace_back(cell);
     more = end < line.size();
@@ -74,7 +70,7 @@ std::vector<std::string> as_units(std::vector<std::string> units) {
     if (is_number(cell)) return {};
     const std::size_t n = cell.size();
     if (n > 1 && ((cell[0] == '[' && cell[n - 1] == ']') || (cell[0] == '(' && cell[n - 1] == ')')))
-      cell = trimmed(std::string_view(cell).substr(1, n - 2));
+      cell = trimmed(std::string_view(cell).substr(1, n - 2), blanks);
     any = any || !unit_meant(cell).empty();
   }
   return any ? units : std::vector<std::string>{};
@@ -99,7 +95,7 @@ Above look_ahead(const CsvCursor& csv) {
     const std::size_t end = std::min(text.find('\n', at), text.size());
     const std::string_view line = text.substr(at, end - at);
     ++line_number;
-    if (!trimmed(line).empty() && !line.starts_with('#')) {
+    if (!trimmed(line, blanks).empty() && !line.starts_with('#')) {
       above.numbers = numbers_of(line);
       if (above.numbers)
         above.numbers_line = line_number;

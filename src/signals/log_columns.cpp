@@ -9,6 +9,7 @@
 #include <limits>
 
 #include "base/nearest.h"
+#include "base/trimmed.h"
 #include "base/trouble.h"
 #include "base/units.h"
 #include "servodx/rig.h"
@@ -25,12 +26,6 @@ struct NameAndUnit {
   bool has_unit = false;
 };
 
-std::string trimmed(std::string text) {
-  const auto first = text.find_first_not_of(" \t");
-  if (first == std::string::npos) return {};
-  return text.substr(first, text.find_last_not_of(" \t") - first + 1);
-}
-
 std::string in_small_letters(std::string text) {
   for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
   return text;
@@ -38,8 +33,10 @@ std::string in_small_letters(std::string text) {
 
 NameAndUnit parse_name(const std::string& cell) {
   const auto open = cell.rfind('[');
-  if (open == std::string::npos || !cell.ends_with(']')) return {trimmed(cell), "", false};
-  return {trimmed(cell.substr(0, open)), trimmed(cell.substr(open + 1, cell.size() - open - 2)), true};
+  if (open == std::string::npos || !cell.ends_with(']')) return {std::string(trimmed(cell)), "", false};
+  const std::string_view text = cell;
+  return {std::string(trimmed(text.substr(0, open))),
+          std::string(trimmed(text.substr(open + 1, text.size() - open - 2))), true};
 }
 
 // The names in the file that are no signal, for the mend of a missing one.

@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
+
+#include "base/median.h"
 
 namespace servodx {
 
@@ -13,9 +16,8 @@ double noise_of(const std::vector<double>& x, double resolution) {
   }
   const double quantisation = resolution / std::sqrt(12.0);
   if (d.empty()) return quantisation;
-  std::nth_element(d.begin(), d.begin() + static_cast<long>(d.size() / 2), d.end());
   // Median of |N(0,1)| is 0.6745; the fourth difference of white noise has variance 70.
-  return std::max(d[d.size() / 2] / (0.6745 * std::sqrt(70.0)), quantisation);
+  return std::max(median(std::move(d)) / (0.6745 * std::sqrt(70.0)), quantisation);
 }
 
 }  // namespace servodx

@@ -8,34 +8,16 @@
 #include <iterator>
 #include <span>
 
+#include "base/median.h"
 #include "base/units.h"
 #include "servodx/rig.h"
+#include "signals/constants.h"
 #include "signals/usual_step.h"
 
 namespace servodx {
 namespace {
 
-constexpr double spike_over_range = 0.5;  // a lone sample this far off both neighbours, per central range of the signal
-constexpr double spike_over_noise = 30.0;  // and this many times the usual step
-constexpr double frozen_part = 0.1;        // of the log without a change
-constexpr std::size_t frozen_least = 50;   // samples
-constexpr double frozen_drive = 0.05;      // of the drive's range is swept meanwhile
-constexpr double frozen_usual_run = 3.0;   // a live channel repeats a value for fewer samples than this, on average
-constexpr double no_excitation = 0.005;    // drive range per rated current
-
-// A spool is through in 10 to 30 ms; a stand's slow sweeps are another matter.
-constexpr double slowest = 50.0;          // [Hz]
-constexpr double fastest = 200e3;         // [Hz] beyond what loggers of valves take
-constexpr double longest_log = 1e5;       // [s] a day
-constexpr double least_of_stroke = 5e-4;  // a piston that uses less of it has another unit, or another column
-constexpr double no_supply = 5e5;         // [Pa] what a return line holds
-constexpr std::size_t scale_samples = 10000;
-
-double quantile(std::vector<double>& x, double q) {
-  const auto at = x.begin() + static_cast<std::ptrdiff_t>(q * static_cast<double>(x.size() - 1));
-  std::nth_element(x.begin(), at, x.end());
-  return *at;
-}
+using namespace signals_constants;
 
 struct Run {
   std::size_t begin = 0, size = 0;

@@ -9,18 +9,13 @@
 #include <unsupported/Eigen/FFT>
 
 #include "base/error.h"
+#include "signals/constants.h"
 #include "signals/usual_step.h"
 
 namespace servodx {
 namespace {
 
-constexpr double piece_time = 8.0;         // [s] long enough to be unlike its neighbours, short against a skew
-constexpr int most_pieces = 40;            // searched outwards from the liveliest
-constexpr int fewest_pieces = 4;           // to state an error
-constexpr double largest_skew = 1e-3;      // [-]
-constexpr double least_correlation = 0.7;  // of increments in a piece
-constexpr double rival = 0.9;              // another lag with this share of the best correlation: the signal repeats
-constexpr double far_apart = 3.0;          // usual steps between two samples: nothing is said between them
+using namespace signals_constants;
 
 // A series that can be asked at any time; missing samples are bridged.
 class Series {

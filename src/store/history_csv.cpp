@@ -151,7 +151,8 @@ Recording recording_of(const Cells& cells, double hours, bool celsius, const Pla
   if (!std::isnan(cycled)) r.cycles = cycled;
   r.temperature = parsed(cells, temperature, row, false) + (celsius ? zero_celsius : 0.0);
   r.temperature_source = cells[temperature_source];
-  if (std::isnan(r.temperature)) r.temperature = reference_kelvin, r.temperature_source = name_of(OilSource::assumed);
+  if (std::isnan(r.temperature))
+    r.temperature = reference_oil_temperature, r.temperature_source = name_of(OilSource::assumed);
   if (r.temperature < coldest_oil || r.temperature > hottest_oil)
     throw InputError({row.file, row.line, celsius ? "oil_temperature [degC]" : header[temperature]},
                      "'" + cells[temperature] + "' is no oil's temperature",

@@ -1,4 +1,6 @@
 // What a baseline refuses and promises; determinism of an assessment. On short pieces of the committed logs.
+#include "diagnose/baseline.h"
+
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -8,14 +10,20 @@
 
 #include "base/error.h"
 #include "base/random.h"
+#include "diagnose/assessment.h"
 #include "diagnose/diagnose.h"
+#include "diagnose/moved.h"
 #include "diagnose/whitening.h"
+#include "faults/fault.h"
 #include "faults/registry.h"
+#include "fit/error_model.h"
 #include "fit/log_data.h"
 #include "fit/tuned_state.h"
 #include "parameters/list.h"
 #include "parameters/table.h"
+#include "servodx/diagnose.h"
 #include "servodx/log.h"
+#include "servodx/watch.h"
 #include "shipped_data.h"
 #include "simulate/scenario.h"
 

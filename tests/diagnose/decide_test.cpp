@@ -7,6 +7,9 @@
 #include <string>
 #include <vector>
 
+#include "faults/fault.h"
+#include "faults/record.h"
+
 namespace servodx {
 namespace {
 

@@ -1,12 +1,22 @@
 // The verdict from assessments made by hand: no simulation here.
+#include "diagnose/judge.h"
+
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
+#include "diagnose/assessment.h"
+#include "diagnose/baseline.h"
+#include "diagnose/decide.h"
 #include "diagnose/diagnose.h"
 #include "diagnose/healthy_law.h"
+#include "diagnose/moved.h"
+#include "diagnose/naming.h"
+#include "evidence/conditions.h"
+#include "faults/fault.h"
+#include "faults/gross_finding.h"
 #include "faults/registry.h"
 
 namespace servodx {

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <regex>
@@ -187,6 +188,47 @@ TEST_F(Door, RefusesABaselineOfAnotherTableInTheProgramsWords) {
     EXPECT_NE(std::string(error.what()).find("was made with another table than other.csv"), std::string::npos);
   }
   EXPECT_THROW(explain({log}, other, rig(), baseline, ExplainOptions{}), InputError);
+}
+
+TEST_F(Door, ACommentIsNoOtherTableAndARowChangedInMemoryIs) {
+  const Baseline baseline = read_baseline("base.json");
+  const std::string text = bytes_of("tuned.csv");
+  desk->write("commented.csv", "# looked over on the bench\n" + text);
+  const Tuned commented = read_tuned("commented.csv");
+  EXPECT_NE(commented.table.sha256, read_tuned("tuned.csv").table.sha256);
+  EXPECT_FALSE(require_same_table(baseline, commented)) << "nothing to note";
+  const Verdict plain = diagnose(read_log("s.csv", rig()), commented, rig(), baseline);
+  EXPECT_EQ(json_of(plain), json_of(diagnose(read_log("s.csv", rig()), read_tuned("tuned.csv"), rig(), baseline)));
+
+  for (const auto& change : std::vector<std::function<void(Table&)>>{
+           [](Table& t) { t.rows[8].nominal *= 1.001; }, [](Table& t) { t.rows[8].upper *= 2; },
+           [](Table& t) { t.state.replace(t.state.find("per_activity = "), 15, "per_activity = 1"); },
+           [](Table& t) { t.rows.push_back(t.rows.back()), t.rows.back().group = "effect:seal_film"; }}) {
+    Tuned other = read_tuned("tuned.csv");
+    change(other.table);
+    EXPECT_THROW(require_same_table(baseline, other), InputError);
+  }
+}
+
+TEST_F(Door, ABaselineBoundToTheBytesOfItsTableIsReadWithANote) {
+  Json old = Json::parse(bytes_of("base.json"));
+  old["tuned_sha256"] = read_tuned("tuned.csv").table.sha256;
+  desk->write("old.json", old.dump());
+  const Baseline baseline = read_baseline("old.json");
+  const auto note = require_same_table(baseline, read_tuned("tuned.csv"));
+  ASSERT_TRUE(note);
+  EXPECT_NE(note->find("old.json: a baseline of an earlier version"), std::string::npos) << *note;
+  const Verdict verdict = diagnose(read_log("s.csv", rig()), read_tuned("tuned.csv"), rig(), baseline);
+  EXPECT_EQ(std::count(verdict.notes.begin(), verdict.notes.end(), *note), 1);
+  const Ended ended = desk->run("diagnose s.csv --rig rig.toml --params tuned.csv --baseline old.json");
+  EXPECT_NE((ended.out + ended.err).find("bound to the bytes of the table's file"), std::string::npos) << ended.out;
+
+  Tuned other = read_tuned("tuned.csv");
+  other.table.rows[8].nominal *= 1.001;
+  EXPECT_EQ(other.table.sha256, baseline.tuned_sha256);
+  EXPECT_THROW(require_same_table(baseline, other), InputError) << "changed in memory: the hash of bytes stays";
+  desk->write("commented.csv", "# looked over\n" + bytes_of("tuned.csv"));
+  EXPECT_THROW(require_same_table(baseline, read_tuned("commented.csv")), InputError);
 }
 
 TEST_F(Door, RefusesWhatIsNotTunedAndWhatIsEmpty) {

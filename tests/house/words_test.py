@@ -134,6 +134,14 @@ WRITTEN = {
 OWN_WORDS = "src/rig/"
 
 
+def borrowed(path, names):
+    """(text, name, line) of every literal that is a registry's name, or ends in one after a colon, of another file."""
+    for kind, text, line in source.tokens(path):
+        word = text.split(":")[-1]
+        if kind == "string" and names.get(word, path) != path:
+            yield text, word, line
+
+
 class Words(unittest.TestCase):
     def test_no_result_is_compared_to_a_string(self):
         found, where = collections.defaultdict(set), []
@@ -161,16 +169,23 @@ class Words(unittest.TestCase):
         for path in source.files("src", "apps", "include"):
             if path.startswith(OWN_WORDS):
                 continue
-            for kind, text, line in source.tokens(path):
-                word = text.split(":")[-1]
-                if kind != "string" or names.get(word, path) == path:
-                    continue
+            for text, word, line in borrowed(path, names):
                 found[path].add(word)
                 if word not in WRITTEN.get(path, ((), ""))[0]:
                     where.append(f'{path}:{line}: "{text}" belongs to {names[word]} alone; say there what it means')
         self.assertFalse(where)
         stale = [f'{path}: "{name}"' for path, (names, _) in WRITTEN.items() for name in sorted(names - found[path])]
         self.assertFalse(stale, "not written there: take it off the list")
+
+    def test_registry_names_are_found_wherever_they_are_written(self):
+        names = registry_names()
+        made = "tests/house/borrowed.inc"
+        self.assertEqual([(text, line) for text, _, line in borrowed(made, names)],
+                         [("sticky_spool", 3), ("effect:seal_film", 4), ("parameter:port_width", 5), ("stiction", 6)])
+        self.assertFalse(list(borrowed(made, names | dict.fromkeys(names, made))), "in their own file they may stand")
+        for file, written in (("src/faults/sticky_spool.h", "sticky_spool"), ("src/effects/seal_film.h", "seal_film"),
+                              ("src/parameters/list.h", "port_width")):
+            self.assertEqual(names[written], file)
 
 
 if __name__ == "__main__":

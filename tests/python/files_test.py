@@ -102,6 +102,17 @@ class Lives(unittest.TestCase):
             with self.assertRaises(sx.InputError):
                 sx.trend(sx.History(desk / "h.db"), "V8")
 
+    def test_a_comment_in_the_table_keeps_its_baseline(self):
+        with Desk() as desk:
+            tuned().save(desk / "tuned.csv")
+            baseline().save(desk / "base.json")
+            (desk / "said.csv").write_text("# looked over\n" + (desk / "tuned.csv").read_text())
+            said, base = sx.Tuned.load(desk / "said.csv", rig()), sx.Baseline.load(desk / "base.json")
+            self.assertEqual(said.diagnose(suspect(), base).json, verdict().json)
+            (desk / "other.csv").write_text((desk / "tuned.csv").read_text().replace("per_activity = ", "per_activity = 1"))
+            with self.assertRaisesRegex(sx.InputError, "made with another table"):
+                sx.Tuned.load(desk / "other.csv", rig()).diagnose(suspect(), base)
+
     def test_a_plan_is_the_programs(self):
         with Desk() as desk:
             tuned().save(desk / "tuned.csv")

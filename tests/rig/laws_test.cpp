@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "base/celsius.h"
 #include "rig/contact.h"
 #include "rig/fluid.h"
 #include "rig/magnetics.h"

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <string>
 
+#include "base/celsius.h"
 #include "rig/fluid.h"
 #include "rig/passage.h"
 #include "rig/rig_faults.h"

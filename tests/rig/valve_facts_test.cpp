@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <filesystem>
 
+#include "base/celsius.h"
 #include "rig/facts.h"
 #include "rig/fluid.h"
 #include "rig/magnetics.h"

@@ -49,6 +49,29 @@ TEST(TunedState, ReadsBackFromAFileToTheSameBits) {
   EXPECT_TRUE(tuned_state(shipped_table()).error.channels.empty());
 }
 
+TEST(TunedState, TheHashOfATableIsOfWhatItSays) {
+  Table table = shipped_table();
+  table.has_std_error = true;
+  set_tuned_state(table, {error, 5, {{"a.csv", "ab12", "cd34"}}, {{Signal::pressure_b, 11.25}}});
+  const std::string hash = content_hash(table);
+  const auto of = [&](auto&& change) {
+    Table other = table;
+    change(other);
+    return content_hash(other);
+  };
+  EXPECT_EQ(of([](Table& t) { t.comments.push_back("looked over"); }), hash);
+  EXPECT_EQ(of([](Table& t) { t.state += "# a remark\n"; }), hash);
+  EXPECT_EQ(of([](Table& t) { t.rows[3].source = "elsewhere", t.path = "other.csv"; }), hash);
+  EXPECT_NE(of([](Table& t) { t.rows[3].nominal *= 1 + 1e-15; }), hash);
+  EXPECT_NE(of([](Table& t) { t.rows[3].std_error = 1; }), hash);
+  EXPECT_NE(of([](Table& t) { set_tuned_state(t, {error, 3}); }), hash);
+  Table old = shipped_table();
+  old.comments = {"model error spool_position: floor 1e-06 m, per activity 0.1, independent 9.9 1/s"};
+  Table moved_on = old;
+  set_tuned_state(moved_on, tuned_state(old));
+  EXPECT_EQ(content_hash(moved_on), content_hash(old)) << "the same, of an earlier version's comments";
+}
+
 TEST(TunedState, TakesInWhatAnOlderVersionKeptInComments) {
   Table table = shipped_table();
   table.comments = {"model errors are not this line",
