@@ -25,7 +25,7 @@ if(NOT SERVODX_SANITIZE)  # an interpreter without the sanitizers cannot load wh
     string(REPLACE _test "" name ${name})
     add_test(NAME python.${name} COMMAND ${Python_EXECUTABLE} -B ${test} ${python_packages} ${CMAKE_SOURCE_DIR}
                                          $<TARGET_FILE:servodx>)
-    set_tests_properties(python.${name} PROPERTIES SKIP_RETURN_CODE 77 TIMEOUT 3600)
+    set_tests_properties(python.${name} PROPERTIES SKIP_RETURN_CODE 77)
     if(name IN_LIST nightly_python)
       set_tests_properties(python.${name} PROPERTIES LABELS nightly)
     endif()

@@ -15,12 +15,14 @@
 
 #include "base/block_reader.h"
 #include "base/file_kind.h"
+#include "base/limits.h"
 
 namespace servodx {
 namespace {
 
 // Limits beyond any log or table, so that a file without line ends, or of separators alone, costs no more than these.
 constexpr std::size_t longest_row = std::size_t{16} << 20;  // [byte]
+constexpr std::size_t most_comments = longest_row;
 constexpr std::size_t most_columns = 10000;
 
 constexpr double missing_value = std::numeric_limits<double>::quiet_NaN();
@@ -103,7 +105,7 @@ Cell parse_cell(std::string_view text, bool decimal_comma, double& value) {
 
 }  // namespace
 
-std::string read_file(const std::string& path) {
+std::string read_file_within(const std::string& path, std::size_t most) {
   struct Descriptor {
     int fd;
     ~Descriptor() {
@@ -116,6 +118,13 @@ std::string read_file(const std::string& path) {
   struct stat status {};
   if (file.fd < 0 || ::fstat(file.fd, &status) != 0) refuse(std::strerror(errno));
   if (S_ISDIR(status.st_mode)) refuse("it is a folder");
+  const auto refuse_beyond = [&](std::size_t size) {
+    if (size > most)
+      throw InputError({path, 0, ""},
+                       "has more than " + std::to_string(most >> 20) + " MB, the most that such a file may",
+                       "give the file that is meant");
+  };
+  refuse_beyond(S_ISREG(status.st_mode) ? static_cast<std::size_t>(status.st_size) : 0);
   std::string text;
   text.resize(S_ISREG(status.st_mode) ? static_cast<std::size_t>(status.st_size) + 1 : std::size_t{1} << 16);
   std::size_t size = 0;
@@ -126,9 +135,14 @@ std::string read_file(const std::string& path) {
     if (got < 0) refuse(std::strerror(errno));
     if (got == 0) break;
     size += static_cast<std::size_t>(got);
+    refuse_beyond(size);
   }
   text.resize(size);
   return text;
+}
+
+std::string read_file(const std::string& path) {
+  return read_file_within(path, std::numeric_limits<std::size_t>::max());
 }
 
 CsvCursor::CsvCursor(std::string_view text, std::string path)
@@ -147,6 +161,7 @@ void CsvCursor::read_header() {
   if (text.starts_with("\xEF\xBB\xBF")) p_ += 3;
   if (text.starts_with("\xFF\xFE") || text.starts_with("\xFE\xFF"))
     throw InputError({path_, 1, ""}, "the text is UTF-16", "save the file as UTF-8");
+  std::size_t in_comments = 0;
   while (next_row()) {
     const char* stop = std::find(p_, end_, '\n');
     std::string_view line(p_, static_cast<std::size_t>(stop - p_));
@@ -154,6 +169,9 @@ void CsvCursor::read_header() {
       if (line.ends_with('\r')) line.remove_suffix(1);
       line.remove_prefix(1);
       if (line.starts_with(' ')) line.remove_prefix(1);
+      in_comments += line.size();
+      if (in_comments > most_comments)
+        throw InputError({path_, line_, ""}, "the comments above the header have more than 16 MB", "take them out");
       comments_.emplace_back(line);
       p_ = stop;
       more_ = false;
@@ -174,6 +192,11 @@ void CsvCursor::take_header(char separator) {
     if (header_.size() == most_columns)
       throw InputError({path_, line_, ""}, "the header has more than " + std::to_string(most_columns) + " columns",
                        "keep the columns that are needed");
+    if (cell.size() > longest_name)
+      throw InputError({path_, line_, ""},
+                       "the name of column " + std::to_string(header_.size() + 1) + " has more than " +
+                           std::to_string(longest_name) + " bytes",
+                       "shorten it");
     header_.push_back(as_utf8(std::move(cell)));
   }
 }

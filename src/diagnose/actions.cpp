@@ -7,10 +7,11 @@
 #include <utility>
 
 #include "base/atomic_file.h"
-#include "base/csv.h"
 #include "base/error.h"
 #include "base/key_error.h"
+#include "base/limits.h"
 #include "base/nearest.h"
+#include "base/toml_text.h"
 #include "faults/fault.h"
 #include "faults/registry.h"
 
@@ -42,13 +43,8 @@ Actions default_actions() {
 }
 
 Actions read_actions(const std::string& path) {
-  toml::table root;
-  try {
-    root = toml::parse(read_file(path), path);
-  } catch (const toml::parse_error& error) {
-    throw InputError({path, error.source().begin.line, ""}, "is not TOML: " + std::string(error.description()),
-                     "write lines like clogged_filter = \"critical: stop the machine\"");
-  }
+  const toml::table root = parse_toml(read_file_within(path, largest_toml), path,
+                                      "write lines like clogged_filter = \"critical: stop the machine\"");
   Actions out = default_actions();
   std::vector<std::string> known;
   for (const auto& [label, action] : out) known.push_back(label);

@@ -50,6 +50,7 @@ struct Finding {
   FindingKind kind = FindingKind::values;
   std::string text;
   std::vector<Signal> signals = {};  // whose columns may be meant wrongly; of a sign and of exchanged columns
+  bool impossible = false;           // of no valve; what a fit would make of it is worth nothing
 };
 
 struct LogSurvey {

@@ -21,14 +21,30 @@ using namespace diagnose_constants::exchanged;
 
 double margin_of(double pressure) { return std::max(least_apart, part_apart * std::abs(pressure)); }
 
+// What a chamber does beside such a supply is no second finding.
+bool find_return_above_supply(const Log& log, std::vector<Finding>& found) {
+  if (!log.has(Signal::supply_pressure) || !log.has(Signal::return_pressure)) return false;
+  const double part = part_below(log[Signal::supply_pressure], log[Signal::return_pressure]);
+  if (part < most_of_the_time) return false;
+  found.push_back(
+      {FindingKind::swapped,
+       fmt::format("'return_pressure' is above 'supply_pressure' in {:.0f} % of the samples: oil would flow "
+                   "backwards, and no valve works so; the two columns are exchanged, or a unit or an offset "
+                   "of one is wrong",
+                   100 * part),
+       {Signal::supply_pressure, Signal::return_pressure},
+       true});
+  return true;
+}
+
 void find_order(const Log& log, std::vector<Finding>& found) {
+  if (find_return_above_supply(log, found)) return;
   const struct {
     Signal upper, lower;
   } order[] = {{Signal::supply_pressure, Signal::pressure_a},
                {Signal::supply_pressure, Signal::pressure_b},
                {Signal::pressure_a, Signal::return_pressure},
-               {Signal::pressure_b, Signal::return_pressure},
-               {Signal::supply_pressure, Signal::return_pressure}};
+               {Signal::pressure_b, Signal::return_pressure}};
   for (const auto& [upper, lower] : order) {
     if (!log.has(upper) || !log.has(lower)) continue;
     const double part = part_below(log[upper], log[lower], &margin_of);

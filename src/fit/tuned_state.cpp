@@ -10,6 +10,7 @@
 
 #include "base/error.h"
 #include "base/sha256.h"
+#include "base/toml_text.h"
 #include "fit/tuning_comments.h"
 #include "servodx/log.h"
 #include "servodx/table.h"
@@ -66,9 +67,9 @@ TunedState of_comments(const std::vector<std::string>& comments) {
 TunedState of_section(const Table& table) {
   toml::table section;
   try {
-    section = toml::parse(table.state);
-  } catch (const toml::parse_error& error) {
-    refuse(table, fmt::format("its lines '#%' cannot be read: {}", std::string(error.description())));
+    section = parse_toml(table.state, table.path, "");
+  } catch (const InputError& error) {
+    refuse(table, fmt::format("its lines '#%' cannot be read, the {}. of them {}", error.where.line, error.rule));
   }
   const auto tuned = section["tuned"];
   const int schema = tuned["schema"].value_or(0);

@@ -12,6 +12,7 @@
 #include "base/atomic_file.h"
 #include "base/csv.h"
 #include "base/error.h"
+#include "base/limits.h"
 #include "base/sha256.h"
 #include "parameters/list.h"
 #include "parameters/table_text.h"
@@ -310,7 +311,7 @@ int Table::find(const std::string& name) const {
   return -1;
 }
 
-Table read_table(const std::string& path) { return parse_table(read_file(path), path); }
+Table read_table(const std::string& path) { return parse_table(read_file_within(path, largest_table), path); }
 Table parse_table(const std::string& text, const std::string& path) { return Reader(path).read(text); }
 
 std::string table_text(const Table& table) {

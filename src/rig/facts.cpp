@@ -9,6 +9,7 @@
 #include "base/celsius.h"
 #include "base/csv.h"
 #include "base/error.h"
+#include "base/limits.h"
 #include "base/units.h"
 #include "rig/fluid.h"
 #include "rig/magnetics.h"
@@ -300,7 +301,7 @@ std::vector<Fact> measure_facts(const RigModel& model) {
 }
 
 std::vector<FactLimit> read_fact_limits(const std::string& path, const std::string& rig) {
-  const std::string text = read_file(path);
+  const std::string text = read_file_within(path, largest_table);
   CsvCursor csv(text, path);
   const std::vector<std::string> expected{"rig", "fact", "unit", "low", "high", "source"};
   if (csv.header() != expected) {

@@ -11,7 +11,9 @@
 #include <set>
 
 #include "base/key_error.h"
+#include "base/limits.h"
 #include "base/random.h"
+#include "base/toml_text.h"
 
 namespace servodx::rig {
 namespace {
@@ -116,13 +118,8 @@ class Reader {
  private:
   void read_file(const std::string& path, int depth) {
     path_ = path;
-    toml::table root;
-    try {
-      root = toml::parse_file(path);
-    } catch (const toml::parse_error& e) {
-      throw InputError({path, static_cast<long>(e.source().begin.line), ""}, std::string(e.description()),
-                       "give a readable TOML file such as params/rigs/borello2009.toml");
-    }
+    const toml::table root = parse_toml(read_file_within(path, largest_toml), path,
+                                        "give a readable TOML file such as params/rigs/borello2009.toml");
     if (const toml::node* base = root.get("base")) {
       const Place where{path, line_of(*base), "base"};
       if (!base->is_string() || depth > 3) {

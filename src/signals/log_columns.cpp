@@ -218,8 +218,12 @@ void LogColumns::require_signals() const {
                  "a flow)");
 }
 
+void LogColumns::refuse_rows(long line) const {
+  refuse(line, "", fmt::format("the log has more than {} rows", format_.most_rows), "cut it into shorter ones");
+}
+
 void LogColumns::reserve(std::size_t samples) {
-  for (Column& column : columns_) column.value.reserve(samples);
+  for (Column& column : columns_) column.value.reserve(std::min(samples, format_.most_rows));
 }
 
 void LogColumns::append(std::span<const double> sample, long line) {
@@ -235,6 +239,7 @@ void LogColumns::append(std::span<const double> sample, long line) {
   if (!(now > previous_))
     refuse_as(Trouble::time, line, time.name, fmt::format("time does not increase: {} s after {} s", now, previous_),
               "sort the rows and remove repeated ones");
+  if (time.value.size() == format_.most_rows) refuse_rows(line);
   previous_ = now;
   last_line_ = line;
   for (std::size_t c = 0; c < columns_.size(); ++c) {
@@ -254,6 +259,7 @@ void LogColumns::append_columns(const std::vector<std::span<const double>>& valu
     if (values[c].size() != samples)
       refuse(0, columns_[c].name, fmt::format("has {} samples, the time has {}", values[c].size(), samples),
              "save signals of one length; for a second recorder see 'servodx join'");
+  if (samples > format_.most_rows) refuse_rows(0);
   reserve(samples);
   std::vector<double> row(values.size());
   for (std::size_t k = 0; k < samples; ++k) {

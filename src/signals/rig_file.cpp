@@ -10,8 +10,10 @@
 
 #include "base/csv.h"
 #include "base/key_error.h"
+#include "base/limits.h"
 #include "base/nearest.h"
 #include "base/sha256.h"
+#include "base/toml_text.h"
 #include "base/trouble.h"
 #include "servodx/error.h"
 #include "servodx/log.h"
@@ -82,12 +84,7 @@ class Reader {
   RigFile read(const std::string& text) {
     text_ = text;
     rig_.sha256 = sha256(text);
-    try {
-      root_ = toml::parse(text, rig_.path);
-    } catch (const toml::parse_error& error) {
-      throw InputError({rig_.path, error.source().begin.line, ""}, "is not TOML: " + std::string(error.description()),
-                       "mend the line; every value is a quoted string or a table");
-    }
+    root_ = parse_toml(text, rig_.path, "mend the line; every value is a quoted string or a table");
     walk(root_, "");
     check_pairs();
     derive_areas();
@@ -608,7 +605,7 @@ const std::vector<LimitInfo>& limit_list() {
   return list;
 }
 
-RigFile read_rig_file(const std::string& path) { return make_rig(path, read_file(path)); }
+RigFile read_rig_file(const std::string& path) { return make_rig(path, read_file_within(path, largest_toml)); }
 
 RigFile make_rig(const std::string& name, const std::string& text) {
   try {

@@ -1,6 +1,7 @@
 #include "store/certificate_file.h"
 
 #include <fmt/format.h>
+
 #include <toml++/toml.h>
 
 #include <algorithm>
@@ -9,10 +10,11 @@
 #include <cmath>
 #include <string_view>
 
-#include "base/csv.h"
 #include "base/key_error.h"
+#include "base/limits.h"
 #include "base/nearest.h"
 #include "base/sha256.h"
+#include "base/toml_text.h"
 #include "base/trouble.h"
 #include "base/units.h"
 #include "curves/curves.h"
@@ -35,15 +37,10 @@ class CertificateReader {
   explicit CertificateReader(const std::string& path) { out_.path = path; }
 
   Certificate read() {
-    const std::string text = read_file(out_.path);
+    const std::string text = read_file_within(out_.path, largest_toml);
     out_.sha256 = sha256(text);
-    toml::table root;
-    try {
-      root = toml::parse(text, out_.path);
-    } catch (const toml::parse_error& error) {
-      throw InputError({out_.path, error.source().begin.line, ""}, "is not TOML: " + std::string(error.description()),
-                       "mend the line; every value is a quoted string, a number or a table");
-    }
+    const toml::table root =
+        parse_toml(text, out_.path, "mend the line; every value is a quoted string, a number or a table");
     for (const auto& [name, node] : root) read_key(std::string(name.str()), node);
     if (out_.date.empty())
       throw key_error({out_.path, 0, "date"}, "is missing: whether an instrument was calibrated depends on it",

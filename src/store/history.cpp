@@ -14,6 +14,7 @@
 
 #include "base/atomic_file.h"
 #include "base/error.h"
+#include "base/limits.h"
 #include "parameters/list.h"
 #include "parameters/table.h"
 #include "parameters/table_text.h"
@@ -280,6 +281,10 @@ void HistoryFile::write_ahead() {
 
 void HistoryFile::record(const std::string& valve, const std::string& serial, const Recording& recording,
                          const std::string& table_text) {
+  for (const auto& [what, name] : {std::pair("valve", &valve), std::pair("serial number", &serial)})
+    if (name->size() > longest_name)
+      throw InputError({.file = path_}, fmt::format("the name of the {} has more than {} bytes", what, longest_name),
+                       "shorten it");
   const bool added = guarded([&] {
     SQLite::Transaction all(*db_, SQLite::TransactionBehavior::IMMEDIATE);
     const long long id = id_of(*db_, by_name, valve, serial);

@@ -12,6 +12,7 @@
 #include "base/celsius.h"
 #include "base/csv.h"
 #include "base/error.h"
+#include "base/limits.h"
 #include "base/units.h"
 #include "model/state.h"
 #include "parameters/list.h"
@@ -224,7 +225,7 @@ std::string history_csv(const HistoryContent& content) {
 }
 
 HistoryContent read_history_csv(const std::string& path) {
-  const std::string bytes = read_file(path);
+  const std::string bytes = read_file_within(path, largest_history);
   CsvCursor cursor(bytes, path);
   bool celsius = false;
   const std::vector<int> columns = columns_of(cursor, path, celsius);
@@ -251,6 +252,9 @@ HistoryContent read_history_csv(const std::string& path) {
     if (cells[kind] != "figure" && cells[kind] != "event")
       throw InputError({path, row.line, "kind"}, "unknown '" + cells[kind] + "'", "use figure, event or table");
     if (cells[valve].empty()) throw InputError({path, row.line, "valve"}, "is empty", "name the valve");
+    for (const auto& [column, which] : {std::pair("valve", valve), std::pair("serial", serial)})
+      if (cells[which].size() > longest_name)
+        throw InputError({path, row.line, column}, fmt::format("has more than {} bytes", longest_name), "shorten it");
     const auto [found, fresh] = place.emplace(cells[valve], content.valves.size());
     if (fresh) content.valves.push_back({cells[valve], cells[serial], {}, {}, {}});
     ValveHistory& v = content.valves[found->second];

@@ -10,6 +10,7 @@
 #include "base/celsius.h"
 #include "base/csv.h"
 #include "base/error.h"
+#include "base/limits.h"
 #include "base/units.h"
 #include "model/state.h"
 #include "prognose/check_name.h"
@@ -18,7 +19,7 @@
 namespace servodx {
 
 std::vector<SeededReading> read_seeded_csv(const std::string& path) {
-  const std::string bytes = read_file(path);
+  const std::string bytes = read_file_within(path, largest_history);
   CsvCursor cursor(bytes, path);
   enum { valve, name, truth, value, temperature, n_needed };
   constexpr std::array<const char*, n_needed> needed = {"valve", "name", "truth", "value", "oil_temperature [degC]"};

@@ -9,6 +9,7 @@
 
 #include "base/block_reader.h"
 #include "base/decimal.h"
+#include "base/limits.h"
 #include "base/random.h"
 #include "servodx/error.h"
 #include "temporary_folder.h"
@@ -212,6 +213,13 @@ TEST(Csv, RowsAndHeadersBeyondTheLimitsAreRefusedWhereTheyPassThem) {
   EXPECT_EQ(refusal(std::string(10000, ',') + "\n"), wide);
   EXPECT_EQ(refusal(std::string(9999, ',') + "\n"), "accepted");
   EXPECT_EQ(refusal("a\n" + std::string(1000000, ',') + "\n"), "accepted");  // ragged: for the log to say
+  EXPECT_EQ(refusal("a," + std::string(longest_name, 'b') + "\n"), "accepted");
+  EXPECT_EQ(refusal("a," + std::string(15'000'000, 'b') + "\n"),
+            "t.csv:1: the name of column 2 has more than 4096 bytes; shorten it");
+  std::string comments;
+  while (comments.size() <= 18u << 20) comments += "# " + std::string(100'000, 'c') + "\n";
+  EXPECT_NE(refusal(comments + "a,b\n").find("the comments above the header have more than 16 MB; take them out"),
+            std::string::npos);
 }
 
 TEST(Csv, EachRefusalSaysRuleAndMend) {

@@ -87,6 +87,8 @@ TEST(Certificate, AnInstrumentWhoseCalibrationWasDueIsNamed) {
 }
 
 TEST(Certificate, SheetsAreRefusedByLineAndKey) {
+  std::string levels = "a";
+  for (int i = 0; i < 100000; ++i) levels += ".a";
   const std::pair<std::string, std::string> wrong[] = {
       {replaced(sheet, "customer", "custommer"),
        "sheet.toml:3: key 'custommer': unknown key; did you mean 'customer'?"},
@@ -95,7 +97,8 @@ TEST(Certificate, SheetsAreRefusedByLineAndKey) {
       {replaced(sheet, "2 %", "2 bar"), "sheet.toml:12: key 'instrument.uncertainty': 'bar' is a unit of pressure"},
       {replaced(sheet, "control_flow", "flow"), "sheet.toml:11: key 'instrument.signal': unknown signal 'flow'"},
       {replaced(sheet, "guard_band = 1", "guard_band = -1"), "sheet.toml:7: key 'decision.guard_band': is no number"},
-      {replaced(sheet, "name = \"gear flow meter\"\n", ""), "key 'instrument': has no name"}};
+      {replaced(sheet, "name = \"gear flow meter\"\n", ""), "key 'instrument': has no name"},
+      {"[" + levels + "]\n", "sheet.toml:1: nests deeper than 100 levels, at character 201; mend the line"}};
   for (const auto& [text, says] : wrong) {
     const Stand stand;
     stand.write("sheet.toml", text);

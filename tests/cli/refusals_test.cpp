@@ -23,6 +23,13 @@ void PrintTo(const Refusal& refusal, std::ostream* to) { *to << refusal.call; }
 
 void no_change(const Desk&) {}
 
+// A name in so many levels, as TOML writes it.
+std::string levels(int many) {
+  std::string name;
+  for (int i = 1; i < many; ++i) name += "a.";
+  return name + "a";
+}
+
 // `small_log` with other times [ms].
 std::string with_times(const std::string& log, const std::function<double(int)>& time) {
   std::istringstream in(log);
@@ -207,6 +214,18 @@ const std::vector<Refusal>& refusals() {
        "baseline log.csv --params table.csv -o base.json --false-alarm 5",
        {"--false-alarm: ", "between 0 and 1", "; "}},
       {"UnknownList", no_change, "list falts", {"there is no list of 'falts'", "faults, effects"}},
+      {"RigFileOfManyLevels",
+       [](const Desk& d) { d.write("rig.toml", "name = \"x\"\n[" + levels(100000) + "]\n"); },
+       simulate + " --rig rig.toml",
+       {"rig.toml:2: ", "nests deeper than 100 levels, at character 201; ", "mend the line"}},
+      {"RigFileOfADottedKey",
+       [](const Desk& d) { d.write("rig.toml", levels(50000) + " = 1\n"); },
+       simulate + " --rig rig.toml",
+       {"rig.toml:1: ", "nests deeper than 100 levels, at character 200; ", "mend the line"}},
+      {"VirtualRigOfManyLevels",
+       [](const Desk& d) { d.write("model.toml", "[" + levels(100000) + "]\n"); },
+       "rig --rig-model model.toml -o run.csv",
+       {"model.toml:1: ", "nests deeper than 100 levels, at character 201; ", "give a readable TOML file"}},
       {"RigFactsWithoutATable", no_change, "list params --rig rig.toml", {"--rig: ", "add --params"}},
       {"SameLogTwice",
        [](const Desk& d) { d.write("copy.csv", small_log()); },

@@ -31,14 +31,17 @@ TEST(Actions, AShopsTableReplacesWhatItNamesAndNothingElse) {
 
 TEST(Actions, WhatNamesNoLabelOrNoClassIsRefusedAtItsLine) {
   const TemporaryFolder folder;
-  for (const char* text : {"\nclogged_filtre = \"abnormal: flush\"\n", "\nclogged_filter = \"flush\"\n",
-                           "\nclogged_filter = 3\n", "\nclogged_filter =\n"}) {
+  std::string deep = "\n";  // a name in so many levels
+  for (int i = 0; i < 50000; ++i) deep += "a.";
+  deep += "a = \"none: go on\"\n";
+  for (const std::string text : {deep.c_str(), "\nclogged_filtre = \"abnormal: flush\"\n",
+                                 "\nclogged_filter = \"flush\"\n", "\nclogged_filter = 3\n", "\nclogged_filter =\n"}) {
     try {
       read_actions(folder.write("actions.toml", text));
-      ADD_FAILURE() << text;
+      ADD_FAILURE() << text.substr(0, 100);
     } catch (const InputError& error) {
-      EXPECT_EQ(error.where.line, 2) << text;
-      EXPECT_FALSE(error.mend.empty()) << text;
+      EXPECT_EQ(error.where.line, 2) << text.substr(0, 100);
+      EXPECT_FALSE(error.mend.empty()) << text.substr(0, 100);
     }
   }
 }

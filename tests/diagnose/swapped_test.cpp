@@ -41,6 +41,18 @@ TEST(Swapped, SupplyReturnAndChambersExchangedAreFound) {
   EXPECT_TRUE(names(exchanged(log, Signal::pressure_a, Signal::pressure_b), Signal::pressure_a, Signal::pressure_b));
 }
 
+// Said once and loudly: what the chambers lie below then is no news.
+TEST(Swapped, AReturnAboveTheSupplyIsImpossible) {
+  Log log = shipped_log("healthy/h12_mixed");
+  for (double& p : log.channels[index(Signal::return_pressure)].value) p += 300e5;
+  const auto found = swapped_channels(log, 1000);
+  ASSERT_EQ(found.size(), 1u);
+  EXPECT_TRUE(found.front().impossible);
+  EXPECT_NE(found.front().text.find("'return_pressure' is above 'supply_pressure' in 100 % of the samples"),
+            std::string::npos)
+      << found.front().text;
+}
+
 TEST(Swapped, LogsOfHealthyAndFaultyValvesAreAsTheyShouldBe) {
   namespace fs = std::filesystem;
   int logs = 0;

@@ -11,6 +11,7 @@
 #include <sstream>
 
 #include "base/error.h"
+#include "base/limits.h"
 #include "parameters/list.h"
 
 namespace servodx {
@@ -326,6 +327,9 @@ TEST_F(TableFile, HeaderMustBeTheContracts) {
   EXPECT_EQ(refusal(written("id,name,id\n")).rule, "the column appears twice");
   EXPECT_EQ(refusal(written("")).rule, "the file has no header row");
   EXPECT_EQ(refusal(written("id,\"name")).rule, "a quoted cell is not closed");
+  const std::string large = written("id,name\n");
+  std::filesystem::resize_file(large, largest_table + 1);
+  EXPECT_EQ(refusal(large).rule, "has more than 16 MB, the most that such a file may");
   EXPECT_EQ(refusal(path("absent.csv")).rule, "cannot be read: No such file or directory");
 }
 

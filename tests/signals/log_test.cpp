@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <array>
 #include <bit>
 #include <cmath>
 #include <filesystem>
@@ -14,6 +15,7 @@
 #include "base/units.h"
 #include "servodx/error.h"
 #include "servodx/rig.h"
+#include "signals/log_columns.h"
 #include "temporary_folder.h"
 
 namespace servodx {
@@ -486,6 +488,38 @@ TEST(ForeignLogs, OfTheRealServovalveAllRead) {
     if (entry.path().extension() == ".csv") {
       EXPECT_NO_THROW(read_log(entry.path())) << entry.path();
     }
+}
+
+// As a file and as arrays; the stated limit itself takes gigabytes.
+TEST(LogRows, OfMoreThanTheLimitAreRefusedAtTheFirstBeyond) {
+  const RigFile rig;
+  const ReadOptions options;
+  const auto columns = [&] {
+    LogColumns log("log.csv", rig, options, {.most_rows = 30});
+    log.add("time [s]", 1), log.add("command [mA]", 1), log.add("spool_position [mm]", 1);
+    return log;
+  };
+  const auto refused = [](const auto& call) -> std::string {
+    try {
+      call();
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "accepted";
+  };
+  std::vector<double> x(31);
+  for (std::size_t k = 0; k < x.size(); ++k) x[k] = static_cast<double>(k);
+  LogColumns by_row = columns(), by_column = columns();
+  for (long k = 0; k < 30; ++k) by_row.append(std::array{x[k], 1.0, 2.0}, k + 2);
+  EXPECT_EQ(refused([&] {
+              by_row.append(std::array{x[30], 1.0, 2.0}, 32);
+            }),
+            "log.csv:32: the log has more than 30 rows; cut it into shorter ones");
+  EXPECT_EQ(refused([&] {
+              by_column.append_columns({x, x, x});
+            }),
+            "log.csv: the log has more than 30 rows; cut it into shorter ones");
+  EXPECT_EQ(most_rows_of_a_log, 100'000'000u);  // as docs/logs.md states
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 
 #include <numbers>
 
+#include "base/limits.h"
 #include "base/units.h"
 #include "servodx/error.h"
 #include "servodx/log.h"
@@ -312,6 +313,18 @@ TEST(RigFile, AKeyBelowAHeadingThatIsStillACommentIsTold) {
 TEST(RigFile, ABrokenTomlNamesItsLine) {
   EXPECT_TRUE(refusal("name = \"x\"\nserial = SN\n").starts_with("rig.toml:2: is not TOML: "));
   EXPECT_TRUE(refusal("name = \"x\"\nname = \"y\"\n").starts_with("rig.toml:2: is not TOML: "));
+}
+
+TEST(RigFile, NamesAndFilesBeyondTheStatedLimitsAreRefused) {
+  EXPECT_EQ(refusal("name = \"" + std::string(longest_name, 'x') + "\"\n"), "accepted");
+  const std::string longer(longest_name + 1, 'x'), far_longer(15'000'000, 'x');
+  for (const std::string& text : {"# a rig\nname = \"" + longer + "\"\n", "# a rig\n" + longer + " = \"x\"\n",
+                                  "# a rig\nname = '''" + far_longer + "'''\n"})
+    EXPECT_TRUE(refusal(text).starts_with("rig.toml:2: has a name or a text of more than 4096 bytes, at character "))
+        << refusal(text).substr(0, 300);
+  const std::string large = "name = \"" + std::string(50'000'000, 'x') + "\"\n";
+  EXPECT_EQ(refusal(large),
+            "rig.toml: has more than 16 MB, the most that such a file may; give the file that is meant");
 }
 
 TEST(Signals, TheTableIsInTheOrderOfTheEnum) {

@@ -15,6 +15,7 @@
 #include <thread>
 
 #include "base/error.h"
+#include "base/limits.h"
 #include "base/random.h"
 #include "faults/maintenance.h"
 #include "prognose/check.h"
@@ -137,6 +138,24 @@ TEST_F(Histories, ACsvOfAnotherOriginNeedsValveHoursNameAndValue) {
   EXPECT_NEAR(v.recordings[1].temperature, 263.15, 1e-9);
   std::ofstream(file("typo.csv")) << "at [h],valve,name,valeu\n1,v1,fidelity,1.2\n";
   EXPECT_THROW(read_history_csv(file("typo.csv")), InputError);
+}
+
+TEST_F(Histories, NamesAndFilesBeyondTheStatedLimitsAreRefused) {
+  const std::string name(longest_name + 1, 'v');
+  HistoryFile h(file(), true);
+  EXPECT_THROW(h.record(name, "SN", a_check(1, 1), "id,name\n"), InputError);
+  EXPECT_THROW(h.record("v1", name, a_check(1, 1), "id,name\n"), InputError);
+  EXPECT_TRUE(h.valves().empty());
+  std::ofstream(file("long.csv")) << "at [h],valve,name,value\n1," << name << ",fidelity,1.2\n";
+  EXPECT_THROW(read_history_csv(file("long.csv")), InputError);
+  std::ofstream(file("large.csv")) << "at [h],valve,name,value\n1,v1,fidelity,1.2\n";
+  std::filesystem::resize_file(file("large.csv"), largest_history + 1);
+  try {
+    read_history_csv(file("large.csv"));
+    ADD_FAILURE() << "accepted";
+  } catch (const InputError& error) {
+    EXPECT_EQ(error.rule, "has more than 1024 MB, the most that such a file may");
+  }
 }
 
 TEST_F(Histories, RowsOfOneCheckNeedNotStandTogether) {

@@ -86,6 +86,21 @@ TEST(TunedState, TakesInWhatAnOlderVersionKeptInComments) {
   EXPECT_EQ(state.by.at(0).log, "h01.csv");
 }
 
+TEST(TunedState, OfManyLevelsIsRefusedByItsLineAndDoesNotOverflowTheStack) {
+  Table table = shipped_table();
+  table.state = "[tuned]\na";
+  for (int i = 0; i < 50000; ++i) table.state += ".a";
+  table.state += " = 1\n";
+  try {
+    tuned_state(table);
+    ADD_FAILURE() << "accepted";
+  } catch (const InputError& error) {
+    EXPECT_EQ(error.where.file, table.path);
+    EXPECT_EQ(error.rule,
+              "its lines '#%' cannot be read, the 2. of them nests deeper than 100 levels, at character 198");
+  }
+}
+
 TEST(TunedState, OfANewerSchemaOrDamagedIsRefused) {
   Table table = shipped_table();
   for (const char* text :

@@ -124,7 +124,12 @@ std::string summary_of(const std::vector<LogCheck>& checks) {
   if (suspicious == 0) return fmt::format("nothing suspicious in {} logs", checks.size());
   std::vector<std::string> parts;
   for (const auto& [kind, logs] : kinds) parts.push_back(fmt::format("{} in {}", kind, logs));
-  return fmt::format("{} of {} logs have something suspicious: {}", suspicious, checks.size(), join(parts));
+  const auto impossible = std::count_if(checks.begin(), checks.end(), [](const LogCheck& check) {
+    return std::any_of(check.survey.findings.begin(), check.survey.findings.end(),
+                       [](const Finding& f) { return f.impossible; });
+  });
+  return fmt::format("{} of {} logs have something suspicious: {}", suspicious, checks.size(), join(parts)) +
+         (impossible > 0 ? fmt::format("; IMPOSSIBLE in {}", impossible) : "");
 }
 
 std::string visibility(double deviate) {
@@ -172,7 +177,8 @@ std::string text_of(const std::vector<LogCheck>& checks) {
     if (const std::string tuned = tuned_in_words(s.conditions); !tuned.empty()) text += "  tuned at " + tuned + "\n";
     const std::string far = beyond_in_words(s.conditions);
     if (!far.empty()) text += "  BEYOND: " + far + "\n";
-    for (const Finding& f : s.findings) text += fmt::format("  suspicious: {}: {}\n", word_of(f.kind), f.text);
+    for (const Finding& f : s.findings)
+      text += fmt::format("  {}: {}: {}\n", f.impossible ? "IMPOSSIBLE" : "suspicious", word_of(f.kind), f.text);
     if (s.findings.empty()) text += far.empty() ? "  nothing suspicious\n" : "  nothing else suspicious\n";
     if (!check.promise) continue;
     text += "  can identify " + promise_lead(*check.promise) + "\n";

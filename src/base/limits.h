@@ -1,0 +1,16 @@
+// Limits of what is read, far beyond what any bench writes; docs/logs.md states them.
+#pragma once
+#include <cstddef>
+#include <string>
+
+namespace servodx {
+
+inline constexpr std::size_t longest_name = 4096;                     // [byte] as of a path
+inline constexpr std::size_t largest_toml = std::size_t{16} << 20;    // [byte] a rig file has some thousand
+inline constexpr std::size_t largest_table = std::size_t{16} << 20;   // [byte] 41 rows and what tuned them have 20 kB
+inline constexpr std::size_t largest_history = std::size_t{1} << 30;  // [byte] as CSV: some five million figures
+
+// As read_file (base/csv.h). A file of more than `most` bytes is refused, and no more of it is read.
+std::string read_file_within(const std::string& path, std::size_t most);
+
+}  // namespace servodx
