@@ -208,7 +208,7 @@ int run(Options& options) {
   check_call(options);
   options.model = shipped_path(options.model);
   options.run.seed = options.fleet.seed = options.common.seed;
-  options.run.temperature = options.celsius.value_or(40.0) + rig::zero_celsius;
+  options.run.temperature = options.celsius.value_or(40.0) + zero_celsius;
   if (options.celsius) options.fleet.temperature = options.run.temperature;
   if (options.duration) options.run.duration = options.fleet.duration = *options.duration;
   if (options.rate) options.run.rate = *options.rate;

@@ -24,7 +24,7 @@ double margin_of(double pressure) { return std::max(least_apart, part_apart * st
 // What a chamber does beside such a supply is no second finding.
 bool find_return_above_supply(const Log& log, std::vector<Finding>& found) {
   if (!log.has(Signal::supply_pressure) || !log.has(Signal::return_pressure)) return false;
-  const double part = part_below(log[Signal::supply_pressure], log[Signal::return_pressure]);
+  const double part = part_below(log[Signal::supply_pressure], log[Signal::return_pressure], &margin_of);
   if (part < most_of_the_time) return false;
   found.push_back(
       {FindingKind::swapped,

@@ -90,6 +90,9 @@ inline constexpr double odds_of_a_place = 20;       // at which a place is prefe
 // than other tests do. Not examined.
 inline constexpr std::size_t enough_kin = 6;
 
+// Healthy logs that say what a residual is like (explain/usual_error.h): fewer have no middle one. By definition.
+inline constexpr std::size_t fewest_usual = 3;
+
 // Between command and coil current (explain/drive.cpp). Not examined.
 namespace drive {
 inline constexpr std::size_t fewest = 100;   // samples of a log that is looked at

@@ -4,8 +4,12 @@
 #include <cmath>
 #include <utility>
 
+#include "base/median.h"
 #include "effects/transport_delay.h"
 #include "explain/constants.h"
+#include "explain/fit_causes.h"
+#include "explain/score.h"
+#include "explain/usual_error.h"
 #include "fit/error_model.h"
 #include "optimise/problem.h"
 #include "parameters/list.h"
@@ -22,12 +26,12 @@ double lag_of(double bandwidth) { return 1 / (2 * M_PI * bandwidth); }
 
 double root_mean_square(const Eigen::VectorXd& x) { return std::sqrt(x.squaredNorm() / static_cast<double>(x.size())); }
 
-Cause delay_cause() {
+Cause delay_cause(double usual) {
   const EffectParameter& p = TransportDelay::parameters[0];
   Cause c;
   c.effect = TransportDelay::name, c.where = TransportDelay::place, c.test = TransportDelay::best_test;
-  c.numbers = {Number{{p.name, p.unit, p.lower, p.upper, false, p.off}, p.off}};
-  for (const double part : k::tried_delays) c.probes.push_back({{part * p.start}});
+  c.numbers = {Number{{p.name, p.unit, p.lower, usual + p.upper, false, usual}, usual}};
+  for (const double part : k::tried_delays) c.probes.push_back({{usual + part * p.start}});
   return c;
 }
 Cause lag_cause() {
@@ -69,7 +73,8 @@ std::vector<double> through_driver(const std::vector<double>& time, const std::v
   return out;
 }
 
-DriveSubject::DriveSubject(const std::vector<Log>& logs) {
+DriveSubject::DriveSubject(const std::vector<Log>& logs, const KnownRig& known)
+    : usual_delay_(known.drive_delay.empty() ? 0.0 : median(known.drive_delay)), usual_(known.errors) {
   for (const Log& log : logs) {
     if (!log.has(Signal::command) || !log.has(Signal::coil_current)) return;
     Pair p;
@@ -94,14 +99,14 @@ DriveSubject::DriveSubject(const std::vector<Log>& logs) {
     series.time = &pairs_[l].time, series.sigma = &pairs_[l].sigma;
     first += n;
   }
-  causes_ = {delay_cause(), lag_cause()};
+  causes_ = {delay_cause(usual_delay_), lag_cause()};
   for (Cause& c : causes_) c.family = "current";  // of the valve's own there is a cause of each name
 }
 
 Eigen::VectorXd DriveSubject::rows(const Point& x, const std::vector<int>& causes,
                                    const std::vector<Number>& numbers) const {
   Eigen::VectorXd out(series_.back().first + series_.back().count);
-  double delay = 0, lag = 0;
+  double delay = usual_delay_, lag = 0;
   for (std::size_t c = 0; c < causes.size(); ++c) {
     const std::size_t j = 2 * pairs_.size() + c;
     (causes[c] == by_delay ? delay : lag) =
@@ -142,11 +147,30 @@ bool DriveSubject::rescale(const Eigen::VectorXd& residual) {
   for (std::size_t l = 0; l < pairs_.size(); ++l) {
     Series& s = series_[l];
     const Eigen::VectorXd own = r.segment(s.first, s.count);
+    double size = root_mean_square(own);
     s.effective = effective_fraction({own.data(), own.data() + own.size()});
-    const double size = std::max(k::least_error * pairs_[l].span, root_mean_square(own));
+    if (const std::optional<MiddleError> usual = middle_error(usual_, s.signal); usual && usual->size < size)
+      size = usual->size, s.effective = usual->effective;
+    size = std::max(k::least_error * pairs_[l].span, size);
     std::fill(pairs_[l].sigma.begin(), pairs_[l].sigma.end(), size / std::sqrt(s.effective));
   }
   return true;
+}
+
+std::optional<UsualDrive> usual_drive(const Log& log) {
+  const DriveSubject drive({log});
+  if (drive.empty()) return {};
+  const ExplainedFit base = fit_causes(drive, {}, nullptr, nullptr, explain_constants::base_iterations, false);
+  if (!base.ok) return {};
+  const CauseScore score = score_causes(drive, base)[by_delay];
+  const ExplainedFit fit = fit_causes(drive, {by_delay}, &base, &score, explain_constants::base_iterations, false);
+  if (!fit.ok) return {};
+  const Eigen::VectorXd left = drive.physical(fit.residual);
+  const double effective = effective_fraction({left.data(), left.data() + left.size()});
+  const std::vector<double>& time = *drive.series().front().time;
+  const double rate = static_cast<double>(time.size() - 1) / (time.back() - time.front());
+  return UsualDrive{numbers_of(drive, fit, by_delay).value.front(),
+                    {drive.series().front().signal, root_mean_square(left), 0.0, effective, rate}};
 }
 
 }  // namespace servodx

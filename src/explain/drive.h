@@ -5,10 +5,12 @@
 // line from sample to sample. Gain and offset are free in every log: `diagnose` judges them (diagnose/records.h).
 // Leaves out: clipping, dead zones, a lag of second order.
 #pragma once
+#include <optional>
 #include <span>
 #include <vector>
 
 #include "explain/subject.h"
+#include "explain/valve.h"
 #include "servodx/log.h"
 
 namespace servodx {
@@ -19,7 +21,8 @@ std::vector<double> through_driver(const std::vector<double>& time, const std::v
 
 class DriveSubject : public Subject {
  public:
-  explicit DriveSubject(const std::vector<Log>& logs);
+  // `known`: the delay of the rig's healthy logs is no cause, and the residual is weighed by what theirs is.
+  explicit DriveSubject(const std::vector<Log>& logs, const KnownRig& known = {});
   DriveSubject(const DriveSubject&) = delete;  // series point into it
   DriveSubject& operator=(const DriveSubject&) = delete;
   bool empty() const { return series_.empty(); }  // a log lacks one of the two, or its command stands still
@@ -36,9 +39,19 @@ class DriveSubject : public Subject {
     double span = 0;  // [A] of the command
   };
   Eigen::VectorXd rows(const Point& x, const std::vector<int>& causes, const std::vector<Number>& numbers) const;
+  double usual_delay_ = 0;  // [s]
+  std::vector<UsualError> usual_;
   std::vector<Pair> pairs_;
   std::vector<Series> series_;
   std::vector<Cause> causes_;
 };
+
+// What is usual of a healthy log: the delay that follows it best, and what that leaves.
+struct UsualDrive {
+  double delay = 0;  // [s]
+  UsualError error;  // [A]
+};
+// Empty where the log has not both, or nothing can be fitted.
+std::optional<UsualDrive> usual_drive(const Log& log);
 
 }  // namespace servodx

@@ -244,7 +244,11 @@ void add_drive(const Inquiry& q, const Answer& answer, ExplainResult& out) {
   for (const CauseResult& r : answer.of_drive.causes) causes.push_back(described_of_drive(q, answer, r));
   for (const CandidateResult& r : answer.of_drive.candidates) {
     const Cause& c = answer.drive->causes()[static_cast<std::size_t>(r.cause)];
-    if (!is_taken(r.fate)) continue;
+    if (r.fate == Fate::not_looked_at) continue;
+    // In place of the valve's own of that name, which would lie behind the coil.
+    std::erase_if(out.candidates, [&](const ExplainedCandidate& of_valve) {
+      return of_valve.effect == c.effect && of_valve.where == c.where && !is_taken(of_valve.fate);
+    });
     out.candidates.insert(out.candidates.begin(), {c.effect, c.where, r.fate, r.predicted_gain, r.p_new, r.fitted,
                                                    r.heldout_gain, r.share, r.delta_bic});
   }

@@ -150,9 +150,9 @@ std::vector<HealthyShare> heldout_shares(ValveSubject& subject, const ExplainedF
   return out;
 }
 
-std::vector<HealthyScore> score_drive(const Log& log) {
+std::vector<HealthyScore> score_drive(const Log& log, const KnownRig& known) {
   std::vector<HealthyScore> out;
-  DriveSubject drive({log});
+  DriveSubject drive({log}, known);
   if (drive.empty()) return out;
   const ExplainedFit fit = fit_base(drive, EngineOptions{}.iterations);
   if (!fit.ok) return out;
@@ -184,13 +184,15 @@ std::vector<Log> logs_to_score(const std::vector<Log>& own, const std::vector<Lo
 
 // What of a log is usual, as tuned and with nothing known of the rig: how its channels and blocks err, and its own
 // numbers.
-void see_what_is_usual(ValveSubject& subject, HealthyLog& h) {
+void see_what_is_usual(ValveSubject& subject, const Log& log, HealthyLog& h) {
   const ExplainedFit fit = fit_base(subject, EngineOptions{}.iterations);
   if (!fit.ok) return;
   h.errors = subject.errors(fit.residual);
   if (ReplaySubject blocks(subject, fit.point); !blocks.empty())
     if (const ExplainedFit replayed = fit_base(blocks, EngineOptions{}.iterations); replayed.ok)
       for (UsualError& e : blocks.errors(replayed.residual)) h.errors.push_back(std::move(e));
+  if (const std::optional<UsualDrive> drive = usual_drive(log))
+    h.drive_delay = drive->delay, h.errors.push_back(drive->error);
   h.air = subject.own(0, row::air_fraction, fit.point);
   h.command_slope = subject.own(0, nuisance::command_slope, fit.point);
 }
@@ -208,7 +210,7 @@ void score(ValveSubject& subject, const Log& log, const KnownRig& known, Healthy
   ScoredBlocks blocks = score_blocks(subject, fit.point, known);
   h.scores.insert(h.scores.end(), blocks.scores.begin(), blocks.scores.end());
   h.misses.insert(h.misses.end(), blocks.misses.begin(), blocks.misses.end());
-  for (HealthyScore& s : score_drive(log)) h.scores.push_back(std::move(s));
+  for (HealthyScore& s : score_drive(log, known)) h.scores.push_back(std::move(s));
   h.shares = heldout_shares(subject, fit), h.has_shares = true;
 }
 
@@ -290,7 +292,9 @@ HealthyReference score_healthy(const std::vector<Log>& own, const Table& tuned, 
   HealthyReference usual, out;
   usual.logs = those_done(passes.pass(
       "usual", 0.2, begun, [](int) { return KnownRig{}; },
-      [](ValveSubject& subject, const Log&, const KnownRig&, HealthyLog& h) { see_what_is_usual(subject, h); }));
+      [](ValveSubject& subject, const Log& log, const KnownRig&, HealthyLog& h) {
+        see_what_is_usual(subject, log, h);
+      }));
   if (passes.stopped()) return out;
   out.logs = those_done(passes.pass(
       "score", 0.8, usual.logs, [&](int log) { return usual.known(log); }, score));
@@ -309,6 +313,7 @@ KnownRig HealthyReference::known(int left_out) const {
     out.errors.insert(out.errors.end(), l.errors.begin(), l.errors.end());
     if (l.air > 0) out.air.push_back(l.air);
     if (std::isfinite(l.command_slope)) out.command_slope.push_back(l.command_slope);
+    if (std::isfinite(l.drive_delay)) out.drive_delay.push_back(l.drive_delay);
   }
   return out;
 }

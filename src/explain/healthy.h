@@ -59,6 +59,7 @@ struct HealthyLog {
   std::vector<UsualError> errors;
   double air = std::nan("");            // [-] free air, as fitted
   double command_slope = std::nan("");  // of the command between samples, as fitted
+  double drive_delay = std::nan("");    // [s] from the command to the coil current; where the log has both
 };
 struct HealthyReference {
   std::vector<HealthyLog> logs;
@@ -77,7 +78,7 @@ struct ScoredBlocks {
 };
 ScoredBlocks score_blocks(const ValveSubject& valve, const Point& at, const KnownRig& known);
 // What the driver shows of each cause; empty where the log has not both command and coil current.
-std::vector<HealthyScore> score_drive(const Log& log);
+std::vector<HealthyScore> score_drive(const Log& log, const KnownRig& known);
 struct HealthyCounts {
   long simulations = 0, failed = 0;
 };

@@ -53,7 +53,6 @@ class Inquiry {
   // Healthy logs of all tests: so many promise a rate of false alarms. Whether one of them is of the suspects' test.
   int healthy_logs() const { return healthy_logs_; }
   bool alike() const { return speaking_.alike; }
-  const HealthyReference& speaking() const { return speaking_.logs; }
   const HealthyTest* test() const { return test_ ? &*test_ : nullptr; }
   const std::optional<KnownRig>& known() const { return known_; }
   const std::deque<LoneLog>& lone() const { return lone_; }

@@ -38,8 +38,8 @@ inline auto fields(UsualError& e) {
   return std::tie(signal, size, memory, effective, rate);
 }
 inline auto fields(KnownRig& k) {
-  auto& [errors, air, command_slope] = k;
-  return std::tie(errors, air, command_slope);
+  auto& [errors, air, command_slope, drive_delay] = k;
+  return std::tie(errors, air, command_slope, drive_delay);
 }
 inline auto fields(TestConditions& t) {
   auto& [span, band, temperature, rms] = t;
@@ -54,8 +54,8 @@ inline auto fields(HealthyShare& s) {
   return std::tie(effect, where, share, lower, prior);
 }
 inline auto fields(HealthyLog& l) {
-  auto& [log, sha256, other, test, adequacy, scores, misses, shares, has_shares, errors, air, slope] = l;
-  return std::tie(log, sha256, other, test, adequacy, scores, misses, shares, has_shares, errors, air, slope);
+  auto& [log, sha256, other, test, adequacy, scores, misses, shares, has_shares, errors, air, slope, delay] = l;
+  return std::tie(log, sha256, other, test, adequacy, scores, misses, shares, has_shares, errors, air, slope, delay);
 }
 inline auto fields(MissingInput& m) {
   auto& [where, quantity, unit, rms, std_error, gain, likely, variable, share, value, error] = m;

@@ -5,6 +5,7 @@
 
 #include "explain/constants.h"
 #include "explain/ties.h"
+#include "explain/usual_error.h"
 #include "fit/chart.h"
 #include "fit/error_model.h"
 #include "fit/log_data.h"
@@ -166,14 +167,8 @@ bool ReplaySubject::rescale(const Eigen::VectorXd& rows) {
     const Eigen::VectorXd own = r.segment(s.first, s.count);
     double size = root_mean_square(own);
     s.effective = effective_fraction({own.data(), own.data() + own.size()});
-    std::vector<std::pair<double, double>> usual;
-    for (const UsualError& e : usual_)
-      if (e.signal == s.signal) usual.emplace_back(e.size, e.effective);
-    if (usual.size() >= k::enough_healthy) {
-      const auto middle = usual.begin() + static_cast<long>(usual.size() / 2);
-      std::nth_element(usual.begin(), middle, usual.end());
-      if (middle->first < size) size = middle->first, s.effective = middle->second;
-    }
+    if (const std::optional<MiddleError> usual = middle_error(usual_, s.signal); usual && usual->size < size)
+      size = usual->size, s.effective = usual->effective;
     std::fill(sigma_[i].begin(), sigma_[i].end(), std::max(1e-300, size) / std::sqrt(s.effective));
   }
   return !series_.empty();

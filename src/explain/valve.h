@@ -44,6 +44,7 @@ struct KnownRig {
   std::vector<UsualError> errors;     // of all logs
   std::vector<double> air;            // fraction, a log each
   std::vector<double> command_slope;  // of the command between samples, a log each: how the logger takes it
+  std::vector<double> drive_delay;    // [s] from the command to the coil current, a log each (explain/drive.h)
 };
 
 class ValveSubject : public Subject {

@@ -130,7 +130,7 @@ CheckTrend trend_of(const CheckSeries& s, const TrendSettings& options, std::siz
   if (!decision.predicted) return out;
   if (decision.alert) out.alert_at = alert_since(all, prior, s, out.warning, healthy, names, options.false_alarm);
   const FailureAt at_warning{s.scale.in(out.warning.upper), s.scale.in(out.warning.lower)};
-  out.to_warning = decision.alert ? 0.0 : quantile(model.life(at_warning, options.seed), 0.5);
+  out.to_warning = decision.alert ? 0.0 : life_quantile(model.life(at_warning, options.seed), 0.5);
   if (!out.failure.lower && !out.failure.upper) return out;
   out.surely = surely_come(g, failure, s.scale);
   out.life = model.life(failure, options.seed);

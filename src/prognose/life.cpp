@@ -10,7 +10,7 @@ namespace servodx {
 
 using namespace prognose_constants;
 
-double quantile(const Life& life, double p) {
+double life_quantile(const Life& life, double p) {
   const double at = p * static_cast<double>(life.size()) - 0.5;
   const auto last = static_cast<double>(life.size()) - 1;
   const double low = std::floor(std::clamp(at, 0.0, last));
@@ -21,7 +21,7 @@ double quantile(const Life& life, double p) {
 }
 
 Remaining remaining_of(const Life& life, double coverage) {
-  return {quantile(life, 0.5), quantile(life, 0.5 - coverage / 2), quantile(life, 0.5 + coverage / 2)};
+  return {life_quantile(life, 0.5), life_quantile(life, 0.5 - coverage / 2), life_quantile(life, 0.5 + coverage / 2)};
 }
 
 Life equally_likely(const std::vector<std::pair<double, double>>& weighted, double total) {

@@ -8,7 +8,7 @@ namespace servodx {
 // Sorted hours from now on to the passing of a level, each as likely as the other; infinite where it is never passed.
 using Life = std::vector<double>;
 
-double quantile(const Life& life, double p);
+double life_quantile(const Life& life, double p);
 
 struct Remaining {
   double median = 0, lower = 0, upper = 0;  // [h]; infinite where never

@@ -47,6 +47,7 @@ HealthyReference read_healthy(const std::string& path) {
       }
       if (l.contains("thickness"))  // later than the rest
         for (HealthyScore& s : log.scores) s.thickness = value(l.at("thickness"));
+      if (l.contains("drive_delay")) log.drive_delay = value(l.at("drive_delay"));        // later than the rest
       if (l.contains("command_slope")) log.command_slope = value(l.at("command_slope"));  // later than the rest
       if (l.contains("misses"))
         for (const auto& [part, size] : l.at("misses").items()) log.misses.push_back({part, value(size)});

@@ -45,13 +45,17 @@ Log log_of_driver(double delay, double lag, double gain, std::uint64_t seed) {
   return log;
 }
 
+Log healthy_log(std::uint64_t seed) {
+  return log_of_driver(2e-4 * static_cast<double>(seed % 3), 3e-4, 1.0 + 0.002 * static_cast<double>(seed), seed);
+}
+
 struct Told {
   std::string name;
   double value = 0;
 };
 // The first cause beyond what `healthy` logs show; none: nothing is.
 std::optional<Told> told_of(const Log& log, const HealthyReference* healthy = nullptr) {
-  DriveSubject drive({log});
+  DriveSubject drive({log}, healthy ? healthy->known() : KnownRig{});
   EngineOptions options;
   std::optional<HealthyTest> test;
   if (healthy) {
@@ -69,9 +73,12 @@ HealthyReference healthy_drivers() {
   HealthyReference out;
   for (std::uint64_t seed = 1; seed <= 8; ++seed) {
     HealthyLog& h = out.logs.emplace_back();
-    h.scores = score_drive(
-        log_of_driver(2e-4 * static_cast<double>(seed % 3), 3e-4, 1.0 + 0.002 * static_cast<double>(seed), seed));
+    const UsualDrive usual = *usual_drive(healthy_log(seed));
+    h.drive_delay = usual.delay, h.errors = {usual.error};
   }
+  for (int i = 0; i < 8; ++i)
+    out.logs[static_cast<std::size_t>(i)].scores =
+        score_drive(healthy_log(static_cast<std::uint64_t>(i) + 1), out.known(i));
   return out;
 }
 
@@ -98,7 +105,8 @@ TEST(Drive, ADelayIsNamedAndSizedBesideHealthyDrivers) {
 
 TEST(Drive, ASlowAmplifierIsNamedByItsBandwidth) {
   const HealthyReference healthy = healthy_drivers();
-  const std::optional<Told> told = told_of(log_of_driver(0, 1 / (2 * pi * 30), 1.0, 78), &healthy);
+  const std::optional<Told> told =
+      told_of(log_of_driver(2e-4, 1 / (2 * pi * 30), 1.0, 78), &healthy);  // delayed as they are
   ASSERT_TRUE(told);
   EXPECT_EQ(told->name, "driver_bandwidth");
   EXPECT_NEAR(told->value, 30, 3);

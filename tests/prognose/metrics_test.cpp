@@ -18,8 +18,8 @@ Life uniform(double from, double to, int n = 1000) {
 }
 
 TEST(Metrics, QuantilesOfAUniformLifeAreThemselves) {
-  EXPECT_NEAR(quantile(uniform(0, 10), 0.5), 5, 1e-9);
-  EXPECT_NEAR(quantile(uniform(0, 10), 0.05), 0.5, 1e-9);
+  EXPECT_NEAR(life_quantile(uniform(0, 10), 0.5), 5, 1e-9);
+  EXPECT_NEAR(life_quantile(uniform(0, 10), 0.05), 0.5, 1e-9);
 }
 
 TEST(Metrics, CrpsOfACertainPredictionIsItsAbsoluteError) { EXPECT_NEAR(crps(Life(50, 7.0), 10.0, 1e9), 3.0, 1e-12); }

@@ -394,6 +394,7 @@ Json healthy_json(const HealthyReference& healthy) {
                     {"errors", errors},
                     {"air_fraction", number(l.air)},
                     {"command_slope", number(l.command_slope)},
+                    {"drive_delay", number(l.drive_delay)},
                     {"adequacy", number(l.adequacy)},
                     {"thickness", number(l.scores.empty() ? std::nan("") : l.scores.front().thickness)},
                     {"scores", scores},
