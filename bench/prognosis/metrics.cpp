@@ -8,7 +8,7 @@
 namespace servodx {
 
 bool alpha_lambda(const Life& life, double remaining, double alpha) {
-  return std::abs(quantile(life, 0.5) - remaining) <= alpha * remaining;
+  return std::abs(life_quantile(life, 0.5) - remaining) <= alpha * remaining;
 }
 
 double mass_within(const Life& life, double remaining, double alpha) {
@@ -18,7 +18,7 @@ double mass_within(const Life& life, double remaining, double alpha) {
 }
 
 double relative_accuracy(const Life& life, double remaining) {
-  return 1 - std::abs(quantile(life, 0.5) - remaining) / remaining;
+  return 1 - std::abs(life_quantile(life, 0.5) - remaining) / remaining;
 }
 
 double cumulative_relative_accuracy(const std::vector<Prediction>& predictions, double end) {
@@ -33,7 +33,7 @@ double prognostic_horizon(const std::vector<Prediction>& predictions, double end
   double from = end;
   for (auto p = predictions.rbegin(); p != predictions.rend(); ++p) {
     if (p->at >= end) continue;
-    if (std::abs(quantile(p->life, 0.5) - (end - p->at)) > alpha * end) break;
+    if (std::abs(life_quantile(p->life, 0.5) - (end - p->at)) > alpha * end) break;
     from = p->at;
   }
   return end - from;
@@ -43,7 +43,7 @@ double convergence(const std::vector<Prediction>& predictions, double end) {
   double moment = 0, area = 0;
   for (std::size_t k = 0; k + 1 < predictions.size(); ++k) {
     const double step = predictions[k + 1].at - predictions[k].at;
-    const double error = std::min(end, std::abs(quantile(predictions[k].life, 0.5) - (end - predictions[k].at)));
+    const double error = std::min(end, std::abs(life_quantile(predictions[k].life, 0.5) - (end - predictions[k].at)));
     area += step * error;
     moment += step * error * (0.5 * (predictions[k].at + predictions[k + 1].at) - predictions.front().at);
   }
@@ -62,7 +62,7 @@ double crps(const Life& life, double remaining, double horizon) {
 }
 
 bool covers(const Life& life, double remaining, double coverage) {
-  return remaining >= quantile(life, 0.5 - coverage / 2) && remaining <= quantile(life, 0.5 + coverage / 2);
+  return remaining >= life_quantile(life, 0.5 - coverage / 2) && remaining <= life_quantile(life, 0.5 + coverage / 2);
 }
 
 double monotonicity(const std::vector<double>& feature) {

@@ -104,8 +104,8 @@ class Limits {
     const std::string triple(3, quote);
     const bool long_text = text_.substr(at_, 3) == triple;
     if (key_ == 0) key_ = 1;
-    const std::size_t from = at_;
-    for (at_ += long_text ? 3 : 1; at_ < text_.size(); ++at_) {
+    const std::size_t from = at_ + (long_text ? 3 : 1);
+    for (at_ = from; at_ < text_.size(); ++at_) {
       length_ = at_ - from;
       if (length_ > longest_name) return;
       const char c = text_[at_];

@@ -90,7 +90,8 @@ inline constexpr std::size_t handful_of_values = 16;  // 4 bits; a 12-bit sensor
 
 // Whether a log was read wrongly (diagnose/reading.cpp). The factors are those between units in use; a log's numbers
 // are multiplied by them.
-inline constexpr std::array time_factors = {1e-3, 1e3, 1.0 / 60, 60.0, 0.5, 2.0};           // ms, minutes; another rate
+// Of time: ms, minutes, other rates.
+inline constexpr std::array time_factors = {1e-3, 1e3, 1.0 / 60, 60.0, 0.1, 10.0, 0.5, 2.0};
 inline constexpr std::array drive_factors = {1e-3, 1e3, 1e-2, 1e2};                         // mA, A; per cent
 inline constexpr std::array length_factors = {1 / 25.4, 25.4, 0.1, 10.0, 1e-3, 1e3};        // inch, cm, m beside mm
 inline constexpr std::array pressure_factors = {0.0689476, 14.5038, 0.1, 10.0, 1e-2, 1e2};  // psi, MPa, kPa beside bar

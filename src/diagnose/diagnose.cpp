@@ -260,18 +260,40 @@ void look_at_motion(const LogData& data, const ParameterVector& base, int thread
   }
 }
 
-// Of the motion, by the hypothesis that fits best.
-double left_by_best(const Assessment& a) {
-  return std::min_element(a.hypotheses.begin(), a.hypotheses.end(),
-                          [](const auto& x, const auto& y) { return x.misfit < y.misfit; })
-      ->motion_left;
+const HypothesisResult& best_of(const Assessment& a) {
+  return *std::min_element(a.hypotheses.begin(), a.hypotheses.end(),
+                           [](const auto& x, const auto& y) { return x.misfit < y.misfit; });
 }
+// Of the motion, by the hypothesis that fits best.
+double left_by_best(const Assessment& a) { return best_of(a).motion_left; }
 
 Unjudgeable unjudgeable_of(const Ready& ready, const ParameterVector& base, const OperatingPoint& point) {
   if (const Unjudgeable why = unjudgeable(point); why != Unjudgeable::no) return why;
   for (std::size_t l = 0; l < ready.data.size(); ++l)
     if (const Unjudgeable why = unjudgeable(ready.every_sample(l), base); why != Unjudgeable::no) return why;
   return Unjudgeable::no;
+}
+
+// Where little of the motion is left as it was read, that is the model's own error too, and the motion alone tells no
+// reading from a fault: a slow log at twice its time moves nearly as it did. A reading then has to make a healthy log
+// of it: health, fitted, is by far less wrong than the best hypothesis is of the log as it was read.
+bool makes_a_healthy_log(const Reading& reading, const Log& log, const ParameterVector& base, const ReadingTrial& trial,
+                         const HypothesisSettings& settings, const Assessment& as_read, FitWork& work) {
+  if (!(reading.left < k::misread_beside * left_by_best(as_read))) return false;
+  LogData data = prepare_at_points(read_as(log, reading), trial.rig, moving_average_of(trial.tuned));
+  leave_out_unknown_channels(data, trial.error);
+  const auto adequacy = healthy_adequacy(data, "read otherwise", base, trial.error, settings, work);
+  return adequacy && *adequacy < k::misread_beside * best_of(as_read).adequacy;
+}
+
+// Where the best fit leaves much of the motion, or health fits worse than a fault may: was the log read wrongly?
+void look_at_readings(const Log& log, const ParameterVector& base, const ReadingTrial& trial,
+                      const HypothesisSettings& settings, Assessment& out, FitWork& work) {
+  const bool much = left_by_best(out) > k::worth_reading;
+  if (!much && out.hypotheses.front().adequacy <= k::fault_allowance) return;
+  out.reading = best_reading(log, Unjudgeable::no, trial);
+  if (!much && out.reading && !makes_a_healthy_log(*out.reading, log, base, trial, settings, out, work))
+    out.reading.reset();
 }
 
 // Health alone, and nothing known of it: where there is nothing to judge there is nothing to fit.
@@ -329,8 +351,7 @@ Assessment assess_pool(const std::vector<Log>& logs, const Table& tuned, const R
     out.misfit_scale = scale_of(fits);
     out.pairs = pairs_of(fits);
     look_at_motion(first, base, options.threads, out);
-    if (logs.size() == 1 && left_by_best(out) > k::worth_reading)
-      out.reading = best_reading(logs.front(), Unjudgeable::no, trial);
+    if (logs.size() == 1) look_at_readings(logs.front(), base, trial, settings, out, work);
   }
   out.simulations = work.simulations, out.failed_simulations = work.failed;
   return out;

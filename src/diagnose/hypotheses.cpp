@@ -365,6 +365,18 @@ HypothesisFits fit_hypotheses(const std::vector<const LogData*>& logs, const Par
   return out;
 }
 
+std::optional<double> healthy_adequacy(const LogData& log, const std::string& name, const ParameterVector& base,
+                                       const ErrorModel& error, const HypothesisSettings& settings, FitWork& work) {
+  HypothesisSettings of_it = settings;
+  of_it.stages = settings.stages.part(name, 0);
+  Attempt health;
+  run(health, hypothesis_data({&log}, base, error, of_it), nullptr, settings.iterations);
+  work.add(health.work);
+  const std::vector<double>& adequacy = health.fit.channel_adequacy;
+  if (!health.fit.ok || adequacy.empty()) return {};
+  return *std::max_element(adequacy.begin(), adequacy.end());
+}
+
 std::vector<double> square_beyond_beginning(const LogData& log, std::size_t end, const ParameterVector& base,
                                             const ErrorModel& error, const HypothesisSettings& settings,
                                             FitWork& work) {

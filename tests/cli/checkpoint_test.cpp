@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "program.h"
+#include "temporary_folder.h"
 
 namespace servodx {
 namespace {
@@ -43,7 +44,20 @@ class GoingOn : public testing::TestWithParam<Call> {
   static std::string bits(const Call& call) {
     Json result = Json::parse(bytes_of(desk() / call.result));
     result.erase("seconds");
-    return result.dump() + (call.table.empty() ? "" : bytes_of(desk() / call.table));
+    return result.dump() + (call.table.empty() ? "" : bytes_of(desk() / call.table)) +
+           (call.words.find(" --report o.html ") == std::string::npos ? "" : bytes_of(desk() / "o.html"));
+  }
+  // Ended by Ctrl-C once the first stage is finished, however busy the machine is: the checkpoint then holds more than
+  // its first line.
+  static Ended interrupted(const std::string& words, const std::string& checkpoint) {
+    const TemporaryFolder streams;
+    const std::string kept = "'" + (desk() / checkpoint) + "'", out = streams / "out", err = streams / "err";
+    const int status = std::system(("cd '" + desk().path.string() + "' && rm -f " + kept + "; '" + SERVODX_PROGRAM +
+                                    "' " + words + "--checkpoint " + checkpoint + " >'" + out + "' 2>'" + err +
+                                    "' & pid=$!; while kill -0 $pid && ! find " + kept + " -size +21c | grep -q ." +
+                                    "; do sleep 0.01; done 2>/dev/null; kill -INT $pid 2>/dev/null; wait $pid")
+                                       .c_str());
+    return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, bytes_of(out), bytes_of(err)};
   }
   static void cut(const std::string& file, double part) {
     const std::filesystem::path path = desk() / file;
@@ -74,6 +88,22 @@ TEST_P(GoingOn, ComesToTheBitsOfAnUnbrokenCall) {
   }
 }
 
+TEST_P(GoingOn, AfterAnInterruptSaysHowTo) {
+  const Call& call = GetParam();
+  const Ended ended = interrupted(call.words, "broken_off");
+  ASSERT_EQ(ended.code, 130) << ended.out << ended.err;
+  EXPECT_NE(
+      ended.out.find("interrupted: to go on, give the same call with --resume; what is finished is in broken_off"),
+      std::string::npos)
+      << ended.out;
+  const Ended resumed = desk().run(call.words + "--checkpoint broken_off --resume");
+  ASSERT_EQ(resumed.code, 0) << resumed.err;
+  EXPECT_NE(resumed.err.find(" finished stages were taken from it, "), std::string::npos) << resumed.err;
+  const std::string gone_on = bits(call);
+  ASSERT_EQ(desk().run(call.words + "--quiet").code, 0);
+  EXPECT_EQ(bits(call), gone_on);
+}
+
 TEST_P(GoingOn, AtALimitOfTimeSaysHowTo) {
   const Call& call = GetParam();
   const Ended ended = desk().run(call.words + "--checkpoint limited --time-limit '1 ms'");
@@ -95,7 +125,7 @@ INSTANTIATE_TEST_SUITE_P(
     testing::Values(
         Call{"Tune",
              "tune t1.csv --params table.csv --rig rig.toml --effects none --population 64 --generations 3 --rounds 1 "
-             "-o o.csv --json o.json ",
+             "-o o.csv --json o.json --report o.html ",
              "o.csv", "o.json"},
         Call{"Baseline", "baseline b1.csv b2.csv b3.csv --params tuned.csv --rig rig.toml --alone -o o.json ", "",
              "o.json"},
@@ -139,6 +169,21 @@ TEST_F(GoingOnFrom, WhatIsNoCheckpointIsRefused) {
     EXPECT_NE(refused(" --checkpoint table.csv --resume").find("table.csv"), std::string::npos);
     EXPECT_NE(refused(" --time-limit 90").find("'90 s'"), std::string::npos);
     EXPECT_NE(refused(" --time-limit '0 s'").find("is no duration"), std::string::npos);
+  }
+}
+
+// The best so far of an explanation is its table, which goes on as the tuned one does; of a baseline, the logs that
+// were scored, where they are enough.
+TEST_F(GoingOnFrom, AnInterruptLeavesTheBestSoFar) {
+  ASSERT_EQ(interrupted("explain s1.csv " + judged + "-o part.csv --json part.json ", "cut_explain").code, 130);
+  EXPECT_EQ(desk().run("list params --params part.csv").code, 0);
+  const Ended baseline = interrupted(
+      "baseline b1.csv b2.csv b3.csv --params tuned.csv --rig rig.toml --alone -o part_base.json ", "cut_baseline");
+  ASSERT_EQ(baseline.code, 130) << baseline.err;
+  const bool enough = std::filesystem::exists(desk() / "part_base.json");
+  EXPECT_EQ(baseline.out.find("too few for a baseline: none is written") == std::string::npos, enough) << baseline.out;
+  if (enough) {
+    EXPECT_EQ(desk().run("diagnose s2.csv --params tuned.csv --rig rig.toml --baseline part_base.json").code, 0);
   }
 }
 

@@ -367,6 +367,17 @@ TEST(Decide, AMistakeAboutTheLogGoesBeforeAFaultThatLeavesMore) {
   EXPECT_NE(decide(e).doubt, Doubt::misread) << "no reading explains it";
 }
 
+TEST(Decide, AHealthyLogOfWhichLittleIsLeftIsReadWellEnough) {
+  Evidence e = first_fault();
+  for (HypothesisEvidence& h : e.hypotheses) h.motion_left = 0.03;
+  e.reading = {.motion_left = 0.005};
+  EXPECT_EQ(decide(e).doubt, Doubt::misread);
+  e.error = e.gain = 1;
+  EXPECT_EQ(decide(e).verdict, VerdictKind::healthy);
+  for (HypothesisEvidence& h : e.hypotheses) h.motion_left = 0.2;
+  EXPECT_EQ(decide(e).doubt, Doubt::misread);
+}
+
 TEST(Decide, AMistakeAboutTheLogGoesBeforeHealthAndARecord) {
   Evidence e = first_fault();
   for (HypothesisEvidence& h : e.hypotheses) h.motion_left = 0.4;

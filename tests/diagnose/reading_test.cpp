@@ -64,6 +64,9 @@ struct Case {
 
 const std::vector<Case> cases = {
     {"a rate of twice the true one", {Misreading::time_scale, 0.5}, 2.0},
+    {"a rate of half the true one", {Misreading::time_scale, 2.0}, 0.5},
+    {"a rate of ten times the true one", {Misreading::time_scale, 0.1}, 10.0},
+    {"a rate of a tenth of the true one", {Misreading::time_scale, 10.0}, 0.1},
     {"ms taken for s", {Misreading::time_scale, 1e3}, 1e-3, Unjudgeable::too_short},
     {"the last row first", {Misreading::reversed}, 1.0},
     {"the command's sign", {Misreading::turned, -1.0, {Signal::command}}, -1.0},
