@@ -363,10 +363,10 @@ class Genetic {
     island.stagnant = 0;
   }
 
-  static double median_cost(const Island& island) {
-    std::vector<double> costs;
-    for (const Individual& one : island.population) costs.push_back(one.cost);
-    return median(std::move(costs));
+  double median_cost(const Island& island) {
+    sorted_.clear();
+    for (const Individual& one : island.population) sorted_.push_back(one.cost);
+    return median_in_place(sorted_);
   }
 
   static Individual& worst(Island& island) {
@@ -435,6 +435,7 @@ class Genetic {
   std::vector<Brood> broods_;  // an island each
   std::vector<Individual> guests_, spare_;
   std::vector<int> cell_;
+  std::vector<double> sorted_;
 };
 
 }  // namespace

@@ -15,6 +15,7 @@
 #include "explain/fit_causes.h"
 #include "explain/healthy.h"
 #include "explain/score.h"
+#include "explain/valve.h"
 #include "servodx/log.h"
 
 namespace servodx {

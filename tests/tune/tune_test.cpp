@@ -230,8 +230,11 @@ TEST(Tune, EachStepThatHoldsAPartOutSaysHowThatIsMet) {
     EXPECT_TRUE(std::any_of(result.stages.begin(), result.stages.end(), [&](const StageResult& s) {
       return s.stage.kind == kind && std::isfinite(s.heldout_over_noise);
     })) << static_cast<int>(kind);
-  for (const StageResult& s : result.stages)
-    if (s.stage.kind == Stage::Kind::everything) EXPECT_TRUE(std::isnan(s.heldout_over_noise));
+  for (const StageResult& s : result.stages) {
+    if (s.stage.kind == Stage::Kind::everything) {
+      EXPECT_TRUE(std::isnan(s.heldout_over_noise));
+    }
+  }
 }
 
 TEST(Tune, AStartIsInTheBestValleyByItsCostOrByItsOwnPromise) {
@@ -266,7 +269,11 @@ TEST(Tune, CeresAloneArrivesWhereBothArrive) {
   const TuneResult both = tune_table(logs, one_free_row(), shipped_rig(), o);
   o.local = TuneLocal::ceres;
   const TuneResult alone = tune_table(logs, one_free_row(), shipped_rig(), o);
-  for (const StageResult& s : alone.stages) EXPECT_EQ(s.by, StageMethod::ceres) << static_cast<int>(s.stage.kind);
+  for (const StageResult& s : alone.stages) {
+    if (s.by != StageMethod::none) {
+      EXPECT_EQ(s.by, StageMethod::ceres) << static_cast<int>(s.stage.kind);
+    }
+  }
   const double there = both.table[row::driver_bandwidth].nominal;
   // Half a standard error: the valley is flat to that.
   EXPECT_NEAR(alone.table[row::driver_bandwidth].nominal, there,
