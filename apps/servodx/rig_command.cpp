@@ -11,6 +11,7 @@
 #include <string>
 
 #include "base/atomic_file.h"
+#include "base/celsius.h"
 #include "base/progress.h"
 #include "base/result_schema.h"
 #include "base/sha256.h"

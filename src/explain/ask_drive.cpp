@@ -7,8 +7,12 @@
 #include "explain/describe.h"
 #include "explain/drive.h"
 #include "explain/engine.h"
+#include "explain/explain.h"
 #include "explain/healthy.h"
 #include "explain/inquiry.h"
+#include "explain/outcome.h"
+#include "explain/subject.h"
+#include "explain/valve.h"
 
 namespace servodx {
 void ask_drive(Inquiry& q, Answer& answer) {

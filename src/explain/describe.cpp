@@ -8,6 +8,7 @@
 #include "effects/row_effects.h"
 #include "explain/fit_causes.h"
 #include "explain/healthy.h"
+#include "explain/outcome.h"
 #include "fit/free_values.h"
 #include "parameters/list.h"
 

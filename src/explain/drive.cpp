@@ -5,7 +5,9 @@
 #include <utility>
 
 #include "base/median.h"
+#include "effects/effect.h"
 #include "effects/transport_delay.h"
+#include "explain/cause_score.h"
 #include "explain/constants.h"
 #include "explain/fit_causes.h"
 #include "explain/score.h"

@@ -11,6 +11,7 @@
 
 #include "explain/subject.h"
 #include "explain/valve.h"
+#include "optimise/problem.h"
 #include "servodx/log.h"
 
 namespace servodx {

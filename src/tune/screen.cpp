@@ -7,6 +7,7 @@
 #include <tuple>
 
 #include "base/error.h"
+#include "base/stopwatch.h"
 #include "fit/chart.h"
 #include "fit/free_values.h"
 #include "fit/identifiability.h"
@@ -14,6 +15,7 @@
 #include "servodx/table.h"
 #include "tune/constants.h"
 #include "tune/kept.h"
+#include "tune/tune.h"
 #include "tune/weights.h"
 
 namespace servodx {
