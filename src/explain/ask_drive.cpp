@@ -15,6 +15,7 @@
 #include "explain/valve.h"
 
 namespace servodx {
+
 void ask_drive(Inquiry& q, Answer& answer) {
   if (!q.test() || !answer.found.before.ok) return;
   auto drive = std::make_unique<DriveSubject>(q.logs(), q.known().value_or(KnownRig{}));
