@@ -1,4 +1,6 @@
+#include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <memory>
 #include <utility>
 #include <vector>
@@ -38,10 +40,18 @@ ExplainedCause described_of_drive(const Inquiry& q, const Answer& answer, const 
   out.heldout_gain = r.heldout_gain, out.beyond_retuning = r.beyond_retuning, out.delta_bic = r.delta_bic;
   out.told_by = ToldBy::currents;
   const Number& n = c.numbers.front();
-  const double error = std::hypot(r.std_error[0], healthy_spread(*answer.drive, *q.test(), r.cause, 0, r.std_error[0]));
+  const double sample = answer.drive->sample_period();
+  double error = std::hypot(r.std_error[0], healthy_spread(*answer.drive, *q.test(), r.cause, 0, r.std_error[0]));
+  // The driver may take the command anywhere between two samples: evenly spread, one over the root of twelve.
+  if (r.cause == answer.drive->delay()) error = std::hypot(error, sample / std::sqrt(12.0));
   out.parameters.push_back({n.name, n.unit, r.value[0], error, n.off});
-  for (const int other : r.confusable_with)
-    out.confusable_with.push_back(answer.drive->causes()[static_cast<std::size_t>(other)].effect);
+  // A delay and a lag within one sample look alike.
+  const bool within_sample = answer.drive->time_beyond_usual(r.cause, r.value[0]) < sample;
+  for (int other = 0; other < static_cast<int>(answer.drive->causes().size()); ++other) {
+    const bool as_good = std::count(r.confusable_with.begin(), r.confusable_with.end(), other) > 0;
+    if (other != r.cause && (within_sample || as_good))
+      out.confusable_with.push_back(answer.drive->causes()[static_cast<std::size_t>(other)].effect);
+  }
   return out;
 }
 

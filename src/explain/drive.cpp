@@ -144,6 +144,15 @@ SubjectFit DriveSubject::fit(const std::vector<int>& causes, bool) const {
   return out;
 }
 
+double DriveSubject::sample_period() const {
+  const std::vector<double>& time = pairs_.front().time;
+  return (time.back() - time.front()) / static_cast<double>(time.size() - 1);
+}
+
+double DriveSubject::time_beyond_usual(int cause, double value) const {
+  return cause == by_delay ? value - usual_delay_ : lag_of(value);
+}
+
 bool DriveSubject::rescale(const Eigen::VectorXd& residual) {
   const Eigen::VectorXd r = physical(residual);
   for (std::size_t l = 0; l < pairs_.size(); ++l) {

@@ -28,6 +28,9 @@ class DriveSubject : public Subject {
   DriveSubject& operator=(const DriveSubject&) = delete;
   bool empty() const { return series_.empty(); }  // a log lacks one of the two, or its command stands still
 
+  double sample_period() const;                             // [s] of the first log, on the mean
+  int delay() const { return 0; }                           // its position among the causes
+  double time_beyond_usual(int cause, double value) const;  // [s] that the current comes later; value: of its number
   const std::vector<Cause>& causes() const override { return causes_; }
   const std::vector<Series>& series() const override { return series_; }
   SubjectFit fit(const std::vector<int>& causes, bool wide) const override;
