@@ -21,12 +21,8 @@ namespace {
 
 namespace k = explain_constants::drive;
 
-enum : int { by_delay, by_lag };
-
 // [s] of a corner frequency [Hz].
 double lag_of(double bandwidth) { return 1 / (2 * M_PI * bandwidth); }
-
-double root_mean_square(const Eigen::VectorXd& x) { return std::sqrt(x.squaredNorm() / static_cast<double>(x.size())); }
 
 Cause delay_cause(double usual) {
   const EffectParameter& p = TransportDelay::parameters[0];
@@ -157,13 +153,7 @@ bool DriveSubject::rescale(const Eigen::VectorXd& residual) {
   const Eigen::VectorXd r = physical(residual);
   for (std::size_t l = 0; l < pairs_.size(); ++l) {
     Series& s = series_[l];
-    const Eigen::VectorXd own = r.segment(s.first, s.count);
-    double size = root_mean_square(own);
-    s.effective = effective_fraction({own.data(), own.data() + own.size()});
-    if (const std::optional<MiddleError> usual = middle_error(usual_, s.signal); usual && usual->size < size)
-      size = usual->size, s.effective = usual->effective;
-    size = std::max(k::least_error * pairs_[l].span, size);
-    std::fill(pairs_[l].sigma.begin(), pairs_[l].sigma.end(), size / std::sqrt(s.effective));
+    weigh_by_usual(r.segment(s.first, s.count), usual_, k::least_error * pairs_[l].span, s, pairs_[l].sigma);
   }
   return true;
 }
@@ -173,15 +163,14 @@ std::optional<UsualDrive> usual_drive(const Log& log) {
   if (drive.empty()) return {};
   const ExplainedFit base = fit_causes(drive, {}, nullptr, nullptr, explain_constants::base_iterations, false);
   if (!base.ok) return {};
-  const CauseScore score = score_causes(drive, base)[by_delay];
-  const ExplainedFit fit = fit_causes(drive, {by_delay}, &base, &score, explain_constants::base_iterations, false);
+  const CauseScore score = score_causes(drive, base)[DriveSubject::by_delay];
+  const ExplainedFit fit =
+      fit_causes(drive, {DriveSubject::by_delay}, &base, &score, explain_constants::base_iterations, false);
   if (!fit.ok) return {};
   const Eigen::VectorXd left = drive.physical(fit.residual);
   const double effective = effective_fraction({left.data(), left.data() + left.size()});
-  const std::vector<double>& time = *drive.series().front().time;
-  const double rate = static_cast<double>(time.size() - 1) / (time.back() - time.front());
-  return UsualDrive{numbers_of(drive, fit, by_delay).value.front(),
-                    {drive.series().front().signal, root_mean_square(left), 0.0, effective, rate}};
+  return UsualDrive{numbers_of(drive, fit, DriveSubject::by_delay).value.front(),
+                    {drive.series().front().signal, rms_of_rows(left), 0.0, effective, 1 / drive.sample_period()}};
 }
 
 }  // namespace servodx

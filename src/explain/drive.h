@@ -22,6 +22,7 @@ std::vector<double> through_driver(const std::vector<double>& time, const std::v
 
 class DriveSubject : public Subject {
  public:
+  static constexpr int by_delay = 0, by_lag = 1;  // positions of its causes
   // `known`: the delay of the rig's healthy logs is no cause, and the residual is weighed by what theirs is.
   explicit DriveSubject(const std::vector<Log>& logs, const KnownRig& known = {});
   DriveSubject(const DriveSubject&) = delete;  // series point into it
@@ -29,7 +30,6 @@ class DriveSubject : public Subject {
   bool empty() const { return series_.empty(); }  // a log lacks one of the two, or its command stands still
 
   double sample_period() const;                             // [s] of the first log, on the mean
-  int delay() const { return 0; }                           // its position among the causes
   double time_beyond_usual(int cause, double value) const;  // [s] that the current comes later; value: of its number
   const std::vector<Cause>& causes() const override { return causes_; }
   const std::vector<Series>& series() const override { return series_; }

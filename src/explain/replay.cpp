@@ -28,8 +28,6 @@ constexpr Kind kinds[] = {{"missing flow A", "m3/s", &Balance::flow_a, false},
                           {"missing force", "N", &Balance::force, true},
                           {"supply pressure", "Pa", &Balance::supply, false}};
 
-double root_mean_square(const Eigen::VectorXd& x) { return std::sqrt(x.squaredNorm() / static_cast<double>(x.size())); }
-
 }  // namespace
 
 ReplaySubject::ReplaySubject(const ValveSubject& valve, const Point& at, const KnownRig& known)
@@ -60,7 +58,7 @@ ReplaySubject::ReplaySubject(const ValveSubject& valve, const Point& at, const K
       const auto n = static_cast<long>(part.windows.size());
       Eigen::VectorXd here(n);
       for (long i = 0; i < n; ++i) here[i] = missing[part.windows[static_cast<std::size_t>(i)]];
-      sigma_.emplace_back(part.windows.size(), std::max(1e-300, root_mean_square(here)));
+      sigma_.emplace_back(part.windows.size(), std::max(1e-300, rms_of_rows(here)));
       time_.push_back(std::move(time));
       series_.push_back({kind.name, kind.unit, static_cast<int>(l), first, n, nullptr, nullptr});
       parts_.push_back(std::move(part));
@@ -140,7 +138,7 @@ std::vector<UsualError> ReplaySubject::errors(const Eigen::VectorXd& rows) const
   const Eigen::VectorXd r = physical(rows);
   std::vector<UsualError> out;
   for (const Series& s : series_)
-    out.push_back({s.signal, root_mean_square(r.segment(s.first, s.count)), 0.0, s.effective, 2 / k::window});
+    out.push_back({s.signal, rms_of_rows(r.segment(s.first, s.count)), 0.0, s.effective, 2 / k::window});
   return out;
 }
 
@@ -164,12 +162,7 @@ bool ReplaySubject::rescale(const Eigen::VectorXd& rows) {
   const Eigen::VectorXd r = physical(rows);
   for (std::size_t i = 0; i < series_.size(); ++i) {
     Series& s = series_[i];
-    const Eigen::VectorXd own = r.segment(s.first, s.count);
-    double size = root_mean_square(own);
-    s.effective = effective_fraction({own.data(), own.data() + own.size()});
-    if (const std::optional<MiddleError> usual = middle_error(usual_, s.signal); usual && usual->size < size)
-      size = usual->size, s.effective = usual->effective;
-    std::fill(sigma_[i].begin(), sigma_[i].end(), std::max(1e-300, size) / std::sqrt(s.effective));
+    weigh_by_usual(r.segment(s.first, s.count), usual_, 1e-300, s, sigma_[i]);
   }
   return !series_.empty();
 }

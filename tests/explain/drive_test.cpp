@@ -118,8 +118,8 @@ TEST(Drive, WhatStaysWithinASampleIsShorterThanOne) {
   known.drive_delay = {1e-3};
   const DriveSubject drive({log_of_driver(0, 0, 1, 1)}, known);
   EXPECT_NEAR(drive.sample_period(), 1e-3, 1e-12);
-  EXPECT_NEAR(drive.time_beyond_usual(drive.delay(), 3e-3), 2e-3, 1e-12);
-  EXPECT_NEAR(drive.time_beyond_usual(1, 1 / (2 * pi * 4e-3)), 4e-3, 1e-12);
+  EXPECT_NEAR(drive.time_beyond_usual(DriveSubject::by_delay, 3e-3), 2e-3, 1e-12);
+  EXPECT_NEAR(drive.time_beyond_usual(DriveSubject::by_lag, 1 / (2 * pi * 4e-3)), 4e-3, 1e-12);
 }
 
 TEST(Drive, NothingIsSaidOfAHealthyOneNorOfItsGain) {
