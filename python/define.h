@@ -51,6 +51,7 @@ py::list records_of(const std::vector<ChannelResult>& channels);
 
 void define_errors(py::module_& m);
 void define_rig(py::module_& m);
+void define_note(py::module_& m);
 void define_log(py::module_& m);
 void define_table(py::module_& m);
 void define_baseline(py::module_& m);

@@ -16,7 +16,7 @@ inline auto fields(RigFile& r) {
                   r.oil_temperature, r.taps_at_cylinder, r.fluid, r.facts, r.limits, r.words, r.lines, r.columns);
 }
 inline auto fields(Channel& c) { return std::tie(c.value, c.unit, c.full_scale, c.resolution, c.column, c.missing); }
-inline auto fields(LogNote& n) { return std::tie(n.kind, n.text); }
+inline auto fields(Note& n) { return std::tie(n.kind, n.text); }
 inline auto fields(Log& l) { return std::tie(l.path, l.sha256, l.time, l.channels, l.notes); }
 inline auto fields(OutputColumn& c) { return std::tie(c.signal, c.unit, c.value, c.full_scale); }
 inline auto fields(Simulation& s) { return std::tie(s.time, s.columns, s.notes, s.step, s.impact_step); }

@@ -50,7 +50,7 @@ index. Raises InputError by the rules of a file.)")
       .def("save", &save, py::arg("path"), "CSV in the log's own units; what was read reads back to the same bits.")
       .def_readonly("path", &Log::path)
       .def_readonly("sha256", &Log::sha256, "of the file's bytes; empty of a log in memory")
-      .def_property_readonly("notes", [](const Log& log) { return texts_of(log.notes); })
+      .def_readonly("notes", &Log::notes)
       .def_property_readonly(
           "time", [](const Log& log) { return array_of(log.time); }, "[s] (samples,)")
       .def_property_readonly("signals", &signals_of, "name -> [SI] (samples,), NaN where a sample is missing")

@@ -32,6 +32,7 @@ PYBIND11_MODULE(_servodx, m) {
   define_errors(m);
   define_process(m);
   define_rig(m);
+  define_note(m);
   define_log(m);
   define_table(m);
   define_baseline(m);

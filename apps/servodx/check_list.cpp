@@ -25,6 +25,7 @@
 #include "result_folder.h"
 #include "servodx/error.h"
 #include "servodx/log.h"
+#include "servodx/note.h"
 #include "servodx/rig.h"
 #include "servodx/tune.h"
 #include "store/history.h"
@@ -87,7 +88,7 @@ ListedChecks::Outcome ListedChecks::set_aside(const CheckRow& row, const report:
 
 void ListedChecks::write_result(const CheckRow& row, report::Header& header, const CheckResult& result) const {
   header.simulations = result.simulations, header.failed_simulations = result.failed_simulations;
-  note(header, result.notes);
+  note(header, texts_of(result.notes));
   if (folder_) folder_->write_result(name_of_result(row), report::dump(header, report::check_json(result)));
 }
 
@@ -109,7 +110,7 @@ ListedChecks::Outcome ListedChecks::check(const CheckRow& row) {
   report::Header header = of_call_;
   *header.settings = check_settings(row.valve, row.hours, options_.check.model, options_.history);
   header.inputs.push_back({tuned.table.path, tuned.table.sha256});
-  note(header, tuned.notes);
+  note(header, texts_of(tuned.notes));
   std::string sha256;
   if (const auto refusal = refusal_of(row.log, [&] { sha256 = sha256_of_file(row.log); }))
     return set_aside(row, header, *refusal);

@@ -67,7 +67,7 @@ int run(const Options& options) {
   write_table(options.output, result.table);
   header.simulations = result.simulations;
   header.failed_simulations = result.failed_simulations;
-  for (const Log& log : logs) invocation.note(texts_of(log.notes));
+  for (const Log& log : logs) invocation.note(log.notes);
   invocation.note(result.notes);
   if (result.interrupted) invocation.note_how_to_go_on();
   if (invocation.wants_report()) {

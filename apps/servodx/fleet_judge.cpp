@@ -16,6 +16,7 @@
 #include "report/diagnose/diagnosis_json.h"
 #include "report/fleet/fleet.h"
 #include "servodx/log.h"
+#include "servodx/note.h"
 
 namespace servodx {
 namespace {
@@ -72,7 +73,7 @@ FleetJudge::Outcome FleetJudge::set_aside(const std::string& log, const std::str
 void FleetJudge::complete_header(const Diagnosis& d) {
   header_.simulations += d.assessment.simulations;
   header_.failed_simulations += d.assessment.failed_simulations;
-  for (const std::string& note : d.assessment.notes)
+  for (const std::string& note : texts_of(d.assessment.notes))
     if (std::find(header_.notes.begin(), header_.notes.end(), note) == header_.notes.end())
       header_.notes.push_back(note);
 }

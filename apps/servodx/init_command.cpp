@@ -24,6 +24,7 @@
 #include "report/shared/json.h"
 #include "servodx/error.h"
 #include "servodx/log.h"
+#include "servodx/note.h"
 #include "servodx/rig.h"
 #include "shipped.h"
 #include "signals/column_questions.h"
@@ -203,8 +204,8 @@ std::string reading(const Options& options, std::size_t questions) {
     text = fmt::format("{}: {} samples\n",
                        questions ? "without the columns asked about the log can be read" : "the log reads with it",
                        log.samples());
-    for (const LogNote& note : log.notes)
-      if (note.kind != LogNote::Kind::ignored_columns)
+    for (const Note& note : log.notes)
+      if (note.kind != Note::Kind::ignored_columns)
         text += "  beware: " + note.text + "\n";  // the ignored are told below
   } catch (const InputError& open) {
     text = fmt::format("to be mended in {} before the log reads:\n  {}\n", options.output, told(open));

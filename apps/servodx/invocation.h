@@ -11,6 +11,7 @@
 #include "parameters/table.h"
 #include "report/shared/json.h"
 #include "report/shared/page.h"
+#include "servodx/note.h"
 #include "servodx/rig.h"
 #include "servodx/tune.h"
 #include "servodx/watch.h"
@@ -103,8 +104,9 @@ class Invocation {
   // For the end of a result that was cut short.
   void note_how_to_go_on();
 
-  // Notices for the end of the result; one that is there already is not repeated.
+  // Notes for the end of the result; one that is there already is not repeated.
   void note(const std::vector<std::string>& notices);
+  void note(const std::vector<Note>& notes) { note(texts_of(notes)); }
   report::Header& header() { return header_; }
   const report::Header& header() const { return header_; }
   const CommonOptions& options() const { return options_; }

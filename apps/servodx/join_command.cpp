@@ -48,7 +48,7 @@ void run(const Options& options) {
       options.first, info(clock.by).name, clock.offset, clock.offset_error, 1e6 * clock.skew, 1e6 * clock.skew_error);
   write_log(options.output, columns, {settled});
 
-  invocation.note(texts_of(joined.notes));
+  invocation.note(joined.notes);
   if (std::isnan(clock.offset_error))
     invocation.note({fmt::format("too short to state an error of the clock: {} pieces", clock.pieces)});
   invocation.finish(fmt::format("{}\ncorrelation {:.5f}; {} samples: {}\n", settled, clock.correlation,

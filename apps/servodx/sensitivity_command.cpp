@@ -34,7 +34,7 @@ int run(const Options& options) {
   const Sensitivity result = drive_rows(logs, table, rig, options.common.threads, invocation.watch());
   invocation.header().simulations = result.simulations;
   invocation.header().failed_simulations = result.failed_simulations;
-  for (const Log& log : logs) invocation.note(texts_of(log.notes));
+  for (const Log& log : logs) invocation.note(log.notes);
   if (invocation.wants_report()) invocation.write_report(report::sensitivity_page(invocation.header(), result));
   invocation.finish(report::text_of(result), report::sensitivity_json(result));
   return result.interrupted ? interrupted : ran;

@@ -154,7 +154,7 @@ int run(const Options& options) {
 
   header.simulations = result.simulations;
   header.failed_simulations = result.failed_simulations;
-  for (const Log& log : logs) invocation.note(texts_of(log.notes));
+  for (const Log& log : logs) invocation.note(log.notes);
   invocation.note(result.notes);
   const std::optional<BeyondFaults> likeliest = likeliest_of(logs, tuned, rig, tune_options);
   const report::GoodEnough good = report::good_enough(

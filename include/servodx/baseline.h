@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "servodx/log.h"
+#include "servodx/note.h"
 #include "servodx/rig.h"
 #include "servodx/tune.h"
 #include "servodx/watch.h"
@@ -43,7 +44,7 @@ struct Baseline {
   std::vector<Score> scores;
   std::string tuned_sha256;  // content_hash of the table it speaks of; earlier versions wrote that of its file
   std::string path;          // of its file; empty where it was made in memory
-  std::vector<std::string> notes;
+  std::vector<Note> notes;
   long simulations = 0, failed_simulations = 0;
   bool interrupted = false;  // fewer logs than were given
   std::shared_ptr<const BaselineParts> parts;
@@ -61,6 +62,6 @@ void write_baseline(const std::string& path, const Baseline& baseline);
 // Throws InputError where the baseline was made with another table: its threshold is a statement about that table's
 // residuals. Every call that takes both asks for it. A comment in the table is no change, a row is, in memory too.
 // Returns a note where an earlier version bound the baseline to the bytes of the table's file.
-std::optional<std::string> require_same_table(const Baseline& baseline, const Tuned& tuned);
+std::optional<Note> require_same_table(const Baseline& baseline, const Tuned& tuned);
 
 }  // namespace servodx

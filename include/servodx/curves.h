@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "servodx/log.h"
+#include "servodx/note.h"
 #include "servodx/rig.h"
 
 namespace servodx {
@@ -37,7 +38,7 @@ struct AcceptanceSheet {
   std::vector<Curve> curves;
   std::vector<Response> response;
   std::string response_signal;
-  std::vector<std::string> notes;
+  std::vector<Note> notes;
 };
 
 // Throws InputError for a log or rig file from which no figure can be read.

@@ -10,6 +10,7 @@
 #include "servodx/actions.h"
 #include "servodx/baseline.h"
 #include "servodx/log.h"
+#include "servodx/note.h"
 #include "servodx/rig.h"
 #include "servodx/tune.h"
 #include "servodx/watch.h"
@@ -84,7 +85,7 @@ struct Verdict {
   std::string action;                       // what the fault named asks for
   std::vector<ParameterResult> parameters;  // rows that moved, the fault's first
   std::vector<ChannelResult> channels;      // replay under health: rms beside noise
-  std::vector<std::string> notes;
+  std::vector<Note> notes;
   long simulations = 0, failed_simulations = 0;
   std::shared_ptr<const Diagnosis> whole;  // for the program's pages
 };

@@ -8,6 +8,7 @@
 
 #include "servodx/baseline.h"
 #include "servodx/log.h"
+#include "servodx/note.h"
 #include "servodx/rig.h"
 #include "servodx/table.h"
 #include "servodx/tune.h"
@@ -62,7 +63,7 @@ struct Explanation {
   std::vector<Candidate> candidates;            // all that were looked at
   std::map<std::string, double> probabilities;  // of causes, "unlisted" and "nothing"; empty without a baseline
   Table table;                                  // extended
-  std::vector<std::string> notes;
+  std::vector<Note> notes;
   long simulations = 0, failed_simulations = 0;
   bool interrupted = false;
   std::shared_ptr<const ExplainResult> whole;  // for the program's pages

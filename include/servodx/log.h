@@ -9,6 +9,7 @@
 #include <string_view>
 #include <vector>
 
+#include "servodx/note.h"
 #include "servodx/rig.h"
 
 namespace servodx {
@@ -50,26 +51,12 @@ struct Channel {
   std::size_t missing = 0;    // samples left out (NaN)
 };
 
-// What the reader noticed: what it is about, and its words, which no code reads.
-struct LogNote {
-  enum class Kind {
-    left_out,         // rows, samples or a last line that do not count
-    ignored_columns,  // of no known name
-    unmapped_column,  // the rig file maps it, and the log lacks it
-    gaps,             // in time
-    implausible,      // a value, or its course in time, that is hardly possible
-  };
-  Kind kind = Kind::implausible;
-  std::string text;
-};
-std::vector<std::string> texts_of(const std::vector<LogNote>& notes);
-
 struct Log {
   std::string path;
   std::string sha256;                       // of the file's bytes, hex
   std::vector<double> time;                 // [s] strictly increasing, as recorded (jitter and gaps kept)
   std::array<Channel, n_signals> channels;  // index(Signal); the `time` slot holds only the unit
-  std::vector<LogNote> notes;               // what is not as one would expect
+  std::vector<Note> notes;                  // what is not as one would expect
 
   bool has(Signal s) const { return !channels[index(s)].value.empty(); }
   const std::vector<double>& operator[](Signal s) const { return channels[index(s)].value; }

@@ -9,6 +9,7 @@
 
 #include "servodx/baseline.h"
 #include "servodx/log.h"
+#include "servodx/note.h"
 #include "servodx/rig.h"
 #include "servodx/tune.h"
 #include "servodx/watch.h"
@@ -94,7 +95,7 @@ struct PlannedTest {
   std::vector<double> random_command;  // [A] pieces drawn blindly, within the same limits and as long
   Figures random;
   double threshold = 0;  // [deviates] that a finding needs
-  std::vector<std::string> notes;
+  std::vector<Note> notes;
   long simulations = 0, failed_simulations = 0;
   bool interrupted = false;
   std::shared_ptr<const TestPlan> whole;  // for the program's pages

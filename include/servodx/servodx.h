@@ -11,6 +11,7 @@
 #include "servodx/fleet.h"
 #include "servodx/history.h"
 #include "servodx/log.h"
+#include "servodx/note.h"
 #include "servodx/objective.h"
 #include "servodx/plan.h"
 #include "servodx/rig.h"

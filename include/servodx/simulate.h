@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "servodx/log.h"
+#include "servodx/note.h"
 #include "servodx/rig.h"
 #include "servodx/table.h"
 
@@ -25,7 +26,7 @@ struct SimulationOptions {
 struct Simulation {
   std::vector<double> time;           // [s] the log's
   std::vector<OutputColumn> columns;  // of each signal that the log measures and the model reports: [SI], one a sample
-  std::vector<std::string> notes;
+  std::vector<Note> notes;
   double step = 0, impact_step = 0;  // [s] that were taken
   // Null where the log does not measure this signal.
   const OutputColumn* find(Signal signal) const;

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "servodx/log.h"
+#include "servodx/note.h"
 #include "servodx/rig.h"
 #include "servodx/tune.h"
 #include "servodx/watch.h"
@@ -40,7 +41,7 @@ struct Checked {
   std::string log, sha256;
   std::vector<Figure> figures;
   double temperature = 0;  // [K] of the oil: the log's, or estimated
-  std::vector<std::string> notes;
+  std::vector<Note> notes;
   long simulations = 0, failed_simulations = 0;
   std::shared_ptr<const CheckResult> whole;  // for the program's pages
 };
@@ -123,7 +124,7 @@ struct Trend {
   std::optional<double> alert_at;      // [h]
   std::optional<Remaining> remaining;  // to failure
   std::vector<OfCheck> trends;
-  std::vector<std::string> notes;
+  std::vector<Note> notes;
   std::shared_ptr<const ValveTrend> whole;  // for the program's pages
 };
 

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "servodx/log.h"
+#include "servodx/note.h"
 #include "servodx/rig.h"
 #include "servodx/table.h"
 #include "servodx/watch.h"
@@ -82,7 +83,7 @@ struct Tuned {
   Table table;                              // with standard errors; what later calls rest on
   std::vector<ChannelResult> channels;      // how well it follows the logs
   std::vector<ParameterResult> parameters;  // free rows, effects included
-  std::vector<std::string> notes;
+  std::vector<Note> notes;
   long simulations = 0, failed_simulations = 0;
   bool interrupted = false;                 // the best so far
   std::shared_ptr<const TuneResult> whole;  // for the program's pages; none of a table that was read

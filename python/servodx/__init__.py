@@ -18,16 +18,16 @@ if "OMP_WAIT_POLICY" not in os.environ:
     os.environ.setdefault("GOMP_SPINCOUNT", "10000")
 
 from . import frames, methods, pages, plots
-from ._servodx import (ActionClass, Baseline, Checked, Curves, Explanation, Fleet, History, InputError, Log,
+from ._servodx import (ActionClass, Baseline, Checked, Curves, Explanation, Fleet, History, InputError, Log, Note,
                        ObjectiveEnd, Plan, Replay, Rig, Row, RowVerdict, Severity, Simulation, Table, Trend, Tuned,
                        Verdict, __version__, curves, make_log, read_log, replay, simulate, trend, tune)
 from .frames import UNITS, frame_of, log_of
 from .objective import Objective
 
 __all__ = ["ActionClass", "Baseline", "Checked", "Curves", "Explanation", "Fleet", "History", "InputError", "Log",
-           "Objective", "ObjectiveEnd", "Plan", "Replay", "Rig", "Row", "RowVerdict", "Severity", "Simulation", "Table",
-           "Trend", "Tuned", "UNITS", "Verdict", "__version__", "curves", "frame_of", "log_of", "make_log", "read_log",
-           "replay", "simulate", "trend", "tune"]
+           "Note", "Objective", "ObjectiveEnd", "Plan", "Replay", "Rig", "Row", "RowVerdict", "Severity", "Simulation",
+           "Table", "Trend", "Tuned", "UNITS", "Verdict", "__version__", "curves", "frame_of", "log_of", "make_log",
+           "read_log", "replay", "simulate", "trend", "tune"]
 
 methods.attach()
 plots.attach()

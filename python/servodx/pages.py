@@ -19,7 +19,7 @@ def _page(title, facts, table=None, colour=None, notes=()):
         parts.append(table.head(ROWS).to_html(notebook=True, border=0))
         if len(table) > ROWS:
             parts.append(f"<small>{len(table) - ROWS} more rows</small>")
-    parts += [f"<br><small>{html.escape(note)}</small>" for note in list(notes)[:ROWS]]
+    parts += [f"<br><small>{html.escape(str(note))}</small>" for note in list(notes)[:ROWS]]
     return "".join(parts) + "</div>"
 
 

@@ -13,6 +13,7 @@
 #include "curves/constants.h"
 #include "curves/sweep.h"
 #include "servodx/error.h"
+#include "servodx/note.h"
 #include "servodx/rig.h"
 
 namespace servodx::curves {
@@ -88,11 +89,14 @@ class Reading {
     const Outputs out = outputs_of(log_, rig_);
     if (const auto sweeps = sweeps_of(log_, rated_)) {
       sweeps_ = *sweeps;
-      if (!sweeps_.both()) sheet_.notes.push_back("the command sweeps one way only: no hysteresis");
+      if (!sweeps_.both())
+        sheet_.notes.push_back({Note::Kind::one_way_sweep, "the command sweeps one way only: no hysteresis"});
       if (const double rate = sweeps_.rate / rated_; rate > slow)
-        sheet_.notes.push_back(fmt::format(
-            "the command sweeps {:.2g} times rated current a second: lag of valve and sensors is in the hysteresis",
-            rate));
+        sheet_.notes.push_back(
+            {Note::Kind::fast_sweep,
+             fmt::format("the command sweeps {:.2g} times rated current a second: lag of valve and sensors is in the "
+                         "hysteresis",
+                         rate)});
       if (!out.flow.empty()) flow(curve(Signal::control_flow, out.flow), out.flow_name, out.flow);
       if (!out.pressure.empty()) pressure(curve(Signal::load_pressure, out.pressure), out.pressure_name);
       if (!out.leakage.empty()) leakage(curve(Signal::leakage_flow, out.leakage));
@@ -341,7 +345,7 @@ class Reading {
 
 Sheet read_figures(const Log& log, const RigFile& rig) {
   Sheet sheet;
-  sheet.notes = texts_of(log.notes);
+  sheet.notes = log.notes;
   sheet.curves.reserve(4);  // references to them are held while reading
   Reading(log, rig, sheet).read();
   return sheet;

@@ -21,6 +21,7 @@
 #include <vector>
 
 #include "curves/frequency_response.h"
+#include "servodx/note.h"
 #include "servodx/rig.h"
 #include "signals/log.h"
 #include "signals/rig_file.h"
@@ -72,7 +73,7 @@ struct Sheet {
   std::vector<ResponsePoint> response;
   std::string response_signal;
   std::string verdict;  // pass | fail | not_judged
-  std::vector<std::string> notes;
+  std::vector<Note> notes;
 };
 
 // Throws InputError for a log or rig file from which no figure can be read.

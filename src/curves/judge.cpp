@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "curves/curves.h"
+#include "servodx/note.h"
 #include "servodx/rig.h"
 
 namespace servodx::curves {
@@ -35,7 +36,8 @@ void judge(Sheet& sheet, const RigFile& rig, double guard) {
     if (std::none_of(sheet.figures.begin(), sheet.figures.end(), [&name = name](const Figure& f) {
           return f.name == name && f.judgement != Judgement::not_judged;
         }))
-      sheet.notes.push_back("limit '" + name + "' is not judged: the log does not show the figure");
+      sheet.notes.push_back(
+          {Note::Kind::unjudged_limit, "limit '" + name + "' is not judged: the log does not show the figure"});
 }
 
 }  // namespace servodx::curves

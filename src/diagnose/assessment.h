@@ -15,6 +15,7 @@
 #include "evidence/operating_point.h"
 #include "faults/fault.h"
 #include "faults/gross_finding.h"
+#include "servodx/note.h"
 #include "servodx/tune.h"
 #include "simulate/scenario.h"
 #include "tune/tune.h"
@@ -72,7 +73,7 @@ struct Assessment {
   std::vector<BrokenSensor> broken;
   double others_left = 0;  // of the motion of the sensors that are not broken, by the tuned valve
   bool current_recorded = false;
-  std::vector<std::string> notes;
+  std::vector<Note> notes;
   long simulations = 0, failed_simulations = 0;
 };
 

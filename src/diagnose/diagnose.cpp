@@ -30,6 +30,7 @@
 #include "fit/tuned_state.h"
 #include "parameters/list.h"
 #include "servodx/log.h"
+#include "servodx/note.h"
 #include "servodx/rig.h"
 #include "servodx/table.h"
 #include "servodx/tune.h"
@@ -220,13 +221,14 @@ Ready make_ready(const std::vector<Log>& logs, const Table& tuned, const RigFile
     out.log += (out.log.empty() ? "" : " + ") + log.path;
     out.sha256 += log.sha256;
     out.logs.push_back(log.path);
-    for (const LogNote& note : log.notes) out.notes.push_back(note.text);
+    out.notes.insert(out.notes.end(), log.notes.begin(), log.notes.end());
     const bool fast = is_fast(log);
     ready.recorded.push_back(fast ? prepare(log, rig, moving_average_of(tuned)) : LogData{});
     ready.data.push_back(fast ? at_points(ready.recorded.back()) : prepare(log, rig, moving_average_of(tuned)));
-    if (fast) out.notes.push_back(ready.data.back().notes.back());
+    for (const Note& note : ready.data.back().notes)
+      if (note.kind == Note::Kind::resampled) out.notes.push_back(note);
     leave_out_unknown_channels(ready.recorded.back(), error);
-    for (std::string& note : leave_out_unknown_channels(ready.data.back(), error)) out.notes.push_back(std::move(note));
+    for (Note& note : leave_out_unknown_channels(ready.data.back(), error)) out.notes.push_back(std::move(note));
     require_channels(ready.data.back());
   }
   out.test = conditions_of(logs.front());

@@ -13,6 +13,7 @@
 #include "evidence/operating_point.h"
 #include "fit/log_data.h"
 #include "servodx/log.h"
+#include "servodx/note.h"
 #include "servodx/rig.h"
 #include "signals/noise.h"
 #include "signals/signal.h"
@@ -154,9 +155,9 @@ void find_no_response(LogSurvey& s) {
 // What the reader saw: limits, spikes, frozen sensors, no excitation. Gaps are told with more figures here.
 void add_notes_of_reader(const Log& log, LogSurvey& s) {
   const std::string front = log.path + ": ";
-  for (const LogNote& note : log.notes) {
-    if (note.kind == LogNote::Kind::gaps && s.gaps > 0) continue;
-    s.findings.push_back({note.kind == LogNote::Kind::unmapped_column ? FindingKind::columns : FindingKind::values,
+  for (const Note& note : log.notes) {
+    if (note.kind == Note::Kind::gaps && s.gaps > 0) continue;
+    s.findings.push_back({note.kind == Note::Kind::unmapped_column ? FindingKind::columns : FindingKind::values,
                           note.text.starts_with(front) ? note.text.substr(front.size()) : note.text});
   }
 }

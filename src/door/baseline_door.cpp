@@ -27,6 +27,7 @@
 #include "servodx/baseline.h"
 #include "servodx/error.h"
 #include "servodx/log.h"
+#include "servodx/note.h"
 #include "servodx/rig.h"
 #include "servodx/table.h"
 #include "servodx/trouble.h"
@@ -53,8 +54,9 @@ Baseline of_parts(BaselineParts parts) {
   return out;
 }
 
-void note(std::vector<std::string>& notes, const std::string& text) {
-  if (std::find(notes.begin(), notes.end(), text) == notes.end()) notes.push_back(text);
+// A note that is there already is not repeated.
+void add(std::vector<Note>& notes, const Note& note) {
+  if (std::find(notes.begin(), notes.end(), note) == notes.end()) notes.push_back(note);
 }
 
 // The header of a result file of the program.
@@ -103,12 +105,15 @@ Baseline make_baseline(const std::vector<Log>& logs, const Tuned& tuned, const R
   parts.detection = make_baseline(logs, tuned.table, rig, options.false_alarm,
                                   {.seed = options.seed, .threads = options.threads, .watch = options.watch},
                                   &header.simulations, &header.failed_simulations, options.others);
-  for (const std::string& text : tuned.notes)
-    if (!tuned.whole) note(header.notes, text);  // of its reader; what a tune has noted is not this result's
+  std::vector<Note> notes;
+  for (const Note& note : tuned.notes)
+    if (!tuned.whole) add(notes, note);  // of its reader; what a tune has noted is not this result's
   for (const Log& log : logs)
-    for (const LogNote& found : log.notes) note(header.notes, found.text);
+    for (const Note& note : log.notes) add(notes, note);
   const std::size_t scored = parts.detection.scores.size();
-  if (scored < logs.size()) note(header.notes, fmt::format("interrupted: rests on {} of {} logs", scored, logs.size()));
+  if (scored < logs.size())
+    add(notes, {Note::Kind::interrupted, fmt::format("interrupted: rests on {} of {} logs", scored, logs.size())});
+  header.notes = texts_of(notes);
 
   HealthyCounts counts{header.simulations, header.failed_simulations};
   parts.causes = score_healthy(
@@ -126,7 +131,7 @@ Baseline make_baseline(const std::vector<Log>& logs, const Tuned& tuned, const R
   parts.text = report::dump(header, body);
   parts.sha256 = sha256(parts.text);
   Baseline out = of_parts(std::move(parts));
-  out.notes = header.notes;
+  out.notes = std::move(notes);
   out.simulations = header.simulations, out.failed_simulations = header.failed_simulations;
   out.interrupted = options.watch.stopped();
   return out;
@@ -164,13 +169,15 @@ const HealthyReference& causes_of(const Baseline& baseline) {
 
 void write_baseline(const std::string& path, const Baseline& baseline) { write_file(path, parts_of(baseline).text); }
 
-std::optional<std::string> require_same_table(const Baseline& baseline, const Tuned& tuned) {
+std::optional<Note> require_same_table(const Baseline& baseline, const Tuned& tuned) {
   parts_of(baseline);
   if (baseline.tuned_sha256 == content_hash(tuned.table)) return {};
   if (baseline.tuned_sha256 == tuned.table.sha256 && is_as_read(tuned.table))
-    return baseline.path +
-           ": a baseline of an earlier version, bound to the bytes of the table's file: a comment added there will "
-           "refuse it; make it again with 'servodx baseline'";
+    return Note{
+        Note::Kind::earlier_version,
+        baseline.path +
+            ": a baseline of an earlier version, bound to the bytes of the table's file: a comment added there will "
+            "refuse it; make it again with 'servodx baseline'"};
   const InputError other =
       key_error({baseline.path, 0, "tuned_sha256"}, "was made with another table than " + tuned.table.path,
                 "give the table it was made with, or make a baseline with this one");

@@ -30,6 +30,7 @@
 #include "servodx/error.h"
 #include "servodx/explain.h"
 #include "servodx/log.h"
+#include "servodx/note.h"
 #include "servodx/rig.h"
 #include "servodx/table.h"
 #include "servodx/tune.h"
@@ -135,7 +136,7 @@ Verdict diagnose_pool(const std::vector<Log>& logs, const Tuned& tuned, const Ri
                       const DiagnoseOptions& options) {
   options.validate();
   if (logs.empty()) throw InputError({}, "no log is given", "give the logs of one valve in one state");
-  const std::optional<std::string> of_baseline = require_same_table(baseline, tuned);
+  const std::optional<Note> of_baseline = require_same_table(baseline, tuned);
   Assessment assessment = assess_pool(logs, tuned.table, rig, options);
   if (options.watch.stopped()) return interrupted_verdict(assessment);
   if (of_baseline) assessment.notes.push_back(*of_baseline);
@@ -143,7 +144,8 @@ Verdict diagnose_pool(const std::vector<Log>& logs, const Tuned& tuned, const Ri
   set_beside_tuning(d.conditions, tuning_points(parts_of(baseline).detection, tuned.table));
   const bool asks = d.doubt == Doubt::no_fault && options.explain_unknown;
   if (asks && !parts_of(baseline).causes)
-    d.assessment.notes.push_back("the baseline says nothing of causes, so explain was not asked what stands first");
+    d.assessment.notes.push_back(
+        {Note::Kind::no_causes, "the baseline says nothing of causes, so explain was not asked what stands first"});
   else if (asks) {
     d.beyond = explain_unknown(logs, tuned, rig, baseline, options);
     if (options.watch.stopped()) return interrupted_verdict(d.assessment);

@@ -17,6 +17,7 @@
 #include "servodx/baseline.h"
 #include "servodx/explain.h"
 #include "servodx/log.h"
+#include "servodx/note.h"
 #include "servodx/rig.h"
 #include "servodx/tune.h"
 
@@ -94,7 +95,7 @@ Explanation explain(const std::vector<Log>& logs, const Tuned& tuned, const Rig&
                     const ExplainOptions& options) {
   options.validate();
   door::require_samples(logs, rig);
-  const std::optional<std::string> of_baseline = require_same_table(baseline, tuned);
+  const std::optional<Note> of_baseline = require_same_table(baseline, tuned);
   const HealthyReference& causes = causes_of(baseline);
   ExplainOptions at_its_rate = options;
   at_its_rate.level = baseline.asked;

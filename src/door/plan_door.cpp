@@ -10,6 +10,7 @@
 #include "plan/plan.h"
 #include "servodx/baseline.h"
 #include "servodx/log.h"
+#include "servodx/note.h"
 #include "servodx/plan.h"
 #include "servodx/rig.h"
 #include "servodx/tune.h"
@@ -55,7 +56,7 @@ void PlanOptions::validate() const {
 PlannedTest plan_test(const Tuned& tuned, const Rig& rig, const PlanOptions& options, const Baseline* baseline,
                       const Log* like) {
   options.validate();
-  std::optional<std::string> of_baseline;
+  std::optional<Note> of_baseline;
   if (baseline) of_baseline = require_same_table(*baseline, tuned);
   PlannedTest out = plan_of(tuned.table, rig, options, baseline ? &parts_of(*baseline).detection : nullptr, like);
   if (of_baseline) out.notes.push_back(*of_baseline);

@@ -11,6 +11,7 @@
 #include "servodx/checkpoint.h"
 #include "servodx/error.h"
 #include "servodx/log.h"
+#include "servodx/note.h"
 #include "servodx/rig.h"
 #include "servodx/table.h"
 #include "servodx/trouble.h"
@@ -54,12 +55,14 @@ Tuned read_tuned(const std::string& path) {
     throw DocumentedError(Trouble::untuned, {path, 0, "std_error"}, "the table is not tuned: it has no such column",
                           "tune it with 'servodx tune LOG... --params " + path + " -o TUNED.csv' and give TUNED.csv");
   if (has_old_state(out.table))
-    out.notes.push_back(path +
-                        ": a tuned table of an earlier version, which kept its model's error in comments; it is read "
-                        "as it is, and a new tune writes the new form");
+    out.notes.push_back(
+        {Note::Kind::earlier_version,
+         path + ": a tuned table of an earlier version, which kept its model's error in comments; it is read "
+                "as it is, and a new tune writes the new form"});
   if (const std::vector<Unfollowed> channels = tuned_state(out.table).unfollowed; !channels.empty())
-    out.notes.push_back(path + ": its tune was not good enough (" + report::unfollowed_in_words(channels) +
-                        "): what follows by this table is in doubt");
+    out.notes.push_back({Note::Kind::poor_tune, path + ": its tune was not good enough (" +
+                                                    report::unfollowed_in_words(channels) +
+                                                    "): what follows by this table is in doubt"});
   return out;
 }
 

@@ -21,15 +21,16 @@
 #include "explain/kept.h"
 #include "explain/subject.h"
 #include "explain/verdict.h"
+#include "servodx/note.h"
 #include "servodx/rig.h"
 
 namespace servodx {
 namespace {
 
-std::vector<std::string> notes_of_subject(const Inquiry& q) {
-  std::vector<std::string> out;
+std::vector<Note> notes_of_subject(const Inquiry& q) {
+  std::vector<Note> out;
   for (std::size_t l = 0; l < q.logs().size(); ++l) {
-    const std::vector<std::string>& notes = q.subject().logs()[l].notes;
+    const std::vector<Note>& notes = q.subject().logs()[l].notes;
     out.insert(out.end(), notes.begin() + static_cast<long>(q.logs()[l].notes.size()), notes.end());
   }
   return out;
@@ -230,11 +231,12 @@ void measure(const Inquiry& q, const Answer& answer, ExplainResult& out) {
   out.worse_withheld = !q.options().keep_worse && is_worse_in_rms(out.channels);
   out.table = out.worse_withheld ? q.subject().table() : extended_table(q.subject(), found, out.causes);
   if (answer.told_by_blocks && out.heldout_gain.lower <= 0)
-    out.notes.push_back(fmt::format(
-        "{} is told by the blocks with measured signals between them. The simulation by itself does not follow better "
-        "with it: held out it gains {:.0f} % ({:.0f} to {:.0f}).",
-        out.causes.front().effect, 100 * out.heldout_gain.value, 100 * out.heldout_gain.lower,
-        100 * out.heldout_gain.upper));
+    out.notes.push_back(
+        {Note::Kind::told_by_blocks,
+         fmt::format("{} is told by the blocks with measured signals between them. The simulation by itself does not "
+                     "follow better with it: held out it gains {:.0f} % ({:.0f} to {:.0f}).",
+                     out.causes.front().effect, 100 * out.heldout_gain.value, 100 * out.heldout_gain.lower,
+                     100 * out.heldout_gain.upper)});
 }
 
 // First: it is ahead of all else. The table has no row of it, as the measured current drives the simulation.

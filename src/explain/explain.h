@@ -14,6 +14,7 @@
 #include "explain/show.h"
 #include "parameters/table.h"
 #include "servodx/explain.h"
+#include "servodx/note.h"
 #include "servodx/rig.h"
 #include "signals/log.h"
 #include "signals/rig_file.h"
@@ -107,7 +108,7 @@ struct ExplainResult {
   std::optional<double> p_adequacy;                     // chance that a healthy log is left with as much, after
   Table table;                                          // extended
   std::vector<ParameterVector> before, after;           // candidates of each log, as tuned and with the causes
-  std::vector<std::string> notes;
+  std::vector<Note> notes;
   long simulations = 0, failed_simulations = 0;
   bool interrupted = false;
 };

@@ -19,6 +19,7 @@
 #include "optimise/problem.h"
 #include "parameters/list.h"
 #include "servodx/log.h"
+#include "servodx/note.h"
 #include "servodx/rig.h"
 #include "simulate/scenario.h"
 
@@ -66,8 +67,7 @@ void ValveSubject::prepare_logs(const std::vector<Log>& logs, const RigFile& rig
   without_notch.mains_frequency.reset();
   for (const Log& log : logs) {
     logs_.push_back(prepare_to_fit(log, without_notch, moving_average_of(table_)));
-    for (std::string& note : leave_out_unknown_channels(logs_.back(), error_))
-      logs_.back().notes.push_back(std::move(note));
+    for (Note& note : leave_out_unknown_channels(logs_.back(), error_)) logs_.back().notes.push_back(std::move(note));
     require_channels(logs_.back());
   }
 }

@@ -11,6 +11,7 @@
 #include "optimise/problem.h"
 #include "parameters/table.h"
 #include "servodx/log.h"
+#include "servodx/note.h"
 #include "simulate/scenario.h"
 
 namespace servodx {
@@ -61,14 +62,15 @@ std::vector<double> sigma_of(const ChannelError* error, double noise, const std:
   return s;
 }
 
-std::vector<std::string> leave_out_unknown_channels(LogData& log, const ErrorModel& model) {
-  std::vector<std::string> notes;
+std::vector<Note> leave_out_unknown_channels(LogData& log, const ErrorModel& model) {
+  std::vector<Note> notes;
   std::erase_if(log.channels, [&](const FitChannel& c) {
     if (model.find(c.signal)) return false;
-    notes.push_back(fmt::format(
-        "{}: {} is left out: no tuning log held it, so how far the model is off there is not known; tune with logs "
-        "that have it",
-        log.path, info(c.signal).name));
+    notes.push_back(
+        {Note::Kind::unlearnt_signal,
+         fmt::format("{}: {} is left out: no tuning log held it, so how far the model is off there is not known; tune "
+                     "with logs that have it",
+                     log.path, info(c.signal).name)});
     return true;
   });
   return notes;

@@ -14,6 +14,7 @@
 #include "optimise/problem.h"
 #include "parameters/table.h"
 #include "servodx/log.h"
+#include "servodx/note.h"
 #include "simulate/scenario.h"
 
 namespace servodx {
@@ -50,7 +51,7 @@ double effective_fraction(const std::vector<double>& whitened);
 
 // Takes out the channels that no tuning log held, and says so, a note each: how wrong the model is there is not known,
 // and a sensor's noise is no measure of it.
-std::vector<std::string> leave_out_unknown_channels(LogData& log, const ErrorModel& model);
+std::vector<Note> leave_out_unknown_channels(LogData& log, const ErrorModel& model);
 
 // Maximum-likelihood floor and slope from the residuals of the problem's logs at x, pooled by signal.
 ErrorModel learn_error_model(const FitProblem& problem, const Point& x);

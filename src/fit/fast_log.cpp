@@ -11,6 +11,7 @@
 
 #include "fit/thin.h"
 #include "servodx/log.h"
+#include "servodx/note.h"
 #include "signals/usual_step.h"
 #include "simulate/fast_command.h"
 #include "simulate/scenario.h"
@@ -158,8 +159,10 @@ LogData at_points(const LogData& every_sample) {
   }
   take_start(out);
   out.notes.push_back(
-      fmt::format("{}: sampled at {:.4g} Hz: compared at {} points of {} rows; the command drives the model row by row",
-                  out.path, 1 / usual_step(t), points.size(), t.size()));
+      {Note::Kind::resampled,
+       fmt::format(
+           "{}: sampled at {:.4g} Hz: compared at {} points of {} rows; the command drives the model row by row",
+           out.path, 1 / usual_step(t), points.size(), t.size())});
   return out;
 }
 

@@ -11,6 +11,7 @@
 #include "fit/oil_of.h"
 #include "model/state.h"
 #include "parameters/list.h"
+#include "servodx/note.h"
 #include "servodx/rig.h"
 #include "signals/noise.h"
 #include "signals/smoother.h"
@@ -152,14 +153,16 @@ bool all_on_test_stand(const std::vector<Log>& logs, const RigFile& rig) {
 namespace {
 
 // Free ports: the valve is given its drop, as logged or as the data sheet rates its flow, where no supply was logged.
-void take_valve_drop(Scenario& s, const Log& log, const RigFile& rig, std::vector<std::string>& notes) {
+void take_valve_drop(Scenario& s, const Log& log, const RigFile& rig, std::vector<Note>& notes) {
   if (s.ports != Ports::free || !s.supply_pressure.empty()) return;
   const auto rated = rig.fact("valve.rated_pressure_drop");
   if (log.has(Signal::valve_pressure_drop)) {
     s.supply_pressure = bridged(log.time, log[Signal::valve_pressure_drop]);
   } else if (rated) {
     s.supply_pressure.assign(log.time.size(), *rated);
-    notes.push_back(log.path + ": no supply pressure is logged; the drop over the valve is valve.rated_pressure_drop");
+    notes.push_back(
+        {Note::Kind::no_supply,
+         log.path + ": no supply pressure is logged; the drop over the valve is valve.rated_pressure_drop"});
   } else {
     return;
   }
@@ -207,7 +210,7 @@ LogData prepare(const Log& log, const RigFile& rig, int window) {
   LogData out;
   out.path = log.path;
   out.sha256 = log.sha256;
-  out.notes = texts_of(log.notes);
+  out.notes = log.notes;
   Scenario& s = out.scenario;
   s.time = log.time;
   s.current_measured = log.has(Signal::coil_current);
@@ -221,8 +224,9 @@ LogData prepare(const Log& log, const RigFile& rig, int window) {
   s.ports = ports_of(log, rig);
   refuse_long_gaps(log, s.ports);
   if (s.ports != rig.ports)
-    out.notes.push_back(fmt::format("{}: taken as of a valve on a test stand with {} ports", log.path,
-                                    s.ports == Ports::blocked ? "blocked" : "free"));
+    out.notes.push_back(
+        {Note::Kind::test_stand, fmt::format("{}: taken as of a valve on a test stand with {} ports", log.path,
+                                             s.ports == Ports::blocked ? "blocked" : "free")});
   take_valve_drop(s, log, rig, out.notes);
   s.rated_current = rig.fact("valve.rated_current").value_or(0.02);
   if (rig.command_hold) s.command_slope = *rig.command_hold == CommandHold::linear ? 1.0 : 0.0;
@@ -231,14 +235,16 @@ LogData prepare(const Log& log, const RigFile& rig, int window) {
   s.oil_known = measured.has_value() || rig.oil_temperature.has_value() ||
                 s.ports != Ports::actuator;  // a stand holds 40 degC within 6 K (ISO 10770-1)
   if (!s.oil_known)
-    out.notes.push_back(fmt::format("{}: no oil temperature: taken as 40 degC, give or take 20 K", log.path));
+    out.notes.push_back(
+        {Note::Kind::oil, fmt::format("{}: no oil temperature: taken as 40 degC, give or take 20 K", log.path)});
   s.oil = oil_of(rig.fluid, temperature);
   const std::vector<char> unknown = after_gaps(log.time);
   for (Signal which : simulated_signals) {
     if (!log.has(which)) continue;
     if (is_redundant(which, log, s.ports)) {
       out.notes.push_back(
-          fmt::format("{}: '{}' is left out: it is an input, or another signal says it", log.path, info(which).name));
+          {Note::Kind::redundant_signal,
+           fmt::format("{}: '{}' is left out: it is an input, or another signal says it", log.path, info(which).name)});
       continue;
     }
     FitChannel c;

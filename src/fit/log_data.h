@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "parameters/table.h"
+#include "servodx/note.h"
 #include "servodx/rig.h"
 #include "signals/filters.h"
 #include "signals/log.h"
@@ -37,7 +38,7 @@ struct LogData {
   std::string path, sha256;
   Scenario scenario;
   std::vector<FitChannel> channels;
-  std::vector<std::string> notes;
+  std::vector<Note> notes;
 };
 
 // The piston integrates every error of flow: below the corner its slow drift tells little and would hide what the rest

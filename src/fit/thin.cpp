@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "servodx/log.h"
+#include "servodx/note.h"
 #include "servodx/rig.h"
 #include "signals/usual_step.h"
 #include "simulate/scenario.h"
@@ -72,9 +73,9 @@ Log thinned(const Log& log, const RigFile& rig) {
       out.channels[c].missing += std::isnan(out.channels[c].value.back());
     }
   }
-  out.notes.push_back({LogNote::Kind::left_out,
-                       fmt::format("{}: the command creeps; {} samples are taken as {} means over {:.2g} s", log.path,
-                                   log.samples(), out.samples(), static_cast<double>(group) * step)});
+  out.notes.push_back(
+      {Note::Kind::resampled, fmt::format("{}: the command creeps; {} samples are taken as {} means over {:.2g} s",
+                                          log.path, log.samples(), out.samples(), static_cast<double>(group) * step)});
   return out;
 }
 

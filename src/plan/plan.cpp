@@ -21,6 +21,7 @@
 #include "plan/search.h"
 #include "plan/segments.h"
 #include "plan/test_bench.h"
+#include "servodx/note.h"
 
 namespace servodx {
 namespace {
@@ -171,11 +172,13 @@ PlannedTest plan_of(const Table& tuned, const RigFile& rig, const PlanOptions& o
   out.notes = bench.notes();
   if (out.planned.extremes.cavitates)
     out.notes.push_back(
-        "the chambers of a healthy valve within its tolerances may fall to -1 bar, where oil cavitates: the test is "
-        "harder on the actuator, and less like the model, than its figures say; lower --max-current or --max-speed");
+        {Note::Kind::cavitation,
+         "the chambers of a healthy valve within its tolerances may fall to -1 bar, where oil cavitates: the test is "
+         "harder on the actuator, and less like the model, than its figures say; lower --max-current or --max-speed"});
   if (!baseline)
     out.notes.push_back(
-        "no baseline is given: a finding has to pass what noise alone needs, not what healthy logs show");
+        {Note::Kind::no_baseline,
+         "no baseline is given: a finding has to pass what noise alone needs, not what healthy logs show"});
   out.simulations = bench.simulations(), out.failed_simulations = bench.failed_simulations();
   out.interrupted = found.interrupted;
   out.whole =

@@ -11,6 +11,7 @@
 #include "fit/problem.h"
 #include "fit/tuned_state.h"
 #include "plan/constants.h"
+#include "servodx/note.h"
 #include "simulate/simulate.h"
 
 namespace servodx {
@@ -109,8 +110,9 @@ TestBench::TestBench(const Table& tuned, const RigFile& rig, const Log* like, do
     notes_ = leave_out_unknown_channels(pattern_, error_);
   else
     notes_.push_back(
-        "no log of the rig is given (--like): the test is judged with the sensors of the tuning logs, each "
-        "as noisy as the model is wrong, and oil of 40 degC");
+        {Note::Kind::no_log,
+         "no log of the rig is given (--like): the test is judged with the sensors of the tuning logs, each "
+         "as noisy as the model is wrong, and oil of 40 degC"});
   require_channels(pattern_);
   Scenario& s = pattern_.scenario;
   for (std::vector<double>* input : {&s.supply_pressure, &s.return_pressure, &s.load_force})

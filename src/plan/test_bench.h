@@ -12,6 +12,7 @@
 #include "fit/log_data.h"
 #include "plan/lanes.h"
 #include "servodx/log.h"
+#include "servodx/note.h"
 #include "servodx/plan.h"
 #include "servodx/rig.h"
 #include "servodx/table.h"
@@ -37,7 +38,7 @@ class TestBench {
   double degrees(double seconds) const;                                     // independent samples of all channels
   // Commands [1 of rated current], one a sample.
   std::vector<TestRun> play(std::span<const std::vector<double>> waves, const LaneSet& set);
-  const std::vector<std::string>& notes() const { return notes_; }
+  const std::vector<Note>& notes() const { return notes_; }
   long simulations() const { return simulations_; }
   long failed_simulations() const { return failed_; }
 
@@ -48,7 +49,7 @@ class TestBench {
   LogData pattern_;
   double rate_;
   int threads_;
-  std::vector<std::string> notes_;
+  std::vector<Note> notes_;
   long simulations_ = 0, failed_ = 0;
 };
 

@@ -15,6 +15,7 @@
 #include "prognose/monitor.h"
 #include "prognose/preflight.h"
 #include "prognose/preflight_figures.h"
+#include "servodx/note.h"
 #include "servodx/rig.h"
 #include "simulate/scenario.h"
 #include "simulate/simulate.h"
@@ -60,7 +61,8 @@ void take_oil(CheckResult& out, LogData& data, const Log& log, const Table& tune
     });
     data.scenario.oil = oil_of(rig.fluid, out.temperature.value);
     data.scenario.oil_known = true;
-    out.notes.push_back("oil temperature estimated from the response; wear that acts like cold oil would shift it");
+    out.notes.push_back(
+        {Note::Kind::oil, "oil temperature estimated from the response; wear that acts like cold oil would shift it"});
   } else {
     out.temperature = {reference_oil_temperature, std::nan(""), OilSource::assumed};
   }
@@ -70,7 +72,8 @@ void take_oil(CheckResult& out, LogData& data, const Log& log, const Table& tune
 void add_mean_error(CheckResult& out, const LogData& data, const Beside& beside) {
   const FitChannel* spool = channel_of(data, Signal::spool_position);
   if (!spool) {
-    out.notes.push_back("no spool sensor: |e| and r cannot be had; E(tau) takes the monitor's spool");
+    out.notes.push_back(
+        {Note::Kind::no_spool, "no spool sensor: |e| and r cannot be had; E(tau) takes the monitor's spool"});
     return;
   }
   const MonitorRun run = run_monitor(beside.monitor, beside.law, data);
@@ -124,7 +127,8 @@ Expected expected_of(CheckResult& out, const LogData& data, const Preflight& tes
   out.simulations += 2;
   out.failed_simulations += !was.ok + !would.ok;
   if (!was.ok || !would.ok) {
-    out.notes.push_back("the model's run failed: the checks are not corrected to the reference state");
+    out.notes.push_back(
+        {Note::Kind::uncorrected, "the model's run failed: the checks are not corrected to the reference state"});
     return {};
   }
   const Supply standard{tuned[row::supply_pressure].nominal, tuned[row::return_pressure].nominal, other.scenario.oil,
@@ -148,11 +152,12 @@ void add_corrected(CheckResult& out, CheckName name, const Figure& figure, std::
 void add_fidelity(CheckResult& out, const Fidelity& seen, const Expected& expected) {
   out.no_response = seen.no_response;
   if (out.no_response) {
-    out.notes.push_back("no response: the spool did not follow the preflight step");
+    out.notes.push_back({Note::Kind::no_response, "no response: the spool did not follow the preflight step"});
     return;
   }
   if (seen.figure.value < 0)
-    out.notes.push_back("fidelity is below 0: the spool moved against the command; is the sign of its signal right?");
+    out.notes.push_back({Note::Kind::against_command,
+                         "fidelity is below 0: the spool moved against the command; is the sign of its signal right?"});
   const auto figure = [](const PreflightFigures& f) { return f.fidelity ? &f.fidelity->figure : nullptr; };
   const Figure* reference = figure(expected.reference);
   add_corrected(out, CheckName::of_fidelity(), seen.figure, "1", figure(expected.here), reference);
@@ -189,10 +194,11 @@ CheckResult check(const Log& log, const Table& tuned, const RigFile& rig, const 
   CheckResult out;
   out.log = log.path;
   out.sha256 = log.sha256;
-  out.notes = texts_of(log.notes);
+  out.notes = log.notes;
   take_oil(out, fitted, log, tuned, rig, options);
   data.scenario.oil = fitted.scenario.oil, data.scenario.oil_known = fitted.scenario.oil_known;
-  if (is_fast(log)) out.notes.push_back(fitted.notes.back());
+  for (const Note& note : fitted.notes)
+    if (note.kind == Note::Kind::resampled) out.notes.push_back(note);
 
   const Beside beside = monitor_beside(tuned, supply_of(data, tuned), options.model);
   add_mean_error(out, data, beside);
@@ -210,7 +216,8 @@ CheckResult check(const Log& log, const Table& tuned, const RigFile& rig, const 
     if (seen.fidelity) add_fidelity(out, *seen.fidelity, expected);
     add_correlations(out, test, seen, expected);
   } else {
-    out.notes.push_back("no preflight test in this log (a small step from rest, or sines): no r, no E(tau)");
+    out.notes.push_back({Note::Kind::no_preflight,
+                         "no preflight test in this log (a small step from rest, or sines): no r, no E(tau)"});
   }
   add_parameters(out, track.parameters);
   options.watch.tell("check", 1, out.simulations);

@@ -19,6 +19,7 @@
 #include "prognose/checks.h"
 #include "prognose/oil_temperature.h"
 #include "prognose/track.h"
+#include "servodx/note.h"
 #include "servodx/rig.h"
 #include "servodx/trend.h"
 #include "signals/log.h"
@@ -48,7 +49,7 @@ struct CheckResult {
   std::vector<double> tracked;  // values of the parameters, in the order of progressive_faults()
   double adequacy = 0;
   MeanError mean_error;  // with its running curve
-  std::vector<std::string> notes;
+  std::vector<Note> notes;
   long simulations = 0, failed_simulations = 0;
 };
 

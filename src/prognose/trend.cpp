@@ -10,6 +10,7 @@
 #include "prognose/check_series.h"
 #include "prognose/check_trend.h"
 #include "prognose/constants.h"
+#include "servodx/note.h"
 
 namespace servodx {
 
@@ -31,31 +32,38 @@ std::vector<CheckTrend> trends_of(const std::vector<CheckSeries>& checks, const 
 void note_levels(ValveTrend& out, const std::vector<CheckSeries>& checks, const TrendSettings& options) {
   for (const CheckSeries& s : checks)
     if (options.failure_current.contains(s.name) && !s.per_newton)
-      out.notes.push_back(fmt::format("{}: no tuned table says what friction takes that current", s.name.text()));
+      out.notes.push_back({Note::Kind::failure_level,
+                           fmt::format("{}: no tuned table says what friction takes that current", s.name.text())});
   for (std::size_t k = 0; k < checks.size(); ++k) {
     const CheckTrend& t = out.trends[k];
     if (t.failure.passed_by(t.healthy))
-      out.notes.push_back(t.name.text() + ": its first checks are beyond its failure level already");
+      out.notes.push_back(
+          {Note::Kind::failure_level, t.name.text() + ": its first checks are beyond its failure level already"});
     if (options.failure_ratio.contains(t.name) && checks[k].fault && !checks[k].fault->log_scale)
-      out.notes.push_back(t.name.text() + ": does not multiply, so its level is so many times its first checks");
+      out.notes.push_back({Note::Kind::failure_level,
+                           t.name.text() + ": does not multiply, so its level is so many times its first checks"});
   }
 }
 
 void note_blind(ValveTrend& out) {
   for (const CheckTrend& t : out.trends)
     if (t.blind && !t.trend)
-      out.notes.push_back(fmt::format(
-          "{}: a healthy check scatters beyond the failure level at this false-alarm rate; only a trend can warn",
-          t.name.text()));
+      out.notes.push_back(
+          {Note::Kind::blind,
+           fmt::format(
+               "{}: a healthy check scatters beyond the failure level at this false-alarm rate; only a trend can warn",
+               t.name.text())});
 }
 
 void note_unknown(ValveTrend& out) {
   for (const CheckTrend& t : out.trends)
     if (t.state == TrendState::unknown && t.points.size() >= least_checks)
-      out.notes.push_back(t.name.text() +
-                          ": holds a reading that none can be, 0 or less of a ratio: no word on a trend");
+      out.notes.push_back(
+          {Note::Kind::implausible,
+           t.name.text() + ": holds a reading that none can be, 0 or less of a ratio: no word on a trend"});
   if (out.state == TrendState::unknown && out.checks < least_checks)
-    out.notes.push_back(fmt::format("fewer than {} checks: no word on a trend", least_checks));
+    out.notes.push_back(
+        {Note::Kind::few_checks, fmt::format("fewer than {} checks: no word on a trend", least_checks)});
 }
 
 // A valve has come as far as the check that has come furthest.
@@ -96,7 +104,8 @@ ValveTrend trend(const ValveHistory& history, const TrendSettings& options) {
   out.to_warning = std::numeric_limits<double>::infinity();
   SeriesOfValve series = series_of(history);
   if (series.of_other_tables > 0)
-    out.notes.push_back(fmt::format("{} checks rest on another tuned table and are left out", series.of_other_tables));
+    out.notes.push_back({Note::Kind::other_table, fmt::format("{} checks rest on another tuned table and are left out",
+                                                              series.of_other_tables)});
   for (CheckSeries& s : series.checks)
     take_seeded(s, options.seeded), take_clean(s, static_cast<std::size_t>(options.healthy));
   out.trends = trends_of(series.checks, options);

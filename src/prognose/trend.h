@@ -21,6 +21,7 @@
 #include "prognose/trend_options.h"
 #include "prognose/trend_state.h"
 #include "prognose/valve_history.h"
+#include "servodx/note.h"
 
 namespace servodx {
 
@@ -59,7 +60,7 @@ struct ValveTrend {
   Life life;
   double to_warning = 0;
   std::vector<CheckTrend> trends;
-  std::vector<std::string> notes;
+  std::vector<Note> notes;
 };
 
 ValveTrend trend(const ValveHistory& history, const TrendSettings& options);

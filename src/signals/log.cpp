@@ -23,12 +23,6 @@ Log read_log(const std::string& path, const RigFile& rig, const ReadOptions& opt
   return is_mat_file(path) ? read_mat_log(path, rig, options) : read_csv_log(path, rig, options);
 }
 
-std::vector<std::string> texts_of(const std::vector<LogNote>& notes) {
-  std::vector<std::string> texts;
-  for (const LogNote& note : notes) texts.push_back(note.text);
-  return texts;
-}
-
 std::string content_hash(const Log& log) {
   Sha256 hash;
   const auto add = [&](std::string_view name, const std::vector<double>& values) {

@@ -12,6 +12,7 @@
 #include "base/trimmed.h"
 #include "base/trouble.h"
 #include "base/units.h"
+#include "servodx/note.h"
 #include "servodx/rig.h"
 #include "signals/plausible.h"
 
@@ -282,7 +283,7 @@ void LogColumns::check_counts() {
       refuse(column.first_missing_line, column.name,
              fmt::format("{} of {} samples are missing, more than {} %", column.missing, all, 100.0 * missing_limit),
              is_time ? "give every row its time" : "cut the log to where the signal is complete, or drop the column");
-    note(LogNote::Kind::left_out,
+    note(Note::Kind::left_out,
          is_time ? fmt::format("{}: left out {} of {} rows without a time", path_, column.missing, all)
                  : fmt::format("{}: '{}': left out {} of {} samples", path_, column.name, column.missing, all));
   }
@@ -300,7 +301,7 @@ void LogColumns::note_unmapped() {
     const auto signal = find_signal(mapping.signal);
     if (!signal || present(*signal)) continue;
     const std::string near = nearest_word(column, ignored_);
-    note(LogNote::Kind::unmapped_column,
+    note(Note::Kind::unmapped_column,
          fmt::format("{}: the rig file maps column '{}' to '{}' (line {}), and the log has none of that name: {}",
                      path_, column, mapping.signal, mapping.line,
                      near.empty() ? "give the column its name in the log, or read on without the signal"
@@ -323,7 +324,7 @@ Sweep LogColumns::Column::into_si() {
 Log LogColumns::finish(std::string sha256) {
   log_.sha256 = std::move(sha256);
   if (!ignored_.empty())
-    log_.notes.insert(log_.notes.begin(), {LogNote::Kind::ignored_columns,
+    log_.notes.insert(log_.notes.begin(), {Note::Kind::ignored_columns,
                                            fmt::format("{}: ignored {} further {}{}: {}", path_, ignored_.size(),
                                                        format_.has_units ? "column" : "variable",
                                                        ignored_.size() == 1 ? "" : "s", in_quotes(ignored_))});
@@ -343,7 +344,7 @@ Log LogColumns::finish(std::string sha256) {
     channel.resolution = resolution(column.value, sweep);
     (column.signal == Signal::time ? log_.time : channel.value) = std::move(column.value);
   }
-  for (const LogNote& found : implausible_values(log_, rig_, sweeps))
+  for (const Note& found : implausible_values(log_, rig_, sweeps))
     note(found.kind, found.text + mark_of(Trouble::implausible));
   return std::move(log_);
 }

@@ -8,6 +8,7 @@
 #include "base/error.h"
 #include "base/trouble.h"
 #include "base/units.h"
+#include "servodx/note.h"
 #include "servodx/rig.h"
 #include "signals/log.h"
 #include "signals/sweep.h"
@@ -51,7 +52,7 @@ class LogColumns {
                               const std::string& mend) const;
   [[noreturn]] void refuse(long line, const std::string& column, const std::string& rule,
                            const std::string& mend) const;
-  void note(LogNote::Kind kind, std::string text) { log_.notes.push_back({kind, std::move(text)}); }
+  void note(Note::Kind kind, std::string text) { log_.notes.push_back({kind, std::move(text)}); }
 
   Log finish(std::string sha256);
 

@@ -10,6 +10,7 @@
 #include "base/units.h"
 #include "servodx/error.h"
 #include "servodx/log.h"
+#include "servodx/note.h"
 #include "servodx/rig.h"
 #include "signals/header.h"
 #include "signals/log_columns.h"
@@ -34,8 +35,8 @@ class CsvReader {
   void read_header() {
     const long above = pass_lines_above_header(csv_, path_);
     if (above > 0)
-      log_.note(LogNote::Kind::left_out, fmt::format("{}:{}: the header; left out {} row{} above it", path_,
-                                                     csv_.header_line(), above, above == 1 ? "" : "s"));
+      log_.note(Note::Kind::left_out, fmt::format("{}:{}: the header; left out {} row{} above it", path_,
+                                                  csv_.header_line(), above, above == 1 ? "" : "s"));
     in_row_ = csv_.next_row();
     const std::vector<std::string> units = in_row_ ? units_row(csv_) : std::vector<std::string>{};
     if (!units.empty()) in_row_ = csv_.next_row();
@@ -107,7 +108,7 @@ class CsvReader {
     while (csv_.skip_cell()) ++found;
     const bool ragged = found != width && !(may_lack_last_ && (found == width + 1 || found + 1 == width));
     if (csv_.row_ended_by_file() && (fault || ragged || last_is_empty)) {
-      log_.note(LogNote::Kind::left_out,
+      log_.note(Note::Kind::left_out,
                 fmt::format("{}:{}: dropped the last line: it is cut short and has no line end", path_, csv_.line()));
       return false;
     }

@@ -13,6 +13,7 @@
 #include "base/sha256.h"
 #include "servodx/error.h"
 #include "servodx/log.h"
+#include "servodx/note.h"
 #include "servodx/rig.h"
 #include "signals/log_columns.h"
 #include "signals/log_formats.h"
@@ -144,7 +145,7 @@ Log read_mat_log(const std::string& path, const RigFile& rig, const ReadOptions&
   log.require_signals();
   log.append_columns({values.begin(), values.end()});
   if (!child.filters_calls())
-    log.note(LogNote::Kind::implausible,
+    log.note(Note::Kind::unguarded,
              "the MAT library read this file without a filter of system calls, which this system refuses: its memory, "
              "time and open files were limited; read files that you do not trust elsewhere");
   return log.finish(child.sha256());

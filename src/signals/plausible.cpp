@@ -10,6 +10,7 @@
 
 #include "base/median.h"
 #include "base/units.h"
+#include "servodx/note.h"
 #include "servodx/rig.h"
 #include "signals/constants.h"
 #include "signals/usual_step.h"
@@ -33,7 +34,7 @@ class Watch {
         drive_range_(sweeps[index(drive_)].high - sweeps[index(drive_)].low) {}
 
   // Of the log as a whole.
-  std::vector<LogNote> notes() {
+  std::vector<Note> notes() {
     clock();
     gaps();
     excitation();
@@ -42,7 +43,7 @@ class Watch {
   }
 
   // Of one signal.
-  std::vector<LogNote> notes(const SignalInfo& signal) {
+  std::vector<Note> notes(const SignalInfo& signal) {
     if (signal.signal == Signal::time || !log_.has(signal.signal)) return {};
     bounds(signal);
     if (signal.signal == Signal::piston_position) use_of_stroke(signal);
@@ -69,9 +70,7 @@ class Watch {
     }
   }
 
-  void add(std::string text, LogNote::Kind kind = LogNote::Kind::implausible) {
-    notes_.push_back({kind, std::move(text)});
-  }
+  void add(std::string text, Note::Kind kind = Note::Kind::implausible) { notes_.push_back({kind, std::move(text)}); }
 
   template <class... Args>
   void note(const SignalInfo& signal, fmt::format_string<Args...> text, Args&&... args) {
@@ -127,7 +126,7 @@ class Watch {
     for (std::size_t i = 1; i < t.size(); ++i) count += t[i] - t[i - 1] > gap_over_step * usual;
     add(fmt::format("{}: {} gap{} in time, the longest {:.4g} s at a usual step of {:.4g} s", log_.path, count,
                     count == 1 ? "" : "s", longest, usual),
-        LogNote::Kind::gaps);
+        Note::Kind::gaps);
   }
 
   void excitation() {
@@ -248,18 +247,17 @@ class Watch {
   const std::array<Sweep, n_signals>& sweeps_;
   const Signal drive_;
   const double drive_range_;
-  std::vector<LogNote> notes_;
+  std::vector<Note> notes_;
 };
 
 }  // namespace
 
-std::vector<LogNote> implausible_values(const Log& log, const RigFile& rig,
-                                        const std::array<Sweep, n_signals>& sweeps) {
-  std::array<std::vector<LogNote>, n_signals> found;
+std::vector<Note> implausible_values(const Log& log, const RigFile& rig, const std::array<Sweep, n_signals>& sweeps) {
+  std::array<std::vector<Note>, n_signals> found;
   const Watch watch(log, rig, sweeps);
 #pragma omp parallel for schedule(dynamic, 1)
   for (int s = 0; s < n_signals; ++s) found[s] = Watch(watch).notes(signal_list[s]);
-  std::vector<LogNote> notes = Watch(watch).notes();
+  std::vector<Note> notes = Watch(watch).notes();
   for (auto& each : found) std::move(each.begin(), each.end(), std::back_inserter(notes));
   return notes;
 }

@@ -4,6 +4,7 @@
 #include <array>
 #include <vector>
 
+#include "servodx/note.h"
 #include "servodx/rig.h"
 #include "signals/log.h"
 #include "signals/sweep.h"
@@ -11,6 +12,6 @@
 namespace servodx {
 
 // `sweeps`: of the log's signals, in the order of signal_list.
-std::vector<LogNote> implausible_values(const Log& log, const RigFile& rig, const std::array<Sweep, n_signals>& sweeps);
+std::vector<Note> implausible_values(const Log& log, const RigFile& rig, const std::array<Sweep, n_signals>& sweeps);
 
 }  // namespace servodx

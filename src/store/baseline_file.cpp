@@ -19,6 +19,7 @@
 #include "faults/registry.h"
 #include "servodx/error.h"
 #include "servodx/log.h"
+#include "servodx/note.h"
 #include "store/baseline_keys.h"
 
 namespace servodx::store {
@@ -159,8 +160,8 @@ BaselineFile read_baseline(const std::string& path) {
     throw key_error({path, 0, "command"}, "is the result of '" + command + "', not of 'baseline'",
                     "name the file that 'servodx baseline -o' wrote");
 
-  std::vector<std::string> notes;
-  if (auto notice = schema_notice(file, path)) notes.push_back(std::move(*notice));
+  std::vector<Note> notes;
+  if (auto notice = schema_notice(file, path)) notes.push_back({Note::Kind::earlier_version, std::move(*notice)});
 
   constexpr double any = HUGE_VAL;
   DetectionBaseline b;

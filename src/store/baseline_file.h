@@ -5,13 +5,14 @@
 
 #include "diagnose/baseline.h"
 #include "diagnose/diagnose.h"
+#include "servodx/note.h"
 
 namespace servodx::store {
 
 struct BaselineFile {
   DetectionBaseline baseline;
   std::string sha256;
-  std::vector<std::string> notes;
+  std::vector<Note> notes;
   std::string rig_file;     // that it was made with; empty: none
   bool has_causes = false;  // says what healthy logs show of each cause
 };

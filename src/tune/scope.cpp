@@ -12,6 +12,7 @@
 #include "fit/thin.h"
 #include "parameters/list.h"
 #include "servodx/log.h"
+#include "servodx/note.h"
 #include "servodx/tune.h"
 
 namespace servodx {
@@ -35,8 +36,9 @@ void take_priors(std::vector<FreeValue>& shared, const std::map<std::string, dou
 void say_oil(TuneScope& scope) {
   if (std::any_of(scope.data.begin(), scope.data.end(), [](const LogData& d) { return d.scenario.oil_known; })) return;
   scope.notes.push_back(
-      "no log holds the oil's temperature: clearances and frictions hold for an oil as thick as these logs' on the "
-      "average, taken as at 40 degC; the rig file's oil_temperature says what it was");
+      {Note::Kind::oil,
+       "no log holds the oil's temperature: clearances and frictions hold for an oil as thick as these logs' on the "
+       "average, taken as at 40 degC; the rig file's oil_temperature says what it was"});
 }
 
 bool hold_spool(const LogData& log) {
@@ -54,15 +56,16 @@ void keep_width_without_spool(TuneScope& scope) {
     if (f.at != row::port_width) continue;
     f.prior_sd = tolerance / std::log(f.upper / f.lower);
     scope.notes.push_back(
-        "no log holds the spool's position, so the logs tell only the product of its travel and the ports' width: "
-        "the width is kept near the data sheet's; '--prior port_width=SD' sets how near");
+        {Note::Kind::no_spool,
+         "no log holds the spool's position, so the logs tell only the product of its travel and the ports' width: "
+         "the width is kept near the data sheet's; '--prior port_width=SD' sets how near"});
   }
 }
 
 void take_logs(TuneScope& scope, const std::vector<Log>& logs, const RigFile& rig, const TuneOptions& options) {
   for (const Log& log : logs) {
     scope.data.push_back(prepare_to_fit(log, rig, options.moving_average));
-    const std::vector<std::string>& notes = scope.data.back().notes;
+    const std::vector<Note>& notes = scope.data.back().notes;
     scope.notes.insert(scope.notes.end(), notes.begin() + static_cast<long>(log.notes.size()), notes.end());
   }
   scope.simulate.threads = options.threads;

@@ -9,6 +9,7 @@
 #include "fit/problem.h"
 #include "parameters/table.h"
 #include "servodx/log.h"
+#include "servodx/note.h"
 #include "servodx/rig.h"
 #include "servodx/tune.h"
 #include "simulate/scenario.h"
@@ -25,7 +26,7 @@ struct TuneScope {
   std::vector<FreeValue> shared, nuisances;
   SimulateOptions simulate;
   bool on_stand = false;
-  std::vector<std::string> notes;
+  std::vector<Note> notes;
 
   std::vector<const LogData*> logs() const;
   std::vector<FreeValue> all() const;  // shared first

@@ -15,6 +15,7 @@
 #include "fit/uncertainty.h"
 #include "parameters/coordinate.h"
 #include "parameters/table.h"
+#include "servodx/note.h"
 #include "servodx/tune.h"
 #include "tune/constants.h"
 #include "tune/kept.h"
@@ -56,11 +57,12 @@ void take_estimate(ParameterResult& p, Row& row, const Known& known) {
   row.source = "tuned; before: " + row.source;
 }
 
-std::string profile_note(const ParameterResult& p, const ProfileInterval& interval) {
-  return fmt::format("profile of {}: 95 % from {:.4g}{} to {:.4g}{} {}; by curvature {:.4g} to {:.4g}", p.name,
-                     p.profile_lower, interval.lower_open ? " (its bound)" : "", p.profile_upper,
-                     interval.upper_open ? " (its bound)" : "", p.unit, p.estimate - 1.96 * p.std_error,
-                     p.estimate + 1.96 * p.std_error);
+Note profile_note(const ParameterResult& p, const ProfileInterval& interval) {
+  return {Note::Kind::profile,
+          fmt::format("profile of {}: 95 % from {:.4g}{} to {:.4g}{} {}; by curvature {:.4g} to {:.4g}", p.name,
+                      p.profile_lower, interval.lower_open ? " (its bound)" : "", p.profile_upper,
+                      interval.upper_open ? " (its bound)" : "", p.unit, p.estimate - 1.96 * p.std_error,
+                      p.estimate + 1.96 * p.std_error)};
 }
 
 struct KeptProfile {

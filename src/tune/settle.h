@@ -6,6 +6,7 @@
 #include "optimise/box_least_squares.h"
 #include "optimise/problem.h"
 #include "parameters/table.h"
+#include "servodx/note.h"
 #include "servodx/tune.h"
 #include "tune/scope.h"
 #include "tune/screen.h"
@@ -18,7 +19,7 @@ struct Settled {
   Point point;  // of the same or a lower cost than the end of the search
   Table table;  // with estimates and their errors
   std::vector<ParameterResult> parameters;
-  std::vector<std::string> notes;  // of profiles that were asked for
+  std::vector<Note> notes;  // of profiles that were asked for
 };
 // `end`: of the last fit, its residual weighed by the error model that was learnt there.
 Settled settle(const TuneScope& scope, const std::vector<ScreenedRow>& screened, const FitProblem& problem,

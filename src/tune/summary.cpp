@@ -15,6 +15,7 @@
 #include "optimise/problem.h"
 #include "parameters/list.h"
 #include "parameters/table.h"
+#include "servodx/note.h"
 #include "servodx/tune.h"
 #include "simulate/scenario.h"
 #include "tune/constants.h"
@@ -148,17 +149,20 @@ void take_medians(Table& table, const std::vector<LogResult>& logs) {
   air.nominal = std::clamp(median(airs), air.lower, air.upper);
 }
 
-std::vector<std::string> notes_of_logs(const std::vector<LogResult>& logs, const TuneScope& scope, const RigFile& rig) {
-  std::vector<std::string> notes;
-  notes.push_back("command between samples, 0 held to 1 in a line" +
-                  std::string(rig.command_hold ? ", from the rig file: " : ", estimated log by log: ") +
-                  by_log(
-                      logs, [](std::size_t) { return true; }, [](const LogResult& l) { return l.command_slope; }));
+std::vector<Note> notes_of_logs(const std::vector<LogResult>& logs, const TuneScope& scope, const RigFile& rig) {
+  std::vector<Note> notes;
+  notes.push_back(
+      {Note::Kind::command_slope,
+       "command between samples, 0 held to 1 in a line" +
+           std::string(rig.command_hold ? ", from the rig file: " : ", estimated log by log: ") +
+           by_log(
+               logs, [](std::size_t) { return true; }, [](const LogResult& l) { return l.command_slope; })});
   const std::string viscosities = by_log(
       logs, [&](std::size_t l) { return !scope.data[l].scenario.oil_known; },
       [](const LogResult& l) { return l.candidate[effect_row<ViscosityChange>(0)]; });
   if (!viscosities.empty())
-    notes.push_back("viscosity over that at 40 degC, where no temperature was logged: " + viscosities);
+    notes.push_back(
+        {Note::Kind::oil, "viscosity over that at 40 degC, where no temperature was logged: " + viscosities});
   return notes;
 }
 

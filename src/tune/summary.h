@@ -8,6 +8,7 @@
 #include "optimise/problem.h"
 #include "parameters/table.h"
 #include "servodx/log.h"
+#include "servodx/note.h"
 #include "servodx/rig.h"
 #include "servodx/tune.h"
 #include "simulate/scenario.h"
@@ -32,6 +33,6 @@ std::vector<Unfollowed> unfollowed_channels(const std::vector<ChannelResult>& po
 // Nulls and air belong to the logs; the table keeps their medians.
 void take_medians(Table& table, const std::vector<LogResult>& logs);
 // How the command ran between samples, and the oil where no temperature was logged.
-std::vector<std::string> notes_of_logs(const std::vector<LogResult>& logs, const TuneScope& scope, const RigFile& rig);
+std::vector<Note> notes_of_logs(const std::vector<LogResult>& logs, const TuneScope& scope, const RigFile& rig);
 
 }  // namespace servodx

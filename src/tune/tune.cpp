@@ -20,6 +20,7 @@
 #include "optimise/differences.h"
 #include "optimise/local.h"
 #include "optimise/problem.h"
+#include "servodx/note.h"
 #include "servodx/rig.h"
 #include "simulate/scenario.h"
 #include "tune/constants.h"
@@ -80,16 +81,17 @@ TunedState state_of(const std::vector<Log>& logs, const TuneResult& result, cons
   return state;
 }
 
-void append(std::vector<std::string>& notes, const std::vector<std::string>& more) {
+void append(std::vector<Note>& notes, const std::vector<Note>& more) {
   notes.insert(notes.end(), more.begin(), more.end());
 }
 
-std::string note_of_distrust(const TuneWatch& watch) {
+Note note_of_distrust(const TuneWatch& watch) {
   const StageResult& s = watch.stages.back();
-  return fmt::format(
-      "derivatives were not to be trusted ({}): BOBYQA went on without them, cost {:.4g} to {:.4g}",
-      watch.distrust == Distrust::missing_columns ? "some could not be had" : "no step kept what they promised",
-      s.before, s.after);
+  return {Note::Kind::derivatives,
+          fmt::format(
+              "derivatives were not to be trusted ({}): BOBYQA went on without them, cost {:.4g} to {:.4g}",
+              watch.distrust == Distrust::missing_columns ? "some could not be had" : "no step kept what they promised",
+              s.before, s.after)};
 }
 
 void require_known(const std::vector<std::string>& effects) {
@@ -177,7 +179,7 @@ TuneResult tune_table(const std::vector<Log>& logs, const Table& nominal, const 
   append(out.notes, scope.notes);
   append(out.notes, settled.notes);
   out.stop = end.reason, out.still_promised = end.promised_gain;
-  out.notes.push_back("local stage: " + end.stopped);
+  out.notes.push_back({Note::Kind::search_end, "local stage: " + end.stopped});
   if (watch.distrust != Distrust::none) out.notes.push_back(note_of_distrust(watch));
   append(out.notes, notes_of_logs(out.logs, scope, rig));
   out.convergence = watch.convergence;

@@ -12,6 +12,7 @@
 #include "optimise/box_least_squares.h"
 #include "optimise/ceres_refinement.h"
 #include "parameters/table.h"
+#include "servodx/note.h"
 #include "servodx/rig.h"
 #include "servodx/tune.h"
 #include "signals/log.h"
@@ -91,7 +92,7 @@ struct TuneResult {
   std::vector<StageResult> stages;
   std::vector<EarnedEffect> effects;  // in the order of trial
   CeresSummary ceres;                 // of the last fit
-  std::vector<std::string> notes;
+  std::vector<Note> notes;
   long simulations = 0, failed_simulations = 0;
   bool interrupted = false;
 };

@@ -11,6 +11,7 @@
 #include "base/random.h"
 #include "curves/sweep.h"
 #include "servodx/log.h"
+#include "servodx/note.h"
 #include "servodx/rig.h"
 
 namespace servodx::curves {
@@ -109,8 +110,9 @@ TEST(Curves, LimitsPassAndFailOnTheirSide) {
   rig.limits["pressure_gain"].min = 0.3;  // this log cannot say
   Sheet sheet = read_curves(log, rig);
   EXPECT_EQ(sheet.verdict, "pass");
-  EXPECT_TRUE(std::any_of(sheet.notes.begin(), sheet.notes.end(),
-                          [](const std::string& n) { return n.find("pressure_gain") != std::string::npos; }));
+  EXPECT_TRUE(std::any_of(sheet.notes.begin(), sheet.notes.end(), [](const Note& n) {
+    return n.kind == Note::Kind::unjudged_limit && n.text.find("pressure_gain") != std::string::npos;
+  }));
   rig.limits["hysteresis"].max = 0.02;
   sheet = read_curves(log, rig);
   EXPECT_EQ(sheet.verdict, "fail");

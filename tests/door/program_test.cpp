@@ -219,9 +219,15 @@ TEST_F(Door, ABaselineBoundToTheBytesOfItsTableIsReadWithANote) {
   const Baseline baseline = read_baseline("old.json");
   const auto note = require_same_table(baseline, read_tuned("tuned.csv"));
   ASSERT_TRUE(note);
-  EXPECT_NE(note->find("old.json: a baseline of an earlier version"), std::string::npos) << *note;
+  EXPECT_EQ(note->kind, Note::Kind::earlier_version);
+  EXPECT_NE(note->text.find("old.json: a baseline of an earlier version"), std::string::npos) << note->text;
   const Verdict verdict = diagnose(read_log("s.csv", rig()), read_tuned("tuned.csv"), rig(), baseline);
   EXPECT_EQ(std::count(verdict.notes.begin(), verdict.notes.end(), *note), 1);
+  old.erase("schema");
+  desk->write("older.json", old.dump());
+  const std::vector<Note> of_file = read_baseline("older.json").notes;
+  ASSERT_EQ(of_file.size(), baseline.notes.size() + 1);
+  EXPECT_EQ(of_file.front().kind, Note::Kind::earlier_version);
   const Ended ended = desk->run("diagnose s.csv --rig rig.toml --params tuned.csv --baseline old.json");
   EXPECT_NE((ended.out + ended.err).find("bound to the bytes of the table's file"), std::string::npos) << ended.out;
 

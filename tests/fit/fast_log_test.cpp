@@ -23,6 +23,7 @@
 #include "optimise/problem.h"
 #include "parameters/list.h"
 #include "servodx/log.h"
+#include "servodx/note.h"
 #include "servodx/rig.h"
 #include "servodx/table.h"
 #include "shipped_data.h"
@@ -129,6 +130,7 @@ TEST(FastLog, PointsAreAMillisecondApartAtAnyRate) {
   for (const double rate : {6000.0, 10'000.0, 20'000.0, 50'000.0}) {
     const LogData taken = prepare_to_fit(commanded(rate, 0.3), shipped_rig());
     ASSERT_TRUE(taken.scenario.fast) << rate;
+    EXPECT_EQ(taken.notes.back().kind, Note::Kind::resampled) << rate;
     const std::vector<double>& t = taken.scenario.time;
     EXPECT_NEAR(static_cast<double>(t.size()), 301, 2) << rate;
     for (std::size_t k = 1; k < t.size(); ++k) EXPECT_LE(t[k] - t[k - 1], 1e-3 + 1e-8);

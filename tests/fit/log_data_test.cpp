@@ -9,10 +9,12 @@
 #include <vector>
 
 #include "base/random.h"
+#include "fit/error_model.h"
 #include "fit/problem.h"
 #include "fit/support.h"
 #include "model/state.h"
 #include "servodx/log.h"
+#include "servodx/note.h"
 #include "servodx/rig.h"
 #include "servodx/table.h"
 #include "shipped_data.h"
@@ -222,6 +224,25 @@ TEST(LogData, OilIsAsWarmAsTheLogSaysElseAsTheRigFileSays) {
   EXPECT_LT(steep.dynamic_viscosity, hot.dynamic_viscosity);
   rig.oil_temperature.reset();
   EXPECT_FALSE(prepare(log, rig).scenario.oil_known);
+}
+
+TEST(LogData, WhatIsAssumedOrLeftOutIsNotedByItsKind) {
+  const auto kinds_of = [](const std::vector<Note>& notes) {
+    std::vector<Note::Kind> kinds;
+    for (const Note& note : notes) kinds.push_back(note.kind);
+    return kinds;
+  };
+  using Kinds = std::vector<Note::Kind>;
+  Log log = shipped_log("healthy/h12_mixed");
+  log.notes = {{Note::Kind::gaps, "of the reader"}};
+  EXPECT_EQ(kinds_of(prepare(log, shipped_rig()).notes), Kinds{Note::Kind::gaps}) << "all is logged";
+  log.channels[index(Signal::oil_temperature)] = {};
+  log.channels[index(Signal::load_pressure)].value = log[Signal::pressure_a];
+  LogData data = prepare(log, shipped_rig());
+  EXPECT_EQ(kinds_of(data.notes), (Kinds{Note::Kind::gaps, Note::Kind::oil, Note::Kind::redundant_signal}));
+  const std::size_t channels = data.channels.size();
+  EXPECT_EQ(kinds_of(leave_out_unknown_channels(data, ErrorModel{})), Kinds(channels, Note::Kind::unlearnt_signal));
+  EXPECT_TRUE(data.channels.empty());
 }
 
 }  // namespace

@@ -11,6 +11,7 @@
 #include "fit/support.h"
 #include "parameters/list.h"
 #include "servodx/log.h"
+#include "servodx/note.h"
 #include "servodx/rig.h"
 #include "shipped_data.h"
 #include "simulate/scenario.h"
@@ -55,8 +56,8 @@ TEST(TestStand, BlockedPortsReachTheSupply) {
   EXPECT_NEAR(largest(of(t, Signal::load_pressure)), supply, 0.02 * supply);
   // Positive command raises A.
   EXPECT_GT(of(t, Signal::load_pressure)[quarter], 0.9 * supply);
-  // The leakage peaks about null. Just off it turbulent edges pass a little more: the covered one has the whole drop before
-  // its land resists.
+  // The leakage peaks about null. Just off it turbulent edges pass a little more: the covered one has the whole drop
+  // before its land resists.
   const auto& leakage = of(t, Signal::leakage_flow);
   const auto peak = static_cast<std::size_t>(std::max_element(leakage.begin(), leakage.end()) - leakage.begin());
   EXPECT_LT(std::fabs(of(t, Signal::spool_position)[peak]), 0.01 * v[row::spool_stop]);
@@ -212,8 +213,13 @@ TEST(TestStand, FreePortsTakeTheRatedDropWhereNoSupplyIsLogged) {
   rig.facts["valve.rated_pressure_drop"] = 7e6;
   rig.facts["supply.return_pressure"] = 1e5;
   const LogData data = prepare(bench_log({Signal::control_flow}), rig);
+  ASSERT_EQ(data.notes.size(), 1u);
+  EXPECT_EQ(data.notes.front().kind, Note::Kind::no_supply);
   EXPECT_DOUBLE_EQ(data.scenario.supply_pressure.front() - data.scenario.return_pressure.front(), 7e6);
-  EXPECT_TRUE(prepare(bench_log({Signal::leakage_flow}), rig).scenario.supply_pressure.empty());
+  const LogData blocked = prepare(bench_log({Signal::leakage_flow}), rig);
+  EXPECT_TRUE(blocked.scenario.supply_pressure.empty());
+  ASSERT_EQ(blocked.notes.size(), 1u);
+  EXPECT_EQ(blocked.notes.front().kind, Note::Kind::test_stand);
 }
 
 }  // namespace

@@ -13,6 +13,7 @@
 #include "fit/support.h"
 #include "parameters/list.h"
 #include "servodx/log.h"
+#include "servodx/note.h"
 #include "servodx/rig.h"
 #include "shipped_data.h"
 #include "simulate/scenario.h"
@@ -61,6 +62,8 @@ TEST(Thin, MeansAreOfWhatIsThereAndGapsStayGaps) {
   for (std::size_t k = 5000; k < log.time.size(); ++k) log.time[k] += 3.0;
   const Log thin = thinned(log, rig_of_stand());
   ASSERT_LT(thin.samples(), log.samples() / 10);
+  ASSERT_EQ(thin.notes.size(), log.notes.size() + 1);
+  EXPECT_EQ(thin.notes.back().kind, Note::Kind::resampled);
   for (std::size_t k = 0; k < thin.samples(); ++k) {
     const double t = thin.time[k], at = t > 51 ? t - 3.0 : t;
     EXPECT_NEAR(thin[Signal::leakage_flow][k], 1e-5 + 1e-6 * std::sin(0.1 * at), 2e-9) << t;

@@ -16,6 +16,7 @@
 #include "prognose/trend_options.h"
 #include "prognose/trend_state.h"
 #include "prognose/valve_history.h"
+#include "servodx/note.h"
 
 namespace servodx {
 namespace {
@@ -123,7 +124,8 @@ TEST(Trend, ChecksOnAnotherTunedTableAreSetApartAloud) {
   const ValveTrend t = trend(h, {});
   EXPECT_EQ(find(t, "fidelity").points.size(), h.recordings.size() - 30);
   ASSERT_FALSE(t.notes.empty());
-  EXPECT_NE(t.notes.front().find("30 checks"), std::string::npos);
+  EXPECT_EQ(t.notes.front().kind, Note::Kind::other_table);
+  EXPECT_NE(t.notes.front().text.find("30 checks"), std::string::npos);
 }
 
 TEST(Trend, AUsersFailureLevelCountsAndALowerOneToo) {
@@ -210,7 +212,9 @@ TEST(Trend, AFrictionsLevelAsACurrentKnowsNeitherBoreNorMotor) {
     ASSERT_TRUE(t.remaining);
     EXPECT_NEAR(t.remaining->median, 42, 4);
     h.tuned.clear();
-    EXPECT_EQ(trend(h, options).notes.size(), 1U);  // nothing says what friction that is
+    const std::vector<Note> notes = trend(h, options).notes;
+    ASSERT_EQ(notes.size(), 1U);
+    EXPECT_EQ(notes.front().kind, Note::Kind::failure_level) << "nothing says what friction that is";
   }
 }
 
@@ -372,7 +376,8 @@ TEST(Trend, ACheckThatScattersBeyondFailureInHealthSaysThatItIsBlind) {
   EXPECT_EQ(c.state, TrendState::blind);
   EXPECT_FALSE(c.threshold.upper);
   ASSERT_EQ(t.notes.size(), 1u);
-  EXPECT_NE(t.notes.front().find("only a trend can warn"), std::string::npos);
+  EXPECT_EQ(t.notes.front().kind, Note::Kind::blind);
+  EXPECT_NE(t.notes.front().text.find("only a trend can warn"), std::string::npos);
 }
 
 TEST(Trend, WhatIsFailedByOneLevelIsFailedByEveryNearerOne) {
@@ -390,7 +395,8 @@ TEST(Trend, ALevelOnTheSideOfHealthIsTold) {
                                  "fidelity", [](double) { return 1.2; }, 0.01, 0.01),
                              o);
   ASSERT_FALSE(t.notes.empty());
-  EXPECT_NE(t.notes.front().find("beyond its failure level already"), std::string::npos);
+  EXPECT_EQ(t.notes.front().kind, Note::Kind::failure_level);
+  EXPECT_NE(t.notes.front().text.find("beyond its failure level already"), std::string::npos);
 }
 
 TEST(Trend, ReadingsThatAreNoneAreNotHealth) {
@@ -400,7 +406,8 @@ TEST(Trend, ReadingsThatAreNoneAreNotHealth) {
   const ValveTrend t = trend(h, {});
   EXPECT_EQ(t.state, TrendState::unknown);
   ASSERT_EQ(t.notes.size(), 1u);
-  EXPECT_NE(t.notes.front().find("fidelity"), std::string::npos);
+  EXPECT_EQ(t.notes.front().kind, Note::Kind::implausible);
+  EXPECT_NE(t.notes.front().text.find("fidelity"), std::string::npos);
 }
 
 TEST(Trend, OneOutlyingCheckRaisesNoAlert) {

@@ -1,5 +1,5 @@
 """The Python module is the library: the program's bytes and verdicts, errors with their place, Ctrl-C."""
-import _thread, json, os, pathlib, signal, subprocess, sys, tempfile, threading, time, unittest
+import _thread, html, json, os, pathlib, signal, subprocess, sys, tempfile, threading, time, unittest
 
 from common import *
 
@@ -42,6 +42,20 @@ class Module(unittest.TestCase):
         explained = tuned().explain([suspect()], baseline())
         self.assertIn("nothing", explained.probabilities)
         self.assertIsInstance(explained.kind, sx.Explanation.Kind)
+
+    def test_a_note_has_a_kind_and_the_programs_words(self):
+        time = [k * 1e-3 for k in range(30)] + [0.05]
+        log = sx.make_log("bench", {"time [s]": time, "command [mA]": [k % 7 for k in range(31)],
+                                    "spool_position [mm]": [0.01 * (k % 11) for k in range(31)]})
+        note, = log.notes
+        self.assertEqual(note.kind, sx.Note.Kind.gaps)
+        self.assertIn("bench: 1 gap in time", note.text)
+        self.assertEqual(str(note), note.text)
+        self.assertIn(note, log.notes)
+        plan = tuned().plan(faults=["clogged_filter"], seconds=0.3, rounds=0)
+        self.assertLessEqual({sx.Note.Kind.no_log, sx.Note.Kind.no_baseline}, {note.kind for note in plan.notes})
+        self.assertIn(str(plan.notes[0]), html.unescape(plan._repr_html_()))
+        self.assertEqual([str(note) for note in verdict().notes], json.loads(verdict().json)["notes"])
 
     def test_a_simulation_has_the_logs_samples(self):
         log = excerpt(TUNED_ON, 100)

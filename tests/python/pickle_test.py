@@ -59,7 +59,9 @@ class Pickles(unittest.TestCase):
                       sx.simulate(suspect(), params=params(), rig=rig()), tuned().replay(suspect())):
             with self.subTest(type(thing).__name__):
                 self.same(thing)
-        for part in verdict().faults + list(verdict().detectable.values()):
+        plan = tuned().plan(faults=["clogged_filter"], seconds=0.3, rounds=0)
+        self.assertTrue(plan.notes)
+        for part in verdict().faults + list(verdict().detectable.values()) + plan.notes:
             self.same(part)
 
     def test_the_rest_of_a_log_and_a_rig_is_kept_too(self):

@@ -52,6 +52,7 @@
 #include "servodx/actions.h"
 #include "servodx/error.h"
 #include "servodx/log.h"
+#include "servodx/note.h"
 #include "servodx/table.h"
 #include "servodx/tune.h"
 #include "store/baseline_file.h"
@@ -333,7 +334,8 @@ TEST(TrendPage, TheLastReadingStandsBesideTheLaw) {
 // Few checks are no sign of health, and a legend names nothing that is not drawn.
 TEST(TrendPage, FewChecksSayNothingOfWear) {
   ValveTrend v;
-  v.valve = "V7", v.state = TrendState::unknown, v.checks = 2, v.notes = {"fewer than 6 checks: no word on a trend"};
+  v.valve = "V7", v.state = TrendState::unknown, v.checks = 2;
+  v.notes = {{Note::Kind::few_checks, "fewer than 6 checks: no word on a trend"}};
   CheckTrend t;
   t.name = "fidelity", t.unit = "1";
   t.points.resize(2);

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cmath>
@@ -14,6 +15,7 @@
 #include "base/sha256.h"
 #include "base/units.h"
 #include "servodx/error.h"
+#include "servodx/note.h"
 #include "servodx/rig.h"
 #include "signals/log_columns.h"
 #include "temporary_folder.h"
@@ -70,7 +72,7 @@ bool same_bits(const std::vector<double>& a, const std::vector<double>& b) {
 }
 
 bool mentions(const Log& log, const std::string& words) {
-  for (const LogNote& note : log.notes)
+  for (const Note& note : log.notes)
     if (note.text.find(words) != std::string::npos) return true;
   return false;
 }
@@ -456,6 +458,23 @@ TEST(Log, ImplausibleValuesAreReadAndWarnedOf) {
   EXPECT_FALSE(mentions(read(piston, rig_with("[actuator]\nstroke = \"200 mm\"\n")), "of the stroke"));
   EXPECT_TRUE(mentions(read(header + rows(30) + "0.05,1,0.1\n"),
                        "1 gap in time, the longest 0.021 s at a usual step of 0.001 s"));
+}
+
+TEST(Log, WhatTheReaderNotesHasItsKind) {
+  const auto notes = [](const std::string& text, Note::Kind kind, const RigFile& rig = {}) {
+    const Log log = read(text, rig);
+    return std::any_of(log.notes.begin(), log.notes.end(), [&](const Note& note) { return note.kind == kind; });
+  };
+  const std::string plain = header + rows(30);
+  for (int k = 0; k < n_note_kinds; ++k) EXPECT_FALSE(notes(plain, static_cast<Note::Kind>(k))) << k;
+  EXPECT_TRUE(notes(plain + "0.03,1,", Note::Kind::left_out));
+  EXPECT_TRUE(notes(plain + "0.05,1,0.1\n", Note::Kind::gaps));
+  EXPECT_TRUE(notes(noisy(1000, [](int, double) { return 0.1; }), Note::Kind::implausible));
+  const std::string moody = "time [s],command [mA],spool_position [mm],mood\n" +
+                            rows(30, [](int, std::string row) { return row.insert(row.size() - 1, ",9"); });
+  EXPECT_TRUE(notes(moody, Note::Kind::ignored_columns));
+  const RigFile rig = rig_with("[columns]\nPs = { signal = \"supply_pressure\", unit = \"bar\" }\n");
+  EXPECT_TRUE(notes(plain, Note::Kind::unmapped_column, rig));
 }
 
 // Logs of a foreign rig; not part of this project.

@@ -9,6 +9,7 @@
 
 #include "base/sha256.h"
 #include "servodx/error.h"
+#include "servodx/note.h"
 #include "servodx/rig.h"
 #include "signals/log.h"
 #include "temporary_folder.h"
@@ -67,6 +68,7 @@ TEST(Mat, VariablesArriveInSiAtEveryLevelOfTheFormat) {
     EXPECT_DOUBLE_EQ(log[Signal::spool_position][1], 0.05 * 1e-4);
     EXPECT_EQ(log.sha256, sha256_of_file(path));
     ASSERT_FALSE(log.notes.empty());
+    EXPECT_EQ(log.notes[0].kind, Note::Kind::ignored_columns);
     EXPECT_NE(log.notes[0].text.find("ignored 1 further variable: 'gain_setting'"), std::string::npos)
         << log.notes[0].text;
   }

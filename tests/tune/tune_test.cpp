@@ -29,6 +29,7 @@
 #include "parameters/table.h"
 #include "recovery/twins.h"
 #include "servodx/log.h"
+#include "servodx/note.h"
 #include "servodx/rig.h"
 #include "servodx/tune.h"
 #include "shipped_data.h"
@@ -87,8 +88,9 @@ TEST(Tune, WithoutATemperatureAnywhereEachLogHasAViscosityOfItsOwn) {
   for (const FreeValue& f : scope.nuisances)
     if (f.name == ViscosityChange::parameters[0].name) whose.push_back(f.log);
   EXPECT_EQ(whose, (std::vector<int>{0, 1}));
-  EXPECT_TRUE(std::any_of(scope.notes.begin(), scope.notes.end(),
-                          [](const std::string& n) { return n.find("oil's temperature") != std::string::npos; }));
+  EXPECT_TRUE(std::any_of(scope.notes.begin(), scope.notes.end(), [](const Note& n) {
+    return n.kind == Note::Kind::oil && n.text.find("oil's temperature") != std::string::npos;
+  }));
 }
 
 TEST(Tune, WithoutTheSpoolsPositionTheWidthOfThePortsStaysNearTheSheets) {

@@ -7,6 +7,7 @@
 #include "fit/error_model.h"
 #include "recovery/twins.h"
 #include "servodx/log.h"
+#include "servodx/note.h"
 #include "servodx/table.h"
 #include "servodx/tune.h"
 #include "shipped_data.h"
@@ -148,7 +149,7 @@ TEST(TunedState, KnowsALogByItsContent) {
   Log log = twins::cut(shipped_log("healthy/h08_preflight_cold"), 300);
   TunedState state;
   state.by = {{"h08.csv", "", content_hash(log)}};
-  log.path = "another name", log.sha256 = "other bytes", log.notes = {{LogNote::Kind::gaps, "a notice"}};
+  log.path = "another name", log.sha256 = "other bytes", log.notes = {{Note::Kind::gaps, "a notice"}};
   EXPECT_TRUE(state.is_by(log));
   log.channels[index(Signal::pressure_a)].value[7] += 1;
   EXPECT_FALSE(state.is_by(log));

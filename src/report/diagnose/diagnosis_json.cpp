@@ -18,6 +18,7 @@
 #include "report/diagnose/friction_words.h"
 #include "report/shared/conditions.h"
 #include "servodx/log.h"
+#include "servodx/note.h"
 #include "store/baseline_keys.h"
 
 namespace servodx::report {
@@ -199,7 +200,7 @@ Json to_json(const Diagnosis& d) {
           {"channels", to_json(d.assessment.channels)},
           {"hypotheses", array_of(d.assessment.hypotheses)},
           {"pairs", pairs_json(d)},
-          {"notes", d.assessment.notes}};
+          {"notes", texts_of(d.assessment.notes)}};
 }
 
 Json diagnose_json(const std::vector<Diagnosis>& results) { return {{"results", array_of(results)}}; }

@@ -18,6 +18,7 @@
 #include "report/shared/replay_part.h"
 #include "report/trend/trend_report.h"
 #include "report/trend/trend_words.h"
+#include "servodx/note.h"
 
 namespace servodx::report {
 namespace {
@@ -153,7 +154,7 @@ Verdict verdict_of(const ValveTrend& v, double coverage) {
       verdict.reasons.push_back(
           sentence(name_of_check(t.name, t.cause) + " passed its warning level at " + in_hours(*t.alert_at)));
   if (v.state == TrendState::unknown)
-    for (const std::string& note : v.notes) verdict.reasons.push_back(sentence(note));
+    for (const Note& note : v.notes) verdict.reasons.push_back(sentence(note.text));
   return verdict;
 }
 
