@@ -32,8 +32,8 @@
 #include "report/shared/page_head.h"
 #include "report/shared/plain_page.h"
 #include "servodx/checkpoint.h"
+#include "servodx/instruction_set.h"
 #include "servodx/rig.h"
-#include "simulate/simulate.h"
 #include "store/logo_file.h"
 
 namespace servodx {

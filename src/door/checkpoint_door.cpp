@@ -4,6 +4,7 @@
 
 #include "base/checkpoint.h"
 #include "servodx/checkpoint.h"
+#include "servodx/instruction_set.h"
 #include "simulate/simulate.h"
 
 namespace servodx {

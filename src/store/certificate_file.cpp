@@ -1,7 +1,6 @@
 #include "store/certificate_file.h"
 
 #include <fmt/format.h>
-
 #include <toml++/toml.h>
 
 #include <algorithm>
@@ -17,7 +16,7 @@
 #include "base/toml_text.h"
 #include "base/trouble.h"
 #include "base/units.h"
-#include "curves/curves.h"
+#include "servodx/curves.h"
 #include "servodx/error.h"
 #include "servodx/log.h"
 
@@ -144,8 +143,8 @@ class CertificateReader {
   }
 
   // "0.5 %" of the reading; else a quantity, of which a difference counts: 0.5 degC is 0.5 K.
-  static curves::InstrumentError error_of(Signal signal, const std::string& text, const Place& where) {
-    curves::InstrumentError error{signal, 0, 0};
+  static InstrumentError error_of(Signal signal, const std::string& text, const Place& where) {
+    InstrumentError error{signal, 0, 0};
     if (text.ends_with('%')) {
       error.relative = parse_quantity(text, Dimension::fraction, where).value;
     } else {
@@ -161,8 +160,8 @@ class CertificateReader {
 
 }  // namespace
 
-std::vector<curves::InstrumentError> Certificate::errors() const {
-  std::vector<curves::InstrumentError> all;
+std::vector<InstrumentError> Certificate::errors() const {
+  std::vector<InstrumentError> all;
   for (const Instrument& i : instruments)
     if (i.error) all.push_back(*i.error);
   return all;

@@ -8,9 +8,9 @@
 #include "fit/chart.h"
 #include "fit/fast_log.h"
 #include "fit/free_values.h"
-#include "fit/nominal.h"
 #include "fit/thin.h"
 #include "parameters/list.h"
+#include "servodx/data_sheet.h"
 #include "servodx/log.h"
 #include "servodx/tune.h"
 

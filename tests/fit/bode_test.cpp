@@ -12,6 +12,8 @@
 #include "fit/replay.h"
 #include "fit/sheet.h"
 #include "parameters/table.h"
+#include "servodx/bode.h"
+#include "servodx/data_sheet.h"
 #include "servodx/rig.h"
 #include "shipped_data.h"
 #include "simulate/scenario.h"

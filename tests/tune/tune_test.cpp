@@ -31,6 +31,7 @@
 #include "servodx/log.h"
 #include "servodx/rig.h"
 #include "servodx/tune.h"
+#include "servodx/tuned_by.h"
 #include "shipped_data.h"
 #include "simulate/scenario.h"
 #include "tune/scope.h"

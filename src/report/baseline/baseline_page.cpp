@@ -14,6 +14,7 @@
 #include "report/shared/page.h"
 #include "report/shared/parts.h"
 #include "report/shared/replay_part.h"
+#include "store/baseline_parts.h"
 
 namespace servodx::report {
 
@@ -70,6 +71,10 @@ Page baseline_page(const Header& header, const DetectionBaseline& b, const std::
       add_replay(page, r, {.shown = {}, .onset = {}, .logs = replays.size()});
     }
   return page;
+}
+
+Page baseline_page(const Header& header, const Baseline& baseline, const std::vector<Replay>& replays) {
+  return baseline_page(header, parts_of(baseline).detection, replays);
 }
 
 }  // namespace servodx::report

@@ -7,6 +7,7 @@
 #include "report/shared/certificate_part.h"
 #include "report/shared/json.h"
 #include "report/shared/page.h"
+#include "servodx/data_sheet.h"
 
 namespace servodx::report {
 

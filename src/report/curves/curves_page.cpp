@@ -17,6 +17,7 @@
 #include "report/shared/page.h"
 #include "report/shared/parts.h"
 #include "report/shared/replay_part.h"
+#include "servodx/data_sheet.h"
 #include "servodx/log.h"
 
 namespace servodx::report {

@@ -5,6 +5,7 @@
 #include "fit/sheet.h"
 #include "report/shared/json.h"
 #include "report/shared/page.h"
+#include "servodx/data_sheet.h"
 
 namespace servodx::report {
 

@@ -12,6 +12,7 @@
 #include "report/shared/handy.h"
 #include "report/shared/parts.h"
 #include "report/shared/replay_part.h"
+#include "servodx/bode.h"
 
 namespace servodx::report {
 namespace {

@@ -4,6 +4,7 @@
 
 #include "fit/bode.h"
 #include "report/shared/page.h"
+#include "servodx/bode.h"
 
 namespace servodx::report {
 

@@ -36,6 +36,7 @@
 #include "report/shared/parts.h"
 #include "report/shared/replay_part.h"
 #include "servodx/actions.h"
+#include "store/baseline_parts.h"
 #include "store/certificate_file.h"
 
 namespace servodx::report {
@@ -379,6 +380,14 @@ Page diagnose_page(const Header& header, const std::vector<Diagnosis>& results, 
     add_details(page, results[i], replays, std::max<std::size_t>(1, replays.size()));
   }
   return page;
+}
+
+Page diagnose_page(const Header& header, const std::vector<servodx::Verdict>& verdicts, const Baseline& baseline,
+                   const std::vector<Replay>& replays, const std::vector<std::string>& truths,
+                   const CertificateOf& certificate, const BesideVerdict& beside) {
+  std::vector<Diagnosis> results;
+  for (const servodx::Verdict& v : verdicts) results.push_back(*v.whole);
+  return diagnose_page(header, results, parts_of(baseline).detection, replays, truths, certificate, beside);
 }
 
 }  // namespace servodx::report

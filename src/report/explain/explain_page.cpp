@@ -20,6 +20,7 @@
 #include "report/shared/parts.h"
 #include "report/shared/replay_part.h"
 #include "servodx/log.h"
+#include "servodx/replay.h"
 #include "servodx/tune.h"
 
 namespace servodx::report {

@@ -8,6 +8,7 @@
 #include "report/shared/json.h"
 #include "report/shared/page.h"
 #include "report/shared/text_options.h"
+#include "servodx/replay.h"
 
 namespace servodx::report {
 

@@ -9,6 +9,7 @@
 
 #include "fit/replay.h"
 #include "report/shared/page.h"
+#include "servodx/replay.h"
 
 namespace servodx::report {
 

@@ -3,6 +3,7 @@
 #include "fit/replay.h"
 #include "report/shared/json.h"
 #include "report/shared/page.h"
+#include "servodx/replay.h"
 
 namespace servodx::report {
 

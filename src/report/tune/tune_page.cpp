@@ -16,6 +16,7 @@
 #include "report/shared/parts.h"
 #include "report/shared/replay_part.h"
 #include "report/tune/tune_words.h"
+#include "servodx/replay.h"
 #include "servodx/table.h"
 #include "servodx/tune.h"
 #include "tune/tune.h"

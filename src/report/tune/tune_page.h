@@ -6,6 +6,7 @@
 #include "report/shared/json.h"
 #include "report/shared/page.h"
 #include "report/tune/tune_words.h"
+#include "servodx/replay.h"
 #include "tune/tune.h"
 
 namespace servodx::report {
