@@ -10,12 +10,12 @@
 
 #include "report/shared/json.h"
 #include "report/shared/page.h"
+#include "servodx/certificate.h"
 #include "servodx/log.h"
 #include "servodx/rig.h"
 #include "servodx/table.h"
 #include "servodx/tune.h"
 #include "servodx/watch.h"
-#include "store/certificate_file.h"
 
 namespace CLI {
 class App;
@@ -90,7 +90,7 @@ class Invocation {
   // Where fits of so many samples take long: how long, and what makes it shorter; to standard error.
   void tell_of_long_fits(const std::vector<Log>& logs) const;
   // The sheet beside the result, into the page's head too; nothing where no file is named.
-  std::optional<store::Certificate> certificate(const std::string& path);
+  std::optional<Certificate> certificate(const std::string& path);
   std::string manifest() const;          // where it will stand; empty where no file is written
   Table table(const std::string& path);  // as the file says
   Tuned tuned(const std::string& path);  // refuses one that is not tuned

@@ -38,6 +38,10 @@ std::vector<Replay> replays_of(const std::vector<Verdict>& verdicts, const std::
 // Of a verdict that holds a valve: as tuned, and as the log has it, each at two amplitudes. An unknown state has none.
 std::vector<Bode> bodes_of(const Verdict& verdict, const Tuned& tuned, const Rig& rig);
 
+// The picture that a rig file names for the head of its pages, as a data URI; empty where none is named. Throws
+// InputError where it is no picture.
+std::string logo_of(const Rig& rig);
+
 // The label in LOG.truth.json beside a log of the virtual rig, where it speaks of this log's bytes; else empty.
 std::string truth_beside(const Log& log);
 

@@ -4,6 +4,7 @@
 #include "servodx/actions.h"
 #include "servodx/baseline.h"
 #include "servodx/bode.h"
+#include "servodx/certificate.h"
 #include "servodx/charts.h"
 #include "servodx/check_log.h"
 #include "servodx/checkpoint.h"

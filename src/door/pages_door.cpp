@@ -21,6 +21,7 @@
 #include "servodx/table.h"
 #include "servodx/tune.h"
 #include "store/baseline_parts.h"
+#include "store/logo_file.h"
 #include "store/truth_file.h"
 #include "tune/tune.h"
 
@@ -88,6 +89,8 @@ std::vector<Bode> bodes_of(const Verdict& verdict, const Tuned& tuned, const Rig
           rig);
   return {};
 }
+
+std::string logo_of(const Rig& rig) { return store::read_logo(rig); }
 
 std::string truth_beside(const Log& log) { return store::truth_beside(log.path, log.sha256); }
 

@@ -1,5 +1,3 @@
-#include "store/certificate_file.h"
-
 #include <fmt/format.h>
 #include <toml++/toml.h>
 
@@ -16,11 +14,13 @@
 #include "base/toml_text.h"
 #include "base/trouble.h"
 #include "base/units.h"
+#include "servodx/certificate.h"
 #include "servodx/curves.h"
 #include "servodx/error.h"
 #include "servodx/log.h"
+#include "signals/signal.h"
 
-namespace servodx::store {
+namespace servodx {
 namespace {
 
 bool is_date(const std::string& text) {
@@ -191,4 +191,4 @@ Certificate read_certificate(const std::string& path) {
   }
 }
 
-}  // namespace servodx::store
+}  // namespace servodx

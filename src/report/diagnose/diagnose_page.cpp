@@ -36,8 +36,8 @@
 #include "report/shared/parts.h"
 #include "report/shared/replay_part.h"
 #include "servodx/actions.h"
+#include "servodx/certificate.h"
 #include "store/baseline_parts.h"
-#include "store/certificate_file.h"
 
 namespace servodx::report {
 namespace {
@@ -239,9 +239,9 @@ void add_details(Page& page, const Diagnosis& d, const std::vector<Replay>& repl
 }
 
 // Where the log was recorded, each with the uncertainty of the instrument that the sheet names for it.
-void certify_conditions(std::vector<CertifiedFigure>& figures, const Diagnosis& d, const store::Certificate& sheet) {
+void certify_conditions(std::vector<CertifiedFigure>& figures, const Diagnosis& d, const Certificate& sheet) {
   for (const ConditionFigure& c : condition_figures(d.conditions)) {
-    const store::Instrument* instrument = c.signal ? sheet.of(*c.signal) : nullptr;
+    const Instrument* instrument = c.signal ? sheet.of(*c.signal) : nullptr;
     figures.push_back({c.name, c.value, instrument ? instrument->uncertainty : "", "", "", Tone::plain});
   }
 }
@@ -250,7 +250,7 @@ constexpr int null_row = 41;  // id of servovalve_null, as every table has it
 
 void certify(Page& page, const Diagnosis& d, const DetectionBaseline& baseline, const Header& header,
              const CertificateOf& certificate) {
-  const store::Certificate& sheet = *certificate.sheet;
+  const Certificate& sheet = *certificate.sheet;
   std::vector<CertifiedFigure> figures = {
       {"error", digits(d.error) + " deviates", "", "below " + digits(d.threshold), word_of(d.verdict), tone_of(d)}};
   for (const NamedFault& f : d.faults)

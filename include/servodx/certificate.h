@@ -7,9 +7,8 @@
 
 #include "servodx/curves.h"
 #include "servodx/log.h"
-#include "signals/signal.h"
 
-namespace servodx::store {
+namespace servodx {
 
 struct Instrument {
   std::string name, serial;
@@ -34,4 +33,4 @@ struct Certificate {
 // Throws InputError with file, line, key, rule and mend.
 Certificate read_certificate(const std::string& path);
 
-}  // namespace servodx::store
+}  // namespace servodx
