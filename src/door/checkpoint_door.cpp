@@ -5,7 +5,6 @@
 #include "base/checkpoint.h"
 #include "servodx/checkpoint.h"
 #include "servodx/instruction_set.h"
-#include "simulate/simulate.h"
 
 namespace servodx {
 

@@ -9,7 +9,6 @@
 
 #include "faults/registry.h"
 #include "fit/log_data.h"
-#include "fit/replay.h"
 #include "fit/sheet.h"
 #include "parameters/table.h"
 #include "servodx/bode.h"

@@ -7,7 +7,6 @@
 #include "base/celsius.h"
 #include "diagnose/baseline.h"
 #include "diagnose/healthy_law.h"
-#include "fit/replay.h"
 #include "report/diagnose/diagnosis_words.h"
 #include "report/shared/handy.h"
 #include "report/shared/json.h"

@@ -3,7 +3,6 @@
 #include <string>
 
 #include "curves/curves.h"
-#include "fit/sheet.h"
 #include "report/shared/certificate_part.h"
 #include "report/shared/json.h"
 #include "report/shared/page.h"

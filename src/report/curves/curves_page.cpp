@@ -8,7 +8,6 @@
 #include "base/units.h"
 #include "curves/curves.h"
 #include "curves/frequency_response.h"
-#include "fit/sheet.h"
 #include "report/curves/curves.h"
 #include "report/curves/data_sheet.h"
 #include "report/shared/certificate_part.h"

@@ -2,7 +2,6 @@
 #pragma once
 #include <string>
 
-#include "fit/sheet.h"
 #include "report/shared/json.h"
 #include "report/shared/page.h"
 #include "servodx/data_sheet.h"

@@ -9,6 +9,7 @@
 #include <optional>
 #include <string>
 
+#include "fit/bode.h"
 #include "report/shared/handy.h"
 #include "report/shared/parts.h"
 #include "report/shared/replay_part.h"

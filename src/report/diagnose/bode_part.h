@@ -2,7 +2,6 @@
 #pragma once
 #include <vector>
 
-#include "fit/bode.h"
 #include "report/shared/page.h"
 #include "servodx/bode.h"
 

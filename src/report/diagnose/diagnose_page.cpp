@@ -19,7 +19,6 @@
 #include "diagnose/record_law.h"
 #include "faults/fault.h"
 #include "faults/gross_finding.h"
-#include "fit/replay.h"
 #include "report/curves/curves.h"
 #include "report/diagnose/bode_part.h"
 #include "report/diagnose/diagnosis_words.h"

@@ -10,7 +10,6 @@
 #include "explain/missing.h"
 #include "explain/outcome.h"
 #include "explain/show.h"
-#include "fit/replay.h"
 #include "report/explain/explain_report.h"
 #include "report/explain/explain_words.h"
 #include "report/shared/columns.h"

@@ -4,7 +4,6 @@
 
 #include "explain/explain.h"
 #include "explain/healthy.h"
-#include "fit/replay.h"
 #include "report/shared/json.h"
 #include "report/shared/page.h"
 #include "report/shared/text_options.h"

@@ -7,7 +7,6 @@
 #include "report/shared/page.h"
 #include "servodx/map_points.h"
 #include "servodx/valve_numbers.h"
-#include "valve_maps/compare.h"
 
 namespace servodx::report {
 

@@ -12,7 +12,6 @@
 #include "report/shared/replay_part.h"
 #include "servodx/map_points.h"
 #include "servodx/valve_numbers.h"
-#include "valve_maps/compare.h"
 
 namespace servodx::report {
 namespace {

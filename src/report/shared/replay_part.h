@@ -7,7 +7,6 @@
 #include <string>
 #include <vector>
 
-#include "fit/replay.h"
 #include "report/shared/page.h"
 #include "servodx/replay.h"
 

@@ -6,7 +6,6 @@
 #include <cmath>
 
 #include "fit/identifiability.h"
-#include "fit/replay.h"
 #include "report/check_log/check_log.h"
 #include "report/shared/columns.h"
 #include "report/shared/handy.h"

@@ -2,7 +2,6 @@
 #pragma once
 #include <vector>
 
-#include "fit/replay.h"
 #include "report/shared/json.h"
 #include "report/shared/page.h"
 #include "report/tune/tune_words.h"

@@ -16,7 +16,6 @@
 #include "faults/fault.h"
 #include "faults/registry.h"
 #include "fit/identifiability.h"
-#include "fit/replay.h"
 #include "report/baseline/baseline_page.h"
 #include "report/diagnose/diagnose_page.h"
 #include "report/shared/json.h"
