@@ -15,6 +15,7 @@
 #include "ratios/measure.h"
 #include "ratios/rows.h"
 #include "report/shared/line_chart.h"
+#include "servodx/instruction_set.h"
 #include "simulate/simulate.h"
 
 using namespace servodx;

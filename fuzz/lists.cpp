@@ -3,6 +3,7 @@
 #include "fleet/confusion.h"
 #include "fleet/log_list.h"
 #include "harness.h"
+#include "servodx/fleet.h"
 
 namespace servodx::fuzz {
 

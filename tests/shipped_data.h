@@ -3,8 +3,8 @@
 #include <string>
 
 #include "fit/log_data.h"
-#include "fit/nominal.h"
 #include "parameters/table.h"
+#include "servodx/data_sheet.h"
 #include "servodx/rig.h"
 #include "signals/log.h"
 

@@ -10,16 +10,10 @@
 #include <vector>
 
 #include "commands.h"
-#include "diagnose/baseline.h"
-#include "door/baseline_parts.h"
-#include "fit/replay.h"
-#include "fit/tuned_state.h"
 #include "invocation.h"
 #include "report/baseline/baseline_json.h"
 #include "report/baseline/baseline_page.h"
 #include "report/baseline/baseline_text.h"
-#include "report/diagnose/diagnosis_words.h"
-#include "report/explain/explain_report.h"
 #include "report/shared/conditions.h"
 #include "report/shared/going_on.h"
 #include "report/shared/json.h"
@@ -27,6 +21,7 @@
 #include "report/shared/text_options.h"
 #include "servodx/baseline.h"
 #include "servodx/log.h"
+#include "servodx/pages.h"
 #include "servodx/rig.h"
 #include "servodx/tune.h"
 #include "tuning_logs.h"
@@ -58,7 +53,7 @@ int run(const Options& options) {
   report::add_to_head(invocation.header().head, logs);
   std::vector<std::string> others = options.others;
   if (others.empty() && !options.alone) {
-    others = tuning_logs(options.params, tuned_state(tuned.table));
+    others = tuning_logs(options.params, tuned.table);
     inputs.insert(inputs.end(), others.begin(), others.end());
     invocation.check_files(inputs, {options.output});  // found, not named: no output is one of them all the same
   }
@@ -76,26 +71,20 @@ int run(const Options& options) {
 
   how.watch = invocation.watch();
   const Baseline baseline = make_baseline(logs, tuned, rig, how);
-  const DetectionBaseline& detection = baseline.parts->detection;
   header.simulations = baseline.simulations, header.failed_simulations = baseline.failed_simulations;
   invocation.note(baseline.notes);
   if (baseline.interrupted) invocation.note_how_to_go_on();
   constexpr std::size_t fewest = 3;  // that set a threshold
-  if (baseline.interrupted && detection.scores.size() < fewest) {
-    invocation.finish_without_result(report::too_few_for_a_baseline(detection.scores.size(), logs.size()) + "\n");
+  if (baseline.interrupted && baseline.scores.size() < fewest) {
+    invocation.finish_without_result(report::too_few_for_a_baseline(baseline.scores.size(), logs.size()) + "\n");
     return interrupted;
   }
-  if (invocation.wants_report()) {
-    std::vector<Replay> replays;
-    for (std::size_t i = 0; i < std::min(detection.scores.size(), report::most_replays); ++i)
-      if (const auto& healthy = detection.scores[i].healthy)
-        replays.push_back(replay(logs[i], tuned.table, rig, report::candidates_of({*healthy})));
-    invocation.write_report(report::baseline_page(header, detection, replays));
-  }
+  if (invocation.wants_report())
+    invocation.write_report(
+        report::baseline_page(header, baseline, replays_of(baseline, logs, tuned, rig, report::most_replays)));
   write_baseline(options.output, baseline);
-  report::Json body = report::baseline_json(detection);
-  body["explain"] = report::healthy_json(*baseline.parts->causes);
-  invocation.finish(report::text_of(detection, {.colour = colour_wanted(), .written_to = options.output}), body);
+  invocation.finish(report::text_of(baseline, {.colour = colour_wanted(), .written_to = options.output}),
+                    report::baseline_json(baseline));
   return baseline.interrupted ? interrupted : ran;
 }
 

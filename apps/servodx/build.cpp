@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "simulate/simulate.h"
+#include "servodx/instruction_set.h"
 
 namespace servodx {
 

@@ -9,7 +9,6 @@
 #include "check_list.h"
 #include "commands.h"
 #include "invocation.h"
-#include "prognose/check.h"
 #include "report/check/check_report.h"
 #include "report/shared/conditions.h"
 #include "report/shared/json.h"
@@ -18,7 +17,6 @@
 #include "servodx/trend.h"
 #include "servodx/tune.h"
 #include "servodx/watch.h"
-#include "store/history.h"
 
 namespace servodx {
 namespace {
@@ -71,7 +69,7 @@ void run_one(const Options& options) {
   const Log log = invocation.log(options.log, rig);
   report::add_to_head(invocation.header().head, {log});
   std::optional<History> history;  // a new one is made only when there is something to store
-  if (HistoryFile::there(options.history)) history = History::open(options.history);
+  if (History::there(options.history)) history = History::open(options.history);
 
   report::Header& header = invocation.header();
   *header.settings = check_settings(options.valve, at, how.model, options.history);
@@ -85,7 +83,7 @@ void run_one(const Options& options) {
   if (!history) history = History::open_or_make(options.history);
   history->record(options.valve, {.at = at, .cycles = options.cycles, .serial = serial}, checked, tuned);
 
-  const CheckResult& result = *checked.whole;
+  const auto& result = *checked.whole;
   header.simulations = result.simulations;
   header.failed_simulations = result.failed_simulations;
   invocation.note(result.notes);

@@ -19,7 +19,6 @@
 #include "fleet/result_file.h"
 #include "fleet/run.h"
 #include "list_run.h"
-#include "prognose/check.h"
 #include "report/check/check_report.h"
 #include "report/fleet/fleet.h"
 #include "result_folder.h"
@@ -27,8 +26,8 @@
 #include "servodx/log.h"
 #include "servodx/note.h"
 #include "servodx/rig.h"
+#include "servodx/trend.h"
 #include "servodx/tune.h"
-#include "store/history.h"
 
 namespace servodx {
 namespace {
@@ -58,7 +57,7 @@ class ListedChecks {
 
  private:
   Outcome set_aside(const CheckRow& row, const report::Header& header, const InputError& error) const;
-  void write_result(const CheckRow& row, report::Header& header, const CheckResult& result) const;
+  void write_result(const CheckRow& row, report::Header& header, const Checked& checked) const;
   RowEnd record(const CheckRow& row, const History::Use& use, const Checked& checked, const Tuned& tuned);
   bool holds(const CheckRow& row, const std::string& sha256, const Tuned& tuned) const {
     return history_ && history_->holds(row.valve, row.hours, sha256, tuned);
@@ -86,7 +85,8 @@ ListedChecks::Outcome ListedChecks::set_aside(const CheckRow& row, const report:
   return {.end = RowEnd::set_aside, .refusal = report::set_aside_of(error)};
 }
 
-void ListedChecks::write_result(const CheckRow& row, report::Header& header, const CheckResult& result) const {
+void ListedChecks::write_result(const CheckRow& row, report::Header& header, const Checked& checked) const {
+  const auto& result = *checked.whole;
   header.simulations = result.simulations, header.failed_simulations = result.failed_simulations;
   note(header, texts_of(result.notes));
   if (folder_) folder_->write_result(name_of_result(row), report::dump(header, report::check_json(result)));
@@ -133,7 +133,7 @@ ListedChecks::Outcome ListedChecks::check(const CheckRow& row) {
   if (refusal) return set_aside(row, header, *refusal);
   header.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   // The result first: what the history holds is not made again.
-  write_result(row, header, *checked->whole);
+  write_result(row, header, *checked);
   return {.end = record(row, use, *checked, tuned),
           .notices = before.notices,
           .simulations = checked->simulations,
@@ -178,7 +178,7 @@ CheckRun check_all(const CheckList& list, ListedChecks& checks, const CommonOpti
 Before before_check(const std::optional<History>& history, const std::string& valve, const std::string& serial) {
   if (!history) return {};
   Before before{history->tracked(valve), {}};
-  if (const std::string was = history->file().serial(valve); !was.empty() && !serial.empty() && was != serial)
+  if (const std::string was = history->serial(valve); !was.empty() && !serial.empty() && was != serial)
     before.notices.push_back(
         fmt::format("'{}' was serial {} and is {} now: if the valve was swapped, "
                     "'servodx history event valve_swapped' starts its trends again",
@@ -207,7 +207,7 @@ int check_list(const CommonOptions& common, const CheckListOptions& options) {
   invocation.note(notices_of(list));
   const Tables tables = read_tables(invocation, list);
   std::optional<History> history;
-  if (HistoryFile::there(options.history)) history = History::open(options.history);
+  if (History::there(options.history)) history = History::open(options.history);
   report::Header& header = invocation.header();
   // What can be read but once has no hash.
   std::error_code ignored;

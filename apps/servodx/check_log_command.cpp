@@ -7,13 +7,12 @@
 #include "base/sha256.h"
 #include "base/trouble.h"
 #include "commands.h"
-#include "diagnose/check_log.h"
-#include "evidence/operating_point.h"
-#include "fit/tuned_state.h"
 #include "invocation.h"
 #include "report/check_log/check_log.h"
+#include "servodx/check_log.h"
 #include "servodx/error.h"
 #include "servodx/log.h"
+#include "servodx/operating_point.h"
 #include "servodx/rig.h"
 #include "servodx/table.h"
 #include "tuning_logs.h"
@@ -32,7 +31,7 @@ std::vector<OperatingPoint> tuning_points(Invocation& invocation, const Options&
                                           const RigFile& rig, const std::vector<Log>& logs) {
   std::vector<OperatingPoint> points;
   auto inputs = options.logs;
-  for (const std::string& path : tuning_logs(options.params, tuned_state(table))) {
+  for (const std::string& path : tuning_logs(options.params, table)) {
     inputs.push_back(path);
     const std::string hash = sha256_of_file(path);
     const auto same = std::find_if(logs.begin(), logs.end(), [&](const Log& log) { return log.sha256 == hash; });

@@ -7,14 +7,13 @@
 
 #include "base/atomic_file.h"
 #include "commands.h"
-#include "curves/curves.h"
-#include "fit/nominal.h"
-#include "fit/sheet.h"
 #include "invocation.h"
 #include "report/curves/curves.h"
 #include "report/curves/data_sheet.h"
 #include "report/shared/conditions.h"
 #include "report/shared/json.h"
+#include "servodx/curves.h"
+#include "servodx/data_sheet.h"
 #include "servodx/error.h"
 #include "servodx/log.h"
 #include "servodx/rig.h"
@@ -42,9 +41,7 @@ void run_without_log(const Options& options) {
   if (invocation.dry_run()) return;
   const SheetFit stated = data_sheet(table, rig);
   if (invocation.wants_report()) invocation.write_report(report::data_sheet_page(invocation.header(), stated));
-  curves::Sheet none;
-  none.verdict = "not_judged";
-  report::Json json = report::curves_json(none);
+  report::Json json = report::curves_json({});
   json["data_sheet"] = report::data_sheet_json(stated);
   invocation.finish(report::text_of(stated), json);
 }
@@ -62,7 +59,7 @@ void run(const Options& options) {
   const Log log = invocation.log(options.log, rig);
   report::add_to_head(invocation.header().head, {log});
   const auto certificate = invocation.certificate(options.certificate);
-  curves::SheetOptions how;
+  SheetOptions how;
   if (certificate) how = {certificate->errors(), certificate->guard};
   *invocation.header().settings = {{"guard_band", how.guard}};
   std::optional<Table> table;
@@ -70,7 +67,8 @@ void run(const Options& options) {
   if (invocation.dry_run()) return;
   std::optional<SheetFit> stated;
   if (table) stated = data_sheet(*table, rig);
-  const curves::Sheet sheet = curves::read_curves(log, rig, how);
+  const AcceptanceSheet judged = acceptance_sheet(log, rig, how);
+  const auto& sheet = *judged.whole;
   if (!options.svg.empty()) write_file(options.svg, report::curves_svg(sheet, *rig.fact("valve.rated_current")));
   invocation.note(sheet.notes);
   if (invocation.wants_report())

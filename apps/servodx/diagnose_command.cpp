@@ -11,25 +11,14 @@
 #include <utility>
 #include <vector>
 
-#include "base/parts_done.h"
 #include "base/sha256.h"
 #include "baseline_beside.h"
 #include "commands.h"
-#include "diagnose/assessment.h"
-#include "diagnose/decide.h"
-#include "diagnose/judge.h"
-#include "diagnose/lateral_force.h"
 #include "diagnose_list.h"
-#include "door/baseline_parts.h"
-#include "fit/bode.h"
-#include "fit/log_data.h"
-#include "fit/replay.h"
 #include "invocation.h"
-#include "parameters/table.h"
 #include "report/diagnose/diagnose_page.h"
 #include "report/diagnose/diagnosis_json.h"
 #include "report/diagnose/diagnosis_text.h"
-#include "report/diagnose/diagnosis_words.h"
 #include "report/diagnose/friction_words.h"
 #include "report/diagnose/two_tests.h"
 #include "report/shared/conditions.h"
@@ -40,11 +29,10 @@
 #include "servodx/baseline.h"
 #include "servodx/diagnose.h"
 #include "servodx/log.h"
+#include "servodx/pages.h"
 #include "servodx/rig.h"
 #include "servodx/tune.h"
 #include "servodx/watch.h"
-#include "simulate/side_by_side.h"
-#include "store/truth_file.h"
 #include "store/verdict_file.h"
 
 namespace servodx {
@@ -62,13 +50,13 @@ struct Options {
   RunOptions run;
 };
 
-int code_of(const Diagnosis& diagnosis) {
-  switch (diagnosis.verdict) {
-    case VerdictKind::healthy:
+int code_of(Verdict::Kind verdict) {
+  switch (verdict) {
+    case Verdict::Kind::healthy:
       return ran;
-    case VerdictKind::fault:
+    case Verdict::Kind::fault:
       return found_fault;
-    case VerdictKind::unknown:
+    case Verdict::Kind::unknown:
       return found_unknown;
   }
   return ran;
@@ -88,62 +76,15 @@ int code_of(ActionClass action) {
   return ran;
 }
 
-// Side by side, of the logs that were judged before an interrupt.
-std::vector<Diagnosis> judge_each(const std::vector<Log>& logs, const Tuned& tuned, const RigFile& rig,
-                                  const Baseline& baseline, const DiagnoseOptions& options) {
-  PartsDone told(options.watch, "diagnose", logs.size());
-  std::vector<std::optional<Diagnosis>> judged(logs.size());
-  side_by_side(static_cast<int>(logs.size()), options.threads, [&](int piece, int threads) {
-    if (options.watch.stopped()) return;
-    const auto at = static_cast<std::size_t>(piece);
-    DiagnoseOptions of_log = options;
-    of_log.threads = threads;
-    of_log.watch = told.of(at);
-    const Verdict verdict = diagnose(logs[at], tuned, rig, baseline, of_log);
-    if (!verdict.interrupted) judged[at] = *verdict.whole;
-    told.tell(at, 1, verdict.simulations);
-  });
-  std::vector<Diagnosis> results;
-  for (std::optional<Diagnosis>& d : judged)
-    if (d) results.push_back(std::move(*d));
-  return results;
-}
-
-std::vector<Diagnosis> judge_pool(const std::vector<Log>& logs, const Tuned& tuned, const RigFile& rig,
-                                  const Baseline& baseline, const DiagnoseOptions& options) {
-  const Verdict verdict = diagnose_pool(logs, tuned, rig, baseline, options);
+std::vector<Verdict> judge_pool(const std::vector<Log>& logs, const Tuned& tuned, const RigFile& rig,
+                                const Baseline& baseline, const DiagnoseOptions& options) {
+  Verdict verdict = diagnose_pool(logs, tuned, rig, baseline, options);
   if (verdict.interrupted) return {};
-  return {*verdict.whole};
+  return {std::move(verdict)};
 }
 
-// Of the worst logs: a page of many would be too large to open.
-std::vector<Replay> replays(const std::vector<Log>& logs, const Table& tuned, const RigFile& rig,
-                            const std::vector<Diagnosis>& results) {
-  std::vector<const Diagnosis*> worst;
-  for (const Diagnosis& d : results) worst.push_back(&d);
-  std::stable_sort(worst.begin(), worst.end(), [](const auto* a, const auto* b) { return a->error > b->error; });
-  if (worst.size() > report::most_replays) worst.resize(report::most_replays);
-  std::vector<Replay> all;
-  for (const Diagnosis* d : worst)
-    for (const Log& log : logs)
-      if (log.path == d->assessment.logs.front()) {
-        all.push_back(replay(log, tuned, rig, report::candidates_of(d->assessment.explanations)));
-        break;
-      }
-  return all;
-}
-
-// Of a verdict that holds a valve: as tuned, and as the log has it. An unknown state has none.
-std::vector<Bode> bodes_beside(const Diagnosis& d, const Table& tuned, const RigFile& rig) {
-  if (d.verdict == VerdictKind::unknown) return {};
-  for (const HypothesisPrediction& h : d.assessment.explanations)
-    if (h.fault == d.fault && !h.candidate.empty())
-      return bode_of(
-          {{"as tuned", candidate_of(tuned)}, {d.fault ? report::label_of(d.fault) : "this log", h.candidate}}, rig);
-  return {};
-}
-
-std::string friction_line(const std::optional<FrictionBesideForce>& beside) {
+std::string friction_line(const Verdict& verdict) {
+  const auto& beside = verdict.whole->friction;
   return beside ? "  " + report::friction_in_words(*beside) + "\n" : "";
 }
 
@@ -175,7 +116,7 @@ void require_consistent(const Options& options) {
 
 std::vector<std::string> truths_beside(const std::vector<Log>& logs) {
   std::vector<std::string> out;
-  for (const Log& log : logs) out.push_back(store::truth_beside(log.path, log.sha256));
+  for (const Log& log : logs) out.push_back(truth_beside(log));
   return out;
 }
 
@@ -197,7 +138,7 @@ int run(const Options& options) {
   for (const std::string& path : options.logs) logs.push_back(invocation.log(path, rig));
   report::Header& header = invocation.header();
   report::add_to_head(header.head, logs);
-  header.inputs.push_back({options.baseline, baseline.parts->sha256});
+  header.inputs.push_back({options.baseline, baseline.sha256});
   if (!options.list.actions.empty())
     header.inputs.push_back({options.list.actions, sha256_of_file(options.list.actions)});
 
@@ -225,18 +166,18 @@ int run(const Options& options) {
                             .search = options.search,
                             .population = options.population,
                             .explain_unknown = options.list.explain_unknown};
-  const std::vector<Diagnosis> results =
-      options.pool ? judge_pool(logs, tuned, rig, baseline, how) : judge_each(logs, tuned, rig, baseline, how);
+  const std::vector<Verdict> results =
+      options.pool ? judge_pool(logs, tuned, rig, baseline, how) : diagnose_each(logs, tuned, rig, baseline, how);
   std::string text;
   int worst = ran;
-  for (const Diagnosis& d : results) {
-    header.simulations += d.assessment.simulations;
-    header.failed_simulations += d.assessment.failed_simulations;
-    invocation.note(d.assessment.notes);
+  for (const Verdict& v : results) {
+    header.simulations += v.simulations;
+    header.failed_simulations += v.failed_simulations;
+    invocation.note(v.whole->assessment.notes);
     text += (text.empty() ? "" : "\n") +
-            report::text_of(d, {.colour = colour_wanted(), .written_to = "", .call = header.call}) +
-            friction_line(d.friction);
-    worst = std::max(worst, options.exit_by_action ? code_of(d.action.of) : code_of(d));
+            report::text_of(*v.whole, {.colour = colour_wanted(), .written_to = "", .call = header.call}) +
+            friction_line(v);
+    worst = std::max(worst, options.exit_by_action ? code_of(v.action_class) : code_of(v.kind));
   }
   if (results.size() < (options.pool ? 1 : logs.size()))
     invocation.note({fmt::format("interrupted: {} of {} logs were judged", results.size(), logs.size())});
@@ -249,10 +190,10 @@ int run(const Options& options) {
     json["last_test"] = report::to_json(*beside.last);
   }
   if (invocation.wants_report()) {
-    if (results.size() == 1) beside.bodes = bodes_beside(results.front(), tuned.table, rig);
+    if (results.size() == 1) beside.bodes = bodes_of(results.front(), tuned, rig);
     truths.resize(results.size());
     invocation.write_report(
-        report::diagnose_page(header, results, baseline.parts->detection, replays(logs, tuned.table, rig, results),
+        report::diagnose_page(header, results, baseline, replays_of(results, logs, tuned, rig, report::most_replays),
                               truths, {certificate ? &*certificate : nullptr, invocation.manifest()}, beside));
   }
   invocation.finish(text, json);

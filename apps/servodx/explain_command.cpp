@@ -6,9 +6,6 @@
 
 #include "baseline_beside.h"
 #include "commands.h"
-#include "door/baseline_parts.h"
-#include "explain/explain.h"
-#include "fit/replay.h"
 #include "invocation.h"
 #include "report/explain/explain_report.h"
 #include "report/shared/conditions.h"
@@ -17,6 +14,7 @@
 #include "servodx/baseline.h"
 #include "servodx/explain.h"
 #include "servodx/log.h"
+#include "servodx/pages.h"
 #include "servodx/rig.h"
 #include "servodx/table.h"
 #include "servodx/tune.h"
@@ -51,8 +49,8 @@ int run(const Options& options) {
   if (!options.baseline.empty()) {
     baseline = baseline_beside(invocation, options.baseline, rig);
     require_same_table(*baseline, tuned);
-    header.inputs.push_back({options.baseline, baseline->parts->sha256});
-    causes_of(*baseline);  // refuses a file without them
+    header.inputs.push_back({options.baseline, baseline->sha256});
+    require_causes(*baseline);
     how.level = baseline->asked;
   }
   const std::vector<Log> logs = invocation.logs(options.logs, rig);
@@ -63,22 +61,16 @@ int run(const Options& options) {
 
   how.watch = invocation.watch();
   const Explanation explanation = baseline ? explain(logs, tuned, rig, *baseline, how) : explain(logs, tuned, rig, how);
-  const ExplainResult& result = *explanation.whole;
-  write_table(options.output, result.table);
+  const auto& result = *explanation.whole;
+  write_table(options.output, explanation.table);
   header.simulations = result.simulations;
   header.failed_simulations = result.failed_simulations;
   for (const Log& log : logs) invocation.note(log.notes);
   invocation.note(result.notes);
   if (result.interrupted) invocation.note_how_to_go_on();
-  if (invocation.wants_report()) {
-    std::vector<Replay> replays;
-    for (std::size_t l = 0; l < std::min(logs.size(), report::most_replays); ++l) {
-      std::vector<Candidate> candidates = {{"as tuned", result.before[l]}};
-      if (!result.causes.empty()) candidates.push_back({"extended", result.after[l]});
-      replays.push_back(replay(logs[l], tuned.table, rig, candidates));
-    }
-    invocation.write_report(report::explain_page(header, result, replays));
-  }
+  if (invocation.wants_report())
+    invocation.write_report(
+        report::explain_page(header, result, replays_of(explanation, logs, tuned, rig, report::most_replays)));
   invocation.finish(report::text_of(result, {.colour = colour_wanted(), .written_to = options.output}),
                     report::explain_json(result));
   return result.interrupted ? interrupted : ran;

@@ -8,8 +8,6 @@
 #include "base/error.h"
 #include "base/sha256.h"
 #include "baseline_beside.h"
-#include "diagnose/decide.h"
-#include "door/baseline_parts.h"
 #include "fleet/fleet_verdict.h"
 #include "fleet/result_file.h"
 #include "list_run.h"
@@ -21,13 +19,13 @@
 namespace servodx {
 namespace {
 
-FleetVerdict standing(VerdictKind verdict) {
+FleetVerdict standing(Verdict::Kind verdict) {
   switch (verdict) {
-    case VerdictKind::healthy:
+    case Verdict::Kind::healthy:
       return FleetVerdict::healthy;
-    case VerdictKind::fault:
+    case Verdict::Kind::fault:
       return FleetVerdict::fault;
-    case VerdictKind::unknown:
+    case Verdict::Kind::unknown:
       return FleetVerdict::unknown;
   }
   return FleetVerdict::none;
@@ -41,7 +39,7 @@ Judging read_judging(Invocation& invocation, const std::string& params, const st
   Baseline judged = baseline_beside(invocation, baseline, rig);
   Judging judging{std::move(rig), std::move(tuned), std::move(judged)};
   require_same_table(judging.baseline, judging.tuned);
-  invocation.header().inputs.push_back({baseline, judging.baseline.parts->sha256});
+  invocation.header().inputs.push_back({baseline, judging.baseline.sha256});
   *invocation.header().settings = {{"false_alarm", judging.baseline.asked}};
   return judging;
 }
@@ -70,10 +68,10 @@ FleetJudge::Outcome FleetJudge::set_aside(const std::string& log, const std::str
   return {.end = RowEnd::set_aside, .refusal = report::set_aside_of(error)};
 }
 
-void FleetJudge::complete_header(const Diagnosis& d) {
-  header_.simulations += d.assessment.simulations;
-  header_.failed_simulations += d.assessment.failed_simulations;
-  for (const std::string& note : texts_of(d.assessment.notes))
+void FleetJudge::complete_header(const Verdict& verdict) {
+  header_.simulations += verdict.simulations;
+  header_.failed_simulations += verdict.failed_simulations;
+  for (const std::string& note : texts_of(verdict.whole->assessment.notes))
     if (std::find(header_.notes.begin(), header_.notes.end(), note) == header_.notes.end())
       header_.notes.push_back(note);
 }
@@ -91,21 +89,20 @@ FleetJudge::Outcome FleetJudge::judge(const std::string& path, const std::string
     }
     const Log log = read_log(path, judging_.rig);
     header_.inputs[header_.inputs.size() - 2].sha256 = log.sha256;
-    const Verdict verdict = diagnose(log, judging_.tuned, judging_.rig, judging_.baseline, options);
+    Verdict verdict = diagnose(log, judging_.tuned, judging_.rig, judging_.baseline, options);
     if (verdict.interrupted) {
       outcome.end = RowEnd::interrupted;
       return;
     }
-    outcome.diagnosis = *verdict.whole;
-    outcome.fault = verdict.fault, outcome.error_ratio = verdict.error / verdict.threshold;
-    complete_header(*outcome.diagnosis);
+    complete_header(verdict);
+    outcome.judged = std::move(verdict);
     header_.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-    if (beside) beside(name, *outcome.diagnosis, log);
+    if (beside) beside(name, *outcome.judged, log);
   });
   if (refusal) return set_aside(path, name, *refusal);
   if (outcome.end != RowEnd::made) return outcome;
-  outcome.verdict = standing(outcome.diagnosis->verdict);
-  folder_.write_result(name, report::dump(header_, report::diagnose_json({*outcome.diagnosis})));
+  outcome.verdict = standing(outcome.judged->kind);
+  folder_.write_result(name, report::dump(header_, report::diagnose_json(std::vector{*outcome.judged})));
   return outcome;
 }
 

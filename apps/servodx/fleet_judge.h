@@ -7,13 +7,10 @@
 #include <string>
 
 #include "base/progress.h"
-#include "diagnose/diagnose.h"
-#include "diagnose/judge.h"
 #include "fleet/fleet_verdict.h"
 #include "fleet/gather.h"
 #include "fleet/run.h"
 #include "invocation.h"
-#include "parameters/table.h"
 #include "report/shared/json.h"
 #include "result_folder.h"
 #include "servodx/baseline.h"
@@ -42,21 +39,19 @@ class FleetJudge {
     RowEnd end = RowEnd::made;
     FleetVerdict verdict = FleetVerdict::none;  // made or stood
     std::optional<SetAside> refusal = {};       // set aside
-    std::optional<Diagnosis> diagnosis = {};    // made; the next two go with it
-    std::string fault = {};                     // label; empty: none is named
-    double error_ratio = 0;                     // error over threshold
+    std::optional<Verdict> judged = {};         // made
   };
   // `name`: of its files in the folder, without ending. Throws only where a result cannot be written.
   Outcome judge(const std::string& log, const std::string& name, const DiagnoseOptions& options);
   // Called with what a log gave just before its result is written.
-  std::function<void(const std::string& name, const Diagnosis& diagnosis, const Log& log)> beside = {};
+  std::function<void(const std::string& name, const Verdict& verdict, const Log& log)> beside = {};
   // The header of a judged log's result.
   const report::Header& header() const { return header_; }
   const ResultFolder& folder() const { return folder_; }
 
  private:
   void begin(const std::string& log);
-  void complete_header(const Diagnosis& diagnosis);
+  void complete_header(const Verdict& verdict);
   bool stands(const std::string& name, Outcome& outcome) const;
   Outcome set_aside(const std::string& log, const std::string& name, const InputError& error);
 

@@ -23,12 +23,6 @@
 #include "base/progress.h"
 #include "base/sha256.h"
 #include "base/trouble.h"
-#include "diagnose/assessment.h"
-#include "diagnose/decide.h"
-#include "diagnose/diagnose.h"
-#include "diagnose/judge.h"
-#include "door/baseline_parts.h"
-#include "faults/fault.h"
 #include "faults/gross_finding.h"
 #include "fleet_judge.h"
 #include "online/arrivals.h"
@@ -38,7 +32,6 @@
 #include "online/watcher.h"
 #include "report/diagnose/diagnosis_json.h"
 #include "report/diagnose/diagnosis_text.h"
-#include "report/diagnose/diagnosis_words.h"
 #include "report/shared/json.h"
 #include "report/shared/text_options.h"
 #include "servodx/baseline.h"
@@ -48,7 +41,6 @@
 #include "servodx/table.h"
 #include "signals/growing_log.h"
 #include "signals/sample.h"
-#include "signals/signal.h"
 
 namespace servodx {
 namespace {
@@ -118,8 +110,8 @@ std::vector<Log> healthy_logs(const FollowOptions& options, const Judging& judgi
   if (!options.healthy.empty()) return invocation.logs(options.healthy, judging.rig);
   std::vector<Log> out;
   std::size_t gone = 0;
-  const auto& scores = parts_of(judging.baseline).detection.scores;
-  for (const auto& score : scores) {
+  const auto& scores = judging.baseline.scores;
+  for (const Baseline::Score& score : scores) {
     std::error_code ignored;
     if (std::filesystem::is_regular_file(score.log, ignored) && sha256_of_file(score.log) == score.sha256)
       out.push_back(invocation.log(score.log, judging.rig));
@@ -148,7 +140,7 @@ class Diagnoses {
 
   struct Done {
     Due due;
-    std::optional<Diagnosis> diagnosis;
+    std::optional<Verdict> verdict;
     std::string refused;  // neither: it was stopped
   };
   void add(const Due& due, Log log) {
@@ -183,8 +175,8 @@ class Diagnoses {
     try {
       DiagnoseOptions how{.seed = common_.seed, .threads = common_.threads};
       how.watch.stop = [this] { return stop_.load(); };
-      Assessment assessment = assess(job.log, judging_.tuned.table, judging_.rig, how);
-      if (!stop_) out.diagnosis = judge(std::move(assessment), parts_of(judging_.baseline).detection);
+      Verdict verdict = diagnose_window(job.log, judging_.tuned, judging_.rig, judging_.baseline, how);
+      if (!verdict.interrupted) out.verdict = std::move(verdict);
     } catch (const InputError& error) {
       out.refused = told(error);
     } catch (const std::exception& error) {
@@ -237,7 +229,7 @@ class Following {
 
   long alarms() const { return alarms_; }
   bool was_stopped() const { return stop_; }
-  VerdictKind worst() const { return worst_; }
+  Verdict::Kind worst() const { return worst_; }
   report::Json result() const {
     report::Json out{{"source", options_.source}, {"alarms", alarms_}, {"seconds_of_log", seconds_}};
     const ArrivalCounts counts = watcher_ ? watcher_->counts() : ArrivalCounts{};
@@ -307,8 +299,8 @@ class Following {
   void make_watcher() {
     open_events();
     std::vector<Signal> recorded;
-    for (const SignalInfo& s : signal_list)
-      if (s.signal != Signal::time && log_.has(s.signal)) recorded.push_back(s.signal);
+    for (int i = 0; i < n_signals; ++i)
+      if (const auto s = static_cast<Signal>(i); s != Signal::time && log_.has(s)) recorded.push_back(s);
     watcher_ = std::make_unique<Watcher>(model_, limits_, recorded);
     if (!resumed_.is_null()) watcher_->resume(std::exchange(resumed_, nlohmann::json()));
   }
@@ -329,8 +321,8 @@ class Following {
 
   void tell(const WatchEvent& e) {
     alarms_ += e.kind == WatchEventKind::alarm;
-    if (e.kind == WatchEventKind::alarm && worst_ != VerdictKind::fault)
-      worst_ = e.name.empty() ? VerdictKind::unknown : VerdictKind::fault;
+    if (e.kind == WatchEventKind::alarm && worst_ != Verdict::Kind::fault)
+      worst_ = e.name.empty() ? Verdict::Kind::unknown : Verdict::Kind::fault;
     if (e.kind == WatchEventKind::window) {
       add_diagnosis({e.number, watcher_->window_begins(), e.time}, watcher_->window());
       return;
@@ -341,12 +333,12 @@ class Following {
   void tell(const Diagnoses::Done& done) {
     report::Json out{{"number", done.due.of}, {"event", "diagnosis"}};
     std::string text;
-    if (done.diagnosis) {
-      const Diagnosis& d = *done.diagnosis;
-      out["result"] = report::to_json(d);
-      const std::string words = report::text_of(d, {.colour = false, .written_to = ""});
+    if (done.verdict) {
+      const Verdict& v = *done.verdict;
+      out["result"] = report::to_json(*v.whole);
+      const std::string words = report::text_of(*v.whole, {.colour = false, .written_to = ""});
       text = words.substr(0, words.find('\n'));
-      if (d.verdict == VerdictKind::fault) worst_ = VerdictKind::fault;
+      if (v.kind == Verdict::Kind::fault) worst_ = Verdict::Kind::fault;
     } else if (!done.refused.empty()) {
       out["refused"] = done.refused;
       text = "no diagnosis: " + done.refused;
@@ -413,7 +405,7 @@ class Following {
                                {"version", SERVODX_VERSION},
                                {"source", options_.source},
                                {"table", content_hash(judging_.tuned.table)},
-                               {"baseline", judging_.baseline.parts->sha256},
+                               {"baseline", judging_.baseline.sha256},
                                {"head", log_.head()},
                                {"judged_until", judged_end_},
                                {"window_from", marks_.empty() ? judged_end_ : marks_.front().second},
@@ -437,7 +429,7 @@ class Following {
       if (json.at("source") != options_.source) refuse("is the state of a watch of another log");
       const Table& table = judging_.tuned.table;  // earlier versions kept the hash of its file
       const bool same_table = json.at("table") == content_hash(table) || json.at("table") == table.sha256;
-      if (!same_table || json.at("baseline") != judging_.baseline.parts->sha256)
+      if (!same_table || json.at("baseline") != judging_.baseline.sha256)
         refuse("was saved with another table or baseline");
       resumed_ = json.at("watcher");
       remembered_until_ = resumed_.at("last");
@@ -478,7 +470,7 @@ class Following {
   std::uint64_t judged_end_ = 0;                                         // bytes
   std::deque<std::pair<double, std::uint64_t>> marks_;                   // time, and the bytes up to its sample
   long alarms_ = 0, left_out_ = 0;
-  VerdictKind worst_ = VerdictKind::healthy;
+  Verdict::Kind worst_ = Verdict::Kind::healthy;
 };
 
 }  // namespace
@@ -508,9 +500,9 @@ int follow(const FollowOptions& options, const CommonOptions& common) {
   invocation.finish(is_standard_stream(options.events) ? "" : following.text(), following.result());
   if (following.was_stopped()) return interrupted;
   if (!options.exit_code) return ran;
-  return following.worst() == VerdictKind::fault     ? found_fault
-         : following.worst() == VerdictKind::unknown ? found_unknown
-                                                     : ran;
+  return following.worst() == Verdict::Kind::fault     ? found_fault
+         : following.worst() == Verdict::Kind::unknown ? found_unknown
+                                                       : ran;
 }
 
 }  // namespace servodx

@@ -1,18 +1,15 @@
 // `servodx gather DIR`: the results of many logs as one table, and, with the truth, what they are worth.
 #include <CLI/CLI.hpp>
-#include <atomic>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
 
 #include "base/atomic_file.h"
-#include "base/progress.h"
 #include "commands.h"
-#include "fleet/confusion.h"
-#include "fleet/gather.h"
 #include "invocation.h"
 #include "report/fleet/fleet.h"
 #include "report/shared/json.h"
+#include "servodx/fleet.h"
 
 namespace servodx {
 namespace {
@@ -22,19 +19,11 @@ struct Options {
   std::string folder, truth, output;
 };
 
-FleetTable read_folder(const Options& options) {
-  const std::atomic<bool>& stop = stop_on_interrupt();
-  Progress progress("gather", {.quiet = options.common.quiet});
-  return gather(options.folder, stop, [&](std::size_t done, std::size_t of) {
-    progress.update(static_cast<double>(done) / static_cast<double>(of), 0);
-  });
-}
-
-void note_counts(Invocation& invocation, const Confusion& confusion) {
-  if (confusion.without_truth > 0)
-    invocation.note({std::to_string(confusion.without_truth) + " results have no truth and are not in its counts"});
-  if (confusion.without_result > 0)
-    invocation.note({std::to_string(confusion.without_result) + " rows of the truth have no result"});
+void note_counts(Invocation& invocation, const FleetCounts& counts) {
+  if (counts.without_truth > 0)
+    invocation.note({std::to_string(counts.without_truth) + " results have no truth and are not in its counts"});
+  if (counts.without_result > 0)
+    invocation.note({std::to_string(counts.without_result) + " rows of the truth have no result"});
 }
 
 int run(const Options& options) {
@@ -48,19 +37,20 @@ int run(const Options& options) {
   report::Header& header = invocation.header();
   if (truth) header.inputs.push_back({truth->path, truth->sha256});
   *header.settings = {{"folder", options.folder}};
-  const FleetTable table = read_folder(options);
-  std::optional<Confusion> confusion;
-  if (truth) confusion = confusion_of(table, *truth);
+  const Fleet fleet = gather_results(options.folder, invocation.watch());
+  std::optional<FleetCounts> found;
+  if (truth) found = count_fleet(fleet, *truth);
   if (invocation.dry_run()) return ran;
-  if (table.interrupted) return interrupted;  // a part of the folder is no table of it
-  if (confusion) note_counts(invocation, *confusion);
-  if (table.without_schema > 0)
-    invocation.note({std::to_string(table.without_schema) +
+  if (fleet.interrupted) return interrupted;  // a part of the folder is no table of it
+  if (found) note_counts(invocation, *found);
+  if (const std::size_t without_schema = fleet.whole->without_schema; without_schema > 0)
+    invocation.note({std::to_string(without_schema) +
                      " results carry no schema, as earlier versions wrote them; they are read as far as they go"});
-  if (!options.output.empty()) write_file(options.output, csv_of(table));
-  if (invocation.wants_report()) invocation.write_report(report::fleet_page(header, table, confusion));
-  invocation.finish(report::text_of(table, confusion), report::fleet_json(table, confusion));
-  return table.unread.empty() ? ran : some_set_aside;
+  if (!options.output.empty()) write_file(options.output, fleet.csv);
+  const FleetCounts* counts = found ? &*found : nullptr;
+  if (invocation.wants_report()) invocation.write_report(report::fleet_page(header, fleet, counts));
+  invocation.finish(report::text_of(fleet, counts), report::fleet_json(fleet, counts));
+  return fleet.unread.empty() ? ran : some_set_aside;
 }
 
 }  // namespace

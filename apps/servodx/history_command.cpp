@@ -3,24 +3,20 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
-#include <optional>
 #include <string>
 #include <vector>
 
-#include "base/atomic_file.h"
 #include "base/error.h"
 #include "commands.h"
 #include "invocation.h"
-#include "prognose/valve_history.h"
 #include "report/shared/columns.h"
 #include "report/shared/json.h"
-#include "store/history.h"
-#include "store/history_csv.h"
+#include "servodx/history.h"
+#include "servodx/trend.h"
 
 namespace servodx {
 namespace {
@@ -34,40 +30,36 @@ struct Options {
 void show(const Options& options) {
   Invocation invocation("history show", options.common);
   invocation.check_files({options.history}, {});
-  const HistoryFile history(options.history, false);
+  const History history = History::open(options.history);
   if (invocation.dry_run()) return;
   report::Columns rows("llrrr");
   rows.row({"valve", "serial", "checks", "hours", "events"});
   report::Json valves = report::Json::array();
   for (const std::string& name : history.valves()) {
-    const ValveHistory v = history.of(name);
-    const double last = v.recordings.empty() ? 0.0 : v.recordings.back().at;
-    rows.row({v.valve, v.serial, std::to_string(v.recordings.size()), fmt::format("{}", last),
-              std::to_string(v.events.size())});
+    const HeldValve v = held_valve(history, name);
+    rows.row(
+        {v.valve, v.serial, std::to_string(v.checks), fmt::format("{}", v.last_at), std::to_string(v.events.size())});
     report::Json events = report::Json::array();
-    for (const Event& e : v.events) events.push_back({{"at", e.at}, {"kind", name_of(e.kind)}, {"text", e.text}});
+    for (const RecordedEvent& e : v.events) events.push_back({{"at", e.at}, {"kind", e.kind}, {"text", e.text}});
     valves.push_back({{"valve", v.valve},
                       {"serial", v.serial},
-                      {"checks", v.recordings.size()},
-                      {"last_at", last},
+                      {"checks", v.checks},
+                      {"last_at", v.last_at},
                       {"unit", "h"},
                       {"events", events}});
   }
-  invocation.finish(rows.text(), {{"schema", HistoryFile::schema_version()}, {"valves", valves}});
+  invocation.finish(rows.text(), {{"schema", History::schema()}, {"valves", valves}});
 }
 
 void add_event(const Options& options) {
-  const auto kind = find_event(options.kind);
-  require_option(kind.has_value(), "KIND", "'" + options.kind + "' is no event", "use one of: " + event_names());
-  require_option(std::isfinite(options.at) && options.at >= 0, "--at", "must be the hours of use, 0 or more",
-                 "--at 1250.5");
+  require_event(options.at, options.kind);
   Invocation invocation("history event", options.common);
   invocation.check_files({options.history}, {});
-  HistoryFile history(options.history, false);
-  history.of(options.valve);  // refuses a name that is only mistyped
+  History history = History::open(options.history);
+  held_valve(history, options.valve);  // refuses a name that is only mistyped
   *invocation.header().settings = {{"valve", options.valve}, {"at", options.at}, {"kind", options.kind}};
   if (invocation.dry_run()) return;
-  history.add_event(options.valve, {options.at, *kind, options.text, {}});
+  history.add_event(options.valve, options.at, options.kind, options.text);
   invocation.finish(fmt::format("{} at {} h: {}\n", options.valve, options.at, options.kind),
                     {{"valve", options.valve}, {"at", options.at}, {"kind", options.kind}});
 }
@@ -75,28 +67,23 @@ void add_event(const Options& options) {
 void write_csv(const Options& options) {
   Invocation invocation("history export", options.common);
   invocation.check_files({options.history}, {options.file});
-  const HistoryFile history(options.history, false);
+  const History history = History::open(options.history);
   if (invocation.dry_run()) return;
-  const HistoryContent content = history.content();
-  write_file(options.file, history_csv(content));
-  invocation.finish(
-      fmt::format("{} valves and {} tuned tables: {}\n", content.valves.size(), content.tables.size(), options.file),
-      {{"output", options.file}, {"valves", content.valves.size()}});
+  const Exported out = export_history(history, options.file);
+  invocation.finish(fmt::format("{} valves and {} tuned tables: {}\n", out.valves, out.tables, options.file),
+                    {{"output", options.file}, {"valves", out.valves}});
 }
 
 void read_csv(const Options& options) {
   Invocation invocation("history import", options.common);
   invocation.check_files({options.file}, {options.history});
-  const HistoryContent content = read_history_csv(options.file);
-  std::optional<HistoryFile> history;  // a new one is made only when there is something to store
-  if (HistoryFile::there(options.history)) history.emplace(options.history, false);
+  if (options.common.dry_run) rehearse_import(options.history, options.file);
   if (invocation.dry_run()) return;
-  if (!history) history.emplace(options.history, true);
-  const Restored count = history->restore(content);
+  const Imported count = import_history(options.history, options.file);
   if (count.present > 0)
     invocation.note({fmt::format("{} rows were in the history already and are left as they are", count.present)});
-  invocation.finish(fmt::format("{} checks and {} events added\n", count.recordings, count.events),
-                    {{"checks", count.recordings}, {"events", count.events}, {"present", count.present}});
+  invocation.finish(fmt::format("{} checks and {} events added\n", count.checks, count.events),
+                    {{"checks", count.checks}, {"events", count.events}, {"present", count.present}});
 }
 
 // Files of a folder that may be exports, by name; one that is being written has another ending.
@@ -115,17 +102,17 @@ std::vector<std::string> exports_in(const std::string& folder) {
 int read_folder(const Options& options) {
   Invocation invocation("history import", options.common);
   invocation.check_files({}, {options.history});
-  std::optional<HistoryFile> history;  // a new one is made only when there is something to store
-  if (HistoryFile::there(options.history)) history.emplace(options.history, false);
-  Restored all;
+  if (History::there(options.history)) History::open(options.history);  // refused before the first file
+  Imported all;
   report::Json set_aside = report::Json::array();
   const std::vector<std::string> files = exports_in(options.file);
   for (const std::string& file : files) try {
-      const HistoryContent content = read_history_csv(file);
-      if (options.common.dry_run) continue;
-      if (!history) history.emplace(options.history, true);
-      const Restored count = history->restore(content);
-      all.recordings += count.recordings, all.events += count.events, all.present += count.present;
+      if (options.common.dry_run) {
+        rehearse_import(options.history, file);
+        continue;
+      }
+      const Imported count = import_history(options.history, file);
+      all.checks += count.checks, all.events += count.events, all.present += count.present;
     } catch (const InputError& error) {
       std::fprintf(stderr, "history import: set aside: %s\n", (file + ": " + error.what()).c_str());
       set_aside.push_back({{"file", file}, {"rule", error.rule}, {"mend", error.mend}});
@@ -135,9 +122,9 @@ int read_folder(const Options& options) {
   if (invocation.dry_run()) return code;
   if (all.present > 0)
     invocation.note({fmt::format("{} rows were in the history already and are left as they are", all.present)});
-  invocation.finish(fmt::format("{} checks and {} events added from {} files, {} set aside\n", all.recordings,
-                                all.events, files.size() - set_aside.size(), set_aside.size()),
-                    {{"checks", all.recordings},
+  invocation.finish(fmt::format("{} checks and {} events added from {} files, {} set aside\n", all.checks, all.events,
+                                files.size() - set_aside.size(), set_aside.size()),
+                    {{"checks", all.checks},
                      {"events", all.events},
                      {"present", all.present},
                      {"files", files.size()},
@@ -148,7 +135,7 @@ int read_folder(const Options& options) {
 void verify(const Options& options, int& exit_code) {
   Invocation invocation("history verify", options.common);
   invocation.check_files({options.history}, {});
-  const HistoryFile history(options.history, false);
+  const History history = History::open(options.history);
   if (invocation.dry_run()) return;
   const std::string found = history.verify();
   if (found != "ok") exit_code = failed_inside;

@@ -32,9 +32,9 @@
 #include "report/shared/page_head.h"
 #include "report/shared/plain_page.h"
 #include "servodx/checkpoint.h"
+#include "servodx/instruction_set.h"
+#include "servodx/pages.h"
 #include "servodx/rig.h"
-#include "simulate/simulate.h"
-#include "store/logo_file.h"
 
 namespace servodx {
 namespace fs = std::filesystem;
@@ -295,7 +295,7 @@ bool Invocation::dry_run() const {
 RigFile Invocation::rig() {
   if (options_.rig.empty()) return {};
   RigFile rig = read_rig_file(options_.rig);
-  header_.head = report::head_of(rig, store::read_logo(rig));
+  header_.head = report::head_of(rig, logo_of(rig));
   header_.inputs.push_back({rig.path, rig.sha256});
   return rig;
 }
@@ -306,10 +306,10 @@ Log Invocation::log(const std::string& path, const RigFile& rig, const ReadOptio
   return log;
 }
 
-std::optional<store::Certificate> Invocation::certificate(const std::string& path) {
+std::optional<Certificate> Invocation::certificate(const std::string& path) {
   if (path.empty()) return {};
   require_option(!options_.report.empty(), "--certificate", "there is no page to put it on", "add --report FILE.html");
-  store::Certificate sheet = store::read_certificate(path);
+  Certificate sheet = read_certificate(path);
   header_.inputs.push_back({sheet.path, sheet.sha256});
   report::add_to_head(header_.head, sheet);
   note(sheet.overdue());

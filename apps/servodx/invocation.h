@@ -8,16 +8,15 @@
 #include <string>
 #include <vector>
 
-#include "parameters/table.h"
 #include "report/shared/json.h"
 #include "report/shared/page.h"
+#include "servodx/certificate.h"
+#include "servodx/log.h"
 #include "servodx/note.h"
 #include "servodx/rig.h"
+#include "servodx/table.h"
 #include "servodx/tune.h"
 #include "servodx/watch.h"
-#include "signals/log.h"
-#include "signals/rig_file.h"
-#include "store/certificate_file.h"
 
 namespace CLI {
 class App;
@@ -92,11 +91,10 @@ class Invocation {
   // Where fits of so many samples take long: how long, and what makes it shorter; to standard error.
   void tell_of_long_fits(const std::vector<Log>& logs) const;
   // The sheet beside the result, into the page's head too; nothing where no file is named.
-  std::optional<store::Certificate> certificate(const std::string& path);
+  std::optional<Certificate> certificate(const std::string& path);
   std::string manifest() const;          // where it will stand; empty where no file is written
   Table table(const std::string& path);  // as the file says
   Tuned tuned(const std::string& path);  // refuses one that is not tuned
-  Table tuned_table(const std::string& path) { return tuned(path).table; }
 
   // Progress on standard error, unless quiet, the first SIGINT or the limit of time as a wish to end, and the
   // checkpoint, which is opened at the first call. The line goes at the next kind of work and at finish().

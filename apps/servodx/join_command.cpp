@@ -8,10 +8,9 @@
 
 #include "commands.h"
 #include "invocation.h"
+#include "servodx/join.h"
 #include "servodx/log.h"
 #include "servodx/rig.h"
-#include "signals/recorders.h"
-#include "signals/signal.h"
 
 namespace servodx {
 namespace {
@@ -40,13 +39,10 @@ void run(const Options& options) {
   ClockFit clock;
   const Log joined = join_recorders(first, second, join, clock);
 
-  std::vector<OutputColumn> columns = {output_column(joined, Signal::time, joined.time)};
-  for (const SignalInfo& signal : signal_list)
-    if (joined.has(signal.signal)) columns.push_back(output_column(joined, signal.signal, joined[signal.signal]));
   const std::string settled = fmt::format(
       "{} on the clock of {} by '{}': offset {:.6f} s (+- {:.1e}), skew {:.2f} ppm (+- {:.2g})", options.second,
-      options.first, info(clock.by).name, clock.offset, clock.offset_error, 1e6 * clock.skew, 1e6 * clock.skew_error);
-  write_log(options.output, columns, {settled});
+      options.first, name_of(clock.by), clock.offset, clock.offset_error, 1e6 * clock.skew, 1e6 * clock.skew_error);
+  write_log(options.output, columns_of(joined), {settled});
 
   invocation.note(joined.notes);
   if (std::isnan(clock.offset_error))
@@ -56,7 +52,7 @@ void run(const Options& options) {
                     {{"output", options.output},
                      {"samples", joined.samples()},
                      {"clock",
-                      {{"signal", info(clock.by).name},
+                      {{"signal", name_of(clock.by)},
                        {"offset", {{"value", clock.offset}, {"std_error", clock.offset_error}, {"unit", "s"}}},
                        {"skew", {{"value", clock.skew}, {"std_error", clock.skew_error}, {"unit", "-"}}},
                        {"correlation", clock.correlation}}}});

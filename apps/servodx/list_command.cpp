@@ -8,27 +8,18 @@
 #include "base/nearest.h"
 #include "base/trouble.h"
 #include "commands.h"
-#include "effects/effect.h"
-#include "effects/registry.h"
-#include "effects/row_effects.h"
-#include "faults/fault.h"
-#include "faults/registry.h"
-#include "fit/nominal.h"
 #include "invocation.h"
-#include "model/state.h"
-#include "parameters/list.h"
 #include "report/list/schema.h"
 #include "report/list/trouble_words.h"
 #include "report/shared/columns.h"
 #include "report/shared/handy.h"
 #include "report/shared/json.h"
 #include "rig/excitations.h"
+#include "servodx/data_sheet.h"
+#include "servodx/instruction_set.h"
+#include "servodx/lists.h"
 #include "servodx/rig.h"
 #include "servodx/table.h"
-#include "signals/signal.h"
-#include "simulate/scenario.h"
-#include "simulate/simulate.h"
-#include "valve_maps/registry.h"
 
 namespace servodx {
 namespace {
@@ -50,18 +41,27 @@ Listing faults(const Options&, Invocation&) {
   Listing out;
   Columns table("lll");
   table.row({"fault", "severity", "meaning"});
-  for (const Fault* fault : fault_list()) {
-    table.row({std::string(fault->name), std::string(fault->unit), std::string(fault->meaning)});
-    out.items.push_back({{"name", fault->name},
-                         {"unit", fault->unit},
-                         {"meaning", fault->meaning},
-                         {"healthy", fault->healthy},
-                         {"least", fault->least},
-                         {"worst", fault->worst},
-                         {"separating_test", fault->test},
-                         {"action", fault->action}});
+  for (const ListedFault& fault : listed_faults()) {
+    table.row({fault.name, fault.unit, fault.meaning});
+    out.items.push_back({{"name", fault.name},
+                         {"unit", fault.unit},
+                         {"meaning", fault.meaning},
+                         {"healthy", fault.healthy},
+                         {"least", fault.least},
+                         {"worst", fault.worst},
+                         {"separating_test", fault.separating_test},
+                         {"action", fault.action}});
   }
   out.text = table.text();
+  return out;
+}
+
+Json parameter_json(const ListedEffect::Parameter& p) {
+  Json out = Json::object();
+  if (p.id > 0) out["id"] = p.id;
+  out["name"] = p.name, out["unit"] = p.unit, out["off"] = p.off;
+  if (p.lower) out["lower"] = *p.lower, out["upper"] = p.upper.value(), out["start"] = p.start.value();
+  out["meaning"] = p.meaning;
   return out;
 }
 
@@ -69,38 +69,20 @@ Listing effects(const Options&, Invocation&) {
   Listing out;
   Columns table("lllll");
   table.row({"effect", "kind", "where", "frees the rows", "meaning"});
-  const auto add = [&](const std::string& name, const char* kind, const std::string& where, const std::string& meaning,
-                       const Json& parameters) {
+  for (const ListedEffect& effect : listed_effects()) {
+    const char* kind = effect.of_table ? "table" : "file";
     std::vector<std::string> names;
-    for (const Json& p : parameters) names.push_back(p.at("name"));
-    table.row({name, kind, where, report::join(names), meaning});
-    out.items.push_back(
-        {{"name", name}, {"kind", kind}, {"where", where}, {"meaning", meaning}, {"parameters", parameters}});
-  };
-  for (const EffectInfo& effect : effect_list()) {
     Json parameters = Json::array();
-    for (const EffectParameter& p : effect.parameters)
-      parameters.push_back({{"name", p.name},
-                            {"unit", p.unit},
-                            {"off", p.off},
-                            {"lower", p.lower},
-                            {"upper", p.upper},
-                            {"start", p.start},
-                            {"meaning", p.meaning}});
-    add(effect.name, "file", effect.place, effect.meaning, parameters);
-  }
-  for (const RowEffect& effect : row_effects()) {
-    Json parameters = Json::array();
-    for (const int at : effect.rows) {
-      const ParameterInfo& p = parameter_list[static_cast<std::size_t>(at)];
-      parameters.push_back(
-          {{"id", p.id}, {"name", p.name}, {"unit", p.unit}, {"off", effect.off}, {"meaning", p.meaning}});
+    for (const ListedEffect::Parameter& p : effect.parameters) {
+      names.push_back(p.name);
+      parameters.push_back(parameter_json(p));
     }
-    for (const int at : effect.shapes) {
-      const EffectParameter& p = parameter_at(at);
-      parameters.push_back({{"name", p.name}, {"unit", p.unit}, {"off", p.off}, {"meaning", p.meaning}});
-    }
-    add(effect.name, "table", effect.where, effect.meaning, parameters);
+    table.row({effect.name, kind, effect.where, report::join(names), effect.meaning});
+    out.items.push_back({{"name", effect.name},
+                         {"kind", kind},
+                         {"where", effect.where},
+                         {"meaning", effect.meaning},
+                         {"parameters", parameters}});
   }
   out.text =
       table.text() +
@@ -117,11 +99,10 @@ Listing params(const Options& options, Invocation& invocation) {
   if (options.params.empty()) {
     Columns table("rllll");
     table.row({"id", "name", "group", "unit", "meaning"});
-    for (const ParameterInfo& p : parameter_list) {
-      table.row({std::to_string(p.id), std::string(p.name), std::string(name_of(p.group)), std::string(p.unit),
-                 std::string(p.meaning)});
+    for (const ListedRow& p : listed_rows()) {
+      table.row({std::to_string(p.id), p.name, p.group, p.unit, p.meaning});
       out.items.push_back(
-          {{"id", p.id}, {"name", p.name}, {"group", name_of(p.group)}, {"unit", p.unit}, {"meaning", p.meaning}});
+          {{"id", p.id}, {"name", p.name}, {"group", p.group}, {"unit", p.unit}, {"meaning", p.meaning}});
     }
     out.text = table.text();
     return out;
@@ -154,18 +135,16 @@ Listing params(const Options& options, Invocation& invocation) {
 
 Listing models(const Options&, Invocation&) {
   Listing out;
-  constexpr const char* meaning =
-      "two-stage flapper-nozzle valve with feedback wire, lines and actuator; what logs are fitted with";
   Columns table("lrrll");
   table.row({"model", "states", "rows", "kernel", "meaning"});
-  table.row(
-      {"identification", std::to_string(n_base_states), std::to_string(n_parameters), instruction_set(), meaning});
-  out.items.push_back({{"name", "identification"},
-                       {"states", n_base_states},
-                       {"rows", n_parameters},
+  const ListedModel model = identification_model();
+  table.row({model.name, std::to_string(model.states), std::to_string(model.rows), instruction_set(), model.meaning});
+  out.items.push_back({{"name", model.name},
+                       {"states", model.states},
+                       {"rows", model.rows},
                        {"kernel", instruction_set()},
-                       {"meaning", meaning}});
-  for (const valve_maps::MapInfo& map : valve_maps::map_list()) {
+                       {"meaning", model.meaning}});
+  for (const ListedMap& map : listed_maps()) {
     table.row({map.name, "0", "", "", "valve map: " + map.meaning});
     out.items.push_back({{"name", map.name}, {"kind", "valve map"}, {"meaning", map.meaning}});
   }
@@ -177,14 +156,13 @@ Listing signals(const Options&, Invocation&) {
   Listing out;
   Columns table("llll");
   table.row({"signal", "inside", "accepted units", "meaning"});
-  for (const SignalInfo& signal : signal_list) {
-    table.row({std::string(signal.name), std::string(signal.si_unit), accepted_units(signal.signal),
-               std::string(signal.description)});
+  for (const ListedSignal& signal : listed_signals()) {
+    table.row({signal.name, signal.si_unit, signal.accepted_units, signal.meaning});
     out.items.push_back({{"name", signal.name},
                          {"si_unit", signal.si_unit},
-                         {"accepted_units", accepted_units(signal.signal)},
-                         {"simulated", simulated_index(signal.signal) >= 0},
-                         {"meaning", signal.description}});
+                         {"accepted_units", signal.accepted_units},
+                         {"simulated", signal.simulated},
+                         {"meaning", signal.meaning}});
   }
   out.text = table.text();
   return out;

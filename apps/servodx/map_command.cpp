@@ -2,35 +2,26 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <memory>
 #include <nlohmann/json.hpp>
 
 #include "base/atomic_file.h"
-#include "base/celsius.h"
 #include "base/units.h"
 #include "commands.h"
-#include "fit/nominal.h"
-#include "fit/oil_of.h"
 #include "invocation.h"
-#include "model/state.h"
-#include "parameters/list.h"
 #include "report/map/valve_maps.h"
 #include "report/shared/columns.h"
 #include "report/shared/json.h"
+#include "servodx/data_sheet.h"
+#include "servodx/lists.h"
+#include "servodx/map.h"
+#include "servodx/map_points.h"
 #include "servodx/rig.h"
 #include "servodx/table.h"
-#include "valve_maps/compare.h"
-#include "valve_maps/high_fidelity.h"
-#include "valve_maps/papers_valve.h"
-#include "valve_maps/registry.h"
-#include "valve_maps/valve_numbers.h"
 
 namespace servodx {
 namespace {
-
-using namespace valve_maps;
-
-constexpr int travels = 81, flows = 41;
 
 struct Options {
   CommonOptions common;
@@ -38,21 +29,6 @@ struct Options {
   std::string supply, travel, flow;  // quantities; empty: from the valve
   bool paper = false;
 };
-
-ValveGeometry geometry_of(const Table& table, const RigFile& rig) {
-  const Oil oil = oil_of(rig.fluid, reference_oil_temperature);
-  ValveGeometry g;
-  g.port_width = table[row::port_width].nominal;
-  g.radial_clearance = table[row::radial_clearance].nominal;
-  g.lap_pa = table[row::lap_pa].nominal;
-  g.lap_pb = table[row::lap_pb].nominal;
-  g.lap_at = table[row::lap_at].nominal;
-  g.lap_bt = table[row::lap_bt].nominal;
-  g.density = oil.density;
-  g.dynamic_viscosity = oil.dynamic_viscosity;
-  g.return_pressure = table[row::return_pressure].nominal;
-  return g;
-}
 
 double quantity_or(const std::string& text, const char* option, Dimension dimension, double otherwise) {
   if (text.empty()) return otherwise;
@@ -63,9 +39,10 @@ double quantity_or(const std::string& text, const char* option, Dimension dimens
 
 void run(const Options& options) {
   std::vector<std::string> names;
-  for (const MapInfo& map : map_list()) names.push_back(map.name);
+  for (const ListedMap& map : listed_maps()) names.push_back(map.name);
   const bool all = options.model == "all";
-  require_option(all || find_map(options.model), "--model", "there is no map '" + options.model + "'",
+  require_option(all || std::find(names.begin(), names.end(), options.model) != names.end(), "--model",
+                 "there is no map '" + options.model + "'",
                  "use one of " + report::join(names) + ", or all with --svg");
   require_option(!all || options.output.empty(), "--output", "holds one map", "name a model, or leave out -o");
   require_option(!options.output.empty() || !options.svg.empty() || !options.common.report.empty(), "--output",
@@ -79,45 +56,40 @@ void run(const Options& options) {
   const RigFile rig = invocation.rig();
   const Table table = apply_rig_facts(invocation.table(params), rig);
 
-  ValveGeometry geometry = geometry_of(table, rig);
-  double measured_at = table[row::supply_pressure].nominal - table[row::return_pressure].nominal;
-  if (options.paper) {
-    measured_at = papers_supply;
-    geometry = overlapped_to(geometry, papers_leak_share, measured_at);
-  }
-  HighFidelity reference(geometry);
-  const ValveNumbers valve = reference.measure(measured_at);
-  const double supply = quantity_or(options.supply, "--supply", Dimension::pressure, valve.supply);
-  const double travel = quantity_or(options.travel, "--travel", Dimension::length, default_travel(valve));
-  const double flow = quantity_or(options.flow, "--flow", Dimension::flow, default_flow(valve));
-  const auto map_of = [&](const MapInfo& info, double at) {
-    return grid(info.make(valve, reference), travel, travels, flow, flows, at);
-  };
+  const ValveMaps maps(table, rig, options.paper);
+  MapExtent extent = maps.usual_extent();
+  extent.supply = quantity_or(options.supply, "--supply", Dimension::pressure, extent.supply);
+  extent.travel = quantity_or(options.travel, "--travel", Dimension::length, extent.travel);
+  extent.flow = quantity_or(options.flow, "--flow", Dimension::flow, extent.flow);
 
-  *invocation.header().settings = {{"model", options.model}, {"supply", supply}, {"travel", travel}, {"flow", flow}};
+  *invocation.header().settings = {
+      {"model", options.model}, {"supply", extent.supply}, {"travel", extent.travel}, {"flow", extent.flow}};
   if (options.paper) (*invocation.header().settings)["paper"] = true;
   if (invocation.dry_run()) return;
 
-  if (!options.output.empty()) write_file(options.output, report::map_csv(map_of(*find_map(options.model), supply)));
+  if (!options.output.empty()) write_file(options.output, report::map_csv(maps.points(options.model, extent)));
   std::vector<report::MapPicture> pictures;
   if (!options.svg.empty() || invocation.wants_report()) {
-    for (const MapInfo& info : map_list())
-      if (all) pictures.push_back({info.name, map_of(info, supply), supply});
+    for (const std::string& name : names)
+      if (all) pictures.push_back({name, maps.points(name, extent), extent.supply});
     if (!all)
-      for (double at : falling_supplies(supply, valve))
+      for (const double at : maps.falling_supplies(extent.supply)) {
+        MapExtent fallen = extent;
+        fallen.supply = at;
         pictures.push_back({fmt::format("{}, P_SR {:.3g} bar", options.model, find_unit("bar")->from_si(at)),
-                            map_of(*find_map(options.model), at), at});
-    if (!all && options.model != "HF") pictures.front().detailed = map_of(*find_map("HF"), supply);
+                            maps.points(options.model, fallen), at});
+      }
+    if (!all && options.model != "HF") pictures.front().detailed = maps.points("HF", extent);
   }
   if (!options.svg.empty()) write_file(options.svg, report::maps_svg(pictures));
 
-  const std::vector<MapError> errors = compare(valve, reference, {.stop = table[row::spool_stop].nominal});
+  const auto errors = maps.errors();
   if (invocation.wants_report())
-    invocation.write_report(report::maps_page(invocation.header(), valve, errors, pictures));
-  report::Json body = report::maps_json(valve, errors);
+    invocation.write_report(report::maps_page(invocation.header(), maps.numbers(), errors, pictures));
+  report::Json body = report::maps_json(maps.numbers(), errors);
   body["output"] = options.output;
   body["picture"] = options.svg;
-  invocation.finish(fmt::format("wrote {}\n", report::join(outputs)) + report::text_of(valve, errors), body);
+  invocation.finish(fmt::format("wrote {}\n", report::join(outputs)) + report::text_of(maps.numbers(), errors), body);
 }
 
 }  // namespace

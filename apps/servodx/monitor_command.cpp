@@ -8,15 +8,13 @@
 
 #include "base/units.h"
 #include "commands.h"
-#include "fit/log_data.h"
-#include "fit/nominal.h"
 #include "invocation.h"
-#include "prognose/checks.h"
-#include "prognose/monitor.h"
 #include "report/shared/conditions.h"
 #include "report/shared/handy.h"
 #include "report/shared/json.h"
+#include "servodx/data_sheet.h"
 #include "servodx/log.h"
+#include "servodx/monitor.h"
 #include "servodx/rig.h"
 #include "servodx/table.h"
 
@@ -35,63 +33,56 @@ void run(const Options& options) {
   const Table table = apply_rig_facts(invocation.table(options.params), rig);
   const Log log = invocation.log(options.log, rig);
   report::add_to_head(invocation.header().head, {log});
-  const LogData data = prepare(log, rig);
-  MonitorParameters monitor = monitor_parameters(table, supply_of(data, table));
-  const PressureLaw law = pressure_law(options.model, table, supply_of(data, table));
-  const bool closed = !options.loop_gain.empty();
-  if (closed) {
-    require_option(log.has(Signal::setpoint), "--loop-gain", "the log has no 'setpoint' to close the loop on",
-                   "leave it away: the measured current drives the monitor");
-    monitor.control_gain = parse_gain(options.loop_gain, Dimension::current, {.file = "--loop-gain"}).value;
-  }
-  *invocation.header().settings = {{"model", options.model}, {"loop_gain", monitor.control_gain}};
+  MonitorOptions how{.model = options.model};
+  if (!options.loop_gain.empty())
+    how.loop_gain = parse_gain(options.loop_gain, Dimension::current, {.file = "--loop-gain"}).value;
+  const LogMonitor monitor(log, table, rig, how);
+  const MonitorParameters& parameters = monitor.parameters();
+  *invocation.header().settings = {{"model", options.model}, {"loop_gain", parameters.control_gain}};
   if (invocation.dry_run()) return;
 
   const auto before = std::chrono::steady_clock::now();
-  MonitorRun run =
-      closed ? run_monitor_loop(monitor, law, data, log[Signal::setpoint]) : run_monitor(monitor, law, data);
+  MonitorRun run = monitor.run();
   const double wall = std::chrono::duration<double>(std::chrono::steady_clock::now() - before).count();
   const double simulated = log.time.back() - log.time.front();
 
   report::Json error = nullptr;
   std::string text = fmt::format("monitored {} s at {} samples: {}\n{:.0f} times real time\n",
                                  report::digits(simulated), log.samples(), options.output, simulated / wall);
-  if (log.has(Signal::spool_position)) {
-    const MeanError e = mean_error(log.time, log[Signal::spool_position], run.spool);
-    error = {{"value", e.figure.value},
-             {"std_error", e.figure.std_error},
+  if (const auto e = monitor.error_of(run)) {
+    error = {{"value", e->value},
+             {"std_error", e->std_error},
              {"unit", "m"},
-             {"settled_at", e.settled_at},
-             {"settled", e.settled}};
-    text += fmt::format("mean error {} +- {}, {}\n", report::handy(e.figure.value, "m"),
-                        report::handy(e.figure.std_error, "m"),
-                        e.settled ? fmt::format("settled from {} on", report::duration(e.settled_at))
-                                  : "not settled: the log is short for its variation");
+             {"settled_at", e->settled_at},
+             {"settled", e->settled}};
+    text += fmt::format("mean error {} +- {}, {}\n", report::handy(e->value, "m"), report::handy(e->std_error, "m"),
+                        e->settled ? fmt::format("settled from {} on", report::duration(e->settled_at))
+                                   : "not settled: the log is short for its variation");
   }
   write_log(options.output, {output_column(log, Signal::time, log.time),
                              output_column(log, Signal::spool_position, std::move(run.spool)),
                              output_column(log, Signal::piston_position, std::move(run.piston)),
                              output_column(log, Signal::load_pressure, std::move(run.pressure))});
-  invocation.note(data.notes);
+  invocation.note(monitor.notes());
   invocation.header().simulations = 1;
   invocation.finish(text, {{"output", options.output},
                            {"samples", log.samples()},
                            {"real_time_factor", simulated / wall},
                            {"mean_error", error},
                            {"parameters",
-                            {{"GM [N/A]", monitor.motor_gain},
-                             {"KSF [N/m]", monitor.wire_stiffness},
-                             {"KFt [N/m]", monitor.flapper_stiffness},
-                             {"XFM [m]", monitor.flapper_limit},
-                             {"GQF/ASV [1/s]", monitor.first_stage_gain},
-                             {"XSM [m]", monitor.spool_limit},
-                             {"GP [Pa/m]", monitor.pressure_gain},
-                             {"GQ [m2/s]", monitor.flow_gain},
-                             {"PSR [Pa]", monitor.pressure_limit},
-                             {"AJ [m2]", monitor.piston_area},
-                             {"CJ [N s/m]", monitor.viscous},
-                             {"MJ [kg]", monitor.mass},
-                             {"XJM [m]", monitor.piston_limit}}}});
+                            {{"GM [N/A]", parameters.motor_gain},
+                             {"KSF [N/m]", parameters.wire_stiffness},
+                             {"KFt [N/m]", parameters.flapper_stiffness},
+                             {"XFM [m]", parameters.flapper_limit},
+                             {"GQF/ASV [1/s]", parameters.first_stage_gain},
+                             {"XSM [m]", parameters.spool_limit},
+                             {"GP [Pa/m]", parameters.pressure_gain},
+                             {"GQ [m2/s]", parameters.flow_gain},
+                             {"PSR [Pa]", parameters.pressure_limit},
+                             {"AJ [m2]", parameters.piston_area},
+                             {"CJ [N s/m]", parameters.viscous},
+                             {"MJ [kg]", parameters.mass},
+                             {"XJM [m]", parameters.piston_limit}}}});
 }
 
 }  // namespace

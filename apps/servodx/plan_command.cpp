@@ -11,7 +11,6 @@
 #include "base/units.h"
 #include "baseline_beside.h"
 #include "commands.h"
-#include "door/baseline_parts.h"
 #include "invocation.h"
 #include "report/plan/plan.h"
 #include "report/shared/json.h"
@@ -111,7 +110,7 @@ int run(const Options& options) {
   if (!options.baseline.empty()) {
     baseline = baseline_beside(invocation, options.baseline, rig);
     require_same_table(*baseline, tuned);
-    header.inputs.push_back({options.baseline, baseline->parts->sha256});
+    header.inputs.push_back({options.baseline, baseline->sha256});
   }
   std::optional<Log> like;
   if (!options.like.empty()) like = invocation.log(options.like, rig);

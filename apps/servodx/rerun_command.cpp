@@ -30,7 +30,7 @@
 #include "read_manifest.h"
 #include "report/shared/columns.h"
 #include "report/shared/json.h"
-#include "simulate/simulate.h"
+#include "servodx/instruction_set.h"
 
 namespace servodx {
 namespace fs = std::filesystem;

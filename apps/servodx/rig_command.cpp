@@ -27,7 +27,7 @@
 #include "rig/rig_faults.h"
 #include "rig/rig_model.h"
 #include "rig/rig_run.h"
-#include "signals/log.h"
+#include "servodx/log.h"
 
 namespace servodx {
 namespace fs = std::filesystem;

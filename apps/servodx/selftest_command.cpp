@@ -4,12 +4,12 @@
 #include <nlohmann/json.hpp>
 
 #include "commands.h"
-#include "fit/selftest.h"
 #include "invocation.h"
 #include "report/selftest/selftest.h"
 #include "report/shared/json.h"
 #include "servodx/log.h"
 #include "servodx/rig.h"
+#include "servodx/selftest.h"
 #include "servodx/table.h"
 
 namespace servodx {
@@ -23,9 +23,7 @@ struct Options {
 
 void run(const Options& options) {
   SelftestOptions how = options.selftest;
-  require_option(how.repeats >= 2, "--repeats", "must be at least 2", "20 tell a coverage to about 10 %");
-  require_option(how.spread > 0 && how.spread <= 0.25, "--spread", "must lie between 0 and 0.25",
-                 "0.05 of a row's interval");
+  how.validate();
   Invocation invocation("selftest", options.common);
   invocation.check_files({options.log, options.params}, {});
   const RigFile rig = invocation.rig();
@@ -36,8 +34,7 @@ void run(const Options& options) {
   if (invocation.dry_run()) return;
   how.seed = options.common.seed;
   how.threads = options.common.threads;
-  how.quiet = options.common.quiet;
-  how.stop = &stop_on_interrupt();
+  how.watch = invocation.watch();
   const SelftestResult result = selftest(log, table, rig, how);
   header.simulations = result.simulations;
   header.failed_simulations = result.failed_simulations;

@@ -4,13 +4,13 @@
 #include <nlohmann/json.hpp>
 
 #include "commands.h"
-#include "fit/nominal.h"
 #include "invocation.h"
 #include "report/sensitivity/sensitivity.h"
+#include "servodx/data_sheet.h"
 #include "servodx/log.h"
 #include "servodx/rig.h"
+#include "servodx/sensitivity.h"
 #include "servodx/table.h"
-#include "tune/sensitivity.h"
 
 namespace servodx {
 namespace {

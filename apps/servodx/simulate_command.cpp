@@ -4,24 +4,23 @@
 #include <CLI/CLI.hpp>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "commands.h"
-#include "door/simulation_steps.h"
-#include "fit/log_data.h"
-#include "fit/nominal.h"
 #include "invocation.h"
 #include "report/shared/columns.h"
 #include "report/shared/conditions.h"
 #include "report/shared/handy.h"
 #include "report/shared/json.h"
 #include "report/simulate/simulate_page.h"
+#include "servodx/data_sheet.h"
 #include "servodx/log.h"
+#include "servodx/pages.h"
 #include "servodx/rig.h"
 #include "servodx/simulate.h"
 #include "servodx/table.h"
-#include "simulate/scenario.h"
 
 namespace servodx {
 namespace {
@@ -29,13 +28,12 @@ namespace {
 struct Options {
   CommonOptions common;
   std::string log, params, output;
-  double step = fine_steps().step;  // [s]
-  bool step_given = false, reference = false;
+  std::optional<double> step;  // [s]
+  bool reference = false;
 };
 
 void run(const Options& options) {
-  SimulationOptions how{.step = {}, .reference = options.reference, .threads = options.common.threads};
-  if (options.step_given) how.step = options.step;
+  const SimulationOptions how{.step = options.step, .reference = options.reference, .threads = options.common.threads};
   how.validate();
   Invocation invocation("simulate", options.common);
   invocation.check_files({options.log, options.params}, {options.output});
@@ -43,8 +41,8 @@ void run(const Options& options) {
   const Table table = apply_rig_facts(invocation.table(options.params), rig);
   const Log log = invocation.log(options.log, rig);
   report::add_to_head(invocation.header().head, {log});
-  require_channels(prepare(log, rig));
-  const SimulateOptions steps = door::steps_of(how);
+  require_simulated_signal(log, rig);
+  const SimulationSteps steps = steps_of(how);
   report::Header& header = invocation.header();
   *header.settings = {{"step", steps.step}, {"impact_step", steps.impact_step}};
   if (invocation.dry_run()) return;
@@ -54,8 +52,7 @@ void run(const Options& options) {
   header.simulations = 1;
   invocation.note(simulated.notes);
   if (invocation.wants_report())
-    invocation.write_report(
-        report::simulate_page(header, replay(log, table, rig, {{"simulated", candidate_of(table)}})));
+    invocation.write_report(report::simulate_page(header, replay_of(log, table, rig, "simulated")));
   report::Json signals = {{{"signal", name_of(Signal::time)}, {"unit", output_column(log, Signal::time, {}).unit}}};
   std::vector<std::string> names;
   for (const OutputColumn& c : simulated.columns) {
@@ -76,14 +73,10 @@ void add_simulate_command(CLI::App& app) {
   command->add_option("-o,--output", options->output, "the log's measured signals, simulated")
       ->required()
       ->type_name("SIM.csv");
-  CLI::Option* step =
-      command->add_option("--step", options->step, "largest step of the integrator [s]")->type_name("S");
+  command->add_option("--step", options->step, "largest step of the integrator [s]")->type_name("S");
   command->add_flag("--reference", options->reference, "steps of 1e-5 s: slow, to compare with");
   add_common_options(*command, options->common);
-  command->callback([options, step] {
-    options->step_given = step->count() > 0;
-    run(*options);
-  });
+  command->callback([options] { run(*options); });
 }
 
 }  // namespace servodx

@@ -8,16 +8,7 @@
 #include "base/trouble.h"
 #include "base/units.h"
 #include "commands.h"
-#include "diagnose/check_log.h"
-#include "diagnose/judge.h"
-#include "door/stands_first.h"
-#include "effects/registry.h"
-#include "fit/free_values.h"
-#include "fit/log_data.h"
-#include "fit/replay.h"
-#include "fit/tuned_state.h"
 #include "invocation.h"
-#include "parameters/table.h"
 #include "report/shared/columns.h"
 #include "report/shared/conditions.h"
 #include "report/shared/json.h"
@@ -27,12 +18,14 @@
 #include "report/tune/tune_page.h"
 #include "report/tune/tune_text.h"
 #include "report/tune/tune_words.h"
-#include "servodx/explain.h"
+#include "servodx/check_log.h"
 #include "servodx/log.h"
+#include "servodx/miss.h"
+#include "servodx/pages.h"
 #include "servodx/rig.h"
+#include "servodx/table.h"
 #include "servodx/tune.h"
 #include "servodx/watch.h"
-#include "tune/tune.h"
 
 namespace servodx {
 namespace {
@@ -52,7 +45,7 @@ struct Options {
 std::vector<Promise> promises(const std::vector<Log>& logs, const Tuned& tuned, const RigFile& rig, int threads,
                               Invocation& invocation) {
   std::vector<Promise> all;
-  if (tuned.interrupted || all_on_test_stand(logs, rig)) return all;
+  if (tuned.interrupted || rig_kind(logs, rig).on_stand) return all;
   const Watch watch = invocation.watch();
   for (const Log& log : logs) {
     try {
@@ -79,27 +72,6 @@ std::map<std::string, double> priors_of(const std::vector<std::string>& list) {
   return priors;
 }
 
-// The log that the tune follows worst, of the channels that it does not follow.
-const Log& worst_of(const std::vector<Log>& logs, const TuneResult& result) {
-  std::size_t worst = 0;
-  double most = 0;
-  for (std::size_t l = 0; l < logs.size(); ++l)
-    for (const ChannelResult& c : result.logs[l].channels)
-      for (const Unfollowed& u : result.unfollowed)
-        if (c.signal == u.signal && c.rms / c.noise_rms > most) most = c.rms / c.noise_rms, worst = l;
-  return logs[worst];
-}
-
-// What the simulation gets wrong there, where the tune is not good enough.
-std::optional<BeyondFaults> likeliest_of(const std::vector<Log>& logs, const Tuned& tuned, const RigFile& rig,
-                                         const TuneOptions& options) {
-  if (tuned.whole->unfollowed.empty() || options.watch.stopped()) return {};
-  const Explanation e = explain({worst_of(logs, *tuned.whole)}, tuned, rig,
-                                {.seed = options.seed, .threads = options.threads, .watch = options.watch});
-  if (e.interrupted) return {};
-  return stands_first(*e.whole);
-}
-
 int run(const Options& options) {
   TuneOptions tune_options = options.tune;
   if (options.effects == "none")
@@ -122,18 +94,15 @@ int run(const Options& options) {
   inputs.push_back(options.params);
   invocation.check_files(inputs, {options.output});
   const RigFile rig = invocation.rig();
-  const Table nominal = invocation.table(options.params);  // tune_table() applies the facts, effects' rows included
+  const Table nominal = invocation.table(options.params);  // tune() applies the facts, effects' rows included
   const std::vector<Log> logs = invocation.logs(options.logs, rig);
   report::add_to_head(invocation.header().head, logs);
 
   // Those asked for stay free; of the default ones the logs decide.
   const std::vector<std::string> effects = tune_options.effects.value_or(default_effects(rig_kind(logs, rig)));
   for (const std::string& name : tune_options.profile)
-    if (Table with_effects = nominal; name != "all" && !name.empty()) {
-      add_effect_rows(with_effects, effects);
-      require_option(with_effects.find(name) >= 0, "--profile", "the table has no row '" + name + "'",
-                     "name rows of the table, with commas between, or 'all'");
-    }
+    require_option(name == "all" || name.empty() || with_effects(nominal, effects).find(name) >= 0, "--profile",
+                   "the table has no row '" + name + "'", "name rows of the table, with commas between, or 'all'");
 
   report::Header& header = invocation.header();
   *header.settings = {{"population", tune_options.population},
@@ -150,22 +119,20 @@ int run(const Options& options) {
   tune_options.watch = invocation.watch();
   const Tuned tuned = tune(logs, nominal, rig, tune_options);
   write_tuned(options.output, tuned);
-  const TuneResult& result = *tuned.whole;
+  const auto& result = *tuned.whole;
 
   header.simulations = result.simulations;
   header.failed_simulations = result.failed_simulations;
   for (const Log& log : logs) invocation.note(log.notes);
   invocation.note(result.notes);
-  const std::optional<BeyondFaults> likeliest = likeliest_of(logs, tuned, rig, tune_options);
+  const auto likeliest = likeliest_miss(
+      logs, tuned, rig, {.seed = tune_options.seed, .threads = tune_options.threads, .watch = tune_options.watch});
   const report::GoodEnough good = report::good_enough(
       result, promises(logs, tuned, rig, options.common.threads, invocation), likeliest ? &*likeliest : nullptr);
   if (tune_options.watch.stopped()) invocation.note_how_to_go_on();
-  if (invocation.wants_report()) {
-    std::vector<Replay> replays;
-    for (std::size_t l = 0; l < std::min(logs.size(), report::most_replays); ++l)
-      replays.push_back(replay(logs[l], result.table, rig, {{"tuned", result.logs[l].candidate}}));
-    invocation.write_report(report::tune_page(header, result, good, replays));
-  }
+  if (invocation.wants_report())
+    invocation.write_report(
+        report::tune_page(header, result, good, replays_of(tuned, logs, rig, report::most_replays)));
   report::Json body = report::tune_json(result);
   body["good_enough"] = report::to_json(good);
   invocation.finish(report::text_of(result, good, {.colour = colour_wanted(), .written_to = options.output}), body);

@@ -14,10 +14,6 @@
 #include "base/byte_tail.h"
 #include "base/progress.h"
 #include "commands.h"
-#include "diagnose/diagnose.h"
-#include "diagnose/judge.h"
-#include "door/baseline_parts.h"
-#include "fit/replay.h"
 #include "fleet/prometheus.h"
 #include "fleet/result_file.h"
 #include "fleet/run.h"
@@ -27,12 +23,13 @@
 #include "invocation.h"
 #include "report/diagnose/diagnose_page.h"
 #include "report/diagnose/diagnosis_text.h"
-#include "report/diagnose/diagnosis_words.h"
 #include "report/fleet/fleet.h"
 #include "report/shared/json.h"
 #include "report/shared/text_options.h"
 #include "result_folder.h"
+#include "servodx/diagnose.h"
 #include "servodx/log.h"
+#include "servodx/pages.h"
 
 namespace servodx {
 namespace {
@@ -46,11 +43,11 @@ struct Options {
 };
 
 // A page a log, there before its result is: so a result that stands has its page.
-void write_page(const Judging& judging, const std::string& path, const Diagnosis& d, const Log& log,
+void write_page(const Judging& judging, const std::string& path, const Verdict& verdict, const Log& log,
                 const report::Header& header) {
-  const std::vector<Replay> replays = {
-      replay(log, judging.tuned.table, judging.rig, report::candidates_of(d.assessment.explanations))};
-  write_file(path, report::diagnose_page(header, {d}, parts_of(judging.baseline).detection, replays).html());
+  const std::vector verdicts = {verdict};
+  const auto replays = replays_of(verdicts, {log}, judging.tuned, judging.rig, 1);
+  write_file(path, report::diagnose_page(header, verdicts, judging.baseline, replays).html());
 }
 
 class Watching {
@@ -63,8 +60,8 @@ class Watching {
         progress_("watch", {.quiet = options.common.quiet}) {
     run_.out = options.out;
     if (options.pages)
-      judge_.beside = [this, &judging](const std::string& name, const Diagnosis& d, const Log& log) {
-        write_page(judging, judge_.folder().page_path(name), d, log, judge_.header());
+      judge_.beside = [this, &judging](const std::string& name, const Verdict& verdict, const Log& log) {
+        write_page(judging, judge_.folder().page_path(name), verdict, log, judge_.header());
       };
     if (!options.prometheus.empty()) gauges_.take_results(options.out);
   }
@@ -108,16 +105,17 @@ class Watching {
                                                       .watch = {.stop = [this] { return stop_.load(); }}});
     run_.logs += outcome.end != RowEnd::interrupted;
     add(run_, outcome, progress_, invocation_.header(), judge_.header());
-    if (outcome.end == RowEnd::made) tell(*outcome.diagnosis);
+    if (outcome.end == RowEnd::made) tell(*outcome.judged);
     const std::string log = options_.folder + "/" + file;
-    if (outcome.diagnosis) gauges_.take(log, {outcome.verdict, outcome.fault, outcome.error_ratio, time_of_file(log)});
+    if (const auto& judged = outcome.judged)
+      gauges_.take(log, {outcome.verdict, judged->fault, judged->error / judged->threshold, time_of_file(log)});
     gauges_.set_aside(run_.set_aside.size());
   }
 
   // As they come: a pipe or a journal is read line by line.
-  void tell(const Diagnosis& d) const {
+  void tell(const Verdict& verdict) const {
     if (!invocation_.prints_text()) return;
-    const std::string text = report::text_of(d, {.colour = colour_wanted(), .written_to = ""});
+    const std::string text = report::text_of(*verdict.whole, {.colour = colour_wanted(), .written_to = ""});
     std::printf("%s\n", text.substr(0, text.find('\n')).c_str());
     std::fflush(stdout);
   }

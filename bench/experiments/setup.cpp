@@ -7,7 +7,7 @@
 #include "diagnose/judge.h"
 #include "experiments/studies.h"
 #include "fit/log_data.h"
-#include "fit/nominal.h"
+#include "servodx/data_sheet.h"
 #include "servodx/diagnose.h"
 #include "servodx/log.h"
 #include "servodx/rig.h"

@@ -24,6 +24,7 @@
 #include "prognosis/study.h"
 #include "report/shared/line_chart.h"
 #include "rig/rig_run.h"
+#include "servodx/monitor.h"
 #include "store/history.h"
 
 namespace servodx::study {

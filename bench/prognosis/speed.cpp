@@ -7,6 +7,7 @@
 #include "prognose/monitor.h"
 #include "prognosis/study.h"
 #include "rig/rig_run.h"
+#include "servodx/monitor.h"
 #include "valve_maps/registry.h"
 
 namespace servodx::study {

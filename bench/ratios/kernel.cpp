@@ -12,6 +12,7 @@
 #include "ratios/measure.h"
 #include "ratios/rows.h"
 #include "ratios/trace.h"
+#include "servodx/instruction_set.h"
 #include "servodx/log.h"
 #include "signals/filters.h"
 #include "simulate/scenario.h"

@@ -4,8 +4,8 @@
 #include <numbers>
 
 #include "fit/log_data.h"
-#include "fit/nominal.h"
 #include "parameters/table.h"
+#include "servodx/data_sheet.h"
 #include "servodx/log.h"
 #include "servodx/rig.h"
 #include "simulate/scenario.h"

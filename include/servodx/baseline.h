@@ -44,6 +44,8 @@ struct Baseline {
   std::vector<Score> scores;
   std::string tuned_sha256;  // content_hash of the table it speaks of; earlier versions wrote that of its file
   std::string path;          // of its file; empty where it was made in memory
+  std::string sha256;        // of what its file holds, or would hold
+  std::string rig_file;      // that it was made with, as its file says; empty: none, or made in memory
   std::vector<Note> notes;
   long simulations = 0, failed_simulations = 0;
   bool interrupted = false;  // fewer logs than were given
@@ -58,6 +60,10 @@ Baseline make_baseline(const std::vector<Log>& logs, const Tuned& tuned, const R
 Baseline read_baseline(const std::string& path);
 // As `servodx baseline -o` writes; one that was read is written back byte for byte.
 void write_baseline(const std::string& path, const Baseline& baseline);
+
+// Throws InputError where the file says nothing of causes, as earlier versions wrote it: explain() needs them,
+// diagnose() does not.
+void require_causes(const Baseline& baseline);
 
 // Throws InputError where the baseline was made with another table: its threshold is a statement about that table's
 // residuals. Every call that takes both asks for it. A comment in the table is no change, a row is, in memory too.

@@ -1,5 +1,6 @@
 // Curves: the standard figures of a servovalve from a log of a test stand (SAE ARP490). docs/test_stand.md.
 #pragma once
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -9,6 +10,25 @@
 #include "servodx/rig.h"
 
 namespace servodx {
+
+namespace curves {
+struct Sheet;  // the library's own
+using SharedSheet = std::shared_ptr<const Sheet>;
+}  // namespace curves
+
+// What is known of an instrument: expanded uncertainty, k = 2, from its calibration.
+struct InstrumentError {
+  Signal signal;
+  double absolute = 0;  // [SI]
+  double relative = 0;  // of the reading
+};
+
+// A figure passes where it is inside its limit by more than `guard` times its expanded uncertainty; on the limit it
+// never does. 0: simple acceptance.
+struct SheetOptions {
+  std::vector<InstrumentError> instruments;
+  double guard = 1.0;
+};
 
 struct AcceptanceSheet {
   enum class Kind { pass, fail, not_judged };
@@ -39,9 +59,10 @@ struct AcceptanceSheet {
   std::vector<Response> response;
   std::string response_signal;
   std::vector<Note> notes;
+  curves::SharedSheet whole;  // for the program's pages
 };
 
 // Throws InputError for a log or rig file from which no figure can be read.
-AcceptanceSheet acceptance_sheet(const Log& log, const Rig& rig);
+AcceptanceSheet acceptance_sheet(const Log& log, const Rig& rig, const SheetOptions& options = {});
 
 }  // namespace servodx

@@ -2,6 +2,7 @@
 #pragma once
 #include <cstddef>
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -10,6 +11,9 @@
 #include "servodx/watch.h"
 
 namespace servodx {
+
+struct FleetTable;  // the library's own
+struct Confusion;
 
 struct Fleet {
   struct Row {
@@ -29,12 +33,27 @@ struct Fleet {
   std::vector<Row> rows;  // worst first: what is not healthy, then by error over threshold, then by path
   std::vector<Refused> refused, unread;
   bool interrupted = false;
-  std::string csv;  // the table as `servodx gather -o` writes it
+  std::string csv;                          // the table as `servodx gather -o` writes it
+  std::shared_ptr<const FleetTable> whole;  // for the program's pages
 };
 // Throws InputError where the folder is none or holds nothing of a fleet.
 Fleet gather_results(const std::string& folder, const Watch& watch = {});
 
-// Verdicts beside a truth file, a CSV with the header log,class or log,class,severity.
+// A truth file: a CSV with the header log,class or log,class,severity.
+struct FleetTruth {
+  struct Row {
+    std::string log, label;
+    std::optional<double> severity;  // [the verdict's unit]
+    long line = 0;
+  };
+  std::string path, sha256;
+  std::vector<Row> rows;
+};
+
+// Throws InputError: a missing column, an empty cell, a log that is named twice.
+FleetTruth read_truth(const std::string& path);
+
+// Verdicts beside the truth.
 struct FleetCounts {
   struct Rate {
     long counted = 0, of = 0;
@@ -47,8 +66,11 @@ struct FleetCounts {
   std::map<std::string, std::map<std::string, long>> counts;  // [class][what the verdict says]
   std::map<std::string, OfClass> rates;                       // by class
   long without_truth = 0, without_result = 0;
+  std::shared_ptr<const Confusion> whole;  // for the program's pages
 };
-// Throws InputError.
+// Throws InputError where one row of the truth means several logs. `fleet`: as gather_results() made it.
+FleetCounts count_fleet(const Fleet& fleet, const FleetTruth& truth);
+// The truth is read before the folder.
 FleetCounts count_fleet(const std::string& folder, const std::string& truth);
 
 }  // namespace servodx

@@ -100,6 +100,9 @@ struct OutputColumn {
 // `values` as a column in the log's own unit of that signal (the SI unit where the log lacks it).
 OutputColumn output_column(const Log& log, Signal signal, std::vector<double> values);
 
+// The time and every signal of the log, in the log's own units.
+std::vector<OutputColumn> columns_of(const Log& log);
+
 // Writes a canonical CSV (shortest round-trip digits) to a temporary name and renames it. A value that was read from a
 // log reads back to the same bits in that log's unit; any value does in an SI unit.
 void write_log(const std::string& path, const std::vector<OutputColumn>& columns,

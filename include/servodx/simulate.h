@@ -23,6 +23,12 @@ struct SimulationOptions {
   void validate() const;
 };
 
+// Largest steps of the integrator; impact: after a jump of the command, and while the rod comes upon its stop.
+struct SimulationSteps {
+  double step = 0, impact_step = 0;  // [s]
+};
+SimulationSteps steps_of(const SimulationOptions& options);
+
 struct Simulation {
   std::vector<double> time;           // [s] the log's
   std::vector<OutputColumn> columns;  // of each signal that the log measures and the model reports: [SI], one a sample
@@ -35,6 +41,9 @@ struct Simulation {
 // `table`: nominal or tuned; the rig's facts are applied to a nominal one. Throws InputError where the log lacks every
 // signal that the model reports, std::runtime_error where the simulation leaves the finite numbers.
 Simulation simulate(const Log& log, const Table& table, const Rig& rig, const SimulationOptions& options = {});
+
+// Throws InputError where the log lacks every signal that the model reports: simulate() asks for it before any work.
+void require_simulated_signal(const Log& log, const Rig& rig);
 
 // As `servodx simulate -o` writes: names, units, gains and offsets are those of the log's file, as `rig` maps them.
 void write_simulation(const std::string& path, const Log& log, const Simulation& simulation, const Rig& rig = {});

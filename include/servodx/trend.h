@@ -17,6 +17,7 @@
 namespace servodx {
 
 struct CheckResult;  // the library's own
+struct SeededTest;
 struct ValveTrend;
 class HistoryFile;
 
@@ -58,6 +59,8 @@ class History {
   static History open(const std::string& path);
   // Makes it where it is not there. Throws InputError for a file that is no history.
   static History open_or_make(const std::string& path);
+  static bool there(const std::string& path);  // false also of an empty file, which open_or_make() makes whole
+  static int schema();                         // of the files that are written
 
   struct Use {
     double at = 0;  // [h] of use
@@ -73,6 +76,8 @@ class History {
   // that it renews.
   void add_event(const std::string& valve, double at, const std::string& kind, const std::string& text = "");
   std::vector<std::string> valves() const;
+  std::string serial(const std::string& valve) const;  // number of the valve; empty where none is known
+  std::string verify() const;                          // "ok", or what is damaged
   // For CheckOptions::last; empty where the valve is new.
   std::vector<double> tracked(const std::string& valve) const;
   const HistoryFile& file() const { return *file_; }
@@ -90,11 +95,25 @@ struct FailureLevel {
   std::optional<double> spread = {};  // how well it is known: one standard deviation
 };
 
+// Of a user's words: "fidelity=1.7" above, "parameter:3=<20" below, "parameter:14=20x" times the tuned value (of the
+// paper's checks: the healthy one), "parameter:14=0.9e-3A" the current that the spool's friction takes; "~1e-6" behind
+// it is the spread. Throws InputError.
+FailureLevel failure_level(const std::string& words);
+// What performance limits of a valve come to, by its table: "bandwidth=0.5", "gain=0.5", "hysteresis=0.04",
+// "phase_margin=45", "margin=6dB", "margin=45deg". `loop`: velocity gain of the position loop [1/s], for the margins.
+// Throws InputError for a limit that is not known, out of range, or that the healthy valve does not hold.
+std::vector<FailureLevel> failure_levels(const std::vector<std::string>& limits, const Tuned& tuned, double loop = 0);
+
+// What checks of valves with wear of known size read; docs/prognosis.md has the columns. Throws InputError.
+std::shared_ptr<const SeededTest> read_seeded_test(const std::string& path);
+
 struct TrendOptions {
-  double false_alarm = 0.01;  // part of healthy valves that may raise an alert
-  int healthy = 12;           // first checks taken as healthy
-  double coverage = 0.9;      // of the interval of the life left
-  std::vector<FailureLevel> failures = {};
+  double false_alarm = 0.01;                      // part of healthy valves that may raise an alert
+  int healthy = 12;                               // first checks taken as healthy
+  double coverage = 0.9;                          // of the interval of the life left
+  std::vector<FailureLevel> limits = {};          // of failure_levels(); a level below comes before them
+  std::vector<FailureLevel> failures = {};        // the user's, of checks that the library makes or the history holds
+  std::shared_ptr<const SeededTest> seeded = {};  // parameters are taken to the wear at which these read the same
   std::uint64_t seed = 1;
   int threads = 0;  // 0: all cores; the result does not depend on it
 
@@ -130,7 +149,9 @@ struct Trend {
 
 std::string name_of(Trend::State state);
 
-// Throws InputError for a valve that the history does not know.
+// Throws InputError for a valve that the history does not know, and for a level of what is no check.
 Trend trend(const History& history, const std::string& valve, const TrendOptions& options = {});
+// The first to reach its warning level first; of those that have passed it, the first to fail.
+void most_urgent_first(std::vector<Trend>& trends);
 
 }  // namespace servodx

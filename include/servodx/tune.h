@@ -57,6 +57,9 @@ RigKind rig_kind(const std::vector<Log>& logs, const RigFile& rig);
 // What a tune frees unless told.
 std::vector<std::string> default_effects(const RigKind& kind);
 
+// The table with a row for each number of these effects that it lacks, as a tune frees them.
+Table with_effects(const Table& table, const std::vector<std::string>& effects);
+
 struct ParameterResult {
   int id = 0;  // 0 for an effect's parameter
   std::string name, unit;

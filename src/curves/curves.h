@@ -21,10 +21,10 @@
 #include <vector>
 
 #include "curves/frequency_response.h"
+#include "servodx/curves.h"
+#include "servodx/log.h"
 #include "servodx/note.h"
 #include "servodx/rig.h"
-#include "signals/log.h"
-#include "signals/rig_file.h"
 
 namespace servodx::curves {
 
@@ -53,26 +53,12 @@ struct Figure {
   }
 };
 
-// What is known of an instrument: expanded uncertainty, k = 2, from its calibration.
-struct InstrumentError {
-  Signal signal;
-  double absolute = 0;  // [SI]
-  double relative = 0;  // of the reading
-};
-
-// A figure passes where it is inside its limit by more than `guard` times its expanded uncertainty; on the limit it
-// never does. 0: simple acceptance.
-struct SheetOptions {
-  std::vector<InstrumentError> instruments;
-  double guard = 1.0;
-};
-
 struct Sheet {
   std::vector<Figure> figures;
   std::vector<SweepCurve> curves;
   std::vector<ResponsePoint> response;
   std::string response_signal;
-  std::string verdict;  // pass | fail | not_judged
+  std::string verdict = "not_judged";  // pass | fail | not_judged
   std::vector<Note> notes;
 };
 

@@ -7,6 +7,7 @@
 #include "base/random.h"
 #include "curves/constants.h"
 #include "curves/curves.h"
+#include "servodx/curves.h"
 #include "servodx/log.h"
 #include "servodx/rig.h"
 #include "signals/noise.h"

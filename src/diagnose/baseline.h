@@ -11,8 +11,8 @@
 #include "diagnose/assessment.h"
 #include "diagnose/records.h"
 #include "evidence/conditions.h"
-#include "evidence/operating_point.h"
 #include "faults/fault.h"
+#include "servodx/operating_point.h"
 
 namespace servodx {
 

@@ -13,11 +13,11 @@
 #include "diagnose/records.h"
 #include "diagnose/visible.h"
 #include "evidence/conditions.h"
-#include "evidence/operating_point.h"
 #include "evidence/probabilities.h"
 #include "evidence/rank_promise.h"
 #include "evidence/tail_law.h"
 #include "servodx/log.h"
+#include "servodx/operating_point.h"
 
 namespace servodx {
 namespace {

@@ -12,9 +12,10 @@
 #include "diagnose/naming.h"
 #include "diagnose/record_law.h"
 #include "evidence/conditions.h"
-#include "evidence/operating_point.h"
 #include "faults/fault.h"
 #include "servodx/actions.h"
+#include "servodx/diagnose.h"
+#include "servodx/operating_point.h"
 
 namespace servodx {
 
@@ -37,12 +38,7 @@ struct Detectable {
 };
 
 // What the search for missing physics makes of a log that no fault explains.
-struct BeyondFaults {
-  std::string first;              // the effect, or the row of the table, that stands first; empty: none does
-  std::string where, depends_on;  // the place, and of a curve without a name the variable it follows
-  double share = 0;               // of the held-out misfit that it removes
-  bool taken = false;             // beyond what healthy logs show
-};
+using BeyondFaults = Verdict::Beyond;
 
 struct Diagnosis {
   std::string log;

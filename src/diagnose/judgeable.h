@@ -4,8 +4,8 @@
 // By the samples alone: no fit, no hypothesis; the table gives sizes. Only what no valve and no fault of one can do
 // counts; a jam or a dead supply leaves the sensors' noise and is judged.
 #pragma once
-#include "evidence/operating_point.h"
 #include "fit/log_data.h"
+#include "servodx/operating_point.h"
 #include "simulate/scenario.h"
 
 namespace servodx {

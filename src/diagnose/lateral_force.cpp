@@ -7,9 +7,9 @@
 #include "diagnose/judge.h"
 #include "effects/registry.h"
 #include "effects/stiction.h"
-#include "evidence/operating_point.h"
 #include "fit/log_data.h"
 #include "parameters/list.h"
+#include "servodx/operating_point.h"
 #include "simulate/scenario.h"
 
 namespace servodx {

@@ -2,7 +2,6 @@
 #include <cmath>
 
 #include "base/error.h"
-#include "diagnose/check_log.h"
 #include "diagnose/constants.h"
 #include "diagnose/hypotheses.h"
 #include "faults/fault.h"
@@ -13,11 +12,12 @@
 #include "fit/free_values.h"
 #include "fit/identifiability.h"
 #include "fit/log_data.h"
-#include "fit/nominal.h"
 #include "fit/problem.h"
 #include "fit/tuned_state.h"
 #include "optimise/problem.h"
 #include "parameters/table.h"
+#include "servodx/check_log.h"
+#include "servodx/data_sheet.h"
 #include "servodx/log.h"
 #include "servodx/rig.h"
 #include "simulate/scenario.h"

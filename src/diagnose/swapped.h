@@ -10,7 +10,7 @@
 #pragma once
 #include <vector>
 
-#include "diagnose/check_log.h"
+#include "servodx/check_log.h"
 #include "signals/log.h"
 
 namespace servodx {

@@ -17,7 +17,6 @@
 #include "base/stages.h"
 #include "diagnose/baseline.h"
 #include "diagnose/diagnose.h"
-#include "door/baseline_parts.h"
 #include "door/require_setting.h"
 #include "explain/healthy.h"
 #include "parameters/table_text.h"
@@ -34,6 +33,7 @@
 #include "servodx/tune.h"
 #include "signals/rig_content.h"
 #include "store/baseline_file.h"
+#include "store/baseline_parts.h"
 #include "store/healthy_file.h"
 
 namespace servodx {
@@ -50,6 +50,7 @@ Baseline of_parts(BaselineParts parts) {
     for (const auto& [fault, gain] : s.gains) out.scores.back().gains[std::string(fault->name)] = gain;
   }
   out.tuned_sha256 = d.tuned_sha256;
+  out.sha256 = parts.sha256, out.rig_file = parts.rig_file;
   out.parts = std::make_shared<BaselineParts>(std::move(parts));
   return out;
 }
@@ -126,9 +127,7 @@ Baseline make_baseline(const std::vector<Log>& logs, const Tuned& tuned, const R
   header.simulations = counts.simulations, header.failed_simulations = counts.failed;
   header.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 
-  report::Json body = report::baseline_json(parts.detection);
-  body["explain"] = report::healthy_json(*parts.causes);
-  parts.text = report::dump(header, body);
+  parts.text = report::dump(header, report::baseline_json(parts));
   parts.sha256 = sha256(parts.text);
   Baseline out = of_parts(std::move(parts));
   out.notes = std::move(notes);
@@ -156,16 +155,7 @@ Baseline read_baseline(const std::string& path) {
   return out;
 }
 
-const BaselineParts& parts_of(const Baseline& baseline) {
-  if (!baseline.parts) throw InputError({}, "the baseline is empty", "make one, or read one from its file");
-  return *baseline.parts;
-}
-
-const HealthyReference& causes_of(const Baseline& baseline) {
-  const BaselineParts& parts = parts_of(baseline);
-  if (!parts.causes) throw InputError(*parts.causes_refused);
-  return *parts.causes;
-}
+void require_causes(const Baseline& baseline) { causes_of(baseline); }
 
 void write_baseline(const std::string& path, const Baseline& baseline) { write_file(path, parts_of(baseline).text); }
 

@@ -2,13 +2,14 @@
 #include <utility>
 
 #include "fit/log_data.h"
-#include "fit/nominal.h"
 #include "fit/replay.h"
 #include "prognose/level.h"
 #include "prognose/trend.h"
 #include "report/tune/tune_words.h"
 #include "servodx/charts.h"
+#include "servodx/data_sheet.h"
 #include "servodx/log.h"
+#include "servodx/replay.h"
 #include "servodx/rig.h"
 #include "servodx/table.h"
 #include "servodx/trend.h"

@@ -14,6 +14,7 @@
 #include "prognose/oil_temperature.h"
 #include "prognose/valve_history.h"
 #include "servodx/error.h"
+#include "servodx/history.h"
 #include "servodx/log.h"
 #include "servodx/rig.h"
 #include "servodx/table.h"
@@ -51,6 +52,9 @@ History History::open_or_make(const std::string& path) {
   return History(std::make_shared<HistoryFile>(path, !HistoryFile::there(path)));
 }
 
+bool History::there(const std::string& path) { return HistoryFile::there(path); }
+int History::schema() { return HistoryFile::schema_version(); }
+
 void History::record(const std::string& valve, const Use& use, const Checked& checked, const Tuned& tuned) {
   using door::require_setting;
   require_setting(!valve.empty(), "--valve", "the name is empty", "name the valve");
@@ -75,15 +79,21 @@ bool History::holds(const std::string& valve, double at, const std::string& log_
   return file_->holds(valve, wanted);
 }
 
-void History::add_event(const std::string& valve, double at, const std::string& kind, const std::string& text) {
-  const auto known = find_event(kind);
-  door::require_setting(known.has_value(), "KIND", "'" + kind + "' is no event", "use one of: " + event_names());
+void require_event(double at, const std::string& kind) {
+  door::require_setting(find_event(kind).has_value(), "KIND", "'" + kind + "' is no event",
+                        "use one of: " + event_names());
   door::require_setting(std::isfinite(at) && at >= 0, "--at", "must be the hours of use, 0 or more", "--at 1250.5");
+}
+
+void History::add_event(const std::string& valve, double at, const std::string& kind, const std::string& text) {
+  require_event(at, kind);
   file_->of(valve);  // refuses a name that is only mistyped
-  file_->add_event(valve, {at, *known, text, {}});
+  file_->add_event(valve, {at, find_event(kind).value(), text, {}});
 }
 
 std::vector<std::string> History::valves() const { return file_->valves(); }
+std::string History::serial(const std::string& valve) const { return file_->serial(valve); }
+std::string History::verify() const { return file_->verify(); }
 
 std::vector<double> History::tracked(const std::string& valve) const {
   const auto last = file_->last(valve);

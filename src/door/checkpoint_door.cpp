@@ -4,7 +4,7 @@
 
 #include "base/checkpoint.h"
 #include "servodx/checkpoint.h"
-#include "simulate/simulate.h"
+#include "servodx/instruction_set.h"
 
 namespace servodx {
 

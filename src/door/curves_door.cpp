@@ -1,5 +1,6 @@
 // The front door of `curves`.
 #include <algorithm>
+#include <memory>
 #include <utility>
 
 #include "curves/curves.h"
@@ -21,9 +22,10 @@ AcceptanceSheet::Kind kind_of(const std::vector<AcceptanceSheet::Figure>& figure
 
 }  // namespace
 
-AcceptanceSheet acceptance_sheet(const Log& log, const Rig& rig) {
-  curves::Sheet sheet = curves::read_curves(log, rig);
+AcceptanceSheet acceptance_sheet(const Log& log, const Rig& rig, const SheetOptions& options) {
+  curves::Sheet sheet = curves::read_curves(log, rig, options);
   AcceptanceSheet out;
+  out.whole = std::make_shared<curves::Sheet>(sheet);
   for (const curves::Figure& f : sheet.figures)
     out.figures.push_back({f.name, f.signal, f.value, f.unit, f.uncertainty, f.limit, f.pass(), f.note});
   for (curves::SweepCurve& c : sheet.curves)

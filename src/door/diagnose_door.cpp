@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/parts_done.h"
 #include "diagnose/assessment.h"
 #include "diagnose/baseline.h"
 #include "diagnose/decide.h"
@@ -16,9 +17,7 @@
 #include "diagnose/lateral_force.h"
 #include "diagnose/moved.h"
 #include "diagnose/naming.h"
-#include "door/baseline_parts.h"
 #include "door/stands_first.h"
-#include "evidence/operating_point.h"
 #include "explain/explain.h"
 #include "faults/fault.h"
 #include "fit/tuned_state.h"
@@ -31,9 +30,13 @@
 #include "servodx/explain.h"
 #include "servodx/log.h"
 #include "servodx/note.h"
+#include "servodx/operating_point.h"
 #include "servodx/rig.h"
 #include "servodx/table.h"
 #include "servodx/tune.h"
+#include "servodx/tuned_by.h"
+#include "simulate/side_by_side.h"
+#include "store/baseline_parts.h"
 
 namespace servodx {
 namespace {
@@ -158,6 +161,34 @@ Verdict diagnose_pool(const std::vector<Log>& logs, const Tuned& tuned, const Ri
 Verdict diagnose(const Log& log, const Tuned& tuned, const Rig& rig, const Baseline& baseline,
                  const DiagnoseOptions& options) {
   return diagnose_pool({log}, tuned, rig, baseline, options);
+}
+
+Verdict diagnose_window(const Log& window, const Tuned& tuned, const Rig& rig, const Baseline& baseline,
+                        const DiagnoseOptions& options) {
+  options.validate();
+  Assessment assessment = assess(window, tuned.table, rig, options);
+  if (options.watch.stopped()) return interrupted_verdict(assessment);
+  return verdict_of(judge(std::move(assessment), parts_of(baseline).detection));
+}
+
+std::vector<Verdict> diagnose_each(const std::vector<Log>& logs, const Tuned& tuned, const Rig& rig,
+                                   const Baseline& baseline, const DiagnoseOptions& options) {
+  PartsDone told(options.watch, "diagnose", logs.size());
+  std::vector<std::optional<Verdict>> judged(logs.size());
+  side_by_side(static_cast<int>(logs.size()), options.threads, [&](int piece, int threads) {
+    if (options.watch.stopped()) return;
+    const auto at = static_cast<std::size_t>(piece);
+    DiagnoseOptions of_log = options;
+    of_log.threads = threads;
+    of_log.watch = told.of(at);
+    Verdict verdict = diagnose(logs[at], tuned, rig, baseline, of_log);
+    told.tell(at, 1, verdict.simulations);
+    if (!verdict.interrupted) judged[at] = std::move(verdict);
+  });
+  std::vector<Verdict> out;
+  for (std::optional<Verdict>& v : judged)
+    if (v) out.push_back(std::move(*v));
+  return out;
 }
 
 }  // namespace servodx

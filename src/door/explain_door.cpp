@@ -6,7 +6,6 @@
 #include <utility>
 
 #include "base/error.h"
-#include "door/baseline_parts.h"
 #include "door/require_samples.h"
 #include "evidence/heldout_gain.h"
 #include "explain/explain.h"
@@ -20,6 +19,7 @@
 #include "servodx/note.h"
 #include "servodx/rig.h"
 #include "servodx/tune.h"
+#include "store/baseline_parts.h"
 
 namespace servodx {
 namespace {

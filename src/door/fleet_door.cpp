@@ -1,12 +1,14 @@
 // The front door of `gather`.
 #include <atomic>
 #include <cmath>
+#include <memory>
 #include <utility>
 
 #include "fleet/confusion.h"
 #include "fleet/fleet_verdict.h"
 #include "fleet/gather.h"
 #include "servodx/diagnose.h"
+#include "servodx/error.h"
 #include "servodx/fleet.h"
 #include "servodx/watch.h"
 
@@ -38,12 +40,13 @@ std::vector<Fleet::Refused> refused_of(const std::vector<SetAside>& files) {
   return out;
 }
 
-FleetTable read(const std::string& folder, const Watch& watch) {
+std::shared_ptr<const FleetTable> read(const std::string& folder, const Watch& watch) {
   std::atomic<bool> stop = false;
-  return gather(folder, stop, [&](std::size_t done, std::size_t of) {
+  FleetTable table = gather(folder, stop, [&](std::size_t done, std::size_t of) {
     watch.tell("gather", static_cast<double>(done) / static_cast<double>(of), 0);
     if (watch.stopped()) stop = true;
   });
+  return std::make_shared<FleetTable>(std::move(table));
 }
 
 FleetCounts::Rate rate_of(const CountedRate& r) { return {r.counted, r.of}; }
@@ -51,23 +54,32 @@ FleetCounts::Rate rate_of(const CountedRate& r) { return {r.counted, r.of}; }
 }  // namespace
 
 Fleet gather_results(const std::string& folder, const Watch& watch) {
-  const FleetTable table = read(folder, watch);
+  const std::shared_ptr<const FleetTable> whole = read(folder, watch);
+  const FleetTable& table = *whole;
   Fleet out;
   for (const FleetRow& r : table.rows) out.rows.push_back(row_of(r));
   out.refused = refused_of(table.refused), out.unread = refused_of(table.unread);
   out.interrupted = table.interrupted;
   out.csv = csv_of(table);
+  out.whole = whole;
   return out;
 }
 
-FleetCounts count_fleet(const std::string& folder, const std::string& truth) {
-  const FleetTruth read_ahead = read_truth(truth);  // refused before the folder is read
-  const Confusion found = confusion_of(read(folder, {}), read_ahead);
+FleetCounts count_fleet(const Fleet& fleet, const FleetTruth& truth) {
+  if (!fleet.whole) throw InputError({}, "the fleet holds no results", "take what gather_results() returned");
+  auto whole = std::make_shared<Confusion>(confusion_of(*fleet.whole, truth));
+  const Confusion& found = *whole;
   FleetCounts out;
   out.counts = found.counts;
   for (const auto& [name, r] : found.rates) out.rates[name] = {rate_of(r.detected), rate_of(r.named), rate_of(r.sized)};
   out.without_truth = found.without_truth, out.without_result = found.without_result;
+  out.whole = std::move(whole);
   return out;
+}
+
+FleetCounts count_fleet(const std::string& folder, const std::string& truth) {
+  const FleetTruth known = read_truth(truth);
+  return count_fleet(gather_results(folder), known);
 }
 
 }  // namespace servodx

@@ -5,7 +5,6 @@
 #include <string>
 #include <vector>
 
-#include "door/baseline_parts.h"
 #include "door/require_setting.h"
 #include "plan/plan.h"
 #include "servodx/baseline.h"
@@ -14,6 +13,7 @@
 #include "servodx/plan.h"
 #include "servodx/rig.h"
 #include "servodx/tune.h"
+#include "store/baseline_parts.h"
 
 namespace servodx {
 namespace {

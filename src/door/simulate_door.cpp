@@ -7,9 +7,8 @@
 #include <utility>
 
 #include "door/require_setting.h"
-#include "door/simulation_steps.h"
 #include "fit/log_data.h"
-#include "fit/nominal.h"
+#include "servodx/data_sheet.h"
 #include "servodx/log.h"
 #include "servodx/rig.h"
 #include "servodx/simulate.h"
@@ -23,16 +22,8 @@ namespace {
 
 constexpr double reference_step = 1e-5;  // [s] where the integrator's error is far below every sensor's
 
-}  // namespace
-
-void SimulationOptions::validate() const {
-  door::require_setting(!step || (*step > 0 && *step <= 0.1), "--step", "must lie between 0 and 0.1 s",
-                        "give it in seconds: 1e-4");
-  door::require_setting(!step || !reference, "--reference", "sets the step, as --step does", "give one of them");
-  door::require_threads(threads);
-}
-
-SimulateOptions door::steps_of(const SimulationOptions& options) {
+// The steps of a simulation that is looked at sample by sample.
+SimulateOptions how_to(const SimulationOptions& options) {
   SimulateOptions to = fine_steps();
   to.threads = options.threads;
   if (options.reference) to.step = to.impact_step = to.creep_step = reference_step;
@@ -43,6 +34,22 @@ SimulateOptions door::steps_of(const SimulationOptions& options) {
   return to;
 }
 
+}  // namespace
+
+void SimulationOptions::validate() const {
+  door::require_setting(!step || (*step > 0 && *step <= 0.1), "--step", "must lie between 0 and 0.1 s",
+                        "give it in seconds: 1e-4");
+  door::require_setting(!step || !reference, "--reference", "sets the step, as --step does", "give one of them");
+  door::require_threads(threads);
+}
+
+SimulationSteps steps_of(const SimulationOptions& options) {
+  const SimulateOptions how = how_to(options);
+  return {how.step, how.impact_step};
+}
+
+void require_simulated_signal(const Log& log, const Rig& rig) { require_channels(prepare(log, rig)); }
+
 const OutputColumn* Simulation::find(Signal signal) const {
   const auto at = std::find_if(columns.begin(), columns.end(), [&](const auto& c) { return c.signal == signal; });
   return at == columns.end() ? nullptr : &*at;
@@ -52,7 +59,7 @@ Simulation simulate(const Log& log, const Table& table, const Rig& rig, const Si
   options.validate();
   const LogData data = prepare(log, rig);
   require_channels(data);
-  SimulateOptions how = door::steps_of(options);
+  SimulateOptions how = how_to(options);
   how.wanted.fill(false);
   for (const FitChannel& c : data.channels) how.wanted[static_cast<std::size_t>(c.simulated)] = true;
   Trajectory run = simulate(data.scenario, candidate_of(apply_rig_facts(table, rig)), how);

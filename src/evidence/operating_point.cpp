@@ -1,4 +1,4 @@
-#include "evidence/operating_point.h"
+#include "servodx/operating_point.h"
 
 #include <algorithm>
 #include <cmath>

@@ -5,25 +5,13 @@
 // pilot stage's flow does. A describing function: harmonics are left out. Phase turns on from the lowest frequency.
 #pragma once
 #include <optional>
-#include <string>
 #include <vector>
 
 #include "fit/replay.h"
+#include "servodx/bode.h"
 #include "servodx/rig.h"
 
 namespace servodx {
-
-struct BodeLine {
-  std::string name;
-  std::vector<double> gain;   // [dB] over the first valve's at the lowest frequency; NaN: the simulation failed
-  std::vector<double> phase;  // [rad] negative where it lags
-};
-
-struct Bode {
-  double amplitude = 0;           // [fraction of rated current] peak
-  std::vector<double> frequency;  // [Hz]
-  std::vector<BodeLine> lines;    // one a valve
-};
 
 // The first of `valves` is what the others are set beside.
 std::vector<Bode> bode_of(const std::vector<Candidate>& valves, const RigFile& rig);

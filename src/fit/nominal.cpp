@@ -13,6 +13,7 @@
 #include "fit/sheet.h"
 #include "parameters/list.h"
 #include "servodx/rig.h"
+#include "servodx/table.h"
 
 namespace servodx {
 namespace {

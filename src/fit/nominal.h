@@ -7,13 +7,7 @@
 // data sheet does not say (frictions, laps, lags), which keeps the table's values. The bounds that a fact sets are the
 // spread of real parts about a data sheet, widened where a fault moves the row.
 #pragma once
-#include <string>
-#include <vector>
-
-#include "fit/sheet.h"
-#include "parameters/table.h"
-#include "servodx/rig.h"
-#include "signals/rig_file.h"
+#include "servodx/data_sheet.h"
 
 namespace servodx {
 
@@ -26,14 +20,5 @@ inline constexpr double clean_filter_area_ratio = 5.0;
 inline constexpr double slot_resistance = 0.845;
 inline constexpr double jet_angle_factor = 0.43;
 }  // namespace nominal
-
-// Returns the table with the rows that follow from facts overridden; their `source` becomes "rig.toml: KEY".
-// `where_from` receives one line a row: "port_width = 0.005 m: rig.toml: valve.no_load_flow; formula".
-// A tuned table (with std_error) keeps its values: they were measured, the data sheet only promises.
-// Throws InputError at the fact that cannot hold.
-Table apply_rig_facts(const Table& table, const RigFile& rig, std::vector<std::string>* where_from = nullptr);
-
-// The dynamics that the sheet states beside those of the table's valve, its rows as apply_rig_facts makes them.
-SheetFit data_sheet(const Table& table, const RigFile& rig);
 
 }  // namespace servodx

@@ -8,9 +8,10 @@
 #include <vector>
 
 #include "fit/error_model.h"
-#include "parameters/table.h"
+#include "servodx/log.h"
+#include "servodx/replay.h"
 #include "servodx/rig.h"
-#include "signals/log.h"
+#include "servodx/table.h"
 #include "simulate/scenario.h"
 
 namespace servodx {
@@ -19,27 +20,6 @@ struct Candidate {
   std::string name;  // "healthy", a fault's label, "tuned"
   ParameterVector candidate;
   std::size_t from = 0;  // first sample it speaks of: a fault that steps in explains what follows
-};
-
-struct ReplayedChannel {
-  Signal signal;
-  std::string unit;              // as in the log
-  std::vector<double> measured;  // [SI] NaN where missing
-  std::vector<double> sigma;     // [SI] of the residual of the first explanation
-  struct Simulated {
-    std::string name;
-    std::vector<double> value;     // [SI] NaN before its first sample
-    std::vector<double> residual;  // [SI] measured less simulated, filtered
-  };
-  std::vector<Simulated> simulated;  // an explanation whose simulation failed is left out
-};
-
-struct Replay {
-  std::string log;
-  std::vector<double> time;     // [s]
-  std::vector<double> command;  // [A] what drove the simulation
-  bool current_measured = false;
-  std::vector<ReplayedChannel> channels;
 };
 
 // The log prepared as the table says it was tuned.

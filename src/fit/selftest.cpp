@@ -1,24 +1,26 @@
-#include "fit/selftest.h"
+#include "servodx/selftest.h"
 
 #include <algorithm>
 #include <cmath>
 #include <functional>
 
 #include "base/error.h"
-#include "base/progress.h"
 #include "base/random.h"
 #include "fit/chart.h"
 #include "fit/free_values.h"
 #include "fit/identifiability.h"
 #include "fit/log_data.h"
-#include "fit/nominal.h"
 #include "fit/problem.h"
 #include "fit/uncertainty.h"
 #include "optimise/box_least_squares.h"
 #include "optimise/local.h"
 #include "optimise/problem.h"
 #include "parameters/coordinate.h"
+#include "servodx/data_sheet.h"
+#include "servodx/log.h"
 #include "servodx/rig.h"
+#include "servodx/table.h"
+#include "servodx/watch.h"
 #include "simulate/scenario.h"
 
 namespace servodx {
@@ -123,8 +125,6 @@ Point drawn_truth(const Experiment& e, Point truth, double spread, Random& rando
   return truth;
 }
 
-bool wants_to_stop(const SelftestOptions& options) { return options.stop && options.stop->load(); }
-
 // `tell` is called at every iteration with the share of a usual fit that is done.
 LeastSquaresResult fitted(const FitProblem& problem, const SelftestOptions& options,
                           const std::function<void(double part)>& tell) {
@@ -140,11 +140,11 @@ LeastSquaresResult fitted(const FitProblem& problem, const SelftestOptions& opti
     tell(std::min(1.0, static_cast<double>(now.iteration) / usual_iterations));
     idle = last_cost - now.cost > settled ? 0 : idle + 1;
     last_cost = now.cost;
-    return idle < idle_steps && !wants_to_stop(options);
+    return idle < idle_steps && !options.watch.stopped();
   };
   LocalOptions local;
   local.after_interruption = true;  // a search that idles has settled
-  local.stop = [&] { return wants_to_stop(options); };
+  local.stop = [&] { return options.watch.stopped(); };
   return minimise_locally(problem.least_squares(), problem.start(), o, local).end;
 }
 
@@ -205,16 +205,25 @@ void add_coverage(SelftestResult& out) {
 
 }  // namespace
 
+void SelftestOptions::validate() const {
+  const auto require = [](bool holds, const char* option, const char* rule, const char* mend) {
+    if (!holds) throw InputError({option, 0, ""}, rule, mend);
+  };
+  require(repeats >= 2, "--repeats", "must be at least 2", "20 tell a coverage to about 10 %");
+  require(spread > 0 && spread <= 0.25, "--spread", "must lie between 0 and 0.25", "0.05 of a row's interval");
+}
+
 SelftestResult selftest(const Log& log, const Table& table, const RigFile& rig, const SelftestOptions& options) {
+  options.validate();
   SelftestResult out;
   out.log = log.path;
   Experiment e = prepared(log, table, rig, options);
   hold_what_the_log_does_not_tell(e, table, out);
 
-  Progress progress("selftest", {.quiet = options.quiet});
+  const Watch& watch = options.watch;
   std::vector<Tally> tallies(e.rows);
   for (int repeat = 0; repeat < options.repeats; ++repeat) {
-    out.interrupted = wants_to_stop(options);
+    out.interrupted = watch.stopped();
     if (out.interrupted) break;
     Random random(options.seed, static_cast<std::uint32_t>(repeat));
     const FitProblem maker({&e.data}, e.base, e.free, e.simulate);
@@ -228,9 +237,9 @@ SelftestResult selftest(const Log& log, const Table& table, const RigFile& rig, 
     const LogData twin = twin_of(e.data, made, e.noise, e.resolution, random);
     const FitProblem problem = e.problem(twin);
     const LeastSquaresResult r = fitted(problem, options, [&](double part) {
-      progress.update((repeat + part) / options.repeats, out.simulations + problem.simulations());
+      watch.tell("selftest", (repeat + part) / options.repeats, out.simulations + problem.simulations());
     });
-    out.interrupted = wants_to_stop(options);
+    out.interrupted = watch.stopped();
     if (out.interrupted) break;  // half a fit is none
     out.simulations += problem.simulations();
     out.failed_simulations += problem.failed_simulations();
@@ -240,7 +249,7 @@ SelftestResult selftest(const Log& log, const Table& table, const RigFile& rig, 
       continue;
     }
     add_repeat(tallies, e, problem, r, truth);
-    progress.update(static_cast<double>(repeat + 1) / options.repeats, out.simulations);
+    watch.tell("selftest", static_cast<double>(repeat + 1) / options.repeats, out.simulations);
   }
   for (std::size_t j = 0; j < e.rows; ++j) out.rows.push_back(row_of(tallies[j], e.free[j], e.facts));
   add_coverage(out);

@@ -107,6 +107,8 @@ TunedState of_section(const Table& table) {
 
 }  // namespace
 
+std::vector<TunedBy> tuned_by(const Table& table) { return tuned_state(table).by; }
+
 bool TunedState::is_by(const Log& log) const {
   const bool any_content = std::any_of(by.begin(), by.end(), [](const TunedBy& b) { return !b.content.empty(); });
   const std::string content = any_content ? content_hash(log) : "";

@@ -10,14 +10,9 @@
 #include "fit/error_model.h"
 #include "parameters/table.h"
 #include "servodx/log.h"
+#include "servodx/tuned_by.h"
 
 namespace servodx {
-
-struct TunedBy {
-  std::string log;      // file name
-  std::string sha256;   // of the file's bytes; empty: the log came from memory
-  std::string content;  // content_hash of the log; empty: an earlier version did not keep it
-};
 
 // A channel that the tune did not bring near its logs.
 struct Unfollowed {

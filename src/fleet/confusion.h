@@ -6,26 +6,13 @@
 #pragma once
 #include <cstddef>
 #include <map>
-#include <optional>
 #include <string>
 #include <vector>
 
 #include "fleet/gather.h"
+#include "servodx/fleet.h"
 
 namespace servodx {
-
-struct FleetTruth {
-  struct Row {
-    std::string log, label;
-    std::optional<double> severity;  // [the verdict's unit]
-    long line = 0;
-  };
-  std::string path, sha256;
-  std::vector<Row> rows;
-};
-
-// Throws InputError: a missing column, an empty cell, a log that is named twice.
-FleetTruth read_truth(const std::string& path);
 
 struct CountedRate {
   long counted = 0, of = 0;

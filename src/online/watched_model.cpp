@@ -6,8 +6,8 @@
 #include <string>
 
 #include "fit/log_data.h"
-#include "fit/nominal.h"
 #include "fit/tuned_state.h"
+#include "servodx/data_sheet.h"
 #include "signals/signal.h"
 
 namespace servodx {

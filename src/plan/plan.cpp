@@ -13,7 +13,6 @@
 #include "diagnose/hypotheses.h"
 #include "faults/fault.h"
 #include "faults/registry.h"
-#include "fit/nominal.h"
 #include "parameters/list.h"
 #include "plan/constants.h"
 #include "plan/information.h"
@@ -21,6 +20,7 @@
 #include "plan/search.h"
 #include "plan/segments.h"
 #include "plan/test_bench.h"
+#include "servodx/data_sheet.h"
 #include "servodx/note.h"
 
 namespace servodx {

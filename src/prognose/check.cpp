@@ -15,6 +15,7 @@
 #include "prognose/monitor.h"
 #include "prognose/preflight.h"
 #include "prognose/preflight_figures.h"
+#include "servodx/monitor.h"
 #include "servodx/note.h"
 #include "servodx/rig.h"
 #include "simulate/scenario.h"

@@ -15,6 +15,7 @@
 #include "prognose/monitor.h"
 #include "prognose/track.h"
 #include "prognose/trend_options.h"
+#include "servodx/monitor.h"
 #include "simulate/scenario.h"
 
 namespace servodx {

@@ -12,9 +12,10 @@
 #include "parameters/list.h"
 #include "prognose/constants.h"
 #include "prognose/valve_geometry.h"
+#include "servodx/monitor.h"
+#include "servodx/valve_numbers.h"
 #include "simulate/linearise.h"
 #include "valve_maps/high_fidelity.h"
-#include "valve_maps/valve_numbers.h"
 
 namespace servodx {
 namespace {

@@ -8,10 +8,10 @@
 #include "fit/nominal.h"
 #include "parameters/list.h"
 #include "prognose/valve_geometry.h"
+#include "servodx/valve_numbers.h"
 #include "simulate/scenario.h"
 #include "valve_maps/high_fidelity.h"
 #include "valve_maps/registry.h"
-#include "valve_maps/valve_numbers.h"
 
 namespace servodx {
 namespace {

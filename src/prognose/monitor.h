@@ -17,28 +17,10 @@
 
 #include "fit/log_data.h"
 #include "model/state.h"
-#include "parameters/table.h"
+#include "servodx/monitor.h"
+#include "servodx/table.h"
 
 namespace servodx {
-
-struct MonitorParameters {
-  double motor_gain = 0;         // GM [N/A]
-  double wire_stiffness = 0;     // KSF [N/m] feedback wire, with the flow force that the nozzles must balance
-  double spool_force_gain = 0;   // [N/N] force on the flapper that holds a force on the spool
-  double flapper_stiffness = 0;  // KFt [N/m] flexure and wire
-  double flapper_limit = 0;      // XFM [m]
-  double first_stage_gain = 0;   // GQF / ASV [1/s] spool speed over flapper travel
-  double spool_limit = 0;        // XSM [m]
-  double pressure_gain = 0;      // GP [Pa/m]
-  double flow_gain = 0;          // GQ [m2/s]
-  double pressure_limit = 0;     // PSR [Pa] supply less return
-  double piston_area = 0;        // AJ [m2]
-  double viscous = 0;            // CJ [N s/m]
-  double mass = 0;               // MJ [kg]
-  double piston_limit = 0;       // XJM [m]
-  double null_current = 0;       // [A] added to the command
-  double control_gain = 0;       // GAP [A/m]; 0: open loop, driven by the measured current
-};
 
 struct Supply {
   double supply = 0, return_ = 0;  // [Pa]
@@ -79,9 +61,6 @@ class Monitor {
   double spool_ = 0, piston_ = 0, speed_ = 0, pressure_ = 0;
 };
 
-struct MonitorRun {
-  std::vector<double> spool, piston, pressure;  // [m], [m], [Pa] at the log's samples
-};
 // Driven by the log's current. With `rest` [A], the current that held the spool at its null before a preflight check,
 // that current is taken off, and with it every offset: the run then starts from zero.
 MonitorRun run_monitor(const MonitorParameters& parameters, const PressureLaw& law, const LogData& log,

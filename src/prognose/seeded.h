@@ -24,6 +24,10 @@ struct SeededReading {
   double log_viscosity = 0;       // over that at 40 degC
 };
 
+struct SeededTest {
+  std::vector<SeededReading> readings;
+};
+
 // Of one check, in the coordinate of its growth. Between sizes and viscosities that were tried it is linear; beyond the
 // sizes it goes on as at the nearest, beyond the viscosities it stays.
 class ReadingCurve {

@@ -54,6 +54,13 @@ OutputColumn output_column(const Log& log, Signal signal, std::vector<double> va
           channel.full_scale};
 }
 
+std::vector<OutputColumn> columns_of(const Log& log) {
+  std::vector<OutputColumn> columns = {output_column(log, Signal::time, log.time)};
+  for (const SignalInfo& s : signal_list)
+    if (log.has(s.signal)) columns.push_back(output_column(log, s.signal, log[s.signal]));
+  return columns;
+}
+
 namespace {
 
 // Of a signal, under its canonical name. `path` is for the refusal.

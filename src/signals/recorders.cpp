@@ -1,5 +1,3 @@
-#include "signals/recorders.h"
-
 #include <fmt/format.h>
 
 #include <Eigen/Dense>
@@ -9,7 +7,10 @@
 #include <unsupported/Eigen/FFT>
 
 #include "base/error.h"
+#include "servodx/join.h"
+#include "servodx/log.h"
 #include "signals/constants.h"
+#include "signals/signal.h"
 #include "signals/usual_step.h"
 
 namespace servodx {

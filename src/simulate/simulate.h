@@ -38,8 +38,6 @@ struct NearJobs {
 // ran, bases that were followed included.
 long simulate_near(std::span<const NearJobs> logs, const SimulateOptions& options);
 
-// Name of the instruction set in use: "avx512", "avx2" or "generic".
-std::string instruction_set();
 int pack_width();
 // Packs that this process has run so far: by it tests know that runs in company share packs.
 long packs_run();

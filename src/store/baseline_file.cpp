@@ -14,12 +14,12 @@
 #include "diagnose/baseline.h"
 #include "diagnose/records.h"
 #include "evidence/conditions.h"
-#include "evidence/operating_point.h"
 #include "faults/fault.h"
 #include "faults/registry.h"
 #include "servodx/error.h"
 #include "servodx/log.h"
 #include "servodx/note.h"
+#include "servodx/operating_point.h"
 #include "store/baseline_keys.h"
 
 namespace servodx::store {

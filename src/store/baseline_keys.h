@@ -3,7 +3,7 @@
 #include <string>
 
 #include "diagnose/records.h"
-#include "evidence/operating_point.h"
+#include "servodx/operating_point.h"
 
 namespace servodx::store {
 

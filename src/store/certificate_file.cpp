@@ -1,7 +1,4 @@
-#include "store/certificate_file.h"
-
 #include <fmt/format.h>
-
 #include <toml++/toml.h>
 
 #include <algorithm>
@@ -17,11 +14,13 @@
 #include "base/toml_text.h"
 #include "base/trouble.h"
 #include "base/units.h"
-#include "curves/curves.h"
+#include "servodx/certificate.h"
+#include "servodx/curves.h"
 #include "servodx/error.h"
 #include "servodx/log.h"
+#include "signals/signal.h"
 
-namespace servodx::store {
+namespace servodx {
 namespace {
 
 bool is_date(const std::string& text) {
@@ -144,8 +143,8 @@ class CertificateReader {
   }
 
   // "0.5 %" of the reading; else a quantity, of which a difference counts: 0.5 degC is 0.5 K.
-  static curves::InstrumentError error_of(Signal signal, const std::string& text, const Place& where) {
-    curves::InstrumentError error{signal, 0, 0};
+  static InstrumentError error_of(Signal signal, const std::string& text, const Place& where) {
+    InstrumentError error{signal, 0, 0};
     if (text.ends_with('%')) {
       error.relative = parse_quantity(text, Dimension::fraction, where).value;
     } else {
@@ -161,8 +160,8 @@ class CertificateReader {
 
 }  // namespace
 
-std::vector<curves::InstrumentError> Certificate::errors() const {
-  std::vector<curves::InstrumentError> all;
+std::vector<InstrumentError> Certificate::errors() const {
+  std::vector<InstrumentError> all;
   for (const Instrument& i : instruments)
     if (i.error) all.push_back(*i.error);
   return all;
@@ -192,4 +191,4 @@ Certificate read_certificate(const std::string& path) {
   }
 }
 
-}  // namespace servodx::store
+}  // namespace servodx

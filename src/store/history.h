@@ -24,7 +24,6 @@ namespace servodx {
 
 const char* name_of(EventKind kind);
 std::optional<EventKind> find_event(const std::string& name);
-std::string event_names();
 
 // The rows of a stored table's text.
 std::vector<double> tuned_rows(const std::string& table_text);

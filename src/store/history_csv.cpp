@@ -21,6 +21,7 @@
 #include "prognose/constants.h"
 #include "prognose/oil_temperature.h"
 #include "prognose/valve_history.h"
+#include "servodx/history.h"
 #include "simulate/scenario.h"
 
 namespace servodx {

@@ -5,9 +5,11 @@
 
 #include "effects/effect.h"
 #include "effects/registry.h"
+#include "fit/free_values.h"
 #include "fit/log_data.h"
 #include "servodx/log.h"
 #include "servodx/rig.h"
+#include "servodx/table.h"
 #include "servodx/tune.h"
 
 namespace servodx {
@@ -57,6 +59,12 @@ std::vector<std::string> default_effects(const RigKind& kind) {
   std::vector<std::string> out;
   for (const EffectInfo& e : effect_list())
     if (frees(kind, e.freed)) out.push_back(e.name);
+  return out;
+}
+
+Table with_effects(const Table& table, const std::vector<std::string>& effects) {
+  Table out = table;
+  add_effect_rows(out, effects);
   return out;
 }
 

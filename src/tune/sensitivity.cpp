@@ -1,4 +1,4 @@
-#include "tune/sensitivity.h"
+#include "servodx/sensitivity.h"
 
 #include <Eigen/Dense>
 #include <algorithm>
@@ -14,6 +14,10 @@
 #include "fit/tuned_state.h"
 #include "optimise/problem.h"
 #include "parameters/list.h"
+#include "servodx/log.h"
+#include "servodx/rig.h"
+#include "servodx/table.h"
+#include "servodx/watch.h"
 #include "simulate/scenario.h"
 #include "simulate/simulate.h"
 

@@ -15,7 +15,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "valve_maps/valve_numbers.h"
+#include "servodx/valve_numbers.h"
 
 namespace servodx::valve_maps {
 

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "servodx/valve_numbers.h"
 #include "valve_maps/high_fidelity.h"
-#include "valve_maps/valve_numbers.h"
 
 namespace servodx::valve_maps {
 namespace {

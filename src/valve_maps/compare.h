@@ -11,31 +11,16 @@
 //   open          beyond, |P12| <= 0.9 P_SR: pressure and flow trade against each other by the root
 //   driven        beyond, |P12| > P_SR: a load pushes oil back through the open edge
 #pragma once
-#include <array>
-#include <span>
-#include <string>
 #include <vector>
 
+#include "servodx/map_points.h"
+#include "servodx/valve_numbers.h"
 #include "valve_maps/high_fidelity.h"
 #include "valve_maps/registry.h"
-#include "valve_maps/valve_numbers.h"
 
 namespace servodx::valve_maps {
 
-enum class Region { linear, saturated, water_hammer, open, driven };
-inline constexpr std::array<const char*, 5> region_names = {"linear", "saturated", "water_hammer", "open", "driven"};
 Region region_of(double load_pressure, double x_s, double supply, const ValveNumbers& numbers);
-
-struct RegionError {
-  long points = 0;
-  double rms = 0, largest = 0;  // [fraction of the P_SR of the point]
-};
-
-struct MapError {
-  std::string name;
-  std::array<RegionError, region_names.size()> regions;  // by Region
-  Cost cost;                                             // zero where it was not asked for
-};
 
 struct CompareOptions {
   double stop = 5e-4;                                          // [m] largest travel
@@ -51,9 +36,6 @@ double default_travel(const ValveNumbers& numbers);                             
 double default_flow(const ValveNumbers& numbers);                                  // [m3/s]
 std::vector<double> falling_supplies(double supply, const ValveNumbers& numbers);  // [Pa] down to P_vap
 
-struct MapPoint {
-  double x_s, q_j, load_pressure;  // [m], [m3/s], [Pa]
-};
 // Rows of travel, columns of flow, evenly spaced from -largest to +largest; both counts odd, so that zero is met.
 std::vector<MapPoint> grid(const Map& map, double travel, int travels, double flow, int flows, double supply);
 

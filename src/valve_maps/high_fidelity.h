@@ -9,7 +9,7 @@
 //   turbulent part: rho / (2 (Cd w b)^2); Cd falls from `discharge_round` to `discharge` as b grows past r
 // Both in series make Cd depend on the Reynolds number. Limits: steady; no choking, no reattachment of the jet.
 #pragma once
-#include "valve_maps/valve_numbers.h"
+#include "servodx/valve_numbers.h"
 
 namespace servodx::valve_maps {
 

@@ -1,7 +1,7 @@
 // Linear map: P12 = G_P (xS - QJ / G_Q), with the slope read at null for G_P: the formula knows no leakage.
 // No saturation, no leakage, no dependence on the supply: valid near null at the supply the gains were measured at.
 #pragma once
-#include "valve_maps/valve_numbers.h"
+#include "servodx/valve_numbers.h"
 
 namespace servodx::valve_maps {
 

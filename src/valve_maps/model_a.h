@@ -2,7 +2,7 @@
 //   P12 = (P_SR xS / x_SS - G_PQ QJ) / (1 + G_PQ C_LK)
 // Does not saturate.
 #pragma once
-#include "valve_maps/valve_numbers.h"
+#include "servodx/valve_numbers.h"
 
 namespace servodx::valve_maps {
 

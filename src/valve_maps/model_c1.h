@@ -4,7 +4,7 @@
 #pragma once
 #include <algorithm>
 
-#include "valve_maps/valve_numbers.h"
+#include "servodx/valve_numbers.h"
 
 namespace servodx::valve_maps {
 

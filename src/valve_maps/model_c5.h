@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "valve_maps/valve_numbers.h"
+#include "servodx/valve_numbers.h"
 
 namespace servodx::valve_maps {
 

@@ -1,6 +1,6 @@
 #include "valve_maps/papers_valve.h"
 
-#include "valve_maps/valve_numbers.h"
+#include "servodx/valve_numbers.h"
 
 namespace servodx::valve_maps {
 

@@ -4,19 +4,14 @@
 #include <string>
 #include <vector>
 
+#include "servodx/map_points.h"
+#include "servodx/valve_numbers.h"
 #include "valve_maps/high_fidelity.h"
-#include "valve_maps/valve_numbers.h"
 
 namespace servodx::valve_maps {
 
 // Load pressure [Pa] from spool travel [m], load flow [m3/s] and supply less return [Pa].
 using Map = std::function<double(double x_s, double q_j, double supply)>;
-
-// [s] per evaluation. `in_step`: one after the other, the flow of each waiting for the pressure of the one before, as
-// in a simulation; `in_batch`: independent points in a loop.
-struct Cost {
-  double in_step = 0, in_batch = 0;
-};
 
 struct MapInfo {
   std::string name;

@@ -10,6 +10,7 @@
 #include "base/error.h"
 #include "base/random.h"
 #include "curves/sweep.h"
+#include "servodx/curves.h"
 #include "servodx/log.h"
 #include "servodx/note.h"
 #include "servodx/rig.h"

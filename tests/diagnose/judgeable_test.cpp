@@ -9,12 +9,12 @@
 
 #include "base/random.h"
 #include "diagnose/decide.h"
-#include "evidence/operating_point.h"
 #include "faults/record.h"
 #include "faults/registry.h"
 #include "fit/log_data.h"
 #include "parameters/list.h"
 #include "servodx/log.h"
+#include "servodx/operating_point.h"
 #include "shipped_data.h"
 #include "simulate/scenario.h"
 

@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "diagnose/check_log.h"
+#include "servodx/check_log.h"
 #include "servodx/log.h"
 #include "shipped_data.h"
 #include "signals/signal.h"

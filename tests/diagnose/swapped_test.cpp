@@ -8,7 +8,7 @@
 #include <string>
 #include <utility>
 
-#include "diagnose/check_log.h"
+#include "servodx/check_log.h"
 #include "servodx/log.h"
 #include "shipped_data.h"
 #include "signals/signal.h"

@@ -9,9 +9,10 @@
 
 #include "faults/registry.h"
 #include "fit/log_data.h"
-#include "fit/replay.h"
 #include "fit/sheet.h"
 #include "parameters/table.h"
+#include "servodx/bode.h"
+#include "servodx/data_sheet.h"
 #include "servodx/rig.h"
 #include "shipped_data.h"
 #include "simulate/scenario.h"

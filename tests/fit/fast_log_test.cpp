@@ -22,6 +22,7 @@
 #include "optimise/box_least_squares.h"
 #include "optimise/problem.h"
 #include "parameters/list.h"
+#include "servodx/instruction_set.h"
 #include "servodx/log.h"
 #include "servodx/note.h"
 #include "servodx/rig.h"

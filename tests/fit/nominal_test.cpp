@@ -10,6 +10,7 @@
 #include "model/constants.h"
 #include "parameters/list.h"
 #include "parameters/table.h"
+#include "servodx/data_sheet.h"
 #include "servodx/rig.h"
 
 namespace servodx {

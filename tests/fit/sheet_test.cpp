@@ -8,9 +8,9 @@
 #include <cmath>
 #include <numbers>
 
-#include "fit/nominal.h"
 #include "parameters/list.h"
 #include "parameters/table.h"
+#include "servodx/data_sheet.h"
 #include "servodx/rig.h"
 #include "shipped_data.h"
 

@@ -9,6 +9,7 @@
 #include "base/error.h"
 #include "base/wilson.h"
 #include "fleet/confusion.h"
+#include "servodx/fleet.h"
 #include "temporary_folder.h"
 
 namespace servodx {

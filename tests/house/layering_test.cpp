@@ -50,22 +50,55 @@ const std::map<std::string, std::set<std::string>> allowed = {
     {"store",
      {"parameters", "signals", "model", "simulate", "faults", "evidence", "curves", "diagnose", "explain", "prognose"}},
     // The front door is made of everything below the program; of report its words and files.
-    {"door",
-     {"parameters", "signals", "simulate", "fit", "tune", "faults", "evidence", "diagnose", "explain", "prognose",
-      "store", "report", "plan", "online", "optimise", "curves", "fleet"}},
+    {"door", {"parameters", "signals",  "model",    "effects", "simulate", "fit",       "tune",
+              "faults",     "evidence", "diagnose", "explain", "prognose", "store",     "report",
+              "plan",       "online",   "optimise", "curves",  "fleet",    "valve_maps"}},
 };
 
 // The front door (include/servodx): each of its headers is the folder's whose options and results it declares. The
 // calls themselves are made in src/door.
-const std::map<std::string, std::string> door = {
-    {"servodx/error.h", "base"},       {"servodx/trouble.h", "base"},      {"servodx/watch.h", "base"},
-    {"servodx/note.h", "base"},        {"servodx/checkpoint.h", "base"},   {"servodx/rig.h", "signals"},
-    {"servodx/log.h", "signals"},      {"servodx/table.h", "parameters"},  {"servodx/tune.h", "tune"},
-    {"servodx/actions.h", "diagnose"}, {"servodx/baseline.h", "diagnose"}, {"servodx/diagnose.h", "diagnose"},
-    {"servodx/explain.h", "explain"},  {"servodx/plan.h", "plan"},         {"servodx/trend.h", "prognose"},
-    {"servodx/simulate.h", "door"},    {"servodx/stepper.h", "online"},    {"servodx/servodx.h", "door"},
-    {"servodx/charts.h", "door"},      {"servodx/curves.h", "door"},       {"servodx/fleet.h", "door"},
-    {"servodx/history.h", "door"},     {"servodx/objective.h", "door"}};
+const std::map<std::string, std::string> door = {{"servodx/error.h", "base"},
+                                                 {"servodx/trouble.h", "base"},
+                                                 {"servodx/watch.h", "base"},
+                                                 {"servodx/checkpoint.h", "base"},
+                                                 {"servodx/note.h", "base"},
+                                                 {"servodx/rig.h", "signals"},
+                                                 {"servodx/log.h", "signals"},
+                                                 {"servodx/join.h", "signals"},
+                                                 {"servodx/table.h", "parameters"},
+                                                 {"servodx/instruction_set.h", "simulate"},
+                                                 {"servodx/data_sheet.h", "fit"},
+                                                 {"servodx/tuned_by.h", "fit"},
+                                                 {"servodx/replay.h", "fit"},
+                                                 {"servodx/bode.h", "fit"},
+                                                 {"servodx/selftest.h", "fit"},
+                                                 {"servodx/tune.h", "tune"},
+                                                 {"servodx/sensitivity.h", "tune"},
+                                                 {"servodx/operating_point.h", "evidence"},
+                                                 {"servodx/actions.h", "diagnose"},
+                                                 {"servodx/baseline.h", "diagnose"},
+                                                 {"servodx/check_log.h", "diagnose"},
+                                                 {"servodx/diagnose.h", "diagnose"},
+                                                 {"servodx/explain.h", "explain"},
+                                                 {"servodx/plan.h", "plan"},
+                                                 {"servodx/monitor.h", "prognose"},
+                                                 {"servodx/trend.h", "prognose"},
+                                                 {"servodx/certificate.h", "store"},
+                                                 {"servodx/history.h", "store"},
+                                                 {"servodx/stepper.h", "online"},
+                                                 {"servodx/curves.h", "curves"},
+                                                 {"servodx/fleet.h", "fleet"},
+                                                 {"servodx/map_points.h", "valve_maps"},
+                                                 {"servodx/valve_numbers.h", "valve_maps"},
+                                                 {"servodx/charts.h", "door"},
+                                                 {"servodx/draft.h", "door"},
+                                                 {"servodx/lists.h", "door"},
+                                                 {"servodx/map.h", "door"},
+                                                 {"servodx/miss.h", "door"},
+                                                 {"servodx/objective.h", "door"},
+                                                 {"servodx/pages.h", "door"},
+                                                 {"servodx/simulate.h", "door"},
+                                                 {"servodx/servodx.h", "door"}};
 
 struct Include {
   std::string from, to;  // folders
@@ -174,6 +207,58 @@ TEST(Layering, ProgramBenchesTestsAndExamplesIncludeWhatTheyMay) {
       }
     }
     EXPECT_GT(seen, 0) << "no includes found under " << folder;
+  }
+}
+
+// The program is written on the front door: that and the report, which makes words of what the door gives, are its two
+// legs; base serves both. What a file of it may include besides, folder or header, and why.
+struct Besides {
+  std::set<std::string> what;
+  std::string why;
+};
+const std::map<std::string, Besides> program_besides = {
+    {"compare_command.cpp", {{"store/result_json.h"}, "results are read back as JSON, which the door does not hold"}},
+    {"diagnose_command.cpp", {{"store/verdict_file.h"}, "the last test's verdict is read back as JSON"}},
+    {"follow.cpp",
+     {{"online", "signals/growing_log.h", "signals/sample.h", "faults/gross_finding.h"},
+      "the watch of a log that grows is not on the door yet: its state is JSON"}},
+    {"list_run.h",
+     {{"fleet"}, "a run over a list and its folder of results are the program's own: fleet is base alone"}},
+    {"result_folder.cpp", {{"fleet"}, "the same"}},
+    {"fleet_judge.h", {{"fleet"}, "the same"}},
+    {"fleet_judge.cpp", {{"fleet"}, "the same"}},
+    {"diagnose_list.cpp", {{"fleet"}, "the same"}},
+    {"check_list.cpp", {{"fleet"}, "the same"}},
+    {"watch_command.cpp", {{"fleet"}, "the same, of a watched folder, and its gauges"}},
+    {"trend_command.cpp", {{"fleet/prometheus.h"}, "gauges"}},
+    {"list_command.cpp", {{"rig/excitations.h"}, "the virtual rig is a tool, and no part of the library"}},
+    {"rig_command.cpp", {{"rig"}, "the same"}},
+};
+
+TEST(Layering, TheProgramStandsOnTheDoorAndTheReport) {
+  const fs::path root = SERVODX_SOURCE_DIR, folder = root / "apps/servodx";
+  const std::set<std::string> legs = {"servodx", "report", "base"};
+  std::set<std::string> used;
+  int seen = 0;
+  for (const auto& entry : fs::directory_iterator(folder)) {
+    const auto kind = entry.path().extension();
+    if (kind != ".h" && kind != ".cpp") continue;
+    const std::string file = entry.path().filename().string();
+    const auto besides = program_besides.find(file);
+    for (const Include& include : includes_of(entry.path(), root)) {
+      ++seen;
+      if (legs.contains(include.to) || fs::exists(folder / include.text)) continue;
+      const bool told = besides != program_besides.end() &&
+                        (besides->second.what.contains(include.to) || besides->second.what.contains(include.text));
+      EXPECT_TRUE(told) << file << ":" << include.line << ": the program may not include \"" << include.text
+                        << "\": call the front door, or extend it";
+      if (told) used.insert(file);
+    }
+  }
+  EXPECT_GT(seen, 100);
+  for (const auto& [file, excepted] : program_besides) {
+    EXPECT_FALSE(excepted.why.empty()) << file;
+    EXPECT_TRUE(used.contains(file)) << file << " needs no exception: take it off the list";
   }
 }
 

@@ -19,6 +19,7 @@
 #include "model/state.h"
 #include "parameters/list.h"
 #include "parameters/table.h"
+#include "servodx/instruction_set.h"
 #include "shipped_data.h"
 #include "simulate/kernel.h"
 #include "simulate/scenario.h"

@@ -18,6 +18,7 @@
 #include "model/derived.h"
 #include "model/state.h"
 #include "parameters/list.h"
+#include "servodx/instruction_set.h"
 #include "servodx/rig.h"
 #include "simulate/kernel.h"
 #include "simulate/scenario.h"

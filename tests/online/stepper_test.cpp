@@ -12,7 +12,7 @@
 #include "effects/registry.h"
 #include "effects/transport_delay.h"
 #include "fit/log_data.h"
-#include "fit/nominal.h"
+#include "servodx/data_sheet.h"
 #include "servodx/error.h"
 #include "servodx/log.h"
 #include "servodx/rig.h"

@@ -7,6 +7,7 @@
 #include "model/state.h"
 #include "parameters/list.h"
 #include "parameters/table.h"
+#include "servodx/monitor.h"
 #include "support.h"
 
 namespace servodx {

@@ -12,6 +12,7 @@
 #include "rig/rig_faults.h"
 #include "rig/rig_model.h"
 #include "rig/rig_run.h"
+#include "servodx/monitor.h"
 #include "signals/log.h"
 #include "support.h"
 #include "temporary_folder.h"

@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "evidence/operating_point.h"
 #include "report/shared/json.h"
 #include "report/shared/page.h"
+#include "servodx/operating_point.h"
 
 namespace servodx::report {
 namespace {

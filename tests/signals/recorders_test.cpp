@@ -1,13 +1,13 @@
 // Two recorders of one test: offset and skew of the second's clock are found within what is stated.
-#include "signals/recorders.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 
 #include "base/random.h"
 #include "servodx/error.h"
+#include "servodx/join.h"
 #include "servodx/log.h"
+#include "signals/signal.h"
 
 namespace servodx {
 namespace {

@@ -1,5 +1,5 @@
 // The GA paper's sensitivity table: each of its 41 parameters driven to minimum and maximum, ranked by the effect.
-#include "tune/sensitivity.h"
+#include "servodx/sensitivity.h"
 
 #include <gtest/gtest.h>
 

@@ -32,6 +32,7 @@
 #include "servodx/note.h"
 #include "servodx/rig.h"
 #include "servodx/tune.h"
+#include "servodx/tuned_by.h"
 #include "shipped_data.h"
 #include "simulate/scenario.h"
 #include "tune/scope.h"

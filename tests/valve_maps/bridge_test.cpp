@@ -6,10 +6,11 @@
 
 #include <cmath>
 
+#include "servodx/map_points.h"
+#include "servodx/valve_numbers.h"
 #include "support.h"
 #include "valve_maps/compare.h"
 #include "valve_maps/high_fidelity.h"
-#include "valve_maps/valve_numbers.h"
 
 namespace servodx::valve_maps {
 namespace {

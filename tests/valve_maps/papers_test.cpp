@@ -3,6 +3,8 @@
 
 #include <cmath>
 
+#include "servodx/map_points.h"
+#include "servodx/valve_numbers.h"
 #include "support.h"
 #include "valve_maps/compare.h"
 #include "valve_maps/high_fidelity.h"
@@ -14,7 +16,6 @@
 #include "valve_maps/model_c5.h"
 #include "valve_maps/papers_valve.h"
 #include "valve_maps/registry.h"
-#include "valve_maps/valve_numbers.h"
 
 namespace servodx::valve_maps {
 namespace {

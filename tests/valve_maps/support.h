@@ -1,8 +1,8 @@
 // Valves to judge maps on.
 #pragma once
+#include "servodx/valve_numbers.h"
 #include "valve_maps/high_fidelity.h"
 #include "valve_maps/papers_valve.h"
-#include "valve_maps/valve_numbers.h"
 
 namespace servodx::valve_maps {
 

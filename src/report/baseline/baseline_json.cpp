@@ -5,9 +5,10 @@
 #include "diagnose/record_law.h"
 #include "diagnose/records.h"
 #include "evidence/conditions.h"
-#include "evidence/operating_point.h"
 #include "report/diagnose/diagnosis_words.h"
+#include "report/explain/explain_report.h"
 #include "servodx/log.h"
+#include "servodx/operating_point.h"
 #include "store/baseline_keys.h"
 
 namespace servodx::report {
@@ -57,5 +58,13 @@ Json baseline_json(const DetectionBaseline& b) {
           {"null_limit", number(b.null_limit)},
           {"tuned_sha256", b.tuned_sha256}};
 }
+
+Json baseline_json(const BaselineParts& parts) {
+  Json body = baseline_json(parts.detection);
+  body["explain"] = healthy_json(parts.causes.value());
+  return body;
+}
+
+Json baseline_json(const Baseline& baseline) { return baseline_json(parts_of(baseline)); }
 
 }  // namespace servodx::report

@@ -7,13 +7,13 @@
 #include "base/celsius.h"
 #include "diagnose/baseline.h"
 #include "diagnose/healthy_law.h"
-#include "fit/replay.h"
 #include "report/diagnose/diagnosis_words.h"
 #include "report/shared/handy.h"
 #include "report/shared/json.h"
 #include "report/shared/page.h"
 #include "report/shared/parts.h"
 #include "report/shared/replay_part.h"
+#include "store/baseline_parts.h"
 
 namespace servodx::report {
 
@@ -70,6 +70,10 @@ Page baseline_page(const Header& header, const DetectionBaseline& b, const std::
       add_replay(page, r, {.shown = {}, .onset = {}, .logs = replays.size()});
     }
   return page;
+}
+
+Page baseline_page(const Header& header, const Baseline& baseline, const std::vector<Replay>& replays) {
+  return baseline_page(header, parts_of(baseline).detection, replays);
 }
 
 }  // namespace servodx::report

@@ -6,6 +6,7 @@
 #include "report/diagnose/diagnosis_words.h"
 #include "report/shared/columns.h"
 #include "report/shared/handy.h"
+#include "store/baseline_parts.h"
 
 namespace servodx::report {
 
@@ -25,6 +26,10 @@ std::string text_of(const DetectionBaseline& b, const TextOptions& options) {
           "limit but for tests like its own: tune with a log of its kind\n",
           s.log, digits(s.adequacy, 2));
   return text;
+}
+
+std::string text_of(const Baseline& baseline, const TextOptions& options) {
+  return text_of(parts_of(baseline).detection, options);
 }
 
 }  // namespace servodx::report

@@ -4,9 +4,11 @@
 
 #include "diagnose/baseline.h"
 #include "report/shared/text_options.h"
+#include "servodx/baseline.h"
 
 namespace servodx::report {
 
 std::string text_of(const DetectionBaseline& baseline, const TextOptions& options);
+std::string text_of(const Baseline& baseline, const TextOptions& options);
 
 }  // namespace servodx::report

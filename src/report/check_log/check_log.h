@@ -3,9 +3,9 @@
 #include <optional>
 #include <vector>
 
-#include "diagnose/check_log.h"
 #include "report/shared/json.h"
 #include "report/shared/page.h"
+#include "servodx/check_log.h"
 
 namespace servodx::report {
 

@@ -3,10 +3,10 @@
 #include <string>
 
 #include "curves/curves.h"
-#include "fit/sheet.h"
 #include "report/shared/certificate_part.h"
 #include "report/shared/json.h"
 #include "report/shared/page.h"
+#include "servodx/data_sheet.h"
 
 namespace servodx::report {
 

@@ -8,7 +8,6 @@
 #include "base/units.h"
 #include "curves/curves.h"
 #include "curves/frequency_response.h"
-#include "fit/sheet.h"
 #include "report/curves/curves.h"
 #include "report/curves/data_sheet.h"
 #include "report/shared/certificate_part.h"
@@ -17,6 +16,7 @@
 #include "report/shared/page.h"
 #include "report/shared/parts.h"
 #include "report/shared/replay_part.h"
+#include "servodx/data_sheet.h"
 #include "servodx/log.h"
 
 namespace servodx::report {

@@ -13,6 +13,7 @@
 #include "report/shared/handy.h"
 #include "report/shared/parts.h"
 #include "report/shared/replay_part.h"
+#include "servodx/data_sheet.h"
 
 namespace servodx::report {
 namespace {

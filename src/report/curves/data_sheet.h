@@ -2,9 +2,9 @@
 #pragma once
 #include <string>
 
-#include "fit/sheet.h"
 #include "report/shared/json.h"
 #include "report/shared/page.h"
+#include "servodx/data_sheet.h"
 
 namespace servodx::report {
 

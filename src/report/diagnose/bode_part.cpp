@@ -9,9 +9,11 @@
 #include <optional>
 #include <string>
 
+#include "fit/bode.h"
 #include "report/shared/handy.h"
 #include "report/shared/parts.h"
 #include "report/shared/replay_part.h"
+#include "servodx/bode.h"
 
 namespace servodx::report {
 namespace {

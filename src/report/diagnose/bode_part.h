@@ -2,8 +2,8 @@
 #pragma once
 #include <vector>
 
-#include "fit/bode.h"
 #include "report/shared/page.h"
+#include "servodx/bode.h"
 
 namespace servodx::report {
 

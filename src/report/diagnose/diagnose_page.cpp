@@ -19,7 +19,6 @@
 #include "diagnose/record_law.h"
 #include "faults/fault.h"
 #include "faults/gross_finding.h"
-#include "fit/replay.h"
 #include "report/curves/curves.h"
 #include "report/diagnose/bode_part.h"
 #include "report/diagnose/diagnosis_words.h"
@@ -36,7 +35,8 @@
 #include "report/shared/parts.h"
 #include "report/shared/replay_part.h"
 #include "servodx/actions.h"
-#include "store/certificate_file.h"
+#include "servodx/certificate.h"
+#include "store/baseline_parts.h"
 
 namespace servodx::report {
 namespace {
@@ -238,9 +238,9 @@ void add_details(Page& page, const Diagnosis& d, const std::vector<Replay>& repl
 }
 
 // Where the log was recorded, each with the uncertainty of the instrument that the sheet names for it.
-void certify_conditions(std::vector<CertifiedFigure>& figures, const Diagnosis& d, const store::Certificate& sheet) {
+void certify_conditions(std::vector<CertifiedFigure>& figures, const Diagnosis& d, const Certificate& sheet) {
   for (const ConditionFigure& c : condition_figures(d.conditions)) {
-    const store::Instrument* instrument = c.signal ? sheet.of(*c.signal) : nullptr;
+    const Instrument* instrument = c.signal ? sheet.of(*c.signal) : nullptr;
     figures.push_back({c.name, c.value, instrument ? instrument->uncertainty : "", "", "", Tone::plain});
   }
 }
@@ -249,7 +249,7 @@ constexpr int null_row = 41;  // id of servovalve_null, as every table has it
 
 void certify(Page& page, const Diagnosis& d, const DetectionBaseline& baseline, const Header& header,
              const CertificateOf& certificate) {
-  const store::Certificate& sheet = *certificate.sheet;
+  const Certificate& sheet = *certificate.sheet;
   std::vector<CertifiedFigure> figures = {
       {"error", digits(d.error) + " deviates", "", "below " + digits(d.threshold), word_of(d.verdict), tone_of(d)}};
   for (const NamedFault& f : d.faults)
@@ -379,6 +379,14 @@ Page diagnose_page(const Header& header, const std::vector<Diagnosis>& results, 
     add_details(page, results[i], replays, std::max<std::size_t>(1, replays.size()));
   }
   return page;
+}
+
+Page diagnose_page(const Header& header, const std::vector<servodx::Verdict>& verdicts, const Baseline& baseline,
+                   const std::vector<Replay>& replays, const std::vector<std::string>& truths,
+                   const CertificateOf& certificate, const BesideVerdict& beside) {
+  std::vector<Diagnosis> results;
+  for (const servodx::Verdict& v : verdicts) results.push_back(*v.whole);
+  return diagnose_page(header, results, parts_of(baseline).detection, replays, truths, certificate, beside);
 }
 
 }  // namespace servodx::report

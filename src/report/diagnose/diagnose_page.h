@@ -6,12 +6,14 @@
 
 #include "diagnose/baseline.h"
 #include "diagnose/judge.h"
-#include "fit/bode.h"
-#include "fit/replay.h"
 #include "report/diagnose/two_tests.h"
 #include "report/shared/certificate_part.h"
 #include "report/shared/json.h"
 #include "report/shared/page.h"
+#include "servodx/baseline.h"
+#include "servodx/bode.h"
+#include "servodx/diagnose.h"
+#include "servodx/replay.h"
 
 namespace servodx::report {
 
@@ -24,6 +26,10 @@ struct BesideVerdict {
 // `replays`: of some of the result's logs, by path; what is not there is not drawn.
 // `truths`: what each log was made with, "" where that is not known; they enter the confusion table and nothing else.
 Page diagnose_page(const Header& header, const std::vector<Diagnosis>& results, const DetectionBaseline& baseline,
+                   const std::vector<Replay>& replays, const std::vector<std::string>& truths = {},
+                   const CertificateOf& certificate = {}, const BesideVerdict& beside = {});
+// None of them interrupted.
+Page diagnose_page(const Header& header, const std::vector<servodx::Verdict>& verdicts, const Baseline& baseline,
                    const std::vector<Replay>& replays, const std::vector<std::string>& truths = {},
                    const CertificateOf& certificate = {}, const BesideVerdict& beside = {});
 

@@ -205,4 +205,10 @@ Json to_json(const Diagnosis& d) {
 
 Json diagnose_json(const std::vector<Diagnosis>& results) { return {{"results", array_of(results)}}; }
 
+Json diagnose_json(const std::vector<servodx::Verdict>& verdicts) {
+  Json results = Json::array();
+  for (const servodx::Verdict& v : verdicts) results.push_back(to_json(*v.whole));
+  return {{"results", std::move(results)}};
+}
+
 }  // namespace servodx::report

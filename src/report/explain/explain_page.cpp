@@ -10,7 +10,6 @@
 #include "explain/missing.h"
 #include "explain/outcome.h"
 #include "explain/show.h"
-#include "fit/replay.h"
 #include "report/explain/explain_report.h"
 #include "report/explain/explain_words.h"
 #include "report/shared/columns.h"
@@ -20,6 +19,7 @@
 #include "report/shared/parts.h"
 #include "report/shared/replay_part.h"
 #include "servodx/log.h"
+#include "servodx/replay.h"
 #include "servodx/tune.h"
 
 namespace servodx::report {

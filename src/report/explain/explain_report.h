@@ -4,10 +4,10 @@
 
 #include "explain/explain.h"
 #include "explain/healthy.h"
-#include "fit/replay.h"
 #include "report/shared/json.h"
 #include "report/shared/page.h"
 #include "report/shared/text_options.h"
+#include "servodx/replay.h"
 
 namespace servodx::report {
 

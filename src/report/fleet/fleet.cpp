@@ -179,4 +179,18 @@ Json fleet_json(const FleetTable& table, const std::optional<Confusion>& confusi
           {"confusion", confusion ? to_json(*confusion) : Json(nullptr)}};
 }
 
+namespace {
+
+std::optional<Confusion> whole_of(const FleetCounts* counts) {
+  return counts ? std::optional<Confusion>(*counts->whole) : std::nullopt;
+}
+
+}  // namespace
+
+std::string text_of(const Fleet& fleet, const FleetCounts* counts) { return text_of(*fleet.whole, whole_of(counts)); }
+Json fleet_json(const Fleet& fleet, const FleetCounts* counts) { return fleet_json(*fleet.whole, whole_of(counts)); }
+Page fleet_page(const Header& header, const Fleet& fleet, const FleetCounts* counts) {
+  return fleet_page(header, *fleet.whole, whole_of(counts));
+}
+
 }  // namespace servodx::report

@@ -9,6 +9,7 @@
 #include "fleet/run.h"
 #include "report/shared/json.h"
 #include "report/shared/page.h"
+#include "servodx/fleet.h"
 
 namespace servodx::report {
 
@@ -25,5 +26,10 @@ Json refusal_json(const std::string& log, const InputError& error);
 std::string text_of(const FleetTable& table, const std::optional<Confusion>& confusion);
 Json fleet_json(const FleetTable& table, const std::optional<Confusion>& confusion);
 Page fleet_page(const Header& header, const FleetTable& table, const std::optional<Confusion>& confusion);
+
+// The same of what gather_results() and count_fleet() made; null: no truth.
+std::string text_of(const Fleet& fleet, const FleetCounts* counts);
+Json fleet_json(const Fleet& fleet, const FleetCounts* counts);
+Page fleet_page(const Header& header, const Fleet& fleet, const FleetCounts* counts);
 
 }  // namespace servodx::report

@@ -12,7 +12,8 @@
 #include "report/shared/handy.h"
 #include "report/shared/line_chart.h"
 #include "report/shared/replay_part.h"
-#include "valve_maps/valve_numbers.h"
+#include "servodx/map_points.h"
+#include "servodx/valve_numbers.h"
 
 namespace servodx::report {
 namespace {

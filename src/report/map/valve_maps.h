@@ -5,8 +5,8 @@
 
 #include "report/shared/json.h"
 #include "report/shared/page.h"
-#include "valve_maps/compare.h"
-#include "valve_maps/valve_numbers.h"
+#include "servodx/map_points.h"
+#include "servodx/valve_numbers.h"
 
 namespace servodx::report {
 

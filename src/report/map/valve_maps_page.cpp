@@ -10,8 +10,8 @@
 #include "report/shared/page.h"
 #include "report/shared/parts.h"
 #include "report/shared/replay_part.h"
-#include "valve_maps/compare.h"
-#include "valve_maps/valve_numbers.h"
+#include "servodx/map_points.h"
+#include "servodx/valve_numbers.h"
 
 namespace servodx::report {
 namespace {

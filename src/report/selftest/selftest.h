@@ -2,9 +2,9 @@
 #pragma once
 #include <string>
 
-#include "fit/selftest.h"
 #include "report/shared/json.h"
 #include "report/shared/page.h"
+#include "servodx/selftest.h"
 
 namespace servodx::report {
 

@@ -4,7 +4,7 @@
 
 #include "report/shared/json.h"
 #include "report/shared/page.h"
-#include "tune/sensitivity.h"
+#include "servodx/sensitivity.h"
 
 namespace servodx::report {
 

@@ -9,11 +9,11 @@
 #include "report/shared/page_head.h"
 #include "report/shared/parts.h"
 #include "report/shared/replay_part.h"
-#include "store/certificate_file.h"
+#include "servodx/certificate.h"
 
 namespace servodx::report {
 
-void add_to_head(PageHead& head, const store::Certificate& c) {
+void add_to_head(PageHead& head, const Certificate& c) {
   head.say("Certificate", c.number);
   if (!c.customer.empty()) head.say("Customer", c.customer);
   head.say("Order", c.order);
@@ -25,7 +25,7 @@ void add_to_head(PageHead& head, const store::Certificate& c) {
 
 void add_certificate(Page& page, const CertificateOf& of, const Header& header,
                      const std::vector<CertifiedFigure>& figures, const std::string& rule) {
-  const store::Certificate& certificate = *of.sheet;
+  const Certificate& certificate = *of.sheet;
   page.section("Certificate",
                "Uncertainties are expanded ones, k = 2, which covers about 95 %. The results are of the tested valve "
                "in the state in which it was tested.");
@@ -39,7 +39,7 @@ void add_certificate(Page& page, const CertificateOf& of, const Header& header,
   page.text("Decision rule: " + rule);
   TablePart instruments{
       "Instruments", "llllll", {"instrument", "serial", "measures", "+- (k = 2)", "calibrated", "due"}, {}, 0};
-  for (const store::Instrument& i : certificate.instruments) {
+  for (const Instrument& i : certificate.instruments) {
     Cell due = i.due;
     if (i.overdue(certificate.date)) due = i.due + ", overdue", due.tone = Tone::bad;
     instruments.rows.push_back({i.name, i.serial, i.error ? words(std::string(name_of(i.error->signal))) : "",

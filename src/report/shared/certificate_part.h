@@ -1,4 +1,4 @@
-// The certificate of a test on a page: what its sheet says (store/certificate_file.h) beside the result.
+// The certificate of a test on a page: what its sheet says (servodx/certificate.h) beside the result.
 #pragma once
 #include <string>
 #include <vector>
@@ -7,18 +7,18 @@
 #include "report/shared/page.h"
 #include "report/shared/page_head.h"
 #include "report/shared/parts.h"
-#include "store/certificate_file.h"
+#include "servodx/certificate.h"
 
 namespace servodx::report {
 
 // A certificate that is asked for, and the manifest by which its result is made again.
 struct CertificateOf {
-  const store::Certificate* sheet = nullptr;  // null: none
+  const Certificate* sheet = nullptr;  // null: none
   std::string manifest;
 };
 
 // Customer, date and number into the page's head.
-void add_to_head(PageHead& head, const store::Certificate& certificate);
+void add_to_head(PageHead& head, const Certificate& certificate);
 
 // What is certified, a figure a row.
 struct CertifiedFigure {

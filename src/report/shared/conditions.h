@@ -4,11 +4,11 @@
 #include <string>
 #include <vector>
 
-#include "evidence/operating_point.h"
 #include "report/shared/json.h"
 #include "report/shared/page.h"
 #include "report/shared/page_head.h"
 #include "servodx/log.h"
+#include "servodx/operating_point.h"
 #include "signals/signal.h"
 
 namespace servodx::report {

@@ -11,6 +11,7 @@
 #include "report/shared/handy.h"
 #include "report/shared/parts.h"
 #include "servodx/log.h"
+#include "servodx/replay.h"
 #include "signals/signal.h"
 
 namespace servodx::report {

@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "fit/replay.h"
 #include "report/shared/page.h"
+#include "servodx/replay.h"
 
 namespace servodx::report {
 

@@ -2,6 +2,7 @@
 
 #include "report/shared/parts.h"
 #include "report/shared/replay_part.h"
+#include "servodx/replay.h"
 
 namespace servodx::report {
 

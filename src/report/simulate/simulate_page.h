@@ -1,8 +1,8 @@
 // The page of `simulate`.
 #pragma once
-#include "fit/replay.h"
 #include "report/shared/json.h"
 #include "report/shared/page.h"
+#include "servodx/replay.h"
 
 namespace servodx::report {
 

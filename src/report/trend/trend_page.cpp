@@ -19,6 +19,7 @@
 #include "report/trend/trend_report.h"
 #include "report/trend/trend_words.h"
 #include "servodx/note.h"
+#include "servodx/trend.h"
 
 namespace servodx::report {
 namespace {
@@ -196,6 +197,12 @@ Page trend_page(const Header& header, const std::vector<ValveTrend>& trends, boo
   page.add(table);
   for (const ValveTrend& t : trends) add_valve(page, t, coverage, &t != &trends.front());
   return page;
+}
+
+Page trend_page(const Header& header, const std::vector<Trend>& trends, bool all) {
+  std::vector<ValveTrend> wholes;
+  for (const Trend& t : trends) wholes.push_back(*t.whole);
+  return trend_page(header, wholes, all);
 }
 
 }  // namespace servodx::report

@@ -81,10 +81,10 @@ Json to_json(const ValveTrend& v) {
           {"checks", checks}};
 }
 
-Json trend_json(const std::vector<ValveTrend>& trends, bool all) {
-  if (!all) return to_json(trends.front());
+Json trend_json(const std::vector<Trend>& trends, bool all) {
+  if (!all) return to_json(*trends.front().whole);
   Json valves = Json::array();
-  for (const ValveTrend& v : trends) valves.push_back(to_json(v));
+  for (const Trend& t : trends) valves.push_back(to_json(*t.whole));
   return {{"valves", valves}};
 }
 
@@ -112,12 +112,14 @@ std::string text_of(const ValveTrend& v) {
   return text + rows.text();
 }
 
-std::string ranking(const std::vector<ValveTrend>& trends) {
+std::string ranking(const std::vector<Trend>& trends) {
   Columns rows("lllrll");
   rows.row({"valve", "state", "cause", "at", "to warning", "life left"});
-  for (const ValveTrend& v : trends)
+  for (const Trend& t : trends) {
+    const ValveTrend& v = *t.whole;
     rows.row({v.valve, word_of(v.state), v.cause.value_or("-"), digits(v.at, 5) + " h",
               v.to_warning > 0 ? in_hours(v.to_warning) : "passed", v.remaining ? life_text(*v.remaining) : "-"});
+  }
   return rows.text();
 }
 

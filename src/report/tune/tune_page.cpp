@@ -6,7 +6,6 @@
 #include <cmath>
 
 #include "fit/identifiability.h"
-#include "fit/replay.h"
 #include "report/check_log/check_log.h"
 #include "report/shared/columns.h"
 #include "report/shared/handy.h"
@@ -16,6 +15,7 @@
 #include "report/shared/parts.h"
 #include "report/shared/replay_part.h"
 #include "report/tune/tune_words.h"
+#include "servodx/replay.h"
 #include "servodx/table.h"
 #include "servodx/tune.h"
 #include "tune/tune.h"

@@ -2,10 +2,10 @@
 #pragma once
 #include <vector>
 
-#include "fit/replay.h"
 #include "report/shared/json.h"
 #include "report/shared/page.h"
 #include "report/tune/tune_words.h"
+#include "servodx/replay.h"
 #include "tune/tune.h"
 
 namespace servodx::report {

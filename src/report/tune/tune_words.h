@@ -12,10 +12,10 @@
 #include <string>
 #include <vector>
 
-#include "diagnose/check_log.h"
 #include "diagnose/judge.h"
 #include "fit/tuned_state.h"
 #include "report/shared/json.h"
+#include "servodx/check_log.h"
 #include "tune/tune.h"
 
 namespace servodx::report {

@@ -5,15 +5,14 @@
 // gives the bias of every parameter and the share of 95 % intervals that hold the truth. The model that makes the data
 // is the one that is fitted: this tests input, identifiability and estimator, not whether the model is true of a rig.
 #pragma once
-#include <atomic>
 #include <cstdint>
 #include <string>
 #include <vector>
 
-#include "parameters/table.h"
+#include "servodx/log.h"
 #include "servodx/rig.h"
-#include "signals/log.h"
-#include "signals/rig_file.h"
+#include "servodx/table.h"
+#include "servodx/watch.h"
 
 namespace servodx {
 
@@ -21,9 +20,11 @@ struct SelftestOptions {
   int repeats = 20;
   double spread = 0.05;  // [of a row's interval] standard deviation of the truth about the table's value
   std::uint64_t seed = 1;
-  int threads = 0;
-  bool quiet = false;
-  const std::atomic<bool>* stop = nullptr;
+  int threads = 0;   // 0: all cores; the result does not depend on it
+  Watch watch = {};  // stopped: of the repeats done so far
+
+  // Throws InputError that names the option, as the program calls it.
+  void validate() const;
 };
 
 struct SelftestRow {
@@ -48,6 +49,7 @@ struct SelftestResult {
   bool interrupted = false;
 };
 
-SelftestResult selftest(const Log& log, const Table& table, const RigFile& rig, const SelftestOptions& options);
+// Throws InputError where the log cannot be fitted, or an option is out of range.
+SelftestResult selftest(const Log& log, const Table& table, const Rig& rig, const SelftestOptions& options = {});
 
 }  // namespace servodx

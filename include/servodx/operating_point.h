@@ -20,7 +20,7 @@ using OperatingPoint = std::array<std::optional<double>, n_conditions>;
 
 OperatingPoint operating_point_of(const Log& log);
 // What the rig file says of it; it says nothing of the load.
-OperatingPoint sheet_point(const RigFile& rig);
+OperatingPoint sheet_point(const Rig& rig);
 
 struct ConditionRow {
   Condition of = Condition::supply;

@@ -5,17 +5,16 @@
 #include <string>
 #include <vector>
 
-#include "curves/curves.h"
+#include "servodx/curves.h"
 #include "servodx/log.h"
-#include "signals/signal.h"
 
-namespace servodx::store {
+namespace servodx {
 
 struct Instrument {
   std::string name, serial;
-  std::string calibrated, due;                   // "2026-05-02"; empty: not said
-  std::string uncertainty;                       // as written: "0.5 %" of the reading, or a quantity; expanded, k = 2
-  std::optional<curves::InstrumentError> error;  // where it names its signal
+  std::string calibrated, due;           // "2026-05-02"; empty: not said
+  std::string uncertainty;               // as written: "0.5 %" of the reading, or a quantity; expanded, k = 2
+  std::optional<InstrumentError> error;  // where it names its signal
 
   bool overdue(const std::string& date) const { return !due.empty() && due < date; }
 };
@@ -26,7 +25,7 @@ struct Certificate {
   double guard = 1.0;  // guard band, in expanded uncertainties; 0: simple acceptance
   std::vector<Instrument> instruments;
 
-  std::vector<curves::InstrumentError> errors() const;
+  std::vector<InstrumentError> errors() const;
   const Instrument* of(Signal signal) const;  // null: none is named
   std::vector<std::string> overdue() const;   // in words
 };
@@ -34,4 +33,4 @@ struct Certificate {
 // Throws InputError with file, line, key, rule and mend.
 Certificate read_certificate(const std::string& path);
 
-}  // namespace servodx::store
+}  // namespace servodx

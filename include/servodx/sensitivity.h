@@ -10,11 +10,10 @@
 #include <string>
 #include <vector>
 
-#include "parameters/table.h"
 #include "servodx/log.h"
 #include "servodx/rig.h"
+#include "servodx/table.h"
 #include "servodx/watch.h"
-#include "signals/signal.h"
 
 namespace servodx {
 
@@ -43,8 +42,8 @@ struct Sensitivity {
 };
 
 // Throws InputError where a log has no signal that is simulated, or the simulation fails at the table's own values.
-// `table`: rows in SI; facts of `rig` are in it.
-Sensitivity drive_rows(const std::vector<Log>& logs, const Table& table, const RigFile& rig, int threads,
-                       const Watch& watch);
+// `table`: facts of `rig` are in it (servodx/data_sheet.h). `threads` 0: all cores; the result does not depend on it.
+Sensitivity drive_rows(const std::vector<Log>& logs, const Table& table, const Rig& rig, int threads = 0,
+                       const Watch& watch = {});
 
 }  // namespace servodx

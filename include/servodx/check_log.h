@@ -5,16 +5,15 @@
 // twice the sensor's noise with 40 independent samples a second. A fault's visibility is the deviate by which the log
 // would differ, the log's own nuisances fitted away: below about 3 the fault at that size stays hidden.
 #pragma once
+#include <cstddef>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "evidence/operating_point.h"
-#include "fit/identifiability.h"
-#include "parameters/table.h"
+#include "servodx/log.h"
+#include "servodx/operating_point.h"
 #include "servodx/rig.h"
-#include "signals/log.h"
-#include "signals/rig_file.h"
+#include "servodx/table.h"
 
 namespace servodx {
 
@@ -69,7 +68,7 @@ struct LogSurvey {
   std::vector<Finding> findings;
 };
 
-LogSurvey survey(const Log& log, const RigFile& rig);
+LogSurvey survey(const Log& log, const Rig& rig);
 // What only stands out beside the others: another rate, another temperature.
 void compare_surveys(std::vector<LogSurvey>& surveys);
 
@@ -94,6 +93,6 @@ struct Promise {
 };
 
 // Throws InputError where the log lacks a signal that the model reports.
-Promise promise_of(const Log& log, const Table& table, const RigFile& rig, int threads = 0);
+Promise promise_of(const Log& log, const Table& table, const Rig& rig, int threads = 0);
 
 }  // namespace servodx

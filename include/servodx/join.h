@@ -10,7 +10,7 @@
 #pragma once
 #include <optional>
 
-#include "signals/log.h"
+#include "servodx/log.h"
 
 namespace servodx {
 

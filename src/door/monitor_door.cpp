@@ -1,0 +1,51 @@
+// The front door of `monitor`.
+#include <memory>
+
+#include "door/require_setting.h"
+#include "fit/log_data.h"
+#include "prognose/checks.h"
+#include "prognose/monitor.h"
+#include "servodx/log.h"
+#include "servodx/monitor.h"
+#include "servodx/rig.h"
+#include "servodx/table.h"
+
+namespace servodx {
+
+struct LogMonitor::Inside {
+  Log log;
+  LogData data;
+  MonitorParameters parameters;
+  PressureLaw law;
+  bool closed = false;
+};
+
+LogMonitor::LogMonitor(const Log& log, const Table& table, const Rig& rig, const MonitorOptions& options) {
+  Inside in{log, prepare(log, rig), {}, {}, options.loop_gain.has_value()};
+  const Supply at = supply_of(in.data, table);
+  in.parameters = monitor_parameters(table, at);
+  in.law = pressure_law(options.model, table, at);
+  door::require_setting(!in.closed || log.has(Signal::setpoint), "--loop-gain",
+                        "the log has no 'setpoint' to close the loop on",
+                        "leave it away: the measured current drives the monitor");
+  if (in.closed) in.parameters.control_gain = *options.loop_gain;
+  inside_ = std::make_shared<Inside>(std::move(in));
+}
+
+const MonitorParameters& LogMonitor::parameters() const { return inside_->parameters; }
+const std::vector<std::string>& LogMonitor::notes() const { return inside_->data.notes; }
+
+MonitorRun LogMonitor::run() const {
+  const Inside& in = *inside_;
+  return in.closed ? run_monitor_loop(in.parameters, in.law, in.data, in.log[Signal::setpoint])
+                   : run_monitor(in.parameters, in.law, in.data);
+}
+
+std::optional<MonitorError> LogMonitor::error_of(const MonitorRun& run) const {
+  const Log& log = inside_->log;
+  if (!log.has(Signal::spool_position)) return {};
+  const MeanError e = mean_error(log.time, log[Signal::spool_position], run.spool);
+  return MonitorError{e.figure.value, e.figure.std_error, e.settled_at, e.settled};
+}
+
+}  // namespace servodx

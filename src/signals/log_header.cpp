@@ -1,0 +1,93 @@
+#include "signals/log_header.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <map>
+
+#include "base/csv.h"
+#include "servodx/error.h"
+#include "signals/header.h"
+#include "signals/log_formats.h"
+#include "signals/mat_file.h"
+#include "signals/time_stamp.h"
+
+namespace servodx {
+namespace {
+
+// The numbers of a CSV log's columns; date-time stamps as such.
+std::vector<ColumnNumbers> numbers_of_rows(CsvCursor& csv, bool in_row) {
+  std::vector<NumbersCollector> collectors(csv.header().size());
+  std::vector<bool> stamps(collectors.size(), false);
+  for (; in_row; in_row = csv.next_row())
+    for (std::size_t c = 0; c < collectors.size(); ++c) {
+      double value = 0;
+      const Cell kind = csv.next_number(value);
+      if (kind == Cell::none) break;
+      if (kind == Cell::text && !stamps[c]) stamps[c] = parse_time_stamp(csv.last_text()).has_value();
+      collectors[c].take(kind == Cell::number ? value : std::nan(""));
+    }
+  std::vector<ColumnNumbers> numbers;
+  for (std::size_t c = 0; c < collectors.size(); ++c) {
+    numbers.push_back(collectors[c].numbers());
+    numbers.back().stamps = stamps[c] && numbers.back().count == 0;
+  }
+  return numbers;
+}
+
+LogHeader read_csv_header(const std::string& path) {
+  const std::string bytes = read_file(path);
+  CsvCursor csv(bytes, path);
+  pass_lines_above_header(csv, path);
+  require_names(csv, path);
+  bool in_row = csv.next_row();
+  const std::vector<std::string> units = in_row ? units_row(csv) : std::vector<std::string>{};
+  if (!units.empty()) in_row = csv.next_row();
+  return {guess_columns(csv.header(), units), numbers_of_rows(csv, in_row)};
+}
+
+// A MAT file's vectors of the commonest length, which are its signals.
+LogHeader read_mat_header(const std::string& path) {
+  std::vector<MatVariable> variables = read_mat_variables(path);
+  std::map<std::size_t, std::size_t> lengths;
+  for (const MatVariable& v : variables)
+    if (v.fault.empty() && v.numbers.size() > 1) ++lengths[v.numbers.size()];
+  const auto commonest = std::max_element(lengths.begin(), lengths.end(),
+                                          [](const auto& a, const auto& b) { return a.second < b.second; });
+  if (commonest == lengths.end())
+    throw InputError({path, 0, ""}, "holds no vectors of numbers",
+                     "save each signal as a vector, or a matrix with a list of its columns' names");
+  std::erase_if(variables,
+                [&](const MatVariable& v) { return !v.fault.empty() || v.numbers.size() != commonest->first; });
+  std::vector<std::string> names;
+  LogHeader header;
+  for (const MatVariable& v : variables) {
+    names.push_back(v.name);
+    NumbersCollector collector;
+    for (const double x : v.numbers) collector.take(x);
+    header.numbers.push_back(collector.numbers());
+  }
+  header.columns = guess_columns(names);
+  for (ColumnGuess& g : header.columns) {
+    g.unit_in_brackets = false;                  // a variable has no unit
+    if (g.unit.empty()) g.written_unit.clear();  // nor is the index in "run(:,2)" one
+  }
+  return header;
+}
+
+}  // namespace
+
+LogHeader read_log_header(const std::string& path) {
+  LogHeader header = is_mat_file(path) ? read_mat_header(path) : read_csv_header(path);
+  ask_by_numbers(header.columns, header.numbers);
+  for (ColumnGuess& g : header.columns) {
+    const auto same = std::count_if(header.columns.begin(), header.columns.end(),
+                                    [&](const ColumnGuess& other) { return other.cell == g.cell; });
+    if (g.signal && same > 1) g.ask(fmt::format("the name stands over {} columns: give each its own", same));
+  }
+  return header;
+}
+
+}  // namespace servodx
