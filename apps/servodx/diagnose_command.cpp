@@ -22,6 +22,7 @@
 #include "diagnose_list.h"
 #include "door/baseline_parts.h"
 #include "fit/bode.h"
+#include "fit/candidate_of.h"
 #include "fit/log_data.h"
 #include "fit/replay.h"
 #include "invocation.h"

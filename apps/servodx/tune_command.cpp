@@ -14,6 +14,7 @@
 #include "effects/registry.h"
 #include "fit/free_values.h"
 #include "fit/log_data.h"
+#include "fit/ports_of.h"
 #include "fit/replay.h"
 #include "fit/tuned_state.h"
 #include "invocation.h"

@@ -9,6 +9,7 @@
 #include "diagnose/whitening.h"
 #include "experiments/record.h"
 #include "experiments/studies.h"
+#include "fit/candidate_of.h"
 #include "fit/chart.h"
 #include "fit/free_values.h"
 #include "fit/log_data.h"

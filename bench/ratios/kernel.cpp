@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include "base/random.h"
+#include "fit/candidate_of.h"
 #include "fit/chart.h"
 #include "fit/free_values.h"
 #include "fit/log_data.h"

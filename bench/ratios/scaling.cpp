@@ -9,6 +9,7 @@
 #include "base/atomic_file.h"
 #include "diagnose/hypotheses.h"
 #include "faults/registry.h"
+#include "fit/candidate_of.h"
 #include "fit/chart.h"
 #include "fit/error_model.h"
 #include "fit/free_values.h"

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "base/random.h"
+#include "fit/candidate_of.h"
 #include "fit/chart.h"
 #include "fit/log_data.h"
 #include "fit/problem.h"

@@ -8,6 +8,7 @@
 #include "effects/registry.h"
 #include "effects/stiction.h"
 #include "evidence/operating_point.h"
+#include "fit/candidate_of.h"
 #include "fit/log_data.h"
 #include "parameters/list.h"
 #include "simulate/scenario.h"

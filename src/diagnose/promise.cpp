@@ -7,6 +7,7 @@
 #include "diagnose/hypotheses.h"
 #include "faults/fault.h"
 #include "faults/registry.h"
+#include "fit/candidate_of.h"
 #include "fit/chart.h"
 #include "fit/error_model.h"
 #include "fit/fast_log.h"

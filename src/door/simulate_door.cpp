@@ -8,6 +8,7 @@
 
 #include "door/require_setting.h"
 #include "door/simulation_steps.h"
+#include "fit/candidate_of.h"
 #include "fit/log_data.h"
 #include "fit/nominal.h"
 #include "servodx/log.h"

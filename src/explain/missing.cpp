@@ -9,6 +9,7 @@
 #include "explain/constants.h"
 #include "explain/smoother.h"
 #include "fit/log_data.h"
+#include "fit/log_start.h"
 #include "fit/problem.h"
 #include "optimise/problem.h"
 #include "parameters/list.h"

@@ -10,6 +10,7 @@
 #include "explain/sought_cause.h"
 #include "explain/ties.h"
 #include "explain/valve_causes.h"
+#include "fit/candidate_of.h"
 #include "fit/chart.h"
 #include "fit/fast_log.h"
 #include "fit/free_values.h"

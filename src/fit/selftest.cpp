@@ -7,6 +7,7 @@
 #include "base/error.h"
 #include "base/progress.h"
 #include "base/random.h"
+#include "fit/candidate_of.h"
 #include "fit/chart.h"
 #include "fit/free_values.h"
 #include "fit/identifiability.h"

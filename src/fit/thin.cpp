@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "fit/ports_of.h"
 #include "servodx/log.h"
 #include "servodx/rig.h"
 #include "signals/usual_step.h"

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/celsius.h"
+#include "fit/candidate_of.h"
 #include "fit/error_model.h"
 #include "fit/free_values.h"
 #include "fit/oil_of.h"

@@ -6,6 +6,7 @@
 #include "effects/effect.h"
 #include "effects/registry.h"
 #include "fit/log_data.h"
+#include "fit/ports_of.h"
 #include "servodx/log.h"
 #include "servodx/rig.h"
 #include "servodx/tune.h"

@@ -6,6 +6,7 @@
 
 #include "base/error.h"
 #include "effects/registry.h"
+#include "fit/candidate_of.h"
 #include "fit/chart.h"
 #include "fit/fast_log.h"
 #include "fit/log_data.h"

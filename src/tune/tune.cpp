@@ -13,6 +13,7 @@
 #include "base/stopwatch.h"
 #include "effects/effect.h"
 #include "effects/registry.h"
+#include "fit/candidate_of.h"
 #include "fit/free_values.h"
 #include "fit/log_data.h"
 #include "fit/problem.h"

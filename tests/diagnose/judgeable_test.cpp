@@ -12,6 +12,7 @@
 #include "evidence/operating_point.h"
 #include "faults/record.h"
 #include "faults/registry.h"
+#include "fit/candidate_of.h"
 #include "fit/log_data.h"
 #include "parameters/list.h"
 #include "servodx/log.h"

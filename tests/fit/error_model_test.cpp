@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "base/random.h"
+#include "fit/candidate_of.h"
 #include "fit/log_data.h"
 #include "fit/problem.h"
 #include "fit/support.h"

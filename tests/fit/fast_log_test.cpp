@@ -12,6 +12,7 @@
 #include "effects/magnetic_hysteresis.h"
 #include "effects/registry.h"
 #include "effects/transport_delay.h"
+#include "fit/candidate_of.h"
 #include "fit/chart.h"
 #include "fit/error_model.h"
 #include "fit/free_values.h"

@@ -9,6 +9,7 @@
 #include "effects/orifice_length.h"
 #include "effects/registry.h"
 #include "effects/viscosity_change.h"
+#include "fit/candidate_of.h"
 #include "fit/chart.h"
 #include "fit/error_model.h"
 #include "fit/free_values.h"
