@@ -19,7 +19,7 @@
 #include "report/shared/json.h"
 #include "servodx/rig.h"
 #include "servodx/table.h"
-#include "valve_maps/compare.h"
+#include "valve_maps/compare_maps.h"
 #include "valve_maps/high_fidelity.h"
 #include "valve_maps/papers_valve.h"
 #include "valve_maps/registry.h"

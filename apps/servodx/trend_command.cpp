@@ -21,7 +21,7 @@
 #include "prognose/check.h"
 #include "prognose/check_name.h"
 #include "prognose/life.h"
-#include "prognose/limits.h"
+#include "prognose/performance_limits.h"
 #include "prognose/trend.h"
 #include "prognose/trend_options.h"
 #include "prognose/valve_history.h"

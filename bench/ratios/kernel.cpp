@@ -7,7 +7,7 @@
 #include "fit/free_values.h"
 #include "fit/log_data.h"
 #include "fit/problem.h"
-#include "optimise/problem.h"
+#include "optimise/unit_cube.h"
 #include "parameters/list.h"
 #include "ratios/cvode.h"
 #include "ratios/measure.h"

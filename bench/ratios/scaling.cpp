@@ -16,7 +16,7 @@
 #include "fit/log_data.h"
 #include "fit/problem.h"
 #include "long_log.h"
-#include "optimise/problem.h"
+#include "optimise/unit_cube.h"
 #include "ratios/measure.h"
 #include "ratios/rows.h"
 #include "ratios/trace.h"

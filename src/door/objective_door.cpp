@@ -17,7 +17,7 @@
 #include "fit/tuned_state.h"
 #include "optimise/box_least_squares.h"
 #include "optimise/differences.h"
-#include "optimise/problem.h"
+#include "optimise/unit_cube.h"
 #include "servodx/error.h"
 #include "servodx/log.h"
 #include "servodx/objective.h"

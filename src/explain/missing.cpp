@@ -11,7 +11,7 @@
 #include "fit/log_data.h"
 #include "fit/log_start.h"
 #include "fit/problem.h"
-#include "optimise/problem.h"
+#include "optimise/unit_cube.h"
 #include "parameters/list.h"
 #include "servodx/log.h"
 #include "servodx/rig.h"

@@ -17,7 +17,7 @@
 #include "fit/log_data.h"
 #include "fit/thin.h"
 #include "fit/tuned_state.h"
-#include "optimise/problem.h"
+#include "optimise/unit_cube.h"
 #include "parameters/list.h"
 #include "servodx/log.h"
 #include "servodx/rig.h"

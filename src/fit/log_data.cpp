@@ -14,7 +14,7 @@
 #include "model/state.h"
 #include "servodx/rig.h"
 #include "signals/noise.h"
-#include "signals/smoother.h"
+#include "signals/without_noise.h"
 
 namespace servodx {
 namespace {

@@ -1,5 +1,5 @@
 // Where a log starts: what its channels measured first, and how fast the piston went. The simulation settles there
-// (simulate/settling.h); what the noise of these samples is off by is a nuisance (start_values).
+// (simulate/initial_state.h); what the noise of these samples is off by is a nuisance (start_values).
 //
 // The speed is the least-squares slope of the first 10 ms; fewer than three samples there, and it is taken as nought.
 #pragma once

@@ -17,7 +17,7 @@
 #include "fit/uncertainty.h"
 #include "optimise/box_least_squares.h"
 #include "optimise/local.h"
-#include "optimise/problem.h"
+#include "optimise/unit_cube.h"
 #include "parameters/coordinate.h"
 #include "servodx/rig.h"
 #include "simulate/scenario.h"

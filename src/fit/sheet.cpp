@@ -17,7 +17,7 @@
 #include "fit/stand.h"
 #include "optimise/box_least_squares.h"
 #include "optimise/local.h"
-#include "optimise/problem.h"
+#include "optimise/unit_cube.h"
 #include "parameters/list.h"
 #include "simulate/scenario.h"
 #include "simulate/simulate.h"

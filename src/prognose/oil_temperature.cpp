@@ -13,7 +13,7 @@
 #include "model/state.h"
 #include "optimise/box_least_squares.h"
 #include "optimise/local.h"
-#include "optimise/problem.h"
+#include "optimise/unit_cube.h"
 #include "prognose/constants.h"
 #include "servodx/rig.h"
 #include "simulate/scenario.h"

@@ -16,7 +16,7 @@
 #include "fit/tuned_state.h"
 #include "optimise/box_least_squares.h"
 #include "optimise/local.h"
-#include "optimise/problem.h"
+#include "optimise/unit_cube.h"
 #include "parameters/list.h"
 #include "prognose/constants.h"
 #include "prognose/reading_scale.h"

@@ -10,7 +10,7 @@
 #include "base/units.h"
 #include "servodx/rig.h"
 #include "signals/log.h"
-#include "signals/sweep.h"
+#include "signals/one_pass.h"
 
 namespace servodx {
 

@@ -1,7 +1,7 @@
 // The rows of a pack of candidates, and the numbers that follow from them, as the log has them: what was measured takes
 // the place of the row or effect that stands for it, and a test stand that of the actuator. Fixed for the whole run.
 // Lanes without a candidate repeat the first.
-// Left out: a stand whose tubes or blanking plates give way; 0.02 bar of drop in a tube stand in docs/model.md.
+// Left out: tubes and blanking plates of a stand that give way. Source: docs/model.md, "On a test stand".
 #pragma once
 #include <array>
 

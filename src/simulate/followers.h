@@ -28,7 +28,7 @@
 #include "model/derived.h"
 #include "model/state.h"
 #include "simulate/gradient.h"
-#include "simulate/run.h"
+#include "simulate/pack_run.h"
 #include "simulate/scenario.h"
 #include "simulate/step_recorder.h"
 

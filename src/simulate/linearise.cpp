@@ -10,7 +10,7 @@
 #include "model/hooks.h"
 #include "parameters/list.h"
 #include "servodx/rig.h"
-#include "simulate/run.h"
+#include "simulate/pack_run.h"
 #include "simulate/scenario.h"
 #include "simulate/system.h"
 

@@ -4,7 +4,7 @@
 //
 // Of a log that is sampled faster than its run steps the current is a line over each step instead
 // (simulate/fast_command.h), and the effects of the drive act on the means of usual steps.
-// Left out: anything that an input does between samples but run straight.
+// Left out: what pressures and force do between samples. Source: docs/model.md.
 #pragma once
 #include <algorithm>
 #include <array>

@@ -13,7 +13,7 @@
 #include "simulate/followers.h"
 #include "simulate/gradient.h"
 #include "simulate/kernels.h"
-#include "simulate/run.h"
+#include "simulate/pack_run.h"
 #include "simulate/scenario.h"
 #include "simulate/step_recorder.h"
 

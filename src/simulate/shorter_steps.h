@@ -4,8 +4,8 @@
 // A rod that comes upon its stop is seen a sample before: that candidate takes the sample in short steps too, or is
 // thrown back at many times its speed, or not, by the last digit of its values. So does one whose flapper lies on a
 // nozzle. One that is lost goes back and takes it in steps eight and 64 times as short.
-// Limits: a rod that is thrown into its stop within a sample is seen at the next. Source: chosen by the error against
-// steps of 1e-5 s (docs/model.md, "Integration").
+// Limits: a rod that gets its speed only after the sample began is not foreseen. Source:
+// docs/model.md, "Nozzles" and "End stops" under "Integration", with what was measured.
 #pragma once
 #include <algorithm>
 #include <array>

@@ -16,7 +16,7 @@
 #include "model/asperities.h"
 #include "model/state.h"
 #include "simulate/gradient.h"
-#include "simulate/run.h"
+#include "simulate/pack_run.h"
 #include "simulate/system.h"
 
 namespace servodx {

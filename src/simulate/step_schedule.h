@@ -5,7 +5,7 @@
 // every candidate takes the same steps. What a candidate asks for beyond it: simulate/shorter_steps.h.
 // On a test stand, slower than full stroke in a second, the valve's own dynamics stay settled, and an L-stable step
 // passes over them.
-// Numbers were chosen by the error against steps of 1e-5 s (docs/model.md, "Integration").
+// Limits: what these steps cost in accuracy stands in docs/model.md, "Integration". Source: the same page.
 #pragma once
 #include <algorithm>
 #include <cmath>

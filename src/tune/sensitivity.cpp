@@ -13,7 +13,7 @@
 #include "fit/problem.h"
 #include "fit/thin.h"
 #include "fit/tuned_state.h"
-#include "optimise/problem.h"
+#include "optimise/unit_cube.h"
 #include "parameters/list.h"
 #include "simulate/scenario.h"
 #include "simulate/simulate.h"

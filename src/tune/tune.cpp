@@ -20,7 +20,7 @@
 #include "optimise/box_least_squares.h"
 #include "optimise/differences.h"
 #include "optimise/local.h"
-#include "optimise/problem.h"
+#include "optimise/unit_cube.h"
 #include "servodx/rig.h"
 #include "simulate/scenario.h"
 #include "tune/constants.h"

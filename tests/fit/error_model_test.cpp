@@ -7,7 +7,7 @@
 #include "fit/log_data.h"
 #include "fit/problem.h"
 #include "fit/support.h"
-#include "optimise/problem.h"
+#include "optimise/unit_cube.h"
 #include "parameters/list.h"
 #include "parameters/table.h"
 #include "servodx/log.h"

@@ -21,7 +21,7 @@
 #include "fit/problem.h"
 #include "fit/support.h"
 #include "optimise/box_least_squares.h"
-#include "optimise/problem.h"
+#include "optimise/unit_cube.h"
 #include "parameters/list.h"
 #include "servodx/log.h"
 #include "servodx/rig.h"

@@ -22,7 +22,7 @@
 #include "parameters/table.h"
 #include "shipped_data.h"
 #include "simulate/kernels.h"
-#include "simulate/run.h"
+#include "simulate/pack_run.h"
 #include "simulate/scenario.h"
 #include "simulate/simulate.h"
 #include "simulate/together.h"

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "support.h"
-#include "valve_maps/compare.h"
+#include "valve_maps/compare_maps.h"
 #include "valve_maps/high_fidelity.h"
 #include "valve_maps/linear.h"
 #include "valve_maps/model_a.h"

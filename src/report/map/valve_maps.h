@@ -5,7 +5,7 @@
 
 #include "report/shared/json.h"
 #include "report/shared/page.h"
-#include "valve_maps/compare.h"
+#include "valve_maps/compare_maps.h"
 #include "valve_maps/valve_numbers.h"
 
 namespace servodx::report {

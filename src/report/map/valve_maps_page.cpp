@@ -10,7 +10,7 @@
 #include "report/shared/page.h"
 #include "report/shared/parts.h"
 #include "report/shared/replay_part.h"
-#include "valve_maps/compare.h"
+#include "valve_maps/compare_maps.h"
 #include "valve_maps/valve_numbers.h"
 
 namespace servodx::report {

@@ -2,9 +2,9 @@
 // equations are stepped until all else has found its place; the current is free and finds the value that holds the
 // spool.
 //
-// Limits: the valve was at rest before the log; the piston's speed is the log's, and its acceleration comes out of the
-// pressures. Without a measured spool or pressure the states settle where the first command puts them.
-// Source: the fixed point of the equations in docs/model.md; lengths and numbers of the steps were chosen.
+// Limits: the valve was at rest before the log; the piston's speed is the log's and is held like its place. Without a
+// measured spool or pressure the states settle where the first command puts them.
+// Source: the fixed point of the equations in docs/model.md; lengths and numbers of the steps were chosen by hand.
 #pragma once
 #include <array>
 #include <optional>

@@ -1,4 +1,4 @@
-// The run of one pack of candidates over one log: it settles at the first sample (simulate/settling.h), goes from
+// The run of one pack of candidates over one log: it settles at the first sample (simulate/initial_state.h), goes from
 // sample to sample by the steps that the log (simulate/step_schedule.h) and its candidates (simulate/shorter_steps.h)
 // ask for, and reports what the sensors show there (simulate/sensor_readings.h).
 //
@@ -21,11 +21,11 @@
 #include "servodx/rig.h"
 #include "simulate/candidate_rows.h"
 #include "simulate/effect_memories.h"
+#include "simulate/initial_state.h"
 #include "simulate/logged_inputs.h"
 #include "simulate/nuisance.h"
 #include "simulate/scenario.h"
 #include "simulate/sensor_readings.h"
-#include "simulate/settling.h"
 #include "simulate/shorter_steps.h"
 #include "simulate/step_schedule.h"
 #include "simulate/system.h"
