@@ -14,7 +14,7 @@
 #include <vector>
 
 #include "base/csv.h"
-#include "online/limits.h"
+#include "online/alarm_limits.h"
 #include "online/watched_model.h"
 #include "online/watcher.h"
 #include "servodx/log.h"

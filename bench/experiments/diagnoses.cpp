@@ -8,6 +8,7 @@
 #include "experiments/record.h"
 #include "experiments/studies.h"
 #include "faults/registry.h"
+#include "fit/candidate_of.h"
 #include "fit/log_data.h"
 #include "rig/rig_faults.h"
 #include "rig/rig_model.h"

@@ -10,7 +10,7 @@
 #include "model/derived.h"
 #include "parameters/list.h"
 #include "servodx/log.h"
-#include "simulate/kernel.h"
+#include "simulate/system.h"
 #include "simulate/scenario.h"
 
 namespace servodx::bench {

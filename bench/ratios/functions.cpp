@@ -8,7 +8,7 @@
 #include "optimise/box_least_squares.h"
 #include "optimise/genetic.h"
 #include "optimise/genetic_state.h"
-#include "optimise/problem.h"
+#include "optimise/unit_cube.h"
 #include "ratios/peers.h"
 #include "ratios/race.h"
 #include "ratios/rows.h"

@@ -10,7 +10,7 @@
 
 #include "optimise/box_least_squares.h"
 #include "optimise/genetic_state.h"
-#include "optimise/problem.h"
+#include "optimise/unit_cube.h"
 #include "ratios/measure.h"
 #include "ratios/rows.h"
 #include "ratios/twin.h"

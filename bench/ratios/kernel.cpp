@@ -2,11 +2,12 @@
 #include <fmt/format.h>
 
 #include "base/random.h"
+#include "fit/candidate_of.h"
 #include "fit/chart.h"
 #include "fit/free_values.h"
 #include "fit/log_data.h"
 #include "fit/problem.h"
-#include "optimise/problem.h"
+#include "optimise/unit_cube.h"
 #include "parameters/list.h"
 #include "ratios/cvode.h"
 #include "ratios/measure.h"

@@ -3,7 +3,7 @@
 #include <optional>
 #include <vector>
 
-#include "optimise/problem.h"
+#include "optimise/unit_cube.h"
 #include "ratios/rows.h"
 
 namespace servodx::bench {

@@ -4,7 +4,7 @@
 
 #include "fit/log_data.h"
 #include "optimise/box_least_squares.h"
-#include "optimise/problem.h"
+#include "optimise/unit_cube.h"
 #include "ratios/measure.h"
 #include "ratios/race.h"
 #include "ratios/rows.h"

@@ -8,11 +8,12 @@
 #include <vector>
 
 #include "base/random.h"
+#include "fit/candidate_of.h"
 #include "fit/chart.h"
 #include "fit/log_data.h"
 #include "fit/problem.h"
-#include "optimise/problem.h"
 #include "optimise/robust_loss.h"
+#include "optimise/unit_cube.h"
 #include "parameters/list.h"
 #include "ratios/rows.h"
 #include "ratios/trace.h"

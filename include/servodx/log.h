@@ -14,30 +14,42 @@
 
 namespace servodx {
 
-// Positive command, positive spool travel, P to A and B to T open, the piston extends; A is the chamber that grows.
+// The one list of the signals: the enum, names in a log's header, units, docs/reference.md and the Python module's keys
+// are made of it. Positive command, positive spool travel, P to A and B to T open, the piston extends; A is the chamber
+// that grows.
+// clang-format off
+// X(name, unit inside, dimension: signals/signal.h, meaning with its sign)
+#define SERVODX_SIGNALS(X) \
+  X(time,                "s",    time,        "time stamp; strictly increasing") \
+  X(command,             "A",    current,     "current demand before amplifier and null offset; positive extends the piston") \
+  X(coil_current,        "A",    current,     "measured coil current; where present it drives the model behind the driver") \
+  X(setpoint,            "m",    length,      "position demand of a closed loop; never the model's input") \
+  X(spool_position,      "m",    length,      "spool travel; positive opens P to A and B to T") \
+  X(piston_position,     "m",    length,      "from mid-stroke, rod relative to body; positive extends (A grows)") \
+  X(pressure_a,          "Pa",   pressure,    "chamber A, gauge") \
+  X(pressure_b,          "Pa",   pressure,    "chamber B, gauge") \
+  X(supply_pressure,     "Pa",   pressure,    "at the valve's P port, gauge") \
+  X(return_pressure,     "Pa",   pressure,    "at the valve's T port, gauge") \
+  X(pilot_pressure_1,    "Pa",   pressure,    "spool end that pushes towards positive travel, gauge") \
+  X(pilot_pressure_2,    "Pa",   pressure,    "spool end that pushes towards negative travel, gauge") \
+  X(load_pressure,       "Pa",   pressure,    "pressure_a - pressure_b") \
+  X(valve_pressure_drop, "Pa",   pressure,    "total over both metering edges") \
+  X(load_force,          "N",    force,       "external force; positive opposes extension") \
+  X(flow_a,              "m3/s", flow,        "positive out of the valve into port A") \
+  X(flow_b,              "m3/s", flow,        "positive out of the valve into port B") \
+  X(control_flow,        "m3/s", flow,        "through the load, A to B; positive at positive command") \
+  X(leakage_flow,        "m3/s", flow,        "supply to return, load ports blocked") \
+  X(oil_temperature,     "K",    temperature, "oil at the valve")
+// clang-format on
+
 enum class Signal : int {
-  time,
-  command,
-  coil_current,
-  setpoint,
-  spool_position,
-  piston_position,
-  pressure_a,
-  pressure_b,
-  supply_pressure,
-  return_pressure,
-  pilot_pressure_1,
-  pilot_pressure_2,
-  load_pressure,
-  valve_pressure_drop,
-  load_force,
-  flow_a,
-  flow_b,
-  control_flow,
-  leakage_flow,
-  oil_temperature,
+#define X(name, unit, dimension, meaning) name,
+  SERVODX_SIGNALS(X)
+#undef X
 };
-inline constexpr int n_signals = 20;
+#define X(name, unit, dimension, meaning) +1
+inline constexpr int n_signals = 0 SERVODX_SIGNALS(X);
+#undef X
 constexpr int index(Signal s) { return static_cast<int>(s); }
 std::optional<Signal> find_signal(std::string_view name);
 std::string_view name_of(Signal s);  // "spool_position"

@@ -15,7 +15,7 @@
 
 #include "base/block_reader.h"
 #include "base/file_kind.h"
-#include "base/limits.h"
+#include "base/reading_limits.h"
 
 namespace servodx {
 namespace {

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "base/error.h"
-#include "base/limits.h"
+#include "base/reading_limits.h"
 
 namespace servodx {
 namespace {

@@ -14,7 +14,7 @@ namespace servodx {
 inline constexpr int deepest_toml = 100;  // levels, as of JSON; what servodx reads has fewer than five
 
 // Throws InputError with file and line where the text nests deeper, holds a name or a text longer than longest_name
-// (base/limits.h), or is no TOML; `mend` says what to write.
+// (base/reading_limits.h), or is no TOML; `mend` says what to write.
 toml::table parse_toml(std::string_view text, const std::string& path, const std::string& mend);
 
 }  // namespace servodx

@@ -21,6 +21,7 @@
 #include "evidence/conditions.h"
 #include "evidence/probabilities.h"
 #include "faults/fault.h"
+#include "fit/candidate_of.h"
 #include "fit/chart.h"
 #include "fit/error_model.h"
 #include "fit/fast_log.h"

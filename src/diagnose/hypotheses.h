@@ -20,7 +20,7 @@
 #include "fit/error_model.h"
 #include "fit/log_data.h"
 #include "fit/problem.h"
-#include "optimise/problem.h"
+#include "optimise/unit_cube.h"
 #include "simulate/scenario.h"
 
 namespace servodx {

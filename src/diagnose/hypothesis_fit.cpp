@@ -19,7 +19,7 @@
 #include "fit/problem.h"
 #include "optimise/box_least_squares.h"
 #include "optimise/local.h"
-#include "optimise/problem.h"
+#include "optimise/unit_cube.h"
 #include "parameters/coordinate.h"
 #include "simulate/scenario.h"
 

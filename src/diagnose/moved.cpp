@@ -7,7 +7,7 @@
 #include "effects/registry.h"
 #include "fit/chart.h"
 #include "fit/identifiability.h"
-#include "optimise/problem.h"
+#include "optimise/unit_cube.h"
 #include "parameters/list.h"
 #include "simulate/scenario.h"
 

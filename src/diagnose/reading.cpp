@@ -9,6 +9,7 @@
 #include "diagnose/constants.h"
 #include "diagnose/motion.h"
 #include "diagnose/whitening.h"
+#include "fit/candidate_of.h"
 #include "fit/fast_log.h"
 #include "fit/log_data.h"
 #include "fit/tuned_state.h"

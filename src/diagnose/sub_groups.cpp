@@ -9,8 +9,8 @@
 #include "fit/problem.h"
 #include "optimise/genetic.h"
 #include "optimise/genetic_state.h"
-#include "optimise/problem.h"
 #include "optimise/robust_loss.h"
+#include "optimise/unit_cube.h"
 
 namespace servodx {
 namespace {

@@ -5,7 +5,7 @@
 
 #include "faults/fault.h"
 #include "optimise/box_quadratic.h"
-#include "optimise/problem.h"
+#include "optimise/unit_cube.h"
 
 namespace servodx {
 namespace {

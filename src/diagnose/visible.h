@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "faults/fault.h"
-#include "optimise/problem.h"
+#include "optimise/unit_cube.h"
 
 namespace servodx {
 

@@ -1,6 +1,7 @@
 // The front door of charts: what replays, trends and tunes hold beside their results.
 #include <utility>
 
+#include "fit/candidate_of.h"
 #include "fit/log_data.h"
 #include "fit/replay.h"
 #include "prognose/level.h"

@@ -17,6 +17,7 @@
 #include "optimise/box_least_squares.h"
 #include "optimise/differences.h"
 #include "optimise/problem.h"
+#include "optimise/unit_cube.h"
 #include "servodx/data_sheet.h"
 #include "servodx/error.h"
 #include "servodx/log.h"

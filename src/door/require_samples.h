@@ -6,6 +6,7 @@
 
 #include "diagnose/constants.h"
 #include "fit/log_data.h"
+#include "fit/ports_of.h"
 #include "servodx/error.h"
 #include "servodx/log.h"
 #include "servodx/rig.h"

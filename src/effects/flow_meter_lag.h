@@ -4,6 +4,7 @@
 #pragma once
 #include "effects/effect.h"
 #include "effects/sampled_lag.h"
+#include "model/shown.h"
 
 namespace servodx {
 
@@ -16,7 +17,7 @@ struct FlowMeterLag {
   static constexpr SoughtAs sought_as = SoughtAs::meter_by_meter;
   static constexpr int n_states = 0;
   static constexpr int n_parameters = 2;
-  static constexpr int shown_at[n_parameters] = {10, 11};  // control flow, leakage flow
+  static constexpr int shown_at[n_parameters] = {shown::control_flow, shown::leakage_flow};
   static constexpr EffectParameter parameters[n_parameters] = {
       {"control_flow_lag", "s", 0.0, 0.0, 5.0, 0.3, "time constant of the control flow meter"},
       {"leakage_flow_lag", "s", 0.0, 0.0, 5.0, 0.3, "time constant of the leakage flow meter"},

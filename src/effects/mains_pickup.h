@@ -8,6 +8,7 @@
 
 #include "base/pack.h"
 #include "effects/effect.h"
+#include "model/shown.h"
 
 namespace servodx {
 
@@ -18,7 +19,8 @@ struct MainsPickup {
   static constexpr SoughtAs sought_as = SoughtAs::line_by_line;
   static constexpr const char* best_test = "rest: a line at the mains frequency with the valve still";
   static constexpr int n_states = 0;
-  static constexpr int sensors = 4;  // spool, piston, pressure a, pressure b: the first of what the model reports
+  // Spool, piston, pressure a, pressure b: the first of what the model shows.
+  static constexpr int sensors = shown::pressure_b + 1;
   static constexpr int current = sensors, channels = sensors + 1;
   static constexpr int n_parameters = 3 * channels;  // cosine and sine of each channel, then each one's frequency
   static constexpr EffectParameter parameters[n_parameters] = {

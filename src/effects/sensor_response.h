@@ -4,6 +4,7 @@
 #pragma once
 #include "effects/effect.h"
 #include "effects/sampled_lag.h"
+#include "model/shown.h"
 
 namespace servodx {
 
@@ -15,7 +16,7 @@ struct SensorResponse {
   static constexpr SoughtAs sought_as = SoughtAs::sensor_by_sensor;
   static constexpr int n_states = 0;
   static constexpr int channels = 3;
-  static constexpr int shown_at[channels] = {0, 2, 3};  // spool, pressure a, pressure b
+  static constexpr int shown_at[channels] = {shown::spool_position, shown::pressure_a, shown::pressure_b};
   static constexpr int n_parameters = 2 * channels;
   static constexpr double transmitter_class = 0.01;  // of industrial pressure transmitters with what they drift
   static constexpr EffectParameter parameters[n_parameters] = {

@@ -3,7 +3,7 @@
 //
 // Flow drawn = mean piston area times speed: leakage and compression are left out. Moves the simulation only where
 // supply_pressure is not measured; a measured one holds the droop, and the blocks' replay reads it there
-// (explain/replay.h). Source: Merritt 1967, ch. 11 (supplies).
+// (explain/block_replay.h). Source: Merritt 1967, ch. 11 (supplies).
 #pragma once
 #include <tuple>
 

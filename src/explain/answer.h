@@ -6,13 +6,13 @@
 #include <string>
 #include <vector>
 
+#include "explain/block_replay.h"
 #include "explain/cause_score.h"
-#include "explain/curves.h"
 #include "explain/drive.h"
 #include "explain/engine.h"
 #include "explain/fit_causes.h"
 #include "explain/inquiry.h"
-#include "explain/replay.h"
+#include "explain/learnt_curves.h"
 #include "explain/subject.h"
 
 namespace servodx {

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "explain/answer.h"
+#include "explain/block_replay.h"
 #include "explain/constants.h"
 #include "explain/engine.h"
 #include "explain/fit_causes.h"
@@ -12,7 +13,6 @@
 #include "explain/hold_out.h"
 #include "explain/inquiry.h"
 #include "explain/outcome.h"
-#include "explain/replay.h"
 #include "explain/subject.h"
 
 namespace servodx {

@@ -7,7 +7,7 @@
 #include "effects/unexplained.h"
 #include "explain/constants.h"
 #include "fit/log_data.h"
-#include "optimise/problem.h"
+#include "optimise/unit_cube.h"
 #include "parameters/list.h"
 #include "servodx/log.h"
 #include "simulate/balance.h"

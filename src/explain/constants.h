@@ -76,7 +76,7 @@ inline constexpr double longest_memory = 1 - 1e-6;  // of a channel's residual, 
 inline constexpr double sweep_detail = 0.01;      // [of rated current]
 inline constexpr std::size_t enough_healthy = 3;  // healthy logs that say what is usual of a channel or a number
 
-// The replay of the blocks (explain/blocks.cpp, explain/replay.cpp).
+// The replay of the blocks (explain/blocks.cpp, explain/block_replay.cpp).
 inline constexpr double window = 20e-3;            // [s] short against a stroke, long against the noise of a position
 inline constexpr std::size_t fewest_windows = 10;  // of a series
 inline constexpr double offset_range = 10;         // [sigma] that a series may be off on the mean

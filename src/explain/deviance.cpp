@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "optimise/problem.h"
+#include "optimise/unit_cube.h"
 
 namespace servodx {
 

@@ -13,7 +13,7 @@
 #include "explain/score.h"
 #include "explain/usual_error.h"
 #include "fit/error_model.h"
-#include "optimise/problem.h"
+#include "optimise/unit_cube.h"
 #include "parameters/list.h"
 
 namespace servodx {

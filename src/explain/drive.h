@@ -11,7 +11,7 @@
 
 #include "explain/subject.h"
 #include "explain/valve.h"
-#include "optimise/problem.h"
+#include "optimise/unit_cube.h"
 #include "servodx/log.h"
 
 namespace servodx {

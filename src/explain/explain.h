@@ -6,9 +6,9 @@
 
 #include "evidence/heldout_gain.h"
 #include "explain/blocks.h"
-#include "explain/curves.h"
 #include "explain/engine.h"
 #include "explain/healthy.h"
+#include "explain/learnt_curves.h"
 #include "explain/missing.h"
 #include "explain/outcome.h"
 #include "explain/show.h"

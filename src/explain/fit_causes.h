@@ -9,7 +9,7 @@
 
 #include "explain/cause_score.h"
 #include "explain/subject.h"
-#include "optimise/problem.h"
+#include "optimise/unit_cube.h"
 
 namespace servodx {
 

@@ -25,7 +25,7 @@
 #include "explain/engine.h"
 #include "explain/subject.h"
 #include "explain/valve.h"
-#include "optimise/problem.h"
+#include "optimise/unit_cube.h"
 #include "parameters/table.h"
 #include "servodx/rig.h"
 #include "signals/log.h"

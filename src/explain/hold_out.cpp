@@ -9,7 +9,7 @@
 
 #include "explain/constants.h"
 #include "explain/deviance.h"
-#include "optimise/problem.h"
+#include "optimise/unit_cube.h"
 
 namespace servodx {
 namespace {

@@ -11,6 +11,7 @@
 #include "explain/kept.h"
 #include "explain/score.h"
 #include "fit/log_data.h"
+#include "fit/ports_of.h"
 #include "servodx/explain.h"
 #include "servodx/log.h"
 #include "servodx/rig.h"

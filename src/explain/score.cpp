@@ -9,7 +9,7 @@
 #include "explain/constants.h"
 #include "explain/deviance.h"
 #include "explain/kept.h"
-#include "optimise/problem.h"
+#include "optimise/unit_cube.h"
 #include "parameters/coordinate.h"
 
 namespace servodx {

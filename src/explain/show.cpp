@@ -11,7 +11,7 @@
 #include "explain/constants.h"
 #include "fit/error_model.h"
 #include "fit/log_data.h"
-#include "optimise/problem.h"
+#include "optimise/unit_cube.h"
 #include "servodx/log.h"
 #include "signals/signal.h"
 #include "simulate/scenario.h"

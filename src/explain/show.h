@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "explain/valve.h"
-#include "optimise/problem.h"
+#include "optimise/unit_cube.h"
 #include "servodx/log.h"
 
 namespace servodx {

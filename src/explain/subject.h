@@ -11,7 +11,7 @@
 
 #include "base/stages.h"
 #include "optimise/box_least_squares.h"
-#include "optimise/problem.h"
+#include "optimise/unit_cube.h"
 #include "parameters/coordinate.h"
 
 namespace servodx {

@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <span>
 
-#include "optimise/problem.h"
+#include "optimise/unit_cube.h"
 
 namespace servodx {
 namespace {

@@ -2,11 +2,11 @@
 #include <utility>
 
 #include "explain/answer.h"
-#include "explain/curves.h"
 #include "explain/engine.h"
 #include "explain/fit_causes.h"
 #include "explain/hold_out.h"
 #include "explain/inquiry.h"
+#include "explain/learnt_curves.h"
 #include "explain/outcome.h"
 
 namespace servodx {

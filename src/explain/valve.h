@@ -22,7 +22,7 @@
 #include "fit/error_model.h"
 #include "fit/log_data.h"
 #include "fit/problem.h"
-#include "optimise/problem.h"
+#include "optimise/unit_cube.h"
 #include "parameters/table.h"
 #include "servodx/log.h"
 #include "servodx/rig.h"

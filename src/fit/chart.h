@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "optimise/problem.h"
+#include "optimise/unit_cube.h"
 #include "parameters/coordinate.h"
 #include "simulate/scenario.h"
 

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "fit/log_data.h"
-#include "optimise/problem.h"
+#include "optimise/unit_cube.h"
 #include "parameters/table.h"
 #include "servodx/log.h"
 #include "servodx/note.h"

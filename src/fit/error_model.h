@@ -11,7 +11,7 @@
 
 #include "fit/log_data.h"
 #include "fit/problem.h"
-#include "optimise/problem.h"
+#include "optimise/unit_cube.h"
 #include "parameters/table.h"
 #include "servodx/log.h"
 #include "servodx/note.h"

@@ -9,6 +9,8 @@
 #include <optional>
 #include <utility>
 
+#include "fit/log_start.h"
+#include "fit/ports_of.h"
 #include "fit/thin.h"
 #include "servodx/log.h"
 #include "servodx/note.h"

@@ -10,10 +10,12 @@
 #include "effects/viscosity_change.h"
 #include "fit/chart.h"
 #include "fit/log_data.h"
+#include "fit/log_start.h"
 #include "parameters/coordinate.h"
 #include "parameters/list.h"
 #include "servodx/log.h"
 #include "servodx/rig.h"
+#include "simulate/nuisance.h"
 #include "simulate/scenario.h"
 
 namespace servodx {
@@ -106,8 +108,11 @@ std::vector<FreeValue> nuisance_values(const LogData& log, int l, const Paramete
   const double null = base[row::servovalve_null];
   out.push_back({name_of_row(row::servovalve_null), row::servovalve_null, null - null_limit, null + null_limit, false,
                  null, 0.02 / (2 * null_limit), l});
-  if (!log.scenario.command_slope)
-    out.push_back({"command_slope", nuisance::command_slope, 0.0, 1.0, false, 0.5, 1.0, l});
+  const auto add = [&](int at) {
+    const NuisanceInfo& n = nuisance_info(at);
+    out.push_back({std::string(n.name), at, n.lower, n.upper, false, n.prior_mean, n.prior_sd, l});
+  };
+  if (!log.scenario.command_slope) add(nuisance::command_slope);
   // Rigs run some 20 K about 40 degC, where a mineral oil is 2.2 times as thick, or as thin; -20 degC is 30 times.
   if (!log.scenario.oil_known) {
     constexpr int at = effect_row<ViscosityChange>(0);
@@ -116,36 +121,29 @@ std::vector<FreeValue> nuisance_values(const LogData& log, int l, const Paramete
                    std::clamp(base[at], thinnest, thickest), std::log(2.2) / std::log(thickest / thinnest), l});
   }
   if (pressures) out.push_back({name_of_row(row::air_fraction), row::air_fraction, 2e-4, 0.08, true, 0.005, 0.2, l});
-  // Offset of the spool sensor against the hydraulic null: 1 % of a stroke bounds it; its spread is a tenth of that.
-  if (has(Signal::spool_position))
-    out.push_back({"spool_offset", nuisance::spool_offset, -5e-6, 5e-6, false, 0.0, 0.1, l});
-  // Pressure sensors: a quarter per cent of a 400 bar range.
-  if (pressures) {
-    out.push_back({"pressure_a_offset", nuisance::pressure_a_offset, -3e5, 3e5, false, 0.0, 0.15, l});
-    out.push_back({"pressure_b_offset", nuisance::pressure_b_offset, -3e5, 3e5, false, 0.0, 0.15, l});
-  }
-  if (has(Signal::pilot_pressure_1))
-    out.push_back({"pilot_pressure_1_offset", nuisance::pilot_pressure_1_offset, -3e5, 3e5, false, 0.0, 0.15, l});
-  if (has(Signal::pilot_pressure_2))
-    out.push_back({"pilot_pressure_2_offset", nuisance::pilot_pressure_2_offset, -3e5, 3e5, false, 0.0, 0.15, l});
+  if (has(Signal::spool_position)) add(nuisance::spool_offset);
+  if (pressures) add(nuisance::pressure_a_offset), add(nuisance::pressure_b_offset);
+  if (has(Signal::pilot_pressure_1)) add(nuisance::pilot_pressure_1_offset);
+  if (has(Signal::pilot_pressure_2)) add(nuisance::pilot_pressure_2_offset);
   return out;
 }
 
 std::vector<FreeValue> start_values(const LogData& log, int l) {
-  constexpr double reach = 8.0;      // [sigmas] either way
-  constexpr double prior_sd = 0.25;  // of the interval: 4 sigmas
+  constexpr double reach = 8.0;  // [sigmas] either way
   std::vector<FreeValue> out;
-  const auto add = [&](const char* name, int at, double sigma) {
-    if (sigma > 0) out.push_back({name, at, -reach * sigma, reach * sigma, false, 0.0, prior_sd, l});
+  const auto add = [&](int at, double sigma) {
+    const NuisanceInfo& n = nuisance_info(at);
+    if (sigma > 0)
+      out.push_back({std::string(n.name), at, -reach * sigma, reach * sigma, false, n.prior_mean, n.prior_sd, l});
   };
   const Scenario& s = log.scenario;
   for (const FitChannel& c : log.channels) {
     const double noise = c.noise * std::sqrt(static_cast<double>(c.filter.window));  // of one sample
-    if (c.signal == Signal::spool_position) add("spool_start", nuisance::spool_start, noise);
-    if (c.signal == Signal::pressure_a) add("pressure_a_start", nuisance::pressure_a_start, noise);
-    if (c.signal == Signal::pressure_b) add("pressure_b_start", nuisance::pressure_b_start, noise);
+    if (c.signal == Signal::spool_position) add(nuisance::spool_start, noise);
+    if (c.signal == Signal::pressure_a) add(nuisance::pressure_a_start, noise);
+    if (c.signal == Signal::pressure_b) add(nuisance::pressure_b_start, noise);
     if (c.signal == Signal::piston_position && s.ports == Ports::actuator)
-      add("piston_velocity_start", nuisance::piston_velocity_start, noise * starting_slope_error(s.time));
+      add(nuisance::piston_velocity_start, noise * starting_slope_error(s.time));
   }
   return out;
 }

@@ -7,74 +7,19 @@
 
 #include "base/celsius.h"
 #include "base/error.h"
-#include "effects/registry.h"
+#include "fit/log_gaps.h"
+#include "fit/log_start.h"
 #include "fit/oil_of.h"
+#include "fit/ports_of.h"
 #include "model/state.h"
 #include "parameters/list.h"
 #include "servodx/note.h"
 #include "servodx/rig.h"
 #include "signals/noise.h"
-#include "signals/smoother.h"
-#include "signals/usual_step.h"
+#include "signals/without_noise.h"
 
 namespace servodx {
 namespace {
-
-// Missing input samples are bridged in a line; the ends hold.
-std::vector<double> bridged(const std::vector<double>& t, std::vector<double> x) {
-  const std::size_t n = x.size();
-  std::size_t last = n;  // last present sample
-  for (std::size_t k = 0; k < n; ++k) {
-    if (std::isnan(x[k])) continue;
-    if (last == n) {
-      for (std::size_t j = 0; j < k; ++j) x[j] = x[k];
-    } else {
-      for (std::size_t j = last + 1; j < k; ++j)
-        x[j] = x[last] + (x[k] - x[last]) * (t[j] - t[last]) / (t[k] - t[last]);
-    }
-    last = k;
-  }
-  if (last < n)
-    for (std::size_t j = last + 1; j < n; ++j) x[j] = x[last];
-  return x;
-}
-
-// The command that passed in a gap is not known, and the valve remembers it for some milliseconds. As long as the gap
-// was, at most this long, what comes after is not compared: never more than half of a log is lost to it.
-constexpr double gap_memory = 10e-3;  // [s] several time constants of a first stage
-
-std::vector<char> after_gaps(const std::vector<double>& t) {
-  std::vector<char> unknown(t.size(), 0);
-  if (t.size() < 3) return unknown;
-  const double usual = usual_step(t);
-  double until = -1e300;
-  for (std::size_t k = 1; k < t.size(); ++k) {
-    const double step = t[k] - t[k - 1];
-    if (step > gap_over_step * usual) until = std::max(until, t[k] + std::min(step, gap_memory));
-    unknown[k] = t[k] < until;
-  }
-  return unknown;
-}
-
-// A simulation takes every step of a gap, and over a long one valve and oil go where no sample says. A test stand may
-// be read point by point.
-constexpr double longest_gap = 10.0, longest_wait = 600.0;  // [s]
-
-void refuse_long_gaps(const Log& log, Ports ports) {
-  const double longest = ports == Ports::actuator ? longest_gap : longest_wait;
-  const std::vector<double>& t = log.time;
-  std::size_t first = 0, gaps = 0;
-  for (std::size_t k = 1; k < t.size(); ++k)
-    if (t[k] - t[k - 1] > longest && gaps++ == 0) first = k;
-  if (gaps == 0) return;
-  const double step = t[first] - t[first - 1];
-  if (2 * gaps >= t.size() - 1)
-    throw InputError({.file = log.path, .column = "time"}, fmt::format("its rows are {:.6g} s apart", step),
-                     "look at the unit of time: is it in ms or us, and read as s?");
-  throw InputError({.file = log.path, .column = "time"},
-                   fmt::format("a gap of {:.6g} s between rows {} and {}", step, first, first + 1),
-                   "cut the log there: each part is a log of its own");
-}
 
 double mean_of_present(const std::vector<double>& x) {
   double sum = 0;
@@ -82,111 +27,6 @@ double mean_of_present(const std::vector<double>& x) {
   for (double v : x)
     if (!std::isnan(v)) sum += v, ++n;
   return n ? sum / static_cast<double>(n) : std::nan("");
-}
-
-std::optional<double> first_present(const std::vector<double>& x) {
-  for (double v : x)
-    if (!std::isnan(v)) return v;
-  return std::nullopt;
-}
-
-constexpr double start_span = 0.0101;  // [s] over which the speed at the start is measured
-
-// Slope of the first samples, least squares.
-double starting_slope(const std::vector<double>& t, const std::vector<double>& x) {
-  double st = 0, sx = 0, stt = 0, stx = 0;
-  int n = 0;
-  for (std::size_t k = 0; k < x.size() && t[k] - t[0] < start_span; ++k) {
-    if (std::isnan(x[k])) continue;
-    const double s = t[k] - t[0];
-    st += s, sx += x[k], stt += s * s, stx += s * x[k], ++n;
-  }
-  const double spread = n * stt - st * st;
-  return n >= 3 && spread > 0 ? (n * stx - st * sx) / spread : 0.0;
-}
-
-}  // namespace
-
-void take_start(LogData& log) {
-  Scenario& s = log.scenario;
-  for (const FitChannel& c : log.channels) {
-    if (c.signal == Signal::spool_position) s.spool_start = first_present(c.measured);
-    if (c.signal == Signal::pressure_a) s.pressure_a_start = first_present(c.measured);
-    if (c.signal == Signal::pressure_b) s.pressure_b_start = first_present(c.measured);
-    if (c.signal == Signal::piston_position) {
-      s.piston_start = first_present(c.measured);
-      s.piston_velocity_start = starting_slope(s.time, c.measured);
-    }
-  }
-}
-
-std::optional<double> measured_oil_temperature(const Log& log) {
-  if (!log.has(Signal::oil_temperature)) return std::nullopt;
-  return mean_of_present(log[Signal::oil_temperature]);
-}
-
-double starting_slope_error(const std::vector<double>& t) {
-  double st = 0, stt = 0, n = 0;
-  for (std::size_t k = 0; k < t.size() && t[k] - t[0] < start_span; ++k) {
-    const double s = t[k] - t[0];
-    st += s, stt += s * s, ++n;
-  }
-  const double spread = n * stt - st * st;
-  return n >= 3 && spread > 0 ? std::sqrt(n / spread) : 0.0;
-}
-
-Ports ports_of(const Log& log, const RigFile& rig) {
-  const bool has_actuator =
-      log.has(Signal::piston_position) || (log.has(Signal::pressure_a) && log.has(Signal::pressure_b));
-  const bool leakage = log.has(Signal::leakage_flow), flow = log.has(Signal::control_flow);
-  if (rig.ports == Ports::actuator && has_actuator) return Ports::actuator;
-  if (leakage != flow) return leakage ? Ports::blocked : Ports::free;
-  // Free ports hold no load pressure.
-  if (rig.ports == Ports::free && log.has(Signal::load_pressure) && !flow) return Ports::blocked;
-  return rig.ports;
-}
-
-bool all_on_test_stand(const std::vector<Log>& logs, const RigFile& rig) {
-  return std::all_of(logs.begin(), logs.end(), [&](const Log& l) { return ports_of(l, rig) != Ports::actuator; });
-}
-
-namespace {
-
-// Free ports: the valve is given its drop, as logged or as the data sheet rates its flow, where no supply was logged.
-void take_valve_drop(Scenario& s, const Log& log, const RigFile& rig, std::vector<Note>& notes) {
-  if (s.ports != Ports::free || !s.supply_pressure.empty()) return;
-  const auto rated = rig.fact("valve.rated_pressure_drop");
-  if (log.has(Signal::valve_pressure_drop)) {
-    s.supply_pressure = bridged(log.time, log[Signal::valve_pressure_drop]);
-  } else if (rated) {
-    s.supply_pressure.assign(log.time.size(), *rated);
-    notes.push_back(
-        {Note::Kind::no_supply,
-         log.path + ": no supply pressure is logged; the drop over the valve is valve.rated_pressure_drop"});
-  } else {
-    return;
-  }
-  const double table = rig.fact("supply.return_pressure").value_or(0.0);
-  for (std::size_t k = 0; k < s.supply_pressure.size(); ++k)
-    s.supply_pressure[k] += s.return_pressure.empty() ? table : s.return_pressure[k];
-  if (s.return_pressure.empty()) s.return_pressure.assign(log.time.size(), table);
-}
-
-// What another channel of the log says already, or what was put in.
-bool is_redundant(Signal which, const Log& log, Ports ports) {
-  const bool pressures = log.has(Signal::pressure_a) && log.has(Signal::pressure_b);
-  switch (which) {
-    case Signal::load_pressure:
-      return pressures || ports == Ports::free;
-    case Signal::valve_pressure_drop:
-      return pressures || log.has(Signal::load_pressure) || ports == Ports::free;
-    case Signal::control_flow:
-      return (log.has(Signal::flow_a) && log.has(Signal::flow_b)) || ports == Ports::blocked;
-    case Signal::leakage_flow:
-      return ports != Ports::blocked;  // by its definition
-    default:
-      return false;
-  }
 }
 
 // As the rig file states it of this signal, or of all.
@@ -201,6 +41,11 @@ std::optional<LowPass> low_pass_of(Signal which, const std::vector<double>& time
 }
 
 }  // namespace
+
+std::optional<double> measured_oil_temperature(const Log& log) {
+  if (!log.has(Signal::oil_temperature)) return std::nullopt;
+  return mean_of_present(log[Signal::oil_temperature]);
+}
 
 long present_samples(const FitChannel& c) {
   return std::count_if(c.measured.begin(), c.measured.end(), [](double v) { return !std::isnan(v); });
@@ -286,17 +131,6 @@ LogData slice(const LogData& log, std::size_t from, std::size_t to) {
   }
   take_start(out);
   return out;
-}
-
-ParameterVector candidate_of(const Table& table) {
-  ParameterVector v(n_candidate, 0.0);
-  for (int i = 0; i < n_parameters; ++i) v[i] = table[i].nominal;
-  for (const EffectInfo& e : effect_list())
-    for (std::size_t j = 0; j < e.parameters.size(); ++j) {
-      const int at = table.find(e.parameters[j].name);
-      v[e.first + static_cast<int>(j)] = at >= 0 ? table[at].nominal : e.parameters[j].off;
-    }
-  return v;
 }
 
 }  // namespace servodx

@@ -45,11 +45,6 @@ struct LogData {
 // tells. A velocity error of 0.1 mm/s is as large at 1 Hz as the sensor noise of known rigs, 13 um.
 inline constexpr double piston_high_pass = 1.0;  // [Hz]
 
-// Where the log was taken: the rig file's `ports`, or what the log itself says of a valve on a test stand. Leakage flow
-// is measured with the ports blocked, control flow with the ports free; without either the rig file decides.
-Ports ports_of(const Log& log, const RigFile& rig);
-bool all_on_test_stand(const std::vector<Log>& logs, const RigFile& rig);
-
 // [K] mean of what the log measured of its oil; none where it did not.
 std::optional<double> measured_oil_temperature(const Log& log);
 
@@ -58,19 +53,10 @@ std::optional<double> measured_oil_temperature(const Log& log);
 // what passed in it.
 LogData prepare(const Log& log, const RigFile& rig, int window = 1);
 
-// Has the simulation start where the channels were measured first.
-void take_start(LogData& log);
-
 // Refuses a log without any signal that the model reports.
 void require_channels(const LogData& log);
 
 // Samples [from, to) as a log of their own, started from what is measured at `from`.
 LogData slice(const LogData& log, std::size_t from, std::size_t to);
-
-// Standard error of the starting speed over that of one sample. [1/s]
-double starting_slope_error(const std::vector<double>& time);
-
-// The table's nominal values as a candidate: effects without a row at their off value, nuisances at zero.
-ParameterVector candidate_of(const Table& table);
 
 }  // namespace servodx

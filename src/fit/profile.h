@@ -3,7 +3,7 @@
 // at the end is too short, too long or not symmetric. Costs some ten short fits a number.
 #pragma once
 #include "fit/problem.h"
-#include "optimise/problem.h"
+#include "optimise/unit_cube.h"
 
 namespace servodx {
 

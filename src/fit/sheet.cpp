@@ -8,18 +8,19 @@
 #include <map>
 #include <numbers>
 
+#include "fit/candidate_of.h"
 #include "fit/chart.h"
 #include "fit/constants.h"
 #include "fit/free_values.h"
+#include "fit/log_data.h"
 #include "fit/problem.h"
 #include "fit/stand.h"
 #include "optimise/box_least_squares.h"
 #include "optimise/local.h"
-#include "optimise/problem.h"
+#include "optimise/unit_cube.h"
 #include "parameters/list.h"
 #include "simulate/scenario.h"
 #include "simulate/simulate.h"
-#include "fit/log_data.h"
 
 namespace servodx {
 namespace {

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "fit/ports_of.h"
 #include "servodx/log.h"
 #include "servodx/note.h"
 #include "servodx/rig.h"

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "fit/identifiability.h"
-#include "optimise/problem.h"
+#include "optimise/unit_cube.h"
 
 namespace servodx {
 namespace {

@@ -77,7 +77,7 @@ struct EffectList {
 };
 
 // A row of a candidate, p[I], SI. By number of the compiler's, as rows that carry derivatives have a type each
-// (simulate/step_derivative.h).
+// (simulate/gradient.h).
 template <int I, class T>
 const T& pick(const T* p) {
   return p[I];

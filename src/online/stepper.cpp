@@ -12,6 +12,7 @@
 
 #include "base/json_text.h"
 #include "base/sha256.h"
+#include "fit/candidate_of.h"
 #include "fit/log_data.h"
 #include "fit/oil_of.h"
 #include "model/state.h"

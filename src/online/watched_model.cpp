@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <string>
 
+#include "fit/candidate_of.h"
 #include "fit/log_data.h"
 #include "fit/tuned_state.h"
 #include "servodx/data_sheet.h"

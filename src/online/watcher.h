@@ -1,8 +1,8 @@
 // A valve under watch: samples in, events out. A state machine; it reads no clock and no file.
 //
 // Time is the log's. The simulation runs along (residuals.h), the evidence is held against the limits part by part
-// (evidence.h, limits.h), and an alarm names what has begun (sudden.h). A second after an alarm the last window is due
-// for a diagnosis, which is the caller's to make.
+// (evidence.h, alarm_limits.h), and an alarm names what has begun (sudden.h). A second after an alarm the last window
+// is due for a diagnosis, which is the caller's to make.
 #pragma once
 #include <deque>
 #include <nlohmann/json_fwd.hpp>
@@ -12,9 +12,9 @@
 #include <vector>
 
 #include "faults/gross_finding.h"
+#include "online/alarm_limits.h"
 #include "online/arrivals.h"
 #include "online/evidence.h"
-#include "online/limits.h"
 #include "online/residuals.h"
 #include "online/sudden.h"
 #include "online/watched_model.h"

@@ -22,8 +22,8 @@
 #include <vector>
 
 #include "optimise/normal_equations.h"
-#include "optimise/problem.h"
 #include "optimise/robust_loss.h"
+#include "optimise/unit_cube.h"
 
 namespace servodx {
 

@@ -17,7 +17,7 @@
 // Ceres Solver 2.1, trust_region_minimizer.cc.
 #pragma once
 #include "optimise/box_least_squares.h"
-#include "optimise/problem.h"
+#include "optimise/unit_cube.h"
 
 namespace servodx {
 

@@ -6,7 +6,7 @@
 #pragma once
 #include <functional>
 
-#include "optimise/problem.h"
+#include "optimise/unit_cube.h"
 
 namespace servodx {
 

@@ -4,7 +4,7 @@
 #include <functional>
 #include <vector>
 
-#include "optimise/problem.h"
+#include "optimise/unit_cube.h"
 
 namespace servodx {
 

@@ -10,7 +10,7 @@
 #include "base/median.h"
 #include "base/random.h"
 #include "optimise/genetic_variation.h"
-#include "optimise/problem.h"
+#include "optimise/unit_cube.h"
 
 namespace servodx {
 namespace {

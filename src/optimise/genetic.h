@@ -14,7 +14,7 @@
 #include <string>
 
 #include "optimise/genetic_state.h"
-#include "optimise/problem.h"
+#include "optimise/unit_cube.h"
 
 namespace servodx {
 

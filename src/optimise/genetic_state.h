@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "optimise/problem.h"
+#include "optimise/unit_cube.h"
 
 namespace servodx {
 

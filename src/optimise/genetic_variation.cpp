@@ -5,7 +5,7 @@
 #include <numbers>
 #include <numeric>
 
-#include "optimise/problem.h"
+#include "optimise/unit_cube.h"
 
 namespace servodx {
 namespace {

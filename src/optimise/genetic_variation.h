@@ -15,7 +15,7 @@
 
 #include "base/random.h"
 #include "optimise/genetic_state.h"
-#include "optimise/problem.h"
+#include "optimise/unit_cube.h"
 
 namespace servodx {
 

@@ -12,7 +12,7 @@
 
 #include "optimise/box_least_squares.h"
 #include "optimise/ceres_refinement.h"
-#include "optimise/problem.h"
+#include "optimise/unit_cube.h"
 
 namespace servodx {
 

@@ -12,7 +12,7 @@
 #include "base/atomic_file.h"
 #include "base/csv.h"
 #include "base/error.h"
-#include "base/limits.h"
+#include "base/reading_limits.h"
 #include "base/sha256.h"
 #include "parameters/list.h"
 #include "parameters/table_text.h"

@@ -7,6 +7,7 @@
 #include "base/error.h"
 #include "diagnose/hypotheses.h"
 #include "diagnose/severity.h"
+#include "fit/candidate_of.h"
 #include "fit/chart.h"
 #include "fit/free_values.h"
 #include "plan/constants.h"

@@ -17,7 +17,7 @@
 #include "plan/constants.h"
 #include "plan/information.h"
 #include "plan/lanes.h"
-#include "plan/search.h"
+#include "plan/piece_search.h"
 #include "plan/segments.h"
 #include "plan/test_bench.h"
 #include "servodx/data_sheet.h"

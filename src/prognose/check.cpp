@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "base/celsius.h"
+#include "fit/candidate_of.h"
 #include "fit/fast_log.h"
 #include "fit/free_values.h"
 #include "fit/log_data.h"

@@ -6,6 +6,7 @@
 #include "faults/fault.h"
 #include "parameters/list.h"
 #include "prognose/reading_scale.h"
+#include "simulate/nuisance.h"
 #include "simulate/scenario.h"
 
 namespace servodx {

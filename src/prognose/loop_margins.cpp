@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "base/error.h"
+#include "fit/candidate_of.h"
 #include "fit/log_data.h"
 #include "model/state.h"
 #include "parameters/list.h"

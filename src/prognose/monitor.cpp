@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "base/error.h"
+#include "fit/candidate_of.h"
 #include "fit/nominal.h"
 #include "parameters/list.h"
 #include "prognose/valve_geometry.h"

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/celsius.h"
+#include "fit/candidate_of.h"
 #include "fit/error_model.h"
 #include "fit/free_values.h"
 #include "fit/oil_of.h"
@@ -12,7 +13,7 @@
 #include "model/state.h"
 #include "optimise/box_least_squares.h"
 #include "optimise/local.h"
-#include "optimise/problem.h"
+#include "optimise/unit_cube.h"
 #include "prognose/constants.h"
 #include "servodx/rig.h"
 #include "simulate/scenario.h"

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "faults/fault.h"
+#include "fit/candidate_of.h"
 #include "fit/chart.h"
 #include "fit/error_model.h"
 #include "fit/free_values.h"
@@ -15,10 +16,11 @@
 #include "fit/tuned_state.h"
 #include "optimise/box_least_squares.h"
 #include "optimise/local.h"
-#include "optimise/problem.h"
+#include "optimise/unit_cube.h"
 #include "parameters/list.h"
 #include "prognose/constants.h"
 #include "prognose/reading_scale.h"
+#include "simulate/nuisance.h"
 #include "simulate/scenario.h"
 
 namespace servodx {

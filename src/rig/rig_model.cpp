@@ -11,8 +11,8 @@
 #include <set>
 
 #include "base/key_error.h"
-#include "base/limits.h"
 #include "base/random.h"
+#include "base/reading_limits.h"
 #include "base/toml_text.h"
 
 namespace servodx::rig {

@@ -11,7 +11,7 @@
 #include "servodx/note.h"
 #include "servodx/rig.h"
 #include "signals/log.h"
-#include "signals/sweep.h"
+#include "signals/one_pass.h"
 
 namespace servodx {
 

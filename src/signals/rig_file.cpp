@@ -10,8 +10,8 @@
 
 #include "base/csv.h"
 #include "base/key_error.h"
-#include "base/limits.h"
 #include "base/nearest.h"
+#include "base/reading_limits.h"
 #include "base/sha256.h"
 #include "base/toml_text.h"
 #include "base/trouble.h"

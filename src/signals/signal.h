@@ -1,4 +1,5 @@
-// What is known of each canonical signal (servodx/log.h): one list owns name, SI unit and sign convention.
+// What is known of each canonical signal: made of the list in servodx/log.h, which owns name, SI unit, dimension and
+// sign convention.
 #pragma once
 #include <array>
 #include <optional>

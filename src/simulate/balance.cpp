@@ -18,8 +18,8 @@
 #include "model/state.h"
 #include "parameters/list.h"
 #include "servodx/rig.h"
-#include "signals/smoother.h"
 #include "signals/usual_step.h"
+#include "signals/without_noise.h"
 
 namespace servodx {
 namespace {

@@ -1,7 +1,7 @@
 #include "base/pack.h"
 #include "effects/registry.h"
-#include "simulate/kernel.h"
-#include "simulate/step_derivative.h"
+#include "simulate/kernels.h"
+#include "simulate/run_and_followers.h"
 
 namespace servodx {
 

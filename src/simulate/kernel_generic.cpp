@@ -1,6 +1,7 @@
 #include "base/pack.h"
 #include "effects/registry.h"
-#include "simulate/kernel.h"
+#include "simulate/kernels.h"
+#include "simulate/pack_run.h"
 #include "simulate/run_in_parts_of.h"
 
 namespace servodx {

@@ -1,5 +1,6 @@
 #include "effects/registry.h"
-#include "simulate/kernel.h"
+#include "simulate/kernels.h"
+#include "simulate/pack_run.h"
 #include "simulate/run_in_parts_of.h"
 
 namespace servodx {

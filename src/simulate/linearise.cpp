@@ -10,8 +10,9 @@
 #include "model/hooks.h"
 #include "parameters/list.h"
 #include "servodx/rig.h"
-#include "simulate/kernel.h"
+#include "simulate/pack_run.h"
 #include "simulate/scenario.h"
+#include "simulate/system.h"
 
 namespace servodx {
 namespace {

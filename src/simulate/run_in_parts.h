@@ -5,7 +5,7 @@
 
 namespace servodx {
 
-// Made at the first sample of a scenario, by a kernel (kernel.h). What it was made with must live as long and is
+// Made at the first sample of a scenario, by a kernel (kernels.h). What it was made with must live as long and is
 // changed by the caller from part to part: the scenario's series, and the trajectory's, as long as they.
 class RunInParts {
  public:

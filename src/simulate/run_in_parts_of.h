@@ -8,7 +8,7 @@
 #include <tuple>
 #include <type_traits>
 
-#include "simulate/kernel.h"
+#include "simulate/pack_run.h"
 #include "simulate/run_in_parts.h"
 #include "simulate/scenario.h"
 

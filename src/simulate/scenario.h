@@ -1,38 +1,24 @@
 // What a log gives a simulation: inputs at the sample times, where to start, and what to report. SI.
 #pragma once
+#include <algorithm>
 #include <array>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "effects/registry.h"
+#include "model/shown.h"
 #include "model/state.h"
 #include "servodx/log.h"
 #include "servodx/rig.h"
 #include "signals/rig_file.h"
 #include "signals/signal.h"
 #include "simulate/fast_command.h"
+#include "simulate/nuisance.h"
 
 namespace servodx {
 
-// A candidate: the 41 rows, the effects' parameters, then the nuisances of the log. SI.
+// A candidate: the 41 rows, the effects' parameters, then the nuisances of the log (nuisance.h). SI.
 using ParameterVector = std::vector<double>;
-namespace nuisance {
-// Command between samples: 0 holds the last sample, 1 runs in a line to the next.
-inline constexpr int command_slope = n_values;
-// Offsets of the sensors, indicated less true. [m], [Pa]
-inline constexpr int spool_offset = n_values + 1;
-inline constexpr int pressure_a_offset = n_values + 2;
-inline constexpr int pressure_b_offset = n_values + 3;
-inline constexpr int pilot_pressure_1_offset = n_values + 4;
-inline constexpr int pilot_pressure_2_offset = n_values + 5;
-// Where the run starts, true less measured: the first sample has the sensor's noise. [m], [Pa], [m/s]
-inline constexpr int spool_start = n_values + 6;
-inline constexpr int pressure_a_start = n_values + 7;
-inline constexpr int pressure_b_start = n_values + 8;
-inline constexpr int piston_velocity_start = n_values + 9;
-}  // namespace nuisance
-inline constexpr int n_candidate = n_values + 10;
 
 struct Scenario {
   std::vector<double> time;       // [s] the points at which a run is reported: the samples, or some of a fast log
@@ -53,14 +39,18 @@ struct Scenario {
   double piston_velocity_start = 0.0;  // [m/s]
 };
 
-// Signals that the model can report.
-inline constexpr std::array<Signal, 12> simulated_signals = {
-    Signal::spool_position,   Signal::piston_position,     Signal::pressure_a,   Signal::pressure_b,
-    Signal::pilot_pressure_1, Signal::pilot_pressure_2,    Signal::flow_a,       Signal::flow_b,
-    Signal::load_pressure,    Signal::valve_pressure_drop, Signal::control_flow, Signal::leakage_flow};
+// Signals that the model can report, in the order of the list of what it shows.
+inline constexpr std::array simulated_signals = {
+#define X(name) Signal::name,
+    SERVODX_SHOWN(X)
+#undef X
+};
 inline constexpr int n_simulated = static_cast<int>(simulated_signals.size());
 // Position in simulated_signals, or -1.
-int simulated_index(Signal s);
+constexpr int simulated_index(Signal s) {
+  const auto it = std::find(simulated_signals.begin(), simulated_signals.end(), s);
+  return it == simulated_signals.end() ? -1 : static_cast<int>(it - simulated_signals.begin());
+}
 
 struct Trajectory {
   bool ok = false;
@@ -72,8 +62,8 @@ struct SimulateOptions {
   double step = 1.0e-3 / 3.0;        // [s] largest substep; substeps divide each sample interval evenly
   double impact_step = 1.0e-3 / 12;  // [s] after a jump of the command, and while the rod comes upon its stop
   double creep_step = 10e-3;         // [s] on a test stand while the command creeps: all that is fast is at rest
-  std::array<bool, n_simulated> wanted = {true, true, true, true};
-  int threads = 0;  // 0: all
+  std::array<bool, n_simulated> wanted = {true, true, true, true};  // spool, piston, both pressures
+  int threads = 0;                                                  // 0: all
   // By longer substeps, and in floats where the machine has packs of them, for a third of the time: good to rank
   // candidates, not for derivatives, and never for what is reported.
   bool ranking = false;

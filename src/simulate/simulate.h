@@ -33,7 +33,7 @@ struct NearJobs {
   std::span<const Job> jobs;
   Trajectory* of_base = nullptr;  // the base's run, where it was followed; left empty elsewhere
 };
-// The same to first order in how far they are off it, where so many run sooner that way (step_derivative.h); on test
+// The same to first order in how far they are off it, where so many run sooner that way (followers.h); on test
 // stands, with a learnt curve and in company (together.h) runs of their own, as where they are few. Returns how many
 // ran, bases that were followed included.
 long simulate_near(std::span<const NearJobs> logs, const SimulateOptions& options);

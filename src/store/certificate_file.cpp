@@ -8,8 +8,8 @@
 #include <string_view>
 
 #include "base/key_error.h"
-#include "base/limits.h"
 #include "base/nearest.h"
+#include "base/reading_limits.h"
 #include "base/sha256.h"
 #include "base/toml_text.h"
 #include "base/trouble.h"

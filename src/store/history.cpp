@@ -14,7 +14,7 @@
 
 #include "base/atomic_file.h"
 #include "base/error.h"
-#include "base/limits.h"
+#include "base/reading_limits.h"
 #include "parameters/list.h"
 #include "parameters/table.h"
 #include "parameters/table_text.h"

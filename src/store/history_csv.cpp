@@ -12,7 +12,7 @@
 #include "base/celsius.h"
 #include "base/csv.h"
 #include "base/error.h"
-#include "base/limits.h"
+#include "base/reading_limits.h"
 #include "base/units.h"
 #include "model/state.h"
 #include "parameters/list.h"

@@ -10,7 +10,7 @@
 #include "base/celsius.h"
 #include "base/csv.h"
 #include "base/error.h"
-#include "base/limits.h"
+#include "base/reading_limits.h"
 #include "base/units.h"
 #include "model/state.h"
 #include "prognose/check_name.h"

@@ -2,7 +2,7 @@
 #pragma once
 #include <vector>
 
-#include "optimise/problem.h"
+#include "optimise/unit_cube.h"
 #include "tune/scope.h"
 #include "tune/watch.h"
 

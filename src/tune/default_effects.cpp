@@ -7,6 +7,7 @@
 #include "effects/registry.h"
 #include "fit/free_values.h"
 #include "fit/log_data.h"
+#include "fit/ports_of.h"
 #include "servodx/log.h"
 #include "servodx/rig.h"
 #include "servodx/table.h"

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "fit/problem.h"
-#include "optimise/problem.h"
+#include "optimise/unit_cube.h"
 #include "tune/scope.h"
 #include "tune/tune.h"
 #include "tune/watch.h"

@@ -10,7 +10,7 @@
 #include "optimise/box_least_squares.h"
 #include "optimise/ceres_refinement.h"
 #include "optimise/local.h"
-#include "optimise/problem.h"
+#include "optimise/unit_cube.h"
 #include "parameters/table.h"
 #include "servodx/log.h"
 #include "servodx/rig.h"

@@ -5,9 +5,12 @@
 #include <map>
 
 #include "base/error.h"
+#include "fit/candidate_of.h"
 #include "fit/chart.h"
 #include "fit/fast_log.h"
 #include "fit/free_values.h"
+#include "fit/nominal.h"
+#include "fit/ports_of.h"
 #include "fit/thin.h"
 #include "parameters/list.h"
 #include "servodx/data_sheet.h"

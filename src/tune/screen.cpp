@@ -11,7 +11,7 @@
 #include "fit/chart.h"
 #include "fit/free_values.h"
 #include "fit/identifiability.h"
-#include "optimise/problem.h"
+#include "optimise/unit_cube.h"
 #include "servodx/table.h"
 #include "tune/constants.h"
 #include "tune/kept.h"

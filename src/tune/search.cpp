@@ -9,7 +9,7 @@
 #include "optimise/ceres_refinement.h"
 #include "optimise/derivative_free.h"
 #include "optimise/local.h"
-#include "optimise/problem.h"
+#include "optimise/unit_cube.h"
 #include "servodx/tune.h"
 #include "tune/breadth.h"
 #include "tune/constants.h"

@@ -6,7 +6,7 @@
 #include "fit/error_model.h"
 #include "fit/problem.h"
 #include "optimise/box_least_squares.h"
-#include "optimise/problem.h"
+#include "optimise/unit_cube.h"
 #include "tune/constants.h"
 #include "tune/scope.h"
 #include "tune/tune.h"

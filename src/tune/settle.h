@@ -4,7 +4,7 @@
 
 #include "fit/problem.h"
 #include "optimise/box_least_squares.h"
-#include "optimise/problem.h"
+#include "optimise/unit_cube.h"
 #include "parameters/table.h"
 #include "servodx/note.h"
 #include "servodx/tune.h"

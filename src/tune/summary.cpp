@@ -12,7 +12,7 @@
 #include "effects/registry.h"
 #include "effects/viscosity_change.h"
 #include "fit/log_data.h"
-#include "optimise/problem.h"
+#include "optimise/unit_cube.h"
 #include "parameters/list.h"
 #include "parameters/table.h"
 #include "servodx/note.h"

@@ -5,7 +5,7 @@
 
 #include "fit/problem.h"
 #include "fit/tuned_state.h"
-#include "optimise/problem.h"
+#include "optimise/unit_cube.h"
 #include "parameters/table.h"
 #include "servodx/log.h"
 #include "servodx/note.h"

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "fit/problem.h"
-#include "optimise/problem.h"
+#include "optimise/unit_cube.h"
 
 namespace servodx {
 

@@ -9,8 +9,8 @@
 
 #include "base/block_reader.h"
 #include "base/decimal.h"
-#include "base/limits.h"
 #include "base/random.h"
+#include "base/reading_limits.h"
 #include "servodx/error.h"
 #include "temporary_folder.h"
 

@@ -16,6 +16,7 @@
 #include "diagnose/whitening.h"
 #include "faults/fault.h"
 #include "faults/registry.h"
+#include "fit/candidate_of.h"
 #include "fit/error_model.h"
 #include "fit/log_data.h"
 #include "fit/tuned_state.h"

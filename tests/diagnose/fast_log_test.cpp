@@ -11,6 +11,7 @@
 #include "diagnose/hypotheses.h"
 #include "faults/fault.h"
 #include "faults/registry.h"
+#include "fit/candidate_of.h"
 #include "fit/error_model.h"
 #include "fit/log_data.h"
 #include "servodx/log.h"

@@ -11,6 +11,7 @@
 #include "diagnose/decide.h"
 #include "faults/record.h"
 #include "faults/registry.h"
+#include "fit/candidate_of.h"
 #include "fit/log_data.h"
 #include "parameters/list.h"
 #include "servodx/log.h"

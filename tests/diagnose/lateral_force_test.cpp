@@ -8,6 +8,7 @@
 
 #include "diagnose/judge.h"
 #include "faults/registry.h"
+#include "fit/candidate_of.h"
 #include "fit/log_data.h"
 #include "parameters/list.h"
 #include "parameters/table.h"

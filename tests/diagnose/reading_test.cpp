@@ -11,6 +11,7 @@
 #include "diagnose/judgeable.h"
 #include "diagnose/motion.h"
 #include "diagnose/whitening.h"
+#include "fit/candidate_of.h"
 #include "fit/error_model.h"
 #include "fit/log_data.h"
 #include "servodx/log.h"

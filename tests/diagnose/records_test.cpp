@@ -10,6 +10,7 @@
 
 #include "diagnose/record_law.h"
 #include "faults/registry.h"
+#include "fit/candidate_of.h"
 #include "fit/log_data.h"
 #include "servodx/log.h"
 #include "shipped_data.h"

@@ -10,6 +10,7 @@
 #include "faults/fault.h"
 #include "faults/record.h"
 #include "faults/registry.h"
+#include "fit/candidate_of.h"
 #include "fit/chart.h"
 #include "fit/log_data.h"
 #include "model/constants.h"

@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "fit/candidate_of.h"
 #include "fit/log_data.h"
 #include "fit/support.h"
 #include "parameters/list.h"

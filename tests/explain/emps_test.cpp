@@ -17,7 +17,7 @@
 #include "explain/fit_causes.h"
 #include "explain/outcome.h"
 #include "explain/subject.h"
-#include "optimise/problem.h"
+#include "optimise/unit_cube.h"
 
 namespace servodx {
 namespace {

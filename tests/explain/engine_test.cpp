@@ -13,7 +13,7 @@
 #include "explain/subject.h"
 #include "explain/ties.h"
 #include "optimise/box_least_squares.h"
-#include "optimise/problem.h"
+#include "optimise/unit_cube.h"
 
 namespace servodx {
 namespace {

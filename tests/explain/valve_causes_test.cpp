@@ -17,6 +17,7 @@
 #include "effects/viscosity_change.h"
 #include "explain/sought_cause.h"
 #include "explain/subject.h"
+#include "fit/candidate_of.h"
 #include "fit/log_data.h"
 #include "parameters/list.h"
 #include "parameters/table.h"

@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <map>
 
+#include "fit/candidate_of.h"
 #include "fit/log_data.h"
 #include "fit/support.h"
 #include "parameters/table.h"

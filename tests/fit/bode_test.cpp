@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "faults/registry.h"
+#include "fit/candidate_of.h"
 #include "fit/log_data.h"
 #include "fit/sheet.h"
 #include "parameters/table.h"

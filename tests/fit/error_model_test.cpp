@@ -3,10 +3,11 @@
 #include <gtest/gtest.h>
 
 #include "base/random.h"
+#include "fit/candidate_of.h"
 #include "fit/log_data.h"
 #include "fit/problem.h"
 #include "fit/support.h"
-#include "optimise/problem.h"
+#include "optimise/unit_cube.h"
 #include "parameters/list.h"
 #include "parameters/table.h"
 #include "servodx/log.h"

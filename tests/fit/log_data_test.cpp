@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "base/random.h"
+#include "fit/candidate_of.h"
 #include "fit/error_model.h"
 #include "fit/problem.h"
 #include "fit/support.h"

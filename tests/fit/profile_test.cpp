@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "fit/candidate_of.h"
 #include "fit/chart.h"
 #include "fit/identifiability.h"
 #include "fit/log_data.h"

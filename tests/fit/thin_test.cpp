@@ -9,6 +9,7 @@
 #include "effects/magnetic_hysteresis.h"
 #include "effects/port_line.h"
 #include "effects/registry.h"
+#include "fit/candidate_of.h"
 #include "fit/log_data.h"
 #include "fit/support.h"
 #include "parameters/list.h"

@@ -1,12 +1,12 @@
 // Healthy logs and a suspect are weighed alike, or the one's scatter says nothing of the other's.
 #include <gtest/gtest.h>
 
+#include "explain/block_replay.h"
 #include "explain/cause_score.h"
-#include "explain/curves.h"
 #include "explain/engine.h"
 #include "explain/fit_causes.h"
 #include "explain/healthy.h"
-#include "explain/replay.h"
+#include "explain/learnt_curves.h"
 #include "explain/score.h"
 #include "explain/valve.h"
 #include "hidden/cases.h"

@@ -5,6 +5,7 @@
 
 #include "base/random.h"
 #include "effects/registry.h"
+#include "fit/candidate_of.h"
 #include "fit/log_data.h"
 #include "integrate/rodas3.h"
 #include "model/derived.h"
@@ -12,9 +13,9 @@
 #include "parameters/list.h"
 #include "servodx/log.h"
 #include "shipped_data.h"
-#include "simulate/kernel.h"
 #include "simulate/scenario.h"
 #include "simulate/simulate.h"
+#include "simulate/system.h"
 
 namespace servodx {
 

@@ -12,8 +12,8 @@
 #include "model/derived.h"
 #include "model/state.h"
 #include "parameters/list.h"
-#include "simulate/kernel.h"
 #include "simulate/scenario.h"
+#include "simulate/system.h"
 
 namespace servodx {
 namespace {

@@ -7,6 +7,7 @@
 
 #include "base/random.h"
 #include "effects/registry.h"
+#include "fit/candidate_of.h"
 #include "fit/log_data.h"
 #include "parameters/list.h"
 #include "parameters/table.h"

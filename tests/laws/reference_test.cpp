@@ -11,6 +11,7 @@
 #include "effects/armature_angle.h"
 #include "effects/registry.h"
 #include "effects/viscosity_change.h"
+#include "fit/candidate_of.h"
 #include "fit/log_data.h"
 #include "laws/bench.h"
 #include "parameters/list.h"

@@ -10,6 +10,7 @@
 #include "effects/unexplained.h"
 #include "faults/fault.h"
 #include "faults/registry.h"
+#include "fit/candidate_of.h"
 #include "fit/log_data.h"
 #include "laws/bench.h"
 #include "parameters/list.h"

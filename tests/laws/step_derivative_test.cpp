@@ -1,6 +1,4 @@
 // Candidates near a run that follow its steps: the derivative of the discrete run itself, along every parameter.
-#include "simulate/step_derivative.h"
-
 #include <ceres/jet.h>
 #include <gtest/gtest.h>
 
@@ -20,9 +18,11 @@
 #include "parameters/list.h"
 #include "servodx/instruction_set.h"
 #include "servodx/rig.h"
-#include "simulate/kernel.h"
+#include "simulate/gradient.h"
+#include "simulate/nuisance.h"
 #include "simulate/scenario.h"
 #include "simulate/simulate.h"
+#include "simulate/system.h"
 #include "simulate/together.h"
 
 namespace servodx {

@@ -5,6 +5,7 @@
 
 #include "base/random.h"
 #include "faults/registry.h"
+#include "fit/candidate_of.h"
 #include "fit/log_data.h"
 #include "laws/bench.h"
 #include "model/constants.h"

@@ -11,6 +11,7 @@
 #include "effects/magnetic_hysteresis.h"
 #include "effects/registry.h"
 #include "effects/transport_delay.h"
+#include "fit/candidate_of.h"
 #include "fit/log_data.h"
 #include "servodx/data_sheet.h"
 #include "servodx/error.h"

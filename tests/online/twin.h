@@ -13,6 +13,7 @@
 #include "effects/transport_delay.h"
 #include "faults/fault.h"
 #include "faults/registry.h"
+#include "fit/candidate_of.h"
 #include "fit/log_data.h"
 #include "model/state.h"
 #include "online/watched_model.h"

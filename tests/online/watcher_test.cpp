@@ -10,8 +10,8 @@
 
 #include "base/random.h"
 #include "faults/gross_finding.h"
+#include "online/alarm_limits.h"
 #include "online/constants.h"
-#include "online/limits.h"
 #include "online/sudden.h"
 #include "online/watched_model.h"
 #include "servodx/error.h"

@@ -11,8 +11,8 @@
 #include "base/random.h"
 #include "functions.h"
 #include "optimise/box_quadratic.h"
-#include "optimise/problem.h"
 #include "optimise/robust_loss.h"
+#include "optimise/unit_cube.h"
 #include "weak_problem.h"
 
 namespace servodx::test {

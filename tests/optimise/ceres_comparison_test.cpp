@@ -7,7 +7,7 @@
 
 #include "base/random.h"
 #include "optimise/box_least_squares.h"
-#include "optimise/problem.h"
+#include "optimise/unit_cube.h"
 #include "weak_problem.h"
 
 namespace servodx::test {

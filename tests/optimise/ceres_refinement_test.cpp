@@ -12,8 +12,8 @@
 #include "nist_problems.h"
 #include "optimise/box_least_squares.h"
 #include "optimise/normal_equations.h"
-#include "optimise/problem.h"
 #include "optimise/robust_loss.h"
+#include "optimise/unit_cube.h"
 #include "weak_problem.h"
 
 namespace servodx::test {

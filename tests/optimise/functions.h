@@ -4,7 +4,7 @@
 #include <numbers>
 #include <random>
 
-#include "optimise/problem.h"
+#include "optimise/unit_cube.h"
 
 namespace servodx::test {
 

@@ -10,7 +10,7 @@
 #include "functions.h"
 #include "optimise/box_least_squares.h"
 #include "optimise/genetic_state.h"
-#include "optimise/problem.h"
+#include "optimise/unit_cube.h"
 
 namespace servodx::test {
 namespace {

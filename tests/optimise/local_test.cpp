@@ -9,7 +9,7 @@
 #include "functions.h"
 #include "optimise/box_least_squares.h"
 #include "optimise/ceres_refinement.h"
-#include "optimise/problem.h"
+#include "optimise/unit_cube.h"
 #include "weak_problem.h"
 
 namespace servodx::test {

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "optimise/box_least_squares.h"
-#include "optimise/problem.h"
+#include "optimise/unit_cube.h"
 
 namespace servodx::test {
 

@@ -3,7 +3,7 @@
 
 #include "nist_problems.h"
 #include "optimise/box_least_squares.h"
-#include "optimise/problem.h"
+#include "optimise/unit_cube.h"
 
 namespace servodx::test {
 namespace {

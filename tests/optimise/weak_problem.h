@@ -8,7 +8,7 @@
 
 #include "base/random.h"
 #include "optimise/box_least_squares.h"
-#include "optimise/problem.h"
+#include "optimise/unit_cube.h"
 
 namespace servodx::test {
 

@@ -11,7 +11,7 @@
 #include <sstream>
 
 #include "base/error.h"
-#include "base/limits.h"
+#include "base/reading_limits.h"
 #include "parameters/list.h"
 
 namespace servodx {

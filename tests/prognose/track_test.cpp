@@ -5,6 +5,7 @@
 
 #include "base/random.h"
 #include "faults/registry.h"
+#include "fit/candidate_of.h"
 #include "fit/error_model.h"
 #include "fit/log_data.h"
 #include "fit/tuned_state.h"

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "base/random.h"
+#include "fit/candidate_of.h"
 #include "fit/chart.h"
 #include "fit/free_values.h"
 #include "fit/identifiability.h"

@@ -11,7 +11,7 @@
 #include "report/shared/html.h"
 #include "report/shared/json.h"
 #include "report/shared/parts.h"
-#include "report/shared/thin.h"
+#include "report/shared/plot_samples.h"
 
 namespace servodx::report {
 namespace {

@@ -4,7 +4,7 @@
 
 #include <numbers>
 
-#include "base/limits.h"
+#include "base/reading_limits.h"
 #include "base/units.h"
 #include "servodx/error.h"
 #include "servodx/log.h"

@@ -15,8 +15,8 @@
 #include <thread>
 
 #include "base/error.h"
-#include "base/limits.h"
 #include "base/random.h"
+#include "base/reading_limits.h"
 #include "faults/maintenance.h"
 #include "prognose/check.h"
 #include "prognose/valve_history.h"

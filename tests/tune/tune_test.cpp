@@ -18,6 +18,7 @@
 #include "effects/transport_delay.h"
 #include "effects/viscosity_change.h"
 #include "effects/viscosity_slope.h"
+#include "fit/candidate_of.h"
 #include "fit/chart.h"
 #include "fit/error_model.h"
 #include "fit/free_values.h"

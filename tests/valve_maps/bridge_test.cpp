@@ -9,7 +9,7 @@
 #include "servodx/map_points.h"
 #include "servodx/valve_numbers.h"
 #include "support.h"
-#include "valve_maps/compare.h"
+#include "valve_maps/compare_maps.h"
 #include "valve_maps/high_fidelity.h"
 
 namespace servodx::valve_maps {

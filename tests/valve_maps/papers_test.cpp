@@ -6,7 +6,7 @@
 #include "servodx/map_points.h"
 #include "servodx/valve_numbers.h"
 #include "support.h"
-#include "valve_maps/compare.h"
+#include "valve_maps/compare_maps.h"
 #include "valve_maps/high_fidelity.h"
 #include "valve_maps/linear.h"
 #include "valve_maps/model_a.h"

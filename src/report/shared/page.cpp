@@ -12,7 +12,7 @@
 #include "report/shared/handy.h"
 #include "report/shared/html.h"
 #include "report/shared/page_head.h"
-#include "report/shared/thin.h"
+#include "report/shared/plot_samples.h"
 
 namespace servodx::report {
 namespace {

@@ -43,7 +43,7 @@ struct Plot {
   std::string group = {};  // plots of one group share zoom and cursor; empty: alone
   bool low = false;        // half the height
   bool log_x = false, log_y = false;
-  std::size_t most_rows = 8000;  // beyond this, thinned (report/thin.h)
+  std::size_t most_rows = 8000;  // beyond this, thinned (report/shared/plot_samples.h)
 };
 
 // A cell's text, and the number behind it for the CSV.

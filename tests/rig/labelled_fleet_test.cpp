@@ -1,5 +1,5 @@
 // A labelled set: the same whoever makes it, and with every label of the contract.
-#include "rig/fleet.h"
+#include "rig/labelled_fleet.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "valve_maps/compare.h"
+#include "valve_maps/compare_maps.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "plan/search.h"
+#include "plan/piece_search.h"
 
 #include <fmt/format.h>
 #include <omp.h>

@@ -1,4 +1,4 @@
-#include "prognose/limits.h"
+#include "prognose/performance_limits.h"
 
 #include <array>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "signals/smoother.h"
+#include "signals/without_noise.h"
 
 #include <algorithm>
 #include <cmath>

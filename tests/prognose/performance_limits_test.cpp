@@ -1,5 +1,5 @@
 // Failure levels from performance limits, by linear theory.
-#include "prognose/limits.h"
+#include "prognose/performance_limits.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // One pass over a signal against each question asked by itself, wherever the pass is cut.
-#include "signals/sweep.h"
+#include "signals/one_pass.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "signals/sweep.h"
+#include "signals/one_pass.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "explain/curves.h"
+#include "explain/learnt_curves.h"
 
 #include <fmt/format.h>
 
@@ -15,7 +15,7 @@
 #include "explain/subject.h"
 #include "fit/chart.h"
 #include "fit/log_data.h"
-#include "optimise/problem.h"
+#include "optimise/unit_cube.h"
 #include "parameters/list.h"
 #include "servodx/log.h"
 

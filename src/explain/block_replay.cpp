@@ -1,4 +1,4 @@
-#include "explain/replay.h"
+#include "explain/block_replay.h"
 
 #include <algorithm>
 #include <cmath>
@@ -9,7 +9,7 @@
 #include "fit/chart.h"
 #include "fit/error_model.h"
 #include "fit/log_data.h"
-#include "optimise/problem.h"
+#include "optimise/unit_cube.h"
 #include "servodx/log.h"
 #include "simulate/scenario.h"
 

@@ -1,4 +1,4 @@
-#include "report/shared/thin.h"
+#include "report/shared/plot_samples.h"
 
 #include <algorithm>
 #include <numeric>

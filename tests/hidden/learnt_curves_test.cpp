@@ -1,5 +1,5 @@
 // Learnt curves share their rows of a candidate: one that is on is the one that runs, whatever others are in the list.
-#include "explain/curves.h"
+#include "explain/learnt_curves.h"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include "effects/unexplained.h"
 #include "explain/subject.h"
 #include "explain/valve.h"
-#include "optimise/problem.h"
+#include "optimise/unit_cube.h"
 #include "parameters/list.h"
 #include "parameters/table.h"
 #include "servodx/rig.h"

@@ -18,7 +18,7 @@
 
 #include "explain/subject.h"
 #include "explain/valve.h"
-#include "optimise/problem.h"
+#include "optimise/unit_cube.h"
 #include "simulate/balance.h"
 #include "simulate/scenario.h"
 

@@ -1,6 +1,6 @@
 // What the model wrote with a friction, a leak or another oil in it, read from the replay of its blocks: which it is
 // and how large, with the sensors' noise on the log.
-#include "explain/replay.h"
+#include "explain/block_replay.h"
 
 #include <gtest/gtest.h>
 
@@ -13,9 +13,9 @@
 #include "effects/unexplained.h"
 #include "effects/viscosity_change.h"
 #include "explain/cause_score.h"
-#include "explain/curves.h"
 #include "explain/engine.h"
 #include "explain/fit_causes.h"
+#include "explain/learnt_curves.h"
 #include "explain/missing_support.h"
 #include "explain/score.h"
 #include "explain/subject.h"

@@ -1,4 +1,4 @@
-#include "rig/fleet.h"
+#include "rig/labelled_fleet.h"
 
 #include <fmt/format.h>
 #include <omp.h>

@@ -1,4 +1,4 @@
-#include "online/limits.h"
+#include "online/alarm_limits.h"
 
 #include <algorithm>
 #include <cmath>

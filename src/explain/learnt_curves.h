@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "explain/valve.h"
-#include "optimise/problem.h"
+#include "optimise/unit_cube.h"
 
 namespace servodx {
 

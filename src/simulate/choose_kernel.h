@@ -1,0 +1,28 @@
+// Which kernel runs a candidate: of the instruction sets the widest that the processor has, of the effects the fewest
+// that hold all that the candidate has switched on. Chosen at run time; instruction sets agree to 1e-7 of a signal's
+// range, not to the bit (docs/decisions.md).
+#pragma once
+#include "simulate/kernels.h"
+#include "simulate/scenario.h"
+
+namespace servodx {
+
+struct Choice {
+  Kernels doubles, ranking;
+  NearKernels near;
+};
+const Choice& best_kernels();
+// One lane of plain doubles, with every effect: for a learnt curve.
+const Kernels& plain_kernels();
+
+// Which kernel a candidate needs, the cheapest that holds all that is not at its off value; only candidates of the same
+// need share a pack.
+enum class Need { base, extended, lined, corrected };
+Need need_of(const ParameterVector& candidate);
+
+// Null where the instruction set lacks it.
+RunPack run_of(const Kernels& kernels, Need need);
+MakeRunInParts in_parts_of(const Kernels& kernels, Need need);
+NearKernels::Make near_of(const NearKernels& kernels, Need need);
+
+}  // namespace servodx
