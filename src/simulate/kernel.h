@@ -403,9 +403,8 @@ class Run {
     const double jumped = in_.fast ? in_.fast.move[k_] : moved;
     if (jumped > jump * in_.rated_current) impact_until_ = in_.time[k_ + 1] + impact_time;
     if (std::max(moved, jumped) > creep * in_.rated_current * dt) lively_until_ = in_.time[k_ + 1] + settle_time;
-    const double lively = options_.ranking ? options_.ranking_step : options_.step;
-    const double usual = on_stand_ && in_.time[k_] >= lively_until_ ? options_.creep_step : lively;
-    return steps_of(dt, in_.time[k_] < impact_until_ ? std::min(lively, options_.impact_step) : usual);
+    const double usual = on_stand_ && in_.time[k_] >= lively_until_ ? options_.creep_step : options_.step;
+    return steps_of(dt, in_.time[k_] < impact_until_ ? std::min(options_.step, options_.impact_step) : usual);
   }
 
   template <class Watch>
@@ -672,7 +671,7 @@ Kernels kernels_scalar();
 Kernels kernels_generic();
 Kernels kernels_avx2();
 Kernels kernels_avx512();
-// Twice as many lanes, of floats: for ranking only.
+// Twice as many lanes, of floats (Arithmetic).
 Kernels kernels_avx2_floats();
 Kernels kernels_avx512_floats();
 NearKernels kernels_avx2_near();

@@ -23,7 +23,7 @@ namespace servodx {
 namespace {
 
 struct Choice {
-  Kernels doubles, ranking;
+  Kernels doubles, floats;
   NearKernels near;
 };
 
@@ -136,7 +136,7 @@ struct Request {
 // Whether the runs of one come out as the other's: all but the threads.
 bool same_runs(const SimulateOptions& a, const SimulateOptions& b) {
   const auto what = [](const SimulateOptions& o) {
-    return std::tie(o.step, o.impact_step, o.creep_step, o.wanted, o.ranking, o.ranking_step);
+    return std::tie(o.step, o.impact_step, o.creep_step, o.wanted, o.arithmetic);
   };
   return what(a) == what(b);
 }
@@ -156,7 +156,8 @@ void simulate(std::span<const Job> jobs, const SimulateOptions& options) {
     Request request{jobs, options};
     return (*company)(request);
   }
-  const Kernels& kernels = options.ranking ? best_kernels().ranking : best_kernels().doubles;
+  const Kernels& kernels =
+      options.arithmetic == Arithmetic::floats ? best_kernels().floats : best_kernels().doubles;
   static const Kernels plain = kernels_scalar();
   thread_local std::vector<PackOfJobs> space;
   std::vector<PackOfJobs>& packs = space;
@@ -204,6 +205,7 @@ std::unique_ptr<NearRuns> near_runs(const NearJobs& near, const SimulateOptions&
 long simulate_near(std::span<const NearJobs> logs, const SimulateOptions& options) {
   const int threads = options.threads > 0 ? options.threads : omp_get_max_threads();
   const auto n_logs = static_cast<long>(logs.size());
+  const bool floats = options.arithmetic == Arithmetic::floats;
   std::vector<std::unique_ptr<NearRuns>> runs(logs.size());
   if (!company)  // there, lanes that stand idle are another's
 #pragma omp parallel for schedule(dynamic, 1) num_threads(threads)
@@ -211,8 +213,10 @@ long simulate_near(std::span<const NearJobs> logs, const SimulateOptions& option
   std::vector<Job> others;
   long ran = 0;
   for (std::size_t l = 0; l < logs.size(); ++l) {
-    ran += static_cast<long>(logs[l].jobs.size()) + (runs[l] != nullptr);
-    if (!runs[l]) others.insert(others.end(), logs[l].jobs.begin(), logs[l].jobs.end());
+    ran += static_cast<long>(logs[l].jobs.size()) + (runs[l] || floats);
+    if (runs[l] || logs[l].jobs.empty()) continue;
+    others.insert(others.end(), logs[l].jobs.begin(), logs[l].jobs.end());
+    if (floats) others.push_back({logs[l].jobs.front().scenario, logs[l].base, logs[l].of_base});
   }
   if (!others.empty()) simulate(others, options);
   std::erase(runs, nullptr);
