@@ -19,11 +19,6 @@
 #include "servodx/map_points.h"
 #include "servodx/rig.h"
 #include "servodx/table.h"
-#include "valve_maps/compare_maps.h"
-#include "valve_maps/high_fidelity.h"
-#include "valve_maps/papers_valve.h"
-#include "valve_maps/registry.h"
-#include "valve_maps/valve_numbers.h"
 
 namespace servodx {
 namespace {

@@ -9,10 +9,6 @@
 #include <vector>
 
 #include "commands.h"
-#include "door/simulation_steps.h"
-#include "fit/candidate_of.h"
-#include "fit/log_data.h"
-#include "fit/nominal.h"
 #include "invocation.h"
 #include "report/shared/columns.h"
 #include "report/shared/conditions.h"

@@ -4,6 +4,8 @@
 
 namespace servodx {
 
-std::string instruction_set();  // "avx512", "avx2" or "generic", of this processor
+// "avx512", "avx2" or "generic": the widest that this processor has, or what the environment's SERVODX_INSTRUCTION_SET
+// asks for. Throws InputError where the processor lacks that.
+std::string instruction_set();
 
 }  // namespace servodx

@@ -10,6 +10,7 @@
 
 #include "base/normal.h"
 #include "fit/problem.h"
+#include "simulate/scenario.h"
 
 namespace servodx::diagnose_constants {
 
@@ -172,7 +173,8 @@ inline constexpr std::size_t pair_leaders = 2;                    // single faul
 inline constexpr std::size_t pair_finalists = 4;                  // pairs that are fitted by derivatives of their own
 inline constexpr double hopeless = 100.0;                         // of misfit, scaled: a chance of e^-50
 inline constexpr double worth_another_start = 4.0;                // of misfit: two deviates
-inline constexpr double difference_step = step_through_contacts;  // of the range: a severity runs through contacts
+// Of the range: a severity runs through contacts. Floats round such a difference by some part in a thousand.
+inline constexpr Differences differences = {step_through_contacts, Arithmetic::floats};
 inline constexpr double cost_tolerance = 1e-4;                    // relative
 inline constexpr double at_end_part = 1e-3;                       // of the range: so near an end a size stands at it
 inline constexpr double deviates_of_95 = normal_95;               // of a normal distribution

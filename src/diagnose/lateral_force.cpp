@@ -7,7 +7,6 @@
 #include "diagnose/judge.h"
 #include "effects/registry.h"
 #include "effects/stiction.h"
-#include "evidence/operating_point.h"
 #include "fit/candidate_of.h"
 #include "fit/log_data.h"
 #include "parameters/list.h"

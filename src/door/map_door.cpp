@@ -11,7 +11,7 @@
 #include "servodx/rig.h"
 #include "servodx/table.h"
 #include "servodx/valve_numbers.h"
-#include "valve_maps/compare.h"
+#include "valve_maps/compare_maps.h"
 #include "valve_maps/high_fidelity.h"
 #include "valve_maps/papers_valve.h"
 #include "valve_maps/registry.h"

@@ -24,6 +24,7 @@
 #include "store/logo_file.h"
 #include "store/truth_file.h"
 #include "tune/tune.h"
+#include "fit/candidate_of.h"
 
 namespace servodx {
 

@@ -7,7 +7,6 @@
 #include <utility>
 
 #include "door/require_setting.h"
-#include "door/simulation_steps.h"
 #include "fit/candidate_of.h"
 #include "fit/log_data.h"
 #include "servodx/data_sheet.h"

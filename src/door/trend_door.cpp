@@ -11,7 +11,7 @@
 #include "parameters/list.h"
 #include "prognose/check_name.h"
 #include "prognose/life.h"
-#include "prognose/limits.h"
+#include "prognose/performance_limits.h"
 #include "prognose/seeded.h"
 #include "prognose/trend.h"
 #include "prognose/trend_options.h"

@@ -69,7 +69,7 @@ std::string FitProblem::content_hash() const {
     write_bytes(bytes, f.log_scale), write_bytes(bytes, f.at), write_bytes(bytes, f.log);
   }
   write_bytes(bytes, sigma_);
-  write_bytes(bytes, difference_step);
+  write_bytes(bytes, differences.step), write_bytes(bytes, differences.arithmetic);
   return sha256(bytes);
 }
 
@@ -143,9 +143,7 @@ std::span<const Trajectory> FitProblem::run(std::span<const Point> points, std::
       chart_.candidate(points[k], static_cast<int>(l), w.candidates[i]);
       w.jobs.push_back({&logs_[l]->scenario, &w.candidates[i], &w.runs[i]});
     }
-  SimulateOptions options = options_;
-  options.ranking = ranking;
-  simulate(w.jobs, options);
+  simulate(w.jobs, ranking ? ranking_steps(options_) : options_);
   simulations_ += static_cast<long>(n);
   return {w.runs.data(), n};
 }
@@ -225,7 +223,7 @@ bool FitProblem::jacobian(const Point& x, const Eigen::VectorXd& residual, Eigen
 }
 
 std::vector<FitProblem::Column> FitProblem::columns_asked(const Point& x, const std::vector<char>& asked) const {
-  const double step = difference_step;
+  const double step = differences.step;
   std::vector<Column> columns;
   for (std::size_t l = 0; l < logs_.size(); ++l)
     for (std::size_t j = 0; j < free().size(); ++j)
@@ -264,13 +262,15 @@ bool FitProblem::run_moved(const Point& x, std::span<const Column> columns, Eige
     chart_.candidate(x, l, bases[l]);
     near.push_back({&bases[l], std::span(w.jobs).subspan(begin, c - begin), &followed[l]});
   }
-  simulations_ += simulate_near(near, options_);
+  SimulateOptions options = options_;
+  if (differences.arithmetic == Arithmetic::floats) options.arithmetic = Arithmetic::floats;
+  simulations_ += simulate_near(near, options);
   for (std::size_t c = 0; c < columns.size(); ++c)
     if (!w.runs[c].ok) {
       ++failed_;
       return false;
     }
-  // Followers are compared with the very run that they followed.
+  // Followers are compared with the very run that they followed, floats with floats.
   for (const NearJobs& n : near)
     if (n.of_base->ok) fill(static_cast<int>(n.of_base - followed.data()), *n.of_base, from);
   return true;

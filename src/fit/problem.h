@@ -20,7 +20,12 @@
 
 namespace servodx {
 
-// Step of a Jacobian through contacts and frictions, which roughen the response. [of the unit interval]
+// How derivatives are taken as differences.
+struct Differences {
+  double step = 1e-4;  // of the unit interval
+  Arithmetic arithmetic = Arithmetic::doubles;
+};
+// Of a step through contacts and frictions, which roughen the response. [of the unit interval]
 inline constexpr double step_through_contacts = 1e-3;
 
 class FitProblem {
@@ -36,9 +41,9 @@ class FitProblem {
   // The candidate of a log at a point.
   ParameterVector candidate(const Point& x, int log) const { return chart_.candidate(x, log); }
 
-  // Step of the Jacobian, of the unit interval. Wider where contacts and friction roughen the response; where columns
-  // are so many that they follow the run (simulate_near), it moves only what is around the steps.
-  double difference_step = 1e-4;
+  // Of the Jacobian. Where columns are so many that they follow the run (simulate_near), the step moves only what is
+  // around the steps of the run, and all is in doubles.
+  Differences differences;
 
   // Whitening: sigma of (log, channel), the same at every sample, or sample by sample.
   void set_sigma(int log, int channel, double sigma);
@@ -48,7 +53,7 @@ class FitProblem {
   std::vector<Evaluation> evaluate(std::span<const Point> points) const;
   // 0.5 * sum of the squared residuals as `loss` changes them (robust_loss.h); infinite where a run fails. Keeps no
   // residuals, and from the second call on asks for no memory but its result's, unless a channel has a moving average
-  // or a notch. `ranking`: fast and rough, to compare points (SimulateOptions::ranking). `bounds`, one a point or none:
+  // or a notch. `ranking`: fast and rough, to compare points (ranking_steps). `bounds`, one a point or none:
   // some logs are run at a time, and a point that they put above its bound is left at that.
   std::vector<double> costs(std::span<const Point> points, RobustLoss loss, double scale, bool ranking = false,
                             std::span<const double> bounds = {}) const;

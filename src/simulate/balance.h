@@ -29,8 +29,8 @@ struct Balance {
   std::vector<double> supply;
   // Middle of each window: what the missing may depend on.
   std::vector<double> spool, piston, velocity, load_pressure;  // [m], [m], [m/s], [Pa]
-  // The rod slides all through, one way, by more than its seals give before they slip, and clear of the stops' cushions,
-  // which the model does not have: the last twentieth of the stroke at either end.
+  // The rod slides all through, one way, by more than its seals give before they slip, and clear of the stops'
+  // cushions, which the model does not have: the last twentieth of the stroke at either end.
   std::vector<char> slides;
 };
 

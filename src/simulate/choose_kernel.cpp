@@ -2,9 +2,12 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <cstdlib>
 #include <memory>
 #include <string>
+#include <vector>
 
+#include "base/error.h"
 #include "effects/line_inertia.h"
 #include "effects/registry.h"
 #include "effects/unexplained.h"
@@ -15,16 +18,38 @@
 
 namespace servodx {
 
-const Choice& best_kernels() {
-  static const Choice chosen = []() -> Choice {
+namespace {
+
+// That this processor has, the widest first.
+std::vector<Choice> choices() {
+  std::vector<Choice> out;
 #if defined(__x86_64__)
-    if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq"))
-      return {kernels_avx512(), kernels_avx512_floats(), kernels_avx512_near()};
-    if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma"))
-      return {kernels_avx2(), kernels_avx2_floats(), kernels_avx2_near()};
+  if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq"))
+    out.push_back({kernels_avx512(), kernels_avx512_floats(), kernels_avx512_near()});
+  if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma"))
+    out.push_back({kernels_avx2(), kernels_avx2_floats(), kernels_avx2_near()});
 #endif
-    return {kernels_generic(), kernels_generic(), {}};
-  }();
+  out.push_back({kernels_generic(), kernels_generic(), {}});
+  return out;
+}
+
+Choice choose() {
+  const std::vector<Choice> all = choices();
+  const char* asked = std::getenv("SERVODX_INSTRUCTION_SET");
+  if (!asked || !*asked) return all.front();
+  std::string known;
+  for (const Choice& c : all) {
+    if (std::string(asked) == c.doubles.name) return c;
+    known += (known.empty() ? "" : ", ") + std::string(c.doubles.name);
+  }
+  throw InputError({.file = "SERVODX_INSTRUCTION_SET"}, "this processor has no kernels '" + std::string(asked) + "'",
+                   "give one of " + known + ", or unset it for the widest");
+}
+
+}  // namespace
+
+const Choice& best_kernels() {
+  static const Choice chosen = choose();
   return chosen;
 }
 

@@ -1,6 +1,6 @@
-// Which kernel runs a candidate: of the instruction sets the widest that the processor has, of the effects the fewest
-// that hold all that the candidate has switched on. Chosen at run time; instruction sets agree to 1e-7 of a signal's
-// range, not to the bit (docs/decisions.md).
+// Which kernel runs a candidate: of the instruction sets the widest that the processor has, or the one that the
+// environment's SERVODX_INSTRUCTION_SET names; of the effects the fewest that hold all that the candidate has switched
+// on. Chosen at run time; instruction sets agree to 1e-7 of a signal's range, not to the bit (docs/decisions.md).
 #pragma once
 #include "simulate/kernels.h"
 #include "simulate/scenario.h"
@@ -8,9 +8,10 @@
 namespace servodx {
 
 struct Choice {
-  Kernels doubles, ranking;
+  Kernels doubles, floats;
   NearKernels near;
 };
+// Throws InputError where an instruction set is asked for that is unknown or that the processor lacks.
 const Choice& best_kernels();
 // One lane of plain doubles, with every effect: for a learnt curve.
 const Kernels& plain_kernels();

@@ -45,7 +45,7 @@ Kernels kernels_scalar();
 Kernels kernels_generic();
 Kernels kernels_avx2();
 Kernels kernels_avx512();
-// Twice as many lanes, of floats: for ranking only.
+// Twice as many lanes, of floats (Arithmetic).
 Kernels kernels_avx2_floats();
 Kernels kernels_avx512_floats();
 NearKernels kernels_avx2_near();

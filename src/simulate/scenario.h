@@ -58,17 +58,25 @@ struct Trajectory {
   std::array<std::vector<double>, n_simulated> signals;  // empty unless asked for
 };
 
+// What a run is computed in. Floats take half of the time, where the machine has packs of them, and round a run to some
+// 1e-5 of a signal's range: for the way of a search and for differences by wide steps, never for what is reported.
+enum class Arithmetic { doubles, floats };
+
 struct SimulateOptions {
   double step = 1.0e-3 / 3.0;        // [s] largest substep; substeps divide each sample interval evenly
   double impact_step = 1.0e-3 / 12;  // [s] after a jump of the command, and while the rod comes upon its stop
   double creep_step = 10e-3;         // [s] on a test stand while the command creeps: all that is fast is at rest
   std::array<bool, n_simulated> wanted = {true, true, true, true};  // spool, piston, both pressures
   int threads = 0;                                                  // 0: all
-  // By longer substeps, and in floats where the machine has packs of them, for a third of the time: good to rank
-  // candidates, not for derivatives, and never for what is reported.
-  bool ranking = false;
-  double ranking_step = 0.5e-3;  // [s] largest substep then
+  Arithmetic arithmetic = Arithmetic::doubles;
 };
+
+// In floats and by longer substeps, for a third of the time: good to rank candidates, not for derivatives.
+inline SimulateOptions ranking_steps(SimulateOptions o) {
+  o.step = 0.5e-3;
+  o.arithmetic = Arithmetic::floats;
+  return o;
+}
 
 // Within 0.1 % of a signal's range of the reference (1e-5 s) at every sample of every shipped log: for what is looked
 // at sample by sample. The steps above, for fits and searches, are within 1 %, 0.1 % rms (tests/laws/reference_test).

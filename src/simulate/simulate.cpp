@@ -56,7 +56,8 @@ void simulate(std::span<const Job> jobs, const SimulateOptions& options) {
     RunRequest request{jobs, options};
     return (*ask)(request);
   }
-  const Kernels& kernels = options.ranking ? best_kernels().ranking : best_kernels().doubles;
+  const bool floats = options.arithmetic == Arithmetic::floats;
+  const Kernels& kernels = floats ? best_kernels().floats : best_kernels().doubles;
   const Kernels& plain = plain_kernels();
   thread_local std::vector<PackOfJobs> space;
   std::vector<PackOfJobs>& packs = space;

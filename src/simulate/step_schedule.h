@@ -29,10 +29,9 @@ class StepSchedule {
     const double jumped = in.fast ? in.fast.move[k] : moved;
     if (jumped > jump * in.rated_current) impact_until_ = in.time[k + 1] + impact_time;
     if (std::max(moved, jumped) > creep * in.rated_current * dt) lively_until_ = in.time[k + 1] + settle_time;
-    const double lively = options.ranking ? options.ranking_step : options.step;
     const bool creeps = in.ports != Ports::actuator && in.time[k] >= lively_until_;
-    const double usual = creeps ? options.creep_step : lively;
-    return steps_of(dt, in.time[k] < impact_until_ ? std::min(lively, options.impact_step) : usual);
+    const double usual = creeps ? options.creep_step : options.step;
+    return steps_of(dt, in.time[k] < impact_until_ ? std::min(options.step, options.impact_step) : usual);
   }
 
  private:

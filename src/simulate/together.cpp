@@ -18,7 +18,7 @@ namespace {
 // Whether the runs of one come out as the other's: all but the threads.
 bool same_runs(const SimulateOptions& a, const SimulateOptions& b) {
   const auto what = [](const SimulateOptions& o) {
-    return std::tie(o.step, o.impact_step, o.creep_step, o.wanted, o.ranking, o.ranking_step);
+    return std::tie(o.step, o.impact_step, o.creep_step, o.wanted, o.arithmetic);
   };
   return what(a) == what(b);
 }

@@ -9,7 +9,6 @@
 #include "fit/chart.h"
 #include "fit/fast_log.h"
 #include "fit/free_values.h"
-#include "fit/nominal.h"
 #include "fit/ports_of.h"
 #include "fit/thin.h"
 #include "parameters/list.h"

@@ -20,7 +20,6 @@
 #include "optimise/box_least_squares.h"
 #include "optimise/differences.h"
 #include "optimise/local.h"
-#include "optimise/problem.h"
 #include "optimise/unit_cube.h"
 #include "servodx/note.h"
 #include "servodx/rig.h"

@@ -172,7 +172,7 @@ std::vector<ParameterVector> candidates(int count) {
 TEST(Batch, LaneEqualsTheRunAloneBitForBitAtAnyThreadCount) {
   const std::vector<ParameterVector> v = candidates(29);
   const std::vector<LogData> logs = pieces();
-  SimulateOptions o = all_signals();
+  SimulateOptions o;
   const auto batch = [&](int threads) {
     std::vector<Trajectory> t(v.size() * logs.size());
     std::vector<Job> jobs;
@@ -185,7 +185,7 @@ TEST(Batch, LaneEqualsTheRunAloneBitForBitAtAnyThreadCount) {
   std::printf("kernel in use: %s, %d lanes\n", instruction_set().c_str(), pack_width());
   EXPECT_GT(pack_width(), 1);
   for (const bool ranking : {false, true}) {
-    o.ranking = ranking;
+    o = ranking ? ranking_steps(all_signals()) : all_signals();
     const std::vector<Trajectory> one = batch(1), two = batch(2);
     for (std::size_t l = 0; l < logs.size(); ++l)
       for (std::size_t i = 0; i < v.size(); ++i) {

@@ -77,10 +77,8 @@ Costs costs_of(const LogData& log, double width) {
   std::vector<Job> jobs, ranked;
   for (std::size_t i = 0; i < v.size(); ++i)
     jobs.push_back({&log.scenario, &v[i], &t[i]}), ranked.push_back({&log.scenario, &v[i], &f[i]});
-  SimulateOptions o;
-  simulate(jobs, o);
-  o.ranking = true;
-  simulate(ranked, o);
+  simulate(jobs);
+  simulate(ranked, ranking_steps({}));
   for (std::size_t i = 0; i < v.size(); ++i) {
     EXPECT_EQ(t[i].ok, f[i].ok) << i;
     if (!t[i].ok || !f[i].ok) continue;

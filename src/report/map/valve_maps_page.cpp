@@ -12,8 +12,6 @@
 #include "report/shared/replay_part.h"
 #include "servodx/map_points.h"
 #include "servodx/valve_numbers.h"
-#include "valve_maps/compare_maps.h"
-#include "valve_maps/valve_numbers.h"
 
 namespace servodx::report {
 namespace {
