@@ -71,6 +71,23 @@ TEST(Program, TellsItsVersionAndHelps) {
   }
 }
 
+// The narrowest is everywhere; what no processor has is refused.
+TEST(Program, RunsByTheInstructionSetThatIsAskedFor) {
+  const Desk desk;
+  const auto kernel = [&](const std::string& set) {
+    return desk.run_with("SERVODX_INSTRUCTION_SET=" + set, "list models --json -");
+  };
+  const Ended narrow = kernel("generic");
+  ASSERT_EQ(narrow.code, 0) << narrow.err;
+  EXPECT_EQ(nlohmann::json::parse(narrow.out).at("models").at(0).at("kernel"), "generic");
+  const Ended widest = kernel("");
+  EXPECT_EQ(widest.out, desk.run("list models --json -").out);
+  const Ended none = kernel("mmx");
+  EXPECT_EQ(none.code, 2);
+  EXPECT_TRUE(none.out.empty()) << none.out;
+  EXPECT_NE(none.err.find("generic"), std::string::npos) << none.err;
+}
+
 TEST(Program, EveryCommandTakesTheCommonOptions) {
   const Desk desk;
   for (const char* command : {"simulate", "tune", "baseline", "diagnose", "list"}) {

@@ -28,9 +28,11 @@ inline std::string bytes_of(const std::filesystem::path& path) {
 // A folder to work in: the program runs there, so that its messages hold relative paths.
 struct Desk : TemporaryFolder {
   // `arguments` as typed at a shell.
-  Ended run(const std::string& arguments) const {
+  Ended run(const std::string& arguments) const { return run_with("", arguments); }
+  // `environment`: "NAME=value ..." ahead of the call.
+  Ended run_with(const std::string& environment, const std::string& arguments) const {
     const TemporaryFolder streams;
-    const std::string call = "cd '" + path.string() + "' && '" + std::string(SERVODX_PROGRAM) + "' " + arguments +
+    const std::string call = "cd '" + path.string() + "' && " + environment + " '" + SERVODX_PROGRAM + "' " + arguments +
                              " >'" + (streams / "out") + "' 2>'" + (streams / "err") + "'";
     const int status = std::system(call.c_str());
     return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, bytes_of(streams / "out"), bytes_of(streams / "err")};
