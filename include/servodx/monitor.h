@@ -10,6 +10,7 @@
 #include "servodx/log.h"
 #include "servodx/rig.h"
 #include "servodx/table.h"
+#include "servodx/note.h"
 
 namespace servodx {
 
@@ -61,7 +62,7 @@ class LogMonitor {
   MonitorRun run() const;
   // None where the log does not measure the spool.
   std::optional<MonitorError> error_of(const MonitorRun& run) const;
-  const std::vector<std::string>& notes() const;  // of the log, made ready
+  const std::vector<Note>& notes() const;  // of the log, made ready
 
  private:
   struct Inside;

@@ -9,6 +9,7 @@
 #include "servodx/monitor.h"
 #include "servodx/rig.h"
 #include "servodx/table.h"
+#include "servodx/note.h"
 
 namespace servodx {
 
@@ -33,7 +34,7 @@ LogMonitor::LogMonitor(const Log& log, const Table& table, const Rig& rig, const
 }
 
 const MonitorParameters& LogMonitor::parameters() const { return inside_->parameters; }
-const std::vector<std::string>& LogMonitor::notes() const { return inside_->data.notes; }
+const std::vector<Note>& LogMonitor::notes() const { return inside_->data.notes; }
 
 MonitorRun LogMonitor::run() const {
   const Inside& in = *inside_;

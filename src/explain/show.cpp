@@ -258,7 +258,7 @@ void add_spectra(ShownChannel& to, const Welch& welch) {
   }
 }
 
-ShownChannel shown(const Pooled& channel) {
+ShownChannel channel_of(const Pooled& channel) {
   const std::vector<Piece>& pieces = channel.pieces;
   const Whiteness white = whiteness_of(pieces);
   ShownChannel out;
@@ -294,7 +294,7 @@ std::vector<ShownChannel> show(const ValveSubject& subject, const std::vector<Lo
     }
   }
   std::vector<ShownChannel> out;
-  for (const Pooled& c : channels) out.push_back(shown(c));
+  for (const Pooled& c : channels) out.push_back(channel_of(c));
   return out;
 }
 

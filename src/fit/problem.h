@@ -27,6 +27,8 @@ struct Differences {
 };
 // Of a step through contacts and frictions, which roughen the response. [of the unit interval]
 inline constexpr double step_through_contacts = 1e-3;
+// By so wide a step floats will do: they round a column by a part in a thousand or so.
+inline constexpr Differences through_contacts = {step_through_contacts, Arithmetic::floats};
 
 class FitProblem {
  public:
