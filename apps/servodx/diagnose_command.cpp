@@ -173,7 +173,7 @@ int run(const Options& options) {
   for (const Verdict& v : results) {
     header.simulations += v.simulations;
     header.failed_simulations += v.failed_simulations;
-    invocation.note(v.whole->assessment.notes);
+    invocation.note(v.notes);
     text += (text.empty() ? "" : "\n") +
             report::text_of(*v.whole, {.colour = colour_wanted(), .written_to = "", .call = header.call}) +
             friction_line(v);

@@ -71,7 +71,7 @@ FleetJudge::Outcome FleetJudge::set_aside(const std::string& log, const std::str
 void FleetJudge::complete_header(const Verdict& verdict) {
   header_.simulations += verdict.simulations;
   header_.failed_simulations += verdict.failed_simulations;
-  for (const std::string& note : texts_of(verdict.whole->assessment.notes))
+  for (const std::string& note : texts_of(verdict.notes))
     if (std::find(header_.notes.begin(), header_.notes.end(), note) == header_.notes.end())
       header_.notes.push_back(note);
 }

@@ -85,7 +85,7 @@ void run(Options options) {
   std::vector<Trend> trends;
   for (const std::string& name : options.all ? history.valves() : std::vector<std::string>{options.valve}) {
     trends.push_back(trend(history, name, options.trend));
-    invocation.note(trends.back().whole->notes);
+    invocation.note(trends.back().notes);
   }
   most_urgent_first(trends);
   if (!options.prometheus.empty()) write_file(options.prometheus, text_of(gauges_of(trends)));

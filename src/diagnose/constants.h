@@ -167,15 +167,15 @@ inline constexpr int more_rounds = 3;         // of as many again, for a leader 
 inline constexpr std::size_t leaders = 3;     // likeliest faults that go on
 // Of the amplitude of what two faults explain: so much a model that errs may lend the second of them.
 inline constexpr double lent_to_second = 0.05;
-inline constexpr double worth_a_pair = 16.0;                  // of misfit, inflated: a fault of four deviates
-inline constexpr std::size_t pair_leaders = 2;                // single faults that others are tried beside
-inline constexpr std::size_t pair_finalists = 4;              // pairs that are fitted by derivatives of their own
-inline constexpr double hopeless = 100.0;                     // of misfit, scaled: a chance of e^-50
-inline constexpr double worth_another_start = 4.0;            // of misfit: two deviates
-inline constexpr Differences differences = through_contacts;  // a severity runs through contacts
-inline constexpr double cost_tolerance = 1e-4;                // relative
-inline constexpr double at_end_part = 1e-3;                   // of the range: so near an end a size stands at it
-inline constexpr double deviates_of_95 = normal_95;           // of a normal distribution
+inline constexpr double worth_a_pair = 16.0;                      // of misfit, inflated: a fault of four deviates
+inline constexpr std::size_t pair_leaders = 2;                    // single faults that others are tried beside
+inline constexpr std::size_t pair_finalists = 4;                  // pairs that are fitted by derivatives of their own
+inline constexpr double hopeless = 100.0;                         // of misfit, scaled: a chance of e^-50
+inline constexpr double worth_another_start = 4.0;                // of misfit: two deviates
+inline constexpr double difference_step = step_through_contacts;  // of the range: a severity runs through contacts
+inline constexpr double cost_tolerance = 1e-4;                    // relative
+inline constexpr double at_end_part = 1e-3;                       // of the range: so near an end a size stands at it
+inline constexpr double deviates_of_95 = normal_95;               // of a normal distribution
 inline constexpr double deviates_of_one_in_20 = normal_95_one_sided;  // the same, on one side
 
 // Fault-free logs that a baseline needs at least, and that set its limits where the model follows so many of them (else

@@ -169,7 +169,7 @@ FitProblem problem_of(Attempt& a, const HypothesisData& data, int threads) {
   a.fit.fault = a.fault;
   a.fit.free = free_of(a, data);
   FitProblem problem = problem_of(data, a.fit.free, threads);
-  problem.differences = k::differences;
+  problem.difference_step = k::difference_step;
   return problem;
 }
 
@@ -256,7 +256,7 @@ void through_checkpoint(Attempt& a, const HypothesisData& data, std::string_view
 std::optional<FitEnd> end_of(const HypothesisFit& fit, const HypothesisData& data, FitWork& work) {
   if (!fit.ok) return {};
   FitProblem problem = problem_of(data, fit.free);
-  problem.differences = k::differences;
+  problem.difference_step = k::difference_step;
   const Evaluation e = problem.evaluate(std::span(&fit.point, 1)).front();
   Eigen::MatrixXd jacobian;
   const bool had = e.ok && problem.jacobian(fit.point, e.residual, jacobian);

@@ -17,6 +17,7 @@
 #include "optimise/box_least_squares.h"
 #include "optimise/differences.h"
 #include "optimise/unit_cube.h"
+#include "optimise/unit_cube.h"
 #include "servodx/data_sheet.h"
 #include "servodx/error.h"
 #include "servodx/log.h"
@@ -205,7 +206,7 @@ Objective::Jacobian Objective::jacobian(std::span<const double> point) const {
   Eigen::MatrixXd j;
   if (!problem.jacobian(at, here.residual, j))
     out.missing = take_differences([&](const std::vector<Point>& points) { return problem.evaluate(points); }, at,
-                                   here.residual, {.step = problem.differences.step}, j);
+                                   here.residual, {.step = problem.difference_step}, j);
   out.values.resize(static_cast<std::size_t>(j.size()));
   Eigen::Map<Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>>(out.values.data(), j.rows(),
                                                                                      j.cols()) = j;

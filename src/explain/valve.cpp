@@ -112,7 +112,7 @@ std::shared_ptr<FitProblem> ValveSubject::problem(const std::vector<int>& causes
   std::vector<const LogData*> data;
   for (const LogData& l : logs_) data.push_back(&l);
   const auto p = std::make_shared<FitProblem>(data, base_, free_for(causes, wide), options_);
-  p->differences = through_contacts;
+  p->difference_step = step_through_contacts;
   for (std::size_t l = 0; l < sigma_.size(); ++l)
     for (std::size_t c = 0; c < sigma_[l].size(); ++c)
       p->set_sigma(static_cast<int>(l), static_cast<int>(c), sigma_[l][c]);

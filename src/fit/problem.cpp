@@ -69,7 +69,7 @@ std::string FitProblem::content_hash() const {
     write_bytes(bytes, f.log_scale), write_bytes(bytes, f.at), write_bytes(bytes, f.log);
   }
   write_bytes(bytes, sigma_);
-  write_bytes(bytes, differences.step), write_bytes(bytes, differences.arithmetic);
+  write_bytes(bytes, difference_step);
   return sha256(bytes);
 }
 
@@ -223,7 +223,7 @@ bool FitProblem::jacobian(const Point& x, const Eigen::VectorXd& residual, Eigen
 }
 
 std::vector<FitProblem::Column> FitProblem::columns_asked(const Point& x, const std::vector<char>& asked) const {
-  const double step = differences.step;
+  const double step = difference_step;
   std::vector<Column> columns;
   for (std::size_t l = 0; l < logs_.size(); ++l)
     for (std::size_t j = 0; j < free().size(); ++j)
@@ -262,15 +262,13 @@ bool FitProblem::run_moved(const Point& x, std::span<const Column> columns, Eige
     chart_.candidate(x, l, bases[l]);
     near.push_back({&bases[l], std::span(w.jobs).subspan(begin, c - begin), &followed[l]});
   }
-  SimulateOptions options = options_;
-  if (differences.arithmetic == Arithmetic::floats) options.arithmetic = Arithmetic::floats;
-  simulations_ += simulate_near(near, options);
+  simulations_ += simulate_near(near, options_);
   for (std::size_t c = 0; c < columns.size(); ++c)
     if (!w.runs[c].ok) {
       ++failed_;
       return false;
     }
-  // Followers are compared with the very run that they followed, floats with floats.
+  // Followers are compared with the very run that they followed.
   for (const NearJobs& n : near)
     if (n.of_base->ok) fill(static_cast<int>(n.of_base - followed.data()), *n.of_base, from);
   return true;

@@ -20,15 +20,8 @@
 
 namespace servodx {
 
-// How derivatives are taken as differences.
-struct Differences {
-  double step = 1e-4;  // of the unit interval
-  Arithmetic arithmetic = Arithmetic::doubles;
-};
-// Of a step through contacts and frictions, which roughen the response. [of the unit interval]
+// Step of a Jacobian through contacts and frictions, which roughen the response. [of the unit interval]
 inline constexpr double step_through_contacts = 1e-3;
-// By so wide a step floats will do: they round a column by a part in a thousand or so.
-inline constexpr Differences through_contacts = {step_through_contacts, Arithmetic::floats};
 
 class FitProblem {
  public:
@@ -43,9 +36,9 @@ class FitProblem {
   // The candidate of a log at a point.
   ParameterVector candidate(const Point& x, int log) const { return chart_.candidate(x, log); }
 
-  // Of the Jacobian. Where columns are so many that they follow the run (simulate_near), the step moves only what is
-  // around the steps of the run, and all is in doubles.
-  Differences differences;
+  // Step of the Jacobian, of the unit interval. Wider where contacts and friction roughen the response; where columns
+  // are so many that they follow the run (simulate_near), it moves only what is around the steps.
+  double difference_step = 1e-4;
 
   // Whitening: sigma of (log, channel), the same at every sample, or sample by sample.
   void set_sigma(int log, int channel, double sigma);

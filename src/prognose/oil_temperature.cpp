@@ -30,7 +30,7 @@ double misfit_at(const LogData& log, const Table& tuned, const ErrorModel& error
   SimulateOptions options;
   options.threads = threads;
   FitProblem problem({&log}, base, nuisance_values(log, 0, base, oil_null_limit), options);
-  problem.differences = through_contacts;
+  problem.difference_step = difference_step;
   const Point start = problem.start();
   apply_error_model(problem, error, start);
   LeastSquaresOptions o;

@@ -249,7 +249,7 @@ Track track_parameters(const LogData& log, const Table& tuned, const TrackOption
   SimulateOptions simulate_options;
   simulate_options.threads = options.threads;
   FitProblem problem({&log}, base, free, simulate_options);
-  problem.differences = through_contacts;
+  problem.difference_step = difference_step;
   const Point health = problem.start();
   whiten(problem, log, error_model_of(tuned), problem.trajectories(health).front());
   const auto fit = fit_from(problem, starts_from(health, base, free, options.last), options);

@@ -59,7 +59,7 @@ struct Trajectory {
 };
 
 // What a run is computed in. Floats take half of the time, where the machine has packs of them, and round a run to some
-// 1e-5 of a signal's range: for the way of a search and for differences by wide steps, never for what is reported.
+// 1e-5 of a signal's range: good to rank candidates by, not for differences, and never for what is reported.
 enum class Arithmetic { doubles, floats };
 
 struct SimulateOptions {

@@ -31,11 +31,11 @@ std::unique_ptr<RunInParts> run_in_parts(const Scenario& scenario, const Paramet
 struct NearJobs {
   const ParameterVector* base = nullptr;
   std::span<const Job> jobs;
-  Trajectory* of_base = nullptr;  // the base's run, where it was followed or is in floats; left empty elsewhere
+  Trajectory* of_base = nullptr;  // the base's run, where it was followed; left empty elsewhere
 };
 // The same to first order in how far they are off it, where so many run sooner that way (followers.h); on test
-// stands, with a learnt curve and in company (together.h) runs of their own, as where they are few. In floats these are
-// to be compared with the base's own run in floats. Returns how many ran, bases included.
+// stands, with a learnt curve and in company (together.h) runs of their own, as where they are few. Returns how many
+// ran, bases that were followed included.
 long simulate_near(std::span<const NearJobs> logs, const SimulateOptions& options);
 
 int pack_width();

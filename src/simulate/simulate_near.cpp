@@ -39,7 +39,6 @@ std::unique_ptr<NearRuns> near_runs(const NearJobs& near, const SimulateOptions&
 long simulate_near(std::span<const NearJobs> logs, const SimulateOptions& options) {
   const int threads = options.threads > 0 ? options.threads : omp_get_max_threads();
   const auto n_logs = static_cast<long>(logs.size());
-  const bool floats = options.arithmetic == Arithmetic::floats;
   std::vector<std::unique_ptr<NearRuns>> runs(logs.size());
   if (!company())  // there, lanes that stand idle are another's
 #pragma omp parallel for schedule(dynamic, 1) num_threads(threads)
@@ -47,10 +46,8 @@ long simulate_near(std::span<const NearJobs> logs, const SimulateOptions& option
   std::vector<Job> others;
   long ran = 0;
   for (std::size_t l = 0; l < logs.size(); ++l) {
-    ran += static_cast<long>(logs[l].jobs.size()) + (runs[l] || floats);
-    if (runs[l] || logs[l].jobs.empty()) continue;
-    others.insert(others.end(), logs[l].jobs.begin(), logs[l].jobs.end());
-    if (floats) others.push_back({logs[l].jobs.front().scenario, logs[l].base, logs[l].of_base});
+    ran += static_cast<long>(logs[l].jobs.size()) + (runs[l] != nullptr);
+    if (!runs[l]) others.insert(others.end(), logs[l].jobs.begin(), logs[l].jobs.end());
   }
   if (!others.empty()) simulate(others, options);
   std::erase(runs, nullptr);

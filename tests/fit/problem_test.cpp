@@ -28,7 +28,6 @@
 #include "servodx/rig.h"
 #include "shipped_data.h"
 #include "simulate/scenario.h"
-#include "simulate/simulate.h"
 
 namespace {
 std::size_t bytes_asked_for = 0;
@@ -258,7 +257,7 @@ TEST(FitProblem, AGenerationOfTheSearchAsksForNoMemoryButItsCosts) {
 TEST(FitProblem, JacobianEqualsCentralDifferences) {
   const TwoLogs logs;
   FitProblem problem({&logs.a, &logs.b}, logs.truth, logs.free());
-  problem.differences.step = 1e-5;
+  problem.difference_step = 1e-5;
   Point x = problem.start();
   for (std::size_t j = 0; j < x.size(); ++j) x[j] = 0.8 * x[j] + 0.05 + 0.01 * static_cast<double>(j % 7);
   const Evaluation at = problem.evaluate(std::span(&x, 1)).front();
@@ -276,28 +275,6 @@ TEST(FitProblem, JacobianEqualsCentralDifferences) {
     const Eigen::VectorXd central = (e[0].residual - e[1].residual) / (2 * h);
     ASSERT_GT(central.norm(), 0.0) << problem.free()[j].name;
     EXPECT_LT((jacobian.col(j) - central).norm(), 1e-2 * central.norm()) << problem.free()[j].name;
-  }
-}
-
-// With fewer free values than follow a run: each column is a run of its own. By the wide step of fits through contacts.
-TEST(FitProblem, DifferencesInFloatsAreThoseOfDoubles) {
-  const TwoLogs logs;
-  std::vector<FreeValue> free = logs.free();
-  free.resize(16);
-  FitProblem problem({&logs.a}, logs.truth, free);
-  Point x = problem.start();
-  for (std::size_t j = 0; j < x.size(); ++j) x[j] = 0.8 * x[j] + 0.05 + 0.01 * static_cast<double>(j % 7);
-  const Evaluation at = problem.evaluate(std::span(&x, 1)).front();
-  Eigen::MatrixXd doubles, floats;
-  problem.differences = {step_through_contacts};
-  ASSERT_TRUE(problem.jacobian(x, at.residual, doubles));
-  problem.differences = {step_through_contacts, Arithmetic::floats};
-  ASSERT_TRUE(problem.jacobian(x, at.residual, floats));
-  if (pack_width() > 1) EXPECT_NE(doubles, floats);
-  for (int j = 0; j < problem.n(); ++j) {
-    const double apart = (floats.col(j) - doubles.col(j)).norm() / doubles.col(j).norm();
-    std::printf("%-30s %.1e\n", problem.free()[j].name.c_str(), apart);
-    EXPECT_LT(apart, 0.02) << problem.free()[j].name;
   }
 }
 
