@@ -193,12 +193,24 @@ class Elimination {
     here_ = std::move(to);
   }
 
-  // The free ones take the same step first, so that what is missed is the effect and not the step.
-  std::pair<std::size_t, Place> least_missed() {
+  // The free ones, then with each of those asked off.
+  std::vector<Point> floors() const {
     std::vector<Point> points = {valley_->floor_without(gone_)};
     for (const FreedEffect* f : asked_) points.push_back(valley_->floor_without(gone_with(*f)));
+    return points;
+  }
+  // The free ones take the same step first, so that what is missed is the effect and not the step. A step that leads up
+  // nobody takes.
+  std::pair<std::size_t, Place> least_missed() {
+    std::vector<Point> points = floors();
     std::vector<Evaluation> runs = problem_.evaluate(points);
-    if (parts_.seen_cost(runs[0]) < parts_.seen_cost(here_.run)) move({points[0], runs[0]});
+    if (parts_.seen_cost(runs[0]) < parts_.seen_cost(here_.run)) {
+      move({points[0], runs[0]});
+    } else {
+      valley_->floor.gradient.setZero();
+      points = floors();
+      runs = problem_.evaluate(points);
+    }
     std::size_t least = 1;
     for (std::size_t k = 2; k < runs.size(); ++k)
       if (parts_.held_cost(runs[k]) < parts_.held_cost(runs[least])) least = k;
