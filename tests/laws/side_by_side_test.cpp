@@ -38,12 +38,28 @@ TEST(SideBySide, ManyAreAtWorkAtOnce) {
   EXPECT_EQ(met, 2);
 }
 
+// Says on a thread's end that it has failed and so begins no other piece.
+struct Ended {
+  std::atomic<bool>* told = nullptr;
+  ~Ended() {
+    if (told) *told = true;
+  }
+};
+thread_local Ended ended;
+
 TEST(SideBySide, ThrowsWhatTheFirstPieceThatFailedHasThrownAndBeginsNoMore) {
   for (const int threads : {1, 3}) {
     std::vector<int> begun(50);
+    std::atomic<bool> over = false;
+    const auto patience = std::chrono::steady_clock::now() + std::chrono::minutes(1);
     const auto failing = [&](int piece, int) {
       begun[static_cast<std::size_t>(piece)] = 1;
-      if (piece == 2 || piece == 3) throw std::runtime_error(std::to_string(piece));
+      if (piece == 2 || piece == 3) {
+        if (threads > 1) ended.told = &over;
+        throw std::runtime_error(std::to_string(piece));
+      }
+      // What was begun beside a failure lasts until that is over, on a busy machine too.
+      while (piece > 3 && !over && std::chrono::steady_clock::now() < patience) std::this_thread::yield();
     };
     try {
       side_by_side(50, threads, failing);
@@ -53,7 +69,7 @@ TEST(SideBySide, ThrowsWhatTheFirstPieceThatFailedHasThrownAndBeginsNoMore) {
     }
     int pieces = 0;
     for (const int b : begun) pieces += b;
-    EXPECT_LT(pieces, 50) << threads;
+    EXPECT_LE(pieces, 2 + threads) << "0, 1, 2 and one beside it for each other thread";
   }
 }
 
