@@ -323,22 +323,31 @@ namespace {
 // Misfits are ratios: what removes nine tenths and then nine tenths of the rest is twice as much. [-]
 double excess_of(double share) { return -std::log(std::max(explain_constants::all_but, 1 - share)); }
 
-std::vector<double> best_shares(const HealthyReference& reference) {
-  std::vector<double> out;
+std::vector<ExcessAt> best_shares(const HealthyReference& reference) {
+  std::vector<ExcessAt> out;
   for (const HealthyLog& l : reference.logs) {
     if (!l.has_shares) continue;
     double best = 0;
     for (const HealthyShare& s : l.shares) best = std::max(best, s.share);
-    out.push_back(excess_of(best));
+    out.push_back({excess_of(best), l.scores.empty() ? std::nan("") : l.scores.front().thickness});
   }
+  return out;
+}
+
+std::vector<double> over_their_scale(const std::vector<ExcessAt>& shares, const ExcessTrend& trend) {
+  std::vector<double> out;
+  for (const auto& [excess, at] : shares) out.push_back(excess / trend.scale(at));
   return out;
 }
 
 }  // namespace
 
-HealthyTest::HealthyTest(const HealthyReference& reference)
+HealthyTest::HealthyTest(const HealthyReference& reference, double thickness)
     : reference_(reference),
-      shares_(best_shares(reference), {explain_constants::usual_share, explain_constants::usual_logs}) {
+      share_trend_(std::isfinite(thickness) ? best_shares(reference) : std::vector<ExcessAt>()),
+      share_scale_(share_trend_.scale(thickness)),
+      shares_(over_their_scale(best_shares(reference), share_trend_),
+              {explain_constants::usual_share, explain_constants::usual_logs}) {
   const std::size_t n = reference.logs.size();
   for (std::size_t i = 0; i < n; ++i)
     for (const HealthyScore& s : reference.logs[i].scores) {
@@ -448,10 +457,10 @@ double HealthyTest::adequacy(double value) const {
   return chance_above(healthy, value);
 }
 
-double HealthyTest::share(double of_misfit) const { return shares_.chance(excess_of(of_misfit)); }
+double HealthyTest::share(double of_misfit) const { return shares_.chance(excess_of(of_misfit) / share_scale_); }
 
 int HealthyTest::logs_needed(double share, double asked) const {
-  return shares_.logs_needed(excess_of(share), asked, explain_constants::of_shares);
+  return shares_.logs_needed(excess_of(share) / share_scale_, asked, explain_constants::of_shares);
 }
 
 double HealthyTest::miss(const Miss& part) const {

@@ -19,6 +19,7 @@
 
 #include "base/stages.h"
 #include "evidence/conditions.h"
+#include "evidence/excess_trend.h"
 #include "evidence/tail_law.h"
 #include "explain/blocks.h"
 #include "explain/cause_score.h"
@@ -93,7 +94,9 @@ HealthyReference score_healthy(const std::vector<Log>& logs, const Table& tuned,
 // The tests that a reference answers.
 class HealthyTest {
  public:
-  explicit HealthyTest(const HealthyReference& reference);
+  // `thickness` of the suspects (Subject::thickness): shares that follow the oil are judged at theirs. Not
+  // known: every healthy log speaks alike.
+  explicit HealthyTest(const HealthyReference& reference, double thickness = std::nan(""));
   // Chance that healthy logs show sizes like these of this cause, a score each log; 1 where fewer than three healthy
   // logs speak of it. Logs of one state share its oil and its day: over them only the noise averages out, and not what
   // else scatters from one healthy log to another. Tails that are longer than Student's are learnt: a cause's own
@@ -128,7 +131,9 @@ class HealthyTest {
   double believed(const OfCause& cause, double surprise, int left_out, double prior) const;
   const HealthyReference& reference_;
   std::map<std::pair<std::string, std::string>, OfCause> causes_;
-  TailLaw shares_;
+  ExcessTrend share_trend_;
+  double share_scale_;            // mean excess in oil like the suspects' over that of all healthy logs
+  TailLaw shares_;                // of the healthy logs, each over the scale of its own oil
   std::vector<double> smallest_;  // [healthy log] of its chances beside the others
 };
 

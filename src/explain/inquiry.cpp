@@ -58,7 +58,7 @@ Inquiry::Inquiry(const std::vector<Log>& logs, const Table& tuned, const RigFile
     for (const Log& log : logs) tests.push_back(conditions_of(log));
     speaking_ = logs_that_speak(*healthy, tests);
     healthy_logs_ = healthy->promising();
-    test_.emplace(speaking_.logs);
+    test_.emplace(speaking_.logs, subject_.thickness());
   }
   if (healthy && logs.size() > 1)
     for (const Log& log : logs) lone_.emplace_back(log, tuned, rig, options.threads, known_, subject_.stages);

@@ -205,6 +205,23 @@ TEST(Healthy, RareCauseHasItsShareOfTheFalseAlarmsAndNoMore) {
   EXPECT_NEAR(test.alone({rare}), 10 * test.alone({one}), 1e-9);
 }
 
+// One log in cold oil that the model follows badly hides no cause in warm oil, and every cause in oil like its own.
+TEST(Healthy, AShareOfTheMisfitIsJudgedInTheSuspectsOil) {
+  HealthyReference reference;
+  const double thick[] = {0.1, -0.2, 0.2, 1.1, 0.0, 1.4, 1.7, -0.4};
+  const double share[] = {0.05, 0.10, 0.12, 0.22, 0.06, 0.45, 0.75, 0.08};
+  for (int i = 0; i < 8; ++i) {
+    HealthyLog log;
+    log.adequacy = 1;
+    log.scores.push_back({"cause", "here", {{0, 1}}, 0, 1, thick[i]});
+    log.shares.push_back({"cause", "here", share[i], share[i], 1}), log.has_shares = true;
+    reference.logs.push_back(log);
+  }
+  EXPECT_LT(HealthyTest(reference, 0.0).share(0.5), 0.01);
+  EXPECT_GT(HealthyTest(reference, 1.7).share(0.5), 0.1);
+  EXPECT_GE(HealthyTest(reference).share(0.5), 2.0 / 9) << "without a temperature all logs are alike";
+}
+
 TEST(Healthy, TooFewLogsAccuseNoOne) {
   HealthyReference two;
   Random random(46, 1);
