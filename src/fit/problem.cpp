@@ -116,6 +116,15 @@ double FitProblem::prior_residual(std::size_t j, double x) const {
   return (x - free()[j].to_unit(free()[j].start)) / free()[j].prior_sd;
 }
 
+std::vector<int> FitProblem::logs_of_rows() const {
+  std::vector<int> out;
+  for (std::size_t l = 0; l < logs_.size(); ++l)
+    out.insert(out.end(), logs_[l]->channels.size() * logs_[l]->scenario.time.size(), static_cast<int>(l));
+  for (const FreeValue& f : free())
+    if (std::isfinite(f.prior_sd)) out.push_back(f.log);
+  return out;
+}
+
 int FitProblem::threads() const { return options_.threads > 0 ? options_.threads : omp_get_max_threads(); }
 
 std::vector<Trajectory> FitProblem::trajectories(const Point& x) const {

@@ -65,6 +65,8 @@ class FitProblem {
   std::pair<long, long> rows(int log, int channel) const {
     return {offset_[log][channel], static_cast<long>(logs_[log]->scenario.time.size())};
   }
+  // Of each row of the residual, priors included, the log that it is of; -1: the prior of a shared value.
+  std::vector<int> logs_of_rows() const;
   long data_rows() const { return data_rows_; }
   long total_rows() const { return total_rows_; }  // the priors' behind those of the data
   long simulations() const { return simulations_; }

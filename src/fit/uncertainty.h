@@ -2,8 +2,9 @@
 //
 // Rows that shift the spool's zero (four laps, null, sensor offset) cancel to some parts in ten thousand. Derivatives
 // by small steps are less exact than that where friction and backlash roughen the response, and what is left of the
-// cancellation would pass for information. So the derivatives are taken once more along the principal axes of the
-// covariance, a third of a standard error either way, and the point may move by what they say.
+// cancellation would pass for information. So the derivatives are taken once more along ways that do not go together, a
+// third of a standard error either way, and the point may move by what they say: the principal axes of what the logs
+// share, which each log's own follow, and then of each log's own beside them, all logs at once.
 // Limits: priors on flat directions are wide; a step ends at the wall of the box.
 #pragma once
 #include <Eigen/Dense>

@@ -27,21 +27,6 @@ namespace {
 
 using namespace tune_constants;
 
-// The first seconds of each log, for the global search; of a test stand's slow sweep they show one end, so all of it.
-std::vector<LogData> excerpts(const std::vector<LogData>& logs, double seconds) {
-  std::vector<LogData> out;
-  for (const LogData& log : logs) {
-    if (log.scenario.ports != Ports::actuator) {
-      out.push_back(log);
-      continue;
-    }
-    const auto& t = log.scenario.time;
-    out.push_back(
-        slice(log, 0, static_cast<std::size_t>(std::lower_bound(t.begin(), t.end(), t.front() + seconds) - t.begin())));
-  }
-  return out;
-}
-
 // Costs of points in the shared values alone, the nuisances held where the search begins.
 class BroadCosts {
  public:
@@ -120,11 +105,9 @@ class KeptGenerations {
 
 }  // namespace
 
-std::vector<Point> search_broadly(const TuneScope& scope, const Point& start, TuneWatch& watch) {
-  const std::vector<LogData> parts = excerpts(scope.data, excerpt);
-  std::vector<const LogData*> logs;
-  for (const LogData& p : parts) logs.push_back(&p);
-  FitProblem problem(logs, scope.base, scope.all(), scope.simulate);
+std::vector<Point> search_broadly(const TuneScope& whole, const Point& start, TuneWatch& watch) {
+  const TuneScope scope = whole.first_seconds(excerpt);
+  FitProblem problem = scope.problem();
   first_whitening(problem, start);
   BroadCosts costs(problem, start);
   const TuneOptions& options = watch.options;

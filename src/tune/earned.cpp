@@ -90,7 +90,7 @@ class Parts {
     for (std::size_t l = 0; l < problem.logs().size(); ++l)
       for (std::size_t c = 0; c < problem.logs()[l]->channels.size(); ++c) {
         const auto [first, n] = problem.rows(static_cast<int>(l), static_cast<int>(c));
-        const auto from = static_cast<long>((1.0 - held) * static_cast<double>(n));
+        const auto from = static_cast<long>(seen_samples(static_cast<std::size_t>(n), held));
         seen_.segment(first + from, n - from).setZero();
       }
   }

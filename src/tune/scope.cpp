@@ -98,6 +98,22 @@ std::vector<FreeValue> TuneScope::all() const {
   return free;
 }
 
+TuneScope TuneScope::seen(double held) const {
+  TuneScope out = *this;
+  for (LogData& d : out.data) d = slice(d, 0, seen_samples(d.scenario.time.size(), held));
+  return out;
+}
+
+TuneScope TuneScope::first_seconds(double seconds) const {
+  TuneScope out = *this;
+  for (LogData& d : out.data) {
+    if (d.scenario.ports != Ports::actuator) continue;
+    const std::vector<double>& t = d.scenario.time;
+    d = slice(d, 0, static_cast<std::size_t>(std::lower_bound(t.begin(), t.end(), t.front() + seconds) - t.begin()));
+  }
+  return out;
+}
+
 TuneScope scope_of(const std::vector<Log>& logs, const Table& nominal, const RigFile& rig, const TuneOptions& options) {
   if (logs.empty()) throw InputError({}, "there is no log to tune on", "give fault-free logs of the valve");
   TuneScope scope;

@@ -72,10 +72,9 @@ void tell_genetic(TuneWatch& watch, double seconds) {
       {first.stage, StageMethod::genetic, first.cost, last.cost, last.simulations - first.simulations, 0, seconds});
 }
 
-void tell_heldout(TuneWatch& watch, const TuneScope& scope, const FitProblem& problem, const Point& end) {
+void tell_heldout(TuneWatch& watch, const FitProblem& whole, const Point& end) {
   if (watch.stages.empty() || watch.stopped()) return;
-  watch.stages.back().heldout_over_noise =
-      heldout_over_noise(scope, problem, problem.trajectories(end), watch.options.heldout);
+  watch.stages.back().heldout_over_noise = heldout_over_noise(whole, whole.trajectories(end), watch.options.heldout);
 }
 
 }  // namespace
@@ -162,27 +161,28 @@ bool in_best_valley(const LeastSquaresResult& end, double best) {
   return end.cost - promised <= as_good * best;
 }
 
-SearchEnds search_ends(const TuneScope& scope, FitProblem& problem, TuneWatch& watch) {
+SearchEnds search_ends(const TuneScope& seen, const FitProblem& whole, TuneWatch& watch) {
   const TuneOptions& options = watch.options;
+  FitProblem problem = seen.problem();
   const Point x = problem.start();
-  scope.on_stand ? weigh_sweeps(problem, x) : first_whitening(problem, x);
+  seen.on_stand ? weigh_sweeps(problem, x) : first_whitening(problem, x);
   std::vector<Point> starts = {x};
   if (options.generations > 0 && !watch.stopped()) {
     Stopwatch clock;
-    for (Point& p : search_broadly(scope, x, watch)) starts.push_back(std::move(p));
+    for (Point& p : search_broadly(seen, x, watch)) starts.push_back(std::move(p));
     tell_genetic(watch, clock.lap());
   }
-  hold_out(problem, options.heldout);
   SearchEnds out;
   for (std::size_t s = 0; s < starts.size() && !(watch.stopped() && s > 0); ++s) {
     const double begun = static_cast<double>(s), all = static_cast<double>(starts.size());
     out.ends.push_back(search_locally(problem, starts[s], Stage{Stage::Kind::start, static_cast<int>(s) + 1},
                                       iterations_a_start, s == 0 ? Start::nominal : Start::found,
                                       {work.starts.at(begun / all), work.starts.at((begun + 1) / all)}, watch));
-    tell_heldout(watch, scope, problem, out.ends.back().point);
+    tell_heldout(watch, whole, out.ends.back().point);
     if (out.ends.back().cost < out.ends[out.best].cost) out.best = s;
   }
   for (const LeastSquaresResult& end : out.ends) out.arrived.push_back(in_best_valley(end, out.ends[out.best].cost));
+  watch.done_with(problem);
   return out;
 }
 
@@ -208,11 +208,10 @@ void weigh(FitProblem& problem, const Point& x, ErrorModel& error, bool on_stand
 
 }  // namespace
 
-LeastSquaresResult refine_held_out(FitProblem& problem, const Point& from, ErrorModel& error, double held,
-                                   bool on_stand, Share share, TuneWatch& watch) {
-  weigh(problem, from, error, on_stand, true);
-  hold_out(problem, held);
-  return search_locally(problem, from, {Stage::Kind::weights}, iterations_of_last_round, Start::ended, share, watch);
+LeastSquaresResult refine_seen(FitProblem& seen, const Point& from, ErrorModel& error, bool on_stand, Share share,
+                               TuneWatch& watch) {
+  weigh(seen, from, error, on_stand, true);
+  return search_locally(seen, from, {Stage::Kind::weights}, iterations_of_last_round, Start::ended, share, watch);
 }
 
 LeastSquaresResult refine_whole(FitProblem& problem, const Point& from, ErrorModel& error, int rounds, bool on_stand,

@@ -28,17 +28,18 @@ LeastSquaresResult search_locally(const FitProblem& problem, const Point& from, 
 // derivatives.
 bool in_best_valley(const LeastSquaresResult& end, double best);
 
-// Ends of the local stage, the last part of every log held out.
+// Ends of the local stage on what is seen of each log.
 struct SearchEnds {
   std::vector<LeastSquaresResult> ends;  // from the table's values first
   std::size_t best = 0;
   std::vector<char> arrived;  // of each, whether it is in the best valley
 };
-SearchEnds search_ends(const TuneScope& scope, FitProblem& problem, TuneWatch& watch);
+// `seen`: without the part of each log that is held out. `whole`: on whole logs, to say how well that part is met.
+SearchEnds search_ends(const TuneScope& seen, const FitProblem& whole, TuneWatch& watch);
 
-// A fit by weights that are learnt at `from`, the last part `held` of every log left out.
-LeastSquaresResult refine_held_out(FitProblem& problem, const Point& from, ErrorModel& error, double held,
-                                   bool on_stand, Share share, TuneWatch& watch);
+// A fit of what is seen of each log, by weights that are learnt at `from`.
+LeastSquaresResult refine_seen(FitProblem& seen, const Point& from, ErrorModel& error, bool on_stand, Share share,
+                               TuneWatch& watch);
 // Alternates fit and error model on whole logs until the weights settle.
 LeastSquaresResult refine_whole(FitProblem& problem, const Point& from, ErrorModel& error, int rounds, bool on_stand,
                                 Share share, TuneWatch& watch);

@@ -35,11 +35,6 @@ std::string by_log(const std::vector<LogResult>& logs, const std::function<bool(
   return text;
 }
 
-// The first sample of the last part.
-std::size_t first_held_out(std::size_t samples, double part) {
-  return static_cast<std::size_t>((1.0 - part) * static_cast<double>(samples));
-}
-
 }  // namespace
 
 std::vector<LogResult> results_by_log(const std::vector<Log>& logs, const TuneScope& scope, const FitProblem& problem,
@@ -54,7 +49,7 @@ std::vector<LogResult> results_by_log(const std::vector<Log>& logs, const TuneSc
     for (std::size_t c = 0; c < data.channels.size(); ++c) {
       const FitChannel& channel = data.channels[c];
       const auto n = channel.measured.size();
-      const auto from = first_held_out(n, heldout_part);
+      const auto from = seen_samples(n, heldout_part);
       ChannelResult r{channel.signal, logs[l].channels[index(channel.signal)].unit, 0, channel.noise, 0};
       const int li = static_cast<int>(l), ci = static_cast<int>(c);
       if (settled[l].ok) r.rms = rms_of(problem.raw_residual(li, ci, settled[l]), 0, n);
@@ -66,16 +61,15 @@ std::vector<LogResult> results_by_log(const std::vector<Log>& logs, const TuneSc
   return out;
 }
 
-double heldout_over_noise(const TuneScope& scope, const FitProblem& problem, const std::vector<Trajectory>& runs,
-                          double heldout_part) {
+double heldout_over_noise(const FitProblem& problem, const std::vector<Trajectory>& runs, double heldout_part) {
   if (!(heldout_part > 0)) return std::nan("");
   std::array<double, n_signals> left{}, noise{};  // squares, over the logs
-  for (std::size_t l = 0; l < scope.data.size(); ++l)
-    for (std::size_t c = 0; c < scope.data[l].channels.size() && runs[l].ok; ++c) {
-      const FitChannel& channel = scope.data[l].channels[c];
+  for (std::size_t l = 0; l < runs.size(); ++l)
+    for (std::size_t c = 0; c < problem.logs()[l]->channels.size() && runs[l].ok; ++c) {
+      const FitChannel& channel = problem.logs()[l]->channels[c];
       const auto n = channel.measured.size();
       const double rms = rms_of(problem.raw_residual(static_cast<int>(l), static_cast<int>(c), runs[l]),
-                                first_held_out(n, heldout_part), n);
+                                seen_samples(n, heldout_part), n);
       left[index(channel.signal)] += rms * rms;
       noise[index(channel.signal)] += channel.noise * channel.noise;
     }

@@ -23,8 +23,7 @@ std::vector<LogResult> results_by_log(const std::vector<Log>& logs, const TuneSc
                                       const std::vector<Trajectory>& heldout, double heldout_part);
 // [-] What `runs` leave of the last part of every log over the sensors' noise, geometric mean over the channels; NaN
 // where nothing is held out.
-double heldout_over_noise(const TuneScope& scope, const FitProblem& problem, const std::vector<Trajectory>& runs,
-                          double heldout_part);
+double heldout_over_noise(const FitProblem& problem, const std::vector<Trajectory>& runs, double heldout_part);
 // Root of the mean square over the logs that have the channel.
 std::vector<ChannelResult> pooled_channels(const std::vector<LogResult>& logs);
 // Channels that are left so far beyond their sensor's noise, and by so much of what they can do, that a verdict by this

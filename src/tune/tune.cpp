@@ -137,8 +137,9 @@ TuneResult tune_table(const std::vector<Log>& logs, const Table& nominal, const 
   std::vector<ScreenedRow> screened = screen_rows(scope, watch);
   hold_to_drawings(scope.shared, scope.facts, options.priors);
 
-  FitProblem fit = scope.problem();
-  SearchEnds searched = search_ends(scope, fit, watch);
+  const TuneScope seen = scope.seen(options.heldout);
+  FitProblem fit = scope.problem(), part = seen.problem();
+  SearchEnds searched = search_ends(seen, fit, watch);
   LeastSquaresResult end = std::move(searched.ends[searched.best]);
   TuneResult out;
   for (std::size_t s = 0; s < searched.ends.size(); ++s)
@@ -148,13 +149,13 @@ TuneResult tune_table(const std::vector<Log>& logs, const Table& nominal, const 
   // Weights from the model's own error, alternating with the fit: first with the end of each log still held out.
   if (!watch.stopped())
     end = options.heldout > 0
-              ? refine_held_out(fit, end.point, out.error, options.heldout, scope.on_stand,
-                                tune_constants::work.weights, watch)
+              ? refine_seen(part, end.point, out.error, scope.on_stand, tune_constants::work.weights, watch)
               : refine_whole(fit, end.point, out.error, 1, scope.on_stand, tune_constants::work.weights, watch);
+  watch.done_with(part);
   // Before the effects are judged by the held-out part: what it says of the fit is then out of sample.
   const std::vector<Trajectory> heldout_runs = fit.trajectories(end.point);
   if (!watch.stages.empty())
-    watch.stages.back().heldout_over_noise = heldout_over_noise(scope, fit, heldout_runs, options.heldout);
+    watch.stages.back().heldout_over_noise = heldout_over_noise(fit, heldout_runs, options.heldout);
   if (!scope.on_stand && !options.effects) out.effects = drop_unearned(scope, fit, end.point, out.error, watch);
   if (!watch.stopped())
     end = refine_whole(fit, end.point, out.error, options.rounds, scope.on_stand, tune_constants::work.whole, watch);

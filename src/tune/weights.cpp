@@ -55,15 +55,4 @@ void weigh_sweeps(FitProblem& problem, const Point& x) {
   }
 }
 
-void hold_out(FitProblem& problem, double part) {
-  constexpr double ignored = 1e30;
-  for (std::size_t l = 0; l < problem.logs().size(); ++l)
-    for (std::size_t c = 0; c < problem.logs()[l]->channels.size(); ++c) {
-      std::vector<double> s = problem.sigma(static_cast<int>(l), static_cast<int>(c));
-      for (std::size_t k = static_cast<std::size_t>((1.0 - part) * static_cast<double>(s.size())); k < s.size(); ++k)
-        s[k] *= ignored;
-      problem.set_sigma(static_cast<int>(l), static_cast<int>(c), std::move(s));
-    }
-}
-
 }  // namespace servodx

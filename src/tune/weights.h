@@ -22,7 +22,4 @@ void first_whitening(FitProblem& problem, const Point& x);
 // so each counts alike, by its own rms.
 void weigh_sweeps(FitProblem& problem, const Point& x);
 
-// Leaves the last part of each log out of the misfit.
-void hold_out(FitProblem& problem, double part);
-
 }  // namespace servodx
