@@ -67,6 +67,7 @@ int run(const Options& options) {
                      "--alone leaves them out",
                      how.others.size())});
   invocation.tell_of_long_fits(logs);
+  require_baseline_logs(logs, tuned, how);
   if (invocation.dry_run()) return ran;
 
   how.watch = invocation.watch();

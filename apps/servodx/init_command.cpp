@@ -39,7 +39,8 @@ std::string rig_file(const std::string& log, const Columns& columns) {
   text +=
       "# The log's columns. gain = \"-1\" turns a sign: positive command, spool and piston go together; "
       "'servodx list signals' says\n# what each signal is, and which way is positive. Lines with '# ?' are questions: "
-      "where the line is right as it\n# stands, take away its first '#'.\n";
+      "where such a line begins with '#'\n# and is right, take that '#' away; where it has a \"?\" or lacks a gain, "
+      "write what is asked for.\n";
   for (const ColumnDraft& c : columns) text += c.line;
   return text;
 }

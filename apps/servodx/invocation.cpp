@@ -227,6 +227,8 @@ void Invocation::check_files(const std::vector<std::string>& inputs, const std::
   std::vector<std::string> all_outputs = outputs;
   if (!options_.json.empty() && options_.json != "-") all_outputs.push_back(options_.json);
   if (!options_.report.empty()) all_outputs.push_back(options_.report);
+  require_option(!options_.report.ends_with(".pdf"), "--report", "writes HTML, whatever its name",
+                 "name a .html; --pdf FILE prints the page");
   if (!options_.pdf.empty()) all_outputs.push_back(options_.pdf), require_browser();
   std::vector<fs::path> seen;
   for (const std::string& output : all_outputs) {

@@ -53,6 +53,8 @@ struct Baseline {
 };
 
 // Refuses logs that tuned the table (by content), the same log twice, fewer than three logs. Throws InputError.
+void require_baseline_logs(const std::vector<Log>& logs, const Tuned& tuned, const BaselineOptions& options = {});
+// After the same.
 Baseline make_baseline(const std::vector<Log>& logs, const Tuned& tuned, const Rig& rig,
                        const BaselineOptions& options = {});
 

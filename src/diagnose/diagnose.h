@@ -25,7 +25,9 @@ Assessment assess_pool(const std::vector<Log>& logs, const Table& tuned, const R
 Diagnosis diagnose(const Log& log, const Table& tuned, const RigFile& rig, const DetectionBaseline& baseline,
                    const DiagnoseOptions& options);
 
-// Refuses logs that tuned the table (by hash) and fewer than three logs. `others`: of other tests, or those that tuned.
+// Refuses logs that tuned the table (by hash), the same log twice, fewer than three logs. Throws InputError.
+void require_logs_for_baseline(const std::vector<Log>& logs, const std::vector<Log>& others, const Table& tuned);
+// After that. `others`: of other tests, or those that tuned.
 DetectionBaseline make_baseline(const std::vector<Log>& logs, const Table& tuned, const RigFile& rig,
                                 double false_alarm, const DiagnoseOptions& options, long* simulations = nullptr,
                                 long* failed = nullptr, const std::vector<Log>& others = {});

@@ -25,12 +25,8 @@
 #include "simulate/side_by_side.h"
 
 namespace servodx {
-namespace {
 
-void check(const std::vector<Log>& logs, const std::vector<Log>& others, const Table& tuned, double false_alarm) {
-  if (!(false_alarm > 0 && false_alarm < 1))
-    throw InputError({.file = "--false-alarm"}, fmt::format("{} is not a rate", false_alarm),
-                     "give a number between 0 and 1, such as 0.01");
+void require_logs_for_baseline(const std::vector<Log>& logs, const std::vector<Log>& others, const Table& tuned) {
   const TunedState state = tuned_state(tuned);
   std::vector<std::string> content;
   for (const Log& log : logs) content.push_back(content_hash(log));
@@ -52,6 +48,8 @@ void check(const std::vector<Log>& logs, const std::vector<Log>& others, const T
     throw InputError({}, fmt::format("{} logs cannot set a threshold", logs.size()),
                      "give at least 3 fault-free logs; the rate that can be promised is 1/(n+1)");
 }
+
+namespace {
 
 // Logs assessed alone, side by side. Ended early: those done so far.
 class Assessing {
@@ -106,7 +104,10 @@ DetectionBaseline make_baseline(const std::vector<Log>& logs, const Table& tuned
                                 double false_alarm, const DiagnoseOptions& options, long* simulations, long* failed,
                                 const std::vector<Log>& others) {
   options.validate();
-  check(logs, others, tuned, false_alarm);
+  if (!(false_alarm > 0 && false_alarm < 1))
+    throw InputError({.file = "--false-alarm"}, fmt::format("{} is not a rate", false_alarm),
+                     "give a number between 0 and 1, such as 0.01");
+  require_logs_for_baseline(logs, others, tuned);
   Assessing assessing(tuned, rig, options, logs.size() + others.size());
   const std::vector<Assessment> healthy = assessing.all(logs), of_others = assessing.all(others);
   if (simulations) *simulations += assessing.simulations;

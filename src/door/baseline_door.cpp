@@ -97,6 +97,11 @@ void BaselineOptions::validate() const {
   door::require_threads(threads);
 }
 
+void require_baseline_logs(const std::vector<Log>& logs, const Tuned& tuned, const BaselineOptions& options) {
+  options.validate();
+  require_logs_for_baseline(logs, options.others, tuned.table);
+}
+
 Baseline make_baseline(const std::vector<Log>& logs, const Tuned& tuned, const Rig& rig,
                        const BaselineOptions& options) {
   options.validate();

@@ -30,7 +30,8 @@ std::string mapping_of(const ColumnGuess& g) {
   std::string text = fmt::format("{} = {{ signal = \"{}\"", toml_quoted(g.cell), info(*g.signal).name);
   if (!g.unit_in_brackets || is_in_volts(g)) text += fmt::format(", unit = \"{}\"", g.unit.empty() ? "?" : g.unit);
   if (!g.gain.empty()) text += fmt::format(", gain = \"{}\"", g.gain);
-  if (!g.offset.empty()) text += fmt::format(", offset = \"{}\"", g.offset);
+  if (g.offset_is_open || !g.offset.empty())
+    text += fmt::format(", offset = \"{}\"", g.offset_is_open ? "?" : g.offset);
   return text + " }";
 }
 
@@ -40,13 +41,14 @@ bool is_read_as_it_is(const ColumnGuess& g) { return g.canonical && g.unit_in_br
 // The [columns] line of one column; a comment where nothing need or can be said, or something is to be asked.
 std::string column_line(const ColumnGuess& g, const std::string& span) {
   if (!g.signal)
-    return fmt::format("# {} = {{ signal = \"?\", unit = \"?\" }}  # not recognised: {}; ignored as it is\n",
-                       toml_quoted(g.cell), span);
+    return fmt::format("# {} = {{ signal = \"?\", unit = \"{}\" }}  # not recognised: {}; ignored as it is\n",
+                       toml_quoted(g.cell), g.unit.empty() ? "?" : g.unit, span);
   std::string note = "  # " + span;
   if (!g.question.empty()) note = "  # ? " + span + ": " + g.question;
   if (g.by_numbers) note += "; no unit in the header: taken by the values";
   note += "\n";
-  if (is_read_as_it_is(g) && g.offset.empty()) return fmt::format("# {} is read as it is{}", toml_quoted(g.cell), note);
+  if (is_read_as_it_is(g) && g.offset.empty() && !g.offset_is_open)
+    return fmt::format("# {} is read as it is{}", toml_quoted(g.cell), note);
   // Volts stay active: the reader refuses them until the gain is given.
   return (g.question.empty() || is_in_volts(g) ? "" : "# ") + mapping_of(g) + note;
 }
@@ -54,8 +56,9 @@ std::string column_line(const ColumnGuess& g, const std::string& span) {
 // Reads the log as if all questions were answered with yes, and asks of the channels what they do to one another.
 void ask_by_behaviour(const std::string& log, LogHeader& header) {
   std::string text = "[columns]\n";
-  for (const ColumnGuess& g : header.columns) {
+  for (ColumnGuess g : header.columns) {
     const Unit* unit = find_unit(g.unit);
+    g.offset_is_open = false;  // which channels go together does not hang on it
     if (!g.signal || !unit || is_in_volts(g) || is_read_as_it_is(g)) continue;
     if (unit->dimension == Dimension::percent_of_rated || unit->dimension == Dimension::percent_of_stroke) continue;
     text += mapping_of(g) + "\n";

@@ -153,9 +153,9 @@ void ask_middle(ColumnGuess& g, const ColumnNumbers& n) {
   const double span = n.high - n.low, off = std::max(n.low, -n.high);  // of the near end from zero
   const bool goes_far = !g.canonical && span * unit->scale() > long_way && off > -unsigned_below * span;
   if (off < aside * span && !goes_far) return;
-  g.ask("measured from an end, not from mid-stroke? Then the offset is half the stroke, with the other sign");
-  g.offset = fmt::format("-{:.4g} {}", std::abs(0.5 * (n.low + n.high)), g.unit);
-  if (n.high <= 0) g.offset.erase(0, 1);
+  g.ask(fmt::format("measured from an end, not from mid-stroke? Then the offset is {}half the stroke",
+                    n.high > 0 ? "minus " : ""));
+  g.offset_is_open = true;  // the middle of what this log reaches is no middle of the stroke
 }
 
 void ask_column(ColumnGuess& g, const ColumnNumbers& n) {

@@ -194,6 +194,25 @@ std::string with_plain_brackets(std::string text) {
   return text;
 }
 
+// Where the capitals begin that end a name, "TankPSI", "OilF"; npos where none do. "ValveIN" holds a word.
+std::size_t capitals_at_end(const std::string& name) {
+  const auto is_capital = [](char c) { return c >= 'A' && c <= 'Z'; };
+  std::size_t at = name.size();
+  while (at > 0 && is_capital(name[at - 1])) --at;
+  const bool of_a_word = at > 0 && name[at - 1] >= 'a' && name[at - 1] <= 'z';
+  return of_a_word && at < name.size() && name.substr(at) != "IN" ? at : std::string::npos;
+}
+
+// "TankPSI": a unit in capitals behind a word. Of one letter only a temperature's is: "PressA" is no press in amperes.
+void split_capitals(ColumnGuess& g) {
+  const std::size_t at = capitals_at_end(g.name);
+  if (at == std::string::npos) return;
+  const std::string written = g.name.substr(at), unit = unit_meant(written);
+  if (unit.empty() || (written.size() == 1 && find_unit(unit)->dimension != Dimension::temperature)) return;
+  g.written_unit = written, g.unit = unit;
+  g.name.resize(at);
+}
+
 // "pressure_bar", "Q l/min": the last word is a unit; "p/bar": what follows the stroke is. A subscript is none: "p_A"
 // is no p in amperes, "u_in" no u in inches.
 void split_last_word(ColumnGuess& g) {
@@ -213,6 +232,7 @@ void split_last_word(ColumnGuess& g) {
     g.unit = unit;
     return;
   }
+  split_capitals(g);
 }
 
 // The unit that a match is judged by: of one beyond the table, the one that it would become.

@@ -19,6 +19,7 @@ struct ColumnGuess {
   std::string unit;               // of the closed table; empty: none or not recognised
   std::string written_unit;       // as it stands in the header; empty: none
   std::string gain, offset;       // as in a rig file, for a unit beyond the table; empty: none
+  bool offset_is_open = false;    // there is one, and only the user can say it
   std::string question;           // what only the user can say; empty: nothing of name and unit
   bool by_numbers = false;        // the unit is taken by the values, not from the header
   bool weak = false;              // the name says little of which signal of its kind it is

@@ -146,6 +146,10 @@ LogColumns::Column LogColumns::resolve(Signal signal, const std::string& column_
                        info(signal).name, what);
   };
   if (!has_unit && mapped_unit.empty()) {
+    if (mapping && format_.has_units)
+      refuse_here("the header cell has no unit in square brackets, nor has the rig file",
+                  fmt::format("add unit = \"...\" to its line in [columns] (line {}); accepted: {}", mapping->line,
+                              accepted_units(signal)));
     if (format_.has_units)
       refuse_here("the header cell has no unit", fmt::format("write '{} [{}]'; accepted: {}", column_name,
                                                              info(signal).si_unit, accepted_units(signal)));

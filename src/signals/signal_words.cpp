@@ -452,6 +452,10 @@ constexpr SignalWords names[] = {
 
 constexpr UnitWord meant[] = {
     {"sec", "s"},
+    {"pct", "%"},
+    {"percent", "%"},
+    {"% rated", "% of rated"},
+    {"% of rated current", "% of rated"},
     {"seconds", "s"},
     {"msec", "ms"},
     {"\xC2\xB5s", "us"},

@@ -118,6 +118,8 @@ TEST_F(MainJob, AResumedSearchEndsAsTheWholeOne) {
 
 TEST_F(MainJob, BaselineRefusesLogsThatTunedTheTableAndTooFewLogs) {
   ASSERT_EQ(tuned().code, 0) << tuned().err;
+  expect_refused(desk().run("baseline t1.csv b2.csv b3.csv --params tuned.csv --rig rig.toml -o base.json --dry-run"),
+                 "this log tuned");
   expect_refused(desk().run("baseline t1.csv b2.csv b3.csv --params tuned.csv --rig rig.toml -o base.json"),
                  "t1.csv: ");
   expect_refused(desk().run("baseline b1.csv b2.csv --params tuned.csv --rig rig.toml -o base.json"), "at least 3");

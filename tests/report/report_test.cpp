@@ -21,6 +21,7 @@
 #include "fleet/gather.h"
 #include "optimise/box_least_squares.h"
 #include "optimise/ceres_refinement.h"
+#include "parameters/list.h"
 #include "prognose/check.h"
 #include "prognose/life.h"
 #include "prognose/trend.h"
@@ -583,6 +584,17 @@ TEST(DiagnoseJson, WhatIsAbsentOrNotFiniteIsNull) {
   EXPECT_TRUE(r["error"].is_null());
   EXPECT_TRUE(r["severity"]["value"].is_null());
   EXPECT_TRUE(r["parameters"][0]["std_error"].is_null());
+}
+
+TEST(DiagnoseText, TheNullHasItsErrorWhereOneIsKnown) {
+  Diagnosis d = some_diagnosis();
+  d.null = -0.0072;
+  EXPECT_EQ(null_in_words(d), "-0.72 % of rated");
+  MovedRow null;
+  null.name = parameter_list[row::servovalve_null].name;
+  null.std_error = 0.0013;
+  d.moved.push_back(null);
+  EXPECT_EQ(null_in_words(d), "-0.72 +- 0.1 % of rated");
 }
 
 TEST(DiagnoseText, TheFirstLineIsTheVerdictWithItsSize) {

@@ -136,6 +136,19 @@ TEST(Guess, AUnitBeyondTheTableIsCalledUnknown) {
   EXPECT_EQ(taken({"spool [micron]"}), "spool_position in um");
 }
 
+TEST(Guess, CapitalsBehindAWordAreAUnit) {
+  EXPECT_EQ(taken({"TankPSI"}), "return_pressure in psi");
+  EXPECT_EQ(taken({"OilF"}), "oil_temperature in degF");
+  EXPECT_EQ(taken({"OilC"}), "oil_temperature in degC");
+  for (const char* other : {"PressA", "PressB", "ValveIN", "PSI"})
+    EXPECT_EQ(guess_columns({other})[0].unit, "") << other;
+}
+
+TEST(Guess, APerCentOfACurrentIsOfItsRatedOne) {
+  for (const char* cell : {"Drive (% rated)", "command (%)", "command (pct)", "current (percent)"})
+    EXPECT_EQ(guess_columns({cell})[0].unit, "% of rated") << cell;
+}
+
 TEST(Guess, ANameThatSaysLittleIsWeak) {
   for (const char* name :
        {"P1 (bar)", "Cyl 1 Press (psi)", "p_head [bar]", "x [mm]", "Weg [mm]", "Displacement [mm]"}) {

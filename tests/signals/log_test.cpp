@@ -387,9 +387,8 @@ TEST(Log, EachRefusalOfAMappingNamesPlaceRuleAndMend) {
             "log.csv:1: column 'spool_position': duplicate column: 'x' is 'spool_position' too; keep one column of the "
             "signal");
   EXPECT_EQ(refusal("time [s],i,x\n", rig),
-            "log.csv:1: column 'i': the header cell has no unit; write 'i [A]'; accepted: A, mA, % of rated, or V with "
-            "a gain "
-            "in the rig file");
+            "log.csv:1: column 'i': the header cell has no unit in square brackets, nor has the rig file; add unit = "
+            "\"...\" to its line in [columns] (line 3); accepted: A, mA, % of rated, or V with a gain in the rig file");
 }
 
 TEST(Log, AnyOneResponseIsEnough) {

@@ -129,7 +129,7 @@ Verdict verdict_of(const Diagnosis& d, const DetectionBaseline& baseline, const 
   if (d.fault) v.facts.push_back({"Probability", chance(probability_of(d, d.fault))});
   if (d.onset) v.facts.push_back({"Since", digits(*d.onset, 4) + " s"});
   v.facts.push_back({"Error / threshold", digits(d.error) + " / " + digits(d.threshold)});
-  v.facts.push_back({"Null", percent(d.null) + " of rated"});
+  v.facts.push_back({"Null", null_in_words(d)});
   if (!kind.empty()) v.facts.push_back({"Kind", kind});
   if (d.action.of != ActionClass::none) v.facts.push_back({"Action", d.action.text});
   for (const std::string& next : next_calls(d, call)) v.reasons.push_back("Run next: " + next);
@@ -245,8 +245,6 @@ void certify_conditions(std::vector<CertifiedFigure>& figures, const Diagnosis& 
   }
 }
 
-constexpr int null_row = 41;  // id of servovalve_null, as every table has it
-
 void certify(Page& page, const Diagnosis& d, const DetectionBaseline& baseline, const Header& header,
              const CertificateOf& certificate) {
   const Certificate& sheet = *certificate.sheet;
@@ -260,16 +258,15 @@ void certify(Page& page, const Diagnosis& d, const DetectionBaseline& baseline, 
   CertifiedFigure null{"null",     percent(d.null) + " of rated", "", "below " + percent(baseline.null_limit), "",
                        Tone::plain};
   constexpr double k = 2;  // of an expanded uncertainty
-  for (const MovedRow& row : d.moved)
-    if (row.id == null_row && std::isfinite(row.std_error)) {
-      const double size = std::abs(d.null), band = sheet.guard * k * row.std_error;
-      const bool inside = size < baseline.null_limit, clear = size + band < baseline.null_limit;
-      null.uncertainty = percent(k * row.std_error);
-      null.judgement = word_of(clear    ? curves::Judgement::pass
-                               : inside ? curves::Judgement::too_near
-                                        : curves::Judgement::fail);
-      null.tone = clear ? Tone::good : inside ? Tone::doubt : Tone::bad;
-    }
+  if (const std::optional<double> error = error_of_null(d)) {
+    const double size = std::abs(d.null), band = sheet.guard * k * *error;
+    const bool inside = size < baseline.null_limit, clear = size + band < baseline.null_limit;
+    null.uncertainty = percent(k * *error);
+    null.judgement = word_of(clear    ? curves::Judgement::pass
+                             : inside ? curves::Judgement::too_near
+                                      : curves::Judgement::fail);
+    null.tone = clear ? Tone::good : inside ? Tone::doubt : Tone::bad;
+  }
   figures.push_back(null);
   certify_conditions(figures, d, sheet);
   add_certificate(page, certificate, header, figures,

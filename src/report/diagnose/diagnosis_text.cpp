@@ -99,7 +99,7 @@ std::string text_of(const Diagnosis& d, const TextOptions& options) {
   if (const std::string test = separating_test_of(d, options.call); !test.empty()) table.row({"to separate", test});
   if (d.action.of != ActionClass::none) table.row({"action", d.action.text});
   for (const std::string& call : next_calls(d, options.call)) table.row({"next", call});
-  table.row({"null", percent(d.null) + " of rated"});
+  table.row({"null", null_in_words(d)});
 
   if (!d.fault) {
     const auto [shown, hidden] = detectable_words(d);

@@ -22,6 +22,7 @@
 #include "faults/fault.h"
 #include "faults/gross_finding.h"
 #include "faults/record.h"
+#include "parameters/list.h"
 #include "report/shared/columns.h"
 #include "report/shared/handy.h"
 #include "report/shared/replay_part.h"
@@ -249,6 +250,17 @@ std::string meaning_of(const Fault* hypothesis) {
 }
 
 std::string unit_of(const Fault* hypothesis) { return hypothesis ? std::string(hypothesis->unit) : ""; }
+
+std::optional<double> error_of_null(const Diagnosis& d) {
+  for (const MovedRow& p : d.moved)
+    if (p.name == parameter_list[row::servovalve_null].name && std::isfinite(p.std_error)) return p.std_error;
+  return std::nullopt;
+}
+
+std::string null_in_words(const Diagnosis& d) {
+  const std::optional<double> error = error_of_null(d);
+  return digits(100 * d.null, 2) + (error ? " +- " + digits(100 * *error, 1) : "") + " % of rated";
+}
 
 const HypothesisResult* result_of(const Diagnosis& d, const Fault* hypothesis) {
   for (const HypothesisResult& h : d.assessment.hypotheses)

@@ -1,6 +1,7 @@
 // What text and page of a diagnosis say in the same words.
 #pragma once
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -38,6 +39,10 @@ std::string label_of(const Fault* hypothesis);   // its name; of null "healthy"
 std::string name_of(const Diagnosis& d);         // the fault named, else the verdict
 std::string meaning_of(const Fault* hypothesis);
 std::string unit_of(const Fault* hypothesis);  // of its severity; "" of health
+
+// Standard error of the log's null, of rated current; none where it is not known.
+std::optional<double> error_of_null(const Diagnosis& d);
+std::string null_in_words(const Diagnosis& d);  // "-0.72 +- 0.1 % of rated"
 
 // Null where the assessment holds none.
 const HypothesisResult* result_of(const Diagnosis& d, const Fault* hypothesis);
