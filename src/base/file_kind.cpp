@@ -11,6 +11,7 @@ namespace {
 using namespace std::string_view_literals;
 
 constexpr std::string_view as_csv = "export the signals as CSV: a row of names with units, then a row a sample";
+constexpr std::string_view not_json = "a log and a table are CSV; a baseline goes with --baseline";
 
 struct Kind {
   std::string_view mark;  // at the very beginning
@@ -47,7 +48,9 @@ constexpr Kind kinds[] = {
     {"<?xml"sv, "XML"},
     {"<!DOCTYPE"sv, "HTML"},
     {"<html"sv, "HTML"},
-    {"{\""sv, "JSON"},
+    {"{\""sv, "JSON", not_json},
+    {"{\n"sv, "JSON", not_json},
+    {"{\r\n"sv, "JSON", not_json},
 };
 
 // Zip is the wrapping of archives and of workbooks: which, the names of its first members say.

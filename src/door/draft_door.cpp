@@ -30,8 +30,7 @@ std::string mapping_of(const ColumnGuess& g) {
   std::string text = fmt::format("{} = {{ signal = \"{}\"", toml_quoted(g.cell), info(*g.signal).name);
   if (!g.unit_in_brackets || is_in_volts(g)) text += fmt::format(", unit = \"{}\"", g.unit.empty() ? "?" : g.unit);
   if (!g.gain.empty()) text += fmt::format(", gain = \"{}\"", g.gain);
-  if (g.offset_is_open || !g.offset.empty())
-    text += fmt::format(", offset = \"{}\"", g.offset_is_open ? "?" : g.offset);
+  if (g.has_offset()) text += fmt::format(", offset = \"{}\"", g.offset_is_open ? "?" : g.offset);
   return text + " }";
 }
 
@@ -47,8 +46,7 @@ std::string column_line(const ColumnGuess& g, const std::string& span) {
   if (!g.question.empty()) note = "  # ? " + span + ": " + g.question;
   if (g.by_numbers) note += "; no unit in the header: taken by the values";
   note += "\n";
-  if (is_read_as_it_is(g) && g.offset.empty() && !g.offset_is_open)
-    return fmt::format("# {} is read as it is{}", toml_quoted(g.cell), note);
+  if (is_read_as_it_is(g) && !g.has_offset()) return fmt::format("# {} is read as it is{}", toml_quoted(g.cell), note);
   // Volts stay active: the reader refuses them until the gain is given.
   return (g.question.empty() || is_in_volts(g) ? "" : "# ") + mapping_of(g) + note;
 }

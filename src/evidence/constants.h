@@ -25,7 +25,7 @@ inline constexpr std::size_t fewest_of_spread = 3;  // logs that tell a spread
 inline constexpr double least_variance = 1e-6;      // of logarithms: figures that are equal to rounding
 
 // How healthy excesses follow a condition (excess_trend.cpp).
-inline constexpr std::size_t fewest_for_a_trend = 6;  // as of sizes that follow the oil
+inline constexpr std::size_t fewest_for_a_trend = 6;  // logs: shares and sizes alike
 inline constexpr double little_excess = 0.01;         // a share of a hundredth and none are alike
 inline constexpr double usual_trend = 1;     // of a slope, its prior's width: in oil twice as thick twice the excess
 inline constexpr double steepest_trend = 3;  // twice the viscosity, eight times the excess: more is one log's

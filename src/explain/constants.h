@@ -59,9 +59,8 @@ inline constexpr double most_of_it = 0.5;     // of the held-out misfit: a name 
 inline constexpr double questions = 3;  // size, share, and what is left, by Bonferroni. By definition
 
 // What healthy logs show of a cause's size (explain/healthy.cpp).
-inline constexpr std::size_t fewest_for_a_line = 6;  // logs from which on a scatter may go with the misfit's thickness
-inline constexpr double all_but = 1e-9;              // of a misfit: nothing removes all
-inline constexpr double law_logs = 10;               // the normal law of sizes counts as much as so many logs
+inline constexpr double all_but = 1e-9;  // of a misfit: nothing removes all
+inline constexpr double law_logs = 10;   // the normal law of sizes counts as much as so many logs
 
 // The valve (explain/valve.cpp, explain/valve_causes.cpp, explain/valve_weights.cpp).
 //

@@ -10,6 +10,8 @@
 #include <vector>
 
 #include "base/student.h"
+#include "evidence/constants.h"
+#include "evidence/excess_trend.h"
 #include "evidence/log_scatter.h"
 #include "explain/block_replay.h"
 #include "explain/cause_score.h"
@@ -94,7 +96,7 @@ Scatter scatter_of(const std::vector<Size>& sizes) {
   const Scatter mean = scatter_of(sizes, false);
   double low = 1e300, high = -1e300;
   for (const Size& z : sizes) low = std::min(low, z.thickness), high = std::max(high, z.thickness);
-  if (sizes.size() < explain_constants::fewest_for_a_line || !std::isfinite(low + high) || !(high > low)) return mean;
+  if (sizes.size() < evidence_constants::fewest_for_a_trend || !std::isfinite(low + high) || !(high > low)) return mean;
   for (const Size& z : sizes)
     if (!std::isfinite(z.thickness)) return mean;
   const Scatter line = scatter_of(sizes, true);
@@ -334,20 +336,18 @@ std::vector<ExcessAt> best_shares(const HealthyReference& reference) {
   return out;
 }
 
-std::vector<double> over_their_scale(const std::vector<ExcessAt>& shares, const ExcessTrend& trend) {
-  std::vector<double> out;
-  for (const auto& [excess, at] : shares) out.push_back(excess / trend.scale(at));
-  return out;
-}
-
 }  // namespace
 
+HealthyTest::ShareLaw HealthyTest::share_law(const HealthyReference& reference, double thickness) {
+  const std::vector<ExcessAt> best = best_shares(reference);
+  const ExcessTrend trend(std::isfinite(thickness) ? best : std::vector<ExcessAt>());
+  std::vector<double> over_their_scale;
+  for (const auto& [excess, at] : best) over_their_scale.push_back(excess / trend.scale(at));
+  return {trend.scale(thickness), {over_their_scale, {explain_constants::usual_share, explain_constants::usual_logs}}};
+}
+
 HealthyTest::HealthyTest(const HealthyReference& reference, double thickness)
-    : reference_(reference),
-      share_trend_(std::isfinite(thickness) ? best_shares(reference) : std::vector<ExcessAt>()),
-      share_scale_(share_trend_.scale(thickness)),
-      shares_(over_their_scale(best_shares(reference), share_trend_),
-              {explain_constants::usual_share, explain_constants::usual_logs}) {
+    : reference_(reference), shares_(share_law(reference, thickness)) {
   const std::size_t n = reference.logs.size();
   for (std::size_t i = 0; i < n; ++i)
     for (const HealthyScore& s : reference.logs[i].scores) {
@@ -457,10 +457,10 @@ double HealthyTest::adequacy(double value) const {
   return chance_above(healthy, value);
 }
 
-double HealthyTest::share(double of_misfit) const { return shares_.chance(excess_of(of_misfit) / share_scale_); }
+double HealthyTest::share(double of_misfit) const { return shares_.law.chance(excess_of(of_misfit) / shares_.scale); }
 
 int HealthyTest::logs_needed(double share, double asked) const {
-  return shares_.logs_needed(excess_of(share) / share_scale_, asked, explain_constants::of_shares);
+  return shares_.law.logs_needed(excess_of(share) / shares_.scale, asked, explain_constants::of_shares);
 }
 
 double HealthyTest::miss(const Miss& part) const {

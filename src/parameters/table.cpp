@@ -160,9 +160,6 @@ class Reader {
 
   void read_header(const Record& header) {
     n_columns_ = header.cells.size();
-    if (!header.cells.empty() && header.cells.front().starts_with('{'))
-      fail(header, "", "is JSON, and no table of parameters",
-           "a table is a CSV, as 'servodx tune' writes it; a baseline is --baseline's");
     for (std::size_t i = 0; i < n_columns_; ++i) {
       const std::string& cell = header.cells[i];
       const bool known = cell == std_error_column ||

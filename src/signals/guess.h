@@ -26,6 +26,7 @@ struct ColumnGuess {
   bool unit_in_brackets = false;  // a unit of the table, in "name [unit]" or in the row below: the reader takes it
   bool canonical = false;         // the name is the signal's own
 
+  bool has_offset() const { return offset_is_open || !offset.empty(); }
   void ask(const std::string& more) { question += (question.empty() ? "" : "; ") + more; }
 };
 

@@ -44,7 +44,8 @@ TEST(FileKind, EachFormatIsNamedWithItsFileAndMend) {
     EXPECT_NE(said.find("; "), std::string::npos) << said;
   }
   EXPECT_NE(refusal("<?xml version=\"1.0\"?>").find("XML"), std::string::npos);
-  EXPECT_NE(refusal("{\"time\": [0]}").find("JSON"), std::string::npos);
+  for (const char* json : {"{\"time\": [0]}", "{\n  \"time\": [0]\n}", "{\r\n  \"time\": [0]\r\n}"})
+    EXPECT_NE(refusal(json).find("JSON"), std::string::npos) << json;
 }
 
 TEST(FileKind, RandomBytesAreBinaryAndTextsAreNot) {

@@ -132,7 +132,7 @@ const std::vector<Refusal>& refusals() {
       {"TableThatIsABaseline",
        [](const Desk& d) { d.write("table.csv", "{\n  \"threshold\": 2\n}\n"); },
        simulate,
-       {"table.csv:1: ", "is JSON, and no table of parameters", "--baseline"}},
+       {"table.csv:1: ", "is JSON, and no table", "--baseline"}},
       {"ReportNamedAsAPdf",
        no_change,
        "check-log log.csv --report page.pdf",
