@@ -318,6 +318,7 @@ TEST(DryRun, IsARehearsalWithEveryCommandThatTakesIt) {
   desk.write("base.json", empty_baseline(desk / "table.csv"));
   desk.write("lives.csv", "valve,at [h],name,value,std_error\nV7,10,fidelity,1.1,0.01\n");
   desk.write("other.csv", small_log(240));
+  desk.write("third.csv", small_log(260));
   std::filesystem::create_directory(desk / "results");
   desk.write("results/log.json", R"({"command": "diagnose", "log": "log.csv", "refused": {"file": "log.csv", "line": 2,
              "column": "", "rule": "ragged row", "mend": "mend it"}})");
@@ -328,7 +329,7 @@ TEST(DryRun, IsARehearsalWithEveryCommandThatTakesIt) {
   const std::map<std::string, std::string> calls = {
       {"simulate", "log.csv --params table.csv -o out.csv"},
       {"tune", "log.csv --params table.csv -o out.csv"},
-      {"baseline", "log.csv --params table.csv -o out.json"},
+      {"baseline", "log.csv other.csv third.csv --params table.csv -o out.json"},
       {"diagnose", "log.csv --params table.csv --baseline base.json"},
       {"gather", "results -o out.csv"},
       {"watch", "results --out results --once --params table.csv --baseline base.json"},
