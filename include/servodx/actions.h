@@ -17,7 +17,10 @@ struct Action {
   ActionClass of = ActionClass::none;
   std::string text;  // "critical: stop the machine"
 };
-using Actions = std::map<std::string, Action>;  // by label; "healthy" and "unknown" among them
+using Actions = std::map<std::string, Action>;  // by label; "healthy", "unknown" and "misread" among them
+
+// Of a log of which the rig file or the wiring is to be mended, whatever its verdict is.
+inline constexpr const char* misread_label = "misread";
 
 // What the program says unless told.
 Actions default_actions();

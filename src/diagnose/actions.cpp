@@ -36,8 +36,10 @@ std::optional<Action> action_of(std::string text) {
 }  // namespace
 
 Actions default_actions() {
-  Actions out = {{"healthy", {ActionClass::none, "none: go on"}},
-                 {"unknown", {ActionClass::abnormal, "abnormal: call service"}}};
+  Actions out = {
+      {"healthy", {ActionClass::none, "none: go on"}},
+      {"unknown", {ActionClass::abnormal, "abnormal: call service"}},
+      {misread_label, {ActionClass::abnormal, "abnormal: mend the rig file or the wiring, then diagnose again"}}};
   for (const Fault* fault : fault_list()) out[std::string(fault->name)] = *action_of(std::string(fault->action));
   return out;
 }

@@ -194,6 +194,13 @@ inline constexpr double part_apart = 0.02;       // and by this part of it
 inline constexpr double half_window = 4e-3;      // [s] about each sample
 inline constexpr double against = 0.25;          // partial correlation, either
 inline constexpr long fewest = 100;              // samples
+// [s] about each sample: long against what lines and a spool's sensor lag by, short against a stroke
+inline constexpr double half_window_of_flow = 25e-3;
+// What the flow leaves of the moves with the chambers exchanged, over what it leaves as they stand. Of logs as they
+// should be the least was 0.7 (407 logs of three rigs), where chambers are alike: half of that.
+inline constexpr double exchanged_leaves = 1.0 / 3;
+inline constexpr double moves_explained = 0.25;    // of their square left at most: then flow and piston belong together
+inline constexpr double least_determinant = 1e-9;  // below it flow and fall of pressure are one
 }  // namespace exchanged
 
 // What check-log finds suspicious (diagnose/survey.cpp): it changes no verdict. Chosen by hand; not examined.

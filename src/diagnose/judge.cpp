@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "diagnose/blame.h"
 #include "diagnose/constants.h"
 #include "diagnose/healthy_law.h"
 #include "diagnose/naming.h"
@@ -172,6 +173,14 @@ void take_first(Diagnosis& d) {
   if (first.record && first.record->since) d.onset = first.record->since;
 }
 
+// Where a sensor is broken or the log was read wrongly, the fits are of no valve: what they moved, since when, and what
+// they could have shown is no finding.
+void leave_out_fits(Diagnosis& d) {
+  if (!sensor_finding_of(d) && blame_of(d) != Blame::log) return;
+  d.moved.clear(), d.detectable.clear();
+  d.onset.reset();
+}
+
 }  // namespace
 
 std::vector<RecordFinding> records_of(const Assessment& a, const DetectionBaseline& baseline) {
@@ -234,6 +243,7 @@ Diagnosis judge(Assessment a, const DetectionBaseline& whole) {
   d.assessment = std::move(a);
   take_first(d);
   if (has_twin(d)) d.ambiguous_with.push_back(d.fault->twin);
+  leave_out_fits(d);
   return d;
 }
 

@@ -162,7 +162,10 @@ void add_notes_of_reader(const Log& log, LogSurvey& s) {
   }
 }
 
-void find_suspicious(const Log& log, LogSurvey& s) {
+// Spool and piston turned about do to the chambers what exchanging these does; the drive has told then which it is.
+bool of_chambers(const Finding& f) { return f.signals == std::vector{Signal::pressure_a, Signal::pressure_b}; }
+
+void find_suspicious(const Log& log, const RigFile& rig, LogSurvey& s) {
   const auto found = [&](FindingKind kind, std::string text) { s.findings.push_back({kind, std::move(text)}); };
   if (s.jitter > much_jitter)
     found(FindingKind::jitter,
@@ -199,7 +202,10 @@ void find_suspicious(const Log& log, LogSurvey& s) {
   }
   find_no_response(s);
   find_turned(log, s);
-  for (Finding& each : swapped_channels(log, s.rate)) s.findings.push_back(std::move(each));
+  const auto is_turned = [](const Finding& f) { return f.kind == FindingKind::sign; };
+  const bool both_turned = std::count_if(s.findings.begin(), s.findings.end(), is_turned) > 1;
+  for (Finding& each : swapped_channels(log, rig, s.rate))
+    if (!both_turned || !of_chambers(each)) s.findings.push_back(std::move(each));
   add_notes_of_reader(log, s);
 }
 
@@ -219,7 +225,7 @@ LogSurvey survey(const Log& log, const RigFile& rig) {
   for (const SignalInfo& signal : signal_list)
     if (signal.signal != Signal::time && log.has(signal.signal))
       s.channels.push_back(survey_channel(log, signal.signal));
-  find_suspicious(log, s);
+  find_suspicious(log, rig, s);
   return s;
 }
 

@@ -4,14 +4,18 @@
 
 #include <Eigen/Dense>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "diagnose/constants.h"
+#include "diagnose/flow_into_chambers.h"
 #include "diagnose/part_below.h"
 #include "servodx/log.h"
+#include "servodx/rig.h"
 #include "signals/signal.h"
 
 namespace servodx {
@@ -39,27 +43,33 @@ bool find_return_above_supply(const Log& log, std::vector<Finding>& found) {
 
 void find_order(const Log& log, std::vector<Finding>& found) {
   if (find_return_above_supply(log, found)) return;
-  const struct {
+  struct Pair {
     Signal upper, lower;
-  } order[] = {{Signal::supply_pressure, Signal::pressure_a},
-               {Signal::supply_pressure, Signal::pressure_b},
-               {Signal::pressure_a, Signal::return_pressure},
-               {Signal::pressure_b, Signal::return_pressure}};
-  for (const auto& [upper, lower] : order) {
-    if (!log.has(upper) || !log.has(lower)) continue;
-    const double part = part_below(log[upper], log[lower], &margin_of);
-    if (part < most_of_the_time) continue;
+    double part = 0;
+  };
+  // Of two chambers beyond the supply or the return, the one that is so the longer stands in its column.
+  for (const auto& pairs : {std::array{Pair{Signal::supply_pressure, Signal::pressure_a},
+                                       Pair{Signal::supply_pressure, Signal::pressure_b}},
+                            std::array{Pair{Signal::pressure_a, Signal::return_pressure},
+                                       Pair{Signal::pressure_b, Signal::return_pressure}}}) {
+    Pair worst;
+    for (Pair pair : pairs) {
+      if (!log.has(pair.upper) || !log.has(pair.lower)) continue;
+      pair.part = part_below(log[pair.upper], log[pair.lower], &margin_of);
+      if (pair.part > worst.part) worst = pair;
+    }
+    if (worst.part < most_of_the_time) continue;
     found.push_back({FindingKind::swapped,
                      fmt::format("'{}' is below '{}' in {:.0f} % of the samples: are the two columns exchanged?",
-                                 info(upper).name, info(lower).name, 100 * part),
-                     {upper, lower}});
+                                 info(worst.upper).name, info(worst.lower).name, 100 * worst.part),
+                     {worst.upper, worst.lower}});
   }
 }
 
 // Partial correlations of the load pressure's change with the spool's position and with the piston's.
-void find_chambers(const Log& log, double rate, std::vector<Finding>& found) {
+bool pressures_answer_otherwise(const Log& log, double rate) {
   for (const Signal s : {Signal::pressure_a, Signal::pressure_b, Signal::spool_position, Signal::piston_position})
-    if (!log.has(s)) return;
+    if (!log.has(s)) return false;
   const auto half = std::max(1L, std::lround(half_window * rate));
   const auto samples = static_cast<long>(log.samples());
   const std::vector<double>&a = log[Signal::pressure_a], &b = log[Signal::pressure_b];
@@ -78,27 +88,43 @@ void find_chambers(const Log& log, double rate, std::vector<Finding>& found) {
     if (!row.allFinite()) continue;
     sum += row, square += row * row.transpose(), ++n;
   }
-  if (n < fewest) return;
+  if (n < fewest) return false;
   Eigen::Matrix4d covariance = square / n - sum / n * (sum / n).transpose();
   const Eigen::Vector4d scale = covariance.diagonal().cwiseSqrt();
-  if (!(scale.minCoeff() > 0)) return;
+  if (!(scale.minCoeff() > 0)) return false;
   covariance = scale.cwiseInverse().asDiagonal() * covariance * scale.cwiseInverse().asDiagonal();
   covariance.diagonal().array() += 1e-9;  // where two of them are one
   const Eigen::Matrix4d inverse = covariance.inverse();
   const auto partial = [&](int k) { return -inverse(k, 3) / std::sqrt(inverse(k, k) * inverse(3, 3)); };
-  if (!(partial(0) < -against && partial(1) > against)) return;
+  return partial(0) < -against && partial(1) > against;
+}
+
+// The oil that the spool lets in moves the piston as it should, were each column the other chamber's.
+bool flow_moves_otherwise(const Log& log, const RigFile& rig, double rate) {
+  const std::optional<LeftOfMoves> left = left_by_flow(log, rig, rate);
+  return left && left->exchanged < moves_explained && left->exchanged < exchanged_leaves * left->as_they_stand;
+}
+
+void find_chambers(const Log& log, const RigFile& rig, double rate, std::vector<Finding>& found) {
+  const char* const why =
+      pressures_answer_otherwise(log, rate)
+          ? "'pressure_a' - 'pressure_b' falls where the spool lets oil into A, and rises with the piston's speed"
+      : flow_moves_otherwise(log, rig, rate)
+          ? "the oil that the spool lets in moves the piston as it does only with 'pressure_a' and 'pressure_b' "
+            "exchanged"
+          : nullptr;
+  if (!why) return;
   found.push_back({FindingKind::swapped,
-                   "'pressure_a' - 'pressure_b' falls where the spool lets oil into A, and rises with the piston's "
-                   "speed: are the two columns exchanged?",
+                   fmt::format("{}: are the two columns exchanged? Mend [columns] of the rig file, or the plugs", why),
                    {Signal::pressure_a, Signal::pressure_b}});
 }
 
 }  // namespace
 
-std::vector<Finding> swapped_channels(const Log& log, double rate) {
+std::vector<Finding> swapped_channels(const Log& log, const RigFile& rig, double rate) {
   std::vector<Finding> found;
   find_order(log, found);
-  if (found.empty()) find_chambers(log, rate, found);
+  if (found.empty()) find_chambers(log, rig, rate, found);
   return found;
 }
 

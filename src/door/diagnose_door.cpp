@@ -154,7 +154,8 @@ Verdict diagnose_pool(const std::vector<Log>& logs, const Tuned& tuned, const Ri
     if (options.watch.stopped()) return interrupted_verdict(d.assessment);
   }
   d.friction = friction_beside_force(d, tuned.table, rig);
-  d.action = options.actions.at(report::name_of(d));
+  const auto own = options.actions.find(report::action_label_of(d));
+  d.action = own == options.actions.end() ? options.actions.at(report::name_of(d)) : own->second;
   return verdict_of(std::move(d));
 }
 

@@ -13,7 +13,7 @@ namespace {
 
 TEST(Actions, EveryLabelHasOneAndEveryFaultAsksForSomething) {
   const Actions actions = default_actions();
-  EXPECT_EQ(actions.size(), fault_list().size() + 2);
+  EXPECT_EQ(actions.size(), fault_list().size() + 3);
   for (const Fault* fault : fault_list()) EXPECT_NE(actions.at(std::string(fault->name)).of, ActionClass::none);
   EXPECT_EQ(actions.at("healthy").of, ActionClass::none);
   EXPECT_NE(actions.at("unknown").of, ActionClass::none);

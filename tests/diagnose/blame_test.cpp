@@ -5,6 +5,9 @@
 #include "diagnose/decide.h"
 #include "diagnose/judge.h"
 #include "diagnose/judgeable.h"
+#include "diagnose/naming.h"
+#include "diagnose/record_law.h"
+#include "diagnose/records.h"
 #include "faults/registry.h"
 
 namespace servodx {
@@ -42,6 +45,25 @@ TEST(Blame, AnUnknownStateIsPhysicsOnlyWhereACauseWasTaken) {
   EXPECT_EQ(blame_of(d), Blame::test) << "healthy logs show it too";
   d.beyond->taken = true;
   EXPECT_EQ(blame_of(d), Blame::physics);
+}
+
+TEST(Blame, WhatTheRigFileOrTheWiringMendsIsOfTheLog) {
+  Diagnosis sensor = of_fault("sensor_fault");
+  const auto by = [&](SensorFinding finding) {
+    RecordFinding record;
+    record.fault = sensor.fault, record.broken = finding;
+    sensor.faults = {{sensor.fault, 1, 0, 0, 0, record}};
+    return blame_of(sensor);
+  };
+  EXPECT_EQ(by(SensorFinding::turned), Blame::log);
+  EXPECT_EQ(by(SensorFinding::swapped_ports), Blame::log);
+  EXPECT_EQ(by(SensorFinding::frozen), Blame::surroundings);
+  EXPECT_EQ(by(SensorFinding::clipped), Blame::surroundings);
+  Diagnosis unknown = unexplained();
+  unknown.doubt = Doubt::misread;
+  EXPECT_EQ(blame_of(unknown), Blame::log);
+  unknown.doubt = Doubt::unjudgeable, unknown.assessment.unjudgeable = Unjudgeable::pressures_out_of_order;
+  EXPECT_EQ(blame_of(unknown), Blame::log);
 }
 
 TEST(Blame, NothingToJudgeAsksForATest) {

@@ -14,10 +14,12 @@
 #include "diagnose/healthy_law.h"
 #include "diagnose/moved.h"
 #include "diagnose/naming.h"
+#include "diagnose/records.h"
 #include "evidence/conditions.h"
 #include "faults/fault.h"
 #include "faults/gross_finding.h"
 #include "faults/registry.h"
+#include "servodx/log.h"
 
 namespace servodx {
 namespace {
@@ -390,6 +392,21 @@ TEST(BaselineFor, WhereNoOtherIsOfSuchATestRepeatsCountAsOneLogBesideThem) {
   EXPECT_EQ(baseline_for(slow, two).scores.size(), 4u) << "two programmes of its own are two logs";
   EXPECT_TRUE(speaking.of_other_tests);
   EXPECT_EQ(baseline_for(slow, repeats_and_others(), 0).scores.size(), 2u);
+}
+
+// The fits of a log whose sensors are wrong are of no valve.
+TEST(Judge, OfABrokenSensorNoOnsetAndNoRowIsTheValves) {
+  Assessment a = assessment(9.0, {hypothesis("", 0.0), hypothesis("sticky_spool", 1.0)});
+  a.hypotheses.back().moved = {MovedRow{}};
+  a.onset = 2.0;
+  ASSERT_FALSE(judge(a, baseline()).moved.empty());
+  for (const SensorFinding finding : {SensorFinding::turned, SensorFinding::swapped_ports, SensorFinding::frozen}) {
+    a.broken = {{finding, Signal::pressure_a}};
+    const Diagnosis d = judge(a, baseline());
+    EXPECT_EQ(d.fault, find_fault("sensor_fault"));
+    EXPECT_TRUE(d.moved.empty() && d.detectable.empty());
+    EXPECT_FALSE(d.onset);
+  }
 }
 
 TEST(Judge, OnsetIsHandedOn) {

@@ -640,6 +640,25 @@ TEST(MovedRows, HaveALineOfMeaningOnThePage) {
             std::string::npos);
 }
 
+TEST(KindOfVerdict, ExchangedColumnsLeadAndAskForTheRigFile) {
+  Diagnosis d = some_diagnosis();
+  d.fault = find_fault("sensor_fault");
+  d.ambiguous_with.clear(), d.moved.clear(), d.onset.reset();
+  d.severity = {nan, nan, nan};
+  RecordFinding record;
+  record.fault = d.fault, record.broken = SensorFinding::swapped_ports, record.signal = Signal::pressure_a;
+  d.faults = {{d.fault, 1, nan, nan, nan, record}};
+  const std::string text = text_of(d, {}), head = text.substr(0, text.find('\n'));
+  EXPECT_NE(head.find("the columns 'pressure_a' and 'pressure_b' are exchanged"), std::string::npos) << head;
+  EXPECT_NE(text.find("the log or the rig file is to be mended"), std::string::npos) << text;
+  EXPECT_EQ(text.find("null "), std::string::npos) << text;
+  EXPECT_EQ(diagnose_json({d})["results"][0]["kind"], "log");
+  EXPECT_EQ(default_actions().at(action_label_of(d)).text,
+            "abnormal: mend the rig file or the wiring, then diagnose again");
+  EXPECT_NE(diagnose_page({}, {d}, some_baseline(), {}).html().find("suspect.csv cannot be judged: the columns"),
+            std::string::npos);
+}
+
 TEST(KindOfVerdict, IsSaidInTextJsonAndPage) {
   Diagnosis d = some_diagnosis();
   const auto page_of = [](const Diagnosis& of) { return diagnose_page({}, {of}, some_baseline(), {}).html(); };

@@ -62,6 +62,8 @@ std::string headline(const Diagnosis& d) {
   if (d.doubt == Doubt::unjudgeable || d.doubt == Doubt::misread || d.doubt == Doubt::unrelated)
     return file_name(d.log) + " cannot be judged: " + words_of_doubt(d);
   if (d.verdict == VerdictKind::unknown) return file_name(d.log) + " is not healthy, and no known fault explains it";
+  if (const std::string mistake = mistake_in_words(d); !mistake.empty())
+    return file_name(d.log) + " cannot be judged: " + mistake;
   const std::string size = size_words(d);
   return words(label_of(d.fault) + of_channel(d)) + (size.empty() ? "" : ", " + size);
 }
@@ -129,7 +131,7 @@ Verdict verdict_of(const Diagnosis& d, const DetectionBaseline& baseline, const 
   if (d.fault) v.facts.push_back({"Probability", chance(probability_of(d, d.fault))});
   if (d.onset) v.facts.push_back({"Since", digits(*d.onset, 4) + " s"});
   v.facts.push_back({"Error / threshold", digits(d.error) + " / " + digits(d.threshold)});
-  v.facts.push_back({"Null", null_in_words(d)});
+  if (blame_of(d) != Blame::log) v.facts.push_back({"Null", null_in_words(d)});
   if (!kind.empty()) v.facts.push_back({"Kind", kind});
   if (d.action.of != ActionClass::none) v.facts.push_back({"Action", d.action.text});
   for (const std::string& next : next_calls(d, call)) v.reasons.push_back("Run next: " + next);

@@ -71,6 +71,7 @@ std::string text_of(const Diagnosis& d, const TextOptions& options) {
     first += in_colour("FAULT", d.verdict, options.colour) + " " + label_of(d.fault) + of_channel(d);
   else
     first += in_colour(d.verdict == VerdictKind::unknown ? "UNKNOWN" : word_of(d.verdict), d.verdict, options.colour);
+  if (const std::string mistake = mistake_in_words(d); !mistake.empty()) first += ": " + mistake;
   if (const std::string size = size_words(d); !size.empty()) first += ", " + size;
   if (d.suspicion) first += "; " + suspicion_in_words(*d.suspicion);
   Columns table("ll", 2);
@@ -99,7 +100,7 @@ std::string text_of(const Diagnosis& d, const TextOptions& options) {
   if (const std::string test = separating_test_of(d, options.call); !test.empty()) table.row({"to separate", test});
   if (d.action.of != ActionClass::none) table.row({"action", d.action.text});
   for (const std::string& call : next_calls(d, options.call)) table.row({"next", call});
-  table.row({"null", null_in_words(d)});
+  if (blame_of(d) != Blame::log) table.row({"null", null_in_words(d)});
 
   if (!d.fault) {
     const auto [shown, hidden] = detectable_words(d);

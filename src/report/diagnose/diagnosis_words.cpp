@@ -26,6 +26,7 @@
 #include "report/shared/columns.h"
 #include "report/shared/handy.h"
 #include "report/shared/replay_part.h"
+#include "servodx/actions.h"
 #include "servodx/log.h"
 
 namespace servodx::report {
@@ -62,6 +63,8 @@ std::string word_of(Blame blame) {
       return "physics";
     case Blame::surroundings:
       return "surroundings";
+    case Blame::log:
+      return "log";
     case Blame::test:
       return "test";
   }
@@ -78,6 +81,8 @@ std::string words_of(Blame blame) {
       return "physics is missing in the model";
     case Blame::surroundings:
       return "a sensor, the supply or the driver is at fault";
+    case Blame::log:
+      return "the log or the rig file is to be mended: of the valve it says nothing until then";
     case Blame::test:
       return "this log does not tell: run another test";
   }
@@ -244,6 +249,15 @@ std::string label_of(const Fault* hypothesis) {
 }
 
 std::string name_of(const Diagnosis& d) { return d.fault ? label_of(d.fault) : word_of(d.verdict); }
+
+std::string action_label_of(const Diagnosis& d) { return blame_of(d) == Blame::log ? misread_label : name_of(d); }
+
+std::string mistake_in_words(const Diagnosis& d) {
+  const std::optional<SensorFinding> finding = sensor_finding_of(d);
+  if (finding == SensorFinding::swapped_ports) return "the columns 'pressure_a' and 'pressure_b' are exchanged";
+  if (finding != SensorFinding::turned) return "";
+  return "the sign of '" + channel_of(d.faults.front()) + "' is turned: its column wants gain = \"-1\" in the rig file";
+}
 
 std::string meaning_of(const Fault* hypothesis) {
   return hypothesis ? std::string(hypothesis->meaning) : "as the fault-free logs, within every fault's tolerance";
@@ -492,7 +506,7 @@ std::vector<std::string> next_calls(const Diagnosis& d, const CallNames& names) 
   if (d.verdict != VerdictKind::unknown) return {};
   const std::string logs = logs_of(d) + " " + given(names);
   const std::string look = "servodx check-log " + logs;
-  if (d.assessment.unjudgeable != Unjudgeable::no) return {look};
+  if (d.assessment.unjudgeable != Unjudgeable::no || blame_of(d) == Blame::log) return {look};
   return {look, "servodx explain " + logs + " --baseline " + shell_word(names.baseline) +
                     " -o extended.csv --report explain.html"};
 }

@@ -26,17 +26,21 @@
 namespace servodx::report {
 
 std::string word_of(VerdictKind verdict);    // healthy | fault | unknown
-std::string word_of(Blame blame);            // none | component | physics | surroundings | test
+std::string word_of(Blame blame);            // none | component | physics | surroundings | log | test
 std::string words_of(Blame blame);           // "a component failed"; "" of none
 std::string words_of(GrossFinding finding);  // "" of none
 std::string word_of(Misreading kind);
 std::string word_of(Unjudgeable reason);    // one word, of no and of an unknown log alike what JSON says
 std::string reason_of(const Diagnosis& d);  // one word: why it is unknown; "" where it is not
 std::string words_of(const Reading& reading);
-std::string words_of_doubt(const Diagnosis& d);  // why it is unknown, and what to look at; "" where it is not
-std::string words_of(Unjudgeable reason);        // why there is nothing to judge, and what to look at; "" of no
-std::string label_of(const Fault* hypothesis);   // its name; of null "healthy"
-std::string name_of(const Diagnosis& d);         // the fault named, else the verdict
+std::string words_of_doubt(const Diagnosis& d);   // why it is unknown, and what to look at; "" where it is not
+std::string words_of(Unjudgeable reason);         // why there is nothing to judge, and what to look at; "" of no
+std::string label_of(const Fault* hypothesis);    // its name; of null "healthy"
+std::string name_of(const Diagnosis& d);          // the fault named, else the verdict
+std::string action_label_of(const Diagnosis& d);  // by which the table of actions is asked
+// Of a sensor that the rig file or the wiring turns about: "the columns 'pressure_a' and 'pressure_b' are exchanged";
+// "" of any other verdict.
+std::string mistake_in_words(const Diagnosis& d);
 std::string meaning_of(const Fault* hypothesis);
 std::string unit_of(const Fault* hypothesis);  // of its severity; "" of health
 
