@@ -8,6 +8,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 
 #include "base/median.h"
 #include "base/units.h"
@@ -158,6 +159,16 @@ void ask_middle(ColumnGuess& g, const ColumnNumbers& n) {
   g.offset_is_open = true;  // the middle of what this log reaches is no middle of the stroke
 }
 
+// Pressure of the tank or its temperature, where neither name nor unit tells: the likelier one by what the values are.
+void ask_of_rival(ColumnGuess& g, const ColumnNumbers& n) {
+  g.weak = false;
+  const bool warm = n.low > tank_is_warm;
+  if (warm) std::swap(*g.signal, *g.rival);
+  g.unit = warm ? "degC" : "bar";
+  g.ask(fmt::format("no unit in the header, and the name means either: the {} in {}, or the {} in {}?",
+                    info(*g.signal).name, g.unit, info(*g.rival).name, warm ? "bar" : "degC"));
+}
+
 void ask_column(ColumnGuess& g, const ColumnNumbers& n) {
   if (n.stamps) {
     if (*g.signal != Signal::time) g.ask("holds time stamps");
@@ -165,6 +176,7 @@ void ask_column(ColumnGuess& g, const ColumnNumbers& n) {
     return;
   }
   if (n.count == 0) return g.ask("holds no numbers");
+  if (g.rival && g.unit.empty() && g.question.empty()) return ask_of_rival(g, n);
   const bool told = g.question.empty();
   if (g.unit.empty() && told)
     ask_missing_unit(g, n);

@@ -32,6 +32,8 @@ inline constexpr double transmitter[] = {3.5e-3, 21e-3};  // [A] 4 to 20 mA and 
 inline constexpr double flat_pressure = 0.4;              // of the highest value, that a pump's or a tank's varies by
 inline constexpr double low_pressure = 0.25;              // of the highest value, that a tank's stays below
 inline constexpr std::size_t steps_looked_at = 10000;
+// [bar or degC] a return line holds less than that, oil in a tank is warmer; the column's lowest value tells
+inline constexpr double tank_is_warm = 15;
 
 // Logs of two recorders (recorders.cpp).
 inline constexpr double piece_time = 8.0;         // [s] long enough to be unlike its neighbours, short against a skew

@@ -151,6 +151,11 @@ std::vector<Match> matches_of(const std::string& name, const std::string& unit, 
   return matches;
 }
 
+// A T is a tank in German, and a temperature.
+bool means_either(Signal first, Signal second) {
+  return first == Signal::return_pressure && second == Signal::oil_temperature;
+}
+
 bool is_whole(const Match& m) { return m.points % 2 == 1; }
 
 // Where the bracket opens that the text's last letter closes.
@@ -319,9 +324,13 @@ std::vector<ColumnGuess> guess_columns(const std::vector<std::string>& header, c
   std::array<bool, n_signals> taken{};
   for (const Match& m : matches) {
     ColumnGuess& g = guesses[m.column];
+    if (g.signal && m.points == g.points && m.signal != *g.signal && !g.rival && means_either(*g.signal, m.signal) &&
+        !taken[static_cast<std::size_t>(index(m.signal))])
+      g.weak = true, g.rival = m.signal;
     if (g.signal || taken[static_cast<std::size_t>(index(m.signal))]) continue;
     g.signal = m.signal;
     g.weak = m.weak;
+    g.points = m.points;
     taken[static_cast<std::size_t>(index(m.signal))] = true;
   }
   ask_which(guesses, matches);

@@ -23,7 +23,9 @@ struct ColumnGuess {
   std::string question;           // what only the user can say; empty: nothing of name and unit
   bool by_numbers = false;        // the unit is taken by the values, not from the header
   bool weak = false;              // the name says little of which signal of its kind it is
+  std::optional<Signal> rival;    // what the name may as well mean: "T Tank"
   bool unit_in_brackets = false;  // a unit of the table, in "name [unit]" or in the row below: the reader takes it
+  int points = 0;                 // of the match that gave the signal
   bool canonical = false;         // the name is the signal's own
 
   bool has_offset() const { return offset_is_open || !offset.empty(); }

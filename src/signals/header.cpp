@@ -130,6 +130,19 @@ std::vector<std::string> units_row(CsvCursor& csv) {
   return units.size() == csv.header().size() ? units : std::vector<std::string>{};
 }
 
+std::vector<std::string> units_above(std::string_view text, const CsvCursor& csv) {
+  constexpr std::string_view label = "\nY_Unit_Label";
+  const std::size_t at = text.find(label);
+  if (at == text.npos || std::count(text.begin(), text.begin() + static_cast<long>(at), '\n') > csv.header_line())
+    return {};
+  std::vector<std::string> units =
+      as_units(cells_of(text.substr(at + 1, text.find('\n', at + 1) - at - 1), csv.separator()));
+  if (ends_with_comment(csv.header()) && units.size() + 1 == csv.header().size()) units.emplace_back();
+  if (units.size() != csv.header().size()) return {};
+  units.front() = "s";
+  return units;
+}
+
 void require_names(const CsvCursor& csv, const std::string& path) {
   const auto& header = csv.header();
   if (header.size() > 1 && std::all_of(header.begin(), header.end(), is_sample))

@@ -23,6 +23,10 @@ void require_names(const CsvCursor& csv, const std::string& path);
 // unit. Without their brackets; empty: it is none.
 std::vector<std::string> units_row(CsvCursor& csv);
 
+// The units that LabVIEW writes some lines above its names, one for each but the first column, the time in seconds.
+// `csv`: at the header; `text`: the file from its beginning. Empty: there are none.
+std::vector<std::string> units_above(std::string_view text, const CsvCursor& csv);
+
 // Two numbers or time stamps at least, and nothing else.
 bool is_row_of_numbers(std::string_view line);
 

@@ -45,7 +45,11 @@ LogHeader read_csv_header(const std::string& path) {
   bool in_row = csv.next_row();
   const std::vector<std::string> units = in_row ? units_row(csv) : std::vector<std::string>{};
   if (!units.empty()) in_row = csv.next_row();
-  return {guess_columns(csv.header(), units), numbers_of_rows(csv, in_row)};
+  const std::vector<std::string> above = units.empty() ? units_above(bytes, csv) : std::vector<std::string>{};
+  LogHeader header{guess_columns(csv.header(), units.empty() ? above : units), numbers_of_rows(csv, in_row)};
+  if (!above.empty())
+    for (ColumnGuess& g : header.columns) g.unit_in_brackets = false;  // the reader looks for none so far above
+  return header;
 }
 
 // A MAT file's vectors of the commonest length, which are its signals.

@@ -52,6 +52,18 @@ TEST(ColumnQuestions, AbsurdValuesAreAsked) {
     EXPECT_EQ(question(good), "") << good.cell;
 }
 
+TEST(ColumnQuestions, ATankIsOfPressureOrOfTemperatureByUnitAndRangeAndAsked) {
+  const auto tank = [](const std::string& cell, double low, double high) { return asked({{cell, low, high}})[0]; };
+  EXPECT_EQ(tank("T Tank [degC]", 44, 46).signal, Signal::oil_temperature);
+  EXPECT_EQ(tank("T Tank [bar]", 2, 3).signal, Signal::return_pressure);
+  const ColumnGuess warm = tank("T Tank", 44, 46), low = tank("T Tank", 2, 3);
+  EXPECT_EQ(warm.signal, Signal::oil_temperature);
+  EXPECT_EQ(warm.unit, "degC");
+  EXPECT_EQ(low.signal, Signal::return_pressure);
+  for (const ColumnGuess& g : {warm, low})
+    EXPECT_NE(g.question.find("the name means either"), std::string::npos) << g.question;
+}
+
 TEST(ColumnQuestions, ACurrentWithoutASignIsAsked) {
   EXPECT_NE(question({"current [mA]", 0, 50}).find("never negative"), std::string::npos);
   EXPECT_NE(question({"current [mA]", 4, 20}).find("transmitter"), std::string::npos);

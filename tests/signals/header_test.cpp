@@ -52,6 +52,20 @@ TEST(Header, OfLabViewsBlocksIsBelowThem) {
   EXPECT_TRUE(ends_with_comment(csv.header()));
 }
 
+// Some lines above the names, and not beside them: one for each column but the time and the comment.
+TEST(Header, LabViewsUnitsStandInARowOfTheirOwn) {
+  const auto units_of = [](const std::string& label) {
+    const std::string text = "LabVIEW Measurement\n" + label + "X0\t0\t0\n***End_of_Header***\n" +
+                             "X_Value\tVentilstrom\tHub\tComment\n0,0\t0,02\t-0,17\n0,001\t0,02\t-0,16\n";
+    CsvCursor csv(text, "log.lvm");
+    pass_lines_above_header(csv, "log.lvm");
+    return units_above(text, csv);
+  };
+  EXPECT_EQ(units_of("Y_Unit_Label\tmA\tmm\n"), (std::vector<std::string>{"s", "mA", "mm", ""}));
+  EXPECT_TRUE(units_of("Y_Unit_Label\tmA\n").empty());
+  EXPECT_TRUE(units_of("").empty());
+}
+
 std::string refusal(const std::string& text) {
   try {
     CsvCursor csv(text, "log.csv");
