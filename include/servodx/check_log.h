@@ -43,6 +43,7 @@ enum class FindingKind {
   values,        // what the reader left out or found hardly possible
   columns,       // the rig file maps one that the log lacks
   beyond,        // the operating point, beyond what is known
+  return_line,   // a return pressure that takes much of the supply
 };
 
 struct Finding {
@@ -50,6 +51,7 @@ struct Finding {
   std::string text;
   std::vector<Signal> signals = {};  // whose columns may be meant wrongly; of a sign and of exchanged columns
   bool impossible = false;           // of no valve; what a fit would make of it is worth nothing
+  bool notice = false;               // to be known, and no matter of suspicion: columns that are no signals
 };
 
 struct LogSurvey {

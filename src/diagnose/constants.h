@@ -218,6 +218,8 @@ inline constexpr double of_noise_alone = 12.0;
 inline constexpr double spool_lag = 4e-3, piston_lag = 10e-3;  // [s] within which each answers the drive
 inline constexpr double half_window = 10e-3;                   // [s] of the difference that stands for piston speed
 inline constexpr double with = 0.3, against = -0.5;            // correlations: at most one way, at least the other
+// Of the supply, medians: return lines are laid out for some per cent; a fifth throttles the valve, or is another column
+inline constexpr double high_return = 0.2;
 }  // namespace survey_of_log
 
 }  // namespace servodx::diagnose_constants

@@ -152,13 +152,35 @@ void find_no_response(LogSurvey& s) {
   s.findings.push_back({FindingKind::response, text + "; no pressure, no sensors, or another log?"});
 }
 
+// A return that takes much of the supply is another column or unit as a rule, and else a line that is throttled.
+void find_high_return(const Log& log, const RigFile& rig, LogSurvey& s) {
+  if (!log.has(Signal::return_pressure)) return;
+  const auto usual = [](std::vector<double> x) {
+    std::erase_if(x, [](double v) { return !std::isfinite(v); });
+    return x.empty() ? std::nan("") : median(x);
+  };
+  const double back = usual(log[Signal::return_pressure]);
+  const double supply =
+      log.has(Signal::supply_pressure) ? usual(log[Signal::supply_pressure]) : rig.fact("supply.pressure").value_or(0);
+  // A return above the supply has its own finding.
+  if (!(back > high_return * supply) || !(back < supply)) return;
+  s.findings.push_back({FindingKind::return_line,
+                        fmt::format("'return_pressure' is {:.0f} % of the supply ({:.3g} of {:.3g} bar): another "
+                                    "signal or unit in its column, or a return line that is throttled",
+                                    100 * back / supply, 1e-5 * back, 1e-5 * supply),
+                        {Signal::return_pressure}});
+}
+
 // What the reader saw: limits, spikes, frozen sensors, no excitation. Gaps are told with more figures here.
 void add_notes_of_reader(const Log& log, LogSurvey& s) {
   const std::string front = log.path + ": ";
   for (const Note& note : log.notes) {
     if (note.kind == Note::Kind::gaps && s.gaps > 0) continue;
     s.findings.push_back({note.kind == Note::Kind::unmapped_column ? FindingKind::columns : FindingKind::values,
-                          note.text.starts_with(front) ? note.text.substr(front.size()) : note.text});
+                          note.text.starts_with(front) ? note.text.substr(front.size()) : note.text,
+                          {},
+                          false,
+                          note.kind == Note::Kind::ignored_columns});
   }
 }
 
@@ -201,6 +223,7 @@ void find_suspicious(const Log& log, const RigFile& rig, LogSurvey& s) {
                         info(c.signal).si_unit, 100 * c.resolution / range));
   }
   find_no_response(s);
+  find_high_return(log, rig, s);
   find_turned(log, s);
   const auto is_turned = [](const Finding& f) { return f.kind == FindingKind::sign; };
   const bool both_turned = std::count_if(s.findings.begin(), s.findings.end(), is_turned) > 1;

@@ -47,5 +47,33 @@ TEST(Survey, FindsWhatTheReaderSawWhateverTheFileIsCalled) {
   EXPECT_EQ(kinds_in(folder / "gap_1.csv"), kinds);
 }
 
+// Drain lines are laid out for some per cent of the supply.
+TEST(Survey, AReturnThatTakesAFifthOfTheSupplyIsSuspicious) {
+  Log log = shipped_log("healthy/h12_mixed");
+  auto& back = log.channels[index(Signal::return_pressure)].value;
+  const auto kinds_at = [&](double bar) {
+    back.assign(log.samples(), 1e5 * bar);
+    std::vector<FindingKind> kinds;
+    for (const Finding& f : survey(log, shipped_rig()).findings) kinds.push_back(f.kind);
+    return kinds;
+  };
+  const auto says = [](const std::vector<FindingKind>& kinds) {
+    return std::count(kinds.begin(), kinds.end(), FindingKind::return_line);
+  };
+  EXPECT_EQ(says(kinds_at(60)), 1);
+  EXPECT_EQ(says(kinds_at(10)), 0);
+  EXPECT_EQ(says(kinds_at(300)), 0) << "above the supply it is another finding, and once";
+}
+
+TEST(Survey, ColumnsThatAreNoSignalsAreANotice) {
+  Log log = shipped_log("healthy/h12_mixed");
+  log.notes = {{Note::Kind::ignored_columns, log.path + ": columns ignored: 'shift'"},
+               {Note::Kind::implausible, log.path + ": stands still"}};
+  const std::vector<Finding> found = survey(log, shipped_rig()).findings;
+  ASSERT_EQ(found.size(), 2u);
+  EXPECT_TRUE(found[0].notice) << found[0].text;
+  EXPECT_FALSE(found[1].notice) << found[1].text;
+}
+
 }  // namespace
 }  // namespace servodx

@@ -444,6 +444,17 @@ TEST(TunePage, SaysOnceThatItIsGoodEnoughAndCallsFaultsByTheirWords) {
   EXPECT_NE(opening.find("may miss at their mildest clogged filter."), std::string::npos) << opening;
 }
 
+TEST(CheckLogText, ANoticeIsToldAndIsNotSuspicious) {
+  LogCheck check;
+  check.survey.findings = {{FindingKind::values, "columns ignored: 'shift'", {}, false, true}};
+  const std::string text = text_of({check});
+  EXPECT_NE(text.find("  note: columns ignored: 'shift'\n"), std::string::npos) << text;
+  EXPECT_NE(text.find("  nothing suspicious\n"), std::string::npos) << text;
+  const Json log = check_log_json({check})["logs"][0];
+  EXPECT_TRUE(log["suspicious"].empty());
+  EXPECT_EQ(log["notices"].size(), 1u);
+}
+
 TEST(CheckLogText, EndsWithHowManyOfManyLogsAreSuspicious) {
   LogCheck cold, fine;
   cold.survey.path = "cold.csv", fine.survey.path = "fine.csv";

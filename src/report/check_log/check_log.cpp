@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <nlohmann/json.hpp>
 #include <set>
 
@@ -82,13 +83,24 @@ std::string word_of(FindingKind kind) {
       return "columns";
     case FindingKind::beyond:
       return "beyond";
+    case FindingKind::return_line:
+      return "return";
   }
   return "";
 }
 
+std::vector<Finding> found_in(const LogSurvey& s, bool notice) {
+  std::vector<Finding> out;
+  std::copy_if(s.findings.begin(), s.findings.end(), std::back_inserter(out),
+               [&](const Finding& f) { return f.notice == notice; });
+  return out;
+}
+
+std::vector<Finding> notices_in(const LogSurvey& s) { return found_in(s, true); }
+
 // An operating point beyond what is known is one of them.
 std::vector<Finding> suspicious_in(const LogSurvey& s) {
-  std::vector<Finding> all = s.findings;
+  std::vector<Finding> all = found_in(s, false);
   if (const std::string far = beyond_in_words(s.conditions); !far.empty())
     all.push_back({FindingKind::beyond, "recorded beyond what is known: " + far});
   return all;
@@ -177,9 +189,11 @@ std::string text_of(const std::vector<LogCheck>& checks) {
     if (const std::string tuned = tuned_in_words(s.conditions); !tuned.empty()) text += "  tuned at " + tuned + "\n";
     const std::string far = beyond_in_words(s.conditions);
     if (!far.empty()) text += "  BEYOND: " + far + "\n";
-    for (const Finding& f : s.findings)
+    const std::vector<Finding> suspicious = found_in(s, false);
+    for (const Finding& f : suspicious)
       text += fmt::format("  {}: {}: {}\n", f.impossible ? "IMPOSSIBLE" : "suspicious", word_of(f.kind), f.text);
-    if (s.findings.empty()) text += far.empty() ? "  nothing suspicious\n" : "  nothing else suspicious\n";
+    for (const Finding& f : notices_in(s)) text += fmt::format("  note: {}\n", f.text);
+    if (suspicious.empty()) text += far.empty() ? "  nothing suspicious\n" : "  nothing else suspicious\n";
     if (!check.promise) continue;
     text += "  can identify " + promise_lead(*check.promise) + "\n";
     Columns rows("lrrll", 4);
@@ -205,7 +219,7 @@ Json check_log_json(const std::vector<LogCheck>& checks) {
   Json logs = Json::array();
   for (const LogCheck& check : checks) {
     const LogSurvey& s = check.survey;
-    Json channels = Json::array(), findings = Json::array();
+    Json channels = Json::array(), findings = Json::array(), notices = Json::array();
     for (const ChannelSurvey& c : s.channels)
       channels.push_back({{"signal", info(c.signal).name},
                           {"column", c.column},
@@ -218,6 +232,7 @@ Json check_log_json(const std::vector<LogCheck>& checks) {
                           {"resolution", number(c.resolution)},
                           {"clipped", number(c.clipped)}});
     for (const Finding& f : suspicious_in(s)) findings.push_back({{"kind", word_of(f.kind)}, {"text", f.text}});
+    for (const Finding& f : notices_in(s)) notices.push_back(f.text);
     Json one = {{"log", s.path},
                 {"samples", s.samples},
                 {"duration", number(s.duration)},
@@ -232,7 +247,8 @@ Json check_log_json(const std::vector<LogCheck>& checks) {
                 {"operating_point", conditions_json(s.conditions)},
                 {"closed_loop", s.closed_loop},
                 {"channels", channels},
-                {"suspicious", findings}};
+                {"suspicious", findings},
+                {"notices", notices}};
     if (check.promise) {
       Json rows = Json::array(), faults = Json::array();
       for (const Identifiable& r : check.promise->rows)
@@ -313,6 +329,7 @@ Page check_log_page(const Header& header, const std::vector<LogCheck>& checks) {
     page.section(one ? "What is in it" : s.path, one ? "" : first_line(s), !one && suspicious_in(s).empty());
     if (!one)
       for (const Finding& f : suspicious_in(s)) page.text(word_of(f.kind) + ": " + f.text);
+    for (const Finding& f : notices_in(s)) page.text(f.text);
     Plot drive{.title = "drive [mA], " + drive_words(s),
                .x_label = "time [s]",
                .x = check.time,
