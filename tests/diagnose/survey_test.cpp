@@ -8,6 +8,7 @@
 
 #include "servodx/check_log.h"
 #include "servodx/log.h"
+#include "servodx/note.h"
 #include "shipped_data.h"
 #include "signals/signal.h"
 #include "temporary_folder.h"

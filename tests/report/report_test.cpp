@@ -12,6 +12,8 @@
 #include "diagnose/judge.h"
 #include "diagnose/judgeable.h"
 #include "diagnose/moved.h"
+#include "diagnose/record_law.h"
+#include "diagnose/records.h"
 #include "explain/explain.h"
 #include "explain/missing.h"
 #include "explain/outcome.h"
