@@ -668,8 +668,9 @@ TEST(KindOfVerdict, ExchangedColumnsLeadAndAskForTheRigFile) {
   EXPECT_EQ(diagnose_json({d})["results"][0]["kind"], "log");
   EXPECT_EQ(default_actions().at(action_label_of(d)).text,
             "abnormal: mend the rig file or the wiring, then diagnose again");
-  EXPECT_NE(diagnose_page({}, {d}, some_baseline(), {}).html().find("suspect.csv cannot be judged: the columns"),
-            std::string::npos);
+  const std::string html = diagnose_page({}, {d}, some_baseline(), {}).html();
+  EXPECT_NE(html.find("suspect.csv cannot be judged: the columns"), std::string::npos);
+  EXPECT_EQ(html.find("gain has drifted, in "), std::string::npos) << "what was found is not that";
 }
 
 TEST(KindOfVerdict, IsSaidInTextJsonAndPage) {

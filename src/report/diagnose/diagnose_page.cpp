@@ -126,7 +126,8 @@ Verdict verdict_of(const Diagnosis& d, const DetectionBaseline& baseline, const 
     for (const std::string& next : next_calls(d, call)) v.reasons.push_back("Run next: " + next);
     return v;
   }
-  if (d.fault) v.detail = meaning_of(d.fault) + ", in " + d.log;
+  // Of a broken sensor the fault's meaning is not what was found; the record says it.
+  if (d.fault && !sensor_finding_of(d)) v.detail = meaning_of(d.fault) + ", in " + d.log;
   if (d.beyond) v.detail = sentence(beyond_in_words(*d.beyond));
   if (d.fault) v.facts.push_back({"Probability", chance(probability_of(d, d.fault))});
   if (d.onset) v.facts.push_back({"Since", digits(*d.onset, 4) + " s"});
