@@ -673,6 +673,29 @@ TEST(KindOfVerdict, ExchangedColumnsLeadAndAskForTheRigFile) {
   EXPECT_EQ(html.find("gain has drifted, in "), std::string::npos) << "what was found is not that";
 }
 
+// Sizes and chances of faults are of no valve there: neither text nor page may show one.
+TEST(KindOfVerdict, OfTheLogShowsNoHypothesis) {
+  Diagnosis d = some_diagnosis();
+  HypothesisResult sensor;
+  sensor.fault = find_fault("sensor_fault"), sensor.severity = 0.57, sensor.probability = 0.9;
+  d.assessment.hypotheses = {HypothesisResult{}, sensor};
+  d.fault = sensor.fault, d.probabilities = {{d.fault, 0.9}, {nullptr, 0.1}};
+  d.ambiguous_with.clear(), d.moved.clear(), d.onset.reset();
+  RecordFinding record;
+  record.fault = d.fault, record.broken = SensorFinding::swapped_ports, record.signal = Signal::pressure_a;
+  d.faults = {{d.fault, 1, nan, nan, nan, record}};
+  const auto page_of = [&] { return diagnose_page({}, {d}, some_baseline(), {}).html(); };
+  EXPECT_TRUE(text_of(d, {}).starts_with("suspect.csv: MISREAD: the columns")) << text_of(d, {});
+  for (const char* word : {"FAULT", "90 %", "0.57"}) {
+    EXPECT_EQ(text_of(d, {}).find(word), std::string::npos) << word << " in\n" << text_of(d, {});
+    EXPECT_EQ(page_of().find(word), std::string::npos) << word;
+  }
+  EXPECT_EQ(diagnose_json({d})["results"][0]["verdict"], "fault") << "the contract's outcomes are three";
+  d.faults.front().record->broken.reset();  // a sensor that is itself at fault
+  EXPECT_TRUE(text_of(d, {}).starts_with("suspect.csv: FAULT sensor_fault")) << text_of(d, {});
+  for (const char* word : {"90 %", "0.57"}) EXPECT_NE(page_of().find(word), std::string::npos) << word;
+}
+
 TEST(KindOfVerdict, IsSaidInTextJsonAndPage) {
   Diagnosis d = some_diagnosis();
   const auto page_of = [](const Diagnosis& of) { return diagnose_page({}, {of}, some_baseline(), {}).html(); };

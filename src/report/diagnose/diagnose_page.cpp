@@ -42,6 +42,7 @@ namespace servodx::report {
 namespace {
 
 Tone tone_of(const Diagnosis& d) {
+  if (of_log(d)) return Tone::doubt;
   if (d.verdict == VerdictKind::fault) return Tone::bad;
   return d.verdict == VerdictKind::healthy && !d.unlike ? Tone::good : Tone::doubt;
 }
@@ -86,6 +87,7 @@ std::vector<std::string> reasons(const Diagnosis& d, const DetectionBaseline& ba
     why.push_back("Beware: " + unlike_words(d) + ". The threshold may not hold for it." +
                   mark_of(Trouble::unlike_test));
   if (d.others > 0) why.push_back("Compared with " + others_words(d) + ".");
+  if (of_log(d)) return why;  // what a valve would have to be, to make such a log, says nothing of this one
   const HypothesisResult* healthy = result_of(d, nullptr);
   const HypothesisResult* best = d.fault ? result_of(d, d.fault) : nearest_fault(d);
   if (above && healthy && best)
@@ -118,7 +120,7 @@ std::vector<std::string> reasons(const Diagnosis& d, const DetectionBaseline& ba
 Verdict verdict_of(const Diagnosis& d, const DetectionBaseline& baseline, const CallNames& call) {
   Verdict v;
   v.tone = tone_of(d);
-  v.word = d.verdict == VerdictKind::fault ? "FAULT" : d.verdict == VerdictKind::unknown ? "UNKNOWN" : "HEALTHY";
+  v.word = headword(d);
   v.headline = headline(d);
   const std::string kind = words_of(blame_of(d));
   if (d.assessment.unjudgeable != Unjudgeable::no) {
@@ -129,10 +131,10 @@ Verdict verdict_of(const Diagnosis& d, const DetectionBaseline& baseline, const 
   // Of a broken sensor the fault's meaning is not what was found; the record says it.
   if (d.fault && !sensor_finding_of(d)) v.detail = meaning_of(d.fault) + ", in " + d.log;
   if (d.beyond) v.detail = sentence(beyond_in_words(*d.beyond));
-  if (d.fault) v.facts.push_back({"Probability", chance(probability_of(d, d.fault))});
+  if (d.fault && !of_log(d)) v.facts.push_back({"Probability", chance(probability_of(d, d.fault))});
   if (d.onset) v.facts.push_back({"Since", digits(*d.onset, 4) + " s"});
   v.facts.push_back({"Error / threshold", digits(d.error) + " / " + digits(d.threshold)});
-  if (blame_of(d) != Blame::log) v.facts.push_back({"Null", null_in_words(d)});
+  if (!of_log(d)) v.facts.push_back({"Null", null_in_words(d)});
   if (!kind.empty()) v.facts.push_back({"Kind", kind});
   if (d.action.of != ActionClass::none) v.facts.push_back({"Action", d.action.text});
   for (const std::string& next : next_calls(d, call)) v.reasons.push_back("Run next: " + next);
@@ -195,11 +197,42 @@ void add_detectable(Page& page, const Diagnosis& d) {
   page.add(table);
 }
 
+// Beside health: what is named and what cannot be told from it, or what comes nearest. Of a misread log health alone.
+std::vector<std::string> drawn_hypotheses(const Diagnosis& d) {
+  std::vector<std::string> out = {label_of(nullptr)};
+  if (of_log(d)) return out;
+  const HypothesisResult* nearest = nearest_fault(d);
+  if (d.fault)
+    out.push_back(label_of(d.fault));
+  else if (d.verdict == VerdictKind::unknown && nearest)
+    out.push_back(label_of(nearest->fault));
+  for (const Fault* other : ambiguous_by_label(d))
+    if (out.size() < 3 && other) out.push_back(label_of(other));
+  return out;
+}
+
+void add_traces(Page& page, const Diagnosis& d, const Replay& replay, std::size_t drawn) {
+  ReplayView view;
+  view.shown = drawn_hypotheses(d);
+  view.onset = d.onset;
+  view.logs = drawn;
+  page.text(view.shown.size() == 1
+                ? "Below, the tuned model, with null and air fitted to this log, against the measurement; the channel "
+                  "it misses most first."
+            : d.fault
+                ? "Below, dashed: the valve as healthy; full colour: with the fault. The channel that health misses "
+                  "most comes first. Where the dashed residual leaves the band and the coloured one stays in it, the "
+                  "fault explains what health cannot."
+                : "Below, dashed: the valve as healthy; full colour: with the hypothesis that comes nearest, which "
+                  "does not explain the log either. The channel that health misses most comes first.");
+  add_replay(page, replay, view);
+}
+
 void add_details(Page& page, const Diagnosis& d, const std::vector<Replay>& replays, std::size_t drawn) {
   if (d.assessment.unjudgeable != Unjudgeable::no) return add_conditions(page, d.conditions);  // nothing was fitted
-  add_ranking(page, d);
+  if (!of_log(d)) add_ranking(page, d);
   add_conditions(page, d.conditions);
-  add_detectable(page, d);
+  if (!of_log(d)) add_detectable(page, d);
   const auto [by_fault, in_health] = moved_parts(d);
   if (!by_fault.empty())
     page.add(moves_of(
@@ -207,31 +240,7 @@ void add_details(Page& page, const Diagnosis& d, const std::vector<Replay>& repl
         d.fault ? "What the fault moves, against the tuned table"
                 : "What the nearest hypothesis, " + words(label_of(d.nearest)) + ", moves against the tuned table"));
   const auto r = std::find_if(replays.begin(), replays.end(), [&](const Replay& x) { return x.log == d.log; });
-  if (r != replays.end()) {
-    ReplayView view;
-    view.shown = {label_of(nullptr)};
-    const HypothesisResult* nearest = nearest_fault(d);
-    if (d.fault)
-      view.shown.push_back(label_of(d.fault));
-    else if (d.verdict == VerdictKind::unknown && nearest)
-      view.shown.push_back(label_of(nearest->fault));
-    for (const Fault* other : ambiguous_by_label(d))
-      if (view.shown.size() < 3 && other) view.shown.push_back(label_of(other));
-    view.onset = d.onset;
-    view.logs = drawn;
-    page.text(
-        d.verdict == VerdictKind::healthy
-            ? "Below, the tuned model, with null and air fitted to this log, against the measurement; the channel it "
-              "misses most first."
-        : d.fault
-            ? "Below, dashed: the valve as healthy; full colour: with the fault. The channel that health misses most "
-              "comes first. Where the dashed residual leaves the band and the coloured one stays in it, the fault "
-              "explains what health cannot."
-            : "Below, dashed: the valve as healthy; full colour: with the hypothesis that comes nearest, which does "
-              "not "
-              "explain the log either. The channel that health misses most comes first.");
-    add_replay(page, *r, view);
-  }
+  if (r != replays.end()) add_traces(page, d, *r, drawn);
   if (!in_health.empty()) {
     Moves wander = moves_of({in_health.begin(), in_health.end()},
                             "Let wander as on a healthy valve: tolerances, and this log's own null and air");
@@ -253,7 +262,7 @@ void certify(Page& page, const Diagnosis& d, const DetectionBaseline& baseline, 
   const Certificate& sheet = *certificate.sheet;
   std::vector<CertifiedFigure> figures = {
       {"error", digits(d.error) + " deviates", "", "below " + digits(d.threshold), word_of(d.verdict), tone_of(d)}};
-  for (const NamedFault& f : d.faults)
+  for (const NamedFault& f : of_log(d) ? std::vector<NamedFault>{} : d.faults)
     figures.push_back(
         {words(label_of(f.fault)), handy(f.severity, unit_of(f.fault)),
          std::isfinite(f.lower) && std::isfinite(f.upper) ? handy(0.5 * (f.upper - f.lower), unit_of(f.fault)) : "", "",

@@ -67,10 +67,8 @@ std::pair<std::string, std::string> standing(const Diagnosis& d) {
 
 std::string text_of(const Diagnosis& d, const TextOptions& options) {
   std::string first = d.log + ": ";
-  if (d.fault)
-    first += in_colour("FAULT", d.verdict, options.colour) + " " + label_of(d.fault) + of_channel(d);
-  else
-    first += in_colour(d.verdict == VerdictKind::unknown ? "UNKNOWN" : word_of(d.verdict), d.verdict, options.colour);
+  first += in_colour(d.verdict == VerdictKind::healthy ? word_of(d.verdict) : headword(d), d.verdict, options.colour);
+  if (d.fault && !of_log(d)) first += " " + label_of(d.fault) + of_channel(d);
   if (const std::string mistake = mistake_in_words(d); !mistake.empty()) first += ": " + mistake;
   if (const std::string size = size_words(d); !size.empty()) first += ", " + size;
   if (d.suspicion) first += "; " + suspicion_in_words(*d.suspicion);
@@ -87,7 +85,7 @@ std::string text_of(const Diagnosis& d, const TextOptions& options) {
   if (const std::string why = words_of_doubt(d); !why.empty()) first += ": " + why;
 
   const auto [word, hypotheses] = standing(d);
-  if (d.doubt == Doubt::none || d.doubt == Doubt::no_fault) table.row({word, hypotheses});
+  if ((d.doubt == Doubt::none || d.doubt == Doubt::no_fault) && !of_log(d)) table.row({word, hypotheses});
   table.row({"error", fmt::format("{}, threshold {}; {}", digits(d.error), digits(d.threshold), chance_words(d))});
   if (d.beyond) table.row({"but", beyond_in_words(*d.beyond)});
   if (d.unlike) table.row({"beware", unlike_words(d) + mark_of(Trouble::unlike_test)});
@@ -100,7 +98,7 @@ std::string text_of(const Diagnosis& d, const TextOptions& options) {
   if (const std::string test = separating_test_of(d, options.call); !test.empty()) table.row({"to separate", test});
   if (d.action.of != ActionClass::none) table.row({"action", d.action.text});
   for (const std::string& call : next_calls(d, options.call)) table.row({"next", call});
-  if (blame_of(d) != Blame::log) table.row({"null", null_in_words(d)});
+  if (!of_log(d)) table.row({"null", null_in_words(d)});
 
   if (!d.fault) {
     const auto [shown, hidden] = detectable_words(d);

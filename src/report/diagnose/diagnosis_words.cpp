@@ -53,6 +53,20 @@ std::string word_of(VerdictKind verdict) {
   return "";
 }
 
+bool of_log(const Diagnosis& d) { return blame_of(d) == Blame::log; }
+
+std::string headword(const Diagnosis& d) {
+  switch (d.verdict) {
+    case VerdictKind::healthy:
+      return "HEALTHY";
+    case VerdictKind::fault:
+      return of_log(d) ? "MISREAD" : "FAULT";
+    case VerdictKind::unknown:
+      return "UNKNOWN";
+  }
+  return "";
+}
+
 std::string word_of(Blame blame) {
   switch (blame) {
     case Blame::none:
@@ -250,7 +264,7 @@ std::string label_of(const Fault* hypothesis) {
 
 std::string name_of(const Diagnosis& d) { return d.fault ? label_of(d.fault) : word_of(d.verdict); }
 
-std::string action_label_of(const Diagnosis& d) { return blame_of(d) == Blame::log ? misread_label : name_of(d); }
+std::string action_label_of(const Diagnosis& d) { return of_log(d) ? misread_label : name_of(d); }
 
 std::string mistake_in_words(const Diagnosis& d) {
   const std::optional<SensorFinding> finding = sensor_finding_of(d);

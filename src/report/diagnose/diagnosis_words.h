@@ -26,6 +26,8 @@
 namespace servodx::report {
 
 std::string word_of(VerdictKind verdict);    // healthy | fault | unknown
+bool of_log(const Diagnosis& d);             // the log or the rig file is to be mended, not the valve
+std::string headword(const Diagnosis& d);    // HEALTHY | FAULT | MISREAD, of columns or wiring | UNKNOWN
 std::string word_of(Blame blame);            // none | component | physics | surroundings | log | test
 std::string words_of(Blame blame);           // "a component failed"; "" of none
 std::string words_of(GrossFinding finding);  // "" of none
