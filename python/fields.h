@@ -6,14 +6,18 @@
 
 namespace servodx {
 
-inline auto fields(Fluid& f) { return std::tie(f.density, f.kinematic_viscosity, f.given, f.name); }
+inline auto fields(Fluid& f) {
+  return std::tie(f.density, f.kinematic_viscosity, f.kinematic_viscosity_100, f.given, f.name);
+}
 inline auto fields(Limit& l) { return std::tie(l.min, l.max); }
 inline auto fields(ColumnMapping& c) {
   return std::tie(c.signal, c.column_unit, c.unit, c.gain, c.offset, c.gain_has_unit, c.line);
 }
+inline auto fields(ResponseFact& p) { return std::tie(p.frequency, p.amplitude, p.gain, p.phase_lag); }
 inline auto fields(RigFile& r) {
   return std::tie(r.path, r.sha256, r.name, r.serial, r.ports, r.command_hold, r.mains_frequency, r.null_limit,
-                  r.oil_temperature, r.taps_at_cylinder, r.fluid, r.facts, r.limits, r.words, r.lines, r.columns);
+                  r.oil_temperature, r.taps, r.fluid, r.facts, r.response, r.limits, r.words, r.lines, r.columns,
+                  r.open_questions);
 }
 inline auto fields(Channel& c) { return std::tie(c.value, c.unit, c.full_scale, c.resolution, c.column, c.missing); }
 inline auto fields(Note& n) { return std::tie(n.kind, n.text); }

@@ -1,5 +1,7 @@
 #include "invocation.h"
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <sys/time.h>
 #include <unistd.h>
 
@@ -299,6 +301,11 @@ RigFile Invocation::rig() {
   RigFile rig = read_rig_file(options_.rig);
   header_.head = report::head_of(rig, logo_of(rig));
   header_.inputs.push_back({rig.path, rig.sha256});
+  if (const std::size_t open = rig.open_questions.size())
+    note({fmt::format(
+        "{}: {} question{} of 'servodx init' {} open, line{} {}: until it is answered a column is no signal", rig.path,
+        open, open == 1 ? "" : "s", open == 1 ? "is" : "are", open == 1 ? "" : "s",
+        fmt::join(rig.open_questions, ", "))});
   return rig;
 }
 

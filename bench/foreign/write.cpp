@@ -73,6 +73,7 @@ std::string rig_toml(const Design& d, const Sheet& s) {
     text += "[lines]\n";
     line("length", s.line_length, "m");
     line("bore", s.line_bore * 1e3, "mm");
+    if (!d.lines.taps_at_valve) text += "taps = \"cylinder\"\n";
   }
   text += "[supply]\n";
   line("pressure", s.pressure / bar, "bar");

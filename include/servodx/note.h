@@ -13,6 +13,7 @@ struct Note {
   enum class Kind {
     // A log, as it was read.
     left_out,         // rows, samples or a last line that do not count
+    preamble,         // of the recorder, above the header
     ignored_columns,  // of no known name
     unmapped_column,  // the rig file maps it, and the log lacks it
     gaps,             // in time
@@ -27,12 +28,14 @@ struct Note {
     redundant_signal,  // left out: it is an input, or another signal says it
     unlearnt_signal,   // left out: no tuning log held it
     // What was given to the call, and what was not.
-    earlier_version,  // a file that an earlier version wrote
-    poor_tune,        // the table's tune was not good enough: what follows is in doubt
-    no_baseline,      // given: a finding rests on less
-    no_causes,        // in the baseline: explain was not asked
-    no_log,           // of the rig given: sensors and oil are assumed
-    interrupted,      // the result rests on a part of what was given
+    earlier_version,   // a file that an earlier version wrote
+    poor_tune,         // the table's tune was not good enough: what follows is in doubt
+    no_baseline,       // given: a finding rests on less
+    no_causes,         // in the baseline: explain was not asked
+    no_log,            // of the rig given: sensors and oil are assumed
+    other_rig,         // file than the baseline's
+    lacking_channels,  // that every log of the baseline holds
+    interrupted,       // the result rests on a part of what was given
     // A tune.
     search_end,     // why the local search ended
     derivatives,    // were not to be trusted: the search went on without

@@ -12,6 +12,7 @@
 namespace servodx {
 
 enum class Ports { actuator, blocked, free };
+enum class Taps { not_said, at_valve, at_cylinder };
 enum class CommandHold { zero, linear };
 
 // value [SI] = gain * x + offset, where x is the column's number in SI of its own unit (volts for "V").
@@ -58,7 +59,7 @@ struct RigFile {
   std::optional<double> mains_frequency;    // [Hz]
   double null_limit = 0.05;                 // [fraction of rated current]
   std::optional<double> oil_temperature;    // [K] of logs that do not record it
-  bool taps_at_cylinder = false;            // where the chambers' pressures are measured; else at the valve
+  Taps taps = Taps::not_said;               // where the chambers' pressures are measured
   Fluid fluid;
   // facts by dotted key, SI: "valve.rated_current" [A], "valve.spool_stroke" [m], "actuator.area_a" [m2],
   // "supply.pressure" [Pa], ...; rig_facts() lists them all
@@ -68,6 +69,7 @@ struct RigFile {
   std::map<std::string, std::string> words;  // string facts: "valve.first_stage"
   std::map<std::string, long> lines;         // line of each key given, for errors
   std::map<std::string, ColumnMapping> columns;
+  std::vector<long> open_questions;  // lines of columns that 'init' asked about and nobody has answered
 
   std::optional<double> fact(const std::string& key) const {
     auto it = facts.find(key);

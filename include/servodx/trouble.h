@@ -25,12 +25,13 @@ enum class Trouble {
   few_logs,       // W02 the rate asked for takes more fault-free logs
   implausible,    // W03 values that can be read but hardly believed
   rig_forgotten,  // W04 the baseline was made with a rig file, and the call names none
+  other_rig,      // W05 the rig file says other things than the one that the baseline was made with
 };
-inline constexpr int n_troubles = 12;
+inline constexpr int n_troubles = 13;
 
 constexpr const char* code_of(Trouble trouble) {
   constexpr std::array<const char*, n_troubles> codes = {"E01", "E02", "E03", "E04", "E05", "E06",
-                                                         "E07", "E08", "W01", "W02", "W03", "W04"};
+                                                         "E07", "E08", "W01", "W02", "W03", "W04", "W05"};
   return codes[static_cast<std::size_t>(trouble)];
 }
 

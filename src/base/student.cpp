@@ -3,12 +3,13 @@
 #include <cmath>
 #include <initializer_list>
 
+#include "base/tiny.h"
+
 namespace servodx {
 namespace {
 
 // Continued fraction of the incomplete beta function (Abramowitz & Stegun 26.5.8), Lentz's method.
 double beta_fraction(double a, double b, double x) {
-  constexpr double tiny = 1e-300;
   double c = 1, d = 1 - (a + b) * x / (a + 1);
   d = 1 / (std::abs(d) < tiny ? tiny : d);
   double h = d;

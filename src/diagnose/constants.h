@@ -203,6 +203,14 @@ inline constexpr double moves_explained = 0.25;    // of their square left at mo
 inline constexpr double least_determinant = 1e-9;  // below it flow and fall of pressure are one
 }  // namespace exchanged
 
+// Of a load beside the pressures' force (diagnose/load_sign.cpp). Chosen by hand: a load that moves the pressures as
+// far as friction does correlates by chance alone.
+namespace load_sign {
+inline constexpr double much_of_force = 0.1;  // variance of the load over that of the pressures' force, at least
+inline constexpr double against = -0.7;       // correlation, at most
+inline constexpr double fewest = 100;         // samples
+}  // namespace load_sign
+
 // What check-log finds suspicious (diagnose/survey.cpp): it changes no verdict. Chosen by hand; not examined.
 namespace survey_of_log {
 inline constexpr double much_jitter = 0.02;       // rms of the steps over the usual one
@@ -218,7 +226,8 @@ inline constexpr double of_noise_alone = 12.0;
 inline constexpr double spool_lag = 4e-3, piston_lag = 10e-3;  // [s] within which each answers the drive
 inline constexpr double half_window = 10e-3;                   // [s] of the difference that stands for piston speed
 inline constexpr double with = 0.3, against = -0.5;            // correlations: at most one way, at least the other
-// Of the supply, medians: return lines are laid out for some per cent; a fifth throttles the valve, or is another column
+// Of the supply, medians: return lines are laid out for some per cent; a fifth throttles the valve, or is another
+// column
 inline constexpr double high_return = 0.2;
 }  // namespace survey_of_log
 

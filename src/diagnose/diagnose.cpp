@@ -7,6 +7,7 @@
 #include "base/error.h"
 #include "base/stages.h"
 #include "diagnose/constants.h"
+#include "diagnose/flow_into_chambers.h"
 #include "diagnose/gross.h"
 #include "diagnose/hypotheses.h"
 #include "diagnose/judgeable.h"
@@ -36,6 +37,7 @@
 #include "servodx/table.h"
 #include "servodx/tune.h"
 #include "signals/rig_content.h"
+#include "signals/usual_step.h"
 #include "simulate/scenario.h"
 #include "tune/tune.h"
 
@@ -203,14 +205,17 @@ std::vector<VisibleFault> visible_of(const HypothesisFits& fits) {
   return out;
 }
 
-// Of several logs each log's figures; the worst stands out among all.
-void look_at_records(const std::vector<Log>& logs, const Ready& ready, const ParameterVector& base, int threads,
-                     Assessment& out) {
+// Of several logs each log's figures; the worst stands out among all. Pressures that follow the other port's simulation
+// are exchanged, unless the flow into the chambers says otherwise: a load with its sign turned does that too.
+void look_at_records(const std::vector<Log>& logs, const Ready& ready, const ParameterVector& base, const RigFile& rig,
+                     int threads, Assessment& out) {
   out.current_recorded = true;
   for (std::size_t l = 0; l < logs.size(); ++l) {
     const LogData& data = ready.every_sample(l);
     for (RecordFigure& f : record_figures(logs[l], data, base)) out.figures.push_back(std::move(f));
-    for (const BrokenSensor& b : broken_sensors(data, reference_of(data, base, threads))) out.broken.push_back(b);
+    const bool stand = chambers_by_flow(logs[l], rig, 1 / usual_step(logs[l].time)) == Chambers::as_they_stand;
+    for (const BrokenSensor& b : broken_sensors(data, reference_of(data, base, threads)))
+      if (!(stand && b.finding == SensorFinding::swapped_ports)) out.broken.push_back(b);
     out.current_recorded = out.current_recorded && data.scenario.current_measured;
   }
 }
@@ -340,7 +345,7 @@ Assessment assess_pool(const std::vector<Log>& logs, const Table& tuned, const R
   if (!stopped) {
     const LogData& first = ready.data.front();
     out.gross = gross_finding(ready.every_sample(0), base);
-    look_at_records(logs, ready, base, options.threads, out);
+    look_at_records(logs, ready, base, rig, options.threads, out);
     out.channels = channels_of(logs, ready, fits.fits.front());
     out.visible = visible_of(fits);
     std::optional<Onset> onset;

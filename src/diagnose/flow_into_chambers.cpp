@@ -16,7 +16,7 @@ namespace {
 using namespace diagnose_constants::exchanged;
 
 struct Recorded {
-  const std::vector<double>&spool, &piston;
+  const std::vector<double>&opening, &piston;
   std::vector<double> supply, return_line;
   long half = 1;  // samples of half a window
 };
@@ -25,11 +25,11 @@ std::vector<double> recorded_or(const Log& log, Signal signal, double fact) {
   return log.has(signal) ? log[signal] : std::vector<double>(log.samples(), fact);
 }
 
-// Sums of opening * sqrt(drop) over the samples ahead of each. `side`: 1 where a positive spool opens to the supply.
+// Sums of opening * sqrt(drop) over the samples ahead of each. `side`: 1 where a positive one leads to the supply.
 std::vector<double> flow_until(const Recorded& r, const std::vector<double>& chamber, double side) {
   std::vector<double> sum(chamber.size() + 1, 0.0);
   for (std::size_t k = 0; k < chamber.size(); ++k) {
-    const double opening = side * r.spool[k];
+    const double opening = side * r.opening[k];
     const double drop = opening > 0 ? r.supply[k] - chamber[k] : chamber[k] - r.return_line[k];
     const double flow = opening * std::sqrt(std::max(0.0, drop));
     sum[k + 1] = sum[k] + (std::isfinite(flow) ? flow : 0.0);
@@ -76,11 +76,14 @@ std::optional<double> left_by(const Recorded& r, const std::vector<double>& a, c
 }  // namespace
 
 std::optional<LeftOfMoves> left_by_flow(const Log& log, const RigFile& rig, double rate) {
-  for (const Signal s : {Signal::pressure_a, Signal::pressure_b, Signal::spool_position, Signal::piston_position})
+  for (const Signal s : {Signal::pressure_a, Signal::pressure_b, Signal::piston_position})
     if (!log.has(s)) return {};
+  const Signal opening = log.has(Signal::spool_position) ? Signal::spool_position
+                         : log.has(Signal::coil_current) ? Signal::coil_current
+                                                         : Signal::command;
   const std::optional<double> stated = rig.fact("supply.pressure");
   if (!log.has(Signal::supply_pressure) && !stated) return {};
-  const Recorded r{log[Signal::spool_position], log[Signal::piston_position],
+  const Recorded r{log[opening], log[Signal::piston_position],
                    recorded_or(log, Signal::supply_pressure, stated.value_or(0)),
                    recorded_or(log, Signal::return_pressure, rig.fact("supply.return_pressure").value_or(0)),
                    std::max(1L, std::lround(half_window_of_flow * rate))};
@@ -88,6 +91,14 @@ std::optional<LeftOfMoves> left_by_flow(const Log& log, const RigFile& rig, doub
   const auto stand = left_by(r, a, b), exchanged = left_by(r, b, a);
   if (!stand || !exchanged) return {};
   return LeftOfMoves{*stand, *exchanged};
+}
+
+Chambers chambers_by_flow(const Log& log, const RigFile& rig, double rate) {
+  const std::optional<LeftOfMoves> left = left_by_flow(log, rig, rate);
+  const auto tells = [](double one, double other) { return one < moves_explained && one < exchanged_leaves * other; };
+  if (left && tells(left->exchanged, left->as_they_stand)) return Chambers::exchanged;
+  if (left && tells(left->as_they_stand, left->exchanged)) return Chambers::as_they_stand;
+  return Chambers::not_told;
 }
 
 }  // namespace servodx

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "base/tiny.h"
 #include "diagnose/constants.h"
 #include "diagnose/motion.h"
 #include "parameters/list.h"
@@ -122,7 +123,7 @@ std::optional<double> driver_since(const Blocks& command, const Blocks& current,
   for (std::size_t i = 1; i < square.size(); ++i) {
     before += square[i - 1];
     const double m = static_cast<double>(i), after = all - before;
-    const double cost = m * std::log(before / m + 1e-300) + (n - m) * std::log(after / (n - m) + 1e-300);
+    const double cost = m * std::log(before / m + tiny) + (n - m) * std::log(after / (n - m) + tiny);
     if (after / (n - m) > k::variance_step * before / m && cost < least) least = cost, change = i;
   }
   return change > 0 ? std::optional<double>(command.time[at[change]]) : std::nullopt;

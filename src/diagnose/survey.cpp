@@ -7,6 +7,7 @@
 #include "base/celsius.h"
 #include "base/median.h"
 #include "diagnose/constants.h"
+#include "diagnose/load_sign.h"
 #include "diagnose/swapped.h"
 #include "evidence/conditions.h"
 #include "fit/log_data.h"
@@ -180,7 +181,7 @@ void add_notes_of_reader(const Log& log, LogSurvey& s) {
                           note.text.starts_with(front) ? note.text.substr(front.size()) : note.text,
                           {},
                           false,
-                          note.kind == Note::Kind::ignored_columns});
+                          note.kind == Note::Kind::ignored_columns || note.kind == Note::Kind::preamble});
   }
 }
 
@@ -229,6 +230,7 @@ void find_suspicious(const Log& log, const RigFile& rig, LogSurvey& s) {
   const bool both_turned = std::count_if(s.findings.begin(), s.findings.end(), is_turned) > 1;
   for (Finding& each : swapped_channels(log, rig, s.rate))
     if (!both_turned || !of_chambers(each)) s.findings.push_back(std::move(each));
+  if (auto load = load_against_pressures(log, rig, s.rate)) s.findings.push_back(std::move(*load));
   add_notes_of_reader(log, s);
 }
 

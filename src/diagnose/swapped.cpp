@@ -99,20 +99,24 @@ bool pressures_answer_otherwise(const Log& log, double rate) {
   return partial(0) < -against && partial(1) > against;
 }
 
-// The oil that the spool lets in moves the piston as it should, were each column the other chamber's.
-bool flow_moves_otherwise(const Log& log, const RigFile& rig, double rate) {
-  const std::optional<LeftOfMoves> left = left_by_flow(log, rig, rate);
-  return left && left->exchanged < moves_explained && left->exchanged < exchanged_leaves * left->as_they_stand;
+// What the flow says stands above what the stiffness says: a leak across the piston upsets the second alone.
+const char* why_exchanged(const Log& log, const RigFile& rig, double rate) {
+  switch (chambers_by_flow(log, rig, rate)) {
+    case Chambers::exchanged:
+      return "the oil that the spool lets in moves the piston as it does only with 'pressure_a' and 'pressure_b' "
+             "exchanged";
+    case Chambers::as_they_stand:
+      return nullptr;
+    case Chambers::not_told:
+      break;
+  }
+  return pressures_answer_otherwise(log, rate)
+             ? "'pressure_a' - 'pressure_b' falls where the spool lets oil into A, and rises with the piston's speed"
+             : nullptr;
 }
 
 void find_chambers(const Log& log, const RigFile& rig, double rate, std::vector<Finding>& found) {
-  const char* const why =
-      pressures_answer_otherwise(log, rate)
-          ? "'pressure_a' - 'pressure_b' falls where the spool lets oil into A, and rises with the piston's speed"
-      : flow_moves_otherwise(log, rig, rate)
-          ? "the oil that the spool lets in moves the piston as it does only with 'pressure_a' and 'pressure_b' "
-            "exchanged"
-          : nullptr;
+  const char* const why = why_exchanged(log, rig, rate);
   if (!why) return;
   found.push_back({FindingKind::swapped,
                    fmt::format("{}: are the two columns exchanged? Mend [columns] of the rig file, or the plugs", why),

@@ -1,6 +1,7 @@
 // The front door of `baseline`: both halves of it, what faults gain and what causes score on healthy logs, and its
 // file.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <chrono>
@@ -8,6 +9,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <set>
 #include <utility>
 
 #include "base/atomic_file.h"
@@ -32,6 +34,7 @@
 #include "servodx/trouble.h"
 #include "servodx/tune.h"
 #include "signals/rig_content.h"
+#include "signals/signal.h"
 #include "store/baseline_file.h"
 #include "store/baseline_parts.h"
 #include "store/healthy_file.h"
@@ -78,6 +81,25 @@ report::Header header_of(const std::vector<Log>& logs, const Tuned& tuned, const
 Stages stages_of_causes(const Tuned& tuned, const Rig& rig, const BaselineOptions& options) {
   if (!options.watch.checkpoint) return {};
   return {options.watch, "healthy causes", content_hash(tuned.table), content_bytes(rig)};
+}
+
+// That every log holds.
+std::vector<std::string> signals_of_all(const std::vector<Log>& logs) {
+  std::vector<std::string> out;
+  for (const SignalInfo& s : signal_list)
+    if (s.signal != Signal::time &&
+        std::all_of(logs.begin(), logs.end(), [&](const Log& l) { return l.has(s.signal); }))
+      out.emplace_back(s.name);
+  return out;
+}
+
+// Keys that either says and the other does not, or says otherwise.
+std::vector<std::string> told_apart(const RigStatements& a, const RigStatements& b) {
+  std::set<std::string> out;
+  for (const auto& [from, to] : {std::pair{&a, &b}, std::pair{&b, &a}})
+    for (const auto& [key, value] : *from)
+      if (const auto other = to->find(key); other == to->end() || other->second != value) out.insert(key);
+  return {out.begin(), out.end()};
 }
 
 // Whether the table says what the bytes say that its `sha256` is of: rows can be changed in memory.
@@ -132,6 +154,7 @@ Baseline make_baseline(const std::vector<Log>& logs, const Tuned& tuned, const R
   header.simulations = counts.simulations, header.failed_simulations = counts.failed;
   header.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 
+  parts.of = BaselineOf{statements_of(rig), signals_of_all(logs)};
   parts.text = report::dump(header, report::baseline_json(parts));
   parts.sha256 = sha256(parts.text);
   Baseline out = of_parts(std::move(parts));
@@ -147,6 +170,7 @@ Baseline read_baseline(const std::string& path) {
   parts.detection = std::move(file.baseline);
   parts.sha256 = file.sha256;
   parts.rig_file = file.rig_file;
+  parts.of = std::move(file.of);
   parts.text = read_file(path);
   try {
     parts.causes = store::read_healthy(path);
@@ -163,6 +187,35 @@ Baseline read_baseline(const std::string& path) {
 void require_causes(const Baseline& baseline) { causes_of(baseline); }
 
 void write_baseline(const std::string& path, const Baseline& baseline) { write_file(path, parts_of(baseline).text); }
+
+std::vector<Note> notes_beside(const Baseline& baseline, const Rig& rig, const std::vector<Log>& logs) {
+  const std::optional<BaselineOf>& of = parts_of(baseline).of;
+  std::vector<Note> notes;
+  if (!of) return notes;
+  if (std::vector<std::string> keys = told_apart(of->rig, statements_of(rig)); !keys.empty() && !rig.path.empty()) {
+    constexpr std::size_t most = 6;
+    const std::size_t more = keys.size() - std::min(most, keys.size());
+    keys.resize(keys.size() - more);
+    notes.push_back({Note::Kind::other_rig,
+                     fmt::format("{} SAYS OTHER THINGS OF THE RIG THAN THE FILE THAT THE BASELINE WAS MADE WITH: {}{}; "
+                                 "what follows is in doubt: give that file, or make table and baseline anew{}",
+                                 rig.path, fmt::join(keys, ", "), more ? fmt::format(" and {} more", more) : "",
+                                 mark_of(Trouble::other_rig))});
+  }
+  for (const Log& log : logs) {
+    std::vector<std::string> lacking;
+    for (const SignalInfo& s : signal_list)
+      if (!log.has(s.signal) && std::find(of->signals.begin(), of->signals.end(), s.name) != of->signals.end())
+        lacking.emplace_back(s.name);
+    if (!lacking.empty())
+      notes.push_back(
+          {Note::Kind::lacking_channels,
+           fmt::format("{}: lacks {}, which every log of the baseline holds: the verdict sees less, and the "
+                       "baseline's rate is not promised for it; map its columns in the rig file",
+                       log.path, fmt::join(lacking, ", "))});
+  }
+  return notes;
+}
 
 std::optional<Note> require_same_table(const Baseline& baseline, const Tuned& tuned) {
   parts_of(baseline);

@@ -143,6 +143,7 @@ Verdict diagnose_pool(const std::vector<Log>& logs, const Tuned& tuned, const Ri
   Assessment assessment = assess_pool(logs, tuned.table, rig, options);
   if (options.watch.stopped()) return interrupted_verdict(assessment);
   if (of_baseline) assessment.notes.push_back(*of_baseline);
+  for (Note& note : notes_beside(baseline, rig, logs)) assessment.notes.push_back(std::move(note));
   Diagnosis d = judge(std::move(assessment), parts_of(baseline).detection);
   set_beside_tuning(d.conditions, tuning_points(parts_of(baseline).detection, tuned.table));
   const bool asks = d.doubt == Doubt::no_fault && options.explain_unknown;

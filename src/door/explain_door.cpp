@@ -101,6 +101,7 @@ Explanation explain(const std::vector<Log>& logs, const Tuned& tuned, const Rig&
   at_its_rate.level = baseline.asked;
   ExplainResult result = explain_logs(logs, tuned.table, rig, &causes, at_its_rate);
   if (of_baseline) result.notes.push_back(*of_baseline);
+  for (Note& note : notes_beside(baseline, rig, logs)) result.notes.push_back(std::move(note));
   return explanation_of(std::move(result));
 }
 

@@ -7,9 +7,9 @@
 #include "prognose/monitor.h"
 #include "servodx/log.h"
 #include "servodx/monitor.h"
+#include "servodx/note.h"
 #include "servodx/rig.h"
 #include "servodx/table.h"
-#include "servodx/note.h"
 
 namespace servodx {
 

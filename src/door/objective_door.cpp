@@ -17,7 +17,6 @@
 #include "optimise/box_least_squares.h"
 #include "optimise/differences.h"
 #include "optimise/unit_cube.h"
-#include "optimise/unit_cube.h"
 #include "servodx/data_sheet.h"
 #include "servodx/error.h"
 #include "servodx/log.h"

@@ -7,6 +7,7 @@
 #include "diagnose/judge.h"
 #include "explain/explain.h"
 #include "fit/bode.h"
+#include "fit/candidate_of.h"
 #include "fit/log_data.h"
 #include "fit/replay.h"
 #include "report/diagnose/diagnosis_words.h"
@@ -24,7 +25,6 @@
 #include "store/logo_file.h"
 #include "store/truth_file.h"
 #include "tune/tune.h"
-#include "fit/candidate_of.h"
 
 namespace servodx {
 

@@ -12,7 +12,7 @@ enum class Freed {
   without_supply,       // where a log lacks the supply pressure: a measured one holds its droop
   without_return,       // the same of the return pressure
   across_temperatures,  // where logs of known temperatures differ
-  with_long_lines,      // oil in the lines stands between the pressure taps and the cylinder
+  with_long_lines,      // of hoses and pipes that ring within the band of logs
 };
 
 // How `explain` seeks an effect.

@@ -1,14 +1,15 @@
-// Oil in long lines between the pressure taps at the valve and the cylinder. A metre of it weighs little, but the
-// piston sees that mass times the square of the areas' ratio; and the drop along it stands between what is measured and
+// Oil in long lines between valve and cylinder. A metre of it weighs little, but the piston sees that mass times the
+// square of the areas' ratio; and with pressure taps at the valve the drop along it stands between what is measured and
 // what moves the piston (Merritt, Hydraulic Control Systems, 1967, ch. 3; Watton, Fluid Power Systems, 1989, lumped
 // line).
 //
 // One lump a line: half of the walls' and the line's compliance (hose_compliance) stands at the valve, where the base
 // states' pressures are, the other half with the chamber behind a mass of oil. States: flow in the line and pressure
 // in the cylinder, for A and for B. Good up to about half of the line's first resonance; waves are left out, and so is
-// what bends add to the laminar drop. The model's hose_resistance stays ahead of the tap.
+// what bends add to the laminar drop. The model's hose_resistance stays at the valve, ahead of the line.
 //
-// Where the taps sit at the cylinder the oil is a mass behind the edges, which a log hardly shows: not for such rigs.
+// The pressures are measured somewhere along the line: between the valve's and the cylinder's in proportion to the
+// place. At the cylinder the oil is a mass between the edges and what is measured.
 #pragma once
 #include <tuple>
 
@@ -16,6 +17,8 @@
 #include "effects/effect.h"
 #include "model/chamber.h"
 #include "model/hooks.h"
+#include "model/shown.h"
+#include "model/state.h"
 #include "parameters/list.h"
 
 namespace servodx {
@@ -23,17 +26,19 @@ namespace servodx {
 struct LineInertia {
   static constexpr const char* name = "line_inertia";
   static constexpr const char* place = "piston_force";
-  static constexpr const char* meaning = "oil in long lines between the pressure taps and the cylinder";
+  static constexpr const char* meaning = "oil in long lines between the valve and the cylinder";
   static constexpr Freed freed = Freed::with_long_lines;
   static constexpr const char* best_test =
       "fast steps with taps at the valve and at the cylinder: the two part by the piston's acceleration";
   static constexpr int n_states = 4;  // flow in line A, pressure of chamber A, the same of B
-  static constexpr int n_parameters = 3;
+  static constexpr int n_parameters = 4;
   static constexpr EffectParameter parameters[n_parameters] = {
       {"line_inertance", "kg/m4", 0.0, 0.0, 5e8, 1e7, "density times length over area of one line"},
       {"line_resistance", "Pa s/m3", 1e8, 0.0, 1e11, 1e8, "laminar drop along a line per flow, in oil at 40 degC",
        false},
       {"line_loss", "Pa s2/m6", 1e11, 0.0, 1e14, 1e11, "turbulent drop along a line per flow squared", false},
+      {"line_tap", "-", 0.0, 0.0, 1.0, 0.5, "where along a line its pressure is measured: 0 the valve, 1 the cylinder",
+       false},
   };
   // A tenth of a millimetre of line: keeps the equations finite while nothing of them acts.
   static constexpr double least_inertance = 1e3;  // [kg/m4]
@@ -45,8 +50,10 @@ struct LineInertia {
   // tenth of a line that matters. Level at 0: a fit that wants no line must see none there, nor a step beside it.
   template <class V>
   static auto acts(const V& view) {
-    using T = typename V::Scalar;
-    const auto inertance = view.template own<LineInertia, 0>();
+    return part_on<typename V::Scalar>(view.template own<LineInertia, 0>());
+  }
+  template <class T, class X>
+  static auto part_on(const X& inertance) {
     const auto square = inertance * inertance;
     return square * inverse(square + T(half_on * half_on));
   }
@@ -132,6 +139,12 @@ struct LineInertia {
                            line_rate<1>(view),
                            (line_flow<1>(view) + leak + pick<row::piston_area_b>(view.p) * v) *
                                chamber_stiffness(chamber_volume_b(view), walls, chamber<1>(view), view.d));
+  }
+  template <class T>
+  static void measured(T* out, const T* y, const T* own, const T* q) {
+    const T along = part_on<T>(q[0]) * q[3];
+    out[shown::pressure_a] = y[s_p_a] + along * (own[1] - y[s_p_a]);
+    out[shown::pressure_b] = y[s_p_b] + along * (own[3] - y[s_p_b]);
   }
   // The lines carry what the piston sweeps.
   template <class T>

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/tiny.h"
 #include "explain/constants.h"
 #include "explain/ties.h"
 #include "explain/usual_error.h"
@@ -58,7 +59,7 @@ ReplaySubject::ReplaySubject(const ValveSubject& valve, const Point& at, const K
       const auto n = static_cast<long>(part.windows.size());
       Eigen::VectorXd here(n);
       for (long i = 0; i < n; ++i) here[i] = missing[part.windows[static_cast<std::size_t>(i)]];
-      sigma_.emplace_back(part.windows.size(), std::max(1e-300, rms_of_rows(here)));
+      sigma_.emplace_back(part.windows.size(), std::max(tiny, rms_of_rows(here)));
       time_.push_back(std::move(time));
       series_.push_back({kind.name, kind.unit, static_cast<int>(l), first, n, nullptr, nullptr});
       parts_.push_back(std::move(part));
@@ -162,7 +163,7 @@ bool ReplaySubject::rescale(const Eigen::VectorXd& rows) {
   const Eigen::VectorXd r = physical(rows);
   for (std::size_t i = 0; i < series_.size(); ++i) {
     Series& s = series_[i];
-    weigh_by_usual(r.segment(s.first, s.count), usual_, 1e-300, s, sigma_[i]);
+    weigh_by_usual(r.segment(s.first, s.count), usual_, tiny, s, sigma_[i]);
   }
   return !series_.empty();
 }

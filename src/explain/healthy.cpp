@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "base/student.h"
+#include "base/tiny.h"
 #include "evidence/constants.h"
 #include "evidence/excess_trend.h"
 #include "evidence/log_scatter.h"
@@ -46,7 +47,7 @@ struct Scatter {
   double tau2 = 0, phi2 = 1;
   double mean = 0, mean_variance = 0, slope = 0, slope_variance = 0, middle = 0, degrees = 1;
   double log_likelihood = -1e300;  // twice
-  double variance(double square) const { return tau2 + phi2 * square + 1e-300; }
+  double variance(double square) const { return tau2 + phi2 * square + tiny; }
   double at(double thickness) const { return mean + (std::isfinite(thickness) ? slope * (thickness - middle) : 0.0); }
   double variance_at(double thickness) const {
     const double off = std::isfinite(thickness) ? thickness - middle : 0.0;
@@ -77,7 +78,7 @@ Scatter scatter_of(const std::vector<Size>& sizes, bool line) {
   pool(sizes, line, alike);
   double q = 0, w = 0, w2 = 0, w2xx = 0;  // Cochran's, and what it would be without scatter
   for (const Size& z : sizes) {
-    const double v = z.square + 1e-300, off = z.size - alike.at(z.thickness), x = z.thickness - alike.middle;
+    const double v = z.square + tiny, off = z.size - alike.at(z.thickness), x = z.thickness - alike.middle;
     q += off * off / v, w += 1 / v, w2 += 1 / (v * v), w2xx += x * x / (v * v);
   }
   const double taken = w2 / w + w2xx * alike.slope_variance;
@@ -357,7 +358,7 @@ HealthyTest::HealthyTest(const HealthyReference& reference, double thickness)
     }
   for (auto& [name, c] : causes_)
     for (std::size_t i = 0; i < n; ++i)
-      if (c.score[i]) c.surprise[i] = -std::log(std::max(1e-300, by_law(c, {*c.score[i]}, static_cast<int>(i))));
+      if (c.score[i]) c.surprise[i] = -std::log(std::max(tiny, by_law(c, {*c.score[i]}, static_cast<int>(i))));
   smallest_.assign(n, 1.0);
   for (const auto& [name, c] : causes_)
     for (std::size_t i = 0; i < n; ++i)
@@ -373,7 +374,7 @@ const HealthyTest::OfCause* HealthyTest::of(const HealthyScore& cause) const {
 double HealthyTest::alone(const std::vector<HealthyScore>& logs) const {
   const OfCause* c = of(logs.front());
   if (!c) return 1;
-  return believed(*c, -std::log(std::max(1e-300, by_law(*c, logs, -1))), -1, logs.front().prior);
+  return believed(*c, -std::log(std::max(tiny, by_law(*c, logs, -1))), -1, logs.front().prior);
 }
 
 // If the law holds, surprises are exponential with mean one, and so it is believed until the logs say otherwise: their

@@ -8,6 +8,7 @@
 #include <numbers>
 #include <numeric>
 
+#include "base/tiny.h"
 #include "explain/constants.h"
 #include "fit/error_model.h"
 #include "fit/log_data.h"
@@ -254,7 +255,7 @@ void add_spectra(ShownChannel& to, const Welch& welch) {
     // Hann: mean square 3/8; one-sided density.
     to.spectrum.push_back(
         {welch.frequency(f), std::sqrt(2 * welch.dt * welch.xx[k] / (welch.windows * Welch::length * 0.375))});
-    to.coherence.push_back({welch.frequency(f), std::norm(welch.xy[k]) / std::max(1e-300, welch.xx[k] * welch.yy[k])});
+    to.coherence.push_back({welch.frequency(f), std::norm(welch.xy[k]) / std::max(tiny, welch.xx[k] * welch.yy[k])});
   }
 }
 

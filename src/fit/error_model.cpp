@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "base/tiny.h"
 #include "fit/log_data.h"
 #include "optimise/unit_cube.h"
 #include "parameters/table.h"
@@ -176,7 +177,7 @@ class ChannelCost {
 // Floor and slope of the least cost. Two numbers, a smooth bowl in their logs: coarse grid, then halving.
 std::pair<double, double> descend(const ChannelCost& cost) {
   const double rms = cost.rms, rms_activity = cost.rms_activity;
-  double lf = std::log(std::max(rms, 1e-300)), ls = std::log(rms / std::max(rms_activity, 1e-300));
+  double lf = std::log(std::max(rms, tiny)), ls = std::log(rms / std::max(rms_activity, tiny));
   double best = cost(std::exp(lf), std::exp(ls));
   for (double step = first_step; step > last_step; step *= 0.5)
     for (bool moved = true; moved;) {

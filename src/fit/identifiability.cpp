@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "base/tiny.h"
 #include "optimise/ceres_covariance.h"
 
 namespace servodx {
@@ -70,7 +71,7 @@ Eigen::MatrixXd covariance_of(const Eigen::MatrixXd& jacobian, const std::vector
   const Eigen::MatrixXd gram = jacobian.transpose() * jacobian;
   Eigen::VectorXd scale(m);
   Eigen::MatrixXd g(m, m);
-  for (long r = 0; r < m; ++r) scale[r] = std::sqrt(std::max(gram(at[r], at[r]), 1e-300));
+  for (long r = 0; r < m; ++r) scale[r] = std::sqrt(std::max(gram(at[r], at[r]), tiny));
   for (long r = 0; r < m; ++r)
     for (long c = 0; c < m; ++c) g(r, c) = gram(at[r], at[c]) / (scale[r] * scale[c]);
   const std::optional<Eigen::MatrixXd> by_ceres = covariance_by_ceres(g);

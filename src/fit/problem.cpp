@@ -8,6 +8,7 @@
 
 #include "base/bytes.h"
 #include "base/sha256.h"
+#include "base/tiny.h"
 #include "signals/filters.h"
 #include "simulate/scenario.h"
 
@@ -49,7 +50,7 @@ FitProblem::FitProblem(std::vector<const LogData*> logs, ParameterVector base, s
     for (const FitChannel& c : log->channels) {
       options_.wanted[c.simulated] = true;
       offsets.push_back(at);
-      sigmas.emplace_back(log->scenario.time.size(), std::max(c.noise, 1e-300));
+      sigmas.emplace_back(log->scenario.time.size(), std::max(c.noise, tiny));
       drifts.emplace_back();
       if (c.filter.drift > 0.0) drifts.back().emplace(log->scenario.time, c.measured, c.filter.drift);
       at += static_cast<long>(log->scenario.time.size());

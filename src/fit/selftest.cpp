@@ -6,6 +6,7 @@
 
 #include "base/error.h"
 #include "base/random.h"
+#include "base/tiny.h"
 #include "fit/candidate_of.h"
 #include "fit/chart.h"
 #include "fit/free_values.h"
@@ -64,7 +65,7 @@ struct Experiment {
 
   FitProblem problem(const LogData& log) const {
     FitProblem out({&log}, base, free, simulate);
-    for (std::size_t c = 0; c < noise.size(); ++c) out.set_sigma(0, static_cast<int>(c), std::max(noise[c], 1e-300));
+    for (std::size_t c = 0; c < noise.size(); ++c) out.set_sigma(0, static_cast<int>(c), std::max(noise[c], tiny));
     return out;
   }
 };

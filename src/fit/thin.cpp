@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/tiny.h"
 #include "fit/ports_of.h"
 #include "servodx/log.h"
 #include "servodx/note.h"
@@ -41,7 +42,7 @@ double creeping_time(const Log& log, const RigFile& rig) {
   const Signal drive = log.has(Signal::coil_current) ? Signal::coil_current : Signal::command;
   if (ports_of(log, rig) == Ports::actuator || log.samples() < 3 || !log.has(drive)) return 0;
   const double travel = thin_travel * rig.fact("valve.rated_current").value_or(0.02);
-  return std::min(thin_time, travel / std::max(fastest(log.time, log[drive], usual_step(log.time)), 1e-300));
+  return std::min(thin_time, travel / std::max(fastest(log.time, log[drive], usual_step(log.time)), tiny));
 }
 
 }  // namespace

@@ -14,6 +14,7 @@
 //     nozzle_land(p)       [m]   added to the width of the nozzles' faces
 //     screen_drop(p)       [Pa]  laminar drop of the clean pilot filter at rest, in oil at 40 degC
 //     seal_film_speed(p)   [m/s] added to the speed at which the piston's seals slide on oil
+//     seal_yield(p)        [-]   added to how far the piston's seals yield before they slip, over the usual seal's
 //     seal_shear(p)        [-]   share of the piston's viscous friction in proportion to the viscosity
 //     seal_dry(p)          [-]   share of it that the viscosity leaves alone
 //     spool_yield(p)       [m]   added to the way over which the spool's dry friction is taken up
@@ -30,6 +31,8 @@
 //     derivative(view)     tuple of the derivatives of its own states
 //     at_rest(own, y, q, p)  sets its own states to where they rest beside the base states y, q: its own parameters, p:
 //     the rows; without it they rest at 0
+//     measured(shown, y, own, q)  puts what sensors are exposed to in place of the base model's among what is shown,
+//     before any sensor's lag and gain; own: its own states
 // A place without an effect adds nothing, not even a zero.
 #pragma once
 #include <tuple>
@@ -184,6 +187,7 @@ SERVODX_FIXED_HOOK(nozzle_2_share)
 SERVODX_FIXED_HOOK(nozzle_land)
 SERVODX_FIXED_HOOK(screen_drop)
 SERVODX_FIXED_HOOK(seal_film_speed)
+SERVODX_FIXED_HOOK(seal_yield)
 SERVODX_FIXED_HOOK(seal_shear)
 SERVODX_FIXED_HOOK(seal_dry)
 SERVODX_FIXED_HOOK(spool_yield)
@@ -217,6 +221,19 @@ void effects_at_rest([[maybe_unused]] T* y, [[maybe_unused]] const T* p, EffectL
         if constexpr (requires { E::at_rest(y, y, p, p); })
           E::at_rest(y + n_base_states + EffectList<E...>::template state_offset<E>(), y,
                      p + n_parameters + EffectList<E...>::template parameter_offset<E>(), p);
+      }(),
+      ...);
+}
+
+// shown: as model/shown.h has them; y: all states.
+template <class T, class... E>
+void effects_measured([[maybe_unused]] T* shown, [[maybe_unused]] const T* y, [[maybe_unused]] const T* p,
+                      EffectList<E...>) {
+  (
+      [&] {
+        if constexpr (requires { E::measured(shown, y, y, p); })
+          E::measured(shown, y, y + n_base_states + EffectList<E...>::template state_offset<E>(),
+                      p + n_parameters + EffectList<E...>::template parameter_offset<E>());
       }(),
       ...);
 }

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "base/tiny.h"
 #include "prognose/constants.h"
 #include "prognose/growth_law.h"
 
@@ -159,7 +160,7 @@ void GrowthSearch::take(const GrownFit& at, const Eigen::Ref<const Eigen::Matrix
     g.log_evidence += before;
     // A prior cut to one side: twice the part of the posterior that lies there.
     if (prior_.direction != 0 && !prior_.of_drop)
-      g.log_evidence += std::log(std::max(1e-300, 2 * normal_cdf(prior_.direction * g.mean / std::sqrt(g.variance))));
+      g.log_evidence += std::log(std::max(tiny, 2 * normal_cdf(prior_.direction * g.mean / std::sqrt(g.variance))));
     evidences_.push_back(g.log_evidence);
     of_part_[at.part] = std::max(of_part_[at.part], g.log_evidence);
     best_ = std::max(best_, g.log_evidence);

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "base/median.h"
+#include "base/tiny.h"
 #include "prognose/constants.h"
 #include "prognose/reading_scale.h"
 
@@ -53,7 +54,7 @@ std::vector<GrowthPoint> at_the_end(std::vector<GrowthPoint> points, const Growt
       const double sigma = std::hypot(std::sqrt(p.variance), all.growth().noise);
       const double curve = all.expected(p), z = (p.y - curve) / sigma;
       const double ratio = std::exp(-0.5 * z * z) * std::numbers::sqrt2 / std::sqrt(std::numbers::pi) /
-                           std::max(std::erfc(-z / std::numbers::sqrt2), 1e-300);
+                           std::max(std::erfc(-z / std::numbers::sqrt2), tiny);
       const double bend = std::clamp(ratio * (z + ratio), least_bend, 1.0);
       points[i].y = curve - sigma * ratio / bend;
       points[i].variance = p.variance + sigma * sigma * (1 / bend - 1);
@@ -72,7 +73,7 @@ std::vector<GrowthPoint> set_aside(std::vector<GrowthPoint> points, const Growth
   std::vector<double> away;
   for (std::size_t i = 0; i < points.size(); ++i)
     away.push_back(std::abs(corrected[i] - median_of_neighbours(corrected, i)));
-  const double spread = std::max(deviation_per_median * median(away), 1e-300);
+  const double spread = std::max(deviation_per_median * median(away), tiny);
   for (std::size_t i = 0; i < points.size(); ++i)
     if (away[i] > outlying * std::hypot(spread, std::sqrt(points[i].variance))) points[i].variance += away[i] * away[i];
   return points;

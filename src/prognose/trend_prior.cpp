@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "base/median.h"
+#include "base/tiny.h"
 #include "prognose/check_name.h"
 #include "prognose/constants.h"
 #include "prognose/failure_level.h"
@@ -18,9 +19,9 @@ namespace {
 
 // A growth that matters: half as much again for the paper's checks, the way to failure for a parameter.
 double way_to(const FailureAt& end, const CheckSeries& s, double base) {
-  double scale = s.scale.paper() ? matters_of_paper : std::max(std::abs(base), 1e-300);
+  double scale = s.scale.paper() ? matters_of_paper : std::max(std::abs(base), tiny);
   for (const std::optional<double>& level : {end.lower, end.upper})
-    if (level) scale = std::max(std::abs(end.level(*level, base) - base), 1e-300);
+    if (level) scale = std::max(std::abs(end.level(*level, base) - base), tiny);
   return scale;
 }
 

@@ -35,8 +35,8 @@ class CsvReader {
   void read_header() {
     const long above = pass_lines_above_header(csv_, path_);
     if (above > 0)
-      log_.note(Note::Kind::left_out, fmt::format("{}:{}: the header; left out {} row{} above it", path_,
-                                                  csv_.header_line(), above, above == 1 ? "" : "s"));
+      log_.note(Note::Kind::preamble, fmt::format("{}: the header is in line {}; {} row{} of other text above it",
+                                                  path_, csv_.header_line(), above, above == 1 ? "" : "s"));
     in_row_ = csv_.next_row();
     const std::vector<std::string> units = in_row_ ? units_row(csv_) : std::vector<std::string>{};
     if (!units.empty()) in_row_ = csv_.next_row();

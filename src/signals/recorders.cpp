@@ -7,6 +7,7 @@
 #include <unsupported/Eigen/FFT>
 
 #include "base/error.h"
+#include "base/tiny.h"
 #include "servodx/join.h"
 #include "servodx/log.h"
 #include "signals/constants.h"
@@ -128,7 +129,7 @@ Alignment align(const Series& first, const Series& second, double from, double t
     if (n < 16 || !(sxx - sx * sx / n > 0) || !(syy - sy * sy / n > 0)) return a;
     a.correlation = (sxy - sx * sy / n) / std::sqrt((sxx - sx * sx / n) * (syy - sy * sy / n));
     if (!free_skew) normal(3, 3) = 1;
-    const Eigen::Vector4d scale = normal.diagonal().cwiseSqrt().cwiseMax(1e-300);
+    const Eigen::Vector4d scale = normal.diagonal().cwiseSqrt().cwiseMax(tiny);
     const Eigen::Matrix4d scaled = scale.cwiseInverse().asDiagonal() * normal * scale.cwiseInverse().asDiagonal();
     const Eigen::Vector4d solution =
         scale.cwiseInverse().asDiagonal() * scaled.ldlt().solve(scale.cwiseInverse().asDiagonal() * right);

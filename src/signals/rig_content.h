@@ -2,6 +2,7 @@
 // The mapping of columns is left out, as a log that was read has it in its samples; so are the limits of the acceptance
 // sheet, the name and the serial number.
 #pragma once
+#include <map>
 #include <string>
 
 #include "servodx/rig.h"
@@ -9,5 +10,9 @@
 namespace servodx {
 
 std::string content_bytes(const RigFile& rig);
+
+// The same as words, key by key as in the file: numbers in SI. What the file does not say is left out.
+using RigStatements = std::map<std::string, std::string>;
+RigStatements statements_of(const RigFile& rig);
 
 }  // namespace servodx

@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <sstream>
 #include <utility>
 
 #include "base/csv.h"
@@ -145,7 +146,7 @@ class Reader {
     } else if (key == "lines.fittings") {
       read_fittings(node, key);
     } else if (key == "lines.taps") {
-      rig_.taps_at_cylinder = one_of(node, key, {"valve", "cylinder"}) == "cylinder";
+      rig_.taps = one_of(node, key, {"valve", "cylinder"}) == "cylinder" ? Taps::at_cylinder : Taps::at_valve;
     } else {
       for (const RigFact& fact : rig_facts()) {
         if (fact.key != key) continue;
@@ -541,6 +542,16 @@ class Reader {
   toml::table root_;
 };
 
+// Columns that are still comments, with a question behind.
+std::vector<long> open_questions(const std::string& text) {
+  std::vector<long> out;
+  std::istringstream lines(text);
+  std::string line;
+  for (long at = 1; std::getline(lines, line); ++at)
+    if (line.starts_with("# \"") && line.find("}  # ? ") != std::string::npos) out.push_back(at);
+  return out;
+}
+
 }  // namespace
 
 const std::vector<RigFact>& rig_facts() {
@@ -609,7 +620,9 @@ RigFile read_rig_file(const std::string& path) { return make_rig(path, read_file
 
 RigFile make_rig(const std::string& name, const std::string& text) {
   try {
-    return Reader(name).read(text);
+    RigFile rig = Reader(name).read(text);
+    rig.open_questions = open_questions(text);
+    return rig;
   } catch (const InputError& error) {
     throw_of_key(error);  // quantities are read by who knows of columns only
   }

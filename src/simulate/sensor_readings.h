@@ -42,9 +42,10 @@ struct SensorReadings {
     out[shown::pressure_b] = y[s_p_b];
     out[shown::pilot_pressure_1] = y[s_p_pilot_1];
     out[shown::pilot_pressure_2] = y[s_p_pilot_2];
+    effects_measured(out.data(), y.data(), p, Effects{});
     if (wanted[shown::flow_a] || wanted[shown::flow_b] || wanted[shown::control_flow] || wanted[shown::leakage_flow])
       flows(y, now, p, d, out);
-    out[shown::load_pressure] = y[s_p_a] - y[s_p_b];
+    out[shown::load_pressure] = out[shown::pressure_a] - out[shown::pressure_b];
     out[shown::valve_pressure_drop] = now.supply_pressure - now.return_pressure -
                                       out[shown::load_pressure] * smooth_sign(y[s_x_spool], T(drop_rounding));
     effects(time, out.data(), p);

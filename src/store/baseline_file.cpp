@@ -149,6 +149,22 @@ std::string rig_of(const Json& file) {
   return "";
 }
 
+// Nothing in a file of an earlier version.
+std::optional<BaselineOf> read_made_of(const Reader& read, const Json& file) {
+  const auto found = file.find("made_of");
+  if (found == file.end()) return {};
+  BaselineOf out;
+  const Json &rig = read.at(*found, "made_of.rig"), &signals = read.at(*found, "made_of.signals");
+  if (!rig.is_object()) read.refuse("made_of.rig", "is no object");
+  for (const auto& [key, value] : rig.items()) out.rig[key] = read.text(rig, "made_of.rig." + key);
+  if (!signals.is_array()) read.refuse("made_of.signals", "is no array");
+  for (const Json& signal : signals) {
+    if (!signal.is_string()) read.refuse("made_of.signals", "holds what is no text");
+    out.signals.push_back(signal.get<std::string>());
+  }
+  return out;
+}
+
 }  // namespace
 
 BaselineFile read_baseline(const std::string& path) {
@@ -179,7 +195,8 @@ BaselineFile read_baseline(const std::string& path) {
   b.adequacy_limit = read.number(file, "adequacy_limit", 0, any);
   b.null_limit = read.number(file, "null_limit", 0, 1);
   b.tuned_sha256 = read.text(file, "tuned_sha256");
-  return {std::move(b), sha256(bytes), std::move(notes), rig_of(file), file.contains("explain")};
+  return {
+      std::move(b), sha256(bytes), std::move(notes), rig_of(file), read_made_of(read, file), file.contains("explain")};
 }
 
 }  // namespace servodx::store

@@ -3,19 +3,28 @@
 #pragma once
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "diagnose/baseline.h"
 #include "explain/healthy.h"
 #include "servodx/baseline.h"
 #include "servodx/error.h"
+#include "signals/rig_content.h"
 
 namespace servodx {
+
+// What the healthy logs were read by and hold.
+struct BaselineOf {
+  RigStatements rig;
+  std::vector<std::string> signals;  // that every log holds
+};
 
 struct BaselineParts {
   DetectionBaseline detection;
   std::optional<HealthyReference> causes;    // earlier versions wrote none
   std::optional<InputError> causes_refused;  // why not, where the file was read
   std::string rig_file;                      // that it was made with; empty: none
+  std::optional<BaselineOf> of;              // earlier versions wrote none
   std::string text;                          // of the file
   std::string sha256;                        // of that text
 };

@@ -78,8 +78,7 @@ RigKind rig_kind(const std::vector<Log>& logs, const RigFile& rig) {
   kind.supply_measured = all_hold(Signal::supply_pressure);
   kind.return_measured = all_hold(Signal::return_pressure);
   kind.temperatures_differ = oils_apart(logs);
-  kind.long_lines =
-      !rig.taps_at_cylinder && rig.fact("lines.length").value_or(0.0) >= long_line && rig.fact("lines.bore");
+  kind.long_lines = rig.fact("lines.length").value_or(0.0) >= long_line && rig.fact("lines.bore");
   return kind;
 }
 

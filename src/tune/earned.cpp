@@ -19,6 +19,7 @@
 #include "optimise/robust_loss.h"
 #include "parameters/coordinate.h"
 #include "parameters/list.h"
+#include "tune/constants.h"
 #include "tune/kept.h"
 
 namespace servodx {
@@ -151,10 +152,12 @@ class Elimination {
     for (const FreedEffect& f : effects) asked_.push_back(&f);
   }
 
-  std::vector<EarnedEffect> run(const TuneWatch& watch) {
+  std::vector<EarnedEffect> run(TuneWatch& watch) {
     std::vector<EarnedEffect> kept;
     valley_ = parts_.valley(here_.point, here_.run);
+    const auto all = static_cast<double>(asked_.size());
     while (!asked_.empty() && valley_ && !watch.stopped()) {
+      watch.tell(tune_constants::work.effects.at(1 - static_cast<double>(asked_.size()) / all), problem_);
       auto [k, without] = least_missed();
       if (missed(without) >= least_gain) without = nearer_floor(std::move(without), *asked_[k]);
       const double gain = missed(without);

@@ -60,6 +60,21 @@ TEST(Judging, ABaselineMadeWithARigFileIsNotUsedWithoutOneInSilence) {
   EXPECT_EQ(desk.notes_with("MADE WITH A RIG FILE"), 1);
 }
 
+// By what it says, not by its name or its columns: another recorder needs another mapping.
+TEST(Judging, ARigFileThatSaysOtherThingsThanTheBaselinesIsSaidUnderTheVerdict) {
+  const JudgingDesk desk;
+  const auto verdict = [&] {
+    return desk.run("diagnose b/log.csv --params tuned.csv --baseline base.json --no-explain --quiet --rig rig.toml")
+        .out;
+  };
+  EXPECT_EQ(verdict().find("BEWARE"), std::string::npos) << "an older baseline says nothing of its rig";
+  desk.set("made_of", {{"rig", {{"null_limit", "0.05"}, {"supply.pressure", "1"}}}, {"signals", {"flow_a"}}});
+  const std::string said = verdict();
+  EXPECT_NE(said.find("rig.toml SAYS OTHER THINGS OF THE RIG"), std::string::npos) << said;
+  EXPECT_NE(said.find("supply.pressure"), std::string::npos) << said;
+  EXPECT_NE(said.find("b/log.csv: lacks flow_a, which every log of the baseline holds"), std::string::npos) << said;
+}
+
 TEST(Judging, ARehearsalReadsTheFileOfActions) {
   const JudgingDesk desk;
   desk.write("act.toml", "clogged_philtre = \"abnormal: flush\"\n");
@@ -87,7 +102,8 @@ TEST(Judging, TheLastTestIsOneVerdictBesideOneVerdict) {
   refusal("diagnose b/log.csv", "last.json: column 'results': is no result of 'diagnose'");
 }
 
-// The page has the last test, the valve's frequency response and the place of the test in its head; the JSON the change.
+// The page has the last test, the valve's frequency response and the place of the test in its head; the JSON the
+// change.
 TEST(Judging, AVerdictStandsBesideTheLastOneAndTheTunedValve) {
   const JudgingDesk desk;
   const std::string call = std::string("diagnose b/log.csv --no-explain --quiet") + FleetDesk::judged_with;

@@ -285,7 +285,7 @@ TEST(Init, SaysWhatTheHeaderDoesNotSay) {
   desk.write("recorder.csv", "Recorder 7\n" + log.substr(header));
   const Ended preamble = desk.run("init recorder.csv -o recorder.toml --table recorder.params.csv");
   ASSERT_EQ(preamble.code, 0) << preamble.err;
-  EXPECT_NE(preamble.out.find("left out 1 row above it"), std::string::npos) << preamble.out;
+  EXPECT_NE(preamble.out.find("1 row of other text above it"), std::string::npos) << preamble.out;
   desk.write("units.csv", log.substr(header));
   EXPECT_EQ(desk.run("init units.csv -o units.toml --table units.params.csv").out.find("no unit"), std::string::npos);
 }

@@ -10,8 +10,10 @@
 #include <utility>
 #include <vector>
 
+#include "diagnose/load_sign.h"
 #include "servodx/check_log.h"
 #include "servodx/log.h"
+#include "servodx/rig.h"
 #include "shipped_data.h"
 #include "signals/signal.h"
 
@@ -109,6 +111,46 @@ TEST(Swapped, LogsOfHealthyAndFaultyValvesAreAsTheyShouldBe) {
       ++logs;
     }
   EXPECT_GT(logs, 5);
+}
+
+// The same moves with the load recorded, its sign as it should be (1) or turned (-1).
+Log with_load(double sign) {
+  Log log = slow_moves_under_load();
+  std::vector<double>& load = log.channels[index(Signal::load_force)].value;
+  load.resize(log.samples());
+  for (std::size_t k = 0; k < load.size(); ++k)
+    load[k] = sign * (20e-4 * log[Signal::pressure_a][k] - 10e-4 * log[Signal::pressure_b][k]);
+  return log;
+}
+RigFile unlike_areas() {
+  RigFile rig = shipped_rig();
+  rig.facts["actuator.area_a"] = 20e-4, rig.facts["actuator.area_b"] = 10e-4;
+  return rig;
+}
+
+TEST(LoadSign, ALoadAgainstThePressuresIsFoundAndOneWithThemIsNot) {
+  EXPECT_FALSE(load_against_pressures(with_load(1), unlike_areas(), 1000));
+  const auto found = load_against_pressures(with_load(-1), unlike_areas(), 1000);
+  ASSERT_TRUE(found);
+  EXPECT_EQ(found->kind, FindingKind::sign);
+  EXPECT_EQ(found->signals, std::vector{Signal::load_force});
+  EXPECT_NE(found->text.find("gain = \"-1\""), std::string::npos) << found->text;
+}
+
+TEST(LoadSign, ExchangedChambersAreNotTakenForATurnedLoad) {
+  RigFile rig = unlike_areas();
+  std::swap(rig.facts["actuator.area_a"], rig.facts["actuator.area_b"]);  // so that the force itself is turned
+  EXPECT_FALSE(load_against_pressures(exchanged(with_load(1), Signal::pressure_a, Signal::pressure_b), rig, 1000));
+}
+
+TEST(Swapped, WhereTheSpoolIsNotRecordedTheCurrentStandsForIt) {
+  Log log = slow_moves_under_load();
+  log.channels[index(Signal::command)].value = log[Signal::spool_position];
+  log.channels[index(Signal::coil_current)].value.clear();
+  log.channels[index(Signal::spool_position)].value.clear();
+  ASSERT_FALSE(log.has(Signal::spool_position));
+  EXPECT_FALSE(names(log, Signal::pressure_a, Signal::pressure_b));
+  EXPECT_TRUE(names(exchanged(log, Signal::pressure_a, Signal::pressure_b), Signal::pressure_a, Signal::pressure_b));
 }
 
 }  // namespace

@@ -71,6 +71,18 @@ TEST(Watch, IsToldOfEveryWorkAndABaselineInMemoryBindsToItsTable) {
   EXPECT_EQ(told.parts.size(), 6u);
 
   EXPECT_FALSE(require_same_table(baseline, tuned)) << "nothing to note";
+  EXPECT_TRUE(notes_beside(baseline, rig, {suspect}).empty());
+  Rig thinner = rig;
+  thinner.path = "other.toml", thinner.facts["supply.pressure"] = 140e5, thinner.facts.erase("valve.spool_stroke");
+  Log fewer = suspect;
+  fewer.channels[index(Signal::pressure_b)].value.clear();
+  const std::vector<Note> notes = notes_beside(baseline, thinner, {suspect, fewer});
+  ASSERT_EQ(notes.size(), 2u);
+  EXPECT_EQ(notes[0].kind, Note::Kind::other_rig);
+  EXPECT_NE(notes[0].text.find("supply.pressure, valve.spool_stroke; what follows"), std::string::npos)
+      << notes[0].text;
+  EXPECT_EQ(notes[1].kind, Note::Kind::lacking_channels);
+  EXPECT_NE(notes[1].text.find("lacks pressure_b,"), std::string::npos) << notes[1].text;
   Tuned other = tuned;
   other.table.rows.front().nominal += 1e-3;  // in memory: its hash of bytes stays
   try {

@@ -111,6 +111,38 @@ TEST(LineInertia, BehindStiffOilItIsAMassOnThePiston) {
   EXPECT_NEAR(both / by_itself, 1, 0.1);
 }
 
+// Half way along stands the mean of both ends, and what a log calls the load pressure is between the taps.
+TEST(LineInertia, PressuresAreMeasuredWhereTheTapsSit) {
+  const Scenario steps = made(0.1, 2e-4, [](double t) { return t < 0.02 ? 0.0 : 8e-3; });
+  const auto at = [&](double along) {
+    ParameterVector v = with_lines(2e7, 3e8, 4e11);
+    v[effect_row<LineInertia>(3)] = along;
+    return simulate(steps, v, all_signals());
+  };
+  const Trajectory valve = at(0), middle = at(0.5), cylinder = at(1);
+  double apart = 0;
+  for (const Signal s : {Signal::pressure_a, Signal::pressure_b})
+    for (std::size_t k = 0; k < steps.time.size(); ++k) {
+      const double v = of(valve, s)[k], c = of(cylinder, s)[k];
+      EXPECT_NEAR(of(middle, s)[k], 0.5 * (v + c), 1e-6 * std::abs(v)) << k;
+      apart = std::max(apart, std::abs(v - c));
+    }
+  EXPECT_GT(apart, 1e5) << "a step in these lines takes more than a bar";
+  for (std::size_t k = 0; k < steps.time.size(); ++k) {
+    EXPECT_EQ(of(valve, Signal::piston_position)[k], of(cylinder, Signal::piston_position)[k]) << k;
+    EXPECT_NEAR(of(cylinder, Signal::load_pressure)[k],
+                of(cylinder, Signal::pressure_a)[k] - of(cylinder, Signal::pressure_b)[k], 1e-6);
+  }
+}
+
+TEST(LineInertia, WithoutALineItsTapsAreTheChambers) {
+  const Scenario steps = made(0.1, 1e-3, [](double t) { return t < 0.02 ? 0.0 : 8e-3; });
+  ParameterVector v = nominal_candidate();
+  const Trajectory none = simulate(steps, v, all_signals());
+  v[effect_row<LineInertia>(3)] = 1;
+  EXPECT_EQ(of(simulate(steps, v, all_signals()), Signal::pressure_a), of(none, Signal::pressure_a));
+}
+
 TEST(LineInertia, ShortLinesAreNone) {
   const Scenario steps = made(0.2, 1e-3, [](double t) { return t < 0.05 ? 0.0 : 8e-3; });
   const Trajectory none = simulate(steps, nominal_candidate(), all_signals());

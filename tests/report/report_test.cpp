@@ -721,6 +721,10 @@ TEST(SeparatingTest, TwinsKeepTheirWords) {
   HypothesisResult motor, driver;
   motor.fault = d.fault, driver.fault = d.fault->twin;
   d.assessment.hypotheses = {HypothesisResult{}, motor, driver};
+  EXPECT_EQ(separating_test_of(d), d.fault->twin->test) << "the coil current alone tells the driver";
+  d.fault = find_fault("corner_wear"), d.ambiguous_with = {d.fault->twin};
+  motor.fault = d.fault, driver.fault = d.fault->twin;
+  d.assessment.hypotheses = {HypothesisResult{}, motor, driver};
   EXPECT_EQ(separating_test_of(d), d.fault->test);
 }
 

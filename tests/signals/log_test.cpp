@@ -195,7 +195,7 @@ TEST(Log, LinesOfARecorderAboveTheHeaderAreLeftOutAndTold) {
   const Log log = read("Recorder 5;V2\nrate;1000\n\n" + plain, {}, {.minimum_rows = 2});
   EXPECT_TRUE(same_bits(log[Signal::command], read(plain, {}, {.minimum_rows = 2})[Signal::command]));
   ASSERT_EQ(log.notes.size(), 1u);
-  EXPECT_NE(log.notes.front().text.find("log.csv:4: the header; left out 2 rows above it"), std::string::npos)
+  EXPECT_NE(log.notes.front().text.find("log.csv: the header is in line 4; 2 rows of other text above it"), std::string::npos)
       << log.notes.front().text;
 }
 

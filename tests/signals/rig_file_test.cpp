@@ -87,7 +87,7 @@ TEST(RigFile, EveryKeyIsKeptInSiWithItsLine) {
   EXPECT_EQ(rig.mains_frequency, 50.0);
   EXPECT_EQ(rig.null_limit, 0.04);
   EXPECT_DOUBLE_EQ(*rig.oil_temperature, 318.15);
-  EXPECT_TRUE(rig.taps_at_cylinder);
+  EXPECT_EQ(rig.taps, Taps::at_cylinder);
   EXPECT_EQ(rig.fact("valve.rated_current"), 0.02);
   EXPECT_EQ(rig.fact("valve.dither.amplitude"), 0.2e-3);
   EXPECT_EQ(rig.fact("valve.dither.frequency"), 200.0);
@@ -140,7 +140,7 @@ TEST(RigFile, AnEmptyFileSaysNothing) {
   EXPECT_FALSE(rig.mains_frequency.has_value());
   EXPECT_EQ(rig.null_limit, 0.05);
   EXPECT_FALSE(rig.oil_temperature);
-  EXPECT_FALSE(rig.taps_at_cylinder);
+  EXPECT_EQ(rig.taps, Taps::not_said);
   EXPECT_FALSE(rig.fluid.given);
 }
 

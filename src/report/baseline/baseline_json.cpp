@@ -62,6 +62,7 @@ Json baseline_json(const DetectionBaseline& b) {
 Json baseline_json(const BaselineParts& parts) {
   Json body = baseline_json(parts.detection);
   body["explain"] = healthy_json(parts.causes.value());
+  if (parts.of) body["made_of"] = {{"rig", parts.of->rig}, {"signals", parts.of->signals}};
   return body;
 }
 

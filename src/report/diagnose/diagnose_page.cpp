@@ -135,8 +135,11 @@ Verdict verdict_of(const Diagnosis& d, const DetectionBaseline& baseline, const 
   if (d.onset) v.facts.push_back({"Since", digits(*d.onset, 4) + " s"});
   v.facts.push_back({"Error / threshold", digits(d.error) + " / " + digits(d.threshold)});
   if (!of_log(d)) v.facts.push_back({"Null", null_in_words(d)});
+  if (const auto hidden = detectable_words(d).hidden; d.verdict == VerdictKind::healthy && !hidden.empty())
+    v.facts.push_back({"Blind to", join(hidden)});
   if (!kind.empty()) v.facts.push_back({"Kind", kind});
   if (d.action.of != ActionClass::none) v.facts.push_back({"Action", d.action.text});
+  for (const std::string& doubt : doubts_beside_baseline(d)) v.reasons.push_back("Beware: " + doubt + ".");
   for (const std::string& next : next_calls(d, call)) v.reasons.push_back("Run next: " + next);
   for (std::string& reason : reasons(d, baseline, call)) v.reasons.push_back(std::move(reason));
   return v;

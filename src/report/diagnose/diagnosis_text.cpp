@@ -76,6 +76,7 @@ std::string text_of(const Diagnosis& d, const TextOptions& options) {
   if (const std::string at = conditions_in_words(d.conditions); !at.empty()) table.row({"at", at});
   if (const std::string tuned = tuned_in_words(d.conditions); !tuned.empty()) table.row({"tuned at", tuned});
   if (const std::string far = beyond_in_words(d.conditions); !far.empty()) table.row({"BEYOND", far});
+  for (const std::string& doubt : doubts_beside_baseline(d)) table.row({"BEWARE", doubt});
   if (const std::string kind = words_of(blame_of(d)); !kind.empty()) table.row({"kind", kind});
   if (d.assessment.unjudgeable != Unjudgeable::no) {
     table.row({"action", d.action.text});

@@ -28,6 +28,7 @@
 #include "report/shared/replay_part.h"
 #include "servodx/actions.h"
 #include "servodx/log.h"
+#include "servodx/note.h"
 
 namespace servodx::report {
 namespace {
@@ -65,6 +66,13 @@ std::string headword(const Diagnosis& d) {
       return "UNKNOWN";
   }
   return "";
+}
+
+std::vector<std::string> doubts_beside_baseline(const Diagnosis& d) {
+  std::vector<std::string> out;
+  for (const Note& note : d.assessment.notes)
+    if (note.kind == Note::Kind::other_rig || note.kind == Note::Kind::lacking_channels) out.push_back(note.text);
+  return out;
 }
 
 std::string word_of(Blame blame) {
@@ -353,8 +361,9 @@ std::string logs_of(const Diagnosis& d) {
 std::string separating_test_of(const Diagnosis& d, const CallNames& names) {
   if (!d.fault || d.ambiguous_with.empty()) return "";
   const Fault* rival = rival_of(d);
-  // Only what a fit shows can be planned for, and no test parts twins.
+  // Only what a fit shows can be planned for. No test parts twins but a record that tells one of them.
   const bool twins = rival && (rival->twin == d.fault || d.fault->twin == rival);
+  if (twins && rival->told_by) return std::string(rival->test);
   if (!result_of(d, d.fault) || (rival && !result_of(d, rival)) || twins) return std::string(d.fault->test);
   const std::string wish = rival ? "--between " + planned_fault(d, d.fault) + "," + planned_fault(d, rival)
                                  : "--faults " + planned_fault(d, d.fault);

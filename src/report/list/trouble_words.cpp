@@ -42,6 +42,9 @@ Words words_of(Trouble trouble) {
               "look at the signal's unit, sign, gain and sensor; 'servodx check-log LOG' says more"};
     case Trouble::rig_forgotten:
       return {"the baseline was made with a rig file, and this call names none", "add --rig RIG.toml"};
+    case Trouble::other_rig:
+      return {"the rig file says other things than the one that the baseline was made with",
+              "give that file, or make table and baseline anew with this one"};
   }
   return {"", ""};
 }

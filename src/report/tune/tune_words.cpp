@@ -220,7 +220,7 @@ std::vector<std::string> praise_of(const GoodEnough& g) {
   std::vector<std::string> parts = {fmt::format("it predicts {} as well as it fits, and the search has arrived",
                                                 g.exceptions.empty() ? "logs" : "most logs")};
   if (!g.best.empty())
-    parts.push_back("on logs like these a diagnosis sees every fault at its typical size, and " +
+    parts.push_back("on the log of these that shows it best a diagnosis sees every fault at its typical size, and " +
                     (g.faint.empty() ? "at its mildest" : "may miss at their mildest " + join(g.faint)));
   return parts;
 }
