@@ -34,6 +34,7 @@ struct Note {
     no_causes,         // in the baseline: explain was not asked
     no_log,            // of the rig given: sensors and oil are assumed
     other_rig,         // file than the baseline's
+    own_log,           // of the baseline, judged by it
     lacking_channels,  // that every log of the baseline holds
     interrupted,       // the result rests on a part of what was given
     // A tune.

@@ -60,6 +60,7 @@ class Rig:
 class Note:
     class Kind(_Enum):
         left_out: ClassVar[Note.Kind]
+        preamble: ClassVar[Note.Kind]
         ignored_columns: ClassVar[Note.Kind]
         unmapped_column: ClassVar[Note.Kind]
         gaps: ClassVar[Note.Kind]
@@ -77,6 +78,9 @@ class Note:
         no_baseline: ClassVar[Note.Kind]
         no_causes: ClassVar[Note.Kind]
         no_log: ClassVar[Note.Kind]
+        other_rig: ClassVar[Note.Kind]
+        own_log: ClassVar[Note.Kind]
+        lacking_channels: ClassVar[Note.Kind]
         interrupted: ClassVar[Note.Kind]
         search_end: ClassVar[Note.Kind]
         derivatives: ClassVar[Note.Kind]

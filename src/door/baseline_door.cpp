@@ -203,6 +203,10 @@ std::vector<Note> notes_beside(const Baseline& baseline, const Rig& rig, const s
                                  mark_of(Trouble::other_rig))});
   }
   for (const Log& log : logs) {
+    if (!log.sha256.empty() && std::any_of(baseline.scores.begin(), baseline.scores.end(),
+                                           [&](const auto& s) { return s.sha256 == log.sha256; }))
+      notes.push_back({Note::Kind::own_log, log.path + ": is one of the baseline's own logs, and helped to set the "
+                                                       "threshold that it is judged by"});
     std::vector<std::string> lacking;
     for (const SignalInfo& s : signal_list)
       if (!log.has(s.signal) && std::find(of->signals.begin(), of->signals.end(), s.name) != of->signals.end())

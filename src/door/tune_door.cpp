@@ -8,6 +8,7 @@
 #include "fit/tuned_state.h"
 #include "parameters/table_text.h"
 #include "report/tune/tune_words.h"
+#include "servodx/check_log.h"
 #include "servodx/checkpoint.h"
 #include "servodx/error.h"
 #include "servodx/log.h"
@@ -29,6 +30,16 @@ TuneOptions with_checkpoint(TuneOptions options) {
   return options;
 }
 
+// Columns that do what another's should, or the reverse of what theirs should. A fit takes them for a valve's.
+std::vector<Note> mistaken_columns(const std::vector<Log>& logs, const Rig& rig) {
+  std::vector<Note> out;
+  for (const Log& log : logs)
+    for (const Finding& found : survey(log, rig).findings)
+      if (found.kind == FindingKind::swapped || found.kind == FindingKind::sign)
+        out.push_back({Note::Kind::implausible, log.path + ": " + found.text + mark_of(Trouble::implausible)});
+  return out;
+}
+
 }  // namespace
 
 Tuned tune(const std::vector<Log>& logs, const Table& nominal, const Rig& rig, const TuneOptions& options) {
@@ -42,6 +53,7 @@ Tuned tune(const std::vector<Log>& logs, const Table& nominal, const Rig& rig, c
   out.channels = result->channels;
   out.parameters = result->parameters;
   out.notes = result->notes;
+  for (Note& note : mistaken_columns(logs, rig)) out.notes.push_back(std::move(note));
   out.simulations = result->simulations, out.failed_simulations = result->failed_simulations;
   out.interrupted = result->interrupted;
   out.whole = std::move(result);

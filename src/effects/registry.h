@@ -24,7 +24,6 @@
 #include "effects/screen_drop.h"
 #include "effects/seal_film.h"
 #include "effects/seal_shear.h"
-#include "effects/seal_yield.h"
 #include "effects/sensor_response.h"
 #include "effects/stiction.h"
 #include "effects/supply_droop.h"
@@ -57,7 +56,6 @@ using AllEffects = EffectList<MagneticHysteresis,  //
                               NozzleLand,          //
                               SealFilm,            //
                               SealShear,           //
-                              SealYield,           //
                               NozzleMismatch,      //
                               ReturnDrop,          //
                               ViscositySlope,      //

@@ -88,6 +88,16 @@ double distance(const TestConditions& a, const TestConditions& b) {
   return d;
 }
 
+Apart apart(const TestConditions& a, const TestConditions& b) {
+  Apart out;
+  out.span = ratio_distance(a.drive_span, b.drive_span, like_span) > 1;
+  out.band = ratio_distance(a.drive_band, b.drive_band, like_band) > 1;
+  if (!a.temperature || !b.temperature) return out;
+  const double kelvin = std::abs(*a.temperature - *b.temperature);
+  out.oil = kelvin > like_temperature ? kelvin : 0;
+  return out;
+}
+
 bool is_repeat(const TestConditions& a, const TestConditions& b) { return same_programme(a, b) && distance(a, b) <= 1; }
 
 std::vector<std::size_t> programmes_of(const std::vector<TestConditions>& logs) {

@@ -25,6 +25,13 @@ TestConditions conditions_of(const Log& log);
 // difference.
 double distance(const TestConditions& a, const TestConditions& b);
 
+// In what they are farther apart than tests that are alike.
+struct Apart {
+  bool span = false, band = false;
+  double oil = 0;  // [K] 0: alike
+};
+Apart apart(const TestConditions& a, const TestConditions& b);
+
 // Whether one is a repeat of the other: the same programme run again, or as good as that. Two programmes of one span
 // and speed that spend their time at other openings are none. False where either does not say its rms.
 bool is_repeat(const TestConditions& a, const TestConditions& b);

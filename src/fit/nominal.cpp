@@ -360,13 +360,13 @@ class Facts {
     const double viscosity = rig_.fluid.density * rig_.fluid.kinematic_viscosity;
     set_row("line_resistance", 128 * viscosity * length / (pi * std::pow(bore, 4)), wide, "128 viscosity L / (pi D^4)");
     set_row("line_loss", resistance, wide, line_formula());
-    set_taps();
+    set_taps("line_tap");
     return set_row("line_inertance", rig_.fluid.density * length / disc(bore), known, "density L / area");
   }
 
   // Where the file does not say it, the logs may.
-  void set_taps() {
-    const int at = table_.find("line_tap");
+  void set_taps(const char* name) {
+    const int at = table_.find(name);
     if (at < 0 || rig_.taps == Taps::not_said) return;
     set(at, rig_.taps == Taps::at_cylinder ? 1 : 0, 0, 1, "lines.taps", "");
     table_[at].estimate = false;

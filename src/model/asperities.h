@@ -36,13 +36,11 @@ X stribeck(const X& speed, const T& per_fall) {
   return inverse(ratio * ratio + T(1.0));
 }
 
-// Of the rod's seals: how much more they hold than they drag, and how far they yield.
+// Of the rod's seals: how much more they hold than they drag.
 template <class T>
-struct SealGrip {
+struct Breakaway {
   T over_sliding;    // [-] breakaway friction above sliding friction over sliding friction; 0: none
   T per_film_speed;  // [s/m]
-  T yield;           // [-] way over which they are taken along before they slip, over the usual seal's
-  T per_yield;       // [-] its inverse
 };
 
 // What spool and rod remember of their way.
@@ -52,33 +50,31 @@ struct FrictionMemory {
   std::array<T, std::size(constants::seal_presliding)> seal_anchor{};  // [m]
   T rod_speed{};                                                       // [m/s] relative to the body
   T seal_breakaway = T(1.0);                                           // share that is left of the breakaway friction
-  T seal_per_reach = T(1.0);  // usual presliding length over the present one: seals that hold on longer yield further
+  T seal_per_reach = T(1.0);  // sliding friction over what the seals hold: they are no stiffer for holding on longer
 
   // At rest and unstretched: which way they came is not known.
-  void rest(const T& x_spool, const T& x_rod, const SealGrip<T>& grip) {
+  void rest(const T& x_spool, const T& x_rod) {
     spool_anchor = x_spool;
     seal_anchor.fill(x_rod);
     spool_speed = rod_speed = T(0.0);
-    seal_breakaway = T(1.0);
-    seal_per_reach = grip.per_yield;
+    seal_breakaway = seal_per_reach = T(1.0);
   }
   // After a step of h [s] between two places [m]. `sticks` false where no breakaway is above 0: the same bits, sooner.
   void move(const T& spool_from, const T& x_spool, const T& rod_from, const T& x_rod, double h,
-            const T& spool_presliding, const SealGrip<T>& grip, bool sticks = true) {
+            const T& spool_presliding, const Breakaway<T>& breakaway, bool sticks = true) {
     spool_anchor = dragged_anchor(spool_anchor, x_spool, spool_presliding);
     spool_speed = (x_spool - spool_from) * T(1.0 / h);
     rod_speed = (x_rod - rod_from) * T(1.0 / h);
-    T reach = grip.yield;
+    T reach = T(1.0);
     if (sticks) {
       // Friction follows the speed as contacts are renewed, over the way on which they slip: without that lag (Rice &
       // Ruina 1983; Armstrong-Helouvry et al. 1994) a slow piston would hunt where a real one creeps.
       using std::max;
-      const T renewed = max(x_rod - rod_from, rod_from - x_rod) * (T(1.0 / constants::seal_renewal) * grip.per_yield);
+      const T renewed = max(x_rod - rod_from, rod_from - x_rod) * T(1.0 / constants::seal_renewal);
       seal_breakaway =
-          (seal_breakaway + renewed * stribeck(rod_speed, grip.per_film_speed)) * inverse(T(1.0) + renewed);
-      const T longer = T(1.0) + grip.over_sliding * seal_breakaway;
-      reach = reach * longer;
-      seal_per_reach = grip.per_yield / longer;
+          (seal_breakaway + renewed * stribeck(rod_speed, breakaway.per_film_speed)) * inverse(T(1.0) + renewed);
+      reach = T(1.0) + breakaway.over_sliding * seal_breakaway;
+      seal_per_reach = T(1.0) / reach;
     }
     for (std::size_t i = 0; i < seal_anchor.size(); ++i)
       seal_anchor[i] = dragged_anchor(seal_anchor[i], x_rod, T(constants::seal_presliding[i]) * reach);

@@ -75,7 +75,7 @@ struct Derived {
   SERVODX_DERIVED(X)
 #undef X
   T inverse_flapper_stiffness;  // [m/N]
-  SealGrip<T> grip;
+  Breakaway<T> breakaway;
 };
 
 // p: a candidate in SI.
@@ -146,13 +146,11 @@ Derived<T> derive(const T* p, const Oil& oil) {
   const T sheared = hook_seal_shear(p, Effects{}), dry = hook_seal_dry(p, Effects{});
   const T film = sqrt(viscosity_ratio);  // seals ride on a film of their own
   d.viscous = p[row::piston_viscous_friction] * ((T(1.0) - sheared - dry) * film + sheared * viscosity_ratio + dry);
-  d.grip.per_film_speed = T(1.0) / (T(c::piston_stribeck_velocity) + hook_seal_film_speed(p, Effects{}));
+  d.breakaway.per_film_speed = T(1.0) / (T(c::piston_stribeck_velocity) + hook_seal_film_speed(p, Effects{}));
   // A tenth of itself and a newton keep the ratio bounded where seals hardly drag.
-  d.grip.over_sliding =
+  d.breakaway.over_sliding =
       p[row::piston_stribeck_friction] /
       (p[row::piston_coulomb_friction] + T(0.1) * p[row::piston_stribeck_friction] + T(c::least_friction));
-  d.grip.yield = T(1.0) + hook_seal_yield(p, Effects{});
-  d.grip.per_yield = T(1.0) / d.grip.yield;
   d.inverse_mass = T(1.0) / p[row::moving_mass];
   d.half_stroke = T(0.5) * p[row::piston_stroke];
   d.middle_volume_a = p[row::dead_volume_a] + p[row::piston_area_a] * d.half_stroke;

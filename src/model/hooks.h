@@ -14,7 +14,6 @@
 //     nozzle_land(p)       [m]   added to the width of the nozzles' faces
 //     screen_drop(p)       [Pa]  laminar drop of the clean pilot filter at rest, in oil at 40 degC
 //     seal_film_speed(p)   [m/s] added to the speed at which the piston's seals slide on oil
-//     seal_yield(p)        [-]   added to how far the piston's seals yield before they slip, over the usual seal's
 //     seal_shear(p)        [-]   share of the piston's viscous friction in proportion to the viscosity
 //     seal_dry(p)          [-]   share of it that the viscosity leaves alone
 //     spool_yield(p)       [m]   added to the way over which the spool's dry friction is taken up
@@ -187,7 +186,6 @@ SERVODX_FIXED_HOOK(nozzle_2_share)
 SERVODX_FIXED_HOOK(nozzle_land)
 SERVODX_FIXED_HOOK(screen_drop)
 SERVODX_FIXED_HOOK(seal_film_speed)
-SERVODX_FIXED_HOOK(seal_yield)
 SERVODX_FIXED_HOOK(seal_shear)
 SERVODX_FIXED_HOOK(seal_dry)
 SERVODX_FIXED_HOOK(spool_yield)

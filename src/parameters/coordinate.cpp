@@ -13,7 +13,8 @@ double Coordinate::to_unit(double value) const {
 }
 
 double Coordinate::from_unit(double u) const {
-  return log_scale ? lower * std::pow(upper / lower, u) : lower + u * (upper - lower);
+  // A power may round past the end, and a table that says so is refused.
+  return std::clamp(log_scale ? lower * std::pow(upper / lower, u) : lower + u * (upper - lower), lower, upper);
 }
 
 double Coordinate::range() const { return log_scale ? std::log(upper / lower) : upper - lower; }

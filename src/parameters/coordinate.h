@@ -19,7 +19,7 @@ struct Coordinate {
 
   // A value beyond the range is put at its end. [-]
   double to_unit(double value) const;
-  // Rounding may carry the value of an end of a logarithmic range past it by a unit in the last place. [unit]
+  // Never beyond the range, however its ends round. [unit]
   double from_unit(double u) const;
   // How far the range reaches: in the unit, or in the logarithm of the value.
   double range() const;

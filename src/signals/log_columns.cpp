@@ -199,7 +199,8 @@ void LogColumns::refuse_missing(Signal signal, const std::string& rule) const {
   const std::string name(info(signal).name);
   std::string mend = format_.has_units ? fmt::format("add a column '{} [{}]'", name, info(signal).si_unit)
                                        : fmt::format("add a variable '{}'", name);
-  mend += ", or map one of yours in [columns] of the rig file";
+  mend += rig_.path.empty() ? ", or map one of yours in [columns] of a rig file and give that with --rig"
+                            : ", or map one of yours in [columns] of the rig file";
   if (format_.has_lines) mend += " ('servodx init LOG' begins one)";
   if (!ignored_.empty()) mend += "; not known: " + in_quotes(ignored_);
   std::string near = nearest_word(name, ignored_);

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <string_view>
 #include <tuple>
 
 #include "base/bytes.h"
@@ -32,11 +33,12 @@ std::string content_bytes(const RigFile& rig) {
 }
 
 RigStatements statements_of(const RigFile& rig) {
+  constexpr std::string_view of_the_page = "page.";
   RigStatements out;
   const auto number = [&](const std::string& key, double value) { out[key] = fmt::format("{:.6g}", value); };
   for (const auto& [key, value] : rig.facts) number(key, value);
   for (const auto& [key, word] : rig.words)
-    if (!key.starts_with("page.")) out[key] = word;
+    if (!key.starts_with(of_the_page)) out[key] = word;
   if (rig.ports != Ports::actuator) out["ports"] = rig.ports == Ports::blocked ? "blocked" : "free";
   if (rig.command_hold) out["command_hold"] = *rig.command_hold == CommandHold::linear ? "linear" : "zero";
   if (rig.taps != Taps::not_said) out["lines.taps"] = rig.taps == Taps::at_cylinder ? "cylinder" : "valve";

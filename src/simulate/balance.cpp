@@ -129,7 +129,7 @@ Rates rates_along(const Scenario& in, const TrueSignals& of, const ParameterVect
   const double droop = p[effect_row<SupplyDroop>(0)] * 0.5 * (p[row::piston_area_a] + p[row::piston_area_b]);
   SampledLag<double> drawn;
   FrictionMemory<double> friction;
-  friction.rest(0.0, of.piston[0], d.grip);
+  friction.rest(0.0, of.piston[0]);
   for (std::size_t k = 0; k < n; ++k) {
     const double dt = in.time[std::min(k + 1, n - 1)] - in.time[k > 0 ? k - 1 : 0];
     States<Effects> s;
@@ -143,7 +143,7 @@ Rates rates_along(const Scenario& in, const TrueSignals& of, const ParameterVect
     s.y[s_p_filter] = s.y[s_p_pilot_1] = s.y[s_p_pilot_2] = 0.5 * p[row::supply_pressure];
     if (k > 0)
       friction.move(0.0, 0.0, of.piston[k - 1], of.piston[k], in.time[k] - in.time[k - 1], d.spool_presliding,
-                    d.grip);
+                    d.breakaway);
     const Inputs<double> u{0.0, input(in.supply_pressure, k, p[row::supply_pressure]),
                            input(in.return_pressure, k, p[row::return_pressure]), input(in.load_force, k, 0.0),
                            friction};

@@ -81,7 +81,7 @@ class Settling {
   template <class Length>
   void steps(States& y, int count, Length&& length) {
     for (int k = 0; k < count; ++k) {
-      system_.at.friction.rest(y[s_x_spool], y[s_x_piston], system_.d.grip);
+      system_.at.friction.rest(y[s_x_spool], y[s_x_piston]);
       effects_at_rest(y.data(), p_, Effects{});
       rodas3_step<T>(system_, y, length(k));
     }

@@ -72,7 +72,7 @@ class Run {
         results[lane]->signals[c].clear();
         if (options.wanted[c]) results[lane]->signals[c].resize(in.time.size());
       }
-    friction.rest(y[s_x_spool], y[s_x_piston], d_.grip);
+    friction.rest(y[s_x_spool], y[s_x_piston]);
     any_left_ = report();
   }
   Run(const Run&) = delete;
@@ -113,7 +113,7 @@ class Run {
   void take_command(double after, double h) { inputs_.take_command(k_, after, h, y, live.slope); }
   void stand_at(double after) { live.at = inputs_.at(after, live.slope, friction); }
   void remember(const T& spool_from, const T& rod_from, double h) {
-    friction.move(spool_from, y[s_x_spool], rod_from, y[s_x_piston], h, d_.spool_presliding, d_.grip, sticks);
+    friction.move(spool_from, y[s_x_spool], rod_from, y[s_x_piston], h, d_.spool_presliding, d_.breakaway, sticks);
   }
   void end() {
     inputs_.arrive();

@@ -156,7 +156,10 @@ std::optional<BaselineOf> read_made_of(const Reader& read, const Json& file) {
   BaselineOf out;
   const Json &rig = read.at(*found, "made_of.rig"), &signals = read.at(*found, "made_of.signals");
   if (!rig.is_object()) read.refuse("made_of.rig", "is no object");
-  for (const auto& [key, value] : rig.items()) out.rig[key] = read.text(rig, "made_of.rig." + key);
+  for (const auto& [key, value] : rig.items()) {
+    if (!value.is_string()) read.refuse("made_of.rig", "says of '" + key + "' what is no text");
+    out.rig[key] = value.get<std::string>();
+  }
   if (!signals.is_array()) read.refuse("made_of.signals", "is no array");
   for (const Json& signal : signals) {
     if (!signal.is_string()) read.refuse("made_of.signals", "holds what is no text");

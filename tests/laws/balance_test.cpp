@@ -6,7 +6,6 @@
 
 #include "base/random.h"
 #include "base/smooth.h"
-#include "effects/seal_yield.h"
 #include "effects/mains_pickup.h"
 #include "effects/nozzle_mismatch.h"
 #include "effects/port_line.h"
@@ -177,9 +176,9 @@ template <class Effects>
 Inputs<double> dragged(const Bench<Effects>& bench, const typename Bench<Effects>::Y& y, Inputs<double> u) {
   const double rod = bench.rate(y, u)[s_x_piston];  // relative to the body
   const double h = 1.0;                             // far enough for all to slip
-  u.friction.rest(y[s_x_spool] - y[s_v_spool] * h, y[s_x_piston] - rod * h, bench.derived().grip);
+  u.friction.rest(y[s_x_spool] - y[s_v_spool] * h, y[s_x_piston] - rod * h);
   u.friction.move(y[s_x_spool] - y[s_v_spool] * h, y[s_x_spool], y[s_x_piston] - rod * h, y[s_x_piston], h,
-                  bench.derived().spool_presliding, bench.derived().grip);
+                  bench.derived().spool_presliding, bench.derived().breakaway);
   return u;
 }
 
@@ -214,27 +213,23 @@ TEST(Balance, FrictionTakesPowerFromWhatSlides) {
   }
 }
 
-// What holds the rod against a slow push [m], from rest. [N]
-double held_by_seals(const ParameterVector& v, double push) {
-  const Bench<AllEffects> bench(v);
-  Random random(21, 1);
-  auto y = bench.state(random);
-  y[s_v_piston] = 0;
-  auto u = bench.inputs(random);
-  u.friction.rest(y[s_x_spool], y[s_x_piston] - push, bench.derived().grip);
-  const double h = push / 1e-5;  // [s] at 10 um/s
-  u.friction.move(y[s_x_spool], y[s_x_spool], y[s_x_piston] - push, y[s_x_piston], h, bench.derived().spool_presliding,
-                  bench.derived().grip);
-  auto free = u;
-  free.friction.rest(y[s_x_spool], y[s_x_piston], bench.derived().grip);
-  return v[row::moving_mass] * (bench.rate(y, free)[s_v_piston] - bench.rate(y, u)[s_v_piston]);
-}
-
 TEST(Balance, SealsThatHoldMoreHoldLongerAndAreNoStiffer) {
+  // What holds the rod against a slow push, from rest.
   const auto held = [](double breakaway, double push) {
     ParameterVector v = nominal_candidate();
     v[row::piston_stribeck_friction] = breakaway;
-    return held_by_seals(v, push);
+    const Bench<AllEffects> bench(v);
+    Random random(21, 1);
+    auto y = bench.state(random);
+    y[s_v_piston] = 0;
+    auto u = bench.inputs(random);
+    u.friction.rest(y[s_x_spool], y[s_x_piston] - push);
+    const double h = push / 1e-5;  // [s] at 10 um/s
+    u.friction.move(y[s_x_spool], y[s_x_spool], y[s_x_piston] - push, y[s_x_piston], h,
+                    bench.derived().spool_presliding, bench.derived().breakaway);
+    auto free = u;
+    free.friction.rest(y[s_x_spool], y[s_x_piston]);
+    return v[row::moving_mass] * (bench.rate(y, free)[s_v_piston] - bench.rate(y, u)[s_v_piston]);
   };
   const double sliding = nominal_candidate()[row::piston_coulomb_friction];
   // Before they slip: force over reach, of which a tenth of the breakaway friction counts as sliding.
@@ -242,22 +237,6 @@ TEST(Balance, SealsThatHoldMoreHoldLongerAndAreNoStiffer) {
   EXPECT_NEAR(held(500, 1e-6) / held(0, 1e-6), (sliding + 500) / sliding / reach, 0.01);
   EXPECT_NEAR(held(0, 1e-2), sliding, 1e-3 * sliding);
   EXPECT_NEAR(held(500, 1e-2), sliding + 500, 1e-3 * (sliding + 500));
-}
-
-// Way and yield scale together, with breakaway friction and without; what they hold in the end is the same.
-TEST(Balance, SealsThatYieldLessHoldAsMuchAfterLessWay) {
-  for (const double breakaway : {0.0, 500.0}) {
-    const auto held = [&](double yield, double push) {
-      ParameterVector v = nominal_candidate();
-      v[row::piston_stribeck_friction] = breakaway;
-      v[effect_row<SealYield>(0)] = yield;
-      return held_by_seals(v, push);
-    };
-    for (const double push : {2e-6, 2e-5, 6e-5})
-      EXPECT_NEAR(held(0.2, 0.2 * push), held(1, push), 1e-3 * held(1, push)) << push << " m, " << breakaway << " N";
-    EXPECT_GT(held(0.2, 2e-6), 2 * held(1, 2e-6));
-    EXPECT_NEAR(held(0.2, 1e-2), held(1, 1e-2), 1e-3 * held(1, 1e-2));
-  }
 }
 
 // A step runs ahead of the anchor by as much as the part slides in it.

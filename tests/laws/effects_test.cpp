@@ -331,11 +331,10 @@ TEST(SealFilm, FrictionFollowsASpeedOverTheWayOnWhichContactsAreRenewed) {
   for (const double speed : {5e-3, 0.1}) {
     constexpr double per_film_speed = 1 / 8e-3, step = 1e-7;
     FrictionMemory<double> m;
-    const SealGrip<double> grip = {2, per_film_speed, 1, 1};
-    m.rest(0, 0, grip);
+    m.rest(0, 0);
     double x = 0;
     while (x < constants::seal_renewal)
-      m.move(0, 0, x, x + step, step / speed, constants::spool_presliding, grip), x += step;
+      m.move(0, 0, x, x + step, step / speed, constants::spool_presliding, {2, per_film_speed}), x += step;
     const double steady = stribeck(speed, per_film_speed);
     EXPECT_NEAR(m.seal_breakaway, steady + (1 - steady) * std::exp(-1.0), 2e-3);
   }

@@ -12,6 +12,7 @@
 
 #include "base/error.h"
 #include "base/reading_limits.h"
+#include "parameters/coordinate.h"
 #include "parameters/list.h"
 
 namespace servodx {
@@ -352,6 +353,18 @@ TEST(UnitCube, MapsBoundsToZeroAndOneAndBack) {
     EXPECT_NEAR(coordinate(row).from_unit(1), row.upper, 1e-15 * row.upper) << row.name;
     EXPECT_NEAR(coordinate(row).from_unit(coordinate(row).to_unit(row.nominal)), row.nominal, 1e-14 * row.upper)
         << row.name;
+  }
+}
+
+// A fit that ends at a bound writes it into its table, which is refused beyond it: powers round.
+TEST(Coordinate, NoUnitValueLiesBeyondTheBounds) {
+  for (int k = 1; k < 2000; ++k) {
+    const double lower = 1e-3 * k, upper = lower * (1.5 + 0.37 * k);
+    for (const bool log_scale : {false, true}) {
+      const Coordinate c{"x", "-", lower, upper, log_scale, lower};
+      EXPECT_GE(c.from_unit(0), lower) << k;
+      EXPECT_LE(c.from_unit(1), upper) << k;
+    }
   }
 }
 

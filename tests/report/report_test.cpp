@@ -775,7 +775,8 @@ TEST(DiagnoseText, ATestThatTheBaselineHasNoneOfIsSaid) {
   d.unlike = {"logs/h11.csv", {0.04, 1.96, 333.0}};
   EXPECT_NE(
       text_of(d, {}).find("no log of the baseline is of a test like this (drive spans 43.1 mA at about 5.6 Hz, oil "
-                          "41 degC); the nearest, h11.csv: drive spans 40 mA at about 2 Hz, oil 60 degC"),
+                          "41 degC); the nearest, h11.csv: drive spans 40 mA at about 2 Hz, oil 60 degC; too far "
+                          "apart in oil by 19.0 K"),
       std::string::npos)
       << text_of(d, {});
 }

@@ -195,7 +195,8 @@ TEST(Log, LinesOfARecorderAboveTheHeaderAreLeftOutAndTold) {
   const Log log = read("Recorder 5;V2\nrate;1000\n\n" + plain, {}, {.minimum_rows = 2});
   EXPECT_TRUE(same_bits(log[Signal::command], read(plain, {}, {.minimum_rows = 2})[Signal::command]));
   ASSERT_EQ(log.notes.size(), 1u);
-  EXPECT_NE(log.notes.front().text.find("log.csv: the header is in line 4; 2 rows of other text above it"), std::string::npos)
+  EXPECT_NE(log.notes.front().text.find("log.csv: the header is in line 4; 2 rows of other text above it"),
+            std::string::npos)
       << log.notes.front().text;
 }
 
@@ -308,7 +309,8 @@ TEST(Log, ColumnsAreMappedWithGainAndOffset) {
 
 TEST(Log, EachRefusalNamesPlaceRuleAndMend) {
   const std::string currents = "A, mA, % of rated, or V with a gain in the rig file";
-  const std::string mapping = ", or map one of yours in [columns] of the rig file ('servodx init LOG' begins one)";
+  const std::string mapping =
+      ", or map one of yours in [columns] of a rig file and give that with --rig ('servodx init LOG' begins one)";
   const struct {
     std::string text, message;
   } cases[] = {

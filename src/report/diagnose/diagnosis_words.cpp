@@ -71,7 +71,9 @@ std::string headword(const Diagnosis& d) {
 std::vector<std::string> doubts_beside_baseline(const Diagnosis& d) {
   std::vector<std::string> out;
   for (const Note& note : d.assessment.notes)
-    if (note.kind == Note::Kind::other_rig || note.kind == Note::Kind::lacking_channels) out.push_back(note.text);
+    if (note.kind == Note::Kind::other_rig || note.kind == Note::Kind::own_log ||
+        note.kind == Note::Kind::lacking_channels)
+      out.push_back(note.text);
   return out;
 }
 
@@ -506,8 +508,14 @@ std::string test_words(const TestConditions& test) {
 
 std::string unlike_words(const Diagnosis& d) {
   if (!d.unlike) return "";
-  return fmt::format("no log of the baseline is of a test like this ({}); the nearest, {}: {}",
-                     test_words(d.assessment.test), file_name(d.unlike->log), test_words(d.unlike->test));
+  const Apart a = apart(d.assessment.test, d.unlike->test);
+  std::vector<std::string> in;
+  if (a.span) in.push_back("span");
+  if (a.band) in.push_back("pace");
+  if (a.oil > 0) in.push_back(fmt::format("oil by {:.1f} K", a.oil));
+  return fmt::format("no log of the baseline is of a test like this ({}); the nearest, {}: {}{}",
+                     test_words(d.assessment.test), file_name(d.unlike->log), test_words(d.unlike->test),
+                     in.empty() ? "" : "; too far apart in " + join(in));
 }
 
 std::string others_words(const Diagnosis& d) {

@@ -28,7 +28,7 @@ namespace servodx::report {
 std::string word_of(VerdictKind verdict);  // healthy | fault | unknown
 bool of_log(const Diagnosis& d);           // the log or the rig file is to be mended, not the valve
 std::string headword(const Diagnosis& d);  // HEALTHY | FAULT | MISREAD, of columns or wiring | UNKNOWN
-// What of rig file and channels is not as in the baseline's logs.
+// What of rig file, channels and the log itself makes a verdict by this baseline doubtful.
 std::vector<std::string> doubts_beside_baseline(const Diagnosis& d);
 std::string word_of(Blame blame);            // none | component | physics | surroundings | log | test
 std::string words_of(Blame blame);           // "a component failed"; "" of none

@@ -36,6 +36,7 @@ constexpr Ladder ladders[] = {
     {"Pa", always, "MPa", 1e-6},
     {"m3/s", always, "l/min", 6e4},
     {"m3/s/Pa", always, "l/min/bar", 6e9},
+    {"Pa s/m3", always, "bar/(l/min)", 1e-5 / 6e4},
     {"m/N", always, "um/kN", 1e9},
     {"N/m", 1e5, "N/mm", 1e-3},
     {"N/m", always, "N/um", 1e-6},
