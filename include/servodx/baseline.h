@@ -67,8 +67,9 @@ void write_baseline(const std::string& path, const Baseline& baseline);
 // diagnose() does not.
 void require_causes(const Baseline& baseline);
 
-// What makes a verdict beside it doubtful: a rig file that says other things than the one that it was made with, and
-// channels that every healthy log holds and a log lacks. Empty where an earlier version made it.
+// What makes a verdict beside it doubtful: a rig file that says other things than the one that it was made with, a log
+// that is one of its own, and channels that every healthy log holds and a log lacks. Throws InputError where there is
+// nothing in the baseline. Empty where an earlier version made it.
 std::vector<Note> notes_beside(const Baseline& baseline, const Rig& rig, const std::vector<Log>& logs);
 
 // Throws InputError where the baseline was made with another table: its threshold is a statement about that table's

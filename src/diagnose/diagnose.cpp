@@ -205,17 +205,17 @@ std::vector<VisibleFault> visible_of(const HypothesisFits& fits) {
   return out;
 }
 
-// Of several logs each log's figures; the worst stands out among all. Pressures that follow the other port's simulation
-// are exchanged, unless the flow into the chambers says otherwise: a load with its sign turned does that too.
+// Of several logs each log's figures; the worst stands out among all.
 void look_at_records(const std::vector<Log>& logs, const Ready& ready, const ParameterVector& base, const RigFile& rig,
                      int threads, Assessment& out) {
   out.current_recorded = true;
   for (std::size_t l = 0; l < logs.size(); ++l) {
     const LogData& data = ready.every_sample(l);
     for (RecordFigure& f : record_figures(logs[l], data, base)) out.figures.push_back(std::move(f));
-    const bool stand = chambers_by_flow(logs[l], rig, 1 / usual_step(logs[l].time)) == Chambers::as_they_stand;
-    for (const BrokenSensor& b : broken_sensors(data, reference_of(data, base, threads)))
-      if (!(stand && b.finding == SensorFinding::swapped_ports)) out.broken.push_back(b);
+    std::vector<BrokenSensor> broken = broken_sensors(data, reference_of(data, base, threads));
+    if (names_exchanged_ports(broken))
+      broken = beside_flow(std::move(broken), chambers_by_flow(logs[l], rig, 1 / usual_step(logs[l].time)));
+    out.broken.insert(out.broken.end(), broken.begin(), broken.end());
     out.current_recorded = out.current_recorded && data.scenario.current_measured;
   }
 }

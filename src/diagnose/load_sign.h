@@ -4,7 +4,7 @@
 // and fall together, and a load cell with its sign turned runs against them. So do two chambers that are exchanged:
 // what the flow into them says decides (flow_into_chambers.h).
 //
-// Leaves out: logs whose load moves the pressures no more than friction does; a gain that is wrong.
+// Leaves out: logs in which friction and mass move the pressures as far as the load; a gain that is wrong.
 #pragma once
 #include <optional>
 

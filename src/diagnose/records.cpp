@@ -240,6 +240,8 @@ bool are_swapped(const std::vector<Followed>& moving) {
   return square_between(a.moves, b.would_move) + square_between(b.moves, a.would_move) < k::swapped_leaves * own;
 }
 
+bool is_exchange(const BrokenSensor& b) { return b.finding == SensorFinding::swapped_ports; }
+
 }  // namespace
 
 std::vector<RecordFigure> record_figures(const Log& log, const LogData& data, const ParameterVector& base) {
@@ -275,6 +277,15 @@ std::vector<BrokenSensor> broken_sensors(const LogData& data, const Trajectory& 
       return b.finding == SensorFinding::turned || b.finding == SensorFinding::swapped_ports;
     });
   return out;
+}
+
+bool names_exchanged_ports(const std::vector<BrokenSensor>& found) {
+  return std::any_of(found.begin(), found.end(), &is_exchange);
+}
+
+std::vector<BrokenSensor> beside_flow(std::vector<BrokenSensor> found, Chambers by_flow) {
+  if (by_flow == Chambers::as_they_stand) std::erase_if(found, &is_exchange);
+  return found;
 }
 
 Record record_of(FigureKind kind) {

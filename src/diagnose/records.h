@@ -7,6 +7,7 @@
 #include <optional>
 #include <vector>
 
+#include "diagnose/flow_into_chambers.h"
 #include "faults/record.h"
 #include "fit/log_data.h"
 #include "parameters/table.h"
@@ -50,6 +51,11 @@ struct BrokenSensor {
 };
 // `healthy`: the simulation at the tuned values, with the log's channels.
 std::vector<BrokenSensor> broken_sensors(const LogData& data, const Trajectory& healthy);
+
+bool names_exchanged_ports(const std::vector<BrokenSensor>& found);
+// Pressures that follow the other port's simulation are exchanged, unless the flow into the chambers says that they
+// stand as they should: a load with its sign turned does the same.
+std::vector<BrokenSensor> beside_flow(std::vector<BrokenSensor> found, Chambers by_flow);
 
 Record record_of(FigureKind kind);
 

@@ -10,8 +10,8 @@
 //   flow       The piston moves by the oil that the pressure drops drive through the spool's edges
 //              (flow_into_chambers.h). This tells where pressures are far apart and slow, that where they are quick.
 //
-// Leaves out: A and B where the piston is not measured, or the log is too calm to tell. Exchanged chambers
-// are the same as spool and piston both turned about; that the drive tells (survey.cpp).
+// Leaves out: A and B where the piston is not measured, or the log is too calm to tell. Exchanged chambers are the same
+// as spool and piston both turned about; that the drive tells (survey.cpp).
 #pragma once
 #include <vector>
 

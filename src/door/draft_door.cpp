@@ -43,7 +43,7 @@ std::string column_line(const ColumnGuess& g, const std::string& span) {
     return fmt::format("# {} = {{ signal = \"?\", unit = \"{}\" }}  # not recognised: {}; ignored as it is\n",
                        toml_quoted(g.cell), g.unit.empty() ? "?" : g.unit, span);
   std::string note = "  # " + span;
-  if (!g.question.empty()) note = "  # ? " + span + ": " + g.question;
+  if (!g.question.empty()) note = std::string(asks_of_column) + span + ": " + g.question;
   if (g.by_numbers) note += "; no unit in the header: taken by the values";
   note += "\n";
   if (is_read_as_it_is(g) && !g.has_offset()) return fmt::format("# {} is read as it is{}", toml_quoted(g.cell), note);

@@ -548,7 +548,7 @@ std::vector<long> open_questions(const std::string& text) {
   std::istringstream lines(text);
   std::string line;
   for (long at = 1; std::getline(lines, line); ++at)
-    if (line.starts_with("# \"") && line.find("}  # ? ") != std::string::npos) out.push_back(at);
+    if (line.starts_with("# \"") && line.find(asks_of_column) != std::string::npos) out.push_back(at);
   return out;
 }
 

@@ -9,6 +9,9 @@
 
 namespace servodx {
 
+// Behind the mapping of a column that 'init' leaves a comment: what it asks of it follows.
+inline constexpr std::string_view asks_of_column = "  # ? ";
+
 struct LimitInfo {
   std::string_view figure;
   Dimension dimension;

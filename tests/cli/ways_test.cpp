@@ -286,6 +286,14 @@ TEST(Init, SaysWhatTheHeaderDoesNotSay) {
   const Ended preamble = desk.run("init recorder.csv -o recorder.toml --table recorder.params.csv");
   ASSERT_EQ(preamble.code, 0) << preamble.err;
   EXPECT_NE(preamble.out.find("1 row of other text above it"), std::string::npos) << preamble.out;
+  const Json looked = check(desk, "recorder.csv --rig recorder.toml");
+  const Json& of_log = looked.at("logs").at(0);
+  EXPECT_NE(of_log.at("notices").dump().find("1 row of other text above it"), std::string::npos) << of_log;
+  EXPECT_EQ(of_log.at("suspicious").dump().find("other text"), std::string::npos) << of_log;
+  desk.write("asked.toml", "[columns]\n# \"Druck\" = { signal = \"pressure_a\" }  # ? 63 to 84: is it?\n");
+  const Ended asked = desk.run("check-log recorder.csv --rig asked.toml");
+  EXPECT_NE(asked.out.find("1 question of 'servodx init' is open, line 2: until it is answered"), std::string::npos)
+      << asked.out << asked.err;
   desk.write("units.csv", log.substr(header));
   EXPECT_EQ(desk.run("init units.csv -o units.toml --table units.params.csv").out.find("no unit"), std::string::npos);
 }

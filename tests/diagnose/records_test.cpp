@@ -206,6 +206,18 @@ TEST(Records, AFrozenATurnedAndASwappedSensorAreNamedAndHealthyOnesAreNot) {
   for (const BrokenSensor& b : found) EXPECT_EQ(b.finding, SensorFinding::swapped_ports);
 }
 
+// A turned load makes the simulation's chambers change places too.
+TEST(Records, ExchangedPortsAreNotNamedWhereTheFlowSaysThatTheyStandAsTheyShould) {
+  const std::vector<BrokenSensor> found = {{SensorFinding::swapped_ports, Signal::pressure_a},
+                                           {SensorFinding::frozen, Signal::piston_position},
+                                           {SensorFinding::swapped_ports, Signal::pressure_b}};
+  ASSERT_TRUE(names_exchanged_ports(found));
+  for (const Chambers flow : {Chambers::not_told, Chambers::exchanged}) EXPECT_EQ(beside_flow(found, flow).size(), 3u);
+  const auto left = beside_flow(found, Chambers::as_they_stand);
+  ASSERT_EQ(left.size(), 1u);
+  EXPECT_EQ(left.front().finding, SensorFinding::frozen);
+}
+
 TEST(Records, ASensorAtItsLimitIsNamedWhereTheSimulationGoesOn) {
   Made clipped = made(61, 1.0);
   for (double& p : clipped.pressure_a) p = std::min(p, 112e5);

@@ -43,6 +43,22 @@ Log in_memory(const std::string& name, std::size_t samples) {
   return make_log(name, columns, shipped_rig());
 }
 
+// A fit takes a turned column for a valve's: its tune says which one it is.
+TEST(Door, ATuneNotesAColumnWhoseSignIsTurned) {
+  TuneOptions quick;
+  quick.generations = 0, quick.rounds = 1, quick.effects.emplace();
+  const auto notes_of = [&](double sign) {
+    Log log = in_memory("healthy/h12_mixed", 1500);
+    for (double& x : log.channels[index(Signal::piston_position)].value) x *= sign;
+    const Tuned tuned = tune({log}, read_table(shipped("params/borello2009.csv")), shipped_rig(), quick);
+    return std::count_if(tuned.notes.begin(), tuned.notes.end(), [](const Note& n) {
+      return n.kind == Note::Kind::implausible && n.text.find("'piston_position' runs against") != std::string::npos;
+    });
+  };
+  EXPECT_EQ(notes_of(1), 0);
+  EXPECT_EQ(notes_of(-1), 1);
+}
+
 TEST(Watch, IsToldOfEveryWorkAndABaselineInMemoryBindsToItsTable) {
   const Rig rig = shipped_rig();
   Told told;

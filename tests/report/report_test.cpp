@@ -696,6 +696,21 @@ TEST(KindOfVerdict, OfTheLogShowsNoHypothesis) {
   for (const char* word : {"90 %", "0.57"}) EXPECT_NE(page_of().find(word), std::string::npos) << word;
 }
 
+TEST(DiagnosePage, AHealthyHeadSaysWhatTheLogCannotShow) {
+  Diagnosis d = some_diagnosis();
+  d.verdict = VerdictKind::healthy, d.fault = nullptr, d.ambiguous_with.clear(), d.moved.clear();
+  d.detectable = {{find_fault("sticky_spool"), {}}, {find_fault("clogged_filter"), 0.8}};
+  const auto head = [&] {
+    const std::string html = diagnose_page({}, {d}, some_baseline(), {}).html();
+    return html.substr(0, html.find("<section class=\"part\""));
+  };
+  EXPECT_NE(head().find("Blind to"), std::string::npos) << head();
+  EXPECT_NE(head().find("sticky spool"), std::string::npos) << head();
+  EXPECT_EQ(head().find("clogged filter"), std::string::npos) << head();
+  d.detectable.erase(d.detectable.begin());
+  EXPECT_EQ(head().find("Blind to"), std::string::npos) << head();
+}
+
 TEST(KindOfVerdict, IsSaidInTextJsonAndPage) {
   Diagnosis d = some_diagnosis();
   const auto page_of = [](const Diagnosis& of) { return diagnose_page({}, {of}, some_baseline(), {}).html(); };

@@ -144,6 +144,14 @@ TEST(RigFile, AnEmptyFileSaysNothing) {
   EXPECT_FALSE(rig.fluid.given);
 }
 
+TEST(RigFile, ColumnsThatAreStillQuestionsAreKnownByTheirLines) {
+  const RigFile rig = read(
+      "# a remark  # ? of no column\n[columns]\n\"pB\" = { signal = \"pressure_b\", unit = \"bar\" }  # ? answered\n"
+      "# \"pA\" = { signal = \"pressure_a\" }  # ? 63 to 84: is 'pA' the pressure_a?\n"
+      "# \"x\" = { signal = \"?\", unit = \"?\" }  # not recognised\n");
+  EXPECT_EQ(rig.open_questions, (std::vector<long>{4}));
+}
+
 TEST(RigFile, BoreAndRodsGiveTheAreas) {
   const RigFile rig = read(whole);
   EXPECT_DOUBLE_EQ(*rig.fact("actuator.area_a"), std::numbers::pi / 4 * (0.04 * 0.04 - 0.02 * 0.02));

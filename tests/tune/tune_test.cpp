@@ -137,6 +137,22 @@ TEST(DefaultEffects, LogsInColdAndInWarmOilTellTheSlopeOfItsViscosity) {
   EXPECT_FALSE(rig_kind(logs, shipped_rig()).temperatures_differ) << "one log alone says nothing of a slope";
 }
 
+TEST(DefaultEffects, LongLinesAreFreedWhereverTheTapsSitAndThePlaceIsHeldWhereTheFileSaysIt) {
+  RigFile rig = shipped_rig();
+  rig.facts["lines.length"] = 1.0, rig.facts["lines.bore"] = 12e-3;
+  const Table table_of_line = with_effects(shipped_table(), {LineInertia::name});
+  const double unsaid = table_of_line.rows[static_cast<std::size_t>(table_of_line.find("line_tap"))].nominal;
+  for (const auto& [taps, place] :
+       {std::pair{Taps::not_said, unsaid}, {Taps::at_valve, 0.0}, {Taps::at_cylinder, 1.0}}) {
+    rig.taps = taps;
+    EXPECT_TRUE(rig_kind({shipped_log("healthy/h12_mixed")}, rig).long_lines);
+    const Table table = apply_rig_facts(table_of_line, rig);
+    const Row& tap = table.rows[static_cast<std::size_t>(table.find("line_tap"))];
+    EXPECT_EQ(tap.nominal, place);
+    EXPECT_EQ(tap.estimate, taps == Taps::not_said);
+  }
+}
+
 // The spool sensor's gain scales what torque gain and ports scale as well; those of two pressures have nothing beside.
 TEST(DefaultEffects, PressureSensorsHaveGainsWithinTheirClassAndTheSpoolsHasNone) {
   Table table = shipped_table();
