@@ -22,10 +22,12 @@
 #include "evidence/conditions.h"
 #include "evidence/probabilities.h"
 #include "faults/fault.h"
+#include "faults/registry.h"
 #include "fit/candidate_of.h"
 #include "fit/chart.h"
 #include "fit/error_model.h"
 #include "fit/fast_log.h"
+#include "fit/free_values.h"
 #include "fit/log_data.h"
 #include "fit/tuned_state.h"
 #include "parameters/list.h"
@@ -54,8 +56,10 @@ ErrorModel required_error_model(const Table& tuned) {
   return error;
 }
 
-HypothesisSettings settings_of(const RigFile& rig, const DiagnoseOptions& options) {
+HypothesisSettings settings_of(const Table& tuned, const RigFile& rig, const DiagnoseOptions& options) {
   HypothesisSettings settings;
+  for (const Fault* fault : fault_list())
+    if (fault->counted_in) settings.times_drawing[fault] = times_drawing(*fault->counted_in, tuned, rig);
   settings.null_limit = rig.null_limit;
   settings.threads = options.threads;
   settings.stop = options.watch.stop;
@@ -329,7 +333,7 @@ Assessment assess_pool(const std::vector<Log>& logs, const Table& tuned, const R
   const ErrorModel error = required_error_model(tuned);
   const Ready ready = make_ready(logs, tuned, rig, error, out);
   const ParameterVector base = candidate_of(tuned);
-  HypothesisSettings settings = settings_of(rig, options);
+  HypothesisSettings settings = settings_of(tuned, rig, options);
   settings.stages = stages_of(logs, tuned, rig, options);
   const ReadingTrial trial{tuned, rig, error, options.threads};
   out.unjudgeable = unjudgeable_of(ready, base, out.point);

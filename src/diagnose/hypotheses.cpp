@@ -26,11 +26,12 @@ namespace k = diagnose_constants;
 // Progress, counted in steps of least squares: a screening is about one, and few begin again.
 class Steps {
  public:
-  static constexpr double screening = 1, approach = 1, again = 2;  // a fault
+  static constexpr double screening = 1, approach = 1, again = 1;  // a fault
+  static constexpr double around = 2;                              // all starts of health but the first
 
   Steps(const HypothesisSettings& settings, std::size_t faults)
       : settings_(settings),
-        whole_(k::health_starts * settings.iterations +
+        whole_(settings.iterations + around +
                static_cast<double>(faults) * (screening + k::starts_kept * approach + settings.iterations + again)) {}
   void done(double steps, long simulations) {
     const double so_far = done_.fetch_add(steps) + steps;
@@ -98,14 +99,19 @@ std::vector<VisibleFault> visible_of(const std::vector<const Fault*>& faults, co
   return out;
 }
 
-// Of each fault the starts that screened best, at least one.
-std::vector<Attempt> best_starts(const std::vector<const Fault*>& faults, const std::vector<Screened>& screened) {
+// Of each fault the starts that screened best: one, and those that the linear model does not put hopelessly behind it.
+std::vector<Attempt> best_starts(const std::vector<const Fault*>& faults, const std::vector<Screened>& screened,
+                                 const HypothesisFit& health, const HypothesisData& data) {
+  const double behind = k::hopeless * misfit_inflation(health.misfit, data.degrees);
   std::vector<Attempt> attempts;
   for (const Fault* fault : faults) {
     int begun = 0;
-    for (const Screened& s : screened)
-      if (s.fault == fault && begun < k::starts_kept && (begun == 0 || s.left < 1e300))
-        attempts.push_back({fault, s.severity}), ++begun;
+    double best = 0;
+    for (const Screened& s : screened) {
+      if (s.fault != fault || begun == k::starts_kept || (begun > 0 && !(s.left < best + behind))) continue;
+      if (begun == 0) best = s.left;
+      attempts.push_back({fault, s.severity}), ++begun;
+    }
   }
   return attempts;
 }
@@ -114,7 +120,7 @@ std::vector<Attempt> best_starts(const std::vector<const Fault*>& faults, const 
 void approach_all(std::vector<Attempt>& attempts, const HypothesisData& data, const Health& health, Steps& steps) {
   side_by_side(attempts.size(), data, [&](std::size_t i) {
     if (health.end)
-      approach(attempts[i], data, health.attempt.fit, *health.end, k::approach_iterations);
+      approach(attempts[i], data, &health.attempt.fit, *health.end, k::approach_iterations);
     else
       run(attempts[i], data, &health.attempt.fit, k::first_iterations);
     steps.done(Steps::approach, attempts[i].work.simulations);
@@ -150,13 +156,13 @@ void evolve_all(std::vector<Attempt>& attempts, const HypothesisData& data, cons
 }
 
 void run_hopeful(std::vector<Attempt>& attempts, const HypothesisData& data, const HypothesisFit& health,
-                 double degrees, Steps& steps) {
+                 Steps& steps) {
   double best = health.misfit;
   for (const Attempt& a : attempts) best = std::min(best, a.fit.misfit);
   side_by_side(attempts.size(), data, [&](std::size_t i) {
     const long before = attempts[i].work.simulations;
     const HypothesisFit& fit = attempts[i].fit;
-    if (!fit.ok || !is_hopeless(fit.misfit, health.misfit, best, degrees))
+    if (!fit.ok || !is_hopeless(fit.misfit, health.misfit, best, data.degrees))
       run(attempts[i], data, &health, data.settings.iterations);
     steps.done(data.settings.iterations, attempts[i].work.simulations - before);
   });
@@ -200,42 +206,51 @@ std::vector<Attempt> best_of_each(std::vector<Attempt> attempts) {
   return best;
 }
 
-// Health from several starts side by side: a poor valley of it lends every fault a gain.
-Health fit_health(const HypothesisData& data, Steps& steps) {
-  std::vector<Attempt> attempts(k::health_starts);
-  for (int i = 0; i < k::health_starts; ++i) attempts[static_cast<std::size_t>(i)].scattered = i;
-  side_by_side(attempts.size(), data, [&](std::size_t i) {
-    run(attempts[i], data, nullptr, data.settings.iterations);
-    steps.done(data.settings.iterations, attempts[i].work.simulations);
+// Health begun elsewhere too, by the derivatives that its end so far left, a run a step. Where that ends lower by more
+// than a start is worth, it is fitted on from there: a poor valley of health lends every fault a gain. `from`: what
+// each start begins at; null: its own.
+void begin_elsewhere(Health& health, std::vector<Attempt> starts, const std::vector<const HypothesisFit*>& from,
+                     const HypothesisData& data) {
+  const double so_far = health.attempt.fit.misfit;
+  const double worth = k::worth_another_start * misfit_inflation(so_far, data.degrees);
+  side_by_side(starts.size(), data, [&](std::size_t i) {
+    if (health.end) approach(starts[i], data, from[i], *health.end, k::approach_iterations);
+    if (!health.end || starts[i].fit.misfit < so_far - worth) run(starts[i], data, from[i], data.settings.iterations);
   });
-  Health health = {std::move(best_of_each(std::move(attempts)).front()), {}};
+  for (Attempt& start : starts) {
+    FitWork work = health.attempt.work;
+    work.add(start.work);
+    if (start.fit.ok && start.fit.misfit < health.attempt.fit.misfit) health.attempt = std::move(start);
+    health.attempt.work = work;
+  }
+}
+
+// From its usual start, then from others around it.
+Health fit_health(const HypothesisData& data, Steps& steps) {
+  Health health;
+  run(health.attempt, data, nullptr, data.settings.iterations);
   health.end = end_of(health.attempt.fit, data, health.attempt.work);
+  steps.done(data.settings.iterations, health.attempt.work.simulations);
+  std::vector<Attempt> around(k::health_starts - 1);
+  for (std::size_t i = 0; i < around.size(); ++i) around[i].scattered = static_cast<int>(i) + 1;
+  const HypothesisFit usual = health.attempt.fit;
+  const long simulations = health.attempt.work.simulations;
+  begin_elsewhere(health, around, std::vector<const HypothesisFit*>(around.size(), nullptr), data);
+  if (health.attempt.fit.misfit < usual.misfit) health.end = end_of(health.attempt.fit, data, health.attempt.work);
+  steps.done(Steps::around, health.attempt.work.simulations - simulations);
   return health;
 }
 
 // Health had few starts, the faults many: what one of them gained by better nuisances is no fault's. So health begins
 // again where each fault ended.
-void begin_health_again(Attempt& health, const std::vector<Attempt>& faults, const HypothesisData& data, Steps& steps) {
-  std::vector<Attempt> again(faults.size());
-  side_by_side(again.size(), data, [&](std::size_t i) {
-    const HypothesisFit& fault = faults[i].fit;
-    if (fault.ok && fault.misfit < health.fit.misfit - k::worth_another_start)
-      run(again[i], data, &fault, data.settings.iterations);
-    steps.done(Steps::again, again[i].work.simulations);
-  });
-  for (Attempt& a : again) {
-    health.work.add(a.work);
-    if (a.fit.ok && a.fit.misfit < health.fit.misfit)
-      health.fit = std::move(a.fit), health.square = std::move(a.square);
-  }
-}
-
-double independent_samples(const std::vector<const LogData*>& logs, const ErrorModel& error) {
-  double sum = 0;
-  for (const LogData* log : logs)
-    for (const FitChannel& c : log->channels)
-      sum += static_cast<double>(present_samples(c)) * effective_of(error.find(c.signal), log->scenario.time);
-  return sum;
+void begin_health_again(Health& health, const std::vector<Attempt>& faults, const HypothesisData& data, Steps& steps) {
+  std::vector<const HypothesisFit*> better;
+  for (const Attempt& fault : faults)
+    if (fault.fit.ok && fault.fit.misfit < health.attempt.fit.misfit - k::worth_another_start)
+      better.push_back(&fault.fit);
+  const long simulations = health.attempt.work.simulations;
+  begin_elsewhere(health, std::vector<Attempt>(better.size()), better, data);
+  steps.done(Steps::again * static_cast<double>(faults.size()), health.attempt.work.simulations - simulations);
 }
 
 // The single faults that a second one is tried beside: the likeliest, where each gains beyond doubt.
@@ -297,7 +312,7 @@ void fit_pairs(const std::vector<const Fault*>& faults, const HypothesisData& da
   std::vector<Attempt> attempts = pair_attempts(faults, led, data, from, fits.work);
   side_by_side(attempts.size(), data, [&](std::size_t i) {
     const auto of = static_cast<std::size_t>(std::find(led.begin(), led.end(), from[i]) - led.begin());
-    if (ends[of]) approach(attempts[i], data, *from[i], *ends[of], k::approach_iterations);
+    if (ends[of]) approach(attempts[i], data, from[i], *ends[of], k::approach_iterations);
   });
   const auto nearer = [](const Attempt& a, const Attempt& b) { return a.fit.misfit < b.fit.misfit; };
   std::stable_sort(attempts.begin(), attempts.end(), nearer);
@@ -334,24 +349,24 @@ HypothesisFits fit_hypotheses(const std::vector<const LogData*>& logs, const Par
                               const ErrorModel& error, const HypothesisSettings& settings) {
   const HypothesisData data = hypothesis_data(logs, base, error, settings);
   const std::vector<const Fault*> faults = settings.among.empty() ? fitted_faults(logs) : settings.among;
-  const double degrees = independent_samples(logs, error);
   Steps steps(settings, faults.size());
   Health healthy = fit_health(data, steps);
   Attempt& health = healthy.attempt;
   const std::vector<Screened> screened =
       screen_starts(faults, data, health.fit, healthy.end ? &*healthy.end : nullptr, steps);
-  std::vector<Attempt> attempts = settings.genetic ? sub_groups(faults, screened) : best_starts(faults, screened);
+  std::vector<Attempt> attempts =
+      settings.genetic ? sub_groups(faults, screened) : best_starts(faults, screened, health.fit, data);
   if (settings.genetic)
     evolve_all(attempts, data, health.fit, *settings.genetic, steps);
   else
     approach_all(attempts, data, healthy, steps);
   attempts = best_of_each(std::move(attempts));
-  run_hopeful(attempts, data, health.fit, degrees, steps);
+  run_hopeful(attempts, data, health.fit, steps);
   finish_leaders(attempts, data, health.fit, settings.iterations);
-  begin_health_again(health, attempts, data, steps);
+  begin_health_again(healthy, attempts, data, steps);
 
   HypothesisFits out;
-  out.degrees = degrees;
+  out.degrees = data.degrees;
   out.visible = visible_of(faults, screened);
   out.healthy_square = std::move(health.square);
   out.work = health.work;

@@ -7,6 +7,7 @@
 #pragma once
 #include <cstdint>
 #include <functional>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -62,7 +63,9 @@ struct HypothesisSettings {
     std::uint64_t seed = 1;
   };
   std::optional<Genetic> genetic = {};
-  bool pairs = true;                     // tried where a fault gains beyond doubt
+  bool pairs = true;  // tried where a fault gains beyond doubt
+  // Of a fault whose size counts in a row: the tuned value of that row over its drawing's.
+  std::map<const Fault*, double> times_drawing = {};
   std::vector<const Fault*> among = {};  // weighed beside health; empty: all that are fitted
   std::function<bool()> stop = {};       // true: give up; what comes back is worthless
   std::function<void(double part, long simulations)> progress = {};  // after every fit, from any thread

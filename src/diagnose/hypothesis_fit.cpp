@@ -58,22 +58,25 @@ Point scattered_start(Point x, int which) {
   return x;
 }
 
-LeastSquaresOptions options_of(int iterations, const std::function<bool()>& stop) {
+LeastSquaresOptions options_of(int iterations, const HypothesisData& data) {
+  const std::function<bool()>& stop = data.settings.stop;
   LeastSquaresOptions o;
   o.max_iterations = iterations;
   o.difference = Difference::forward;
-  o.cost_tolerance = k::cost_tolerance;
+  // A gain counts by the misfit over its degrees, where that is above one; the cost is half of the misfit.
+  o.cost_tolerance = std::min(k::worth_a_step, k::worth_a_step / data.degrees);
+  o.cost_floor = k::worth_a_step / 2;
   o.damping_trials = 1;  // the hypotheses fill each other's packs: no lane is free
   o.progress = [&stop](const LeastSquaresProgress&) { return !(stop && stop()); };
   return o;
 }
 
-LeastSquaresResult minimise(FitProblem& problem, const Point& from, int iterations, const std::function<bool()>& stop) {
-  const LeastSquaresOptions o = options_of(iterations, stop);
+LeastSquaresResult minimise(FitProblem& problem, const Point& from, int iterations, const HypothesisData& data) {
+  const LeastSquaresOptions o = options_of(iterations, data);
   LocalOptions local;
   local.ceres.max_steps = 1;  // one trial and no Jacobian: hypotheses are many, and their fits short
   local.ceres.max_jacobians = 0;
-  local.stop = stop;
+  local.stop = data.settings.stop;
   return minimise_locally(problem.least_squares(), from, o, local).end;
 }
 
@@ -127,8 +130,10 @@ void measure_channels(HypothesisFit& fit, const FitProblem& problem, const Eigen
       measure_channel(fit, problem, residual, data, static_cast<int>(l), static_cast<int>(c));
 }
 
-// The curvature at the end, inflated where the model does not fit as well as it should, and the fault's own spread.
-FaultSize measure_severity(const HypothesisFit& fit, const Fault& fault, std::size_t j) {
+// The curvature at the end, inflated where the model does not fit as well as it should, the fault's own spread, and
+// what its size is counted in.
+FaultSize measure_severity(const HypothesisFit& fit, const Fault& fault, std::size_t j,
+                           const HypothesisSettings& settings) {
   const FreeValue& severity = fit.free[j];
   const double at = fit.point[j];
   const double worst = *std::max_element(fit.channel_adequacy.begin(), fit.channel_adequacy.end());
@@ -144,14 +149,36 @@ FaultSize measure_severity(const HypothesisFit& fit, const Fault& fault, std::si
   size.at_worst = std::abs(at - (1 - mild)) < k::at_end_part;
   size.severity_lower = severity.from_unit(std::clamp(at - half, 0.0, 1.0));
   size.severity_upper = severity.from_unit(std::clamp(at + half, 0.0, 1.0));
+  const auto off = settings.times_drawing.find(&fault);
+  return off == settings.times_drawing.end() ? size : counted_in_either(size, off->second);
+}
+
+}  // namespace
+
+FaultSize counted_in_either(FaultSize size, double times) {
+  const auto [least, most] = std::minmax({size.fault->least, size.fault->worst});
+  const auto [lower, upper] = std::minmax({size.severity_lower, size.severity_upper});
+  const double lowest = lower * std::min(1.0, times), highest = upper * std::max(1.0, times);
+  size.severity_lower = std::min(lower, std::max(lowest, least));
+  size.severity_upper = std::max(upper, std::min(highest, most));
   return size;
+}
+
+namespace {
+
+double independent_samples(const std::vector<const LogData*>& logs, const ErrorModel& error) {
+  double sum = 0;
+  for (const LogData* log : logs)
+    for (const FitChannel& c : log->channels)
+      sum += static_cast<double>(present_samples(c)) * effective_of(error.find(c.signal), log->scenario.time);
+  return sum;
 }
 
 }  // namespace
 
 HypothesisData hypothesis_data(const std::vector<const LogData*>& logs, const ParameterVector& base,
                                const ErrorModel& error, const HypothesisSettings& settings) {
-  HypothesisData data{logs, base, error, settings, {}};
+  HypothesisData data{logs, base, error, settings, {}, independent_samples(logs, error)};
   for (const LogData* log : logs) data.references.push_back(reference_of(*log, base, settings.threads));
   return data;
 }
@@ -201,11 +228,11 @@ void end_at(Attempt& a, const FitProblem& problem, const LeastSquaresResult& r, 
     return shapes;
   };
   if (a.fault) {
-    static_cast<FaultSize&>(fit) = measure_severity(fit, *a.fault, 0);
+    static_cast<FaultSize&>(fit) = measure_severity(fit, *a.fault, 0, data.settings);
     fit.shapes = shapes_of(*a.fault);
   }
   if (a.beside) {
-    fit.beside = measure_severity(fit, *a.beside, 1);
+    fit.beside = measure_severity(fit, *a.beside, 1, data.settings);
     fit.beside->shapes = shapes_of(*a.beside);
   }
 }
@@ -217,22 +244,24 @@ void run(Attempt& a, const HypothesisData& data, const HypothesisFit* from, int 
   if (stop && stop()) return;
   through_checkpoint(a, data, "run", from, iterations, [&] {
     FitProblem problem = problem_of(a, data);
-    end_at(a, problem, minimise(problem, start_of(a, problem, from), iterations, stop), data);
+    end_at(a, problem, minimise(problem, start_of(a, problem, from), iterations, data), data);
   });
 }
 
-void approach(Attempt& a, const HypothesisData& data, const HypothesisFit& from, const FitEnd& end, int iterations) {
+void approach(Attempt& a, const HypothesisData& data, const HypothesisFit* from, const FitEnd& end, int iterations) {
   const std::function<bool()>& stop = data.settings.stop;
   if (stop && stop()) return;
-  through_checkpoint(a, data, "approach", &from, iterations, [&] {
+  through_checkpoint(a, data, "approach", from, iterations, [&] {
     FitProblem problem = problem_of(a, data);
     LeastSquaresProblem lent = problem.least_squares();
     lent.jacobian = lent_derivatives(problem, end);
-    const Point start = start_of(a, problem, &from);
+    const Point start = start_of(a, problem, from);
+    LeastSquaresOptions how = options_of(iterations, data);
+    how.given_learns = !a.fault;  // a fault's own derivatives are worth their few runs
     LocalOptions local;
     local.method = LocalMethod::search_alone;  // `run` ends with Ceres
     local.stop = stop;
-    end_at(a, problem, minimise_locally(lent, start, options_of(iterations, stop), local).end, data);
+    end_at(a, problem, minimise_locally(lent, start, how, local).end, data);
   });
 }
 

@@ -25,9 +25,15 @@ struct HypothesisData {
   const ErrorModel& error;
   const HypothesisSettings& settings;
   std::vector<Trajectory> references;  // of each log
+  double degrees = 0;                  // independent samples of all channels
 };
 HypothesisData hypothesis_data(const std::vector<const LogData*>& logs, const ParameterVector& base,
                                const ErrorModel& error, const HypothesisSettings& settings);
+
+// The interval of a size that is counted in a row, where a drawing gives `times` less or more of that row than was
+// tuned: it holds the size by either, inside the range that is searched. A tune trades the healthy clearance for the
+// form of the edges (docs/diagnosis.md); the worn one is seen.
+FaultSize counted_in_either(FaultSize size, double times);
 
 struct Attempt {
   const Fault* fault = nullptr;
@@ -63,9 +69,9 @@ struct FitEnd {
 // None where the fit failed.
 std::optional<FitEnd> end_of(const HypothesisFit& fit, const HypothesisData& data, FitWork& work);
 
-// As `run`, by the derivatives that `from` left at its end: only those of what it lacks, a fault's own, are taken anew,
-// so that a step costs a few runs. Of a large fault it ends halfway, and `run` goes on from there.
-void approach(Attempt& attempt, const HypothesisData& data, const HypothesisFit& from, const FitEnd& end,
+// As `run`, by the derivatives that `end` has: only those of what it lacks, a fault's own, are taken anew, so that a
+// step costs a few runs. Of a large fault it ends halfway, and `run` goes on from there.
+void approach(Attempt& attempt, const HypothesisData& data, const HypothesisFit* from, const FitEnd& end,
               int iterations);
 
 struct Screened {

@@ -33,6 +33,7 @@
 #include "servodx/table.h"
 #include "servodx/trouble.h"
 #include "servodx/tune.h"
+#include "servodx/watch.h"
 #include "signals/rig_content.h"
 #include "signals/signal.h"
 #include "store/baseline_file.h"
@@ -83,6 +84,14 @@ Stages stages_of_causes(const Tuned& tuned, const Rig& rig, const BaselineOption
   return {options.watch, "healthy causes", content_hash(tuned.table), content_bytes(rig)};
 }
 
+// Of the whole work, the part of what faults gain; the rest is of what causes score. Each log counts as the simulations
+// that it takes, counted on the logs of scripts/demo. Results do not depend on it.
+double share_of_gains(std::size_t gains, std::size_t scores) {
+  constexpr double gains_a_log = 750, scores_a_log = 1330;
+  const double of_gains = gains_a_log * static_cast<double>(gains);
+  return of_gains / (of_gains + scores_a_log * static_cast<double>(scores));
+}
+
 // That every log holds.
 std::vector<std::string> signals_of_all(const std::vector<Log>& logs) {
   std::vector<std::string> out;
@@ -129,9 +138,13 @@ Baseline make_baseline(const std::vector<Log>& logs, const Tuned& tuned, const R
   options.validate();
   const auto start = std::chrono::steady_clock::now();
   report::Header header = header_of(logs, tuned, rig, options);
+  const double gains = share_of_gains(logs.size() + options.others.size(), logs_to_score(logs, options.others));
+  Watch of_gains = options.watch;
+  if (of_gains.progress)
+    of_gains.progress = [&](const WorkDone& w) { options.watch.tell(w.work, gains * w.part, w.simulations); };
   BaselineParts parts;
   parts.detection = make_baseline(logs, tuned.table, rig, options.false_alarm,
-                                  {.seed = options.seed, .threads = options.threads, .watch = options.watch},
+                                  {.seed = options.seed, .threads = options.threads, .watch = of_gains},
                                   &header.simulations, &header.failed_simulations, options.others);
   std::vector<Note> notes;
   for (const Note& note : tuned.notes)
@@ -147,7 +160,7 @@ Baseline make_baseline(const std::vector<Log>& logs, const Tuned& tuned, const R
   parts.causes = score_healthy(
       logs, tuned.table, rig, options.threads, counts,
       [&](double done) {
-        options.watch.tell("baseline, causes", done, counts.simulations);
+        options.watch.tell("baseline", gains + (1 - gains) * done, counts.simulations);
         return !options.watch.stopped();
       },
       options.others, stages_of_causes(tuned, rig, options));

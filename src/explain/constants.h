@@ -27,6 +27,7 @@ inline constexpr int full_iterations = 4;                         // after the q
 inline constexpr double difference_step = step_through_contacts;  // [of the unit interval] through contacts and
                                                                   // frictions, as in `diagnose`
 inline constexpr double cost_tolerance = 1e-4;                    // of the cost: a candidate is compared, not published
+inline constexpr int dampings = 4;        // tried at once, a decade apart: the least pack holds so many
 inline constexpr int curve_dampings = 3;  // tried at once: a curve's kernel runs no wide batch, so each costs a
                                           // run
 

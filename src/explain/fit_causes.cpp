@@ -22,7 +22,7 @@ using namespace explain_constants;
 
 LeastSquaresOptions least_squares_options(int iterations, bool curve) {
   LeastSquaresOptions o;
-  if (curve) o.damping_trials = curve_dampings;
+  o.damping_trials = curve ? curve_dampings : dampings;
   o.max_iterations = iterations;
   o.difference = Difference::forward;
   o.cost_tolerance = cost_tolerance;

@@ -177,12 +177,10 @@ ScoredBlocks score_blocks(const ValveSubject& valve, const Point& at, const Know
 
 namespace {
 
-std::vector<Log> logs_to_score(const std::vector<Log>& own, const std::vector<Log>& others) {
+bool show_scatter(const std::vector<Log>& own) {
   std::vector<TestConditions> tests;
   for (const Log& log : own) tests.push_back(conditions_of(log));
-  std::vector<Log> out = own;
-  if (!show_scatter_of_tests(tests)) out.insert(out.end(), others.begin(), others.end());
-  return out;
+  return show_scatter_of_tests(tests);
 }
 
 // What of a log is usual, as tuned and with nothing known of the rig: how its channels and blocks err, and its own
@@ -281,10 +279,15 @@ std::vector<HealthyLog> those_done(std::vector<std::optional<HealthyLog>> logs) 
 
 }  // namespace
 
+std::size_t logs_to_score(const std::vector<Log>& own, const std::vector<Log>& others) {
+  return own.size() + (show_scatter(own) ? 0 : others.size());
+}
+
 HealthyReference score_healthy(const std::vector<Log>& own, const Table& tuned, const RigFile& rig, int threads,
                                HealthyCounts& counts, const std::function<bool(double)>& told,
                                const std::vector<Log>& others, const Stages& stages) {
-  const std::vector<Log> logs = logs_to_score(own, others);
+  std::vector<Log> logs = own;
+  if (!show_scatter(own)) logs.insert(logs.end(), others.begin(), others.end());
   std::vector<HealthyLog> begun;
   for (const Log& log : logs) {
     HealthyLog& h = begun.emplace_back();

@@ -89,6 +89,8 @@ struct HealthyCounts {
 HealthyReference score_healthy(const std::vector<Log>& logs, const Table& tuned, const RigFile& rig, int threads,
                                HealthyCounts& counts, const std::function<bool(double)>& told = {},
                                const std::vector<Log>& others = {}, const Stages& stages = {});
+// How many of them it scores.
+std::size_t logs_to_score(const std::vector<Log>& logs, const std::vector<Log>& others);
 
 // The tests that a reference answers.
 class HealthyTest {

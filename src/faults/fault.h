@@ -59,6 +59,8 @@ struct Fault {
   // since the record drives the simulation.
   std::optional<Record> told_by = {};
   std::vector<FaultShape> shapes = {};
+  // The row that a size is counted in, where drawings state it too: a size is as sure as the healthy row is.
+  std::optional<int> counted_in = {};
   // What looks alike: the two are named together, but where the other has a record of its own and the log holds it.
   const Fault* twin = nullptr;
 };

@@ -19,6 +19,7 @@ inline const Fault radial_clearance_wear{
     .test = "small sine about null with ports loaded: pressure gain falls and leakage rises, more in hot oil",
     .action = "abnormal: call service",
     .apply = [](double* v, double s) { v[row::radial_clearance] *= s; },
-    .failed = 10.0};  // the end of what Borello 2009 studies
+    .failed = 10.0,  // the end of what Borello 2009 studies
+    .counted_in = row::radial_clearance};
 
 }  // namespace servodx

@@ -98,6 +98,12 @@ std::vector<OffDrawing> rows_off_drawing(const Table& tuned, const Table& nomina
   return out;
 }
 
+double times_drawing(int row, const Table& tuned, const RigFile& rig) {
+  for (const Drawing& d : drawings)
+    if (const auto stated = rig.fact(d.fact); stated && d.row == row) return tuned[row].nominal / *stated;
+  return 1;
+}
+
 std::vector<FreeValue> nuisance_values(const LogData& log, int l, const ParameterVector& base, double null_limit) {
   std::vector<FreeValue> out;
   const auto has = [&](Signal s) {

@@ -36,6 +36,9 @@ struct OffDrawing {
 };
 std::vector<OffDrawing> rows_off_drawing(const Table& tuned, const Table& nominal, const RigFile& rig);
 
+// The tuned value of a row over that of its drawing; 1 where the rig file states none.
+double times_drawing(int row, const Table& tuned, const RigFile& rig);
+
 // A log's own: null, free air, viscosity where no temperature was logged, command between samples, offsets of spool and
 // pressure sensors; only those that the log can show. `null_limit` [fraction of rated] bounds the null about the
 // base's. Prior widths: docs/model.md, "Nuisances".

@@ -68,7 +68,8 @@ struct LeastSquaresOptions {
   double least_metric = 0;
   static constexpr double from_afar = 1e-3;
   double first_damping = 1e-1;    // middle of the first ladder, relative to the Marquardt diagonal
-  double cost_tolerance = 1e-8;   // converged when the model promises less than this part of the cost
+  double cost_tolerance = 1e-8;   // converged when the model promises less than this part of the cost; no trial that
+                                  // promises less is run
   double cost_floor = 1e-20;      // converged when the cost itself, or the promised gain, is below this
   double step_tolerance = 1e-12;  // of the box; trials shorter than this are a stall
   // Give up (stalled) after this many iterations that together lower the cost by less than a tenth: a start that leads

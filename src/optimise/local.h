@@ -5,8 +5,8 @@
 // The two share one budget of Jacobians: Ceres may take what our search has left, and has the step for which the last
 // one was never used. An end that has converged keeps its bits: Ceres agrees after one evaluation.
 //
-// Derivatives have proved false where columns of the Jacobian could not be had, or where no step down to the least
-// lowers the cost and yet the Jacobian promises a part of it that is far above the tolerance.
+// Derivatives have proved false where columns of the Jacobian could not be had, or where no step that promises more than
+// the tolerance lowers the cost and yet the Jacobian promises far more.
 #pragma once
 #include <functional>
 

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "base/random.h"
+#include "diagnose/constants.h"
 #include "diagnose/diagnose.h"
 #include "diagnose/hypotheses.h"
 #include "diagnose/hypothesis_fit.h"
@@ -123,7 +124,7 @@ TEST(HypothesisFit, WhatHealthLentFindsAMildFaultForAFractionOfTheRuns) {
   const std::optional<FitEnd> end = end_of(health.fit, data, work);
   ASSERT_TRUE(end);
   Attempt lent{fault, 0.75}, own{fault, 0.75};
-  approach(lent, data, health.fit, *end, 10);
+  approach(lent, data, &health.fit, *end, 10);
   run(own, data, &health.fit, settings.iterations);
   ASSERT_TRUE(lent.fit.ok && own.fit.ok);
   const double gain = health.fit.misfit - own.fit.misfit;
@@ -135,6 +136,45 @@ TEST(HypothesisFit, WhatHealthLentFindsAMildFaultForAFractionOfTheRuns) {
   screen(near, data, health.fit, &*end), screen(far, data, health.fit, &*end);
   EXPECT_LT(near.left, near.misfit);
   EXPECT_LT(near.left, far.left);
+}
+
+TEST(HypothesisFit, ASizeIsAsSureAsTheRowThatItIsCountedIn) {
+  FaultSize size;
+  size.fault = find_fault("radial_clearance_wear");
+  size.severity = 8, size.severity_lower = 6, size.severity_upper = 10;
+  const FaultSize same = counted_in_either(size, 1.0);
+  EXPECT_EQ(same.severity_lower, 6);
+  EXPECT_EQ(same.severity_upper, 10);
+  const FaultSize tuned_small = counted_in_either(size, 0.5), tuned_large = counted_in_either(size, 1.2);
+  EXPECT_EQ(tuned_small.severity, 8);
+  EXPECT_EQ(tuned_small.severity_lower, 3) << "of the drawing's clearance";
+  EXPECT_EQ(tuned_small.severity_upper, 10);
+  EXPECT_EQ(tuned_large.severity_lower, 6);
+  EXPECT_EQ(tuned_large.severity_upper, 12);
+  EXPECT_EQ(counted_in_either(size, 0.1).severity_lower, size.fault->least);
+  EXPECT_EQ(counted_in_either(size, 9.0).severity_upper, size.fault->worst);
+}
+
+TEST(HypothesisFit, HealthBegunElsewhereEndsNoHigherByTheDerivativesOfTheFirst) {
+  const RigFile rig = shipped_rig();
+  const LogData log = slice(prepare(shipped_log("healthy/h01_steps_large"), rig), 400, 1300);
+  const ParameterVector base = candidate_of(read_table(shipped("params/borello2009.csv")));
+  ErrorModel error;
+  for (const FitChannel& c : log.channels) error.channels.push_back({c.signal, 20 * c.noise, 0.0, 50.0});
+  const HypothesisSettings settings;
+  const HypothesisData data = hypothesis_data({&log}, base, error, settings);
+  Attempt usual;
+  run(usual, data, nullptr, settings.iterations);
+  FitWork work;
+  const std::optional<FitEnd> end = end_of(usual.fit, data, work);
+  ASSERT_TRUE(end);
+  for (const int which : {1, 2, 3}) {
+    Attempt lent{.scattered = which}, own{.scattered = which};
+    approach(lent, data, nullptr, *end, diagnose_constants::approach_iterations);
+    run(own, data, nullptr, settings.iterations);
+    EXPECT_LT(lent.fit.misfit, own.fit.misfit + diagnose_constants::worth_another_start) << which;
+    EXPECT_LT(2 * lent.work.simulations, own.work.simulations) << which;
+  }
 }
 
 }  // namespace

@@ -79,13 +79,15 @@ TEST(Watch, IsToldOfEveryWorkAndABaselineInMemoryBindsToItsTable) {
   const Explanation explanation = explain({suspect}, tuned, rig, baseline, {.watch = told.watch()});
   EXPECT_FALSE(explanation.interrupted);
 
-  for (const char* work : {"tune", "baseline", "baseline, causes", "diagnose", "explain", "explain, missing input"}) {
+  for (const char* work : {"tune", "baseline", "diagnose", "explain", "explain, missing input"}) {
     const std::vector<double>& parts = told.parts[work];
     ASSERT_FALSE(parts.empty()) << work;
     EXPECT_GE(*std::min_element(parts.begin(), parts.end()), 0) << work;
     EXPECT_LE(*std::max_element(parts.begin(), parts.end()), 1) << work;
   }
-  EXPECT_EQ(told.parts.size(), 6u);
+  EXPECT_EQ(told.parts.size(), 5u);
+  const std::vector<double>& both = told.parts["baseline"];
+  EXPECT_TRUE(std::is_sorted(both.begin(), both.end())) << "two halves, one bar";
 
   EXPECT_FALSE(require_same_table(baseline, tuned)) << "nothing to note";
   EXPECT_TRUE(notes_beside(baseline, rig, {suspect}).empty());

@@ -414,5 +414,34 @@ TEST(BoxLeastSquares, AnEndWhoseRowsAreMadeAgainIsTheSearchsOwn) {
   }
 }
 
+// Derivatives that are wrong: the cost rises whatever the step, and shorter ones promise ever less.
+TEST(BoxLeastSquares, NoTrialIsRunThatPromisesLessThanTheTolerance) {
+  constexpr double start = 0.5;
+  double shortest = 1;
+  LeastSquaresProblem problem;
+  problem.n = 1;
+  problem.evaluate = [&](std::span<const Point> points) {
+    std::vector<Evaluation> out;
+    for (const Point& x : points) {
+      const double step = std::abs(x[0] - start);
+      if (step > 0) shortest = std::min(shortest, step);
+      out.push_back({true, Eigen::VectorXd::Constant(1, 1 + step)});
+    }
+    return out;
+  };
+  problem.jacobian = [](const Point&, const Eigen::VectorXd&, Eigen::MatrixXd& j) {
+    j(0, 0) = -1;
+    return true;
+  };
+  LeastSquaresOptions options;
+  options.cost_tolerance = 1e-2;
+  const LeastSquaresResult end = minimise_least_squares(problem, {start}, options);
+  EXPECT_EQ(end.reason, StopReason::stalled);
+  EXPECT_EQ(end.point[0], start);
+  // Of a cost of 0.5 with a slope of 1.
+  EXPECT_GT(shortest, 0.5 * options.cost_tolerance);
+  EXPECT_LT(shortest, 0.1) << "some were tried";
+}
+
 }  // namespace
 }  // namespace servodx::test

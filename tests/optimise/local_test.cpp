@@ -138,7 +138,7 @@ TEST(Local, SameBitsForAnyNumberOfThreads) {
       return values;
     };
     LeastSquaresOptions options;
-    options.max_iterations = 5;
+    options.max_iterations = 3;
     return minimise_locally(problem, Point(8, 0.3), options);
   };
   const LocalResult one = run(1), four = run(4);
