@@ -233,10 +233,10 @@ Health fit_health(const HypothesisData& data, Steps& steps) {
   steps.done(data.settings.iterations, health.attempt.work.simulations);
   std::vector<Attempt> around(k::health_starts - 1);
   for (std::size_t i = 0; i < around.size(); ++i) around[i].scattered = static_cast<int>(i) + 1;
-  const HypothesisFit usual = health.attempt.fit;
+  const double usual = health.attempt.fit.misfit;
   const long simulations = health.attempt.work.simulations;
   begin_elsewhere(health, around, std::vector<const HypothesisFit*>(around.size(), nullptr), data);
-  if (health.attempt.fit.misfit < usual.misfit) health.end = end_of(health.attempt.fit, data, health.attempt.work);
+  if (health.attempt.fit.misfit < usual) health.end = end_of(health.attempt.fit, data, health.attempt.work);
   steps.done(Steps::around, health.attempt.work.simulations - simulations);
   return health;
 }

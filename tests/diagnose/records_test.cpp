@@ -8,6 +8,7 @@
 #include <numbers>
 #include <random>
 
+#include "diagnose/flow_into_chambers.h"
 #include "diagnose/record_law.h"
 #include "faults/registry.h"
 #include "fit/candidate_of.h"

@@ -44,7 +44,7 @@ Log in_memory(const std::string& name, std::size_t samples) {
 }
 
 // A fit takes a turned column for a valve's: its tune says which one it is.
-TEST(Door, ATuneNotesAColumnWhoseSignIsTurned) {
+TEST(Watch, ATuneNotesAColumnWhoseSignIsTurned) {
   TuneOptions quick;
   quick.generations = 0, quick.rounds = 1, quick.effects.emplace();
   const auto notes_of = [&](double sign) {

@@ -29,6 +29,7 @@
 #include "parameters/list.h"
 #include "parameters/table.h"
 #include "recovery/twins.h"
+#include "servodx/data_sheet.h"
 #include "servodx/log.h"
 #include "servodx/note.h"
 #include "servodx/rig.h"
