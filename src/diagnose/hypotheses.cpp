@@ -242,7 +242,7 @@ Health fit_health(const HypothesisData& data, Steps& steps) {
 }
 
 // Health had few starts, the faults many: what one of them gained by better nuisances is no fault's. So health begins
-// again where each fault ended.
+// again where each fault ended, and where the best one did by derivatives of its own: its gain decides.
 void begin_health_again(Health& health, const std::vector<Attempt>& faults, const HypothesisData& data, Steps& steps) {
   std::vector<const HypothesisFit*> better;
   for (const Attempt& fault : faults)
@@ -250,6 +250,12 @@ void begin_health_again(Health& health, const std::vector<Attempt>& faults, cons
       better.push_back(&fault.fit);
   const long simulations = health.attempt.work.simulations;
   begin_elsewhere(health, std::vector<Attempt>(better.size()), better, data);
+  const auto best = std::min_element(better.begin(), better.end(),
+                                     [](const auto* a, const auto* b) { return a->misfit < b->misfit; });
+  if (best != better.end()) {
+    health.end.reset();
+    begin_elsewhere(health, std::vector<Attempt>(1), {*best}, data);
+  }
   steps.done(Steps::again * static_cast<double>(faults.size()), health.attempt.work.simulations - simulations);
 }
 
