@@ -206,6 +206,14 @@ std::vector<Attempt> best_of_each(std::vector<Attempt> attempts) {
   return best;
 }
 
+// The better of health and of one begun elsewhere, with the work of both.
+void take_better(Attempt& health, Attempt other) {
+  FitWork work = health.work;
+  work.add(other.work);
+  if (other.fit.ok && other.fit.misfit < health.fit.misfit) health = std::move(other);
+  health.work = work;
+}
+
 // Health begun elsewhere too, by the derivatives that its end so far left, a run a step. Where that ends lower by more
 // than a start is worth, it is fitted on from there: a poor valley of health lends every fault a gain. `from`: what
 // each start begins at; null: its own.
@@ -217,18 +225,18 @@ void begin_elsewhere(Health& health, std::vector<Attempt> starts, const std::vec
     if (health.end) approach(starts[i], data, from[i], *health.end, k::approach_iterations);
     if (!health.end || starts[i].fit.misfit < so_far - worth) run(starts[i], data, from[i], data.settings.iterations);
   });
-  for (Attempt& start : starts) {
-    FitWork work = health.attempt.work;
-    work.add(start.work);
-    if (start.fit.ok && start.fit.misfit < health.attempt.fit.misfit) health.attempt = std::move(start);
-    health.attempt.work = work;
-  }
+  for (Attempt& start : starts) take_better(health.attempt, std::move(start));
+}
+
+// By derivatives of its own, on all threads.
+void run_alone(Attempt& health, const HypothesisData& data, const HypothesisFit* from) {
+  side_by_side(1, data, [&](std::size_t) { run(health, data, from, data.settings.iterations); });
 }
 
 // From its usual start, then from others around it.
 Health fit_health(const HypothesisData& data, Steps& steps) {
   Health health;
-  run(health.attempt, data, nullptr, data.settings.iterations);
+  run_alone(health.attempt, data, nullptr);
   health.end = end_of(health.attempt.fit, data, health.attempt.work);
   steps.done(data.settings.iterations, health.attempt.work.simulations);
   std::vector<Attempt> around(k::health_starts - 1);
@@ -248,14 +256,14 @@ void begin_health_again(Health& health, const std::vector<Attempt>& faults, cons
   for (const Attempt& fault : faults)
     if (fault.fit.ok && fault.fit.misfit < health.attempt.fit.misfit - k::worth_another_start)
       better.push_back(&fault.fit);
+  if (better.empty()) return;
   const long simulations = health.attempt.work.simulations;
   begin_elsewhere(health, std::vector<Attempt>(better.size()), better, data);
-  const auto best = std::min_element(better.begin(), better.end(),
-                                     [](const auto* a, const auto* b) { return a->misfit < b->misfit; });
-  if (best != better.end()) {
-    health.end.reset();
-    begin_elsewhere(health, std::vector<Attempt>(1), {*best}, data);
-  }
+  const HypothesisFit* best =
+      *std::min_element(better.begin(), better.end(), [](auto* a, auto* b) { return a->misfit < b->misfit; });
+  Attempt own;
+  run_alone(own, data, best);
+  take_better(health.attempt, std::move(own));
   steps.done(Steps::again * static_cast<double>(faults.size()), health.attempt.work.simulations - simulations);
 }
 

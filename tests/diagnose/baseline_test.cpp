@@ -12,6 +12,8 @@
 #include "base/random.h"
 #include "diagnose/assessment.h"
 #include "diagnose/diagnose.h"
+#include "diagnose/hypotheses.h"
+#include "diagnose/hypothesis_fit.h"
 #include "diagnose/moved.h"
 #include "diagnose/whitening.h"
 #include "faults/fault.h"
@@ -24,6 +26,8 @@
 #include "parameters/table.h"
 #include "servodx/diagnose.h"
 #include "servodx/log.h"
+#include "servodx/rig.h"
+#include "servodx/table.h"
 #include "servodx/watch.h"
 #include "shipped_data.h"
 #include "simulate/scenario.h"
@@ -197,6 +201,32 @@ TEST(Assess, AFaultThatStepsInIsAskedForTheMotionSinceThen) {
   ASSERT_EQ(best->fault, find_fault("null_shift"));
   std::printf("leaves %.4f of the motion\n", best->motion_left);
   EXPECT_LT(best->motion_left, 0.05);
+}
+
+// The shipped table has the clearance of the shipped rig's drawing.
+TEST(Assess, AClearanceIsSizedByTheDrawingToo) {
+  const Log log = cut(shipped_log("healthy/h12_mixed"), 1000);
+  const Table tuned = as_tuned("0", 50);
+  const auto sizes_beside = [&](double times) {
+    RigFile rig = shipped_rig();
+    rig.facts["valve.radial_clearance"] = tuned[row::radial_clearance].nominal / times;
+    return assess(log, tuned, rig, {}).hypotheses;
+  };
+  constexpr double times = 2;
+  const std::vector<HypothesisResult> same = sizes_beside(1), other = sizes_beside(times);
+  ASSERT_EQ(other.size(), same.size());
+  bool wider = false;
+  for (std::size_t i = 0; i < same.size(); ++i) {
+    FaultSize size;
+    size.fault = same[i].fault;
+    size.severity_lower = same[i].severity_lower, size.severity_upper = same[i].severity_upper;
+    const bool of_clearance = size.fault && size.fault->counted_in == row::radial_clearance;
+    if (of_clearance) size = counted_in_either(size, times);
+    EXPECT_DOUBLE_EQ(other[i].severity_lower, size.severity_lower) << i;
+    EXPECT_DOUBLE_EQ(other[i].severity_upper, size.severity_upper) << i;
+    wider = wider || other[i].severity_upper > 1.01 * same[i].severity_upper;
+  }
+  EXPECT_TRUE(wider);
 }
 
 TEST(Assess, SameResultAtAnyThreadCount) {

@@ -74,15 +74,24 @@ LogData played(const LogData& like, const ParameterVector& base, const Fault* fa
   return out;
 }
 
+// A stretch of a shipped log, with a model that errs by twenty times the noise.
+struct Stretch {
+  LogData log = slice(prepare(shipped_log("healthy/h01_steps_large"), shipped_rig()), 400, 1300);
+  ParameterVector base = candidate_of(read_table(shipped("params/borello2009.csv")));
+  ErrorModel error = of_channels();
+
+ private:
+  ErrorModel of_channels() const {
+    ErrorModel out;
+    for (const FitChannel& c : log.channels) out.channels.push_back({c.signal, 20 * c.noise, 0.0, 50.0});
+    return out;
+  }
+};
+
 // The promise is made on the healthy log; the fits are to logs that hold the fault. Noise alone moves a gain's root by
 // one deviate.
 TEST(Visible, PromisedGainsAreWhatFitsFind) {
-  const RigFile rig = shipped_rig();
-  const Table table = read_table(shipped("params/borello2009.csv"));
-  const LogData like = slice(prepare(shipped_log("healthy/h01_steps_large"), rig), 400, 1300);
-  const ParameterVector base = candidate_of(table);
-  ErrorModel error;
-  for (const FitChannel& c : like.channels) error.channels.push_back({c.signal, 20 * c.noise, 0.0, 50.0});
+  const auto [like, base, error] = Stretch{};
   struct Case {
     const char* name;
     double severity;
@@ -109,11 +118,7 @@ TEST(Visible, PromisedGainsAreWhatFitsFind) {
 // A fault of a size that health's derivatives still speak of: the fit by them ends where that by its own does, for a
 // fraction of the runs. Of the starts the nearest is the one that leaves least once health has moved.
 TEST(HypothesisFit, WhatHealthLentFindsAMildFaultForAFractionOfTheRuns) {
-  const RigFile rig = shipped_rig();
-  const LogData like = slice(prepare(shipped_log("healthy/h01_steps_large"), rig), 400, 1300);
-  const ParameterVector base = candidate_of(read_table(shipped("params/borello2009.csv")));
-  ErrorModel error;
-  for (const FitChannel& c : like.channels) error.channels.push_back({c.signal, 20 * c.noise, 0.0, 50.0});
+  const auto [like, base, error] = Stretch{};
   const Fault* fault = find_fault("torque_motor_loss");
   const LogData faulty = played(like, base, fault, 0.8);
   HypothesisSettings settings;
@@ -156,11 +161,7 @@ TEST(HypothesisFit, ASizeIsAsSureAsTheRowThatItIsCountedIn) {
 }
 
 TEST(HypothesisFit, HealthBegunElsewhereEndsNoHigherByTheDerivativesOfTheFirst) {
-  const RigFile rig = shipped_rig();
-  const LogData log = slice(prepare(shipped_log("healthy/h01_steps_large"), rig), 400, 1300);
-  const ParameterVector base = candidate_of(read_table(shipped("params/borello2009.csv")));
-  ErrorModel error;
-  for (const FitChannel& c : log.channels) error.channels.push_back({c.signal, 20 * c.noise, 0.0, 50.0});
+  const auto [log, base, error] = Stretch{};
   const HypothesisSettings settings;
   const HypothesisData data = hypothesis_data({&log}, base, error, settings);
   Attempt usual;
