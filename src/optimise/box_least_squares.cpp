@@ -1,11 +1,10 @@
 // Decisions.
 // - Not Ceres' minimiser from afar; it takes over where this search ends (local.h). It meets bounds by projecting a
-// step
-//   that was solved as if free, and it asks for residuals one point at a time, which would leave seven of eight lanes
-//   empty. On weakly identified problems with walls (8 to 25 parameters, tests/optimise/ceres_comparison_test.cpp) all
-//   three reach the floor in 24 of 24 runs, in a mean of 244 evaluations here, 1779 with Ceres' bounds, 1186 with Ceres
-//   and the parameters at walls held constant between short solves. On servovalve traces Ceres' bounds also failed to
-//   arrive (3 of 8 runs against 8 of 8).
+//   step that was solved as if free, and it asks for residuals one point at a time, which would leave seven of eight
+//   lanes empty. On weakly identified problems with walls (8 to 25 parameters,
+//   tests/optimise/ceres_comparison_test.cpp) all three reach the floor in 24 of 24 runs, in a mean of 244 evaluations
+//   here, 1779 with Ceres' bounds, 1186 with Ceres and the parameters at walls held constant between short solves. On
+//   servovalve traces Ceres' bounds also failed to arrive (3 of 8 runs against 8 of 8).
 // - The normal equations are formed block by block and scaled to a unit diagonal before they are factored: a QR of J
 //   takes twice the arithmetic, and the digits it saves are below the damping and the noise.
 // - Curved valleys: when the best trial yields less than the undamped model promises, every trial is bent by the
