@@ -12,6 +12,7 @@
 #include "diagnose/severity.h"
 #include "diagnose/whitening.h"
 #include "faults/fault.h"
+#include "faults/sizes.h"
 #include "fit/chart.h"
 #include "fit/error_model.h"
 #include "fit/identifiability.h"
@@ -130,16 +131,27 @@ void measure_channels(HypothesisFit& fit, const FitProblem& problem, const Eigen
       measure_channel(fit, problem, residual, data, static_cast<int>(l), static_cast<int>(c));
 }
 
+// How many times as large a size is by its other count: a clearance by its drawing, as a tune trades the healthy one
+// for the form of the edges; a leak at the oil of the logs, as a scored seal need not leak by the oil's viscosity.
+double times_by_other_count(const Fault& fault, const HypothesisData& data) {
+  if (fault.stated_at_40_degrees) {
+    double thickness = 0;
+    for (const LogData* log : data.logs) thickness += std::log(log->scenario.oil.viscosity_ratio);
+    return std::exp(-thickness / static_cast<double>(data.logs.size()));
+  }
+  const auto off = data.settings.times_drawing.find(&fault);
+  return off == data.settings.times_drawing.end() ? 1 : off->second;
+}
+
 // The curvature at the end, inflated where the model does not fit as well as it should, the fault's own spread, and
-// what its size is counted in.
-FaultSize measure_severity(const HypothesisFit& fit, const Fault& fault, std::size_t j,
-                           const HypothesisSettings& settings) {
+// its other count.
+FaultSize measure_severity(const HypothesisFit& fit, const Fault& fault, std::size_t j, const HypothesisData& data) {
   const FreeValue& severity = fit.free[j];
   const double at = fit.point[j];
   const double worst = *std::max_element(fit.channel_adequacy.begin(), fit.channel_adequacy.end());
   const double range = severity.range();
-  const double half =
-      k::deviates_of_95 * std::hypot(fit.standard_error[j] * std::max(1.0, worst), fault.spread / range);
+  const double half = k::deviates_of_95 * std::hypot(fit.standard_error[j] * std::max(1.0, worst),
+                                                     sizes_of(fault, data.base.data()).spread / range);
   const auto beyond_health = [&](double u) { return std::abs(severity.from_unit(u) - fault.healthy); };
   const double mild = beyond_health(0.0) < beyond_health(1.0) ? 0.0 : 1.0;
   FaultSize size;
@@ -149,18 +161,16 @@ FaultSize measure_severity(const HypothesisFit& fit, const Fault& fault, std::si
   size.at_worst = std::abs(at - (1 - mild)) < k::at_end_part;
   size.severity_lower = severity.from_unit(std::clamp(at - half, 0.0, 1.0));
   size.severity_upper = severity.from_unit(std::clamp(at + half, 0.0, 1.0));
-  const auto off = settings.times_drawing.find(&fault);
-  return off == settings.times_drawing.end() ? size : counted_in_either(size, off->second);
+  return counted_in_either(size, times_by_other_count(fault, data), severity);
 }
 
 }  // namespace
 
-FaultSize counted_in_either(FaultSize size, double times) {
-  const auto [least, most] = std::minmax({size.fault->least, size.fault->worst});
+FaultSize counted_in_either(FaultSize size, double times, const FreeValue& searched) {
   const auto [lower, upper] = std::minmax({size.severity_lower, size.severity_upper});
   const double lowest = lower * std::min(1.0, times), highest = upper * std::max(1.0, times);
-  size.severity_lower = std::min(lower, std::max(lowest, least));
-  size.severity_upper = std::max(upper, std::min(highest, most));
+  size.severity_lower = std::min(lower, std::max(lowest, searched.lower));
+  size.severity_upper = std::max(upper, std::min(highest, searched.upper));
   return size;
 }
 
@@ -228,11 +238,11 @@ void end_at(Attempt& a, const FitProblem& problem, const LeastSquaresResult& r, 
     return shapes;
   };
   if (a.fault) {
-    static_cast<FaultSize&>(fit) = measure_severity(fit, *a.fault, 0, data.settings);
+    static_cast<FaultSize&>(fit) = measure_severity(fit, *a.fault, 0, data);
     fit.shapes = shapes_of(*a.fault);
   }
   if (a.beside) {
-    fit.beside = measure_severity(fit, *a.beside, 1, data.settings);
+    fit.beside = measure_severity(fit, *a.beside, 1, data);
     fit.beside->shapes = shapes_of(*a.beside);
   }
 }

@@ -30,10 +30,9 @@ struct HypothesisData {
 HypothesisData hypothesis_data(const std::vector<const LogData*>& logs, const ParameterVector& base,
                                const ErrorModel& error, const HypothesisSettings& settings);
 
-// The interval of a size that is counted in a row, where a drawing gives `times` less or more of that row than was
-// tuned: it holds the size by either, inside the range that is searched. A tune trades the healthy clearance for the
-// form of the edges (docs/diagnosis.md); the worn one is seen.
-FaultSize counted_in_either(FaultSize size, double times);
+// The interval of a size that is `times` as large by another count: it holds the size by either, inside the range that
+// was searched. docs/diagnosis.md says which sizes have two counts.
+FaultSize counted_in_either(FaultSize size, double times, const FreeValue& searched);
 
 struct Attempt {
   const Fault* fault = nullptr;

@@ -6,6 +6,7 @@
 #include "diagnose/hypotheses.h"
 #include "faults/fault.h"
 #include "faults/registry.h"
+#include "faults/sizes.h"
 #include "fit/candidate_of.h"
 #include "fit/chart.h"
 #include "fit/error_model.h"
@@ -35,7 +36,7 @@ void whiten(FitProblem& problem, const ErrorModel& error, const Point& x) {
     problem.set_sigma(0, static_cast<int>(c), 2 * log.channels[c].noise / std::sqrt(effective));
 }
 
-double typical_of(const Fault& fault) { return std::abs(fault.starts.back()); }
+double typical_of(const FaultSizes& sizes) { return std::abs(sizes.starts.back()); }
 
 // Length of what is left of `r` when the columns of `j` (nuisances, their priors included) have taken their best.
 double left_over(const Eigen::VectorXd& r, const Eigen::MatrixXd& j) {
@@ -69,13 +70,15 @@ std::vector<Identifiable> identifiable_rows(const FitProblem& problem, const Tab
 }
 
 // The log's nuisances and every fault's severity, as values of one problem.
-std::vector<FreeValue> with_faults(std::vector<FreeValue> nuisances, const std::vector<const Fault*>& faults) {
+std::vector<FreeValue> with_faults(std::vector<FreeValue> nuisances, const ParameterVector& base,
+                                   const std::vector<const Fault*>& faults) {
   for (const Fault* fault : faults) {
+    const double worst = sizes_of(*fault, base.data()).worst;
     FreeValue f;
     f.name = fault->name;
     f.apply = fault->apply;
-    f.lower = std::min(fault->healthy, fault->worst);
-    f.upper = std::max(fault->healthy, fault->worst);
+    f.lower = std::min(fault->healthy, worst);
+    f.upper = std::max(fault->healthy, worst);
     f.start = fault->healthy;
     nuisances.push_back(std::move(f));
   }
@@ -84,11 +87,10 @@ std::vector<FreeValue> with_faults(std::vector<FreeValue> nuisances, const std::
 
 // Health, then each fault at its least and at a typical size.
 std::vector<Point> points_of_faults(const FitProblem& problem, std::size_t nuisances,
-                                    const std::vector<const Fault*>& faults) {
+                                    const std::vector<FaultSizes>& sizes) {
   std::vector<Point> points = {problem.start()};
-  for (std::size_t k = 0; k < faults.size(); ++k) {
-    const Fault& fault = *faults[k];
-    for (const double severity : {fault.least, typical_of(fault)}) {
+  for (std::size_t k = 0; k < sizes.size(); ++k) {
+    for (const double severity : {sizes[k].least, typical_of(sizes[k])}) {
       Point p = points.front();
       p[nuisances + k] = problem.free()[nuisances + k].to_unit(severity);
       points.push_back(std::move(p));
@@ -111,9 +113,11 @@ std::vector<Visible> visible_faults(const LogData& data, const ParameterVector& 
                                     const std::vector<FreeValue>& nuisances, const Eigen::MatrixXd& jacobian,
                                     const SimulateOptions& options, long& simulations) {
   const std::vector<const Fault*> faults = fitted_faults({&data});
-  FitProblem problem({&data}, base, with_faults(nuisances, faults), options);
+  std::vector<FaultSizes> sizes;
+  for (const Fault* fault : faults) sizes.push_back(sizes_of(*fault, base.data()));
+  FitProblem problem({&data}, base, with_faults(nuisances, base, faults), options);
   whiten(problem, error, problem.start());
-  const std::vector<Evaluation> runs = problem.evaluate(points_of_faults(problem, nuisances.size(), faults));
+  const std::vector<Evaluation> runs = problem.evaluate(points_of_faults(problem, nuisances.size(), sizes));
   simulations += problem.simulations();
   const long n = problem.data_rows();
   const auto count = static_cast<long>(nuisances.size());
@@ -125,7 +129,7 @@ std::vector<Visible> visible_faults(const LogData& data, const ParameterVector& 
     const auto deviate = [&](const Evaluation& e) {
       return e.ok && runs.front().ok ? left_over((e.residual - runs.front().residual).head(n), own) : std::nan("");
     };
-    out.push_back({std::string(fault.name), std::string(fault.unit), fault.least, typical_of(fault),
+    out.push_back({std::string(fault.name), std::string(fault.unit), sizes[k].least, typical_of(sizes[k]),
                    deviate(runs[1 + 2 * k]), deviate(runs[2 + 2 * k])});
   }
   return out;

@@ -7,6 +7,7 @@
 #include "diagnose/constants.h"
 #include "diagnose/hypotheses.h"
 #include "faults/registry.h"
+#include "faults/sizes.h"
 #include "fit/chart.h"
 #include "fit/free_values.h"
 #include "fit/log_data.h"
@@ -18,12 +19,12 @@ namespace {
 namespace k = diagnose_constants;
 
 // Severity as a free number, from the mildest that is called a fault to the worst, on the side of the start.
-FreeValue severity_value(const Fault& fault, double start, double null_limit) {
+FreeValue severity_value(const Fault& fault, const FaultSizes& sizes, double start, double null_limit) {
   FreeValue f;
   f.name = std::string("severity of ") + std::string(fault.name);
   f.apply = fault.apply;
   f.log_scale = fault.log_scale;
-  double least = fault.beyond_limit_of ? null_limit : fault.least, worst = fault.worst;
+  double least = fault.beyond_limit_of ? null_limit : sizes.least, worst = sizes.worst;
   if (start < 0) least = -least, worst = -worst;
   f.lower = std::min(least, worst);
   f.upper = std::max(least, worst);
@@ -37,25 +38,25 @@ bool two_sided(const Fault& fault) {
 
 // The same severity within its tolerance. Where the healthy value is an end of the scale (nothing is less than clean),
 // the tolerance has one side.
-FreeValue tolerance_value(const Fault& fault) {
+FreeValue tolerance_value(const Fault& fault, double least) {
   FreeValue f;
   f.name = std::string("tolerance of ") + std::string(fault.name);
   f.apply = fault.apply;
   f.log_scale = fault.log_scale;
   f.start = fault.healthy;
   if (fault.log_scale) {
-    f.lower = std::min(fault.least, fault.healthy * fault.healthy / fault.least);
-    f.upper = std::max(fault.least, fault.healthy * fault.healthy / fault.least);
+    f.lower = std::min(least, fault.healthy * fault.healthy / least);
+    f.upper = std::max(least, fault.healthy * fault.healthy / least);
     f.prior_sd = k::inside_prior;
   } else if (fault.healthy != 0) {
-    const double width = std::abs(fault.least - fault.healthy);
+    const double width = std::abs(least - fault.healthy);
     f.lower = fault.healthy - width, f.upper = fault.healthy + width;
     f.prior_sd = k::inside_prior;
   } else if (two_sided(fault)) {
-    f.lower = -fault.least, f.upper = fault.least;
+    f.lower = -least, f.upper = least;
     f.prior_sd = k::inside_prior;
   } else {
-    f.lower = 0, f.upper = fault.least;
+    f.lower = 0, f.upper = least;
     f.prior_sd = k::end_prior;
   }
   return f;
@@ -82,7 +83,7 @@ std::vector<FreeValue> hypothesis_values(const std::vector<const LogData*>& logs
     return std::any_of(faults.begin(), faults.end(), [&](const FaultStart& s) { return s.fault && matches(*s.fault); });
   };
   for (const FaultStart& s : faults)
-    if (s.fault) free.push_back(severity_value(*s.fault, s.severity, null_limit));
+    if (s.fault) free.push_back(severity_value(*s.fault, sizes_of(*s.fault, base.data()), s.severity, null_limit));
   for (const FaultStart& s : faults)
     if (s.fault)
       for (const FaultShape& shape : s.fault->shapes) free.push_back(shape_value(*s.fault, shape, false));
@@ -92,7 +93,7 @@ std::vector<FreeValue> hypothesis_values(const std::vector<const LogData*>& logs
   // A row within its limit is a nuisance already.
   for (const Fault* other : fitted_faults(logs))
     if (!among([&](const Fault& fault) { return &fault == other; }) && !other->beyond_limit_of) {
-      free.push_back(tolerance_value(*other));
+      free.push_back(tolerance_value(*other, sizes_of(*other, base.data()).least));
       for (const FaultShape& shape : other->shapes) free.push_back(shape_value(*other, shape, true));
     }
   return free;
@@ -100,11 +101,12 @@ std::vector<FreeValue> hypothesis_values(const std::vector<const LogData*>& logs
 
 // The fault's own identifiers and an even grid over its range. Lanes are cheap, and a friction
 // or a backlash has more than one valley.
-std::vector<double> starting_severities(const Fault& fault, double null_limit) {
-  std::vector<double> severities = fault.starts;
+std::vector<double> starting_severities(const Fault& fault, const ParameterVector& base, double null_limit) {
+  const FaultSizes sizes = sizes_of(fault, base.data());
+  std::vector<double> severities = sizes.starts;
   for (double side : {1.0, -1.0}) {
     if (side < 0 && !two_sided(fault)) continue;
-    const FreeValue range = severity_value(fault, side, null_limit);
+    const FreeValue range = severity_value(fault, sizes, side, null_limit);
     for (int i = 0; i < k::severity_grid; ++i) severities.push_back(range.from_unit((i + 0.5) / k::severity_grid));
   }
   return severities;

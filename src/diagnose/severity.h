@@ -22,6 +22,6 @@ std::vector<FreeValue> hypothesis_values(const std::vector<const LogData*>& logs
                                          const std::vector<FaultStart>& faults, double null_limit);
 
 // Severities to begin at.
-std::vector<double> starting_severities(const Fault& fault, double null_limit);
+std::vector<double> starting_severities(const Fault& fault, const ParameterVector& base, double null_limit);
 
 }  // namespace servodx

@@ -18,9 +18,9 @@ namespace {
 namespace k = diagnose_constants;
 
 // The failure mode identifiers: the mode at each of its starting severities on the attempt's side.
-std::vector<Point> identifiers(const Attempt& a, const Point& start, double null_limit) {
+std::vector<Point> identifiers(const Attempt& a, const Point& start, const HypothesisData& data) {
   std::vector<Point> out;
-  for (const double severity : starting_severities(*a.fault, null_limit)) {
+  for (const double severity : starting_severities(*a.fault, data.base, data.settings.null_limit)) {
     if ((severity < 0) != (a.start < 0)) continue;
     out.push_back(start);
     out.back().front() = a.fit.free.front().to_unit(severity);
@@ -35,7 +35,7 @@ void evolve(Attempt& a, const HypothesisData& data, const HypothesisFit& health,
   const std::function<bool()>& stop = data.settings.stop;
   if (stop && stop()) return;
   const FitProblem problem = problem_of(a, data, data.settings.threads);
-  const std::vector<Point> seeds = identifiers(a, start_of(a, problem, &health), data.settings.null_limit);
+  const std::vector<Point> seeds = identifiers(a, start_of(a, problem, &health), data);
   GeneticOptions options;
   options.population = how.population;
   options.generations = k::generations;

@@ -61,6 +61,10 @@ struct Fault {
   std::vector<FaultShape> shapes = {};
   // The row that a size is counted in, where drawings state it too: a size is as sure as the healthy row is.
   std::optional<int> counted_in = {};
+  // Stated at 40 degC: the log shows it at its own oil, and the law between the two is assumed.
+  bool stated_at_40_degrees = false;
+  // Where sizes grow with the valve: how many times those stated here they are on the valve of a candidate. sizes.h
+  double (*times)(const double* candidate) = nullptr;
   // What looks alike: the two are named together, but where the other has a record of its own and the log holds it.
   const Fault* twin = nullptr;
 };

@@ -10,6 +10,7 @@
 #include "faults/fault.h"
 #include "faults/record.h"
 #include "faults/registry.h"
+#include "faults/sizes.h"
 #include "fit/error_model.h"
 #include "fit/log_data.h"
 #include "online/constants.h"
@@ -22,12 +23,13 @@ namespace {
 namespace k = online_constants;
 
 // What a sudden failure is: the far end of a fault and the places from which a search begins.
-std::vector<double> severities_of(const Fault& fault) {
-  std::vector<double> out = fault.starts;
-  out.push_back(fault.worst);
+std::vector<double> severities_of(const Fault& fault, const ParameterVector& base) {
+  const auto [least, worst, spread, starts] = sizes_of(fault, base.data());
+  std::vector<double> out = starts;
+  out.push_back(worst);
   // What breaks or seizes goes beyond what wears: on a log scale twice as far.
-  if (fault.log_scale && fault.healthy > 0) out.push_back(fault.worst * fault.worst / fault.healthy);
-  if (fault.healthy == 0 && !fault.starts.empty() && fault.starts.back() < 0) out.push_back(-fault.worst);
+  if (fault.log_scale && fault.healthy > 0) out.push_back(worst * worst / fault.healthy);
+  if (fault.healthy == 0 && !starts.empty() && starts.back() < 0) out.push_back(-worst);
   return out;
 }
 
@@ -67,7 +69,7 @@ std::vector<NameScore> score_failures(const WatchedModel& model, std::span<const
   std::vector<Try> tries;
   tries.push_back({nullptr, 0, model.base, {}});
   for (const Fault* fault : fault_list())
-    for (double severity : severities_of(*fault)) {
+    for (double severity : severities_of(*fault, model.base)) {
       tries.push_back({fault, severity, model.base, {}});
       fault->apply(tries.back().candidate.data(), severity);
     }

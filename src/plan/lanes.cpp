@@ -7,6 +7,7 @@
 #include "base/error.h"
 #include "diagnose/hypotheses.h"
 #include "diagnose/severity.h"
+#include "faults/sizes.h"
 #include "fit/candidate_of.h"
 #include "fit/chart.h"
 #include "fit/free_values.h"
@@ -65,7 +66,7 @@ void add_rival(LaneSet& set, const LogData& like, const Fault& fault, double nul
   RivalLanes rival;
   rival.fault = &fault;
   const bool two_sided = std::any_of(fault.starts.begin(), fault.starts.end(), [](double s) { return s < 0; });
-  const double start = fault.starts.front();
+  const double start = sizes_of(fault, set.base.data()).starts.front();
   const std::vector<FreeValue> free = free_of(like, set.base, &fault, start, null_limit);
   rival.sides.push_back(side_of(set, free.front(), fault, grid));
   if (two_sided)

@@ -13,6 +13,8 @@
 #include "diagnose/hypotheses.h"
 #include "faults/fault.h"
 #include "faults/registry.h"
+#include "faults/sizes.h"
+#include "fit/candidate_of.h"
 #include "parameters/list.h"
 #include "plan/constants.h"
 #include "plan/information.h"
@@ -34,25 +36,28 @@ std::string listed(const std::vector<const Fault*>& faults) {
   return text;
 }
 
-TargetLane target_of(const PlanFault& wished, const std::string& option, const std::vector<const Fault*>& shown) {
+TargetLane target_of(const PlanFault& wished, const std::string& option, const std::vector<const Fault*>& shown,
+                     const ParameterVector& base) {
   const auto at = std::find_if(shown.begin(), shown.end(), [&](const Fault* f) { return f->name == wished.name; });
   if (at == shown.end())
     throw InputError({option, 0, ""}, "'" + wished.name + "' is no fault that a log of this rig can show by a fit",
                      "name one of: " + listed(shown));
   TargetLane out;
   out.fault = *at;
-  out.severity = std::isfinite(wished.severity) ? wished.severity : out.fault->starts.front();
+  const FaultSizes sizes = sizes_of(*out.fault, base.data());
+  out.severity = std::isfinite(wished.severity) ? wished.severity : sizes.starts.front();
   const double size = out.fault->healthy == 0 ? std::abs(out.severity) : out.severity;
-  const auto [low, high] = std::minmax(out.fault->healthy, out.fault->worst);
+  const auto [low, high] = std::minmax(out.fault->healthy, sizes.worst);
   if (!(size >= low && size <= high) || size == out.fault->healthy)
     throw InputError({option, 0, ""},
                      fmt::format("{} of {} is not between healthy, {}, and the worst, {}", out.severity, wished.name,
-                                 out.fault->healthy, out.fault->worst),
+                                 out.fault->healthy, sizes.worst),
                      fmt::format("give a severity in its unit ({})", out.fault->unit));
   return out;
 }
 
-std::vector<TargetLane> targets_of(const PlanOptions& options, const std::vector<const Fault*>& shown) {
+std::vector<TargetLane> targets_of(const PlanOptions& options, const std::vector<const Fault*>& shown,
+                                   const ParameterVector& base) {
   std::vector<TargetLane> out;
   const bool part = !options.between.empty();
   std::vector<PlanFault> wished = part ? options.between : options.faults;
@@ -61,7 +66,7 @@ std::vector<TargetLane> targets_of(const PlanOptions& options, const std::vector
   std::set<std::string> seen;
   for (const PlanFault& w : wished) {
     const std::string option = part ? "--between" : "--faults";
-    out.push_back(target_of(w, option, shown));
+    out.push_back(target_of(w, option, shown, base));
     if (!seen.insert(w.name).second)
       throw InputError({option, 0, ""}, "'" + w.name + "' is named twice", "name each fault once");
   }
@@ -145,7 +150,7 @@ PlannedTest plan_of(const Table& tuned, const RigFile& rig, const PlanOptions& o
   const Table table = apply_rig_facts(tuned, rig);
   TestBench bench(table, rig, like, options.rate, options.threads);
   const std::vector<const Fault*> shown = fitted_faults({&bench.pattern()});
-  const LaneWishes wishes{targets_of(options, shown), options.rows, k::grid};
+  const LaneWishes wishes{targets_of(options, shown, candidate_of(table)), options.rows, k::grid};
   const LaneSet set = lanes_of(bench.pattern(), table, rig.null_limit, wishes);
   const Ports ports = bench.pattern().scenario.ports;
   if (options.loop_gain && ports != Ports::actuator)

@@ -18,7 +18,9 @@
 #include "diagnose/whitening.h"
 #include "faults/fault.h"
 #include "faults/registry.h"
+#include "faults/sizes.h"
 #include "fit/candidate_of.h"
+#include "fit/chart.h"
 #include "fit/error_model.h"
 #include "fit/log_data.h"
 #include "fit/tuned_state.h"
@@ -159,7 +161,9 @@ TEST(Assess, AFaultsRowsAreItsOwnAndProgressIsToldFitByFit) {
     if (!h.fault || !h.at_least) continue;
     ++none_seen;
     const Fault& f = *h.fault;
-    EXPECT_NEAR(std::abs(h.severity - f.healthy), std::abs(f.least - f.healthy), 0.01 * std::abs(f.worst - f.least))
+    const FaultSizes of_valve = sizes_of(f, candidate_of(shipped_table()).data());
+    EXPECT_NEAR(std::abs(h.severity - f.healthy), std::abs(of_valve.least - f.healthy),
+                0.01 * std::abs(of_valve.worst - of_valve.least))
         << f.name;
   }
   EXPECT_GT(none_seen, 0);
@@ -221,7 +225,9 @@ TEST(Assess, AClearanceIsSizedByTheDrawingToo) {
     size.fault = same[i].fault;
     size.severity_lower = same[i].severity_lower, size.severity_upper = same[i].severity_upper;
     const bool of_clearance = size.fault && size.fault->counted_in == row::radial_clearance;
-    if (of_clearance) size = counted_in_either(size, times);
+    FreeValue searched;
+    if (of_clearance) searched.lower = size.fault->least, searched.upper = size.fault->worst;
+    if (of_clearance) size = counted_in_either(size, times, searched);
     EXPECT_DOUBLE_EQ(other[i].severity_lower, size.severity_lower) << i;
     EXPECT_DOUBLE_EQ(other[i].severity_upper, size.severity_upper) << i;
     wider = wider || other[i].severity_upper > 1.01 * same[i].severity_upper;

@@ -10,9 +10,12 @@
 #include "diagnose/diagnose.h"
 #include "diagnose/hypotheses.h"
 #include "diagnose/hypothesis_fit.h"
+#include "diagnose/severity.h"
 #include "faults/fault.h"
 #include "faults/registry.h"
+#include "faults/sizes.h"
 #include "fit/candidate_of.h"
+#include "fit/chart.h"
 #include "fit/error_model.h"
 #include "fit/log_data.h"
 #include "servodx/rig.h"
@@ -143,21 +146,58 @@ TEST(HypothesisFit, WhatHealthLentFindsAMildFaultForAFractionOfTheRuns) {
   EXPECT_LT(near.left, far.left);
 }
 
-TEST(HypothesisFit, ASizeIsAsSureAsTheRowThatItIsCountedIn) {
+TEST(HypothesisFit, AnIntervalHoldsTheSizeByEitherCount) {
   FaultSize size;
   size.fault = find_fault("radial_clearance_wear");
   size.severity = 8, size.severity_lower = 6, size.severity_upper = 10;
-  const FaultSize same = counted_in_either(size, 1.0);
-  EXPECT_EQ(same.severity_lower, 6);
-  EXPECT_EQ(same.severity_upper, 10);
-  const FaultSize tuned_small = counted_in_either(size, 0.5), tuned_large = counted_in_either(size, 1.2);
-  EXPECT_EQ(tuned_small.severity, 8);
-  EXPECT_EQ(tuned_small.severity_lower, 3) << "of the drawing's clearance";
-  EXPECT_EQ(tuned_small.severity_upper, 10);
-  EXPECT_EQ(tuned_large.severity_lower, 6);
-  EXPECT_EQ(tuned_large.severity_upper, 12);
-  EXPECT_EQ(counted_in_either(size, 0.1).severity_lower, size.fault->least);
-  EXPECT_EQ(counted_in_either(size, 9.0).severity_upper, size.fault->worst);
+  FreeValue searched;
+  searched.lower = size.fault->least, searched.upper = size.fault->worst;
+  const auto by = [&](double times) { return counted_in_either(size, times, searched); };
+  EXPECT_EQ(by(1.0).severity_lower, 6);
+  EXPECT_EQ(by(1.0).severity_upper, 10);
+  EXPECT_EQ(by(0.5).severity, 8);
+  EXPECT_EQ(by(0.5).severity_lower, 3) << "of the drawing's clearance";
+  EXPECT_EQ(by(0.5).severity_upper, 10);
+  EXPECT_EQ(by(1.2).severity_lower, 6);
+  EXPECT_EQ(by(1.2).severity_upper, 12);
+  EXPECT_EQ(by(0.1).severity_lower, searched.lower);
+  EXPECT_EQ(by(9.0).severity_upper, searched.upper);
+}
+
+// A seal that is scored need not leak by the oil's viscosity, as a sound one does.
+TEST(HypothesisFit, ALeakIsSizedAtTheOilOfTheTestToo) {
+  const auto [cold, base, error] = Stretch{};
+  const HypothesisSettings settings;
+  const auto interval_at = [&](double viscosity_ratio) {
+    LogData log = cold;
+    log.scenario.oil.viscosity_ratio = viscosity_ratio;  // what is run is the same, what it means is not
+    const HypothesisData data = hypothesis_data({&log}, base, error, settings);
+    Attempt leak{.fault = find_fault("cylinder_leakage"), .start = 1e-12};
+    run(leak, data, nullptr, 0);
+    return std::pair(leak.fit.severity_lower / leak.fit.severity, leak.fit.severity_upper / leak.fit.severity);
+  };
+  const auto at_40 = interval_at(1), thick = interval_at(2), thin = interval_at(0.5);
+  EXPECT_LT(thick.first, 0.55 * at_40.first);
+  EXPECT_GT(thin.second, 1.8 * at_40.second);
+}
+
+// A leak that a valve of 4 l/min shows is within the tolerance of one of 200 l/min.
+TEST(Severity, SizesOfALeakGoWithTheValvesFlow) {
+  const Fault& leak = *find_fault("cylinder_leakage");
+  ParameterVector small = candidate_of(shipped_table()), large = small;
+  large[row::port_width] *= 10;
+  const FaultSizes of_small = sizes_of(leak, small.data()), of_large = sizes_of(leak, large.data());
+  EXPECT_NEAR(of_large.least, 10 * of_small.least, 1e-9 * of_large.least);
+  EXPECT_NEAR(of_large.worst, 10 * of_small.worst, 1e-9 * of_large.worst);
+  const Stretch stretch{};
+  const auto searched = [&](const ParameterVector& base) {
+    return hypothesis_values({&stretch.log}, base, {{&leak, of_small.starts.front()}}, 0.05).front();
+  };
+  EXPECT_EQ(searched(small).lower, of_small.least);
+  EXPECT_EQ(searched(large).lower, of_large.least);
+  EXPECT_EQ(searched(large).upper, of_large.worst);
+  const auto fixed = sizes_of(*find_fault("null_shift"), large.data());
+  EXPECT_EQ(fixed.least, find_fault("null_shift")->least);
 }
 
 TEST(HypothesisFit, HealthBegunElsewhereEndsNoHigherByTheDerivativesOfTheFirst) {
