@@ -11,6 +11,7 @@
 #include "fit/chart.h"
 #include "fit/log_data.h"
 #include "fit/log_start.h"
+#include "fit/oil_of.h"
 #include "parameters/coordinate.h"
 #include "parameters/list.h"
 #include "servodx/log.h"
@@ -104,6 +105,33 @@ double times_drawing(int row, const Table& tuned, const RigFile& rig) {
   return 1;
 }
 
+namespace {
+
+// Oil of a temperature that nobody measured, by how thick it is. An oil that is thicker is colder: it is stiffer too,
+// and the ports pass less of it, by the root of its density. Rigs run some 20 K about 40 degC, where a mineral oil is
+// 2.2 times as thick, or as thin; -20 degC is 30 times.
+FreeValue unknown_oil(const LogData& log, const ParameterVector& base, int l) {
+  constexpr int at = effect_row<ViscosityChange>(0);
+  constexpr double thinnest = 0.1, thickest = 50;
+  FreeValue out{ViscosityChange::parameters[0].name,
+                at,
+                thinnest,
+                thickest,
+                true,
+                std::clamp(base[at], thinnest, thickest),
+                std::log(2.2) / std::log(thickest / thinnest),
+                l};
+  out.apply = [fluid = log.fluid, taken = log.scenario.oil, usual = out.start](double* candidate, double factor) {
+    const Oil oil = oil_of(fluid, kelvin_where(fluid, taken.viscosity_ratio * factor / usual));
+    candidate[at] = factor;
+    candidate[row::bulk_modulus] *= oil.stiffness_ratio / taken.stiffness_ratio;
+    candidate[row::port_width] *= std::sqrt(taken.density / oil.density);
+  };
+  return out;
+}
+
+}  // namespace
+
 std::vector<FreeValue> nuisance_values(const LogData& log, int l, const ParameterVector& base, double null_limit) {
   std::vector<FreeValue> out;
   const auto has = [&](Signal s) {
@@ -119,13 +147,7 @@ std::vector<FreeValue> nuisance_values(const LogData& log, int l, const Paramete
     out.push_back({std::string(n.name), at, n.lower, n.upper, false, n.prior_mean, n.prior_sd, l});
   };
   if (!log.scenario.command_slope) add(nuisance::command_slope);
-  // Rigs run some 20 K about 40 degC, where a mineral oil is 2.2 times as thick, or as thin; -20 degC is 30 times.
-  if (!log.scenario.oil_known) {
-    constexpr int at = effect_row<ViscosityChange>(0);
-    constexpr double thinnest = 0.1, thickest = 50;
-    out.push_back({ViscosityChange::parameters[0].name, at, thinnest, thickest, true,
-                   std::clamp(base[at], thinnest, thickest), std::log(2.2) / std::log(thickest / thinnest), l});
-  }
+  if (!log.scenario.oil_known) out.push_back(unknown_oil(log, base, l));
   if (pressures) out.push_back({name_of_row(row::air_fraction), row::air_fraction, 2e-4, 0.08, true, 0.005, 0.2, l});
   if (has(Signal::spool_position)) add(nuisance::spool_offset);
   if (pressures) add(nuisance::pressure_a_offset), add(nuisance::pressure_b_offset);

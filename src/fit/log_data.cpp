@@ -83,6 +83,7 @@ LogData prepare(const Log& log, const RigFile& rig, int window) {
     out.notes.push_back(
         {Note::Kind::oil, fmt::format("{}: no oil temperature: taken as 40 degC, give or take 20 K", log.path)});
   s.oil = oil_of(rig.fluid, temperature);
+  out.fluid = rig.fluid;
   const std::vector<char> unknown = after_gaps(log.time);
   for (Signal which : simulated_signals) {
     if (!log.has(which)) continue;

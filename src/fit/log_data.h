@@ -39,6 +39,7 @@ struct LogData {
   Scenario scenario;
   std::vector<FitChannel> channels;
   std::vector<Note> notes;
+  Fluid fluid = {};  // of the rig: how its oil follows a temperature that the log does not hold
 };
 
 // The piston integrates every error of flow: below the corner its slow drift tells little and would hide what the rest

@@ -8,10 +8,12 @@
 #include <filesystem>
 #include <functional>
 
+#include "base/celsius.h"
 #include "base/median.h"
 #include "effects/registry.h"
 #include "effects/viscosity_change.h"
 #include "fit/log_data.h"
+#include "fit/oil_of.h"
 #include "optimise/unit_cube.h"
 #include "parameters/list.h"
 #include "parameters/table.h"
@@ -151,12 +153,13 @@ std::vector<Note> notes_of_logs(const std::vector<LogResult>& logs, const TuneSc
            std::string(rig.command_hold ? ", from the rig file: " : ", estimated log by log: ") +
            by_log(
                logs, [](std::size_t) { return true; }, [](const LogResult& l) { return l.command_slope; })});
-  const std::string viscosities = by_log(
+  const std::string temperatures = by_log(
       logs, [&](std::size_t l) { return !scope.data[l].scenario.oil_known; },
-      [](const LogResult& l) { return l.candidate[effect_row<ViscosityChange>(0)]; });
-  if (!viscosities.empty())
-    notes.push_back(
-        {Note::Kind::oil, "viscosity over that at 40 degC, where no temperature was logged: " + viscosities});
+      [&](const LogResult& l) {
+        return kelvin_where(rig.fluid, l.candidate[effect_row<ViscosityChange>(0)]) - zero_celsius;
+      });
+  if (!temperatures.empty())
+    notes.push_back({Note::Kind::oil, "oil by the fit, where no temperature was logged, degC: " + temperatures});
   return notes;
 }
 

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <fstream>
 #include <set>
 #include <sstream>
@@ -10,13 +11,18 @@
 #include <vector>
 
 #include "effects/registry.h"
+#include "effects/viscosity_change.h"
 #include "fit/candidate_of.h"
 #include "fit/chart.h"
 #include "fit/free_values.h"
 #include "fit/log_data.h"
+#include "fit/oil_of.h"
+#include "parameters/list.h"
 #include "servodx/log.h"
 #include "shipped_data.h"
+#include "signals/signal.h"
 #include "simulate/scenario.h"
+#include "simulate/simulate.h"
 
 namespace servodx {
 namespace {
@@ -57,6 +63,39 @@ TEST(Nuisances, AllOfThemAreFreeInALogThatShowsAll) {
     places.insert(f.at);
   }
   EXPECT_EQ(static_cast<int>(places.size()), n_nuisances);
+}
+
+// Root mean square of the difference of a signal.
+double apart(const Trajectory& a, const Trajectory& b, Signal s) {
+  const auto& x = a.signals[static_cast<std::size_t>(simulated_index(s))];
+  const auto& y = b.signals[static_cast<std::size_t>(simulated_index(s))];
+  double sum = 0;
+  for (std::size_t i = 0; i < x.size(); ++i) sum += (x[i] - y[i]) * (x[i] - y[i]);
+  return std::sqrt(sum / static_cast<double>(x.size()));
+}
+
+TEST(Nuisances, AnOilOfUnknownTemperatureThatIsThickerIsColderInAllThatShows) {
+  LogData log = prepare(shipped_log("healthy/h01_steps_large"), shipped_rig());
+  const ParameterVector base = candidate_of(shipped_table());
+  constexpr double taken = 313.15, cold = 283.15;  // [K]
+  log.scenario.oil = oil_of(log.fluid, cold);
+  const Trajectory truth = simulate(log.scenario, base);
+  const double thicker = log.scenario.oil.viscosity_ratio;
+  log.scenario.oil = oil_of(log.fluid, taken), log.scenario.oil_known = false;
+  const Trajectory as_taken = simulate(log.scenario, base);
+  ParameterVector follows = base;
+  int found = 0;
+  for (const FreeValue& f : nuisance_values(log, 0, base, 0.05))
+    if (f.name == ViscosityChange::parameters[0].name) f.apply(follows.data(), thicker), ++found;
+  ASSERT_EQ(found, 1);
+  const Trajectory followed = simulate(log.scenario, follows);
+  for (const Signal s : {Signal::piston_position, Signal::pressure_a, Signal::pressure_b})
+    EXPECT_LT(apart(followed, truth, s), 0.2 * apart(as_taken, truth, s)) << info(s).name;
+  ParameterVector same = base;
+  for (const FreeValue& f : nuisance_values(log, 0, base, 0.05))
+    if (f.name == ViscosityChange::parameters[0].name) f.apply(same.data(), 1.0);
+  EXPECT_NEAR(same[row::bulk_modulus], base[row::bulk_modulus], 1e-9 * base[row::bulk_modulus]);
+  EXPECT_NEAR(same[row::port_width], base[row::port_width], 1e-9 * base[row::port_width]);
 }
 
 TEST(Nuisances, StandInTheirTableOfThePage) {
