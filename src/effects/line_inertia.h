@@ -133,12 +133,13 @@ struct LineInertia {
     const auto leak = view.d.leak * (chamber<0>(view) - chamber<1>(view));
     const auto walls = T(half) * pick<row::hose_compliance>(view.p);
     const auto v = piston_speed(view);
-    return std::make_tuple(line_rate<0>(view),
-                           (line_flow<0>(view) - leak - pick<row::piston_area_a>(view.p) * v) *
-                               chamber_stiffness(chamber_volume_a(view), walls, chamber<0>(view), view.d),
-                           line_rate<1>(view),
-                           (line_flow<1>(view) + leak + pick<row::piston_area_b>(view.p) * v) *
-                               chamber_stiffness(chamber_volume_b(view), walls, chamber<1>(view), view.d));
+    return std::make_tuple(
+        line_rate<0>(view),
+        (line_flow<0>(view) - leak - pick<row::piston_area_a>(view.p) * v) *
+            chamber_stiffness<typename V::Effects>(chamber_volume_a(view), walls, chamber<0>(view), view.d),
+        line_rate<1>(view),
+        (line_flow<1>(view) + leak + pick<row::piston_area_b>(view.p) * v) *
+            chamber_stiffness<typename V::Effects>(chamber_volume_b(view), walls, chamber<1>(view), view.d));
   }
   template <class T>
   static void measured(T* out, const T* y, const T* own, const T* q) {

@@ -16,6 +16,7 @@
 #include "effects/nozzle_land.h"
 #include "effects/nozzle_mismatch.h"
 #include "effects/nozzle_plugging.h"
+#include "effects/oil_stiffening.h"
 #include "effects/orifice_length.h"
 #include "effects/port_line.h"
 #include "effects/pressure_viscosity.h"
@@ -59,7 +60,8 @@ using AllEffects = EffectList<MagneticHysteresis,  //
                               NozzleMismatch,      //
                               ReturnDrop,          //
                               ViscositySlope,      //
-                              PressureViscosity>;
+                              PressureViscosity,   //
+                              OilStiffening>;
 // Four states more than all others together, for rigs with long lines only: these have a kernel of their own.
 using LinedEffects = Append<AllEffects, LineInertia>;
 // A learnt curve costs more than all effects: the same.

@@ -236,9 +236,9 @@ inline __attribute__((always_inline)) auto derivative(const S& s, const In& in, 
   const auto volume_b = d.middle_volume_b - pick<row::piston_area_b>(p) * x_p + hook_volume_b(view, Effects{});
   const auto walls = pick<row::hose_compliance>(p) + hook_wall_compliance(view, Effects{});
   const auto dp_a = (q_pa - q_at - q_leak - pick<row::piston_area_a>(p) * v_rel + hook_flow_a(view, Effects{})) *
-                    chamber_stiffness(volume_a, walls, p_a, d);
+                    chamber_stiffness<Effects>(volume_a, walls, p_a, d);
   const auto dp_b = (q_pb - q_bt + q_leak + pick<row::piston_area_b>(p) * v_rel + hook_flow_b(view, Effects{})) *
-                    chamber_stiffness(volume_b, walls, p_b, d);
+                    chamber_stiffness<Effects>(volume_b, walls, p_b, d);
 
   // Piston.
   constexpr int n_families = std::size(c::seal_presliding);

@@ -57,6 +57,7 @@ namespace servodx {
   X(middle_volume_a,           "m3",           "at mid-stroke") \
   X(middle_volume_b,           "m3",           "at mid-stroke") \
   X(inverse_bulk,              "1/Pa",         "") \
+  X(stiffening,                "1/Pa",         "relative rise of the bulk modulus with pressure") \
   X(air,                       "Pa",           "free air fraction times atmospheric pressure") \
   X(viscosity_ratio,           "-",            "of the oil over that at 40 degC")
 // clang-format on
@@ -156,6 +157,7 @@ Derived<T> derive(const T* p, const Oil& oil) {
   d.middle_volume_a = p[row::dead_volume_a] + p[row::piston_area_a] * d.half_stroke;
   d.middle_volume_b = p[row::dead_volume_b] + p[row::piston_area_b] * d.half_stroke;
   d.inverse_bulk = T(1.0) / bulk_modulus;
+  d.stiffening = hook_stiffness_rise(p, Effects{}) * d.inverse_bulk;
   d.air = p[row::air_fraction] * T(c::atmospheric_pressure);
   return d;
 }

@@ -5,6 +5,7 @@
 //     sample
 //     viscosity(p, oil)    [-]   factor on the oil's viscosity
 //     viscosity_rise(p)    [1/Pa] relative rise of the oil's viscosity with pressure, in the metering edges
+//     stiffness_rise(p)    [-]   rise of the oil's bulk modulus per pressure
 //     edge_rounding(p, to_return) [m] added to the corner radius of the metering edges
 //     edge_creep(p)        [-]   added to the creeping-flow length of an open edge, in openings
 //     edge_abruptness(p)   [-]   how fast the flow through an open edge is turbulent, 0 to 2
@@ -177,6 +178,7 @@ T hook_viscosity([[maybe_unused]] const T* p, [[maybe_unused]] const Oil& oil, E
     return added;                                                                                          \
   }
 SERVODX_FIXED_HOOK(viscosity_rise)
+SERVODX_FIXED_HOOK(stiffness_rise)
 SERVODX_FIXED_HOOK(edge_creep)
 SERVODX_FIXED_HOOK(edge_abruptness)
 SERVODX_FIXED_HOOK(return_share)
@@ -195,6 +197,12 @@ SERVODX_FIXED_HOOK(spool_yield)
 template <class... E>
 consteval bool thickens_under_pressure(EffectList<E...>) {
   return (requires(const double* q) { E::viscosity_rise(q); } || ...);
+}
+
+// The same of its stiffness.
+template <class... E>
+consteval bool stiffens_under_pressure(EffectList<E...>) {
+  return (requires(const double* q) { E::stiffness_rise(q); } || ...);
 }
 
 // What the effects add to the corner radius of the metering edges, those to return or those from supply. [m]

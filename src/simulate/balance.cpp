@@ -149,10 +149,10 @@ Rates rates_along(const Scenario& in, const TrueSignals& of, const ParameterVect
                            friction};
     const auto f = derivative<Effects, double>(s, u, p.data(), d);
     out.force[k] = p[row::moving_mass] * std::get<s_v_piston>(f);
-    out.compliance_a[k] = 1.0 / chamber_stiffness(d.middle_volume_a + p[row::piston_area_a] * of.piston[k],
-                                                  p[row::hose_compliance], of.pressure_a[k], d);
-    out.compliance_b[k] = 1.0 / chamber_stiffness(d.middle_volume_b - p[row::piston_area_b] * of.piston[k],
-                                                  p[row::hose_compliance], of.pressure_b[k], d);
+    out.compliance_a[k] = 1.0 / chamber_stiffness<Effects>(d.middle_volume_a + p[row::piston_area_a] * of.piston[k],
+                                                           p[row::hose_compliance], of.pressure_a[k], d);
+    out.compliance_b[k] = 1.0 / chamber_stiffness<Effects>(d.middle_volume_b - p[row::piston_area_b] * of.piston[k],
+                                                           p[row::hose_compliance], of.pressure_b[k], d);
     out.flow_a[k] = std::get<s_p_a>(f) * out.compliance_a[k] + p[row::piston_area_a] * s.y[s_v_piston];
     out.flow_b[k] = std::get<s_p_b>(f) * out.compliance_b[k] - p[row::piston_area_b] * s.y[s_v_piston];
   }

@@ -1,6 +1,7 @@
 // What each effect does, against what its physics says.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <tuple>
@@ -13,6 +14,7 @@
 #include "effects/mount_compliance.h"
 #include "effects/nozzle_land.h"
 #include "effects/nozzle_mismatch.h"
+#include "effects/oil_stiffening.h"
 #include "effects/orifice_length.h"
 #include "effects/pressure_viscosity.h"
 #include "effects/registry.h"
@@ -490,6 +492,35 @@ TEST(PressureViscosity, InColdOilTheChambersRestLowerAsTheEdgesFromSupplyPassLes
   const ParameterVector v = nominal_candidate();
   const double supply = v[row::supply_pressure], rise = 2e-8, fall = 2 * supply * rise * supply / 8;
   EXPECT_NEAR(resting(10, 0) - resting(10, rise), fall, 0.25 * fall);
+}
+
+// Of 1e-4 m3 without air or walls.
+double chamber_of(double rise, double pressure) {
+  ParameterVector v = with<OilStiffening>(0, rise);
+  v[row::air_fraction] = 0;
+  return chamber_stiffness<AllEffects>(1e-4, 0.0, pressure, derive<double, AllEffects>(v.data(), Oil{})) * 1e-4;
+}
+
+TEST(OilStiffening, TheChambersModulusRisesBySoManyTimesThePressure) {
+  const double bulk = chamber_of(0, 1e7), rise = 10;
+  EXPECT_EQ(chamber_of(0, 3e7), bulk);
+  for (const double pressure : {0.0, 1e7, 2e7, 4.5e7})
+    EXPECT_NEAR(chamber_of(rise, pressure), bulk + rise * pressure, 1e-9 * bulk) << pressure;
+}
+
+TEST(OilStiffening, AChamberUnderPressureAnswersLess) {
+  // A blow on a shut piston: the rod is pushed, both ports covered. The stiffer oil lets it move less.
+  Scenario s = made(0.2, 1e-3, [](double) { return 0.0; });
+  s.load_force.resize(s.time.size());
+  const double area = nominal_candidate()[row::piston_area_a];
+  for (std::size_t k = 0; k < s.time.size(); ++k) s.load_force[k] = s.time[k] > 0.1 ? 2e6 * area : 0.0;
+  const auto moved = [&](double rise) {
+    const Trajectory t = simulate(s, with<OilStiffening>(0, rise), all_signals());
+    const std::vector<double>& x = of(t, Signal::piston_position);
+    const auto [low, high] = std::minmax_element(x.begin() + 100, x.end());
+    return *high - *low;
+  };
+  EXPECT_LT(moved(20), 0.95 * moved(0));
 }
 
 TEST(ReturnDrop, RaisesTheChambersByHalfOfItsShareUnlessTheReturnIsMeasured) {
