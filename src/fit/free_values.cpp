@@ -12,6 +12,7 @@
 #include "fit/log_data.h"
 #include "fit/log_start.h"
 #include "fit/oil_of.h"
+#include "model/state.h"
 #include "parameters/coordinate.h"
 #include "parameters/list.h"
 #include "servodx/log.h"

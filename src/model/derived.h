@@ -156,8 +156,7 @@ Derived<T> derive(const T* p, const Oil& oil) {
   d.half_stroke = T(0.5) * p[row::piston_stroke];
   d.middle_volume_a = p[row::dead_volume_a] + p[row::piston_area_a] * d.half_stroke;
   d.middle_volume_b = p[row::dead_volume_b] + p[row::piston_area_b] * d.half_stroke;
-  d.inverse_bulk = T(1.0) / bulk_modulus;
-  d.stiffening = hook_stiffness_rise(p, Effects{}) * d.inverse_bulk;
+  d.inverse_bulk = T(1.0) / bulk_modulus, d.stiffening = hook_stiffness_rise(p, Effects{}) * d.inverse_bulk;
   d.air = p[row::air_fraction] * T(c::atmospheric_pressure);
   return d;
 }

@@ -24,6 +24,7 @@
 #include "plan/test_bench.h"
 #include "servodx/data_sheet.h"
 #include "servodx/note.h"
+#include "simulate/scenario.h"
 
 namespace servodx {
 namespace {

@@ -18,6 +18,7 @@
 #include "fit/chart.h"
 #include "fit/error_model.h"
 #include "fit/log_data.h"
+#include "parameters/list.h"
 #include "servodx/rig.h"
 #include "servodx/table.h"
 #include "shipped_data.h"
@@ -166,19 +167,23 @@ TEST(HypothesisFit, AnIntervalHoldsTheSizeByEitherCount) {
 
 // A seal that is scored need not leak by the oil's viscosity, as a sound one does.
 TEST(HypothesisFit, ALeakIsSizedAtTheOilOfTheTestToo) {
-  const auto [cold, base, error] = Stretch{};
+  Stretch of;
+  for (ChannelError& c : of.error.channels) c.floor = 0;
+  const Fault* fault = find_fault("cylinder_leakage");
+  constexpr double true_size = 2e-12;
   const HypothesisSettings settings;
-  const auto interval_at = [&](double viscosity_ratio) {
-    LogData log = cold;
-    log.scenario.oil.viscosity_ratio = viscosity_ratio;  // what is run is the same, what it means is not
-    const HypothesisData data = hypothesis_data({&log}, base, error, settings);
-    Attempt leak{.fault = find_fault("cylinder_leakage"), .start = 1e-12};
-    run(leak, data, nullptr, 0);
-    return std::pair(leak.fit.severity_lower / leak.fit.severity, leak.fit.severity_upper / leak.fit.severity);
+  const auto holds = [&](double viscosity_ratio, double size) {
+    of.log.scenario.oil.viscosity_ratio = viscosity_ratio;
+    const LogData log = played(of.log, of.base, fault, true_size);
+    Attempt leak{.fault = fault, .start = true_size};
+    run(leak, hypothesis_data({&log}, of.base, of.error, settings), nullptr, settings.iterations);
+    return leak.fit.severity_lower <= size && size <= leak.fit.severity_upper;
   };
-  const auto at_40 = interval_at(1), thick = interval_at(2), thin = interval_at(0.5);
-  EXPECT_LT(thick.first, 0.55 * at_40.first);
-  EXPECT_GT(thin.second, 1.8 * at_40.second);
+  EXPECT_TRUE(holds(1, true_size));
+  EXPECT_FALSE(holds(1, 0.5 * true_size));
+  EXPECT_FALSE(holds(1, 2 * true_size));
+  EXPECT_TRUE(holds(2, 0.5 * true_size));
+  EXPECT_TRUE(holds(0.5, 2 * true_size));
 }
 
 // A leak that a valve of 4 l/min shows is within the tolerance of one of 200 l/min.

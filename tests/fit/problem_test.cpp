@@ -476,9 +476,12 @@ TEST(Nuisances, ViscosityIsFoundWhereNoTemperatureWasLogged) {
   constexpr int viscosity = effect_row<ViscosityChange>(0);
   for (const double factor : {0.4, 1.0, 3.0}) {
     ParameterVector truth = candidate_of(table);
-    truth[viscosity] = factor;
-    LogData log = written_by_model(slice(shipped_data("healthy/h12_mixed"), 0, 1500), truth, 3);
-    truth[viscosity] = 1.0;
+    LogData log = slice(shipped_data("healthy/h12_mixed"), 0, 1500);
+    log.scenario.oil_known = false;
+    ParameterVector of_oil = truth;
+    for (const FreeValue& f : nuisance_values(log, 0, truth, 0.05))
+      if (f.at == viscosity) f.apply(of_oil.data(), factor);
+    log = written_by_model(log, of_oil, 3);
     const auto fitted = [&](bool known) {
       log.scenario.oil_known = known;
       FitProblem problem({&log}, truth, nuisance_values(log, 0, truth, 0.05));

@@ -42,10 +42,10 @@ void stored_rates_balance(const ParameterVector& v) {
     const double v_rel = f[s_x_piston];
     const double volume_a = p[row::dead_volume_a] + p[row::piston_area_a] * (p[row::piston_stroke] / 2 + y[s_x_piston]);
     const double volume_b = p[row::dead_volume_b] + p[row::piston_area_b] * (p[row::piston_stroke] / 2 - y[s_x_piston]);
-    const double stored_a =
-        f[s_p_a] / chamber_stiffness(volume_a, p[row::hose_compliance], y[s_p_a], d) + p[row::piston_area_a] * v_rel;
-    const double stored_b =
-        f[s_p_b] / chamber_stiffness(volume_b, p[row::hose_compliance], y[s_p_b], d) - p[row::piston_area_b] * v_rel;
+    const double stored_a = f[s_p_a] / chamber_stiffness<Effects>(volume_a, p[row::hose_compliance], y[s_p_a], d) +
+                            p[row::piston_area_a] * v_rel;
+    const double stored_b = f[s_p_b] / chamber_stiffness<Effects>(volume_b, p[row::hose_compliance], y[s_p_b], d) -
+                            p[row::piston_area_b] * v_rel;
     const auto edge = [&](double opening, const auto& side, double dp) {
       return metering_edge(opening, side, dp, d).flow;
     };
@@ -111,9 +111,11 @@ TEST(Balance, OilStoredOverARunEqualsTheFlowsOfTheRun) {
     const double dt = s.time[k] - s.time[k - 1], travel = 0.5 * (x[k] + x[k - 1]);
     const double volume_a = v[row::dead_volume_a] + v[row::piston_area_a] * (v[row::piston_stroke] / 2 + travel);
     const double volume_b = v[row::dead_volume_b] + v[row::piston_area_b] * (v[row::piston_stroke] / 2 - travel);
-    stored_a += (a[k] - a[k - 1]) / chamber_stiffness(volume_a, v[row::hose_compliance], mean(Signal::pressure_a), d) +
+    stored_a += (a[k] - a[k - 1]) /
+                    chamber_stiffness<NoEffects>(volume_a, v[row::hose_compliance], mean(Signal::pressure_a), d) +
                 v[row::piston_area_a] * (x[k] - x[k - 1]);
-    stored_b += (b[k] - b[k - 1]) / chamber_stiffness(volume_b, v[row::hose_compliance], mean(Signal::pressure_b), d) -
+    stored_b += (b[k] - b[k - 1]) /
+                    chamber_stiffness<NoEffects>(volume_b, v[row::hose_compliance], mean(Signal::pressure_b), d) -
                 v[row::piston_area_b] * (x[k] - x[k - 1]);
     const double leak = d.leak * (mean(Signal::pressure_a) - mean(Signal::pressure_b));
     in_a += dt * (mean(Signal::flow_a) - leak);

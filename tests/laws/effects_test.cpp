@@ -503,7 +503,7 @@ double chamber_of(double rise, double pressure) {
 
 TEST(OilStiffening, TheChambersModulusRisesBySoManyTimesThePressure) {
   const double bulk = chamber_of(0, 1e7), rise = 10;
-  EXPECT_EQ(chamber_of(0, 3e7), bulk);
+  EXPECT_NEAR(chamber_of(0, 3e7), bulk, 1e-9 * bulk);
   for (const double pressure : {0.0, 1e7, 2e7, 4.5e7})
     EXPECT_NEAR(chamber_of(rise, pressure), bulk + rise * pressure, 1e-9 * bulk) << pressure;
 }
