@@ -41,7 +41,9 @@ auto measured_state(const Scenario& in, const T* p, const Inputs<T>& u) {
       start(shown::pressure_b, in.pressure_b_start, nuisance::pressure_b_offset, nuisance::pressure_b_start, half);
   y[s_x_piston] = T(in.piston_start.value_or(0.0)) / p[row::position_sensor_gain];
   y[s_v_piston] = T(in.piston_velocity_start) + p[nuisance::piston_velocity_start];
-  y[s_current] = u.current;
+  // The wire's balance: from the first command, far off where it has jumped, a first stage may swing for good.
+  y[s_current] =
+      in.spool_start ? p[row::feedback_wire_stiffness] * y[s_x_spool] / p[row::torque_motor_gain] : u.current;
   return y;
 }
 

@@ -97,6 +97,27 @@ TEST(Valve, SpoolFollowsTheCurrentByTorqueGainOverWireStiffness) {
   EXPECT_NEAR(of(t, Signal::spool_position).back(), wire_only, 0.08 * wire_only);
 }
 
+// First stages of industrial valves: a light flapper with the spool held sings where it is far from its rest, and the
+// first command may be. The run begins at the rest all the same: nothing in the first stage drives the held spool.
+TEST(Valve, ARunBeginsWithItsFirstStageAtRestWhateverTheFirstCommandIs) {
+  Random random(1);
+  const auto about = [&](double nominal, double times) {
+    return nominal * std::exp(random.uniform(-1, 1) * std::log(times));
+  };
+  for (int trial = 0; trial < 20; ++trial) {
+    ParameterVector v = nominal_candidate();
+    v[row::torque_motor_frequency] = about(480, 1.6), v[row::flapper_stiffness] = about(5900, 1.5);
+    v[row::hydraulic_amplifier_gain] = about(1.4e-3, 1.2), v[row::nozzle_gap] = about(40e-6, 1.2);
+    v[row::fixed_orifice_diameter] = about(2.6e-4, 1.2), v[row::spool_diameter] = 9.2e-3;
+    Scenario jumped = made(0.01, 1e-3, [](double) { return 0.02; });
+    jumped.spool_start = 0.0;
+    const Trajectory t = simulate(jumped, v, all_signals());
+    ASSERT_TRUE(t.ok) << trial;
+    const double between = of(t, Signal::pilot_pressure_1).front() - of(t, Signal::pilot_pressure_2).front();
+    EXPECT_LT(std::abs(between), 0.01 * v[row::supply_pressure]) << trial;
+  }
+}
+
 TEST(Valve, StopsDoNotActBeforeContact) {
   // A stiff stop with a tail would hold the spool back at full stroke.
   ParameterVector near = nominal_candidate(), far = near;
