@@ -2,6 +2,7 @@
 
 #include "effects/registry.h"
 #include "effects/seal_film.h"
+#include "model/open_valve.h"
 #include "parameters/list.h"
 
 namespace servodx {
@@ -15,7 +16,7 @@ const std::vector<RowEffect>& row_effects() {
        0.0,
        {row::piston_stribeck_friction},
        {effect_row<SealFilm>(0)},
-       0,
+       nullptr,
        "stiction"},
       {"asymmetric_lap",
        "metering",
@@ -42,7 +43,7 @@ const std::vector<RowEffect>& row_effects() {
        0.0,
        {row::cross_piston_leakage},
        {},
-       2e-11},  // as far as the fault cylinder_leakage goes
+       worst_leak},
       {"sensor_lag",
        "sensor:piston_position",
        "lag of the piston position sensor",
@@ -50,7 +51,7 @@ const std::vector<RowEffect>& row_effects() {
        0.0,
        {row::position_sensor_lag},
        {},
-       0,
+       nullptr,
        nullptr,
        "piston_position"},
       {"sensor_gain_error",
@@ -60,7 +61,7 @@ const std::vector<RowEffect>& row_effects() {
        1.0,
        {row::position_sensor_gain},
        {},
-       0,
+       nullptr,
        nullptr,
        "piston_position"},
       {"flow_force",

@@ -11,7 +11,8 @@ struct RowEffect {
   double off;                    // [SI] of every row
   std::vector<int> rows;         // positions in a parameter vector
   std::vector<int> shapes = {};  // the same, of effect parameters that say how the rows act
-  double worst = 0;              // [SI] of every row: how far it may go if that is beyond the table's box
+  // [SI] of every row, on a valve of such rows: how far it may go if that is beyond the table's box.
+  double (*worst)(const double* rows) = nullptr;
   const char* also = nullptr;    // a name that others give it
   const char* of_channel = "";   // of a sensor: the channel that it shows in
 };

@@ -120,7 +120,7 @@ SoughtCause row_effect_cause(const RowEffect& e, const CauseFacts& facts) {
     const bool air = at == row::air_fraction;
     if (air) cause.atop = facts.table[at].name;
     CauseNumber& n = numbers.emplace_back(air ? factor_on_air(facts.table) : number_of_row(at, facts.table));
-    n.value.upper = std::max(n.value.upper, e.worst);
+    if (e.worst) n.value.upper = std::max(n.value.upper, e.worst(facts.tuned.data()));
   }
   for (const int at : e.shapes) {
     const EffectParameter& p = parameter_at(at);
