@@ -68,7 +68,8 @@ std::vector<Screened> screen_starts(const std::vector<const Fault*>& faults, con
                                     const HypothesisFit& health, const FitEnd* end, Steps& steps) {
   std::vector<Screened> screened;
   for (const Fault* fault : faults)
-    for (double severity : starting_severities(*fault, data.base, data.settings.null_limit))
+    for (double severity :
+         starting_severities(*fault, data.base, data.settings.null_limit, data.settings.times_drawing))
       screened.push_back({fault, severity});
   const auto run_all = [&] {
     side_by_side(screened.size(), data, [&](std::size_t i) {
@@ -290,7 +291,8 @@ std::vector<Attempt> pair_attempts(const std::vector<const Fault*>& faults,
     for (const Fault* fault : faults) {
       const bool tried = fault == led[l]->fault || (l > 0 && fault == led[0]->fault);
       if (tried) continue;
-      for (const double severity : starting_severities(*fault, data.base, data.settings.null_limit))
+      for (const double severity :
+           starting_severities(*fault, data.base, data.settings.null_limit, data.settings.times_drawing))
         screened.push_back({.fault = led[l]->fault, .severity = severity, .beside = fault}), by.push_back(led[l]);
     }
   const auto run_all = [&] {

@@ -7,7 +7,6 @@
 #pragma once
 #include <cstdint>
 #include <functional>
-#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -17,6 +16,7 @@
 #include "diagnose/visible.h"
 #include "faults/fault.h"
 #include "faults/registry.h"
+#include "faults/sizes.h"
 #include "fit/chart.h"
 #include "fit/error_model.h"
 #include "fit/log_data.h"
@@ -64,8 +64,7 @@ struct HypothesisSettings {
   };
   std::optional<Genetic> genetic = {};
   bool pairs = true;  // tried where a fault gains beyond doubt
-  // Of a fault whose size counts in a row: the tuned value of that row over its drawing's.
-  std::map<const Fault*, double> times_drawing = {};
+  TimesDrawing times_drawing = {};
   std::vector<const Fault*> among = {};  // weighed beside health; empty: all that are fitted
   std::function<bool()> stop = {};       // true: give up; what comes back is worthless
   std::function<void(double part, long simulations)> progress = {};  // after every fit, from any thread

@@ -197,7 +197,7 @@ namespace {
 
 std::vector<FreeValue> free_of(const Attempt& a, const HypothesisData& data) {
   return hypothesis_values(data.logs, data.base, {{a.fault, a.start}, {a.beside, a.start_beside}},
-                           data.settings.null_limit);
+                           data.settings.null_limit, data.settings.times_drawing);
 }
 
 }  // namespace
@@ -312,7 +312,8 @@ void screen(Screened& s, const HypothesisData& data, const HypothesisFit& from, 
   const std::vector<FaultStart> faults = s.beside
                                              ? std::vector<FaultStart>{{s.fault, from.severity}, {s.beside, s.severity}}
                                              : std::vector<FaultStart>{{s.fault, s.severity}};
-  FitProblem problem = problem_of(data, hypothesis_values(data.logs, data.base, faults, data.settings.null_limit));
+  FitProblem problem = problem_of(
+      data, hypothesis_values(data.logs, data.base, faults, data.settings.null_limit, data.settings.times_drawing));
   const Point x = starting_point({}, problem, &from);
   const Evaluation e = problem.evaluate(std::span(&x, 1)).front();
   if (e.ok) s.misfit = s.left = e.residual.squaredNorm();

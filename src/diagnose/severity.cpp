@@ -77,13 +77,15 @@ FreeValue shape_value(const Fault& fault, const FaultShape& shape, bool tolerate
 }  // namespace
 
 std::vector<FreeValue> hypothesis_values(const std::vector<const LogData*>& logs, const ParameterVector& base,
-                                         const std::vector<FaultStart>& faults, double null_limit) {
+                                         const std::vector<FaultStart>& faults, double null_limit,
+                                         const TimesDrawing& times_drawing) {
   std::vector<FreeValue> free;
   const auto among = [&](const auto& matches) {
     return std::any_of(faults.begin(), faults.end(), [&](const FaultStart& s) { return s.fault && matches(*s.fault); });
   };
   for (const FaultStart& s : faults)
-    if (s.fault) free.push_back(severity_value(*s.fault, sizes_of(*s.fault, base.data()), s.severity, null_limit));
+    if (s.fault)
+      free.push_back(severity_value(*s.fault, sizes_of(*s.fault, base.data(), times_drawing), s.severity, null_limit));
   for (const FaultStart& s : faults)
     if (s.fault)
       for (const FaultShape& shape : s.fault->shapes) free.push_back(shape_value(*s.fault, shape, false));
@@ -101,8 +103,9 @@ std::vector<FreeValue> hypothesis_values(const std::vector<const LogData*>& logs
 
 // The fault's own identifiers and an even grid over its range. Lanes are cheap, and a friction
 // or a backlash has more than one valley.
-std::vector<double> starting_severities(const Fault& fault, const ParameterVector& base, double null_limit) {
-  const FaultSizes sizes = sizes_of(fault, base.data());
+std::vector<double> starting_severities(const Fault& fault, const ParameterVector& base, double null_limit,
+                                        const TimesDrawing& times_drawing) {
+  const FaultSizes sizes = sizes_of(fault, base.data(), times_drawing);
   std::vector<double> severities = sizes.starts;
   for (double side : {1.0, -1.0}) {
     if (side < 0 && !two_sided(fault)) continue;

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "faults/fault.h"
+#include "faults/sizes.h"
 #include "fit/chart.h"
 #include "fit/log_data.h"
 #include "fit/problem.h"
@@ -19,9 +20,11 @@ struct FaultStart {
 };
 // The faults' severities first. Shared by the logs but for each log's nuisances.
 std::vector<FreeValue> hypothesis_values(const std::vector<const LogData*>& logs, const ParameterVector& base,
-                                         const std::vector<FaultStart>& faults, double null_limit);
+                                         const std::vector<FaultStart>& faults, double null_limit,
+                                         const TimesDrawing& times_drawing = {});
 
 // Severities to begin at.
-std::vector<double> starting_severities(const Fault& fault, const ParameterVector& base, double null_limit);
+std::vector<double> starting_severities(const Fault& fault, const ParameterVector& base, double null_limit,
+                                        const TimesDrawing& times_drawing = {});
 
 }  // namespace servodx

@@ -20,7 +20,8 @@ namespace k = diagnose_constants;
 // The failure mode identifiers: the mode at each of its starting severities on the attempt's side.
 std::vector<Point> identifiers(const Attempt& a, const Point& start, const HypothesisData& data) {
   std::vector<Point> out;
-  for (const double severity : starting_severities(*a.fault, data.base, data.settings.null_limit)) {
+  for (const double severity :
+       starting_severities(*a.fault, data.base, data.settings.null_limit, data.settings.times_drawing)) {
     if ((severity < 0) != (a.start < 0)) continue;
     out.push_back(start);
     out.back().front() = a.fit.free.front().to_unit(severity);

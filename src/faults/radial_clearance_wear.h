@@ -1,6 +1,8 @@
 // Worn spool and sleeve: a larger radial clearance leaks at null, the pressure gain falls. Shows in chamber pressures
 // and piston, hardly in the spool.
 #pragma once
+#include "effects/edge_radius.h"
+#include "effects/registry.h"
 #include "faults/fault.h"
 #include "parameters/list.h"
 
@@ -20,6 +22,18 @@ inline const Fault radial_clearance_wear{
     .action = "abnormal: call service",
     .apply = [](double* v, double s) { v[row::radial_clearance] *= s; },
     .failed = 10.0,  // the end of what Borello 2009 studies
+    // What wears the lands wears their corners (Borello 2009), and laws of an edge near null differ in how much of a
+    // clearance acts as a rounding.
+    .shapes = {{.name = "rounding of the edges that goes with it, of the clearance",
+                .lower = 0.0,
+                .upper = 1.0,
+                .start = 0.3,
+                .in_health = 0.0,
+                .apply =
+                    [](double* v, double share) {
+                      v[effect_row<EdgeRadius>(0)] += share * v[row::radial_clearance];
+                      v[effect_row<EdgeRadius>(1)] += share * v[row::radial_clearance];
+                    }}},
     .counted_in = row::radial_clearance};
 
 }  // namespace servodx

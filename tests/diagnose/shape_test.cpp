@@ -3,13 +3,17 @@
 
 #include <algorithm>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "diagnose/severity.h"
+#include "effects/edge_radius.h"
 #include "effects/registry.h"
 #include "effects/stiction.h"
 #include "faults/fault.h"
 #include "faults/record.h"
 #include "faults/registry.h"
+#include "faults/sizes.h"
 #include "fit/candidate_of.h"
 #include "fit/chart.h"
 #include "fit/log_data.h"
@@ -63,6 +67,36 @@ TEST(FaultShape, AFilterMayBeBlockedAtOneDirectionOfFlowAlone) {
   EXPECT_EQ(negative[row::filter_blockage_negative], 0.6);
 }
 
+// Laws of an edge near null differ in how far a clearance rounds it: from not at all to by the clearance itself.
+TEST(FaultShape, AWornClearanceMayRoundItsEdgesByUpToItself) {
+  const Fault& wear = *find_fault("radial_clearance_wear");
+  const ParameterVector sharp = with(wear, 6, 0), half = with(wear, 6, 0.5), whole = with(wear, 6, 1);
+  const double clearance = sharp[row::radial_clearance];
+  for (const int edge : {0, 1}) {
+    const int at = effect_row<EdgeRadius>(edge);
+    EXPECT_EQ(sharp[at], 0.0);
+    EXPECT_DOUBLE_EQ(half[at], 0.5 * clearance);
+    EXPECT_DOUBLE_EQ(whole[at], clearance);
+  }
+  EXPECT_EQ(whole[row::radial_clearance], clearance) << "the size is the clearance's";
+}
+
+// A tune that trades the healthy clearance for blunter corners must not put a worn one beyond what is searched.
+TEST(FaultSizes, AClearanceTunedBelowItsDrawingIsSearchedAsFarAsTheDrawingsIs) {
+  const LogData log = prepare(shipped_log("healthy/h12_mixed"), shipped_rig());
+  const ParameterVector base = candidate_of(shipped_table());
+  const Fault& wear = *find_fault("radial_clearance_wear");
+  const auto searched = [&](const TimesDrawing& times) {
+    const FreeValue f = hypothesis_values({&log}, base, {{&wear, 3.0}}, 0.05, times).front();
+    return std::pair(f.lower, f.upper);
+  };
+  const auto [least, worst] = searched({});
+  EXPECT_EQ(searched({{&wear, 0.25}}), std::pair(least, 4 * worst));
+  EXPECT_EQ(searched({{&wear, 2.0}}), std::pair(least, worst)) << "larger than drawn: what is seen is worn less";
+  const std::vector<double> starts = starting_severities(wear, base, 0.05, {{&wear, 0.25}});
+  EXPECT_GT(*std::ranges::max_element(starts), worst) << "no start where the range goes further";
+}
+
 // Else a fault at its least size would gain by a shape that health was not asked for.
 TEST(FaultShape, IsFreeInHealthAsInEveryFault) {
   const LogData log = prepare(shipped_log("healthy/h12_mixed"), shipped_rig());
@@ -75,7 +109,7 @@ TEST(FaultShape, IsFreeInHealthAsInEveryFault) {
     return shapes;
   };
   const std::vector<std::string> in_health = names(nullptr);
-  EXPECT_EQ(in_health.size(), 3u);
+  EXPECT_EQ(in_health.size(), 4u);
   for (const Fault* fault : fault_list())
     if (fault->told_by != Record::driver) EXPECT_EQ(names(fault), in_health) << fault->name;
 }
