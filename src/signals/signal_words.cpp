@@ -517,6 +517,12 @@ constexpr SignalWords names[] = {
     {Signal::oil_temperature, "t tank"},
     {Signal::oil_temperature, "t return"},
     {Signal::oil_temperature, "t ruecklauf"},
+    // In the unit of a current, what is asked for is asked of the valve.
+    {Signal::command, "setpoint", true},
+    {Signal::command, "sollwert", true},
+    {Signal::command, "consigne", true},
+    {Signal::command, "consigna", true},
+    {Signal::return_pressure, "p ret"},
 };
 
 constexpr UnitWord meant[] = {

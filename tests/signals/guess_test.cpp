@@ -36,6 +36,14 @@ TEST(Guess, NamesAndUnitsAsPeopleWriteThem) {
   EXPECT_EQ(taken({"psupply_Pa"}), "supply_pressure in Pa");
 }
 
+TEST(Guess, ASetpointInTheUnitOfACurrentIsTheCommand) {
+  EXPECT_EQ(taken({"Consigna [mA]"}), "command in mA");
+  EXPECT_EQ(taken({"Sollwert [mA]"}), "command in mA");
+  EXPECT_EQ(taken({"Sollwert [mm]"}), "setpoint in mm");
+  EXPECT_EQ(taken({"Sollwert"}), "setpoint");
+  EXPECT_TRUE(guess_columns({"Consigna [mA]"})[0].weak) << "taken without a question";
+}
+
 TEST(Guess, AUnitOfAnotherQuantityRulesASignalOut) { EXPECT_EQ(taken({"valve current [bar]"}), "nothing in bar"); }
 
 TEST(Guess, EachSignalOnceAndTheBetterMatchWins) {
