@@ -57,7 +57,7 @@ TuneChart chart_of(const Tuned& tuned) {
   if (!tuned.whole) return out;
   for (const ConvergencePoint& p : tuned.whole->convergence)
     out.convergence.push_back({report::word_of(p.stage), p.simulations, p.cost});
-  out.starts = tuned.whole->starts;
+  for (const StartEnd& start : tuned.whole->starts) out.starts.push_back(start.cost);
   return out;
 }
 

@@ -40,7 +40,7 @@ struct EffectParameter {
   const char* meaning;
   bool switches = true;  // false: shapes an effect that another parameter switches
   bool told = true;      // false: healthy logs cannot tell it from a row of the table; `tune` leaves it off
-  double likely = 0.0;   // [unit] how far from `off` healthy rigs are; 0: as far as `start`
+  double likely = 0.0;   // [unit] how far from `start` rigs that have it are; 0: as far as `start` is from `off`
 };
 
 }  // namespace servodx

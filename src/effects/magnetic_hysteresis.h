@@ -2,9 +2,9 @@
 // Visintin, Differential Models of Hysteresis, 1994), each with half the threshold of the last. Iron has domains of all
 // sizes, so loops of all amplitudes open, and small ones cost gain: where each play's loop is half as wide as the last
 // one's the width grows with the amplitude (Rayleigh 1887); less fading is iron that opens early. The armature's flux
-// follows its angle too: a slewing flapper drives the iron beyond where the current alone would. Rate-independent, exact
-// at the samples but for the angle, which is the last sample's; adds no state to the equations. Leaves out the pinching
-// of the loop near saturation.
+// follows its angle too: a slewing flapper drives the iron beyond where the current alone would. Rate-independent,
+// exact at the samples but for the angle, which is the last sample's; adds no state to the equations. Leaves out the
+// pinching of the loop near saturation.
 #pragma once
 #include "base/pack.h"
 #include "effects/effect.h"
@@ -23,7 +23,8 @@ struct MagneticHysteresis {
       {"hysteresis_width", "-", 0.0, 0.0, 0.06, 0.012,
        "full width of the loop of a large cycle, fraction of rated current"},
       {"hysteresis_reach", "-", 0.5, 0.02, 1.0, 0.5,
-       "amplitude from which the loop has its full width, fraction of rated current; further where so wide a loop would "
+       "amplitude from which the loop has its full width, fraction of rated current; further where so wide a loop "
+       "would "
        "leave small motions no gain",
        false},
       {"hysteresis_fading", "-", 0.5, 0.2, 1.5, 0.5,

@@ -24,7 +24,21 @@ struct MountCompliance {
       {"mount_relaxation", "s", 2e-4, 2e-5, 5e-3, 2e-4, "damping over stiffness of the mount", false},
       {"mount_mass", "kg", 0.0, 0.0, 200.0, 10.0, "mass of the cylinder's body", false},
   };
+  static constexpr double part_of_oil = 0.25;     // of the oil's compliance at mid-stroke: a sound mount is the stiffer
   static constexpr double least_period2 = 1e-10;  // [s2] of a body without mass, over (2 pi)^2: 16 kHz, above any log
+
+  // What a rig of this size may have: a body as heavy as what moves, on a mount that gives way beside the oil. Between
+  // two rigs either number differs by a hundred times. p: rows of the model.
+  static void as_large_as_rig(double* own, const double* p) {
+    const auto spring = [&](int area, int dead_volume) {
+      return p[area] * p[area] / (p[dead_volume] + 0.5 * p[row::piston_stroke] * p[area]);
+    };
+    const double oil = p[row::bulk_modulus] * (spring(row::piston_area_a, row::dead_volume_a) +
+                                               spring(row::piston_area_b, row::dead_volume_b));
+    own[0] = part_of_oil / oil;
+    own[1] = parameters[1].start;
+    own[2] = p[row::moving_mass];
+  }
 
   template <class V>
   static auto body_velocity(const V& view) {

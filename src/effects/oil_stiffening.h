@@ -19,7 +19,7 @@ struct OilStiffening {
   static constexpr int n_states = 0;
   static constexpr int n_parameters = 1;
   static constexpr EffectParameter parameters[n_parameters] = {
-      {"stiffness_rise", "-", 0.0, 0.0, 20.0, 10.0, "rise of the oil's bulk modulus per pressure"},
+      {"stiffness_rise", "-", 0.0, 0.0, 20.0, 10.0, "rise of the oil's bulk modulus per pressure", true, true, 2.0},
   };
   // [-] q: own parameters.
   template <class T>

@@ -30,6 +30,7 @@ void take_meaning(EffectInfo& e) {
   if constexpr (requires { M::of_construction; }) e.of_construction = M::of_construction;
   if constexpr (requires { M::best_test; }) e.best_test = M::best_test;
   if constexpr (requires { M::along; }) e.along = M::along;
+  if constexpr (requires { M::as_large_as_rig; }) e.as_large_as_rig = M::as_large_as_rig;
 }
 
 template <class... E>

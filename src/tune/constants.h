@@ -37,8 +37,9 @@ inline constexpr int iterations_a_start = 4;         // enough to tell valleys a
 inline constexpr int iterations_a_round = 6;         // then the weights are learnt anew
 inline constexpr int iterations_of_last_round = 10;  // effects are judged where it ends, or it is what is kept
 inline constexpr double tells_valleys = 1e-3;        // of the cost: less promised is no other valley
-// Of a cost in units of likelihood: a fifth of what chance lends each number that is free.
-inline constexpr double worth_a_step = 0.1;
+// Of a cost in units of likelihood: what chance lends each number that is free. A search that promises no more of all
+// of them together is there.
+inline constexpr double worth_a_step = 0.5;
 inline constexpr double as_good = 1.05;  // of the best end's cost: another start that is there, or on its way
 // Of BOBYQA where derivatives prove false, for each free value. It lays out 2n + 1 points first; as many again let it
 // move.

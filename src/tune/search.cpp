@@ -3,9 +3,14 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <span>
+#include <utility>
+#include <vector>
 
 #include "base/stopwatch.h"
+#include "effects/registry.h"
+#include "fit/chart.h"
 #include "optimise/ceres_refinement.h"
 #include "optimise/derivative_free.h"
 #include "optimise/local.h"
@@ -161,27 +166,71 @@ bool in_best_valley(const LeastSquaresResult& end, double best) {
   return end.cost - promised <= as_good * best;
 }
 
+namespace {
+
+// Of an effect whose numbers go with the size of the rig: a search that begins far from them ends in another valley. A
+// table that is tuned has found its own.
+std::optional<Point> start_as_large_as_rig(const TuneScope& scope, const Point& nominal) {
+  if (scope.table.has_std_error) return {};
+  std::optional<Point> out;
+  for (const EffectInfo& e : effect_list()) {
+    if (!e.as_large_as_rig) continue;
+    std::vector<double> own(e.parameters.size());
+    e.as_large_as_rig(own.data(), scope.base.data());
+    for (std::size_t j = 0; j < scope.shared.size(); ++j) {
+      const FreeValue& f = scope.shared[j];
+      const int k = f.at - e.first;
+      if (k < 0 || k >= static_cast<int>(own.size())) continue;
+      if (!out) out = nominal;
+      (*out)[j] = f.to_unit(std::clamp(own[static_cast<std::size_t>(k)], f.lower, f.upper));
+    }
+  }
+  return out;
+}
+
+}  // namespace
+
+namespace {
+
+struct StartPoint {
+  StartEnd::From from;
+  Point point;
+};
+
+std::vector<StartPoint> start_points(const TuneScope& seen, const Point& nominal, TuneWatch& watch) {
+  std::vector<StartPoint> out = {{StartEnd::From::table, nominal}};
+  if (std::optional<Point> p = start_as_large_as_rig(seen, nominal))
+    out.push_back({StartEnd::From::rig_size, *std::move(p)});
+  if (watch.options.generations > 0 && !watch.stopped()) {
+    Stopwatch clock;
+    for (Point& p : search_broadly(seen, nominal, watch)) out.push_back({StartEnd::From::genetic, std::move(p)});
+    tell_genetic(watch, clock.lap());
+  }
+  return out;
+}
+
+}  // namespace
+
 SearchEnds search_ends(const TuneScope& seen, const FitProblem& whole, TuneWatch& watch) {
-  const TuneOptions& options = watch.options;
   FitProblem problem = seen.problem();
   const Point x = problem.start();
   seen.on_stand ? weigh_sweeps(problem, x) : first_whitening(problem, x);
-  std::vector<Point> starts = {x};
-  if (options.generations > 0 && !watch.stopped()) {
-    Stopwatch clock;
-    for (Point& p : search_broadly(seen, x, watch)) starts.push_back(std::move(p));
-    tell_genetic(watch, clock.lap());
-  }
-  SearchEnds out;
+  const std::vector<StartPoint> starts = start_points(seen, x, watch);
+  std::vector<LeastSquaresResult> ends;
+  std::size_t best = 0;
   for (std::size_t s = 0; s < starts.size() && !(watch.stopped() && s > 0); ++s) {
     const double begun = static_cast<double>(s), all = static_cast<double>(starts.size());
-    out.ends.push_back(search_locally(problem, starts[s], Stage{Stage::Kind::start, static_cast<int>(s) + 1},
-                                      iterations_a_start, s == 0 ? Start::nominal : Start::found,
-                                      {work.starts.at(begun / all), work.starts.at((begun + 1) / all)}, watch));
-    tell_heldout(watch, whole, out.ends.back().point);
-    if (out.ends.back().cost < out.ends[out.best].cost) out.best = s;
+    ends.push_back(search_locally(problem, starts[s].point, Stage{Stage::Kind::start, static_cast<int>(s) + 1},
+                                  iterations_a_start,
+                                  starts[s].from == StartEnd::From::genetic ? Start::found : Start::nominal,
+                                  {work.starts.at(begun / all), work.starts.at((begun + 1) / all)}, watch));
+    tell_heldout(watch, whole, ends.back().point);
+    if (ends.back().cost < ends[best].cost) best = s;
   }
-  for (const LeastSquaresResult& end : out.ends) out.arrived.push_back(in_best_valley(end, out.ends[out.best].cost));
+  SearchEnds out;
+  for (std::size_t s = 0; s < ends.size(); ++s)
+    out.starts.push_back({starts[s].from, ends[s].cost, in_best_valley(ends[s], ends[best].cost)});
+  out.best = std::move(ends[best]);
   watch.done_with(problem);
   return out;
 }

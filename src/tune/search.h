@@ -30,9 +30,8 @@ bool in_best_valley(const LeastSquaresResult& end, double best);
 
 // Ends of the local stage on what is seen of each log.
 struct SearchEnds {
-  std::vector<LeastSquaresResult> ends;  // from the table's values first
-  std::size_t best = 0;
-  std::vector<char> arrived;  // of each, whether it is in the best valley
+  std::vector<StartEnd> starts;  // from the table's values first
+  LeastSquaresResult best;
 };
 // `seen`: without the part of each log that is held out. `whole`: on whole logs, to say how well that part is met.
 SearchEnds search_ends(const TuneScope& seen, const FitProblem& whole, TuneWatch& watch);

@@ -140,11 +140,9 @@ TuneResult tune_table(const std::vector<Log>& logs, const Table& nominal, const 
   const TuneScope seen = scope.seen(options.heldout);
   FitProblem fit = scope.problem(), part = seen.problem();
   SearchEnds searched = search_ends(seen, fit, watch);
-  LeastSquaresResult end = std::move(searched.ends[searched.best]);
+  LeastSquaresResult end = std::move(searched.best);
   TuneResult out;
-  for (std::size_t s = 0; s < searched.ends.size(); ++s)
-    out.starts.push_back(s == searched.best ? end.cost : searched.ends[s].cost);
-  out.arrived = std::move(searched.arrived);
+  out.starts = std::move(searched.starts);
 
   // Weights from the model's own error, alternating with the fit: first with the end of each log still held out.
   if (!watch.stopped())

@@ -74,6 +74,14 @@ struct EarnedEffect {
   bool kept = false;
 };
 
+// A start of the local stage and its end.
+struct StartEnd {
+  enum class From { table, rig_size, genetic };  // rig_size: the table's, with effects as large as the rig is
+  From from = From::table;
+  double cost = 0;
+  bool in_best_valley = false;
+};
+
 struct TuneResult {
   Table table;  // the tuned table
   ErrorModel error;
@@ -82,12 +90,11 @@ struct TuneResult {
   std::vector<OffDrawing> off_drawing;
   std::vector<LogResult> logs;
   std::vector<ParameterResult> parameters;
-  std::vector<double> starts;               // final costs of all local starts
-  std::vector<char> arrived;                // of each, whether it is in the best valley
+  std::vector<StartEnd> starts;
   StopReason stop = StopReason::converged;  // of the last fit
   // Of its cost, half a sum of squares, by its derivatives; infinite where it had none.
   double still_promised = 0;
-  int reached_best() const { return static_cast<int>(std::count(arrived.begin(), arrived.end(), 1)); }
+  int reached_best() const { return static_cast<int>(std::ranges::count(starts, true, &StartEnd::in_best_valley)); }
   std::vector<ConvergencePoint> convergence;
   std::vector<StageResult> stages;
   std::vector<EarnedEffect> effects;  // in the order of trial

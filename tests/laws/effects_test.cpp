@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <tuple>
@@ -231,6 +232,22 @@ TEST(MountCompliance, NewtonsLawHoldsForTheBody) {
     EXPECT_EQ(rate[at], y[at + 1]);
     EXPECT_NEAR(rate[at + 1], expected, 1e-3 * std::abs(expected));  // the little that keeps a body without mass finite
   }
+}
+
+// Two cylinders on one rod, side by side, are one of twice the area: twice the oil's spring and twice the mass ring at
+// the same frequency on a mount that is as many times as stiff.
+TEST(MountCompliance, TwiceTheRigHasAMountOfTwiceTheStiffnessAndABodyOfTwiceTheMass) {
+  const ParameterVector one = nominal_candidate();
+  ParameterVector two = one;
+  for (const int at :
+       {row::piston_area_a, row::piston_area_b, row::dead_volume_a, row::dead_volume_b, row::moving_mass})
+    two[static_cast<std::size_t>(at)] *= 2;
+  std::array<double, 3> own_one{}, own_two{};
+  MountCompliance::as_large_as_rig(own_one.data(), one.data());
+  MountCompliance::as_large_as_rig(own_two.data(), two.data());
+  EXPECT_DOUBLE_EQ(own_two[0], 0.5 * own_one[0]);
+  EXPECT_DOUBLE_EQ(own_two[2], 2 * own_one[2]);
+  EXPECT_EQ(own_one[2], one[row::moving_mass]);
 }
 
 TEST(MountCompliance, ABodyWithoutMassGoesWhereItsLossLetsIt) {

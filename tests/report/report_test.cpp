@@ -436,8 +436,7 @@ TEST(TunePage, NamesTheParametersAtAnEndOfTheirRange) {
 TEST(TunePage, SaysOnceThatItIsGoodEnoughAndCallsFaultsByTheirWords) {
   TuneResult result;
   result.channels = {{Signal::spool_position, "um", 1e-6, 5e-7, 1.5e-6}};
-  result.starts = {1.0, 1.01};
-  result.arrived = {1, 1};
+  result.starts = {{StartEnd::From::table, 1.0, true}, {StartEnd::From::genetic, 1.01, true}};
   Promise log;
   log.faults = {{"clogged_filter", "-", 0.15, 0.8, 0.5, 12}};
   const std::string html = tune_page({}, result, good_enough(result, {log}), {}).html();
@@ -879,8 +878,7 @@ TEST(TuneReport, HeldRowsSayWhyAndFittedOnesHaveErrors) {
   held.confounded_with = {"flapper_stiffness", "spool_offset", "spool_offset"};
   result.parameters = {fitted, held};
   result.logs = {{"h.csv", result.channels, 0.01}};
-  result.starts = {2.0, 1.0};
-  result.arrived = {0, 1};
+  result.starts = {{StartEnd::From::table, 2.0}, {StartEnd::From::genetic, 1.0, true}};
   const std::string text = text_of(result, good_enough(result, {}), {});
   for (const char* words : {"tuned 1 parameter from 1 log\n", "104.2", "held: nozzle_gap",
                             "together with flapper_stiffness, spool_offset\n", "1 of 2 starts", "1 to 2"})
@@ -917,8 +915,7 @@ TEST(TuneReport, SaysWhatEachMethodGained) {
 TEST(TuneReport, GoodEnoughIsWhatPredictsHasArrivedAndWouldSeeTheFaults) {
   TuneResult result;
   result.channels = {{Signal::spool_position, "um", 1e-6, 5e-7, 1.5e-6}};
-  result.starts = {1.0, 1.01};
-  result.arrived = {1, 1};
+  result.starts = {{StartEnd::From::table, 1.0, true}, {StartEnd::From::genetic, 1.01, true}};
   Promise log;
   log.faults = {{"sticky_spool", "-", 2.5, 20, 4, 30}, {"clogged_filter", "-", 0.15, 0.8, 0.5, 1}};
   Promise other = log;  // the fault that one log hides another may show

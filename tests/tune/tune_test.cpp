@@ -234,6 +234,24 @@ TEST(Tune, EveryFitEndsWithCeresAndSaysWhatItGained) {
   EXPECT_EQ(result.ceres.final_cost, last->after);
 }
 
+std::vector<StartEnd::From> begun_from(Table table, const std::vector<std::string>& effects) {
+  TuneOptions o;
+  o.generations = 0, o.rounds = 1, o.effects = effects;
+  std::vector<StartEnd::From> out;
+  for (const StartEnd& s :
+       tune_table({twins::cut(shipped_log("healthy/h12_mixed"), 400)}, table, shipped_rig(), o).starts)
+    out.push_back(s.from);
+  return out;
+}
+
+TEST(Tune, AnEffectThatGoesWithTheSizeOfTheRigIsAlsoBegunAsLargeAsTheRig) {
+  using From = StartEnd::From;
+  EXPECT_EQ(begun_from(one_free_row(), {"mount_compliance"}), (std::vector{From::table, From::rig_size}));
+  EXPECT_EQ(begun_from(one_free_row(), {"oil_stiffening"}), std::vector{From::table}) << "its size is an oil's";
+  Table tuned = quick_tune(with_effects(one_free_row(), {"mount_compliance"})).table;
+  EXPECT_EQ(begun_from(tuned, {"mount_compliance"}), std::vector{From::table}) << "it has been found";
+}
+
 // All but what stands between the steps: the runs that learn an error model, and those that show what is held out.
 TEST(Tune, ItsStepsAccountForNineTenthsOfItsSimulations) {
   const TuneResult result = quick_tune(one_free_row());

@@ -55,7 +55,7 @@ Json tune_json(const TuneResult& result) {
                       {"simulations", s.simulations},
                       {"jacobians", s.jacobians},
                       {"seconds", s.seconds}});
-  for (double cost : result.starts) starts.push_back(number(cost));
+  for (const StartEnd& start : result.starts) starts.push_back(number(start.cost));
   Json effects = Json::array();
   for (const EarnedEffect& e : result.effects)
     effects.push_back({{"effect", e.effect}, {"heldout_gain", number(e.gain)}, {"kept", e.kept}});

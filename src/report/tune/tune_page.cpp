@@ -64,6 +64,18 @@ std::string stage_words(const Stage& stage) {
   return "";
 }
 
+std::string start_words(StartEnd::From from) {
+  switch (from) {
+    case StartEnd::From::table:
+      return "table's values";
+    case StartEnd::From::rig_size:
+      return "effects by the rig's size";
+    case StartEnd::From::genetic:
+      return "genetic search";
+  }
+  return "";
+}
+
 // Least missed first, as they were tried.
 void add_effects(Page& page, const std::vector<EarnedEffect>& effects) {
   if (effects.empty()) return;
@@ -78,14 +90,12 @@ Cell cell_if_any(double value, int n) { return std::isfinite(value) ? Cell(digit
 
 void add_search(Page& page, const TuneResult& result) {
   if (result.starts.size() > 1) {
-    std::vector<std::size_t> order(result.starts.size());
-    for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
-    std::stable_sort(order.begin(), order.end(),
-                     [&](std::size_t a, std::size_t b) { return result.starts[a] < result.starts[b]; });
+    std::vector<StartEnd> starts = result.starts;
+    std::ranges::stable_sort(starts, {}, &StartEnd::cost);
     Bars bars{"Where each start ended", "start", "cost", {}, {}, {}};
-    for (const std::size_t i : order)
-      bars.rows.push_back({i == 0 ? "table's values" : fmt::format("genetic {}", i), result.starts[i],
-                           digits(result.starts[i], 4), "", result.arrived[i] ? Tone::good : Tone::plain, ""});
+    for (const StartEnd& start : starts)
+      bars.rows.push_back({start_words(start.from), start.cost, digits(start.cost, 4), "",
+                           start.in_best_valley ? Tone::good : Tone::plain, ""});
     page.add(bars);
   }
   if (result.convergence.empty()) return;

@@ -69,11 +69,10 @@ std::string text_of(const TuneResult& result, const GoodEnough& good, const Text
   text += "\n" + channels_table(result.channels) + "\n" + parameters_table(result.parameters);
   text += held_rows(result.parameters) + "\n";
   if (!result.starts.empty()) {
-    auto costs = result.starts;
-    std::sort(costs.begin(), costs.end());
+    const auto [least, most] = std::ranges::minmax(result.starts, {}, &StartEnd::cost);
     text += fmt::format("  {} of {} reached the best basin; final costs {}{}\n", result.reached_best(),
-                        plural(static_cast<long>(costs.size()), "start"), digits(costs.front(), 4),
-                        costs.size() > 1 ? " to " + digits(costs.back(), 4) : "");
+                        plural(static_cast<long>(result.starts.size()), "start"), digits(least.cost, 4),
+                        result.starts.size() > 1 ? " to " + digits(most.cost, 4) : "");
   }
   if (const std::string gains = gains_in_words(result); !gains.empty()) text += "  " + gains + "\n";
   if (const std::string effects = effects_in_words(result.effects); !effects.empty()) text += "  " + effects + "\n";

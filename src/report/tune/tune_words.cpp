@@ -15,6 +15,7 @@
 #include "report/shared/replay_part.h"
 #include "servodx/log.h"
 #include "servodx/tune.h"
+#include "tune/constants.h"
 
 namespace servodx::report {
 namespace {
@@ -25,10 +26,6 @@ constexpr double seen = 3.0;            // deviates
 // rig pooled errors are 1 to 22 of it, with another valve's flow and cylinder 160 to 760 (piston, pressures).
 constexpr double follows = 50.0;
 
-// Of a cost in units of likelihood: what chance lends each number that is free. A search that promises no more is
-// there.
-constexpr double worth_going_on = 0.5;
-
 bool has_arrived(const TuneResult& result) {
   switch (result.stop) {
     case StopReason::converged:
@@ -37,7 +34,7 @@ bool has_arrived(const TuneResult& result) {
     case StopReason::stalled:
     case StopReason::iteration_limit:
     case StopReason::evaluation_limit:
-      return result.still_promised <= worth_going_on;
+      return result.still_promised <= tune_constants::worth_a_step;
     case StopReason::interrupted:
     case StopReason::start_failed:
       return false;

@@ -151,8 +151,8 @@ TuneResult some_tuning() {
   t.parameters = some_parameters();
   t.channels = {{Signal::spool_position, "mm", 1e-6, 4e-7, 1.1e-6}, {Signal::pressure_a, "bar", 1e5, 2e4, 1.3e5}};
   t.logs = {{hostile, t.channels, -0.004, 0.0, {}}, {"h2.csv", t.channels, 0.002, 1.0, {}}};
-  t.starts = {120, 80, 81, 300};
-  t.arrived = {0, 1, 1, 0};
+  using From = StartEnd::From;
+  t.starts = {{From::table, 120}, {From::rig_size, 80, true}, {From::genetic, 81, true}, {From::genetic, 300}};
   for (int k = 0; k < 30; ++k) t.convergence.push_back({{Stage::Kind::genetic}, 50 * k, 1000.0 / (1 + k)});
   t.stages = {{{Stage::Kind::genetic}, StageMethod::genetic, 1000, 33, 1500, 0},
               {{Stage::Kind::start, 1}, StageMethod::least_squares, 100, 17, 100, 6},
