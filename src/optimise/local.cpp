@@ -64,10 +64,11 @@ void say_end(LeastSquaresResult& end, const CeresSummary& ceres, const LeastSqua
   end.stopped += "; " + state_of(end);
 }
 
-Distrust distrust_of(const LeastSquaresResult& end, const LeastSquaresOptions& options) {
+Distrust distrust_of(const LeastSquaresResult& end, const LeastSquaresOptions& options, const LocalOptions& local) {
   if (!has_residual(end)) return Distrust::none;
   if (end.missing_columns > 0) return Distrust::missing_columns;
-  const bool stuck = end.reason == StopReason::stalled && promises(end, options, broken_from);
+  const bool stuck = end.reason == StopReason::stalled && promises(end, options, broken_from) &&
+                     end.promised_gain > local.trusted_if_less * end.cost;
   return stuck ? Distrust::broken_promise : Distrust::none;
 }
 
@@ -125,7 +126,7 @@ LocalResult minimise_locally(const LeastSquaresProblem& problem, const Point& st
   }
   tell(out.refinement);
   if (local.rescue_evaluations > 0 && options.loss == RobustLoss::none && !(local.stop && local.stop()))
-    out.distrust = distrust_of(end, options);
+    out.distrust = distrust_of(end, options, local);
   if (out.distrust != Distrust::none) rescue(problem, end, options, local);
   tell(out.rescue);
   return out;

@@ -5,8 +5,8 @@
 // The two share one budget of Jacobians: Ceres may take what our search has left, and has the step for which the last
 // one was never used. An end that has converged keeps its bits: Ceres agrees after one evaluation.
 //
-// Derivatives have proved false where columns of the Jacobian could not be had, or where no step that promises more than
-// the tolerance lowers the cost and yet the Jacobian promises far more.
+// Derivatives have proved false where columns of the Jacobian could not be had, or where no step that promises more
+// than the tolerance lowers the cost and yet the Jacobian promises far more.
 #pragma once
 #include <functional>
 
@@ -27,6 +27,7 @@ struct LocalOptions {
   bool after_interruption = false;
   // Of BOBYQA, where derivatives have proved false; 0: never. Only where the loss is none.
   long rescue_evaluations = 0;
+  double trusted_if_less = 0;  // of the cost: a promise of no more that no step keeps is no proof of false derivatives
   std::function<bool()> stop;  // true: no further stage begins
   // Makes our search, or brings its end from elsewhere; empty: it is made.
   std::function<LeastSquaresResult(const std::function<LeastSquaresResult()>& search)> through = {};

@@ -106,6 +106,7 @@ LeastSquaresResult search(const FitProblem& problem, const Point& from, Stage st
   LocalOptions local;
   local.method = method_of(watch.options.local);
   local.rescue_evaluations = derivatives == Derivatives::on_trial ? rescue_points * problem.n() : 0;
+  local.trusted_if_less = tells_valleys;
   local.stop = [&] { return watch.stopped(); };
   local.simulations = [&] { return problem.simulations(); };
   LocalResult r = minimise_locally(problem.least_squares(), from, o, local);
@@ -187,10 +188,6 @@ std::optional<Point> start_as_large_as_rig(const TuneScope& scope, const Point& 
   }
   return out;
 }
-
-}  // namespace
-
-namespace {
 
 struct StartPoint {
   StartEnd::From from;

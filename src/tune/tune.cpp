@@ -178,7 +178,7 @@ TuneResult tune_table(const std::vector<Log>& logs, const Table& nominal, const 
 
   append(out.notes, scope.notes);
   append(out.notes, settled.notes);
-  out.stop = end.reason, out.still_promised = end.promised_gain;
+  out.stop = end.reason, out.cost = end.cost, out.still_promised = end.promised_gain;
   out.notes.push_back({Note::Kind::search_end, "local stage: " + end.stopped});
   if (watch.distrust != Distrust::none) out.notes.push_back(note_of_distrust(watch));
   append(out.notes, notes_of_logs(out.logs, scope, rig));

@@ -92,8 +92,8 @@ struct TuneResult {
   std::vector<ParameterResult> parameters;
   std::vector<StartEnd> starts;
   StopReason stop = StopReason::converged;  // of the last fit
-  // Of its cost, half a sum of squares, by its derivatives; infinite where it had none.
-  double still_promised = 0;
+  double cost = 0;                          // half a sum of squares
+  double still_promised = 0;                // of it, by its derivatives; infinite where it had none
   int reached_best() const { return static_cast<int>(std::ranges::count(starts, true, &StartEnd::in_best_valley)); }
   std::vector<ConvergencePoint> convergence;
   std::vector<StageResult> stages;

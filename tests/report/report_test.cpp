@@ -949,14 +949,18 @@ TEST(TuneReport, GoodEnoughIsWhatPredictsHasArrivedAndWouldSeeTheFaults) {
   reason("has not arrived (iteration limit, 7 of its cost still promised)");
   result.still_promised = 0.3;
   EXPECT_EQ(good_enough(result, {other}).trust, Trust::yes) << "no more than chance lends";
+  result.stop = StopReason::stalled, result.still_promised = 0.6, result.cost = 780;
+  EXPECT_EQ(good_enough(result, {other}).trust, Trust::yes) << "a thousandth of the cost is no other valley";
+  result.cost = 0;
+  reason("has not arrived (stalled, 0.6 of its cost still promised)");
   result.stop = StopReason::start_failed, result.still_promised = 0;
   reason("has not arrived (start failed");
   result.stop = StopReason::stalled, result.still_promised = std::numeric_limits<double>::infinity();
   reason("has not arrived (stalled, without derivatives nothing says how much is left)");
   result.stop = StopReason::converged;
-  result.arrived = {1, 0};
+  result.starts[1].in_best_valley = false;
   reason("no second start");
-  result.arrived = {1, 1};
+  result.starts[1].in_best_valley = true;
   const auto log_with = [&](const char* path, double heldout) {
     return LogResult{path, {{Signal::spool_position, "um", 1e-6, 5e-7, heldout}}, 0, 0, {}};
   };

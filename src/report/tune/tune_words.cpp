@@ -34,7 +34,7 @@ bool has_arrived(const TuneResult& result) {
     case StopReason::stalled:
     case StopReason::iteration_limit:
     case StopReason::evaluation_limit:
-      return result.still_promised <= tune_constants::worth_a_step;
+      return result.still_promised <= tune_constants::worth_a_step + tune_constants::tells_valleys * result.cost;
     case StopReason::interrupted:
     case StopReason::start_failed:
       return false;
