@@ -24,8 +24,7 @@ struct MagneticHysteresis {
        "full width of the loop of a large cycle, fraction of rated current"},
       {"hysteresis_reach", "-", 0.5, 0.02, 1.0, 0.5,
        "amplitude from which the loop has its full width, fraction of rated current; further where so wide a loop "
-       "would "
-       "leave small motions no gain",
+       "would leave small motions no gain",
        false},
       {"hysteresis_fading", "-", 0.5, 0.2, 1.5, 0.5,
        "width of the loop of each play over that of the play with twice its threshold", false},

@@ -81,8 +81,8 @@ struct EffectInfo {
   bool of_construction = false;  // there from the first day or never
   std::string best_test = {};    // the input that shows it best, in words; empty: none stands out
   std::optional<RowAlong> along = {};
-  void (*as_large_as_rig)(double* own,
-                          const double* rows) = nullptr;  // its numbers on a rig of this size, if it has any
+  // Writes its numbers on a rig of these rows, where they go with the size of the rig.
+  void (*as_large_as_rig)(double* own, const double* rows) = nullptr;
 };
 const std::vector<EffectInfo>& effect_list();
 // What stands behind the 41 rows at a position of a parameter vector.
