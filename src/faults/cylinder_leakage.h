@@ -6,14 +6,13 @@
 
 namespace servodx {
 
-inline constexpr double usual_valve = 1.32e-11;  // [m3/s/Pa] 14 l/min at 207 bar: the sizes below are beside this one
-
+// Sizes are those beside the usual valve (model/open_valve.h).
 inline const Fault cylinder_leakage{
     .name = "cylinder_leakage",
     .meaning = "leakage across the piston seal",
     .unit = "m3/s/Pa",
     .healthy = 0.0,
-    .worst = 2e-11,  // more than the valve passes
+    .worst = usual_worst_leak,
     .log_scale = false,
     .prior = 0.1,
     .least = 7e-14,  // half a per cent of what it passes; new seals leak a tenth of that
@@ -23,6 +22,6 @@ inline const Fault cylinder_leakage{
     .action = "abnormal: call service",
     .apply = [](double* v, double s) { v[row::cross_piston_leakage] += s; },
     .stated_at_40_degrees = true,
-    .times = [](const double* v) { return conductance_of_valve(v) / usual_valve; }};
+    .times = times_usual_valve};
 
 }  // namespace servodx

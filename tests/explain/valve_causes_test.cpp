@@ -17,6 +17,9 @@
 #include "effects/viscosity_change.h"
 #include "explain/sought_cause.h"
 #include "explain/subject.h"
+#include "faults/fault.h"
+#include "faults/registry.h"
+#include "faults/sizes.h"
 #include "fit/candidate_of.h"
 #include "fit/log_data.h"
 #include "parameters/list.h"
@@ -122,6 +125,20 @@ TEST(ValveCauses, PickUpHasAPhaseInEachLogAndTheFrequencyThatTheRigStates) {
       for (const std::vector<double>& probe : alternative) EXPECT_NEAR(probe[0], 60.0, 0.2);
     }
   }
+}
+
+TEST(ValveCauses, ALeakIsSoughtAsFarAsTheFaultGoesOnAValveOfThisSize) {
+  Shipped s;
+  const auto farthest = [&] {
+    for (const auto& [cause, values] : valve_causes(s.facts))
+      if (values.size() == 1 && values.front().at == row::cross_piston_leakage) return values.front().upper;
+    return 0.0;
+  };
+  const Fault& leak = *find_fault("cylinder_leakage");
+  const double usual = farthest();
+  EXPECT_DOUBLE_EQ(usual, sizes_of(leak, s.tuned.data()).worst);
+  s.tuned[row::port_width] *= 10;
+  EXPECT_DOUBLE_EQ(farthest(), 10 * usual);
 }
 
 TEST(ValveCauses, SizesGoOneByOneThenTogetherThenWithATypicalShape) {

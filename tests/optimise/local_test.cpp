@@ -96,6 +96,19 @@ TEST(Local, WhereDerivativesBreakTheirPromiseBobyqaGoesOn) {
   EXPECT_LE(with.rescue.simulations, 200);
 }
 
+TEST(Local, ABrokenPromiseOfLittleIsNoProofOfFalseDerivatives) {
+  LocalOptions local;
+  local.rescue_evaluations = 200;
+  const LeastSquaresResult end = minimise_locally(rippled(), {0.1, 0.9}, {}, {}).end;
+  const double promised = end.promised_gain / end.cost;
+  local.trusted_if_less = 0.5 * promised;
+  EXPECT_EQ(minimise_locally(rippled(), {0.1, 0.9}, {}, local).distrust, Distrust::broken_promise);
+  local.trusted_if_less = 2 * promised;
+  const LocalResult trusted = minimise_locally(rippled(), {0.1, 0.9}, {}, local);
+  EXPECT_EQ(trusted.distrust, Distrust::none);
+  EXPECT_EQ(trusted.rescue.simulations, 0);
+}
+
 TEST(Local, WhereColumnsAreMissingBobyqaGoesOn) {
   // x1 can be had at a few points only: both differences beside it fail.
   const LeastSquaresProblem problem{2,

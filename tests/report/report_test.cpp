@@ -42,6 +42,7 @@
 #include "report/shared/call_names.h"
 #include "report/shared/columns.h"
 #include "report/shared/handy.h"
+#include "report/shared/html.h"
 #include "report/shared/json.h"
 #include "report/shared/replay_part.h"
 #include "report/shared/text_options.h"
@@ -443,6 +444,22 @@ TEST(TunePage, SaysOnceThatItIsGoodEnoughAndCallsFaultsByTheirWords) {
   const std::string opening = html.substr(0, html.find("<section class=\"part\""));
   EXPECT_EQ(opening.find("Good enough"), std::string::npos) << opening;
   EXPECT_NE(opening.find("may miss at their mildest clogged filter."), std::string::npos) << opening;
+}
+
+TEST(TunePage, NamesEachStartByWhereItBeganInBarsAndStagesAlike) {
+  using From = StartEnd::From;
+  TuneResult result;
+  result.starts = {{From::table, 3.0}, {From::rig_size, 1.0, true}, {From::genetic, 2.0}, {From::genetic, 4.0}};
+  for (int start = 1; start <= 4; ++start)
+    result.stages.push_back({{Stage::Kind::start, start}, StageMethod::least_squares, 9.0, 1.0, 10, 1});
+  result.convergence = {{{Stage::Kind::start, 1}, 10, 9.0}};
+  const std::string html = tune_page({}, result, good_enough(result, {}), {}).html();
+  for (const char* began : {"table's values", "effects by the rig's size", "genetic 1", "genetic 2"}) {
+    const std::string name = escape_html(began);
+    EXPECT_NE(html.find(name), html.rfind(name)) << began << ": once a bar, once a stage";
+    EXPECT_NE(html.find("from " + name), std::string::npos) << began;
+  }
+  EXPECT_EQ(html.find("genetic 3"), std::string::npos);
 }
 
 TEST(CheckLogText, ANoticeIsToldAndIsNotSuspicious) {

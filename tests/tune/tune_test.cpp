@@ -11,6 +11,7 @@
 #include "effects/line_inertia.h"
 #include "effects/magnetic_hysteresis.h"
 #include "effects/mount_compliance.h"
+#include "effects/oil_stiffening.h"
 #include "effects/port_line.h"
 #include "effects/return_drop.h"
 #include "effects/sensor_response.h"
@@ -170,6 +171,19 @@ TEST(DefaultEffects, PressureSensorsHaveGainsWithinTheirClassAndTheSpoolsHasNone
     EXPECT_EQ(f->start, 1.0);
     EXPECT_NEAR(f->prior_sd * (f->upper - f->lower), 0.01, 1e-12);
   }
+}
+
+// Oils stiffen by 8 to 12 times the pressure; its bounds alone would let the rise stand in for something else.
+TEST(DefaultEffects, TheRiseOfTheOilsStiffnessStaysNearWhatOilsHave) {
+  Table table = shipped_table();
+  add_effect_rows(table, {OilStiffening::name});
+  for (const FreeValue& f : shared_values(table)) {
+    if (f.name != OilStiffening::parameters[0].name) continue;
+    EXPECT_EQ(f.start, 10.0);
+    EXPECT_DOUBLE_EQ(f.prior_sd * (f.upper - f.lower), 2.0);
+    return;
+  }
+  FAIL() << "not freed";
 }
 
 // A tuned table of one row; the log is short, as only what the table carries beside its rows is looked at.

@@ -44,14 +44,29 @@ void add_channels(Page& page, const std::string& title, const std::vector<Channe
   page.add(table);
 }
 
+// Where a start began; those of the genetic search are counted from its first.
+std::string start_words(const std::vector<StartEnd>& starts, std::size_t which) {
+  const auto is_genetic = [](const StartEnd& start) { return start.from == StartEnd::From::genetic; };
+  switch (starts[which].from) {
+    case StartEnd::From::table:
+      return "table's values";
+    case StartEnd::From::rig_size:
+      return "effects by the rig's size";
+    case StartEnd::From::genetic:
+      return fmt::format("genetic {}",
+                         std::count_if(starts.begin(), starts.begin() + static_cast<long>(which) + 1, is_genetic));
+  }
+  return "";
+}
+
 // Where the stage begins or what it fits, for a reader of the page.
-std::string stage_words(const Stage& stage) {
+std::string stage_words(const Stage& stage, const std::vector<StartEnd>& starts) {
   switch (stage.kind) {
     case Stage::Kind::screening:
     case Stage::Kind::genetic:
       return word_of(stage);
     case Stage::Kind::start:
-      return stage.start == 1 ? "from the table's values" : "from genetic " + std::to_string(stage.start - 1);
+      return "from " + start_words(starts, static_cast<std::size_t>(stage.start - 1));
     case Stage::Kind::weights:
       return "on all but the end of each log";
     case Stage::Kind::effects:
@@ -60,18 +75,6 @@ std::string stage_words(const Stage& stage) {
       return "on whole logs";
     case Stage::Kind::errors:
       return "errors of the rows";
-  }
-  return "";
-}
-
-std::string start_words(StartEnd::From from) {
-  switch (from) {
-    case StartEnd::From::table:
-      return "table's values";
-    case StartEnd::From::rig_size:
-      return "effects by the rig's size";
-    case StartEnd::From::genetic:
-      return "genetic search";
   }
   return "";
 }
@@ -90,12 +93,13 @@ Cell cell_if_any(double value, int n) { return std::isfinite(value) ? Cell(digit
 
 void add_search(Page& page, const TuneResult& result) {
   if (result.starts.size() > 1) {
-    std::vector<StartEnd> starts = result.starts;
-    std::ranges::stable_sort(starts, {}, &StartEnd::cost);
+    std::vector<std::size_t> order(result.starts.size());
+    for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
+    std::ranges::stable_sort(order, {}, [&](std::size_t i) { return result.starts[i].cost; });
     Bars bars{"Where each start ended", "start", "cost", {}, {}, {}};
-    for (const StartEnd& start : starts)
-      bars.rows.push_back({start_words(start.from), start.cost, digits(start.cost, 4), "",
-                           start.in_best_valley ? Tone::good : Tone::plain, ""});
+    for (const std::size_t i : order)
+      bars.rows.push_back({start_words(result.starts, i), result.starts[i].cost, digits(result.starts[i].cost, 4), "",
+                           result.starts[i].in_best_valley ? Tone::good : Tone::plain, ""});
     page.add(bars);
   }
   if (result.convergence.empty()) return;
@@ -110,7 +114,7 @@ void add_search(Page& page, const TuneResult& result) {
   }
   constexpr Role roles[] = {Role::measured, Role::reference, Role::other, Role::named, Role::input};
   for (std::size_t s = 0; s < stages.size(); ++s) {
-    Series series{stage_words(stages[s]), {}, roles[s % std::size(roles)]};
+    Series series{stage_words(stages[s], result.starts), {}, roles[s % std::size(roles)]};
     for (const ConvergencePoint& c : result.convergence)
       series.y.push_back(c.stage == stages[s] ? c.cost : std::nan(""));
     plot.series.push_back(std::move(series));
@@ -123,8 +127,8 @@ void add_search(Page& page, const TuneResult& result) {
                     {},
                     0};
     for (const StageResult& s : result.stages)
-      table.rows.push_back({stage_words(s.stage), words_of(s.by), cell_if_any(s.before, 5), cell_if_any(s.after, 5),
-                            cell_if_any(s.heldout_over_noise, 3),
+      table.rows.push_back({stage_words(s.stage, result.starts), words_of(s.by), cell_if_any(s.before, 5),
+                            cell_if_any(s.after, 5), cell_if_any(s.heldout_over_noise, 3),
                             Cell(std::to_string(s.simulations), static_cast<double>(s.simulations)),
                             Cell(std::to_string(s.jacobians), static_cast<double>(s.jacobians))});
     page.add(table);
