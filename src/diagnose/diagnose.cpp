@@ -27,6 +27,7 @@
 #include "fit/chart.h"
 #include "fit/error_model.h"
 #include "fit/fast_log.h"
+#include "fit/fit_work.h"
 #include "fit/free_values.h"
 #include "fit/log_data.h"
 #include "fit/tuned_state.h"

@@ -51,16 +51,11 @@ struct Health {
   std::optional<FitEnd> end;  // none where the fit failed
 };
 
-// Side by side in the same packs, as many as memory holds: a fit keeps some 1.4 kB a sample.
 void side_by_side(std::size_t count, const HypothesisData& data, const std::function<void(std::size_t)>& task) {
-  constexpr std::size_t samples_at_once = 1'000'000;
   std::size_t samples = 0;
   for (const LogData* log : data.logs) samples += log->scenario.time.size();
-  const auto group = static_cast<int>(std::max<std::size_t>(2, samples_at_once / samples));
-  const int n = static_cast<int>(count);
-  for (int first = 0; first < n; first += group)
-    together(std::min(group, n - first), data.settings.threads,
-             [&](int i) { task(static_cast<std::size_t>(first + i)); });
+  fits_together(static_cast<int>(count), samples, data.settings.threads,
+                [&](int i) { task(static_cast<std::size_t>(i)); });
 }
 
 // Every starting severity of every fault, run once with the rest as in health; the best first.

@@ -19,6 +19,7 @@
 #include "faults/sizes.h"
 #include "fit/chart.h"
 #include "fit/error_model.h"
+#include "fit/fit_work.h"
 #include "fit/log_data.h"
 #include "fit/problem.h"
 #include "optimise/unit_cube.h"
@@ -46,11 +47,6 @@ struct HypothesisFit : FaultSize {       // a null fault: healthy
   std::vector<double> channel_rms;       // [SI] of the residual, high-passed where the channel is
   std::vector<std::string> stops;        // how each start ended
   double promised = 0;                   // misfit that steps would still gain, where they ran out
-};
-
-struct FitWork {
-  long simulations = 0, failed = 0;
-  void add(const FitWork& other) { simulations += other.simulations, failed += other.failed; }
 };
 
 struct HypothesisSettings {

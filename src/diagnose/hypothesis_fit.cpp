@@ -15,6 +15,7 @@
 #include "faults/sizes.h"
 #include "fit/chart.h"
 #include "fit/error_model.h"
+#include "fit/fit_work.h"
 #include "fit/identifiability.h"
 #include "fit/log_data.h"
 #include "fit/problem.h"

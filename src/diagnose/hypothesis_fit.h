@@ -11,6 +11,7 @@
 #include "faults/fault.h"
 #include "fit/chart.h"
 #include "fit/error_model.h"
+#include "fit/fit_work.h"
 #include "fit/log_data.h"
 #include "fit/problem.h"
 #include "optimise/unit_cube.h"

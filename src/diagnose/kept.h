@@ -10,6 +10,7 @@
 #include "diagnose/hypothesis_fit.h"
 #include "faults/fault.h"
 #include "faults/registry.h"
+#include "fit/fit_work.h"
 
 namespace servodx {
 
@@ -34,10 +35,6 @@ inline auto fields(FaultSize& s) {
 inline auto fields(HypothesisFit& f) {
   return std::tie(static_cast<FaultSize&>(f), f.beside, f.ok, f.misfit, f.point, f.standard_error, f.channel_adequacy,
                   f.channel_rms, f.stops, f.promised);
-}
-inline auto fields(FitWork& w) {
-  auto& [simulations, failed] = w;
-  return std::tie(simulations, failed);
 }
 inline auto fields(Screened& s) {
   auto& [fault, severity, misfit, left, beside, gain, work] = s;

@@ -9,6 +9,7 @@
 
 #include "diagnose/hypotheses.h"
 #include "fit/error_model.h"
+#include "fit/fit_work.h"
 #include "fit/log_data.h"
 #include "simulate/scenario.h"
 

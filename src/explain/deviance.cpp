@@ -33,6 +33,16 @@ long data_rows(const Subject& subject) {
   return n;
 }
 
+std::vector<long> samples_of_logs(const Subject& subject) {
+  std::vector<long> samples;
+  for (const Series& s : subject.series()) {
+    const auto log = static_cast<std::size_t>(s.log);
+    if (log >= samples.size()) samples.resize(log + 1, 0);
+    samples[log] = std::max(samples[log], s.count);
+  }
+  return samples;
+}
+
 Eigen::VectorXd weights_at(const Subject& subject, const Eigen::VectorXd& residual) {
   Eigen::VectorXd w = Eigen::VectorXd::Ones(residual.size());
   for (const Series& s : subject.series()) {

@@ -6,6 +6,7 @@
 // leaves a tenth, and by hardly more of the sum. Rows of priors count as they are.
 #pragma once
 #include <Eigen/Core>
+#include <vector>
 
 #include "explain/subject.h"
 #include "optimise/box_least_squares.h"
@@ -17,6 +18,8 @@ double deviance_of(const Subject& subject, const Eigen::VectorXd& residual);
 double degrees_of(const Subject& subject);
 // Rows before those of the priors.
 long data_rows(const Subject& subject);
+// Samples of each log, whatever it shows.
+std::vector<long> samples_of_logs(const Subject& subject);
 // The deviance as a sum of squares: about this residual, the weight of each row that makes their gradients alike.
 // Refitted with the weights of what is left, a sum of squares arrives where the deviance is least.
 Eigen::VectorXd weights_at(const Subject& subject, const Eigen::VectorXd& residual);

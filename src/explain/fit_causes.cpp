@@ -11,6 +11,7 @@
 #include "explain/constants.h"
 #include "explain/deviance.h"
 #include "explain/kept.h"
+#include "fit/fit_work.h"
 #include "optimise/box_least_squares.h"
 #include "optimise/local.h"
 #include "parameters/coordinate.h"
@@ -113,21 +114,21 @@ std::vector<double> values_of(const Eigen::VectorXd& v) { return {v.data(), v.da
 
 // What a search was before, at its end: made again from there, or made.
 template <class... Input>
-LocalOptions through_checkpoint(const Subject& subject, const Stages& stages, const LeastSquaresProblem& problem,
+LocalOptions through_checkpoint(FitWork& work, const Stages& stages, const LeastSquaresProblem& problem,
                                 const LeastSquaresOptions& options, const Input&... inputs) {
   LocalOptions o = local_options();
   if (!stages.keeps()) return o;
-  o.through = [&subject, &stages, &problem, &options, inputs...](const auto& search) {
+  o.through = [&work, &stages, &problem, &options, inputs...](const auto& search) {
     std::optional<LeastSquaresResult> made;
     const auto make = [&] {
       made = search();
       return without_rows(*made);
     };
-    const SearchEnd end = counted(subject, stages, "search", make, inputs...);
+    const SearchEnd end = counted(work, stages, "search", make, inputs...);
     if (made) return std::move(*made);
-    const long all = subject.simulations(), all_failed = subject.failed_simulations();
+    const FitWork all = work;
     LeastSquaresResult again = with_rows(end, problem, options);
-    subject.recount(all, all_failed);
+    work = all;
     return again;
   };
   return o;
@@ -153,7 +154,7 @@ void minimise(const Subject& subject, const Stages& stages, const LeastSquaresPr
     const std::vector<double> weights = plain || !stages.keeps() ? std::vector<double>() : values_of(*start.weights);
     const LeastSquaresResult r =
         minimise_locally(of_pass, start.point, options,
-                         through_checkpoint(subject, stages, of_pass, options, start.point, weights, pass))
+                         through_checkpoint(*out.fit.work, stages, of_pass, options, start.point, weights, pass))
             .end;
     if (r.reason == StopReason::start_failed) return;
     const Eigen::VectorXd residual = plain ? r.residual : r.residual.cwiseQuotient(*start.weights);
@@ -250,7 +251,7 @@ ExplainedFit hold_causes(const Subject& subject, const std::vector<int>& causes,
   const Stages stages = stages_of(subject, "held", causes, &from, iterations, false, out.wide);
   const LeastSquaresOptions options = least_squares_options(iterations, false);
   const LeastSquaresResult r =
-      minimise_locally(held, start, options, through_checkpoint(subject, stages, held, options, start, numbers)).end;
+      minimise_locally(held, start, options, through_checkpoint(*out.fit.work, stages, held, options, start, numbers)).end;
   if (r.reason == StopReason::start_failed) return out;
   out.ok = true;
   out.point = whole(r.point);

@@ -1,18 +1,23 @@
 #include "explain/forward.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <cstddef>
+#include <functional>
+#include <numeric>
 #include <optional>
 #include <utility>
 
 #include "evidence/heldout_gain.h"
 #include "explain/cause_score.h"
 #include "explain/constants.h"
+#include "explain/deviance.h"
 #include "explain/forward_rules.h"
 #include "explain/hold_out.h"
 #include "explain/outcome.h"
 #include "explain/score.h"
+#include "simulate/together.h"
 
 namespace servodx {
 namespace {
@@ -34,6 +39,7 @@ struct Trial {
   ExplainedFit retuned;  // the same on top of re-tuning
   Interval heldout_gain, beyond_retuning, share;
   double delta_bic = 0;
+  bool measured = false;
   bool is_new = false;  // by its size, by its share, or because the data are abnormal
   bool stands = false;  // judged, and not refused
 
@@ -85,6 +91,36 @@ Round look(const Subject& subject, const EngineOptions& options, const Selected&
   return round;
 }
 
+// Of a round's work, in the progress.
+struct Share {
+  int round;
+  double from, to;
+};
+constexpr double part_of_fits = 0.65;  // the rest is judging's; by hand: nothing hangs on it
+
+// Fits that share nothing, side by side in the same packs. What a stop cuts short is left as it was.
+void fit_together(const Subject& subject, const EngineOptions& options, const Share& share, std::size_t fits,
+                  const std::function<void(std::size_t)>& fit) {
+  std::atomic<std::size_t> done = 0;
+  std::size_t told = 0;
+  const std::vector<long> samples = samples_of_logs(subject);
+  const auto go_on = [&] {
+    if (const std::size_t now = done; now != std::exchange(told, now)) {
+      const double part = share.from + (share.to - share.from) * static_cast<double>(now) / static_cast<double>(fits);
+      options.tell(0.15 + 0.6 * (share.round + part) / options.most);
+    }
+    return !options.stopped();
+  };
+  fits_together(
+      static_cast<int>(fits), static_cast<std::size_t>(std::accumulate(samples.begin(), samples.end(), 0L)),
+      subject.threads(),
+      [&](int i) {
+        fit(at(i));
+        ++done;
+      },
+      go_on);
+}
+
 // The first round also fits a few that are no news: what stands in healthy data is said.
 std::vector<Trial> fit_best(const Subject& subject, const EngineOptions& options, bool begun, const Round& round,
                             const Selected& so_far, double degrees) {
@@ -92,15 +128,15 @@ std::vector<Trial> fit_best(const Subject& subject, const EngineOptions& options
   const int old = options.p_share ? options.fitted : standing_tried;
   const Budget budget{options.fitted, options.fitted / rare_share, standing ? old : 0};
   std::vector<Trial> out;
-  for (int c : order_of_trial(round.evidence, round.whole, budget, std::log(std::max(2.0, degrees)))) {
-    if (options.stopped()) break;
+  const std::vector<int> order = order_of_trial(round.evidence, round.whole, budget, std::log(std::max(2.0, degrees)));
+  std::vector<ExplainedFit> fits(order.size());
+  fit_together(subject, options, {so_far.rounds, 0, part_of_fits}, fits.size(), [&](std::size_t i) {
     std::vector<int> causes = so_far.fit.causes;
-    causes.push_back(c);
-    ExplainedFit f = fit_causes(subject, causes, &so_far.fit, &round.scores[at(c)], quick_iterations, true);
+    causes.push_back(order[i]);
+    fits[i] = fit_causes(subject, causes, &so_far.fit, &round.scores[at(order[i])], quick_iterations, true);
+  });
+  for (ExplainedFit& f : fits)
     if (f.ok) out.emplace_back().fit = std::move(f);
-    const double part = std::min(1.0, static_cast<double>(out.size()) / (1.5 * options.fitted));
-    options.tell(0.15 + 0.6 * (so_far.rounds + part) / options.most);
-  }
   for (Trial& t : out) t.delta_bic = delta_bic(so_far.fit, t.fit, degrees);
   return out;
 }
@@ -125,6 +161,22 @@ void measure(const Subject& subject, const EngineOptions& options, const Round& 
 FittedEvidence fitted_evidence(const Round& round, const Trial& t) {
   const ScoredEvidence& c = round.evidence[at(t.cause())];
   return {c.prior, is_new(c, round.whole), is_news_by_itself(c, round.whole), t.delta_bic};
+}
+
+void measure_best(const Subject& subject, const EngineOptions& options, const Round& round, const Selected& so_far,
+                  double degrees, std::vector<Trial>& trials) {
+  JudgingBudget budget(options.judged, rare_share);
+  std::vector<Trial*> best;
+  for (Trial& t : trials)
+    if (budget.takes(fitted_evidence(round, t))) best.push_back(&t);
+  const auto measure_one = [&](std::size_t i) {
+    measure(subject, options, round, so_far, degrees, *best[i]);
+    best[i]->measured = true;
+  };
+  // With the rows free, a Jacobian has so many columns that they follow the run (simulate_near), which needs all packs.
+  if (subject.holds())
+    return fit_together(subject, options, {so_far.rounds, part_of_fits, 1}, best.size(), measure_one);
+  for (std::size_t i = 0; i < best.size() && !options.stopped(); ++i) measure_one(i);
 }
 
 // Healthy data are asked the same of the causes that have a name.
@@ -159,15 +211,13 @@ void judge(const Subject& subject, const EngineOptions& options, const Round& ro
   std::vector<Trial> ordered;
   for (int i : order_of_judging(evidence)) ordered.push_back(std::move(trials[at(i)]));
   trials = std::move(ordered);
-  JudgingBudget budget(options.judged, rare_share);
+  measure_best(subject, options, round, so_far, out.degrees, trials);
   for (Trial& t : trials) {
-    if (options.stopped()) break;
     CandidateResult later, &r = so_far.rounds == 0 ? out.candidates[at(t.cause())] : later;
     r.fitted = true;
     r.delta_bic = t.delta_bic;
     r.fate = t.delta_bic <= 0 ? Fate::not_worth_its_numbers : Fate::others_fit_better;
-    if (!budget.takes(fitted_evidence(round, t))) continue;
-    measure(subject, options, round, so_far, out.degrees, t);
+    if (!t.measured) continue;
     r.delta_bic = t.delta_bic, r.heldout_gain = t.heldout_gain, r.beyond_retuning = t.beyond_retuning,
     r.share = t.share;
     const JudgedEvidence judged = judged_evidence(subject, options, round, so_far, t);

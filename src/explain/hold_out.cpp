@@ -22,11 +22,7 @@ struct Block {
 };
 
 std::vector<Block> blocks_of(const Subject& subject, int wanted) {
-  std::vector<long> samples;
-  for (const Series& s : subject.series()) {
-    if (static_cast<std::size_t>(s.log) >= samples.size()) samples.resize(static_cast<std::size_t>(s.log) + 1, 0);
-    samples[static_cast<std::size_t>(s.log)] = std::max(samples[static_cast<std::size_t>(s.log)], s.count);
-  }
+  const std::vector<long> samples = samples_of_logs(subject);
   const long total = std::accumulate(samples.begin(), samples.end(), 0L);
   std::vector<Block> out;
   for (std::size_t l = 0; l < samples.size(); ++l) {

@@ -13,6 +13,7 @@
 #include "explain/missing.h"
 #include "explain/subject.h"
 #include "explain/valve.h"
+#include "fit/fit_work.h"
 #include "optimise/box_least_squares.h"
 
 namespace servodx {
@@ -77,19 +78,19 @@ auto fields(Counted<T>& c) {
   return std::tie(c.made, c.simulations, c.failed);
 }
 
-// A stage of the subject's. Its simulations count, be they run now or not.
+// A stage of a fit whose work is `work`. Its simulations count, be they run now or not.
 template <class Make, class... Input>
-auto counted(const Subject& subject, const Stages& stages, std::string_view name, const Make& make,
-             const Input&... inputs) {
+auto counted(FitWork& work, const Stages& stages, std::string_view name, const Make& make, const Input&... inputs) {
   if (!stages.keeps()) return make();
-  const long simulations = subject.simulations(), failed = subject.failed_simulations();
+  const FitWork before = work;
   const auto with_work = [&] {
     Counted<std::invoke_result_t<Make>> out{make()};
-    out.simulations = subject.simulations() - simulations, out.failed = subject.failed_simulations() - failed;
+    out.simulations = work.simulations - before.simulations, out.failed = work.failed - before.failed;
     return out;
   };
   auto kept = stages.made(name, with_work, inputs...);
-  subject.recount(simulations + kept.simulations, failed + kept.failed);
+  work = before;
+  work.add({kept.simulations, kept.failed});
   return std::move(kept.made);
 }
 

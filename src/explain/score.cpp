@@ -137,11 +137,10 @@ class CauseScorer {
   double deviance_;  // of the fit
 };
 
-std::vector<CauseScore> scored(const Subject& subject, const ExplainedFit& at, const std::vector<char>& looked_at) {
+// `all`: the causes, `whole`: the fit with them.
+std::vector<CauseScore> scored(const Subject& subject, const ExplainedFit& at, const std::vector<int>& all,
+                               const SubjectFit& whole, const std::vector<char>& looked_at) {
   const std::vector<Cause>& causes = subject.causes();
-  std::vector<int> all(causes.size());
-  std::iota(all.begin(), all.end(), 0);
-  const SubjectFit whole = subject.fit(all, at.wide);
   const std::vector<Evaluation> e =
       whole.problem.evaluate(probe_points(subject, whole, carried(subject, at, whole, all), looked_at));
   const Imitation of_all = imitation_of(at, "");
@@ -170,13 +169,16 @@ std::vector<CauseScore> score_causes(const Subject& subject, const ExplainedFit&
                                      const std::function<bool(const Cause&)>& among) {
   std::vector<char> looked_at;
   for (const Cause& c : subject.causes()) looked_at.push_back(!among || among(c));
-  const auto make = [&] { return scored(subject, at, looked_at); };
+  std::vector<int> all(subject.causes().size());
+  std::iota(all.begin(), all.end(), 0);
+  const SubjectFit whole = subject.fit(all, at.wide);
+  const auto make = [&] { return scored(subject, at, all, whole, looked_at); };
   if (!subject.stages.keeps()) return make();
   std::vector<std::vector<double>> weights;
   for (const Series& s : subject.series()) weights.push_back(*s.sigma);
   std::vector<std::vector<std::vector<std::vector<double>>>> probes;
   for (const Cause& c : subject.causes()) probes.push_back(c.probes);
-  return counted(subject, subject.stages, "score", make, at.causes, at.wide, at.point, at.deviance, looked_at, weights,
+  return counted(*whole.work, subject.stages, "score", make, at.causes, at.wide, at.point, at.deviance, looked_at, weights,
                  probes);
 }
 

@@ -5,11 +5,12 @@
 // few numbers that are off where it is absent, and the misfit as least squares over the unit cube of base and causes.
 #pragma once
 #include <cmath>
-#include <functional>
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "base/stages.h"
+#include "fit/fit_work.h"
 #include "optimise/box_least_squares.h"
 #include "optimise/unit_cube.h"
 #include "parameters/coordinate.h"
@@ -67,6 +68,7 @@ struct SubjectFit {
   std::vector<Number> numbers;
   Point start;  // causes at their off value
   LeastSquaresProblem problem;
+  std::shared_ptr<FitWork> work = std::make_shared<FitWork>();  // that the problem has cost; none where nothing is run
 };
 
 // How much one part of a replay misses: a block of the model (explain/blocks.h), or a channel against its usual error.
@@ -104,8 +106,9 @@ class Subject {
   }
   virtual long simulations() const { return 0; }
   virtual long failed_simulations() const { return 0; }
-  // As though so many had been run: what a checkpoint holds is not run again, and counts all the same.
-  virtual void recount(long simulations, long failed) const { (void)simulations, (void)failed; }
+  // Fits that share nothing go side by side over so many (0: all), in the same packs. No fit may be made or run beside
+  // what changes the subject.
+  virtual int threads() const { return 1; }
 
   Stages stages;  // that a checkpoint keeps, of this subject; none unless set
 };

@@ -116,6 +116,7 @@ std::shared_ptr<FitProblem> ValveSubject::problem(const std::vector<int>& causes
   for (std::size_t l = 0; l < sigma_.size(); ++l)
     for (std::size_t c = 0; c < sigma_[l].size(); ++c)
       p->set_sigma(static_cast<int>(l), static_cast<int>(c), sigma_[l][c]);
+  const std::lock_guard lock(making_);
   made_.push_back(p);
   return p;
 }
@@ -132,6 +133,7 @@ SubjectFit ValveSubject::fit(const std::vector<int>& causes, bool wide) const {
   for (int c : causes)
     for (const Number& n : causes_[static_cast<std::size_t>(c)].numbers) out.numbers.push_back(n);
   out.start = p->start();
+  out.work = {p, &p->work()};
   out.problem.n = p->n();
   out.problem.evaluate = [this, p](std::span<const Point> points) {
     std::vector<Evaluation> e = p->evaluate(points);
@@ -165,18 +167,14 @@ double ValveSubject::thickness() const {
 }
 
 long ValveSubject::simulations() const {
-  long n = not_run_;
+  long n = 0;
   for (const auto& p : made_) n += p->simulations();
   return n;
 }
 long ValveSubject::failed_simulations() const {
-  long n = not_failed_;
+  long n = 0;
   for (const auto& p : made_) n += p->failed_simulations();
   return n;
-}
-void ValveSubject::recount(long simulations, long failed) const {
-  not_run_ += simulations - this->simulations();
-  not_failed_ += failed - failed_simulations();
 }
 
 }  // namespace servodx

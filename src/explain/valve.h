@@ -13,6 +13,7 @@
 #pragma once
 #include <cstddef>
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <string>
 #include <vector>
@@ -76,7 +77,7 @@ class ValveSubject : public Subject {
   double own(int log, int at, const Point& point) const;
   long simulations() const override;
   long failed_simulations() const override;
-  void recount(long simulations, long failed) const override;
+  int threads() const override { return options_.threads; }
 
   const std::vector<LogData>& logs() const { return logs_; }
   // The least-squares problem behind fit().
@@ -129,8 +130,8 @@ class ValveSubject : public Subject {
   std::vector<double> memory_;                           // [series] a
   std::vector<std::vector<char>> afresh_;                // [series][sample] nothing is known of the sample before
   std::vector<Series> series_;
+  mutable std::mutex making_;
   mutable std::vector<std::shared_ptr<FitProblem>> made_;
-  mutable long not_run_ = 0, not_failed_ = 0;  // simulations that count beside those of `made_`
 };
 
 }  // namespace servodx

@@ -10,6 +10,7 @@
 #include "base/sha256.h"
 #include "base/tiny.h"
 #include "signals/filters.h"
+#include "simulate/company.h"
 #include "simulate/scenario.h"
 
 namespace servodx {
@@ -126,7 +127,10 @@ std::vector<int> FitProblem::logs_of_rows() const {
   return out;
 }
 
-int FitProblem::threads() const { return options_.threads > 0 ? options_.threads : omp_get_max_threads(); }
+int FitProblem::threads() const {
+  if (company()) return 1;  // the others have the rest
+  return options_.threads > 0 ? options_.threads : omp_get_max_threads();
+}
 
 std::vector<Trajectory> FitProblem::trajectories(const Point& x) const {
   std::vector<Trajectory> t(logs_.size());
@@ -137,7 +141,7 @@ std::vector<Trajectory> FitProblem::trajectories(const Point& x) const {
     jobs.push_back({&logs_[l]->scenario, &v[l], &t[l]});
   }
   simulate(jobs, options_);
-  simulations_ += static_cast<long>(jobs.size());
+  work_.simulations += static_cast<long>(jobs.size());
   return t;
 }
 
@@ -154,7 +158,7 @@ std::span<const Trajectory> FitProblem::run(std::span<const Point> points, std::
       w.jobs.push_back({&logs_[l]->scenario, &w.candidates[i], &w.runs[i]});
     }
   simulate(w.jobs, ranking ? ranking_steps(options_) : options_);
-  simulations_ += static_cast<long>(n);
+  work_.simulations += static_cast<long>(n);
   return {w.runs.data(), n};
 }
 
@@ -177,7 +181,7 @@ std::vector<Evaluation> FitProblem::evaluate(std::span<const Point> points) cons
     for (std::size_t j = 0; j < free().size(); ++j)
       if (std::isfinite(free()[j].prior_sd)) out[k].residual[at++] = prior_residual(j, points[k][j]);
   }
-  for (const Evaluation& e : out) failed_ += !e.ok;
+  for (const Evaluation& e : out) work_.failed += !e.ok;
   return out;
 }
 
@@ -215,7 +219,7 @@ std::vector<double> FitProblem::costs(std::span<const Point> points, RobustLoss 
     }
     // Squares only add up, so what is above its bound stays there.
     std::erase_if(left, [&](std::size_t k) {
-      failed_ += out[k] == failed;
+      work_.failed += out[k] == failed;
       return out[k] == failed || (!bounds.empty() && 0.5 * out[k] > bounds[k]);
     });
   }
@@ -272,10 +276,10 @@ bool FitProblem::run_moved(const Point& x, std::span<const Column> columns, Eige
     chart_.candidate(x, l, bases[l]);
     near.push_back({&bases[l], std::span(w.jobs).subspan(begin, c - begin), &followed[l]});
   }
-  simulations_ += simulate_near(near, options_);
+  work_.simulations += simulate_near(near, options_);
   for (std::size_t c = 0; c < columns.size(); ++c)
     if (!w.runs[c].ok) {
-      ++failed_;
+      ++work_.failed;
       return false;
     }
   // Followers are compared with the very run that they followed.

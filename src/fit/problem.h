@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "fit/chart.h"
+#include "fit/fit_work.h"
 #include "fit/log_data.h"
 #include "optimise/box_least_squares.h"
 #include "optimise/robust_loss.h"
@@ -69,10 +70,10 @@ class FitProblem {
   std::vector<int> logs_of_rows() const;
   long data_rows() const { return data_rows_; }
   long total_rows() const { return total_rows_; }  // the priors' behind those of the data
-  long simulations() const { return simulations_; }
-  long failed_simulations() const { return failed_; }
-  // As though so many had been run: what a checkpoint holds is not run again, and counts all the same.
-  void recount(long simulations, long failed) const { simulations_ = simulations, failed_ = failed; }
+  long simulations() const { return work_.simulations; }
+  long failed_simulations() const { return work_.failed; }
+  // So far; may be set: what a checkpoint holds is not run again, and counts all the same.
+  FitWork& work() const { return work_; }
   // Hash of what its costs rest on beside the logs' samples: the base, the free values and the weights.
   std::string content_hash() const;
 
@@ -103,7 +104,7 @@ class FitProblem {
   std::vector<std::vector<long>> offset_;
   std::vector<std::vector<std::optional<HighPass>>> drift_;  // the channels' high-passes, made ready
   long data_rows_ = 0, total_rows_ = 0;
-  mutable long simulations_ = 0, failed_ = 0;
+  mutable FitWork work_;
 };
 
 }  // namespace servodx

@@ -8,6 +8,7 @@
 
 #include "base/stages.h"
 #include "fit/chart.h"
+#include "fit/fit_work.h"
 #include "fit/log_data.h"
 #include "fit/problem.h"
 #include "optimise/genetic.h"
@@ -82,7 +83,7 @@ class KeptGenerations {
 
   void keep(const GeneticState& state, const std::vector<ConvergencePoint>& convergence) const {
     if (!stages_.keeps()) return;
-    const KeptWork work{problem_.simulations(), problem_.failed_simulations()};
+    const FitWork work = problem_.work();
     stages_.keep(key(state.generation), KeptGeneration{to_json(state), convergence, work});
   }
 
@@ -134,7 +135,7 @@ std::vector<Point> search_broadly(const TuneScope& whole, const Point& start, Tu
   if (std::optional<KeptGeneration> kept = generations.last()) {
     saved = genetic_state_from_json(kept->state);
     watch.convergence = std::move(kept->convergence);
-    problem.recount(kept->work.simulations, kept->work.failed);
+    problem.work() = kept->work;
   }
   const GeneticResult found = minimise_genetic(static_cast<int>(scope.shared.size()), cost, o,
                                                healthy_starts(scope.shared, start), hooks, saved ? &*saved : nullptr);

@@ -13,6 +13,7 @@
 #include "effects/effect.h"
 #include "effects/registry.h"
 #include "fit/chart.h"
+#include "fit/fit_work.h"
 #include "fit/free_values.h"
 #include "fit/log_data.h"
 #include "optimise/normal_equations.h"
@@ -238,7 +239,7 @@ class Elimination {
 struct Trials {
   std::vector<EarnedEffect> effects;  // in the order of trial
   Point point;
-  KeptWork work;
+  FitWork work;
 };
 auto fields(Trials& t) {
   auto& [effects, point, work] = t;
@@ -255,11 +256,11 @@ std::vector<EarnedEffect> keep_earned(TuneScope& scope, const FitProblem& proble
   const auto trials = [&] {
     Elimination elimination(problem, held, effects, end);
     std::vector<EarnedEffect> tried = elimination.run(watch);
-    return Trials{std::move(tried), elimination.point(), {problem.simulations(), problem.failed_simulations()}};
+    return Trials{std::move(tried), elimination.point(), problem.work()};
   };
   const std::string weights = watch.kept.keeps() ? problem.content_hash() : "";
   Trials out = watch.kept.made("effects", trials, weights, end, held, watch.work_so_far(problem));
-  problem.recount(out.work.simulations, out.work.failed);
+  problem.work() = out.work;
   std::vector<char> taken(free.size(), 0);
   for (const EarnedEffect& tried : out.effects)
     for (const FreedEffect& f : effects) {

@@ -6,6 +6,7 @@
 
 #include "base/bytes.h"
 #include "base/stages.h"
+#include "fit/fit_work.h"
 #include "fit/identifiability.h"
 #include "optimise/box_least_squares.h"
 #include "optimise/ceres_refinement.h"
@@ -45,15 +46,6 @@ inline auto fields(EarnedEffect& e) {
   return std::tie(effect, gain, kept);
 }
 
-// What a stage has cost. `simulations` and `failed` are the problem's in all, once it is done.
-struct KeptWork {
-  long simulations = 0, failed = 0;
-};
-inline auto fields(KeptWork& w) {
-  auto& [simulations, failed] = w;
-  return std::tie(simulations, failed);
-}
-
 // A local search. Of its rows nothing is needed beyond it.
 struct KeptSearch {
   Point point;
@@ -64,7 +56,7 @@ struct KeptSearch {
   Distrust distrust = Distrust::none;
   std::vector<ConvergencePoint> convergence;
   std::vector<StageResult> stages;
-  KeptWork work;
+  FitWork work;
 };
 inline auto fields(KeptSearch& s) {
   auto& [point, cost, misfit, promised, reason, stopped, ceres, distrust, convergence, stages, work] = s;
@@ -75,7 +67,7 @@ inline auto fields(KeptSearch& s) {
 struct KeptGeneration {
   std::string state;  // optimise/genetic_state.h
   std::vector<ConvergencePoint> convergence;
-  KeptWork work;
+  FitWork work;
 };
 inline auto fields(KeptGeneration& g) {
   auto& [state, convergence, work] = g;

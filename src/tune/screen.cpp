@@ -9,6 +9,7 @@
 #include "base/error.h"
 #include "base/stopwatch.h"
 #include "fit/chart.h"
+#include "fit/fit_work.h"
 #include "fit/free_values.h"
 #include "fit/identifiability.h"
 #include "optimise/unit_cube.h"
@@ -78,7 +79,7 @@ namespace {
 struct Screening {
   std::vector<ScreenedRow> rows;
   bool told = false;  // their sensitivities could be had
-  KeptWork work;
+  FitWork work;
 };
 auto fields(Screening& s) {
   auto& [rows, told, work] = s;
@@ -93,7 +94,7 @@ Screening screened(const TuneScope& scope, TuneWatch& watch, const FitProblem& p
   Eigen::MatrixXd jacobian;
   out.told = problem.jacobian(x, at_nominal.residual, jacobian);
   if (out.told) tell_apart(out.rows, problem, jacobian);
-  out.work = {problem.simulations(), problem.failed_simulations()};
+  out.work = problem.work();
   return out;
 }
 
@@ -109,7 +110,7 @@ std::vector<ScreenedRow> screen_rows(TuneScope& scope, TuneWatch& watch) {
     throw InputError({.file = scope.table.path}, "the simulation fails at the table's nominal values",
                      "check the table against the rig's data sheet");
   Screening out = watch.kept.made("screen", [&] { return screened(scope, watch, problem, x, at_nominal); });
-  problem.recount(out.work.simulations, out.work.failed);
+  problem.work() = out.work;
   if (out.told) {
     std::vector<FreeValue> kept;
     for (std::size_t j = 0; j < out.rows.size(); ++j)

@@ -154,7 +154,7 @@ LeastSquaresResult search_locally(const FitProblem& problem, const Point& from, 
   watch.ceres = kept.ceres, watch.distrust = kept.distrust;
   set_behind(watch.convergence, points, kept.convergence);
   set_behind(watch.stages, stages, kept.stages);
-  problem.recount(kept.work.simulations, kept.work.failed);
+  problem.work() = kept.work;
   watch.tell(share.to, problem);
   return end;
 }

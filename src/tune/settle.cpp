@@ -9,6 +9,7 @@
 #include <tuple>
 
 #include "fit/chart.h"
+#include "fit/fit_work.h"
 #include "fit/identifiability.h"
 #include "fit/problem.h"
 #include "fit/profile.h"
@@ -67,7 +68,7 @@ Note profile_note(const ParameterResult& p, const ProfileInterval& interval) {
 
 struct KeptProfile {
   ProfileInterval interval;
-  KeptWork work;
+  FitWork work;
 };
 auto fields(KeptProfile& p) {
   auto& [lower, upper, lower_open, upper_open] = p.interval;
@@ -78,11 +79,11 @@ KeptProfile profile_through(const TuneWatch& watch, const FitProblem& problem, c
                             const Eigen::MatrixXd& covariance) {
   const auto made = [&] {
     const ProfileInterval interval = profile(problem, best, j, covariance);
-    return KeptProfile{interval, {problem.simulations(), problem.failed_simulations()}};
+    return KeptProfile{interval, problem.work()};
   };
   if (!watch.kept.keeps()) return made();
   KeptProfile out = watch.kept.made("profile", made, problem.content_hash(), best, j, watch.work_so_far(problem));
-  problem.recount(out.work.simulations, out.work.failed);
+  problem.work() = out.work;
   return out;
 }
 

@@ -17,6 +17,7 @@
 #include "fit/candidate_of.h"
 #include "fit/chart.h"
 #include "fit/error_model.h"
+#include "fit/fit_work.h"
 #include "fit/log_data.h"
 #include "parameters/list.h"
 #include "servodx/rig.h"
