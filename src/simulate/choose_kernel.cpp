@@ -1,6 +1,7 @@
 #include "simulate/choose_kernel.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <cstdlib>
 #include <memory>
@@ -53,11 +54,6 @@ const Choice& best_kernels() {
   return chosen;
 }
 
-const Kernels& plain_kernels() {
-  static const Kernels plain = kernels_scalar();
-  return plain;
-}
-
 namespace {
 
 bool is_off(const EffectInfo& e, const ParameterVector& v) {
@@ -76,6 +72,11 @@ Need need_of(const ParameterVector& v) {
                             : e.first == effect_row<LineInertia>(0) ? Need::lined
                                                                     : Need::extended);
   return need;
+}
+
+int curve_kind(const ParameterVector& v) {
+  const auto code = [&](int which) { return static_cast<int>(std::lround(v[effect_row<Unexplained>(which)])); };
+  return (code(0) * Unexplained::n_variables + code(1)) * Unexplained::n_factors + code(2);
 }
 
 RunPack run_of(const Kernels& k, Need need) {
@@ -121,9 +122,7 @@ NearKernels::Make near_of(const NearKernels& k, Need need) {
 
 std::unique_ptr<RunInParts> run_in_parts(const Scenario& scenario, const ParameterVector& candidate, Trajectory& result,
                                          const SimulateOptions& options) {
-  const Need need = need_of(candidate);
-  const Kernels& kernels = need == Need::corrected ? plain_kernels() : best_kernels().doubles;
-  return in_parts_of(kernels, need)(scenario, candidate, result, options);
+  return in_parts_of(best_kernels().doubles, need_of(candidate))(scenario, candidate, result, options);
 }
 
 std::string instruction_set() { return best_kernels().doubles.name; }

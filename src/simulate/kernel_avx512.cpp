@@ -7,16 +7,18 @@
 namespace servodx {
 
 Kernels kernels_avx512() {
+  const CorrectedKernels corrected = kernels_avx512_corrected();
   using T = Pack<8, 5>;
   return {T::lanes,
           "avx512",
           &run_pack<T, NoEffects>,
           &run_pack<T, AllEffects>,
           &run_pack<T, LinedEffects>,
-          nullptr,
+          corrected.run,
           &make_in_parts<T, NoEffects>,
           &make_in_parts<T, AllEffects>,
-          &make_in_parts<T, LinedEffects>};
+          &make_in_parts<T, LinedEffects>,
+          corrected.in_parts};
 }
 
 }  // namespace servodx

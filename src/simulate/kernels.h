@@ -18,7 +18,7 @@ struct Kernels {
   const char* name;
   RunPack base, extended;  // without effects, with all that have names but long lines
   RunPack lined;           // with these too
-  RunPack corrected;       // with a learnt curve too; plain doubles only: it is rare, and an instance is slow to build
+  RunPack corrected;       // with a learnt curve too, of one place, variable and factor in all lanes; null: no such
   // One candidate over a log that comes in parts, the same four.
   MakeRunInParts base_in_parts = nullptr, extended_in_parts = nullptr, lined_in_parts = nullptr,
                  corrected_in_parts = nullptr;
@@ -41,10 +41,18 @@ struct NearKernels {
   Make base = nullptr, extended = nullptr;  // null: there are none
 };
 
-Kernels kernels_scalar();
+// Those with a learnt curve have a translation unit of their own: an instance takes a minute to build.
+struct CorrectedKernels {
+  RunPack run;
+  MakeRunInParts in_parts;
+};
+
 Kernels kernels_generic();
 Kernels kernels_avx2();
 Kernels kernels_avx512();
+CorrectedKernels kernels_generic_corrected();
+CorrectedKernels kernels_avx2_corrected();
+CorrectedKernels kernels_avx512_corrected();
 // Twice as many lanes, of floats (Arithmetic).
 Kernels kernels_avx2_floats();
 Kernels kernels_avx512_floats();

@@ -8,7 +8,6 @@
 #include <cstddef>
 #include <span>
 #include <tuple>
-#include <utility>
 #include <vector>
 
 #include "simulate/choose_kernel.h"
@@ -25,25 +24,40 @@ struct PackOfJobs {
   Need need = Need::base;
 };
 
-// Jobs of one log and one need share packs, wherever they stand. Longest logs first, so that no thread ends on a long
+struct KindOfJob {
+  const Job* job;
+  Need need;
+  int curve;  // 0 where it has none
+};
+
+// Floats are for ranking, and no learnt curve is ranked so often that it needs them.
+const Kernels& kernels_of(Need need, Arithmetic arithmetic) {
+  const bool floats = arithmetic == Arithmetic::floats && need != Need::corrected;
+  return floats ? best_kernels().floats : best_kernels().doubles;
+}
+
+// Jobs of one log and one kind share packs, wherever they stand. Longest logs first, so that no thread ends on a long
 // one; the result does not depend on the order.
-void pack(std::span<const Job> jobs, int width, std::vector<PackOfJobs>& packs) {
-  thread_local std::vector<std::pair<const Job*, Need>> order;  // and its need
+void pack(std::span<const Job> jobs, Arithmetic arithmetic, std::vector<PackOfJobs>& packs) {
+  thread_local std::vector<KindOfJob> order;
   order.clear();
-  for (const Job& job : jobs) order.push_back({&job, need_of(*job.candidate)});
-  const auto key = [](const std::pair<const Job*, Need>& j) {
-    return std::tuple(-static_cast<long>(j.first->scenario->time.size()), j.first->scenario, j.second);
+  for (const Job& job : jobs) {
+    const Need need = need_of(*job.candidate);
+    order.push_back({&job, need, need == Need::corrected ? curve_kind(*job.candidate) : 0});
+  }
+  const auto key = [](const KindOfJob& j) {
+    return std::tuple(-static_cast<long>(j.job->scenario->time.size()), j.job->scenario, j.need, j.curve);
   };
   std::sort(order.begin(), order.end(), [&](const auto& a, const auto& b) {
     const auto of_a = key(a), of_b = key(b);
-    return of_a != of_b ? of_a < of_b : a.first < b.first;
+    return of_a != of_b ? of_a < of_b : a.job < b.job;
   });
   packs.clear();
   for (std::size_t i = 0; i < order.size(); ++i) {
-    const auto [job, need] = order[i];
-    if (i == 0 || key(order[i]) != key(order[i - 1]) || need == Need::corrected || packs.back().count == width)
-      packs.push_back({{}, 0, need});
-    packs.back().jobs[static_cast<std::size_t>(packs.back().count++)] = job;
+    const int width = kernels_of(order[i].need, arithmetic).width;
+    if (i == 0 || key(order[i]) != key(order[i - 1]) || packs.back().count == width)
+      packs.push_back({{}, 0, order[i].need});
+    packs.back().jobs[static_cast<std::size_t>(packs.back().count++)] = order[i].job;
   }
 }
 
@@ -56,12 +70,9 @@ void simulate(std::span<const Job> jobs, const SimulateOptions& options) {
     RunRequest request{jobs, options};
     return (*ask)(request);
   }
-  const bool floats = options.arithmetic == Arithmetic::floats;
-  const Kernels& kernels = floats ? best_kernels().floats : best_kernels().doubles;
-  const Kernels& plain = plain_kernels();
   thread_local std::vector<PackOfJobs> space;
   std::vector<PackOfJobs>& packs = space;
-  pack(jobs, kernels.width, packs);
+  pack(jobs, options.arithmetic, packs);
   const int threads = options.threads > 0 ? options.threads : omp_get_max_threads();
   const auto count = static_cast<long>(packs.size());
   packs_so_far += count;
@@ -75,8 +86,8 @@ void simulate(std::span<const Job> jobs, const SimulateOptions& options) {
       results[lane] = pack.jobs[static_cast<std::size_t>(lane)]->result;
     }
     // One alone runs in a lane too: eight cost hardly more, and the bits are the same in any company.
-    run_of(pack.need == Need::corrected ? plain : kernels, pack.need)(*pack.jobs[0]->scenario, candidates, results,
-                                                                      pack.count, options);
+    const Kernels& kernels = kernels_of(pack.need, options.arithmetic);
+    run_of(kernels, pack.need)(*pack.jobs[0]->scenario, candidates, results, pack.count, options);
   }
 }
 
