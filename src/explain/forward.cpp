@@ -170,8 +170,10 @@ void measure_best(const Subject& subject, const EngineOptions& options, const Ro
   for (Trial& t : trials)
     if (budget.takes(fitted_evidence(round, t))) best.push_back(&t);
   const auto measure_one = [&](std::size_t i) {
-    measure(subject, options, round, so_far, degrees, *best[i]);
-    best[i]->measured = true;
+    Trial t = *best[i];
+    measure(subject, options, round, so_far, degrees, t);
+    t.measured = true;
+    *best[i] = std::move(t);
   };
   // With the rows free, a Jacobian has so many columns that they follow the run (simulate_near), which needs all packs.
   if (subject.holds())
