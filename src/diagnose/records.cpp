@@ -9,6 +9,7 @@
 #include "diagnose/constants.h"
 #include "diagnose/motion.h"
 #include "parameters/list.h"
+#include "signals/noise.h"
 
 namespace servodx {
 namespace {
@@ -164,7 +165,22 @@ Run longest_still(const std::vector<double>& x) {
   return best;
 }
 
-// One value for a good part of the log, while the command moves as it does elsewhere and the simulation's sensor would.
+double least_step(const std::vector<double>& x) {
+  double least = HUGE_VAL;
+  for (std::size_t i = 1; i < x.size(); ++i)
+    if (const double step = std::abs(x[i] - x[i - 1]); step > 0) least = std::min(least, step);
+  return least;
+}
+
+// Elsewhere its noise is as large as its steps: alive, it repeats no value for long, however still what it measures.
+bool has_lost_its_noise(const std::vector<double>& x, Run still) {
+  std::vector<double> elsewhere = x;
+  elsewhere.erase(elsewhere.begin() + static_cast<long>(still.from), elsewhere.begin() + static_cast<long>(still.to));
+  return noise_of(elsewhere, 0) >= least_step(elsewhere);
+}
+
+// One value for a good part of the log, while the command moves as it does elsewhere and the simulation's sensor would;
+// less of the latter does where its noise is gone.
 bool is_frozen(const FitChannel& c, const LogData& data, const std::vector<double>& simulated) {
   const Run still = longest_still(c.measured);
   const std::size_t n = c.measured.size();
@@ -172,7 +188,7 @@ bool is_frozen(const FitChannel& c, const LogData& data, const std::vector<doubl
   const double asked = range_of(data.scenario.command, still.from, still.to);
   const double would = range_of(simulated, still.from, still.to);
   return asked > k::moves_as_elsewhere * range_of(data.scenario.command, 0, n) && would > k::beyond_noise * c.noise &&
-         would > k::moves_as_elsewhere * range_of(simulated, 0, n);
+         (would > k::moves_as_elsewhere * range_of(simulated, 0, n) || has_lost_its_noise(c.measured, still));
 }
 
 // At its lowest or highest value, again and again, where the simulation goes far beyond. A spool at its stop is where

@@ -367,6 +367,19 @@ TEST(Decide, AMistakeAboutTheLogGoesBeforeAFaultThatLeavesMore) {
   EXPECT_NE(decide(e).doubt, Doubt::misread) << "no reading explains it";
 }
 
+// A frozen sensor: the rest of the log moves as a healthy valve's, and at half its time some of it still does.
+TEST(Decide, NoMistakeIsToldOfALogThatMovesAsAHealthyValves) {
+  Evidence e = first_fault();
+  for (HypothesisEvidence& h : e.hypotheses) h.motion_left = 0.6;
+  e.records = {{Record::sensor, true}};
+  e.others_left = 0.03;
+  e.reading = {.motion_left = 0.12};
+  EXPECT_EQ(decide(e).doubt, Doubt::misread);
+  e.hypotheses.front().motion_left = 0.04;
+  EXPECT_NE(decide(e).doubt, Doubt::misread);
+  EXPECT_TRUE(decide(e).record);
+}
+
 TEST(Decide, AHealthyLogOfWhichLittleIsLeftIsReadWellEnough) {
   Evidence e = first_fault();
   for (HypothesisEvidence& h : e.hypotheses) h.motion_left = 0.03;

@@ -207,6 +207,38 @@ TEST(Records, AFrozenATurnedAndASwappedSensorAreNamedAndHealthyOnesAreNot) {
   for (const BrokenSensor& b : found) EXPECT_EQ(b.finding, SensorFinding::swapped_ports);
 }
 
+// From 2.2 s on the piston would move a tenth as far. A sensor that repeats one value there has lost its noise; one
+// whose steps hide its noise may show a piston that stands still.
+TEST(Records, AStillSensorIsFrozenInAQuietPartOfALogWhereItsNoiseIsGoneToo) {
+  const Made whole = made(62, 1.0);
+  const auto quiet = [&](double resolution, double noise) {
+    Made m = whole;
+    std::mt19937 random(1);
+    std::normal_distribution<double> normal(0, noise);
+    const double stood = -0.02 * std::cos(2 * std::numbers::pi * 2.2);
+    for (std::size_t k = 0; k < m.time.size(); ++k) {
+      const double way = -0.02 * std::cos(2 * std::numbers::pi * m.time[k]);
+      const double at = (m.time[k] < 2.2 ? way : stood) + normal(random);
+      m.piston[k] = std::round(at / resolution) * resolution;
+    }
+    return m;
+  };
+  const auto frozen_of = [&](const Made& m) {
+    Trajectory would = simulated(whole);
+    std::vector<double>& x = would.signals[static_cast<std::size_t>(simulated_index(Signal::piston_position))];
+    const double stood = x[2200];
+    for (std::size_t k = 2200; k < x.size(); ++k) x[k] = stood + 0.1 * (x[k] - stood);
+    return broken_sensors(prepare(log_of(m), {}), would);
+  };
+  Made noisy = quiet(1e-5, 2e-5);
+  EXPECT_TRUE(frozen_of(noisy).empty()) << "a piston that stands still";
+  for (std::size_t k = 2200; k < noisy.piston.size(); ++k) noisy.piston[k] = noisy.piston[2200];
+  const auto found = frozen_of(noisy);
+  ASSERT_EQ(found.size(), 1u);
+  EXPECT_EQ(found.front().finding, SensorFinding::frozen);
+  EXPECT_TRUE(frozen_of(quiet(1e-4, 1e-6)).empty()) << "steps hide the noise";
+}
+
 // A turned load makes the simulation's chambers change places too.
 TEST(Records, ExchangedPortsAreNotNamedWhereTheFlowSaysThatTheyStandAsTheyShould) {
   const std::vector<BrokenSensor> found = {{SensorFinding::swapped_ports, Signal::pressure_a},

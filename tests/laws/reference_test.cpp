@@ -77,8 +77,8 @@ Errors errors(const std::vector<Shipped>& logs, const std::vector<Trajectory>& f
         low = std::min(low, b[k]), high = std::max(high, b[k]);
       }
       const double rms = std::sqrt(square / static_cast<double>(b.size()));
-      std::printf("  %s %.3f %% (rms %.4f %%)", std::string(info(c.signal).name).c_str(), 100 * largest / (high - low),
-                  100 * rms / (high - low));
+      std::printf("  %s %.3f %% (rms %.4f %%, %.3f of the noise)", std::string(info(c.signal).name).c_str(),
+                  100 * largest / (high - low), 100 * rms / (high - low), rms / c.noise);
       // The spool rings between its two oil columns at some 13 kHz for a millisecond after each jump: at the step of
       // fits a pilot pressure's single samples there are chance.
       const bool rings = c.signal == Signal::pilot_pressure_1 || c.signal == Signal::pilot_pressure_2;
