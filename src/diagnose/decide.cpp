@@ -135,9 +135,9 @@ bool explains(const std::optional<ReadingEvidence>& reading) {
 bool is_misread(const Decision& valve, const Evidence& e) {
   if (!explains(e.reading)) return false;
   if (e.reading->of_a_sensor && !e.records.empty() && e.records.front().broken) return false;
-  const double told = valve.beside ? least_left(e)
-                                   : std::min(e.hypotheses.front().motion_left,
-                                              e.hypotheses[valve.hypothesis].motion_left);
+  const double told = valve.beside
+                          ? least_left(e)
+                          : std::min(e.hypotheses.front().motion_left, e.hypotheses[valve.hypothesis].motion_left);
   if (valve.verdict == VerdictKind::healthy && told <= k::worth_reading) return false;  // it is read well enough
   return e.reading->motion_left < k::misread_beside * told;
 }

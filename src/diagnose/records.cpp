@@ -151,6 +151,13 @@ void add_driver(const Log& log, const LogData& data, std::vector<RecordFigure>& 
   out.push_back({FigureKind::driver_left, Signal::coil_current, std::max(k::least_residue, whole.left / whole.drive)});
 }
 
+// Of the noisier half: a sensor that scatters for less than half of a log does so for most of one. A quarter of a
+// lively log is not enough for its median to pass over the motion.
+double noise_of_halves(const FitChannel& c) {
+  const auto middle = c.measured.begin() + static_cast<long>(c.measured.size() / 2);
+  return std::max({c.noise, noise_of({c.measured.begin(), middle}, 0), noise_of({middle, c.measured.end()}, 0)});
+}
+
 struct Run {
   std::size_t from = 0, to = 0;
 };
@@ -265,7 +272,7 @@ std::vector<RecordFigure> record_figures(const Log& log, const LogData& data, co
   add_supply(log, data, base, out);
   add_driver(log, data, out);
   for (const FitChannel& c : data.channels)
-    if (c.noise > 0) out.push_back({FigureKind::sensor_noise, c.signal, c.noise});
+    if (c.noise > 0) out.push_back({FigureKind::sensor_noise, c.signal, noise_of_halves(c)});
   return out;
 }
 

@@ -24,7 +24,7 @@ enum class FigureKind {
   driver_gain,    // current over command
   driver_offset,  // 1 + mean current at no command, of rated current
   driver_left,    // current that the command does not account for, over the command, in the worst eighth of the log
-  sensor_noise,   // [SI] of the signal
+  sensor_noise,   // [SI] of the signal, in the noisier half of the log
 };
 inline constexpr int n_figure_kinds = 7;
 

@@ -35,8 +35,8 @@ class StepSchedule {
   }
 
  private:
-  // A command that a recorder holds from sample to sample is made of jumps; a smooth one at 2 kHz has 3 % a sample, and
-  // the usual steps follow those within a tenth of the sensors' noise (tests/laws/reference_test.cpp).
+  // A command that is held from sample to sample is made of jumps; a smooth one at 2 kHz has 3 % a sample. Usual steps
+  // follow those: errors grow by a tenth of a sensor's noise at most (docs/lab/performance.md, "Steps after a jump").
   static constexpr double jump = 0.1;          // of rated current
   static constexpr double impact_time = 4e-3;  // [s]
   static constexpr double creep = 1.0;         // [1/s] rated current per time

@@ -141,6 +141,20 @@ TEST(Records, ASensorThatScattersIsFoundByItsName) {
   EXPECT_TRUE(std::isnan(found.front().severity)) << "a scatter is no gain";
 }
 
+TEST(Records, ASensorThatScattersForLessThanHalfOfALogIsFoundByAllOfItsNoise) {
+  for (const double from : {0.0, 2.6}) {
+    Made m = made(57, 1.0);
+    std::mt19937 random(1);
+    std::normal_distribution<double> noise(0, 8e4);
+    for (std::size_t k = 0; k < m.time.size(); ++k)
+      if (m.time[k] >= from && m.time[k] < from + 1.4) m.pressure_b[k] += noise(random);
+    const auto found = findings_of(m);
+    ASSERT_EQ(found.size(), 1u) << from;
+    EXPECT_EQ(found.front().signal, Signal::pressure_b) << from;
+    EXPECT_NEAR(found.front().value, 8e4, 4e4) << from;
+  }
+}
+
 // Half an hour at 100 Hz: the search for a step does not grow with the square of the log.
 TEST(Records, ALongLogIsLookedAtInAsManyPartsAsAShortOne) {
   std::vector<double> time, command, piston, supply;
