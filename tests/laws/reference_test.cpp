@@ -22,6 +22,7 @@
 #include "shipped_data.h"
 #include "simulate/scenario.h"
 #include "simulate/simulate.h"
+#include "simulate/step_schedule.h"
 
 namespace servodx {
 namespace {
@@ -114,6 +115,28 @@ TEST(Reference, OnEveryLogOfTheBench) {
   const RigFile rig = read_rig_file(shipped("data/bench/rig.toml"));
   expect_close(logs_of({"bench/healthy", "bench/fault"}, rig),
                candidate_of(apply_rig_facts(read_table(shipped("params/bench.csv")), rig)));
+}
+
+// A sine that is held at 2 kHz moves by 6 % of rated at most; a step of 12 % is a jump.
+TEST(Reference, AHeldSmoothCommandKeepsTheUsualStepsAndAJumpShortensThemForAWhile) {
+  Scenario in;
+  in.rated_current = 1;
+  for (int k = 0; k < 400; ++k) in.time.push_back(k / 2000.0), in.command.push_back(std::sin(0.06 * k));
+  const auto steps_at = [&in](std::size_t jump) {
+    StepSchedule schedule(0);
+    std::vector<int> out;
+    for (std::size_t k = 0; k + 1 < in.time.size(); ++k) {
+      if (k == jump) in.command[k + 1] = in.command[k] + 0.12;
+      out.push_back(schedule.steps(in, SimulateOptions{}, k, in.time[k + 1] - in.time[k]));
+    }
+    return out;
+  };
+  for (const int steps : steps_at(in.time.size())) EXPECT_EQ(steps, 2);
+  in.command.assign(in.time.size(), 0.0);
+  const std::vector<int> after = steps_at(100);
+  EXPECT_EQ(after[99], 2);
+  EXPECT_EQ(after[105], 6);
+  EXPECT_EQ(after[115], 2);
 }
 
 // Some ring on and on. A valve whose armature's spring softens with travel, in oil from warm to cold and with its
