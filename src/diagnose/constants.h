@@ -123,6 +123,7 @@ inline constexpr std::size_t parts = 8;            // of a log: a driver that fa
 inline constexpr double worth_a_part = 0.3;        // of the log's drive, rms
 inline constexpr std::size_t fewest_still = 50;    // samples of one value
 inline constexpr std::size_t still_one_in = 10;    // of the log's samples, the same
+inline constexpr std::size_t zigzags_due = 20;     // in a still run: none where 20 are due is one chance in e^20
 inline constexpr double moves_as_elsewhere = 0.3;  // of the range over the whole log
 inline constexpr double beyond_noise = 10.0;       // rms: a motion that no noise hides
 inline constexpr double follows = 0.7;             // correlation of sensor and simulation

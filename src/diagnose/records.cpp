@@ -172,18 +172,21 @@ Run longest_still(const std::vector<double>& x) {
   return best;
 }
 
-double least_step(const std::vector<double>& x) {
-  double least = HUGE_VAL;
-  for (std::size_t i = 1; i < x.size(); ++i)
-    if (const double step = std::abs(x[i] - x[i - 1]); step > 0) least = std::min(least, step);
-  return least;
+// How often it goes up, down and up again from sample to sample, or the other way: by noise, as no motion is so fast.
+std::size_t zigzags(const std::vector<double>& x) {
+  std::size_t count = 0;
+  for (std::size_t k = 3; k < x.size(); ++k) {
+    const double first = x[k - 2] - x[k - 3], next = x[k - 1] - x[k - 2], last = x[k] - x[k - 1];
+    count += first * next < 0 && next * last < 0;
+  }
+  return count;
 }
 
-// Elsewhere its noise is as large as its steps: alive, it repeats no value for long, however still what it measures.
+// Alive, it repeats no value for as long, however still what it measures: elsewhere its noise shows beside its steps.
 bool has_lost_its_noise(const std::vector<double>& x, Run still) {
   std::vector<double> elsewhere = x;
   elsewhere.erase(elsewhere.begin() + static_cast<long>(still.from), elsewhere.begin() + static_cast<long>(still.to));
-  return noise_of(elsewhere, 0) >= least_step(elsewhere);
+  return zigzags(elsewhere) * (still.to - still.from) >= k::zigzags_due * elsewhere.size() && !elsewhere.empty();
 }
 
 // One value for a good part of the log, while the command moves as it does elsewhere and the simulation's sensor would;

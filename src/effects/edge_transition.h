@@ -4,8 +4,11 @@
 // hardly with the opening: it acts like a lap that is wider in the cold. How fast the coefficient then meets its limit
 // differs as well: as 1/Re where both drops add, as 1/Re^2 by the law of Borutzky, Barnard and Thoma (2002), which real
 // orifices are near to (Wu, Burton, Schoenau 2002). Sharper still, the coefficient overshoots its limit on the way, as
-// measured ones do by up to a tenth (the same; Merritt 1967, sec. 3-4): at 2 by 6 %. Bounds: delta from 0.035, beyond
-// the Re of 260 that McCloy and Martin (1980) give for spool valves, to 0.43.
+// measured ones do by up to a tenth (the same; Merritt 1967, sec. 3-4): at 2 by 6 %. Simulation tools let the
+// coefficient saturate as the hyperbolic tangent of the flow number, without a tail and without an overshoot: there the
+// laminar drop fades as the turbulent one outgrows it. Bounds of Re: delta from 0.031 to 0.43; the upper one is that of
+// a tangent whose flow number turns at 1000 (Re 330), above the Re of 260 that McCloy and Martin (1980) give for spool
+// valves.
 #pragma once
 #include "effects/effect.h"
 #include "model/constants.h"
@@ -22,14 +25,16 @@ struct EdgeTransition {
   static constexpr const char* best_test =
       "slow triangles of some per cent in cold and in hot oil: in the cold the piston lags by a wider lap";
   static constexpr int n_states = 0;
-  static constexpr int n_parameters = 2;
+  static constexpr int n_parameters = 3;
   // Re_t = (C_d / delta)^2 with Re of the hydraulic diameter, twice the opening.
   static constexpr double per_length = 48.0 * constants::cd_metering * constants::cd_metering;
   static constexpr EffectParameter parameters[n_parameters] = {
-      {"transition_reynolds", "-", per_length* constants::slot_resistance, 2.0, 300.0, 30.0,
+      {"transition_reynolds", "-", per_length* constants::slot_resistance, 2.0, 400.0, 30.0,
        "Reynolds number, of twice the opening, at which laminar and turbulent drop are alike"},
       {"transition_abruptness", "-", 0.0, 0.0, 2.0, 0.5,
        "0: the two drops add; 1: the flow is turbulent as soon as that drop is the larger; 2: it overshoots by 6 %"},
+      {"transition_fading", "-", 0.0, 0.0, 2.0, 0.5,
+       "0: the laminar drop stays; above, it fades as the turbulent one outgrows it: 0.4 saturates as a tangent does"},
   };
   // [-] added to the creeping-flow length of an open edge, in openings; q: own parameters.
   template <class T>
@@ -39,6 +44,10 @@ struct EdgeTransition {
   template <class T>
   static T edge_abruptness(const T* q) {
     return q[1];
+  }
+  template <class T>
+  static T edge_fading(const T* q) {
+    return q[2];
   }
 };
 

@@ -6,6 +6,7 @@
 // Signs: positive current -> flapper closes nozzle 1 -> p1 rises -> spool moves positive -> P to A -> piston extends.
 #pragma once
 #include <tuple>
+#include <type_traits>
 #include <utility>
 
 #include "base/smooth.h"
@@ -78,29 +79,49 @@ inline __attribute__((always_inline)) auto thickened(const R& resistance, const 
   return resistance * (T(1.0) + rise * (T(1.0) + T(0.5) * rise));
 }
 
+// (1 + a)^2 R^2, the square that the root holds, faded by 1 + c K|dp| / R^2. square [Pa2 s2/m2], turbulent: 4 K|dp|.
+template <class T, class Q, class K>
+inline __attribute__((always_inline)) Q faded(const Q& square, Nothing, const K&) {
+  return square;
+}
+template <class T, class Q, class F, class K>
+requires(!std::is_same_v<F, Nothing>) inline
+    __attribute__((always_inline)) auto faded(const Q& square, const F& fading, const K& turbulent) {
+  const auto part = fading * turbulent;
+  return square * (T(1.0) - part * inverse(square + part));  // the square itself, to the bit, where nothing fades
+}
+template <class Effects, class D>
+inline __attribute__((always_inline)) auto fading(const D& d) {
+  if constexpr (laminar_drop_fades(Effects{}))
+    return d.creep_fading;
+  else
+    return Nothing{};
+}
+
 // Edges that share a line.
-template <class R, class L, class O = Nothing>
+template <class R, class L, class O = Nothing, class F = Nothing>
 struct EdgeSide {
-  R radius;  // [m] of the corners
-  L line;    // [Pa s2/m4] of the hose and what else the flow passes, per opening squared
-  O oil{};   // how it thickens in the edge
+  R radius;    // [m] of the corners
+  L line;      // [Pa s2/m4] of the hose and what else the flow passes, per opening squared
+  O oil{};     // how it thickens in the edge
+  F fading{};  // [-] c (1 + a)^2 / 4
 };
 template <class Effects, class D, class P>
 inline __attribute__((always_inline)) auto from_supply(const D& d, const P& supply_pressure) {
-  return EdgeSide{d.supply_edge, d.hose_loss, thickening<Effects>(d, supply_pressure, -0.5)};
+  return EdgeSide{d.supply_edge, d.hose_loss, thickening<Effects>(d, supply_pressure, -0.5), fading<Effects>(d)};
 }
 template <class Effects, class D, class P>
 inline __attribute__((always_inline)) auto to_return(const D& d, const P& return_pressure) {
-  return EdgeSide{d.return_edge, d.return_loss, thickening<Effects>(d, return_pressure, 0.5)};
+  return EdgeSide{d.return_edge, d.return_loss, thickening<Effects>(d, return_pressure, 0.5), fading<Effects>(d)};
 }
 
 // One metering edge. opening [m] (negative: covered by that length), dp [Pa].
 // Laminar slot, orifice and line in series: dp = R q + K q|q|, so q = 2 dp / (R + sqrt(R^2 + 4 K |dp|)).
 // R: plane slot of the covered length and creeping flow at the edge; K: Bernoulli at the edge plus the line.
 // An abrupt transition a in place of the sum: q = 2 dp / ((1 - a) R + sqrt((1 + a)^2 R^2 + 4 K |dp|)); r holds 1 + a.
-template <class X, class R, class L, class O, class P, class D>
-inline __attribute__((always_inline)) auto metering_edge(const X& opening, const EdgeSide<R, L, O>& side, const P& dp,
-                                                         const D& d) {
+template <class X, class R, class L, class O, class F, class P, class D>
+inline __attribute__((always_inline)) auto metering_edge(const X& opening, const EdgeSide<R, L, O, F>& side,
+                                                         const P& dp, const D& d) {
   using T = typename D::Scalar;
   // Twice what is open and what is covered: their halves would be products that the constants can hold.
   const auto length = smooth_abs(opening, side.radius);
@@ -111,26 +132,28 @@ inline __attribute__((always_inline)) auto metering_edge(const X& opening, const
   const auto r = slot * per_h;  // [Pa s/m] times width and h
   const auto k = d.edge_loss + side.line * h2;
   const auto size = magnitude(dp);
-  const auto per = inverse(d.creep_added * r + root(r * r + k * size));  // [m/s/Pa] half the mean speed over dp
-  const auto through = h * (dp * per);                                   // [m2/s] the flow over the port's width
+  const auto turbulent = k * size, laminar = faded<T>(r * r, side.fading, turbulent);
+  const auto per = inverse(d.creep_added * r + root(laminar + turbulent));  // [m/s/Pa] half the mean speed over dp
+  const auto through = h * (dp * per);                                      // [m2/s] the flow over the port's width
   return EdgeFlow{d.width * through, through * (size * per)};
 }
 
-template <class T, Mask A, Mask B, class R, class L, class O, class D>
+template <class T, Mask A, Mask B, class R, class L, class O, class F, class D>
 requires(A != only(0) || B != only(1)) inline
-    __attribute__((always_inline)) auto metering_edge(const Dual<T, A>& opening, const EdgeSide<R, L, O>& side,
+    __attribute__((always_inline)) auto metering_edge(const Dual<T, A>& opening, const EdgeSide<R, L, O, F>& side,
                                                       const Dual<T, B>& dp, const D& d) {
   const auto [q, jet] = metering_edge(seed<0>(opening.v, T(1.0)), side, seed<1>(dp.v, T(1.0)), d);
   return EdgeFlow{carried(q, opening, dp), carried(jet, opening, dp)};
 }
 // The line's pressure is a third variable where it depends on any itself.
-template <class T, Mask A, Mask B, Mask C, class R, class L, class V, class D>
+template <class T, Mask A, Mask B, Mask C, class R, class L, class V, class F, class D>
 requires(A != only(0) || B != only(1) || C != only(2)) inline
     __attribute__((always_inline)) auto metering_edge(const Dual<T, A>& opening,
-                                                      const EdgeSide<R, L, Thickening<Dual<T, C>, V>>& side,
+                                                      const EdgeSide<R, L, Thickening<Dual<T, C>, V>, F>& side,
                                                       const Dual<T, B>& dp, const D& d) {
   const auto& oil = side.oil;
-  const EdgeSide seeded{side.radius, side.line, Thickening{seed<2>(oil.line.v, T(1.0)), oil.rise, oil.per_drop}};
+  const EdgeSide seeded{side.radius, side.line, Thickening{seed<2>(oil.line.v, T(1.0)), oil.rise, oil.per_drop},
+                        side.fading};
   const auto [q, jet] = metering_edge(seed<0>(opening.v, T(1.0)), seeded, seed<1>(dp.v, T(1.0)), d);
   return EdgeFlow{carried(q, opening, dp, oil.line), carried(jet, opening, dp, oil.line)};
 }

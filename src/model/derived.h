@@ -49,6 +49,7 @@ namespace servodx {
   X(hose_loss,                 "Pa s2/m4",     "hose_resistance width^2, per twice the opening squared") \
   X(return_loss,               "Pa s2/m4",     "the same with the return line") \
   X(creep_added,               "-",            "share of the two resistances above that adds to the root: (1 - a) / (1 + a)") \
+  X(creep_fading,              "-",            "fading of an open edge's laminar drop times (1 + a)^2 / 4") \
   /* actuator */ \
   X(leak,                      "m3/s/Pa",      "") \
   X(viscous,                   "N s/m",        "") \
@@ -88,8 +89,7 @@ Derived<T> derive(const T* p, const Oil& oil) {
   const T factor = hook_viscosity(p, oil, Effects{});
   const T dynamic_viscosity = factor * T(oil.dynamic_viscosity), viscosity_ratio = factor * T(oil.viscosity_ratio);
   d.viscosity_ratio = viscosity_ratio;
-  const T per_root_density = T(std::sqrt(2.0 / oil.density));
-  const T omega = T(2.0 * c::pi) * p[row::torque_motor_frequency];
+  const T per_root_density = T(std::sqrt(2.0 / oil.density)), omega = T(2.0 * c::pi) * p[row::torque_motor_frequency];
   d.driver_rate = T(2.0 * c::pi) * p[row::driver_bandwidth];
   d.inverse_flapper_stiffness = T(1.0) / p[row::flapper_stiffness];
   d.flapper_rate2 = omega * omega * d.inverse_flapper_stiffness;
@@ -132,6 +132,7 @@ Derived<T> derive(const T* p, const Oil& oil) {
   // Plane Couette slot: dp = 12 mu L q / (w c^3); an open edge has a creeping-flow length of some openings.
   const T abrupt = hook_edge_abruptness(p, Effects{}), beside = T(1.0) + abrupt;
   d.creep_added = (T(1.0) - abrupt) / beside;
+  d.creep_fading = T(0.25) * hook_edge_fading(p, Effects{}) * beside * beside;
   const T slot = T(12.0) * dynamic_viscosity * beside;
   d.slot_per_length = slot / p[row::radial_clearance];
   d.slot_corner = T(2.0) * slot * (T(c::slot_resistance) + hook_edge_creep(p, Effects{}));

@@ -9,6 +9,7 @@
 //     edge_rounding(p, to_return) [m] added to the corner radius of the metering edges
 //     edge_creep(p)        [-]   added to the creeping-flow length of an open edge, in openings
 //     edge_abruptness(p)   [-]   how fast the flow through an open edge is turbulent, 0 to 2
+//     edge_fading(p)       [-]   how fast its laminar drop then fades beside the turbulent one
 //     return_share(p)      [-]   drop of the return line over that of an edge at full stroke
 //     orifice_length(p)    [-]   added to the length of the fixed orifices, in diameters
 //     nozzle_1_share(p), nozzle_2_share(p)  [-]  added to the share of a nozzle's gap that is open
@@ -181,6 +182,7 @@ SERVODX_FIXED_HOOK(viscosity_rise)
 SERVODX_FIXED_HOOK(stiffness_rise)
 SERVODX_FIXED_HOOK(edge_creep)
 SERVODX_FIXED_HOOK(edge_abruptness)
+SERVODX_FIXED_HOOK(edge_fading)
 SERVODX_FIXED_HOOK(return_share)
 SERVODX_FIXED_HOOK(orifice_length)
 SERVODX_FIXED_HOOK(nozzle_1_share)
@@ -197,6 +199,11 @@ SERVODX_FIXED_HOOK(spool_yield)
 template <class... E>
 consteval bool thickens_under_pressure(EffectList<E...>) {
   return (requires(const double* q) { E::viscosity_rise(q); } || ...);
+}
+// Whether any effect lets the laminar drop of an edge fade: where none does, its steps are saved.
+template <class... E>
+consteval bool laminar_drop_fades(EffectList<E...>) {
+  return (requires(const double* q) { E::edge_fading(q); } || ...);
 }
 
 // The same of its stiffness.

@@ -111,7 +111,9 @@ TEST(FaultShape, IsFreeInHealthAsInEveryFault) {
   const std::vector<std::string> in_health = names(nullptr);
   EXPECT_EQ(in_health.size(), 4u);
   for (const Fault* fault : fault_list())
-    if (fault->told_by != Record::driver) EXPECT_EQ(names(fault), in_health) << fault->name;
+    if (fault->told_by != Record::driver) {
+      EXPECT_EQ(names(fault), in_health) << fault->name;
+    }
 }
 
 }  // namespace

@@ -37,6 +37,7 @@
 #include "model/constants.h"
 #include "model/derivative.h"
 #include "model/derived.h"
+#include "model/hooks.h"
 #include "model/state.h"
 #include "parameters/list.h"
 #include "servodx/log.h"
@@ -448,13 +449,15 @@ TEST(Oil, ColdOilIsStifferByHalfAPerCentAKelvin) {
 }
 
 // Of an open edge: flow over its turbulent limit, where the laminar drop at that limit is `share` of the turbulent one.
-double coefficient(double abruptness, double share) {
-  const ParameterVector v = with<EdgeTransition>(1, abruptness);
+double coefficient(double abruptness, double share, double fading = 0) {
+  ParameterVector v = with<EdgeTransition>(1, abruptness);
+  v[effect_row<EdgeTransition>(2)] = fading;
   const Derived<double> d = derive<double, AllEffects>(v.data(), Oil{});
   constexpr double opening = 1e-4;
   const double h = std::hypot(2 * opening, std::sqrt(d.clearance2)), r = d.slot_corner / (1 + abruptness) / h;
   const double dp = r * r / (d.edge_loss * 0.25 * share * share);
-  const double flow = metering_edge(opening, EdgeSide{1e-12, 0.0}, dp, d).flow;
+  const double flow =
+      metering_edge(opening, EdgeSide{1e-12, 0.0, Nothing{}, servodx::fading<AllEffects>(d)}, dp, d).flow;
   return flow / (d.width * h * std::sqrt(dp / d.edge_loss));
 }
 
@@ -476,6 +479,22 @@ TEST(EdgeTransition, BeyondAbruptTheCoefficientOvershootsItsLimitBySixPerCent) {
   }
   EXPECT_NEAR(most, 1.06, 0.003);
   EXPECT_LT(most_at_1, 1.0);
+}
+
+// The law that simulation tools take; `share` is the laminar over the turbulent drop at the flow's limit.
+TEST(EdgeTransition, FadingTheCoefficientSaturatesAsATangentWithinOneAndAHalfPerCent) {
+  double worst = 0, worst_kept = 0, most = 0;
+  for (double share = 0.03; share < 30; share *= 1.05) {
+    const double limit = std::tanh(1 / share);
+    worst = std::max(worst, std::abs(coefficient(1, share, 0.4) - limit));
+    worst_kept = std::max(worst_kept, std::abs(coefficient(1, share) - limit));
+    most = std::max(most, coefficient(1, share, 0.4));
+  }
+  EXPECT_LT(worst, 0.015);
+  EXPECT_GT(worst_kept, 0.05);
+  EXPECT_LT(most, 1.0);
+  // Creeping flow is the same.
+  EXPECT_NEAR(coefficient(1, 1e3, 0.4) / coefficient(1, 1e3), 1.0, 1e-4);
 }
 
 // Flow of an edge in oil that thickens over the flow in oil that does not; the edge ends at 100 and 140 bar.

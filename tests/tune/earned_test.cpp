@@ -73,7 +73,9 @@ TEST(EarnedEffects, RowsOfWhatGoesOffStandAtTheirOffValueAndClaimNothing) {
         ++rows;
         EXPECT_EQ(r.table[r.table.find(p.name)].nominal, p.off) << p.name;
         for (const ParameterResult& row : r.parameters)
-          if (row.name == p.name) EXPECT_NE(row.verdict, RowVerdict::bounded) << p.name;
+          if (row.name == p.name) {
+            EXPECT_NE(row.verdict, RowVerdict::bounded) << p.name;
+          }
       }
   EXPECT_GT(rows, 0);
 }

@@ -45,7 +45,9 @@ TEST(GaPaperSensitivity, TableDrivesAllFortyOneRowsHeldOnesTooAndRanksThem) {
     held = held || (!r.estimate && r.largest() > 1);
     EXPECT_LT(r.ends[0].value, r.ends[1].value) << r.name;
     EXPECT_EQ(r.ends[0].by_channel.size(), s.channels.size());
-    if (j > 0 && !std::isnan(r.largest())) EXPECT_LE(r.largest(), s.rows[j - 1].largest()) << r.name;
+    if (j > 0 && !std::isnan(r.largest())) {
+      EXPECT_LE(r.largest(), s.rows[j - 1].largest()) << r.name;
+    }
   }
   EXPECT_EQ(ids.size(), 41u);
   EXPECT_EQ(*ids.begin(), 1);

@@ -65,7 +65,7 @@ TEST(TunedState, TheHashOfATableIsOfWhatItSays) {
   EXPECT_EQ(of([](Table& t) { t.rows[3].source = "elsewhere", t.path = "other.csv"; }), hash);
   EXPECT_NE(of([](Table& t) { t.rows[3].nominal *= 1 + 1e-15; }), hash);
   EXPECT_NE(of([](Table& t) { t.rows[3].std_error = 1; }), hash);
-  EXPECT_NE(of([](Table& t) { set_tuned_state(t, {error, 3}); }), hash);
+  EXPECT_NE(of([](Table& t) { set_tuned_state(t, {error, 3, {}, {}}); }), hash);
   Table old = shipped_table();
   old.comments = {"model error spool_position: floor 1e-06 m, per activity 0.1, independent 9.9 1/s"};
   Table moved_on = old;
@@ -95,9 +95,9 @@ TEST(TunedState, OfManyLevelsIsRefusedByItsLineAndDoesNotOverflowTheStack) {
   try {
     tuned_state(table);
     ADD_FAILURE() << "accepted";
-  } catch (const InputError& error) {
-    EXPECT_EQ(error.where.file, table.path);
-    EXPECT_EQ(error.rule,
+  } catch (const InputError& refusal) {
+    EXPECT_EQ(refusal.where.file, table.path);
+    EXPECT_EQ(refusal.rule,
               "its lines '#%' cannot be read, the 2. of them nests deeper than 100 levels, at character 198");
   }
 }
