@@ -172,7 +172,15 @@ Run longest_still(const std::vector<double>& x) {
   return best;
 }
 
-// How often it goes up, down and up again from sample to sample, or the other way: by noise, as no motion is so fast.
+double least_step(const std::vector<double>& x) {
+  double least = HUGE_VAL;
+  for (std::size_t i = 1; i < x.size(); ++i)
+    if (const double step = std::abs(x[i] - x[i - 1]); step > 0) least = std::min(least, step);
+  return least;
+}
+
+// How often it goes up, down and up again from sample to sample, or the other way: by noise, not by the staircase that
+// a slow motion makes of a recorder's steps.
 std::size_t zigzags(const std::vector<double>& x) {
   std::size_t count = 0;
   for (std::size_t k = 3; k < x.size(); ++k) {
@@ -182,11 +190,15 @@ std::size_t zigzags(const std::vector<double>& x) {
   return count;
 }
 
-// Alive, it repeats no value for as long, however still what it measures: elsewhere its noise shows beside its steps.
+// Alive, it repeats no value for as long, however still what it measures: elsewhere its noise is as large as its steps.
+// Half as large is enough where the noise is seen to zigzag: a staircase alone reads as half a step of noise too.
 bool has_lost_its_noise(const std::vector<double>& x, Run still) {
   std::vector<double> elsewhere = x;
   elsewhere.erase(elsewhere.begin() + static_cast<long>(still.from), elsewhere.begin() + static_cast<long>(still.to));
-  return zigzags(elsewhere) * (still.to - still.from) >= k::zigzags_due * elsewhere.size() && !elsewhere.empty();
+  const double noise = noise_of(elsewhere, 0) / least_step(elsewhere);
+  if (noise >= 1) return true;
+  return noise >= k::noise_in_steps &&
+         zigzags(elsewhere) * (still.to - still.from) >= k::zigzags_due * elsewhere.size();
 }
 
 // One value for a good part of the log, while the command moves as it does elsewhere and the simulation's sensor would;

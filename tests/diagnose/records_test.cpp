@@ -252,7 +252,8 @@ TEST(Records, AStillSensorIsFrozenInAQuietPartOfALogWhereItsNoiseIsGoneToo) {
     ASSERT_EQ(found.size(), 1u) << resolution;
     EXPECT_EQ(found.front().finding, SensorFinding::frozen);
   }
-  EXPECT_TRUE(frozen_of(quiet(1e-4, 1e-6)).empty()) << "steps hide the noise";
+  for (const double noise : {1e-6, 1e-5, 2e-5})  // at rest such a sensor shows one value, though it zigzags elsewhere
+    EXPECT_TRUE(frozen_of(quiet(1e-4, noise)).empty()) << "steps hide the noise " << noise;
 }
 
 // A turned load makes the simulation's chambers change places too.

@@ -483,18 +483,14 @@ TEST(EdgeTransition, BeyondAbruptTheCoefficientOvershootsItsLimitBySixPerCent) {
 
 // The law that simulation tools take; `share` is the laminar over the turbulent drop at the flow's limit.
 TEST(EdgeTransition, FadingTheCoefficientSaturatesAsATangentWithinOneAndAHalfPerCent) {
-  double worst = 0, worst_kept = 0, most = 0;
+  double worst = 0, worst_kept = 0;
   for (double share = 0.03; share < 30; share *= 1.05) {
     const double limit = std::tanh(1 / share);
     worst = std::max(worst, std::abs(coefficient(1, share, 0.4) - limit));
     worst_kept = std::max(worst_kept, std::abs(coefficient(1, share) - limit));
-    most = std::max(most, coefficient(1, share, 0.4));
   }
   EXPECT_LT(worst, 0.015);
   EXPECT_GT(worst_kept, 0.05);
-  EXPECT_LT(most, 1.0);
-  // Creeping flow is the same.
-  EXPECT_NEAR(coefficient(1, 1e3, 0.4) / coefficient(1, 1e3), 1.0, 1e-4);
 }
 
 // Flow of an edge in oil that thickens over the flow in oil that does not; the edge ends at 100 and 140 bar.

@@ -857,7 +857,8 @@ TEST(DiagnoseText, WhatToRunNextNamesTheFilesOfTheCall) {
   EXPECT_EQ(calls[1],
             "servodx explain 'logs/odd one.csv' --params tuned.csv --rig bench.toml --baseline base.json "
             "-o extended.csv --report explain.html");
-  EXPECT_NE(text_of(d, {.colour = false, .written_to = {}, .call = call}).find(calls[1]), std::string::npos) << text_of(d, {.colour = false, .written_to = {}, .call = call});
+  EXPECT_NE(text_of(d, {.colour = false, .written_to = {}, .call = call}).find(calls[1]), std::string::npos)
+      << text_of(d, {.colour = false, .written_to = {}, .call = call});
   Header header;
   header.call = call;
   EXPECT_NE(diagnose_page(header, {d}, some_baseline(), {}).html().find("--baseline base.json"), std::string::npos);
