@@ -6,9 +6,8 @@
 // orifices are near to (Wu, Burton, Schoenau 2002). Sharper still, the coefficient overshoots its limit on the way, as
 // measured ones do by up to a tenth (the same; Merritt 1967, sec. 3-4): at 2 by 6 %. Simulation tools let the
 // coefficient saturate as the hyperbolic tangent of the flow number, without a tail and without an overshoot: there the
-// laminar drop fades as the turbulent one outgrows it. Bounds of Re: delta from 0.031 to 0.43. A
-// tangent whose flow number turns at 1000 has Re 330, and McCloy and Martin (1980) give 260 for spool valves; 400
-// leaves room above both.
+// laminar drop fades as the turbulent one outgrows it. Bounds of Re: delta from 0.031 to 0.43. A tangent whose flow
+// number turns at 1000 has Re 330, and McCloy and Martin (1980) give 260 for spool valves; 400 leaves room above both.
 #pragma once
 #include "effects/effect.h"
 #include "model/constants.h"

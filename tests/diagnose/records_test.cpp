@@ -254,6 +254,8 @@ TEST(Records, AStillSensorIsFrozenInAQuietPartOfALogWhereItsNoiseIsGoneToo) {
   }
   for (const double noise : {1e-6, 1e-5, 2e-5})  // at rest such a sensor shows one value, though it zigzags elsewhere
     EXPECT_TRUE(frozen_of(quiet(1e-4, noise)).empty()) << "steps hide the noise " << noise;
+  // No noise at all, and the staircase reads as half a step of it: only a zigzag tells them apart.
+  EXPECT_TRUE(frozen_of(quiet(2.5e-4, 1e-6)).empty()) << "a staircase";
 }
 
 // A turned load makes the simulation's chambers change places too.
