@@ -2,29 +2,27 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <cstdio>
 #include <deque>
 #include <filesystem>
 #include <fstream>
-#include <future>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <utility>
 
-#include "base/atomic_file.h"
 #include "base/byte_tail.h"
 #include "base/csv.h"
-#include "base/json_text.h"
 #include "base/progress.h"
 #include "base/sha256.h"
-#include "base/trouble.h"
-#include "faults/gross_finding.h"
 #include "fleet_judge.h"
+#include "follow_state.h"
 #include "online/alarm_limits.h"
 #include "online/arrivals.h"
 #include "online/constants.h"
@@ -34,6 +32,7 @@
 #include "report/diagnose/diagnosis_text.h"
 #include "report/shared/json.h"
 #include "report/shared/text_options.h"
+#include "report/watch/watch_events.h"
 #include "servodx/baseline.h"
 #include "servodx/diagnose.h"
 #include "servodx/error.h"
@@ -41,69 +40,18 @@
 #include "servodx/table.h"
 #include "signals/growing_log.h"
 #include "signals/sample.h"
+#include "window_diagnoses.h"
 
 namespace servodx {
 namespace {
 
-constexpr int state_schema = 1;
 constexpr double state_every = 1.0;           // [s] of the wall's clock
 constexpr double longest_wait = 0.05;         // [s] a signal is answered within it
 constexpr double mark_every = 0.25;           // [s] of the log, between places that the window may be read again from
-constexpr std::size_t most_pending = 4;       // windows that wait for their diagnosis
 constexpr std::size_t most_in_result = 1000;  // events in the result file: memory does not grow
+constexpr double no_time_yet = 1e300;         // [s] later than any sample
 
 double wall_now() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
-
-std::string word_of(GrossFinding gross) {
-  switch (gross) {
-    case GrossFinding::spool_on_both_stops:
-      return "spool_on_both_stops";
-    case GrossFinding::spool_on_one_stop:
-      return "spool_on_one_stop";
-    case GrossFinding::no_response:
-      return "no_response";
-    case GrossFinding::none:
-      break;
-  }
-  return "";
-}
-
-report::Json json_of(const WatchEvent& e) {
-  report::Json out{{"number", e.number}, {"event", word_of(e.kind)}, {"time", e.time}, {"told_at", e.told_at}};
-  if (e.kind == WatchEventKind::cleared || e.kind == WatchEventKind::restart) return out;
-  out["onset_time"] = e.onset;
-  out["fault"] = e.name.empty() ? report::Json() : report::Json(e.name);
-  if (e.signal) {
-    out["signal"] = *e.signal == Signal::coil_current ? "driver" : std::string(name_of(*e.signal));
-    out["window"] = e.window, out["level"] = e.level, out["limit"] = e.limit;
-  }
-  if (e.gross != GrossFinding::none) out["seen"] = word_of(e.gross);
-  if (e.supply) out["seen"] = "supply_out_of_band";
-  return out;
-}
-
-std::string text_of(const WatchEvent& e) {
-  const std::string name = e.name.empty() ? "no fault of the list" : e.name;
-  switch (e.kind) {
-    case WatchEventKind::alarm:
-      if (e.gross != GrossFinding::none) return fmt::format("{:.3f} s: ALARM, {}: {}", e.time, word_of(e.gross), name);
-      if (e.supply)
-        return fmt::format("{:.3f} s: ALARM, supply_pressure {:.3g} bar from its healthy level: looks like {}", e.time,
-                           e.level * 1e-5, name);
-      return fmt::format("{:.3f} s: ALARM, {} {:.3g} times its limit: looks like {}, since {:.3f} s", e.time,
-                         e.signal == Signal::coil_current ? "driver" : std::string(name_of(*e.signal)),
-                         e.level / e.limit, name, e.onset);
-    case WatchEventKind::named:
-      return fmt::format("{:.3f} s: now looks like {}", e.time, name);
-    case WatchEventKind::cleared:
-      return fmt::format("{:.3f} s: as healthy again", e.time);
-    case WatchEventKind::restart:
-      return fmt::format("{:.3f} s: the simulation begins anew", e.time);
-    case WatchEventKind::window:
-      break;
-  }
-  return "";
-}
 
 // The logs that the limits rest on: those named, or the baseline's where they are as they were.
 std::vector<Log> healthy_logs(const FollowOptions& options, const Judging& judging, Invocation& invocation) {
@@ -126,85 +74,79 @@ std::vector<Log> healthy_logs(const FollowOptions& options, const Judging& judgi
   return out;
 }
 
-// A window that waits for its diagnosis: what a watch that goes on from a state makes it of again.
-struct Due {
-  long of = 0;                // number of the window's event
-  double begins = 0, at = 0;  // [s]
-};
-
-// Diagnoses of windows, one at a time, beside the watch.
-class Diagnoses {
- public:
-  Diagnoses(const Judging& judging, const CommonOptions& common, const std::atomic<bool>& stop)
-      : judging_(judging), common_(common), stop_(stop) {}
-
-  struct Done {
-    Due due;
-    std::optional<Verdict> verdict;
-    std::string refused;  // neither: it was stopped
+WindowDiagnoses::Judge judge_by(const Judging& judging, const CommonOptions& common, const std::atomic<bool>& stop) {
+  return [&judging, &common, &stop](const Log& window) -> std::optional<Verdict> {
+    DiagnoseOptions how{.seed = common.seed, .threads = common.threads};
+    how.watch.stop = [&stop] { return stop.load(); };
+    Verdict verdict = diagnose_window(window, judging.tuned, judging.rig, judging.baseline, how);
+    if (verdict.interrupted) return {};
+    return verdict;
   };
-  void add(const Due& due, Log log) {
-    if (waiting_.size() >= most_pending) waiting_.pop_front();
-    waiting_.push_back({due, std::move(log)});
+}
+
+// Where events go: the result, standard output, and a file that begins with the first sample.
+class Told {
+ public:
+  Told(const std::string& file, bool prints) : file_(file), prints_(prints) {}
+
+  void open() {
+    if (stream_.is_open() || file_.empty() || is_standard_stream(file_)) return;
+    stream_.open(file_, std::ios::app);
+    if (!stream_) throw InputError({.file = file_}, "cannot be written", "name a file in a folder that is there");
   }
-  std::vector<Due> due() const {
-    std::vector<Due> out;
-    if (running_.valid()) out.push_back(running_due_);
-    for (const Job& job : waiting_) out.push_back(job.due);
-    return out;
+  void tell(const report::Json& event, const std::string& text) {
+    if (events_.size() < most_in_result)
+      events_.push_back(event);
+    else
+      ++left_out_;
+    if (stream_.is_open()) stream_ << event.dump() << std::endl;
+    if (!prints_) return;
+    std::printf("%s\n", is_standard_stream(file_) ? event.dump().c_str() : text.c_str());
+    std::fflush(stdout);
   }
-  // One that is done; `wait`: for as long as it takes.
-  std::optional<Done> next(bool wait) {
-    if (!running_.valid() && !waiting_.empty()) {
-      running_due_ = waiting_.front().due;
-      running_ = std::async(std::launch::async, [this, job = std::move(waiting_.front())] { return judge_one(job); });
-      waiting_.pop_front();
-    }
-    if (!running_.valid()) return {};
-    if (!wait && running_.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return {};
-    return running_.get();
-  }
+  const report::Json& events() const { return events_; }
+  long left_out() const { return left_out_; }
 
  private:
-  struct Job {
-    Due due;
-    Log log;
-  };
-  Done judge_one(const Job& job) const {
-    Done out{job.due, {}, ""};
-    try {
-      DiagnoseOptions how{.seed = common_.seed, .threads = common_.threads};
-      how.watch.stop = [this] { return stop_.load(); };
-      Verdict verdict = diagnose_window(job.log, judging_.tuned, judging_.rig, judging_.baseline, how);
-      if (!verdict.interrupted) out.verdict = std::move(verdict);
-    } catch (const InputError& error) {
-      out.refused = told(error);
-    } catch (const std::exception& error) {
-      out.refused = error.what();
-    }
-    return out;
-  }
+  const std::string& file_;
+  bool prints_;
+  std::ofstream stream_;
+  report::Json events_ = report::Json::array();
+  long left_out_ = 0;
+};
 
-  const Judging& judging_;
-  const CommonOptions& common_;
-  const std::atomic<bool>& stop_;
-  std::deque<Job> waiting_;
-  Due running_due_;
-  std::future<Done> running_;
+// From which byte a log is read again to have a time in it.
+class Places {
+ public:
+  void begin(double time, std::uint64_t byte) {
+    if (marks_.empty()) marks_.push_back({time, byte});
+  }
+  void pass(double time, std::uint64_t byte) {
+    if (time >= marks_.back().first + mark_every) marks_.push_back({time, byte});
+  }
+  void forget_before(double time) {
+    while (marks_.size() > 1 && marks_[1].first < time) marks_.pop_front();
+  }
+  void clear() { marks_.clear(); }
+  std::uint64_t first_or(std::uint64_t otherwise) const { return marks_.empty() ? otherwise : marks_.front().second; }
+
+ private:
+  std::deque<std::pair<double, std::uint64_t>> marks_;  // time, and the bytes up to its sample
 };
 
 class Following {
  public:
   Following(const FollowOptions& options, const CommonOptions& common, const Judging& judging, WatchLimits limits,
-            Invocation& invocation)
+            bool prints)
       : options_(options),
         judging_(judging),
         model_(watched_model(judging.tuned.table, judging.rig)),
         limits_(std::move(limits)),
-        invocation_(invocation),
+        by_{options.source, content_hash(judging.tuned.table), judging.tuned.table.sha256, judging.baseline.sha256},
         progress_("watch", {.quiet = common.quiet}),
         log_(options.source, judging.rig),
-        diagnoses_(judging, common, stop_) {}
+        diagnoses_(judge_by(judging, common, stop_)),
+        told_(options.events, prints) {}
 
   void go() {
     std::uint64_t from = read_state();
@@ -218,7 +160,7 @@ class Following {
         log_.feed(read.bytes, [this](const Sample& s, std::uint64_t end) { take(s, end); });
         heard = wall_now();  // after the work: what waits in the file meanwhile is no idleness
       }
-      for (auto done = diagnoses_.next(false); done; done = diagnoses_.next(false)) tell(*done);
+      while (const auto done = diagnoses_.next_if_ready()) tell(*done);
       show();
       if (wall_now() - saved >= state_every) write_state(), saved = wall_now();
       if (read.ended || (options_.until_idle > 0 && read.bytes.empty() && wall_now() - heard >= options_.until_idle))
@@ -235,9 +177,9 @@ class Following {
     const ArrivalCounts counts = watcher_ ? watcher_->counts() : ArrivalCounts{};
     out["samples"] = {
         {"taken", counts.taken}, {"late", counts.late}, {"repeated", counts.repeated}, {"bad_lines", log_.bad_lines()}};
-    out["limits"] = to_json(limits_);
-    out["events"] = told_;
-    out["events_left_out"] = left_out_;
+    out["limits"] = report::to_json(limits_);
+    out["events"] = told_.events();
+    out["events_left_out"] = told_.left_out();
     return out;
   }
   std::string text() const {
@@ -255,19 +197,19 @@ class Following {
       return make_due_until(sample.time);
     }
     make_due_until(sample.time);
-    remembered_until_ = -1e300;
-    if (first_time_ > sample.time) first_time_ = sample.time;
-    if (marks_.empty()) marks_.push_back({sample.time, end});
+    remembered_until_ = -no_time_yet;
+    first_time_ = std::min(first_time_, sample.time);
+    places_.begin(sample.time, end);
     const double before = watcher_->time();
     new_events_.clear();
     watcher_->take(sample, new_events_);
     if (watcher_->time() > before) {
       judged_end_ = end;
       seconds_ = watcher_->time() - first_time_;
-      if (watcher_->time() >= marks_.back().first + mark_every) marks_.push_back({watcher_->time(), end});
+      places_.pass(watcher_->time(), end);
       double needed = watcher_->window_begins();
-      for (const Due& due : diagnoses_.due()) needed = std::min(needed, due.begins);
-      while (marks_.size() > 1 && marks_[1].first < needed) marks_.pop_front();
+      for (const DueWindow& due : diagnoses_.due()) needed = std::min(needed, due.begins);
+      places_.forget_before(needed);
     }
     for (const WatchEvent& e : new_events_) tell(e);
   }
@@ -275,7 +217,7 @@ class Following {
   // The windows of a saved state that end by `time`: their samples have come again.
   void make_due_until(double time) {
     while (!resumed_due_.empty() && resumed_due_.front().at <= time) {
-      const Due due = resumed_due_.front();
+      const DueWindow due = resumed_due_.front();
       resumed_due_.pop_front();
       const std::vector<Sample> window = watcher_->window();
       if (!window.empty() && window.front().time <= due.begins + online_constants::part && window.back().time >= due.at)
@@ -285,19 +227,12 @@ class Following {
     }
   }
 
-  void add_diagnosis(const Due& due, const std::vector<Sample>& window) {
+  void add_diagnosis(const DueWindow& due, const std::vector<Sample>& window) {
     diagnoses_.add(due, log_of(fmt::format("{}@{:.3f}", options_.source, due.at), window));
   }
 
-  void open_events() {
-    if (events_file_.is_open() || options_.events.empty() || is_standard_stream(options_.events)) return;
-    events_file_.open(options_.events, std::ios::app);
-    if (!events_file_)
-      throw InputError({.file = options_.events}, "cannot be written", "name a file in a folder that is there");
-  }
-
   void make_watcher() {
-    open_events();
+    told_.open();
     std::vector<Signal> recorded;
     for (int i = 0; i < n_signals; ++i)
       if (const auto s = static_cast<Signal>(i); s != Signal::time && log_.has(s)) recorded.push_back(s);
@@ -305,18 +240,18 @@ class Following {
     if (!resumed_.is_null()) watcher_->resume(std::exchange(resumed_, nlohmann::json()));
   }
 
-  void forget() {
-    resumed_ = nlohmann::json();
-    resumed_due_.clear();
-    remembered_until_ = -1e300;
-    log_ = GrowingLog(options_.source, judging_.rig);
-  }
   void begin_anew() {
     progress_.say("watch: " + options_.source + " began anew");
-    watcher_.reset();
-    marks_.clear();
-    first_time_ = 1e300;
     forget();
+  }
+  // Another log stands under this name: nothing of the first one is true of it, but its alarms were told.
+  void forget() {
+    watcher_.reset();
+    resumed_ = nlohmann::json();
+    resumed_due_.clear();
+    places_.clear();
+    remembered_until_ = -no_time_yet, first_time_ = no_time_yet;
+    log_ = GrowingLog(options_.source, judging_.rig);
   }
 
   void tell(const WatchEvent& e) {
@@ -327,10 +262,10 @@ class Following {
       add_diagnosis({e.number, watcher_->window_begins(), e.time}, watcher_->window());
       return;
     }
-    write(json_of(e), text_of(e));
+    told_.tell(report::to_json(e), report::text_of(e));
   }
 
-  void tell(const Diagnoses::Done& done) {
+  void tell(const WindowDiagnoses::Done& done) {
     report::Json out{{"number", done.due.of}, {"event", "diagnosis"}};
     std::string text;
     if (done.verdict) {
@@ -346,18 +281,7 @@ class Following {
       resumed_due_.push_back(done.due);
       return;
     }
-    write(out, text);
-  }
-
-  void write(const report::Json& event, const std::string& text) {
-    if (told_.size() < most_in_result)
-      told_.push_back(event);
-    else
-      ++left_out_;
-    if (events_file_.is_open()) events_file_ << event.dump() << std::endl;
-    if (!invocation_.prints_text()) return;
-    std::printf("%s\n", is_standard_stream(options_.events) ? event.dump().c_str() : text.c_str());
-    std::fflush(stdout);
+    told_.tell(out, text);
   }
 
   void show() {
@@ -371,14 +295,14 @@ class Following {
         throw InputError({.file = "standard input"}, log_.begun() ? "has no rows" : "has no header row",
                          "send a log: a header of names and units, then its rows");
       if (watcher_) {
-        make_due_until(1e300);
+        make_due_until(no_time_yet);
         new_events_.clear();
         // The state is that of whole parts: what is added to the log later goes on from there.
         const nlohmann::json whole_parts = options_.state.empty() ? nlohmann::json() : watcher_->state();
         write_state(whole_parts);
         watcher_->flush(new_events_);
         for (const WatchEvent& e : new_events_) tell(e);
-        for (auto done = diagnoses_.next(true); done; done = diagnoses_.next(true)) {
+        while (const auto done = diagnoses_.wait_for_next()) {
           tell(*done);
           if (stop_) break;
         }
@@ -394,82 +318,57 @@ class Following {
   }
   void write_state(const nlohmann::json& watcher) {
     if (options_.state.empty()) return;
-    auto due = nlohmann::json::array();
-    const auto add = [&](const Due& d) {
-      if (d.at <= watcher.at("last")) due.push_back({d.of, d.begins, d.at});
+    FollowState state{.head = log_.head(),
+                      .judged_until = judged_end_,
+                      .window_from = places_.first_or(judged_end_),
+                      .first_time = first_time_,
+                      .alarms = alarms_,
+                      .due = {},
+                      .watcher = watcher};
+    const auto add = [&](const DueWindow& due) {
+      if (due.at <= watcher.at("last")) state.due.push_back(due);
     };
-    for (const Due& d : resumed_due_) add(d);
-    for (const Due& d : diagnoses_.due()) add(d);
-    nlohmann::ordered_json out{{"schema", state_schema},
-                               {"tool", "servodx"},
-                               {"version", SERVODX_VERSION},
-                               {"source", options_.source},
-                               {"table", content_hash(judging_.tuned.table)},
-                               {"baseline", judging_.baseline.sha256},
-                               {"head", log_.head()},
-                               {"judged_until", judged_end_},
-                               {"window_from", marks_.empty() ? judged_end_ : marks_.front().second},
-                               {"first_time", first_time_},
-                               {"alarms", alarms_},
-                               {"due", due},
-                               {"watcher", watcher}};
-    write_file(options_.state, out.dump() + "\n");
+    for (const DueWindow& due : resumed_due_) add(due);
+    for (const DueWindow& due : diagnoses_.due()) add(due);
+    write_follow_state(options_.state, by_, state);
   }
 
   // Where to read on from.
   std::uint64_t read_state() {
-    std::error_code ignored;
-    if (options_.state.empty() || !std::filesystem::exists(options_.state, ignored)) return 0;
-    const auto json = json_or_discarded<nlohmann::json>(read_file(options_.state));
-    const auto refuse = [&](const std::string& rule) {
-      throw InputError({.file = options_.state}, rule, "remove the file to begin anew, or name another");
-    };
-    if (!has_schema(json, state_schema)) refuse("is no state of a watch");
-    try {
-      if (json.at("source") != options_.source) refuse("is the state of a watch of another log");
-      const Table& table = judging_.tuned.table;  // earlier versions kept the hash of its file
-      const bool same_table = json.at("table") == content_hash(table) || json.at("table") == table.sha256;
-      if (!same_table || json.at("baseline") != judging_.baseline.sha256)
-        refuse("was saved with another table or baseline");
-      resumed_ = json.at("watcher");
-      remembered_until_ = resumed_.at("last");
-      first_time_ = json.at("first_time"), alarms_ = json.at("alarms"), judged_end_ = json.at("judged_until");
-      seconds_ = remembered_until_ - first_time_;
-      for (const auto& d : json.value("due", nlohmann::json::array()))
-        resumed_due_.push_back({d.at(0), d.at(1), d.at(2)});
-      if (is_standard_stream(options_.source)) {
-        remembered_until_ = -1e300;
-        return 0;
-      }
-      const std::uint64_t from = json.at("window_from");
-      log_.begin_with(json.at("head"), from);
-      marks_.push_back({-1e300, from});
-      return from;
-    } catch (const nlohmann::json::exception&) {
-      refuse("is damaged");
+    const auto state = options_.state.empty() ? std::nullopt : read_follow_state(options_.state, by_);
+    if (!state) return 0;
+    resumed_ = state->watcher;
+    remembered_until_ = resumed_.at("last");
+    first_time_ = state->first_time, alarms_ = state->alarms, judged_end_ = state->judged_until;
+    seconds_ = remembered_until_ - first_time_;
+    resumed_due_.assign(state->due.begin(), state->due.end());
+    if (is_standard_stream(options_.source)) {  // what was read once does not come again
+      remembered_until_ = -no_time_yet;
+      return 0;
     }
-    return 0;
+    log_.begin_with(state->head, state->window_from);
+    places_.begin(-no_time_yet, state->window_from);
+    return state->window_from;
   }
 
   const FollowOptions& options_;
   const Judging& judging_;
   const WatchedModel model_;
   const WatchLimits limits_;
-  Invocation& invocation_;
+  const FollowedBy by_;
   Progress progress_;
   const std::atomic<bool>& stop_ = stop_on_interrupt(true);
   GrowingLog log_;
-  Diagnoses diagnoses_;
+  WindowDiagnoses diagnoses_;
   std::unique_ptr<Watcher> watcher_;
   std::vector<WatchEvent> new_events_;
-  std::ofstream events_file_;
-  report::Json told_ = report::Json::array();
+  Told told_;
   nlohmann::json resumed_;
-  std::deque<Due> resumed_due_;
-  double remembered_until_ = -1e300, first_time_ = 1e300, seconds_ = 0;  // [s]
-  std::uint64_t judged_end_ = 0;                                         // bytes
-  std::deque<std::pair<double, std::uint64_t>> marks_;                   // time, and the bytes up to its sample
-  long alarms_ = 0, left_out_ = 0;
+  std::deque<DueWindow> resumed_due_;
+  double remembered_until_ = -no_time_yet, first_time_ = no_time_yet, seconds_ = 0;  // [s]
+  std::uint64_t judged_end_ = 0;                                                     // bytes
+  Places places_;
+  long alarms_ = 0;
   Verdict::Kind worst_ = Verdict::Kind::healthy;
 };
 
@@ -495,7 +394,7 @@ int follow(const FollowOptions& options, const CommonOptions& common) {
   if (invocation.dry_run()) return ran;
   const WatchLimits limits = learn_limits(healthy_logs(options, judging, invocation),
                                           watched_model(judging.tuned.table, judging.rig), options.alarms_per_hour);
-  Following following(options, common, judging, limits, invocation);
+  Following following(options, common, judging, limits, invocation.prints_text());
   following.go();
   invocation.finish(is_standard_stream(options.events) ? "" : following.text(), following.result());
   if (following.was_stopped()) return interrupted;

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
-#include <nlohmann/json.hpp>
 #include <span>
 
 #include "base/median.h"
@@ -145,19 +144,6 @@ WatchLimits learn_limits(const std::vector<Log>& healthy, WatchedModel model, do
           {k::least_limit, k::beyond_healthy * most, law.excess_at(chance_of(alarms_per_hour, blocks.size()))});
     }
   }
-  return out;
-}
-
-nlohmann::ordered_json to_json(const WatchLimits& limits) {
-  nlohmann::ordered_json out{{"alarms_per_hour", limits.alarms_per_hour},
-                             {"healthy_logs", limits.logs},
-                             {"healthy_seconds", limits.healthy_seconds},
-                             {"windows", k::windows},
-                             {"limits", nlohmann::ordered_json::array()}};
-  for (const auto& [signal, c] : limits.channels)
-    out["limits"].push_back({{"signal", name_of(signal)}, {"limit", c.limit}, {"healthy", c.healthy}});
-  if (const auto& s = limits.supply)
-    out["supply"] = {{"level", s->level}, {"limit", s->limit}, {"healthy", s->healthy}, {"unit", "Pa"}};
   return out;
 }
 

@@ -6,7 +6,6 @@
 // than these logs may have a heavier tail: the logs should hold what the valve does all day.
 #pragma once
 #include <map>
-#include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <span>
 #include <string>
@@ -46,7 +45,5 @@ WatchLimits learn_limits(const std::vector<Log>& healthy, WatchedModel model, do
 double recent_supply(std::span<const Sample> samples);
 // Of a channel that no healthy log had: as one whose levels are usual.
 ChannelLimits usual_limits(double alarms_per_hour, std::size_t channels);
-
-nlohmann::ordered_json to_json(const WatchLimits& limits);
 
 }  // namespace servodx

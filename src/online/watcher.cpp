@@ -14,22 +14,6 @@ namespace servodx {
 
 namespace k = online_constants;
 
-std::string word_of(WatchEventKind kind) {
-  switch (kind) {
-    case WatchEventKind::alarm:
-      return "alarm";
-    case WatchEventKind::named:
-      return "named";
-    case WatchEventKind::window:
-      return "window";
-    case WatchEventKind::cleared:
-      return "cleared";
-    case WatchEventKind::restart:
-      return "restart";
-  }
-  return "";
-}
-
 namespace {
 
 WatchedModel with_noise(WatchedModel model, const WatchLimits& limits) {

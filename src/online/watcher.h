@@ -30,7 +30,6 @@ enum class WatchEventKind {
   cleared,  // all is as healthy again
   restart,  // the simulation has begun anew: a gap, or it had left the finite numbers
 };
-std::string word_of(WatchEventKind kind);
 
 struct WatchEvent {
   long number = 0;  // of the watch, from 1: after a restart the same event has the same number

@@ -45,7 +45,7 @@ const std::map<std::string, std::set<std::string>> allowed = {
     // Words are made of every outcome: of a row's verdict and of why a search stopped, too.
     {"report",
      {"parameters", "signals", "optimise", "faults", "diagnose", "explain", "evidence", "prognose", "fit", "tune",
-      "valve_maps", "curves", "fleet", "plan", "store"}},
+      "valve_maps", "curves", "fleet", "plan", "store", "online"}},
     {"prognose", {"parameters", "signals", "model", "simulate", "optimise", "fit", "faults", "valve_maps"}},
     {"store",
      {"parameters", "signals", "model", "simulate", "faults", "evidence", "curves", "diagnose", "explain", "prognose"}},
