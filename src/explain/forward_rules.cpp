@@ -58,12 +58,15 @@ std::vector<int> order_of_trial(const std::vector<ScoredEvidence>& causes, const
 std::vector<int> order_of_judging(const std::vector<FittedEvidence>& fitted) {
   std::vector<int> order(fitted.size());
   std::iota(order.begin(), order.end(), 0);
+  const auto of = [&](int i) -> const FittedEvidence& { return fitted[static_cast<std::size_t>(i)]; };
   std::stable_sort(order.begin(), order.end(), [&](int i, int j) {
-    const FittedEvidence &a = fitted[static_cast<std::size_t>(i)], &b = fitted[static_cast<std::size_t>(j)];
-    if (a.prior != b.prior) return a.prior > b.prior;
-    if (a.news_by_itself != b.news_by_itself) return a.news_by_itself;
-    return a.delta_bic > b.delta_bic;
+    return of(i).prior != of(j).prior ? of(i).prior > of(j).prior : of(i).delta_bic > of(j).delta_bic;
   });
+  for (auto first = order.begin(); first != order.end();) {
+    const auto end = std::find_if(first, order.end(), [&](int i) { return of(i).prior != of(*first).prior; });
+    std::stable_partition(first + 1, end, [&](int i) { return of(i).news_by_itself; });
+    first = end;
+  }
   return order;
 }
 
