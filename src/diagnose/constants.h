@@ -17,8 +17,6 @@ namespace servodx::diagnose_constants {
 //
 // The log of the worst channel's adequacy scatters by about this much among healthy logs of different excitation.
 inline constexpr double adequacy_spread = 0.3;
-// Twice as wrong as on the tuning logs: three quarters of the squared error is nothing that tuning knew.
-inline constexpr double followed_adequacy = 2.0;
 // The mean of the largest of ten squared one-sided normal deviates: what noise alone lends the best of so many faults,
 // were each free. Faults are free from their least size on, so that healthy logs show less.
 inline constexpr double usual_gain = 2.7;

@@ -5,6 +5,7 @@
 
 #include "base/student.h"
 #include "diagnose/constants.h"
+#include "evidence/constants.h"
 #include "evidence/rank_promise.h"
 
 namespace servodx {
@@ -37,7 +38,7 @@ std::vector<double> squares_of(const DetectionBaseline& b, const std::vector<std
 
 }  // namespace
 
-bool is_followed(double adequacy) { return adequacy <= k::followed_adequacy; }
+bool is_followed(double adequacy) { return adequacy <= evidence_constants::followed_adequacy; }
 
 SuspectLog suspect_of(const Assessment& a) {
   SuspectLog out{a.test, a.hypotheses.front().adequacy, std::max<std::size_t>(1, a.logs.size())};

@@ -56,8 +56,9 @@ Inquiry::Inquiry(const std::vector<Log>& logs, const Table& tuned, const RigFile
   if (healthy) {
     std::vector<TestConditions> tests;
     for (const Log& log : logs) tests.push_back(conditions_of(log));
-    speaking_ = logs_that_speak(*healthy, tests);
-    healthy_logs_ = healthy->promising();
+    const HealthyReference followed = followed_or_alike(*healthy, tests);
+    speaking_ = logs_that_speak(followed, tests);
+    healthy_logs_ = followed.promising();
     test_.emplace(speaking_.logs, subject_.thickness());
   }
   if (healthy && logs.size() > 1)

@@ -2,9 +2,31 @@
 
 #include <algorithm>
 
+#include "evidence/constants.h"
 #include "explain/constants.h"
 
 namespace servodx {
+namespace {
+
+bool is_followed(const HealthyLog& log) {
+  using evidence_constants::followed_adequacy;
+  return log.adequacy <= followed_adequacy * followed_adequacy;  // its is of squares
+}
+
+}  // namespace
+
+HealthyReference followed_or_alike(const HealthyReference& all, const std::vector<TestConditions>& suspects) {
+  HealthyReference out;
+  std::vector<TestConditions> tests;
+  for (const HealthyLog& log : all.logs) {
+    if (!log.test) return all;
+    const bool alike = std::any_of(suspects.begin(), suspects.end(),
+                                   [&](const TestConditions& test) { return distance(*log.test, test) <= 1; });
+    if (!alike && !is_followed(log)) continue;
+    out.logs.push_back(log), tests.push_back(*log.test);
+  }
+  return show_scatter_of_tests(tests) ? out : all;
+}
 
 SpeakingLogs logs_that_speak(const HealthyReference& all, const std::vector<TestConditions>& suspects) {
   SpeakingLogs kin, others;

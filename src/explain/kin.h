@@ -1,7 +1,8 @@
 // Which healthy logs speak of a suspect: like with like, where there is like.
 //
 // How sizes and misfits scatter from test to test is seen on logs of different tests only. Repeats of one test say how
-// that test scatters, and of another test they say as much as one log.
+// that test scatters, and of another test they say as much as one log. A log that the model does not follow says what
+// the model has wrong in tests like its own, and nothing of others: `diagnose` has the same rule (healthy_law.h).
 #pragma once
 #include <vector>
 
@@ -9,6 +10,10 @@
 #include "explain/healthy.h"
 
 namespace servodx {
+
+// Those that the model follows, and those of tests like a suspect's. All, where the rest are of too few tests to show
+// how sizes scatter.
+HealthyReference followed_or_alike(const HealthyReference& all, const std::vector<TestConditions>& suspects);
 
 struct SpeakingLogs {
   HealthyReference logs;

@@ -47,6 +47,18 @@ TEST(Kin, FewOfTheSuspectsTestAreJoinedByOneOfEveryOther) {
   EXPECT_TRUE(s.alike);
 }
 
+// Steps of some per cent that the model has wrong say nothing of a flight, and all of such steps.
+TEST(Kin, ALogThatTheModelDoesNotFollowSpeaksOfTestsLikeItsOwnAlone) {
+  HealthyReference all = reference({test(40e-3, 8e-3), test(5e-3, 1e-3), test(20e-3, 4e-3, 100), test(20e-3, 6e-3)});
+  all.logs[1].adequacy = 16;
+  EXPECT_EQ(followed_or_alike(all, {test(20e-3, 4e-3)}).logs.size(), 3u);
+  EXPECT_EQ(followed_or_alike(all, {test(5e-3, 2e-3)}).logs.size(), 4u);
+  all.logs[1].adequacy = 3.9;
+  EXPECT_EQ(followed_or_alike(all, {test(20e-3, 4e-3)}).logs.size(), 4u) << "less than twice as wrong";
+  all.logs[1].adequacy = all.logs[2].adequacy = 16;
+  EXPECT_EQ(followed_or_alike(all, {test(80e-3, 20e-3)}).logs.size(), 4u) << "two tests show no scatter of tests";
+}
+
 TEST(Kin, RepeatsAreOneProgrammeWhateverTheirOil) {
   const TestConditions cold = test(40e-3, 8e-3, 10, 0), warm = test(41e-3, 8.2e-3, 10, 60), other = test(40e-3, 11e-3);
   EXPECT_FALSE(is_repeat(cold, warm));
