@@ -34,6 +34,7 @@ inline constexpr int curve_dampings = 3;  // tried at once: a curve's kernel run
 // Forward.
 inline constexpr int fitted = 8;               // causes with a name that are fitted, each round
 inline constexpr int judged = 4;               // of these, judged on held-out data
+inline constexpr int leading = 2;              // of these, by what they gain alone: an answer and its twin
 inline constexpr int rare_share = 2;           // rarer causes get this part of either
 inline constexpr int standing_tried = 2;       // causes that are no news, where their shares are not asked
 inline constexpr double least_worth = 0.05;    // of the held-out misfit: without healthy data to compare with, a name

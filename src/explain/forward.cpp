@@ -211,7 +211,7 @@ void judge(const Subject& subject, const EngineOptions& options, const Round& ro
   std::vector<FittedEvidence> evidence;
   for (const Trial& t : trials) evidence.push_back(fitted_evidence(round, t));
   std::vector<Trial> ordered;
-  for (int i : order_of_judging(evidence)) ordered.push_back(std::move(trials[at(i)]));
+  for (int i : order_of_judging(evidence, leading)) ordered.push_back(std::move(trials[at(i)]));
   trials = std::move(ordered);
   measure_best(subject, options, round, so_far, out.degrees, trials);
   for (Trial& t : trials) {

@@ -55,7 +55,7 @@ std::vector<int> order_of_trial(const std::vector<ScoredEvidence>& causes, const
   return out;
 }
 
-std::vector<int> order_of_judging(const std::vector<FittedEvidence>& fitted) {
+std::vector<int> order_of_judging(const std::vector<FittedEvidence>& fitted, int leading) {
   std::vector<int> order(fitted.size());
   std::iota(order.begin(), order.end(), 0);
   const auto of = [&](int i) -> const FittedEvidence& { return fitted[static_cast<std::size_t>(i)]; };
@@ -64,7 +64,7 @@ std::vector<int> order_of_judging(const std::vector<FittedEvidence>& fitted) {
   });
   for (auto first = order.begin(); first != order.end();) {
     const auto end = std::find_if(first, order.end(), [&](int i) { return of(i).prior != of(*first).prior; });
-    std::stable_partition(first + 1, end, [&](int i) { return of(i).news_by_itself; });
+    if (end - first > leading) std::stable_partition(first + leading, end, [&](int i) { return of(i).news_by_itself; });
     first = end;
   }
   return order;

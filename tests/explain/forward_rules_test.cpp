@@ -91,10 +91,12 @@ TEST(ForwardRules, AShareIsAskedOfTheFirstCauseAlone) {
 TEST(ForwardRules, TheCommonerIsJudgedFirstAndEachKindHasItsShare) {
   const std::vector<FittedEvidence> fitted = {
       {0.1, true, true, 900}, {1, true, false, 50}, {1, true, true, 20}, {1, true, true, 30}};
-  EXPECT_EQ(order_of_judging(fitted), (std::vector<int>{1, 3, 2, 0})) << "what gains most, then what is news";
-  EXPECT_EQ(order_of_judging({{1, true, true, 20}, {1, true, false, 10}, {1, true, true, 5}}),
-            (std::vector<int>{0, 2, 1}));
-  EXPECT_EQ(order_of_judging({}), std::vector<int>());
+  EXPECT_EQ(order_of_judging(fitted, 1), (std::vector<int>{1, 3, 2, 0})) << "what gains most, then what is news";
+  const std::vector<FittedEvidence> four = {
+      {1, true, true, 20}, {1, true, false, 15}, {1, true, false, 10}, {1, true, true, 5}};
+  EXPECT_EQ(order_of_judging(four, 1), (std::vector<int>{0, 3, 1, 2}));
+  EXPECT_EQ(order_of_judging(four, 2), (std::vector<int>{0, 1, 3, 2})) << "a twin that gains nearly as much";
+  EXPECT_EQ(order_of_judging(four, 9), (std::vector<int>{0, 1, 2, 3}));
   JudgingBudget budget(2, 2);
   EXPECT_TRUE(budget.takes(fitted[3]));
   EXPECT_FALSE(budget.takes({1, true, true, 0})) << "not worth its numbers";
