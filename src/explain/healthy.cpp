@@ -308,7 +308,8 @@ HealthyReference score_healthy(const std::vector<Log>& own, const Table& tuned, 
 }
 
 int HealthyReference::promising() const {
-  return static_cast<int>(std::count_if(logs.begin(), logs.end(), [](const HealthyLog& l) { return !l.other; }));
+  return static_cast<int>(
+      std::count_if(logs.begin(), logs.end(), [](const HealthyLog& l) { return !l.other && !l.lost; }));
 }
 
 KnownRig HealthyReference::known(int left_out) const {
@@ -332,7 +333,7 @@ double excess_of(double share) { return -std::log(std::max(explain_constants::al
 std::vector<ExcessAt> best_shares(const HealthyReference& reference) {
   std::vector<ExcessAt> out;
   for (const HealthyLog& l : reference.logs) {
-    if (!l.has_shares) continue;
+    if (!l.has_shares || l.lost) continue;
     double best = 0;
     for (const HealthyShare& s : l.shares) best = std::max(best, s.share);
     out.push_back({excess_of(best), l.scores.empty() ? std::nan("") : l.scores.front().thickness});
@@ -457,7 +458,8 @@ double chance_above(const std::vector<double>& healthy, double value) {
 
 double HealthyTest::adequacy(double value) const {
   std::vector<double> healthy;
-  for (const HealthyLog& l : reference_.logs) healthy.push_back(l.adequacy);
+  for (const HealthyLog& l : reference_.logs)
+    if (!l.lost) healthy.push_back(l.adequacy);
   return chance_above(healthy, value);
 }
 
@@ -471,7 +473,7 @@ double HealthyTest::miss(const Miss& part) const {
   std::vector<double> healthy;
   for (const HealthyLog& l : reference_.logs)
     for (const Miss& m : l.misses)
-      if (m.part == part.part) healthy.push_back(m.size);
+      if (!l.lost && m.part == part.part) healthy.push_back(m.size);
   return chance_above(healthy, part.size);
 }
 

@@ -49,7 +49,8 @@ struct HealthyShare {
 };
 struct HealthyLog {
   std::string log, sha256;
-  bool other = false;                  // of another test than the baseline's own, or one that tuned: promises no rate
+  bool other = false;  // of another test than the baseline's own, or one that tuned: promises no rate
+  bool lost = false;   // the model does not follow it, nor is it of a suspect's test (kin.h): it tells sizes alone
   std::optional<TestConditions> test;  // files of earlier versions have none
   double adequacy = 1;                 // misfit over independent samples, re-tuned
   std::vector<HealthyScore> scores;
@@ -64,7 +65,7 @@ struct HealthyLog {
 struct HealthyReference {
   std::vector<HealthyLog> logs;
   bool empty() const { return logs.empty(); }
-  int promising() const;  // logs: all but the others
+  int promising() const;  // logs: all but the others and the lost
   KnownRig known(int left_out = -1) const;
 };
 

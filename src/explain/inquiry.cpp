@@ -56,9 +56,9 @@ Inquiry::Inquiry(const std::vector<Log>& logs, const Table& tuned, const RigFile
   if (healthy) {
     std::vector<TestConditions> tests;
     for (const Log& log : logs) tests.push_back(conditions_of(log));
-    const HealthyReference followed = followed_or_alike(*healthy, tests);
-    speaking_ = logs_that_speak(followed, tests);
-    healthy_logs_ = followed.promising();
+    const HealthyReference marked = with_lost_marked(*healthy, tests);
+    speaking_ = logs_that_speak(marked, tests);
+    healthy_logs_ = marked.promising();
     test_.emplace(speaking_.logs, subject_.thickness());
   }
   if (healthy && logs.size() > 1)

@@ -15,17 +15,17 @@ bool is_followed(const HealthyLog& log) {
 
 }  // namespace
 
-HealthyReference followed_or_alike(const HealthyReference& all, const std::vector<TestConditions>& suspects) {
-  HealthyReference out;
-  std::vector<TestConditions> tests;
-  for (const HealthyLog& log : all.logs) {
+HealthyReference with_lost_marked(const HealthyReference& all, const std::vector<TestConditions>& suspects) {
+  HealthyReference out = all;
+  std::vector<TestConditions> others;
+  for (HealthyLog& log : out.logs) {
     if (!log.test) return all;
     const bool alike = std::any_of(suspects.begin(), suspects.end(),
                                    [&](const TestConditions& test) { return distance(*log.test, test) <= 1; });
-    if (!alike && !is_followed(log)) continue;
-    out.logs.push_back(log), tests.push_back(*log.test);
+    log.lost = !alike && !is_followed(log);
+    if (!log.lost) others.push_back(*log.test);
   }
-  return show_scatter_of_tests(tests) ? out : all;
+  return show_scatter_of_tests(others) ? out : all;
 }
 
 SpeakingLogs logs_that_speak(const HealthyReference& all, const std::vector<TestConditions>& suspects) {

@@ -2,7 +2,8 @@
 //
 // How sizes and misfits scatter from test to test is seen on logs of different tests only. Repeats of one test say how
 // that test scatters, and of another test they say as much as one log. A log that the model does not follow says what
-// the model has wrong in tests like its own, and nothing of others: `diagnose` has the same rule (healthy_law.h).
+// the model has wrong in tests like its own: of others it tells how sizes scatter, and not how much is wrong or can be
+// removed. `diagnose` has the same rule (healthy_law.h).
 #pragma once
 #include <vector>
 
@@ -11,9 +12,9 @@
 
 namespace servodx {
 
-// Those that the model follows, and those of tests like a suspect's. All, where the rest are of too few tests to show
-// how sizes scatter.
-HealthyReference followed_or_alike(const HealthyReference& all, const std::vector<TestConditions>& suspects);
+// The same logs, with those marked as lost that the model does not follow and that are of no test like a suspect's.
+// None, where the rest are of too few tests to show how misfits scatter.
+HealthyReference with_lost_marked(const HealthyReference& all, const std::vector<TestConditions>& suspects);
 
 struct SpeakingLogs {
   HealthyReference logs;

@@ -222,6 +222,32 @@ TEST(Healthy, AShareOfTheMisfitIsJudgedInTheSuspectsOil) {
   EXPECT_GE(HealthyTest(reference).share(0.5), 2.0 / 9) << "without a temperature all logs are alike";
 }
 
+// A lost log tells how sizes scatter, and neither what is left nor what a cause removes.
+TEST(Healthy, ALostLogSetsNoShareAndNoMisfit) {
+  HealthyReference reference;
+  for (int i = 0; i < 12; ++i) {
+    const bool wrong = i > 6;
+    HealthyLog log;
+    log.adequacy = (wrong ? 20 : 1) * (1 + 0.1 * i);
+    log.misses.push_back({"flow", log.adequacy});
+    log.scores.push_back({"cause", "here", {{0.1 * i, 1}}, 0});
+    log.shares.push_back({"cause", "here", wrong ? 0.6 : 0.05, 0, 1}), log.has_shares = true;
+    reference.logs.push_back(log);
+  }
+  const HealthyTest with(reference);
+  HealthyReference marked = reference;
+  for (HealthyLog& log : marked.logs) log.lost = log.adequacy > 4;
+  const HealthyTest without(marked);
+  EXPECT_GE(with.share(0.5), 6.0 / 13);
+  EXPECT_LT(without.share(0.5), 0.02);
+  EXPECT_GT(with.adequacy(6), 0.05);
+  EXPECT_LT(without.adequacy(6), 0.01);
+  EXPECT_GT(with.miss({"flow", 6}), 0.05);
+  EXPECT_LT(without.miss({"flow", 6}), 0.01);
+  const HealthyScore three{"cause", "here", {{3, 1}}, 0};
+  EXPECT_EQ(without.alone({three}), with.alone({three}));
+}
+
 TEST(Healthy, TooFewLogsAccuseNoOne) {
   HealthyReference two;
   Random random(46, 1);
