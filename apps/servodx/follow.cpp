@@ -15,7 +15,10 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <string>
+#include <system_error>
 #include <utility>
+#include <vector>
 
 #include "base/byte_tail.h"
 #include "base/csv.h"
@@ -28,10 +31,7 @@
 #include "online/constants.h"
 #include "online/watched_model.h"
 #include "online/watcher.h"
-#include "report/diagnose/diagnosis_json.h"
-#include "report/diagnose/diagnosis_text.h"
 #include "report/shared/json.h"
-#include "report/shared/text_options.h"
 #include "report/watch/watch_events.h"
 #include "servodx/baseline.h"
 #include "servodx/diagnose.h"
@@ -49,7 +49,7 @@ constexpr double state_every = 1.0;           // [s] of the wall's clock
 constexpr double longest_wait = 0.05;         // [s] a signal is answered within it
 constexpr double mark_every = 0.25;           // [s] of the log, between places that the window may be read again from
 constexpr std::size_t most_in_result = 1000;  // events in the result file: memory does not grow
-constexpr double no_time_yet = 1e300;         // [s] later than any sample
+constexpr double end_of_time = 1e300, nothing_remembered = -end_of_time;  // [s] after and before any sample
 
 double wall_now() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
 
@@ -85,9 +85,9 @@ WindowDiagnoses::Judge judge_by(const Judging& judging, const CommonOptions& com
 }
 
 // Where events go: the result, standard output, and a file that begins with the first sample.
-class Told {
+class EventOutput {
  public:
-  Told(const std::string& file, bool prints) : file_(file), prints_(prints) {}
+  EventOutput(const std::string& file, bool prints) : file_(file), prints_(prints) {}
 
   void open() {
     if (stream_.is_open() || file_.empty() || is_standard_stream(file_)) return;
@@ -116,7 +116,7 @@ class Told {
 };
 
 // From which byte a log is read again to have a time in it.
-class Places {
+class ReadMarks {
  public:
   void begin(double time, std::uint64_t byte) {
     if (marks_.empty()) marks_.push_back({time, byte});
@@ -146,7 +146,7 @@ class Following {
         progress_("watch", {.quiet = common.quiet}),
         log_(options.source, judging.rig),
         diagnoses_(judge_by(judging, common, stop_)),
-        told_(options.events, prints) {}
+        events_(options.events, prints) {}
 
   void go() {
     std::uint64_t from = read_state();
@@ -172,21 +172,15 @@ class Following {
   long alarms() const { return alarms_; }
   bool was_stopped() const { return stop_; }
   Verdict::Kind worst() const { return worst_; }
-  report::Json result() const {
-    report::Json out{{"source", options_.source}, {"alarms", alarms_}, {"seconds_of_log", seconds_}};
-    const ArrivalCounts counts = watcher_ ? watcher_->counts() : ArrivalCounts{};
-    out["samples"] = {
-        {"taken", counts.taken}, {"late", counts.late}, {"repeated", counts.repeated}, {"bad_lines", log_.bad_lines()}};
-    out["limits"] = report::to_json(limits_);
-    out["events"] = told_.events();
-    out["events_left_out"] = told_.left_out();
-    return out;
+  report::WatchSummary summary() const {
+    return {options_.source, seconds_, alarms_, watcher_ ? watcher_->counts() : ArrivalCounts{}, log_.bad_lines()};
   }
-  std::string text() const {
-    const ArrivalCounts counts = watcher_ ? watcher_->counts() : ArrivalCounts{};
-    return fmt::format("watched {:.1f} s of {}: {} alarm{}; {} samples, {} late, {} repeated, {} lines passed over\n",
-                       seconds_, options_.source, alarms_, alarms_ == 1 ? "" : "s", counts.taken, counts.late,
-                       counts.repeated, log_.bad_lines());
+  report::Json result() const {
+    report::Json out = report::to_json(summary());
+    out["limits"] = report::to_json(limits_);
+    out["events"] = events_.events();
+    out["events_left_out"] = events_.left_out();
+    return out;
   }
 
  private:
@@ -197,19 +191,19 @@ class Following {
       return make_due_until(sample.time);
     }
     make_due_until(sample.time);
-    remembered_until_ = -no_time_yet;
+    remembered_until_ = nothing_remembered;
     first_time_ = std::min(first_time_, sample.time);
-    places_.begin(sample.time, end);
+    marks_.begin(sample.time, end);
     const double before = watcher_->time();
     new_events_.clear();
     watcher_->take(sample, new_events_);
     if (watcher_->time() > before) {
       judged_end_ = end;
       seconds_ = watcher_->time() - first_time_;
-      places_.pass(watcher_->time(), end);
+      marks_.pass(watcher_->time(), end);
       double needed = watcher_->window_begins();
       for (const DueWindow& due : diagnoses_.due()) needed = std::min(needed, due.begins);
-      places_.forget_before(needed);
+      marks_.forget_before(needed);
     }
     for (const WatchEvent& e : new_events_) tell(e);
   }
@@ -232,7 +226,7 @@ class Following {
   }
 
   void make_watcher() {
-    told_.open();
+    events_.open();
     std::vector<Signal> recorded;
     for (int i = 0; i < n_signals; ++i)
       if (const auto s = static_cast<Signal>(i); s != Signal::time && log_.has(s)) recorded.push_back(s);
@@ -244,13 +238,15 @@ class Following {
     progress_.say("watch: " + options_.source + " began anew");
     forget();
   }
-  // Another log stands under this name: nothing of the first one is true of it, but its alarms were told.
+  // Another log stands under this name. What was told of the first one stays told.
   void forget() {
     watcher_.reset();
+    diagnoses_.drop_waiting();
     resumed_ = nlohmann::json();
     resumed_due_.clear();
-    places_.clear();
-    remembered_until_ = -no_time_yet, first_time_ = no_time_yet;
+    marks_.clear();
+    remembered_until_ = nothing_remembered, first_time_ = end_of_time;
+    judged_end_ = 0, seconds_ = 0;
     log_ = GrowingLog(options_.source, judging_.rig);
   }
 
@@ -262,26 +258,18 @@ class Following {
       add_diagnosis({e.number, watcher_->window_begins(), e.time}, watcher_->window());
       return;
     }
-    told_.tell(report::to_json(e), report::text_of(e));
+    events_.tell(report::to_json(e), report::text_of(e));
   }
 
   void tell(const WindowDiagnoses::Done& done) {
-    report::Json out{{"number", done.due.of}, {"event", "diagnosis"}};
-    std::string text;
-    if (done.verdict) {
-      const Verdict& v = *done.verdict;
-      out["result"] = report::to_json(*v.whole);
-      const std::string words = report::text_of(*v.whole, {.colour = false, .written_to = ""});
-      text = words.substr(0, words.find('\n'));
-      if (v.kind == Verdict::Kind::fault) worst_ = Verdict::Kind::fault;
-    } else if (!done.refused.empty()) {
-      out["refused"] = done.refused;
-      text = "no diagnosis: " + done.refused;
-    } else {
+    if (!done.verdict && done.refused.empty()) {  // stopped: a later call makes it
       resumed_due_.push_back(done.due);
       return;
     }
-    told_.tell(out, text);
+    if (done.verdict && done.verdict->kind == Verdict::Kind::fault) worst_ = Verdict::Kind::fault;
+    const report::WindowDiagnosis diagnosis{done.due.of, done.verdict ? done.verdict->whole.get() : nullptr,
+                                            done.refused};
+    events_.tell(report::to_json(diagnosis), report::text_of(diagnosis));
   }
 
   void show() {
@@ -295,7 +283,7 @@ class Following {
         throw InputError({.file = "standard input"}, log_.begun() ? "has no rows" : "has no header row",
                          "send a log: a header of names and units, then its rows");
       if (watcher_) {
-        make_due_until(no_time_yet);
+        make_due_until(end_of_time);
         new_events_.clear();
         // The state is that of whole parts: what is added to the log later goes on from there.
         const nlohmann::json whole_parts = options_.state.empty() ? nlohmann::json() : watcher_->state();
@@ -320,7 +308,7 @@ class Following {
     if (options_.state.empty()) return;
     FollowState state{.head = log_.head(),
                       .judged_until = judged_end_,
-                      .window_from = places_.first_or(judged_end_),
+                      .window_from = marks_.first_or(judged_end_),
                       .first_time = first_time_,
                       .alarms = alarms_,
                       .due = {},
@@ -343,11 +331,11 @@ class Following {
     seconds_ = remembered_until_ - first_time_;
     resumed_due_.assign(state->due.begin(), state->due.end());
     if (is_standard_stream(options_.source)) {  // what was read once does not come again
-      remembered_until_ = -no_time_yet;
+      remembered_until_ = nothing_remembered;
       return 0;
     }
     log_.begin_with(state->head, state->window_from);
-    places_.begin(-no_time_yet, state->window_from);
+    marks_.begin(nothing_remembered, state->window_from);
     return state->window_from;
   }
 
@@ -362,12 +350,12 @@ class Following {
   WindowDiagnoses diagnoses_;
   std::unique_ptr<Watcher> watcher_;
   std::vector<WatchEvent> new_events_;
-  Told told_;
+  EventOutput events_;
   nlohmann::json resumed_;
   std::deque<DueWindow> resumed_due_;
-  double remembered_until_ = -no_time_yet, first_time_ = no_time_yet, seconds_ = 0;  // [s]
-  std::uint64_t judged_end_ = 0;                                                     // bytes
-  Places places_;
+  double remembered_until_ = nothing_remembered, first_time_ = end_of_time, seconds_ = 0;  // [s]
+  std::uint64_t judged_end_ = 0;                                                           // bytes
+  ReadMarks marks_;
   long alarms_ = 0;
   Verdict::Kind worst_ = Verdict::Kind::healthy;
 };
@@ -396,7 +384,7 @@ int follow(const FollowOptions& options, const CommonOptions& common) {
                                           watched_model(judging.tuned.table, judging.rig), options.alarms_per_hour);
   Following following(options, common, judging, limits, invocation.prints_text());
   following.go();
-  invocation.finish(is_standard_stream(options.events) ? "" : following.text(), following.result());
+  invocation.finish(is_standard_stream(options.events) ? "" : report::text_of(following.summary()), following.result());
   if (following.was_stopped()) return interrupted;
   if (!options.exit_code) return ran;
   return following.worst() == Verdict::Kind::fault     ? found_fault

@@ -5,6 +5,7 @@
 #include <future>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "servodx/diagnose.h"
@@ -23,13 +24,15 @@ class WindowDiagnoses {
   // Called on another thread. Nothing: it was stopped, and the window is still due.
   using Judge = std::function<std::optional<Verdict>(const Log& window)>;
   explicit WindowDiagnoses(Judge judge) : judge_(std::move(judge)) {}
-
   struct Done {
     DueWindow due;
     std::optional<Verdict> verdict = {};
     std::string refused = {};  // why there is no verdict; empty without one: it was stopped
   };
+  WindowDiagnoses(const WindowDiagnoses&) = delete;  // the running one holds it
+  WindowDiagnoses& operator=(const WindowDiagnoses&) = delete;
   void add(const DueWindow& due, Log window);
+  void drop_waiting() { waiting_.clear(); }
   std::vector<DueWindow> due() const;
   std::optional<Done> next_if_ready();
   std::optional<Done> wait_for_next();  // nothing: none is due

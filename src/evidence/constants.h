@@ -20,8 +20,9 @@ inline constexpr double same_size = 1.15, same_band = 1.3;  // ratios
 inline constexpr double like_supply = 0.05, like_return_part = 0.5, like_return = 3e5;  // of it; of it; [Pa]
 inline constexpr double like_size = 0.5;                                                // of the largest
 
-// Times as wrong as usual: three quarters of the squared error is nothing that tuning knew, and the model does not
-// follow the log (diagnose/healthy_law.cpp, explain/kin.cpp).
+// Times as wrong as usual, beyond which the model does not follow a log: three quarters of the squared error is then
+// nothing that tuning knew. Usual is the worst channel on the logs that tuned (diagnose/healthy_law.cpp), or all
+// channels on the other healthy logs (explain/kin.cpp).
 inline constexpr double followed_adequacy = 2.0;
 
 // How healthy logs scatter (log_scatter.cpp).

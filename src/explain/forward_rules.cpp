@@ -64,7 +64,8 @@ std::vector<int> order_of_judging(const std::vector<FittedEvidence>& fitted, int
   });
   for (auto first = order.begin(); first != order.end();) {
     const auto end = std::find_if(first, order.end(), [&](int i) { return of(i).prior != of(*first).prior; });
-    if (end - first > leading) std::stable_partition(first + leading, end, [&](int i) { return of(i).news_by_itself; });
+    const int leads = is_rare(of(*first).prior) ? leading / rare_share : leading;
+    if (end - first > leads) std::stable_partition(first + leads, end, [&](int i) { return of(i).news_by_itself; });
     first = end;
   }
   return order;

@@ -59,8 +59,8 @@ struct FittedEvidence {
   bool is_new = false, news_by_itself = false;
   double delta_bic = 0;  // positive: worth its numbers
 };
-// Positions, in order of judging: the commoner first; of these the `leading` that gain most, whether their sizes are news
-// or not, as a better answer would gain more; then what is news by itself; then by what they gain.
+// Positions, in order of judging: the commoner first; of these the `leading` that gain most (of the rare half as many),
+// be their sizes news or not, as a better answer would gain more; then what is news by itself; then by what they gain.
 std::vector<int> order_of_judging(const std::vector<FittedEvidence>& fitted, int leading);
 // Whether each is judged on held-out data, asked in order of judging.
 class JudgingBudget {

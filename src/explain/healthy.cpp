@@ -308,8 +308,7 @@ HealthyReference score_healthy(const std::vector<Log>& own, const Table& tuned, 
 }
 
 int HealthyReference::promising() const {
-  return static_cast<int>(
-      std::count_if(logs.begin(), logs.end(), [](const HealthyLog& l) { return !l.other && !l.lost; }));
+  return static_cast<int>(std::count_if(logs.begin(), logs.end(), [](const HealthyLog& l) { return !l.other; }));
 }
 
 KnownRig HealthyReference::known(int left_out) const {
@@ -333,7 +332,7 @@ double excess_of(double share) { return -std::log(std::max(explain_constants::al
 std::vector<ExcessAt> best_shares(const HealthyReference& reference) {
   std::vector<ExcessAt> out;
   for (const HealthyLog& l : reference.logs) {
-    if (!l.has_shares || l.lost) continue;
+    if (!l.has_shares || l.sets_no_share) continue;
     double best = 0;
     for (const HealthyShare& s : l.shares) best = std::max(best, s.share);
     out.push_back({excess_of(best), l.scores.empty() ? std::nan("") : l.scores.front().thickness});
@@ -456,13 +455,6 @@ double chance_above(const std::vector<double>& healthy, double value) {
 
 }  // namespace
 
-double HealthyTest::adequacy(double value) const {
-  std::vector<double> healthy;
-  for (const HealthyLog& l : reference_.logs)
-    if (!l.lost) healthy.push_back(l.adequacy);
-  return chance_above(healthy, value);
-}
-
 double HealthyTest::share(double of_misfit) const { return shares_.law.chance(excess_of(of_misfit) / shares_.scale); }
 
 int HealthyTest::logs_needed(double share, double asked) const {
@@ -473,7 +465,7 @@ double HealthyTest::miss(const Miss& part) const {
   std::vector<double> healthy;
   for (const HealthyLog& l : reference_.logs)
     for (const Miss& m : l.misses)
-      if (!l.lost && m.part == part.part) healthy.push_back(m.size);
+      if (m.part == part.part) healthy.push_back(m.size);
   return chance_above(healthy, part.size);
 }
 

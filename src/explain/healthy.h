@@ -49,8 +49,8 @@ struct HealthyShare {
 };
 struct HealthyLog {
   std::string log, sha256;
-  bool other = false;  // of another test than the baseline's own, or one that tuned: promises no rate
-  bool lost = false;   // the model does not follow it, nor is it of a suspect's test (kin.h): it tells sizes alone
+  bool other = false;                  // of another test than the baseline's own, or one that tuned: promises no rate
+  bool sets_no_share = false;          // the model follows tests like the suspects', and not this one (kin.h)
   std::optional<TestConditions> test;  // files of earlier versions have none
   double adequacy = 1;                 // misfit over independent samples, re-tuned
   std::vector<HealthyScore> scores;
@@ -65,7 +65,7 @@ struct HealthyLog {
 struct HealthyReference {
   std::vector<HealthyLog> logs;
   bool empty() const { return logs.empty(); }
-  int promising() const;  // logs: all but the others and the lost
+  int promising() const;  // logs: all but the others
   KnownRig known(int left_out = -1) const;
 };
 
@@ -108,8 +108,6 @@ class HealthyTest {
   // The same with all causes counted together: how small the smallest of a healthy log's chances is, is learnt from the
   // healthy logs themselves, each against the others: -ln(1 - p) is taken as exponential, its predictive is Lomax's.
   double together(double alone) const;
-  // Chance that a healthy log is left with as much misfit.
-  double adequacy(double value) const;
   // How far a size of this cause lies from none on healthy logs, and what a log with this standard error scatters
   // beyond it: root of the sum of squares; 0 where fewer than three speak of it. [of the probe]
   double spread(const HealthyScore& of, std::size_t probe) const;

@@ -56,9 +56,8 @@ Inquiry::Inquiry(const std::vector<Log>& logs, const Table& tuned, const RigFile
   if (healthy) {
     std::vector<TestConditions> tests;
     for (const Log& log : logs) tests.push_back(conditions_of(log));
-    const HealthyReference marked = with_lost_marked(*healthy, tests);
-    speaking_ = logs_that_speak(marked, tests);
-    healthy_logs_ = marked.promising();
+    speaking_ = logs_that_speak(shares_marked(*healthy, tests), tests);
+    healthy_logs_ = healthy->promising();
     test_.emplace(speaking_.logs, subject_.thickness());
   }
   if (healthy && logs.size() > 1)

@@ -54,8 +54,9 @@ inline auto fields(HealthyShare& s) {
   auto& [effect, where, share, lower, prior] = s;
   return std::tie(effect, where, share, lower, prior);
 }
-inline auto fields(HealthyLog& l) {  // whether it is lost depends on the suspect, and is not kept
-  auto& [log, sha256, other, lost, test, adequacy, scores, misses, shares, has_shares, errors, air, slope, delay] = l;
+inline auto fields(HealthyLog& l) {  // sets_no_share goes by the suspects: not kept
+  auto& [log, sha256, other, sets_no_share, test, adequacy, scores, misses, shares, has_shares, errors, air, slope,
+         delay] = l;
   return std::tie(log, sha256, other, test, adequacy, scores, misses, shares, has_shares, errors, air, slope, delay);
 }
 inline auto fields(MissingInput& m) {

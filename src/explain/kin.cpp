@@ -13,19 +13,21 @@ bool is_followed(const HealthyLog& log) {
   return log.adequacy <= followed_adequacy * followed_adequacy;  // its is of squares
 }
 
+bool is_alike(const HealthyLog& log, const TestConditions& test) { return log.test && distance(*log.test, test) <= 1; }
+
 }  // namespace
 
-HealthyReference with_lost_marked(const HealthyReference& all, const std::vector<TestConditions>& suspects) {
+HealthyReference shares_marked(const HealthyReference& all, const std::vector<TestConditions>& suspects) {
+  const auto is_known = [&](const TestConditions& test) {
+    return std::any_of(all.logs.begin(), all.logs.end(),
+                       [&](const HealthyLog& log) { return is_followed(log) && is_alike(log, test); });
+  };
   HealthyReference out = all;
-  std::vector<TestConditions> others;
-  for (HealthyLog& log : out.logs) {
-    if (!log.test) return all;
-    const bool alike = std::any_of(suspects.begin(), suspects.end(),
-                                   [&](const TestConditions& test) { return distance(*log.test, test) <= 1; });
-    log.lost = !alike && !is_followed(log);
-    if (!log.lost) others.push_back(*log.test);
-  }
-  return show_scatter_of_tests(others) ? out : all;
+  if (!std::all_of(suspects.begin(), suspects.end(), is_known)) return out;
+  for (HealthyLog& log : out.logs)
+    log.sets_no_share = !is_followed(log) && std::none_of(suspects.begin(), suspects.end(),
+                                                          [&](const auto& test) { return is_alike(log, test); });
+  return out;
 }
 
 SpeakingLogs logs_that_speak(const HealthyReference& all, const std::vector<TestConditions>& suspects) {

@@ -1,9 +1,8 @@
 // Which healthy logs speak of a suspect: like with like, where there is like.
 //
 // How sizes and misfits scatter from test to test is seen on logs of different tests only. Repeats of one test say how
-// that test scatters, and of another test they say as much as one log. A log that the model does not follow says what
-// the model has wrong in tests like its own: of others it tells how sizes scatter, and not how much is wrong or can be
-// removed. `diagnose` has the same rule (healthy_law.h).
+// that test scatters, and of another test they say as much as one log. Where the model follows tests like the
+// suspects', a log that it does not follow says how much a cause removes of its own kind, and of theirs nothing.
 #pragma once
 #include <vector>
 
@@ -12,9 +11,9 @@
 
 namespace servodx {
 
-// The same logs, with those marked as lost that the model does not follow and that are of no test like a suspect's.
-// None, where the rest are of too few tests to show how misfits scatter.
-HealthyReference with_lost_marked(const HealthyReference& all, const std::vector<TestConditions>& suspects);
+// The same logs, with those marked that set no share beside these suspects. None, where some suspect is of a test that
+// no healthy log shows to be followed: it may be as little.
+HealthyReference shares_marked(const HealthyReference& all, const std::vector<TestConditions>& suspects);
 
 struct SpeakingLogs {
   HealthyReference logs;

@@ -97,6 +97,9 @@ TEST(ForwardRules, TheCommonerIsJudgedFirstAndEachKindHasItsShare) {
   EXPECT_EQ(order_of_judging(four, 1), (std::vector<int>{0, 3, 1, 2}));
   EXPECT_EQ(order_of_judging(four, 2), (std::vector<int>{0, 1, 3, 2})) << "a twin that gains nearly as much";
   EXPECT_EQ(order_of_judging(four, 9), (std::vector<int>{0, 1, 2, 3}));
+  const std::vector<FittedEvidence> rare = {
+      {0.1, true, false, 9}, {1, true, false, 5}, {0.1, true, false, 8}, {0.1, true, true, 7}};
+  EXPECT_EQ(order_of_judging(rare, 2), (std::vector<int>{1, 0, 3, 2})) << "of the rare one leads";
   JudgingBudget budget(2, 2);
   EXPECT_TRUE(budget.takes(fitted[3]));
   EXPECT_FALSE(budget.takes({1, true, true, 0})) << "not worth its numbers";

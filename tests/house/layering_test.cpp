@@ -220,7 +220,7 @@ const std::map<std::string, Besides> program_besides = {
     {"compare_command.cpp", {{"store/result_json.h"}, "results are read back as JSON, which the door does not hold"}},
     {"diagnose_command.cpp", {{"store/verdict_file.h"}, "the last test's verdict is read back as JSON"}},
     {"follow.cpp",
-     {{"online", "signals/growing_log.h", "signals/sample.h", "faults/gross_finding.h"},
+     {{"online", "signals/growing_log.h", "signals/sample.h"},
       "the watch of a log that grows is not on the door yet: its state is JSON"}},
     {"list_run.h",
      {{"fleet"}, "a run over a list and its folder of results are the program's own: fleet is base alone"}},

@@ -6,6 +6,9 @@
 
 #include "faults/gross_finding.h"
 #include "online/constants.h"
+#include "report/diagnose/diagnosis_json.h"
+#include "report/diagnose/diagnosis_text.h"
+#include "report/shared/text_options.h"
 #include "servodx/log.h"
 
 namespace servodx::report {
@@ -46,10 +49,13 @@ std::string source_of(Signal signal) {
   return signal == Signal::coil_current ? "driver" : std::string(name_of(signal));
 }
 
-std::string what_alarmed(const WatchEvent& e) {
-  if (e.gross != GrossFinding::none) return word_of(e.gross);
-  if (e.supply) return fmt::format("supply_pressure {:.3g} bar from its healthy level", e.level * 1e-5);
-  return fmt::format("{} {:.3g} times its limit", e.signal ? source_of(*e.signal) : "", e.level / e.limit);
+// What needs no model is seen over a window of its own, whose start says nothing of when it began.
+std::string alarm_in_words(const WatchEvent& e, const std::string& name) {
+  if (e.gross != GrossFinding::none) return fmt::format("{}: looks like {}", word_of(e.gross), name);
+  if (e.supply)
+    return fmt::format("supply_pressure {:.3g} bar from its healthy level: looks like {}", e.level * 1e-5, name);
+  return fmt::format("{} {:.3g} times its limit: looks like {}, since {:.3f} s", e.signal ? source_of(*e.signal) : "",
+                     e.level / e.limit, name, e.onset);
 }
 
 }  // namespace
@@ -58,7 +64,7 @@ std::string text_of(const WatchEvent& e) {
   const std::string name = e.name.empty() ? "no fault of the list" : e.name;
   switch (e.kind) {
     case WatchEventKind::alarm:
-      return fmt::format("{:.3f} s: ALARM, {}: looks like {}, since {:.3f} s", e.time, what_alarmed(e), name, e.onset);
+      return fmt::format("{:.3f} s: ALARM, {}", e.time, alarm_in_words(e, name));
     case WatchEventKind::named:
       return fmt::format("{:.3f} s: now looks like {}", e.time, name);
     case WatchEventKind::cleared:
@@ -96,6 +102,38 @@ Json to_json(const WatchLimits& limits) {
   if (const auto& s = limits.supply)
     out["supply"] = {{"level", s->level}, {"limit", s->limit}, {"healthy", s->healthy}, {"unit", "Pa"}};
   return out;
+}
+
+std::string text_of(const WindowDiagnosis& d) {
+  if (!d.verdict) return "no diagnosis: " + d.refused;
+  const std::string words = text_of(*d.verdict, {.colour = false, .written_to = ""});
+  return words.substr(0, words.find('\n'));
+}
+
+Json to_json(const WindowDiagnosis& d) {
+  Json out{{"number", d.number}, {"event", "diagnosis"}};
+  if (d.verdict)
+    out["result"] = to_json(*d.verdict);
+  else
+    out["refused"] = d.refused;
+  return out;
+}
+
+std::string text_of(const WatchSummary& s) {
+  return fmt::format("watched {:.1f} s of {}: {} alarm{}; {} samples, {} late, {} repeated, {} lines passed over\n",
+                     s.seconds, s.source, s.alarms, s.alarms == 1 ? "" : "s", s.samples.taken, s.samples.late,
+                     s.samples.repeated, s.bad_lines);
+}
+
+Json to_json(const WatchSummary& s) {
+  return {{"source", s.source},
+          {"alarms", s.alarms},
+          {"seconds_of_log", s.seconds},
+          {"samples",
+           {{"taken", s.samples.taken},
+            {"late", s.samples.late},
+            {"repeated", s.samples.repeated},
+            {"bad_lines", s.bad_lines}}}};
 }
 
 }  // namespace servodx::report
