@@ -321,10 +321,19 @@ class Following {
     write_follow_state(options_.state, by_, state);
   }
 
+  // Than what was judged of it: another log of its name.
+  bool is_shorter_than(std::uint64_t judged) {
+    std::error_code absent;
+    const auto size = std::filesystem::file_size(options_.source, absent);
+    if (is_standard_stream(options_.source) || absent || size >= judged) return false;
+    progress_.say("watch: " + options_.source + " is shorter than what was judged of it: it is watched as another log");
+    return true;
+  }
+
   // Where to read on from.
   std::uint64_t read_state() {
     const auto state = options_.state.empty() ? std::nullopt : read_follow_state(options_.state, by_);
-    if (!state) return 0;
+    if (!state || is_shorter_than(state->judged_until)) return 0;
     resumed_ = state->watcher;
     remembered_until_ = resumed_.at("last");
     first_time_ = state->first_time, alarms_ = state->alarms, judged_end_ = state->judged_until;

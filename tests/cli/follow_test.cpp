@@ -142,6 +142,24 @@ TEST(Follow, ADiagnosisThatIsDueIsMadeAfterAKill) {
   EXPECT_TRUE(Json::parse(bytes_of(desk.path / "state.json"))["due"].empty());
 }
 
+TEST(Follow, AShorterLogUnderTheNameOfAStateIsWatchedFromItsBegin) {
+  const FollowDesk desk;
+  const std::string whole = bytes_of(desk.path / "whole.csv");
+  desk.write("log.csv", whole);
+  const auto watch = [&](const std::string& more) {
+    const Ended ended = desk.run("watch --follow log.csv --until-idle 0.2 --json -" + FollowDesk::with(more));
+    EXPECT_EQ(ended.code, 0) << ended.err;
+    return Json::parse(ended.out);
+  };
+  EXPECT_EQ(watch("--state state.json")["samples"]["taken"], FollowDesk::rows);
+  EXPECT_EQ(watch("--state state.json")["samples"]["taken"], FollowDesk::rows) << "none of them twice";
+  desk.write("log.csv", whole.substr(0, whole.rfind('\n', whole.size() * 9 / 10) + 1));
+  const Json anew = watch("--state state.json"), without = watch("");
+  EXPECT_GT(without["samples"]["taken"], FollowDesk::rows / 2);
+  for (const char* part : {"samples", "seconds_of_log", "events", "alarms"})
+    EXPECT_EQ(anew[part], without[part]) << part;
+}
+
 TEST(Follow, StandardInputWithoutALogIsRefused) {
   const FollowDesk desk;
   const auto before = desk.contents();
