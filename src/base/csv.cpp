@@ -341,13 +341,51 @@ Cell CsvCursor::next_odd_number(double& value) {
       (after == end_ || *after == separator_ || *after == '\n' ||
        (*after == '\r' && after + 1 != end_ && after[1] == '\n'))) {
     cell_ = p_;
+    if (point_ == ',') look_for_thousands(p_, after);
     cell_end_ = p_ = after;
     finish_cell();
     return Cell::number;
   }
   std::string text;
   next_cell(text);
-  return parse_cell(text, point_ == ',', value);
+  const Cell kind = parse_cell(text, point_ == ',', value);
+  if (kind == Cell::number && point_ == ',') look_for_thousands(text.data(), text.data() + text.size());
+  return kind;
+}
+
+namespace {
+
+// One to three digits, the first no nought, and then groups of three behind points.
+bool may_be_thousands(std::string_view cell) {
+  while (!cell.empty() && cell.back() == ' ') cell.remove_suffix(1);
+  while (!cell.empty() && (cell.front() == ' ' || cell.front() == '-' || cell.front() == '+')) cell.remove_prefix(1);
+  const auto digits = [&](std::size_t at) {
+    return static_cast<std::size_t>(std::find_if_not(cell.begin() + static_cast<long>(at), cell.end(),
+                                                     [](char c) { return c >= '0' && c <= '9'; }) -
+                                    cell.begin()) -
+           at;
+  };
+  const std::size_t first = digits(0);
+  if (first < 1 || first > 3 || cell.front() == '0' || first == cell.size()) return false;
+  for (std::size_t at = first; at < cell.size(); at += 4)
+    if (cell[at] != '.' || digits(at + 1) != 3) return false;
+  return true;
+}
+
+}  // namespace
+
+void CsvCursor::look_for_thousands(const char* from, const char* to) {
+  const std::string_view row(from, static_cast<std::size_t>(to - from));
+  if (!comma_seen_) comma_seen_ = row.find(',') != std::string_view::npos;
+  if (thousands_.line > 0) return;
+  for (std::size_t at = row.find('.'); at != std::string_view::npos; at = row.find('.', at + 1)) {
+    const std::size_t before = row.find_last_of(separator_, at);
+    const std::size_t begin = before == std::string_view::npos ? 0 : before + 1;
+    const std::string_view cell = row.substr(begin, row.find_first_of(std::string{separator_, '\r', '\n'}, at) - begin);
+    if (!may_be_thousands(cell)) continue;
+    thousands_ = {line_, std::string(cell)};
+    return;
+  }
 }
 
 bool CsvCursor::row_ended_by_file() const {

@@ -4,8 +4,8 @@
 // Reads: separator ',' ';' or tab (the most frequent in the header line), decimal comma in numbers where the separator
 // is ';' or tab, UTF-8 BOM, LF and CRLF, '#' comment lines before the header, blank lines anywhere, RFC 4180 quoted
 // cells (which may hold separators, doubled quotes and line ends). Spaces around a cell are dropped. Words of a header
-// that are no UTF-8 are taken as Latin-1. Leaves out: UTF-16 and what is no text (refused), thousands separators,
-// escapes other than doubled quotes.
+// that are no UTF-8 are taken as Latin-1. Leaves out: UTF-16 and what is no text (refused), escapes other than doubled
+// quotes, thousands separators; points that may be such beside decimal commas are remembered for the caller to refuse.
 //
 // No library: fast-cpp-csv-parser fixes separator and quoting at compile time, parses with its own float loop (not
 // correctly rounded) and throws its own errors, where logs need a sniffed separator and exact round trips.
@@ -27,6 +27,11 @@ class BlockReader;
 std::string read_file(const std::string& path);
 
 enum class Cell { number, missing, text, none };  // missing: empty or NaN; none: the row has no further cell
+
+struct CellAt {
+  long line = 0;
+  std::string text;
+};
 
 class CsvCursor {
  public:
@@ -53,6 +58,7 @@ class CsvCursor {
     if (!in_row_ || !more_) return Cell::none;
     const char* const after = parse_decimal(p_, end_, point_, value);
     if (!after || after == end_ || (*after != separator_ && *after != '\n')) return next_odd_number(value);
+    if (point_ == ',') look_for_thousands(p_, after);
     cell_ = p_;
     cell_end_ = after;
     p_ = after + 1;
@@ -74,6 +80,7 @@ class CsvCursor {
         return false;
       ++p;
     }
+    if (point == ',') look_for_thousands(p_, p);
     cell_ = p_;
     cell_end_ = p - 1;
     p_ = p[-1] == '\r' ? p + 1 : p;
@@ -86,11 +93,14 @@ class CsvCursor {
   bool row_ended_by_file() const;      // after the row's last cell: no line end followed it
   std::size_t bytes_taken() const;     // of the file, up to the cell to come
   std::string last_text() const;       // the cell just read, as written, shortened
+  // The first number whose point may part thousands, such as 57.800, where others have a decimal comma. Null: none.
+  const CellAt* thousands_among_commas() const { return comma_seen_ && thousands_.line > 0 ? &thousands_ : nullptr; }
 
  private:
   void read_header();
   void take_header(char separator);  // 0: the most frequent in its line
   Cell next_odd_number(double& value);
+  void look_for_thousands(const char* from, const char* to);  // numbers of one row
   bool refill();  // more of the file behind what is left; false: there is no more
   bool row_is_whole() const { return p_ < whole_; }
   bool at_row_end() const { return p_ == end_ || *p_ == '\n' || (*p_ == '\r' && (p_ + 1 == end_ || p_[1] == '\n')); }
@@ -110,7 +120,9 @@ class CsvCursor {
   bool in_row_ = false;
   bool more_ = false;  // a further cell follows in this row
   char separator_ = ',';
-  char point_ = '.';  // accepted beside '.'
+  char point_ = '.';         // accepted beside '.'
+  bool comma_seen_ = false;  // in a number
+  CellAt thousands_;         // line 0: none
   long line_ = 0;
   long next_line_ = 1;
   long header_line_ = 0;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <span>
 #include <string_view>
 #include <utility>
 
@@ -85,18 +86,20 @@ std::vector<std::string> words_of(const std::string& written) {
 }
 
 constexpr int by_own_name = 100;  // points: more than any words give
+constexpr int alone = 3;          // points of a name that holds nothing else; odd, as is_whole asks
 
 bool is_ascii(std::string_view text) {
   return std::all_of(text.begin(), text.end(), [](char c) { return static_cast<unsigned char>(c) < 0x80; });
 }
 
-// Two for each word of the pattern if all are there, and one where nothing else is; 0: no match. Chinese has no blanks
+// Two for each word of the pattern if all are there, and three where nothing else is, so that "PA" stands before
+// "Cyl 2 pressure A"; 0: no match. Chinese has no blanks
 // between words: there the pattern is a part of the name, and three letters are as good as a word.
 int match(std::vector<std::string> name, std::string_view pattern) {
   if (!is_ascii(pattern) && pattern.find(' ') == pattern.npos) {
     for (const std::string& word : name)
       if (word.find(pattern) != word.npos)
-        return 2 * (1 + static_cast<int>(pattern.size()) / 9) + (name.size() == 1 && word == pattern);
+        return 2 * (1 + static_cast<int>(pattern.size()) / 9) + (name.size() == 1 && word == pattern ? alone : 0);
     return 0;
   }
   const std::size_t words = name.size();
@@ -109,7 +112,7 @@ int match(std::vector<std::string> name, std::string_view pattern) {
     ++matched;
     pattern.remove_prefix(std::min(blank + 1, pattern.size()));
   }
-  return 2 * matched + (static_cast<std::size_t>(matched) == words);
+  return 2 * matched + (static_cast<std::size_t>(matched) == words ? alone : 0);
 }
 
 bool unit_fits(const std::string& unit, Signal signal) {
@@ -133,6 +136,27 @@ bool is_other(const std::vector<std::string>& name, Signal signal) {
   });
 }
 
+bool holds_any(const std::vector<std::string>& name, std::span<const std::string_view> words) {
+  return std::any_of(words.begin(), words.end(), [&](std::string_view word) { return match(name, word) > 0; });
+}
+
+// "P-T", "A - B": from one port to another.
+bool names_two_ports(std::string_view name) {
+  const auto is_port = [](char c) { return std::string_view("ABPT").find(c) != std::string_view::npos; };
+  const auto is_letter = [](char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0; };
+  for (auto at = name.find('-'); at != name.npos; at = name.find('-', at + 1)) {
+    const std::string_view left = trimmed(name.substr(0, at)), right = trimmed(name.substr(at + 1));
+    const bool ends = !left.empty() && is_port(left.back()) && (left.size() == 1 || !is_letter(left[left.size() - 2]));
+    const bool begins = !right.empty() && is_port(right.front()) && (right.size() == 1 || !is_letter(right[1]));
+    if (ends && begins) return true;
+  }
+  return false;
+}
+
+bool is_measured(Signal signal) {
+  return signal != Signal::command && signal != Signal::coil_current && signal != Signal::setpoint;
+}
+
 struct Match {
   int points;
   std::size_t column;
@@ -144,10 +168,21 @@ struct Match {
 std::vector<Match> matches_of(const std::string& name, const std::string& unit, std::size_t column) {
   std::vector<Match> matches;
   const std::vector<std::string> words = words_of(name);
-  for (const SignalWords& known : signal_words())
-    if (const int points = match(words, known.words);
-        points > 0 && unit_fits(unit, known.signal) && !is_other(words, known.signal))
-      matches.push_back({points, column, known.signal, known.weak});
+  const bool demand = holds_any(words, demand_words());
+  const bool difference = holds_any(words, difference_words()) || names_two_ports(name);
+  bool of_spool = false;
+  for (const SignalWords& known : signal_words()) {
+    const int points = match(words, known.words);
+    if (points == 0) continue;
+    of_spool = of_spool || known.signal == Signal::spool_position;
+    if (!unit_fits(unit, known.signal) || is_other(words, known.signal)) continue;
+    if (demand && is_measured(known.signal)) continue;
+    if (difference && info(known.signal).dimension == Dimension::pressure && known.signal != Signal::load_pressure)
+      continue;
+    matches.push_back({points, column, known.signal, known.weak});
+  }
+  // What the spool's own loop is asked for is not where the piston shall go.
+  if (demand && of_spool) std::erase_if(matches, [](const Match& m) { return m.signal == Signal::setpoint; });
   return matches;
 }
 

@@ -244,7 +244,8 @@ void LogColumns::append(std::span<const double> sample, long line) {
     refuse(line, time.name, fmt::format("{} {} is no finite time", sample[time_], time.unit.name), "mend the number");
   if (!(now > previous_))
     refuse_as(Trouble::time, line, time.name, fmt::format("time does not increase: {} s after {} s", now, previous_),
-              "sort the rows and remove repeated ones");
+              now == previous_ ? "export times with more digits, or remove the repeated row"
+                               : "sort the rows, or cut the file where a recording begins");
   if (time.value.size() == format_.most_rows) refuse_rows(line);
   previous_ = now;
   last_line_ = line;

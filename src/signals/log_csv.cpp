@@ -68,11 +68,11 @@ class CsvReader {
         log_.reserve(static_cast<std::size_t>(1.02 * static_cast<double>(rows_before_estimate) *
                                               static_cast<double>(file_.file_size()) /
                                               static_cast<double>(csv_.bytes_taken())));
-      if (all_are_signals && csv_.next_plain_row(row_)) {
-        log_.append(row_, csv_.line());
-        continue;
-      }
-      if (!read_odd_row()) break;
+      if (!(all_are_signals && csv_.next_plain_row(row_)) && !read_odd_row()) break;
+      if (const CellAt* cell = csv_.thousands_among_commas())
+        log_.refuse_as(Trouble::row, cell->line, "",
+                       fmt::format("'{}' has a point where other numbers have a decimal comma", cell->text),
+                       "write all numbers with one decimal sign, and thousands without a point");
       log_.append(row_, csv_.line());
     }
   }

@@ -28,6 +28,8 @@ struct OtherWords {
   std::string_view unless = {};      // with this word it may be the valve's all the same: its torque motor
 };
 std::span<const OtherWords> other_words();
+std::span<const std::string_view> demand_words();      // of what is asked for, and not measured
+std::span<const std::string_view> difference_words();  // of a pressure from one place to another
 
 // How else people write units of the table, in small letters.
 struct UnitWord {

@@ -128,6 +128,28 @@ TEST(Csv, ADecimalCommaCountsWhereTheSeparatorIsASemicolon) {
   EXPECT_EQ(commas.next_number(value), Cell::text);
 }
 
+// 57.800 beside 107,9 is fifty-seven thousand; 0.125 is a number however others are written.
+TEST(Csv, APointThatMayPartThousandsIsRememberedBesideDecimalCommas) {
+  const auto found = [](std::string_view text, bool by_rows) {
+    CsvCursor csv(text, "t.csv");
+    std::vector<double> row(csv.header().size());
+    double value = 0;
+    while (csv.next_row())
+      if (!by_rows || !csv.next_plain_row(row))
+        while (csv.next_number(value) != Cell::none) {
+        }
+    const CellAt* cell = csv.thousands_among_commas();
+    return cell ? std::to_string(cell->line) + ":" + cell->text : "";
+  };
+  for (const bool by_rows : {false, true}) {
+    EXPECT_EQ(found("a;b\n1;57.800\n2;107,9\n", by_rows), "2:57.800");
+    EXPECT_EQ(found("a;b\r\n107,9;+1\r\n2; -1.864\r\n", by_rows), "3:-1.864");
+    EXPECT_EQ(found("a;b\n1;57.800\n2;107.9\n", by_rows), "") << "points are decimal here";
+    EXPECT_EQ(found("a;b\n0.125;57.8001\n2.5;107,9\n", by_rows), "") << "no groups of three";
+    EXPECT_EQ(found("a,b\n1,57.800\n", by_rows), "");
+  }
+}
+
 TEST(Csv, AnyDoubleIsWrittenAndReadBackBitForBit) {
   Random random(1);
   for (int i = 0; i < 20000; ++i) {

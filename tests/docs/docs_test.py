@@ -3,7 +3,8 @@
 A fence ```console holds commands ("$ servodx ...") and what they print. They run in order, in one folder a page, that
 begins with data/ and params/. Of the output shown every line must be printed, in order, numbers aside: digits may
 move, words may not; a line '...' stands for any lines. They run by the kernels of AVX2, where the machine has them:
-last digits differ by instruction set, and with them now and then which of two effects stands first. A fence ```sh
+last digits differ by instruction set and maker of the processor, and with them now and then which of two effects
+stands first: a line that lists effects with their gains is compared without their order. A fence ```sh
 holds commands with the reader's own names in them: they are rehearsed (--dry-run) in a folder that has files of these
 names. `init` runs, as later lines need its files."""
 import os, pathlib, re, shutil, subprocess, sys, tempfile, unittest
@@ -21,7 +22,8 @@ RUN = re.compile(r"--help|servodx (man|completion|rerun|init|list)\b")  # quick,
 
 
 def shape(line):
-    return re.sub(r"\s+", " ", re.sub(r"[-+]?\d[\d.]*(e[-+]?\d+)?", "#", line)).strip()
+    plain = re.sub(r"\s+", " ", re.sub(r"[-+]?\d[\d.]*(e[-+]?\d+)?", "#", line)).strip()
+    return " ".join(sorted(re.split(r"[,;:]? ", plain))) if plain.startswith("effects, with what each gains") else plain
 
 
 def run(command, folder):

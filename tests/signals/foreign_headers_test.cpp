@@ -1,4 +1,4 @@
-// Forty headers of other people's recorders: no column may be taken for a signal that it is not without a question.
+// Headers of other people's recorders: no column may be taken for a signal that it is not without a question.
 #include <gtest/gtest.h>
 
 #include <fstream>

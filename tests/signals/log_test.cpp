@@ -352,11 +352,11 @@ TEST(Log, EachRefusalNamesPlaceRuleAndMend) {
       {header, "log.csv:1: the log has no rows; write one row a sample below the header"},
       {header + rows(5), "log.csv:6: the log has 5 rows, at least 20 are needed; record for longer"},
       {header + replace_row(4, "0.003,1,0.1\n"),
-       "log.csv:6: column 'time': time does not increase: 0.003 s after 0.003 s; sort the rows and remove repeated "
-       "ones"},
+       "log.csv:6: column 'time': time does not increase: 0.003 s after 0.003 s; export times with more "
+       "digits, or remove the repeated row"},
       {header + replace_row(4, "0.002,1,0.1\n"),
-       "log.csv:6: column 'time': time does not increase: 0.002 s after 0.003 s; sort the rows and remove repeated "
-       "ones"},
+       "log.csv:6: column 'time': time does not increase: 0.002 s after 0.003 s; sort the rows, or cut the "
+       "file where a recording begins"},
       {header + replace_row(4, "0.004,off,0.1\n"),
        "log.csv:6: column 'command': 'off' is not a number; write a number with a decimal point, or leave the cell "
        "empty"},
@@ -370,6 +370,9 @@ TEST(Log, EachRefusalNamesPlaceRuleAndMend) {
        "separator"},
       {header + replace_row(4, "# pause\n"),
        "log.csv:6: ragged row: 1 cells, the header has 3; write one cell a column"},
+      {"time [s];command [mA];spool_position [um]\n1;1;57.800\n2;1;107,9\n",
+       "log.csv:2: '57.800' has a point where other numbers have a decimal comma; write all numbers with one decimal "
+       "sign, and thousands without a point"},
       {header + rows(30, [](int i, std::string row) { return i < 2 ? fmt::format("{},1,nan\n", i * 1e-3) : row; }),
        "log.csv:2: column 'spool_position': 2 of 30 samples are missing, more than 5 %; cut the log to where the "
        "signal is "

@@ -193,8 +193,8 @@ TEST(Mat, EachRefusalNamesVariableRuleAndMend) {
   v = plain();
   v[0].second[9] = 8;
   EXPECT_EQ(refusal(v),
-            "log.mat: column 't': sample 10: time does not increase: 0.008 s after 0.008 s; sort the rows and remove "
-            "repeated ones");
+            "log.mat: column 't': sample 10: time does not increase: 0.008 s after 0.008 s; export times with more "
+            "digits, or remove the repeated row");
   v = plain();
   v[2].second[4] = INFINITY;
   EXPECT_EQ(refusal(v), "log.mat: column 'xs': sample 5: is infinite; write NaN for a missing sample");

@@ -2,7 +2,7 @@
 #pragma once
 #include <string>
 
-#include "diagnose/diagnose.h"
+#include "diagnose/judge.h"
 #include "online/alarm_limits.h"
 #include "online/arrivals.h"
 #include "online/watcher.h"
