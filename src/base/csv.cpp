@@ -355,35 +355,38 @@ Cell CsvCursor::next_odd_number(double& value) {
 
 namespace {
 
+bool is_digit(char c) { return c >= '0' && c <= '9'; }
+
+// Behind a point: three digits and no fourth.
+bool is_group(const char* p, const char* end) {
+  return end - p >= 3 && is_digit(p[0]) && is_digit(p[1]) && is_digit(p[2]) && (end - p == 3 || !is_digit(p[3]));
+}
+
 // One to three digits, the first no nought, and then groups of three behind points.
 bool may_be_thousands(std::string_view cell) {
-  while (!cell.empty() && cell.back() == ' ') cell.remove_suffix(1);
-  while (!cell.empty() && (cell.front() == ' ' || cell.front() == '-' || cell.front() == '+')) cell.remove_prefix(1);
-  const auto digits = [&](std::size_t at) {
-    return static_cast<std::size_t>(std::find_if_not(cell.begin() + static_cast<long>(at), cell.end(),
-                                                     [](char c) { return c >= '0' && c <= '9'; }) -
-                                    cell.begin()) -
-           at;
-  };
-  const std::size_t first = digits(0);
-  if (first < 1 || first > 3 || cell.front() == '0' || first == cell.size()) return false;
-  for (std::size_t at = first; at < cell.size(); at += 4)
-    if (cell[at] != '.' || digits(at + 1) != 3) return false;
-  return true;
+  const char *p = cell.data(), *const end = p + cell.size();
+  while (p != end && (*p == ' ' || *p == '-' || *p == '+')) ++p;
+  const char* const first = p;
+  while (p != end && is_digit(*p)) ++p;
+  if (p == first || p - first > 3 || *first == '0') return false;
+  for (; p != end && *p == '.'; p += 4)
+    if (!is_group(p + 1, end)) return false;
+  while (p != end && *p == ' ') ++p;
+  return p == end;
 }
 
 }  // namespace
 
 void CsvCursor::look_for_thousands(const char* from, const char* to) {
-  const std::string_view row(from, static_cast<std::size_t>(to - from));
-  if (!comma_seen_) comma_seen_ = row.find(',') != std::string_view::npos;
+  if (!comma_seen_) comma_seen_ = std::find(from, to, ',') != to;
   if (thousands_.line > 0) return;
-  for (std::size_t at = row.find('.'); at != std::string_view::npos; at = row.find('.', at + 1)) {
-    const std::size_t before = row.find_last_of(separator_, at);
-    const std::size_t begin = before == std::string_view::npos ? 0 : before + 1;
-    const std::string_view cell = row.substr(begin, row.find_first_of(std::string{separator_, '\r', '\n'}, at) - begin);
-    if (!may_be_thousands(cell)) continue;
-    thousands_ = {line_, std::string(cell)};
+  const auto ends_cell = [this](char c) { return c == separator_ || c == '\r' || c == '\n'; };
+  for (const char* p = std::find(from, to, '.'); p != to; p = std::find(p + 1, to, '.')) {
+    if (!is_group(p + 1, to)) continue;
+    const char *first = p, *const last = std::find_if(p, to, ends_cell);
+    while (first != from && first[-1] != separator_) --first;
+    if (!may_be_thousands({first, static_cast<std::size_t>(last - first)})) continue;
+    thousands_ = {line_, std::string(first, last)};
     return;
   }
 }

@@ -113,6 +113,20 @@ std::string words_of(Blame blame) {
   return "";
 }
 
+std::string word_of(GrossFinding finding) {
+  switch (finding) {
+    case GrossFinding::spool_on_both_stops:
+      return "spool_on_both_stops";
+    case GrossFinding::spool_on_one_stop:
+      return "spool_on_one_stop";
+    case GrossFinding::no_response:
+      return "no_response";
+    case GrossFinding::none:
+      break;
+  }
+  return "";
+}
+
 std::string words_of(GrossFinding finding) {
   switch (finding) {
     case GrossFinding::none:

@@ -32,6 +32,7 @@ std::string headword(const Diagnosis& d);  // HEALTHY | FAULT | MISREAD, of colu
 std::vector<std::string> doubts_beside_baseline(const Diagnosis& d);
 std::string word_of(Blame blame);            // none | component | physics | surroundings | log | test
 std::string words_of(Blame blame);           // "a component failed"; "" of none
+std::string word_of(GrossFinding finding);   // as JSON names it; "" of none
 std::string words_of(GrossFinding finding);  // "" of none
 std::string word_of(Misreading kind);
 std::string word_of(Unjudgeable reason);    // one word, of no and of an unknown log alike what JSON says

@@ -8,6 +8,7 @@
 #include "online/constants.h"
 #include "report/diagnose/diagnosis_json.h"
 #include "report/diagnose/diagnosis_text.h"
+#include "report/diagnose/diagnosis_words.h"
 #include "report/shared/text_options.h"
 #include "servodx/log.h"
 
@@ -30,20 +31,6 @@ std::string word_of(WatchEventKind kind) {
   return "";
 }
 
-std::string word_of(GrossFinding gross) {
-  switch (gross) {
-    case GrossFinding::spool_on_both_stops:
-      return "spool_on_both_stops";
-    case GrossFinding::spool_on_one_stop:
-      return "spool_on_one_stop";
-    case GrossFinding::no_response:
-      return "no_response";
-    case GrossFinding::none:
-      break;
-  }
-  return "";
-}
-
 // The coil current beside its command is the driver's.
 std::string source_of(Signal signal) {
   return signal == Signal::coil_current ? "driver" : std::string(name_of(signal));
@@ -51,7 +38,7 @@ std::string source_of(Signal signal) {
 
 // What needs no model is seen over a window of its own, whose start says nothing of when it began.
 std::string alarm_in_words(const WatchEvent& e, const std::string& name) {
-  if (e.gross != GrossFinding::none) return fmt::format("{}: looks like {}", word_of(e.gross), name);
+  if (e.gross != GrossFinding::none) return fmt::format("{}: looks like {}", report::word_of(e.gross), name);
   if (e.supply)
     return fmt::format("supply_pressure {:.3g} bar from its healthy level: looks like {}", e.level * 1e-5, name);
   return fmt::format("{} {:.3g} times its limit: looks like {}, since {:.3f} s", e.signal ? source_of(*e.signal) : "",
@@ -86,7 +73,7 @@ Json to_json(const WatchEvent& e) {
     out["signal"] = source_of(*e.signal);
     out["window"] = e.window, out["level"] = e.level, out["limit"] = e.limit;
   }
-  if (e.gross != GrossFinding::none) out["seen"] = word_of(e.gross);
+  if (e.gross != GrossFinding::none) out["seen"] = report::word_of(e.gross);
   if (e.supply) out["seen"] = "supply_out_of_band";
   return out;
 }
