@@ -161,6 +161,8 @@ void CsvCursor::read_header() {
   if (text.starts_with("\xEF\xBB\xBF")) p_ += 3;
   if (text.starts_with("\xFF\xFE") || text.starts_with("\xFE\xFF"))
     throw InputError({path_, 1, ""}, "the text is UTF-16", "save the file as UTF-8");
+  if (const auto cr = text.find('\r'); cr < text.size() - 1 && text.find('\n') == text.npos)
+    throw InputError({path_, 1, ""}, "its lines end in CR alone", "save the file with line ends of LF or CRLF");
   std::size_t in_comments = 0;
   while (next_row()) {
     const char* stop = std::find(p_, end_, '\n');
@@ -173,6 +175,7 @@ void CsvCursor::read_header() {
       if (in_comments > most_comments)
         throw InputError({path_, line_, ""}, "the comments above the header have more than 16 MB", "take them out");
       comments_.emplace_back(line);
+      comment_line_ = line_;
       p_ = stop;
       more_ = false;
       continue;
@@ -187,6 +190,7 @@ void CsvCursor::take_header(char separator) {
   separator_ = separator ? separator : sniff_separator({p_, static_cast<std::size_t>(std::find(p_, end_, '\n') - p_)});
   point_ = separator_ == ',' ? '.' : ',';
   header_line_ = line_;
+  header_row_ = p_;
   header_.clear();
   for (std::string cell; next_cell(cell);) {
     if (header_.size() == most_columns)
@@ -208,6 +212,34 @@ void CsvCursor::header_at(std::size_t bytes_ahead, char separator) {
   if (next_row()) take_header(separator);
 }
 
+void CsvCursor::take_header_again(char separator) {
+  p_ = header_row_;
+  next_line_ = line_;
+  cell_ = cell_end_ = nullptr;
+  in_row_ = more_ = true;
+  take_header(separator);
+}
+
+std::string_view CsvCursor::header_text() const {
+  if (!header_row_) return {};
+  return {header_row_, static_cast<std::size_t>(std::find(header_row_, end_, '\n') - header_row_)};
+}
+
+void CsvCursor::header_from_comment() {
+  if (!header_row_ || comments_.empty()) return;
+  const std::string line = comments_.back();
+  if (line.find_first_not_of(" \t") == line.npos || line.starts_with('#')) return;
+  const CsvCursor names(line, path_);
+  take_header_again(names.separator());
+  if (names.header().size() != header_.size()) return take_header_again(0);
+  header_ = names.header();
+  header_line_ = comment_line_;
+  comments_.pop_back();
+  p_ = header_row_;
+  next_line_ = line_;
+  in_row_ = more_ = false;
+}
+
 // Keeps what is unused, from the cell being read on.
 bool CsvCursor::refill() {
   if (!file_) return false;
@@ -221,6 +253,7 @@ bool CsvCursor::refill() {
   if (buffer_.size() - used > longest_row)
     throw InputError({path_, next_line_, ""}, "the row is longer than " + std::to_string(longest_row >> 20) + " MB",
                      "end each row with a line end, and close quotes");
+  header_row_ = nullptr;
   buffer_.erase(0, used);
   dropped_ += used;
   buffer_ += more;

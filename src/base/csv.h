@@ -4,8 +4,9 @@
 // Reads: separator ',' ';' or tab (the most frequent in the header line), decimal comma in numbers where the separator
 // is ';' or tab, UTF-8 BOM, LF and CRLF, '#' comment lines before the header, blank lines anywhere, RFC 4180 quoted
 // cells (which may hold separators, doubled quotes and line ends). Spaces around a cell are dropped. Words of a header
-// that are no UTF-8 are taken as Latin-1. Leaves out: UTF-16 and what is no text (refused), escapes other than doubled
-// quotes, thousands separators; points that may be such beside decimal commas are remembered for the caller to refuse.
+// that are no UTF-8 are taken as Latin-1. Leaves out: UTF-16, lines that end in CR alone and what is no text (refused),
+// escapes other than doubled quotes, thousands separators; points that may be such beside decimal commas are remembered
+// for the caller to refuse.
 //
 // No library: fast-cpp-csv-parser fixes separator and quoting at compile time, parses with its own float loop (not
 // correctly rounded) and throws its own errors, where logs need a sniffed separator and exact round trips.
@@ -47,6 +48,11 @@ class CsvCursor {
   bool decimal_comma() const { return point_ == ','; }
   // Takes the row that begins so many bytes ahead as the header in place of this one; its cells part at `separator`.
   void header_at(std::size_t bytes_ahead, char separator);
+  // The line of the header, empty where it is no longer in memory.
+  std::string_view header_text() const;
+  // Takes the last comment as the header, and the row taken for it as one to be read, where both have as many cells:
+  // names behind a '#'.
+  void header_from_comment();
   // What is read of the file and not yet passed; all of a text in memory.
   std::string_view ahead() const { return {p_, static_cast<std::size_t>(end_ - p_)}; }
 
@@ -98,7 +104,8 @@ class CsvCursor {
 
  private:
   void read_header();
-  void take_header(char separator);  // 0: the most frequent in its line
+  void take_header(char separator);        // 0: the most frequent in its line
+  void take_header_again(char separator);  // of the same row
   Cell next_odd_number(double& value);
   void look_for_thousands(const char* from, const char* to);  // numbers of one row
   bool refill();  // more of the file behind what is left; false: there is no more
@@ -126,8 +133,10 @@ class CsvCursor {
   long line_ = 0;
   long next_line_ = 1;
   long header_line_ = 0;
+  const char* header_row_ = nullptr;  // where its row begins, while that is in memory
   std::vector<std::string> header_;
   std::vector<std::string> comments_;
+  long comment_line_ = 0;  // of the last
 };
 
 void append_number(std::string& to, double value);         // shortest digits that read back to the same bits

@@ -30,13 +30,15 @@ bool is_in_volts(const ColumnGuess& g) {
 std::string mapping_of(const ColumnGuess& g) {
   std::string text = fmt::format("{} = {{ signal = \"{}\"", toml_quoted(g.cell), info(*g.signal).name);
   if (!g.unit_in_brackets || is_in_volts(g)) text += fmt::format(", unit = \"{}\"", g.unit.empty() ? "?" : g.unit);
-  if (!g.gain.empty()) text += fmt::format(", gain = \"{}\"", g.gain);
+  if (g.gain_is_open || !g.gain.empty()) text += fmt::format(", gain = \"{}\"", g.gain_is_open ? "?" : g.gain);
   if (g.has_offset()) text += fmt::format(", offset = \"{}\"", g.offset_is_open ? "?" : g.offset);
   return text + " }";
 }
 
 // The reader takes the column by its own name and unit.
-bool is_read_as_it_is(const ColumnGuess& g) { return g.canonical && g.unit_in_brackets && !is_in_volts(g); }
+bool is_read_as_it_is(const ColumnGuess& g) {
+  return g.canonical && g.unit_in_brackets && g.gain.empty() && !is_in_volts(g);
+}
 
 // The [columns] line of one column; a comment where nothing need or can be said, or something is to be asked.
 std::string column_line(const ColumnGuess& g, const std::string& span) {
@@ -58,7 +60,7 @@ void ask_by_behaviour(const std::string& log, LogHeader& header) {
   for (ColumnGuess g : header.columns) {
     const Unit* unit = find_unit(g.unit);
     g.offset_is_open = false;  // which channels go together does not hang on it
-    if (!g.signal || !unit || is_in_volts(g) || is_read_as_it_is(g)) continue;
+    if (!g.signal || !unit || is_in_volts(g) || g.gain_is_open || is_read_as_it_is(g)) continue;
     if (unit->dimension == Dimension::percent_of_rated || unit->dimension == Dimension::percent_of_stroke) continue;
     text += mapping_of(g) + "\n";
   }
@@ -87,7 +89,7 @@ std::vector<ColumnDraft> draft_columns(const std::string& log) {
     const std::string span = span_of(header.numbers[c]);
     out.push_back({.column = g.cell,
                    .signal = g.signal,
-                   .unit = g.unit,
+                   .unit = g.by_numbers && !g.gain.empty() ? g.gain + " " + g.unit : g.unit,
                    .written_unit = g.written_unit,
                    .values = span,
                    .question = g.question,

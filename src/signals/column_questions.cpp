@@ -68,6 +68,8 @@ Usual usual(Signal s) {
   return {};
 }
 
+constexpr double milliampere = 1e-3;  // [A]
+
 bool is_drive(Signal s) { return s == Signal::command || s == Signal::coil_current; }
 bool is_stroke(Signal s) { return s == Signal::piston_position || s == Signal::setpoint; }
 
@@ -84,6 +86,51 @@ bool lies_within(const Unit& unit, const ColumnNumbers& n, Measure measure, doub
       return n.step * unit.scale() >= least && n.step * unit.scale() <= most;
   }
   return false;
+}
+
+// A column's unit with its gain in it: a mil is 0.001 in.
+std::optional<Unit> unit_of(const ColumnGuess& g) {
+  const Unit* const known = find_unit(g.unit);
+  if (!known) return std::nullopt;
+  Unit unit = *known;
+  unit.multiply *= parse_number(g.gain).value_or(1.0);
+  return unit;
+}
+
+// Clocks that count from a date, and what they show from 2000 to 2050.
+struct Clock {
+  std::string_view what;
+  double least, most;
+  std::string_view unit, gain;  // as in a rig file
+};
+constexpr Clock clocks[] = {
+    {"seconds since 1970", 9.4e8, 2.6e9, "s", ""},
+    {"milliseconds since 1970", 9.4e11, 2.6e12, "ms", ""},
+    {"microseconds since 1970", 9.4e14, 2.6e15, "us", ""},
+    {"nanoseconds since 1970", 9.4e17, 2.6e18, "us", "0.001"},
+    {"ticks of 100 ns since 1601", 1.25e17, 1.42e17, "us", "0.1"},
+    {"ticks of 100 ns since the year 1", 6.3e17, 6.5e17, "us", "0.1"},
+};
+
+double seconds_of(const Clock& clock) {
+  return find_unit(clock.unit)->scale() * parse_number(clock.gain).value_or(1.0);
+}
+
+bool is_usual_step(double seconds) {
+  const Usual u = usual(Signal::time);
+  return seconds >= u.least && seconds <= u.most;
+}
+
+// By size and step.
+const Clock* clock_of(const ColumnNumbers& n) {
+  for (const Clock& clock : clocks)
+    if (n.low >= clock.least && n.high <= clock.most && is_usual_step(n.step * seconds_of(clock))) return &clock;
+  return nullptr;
+}
+
+// 4 to 20 mA, and all between.
+bool is_transmitters_range(const ColumnNumbers& n, double unit) {
+  return n.low * unit > transmitter[0] && n.high * unit < transmitter[1];
 }
 
 // The units in which the numbers are those of the signal, most usual first.
@@ -108,6 +155,23 @@ std::string in_words(const std::vector<std::string>& units) {
   return text;
 }
 
+// Of a clock that counts from a date, the unit where the header has none; a gain where it has another.
+bool take_clock(ColumnGuess& g, const ColumnNumbers& n) {
+  const Clock* const clock = clock_of(n);
+  if (!clock) return false;
+  const Unit* const unit = find_unit(g.unit);
+  if (!unit) {
+    g.unit = clock->unit, g.gain = clock->gain;
+    g.by_numbers = true;
+    return true;
+  }
+  const double factor = seconds_of(*clock) / unit->scale();
+  if (unit->dimension != Dimension::time || std::abs(factor - 1) < 1e-9) return false;
+  g.gain = fmt::format("{:g}", factor);
+  g.ask(fmt::format("no time in {} by its size: is it {}?", g.unit, clock->what));
+  return true;
+}
+
 void ask_missing_unit(ColumnGuess& g, const ColumnNumbers& n) {
   const Signal signal = *g.signal;
   const std::vector<std::string> likely = likely_units(signal, n);
@@ -116,20 +180,33 @@ void ask_missing_unit(ColumnGuess& g, const ColumnNumbers& n) {
     g.unit = likely.empty() ? "s" : likely.front();
     return;
   }
-  if (likely.size() == 1 && (signal == Signal::time || likely.front() == info(signal).si_unit)) {
+  // Whole numbers without a date may be either.
+  if (signal == Signal::time && n.whole && is_usual_step(n.step * tick)) {
+    g.unit = "us";
+    if (likely.empty()) g.gain = "0.1";
+    return g.ask(likely.empty() ? "no unit in the header: by the values ticks of 100 ns?"
+                                : "no unit in the header: by the values us, or ticks of 100 ns with gain = \"0.1\"?");
+  }
+  std::vector<std::string> words = likely;
+  if (signal != Signal::time && !is_drive(signal) && is_transmitters_range(n, milliampere))
+    words.emplace_back("the mA of a transmitter");
+  if (words.size() == 1 && (signal == Signal::time || words.front() == info(signal).si_unit)) {
     g.unit = likely.front();
     g.by_numbers = true;
     return;
   }
-  g.ask(likely.empty()
+  g.ask(words.empty()
             ? fmt::format("no unit in the header, and the values are those of no {} in a usual unit", info(signal).name)
-            : "no unit in the header: by the values " + in_words(likely) + "?");
-  if (!likely.empty()) g.unit = likely.front();
+            : "no unit in the header: by the values " + in_words(words) + "?");
+  if (!likely.empty())
+    g.unit = likely.front();
+  else if (!words.empty())
+    g.unit = "mA", g.gain_is_open = g.offset_is_open = true;
 }
 
 void ask_absurd_numbers(ColumnGuess& g, const ColumnNumbers& n) {
   const Usual u = usual(*g.signal);
-  const Unit* const unit = find_unit(g.unit);
+  const std::optional<Unit> unit = unit_of(g);
   if (!unit || unit->dimension != info(*g.signal).dimension) return;
   if (is_drive(*g.signal) && n.low == n.high) return;  // no excitation, and said elsewhere
   if (lies_within(*unit, n, u.measure, u.least_of_all, u.most_of_all)) return;
@@ -141,15 +218,15 @@ void ask_absurd_numbers(ColumnGuess& g, const ColumnNumbers& n) {
 
 void ask_sign(ColumnGuess& g, const ColumnNumbers& n) {
   if (!is_drive(*g.signal) || n.low == n.high || n.high <= 0 || n.low < -unsigned_below * n.high) return;
-  const Unit* const unit = find_unit(g.unit);
-  if (unit && unit->to_si(n.low) > transmitter[0] && unit->to_si(n.high) < transmitter[1])
+  const std::optional<Unit> unit = unit_of(g);
+  if (unit && is_transmitters_range(n, unit->scale()))
     g.ask("the 4 to 20 mA of a transmitter, or the coil's current? A transmitter's needs gain and offset");
   else
     g.ask("never negative: has it lost its sign, or an offset?");
 }
 
 void ask_middle(ColumnGuess& g, const ColumnNumbers& n) {
-  const Unit* const unit = find_unit(g.unit);
+  const std::optional<Unit> unit = unit_of(g);
   if (!is_stroke(*g.signal) || !unit || unit->dimension != Dimension::length || !(n.high > n.low)) return;
   const double span = n.high - n.low, off = std::max(n.low, -n.high);  // of the near end from zero
   const bool goes_far = !g.canonical && span * unit->scale() > long_way && off > -unsigned_below * span;
@@ -169,6 +246,22 @@ void ask_of_rival(ColumnGuess& g, const ColumnNumbers& n) {
                     info(*g.signal).name, g.unit, info(*g.rival).name, warm ? "bar" : "degC"));
 }
 
+// Range and zero of a transmitter are on its plate; where no transmitter gives such currents, it is no signal.
+void ask_transmitter(ColumnGuess& g, const ColumnNumbers& n) {
+  if (std::max(std::abs(n.low), std::abs(n.high)) * milliampere > most_of_transmitter) {
+    g.signal.reset();
+    return;
+  }
+  g.gain_is_open = g.offset_is_open = true;
+  const SignalInfo& signal = info(*g.signal);
+  const std::string is = fmt::format("is it the transmitter of the {}? Then ", signal.name);
+  g.ask(is_transmitters_range(n, milliampere)
+            ? is + fmt::format("its gain is its range over 16 mA, in {}/mA, and its offset what it shows at 4 mA less "
+                               "4 gains",
+                               signal.si_unit)
+            : is + fmt::format("which gain has it, in {}/mA, and which offset?", signal.si_unit));
+}
+
 void ask_column(ColumnGuess& g, const ColumnNumbers& n) {
   if (n.stamps) {
     if (*g.signal != Signal::time) g.ask("holds time stamps");
@@ -176,11 +269,13 @@ void ask_column(ColumnGuess& g, const ColumnNumbers& n) {
     return;
   }
   if (n.count == 0) return g.ask("holds no numbers");
+  if (is_transmitters(g.unit, *g.signal)) return ask_transmitter(g, n);
   if (g.rival && g.unit.empty() && g.question.empty()) return ask_of_rival(g, n);
   const bool told = g.question.empty();
+  const bool is_clock = told && *g.signal == Signal::time && take_clock(g, n);
   if (g.unit.empty() && told)
     ask_missing_unit(g, n);
-  else if (told)
+  else if (told && !is_clock)
     ask_absurd_numbers(g, n);
   if (const Unit* unit = find_unit(g.unit); unit && unit->dimension == Dimension::voltage && !g.by_numbers)
     g.ask(fmt::format("which gain has the sensor, in {}/V, and which offset?", info(*g.signal).si_unit));
@@ -227,10 +322,25 @@ void sort_numbered_pressures(std::vector<ColumnGuess>& columns, const std::vecto
   }
 }
 
+// A column that only rises may be the time, where no name says so.
+void look_for_time(std::vector<ColumnGuess>& columns, const std::vector<ColumnNumbers>& numbers) {
+  if (std::any_of(columns.begin(), columns.end(), [](const ColumnGuess& g) { return g.signal == Signal::time; }))
+    return;
+  for (std::size_t c = 0; c < columns.size(); ++c) {
+    ColumnGuess& g = columns[c];
+    const Unit* const unit = find_unit(g.unit);
+    const bool may_be = unit ? unit->dimension == Dimension::time : g.written_unit.empty();
+    if (g.signal || !may_be || !numbers[c].rises || numbers[c].counts) continue;
+    g.signal = Signal::time;
+    g.weak = true;
+    return;
+  }
+}
+
 void ask_of_exchanged_positions(std::vector<ColumnGuess>& columns, const std::vector<ColumnNumbers>& numbers) {
   const auto span_of = [&](Signal s, ColumnGuess*& column) {
     for (std::size_t c = 0; c < columns.size(); ++c)
-      if (const Unit* unit = find_unit(columns[c].unit);
+      if (const std::optional<Unit> unit = unit_of(columns[c]);
           columns[c].signal == s && numbers[c].count > 0 && unit && unit->dimension == Dimension::length) {
         column = &columns[c];
         return (numbers[c].high - numbers[c].low) * unit->scale();
@@ -251,20 +361,23 @@ void NumbersCollector::take(double x) {
     low_ = count_ ? std::min(low_, x) : x, high_ = count_ ? std::max(high_, x) : x;
     if (count_ > 0 && steps_.size() < steps_looked_at) steps_.push_back(x - last_);
     last_ = x;
+    whole_ = whole_ && x == std::floor(x);
     ++count_;
   }
 }
 
 ColumnNumbers NumbersCollector::numbers() const {
-  ColumnNumbers n{.count = count_, .low = low_, .high = high_};
+  ColumnNumbers n{.count = count_, .low = low_, .high = high_, .whole = whole_};
   if (steps_.empty()) return n;
   n.counts = std::all_of(steps_.begin(), steps_.end(), [](double step) { return step == 1; });
+  n.rises = std::all_of(steps_.begin(), steps_.end(), [](double step) { return step > 0; });
   n.step = median(steps_);
   return n;
 }
 
 void ask_by_numbers(std::vector<ColumnGuess>& columns, const std::vector<ColumnNumbers>& numbers) {
   sort_numbered_pressures(columns, numbers);
+  look_for_time(columns, numbers);
   for (std::size_t c = 0; c < columns.size(); ++c)
     if (columns[c].signal) ask_column(columns[c], numbers[c]);
   ask_of_exchanged_positions(columns, numbers);

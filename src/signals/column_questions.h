@@ -2,8 +2,8 @@
 // contradict; a current without a sign; a piston measured from one end. Nothing absurd is taken without a question.
 //
 // A unit that the header lacks is taken where the SI unit, or one of time, is the only one that servovalves fit: 10 to
-// 1000 bar, 2 to 500 mA, a spool of 0.1 to 10 mm, a piston of 5 mm to 1 m, 50 to 50,000 samples a second. Leaves out:
-// what the channels do to one another (diagnose/swapped.h).
+// 1000 bar, 2 to 500 mA, a spool of 0.1 to 10 mm, a piston of 5 mm to 1 m, 50 to 50,000 samples a second. A clock that
+// counts from a date is known by its size. Leaves out: what the channels do to one another (diagnose/swapped.h).
 #pragma once
 #include <cstddef>
 #include <vector>
@@ -18,6 +18,8 @@ struct ColumnNumbers {
   double low = 0, high = 0;
   double step = 0;      // usual step from one row to the next
   bool counts = false;  // goes up by one in every row
+  bool rises = false;   // goes up in every row
+  bool whole = false;   // holds whole numbers alone
   bool stamps = false;  // are date-time stamps
 };
 
@@ -30,6 +32,7 @@ class NumbersCollector {
  private:
   std::size_t count_ = 0;
   double low_ = 0, high_ = 0, last_ = 0;
+  bool whole_ = true;
   std::vector<double> steps_;  // the first
 };
 

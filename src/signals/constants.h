@@ -19,6 +19,7 @@ inline constexpr double no_excitation = 0.005;    // drive range per rated curre
 inline constexpr double slowest = 50.0;              // [Hz]
 inline constexpr double fastest = 200e3;             // [Hz] beyond what loggers of valves take
 inline constexpr double longest_log = 1e5;           // [s] a day
+inline constexpr double farthest_clock = 1e11;       // [s] beyond three thousand years no clock counts
 inline constexpr double least_of_stroke = 5e-4;      // a piston that uses less has another unit, or another column
 inline constexpr double no_supply = 5e5;             // [Pa] what a return line holds
 inline constexpr std::size_t scale_samples = 10000;  // looked at, of a long log
@@ -29,6 +30,8 @@ inline constexpr double aside = 0.5;            // of what the piston moves: it 
 // [m] a piston that goes so far to one side of the middle alone may begin at its end
 inline constexpr double long_way = 0.02;
 inline constexpr double transmitter[] = {3.5e-3, 21e-3};  // [A] 4 to 20 mA and what they overshoot
+inline constexpr double most_of_transmitter = 25e-3;      // [A] of one that has a sign; a motor takes more
+inline constexpr double tick = 1e-7;                      // [s] what the clocks of Windows and .NET count
 inline constexpr double flat_pressure = 0.4;              // of the highest value, that a pump's or a tank's varies by
 inline constexpr double low_pressure = 0.25;              // of the highest value, that a tank's stays below
 inline constexpr std::size_t steps_looked_at = 10000;

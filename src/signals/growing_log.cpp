@@ -111,10 +111,13 @@ void GrowingLog::line(std::string_view text, std::uint64_t end, const Take& take
 
 // Whether this is the row of numbers that a header stands above.
 bool GrowingLog::begins_with(std::string_view text) {
-  if (trimmed(text, blanks).front() == '#') return false;
+  if (trimmed(text, blanks).front() == '#') {
+    comment_ = text;
+    return false;
+  }
   if (above_.empty()) refuse_binary(text, name_);
   const bool numbers = is_row_of_numbers(text);
-  if (above_.empty() && numbers) require_names(CsvCursor(text, name_), name_);
+  if (above_.empty() && numbers) take_comment(text);
   // A header that is none has to be told before a log has grown long.
   if (above_.empty() || (!numbers && above_.size() < most_above)) {
     above_.emplace_back(text);
@@ -127,12 +130,22 @@ bool GrowingLog::begins_with(std::string_view text) {
   CsvCursor csv(std::string_view(all), name_);
   const auto above = static_cast<std::size_t>(pass_lines_above_header(csv, name_));
   head_ = above_[above] + "\n";
-  std::size_t taken = above + 1;
-  if (taken < above_.size() && csv.next_row() && !units_row(csv).empty()) head_ += above_[taken++] + "\n";
+  const RowsBelow below = pass_rows_below_header(csv, name_);
+  if (below.units_at >= 0) head_ += above_[above + 1 + static_cast<std::size_t>(below.units_at)] + "\n";
+  const std::size_t taken = above + 1 + static_cast<std::size_t>(below.passed);
   read_head(first);
   bad_lines_ += static_cast<long>(above_.size() - taken);
   above_.clear();
   return true;
+}
+
+// Names behind a '#' right above the first row of numbers are the header.
+void GrowingLog::take_comment(std::string_view numbers) {
+  const std::string both = comment_ + "\n" + std::string(numbers) + "\n";
+  CsvCursor csv(std::string_view(both), name_);
+  pass_lines_above_header(csv, name_);
+  require_names(csv, name_);
+  above_.push_back(comment_.substr(comment_.find('#') + 1));
 }
 
 // `first`: the first row of numbers, empty where the head was read before.
@@ -140,10 +153,10 @@ void GrowingLog::read_head(const std::string& first) {
   const std::string text = head_ + first;
   CsvCursor csv(std::string_view(text), name_);
   auto columns = std::make_unique<LogColumns>(name_, *rig_, *options_, LogFormat{});
-  bool in_row = csv.next_row();
-  const std::vector<std::string> units = in_row ? units_row(csv) : std::vector<std::string>{};
-  if (!units.empty()) in_row = csv.next_row();
-  std::vector<std::string> cells = in_row ? csv.row_ahead() : std::vector<std::string>{};
+  const RowsBelow below = pass_rows_below_header(csv, name_);
+  const std::vector<std::string>& units = below.units;
+  std::vector<std::string> cells = below.in_row ? csv.row_ahead() : std::vector<std::string>{};
+  require_as_many_cells(csv, cells, name_);
   for (const std::string& comment : csv.comments())
     if (comment.starts_with(stamps_from)) {
       cells.resize(csv.header().size());

@@ -46,6 +46,7 @@ class GrowingLog {
  private:
   void line(std::string_view text, std::uint64_t end, const Take& take);
   bool begins_with(std::string_view text);
+  void take_comment(std::string_view numbers);
   void read_head(const std::string& first);
   bool read_sample(std::string_view text, Sample& to);
   bool time_of(std::string_view cell, int column, double& time);
@@ -58,6 +59,7 @@ class GrowingLog {
   std::vector<int> target_;  // of each column of the file: its position among the signals, or -1
   char separator_ = ',';
   std::vector<std::string> above_;    // lines before the first row of numbers
+  std::string comment_;               // the last of these lines that begins with '#'
   std::optional<StampClock> stamps_;  // the times are stamps
   bool may_lack_last_ = false;
   std::string head_, half_;

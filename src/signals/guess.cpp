@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <iterator>
 #include <span>
 #include <string_view>
 #include <utility>
@@ -140,8 +141,14 @@ bool holds_any(const std::vector<std::string>& name, std::span<const std::string
   return std::any_of(words.begin(), words.end(), [&](std::string_view word) { return match(name, word) > 0; });
 }
 
-// "P-T", "A - B": from one port to another.
-bool names_two_ports(std::string_view name) {
+// "P-T", "PA - PB", "A minus B": of two ports, and so the pressure of neither.
+bool names_two_ports(std::string_view name, const std::vector<std::string>& words) {
+  constexpr std::string_view ports[][2] = {{"a", "pa"}, {"b", "pb"}, {"t", "pt"}};
+  const auto named = std::count_if(std::begin(ports), std::end(ports), [&](const auto& port) {
+    return std::any_of(words.begin(), words.end(),
+                       [&](const std::string& word) { return word == port[0] || word == port[1]; });
+  });
+  if (named > 1) return true;
   const auto is_port = [](char c) { return std::string_view("ABPT").find(c) != std::string_view::npos; };
   const auto is_letter = [](char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0; };
   for (auto at = name.find('-'); at != name.npos; at = name.find('-', at + 1)) {
@@ -169,18 +176,22 @@ std::vector<Match> matches_of(const std::string& name, const std::string& unit, 
   std::vector<Match> matches;
   const std::vector<std::string> words = words_of(name);
   const bool demand = holds_any(words, demand_words());
-  const bool difference = holds_any(words, difference_words()) || names_two_ports(name);
-  bool of_spool = false;
+  const bool difference = holds_any(words, difference_words()) || names_two_ports(name, words);
+  bool of_spool = false, of_current = false;
   for (const SignalWords& known : signal_words()) {
     const int points = match(words, known.words);
     if (points == 0) continue;
     of_spool = of_spool || known.signal == Signal::spool_position;
-    if (!unit_fits(unit, known.signal) || is_other(words, known.signal)) continue;
+    of_current = of_current || info(known.signal).dimension == Dimension::current;
+    const bool of_transmitter = is_transmitters(unit, known.signal);
+    if (!(unit_fits(unit, known.signal) || of_transmitter) || is_other(words, known.signal)) continue;
     if (demand && is_measured(known.signal)) continue;
     if (difference && info(known.signal).dimension == Dimension::pressure && known.signal != Signal::load_pressure)
       continue;
-    matches.push_back({points, column, known.signal, known.weak});
+    matches.push_back({points, column, known.signal, known.weak || of_transmitter});
   }
+  // A name that speaks of a current means one.
+  if (of_current) std::erase_if(matches, [&](const Match& m) { return is_transmitters(unit, m.signal); });
   // What the spool's own loop is asked for is not where the piston shall go.
   if (demand && of_spool) std::erase_if(matches, [](const Match& m) { return m.signal == Signal::setpoint; });
   return matches;
@@ -307,7 +318,12 @@ void ask_which(std::vector<ColumnGuess>& guesses, const std::vector<Match>& matc
     if (!best && taken.signal == m.signal) best = &m;
     if (!best || best->column == m.column || best->points != m.points || guesses[m.column].signal) continue;
     if (!taken.question.empty()) continue;  // one other is enough to ask by
-    taken.ask("is it '" + taken.name + "' or '" + guesses[m.column].name + "' that is the " +
+    const ColumnGuess& other = guesses[m.column];
+    const bool alike = taken.name == other.name;
+    const auto in_quotes = [&](const ColumnGuess& g) {
+      return "'" + g.name + "'" + (alike && !g.written_unit.empty() ? " in " + g.written_unit : "");
+    };
+    taken.ask("is it " + in_quotes(taken) + " or " + in_quotes(other) + " that is the " +
               std::string(info(m.signal).name) + "?");
   }
 }
@@ -329,6 +345,10 @@ void ask_unknown_unit(ColumnGuess& g) {
 }
 
 }  // namespace
+
+bool is_transmitters(const std::string& unit, Signal signal) {
+  return unit == "mA" && info(signal).dimension != Dimension::current && signal != Signal::time;
+}
 
 std::string unit_meant(const std::string& written) {
   if (find_unit(written)) return written;

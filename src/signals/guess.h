@@ -20,6 +20,7 @@ struct ColumnGuess {
   std::string written_unit;       // as it stands in the header; empty: none
   std::string gain, offset;       // as in a rig file, for a unit beyond the table; empty: none
   bool offset_is_open = false;    // there is one, and only the user can say it
+  bool gain_is_open = false;      // so it is of the gain: milliamperes of a transmitter
   std::string question;           // what only the user can say; empty: nothing of name and unit
   bool by_numbers = false;        // the unit is taken by the values, not from the header
   bool weak = false;              // the name says little of which signal of its kind it is
@@ -34,6 +35,9 @@ struct ColumnGuess {
 
 // The unit of the closed table that people mean by a word: "PSI", "deg C", "lpm"; empty: none.
 std::string unit_meant(const std::string& written);
+
+// Milliamperes of what is no current: a transmitter's 4 to 20.
+bool is_transmitters(const std::string& unit, Signal signal);
 
 // Each signal once: the better match wins, then the first column. `units`: of a row below the header, a cell a column.
 std::vector<ColumnGuess> guess_columns(const std::vector<std::string>& header,

@@ -1,12 +1,18 @@
 #include "signals/header.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <cstddef>
+#include <iterator>
 #include <optional>
+#include <utility>
 
 #include "base/error.h"
 #include "base/trimmed.h"
+#include "base/trouble.h"
 #include "base/units.h"
 #include "signals/guess.h"
 #include "signals/time_stamp.h"
@@ -15,6 +21,7 @@ namespace servodx {
 namespace {
 
 constexpr std::size_t most_lines = 200;  // above a header
+constexpr std::size_t most_judged = 20;  // rows above the numbers that may be the header, and cells of each
 
 constexpr std::string_view blanks = " \t\r";
 
@@ -41,6 +48,11 @@ bool is_number(std::string cell) {
 
 bool is_sample(const std::string& cell) { return is_number(cell) || parse_time_stamp(cell) || is_date(cell); }
 
+std::string in_small_letters(std::string text) {
+  for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return text;
+}
+
 struct NumbersRow {
   char separator;
   std::size_t width;
@@ -57,10 +69,14 @@ std::optional<NumbersRow> numbers_of(std::string_view line) {
   return std::nullopt;
 }
 
-bool equal_but_for_capitals(std::string_view a, std::string_view b) {
-  return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](char x, char y) {
-    return std::tolower(static_cast<unsigned char>(x)) == std::tolower(static_cast<unsigned char>(y));
-  });
+// What a recorder writes into the column of the time, beside the units of the others.
+constexpr std::array<std::string_view, 4> labels_of_units = {"unit", "units", "einheit", "einheiten"};
+constexpr std::array<std::string_view, 2> names_of_comments = {"comment", "kommentar"};
+constexpr std::array<std::string_view, 2> no_number = {"nan", "-nan"};
+
+template <std::size_t n>
+bool is_one_of(const std::array<std::string_view, n>& words, const std::string& cell) {
+  return std::find(words.begin(), words.end(), in_small_letters(cell)) != words.end();
 }
 
 // The cells without their brackets, where one at least is a unit and none a number.
@@ -71,6 +87,7 @@ std::vector<std::string> as_units(std::vector<std::string> units) {
     const std::size_t n = cell.size();
     if (n > 1 && ((cell[0] == '[' && cell[n - 1] == ']') || (cell[0] == '(' && cell[n - 1] == ')')))
       cell = trimmed(std::string_view(cell).substr(1, n - 2), blanks);
+    if (is_one_of(labels_of_units, cell)) cell.clear();
     any = any || !unit_meant(cell).empty();
   }
   return any ? units : std::vector<std::string>{};
@@ -115,11 +132,49 @@ bool are_pairs(const std::vector<std::string>& cells) {
   return cells[1] != cells[0];
 }
 
+// How many names of signals a person would know among the cells, less those that are no name.
+long known_names(std::vector<std::string> cells) {
+  cells.resize(std::min(cells.size(), most_judged));
+  const std::vector<ColumnGuess> guesses = guess_columns(cells);
+  return std::count_if(guesses.begin(), guesses.end(), [](const ColumnGuess& g) { return g.signal && !g.weak; }) -
+         std::count_if(cells.begin(), cells.end(), [](const std::string& cell) { return cell.empty(); });
+}
+
+bool has_letter(const std::string& cell) {
+  return std::any_of(cell.begin(), cell.end(), [](unsigned char c) { return std::isalpha(c) || c >= 0x80; });
+}
+
+// No cell is a number, nor the NaN that a sample may be.
+bool is_row_of_words(const std::vector<std::string>& cells) {
+  return std::any_of(cells.begin(), cells.end(), has_letter) &&
+         std::none_of(cells.begin(), cells.end(),
+                      [](const std::string& c) { return is_sample(c) || is_one_of(no_number, c); });
+}
+
+// "Offset; 0; 0", "ScaleFactor; 1; 1": no samples, and nothing to be done where they change nothing.
+bool is_row_of_scales(const std::vector<std::string>& cells, long line, const std::string& path) {
+  constexpr std::pair<std::string_view, double> labels[] = {{"offset", 0}, {"scalefactor", 1}, {"scale", 1},
+                                                            {"factor", 1}, {"faktor", 1},      {"gain", 1}};
+  const std::string first = in_small_letters(cells.front());
+  const auto known =
+      std::find_if(std::begin(labels), std::end(labels), [&](const auto& l) { return l.first == first; });
+  if (known == std::end(labels)) return false;
+  for (std::string cell : cells) {
+    std::replace(cell.begin(), cell.end(), ',', '.');
+    if (const auto number = parse_number(cell); number && *number != known->second)
+      throw InputError(
+          {path, line, ""},
+          fmt::format("the row '{}' below the header is not {} for all columns", cells.front(), known->second),
+          "write it as gain or offset of these columns in the rig file, where the numbers are without it, "
+          "and delete the row");
+  }
+  return true;
+}
+
 }  // namespace
 
 bool ends_with_comment(const std::vector<std::string>& header) {
-  return header.size() > 2 &&
-         (equal_but_for_capitals(header.back(), "comment") || equal_but_for_capitals(header.back(), "kommentar"));
+  return header.size() > 2 && is_one_of(names_of_comments, header.back());
 }
 
 bool is_row_of_numbers(std::string_view line) { return numbers_of(line).has_value(); }
@@ -128,6 +183,54 @@ std::vector<std::string> units_row(CsvCursor& csv) {
   std::vector<std::string> units = as_units(csv.row_ahead());
   if (ends_with_comment(csv.header()) && units.size() + 1 == csv.header().size()) units.emplace_back();
   return units.size() == csv.header().size() ? units : std::vector<std::string>{};
+}
+
+RowsBelow pass_rows_below_header(CsvCursor& csv, const std::string& path) {
+  const Above above = look_ahead(csv);
+  // Without a row of numbers ahead, units alone can be told from samples.
+  const long rows = above.numbers ? static_cast<long>(above.lines.size()) : 1;
+  RowsBelow below;
+  for (below.in_row = csv.next_row(); below.in_row && below.passed < rows; below.in_row = csv.next_row()) {
+    const std::vector<std::string> units = units_row(csv), cells = csv.row_ahead();
+    if (!units.empty() && below.units.empty()) {
+      below.units = units;
+      below.units_at = below.passed;
+    } else if (!above.numbers || cells.size() != csv.header().size() ||
+               !(is_row_of_words(cells) || is_row_of_scales(cells, csv.line(), path))) {
+      break;
+    }
+    ++below.passed;
+  }
+  return below;
+}
+
+void refuse_ragged(const CsvCursor& csv, std::size_t cells, const std::string& path) {
+  throw DocumentedError(Trouble::row, {path, csv.line(), ""},
+                        fmt::format("ragged row: {} cells, the header has {}", cells, csv.header().size()),
+                        cells > csv.header().size() && csv.separator() == ','
+                            ? "write one cell a column; a decimal comma needs ';' as separator"
+                            : "write one cell a column");
+}
+
+void require_as_many_cells(const CsvCursor& csv, const std::vector<std::string>& row, const std::string& path) {
+  const std::size_t cells = row.size(), names = csv.header().size();
+  if (cells <= names || (cells == names + 1 && ends_with_comment(csv.header()))) return;
+  const bool whole = std::all_of(row.begin(), row.end(), [](const std::string& c) { return c.find('.') == c.npos; });
+  if (csv.separator() != ',' || cells == names + 1 || !whole) refuse_ragged(csv, cells, path);
+  throw DocumentedError(
+      Trouble::row, {path, csv.line(), ""},
+      fmt::format("ragged row: {} cells, the header has {}: decimal commas between commas", cells, names),
+      "export with ';' or tab between cells, or with decimal points");
+}
+
+void refuse_second_header(const CsvCursor& csv, bool is_header, const std::string& path) {
+  constexpr std::string_view of_labview = "***End_of_Header***";
+  const Above above = look_ahead(csv);
+  for (const Above::Line& line : above.lines)
+    is_header = is_header || line.text.starts_with(of_labview) || cells_of(line.text, csv.separator()) == csv.header();
+  if (is_header)
+    throw DocumentedError(Trouble::row, {path, csv.line(), ""}, "a second header: the file holds several recordings",
+                          "cut it into a file for each");
 }
 
 std::vector<std::string> units_above(std::string_view text, const CsvCursor& csv) {
@@ -139,7 +242,7 @@ std::vector<std::string> units_above(std::string_view text, const CsvCursor& csv
       as_units(cells_of(text.substr(at + 1, text.find('\n', at + 1) - at - 1), csv.separator()));
   if (ends_with_comment(csv.header()) && units.size() + 1 == csv.header().size()) units.emplace_back();
   if (units.size() != csv.header().size()) return {};
-  units.front() = "s";
+  units.front() = std::string("s");
   return units;
 }
 
@@ -151,25 +254,31 @@ void require_names(const CsvCursor& csv, const std::string& path) {
 }
 
 long pass_lines_above_header(CsvCursor& csv, const std::string& path) {
+  if (is_row_of_numbers(csv.header_text())) csv.header_from_comment();
   const Above above = look_ahead(csv);
-  if (!above.numbers) return 0;
+  if (!above.numbers || above.lines.empty()) return 0;
   const auto [separator, width] = *above.numbers;
   const auto fits = [width = width](const std::vector<std::string>& cells) {
     return cells.size() == width || (cells.size() == width + 1 && ends_with_comment(cells));
   };
-  if (fits(csv.header()) || above.lines.empty()) return 0;
-  const auto cells_at = [&, separator = separator](std::size_t k) { return cells_of(above.lines[k].text, separator); };
-  std::size_t last = above.lines.size() - 1;
-  for (std::size_t k = 0; k <= last; ++k)
-    if (const auto cells = cells_at(k); cells.size() == width && are_pairs(cells))
+  std::vector<std::vector<std::string>> rows = {csv.header()};
+  for (const Above::Line& line : above.lines) rows.push_back(cells_of(line.text, separator));
+  for (const auto& cells : rows)
+    if (cells.size() == width && are_pairs(cells))
       throw InputError({path, above.numbers_line, ""},
                        "its columns go in pairs, a time and a value each: every signal has a time of its own",
                        "export with one time column for all signals, or delete all but the first time column and "
                        "write a row of 'name [unit]' above the numbers");
-  if (!fits(cells_at(last))) return 0;
-  if (last > 0 && fits(cells_at(last - 1)) && !as_units(cells_at(last)).empty()) --last;
-  csv.header_at(above.lines[last].at, separator);
-  return static_cast<long>(last) + 1;
+  std::size_t best = fits(rows.front()) ? 0 : rows.size() - 1;
+  if (!fits(rows[best])) return 0;
+  if (best > 1 && fits(rows[best - 1]) && !as_units(rows[best]).empty()) --best;
+  long most = known_names(rows[best]);
+  for (std::size_t k = rows.size() - std::min(rows.size(), most_judged); k < rows.size(); ++k)
+    if (k != best && fits(rows[k]) && as_units(rows[k]).empty() && known_names(rows[k]) > most)
+      best = k, most = known_names(rows[k]);
+  if (best == 0) return 0;
+  csv.header_at(above.lines[best - 1].at, separator);
+  return static_cast<long>(best);
 }
 
 }  // namespace servodx

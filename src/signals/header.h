@@ -1,9 +1,12 @@
-// Where a log's header is: below the lines that a recorder wrote above it, with a row of units below or without.
+// Where a log's header is: below the lines that a recorder wrote above it, with rows of text below it or without.
 //
-// The header is the last row before the first row of numbers, or the one above that where the last is one of units. It
-// is looked for only where the first row has another number of cells than the first row of numbers, which is refused
-// else. A last column of comments (LabVIEW's) may lack its cells.
+// The header is a row above the first row of numbers that has as many cells as that. Of several it is the one with the
+// most names that a person would know; where that does not tell, the first row of the file, or the last that is not of
+// units. Rows of text below it are passed, and one of units is taken. Where no row has as many cells, the first row of
+// the file is taken, and its reader refuses it. A last column of comments (LabVIEW's) may lack its cells. Names behind
+// a '#' right above the numbers are a header too.
 #pragma once
+#include <cstddef>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -19,8 +22,30 @@ long pass_lines_above_header(CsvCursor& csv, const std::string& path);
 // Throws InputError where the row that serves as a header is one of numbers.
 void require_names(const CsvCursor& csv, const std::string& path);
 
+// The rows of text between the header and the first sample: units, the recorder's channels, offsets and factors that
+// change nothing.
+struct RowsBelow {
+  bool in_row = false;             // a sample follows, and its row has begun
+  long passed = 0;                 // rows, that of the units included
+  std::vector<std::string> units;  // of a row of units; empty: there is none
+  long units_at = -1;              // which of the rows it is
+};
+// `csv`: at the header. Throws InputError where a row holds offsets or factors that change the numbers.
+RowsBelow pass_rows_below_header(CsvCursor& csv, const std::string& path);
+
+// Throws InputError where the first row of samples, at which the cursor stands, has more cells than the header: with
+// commas between cells that may be a decimal comma.
+void require_as_many_cells(const CsvCursor& csv, const std::vector<std::string>& row, const std::string& path);
+
+// Throws InputError of the row at which the cursor stands, which has so many cells, and the header others.
+[[noreturn]] void refuse_ragged(const CsvCursor& csv, std::size_t cells, const std::string& path);
+
+// Throws InputError where a second recording begins: the row just read is the header (`is_header`), or that comes again
+// before the next row of numbers.
+void refuse_second_header(const CsvCursor& csv, bool is_header, const std::string& path);
+
 // The row that a cursor stands at, where it is one of units below a header: no cell is a number, one at least is a
-// unit. Without their brackets; empty: it is none.
+// unit. Without their brackets, and without the word "Unit" before them; empty: it is none.
 std::vector<std::string> units_row(CsvCursor& csv);
 
 // The units that LabVIEW writes some lines above its names, one for each but the first column, the time in seconds.

@@ -37,10 +37,14 @@ class CsvReader {
     if (above > 0)
       log_.note(Note::Kind::preamble, fmt::format("{}: the header is in line {}; {} row{} of other text above it",
                                                   path_, csv_.header_line(), above, above == 1 ? "" : "s"));
-    in_row_ = csv_.next_row();
-    const std::vector<std::string> units = in_row_ ? units_row(csv_) : std::vector<std::string>{};
-    if (!units.empty()) in_row_ = csv_.next_row();
+    const RowsBelow below = pass_rows_below_header(csv_, path_);
+    const std::vector<std::string>& units = below.units;
+    if (const long others = below.passed - !units.empty(); others > 0)
+      log_.note(Note::Kind::preamble, fmt::format("{}: {} row{} of other text below the header in line {}", path_,
+                                                  others, others == 1 ? "" : "s", csv_.header_line()));
+    in_row_ = below.in_row;
     const std::vector<std::string> first = in_row_ ? csv_.row_ahead() : std::vector<std::string>{};
+    require_as_many_cells(csv_, first, path_);
     for (std::size_t c = 0; c < csv_.header().size(); ++c) {
       const std::string& cell = csv_.header()[c];
       const bool bare = !cell.ends_with(']');
@@ -82,7 +86,7 @@ class CsvReader {
     const std::size_t width = target_.size();
     std::optional<DocumentedError> fault;
     std::size_t cells = 0;
-    bool last_is_empty = false;
+    bool last_is_empty = false, is_header = false;
     for (; cells < width; ++cells) {
       const int to = target_[cells];
       if (to < 0) {
@@ -92,6 +96,7 @@ class CsvReader {
       const Cell kind = csv_.next_number(row_[to]);
       if (kind == Cell::none) break;
       last_is_empty = kind == Cell::missing;
+      is_header = is_header || (kind == Cell::text && csv_.last_text() == csv_.header()[cells]);
       if (stamps_ && to == stamped_ && kind != Cell::missing) {
         if (!take_stamp(to) && !fault)
           fault.emplace(Trouble::row, Place{path_, csv_.line(), log_.name(to)},
@@ -112,11 +117,8 @@ class CsvReader {
                 fmt::format("{}:{}: dropped the last line: it is cut short and has no line end", path_, csv_.line()));
       return false;
     }
-    if (ragged)
-      log_.refuse_as(
-          Trouble::row, csv_.line(), "", fmt::format("ragged row: {} cells, the header has {}", found, width),
-          found > width && csv_.separator() == ',' ? "write one cell a column; a decimal comma needs ';' as separator"
-                                                   : "write one cell a column");
+    if (ragged || fault) refuse_second_header(csv_, is_header, path_);
+    if (ragged) refuse_ragged(csv_, found, path_);
     if (fault) throw *fault;
     return true;
   }

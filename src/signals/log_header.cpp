@@ -18,17 +18,26 @@ namespace servodx {
 namespace {
 
 // The numbers of a CSV log's columns; date-time stamps as such.
-std::vector<ColumnNumbers> numbers_of_rows(CsvCursor& csv, bool in_row) {
+std::vector<ColumnNumbers> numbers_of_rows(CsvCursor& csv, bool in_row, const std::string& path) {
   std::vector<NumbersCollector> collectors(csv.header().size());
-  std::vector<bool> stamps(collectors.size(), false);
-  for (; in_row; in_row = csv.next_row())
+  std::vector<bool> words(collectors.size(), false), stamps = words;
+  const std::size_t most = collectors.size() + ends_with_comment(csv.header());
+  for (; in_row; in_row = csv.next_row()) {
     for (std::size_t c = 0; c < collectors.size(); ++c) {
       double value = 0;
       const Cell kind = csv.next_number(value);
       if (kind == Cell::none) break;
-      if (kind == Cell::text && !stamps[c]) stamps[c] = parse_time_stamp(csv.last_text()).has_value();
+      if (kind == Cell::text && !words[c]) {
+        words[c] = true;
+        stamps[c] = parse_time_stamp(csv.last_text()).has_value();
+        if (!stamps[c]) refuse_second_header(csv, csv.last_text() == csv.header()[c], path);
+      }
       collectors[c].take(kind == Cell::number ? value : std::nan(""));
     }
+    std::size_t cells = collectors.size();
+    while (csv.skip_cell()) ++cells;
+    if (cells > most) refuse_ragged(csv, cells, path);
+  }
   std::vector<ColumnNumbers> numbers;
   for (std::size_t c = 0; c < collectors.size(); ++c) {
     numbers.push_back(collectors[c].numbers());
@@ -42,11 +51,11 @@ LogHeader read_csv_header(const std::string& path) {
   CsvCursor csv(bytes, path);
   pass_lines_above_header(csv, path);
   require_names(csv, path);
-  bool in_row = csv.next_row();
-  const std::vector<std::string> units = in_row ? units_row(csv) : std::vector<std::string>{};
-  if (!units.empty()) in_row = csv.next_row();
-  const std::vector<std::string> above = units.empty() ? units_above(bytes, csv) : std::vector<std::string>{};
-  LogHeader header{guess_columns(csv.header(), units.empty() ? above : units), numbers_of_rows(csv, in_row)};
+  const RowsBelow below = pass_rows_below_header(csv, path);
+  if (below.in_row) require_as_many_cells(csv, csv.row_ahead(), path);
+  const std::vector<std::string> above = below.units.empty() ? units_above(bytes, csv) : std::vector<std::string>{};
+  LogHeader header{guess_columns(csv.header(), below.units.empty() ? above : below.units),
+                   numbers_of_rows(csv, below.in_row, path)};
   if (!above.empty())
     for (ColumnGuess& g : header.columns) g.unit_in_brackets = false;  // the reader looks for none so far above
   return header;

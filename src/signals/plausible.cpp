@@ -102,6 +102,8 @@ class Watch {
           fmt::format("{}: {:.3g} samples a second are more than loggers take: check the unit of time, or "
                       "thin the log",
                       log_.path, rate));
+    if (std::abs(t.front()) > farthest_clock)
+      add(fmt::format("{}: the time begins at {:.3g} s, which no clock shows: check its unit", log_.path, t.front()));
     if (span > longest_log)
       add(
           fmt::format("{}: the log lasts {:.3g} s, over a day: check the unit of time, or cut the log to "

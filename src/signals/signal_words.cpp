@@ -32,6 +32,8 @@ constexpr SignalWords names[] = {
     {Signal::time, "laufzeit"},
     {Signal::time, "gesamtzeit"},
     {Signal::time, "elapsed time"},
+    {Signal::time, "filetime"},
+    {Signal::time, "ticks", true},
     // One of two coils: how they are wired, nobody says.
     {Signal::coil_current, "coil 1 current", true},
     {Signal::coil_current, "coil 1", true},
@@ -758,6 +760,11 @@ constexpr ForeignUnit beyond[] = {
     {"dan/cm2", "bar", "1", ""},
     {"dan/cm\xC2\xB2", "bar", "1", ""},
     {"mil", "in", "0.001", ""},
+    {"mils", "in", "0.001", ""},
+    {"thou", "in", "0.001", ""},
+    {"ns", "us", "0.001", ""},
+    {"100ns", "us", "0.1", ""},
+    {"ticks", "us", "0.1", ""},
 };
 
 }  // namespace

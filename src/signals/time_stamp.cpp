@@ -1,12 +1,13 @@
 #include "signals/time_stamp.h"
 
+#include <algorithm>
 #include <chrono>
 #include <utility>
 
 namespace servodx {
 namespace {
 
-constexpr std::int64_t second = 1'000'000'000, day = 86400 * second;  // [ns]
+constexpr std::int64_t second = 1'000'000'000, hour = 3600 * second, day = 24 * hour;  // [ns]
 
 // A text that is read from its front.
 class Front {
@@ -45,35 +46,75 @@ class Front {
   std::string_view text_;
 };
 
-// [ns] since 1970
-std::optional<std::int64_t> take_date(Front& text) {
+struct Date {
+  std::int64_t since_1970;  // [ns]
+  bool is_known;            // false: which of its numbers is the day, nobody can tell
+};
+
+std::optional<Date> take_date(Front& text) {
   const auto first = text.take_number(1, 4);
   const char mark = first ? text.take_one_of("-/.") : char{0};
   if (!mark) return std::nullopt;
-  const auto month = text.take_number(1, 2);
-  if (!month || !text.take_one_of({&mark, 1})) return std::nullopt;
-  auto last = text.take_number(1, 4);
+  const auto second_one = text.take_number(1, 2);
+  if (!second_one || !text.take_one_of({&mark, 1})) return std::nullopt;
+  const auto last = text.take_number(1, 4);
   if (!last) return std::nullopt;
-  auto year = *first, of_month = *last;
-  if (mark == '.') std::swap(year, of_month);
+  constexpr std::int64_t longest_month = 31, months = 12;
+  std::int64_t year = *first, month = *second_one, of_month = *last;
+  if (year <= longest_month) {
+    std::swap(year, of_month);
+    if (year < 100) year += 2000;
+    if (mark != '.' && of_month >= 1 && month >= 1 && month <= longest_month && std::min(month, of_month) <= months)
+      return Date{0, false};
+  }
   const std::chrono::year_month_day date{std::chrono::year(static_cast<int>(year)),
-                                         std::chrono::month(static_cast<unsigned>(*month)),
+                                         std::chrono::month(static_cast<unsigned>(month)),
                                          std::chrono::day(static_cast<unsigned>(of_month))};
   if (year < 1970 || year > 2200 || !date.ok()) return std::nullopt;
-  return day * std::chrono::sys_days(date).time_since_epoch().count();
+  return Date{day * std::chrono::sys_days(date).time_since_epoch().count(), true};
+}
+
+// "59.500" [ns]
+std::optional<std::int64_t> take_seconds(Front& text, bool with_fraction) {
+  const auto whole = text.take_number(2, 2);
+  if (!whole || *whole > 59) return std::nullopt;
+  const bool has_fraction = text.take_one_of(".,") != 0;
+  if (with_fraction && !has_fraction) return std::nullopt;
+  return *whole * second + (has_fraction ? text.take_fraction() : 0);
+}
+
+// " PM" [ns] to be added to a clock of twelve hours; nothing where its hour is none of those.
+std::optional<std::int64_t> take_half_of_day(Front& text, std::int64_t hours) {
+  Front half = text;
+  while (half.take_one_of(" ")) {
+  }
+  const char letter = half.take_one_of("AaPp");
+  if (!letter || !half.take_one_of("Mm")) return 0;
+  text = half;
+  if (hours < 1 || hours > 12) return std::nullopt;
+  const bool afternoon = letter == 'P' || letter == 'p';
+  return (afternoon - (hours == 12)) * 12 * hour;
 }
 
 // [ns] since midnight
 std::optional<std::int64_t> take_clock(Front& text) {
-  const auto hour = text.take_number(1, 2);
-  if (!hour || *hour > 23 || !text.take_one_of(":")) return std::nullopt;
-  const auto minute = text.take_number(2, 2);
-  if (!minute || *minute > 59 || !text.take_one_of(":")) return std::nullopt;
-  const auto whole = text.take_number(2, 2);
-  if (!whole || *whole > 59) return std::nullopt;
-  std::int64_t clock = ((*hour * 60 + *minute) * 60 + *whole) * second;
-  if (text.take_one_of(".,")) clock += text.take_fraction();
-  return clock;
+  const auto hours = text.take_number(1, 2);
+  if (!hours || *hours > 23 || !text.take_one_of(":")) return std::nullopt;
+  const auto minutes = text.take_number(2, 2);
+  if (!minutes || *minutes > 59 || !text.take_one_of(":")) return std::nullopt;
+  const auto seconds = take_seconds(text, false);
+  const auto half = seconds ? take_half_of_day(text, *hours) : std::nullopt;
+  if (!half) return std::nullopt;
+  return *hours * hour + *minutes * 60 * second + *seconds + *half;
+}
+
+// "11:59.500" [ns] since the full hour; without a fraction it may be hours and minutes.
+std::optional<std::int64_t> take_minutes(Front& text) {
+  const auto minutes = text.take_number(1, 2);
+  if (!minutes || *minutes > 59 || !text.take_one_of(":")) return std::nullopt;
+  const auto seconds = take_seconds(text, true);
+  if (!seconds) return std::nullopt;
+  return *minutes * 60 * second + *seconds;
 }
 
 // "Z", "+01:00" [ns]
@@ -98,12 +139,12 @@ std::optional<TimeStamp> parse_time_stamp(std::string_view text) {
     const auto clock = take_clock(dated);
     const auto zone = clock ? take_zone(dated) : std::nullopt;
     if (!zone || !dated.at_end()) return std::nullopt;
-    return TimeStamp{*date + *clock - *zone, true};
+    return date->is_known ? TimeStamp{date->since_1970 + *clock - *zone, 0} : TimeStamp{*clock, day};
   }
-  Front bare(text);
-  const auto clock = take_clock(bare);
-  if (!clock || !bare.at_end()) return std::nullopt;
-  return TimeStamp{*clock, false};
+  Front whole(text), short_one(text);
+  if (const auto clock = take_clock(whole); clock && whole.at_end()) return TimeStamp{*clock, day};
+  if (const auto clock = take_minutes(short_one); clock && short_one.at_end()) return TimeStamp{*clock, hour};
+  return std::nullopt;
 }
 
 bool is_date(std::string_view text) {
@@ -112,10 +153,10 @@ bool is_date(std::string_view text) {
 }
 
 std::optional<double> StampClock::seconds(TimeStamp stamp) {
-  if (stamp.has_date != first_.has_date) return std::nullopt;
-  if (!stamp.has_date && stamp.nanoseconds < last_ - day / 2) days_ += day;  // midnight
+  if (stamp.turn != first_.turn) return std::nullopt;
+  if (stamp.nanoseconds < last_ - stamp.turn / 2) turns_ += stamp.turn;  // midnight, or the full hour
   last_ = stamp.nanoseconds;
-  return static_cast<double>(stamp.nanoseconds - first_.nanoseconds + days_) / static_cast<double>(second);
+  return static_cast<double>(stamp.nanoseconds - first_.nanoseconds + turns_) / static_cast<double>(second);
 }
 
 }  // namespace servodx

@@ -125,6 +125,28 @@ TEST(Init, NothingAbsurdIsAnActiveLine) {
   EXPECT_NE(made.question("pB [kp/cm2]").find("unknown unit 'kp/cm2'"), std::string::npos);
 }
 
+TEST(Init, TicksOfADateAreReadAsSeconds) {
+  std::string text = "Timestamp,Current [mA],Spool [mm]\n";
+  for (int k = 0; k < 60; ++k)
+    text += std::to_string(132590000000000000 + 10000L * k) + "," + std::to_string(k % 7 - 3) + "," +
+            std::to_string(0.01 * (k % 5)) + "\n";
+  const Made made = init(text);
+  EXPECT_NE(made.rig.find("\n\"Timestamp\" = { signal = \"time\", unit = \"us\", gain = \"0.1\" }"), std::string::npos)
+      << made.rig;
+  EXPECT_NE(made.ended.out.find("'Timestamp' in 0.1 us"), std::string::npos) << made.ended.out;
+}
+
+TEST(Init, ATransmittersMilliamperesAreAskedForGainAndOffset) {
+  const Made made =
+      init(text_of({{"time [s]", "cmd [mA]", "spool [mm]", "piston [mA]"}, {0, 1, 2, 3}, [](int c, double x) {
+                      return c == 3 ? 12 + x / 100 : x;
+                    }}));
+  EXPECT_NE(made.rig.find("\n# \"piston [mA]\" = { signal = \"piston_position\", gain = \"?\", offset = \"?\" }"),
+            std::string::npos)
+      << made.rig;
+  EXPECT_NE(made.ended.out.find("the log can be read"), std::string::npos) << made.ended.out;
+}
+
 TEST(Init, VoltsAreRefusedUntilTheGainIsGiven) {
   const Desk desk;
   desk.write("log.csv", text_of({{"time [s]", "Valve Command (V)", "spool [mm]"}, {0, 1, 2}}));
@@ -165,6 +187,10 @@ TEST(Init, WhatIsNoLogIsRefusedAndNothingWritten) {
                                                        {"b.tdms", "TDSm" + rest},
                                                        {"c.csv", "\x89HDF\r\n\x1a\n" + rest},
                                                        {"d.csv", "0,1,2\n1,1,2\n"},
+                                                       {"g.csv", "t [s],i [mA],x [mm]\n0,0,1,5,2,5\n0,1,1,5,2,5\n"},
+                                                       {"h.csv", "t [s],i [mA]\n0,1\n1,2\nt [s],i [mA]\n0,1\n"},
+                                                       {"i.csv", "t [s],i [mA]\n0,1\n1,2,5\n"},
+                                                       {"j.csv", "t [s],i [mA]\r0,1\r1,2\r"},
                                                        {"e.mat", "no MAT file at all, but words"},
                                                        {"f.csv", "run\n\"a\" b\n" + std::string(20000, ',') + "\n"}};
   for (const auto& [name, bytes] : files) {

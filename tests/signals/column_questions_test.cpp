@@ -94,6 +94,74 @@ TEST(ColumnQuestions, AUnitIsTakenByTheValuesOnlyWhereTheyAgreeWithSiAlone) {
   EXPECT_NE(question({"Time", 0, 10}).find("counts rows"), std::string::npos);
 }
 
+// Ticks of 100 ns since 1601 or the year 1, and what Unix counts, at 1 kHz.
+TEST(ColumnQuestions, AClockThatCountsFromADateIsKnownByItsSize) {
+  const struct {
+    double from, step;
+    const char *unit, *gain;
+  } clocks[] = {{132590000000000000, 10000, "us", "0.1"},
+                {637500000000000000, 10000, "us", "0.1"},
+                {1.614e18, 1e6, "us", "0.001"},
+                {1.614e15, 1e3, "us", ""},
+                {1.614e12, 1, "ms", ""},
+                {1.614e9, 1e-3, "s", ""}};
+  for (const auto& clock : clocks) {
+    const ColumnGuess g = asked({{"Time", clock.from, clock.from + 10 * clock.step}})[0];
+    EXPECT_TRUE(g.by_numbers) << clock.from;
+    EXPECT_EQ(g.question, "") << clock.from;
+    EXPECT_EQ(g.unit, clock.unit) << clock.from;
+    EXPECT_EQ(g.gain, clock.gain) << clock.from;
+  }
+  const ColumnGuess micro = asked({{"Time [us]", 132590000000000000, 132590000000100000}})[0];
+  EXPECT_NE(micro.question.find("is it ticks of 100 ns since 1601?"), std::string::npos) << micro.question;
+  EXPECT_EQ(micro.gain, "0.1");
+  EXPECT_EQ(asked({{"Time [s]", 132590000000000000, 132590000000100000}})[0].gain, "1e-07");
+  EXPECT_EQ(question({"Time [us]", 1.614e15, 1.614e15 + 1e4}), "");
+}
+
+TEST(ColumnQuestions, MicrosecondsOrTicksWithoutADateAreAsked) {
+  for (const Given& either : {Given{"Time", 0, 1e5}, Given{"Time", 5e6, 5e6 + 1e4}, Given{"Ticks", 0, 1e5}})
+    EXPECT_NE(question(either).find("us, or ticks of 100 ns with gain = \"0.1\""), std::string::npos) << either.cell;
+  const ColumnGuess ticks = asked({{"Time", 0, 1e6}})[0];  // 100 ms at a step, in us
+  EXPECT_NE(ticks.question.find("ticks of 100 ns?"), std::string::npos) << ticks.question;
+  EXPECT_EQ(ticks.gain, "0.1");
+  EXPECT_EQ(asked({{"Time", 0, 500}})[0].unit, "us");  // ticks of 5 us at a step
+  EXPECT_EQ(question({"Time", 0, 500}), "");
+}
+
+TEST(ColumnQuestions, AColumnThatOnlyRisesMayBeTheTimeAndIsAsked) {
+  const auto g = asked({{"Name", 0, 0.01}, {"spool [mm]", -0.5, 0.5}});
+  EXPECT_EQ(g[0].signal, Signal::time);
+  EXPECT_NE(g[0].question.find("is 'Name' the time?"), std::string::npos) << g[0].question;
+  EXPECT_FALSE(asked({{"Name", 0, 10}, {"spool [mm]", -0.5, 0.5}})[0].signal);  // counts rows
+  EXPECT_FALSE(asked({{"Name [mm/s]", 0, 0.01}})[0].signal);
+  EXPECT_FALSE(asked({{"Name", 0, 0.01}, {"t [s]", 0, 0.01}})[0].signal);
+}
+
+// 12 mil are 0.3 mm, and less than the piston moves.
+TEST(ColumnQuestions, AUnitBeyondTheTableCountsWithItsGain) {
+  const auto g = asked({{"spool [mil]", -12, 12}, {"piston [mm]", -50, 50}});
+  EXPECT_EQ(g[0].gain, "0.001");
+  EXPECT_EQ(g[0].question, "unknown unit 'mil': is it 0.001 in?");
+  EXPECT_EQ(g[1].question, "");
+  for (const ColumnGuess& each : asked({{"spool [mil]", -12000, 12000}, {"piston [mm]", -50, 50}}))
+    EXPECT_NE(each.question.find("exchanged"), std::string::npos) << each.cell;
+}
+
+TEST(ColumnQuestions, AnotherSignalInMilliamperesIsATransmittersAndAsked) {
+  for (const Given& given :
+       {Given{"pressure A [mA]", 6, 14}, Given{"spool [mA]", 8, 16}, Given{"piston [mA]", 5, 19}}) {
+    const ColumnGuess g = asked({given})[0];
+    EXPECT_TRUE(g.signal && g.gain_is_open && g.offset_is_open) << given.cell;
+    EXPECT_NE(g.question.find("its range over 16 mA"), std::string::npos) << g.question;
+  }
+  EXPECT_NE(question({"spool [mA]", -10, 10}).find("which gain has it, in m/mA"), std::string::npos);
+  EXPECT_FALSE(asked({{"pump [mA]", 0, 900}})[0].signal);  // of its motor
+  EXPECT_EQ(asked({{"spool current [mA]", 6, 14}})[0].signal, Signal::command);
+  EXPECT_NE(question({"pressure A", 6, 14}).find("the mA of a transmitter"), std::string::npos);
+  EXPECT_EQ(question({"pressure A", 6, 140}).find("transmitter"), std::string::npos);
+}
+
 TEST(ColumnQuestions, VoltsAskForAGain) {
   const ColumnGuess g = asked({{"Valve Command (V)", -10, 10}})[0];
   EXPECT_NE(g.question.find("which gain"), std::string::npos);

@@ -49,6 +49,24 @@ void expect_same(const std::vector<Sample>& samples, const Log& log) {
   }
 }
 
+TEST(GrowingLog, BelowRowsOfTextOrNamesBehindAHashAreTheSamplesOfTheWholeLog) {
+  const std::string numbers = "0,1.5,2\n1,2.5,3\n2,1.5,4\n";
+  for (const char* const head : {"time,command,spool_position\nclock,CH 1,CH 2\nms,mA,mm\n",
+                                 "time,command,spool_position\nms,mA,mm\nOffset,0,0\n",
+                                 "# run 7\n# time [ms],command [mA],spool_position [mm]\n"}) {
+    const RigFile rig;
+    const Taken taken = take(head + numbers, 7, rig);
+    ASSERT_EQ(taken.samples.size(), 3u) << head;
+    EXPECT_EQ(taken.samples[1][Signal::command], 2.5e-3) << head;
+    EXPECT_EQ(taken.bad, 0) << head;
+    // What is kept of the head is enough to go on.
+    GrowingLog first("log.csv", rig), next("log.csv", rig);
+    first.feed(head + numbers, [](const Sample&, std::uint64_t) {});
+    next.begin_with(first.head(), 0);
+    EXPECT_EQ(next.unit_of(Signal::command), "mA") << head;
+  }
+}
+
 TEST(GrowingLog, AnyPiecesGiveTheSamplesOfTheWholeLog) {
   const struct {
     const char *log, *rig;

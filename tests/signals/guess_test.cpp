@@ -139,6 +139,10 @@ TEST(Guess, AUnitBeyondTheTableIsCalledUnknown) {
     EXPECT_FALSE(g.unit_in_brackets) << unit;
   }
   EXPECT_EQ(guess_columns({"pA [kp/cm2]"})[0].gain, "0.980665");
+  EXPECT_EQ(guess_columns({"pA [daN/cm2]"})[0].gain, "");
+  EXPECT_EQ(guess_columns({"Time [ns]"})[0].gain, "0.001");
+  EXPECT_EQ(guess_columns({"Time [100 ns]"})[0].gain, "0.1");
+  EXPECT_EQ(guess_columns({"spool [mils]"})[0].gain, "0.001");
   EXPECT_EQ(guess_columns({"pA (bara)"})[0].offset, "-1.013 bar");
   EXPECT_EQ(taken({"pA [N/mm2]"}), "pressure_a in MPa");  // another name of one
   EXPECT_EQ(taken({"spool [micron]"}), "spool_position in um");
@@ -180,8 +184,17 @@ TEST(Guess, OfTwoColumnsThatSayAsMuchOneIsAsked) {
   const auto guesses = guess_columns({"Cyl1 pos [mm]", "Cyl2 pos [mm]", "pA [bar]"});
   EXPECT_NE(guesses[0].question.find("'Cyl1 pos' or 'Cyl2 pos'"), std::string::npos) << guesses[0].question;
   EXPECT_TRUE(guesses[2].question.empty()) << guesses[2].question;
+  const auto twice = guess_columns({"PA [bar]", "PA [psi]"});
+  EXPECT_EQ(twice[0].question, "is it 'PA' in bar or 'PA' in psi that is the pressure_a?");
   // A name that says more decides by itself.
   EXPECT_TRUE(guess_columns({"Pressure A [bar]", "Pressure A raw [bar]"})[0].question.empty());
+}
+
+TEST(Guess, OfTwoPortsIsThePressureOfNeither) {
+  for (const char* cell : {"Pressure A-B [bar]", "P A - P B [bar]", "PA-PB [bar]", "pA - pB [bar]", "p_A-p_T [bar]",
+                           "Pressure A minus B [bar]", "Pressure P-T [bar]", "Pressure difference [bar]"})
+    EXPECT_EQ(taken({cell}), "nothing in bar") << cell;
+  EXPECT_EQ(taken({"T_A [degC]"}), "oil_temperature in degC");
 }
 
 TEST(Guess, ATemperatureByItsUnitAloneIsAsked) {

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <string>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -33,10 +34,58 @@ TEST(Header, LinesOfARecorderAboveTheHeaderArePassed) {
   const std::vector<std::string> three = {"t", "p_A", "x"};
   EXPECT_EQ(header_below("Run 7\nrate,1000\n\nt;p_A;x\n0;1,5;2\n"), std::pair(2L, three));
   EXPECT_EQ(header_below("# note\nRun 7\nt;p_A;x\ns;psi;mm\n0;1,5;2\n"), std::pair(1L, three));
-  EXPECT_EQ(header_below("a;b;c\nd\nt;p_A;x\n0;1,5;\n"), std::pair(0L, std::vector<std::string>{"a", "b", "c"}));
+  EXPECT_EQ(header_below("a;b;c\nd\ne;f;g\n0;1,5;\n"), std::pair(0L, std::vector<std::string>{"a", "b", "c"}));
   EXPECT_EQ(header_below("t;p_A;x\n0;1,5;2\n"), std::pair(0L, three));
   EXPECT_EQ(header_below("t;p_A;x\n0;1,5\n"), std::pair(0L, three));  // ragged, and refused as such
   EXPECT_EQ(header_below("t;p_A;x\nwords\n"), std::pair(0L, three));
+}
+
+// Channels of a recorder, and lines above that are padded to the width of the rows.
+TEST(Header, OfRowsAsWideIsTheOneWithTheMostNames) {
+  const auto header_line = [](const std::string& text) {
+    CsvCursor csv(text, "log.csv");
+    pass_lines_above_header(csv, "log.csv");
+    return csv.header_line();
+  };
+  EXPECT_EQ(header_line("a;b;c\nd\nt;p_A;x\n0;1,5;\n"), 3);
+  EXPECT_EQ(header_line("Recorder;;\nrate;1000;\nt;p_A;spool\nms;bar;mm\nclock;CH 1;CH 2\n0;1,5;2\n"), 3);
+  EXPECT_EQ(header_line("run 7\nt;p_A;spool\nms;bar;mm\nclock;CH 1;CH 2\n0;1,5;2\n"), 2);
+  EXPECT_EQ(header_line("t;valve;valve\n;current;spool\n0;1,5;2\n"), 1);  // a column without a name is none
+}
+
+TEST(Header, RowsOfTextBelowItArePassed) {
+  const auto below = [](const std::string& text) {
+    CsvCursor csv(text, "log.csv");
+    const RowsBelow rows = pass_rows_below_header(csv, "log.csv");
+    return std::pair(rows.passed, rows.units);
+  };
+  const std::vector<std::string> units = {"ms", "bar", "mm"}, none;
+  EXPECT_EQ(below("t;p_A;x\n0;1,5;2\n"), std::pair(0L, none));
+  EXPECT_EQ(below("t;p_A;x\nms;bar;mm\nclock;CH 1;CH 2\n0;1,5;2\n"), std::pair(2L, units));
+  EXPECT_EQ(below("t;p_A;x\nclock;CH 1;CH 2\nms;bar;mm\n0;1,5;2\n"), std::pair(2L, units));
+  EXPECT_EQ(below("t;p_A;x\nUnit;bar;mm\nOffset;0;0\nScaleFactor;1;1,0\n0;1,5;2\n"),
+            std::pair(3L, std::vector<std::string>{"", "bar", "mm"}));
+  EXPECT_EQ(below("t;p_A;x\nnan;1;2\n0;1,5;2\n"), std::pair(0L, none));          // a sample without its time
+  EXPECT_EQ(below("t;p_A;x\nabc;1;2\n0;1,5;2\n"), std::pair(0L, none));          // to be refused
+  EXPECT_EQ(below("t;p_A;x\nabc;def;ghi\njkl;mno;pqr\n"), std::pair(0L, none));  // no numbers at all
+  EXPECT_EQ(below("t;p_A;x\nclock;CH 1\n0;1,5;2\n"), std::pair(0L, none));       // narrower: to be refused
+  EXPECT_THROW(below("t;p_A;x\nScaleFactor;1;0,5\n0;1,5;2\n"), InputError);      // it changes the numbers
+  EXPECT_THROW(below("t;p_A;x\nOffset;1;1\n0;1,5;2\n"), InputError);
+}
+
+TEST(Header, BehindAHashRightAboveTheNumbersIsOne) {
+  const auto header_of = [](const std::string& text) {
+    CsvCursor csv(text, "log.csv");
+    pass_lines_above_header(csv, "log.csv");
+    double first = -1;
+    if (csv.next_row()) csv.next_number(first);
+    return std::tuple(csv.header(), csv.header_line(), first, csv.line());
+  };
+  const std::vector<std::string> three = {"t", "p_A", "x"};
+  EXPECT_EQ(header_of("# note\n# t,p_A,x\n5,1.5,2\n"), std::tuple(three, 2, 5.0, 3));
+  EXPECT_EQ(header_of("#t;p_A;x\n5,5;1,5;2,5\n"), std::tuple(three, 1, 5.5, 2));
+  EXPECT_EQ(header_of("# t,p_A\nt,p_A,x\n5,1.5,2\n"), std::tuple(three, 2, 5.0, 3));
+  EXPECT_EQ(header_of("# a,b,c\nt,p_A,x\n5,1.5,2\n"), std::tuple(three, 2, 5.0, 3));
 }
 
 TEST(Header, OfLabViewsBlocksIsBelowThem) {
@@ -81,6 +130,8 @@ TEST(Header, ThatIsNumbersIsNone) {
   EXPECT_EQ(refusal("0,0.02,1\n1,0.02,1\n"),
             "log.csv:1: there is no header row: the first row is numbers; write a row of 'name [unit]' above it");
   EXPECT_EQ(refusal("a,1,2\n1,0.02,1\n"), "accepted");
+  EXPECT_EQ(refusal("# two,names\n0,0.02,1\n1,0.02,1\n"),
+            "log.csv:2: there is no header row: the first row is numbers; write a row of 'name [unit]' above it");
 }
 
 TEST(Header, OfPairsOfTimeAndValueIsRefused) {

@@ -148,6 +148,9 @@ TEST(Log, TimeStampsAreSecondsFromTheFirstRow) {
     ASSERT_EQ(log.samples(), 3u) << text;
     for (std::size_t k = 0; k < 3; ++k) EXPECT_DOUBLE_EQ(log.time[k], plain.time[k]) << text;
   }
+  const Log american = read("time," + columns + "03/04/2021 11:59:59.900 PM,1,2\n03/05/2021 12:00:00.150 AM,1,3\n", {},
+                            {.minimum_rows = 2});
+  EXPECT_DOUBLE_EQ(american.time[1], 0.25);
   const RigFile rig = rig_with("[columns]\n\"Zeit\" = { signal = \"time\", unit = \"s\" }\n");
   const Log german =
       read("Zeit;command [mA];spool_position [mm]\n04.03.2021 10:11:12,000;0,5;1\n04.03.2021 10:11:12,250;0,5;1\n", rig,
@@ -174,6 +177,71 @@ TEST(Log, AFileWithoutAHeaderOrTextIsToldSo) {
             "log.csv:1: there is no header row: the first row is numbers; write a row of 'name [unit]' above it");
   EXPECT_TRUE(refusal(std::string("TDSm") + std::string(500, '\0')).starts_with("log.csv: is a LabVIEW recording"));
   EXPECT_NE(refusal("TIME [s],COMMAND [mA]\n0,1\n").find("did you mean 'time' by 'TIME'?"), std::string::npos);
+}
+
+TEST(Log, DecimalCommasBetweenCommasAreToldInTheFirstRow) {
+  const std::string said =
+      "decimal commas between commas; export with ';' or tab between cells, or with decimal points";
+  EXPECT_EQ(refusal("time,command,x\n0,000,1,5,0,25\n0,001,1,5,0,25\n"),
+            "log.csv:2: ragged row: 6 cells, the header has 3: " + said);
+  EXPECT_EQ(refusal("time [ms],command [mA],x\n0,1,5,0,25\n1,1,5,0,25\n"),
+            "log.csv:2: ragged row: 5 cells, the header has 3: " + said);
+  EXPECT_EQ(refusal("time [ms],command [mA],x\n0,1.5,2,3,4\n1,1,5,0,25\n"),
+            "log.csv:2: ragged row: 5 cells, the header has 3; write one cell a column; a decimal comma needs ';' as "
+            "separator");
+}
+
+TEST(Log, ASecondRecordingInTheFileIsTold) {
+  const std::string said = "a second header: the file holds several recordings; cut it into a file for each";
+  EXPECT_EQ(refusal(header + rows(30) + header + rows(30)), "log.csv:32: " + said);
+  const std::string segment =
+      "Channels\t2\t\n***End_of_Header***\t\t\ntime [s]\tcommand [mA]\tspool_position [mm]\tComment\n"
+      "0\t1\t0.5\n0.001\t2\t0.6\n";
+  EXPECT_EQ(refusal("LabVIEW Measurement\t\n***End_of_Header***\n\n" + segment + "\n" + segment),
+            "log.csv:10: " + said);
+}
+
+TEST(Log, TextThatIsNoUtf8WithLineFeedsIsTold) {
+  std::string wide = "\xFF\xFE";
+  for (const char c : header + rows(30)) wide += {c, '\0'};
+  EXPECT_EQ(refusal(wide), "log.csv:1: the text is UTF-16; save the file as UTF-8");
+  EXPECT_EQ(refusal("\xFE\xFF" + wide.substr(3) + '\n'), "log.csv:1: the text is UTF-16; save the file as UTF-8");
+  std::string old = header + rows(30);
+  std::replace(old.begin(), old.end(), '\n', '\r');
+  EXPECT_EQ(refusal(old), "log.csv:1: its lines end in CR alone; save the file with line ends of LF or CRLF");
+}
+
+TEST(Log, NamesBehindAHashAreTheHeader) {
+  const Log log = read("# run 7\n# " + header + rows(30)), plain = read(header + rows(30));
+  EXPECT_TRUE(same_bits(log.time, plain.time));
+  EXPECT_TRUE(same_bits(log[Signal::spool_position], plain[Signal::spool_position]));
+  EXPECT_TRUE(log.notes.empty());
+}
+
+TEST(Log, RowsOfTextBelowTheHeaderArePassedAndTold) {
+  const std::string names = "time;command;spool_position\n", numbers = "0;1,5;2\n1;2,5;3\n";
+  for (const char* const below : {"ms;mA;mm\nclock;CH 1;CH 2\n", "clock;CH 1;CH 2\nms;mA;mm\n",
+                                  "[ms];[mA];[mm]\nOffset;0;0\n", "ms;mA;mm\nScaleFactor;1;1\n"}) {
+    const Log log = read(names + below + numbers, {}, {.minimum_rows = 2});
+    EXPECT_EQ(log[Signal::command], (std::vector<double>{1.5e-3, 2.5e-3})) << below;
+    EXPECT_TRUE(mentions(log, "1 row of other text below the header in line 1")) << below;
+  }
+  EXPECT_EQ(refusal(names + "ms;mA;mm\nScaleFactor;1;0,5\n" + numbers),
+            "log.csv:3: the row 'ScaleFactor' below the header is not 1 for all columns; write it as gain or offset of "
+            "these columns in the rig file, where the numbers are without it, and delete the row");
+}
+
+TEST(Log, ATimeThatNoClockShowsIsNoted) {
+  const auto ticks = [](const char* gain) {
+    const RigFile rig = rig_with(std::string("[columns]\ntime = { signal = \"time\", gain = \"") + gain + "\" }\n");
+    std::string text = "time [us],command [mA],spool_position [mm]\n";
+    for (int i = 0; i < 30; ++i) text += fmt::format("{},{},{}\n", 132590000000000000 + i * 10000, i % 7, i % 5);
+    return read(text, rig);
+  };
+  EXPECT_TRUE(mentions(ticks("1"), "which no clock shows"));
+  const Log log = ticks("0.1");  // of 100 ns since 1601
+  EXPECT_FALSE(mentions(log, "which no clock shows"));
+  EXPECT_NEAR(log.time[29] - log.time[0], 29e-3, 5e-6);
 }
 
 TEST(Log, ARowOfUnitsBelowTheHeaderReadsAsIfInIt) {

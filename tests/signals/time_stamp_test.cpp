@@ -18,6 +18,19 @@ TEST(TimeStamp, FormsThatLoggersWriteAreSeconds) {
   EXPECT_EQ(seconds_between("2021/03/04 10:11:12", "2021/03/05 10:11:12"), 86400);
   EXPECT_EQ(seconds_between("28.02.2024 23:59:59,999", "29.02.2024 00:00:00,000"), 1e-3);
   EXPECT_EQ(seconds_between("10:11:12.25", "10:11:12.50"), 0.25);
+  EXPECT_EQ(seconds_between("28.02.24 23:59:59,999", "29.02.24 00:00:00,000"), 1e-3);
+  EXPECT_EQ(seconds_between("11:59.500", "12:00.250"), 0.75);
+  EXPECT_EQ(seconds_between("11:59:59.5 AM", "12:00:00 PM"), 0.5);
+  EXPECT_EQ(seconds_between("12:59:59 PM", "1:00:00 PM"), 1);
+}
+
+// April the third or March the fourth: the clock counts, and midnight is one day.
+TEST(TimeStamp, OfADateWhoseOrderNobodyCanTellTheClockCounts) {
+  EXPECT_EQ(seconds_between("03/04/2021 10:11:59.500", "03/04/2021 10:12:00.250"), 0.75);
+  EXPECT_EQ(seconds_between("03/04/2021 23:59:59.5", "03/05/2021 00:00:00"), 0.5);
+  EXPECT_EQ(seconds_between("03/04/2021 23:59:59.5", "04/04/2021 00:00:00"), 0.5);
+  EXPECT_EQ(seconds_between("4/3/21 11:59:59 PM", "4/4/21 12:00:00 AM"), 1);
+  EXPECT_EQ(seconds_between("21-03-04 10:11:12", "21-03-04 10:11:13"), 1);
 }
 
 TEST(TimeStamp, AClockGoesOnOverMidnight) {
@@ -26,14 +39,24 @@ TEST(TimeStamp, AClockGoesOnOverMidnight) {
   EXPECT_EQ(clock.seconds(*parse_time_stamp("00:00:00.5")), 1.0);
   EXPECT_EQ(clock.seconds(*parse_time_stamp("00:00:00.75")), 1.25);
   EXPECT_FALSE(clock.seconds(*parse_time_stamp("2021-03-04 00:00:01")));
+  EXPECT_FALSE(clock.seconds(*parse_time_stamp("00:01.5")));
+}
+
+TEST(TimeStamp, MinutesGoOnOverTheHour) {
+  StampClock clock(*parse_time_stamp("59:59.5"));
+  EXPECT_EQ(clock.seconds(*parse_time_stamp("59:59.75")), 0.25);
+  EXPECT_EQ(clock.seconds(*parse_time_stamp("00:00.5")), 1.0);
+  EXPECT_EQ(clock.seconds(*parse_time_stamp("00:00.75")), 1.25);
 }
 
 TEST(TimeStamp, WhatIsNoneIsNone) {
-  for (const char* text : {"", "1.5", "10:11", "2021-03-04", "2021-13-04 10:11:12", "2021-02-30 10:11:12", "25:00:00",
-                           "10:60:00", "10:11:12x", "03/04/2021 10:11:12", "2021-03-04 10:11:12 +1", "12:00:00 PM"})
+  for (const char* text :
+       {"", "1.5", "10:11", "2021-03-04", "2021-13-04 10:11:12", "2021-02-30 10:11:12", "25:00:00", "10:60:00",
+        "10:11:12x", "13/14/2021 10:11:12", "2021-03-04 10:11:12 +1", "13:00:00 PM", "00:00:00 AM", "11:60.5"})
     EXPECT_FALSE(parse_time_stamp(text)) << text;
   EXPECT_TRUE(is_date("2021-03-04"));
   EXPECT_TRUE(is_date("04.03.2021"));
+  EXPECT_TRUE(is_date("03/04/21"));
   EXPECT_FALSE(is_date("1.5"));
   EXPECT_FALSE(is_date("04.03"));
 }
