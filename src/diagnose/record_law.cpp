@@ -62,7 +62,7 @@ std::optional<RecordFinding> compare(const RecordFigure& figure,
   std::vector<double> values;
   for (const auto& log : healthy)
     if (const RecordFigure* f = same(figure, log)) values.push_back(f->value);
-  const Deviate d = deviate_of(figure.value, values, {usual_spread(figure.kind), k::usual_logs});
+  const Deviate d = deviate_of(figure.value, values, {usual_spread(figure.kind), k::usual_logs}, figure.error);
   if (d.t == 0 || !is_fault_on(figure.kind, d.t > 0)) return {};
   double mean = 0;
   for (const double v : values) mean += std::log(v) / static_cast<double>(values.size());

@@ -25,18 +25,18 @@ double range_of(const std::vector<double>& x, std::size_t from, std::size_t to) 
   return high > low ? high - low : 0.0;
 }
 
-// Flow drawn from the supply, of about the most that the valve passes: by the piston's speed where it is recorded, else
-// by the drive.
+// Flow drawn from the supply, of about the most that the valve passes: by the piston's speed and the area that is
+// filled where the piston is recorded, else by the drive.
 std::vector<double> demand_of(const Log& log, const LogData& data, const ParameterVector& base) {
   if (log.has(Signal::piston_position)) {
     const Blocks piston = means_of(log.time, log[Signal::piston_position], false);
-    const double area = 0.5 * (base[row::piston_area_a] + base[row::piston_area_b]);
     const double most = base[row::port_width] * base[row::spool_stop] *
                         std::sqrt(base[row::supply_pressure] / data.scenario.oil.density);
     std::vector<double> out(piston.value.size(), 0.0);
-    for (std::size_t i = 1; i + 1 < out.size(); ++i)
-      out[i] =
-          std::abs(piston.value[i + 1] - piston.value[i - 1]) / (piston.time[i + 1] - piston.time[i - 1]) * area / most;
+    for (std::size_t i = 1; i + 1 < out.size(); ++i) {
+      const double speed = (piston.value[i + 1] - piston.value[i - 1]) / (piston.time[i + 1] - piston.time[i - 1]);
+      out[i] = (speed > 0 ? speed * base[row::piston_area_a] : -speed * base[row::piston_area_b]) / most;
+    }
     return out;
   }
   std::vector<double> out = means_of(log.time, data.scenario.command, true).value;
@@ -47,32 +47,64 @@ std::vector<double> demand_of(const Log& log, const LogData& data, const Paramet
 // A level that falls in proportion to the demand and from some time on goes elsewhere, at once and further in
 // proportion to time: a valve that closes, a pump that stops beside an accumulator. Least squares.
 struct Levels {
-  double first = none, last = none, fall = 0, cost = HUGE_VAL;
+  double scale = none;                                       // [Pa] of what follows
+  Eigen::Vector4d at = Eigen::Vector4d::Zero();              // first level, step, further by the end, fall at all flow
+  Eigen::Matrix4d covariance = Eigen::Matrix4d::Identity();  // by what is left, as far as that is independent
+  double cost = HUGE_VAL;
   std::size_t split = 0;
+  double first() const { return at[0]; }
+  double last() const { return at[0] + at[1] + at[2]; }
+  // One standard deviation of a figure that grows with the four as `by`.
+  double error(const Eigen::Vector4d& by) const { return std::sqrt(std::max(0.0, by.dot(covariance * by))); }
 };
+
+Eigen::Vector4d terms_of(const Blocks& pressure, const std::vector<double>& demand, std::size_t i, std::size_t split) {
+  const double since = pressure.time[split], after = i >= split ? 1.0 : 0.0;
+  return {1, after, after * (pressure.time[i] - since) / (pressure.time.back() - since), -demand[i]};
+}
+
 Levels levels_at(const Blocks& pressure, const std::vector<double>& demand, std::size_t split, bool falls) {
   Eigen::Matrix4d normal = Eigen::Matrix4d::Zero();
   Eigen::Vector4d right = Eigen::Vector4d::Zero();
   double square = 0;
-  const double since = pressure.time[split], end = pressure.time.back();
-  const double scale = pressure.value.front();  // numbers of order one
+  Levels out{.scale = pressure.value.front(), .split = split};  // numbers of order one
   for (std::size_t i = 0; i < pressure.value.size(); ++i) {
-    const double y = pressure.value[i] / scale;
+    const double y = pressure.value[i] / out.scale;
     if (!std::isfinite(y) || !std::isfinite(demand[i])) continue;
-    const double after = i >= split ? 1.0 : 0.0;
-    const Eigen::Vector4d row(1, after, after * (pressure.time[i] - since) / (end - since), falls ? -demand[i] : 0.0);
+    Eigen::Vector4d row = terms_of(pressure, demand, i, split);
+    if (!falls) row[3] = 0;
     normal += row * row.transpose(), right += row * y, square += y * y;
   }
-  const Eigen::Vector4d x = normal.completeOrthogonalDecomposition().solve(right);
-  if (falls && x[3] < 0) return levels_at(pressure, demand, split, false);
-  return {scale * x[0], scale * (x[0] + x[1] + x[2]), scale * x[3], square - right.dot(x), split};
+  out.at = normal.completeOrthogonalDecomposition().solve(right);
+  if (falls && out.at[3] < 0) return levels_at(pressure, demand, split, false);
+  out.cost = square - right.dot(out.at);
+  out.covariance = (normal + k::least_told * normal.trace() * Eigen::Matrix4d::Identity()).inverse();
+  return out;
 }
-Levels levels_of(const Blocks& pressure, const std::vector<double>& demand) {
+
+// What a law leaves that is no line of the demand, a pump at its limit, hangs together from block to block: a step
+// takes of it what it can, and is no surer than so few independent blocks make it.
+double variance_left(const Blocks& pressure, const std::vector<double>& demand, const Levels& l) {
+  double square = 0, with_next = 0, last = none, n = 0;
+  for (std::size_t i = 0; i < pressure.value.size(); ++i) {
+    const double left = pressure.value[i] / l.scale - terms_of(pressure, demand, i, l.split).dot(l.at);
+    if (!std::isfinite(left)) continue;
+    square += left * left, ++n;
+    if (std::isfinite(last)) with_next += left * last;
+    last = left;
+  }
+  const double alike = std::clamp(with_next / std::max(square, tiny), 0.0, k::most_alike);
+  return square / std::max(1.0, n - 4) * (1 + alike) / (1 - alike);
+}
+
+std::optional<Levels> levels_of(const Blocks& pressure, const std::vector<double>& demand) {
   Levels best;
   const std::size_t n = pressure.value.size(), margin = std::max(k::fewest_blocks, n / k::shortest_one_in);
-  if (!std::isfinite(pressure.value.front())) return best;
+  if (!std::isfinite(pressure.value.front())) return {};
   for (std::size_t split = margin; split + margin <= n; ++split)
-    if (const Levels l = levels_at(pressure, demand, split, true); l.cost < best.cost) best = l;
+    if (Levels l = levels_at(pressure, demand, split, true); l.cost < best.cost) best = std::move(l);
+  if (!(best.first() > 0)) return {};
+  best.covariance *= variance_left(pressure, demand, best);
   return best;
 }
 
@@ -80,15 +112,19 @@ void add_supply(const Log& log, const LogData& data, const ParameterVector& base
   if (!log.has(Signal::supply_pressure)) return;
   const Blocks pressure = means_of(log.time, log[Signal::supply_pressure], false);
   const std::vector<double> demand = demand_of(log, data, base);
-  const Levels l = levels_of(pressure, demand);
-  if (!(l.first > 0)) return;
-  out.push_back({FigureKind::supply_level, Signal::supply_pressure, l.first});
-  out.push_back({FigureKind::supply_step, Signal::supply_pressure, std::max(k::least_left, l.last / l.first),
-                 pressure.time[l.split]});
+  const std::optional<Levels> l = levels_of(pressure, demand);
+  if (!l) return;
+  const auto add = [&](FigureKind kind, double value, const Eigen::Vector4d& by) {
+    out.push_back({.kind = kind, .value = value, .error = l->error(by)});
+  };
+  const double first = l->first(), last = std::max(k::least_left * first, l->last());
+  add(FigureKind::supply_level, l->scale * first, {1 / first, 0, 0, 0});
+  add(FigureKind::supply_step, last / first, {1 / last - 1 / first, 1 / last, 1 / last, 0});
+  out.back().since = pressure.time[l->split];
   const double most = *std::max_element(demand.begin(), demand.end());
-  if (most > k::least_demand)
-    out.push_back(
-        {FigureKind::supply_left, Signal::supply_pressure, std::max(k::least_left, 1 - most * l.fall / l.first)});
+  if (!(most > k::least_demand)) return;
+  const double left = std::max(k::least_left, 1 - most * l->at[3] / first);
+  add(FigureKind::supply_left, left, {most * l->at[3] / (first * first * left), 0, 0, -most / (first * left)});
 }
 
 struct Line {

@@ -33,6 +33,7 @@ struct RecordFigure {
   Signal signal = Signal::supply_pressure;
   double value = 1;
   std::optional<double> since = {};  // [s] of a step: when
+  double error = 0;                  // of its logarithm, one standard deviation: what the log itself leaves open
 };
 
 // Of what the log records, in the order of the kinds; what it cannot tell is left out.

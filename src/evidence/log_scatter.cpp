@@ -12,7 +12,7 @@ using namespace evidence_constants;
 
 double Deviate::chance_above() const { return t > 0 ? 0.5 * student_tail(t, degrees) : 1.0; }
 
-Deviate deviate_of(double value, const std::vector<double>& healthy, UsualSpread usual) {
+Deviate deviate_of(double value, const std::vector<double>& healthy, UsualSpread usual, double error) {
   std::vector<double> logs;
   for (const double v : healthy)
     if (v > 0) logs.push_back(std::log(v));
@@ -22,7 +22,7 @@ Deviate deviate_of(double value, const std::vector<double>& healthy, UsualSpread
   for (const double v : logs) mean += v / n;
   for (const double v : logs) square += (v - mean) * (v - mean);
   const double degrees = n - 1 + usual.logs;
-  const double spread = std::sqrt(std::max(least_variance, square / degrees) * (1 + 1 / n));
+  const double spread = std::sqrt(std::max(least_variance, square / degrees) * (1 + 1 / n) + error * error);
   return {(std::log(value) - mean) / spread, degrees};
 }
 

@@ -19,6 +19,7 @@ struct Deviate {
   double chance_above() const;  // 1 below the mean
 };
 // Figures that are not positive are left out; no deviate (t = 0) of fewer than three, or of a value that is none.
-Deviate deviate_of(double value, const std::vector<double>& healthy, UsualSpread usual);
+// `error`: of the value's logarithm, one standard deviation, beside what healthy ones scatter by.
+Deviate deviate_of(double value, const std::vector<double>& healthy, UsualSpread usual, double error = 0);
 
 }  // namespace servodx

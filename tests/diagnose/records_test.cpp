@@ -105,6 +105,20 @@ TEST(Records, ASupplyThatDroopsWithTheFlowIsNotOneThatIsSetLow) {
   EXPECT_FALSE(findings_of(m).empty());
 }
 
+// A lost wire drives the piston to its end; the pump holds its pressure up to its own flow and no further.
+TEST(Records, AValveThatGoesHardOverIsNoStepOfASupplyWhosePumpIsAtItsLimit) {
+  for (const double stops : {0.8, 1.2, 1.6}) {
+    Made m = made(53, 1.0);
+    for (std::size_t k = 0; k < m.time.size(); ++k) {
+      const double t = m.time[k], speed = t < 0.4 ? 0.25 * t / 0.4 : t < stops ? 0.25 : 0.0;
+      m.piston[k] = k == 0 ? -0.1 : m.piston[k - 1] + speed / rate;
+      m.supply[k] +=
+          8e5 * std::abs(std::sin(2 * std::numbers::pi * t)) - 30e5 * speed - 400e5 * std::max(0.0, speed - 0.15);
+    }
+    for (const RecordFinding& f : findings_of(m)) EXPECT_NE(f.figure, FigureKind::supply_step) << stops << " s";
+  }
+}
+
 TEST(Records, ADriverThatPassesOnLessIsFoundFromTheStartAndFromMidLog) {
   for (const double gain : {0.0, 0.5, 0.85})
     for (const double from : {0.0, 1.7}) {
