@@ -222,6 +222,15 @@ ErrorModel learn_error_model(const FitProblem& problem, const Point& x) {
   return model;
 }
 
+namespace {
+
+// Of `alike` logs the error is one, each log's noise its own.
+double beside_repeats(double sigma, double noise, int alike) {
+  return std::sqrt(square(noise) + alike * std::max(0.0, square(sigma) - square(noise)));
+}
+
+}  // namespace
+
 void apply_error_model(FitProblem& problem, const ErrorModel& model, const Point& x, bool each_log) {
   const std::vector<Trajectory> t = problem.trajectories(x);
   for (std::size_t l = 0; l < t.size(); ++l) {
@@ -238,7 +247,7 @@ void apply_error_model(FitProblem& problem, const ErrorModel& model, const Point
           if (!std::isnan(residual[k])) sum += square(residual[k] / sigma[k]), ++n;
         scale *= std::sqrt((prior_worth + fraction * sum) / (prior_worth + fraction * n));
       }
-      for (double& s : sigma) s *= scale;
+      for (double& s : sigma) s = scale * beside_repeats(s, log.channels[c].noise, log.alike);
       problem.set_sigma(static_cast<int>(l), static_cast<int>(c), std::move(sigma));
     }
   }

@@ -57,8 +57,10 @@ std::vector<Note> leave_out_unknown_channels(LogData& log, const ErrorModel& mod
 ErrorModel learn_error_model(const FitProblem& problem, const Point& x);
 
 // Sets the problem's whitening from the model at x: sigma(t) / sqrt(effective fraction), so that 0.5 |residual|^2 is a
-// log-likelihood. `each_log`: a channel of a log that the model fits worse than the others counts for less, and one
-// that it fits better for more; its variance has an inverse-gamma prior about the pooled one.
+// log-likelihood. Of logs that run one programme (LogData::alike) each holds its part of what they tell of the model's
+// error: their noise averages out, the error comes back in each. `each_log`: a channel of a log that the model fits
+// worse than the others counts for less, and one that it fits better for more; its variance has an inverse-gamma prior
+// about the pooled one.
 void apply_error_model(FitProblem& problem, const ErrorModel& model, const Point& x, bool each_log = false);
 
 }  // namespace servodx

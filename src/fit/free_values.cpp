@@ -34,19 +34,21 @@ int candidate_position(const Table& table, int row) {
   return -1;
 }
 
+constexpr double half_of_range = 0.5;
+
 // Width of a row's weak prior, of its range: an effect is likely to be of its typical size, whose bounds have to hold
 // the odd valve as well; of a row its bounds say what is likely.
 double prior_width(const Row& r, int at) {
-  constexpr double half = 0.5;
-  if (at < n_parameters) return half;
+  if (at < n_parameters) return half_of_range;
   const EffectParameter& e = parameter_at(at);
   const double likely = e.likely > 0 ? e.likely : std::abs(e.start - e.off);
-  return e.switches && likely > 0 ? std::min(half, likely / (r.upper - r.lower)) : half;
+  return e.switches && likely > 0 ? std::min(half_of_range, likely / (r.upper - r.lower)) : half_of_range;
 }
 
 // What a drawing says, and how well it holds, relative: bores below half a millimetre, the fixed orifices' with the
-// discharge of short tubes (0.6 to 0.88); the gap is set in assembly; sheets give the clearance of a new spool as a
-// range (2 to 5 um), and overlapped edges leak alike with less of it and blunter corners.
+// discharge of short tubes (0.6 to 0.88); the gap is set in assembly, to 2 or 3 um; a motor's frequency is measured
+// without oil; sheets give the clearance of a new spool as a range (2 to 5 um), and overlapped edges leak alike with
+// less of it and blunter corners.
 struct Drawing {
   int row;
   const char* fact;
@@ -54,8 +56,21 @@ struct Drawing {
 };
 constexpr Drawing drawings[] = {{row::hydraulic_amplifier_gain, "valve.nozzle_diameter", 0.05},
                                 {row::fixed_orifice_diameter, "valve.fixed_orifice_diameter", 0.05},
-                                {row::nozzle_gap, "valve.nozzle_gap", 0.15},
+                                {row::nozzle_gap, "valve.nozzle_gap", 0.08},
+                                {row::torque_motor_frequency, "valve.torque_motor_frequency", 0.1},
                                 {row::radial_clearance, "valve.radial_clearance", 0.25}};
+
+// What no drawing states and a valve's kind says, one standard deviation of its logarithm. The armature's stiffness
+// follows from the valve's lag, of which driver and motor have a part; current amplifiers have 300 to 1000 Hz; of a
+// friction a factor of 2.5, as a threshold is stated as the most that a maker delivers.
+struct Likely {
+  int row;
+  const char* fact;  // that its nominal follows from; null: its kind alone
+  double spread;
+};
+constexpr Likely likely[] = {{row::flapper_stiffness, "valve.phase_lag_90_frequency", 0.4},
+                             {row::driver_bandwidth, nullptr, 0.6},
+                             {row::spool_friction, nullptr, 0.9}};
 
 bool is_stated(int row, const RigFile& rig) {
   if (row == row::port_width) return states_width(rig);
@@ -78,11 +93,15 @@ std::vector<FreeValue> shared_values(const Table& table) {
   return out;
 }
 
-void hold_to_drawings(std::vector<FreeValue>& shared, const RigFile& rig, const std::map<std::string, double>& asked) {
+void hold_to_sheet(std::vector<FreeValue>& shared, const RigFile& rig, const std::map<std::string, double>& asked) {
+  const auto hold = [&](int row, double spread, double widest) {
+    for (FreeValue& f : shared)
+      if (f.at == row && !asked.contains(f.name)) f.prior_sd = std::min(widest, spread / std::log(f.upper / f.lower));
+  };
   for (const Drawing& d : drawings)
-    if (rig.fact(d.fact))
-      for (FreeValue& f : shared)
-        if (f.at == d.row && !asked.contains(f.name)) f.prior_sd = d.tolerance / std::log(f.upper / f.lower);
+    if (rig.fact(d.fact)) hold(d.row, d.tolerance, 1);
+  for (const Likely& l : likely)
+    if (!l.fact || rig.fact(l.fact)) hold(l.row, l.spread, half_of_range);
 }
 
 bool states_width(const RigFile& rig) {

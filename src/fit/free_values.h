@@ -19,11 +19,12 @@ namespace servodx {
 // is the effect's typical size.
 std::vector<FreeValue> shared_values(const Table& table);
 
-// Narrower priors for what the rig file gives of the pilot stage. Logs of motion and pressure hardly show it: the
-// nozzles' diameter sets the scale of all forces on the spool, orifices and gap trade with what is laminar beside them;
-// left alone, friction, flow force and the answer to another oil end anywhere along a valley.
+// Narrower priors for what the rig file, or the valve's kind, says of the pilot stage. Logs of motion and pressure
+// hardly show it: the nozzles' diameter sets the scale of all forces on the spool, orifices and gap trade with what is
+// laminar beside them, the motor's lag with the driver's. Left alone, friction, flow force and the answer to another
+// oil end anywhere along a valley, and a plugged nozzle or a lost wire would be one of another valve.
 // A row that a prior is `asked` for keeps it.
-void hold_to_drawings(std::vector<FreeValue>& shared, const RigFile& rig, const std::map<std::string, double>& asked);
+void hold_to_sheet(std::vector<FreeValue>& shared, const RigFile& rig, const std::map<std::string, double>& asked);
 
 // Whether the rig file states what the width of the ports follows from.
 bool states_width(const RigFile& rig);

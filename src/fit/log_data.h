@@ -40,6 +40,7 @@ struct LogData {
   std::vector<FitChannel> channels;
   std::vector<Note> notes;
   Fluid fluid = {};  // of the rig: how its oil follows a temperature that the log does not hold
+  int alike = 1;     // logs of a fit, itself among them, that run one programme: there the model errs alike
 };
 
 // The piston integrates every error of flow: below the corner its slow drift tells little and would hide what the rest

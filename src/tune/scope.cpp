@@ -5,6 +5,7 @@
 #include <map>
 
 #include "base/error.h"
+#include "evidence/conditions.h"
 #include "fit/candidate_of.h"
 #include "fit/chart.h"
 #include "fit/fast_log.h"
@@ -64,12 +65,22 @@ void keep_width_without_spool(TuneScope& scope) {
   }
 }
 
+// Six repeats of one test hold the model's error of that test six times: alone they would say what a valve is made of.
+void count_alike(TuneScope& scope, const std::vector<Log>& logs) {
+  std::vector<TestConditions> tests;
+  for (const Log& log : logs) tests.push_back(conditions_of(log));
+  const std::vector<std::size_t> programme = programmes_of(tests);
+  for (std::size_t l = 0; l < programme.size(); ++l)
+    scope.data[l].alike = static_cast<int>(std::count(programme.begin(), programme.end(), programme[l]));
+}
+
 void take_logs(TuneScope& scope, const std::vector<Log>& logs, const RigFile& rig, const TuneOptions& options) {
   for (const Log& log : logs) {
     scope.data.push_back(prepare_to_fit(log, rig, options.moving_average));
     const std::vector<Note>& notes = scope.data.back().notes;
     scope.notes.insert(scope.notes.end(), notes.begin() + static_cast<long>(log.notes.size()), notes.end());
   }
+  count_alike(scope, logs);
   scope.simulate.threads = options.threads;
   scope.simulate.creep_step = creep_step_of(logs, rig);
   scope.on_stand = all_on_test_stand(logs, rig);

@@ -30,9 +30,10 @@ void first_whitening(FitProblem& problem, const Point& x) {
       const int li = static_cast<int>(l), ci = static_cast<int>(c);
       const double r = t[l].ok ? rms_of(problem.raw_residual(li, ci, t[l]), 0, log.scenario.time.size())
                                : failed_over_noise * log.channels[c].noise;
-      problem.set_sigma(li, ci,
-                        std::max(least_over_noise * log.channels[c].noise, part_of_residual * r) *
-                            std::sqrt(std::max(1.0, correlated)));
+      problem.set_sigma(
+          li, ci,
+          std::max(least_over_noise * log.channels[c].noise, part_of_residual * r * std::sqrt(log.alike)) *
+              std::sqrt(std::max(1.0, correlated)));
     }
   }
 }

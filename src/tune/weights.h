@@ -15,7 +15,8 @@ inline constexpr double least_independent_rate = 40;
 // Of the samples in [from, to) that are there. [SI] 0 where none is.
 double rms_of(const std::vector<double>& r, std::size_t from, std::size_t to);
 
-// Whitening before anything is known: the residual's own size, a few tens of independent samples a second.
+// Whitening before anything is known: the residual's own size, a few tens of independent samples a second. Logs of one
+// programme share what they tell (LogData::alike).
 void first_whitening(FitProblem& problem, const Point& x);
 
 // On a stand the model's error is a curve of the command, not of time: a fast sweep tells as much of it as a slow one,

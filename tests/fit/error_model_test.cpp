@@ -164,5 +164,34 @@ TEST(ErrorModel, ALogThatTheModelFitsBadlyCountsForLessAndTheOthersForMore) {
   EXPECT_NEAR(bad_own / good_own, 1.0, 0.3);
 }
 
+// What four runs of one programme leave of the log-likelihood over what one does, beside an error of the model that is
+// so many times each sensor's noise.
+double four_over_one(double error_over_noise, int alike) {
+  const Table table = shipped_table();
+  const ParameterVector truth = candidate_of(table);
+  const LogData shipped = slice(shipped_data("healthy/h12_mixed"), 0, 2000);
+  std::vector<LogData> logs;
+  for (unsigned seed : {3, 4, 5, 6}) logs.push_back(written_by_model(shipped, truth, seed));
+  ErrorModel error;
+  for (const FitChannel& c : logs.front().channels) error.channels.push_back({c.signal, error_over_noise * c.noise});
+  const auto left = [&](std::size_t count) {
+    std::vector<const LogData*> first;
+    for (std::size_t l = 0; l < count; ++l) logs[l].alike = count > 1 ? alike : 1, first.push_back(&logs[l]);
+    FitProblem problem(first, truth, {free_row(table, row::driver_bandwidth)});
+    const Point x = problem.start();
+    apply_error_model(problem, error, x);
+    return problem.evaluate(std::span(&x, 1)).front().residual.head(problem.data_rows()).squaredNorm();
+  };
+  return left(4) / left(1);
+}
+
+// The model's error comes back in each: six runs of one test are no six witnesses of what a valve is made of. Noise is
+// each run's own.
+TEST(ErrorModel, RepeatsOfOneTestTellOfTheModelsErrorWhatOneOfThemTells) {
+  for (const double f : {0.0, 1.0, 30.0})
+    EXPECT_NEAR(four_over_one(f, 4), 4 * (1 + f * f) / (1 + 4 * f * f), 0.1) << f << " times the noise";
+  EXPECT_NEAR(four_over_one(30.0, 1), 4.0, 0.1) << "four programmes";
+}
+
 }  // namespace
 }  // namespace servodx

@@ -89,7 +89,7 @@ double width_of(int at, const std::map<std::string, double>& facts, const std::m
   RigFile rig;
   rig.facts = facts;
   std::vector<FreeValue> shared = shared_values(shipped_table());
-  hold_to_drawings(shared, rig, asked);
+  hold_to_sheet(shared, rig, asked);
   const auto f = std::find_if(shared.begin(), shared.end(), [&](const FreeValue& v) { return v.at == at; });
   return f->prior_sd * std::log(f->upper / f->lower);
 }
@@ -108,6 +108,16 @@ TEST(SharedValues, WhatADrawingGivesOfThePilotStageIsHeldUnlessAPriorIsAskedFor)
   EXPECT_NEAR(width(drawing, {}), 0.05, 1e-12);
   EXPECT_GT(width({}, {}), 0.2);
   EXPECT_GT(width(drawing, {{"fixed_orifice_diameter", 4e-6}}), 0.2);
+}
+
+// Without the spool's sensor no log tells them: a stiffness left alone stood at either bound, and a plugged nozzle was
+// a shifted null.
+TEST(SharedValues, WhatTheKindOfAValveSaysOfThePilotStageIsHeldToo) {
+  EXPECT_NEAR(width_of(row::flapper_stiffness, {{"valve.phase_lag_90_frequency", 100}}, {}), 0.4, 1e-12);
+  EXPECT_GT(width_of(row::flapper_stiffness, {}, {}), 0.5) << "nothing says it";
+  EXPECT_NEAR(width_of(row::driver_bandwidth, {}, {}), 0.6, 1e-12);
+  EXPECT_NEAR(width_of(row::spool_friction, {}, {}), 0.9, 1e-12);
+  EXPECT_GT(width_of(row::spool_friction, {}, {{"spool_friction", 1.0}}), 0.9) << "another prior is asked for";
 }
 
 // Two logs, shared rows and nuisances of each.

@@ -33,7 +33,7 @@ const std::map<std::string, std::set<std::string>> allowed = {
     {"simulate", {"parameters", "model", "effects", "faults", "integrate", "signals"}},
     {"rig", {"integrate", "signals"}},
     {"fit", {"parameters", "model", "effects", "simulate", "signals", "optimise"}},
-    {"tune", {"parameters", "effects", "signals", "simulate", "optimise", "fit"}},
+    {"tune", {"parameters", "effects", "signals", "simulate", "optimise", "fit", "evidence"}},
     {"evidence", {"fit", "signals"}},
     // Of the model the temperatures that an oil bears.
     {"diagnose",

@@ -97,6 +97,15 @@ TEST(Tune, WithoutATemperatureAnywhereEachLogHasAViscosityOfItsOwn) {
   }));
 }
 
+TEST(Tune, LogsOfOneProgrammeAreCountedAsAlike) {
+  std::vector<Log> logs;
+  for (const char* name : {"healthy/h01_steps_large", "healthy/h04_multisine", "healthy/h01_steps_large"})
+    logs.push_back(shipped_log(name));
+  std::vector<int> alike;
+  for (const LogData& d : scope_of(logs, shipped_table(), shipped_rig(), {}).data) alike.push_back(d.alike);
+  EXPECT_EQ(alike, (std::vector<int>{2, 1, 2}));
+}
+
 TEST(Tune, WithoutTheSpoolsPositionTheWidthOfThePortsStaysNearTheSheets) {
   const auto prior = [](bool with_spool, RigFile rig) {
     std::vector<Log> logs = {twins::cut(shipped_log("healthy/h01_steps_large"), 400)};
