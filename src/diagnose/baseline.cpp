@@ -14,13 +14,29 @@ namespace servodx {
 
 namespace k = diagnose_constants;
 
-double score_of(const Assessment& a, const FaultGains& usual) {
+namespace {
+
+double score_by(const FaultGains& gains, const FaultGains& usual) {
   double score = 0;
-  for (const HypothesisResult& h : a.hypotheses) {
-    const auto known = h.fault ? usual.find(h.fault) : usual.end();
+  for (const auto& [fault, gain] : gains) {
+    const auto known = usual.find(fault);
     const double of_health = known == usual.end() ? 0.0 : known->second;
-    score = std::max(score, std::sqrt(std::max(0.0, h.gain) / (1.0 + of_health)));
+    score = std::max(score, std::sqrt(std::max(0.0, gain) / (1.0 + of_health)));
   }
+  return score;
+}
+
+FaultGains gains_of(const Assessment& a) {
+  FaultGains gains;
+  for (const HypothesisResult& h : a.hypotheses)
+    if (h.fault) gains[h.fault] = h.gain;
+  return gains;
+}
+
+}  // namespace
+
+double score_of(const Assessment& a, const FaultGains& usual) {
+  const double score = score_by(gains_of(a), usual);
   return a.gross == GrossFinding::none ? score : std::max(score, k::gross_score);
 }
 
@@ -40,8 +56,7 @@ namespace {
 DetectionBaseline::Score unscored(const Assessment& a) {
   DetectionBaseline::Score s{a.log, a.sha256, 0.0, a.hypotheses.front().adequacy, {}, a.test, a.figures, a.point, {}};
   if (!a.explanations.empty()) s.healthy = a.explanations.front();
-  for (const HypothesisResult& h : a.hypotheses)
-    if (h.fault) s.gains[h.fault] = h.gain;
+  s.gains = gains_of(a);
   return s;
 }
 
@@ -76,6 +91,18 @@ std::vector<DetectionBaseline::Score> one_a_programme(const std::vector<Detectio
   return out;
 }
 
+// The baseline's own repeats of a test that the model follows, each scored by the rest of them.
+std::vector<DetectionBaseline::Score> repeats_of(const TestConditions& test, const DetectionBaseline& b) {
+  DetectionBaseline repeats;
+  for (const DetectionBaseline::Score& s : b.scores)
+    if (s.test && is_repeat(*s.test, test) && is_followed(s.adequacy)) repeats.scores.push_back(s);
+  for (std::size_t i = 0; i < repeats.scores.size(); ++i) {
+    DetectionBaseline::Score& s = repeats.scores[i];
+    if (s.score < k::gross_score) s.score = score_by(s.gains, usual_gains(repeats, static_cast<int>(i)));
+  }
+  return repeats.scores;
+}
+
 double largest_adequacy(const std::vector<DetectionBaseline::Score>& scores) {
   double most = 0;
   for (const DetectionBaseline::Score& s : scores) most = std::max(most, s.adequacy);
@@ -92,6 +119,13 @@ bool knows_test(const DetectionBaseline& b, const TestConditions& test) {
 }
 
 DetectionBaseline baseline_for(const TestConditions& test, const DetectionBaseline& b, int left_out) {
+  if (auto repeats = repeats_of(test, b); repeats.size() >= k::fewest_repeats && repeats.size() < b.scores.size()) {
+    DetectionBaseline out = b;
+    out.scores = std::move(repeats);
+    out.others.clear();
+    out.of_repeats = true;
+    return out;
+  }
   if (b.others.empty() || knows_test(b, test)) return b;
   std::vector<DetectionBaseline::Score> all = one_a_programme(b.scores), like;
   for (std::size_t i = 0; i < b.others.size(); ++i) {

@@ -41,6 +41,7 @@ struct DetectionBaseline {
   // suspect's test. They promise nothing.
   std::vector<Score> others;
   bool of_other_tests = false;  // the scores stand in for logs of a test that the baseline does not hold
+  bool of_repeats = false;      // the scores are those of the logs that repeat the suspect's test
   double adequacy_limit = 0;    // largest adequacy of a healthy log
   double null_limit = 0.05;
   std::string tuned_sha256;  // content_hash of the table it was made with; earlier versions wrote that of its file
@@ -62,10 +63,11 @@ bool keeps_rate(const DetectionBaseline& baseline);
 // Whether the baseline's own logs know how the model errs on such a test: they hold it, or tests like it among several.
 bool knows_test(const DetectionBaseline& baseline, const TestConditions& test);
 
-// What speaks of a suspect of this test: the baseline, where its logs know such a test or there are no others. Repeats
-// of one programme know that programme alone; several know tests like theirs. Else the scores are the others', of a
-// test like this where some are; where none is, all of them, and one for each programme of the baseline's own.
-// `left_out`: of the others, -1: none.
+// What speaks of a suspect of this test: its repeats, where the baseline holds a few, as there the model errs as it
+// errs there. Other tests would set a limit that no repeat comes near. Else the baseline, where its logs know such a
+// test or there are no others. Repeats of one programme know that programme alone; several know tests like theirs. Else
+// the scores are the others', of a test like this where some are; where none is, all of them, and one for each
+// programme of the baseline's own. `left_out`: of the others, -1: none.
 DetectionBaseline baseline_for(const TestConditions& test, const DetectionBaseline& baseline, int left_out = -1);
 
 // The log of the baseline whose test is nearest, where none is of a test like this one. Empty also where the baseline

@@ -232,6 +232,7 @@ Diagnosis judge(Assessment a, const DetectionBaseline& whole) {
     d.suspicion = suspicion_of(a.hypotheses[*decision.suspected], evidence.gain, law);
   d.unlike = unlike_all(a.test, whole);
   if (baseline.of_other_tests) d.others = static_cast<int>(baseline.scores.size());
+  if (baseline.of_repeats) d.repeats = static_cast<int>(baseline.scores.size());
   d.conditions = conditions_of(a, whole);
   d.detectable = detectable_of(a, usual_gains_of(a, baseline), law.limit());
   for (const std::size_t i : decision.ambiguous) d.ambiguous_with.push_back(a.hypotheses[i].fault);

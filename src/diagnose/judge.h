@@ -54,6 +54,7 @@ struct Diagnosis {
   std::vector<ConditionRow> conditions;  // where it was recorded, beside sheet and baseline
   std::optional<Unlike> unlike;
   int others = 0;                  // healthy logs of other tests that it was compared with; 0: with the baseline's own
+  int repeats = 0;                 // fault-free repeats of its own test, where it was compared with those alone
   const Fault* fault = nullptr;    // the one named, the first of `faults`
   std::vector<NamedFault> faults;  // none, one or two
   std::optional<Suspicion> suspicion;           // of a healthy verdict

@@ -227,7 +227,9 @@ TEST(Judge, AFaultThatHealthGainsByTooMustGainTheMore) {
 TEST(Judge, PValueIsTheRankAmongTheHealthyLogs) {
   // (1 + healthy logs at or above) / (n + 1)
   for (const auto& [score, p] : {std::pair{0.5, 1.0}, {1.5, 0.75}, {2.5, 0.5}, {3.0, 0.5}, {9.0, 0.25}})
-    EXPECT_DOUBLE_EQ(judge(assessment(score, {hypothesis("", 1.0)}), baseline()).p_value, p) << score;
+    EXPECT_DOUBLE_EQ(
+        judge(assessment(score, {hypothesis("", 1.0), hypothesis("clogged_filter", 0.0)}), baseline()).p_value, p)
+        << score;
 }
 
 TEST(Judge, UnknownWhenTheBestHypothesisExplainsTooLittle) {
@@ -370,6 +372,36 @@ TEST(Judge, OfATestThatTheBaselineHoldsItsOwnLogsAloneSpeak) {
   EXPECT_EQ(one.threshold, other.threshold);
   EXPECT_EQ(one.verdict, VerdictKind::fault);
   EXPECT_FALSE(one.unlike || one.others);
+}
+
+// Three repeats that show little, and a small test that shows much, in one baseline.
+DetectionBaseline repeats_beside_another() {
+  DetectionBaseline b = repeats_and_others();
+  b.others.clear();
+  b.scores.push_back({"small", "6", 6.0, 1.0});
+  b.scores.back().test = sine, b.scores.back().gains[find_fault("corner_wear")] = 36.0;
+  b.logs = 4;
+  return b;
+}
+
+// Else the worst test of a baseline sets the limit of all of them, and a mild fault passes in the test that knows it.
+TEST(Judge, ARepeatedTestIsJudgedByItsRepeatsAloneAndAnotherByAll) {
+  const DetectionBaseline b = repeats_beside_another();
+  const Diagnosis repeated = judge(of_corners(30, acceptance), b), other = judge(of_corners(30, sine), b);
+  EXPECT_EQ(repeated.verdict, VerdictKind::fault);
+  EXPECT_EQ(repeated.repeats, 3);
+  EXPECT_EQ(other.verdict, VerdictKind::healthy);
+  EXPECT_EQ(other.repeats, 0);
+  EXPECT_EQ(judge(of_corners(4, acceptance), b).verdict, VerdictKind::healthy) << "hardly more than the repeats show";
+}
+
+TEST(BaselineFor, TwoRepeatsOrRepeatsThatTheModelDoesNotFollowAreNoNullOfTheirOwn) {
+  DetectionBaseline b = repeats_beside_another();
+  ASSERT_EQ(baseline_for(acceptance, b).scores.size(), 3u);
+  b.scores[0].adequacy = 5.0;
+  EXPECT_EQ(baseline_for(acceptance, b).scores.size(), 4u);
+  b.scores[0].adequacy = 1.0, b.scores[0].test = flight;
+  EXPECT_EQ(baseline_for(acceptance, b).scores.size(), 4u);
 }
 
 // Of like size and speed, and spending its time at other openings.

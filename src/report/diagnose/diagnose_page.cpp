@@ -86,7 +86,7 @@ std::vector<std::string> reasons(const Diagnosis& d, const DetectionBaseline& ba
   if (d.unlike)
     why.push_back("Beware: " + unlike_words(d) + ". The threshold may not hold for it." +
                   mark_of(Trouble::unlike_test));
-  if (d.others > 0) why.push_back("Compared with " + others_words(d) + ".");
+  if (const std::string with = compared_words(d); !with.empty()) why.push_back("Compared with " + with + ".");
   if (of_log(d)) return why;  // what a valve would have to be, to make such a log, says nothing of this one
   const HypothesisResult* healthy = result_of(d, nullptr);
   const HypothesisResult* best = d.fault ? result_of(d, d.fault) : nearest_fault(d);

@@ -196,6 +196,7 @@ Json to_json(const Diagnosis& d) {
           {"unlike_baseline",
            d.unlike ? Json{{"nearest", d.unlike->log}, {"test", test_json(d.unlike->test)}} : Json(nullptr)},
           {"compared_with_others", d.others},
+          {"compared_with_repeats", d.repeats},
           {"null", number(d.null)},
           {"channels", to_json(d.assessment.channels)},
           {"hypotheses", array_of(d.assessment.hypotheses)},

@@ -90,7 +90,7 @@ std::string text_of(const Diagnosis& d, const TextOptions& options) {
   table.row({"error", fmt::format("{}, threshold {}; {}", digits(d.error), digits(d.threshold), chance_words(d))});
   if (d.beyond) table.row({"but", beyond_in_words(*d.beyond)});
   if (d.unlike) table.row({"beware", unlike_words(d) + mark_of(Trouble::unlike_test)});
-  if (d.others > 0) table.row({"compared with", others_words(d)});
+  if (const std::string with = compared_words(d); !with.empty()) table.row({"compared with", with});
   for (const RecordFinding& f : d.records) table.row({"record", record_in_words(f)});
   for (std::size_t i = 1; i < d.faults.size(); ++i) table.row({"and", second_in_words(d.faults[i])});
   if (const std::string seen = words_of(d.assessment.gross); !seen.empty()) table.row({"seen at once", seen});

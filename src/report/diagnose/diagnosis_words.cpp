@@ -532,7 +532,8 @@ std::string unlike_words(const Diagnosis& d) {
                      in.empty() ? "" : "; too far apart in " + join(in));
 }
 
-std::string others_words(const Diagnosis& d) {
+std::string compared_words(const Diagnosis& d) {
+  if (d.repeats > 0) return fmt::format("{} fault-free repeats of its own test", d.repeats);
   if (d.others == 0) return "";
   return fmt::format(
       "{} fault-free log{} of other tests, as the baseline's own do not hold this one; they promise no rate", d.others,

@@ -98,7 +98,7 @@ DetectableWords detectable_words(const Diagnosis& d);
 std::string test_words(const TestConditions& test);
 // Empty where a log of the baseline is of such a test.
 std::string unlike_words(const Diagnosis& d);
-std::string others_words(const Diagnosis& d);  // empty: it was compared with the baseline's own logs
+std::string compared_words(const Diagnosis& d);  // empty: it was compared with all of the baseline's own logs
 // Of a verdict that names nothing: what to run next.
 std::vector<std::string> next_calls(const Diagnosis& d, const CallNames& names = {});
 
