@@ -27,7 +27,7 @@ inline constexpr double share_of_gain = 0.8;
 inline constexpr double share_of_adequacy = 0.15;
 // Repeats of the suspect's test that speak of it alone: with the prior's ten logs they set the law. The fewest that
 // show a spread; chosen with seeds 107, 131 and 132 in view, where six repeats scored 1.3 at most and one small test
-// set a limit of 6. No log of the bench has three repeats: not felt there.
+// set a limit of 6. Not examined on the bench.
 inline constexpr std::size_t fewest_repeats = 3;
 // Chance: what healthy logs show no more often than not is said, though it is no verdict.
 inline constexpr double worth_saying = 0.5;
