@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <optional>
 #include <span>
 #include <utility>
@@ -77,9 +78,11 @@ void tell_genetic(TuneWatch& watch, double seconds) {
       {first.stage, StageMethod::genetic, first.cost, last.cost, last.simulations - first.simulations, 0, seconds});
 }
 
-void tell_heldout(TuneWatch& watch, const FitProblem& whole, const Point& end) {
-  if (watch.stages.empty() || watch.stopped()) return;
-  watch.stages.back().heldout_over_noise = heldout_over_noise(whole, whole.trajectories(end), watch.options.heldout);
+// `runs`: of whole logs, where the last stage ended. Infinite: nothing is held out.
+double tell_heldout(TuneWatch& watch, const FitProblem& whole, const std::vector<Trajectory>& runs) {
+  const double left = heldout_over_noise(whole, runs, watch.options.heldout);
+  if (!watch.stages.empty() && !watch.stopped()) watch.stages.back().heldout_over_noise = left;
+  return std::isnan(left) ? std::numeric_limits<double>::infinity() : left;
 }
 
 }  // namespace
@@ -213,21 +216,22 @@ SearchEnds search_ends(const TuneScope& seen, const FitProblem& whole, TuneWatch
   const Point x = problem.start();
   seen.on_stand ? weigh_sweeps(problem, x) : first_whitening(problem, x);
   const std::vector<StartPoint> starts = start_points(seen, x, watch);
+  SearchEnds out;
   std::vector<LeastSquaresResult> ends;
-  std::size_t best = 0;
   for (std::size_t s = 0; s < starts.size() && !(watch.stopped() && s > 0); ++s) {
     const double begun = static_cast<double>(s), all = static_cast<double>(starts.size());
     ends.push_back(search_locally(problem, starts[s].point, Stage{Stage::Kind::start, static_cast<int>(s) + 1},
                                   iterations_a_start,
                                   starts[s].from == StartEnd::From::genetic ? Start::found : Start::nominal,
                                   {work.starts.at(begun / all), work.starts.at((begun + 1) / all)}, watch));
-    tell_heldout(watch, whole, ends.back().point);
-    if (ends.back().cost < ends[best].cost) best = s;
+    out.heldout.push_back(tell_heldout(watch, whole, whole.trajectories(ends.back().point)));
+    if (ends.back().cost < ends[out.best].cost) out.best = s;
   }
-  SearchEnds out;
-  for (std::size_t s = 0; s < ends.size(); ++s)
-    out.starts.push_back({starts[s].from, ends[s].cost, in_best_valley(ends[s], ends[best].cost)});
-  out.best = std::move(ends[best]);
+  for (std::size_t s = 0; s < ends.size(); ++s) {
+    out.starts.push_back({starts[s].from, ends[s].cost, in_best_valley(ends[s], ends[out.best].cost)});
+    out.points.push_back(ends[s].point);
+  }
+  out.end = std::move(ends[out.best]);
   watch.done_with(problem);
   return out;
 }
@@ -254,10 +258,38 @@ void weigh(FitProblem& problem, const Point& x, ErrorModel& error, bool on_stand
 
 }  // namespace
 
-LeastSquaresResult refine_seen(FitProblem& seen, const Point& from, ErrorModel& error, bool on_stand, Share share,
-                               TuneWatch& watch) {
-  weigh(seen, from, error, on_stand, true);
-  return search_locally(seen, from, {Stage::Kind::weights}, iterations_of_last_round, Start::ended, share, watch);
+namespace {
+
+std::vector<std::size_t> nearest_heldout_first(const SearchEnds& searched) {
+  std::vector<std::size_t> order(searched.heldout.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::size_t a, std::size_t b) { return searched.heldout[a] < searched.heldout[b]; });
+  return order;
+}
+
+SeenFit refine_seen(FitProblem& seen, const FitProblem& whole, const Point& from, bool on_stand, TuneWatch& watch) {
+  SeenFit out;
+  weigh(seen, from, out.error, on_stand, true);
+  out.end =
+      search_locally(seen, from, {Stage::Kind::weights}, iterations_of_last_round, Start::ended, work.weights, watch);
+  out.whole = whole.trajectories(out.end.point);
+  out.heldout = tell_heldout(watch, whole, out.whole);
+  return out;
+}
+
+}  // namespace
+
+SeenFit refine_best(const SearchEnds& searched, FitProblem& seen, const FitProblem& whole, bool on_stand,
+                    TuneWatch& watch) {
+  SeenFit best = refine_seen(seen, whole, searched.points[searched.best], on_stand, watch);
+  for (const std::size_t s : nearest_heldout_first(searched)) {
+    if (s == searched.best) continue;
+    if (watch.stopped() || !(searched.heldout[s] < best.heldout)) break;
+    SeenFit other = refine_seen(seen, whole, searched.points[s], on_stand, watch);
+    if (other.heldout < best.heldout) best = std::move(other);
+  }
+  return best;
 }
 
 LeastSquaresResult refine_whole(FitProblem& problem, const Point& from, ErrorModel& error, int rounds, bool on_stand,

@@ -1,12 +1,14 @@
 // Breadth, then depth: a genetic search over the shared values, and the local stage from its best distinct points and
 // from the table's own.
 #pragma once
+#include <cstddef>
 #include <vector>
 
 #include "fit/error_model.h"
 #include "fit/problem.h"
 #include "optimise/box_least_squares.h"
 #include "optimise/unit_cube.h"
+#include "simulate/scenario.h"
 #include "tune/constants.h"
 #include "tune/scope.h"
 #include "tune/tune.h"
@@ -31,14 +33,26 @@ bool in_best_valley(const LeastSquaresResult& end, double best);
 // Ends of the local stage on what is seen of each log.
 struct SearchEnds {
   std::vector<StartEnd> starts;  // from the table's values first
-  LeastSquaresResult best;
+  std::vector<Point> points;     // where each ended
+  std::vector<double> heldout;   // over the noise, of each; infinite: nothing is held out
+  std::size_t best = 0;          // by its cost
+  LeastSquaresResult end;        // of the best
 };
 // `seen`: without the part of each log that is held out. `whole`: on whole logs, to say how well that part is met.
 SearchEnds search_ends(const TuneScope& seen, const FitProblem& whole, TuneWatch& watch);
 
-// A fit of what is seen of each log, by weights that are learnt at `from`.
-LeastSquaresResult refine_seen(FitProblem& seen, const Point& from, ErrorModel& error, bool on_stand, Share share,
-                               TuneWatch& watch);
+// A fit of what is seen of each log, by weights that are learnt where it began.
+struct SeenFit {
+  LeastSquaresResult end;
+  ErrorModel error;
+  std::vector<Trajectory> whole;  // of whole logs, at the end
+  double heldout = 0;             // over the noise; infinite: nothing is held out
+};
+// Goes on from the best start. Its error is the model's own, so a channel that a fit has not found counts for little,
+// and the fit may never find it. What is held out shows that: where another start is nearer to it than this fit ended,
+// that start is fitted as well, and the nearer of the two is kept.
+SeenFit refine_best(const SearchEnds& searched, FitProblem& seen, const FitProblem& whole, bool on_stand,
+                    TuneWatch& watch);
 // Alternates fit and error model on whole logs until the weights settle.
 LeastSquaresResult refine_whole(FitProblem& problem, const Point& from, ErrorModel& error, int rounds, bool on_stand,
                                 Share share, TuneWatch& watch);

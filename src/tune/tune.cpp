@@ -140,20 +140,20 @@ TuneResult tune_table(const std::vector<Log>& logs, const Table& nominal, const 
   const TuneScope seen = scope.seen(options.heldout);
   FitProblem fit = scope.problem(), part = seen.problem();
   SearchEnds searched = search_ends(seen, fit, watch);
-  LeastSquaresResult end = std::move(searched.best);
+  LeastSquaresResult end = std::move(searched.end);
   TuneResult out;
-  out.starts = std::move(searched.starts);
+  out.starts = searched.starts;
 
-  // Weights from the model's own error, alternating with the fit: first with the end of each log still held out.
-  if (!watch.stopped())
-    end = options.heldout > 0
-              ? refine_seen(part, end.point, out.error, scope.on_stand, tune_constants::work.weights, watch)
-              : refine_whole(fit, end.point, out.error, 1, scope.on_stand, tune_constants::work.weights, watch);
+  // Weights from the model's own error, alternating with the fit: first with the end of each log still held out. What
+  // it says of the fit is out of sample until the effects are judged by it.
+  std::vector<Trajectory> heldout_runs;
+  if (watch.stopped()) {
+    heldout_runs = fit.trajectories(end.point);
+  } else {
+    SeenFit refined = refine_best(searched, part, fit, scope.on_stand, watch);
+    end = std::move(refined.end), out.error = std::move(refined.error), heldout_runs = std::move(refined.whole);
+  }
   watch.done_with(part);
-  // Before the effects are judged by the held-out part: what it says of the fit is then out of sample.
-  const std::vector<Trajectory> heldout_runs = fit.trajectories(end.point);
-  if (!watch.stages.empty())
-    watch.stages.back().heldout_over_noise = heldout_over_noise(fit, heldout_runs, options.heldout);
   if (!scope.on_stand && !options.effects) out.effects = drop_unearned(scope, fit, end.point, out.error, watch);
   if (!watch.stopped())
     end = refine_whole(fit, end.point, out.error, options.rounds, scope.on_stand, tune_constants::work.whole, watch);

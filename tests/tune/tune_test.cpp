@@ -3,8 +3,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
+#include <vector>
 
 #include "base/error.h"
 #include "effects/edge_radius.h"
@@ -24,9 +26,11 @@
 #include "fit/error_model.h"
 #include "fit/free_values.h"
 #include "fit/log_data.h"
+#include "fit/problem.h"
 #include "fit/tuned_state.h"
 #include "optimise/box_least_squares.h"
 #include "optimise/ceres_refinement.h"
+#include "optimise/unit_cube.h"
 #include "parameters/list.h"
 #include "parameters/table.h"
 #include "recovery/twins.h"
@@ -41,6 +45,7 @@
 #include "tune/scope.h"
 #include "tune/search.h"
 #include "tune/summary.h"
+#include "tune/watch.h"
 
 namespace servodx {
 namespace {
@@ -329,6 +334,34 @@ TEST(Tune, WhatIsHeldOutTellsTheFitNothingUntilItHasEnded) {
   }
   EXPECT_TRUE(met);
   EXPECT_GT(bent.channels.front().heldout_rms, as_it_is.channels.front().heldout_rms);
+}
+
+// Two starts, of which the second lies so near to what is held out; the fits by learnt weights that follow.
+std::vector<double> fitted_heldout(double second_lies) {
+  TuneOptions o;
+  o.generations = 0;
+  o.effects.emplace();
+  const TuneScope scope =
+      scope_of({twins::cut(shipped_log("healthy/h12_mixed"), 400)}, one_free_row(), shipped_rig(), o);
+  const TuneScope seen = scope.seen(o.heldout);
+  FitProblem part = seen.problem();
+  Point far = part.start();
+  far.front() = 0.05;
+  SearchEnds searched;
+  searched.points = {far, part.start()};
+  searched.heldout = {second_lies + 1, second_lies};
+  TuneWatch watch(o);
+  const SeenFit fit = refine_best(searched, part, scope.problem(), scope.on_stand, watch);
+  std::vector<double> out;
+  for (const StageResult& s : watch.stages)
+    if (std::isfinite(s.heldout_over_noise)) out.push_back(s.heldout_over_noise);
+  EXPECT_EQ(fit.heldout, *std::min_element(out.begin(), out.end()));
+  return out;
+}
+
+TEST(Tune, AStartThatIsNearerToWhatIsHeldOutThanTheBestOnesFitIsFittedTooAndTheNearerKept) {
+  EXPECT_EQ(fitted_heldout(0).size(), 2u);
+  EXPECT_EQ(fitted_heldout(1e9).size(), 1u);
 }
 
 TEST(Tune, AStartIsInTheBestValleyByItsCostOrByItsOwnPromise) {
