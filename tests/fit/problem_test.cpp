@@ -94,6 +94,23 @@ double width_of(int at, const std::map<std::string, double>& facts, const std::m
   return f->prior_sd * std::log(f->upper / f->lower);
 }
 
+// Else, where the load is light, it takes the place of a slower valve.
+TEST(SharedValues, ThePistonsLeakIsHeldToAPartOfTheRatedFlow) {
+  const auto spread = [](const std::map<std::string, double>& facts, const std::map<std::string, double>& asked) {
+    RigFile rig;
+    rig.facts = facts;
+    std::vector<FreeValue> shared = shared_values(shipped_table());
+    hold_to_sheet(shared, rig, asked);
+    const auto f = std::find_if(shared.begin(), shared.end(),
+                                [](const FreeValue& v) { return v.at == row::cross_piston_leakage; });
+    return f->prior_sd * (f->upper - f->lower);
+  };
+  const std::map<std::string, double> facts = {{"valve.rated_flow", 4e-4}, {"supply.pressure", 2e7}};
+  EXPECT_NEAR(spread(facts, {}), 2e-13, 1e-18);
+  EXPECT_GT(spread({}, {}), 2e-12);
+  EXPECT_GT(spread(facts, {{"cross_piston_leakage", 1e-12}}), 2e-12);
+}
+
 // Else blunt corners take the place of a clearance in overlapped edges.
 TEST(SharedValues, AClearanceIsHeldToAQuarterOfItsDrawing) {
   EXPECT_NEAR(width_of(row::radial_clearance, {{"valve.radial_clearance", 3e-6}}, {}), 0.25, 1e-12);
