@@ -276,7 +276,7 @@ std::vector<const HypothesisFit*> leading(const HypothesisFits& fits) {
   return out;
 }
 
-// Each other fault beside a leading one, from the start that screens best.
+// Each other fault beside a leading one, from the start that screens best. Two that no log parts are one.
 std::vector<Attempt> pair_attempts(const std::vector<const Fault*>& faults,
                                    const std::vector<const HypothesisFit*>& led, const HypothesisData& data,
                                    std::vector<const HypothesisFit*>& from, FitWork& work) {
@@ -285,7 +285,7 @@ std::vector<Attempt> pair_attempts(const std::vector<const Fault*>& faults,
   for (std::size_t l = 0; l < led.size(); ++l)
     for (const Fault* fault : faults) {
       const bool tried = fault == led[l]->fault || (l > 0 && fault == led[0]->fault);
-      if (tried) continue;
+      if (tried || are_twins(*fault, *led[l]->fault)) continue;
       for (const double severity :
            starting_severities(*fault, data.base, data.settings.null_limit, data.settings.times_drawing))
         screened.push_back({.fault = led[l]->fault, .severity = severity, .beside = fault}), by.push_back(led[l]);

@@ -123,16 +123,19 @@ FaultGains usual_gains_of(const Assessment& a, const DetectionBaseline& baseline
   return usual;
 }
 
-// What the model errs by on the worst of healthy logs may gain a second name as well: it has to gain beyond that.
+// What the model errs by on the worst of healthy logs may gain a second name as well: it has to gain beyond that. Where
+// the first alone leaves more than any healthy log, what both leave says by how much the model errs here.
+double errs_beside(const PairResult& p, double alone, double usual_adequacy) {
+  const double usual = std::max(1.0, usual_adequacy);
+  return alone > usual ? std::clamp(p.adequacy, 1.0, usual) : usual;
+}
+
 PairEvidence pair_of(const PairResult& p, const Assessment& a, const FaultGains& usual, double usual_adequacy) {
   const double of_health = gain_of(usual, p.second.fault);
-  const double errs = std::max(1.0, usual_adequacy * usual_adequacy);
-  return {position_of(p.first.fault, a),
-          position_of(p.second.fault, a),
-          std::sqrt(std::max(0.0, p.gain) / errs / (1 + of_health)),
-          p.adequacy,
-          p.first.at_least || p.second.at_least,
-          p.first.at_worst || p.second.at_worst};
+  const std::size_t first = position_of(p.first.fault, a);
+  const double errs = std::pow(errs_beside(p, a.hypotheses[first].adequacy, usual_adequacy), 2);
+  return {first,      position_of(p.second.fault, a),        std::sqrt(std::max(0.0, p.gain) / errs / (1 + of_health)),
+          p.adequacy, p.first.at_least || p.second.at_least, p.first.at_worst || p.second.at_worst};
 }
 
 // A fault whose gain's root is expected so far beyond the limit is found in 95 of 100 logs: noise moves the root by one
@@ -156,12 +159,16 @@ bool shows_a_broken_sensor(const Reading& r) {
   return r.kind == Misreading::exchanged && std::all_of(r.of.begin(), r.of.end(), is_chamber);
 }
 
-// What no log parts from the fault named that does not record the current.
-bool has_twin(const Diagnosis& d) {
-  if (!d.fault || !d.fault->twin) return false;
-  const bool told = d.fault->twin->told_by && d.assessment.current_recorded;
-  const auto& others = d.ambiguous_with;
-  return !told && std::find(others.begin(), others.end(), d.fault->twin) == others.end();
+// What no log parts from a fault that is named, unless a record tells it or it is named as well.
+void add_twins(Diagnosis& d) {
+  for (const NamedFault& named : d.faults) {
+    const Fault* twin = named.fault->twin;
+    if (!twin || (twin->told_by && d.assessment.current_recorded)) continue;
+    const bool is_named =
+        std::any_of(d.faults.begin(), d.faults.end(), [&](const NamedFault& other) { return other.fault == twin; });
+    auto& others = d.ambiguous_with;
+    if (!is_named && std::find(others.begin(), others.end(), twin) == others.end()) others.push_back(twin);
+  }
 }
 
 // Of the first fault named.
@@ -243,7 +250,7 @@ Diagnosis judge(Assessment a, const DetectionBaseline& whole) {
   d.onset = a.onset;
   d.assessment = std::move(a);
   take_first(d);
-  if (has_twin(d)) d.ambiguous_with.push_back(d.fault->twin);
+  add_twins(d);
   leave_out_fits(d);
   return d;
 }

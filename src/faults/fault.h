@@ -69,4 +69,6 @@ struct Fault {
   const Fault* twin = nullptr;
 };
 
+inline bool are_twins(const Fault& a, const Fault& b) { return a.twin == &b || b.twin == &a; }
+
 }  // namespace servodx

@@ -137,6 +137,28 @@ TEST(Judge, WornCornersAreNamedTogetherWithTheClearanceThatWearsWithThem) {
   EXPECT_EQ(d.ambiguous_with, std::vector<const Fault*>{find_fault("radial_clearance_wear")});
 }
 
+// A lost motor alone leaves so much; with worn corners beside it as little as healthy logs leave.
+Diagnosis beside_lost_motor(double left_alone) {
+  Assessment a = assessment(10, {hypothesis("", 0.001, 20), hypothesis("corner_wear", 0.001, 9),
+                                 hypothesis("torque_motor_loss", 0.998, left_alone)});
+  PairResult pair;
+  pair.first.fault = find_fault("torque_motor_loss"), pair.second.fault = find_fault("corner_wear");
+  pair.gain = 16, pair.adequacy = 1.1;
+  a.pairs = {pair};
+  return judge(a, baseline());
+}
+
+TEST(Judge, BesideAFaultThatLeavesMoreThanAnyHealthyLogASecondHasToGainBeyondWhatBothLeave) {
+  EXPECT_EQ(beside_lost_motor(1.4).faults.size(), 1u) << "4 deviates over 1.5 that healthy logs leave: below 3";
+  EXPECT_EQ(beside_lost_motor(1.6).faults.size(), 2u) << "over 1.1";
+}
+
+TEST(Judge, OfTwoFaultsEachIsNamedTogetherWithItsTwin) {
+  const Diagnosis d = beside_lost_motor(1.6);
+  const auto& others = d.ambiguous_with;
+  EXPECT_EQ(std::count(others.begin(), others.end(), find_fault("radial_clearance_wear")), 1);
+}
+
 TEST(Judge, ScoreAboveItNamesTheMostProbableFaultWithItsSize) {
   const Diagnosis d = judge(assessment(3.001, {hypothesis("", 0.001), hypothesis("sticky_spool", 0.001),
                                                hypothesis("clogged_filter", 0.998)}),
