@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "explain/answer.h"
+#include "explain/constants.h"
 #include "explain/describe.h"
 #include "explain/drive.h"
 #include "explain/engine.h"
@@ -22,11 +23,15 @@ void ask_drive(Inquiry& q, Answer& answer) {
   if (!q.test() || !answer.found.before.ok) return;
   auto drive = std::make_unique<DriveSubject>(q.logs(), q.known().value_or(KnownRig{}));
   if (drive->empty()) return;
+  // The driver has data and causes of its own, so what healthy logs scatter by in the valve's says nothing of them.
+  const HealthyReference healthy = of_causes(q.speaking(), *drive);
+  const HealthyTest test(healthy);
   const SizesByLog none;
   EngineOptions engine;
-  engine.seed = q.options().seed, engine.stop = q.options().watch.stop, engine.level = q.level();
+  engine.seed = q.options().seed, engine.stop = q.options().watch.stop;
+  engine.level = explain_constants::drive::of_level * q.level();
   engine.among = [&](const Cause& c) { return q.has_name(c); };
-  engine.p_new = chance_of_size(*q.test(), *drive, none);
+  engine.p_new = chance_of_size(test, *drive, none);
   FoundCauses told = explain(*drive, engine);
   if (!told.before.ok) return;
   answer.drive = std::move(drive);
@@ -42,8 +47,7 @@ ExplainedCause described_of_drive(const Inquiry& q, const Answer& answer, const 
   const Number& n = c.numbers.front();
   const double sample = answer.drive->sample_period();
   double error = std::hypot(r.std_error[0], healthy_spread(*answer.drive, *q.test(), r.cause, 0, r.std_error[0]));
-  // The driver may take the command anywhere between two samples: evenly spread, one over the root of twelve.
-  if (r.cause == DriveSubject::by_delay) error = std::hypot(error, sample / std::sqrt(12.0));
+  if (r.cause == DriveSubject::by_delay) error = std::hypot(error, answer.drive->time_error());
   out.parameters.push_back({n.name, n.unit, r.value[0], error, n.off});
   // A delay and a lag within one sample look alike.
   const bool within_sample = answer.drive->time_beyond_usual(r.cause, r.value[0]) < sample;

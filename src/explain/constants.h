@@ -96,6 +96,7 @@ inline constexpr std::size_t fewest_usual = 3;
 
 // Between command and coil current (explain/drive.cpp). Not examined.
 namespace drive {
+inline constexpr double of_level = 0.1;      // of the level of sizes, beyond it: a driver is a question of its own
 inline constexpr std::size_t fewest = 100;   // samples of a log that is looked at
 inline constexpr double first_error = 1e-2;  // of the command's span, until the residual is seen
 inline constexpr double least_error = 1e-6;  // of the same: a current that was computed has no noise

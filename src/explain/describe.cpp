@@ -50,6 +50,17 @@ std::vector<std::string> confusable_with(const Inquiry& q, const CauseResult& r)
   return out;
 }
 
+// Where it shows several times its error most.
+std::string place_of(const Cause& c, const CauseResult& r) {
+  std::string out = c.where;
+  double surest = 0;
+  for (std::size_t j = 0; j < c.places.size(); ++j) {
+    const double times = r.std_error[j] > 0 ? std::abs(r.value[j] - c.numbers[j].off) / r.std_error[j] : 0.0;
+    if (c.numbers[j].size && times > surest) surest = times, out = c.places[j];
+  }
+  return out;
+}
+
 }  // namespace
 
 std::string name_of(const Cause& c) { return c.effect + (is_of_sensor(c) ? " at " + c.where : ""); }
@@ -58,7 +69,7 @@ ExplainedCause described(const Inquiry& q, const Subject& told_by, const CauseRe
   const Cause& c = q.cause(r.cause);
   const bool by_simulation = &told_by == static_cast<const Subject*>(&q.subject());
   ExplainedCause out;
-  out.effect = c.effect, out.where = c.where, out.test = c.test, out.meaning = meaning_of(c);
+  out.effect = c.effect, out.where = place_of(c, r), out.test = c.test, out.meaning = meaning_of(c);
   out.heldout_gain = r.heldout_gain, out.beyond_retuning = r.beyond_retuning, out.delta_bic = r.delta_bic;
   out.told_by = by_simulation ? ToldBy::simulation : ToldBy::blocks, out.curve = c.curve;
   const auto& values = q.subject().values(r.cause);

@@ -149,6 +149,13 @@ double DriveSubject::time_beyond_usual(int cause, double value) const {
   return cause == by_delay ? value - usual_delay_ : lag_of(value);
 }
 
+double DriveSubject::time_error() const { return sample_period() / std::sqrt(12.0); }
+
+double DriveSubject::error_beside(int cause, std::size_t k) const {
+  const double probe = causes_[static_cast<std::size_t>(cause)].probes[k].front().front();
+  return time_error() / std::abs(time_beyond_usual(cause, probe));
+}
+
 bool DriveSubject::rescale(const Eigen::VectorXd& residual) {
   const Eigen::VectorXd r = physical(residual);
   for (std::size_t l = 0; l < pairs_.size(); ++l) {

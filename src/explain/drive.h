@@ -5,6 +5,7 @@
 // line from sample to sample. Gain and offset are free in every log: `diagnose` judges them (diagnose/records.h).
 // Leaves out: clipping, dead zones, a lag of second order.
 #pragma once
+#include <cstddef>
 #include <optional>
 #include <span>
 #include <vector>
@@ -31,6 +32,9 @@ class DriveSubject : public Subject {
 
   double sample_period() const;                             // [s] of the first log, on the mean
   double time_beyond_usual(int cause, double value) const;  // [s] that the current comes later; value: of its number
+  // The driver may take the command anywhere between two samples: evenly spread, a sample over the root of twelve. [s]
+  double time_error() const;
+  double error_beside(int cause, std::size_t k) const override;
   const std::vector<Cause>& causes() const override { return causes_; }
   const std::vector<Series>& series() const override { return series_; }
   SubjectFit fit(const std::vector<int>& causes, bool wide) const override;

@@ -119,10 +119,11 @@ HealthyScore summarise(const Subject& subject, const CauseScore& score) {
   for (const auto& alternative : cause.probes) {
     if (alternative.size() == 1) {
       out.sizes.push_back(score.probes[k++]);
+      ProbeScore& size = out.sizes.back();
+      size.std_error = std::hypot(size.std_error, subject.error_beside(score.cause, out.sizes.size() - 1));
       if (cause.atop.empty()) continue;
       const double off = cause.numbers.front().off, move = alternative.front().front() - off;
-      ProbeScore& whole = out.sizes.back();
-      whole = {score.of * (off + move * whole.size), score.of * std::abs(move) * whole.std_error};
+      size = {score.of * (off + move * size.size), score.of * std::abs(move) * size.std_error};
       continue;
     }
     double size = 0, error = 0;
@@ -321,6 +322,16 @@ KnownRig HealthyReference::known(int left_out) const {
     if (std::isfinite(l.command_slope)) out.command_slope.push_back(l.command_slope);
     if (std::isfinite(l.drive_delay)) out.drive_delay.push_back(l.drive_delay);
   }
+  return out;
+}
+
+HealthyReference of_causes(const HealthyReference& reference, const Subject& subject) {
+  const auto is_one = [&](const HealthyScore& s) {
+    return std::any_of(subject.causes().begin(), subject.causes().end(),
+                       [&](const Cause& c) { return c.effect == s.effect && place_key(c) == s.where; });
+  };
+  HealthyReference out = reference;
+  for (HealthyLog& log : out.logs) std::erase_if(log.scores, [&](const HealthyScore& s) { return !is_one(s); });
   return out;
 }
 

@@ -93,6 +93,9 @@ HealthyReference score_healthy(const std::vector<Log>& logs, const Table& tuned,
 // How many of them it scores.
 std::size_t logs_to_score(const std::vector<Log>& logs, const std::vector<Log>& others);
 
+// What it says of this subject's causes alone: a family of their own, where the subject has data of its own.
+HealthyReference of_causes(const HealthyReference& reference, const Subject& subject);
+
 // The tests that a reference answers.
 class HealthyTest {
  public:

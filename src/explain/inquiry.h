@@ -54,6 +54,7 @@ class Inquiry {
   int healthy_logs() const { return healthy_logs_; }
   bool alike() const { return speaking_.alike; }
   const HealthyTest* test() const { return test_ ? &*test_ : nullptr; }
+  const HealthyReference& speaking() const { return speaking_.logs; }  // what the test is made of
   const std::optional<KnownRig>& known() const { return known_; }
   const std::deque<LoneLog>& lone() const { return lone_; }
   bool has_name(const Cause& cause) const;  // and is not left out on request

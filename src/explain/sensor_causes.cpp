@@ -20,10 +20,11 @@
 namespace servodx {
 namespace {
 
+std::string place_of_sensor(Signal sensor) { return "sensor:" + std::string(info(sensor).name); }
+
 Cause of_sensor(std::string effect, Signal sensor) {
-  const std::string channel(info(sensor).name);
-  Cause cause = named(std::move(effect), "sensor:" + channel);
-  cause.of_channel = channel;
+  Cause cause = named(std::move(effect), place_of_sensor(sensor));
+  cause.of_channel = info(sensor).name;
   return cause;
 }
 
@@ -49,36 +50,59 @@ void add_sensor(std::vector<SoughtCause>& to, const EffectInfo& e, int j, int sh
   to.push_back(sought(std::move(cause), {n}));
 }
 
-// The line of pick-up channel `c`: a frequency, and of each log cosine and sine, since the phase belongs to a log.
-std::vector<CauseNumber> numbers_of_line(const EffectInfo& e, int c, const CauseFacts& facts) {
+// Lines of pick-up channels: a frequency each, and of each log cosine and sine, since the phase belongs to a log.
+std::vector<CauseNumber> numbers_of_lines(const EffectInfo& e, const std::vector<int>& channels,
+                                          const CauseFacts& facts) {
   const auto at = [](int j) { return static_cast<std::size_t>(j); };
-  std::vector<CauseNumber> out = {{effect_value(e, at(2 * MainsPickup::channels + c), facts.tuned), "Hz", false}};
+  std::vector<CauseNumber> out;
+  for (const int c : channels)
+    out.push_back({effect_value(e, at(2 * MainsPickup::channels + c), facts.tuned), "Hz", false});
   for (std::size_t l = 0; l < facts.logs; ++l)
-    for (int k : {2 * c, 2 * c + 1}) {
-      out.push_back({effect_value(e, at(k), facts.tuned), e.parameters[at(k)].unit});
-      out.back().value.log = static_cast<int>(l);
+    for (const int c : channels)
+      for (const int k : {2 * c, 2 * c + 1}) {
+        out.push_back({effect_value(e, at(k), facts.tuned), e.parameters[at(k)].unit});
+        out.back().value.log = static_cast<int>(l);
+        out.back().sizes = {e.parameters[at(k)].start};
+      }
+  return out;
+}
+
+// Alternatives are frequencies; cosines and sines are tried together.
+std::vector<std::vector<std::vector<double>>> probes_of_lines(const std::vector<CauseNumber>& numbers,
+                                                              const std::optional<double>& stated_frequency) {
+  std::vector<double> frequencies = {50.0, 60.0};
+  if (stated_frequency) frequencies = {*stated_frequency};
+  std::vector<std::vector<std::vector<double>>> out;
+  for (const double f : frequencies)
+    for (const double off : {0.0, -0.15, 0.15}) {
+      std::vector<double> rest;
+      for (const CauseNumber& n : numbers) rest.push_back(n.size ? n.value.start : f + off);
+      std::vector<std::vector<double>>& together = out.emplace_back();
+      for (std::size_t j = 0; j < numbers.size(); ++j) {
+        if (!numbers[j].size) continue;
+        together.push_back(rest);
+        together.back()[j] += numbers[j].sizes.front();
+      }
     }
   return out;
 }
 
-// Alternatives are frequencies; cosine and sine of all logs are tried together.
-std::vector<std::vector<std::vector<double>>> probes_of_line(const std::vector<CauseNumber>& numbers, double size,
-                                                             const std::optional<double>& stated_frequency) {
-  std::vector<double> rest;
-  for (const CauseNumber& n : numbers) rest.push_back(n.value.start);
-  std::vector<double> frequencies = {50.0, 60.0};
-  if (stated_frequency) frequencies = {*stated_frequency};
-  std::vector<std::vector<std::vector<double>>> out;
-  for (double f : frequencies)
-    for (double off : {0.0, -0.15, 0.15}) {
-      std::vector<std::vector<double>>& together = out.emplace_back();
-      for (std::size_t j = 1; j < rest.size(); ++j) {
-        std::vector<double>& probe = together.emplace_back(rest);
-        probe[0] = f + off;
-        probe[j] += size;
-      }
-    }
+SoughtCause lines(Cause cause, const std::vector<int>& channels, const EffectInfo& pickup, const CauseFacts& facts) {
+  cause.test = pickup.best_test;
+  const std::vector<CauseNumber> numbers = numbers_of_lines(pickup, channels, facts);
+  SoughtCause out = sought(std::move(cause), numbers);
+  out.cause.probes = probes_of_lines(numbers, facts.mains_frequency);
   return out;
+}
+
+// A loop of the sensors' common ground: a line on each.
+Cause of_ground(const std::string& pickup, const std::vector<Signal>& sensors, std::size_t logs) {
+  Cause cause = named(pickup, place_of_sensor(sensors.front()));
+  cause.family = "ground";
+  for (const Signal s : sensors) cause.places.push_back(place_of_sensor(s));
+  for (std::size_t l = 0; l < logs; ++l)
+    for (const Signal s : sensors) cause.places.insert(cause.places.end(), 2, place_of_sensor(s));
+  return cause;
 }
 
 }  // namespace
@@ -87,16 +111,15 @@ std::vector<SoughtCause> mains_causes(const EffectInfo& pickup, const CauseFacts
   constexpr Signal signals[MainsPickup::sensors] = {Signal::spool_position, Signal::piston_position, Signal::pressure_a,
                                                     Signal::pressure_b};
   std::vector<SoughtCause> out;
-  for (int c = 0; c < MainsPickup::channels; ++c) {
-    const bool is_sensor = c < MainsPickup::sensors;
-    if (is_sensor && !facts.compared.contains(signals[c])) continue;
-    const std::vector<CauseNumber> numbers = numbers_of_line(pickup, c, facts);
-    Cause cause = is_sensor ? of_sensor(pickup.name, signals[c]) : named(pickup.name, "drive");
-    cause.test = pickup.best_test;
-    SoughtCause& line = out.emplace_back(sought(std::move(cause), numbers));
-    line.cause.probes =
-        probes_of_line(numbers, pickup.parameters[static_cast<std::size_t>(2 * c)].start, facts.mains_frequency);
+  std::vector<int> channels;
+  std::vector<Signal> sensors;
+  for (int c = 0; c < MainsPickup::sensors; ++c) {
+    if (!facts.compared.contains(signals[c])) continue;
+    channels.push_back(c), sensors.push_back(signals[c]);
+    out.push_back(lines(of_sensor(pickup.name, signals[c]), {c}, pickup, facts));
   }
+  out.push_back(lines(named(pickup.name, "drive"), {MainsPickup::sensors}, pickup, facts));
+  if (sensors.size() > 1) out.push_back(lines(of_ground(pickup.name, sensors, facts.logs), channels, pickup, facts));
   return out;
 }
 

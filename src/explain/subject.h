@@ -43,6 +43,8 @@ struct Cause {
   std::string atop = "";
   // A sensor's cause: the channel that it shows in, and no other. Empty: a cause of the valve.
   std::string of_channel = "";
+  // Of a cause that shows in several places, that of each number: the surest one's is reported. Empty: all at `where`.
+  std::vector<std::string> places = {};
 };
 
 // Rarer than a named effect before any data: a row that was held for a reason, or a part of the construction.
@@ -97,6 +99,11 @@ class Subject {
   // ln of the oil's viscosity over the reference, mean of the logs: sizes on healthy logs may follow it. NaN: not
   // known.
   virtual double thickness() const { return std::nan(""); }
+  // What a cause's size at its k-th alternative may be off by, beyond what the fit's curvature says. [of the probe]
+  virtual double error_beside(int cause, std::size_t k) const {
+    (void)cause, (void)k;
+    return 0;
+  }
   // The residual behind the rows of a fit, in its own units.
   virtual Eigen::VectorXd physical(const Eigen::VectorXd& rows) const {
     Eigen::VectorXd out = Eigen::VectorXd::Zero(rows.size());

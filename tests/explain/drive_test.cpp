@@ -104,6 +104,36 @@ TEST(Drive, ADelayIsNamedAndSizedBesideHealthyDrivers) {
   }
 }
 
+// Of the valve's own causes one stands out on each healthy log: six of eight have a size like no other's.
+void add_scatter_of_valve(HealthyReference& healthy) {
+  for (std::size_t i = 0; i < healthy.logs.size(); ++i)
+    for (std::size_t cause = 0; cause < 6; ++cause)
+      healthy.logs[i].scores.push_back(
+          {"of the valve " + std::to_string(cause), "spool", {{i == cause ? 1e3 : 0.0, 1.0}}, 0, 1});
+}
+
+TEST(Drive, WhatTheValveScattersByHidesNoDriver) {
+  HealthyReference healthy = healthy_drivers();
+  add_scatter_of_valve(healthy);
+  const Log delayed = log_of_driver(3e-3, 3e-4, 1.0, 77);
+  EXPECT_FALSE(told_of(delayed, &healthy)) << "one family with all that";
+  const HealthyReference of_driver = of_causes(healthy, DriveSubject({delayed}));
+  EXPECT_TRUE(told_of(delayed, &of_driver));
+}
+
+// A recorder with a clock of its own shows each step of the command up to a sample late.
+TEST(Drive, ADelayIsNoBetterKnownThanTheSamplesTellIt) {
+  const DriveSubject drive({log_of_driver(0, 0, 1, 1)});
+  for (const int cause : {DriveSubject::by_delay, DriveSubject::by_lag}) {
+    const std::vector<HealthyScore> scores = score_drive(log_of_driver(0, 0, 1, 1), {});
+    const auto at = static_cast<std::size_t>(cause);
+    for (std::size_t k = 0; k < scores[at].sizes.size(); ++k) {
+      const double probe = drive.causes()[at].probes[k].front().front();
+      EXPECT_GE(scores[at].sizes[k].std_error * drive.time_beyond_usual(cause, probe), 1e-3 / std::sqrt(12.0));
+    }
+  }
+}
+
 TEST(Drive, ASlowAmplifierIsNamedByItsBandwidth) {
   const HealthyReference healthy = healthy_drivers();
   const std::optional<Told> told =

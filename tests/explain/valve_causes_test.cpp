@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <string>
+#include <vector>
 
 #include "effects/armature_angle.h"
 #include "effects/effect.h"
@@ -117,7 +118,7 @@ TEST(ValveCauses, PickUpHasAPhaseInEachLogAndTheFrequencyThatTheRigStates) {
   s.facts.logs = 2;
   s.facts.mains_frequency = 60.0;
   for (const auto& [cause, values] : valve_causes(s.facts)) {
-    if (cause.effect != MainsPickup::name) continue;
+    if (cause.effect != MainsPickup::name || !cause.places.empty()) continue;
     EXPECT_EQ(values.size(), 5u);
     EXPECT_EQ(values.back().log, 1);
     for (const auto& alternative : cause.probes) {
@@ -125,6 +126,28 @@ TEST(ValveCauses, PickUpHasAPhaseInEachLogAndTheFrequencyThatTheRigStates) {
       for (const std::vector<double>& probe : alternative) EXPECT_NEAR(probe[0], 60.0, 0.2);
     }
   }
+}
+
+TEST(ValveCauses, PickUpOfTheSensorsGroundIsOneCauseWithALineOnEach) {
+  const auto of_ground = [](const CauseFacts& facts) {
+    std::vector<Cause> out;
+    for (const SoughtCause& c : valve_causes(facts))
+      if (c.cause.effect == MainsPickup::name && !c.cause.places.empty()) out.push_back(c.cause);
+    return out;
+  };
+  Shipped s;
+  s.facts.logs = 2;
+  const std::vector<Cause> found = of_ground(s.facts);
+  ASSERT_EQ(found.size(), 1u);
+  const Cause& c = found.front();
+  EXPECT_FALSE(is_of_sensor(c)) << "judged by all channels";
+  ASSERT_EQ(c.places.size(), c.numbers.size());
+  ASSERT_EQ(c.numbers.size(), 2 * 1 + 2 * 2 * 2u) << "a frequency each, and of each log a cosine and a sine each";
+  for (const char* channel : {"sensor:spool_position", "sensor:piston_position"})
+    EXPECT_EQ(std::count(c.places.begin(), c.places.end(), channel), 5) << channel;
+  for (const auto& together : c.probes) EXPECT_EQ(together.size(), 8u);
+  s.facts.compared = {Signal::spool_position};
+  EXPECT_TRUE(of_ground(s.facts).empty()) << "one sensor's line is its own";
 }
 
 TEST(ValveCauses, ALeakIsSoughtAsFarAsTheFaultGoesOnAValveOfThisSize) {
