@@ -155,11 +155,20 @@ Decision unknown_for(Doubt why, const Evidence& e) {
   return name_nothing(std::move(none), most_probable(e.hypotheses), why);
 }
 
+// Of the valve nothing can be said. Where no current reaches it though the command moves, the driver is why.
+Decision decide_on_unjudgeable(const Evidence& e) {
+  Decision none = unknown_for(explains(e.reading) ? Doubt::misread : Doubt::unjudgeable, e);
+  if (e.unjudgeable != Unjudgeable::nothing_asked) return none;
+  const auto driver =
+      std::find_if(e.records.begin(), e.records.end(), [](const RecordEvidence& r) { return r.of == Record::driver; });
+  if (driver == e.records.end()) return none;
+  return name_by_record(std::move(none), static_cast<std::size_t>(driver - e.records.begin()));
+}
+
 }  // namespace
 
 Decision decide(const Evidence& e) {
-  if (e.unjudgeable != Unjudgeable::no)
-    return unknown_for(explains(e.reading) ? Doubt::misread : Doubt::unjudgeable, e);
+  if (e.unjudgeable != Unjudgeable::no) return decide_on_unjudgeable(e);
   Decision valve = decide_on_valve(e);
   if (is_misread(valve, e)) return unknown_for(Doubt::misread, e);
   if (!e.records.empty() && e.records.front().broken && e.others_left <= k::others_follow) {

@@ -340,6 +340,8 @@ Assessment assess_pool(const std::vector<Log>& logs, const Table& tuned, const R
   out.unjudgeable = unjudgeable_of(ready, base, out.point);
   if (out.unjudgeable != Unjudgeable::no) {
     out.hypotheses.push_back(not_fitted());
+    for (std::size_t l = 0; l < logs.size() && out.unjudgeable == Unjudgeable::nothing_asked; ++l)
+      for (RecordFigure& f : driver_figures(logs[l], ready.every_sample(l))) out.figures.push_back(std::move(f));
     if (logs.size() == 1) out.reading = best_reading(logs.front(), out.unjudgeable, trial);
     return out;
   }

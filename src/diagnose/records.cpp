@@ -327,6 +327,12 @@ std::vector<RecordFigure> record_figures(const Log& log, const LogData& data, co
   return out;
 }
 
+std::vector<RecordFigure> driver_figures(const Log& log, const LogData& data) {
+  std::vector<RecordFigure> out;
+  add_driver(log, data, out);
+  return out;
+}
+
 std::vector<BrokenSensor> broken_sensors(const LogData& data, const Trajectory& healthy) {
   if (!healthy.ok) return {};
   const std::vector<Followed> moving = followed(data, healthy);

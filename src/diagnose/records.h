@@ -38,6 +38,8 @@ struct RecordFigure {
 
 // Of what the log records, in the order of the kinds; what it cannot tell is left out.
 std::vector<RecordFigure> record_figures(const Log& log, const LogData& data, const ParameterVector& base);
+// Of the driver alone: they need nothing of the valve.
+std::vector<RecordFigure> driver_figures(const Log& log, const LogData& data);
 
 // What no healthy sensor does, seen without other logs.
 enum class SensorFinding {

@@ -294,6 +294,21 @@ TEST(Decide, NoPairInHealthNorWhereOneOfThemIsNotFoundNorWhereTheyLeaveMuch) {
   EXPECT_FALSE(decide(much_left).beside);
 }
 
+TEST(Decide, WhereNoCurrentFollowsTheCommandTheDriverIsNamedThoughTheValveIsAskedNothing) {
+  Evidence e;
+  e.unjudgeable = Unjudgeable::nothing_asked;
+  e.hypotheses = {{nullptr, 0, 1e3}};
+  EXPECT_EQ(decide(e).verdict, VerdictKind::unknown);
+  e.records = {{Record::supply, false}};
+  EXPECT_EQ(decide(e).verdict, VerdictKind::unknown) << "a supply does not keep the command still";
+  e.records = {{Record::driver, false}};
+  EXPECT_EQ(decide(e).verdict, VerdictKind::fault);
+  EXPECT_EQ(decide(e).record, 0u);
+  EXPECT_EQ(decide(e).doubt, Doubt::none);
+  e.unjudgeable = Unjudgeable::noise_alone;
+  EXPECT_EQ(decide(e).verdict, VerdictKind::unknown);
+}
+
 TEST(Decide, AnUnusualSupplyOrDriverIsNamedAndAFaultOfTheValveStandsBesideIt) {
   for (const Record of : {Record::supply, Record::driver}) {
     Evidence healthy = first_fault();

@@ -125,6 +125,7 @@ Verdict verdict_of(const Diagnosis& d, const DetectionBaseline& baseline, const 
   const std::string kind = words_of(blame_of(d));
   if (d.assessment.unjudgeable != Unjudgeable::no) {
     v.facts = {{"Kind", kind}, {"Action", d.action.text}};
+    for (const RecordFinding& f : d.records) v.reasons.push_back(sentence(record_in_words(f)));
     for (const std::string& next : next_calls(d, call)) v.reasons.push_back("Run next: " + next);
     return v;
   }

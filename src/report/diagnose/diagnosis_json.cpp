@@ -187,7 +187,7 @@ Json to_json(const Diagnosis& d) {
           {"parameters", moved_json(d.moved)},
           {"action", d.action.text},
           {"gross", words_of(d.assessment.gross)},
-          {"unjudgeable", words_of(d.assessment.unjudgeable)},
+          {"unjudgeable", words_of(d.verdict == VerdictKind::unknown ? d.assessment.unjudgeable : Unjudgeable::no)},
           {"reason", reason_of(d)},
           {"reading", reading_json(d)},
           {"hypothesis_told", label_of(d.nearest)},

@@ -78,12 +78,13 @@ std::string text_of(const Diagnosis& d, const TextOptions& options) {
   if (const std::string far = beyond_in_words(d.conditions); !far.empty()) table.row({"BEYOND", far});
   for (const std::string& doubt : doubts_beside_baseline(d)) table.row({"BEWARE", doubt});
   if (const std::string kind = words_of(blame_of(d)); !kind.empty()) table.row({"kind", kind});
+  if (const std::string why = words_of_doubt(d); !why.empty()) first += ": " + why;
   if (d.assessment.unjudgeable != Unjudgeable::no) {
+    for (const RecordFinding& f : d.records) table.row({"record", record_in_words(f)});
     table.row({"action", d.action.text});
     for (const std::string& call : next_calls(d, options.call)) table.row({"next", call});
-    return first + ": " + words_of_doubt(d) + "\n" + table.text();
+    return first + "\n" + table.text();
   }
-  if (const std::string why = words_of_doubt(d); !why.empty()) first += ": " + why;
 
   const auto [word, hypotheses] = standing(d);
   if ((d.doubt == Doubt::none || d.doubt == Doubt::no_fault) && !of_log(d)) table.row({word, hypotheses});
