@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "diagnose/judgeable.h"
 #include "faults/fault.h"
 #include "faults/record.h"
 

@@ -9,6 +9,7 @@
 #include "diagnose/decide.h"
 #include "diagnose/hypotheses.h"
 #include "diagnose/judge.h"
+#include "diagnose/judgeable.h"
 #include "diagnose/moved.h"
 #include "diagnose/naming.h"
 #include "diagnose/reading.h"
