@@ -3,10 +3,13 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <cstddef>
 #include <iterator>
 #include <span>
+#include <string>
 #include <string_view>
 #include <utility>
+#include <vector>
 
 #include "base/trimmed.h"
 #include "base/units.h"
@@ -160,6 +163,21 @@ bool names_two_ports(std::string_view name, const std::vector<std::string>& word
   return false;
 }
 
+// "Valve A pressure B": the first letter is the valve's. "Valve A pressure" has but one, and may well mean the port.
+std::vector<std::string> without_letter_of_machine(std::vector<std::string> words) {
+  const auto is_port = [](const std::string& word) { return word == "a" || word == "b"; };
+  if (std::count_if(words.begin(), words.end(), is_port) < 2) return words;
+  const auto is_machine = [](const std::string& word) {
+    return std::find(machine_words().begin(), machine_words().end(), word) != machine_words().end();
+  };
+  for (std::size_t i = 1; i < words.size(); ++i)
+    if (is_port(words[i]) && is_machine(words[i - 1])) {
+      words.erase(words.begin() + static_cast<long>(i));
+      break;
+    }
+  return words;
+}
+
 bool is_measured(Signal signal) {
   return signal != Signal::command && signal != Signal::coil_current && signal != Signal::setpoint;
 }
@@ -174,7 +192,7 @@ struct Match {
 // The signals that a name may stand for with this unit.
 std::vector<Match> matches_of(const std::string& name, const std::string& unit, std::size_t column) {
   std::vector<Match> matches;
-  const std::vector<std::string> words = words_of(name);
+  const std::vector<std::string> words = without_letter_of_machine(words_of(name));
   const bool demand = holds_any(words, demand_words());
   const bool difference = holds_any(words, difference_words()) || names_two_ports(name, words);
   bool of_spool = false, of_current = false;

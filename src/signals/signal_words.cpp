@@ -733,6 +733,9 @@ constexpr std::string_view demands[] = {"setpoint",
                                         "\xE8\xAE\xBE\xE5\xAE\x9A"};
 
 // A pressure from one place to another.
+constexpr std::string_view machines[] = {"valve",   "servovalve", "ventil", "servoventil", "valvola",  "vanne",
+                                         "valvula", "cylinder",   "cyl",    "zylinder",    "actuator", "axis",
+                                         "achse",   "station",    "bench",  "channel",     "unit"};
 constexpr std::string_view differences[] = {"dp", "drop", "druckdifferenz", "differenzdruck", "druckabfall"};
 
 // An absolute pressure is an atmosphere above the gauge pressure that the signals are in.
@@ -773,6 +776,7 @@ std::span<const SignalWords> signal_words() { return names; }
 std::span<const OtherWords> other_words() { return others; }
 std::span<const std::string_view> demand_words() { return demands; }
 std::span<const std::string_view> difference_words() { return differences; }
+std::span<const std::string_view> machine_words() { return machines; }
 std::span<const UnitWord> unit_words() { return meant; }
 std::span<const ForeignUnit> foreign_units() { return beyond; }
 

@@ -30,6 +30,7 @@ struct OtherWords {
 std::span<const OtherWords> other_words();
 std::span<const std::string_view> demand_words();      // of what is asked for, and not measured
 std::span<const std::string_view> difference_words();  // of a pressure from one place to another
+std::span<const std::string_view> machine_words();     // that a letter behind them tells apart: "valve A"
 
 // How else people write units of the table, in small letters.
 struct UnitWord {
