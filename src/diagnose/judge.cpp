@@ -134,8 +134,13 @@ PairEvidence pair_of(const PairResult& p, const Assessment& a, const FaultGains&
   const double of_health = gain_of(usual, p.second.fault);
   const std::size_t first = position_of(p.first.fault, a);
   const double errs = std::pow(errs_beside(p, a.hypotheses[first].adequacy, usual_adequacy), 2);
-  return {first,      position_of(p.second.fault, a),        std::sqrt(std::max(0.0, p.gain) / errs / (1 + of_health)),
-          p.adequacy, p.first.at_least || p.second.at_least, p.first.at_worst || p.second.at_worst};
+  PairEvidence e;
+  e.first = first, e.second = position_of(p.second.fault, a);
+  e.gain = std::sqrt(std::max(0.0, p.gain) / errs / (1 + of_health));
+  e.adequacy = p.adequacy;
+  e.at_least = p.first.at_least || p.second.at_least;
+  e.at_worst = p.first.at_worst || p.second.at_worst;
+  return e;
 }
 
 // A fault whose gain's root is expected so far beyond the limit is found in 95 of 100 logs: noise moves the root by one

@@ -72,9 +72,9 @@ constexpr Likely likely[] = {{row::flapper_stiffness, "valve.phase_lag_90_freque
                              {row::driver_bandwidth, nullptr, 0.6},
                              {row::spool_friction, nullptr, 0.9}};
 
-// One standard deviation of what passes the piston at full supply, of the rated flow. Seals pass a few drops, hydrostatic
-// bearings up to two per cent. Where the load is light, a leak and a slower valve move the piston alike, and the fit
-// takes up a fifth of the flow.
+// One standard deviation of what passes the piston at full supply, of the rated flow. Seals pass a few drops,
+// hydrostatic bearings up to two per cent. Where the load is light, a leak and a slower valve move the piston alike,
+// and the fit takes up a fifth of the flow.
 constexpr double piston_leak = 0.01;
 
 bool is_stated(int row, const RigFile& rig) {
@@ -99,18 +99,18 @@ std::vector<FreeValue> shared_values(const Table& table) {
 }
 
 void hold_to_sheet(std::vector<FreeValue>& shared, const RigFile& rig, const std::map<std::string, double>& asked) {
+  // To so much of the row's range, in its logarithm or not.
   const auto hold = [&](int row, double spread, double widest) {
     for (FreeValue& f : shared)
-      if (f.at == row && !asked.contains(f.name)) f.prior_sd = std::min(widest, spread / std::log(f.upper / f.lower));
+      if (f.at == row && !asked.contains(f.name))
+        f.prior_sd = std::min(widest, spread / (f.log_scale ? std::log(f.upper / f.lower) : f.upper - f.lower));
   };
   for (const Drawing& d : drawings)
     if (rig.fact(d.fact)) hold(d.row, d.tolerance, 1);
   for (const Likely& l : likely)
     if (!l.fact || rig.fact(l.fact)) hold(l.row, l.spread, half_of_range);
   const auto flow = rig.fact("valve.rated_flow"), supply = rig.fact("supply.pressure");
-  for (FreeValue& f : shared)
-    if (f.at == row::cross_piston_leakage && flow && supply && !asked.contains(f.name))
-      f.prior_sd = std::min(half_of_range, piston_leak * *flow / *supply / (f.upper - f.lower));
+  if (flow && supply) hold(row::cross_piston_leakage, piston_leak * *flow / *supply, half_of_range);
 }
 
 bool states_width(const RigFile& rig) {

@@ -22,8 +22,9 @@ std::vector<FreeValue> shared_values(const Table& table);
 // Narrower priors for what the rig file, or the valve's kind, says of the pilot stage. Logs of motion and pressure
 // hardly show it: the nozzles' diameter sets the scale of all forces on the spool, orifices and gap trade with what is
 // laminar beside them, the motor's lag with the driver's. Left alone, friction, flow force and the answer to another
-// oil end anywhere along a valley, and a plugged nozzle or a lost wire would be one of another valve.
-// A row that a prior is `asked` for keeps it.
+// oil end anywhere along a valley, and a plugged nozzle or a lost wire would be one of another valve. So is the
+// piston's leak, which under a light load moves the piston as a slower valve does. A row that a prior is `asked` for
+// keeps it.
 void hold_to_sheet(std::vector<FreeValue>& shared, const RigFile& rig, const std::map<std::string, double>& asked);
 
 // Whether the rig file states what the width of the ports follows from.

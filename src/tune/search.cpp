@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
 #include <optional>
 #include <span>
 #include <utility>
@@ -224,13 +223,12 @@ SearchEnds search_ends(const TuneScope& seen, const FitProblem& whole, TuneWatch
                                   iterations_a_start,
                                   starts[s].from == StartEnd::From::genetic ? Start::found : Start::nominal,
                                   {work.starts.at(begun / all), work.starts.at((begun + 1) / all)}, watch));
-    out.heldout.push_back(tell_heldout(watch, whole, whole.trajectories(ends.back().point)));
+    const double heldout = tell_heldout(watch, whole, whole.trajectories(ends.back().point));
+    out.ends.push_back({{starts[s].from, ends.back().cost}, ends.back().point, heldout});
     if (ends.back().cost < ends[out.best].cost) out.best = s;
   }
-  for (std::size_t s = 0; s < ends.size(); ++s) {
-    out.starts.push_back({starts[s].from, ends[s].cost, in_best_valley(ends[s], ends[out.best].cost)});
-    out.points.push_back(ends[s].point);
-  }
+  for (std::size_t s = 0; s < ends.size(); ++s)
+    out.ends[s].start.in_best_valley = in_best_valley(ends[s], ends[out.best].cost);
   out.end = std::move(ends[out.best]);
   watch.done_with(problem);
   return out;
@@ -260,11 +258,12 @@ void weigh(FitProblem& problem, const Point& x, ErrorModel& error, bool on_stand
 
 namespace {
 
-std::vector<std::size_t> nearest_heldout_first(const SearchEnds& searched) {
-  std::vector<std::size_t> order(searched.heldout.size());
-  std::iota(order.begin(), order.end(), std::size_t{0});
-  std::stable_sort(order.begin(), order.end(),
-                   [&](std::size_t a, std::size_t b) { return searched.heldout[a] < searched.heldout[b]; });
+// Of the ends but the best, the nearest to what is held out first.
+std::vector<const Ended*> nearest_first(const SearchEnds& searched) {
+  std::vector<const Ended*> order;
+  for (std::size_t s = 0; s < searched.ends.size(); ++s)
+    if (s != searched.best) order.push_back(&searched.ends[s]);
+  std::stable_sort(order.begin(), order.end(), [](const Ended* a, const Ended* b) { return a->heldout < b->heldout; });
   return order;
 }
 
@@ -282,11 +281,10 @@ SeenFit refine_seen(FitProblem& seen, const FitProblem& whole, const Point& from
 
 SeenFit refine_best(const SearchEnds& searched, FitProblem& seen, const FitProblem& whole, bool on_stand,
                     TuneWatch& watch) {
-  SeenFit best = refine_seen(seen, whole, searched.points[searched.best], on_stand, watch);
-  for (const std::size_t s : nearest_heldout_first(searched)) {
-    if (s == searched.best) continue;
-    if (watch.stopped() || !(searched.heldout[s] < best.heldout)) break;
-    SeenFit other = refine_seen(seen, whole, searched.points[s], on_stand, watch);
+  SeenFit best = refine_seen(seen, whole, searched.ends[searched.best].point, on_stand, watch);
+  for (const Ended* end : nearest_first(searched)) {
+    if (watch.stopped() || !(end->heldout < best.heldout)) break;
+    SeenFit other = refine_seen(seen, whole, end->point, on_stand, watch);
     if (other.heldout < best.heldout) best = std::move(other);
   }
   return best;

@@ -30,13 +30,17 @@ LeastSquaresResult search_locally(const FitProblem& problem, const Point& from, 
 // derivatives.
 bool in_best_valley(const LeastSquaresResult& end, double best);
 
+// Where a start ended, and how far from what is held out.
+struct Ended {
+  StartEnd start;
+  Point point;
+  double heldout = 0;  // over the noise; infinite: nothing is held out
+};
 // Ends of the local stage on what is seen of each log.
 struct SearchEnds {
-  std::vector<StartEnd> starts;  // from the table's values first
-  std::vector<Point> points;     // where each ended
-  std::vector<double> heldout;   // over the noise, of each; infinite: nothing is held out
-  std::size_t best = 0;          // by its cost
-  LeastSquaresResult end;        // of the best
+  std::vector<Ended> ends;  // from the table's values first
+  std::size_t best = 0;     // by its cost
+  LeastSquaresResult end;   // of the best
 };
 // `seen`: without the part of each log that is held out. `whole`: on whole logs, to say how well that part is met.
 SearchEnds search_ends(const TuneScope& seen, const FitProblem& whole, TuneWatch& watch);

@@ -142,7 +142,7 @@ TuneResult tune_table(const std::vector<Log>& logs, const Table& nominal, const 
   SearchEnds searched = search_ends(seen, fit, watch);
   LeastSquaresResult end = std::move(searched.end);
   TuneResult out;
-  out.starts = searched.starts;
+  for (const Ended& e : searched.ends) out.starts.push_back(e.start);
 
   // Weights from the model's own error, alternating with the fit: first with the end of each log still held out. What
   // it says of the fit is out of sample until the effects are judged by it.

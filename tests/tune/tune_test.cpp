@@ -348,8 +348,7 @@ std::vector<double> fitted_heldout(double second_lies) {
   Point far = part.start();
   far.front() = 0.05;
   SearchEnds searched;
-  searched.points = {far, part.start()};
-  searched.heldout = {second_lies + 1, second_lies};
+  searched.ends = {{{}, far, second_lies + 1}, {{}, part.start(), second_lies}};
   TuneWatch watch(o);
   const SeenFit fit = refine_best(searched, part, scope.problem(), scope.on_stand, watch);
   std::vector<double> out;
