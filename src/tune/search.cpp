@@ -236,40 +236,42 @@ SearchEnds search_ends(const TuneScope& seen, const FitProblem& whole, TuneWatch
 
 namespace {
 
-// An error model that is learnt at an unfinished fit takes an offset not yet found for correlation; the channel would
-// count for so few samples that it is never mended. So on the way each counts for at least as many as the first
-// whitening takes, and only the last rounds weigh as learnt.
-// A stand's sweeps never do. Their residual is one slow curve of the command: by its memory a whole sweep would count
-// for a few samples, least where the meter reads finest; by its size beside the speed of the output the flat ends would
-// count, and the peak at null not. There weigh_sweeps() holds to the end, and only the errors of the values are taken
-// from what is learnt.
-void weigh(FitProblem& problem, const Point& x, ErrorModel& error, bool on_stand, bool on_the_way) {
+enum class Logs { alike, by_their_own_error };
+
+// What the error model takes for error is on the way mostly what the fit has not found yet. Its correlation would leave
+// the channel that is furthest off so few samples that it is never mended, so each counts for at least as many as the
+// first whitening takes. Its size in one log, beside the others', would do the same to the log that has most to tell:
+// before the last rounds logs weigh alike. Only the errors of the values are taken from what is learnt.
+// Of a stand's sweeps the residual is one slow curve of the command: by its memory a whole sweep would count for a few
+// samples, least where the meter reads finest; by its size beside the speed of the output the flat ends would count,
+// and the peak at null not. There weigh_sweeps() holds to the end.
+void weigh(FitProblem& problem, const Point& x, ErrorModel& error, bool on_stand, Logs logs) {
   if (on_stand) {
     weigh_sweeps(problem, x);
     return;
   }
   error = learn_error_model(problem, x);
-  if (on_the_way)
-    for (ChannelError& c : error.channels) c.independent = std::max(c.independent, least_independent_rate);
-  apply_error_model(problem, error, x, true);
+  for (ChannelError& c : error.channels) c.independent = std::max(c.independent, least_independent_rate);
+  apply_error_model(problem, error, x, logs == Logs::by_their_own_error);
 }
 
 }  // namespace
 
 namespace {
 
-// Of the ends but the best, the nearest to what is held out first.
-std::vector<const Ended*> nearest_first(const SearchEnds& searched) {
-  std::vector<const Ended*> order;
+// The best by its cost, then the others, the nearest to what is held out first.
+std::vector<const Ended*> in_order_of_trial(const SearchEnds& searched) {
+  std::vector<const Ended*> order = {&searched.ends[searched.best]};
   for (std::size_t s = 0; s < searched.ends.size(); ++s)
     if (s != searched.best) order.push_back(&searched.ends[s]);
-  std::stable_sort(order.begin(), order.end(), [](const Ended* a, const Ended* b) { return a->heldout < b->heldout; });
+  std::stable_sort(order.begin() + 1, order.end(),
+                   [](const Ended* a, const Ended* b) { return a->heldout < b->heldout; });
   return order;
 }
 
 SeenFit refine_seen(FitProblem& seen, const FitProblem& whole, const Point& from, bool on_stand, TuneWatch& watch) {
   SeenFit out;
-  weigh(seen, from, out.error, on_stand, true);
+  weigh(seen, from, out.error, on_stand, Logs::alike);
   out.end =
       search_locally(seen, from, {Stage::Kind::weights}, iterations_of_last_round, Start::ended, work.weights, watch);
   out.whole = whole.trajectories(out.end.point);
@@ -277,15 +279,26 @@ SeenFit refine_seen(FitProblem& seen, const FitProblem& whole, const Point& from
   return out;
 }
 
+// Less than that is chance, and a fit that chance has chosen would flatter the effects that are judged by the same
+// part.
+bool is_nearer(const SeenFit& a, const SeenFit& b) { return a.heldout < nearer_by * b.heldout; }
+
 }  // namespace
 
 SeenFit refine_best(const SearchEnds& searched, FitProblem& seen, const FitProblem& whole, bool on_stand,
                     TuneWatch& watch) {
-  SeenFit best = refine_seen(seen, whole, searched.ends[searched.best].point, on_stand, watch);
-  for (const Ended* end : nearest_first(searched)) {
-    if (watch.stopped() || !(end->heldout < best.heldout)) break;
-    SeenFit other = refine_seen(seen, whole, end->point, on_stand, watch);
-    if (other.heldout < best.heldout) best = std::move(other);
+  const std::vector<const Ended*> order = in_order_of_trial(searched);
+  SeenFit best = refine_seen(seen, whole, order.front()->point, on_stand, watch);
+  for (std::size_t k = 1; k < order.size() && !watch.stopped(); ++k) {
+    const double to_beat = k == 1 ? order.front()->heldout : best.heldout;
+    if (!(order[k]->heldout < to_beat)) continue;
+    SeenFit other = refine_seen(seen, whole, order[k]->point, on_stand, watch);
+    if (is_nearer(other, best)) best = std::move(other);
+  }
+  for (bool goes_on = true; goes_on && !watch.stopped();) {
+    SeenFit next = refine_seen(seen, whole, best.end.point, on_stand, watch);
+    goes_on = is_nearer(next, best);
+    if (!is_nearer(best, next)) best = std::move(next);
   }
   return best;
 }
@@ -295,7 +308,7 @@ LeastSquaresResult refine_whole(FitProblem& problem, const Point& from, ErrorMod
   LeastSquaresResult r;
   Point x = from;
   for (int round = 0; round < rounds; ++round) {
-    weigh(problem, x, error, on_stand, round == 0);
+    weigh(problem, x, error, on_stand, round == 0 ? Logs::alike : Logs::by_their_own_error);
     const Share of_round = {share.at(static_cast<double>(round) / rounds), share.at((round + 1.0) / rounds)};
     const bool last = round + 1 == rounds;
     // Only the last round's end is kept as it is: there derivatives are judged.

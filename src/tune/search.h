@@ -52,9 +52,10 @@ struct SeenFit {
   std::vector<Trajectory> whole;  // of whole logs, at the end
   double heldout = 0;             // over the noise; infinite: nothing is held out
 };
-// Goes on from the best start. Its error is the model's own, so a channel that a fit has not found counts for little,
-// and the fit may never find it. What is held out shows that: where another start is nearer to it than this fit ended,
-// that start is fitted as well, and the nearer of the two is kept.
+// Goes on from the start that ended best by its cost, and from the one that ended nearest to what is held out: a
+// start's weights rest on where it began, and its cost tells valleys apart no better than they do. Another start is
+// tried as well where it ended nearer to that part than these fits. Of all, the nearest is kept; then the weights are
+// learnt anew where it ended, while it comes nearer still.
 SeenFit refine_best(const SearchEnds& searched, FitProblem& seen, const FitProblem& whole, bool on_stand,
                     TuneWatch& watch);
 // Alternates fit and error model on whole logs until the weights settle.
