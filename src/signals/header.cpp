@@ -246,8 +246,33 @@ std::vector<std::string> units_above(std::string_view text, const CsvCursor& csv
   return units;
 }
 
+namespace {
+
+bool are_numbers_between_blanks(std::string_view line) {
+  int numbers = 0;
+  for (std::size_t from = line.find_first_not_of(blanks), to = 0; from < line.size();
+       from = line.find_first_not_of(blanks, to), ++numbers) {
+    to = std::min(line.find_first_of(blanks, from), line.size());
+    if (!is_number(std::string(line.substr(from, to - from)))) return false;
+  }
+  return numbers > 1;
+}
+
+// As old recorders and plotting programs write them.
+bool are_parted_by_blanks(const CsvCursor& csv) {
+  if (csv.header().size() != 1) return false;
+  const std::vector<Above::Line> rows = look_ahead(csv).lines;
+  return are_numbers_between_blanks(csv.header_text()) ||
+         std::any_of(rows.begin(), rows.end(), [](const auto& row) { return are_numbers_between_blanks(row.text); });
+}
+
+}  // namespace
+
 void require_names(const CsvCursor& csv, const std::string& path) {
   const auto& header = csv.header();
+  if (are_parted_by_blanks(csv))
+    throw InputError({path, csv.header_line(), ""}, "its cells are parted by blanks",
+                     "part them by ';' or tabs, as awk '{$1=$1}1' OFS=';' does where no name or unit holds a blank");
   if (header.size() > 1 && std::all_of(header.begin(), header.end(), is_sample))
     throw InputError({path, csv.header_line(), ""}, "there is no header row: the first row is numbers",
                      "write a row of 'name [unit]' above it");

@@ -172,6 +172,14 @@ TEST(Log, LabViewsCommentColumnMayLackItsCells) {
   EXPECT_DOUBLE_EQ(log[Signal::spool_position][2], 0.7e-3);
 }
 
+TEST(Log, CellsBetweenBlanksAreToldSo) {
+  const std::string names = "time command piston_position\n", units = "s mA mm\n", row = "  0.001  -2.5e-1   3\n";
+  for (const std::string& text : {names + units + row, names + row, row + row})
+    EXPECT_TRUE(refusal(text).starts_with("log.csv:1: its cells are parted by blanks; part them by ';' or tabs"))
+        << text;
+  EXPECT_EQ(refusal("time [s] of the rig\n0\n1\n").find("blanks"), std::string::npos) << "one column";
+}
+
 TEST(Log, AFileWithoutAHeaderOrTextIsToldSo) {
   EXPECT_EQ(refusal(rows(30)),
             "log.csv:1: there is no header row: the first row is numbers; write a row of 'name [unit]' above it");
