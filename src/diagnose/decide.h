@@ -40,7 +40,7 @@ struct HypothesisEvidence {
   const Fault* fault = nullptr;  // null: healthy
   double probability = 0;        // beside the other hypotheses
   double adequacy = 0;           // whitened rms of the worst channel; 1 as on the tuning logs
-  bool at_worst = false;         // its size stands at the far end of the range
+  bool at_worst = false;         // its size stands at the far end of the range, and that is no end of the fault
   double gain = 0;               // of likelihood over health
   double motion_left = 0;        // of what moves in the log (diagnose/motion.h)
 };

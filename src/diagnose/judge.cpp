@@ -73,6 +73,9 @@ double part_beyond(double gain, double usual) {
   return gain > 0 ? std::max(1 / (1 + usual), 1 - k::most_lent * usual / gain) : 1.0;
 }
 
+// At an end that is no end of the fault: something else pulls. `of`: a hypothesis, or one fault of a pair.
+bool is_pulled_to_end(const auto& of) { return of.at_worst && !(of.fault && of.fault->ends_whole); }
+
 // Inside its range and of the others of its kind the likeliest: a fault that takes nearly as much as the one given.
 std::optional<std::size_t> rival_inside(const Assessment& a, const std::vector<WeighedHypothesis>& weighed,
                                         std::size_t at_end) {
@@ -81,7 +84,7 @@ std::optional<std::size_t> rival_inside(const Assessment& a, const std::vector<W
   std::optional<std::size_t> out;
   for (std::size_t i = 1; i < weighed.size(); ++i) {
     const HypothesisResult& h = a.hypotheses[i];
-    if (i == at_end || h.at_worst || healthy - h.misfit < near) continue;
+    if (i == at_end || is_pulled_to_end(h) || healthy - h.misfit < near) continue;
     if (!out || weighed[i].misfit < weighed[*out].misfit) out = i;
   }
   return out;
@@ -92,7 +95,7 @@ std::optional<std::size_t> rival_inside(const Assessment& a, const std::vector<W
 void put_ends_behind(const Assessment& a, std::vector<WeighedHypothesis>& weighed) {
   const std::vector<WeighedHypothesis> as_fitted = weighed;
   for (std::size_t i = 1; i < weighed.size(); ++i) {
-    if (!a.hypotheses[i].at_worst) continue;
+    if (!is_pulled_to_end(a.hypotheses[i])) continue;
     if (const auto rival = rival_inside(a, as_fitted, i))
       weighed[i].misfit =
           std::max(weighed[i].misfit, as_fitted[*rival].misfit - 2 * a.misfit_scale * std::log(k::end_of_range_odds));
@@ -139,7 +142,7 @@ PairEvidence pair_of(const PairResult& p, const Assessment& a, const FaultGains&
   e.gain = std::sqrt(std::max(0.0, p.gain) / errs / (1 + of_health));
   e.adequacy = p.adequacy;
   e.at_least = p.first.at_least || p.second.at_least;
-  e.at_worst = p.first.at_worst || p.second.at_worst;
+  e.at_worst = is_pulled_to_end(p.first) || is_pulled_to_end(p.second);
   return e;
 }
 
@@ -213,7 +216,7 @@ Evidence evidence_of(const Assessment& a, const DetectionBaseline& baseline, con
   e.gross = a.gross;
   e.unjudgeable = a.unjudgeable;
   for (const HypothesisResult& h : a.hypotheses)
-    e.hypotheses.push_back({h.fault, h.probability, h.adequacy, h.at_worst, h.gain, h.motion_left});
+    e.hypotheses.push_back({h.fault, h.probability, h.adequacy, is_pulled_to_end(h), h.gain, h.motion_left});
   e.others_left = a.others_left;
   if (a.reading) e.reading = {a.reading->left, shows_a_broken_sensor(*a.reading)};
   if (!a.pairs.empty()) e.pair = pair_of(a.pairs.front(), a, usual, baseline.adequacy_limit);

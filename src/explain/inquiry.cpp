@@ -12,6 +12,7 @@
 #include "explain/score.h"
 #include "fit/log_data.h"
 #include "fit/ports_of.h"
+#include "parameters/list.h"
 #include "servodx/explain.h"
 #include "servodx/log.h"
 #include "servodx/rig.h"
@@ -32,6 +33,14 @@ Stages stages_of(const std::vector<Log>& logs, const Table& tuned, const RigFile
   std::vector<std::string> content;
   for (const Log& log : logs) content.push_back(content_hash(log));
   return {options.watch, "explain", content, content_hash(tuned), content_bytes(rig), known};
+}
+
+// Before any cause. A fit of its own: it weighs the subject by what it leaves.
+bool take_all_air(const std::vector<Log>& logs, const Table& tuned, const RigFile& rig, int threads,
+                  const std::optional<KnownRig>& known) {
+  ValveSubject alone(logs, tuned, rig, threads, known);
+  const ExplainedFit fit = fit_base(alone, explain_constants::base_iterations);
+  return fit.ok && alone.own_at_end(row::air_fraction, fit.point);
 }
 
 }  // namespace
@@ -56,7 +65,9 @@ Inquiry::Inquiry(const std::vector<Log>& logs, const Table& tuned, const RigFile
   if (healthy) {
     std::vector<TestConditions> tests;
     for (const Log& log : logs) tests.push_back(conditions_of(log));
-    speaking_ = logs_that_speak(shares_marked(*healthy, tests), tests);
+    const bool all_air = std::any_of(healthy->logs.begin(), healthy->logs.end(), takes_all_air) &&
+                         take_all_air(logs, tuned, rig, options.threads, known_);
+    speaking_ = logs_that_speak(shares_marked(*healthy, tests, all_air), tests);
     healthy_logs_ = healthy->promising();
     test_.emplace(speaking_.logs, subject_.thickness());
   }

@@ -4,6 +4,7 @@
 
 #include "evidence/constants.h"
 #include "explain/constants.h"
+#include "fit/own_air.h"
 
 namespace servodx {
 namespace {
@@ -17,16 +18,19 @@ bool is_alike(const HealthyLog& log, const TestConditions& test) { return log.te
 
 }  // namespace
 
-HealthyReference shares_marked(const HealthyReference& all, const std::vector<TestConditions>& suspects) {
+bool takes_all_air(const HealthyLog& log) { return log.air >= (1 - explain_constants::at_end) * most_own_air; }
+
+HealthyReference shares_marked(const HealthyReference& all, const std::vector<TestConditions>& suspects, bool all_air) {
   const auto is_known = [&](const TestConditions& test) {
     return std::any_of(all.logs.begin(), all.logs.end(),
                        [&](const HealthyLog& log) { return is_followed(log) && is_alike(log, test); });
   };
+  const bool known = std::all_of(suspects.begin(), suspects.end(), is_known);
   HealthyReference out = all;
-  if (!std::all_of(suspects.begin(), suspects.end(), is_known)) return out;
-  for (HealthyLog& log : out.logs)
-    log.sets_no_share = !is_followed(log) && std::none_of(suspects.begin(), suspects.end(),
-                                                          [&](const auto& test) { return is_alike(log, test); });
+  for (HealthyLog& log : out.logs) {
+    const bool alike = std::any_of(suspects.begin(), suspects.end(), [&](const auto& t) { return is_alike(log, t); });
+    log.sets_no_share = (known && !is_followed(log) && !alike) || (!all_air && takes_all_air(log));
+  }
   return out;
 }
 

@@ -2,7 +2,8 @@
 //
 // How sizes and misfits scatter from test to test is seen on logs of different tests only. Repeats of one test say how
 // that test scatters, and of another test they say as much as one log. Where the model follows tests like the
-// suspects', a log that it does not follow says how much a cause removes of its own kind, and of theirs nothing.
+// suspects', a log that it does not follow says how much a cause removes of its own kind, and of theirs nothing. So
+// does one whose fit takes all the air that it may, where theirs finds theirs: something else makes it soft.
 #pragma once
 #include <vector>
 
@@ -11,9 +12,11 @@
 
 namespace servodx {
 
-// The same logs, with those marked that set no share beside these suspects. None, where some suspect is of a test that
-// no healthy log shows to be followed: it may be as little.
-HealthyReference shares_marked(const HealthyReference& all, const std::vector<TestConditions>& suspects);
+bool takes_all_air(const HealthyLog& log);
+
+// The same logs, with those marked that set no share beside these suspects. Where some suspect is of a test that no
+// healthy log shows to be followed, it may be as little. `all_air`: the suspects' own fit takes all that it may.
+HealthyReference shares_marked(const HealthyReference& all, const std::vector<TestConditions>& suspects, bool all_air);
 
 struct SpeakingLogs {
   HealthyReference logs;

@@ -157,6 +157,12 @@ double ValveSubject::own(int log, int at, const Point& point) const {
   return stated ? std::nan("") : candidate({}, point, log)[static_cast<std::size_t>(at)];
 }
 
+bool ValveSubject::own_at_end(int at, const Point& point) const {
+  for (std::size_t j = 0; j < own_; ++j)
+    if (free_[j].at == at && point[j] >= 1 - k::at_end) return true;
+  return false;
+}
+
 double ValveSubject::thickness() const {
   double sum = 0;
   for (const LogData& l : logs_) {

@@ -75,6 +75,8 @@ class ValveSubject : public Subject {
   }
   // A nuisance of a log at a point of fit({}); NaN where the rig file states it.
   double own(int log, int at, const Point& point) const;
+  // Whether a nuisance of some log stands at the upper end of where it may go, at a point of fit({}).
+  bool own_at_end(int at, const Point& point) const;
   long simulations() const override;
   long failed_simulations() const override;
   int threads() const override { return options_.threads; }

@@ -49,6 +49,9 @@ struct Fault {
   // `check` tracks it, `trend` predicts it.
   std::optional<double> failed = {};
   bool part_lost = false;  // the severity is a part lost, and what is left of it acts
+  // Its worst is the whole of it, and common: a part that broke, a passage that is shut. A size that stands at another
+  // end of a search stands there because something else pulls.
+  bool ends_whole = false;
   std::optional<SeenOutright> seen_outright = {};
   // A row that health lets wander up to a limit of the rig file. The fault is that row beyond the limit: it begins
   // there, not at `least`, and has no tolerance of its own.

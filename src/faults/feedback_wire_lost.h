@@ -20,6 +20,7 @@ inline const Fault feedback_wire_lost{
     .test = "small steps: the static gain rises as the stiffness falls; without a wire the spool does not stop",
     .action = "critical: stop the machine",
     .apply = [](double* v, double s) { v[row::feedback_wire_stiffness] *= s; },
+    .ends_whole = true,
     .seen_outright = SeenOutright{GrossFinding::spool_on_both_stops, 0.1}};  // only the wire holds the spool
 
 }  // namespace servodx

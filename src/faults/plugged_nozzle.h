@@ -23,9 +23,11 @@ inline const Fault plugged_nozzle{
     .starts = {0.15, 0.7, -0.15, -0.7},
     .test = "full steps both ways: the slew differs by direction, where a shifted null moves both alike",
     .action = "critical: stop the machine",
-    .apply = [](double* v, double s) {
-      v[effect_row<NozzlePlugging>(0)] = std::max(0.0, s);
-      v[effect_row<NozzlePlugging>(1)] = std::max(0.0, -s);
-    }};
+    .apply =
+        [](double* v, double s) {
+          v[effect_row<NozzlePlugging>(0)] = std::max(0.0, s);
+          v[effect_row<NozzlePlugging>(1)] = std::max(0.0, -s);
+        },
+    .ends_whole = true};
 
 }  // namespace servodx

@@ -12,6 +12,7 @@
 #include "fit/log_data.h"
 #include "fit/log_start.h"
 #include "fit/oil_of.h"
+#include "fit/own_air.h"
 #include "model/state.h"
 #include "parameters/coordinate.h"
 #include "parameters/list.h"
@@ -177,7 +178,9 @@ std::vector<FreeValue> nuisance_values(const LogData& log, int l, const Paramete
   };
   if (!log.scenario.command_slope) add(nuisance::command_slope);
   if (!log.scenario.oil_known) out.push_back(unknown_oil(log, base, l));
-  if (pressures) out.push_back({name_of_row(row::air_fraction), row::air_fraction, 2e-4, 0.08, true, 0.005, 0.2, l});
+  if (pressures)
+    out.push_back(
+        {name_of_row(row::air_fraction), row::air_fraction, least_own_air, most_own_air, true, 0.005, 0.2, l});
   if (has(Signal::spool_position)) add(nuisance::spool_offset);
   if (pressures) add(nuisance::pressure_a_offset), add(nuisance::pressure_b_offset);
   if (has(Signal::pilot_pressure_1)) add(nuisance::pilot_pressure_1_offset);

@@ -269,11 +269,14 @@ std::vector<const Ended*> in_order_of_trial(const SearchEnds& searched) {
   return order;
 }
 
-SeenFit refine_seen(FitProblem& seen, const FitProblem& whole, const Point& from, bool on_stand, TuneWatch& watch) {
+// `left` of the work: how many such fits are to come is not known, so each takes half of it.
+SeenFit refine_seen(FitProblem& seen, const FitProblem& whole, const Point& from, bool on_stand, Share& left,
+                    TuneWatch& watch) {
   SeenFit out;
+  const Share its = {left.from, left.at(0.5)};
+  left.from = its.to;
   weigh(seen, from, out.error, on_stand, Logs::alike);
-  out.end =
-      search_locally(seen, from, {Stage::Kind::weights}, iterations_of_last_round, Start::ended, work.weights, watch);
+  out.end = search_locally(seen, from, {Stage::Kind::weights}, iterations_of_last_round, Start::ended, its, watch);
   out.whole = whole.trajectories(out.end.point);
   out.heldout = tell_heldout(watch, whole, out.whole);
   return out;
@@ -288,15 +291,16 @@ bool is_nearer(const SeenFit& a, const SeenFit& b) { return a.heldout < nearer_b
 SeenFit refine_best(const SearchEnds& searched, FitProblem& seen, const FitProblem& whole, bool on_stand,
                     TuneWatch& watch) {
   const std::vector<const Ended*> order = in_order_of_trial(searched);
-  SeenFit best = refine_seen(seen, whole, order.front()->point, on_stand, watch);
+  Share left = work.weights;
+  SeenFit best = refine_seen(seen, whole, order.front()->point, on_stand, left, watch);
   for (std::size_t k = 1; k < order.size() && !watch.stopped(); ++k) {
     const double to_beat = k == 1 ? order.front()->heldout : best.heldout;
     if (!(order[k]->heldout < to_beat)) continue;
-    SeenFit other = refine_seen(seen, whole, order[k]->point, on_stand, watch);
+    SeenFit other = refine_seen(seen, whole, order[k]->point, on_stand, left, watch);
     if (is_nearer(other, best)) best = std::move(other);
   }
   for (bool goes_on = true; goes_on && !watch.stopped();) {
-    SeenFit next = refine_seen(seen, whole, best.end.point, on_stand, watch);
+    SeenFit next = refine_seen(seen, whole, best.end.point, on_stand, left, watch);
     goes_on = is_nearer(next, best);
     if (!is_nearer(best, next)) best = std::move(next);
   }

@@ -131,6 +131,20 @@ TEST(Judge, AFaultAtTheEndOfItsRangeStandsBehindOneInsideThatTakesAsMuch) {
   EXPECT_EQ(of(700, true, true).fault, filter) << "both are at their ends";
 }
 
+// A wire breaks and a nozzle is shut; a null goes as far as the search lets it.
+TEST(Judge, AFaultThatIsWholeAtItsEndIsNamedThereAsInsideItsRange) {
+  const auto at_end = [](const char* name, const char* other, double left_by_other) {
+    Assessment a = with_misfits(3000, {name, 600}, {other, left_by_other});
+    a.hypotheses[1].at_worst = true;
+    a.hypotheses[1].adequacy = 80.0, a.hypotheses.front().adequacy = 400.0;
+    return judge(a, baseline());
+  };
+  EXPECT_EQ(at_end("feedback_wire_lost", "sticky_spool", 2900).fault, find_fault("feedback_wire_lost"));
+  EXPECT_EQ(at_end("null_shift", "sticky_spool", 2900).verdict, VerdictKind::unknown);
+  EXPECT_EQ(at_end("plugged_nozzle", "null_shift", 700).fault, find_fault("plugged_nozzle")) << "it is not put behind";
+  EXPECT_EQ(at_end("clogged_filter", "null_shift", 700).fault, find_fault("null_shift"));
+}
+
 TEST(Judge, WornCornersAreNamedTogetherWithTheClearanceThatWearsWithThem) {
   const Diagnosis d = judge(assessment(9.0, {hypothesis("", 0.001), hypothesis("corner_wear", 0.999)}), baseline());
   EXPECT_EQ(d.fault, find_fault("corner_wear"));

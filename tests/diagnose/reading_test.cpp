@@ -32,8 +32,9 @@ ErrorModel any_error() {
 }
 
 // The shipped log's inputs, and what the table's valve makes of them.
-Log healthy() {
+Log healthy(double command_times = 1) {
   Log log = shipped_log("healthy/h12_mixed");
+  for (double& x : log.channels[index(Signal::command)].value) x *= command_times;
   log.time.resize(rows);
   for (Channel& c : log.channels)
     if (!c.value.empty()) c.value.resize(rows);
@@ -97,6 +98,13 @@ TEST(Reading, EachMistakeIsFoundByTheReadingThatMendsIt) {
     EXPECT_LT(seen.best->left, k::misread_leaves) << c.name;
     EXPECT_LT(seen.best->left, k::misread_beside * seen.as_read) << c.name;
   }
+}
+
+// From stop to stop, as a spool without its wire.
+TEST(Reading, ACurrentThatNoDriverGivesIsNoReading) {
+  Log log = healthy(1e3);
+  for (double& x : log.channels[index(Signal::command)].value) x *= 1e-3;
+  EXPECT_GT(look(log).best->left, k::misread_leaves);
 }
 
 TEST(Reading, SensorsThatAreLateAreFoundWithTheirLag) {

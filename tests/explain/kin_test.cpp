@@ -8,6 +8,7 @@
 
 #include "evidence/conditions.h"
 #include "explain/healthy.h"
+#include "fit/own_air.h"
 
 namespace servodx {
 namespace {
@@ -55,7 +56,7 @@ TEST(Kin, ALogThatTheModelDoesNotFollowSetsNoShareOfTestsThatItFollows) {
   const TestConditions large = test(40e-3, 8e-3), small = test(5e-3, 1e-3), fast = test(20e-3, 4e-3, 100);
   HealthyReference all = reference({large, small, fast, test(20e-3, 6e-3)});
   const auto silent = [&](const std::vector<TestConditions>& suspects) {
-    const HealthyReference marked = shares_marked(all, suspects);
+    const HealthyReference marked = shares_marked(all, suspects, false);
     EXPECT_EQ(marked.logs.size(), 4u);
     EXPECT_EQ(marked.promising(), 4) << "a promise rests on all";
     return std::count_if(marked.logs.begin(), marked.logs.end(), [](const auto& log) { return log.sets_no_share; });
@@ -68,6 +69,19 @@ TEST(Kin, ALogThatTheModelDoesNotFollowSetsNoShareOfTestsThatItFollows) {
   EXPECT_EQ(silent({test(40e-3, 8e-3, 10, -25)}), 0) << "no healthy log is as cold";
   all.logs[1].adequacy = 3.9;
   EXPECT_EQ(silent({large}), 0) << "less than twice as wrong";
+}
+
+TEST(Kin, ALogWhoseFitTakesAllTheAirThatItMaySetsNoShareOfLogsThatFindTheirs) {
+  HealthyReference all = reference({test(40e-3, 8e-3), test(5e-3, 1e-3)});
+  all.logs[0].air = 0.02, all.logs[1].air = most_own_air;
+  const auto silent = [&](bool suspects_take_all) {
+    std::vector<bool> out;
+    for (const HealthyLog& log : shares_marked(all, {test(40e-3, 8e-3)}, suspects_take_all).logs)
+      out.push_back(log.sets_no_share);
+    return out;
+  };
+  EXPECT_EQ(silent(false), (std::vector<bool>{false, true}));
+  EXPECT_EQ(silent(true), (std::vector<bool>{false, false}));
 }
 
 TEST(Kin, RepeatsAreOneProgrammeWhateverTheirOil) {
