@@ -8,7 +8,11 @@
 
 #include "evidence/conditions.h"
 #include "explain/healthy.h"
+#include "explain/inquiry.h"
+#include "explain/missing_support.h"
 #include "fit/own_air.h"
+#include "servodx/explain.h"
+#include "servodx/log.h"
 
 namespace servodx {
 namespace {
@@ -82,6 +86,17 @@ TEST(Kin, ALogWhoseFitTakesAllTheAirThatItMaySetsNoShareOfLogsThatFindTheirs) {
   };
   EXPECT_EQ(silent(false), (std::vector<bool>{false, true}));
   EXPECT_EQ(silent(true), (std::vector<bool>{false, false}));
+}
+
+TEST(Kin, ASuspectThatFindsItsAirIsJudgedBesideLogsThatFindTheirs) {
+  const Rehearsed r("healthy/h12_mixed", {},
+                    {Signal::spool_position, Signal::piston_position, Signal::pressure_a, Signal::pressure_b}, 11);
+  HealthyReference healthy = reference(std::vector(5, conditions_of(r.log)));
+  for (HealthyLog& log : healthy.logs) log.has_shares = true, log.air = 0.004;
+  healthy.logs.front().air = most_own_air;
+  const ExplainOptions options;
+  const Inquiry inquiry({r.log}, r.table, r.rig, &healthy, options);
+  EXPECT_EQ(inquiry.test()->logs_with_shares(), 4);
 }
 
 TEST(Kin, RepeatsAreOneProgrammeWhateverTheirOil) {
