@@ -196,15 +196,19 @@ Unjudgeable unjudgeable(const OperatingPoint& point) {
   return oil && (*oil < coldest_oil || *oil > hottest_oil) ? Unjudgeable::oil_beyond : Unjudgeable::no;
 }
 
+bool asks_too_much(const Scenario& in) {
+  std::vector<double> size;
+  for (const double i : in.command) size.push_back(std::abs(i));
+  return quantile(std::move(size), 0.5) > k::command_beyond * in.rated_current;
+}
+
 Unjudgeable unjudgeable(const LogData& log, const ParameterVector& base) {
   const Scenario& in = log.scenario;
   const double duration = in.time.back() - in.time.front();
   const double step = duration / static_cast<double>(std::max<std::size_t>(1, in.time.size() - 1));
   if (in.ports == Ports::actuator && (duration < k::shortest_log || step > k::slowest_step))
     return Unjudgeable::too_short;
-  std::vector<double> size;
-  for (const double i : in.command) size.push_back(std::abs(i));
-  if (quantile(std::move(size), 0.5) > k::command_beyond * in.rated_current) return Unjudgeable::command_too_large;
+  if (asks_too_much(in)) return Unjudgeable::command_too_large;
   if (!asked_of(log, base)) return Unjudgeable::nothing_asked;
   if (!commands_something(in) && spool_moves(log, base)) return Unjudgeable::command_missing;
   if (all_channels(log, shows_one_value)) return Unjudgeable::sensors_still;

@@ -27,6 +27,8 @@ enum class Unjudgeable {
   oil_beyond,              // a temperature that no oil bears
 };
 
+// Half of the time the command is beyond what a driver gives.
+bool asks_too_much(const Scenario& in);
 Unjudgeable unjudgeable(const LogData& log, const ParameterVector& base);
 // By where it was recorded.
 Unjudgeable unjudgeable(const OperatingPoint& point);

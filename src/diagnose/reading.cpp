@@ -246,10 +246,9 @@ Log read_as(const Log& log, const Reading& reading) {
 double left_as_read(const Log& log, const ReadingTrial& trial) {
   if (!is_sampled_as_a_valve_is(log)) return 1;
   const LogData data = ready(log, trial);
-  const ParameterVector tuned = candidate_of(trial.tuned);
   // No driver gives that. A spool without its wire moves as if it were given: from stop to stop.
-  if (unjudgeable(data, tuned) == Unjudgeable::command_too_large) return 1;
-  const Trajectory healthy = reference_of(data, tuned, trial.threads);
+  if (asks_too_much(data.scenario)) return 1;
+  const Trajectory healthy = reference_of(data, candidate_of(trial.tuned), trial.threads);
   return mean_left(motion_left(data, healthy, healthy), 1);
 }
 

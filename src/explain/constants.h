@@ -75,7 +75,7 @@ inline constexpr double effect_growth = 10;  // an effect may grow beyond what t
 inline constexpr double longest_memory = 1 - 1e-6;  // of a channel's residual, from sample to sample
 // Laps, corners and hysteresis are about a per cent of rated current wide: so finely a sweep tells them apart.
 inline constexpr double sweep_detail = 0.01;      // [of rated current]
-inline constexpr double at_end = 1e-3;            // [of the range] a number that stands at its end. By hand
+inline constexpr double at_end = 1e-3;            // [of the range] a number that stands at its end. Not examined
 inline constexpr std::size_t enough_healthy = 3;  // healthy logs that say what is usual of a channel or a number
 
 // The replay of the blocks (explain/blocks.cpp, explain/block_replay.cpp).

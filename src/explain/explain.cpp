@@ -265,8 +265,8 @@ void count_work(const Inquiry& q, ExplainResult& out) {
   out.interrupted = q.options().watch.stopped();
   for (const LoneLog& lone : q.lone())
     out.simulations += lone.subject.simulations(), out.failed_simulations += lone.subject.failed_simulations();
-  out.simulations += q.subject().simulations();
-  out.failed_simulations += q.subject().failed_simulations();
+  out.simulations += q.subject().simulations() + q.beforehand().simulations;
+  out.failed_simulations += q.subject().failed_simulations() + q.beforehand().failed;
 }
 
 }  // namespace

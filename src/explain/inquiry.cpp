@@ -35,14 +35,6 @@ Stages stages_of(const std::vector<Log>& logs, const Table& tuned, const RigFile
   return {options.watch, "explain", content, content_hash(tuned), content_bytes(rig), known};
 }
 
-// Before any cause. A fit of its own: it weighs the subject by what it leaves.
-bool take_all_air(const std::vector<Log>& logs, const Table& tuned, const RigFile& rig, int threads,
-                  const std::optional<KnownRig>& known) {
-  ValveSubject alone(logs, tuned, rig, threads, known);
-  const ExplainedFit fit = fit_base(alone, explain_constants::base_iterations);
-  return fit.ok && alone.own_at_end(row::air_fraction, fit.point);
-}
-
 }  // namespace
 
 LoneLog::LoneLog(const Log& log, const Table& tuned, const RigFile& rig, int threads,
@@ -62,21 +54,34 @@ Inquiry::Inquiry(const std::vector<Log>& logs, const Table& tuned, const RigFile
       subject_(logs, tuned, rig, options.threads, known_),
       sizes_(logs.size()) {
   subject_.stages = stages_of(logs, tuned, rig, known_, options);
+  if (healthy && logs.size() > 1)
+    for (const Log& log : logs) lone_.emplace_back(log, tuned, rig, options.threads, known_, subject_.stages);
   if (healthy) {
     std::vector<TestConditions> tests;
     for (const Log& log : logs) tests.push_back(conditions_of(log));
-    const bool all_air = std::any_of(healthy->logs.begin(), healthy->logs.end(), takes_all_air) &&
-                         take_all_air(logs, tuned, rig, options.threads, known_);
-    speaking_ = logs_that_speak(shares_marked(*healthy, tests, all_air), tests);
+    const bool some_take_all = std::any_of(healthy->logs.begin(), healthy->logs.end(), takes_all_air);
+    const bool suspects_do = some_take_all && suspects_take_all_air(tuned, rig);
+    speaking_ = logs_that_speak(shares_marked(*healthy, tests, suspects_do), tests);
     healthy_logs_ = healthy->promising();
     test_.emplace(speaking_.logs, subject_.thickness());
   }
-  if (healthy && logs.size() > 1)
-    for (const Log& log : logs) lone_.emplace_back(log, tuned, rig, options.threads, known_, subject_.stages);
   curves_ = add_curves(subject_);
   engine_ = engine_options();
   // A sweep says most in the few seconds that it is near null.
   if (all_on_test_stand(logs, rig)) engine_.blocks *= explain_constants::blocks_of_sweep;
+}
+
+bool Inquiry::suspects_take_all_air(const Table& tuned, const RigFile& rig) {
+  const auto takes_all = [](const ValveSubject& subject, const ExplainedFit& fit) {
+    return fit.ok && subject.own_at_end(row::air_fraction, fit.point);
+  };
+  if (!lone_.empty())
+    return std::any_of(lone_.begin(), lone_.end(), [&](const LoneLog& log) { return takes_all(log.subject, log.fit); });
+  // A subject of its own: a fit weighs the one that it is of by what it leaves.
+  ValveSubject alone(logs_, tuned, rig, options_.threads, known_);
+  const bool out = takes_all(alone, fit_base(alone, explain_constants::base_iterations));
+  beforehand_ = {alone.simulations(), alone.failed_simulations()};
+  return out;
 }
 
 EngineOptions Inquiry::engine_options() const {

@@ -57,6 +57,8 @@ class Inquiry {
   const HealthyReference& speaking() const { return speaking_.logs; }  // what the test is made of
   const std::optional<KnownRig>& known() const { return known_; }
   const std::deque<LoneLog>& lone() const { return lone_; }
+  // Of what was asked of the suspects ahead of the engine's work.
+  const HealthyCounts& beforehand() const { return beforehand_; }
   bool has_name(const Cause& cause) const;  // and is not left out on request
 
   // The engine's options for causes that have a name, and for learnt curves.
@@ -72,6 +74,7 @@ class Inquiry {
   double chance_of(const CauseScore& score) const { return engine_.p_new(score, 0); }
 
  private:
+  bool suspects_take_all_air(const Table& tuned, const RigFile& rig);
   EngineOptions engine_options() const;
   void score_lone_logs(const std::function<bool(const Cause&)>& among);
 
@@ -84,6 +87,7 @@ class Inquiry {
   std::optional<HealthyTest> test_;
   std::deque<LoneLog> lone_;  // one log is itself: empty
   SizesByLog sizes_;
+  HealthyCounts beforehand_;
   std::vector<Curve> curves_;
   EngineOptions engine_;
 };

@@ -14,8 +14,9 @@ namespace servodx {
 
 bool takes_all_air(const HealthyLog& log);
 
-// The same logs, with those marked that set no share beside these suspects. Where some suspect is of a test that no
-// healthy log shows to be followed, it may be as little. `all_air`: the suspects' own fit takes all that it may.
+// The same logs, with those marked that set no share beside these suspects. Where a suspect's test is one that no
+// healthy log shows to be followed, the suspect may not be followed either: then not being followed marks none.
+// `all_air`: a suspect's own fit takes all the air that it may; then that marks none.
 HealthyReference shares_marked(const HealthyReference& all, const std::vector<TestConditions>& suspects, bool all_air);
 
 struct SpeakingLogs {

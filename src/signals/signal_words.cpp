@@ -732,10 +732,12 @@ constexpr std::string_view demands[] = {"setpoint",
                                         "\xE6\x8C\x87\xE4\xBB\xA4",
                                         "\xE8\xAE\xBE\xE5\xAE\x9A"};
 
-// A pressure from one place to another.
+// What a letter tells apart from others of its kind: "valve A".
 constexpr std::string_view machines[] = {"valve",   "servovalve", "ventil", "servoventil", "valvola",  "vanne",
                                          "valvula", "cylinder",   "cyl",    "zylinder",    "actuator", "axis",
                                          "achse",   "station",    "bench",  "channel",     "unit"};
+
+// A pressure from one place to another.
 constexpr std::string_view differences[] = {"dp", "drop", "druckdifferenz", "differenzdruck", "druckabfall"};
 
 // An absolute pressure is an atmosphere above the gauge pressure that the signals are in.

@@ -8,8 +8,8 @@
 
 namespace servodx {
 
-// Samples that count as independent before anything is known of their correlation; on the way to the last rounds a
-// channel counts for at least as many. [1/s] Chosen by hand; not examined.
+// Samples that count as independent before anything is known of their correlation; to the end of the fit a channel
+// counts for at least as many. [1/s] Chosen by hand; not examined.
 inline constexpr double least_independent_rate = 40;
 
 // Of the samples in [from, to) that are there. [SI] 0 where none is.
