@@ -102,9 +102,19 @@ void put_ends_behind(const Assessment& a, std::vector<WeighedHypothesis>& weighe
   }
 }
 
+// What the likeliest leaves beyond what a fault may leave is an error of the model that nobody has seen. It lasts: of
+// all that is left so there are some independent errors, and not as many as samples.
+double scale_of(const Assessment& a, const std::vector<WeighedHypothesis>& weighed, double usual_adequacy) {
+  const auto least = std::min_element(weighed.begin(), weighed.end(),
+                                      [](const auto& x, const auto& y) { return x.misfit < y.misfit; });
+  const HypothesisResult& likeliest = a.hypotheses[static_cast<std::size_t>(least - weighed.begin())];
+  const bool as_known = likeliest.adequacy <= k::fault_allowance * std::max(1.0, usual_adequacy);
+  return as_known ? a.misfit_scale : std::max(a.misfit_scale, likeliest.misfit / k::errors_of_a_fault);
+}
+
 // A hypothesis that gains on healthy logs as well takes up what the model has wrong: only what it gains beyond that
 // counts, for the name as for the verdict.
-void weigh_beside_usual(Assessment& a, const FaultGains& usual) {
+void weigh_beside_usual(Assessment& a, const FaultGains& usual, double usual_adequacy) {
   const double healthy = a.hypotheses.front().misfit;
   std::vector<WeighedHypothesis> weighed;
   for (const HypothesisResult& h : a.hypotheses) {
@@ -112,6 +122,7 @@ void weigh_beside_usual(Assessment& a, const FaultGains& usual) {
     weighed.push_back(
         {h.fault ? h.fault->prior : 1.0, gain > 0 ? -gain * part_beyond(h.gain, gain_of(usual, h.fault)) : -gain});
   }
+  a.misfit_scale = scale_of(a, weighed, usual_adequacy);
   put_ends_behind(a, weighed);
   const std::vector<double> p = probabilities_of(weighed, a.misfit_scale);
   for (std::size_t i = 0; i < p.size(); ++i) a.hypotheses[i].probability = p[i];
@@ -226,7 +237,7 @@ Evidence evidence_of(const Assessment& a, const DetectionBaseline& baseline, con
 
 Diagnosis judge(Assessment a, const DetectionBaseline& whole) {
   const DetectionBaseline baseline = baseline_for(a.test, whole);
-  weigh_beside_usual(a, usual_gains_of(a, baseline));
+  weigh_beside_usual(a, usual_gains_of(a, baseline), baseline.adequacy_limit);
   const SuspectLog suspect = suspect_of(a);
   const HealthyLaw law(baseline, &suspect);
   std::vector<RecordFinding> records = records_of(a, whole);

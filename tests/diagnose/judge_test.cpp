@@ -145,6 +145,20 @@ TEST(Judge, AFaultThatIsWholeAtItsEndIsNamedThereAsInsideItsRange) {
   EXPECT_EQ(at_end("clogged_filter", "null_shift", 700).fault, find_fault("null_shift"));
 }
 
+// Nine tenths of a nozzle and a null of a fifth: both put the spool on its stop, and no simulation follows it there.
+TEST(Judge, WhereTheBestLeavesMoreThanAFaultMayOneThatLeavesNearlyAsMuchIsNamedBesideIt) {
+  const auto beside = [](double adequacy, double left_by_other) {
+    Assessment a = with_misfits(100'000, {"plugged_nozzle", 5000}, {"null_shift", left_by_other});
+    a.hypotheses.front().adequacy = 190, a.hypotheses[1].adequacy = adequacy, a.hypotheses[2].adequacy = 15;
+    const Diagnosis d = judge(a, baseline());
+    EXPECT_EQ(d.fault, find_fault("plugged_nozzle"));
+    return d.ambiguous_with == std::vector<const Fault*>{find_fault("null_shift")};
+  };
+  EXPECT_TRUE(beside(12, 6000));
+  EXPECT_FALSE(beside(12, 9000)) << "twenty times as unlikely, and more";
+  EXPECT_FALSE(beside(2.5, 6000)) << "no more than the model is known to err by";
+}
+
 TEST(Judge, WornCornersAreNamedTogetherWithTheClearanceThatWearsWithThem) {
   const Diagnosis d = judge(assessment(9.0, {hypothesis("", 0.001), hypothesis("corner_wear", 0.999)}), baseline());
   EXPECT_EQ(d.fault, find_fault("corner_wear"));
