@@ -32,19 +32,20 @@ inline constexpr int curve_dampings = 3;  // tried at once: a curve's kernel run
                                           // run
 
 // Forward.
-inline constexpr int fitted = 8;               // causes with a name that are fitted, each round
-inline constexpr int judged = 4;               // of these, judged on held-out data
-inline constexpr int leading = 2;              // of these, by what they gain alone: an answer and its twin
-inline constexpr int rare_share = 2;           // rarer causes get this part of either
-inline constexpr int standing_tried = 2;       // causes that are no news, where their shares are not asked
-inline constexpr double least_worth = 0.05;    // of the held-out misfit: without healthy data to compare with, a name
-                                               // that removes less answers nothing
-inline constexpr double of_shares = 0.5;       // of the rate of false alarms; sizes and what is left have the rest
-inline constexpr int most_causes = 3;          // a fourth name would rest on what three left
-inline constexpr int curves_fitted = 3;        // learnt curves, fitted and judged: each has seven knots
-inline constexpr double both_questions = 0.5;  // of the level, each: is a size news, and is the log. By definition
-inline constexpr double odds = 5.99;           // 2 ln 20: at odds below twenty to one a cause does as well
-inline constexpr double alarm_by_mark = 0.05;  // of nothing being wrong where no level is asked
+inline constexpr int fitted = 8;                // causes with a name that are fitted, each round
+inline constexpr int judged = 4;                // of these, judged on held-out data
+inline constexpr int leading = 2;               // of these, by what they gain alone: an answer and its twin
+inline constexpr int rare_share = 2;            // rarer causes get this part of either
+inline constexpr int standing_tried = 2;        // causes that are no news, where their shares are not asked
+inline constexpr double least_worth = 0.05;     // of the held-out misfit: without healthy data to compare with, a name
+                                                // that removes less answers nothing
+inline constexpr double of_shares = 0.5;        // of the rate of false alarms; sizes and what is left have the rest
+inline constexpr int most_causes = 3;           // a fourth name would rest on what three left
+inline constexpr int curves_fitted = 3;         // learnt curves, fitted and judged: each has seven knots
+inline constexpr double both_questions = 0.5;   // of the level, each: is a size news, and is the log. By definition
+inline constexpr double odds = 5.99;            // 2 ln 20: at odds below twenty to one a cause does as well
+inline constexpr double chance_at_odds = 0.05;  // the same as a chance
+inline constexpr double alarm_by_mark = 0.05;   // of nothing being wrong where no level is asked
 
 // The null of shares (explain/healthy.cpp): -ln(1 - share) of the best cause of a healthy log, on the mean, and the
 // logs that this counts for. From the twenty logs of rig A's and rig B's baselines

@@ -181,10 +181,12 @@ void measure_best(const Subject& subject, const EngineOptions& options, const Ro
   for (std::size_t i = 0; i < best.size() && !options.stopped(); ++i) measure_one(i);
 }
 
+bool is_named(const Cause& c) { return !c.curve && !is_rare(c); }
+
 // Healthy data are asked the same of the causes that have a name.
 bool is_news_by_share(const Subject& subject, const EngineOptions& options, const Round& round, const Trial& t) {
-  const Cause& c = subject.causes()[at(t.cause())];
-  return options.p_share && !c.curve && !is_rare(c) && is_news_by_share(options.p_share(t.share.value), round.whole);
+  return options.p_share && is_named(subject.causes()[at(t.cause())]) &&
+         is_news_by_share(options.p_share(t.share.value), round.whole);
 }
 
 JudgedEvidence judged_evidence(const Subject& subject, const EngineOptions& options, const Round& round,
@@ -271,12 +273,21 @@ Trial* best_of(const EngineOptions& options, const Round& round, const Selected&
 }
 
 // Something is new, so one whose size healthy data show as well may be what it is.
-std::vector<int> in_place_of(const EngineOptions& options, const Trial& best, const std::vector<Trial>& trials) {
+std::vector<int> in_place_of(const Subject& subject, const EngineOptions& options, const Trial& best,
+                             const std::vector<Trial>& trials) {
   std::vector<int> out;
-  for (const Trial& t : trials)
-    if (t.stands && &t != &best &&
-        does_as_well(heldout_gain(t.fit, best.fit, options.seed).lower, best.delta_bic, t.delta_bic))
-      out.push_back(t.cause());
+  for (const Trial& t : trials) {
+    if (!t.stands || &t == &best) continue;
+    InItsPlace o;
+    o.best_lower = heldout_gain(t.fit, best.fit, options.seed).lower;
+    o.best_bic = best.delta_bic, o.other_bic = t.delta_bic;
+    const Cause& its = subject.causes()[at(best.cause())];
+    o.both_named = is_named(its) && is_named(subject.causes()[at(t.cause())]);
+    o.other_is_new = t.is_new;
+    if (options.p_share)
+      o.p_best_share = options.p_share(heldout_share(subject, its, t.fit, best.fit, options.seed).value);
+    if (does_as_well(o)) out.push_back(t.cause());
+  }
   return out;
 }
 
@@ -300,7 +311,7 @@ bool accept_one_more(const Subject& subject, const EngineOptions& options, bool 
   Trial* best = best_of(options, round, so_far, trials);
   if (!best) return false;
   CauseResult accepted = result_of(subject, so_far, *best, true);
-  accepted.confusable_with = in_place_of(options, *best, trials);
+  accepted.confusable_with = in_place_of(subject, options, *best, trials);
   out.candidates[at(accepted.cause)].fate = Fate::taken;
   so_far.causes.push_back(std::move(accepted));
   so_far.fit = std::move(best->fit);

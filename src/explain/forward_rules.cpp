@@ -92,8 +92,9 @@ bool first_is_better(const Rivals& r) {
   return r.first_bic > r.second_bic;
 }
 
-bool does_as_well(double best_lower, double best_bic, double other_bic) {
-  return best_lower <= 0 || best_bic - other_bic < odds;
+bool does_as_well(const InItsPlace& o) {
+  if (o.best_lower <= 0 || o.best_bic - o.other_bic < odds) return true;
+  return o.both_named && o.other_is_new && o.p_best_share > chance_at_odds;
 }
 
 bool is_missed(const Interval& worth) { return worth.lower > 0; }

@@ -97,9 +97,18 @@ struct Rivals {
 // A rarer cause has to do better than a commoner one on held-out data, beyond the interval; and one that leaves the
 // data as healthy ones are left need not be outdone.
 bool first_is_better(const Rivals& rivals);
-// Whether a judged cause does as well in the best one's place: within the interval of the difference, or at odds below
-// twenty to one. `best_lower`: lower end of the held-out share that the best removes of what the other leaves.
-bool does_as_well(double best_lower, double best_bic, double other_bic);
+// A judged cause beside the best one.
+struct InItsPlace {
+  double best_lower = 0;  // lower end of the held-out share that the best removes of what the other leaves
+  double best_bic = 0, other_bic = 0;
+  bool both_named = false;  // neither is a bare row or a curve: healthy data were asked about such as they are
+  bool other_is_new = false;
+  double p_best_share = 0;  // chance that some cause removes such a share of a healthy log; 0: none was asked
+};
+// Whether it does as well in the best one's place: within the interval of the difference, or at odds below twenty to
+// one. The odds are those of the noise and, where the other is news too, of what the model itself has wrong: a name
+// gains a share like that on healthy logs too, where it is not there.
+bool does_as_well(const InItsPlace& other);
 
 // A cause is missed when the fit without it follows held-out data worse. `worth`: what it removes of that fit's.
 bool is_missed(const Interval& worth);

@@ -96,8 +96,7 @@ EngineOptions Inquiry::engine_options() const {
   if (test_->logs_with_shares() > 0) {
     o.p_share = [this](double share) { return test_->share(share); };
     o.level_of_shares = rate_of_question(options_.level, healthy_logs_, explain_constants::of_shares);
-    o.level =
-        std::min(options_.level, rate_of_question(options_.level, healthy_logs_, 1 - explain_constants::of_shares));
+    o.level = rate_of_question(options_.level, healthy_logs_, 1 - explain_constants::of_shares);
   }
   o.p_new = chance_of_size(*test_, subject_, sizes_);
   o.p_left = [this](const ExplainedFit& fit, LeftOf what, int round) {

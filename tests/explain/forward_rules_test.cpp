@@ -162,9 +162,23 @@ TEST(ForwardRules, ARarerCauseHasToDoBetterBeyondTheInterval) {
 }
 
 TEST(ForwardRules, WhatDoesAsWellIsWithinTheIntervalOrTheOdds) {
-  EXPECT_TRUE(does_as_well(0.0, 100, 10)) << "within the interval";
-  EXPECT_TRUE(does_as_well(0.1, 100, 94.1)) << "at odds below twenty to one";
-  EXPECT_FALSE(does_as_well(0.1, 100, 94.0));
+  EXPECT_TRUE(does_as_well({0.0, 100, 10})) << "within the interval";
+  EXPECT_TRUE(does_as_well({0.1, 100, 94.1})) << "at odds below twenty to one";
+  EXPECT_FALSE(does_as_well({0.1, 100, 94.0}));
+}
+
+TEST(ForwardRules, TwoNamesThatAreNewAreToldApartByMoreThanANameGainsOnHealthyLogs) {
+  const InItsPlace within_the_model_error{0.1, 1000, 10, true, true, 0.3};
+  EXPECT_TRUE(does_as_well(within_the_model_error));
+  const auto with = [&](auto&& change) {
+    InItsPlace other = within_the_model_error;
+    change(other);
+    return does_as_well(other);
+  };
+  EXPECT_FALSE(with([](InItsPlace& o) { o.p_best_share = 0.04; })) << "healthy logs hardly show such a share";
+  EXPECT_FALSE(with([](InItsPlace& o) { o.other_is_new = false; })) << "it would not be said alone";
+  EXPECT_FALSE(with([](InItsPlace& o) { o.both_named = false; })) << "healthy logs were asked of names";
+  EXPECT_FALSE(with([](InItsPlace& o) { o.p_best_share = 0; })) << "no healthy log was asked";
 }
 
 TEST(ForwardRules, ACauseIsMissedBeyondItsInterval) {
