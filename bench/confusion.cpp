@@ -69,7 +69,7 @@ struct Replayed {
 // What health leaves of a log, the piston above 0.3 Hz: below what fits look at, so that drift counts here.
 std::vector<Replayed> replayed(const Assessment& a, const Log& log, const Table& tuned, const RigFile& rig) {
   constexpr double piston_drift = 0.3;  // [Hz]
-  LogData data = prepare(log, rig, moving_average_of(tuned));
+  LogData data = prepare(log, rig, recorder_of(tuned));
   for (FitChannel& c : data.channels)
     if (c.signal == Signal::piston_position) c.filter.drift = piston_drift;
   const auto healthy = std::find_if(a.explanations.begin(), a.explanations.end(),

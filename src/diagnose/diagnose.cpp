@@ -234,8 +234,8 @@ Ready make_ready(const std::vector<Log>& logs, const Table& tuned, const RigFile
     out.logs.push_back(log.path);
     out.notes.insert(out.notes.end(), log.notes.begin(), log.notes.end());
     const bool fast = is_fast(log);
-    ready.recorded.push_back(fast ? prepare(log, rig, moving_average_of(tuned)) : LogData{});
-    ready.data.push_back(fast ? at_points(ready.recorded.back()) : prepare(log, rig, moving_average_of(tuned)));
+    ready.recorded.push_back(fast ? prepare(log, rig, recorder_of(tuned)) : LogData{});
+    ready.data.push_back(fast ? at_points(ready.recorded.back()) : prepare(log, rig, recorder_of(tuned)));
     for (const Note& note : ready.data.back().notes)
       if (note.kind == Note::Kind::resampled) out.notes.push_back(note);
     leave_out_unknown_channels(ready.recorded.back(), error);
@@ -293,7 +293,7 @@ Unjudgeable unjudgeable_of(const Ready& ready, const ParameterVector& base, cons
 bool makes_a_healthy_log(const Reading& reading, const Log& log, const ParameterVector& base, const ReadingTrial& trial,
                          const HypothesisSettings& settings, const Assessment& as_read, FitWork& work) {
   if (!(reading.left < k::misread_beside * left_by_best(as_read))) return false;
-  LogData data = prepare_at_points(read_as(log, reading), trial.rig, moving_average_of(trial.tuned));
+  LogData data = prepare_at_points(read_as(log, reading), trial.rig, recorder_of(trial.tuned));
   leave_out_unknown_channels(data, trial.error);
   const auto adequacy = healthy_adequacy(data, "read otherwise", base, trial.error, settings, work);
   return adequacy && *adequacy < k::misread_beside * best_of(as_read).adequacy;

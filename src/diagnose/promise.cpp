@@ -138,7 +138,7 @@ std::vector<Visible> visible_faults(const LogData& data, const ParameterVector& 
 }  // namespace
 
 Promise promise_of(const Log& log, const Table& table, const RigFile& rig, int threads) {
-  const LogData data = prepare_at_points(log, rig, moving_average_of(table));
+  const LogData data = prepare_at_points(log, rig, recorder_of(table));
   require_channels(data);
   const Table facts = apply_rig_facts(table, rig);
   const ParameterVector base = candidate_of(facts);

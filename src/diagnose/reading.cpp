@@ -181,7 +181,7 @@ bool is_sampled_as_a_valve_is(const Log& log) {
 }
 
 LogData ready(const Log& log, const ReadingTrial& trial) {
-  LogData data = prepare_at_points(log, trial.rig, moving_average_of(trial.tuned));
+  LogData data = prepare_at_points(log, trial.rig, recorder_of(trial.tuned));
   leave_out_unknown_channels(data, trial.error);
   return data;
 }

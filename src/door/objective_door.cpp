@@ -38,7 +38,7 @@ TuneOptions scope_options(const Table& table, const ObjectiveOptions& options) {
   TuneOptions to;
   to.threads = options.threads;
   to.effects = table.has_std_error ? std::optional(std::vector<std::string>()) : options.effects;
-  if (table.has_std_error) to.moving_average = moving_average_of(table);
+  if (table.has_std_error) to.moving_average = recorder_of(table).moving_average;
   return to;
 }
 

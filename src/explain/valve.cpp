@@ -67,7 +67,7 @@ void ValveSubject::prepare_logs(const std::vector<Log>& logs, const RigFile& rig
   RigFile without_notch = rig;
   without_notch.mains_frequency.reset();
   for (const Log& log : logs) {
-    logs_.push_back(prepare_to_fit(log, without_notch, moving_average_of(table_)));
+    logs_.push_back(prepare_to_fit(log, without_notch, recorder_of(table_)));
     for (Note& note : leave_out_unknown_channels(logs_.back(), error_)) logs_.back().notes.push_back(std::move(note));
     require_channels(logs_.back());
   }

@@ -168,14 +168,14 @@ LogData at_points(const LogData& every_sample) {
   return out;
 }
 
-LogData prepare_at_points(const Log& log, const RigFile& rig, int window) {
-  return is_fast(log) ? at_points(prepare(log, rig, window)) : prepare(log, rig, window);
+LogData prepare_at_points(const Log& log, const RigFile& rig, const Recorder& recorder) {
+  return is_fast(log) ? at_points(prepare(log, rig, recorder)) : prepare(log, rig, recorder);
 }
 
-LogData prepare_to_fit(const Log& log, const RigFile& rig, int window) {
+LogData prepare_to_fit(const Log& log, const RigFile& rig, const Recorder& recorder) {
   const bool on_stand = ports_of(log, rig) != Ports::actuator;
   const bool creeps = on_stand && thinned(log, rig).samples() < log.samples();
-  return creeps ? prepare_thinned(log, rig, window) : prepare_at_points(log, rig, window);
+  return creeps ? prepare_thinned(log, rig, recorder) : prepare_at_points(log, rig, recorder);
 }
 
 }  // namespace servodx

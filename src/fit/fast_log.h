@@ -23,9 +23,9 @@ namespace servodx {
 bool is_fast(const Log& log);
 
 // A log made ready: at points where it is fast, else sample by sample.
-LogData prepare_at_points(const Log& log, const RigFile& rig, int window = 1);
+LogData prepare_at_points(const Log& log, const RigFile& rig, const Recorder& recorder = {});
 // The same, but by means where a stand's command creeps (fit/thin.h).
-LogData prepare_to_fit(const Log& log, const RigFile& rig, int window = 1);
+LogData prepare_to_fit(const Log& log, const RigFile& rig, const Recorder& recorder = {});
 
 // The same of a fast log of which every sample is made ready.
 LogData at_points(const LogData& every_sample);

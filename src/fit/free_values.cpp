@@ -176,7 +176,14 @@ std::vector<FreeValue> nuisance_values(const LogData& log, int l, const Paramete
     const NuisanceInfo& n = nuisance_info(at);
     out.push_back({std::string(n.name), at, n.lower, n.upper, false, n.prior_mean, n.prior_sd, l});
   };
-  if (!log.scenario.command_slope) add(nuisance::command_slope);
+  if (!log.scenario.command_slope) {
+    add(nuisance::command_slope);
+    if (log.command_slope) {
+      FreeValue& slope = out.back();
+      slope.start = log.command_slope->usual;
+      slope.prior_sd = std::min(slope.prior_sd, log.command_slope->spread / (slope.upper - slope.lower));
+    }
+  }
   if (!log.scenario.oil_known) out.push_back(unknown_oil(log, base, l));
   if (pressures)
     out.push_back(

@@ -51,7 +51,8 @@ long present_samples(const FitChannel& c) {
   return std::count_if(c.measured.begin(), c.measured.end(), [](double v) { return !std::isnan(v); });
 }
 
-LogData prepare(const Log& log, const RigFile& rig, int window) {
+LogData prepare(const Log& log, const RigFile& rig, const Recorder& recorder) {
+  const int window = recorder.moving_average;
   LogData out;
   out.path = log.path;
   out.sha256 = log.sha256;
@@ -75,6 +76,7 @@ LogData prepare(const Log& log, const RigFile& rig, int window) {
   take_valve_drop(s, log, rig, out.notes);
   s.rated_current = rig.fact("valve.rated_current").value_or(0.02);
   if (rig.command_hold) s.command_slope = *rig.command_hold == CommandHold::linear ? 1.0 : 0.0;
+  out.command_slope = recorder.command_slope;
   const std::optional<double> measured = measured_oil_temperature(log);
   const double temperature = measured.value_or(rig.oil_temperature.value_or(reference_oil_temperature));
   s.oil_known = measured.has_value() || rig.oil_temperature.has_value() ||

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "fit/recorder.h"
 #include "parameters/table.h"
 #include "servodx/note.h"
 #include "servodx/rig.h"
@@ -41,6 +42,7 @@ struct LogData {
   std::vector<Note> notes;
   Fluid fluid = {};  // of the rig: how its oil follows a temperature that the log does not hold
   int alike = 1;     // logs of a fit, itself among them, that run one programme: there the model errs alike
+  std::optional<CommandSlope> command_slope = {};  // what is likely of it, where the scenario does not state it
 };
 
 // The piston integrates every error of flow: below the corner its slow drift tells little and would hide what the rest
@@ -50,10 +52,9 @@ inline constexpr double piston_high_pass = 1.0;  // [Hz]
 // [K] mean of what the log measured of its oil; none where it did not.
 std::optional<double> measured_oil_temperature(const Log& log);
 
-// `window` [samples]: moving average of every channel, 1 for none. The rig file's mains frequency is notched out, and
-// its low-pass is put on what is simulated. What follows a gap in time is not compared until the valve has forgotten
-// what passed in it.
-LogData prepare(const Log& log, const RigFile& rig, int window = 1);
+// The rig file's mains frequency is notched out, and its low-pass is put on what is simulated. What follows a gap in
+// time is not compared until the valve has forgotten what passed in it.
+LogData prepare(const Log& log, const RigFile& rig, const Recorder& recorder = {});
 
 // Refuses a log without any signal that the model reports.
 void require_channels(const LogData& log);

@@ -24,7 +24,7 @@ std::vector<double> behind_gap(std::size_t samples, const std::vector<double>& v
 
 Replay replay(const Log& log, const Table& tuned, const RigFile& rig, const std::vector<Candidate>& explanations) {
   const TunedState state = tuned_state(tuned);
-  const LogData data = prepare_at_points(log, rig, state.moving_average);
+  const LogData data = prepare_at_points(log, rig, state.recorder);
   const ErrorModel& error = state.error;
   const std::size_t samples = data.scenario.time.size();
   Replay out{log.path, data.scenario.time, data.scenario.command, data.scenario.current_measured, {}};

@@ -81,9 +81,9 @@ Log thinned(const Log& log, const RigFile& rig) {
   return out;
 }
 
-LogData prepare_thinned(const Log& log, const RigFile& rig, int window) {
+LogData prepare_thinned(const Log& log, const RigFile& rig, const Recorder& recorder) {
   const Log taken = thinned(log, rig);
-  LogData out = prepare(taken, rig, window);
+  LogData out = prepare(taken, rig, recorder);
   if (taken.samples() < log.samples()) out.scenario.command_slope = 1.0;
   return out;
 }

@@ -17,8 +17,9 @@ inline constexpr double thin_time = 0.2;     // [s] ports fill, and meters follo
 
 Log thinned(const Log& log, const RigFile& rig);
 
-// The same made ready to be fitted: between means the command runs in a line, and nothing is left to be estimated there.
-LogData prepare_thinned(const Log& log, const RigFile& rig, int window = 1);
+// The same made ready to be fitted: between means the command runs in a line, and nothing is left to be estimated
+// there.
+LogData prepare_thinned(const Log& log, const RigFile& rig, const Recorder& recorder = {});
 
 // [s] largest substep on a stand that suits all of these logs (SimulateOptions::creep_step).
 double creep_step_of(const std::vector<Log>& logs, const RigFile& rig);

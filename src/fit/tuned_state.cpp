@@ -49,7 +49,7 @@ TunedState of_comments(const std::vector<std::string>& comments) {
     if (line.starts_with(error_key)) {
       if (const auto channel = old_channel(line)) put(state.error, *channel);
     } else if (line.starts_with(average_key)) {
-      state.moving_average = std::max(1, std::atoi(line.c_str() + std::string_view(average_key).size() + 1));
+      state.recorder.moving_average = std::max(1, std::atoi(line.c_str() + std::string_view(average_key).size() + 1));
     } else {
       std::istringstream words(line.substr(std::string_view(tuned_by_key).size()));
       TunedBy by;
@@ -77,7 +77,13 @@ TunedState of_section(const Table& table) {
     refuse(table,
            fmt::format("its lines '#%' are of schema {}, this program reads up to {}", schema, TunedState::schema));
   TunedState state;
-  state.moving_average = tuned["moving_average"].value_or(1);
+  state.recorder.moving_average = tuned["moving_average"].value_or(1);
+  if (const toml::table* slope = tuned["command_slope"].as_table()) {
+    const CommandSlope s{(*slope)["usual"].value_or(std::nan("")), (*slope)["spread"].value_or(std::nan(""))};
+    if (!(s.usual >= 0 && s.usual <= 1) || !(s.spread > 0))
+      refuse(table, "its lines '#%' hold no slope of the command between samples");
+    state.recorder.command_slope = s;
+  }
   const auto text = [](const toml::table& from, std::string_view key) { return from[key].value_or(std::string()); };
   if (const toml::array* channels = tuned["error"].as_array())
     for (const toml::node& node : *channels) {
@@ -124,7 +130,12 @@ TunedState tuned_state(const Table& table) {
 void set_tuned_state(Table& table, const TunedState& state) {
   table.comments = without_tunings(table.comments);
   std::string& out = table.state;
-  out = fmt::format("[tuned]\nschema = {}\nmoving_average = {}\n", TunedState::schema, state.moving_average);
+  out = fmt::format("[tuned]\nschema = {}\nmoving_average = {}\n", TunedState::schema, state.recorder.moving_average);
+  if (const auto& slope = state.recorder.command_slope)
+    out += fmt::format(
+        "[tuned.command_slope]  # of the command between samples: 0 held, 1 in a line\n"
+        "usual = {}\nspread = {}  # standard deviation of one more log's\n",
+        slope->usual, slope->spread);
   for (const ChannelError& c : state.error.channels)
     out += fmt::format(
         "[[tuned.error]]  # sigma^2 = noise^2 + floor^2 + (per_activity * movement in 1 ms)^2\n"
@@ -152,7 +163,9 @@ std::string content_hash(const Table& table) {
     text += '\n';
   }
   const TunedState state = tuned_state(table);
-  text += fmt::format("moving average {}\n", state.moving_average);
+  text += fmt::format("moving average {}\n", state.recorder.moving_average);
+  if (const auto& slope = state.recorder.command_slope)
+    text += fmt::format("command slope {} {}\n", slope->usual, slope->spread);
   for (const ChannelError& c : state.error.channels)
     text += fmt::format("error {} {} {} {}\n", name_of(c.signal), c.floor, c.per_activity, c.independent);
   for (const Unfollowed& u : state.unfollowed)

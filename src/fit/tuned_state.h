@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "fit/error_model.h"
+#include "fit/recorder.h"
 #include "parameters/table.h"
 #include "servodx/log.h"
 #include "servodx/tuned_by.h"
@@ -23,7 +24,7 @@ struct Unfollowed {
 struct TunedState {
   static constexpr int schema = 1;
   ErrorModel error;
-  int moving_average = 1;  // [samples]
+  Recorder recorder;
   std::vector<TunedBy> by;
   std::vector<Unfollowed> unfollowed;  // empty: the tune is good enough, or an earlier version did not ask
 
@@ -36,7 +37,7 @@ TunedState tuned_state(const Table& table);
 void set_tuned_state(Table& table, const TunedState& state);
 // Parts of it, where one is all that is asked for.
 inline ErrorModel error_model_of(const Table& table) { return tuned_state(table).error; }
-inline int moving_average_of(const Table& table) { return tuned_state(table).moving_average; }  // [samples]
+inline Recorder recorder_of(const Table& table) { return tuned_state(table).recorder; }
 // The table's state stands in comments, as earlier versions wrote it.
 bool has_old_state(const Table& table);
 

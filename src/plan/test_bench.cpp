@@ -105,7 +105,7 @@ TestBench::TestBench(const Table& tuned, const RigFile& rig, const Log* like, do
     : rate_(rate), threads_(threads) {
   const TunedState state = tuned_state(tuned);
   error_ = state.error;
-  pattern_ = prepare(like ? *like : blank_log(error_, rate), rig, state.moving_average);
+  pattern_ = prepare(like ? *like : blank_log(error_, rate), rig, state.recorder);
   if (like)
     notes_ = leave_out_unknown_channels(pattern_, error_);
   else

@@ -10,6 +10,8 @@
 #include "fit/free_values.h"
 #include "fit/log_data.h"
 #include "fit/oil_of.h"
+#include "fit/recorder.h"
+#include "fit/tuned_state.h"
 #include "model/state.h"
 #include "parameters/list.h"
 #include "prognose/constants.h"
@@ -191,7 +193,8 @@ void add_parameters(CheckResult& out, const std::vector<TrackedParameter>& param
 
 CheckResult check(const Log& log, const Table& tuned, const RigFile& rig, const CheckOptions& options) {
   options.validate();
-  LogData data = prepare(log, rig), fitted = is_fast(log) ? prepare_at_points(log, rig) : data;
+  const Recorder recorder{1, recorder_of(tuned).command_slope};
+  LogData data = prepare(log, rig, recorder), fitted = is_fast(log) ? prepare_at_points(log, rig, recorder) : data;
   require_channels(data);
   CheckResult out;
   out.log = log.path;

@@ -65,5 +65,10 @@ inline constexpr double flat_error = 0.25;       // of the row's range: a row kn
 inline constexpr double unfollowed_over_noise = 8.0;
 inline constexpr double unfollowed_part = 0.005;  // of stop, stroke and supply
 
+// What a recorder does between samples (tune/usual_slope.cpp): logs that it takes, and the least that is left open of
+// one more log, as no two runs start alike on the recorder's clock. Not examined.
+inline constexpr std::size_t enough_slopes = 3;
+inline constexpr double least_slope_spread = 0.02;  // of a sample
+
 }  // namespace tune_constants
 }  // namespace servodx

@@ -76,7 +76,7 @@ void count_alike(TuneScope& scope, const std::vector<Log>& logs) {
 
 void take_logs(TuneScope& scope, const std::vector<Log>& logs, const RigFile& rig, const TuneOptions& options) {
   for (const Log& log : logs) {
-    scope.data.push_back(prepare_to_fit(log, rig, options.moving_average));
+    scope.data.push_back(prepare_to_fit(log, rig, {options.moving_average, {}}));
     const std::vector<Note>& notes = scope.data.back().notes;
     scope.notes.insert(scope.notes.end(), notes.begin() + static_cast<long>(log.notes.size()), notes.end());
   }

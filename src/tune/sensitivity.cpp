@@ -130,7 +130,7 @@ Sensitivity drive_rows(const std::vector<Log>& logs, const Table& table, const R
   }
   std::vector<LogData> data;
   for (const Log& log : logs) {
-    data.push_back(prepare_at_points(log, rig, moving_average_of(table)));
+    data.push_back(prepare_at_points(log, rig, recorder_of(table)));
     require_channels(data.back());
     for (const FitChannel& c : data.back().channels)
       if (std::find(out.channels.begin(), out.channels.end(), c.signal) == out.channels.end())

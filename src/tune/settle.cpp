@@ -21,6 +21,7 @@
 #include "tune/constants.h"
 #include "tune/kept.h"
 #include "tune/tune.h"
+#include "tune/usual_slope.h"
 
 namespace servodx {
 namespace {
@@ -108,7 +109,7 @@ Settled settle(const TuneScope& scope, const std::vector<ScreenedRow>& screened,
   std::vector<char> off_bounds(static_cast<std::size_t>(problem.n()), 1);
   for (std::size_t j = 0; j < off_bounds.size(); ++j) off_bounds[j] = off_walls(end.point[j]);
   const auto [point, covariance] = uncertainty(problem, end.point, end.jacobian, off_bounds);
-  Settled out{point, scope.table, {}, {}};
+  Settled out{point, scope.table, {}, {}, usual_slope(slopes_of(problem, point, end.jacobian, covariance))};
   out.table.has_std_error = true;
   for (Row& row : out.table.rows) {
     const auto named = [&](const auto& v) { return v.name == row.name; };

@@ -145,14 +145,15 @@ void take_medians(Table& table, const std::vector<LogResult>& logs) {
   air.nominal = std::clamp(median(airs), air.lower, air.upper);
 }
 
-std::vector<Note> notes_of_logs(const std::vector<LogResult>& logs, const TuneScope& scope, const RigFile& rig) {
+std::vector<Note> notes_of_logs(const std::vector<LogResult>& logs, const std::optional<CommandSlope>& usual,
+                                const TuneScope& scope, const RigFile& rig) {
   std::vector<Note> notes;
-  notes.push_back(
-      {Note::Kind::command_slope,
-       "command between samples, 0 held to 1 in a line" +
-           std::string(rig.command_hold ? ", from the rig file: " : ", estimated log by log: ") +
-           by_log(
-               logs, [](std::size_t) { return true; }, [](const LogResult& l) { return l.command_slope; })});
+  notes.push_back({Note::Kind::command_slope,
+                   "command between samples, 0 held to 1 in a line" +
+                       std::string(rig.command_hold ? ", from the rig file: " : ", estimated log by log: ") +
+                       by_log(
+                           logs, [](std::size_t) { return true; }, [](const LogResult& l) { return l.command_slope; }) +
+                       (usual ? fmt::format("; of one more log {:.2f} +- {:.2f}", usual->usual, usual->spread) : "")});
   const std::string temperatures = by_log(
       logs, [&](std::size_t l) { return !scope.data[l].scenario.oil_known; },
       [&](const LogResult& l) {

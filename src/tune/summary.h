@@ -32,6 +32,7 @@ std::vector<Unfollowed> unfollowed_channels(const std::vector<ChannelResult>& po
 // Nulls and air belong to the logs; the table keeps their medians.
 void take_medians(Table& table, const std::vector<LogResult>& logs);
 // How the command ran between samples, and the oil where no temperature was logged.
-std::vector<Note> notes_of_logs(const std::vector<LogResult>& logs, const TuneScope& scope, const RigFile& rig);
+std::vector<Note> notes_of_logs(const std::vector<LogResult>& logs, const std::optional<CommandSlope>& usual,
+                                const TuneScope& scope, const RigFile& rig);
 
 }  // namespace servodx

@@ -76,7 +76,7 @@ void mark_unearned(std::vector<ScreenedRow>& rows, const std::vector<EarnedEffec
 }
 
 TunedState state_of(const std::vector<Log>& logs, const TuneResult& result, const TuneOptions& options) {
-  TunedState state{result.error, options.moving_average, {}, result.unfollowed};
+  TunedState state{result.error, {options.moving_average, result.command_slope}, {}, result.unfollowed};
   for (const Log& log : logs)
     state.by.push_back({std::filesystem::path(log.path).filename().string(), log.sha256, content_hash(log)});
   return state;
@@ -171,6 +171,7 @@ TuneResult tune_table(const std::vector<Log>& logs, const Table& nominal, const 
   out.parameters = std::move(settled.parameters);
   out.table = std::move(settled.table);
   take_medians(out.table, out.logs);
+  out.command_slope = settled.command_slope;
   out.table.comments = nominal.comments;
   out.unfollowed = unfollowed_channels(out.channels, candidate_of(out.table));
   out.off_drawing = rows_off_drawing(out.table, scope.table, rig);
@@ -181,7 +182,7 @@ TuneResult tune_table(const std::vector<Log>& logs, const Table& nominal, const 
   out.stop = end.reason, out.cost = end.cost, out.still_promised = end.promised_gain;
   out.notes.push_back({Note::Kind::search_end, "local stage: " + end.stopped});
   if (watch.distrust != Distrust::none) out.notes.push_back(note_of_distrust(watch));
-  append(out.notes, notes_of_logs(out.logs, scope, rig));
+  append(out.notes, notes_of_logs(out.logs, out.command_slope, scope, rig));
   out.convergence = watch.convergence;
   out.stages = watch.stages;
   out.ceres = watch.ceres;

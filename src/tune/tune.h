@@ -89,6 +89,7 @@ struct TuneResult {
   std::vector<Unfollowed> unfollowed;  // of these; empty: good enough
   std::vector<OffDrawing> off_drawing;
   std::vector<LogResult> logs;
+  std::optional<CommandSlope> command_slope;  // of the recorder, over the logs
   std::vector<ParameterResult> parameters;
   std::vector<StartEnd> starts;
   StopReason stop = StopReason::converged;  // of the last fit

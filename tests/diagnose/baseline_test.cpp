@@ -58,7 +58,7 @@ Table as_tuned(const std::string& by, double independent = 0.05) {
   ErrorModel error;
   for (Signal s : {Signal::spool_position, Signal::piston_position, Signal::pressure_a, Signal::pressure_b})
     error.channels.push_back({s, 0.0, 0.2, independent});
-  set_tuned_state(t, {error, 1, {{"log.csv", by, ""}}, {}});
+  set_tuned_state(t, {error, {}, {{"log.csv", by, ""}}, {}});
   t.has_std_error = true;
   return t;
 }

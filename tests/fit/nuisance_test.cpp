@@ -17,8 +17,10 @@
 #include "fit/free_values.h"
 #include "fit/log_data.h"
 #include "fit/oil_of.h"
+#include "fit/recorder.h"
 #include "parameters/list.h"
 #include "servodx/log.h"
+#include "servodx/rig.h"
 #include "shipped_data.h"
 #include "signals/signal.h"
 #include "simulate/scenario.h"
@@ -96,6 +98,28 @@ TEST(Nuisances, AnOilOfUnknownTemperatureThatIsThickerIsColderInAllThatShows) {
     if (f.name == ViscosityChange::parameters[0].name) f.apply(same.data(), 1.0);
   EXPECT_NEAR(same[row::bulk_modulus], base[row::bulk_modulus], 1e-9 * base[row::bulk_modulus]);
   EXPECT_NEAR(same[row::port_width], base[row::port_width], 1e-9 * base[row::port_width]);
+}
+
+TEST(Nuisances, WhatATuneFoundOfTheRecorderIsLikelyOfTheNextLog) {
+  const auto slope = [](const LogData& log) {
+    std::vector<FreeValue> out;
+    for (const FreeValue& f : nuisance_values(log, 0, candidate_of(shipped_table()), 0.05))
+      if (f.at == nuisance::command_slope) out.push_back(f);
+    return out;
+  };
+  const Log log = shipped_log("healthy/h01_steps_large");
+  const auto alone = slope(prepare(log, shipped_rig()));
+  const auto known = slope(prepare(log, shipped_rig(), {1, CommandSlope{0.2, 0.05}}));
+  ASSERT_EQ(alone.size(), 1u);
+  ASSERT_EQ(known.size(), 1u);
+  EXPECT_EQ(known[0].start, 0.2);
+  EXPECT_DOUBLE_EQ(known[0].prior_sd, 0.05);
+  EXPECT_EQ(known[0].lower, alone[0].lower) << "another recorder is not ruled out";
+  EXPECT_EQ(known[0].upper, alone[0].upper);
+  EXPECT_EQ(slope(prepare(log, shipped_rig(), {1, CommandSlope{0.2, 9.0}}))[0].prior_sd, alone[0].prior_sd);
+  RigFile states = shipped_rig();
+  states.command_hold = CommandHold::zero;
+  EXPECT_TRUE(slope(prepare(log, states, {1, CommandSlope{0.2, 0.05}})).empty()) << "the rig file says it";
 }
 
 TEST(Nuisances, StandInTheirTableOfThePage) {

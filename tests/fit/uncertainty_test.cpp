@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <span>
 #include <vector>
 
@@ -13,10 +14,12 @@
 #include "fit/identifiability.h"
 #include "fit/log_data.h"
 #include "fit/problem.h"
+#include "fit/recorder.h"
 #include "fit/support.h"
 #include "optimise/unit_cube.h"
 #include "parameters/list.h"
 #include "parameters/table.h"
+#include "servodx/log.h"
 #include "shipped_data.h"
 #include "simulate/scenario.h"
 
@@ -117,6 +120,33 @@ TEST(Uncertainty, WhatIsALogsOwnIsAskedOfAllLogsAtOnce) {
   const long ways = shared + std::max(own[0], own[1]), steps_down = 4;  // halved from all of the way to a tenth
   EXPECT_LE(logs.problem.simulations() - before, 2 * (1 + 2 * (2 * ways + steps_down)));
   EXPECT_LT(ways, shared + own[0] + own[1]);
+}
+
+// Standard error of a filter's blockage beside a log's own numbers. [of the unit interval]
+double error_of_blockage(const LogData& log) {
+  const Table table = shipped_table();
+  ParameterVector base = candidate_of(table);
+  base[row::filter_blockage_positive] = 0.6;
+  std::vector<FreeValue> free = {free_row(table, row::filter_blockage_positive)};
+  free.front().start = 0.6;
+  for (FreeValue& f : nuisance_values(log, 0, base, null_limit)) free.push_back(std::move(f));
+  const FitProblem problem({&log}, base, free);
+  const Point x = problem.start();
+  Eigen::MatrixXd j;
+  EXPECT_TRUE(problem.jacobian(x, problem.evaluate(std::span(&x, 1)).front().residual, j));
+  return std::sqrt(covariance_of(j, std::vector<char>(free.size(), 1))(0, 0));
+}
+
+TEST(Recorder, KnownItTellsMoreOfACloggedFilterWhereThePistonIsAllThatIsSeen) {
+  const Log log = shipped_log("healthy/h04_multisine");
+  const auto made = [&](const Recorder& recorder) {
+    LogData out = slice(prepare(log, shipped_rig(), recorder), 0, 1500);
+    std::erase_if(out.channels, [](const FitChannel& c) { return c.signal != Signal::piston_position; });
+    return out;
+  };
+  const double alone = error_of_blockage(made({})), known = error_of_blockage(made({1, CommandSlope{0.5, 0.02}}));
+  std::printf("blockage: +- %.4f alone, %.4f where the recorder is known\n", alone, known);
+  EXPECT_LT(known, 0.9 * alone) << "half a sample of delay is what a slow first stage looks like";
 }
 
 }  // namespace

@@ -27,7 +27,7 @@ Table tuned_table() {
                           {Signal::piston_position, 14e-6, 0.2, 7},
                           {Signal::pressure_a, 0.4e5, 1.5, 5},
                           {Signal::pressure_b, 0.4e5, 1.5, 5}}};
-  set_tuned_state(table, {error, 1, {}, {}});
+  set_tuned_state(table, {error, {}, {}, {}});
   return table;
 }
 

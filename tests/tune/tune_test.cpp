@@ -249,7 +249,7 @@ TEST(Tune, ATunedTableThatIsTunedAgainKeepsNothingOfTheOldErrorModelFilterAndLog
   ASSERT_EQ(carried.channels.size(), result.error.channels.size());
   for (std::size_t i = 0; i < carried.channels.size(); ++i)
     EXPECT_EQ(carried.channels[i].independent, result.error.channels[i].independent);
-  EXPECT_EQ(moving_average_of(result.table), 1);
+  EXPECT_EQ(recorder_of(result.table).moving_average, 1);
   EXPECT_EQ(logs_of(result.table), std::vector<std::string>{shipped_log("healthy/h12_mixed").sha256});
   EXPECT_EQ(result.table.comments, std::vector<std::string>{"tuned by hand before that"});
 }
@@ -449,7 +449,7 @@ TEST(Tune, OfATableThatHoldsTwoTuningsTheLastCounts) {
   const ErrorModel error = error_model_of(table);
   ASSERT_EQ(error.channels.size(), 1u);
   EXPECT_EQ(error.channels[0].independent, 178);
-  EXPECT_EQ(moving_average_of(table), 1);
+  EXPECT_EQ(recorder_of(table).moving_average, 1);
   EXPECT_EQ(logs_of(table), std::vector<std::string>{new_log});
 }
 

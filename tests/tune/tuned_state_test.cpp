@@ -5,6 +5,7 @@
 
 #include "base/error.h"
 #include "fit/error_model.h"
+#include "fit/recorder.h"
 #include "recovery/twins.h"
 #include "servodx/log.h"
 #include "servodx/note.h"
@@ -21,18 +22,23 @@ const ErrorModel error{{{Signal::spool_position, 1.0 / 3e6, 0.7123456789012345, 
                         {Signal::pressure_a, 2e5 / 3, 0.0, 1.0},
                         {Signal::piston_position, 0.0, 1e-300, 5e-5}}};
 
+const Recorder recorder{5, CommandSlope{1.0 / 3, 0.0712345678901234}};
+
 TEST(TunedState, ReadsBackFromAFileToTheSameBits) {
   const TemporaryFolder folder;
   Table table = shipped_table();
   table.has_std_error = true;
   table.comments = {"written by something else"};
-  set_tuned_state(table, {error, 5, {{"a \"log\".csv", "ab12", "cd34"}}, {{Signal::pressure_b, 11.25}}});
+  set_tuned_state(table, {error, recorder, {{"a \"log\".csv", "ab12", "cd34"}}, {{Signal::pressure_b, 11.25}}});
   write_table(folder / "tuned.csv", table);
   const Table again = read_table(folder / "tuned.csv");
   EXPECT_EQ(again.comments, table.comments);
   EXPECT_EQ(content_hash(again), content_hash(table));
   const TunedState state = tuned_state(again);
-  EXPECT_EQ(state.moving_average, 5);
+  EXPECT_EQ(state.recorder.moving_average, 5);
+  ASSERT_TRUE(state.recorder.command_slope);
+  EXPECT_EQ(state.recorder.command_slope->usual, recorder.command_slope->usual);
+  EXPECT_EQ(state.recorder.command_slope->spread, recorder.command_slope->spread);
   ASSERT_EQ(state.by.size(), 1u);
   EXPECT_EQ(state.by[0].log, "a \"log\".csv");
   EXPECT_EQ(state.by[0].sha256, "ab12");
@@ -53,7 +59,7 @@ TEST(TunedState, ReadsBackFromAFileToTheSameBits) {
 TEST(TunedState, TheHashOfATableIsOfWhatItSays) {
   Table table = shipped_table();
   table.has_std_error = true;
-  set_tuned_state(table, {error, 5, {{"a.csv", "ab12", "cd34"}}, {{Signal::pressure_b, 11.25}}});
+  set_tuned_state(table, {error, recorder, {{"a.csv", "ab12", "cd34"}}, {{Signal::pressure_b, 11.25}}});
   const std::string hash = content_hash(table);
   const auto of = [&](auto&& change) {
     Table other = table;
@@ -65,7 +71,14 @@ TEST(TunedState, TheHashOfATableIsOfWhatItSays) {
   EXPECT_EQ(of([](Table& t) { t.rows[3].source = "elsewhere", t.path = "other.csv"; }), hash);
   EXPECT_NE(of([](Table& t) { t.rows[3].nominal *= 1 + 1e-15; }), hash);
   EXPECT_NE(of([](Table& t) { t.rows[3].std_error = 1; }), hash);
-  EXPECT_NE(of([](Table& t) { set_tuned_state(t, {error, 3, {}, {}}); }), hash);
+  const auto by = [](const Recorder& r) {
+    return [r](Table& t) {
+      set_tuned_state(t, {error, r, {{"a.csv", "ab12", "cd34"}}, {{Signal::pressure_b, 11.25}}});
+    };
+  };
+  EXPECT_EQ(of(by(recorder)), hash);
+  EXPECT_NE(of(by({3, recorder.command_slope})), hash);
+  EXPECT_NE(of(by({5, {}})), hash);
   Table old = shipped_table();
   old.comments = {"model error spool_position: floor 1e-06 m, per activity 0.1, independent 9.9 1/s"};
   Table moved_on = old;
@@ -106,7 +119,9 @@ TEST(TunedState, OfANewerSchemaOrDamagedIsRefused) {
   Table table = shipped_table();
   for (const char* text :
        {"[tuned]\nschema = 99\n", "[tuned\n", "[tuned]\nschema = 1\n[[tuned.error]]\nsignal = \"x\"\n",
-        "[tuned]\nschema = 1\n[[tuned.error]]\nsignal = \"pressure_a\"\nfloor = 1\n"}) {
+        "[tuned]\nschema = 1\n[[tuned.error]]\nsignal = \"pressure_a\"\nfloor = 1\n",
+        "[tuned]\nschema = 1\n[tuned.command_slope]\nusual = 2\nspread = 1\n",
+        "[tuned]\nschema = 1\n[tuned.command_slope]\nusual = 1\n"}) {
     table.state = text;
     EXPECT_THROW(tuned_state(table), InputError) << text;
   }
@@ -135,7 +150,7 @@ TEST(TunedState, ATuneOfATunedTableReplacesIt) {
   const TuneResult once = tune_table({first}, with_few_rows(), shipped_rig(), smoothed);
   const TuneResult twice = tune_table({second}, once.table, shipped_rig(), quick());
   const TunedState state = tuned_state(twice.table);
-  EXPECT_EQ(state.moving_average, 1);
+  EXPECT_EQ(state.recorder.moving_average, 1);
   ASSERT_EQ(state.by.size(), 1u);
   EXPECT_TRUE(state.is_by(second));
   EXPECT_FALSE(state.is_by(first));
