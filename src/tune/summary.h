@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "fit/problem.h"
+#include "fit/recorder.h"
 #include "fit/tuned_state.h"
 #include "optimise/unit_cube.h"
 #include "parameters/table.h"

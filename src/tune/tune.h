@@ -8,6 +8,7 @@
 #include "fit/error_model.h"
 #include "fit/free_values.h"
 #include "fit/identifiability.h"
+#include "fit/recorder.h"
 #include "fit/tuned_state.h"
 #include "optimise/box_least_squares.h"
 #include "optimise/ceres_refinement.h"
