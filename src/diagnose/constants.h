@@ -60,9 +60,9 @@ inline constexpr double ambiguous_probability = 0.05;
 inline constexpr double effect_error = 0.1;
 
 // Independent errors in what a fault leaves beyond that: one that leaves half as much again is then twenty times as
-// unlikely. Of 168 stored verdicts of ten rigs whose best fault leaves more than twice the usual, the right one stood
-// second at less than 1.5 times the best's misfit in 9, and at more in 6; the best was right in 24 and 128. Half and
-// double not examined.
+// unlikely. Of 168 stored verdicts of twelve rigs, some by two programs, whose best fault leaves more than twice the
+// usual, the best was wrong in 16: the right one left less than 1.5 times its misfit in 10 of them. Where the best was
+// right, another left so little in 24 of 152. All in view (docs/accuracy.md). Half and double not examined.
 inline constexpr double errors_of_a_fault = 12.0;
 
 // Odds of a fault at the far end of its range beside one inside that takes as much. Of six such verdicts, on rigs 51,

@@ -102,9 +102,9 @@ void put_ends_behind(const Assessment& a, std::vector<WeighedHypothesis>& weighe
   }
 }
 
-// What the likeliest leaves beyond what a fault may leave is an error of the model that nobody has seen. It lasts: of
-// all that is left so there are some independent errors, and not as many as samples.
-double scale_of(const Assessment& a, const std::vector<WeighedHypothesis>& weighed, double usual_adequacy) {
+// Where the likeliest leaves more than a fault may, what is left is an error of the model that nobody has seen. Such an
+// error lasts: it is some independent ones, and not as many as samples.
+double tempered_scale(const Assessment& a, const std::vector<WeighedHypothesis>& weighed, double usual_adequacy) {
   const auto least = std::min_element(weighed.begin(), weighed.end(),
                                       [](const auto& x, const auto& y) { return x.misfit < y.misfit; });
   const HypothesisResult& likeliest = a.hypotheses[static_cast<std::size_t>(least - weighed.begin())];
@@ -122,7 +122,7 @@ void weigh_beside_usual(Assessment& a, const FaultGains& usual, double usual_ade
     weighed.push_back(
         {h.fault ? h.fault->prior : 1.0, gain > 0 ? -gain * part_beyond(h.gain, gain_of(usual, h.fault)) : -gain});
   }
-  a.misfit_scale = scale_of(a, weighed, usual_adequacy);
+  a.misfit_scale = tempered_scale(a, weighed, usual_adequacy);
   put_ends_behind(a, weighed);
   const std::vector<double> p = probabilities_of(weighed, a.misfit_scale);
   for (std::size_t i = 0; i < p.size(); ++i) a.hypotheses[i].probability = p[i];

@@ -11,6 +11,7 @@
 
 #include "fit/log_start.h"
 #include "fit/ports_of.h"
+#include "fit/recorder.h"
 #include "fit/thin.h"
 #include "servodx/log.h"
 #include "servodx/note.h"

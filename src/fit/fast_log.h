@@ -14,6 +14,7 @@
 // above some 300 Hz, and what the sensors show of it.
 #pragma once
 #include "fit/log_data.h"
+#include "fit/recorder.h"
 #include "servodx/log.h"
 #include "servodx/rig.h"
 

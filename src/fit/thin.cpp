@@ -7,6 +7,7 @@
 
 #include "base/tiny.h"
 #include "fit/ports_of.h"
+#include "fit/recorder.h"
 #include "servodx/log.h"
 #include "servodx/note.h"
 #include "servodx/rig.h"

@@ -7,6 +7,7 @@
 // thinned by its fastest second, or not at all; a log of an actuator never is.
 #pragma once
 #include "fit/log_data.h"
+#include "fit/recorder.h"
 #include "servodx/log.h"
 #include "servodx/rig.h"
 

@@ -193,7 +193,7 @@ void add_parameters(CheckResult& out, const std::vector<TrackedParameter>& param
 
 CheckResult check(const Log& log, const Table& tuned, const RigFile& rig, const CheckOptions& options) {
   options.validate();
-  const Recorder recorder{1, recorder_of(tuned).command_slope};
+  const Recorder recorder{1, recorder_of(tuned).command_slope};  // figures are of the samples, not of their averages
   LogData data = prepare(log, rig, recorder), fitted = is_fast(log) ? prepare_at_points(log, rig, recorder) : data;
   require_channels(data);
   CheckResult out;

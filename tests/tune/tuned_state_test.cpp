@@ -142,6 +142,17 @@ Table with_few_rows() {
   return table;
 }
 
+TEST(TunedState, ATuneOfThreeLogsSaysHowTheyWereRecordedAndOneOfTwoDoesNot) {
+  std::vector<Log> logs;
+  for (const char* name : {"healthy/h08_preflight_cold", "healthy/h09_preflight_hot", "healthy/h11_preflight_1"})
+    logs.push_back(twins::cut(shipped_log(name), 300));
+  const Recorder three = recorder_of(tune_table(logs, with_few_rows(), shipped_rig(), quick()).table);
+  ASSERT_TRUE(three.command_slope);
+  EXPECT_GT(three.command_slope->spread, 0);
+  logs.pop_back();
+  EXPECT_FALSE(recorder_of(tune_table(logs, with_few_rows(), shipped_rig(), quick()).table).command_slope);
+}
+
 TEST(TunedState, ATuneOfATunedTableReplacesIt) {
   const Log first = twins::cut(shipped_log("healthy/h08_preflight_cold"), 300);
   const Log second = twins::cut(shipped_log("healthy/h09_preflight_hot"), 300);
