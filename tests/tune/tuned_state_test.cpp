@@ -144,7 +144,7 @@ Table with_few_rows() {
 
 TEST(TunedState, ATuneOfThreeLogsSaysHowTheyWereRecordedAndOneOfTwoDoesNot) {
   std::vector<Log> logs;
-  for (const char* name : {"healthy/h08_preflight_cold", "healthy/h09_preflight_hot", "healthy/h11_preflight_1"})
+  for (const char* name : {"healthy/h08_preflight_cold", "healthy/h09_preflight_hot", "healthy/h12_mixed"})
     logs.push_back(twins::cut(shipped_log(name), 300));
   const Recorder three = recorder_of(tune_table(logs, with_few_rows(), shipped_rig(), quick()).table);
   ASSERT_TRUE(three.command_slope);
