@@ -1,6 +1,7 @@
 #include "effects/registry.h"
 
 #include <stdexcept>
+#include <type_traits>
 
 #include "effects/stiction.h"
 #include "parameters/list.h"
@@ -33,6 +34,11 @@ void take_meaning(EffectInfo& e) {
   if constexpr (requires { M::as_large_as_rig; }) e.as_large_as_rig = M::as_large_as_rig;
 }
 
+template <class E, class... Common>
+constexpr bool is_among(EffectList<Common...>) {
+  return (std::is_same_v<E, Common> || ...);
+}
+
 template <class... E>
 std::vector<EffectInfo> describe(EffectList<E...>) {
   int at = n_parameters;
@@ -43,7 +49,8 @@ std::vector<EffectInfo> describe(EffectList<E...>) {
                        .place = E::place,
                        .meaning = E::meaning,
                        .first = at,
-                       .parameters = {E::parameters, E::parameters + E::n_parameters}});
+                       .parameters = {E::parameters, E::parameters + E::n_parameters},
+                       .rare = !is_among<E>(CommonEffects{})});
         take_meaning<E>(all.back());
         at += E::n_parameters;
       }(),

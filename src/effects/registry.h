@@ -62,16 +62,20 @@ using AllEffects = EffectList<MagneticHysteresis,  //
                               ViscositySlope,      //
                               PressureViscosity,   //
                               OilStiffening>;
-// Four states more than all others together, for rigs with long lines only: these have a kernel of their own.
-using LinedEffects = Append<AllEffects, LineInertia>;
+// A state costs a step more than most effects do. Without the four that few candidates switch on, a step takes three
+// quarters of the time (docs/performance.md).
+using CommonEffects = Without<AllEffects, SupplyDroop, PortLine, RodCavity>;
+// Four states more, for rigs with long lines only: these have a kernel of their own.
+using LinedEffects = Append<CommonEffects, LineInertia>;
 // A learnt curve costs more than all effects: the same.
-using CorrectedEffects = Append<LinedEffects, Unexplained>;
+using CorrectedEffects = Append<Append<AllEffects, LineInertia>, Unexplained>;
 inline constexpr int n_values = n_parameters + CorrectedEffects::n_parameters;  // length of a parameter vector
 
 struct EffectInfo {
   std::string name, place, meaning;
   int first = 0;  // position of its first parameter in a parameter vector
   std::vector<EffectParameter> parameters;
+  bool rare = false;        // left out where a kernel carries the common effects alone
   bool stand_only = false;  // sought only in logs of a valve on a test stand
   bool as_made = false;     // told by healthy logs; not sought
   Freed freed = Freed::never;

@@ -93,6 +93,24 @@ auto flapper_travel(const X& free, const Rows& p) {
   return saturate(free, pick<row::nozzle_gap>(p), constants::stop_rounding);
 }
 
+// In the place of an effect that a list leaves out: its numbers stay where a candidate has them, and nothing of it
+// runs.
+template <class E>
+struct Absent {
+  static constexpr int n_states = 0;
+  static constexpr int n_parameters = E::n_parameters;
+};
+template <class List, class... Left>
+struct LeaveOut;
+template <class... E, class... Left>
+struct LeaveOut<EffectList<E...>, Left...> {
+  template <class One>
+  using Kept = std::conditional_t<(std::is_same_v<One, Left> || ...), Absent<One>, One>;
+  using type = EffectList<Kept<E>...>;
+};
+template <class List, class... Left>
+using Without = typename LeaveOut<List, Left...>::type;
+
 template <class List, class Last>
 struct AppendTo;
 template <class... E, class Last>

@@ -65,13 +65,18 @@ bool is_off(const EffectInfo& e, const ParameterVector& v) {
 }  // namespace
 
 Need need_of(const ParameterVector& v) {
-  Need need = Need::base;
-  for (const EffectInfo& e : effect_list())
-    if (!is_off(e, v))
-      need = std::max(need, e.first == effect_row<Unexplained>(0)   ? Need::corrected
-                            : e.first == effect_row<LineInertia>(0) ? Need::lined
-                                                                    : Need::extended);
-  return need;
+  bool any = false, rare = false, lines = false;
+  for (const EffectInfo& e : effect_list()) {
+    if (is_off(e, v)) continue;
+    if (e.first == effect_row<Unexplained>(0)) return Need::corrected;
+    any = true;
+    if (e.first == effect_row<LineInertia>(0))
+      lines = true;
+    else
+      rare = rare || e.rare;
+  }
+  if (lines) return rare ? Need::corrected : Need::lined;
+  return rare ? Need::extended : any ? Need::common : Need::base;
 }
 
 int curve_kind(const ParameterVector& v) {
@@ -79,50 +84,9 @@ int curve_kind(const ParameterVector& v) {
   return (code(0) * Unexplained::n_variables + code(1)) * Unexplained::n_factors + code(2);
 }
 
-RunPack run_of(const Kernels& k, Need need) {
-  switch (need) {
-    case Need::base:
-      return k.base;
-    case Need::extended:
-      return k.extended;
-    case Need::lined:
-      return k.lined;
-    case Need::corrected:
-      return k.corrected;
-  }
-  return nullptr;
-}
-
-MakeRunInParts in_parts_of(const Kernels& k, Need need) {
-  switch (need) {
-    case Need::base:
-      return k.base_in_parts;
-    case Need::extended:
-      return k.extended_in_parts;
-    case Need::lined:
-      return k.lined_in_parts;
-    case Need::corrected:
-      return k.corrected_in_parts;
-  }
-  return nullptr;
-}
-
-NearKernels::Make near_of(const NearKernels& k, Need need) {
-  switch (need) {
-    case Need::base:
-      return k.base;
-    case Need::extended:
-      return k.extended;
-    case Need::lined:  // a tap answers so fast that followers part from their run
-    case Need::corrected:
-      return nullptr;
-  }
-  return nullptr;
-}
-
 std::unique_ptr<RunInParts> run_in_parts(const Scenario& scenario, const ParameterVector& candidate, Trajectory& result,
                                          const SimulateOptions& options) {
-  return in_parts_of(best_kernels().doubles, need_of(candidate))(scenario, candidate, result, options);
+  return best_kernels().doubles[need_of(candidate)].in_parts(scenario, candidate, result, options);
 }
 
 std::string instruction_set() { return best_kernels().doubles.name; }

@@ -14,16 +14,9 @@ struct Choice {
 // Throws InputError where an instruction set is asked for that is unknown or that the processor lacks.
 const Choice& best_kernels();
 
-// Which kernel a candidate needs, the cheapest that holds all that is not at its off value; only candidates of the same
-// need share a pack.
-enum class Need { base, extended, lined, corrected };
+// The cheapest kernel that holds all that is not at its off value; only candidates of the same need share a pack.
 Need need_of(const ParameterVector& candidate);
 // Of a corrected candidate, one number for the place of its curve, its variable and its factor: lanes have them alike.
 int curve_kind(const ParameterVector& candidate);
-
-// Null where the instruction set lacks it.
-RunPack run_of(const Kernels& kernels, Need need);
-MakeRunInParts in_parts_of(const Kernels& kernels, Need need);
-NearKernels::Make near_of(const NearKernels& kernels, Need need);
 
 }  // namespace servodx

@@ -1,14 +1,10 @@
 #include "base/pack.h"
 #include "effects/registry.h"
 #include "simulate/kernels.h"
-#include "simulate/pack_run.h"
 #include "simulate/run_in_parts_of.h"
 
 namespace servodx {
 
-CorrectedKernels kernels_avx2_corrected() {
-  using T = Pack<4, 2>;
-  return {&run_pack<T, CorrectedEffects>, &make_in_parts<T, CorrectedEffects>};
-}
+Kernel kernel_avx2_corrected() { return kernel_of<Pack<4, 2>, CorrectedEffects>(); }
 
 }  // namespace servodx

@@ -1,24 +1,16 @@
 #include "base/pack.h"
 #include "effects/registry.h"
 #include "simulate/kernels.h"
-#include "simulate/pack_run.h"
 #include "simulate/run_in_parts_of.h"
 
 namespace servodx {
 
 Kernels kernels_avx512() {
-  const CorrectedKernels corrected = kernels_avx512_corrected();
   using T = Pack<8, 5>;
   return {T::lanes,
           "avx512",
-          &run_pack<T, NoEffects>,
-          &run_pack<T, AllEffects>,
-          &run_pack<T, LinedEffects>,
-          corrected.run,
-          &make_in_parts<T, NoEffects>,
-          &make_in_parts<T, AllEffects>,
-          &make_in_parts<T, LinedEffects>,
-          corrected.in_parts};
+          {kernel_of<T, NoEffects>(), kernel_of<T, CommonEffects>(), kernel_of<T, AllEffects>(),
+           kernel_of<T, LinedEffects>(), kernel_avx512_corrected()}};
 }
 
 }  // namespace servodx

@@ -7,7 +7,12 @@ namespace servodx {
 
 Kernels kernels_avx512_floats() {
   using T = Pack<16, 5, float>;
-  return {T::lanes, "avx512", &run_pack<T, NoEffects>, &run_pack<T, AllEffects>, &run_pack<T, LinedEffects>, nullptr};
+  return {T::lanes,
+          "avx512",
+          {{{&run_pack<T, NoEffects>},
+            {&run_pack<T, CommonEffects>},
+            {&run_pack<T, AllEffects>},
+            {&run_pack<T, LinedEffects>}}}};
 }
 
 }  // namespace servodx

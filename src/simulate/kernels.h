@@ -1,6 +1,8 @@
 // The runs as they are built for each instruction set, behind plain functions: who chooses among them
 // (simulate/choose_kernel.h) needs none of their templates.
 #pragma once
+#include <array>
+#include <cstddef>
 #include <memory>
 
 #include "simulate/run_in_parts.h"
@@ -13,15 +15,25 @@ using MakeRunInParts = std::unique_ptr<RunInParts> (*)(const Scenario&, const Pa
 using RunPack = void (*)(const Scenario&, const ParameterVector* const*, Trajectory* const*, int,
                          const SimulateOptions&);
 
+// What a candidate has switched on, and so which effects its kernel carries (effects/registry.h).
+enum class Need {
+  base,
+  common,     // those that fits keep on for long
+  extended,   // all that have names but long lines
+  lined,      // the common ones and long lines
+  corrected,  // all, and a learnt curve of one place, variable and factor in all lanes
+};
+inline constexpr std::size_t n_needs = 5;
+
+struct Kernel {
+  RunPack run = nullptr;              // null: there is none
+  MakeRunInParts in_parts = nullptr;  // the same of one candidate over a log that comes in parts
+};
 struct Kernels {
   int width;
   const char* name;
-  RunPack base, extended;  // without effects, with all that have names but long lines
-  RunPack lined;           // with these too
-  RunPack corrected;       // with a learnt curve too, of one place, variable and factor in all lanes; null: no such
-  // One candidate over a log that comes in parts, the same four.
-  MakeRunInParts base_in_parts = nullptr, extended_in_parts = nullptr, lined_in_parts = nullptr,
-                 corrected_in_parts = nullptr;
+  std::array<Kernel, n_needs> of;
+  const Kernel& operator[](Need need) const { return of[static_cast<std::size_t>(need)]; }
 };
 // A run, and candidates near it that follow its steps (run_and_followers.h). It leads by a stretch of samples; they
 // follow over the one before the last turn.
@@ -38,21 +50,17 @@ struct NearKernels {
   using Make = std::unique_ptr<NearRuns> (*)(const Scenario&, const ParameterVector& base, Trajectory& of_base,
                                              const ParameterVector* const*, Trajectory* const*, int,
                                              const SimulateOptions&);
-  Make base = nullptr, extended = nullptr;  // null: there are none
-};
-
-// Those with a learnt curve have a translation unit of their own: an instance takes a minute to build.
-struct CorrectedKernels {
-  RunPack run;
-  MakeRunInParts in_parts;
+  std::array<Make, n_needs> of = {};  // null: there are none
+  Make operator[](Need need) const { return of[static_cast<std::size_t>(need)]; }
 };
 
 Kernels kernels_generic();
 Kernels kernels_avx2();
 Kernels kernels_avx512();
-CorrectedKernels kernels_generic_corrected();
-CorrectedKernels kernels_avx2_corrected();
-CorrectedKernels kernels_avx512_corrected();
+// Those with a learnt curve have a translation unit of their own: an instance takes a minute to build.
+Kernel kernel_generic_corrected();
+Kernel kernel_avx2_corrected();
+Kernel kernel_avx512_corrected();
 // Twice as many lanes, of floats (Arithmetic).
 Kernels kernels_avx2_floats();
 Kernels kernels_avx512_floats();

@@ -8,6 +8,7 @@
 #include <tuple>
 #include <type_traits>
 
+#include "simulate/kernels.h"
 #include "simulate/pack_run.h"
 #include "simulate/run_in_parts.h"
 #include "simulate/scenario.h"
@@ -67,6 +68,11 @@ template <class T, class Effects>
 std::unique_ptr<RunInParts> make_in_parts(const Scenario& in, const ParameterVector& candidate, Trajectory& result,
                                           const SimulateOptions& options) {
   return std::make_unique<RunInPartsOf<T, Effects>>(in, candidate, result, options);
+}
+
+template <class T, class Effects>
+Kernel kernel_of() {
+  return {&run_pack<T, Effects>, &make_in_parts<T, Effects>};
 }
 
 }  // namespace servodx

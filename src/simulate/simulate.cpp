@@ -87,7 +87,7 @@ void simulate(std::span<const Job> jobs, const SimulateOptions& options) {
     }
     // One alone runs in a lane too: eight cost hardly more, and the bits are the same in any company.
     const Kernels& kernels = kernels_of(pack.need, options.arithmetic);
-    run_of(kernels, pack.need)(*pack.jobs[0]->scenario, candidates, results, pack.count, options);
+    kernels[pack.need].run(*pack.jobs[0]->scenario, candidates, results, pack.count, options);
   }
 }
 

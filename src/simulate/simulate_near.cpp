@@ -25,7 +25,7 @@ std::unique_ptr<NearRuns> near_runs(const NearJobs& near, const SimulateOptions&
   const NearKernels& kernels = best_kernels().near;
   Need need = need_of(*near.base);
   for (const Job& job : near.jobs) need = std::max(need, need_of(*job.candidate));
-  const NearKernels::Make make = near_of(kernels, need);
+  const NearKernels::Make make = kernels[need];
   if (!make) return nullptr;
   std::vector<const ParameterVector*> candidates;
   std::vector<Trajectory*> results;

@@ -103,7 +103,7 @@ void runs_as_the_base_model() {
   ParameterVector off = nominal;  // laid out for a list of this effect alone
   for (int j = 0; j < E::n_parameters; ++j) off[n_parameters + j] = E::parameters[j].off;
   for (const LogData& log : pieces()) {
-    const Trajectory base = run(kernels_scalar().base, log.scenario, nominal);
+    const Trajectory base = run(kernels_scalar()[Need::base].run, log.scenario, nominal);
     const Trajectory with = run(&run_pack<double, EffectList<E>>, log.scenario, off);
     if (E::n_states == 0) {
       EXPECT_TRUE(same_bits(base, with)) << E::name;
@@ -127,7 +127,9 @@ void each_runs_as_the_base_model(EffectList<E...>) {
   (runs_as_the_base_model<E>(), ...);
 }
 
-TEST(OffValues, KernelOfAnEffectAtItsOffValueRunsAsTheBaseModel) { each_runs_as_the_base_model(LinedEffects{}); }
+TEST(OffValues, KernelOfAnEffectAtItsOffValueRunsAsTheBaseModel) {
+  each_runs_as_the_base_model(Append<AllEffects, LineInertia>{});
+}
 
 TEST(OffValues, EveryFaultAtItsHealthySeverityChangesNoBit) {
   const ParameterVector healthy = nominal_candidate();
@@ -281,16 +283,16 @@ TEST(Batch, EveryInstructionSetComputesWhatPlainDoublesDo) {
   for (ParameterVector& one : v) one[effect_row<Unexplained>(1)] = Unexplained::piston_velocity;  // a pack, a curve
   const LogData log = pieces().front();
   for (const auto& [k, limit] : kernels)
-    for (const RunPack Kernels::* of : {&Kernels::extended, &Kernels::corrected}) {
-      if (!(k.*of)) continue;  // floats run no curve
+    for (const Need need : {Need::extended, Need::corrected}) {
+      if (!k[need].run) continue;  // floats run no curve
       std::vector<Trajectory> t(static_cast<std::size_t>(k.width));
       std::vector<const ParameterVector*> in;
       std::vector<Trajectory*> out;
       for (int i = 0; i < k.width; ++i) in.push_back(&v[i]), out.push_back(&t[i]);
-      (k.*of)(log.scenario, in.data(), out.data(), k.width, all_signals());
+      k[need].run(log.scenario, in.data(), out.data(), k.width, all_signals());
       double worst = 0;
       for (int i = 0; i < k.width; ++i) {
-        const Trajectory plain = run(kernels_scalar().*of, log.scenario, v[i]);
+        const Trajectory plain = run(kernels_scalar()[need].run, log.scenario, v[i]);
         ASSERT_TRUE(plain.ok && t[i].ok) << k.name << ' ' << i;
         worst = std::max(worst, apart(t[i], plain));
       }
