@@ -103,7 +103,10 @@ inline constexpr std::array time_factors = {1e-3, 1e3, 1.0 / 60, 60.0, 0.1, 10.0
 inline constexpr std::array drive_factors = {1e-3, 1e3, 1e-2, 1e2};                         // mA, A; per cent
 inline constexpr std::array length_factors = {1 / 25.4, 25.4, 0.1, 10.0, 1e-3, 1e3};        // inch, cm, m beside mm
 inline constexpr std::array pressure_factors = {0.0689476, 14.5038, 0.1, 10.0, 1e-2, 1e2};  // psi, MPa, kPa beside bar
-inline constexpr double worth_reading = 0.05;   // of the motion left by the best fit: less needs no other reading
+inline constexpr double worth_reading = 0.05;  // of the motion left by the best fit: less needs no other reading
+// Of the worst error of the tuning logs: what the best fit leaves so little of was read rightly. By definition; a
+// reading would have to leave half of that to be told.
+inline constexpr double told_as_it_is = 1.0;
 inline constexpr double misread_leaves = 0.25;  // of the motion, at most
 inline constexpr double misread_beside = 0.5;   // of what the hypothesis leaves that the verdict would tell
 // Whether anything moves as the log does (diagnose/decide.cpp), part of the motion left.

@@ -299,11 +299,13 @@ bool makes_a_healthy_log(const Reading& reading, const Log& log, const Parameter
   return adequacy && *adequacy < k::misread_beside * best_of(as_read).adequacy;
 }
 
-// Where the best fit leaves much of the motion, or health fits worse than a fault may: was the log read wrongly?
+// Where the best fit leaves much of the motion, or health fits worse than a fault may: was the log read wrongly? A log
+// that its best fit leaves as tuning logs are left asks for no other reading.
 void look_at_readings(const Log& log, const ParameterVector& base, const ReadingTrial& trial,
                       const HypothesisSettings& settings, Assessment& out, FitWork& work) {
   const bool much = left_by_best(out) > k::worth_reading;
-  if (!much && out.hypotheses.front().adequacy <= k::fault_allowance) return;
+  const bool told = best_of(out).adequacy <= k::told_as_it_is || out.hypotheses.front().adequacy <= k::fault_allowance;
+  if (!much && told) return;
   out.reading = best_reading(log, Unjudgeable::no, trial);
   if (!much && out.reading && !makes_a_healthy_log(*out.reading, log, base, trial, settings, out, work))
     out.reading.reset();

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <atomic>
 #include <functional>
+#include <limits>
 #include <numeric>
 #include <optional>
 #include <span>
@@ -213,34 +214,32 @@ void take_better(Attempt& health, Attempt other) {
 
 // Health begun elsewhere too, by the derivatives that its end so far left, a run a step. Where that ends lower by more
 // than a start is worth, it is fitted on from there: a poor valley of health lends every fault a gain. `from`: what
-// each start begins at; null: its own.
+// each start begins at; null: its own. `own`: the one of them that has derivatives of its own as well; null: none.
 void begin_elsewhere(Health& health, std::vector<Attempt> starts, const std::vector<const HypothesisFit*>& from,
-                     const HypothesisData& data) {
+                     const HypothesisFit* own, const HypothesisData& data) {
   const double so_far = health.attempt.fit.misfit;
   const double worth = k::worth_another_start * misfit_inflation(so_far, data.degrees);
-  side_by_side(starts.size(), data, [&](std::size_t i) {
+  Attempt by_own;
+  side_by_side(starts.size() + (own != nullptr), data, [&](std::size_t i) {
+    if (i == starts.size()) return run(by_own, data, own, data.settings.iterations);
     if (health.end) approach(starts[i], data, from[i], *health.end, k::approach_iterations);
     if (!health.end || starts[i].fit.misfit < so_far - worth) run(starts[i], data, from[i], data.settings.iterations);
   });
   for (Attempt& start : starts) take_better(health.attempt, std::move(start));
-}
-
-// By derivatives of its own, on all threads.
-void run_alone(Attempt& health, const HypothesisData& data, const HypothesisFit* from) {
-  side_by_side(1, data, [&](std::size_t) { run(health, data, from, data.settings.iterations); });
+  if (own) take_better(health.attempt, std::move(by_own));
 }
 
 // From its usual start, then from others around it.
 Health fit_health(const HypothesisData& data, Steps& steps) {
   Health health;
-  run_alone(health.attempt, data, nullptr);
+  side_by_side(1, data, [&](std::size_t) { run(health.attempt, data, nullptr, data.settings.iterations); });
   health.end = end_of(health.attempt.fit, data, health.attempt.work);
   steps.done(data.settings.iterations, health.attempt.work.simulations);
   std::vector<Attempt> around(k::health_starts - 1);
   for (std::size_t i = 0; i < around.size(); ++i) around[i].scattered = static_cast<int>(i) + 1;
   const double usual = health.attempt.fit.misfit;
   const long simulations = health.attempt.work.simulations;
-  begin_elsewhere(health, around, std::vector<const HypothesisFit*>(around.size(), nullptr), data);
+  begin_elsewhere(health, around, std::vector<const HypothesisFit*>(around.size(), nullptr), nullptr, data);
   if (health.attempt.fit.misfit < usual) health.end = end_of(health.attempt.fit, data, health.attempt.work);
   steps.done(Steps::around, health.attempt.work.simulations - simulations);
   return health;
@@ -255,12 +254,9 @@ void begin_health_again(Health& health, const std::vector<Attempt>& faults, cons
       better.push_back(&fault.fit);
   if (better.empty()) return;
   const long simulations = health.attempt.work.simulations;
-  begin_elsewhere(health, std::vector<Attempt>(better.size()), better, data);
   const HypothesisFit* best =
       *std::min_element(better.begin(), better.end(), [](auto* a, auto* b) { return a->misfit < b->misfit; });
-  Attempt own;
-  run_alone(own, data, best);
-  take_better(health.attempt, std::move(own));
+  begin_elsewhere(health, std::vector<Attempt>(better.size()), better, best, data);
   steps.done(Steps::again * static_cast<double>(faults.size()), health.attempt.work.simulations - simulations);
 }
 
@@ -276,40 +272,67 @@ std::vector<const HypothesisFit*> leading(const HypothesisFits& fits) {
   return out;
 }
 
-// Each other fault beside a leading one, from the start that screens best. Two that no log parts are one.
-std::vector<Attempt> pair_attempts(const std::vector<const Fault*>& faults,
-                                   const std::vector<const HypothesisFit*>& led, const HypothesisData& data,
-                                   std::vector<const HypothesisFit*>& from, FitWork& work) {
+// A fault that others are tried beside.
+struct Leader {
+  const HypothesisFit* fit;
+  std::optional<FitEnd> end;
+};
+
+// A leading fault and another one beside it.
+struct PairStart {
+  const Leader* leader;
+  Attempt attempt;
+};
+
+// Each other fault beside a leading one, at each of its starts. Two that no log parts are one.
+std::vector<Screened> screen_pairs(const std::vector<const Fault*>& faults, const std::vector<Leader>& leaders,
+                                   const HypothesisData& data, std::vector<const Leader*>& of) {
   std::vector<Screened> screened;
-  std::vector<const HypothesisFit*> by;
-  for (std::size_t l = 0; l < led.size(); ++l)
+  for (const Leader& leader : leaders)
     for (const Fault* fault : faults) {
-      const bool tried = fault == led[l]->fault || (l > 0 && fault == led[0]->fault);
-      if (tried || are_twins(*fault, *led[l]->fault)) continue;
+      const bool tried = fault == leader.fit->fault || (&leader != &leaders[0] && fault == leaders[0].fit->fault);
+      if (tried || are_twins(*fault, *leader.fit->fault)) continue;
       for (const double severity :
            starting_severities(*fault, data.base, data.settings.null_limit, data.settings.times_drawing))
-        screened.push_back({.fault = led[l]->fault, .severity = severity, .beside = fault}), by.push_back(led[l]);
+        screened.push_back({.fault = leader.fit->fault, .severity = severity, .beside = fault}), of.push_back(&leader);
     }
   const auto run_all = [&] {
-    side_by_side(screened.size(), data, [&](std::size_t i) { screen(screened[i], data, *by[i]); });
+    side_by_side(screened.size(), data,
+                 [&](std::size_t i) { screen(screened[i], data, *of[i]->fit, of[i]->end ? &*of[i]->end : nullptr); });
     return screened;
   };
   std::vector<HypothesisFit> beside;
-  for (const HypothesisFit* fit : led) beside.push_back(*fit);
-  screened = data.settings.stages.made("screen pairs", run_all, screened, beside);
-  std::vector<Attempt> out;
-  double least = 0;
-  for (std::size_t i = 0; i < screened.size(); ++i) {
-    const Screened& s = screened[i];
-    work.add(s.work);
-    const bool same = !out.empty() && out.back().fault == s.fault && out.back().beside == s.beside;
-    if (same && s.misfit >= least) continue;
-    least = s.misfit;
-    Attempt a{s.fault, by[i]->severity, s.beside, s.severity};
-    if (same)
-      out.back() = std::move(a);
-    else
-      out.push_back(std::move(a)), from.push_back(by[i]);
+  for (const Leader& leader : leaders) beside.push_back(*leader.fit);
+  return data.settings.stages.made("screen pairs", run_all, screened, beside);
+}
+
+// What a fit is expected to gain by a screened fault of the size that suits the log best, in proportion to the
+// screened size; endless where no linear model says so.
+double promised_gain(const Screened& screened, const Leader& leader) {
+  if (!leader.end || screened.gain < 0) return std::numeric_limits<double>::infinity();
+  const double alone = leader.fit->misfit - leader.end->answer.taken(leader.end->gradient);
+  const double slope = (alone + screened.gain - screened.left) / 2;  // minus half the misfit's, by the size
+  return slope > 0 && screened.gain > 0 ? slope * slope / screened.gain : 0;
+}
+
+// Of each pair that promises more than chance lends a second fault, the start that screens best.
+std::vector<PairStart> pair_starts(const std::vector<const Fault*>& faults, const std::vector<Leader>& leaders,
+                                   const HypothesisData& data, FitWork& work) {
+  std::vector<const Leader*> of;
+  const std::vector<Screened> screened = screen_pairs(faults, leaders, data, of);
+  std::vector<PairStart> out;
+  for (std::size_t first = 0, last; first < screened.size(); first = last) {
+    const Screened* best = &screened[first];
+    double promised = 0;
+    for (last = first; last < screened.size() && of[last] == of[first] && screened[last].beside == best->beside;
+         ++last) {
+      work.add(screened[last].work);
+      promised = std::max(promised, promised_gain(screened[last], *of[first]));
+      if (screened[last].misfit < best->misfit) best = &screened[last];
+    }
+    const HypothesisFit& lead = *of[first]->fit;
+    if (promised > k::worth_another_start * misfit_inflation(lead.misfit, data.degrees))
+      out.push_back({of[first], {best->fault, lead.severity, best->beside, best->severity}});
   }
   return out;
 }
@@ -317,22 +340,20 @@ std::vector<Attempt> pair_attempts(const std::vector<const Fault*>& faults,
 // Of all pairs those that came nearest are fitted by derivatives of their own.
 void fit_pairs(const std::vector<const Fault*>& faults, const HypothesisData& data, HypothesisFits& fits) {
   if (!pair_could_gain(fits.fits[best_fit(fits)].misfit, fits.fits.front().misfit)) return;
-  const std::vector<const HypothesisFit*> led = leading(fits);
-  std::vector<std::optional<FitEnd>> ends;
-  for (const HypothesisFit* fit : led) ends.push_back(end_of(*fit, data, fits.work));
-  std::vector<const HypothesisFit*> from;
-  std::vector<Attempt> attempts = pair_attempts(faults, led, data, from, fits.work);
-  side_by_side(attempts.size(), data, [&](std::size_t i) {
-    const auto of = static_cast<std::size_t>(std::find(led.begin(), led.end(), from[i]) - led.begin());
-    if (ends[of]) approach(attempts[i], data, from[i], *ends[of], k::approach_iterations);
+  std::vector<Leader> leaders;
+  for (const HypothesisFit* fit : leading(fits)) leaders.push_back({fit, end_of(*fit, data, fits.work)});
+  std::vector<PairStart> pairs = pair_starts(faults, leaders, data, fits.work);
+  side_by_side(pairs.size(), data, [&](std::size_t i) {
+    const Leader& leader = *pairs[i].leader;
+    if (leader.end) approach(pairs[i].attempt, data, leader.fit, *leader.end, k::approach_iterations);
   });
-  const auto nearer = [](const Attempt& a, const Attempt& b) { return a.fit.misfit < b.fit.misfit; };
-  std::stable_sort(attempts.begin(), attempts.end(), nearer);
-  side_by_side(std::min(k::pair_finalists, attempts.size()), data,
-               [&](std::size_t i) { run(attempts[i], data, nullptr, data.settings.iterations); });
-  for (Attempt& a : attempts) {
-    fits.work.add(a.work);
-    if (a.fit.ok) fits.pairs.push_back(std::move(a.fit));
+  const auto nearer = [](auto& a, auto& b) { return a.attempt.fit.misfit < b.attempt.fit.misfit; };
+  std::stable_sort(pairs.begin(), pairs.end(), nearer);
+  side_by_side(std::min(k::pair_finalists, pairs.size()), data,
+               [&](std::size_t i) { run(pairs[i].attempt, data, nullptr, data.settings.iterations); });
+  for (PairStart& pair : pairs) {
+    fits.work.add(pair.attempt.work);
+    if (pair.attempt.fit.ok) fits.pairs.push_back(std::move(pair.attempt.fit));
   }
 }
 

@@ -13,6 +13,7 @@
 #include "fit/fast_log.h"
 #include "fit/log_data.h"
 #include "fit/tuned_state.h"
+#include "simulate/side_by_side.h"
 #include "simulate/simulate.h"
 
 namespace servodx {
@@ -260,12 +261,12 @@ std::optional<Reading> best_reading(const Log& log, Unjudgeable unjudgeable, con
     const double lag = healthy.ok ? lag_of(data, healthy) : 0;
     if (std::abs(lag) >= k::worth_a_lag) all.push_back({Misreading::late, lag, held(log, sensors)});
   }
-  std::optional<Reading> best;
-  for (Reading& each : all) {
-    each.left = left_as_read(read_as(log, each), trial);
-    if (!best || each.left < best->left) best = each;
-  }
-  return best;
+  side_by_side(static_cast<int>(all.size()), trial.threads, [&](int i, int threads) {
+    Reading& each = all[static_cast<std::size_t>(i)];
+    each.left = left_as_read(read_as(log, each), {trial.tuned, trial.rig, trial.error, threads});
+  });
+  const auto best = std::min_element(all.begin(), all.end(), [](auto& a, auto& b) { return a.left < b.left; });
+  return best == all.end() ? std::nullopt : std::optional(*best);
 }
 
 }  // namespace servodx
