@@ -248,29 +248,33 @@ Ready make_ready(const std::vector<Log>& logs, const Table& tuned, const RigFile
   return ready;
 }
 
-// What each hypothesis leaves of what moves, in the part of the log that it speaks of.
+// What hypotheses that speak of all of a log leave of what moves in it. Gives the run of health there.
+Trajectory leave_motion(const LogData& log, const std::vector<const HypothesisPrediction*>& by,
+                        const ParameterVector& base, int threads, std::vector<HypothesisResult>& results) {
+  std::vector<const ParameterVector*> candidates = {&base};
+  for (const HypothesisPrediction* e : by) candidates.push_back(&e->candidate);
+  std::vector<Trajectory> runs = references_of(log, candidates, threads);
+  for (std::size_t i = 0; i < by.size(); ++i) {
+    const double left = mean_left(motion_left(log, runs.front(), runs[i + 1]), 0);
+    for (HypothesisResult& h : results)
+      if (h.fault == by[i]->fault) h.motion_left = left;
+  }
+  return std::move(runs.front());
+}
+
+// What each hypothesis leaves of what moves, in the part of the log that it speaks of. A fault that steps in is
+// simulated from there on, as it was fitted: from the beginning it would drive the piston to where the log's never was.
 void look_at_motion(const LogData& data, const ParameterVector& base, int threads, Assessment& out) {
-  const Trajectory healthy = reference_of(data, base, threads);
+  std::vector<const HypothesisPrediction*> whole, since;
+  for (const HypothesisPrediction& e : out.explanations) (e.from > 0 ? since : whole).push_back(&e);
+  const Trajectory healthy = leave_motion(data, whole, base, threads, out.hypotheses);
+  if (!since.empty())
+    leave_motion(slice(data, since.front()->from, data.scenario.time.size()), since, base, threads, out.hypotheses);
   std::vector<MotionLeft> left = motion_left(data, healthy, healthy);
   std::erase_if(left, [&](const MotionLeft& m) {
     return std::any_of(out.broken.begin(), out.broken.end(), [&](const auto& b) { return b.signal == m.signal; });
   });
   out.others_left = mean_left(left, 0);
-  // A fault that steps in is simulated from there on, as it was fitted: from the beginning it would drive the piston to
-  // where the log's never was.
-  std::optional<LogData> since;
-  Trajectory healthy_since;
-  for (const HypothesisPrediction& e : out.explanations) {
-    if (e.from > 0 && !since) {
-      since = slice(data, e.from, data.scenario.time.size());
-      healthy_since = reference_of(*since, base, threads);
-    }
-    const LogData& part = e.from > 0 ? *since : data;
-    const Trajectory of_it = reference_of(part, e.candidate, threads);
-    const double left_by_it = mean_left(motion_left(part, e.from > 0 ? healthy_since : healthy, of_it), 0);
-    for (HypothesisResult& h : out.hypotheses)
-      if (h.fault == e.fault) h.motion_left = left_by_it;
-  }
 }
 
 const HypothesisResult& best_of(const Assessment& a) {

@@ -2,11 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
+#include <vector>
 
 #include "fit/identifiability.h"
 #include "fit/log_data.h"
 #include "simulate/scenario.h"
-#include "simulate/together.h"
+#include "simulate/simulate.h"
 
 namespace servodx {
 
@@ -34,12 +36,21 @@ std::vector<double> squares(const FitProblem& problem, const Eigen::VectorXd& re
   return square;
 }
 
-Trajectory reference_of(const LogData& log, const ParameterVector& base, int threads) {
+std::vector<Trajectory> references_of(const LogData& log, const std::vector<const ParameterVector*>& candidates,
+                                      int threads) {
   SimulateOptions options;
   options.threads = threads;
   options.wanted.fill(false);
   for (const FitChannel& c : log.channels) options.wanted[c.simulated] = true;
-  return simulate(log.scenario, base, options);
+  std::vector<Trajectory> out(candidates.size());
+  std::vector<Job> jobs;
+  for (std::size_t i = 0; i < candidates.size(); ++i) jobs.push_back({&log.scenario, candidates[i], &out[i]});
+  simulate(jobs, options);
+  return out;
+}
+
+Trajectory reference_of(const LogData& log, const ParameterVector& base, int threads) {
+  return std::move(references_of(log, {&base}, threads).front());
 }
 
 }  // namespace servodx

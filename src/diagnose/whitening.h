@@ -11,6 +11,9 @@ namespace servodx {
 
 // The trajectory at the tuned values: it says where things move, and so where the model may err, for all alike.
 Trajectory reference_of(const LogData& log, const ParameterVector& base, int threads);
+// The same of several candidates, in their order.
+std::vector<Trajectory> references_of(const LogData& log, const std::vector<const ParameterVector*>& candidates,
+                                      int threads);
 
 // `log`: its position in the problem.
 void whiten(FitProblem& problem, int log, const ErrorModel& error, const Trajectory& reference);
