@@ -59,23 +59,52 @@ void side_by_side(std::size_t count, const HypothesisData& data, const std::func
                 [&](int i) { task(static_cast<std::size_t>(i)); });
 }
 
-// Every starting severity of every fault, run once with the rest as in health; the best first.
+// What a fault's other numbers begin at.
+struct Origin {
+  HypothesisFit fit;
+  std::optional<FitEnd> end;
+};
+struct Origins {
+  const Origin& health;
+  std::optional<Origin> table;  // where health, as fitted, is no place to begin
+  const Origin& of(bool from_table) const { return from_table ? *table : health; }
+};
+
+// Health that cannot follow a log bends all that it may on the way: a fault that begins there may stay in its valley.
+bool is_bent(const HypothesisFit& health) {
+  const std::vector<double>& left = health.channel_adequacy;
+  return !left.empty() && *std::max_element(left.begin(), left.end()) > k::fault_allowance;
+}
+
+Origins origins_of(const Origin& health, const HypothesisData& data, FitWork& work) {
+  Origins out{health, {}};
+  if (!is_bent(health.fit)) return out;
+  HypothesisFit table = unfitted(data);
+  std::optional<FitEnd> end = end_of(table, data, work);
+  if (end) out.table = Origin{std::move(table), std::move(end)};
+  return out;
+}
+
+// Every starting severity of every fault, run once with the rest as each origin has it; the best first.
 std::vector<Screened> screen_starts(const std::vector<const Fault*>& faults, const HypothesisData& data,
-                                    const HypothesisFit& health, const FitEnd* end, Steps& steps) {
+                                    const Origins& origins, Steps& steps) {
   std::vector<Screened> screened;
-  for (const Fault* fault : faults)
-    for (double severity :
-         starting_severities(*fault, data.base, data.settings.null_limit, data.settings.times_drawing))
-      screened.push_back({fault, severity});
+  for (const bool from_table : {false, true})
+    for (const Fault* fault : faults)
+      for (double severity :
+           starting_severities(*fault, data.base, data.settings.null_limit, data.settings.times_drawing))
+        if (!from_table || origins.table)
+          screened.push_back({.fault = fault, .severity = severity, .from_table = from_table});
   const auto run_all = [&] {
     side_by_side(screened.size(), data, [&](std::size_t i) {
-      screen(screened[i], data, health, end);
+      const Origin& origin = origins.of(screened[i].from_table);
+      screen(screened[i], data, origin.fit, origin.end ? &*origin.end : nullptr);
       steps.done(Steps::screening * static_cast<double>(faults.size()) / static_cast<double>(screened.size()),
                  screened[i].work.simulations);
     });
     return screened;
   };
-  screened = data.settings.stages.made("screen", run_all, screened, health, end != nullptr);
+  screened = data.settings.stages.made("screen", run_all, screened, origins.health.fit, origins.health.end.has_value());
   std::stable_sort(screened.begin(), screened.end(),
                    [](const Screened& a, const Screened& b) { return a.left < b.left; });
   return screened;
@@ -88,7 +117,8 @@ std::vector<VisibleFault> visible_of(const std::vector<const Fault*>& faults, co
     for (const bool negative : {false, true}) {
       VisibleFault side{fault, {}};
       for (const Screened& s : screened)
-        if (s.fault == fault && (s.severity < 0) == negative && s.gain >= 0) side.gains.push_back({s.severity, s.gain});
+        if (!s.from_table && s.fault == fault && (s.severity < 0) == negative && s.gain >= 0)
+          side.gains.push_back({s.severity, s.gain});
       const auto size = [&](const SeverityGain& g) { return std::abs(g.severity - fault->healthy); };
       std::stable_sort(side.gains.begin(), side.gains.end(),
                        [&](const SeverityGain& a, const SeverityGain& b) { return size(a) < size(b); });
@@ -98,29 +128,33 @@ std::vector<VisibleFault> visible_of(const std::vector<const Fault*>& faults, co
 }
 
 // Of each fault the starts that screened best: one, and those that the linear model does not put hopelessly behind it.
+// From the table the best alone: what a linear model there says of the others is not worth much.
 std::vector<Attempt> best_starts(const std::vector<const Fault*>& faults, const std::vector<Screened>& screened,
                                  const HypothesisFit& health, const HypothesisData& data) {
   const double behind = k::hopeless * misfit_inflation(health.misfit, data.degrees);
   std::vector<Attempt> attempts;
-  for (const Fault* fault : faults) {
-    int begun = 0;
-    double best = 0;
-    for (const Screened& s : screened) {
-      if (s.fault != fault || begun == k::starts_kept || (begun > 0 && !(s.left < best + behind))) continue;
-      if (begun == 0) best = s.left;
-      attempts.push_back({fault, s.severity}), ++begun;
+  for (const Fault* fault : faults)
+    for (const bool from_table : {false, true}) {
+      int begun = 0;
+      double best = 0;
+      for (const Screened& s : screened) {
+        if (s.fault != fault || s.from_table != from_table || begun == (from_table ? 1 : k::starts_kept)) continue;
+        if (begun > 0 && !(s.left < best + behind)) continue;
+        if (begun == 0) best = s.left;
+        attempts.push_back({.fault = fault, .start = s.severity, .from_table = from_table}), ++begun;
+      }
     }
-  }
   return attempts;
 }
 
-// Near what health came to by the derivatives it left there; where it left none, by a few steps of its own.
-void approach_all(std::vector<Attempt>& attempts, const HypothesisData& data, const Health& health, Steps& steps) {
+// By the derivatives that are known where they begin; where there are none, by a few steps of their own.
+void approach_all(std::vector<Attempt>& attempts, const HypothesisData& data, const Origins& origins, Steps& steps) {
   side_by_side(attempts.size(), data, [&](std::size_t i) {
-    if (health.end)
-      approach(attempts[i], data, &health.attempt.fit, *health.end, k::approach_iterations);
+    const Origin& origin = origins.of(attempts[i].from_table);
+    if (origin.end)
+      approach(attempts[i], data, &origin.fit, *origin.end, k::approach_iterations);
     else
-      run(attempts[i], data, &health.attempt.fit, k::first_iterations);
+      run(attempts[i], data, &origin.fit, k::first_iterations);
     steps.done(Steps::approach, attempts[i].work.simulations);
   });
 }
@@ -385,14 +419,15 @@ HypothesisFits fit_hypotheses(const std::vector<const LogData*>& logs, const Par
   Steps steps(settings, faults.size());
   Health healthy = fit_health(data, steps);
   Attempt& health = healthy.attempt;
-  const std::vector<Screened> screened =
-      screen_starts(faults, data, health.fit, healthy.end ? &*healthy.end : nullptr, steps);
+  const Origin as_fitted{health.fit, healthy.end};
+  const Origins origins = origins_of(as_fitted, data, health.work);
+  const std::vector<Screened> screened = screen_starts(faults, data, origins, steps);
   std::vector<Attempt> attempts =
       settings.genetic ? sub_groups(faults, screened) : best_starts(faults, screened, health.fit, data);
   if (settings.genetic)
     evolve_all(attempts, data, health.fit, *settings.genetic, steps);
   else
-    approach_all(attempts, data, healthy, steps);
+    approach_all(attempts, data, origins, steps);
   attempts = best_of_each(std::move(attempts));
   run_hopeful(attempts, data, health.fit, steps);
   finish_leaders(attempts, data, health.fit, settings.iterations);

@@ -293,6 +293,14 @@ void through_checkpoint(Attempt& a, const HypothesisData& data, std::string_view
   a.fit.free = free_of(a, data);
 }
 
+HypothesisFit unfitted(const HypothesisData& data) {
+  Attempt health;
+  const FitProblem problem = problem_of(health, data);
+  health.fit.point = problem.start();
+  health.fit.ok = true;
+  return std::move(health.fit);
+}
+
 std::optional<FitEnd> end_of(const HypothesisFit& fit, const HypothesisData& data, FitWork& work) {
   if (!fit.ok) return {};
   FitProblem problem = problem_of(data, fit.free);
