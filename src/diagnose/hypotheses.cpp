@@ -59,52 +59,29 @@ void side_by_side(std::size_t count, const HypothesisData& data, const std::func
                 [&](int i) { task(static_cast<std::size_t>(i)); });
 }
 
-// What a fault's other numbers begin at.
+// What a fault's other numbers begin at: health as it was fitted, or as the table has it.
 struct Origin {
   HypothesisFit fit;
-  std::optional<FitEnd> end;
-};
-struct Origins {
-  const Origin& health;
-  std::optional<Origin> table;  // where health, as fitted, is no place to begin
-  const Origin& of(bool from_table) const { return from_table ? *table : health; }
+  std::optional<FitEnd> end;  // none where that fit failed
 };
 
-// Health that cannot follow a log bends all that it may on the way: a fault that begins there may stay in its valley.
-bool is_bent(const HypothesisFit& health) {
-  const std::vector<double>& left = health.channel_adequacy;
-  return !left.empty() && *std::max_element(left.begin(), left.end()) > k::fault_allowance;
-}
-
-Origins origins_of(const Origin& health, const HypothesisData& data, FitWork& work) {
-  Origins out{health, {}};
-  if (!is_bent(health.fit)) return out;
-  HypothesisFit table = unfitted(data);
-  std::optional<FitEnd> end = end_of(table, data, work);
-  if (end) out.table = Origin{std::move(table), std::move(end)};
-  return out;
-}
-
-// Every starting severity of every fault, run once with the rest as each origin has it; the best first.
+// Every starting severity of every fault, run once with the rest as in its origin; the best first.
 std::vector<Screened> screen_starts(const std::vector<const Fault*>& faults, const HypothesisData& data,
-                                    const Origins& origins, Steps& steps) {
+                                    const Origin& origin, Steps& steps) {
   std::vector<Screened> screened;
-  for (const bool from_table : {false, true})
-    for (const Fault* fault : faults)
-      for (double severity :
-           starting_severities(*fault, data.base, data.settings.null_limit, data.settings.times_drawing))
-        if (!from_table || origins.table)
-          screened.push_back({.fault = fault, .severity = severity, .from_table = from_table});
+  for (const Fault* fault : faults)
+    for (double severity :
+         starting_severities(*fault, data.base, data.settings.null_limit, data.settings.times_drawing))
+      screened.push_back({fault, severity});
   const auto run_all = [&] {
     side_by_side(screened.size(), data, [&](std::size_t i) {
-      const Origin& origin = origins.of(screened[i].from_table);
       screen(screened[i], data, origin.fit, origin.end ? &*origin.end : nullptr);
       steps.done(Steps::screening * static_cast<double>(faults.size()) / static_cast<double>(screened.size()),
                  screened[i].work.simulations);
     });
     return screened;
   };
-  screened = data.settings.stages.made("screen", run_all, screened, origins.health.fit, origins.health.end.has_value());
+  screened = data.settings.stages.made("screen", run_all, screened, origin.fit, origin.end.has_value());
   std::stable_sort(screened.begin(), screened.end(),
                    [](const Screened& a, const Screened& b) { return a.left < b.left; });
   return screened;
@@ -117,8 +94,7 @@ std::vector<VisibleFault> visible_of(const std::vector<const Fault*>& faults, co
     for (const bool negative : {false, true}) {
       VisibleFault side{fault, {}};
       for (const Screened& s : screened)
-        if (!s.from_table && s.fault == fault && (s.severity < 0) == negative && s.gain >= 0)
-          side.gains.push_back({s.severity, s.gain});
+        if (s.fault == fault && (s.severity < 0) == negative && s.gain >= 0) side.gains.push_back({s.severity, s.gain});
       const auto size = [&](const SeverityGain& g) { return std::abs(g.severity - fault->healthy); };
       std::stable_sort(side.gains.begin(), side.gains.end(),
                        [&](const SeverityGain& a, const SeverityGain& b) { return size(a) < size(b); });
@@ -128,29 +104,25 @@ std::vector<VisibleFault> visible_of(const std::vector<const Fault*>& faults, co
 }
 
 // Of each fault the starts that screened best: one, and those that the linear model does not put hopelessly behind it.
-// From the table the best alone: what a linear model there says of the others is not worth much.
 std::vector<Attempt> best_starts(const std::vector<const Fault*>& faults, const std::vector<Screened>& screened,
                                  const HypothesisFit& health, const HypothesisData& data) {
   const double behind = k::hopeless * misfit_inflation(health.misfit, data.degrees);
   std::vector<Attempt> attempts;
-  for (const Fault* fault : faults)
-    for (const bool from_table : {false, true}) {
-      int begun = 0;
-      double best = 0;
-      for (const Screened& s : screened) {
-        if (s.fault != fault || s.from_table != from_table || begun == (from_table ? 1 : k::starts_kept)) continue;
-        if (begun > 0 && !(s.left < best + behind)) continue;
-        if (begun == 0) best = s.left;
-        attempts.push_back({.fault = fault, .start = s.severity, .from_table = from_table}), ++begun;
-      }
+  for (const Fault* fault : faults) {
+    int begun = 0;
+    double best = 0;
+    for (const Screened& s : screened) {
+      if (s.fault != fault || begun == k::starts_kept || (begun > 0 && !(s.left < best + behind))) continue;
+      if (begun == 0) best = s.left;
+      attempts.push_back({fault, s.severity}), ++begun;
     }
+  }
   return attempts;
 }
 
-// By the derivatives that are known where they begin; where there are none, by a few steps of their own.
-void approach_all(std::vector<Attempt>& attempts, const HypothesisData& data, const Origins& origins, Steps& steps) {
+// Near their origin by its derivatives; where it has none, by a few steps of their own.
+void approach_all(std::vector<Attempt>& attempts, const HypothesisData& data, const Origin& origin, Steps& steps) {
   side_by_side(attempts.size(), data, [&](std::size_t i) {
-    const Origin& origin = origins.of(attempts[i].from_table);
     if (origin.end)
       approach(attempts[i], data, &origin.fit, *origin.end, k::approach_iterations);
     else
@@ -238,12 +210,12 @@ std::vector<Attempt> best_of_each(std::vector<Attempt> attempts) {
   return best;
 }
 
-// The better of health and of one begun elsewhere, with the work of both.
-void take_better(Attempt& health, Attempt other) {
-  FitWork work = health.work;
+// The better of an attempt and of one begun elsewhere, with the work of both.
+void take_better(Attempt& attempt, Attempt other) {
+  FitWork work = attempt.work;
   work.add(other.work);
-  if (other.fit.ok && other.fit.misfit < health.fit.misfit) health = std::move(other);
-  health.work = work;
+  if (other.fit.ok && other.fit.misfit < attempt.fit.misfit) attempt = std::move(other);
+  attempt.work = work;
 }
 
 // Health begun elsewhere too, by the derivatives that its end so far left, a run a step. Where that ends lower by more
@@ -292,6 +264,47 @@ void begin_health_again(Health& health, const std::vector<Attempt>& faults, cons
       *std::min_element(better.begin(), better.end(), [](auto* a, auto* b) { return a->misfit < b->misfit; });
   begin_elsewhere(health, std::vector<Attempt>(better.size()), better, best, data);
   steps.done(Steps::again * static_cast<double>(faults.size()), health.attempt.work.simulations - simulations);
+}
+
+// The fit of each fault from an origin, in the order of the list.
+std::vector<Attempt> fit_from(const Origin& origin, const std::vector<const Fault*>& faults,
+                              const std::vector<Screened>& screened, const HypothesisFit& health,
+                              const HypothesisData& data, Steps& steps) {
+  std::vector<Attempt> attempts =
+      data.settings.genetic ? sub_groups(faults, screened) : best_starts(faults, screened, health, data);
+  if (data.settings.genetic)
+    evolve_all(attempts, data, health, *data.settings.genetic, steps);
+  else
+    approach_all(attempts, data, origin, steps);
+  attempts = best_of_each(std::move(attempts));
+  run_hopeful(attempts, data, health, steps);
+  finish_leaders(attempts, data, health, data.settings.iterations);
+  return attempts;
+}
+
+// A hypothesis that cannot follow a log bends all that it may on the way.
+bool is_bent(const HypothesisFit& fit) {
+  const std::vector<double>& left = fit.channel_adequacy;
+  return !left.empty() && *std::max_element(left.begin(), left.end()) > k::fault_allowance;
+}
+
+// A fault that begins where bent health ended may stay in that valley. Where none leaves the log as a fault may, each
+// is fitted from the table's values too.
+void begin_at_table(std::vector<Attempt>& attempts, const std::vector<const Fault*>& faults, Attempt& health,
+                    const HypothesisData& data, Steps& steps) {
+  const auto nearer = [](const Attempt& a, const Attempt& b) { return a.fit.misfit < b.fit.misfit; };
+  const auto best = std::min_element(attempts.begin(), attempts.end(), nearer);
+  if (data.settings.genetic || best == attempts.end() || !is_bent(health.fit) || !is_bent(best->fit)) return;
+  Origin table{unfitted(data), {}};
+  table.end = end_of(table.fit, data, health.work);
+  if (!table.end) return;
+  const std::vector<Screened> screened = screen_starts(faults, data, table, steps);
+  for (const Screened& s : screened) health.work.add(s.work);
+  for (Attempt& other : fit_from(table, faults, screened, health.fit, data, steps)) {
+    const auto same = [&](const Attempt& a) { return a.fault == other.fault; };
+    if (const auto it = std::find_if(attempts.begin(), attempts.end(), same); it != attempts.end())
+      take_better(*it, std::move(other));
+  }
 }
 
 // The single faults that a second one is tried beside: the likeliest, where each gains beyond doubt.
@@ -420,17 +433,9 @@ HypothesisFits fit_hypotheses(const std::vector<const LogData*>& logs, const Par
   Health healthy = fit_health(data, steps);
   Attempt& health = healthy.attempt;
   const Origin as_fitted{health.fit, healthy.end};
-  const Origins origins = origins_of(as_fitted, data, health.work);
-  const std::vector<Screened> screened = screen_starts(faults, data, origins, steps);
-  std::vector<Attempt> attempts =
-      settings.genetic ? sub_groups(faults, screened) : best_starts(faults, screened, health.fit, data);
-  if (settings.genetic)
-    evolve_all(attempts, data, health.fit, *settings.genetic, steps);
-  else
-    approach_all(attempts, data, origins, steps);
-  attempts = best_of_each(std::move(attempts));
-  run_hopeful(attempts, data, health.fit, steps);
-  finish_leaders(attempts, data, health.fit, settings.iterations);
+  const std::vector<Screened> screened = screen_starts(faults, data, as_fitted, steps);
+  std::vector<Attempt> attempts = fit_from(as_fitted, faults, screened, health.fit, data, steps);
+  begin_at_table(attempts, faults, health, data, steps);
   begin_health_again(healthy, attempts, data, steps);
 
   HypothesisFits out;

@@ -40,8 +40,7 @@ struct Attempt {
   double start = 0;  // of the severity
   const Fault* beside = nullptr;
   double start_beside = 0;
-  int scattered = 0;        // of health: which of the starts around the usual one; 0: that one
-  bool from_table = false;  // the rest begins as the table has it, and not where health ended
+  int scattered = 0;  // of health: which of the starts around the usual one; 0: that one
   HypothesisFit fit = {};
   std::vector<double> square =
       {};  // a sample of the first log: mean over the channels of the squared whitened residual
@@ -83,7 +82,6 @@ struct Screened {
   double left = 1e300;                  // of it, once the rest moves as its linear model there says
   const Fault* beside = nullptr;        // then `severity` is of this one
   double gain = -1;                     // over health, were this fault there (visible.h); negative: not known
-  bool from_table = false;              // as in an Attempt
   FitWork work = {};
 };
 // `end` null: nothing moves, and it is not asked how visible the fault is.

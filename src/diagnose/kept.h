@@ -37,8 +37,8 @@ inline auto fields(HypothesisFit& f) {
                   f.channel_rms, f.stops, f.promised);
 }
 inline auto fields(Screened& s) {
-  auto& [fault, severity, misfit, left, beside, gain, from_table, work] = s;
-  return std::tie(fault, severity, misfit, left, beside, gain, from_table, work);
+  auto& [fault, severity, misfit, left, beside, gain, work] = s;
+  return std::tie(fault, severity, misfit, left, beside, gain, work);
 }
 
 // What an attempt has come to.
