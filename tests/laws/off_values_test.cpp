@@ -8,6 +8,7 @@
 #include <cstring>
 
 #include "base/random.h"
+#include "effects/line_inertia.h"
 #include "effects/registry.h"
 #include "effects/row_effects.h"
 #include "effects/unexplained.h"
