@@ -23,7 +23,7 @@ constexpr std::size_t least_followers = 25;
 std::unique_ptr<NearRuns> near_runs(const NearJobs& near, const SimulateOptions& options) {
   if (near.jobs.size() < least_followers || near.jobs[0].scenario->ports != Ports::actuator) return nullptr;
   const NearKernels& kernels = best_kernels().near;
-  Need need = need_of(*near.base);
+  Need need = need_of(*near.base);  // of what followers have, the larger holds both
   for (const Job& job : near.jobs) need = std::max(need, need_of(*job.candidate));
   const NearKernels::Make make = kernels[need];
   if (!make) return nullptr;

@@ -24,6 +24,7 @@
 #include "parameters/table.h"
 #include "servodx/instruction_set.h"
 #include "shipped_data.h"
+#include "simulate/choose_kernel.h"
 #include "simulate/kernels.h"
 #include "simulate/pack_run.h"
 #include "simulate/scenario.h"
@@ -284,7 +285,7 @@ TEST(Batch, EveryInstructionSetComputesWhatPlainDoublesDo) {
   for (ParameterVector& one : v) one[effect_row<Unexplained>(1)] = Unexplained::piston_velocity;  // a pack, a curve
   const LogData log = pieces().front();
   for (const auto& [k, limit] : kernels)
-    for (const Need need : {Need::extended, Need::corrected}) {
+    for (const Need need : {Need::common, Need::extended, Need::lined, Need::corrected}) {
       if (!k[need].run) continue;  // floats run no curve
       std::vector<Trajectory> t(static_cast<std::size_t>(k.width));
       std::vector<const ParameterVector*> in;
@@ -300,6 +301,30 @@ TEST(Batch, EveryInstructionSetComputesWhatPlainDoublesDo) {
       EXPECT_LT(worst, limit) << k.name;
       std::printf("%s: %d lanes compared, worst %.1e of a signal's range\n", k.name, k.width, worst);
     }
+}
+
+// What the common kernel leaves out is told by the choice of the kernel, and changes nothing where it is off.
+TEST(Batch, AKernelWithoutTheRareEffectsRunsAsTheOneThatHasThemOff) {
+  const LogData log = pieces().front();
+  ParameterVector v = nominal_candidate();
+  const auto set = [](ParameterVector& of, const EffectInfo& e, double EffectParameter::*value) {
+    for (std::size_t j = 0; j < e.parameters.size(); ++j) of[e.first + static_cast<int>(j)] = e.parameters[j].*value;
+  };
+  for (const EffectInfo& e : effect_list()) set(v, e, e.rare ? &EffectParameter::off : &EffectParameter::start);
+  EXPECT_EQ(need_of(v), Need::common);
+  const Trajectory common = run(kernels_scalar()[Need::common].run, log.scenario, v);
+  const Trajectory all = run(kernels_scalar()[Need::extended].run, log.scenario, v);
+  ASSERT_TRUE(common.ok && all.ok);
+  EXPECT_LT(apart(common, all), 1e-7);
+  int rare = 0;
+  for (const EffectInfo& e : effect_list()) {
+    if (!e.rare || e.first >= effect_row<LineInertia>(0)) continue;  // those have kernels of their own
+    ParameterVector on = v;
+    set(on, e, &EffectParameter::start);
+    EXPECT_EQ(need_of(on), Need::extended) << e.name;
+    ++rare;
+  }
+  EXPECT_GE(rare, 1);
 }
 
 TEST(Batch, FailingNeighbourLeavesALaneAlone) {
