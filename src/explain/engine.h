@@ -62,9 +62,10 @@ struct EngineOptions {
   // and a cause need not be news by itself. `round`: causes accepted so far.
   std::function<double(const ExplainedFit&, LeftOf what, int round)> p_left;
   double level = explain_constants::alarm_by_mark;  // something is new below this; both questions share it
-  // Chance that some cause removes as large a share of what healthy data miss, held out; empty: not asked. Then a cause
-  // that is no news by its size is news by its share, where this lies below a level of its own.
-  std::function<double(double share)> p_share;
+  // Chance that some cause removes a share of what healthy data miss, held out, that is as far above what is usual of it;
+  // empty: not asked. Then a cause that is no news by its size is news by its share, where this lies below a level of
+  // its own.
+  std::function<double(const Cause&, double share)> p_share;
   double level_of_shares = 0;
   double least_share = 0;                   // of the held-out misfit: a cause that removes less is refused
   std::function<bool(const Cause&)> among;  // causes to look at; empty: all

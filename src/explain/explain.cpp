@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <string>
 
 #include "base/error.h"
 #include "evidence/posterior.h"
@@ -19,6 +20,7 @@
 #include "explain/hold_out.h"
 #include "explain/inquiry.h"
 #include "explain/kept.h"
+#include "explain/share_null.h"
 #include "explain/subject.h"
 #include "explain/verdict.h"
 #include "servodx/note.h"
@@ -146,16 +148,19 @@ const CandidateResult* first_of(const Inquiry& q, const Answer& answer) {
 
 std::optional<ExplainSuspicion> suspicion_of(const Inquiry& q, const Answer& answer,
                                              const std::vector<ExplainedCause>& standing) {
-  const CandidateResult* first = q.test() && q.test()->logs_with_shares() > 0 ? first_of(q, answer) : nullptr;
-  if (!first || q.test()->share(first->share.value) > explain_constants::worth_saying) return {};
+  const CandidateResult* first = q.test() && q.test()->shares().logs() > 0 ? first_of(q, answer) : nullptr;
+  if (!first) return {};
   const Cause& c = q.cause(first->cause);
+  const ShareNull& healthy = q.test()->shares();
+  const double chance = healthy.chance(c.effect, first->share.value);
+  if (chance > explain_constants::worth_saying) return {};
   ExplainSuspicion out{c.effect, c.where, {}, first->share};
   for (const ExplainedCause& s : standing)
     if (s.effect == c.effect && s.where == c.where && !s.parameters.empty()) out.size = s.parameters.front();
-  out.rate = std::min(1.0, q.test()->share(first->share.value) / explain_constants::of_shares);
+  out.rate = std::min(1.0, chance / explain_constants::of_shares);
   out.of_sensor = is_of_sensor(c);
-  out.logs = q.test()->logs_with_shares();
-  out.logs_needed = q.test()->logs_needed(first->share.value, q.options().level);
+  out.logs = healthy.logs();
+  out.logs_needed = healthy.logs_needed(c.effect, first->share.value, q.options().level);
   return out;
 }
 
@@ -163,7 +168,8 @@ std::optional<ExplainSuspicion> suspicion_of(const Inquiry& q, const Answer& ans
 double chance_of_answer(const Inquiry& q, const Answer& answer, const EndEvidence& evidence) {
   double least = evidence.chance_left;
   const auto ask = [&](const CandidateResult& c) {
-    least = std::min({least, c.p_new, c.share.value > 0 ? q.test()->share(c.share.value) : 1.0});
+    const std::string& effect = q.cause(c.cause).effect;
+    least = std::min({least, c.p_new, c.share.value > 0 ? q.test()->shares().chance(effect, c.share.value) : 1.0});
   };
   if (const CandidateResult* first = first_of(q, answer)) ask(*first);
   for (const CauseResult& r : answer.found.causes) ask(answer.found.candidates[static_cast<std::size_t>(r.cause)]);

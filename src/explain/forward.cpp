@@ -186,7 +186,7 @@ bool is_named(const Cause& c) { return !c.curve && !is_rare(c); }
 // Healthy data are asked the same of the causes that have a name.
 bool is_news_by_share(const Subject& subject, const EngineOptions& options, const Round& round, const Trial& t) {
   return options.p_share && is_named(subject.causes()[at(t.cause())]) &&
-         is_news_by_share(options.p_share(t.share.value), round.whole);
+         is_news_by_share(options.p_share(subject.causes()[at(t.cause())], t.share.value), round.whole);
 }
 
 JudgedEvidence judged_evidence(const Subject& subject, const EngineOptions& options, const Round& round,
@@ -285,7 +285,7 @@ std::vector<int> in_place_of(const Subject& subject, const EngineOptions& option
     o.both_named = is_named(its) && is_named(subject.causes()[at(t.cause())]);
     o.other_is_new = t.is_new;
     if (options.p_share)
-      o.p_best_share = options.p_share(heldout_share(subject, its, t.fit, best.fit, options.seed).value);
+      o.p_best_share = options.p_share(its, heldout_share(subject, its, t.fit, best.fit, options.seed).value);
     if (does_as_well(o)) out.push_back(t.cause());
   }
   return out;

@@ -103,7 +103,7 @@ struct InItsPlace {
   double best_bic = 0, other_bic = 0;
   bool both_named = false;  // neither is a bare row or a curve: healthy data were asked about such as they are
   bool other_is_new = false;
-  double p_best_share = 0;  // chance that some cause removes such a share of a healthy log; 0: none was asked
+  double p_best_share = 0;  // chance that a healthy log shows such a share of some cause; 0: none was asked
 };
 // Whether it does as well in the best one's place: within the interval of the difference, or at odds below twenty to
 // one. The odds are those of the noise and, where the other is news too, of what the model itself has wrong: a name

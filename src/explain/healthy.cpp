@@ -12,7 +12,6 @@
 #include "base/student.h"
 #include "base/tiny.h"
 #include "evidence/constants.h"
-#include "evidence/excess_trend.h"
 #include "evidence/log_scatter.h"
 #include "explain/block_replay.h"
 #include "explain/cause_score.h"
@@ -23,6 +22,7 @@
 #include "explain/kept.h"
 #include "explain/learnt_curves.h"
 #include "explain/score.h"
+#include "explain/share_null.h"
 #include "explain/subject.h"
 #include "explain/valve.h"
 #include "optimise/unit_cube.h"
@@ -337,32 +337,24 @@ HealthyReference of_causes(const HealthyReference& reference, const Subject& sub
 
 namespace {
 
-// Misfits are ratios: what removes nine tenths and then nine tenths of the rest is twice as much. [-]
-double excess_of(double share) { return -std::log(std::max(explain_constants::all_but, 1 - share)); }
-
-std::vector<ExcessAt> best_shares(const HealthyReference& reference) {
-  std::vector<ExcessAt> out;
+std::vector<SharesOfLog> shares_of(const HealthyReference& reference) {
+  std::vector<SharesOfLog> out;
   for (const HealthyLog& l : reference.logs) {
     if (!l.has_shares || l.sets_no_share) continue;
-    double best = 0;
-    for (const HealthyShare& s : l.shares) best = std::max(best, s.share);
-    out.push_back({excess_of(best), l.scores.empty() ? std::nan("") : l.scores.front().thickness});
+    SharesOfLog& of = out.emplace_back();
+    of.thickness = l.scores.empty() ? std::nan("") : l.scores.front().thickness;
+    for (const HealthyShare& s : l.shares) {
+      double& largest = of.of_effect[s.effect];
+      largest = std::max(largest, s.share);
+    }
   }
   return out;
 }
 
 }  // namespace
 
-HealthyTest::ShareLaw HealthyTest::share_law(const HealthyReference& reference, double thickness) {
-  const std::vector<ExcessAt> best = best_shares(reference);
-  const ExcessTrend trend(std::isfinite(thickness) ? best : std::vector<ExcessAt>());
-  std::vector<double> over_their_scale;
-  for (const auto& [excess, at] : best) over_their_scale.push_back(excess / trend.scale(at));
-  return {trend.scale(thickness), {over_their_scale, {explain_constants::usual_share, explain_constants::usual_logs}}};
-}
-
 HealthyTest::HealthyTest(const HealthyReference& reference, double thickness)
-    : reference_(reference), shares_(share_law(reference, thickness)) {
+    : reference_(reference), shares_(shares_of(reference), thickness) {
   const std::size_t n = reference.logs.size();
   for (std::size_t i = 0; i < n; ++i)
     for (const HealthyScore& s : reference.logs[i].scores) {
@@ -465,12 +457,6 @@ double chance_above(const std::vector<double>& healthy, double value) {
 }
 
 }  // namespace
-
-double HealthyTest::share(double of_misfit) const { return shares_.law.chance(excess_of(of_misfit) / shares_.scale); }
-
-int HealthyTest::logs_needed(double share, double asked) const {
-  return shares_.law.logs_needed(excess_of(share) / shares_.scale, asked, explain_constants::of_shares);
-}
 
 double HealthyTest::miss(const Miss& part) const {
   std::vector<double> healthy;

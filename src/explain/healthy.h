@@ -19,10 +19,10 @@
 
 #include "base/stages.h"
 #include "evidence/conditions.h"
-#include "evidence/tail_law.h"
 #include "explain/blocks.h"
 #include "explain/cause_score.h"
 #include "explain/engine.h"
+#include "explain/share_null.h"
 #include "explain/subject.h"
 #include "explain/valve.h"
 #include "optimise/unit_cube.h"
@@ -116,11 +116,8 @@ class HealthyTest {
   double spread(const HealthyScore& of, std::size_t probe) const;
   // Chance that a part misses as much in a healthy log; 1 where fewer than three speak of it.
   double miss(const Miss& part) const;
-  // Chance that some cause removes such a share of a healthy log's held-out misfit.
-  double share(double of_misfit) const;
-  int logs_with_shares() const { return shares_.law.logs(); }
-  // Healthy logs that it takes until such a share is news at the rate they can promise (TailLaw::logs_needed).
-  int logs_needed(double share, double asked) const;
+  // Of shares of the held-out misfit.
+  const ShareNull& shares() const { return shares_; }
   // That any of these parts does, by Bonferroni.
   double any(const std::vector<Miss>& parts) const;
 
@@ -129,17 +126,12 @@ class HealthyTest {
     std::vector<const HealthyScore*> score;  // [healthy log] null: it does not speak of the cause
     std::vector<double> surprise;            // [healthy log] -ln of its chance by Student's law beside the others
   };
-  struct ShareLaw {
-    double scale;  // mean excess in oil like the suspects' over that of all healthy logs
-    TailLaw law;   // of the healthy logs, each over the scale of its own oil
-  };
-  static ShareLaw share_law(const HealthyReference& reference, double thickness);
   const OfCause* of(const HealthyScore& cause) const;
   double by_law(const OfCause& cause, const std::vector<HealthyScore>& logs, int left_out) const;
   double believed(const OfCause& cause, double surprise, int left_out, double prior) const;
   const HealthyReference& reference_;
   std::map<std::pair<std::string, std::string>, OfCause> causes_;
-  ShareLaw shares_;
+  ShareNull shares_;
   std::vector<double> smallest_;  // [healthy log] of its chances beside the others
 };
 

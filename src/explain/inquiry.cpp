@@ -93,8 +93,8 @@ EngineOptions Inquiry::engine_options() const {
     o.least_share = explain_constants::least_worth;
     return o;
   }
-  if (test_->logs_with_shares() > 0) {
-    o.p_share = [this](double share) { return test_->share(share); };
+  if (test_->shares().logs() > 0) {
+    o.p_share = [this](const Cause& cause, double share) { return test_->shares().chance(cause.effect, share); };
     o.level_of_shares = rate_of_question(options_.level, healthy_logs_, explain_constants::of_shares);
     o.level = rate_of_question(options_.level, healthy_logs_, 1 - explain_constants::of_shares);
   }

@@ -4,9 +4,12 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <string>
 
 #include "base/random.h"
 #include "base/student.h"
+#include "evidence/tail_law.h"
+#include "explain/constants.h"
 
 namespace servodx {
 namespace {
@@ -214,12 +217,13 @@ TEST(Healthy, AShareOfTheMisfitIsJudgedInTheSuspectsOil) {
     HealthyLog log;
     log.adequacy = 1;
     log.scores.push_back({"cause", "here", {{0, 1}}, 0, 1, thick[i]});
-    log.shares.push_back({"cause", "here", share[i], share[i], 1}), log.has_shares = true;
+    log.shares.push_back({"cause " + std::to_string(i), "here", share[i], share[i], 1}), log.has_shares = true;
     reference.logs.push_back(log);
   }
-  EXPECT_LT(HealthyTest(reference, 0.0).share(0.5), 0.01);
-  EXPECT_GT(HealthyTest(reference, 1.7).share(0.5), 0.1);
-  EXPECT_GE(HealthyTest(reference).share(0.5), 2.0 / 9) << "without a temperature all logs are alike";
+  const double rate = rate_of_question(0, 8, explain_constants::of_shares);
+  EXPECT_LE(HealthyTest(reference, 0.0).shares().chance("another", 0.5), rate);
+  EXPECT_GT(HealthyTest(reference, 1.7).shares().chance("another", 0.5), rate);
+  EXPECT_GE(HealthyTest(reference).shares().chance("another", 0.5), 2.0 / 9) << "without a temperature all logs are alike";
 }
 
 TEST(Healthy, ALogThatSetsNoShareStillTellsHowSizesScatterAndWhatIsLeft) {
@@ -234,8 +238,8 @@ TEST(Healthy, ALogThatSetsNoShareStillTellsHowSizesScatterAndWhatIsLeft) {
   HealthyReference marked = reference;
   for (HealthyLog& log : marked.logs) log.sets_no_share = log.shares.front().share > 0.5;
   const HealthyTest all(reference), without(marked);
-  EXPECT_GE(all.share(0.5), 6.0 / 13);
-  EXPECT_LT(without.share(0.5), 0.02);
+  EXPECT_GE(all.shares().chance("cause", 0.5), 6.0 / 13);
+  EXPECT_LE(without.shares().chance("cause", 0.5), rate_of_question(0, 12, explain_constants::of_shares));
   EXPECT_EQ(without.miss({"flow", 3}), all.miss({"flow", 3}));
   const HealthyScore three{"cause", "here", {{3, 1}}, 0};
   EXPECT_EQ(without.alone({three}), all.alone({three}));

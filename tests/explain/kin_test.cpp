@@ -96,7 +96,7 @@ TEST(Kin, ASuspectThatFindsItsAirIsJudgedBesideLogsThatFindTheirs) {
   healthy.logs.front().air = most_own_air;
   const ExplainOptions options;
   const Inquiry inquiry({r.log}, r.table, r.rig, &healthy, options);
-  EXPECT_EQ(inquiry.test()->logs_with_shares(), 4);
+  EXPECT_EQ(inquiry.test()->shares().logs(), 4);
 }
 
 TEST(Kin, RepeatsAreOneProgrammeWhateverTheirOil) {
