@@ -46,7 +46,7 @@ TuneScope scope_of(const std::vector<Log>& logs, const Table& table, const Rig& 
   options.validate();
   door::require_samples(logs, rig);
   TuneScope scope = scope_of(logs, table, rig, scope_options(table, options));
-  hold_to_sheet(scope.shared, scope.facts, {});
+  hold_to_sheet(scope.shared, scope.table, scope.facts, {});
   return scope;
 }
 

@@ -61,17 +61,17 @@ constexpr Drawing drawings[] = {{row::hydraulic_amplifier_gain, "valve.nozzle_di
                                 {row::nozzle_gap, "valve.nozzle_gap", 0.08},
                                 {row::radial_clearance, "valve.radial_clearance", 0.25}};
 
-// What no drawing states and a valve's kind says, one standard deviation of its logarithm. The armature's stiffness
-// follows from the valve's lag, of which driver and motor have a part; current amplifiers have 300 to 1000 Hz; of a
-// friction a factor of 2.5, as a threshold is stated as the most that a maker delivers.
+// What no drawing states and a valve's kind says, one standard deviation of its logarithm. Current amplifiers have 300
+// to 1000 Hz; of a friction a factor of 2.5, as a threshold is stated as the most that a maker delivers.
 struct Likely {
   int row;
-  const char* fact;  // that its nominal follows from; null: its kind alone
   double spread;
 };
-constexpr Likely likely[] = {{row::flapper_stiffness, "valve.phase_lag_90_frequency", 0.4},
-                             {row::driver_bandwidth, nullptr, 0.6},
-                             {row::spool_friction, nullptr, 0.9}};
+constexpr Likely likely[] = {{row::driver_bandwidth, 0.6}, {row::spool_friction, 0.9}};
+
+// The gain of the loop K_v, one standard deviation of its logarithm: it follows from the valve's lag, of which driver
+// and motor have a part, and slewing where the amplitude is large.
+constexpr double loop_gain = 0.4;
 
 // One standard deviation of what passes the piston at full supply, of the rated flow. Seals pass a few drops,
 // hydrostatic bearings up to two per cent. Where the load is light, a leak and a slower valve move the piston alike,
@@ -99,7 +99,8 @@ std::vector<FreeValue> shared_values(const Table& table) {
   return out;
 }
 
-void hold_to_sheet(std::vector<FreeValue>& shared, const RigFile& rig, const std::map<std::string, double>& asked) {
+void hold_to_sheet(std::vector<FreeValue>& shared, const Table& table, const RigFile& rig,
+                   const std::map<std::string, double>& asked) {
   // To so much of the row's range, in its logarithm or not.
   const auto hold = [&](int row, double spread, double widest) {
     for (FreeValue& f : shared)
@@ -108,8 +109,12 @@ void hold_to_sheet(std::vector<FreeValue>& shared, const RigFile& rig, const std
   };
   for (const Drawing& d : drawings)
     if (rig.fact(d.fact)) hold(d.row, d.tolerance, 1);
-  for (const Likely& l : likely)
-    if (!l.fact || rig.fact(l.fact)) hold(l.row, l.spread, half_of_range);
+  for (const Likely& l : likely) hold(l.row, l.spread, half_of_range);
+  if (rig.fact("valve.phase_lag_90_frequency")) {
+    // K_v is as 1 / (k_f + k_w).
+    const double soft = table[row::feedback_wire_stiffness].nominal / table[row::flapper_stiffness].nominal;
+    hold(row::flapper_stiffness, loop_gain * (1 + soft), half_of_range);
+  }
   const auto flow = rig.fact("valve.rated_flow"), supply = rig.fact("supply.pressure");
   if (flow && supply) hold(row::cross_piston_leakage, piston_leak * *flow / *supply, half_of_range);
 }

@@ -25,7 +25,8 @@ std::vector<FreeValue> shared_values(const Table& table);
 // oil end anywhere along a valley, and a plugged nozzle or a lost wire would be one of another valve. So is the
 // piston's leak, which under a light load moves the piston as a slower valve does. A row that a prior is `asked` for
 // keeps it.
-void hold_to_sheet(std::vector<FreeValue>& shared, const RigFile& rig, const std::map<std::string, double>& asked);
+void hold_to_sheet(std::vector<FreeValue>& shared, const Table& table, const RigFile& rig,
+                   const std::map<std::string, double>& asked);
 
 // Whether the rig file states what the width of the ports follows from.
 bool states_width(const RigFile& rig);

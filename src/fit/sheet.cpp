@@ -104,7 +104,7 @@ std::vector<FreeValue> free_rows(Table table, const RigFile& rig) {
     if (std::find(fitted_rows.begin(), fitted_rows.end(), static_cast<int>(k)) == fitted_rows.end())
       table.rows[k].estimate = false;
   std::vector<FreeValue> free = shared_values(table);
-  hold_to_sheet(free, rig, {});
+  hold_to_sheet(free, table, rig, {});
   return free;
 }
 

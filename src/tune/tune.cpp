@@ -135,7 +135,7 @@ TuneResult tune_table(const std::vector<Log>& logs, const Table& nominal, const 
   watch.kept = stages_of_tune(logs, nominal, rig, options);
   TuneScope scope = scope_of(logs, nominal, rig, options);
   std::vector<ScreenedRow> screened = screen_rows(scope, watch);
-  hold_to_sheet(scope.shared, scope.facts, options.priors);
+  hold_to_sheet(scope.shared, scope.table, scope.facts, options.priors);
 
   const TuneScope seen = scope.seen(options.heldout);
   FitProblem fit = scope.problem(), part = seen.problem();

@@ -223,7 +223,8 @@ TEST(Healthy, AShareOfTheMisfitIsJudgedInTheSuspectsOil) {
   const double rate = rate_of_question(0, 8, explain_constants::of_shares);
   EXPECT_LE(HealthyTest(reference, 0.0).shares().chance("another", 0.5), rate);
   EXPECT_GT(HealthyTest(reference, 1.7).shares().chance("another", 0.5), rate);
-  EXPECT_GE(HealthyTest(reference).shares().chance("another", 0.5), 2.0 / 9) << "without a temperature all logs are alike";
+  EXPECT_GE(HealthyTest(reference).shares().chance("another", 0.5), 2.0 / 9)
+      << "without a temperature all logs are alike";
 }
 
 TEST(Healthy, ALogThatSetsNoShareStillTellsHowSizesScatterAndWhatIsLeft) {

@@ -201,6 +201,16 @@ TEST(RigFacts, HigherPhaseLagFrequencyAsksForASofterFlapper) {
   EXPECT_NEAR((stiffness(60) + kw) * 60, (stiffness(200) + kw) * 200, 1e-3 * (stiffness(60) + kw) * 60);
 }
 
+// A soft flapper hardly moves the loop: a factor about its stiffness would leave slow valves out.
+TEST(RigFacts, AFlapperMayBeSoStiffThatTheLoopIsAQuarterOfTheSheets) {
+  const auto upper_over_nominal = [](double f) {
+    const Table t = apply_rig_facts(shipped(), rig_with({{"valve.phase_lag_90_frequency", f}}));
+    const double wire = t[row::feedback_wire_stiffness].nominal;
+    return (t[row::flapper_stiffness].upper + wire) / (t[row::flapper_stiffness].nominal + wire);
+  };
+  for (double f : {40.0, 100.0, 200.0}) EXPECT_NEAR(upper_over_nominal(f), 4, 1e-3) << f;
+}
+
 TEST(RigFacts, MountStiffnessStartsTheEffectOnlyWhereTheTableHasItsRow) {
   Table table = shipped();
   const RigFile rig = rig_with({{"actuator.mount_stiffness", 3.1e7}});

@@ -85,11 +85,12 @@ TEST(SharedValues, AnEffectIsLikelyOfItsTypicalSizeAndARowWithinItsBounds) {
 }
 
 // Relative width of a row's prior.
-double width_of(int at, const std::map<std::string, double>& facts, const std::map<std::string, double>& asked) {
+double width_of(int at, const std::map<std::string, double>& facts, const std::map<std::string, double>& asked,
+                const Table& table = shipped_table()) {
   RigFile rig;
   rig.facts = facts;
-  std::vector<FreeValue> shared = shared_values(shipped_table());
-  hold_to_sheet(shared, rig, asked);
+  std::vector<FreeValue> shared = shared_values(table);
+  hold_to_sheet(shared, table, rig, asked);
   const auto f = std::find_if(shared.begin(), shared.end(), [&](const FreeValue& v) { return v.at == at; });
   return f->prior_sd * std::log(f->upper / f->lower);
 }
@@ -99,8 +100,9 @@ TEST(SharedValues, ThePistonsLeakIsHeldToAPartOfTheRatedFlow) {
   const auto spread = [](const std::map<std::string, double>& facts, const std::map<std::string, double>& asked) {
     RigFile rig;
     rig.facts = facts;
-    std::vector<FreeValue> shared = shared_values(shipped_table());
-    hold_to_sheet(shared, rig, asked);
+    const Table table = shipped_table();
+    std::vector<FreeValue> shared = shared_values(table);
+    hold_to_sheet(shared, table, rig, asked);
     const auto f = std::find_if(shared.begin(), shared.end(),
                                 [](const FreeValue& v) { return v.at == row::cross_piston_leakage; });
     return f->prior_sd * (f->upper - f->lower);
@@ -130,11 +132,24 @@ TEST(SharedValues, WhatADrawingGivesOfThePilotStageIsHeldUnlessAPriorIsAskedFor)
 // Without the spool's sensor no log tells them: a stiffness left alone stood at either bound, and a plugged nozzle was
 // a shifted null.
 TEST(SharedValues, WhatTheKindOfAValveSaysOfThePilotStageIsHeldToo) {
-  EXPECT_NEAR(width_of(row::flapper_stiffness, {{"valve.phase_lag_90_frequency", 100}}, {}), 0.4, 1e-12);
-  EXPECT_GT(width_of(row::flapper_stiffness, {}, {}), 0.5) << "nothing says it";
   EXPECT_NEAR(width_of(row::driver_bandwidth, {}, {}), 0.6, 1e-12);
   EXPECT_NEAR(width_of(row::spool_friction, {}, {}), 0.9, 1e-12);
   EXPECT_GT(width_of(row::spool_friction, {}, {{"spool_friction", 1.0}}), 0.9) << "another prior is asked for";
+}
+
+// Of a soft flapper, beside the wire, any stiffness gives nearly the same loop: the sheet's lag says little of it.
+TEST(SharedValues, AFlappersStiffnessIsHeldAsTheLoopsGainIs) {
+  const std::map<std::string, double> lag = {{"valve.phase_lag_90_frequency", 100}};
+  Table table = shipped_table();
+  const auto loop_width = [&](double stiffness) {
+    table[row::flapper_stiffness].nominal = stiffness;
+    const double wire = table[row::feedback_wire_stiffness].nominal;
+    // d ln K_v / d ln k_f of K_v = G k_w / (k_f + k_w)
+    return width_of(row::flapper_stiffness, lag, {}, table) * stiffness / (stiffness + wire);
+  };
+  EXPECT_NEAR(loop_width(20e3), loop_width(60e3), 1e-12);
+  EXPECT_NEAR(loop_width(20e3), 0.4, 1e-12);
+  EXPECT_GT(width_of(row::flapper_stiffness, {}, {}), 0.5) << "nothing says it";
 }
 
 // Two logs, shared rows and nuisances of each.
