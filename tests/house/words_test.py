@@ -7,6 +7,8 @@ import source
 # Calls that ask whether a text is, has or holds another.
 ASK = {"starts_with", "ends_with", "find", "rfind", "contains", "compare", "count", "strcmp", "strncmp", "find_if",
        "equal", "search"}
+# What may hold texts, where a name is declared.
+TEXT_TYPES = {"string", "string_view", "char", "auto", "array", "vector", "set"}
 
 # Files that turn text from outside into types. Their comparisons are with what a user wrote.
 READERS = {
@@ -15,19 +17,23 @@ READERS = {
     "apps/servodx/manifest.cpp": "reads a manifest",
     "apps/servodx/manual_commands.cpp": "options by their CLI11 names, the names of shells",
     "apps/servodx/map_command.cpp": "--model",
+    "apps/servodx/plan_command.cpp": "--max-speed",
     "apps/servodx/read_manifest.cpp": "reads a manifest",
     "apps/servodx/rerun_command.cpp": "reads a manifest",
     "apps/servodx/tune_command.cpp": "--local, --effects",
     "src/base/checkpoint.cpp": "reads a checkpoint",
     "src/base/csv.cpp": "marks of the encoding",
+    "src/base/file_kind.cpp": "marks of files that are no text",
     "src/base/json_text.h": "reads the schema of JSON",
     "src/base/machine_load.cpp": "reads the counters of the kernel",
     "src/base/result_schema.h": "reads the schema of a result",
     "src/fit/tuning_comments.cpp": "reads what a tune wrote into a table",
+    "src/fleet/check_list.cpp": "reads the header of a list of checks",
     "src/fleet/confusion.cpp": "reads a truth file",
     "src/fleet/gather.cpp": "reads results",
     "src/fleet/log_list.cpp": "`-` for standard input",
     "src/fleet/result_file.cpp": "reads a result",
+    "src/fleet/settling.cpp": "endings of files' names",
     "src/optimise/genetic_state.cpp": "reads a checkpoint",
     "src/parameters/table.cpp": "reads a table",
     "src/prognose/check_name.cpp": "reads the names of checks",
@@ -35,6 +41,7 @@ READERS = {
     "src/rig/rig_faults.cpp": "reads a fault's size and span",
     "src/rig/rig_model.cpp": "reads a model's TOML",
     "src/signals/guess.cpp": "reads headers of unknown logs",
+    "src/signals/header.cpp": "reads what loggers write above a table",
     "src/signals/log.cpp": "ending of a file's name",
     "src/signals/log_columns.cpp": "reads units of columns",
     "src/signals/rig_file.cpp": "reads a rig file",
@@ -51,11 +58,17 @@ READERS = {
 # What is compared elsewhere, each text by itself: file, texts, why.
 COMPARED = {
     "apps/servodx/history_command.cpp": ({"ok", ".csv"}, "SQLite's answer to a check of integrity; the ending of a file"),
-    "src/fit/nominal.cpp": ({"-", "valve.first_stage", "jet_pipe"}, "the unit of a pure number; a word of the rig file"),
+    "src/fit/log_data.cpp": ({"measurement.low_pass_order"}, "a word of the rig file"),
+    "src/fit/nominal.cpp": ({"-", "valve.first_stage", "jet_pipe", "lines.fittings"},
+                            "the unit of a pure number; words of the rig file"),
     "src/tune/settle.cpp": ({"all"}, "a user's word: --profile all"),
     "src/prognose/monitor.cpp": ({"linear", "A"}, "names of the monitor's models, as its user gives them"),
-    "src/rig/facts.cpp": ({","}, "layout of a line of text"),
+    "src/rig/facts.cpp": ({",", "rig", "fact", "unit", "low", "high", "source"},
+                          "layout of a line of text; the header of a file of limits"),
     "src/rig/rig_run.cpp": ({"piston_position"}, "signals of the rig go by name: it makes columns, not results"),
+    "src/signals/growing_log.cpp": ({"stamps in column "}, "a mark in a comment of the log"),
+    "src/signals/rig_content.cpp": ({"page."}, "keys of the rig file"),
+    "src/tune/tune.cpp": ({"none"}, "a user's word: --effects"),
 }
 
 
@@ -75,19 +88,93 @@ def call_of(tokens, at):
     return ""
 
 
+def declares_text(tokens, at):
+    """Whether the name at `at` is declared there, as what holds texts."""
+    words, depth, own = [], 0, True
+    for i in range(at - 1, max(-1, at - 60), -1):
+        kind, value, _ = tokens[i]
+        if kind == "op" and value in ")}" and (depth or tokens[i + 1][1] == ","):  # of the name declared before
+            depth += 1
+        elif kind == "op" and value in "({" and depth:
+            depth -= 1
+        elif kind == "op" and value in ";{}()":
+            break
+        elif depth == 0 and own and value in ("=", "?", ".", "->"):
+            return False
+        elif depth == 0:
+            words.append(value)
+            own = own and value != ","
+    return bool(TEXT_TYPES & set(words))
+
+
+def texts_given(tokens, at):
+    """The literals that a declared name gets by what follows it; none where anything else goes into it."""
+    texts, depth = [], 0
+    for kind, value, _ in tokens[at:]:
+        if kind == "string":
+            texts.append(value)
+        elif value in ("(", "{", "["):
+            depth += 1
+        elif value in (")", "}", "]"):
+            depth -= 1
+        elif value in (",", ";") and depth == 0:
+            break
+        elif kind != "number" and value not in ("=", ":", ",", "::", "std", "string", "string_view", "s", "sv"):
+            return []
+        if depth < 0:
+            break
+    return texts
+
+
+def ends_of_blocks(tokens):
+    """For every token the end of the block that it stands in. Namespaces are none."""
+    ends, opened = [len(tokens)] * len(tokens), []
+    for i, (kind, value, _) in enumerate(tokens):
+        if kind == "op" and value == "{":
+            before = i - 1
+            while tokens[before][1] != "namespace" and (tokens[before][0] == "name" or tokens[before][1] == "::"):
+                before -= 1
+            opened.append((i, tokens[before][1] == "namespace"))
+        elif kind == "op" and value == "}" and opened:
+            first, is_namespace = opened.pop()
+            if not is_namespace:
+                ends[first:i] = [min(end, i) for end in ends[first:i]]
+    return ends
+
+
 def named_texts(tokens):
-    """Constants of the file that are texts: `constexpr std::string_view taken = "taken"`."""
-    return {tokens[i - 2][1]: value for i, (kind, value, _) in enumerate(tokens)
-            if kind == "string" and i > 2 and tokens[i - 1][1] == "=" and tokens[i - 2][0] == "name"
-            and any(text == "constexpr" for _, text, _ in tokens[max(0, i - 9):i])}
+    """Names that stand for a text, or for one of several, of the file or of a block: {name: [(from, to, texts)]}.
+    `constexpr std::string_view taken = "taken"`, `const std::string taken{"taken"}`, `const char* words[] = {"a", "b"}`,
+    `for (const char* word : {"a", "b"})`."""
+    named, ends = collections.defaultdict(list), ends_of_blocks(tokens)
+    for i, (kind, value, _) in enumerate(tokens[:-1]):
+        if kind == "name" and tokens[i + 1][1] in ("=", "{", "(", "[", ":") and declares_text(tokens, i):
+            texts = texts_given(tokens, i + 1)
+            if texts:
+                named[value].append((i + 1, ends[i], texts))
+    return named
+
+
+def texts_compared(named, tokens, at):
+    """The texts that a name stands for which is compared here, by itself or as one of a list."""
+    for first, last, texts in named.get(tokens[at][1], ()) if tokens[at][0] == "name" else ():
+        if not first <= at < last:
+            continue
+        after = at + 1
+        if tokens[after][1] == "[":
+            after = next(i for i in range(after, len(tokens)) if tokens[i][1] == "]") + 1
+        asks = tokens[after][1] == "." and tokens[after + 1][1] in ASK
+        if asks or {"==", "!="} & {tokens[at - 1][1], tokens[after][1]} or call_of(tokens, at) in ASK:
+            return texts
+    return ()
 
 
 def compared(tokens):
-    """(text, line) of every literal, or constant that stands for one, that something is compared with."""
+    """(text, line) of every literal, or name that stands for one, that something is compared with."""
     named = named_texts(tokens)
     for i, (kind, value, line) in enumerate(tokens):
-        if kind == "name" and value in named and {"==", "!="} & {tokens[i - 1][1], tokens[i + 1][1]}:
-            yield named[value], line
+        for text in texts_compared(named, tokens, i):
+            yield text, line
         names_entry = kind == "name" and value == "name" and tokens[i - 1][1] == "::"  # `e.name == Stiction::name`
         if names_entry and "==" in (tokens[i - 3][1], tokens[i + 1][1]):
             yield f"{tokens[i - 2][1]}::name", line
@@ -159,7 +246,7 @@ class Words(unittest.TestCase):
 
     def test_comparisons_are_found_however_written(self):
         made = source.tokens("tests/house/compared.inc")
-        self.assertEqual([text for text, _ in compared(made)], [*"abcdefghijkl", "Other::name"])
+        self.assertEqual([text for text, _ in compared(made)], [*"abcdefghijkl", "Other::name", *"tumnopqrsv"])
 
     def test_registry_names_are_written_in_their_own_files_alone(self):
         names = registry_names()
