@@ -8,14 +8,6 @@
 #include "optimise/unit_cube.h"
 
 namespace servodx {
-namespace {
-
-// Where between two severities a fraction of the way lies, on the fault's own scale.
-double between(const Fault& fault, double from, double to, double part) {
-  return fault.log_scale ? from * std::pow(to / from, part) : from + part * (to - from);
-}
-
-}  // namespace
 
 HealthyAnswer::HealthyAnswer(const Eigen::MatrixXd& jacobian, const Point& at, long data_rows)
     : data_(jacobian.topRows(data_rows)), normal_(jacobian.transpose() * jacobian) {
@@ -46,8 +38,8 @@ std::optional<double> least_found(const VisibleFault& visible, double needed) {
   if (first == g.size()) return {};
   if (first == 0) return g.front().severity;
   const double below = std::sqrt(std::max(0.0, g[first - 1].gain)), above = std::sqrt(g[first].gain);
-  return between(*visible.fault, g[first - 1].severity, g[first].severity,
-                 (std::sqrt(needed) - below) / (above - below));
+  return severity_between(*visible.fault, g[first - 1].severity, g[first].severity,
+                          (std::sqrt(needed) - below) / (above - below));
 }
 
 std::optional<double> least_found_either_side(std::span<const VisibleFault> sides, double needed) {

@@ -1,5 +1,6 @@
 // A fault: a name, the rows that it moves, and one number, its severity, that is at `healthy` when it is absent.
 #pragma once
+#include <cmath>
 #include <optional>
 #include <string_view>
 #include <vector>
@@ -71,6 +72,11 @@ struct Fault {
   // What looks alike: the two are named together, but where the other has a record of its own and the log holds it.
   const Fault* twin = nullptr;
 };
+
+// A part of the way from one severity to another, on the fault's own scale.
+inline double severity_between(const Fault& fault, double from, double to, double part) {
+  return fault.log_scale ? from * std::pow(to / from, part) : from + part * (to - from);
+}
 
 inline bool are_twins(const Fault& a, const Fault& b) { return a.twin == &b || b.twin == &a; }
 

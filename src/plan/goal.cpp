@@ -111,8 +111,7 @@ Least least_on(const SeverityLanes& side, const Information& information, const 
     const double d = deviates_of(information, fault, side.lanes[i], law);
     if (d < needed) {
       if (!out.severity) return out;
-      const double part = (needed - d) / (beyond - d), from = side.severity[i], to = side.severity[i + 1];
-      out.severity = fault.log_scale ? from * std::pow(to / from, part) : from + part * (to - from);
+      out.severity = severity_between(fault, side.severity[i], side.severity[i + 1], (needed - d) / (beyond - d));
       return out;
     }
     out.severity = side.severity[i];

@@ -193,10 +193,7 @@ std::optional<double> severity_at_margin(const PositionLoop& loop, const Fault& 
     const Margins m = loop.margins(worn, amplitude);
     return (kind == MarginKind::gain ? m.gain : m.phase) - wanted;
   };
-  const auto severity_of = [&](double part) {
-    return fault.log_scale ? fault.healthy * std::pow(fault.worst / fault.healthy, part)
-                           : fault.healthy + part * (fault.worst - fault.healthy);
-  };
+  const auto severity_of = [&](double part) { return severity_between(fault, fault.healthy, fault.worst, part); };
   for (int k = 1; k <= severities_scanned; ++k) {
     double good = (k - 1.0) / severities_scanned, bad = k / static_cast<double>(severities_scanned);
     if (to_spare(severity_of(bad)) >= 0) continue;
