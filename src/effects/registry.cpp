@@ -3,7 +3,6 @@
 #include <stdexcept>
 #include <type_traits>
 
-#include "effects/stiction.h"
 #include "parameters/list.h"
 
 namespace servodx {
@@ -11,27 +10,17 @@ namespace {
 
 // What an effect states about itself; what it does not state stays as EffectInfo has it.
 template <class E>
-struct Meaning : E {};
-template <>
-struct Meaning<Stiction> : Stiction {
-  static constexpr RowAlong along = {row::spool_friction, true};  // what sticks also drags: silt and lacquer
-  static constexpr const char* best_test =
-      "slow small triangle: the spool stands still at each reversal, longer the slower";
-};
-
-template <class E>
 void take_meaning(EffectInfo& e) {
-  using M = Meaning<E>;
-  if constexpr (requires { M::stand_only; }) e.stand_only = M::stand_only;
-  if constexpr (requires { M::as_made; }) e.as_made = M::as_made;
-  if constexpr (requires { M::freed; }) e.freed = M::freed;
-  if constexpr (requires { M::shapes_rows; }) e.shapes_rows = M::shapes_rows;
-  if constexpr (requires { M::sought_as; }) e.sought_as = M::sought_as;
-  if constexpr (requires { M::known_oil_only; }) e.known_oil_only = M::known_oil_only;
-  if constexpr (requires { M::of_construction; }) e.of_construction = M::of_construction;
-  if constexpr (requires { M::best_test; }) e.best_test = M::best_test;
-  if constexpr (requires { M::along; }) e.along = M::along;
-  if constexpr (requires { M::as_large_as_rig; }) e.as_large_as_rig = M::as_large_as_rig;
+  if constexpr (requires { E::stand_only; }) e.stand_only = E::stand_only;
+  if constexpr (requires { E::as_made; }) e.as_made = E::as_made;
+  if constexpr (requires { E::freed; }) e.freed = E::freed;
+  if constexpr (requires { E::shapes_rows; }) e.shapes_rows = E::shapes_rows;
+  if constexpr (requires { E::sought_as; }) e.sought_as = E::sought_as;
+  if constexpr (requires { E::known_oil_only; }) e.known_oil_only = E::known_oil_only;
+  if constexpr (requires { E::of_construction; }) e.of_construction = E::of_construction;
+  if constexpr (requires { E::best_test; }) e.best_test = E::best_test;
+  if constexpr (requires { E::along; }) e.along = E::along;
+  if constexpr (requires { E::as_large_as_rig; }) e.as_large_as_rig = E::as_large_as_rig;
 }
 
 template <class E, class... Common>

@@ -10,6 +10,7 @@
 #include "model/asperities.h"
 #include "model/constants.h"
 #include "model/hooks.h"
+#include "parameters/list.h"
 
 namespace servodx {
 
@@ -17,6 +18,9 @@ struct Stiction {
   static constexpr const char* name = "stiction";
   static constexpr const char* place = "spool";
   static constexpr const char* meaning = "the spool breaks away at more than its sliding friction";
+  static constexpr RowAlong along = {row::spool_friction, true};  // what sticks also drags: silt and lacquer
+  static constexpr const char* best_test =
+      "slow small triangle: the spool stands still at each reversal, longer the slower";
   static constexpr int n_states = 0;
   static constexpr int n_parameters = 2;
   static constexpr EffectParameter parameters[n_parameters] = {
