@@ -133,7 +133,7 @@ class Search {
     std::vector<Evaluation> first = evaluate({x_});
     if (!first[0].ok) {
       result_.reason = StopReason::start_failed;
-      result_.stopped = "the start point itself could not be evaluated";
+      result_.stopped = reason_in_words(result_.reason, options_);
       return false;
     }
     residual_ = std::move(first[0].residual);
@@ -332,11 +332,6 @@ class Search {
     }
   }
 
-  void stop(StopReason reason, std::string words) {
-    result_.reason = reason;
-    result_.stopped = std::move(words);
-  }
-
   // What a pass carries from step to step.
   struct Pass {
     double tolerance;
@@ -348,10 +343,11 @@ class Search {
   };
   enum class Next { step, again, pass_ends, search_ends };
 
-  std::string state() const { return state_words(cost_, result_.gradient_cosine, result_.promised_gain); }
+  Next end(Next how, StopReason reason) { return end(how, reason, reason_in_words(reason, options_)); }
 
-  Next end(Next how, StopReason reason, const std::string& words) {
-    stop(reason, words);
+  Next end(Next how, StopReason reason, const std::string& because) {
+    result_.reason = reason;
+    result_.stopped = because + "; " + state_words(cost_, result_.gradient_cosine, result_.promised_gain);
     return how;
   }
 
@@ -366,11 +362,10 @@ class Search {
   Next before_step(Pass& pass) {
     if (options_.progress) {
       const LeastSquaresProgress now{result_.iterations, result_.evaluations, cost_, result_.projected_gradient, &x_};
-      if (!options_.progress(now))
-        return end(Next::search_ends, StopReason::interrupted, "interrupted on request; " + state());
+      if (!options_.progress(now)) return end(Next::search_ends, StopReason::interrupted);
     }
     if (options_.cost_goal >= 0 && 0.5 * residual_.squaredNorm() <= options_.cost_goal)
-      return end(Next::search_ends, StopReason::goal, "the misfit goal was reached; " + state());
+      return end(Next::search_ends, StopReason::goal);
     const bool flat_cost = cost_ <= options_.cost_floor;
     const bool at_end = flat_cost || result_.promised_gain <= pass.tolerance * cost_ + options_.cost_floor;
     if (at_end && !pass.fresh()) {  // only differences say that it is the end
@@ -379,23 +374,19 @@ class Search {
     }
     if (at_end) {
       if (!flat_cost && refine(pass)) return Next::again;
-      return end(Next::pass_ends, StopReason::converged, "converged; " + state());
+      return end(Next::pass_ends, StopReason::converged);
     }
     return pass.fresh() ? within_limits(pass) : Next::step;
   }
 
   Next within_limits(Pass& pass) {
-    if (result_.iterations >= options_.max_iterations)
-      return end(Next::search_ends, StopReason::iteration_limit,
-                 "iteration limit of " + std::to_string(options_.max_iterations) + "; " + state());
+    if (result_.iterations >= options_.max_iterations) return end(Next::search_ends, StopReason::iteration_limit);
     if (options_.max_evaluations > 0 && result_.evaluations >= options_.max_evaluations)
-      return end(Next::search_ends, StopReason::evaluation_limit,
-                 "evaluation limit of " + std::to_string(options_.max_evaluations) + "; " + state());
+      return end(Next::search_ends, StopReason::evaluation_limit);
     pass.costs.push_back(cost_);
     const auto slow = static_cast<std::size_t>(options_.slow_iterations);
     if (slow > 0 && pass.costs.size() > slow && cost_ > kSlowShare * pass.costs[pass.costs.size() - 1 - slow])
-      return end(Next::search_ends, StopReason::stalled,
-                 "too slow: " + std::to_string(slow) + " iterations; " + state());
+      return end(Next::search_ends, StopReason::stalled, "too slow: " + std::to_string(slow) + " iterations");
     return Next::step;
   }
 
@@ -407,12 +398,11 @@ class Search {
     }
     if (refine(pass)) return Next::again;
     if (result_.promised_gain <= kRounding * cost_)
-      return end(Next::pass_ends, StopReason::converged, "converged to the rounding of the cost; " + state());
-    return end(
-        Next::pass_ends, StopReason::stalled,
-        "stalled: no step that promises more than the tolerance lowers the cost; " + state() +
-            (result_.missing_columns > 0 ? ", " + std::to_string(result_.missing_columns) + " Jacobian columns missing"
-                                         : ""));
+      return end(Next::pass_ends, StopReason::converged, "converged to the rounding of the cost");
+    const Next stalled = end(Next::pass_ends, StopReason::stalled);
+    if (result_.missing_columns > 0)
+      result_.stopped += ", " + std::to_string(result_.missing_columns) + " Jacobian columns missing";
+    return stalled;
   }
 
   // One loss, to its tolerance. False: the whole search ends here.
@@ -503,26 +493,6 @@ void LeastSquaresOptions::validate() const {
   require(loss_scale > 0 && std::isfinite(loss_scale), "loss_scale", "must be above 0 and finite");
 }
 
-const char* name(StopReason reason) {
-  switch (reason) {
-    case StopReason::converged:
-      return "converged";
-    case StopReason::goal:
-      return "goal";
-    case StopReason::stalled:
-      return "stalled";
-    case StopReason::iteration_limit:
-      return "iteration_limit";
-    case StopReason::evaluation_limit:
-      return "evaluation_limit";
-    case StopReason::interrupted:
-      return "interrupted";
-    case StopReason::start_failed:
-      return "start_failed";
-  }
-  return "unknown";
-}
-
 LeastSquaresResult minimise_least_squares(const LeastSquaresProblem& problem, const Point& start,
                                           const LeastSquaresOptions& options) {
   options.validate();
@@ -544,6 +514,26 @@ void take_stock(LeastSquaresResult& end, NormalEquations equations, const LeastS
   end.cost = robust_cost(end.residual, options.loss, options.loss_scale);
   const LeastSquaresProblem problem{static_cast<int>(end.point.size()), {}, {}};
   Search(problem, options).take_stock(end, std::move(equations));
+}
+
+std::string reason_in_words(StopReason reason, const LeastSquaresOptions& options) {
+  switch (reason) {
+    case StopReason::converged:
+      return "converged";
+    case StopReason::goal:
+      return "the misfit goal was reached";
+    case StopReason::stalled:
+      return "stalled: no step that promises more than the tolerance lowers the cost";
+    case StopReason::iteration_limit:
+      return "iteration limit of " + std::to_string(options.max_iterations);
+    case StopReason::evaluation_limit:
+      return "evaluation limit of " + std::to_string(options.max_evaluations);
+    case StopReason::interrupted:
+      return "interrupted on request";
+    case StopReason::start_failed:
+      return "the start point itself could not be evaluated";
+  }
+  return "";
 }
 
 std::string state_of(const LeastSquaresResult& end) {

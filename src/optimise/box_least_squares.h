@@ -130,9 +130,9 @@ LeastSquaresResult with_rows(const SearchEnd& end, const LeastSquaresProblem& pr
 // Cost, gradient, walls and promise of an end whose point, residual and Jacobian have moved.
 void take_stock(LeastSquaresResult& end, NormalEquations equations, const LeastSquaresOptions& options);
 
+// Why a search stopped, "iteration limit of 100", as its usual sentence begins.
+std::string reason_in_words(StopReason reason, const LeastSquaresOptions& options);
 // "cost 312, gradient cosine 1e-05, promised gain 0.002"
 std::string state_of(const LeastSquaresResult& end);
-
-const char* name(StopReason reason);
 
 }  // namespace servodx

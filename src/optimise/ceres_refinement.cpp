@@ -441,7 +441,7 @@ LeastSquaresResult minimise_by_ceres(const LeastSquaresProblem& problem, const P
   Evaluation first = std::move(evaluated(problem, {end.point}, end, summary).front());
   if (!first.ok) {
     end.cost = end.misfit = end.start_cost = std::numeric_limits<double>::infinity();
-    end.stopped = "the start point itself could not be evaluated";
+    end.stopped = reason_in_words(end.reason, options);
     if (told) *told = summary;
     return end;
   }

@@ -51,17 +51,11 @@ bool may_refine(const LeastSquaresResult& end, const LocalOptions& local) {
 // promise left.
 void say_end(LeastSquaresResult& end, const CeresSummary& ceres, const LeastSquaresOptions& options) {
   if (ceres.steps == 0) return;
-  if (ceres.end == CeresEnd::converged && !promises(end, options, 1)) {
+  if (ceres.end == CeresEnd::converged && !promises(end, options, 1))
     end.reason = StopReason::converged;
-    end.stopped = "converged; " + state_of(end);
-    return;
-  }
-  if (end.reason == StopReason::stalled || end.reason == StopReason::converged)
+  else if (end.reason == StopReason::stalled || end.reason == StopReason::converged)
     end.reason = StopReason::iteration_limit;
-  end.stopped = end.stopped.substr(0, end.stopped.find(';'));
-  if (end.reason == StopReason::iteration_limit)
-    end.stopped = "iteration limit of " + std::to_string(options.max_iterations);
-  end.stopped += "; " + state_of(end);
+  end.stopped = reason_in_words(end.reason, options) + "; " + state_of(end);
 }
 
 Distrust distrust_of(const LeastSquaresResult& end, const LeastSquaresOptions& options, const LocalOptions& local) {

@@ -42,11 +42,31 @@ bool has_arrived(const TuneResult& result) {
   return false;
 }
 
+std::string word_of(StopReason reason) {
+  switch (reason) {
+    case StopReason::converged:
+      return "converged";
+    case StopReason::goal:
+      return "goal";
+    case StopReason::stalled:
+      return "stalled";
+    case StopReason::iteration_limit:
+      return "iteration limit";
+    case StopReason::evaluation_limit:
+      return "evaluation limit";
+    case StopReason::interrupted:
+      return "interrupted";
+    case StopReason::start_failed:
+      return "start failed";
+  }
+  return "";
+}
+
 std::string end_in_words(const TuneResult& result) {
   const std::string left = std::isfinite(result.still_promised)
                                ? fmt::format("{} of its cost still promised", digits(result.still_promised, 2))
                                : "without derivatives nothing says how much is left";
-  return fmt::format("{}, {}", words(name(result.stop)), left);
+  return fmt::format("{}, {}", word_of(result.stop), left);
 }
 
 struct Prediction {
