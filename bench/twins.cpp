@@ -13,6 +13,7 @@
 #include <cstdlib>
 #include <map>
 
+#include "base/normal.h"
 #include "fit/identifiability.h"
 #include "servodx/table.h"
 #include "tune/tune.h"
@@ -40,7 +41,7 @@ int main(int argc, char** argv) {
         for (Count* c : {&counts[o.name], &all}) {
           const bool stated = twins::identifiable(o), at_bound = o.verdict == RowVerdict::at_bound;
           c->stated += stated;
-          c->inside += stated && std::abs(o.z) <= 1.96;
+          c->inside += stated && std::abs(o.z) <= normal_95;
           c->at_bound += at_bound;
           c->dropped += !stated && !at_bound;
           if (stated) c->z2 += o.z * o.z, c->z += fmt::format(" {:.1f}", o.z);

@@ -4,16 +4,14 @@
 #include <cmath>
 #include <complex>
 #include <limits>
-#include <numbers>
 
+#include "base/two_pi.h"
 #include "curves/constants.h"
 
 namespace servodx::curves {
 namespace {
 
 using namespace curves_constants;
-
-constexpr double two_pi = 2.0 * std::numbers::pi;
 
 double between(double f0, double f1, double v0, double v1, double wanted) {
   const double part = v1 == v0 ? 0.0 : (wanted - v0) / (v1 - v0);

@@ -20,6 +20,7 @@
 #include "diagnose/whitening.h"
 #include "diagnose/worth_fitting.h"
 #include "evidence/conditions.h"
+#include "evidence/constants.h"
 #include "evidence/probabilities.h"
 #include "faults/fault.h"
 #include "faults/registry.h"
@@ -48,6 +49,7 @@ namespace servodx {
 namespace {
 
 namespace k = diagnose_constants;
+using evidence_constants::effect_error;
 
 ErrorModel required_error_model(const Table& tuned) {
   ErrorModel error = error_model_of(tuned);
@@ -151,7 +153,7 @@ std::vector<HypothesisPrediction> explanations_of(const ParameterVector& base, c
 }
 
 double scale_of(const HypothesisFits& fits) {
-  return misfit_scale(fits.fits.front().misfit, fits.fits[best_fit(fits)].misfit, fits.degrees, k::effect_error);
+  return misfit_scale(fits.fits.front().misfit, fits.fits[best_fit(fits)].misfit, fits.degrees, effect_error);
 }
 
 double worst_channel(const HypothesisFit& f) {
@@ -170,7 +172,7 @@ std::vector<PairResult> pairs_of(const HypothesisFits& fits) {
     PairResult p{f, *f.beside};
     if (alone(p.second.fault) < alone(p.first.fault)) std::swap(p.first, p.second);
     p.misfit = f.misfit;
-    p.gain = pair_gain(f.misfit, best, healthy) / misfit_scale(healthy, f.misfit, fits.degrees, k::effect_error);
+    p.gain = pair_gain(f.misfit, best, healthy) / misfit_scale(healthy, f.misfit, fits.degrees, effect_error);
     p.of_effect = (best - f.misfit) / std::max(1e-9, healthy - f.misfit);
     p.adequacy = worst_channel(f);
     out.push_back(p);

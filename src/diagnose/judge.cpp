@@ -14,6 +14,7 @@
 #include "diagnose/records.h"
 #include "diagnose/visible.h"
 #include "evidence/conditions.h"
+#include "evidence/constants.h"
 #include "evidence/probabilities.h"
 #include "evidence/rank_promise.h"
 #include "evidence/tail_law.h"
@@ -24,6 +25,7 @@ namespace servodx {
 namespace {
 
 namespace k = diagnose_constants;
+using evidence_constants::effect_error;
 
 std::optional<Diagnosis::Unlike> unlike_all(const TestConditions& test, const DetectionBaseline& baseline) {
   const DetectionBaseline::Score* nearest = nearest_of_unlike(test, baseline);
@@ -80,7 +82,7 @@ bool is_pulled_to_end(const auto& of) { return of.at_worst && !(of.fault && of.f
 std::optional<std::size_t> rival_inside(const Assessment& a, const std::vector<WeighedHypothesis>& weighed,
                                         std::size_t at_end) {
   const double healthy = a.hypotheses.front().misfit;
-  const double near = (1 - k::effect_error) * (1 - k::effect_error) * (healthy - a.hypotheses[at_end].misfit);
+  const double near = (1 - effect_error) * (1 - effect_error) * (healthy - a.hypotheses[at_end].misfit);
   std::optional<std::size_t> out;
   for (std::size_t i = 1; i < weighed.size(); ++i) {
     const HypothesisResult& h = a.hypotheses[i];

@@ -3,14 +3,16 @@
 #include <algorithm>
 
 #include "diagnose/constants.h"
+#include "evidence/constants.h"
 #include "evidence/probabilities.h"
 
 namespace servodx {
 
 namespace k = diagnose_constants;
+using evidence_constants::effect_error;
 
 bool is_hopeless(double misfit, double healthy, double best, double degrees) {
-  return misfit > healthy && misfit - best > k::hopeless * misfit_scale(healthy, best, degrees, k::effect_error);
+  return misfit > healthy && misfit - best > k::hopeless * misfit_scale(healthy, best, degrees, effect_error);
 }
 
 double pair_gain(double misfit, double best, double healthy) {

@@ -5,8 +5,8 @@
 #include <complex>
 #include <cstddef>
 #include <limits>
-#include <numbers>
 
+#include "base/two_pi.h"
 #include "fit/constants.h"
 #include "fit/stand.h"
 #include "simulate/scenario.h"
@@ -15,8 +15,6 @@ namespace servodx {
 namespace {
 
 using namespace fit_constants;
-
-constexpr double two_pi = 2 * std::numbers::pi;
 
 double frequency_at(int k) { return bode_lowest * std::pow(bode_highest / bode_lowest, k / (bode_frequencies - 1.0)); }
 

@@ -18,7 +18,6 @@
 namespace servodx {
 namespace {
 
-constexpr double activity_time = 20e-3;      // [s] memory of the activity
 constexpr double unlearnt_independent = 50;  // [1/s]
 // Logs differ in how well the model fits them. A log's own variance about the pooled one is worth so many samples.
 constexpr double prior_worth = 4;

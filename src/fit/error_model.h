@@ -31,6 +31,8 @@ struct ErrorModel {
   const ChannelError* find(Signal s) const;
 };
 
+inline constexpr double activity_time = 20e-3;  // [s] memory of the activity
+
 // [SI per ms] see above; one entry a sample.
 std::vector<double> activity(const std::vector<double>& time, const std::vector<double>& simulated);
 

@@ -15,7 +15,6 @@
 namespace servodx {
 namespace {
 
-constexpr double gap_memory = 10e-3;                        // [s] several time constants of a first stage
 constexpr double longest_gap = 10.0, longest_wait = 600.0;  // [s] with an actuator, on a test stand
 
 }  // namespace

@@ -14,6 +14,8 @@ namespace servodx {
 // Missing samples of an input are bridged in a line; the ends hold.
 std::vector<double> bridged(const std::vector<double>& time, std::vector<double> input);
 
+inline constexpr double gap_memory = 10e-3;  // [s] several time constants of a first stage
+
 // The command that passed in a gap is not known, and the valve remembers it for some milliseconds. As long as the gap
 // was, at most `gap_memory`, what comes after is not compared: never more than half of a log is lost to it. Sample by
 // sample, not 0 where it is so.

@@ -5,6 +5,7 @@
 #include <functional>
 
 #include "base/error.h"
+#include "base/normal.h"
 #include "base/random.h"
 #include "base/tiny.h"
 #include "fit/candidate_of.h"
@@ -163,7 +164,7 @@ struct Tally {
   void add_stated(const FreeValue& f, double estimate, double truth, double unit_error) {
     const double per_unit = f.slope(f.from_unit(estimate));
     errors += unit_error * unit_error * per_unit * per_unit;
-    covered += std::abs(estimate - truth) <= 1.96 * unit_error;
+    covered += std::abs(estimate - truth) <= normal_95 * unit_error;
     ++counted;
   }
 };
@@ -199,7 +200,7 @@ void add_coverage(SelftestResult& out) {
   for (const SelftestRow& row : out.rows) out.covered += row.covered, out.counted += row.counted;
   if (out.counted == 0) return;
   const double p = static_cast<double>(out.covered) / static_cast<double>(out.counted);
-  const double m = std::max(1, out.repeats - out.failed), z = 1.96;
+  const double m = std::max(1, out.repeats - out.failed), z = normal_95;
   const double centre = (p + z * z / (2 * m)) / (1 + z * z / m);
   const double half = z / (1 + z * z / m) * std::sqrt(p * (1 - p) / m + z * z / (4 * m * m));
   out.coverage_lower = std::max(0.0, centre - half), out.coverage_upper = std::min(1.0, centre + half);

@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "base/celsius.h"
+#include "base/two_pi.h"
 #include "fit/constants.h"
 #include "fit/oil_of.h"
 #include "model/state.h"
@@ -15,8 +15,6 @@ namespace servodx {
 namespace {
 
 using namespace fit_constants;
-
-constexpr double two_pi = 2 * std::numbers::pi;
 
 Scenario at_stand(const RigFile& rig) {
   Scenario s;

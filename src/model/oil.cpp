@@ -1,12 +1,13 @@
 #include <cmath>
 
+#include "base/celsius.h"
 #include "model/state.h"
 
 namespace servodx {
 
 namespace {
 
-constexpr double cool = 313.15, hot = 373.15;  // [K] at which sheets state viscosities
+constexpr double cool = reference_oil_temperature, hot = 373.15;  // [K] at which sheets state viscosities
 
 double walther(double nu) { return std::log10(std::log10(nu * 1e6 + 0.7)); }
 

@@ -5,6 +5,8 @@
 #include <cstddef>
 #include <nlohmann/json.hpp>
 
+#include "fit/log_gaps.h"
+
 namespace servodx {
 
 namespace k = online_constants;
@@ -21,7 +23,7 @@ void SlidingEvidence::take(const Residual& residual, const std::vector<Levels>& 
     if (std::isnan(residual.value[c])) continue;
     const double square = std::min(residual.value[c] * residual.value[c], k::largest_square);
     for (std::size_t w = 0; w < levels_[c].size(); ++w)
-      levels_[c][w] += (1 - std::exp(-std::min(dt, k::gap_memory) / k::windows[w])) * (square - levels_[c][w]);
+      levels_[c][w] += (1 - std::exp(-std::min(dt, gap_memory) / k::windows[w])) * (square - levels_[c][w]);
     const double quiet = limits.empty() ? k::quiet_square : std::max(k::quiet_square, k::quiet_part * limits[c][0]);
     if (levels_[c][0] < quiet) quiet_[c] = residual.time;
   }

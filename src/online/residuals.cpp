@@ -9,6 +9,7 @@
 
 #include "fit/error_model.h"
 #include "fit/log_data.h"
+#include "fit/log_gaps.h"
 #include "online/constants.h"
 #include "parameters/list.h"
 #include "servodx/error.h"
@@ -111,7 +112,7 @@ std::span<const Residual> Residuals::take(std::span<const Sample> part) {
     const double dt = rest[i].time - before;
     Residual& to = out_[i + (anew ? 1 : 0)];
     if (usual_step_ > 0 && dt > gap_over_step * usual_step_)
-      unknown_until_ = std::max(unknown_until_, rest[i].time + std::min(dt, k::gap_memory));
+      unknown_until_ = std::max(unknown_until_, rest[i].time + std::min(dt, gap_memory));
     // The usual step is found in a few samples, from whatever it is at first, and does not follow single gaps.
     usual_step_ = usual_step_ > 0 ? usual_step_ * (dt > usual_step_ ? 1.02 : dt < 0.98 * usual_step_ ? 0.9 : 1.0) : dt;
     if (dt < usual_step_ && dt > 0.9 * usual_step_) usual_step_ = dt;
@@ -142,7 +143,7 @@ void Residuals::compare(std::size_t at, const Sample& sample, double dt, Residua
 double Residuals::sigma_of(std::size_t channel, double shown, double dt) {
   Memory& m = memory_[channel];
   if (m.begun) {
-    const double keep = std::exp(-dt / k::activity_time), speed = std::abs(shown - m.shown) / dt * 1e-3;
+    const double keep = std::exp(-dt / activity_time), speed = std::abs(shown - m.shown) / dt * 1e-3;
     m.activity = std::sqrt(keep * m.activity * m.activity + (1 - keep) * speed * speed);
   }
   m.begun = true, m.shown = shown;

@@ -10,6 +10,7 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
+#include "base/celsius.h"
 #include "base/json_text.h"
 #include "base/sha256.h"
 #include "fit/candidate_of.h"
@@ -85,7 +86,7 @@ Scenario scenario_of(const Rig& rig, const StepperInputs& first, const StepperSt
 void StepperOptions::validate() const {
   require(!step || (*step > 0 && *step <= 0.1), "the step must lie between 0 and 0.1 s", "give it in seconds: 3e-4");
   require(std::isfinite(oil_temperature) && oil_temperature > 0, "the oil temperature must be above 0 K",
-          "give it in kelvin: 313.15");
+          fmt::format("give it in kelvin: {}", reference_oil_temperature));
   for (Signal s : outputs)
     require(simulated_index(s) >= 0, fmt::format("the model does not report '{}'", name_of(s)),
             "ask for a position, a pressure or a flow");

@@ -6,12 +6,14 @@
 #include <optional>
 
 #include "diagnose/constants.h"
+#include "evidence/constants.h"
 #include "plan/constants.h"
 
 namespace servodx {
 namespace {
 
 namespace k = plan_constants;
+using evidence_constants::effect_error;
 
 double normal_below(double x) { return 0.5 * std::erfc(-x / std::numbers::sqrt2); }
 
@@ -78,9 +80,7 @@ double worth_of_estimating(const Information& information, const LaneSet& set) {
 }
 
 // As `diagnose` tempers its probabilities: a fault's model errs by a part of its effect.
-double temper(double effect, const FindingLaw& law) {
-  return 1 + diagnose_constants::effect_error * diagnose_constants::effect_error * effect / law.degrees;
-}
+double temper(double effect, const FindingLaw& law) { return 1 + effect_error * effect_error * effect / law.degrees; }
 
 // The rival's probability falls below what is listed: the difference of misfits is normal about the squared distance,
 // with twice its root as deviation.

@@ -2,17 +2,15 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "base/random.h"
+#include "base/two_pi.h"
 #include "plan/constants.h"
 
 namespace servodx {
 namespace {
 
 namespace k = plan_constants;
-
-constexpr double two_pi = 2 * std::numbers::pi;
 
 // Of the cycle's amplitude, at a phase in [0, 1).
 double triangle(double phase) { return phase < 0.25 ? 4 * phase : phase < 0.75 ? 2 - 4 * phase : 4 * phase - 4; }

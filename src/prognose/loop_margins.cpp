@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "base/error.h"
+#include "base/two_pi.h"
 #include "fit/candidate_of.h"
 #include "fit/log_data.h"
 #include "model/state.h"
@@ -22,7 +23,6 @@ namespace servodx {
 namespace {
 
 using Complex = std::complex<double>;
-constexpr double two_pi = 2 * std::numbers::pi;
 using namespace prognose_constants::loop;
 constexpr int drive_place = 0, spool_place = 1;  // in missing_places
 

@@ -4,16 +4,15 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "base/error.h"
 #include "base/random.h"
+#include "base/two_pi.h"
 
 namespace servodx::rig {
 namespace {
 
-constexpr double centring = 2.5;  // [1/m] of rated current: 0.05 mA/mm of 20 mA
-constexpr double two_pi = 2.0 * std::numbers::pi;
+constexpr double centring = 2.5;             // [1/m] of rated current: 0.05 mA/mm of 20 mA
 using Wave = std::function<double(double)>;  // time [s] -> fraction of rated current
 
 Stimulus open_loop(const RigModel& m, Wave wave) {

@@ -10,6 +10,7 @@
 #include "base/csv.h"
 #include "base/error.h"
 #include "base/reading_limits.h"
+#include "base/two_pi.h"
 #include "base/units.h"
 #include "rig/fluid.h"
 #include "rig/magnetics.h"
@@ -19,8 +20,6 @@
 
 namespace servodx::rig {
 namespace {
-
-constexpr double two_pi = 2.0 * std::numbers::pi;
 
 struct Stand {
   const RigModel& type;

@@ -21,11 +21,12 @@
 #include "servodx/watch.h"
 #include "simulate/scenario.h"
 #include "simulate/simulate.h"
+#include "tune/constants.h"
 
 namespace servodx {
 namespace {
 
-constexpr std::size_t most_at_once = 16;  // points of a batch: memory, not results
+using tune_constants::most_at_once;
 
 struct Sum {
   double squares = 0, samples = 0;

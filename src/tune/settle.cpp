@@ -8,6 +8,7 @@
 #include <span>
 #include <tuple>
 
+#include "base/normal.h"
 #include "fit/chart.h"
 #include "fit/fit_work.h"
 #include "fit/identifiability.h"
@@ -63,8 +64,8 @@ Note profile_note(const ParameterResult& p, const ProfileInterval& interval) {
   return {Note::Kind::profile,
           fmt::format("profile of {}: 95 % from {:.4g}{} to {:.4g}{} {}; by curvature {:.4g} to {:.4g}", p.name,
                       p.profile_lower, interval.lower_open ? " (its bound)" : "", p.profile_upper,
-                      interval.upper_open ? " (its bound)" : "", p.unit, p.estimate - 1.96 * p.std_error,
-                      p.estimate + 1.96 * p.std_error)};
+                      interval.upper_open ? " (its bound)" : "", p.unit, p.estimate - normal_95 * p.std_error,
+                      p.estimate + normal_95 * p.std_error)};
 }
 
 struct KeptProfile {
