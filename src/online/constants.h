@@ -1,4 +1,6 @@
 // Numbers that decide how a growing log is watched: what each is for.
+//
+// No half and no double of any was run.
 #pragma once
 #include <array>
 #include <cstddef>
@@ -16,19 +18,17 @@ inline constexpr int n_windows = static_cast<int>(windows.size());
 inline constexpr double largest_square = 1e6;  // [deviates^2] of a sample: one spike does not fill a window for good
 
 // The run beside the log (residuals.cpp).
-inline constexpr double activity_time = 20e-3;  // [s] as the error model's
-inline constexpr double gap_memory = 10e-3;     // [s] a first stage remembers the command that passed in a gap
-inline constexpr double longest_gap = 0.25;     // [s] beyond it the valve may be anywhere: the run begins anew
-inline constexpr double settling = 0.1;         // [s] after a beginning: what was not measured has not settled
-inline constexpr double driver_floor = 0.01;    // of rated current: class of a shunt and of an amplifier
-inline constexpr double driver_timing = 1.0;    // [ms] by which the lag of driver and recorder may be off
+inline constexpr double longest_gap = 0.25;   // [s] beyond it the valve may be anywhere: the run begins anew
+inline constexpr double settling = 0.1;       // [s] after a beginning: what was not measured has not settled
+inline constexpr double driver_floor = 0.01;  // of rated current: class of a shunt and of an amplifier
+inline constexpr double driver_timing = 1.0;  // [ms] by which the lag of driver and recorder may be off
 
 // What is kept in memory. [s]
 inline constexpr double kept = 5.0;  // for the diagnosis
 inline constexpr double after_alarm =
     1.0;  // until the diagnosis: its change point needs a tenth of the window behind it
-inline constexpr double gross_window = 0.25;  // that a finding without a model is looked for in
-inline constexpr double gross_every = 0.05;
+inline constexpr double gross_window = 0.25;       // that a finding without a model is looked for in
+inline constexpr double gross_every = 0.05;        // a fifth of it: so much later at most such a finding is told
 inline constexpr double command_to_spool = 15e-3;  // a spool that moves has begun to
 
 // Alarms.
@@ -44,17 +44,15 @@ inline constexpr std::array<double, 3> named_again = {0.03, 0.1,
 inline constexpr double supply_window = 50e-3;
 inline constexpr double supply_strays = 0.1, supply_beyond_healthy = 2.0;
 
-// Limits (limits.cpp).
+// Limits (alarm_limits.cpp).
 inline constexpr double block = 0.5;           // [s] of healthy data: its largest level is one figure
 inline constexpr double beyond_healthy = 4.0;  // of the largest level of healthy data: the least limit
 inline constexpr double least_limit =
     25.0;                                   // [deviates^2] five deviates: healthy data that are quieter promise no more
 inline constexpr double usual_level = 4.0;  // [deviates^2] largest of a block, where no log says
-inline constexpr double usual_blocks = 2.0;     // that it counts for
-inline constexpr double alarms_per_hour = 0.1;  // unless asked else
+inline constexpr double usual_blocks = 2.0;  // that it counts for
 
-// Naming (sudden.cpp).
-inline constexpr double lead = 3e-3;    // [s] a failure has begun before it shows
-inline constexpr double as_good = 0.7;  // of the misfit left: below that of the second, a name stands alone
+// Naming (watcher.cpp).
+inline constexpr double lead = 3e-3;  // [s] a failure has begun before it shows
 
 }  // namespace servodx::online_constants

@@ -82,7 +82,6 @@ class Watcher {
   void raise(WatchEvent event, std::vector<WatchEvent>& events);
   std::string name_now(const WatchEvent& alarm) const;
   std::span<const Sample> since(double time) const;
-  const Levels& limits_of(std::size_t channel) const { return limit_[channel]; }
 
   WatchedModel model_;
   std::vector<Signal> recorded_;

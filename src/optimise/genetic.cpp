@@ -458,20 +458,6 @@ void GeneticOptions::validate() const {
   require(!std::isnan(cost_goal), "cost_goal", "must be a number");
 }
 
-const char* name(GeneticStop stop) {
-  switch (stop) {
-    case GeneticStop::generations:
-      return "generations";
-    case GeneticStop::evaluation_limit:
-      return "evaluation_limit";
-    case GeneticStop::goal:
-      return "goal";
-    case GeneticStop::interrupted:
-      return "interrupted";
-  }
-  return "unknown";
-}
-
 GeneticResult minimise_genetic(int n, const BatchCost& cost, const GeneticOptions& options,
                                const std::vector<std::vector<Point>>& seeds, const GeneticHooks& hooks,
                                const GeneticState* resume) {

@@ -45,7 +45,6 @@ struct GeneticOptions {
 };
 
 enum class GeneticStop { generations, evaluation_limit, goal, interrupted };
-const char* name(GeneticStop stop);
 
 struct GeneticHooks {
   // After every generation, when the state is whole: save it, show progress. False asks to stop.

@@ -21,7 +21,7 @@ inline constexpr std::array<double, 6> amplitudes = {0.03, 0.08, 0.2, 0.4, 0.7, 
 inline constexpr std::array<double, 4> rates = {4, 8, 15, 30};  // [Hz]
 inline constexpr double least_amplitude = 0.01;                 // [1 of rated current]
 
-// The figures (lanes.cpp, outlook.cpp).
+// The figures (lanes.cpp, plan.cpp, goal.cpp).
 inline constexpr int grid = 4;               // severities of a rival, on either side, in the search
 inline constexpr int fine_grid = 12;         // the same where the least severity is looked for
 inline constexpr double grid_end = 0.85;     // of the range: what is worse is seen without a test
@@ -34,8 +34,7 @@ inline constexpr double deviates_of_95_one_sided = normal_95_one_sided;  // of a
 inline constexpr double half_worth = 50;      // [deviates^2]
 inline constexpr double beyond_doubt = 0.02;  // of its logarithm: so that of two sure tests the surer is better
 
-// The search (search.cpp).
-inline constexpr int starts = 3;                   // plans that are simulated whole before the best one is improved
+// The search (piece_search.cpp, test_bench.cpp).
 inline constexpr double change = 1.5;              // factor of an amplitude or a rate
 inline constexpr int draws = 2;                    // pieces drawn for each place in a round
 inline constexpr double margin = 0.03;             // of a limit, kept free

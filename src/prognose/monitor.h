@@ -43,7 +43,6 @@ PressureLaw pressure_law(const std::string& name, const Table& table, const Supp
 class Monitor {
  public:
   Monitor(const MonitorParameters& parameters, PressureLaw law);
-  Monitor(const MonitorParameters& parameters) : Monitor(parameters, linear_pressure(parameters)) {}
 
   void start(double spool, double piston);
   // Holds the current [A] and the load [N] (positive opposes extension) over h [s].

@@ -20,16 +20,19 @@ MonitorParameters shipped(double supply = 207e5, double return_pressure = 5e5) {
   return monitor_parameters(shipped_table(), at);
 }
 
+// With the figure's own law of the pressure.
+Monitor linear(const MonitorParameters& p) { return {p, linear_pressure(p)}; }
+
 TEST(Monitor, RatedCurrentReachesTheRatedStrokeAndNoLoadSpeed) {
   const MonitorParameters p = shipped();
-  Monitor monitor(p);
+  Monitor monitor = linear(p);
   for (int k = 0; k < 200; ++k) monitor.step(0.02, 0.0, 1e-3);
   EXPECT_NEAR(monitor.spool(), 0.5e-3, 0.06e-3);  // the flow force takes some of it
   EXPECT_NEAR(monitor.speed(), 0.3, 0.06);
 }
 
 TEST(Monitor, StallsAtTheForceOfTheDataSheet) {
-  Monitor monitor(shipped());
+  Monitor monitor = linear(shipped());
   for (int k = 0; k < 500; ++k) monitor.step(0.02, 15.9e3, 1e-3);  // below stall, moves
   EXPECT_GT(monitor.speed(), 0.0);
   for (int k = 0; k < 50; ++k) monitor.step(0.02, 16.5e3, 1e-3);  // above, is driven back
@@ -40,7 +43,7 @@ TEST(Monitor, StallsAtTheForceOfTheDataSheet) {
 TEST(Monitor, SpoolIsTheSameAtEveryStepAndThePistonConvergesInFirstOrder) {
   const MonitorParameters p = shipped();
   const auto end_of = [&](double h) {
-    Monitor m(p);
+    Monitor m = linear(p);
     const int n = static_cast<int>(std::lround(0.02 / h));
     for (int k = 0; k < n; ++k) m.step(0.012, 2000.0, h);
     return std::pair(m.spool(), m.piston());
@@ -53,7 +56,7 @@ TEST(Monitor, SpoolIsTheSameAtEveryStepAndThePistonConvergesInFirstOrder) {
 
 TEST(Monitor, LimitsHoldOnFlapperSpoolPressureAndPiston) {
   const MonitorParameters p = shipped();
-  Monitor monitor(p);
+  Monitor monitor = linear(p);
   double before = 0;
   for (int k = 0; k < 3000; ++k) {
     monitor.step(0.05, 0.0, 1e-3);
@@ -68,7 +71,7 @@ TEST(Monitor, LimitsHoldOnFlapperSpoolPressureAndPiston) {
 
 TEST(Monitor, MirroredCurrentMirrorsMotion) {
   const MonitorParameters p = shipped();
-  Monitor a(p), b(p);
+  Monitor a = linear(p), b = a;
   for (int k = 0; k < 300; ++k) {
     const double u = 0.02 * std::sin(0.05 * k);
     a.step(u, 500.0, 1e-3), b.step(-u, -500.0, 1e-3);
@@ -80,7 +83,7 @@ TEST(Monitor, MirroredCurrentMirrorsMotion) {
 TEST(Monitor, TheClosedLoopFollowsItsSetpoint) {
   MonitorParameters p = shipped();
   p.control_gain = 1.0;  // 1 mA/mm
-  Monitor monitor(p);
+  Monitor monitor = linear(p);
   for (int k = 0; k < 2000; ++k) monitor.step(monitor.demand(0.05), 0.0, 1e-3);
   EXPECT_NEAR(monitor.piston(), 0.05, 1e-4);
 }
