@@ -33,7 +33,7 @@ inline constexpr int per_decade = 24;   // frequencies
 // Of the largest input: what leaks through the windows' skirts of a strong neighbour is no excitation.
 inline constexpr double quiet_input = 1e-4;
 
-// Uncertainty (uncertainty.cpp).
+// Uncertainty (sheet_uncertainty.cpp).
 inline constexpr std::uint32_t draws = 40;         // the standard deviation is known to 11 %
 inline constexpr std::uint32_t fewest_draws = 20;  // that show the figure
 inline constexpr double coverage = 2.0;            // k of an expanded uncertainty (GUM)

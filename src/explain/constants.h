@@ -47,9 +47,9 @@ inline constexpr double odds = 5.99;            // 2 ln 20: at odds below twenty
 inline constexpr double chance_at_odds = 0.05;  // the same as a chance
 inline constexpr double alarm_by_mark = 0.05;   // of nothing being wrong where no level is asked
 
-// The null of shares (explain/share_null.h): -ln(1 - share) of one cause of a healthy log, on the mean; the largest ratio
-// of a healthy log to what is usual of its cause, on the mean; and the logs that either counts for. The means are those
-// of the twenty logs of rig A's and rig B's baselines (docs/lab/independent_rigs.md), 0.018 and 8.2.
+// The null of shares (explain/share_null.h): -ln(1 - share) of one cause of a healthy log, on the mean; the largest
+// ratio of a healthy log to what is usual of its cause, on the mean; and the logs that either counts for. The means are
+// those of the twenty logs of rig A's and rig B's baselines (docs/lab/independent_rigs.md), 0.018 and 8.2.
 inline constexpr double usual_share = 0.018;
 inline constexpr double usual_ratio = 8.2;
 inline constexpr double usual_logs = 10;
@@ -103,11 +103,12 @@ inline constexpr double of_level = 0.1;      // of the level of sizes, beyond it
 inline constexpr std::size_t fewest = 100;   // samples of a log that is looked at
 inline constexpr double first_error = 1e-2;  // of the command's span, until the residual is seen
 inline constexpr double least_error = 1e-6;  // of the same: a current that was computed has no noise
+// Of the command. The gain is free and no cause: a driver may be set to a fifth of it as to five times.
 inline constexpr double least_gain = 0.2, most_gain = 5.0;
 inline constexpr double slowest = 2.0, at_once = 5000.0;  // [Hz] of the lag: beyond, no log tells it from none
 // Sizes at which a score looks. Of the delay's typical size, 1 ms; and [Hz].
 inline constexpr double tried_delays[] = {1.0, 0.25, 4.0};
-inline constexpr double tried_bandwidths[] = {200.0, 1000.0, 40.0};
+inline constexpr double tried_bandwidths[] = {200.0, 1000.0, 40.0};  // and five times as fast, five times as slow
 }  // namespace drive
 
 // What is shown of a residual (explain/show.cpp).

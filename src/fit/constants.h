@@ -1,5 +1,7 @@
 // Numbers that decide how a table meets its data sheet (fit/sheet.cpp) and how a Bode plot is read (fit/bode.cpp): what
 // each is for.
+//
+// No half and no double of any was run.
 #pragma once
 #include <array>
 #include <numbers>
@@ -36,8 +38,8 @@ inline constexpr double sheet_cost_tolerance = 1e-4;
 // corner is read to a few per cent between two of them.
 inline constexpr double bode_lowest = 2.0, bode_highest = 400.0;  // [Hz]
 inline constexpr int bode_frequencies = 24;
-// Backlash and friction of a few per cent of the stroke show at a tenth of rated current; a weak pilot stage shows where
-// the spool is to slew, at the +-40 % of catalogues.
+// Backlash and friction of a few per cent of the stroke show at a tenth of rated current; a weak pilot stage shows
+// where the spool is to slew, at the +-40 % of catalogues.
 inline constexpr std::array bode_amplitudes = {0.1, 0.4};  // [fraction of rated current]
 
 // A figure is met within so many standard deviations.

@@ -105,6 +105,7 @@ inline constexpr auto all_onsets = [] {
   for (std::size_t k = 0; k < all.size(); ++k) all[k] = {0.05 * static_cast<double>(k), k ? 4.0 / 17.0 : 4.0};
   return all;
 }();
+// Times the noise that is expected: a decade to either side, four steps each.
 inline constexpr std::array<double, 9> noise_levels = {0.1, 0.18, 0.32, 0.56, 1, 1.8, 3.2, 5.6, 10};
 // Wander over the whole record, in parts of the growth that matters: no law is quite the wear's, and what lies between
 // two of those tried is off them by a hundredth at most. A healthy figure may wander by the lesser two.
