@@ -29,6 +29,7 @@ void run(const Options& options) {
     require_option(join.by.has_value(), "--by", "unknown signal '" + options.by + "'", "see 'servodx list signals'");
   }
   if (options.near_given) join.near = options.near;
+  join.validate();
   Invocation invocation("join", options.common);
   invocation.check_files({options.first, options.second}, {options.output});
   const RigFile rig = invocation.rig();

@@ -27,15 +27,16 @@ struct Options {
 };
 
 void run(const Options& options) {
+  MonitorOptions how{.model = options.model};
+  if (!options.loop_gain.empty())
+    how.loop_gain = parse_gain(options.loop_gain, Dimension::current, {.file = "--loop-gain"}).value;
+  how.validate();
   Invocation invocation("monitor", options.common);
   invocation.check_files({options.log, options.params}, {options.output});
   const RigFile rig = invocation.rig();
   const Table table = apply_rig_facts(invocation.table(options.params), rig);
   const Log log = invocation.log(options.log, rig);
   report::add_to_head(invocation.header().head, {log});
-  MonitorOptions how{.model = options.model};
-  if (!options.loop_gain.empty())
-    how.loop_gain = parse_gain(options.loop_gain, Dimension::current, {.file = "--loop-gain"}).value;
   const LogMonitor monitor(log, table, rig, how);
   const MonitorParameters& parameters = monitor.parameters();
   *invocation.header().settings = {{"model", options.model}, {"loop_gain", parameters.control_gain}};

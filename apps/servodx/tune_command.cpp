@@ -78,7 +78,6 @@ int run(const Options& options) {
     tune_options.effects.emplace();
   else if (!options.effects.empty())
     tune_options.effects = CLI::detail::split(options.effects, ',');
-  tune_options.validate();
   const std::map<std::string, TuneLocal> methods = {
       {"least_squares", TuneLocal::least_squares}, {"ceres", TuneLocal::ceres}, {"nlopt", TuneLocal::nlopt}};
   require_option(methods.contains(options.local), "--local", "unknown method '" + options.local + "'",
@@ -86,8 +85,10 @@ int run(const Options& options) {
   tune_options.local = methods.at(options.local);
   tune_options.priors = priors_of(options.priors);
   tune_options.profile = CLI::detail::split(options.profile, ',');
+  std::erase_if(tune_options.profile, [](const std::string& name) { return name.empty(); });
   tune_options.seed = options.common.seed;
   tune_options.threads = options.common.threads;
+  tune_options.validate();
 
   Invocation invocation("tune", options.common, options.run);
   auto inputs = options.logs;
@@ -98,18 +99,15 @@ int run(const Options& options) {
   const std::vector<Log> logs = invocation.logs(options.logs, rig);
   report::add_to_head(invocation.header().head, logs);
 
-  // Those asked for stay free; of the default ones the logs decide.
-  const std::vector<std::string> effects = tune_options.effects.value_or(default_effects(rig_kind(logs, rig)));
-  for (const std::string& name : tune_options.profile)
-    require_option(name == "all" || name.empty() || with_effects(nominal, effects).find(name) >= 0, "--profile",
-                   "the table has no row '" + name + "'", "name rows of the table, with commas between, or 'all'");
+  require_profiled_rows(logs, nominal, rig, tune_options);
 
   report::Header& header = invocation.header();
   *header.settings = {{"population", tune_options.population},
                       {"generations", tune_options.generations},
                       {"heldout", tune_options.heldout},
                       {"moving_average", tune_options.moving_average},
-                      {"effects", effects},
+                      // Those asked for stay free; of the default ones the logs decide.
+                      {"effects", tune_options.effects.value_or(default_effects(rig_kind(logs, rig)))},
                       {"local", options.local},
                       {"profile", options.profile},
                       {"prior", options.priors}};

@@ -26,8 +26,11 @@ struct InstrumentError {
 // A figure passes where it is inside its limit by more than `guard` times its expanded uncertainty; on the limit it
 // never does. 0: simple acceptance.
 struct SheetOptions {
-  std::vector<InstrumentError> instruments;
+  std::vector<InstrumentError> instruments = {};
   double guard = 1.0;
+
+  // Throws InputError that names the option.
+  void validate() const;
 };
 
 struct AcceptanceSheet {

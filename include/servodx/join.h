@@ -23,9 +23,12 @@ struct ClockFit {
 };
 
 struct JoinOptions {
-  std::optional<Signal> by;    // empty: the shared signal that fixes the clock best
-  std::optional<double> near;  // [s] where the offset is known roughly: for signals that repeat
-  double near_within = 0.5;    // [s]
+  std::optional<Signal> by = {};    // empty: the shared signal that fixes the clock best
+  std::optional<double> near = {};  // [s] where the offset is known roughly: for signals that repeat
+  double near_within = 0.5;         // [s]
+
+  // Throws InputError that names the option, as the program calls it.
+  void validate() const;
 };
 
 // The first log with the second's further signals on its clock, cut to where both ran. Position, pressure and the like

@@ -79,6 +79,9 @@ struct ReadOptions {
   std::size_t minimum_rows = 20;
   bool require_response = true;  // at least one of spool, piston, both chamber pressures, load pressure or a flow
   bool require_drive = true;     // command or coil_current
+
+  // Throws InputError that names the option.
+  void validate() const;
 };
 
 // Largest part of a signal's samples that may be missing.

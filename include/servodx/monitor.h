@@ -8,9 +8,9 @@
 #include <vector>
 
 #include "servodx/log.h"
+#include "servodx/note.h"
 #include "servodx/rig.h"
 #include "servodx/table.h"
-#include "servodx/note.h"
 
 namespace servodx {
 
@@ -49,6 +49,9 @@ struct MonitorOptions {
   std::string model = "linear";  // pressure model in place of GP: `servodx list models`
   // [A/m] closes the position loop on the log's setpoint; empty: the measured current drives it.
   std::optional<double> loop_gain = {};
+
+  // Throws InputError that names the option, as the program calls it.
+  void validate() const;
 };
 
 // The monitor of a table at a log's supply, return and oil. Copies are the same one.

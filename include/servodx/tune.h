@@ -92,6 +92,11 @@ struct Tuned {
   std::shared_ptr<const TuneResult> whole;  // for the program's pages; none of a table that was read
 };
 
+// Throws InputError where the table, with the effects' rows that a tune of these logs frees, lacks a row of
+// `options.profile`: tune() asks for it before any fit.
+void require_profiled_rows(const std::vector<Log>& logs, const Table& nominal, const Rig& rig,
+                           const TuneOptions& options);
+
 // `nominal`: where it begins; a tuned one is tuned on. Throws InputError where the logs cannot be used.
 Tuned tune(const std::vector<Log>& logs, const Table& nominal, const Rig& rig, const TuneOptions& options = {});
 

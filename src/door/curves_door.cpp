@@ -1,10 +1,14 @@
 // The front door of `curves`.
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <cmath>
 #include <memory>
 #include <utility>
 
 #include "curves/curves.h"
 #include "curves/frequency_response.h"
+#include "door/require_setting.h"
 #include "servodx/curves.h"
 #include "servodx/log.h"
 #include "servodx/rig.h"
@@ -20,9 +24,21 @@ AcceptanceSheet::Kind kind_of(const std::vector<AcceptanceSheet::Figure>& figure
   return any(true) ? AcceptanceSheet::Kind::pass : AcceptanceSheet::Kind::not_judged;
 }
 
+bool is_size(double x) { return std::isfinite(x) && x >= 0; }
+
 }  // namespace
 
+void SheetOptions::validate() const {
+  door::require_setting(is_size(guard), "SheetOptions.guard", fmt::format("{} is no guard band", guard),
+                        "give it in expanded uncertainties: 1, or 0 for simple acceptance");
+  for (const InstrumentError& e : instruments)
+    door::require_setting(is_size(e.absolute) && is_size(e.relative), "SheetOptions.instruments",
+                          fmt::format("the uncertainty of '{}' is negative or no number", name_of(e.signal)),
+                          "give its size");
+}
+
 AcceptanceSheet acceptance_sheet(const Log& log, const Rig& rig, const SheetOptions& options) {
+  options.validate();
   curves::Sheet sheet = curves::read_curves(log, rig, options);
   AcceptanceSheet out;
   out.whole = std::make_shared<curves::Sheet>(sheet);

@@ -1,4 +1,5 @@
 // The front door of `monitor`.
+#include <cmath>
 #include <memory>
 
 #include "door/require_setting.h"
@@ -21,7 +22,15 @@ struct LogMonitor::Inside {
   bool closed = false;
 };
 
+void MonitorOptions::validate() const {
+  require_pressure_law(model);
+  door::require_setting(!loop_gain || (std::isfinite(*loop_gain) && *loop_gain > 0), "--loop-gain",
+                        "a loop's gain lies above nought",
+                        "give it such as \"1.8 mA/mm\", or leave it away: the measured current drives the monitor");
+}
+
 LogMonitor::LogMonitor(const Log& log, const Table& table, const Rig& rig, const MonitorOptions& options) {
+  options.validate();
   Inside in{log, prepare(log, rig), {}, {}, options.loop_gain.has_value()};
   const Supply at = supply_of(in.data, table);
   in.parameters = monitor_parameters(table, at);

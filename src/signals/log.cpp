@@ -1,5 +1,7 @@
 #include "signals/log.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cctype>
 #include <cmath>
@@ -7,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "base/error.h"
 #include "base/sha256.h"
 #include "servodx/rig.h"
 #include "signals/log_formats.h"
@@ -19,7 +22,15 @@ bool is_mat_file(const std::string& path) {
   return ending == ".mat";
 }
 
+void ReadOptions::validate() const {
+  constexpr std::size_t fewest = 2;  // a step between samples
+  if (minimum_rows < fewest)
+    throw InputError({.file = "ReadOptions.minimum_rows"}, fmt::format("{} rows are no log", minimum_rows),
+                     fmt::format("ask for {} or more; {} is the default", fewest, ReadOptions{}.minimum_rows));
+}
+
 Log read_log(const std::string& path, const RigFile& rig, const ReadOptions& options) {
+  options.validate();
   return is_mat_file(path) ? read_mat_log(path, rig, options) : read_csv_log(path, rig, options);
 }
 

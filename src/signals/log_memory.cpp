@@ -9,6 +9,7 @@ namespace servodx {
 
 Log make_log(const std::string& name, const std::vector<LogColumn>& columns, const RigFile& rig,
              const ReadOptions& options) {
+  options.validate();
   LogColumns log(name, rig, options, {.has_units = true, .has_lines = false});
   std::vector<std::span<const double>> values;
   for (const LogColumn& column : columns)

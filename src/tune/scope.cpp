@@ -17,6 +17,7 @@
 #include "servodx/log.h"
 #include "servodx/note.h"
 #include "servodx/tune.h"
+#include "tune/named_rows.h"
 
 namespace servodx {
 namespace {
@@ -27,9 +28,7 @@ constexpr double tuning_null_limit = 0.1;  // fault-free logs: a null may sit an
 void take_priors(std::vector<FreeValue>& shared, const std::map<std::string, double>& priors) {
   for (const auto& [name, sd] : priors) {
     const auto f = std::find_if(shared.begin(), shared.end(), [&](const FreeValue& v) { return v.name == name; });
-    if (f == shared.end())
-      throw InputError({.file = "--prior"}, "'" + name + "' is not among the rows that are fitted",
-                       "name a row with estimate 1; row 41 and the air are each log's own");
+    if (f == shared.end()) refuse_prior(name);
     f->prior_sd = sd / f->slope(f->start);
   }
 }

@@ -21,6 +21,7 @@
 #include "servodx/tune.h"
 #include "tune/constants.h"
 #include "tune/kept.h"
+#include "tune/named_rows.h"
 #include "tune/tune.h"
 #include "tune/usual_slope.h"
 
@@ -28,11 +29,6 @@ namespace servodx {
 namespace {
 
 using tune_constants::flat_error;
-
-bool asks_for_profile(const TuneOptions& options, const std::string& name) {
-  return std::any_of(options.profile.begin(), options.profile.end(),
-                     [&](const std::string& asked) { return asked == "all" || asked == name; });
-}
 
 // A free row's place in the fit and how well it is known there.
 struct Known {
@@ -123,7 +119,7 @@ Settled settle(const TuneScope& scope, const std::vector<ScreenedRow>& screened,
       const auto j = static_cast<std::size_t>(free - problem.free().begin());
       const double variance = covariance(static_cast<long>(j), static_cast<long>(j));
       take_estimate(p, row, {*free, j, point[j], std::sqrt(std::max(0.0, variance)), !off_bounds[j]});
-      if (off_bounds[j] && asks_for_profile(watch.options, row.name) && !watch.stopped()) {
+      if (off_bounds[j] && is_profiled(row.name, watch.options) && !watch.stopped()) {
         const KeptProfile kept = profile_through(watch, problem, point, static_cast<int>(j), covariance);
         const ProfileInterval& interval = kept.interval;
         p.profile_lower = free->from_unit(interval.lower);

@@ -27,6 +27,7 @@
 #include "tune/constants.h"
 #include "tune/earned.h"
 #include "tune/kept.h"
+#include "tune/named_rows.h"
 #include "tune/scope.h"
 #include "tune/screen.h"
 #include "tune/search.h"
@@ -126,11 +127,13 @@ void TuneOptions::validate() const {
     require(sd > 0 && std::isfinite(sd), "--prior", fmt::format("'{}={}' is not NAME=SD", name, sd),
             "a standard deviation about the table's nominal, above 0, in the table's unit");
   if (effects) require_known(*effects);
+  require_row_names(*this);
 }
 
 TuneResult tune_table(const std::vector<Log>& logs, const Table& nominal, const RigFile& rig,
                       const TuneOptions& options) {
   options.validate();
+  require_profiled_rows(logs, nominal, rig, options);
   TuneWatch watch(options);
   watch.kept = stages_of_tune(logs, nominal, rig, options);
   TuneScope scope = scope_of(logs, nominal, rig, options);

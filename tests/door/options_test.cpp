@@ -1,6 +1,7 @@
 // Options of the front door are refused before any work, and named as the program calls them.
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <functional>
 #include <string>
 
@@ -34,6 +35,10 @@ TEST(Options, OfATuneAreRefusedByName) {
   EXPECT_EQ(of([](auto& o) { o.moving_average = 2; }), "--moving-average");
   EXPECT_EQ(of([](auto& o) { o.threads = -1; }), "--threads");
   EXPECT_EQ(of([](auto& o) { o.priors["port_width"] = 0; }), "--prior");
+  EXPECT_EQ(of([](auto& o) { o.priors["no_such_row"] = 1; }), "--prior");
+  EXPECT_EQ(of([](auto& o) { o.priors["stiction_force"] = 1; }), "") << "a row, of an effect";
+  EXPECT_EQ(of([](auto& o) { o.profile = {"port_width", "no_such_row"}; }), "--profile");
+  EXPECT_EQ(of([](auto& o) { o.profile = {"all", "port_width", "stiction_force"}; }), "");
   EXPECT_EQ(of([](auto& o) { o.effects = {"no_such_effect"}; }), "--effects");
   EXPECT_EQ(of([](auto& o) { o.resume = true; }), "--resume");
 }
@@ -54,6 +59,26 @@ TEST(Options, OfTheOtherCallsAreRefusedByName) {
   EXPECT_EQ(refused<TrendOptions>([](auto& o) { o.failures = {{"no_such_check"}}; }), "--failure");
   EXPECT_EQ(refused<SimulationOptions>([](auto& o) { o.step = 0; }), "--step");
   EXPECT_EQ(refused<SimulationOptions>([](auto& o) { o.step = 1e-4, o.reference = true; }), "--reference");
+  EXPECT_EQ(refused<MonitorOptions>([](auto& o) { o.model = "no_such_model"; }), "--model");
+  for (double gain : {0.0, -1.8, HUGE_VAL, std::nan("")})
+    EXPECT_EQ(refused<MonitorOptions>([&](auto& o) { o.loop_gain = gain; }), "--loop-gain") << gain;
+  EXPECT_EQ(refused<JoinOptions>([](auto& o) { o.by = Signal::time; }), "--by");
+  EXPECT_EQ(refused<JoinOptions>([](auto& o) { o.near = std::nan(""); }), "--near");
+  EXPECT_EQ(refused<JoinOptions>([](auto& o) { o.near_within = 0; }), "JoinOptions.near_within");
+  EXPECT_EQ(refused<ReadOptions>([](auto& o) { o.minimum_rows = 1; }), "ReadOptions.minimum_rows");
+  for (double size : {-1.0, HUGE_VAL, std::nan("")}) {
+    EXPECT_EQ(refused<SheetOptions>([&](auto& o) { o.guard = size; }), "SheetOptions.guard") << size;
+    EXPECT_EQ(refused<SheetOptions>([&](auto& o) {
+                o.instruments = {{Signal::flow_a, size, 0}};
+              }),
+              "SheetOptions.instruments")
+        << size;
+    EXPECT_EQ(refused<SheetOptions>([&](auto& o) {
+                o.instruments = {{Signal::flow_a, 0, size}};
+              }),
+              "SheetOptions.instruments")
+        << size;
+  }
 }
 
 // A wrong option costs no fit: there is no log here that one could be made to.
@@ -67,11 +92,19 @@ TEST(Options, AreLookedAtBeforeTheLogs) {
     return "";
   };
   EXPECT_EQ(refused_at([] { tune({}, {}, {}, {.rounds = 0}); }), "--rounds");
+  EXPECT_EQ(refused_at([] { tune({}, {}, {}, {.priors = {{"no_such_row", 1}}}); }), "--prior");
+  EXPECT_EQ(refused_at([] { tune({}, {}, {}, {.profile = {"no_such_row"}}); }), "--profile");
   EXPECT_EQ(refused_at([] { make_baseline({}, {}, {}, {.false_alarm = 2}); }), "--false-alarm");
   EXPECT_EQ(refused_at([] { diagnose({}, {}, {}, {}, {.threads = -1}); }), "DiagnoseOptions.threads");
   EXPECT_EQ(refused_at([] { explain({}, {}, {}, {.threads = -1}); }), "--threads");
   EXPECT_EQ(refused_at([] { check({}, {}, {}, {.threads = -1}); }), "--threads");
   EXPECT_EQ(refused_at([] { simulate({}, {}, {}, {.threads = -1}); }), "--threads");
+  EXPECT_EQ(refused_at([] { LogMonitor({}, {}, {}, {.model = "no_such_model"}); }), "--model");
+  EXPECT_EQ(refused_at([] { acceptance_sheet({}, {}, {.guard = -1}); }), "SheetOptions.guard");
+  ClockFit clock;
+  EXPECT_EQ(refused_at([&] { join_recorders({}, {}, {.near_within = 0}, clock); }), "JoinOptions.near_within");
+  EXPECT_EQ(refused_at([] { read_log("nowhere.csv", {}, {.minimum_rows = 0}); }), "ReadOptions.minimum_rows");
+  EXPECT_EQ(refused_at([] { make_log("nothing", {}, {}, {.minimum_rows = 0}); }), "ReadOptions.minimum_rows");
 }
 
 }  // namespace

@@ -190,6 +190,26 @@ TEST_F(Door, RefusesABaselineOfAnotherTableInTheProgramsWords) {
   EXPECT_THROW(explain({log}, other, rig(), baseline, ExplainOptions{}), InputError);
 }
 
+// Of no table, and of an effect that is not freed.
+TEST_F(Door, RefusesToProfileARowThatIsNotThereInTheProgramsWords) {
+  for (const std::string row : {"port_witdh", "stiction_force"}) {
+    TuneOptions options;
+    options.effects.emplace(), options.profile = {row};
+    const std::string call = "tune t.csv --rig rig.toml --params table.csv -o t.out --effects none --profile " + row;
+    for (const std::string rehearsal : {"", " --dry-run"}) {
+      const Ended ended = desk->run(call + rehearsal);
+      EXPECT_EQ(ended.code, 2) << row << rehearsal;
+      try {
+        tune(logs({"t.csv"}), read_table("table.csv"), rig(), options);
+        ADD_FAILURE() << row << " is taken";
+      } catch (const InputError& error) {
+        EXPECT_NE(ended.err.find(error.what()), std::string::npos) << ended.err;
+        EXPECT_EQ(error.rule, "the table has no row '" + row + "'");
+      }
+    }
+  }
+}
+
 Row& width_of(Table& table) { return table.rows[static_cast<std::size_t>(table.find("port_width"))]; }
 
 TEST_F(Door, ACommentIsNoOtherTableAndARowChangedInMemoryIs) {

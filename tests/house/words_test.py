@@ -61,7 +61,7 @@ COMPARED = {
     "src/fit/log_data.cpp": ({"measurement.low_pass_order"}, "a word of the rig file"),
     "src/fit/nominal.cpp": ({"-", "valve.first_stage", "jet_pipe", "lines.fittings"},
                             "the unit of a pure number; words of the rig file"),
-    "src/tune/settle.cpp": ({"all"}, "a user's word: --profile all"),
+    "src/tune/named_rows.cpp": ({"all"}, "a user's word: --profile all"),
     "src/prognose/monitor.cpp": ({"linear", "A"}, "names of the monitor's models, as its user gives them"),
     "src/rig/facts.cpp": ({",", "rig", "fact", "unit", "low", "high", "source"},
                           "layout of a line of text; the header of a file of limits"),

@@ -98,8 +98,7 @@ TEST(Recorders, WhatDoesNotSettleTheClockIsRefused) {
   EXPECT_EQ(refusal(first, record(truth, {0, 0, 0, 30, 500, 2}, {Signal::pressure_a}), {}),
             "recorder: shares no signal with recorder; record one signal on both, such as the command, and map it in "
             "[columns] of the rig file");
-  EXPECT_EQ(refusal(first, record(truth, {0, 0, 0, 30, 500, 2}, {Signal::command}),
-                    {.by = Signal::spool_position, .near = {}}),
+  EXPECT_EQ(refusal(first, record(truth, {0, 0, 0, 30, 500, 2}, {Signal::command}), {.by = Signal::spool_position}),
             "recorder: 'spool_position' is not in both logs; name with --by a signal that both recorded");
   EXPECT_NE(refusal(first, record(other, {0, 0, 0, 30, 500, 2}, {Signal::command}), {}).find("are not alike"),
             std::string::npos);
@@ -109,7 +108,7 @@ TEST(Recorders, WhatDoesNotSettleTheClockIsRefused) {
   const Log twice = record(sine, {1.0, 0, 0, 25, 500, 2}, {Signal::command, Signal::spool_position});
   EXPECT_NE(refusal(once, twice, {}).find("'command' repeats itself"), std::string::npos);
   ClockFit clock;
-  join_recorders(once, twice, {.by = {}, .near = 1.05, .near_within = 0.2}, clock);
+  join_recorders(once, twice, {.near = 1.05, .near_within = 0.2}, clock);
   EXPECT_NEAR(clock.offset, 1.0, 1e-3);
 }
 
