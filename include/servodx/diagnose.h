@@ -95,14 +95,14 @@ std::string name_of(Verdict::Kind kind);
 // As it stands among the `results` of `servodx diagnose --json`; "null" of an interrupted one.
 std::string json_of(const Verdict& verdict);
 
-// All but diagnose_window() refuse a baseline of another table; all a log without a signal that the model reports.
+// All refuse a baseline of another table, and a log without a signal that the model reports.
 // Throws InputError. Several logs of one valve in one state: one verdict for all of them. At least one log.
 Verdict diagnose_pool(const std::vector<Log>& logs, const Tuned& tuned, const Rig& rig, const Baseline& baseline,
                       const DiagnoseOptions& options = {});
 Verdict diagnose(const Log& log, const Tuned& tuned, const Rig& rig, const Baseline& baseline,
                  const DiagnoseOptions& options = {});
 // Of a piece of a log that goes on: the verdict alone. No `explain`, no action, no friction beside the lateral force,
-// no operating point beside the tuning logs'. The baseline is taken as the table's.
+// no operating point beside the tuning logs'.
 Verdict diagnose_window(const Log& window, const Tuned& tuned, const Rig& rig, const Baseline& baseline,
                         const DiagnoseOptions& options = {});
 // Each log by itself, side by side, in their order; of those that were judged before the call was stopped.

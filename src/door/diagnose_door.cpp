@@ -172,6 +172,7 @@ Verdict diagnose_window(const Log& window, const Tuned& tuned, const Rig& rig, c
   if (options.watch.stopped()) return interrupted_verdict(assessment);
   return verdict_of(judge(std::move(assessment), parts_of(baseline).detection));
 }
+  require_same_table(baseline, tuned);
 
 std::vector<Verdict> diagnose_each(const std::vector<Log>& logs, const Tuned& tuned, const Rig& rig,
                                    const Baseline& baseline, const DiagnoseOptions& options) {

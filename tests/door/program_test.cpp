@@ -188,6 +188,7 @@ TEST_F(Door, RefusesABaselineOfAnotherTableInTheProgramsWords) {
     EXPECT_NE(std::string(error.what()).find("was made with another table than other.csv"), std::string::npos);
   }
   EXPECT_THROW(explain({log}, other, rig(), baseline, ExplainOptions{}), InputError);
+  EXPECT_THROW(diagnose_window(log, other, rig(), baseline), InputError);
 }
 
 // Of no table, and of an effect that is not freed.
