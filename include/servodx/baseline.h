@@ -32,10 +32,11 @@ struct BaselineOptions {
 
 struct Baseline {
   struct Score {
-    std::string log, sha256;
+    std::string log, sha256;              // sha256 of the file's bytes; empty: the log came from memory
     double score = 0;                     // [deviates] largest gain of any fault over health, beside the other logs'
     double adequacy = 0;                  // whitened rms of the worst channel; 1 as on the tuning logs
     std::map<std::string, double> gains;  // of each fault over health
+    std::string content;                  // content_hash of the log; empty: an earlier version did not keep it
   };
   double threshold = 0;                                // of a score [deviates]
   double asked = 0.01, promised = 0, promised_95 = 0;  // false-alarm rates; promised_95: at 95 % confidence

@@ -55,7 +55,7 @@ struct HypothesisPrediction {
 };
 
 struct Assessment {
-  std::string log, sha256;                   // of several, joined
+  std::string log, sha256, content;          // of several, joined; content_hash
   std::vector<std::string> logs;             // paths
   std::vector<HypothesisResult> hypotheses;  // healthy first; `judge` weighs and orders the faults
   double misfit_scale = 1;                   // tempers their probabilities (evidence/probabilities.h)

@@ -54,7 +54,13 @@ namespace {
 
 // But for its score, which is a statement beside others'.
 DetectionBaseline::Score unscored(const Assessment& a) {
-  DetectionBaseline::Score s{a.log, a.sha256, 0.0, a.hypotheses.front().adequacy, {}, a.test, a.figures, a.point, {}};
+  DetectionBaseline::Score s{.log = a.log,
+                             .sha256 = a.sha256,
+                             .adequacy = a.hypotheses.front().adequacy,
+                             .test = a.test,
+                             .figures = a.figures,
+                             .point = a.point,
+                             .content = a.content};
   if (!a.explanations.empty()) s.healthy = a.explanations.front();
   s.gains = gains_of(a);
   return s;

@@ -34,6 +34,7 @@ struct DetectionBaseline {
     std::optional<TestConditions> test = {};           // files of earlier versions have none
     std::vector<RecordFigure> figures = {};            // the same
     OperatingPoint point = {};                         // the same
+    std::string content = {};                          // content_hash of the log; the same
     std::optional<HypothesisPrediction> healthy = {};  // not in the file: for the report
   };
   std::vector<Score> scores;

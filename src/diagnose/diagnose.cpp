@@ -232,7 +232,7 @@ Ready make_ready(const std::vector<Log>& logs, const Table& tuned, const RigFile
   Ready ready;
   for (const Log& log : logs) {
     out.log += (out.log.empty() ? "" : " + ") + log.path;
-    out.sha256 += log.sha256;
+    out.sha256 += log.sha256, out.content += content_hash(log);
     out.logs.push_back(log.path);
     out.notes.insert(out.notes.end(), log.notes.begin(), log.notes.end());
     const bool fast = is_fast(log);

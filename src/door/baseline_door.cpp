@@ -34,6 +34,7 @@
 #include "servodx/trouble.h"
 #include "servodx/tune.h"
 #include "servodx/watch.h"
+#include "signals/fingerprint.h"
 #include "signals/rig_content.h"
 #include "signals/signal.h"
 #include "store/baseline_file.h"
@@ -50,7 +51,7 @@ Baseline of_parts(BaselineParts parts) {
   out.asked = d.asked, out.promised = d.promised, out.promised_95 = d.promised_95;
   out.logs = d.logs, out.logs_needed = d.logs_needed;
   for (const DetectionBaseline::Score& s : d.scores) {
-    out.scores.push_back({s.log, s.sha256, s.score, s.adequacy, {}});
+    out.scores.push_back({s.log, s.sha256, s.score, s.adequacy, {}, s.content});
     for (const auto& [fault, gain] : s.gains) out.scores.back().gains[std::string(fault->name)] = gain;
   }
   out.tuned_sha256 = d.tuned_sha256;
@@ -100,6 +101,13 @@ std::vector<std::string> signals_of_all(const std::vector<Log>& logs) {
         std::all_of(logs.begin(), logs.end(), [&](const Log& l) { return l.has(s.signal); }))
       out.emplace_back(s.name);
   return out;
+}
+
+bool is_own(const Baseline& baseline, const Log& log) {
+  const std::string content = content_hash(log);
+  return std::any_of(baseline.scores.begin(), baseline.scores.end(), [&](const Baseline::Score& s) {
+    return is_same_log({s.sha256, s.content}, {log.sha256, content});
+  });
 }
 
 // Keys that either says and the other does not, or says otherwise.
@@ -216,8 +224,7 @@ std::vector<Note> notes_beside(const Baseline& baseline, const Rig& rig, const s
                                  mark_of(Trouble::other_rig))});
   }
   for (const Log& log : logs) {
-    if (!log.sha256.empty() && std::any_of(baseline.scores.begin(), baseline.scores.end(),
-                                           [&](const auto& s) { return s.sha256 == log.sha256; }))
+    if (is_own(baseline, log))
       notes.push_back({Note::Kind::own_log, log.path + ": is one of the baseline's own logs, and helped to set the "
                                                        "threshold that it is judged by"});
     std::vector<std::string> lacking;

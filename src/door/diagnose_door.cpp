@@ -35,6 +35,7 @@
 #include "servodx/table.h"
 #include "servodx/tune.h"
 #include "servodx/tuned_by.h"
+#include "signals/fingerprint.h"
 #include "simulate/side_by_side.h"
 #include "store/baseline_parts.h"
 
@@ -75,7 +76,9 @@ std::vector<OperatingPoint> tuning_points(const DetectionBaseline& baseline, con
   std::vector<OperatingPoint> out;
   const TunedState state = tuned_state(tuned);
   for (const DetectionBaseline::Score& s : baseline.others)
-    if (std::any_of(state.by.begin(), state.by.end(), [&](const TunedBy& by) { return by.sha256 == s.sha256; }))
+    if (std::any_of(state.by.begin(), state.by.end(), [&](const TunedBy& by) {
+          return is_same_log({by.sha256, by.content}, {s.sha256, s.content});
+        }))
       out.push_back(s.point);
   return out;
 }

@@ -14,6 +14,7 @@
 #include "fit/tuning_comments.h"
 #include "servodx/log.h"
 #include "servodx/table.h"
+#include "signals/fingerprint.h"
 
 namespace servodx {
 namespace {
@@ -119,7 +120,7 @@ bool TunedState::is_by(const Log& log) const {
   const bool any_content = std::any_of(by.begin(), by.end(), [](const TunedBy& b) { return !b.content.empty(); });
   const std::string content = any_content ? content_hash(log) : "";
   return std::any_of(by.begin(), by.end(), [&](const TunedBy& b) {
-    return (!b.sha256.empty() && b.sha256 == log.sha256) || (!b.content.empty() && b.content == content);
+    return is_same_log({b.sha256, b.content}, {log.sha256, content});
   });
 }
 

@@ -134,7 +134,8 @@ std::vector<DetectionBaseline::Score> read_scores(const Reader& read, const Json
     }
     if (s.contains("figures")) out.back().figures = read_figures(read, s["figures"]);  // nor these
     if (s.contains("operating_point")) out.back().point = read_point(read, s["operating_point"]);
-    if (s.contains("test")) out.back().test = read_test(read, s["test"]);  // earlier versions wrote none
+    if (s.contains("test")) out.back().test = read_test(read, s["test"]);            // earlier versions wrote none
+    if (s.contains("content")) out.back().content = read.text(s, "scores.content");  // nor this
   }
   return out;
 }

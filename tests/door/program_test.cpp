@@ -211,6 +211,28 @@ TEST_F(Door, RefusesToProfileARowThatIsNotThereInTheProgramsWords) {
   }
 }
 
+TEST_F(Door, ABaselineKnowsItsOwnLogsByTheirSamples) {
+  const auto is_own = [](const Baseline& baseline, const Log& log) {
+    const std::vector<Note> notes = notes_beside(baseline, rig(), {log});
+    return std::any_of(notes.begin(), notes.end(), [](const Note& n) { return n.kind == Note::Kind::own_log; });
+  };
+  desk->write("again.csv", "# the same samples\n" + bytes_of("b1.csv"));
+  const Log own = read_log("b1.csv", rig()), again = read_log("again.csv", rig()), other = read_log("s.csv", rig());
+  ASSERT_NE(own.sha256, again.sha256);
+  const Baseline baseline = read_baseline("base.json");
+  EXPECT_EQ(baseline.scores.front().content, content_hash(own));
+  EXPECT_TRUE(is_own(baseline, own));
+  EXPECT_TRUE(is_own(baseline, again));
+  EXPECT_FALSE(is_own(baseline, other));
+
+  Json old = Json::parse(bytes_of("base.json"));
+  for (Json& score : old["scores"]) score.erase("content");
+  desk->write("by_bytes.json", old.dump());
+  const Baseline earlier = read_baseline("by_bytes.json");
+  EXPECT_TRUE(is_own(earlier, own));
+  EXPECT_FALSE(is_own(earlier, again)) << "an earlier version kept the hash of the file alone";
+}
+
 Row& width_of(Table& table) { return table.rows[static_cast<std::size_t>(table.find("port_width"))]; }
 
 TEST_F(Door, ACommentIsNoOtherTableAndARowChangedInMemoryIs) {

@@ -83,6 +83,7 @@ DetectionBaseline some_baseline() {
                         0.1 * i,
                         1.0 / (1 + i),
                         {{find_fault("sticky_spool"), 0.3 * i}}});
+  for (DetectionBaseline::Score& s : b.scores) s.content = "of " + s.log;
   b.adequacy_limit = 1.2345678901234567;
   b.null_limit = 0.05;
   b.tuned_sha256 = std::string(64, 'b');
@@ -525,6 +526,7 @@ TEST(BaselineFile, ReadsBackToTheSameBits) {
   for (std::size_t i = 0; i < b.scores.size(); ++i) {
     EXPECT_EQ(back.scores[i].log, b.scores[i].log);
     EXPECT_EQ(back.scores[i].sha256, b.scores[i].sha256);
+    EXPECT_EQ(back.scores[i].content, b.scores[i].content);
     EXPECT_EQ(back.scores[i].score, b.scores[i].score);
     EXPECT_EQ(back.scores[i].adequacy, b.scores[i].adequacy);
     EXPECT_EQ(back.scores[i].gains, b.scores[i].gains);
@@ -581,6 +583,9 @@ TEST(BaselineFile, RefusalsNameFileKeyAndMend) {
             "base.json: key 'false_alarm.asked': is not in an object" + mend);
   EXPECT_EQ(edited([](Json& j) { j["scores"] = Json::array(); }), "base.json: key 'scores': holds no scores" + mend);
   EXPECT_EQ(edited([](Json& j) { j["scores"][0].erase("score"); }), "base.json: key 'scores.score': is missing" + mend);
+  EXPECT_EQ(edited([](Json& j) { j["scores"][0].erase("content"); }), "accepted") << "of an earlier version";
+  EXPECT_EQ(edited([](Json& j) { j["scores"][0]["content"] = 1; }),
+            "base.json: key 'scores.content': is not a text" + mend);
   EXPECT_EQ(
       edited([](Json& j) { j["command"] = "tune"; }),
       "base.json: key 'command': is the result of 'tune', not of 'baseline'; name the file that 'servodx baseline "

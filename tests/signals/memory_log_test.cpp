@@ -7,6 +7,7 @@
 #include "servodx/error.h"
 #include "servodx/log.h"
 #include "servodx/rig.h"
+#include "signals/fingerprint.h"
 #include "temporary_folder.h"
 
 namespace servodx {
@@ -49,6 +50,13 @@ TEST(MemoryLog, EqualsTheLogOfAFileToTheLastBit) {
   }
   EXPECT_EQ(memory.path, "bench run 7");
   EXPECT_EQ(memory.notes.size(), file.notes.size());
+}
+
+TEST(MemoryLog, IsTheSameLogByItsBytesOrItsSamples) {
+  EXPECT_TRUE(is_same_log({"bytes", ""}, {"bytes", "samples"}));
+  EXPECT_TRUE(is_same_log({"", "samples"}, {"bytes", "samples"}));
+  EXPECT_FALSE(is_same_log({"bytes", "samples"}, {"others", "other"}));
+  EXPECT_FALSE(is_same_log({}, {})) << "nothing is known of either";
 }
 
 void expect_refused(const std::vector<LogColumn>& c, const std::string& rule) {

@@ -19,6 +19,7 @@ Json to_json(const DetectionBaseline::Score& s) {
   for (const auto& [fault, gain] : s.gains) gains[label_of(fault)] = gain;
   Json out = {{"log", s.log},
               {"sha256", s.sha256},
+              {"content", s.content},
               {"score", number(s.score)},
               {"adequacy", number(s.adequacy)},
               {"gains", gains}};
