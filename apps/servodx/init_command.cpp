@@ -121,7 +121,6 @@ std::string open_ends(const Options& options, const Columns& columns) {
 
 void run(const Options& options) {
   Invocation invocation("init", options.common);
-  require_option(options.common.rig.empty(), "--rig", "is what this command writes", "leave it out");
   invocation.check_files({options.log}, {options.output, options.table});
   for (const std::string& output : {options.output, options.table})
     require_option(!std::filesystem::exists(output), output, "is there already, and may hold your work",
@@ -169,7 +168,7 @@ void add_init_command(CLI::App& app) {
   command->add_option("LOG", options->log, "a rig log with your own column names, CSV or MAT")->required();
   command->add_option("-o,--output", options->output, "the rig file")->type_name("RIG.toml")->capture_default_str();
   command->add_option("--table", options->table, "the parameter table")->type_name("PARAMS.csv")->capture_default_str();
-  add_common_options(*command, options->common);
+  add_common_options(*command, options->common, RigOption::left_out);
   command->callback([options] { run(*options); });
 }
 

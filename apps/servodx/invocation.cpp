@@ -136,7 +136,7 @@ void check_manifest(const std::vector<std::string>& inputs, const std::vector<st
 
 }  // namespace
 
-void add_common_options(CLI::App& command, CommonOptions& options) {
+void add_common_options(CLI::App& command, CommonOptions& options, RigOption rig) {
   command.add_option("--json", options.json, "write the result as JSON to FILE; '-': to standard output, without text")
       ->type_name("FILE")
       ->group("Common");
@@ -147,9 +147,10 @@ void add_common_options(CLI::App& command, CommonOptions& options) {
   command.add_option("--pdf", options.pdf, "the same page on paper, printed by the Chromium of this machine")
       ->type_name("FILE.pdf")
       ->group("Common");
-  command.add_option("--rig", options.rig, "rig file: data-sheet facts and names of columns")
-      ->type_name("RIG.toml")
-      ->group("Common");
+  if (rig == RigOption::taken)
+    command.add_option("--rig", options.rig, "rig file: data-sheet facts and names of columns")
+        ->type_name("RIG.toml")
+        ->group("Common");
   command.add_option("--threads", options.threads, "threads to use, 0: all; the result does not depend on it")
       ->check(whole_number())
       ->type_name("N")

@@ -50,7 +50,9 @@ struct CommonOptions {
   bool quiet = false;
   bool dry_run = false;
 };
-void add_common_options(CLI::App& command, CommonOptions& options);
+// left_out: of a command that writes the rig file, or has a definition in its place.
+enum class RigOption { taken, left_out };
+void add_common_options(CLI::App& command, CommonOptions& options, RigOption rig = RigOption::taken);
 
 // Of commands that take long: how they may end early and be gone on with.
 struct RunOptions {

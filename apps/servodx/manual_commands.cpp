@@ -11,6 +11,7 @@
 #include "base/nearest.h"
 #include "commands.h"
 #include "examples.h"
+#include "invocation.h"
 
 namespace servodx {
 namespace {
@@ -203,18 +204,25 @@ std::string man_option(const CLI::Option& option) {
   return fmt::format(".TP\n{}\n{}.{}\n", head, roff(option.get_description()), roff(tail));
 }
 
-// One command; the options that all share are kept for a section of their own.
-void add_man(std::string& text, std::string& common, const CLI::App& command, const std::string& called) {
+bool is_common(const CLI::Option& option) { return option.get_group() == "Common"; }
+
+// One command; the options that all share have a section of their own.
+void add_man(std::string& text, const CLI::App& command, const std::string& called) {
   text += fmt::format(".SS {}\n{}.\n", roff(called), roff(command.get_description()));
-  std::string in_common;
-  for (const CLI::Option* option : options_of(command)) {
-    if (option->get_group() == "Common")
-      in_common += man_option(*option);
-    else if (option->get_name(false, true).find("--help") == std::string::npos)
+  for (const CLI::Option* option : options_of(command))
+    if (!is_common(*option) && option->get_name(false, true).find("--help") == std::string::npos)
       text += man_option(*option);
-  }
-  if (common.empty()) common = in_common;
   if (!command.get_footer().empty()) text += ".PP\n.nf\n" + roff(command.get_footer()) + "\n.fi\n";
+}
+
+std::string man_common() {
+  CLI::App command;
+  CommonOptions options;
+  add_common_options(command, options);
+  std::string text;
+  for (const CLI::Option* option : options_of(command))
+    if (is_common(*option)) text += man_option(*option);
+  return text;
 }
 
 std::string man(const CLI::App& app) {
@@ -222,13 +230,12 @@ std::string man(const CLI::App& app) {
   text += ".SH NAME\nservodx \\- " + roff(app.get_description()) +
           "\n.SH SYNOPSIS\n.B servodx\n\\fICOMMAND\\fR [\\fIOPTION\\fR ...]\n";
   text += ".SH COMMANDS\n";
-  std::string common;
   for (const CLI::App* command : commands_of(app)) {
-    add_man(text, common, *command, command->get_name());
+    add_man(text, *command, command->get_name());
     for (const CLI::App* part : commands_of(*command))
-      add_man(text, common, *part, command->get_name() + " " + part->get_name());
+      add_man(text, *part, command->get_name() + " " + part->get_name());
   }
-  text += ".SH COMMON OPTIONS\n" + common;
+  text += ".SH COMMON OPTIONS\n" + man_common();
   text += ".SH EXAMPLES\n";
   for (const Example& example : examples)
     text += fmt::format(".PP\n{}:\n.nf\n.RS\n{}\n.RE\n.fi\n", roff(std::string(example.purpose)),

@@ -185,8 +185,6 @@ void check_played(const Options& options) {
 
 void check_call(const Options& options) {
   check_played(options);
-  require_option(options.common.rig.empty(), "--rig", "is a data sheet, and the virtual rig is not made from one",
-                 "name the rig's definition with --rig-model");
   if (options.facts || !options.torque.empty()) {
     require_option(options.output.empty() && options.fleet.logs == 0, options.facts ? "--facts" : "--torque-map",
                    "writes no log", "leave out --output and --fleet");
@@ -298,7 +296,7 @@ void add_rig_command(CLI::App& app, int& exit_code) {
   command->add_option("--valves", options->fleet.valves, "of the fleet; without: one for every 30 logs")
       ->type_name("M");
   command->add_option("--out", options->folder, "new folder of the fleet")->type_name("DIR");
-  add_common_options(*command, options->common);
+  add_common_options(*command, options->common, RigOption::left_out);
   command->footer(names());
   command->callback([options, &exit_code] { exit_code = run(*options); });
 }

@@ -570,6 +570,9 @@ TEST(Manual, NamesEveryCommandAndOption) {
     const std::string first = std::string(command).substr(0, std::string(command).find(' '));
     EXPECT_NE(bash.find(first + ") options="), std::string::npos) << command;
   }
+  const std::string common = man.substr(man.find(".SH COMMON OPTIONS"));
+  for (const char* option : {"\\-\\-json", "\\-\\-rig", "\\-\\-quiet"})
+    EXPECT_NE(common.find(option), std::string::npos) << option;
   EXPECT_NE(bash.find("--false-alarm"), std::string::npos);
   EXPECT_NE(bash.find("--pool"), std::string::npos);
   for (const char* shell : {"zsh", "fish"}) EXPECT_FALSE(desk.run(std::string("completion ") + shell).out.empty());
