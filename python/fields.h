@@ -46,6 +46,7 @@ inline auto fields(Verdict::Suspicion& s) { return std::tie(s.name, s.severity, 
 inline auto fields(Verdict::Named& n) { return std::tie(n.name, n.probability, n.severity, n.channel); }
 inline auto fields(Verdict::Detectable& d) { return std::tie(d.value, d.unit); }
 inline auto fields(Verdict::Beyond& b) { return std::tie(b.first, b.where, b.depends_on, b.share, b.taken); }
+inline auto fields(Verdict::Friction& f) { return std::tie(f.friction, f.largest); }
 
 inline auto fields(Explanation::Gain& g) { return std::tie(g.value, g.lower, g.upper); }
 inline auto fields(Explanation::Channel& c) {
@@ -99,7 +100,7 @@ inline auto fields(Fleet::Row& r) {
   return std::tie(r.file, r.log, r.kind, r.fault, r.severity, r.probability, r.error, r.threshold);
 }
 inline auto fields(Fleet::Refused& r) { return std::tie(r.file, r.line, r.column, r.rule, r.mend); }
-inline auto fields(Fleet& f) { return std::tie(f.rows, f.refused, f.unread, f.interrupted, f.csv); }
+inline auto fields(Fleet& f) { return std::tie(f.rows, f.refused, f.unread, f.interrupted, f.without_schema, f.csv); }
 
 namespace python {
 
@@ -108,7 +109,8 @@ inline auto fields(SimulationOfLog& s) { return std::tie(s.run, s.log, s.rig); }
 inline auto fields(VerdictText& v) {
   return std::tie(v.json, v.log, v.interrupted, v.kind, v.error, v.threshold, v.p_value, v.fault, v.faults, v.severity,
                   v.probabilities, v.ambiguous_with, v.separating_test, v.onset, v.suspicion, v.detectable, v.beyond,
-                  v.action_class, v.action, v.parameters, v.channels, v.notes, v.simulations, v.failed_simulations);
+                  v.friction, v.action_class, v.action, v.parameters, v.channels, v.notes, v.simulations,
+                  v.failed_simulations);
 }
 inline auto fields(ExplanationText& e) {
   return std::tie(e.json, e.kind, e.where, e.depends_on, e.channels, e.causes, e.standing, e.candidates,

@@ -84,9 +84,9 @@ void run_one(const Options& options) {
   history->record(options.valve, {.at = at, .cycles = options.cycles, .serial = serial}, checked, tuned);
 
   const auto& result = *checked.whole;
-  header.simulations = result.simulations;
-  header.failed_simulations = result.failed_simulations;
-  invocation.note(result.notes);
+  header.simulations = checked.simulations;
+  header.failed_simulations = checked.failed_simulations;
+  invocation.note(checked.notes);
   if (invocation.wants_report()) invocation.write_report(report::check_page(header, result, log.time));
   invocation.finish(report::text_of(result), report::check_json(result));
 }

@@ -86,10 +86,9 @@ ListedChecks::Outcome ListedChecks::set_aside(const CheckRow& row, const report:
 }
 
 void ListedChecks::write_result(const CheckRow& row, report::Header& header, const Checked& checked) const {
-  const auto& result = *checked.whole;
-  header.simulations = result.simulations, header.failed_simulations = result.failed_simulations;
-  note(header, texts_of(result.notes));
-  if (folder_) folder_->write_result(name_of_result(row), report::dump(header, report::check_json(result)));
+  header.simulations = checked.simulations, header.failed_simulations = checked.failed_simulations;
+  note(header, texts_of(checked.notes));
+  if (folder_) folder_->write_result(name_of_result(row), report::dump(header, report::check_json(*checked.whole)));
 }
 
 // Another process may have been quicker.

@@ -70,7 +70,7 @@ void run(const Options& options) {
   const AcceptanceSheet judged = acceptance_sheet(log, rig, how);
   const auto& sheet = *judged.whole;
   if (!options.svg.empty()) write_file(options.svg, report::curves_svg(sheet, *rig.fact("valve.rated_current")));
-  invocation.note(sheet.notes);
+  invocation.note(judged.notes);
   if (invocation.wants_report())
     invocation.write_report(report::curves_page(
         invocation.header(), sheet, options.log, *rig.fact("valve.rated_current"), how.guard,

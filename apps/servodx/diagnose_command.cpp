@@ -84,8 +84,7 @@ std::vector<Verdict> judge_pool(const std::vector<Log>& logs, const Tuned& tuned
 }
 
 std::string friction_line(const Verdict& verdict) {
-  const auto& beside = verdict.whole->friction;
-  return beside ? "  " + report::friction_in_words(*beside) + "\n" : "";
+  return verdict.friction ? "  " + report::friction_in_words(*verdict.friction) + "\n" : "";
 }
 
 // `now`: of one verdict.

@@ -63,17 +63,17 @@ int run(const Options& options) {
   const Explanation explanation = baseline ? explain(logs, tuned, rig, *baseline, how) : explain(logs, tuned, rig, how);
   const auto& result = *explanation.whole;
   write_table(options.output, explanation.table);
-  header.simulations = result.simulations;
-  header.failed_simulations = result.failed_simulations;
+  header.simulations = explanation.simulations;
+  header.failed_simulations = explanation.failed_simulations;
   for (const Log& log : logs) invocation.note(log.notes);
-  invocation.note(result.notes);
-  if (result.interrupted) invocation.note_how_to_go_on();
+  invocation.note(explanation.notes);
+  if (explanation.interrupted) invocation.note_how_to_go_on();
   if (invocation.wants_report())
     invocation.write_report(
         report::explain_page(header, result, replays_of(explanation, logs, tuned, rig, report::most_replays)));
   invocation.finish(report::text_of(result, {.colour = colour_wanted(), .written_to = options.output}),
                     report::explain_json(result));
-  return result.interrupted ? interrupted : ran;
+  return explanation.interrupted ? interrupted : ran;
 }
 
 }  // namespace

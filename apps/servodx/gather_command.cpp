@@ -43,8 +43,8 @@ int run(const Options& options) {
   if (invocation.dry_run()) return ran;
   if (fleet.interrupted) return interrupted;  // a part of the folder is no table of it
   if (found) note_counts(invocation, *found);
-  if (const std::size_t without_schema = fleet.whole->without_schema; without_schema > 0)
-    invocation.note({std::to_string(without_schema) +
+  if (fleet.without_schema > 0)
+    invocation.note({std::to_string(fleet.without_schema) +
                      " results carry no schema, as earlier versions wrote them; they are read as far as they go"});
   if (!options.output.empty()) write_file(options.output, fleet.csv);
   const FleetCounts* counts = found ? &*found : nullptr;

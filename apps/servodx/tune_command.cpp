@@ -119,10 +119,10 @@ int run(const Options& options) {
   write_tuned(options.output, tuned);
   const auto& result = *tuned.whole;
 
-  header.simulations = result.simulations;
-  header.failed_simulations = result.failed_simulations;
+  header.simulations = tuned.simulations;
+  header.failed_simulations = tuned.failed_simulations;
   for (const Log& log : logs) invocation.note(log.notes);
-  invocation.note(result.notes);
+  invocation.note(tuned.notes);
   const auto likeliest = likeliest_miss(
       logs, tuned, rig, {.seed = tune_options.seed, .threads = tune_options.threads, .watch = tune_options.watch});
   const report::GoodEnough good = report::good_enough(

@@ -66,6 +66,13 @@ struct Verdict {
     double share = 0;                      // of the held-out misfit that it removes
     bool taken = false;                    // beyond what healthy logs show
   };
+  // Of a spool, beside what leakage can press one of its lands onto the sleeve with (Merritt 1967).
+  struct Friction {
+    double friction = 0;  // [N] of the spool, sliding and breaking away
+    double largest = 0;   // [N] lateral, of one land
+    // That the largest force would need to bring this friction.
+    double coefficient() const { return friction / largest; }
+  };
   std::string log;
   bool interrupted = false;
   Kind kind = Kind::healthy;
@@ -81,6 +88,8 @@ struct Verdict {
   std::optional<Suspicion> suspicion;            // of a healthy verdict
   std::map<std::string, Detectable> detectable;  // what this log could have shown, by label
   std::optional<Beyond> beyond;                  // of an unknown verdict
+  std::optional<Friction> friction;              // of a named fault that moves the spool's, where the rig file states
+                                                 // the land's length
   ActionClass action_class = ActionClass::none;
   std::string action;                       // what the fault named asks for
   std::vector<ParameterResult> parameters;  // rows that moved, the fault's first

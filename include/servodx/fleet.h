@@ -33,6 +33,7 @@ struct Fleet {
   std::vector<Row> rows;  // worst first: what is not healthy, then by error over threshold, then by path
   std::vector<Refused> refused, unread;
   bool interrupted = false;
+  std::size_t without_schema = 0;           // results of earlier versions, read as far as they go
   std::string csv;                          // the table as `servodx gather -o` writes it
   std::shared_ptr<const FleetTable> whole;  // for the program's pages
 };

@@ -11,6 +11,7 @@
 #include <optional>
 
 #include "parameters/table.h"
+#include "servodx/diagnose.h"
 #include "servodx/rig.h"
 
 namespace servodx {
@@ -21,11 +22,7 @@ struct Diagnosis;
 double lateral_force(double land_length, double diameter, double drop, double clearance, double taper);
 double largest_lateral_force(double land_length, double diameter, double drop);
 
-struct FrictionBesideForce {
-  double friction = 0;                                       // [N] of the spool, sliding and breaking away
-  double largest = 0;                                        // [N] lateral, of one land
-  double coefficient() const { return friction / largest; }  // that the largest force would need to bring this friction
-};
+using FrictionBesideForce = Verdict::Friction;
 
 // Steel on steel in oil rubs with 0.1 to 0.2 at the boundary (Bowden & Tabor 1950, ch. 10): beyond, something else
 // holds the spool, such as a chip, lacquer or a bent sleeve.

@@ -112,7 +112,8 @@ Verdict verdict_of(Diagnosis d) {
   out.suspicion = suspicion_of(d);
   for (const Detectable& f : d.detectable)
     out.detectable[report::label_of(f.fault)] = {f.severity, report::unit_of(f.fault)};
-  if (d.beyond) out.beyond = {d.beyond->first, d.beyond->where, d.beyond->depends_on, d.beyond->share, d.beyond->taken};
+  out.beyond = d.beyond;
+  out.friction = d.friction;
   out.action_class = d.action.of, out.action = d.action.text;
   for (const MovedRow& row : d.moved) out.parameters.push_back(row);
   out.channels = d.assessment.channels;
@@ -171,11 +172,11 @@ Verdict diagnose(const Log& log, const Tuned& tuned, const Rig& rig, const Basel
 Verdict diagnose_window(const Log& window, const Tuned& tuned, const Rig& rig, const Baseline& baseline,
                         const DiagnoseOptions& options) {
   options.validate();
+  require_same_table(baseline, tuned);
   Assessment assessment = assess(window, tuned.table, rig, options);
   if (options.watch.stopped()) return interrupted_verdict(assessment);
   return verdict_of(judge(std::move(assessment), parts_of(baseline).detection));
 }
-  require_same_table(baseline, tuned);
 
 std::vector<Verdict> diagnose_each(const std::vector<Log>& logs, const Tuned& tuned, const Rig& rig,
                                    const Baseline& baseline, const DiagnoseOptions& options) {

@@ -60,6 +60,7 @@ Fleet gather_results(const std::string& folder, const Watch& watch) {
   for (const FleetRow& r : table.rows) out.rows.push_back(row_of(r));
   out.refused = refused_of(table.refused), out.unread = refused_of(table.unread);
   out.interrupted = table.interrupted;
+  out.without_schema = table.without_schema;
   out.csv = csv_of(table);
   out.whole = whole;
   return out;
