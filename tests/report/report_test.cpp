@@ -62,6 +62,7 @@
 #include "store/baseline_file.h"
 #include "store/truth_file.h"
 #include "temporary_folder.h"
+#include "tune/trust.h"
 #include "tune/tune.h"
 
 namespace servodx::report {

@@ -18,6 +18,7 @@
 #include "servodx/replay.h"
 #include "servodx/table.h"
 #include "servodx/tune.h"
+#include "tune/trust.h"
 #include "tune/tune.h"
 
 namespace servodx::report {

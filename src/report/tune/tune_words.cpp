@@ -3,10 +3,12 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <nlohmann/json.hpp>
+#include <utility>
 
+#include "diagnose/best_seen.h"
 #include "fit/free_values.h"
 #include "optimise/box_least_squares.h"
 #include "report/diagnose/diagnosis_words.h"
@@ -15,32 +17,11 @@
 #include "report/shared/replay_part.h"
 #include "servodx/log.h"
 #include "servodx/tune.h"
-#include "tune/constants.h"
+#include "tune/trust.h"
+#include "tune/tune.h"
 
 namespace servodx::report {
 namespace {
-
-constexpr double predicts_worse = 2.0;  // held-out over fitted error
-constexpr double seen = 3.0;            // deviates
-// Fitted error over the sensor's noise from which the model follows another rig than this: with the data sheet of the
-// rig pooled errors are 1 to 22 of it, with another valve's flow and cylinder 160 to 760 (piston, pressures).
-constexpr double follows = 50.0;
-
-bool has_arrived(const TuneResult& result) {
-  switch (result.stop) {
-    case StopReason::converged:
-    case StopReason::goal:
-      return true;
-    case StopReason::stalled:
-    case StopReason::iteration_limit:
-    case StopReason::evaluation_limit:
-      return result.still_promised <= tune_constants::worth_a_step + tune_constants::tells_valleys * result.cost;
-    case StopReason::interrupted:
-    case StopReason::start_failed:
-      return false;
-  }
-  return false;
-}
 
 std::string word_of(StopReason reason) {
   switch (reason) {
@@ -67,40 +48,6 @@ std::string end_in_words(const TuneResult& result) {
                                ? fmt::format("{} of its cost still promised", digits(result.still_promised, 2))
                                : "without derivatives nothing says how much is left";
   return fmt::format("{}, {}", word_of(result.stop), left);
-}
-
-struct Prediction {
-  double usual = 0;  // held-out over fitted error, median over the logs
-  double worst = 0;  // and the log that is predicted worst
-  const LogResult* log = nullptr;
-};
-
-Prediction prediction_of(const TuneResult& result, Signal signal) {
-  Prediction p;
-  std::vector<double> ratios;
-  for (const LogResult& log : result.logs)
-    for (const ChannelResult& c : log.channels) {
-      if (c.signal != signal || !(c.rms > 0) || !std::isfinite(c.heldout_rms)) continue;
-      ratios.push_back(c.heldout_rms / c.rms);
-      if (ratios.back() > p.worst) p.worst = ratios.back(), p.log = &log;
-    }
-  if (ratios.empty()) return p;
-  std::sort(ratios.begin(), ratios.end());
-  p.usual = ratios[ratios.size() / 2];
-  return p;
-}
-
-std::vector<Visible> best_of(const std::vector<Promise>& promises) {
-  std::vector<Visible> best;
-  for (const Promise& p : promises)
-    for (std::size_t k = 0; k < p.faults.size(); ++k) {
-      if (best.size() <= k)
-        best.push_back(p.faults[k]), best.back().deviates_at_least = best.back().deviates_at_typical = 0;
-      best[k].deviates_at_least =
-          std::fmax(best[k].deviates_at_least, p.faults[k].deviates_at_least);  // NaN where a simulation failed
-      best[k].deviates_at_typical = std::fmax(best[k].deviates_at_typical, p.faults[k].deviates_at_typical);
-    }
-  return best;
 }
 
 }  // namespace
@@ -186,49 +133,67 @@ std::string unfollowed_in_words(const std::vector<Unfollowed>& channels) {
   return join(parts);
 }
 
+namespace {
+
+std::string join_times(const std::vector<TrustVerdict::Times>& channels) {
+  std::vector<std::string> parts;
+  for (const TrustVerdict::Times& c : channels)
+    parts.push_back(fmt::format("{} {} times", words(std::string(info(c.signal).name)), digits(c.times, 2)));
+  return join(parts);
+}
+
+std::vector<std::string> names_of(const std::vector<std::size_t>& which, const std::vector<Visible>& faults) {
+  std::vector<std::string> names;
+  for (const std::size_t k : which) names.push_back(faults[k].fault);
+  return names;
+}
+
+std::string reason_in_words(TrustDoubt doubt, const TrustVerdict& verdict, const TuneResult& result,
+                            const std::vector<std::string>& hidden, const BeyondFaults* likeliest) {
+  switch (doubt) {
+    case TrustDoubt::interrupted:
+      return "it was interrupted";
+    case TrustDoubt::unfollowed:
+      return "the model does not follow these logs: " + unfollowed_in_words(result.unfollowed) +
+             (likeliest ? "; " + beyond_in_words(*likeliest) : "");
+    case TrustDoubt::another_sheet:
+      return "the model does not follow these logs (error over noise: " + join_times(verdict.beyond_noise) +
+             "): check the rig file's data sheet (flow, areas, supply), signs and gains of sensors";
+    case TrustDoubt::off_drawing:
+      return "what the data sheet states ended at the end of its range (" + off_drawing_in_words(result.off_drawing) +
+             " the sheet's): something that the model lacks pulls; trust verdicts at small openings less";
+    case TrustDoubt::predicts_worse:
+      return "it predicts worse than it fits (" + join_times(verdict.worse) + "): tune with more logs, of more kinds";
+    case TrustDoubt::not_arrived:
+      return "the search has not arrived (" + end_in_words(result) + "): more --rounds";
+    case TrustDoubt::lone_valley:
+      return "no second start reached the best valley: more --generations";
+    case TrustDoubt::hidden_faults:
+      return "on logs like these it would not see, even at typical size: " + join(hidden);
+  }
+  return "";
+}
+
+}  // namespace
+
 GoodEnough good_enough(const TuneResult& result, const std::vector<Promise>& promises, const BeyondFaults* likeliest) {
   GoodEnough g;
-  std::vector<std::string> errors, worse, far;
-  for (const ChannelResult& c : result.channels) {
-    const std::string name = words(std::string(info(c.signal).name));
+  g.best = best_seen(promises);
+  std::vector<TrustEvidence::Fault> faults;
+  for (const Visible& v : g.best) faults.push_back({v.deviates_at_least, v.deviates_at_typical});
+  const TrustVerdict verdict = trust_in(evidence_of(result, std::move(faults)));
+  g.trust = verdict.trust;
+  std::vector<std::string> errors;
+  for (const ChannelResult& c : result.channels)
     if (c.noise_rms > 0 && std::isfinite(c.heldout_rms))
-      errors.push_back(name + " " + digits(c.heldout_rms / c.noise_rms, 2));
-    if (c.noise_rms > 0 && c.rms > follows * c.noise_rms)
-      far.push_back(fmt::format("{} {} times", name, digits(c.rms / c.noise_rms, 2)));
-    const Prediction p = prediction_of(result, c.signal);
-    if (p.usual > predicts_worse)
-      worse.push_back(fmt::format("{} {} times", name, digits(p.usual, 2)));
-    else if (p.worst > predicts_worse)
-      g.exceptions.push_back(fmt::format("{} of {} ({} times)", name, file_name(p.log->path), digits(p.worst, 2)));
-  }
+      errors.push_back(words(std::string(info(c.signal).name)) + " " + digits(c.heldout_rms / c.noise_rms, 2));
   if (!errors.empty()) g.errors = "error over noise on the held-out part: " + join(errors);
-  if (result.interrupted) g.reasons.push_back("it was interrupted");
-  if (!result.unfollowed.empty())
-    g.reasons.push_back("the model does not follow these logs: " + unfollowed_in_words(result.unfollowed) +
-                        (likeliest ? "; " + beyond_in_words(*likeliest) : ""));
-  if (!far.empty())
-    g.reasons.push_back("the model does not follow these logs (error over noise: " + join(far) +
-                        "): check the rig file's data sheet (flow, areas, supply), signs and gains of sensors");
-  if (!result.off_drawing.empty())
-    g.reasons.push_back("what the data sheet states ended at the end of its range (" +
-                        off_drawing_in_words(result.off_drawing) +
-                        " the sheet's): something that the model lacks pulls; trust verdicts at small openings less");
-  if (!worse.empty())
-    g.reasons.push_back("it predicts worse than it fits (" + join(worse) + "): tune with more logs, of more kinds");
-  if (!has_arrived(result) && !result.interrupted)
-    g.reasons.push_back("the search has not arrived (" + end_in_words(result) + "): more --rounds");
-  if (result.starts.size() > 1 && result.reached_best() < 2)
-    g.reasons.push_back("no second start reached the best valley: more --generations");
-  g.best = best_of(promises);
-  for (const Visible& v : g.best) {
-    if (!(v.deviates_at_typical >= seen))
-      g.hidden.push_back(v.fault);
-    else if (!(v.deviates_at_least >= seen))
-      g.faint.push_back(v.fault);
-  }
-  if (!g.hidden.empty())
-    g.reasons.push_back("on logs like these it would not see, even at typical size: " + join(g.hidden));
-  g.trust = !result.unfollowed.empty() ? Trust::no : g.reasons.empty() ? Trust::yes : Trust::with_care;
+  for (const TrustVerdict::Exception& e : verdict.exceptions)
+    g.exceptions.push_back(fmt::format("{} of {} ({} times)", words(std::string(info(e.signal).name)),
+                                       file_name(result.logs[e.log].path), digits(e.times, 2)));
+  g.hidden = names_of(verdict.hidden, g.best), g.faint = names_of(verdict.faint, g.best);
+  for (const TrustDoubt doubt : verdict.doubts)
+    g.reasons.push_back(reason_in_words(doubt, verdict, result, g.hidden, likeliest));
   return g;
 }
 
