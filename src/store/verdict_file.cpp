@@ -6,6 +6,10 @@
 
 #include "base/error.h"
 #include "base/json_text.h"
+#include "diagnose/decide.h"
+#include "diagnose/test_change.h"
+#include "faults/fault.h"
+#include "faults/registry.h"
 #include "store/result_json.h"
 
 namespace servodx::store {
@@ -40,10 +44,19 @@ std::set<std::string> reference_of(const Json& result) {
   return out;
 }
 
+std::optional<VerdictKind> verdict_called(const std::string& word) {
+  if (word == "healthy") return VerdictKind::healthy;
+  if (word == "fault") return VerdictKind::fault;
+  if (word == "unknown") return VerdictKind::unknown;
+  return {};
+}
+
 TestSide side_of(const Json& verdict) {
   TestSide side;
   side.log = text_or_empty(verdict, "log");
-  side.verdict = text_or_empty(verdict, "verdict");
+  const std::string word = text_or_empty(verdict, "verdict");
+  side.verdict = verdict_called(word);
+  if (!side.verdict) side.other_verdict = word;
   side.fault = text_or_empty(verdict, "fault");
   side.error = number_or_nan(verdict, "error");
   side.threshold = number_or_nan(verdict, "threshold");
@@ -61,7 +74,22 @@ TestSide side_of(const Json& verdict) {
   return side;
 }
 
+TestFinding finding_of(const TestSide& side) {
+  TestFinding finding{.healthy = side.healthy()};
+  if (side.size) finding.size = {side.size->lower, side.size->upper};
+  return finding;
+}
+
 }  // namespace
+
+TwoFindings findings_of(const TestSide& last, const TestSide& now) {
+  TwoFindings two{finding_of(last), finding_of(now)};
+  const bool named = !last.fault.empty() || !now.fault.empty();
+  two.same = named ? last.fault == now.fault : last.verdict == now.verdict && last.other_verdict == now.other_verdict;
+  const Fault* fault = find_fault(now.fault);  // null of one that this version does not know
+  two.worse_upwards = !fault || fault->worst > fault->healthy;
+  return two;
+}
 
 bool holds_one_verdict(const Json& result) {
   const auto verdicts = result.find("results");

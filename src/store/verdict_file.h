@@ -6,6 +6,9 @@
 #include <string>
 #include <vector>
 
+#include "diagnose/decide.h"
+#include "diagnose/test_change.h"
+
 namespace servodx::store {
 
 struct TestSize {
@@ -26,19 +29,23 @@ struct TestPlace {
 
 // What a verdict says, as its file holds it.
 struct TestSide {
-  std::string log, verdict, fault;  // fault: empty where none is named
+  std::string log, fault;              // fault: empty where none is named
+  std::optional<VerdictKind> verdict;  // none: the file has another word, as a later version may, or none
+  std::string other_verdict;           // that word
   double error = 0, threshold = 0, null = 0;
   std::optional<TestSize> size;
   std::vector<TestRow> rows;
   std::vector<TestPlace> places;
 
-  const std::string& name() const { return fault.empty() ? verdict : fault; }
+  bool healthy() const { return fault.empty() && verdict == VerdictKind::healthy; }
 };
 
 struct StoredVerdict {
   TestSide side;
   std::set<std::string> reference;  // what judged it: hashes of table and baseline
 };
+
+TwoFindings findings_of(const TestSide& last, const TestSide& now);
 
 // Of `diagnose`, with one verdict.
 bool holds_one_verdict(const nlohmann::ordered_json& result);

@@ -16,38 +16,7 @@
 namespace servodx::report {
 namespace {
 
-using store::TestSide;
-using store::TestSize;
 using store::verdict_of;
-
-TestSide side(const std::string& verdict, const std::string& fault = "", double lower = 0, double upper = 0) {
-  TestSide s;
-  s.verdict = verdict, s.fault = fault;
-  if (upper > 0) s.size = TestSize{0.5 * (lower + upper), lower, upper, "m"};
-  return s;
-}
-
-TEST(TwoTests, AChangeIsOfTheNameFirstAndThenOfTheSize) {
-  const std::string backlash = "feedback_wire_backlash", loss = "torque_motor_loss";
-  EXPECT_EQ(change_of(side("healthy"), side("healthy")), TestChange::alike);
-  EXPECT_EQ(change_of(side("healthy"), side("fault", backlash)), TestChange::failed);
-  EXPECT_EQ(change_of(side("healthy"), side("unknown")), TestChange::failed);
-  EXPECT_EQ(change_of(side("unknown"), side("healthy")), TestChange::mended);
-  EXPECT_EQ(change_of(side("unknown"), side("fault", backlash)), TestChange::another);
-  EXPECT_EQ(change_of(side("fault", loss), side("fault", backlash)), TestChange::another);
-  EXPECT_EQ(change_of(side("unknown"), side("unknown")), TestChange::alike);
-}
-
-TEST(TwoTests, AFaultHasGrownWhereTheIntervalsDoNotTouchTowardsItsWorst) {
-  const auto of = [](const char* fault, double lower, double upper) { return side("fault", fault, lower, upper); };
-  const char* const backlash = "feedback_wire_backlash";  // worse upwards
-  EXPECT_EQ(change_of(of(backlash, 1, 2), of(backlash, 3, 4)), TestChange::grown);
-  EXPECT_EQ(change_of(of(backlash, 3, 4), of(backlash, 1, 2)), TestChange::lessened);
-  EXPECT_EQ(change_of(of(backlash, 1, 2), of(backlash, 1.9, 4)), TestChange::alike);
-  const char* const loss = "torque_motor_loss";  // of what is left: worse downwards
-  EXPECT_EQ(change_of(of(loss, 0.6, 0.7), of(loss, 0.3, 0.4)), TestChange::grown);
-  EXPECT_EQ(change_of(of(loss, 0.3, 0.4), of(loss, 0.6, 0.7)), TestChange::lessened);
-}
 
 Json row(const char* name, double nominal, double estimate, double std_error) {
   return {{"name", name}, {"unit", "N"}, {"nominal", nominal}, {"estimate", estimate}, {"std_error", std_error}};
@@ -103,12 +72,20 @@ TEST(TwoTests, TextJsonAndPageSayTheSame) {
   const TwoTests t = two_tests("last.json", verdict_of(last), verdict_of(now));
   EXPECT_NE(text_of(t).find("last.json: gone: the last test showed sticky spool"), std::string::npos) << text_of(t);
   EXPECT_EQ(to_json(t)["change"], "mended");
+  EXPECT_EQ(to_json(t)["verdict"], "fault");
   EXPECT_EQ(to_json(t)["parameters"].size(), 1u);
   Page page({}, "x");
   add_two_tests(page, t);
   const std::string html = page.html();
   for (const char* shown : {"sticky spool", "moving mass", "0.5 of 2", "+6"})
     EXPECT_NE(html.find(shown), std::string::npos) << shown;
+}
+
+TEST(TwoTests, TheWordOfALaterVersionIsWrittenAsItStands) {
+  const TwoTests t = two_tests("last.json", verdict_of(result("of_a_later_version", Json::array())),
+                               verdict_of(result("unknown", Json::array())));
+  EXPECT_EQ(to_json(t)["verdict"], "of_a_later_version");
+  EXPECT_EQ(words_of(t), "another finding than in the last test, of a later version");
 }
 
 TEST(LastTest, IsOneVerdictOrRefused) {

@@ -10,9 +10,9 @@
 #include <string_view>
 
 #include "base/celsius.h"
-#include "faults/fault.h"
-#include "faults/registry.h"
+#include "diagnose/test_change.h"
 #include "fit/row_meaning.h"
+#include "report/diagnose/diagnosis_words.h"
 #include "report/shared/columns.h"
 #include "report/shared/handy.h"
 #include "report/shared/replay_part.h"
@@ -53,8 +53,12 @@ std::vector<TwoTests::Row> rows_of(const TestSide& last, const TestSide& now, bo
   return out;
 }
 
+std::string verdict_word(const TestSide& side) { return side.verdict ? word_of(*side.verdict) : side.other_verdict; }
+
+std::string name_of(const TestSide& side) { return side.fault.empty() ? verdict_word(side) : side.fault; }
+
 std::string verdict_in_words(const TestSide& side) {
-  if (side.fault.empty()) return side.verdict;
+  if (side.fault.empty()) return verdict_word(side);
   return words(side.fault) +
          (side.size ? ", " + handy_interval(side.size->value, side.size->lower, side.size->upper, side.size->unit)
                     : "");
@@ -110,26 +114,11 @@ std::string word_of(TestChange change) {
 
 }  // namespace
 
-TestChange change_of(const TestSide& last, const TestSide& now) {
-  const std::string healthy = "healthy";
-  if (last.name() == healthy || now.name() == healthy)
-    return last.name() == now.name() ? TestChange::alike
-           : now.name() == healthy   ? TestChange::mended
-                                     : TestChange::failed;
-  if (last.name() != now.name()) return TestChange::another;
-  if (!last.size || !now.size) return TestChange::alike;
-  const bool above = now.size->lower > last.size->upper, below = now.size->upper < last.size->lower;
-  if (!above && !below) return TestChange::alike;  // of an end that is not known, too
-  const Fault* fault = find_fault(now.fault);
-  const bool worse_upwards = !fault || fault->worst > fault->healthy;
-  return above == worse_upwards ? TestChange::grown : TestChange::lessened;
-}
-
 TwoTests two_tests(const std::string& last_path, const StoredVerdict& last, const StoredVerdict& now) {
   TwoTests t;
   t.last_name = last_path;
   t.last = last.side, t.now = now.side;
-  t.change = change_of(t.last, t.now);
+  t.change = change_of(store::findings_of(t.last, t.now));
   t.same_reference = last.reference == now.reference;
   t.rows = rows_of(t.last, t.now, t.same_reference);
   return t;
@@ -142,7 +131,7 @@ std::string words_of(const TwoTests& t) {
     case TestChange::failed:
       return "new: the last test was healthy";
     case TestChange::mended:
-      return "gone: the last test showed " + words(t.last.name());
+      return "gone: the last test showed " + words(name_of(t.last));
     case TestChange::grown:
       return "grown since the last test, from " +
              handy_interval(t.last.size->value, t.last.size->lower, t.last.size->upper, t.last.size->unit);
@@ -150,7 +139,7 @@ std::string words_of(const TwoTests& t) {
       return "less than in the last test, " +
              handy_interval(t.last.size->value, t.last.size->lower, t.last.size->upper, t.last.size->unit);
     case TestChange::another:
-      return "another finding than in the last test, " + words(t.last.name());
+      return "another finding than in the last test, " + words(name_of(t.last));
   }
   return "";
 }
@@ -160,7 +149,7 @@ std::string finding_of(const TwoTests& t) { return verdict_in_words(t.now) + "; 
 Tone tone_of(const TwoTests& t) {
   switch (t.change) {
     case TestChange::alike:
-      return t.now.name() == "healthy" ? Tone::good : Tone::plain;
+      return t.now.healthy() ? Tone::good : Tone::plain;
     case TestChange::mended:
     case TestChange::lessened:
       return Tone::good;
@@ -197,7 +186,7 @@ Json to_json(const TwoTests& t) {
                     {"matters", r.matters}});
   return {{"result", t.last_name},
           {"log", t.last.log},
-          {"verdict", t.last.verdict},
+          {"verdict", verdict_word(t.last)},
           {"fault", t.last.fault.empty() ? Json(nullptr) : Json(t.last.fault)},
           {"error", number(t.last.error)},
           {"threshold", number(t.last.threshold)},

@@ -7,19 +7,13 @@
 #include <string>
 #include <vector>
 
+#include "diagnose/test_change.h"
 #include "report/shared/json.h"
 #include "report/shared/page.h"
 #include "report/shared/parts.h"
 #include "store/verdict_file.h"
 
 namespace servodx::report {
-
-// alike: the same verdict, and sizes whose intervals touch. failed: healthy before. mended: healthy now. grown,
-// lessened: the same fault. another: another fault, or an unknown state in place of one.
-enum class TestChange { alike, failed, mended, grown, lessened, another };
-
-// Two 95 % intervals that do not touch differ with over 99 %; a size without an interval is as it was.
-TestChange change_of(const store::TestSide& last, const store::TestSide& now);
 
 struct TwoTests {
   std::string last_name;  // of the result
