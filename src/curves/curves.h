@@ -58,7 +58,7 @@ struct Sheet {
   std::vector<SweepCurve> curves;
   std::vector<ResponsePoint> response;
   std::string response_signal;
-  std::string verdict = "not_judged";  // pass | fail | not_judged
+  AcceptanceSheet::Kind verdict = AcceptanceSheet::Kind::not_judged;
   std::vector<Note> notes;
 };
 
@@ -71,5 +71,7 @@ Sheet read_figures(const Log& log, const RigFile& rig);
 // of distributions), and each error of an instrument. The valve's own scatter from test to test is not in it.
 void add_uncertainty(Sheet& sheet, const Log& log, const RigFile& rig, const std::vector<InstrumentError>& instruments);
 void judge(Sheet& sheet, const RigFile& rig, double guard);
+// One figure that does not pass fails the sheet; of those that are not judged it says nothing.
+AcceptanceSheet::Kind verdict_of(const std::vector<Figure>& figures);
 
 }  // namespace servodx::curves

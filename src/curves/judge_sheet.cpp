@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "curves/curves.h"
+#include "servodx/curves.h"
 #include "servodx/note.h"
 #include "servodx/rig.h"
 
@@ -21,17 +22,22 @@ Judgement judged(const Figure& f, const Limit& limit, double guard) {
 
 }  // namespace
 
+AcceptanceSheet::Kind verdict_of(const std::vector<Figure>& figures) {
+  const auto any = [&](bool pass) {
+    return std::any_of(figures.begin(), figures.end(), [&](const Figure& f) { return f.pass() == pass; });
+  };
+  if (any(false)) return AcceptanceSheet::Kind::fail;
+  return any(true) ? AcceptanceSheet::Kind::pass : AcceptanceSheet::Kind::not_judged;
+}
+
 void judge(Sheet& sheet, const RigFile& rig, double guard) {
-  bool any = false, all = true;
   for (Figure& f : sheet.figures) {
     const auto limit = rig.limits.find(f.name);
     if (limit == rig.limits.end()) continue;
     f.limit = limit->second;
     f.judgement = judged(f, limit->second, guard);
-    any = any || f.judgement != Judgement::not_judged;
-    all = all && (f.judgement == Judgement::pass || f.judgement == Judgement::not_judged);
   }
-  sheet.verdict = !any ? "not_judged" : all ? "pass" : "fail";
+  sheet.verdict = verdict_of(sheet.figures);
   for (const auto& [name, limit] : rig.limits)
     if (std::none_of(sheet.figures.begin(), sheet.figures.end(), [&name = name](const Figure& f) {
           return f.name == name && f.judgement != Judgement::not_judged;

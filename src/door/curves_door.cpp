@@ -1,7 +1,6 @@
 // The front door of `curves`.
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cmath>
 #include <memory>
 #include <utility>
@@ -15,14 +14,6 @@
 
 namespace servodx {
 namespace {
-
-AcceptanceSheet::Kind kind_of(const std::vector<AcceptanceSheet::Figure>& figures) {
-  const auto any = [&](bool pass) {
-    return std::any_of(figures.begin(), figures.end(), [&](const auto& f) { return f.pass == pass; });
-  };
-  if (any(false)) return AcceptanceSheet::Kind::fail;
-  return any(true) ? AcceptanceSheet::Kind::pass : AcceptanceSheet::Kind::not_judged;
-}
 
 bool is_size(double x) { return std::isfinite(x) && x >= 0; }
 
@@ -50,7 +41,7 @@ AcceptanceSheet acceptance_sheet(const Log& log, const Rig& rig, const SheetOpti
     out.response.push_back({p.frequency, p.gain, p.phase, p.coherence});
   out.response_signal = std::move(sheet.response_signal);
   out.notes = std::move(sheet.notes);
-  out.kind = kind_of(out.figures);
+  out.kind = sheet.verdict;
   return out;
 }
 

@@ -110,16 +110,16 @@ TEST(Curves, LimitsPassAndFailOnTheirSide) {
   rig.limits["rated_flow"].min = 1e-4;
   rig.limits["pressure_gain"].min = 0.3;  // this log cannot say
   Sheet sheet = read_curves(log, rig);
-  EXPECT_EQ(sheet.verdict, "pass");
+  EXPECT_EQ(sheet.verdict, AcceptanceSheet::Kind::pass);
   EXPECT_TRUE(std::any_of(sheet.notes.begin(), sheet.notes.end(), [](const Note& n) {
     return n.kind == Note::Kind::unjudged_limit && n.text.find("pressure_gain") != std::string::npos;
   }));
   rig.limits["hysteresis"].max = 0.02;
   sheet = read_curves(log, rig);
-  EXPECT_EQ(sheet.verdict, "fail");
+  EXPECT_EQ(sheet.verdict, AcceptanceSheet::Kind::fail);
   EXPECT_EQ(find(sheet, "hysteresis")->pass(), false);
   EXPECT_EQ(find(sheet, "rated_flow")->pass(), true);
-  EXPECT_EQ(read_curves(log, rig_with()).verdict, "not_judged");
+  EXPECT_EQ(read_curves(log, rig_with()).verdict, AcceptanceSheet::Kind::not_judged);
 }
 
 // A straight flow curve with white noise and a coarse meter.
@@ -179,7 +179,24 @@ TEST(Judgement, AValueOnTheLimitIsNoPass) {
   EXPECT_EQ(judged("rated_flow", -1.03e-4, 2e-6, 1), Judgement::pass);  // by its size
   EXPECT_EQ(judged("rated_flow", 1.03e-4, std::nan(""), 1), Judgement::not_judged);
   judged("hysteresis", 0.039, 0.002, 1);
-  EXPECT_EQ(sheet.verdict, "fail");
+  EXPECT_EQ(sheet.verdict, AcceptanceSheet::Kind::fail);
+}
+
+TEST(Judgement, OneFigureThatDoesNotPassFailsTheSheetAndWhatIsNotJudgedDoesNot) {
+  using Kind = AcceptanceSheet::Kind;
+  constexpr Judgement pass = Judgement::pass, near = Judgement::too_near, fail = Judgement::fail,
+                      none = Judgement::not_judged;
+  struct Case {
+    std::vector<Judgement> figures;
+    Kind verdict;
+  };
+  for (const Case& c : {Case{{}, Kind::not_judged}, Case{{none, none}, Kind::not_judged}, Case{{pass}, Kind::pass},
+                        Case{{none, pass}, Kind::pass}, Case{{pass, near}, Kind::fail}, Case{{near}, Kind::fail},
+                        Case{{fail, none}, Kind::fail}, Case{{pass, fail}, Kind::fail}}) {
+    std::vector<Figure> figures;
+    for (const Judgement j : c.figures) figures.emplace_back().judgement = j;
+    EXPECT_EQ(verdict_of(figures), c.verdict) << c.figures.size();
+  }
 }
 
 TEST(Curves, AFastOrOneWaySweepTellsNoHysteresis) {

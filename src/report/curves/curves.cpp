@@ -12,6 +12,7 @@
 #include "report/shared/columns.h"
 #include "report/shared/handy.h"
 #include "report/shared/line_chart.h"
+#include "servodx/curves.h"
 
 namespace servodx::report {
 namespace {
@@ -28,6 +29,17 @@ Json numbers(const std::vector<double>& values) {
 const char* key_of(Judgement judgement) {
   constexpr const char* keys[] = {"not_judged", "pass", "too_near", "fail"};
   return keys[static_cast<std::size_t>(judgement)];
+}
+const char* key_of(AcceptanceSheet::Kind verdict) {
+  switch (verdict) {
+    case AcceptanceSheet::Kind::pass:
+      return "pass";
+    case AcceptanceSheet::Kind::fail:
+      return "fail";
+    case AcceptanceSheet::Kind::not_judged:
+      return "not_judged";
+  }
+  return "";
 }
 Json bound(const std::optional<double>& b) { return b ? Json(*b) : Json(nullptr); }
 
@@ -86,9 +98,9 @@ std::string guard_words(double guard) {
 }
 
 std::string text_of(const Sheet& sheet, const std::string& log, bool colour) {
-  const bool judged = sheet.verdict != "not_judged";
-  std::string verdict = sheet.verdict == "pass" ? "PASS" : sheet.verdict == "fail" ? "FAIL" : "no limits given";
-  if (colour && judged) verdict = fmt::format("\033[1;{}m{}\033[0m", sheet.verdict == "pass" ? "32" : "31", verdict);
+  const bool pass = sheet.verdict == AcceptanceSheet::Kind::pass, fail = sheet.verdict == AcceptanceSheet::Kind::fail;
+  std::string verdict = pass ? "PASS" : fail ? "FAIL" : "no limits given";
+  if (colour && (pass || fail)) verdict = fmt::format("\033[1;{}m{}\033[0m", pass ? "32" : "31", verdict);
   Columns table("lllllll", 2);
   table.row({"figure", "value", "+- (k = 2)", "limit", "", "from", ""});
   for (const Figure& f : sheet.figures)
@@ -118,7 +130,7 @@ Json curves_json(const Sheet& sheet) {
   for (const curves::ResponsePoint& p : sheet.response)
     response.push_back(
         {{"frequency", p.frequency}, {"amplitude", p.gain}, {"phase", p.phase}, {"coherence", p.coherence}});
-  return {{"verdict", sheet.verdict},
+  return {{"verdict", key_of(sheet.verdict)},
           {"figures", figures},
           {"curves", sweeps},
           {"bode", {{"signal", sheet.response_signal}, {"points", response}}}};

@@ -16,6 +16,7 @@
 #include "report/shared/page.h"
 #include "report/shared/parts.h"
 #include "report/shared/replay_part.h"
+#include "servodx/curves.h"
 #include "servodx/data_sheet.h"
 #include "servodx/log.h"
 
@@ -126,8 +127,9 @@ Page curves_page(const Header& header, const Sheet& sheet, const std::string& lo
                  const CertificateOf& certificate, const SheetFit* stated) {
   Page page(header, "Acceptance sheet of " + file_name(log));
   Verdict v;
-  v.tone = sheet.verdict == "pass" ? Tone::good : sheet.verdict == "fail" ? Tone::bad : Tone::plain;
-  v.word = sheet.verdict == "pass" ? "PASS" : sheet.verdict == "fail" ? "FAIL" : "NOT JUDGED";
+  const bool pass = sheet.verdict == AcceptanceSheet::Kind::pass, fail = sheet.verdict == AcceptanceSheet::Kind::fail;
+  v.tone = pass ? Tone::good : fail ? Tone::bad : Tone::plain;
+  v.word = pass ? "PASS" : fail ? "FAIL" : "NOT JUDGED";
   const auto count = [&](Judgement judgement) {
     return std::count_if(sheet.figures.begin(), sheet.figures.end(),
                          [&](const Figure& f) { return f.judgement == judgement; });
