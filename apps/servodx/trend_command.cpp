@@ -1,7 +1,6 @@
 // `servodx trend`: a valve's state, the levels its checks have reached and the life left; or a fleet's ranking.
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <cmath>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -10,8 +9,8 @@
 #include "base/atomic_file.h"
 #include "base/sha256.h"
 #include "commands.h"
-#include "fleet/prometheus.h"
 #include "invocation.h"
+#include "report/trend/life_gauges.h"
 #include "report/trend/trend_report.h"
 #include "servodx/history.h"
 #include "servodx/trend.h"
@@ -37,15 +36,6 @@ void require_levels_of_checks(const std::vector<std::string>& failures, const st
     require_check(name);
     invocation.note({name + ": no check of this history reads it; its failure level changes nothing"});
   }
-}
-
-std::vector<LifeGauge> gauges_of(const std::vector<Trend>& trends) {
-  std::vector<LifeGauge> out;
-  for (const Trend& t : trends) {
-    const Trend::Remaining unknown{NAN, NAN, NAN}, left = t.remaining.value_or(unknown);
-    out.push_back({t.valve, name_of(t.state), left.median, left.lower, left.upper});
-  }
-  return out;
 }
 
 void run(Options options) {
@@ -88,7 +78,7 @@ void run(Options options) {
     invocation.note(trends.back().notes);
   }
   most_urgent_first(trends);
-  if (!options.prometheus.empty()) write_file(options.prometheus, text_of(gauges_of(trends)));
+  if (!options.prometheus.empty()) write_file(options.prometheus, report::life_gauges(trends));
   if (invocation.wants_report()) invocation.write_report(report::trend_page(invocation.header(), trends, options.all));
   invocation.finish(options.all ? report::ranking(trends) : report::text_of(*trends.front().whole),
                     report::trend_json(trends, options.all));

@@ -8,31 +8,16 @@
 #include <filesystem>
 #include <regex>
 #include <system_error>
-#include <utility>
 
 #include "fleet/fleet_verdict.h"
 #include "fleet/gather.h"
+#include "fleet/prometheus_text.h"
 
 namespace servodx {
 namespace {
 
 namespace fs = std::filesystem;
-
-std::string label(const std::string& value) {
-  std::string out;
-  for (const char c : value) {
-    if (c == '\\' || c == '"') out += '\\';
-    out += c == '\n' ? std::string("\\n") : std::string(1, c);
-  }
-  return '"' + out + '"';
-}
-
-void head(std::string& text, const char* name, const char* help) {
-  text += fmt::format("# HELP {} {}\n# TYPE {} gauge\n", name, help, name);
-}
-
-// Prometheus has its own word for what never comes.
-std::string number(double value) { return std::isinf(value) ? "+Inf" : fmt::format("{}", value); }
+using prometheus::head, prometheus::label;
 
 }  // namespace
 
@@ -84,20 +69,6 @@ std::string ValveGauges::text() const {
     out += fmt::format("servodx_valve_last_seen_timestamp_seconds{{valve={}}} {:.3f}\n", label(valve), r.seen);
   head(out, "servodx_logs_set_aside", "Logs that were refused, with their reasons in the folder of the results.");
   out += fmt::format("servodx_logs_set_aside {}\n", set_aside_);
-  return out;
-}
-
-std::string text_of(const std::vector<LifeGauge>& lives) {
-  std::string out;
-  head(out, "servodx_valve_state", "1 for the state that the valve's history shows.");
-  for (const LifeGauge& l : lives)
-    out += fmt::format("servodx_valve_state{{valve={},state={}}} 1\n", label(l.valve), label(l.state));
-  head(out, "servodx_valve_life_left_hours", "Hours of use until the valve fails: median and bounds.");
-  for (const LifeGauge& l : lives)
-    for (const auto& [bound, hours] : {std::pair("lower", l.lower), {"median", l.median}, {"upper", l.upper}})
-      if (!std::isnan(hours))
-        out += fmt::format("servodx_valve_life_left_hours{{valve={},bound={}}} {}\n", label(l.valve), label(bound),
-                           number(hours));
   return out;
 }
 

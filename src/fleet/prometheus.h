@@ -37,14 +37,6 @@ class ValveGauges {
   std::size_t set_aside_ = 0;
 };
 
-// Of a valve's history: what `trend --all` says.
-struct LifeGauge {
-  std::string valve, state;                 // "healthy", "warning", ...
-  double median = 0, lower = 0, upper = 0;  // [h] of life left; infinite where never, NaN where nothing is known
-};
-// servodx_valve_state (1 for the state the valve is in) and servodx_valve_life_left_hours by `bound`.
-std::string text_of(const std::vector<LifeGauge>& lives);
-
 // [s] since 1970 of a file's last change; 0 where it is not there.
 double time_of_file(const std::string& path);
 

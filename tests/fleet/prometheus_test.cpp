@@ -47,14 +47,6 @@ TEST(Prometheus, ALaterLogReplacesWhatIsKnownOfItsValveAndAnOlderOneDoesNot) {
   EXPECT_TRUE(has_line(text, R"(servodx_valve_error_ratio{valve="V7"} 0.5)")) << text;
 }
 
-TEST(Prometheus, LivesAreToldWithTheirBounds) {
-  const std::string text = text_of({{"V7", "warning", 120.5, 80, HUGE_VAL}, {"V8", "healthy", NAN, NAN, NAN}});
-  EXPECT_TRUE(has_line(text, R"(servodx_valve_state{valve="V7",state="warning"} 1)")) << text;
-  EXPECT_TRUE(has_line(text, R"(servodx_valve_life_left_hours{valve="V7",bound="median"} 120.5)")) << text;
-  EXPECT_TRUE(has_line(text, R"(servodx_valve_life_left_hours{valve="V7",bound="upper"} +Inf)")) << text;
-  EXPECT_EQ(text.find(R"(life_left_hours{valve="V8")"), std::string::npos) << text;
-}
-
 TEST(Prometheus, NamesMayHoldAnything) {
   ValveGauges gauges;
   gauges.take("a\"b\\c.csv", {FleetVerdict::healthy, "", 0.5, 1});

@@ -230,7 +230,6 @@ const std::map<std::string, Besides> program_besides = {
     {"diagnose_list.cpp", {{"fleet"}, "the same"}},
     {"check_list.cpp", {{"fleet"}, "the same"}},
     {"watch_command.cpp", {{"fleet"}, "the same, of a watched folder, and its gauges"}},
-    {"trend_command.cpp", {{"fleet/prometheus.h"}, "gauges"}},
     {"list_command.cpp", {{"rig/excitations.h"}, "the virtual rig is a tool, and no part of the library"}},
     {"rig_command.cpp", {{"rig"}, "the same"}},
 };

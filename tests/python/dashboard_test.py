@@ -1,9 +1,9 @@
-"""The example dashboard asks for metrics that `watch --prometheus` writes, by labels that it gives them."""
+"""The example dashboard asks for metrics that `watch` and `trend --prometheus` write, by labels that they give them."""
 import json, re, unittest
 
 from common import SOURCE, main
 
-MADE = (SOURCE / "src/fleet/prometheus.cpp").read_text()
+MADE = "".join((SOURCE / "src" / name).read_text() for name in ("fleet/prometheus.cpp", "report/trend/life_gauges.cpp"))
 
 
 class Dashboard(unittest.TestCase):
