@@ -29,7 +29,7 @@ py::list event_rows(const History& history, const std::string& valve) {
   py::list out;
   for (const RecordedEvent& e : events_of(history, valve)) {
     py::dict row;
-    row["at"] = e.at, row["kind"] = e.kind, row["text"] = e.text;
+    row["at"] = e.at, row["kind"] = name_of(e.kind), row["text"] = e.text;
     out.append(row);
   }
   return out;

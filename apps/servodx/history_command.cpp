@@ -40,7 +40,8 @@ void show(const Options& options) {
     rows.row(
         {v.valve, v.serial, std::to_string(v.checks), fmt::format("{}", v.last_at), std::to_string(v.events.size())});
     report::Json events = report::Json::array();
-    for (const RecordedEvent& e : v.events) events.push_back({{"at", e.at}, {"kind", e.kind}, {"text", e.text}});
+    for (const RecordedEvent& e : v.events)
+      events.push_back({{"at", e.at}, {"kind", name_of(e.kind)}, {"text", e.text}});
     valves.push_back({{"valve", v.valve},
                       {"serial", v.serial},
                       {"checks", v.checks},

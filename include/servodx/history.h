@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "servodx/maintenance.h"
 #include "servodx/trend.h"
 
 namespace servodx {
@@ -23,8 +24,9 @@ struct Recorded {
   std::vector<Figure> figures;
 };
 struct RecordedEvent {
-  double at = 0;           // [h]
-  std::string kind, text;  // filter_changed, valve_swapped, overhauled, retuned or note
+  double at = 0;  // [h]
+  EventKind kind = EventKind::note;
+  std::string text;
 };
 // By hours. Both throw InputError for a valve that the history does not know.
 std::vector<Recorded> recordings_of(const History& history, const std::string& valve);
@@ -45,7 +47,8 @@ std::vector<std::string> figures_of(const History& history, const std::string& v
 // Throws InputError where no check is called so: mean_error, fidelity, correlation@5Hz, parameter:1 to parameter:41.
 void require_check(const std::string& name);
 
-std::string event_names();  // the kinds of events, with commas between
+const char* name_of(EventKind kind);  // as a history has it: "filter_changed"
+std::string event_names();            // the kinds of events, with commas between
 // Throws InputError for hours [h] and a kind that History::add_event() would refuse.
 void require_event(double at, const std::string& kind);
 

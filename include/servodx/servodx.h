@@ -20,6 +20,7 @@
 #include "servodx/join.h"
 #include "servodx/lists.h"
 #include "servodx/log.h"
+#include "servodx/maintenance.h"
 #include "servodx/map.h"
 #include "servodx/map_points.h"
 #include "servodx/miss.h"

@@ -26,14 +26,14 @@ std::vector<Recorded> recordings_of(const History& history, const std::string& v
 
 std::vector<RecordedEvent> events_of(const History& history, const std::string& valve) {
   std::vector<RecordedEvent> out;
-  for (const Event& e : history.file().of(valve).events) out.push_back({e.at, name_of(e.kind), e.text});
+  for (const Event& e : history.file().of(valve).events) out.push_back({e.at, e.kind, e.text});
   return out;
 }
 
 HeldValve held_valve(const History& history, const std::string& valve) {
   const ValveHistory v = history.file().of(valve);
   HeldValve out{v.valve, v.serial, v.recordings.size(), v.recordings.empty() ? 0.0 : v.recordings.back().at, {}};
-  for (const Event& e : v.events) out.events.push_back({e.at, name_of(e.kind), e.text});
+  for (const Event& e : v.events) out.events.push_back({e.at, e.kind, e.text});
   return out;
 }
 

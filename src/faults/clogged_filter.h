@@ -4,8 +4,8 @@
 #include <algorithm>
 
 #include "faults/fault.h"
-#include "faults/maintenance.h"
 #include "parameters/list.h"
+#include "servodx/maintenance.h"
 
 namespace servodx {
 

@@ -7,8 +7,8 @@
 
 #include "effects/registry.h"
 #include "faults/gross_finding.h"
-#include "faults/maintenance.h"
 #include "faults/record.h"
+#include "servodx/maintenance.h"
 
 namespace servodx {
 

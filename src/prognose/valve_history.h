@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "faults/maintenance.h"
 #include "prognose/check.h"
+#include "servodx/maintenance.h"
 
 namespace servodx {
 

@@ -21,6 +21,8 @@
 #include "prognose/check.h"
 #include "prognose/check_name.h"
 #include "prognose/track.h"
+#include "servodx/history.h"
+#include "servodx/maintenance.h"
 
 namespace servodx {
 namespace {

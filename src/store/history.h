@@ -13,8 +13,8 @@
 #include <string>
 #include <vector>
 
-#include "faults/maintenance.h"
 #include "prognose/valve_history.h"
+#include "servodx/maintenance.h"
 
 namespace SQLite {
 class Database;
@@ -22,7 +22,6 @@ class Database;
 
 namespace servodx {
 
-const char* name_of(EventKind kind);
 std::optional<EventKind> find_event(const std::string& name);
 
 // The rows of a stored table's text.

@@ -160,6 +160,8 @@ TEST_F(Door, ChecksAndTrendsAsTheProgramDoes) {
   history.record("V", {.at = 100, .serial = rig().serial}, checked, tuned);
   history.add_event("V", 150, "filter_changed");
   EXPECT_EQ(history.valves(), std::vector<std::string>{"V"});
+  ASSERT_EQ(events_of(history, "V").size(), 1u);
+  EXPECT_EQ(events_of(history, "V").front().kind, EventKind::filter_changed);
   EXPECT_FALSE(history.tracked("V").empty());
   EXPECT_THROW(history.add_event("V", 150, "no_such_event"), InputError);
   EXPECT_THROW(History::open("nowhere.db"), InputError);

@@ -7,7 +7,6 @@
 #include <numbers>
 
 #include "base/random.h"
-#include "faults/maintenance.h"
 #include "model/state.h"
 #include "prognose/check.h"
 #include "prognose/check_name.h"
@@ -16,6 +15,7 @@
 #include "prognose/trend_options.h"
 #include "prognose/trend_state.h"
 #include "prognose/valve_history.h"
+#include "servodx/maintenance.h"
 #include "servodx/note.h"
 
 namespace servodx {

@@ -12,14 +12,17 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <string>
 #include <thread>
+#include <utility>
 
 #include "base/error.h"
 #include "base/random.h"
 #include "base/reading_limits.h"
-#include "faults/maintenance.h"
 #include "prognose/check.h"
 #include "prognose/valve_history.h"
+#include "servodx/history.h"
+#include "servodx/maintenance.h"
 #include "store/history_csv.h"
 #include "temporary_folder.h"
 
@@ -67,6 +70,22 @@ TEST_F(Histories, WhatIsRecordedIsReadBackInOrderOfHours) {
   EXPECT_EQ(v.events[0].kind, EventKind::filter_changed);
   EXPECT_EQ(h.verify(), "ok");
   EXPECT_THROW(h.of("v2"), InputError);
+}
+
+TEST(Events, AreFoundByTheNameThatTheyHave) {
+  const std::pair<EventKind, std::string> names[] = {{EventKind::filter_changed, "filter_changed"},
+                                                     {EventKind::valve_swapped, "valve_swapped"},
+                                                     {EventKind::overhauled, "overhauled"},
+                                                     {EventKind::retuned, "retuned"},
+                                                     {EventKind::note, "note"}};
+  std::string all;
+  for (const auto& [kind, name] : names) {
+    EXPECT_EQ(name_of(kind), name);
+    EXPECT_EQ(find_event(name), kind);
+    all += (all.empty() ? "" : ", ") + name;
+  }
+  EXPECT_EQ(event_names(), all);
+  EXPECT_FALSE(find_event("no_such_event").has_value());
 }
 
 TEST_F(Histories, TheSameLogAtTheSameHoursIsRefused) {
