@@ -31,7 +31,7 @@ constexpr double volumes = 3.0;
 constexpr double stop_over_stroke = 1.16;  // where a sheet gives the stroke alone
 constexpr double limit_over_rated = 1.5;   // amplifier limit over rated current
 // Loop bandwidth over the frequency of 90 degrees lag. Of a small sine driver and motor have a part of the lag, and it
-// is 0.3 to 0.65; of 40 % of the stroke the spool slews, and it is 0.7 to 1. Sheets rarely say which.
+// is 0.27 to 0.59; of 40 % of the stroke the spool slews, and it is 0.7 to 1. Sheets rarely say which.
 constexpr double loop_over_phase_lag = 2.0 / 3;
 constexpr double short_tube_cd = 0.8;      // Merritt 1967 ch. 3: fixed orifices are short tubes
 constexpr double darcy_friction = 0.03;    // smooth line, Re 3e3 to 3e4
