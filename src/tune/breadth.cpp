@@ -66,9 +66,11 @@ std::vector<std::vector<Point>> healthy_starts(const std::vector<FreeValue>& sha
   };
   return {
       {nominal},
-      {moved({{row::driver_bandwidth, 0.4}, {row::torque_motor_frequency, 0.7}, {row::fixed_orifice_diameter, 0.8}})},
-      {moved({{row::spool_friction, 5.0}, {row::piston_coulomb_friction, 3.0}})},
-      {moved({{row::radial_clearance, 2.0}, {row::hydraulic_amplifier_gain, 1.3}})}};
+      {moved({{row::driver_bandwidth, island::driver_bandwidth},
+              {row::torque_motor_frequency, island::torque_motor_frequency},
+              {row::fixed_orifice_diameter, island::orifice_diameter}})},
+      {moved({{row::spool_friction, island::spool_friction}, {row::piston_coulomb_friction, island::piston_friction}})},
+      {moved({{row::radial_clearance, island::clearance}, {row::hydraulic_amplifier_gain, island::amplifier_gain}})}};
 }
 
 // The generations of one search, as a checkpoint keeps them.

@@ -12,6 +12,7 @@
 #include "servodx/rig.h"
 #include "servodx/table.h"
 #include "servodx/tune.h"
+#include "tune/constants.h"
 
 namespace servodx {
 namespace {
@@ -38,20 +39,13 @@ bool frees(const RigKind& kind, Freed freed) {
   return false;
 }
 
-// The quarter wave of oil at 1200 m/s is then 500 Hz: shorter lines answer above the band of logs of 1 kHz, and a fit
-// would give their numbers to what else rings there. Chosen with rigs of 0.45, 0.68 and 1.08 m in view.
-constexpr double long_line = 0.6;  // [m]
-
-// Over this much the flattest and the steepest law of the usual oils differ by a factor of 1.3 in viscosity.
-constexpr double apart = 20.0;  // [K]
-
-bool oils_apart(const std::vector<Log>& logs) {
+bool oils_differ(const std::vector<Log>& logs) {
   std::vector<double> known;  // [K]
   for (const Log& l : logs)
     if (const auto kelvin = measured_oil_temperature(l)) known.push_back(*kelvin);
   if (known.empty()) return false;
   const auto [coldest, hottest] = std::minmax_element(known.begin(), known.end());
-  return *hottest - *coldest >= apart;
+  return *hottest - *coldest >= tune_constants::oils_apart;
 }
 
 }  // namespace
@@ -77,8 +71,8 @@ RigKind rig_kind(const std::vector<Log>& logs, const RigFile& rig) {
   kind.on_stand = all_on_test_stand(logs, rig);
   kind.supply_measured = all_hold(Signal::supply_pressure);
   kind.return_measured = all_hold(Signal::return_pressure);
-  kind.temperatures_differ = oils_apart(logs);
-  kind.long_lines = rig.fact("lines.length").value_or(0.0) >= long_line && rig.fact("lines.bore");
+  kind.temperatures_differ = oils_differ(logs);
+  kind.long_lines = rig.fact("lines.length").value_or(0.0) >= tune_constants::long_line && rig.fact("lines.bore");
   return kind;
 }
 

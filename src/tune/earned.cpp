@@ -26,9 +26,7 @@
 namespace servodx {
 namespace {
 
-// Fall of the held-out cost, half a sum of squares, that keeps an effect: by chance alone a number gains a half, and
-// an effect has one to six. Not examined.
-constexpr double least_gain = 1.0;
+using tune_constants::least_gain;
 
 // A freed effect: its numbers' places among the free ones, and the unit values at which it is off.
 struct FreedEffect {

@@ -17,12 +17,13 @@
 #include "servodx/log.h"
 #include "servodx/note.h"
 #include "servodx/tune.h"
+#include "tune/constants.h"
 #include "tune/named_rows.h"
 
 namespace servodx {
 namespace {
 
-constexpr double tuning_null_limit = 0.1;  // fault-free logs: a null may sit anywhere that calibration allows
+using namespace tune_constants;
 
 // Priors asked for, about the table's nominal.
 void take_priors(std::vector<FreeValue>& shared, const std::map<std::string, double>& priors) {
@@ -51,12 +52,11 @@ bool hold_spool(const LogData& log) {
 // Without the spool's position only the product of its travel and the ports' width is told. Left alone, the travel
 // scales with whatever the null has that the model lacks, and with it laps, clearance and the play at the ball.
 void keep_width_without_spool(TuneScope& scope) {
-  constexpr double tolerance = 0.1 / 3;  // sheets state a flow to 10 % (ISO 10770-1), taken as three deviates
   if (scope.on_stand || !states_width(scope.facts)) return;
   if (std::any_of(scope.data.begin(), scope.data.end(), hold_spool)) return;
   for (FreeValue& f : scope.shared) {
     if (f.at != row::port_width) continue;
-    f.prior_sd = tolerance / std::log(f.upper / f.lower);
+    f.prior_sd = width_tolerance / std::log(f.upper / f.lower);
     scope.notes.push_back(
         {Note::Kind::no_spool,
          "no log holds the spool's position, so the logs tell only the product of its travel and the ports' width: "

@@ -32,7 +32,7 @@ using namespace tune_constants;
 LeastSquaresResult without_derivatives(const FitProblem& problem, const Point& from, Stage stage, int iterations,
                                        Share share, TuneWatch& watch) {
   DerivativeFreeOptions d;
-  d.max_evaluations = static_cast<long>(iterations) * (problem.n() + 8);
+  d.max_evaluations = static_cast<long>(iterations) * (problem.n() + points_beside_columns);
   double first_cost = 0;
   d.progress = [&](long evaluations, double cost) {
     if (evaluations == 1) first_cost = cost;
@@ -96,7 +96,7 @@ LeastSquaresResult search(const FitProblem& problem, const Point& from, Stage st
   o.max_iterations = iterations;
   o.difference = Difference::forward;
   o.given_learns = true;
-  o.cost_tolerance = start == Start::ended ? 1e-6 : tells_valleys;
+  o.cost_tolerance = start == Start::ended ? ended_tolerance : tells_valleys;
   if (start == Start::ended) o.cost_floor = worth_a_step;
   o.compressed_first_pass = start != Start::ended;
   if (start == Start::found) o.least_metric = o.from_afar;

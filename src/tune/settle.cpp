@@ -28,7 +28,7 @@
 namespace servodx {
 namespace {
 
-using tune_constants::flat_error;
+using tune_constants::flat_error, tune_constants::one_sided_within;
 
 // A free row's place in the fit and how well it is known there.
 struct Known {
@@ -48,7 +48,7 @@ void take_estimate(ParameterResult& p, Row& row, const Known& known) {
     p.std_error = std::max(0.0, known.unit_error) * known.value.slope(p.estimate);
     if (known.unit_error > flat_error)
       p.verdict = RowVerdict::flat;
-    else if (known.u - 2 * known.unit_error < 0 || known.u + 2 * known.unit_error > 1)
+    else if (known.u - one_sided_within * known.unit_error < 0 || known.u + one_sided_within * known.unit_error > 1)
       p.verdict = RowVerdict::one_sided;
     row.std_error = p.std_error;
   }

@@ -9,7 +9,7 @@
 
 namespace servodx {
 
-using tune_constants::failed_over_noise, tune_constants::least_over_noise, tune_constants::part_of_residual;
+using namespace tune_constants;
 
 double rms_of(const std::vector<double>& r, std::size_t from, std::size_t to) {
   double sum = 0;

@@ -8,10 +8,6 @@
 
 namespace servodx {
 
-// Samples that count as independent before anything is known of their correlation; to the end of the fit a channel
-// counts for at least as many. [1/s] Chosen by hand; not examined.
-inline constexpr double least_independent_rate = 40;
-
 // Of the samples in [from, to) that are there. [SI] 0 where none is.
 double rms_of(const std::vector<double>& r, std::size_t from, std::size_t to);
 

@@ -394,8 +394,8 @@ TEST(Tune, AChannelWhoseErrorLastsIsFittedToTheEndAsIfItHadTensOfSamplesASecond)
   ErrorModel error;
   const LeastSquaresResult end = refine_whole(problem, problem.start(), error, 2, false, {}, watch);
   const ErrorModel learnt = learn_error_model(problem, end.point);
-  ASSERT_LT(learnt.find(Signal::piston_position)->independent, least_independent_rate);
-  EXPECT_EQ(error.find(Signal::piston_position)->independent, least_independent_rate);
+  ASSERT_LT(learnt.find(Signal::piston_position)->independent, tune_constants::least_independent_rate);
+  EXPECT_EQ(error.find(Signal::piston_position)->independent, tune_constants::least_independent_rate);
 }
 
 TEST(Tune, AStartIsInTheBestValleyByItsCostOrByItsOwnPromise) {
