@@ -72,8 +72,7 @@ std::vector<Bode> bode_of(const std::vector<Candidate>& valves, const RigFile& r
 }
 
 Bandwidth bandwidth_of(const Bode& bode, const BodeLine& line) {
-  constexpr double fallen = 3;  // [dB]
-  return {first_below(bode.frequency, line.gain, line.gain.front() - fallen),
+  return {first_below(bode.frequency, line.gain, line.gain.front() - bandwidth_fall),
           first_below(bode.frequency, line.phase, -two_pi / 4)};
 }
 

@@ -1,9 +1,10 @@
-// Numbers that decide how a table meets its data sheet (fit/sheet.cpp) and how a Bode plot is read (fit/bode.cpp): what
-// each is for.
+// Numbers that decide where a fit goes and what is told of it: how a table meets its data sheet (fit/sheet.cpp), how a
+// Bode plot is read (fit/bode.cpp), which numbers a log tells and how well, how wrong the model is. What each is for.
 //
-// No half and no double of any was run.
+// Not examined: no half and no double of any was run, unless a line says so.
 #pragma once
 #include <array>
+#include <cstddef>
 #include <numbers>
 
 namespace servodx::fit_constants {
@@ -41,8 +42,96 @@ inline constexpr int bode_frequencies = 24;
 // Backlash and friction of a few per cent of the stroke show at a tenth of rated current; a weak pilot stage shows
 // where the spool is to slew, at the +-40 % of catalogues.
 inline constexpr std::array bode_amplitudes = {0.1, 0.4};  // [fraction of rated current]
+inline constexpr double bandwidth_fall = 3;                // [dB] by definition
 
 // A figure is met within so many standard deviations.
 inline constexpr double met_within = 2.0;
+
+// Which numbers a log tells (fit/identifiability.cpp).
+namespace told {
+// A column's length over the part of it that the others do not span: above it they do together what this one does. By
+// hand, near a rule of thumb of 20 (R package FME).
+inline constexpr double collinearity_limit = 15.0;
+inline constexpr double flat_limit = 1.0;         // [sigmas] over the whole interval: less moves no channel
+inline constexpr double enough = 4.0;             // [sigmas] that determine a number to a quarter of its interval
+inline constexpr double least_named = 0.2;        // of the column's length: what does less of it is not named. By hand
+inline constexpr std::size_t most_named = 3;      // the strongest. By hand
+inline constexpr double least_length = 1e-12;     // [sigmas] below, a column is none and would make the rest singular
+inline constexpr double least_of_its_own = 1e-9;  // of the column's length: the same
+}  // namespace told
+
+// The profile likelihood (fit/profile.cpp).
+namespace profiled {
+// sqrt(3.84), as many standard deviations of a normal: 95 %. By definition.
+inline constexpr double root_of_chi2 = 1.959964;
+inline constexpr int refit_iterations = 6;       // the others begin where the curvature says that they go. By hand
+inline constexpr double cost_tolerance = 1e-7;   // of the cost: far below the rise that is sought. By hand
+inline constexpr int most_points = 6;            // a side. By hand: the root of the rise is nearly straight
+inline constexpr double close = 0.03;            // of the root of the rise: the interval's end to a few per cent
+inline constexpr double least_variance = 1e-12;  // of the unit interval: a number without any error has no way to go
+inline constexpr double least_divisor = 1e-12;   // of distance and slope: two points that are one
+inline constexpr double least_next = 0.2, most_next = 4;  // of the last distance: a line through two points may miss
+                                                          // by much. By hand
+}  // namespace profiled
+
+// Errors of a fit by secants (fit/uncertainty.cpp).
+namespace secant {
+inline constexpr int passes = 2;                          // the second by the ways that the first has found
+inline constexpr std::size_t in_a_batch = 16;             // ways: memory, not results
+inline constexpr double reach = 0.3, least_reach = 1e-3;  // standard errors: beyond, a bent valley passes for its
+                                                          // walls
+inline constexpr double least_variance = 1e-16;           // of the unit interval: a way of no length has no
+                                                          // derivative
+inline constexpr double least_step = 0.1, shorter = 0.5;  // of the step to the minimum: halved, and given up below.
+                                                          // By hand
+}  // namespace secant
+
+// How wrong the model is (fit/error_model.cpp).
+namespace learnt {
+inline constexpr double unlearnt_independent = 50;  // [1/s] samples of a channel that no log has told of. By hand
+inline constexpr std::size_t fewest = 8;            // samples: fewer tell no memory. By hand
+// Logs differ in how well the model fits them. A log's own variance about the pooled one is worth so many samples. By
+// hand.
+inline constexpr double prior_worth = 4;
+// Floor and slope are thought alike in size to within a factor e before the residuals speak: logs that always move say
+// nothing of the floor, and the next log may rest. A log speaks with so many independent samples. By hand.
+inline constexpr double prior_spread = 1;
+inline constexpr double log_worth = 20;
+// The descent to floor and slope, in their logs: steps from a factor of five to one of 10 %, the last above last_step.
+inline constexpr double first_step = 1.6, last_step = 0.05;
+inline constexpr double least_fall = 1e-9;  // of the cost: less is rounding
+inline constexpr double lowest = 12;        // below the residual's own size: e^-12 of it is nothing
+}  // namespace learnt
+
+// Twin experiments (fit/selftest.cpp).
+namespace twin {
+inline constexpr double null_limit = 0.1;       // [fraction of rated] as in a tune
+inline constexpr double nuisance_share = 0.5;   // of the prior's width: true nuisances stay likely under it
+inline constexpr double inside = 0.02;          // truths keep this far from the ends of their interval. By hand
+inline constexpr int iterations = 60;           // far beyond what a fit takes: it ends by `settled`. By hand
+inline constexpr int usual_iterations = 15;     // of a fit, for the progress that is told: decides nothing
+inline constexpr double cost_tolerance = 1e-6;  // of the cost. By hand
+// Two steps in a row that gain less end a fit: no parameter is a third of a sigma from the minimum then. What the model
+// still promises is no measure here: kinks (friction, stops, laps) keep it above zero for ever.
+inline constexpr double settled = 0.05;
+inline constexpr int idle_steps = 2;
+}  // namespace twin
+
+// Fast logs (fit/fast_log.cpp).
+namespace fast {
+inline constexpr int steps_a_point = 3;      // as between the samples of 1 kHz, at which the error of the step is known
+inline constexpr double samples_a_step = 2;  // from so many on steps save half; a sample of 5 kHz is a step of 0.2 ms
+inline constexpr double slack = 1e-6;        // of a time: stamps are rounded
+inline constexpr std::size_t fewest = 4;     // samples that a parabola is drawn through
+}  // namespace fast
+
+// Gaps in time (fit/log_gaps.cpp).
+// [s] With an actuator, on a test stand: a simulation takes every step of a gap, and what the command did in it is a
+// guess. By hand.
+inline constexpr double longest_gap = 10.0, longest_wait = 600.0;
+
+// The start of a log (fit/log_start.cpp). [s] Over which the piston's speed there is measured: ten steps of 1 kHz and
+// a little more, as stamps are rounded. By hand.
+inline constexpr double start_span = 0.0101;
 
 }  // namespace servodx::fit_constants

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "base/tiny.h"
+#include "fit/constants.h"
 #include "fit/log_data.h"
 #include "optimise/unit_cube.h"
 #include "parameters/table.h"
@@ -18,18 +19,7 @@
 namespace servodx {
 namespace {
 
-constexpr double unlearnt_independent = 50;  // [1/s]
-// Logs differ in how well the model fits them. A log's own variance about the pooled one is worth so many samples.
-constexpr double prior_worth = 4;
-// Floor and slope are thought alike in size to within a factor e before the residuals speak: logs that always move say
-// nothing of the floor, and the next log may rest. A log speaks with so many independent samples.
-constexpr double prior_spread = 1;
-constexpr double log_worth = 20;
-// The descent to floor and slope, in their logs: steps from a factor of five to one of 10 %, the last above last_step.
-// Not examined.
-constexpr double first_step = 1.6, last_step = 0.05;
-constexpr double least_fall = 1e-9;  // of the cost: less is rounding
-constexpr double lowest = 12;        // below the residual's own size: e^-12 of it is nothing
+using namespace fit_constants::learnt;
 
 double square(double x) { return x * x; }
 
@@ -97,7 +87,7 @@ double effective_fraction(const std::vector<double>& w) {
   for (double v : w)
     if (!std::isnan(v)) x.push_back(v);
   const std::size_t n = x.size();
-  if (n < 8) return 1.0;
+  if (n < fewest) return 1.0;
   double c0 = 0;
   for (double v : x) c0 += v * v;
   if (c0 <= 0) return 1.0;

@@ -9,6 +9,7 @@
 #include <optional>
 #include <utility>
 
+#include "fit/constants.h"
 #include "fit/log_start.h"
 #include "fit/ports_of.h"
 #include "fit/recorder.h"
@@ -22,10 +23,7 @@
 namespace servodx {
 namespace {
 
-constexpr int steps_a_point = 3;      // as between the samples of 1 kHz, at which the error of the step is known
-constexpr double samples_a_step = 2;  // from so many on steps save half; a sample of 5 kHz is a step of 0.2 ms
-constexpr double slack = 1e-6;        // of a time: stamps are rounded
-constexpr std::size_t fewest = 4;     // samples that a parabola is drawn through
+using namespace fit_constants::fast;
 
 double step_of_fits() { return SimulateOptions{}.step; }
 

@@ -5,12 +5,14 @@
 #include <numeric>
 
 #include "base/tiny.h"
+#include "fit/constants.h"
 #include "optimise/ceres_covariance.h"
 
 namespace servodx {
 
-Identifiability identify(const Eigen::MatrixXd& jacobian, const std::vector<char>& candidates,
-                         double collinearity_limit, double flat_limit, double enough) {
+using namespace fit_constants::told;
+
+Identifiability identify(const Eigen::MatrixXd& jacobian, const std::vector<char>& candidates) {
   const long n = jacobian.cols();
   Identifiability out;
   out.verdict.assign(n, RowVerdict::bounded);
@@ -30,7 +32,7 @@ Identifiability identify(const Eigen::MatrixXd& jacobian, const std::vector<char
   for (long j : order) {
     if (out.norm[j] < flat_limit) {
       if (candidates[j]) out.verdict[j] = RowVerdict::flat;
-      if (out.norm[j] < 1e-12) continue;  // never kept: the Gram matrix of the kept ones must stay regular
+      if (out.norm[j] < least_length) continue;  // never kept: the Gram matrix of the kept ones must stay regular
     }
     double rest2 = gram(j, j);
     Eigen::VectorXd weights;
@@ -52,10 +54,10 @@ Identifiability identify(const Eigen::MatrixXd& jacobian, const std::vector<char
       std::vector<std::pair<double, int>> strongest;
       for (long r = 0; r < weights.size(); ++r) strongest.push_back({-std::abs(weights[r]), static_cast<int>(kept[r])});
       std::sort(strongest.begin(), strongest.end());
-      for (std::size_t r = 0; r < strongest.size() && r < 3; ++r)
-        if (-strongest[r].first > 0.2 * out.norm[j]) out.confounded_with[j].push_back(strongest[r].second);
+      for (std::size_t r = 0; r < strongest.size() && r < most_named; ++r)
+        if (-strongest[r].first > least_named * out.norm[j]) out.confounded_with[j].push_back(strongest[r].second);
     }
-    if (out.verdict[j] == RowVerdict::bounded && rest > 1e-9 * out.norm[j]) kept.push_back(j);
+    if (out.verdict[j] == RowVerdict::bounded && rest > least_of_its_own * out.norm[j]) kept.push_back(j);
   }
   return out;
 }

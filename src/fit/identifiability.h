@@ -19,9 +19,8 @@ struct Identifiability {
 // frozen (nuisances are not). Greedy: strongest first; a column whose part that the kept ones do not span is shorter
 // than its norm over `collinearity_limit` is confounded, unless that part alone still determines it to a quarter of
 // its interval (`enough` sigmas): an index says that two effects are alike, not that the data cannot tell them apart;
-// one that moves no channel by `flat_limit` sigmas over the whole interval is flat.
-Identifiability identify(const Eigen::MatrixXd& jacobian, const std::vector<char>& candidates,
-                         double collinearity_limit = 15.0, double flat_limit = 1.0, double enough = 4.0);
+// one that moves no channel by `flat_limit` sigmas over the whole interval is flat (fit/constants.h).
+Identifiability identify(const Eigen::MatrixXd& jacobian, const std::vector<char>& candidates);
 
 // Covariance of the free columns (inverse of J^T J); rows and columns of frozen ones are zero. By Ceres; where columns
 // are alike to rounding, and J^T J has no inverse, its pseudo-inverse.

@@ -8,16 +8,14 @@
 #include <vector>
 
 #include "base/error.h"
+#include "fit/constants.h"
 #include "servodx/log.h"
 #include "servodx/rig.h"
 #include "signals/usual_step.h"
 
 namespace servodx {
-namespace {
 
-constexpr double longest_gap = 10.0, longest_wait = 600.0;  // [s] with an actuator, on a test stand
-
-}  // namespace
+using namespace fit_constants;
 
 std::vector<double> bridged(const std::vector<double>& t, std::vector<double> x) {
   const std::size_t n = x.size();

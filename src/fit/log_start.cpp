@@ -5,6 +5,7 @@
 #include <optional>
 #include <vector>
 
+#include "fit/constants.h"
 #include "fit/log_data.h"
 #include "servodx/log.h"
 #include "simulate/scenario.h"
@@ -18,7 +19,7 @@ std::optional<double> first_present(const std::vector<double>& x) {
   return std::nullopt;
 }
 
-constexpr double start_span = 0.0101;  // [s] over which the speed at the start is measured
+using fit_constants::start_span;
 
 // Slope of the first samples, least squares.
 double starting_slope(const std::vector<double>& t, const std::vector<double>& x) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "fit/constants.h"
 #include "optimise/box_least_squares.h"
 #include "optimise/local.h"
 #include "optimise/unit_cube.h"
@@ -10,10 +11,7 @@
 namespace servodx {
 namespace {
 
-constexpr double root_of_chi2 = 1.959964;  // sqrt(3.84), as many standard deviations of a normal
-constexpr int refit_iterations = 6;
-constexpr int most_points = 6;  // a side
-constexpr double close = 0.03;  // of the root of the rise: the interval's end to a few per cent
+using namespace fit_constants::profiled;
 
 // The problem with number j held.
 class Held {
@@ -54,12 +52,12 @@ class Held {
 
 ProfileInterval profile(const FitProblem& problem, const Point& best, int j, const Eigen::MatrixXd& covariance) {
   const double least = 0.5 * problem.evaluate(std::span(&best, 1)).front().residual.squaredNorm();
-  const double sd = std::sqrt(std::max(covariance(j, j), 1e-12)), centre = best[static_cast<std::size_t>(j)];
+  const double sd = std::sqrt(std::max(covariance(j, j), least_variance)), centre = best[static_cast<std::size_t>(j)];
   Held held(problem, j);
   LeastSquaresOptions options;
   options.max_iterations = refit_iterations;
   options.difference = Difference::forward;
-  options.cost_tolerance = 1e-7;
+  options.cost_tolerance = cost_tolerance;
   ProfileInterval out;
   for (const int side : {-1, 1}) {
     const double room = side < 0 ? centre : 1 - centre;
@@ -88,10 +86,10 @@ ProfileInterval profile(const FitProblem& problem, const Point& best, int j, con
       if (root < root_of_chi2) inside = distance, inside_root = root;
       // The root of the rise is nearly straight: from the last point below the level, or from the best point.
       const double slope =
-          root > root_of_chi2 ? (root - inside_root) / std::max(distance - inside, 1e-12) : root / distance;
+          root > root_of_chi2 ? (root - inside_root) / std::max(distance - inside, least_divisor) : root / distance;
       const double from = root > root_of_chi2 ? inside : 0.0, from_root = root > root_of_chi2 ? inside_root : 0.0;
-      const double next = from + (root_of_chi2 - from_root) / std::max(slope, 1e-12);
-      distance = std::clamp(next, 0.2 * distance, std::min(room, 4 * distance));
+      const double next = from + (root_of_chi2 - from_root) / std::max(slope, least_divisor);
+      distance = std::clamp(next, least_next * distance, std::min(room, most_next * distance));
     }
     end = centre + side * distance;
   }

@@ -10,6 +10,7 @@
 #include "base/tiny.h"
 #include "fit/candidate_of.h"
 #include "fit/chart.h"
+#include "fit/constants.h"
 #include "fit/free_values.h"
 #include "fit/identifiability.h"
 #include "fit/log_data.h"
@@ -29,14 +30,7 @@
 namespace servodx {
 namespace {
 
-constexpr double null_limit = 0.1;      // [fraction of rated] as in a tune
-constexpr double nuisance_share = 0.5;  // of the prior's width: true nuisances stay likely under it
-constexpr double inside = 0.02;         // truths keep this far from the ends of their interval
-constexpr int iterations = 60, usual_iterations = 15;
-// Two steps in a row that gain less end a fit: no parameter is a third of a sigma from the minimum then. What the model
-// still promises is no measure here: kinks (friction, stops, laps) keep it above zero for ever.
-constexpr double settled = 0.05;
-constexpr int idle_steps = 2;
+using namespace fit_constants::twin;
 
 // The log as the model would have written it with these parameters.
 LogData twin_of(const LogData& log, const Trajectory& truth, const std::vector<double>& noise,
@@ -134,7 +128,7 @@ LeastSquaresResult fitted(const FitProblem& problem, const SelftestOptions& opti
   LeastSquaresOptions o;
   o.max_iterations = iterations;
   o.difference = Difference::forward;
-  o.cost_tolerance = 1e-6;
+  o.cost_tolerance = cost_tolerance;
   // No farther at once than truths scatter: longer first steps drag rows that the log tells poorly into other minima.
   o.step_limit = options.spread;
   double last_cost = HUGE_VAL;  // no robust first pass: a twin has no outliers

@@ -7,16 +7,14 @@
 #include <optional>
 #include <span>
 
+#include "fit/constants.h"
 #include "fit/identifiability.h"
 #include "optimise/unit_cube.h"
 
 namespace servodx {
 namespace {
 
-constexpr int passes = 2;  // the second by the ways that the first has found
-constexpr std::size_t in_a_batch = 16;
-constexpr double reach = 0.3, least_reach = 1e-3;  // standard errors: beyond, a bent valley passes for its walls
-constexpr double least_variance = 1e-16;           // of the unit interval: a way of no length has no derivative
+using namespace fit_constants::secant;
 
 double cost_of(const Evaluation& e) { return e.ok ? 0.5 * e.residual.squaredNorm() : 1e300; }
 
@@ -156,7 +154,7 @@ Uncertainty uncertainty(const FitProblem& problem, const Point& point, const Eig
     if (!derivatives) return out;
     out.covariance = covariance_of(*derivatives, kept);
     const Eigen::VectorXd step = -(out.covariance * (derivatives->transpose() * here.residual));
-    for (double part = within_box(out.point, step); part > 0.1; part *= 0.5) {
+    for (double part = within_box(out.point, step); part > least_step; part *= shorter) {
       Point tried = out.point;
       shift(tried, step, part);
       Evaluation there = problem.evaluate(std::span(&tried, 1)).front();
