@@ -241,4 +241,12 @@ inline constexpr double with = 0.3, against = -0.5;            // correlations: 
 inline constexpr double high_return = 0.2;
 }  // namespace survey_of_log
 
+// The onset, further (diagnose/onset.cpp). Not examined.
+//
+// n ln(variance) falls by twice the log likelihood that a change gains. A quarter of the fall, half of that gain, is
+// held against `change_gain`. By hand: no reason is known.
+inline constexpr double fall_to_gain = 4.0;
+// A log with an onset is so many times as long as the shortest part. By hand.
+inline constexpr std::size_t fewest_parts = 4;
+
 }  // namespace servodx::diagnose_constants

@@ -36,7 +36,7 @@ std::optional<std::size_t> variance_step_up(const std::vector<double>& square, d
   std::vector<double> sum(n + 1, 0.0);
   for (std::size_t i = 0; i < n; ++i) sum[i + 1] = sum[i] + square[i];
   const auto margin = std::max(k::shortest_part, n / k::shortest_one_in);  // each part must speak for itself
-  if (n < 4 * margin || sum[n] <= 0) return {};
+  if (n < k::fewest_parts * margin || sum[n] <= 0) return {};
   std::optional<std::size_t> best;
   const double whole = static_cast<double>(n) * std::log(sum[n] / static_cast<double>(n));
   double best_cost = whole;
@@ -47,7 +47,7 @@ std::optional<std::size_t> variance_step_up(const std::vector<double>& square, d
     if (cost < best_cost) best_cost = cost, best = i;
   }
   // Scaled to independent samples.
-  if ((whole - best_cost) * independent / static_cast<double>(n) / 4.0 > k::change_gain) return best;
+  if ((whole - best_cost) * independent / static_cast<double>(n) / k::fall_to_gain > k::change_gain) return best;
   return {};
 }
 
@@ -57,7 +57,7 @@ bool is_onset(const SplitGains& g, double independent) {
          (g.whole - g.split) / inflation > k::onset_gain;
 }
 
-bool onset_possible(const LogData& log) { return log.scenario.time.size() >= 4 * k::shortest_part; }
+bool onset_possible(const LogData& log) { return log.scenario.time.size() >= k::fewest_parts * k::shortest_part; }
 
 std::optional<Onset> find_onset(const LogData& log, const ParameterVector& base, const ErrorModel& error,
                                 const HypothesisSettings& settings, const HypothesisFits& whole, FitWork& work) {

@@ -12,13 +12,13 @@ namespace {
 using namespace evidence_constants;
 
 // Frequency of the sine that decorrelates as fast as the series: found as the stride at which the mean square
-// difference reaches a tenth of its end value, twice the variance; a sine is there at a tenth of its period.
+// difference reaches `decorrelated` of the variance; its end value is twice the variance.
 double band_of(const std::vector<double>& t, const std::vector<double>& x) {
   double mean = 0, square = 0;
   std::size_t n = 0;
   for (const double v : x)
     if (std::isfinite(v)) mean += v, ++n;
-  if (n < 8) return 0;
+  if (n < fewest_of_drive) return 0;
   mean /= static_cast<double>(n);
   for (const double v : x)
     if (std::isfinite(v)) square += (v - mean) * (v - mean);
@@ -30,8 +30,9 @@ double band_of(const std::vector<double>& t, const std::vector<double>& x) {
     for (std::size_t k = stride; k < x.size(); ++k)
       if (std::isfinite(x[k]) && std::isfinite(x[k - stride]))
         difference += (x[k] - x[k - stride]) * (x[k] - x[k - stride]), ++pairs;
-    if (pairs > 0 && difference / static_cast<double>(pairs) >= 0.2 * square)
-      return 0.1 / (static_cast<double>(stride) * (t.back() - t.front()) / static_cast<double>(t.size() - 1));
+    if (pairs > 0 && difference / static_cast<double>(pairs) >= decorrelated * square)
+      return decorrelated_after /
+             (static_cast<double>(stride) * (t.back() - t.front()) / static_cast<double>(t.size() - 1));
   }
   return 0;
 }

@@ -38,9 +38,7 @@ bool is_repeat(const TestConditions& a, const TestConditions& b);
 
 // Which programme each log is of, whatever its oil: numbers from 0 in the order of their first logs.
 std::vector<std::size_t> programmes_of(const std::vector<TestConditions>& logs);
-// Programmes from which on logs show how the model's error changes from test to test: fewer have no scatter. By
-// definition; no other number was tried.
-inline constexpr std::size_t programmes_that_scatter = 3;
+// Whether they are of enough programmes to show how the model's error changes from test to test.
 bool show_scatter_of_tests(const std::vector<TestConditions>& logs);
 
 }  // namespace servodx

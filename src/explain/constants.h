@@ -76,9 +76,26 @@ inline constexpr double row_prior = 0.1;     // a row that was held for a reason
 inline constexpr double effect_growth = 10;  // an effect may grow beyond what this rig shows when healthy by this
 inline constexpr double longest_memory = 1 - 1e-6;  // of a channel's residual, from sample to sample
 // Laps, corners and hysteresis are about a per cent of rated current wide: so finely a sweep tells them apart.
-inline constexpr double sweep_detail = 0.01;      // [of rated current]
-inline constexpr double at_end = 1e-3;            // [of the range] a number that stands at its end. Not examined
+inline constexpr double sweep_detail = 0.01;  // [of rated current]
+inline constexpr double at_end = 1e-3;        // [of the range] a number that stands at its end. Not examined
+// What healthy logs have had of a log's own numbers is where they go: beyond, by Student's law, at this chance; and at
+// least over this part of their range, as a fit needs some.
+inline constexpr double beyond_healthy = 0.01;
+inline constexpr double least_own_range = 1e-3;
 inline constexpr std::size_t enough_healthy = 3;  // healthy logs that say what is usual of a channel or a number
+
+// Sizes at which a cause is scored (explain/sought_cause.cpp, explain/valve_causes.cpp, explain/sensor_causes.cpp): one
+// where the response is nearly a line, and others, as it bends.
+namespace tried {
+inline constexpr double near_row = 0.05, far_row = 0.25;           // [of its range] of a row, to either side
+inline constexpr double smaller = 0.25, larger = 4, largest = 16;  // of an effect's typical size, beside that itself
+inline constexpr double along_a_little = 2, along_far = 5;         // of a row that grows with an effect
+// Factor on a log's own air, and its ends: from what is usual, 0.5 %, beyond either end of a log's own (fit/own_air.h).
+inline constexpr double air[] = {2.0, 0.5, 8.0};
+inline constexpr double least_air = 0.02, most_air = 50.0;
+inline constexpr double grids[] = {50.0, 60.0};  // [Hz] where the rig file states none
+inline constexpr double grid_off = 0.15;         // [Hz] to either side: a grid strays by a tenth or two
+}  // namespace tried
 
 // The replay of the blocks (explain/blocks.cpp, explain/block_replay.cpp).
 inline constexpr double window = 20e-3;            // [s] short against a stroke, long against the noise of a position
@@ -88,7 +105,12 @@ inline constexpr double knot_at_rest = 1e-6;       // of a curve's curvature: a 
 
 // What is missing over time (explain/missing.cpp).
 inline constexpr std::size_t most_samples = 20000;  // of all logs; of more, every second and so on
-inline constexpr double odds_of_a_place = 20;       // at which a place is preferred to none
+inline constexpr double odds_of_a_place = 20;       // at which a place is preferred to none, or to another
+// How far a run's start may be off where no sensor says: the spool's, a chamber's pressure.
+inline constexpr double start_of_spool = 0.05;    // [of the stop's travel]
+inline constexpr double start_of_pressure = 0.2;  // [of the supply]
+// [of a channel's noise] Behind a high-pass: where the signal stood before its first sample is not known at all.
+inline constexpr double start_of_filter = 1e3;
 
 // Healthy logs of the suspect's own test from which on they speak alone (explain/kin.cpp): fewer tell a scatter worse
 // than other tests do. Not examined.
@@ -129,8 +151,9 @@ inline constexpr std::size_t blocks = 16;            // of time, of each run
 inline constexpr std::size_t search_samples = 1500;  // of all runs: the intensity is searched for on so many
 // Of the logarithm of the walk's variance: a factor of ten in intensity.
 inline constexpr double step = 4.6, finest = 0.5;
-inline constexpr int longest_path = 12;  // steps
-inline constexpr double little = 0.01;   // of a channel's noise: so little from pass to pass, and it has settled
+inline constexpr int longest_path = 12;        // steps
+inline constexpr std::size_t fewest_news = 8;  // samples: fewer tell no memory
+inline constexpr double little = 0.01;         // of a channel's noise: so little from pass to pass, and it has settled
 // The path begins where the walk gets so many times the typical over the run.
 inline constexpr double most_typical = 1e3, most_by_slope = 1e5;
 }  // namespace smoother

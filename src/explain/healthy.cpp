@@ -404,7 +404,7 @@ double HealthyTest::by_law(const OfCause& cause, const std::vector<HealthyScore>
           std::isfinite(s->sizes[k].size))
         sizes.push_back({s->sizes[k].size, s->sizes[k].std_error * s->sizes[k].std_error, s->thickness});
     }
-    if (sizes.size() < 3) continue;
+    if (sizes.size() < explain_constants::enough_healthy) continue;
     const Scatter scatter = scatter_of(sizes);
     double weight = 0, sum = 0, noise = 0, shared = 0, known = 0;
     for (const HealthyScore& s : logs)
@@ -432,7 +432,7 @@ double HealthyTest::spread(const HealthyScore& of, std::size_t probe) const {
       if (s.effect == of.effect && s.where == of.where && probe < s.sizes.size() &&
           std::isfinite(s.sizes[probe].std_error) && std::isfinite(s.sizes[probe].size))
         sizes.push_back({s.sizes[probe].size, s.sizes[probe].std_error * s.sizes[probe].std_error, s.thickness});
-  if (sizes.size() < 3) return 0;
+  if (sizes.size() < explain_constants::enough_healthy) return 0;
   const Scatter scatter = scatter_of(sizes);
   const double own = of.sizes[probe].std_error, none = scatter.at(of.thickness);
   return std::sqrt(std::max(0.0, scatter.variance(own * own) - own * own) + none * none);
@@ -441,7 +441,7 @@ double HealthyTest::spread(const HealthyScore& of, std::size_t probe) const {
 double HealthyTest::together(double alone) const {
   // The smallest of m independent chances has -ln(1 - p) exponential with rate m; m is learnt, causes are alike.
   const auto n = static_cast<double>(smallest_.size());
-  if (n < 3 || alone >= 1) return 1;
+  if (smallest_.size() < explain_constants::enough_healthy || alone >= 1) return 1;
   double sum = 0, as_small = 0;
   for (double p : smallest_) sum -= std::log1p(-std::min(p, 1 - 1e-12)), as_small += p <= alone;
   const double by_law = 1 - std::pow(1 - std::log1p(-alone) / sum, -n);

@@ -21,6 +21,8 @@
 namespace servodx {
 namespace {
 
+namespace k = explain_constants;
+
 // What a channel shows of the model's states; empty: of none that the smoother knows.
 Eigen::VectorXd shown(Signal signal, int states, const ParameterVector& p) {
   Eigen::VectorXd h = Eigen::VectorXd::Zero(states);
@@ -72,7 +74,7 @@ struct StartNoise {
   double piston, spool, pressure;  // [m], [m], [Pa]
 };
 StartNoise start_noise_of(const std::vector<FitChannel>& channels, const ParameterVector& p) {
-  StartNoise out{0, 0.05 * p[row::spool_stop], 0.2 * p[row::supply_pressure]};
+  StartNoise out{0, k::start_of_spool * p[row::spool_stop], k::start_of_pressure * p[row::supply_pressure]};
   for (const FitChannel& channel : channels) {
     if (channel.signal == Signal::piston_position) out.piston = channel.noise;
     if (channel.signal == Signal::spool_position) out.spool = channel.noise;
@@ -84,7 +86,6 @@ StartNoise start_noise_of(const std::vector<FitChannel>& channels, const Paramet
 // [states] of the model and of the filters behind them.
 Eigen::VectorXd start_of(const Linearisation& linear, const StartNoise& noise, const std::vector<Filtered>& filtered,
                          const std::vector<double>& time) {
-  constexpr double anywhere = 1e3;  // where the signal stood before its first sample
   const long own = linear.states - n_missing_places, extra = static_cast<long>(filtered.size());
   Eigen::VectorXd out = Eigen::VectorXd::Zero(own + extra);
   out.head(own) = linear.at_rest.head(own);
@@ -92,7 +93,7 @@ Eigen::VectorXd start_of(const Linearisation& linear, const StartNoise& noise, c
   out[s_p_a] = out[s_p_b] = noise.pressure;
   out[s_x_piston] = noise.piston;
   out[s_v_piston] = noise.piston * starting_slope_error(time);
-  for (long f = 0; f < extra; ++f) out[own + f] = anywhere * filtered[static_cast<std::size_t>(f)].noise;
+  for (long f = 0; f < extra; ++f) out[own + f] = k::start_of_filter * filtered[static_cast<std::size_t>(f)].noise;
   return out;
 }
 
@@ -222,7 +223,7 @@ std::optional<LinearLogs> linear_logs(const ValveSubject& subject, const Point& 
   const auto problem = subject.problem({});
   std::size_t samples = 0, series = 0;
   for (const LogData& l : subject.logs()) samples += l.scenario.time.size();
-  const auto stride = static_cast<int>(samples / explain_constants::most_samples) + 1;
+  const auto stride = static_cast<int>(samples / k::most_samples) + 1;
   // The steps of a fit are too coarse for what is looked at sample by sample; for its derivatives they do.
   SimulateOptions fine = fine_steps();
   fine.wanted.fill(true);
@@ -269,7 +270,7 @@ void mark_likely(const std::vector<SmoothedInput>& smoothed, std::vector<Missing
   const auto best =
       std::max_element(smoothed.begin(), smoothed.end(), [](const auto& a, const auto& b) { return a.gain < b.gain; });
   for (std::size_t i = 0; i < places.size(); ++i)
-    places[i].likely = places[i].gain > std::log(explain_constants::odds_of_a_place) && !preferred(*best, smoothed[i]);
+    places[i].likely = places[i].gain > std::log(k::odds_of_a_place) && !preferred(*best, smoothed[i]);
 }
 
 }  // namespace

@@ -1,6 +1,7 @@
 #include "explain/sensor_causes.h"
 
 #include <cstddef>
+#include <iterator>
 #include <optional>
 #include <stdexcept>
 #include <string>
@@ -11,6 +12,7 @@
 #include "effects/mains_pickup.h"
 #include "effects/row_effects.h"
 #include "effects/sensor_response.h"
+#include "explain/constants.h"
 #include "explain/subject.h"
 #include "parameters/list.h"
 #include "servodx/log.h"
@@ -19,6 +21,8 @@
 
 namespace servodx {
 namespace {
+
+namespace tried = explain_constants::tried;
 
 std::string place_of_sensor(Signal sensor) { return "sensor:" + std::string(info(sensor).name); }
 
@@ -44,7 +48,7 @@ void add_sensor(std::vector<SoughtCause>& to, const EffectInfo& e, int j, int sh
   const EffectParameter& p = e.parameters[static_cast<std::size_t>(j)];
   CauseNumber n{effect_value(e, static_cast<std::size_t>(j), facts.tuned), p.unit};
   const double move = p.start - p.off, v = n.value.start;
-  n.sizes = sizes_within(n.value, {v + move, v - move, v + 4 * move});
+  n.sizes = sizes_within(n.value, {v + move, v - move, v + tried::larger * move});
   Cause cause = of_sensor(known_as.name, signal);
   cause.test = known_as.best_test;
   to.push_back(sought(std::move(cause), {n}));
@@ -70,11 +74,11 @@ std::vector<CauseNumber> numbers_of_lines(const EffectInfo& e, const std::vector
 // Alternatives are frequencies; cosines and sines are tried together.
 std::vector<std::vector<std::vector<double>>> probes_of_lines(const std::vector<CauseNumber>& numbers,
                                                               const std::optional<double>& stated_frequency) {
-  std::vector<double> frequencies = {50.0, 60.0};
+  std::vector<double> frequencies(std::begin(tried::grids), std::end(tried::grids));
   if (stated_frequency) frequencies = {*stated_frequency};
   std::vector<std::vector<std::vector<double>>> out;
   for (const double f : frequencies)
-    for (const double off : {0.0, -0.15, 0.15}) {
+    for (const double off : {0.0, -tried::grid_off, tried::grid_off}) {
       std::vector<double> rest;
       for (const CauseNumber& n : numbers) rest.push_back(n.size ? n.value.start : f + off);
       std::vector<std::vector<double>>& together = out.emplace_back();

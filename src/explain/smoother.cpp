@@ -443,7 +443,7 @@ SmootherResult searched(const std::vector<LinearRun>& runs, const std::vector<do
   const auto& news = passes[best].innovations;
   for (Index l = 0; l < counts.size(); ++l)
     for (Index c = 0; c < counts[l].size(); ++c) {
-      if (news[l][c].size() > 8) counts[l][c] = effective_fraction(news[l][c]);
+      if (news[l][c].size() > fewest_news) counts[l][c] = effective_fraction(news[l][c]);
       out.independent += counts[l][c] * static_cast<double>(news[l][c].size());
     }
   const double without = search.nothing().log_likelihood(&counts);
@@ -478,7 +478,8 @@ bool preferred(const SmoothedInput& place, const SmoothedInput& to) {
   double square = 0;
   for (Index b = 0; b < place.by_block.size(); ++b)
     square += std::pow(place.by_block[b] - to.by_block[b] - mean, 2) / (n - 1);
-  return n * mean > std::log(20.0) && n * mean > normal_95_one_sided * std::sqrt(n * square);
+  return n * mean > std::log(explain_constants::odds_of_a_place) &&
+         n * mean > normal_95_one_sided * std::sqrt(n * square);
 }
 
 LinearRun thinned(const LinearRun& run, int stride) {

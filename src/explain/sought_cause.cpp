@@ -8,12 +8,13 @@
 
 namespace servodx {
 
+namespace k = explain_constants;
+
 FreeValue effect_value(const EffectInfo& effect, std::size_t j, const ParameterVector& tuned) {
   const EffectParameter& p = effect.parameters[j];
   const int at = effect.first + static_cast<int>(j);
   const double v = tuned[static_cast<std::size_t>(at)];
-  const double upper =
-      p.switches && p.off == p.lower ? std::max(p.upper, explain_constants::effect_growth * v) : p.upper;
+  const double upper = p.switches && p.off == p.lower ? std::max(p.upper, k::effect_growth * v) : p.upper;
   return {p.name, at, std::min(p.lower, v), std::max(upper, v), false, v};
 }
 
@@ -33,7 +34,7 @@ std::vector<double> sizes_within(const FreeValue& value, const std::vector<doubl
 std::vector<double> sizes_of_row(const FreeValue& value) {
   const double u = value.to_unit(value.start);
   std::vector<double> out;
-  for (double du : {0.05, -0.05, 0.25, -0.25})
+  for (double du : {k::tried::near_row, -k::tried::near_row, k::tried::far_row, -k::tried::far_row})
     if (u + du >= 0 && u + du <= 1) out.push_back(value.from_unit(u + du));
   return out;
 }

@@ -38,8 +38,8 @@ void limit(FreeValue& own, const std::vector<double>& healthy) {
   const auto n = static_cast<double>(healthy.size());
   for (double v : healthy) mean += v / n;
   for (double v : healthy) square += std::pow(v - mean, 2) / (n - 1);
-  const double reach = student_quantile(0.01, n - 1) * std::sqrt(square * (1 + 1 / n)),
-               least = 1e-3 * (own.upper - own.lower);
+  const double reach = student_quantile(k::beyond_healthy, n - 1) * std::sqrt(square * (1 + 1 / n)),
+               least = k::least_own_range * (own.upper - own.lower);
   own.lower = std::max(own.lower, mean - reach);
   own.upper = std::max(std::min(own.upper, mean + reach), own.lower + least);
   own.start = std::clamp(own.start, own.lower, own.upper);

@@ -1,6 +1,7 @@
 #include "explain/valve_causes.h"
 
 #include <algorithm>
+#include <iterator>
 #include <optional>
 #include <string>
 #include <utility>
@@ -57,9 +58,9 @@ std::optional<double> error_from_tuning(const EffectParameter& p, const Table& t
 CauseNumber size_of_effect(const EffectInfo& e, std::size_t j, const CauseFacts& facts) {
   const EffectParameter& p = e.parameters[j];
   CauseNumber out{effect_value(e, j, facts.tuned), p.unit};
-  const double move = p.start - p.off, v = out.value.start;
-  out.sizes =
-      sizes_within(out.value, {v + move, v + 0.25 * move, v + 4 * move, v + 16 * move, v - 0.25 * move, v - move});
+  const double move = p.start - p.off, v = out.value.start, smaller = k::tried::smaller * move;
+  out.sizes = sizes_within(out.value, {v + move, v + smaller, v + k::tried::larger * move, v + k::tried::largest * move,
+                                       v - smaller, v - move});
   return out;
 }
 CauseNumber shape_of_effect(const EffectInfo& e, std::size_t j, const CauseFacts& facts) {
@@ -73,7 +74,8 @@ CauseNumber shape_of_effect(const EffectInfo& e, std::size_t j, const CauseFacts
 CauseNumber number_along(const RowAlong& along, const Table& table) {
   const Row& r = table[along.row];
   CauseNumber out{row_value(table, along.row), r.unit, along.grows};
-  if (along.grows) out.sizes = sizes_within(out.value, {2 * r.nominal, 5 * r.nominal});
+  if (along.grows)
+    out.sizes = sizes_within(out.value, {k::tried::along_a_little * r.nominal, k::tried::along_far * r.nominal});
   return out;
 }
 
@@ -99,9 +101,10 @@ SoughtCause effect_cause(const EffectInfo& e, const CauseFacts& facts) {
 // Air belongs to a log's oil: the cause is a factor on each log's own.
 CauseNumber factor_on_air(const Table& table) {
   constexpr int at = row::air_fraction;
-  CauseNumber out{{std::string(parameter_list[at].name), at, 0.02, 50.0, true, 1.0}, table[at].unit};
+  CauseNumber out{{std::string(parameter_list[at].name), at, k::tried::least_air, k::tried::most_air, true, 1.0},
+                  table[at].unit};
   out.value.apply = [](double* candidate, double factor) { candidate[row::air_fraction] *= factor; };
-  out.sizes = {2.0, 0.5, 8.0};
+  out.sizes.assign(std::begin(k::tried::air), std::end(k::tried::air));
   return out;
 }
 
