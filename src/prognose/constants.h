@@ -14,11 +14,21 @@
 namespace servodx::prognose_constants {
 
 // The preflight test in the command.
-inline constexpr double least_jump = 0.02;     // [of rated] that begins a step; tests of the paper have 0.1
-inline constexpr double rest_band = 0.005;     // [of rated] within which a command is at rest
-inline constexpr double least_swing = 0.005;   // [of rated] between turning points of a sine
-inline constexpr double equal_periods = 0.15;  // half periods of one sine differ by less
-inline constexpr double purity = 0.1;          // rms left of a sine over its own
+inline constexpr double least_jump = 0.02;       // [of rated] that begins a step; tests of the paper have 0.1
+inline constexpr double rest_band = 0.005;       // [of rated] within which a command is at rest
+inline constexpr double least_swing = 0.005;     // [of rated] between turning points of a sine
+inline constexpr double equal_periods = 0.15;    // half periods of one sine differ by less
+inline constexpr double purity = 0.1;            // rms left of a sine over its own
+inline constexpr double held_within = 0.2;       // of a step: so near its top the command is still held
+inline constexpr double taken_back = 0.5;        // of a step: so much of it is left at most once it is taken back
+inline constexpr std::size_t shortest_hold = 5;  // samples of a step
+inline constexpr std::size_t edge_samples = 2;   // after a step's end: its edge may be caught on the way
+// Of a guess from the turning points: between these a sine's frequency is sought, in so many golden sections.
+inline constexpr double lowest_frequency = 0.9, highest_frequency = 1.1;
+inline constexpr int golden_sections = 30;    // to 1e-7 of it
+inline constexpr double period_grace = 0.05;  // of a period, that a cycle may begin early or end late: some samples
+inline constexpr int least_cycles = 2;        // of a sine
+inline constexpr long least_of_sine = 8;      // samples that tell one: four numbers are fitted
 
 // The checks.
 inline constexpr int error_batches = 10;       // of |e|, whose means scatter as its standard error says
@@ -48,10 +58,13 @@ inline constexpr double difference_step =
 inline constexpr double healthier = 3;  // [spreads] by which a row may come out better than tuned
 // What is lost of may be larger than the model has it, to half of the drop over a clean filter: sqrt(2) - 1.
 inline constexpr double larger_clean = 0.41421356237309515;
+inline constexpr double told_beyond = 2;  // [standard errors] from where the valve began: then a log tells a row's wear
+inline constexpr int unit_halvings = 50;  // of a severity's unit interval: to rounding
 
 // Seeded-fault tests.
 inline constexpr double apart = 0.05;           // of their range: what lies closer was meant to be the same
 inline constexpr std::size_t least_valves = 3;  // that a spread between valves takes
+inline constexpr double least_scatter = 1e-6;   // of the range of sizes: readings may agree to rounding
 
 // The scale of a filter's readings.
 inline constexpr double at_end = 1.001;         // times the least drop: a reading nearer than this has no more to fall
@@ -95,6 +108,11 @@ inline constexpr int harmonic_points = 32;             // of a half wave, for it
 inline constexpr int cycles_scanned = 24, cycle_halvings = 20;         // of a limit cycle's amplitude
 inline constexpr int severities_scanned = 12, severity_halvings = 16;  // of the range: to 1.3e-6 of it
 inline constexpr double judged_share = 0.04;  // [of rated current] amplitude that a margin is judged at
+// [of the radial clearance] amplitude that the flow at null is taken at without laps: there it is in proportion still
+inline constexpr double null_amplitude = 0.02;
+inline constexpr double least_wire = 1e-6;  // of its stiffness: a wire that backlash has let go
+// The least limit cycle is looked for just beyond the backlash, in which nothing moves; [m] where there is none.
+inline constexpr double beyond_backlash = 1.001, least_cycle = 1e-9;
 }  // namespace loop
 
 // The grid of growths.
@@ -138,5 +156,12 @@ inline constexpr double as_far = 0.5;        // of the furthest on its way to fa
 inline constexpr double least_width = 1e-6;  // [h] an interval has one
 inline constexpr double open_width = 1e6;    // times its lower end: of an interval that never ends
 inline constexpr int least_for_tangent = 4;  // checks: a quadratic through three points is no fit
+
+// What a user calls failed (performance_limits.cpp).
+//
+// Of E(tau) at a slower spool: over so many time constants, 95 % of a step by definition, in so many steps.
+inline constexpr double fidelity_span = 3.0;
+inline constexpr int fidelity_steps = 3000;
+inline constexpr double most_gain_margin = 60;  // [dB] that may be asked for: beyond, a slip of the pen
 
 }  // namespace servodx::prognose_constants

@@ -77,14 +77,14 @@ double PositionLoop::over_null_slope(const ParameterVector& candidate, std::opti
   };
   ParameterVector lapped_off = candidate;
   take_off_laps(lapped_off);
-  const double at_null =
-      first_harmonic(valve_maps::HighFidelity(geometry_of(lapped_off, at_)), 0.02 * candidate[row::radial_clearance]);
+  const double at_null = first_harmonic(valve_maps::HighFidelity(geometry_of(lapped_off, at_)),
+                                        null_amplitude * candidate[row::radial_clearance]);
   return (amplitude ? first_harmonic(valve, *amplitude) : numbers.flow_gain) / at_null;
 }
 
 std::vector<PositionLoop::Response> PositionLoop::responses(const ParameterVector& candidate, double wire) const {
   ParameterVector smooth = candidate;
-  smooth[row::feedback_wire_stiffness] *= std::max(wire, 1e-6);
+  smooth[row::feedback_wire_stiffness] *= std::max(wire, least_wire);
   smooth[row::valve_glitch] = 0;
   take_off_laps(smooth);
   for (const int friction : {row::spool_friction, row::piston_coulomb_friction, row::piston_stribeck_friction})
@@ -158,7 +158,7 @@ Margins PositionLoop::margins(const ParameterVector& candidate, double amplitude
 }
 
 std::optional<LimitCycle> PositionLoop::limit_cycle(const ParameterVector& candidate, double largest) const {
-  const double least = std::max(0.5 * candidate[row::valve_glitch], 1e-9) * 1.001;
+  const double least = std::max(0.5 * candidate[row::valve_glitch], least_cycle) * beyond_backlash;
   if (!(largest > least)) return {};
   const auto gain_at = [&](double amplitude) { return margins(candidate, amplitude).gain; };
   double stable = largest;

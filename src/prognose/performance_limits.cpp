@@ -11,6 +11,7 @@
 #include "fit/nominal.h"
 #include "parameters/list.h"
 #include "prognose/check_name.h"
+#include "prognose/constants.h"
 #include "prognose/loop_margins.h"
 #include "prognose/monitor.h"
 #include "prognose/track.h"
@@ -19,6 +20,9 @@
 #include "simulate/scenario.h"
 
 namespace servodx {
+
+using namespace prognose_constants;
+
 namespace {
 
 // A margin's unit says whether it is one of gain or of phase.
@@ -48,10 +52,10 @@ Supply supply_of(const Table& tuned) {
   return {tuned[row::supply_pressure].nominal, tuned[row::return_pressure].nominal, {}, rated};
 }
 
-// A part lies between 0 and 1, a phase margin between 0 and 90 deg, a gain margin below 60 dB.
+// A part lies between 0 and 1, a phase margin between 0 and 90 deg.
 void require_range(const PerformanceLimit& limit) {
   const bool phase = limit.kind == LimitKind::phase_margin || limit.kind == LimitKind::loop_phase_margin;
-  const double most = phase ? 90 : limit.kind == LimitKind::loop_gain_margin ? 60 : 1;
+  const double most = phase ? 90 : limit.kind == LimitKind::loop_gain_margin ? most_gain_margin : 1;
   if (!(limit.value > 0 && limit.value < most)) throw InputError(where, "'" + limit.text + "' is out of range", known);
 }
 
@@ -124,9 +128,8 @@ PerformanceLimit read_margin(const std::string& value, const std::string& text) 
 
 double fidelity_of_slower(double slower) {
   double cross = 0, square = 0;
-  constexpr int steps = 3000;
-  for (int k = 0; k < steps; ++k) {
-    const double u = 3.0 * (k + 0.5) / steps;  // 95 % at three time constants
+  for (int k = 0; k < fidelity_steps; ++k) {
+    const double u = fidelity_span * (k + 0.5) / fidelity_steps;
     const double model = -std::expm1(-u), spool = -std::expm1(-u / slower);
     cross += model * spool, square += spool * spool;
   }

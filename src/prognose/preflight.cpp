@@ -20,9 +20,9 @@ std::optional<Preflight::Step> find_step(const std::vector<double>& u, std::size
   const double size = u[from + 1] - level;  // a sample later: an edge may be caught half way
   if (std::abs(size) < least_jump * rated) return {};
   std::size_t back = from + 1;
-  while (back < u.size() && std::abs(u[back] - level - size) < 0.2 * std::abs(size)) ++back;
-  if (back + 2 >= u.size() || back - from < 5) return {};
-  if (std::abs(u[back + 2] - level) > 0.5 * std::abs(size)) return {};  // not taken back
+  while (back < u.size() && std::abs(u[back] - level - size) < held_within * std::abs(size)) ++back;
+  if (back + edge_samples >= u.size() || back - from < shortest_hold) return {};
+  if (std::abs(u[back + edge_samples] - level) > taken_back * std::abs(size)) return {};
   return Preflight::Step{from, back, size};
 }
 
@@ -70,11 +70,11 @@ std::optional<Preflight::Sine> sine_of(const std::vector<double>& t, const std::
   const double quarter = 0.25 / guess;
   const std::size_t from = sample_at(t, std::max(t.front(), first_turn - quarter)),
                     to = sample_at(t, last_turn + quarter);
-  // The frequency that leaves least, by golden section over +-10 %.
+  // The frequency that leaves least, by golden section.
   const auto left = [&](double f) { return fit_sine(t, u, from, to, f, t[from]).residual; };
-  double a = 0.9 * guess, b = 1.1 * guess;
+  double a = lowest_frequency * guess, b = highest_frequency * guess;
   constexpr double golden = 0.6180339887498949;
-  for (int k = 0; k < 30; ++k) {
+  for (int k = 0; k < golden_sections; ++k) {
     const double c = b - golden * (b - a), d = a + golden * (b - a);
     (left(c) < left(d) ? b : a) = left(c) < left(d) ? d : c;
   }
@@ -84,10 +84,10 @@ std::optional<Preflight::Sine> sine_of(const std::vector<double>& t, const std::
   if (!fit.ok || fit.residual > purity * amplitude / std::numbers::sqrt2) return {};
   // First rising zero of the sinusoid at or after `from`, a few samples of grace.
   double start = t[from] - std::atan2(fit.cosine, fit.sine) / (2 * std::numbers::pi * f);
-  while (start < t[from] - 0.05 / f) start += 1 / f;
-  const double end = std::min(t.back(), last_turn + quarter + 0.05 / f);
-  const int cycles = static_cast<int>(std::floor((end - start) * f + 0.05));
-  if (cycles < 2) return {};
+  while (start < t[from] - period_grace / f) start += 1 / f;
+  const double end = std::min(t.back(), last_turn + quarter + period_grace / f);
+  const int cycles = static_cast<int>(std::floor((end - start) * f + period_grace));
+  if (cycles < least_cycles) return {};
   return Preflight::Sine{f, amplitude, start, cycles};
 }
 
@@ -110,7 +110,7 @@ SineFit fit_sine(const std::vector<double>& time, const std::vector<double>& y, 
     ++n;
   }
   SineFit out;
-  if (n < 8) return out;
+  if (n < least_of_sine) return out;
   const Eigen::Vector4d x = normal.ldlt().solve(right);
   out = {x[0],
          x[1] * frequency,

@@ -105,7 +105,7 @@ void ReadingCurve::learn_spreads(const std::vector<Off>& offs) {
 // Each valve by itself: off = base + size * grown + (d1 z + d2 z2) acted, by how far valves are off there.
 void ReadingCurve::learn_errors(const std::vector<Off>& offs, double origin) {
   constexpr long unknowns = 4;
-  const double least = 1e-6 * (sizes_.back() - sizes_.front());
+  const double least = least_scatter * (sizes_.back() - sizes_.front());
   using Cells = std::vector<std::vector<std::vector<double>>>;  // [oil][size]
   Cells cells(viscosities_.size(), std::vector<std::vector<double>>(sizes_.size())), left = cells;
   std::map<std::string, std::vector<Off>> of_valve;

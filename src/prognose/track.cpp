@@ -77,7 +77,7 @@ double row_at(const ParameterVector& base, const Progressive& p, const FreeValue
 double unit_of(const ParameterVector& base, const Progressive& p, const FreeValue& severity, double value) {
   double low = 0, high = 1;
   const bool rises = row_at(base, p, severity, 1) > row_at(base, p, severity, 0);
-  for (int k = 0; k < 50; ++k) {
+  for (int k = 0; k < unit_halvings; ++k) {
     const double mid = 0.5 * (low + high);
     ((row_at(base, p, severity, mid) < value) == rises ? low : high) = mid;
   }
@@ -207,7 +207,7 @@ TrackedParameter parameter_at(const Progressive& p, const ParameterVector& base,
   if (p.fault->part_lost) scale.kind = ReadingScale::Kind::drop;
   const double from_tuned = std::abs(scale.in(out.value) - scale.in(out.tuned)),
                beside = p.fault->part_lost ? left_by_bores : 0.0;
-  out.told = from_tuned > 2 * std::hypot(out.whole_error / scale.stretch(out.value), beside);
+  out.told = from_tuned > told_beyond * std::hypot(out.whole_error / scale.stretch(out.value), beside);
   return out;
 }
 
