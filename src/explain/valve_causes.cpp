@@ -19,34 +19,6 @@ namespace {
 
 namespace k = explain_constants;
 
-// Of a row that no row effect has.
-const char* place_of_row(int at) {
-  switch (at) {
-    case row::driver_bandwidth:
-    case row::current_limit:
-    case row::servovalve_null:
-      return "drive";
-    case row::piston_area_a:
-    case row::piston_area_b:
-    case row::moving_mass:
-    case row::piston_viscous_friction:
-    case row::piston_coulomb_friction:
-    case row::piston_stribeck_friction:
-      return "piston_force";
-    case row::dead_volume_b:
-      return "flow_b";
-    case row::supply_pressure:
-    case row::return_pressure:
-      return "supply";
-    default:
-      break;
-  }
-  if (at < row::spool_diameter) return "first_stage";
-  if (at < row::port_width) return "spool";
-  if (at < row::piston_area_a || at == row::hose_resistance) return "metering";
-  return "flow_a";
-}
-
 // A shape that was found in tuning is this valve's own: let go, it takes on what any other cause does, and held, it
 // spoils the cause where tuning has it wrong. So it stays within its error. [unit] None: it was not found.
 std::optional<double> error_from_tuning(const EffectParameter& p, const Table& table) {
@@ -135,7 +107,8 @@ SoughtCause row_effect_cause(const RowEffect& e, const CauseFacts& facts) {
 
 // A row that is tuned is let go of what tuning knows.
 SoughtCause row_cause(int at, const Table& table) {
-  return sought(named(table[at].name, place_of_row(at), k::row_prior), {number_of_row(at, table)});
+  return sought(named(table[at].name, std::string(parameter_list[static_cast<std::size_t>(at)].place), k::row_prior),
+                {number_of_row(at, table)});
 }
 
 bool is_of_row_effect(int at) {

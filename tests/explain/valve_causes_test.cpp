@@ -13,6 +13,7 @@
 #include "effects/magnetic_hysteresis.h"
 #include "effects/mains_pickup.h"
 #include "effects/registry.h"
+#include "effects/row_effects.h"
 #include "effects/stiction.h"
 #include "effects/unexplained.h"
 #include "effects/viscosity_change.h"
@@ -70,6 +71,11 @@ TEST(ValveCauses, EachIsTriedAtSizesWithinItsBoundsAndNeverWhereItIs) {
         EXPECT_TRUE(moved);
       }
   }
+}
+
+TEST(ValveCauses, RowHasThePlaceOfTheEffectThatItIs) {
+  for (const RowEffect& e : row_effects())
+    for (const int at : e.rows) EXPECT_EQ(parameter_list[static_cast<std::size_t>(at)].place, e.where) << e.name;
 }
 
 TEST(ValveCauses, EffectIsSoughtWhereTheLogsCouldTellIt) {
