@@ -351,6 +351,13 @@ std::vector<SharesOfLog> shares_of(const HealthyReference& reference) {
   return out;
 }
 
+// Held-out data would have refused it, whatever its size: a suspect is not accused by such a cause either.
+bool is_refused(const HealthyLog& log, const HealthyScore& score) {
+  return std::any_of(log.shares.begin(), log.shares.end(), [&](const HealthyShare& s) {
+    return s.effect == score.effect && s.where == score.where && !(s.lower > 0);
+  });
+}
+
 }  // namespace
 
 HealthyTest::HealthyTest(const HealthyReference& reference, double thickness)
@@ -368,7 +375,7 @@ HealthyTest::HealthyTest(const HealthyReference& reference, double thickness)
   smallest_.assign(n, 1.0);
   for (const auto& [name, c] : causes_)
     for (std::size_t i = 0; i < n; ++i)
-      if (c.score[i])
+      if (c.score[i] && !is_refused(reference.logs[i], *c.score[i]))
         smallest_[i] = std::min(smallest_[i], believed(c, c.surprise[i], static_cast<int>(i), c.score[i]->prior));
 }
 

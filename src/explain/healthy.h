@@ -109,7 +109,8 @@ class HealthyTest {
   // share of the false alarms and no more: its chance counts over its prior (Genovese et al. 2006).
   double alone(const std::vector<HealthyScore>& logs) const;
   // The same with all causes counted together: how small the smallest of a healthy log's chances is, is learnt from the
-  // healthy logs themselves, each against the others: -ln(1 - p) is taken as exponential, its predictive is Lomax's.
+  // healthy logs themselves, each against the others: -ln(1 - p) is taken as exponential, its predictive is Lomax's. A
+  // cause that held-out data of that log refuse is not counted, as no suspect is accused by such a one.
   double together(double alone) const;
   // How far a size of this cause lies from none on healthy logs, and what a log with this standard error scatters
   // beyond it: root of the sum of squares; 0 where fewer than three speak of it. [of the probe]

@@ -197,6 +197,23 @@ TEST(Healthy, LongTailsOfOneCauseAreLearntAndStayItsOwn) {
   EXPECT_GE(found, trials * 8 / 10);
 }
 
+// One log's cause is of a size that no other shows, and its held-out data refuse it: it hides no one else's.
+TEST(Healthy, ACauseThatHeldOutDataRefuseDeafensNoOne) {
+  const auto together = [](double lower) {
+    Random random(51, 1);
+    HealthyReference reference;
+    for (int i = 0; i < 9; ++i) reference.logs.push_back(draw(random, 5, 0, -1));
+    HealthyLog& odd = reference.logs.front();
+    odd.scores.push_back({"odd", "here", {{40, 1}}, 0});
+    for (std::size_t i = 1; i < 9; ++i) reference.logs[i].scores.push_back({"odd", "here", {{0.1, 1}}, 0});
+    odd.shares.push_back({"odd", "here", 0.3, lower, 1}), odd.has_shares = true;
+    const HealthyTest test(reference);
+    return test.together(test.alone({{"cause 4", "here", {{4 + 12.0, 0.5}}, 0}}));
+  };
+  EXPECT_GE(together(0.1), 2.0 / 10);
+  EXPECT_LT(together(-0.1), 0.1);
+}
+
 TEST(Healthy, RareCauseHasItsShareOfTheFalseAlarmsAndNoMore) {
   Random random(50, 1);
   HealthyReference reference;
