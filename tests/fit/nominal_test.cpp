@@ -95,10 +95,16 @@ TEST(RowsOffDrawing, AreThoseThatTheSheetStatesAndThatEndedAtTheEndOfTheirRange)
   EXPECT_EQ(rows_off_drawing(tuned, nominal, rig_with(silent)).size(), 0u) << "it was held";
 }
 
+// But for the loop's gain: the paper's valve has 89 Hz for its 100 Hz of lag, a sheet alone gives two thirds.
 TEST(RigFacts, TheFlightSheetGivesTheShippedTable) {
   const Table before = shipped(), after = apply_rig_facts(before, rig_with(flight_sheet));
-  for (int i = 0; i < n_parameters; ++i)
+  const double wire = before[row::feedback_wire_stiffness].nominal;
+  for (int i = 0; i < n_parameters; ++i) {
+    if (i == row::flapper_stiffness) continue;
     EXPECT_NEAR(after[i].nominal, before[i].nominal, 0.02 * std::abs(before[i].nominal)) << before[i].name;
+  }
+  EXPECT_NEAR((after[row::flapper_stiffness].nominal + wire) / (before[row::flapper_stiffness].nominal + wire),
+              89 / 66.7, 0.02 * 89 / 66.7);
 }
 
 TEST(RigFacts, EveryFactOfTheSheetMovesARow) {

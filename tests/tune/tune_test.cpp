@@ -285,7 +285,9 @@ TEST(Tune, AnEffectThatGoesWithTheSizeOfTheRigIsAlsoBegunAsLargeAsTheRig) {
 
 // All but what stands between the steps: the runs that learn an error model, and those that show what is held out.
 TEST(Tune, ItsStepsAccountForNineTenthsOfItsSimulations) {
-  const TuneResult result = quick_tune(one_free_row());
+  Table table = one_free_row();
+  table[row::flapper_stiffness].estimate = true;  // the sheet's is far enough off for round upon round of weights
+  const TuneResult result = quick_tune(table);
   long told = 0;
   for (const StageResult& s : result.stages) told += s.simulations;
   EXPECT_LE(told, result.simulations);
@@ -328,14 +330,16 @@ TEST(Tune, WhatIsHeldOutTellsTheFitNothingUntilItHasEnded) {
     return tune_table({log}, one_free_row(), shipped_rig(), o);
   };
   const TuneResult as_it_is = tuned(0), bent = tuned(0.9 * o.heldout);
-  bool met = false;
-  for (std::size_t k = 0; k < as_it_is.stages.size(); ++k) {
+  // How long weights are learnt anew is what the held-out part may say.
+  std::set<Stage::Kind> met;
+  for (std::size_t k = 0; k < std::min(as_it_is.stages.size(), bent.stages.size()); ++k) {
     const StageResult &one = as_it_is.stages[k], &other = bent.stages[k];
+    if (one.stage.kind != other.stage.kind) break;
     if (one.stage.kind != Stage::Kind::start && one.stage.kind != Stage::Kind::weights) continue;
     EXPECT_NEAR(one.after, other.after, 1e-3 * one.after) << k;
-    met = true;
+    met.insert(one.stage.kind);
   }
-  EXPECT_TRUE(met);
+  EXPECT_EQ(met, (std::set{Stage::Kind::start, Stage::Kind::weights}));
   EXPECT_GT(bent.channels.front().heldout_rms, as_it_is.channels.front().heldout_rms);
 }
 
