@@ -14,6 +14,7 @@
 #include "evidence/conditions.h"
 #include "faults/fault.h"
 #include "faults/gross_finding.h"
+#include "optimise/search_stop.h"
 #include "servodx/note.h"
 #include "servodx/operating_point.h"
 #include "servodx/tune.h"
@@ -29,7 +30,7 @@ struct HypothesisResult {
   double probability = 0;                                       // by `judge`
   double severity = 0, severity_lower = 0, severity_upper = 0;  // [the fault's unit] 95 %
   double adequacy = 0;               // whitened rms of the worst channel, 1 when like the healthy logs
-  std::vector<std::string> stops;    // how each start ended
+  std::vector<SearchStop> stops;     // how each start ended
   bool at_worst = false;             // at the far end of the range that was searched
   bool at_least = false;             // at the mildest that is called this fault: the fit has found none of it
   double null = 0;                   // [fraction of rated]

@@ -22,6 +22,7 @@
 #include "fit/fit_work.h"
 #include "fit/log_data.h"
 #include "fit/problem.h"
+#include "optimise/search_stop.h"
 #include "optimise/unit_cube.h"
 #include "simulate/scenario.h"
 
@@ -45,7 +46,7 @@ struct HypothesisFit : FaultSize {       // a null fault: healthy
   // Log by log, of each its channels.
   std::vector<double> channel_adequacy;  // whitened rms of a channel; 1 when as wrong as on the tuning logs
   std::vector<double> channel_rms;       // [SI] of the residual, high-passed where the channel is
-  std::vector<std::string> stops;        // how each start ended
+  std::vector<SearchStop> stops;         // how each start ended
   double promised = 0;                   // misfit that steps would still gain, where they ran out
 };
 

@@ -221,7 +221,7 @@ namespace {
 void end_at(Attempt& a, const FitProblem& problem, const LeastSquaresResult& r, const HypothesisData& data) {
   HypothesisFit& fit = a.fit;
   a.work.add({problem.simulations(), problem.failed_simulations()});
-  fit.stops = {r.stopped};
+  fit.stops = {r.stop};
   fit.standard_error.clear(), fit.channel_adequacy.clear(), fit.channel_rms.clear();
   if (r.reason == StopReason::start_failed) return;
   fit.ok = true;

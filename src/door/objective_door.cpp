@@ -17,6 +17,7 @@
 #include "optimise/box_least_squares.h"
 #include "optimise/differences.h"
 #include "optimise/unit_cube.h"
+#include "report/shared/search_words.h"
 #include "servodx/data_sheet.h"
 #include "servodx/error.h"
 #include "servodx/log.h"
@@ -229,7 +230,7 @@ Objective::End Objective::minimise(Method method, std::span<const double> start,
         search_locally(inside_->problem, starts[s], Stage{Stage::Kind::start, static_cast<int>(s) + 1},
                        budget.iterations, s == 0 ? Start::nominal : Start::found,
                        {part * static_cast<double>(s), part * static_cast<double>(s + 1)}, watch);
-    if (end.cost < best.cost) best = {end.point, end.cost, 0, end.stopped};
+    if (end.cost < best.cost) best = {end.point, end.cost, 0, report::words_of(end.stop)};
   }
   best.simulations = simulations() - before;
   return best;

@@ -52,7 +52,7 @@ Tuned tune(const std::vector<Log>& logs, const Table& nominal, const Rig& rig, c
   out.table.sha256 = sha256(table_text(out.table));
   out.channels = result->channels;
   out.parameters = result->parameters;
-  out.notes = result->notes;
+  out.notes = report::notes_of(*result);
   for (Note& note : mistaken_columns(logs, rig)) out.notes.push_back(std::move(note));
   out.simulations = result->simulations, out.failed_simulations = result->failed_simulations;
   out.interrupted = result->interrupted;

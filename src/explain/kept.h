@@ -19,8 +19,8 @@
 namespace servodx {
 
 inline auto fields(SearchEnd& e) {
-  auto& [point, start_cost, promised, central, evaluations, failed, iterations, reason, stopped] = e;
-  return std::tie(point, start_cost, promised, central, evaluations, failed, iterations, reason, stopped);
+  auto& [point, start_cost, promised, central, evaluations, failed, iterations, reason, stop] = e;
+  return std::tie(point, start_cost, promised, central, evaluations, failed, iterations, reason, stop);
 }
 inline auto fields(ProbeScore& p) {
   auto& [size, std_error] = p;

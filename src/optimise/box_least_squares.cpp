@@ -13,7 +13,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <limits>
 #include <stdexcept>
 
@@ -36,16 +35,6 @@ constexpr double kBendFrom = 1e-6;    // of the box; shorter steps meet rounding
 
 void require(bool good, const char* option, const char* rule) {
   if (!good) throw InputError({}, std::string("option '") + option + "' " + rule, "");
-}
-
-std::string number(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.3g", value);
-  return text;
-}
-
-std::string state_words(double cost, double cosine, double promised) {
-  return "cost " + number(cost) + ", gradient cosine " + number(cosine) + ", promised gain " + number(promised);
 }
 
 class Search {
@@ -80,7 +69,7 @@ class Search {
     }
     result_.start_cost = end.start_cost, result_.promised_gain = end.promised_gain;
     result_.iterations = end.iterations;
-    result_.reason = end.reason, result_.stopped = end.stopped;
+    result_.reason = end.reason, result_.stop = end.stop;
     LeastSquaresResult out = finish();
     out.point = end.point;
     out.evaluations = end.evaluations, out.failed_evaluations = end.failed_evaluations;
@@ -133,7 +122,7 @@ class Search {
     std::vector<Evaluation> first = evaluate({x_});
     if (!first[0].ok) {
       result_.reason = StopReason::start_failed;
-      result_.stopped = reason_in_words(result_.reason, options_);
+      result_.stop = stop_of(result_.reason, options_);
       return false;
     }
     residual_ = std::move(first[0].residual);
@@ -343,12 +332,12 @@ class Search {
   };
   enum class Next { step, again, pass_ends, search_ends };
 
-  Next end(Next how, StopReason reason) { return end(how, reason, reason_in_words(reason, options_)); }
+  Next end(Next next, StopReason reason) { return end(next, reason, stop_of(reason, options_)); }
 
-  Next end(Next how, StopReason reason, const std::string& because) {
-    result_.reason = reason;
-    result_.stopped = because + "; " + state_words(cost_, result_.gradient_cosine, result_.promised_gain);
-    return how;
+  Next end(Next next, StopReason reason, SearchStop stop) {
+    stop.at = {cost_, result_.gradient_cosine, result_.promised_gain};
+    result_.reason = reason, result_.stop = stop;
+    return next;
   }
 
   // With central differences once more, where the forward ones say that it is the end.
@@ -386,7 +375,7 @@ class Search {
     pass.costs.push_back(cost_);
     const auto slow = static_cast<std::size_t>(options_.slow_iterations);
     if (slow > 0 && pass.costs.size() > slow && cost_ > kSlowShare * pass.costs[pass.costs.size() - 1 - slow])
-      return end(Next::search_ends, StopReason::stalled, "too slow: " + std::to_string(slow) + " iterations");
+      return end(Next::search_ends, StopReason::stalled, {SearchStop::How::too_slow, options_.slow_iterations});
     return Next::step;
   }
 
@@ -398,11 +387,10 @@ class Search {
     }
     if (refine(pass)) return Next::again;
     if (result_.promised_gain <= kRounding * cost_)
-      return end(Next::pass_ends, StopReason::converged, "converged to the rounding of the cost");
-    const Next stalled = end(Next::pass_ends, StopReason::stalled);
-    if (result_.missing_columns > 0)
-      result_.stopped += ", " + std::to_string(result_.missing_columns) + " Jacobian columns missing";
-    return stalled;
+      return end(Next::pass_ends, StopReason::converged, {SearchStop::How::converged_to_rounding});
+    SearchStop stalled = stop_of(StopReason::stalled, options_);
+    stalled.missing_columns = result_.missing_columns;
+    return end(Next::pass_ends, StopReason::stalled, stalled);
   }
 
   // One loss, to its tolerance. False: the whole search ends here.
@@ -501,7 +489,7 @@ LeastSquaresResult minimise_least_squares(const LeastSquaresProblem& problem, co
 
 SearchEnd without_rows(const LeastSquaresResult& end) {
   return {end.point,      end.start_cost, end.promised_gain, end.central, end.evaluations, end.failed_evaluations,
-          end.iterations, end.reason,     end.stopped};
+          end.iterations, end.reason,     end.stop};
 }
 
 LeastSquaresResult with_rows(const SearchEnd& end, const LeastSquaresProblem& problem,
@@ -516,28 +504,29 @@ void take_stock(LeastSquaresResult& end, NormalEquations equations, const LeastS
   Search(problem, options).take_stock(end, std::move(equations));
 }
 
-std::string reason_in_words(StopReason reason, const LeastSquaresOptions& options) {
+SearchStop stop_of(StopReason reason, const LeastSquaresOptions& options) {
+  using How = SearchStop::How;
   switch (reason) {
     case StopReason::converged:
-      return "converged";
+      return {How::converged};
     case StopReason::goal:
-      return "the misfit goal was reached";
+      return {How::goal};
     case StopReason::stalled:
-      return "stalled: no step that promises more than the tolerance lowers the cost";
+      return {How::stalled};
     case StopReason::iteration_limit:
-      return "iteration limit of " + std::to_string(options.max_iterations);
+      return {How::iteration_limit, options.max_iterations};
     case StopReason::evaluation_limit:
-      return "evaluation limit of " + std::to_string(options.max_evaluations);
+      return {How::evaluation_limit, options.max_evaluations};
     case StopReason::interrupted:
-      return "interrupted on request";
+      return {How::interrupted};
     case StopReason::start_failed:
-      return "the start point itself could not be evaluated";
+      return {How::start_failed};
   }
-  return "";
+  return {};
 }
 
-std::string state_of(const LeastSquaresResult& end) {
-  return state_words(end.cost, end.gradient_cosine, end.promised_gain);
+SearchStop::Figures figures_of(const LeastSquaresResult& end) {
+  return {end.cost, end.gradient_cosine, end.promised_gain};
 }
 
 }  // namespace servodx

@@ -18,11 +18,11 @@
 // Sethna (2012), Improvements to the Levenberg-Marquardt algorithm (bending a step by the curvature it meets).
 #pragma once
 #include <functional>
-#include <string>
 #include <vector>
 
 #include "optimise/normal_equations.h"
 #include "optimise/robust_loss.h"
+#include "optimise/search_stop.h"
 #include "optimise/unit_cube.h"
 
 namespace servodx {
@@ -105,7 +105,7 @@ struct LeastSquaresResult {
   int missing_columns = 0;  // Jacobian columns at the end for which both sides failed
   int iterations = 0;
   StopReason reason = StopReason::start_failed;
-  std::string stopped;  // the reason in words, with the figures that matter
+  SearchStop stop;  // the reason, closer, with the figures that matter
 };
 
 LeastSquaresResult minimise_least_squares(const LeastSquaresProblem& problem, const Point& start,
@@ -120,7 +120,7 @@ struct SearchEnd {
   long evaluations = 0, failed_evaluations = 0;
   int iterations = 0;
   StopReason reason = StopReason::start_failed;
-  std::string stopped;
+  SearchStop stop;
 };
 SearchEnd without_rows(const LeastSquaresResult& end);
 // The same bits as the search with these options came to, for one evaluation and one Jacobian.
@@ -130,9 +130,8 @@ LeastSquaresResult with_rows(const SearchEnd& end, const LeastSquaresProblem& pr
 // Cost, gradient, walls and promise of an end whose point, residual and Jacobian have moved.
 void take_stock(LeastSquaresResult& end, NormalEquations equations, const LeastSquaresOptions& options);
 
-// Why a search stopped, "iteration limit of 100", as its usual sentence begins.
-std::string reason_in_words(StopReason reason, const LeastSquaresOptions& options);
-// "cost 312, gradient cosine 1e-05, promised gain 0.002"
-std::string state_of(const LeastSquaresResult& end);
+// As a search that stops for this reason usually does; without the figures where it stopped.
+SearchStop stop_of(StopReason reason, const LeastSquaresOptions& options);
+SearchStop::Figures figures_of(const LeastSquaresResult& end);
 
 }  // namespace servodx

@@ -18,6 +18,7 @@
 #include "optimise/differences.h"
 #include "optimise/normal_equations.h"
 #include "optimise/robust_loss.h"
+#include "optimise/search_stop.h"
 
 namespace servodx {
 namespace {
@@ -382,6 +383,21 @@ StopReason reason_of(CeresEnd end) {
   return StopReason::iteration_limit;
 }
 
+SearchStop::How how_of(CeresEnd end) {
+  switch (end) {
+    case CeresEnd::converged:
+      return SearchStop::How::ceres_converged;
+    case CeresEnd::interrupted:
+      return SearchStop::How::ceres_interrupted;
+    case CeresEnd::failure:
+      return SearchStop::How::ceres_failure;
+    case CeresEnd::not_run:
+    case CeresEnd::no_convergence:
+      break;
+  }
+  return SearchStop::How::ceres_no_convergence;
+}
+
 int let_go(const std::vector<int>& before, const std::vector<int>& after) {
   int count = 0;
   for (std::size_t j = 0; j < before.size(); ++j) count += before[j] != 0 && after[j] == 0;
@@ -389,22 +405,6 @@ int let_go(const std::vector<int>& before, const std::vector<int>& after) {
 }
 
 }  // namespace
-
-const char* name(CeresEnd end) {
-  switch (end) {
-    case CeresEnd::not_run:
-      return "not_run";
-    case CeresEnd::converged:
-      return "converged";
-    case CeresEnd::no_convergence:
-      return "no_convergence";
-    case CeresEnd::failure:
-      return "failure";
-    case CeresEnd::interrupted:
-      return "interrupted";
-  }
-  return "unknown";
-}
 
 CeresSummary refine_by_ceres(const LeastSquaresProblem& problem, LeastSquaresResult& end,
                              const LeastSquaresOptions& options, const CeresBudget& budget) {
@@ -441,7 +441,6 @@ LeastSquaresResult minimise_by_ceres(const LeastSquaresProblem& problem, const P
   Evaluation first = std::move(evaluated(problem, {end.point}, end, summary).front());
   if (!first.ok) {
     end.cost = end.misfit = end.start_cost = std::numeric_limits<double>::infinity();
-    end.stopped = reason_in_words(end.reason, options);
     if (told) *told = summary;
     return end;
   }
@@ -459,7 +458,7 @@ LeastSquaresResult minimise_by_ceres(const LeastSquaresProblem& problem, const P
     if (summary.end == CeresEnd::interrupted) break;
   }
   end.reason = reason_of(summary.end);
-  end.stopped = std::string("Ceres: ") + name(summary.end) + "; " + state_of(end);
+  end.stop = {how_of(summary.end), 0, figures_of(end)};
   summary.initial_cost = end.start_cost;
   if (told) *told = summary;
   return end;

@@ -28,7 +28,6 @@ enum class CeresEnd {
   failure,         // of a linear solve or an evaluation
   interrupted      // on request
 };
-const char* name(CeresEnd end);
 
 struct CeresBudget {
   // Trial steps, of all solves together. The first is nearly always a full Gauss-Newton step; three leave room for two

@@ -1,10 +1,10 @@
 #include "optimise/derivative_free.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <limits>
 #include <nlopt.hpp>
+#include <stdexcept>
+#include <utility>
 
 namespace servodx {
 namespace {
@@ -28,12 +28,30 @@ struct Search {
   }
 };
 
-std::string in_words(nlopt::result result, long evaluations) {
-  const char* why = result == nlopt::FTOL_REACHED      ? "converged in cost"
-                    : result == nlopt::XTOL_REACHED    ? "converged in step"
-                    : result == nlopt::MAXEVAL_REACHED ? "evaluation limit"
-                                                       : "stopped";
-  return fmt::format("BOBYQA: {} after {} evaluations", why, evaluations);
+SearchStop::How how_of(nlopt::result result) {
+  switch (result) {
+    case nlopt::FTOL_REACHED:
+      return SearchStop::How::bobyqa_cost_converged;
+    case nlopt::XTOL_REACHED:
+      return SearchStop::How::bobyqa_step_converged;
+    case nlopt::MAXEVAL_REACHED:
+      return SearchStop::How::bobyqa_evaluation_limit;
+    default:
+      return SearchStop::How::bobyqa_stopped;
+  }
+}
+
+SearchStop::How minimise(nlopt::opt& opt, Point x) {
+  double cost = 0;
+  try {
+    return how_of(opt.optimize(x, cost));
+  } catch (const nlopt::roundoff_limited&) {
+    return SearchStop::How::bobyqa_rounding;
+  } catch (const nlopt::forced_stop&) {
+    return SearchStop::How::bobyqa_interrupted;
+  } catch (const std::runtime_error&) {
+    return SearchStop::How::bobyqa_gave_up;
+  }
 }
 
 }  // namespace
@@ -53,18 +71,8 @@ DerivativeFreeResult minimise_without_derivatives(int n, const BatchEvaluate& ev
                         &search);
   Point x = start;
   for (double& u : x) u = std::clamp(u, 0.0, 1.0);
-  double cost = 0;
-  try {
-    const nlopt::result result = opt.optimize(x, cost);
-    search.best.stopped = in_words(result, search.best.evaluations);
-  } catch (const nlopt::roundoff_limited&) {
-    search.best.stopped = fmt::format("BOBYQA: rounding after {} evaluations", search.best.evaluations);
-  } catch (const nlopt::forced_stop&) {
-    search.best.stopped = fmt::format("BOBYQA: interrupted after {} evaluations", search.best.evaluations);
-  } catch (const std::runtime_error& error) {
-    search.best.stopped =
-        fmt::format("BOBYQA: gave up after {} evaluations ({})", search.best.evaluations, error.what());
-  }
+  search.best.stop.how = minimise(opt, std::move(x));
+  search.best.stop.count = search.best.evaluations;
   return std::move(search.best);
 }
 

@@ -6,6 +6,7 @@
 #pragma once
 #include <functional>
 
+#include "optimise/search_stop.h"
 #include "optimise/unit_cube.h"
 
 namespace servodx {
@@ -22,7 +23,7 @@ struct DerivativeFreeResult {
   Point point;
   double cost = 0;  // 0.5*|residual|^2
   long evaluations = 0, failed_evaluations = 0;
-  std::string stopped;  // why, in words
+  SearchStop stop;
 };
 
 DerivativeFreeResult minimise_without_derivatives(int n, const BatchEvaluate& evaluate, const Point& start,

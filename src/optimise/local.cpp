@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <string>
 #include <utility>
 
 #include "base/stopwatch.h"
@@ -55,7 +54,8 @@ void say_end(LeastSquaresResult& end, const CeresSummary& ceres, const LeastSqua
     end.reason = StopReason::converged;
   else if (end.reason == StopReason::stalled || end.reason == StopReason::converged)
     end.reason = StopReason::iteration_limit;
-  end.stopped = reason_in_words(end.reason, options) + "; " + state_of(end);
+  end.stop = stop_of(end.reason, options);
+  end.stop.at = figures_of(end);
 }
 
 Distrust distrust_of(const LeastSquaresResult& end, const LeastSquaresOptions& options, const LocalOptions& local) {
@@ -84,7 +84,8 @@ void rescue(const LeastSquaresProblem& problem, LeastSquaresResult& end, const L
   // With the Jacobian of the point before: another one would be no truer.
   take_stock(end, normal_equations(end.jacobian, end.residual, options.loss, options.loss_scale), options);
   end.reason = StopReason::stalled;
-  end.stopped = found.stopped + "; " + state_of(end);
+  end.stop = found.stop;
+  end.stop.at = figures_of(end);
 }
 
 }  // namespace

@@ -11,6 +11,7 @@
 #include "optimise/box_least_squares.h"
 #include "optimise/ceres_refinement.h"
 #include "optimise/local.h"
+#include "optimise/search_stop.h"
 #include "optimise/unit_cube.h"
 #include "parameters/table.h"
 #include "servodx/log.h"
@@ -51,7 +52,7 @@ struct KeptSearch {
   Point point;
   double cost = 0, misfit = 0, promised_gain = 0;
   StopReason reason = StopReason::start_failed;
-  std::string stopped;
+  SearchStop stop;
   CeresSummary ceres;
   Distrust distrust = Distrust::none;
   std::vector<ConvergencePoint> convergence;
@@ -59,8 +60,8 @@ struct KeptSearch {
   FitWork work;
 };
 inline auto fields(KeptSearch& s) {
-  auto& [point, cost, misfit, promised, reason, stopped, ceres, distrust, convergence, stages, work] = s;
-  return std::tie(point, cost, misfit, promised, reason, stopped, ceres, distrust, convergence, stages, work);
+  auto& [point, cost, misfit, promised, reason, stop, ceres, distrust, convergence, stages, work] = s;
+  return std::tie(point, cost, misfit, promised, reason, stop, ceres, distrust, convergence, stages, work);
 }
 
 // A genetic search after one of its generations.

@@ -46,7 +46,7 @@ LeastSquaresResult without_derivatives(const FitProblem& problem, const Point& f
   LeastSquaresResult end;
   end.point = found.point;
   end.cost = end.misfit = found.cost;
-  end.stopped = found.stopped;
+  end.stop = found.stop;
   end.reason = watch.stopped() ? StopReason::interrupted : StopReason::stalled;
   end.promised_gain = std::numeric_limits<double>::infinity();  // nothing says how much is left
   watch.stages.push_back(
@@ -141,7 +141,7 @@ LeastSquaresResult search_locally(const FitProblem& problem, const Point& from, 
                       end.misfit,
                       end.promised_gain,
                       end.reason,
-                      end.stopped,
+                      end.stop,
                       watch.ceres,
                       watch.distrust,
                       behind(watch.convergence, points),
@@ -152,7 +152,7 @@ LeastSquaresResult search_locally(const FitProblem& problem, const Point& from, 
                                           derivatives, watch.work_so_far(problem));
   end.point = kept.point;
   end.cost = kept.cost, end.misfit = kept.misfit, end.promised_gain = kept.promised_gain;
-  end.reason = kept.reason, end.stopped = kept.stopped;
+  end.reason = kept.reason, end.stop = kept.stop;
   watch.ceres = kept.ceres, watch.distrust = kept.distrust;
   set_behind(watch.convergence, points, kept.convergence);
   set_behind(watch.stages, stages, kept.stages);

@@ -87,15 +87,6 @@ void append(std::vector<Note>& notes, const std::vector<Note>& more) {
   notes.insert(notes.end(), more.begin(), more.end());
 }
 
-Note note_of_distrust(const TuneWatch& watch) {
-  const StageResult& s = watch.stages.back();
-  return {Note::Kind::derivatives,
-          fmt::format(
-              "derivatives were not to be trusted ({}): BOBYQA went on without them, cost {:.4g} to {:.4g}",
-              watch.distrust == Distrust::missing_columns ? "some could not be had" : "no step kept what they promised",
-              s.before, s.after)};
-}
-
 void require_known(const std::vector<std::string>& effects) {
   std::vector<std::string> known = {"none"};
   for (const EffectInfo& effect : effect_list()) known.push_back(effect.name);
@@ -182,10 +173,9 @@ TuneResult tune_table(const std::vector<Log>& logs, const Table& nominal, const 
 
   append(out.notes, scope.notes);
   append(out.notes, settled.notes);
-  out.stop = end.reason, out.cost = end.cost, out.still_promised = end.promised_gain;
-  out.notes.push_back({Note::Kind::search_end, "local stage: " + end.stopped});
-  if (watch.distrust != Distrust::none) out.notes.push_back(note_of_distrust(watch));
-  append(out.notes, notes_of_logs(out.logs, out.command_slope, scope, rig));
+  out.notes_by_log = notes_of_logs(out.logs, out.command_slope, scope, rig);
+  out.stop = end.reason, out.search_end = end.stop, out.distrust = watch.distrust;
+  out.cost = end.cost, out.still_promised = end.promised_gain;
   out.convergence = watch.convergence;
   out.stages = watch.stages;
   out.ceres = watch.ceres;

@@ -12,6 +12,8 @@
 #include "fit/tuned_state.h"
 #include "optimise/box_least_squares.h"
 #include "optimise/ceres_refinement.h"
+#include "optimise/local.h"
+#include "optimise/search_stop.h"
 #include "parameters/table.h"
 #include "servodx/note.h"
 #include "servodx/rig.h"
@@ -94,6 +96,8 @@ struct TuneResult {
   std::vector<ParameterResult> parameters;
   std::vector<StartEnd> starts;
   StopReason stop = StopReason::converged;  // of the last fit
+  SearchStop search_end;                    // the same, closer
+  Distrust distrust = Distrust::none;       // of its derivatives
   double cost = 0;                          // half a sum of squares
   double still_promised = 0;                // of it, by its derivatives; infinite where it had none
   int reached_best() const { return static_cast<int>(std::ranges::count(starts, true, &StartEnd::in_best_valley)); }
@@ -101,7 +105,8 @@ struct TuneResult {
   std::vector<StageResult> stages;
   std::vector<EarnedEffect> effects;  // in the order of trial
   CeresSummary ceres;                 // of the last fit
-  std::vector<Note> notes;
+  // Of logs and rows; and of what the last fit says log by log. Between the two report tells how that fit ended.
+  std::vector<Note> notes, notes_by_log;
   long simulations = 0, failed_simulations = 0;
   bool interrupted = false;
 };

@@ -67,6 +67,9 @@ TEST(Watch, IsToldOfEveryWorkAndABaselineInMemoryBindsToItsTable) {
   quick.watch = told.watch();
   const Tuned tuned =
       tune({in_memory("healthy/h12_mixed", 700)}, read_table(shipped("params/borello2009.csv")), rig, quick);
+  const auto noted = [&](Note::Kind kind) { return std::ranges::find(tuned.notes, kind, &Note::kind); };
+  ASSERT_LT(noted(Note::Kind::search_end), noted(Note::Kind::command_slope)) << "ahead of what logs say";
+  EXPECT_TRUE(noted(Note::Kind::search_end)->text.starts_with("local stage: "));
   const Log own = in_memory("healthy/h04_multisine", 300);
   const Baseline baseline =
       make_baseline({in_memory("healthy/h15_no_supply_signals", 300), own, in_memory("healthy/h03_sine_2hz", 300)},

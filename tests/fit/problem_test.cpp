@@ -477,7 +477,7 @@ TEST(Twin, ValuesAreRecoveredWithinTheirStatedUncertaintyUnderWhiteNoise) {
         const LeastSquaresResult r = minimise_least_squares(problem.least_squares(), problem.start(), twin_options());
         // As many squares as samples, to five deviations of such a sum.
         const auto n = static_cast<double>(problem.data_rows());
-        EXPECT_NEAR(2 * r.misfit / n, 1.0, 5 * std::sqrt(2 / n)) << r.stopped;
+        EXPECT_NEAR(2 * r.misfit / n, 1.0, 5 * std::sqrt(2 / n));
         return r;
       });
   EXPECT_EQ(c.within_four, c.total);

@@ -13,6 +13,7 @@
 #include "optimise/box_least_squares.h"
 #include "optimise/normal_equations.h"
 #include "optimise/robust_loss.h"
+#include "optimise/search_stop.h"
 #include "optimise/unit_cube.h"
 #include "weak_problem.h"
 
@@ -37,9 +38,10 @@ TEST(CeresRefinement, AloneReachesTheCertifiedAnswersFromTheNearStart) {
     CeresSummary said;
     const LeastSquaresResult end = minimise_by_ceres(least_squares(nist), to_cube(nist, nist.start2), options, &said);
     const std::vector<double> b = from_cube(nist, end.point);
-    for (std::size_t j = 0; j < b.size(); ++j)
-      EXPECT_NEAR(b[j] / nist.certified[j], 1, 1e-4) << nist.name << " " << end.stopped;
+    for (std::size_t j = 0; j < b.size(); ++j) EXPECT_NEAR(b[j] / nist.certified[j], 1, 1e-4) << nist.name;
     EXPECT_EQ(said.final_cost, end.cost) << nist.name;
+    EXPECT_EQ(end.stop.how == SearchStop::How::ceres_converged, said.end == CeresEnd::converged) << nist.name;
+    EXPECT_EQ(end.stop.at, figures_of(end)) << nist.name;
     EXPECT_LT(said.final_cost, said.initial_cost) << nist.name;
   }
 }

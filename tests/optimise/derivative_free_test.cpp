@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "optimise/search_stop.h"
 #include "optimise/unit_cube.h"
 
 namespace servodx {
@@ -29,6 +30,21 @@ TEST(DerivativeFree, FindsAMinimumInsideAndAtAWall) {
   EXPECT_NEAR(found.point[1], 0.8, 3e-3);
   EXPECT_NEAR(found.point[2], 1.0, 1e-9);
   EXPECT_EQ(found.failed_evaluations, 0);
+}
+
+TEST(DerivativeFree, TellsHowItStoppedAfterHowManyPoints) {
+  const auto bowl = batch([](const Point& x) { return Eigen::Vector3d(x[0] - 0.3, 2 * (x[1] - 0.8), 1); });
+  const auto stop = [&](const DerivativeFreeOptions& options) {
+    const DerivativeFreeResult found = minimise_without_derivatives(2, bowl, {0.5, 0.5}, options);
+    EXPECT_EQ(found.stop.count, found.evaluations);
+    EXPECT_FALSE(found.stop.at);
+    return found.stop.how;
+  };
+  using How = SearchStop::How;
+  EXPECT_EQ(stop({.max_evaluations = 7, .cost_tolerance = 0, .step_tolerance = 1e-12}), How::bobyqa_evaluation_limit);
+  EXPECT_EQ(stop({.cost_tolerance = 0}), How::bobyqa_step_converged);
+  EXPECT_EQ(stop({.cost_tolerance = 0.5, .step_tolerance = 1e-12}), How::bobyqa_cost_converged);
+  EXPECT_EQ(stop({.progress = [](long, double) { return false; }}), How::bobyqa_interrupted);
 }
 
 TEST(DerivativeFree, RidesOverRoughnessThatSpoilsDifferences) {

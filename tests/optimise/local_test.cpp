@@ -94,6 +94,8 @@ TEST(Local, WhereDerivativesBreakTheirPromiseBobyqaGoesOn) {
   EXPECT_LT(with.end.cost, 0.5 * without.end.cost);
   EXPECT_GT(with.rescue.simulations, 0);
   EXPECT_LE(with.rescue.simulations, 200);
+  EXPECT_EQ(with.end.stop.count, with.rescue.simulations);
+  EXPECT_EQ(with.end.stop.at, figures_of(with.end)) << "where BOBYQA has led, not where our search stopped";
 }
 
 TEST(Local, ABrokenPromiseOfLittleIsNoProofOfFalseDerivatives) {

@@ -15,9 +15,11 @@
 #include "diagnose/reading.h"
 #include "diagnose/record_law.h"
 #include "diagnose/records.h"
+#include "optimise/search_stop.h"
 #include "report/diagnose/diagnosis_words.h"
 #include "report/diagnose/friction_words.h"
 #include "report/shared/conditions.h"
+#include "report/shared/search_words.h"
 #include "servodx/log.h"
 #include "servodx/note.h"
 #include "store/baseline_keys.h"
@@ -45,9 +47,10 @@ Json moved_json(const std::vector<MovedRow>& rows) {
 }  // namespace
 
 Json to_json(const HypothesisResult& h) {
-  Json shapes = Json::array();
+  Json shapes = Json::array(), stops = Json::array();
   for (std::size_t i = 0; i < h.shapes.size(); ++i)
     shapes.push_back({{"name", h.fault->shapes[i].name}, {"value", number(h.shapes[i])}});
+  for (const SearchStop& stop : h.stops) stops.push_back(words_of(stop));
   return {{"name", label_of(h.fault)},
           {"probability", number(h.probability)},
           {"misfit", number(h.misfit)},
@@ -62,7 +65,7 @@ Json to_json(const HypothesisResult& h) {
             {"at_least", h.at_least}}},
           {"shape", shapes.empty() ? Json(nullptr) : shapes.front()},
           {"shapes", shapes},
-          {"stops", h.stops}};
+          {"stops", stops}};
 }
 
 Json to_json(const Suspicion& s) {

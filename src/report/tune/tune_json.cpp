@@ -2,6 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "report/shared/search_words.h"
 #include "report/tune/tune_words.h"
 #include "servodx/tune.h"
 
@@ -26,15 +27,9 @@ const char* word_of(StageMethod method) {
 
 Json ceres_json(const TuneResult& result) {
   const auto& c = result.ceres;
-  return {{"end", name(c.end)},
-          {"solves", c.solves},
-          {"steps", c.steps},
-          {"refused_steps", c.refused},
-          {"released_walls", c.released},
-          {"jacobians", c.jacobians},
-          {"learnt_jacobians", c.learnt},
-          {"evaluations", c.evaluations},
-          {"initial_cost", number(c.initial_cost)},
+  return {{"end", report::word_of(c.end)},     {"solves", c.solves},           {"steps", c.steps},
+          {"refused_steps", c.refused},        {"released_walls", c.released}, {"jacobians", c.jacobians},
+          {"learnt_jacobians", c.learnt},      {"evaluations", c.evaluations}, {"initial_cost", number(c.initial_cost)},
           {"final_cost", number(c.final_cost)}};
 }
 

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <nlohmann/json.hpp>
@@ -11,11 +12,14 @@
 #include "diagnose/best_seen.h"
 #include "fit/free_values.h"
 #include "optimise/box_least_squares.h"
+#include "optimise/local.h"
 #include "report/diagnose/diagnosis_words.h"
 #include "report/shared/columns.h"
 #include "report/shared/handy.h"
 #include "report/shared/replay_part.h"
+#include "report/shared/search_words.h"
 #include "servodx/log.h"
+#include "servodx/note.h"
 #include "servodx/tune.h"
 #include "tune/trust.h"
 #include "tune/tune.h"
@@ -86,6 +90,29 @@ std::string word_of(const Stage& stage) {
       return "errors";
   }
   return "";
+}
+
+namespace {
+
+Note note_of_distrust(const TuneResult& result) {
+  const auto by_bobyqa = [](const StageResult& s) { return s.by == StageMethod::nlopt; };
+  const auto last = std::find_if(result.stages.rbegin(), result.stages.rend(), by_bobyqa);
+  const StageResult rescue = last == result.stages.rend() ? StageResult{} : *last;
+  return {Note::Kind::derivatives,
+          fmt::format("derivatives were not to be trusted ({}): BOBYQA went on without them, cost {:.4g} to {:.4g}",
+                      result.distrust == Distrust::missing_columns ? "some could not be had"
+                                                                   : "no step kept what they promised",
+                      rescue.before, rescue.after)};
+}
+
+}  // namespace
+
+std::vector<Note> notes_of(const TuneResult& result) {
+  std::vector<Note> notes = result.notes;
+  notes.push_back({Note::Kind::search_end, "local stage: " + words_of(result.search_end)});
+  if (result.distrust != Distrust::none) notes.push_back(note_of_distrust(result));
+  notes.insert(notes.end(), result.notes_by_log.begin(), result.notes_by_log.end());
+  return notes;
 }
 
 std::string gains_in_words(const TuneResult& result) {

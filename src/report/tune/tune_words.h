@@ -7,6 +7,7 @@
 #include "fit/tuned_state.h"
 #include "report/shared/json.h"
 #include "servodx/check_log.h"
+#include "servodx/note.h"
 #include "tune/trust.h"
 #include "tune/tune.h"
 
@@ -26,6 +27,8 @@ struct GoodEnough {
 std::string word_of(const Stage& stage);
 // "genetic search" ... as a user reads it.
 std::string words_of(StageMethod method);
+// All that a tune notes, in the order in which it is told.
+std::vector<Note> notes_of(const TuneResult& result);
 // What each method of the last fit has gained, and the genetic search: one line.
 std::string gains_in_words(const TuneResult& result);
 
