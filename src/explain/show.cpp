@@ -1,7 +1,5 @@
 #include "explain/show.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <complex>
@@ -136,8 +134,7 @@ ResidualMap map_of(const std::string& name, const std::vector<Piece>& pieces, st
   return out;
 }
 
-// Where the excess gathers most: the event or the end of a map that holds the largest share of it for its time.
-std::string summary_of(const std::vector<Piece>& pieces, const std::vector<ResidualMap>& maps, double noise) {
+ExcessPlace place_of_excess(const std::vector<Piece>& pieces, const std::vector<ResidualMap>& maps, double noise) {
   double total = 0, n = 0, at_reversal = 0, t_reversal = 0, at_jump = 0, t_jump = 0;
   for (const Piece& p : pieces)
     for (std::size_t k = 0; k < p.residual.size(); ++k) {
@@ -147,27 +144,17 @@ std::string summary_of(const std::vector<Piece>& pieces, const std::vector<Resid
       if (p.since_reversal[k] < near_event) at_reversal += e, ++t_reversal;
       if (p.since_jump[k] < near_event) at_jump += e, ++t_jump;
     }
-  if (total <= 0 || n == 0) return "nothing beyond the sensor's noise";
-  struct Place {
-    std::string words;
-    double share, time;
-  };
-  std::vector<Place> places = {
-      {fmt::format("within {:.0f} ms of a reversal", 1e3 * near_event), at_reversal / total, t_reversal / n},
-      {fmt::format("within {:.0f} ms of a jump of the command", 1e3 * near_event), at_jump / total, t_jump / n}};
-  for (const ResidualMap& m : maps)
-    for (const auto& [bin, words] : {std::pair{m.bins.empty() ? MapBin{} : m.bins.front(), "lowest"},
-                                     std::pair{m.bins.empty() ? MapBin{} : m.bins.back(), "highest"}})
-      if (bin.time > 0)
-        places.push_back({fmt::format("in the {} eighth of {}", words, m.variable), bin.excess, bin.time});
-  const auto lift = [](const Place& p) {
-    return p.share > least_told && p.time > 0 ? p.share * std::log(p.share / p.time) : 0;
-  };
-  const auto best =
-      std::max_element(places.begin(), places.end(), [&](const Place& a, const Place& b) { return lift(a) < lift(b); });
-  if (lift(*best) < least_lift) return "the excess is spread evenly";
-  return fmt::format("{:.0f} % of the excess sits {} ({:.0f} % of the time)", 100 * best->share, best->words,
-                     100 * best->time);
+  if (total <= 0 || n == 0) return {};
+  using Kind = ExcessPlace::Kind;
+  std::vector<ExcessPlace> places = {{Kind::near_reversal, {}, at_reversal / total, t_reversal / n},
+                                     {Kind::near_jump, {}, at_jump / total, t_jump / n}};
+  for (const ResidualMap& m : maps) {
+    if (m.bins.empty()) continue;
+    for (const auto& [bin, kind] :
+         {std::pair{m.bins.front(), Kind::lowest_part}, std::pair{m.bins.back(), Kind::highest_part}})
+      if (bin.time > 0) places.push_back({kind, m.variable, bin.excess, bin.time});
+  }
+  return where_most_gathers(places);
 }
 
 std::vector<double> rate_of_change(const std::vector<double>& x, const std::vector<double>& time) {
@@ -273,11 +260,21 @@ ShownChannel channel_of(const Pooled& channel) {
   add_spectra(out, spectra_of(pieces));
   for (std::size_t v = 0; v < pieces.front().variables.size(); ++v)
     out.maps.push_back(map_of(pieces.front().variables[v].first, pieces, v, out.noise));
-  out.summary = summary_of(pieces, out.maps, out.noise);
+  out.excess = place_of_excess(pieces, out.maps, out.noise);
   return out;
 }
 
 }  // namespace
+
+ExcessPlace where_most_gathers(const std::vector<ExcessPlace>& places) {
+  const auto lift = [](const ExcessPlace& p) {
+    return p.share > least_told && p.time > 0 ? p.share * std::log(p.share / p.time) : 0;
+  };
+  const auto best = std::max_element(places.begin(), places.end(),
+                                     [&](const ExcessPlace& a, const ExcessPlace& b) { return lift(a) < lift(b); });
+  if (best == places.end() || lift(*best) < least_lift) return {ExcessPlace::Kind::spread};
+  return *best;
+}
 
 std::vector<ShownChannel> show(const ValveSubject& subject, const std::vector<Log>& logs, const Point& point) {
   const auto problem = subject.problem({});

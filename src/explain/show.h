@@ -29,6 +29,23 @@ struct ResidualMap {
   std::string variable, unit;
   std::vector<MapBin> bins;  // equally many samples each
 };
+// Where the squared residual beyond the noise gathers most for the time that it takes there.
+struct ExcessPlace {
+  enum class Kind {
+    none,           // nothing is beyond the sensor's noise
+    spread,         // evenly
+    near_reversal,  // within explain_constants::shown::near_event
+    near_jump,      // of the command; the same
+    lowest_part,    // the first of the parts that a variable's map is cut into
+    highest_part    // the last
+  };
+  Kind kind = Kind::none;
+  std::string variable = {};   // of the map
+  double share = 0, time = 0;  // of the excess, of the samples
+};
+// The event or the end of a map that holds the largest share of the excess for its time; of equals the first.
+ExcessPlace where_most_gathers(const std::vector<ExcessPlace>& places);
+
 struct ShownChannel {
   std::string signal, unit;   // unit of the log
   double rms = 0, noise = 0;  // [SI]
@@ -38,7 +55,7 @@ struct ShownChannel {
   std::vector<std::pair<double, double>> spectrum;   // [Hz], [SI/sqrt(Hz)]
   std::vector<std::pair<double, double>> coherence;  // [Hz], with the command
   std::vector<ResidualMap> maps;
-  std::string summary;  // "78 % of the excess sits within 30 ms of a reversal (21 % of the time)"
+  ExcessPlace excess;
 };
 
 // Of the residual at a point of fit({}); logs pooled.

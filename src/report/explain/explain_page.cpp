@@ -278,7 +278,7 @@ TablePart channels_table(const ExplainResult& r) {
                          after = cells(c.rms_after, c.noise_rms, c.heldout_after);
     std::string summary;
     for (const ShownChannel& s : r.shown)
-      if (s.signal == c.signal) summary = s.summary;
+      if (s.signal == c.signal) summary = words_of(s.excess);
     channels.rows.push_back({words(c.signal),
                              {digits(before.rms), before.rms},
                              {digits(after.rms), after.rms},
@@ -336,7 +336,7 @@ Page explain_page(const Header& header, const ExplainResult& r, const std::vecto
   if (!r.blocks.empty()) add_blocks(page, r);
   if (!missing_in_words(r).empty()) add_missing(page, r);
   for (const ShownChannel& c : r.shown) {
-    page.section(words(c.signal) + ": residual maps", words(c.summary), true);
+    page.section(words(c.signal) + ": residual maps", words(words_of(c.excess)), true);
     for (const ResidualMap& m : c.maps)
       if (!m.bins.empty()) page.add(map_plot(c, m));
     if (!c.spectrum.empty()) page.add(spectrum_plot(c));

@@ -98,7 +98,7 @@ Json to_json(const ShownChannel& c) {
           {"si_unit", info(*find_signal(c.signal)).si_unit},
           {"rms", number(c.rms)},
           {"noise_rms", number(c.noise)},
-          {"summary", c.summary},
+          {"summary", words_of(c.excess)},
           {"memory_s", number(c.memory)},
           {"lags_beyond_band", number(c.beyond_band)},
           {"inputs", inputs},
@@ -328,8 +328,8 @@ std::string text_of(const ExplainResult& r, const TextOptions& options) {
   text += table.text();
   for (const ShownChannel& c : r.shown) {
     const ChannelFigures f = figures(ChannelResult{*find_signal(c.signal), c.unit, c.rms, c.noise, c.rms});
-    text +=
-        fmt::format("  {}: {} {} rms, noise {}; {}\n", c.signal, digits(f.rms), f.unit, digits(f.noise_rms), c.summary);
+    text += fmt::format("  {}: {} {} rms, noise {}; {}\n", c.signal, digits(f.rms), f.unit, digits(f.noise_rms),
+                        words_of(c.excess));
   }
   for (const BlockReplay& b : r.blocks)
     text += fmt::format("  {}: misses {} rms of {}{}{}\n", b.block, handy(b.missing, b.unit), handy(b.passing, b.unit),

@@ -1,5 +1,9 @@
 #include "report/explain/explain_words.h"
 
+#include <fmt/format.h>
+
+#include "explain/constants.h"
+
 namespace servodx::report {
 
 const char* word_of(ExplainVerdict verdict) {
@@ -80,6 +84,29 @@ const char* words_of(Fate fate) {
       return "taken";
     case Fate::taken_by_blocks:
       return "taken: the replay of the blocks tells it";
+  }
+  return "";
+}
+
+std::string words_of(const ExcessPlace& place) {
+  const auto sits = [&](const std::string& where) {
+    return fmt::format("{:.0f} % of the excess sits {} ({:.0f} % of the time)", 100 * place.share, where,
+                       100 * place.time);
+  };
+  constexpr double near = 1e3 * explain_constants::shown::near_event;  // [ms]
+  switch (place.kind) {
+    case ExcessPlace::Kind::none:
+      return "nothing beyond the sensor's noise";
+    case ExcessPlace::Kind::spread:
+      return "the excess is spread evenly";
+    case ExcessPlace::Kind::near_reversal:
+      return sits(fmt::format("within {:.0f} ms of a reversal", near));
+    case ExcessPlace::Kind::near_jump:
+      return sits(fmt::format("within {:.0f} ms of a jump of the command", near));
+    case ExcessPlace::Kind::lowest_part:
+      return sits("in the lowest eighth of " + place.variable);
+    case ExcessPlace::Kind::highest_part:
+      return sits("in the highest eighth of " + place.variable);
   }
   return "";
 }
