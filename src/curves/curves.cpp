@@ -117,9 +117,9 @@ class Reading {
   }
 
   void add(const std::string& name, const std::string& signal, double value, const std::string& unit,
-           std::string note = "") {
-    if (!std::isfinite(value) && note.empty()) return;
-    sheet_.figures.push_back({.name = name, .signal = signal, .value = value, .unit = unit, .note = std::move(note)});
+           Remark remark = {}) {
+    if (!std::isfinite(value) && remark.kind == Remark::Kind::none) return;
+    sheet_.figures.push_back({.name = name, .signal = signal, .value = value, .unit = unit, .remark = remark});
   }
 
   // Largest distance of the branches in current at one output, over the inner part of the outputs that both reach.
@@ -146,14 +146,11 @@ class Reading {
 
   void add_hysteresis(const std::string& name, const SweepCurve& c) {
     if (too_fast())
-      add("hysteresis", name, nan, "-",
-          fmt::format("cannot be told: the command sweeps {:.2g} times rated current a second, at most {:.2g} is slow "
-                      "enough",
-                      sweeps_.rate / rated_, fastest));
+      add("hysteresis", name, nan, "-", {Remark::Kind::too_fast, sweeps_.rate / rated_});
     else if (sweeps_.both())
       add("hysteresis", name, hysteresis(c), "-");
     else
-      add("hysteresis", name, nan, "-", "cannot be told: the command sweeps one way only");
+      add("hysteresis", name, nan, "-", {Remark::Kind::one_way});
   }
   static double distance(const std::vector<double>& current, const SweepCurve& c, double level) {
     return std::fabs(crossing(current, c.up, level) - crossing(current, c.down, level));
@@ -201,10 +198,9 @@ class Reading {
     }
     if (n > 0)
       add("threshold", name, sum / static_cast<double>(n) / rated_, "-",
-          fmt::format("mean of {} reversals, resolved to {:.2g} % of rated", n, 100 * widest));
+          {Remark::Kind::mean_of_reversals, static_cast<double>(n), widest});
     else if (std::isfinite(finest))
-      add("threshold", name, nan, "-",
-          fmt::format("cannot be told: the readings resolve {:.2g} % of rated current", 100 * finest));
+      add("threshold", name, nan, "-", {Remark::Kind::coarse_readings, finest});
   }
 
   void flow(const SweepCurve& c, const std::string& name, const std::vector<double>& output) {
@@ -217,21 +213,18 @@ class Reading {
                                 (log_.has(Signal::return_pressure) ? mean_of(log_[Signal::return_pressure]) : 0.0)
                           : nan;
     const double to_rated = drop && std::isfinite(at) ? std::sqrt(*drop / at) : 1.0;
-    std::string note = to_rated == 1.0
-                           ? ""
-                           : fmt::format("from a drop of {:.4g} bar to the rated {:.4g} bar", at * 1e-5, *drop * 1e-5);
+    const Remark how = to_rated == 1.0 ? Remark{} : Remark{Remark::Kind::brought_to_rated_drop, at, *drop};
     const double reach = 0.98 * rated_;
     if (c.current.front() <= -reach && c.current.back() >= reach) {
       const Line high = line_through(c.current, c.mean, 0.9 * rated_, 1.02 * rated_);
       const Line low = line_through(c.current, c.mean, -1.02 * rated_, -0.9 * rated_);
       const double plus = high.at_zero + high.slope * rated_, minus = low.at_zero - low.slope * rated_;
-      add("rated_flow", name, 0.5 * std::fabs(plus - minus) * to_rated, "m3/s", note);
-      add("rated_flow_positive", name, std::fabs(plus) * to_rated, "m3/s", note);
-      add("rated_flow_negative", name, std::fabs(minus) * to_rated, "m3/s", note);
+      add("rated_flow", name, 0.5 * std::fabs(plus - minus) * to_rated, "m3/s", how);
+      add("rated_flow_positive", name, std::fabs(plus) * to_rated, "m3/s", how);
+      add("rated_flow_negative", name, std::fabs(minus) * to_rated, "m3/s", how);
     } else {
       add("rated_flow", name, nan, "m3/s",
-          fmt::format("the command reaches {:.3g} to {:.3g} % of rated", 100 * c.current.front() / rated_,
-                      100 * c.current.back() / rated_));
+          {Remark::Kind::short_command, 100 * c.current.front() / rated_, 100 * c.current.back() / rated_});
     }
     const double top = std::min(c.current.back(), -c.current.front());
     const Line all = line_through(c.current, c.mean, -top, top);
@@ -249,19 +242,20 @@ class Reading {
     if (std::isnan(plus.slope) || std::isnan(minus.slope)) return;
     const double larger = std::max(std::fabs(plus.slope), std::fabs(minus.slope));
     add("symmetry", name, std::fabs(std::fabs(plus.slope) - std::fabs(minus.slope)) / larger, "-");
-    add("lap", name, (-plus.at_zero / plus.slope + minus.at_zero / minus.slope) / rated_, "-", "positive is overlap");
+    add("lap", name, (-plus.at_zero / plus.slope + minus.at_zero / minus.slope) / rated_, "-",
+        {Remark::Kind::positive_is_overlap});
   }
   void pressure(const SweepCurve& c, const std::string& name) {
     double supply = log_.has(Signal::supply_pressure) ? mean_of(log_[Signal::supply_pressure])
                                                       : rig_.fact("supply.pressure").value_or(nan);
     supply -= log_.has(Signal::return_pressure) ? mean_of(log_[Signal::return_pressure])
                                                 : rig_.fact("supply.return_pressure").value_or(0.0);
-    std::string note;
+    Remark how;
     if (std::isnan(supply)) {
       supply = 0;
       for (double p : c.mean)
         if (!std::isnan(p)) supply = std::max(supply, std::fabs(p));
-      note = "supply unknown: of the largest load pressure";
+      how.kind = Remark::Kind::of_largest_pressure;
     }
     add("null_bias", name, crossing(c.current, c.mean, 0.0) / rated_, "-");
     add_hysteresis(name, c);
@@ -273,11 +267,8 @@ class Reading {
     const double up = gain(c.up), down = gain(c.down);
     const double value = std::isnan(up) ? down : std::isnan(down) ? up : 0.5 * (up + down);
     if (0.8 / value / 100.0 * rated_ < 2 * sweeps_.step)
-      return add("pressure_gain", name, nan, "1/%",
-                 fmt::format("cannot be told: the command's steps are {:.2g} % of rated, and the gain is at least "
-                             "{:.3g} % of supply per 1 %",
-                             100 * sweeps_.step / rated_, 100 * value));
-    add("pressure_gain", name, value, "1/%", note);
+      return add("pressure_gain", name, nan, "1/%", {Remark::Kind::coarse_command, 100 * sweeps_.step / rated_, value});
+    add("pressure_gain", name, value, "1/%", how);
   }
 
   void leakage(const SweepCurve& c) {
@@ -288,15 +279,15 @@ class Reading {
       if (std::isnan(most) || c.mean[k] > most) most = c.mean[k], at = c.current[k];
       if (std::isnan(least) || c.mean[k] < least) least = c.mean[k];
     }
-    add("null_leakage", name, most, "m3/s", "pilot stage included");
-    add("pilot_leakage", name, least, "m3/s", "least of the sweep; with the edges' leakage at its end");
+    add("null_leakage", name, most, "m3/s", {Remark::Kind::pilot_stage_included});
+    add("pilot_leakage", name, least, "m3/s", {Remark::Kind::least_of_sweep});
     add("leakage_peak_at", name, at / rated_, "-");
     // The peak's flanks carry the loop, and the lag of a slow meter.
     SweepCurve back = c;
     for (auto* v : {&back.current, &back.up, &back.down}) std::reverse(v->begin(), v->end());
     const double half = 0.5 * (most + least);
     const double left = distance(c.current, c, half), right = distance(back.current, back, half);
-    add("leakage_hysteresis", name, 0.5 * (left + right) / rated_, "-", "at half height of the peak");
+    add("leakage_hysteresis", name, 0.5 * (left + right) / rated_, "-", {Remark::Kind::at_half_height});
   }
 
   void spool(const SweepCurve& c, const std::vector<double>& output) {
@@ -307,7 +298,7 @@ class Reading {
     for (std::size_t k = 0; k < c.current.size(); ++k)
       if (!std::isnan(c.mean[k]) && std::fabs(c.current[k]) <= 0.95 * rated_)
         largest = std::max(largest, std::fabs(c.mean[k] - all.at_zero - all.slope * c.current[k]));
-    add("stroke", "spool_position", all.slope * rated_, "m", "at rated current");
+    add("stroke", "spool_position", all.slope * rated_, "m", {Remark::Kind::at_rated_current});
     add("linearity", "spool_position", largest / std::fabs(all.slope) / rated_, "-");
   }
 
@@ -326,11 +317,11 @@ class Reading {
     if (std::fabs(points.front().phase) > 0.5 * std::numbers::pi)
       for (ResponsePoint& p : points) p.phase -= std::copysign(std::numbers::pi, points.front().phase);
     sheet_.response_signal = !out.spool.empty() ? "spool_position" : out.flow_name;
-    const auto reached = fmt::format("not reached: the log tells up to {:.3g} Hz", points.back().frequency);
+    const Remark not_reached{Remark::Kind::not_reached, points.back().frequency};
     const double lag = frequency_of_lag(points, 0.5 * std::numbers::pi);
     const double gain = frequency_of_gain(points, std::sqrt(0.5));
-    add("phase_lag_90_frequency", sheet_.response_signal, lag, "Hz", std::isnan(lag) ? reached : "");
-    add("amplitude_3db_frequency", sheet_.response_signal, gain, "Hz", std::isnan(gain) ? reached : "");
+    add("phase_lag_90_frequency", sheet_.response_signal, lag, "Hz", std::isnan(lag) ? not_reached : Remark{});
+    add("amplitude_3db_frequency", sheet_.response_signal, gain, "Hz", std::isnan(gain) ? not_reached : Remark{});
     sheet_.response = std::move(points);
   }
 

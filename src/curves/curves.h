@@ -38,12 +38,37 @@ struct SweepCurve {
 // too_near: inside the limit, by less than the guard band. It is no pass.
 enum class Judgement { not_judged, pass, too_near, fail };
 
+// Why the log does not tell a figure, or how it was read. In words: report/curves/curves.h.
+struct Remark {
+  enum class Kind {
+    none,
+    // Not told.
+    too_fast,         // `first`: [1/s] rated current per time that the command sweeps
+    one_way,          // the command sweeps
+    coarse_readings,  // `first`: [1 of rated current] what they resolve
+    short_command,    // `first`, `second`: [% of rated] lowest and highest
+    coarse_command,   // `first`: [% of rated] its steps; `second`: [1/%] the least that the gain is
+    not_reached,      // `first`: [Hz] up to where the log tells the response
+    // How it was read.
+    mean_of_reversals,      // `first`: how many; `second`: [1 of rated current] resolved
+    brought_to_rated_drop,  // `first`: [Pa] drop that it was taken at; `second`: [Pa] rated
+    of_largest_pressure,    // for want of the supply
+    positive_is_overlap,    //
+    pilot_stage_included,   //
+    least_of_sweep,         // with the edges' leakage at its end
+    at_half_height,         // of the peak
+    at_rated_current        //
+  };
+  Kind kind = Kind::none;
+  double first = 0, second = 0;
+};
+
 struct Figure {
   std::string name;    // of limit_list, or a further one
   std::string signal;  // what it was read from
   double value = 0;    // [unit]
   std::string unit;    // SI; "-" for a fraction
-  std::string note;
+  Remark remark = {};
   double uncertainty = std::numeric_limits<double>::quiet_NaN();  // [unit] expanded, k = 2; NaN: not known
   std::optional<Limit> limit;
   Judgement judgement = Judgement::not_judged;  // also where the log cannot tell

@@ -8,6 +8,7 @@
 #include "curves/curves.h"
 #include "curves/frequency_response.h"
 #include "door/require_setting.h"
+#include "report/curves/curves.h"
 #include "servodx/curves.h"
 #include "servodx/log.h"
 #include "servodx/rig.h"
@@ -34,7 +35,8 @@ AcceptanceSheet acceptance_sheet(const Log& log, const Rig& rig, const SheetOpti
   AcceptanceSheet out;
   out.whole = std::make_shared<curves::Sheet>(sheet);
   for (const curves::Figure& f : sheet.figures)
-    out.figures.push_back({f.name, f.signal, f.value, f.unit, f.uncertainty, f.limit, f.pass(), f.note});
+    out.figures.push_back(
+        {f.name, f.signal, f.value, f.unit, f.uncertainty, f.limit, f.pass(), report::words_of(f.remark)});
   for (curves::SweepCurve& c : sheet.curves)
     out.curves.push_back({c.signal, std::move(c.current), std::move(c.up), std::move(c.down), std::move(c.mean)});
   for (const curves::ResponsePoint& p : sheet.response)

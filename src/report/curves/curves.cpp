@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "base/units.h"
+#include "curves/constants.h"
 #include "curves/frequency_response.h"
 #include "report/shared/columns.h"
 #include "report/shared/handy.h"
@@ -19,6 +20,7 @@ namespace {
 
 using curves::Figure;
 using curves::Judgement;
+using curves::Remark;
 using curves::Sheet;
 
 Json numbers(const std::vector<double>& values) {
@@ -88,6 +90,48 @@ std::string word_of(Judgement judgement) {
   return "";
 }
 
+std::string words_of(const Remark& remark) {
+  switch (remark.kind) {
+    case Remark::Kind::none:
+      return "";
+    case Remark::Kind::too_fast:
+      return fmt::format(
+          "cannot be told: the command sweeps {:.2g} times rated current a second, at most {:.2g} is slow enough",
+          remark.first, curves_constants::fastest);
+    case Remark::Kind::one_way:
+      return "cannot be told: the command sweeps one way only";
+    case Remark::Kind::coarse_readings:
+      return fmt::format("cannot be told: the readings resolve {:.2g} % of rated current", 100 * remark.first);
+    case Remark::Kind::short_command:
+      return fmt::format("the command reaches {:.3g} to {:.3g} % of rated", remark.first, remark.second);
+    case Remark::Kind::coarse_command:
+      return fmt::format(
+          "cannot be told: the command's steps are {:.2g} % of rated, and the gain is at least {:.3g} % of supply per "
+          "1 %",
+          remark.first, 100 * remark.second);
+    case Remark::Kind::not_reached:
+      return fmt::format("not reached: the log tells up to {:.3g} Hz", remark.first);
+    case Remark::Kind::mean_of_reversals:
+      return fmt::format("mean of {:.0f} reversals, resolved to {:.2g} % of rated", remark.first, 100 * remark.second);
+    case Remark::Kind::brought_to_rated_drop:
+      return fmt::format("from a drop of {:.4g} bar to the rated {:.4g} bar", remark.first * 1e-5,
+                         remark.second * 1e-5);
+    case Remark::Kind::of_largest_pressure:
+      return "supply unknown: of the largest load pressure";
+    case Remark::Kind::positive_is_overlap:
+      return "positive is overlap";
+    case Remark::Kind::pilot_stage_included:
+      return "pilot stage included";
+    case Remark::Kind::least_of_sweep:
+      return "least of the sweep; with the edges' leakage at its end";
+    case Remark::Kind::at_half_height:
+      return "at half height of the peak";
+    case Remark::Kind::at_rated_current:
+      return "at rated current";
+  }
+  return "";
+}
+
 std::string guard_words(double guard) {
   if (!(guard > 0)) return "a figure passes where it is inside its limit; on the limit it does not (simple acceptance)";
   return fmt::format(
@@ -104,7 +148,8 @@ std::string text_of(const Sheet& sheet, const std::string& log, bool colour) {
   Columns table("lllllll", 2);
   table.row({"figure", "value", "+- (k = 2)", "limit", "", "from", ""});
   for (const Figure& f : sheet.figures)
-    table.row({f.name, value_text(f), uncertainty_text(f), limit_text(f), word_of(f.judgement), f.signal, f.note});
+    table.row({f.name, value_text(f), uncertainty_text(f), limit_text(f), word_of(f.judgement), f.signal,
+               words_of(f.remark)});
   return log + ": " + verdict + "\n" + table.text();
 }
 
@@ -120,7 +165,7 @@ Json curves_json(const Sheet& sheet) {
          {"pass", f.pass() ? Json(*f.pass()) : Json(nullptr)},
          {"uncertainty", number(f.uncertainty)},
          {"judgement", key_of(f.judgement)},
-         {"note", f.note}});
+         {"note", words_of(f.remark)}});
   for (const curves::SweepCurve& c : sheet.curves)
     sweeps.push_back({{"signal", info(c.signal).name},
                       {"unit", info(c.signal).si_unit},

@@ -16,6 +16,7 @@ std::string limit_text(const curves::Figure& figure);
 std::string value_text(const curves::Figure& figure);        // "-" where the log cannot tell
 std::string uncertainty_text(const curves::Figure& figure);  // "" where it is not known
 std::string word_of(curves::Judgement judgement);            // "" of what is not judged
+std::string words_of(const curves::Remark& remark);          // "" where there is none
 std::string guard_words(double guard);                       // the decision rule
 
 std::string text_of(const curves::Sheet& sheet, const std::string& log, bool colour);

@@ -165,7 +165,7 @@ Page curves_page(const Header& header, const Sheet& sheet, const std::string& lo
     judgement.tone = tone_of(f.judgement);
     table.rows.push_back({words(f.name), std::isfinite(f.value) ? Cell(value_text(f), f.value) : Cell("-"),
                           std::isfinite(f.uncertainty) ? Cell(uncertainty_text(f), f.uncertainty) : Cell(""),
-                          limit_text(f), judgement, words(f.signal), f.note});
+                          limit_text(f), judgement, words(f.signal), words_of(f.remark)});
   }
   page.add(table);
   if (!sheet.curves.empty())
