@@ -33,17 +33,17 @@ const std::vector<std::string> fault_excitations{"mixed", "flight"};
 bool closed_loop(const std::string& excitation) { return excitation == "flight" || excitation == "track"; }
 
 struct Size {
-  std::string word;
+  Grade grade;
   double value;
 };
 // From mild to severe through medium, either sign where the fault has one.
 Size size_of(const RigFault& fault, Random& random) {
-  static const std::string words[] = {"mild", "medium", "severe"};
+  constexpr Grade grades[] = {Grade::mild, Grade::medium, Grade::severe};
   const double u = random.uniform(0.0, 2.0);
   const auto k = static_cast<std::size_t>(u);
   double value = fault.severity[k] + (u - static_cast<double>(k)) * (fault.severity[k + 1] - fault.severity[k]);
   if (fault.low < 0.0 && random.below(2)) value = -value;
-  return {words[static_cast<std::size_t>(std::lround(u))], value};
+  return {grades[static_cast<std::size_t>(std::lround(u))], value};
 }
 
 FleetLog planned(const FleetOptions& o, int valves, int i) {
@@ -52,8 +52,8 @@ FleetLog planned(const FleetOptions& o, int valves, int i) {
   FleetLog log;
   log.folder = fmt::format("valve_{:02}", valve + 1);
   log.valve = (o.seed << 16) + static_cast<std::uint64_t>(valve) + 1;
-  log.set = k % 10 == 9 ? "sudden" : k % 2 == 1 ? "fault" : "healthy";
-  const bool healthy = log.set == "healthy";
+  log.set = k % 10 == 9 ? FleetSet::sudden : k % 2 == 1 ? FleetSet::fault : FleetSet::healthy;
+  const bool healthy = log.set == FleetSet::healthy;
   const auto& excitations = healthy ? healthy_excitations : fault_excitations;
   const auto turn = static_cast<std::size_t>(k / 2);
   log.run.excitation = o.excitation.value_or(excitations[turn % excitations.size()]);
@@ -64,7 +64,7 @@ FleetLog planned(const FleetOptions& o, int valves, int i) {
   log.run.air = random.uniform(0.002, 0.012);
   log.null = random.uniform(-0.005, 0.005);
   log.label = "healthy";
-  log.severity = "none";
+  log.severity = Grade::none;
   log.severity_value = 0.0;
   if (!healthy) {
     // Valves take up the list at different places, so that a small set of several valves covers it.
@@ -72,20 +72,31 @@ FleetLog planned(const FleetOptions& o, int valves, int i) {
     const RigFault& fault = rig_faults()[place % labels_of_the_contract];
     const Size size = size_of(fault, random);
     log.label = fault.name;
-    log.severity = size.word;
+    log.severity = size.grade;
     log.severity_value = size.value;
     FaultCourse course(size.value);
-    if (log.set == "sudden") {
+    if (log.set == FleetSet::sudden) {
       course.start = o.duration * random.uniform(0.4, 0.6);
       if (random.below(2)) course.end = o.duration * random.uniform(0.8, 1.0);
     }
     log.run.faults = {{fault.name, course}};
   }
-  log.path = fmt::format("{}/{}{:03}_{}.csv", log.set, log.set[0], k + 1, log.run.excitation);
+  const char* const set = name_of(log.set);
+  log.path = fmt::format("{}/{}{:03}_{}.csv", set, set[0], k + 1, log.run.excitation);
   return log;
 }
 
 }  // namespace
+
+const char* name_of(FleetSet set) {
+  constexpr const char* names[] = {"healthy", "fault", "sudden"};
+  return names[static_cast<std::size_t>(set)];
+}
+
+const char* name_of(Grade grade) {
+  constexpr const char* names[] = {"none", "mild", "medium", "severe"};
+  return names[static_cast<std::size_t>(grade)];
+}
 
 std::vector<FleetLog> plan_fleet(const FleetOptions& o) {
   if (o.logs < 1 || o.logs > 100000) {
@@ -201,10 +212,10 @@ std::string truth_table(const std::vector<FleetLog>& plan, const std::vector<boo
     if (!written[i] || log.folder != folder) continue;
     const FaultCourse course = log.run.faults.empty() ? FaultCourse{} : log.run.faults.begin()->second;
     const auto time = [](double t) { return t >= 0.0 ? fmt::format("{:.3f}", t) : std::string(); };
-    text += fmt::format("{},{},{},{},{:.6g},{},{},,{},,{:.1f},{:.4f},{:.3f},{},{},{}\n", log.path, log.set, log.label,
-                        log.severity, log.severity_value, log.run.excitation, closed_loop(log.run.excitation) ? 1 : 0,
-                        time(course.start), log.run.temperature - zero_celsius, log.run.air, 100.0 * log.null,
-                        log.run.rate, time(course.end), log.valve);
+    text += fmt::format("{},{},{},{},{:.6g},{},{},,{},,{:.1f},{:.4f},{:.3f},{},{},{}\n", log.path, name_of(log.set),
+                        log.label, name_of(log.severity), log.severity_value, log.run.excitation,
+                        closed_loop(log.run.excitation) ? 1 : 0, time(course.start), log.run.temperature - zero_celsius,
+                        log.run.air, 100.0 * log.null, log.run.rate, time(course.end), log.valve);
   }
   return text;
 }

@@ -27,12 +27,17 @@ struct FleetOptions {
   std::optional<double> temperature{};      // [K] empty: -20 to 65 degC
 };
 
+enum class FleetSet { healthy, fault, sudden };
+enum class Grade { none, mild, medium, severe };
+const char* name_of(FleetSet set);  // "healthy": of the folder too
+const char* name_of(Grade grade);   // as a truth file has it
+
 struct FleetLog {
-  std::string folder;     // "valve_01"
-  std::string path;       // within it: "fault/f004_mixed.csv"
-  std::string set;        // healthy, fault, sudden
-  std::string label;      // of the fault, or healthy
-  std::string severity;   // mild, medium, severe; none
+  std::string folder;  // "valve_01"
+  std::string path;    // within it: "fault/f004_mixed.csv"
+  FleetSet set;
+  std::string label;  // of the fault, or healthy
+  Grade severity;
   double severity_value;  // 0 where healthy
   std::uint64_t valve;    // seed of another_valve()
   double null;            // [1] of rated current, beside the valve's own

@@ -37,7 +37,6 @@ READERS = {
     "src/optimise/genetic_state.cpp": "reads a checkpoint",
     "src/parameters/table.cpp": "reads a table",
     "src/prognose/check_name.cpp": "reads the names of checks",
-    "src/rig/labelled_fleet.cpp": "reads the sets and excitations of a fleet",
     "src/rig/rig_faults.cpp": "reads a fault's size and span",
     "src/rig/rig_model.cpp": "reads a model's TOML",
     "src/signals/guess.cpp": "reads headers of unknown logs",
@@ -65,6 +64,7 @@ COMPARED = {
     "src/prognose/monitor.cpp": ({"linear", "A"}, "names of the monitor's models, as its user gives them"),
     "src/rig/facts.cpp": ({",", "rig", "fact", "unit", "low", "high", "source"},
                           "layout of a line of text; the header of a file of limits"),
+    "src/rig/labelled_fleet.cpp": ({"flight", "track"}, "excitations go by name, as its user gives them"),
     "src/rig/rig_run.cpp": ({"piston_position"}, "signals of the rig go by name: it makes columns, not results"),
     "src/signals/growing_log.cpp": ({"stamps in column "}, "a mark in a comment of the log"),
     "src/signals/rig_content.cpp": ({"page."}, "keys of the rig file"),
@@ -228,7 +228,53 @@ def borrowed(path, names):
             yield text, word, line
 
 
+# Names of what is an outcome, or tells one.
+OUTCOMES = {"stopped", "stop", "stops", "reason", "reasons", "why", "how", "words", "verdict", "outcome", "status", "fate",
+            "judgement", "summary", "remark", "note", "sentence"}
+# Folders that read text from outside, or that make words.
+READ_OR_TELL = ("src/base/", "src/signals/", "src/store/", "src/fleet/", "src/report/")
+# Fields of the front door that hold words: src/door has them of src/report; those of a rig file are its user's.
+TOLD = {"include/servodx/objective.h": {"stopped"}, "include/servodx/explain.h": {"reason"},
+        "include/servodx/curves.h": {"note"}, "include/servodx/rig.h": {"words"}}
+
+
+def text_fields(tokens):
+    """(name, line) of every field that is declared to hold a text, or several."""
+    depth = 0
+    for i, (kind, value, _) in enumerate(tokens):
+        depth += (value == "(") - (value == ")") if kind == "op" else 0
+        if depth or kind != "name" or value not in ("string", "string_view"):
+            continue
+        at, listed = i + 1, 0
+        while tokens[at][1] == ">":
+            at += 1
+        while tokens[at][0] == "name" and tokens[at + 1][1] in (";", ",", "=", "{"):
+            yield tokens[at][1], tokens[at][2]
+            at += 1
+            while listed or tokens[at][1] not in (";", ","):
+                listed += (tokens[at][1] in "({") - (tokens[at][1] in ")}")
+                at += 1
+            if tokens[at][1] == ";":
+                break
+            at += 1
+
+
 class Words(unittest.TestCase):
+    def test_no_outcome_is_carried_as_a_text(self):
+        found, where = collections.defaultdict(set), []
+        for path in source.files("src", "include", kinds=("h",)):
+            for name, line in () if path.startswith(READ_OR_TELL) else text_fields(source.tokens(path)):
+                if name in OUTCOMES:
+                    found[path].add(name)
+                    if name not in TOLD.get(path, ()):
+                        where.append(f"{path}:{line}: {name} is a text; give it a type, and its words to src/report")
+        self.assertFalse(where)
+        self.assertEqual(found, TOLD, "not there: take it off the list")
+
+    def test_fields_of_text_are_found(self):
+        made = source.tokens("tests/house/fields.inc")
+        self.assertEqual([name for name, _ in text_fields(made)], [*"abcdefg"])
+
     def test_no_result_is_compared_to_a_string(self):
         found, where = collections.defaultdict(set), []
         for path in source.files("src", "apps"):

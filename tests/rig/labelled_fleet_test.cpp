@@ -45,7 +45,9 @@ TEST(Fleet, HalfIsHealthyAndEveryLabelOfTheContractComesUp) {
     labels.insert(log.label);
     paths.insert(log.folder + "/" + log.path);
     healthy += log.label == "healthy";
-    sudden += log.set == "sudden";
+    sudden += log.set == FleetSet::sudden;
+    EXPECT_TRUE(log.path.starts_with(name_of(log.set))) << log.path;
+    EXPECT_EQ(log.severity == Grade::none, log.label == "healthy");
     EXPECT_EQ(log.run.faults.empty(), log.label == "healthy");
   }
   EXPECT_EQ(paths.size(), 60u);
@@ -76,6 +78,18 @@ TEST(Fleet, StoppedWritesNothingHalf) {
   EXPECT_EQ(std::count(written.begin(), written.end(), true), 0);
   const std::string table = truth_table(plan, written, "valve_01");
   EXPECT_EQ(std::count(table.begin(), table.end(), '\n'), 1);  // its header
+}
+
+TEST(Fleet, TheTruthNamesSetAndGradeOfEachLog) {
+  const auto plan = plan_fleet({.logs = 30});
+  const std::string table = truth_table(plan, std::vector<bool>(plan.size(), true), "valve_01");
+  for (const FleetLog& log : plan) {
+    const std::string row = log.path + "," + name_of(log.set) + "," + log.label + "," + name_of(log.severity) + ",";
+    EXPECT_NE(table.find("\n" + row), std::string::npos) << row;
+  }
+  EXPECT_NE(table.find(",sudden,"), std::string::npos);
+  EXPECT_NE(table.find(",healthy,none,0,"), std::string::npos);
+  EXPECT_TRUE(table.find(",mild,") != std::string::npos || table.find(",severe,") != std::string::npos);
 }
 
 TEST(Fleet, AFailedWriteIsTold) {
