@@ -1,5 +1,6 @@
-// Numbers that decide where a fit goes and what is told of it: how a table meets its data sheet (fit/sheet.cpp), how a
-// Bode plot is read (fit/bode.cpp), which numbers a log tells and how well, how wrong the model is. What each is for.
+// Numbers that decide where a fit goes and what is told of it: what a table takes from its data sheet (fit/nominal.cpp)
+// and how it meets the sheet (fit/sheet.cpp), what is free and how likely (fit/free_values.cpp), how a Bode plot is
+// read (fit/bode.cpp), which numbers a log tells and how well, how wrong the model is. What each is for.
 //
 // Not examined: no half and no double of any was run, unless a line says so.
 #pragma once
@@ -8,6 +9,102 @@
 #include <numbers>
 
 namespace servodx::fit_constants {
+
+// A table from a data sheet (fit/nominal.cpp; rows and formulas in docs/parameters.md). By hand where no reason is
+// given.
+namespace stated {
+// Bounds about a fact, as factors of it: the spread of real parts about the sheet, and room for the faults.
+//
+// Measured sizes of the actuator; what moves has twice that factor.
+inline constexpr double geometry = 1.1, moving = 2 * geometry;
+inline constexpr double drawing = 1.6;  // bores and gaps of the pilot stage; they also absorb discharge coefficients
+// 10 % tolerance of no-load flow, and of what the metering coefficient hides.
+inline constexpr double catalogue_flow = 1.5;
+inline constexpr double dynamics = 2.0;  // natural frequency: valves answer as with half to four fifths of the sheet's
+inline constexpr double loop = 4.0;      // gain of the loop from a phase lag; loop_over_phase_lag says how it scatters
+inline constexpr double volumes = 3.0;   // dead volumes
+inline constexpr double supply_low = 0.25, supply_high = 1.5;  // pressure: low is room for a supply fault
+// Times the stated return, and [Pa] at least: five times the most that bootstrap reservoirs have.
+inline constexpr double return_high = 2.0, least_return_high = 5e6;
+inline constexpr double stop_low = 0.8, stop_high = 1.4;     // of the spool
+inline constexpr double motor_low = 0.05, motor_high = 2.0;  // low: the motor that lost 95 % of its gain (Borello 2009)
+inline constexpr double limit_low = 0.5, limit_high = 3.0;   // current of the amplifier, of the rated
+// Over and times the clearance. Wear studies reach 10 times; the fit needs room beyond.
+inline constexpr double tightest = 3.0, most_worn = 12.0;
+inline constexpr double mount_high = 10.0;  // compliance of the mount
+inline constexpr double line_known = 4.0;   // inertance: geometry and fluid
+inline constexpr double line_wide = 20.0;   // drop: what bends and a flow that is not developed add
+inline constexpr double hose_high = 30.0;   // compliance of a steel line: up to a flexible hose
+inline constexpr double most_glitch = 0.2;  // of the stroke: Borello 2009 studies up to 4 %
+inline constexpr double most_lap = 0.06;    // of the stroke: twice the usual tolerance of a null cut
+// Times the underlap that a sheet's null leakage allows, which is a guaranteed maximum.
+inline constexpr double most_underlap = 2.0;
+
+// In place of what the sheet does not give.
+inline constexpr double stop_over_stroke = 1.16;  // overtravel is 10 to 20 %
+inline constexpr double limit_over_rated = 1.5;   // amplifiers limit at 1.2 to 2 times rated current
+inline constexpr double rated_drop = 7e6;         // [Pa] ISO 10770-1: 70 bar over both edges
+inline constexpr double lapped_fit_min = 2e-6, lapped_fit_max = 5e-6;  // [m] radial, of new spools
+inline constexpr double pilot_part = 0.5;                              // of the null leakage
+// Of the supply, at the nozzles: above the first, nozzles that the sheet does not tell are too narrow for its leakage;
+// above the second it is refused, as it leaves the orifices next to nothing.
+inline constexpr double usual_pilot = 2.0 / 3, most_pilot = 0.9;
+// Loop bandwidth over the frequency of 90 degrees lag. Of a small sine driver and motor have a part of the lag, and it
+// is 0.27 to 0.59; of 40 % of the stroke the spool slews, and it is 0.7 to 1. Sheets rarely say which.
+inline constexpr double loop_over_phase_lag = 2.0 / 3;
+inline constexpr double short_tube_cd = 0.8;  // Merritt 1967 ch. 3: fixed orifices are short tubes
+// Of stall force over no-load speed: a piston that loses half of its speed to viscous friction.
+inline constexpr double most_viscous = 0.5;
+
+// Lines (Merritt 1967 ch. 2 and 3).
+inline constexpr double darcy_friction = 0.03;      // smooth line, Re 3e3 to 3e4
+inline constexpr double fitting_losses = 2.0;       // entry, exit and bends, in velocity heads
+inline constexpr double part_ahead_of_tap = 0.1;    // of a line's drop: the manifold's
+inline constexpr double line_wall_over_bore = 0.1;  // of steel lines
+inline constexpr double steel_modulus = 2.05e11;    // [Pa]
+
+// A test stand: passages, hoses and gauges between the valve and its blind flanges, that no sheet tells.
+inline constexpr double stand_volume = 1e-4;  // [m3] manifold and a metre of pipe at each port
+inline constexpr double stand_volume_down = 100, stand_volume_up = 50;  // factors of its bounds
+inline constexpr double stand_resistance = 1e14;   // [Pa s2/m6] 14 bar at 14 l/min in each line, times 4
+inline constexpr double stand_compliance = 1e-11;  // [m3/Pa] a few metres of hose, at most
+inline constexpr double stand_compliance_over_usual = 20;
+}  // namespace stated
+
+// The free numbers and their priors (fit/free_values.cpp; docs/model.md, "Nuisances").
+namespace freed {
+// One standard deviation of a row, of its range: a data sheet's bounds already say what is likely. No prior is wider.
+inline constexpr double half_of_range = 0.5;
+
+// How well a drawing holds, one standard deviation, relative.
+//
+// Bores below half a millimetre; the fixed orifices' with the discharge of short tubes (0.6 to 0.88).
+inline constexpr double bores = 0.05;
+inline constexpr double gap = 0.08;  // it is set in assembly, to 2 or 3 um
+// Sheets give the clearance of a new spool as a range (2 to 5 um), and overlapped edges leak alike with less of it and
+// blunter corners.
+inline constexpr double clearance = 0.25;
+// What no drawing states and a valve's kind says, one standard deviation of its logarithm.
+inline constexpr double driver_bandwidth = 0.6;  // current amplifiers have 300 to 1000 Hz
+inline constexpr double spool_friction = 0.9;    // a factor of 2.5: a threshold is stated as the most that is delivered
+// The gain of the loop, alike: it follows from the valve's lag, of which driver and motor have a part, and slewing
+// where the amplitude is large.
+inline constexpr double loop_gain = 0.4;
+// One standard deviation of what passes the piston at full supply, of the rated flow. Seals pass a few drops,
+// hydrostatic bearings up to two per cent. Where the load is light, a leak and a slower valve move the piston alike,
+// and the fit takes up a fifth of the flow.
+inline constexpr double piston_leak = 0.01;
+
+// A log's own.
+inline constexpr double null_spread =
+    0.02;                                   // [fraction of rated] nulled within it when delivered; temperature moves it
+inline constexpr double usual_air = 0.005;  // [-] free, at atmospheric pressure
+inline constexpr double air_spread = 0.2;   // of its range, a factor of 3.3: it differs from start to start
+// Viscosity over that at 40 degC. Rigs run some 20 K about it, where a mineral oil is 2.2 times as thick, or as thin;
+// -20 degC is 30 times.
+inline constexpr double thinnest = 0.1, thickest = 50, usual_factor = 2.2;
+inline constexpr double start_reach = 8.0;  // [sigmas] of its first sample, either way
+}  // namespace freed
 
 // How well a sheet's dynamics hold, one standard deviation: valves of a type differ from the typical curve by about
 // this much, and a printed curve is read no better.

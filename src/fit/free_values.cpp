@@ -9,6 +9,7 @@
 #include "effects/registry.h"
 #include "effects/viscosity_change.h"
 #include "fit/chart.h"
+#include "fit/constants.h"
 #include "fit/log_data.h"
 #include "fit/log_start.h"
 #include "fit/oil_of.h"
@@ -24,6 +25,8 @@
 namespace servodx {
 namespace {
 
+using namespace fit_constants::freed;
+
 std::string name_of_row(int at) { return std::string(parameter_list[static_cast<std::size_t>(at)].name); }
 
 // Position of a table row in a candidate.
@@ -35,8 +38,6 @@ int candidate_position(const Table& table, int row) {
   return -1;
 }
 
-constexpr double half_of_range = 0.5;
-
 // Width of a row's weak prior, of its range: an effect is likely to be of its typical size, whose bounds have to hold
 // the odd valve as well; of a row its bounds say what is likely.
 double prior_width(const Row& r, int at) {
@@ -46,37 +47,24 @@ double prior_width(const Row& r, int at) {
   return e.switches && likely > 0 ? std::min(half_of_range, likely / (r.upper - r.lower)) : half_of_range;
 }
 
-// What a drawing says, and how well it holds, relative: bores below half a millimetre, the fixed orifices' with the
-// discharge of short tubes (0.6 to 0.88); the gap is set in assembly, to 2 or 3 um; sheets give the clearance of a new
-// spool as a range (2 to 5 um), and overlapped edges leak alike with less of it and blunter corners. The motor's
-// frequency is not held: valves answer as with half to four fifths of their sheet's, so the row stands for lags as
-// well.
+// What a drawing says, and how well it holds, relative. The motor's frequency is not held: valves answer as with half
+// to four fifths of their sheet's, so the row stands for lags as well.
 struct Drawing {
   int row;
   const char* fact;
   double tolerance;
 };
-constexpr Drawing drawings[] = {{row::hydraulic_amplifier_gain, "valve.nozzle_diameter", 0.05},
-                                {row::fixed_orifice_diameter, "valve.fixed_orifice_diameter", 0.05},
-                                {row::nozzle_gap, "valve.nozzle_gap", 0.08},
-                                {row::radial_clearance, "valve.radial_clearance", 0.25}};
+constexpr Drawing drawings[] = {{row::hydraulic_amplifier_gain, "valve.nozzle_diameter", bores},
+                                {row::fixed_orifice_diameter, "valve.fixed_orifice_diameter", bores},
+                                {row::nozzle_gap, "valve.nozzle_gap", gap},
+                                {row::radial_clearance, "valve.radial_clearance", clearance}};
 
-// What no drawing states and a valve's kind says, one standard deviation of its logarithm. Current amplifiers have 300
-// to 1000 Hz; of a friction a factor of 2.5, as a threshold is stated as the most that a maker delivers.
+// What no drawing states and a valve's kind says, one standard deviation of its logarithm.
 struct Likely {
   int row;
   double spread;
 };
-constexpr Likely likely[] = {{row::driver_bandwidth, 0.6}, {row::spool_friction, 0.9}};
-
-// The gain of the loop K_v, one standard deviation of its logarithm: it follows from the valve's lag, of which driver
-// and motor have a part, and slewing where the amplitude is large.
-constexpr double loop_gain = 0.4;
-
-// One standard deviation of what passes the piston at full supply, of the rated flow. Seals pass a few drops,
-// hydrostatic bearings up to two per cent. Where the load is light, a leak and a slower valve move the piston alike,
-// and the fit takes up a fifth of the flow.
-constexpr double piston_leak = 0.01;
+constexpr Likely likely[] = {{row::driver_bandwidth, driver_bandwidth}, {row::spool_friction, spool_friction}};
 
 bool is_stated(int row, const RigFile& rig) {
   if (row == row::port_width) return states_width(rig);
@@ -143,18 +131,16 @@ double times_drawing(int row, const Table& tuned, const RigFile& rig) {
 namespace {
 
 // Oil of a temperature that nobody measured, by how thick it is. An oil that is thicker is colder: it is stiffer too,
-// and the ports pass less of it, by the root of its density. Rigs run some 20 K about 40 degC, where a mineral oil is
-// 2.2 times as thick, or as thin; -20 degC is 30 times.
+// and the ports pass less of it, by the root of its density.
 FreeValue unknown_oil(const LogData& log, const ParameterVector& base, int l) {
   constexpr int at = effect_row<ViscosityChange>(0);
-  constexpr double thinnest = 0.1, thickest = 50;
   FreeValue out{ViscosityChange::parameters[0].name,
                 at,
                 thinnest,
                 thickest,
                 true,
                 std::clamp(base[at], thinnest, thickest),
-                std::log(2.2) / std::log(thickest / thinnest),
+                std::log(usual_factor) / std::log(thickest / thinnest),
                 l};
   out.apply = [fluid = log.fluid, taken = log.scenario.oil, usual = out.start](double* candidate, double factor) {
     const Oil oil = oil_of(fluid, kelvin_where(fluid, taken.viscosity_ratio * factor / usual));
@@ -173,10 +159,9 @@ std::vector<FreeValue> nuisance_values(const LogData& log, int l, const Paramete
     return std::any_of(log.channels.begin(), log.channels.end(), [&](const FitChannel& c) { return c.signal == s; });
   };
   const bool pressures = has(Signal::pressure_a) && has(Signal::pressure_b);
-  // Valves are delivered nulled within 2 % and move by some per cent with temperature.
   const double null = base[row::servovalve_null];
   out.push_back({name_of_row(row::servovalve_null), row::servovalve_null, null - null_limit, null + null_limit, false,
-                 null, 0.02 / (2 * null_limit), l});
+                 null, null_spread / (2 * null_limit), l});
   const auto add = [&](int at) {
     const NuisanceInfo& n = nuisance_info(at);
     out.push_back({std::string(n.name), at, n.lower, n.upper, false, n.prior_mean, n.prior_sd, l});
@@ -191,8 +176,8 @@ std::vector<FreeValue> nuisance_values(const LogData& log, int l, const Paramete
   }
   if (!log.scenario.oil_known) out.push_back(unknown_oil(log, base, l));
   if (pressures)
-    out.push_back(
-        {name_of_row(row::air_fraction), row::air_fraction, least_own_air, most_own_air, true, 0.005, 0.2, l});
+    out.push_back({name_of_row(row::air_fraction), row::air_fraction, least_own_air, most_own_air, true, usual_air,
+                   air_spread, l});
   if (has(Signal::spool_position)) add(nuisance::spool_offset);
   if (pressures) add(nuisance::pressure_a_offset), add(nuisance::pressure_b_offset);
   if (has(Signal::pilot_pressure_1)) add(nuisance::pilot_pressure_1_offset);
@@ -201,12 +186,12 @@ std::vector<FreeValue> nuisance_values(const LogData& log, int l, const Paramete
 }
 
 std::vector<FreeValue> start_values(const LogData& log, int l) {
-  constexpr double reach = 8.0;  // [sigmas] either way
   std::vector<FreeValue> out;
   const auto add = [&](int at, double sigma) {
     const NuisanceInfo& n = nuisance_info(at);
     if (sigma > 0)
-      out.push_back({std::string(n.name), at, -reach * sigma, reach * sigma, false, n.prior_mean, n.prior_sd, l});
+      out.push_back(
+          {std::string(n.name), at, -start_reach * sigma, start_reach * sigma, false, n.prior_mean, n.prior_sd, l});
   };
   const Scenario& s = log.scenario;
   for (const FitChannel& c : log.channels) {

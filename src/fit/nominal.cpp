@@ -10,6 +10,7 @@
 #include "base/csv.h"
 #include "base/key_error.h"
 #include "effects/mount_compliance.h"
+#include "fit/constants.h"
 #include "fit/sheet.h"
 #include "parameters/list.h"
 #include "servodx/rig.h"
@@ -20,32 +21,7 @@ namespace {
 
 using std::numbers::pi;
 
-// Bounds about a fact, as factors of it: the spread of real parts about the sheet.
-constexpr double geometry = 1.1;        // measured sizes of the actuator, mass
-constexpr double drawing = 1.6;         // bores and gaps of the pilot stage; they also absorb discharge coefficients
-constexpr double catalogue_flow = 1.5;  // 10 % tolerance of no-load flow, and of what the metering coefficient hides
-constexpr double dynamics = 2.0;        // natural frequency
-constexpr double loop = 4.0;            // gain of the loop from a phase lag
-constexpr double volumes = 3.0;
-
-constexpr double stop_over_stroke = 1.16;  // where a sheet gives the stroke alone
-constexpr double limit_over_rated = 1.5;   // amplifier limit over rated current
-// Loop bandwidth over the frequency of 90 degrees lag. Of a small sine driver and motor have a part of the lag, and it
-// is 0.27 to 0.59; of 40 % of the stroke the spool slews, and it is 0.7 to 1. Sheets rarely say which.
-constexpr double loop_over_phase_lag = 2.0 / 3;
-constexpr double short_tube_cd = 0.8;      // Merritt 1967 ch. 3: fixed orifices are short tubes
-constexpr double darcy_friction = 0.03;    // smooth line, Re 3e3 to 3e4
-constexpr double fitting_losses = 2.0;     // entry, exit and bends, in velocity heads
-constexpr double part_ahead_of_tap = 0.1;  // of a line's drop: the manifold's
-constexpr double line_wall_over_bore = 0.1;
-constexpr double stand_volume = 1e-4;                           // [m3] manifold and a metre of pipe at each port
-constexpr double stand_resistance = 1e14;                       // [Pa s2/m6] 14 bar at 14 l/min in each line, times 4
-constexpr double stand_compliance = 1e-11;                      // [m3/Pa] a few metres of hose
-constexpr double steel_modulus = 2.05e11;                       // [Pa]
-constexpr double lapped_fit_min = 2e-6, lapped_fit_max = 5e-6;  // [m]
-
-// Of stall force over no-load speed: a piston that loses half of its speed to viscous friction.
-constexpr double most_viscous = 0.5;
+using namespace fit_constants::stated;
 
 double disc(double diameter) { return pi / 4 * diameter * diameter; }
 
@@ -128,9 +104,9 @@ class Facts {
 
   void supply() {
     if (const auto p = fact("supply.pressure"))
-      set(row::supply_pressure, *p, 0.25 * *p, 1.5 * *p, "supply.pressure", "");
+      set(row::supply_pressure, *p, supply_low * *p, supply_high * *p, "supply.pressure", "");
     if (const auto p = fact("supply.return_pressure"))
-      set(row::return_pressure, *p, 0, std::max(5e6, 2 * *p), "supply.return_pressure", "");
+      set(row::return_pressure, *p, 0, std::max(least_return_high, return_high * *p), "supply.return_pressure", "");
     if (differential() <= 0)
       refuse(fact("supply.pressure") ? "supply.pressure" : "supply.return_pressure",
              "the supply (" + text_of(value(row::supply_pressure), "Pa") + ") is not above the return (" +
@@ -147,15 +123,16 @@ class Facts {
                "the stop (" + text_of(*stop, "m") + ") is nearer than the stroke at rated current (" +
                    text_of(stroke_, "m") + ")",
                "correct spool_stop or spool_stroke");
-      set(row::spool_stop, *stop, 0.8 * *stop, 1.4 * *stop, "valve.spool_stop", "");
+      set(row::spool_stop, *stop, stop_low * *stop, stop_high * *stop, "valve.spool_stop", "");
     } else if (fact("valve.spool_stroke")) {
       const double usual = stop_over_stroke * stroke_;
-      set(row::spool_stop, usual, 0.8 * usual, 1.4 * usual, "valve.spool_stroke", "1.16 * stroke");
+      set(row::spool_stop, usual, stop_low * usual, stop_high * usual, "valve.spool_stroke", "1.16 * stroke");
     }
     if (fact("valve.spool_stroke")) {
-      set(row::valve_glitch, 0, 0, 0.2 * stroke_, "valve.spool_stroke", "play up to a fifth of the stroke");
+      set(row::valve_glitch, 0, 0, most_glitch * stroke_, "valve.spool_stroke", "play up to a fifth of the stroke");
       for (const int lap : {row::lap_pa, row::lap_pb, row::lap_at, row::lap_bt})
-        set(lap, 0, -0.06 * stroke_, 0.06 * stroke_, "valve.spool_stroke", "critical centre within 6 % of the stroke");
+        set(lap, 0, -most_lap * stroke_, most_lap * stroke_, "valve.spool_stroke",
+            "critical centre within 6 % of the stroke");
     }
   }
 
@@ -176,13 +153,14 @@ class Facts {
         return std::pow(half / (nominal::cd_nozzle * curtain), 2) * rig_.fluid.density / 2;
       };
       // Nozzles that the sheet does not tell are as wide as the leakage asks for.
-      if (pilot_pressure() > 2.0 / 3 * differential() && !fact("valve.nozzle_diameter") && !fact("valve.nozzle_gap"))
+      if (pilot_pressure() > usual_pilot * differential() && !fact("valve.nozzle_diameter") &&
+          !fact("valve.nozzle_gap"))
         set_within(
             row::hydraulic_amplifier_gain,
             half / (nominal::cd_nozzle * value(row::nozzle_gap) * std::sqrt(differential() / rig_.fluid.density)),
             drawing, "valve.pilot_leakage", "nozzles pass half of it each at half the supply");
       const double p_pilot = pilot_pressure();
-      if (p_pilot > 0.9 * differential())
+      if (p_pilot > most_pilot * differential())
         refuse("valve.pilot_leakage",
                "the leakage asks for " + text_of(std::round(p_pilot / 1e5), "bar") + " at the nozzles, of " +
                    text_of(std::round(differential() / 1e5), "bar") + " supplied",
@@ -230,12 +208,11 @@ class Facts {
                                               : "valve.spool_stroke";
     if (current || stroke) {
       const double gain = value(row::feedback_wire_stiffness) * stroke_ / rated_current_;
-      // The lower bound is the motor that lost 95 % of its gain.
-      set(row::torque_motor_gain, gain, 0.05 * gain, 2 * gain, key, "k_w * stroke / rated current");
+      set(row::torque_motor_gain, gain, motor_low * gain, motor_high * gain, key, "k_w * stroke / rated current");
     }
     if (current)
-      set(row::current_limit, limit_over_rated * rated_current_, 0.5 * rated_current_, 3 * rated_current_,
-          "valve.rated_current", "1.5 * rated current");
+      set(row::current_limit, limit_over_rated * rated_current_, limit_low * rated_current_,
+          limit_high * rated_current_, "valve.rated_current", "1.5 * rated current");
   }
 
   void metering() {
@@ -246,7 +223,7 @@ class Facts {
     if (!flow) {
       flow = fact("valve.rated_flow");
       key = "valve.rated_flow";
-      drop = fact("valve.rated_pressure_drop").value_or(7e6);  // ISO 10770-1: 70 bar over both edges
+      drop = fact("valve.rated_pressure_drop").value_or(rated_drop);
     }
     // Two equal edges in series: each takes half of the drop.
     if (flow)
@@ -255,7 +232,8 @@ class Facts {
 
     const auto null_leak = fact("valve.null_leakage");
     // Open height of an edge at null that passes the leakage which is not the pilot's: laminar and turbulent drop.
-    const double edge_flow = null_leak ? (*null_leak - fact("valve.pilot_leakage").value_or(0.5 * *null_leak)) / 2 : 0;
+    const double edge_flow =
+        null_leak ? (*null_leak - fact("valve.pilot_leakage").value_or(pilot_part * *null_leak)) / 2 : 0;
     if (null_leak && edge_flow < 0)
       refuse("valve.null_leakage", "it is less than pilot_leakage, which it includes", "correct one of the two");
     const double per_width = edge_flow / value(row::port_width);
@@ -265,18 +243,19 @@ class Facts {
                                     (differential() / 2));
     const std::string law = "open height of an edge at null from leakage";
     if (const auto clearance = fact("valve.radial_clearance")) {
-      // Wear studies reach 10 times; the fit needs room beyond.
-      set(row::radial_clearance, *clearance, *clearance / 3, 12 * *clearance, "valve.radial_clearance", "");
+      set(row::radial_clearance, *clearance, *clearance / tightest, most_worn * *clearance, "valve.radial_clearance",
+          "");
     } else if (edge_flow > 0) {
       const double fit = std::clamp(height, lapped_fit_min, lapped_fit_max);
-      set(row::radial_clearance, fit, fit / 3, 12 * fit, "valve.null_leakage",
+      set(row::radial_clearance, fit, fit / tightest, most_worn * fit, "valve.null_leakage",
           law + ", within 2 to 5 um of lapped fits");
     }
     // Leakage that the clearance cannot pass is underlap; a sheet gives the limit, so it widens a bound and no more.
     const double underlap = std::sqrt(std::max(0.0, height * height - std::pow(value(row::radial_clearance), 2)));
     for (const int lap : {row::lap_pa, row::lap_pb, row::lap_at, row::lap_bt})
-      if (-2 * underlap < table_[lap].lower)
-        set(lap, value(lap), -2 * underlap, table_[lap].upper, "valve.null_leakage", law + ": twice the underlap");
+      if (-most_underlap * underlap < table_[lap].lower)
+        set(lap, value(lap), -most_underlap * underlap, table_[lap].upper, "valve.null_leakage",
+            law + ": twice the underlap");
   }
 
   void actuator() {
@@ -286,7 +265,7 @@ class Facts {
       set_within(row::piston_area_b, *a, geometry, area_key("actuator.area_b"), area_formula("b"));
     if (const auto s = fact("actuator.stroke")) set_within(row::piston_stroke, *s, geometry, "actuator.stroke", "");
     if (const auto m = fact("actuator.moving_mass"))
-      set_within(row::moving_mass, *m, 2 * geometry, "actuator.moving_mass", "");
+      set_within(row::moving_mass, *m, moving, "actuator.moving_mass", "");
     if (const auto v = fact("actuator.dead_volume_a"))
       set_within(row::dead_volume_a, *v, volumes, "actuator.dead_volume_a", "");
     if (const auto v = fact("actuator.dead_volume_b"))
@@ -295,8 +274,8 @@ class Facts {
     // An effect's row: only an extended table has it.
     const int mount = table_.find(MountCompliance::parameters[0].name);
     if (const auto k = fact("actuator.mount_stiffness"); k && mount >= 0)
-      set(mount, 1 / *k, table_[mount].lower, std::max(table_[mount].upper, 10 / *k), "actuator.mount_stiffness",
-          "1 / mount_stiffness");
+      set(mount, 1 / *k, table_[mount].lower, std::max(table_[mount].upper, mount_high / *k),
+          "actuator.mount_stiffness", "1 / mount_stiffness");
   }
   // No sheet gives frictions, and few the dead volumes: they keep the table's part of stall force, of that over no-load
   // speed, and of the swept volume. A cylinder of 20 tons has not the seals of one of 2.
@@ -335,10 +314,10 @@ class Facts {
     const double losses = fact("lines.loss").value_or(fitting_losses);
     const double resistance = (darcy_friction * *length / *bore + losses) * rig_.fluid.density / (2 * area * area);
     const bool of_its_own = lines_of_their_own(*length, *bore, resistance);
-    set(row::hose_resistance, tidy(of_its_own ? part_ahead_of_tap * resistance : resistance), 0, 20 * resistance,
+    set(row::hose_resistance, tidy(of_its_own ? part_ahead_of_tap * resistance : resistance), 0, line_wide * resistance,
         line_keys(), of_its_own ? "a tenth of line_loss, ahead of the tap" : line_formula());
     const double compliance = volume * (1 / value(row::bulk_modulus) + 1 / (line_wall_over_bore * steel_modulus));
-    set(row::hose_compliance, tidy(compliance), 0, 30 * compliance, "lines.length, lines.bore",
+    set(row::hose_compliance, tidy(compliance), 0, hose_high * compliance, "lines.length, lines.bore",
         "volume (1 / bulk_modulus + D / (E wall)), steel, wall D/10; a hose within the bound");
   }
 
@@ -360,12 +339,12 @@ class Facts {
       if (at >= 0) set(at, tidy(nominal), 0, range * nominal, "lines.length, lines.bore", formula);
       return at >= 0;
     };
-    constexpr double known = 4, wide = 20;  // geometry and fluid; what bends and a flow that is not developed add
     const double viscosity = rig_.fluid.density * rig_.fluid.kinematic_viscosity;
-    set_row("line_resistance", 128 * viscosity * length / (pi * std::pow(bore, 4)), wide, "128 viscosity L / (pi D^4)");
-    set_row("line_loss", resistance, wide, line_formula());
+    set_row("line_resistance", 128 * viscosity * length / (pi * std::pow(bore, 4)), line_wide,
+            "128 viscosity L / (pi D^4)");
+    set_row("line_loss", resistance, line_wide, line_formula());
     set_taps("line_tap");
-    return set_row("line_inertance", rig_.fluid.density * length / disc(bore), known, "density L / area");
+    return set_row("line_inertance", rig_.fluid.density * length / disc(bore), line_known, "density L / area");
   }
 
   // Where the file does not say it, the logs may.
@@ -376,17 +355,19 @@ class Facts {
     table_[at].estimate = false;
   }
 
-  // Between the valve and its blind flanges lie passages, hoses and gauges that no sheet tells: free within wide
-  // bounds.
+  // Free within wide bounds.
   void test_stand() {
     for (const auto& [position, key] :
          {std::pair{row::dead_volume_a, "actuator.dead_volume_a"}, {row::dead_volume_b, "actuator.dead_volume_b"}}) {
-      if (!fact(key)) set(position, stand_volume, stand_volume / 100, stand_volume * 50, "ports", "of a test stand");
+      if (!fact(key))
+        set(position, stand_volume, stand_volume / stand_volume_down, stand_volume * stand_volume_up, "ports",
+            "of a test stand");
       table_[position].estimate = true;
     }
     if (fact("lines.length")) return;
     set(row::hose_resistance, value(row::hose_resistance), 0, stand_resistance, "ports", "of a test stand");
-    set(row::hose_compliance, stand_compliance / 20, 0, stand_compliance, "ports", "of a test stand");
+    set(row::hose_compliance, stand_compliance / stand_compliance_over_usual, 0, stand_compliance, "ports",
+        "of a test stand");
   }
 
   Table table_;

@@ -87,8 +87,7 @@ std::complex<double> response(const StandTest& test, const std::vector<double>& 
 }
 
 double rated_current(const RigFile& rig, const ParameterVector& candidate) {
-  constexpr double limit_over_rated = 1.5;  // as nominal.cpp has it
-  return rig.fact("valve.rated_current").value_or(candidate[row::current_limit] / limit_over_rated);
+  return rig.fact("valve.rated_current").value_or(candidate[row::current_limit] / stated::limit_over_rated);
 }
 
 }  // namespace servodx
