@@ -17,9 +17,16 @@ void define_parts(py::class_<ExplanationText>& explanation) {
       .def_readonly("lower", &E::Gain::lower)
       .def_readonly("upper", &E::Gain::upper)
       .def(pickled<E::Gain>());
-  py::class_<E::Parameter>(explanation, "Parameter", "A size of a cause.")
-      .def_readonly("value", &E::Parameter::value, "[unit]")
+  py::class_<E::Parameter> parameter(explanation, "Parameter", "A size of a cause.");
+  py::enum_<E::Parameter::Told>(parameter, "Told")
+      .value("interval", E::Parameter::Told::interval)
+      .value("at_bound", E::Parameter::Told::at_bound)
+      .value("not_told", E::Parameter::Told::not_told);
+  parameter.def_readonly("value", &E::Parameter::value, "[unit]")
       .def_readonly("std_error", &E::Parameter::std_error, "[unit]")
+      .def_readonly("lower", &E::Parameter::lower, "[unit] 90 %, within what is physical; NaN at a bound")
+      .def_readonly("upper", &E::Parameter::upper, "[unit] 90 %, within what is physical; NaN at a bound")
+      .def_readonly("told", &E::Parameter::told, "what the logs tell of it")
       .def_readonly("unit", &E::Parameter::unit)
       .def(pickled<E::Parameter>());
   py::class_<E::Cause>(explanation, "Cause", "What explains the misfit.")

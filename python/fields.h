@@ -52,7 +52,9 @@ inline auto fields(Explanation::Gain& g) { return std::tie(g.value, g.lower, g.u
 inline auto fields(Explanation::Channel& c) {
   return std::tie(c.signal, c.unit, c.rms_before, c.rms_after, c.noise_rms, c.heldout_before, c.heldout_after);
 }
-inline auto fields(Explanation::Parameter& p) { return std::tie(p.value, p.std_error, p.unit); }
+inline auto fields(Explanation::Parameter& p) {
+  return std::tie(p.value, p.std_error, p.unit, p.lower, p.upper, p.told);
+}
 inline auto fields(Explanation::Cause& c) {
   return std::tie(c.effect, c.where, c.parameters, c.heldout_gain, c.delta_bic, c.confusable_with);
 }

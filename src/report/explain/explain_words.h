@@ -9,5 +9,7 @@ const char* stamp_of(ExplainVerdict verdict);  // as a page opens with it
 const char* word_of(ToldBy told_by);           // as JSON says it
 const char* words_of_share(ToldBy told_by);    // after the share that a cause removes: of what; "" of the misfit
 const char* words_of(Fate fate);               // why a candidate was not taken, or that it was
+const char* word_of(SizeTold told);            // as JSON says it
+const char* words_of(SizeTold told);           // in place of an interval; "" where there is one
 
 }  // namespace servodx::report
