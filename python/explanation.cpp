@@ -82,6 +82,8 @@ void define_explanation(py::module_& m) {
       .def_readonly("probabilities", &E::probabilities, "of causes, 'unlisted' and 'nothing'; empty without a baseline")
       .def_readonly("table", &E::table, "extended")
       .def_readonly("notes", &E::notes)
+      .def_readonly("simulations", &E::simulations)
+      .def_readonly("failed_simulations", &E::failed_simulations)
       .def_readonly("interrupted", &E::interrupted)
       .def_readonly("json", &E::json, "the keys that the program's JSON has behind its header")
       .def_property_readonly("_channels", &channels_of)
