@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "base/error.h"
+#include "base/require_setting.h"
 #include "base/stages.h"
 #include "diagnose/constants.h"
 #include "diagnose/flow_into_chambers.h"
@@ -327,12 +328,10 @@ HypothesisResult not_fitted() {
 }  // namespace
 
 void DiagnoseOptions::validate() const {
-  if (threads < 0)
-    throw InputError({.file = "DiagnoseOptions.threads"}, fmt::format("{} threads cannot run", threads),
-                     "give 0 for all cores, or how many");
-  if (population < k::least_population || population > k::most_population)
-    throw InputError({.file = "DiagnoseOptions.population"}, fmt::format("a sub-group of {}", population),
-                     fmt::format("give {} to {}", k::least_population, k::most_population));
+  require_threads(threads, "DiagnoseOptions.threads");
+  require_setting(population >= k::least_population && population <= k::most_population, "DiagnoseOptions.population",
+                  fmt::format("a sub-group of {}", population),
+                  fmt::format("give {} to {}", k::least_population, k::most_population));
 }
 
 Assessment assess_pool(const std::vector<Log>& logs, const Table& tuned, const RigFile& rig,

@@ -2,7 +2,7 @@
 #include <memory>
 
 #include "base/celsius.h"
-#include "door/require_setting.h"
+#include "base/require_setting.h"
 #include "fit/oil_of.h"
 #include "model/state.h"
 #include "parameters/list.h"
@@ -70,7 +70,7 @@ std::vector<double> ValveMaps::falling_supplies(double supply) const {
 
 std::vector<MapPoint> ValveMaps::points(const std::string& model, const MapExtent& extent) const {
   const MapInfo* info = find_map(model);
-  door::require_setting(info, "--model", "there is no map '" + model + "'", "'servodx list models' has them");
+  require_setting(info, "--model", "there is no map '" + model + "'", "'servodx list models' has them");
   return grid(info->make(inside_->numbers, inside_->reference), extent.travel, extent.travels, extent.flow,
               extent.flows, extent.supply);
 }

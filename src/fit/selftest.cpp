@@ -7,6 +7,7 @@
 #include "base/error.h"
 #include "base/normal.h"
 #include "base/random.h"
+#include "base/require_setting.h"
 #include "base/tiny.h"
 #include "fit/candidate_of.h"
 #include "fit/chart.h"
@@ -203,11 +204,8 @@ void add_coverage(SelftestResult& out) {
 }  // namespace
 
 void SelftestOptions::validate() const {
-  const auto require = [](bool holds, const char* option, const char* rule, const char* mend) {
-    if (!holds) throw InputError({option, 0, ""}, rule, mend);
-  };
-  require(repeats >= 2, "--repeats", "must be at least 2", "20 tell a coverage to about 10 %");
-  require(spread > 0 && spread <= 0.25, "--spread", "must lie between 0 and 0.25", "0.05 of a row's interval");
+  require_setting(repeats >= 2, "--repeats", "must be at least 2", "20 tell a coverage to about 10 %");
+  require_setting(spread > 0 && spread <= 0.25, "--spread", "must lie between 0 and 0.25", "0.05 of a row's interval");
 }
 
 SelftestResult selftest(const Log& log, const Table& table, const RigFile& rig, const SelftestOptions& options) {
