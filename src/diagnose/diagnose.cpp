@@ -45,6 +45,7 @@
 #include "signals/usual_step.h"
 #include "simulate/scenario.h"
 #include "tune/tune.h"
+#include "servodx/actions.h"
 
 namespace servodx {
 namespace {
@@ -329,6 +330,9 @@ HypothesisResult not_fitted() {
 
 void DiagnoseOptions::validate() const {
   require_threads(threads, "DiagnoseOptions.threads");
+  for (const auto& [label, action] : default_actions())
+    require_setting(actions.contains(label), "DiagnoseOptions.actions", "there is none for '" + label + "'",
+                    "begin with default_actions(), and change what is another");
   require_setting(population >= k::least_population && population <= k::most_population, "DiagnoseOptions.population",
                   fmt::format("a sub-group of {}", population),
                   fmt::format("give {} to {}", k::least_population, k::most_population));

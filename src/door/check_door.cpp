@@ -34,6 +34,7 @@ std::string text_of(const Table& table) {
 }  // namespace
 
 Checked check(const Log& log, const Tuned& tuned, const Rig& rig, const CheckOptions& options) {
+  options.validate();
   door::require_samples({log}, rig);
   auto result = std::make_shared<CheckResult>(check(log, tuned.table, rig, options));
   Checked out;

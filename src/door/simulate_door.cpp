@@ -45,6 +45,7 @@ void SimulationOptions::validate() const {
 }
 
 SimulationSteps steps_of(const SimulationOptions& options) {
+  options.validate();
   const SimulateOptions how = how_to(options);
   return {how.step, how.impact_step};
 }

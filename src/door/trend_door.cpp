@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <memory>
 #include <utility>
@@ -110,6 +111,10 @@ void TrendOptions::validate() const {
   require_setting(coverage > 0 && coverage < 1, "--coverage", "is between 0 and 1", "0.9");
   require_threads(threads);
   for (const FailureLevel& level : failures) require_level(level);
+  for (const FailureLevel& level : limits)
+    require_setting(is_check(level.check) && std::isfinite(level.value) && (!level.spread || *level.spread > 0),
+                    "TrendOptions.limits", "'" + level.check + "' is no check, or its level no number",
+                    "take what failure_levels() gives");
 }
 
 void require_check(const std::string& name) {
@@ -148,7 +153,9 @@ FailureLevel failure_level(const std::string& words) {
 
 std::vector<FailureLevel> failure_levels(const std::vector<std::string>& limits, const Tuned& tuned, double loop) {
   TrendSettings set;
-  for (const std::string& text : limits) add_limit(read_limit(text), tuned.table, loop, set);
+  std::vector<PerformanceLimit> read;
+  for (const std::string& text : limits) read.push_back(read_limit(text));
+  for (const PerformanceLimit& limit : read) add_limit(limit, tuned.table, loop, set);
   std::vector<FailureLevel> out;
   for (const auto& [name, levels] : set.failure) {
     if (levels.first) out.push_back({name.text(), FailureLevel::Kind::below, *levels.first, {}});

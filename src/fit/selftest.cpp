@@ -206,6 +206,7 @@ void add_coverage(SelftestResult& out) {
 void SelftestOptions::validate() const {
   require_setting(repeats >= 2, "--repeats", "must be at least 2", "20 tell a coverage to about 10 %");
   require_setting(spread > 0 && spread <= 0.25, "--spread", "must lie between 0 and 0.25", "0.05 of a row's interval");
+  require_threads(threads);
 }
 
 SelftestResult selftest(const Log& log, const Table& table, const RigFile& rig, const SelftestOptions& options) {
