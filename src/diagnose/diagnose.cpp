@@ -34,6 +34,7 @@
 #include "fit/log_data.h"
 #include "fit/tuned_state.h"
 #include "parameters/list.h"
+#include "servodx/actions.h"
 #include "servodx/data_sheet.h"
 #include "servodx/log.h"
 #include "servodx/note.h"
@@ -45,7 +46,6 @@
 #include "signals/usual_step.h"
 #include "simulate/scenario.h"
 #include "tune/tune.h"
-#include "servodx/actions.h"
 
 namespace servodx {
 namespace {

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <vector>
 
+#include "base/present.h"
 #include "base/two_pi.h"
 #include "evidence/constants.h"
 
@@ -12,28 +13,15 @@ namespace {
 
 using namespace evidence_constants;
 
-// Of the values that are there; NaN: none is.
-template <class Value>
-double mean(std::size_t first, std::size_t end, const Value& value) {
-  double sum = 0;
-  std::size_t n = 0;
-  for (std::size_t k = first; k < end; ++k)
-    if (const double v = value(k); std::isfinite(v)) sum += v, ++n;
-  return n > 0 ? sum / static_cast<double>(n) : std::nan("");
-}
-
-double mean(const std::vector<double>& x) {
-  return mean(0, x.size(), [&](std::size_t k) { return x[k]; });
-}
-
 double variance(const std::vector<double>& x) {
-  const double middle = mean(x);
-  return mean(0, x.size(), [&](std::size_t k) { return (x[k] - middle) * (x[k] - middle); });
+  const double middle = mean_of_present(x);
+  return mean_of_present(0, x.size(), [&](std::size_t k) { return (x[k] - middle) * (x[k] - middle); });
 }
 
 // Mean square of what a series changes by over so many samples.
 double square_change(const std::vector<double>& x, std::size_t stride) {
-  return mean(stride, x.size(), [&](std::size_t k) { return (x[k] - x[k - stride]) * (x[k] - x[k - stride]); });
+  return mean_of_present(stride, x.size(),
+                         [&](std::size_t k) { return (x[k] - x[k - stride]) * (x[k] - x[k - stride]); });
 }
 
 // How far a sine turns until its mean square change, 2 (1 - cos) of the variance, is that: at most pi. [rad]
@@ -86,7 +74,7 @@ TestConditions conditions_of(const Log& log) {
   c.drive_rms = std::sqrt(variance(drive));
   c.drive_band = band_of(log.time, drive);
   if (log.has(Signal::oil_temperature))
-    if (const double t = mean(log[Signal::oil_temperature]); std::isfinite(t)) c.temperature = t;
+    if (const double t = mean_of_present(log[Signal::oil_temperature]); std::isfinite(t)) c.temperature = t;
   return c;
 }
 

@@ -9,6 +9,7 @@
 #include "base/random.h"
 #include "base/require_setting.h"
 #include "base/tiny.h"
+#include "base/wilson.h"
 #include "fit/candidate_of.h"
 #include "fit/chart.h"
 #include "fit/constants.h"
@@ -195,10 +196,9 @@ void add_coverage(SelftestResult& out) {
   for (const SelftestRow& row : out.rows) out.covered += row.covered, out.counted += row.counted;
   if (out.counted == 0) return;
   const double p = static_cast<double>(out.covered) / static_cast<double>(out.counted);
-  const double m = std::max(1, out.repeats - out.failed), z = normal_95;
-  const double centre = (p + z * z / (2 * m)) / (1 + z * z / m);
-  const double half = z / (1 + z * z / m) * std::sqrt(p * (1 - p) / m + z * z / (4 * m * m));
-  out.coverage_lower = std::max(0.0, centre - half), out.coverage_upper = std::min(1.0, centre + half);
+  const double m = std::max(1, out.repeats - out.failed);
+  const RateInterval interval = wilson_95(p * m, m);
+  out.coverage_lower = interval.lower, out.coverage_upper = interval.upper;
 }
 
 }  // namespace
