@@ -6,7 +6,6 @@
 #include <fmt/format.h>
 #include <sys/resource.h>
 
-#include <algorithm>
 #include <chrono>
 #include <cstdlib>
 #include <filesystem>
@@ -14,6 +13,7 @@
 
 #include "base/atomic_file.h"
 #include "base/csv.h"
+#include "base/median.h"
 #include "long_log.h"
 #include "signals/log.h"
 
@@ -30,8 +30,7 @@ double median_seconds(const std::function<void()>& work) {
     work();
     seconds.push_back(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
   }
-  std::nth_element(seconds.begin(), seconds.begin() + repeats / 2, seconds.end());
-  return seconds[repeats / 2];
+  return median(seconds);
 }
 
 double peak_megabytes() {

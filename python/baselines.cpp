@@ -1,9 +1,11 @@
-// Baseline: its state is its file.
+// Baseline: its state is its file, and what of the call that made it no file keeps.
 #include <cstdlib>
 #include <fstream>
 #include <sstream>
 
 #include "define.h"
+#include "fields.h"
+#include "state.h"
 
 namespace servodx::python {
 namespace {
@@ -28,14 +30,19 @@ py::tuple state_of_baseline(const Baseline& baseline) {
   write_baseline(file.path, baseline);
   std::stringstream text;
   text << std::ifstream(file.path, std::ios::binary).rdbuf();
-  return py::make_tuple(baseline.path, py::bytes(text.str()));
+  return py::make_tuple(baseline.path, py::bytes(text.str()), state_of(baseline.notes), baseline.simulations,
+                        baseline.failed_simulations, baseline.interrupted);
 }
 
 Baseline baseline_of_state(const py::tuple& state) {
+  if (state.size() != 6) throw py::value_error("pickled by another version of servodx: make it again");
   const Passing file;
   std::ofstream(file.path, std::ios::binary) << py::cast<std::string>(state[1]);
   Baseline out = read_baseline(file.path);
   out.path = py::cast<std::string>(state[0]);
+  take_state(out.notes, state[2]);
+  out.simulations = py::cast<long>(state[3]), out.failed_simulations = py::cast<long>(state[4]);
+  out.interrupted = py::cast<bool>(state[5]);
   return out;
 }
 
@@ -66,7 +73,13 @@ void define_baseline(py::module_& m) {
       .def_readonly("logs", &Baseline::logs, "that set the threshold")
       .def_readonly("logs_needed", &Baseline::logs_needed, "for the rate asked for")
       .def_readonly("tuned_sha256", &Baseline::tuned_sha256)
+      .def_readonly("path", &Baseline::path, "of its file; empty where it was made in memory")
+      .def_readonly("sha256", &Baseline::sha256, "of what its file holds, or would hold")
+      .def_readonly("rig_file", &Baseline::rig_file, "that it was made with, as its file says; empty: none")
       .def_readonly("notes", &Baseline::notes)
+      .def_readonly("simulations", &Baseline::simulations)
+      .def_readonly("failed_simulations", &Baseline::failed_simulations)
+      .def_readonly("interrupted", &Baseline::interrupted, "fewer logs than were given")
       .def_property_readonly("_scores", &scores_of)
       .def("__repr__", [](const Baseline& b) { return "<Baseline of " + std::to_string(b.logs) + " logs>"; })
       .def(py::pickle(&state_of_baseline, &baseline_of_state));

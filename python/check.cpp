@@ -24,6 +24,8 @@ It does not pickle: record it where it was made. Several processes may write one
       .def_readonly("sha256", &Checked::sha256)
       .def_readonly("temperature", &Checked::temperature, "[K] of the oil: the log's, or estimated")
       .def_readonly("notes", &Checked::notes)
+      .def_readonly("simulations", &Checked::simulations)
+      .def_readonly("failed_simulations", &Checked::failed_simulations)
       .def_property_readonly("_figures", &checked_figures)
       .def("__repr__", [](const Checked& c) { return "<Checked " + c.log + ">"; });
 }

@@ -42,6 +42,16 @@ py::list response_of(const AcceptanceSheet& sheet) {
   return out;
 }
 
+std::vector<InstrumentError> errors_of(const std::map<std::string, std::pair<double, double>>& instruments) {
+  std::vector<InstrumentError> out;
+  for (const auto& [name, of] : instruments) {
+    const std::optional<Signal> signal = find_signal(name);
+    if (!signal) throw py::key_error(name);
+    out.push_back({*signal, of.first, of.second});
+  }
+  return out;
+}
+
 }  // namespace
 
 void define_curves(py::module_& m) {
@@ -61,11 +71,18 @@ void define_curves(py::module_& m) {
       .def(pickled<S>());
   m.def(
       "curves",
-      [](const Log& log, const Rig& rig) {
+      [](const Log& log, const Rig& rig, const std::map<std::string, std::pair<double, double>>& instruments,
+         double guard) {
+        const SheetOptions how{.instruments = errors_of(instruments), .guard = guard};
         const py::gil_scoped_release free;
-        return acceptance_sheet(log, rig);
+        return acceptance_sheet(log, rig, how);
       },
-      py::arg("log"), py::arg("rig"), "Figures and curves of a log. Raises InputError where it shows none.");
+      py::arg("log"), py::arg("rig"), py::kw_only(),
+      py::arg("instruments") = std::map<std::string, std::pair<double, double>>(),
+      py::arg("guard") = SheetOptions{}.guard,
+      "Figures and curves of a log. instruments: signal -> expanded uncertainties (k = 2) absolute [SI] and relative. "
+      "guard: [expanded uncertainties] inside its limit that a figure has to be. Raises InputError where the log shows "
+      "none.");
 }
 
 }  // namespace servodx::python

@@ -17,9 +17,16 @@ void define_parts(py::class_<ExplanationText>& explanation) {
       .def_readonly("lower", &E::Gain::lower)
       .def_readonly("upper", &E::Gain::upper)
       .def(pickled<E::Gain>());
-  py::class_<E::Parameter>(explanation, "Parameter", "A size of a cause.")
-      .def_readonly("value", &E::Parameter::value, "[unit]")
+  py::class_<E::Parameter> parameter(explanation, "Parameter", "A size of a cause.");
+  py::enum_<E::Parameter::Told>(parameter, "Told")
+      .value("interval", E::Parameter::Told::interval)
+      .value("at_bound", E::Parameter::Told::at_bound)
+      .value("not_told", E::Parameter::Told::not_told);
+  parameter.def_readonly("value", &E::Parameter::value, "[unit]")
       .def_readonly("std_error", &E::Parameter::std_error, "[unit]")
+      .def_readonly("lower", &E::Parameter::lower, "[unit] 90 %, within what is physical; NaN at a bound")
+      .def_readonly("upper", &E::Parameter::upper, "[unit] 90 %, within what is physical; NaN at a bound")
+      .def_readonly("told", &E::Parameter::told, "what the logs tell of it")
       .def_readonly("unit", &E::Parameter::unit)
       .def(pickled<E::Parameter>());
   py::class_<E::Cause>(explanation, "Cause", "What explains the misfit.")
@@ -75,6 +82,8 @@ void define_explanation(py::module_& m) {
       .def_readonly("probabilities", &E::probabilities, "of causes, 'unlisted' and 'nothing'; empty without a baseline")
       .def_readonly("table", &E::table, "extended")
       .def_readonly("notes", &E::notes)
+      .def_readonly("simulations", &E::simulations)
+      .def_readonly("failed_simulations", &E::failed_simulations)
       .def_readonly("interrupted", &E::interrupted)
       .def_readonly("json", &E::json, "the keys that the program's JSON has behind its header")
       .def_property_readonly("_channels", &channels_of)

@@ -1,4 +1,5 @@
-// The fields of what pickles. A field that is not here is lost by a pickle: tests/python compares all that shows.
+// The fields of what pickles. Each struct is bound by all that it holds, so one with a new field does not compile until
+// that is here; what is bound and not tied (`whole`, the library's own) is left out.
 #pragma once
 #include <tuple>
 
@@ -7,118 +8,246 @@
 namespace servodx {
 
 inline auto fields(Fluid& f) {
-  return std::tie(f.density, f.kinematic_viscosity, f.kinematic_viscosity_100, f.given, f.name);
+  auto& [density, kinematic_viscosity, kinematic_viscosity_100, given, name] = f;
+  return std::tie(density, kinematic_viscosity, kinematic_viscosity_100, given, name);
 }
-inline auto fields(Limit& l) { return std::tie(l.min, l.max); }
+inline auto fields(Limit& l) {
+  auto& [min, max] = l;
+  return std::tie(min, max);
+}
 inline auto fields(ColumnMapping& c) {
-  return std::tie(c.signal, c.column_unit, c.unit, c.gain, c.offset, c.gain_has_unit, c.line);
+  auto& [signal, column_unit, unit, gain, offset, gain_has_unit, line] = c;
+  return std::tie(signal, column_unit, unit, gain, offset, gain_has_unit, line);
 }
-inline auto fields(ResponseFact& p) { return std::tie(p.frequency, p.amplitude, p.gain, p.phase_lag); }
+inline auto fields(ResponseFact& p) {
+  auto& [frequency, amplitude, gain, phase_lag] = p;
+  return std::tie(frequency, amplitude, gain, phase_lag);
+}
 inline auto fields(RigFile& r) {
-  return std::tie(r.path, r.sha256, r.name, r.serial, r.ports, r.command_hold, r.mains_frequency, r.null_limit,
-                  r.oil_temperature, r.taps, r.fluid, r.facts, r.response, r.limits, r.words, r.lines, r.columns,
-                  r.open_questions);
+  auto& [path, sha256, name, serial, ports, command_hold, mains_frequency, null_limit, oil_temperature, taps, fluid,
+         facts, response, limits, words, lines, columns, open_questions] = r;
+  return std::tie(path, sha256, name, serial, ports, command_hold, mains_frequency, null_limit, oil_temperature, taps,
+                  fluid, facts, response, limits, words, lines, columns, open_questions);
 }
-inline auto fields(Channel& c) { return std::tie(c.value, c.unit, c.full_scale, c.resolution, c.column, c.missing); }
-inline auto fields(Note& n) { return std::tie(n.kind, n.text); }
-inline auto fields(Log& l) { return std::tie(l.path, l.sha256, l.time, l.channels, l.notes); }
-inline auto fields(OutputColumn& c) { return std::tie(c.signal, c.unit, c.value, c.full_scale); }
-inline auto fields(Simulation& s) { return std::tie(s.time, s.columns, s.notes, s.step, s.impact_step); }
+inline auto fields(Channel& c) {
+  auto& [value, unit, full_scale, resolution, column, missing] = c;
+  return std::tie(value, unit, full_scale, resolution, column, missing);
+}
+inline auto fields(Note& n) {
+  auto& [kind, text] = n;
+  return std::tie(kind, text);
+}
+inline auto fields(Log& l) {
+  auto& [path, sha256, time, channels, notes] = l;
+  return std::tie(path, sha256, time, channels, notes);
+}
+inline auto fields(OutputColumn& c) {
+  auto& [signal, unit, value, full_scale] = c;
+  return std::tie(signal, unit, value, full_scale);
+}
+inline auto fields(Simulation& s) {
+  auto& [time, columns, notes, step, impact_step] = s;
+  return std::tie(time, columns, notes, step, impact_step);
+}
 
 inline auto fields(Row& r) {
-  return std::tie(r.id, r.name, r.group, r.nominal, r.lower, r.upper, r.log_scale, r.estimate, r.unit, r.description,
-                  r.source, r.std_error);
+  auto& [id, name, group, nominal, lower, upper, log_scale, estimate, unit, description, source, std_error] = r;
+  return std::tie(id, name, group, nominal, lower, upper, log_scale, estimate, unit, description, source, std_error);
 }
-inline auto fields(Table& t) { return std::tie(t.path, t.sha256, t.rows, t.comments, t.state, t.has_std_error); }
+inline auto fields(Table& t) {
+  auto& [path, sha256, rows, comments, state, has_std_error] = t;
+  return std::tie(path, sha256, rows, comments, state, has_std_error);
+}
 inline auto fields(ParameterResult& p) {
-  return std::tie(p.id, p.name, p.unit, p.nominal, p.estimate, p.std_error, p.verdict, p.confounded_with,
-                  p.profile_lower, p.profile_upper, p.effect_at_lower, p.effect_at_upper);
+  auto& [id, name, unit, nominal, estimate, std_error, verdict, confounded_with, profile_lower, profile_upper,
+         effect_at_lower, effect_at_upper] = p;
+  return std::tie(id, name, unit, nominal, estimate, std_error, verdict, confounded_with, profile_lower, profile_upper,
+                  effect_at_lower, effect_at_upper);
 }
-inline auto fields(ChannelResult& c) { return std::tie(c.signal, c.unit, c.rms, c.noise_rms, c.heldout_rms); }
+inline auto fields(ChannelResult& c) {
+  auto& [signal, unit, rms, noise_rms, heldout_rms] = c;
+  return std::tie(signal, unit, rms, noise_rms, heldout_rms);
+}
 inline auto fields(Tuned& t) {
-  return std::tie(t.table, t.channels, t.parameters, t.notes, t.simulations, t.failed_simulations, t.interrupted);
+  auto& [table, channels, parameters, notes, simulations, failed_simulations, interrupted, whole] = t;
+  return std::tie(table, channels, parameters, notes, simulations, failed_simulations, interrupted);
 }
-inline auto fields(TuneChart::Point& p) { return std::tie(p.stage, p.simulations, p.cost); }
-inline auto fields(TuneChart& c) { return std::tie(c.convergence, c.starts); }
+inline auto fields(TuneChart::Point& p) {
+  auto& [stage, simulations, cost] = p;
+  return std::tie(stage, simulations, cost);
+}
+inline auto fields(TuneChart& c) {
+  auto& [convergence, starts] = c;
+  return std::tie(convergence, starts);
+}
 
-inline auto fields(Verdict::Severity& s) { return std::tie(s.value, s.lower, s.upper, s.unit); }
-inline auto fields(Verdict::Suspicion& s) { return std::tie(s.name, s.severity, s.rate, s.logs_needed); }
-inline auto fields(Verdict::Named& n) { return std::tie(n.name, n.probability, n.severity, n.channel); }
-inline auto fields(Verdict::Detectable& d) { return std::tie(d.value, d.unit); }
-inline auto fields(Verdict::Beyond& b) { return std::tie(b.first, b.where, b.depends_on, b.share, b.taken); }
-inline auto fields(Verdict::Friction& f) { return std::tie(f.friction, f.largest); }
+inline auto fields(Verdict::Severity& s) {
+  auto& [value, lower, upper, unit] = s;
+  return std::tie(value, lower, upper, unit);
+}
+inline auto fields(Verdict::Suspicion& s) {
+  auto& [name, severity, rate, logs_needed] = s;
+  return std::tie(name, severity, rate, logs_needed);
+}
+inline auto fields(Verdict::Named& n) {
+  auto& [name, probability, severity, channel] = n;
+  return std::tie(name, probability, severity, channel);
+}
+inline auto fields(Verdict::Detectable& d) {
+  auto& [value, unit] = d;
+  return std::tie(value, unit);
+}
+inline auto fields(Verdict::Beyond& b) {
+  auto& [first, where, depends_on, share, taken] = b;
+  return std::tie(first, where, depends_on, share, taken);
+}
+inline auto fields(Verdict::Friction& f) {
+  auto& [friction, largest] = f;
+  return std::tie(friction, largest);
+}
 
-inline auto fields(Explanation::Gain& g) { return std::tie(g.value, g.lower, g.upper); }
+inline auto fields(Explanation::Gain& g) {
+  auto& [value, lower, upper] = g;
+  return std::tie(value, lower, upper);
+}
 inline auto fields(Explanation::Channel& c) {
-  return std::tie(c.signal, c.unit, c.rms_before, c.rms_after, c.noise_rms, c.heldout_before, c.heldout_after);
+  auto& [signal, unit, rms_before, rms_after, noise_rms, heldout_before, heldout_after] = c;
+  return std::tie(signal, unit, rms_before, rms_after, noise_rms, heldout_before, heldout_after);
 }
-inline auto fields(Explanation::Parameter& p) { return std::tie(p.value, p.std_error, p.unit); }
+inline auto fields(Explanation::Parameter& p) {
+  auto& [value, std_error, unit, lower, upper, told] = p;
+  return std::tie(value, std_error, unit, lower, upper, told);
+}
 inline auto fields(Explanation::Cause& c) {
-  return std::tie(c.effect, c.where, c.parameters, c.heldout_gain, c.delta_bic, c.confusable_with);
+  auto& [effect, where, parameters, heldout_gain, delta_bic, confusable_with] = c;
+  return std::tie(effect, where, parameters, heldout_gain, delta_bic, confusable_with);
 }
-inline auto fields(Explanation::Candidate& c) { return std::tie(c.effect, c.where, c.reason, c.taken); }
+inline auto fields(Explanation::Candidate& c) {
+  auto& [effect, where, reason, taken] = c;
+  return std::tie(effect, where, reason, taken);
+}
 
-inline auto fields(Trend::Remaining& r) { return std::tie(r.median, r.lower, r.upper); }
-inline auto fields(Trend::OfCheck& c) { return std::tie(c.name, c.unit, c.state, c.slope, c.alert_at, c.remaining); }
-inline auto fields(TrendChart::Range& r) { return std::tie(r.lower, r.upper); }
-inline auto fields(TrendChart::Point& p) { return std::tie(p.at, p.value, p.temperature, p.healthy); }
+inline auto fields(Trend::Remaining& r) {
+  auto& [median, lower, upper] = r;
+  return std::tie(median, lower, upper);
+}
+inline auto fields(Trend::OfCheck& c) {
+  auto& [name, unit, state, slope, alert_at, remaining] = c;
+  return std::tie(name, unit, state, slope, alert_at, remaining);
+}
+inline auto fields(TrendChart::Range& r) {
+  auto& [lower, upper] = r;
+  return std::tie(lower, upper);
+}
+inline auto fields(TrendChart::Point& p) {
+  auto& [at, value, temperature, healthy] = p;
+  return std::tie(at, value, temperature, healthy);
+}
 inline auto fields(TrendChart::OfCheck& c) {
-  return std::tie(c.name, c.unit, c.cause, c.points, c.threshold, c.warning, c.failure, c.healthy, c.now, c.slope,
-                  c.grows, c.life);
+  auto& [name, unit, cause, points, threshold, warning, failure, healthy, now, slope, grows, life] = c;
+  return std::tie(name, unit, cause, points, threshold, warning, failure, healthy, now, slope, grows, life);
 }
-inline auto fields(TrendChart& c) { return std::tie(c.checks, c.life); }
+inline auto fields(TrendChart& c) {
+  auto& [checks, life] = c;
+  return std::tie(checks, life);
+}
 inline auto fields(LogChart::OfSignal& s) {
-  return std::tie(s.signal, s.unit, s.measured, s.simulated, s.residual, s.sigma);
+  auto& [signal, unit, measured, simulated, residual, sigma] = s;
+  return std::tie(signal, unit, measured, simulated, residual, sigma);
 }
-inline auto fields(LogChart& c) { return std::tie(c.log, c.time, c.command, c.signals); }
+inline auto fields(LogChart& c) {
+  auto& [log, time, command, signals] = c;
+  return std::tie(log, time, command, signals);
+}
 
-inline auto fields(PlannedTest::Piece& p) { return std::tie(p.shape, p.start, p.seconds, p.amplitude, p.rate); }
+inline auto fields(PlannedTest::Piece& p) {
+  auto& [shape, start, seconds, amplitude, rate] = p;
+  return std::tie(shape, start, seconds, amplitude, rate);
+}
 inline auto fields(PlannedTest::Fault& f) {
-  return std::tie(f.name, f.unit, f.least, f.from_mildest, f.severity, f.deviates, f.found, f.named, f.nearest);
+  auto& [name, unit, least, from_mildest, severity, deviates, found, named, nearest] = f;
+  return std::tie(name, unit, least, from_mildest, severity, deviates, found, named, nearest);
 }
-inline auto fields(PlannedTest::Pair& p) { return std::tie(p.first, p.second, p.told); }
-inline auto fields(PlannedTest::Row& r) { return std::tie(r.name, r.unit, r.before, r.after); }
+inline auto fields(PlannedTest::Pair& p) {
+  auto& [first, second, told] = p;
+  return std::tie(first, second, told);
+}
+inline auto fields(PlannedTest::Row& r) {
+  auto& [name, unit, before, after] = r;
+  return std::tie(name, unit, before, after);
+}
 inline auto fields(PlannedTest::Extremes& e) {
-  return std::tie(e.current, e.stroke, e.speed, e.pressure_low, e.pressure_high, e.cavitates);
+  auto& [current, stroke, speed, pressure_low, pressure_high, cavitates] = e;
+  return std::tie(current, stroke, speed, pressure_low, pressure_high, cavitates);
 }
-inline auto fields(PlannedTest::Figures& f) { return std::tie(f.information, f.faults, f.pairs, f.rows, f.extremes); }
+inline auto fields(PlannedTest::Figures& f) {
+  auto& [information, faults, pairs, rows, extremes] = f;
+  return std::tie(information, faults, pairs, rows, extremes);
+}
 inline auto fields(PlannedTest& p) {
-  return std::tie(p.time, p.command, p.setpoint, p.pieces, p.planned, p.random_command, p.random, p.threshold, p.notes,
-                  p.simulations, p.failed_simulations, p.interrupted);
+  auto& [time, command, setpoint, pieces, planned, random_command, random, threshold, notes, simulations,
+         failed_simulations, interrupted, whole] = p;
+  return std::tie(time, command, setpoint, pieces, planned, random_command, random, threshold, notes, simulations,
+                  failed_simulations, interrupted);
 }
 
 inline auto fields(AcceptanceSheet::Figure& f) {
-  return std::tie(f.name, f.signal, f.value, f.unit, f.limit, f.pass, f.note);
+  auto& [name, signal, value, unit, uncertainty, limit, pass, note] = f;
+  return std::tie(name, signal, value, unit, uncertainty, limit, pass, note);
 }
-inline auto fields(AcceptanceSheet::Curve& c) { return std::tie(c.signal, c.current, c.up, c.down, c.mean); }
-inline auto fields(AcceptanceSheet::Response& r) { return std::tie(r.frequency, r.gain, r.phase, r.coherence); }
+inline auto fields(AcceptanceSheet::Curve& c) {
+  auto& [signal, current, up, down, mean] = c;
+  return std::tie(signal, current, up, down, mean);
+}
+inline auto fields(AcceptanceSheet::Response& r) {
+  auto& [frequency, gain, phase, coherence] = r;
+  return std::tie(frequency, gain, phase, coherence);
+}
 inline auto fields(AcceptanceSheet& s) {
-  return std::tie(s.kind, s.figures, s.curves, s.response, s.response_signal, s.notes);
+  auto& [kind, figures, curves, response, response_signal, notes, whole] = s;
+  return std::tie(kind, figures, curves, response, response_signal, notes);
 }
 
 inline auto fields(Fleet::Row& r) {
-  return std::tie(r.file, r.log, r.kind, r.fault, r.severity, r.probability, r.error, r.threshold);
+  auto& [file, log, kind, fault, severity, probability, error, threshold] = r;
+  return std::tie(file, log, kind, fault, severity, probability, error, threshold);
 }
-inline auto fields(Fleet::Refused& r) { return std::tie(r.file, r.line, r.column, r.rule, r.mend); }
-inline auto fields(Fleet& f) { return std::tie(f.rows, f.refused, f.unread, f.interrupted, f.without_schema, f.csv); }
+inline auto fields(Fleet::Refused& r) {
+  auto& [file, line, column, rule, mend] = r;
+  return std::tie(file, line, column, rule, mend);
+}
+inline auto fields(Fleet& f) {
+  auto& [rows, refused, unread, interrupted, without_schema, csv, whole] = f;
+  return std::tie(rows, refused, unread, interrupted, without_schema, csv);
+}
 
 namespace python {
 
-inline auto fields(TunedOnRig& t) { return std::tie(t.tuned, t.rig, t.chart); }
-inline auto fields(SimulationOfLog& s) { return std::tie(s.run, s.log, s.rig); }
+inline auto fields(TunedOnRig& t) {
+  auto& [tuned, rig, chart] = t;
+  return std::tie(tuned, rig, chart);
+}
+inline auto fields(SimulationOfLog& s) {
+  auto& [run, log, rig] = s;
+  return std::tie(run, log, rig);
+}
 inline auto fields(VerdictText& v) {
-  return std::tie(v.json, v.log, v.interrupted, v.kind, v.error, v.threshold, v.p_value, v.fault, v.faults, v.severity,
-                  v.probabilities, v.ambiguous_with, v.separating_test, v.onset, v.suspicion, v.detectable, v.beyond,
-                  v.friction, v.action_class, v.action, v.parameters, v.channels, v.notes, v.simulations,
-                  v.failed_simulations);
+  auto& [log, interrupted, kind, error, threshold, p_value, fault, faults, severity, probabilities, ambiguous_with,
+         separating_test, onset, suspicion, detectable, beyond, friction, action_class, action, parameters, channels,
+         notes, simulations, failed_simulations, whole] = static_cast<Verdict&>(v);
+  return std::tie(v.json, log, interrupted, kind, error, threshold, p_value, fault, faults, severity, probabilities,
+                  ambiguous_with, separating_test, onset, suspicion, detectable, beyond, friction, action_class, action,
+                  parameters, channels, notes, simulations, failed_simulations);
 }
 inline auto fields(ExplanationText& e) {
-  return std::tie(e.json, e.kind, e.where, e.depends_on, e.channels, e.causes, e.standing, e.candidates,
-                  e.probabilities, e.table, e.notes, e.simulations, e.failed_simulations, e.interrupted);
+  auto& [kind, where, depends_on, channels, causes, standing, candidates, probabilities, table, notes, simulations,
+         failed_simulations, interrupted, whole] = static_cast<Explanation&>(e);
+  return std::tie(e.json, kind, where, depends_on, channels, causes, standing, candidates, probabilities, table, notes,
+                  simulations, failed_simulations, interrupted);
 }
 inline auto fields(TrendWithChart& t) {
-  return std::tie(t.valve, t.serial, t.state, t.at, t.checks, t.cause, t.alert_at, t.remaining, t.trends, t.notes,
-                  t.chart);
+  auto& [valve, serial, state, at, checks, cause, alert_at, remaining, trends, notes, whole] = static_cast<Trend&>(t);
+  return std::tie(valve, serial, state, at, checks, cause, alert_at, remaining, trends, notes, t.chart);
 }
 
 }  // namespace python

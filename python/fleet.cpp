@@ -69,6 +69,7 @@ void define_fleet(py::module_& m) {
           },
           py::arg("path"), "CSV as `servodx gather -o` writes, byte for byte.")
       .def_readonly("interrupted", &Fleet::interrupted)
+      .def_readonly("without_schema", &Fleet::without_schema, "results of earlier versions, read as far as they go")
       .def_property_readonly("_rows", &fleet_rows)
       .def_property_readonly("_refused", [](const Fleet& f) { return refused_of(f.refused); })
       .def_property_readonly("_unread", [](const Fleet& f) { return refused_of(f.unread); })

@@ -11,6 +11,7 @@ py::list planned_faults(const PlannedTest& test) {
   for (const PlannedTest::Fault& f : test.planned.faults) {
     py::dict row;
     row["name"] = f.name, row["least"] = f.least, row["severity"] = f.severity, row["unit"] = f.unit;
+    row["from_mildest"] = f.from_mildest;
     row["deviates"] = f.deviates, row["found"] = f.found, row["named"] = f.named, row["nearest"] = f.nearest;
     out.append(row);
   }
@@ -34,6 +35,14 @@ py::list planned_rows(const PlannedTest& test) {
     row["name"] = r.name, row["before"] = r.before, row["after"] = r.after, row["unit"] = r.unit;
     out.append(row);
   }
+  return out;
+}
+
+py::dict extremes_of(const PlannedTest& test) {
+  const PlannedTest::Extremes& e = test.planned.extremes;
+  py::dict out;
+  out["current"] = e.current, out["stroke"] = e.stroke, out["speed"] = e.speed;
+  out["pressure_low"] = e.pressure_low, out["pressure_high"] = e.pressure_high, out["cavitates"] = e.cavitates;
   return out;
 }
 
@@ -64,7 +73,12 @@ void define_plan(py::module_& m) {
       .def_readonly("threshold", &P::threshold, "[deviates] that a finding needs")
       .def_property_readonly("information", [](const P& p) { return p.planned.information; })
       .def_property_readonly("random_information", [](const P& p) { return p.random.information; })
+      .def_property_readonly("extremes", &extremes_of,
+                             "of a healthy valve within its tolerances: current [A], stroke [m], speed [m/s], "
+                             "pressure_low and pressure_high [Pa], cavitates")
       .def_readonly("notes", &P::notes)
+      .def_readonly("simulations", &P::simulations)
+      .def_readonly("failed_simulations", &P::failed_simulations)
       .def_readonly("interrupted", &P::interrupted)
       .def(
           "save", [](const P& p, const Path& path) { write_command(path.string(), p); }, py::arg("path"),

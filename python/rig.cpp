@@ -23,7 +23,12 @@ dictionary. Raises InputError with file, line and key.)")
       .def_readonly("path", &Rig::path)
       .def_readonly("name", &Rig::name)
       .def_readonly("serial", &Rig::serial)
+      .def_readonly("sha256", &Rig::sha256)
       .def_readonly("facts", &Rig::facts, "dotted key -> [SI]")
+      .def_readonly("words", &Rig::words, "dotted key -> word")
+      .def_readonly("null_limit", &Rig::null_limit, "[1 of rated current]")
+      .def_readonly("mains_frequency", &Rig::mains_frequency, "[Hz]; None: not said")
+      .def_readonly("oil_temperature", &Rig::oil_temperature, "[K] of logs that do not record it; None: not said")
       .def("__repr__",
            [](const Rig& rig) {
              return "<Rig " + (rig.name.empty() ? rig.path : rig.name) + ", " + std::to_string(rig.facts.size()) +

@@ -49,6 +49,9 @@ void define_simulation(py::module_& m) {
       .def_property_readonly("notes", [](const S& s) { return s.run.notes; })
       .def_property_readonly(
           "step", [](const S& s) { return s.run.step; }, "[s] that was taken")
+      .def_property_readonly(
+          "impact_step", [](const S& s) { return s.run.impact_step; },
+          "[s] that was taken after a jump of the command, and while the rod comes upon its stop")
       .def(
           "save", [](const S& s, const Path& path) { write_simulation(path.string(), s.log, s.run, s.rig); },
           py::arg("path"), "As `servodx simulate -o` writes, byte for byte.")

@@ -38,6 +38,9 @@ void define_table(py::module_& m) {
       .def_readonly("path", &Table::path)
       .def_readonly("rows", &Table::rows)
       .def_readonly("sha256", &Table::sha256)
+      .def_readonly("comments", &Table::comments, "of its file, for people")
+      .def_readonly("state", &Table::state, "lines of its file that say what tuned it")
+      .def_readonly("has_std_error", &Table::has_std_error, "a tuned table")
       .def("__len__", [](const Table& t) { return t.rows.size(); })
       .def("__getitem__",
            [](const Table& t, const std::string& name) {

@@ -15,11 +15,12 @@ TunedOnRig on_rig(Tuned tuned, const Rig& rig) {
 }
 
 Baseline baseline_of(const TunedOnRig& self, const std::vector<Log>& logs, double false_alarm, std::uint64_t seed,
-                     int threads, py::object progress) {
+                     int threads, py::object progress, const std::vector<Log>& others) {
   Call call(std::move(progress));
   return call.run([&, how_many = threads_here(threads)](Watch watch) {
-    return make_baseline(logs, self.tuned, self.rig,
-                         {.false_alarm = false_alarm, .seed = seed, .threads = how_many, .watch = std::move(watch)});
+    return make_baseline(
+        logs, self.tuned, self.rig,
+        {.false_alarm = false_alarm, .seed = seed, .others = others, .threads = how_many, .watch = std::move(watch)});
   });
 }
 
@@ -42,11 +43,15 @@ VerdictText verdict_of(const TunedOnRig& self, const std::vector<Log>& logs, con
 
 ExplanationText explanation_of(const TunedOnRig& self, const std::vector<Log>& logs,
                                const std::optional<Baseline>& baseline, double level, std::vector<std::string> without,
-                               std::uint64_t seed, int threads, py::object progress) {
+                               std::uint64_t seed, int threads, py::object progress, bool keep_worse) {
   Call call(std::move(progress));
   return call.run([&, how_many = threads_here(threads)](Watch watch) {
-    const ExplainOptions how{
-        .seed = seed, .threads = how_many, .level = level, .without = without, .watch = std::move(watch)};
+    const ExplainOptions how{.seed = seed,
+                             .threads = how_many,
+                             .level = level,
+                             .without = without,
+                             .keep_worse = keep_worse,
+                             .watch = std::move(watch)};
     return with_text(baseline ? explain(logs, self.tuned, self.rig, *baseline, how)
                               : explain(logs, self.tuned, self.rig, how));
   });
@@ -55,13 +60,14 @@ ExplanationText explanation_of(const TunedOnRig& self, const std::vector<Log>& l
 TunedOnRig tuned_on(const std::vector<Log>& logs, const Table& params, const Rig& rig, std::uint64_t seed, int threads,
                     int generations, int rounds, int population, double heldout,
                     std::optional<std::vector<std::string>> effects, std::vector<std::string> profile,
-                    py::object progress) {
+                    std::map<std::string, double> priors, int moving_average, py::object progress) {
   Call call(std::move(progress));
   return call.run([&, how_many = threads_here(threads)](Watch watch) {
     TuneOptions how;
     how.seed = seed, how.threads = how_many, how.generations = generations, how.rounds = rounds;
     how.population = population, how.heldout = heldout;
     how.effects = std::move(effects), how.profile = std::move(profile);
+    how.priors = std::move(priors), how.moving_average = moving_average;
     how.watch = std::move(watch);
     return on_rig(tune(logs, params, rig, how), rig);
   });
@@ -118,13 +124,18 @@ void define_calls(py::class_<TunedOnRig>& tuned) {
   const auto threads = py::arg("threads") = 0;
   const auto progress = py::arg("progress") = true;
   tuned
-      .def("baseline", &baseline_of, py::arg("logs"), py::arg("false_alarm") = BaselineOptions{}.false_alarm, seed,
-           threads, progress, "Threshold from fault-free logs that did not tune the table; three or more.")
+      .def(
+          "baseline", &baseline_of, py::arg("logs"), py::arg("false_alarm") = BaselineOptions{}.false_alarm, seed,
+          threads, progress, py::kw_only(), py::arg("others") = std::vector<Log>(),
+          "Threshold from fault-free logs that did not tune the table; three or more. others: fault-free logs of other "
+          "tests, those that tuned the table as well, as the program takes them unless told.")
       .def("_diagnose", &verdict_of, py::arg("logs"), py::arg("baseline"), py::arg("actions"),
            py::arg("explain_unknown"), seed, threads, progress)
       .def("explain", &explanation_of, py::arg("logs"), py::arg("baseline") = py::none(),
            py::arg("level") = ExplainOptions{}.level, py::arg("without") = std::vector<std::string>(), seed, threads,
-           progress, "What the simulation gets wrong on logs of one valve in one state.")
+           progress, py::kw_only(), py::arg("keep_worse") = false,
+           "What the simulation gets wrong on logs of one valve in one state. keep_worse: the table is extended even "
+           "where it follows held-out data worse.")
       .def("check", &checked_of, py::arg("log"), py::kw_only(), py::arg("model") = CheckOptions{}.model,
            py::arg("track") = true, py::arg("correct") = true, py::arg("last") = std::vector<double>(), threads,
            "The prognostic checks of one log; History.record keeps them.")
@@ -178,6 +189,7 @@ void define_tuned(py::module_& m) {
       .def_property_readonly("notes", [](const TunedOnRig& t) { return t.tuned.notes; })
       .def_property_readonly("interrupted", [](const TunedOnRig& t) { return t.tuned.interrupted; })
       .def_property_readonly("simulations", [](const TunedOnRig& t) { return t.tuned.simulations; })
+      .def_property_readonly("failed_simulations", [](const TunedOnRig& t) { return t.tuned.failed_simulations; })
       .def_property_readonly(
           "starts", [](const TunedOnRig& t) { return array_of(t.chart.starts); },
           "(starts,) costs at which the local searches ended; empty of a table that was read")
@@ -191,8 +203,10 @@ void define_tuned(py::module_& m) {
         py::arg("seed") = 1, py::arg("threads") = 0, py::arg("generations") = TuneOptions{}.generations,
         py::arg("rounds") = TuneOptions{}.rounds, py::arg("population") = TuneOptions{}.population,
         py::arg("heldout") = TuneOptions{}.heldout, py::arg("effects") = py::none(),
-        py::arg("profile") = std::vector<std::string>(), py::arg("progress") = true,
-        "Nominal parameters from fault-free logs, pooled. profile: rows whose interval is checked, or ['all'].");
+        py::arg("profile") = std::vector<std::string>(), py::arg("priors") = std::map<std::string, double>(),
+        py::arg("moving_average") = TuneOptions{}.moving_average, py::arg("progress") = true,
+        "Nominal parameters from fault-free logs, pooled. profile: rows whose interval is checked, or ['all']. priors: "
+        "row -> [its unit] standard deviation about the table's value. moving_average: [samples] odd.");
 }
 
 }  // namespace servodx::python

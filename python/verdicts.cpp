@@ -35,6 +35,12 @@ void define_parts(py::class_<VerdictText>& verdict) {
       .def_readonly("share", &V::Beyond::share, "of the held-out misfit that it removes")
       .def_readonly("taken", &V::Beyond::taken)
       .def(pickled<V::Beyond>());
+  py::class_<V::Friction>(verdict, "Friction", "Of a spool, beside what leakage can press a land onto its sleeve with.")
+      .def_readonly("friction", &V::Friction::friction, "[N] of the spool, sliding and breaking away")
+      .def_readonly("largest", &V::Friction::largest, "[N] lateral, of one land")
+      .def_property_readonly("coefficient", &V::Friction::coefficient,
+                             "that the largest force would need to bring this friction")
+      .def(pickled<V::Friction>());
 }
 
 }  // namespace
@@ -77,9 +83,13 @@ void define_verdict(py::module_& m) {
       .def_readonly("suspicion", &V::suspicion, "of a healthy verdict")
       .def_readonly("detectable", &V::detectable, "by label: the least severity that this log would have shown")
       .def_readonly("beyond", &V::beyond, "of an unknown verdict")
+      .def_readonly("friction", &V::friction,
+                    "of a named fault that moves the spool's, where the rig file states the land's length")
       .def_readonly("action_class", &V::action_class)
       .def_readonly("action", &V::action)
       .def_readonly("notes", &V::notes)
+      .def_readonly("simulations", &V::simulations)
+      .def_readonly("failed_simulations", &V::failed_simulations)
       .def_readonly("json", &V::json, "as it stands among the results of the program's JSON")
       .def_property_readonly("_parameters", [](const V& v) { return records_of(v.parameters); })
       .def_property_readonly("_channels", [](const V& v) { return records_of(v.channels); })

@@ -40,8 +40,12 @@ struct Explanation {
     double rms_before = 0, rms_after = 0, noise_rms = 0, heldout_before = 0, heldout_after = 0;  // [SI]
   };
   struct Parameter {
+    // at_bound: it stands at an end of where it may be. not_told: any size that may be is as likely.
+    enum class Told { interval, at_bound, not_told };
     double value = 0, std_error = 0;  // [unit]
     std::string unit;
+    double lower = 0, upper = 0;  // [unit] 90 %, within what is physical; NaN at a bound
+    Told told = Told::interval;
   };
   struct Cause {
     std::string effect, where;
@@ -71,6 +75,8 @@ struct Explanation {
 
 // "sufficient", "extended" or "unexplained".
 std::string name_of(Explanation::Kind kind);
+// "interval", "at_bound" or "not_told".
+std::string name_of(Explanation::Parameter::Told told);
 // The keys that `servodx explain --json` writes behind its header.
 std::string json_of(const Explanation& explanation);
 

@@ -18,6 +18,9 @@ struct MapExtent {
   double flow = 0;               // [m3/s] largest
   double supply = 0;             // [Pa] less return
   int travels = 81, flows = 41;  // points; odd, so that zero is met
+
+  // Throws InputError that names the option, as the program calls it.
+  void validate() const;
 };
 
 // Copies are the same valve.

@@ -48,11 +48,16 @@ def _verdict(self):
     return _page(f"{self.log}: {named or self.kind.name}", facts, self.parameters, COLOURS[self.kind.name], self.notes)
 
 
+def _told_size(p):
+    interval = f" ({p.lower:.4g} to {p.upper:.4g}, 90 %)" if p.told.name == "interval" else ""
+    told = {"interval": "", "at_bound": ", at a bound", "not_told": ", not told by these logs"}[p.told.name]
+    return f"{p.value:.4g}{interval} {p.unit}".rstrip() + told
+
+
 def _explanation(self):
     facts = {}
     for cause in self.causes:
-        sizes = ", ".join(f"{n} = {p.value:.4g} +- {p.std_error:.2g} {p.unit}".rstrip()
-                          for n, p in cause.parameters.items())
+        sizes = ", ".join(f"{n} = {_told_size(p)}" for n, p in cause.parameters.items())
         facts[cause.effect] = f"at {cause.where}; {sizes}; removes {100 * cause.heldout_gain.value:.0f} % held out"
     facts["depends on"] = self.depends_on
     facts["healthy logs show too"] = [cause.effect for cause in self.standing]

@@ -1,6 +1,7 @@
 // JSON from outside the program. nlohmann's parser keeps no stack, but copies, comparisons and dumps of its values
 // call themselves level by level: a text nested 100,000 deep overflows the stack long after it was read.
 #pragma once
+#include <cmath>
 #include <cstddef>
 #include <string>
 #include <string_view>
@@ -45,6 +46,13 @@ template <class Json>
 std::string text_or_empty(const Json& object, const char* key) {
   const auto at = object.is_object() ? object.find(key) : object.end();
   return object.is_object() && at != object.end() && at->is_string() ? at->template get<std::string>() : "";
+}
+
+// The number under a key of an object; NaN where there is none, or something else.
+template <class Json>
+double number_or_nan(const Json& object, const char* key) {
+  const auto at = object.find(key);
+  return at != object.end() && at->is_number() ? at->template get<double>() : std::nan("");
 }
 
 }  // namespace servodx

@@ -10,6 +10,7 @@
 
 #include "base/key_error.h"
 #include "base/median.h"
+#include "base/present.h"
 #include "curves/constants.h"
 #include "curves/sweep.h"
 #include "servodx/error.h"
@@ -55,14 +56,6 @@ Outputs outputs_of(const Log& log, const RigFile& rig) {
   if (log.has(Signal::leakage_flow)) o.leakage = log[Signal::leakage_flow];
   if (log.has(Signal::spool_position)) o.spool = log[Signal::spool_position];
   return o;
-}
-
-double mean_of(const std::vector<double>& x) {
-  double sum = 0;
-  long n = 0;
-  for (double v : x)
-    if (!std::isnan(v)) sum += v, ++n;
-  return n ? sum / static_cast<double>(n) : nan;
 }
 
 // What a reading of the output can be trusted to: three deviations of its noise, or its resolution.
@@ -207,11 +200,12 @@ class Reading {
     // At rated current, both ways, brought to the rated drop where the log says the drop it was taken at.
     const auto drop = rig_.fact("valve.rated_pressure_drop");
     const bool has_drop = log_.has(Signal::valve_pressure_drop);
-    const double at = has_drop ? mean_of(log_[Signal::valve_pressure_drop])
-                      : log_.has(Signal::supply_pressure)
-                          ? mean_of(log_[Signal::supply_pressure]) -
-                                (log_.has(Signal::return_pressure) ? mean_of(log_[Signal::return_pressure]) : 0.0)
-                          : nan;
+    const double at =
+        has_drop ? mean_of_present(log_[Signal::valve_pressure_drop])
+        : log_.has(Signal::supply_pressure)
+            ? mean_of_present(log_[Signal::supply_pressure]) -
+                  (log_.has(Signal::return_pressure) ? mean_of_present(log_[Signal::return_pressure]) : 0.0)
+            : nan;
     const double to_rated = drop && std::isfinite(at) ? std::sqrt(*drop / at) : 1.0;
     const Remark how = to_rated == 1.0 ? Remark{} : Remark{Remark::Kind::brought_to_rated_drop, at, *drop};
     const double reach = 0.98 * rated_;
@@ -246,9 +240,9 @@ class Reading {
         {Remark::Kind::positive_is_overlap});
   }
   void pressure(const SweepCurve& c, const std::string& name) {
-    double supply = log_.has(Signal::supply_pressure) ? mean_of(log_[Signal::supply_pressure])
+    double supply = log_.has(Signal::supply_pressure) ? mean_of_present(log_[Signal::supply_pressure])
                                                       : rig_.fact("supply.pressure").value_or(nan);
-    supply -= log_.has(Signal::return_pressure) ? mean_of(log_[Signal::return_pressure])
+    supply -= log_.has(Signal::return_pressure) ? mean_of_present(log_[Signal::return_pressure])
                                                 : rig_.fact("supply.return_pressure").value_or(0.0);
     Remark how;
     if (std::isnan(supply)) {

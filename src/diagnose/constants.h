@@ -154,7 +154,7 @@ inline constexpr std::size_t shortest_part = 200;   // samples on either side of
 inline constexpr std::size_t shortest_one_in = 10;  // of the log's samples, the same
 inline constexpr std::size_t beginning_one_in = 4;  // of the log's samples, to ask health of
 inline constexpr double variance_step = 4.0;        // twice the rms
-inline constexpr double change_gain = 30.0;         // of likelihood; far beyond a healthy log's own restlessness
+inline constexpr double change_gain = 30.0;         // of ln(likelihood); far beyond a healthy log's own restlessness
 inline constexpr double onset_gain = 25.0;          // of misfit: a second set of nuisances and a time must pay
 inline constexpr double gain_before_part = 0.1;     // of the gain after: what gained more before was there before
 
@@ -241,11 +241,11 @@ inline constexpr double with = 0.3, against = -0.5;            // correlations: 
 inline constexpr double high_return = 0.2;
 }  // namespace survey_of_log
 
-// The onset, further (diagnose/onset.cpp). Not examined.
+// The onset, further (diagnose/onset.cpp).
 //
-// n ln(variance) falls by twice the log likelihood that a change gains. A quarter of the fall, half of that gain, is
-// held against `change_gain`. By hand: no reason is known.
-inline constexpr double fall_to_gain = 4.0;
+// Of n independent deviates with the variance v that they have, -2 ln(likelihood) = n ln v + n + n ln(2 pi). A change
+// parts n in two, and the last two terms stay: the fall of n ln v is twice the gain in ln(likelihood). By derivation.
+inline constexpr double fall_to_gain = 2.0;
 // A log with an onset is so many times as long as the shortest part. By hand.
 inline constexpr std::size_t fewest_parts = 4;
 

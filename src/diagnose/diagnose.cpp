@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "base/error.h"
+#include "base/require_setting.h"
 #include "base/stages.h"
 #include "diagnose/constants.h"
 #include "diagnose/flow_into_chambers.h"
@@ -33,6 +34,7 @@
 #include "fit/log_data.h"
 #include "fit/tuned_state.h"
 #include "parameters/list.h"
+#include "servodx/actions.h"
 #include "servodx/data_sheet.h"
 #include "servodx/log.h"
 #include "servodx/note.h"
@@ -327,12 +329,13 @@ HypothesisResult not_fitted() {
 }  // namespace
 
 void DiagnoseOptions::validate() const {
-  if (threads < 0)
-    throw InputError({.file = "DiagnoseOptions.threads"}, fmt::format("{} threads cannot run", threads),
-                     "give 0 for all cores, or how many");
-  if (population < k::least_population || population > k::most_population)
-    throw InputError({.file = "DiagnoseOptions.population"}, fmt::format("a sub-group of {}", population),
-                     fmt::format("give {} to {}", k::least_population, k::most_population));
+  require_threads(threads, "DiagnoseOptions.threads");
+  for (const auto& [label, action] : default_actions())
+    require_setting(actions.contains(label), "DiagnoseOptions.actions", "there is none for '" + label + "'",
+                    "begin with default_actions(), and change what is another");
+  require_setting(population >= k::least_population && population <= k::most_population, "DiagnoseOptions.population",
+                  fmt::format("a sub-group of {}", population),
+                  fmt::format("give {} to {}", k::least_population, k::most_population));
 }
 
 Assessment assess_pool(const std::vector<Log>& logs, const Table& tuned, const RigFile& rig,

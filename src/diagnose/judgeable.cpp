@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "base/median.h"
+#include "base/present.h"
 #include "diagnose/constants.h"
 #include "diagnose/part_below.h"
 #include "model/state.h"
@@ -16,13 +17,6 @@ namespace servodx {
 namespace {
 
 namespace k = diagnose_constants;
-
-std::vector<double> present(const std::vector<double>& x) {
-  std::vector<double> out;
-  for (const double v : x)
-    if (std::isfinite(v)) out.push_back(v);
-  return out;
-}
 
 // Between the first and the last hundredth: a spike is no motion.
 double span_of(const std::vector<double>& x) {

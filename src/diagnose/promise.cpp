@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "base/error.h"
+#include "base/require_setting.h"
 #include "diagnose/constants.h"
 #include "diagnose/hypotheses.h"
 #include "faults/fault.h"
@@ -138,6 +139,7 @@ std::vector<Visible> visible_faults(const LogData& data, const ParameterVector& 
 }  // namespace
 
 Promise promise_of(const Log& log, const Table& table, const RigFile& rig, int threads) {
+  require_threads(threads);
   const LogData data = prepare_at_points(log, rig, recorder_of(table));
   require_channels(data);
   const Table facts = apply_rig_facts(table, rig);

@@ -15,11 +15,11 @@
 #include "base/atomic_file.h"
 #include "base/csv.h"
 #include "base/key_error.h"
+#include "base/require_setting.h"
 #include "base/sha256.h"
 #include "base/stages.h"
 #include "diagnose/baseline.h"
 #include "diagnose/diagnose.h"
-#include "door/require_setting.h"
 #include "explain/healthy.h"
 #include "parameters/table_text.h"
 #include "report/baseline/baseline_json.h"
@@ -131,9 +131,9 @@ bool is_as_read(const Table& table) {
 }  // namespace
 
 void BaselineOptions::validate() const {
-  door::require_setting(false_alarm > 0 && false_alarm < 1, "--false-alarm", "is a rate between 0 and 1",
-                        "0.01 is one false alarm in a hundred fault-free logs");
-  door::require_threads(threads);
+  require_setting(false_alarm > 0 && false_alarm < 1, "--false-alarm", "is a rate between 0 and 1",
+                  "0.01 is one false alarm in a hundred fault-free logs");
+  require_threads(threads);
 }
 
 void require_baseline_logs(const std::vector<Log>& logs, const Tuned& tuned, const BaselineOptions& options) {

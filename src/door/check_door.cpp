@@ -6,9 +6,9 @@
 #include <utility>
 
 #include "base/csv.h"
+#include "base/require_setting.h"
 #include "base/sha256.h"
 #include "door/require_samples.h"
-#include "door/require_setting.h"
 #include "parameters/table_text.h"
 #include "prognose/check.h"
 #include "prognose/oil_temperature.h"
@@ -34,6 +34,7 @@ std::string text_of(const Table& table) {
 }  // namespace
 
 Checked check(const Log& log, const Tuned& tuned, const Rig& rig, const CheckOptions& options) {
+  options.validate();
   door::require_samples({log}, rig);
   auto result = std::make_shared<CheckResult>(check(log, tuned.table, rig, options));
   Checked out;
@@ -56,7 +57,6 @@ bool History::there(const std::string& path) { return HistoryFile::there(path); 
 int History::schema() { return HistoryFile::schema_version(); }
 
 void History::record(const std::string& valve, const Use& use, const Checked& checked, const Tuned& tuned) {
-  using door::require_setting;
   require_setting(!valve.empty(), "--valve", "the name is empty", "name the valve");
   require_setting(std::isfinite(use.at) && use.at >= 0, "--at", "must be the hours of use, 0 or more", "--at 1250.5");
   require_setting(!use.cycles || (std::isfinite(*use.cycles) && *use.cycles >= 0), "--cycles",
@@ -80,9 +80,8 @@ bool History::holds(const std::string& valve, double at, const std::string& log_
 }
 
 void require_event(double at, const std::string& kind) {
-  door::require_setting(find_event(kind).has_value(), "KIND", "'" + kind + "' is no event",
-                        "use one of: " + event_names());
-  door::require_setting(std::isfinite(at) && at >= 0, "--at", "must be the hours of use, 0 or more", "--at 1250.5");
+  require_setting(find_event(kind).has_value(), "KIND", "'" + kind + "' is no event", "use one of: " + event_names());
+  require_setting(std::isfinite(at) && at >= 0, "--at", "must be the hours of use, 0 or more", "--at 1250.5");
 }
 
 void History::add_event(const std::string& valve, double at, const std::string& kind, const std::string& text) {

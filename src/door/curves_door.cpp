@@ -5,9 +5,9 @@
 #include <memory>
 #include <utility>
 
+#include "base/require_setting.h"
 #include "curves/curves.h"
 #include "curves/frequency_response.h"
-#include "door/require_setting.h"
 #include "report/curves/curves.h"
 #include "servodx/curves.h"
 #include "servodx/log.h"
@@ -21,12 +21,12 @@ bool is_size(double x) { return std::isfinite(x) && x >= 0; }
 }  // namespace
 
 void SheetOptions::validate() const {
-  door::require_setting(is_size(guard), "SheetOptions.guard", fmt::format("{} is no guard band", guard),
-                        "give it in expanded uncertainties: 1, or 0 for simple acceptance");
+  require_setting(is_size(guard), "SheetOptions.guard", fmt::format("{} is no guard band", guard),
+                  "give it in expanded uncertainties: 1, or 0 for simple acceptance");
   for (const InstrumentError& e : instruments)
-    door::require_setting(is_size(e.absolute) && is_size(e.relative), "SheetOptions.instruments",
-                          fmt::format("the uncertainty of '{}' is negative or no number", name_of(e.signal)),
-                          "give its size");
+    require_setting(is_size(e.absolute) && is_size(e.relative), "SheetOptions.instruments",
+                    fmt::format("the uncertainty of '{}' is negative or no number", name_of(e.signal)),
+                    "give its size");
 }
 
 AcceptanceSheet acceptance_sheet(const Log& log, const Rig& rig, const SheetOptions& options) {

@@ -180,6 +180,7 @@ Verdict diagnose_window(const Log& window, const Tuned& tuned, const Rig& rig, c
 
 std::vector<Verdict> diagnose_each(const std::vector<Log>& logs, const Tuned& tuned, const Rig& rig,
                                    const Baseline& baseline, const DiagnoseOptions& options) {
+  options.validate();
   PartsDone told(options.watch, "diagnose", logs.size());
   std::vector<std::optional<Verdict>> judged(logs.size());
   side_by_side(static_cast<int>(logs.size()), options.threads, [&](int piece, int threads) {

@@ -36,9 +36,22 @@ Explanation::Kind kind_of(ExplainVerdict verdict) {
   return Explanation::Kind::unexplained;
 }
 
+Explanation::Parameter::Told told_of(SizeTold told) {
+  switch (told) {
+    case SizeTold::interval:
+      return Explanation::Parameter::Told::interval;
+    case SizeTold::at_bound:
+      return Explanation::Parameter::Told::at_bound;
+    case SizeTold::not_told:
+      return Explanation::Parameter::Told::not_told;
+  }
+  return Explanation::Parameter::Told::not_told;
+}
+
 Explanation::Cause cause_of(const ExplainedCause& c) {
   Explanation::Cause out{c.effect, c.where, {}, {}, c.delta_bic, c.confusable_with};
-  for (const ExplainedParameter& p : c.parameters) out.parameters[p.name] = {p.value, p.std_error, p.unit};
+  for (const ExplainedParameter& p : c.parameters)
+    out.parameters[p.name] = {p.value, p.std_error, p.unit, p.lower, p.upper, told_of(p.told)};
   out.heldout_gain = {c.heldout_gain.value, c.heldout_gain.lower, c.heldout_gain.upper};
   return out;
 }
@@ -77,6 +90,18 @@ std::string name_of(Explanation::Kind kind) {
       return report::word_of(ExplainVerdict::extended);
     case Explanation::Kind::unexplained:
       return report::word_of(ExplainVerdict::unexplained);
+  }
+  return "";
+}
+
+std::string name_of(Explanation::Parameter::Told told) {
+  switch (told) {
+    case Explanation::Parameter::Told::interval:
+      return report::word_of(SizeTold::interval);
+    case Explanation::Parameter::Told::at_bound:
+      return report::word_of(SizeTold::at_bound);
+    case Explanation::Parameter::Told::not_told:
+      return report::word_of(SizeTold::not_told);
   }
   return "";
 }

@@ -1,8 +1,12 @@
 // The front door of valve maps.
+#include <fmt/format.h>
+
+#include <cmath>
 #include <memory>
+#include <utility>
 
 #include "base/celsius.h"
-#include "door/require_setting.h"
+#include "base/require_setting.h"
 #include "fit/oil_of.h"
 #include "model/state.h"
 #include "parameters/list.h"
@@ -68,9 +72,20 @@ std::vector<double> ValveMaps::falling_supplies(double supply) const {
   return valve_maps::falling_supplies(supply, inside_->numbers);
 }
 
+void MapExtent::validate() const {
+  const auto is_positive = [](double x) { return std::isfinite(x) && x > 0; };
+  require_setting(is_positive(travel), "--travel", "must be positive", "usual_extent() has the valve's own");
+  require_setting(is_positive(flow), "--flow", "must be positive", "usual_extent() has the valve's own");
+  require_setting(std::isfinite(supply), "--supply", "must be a number", "usual_extent() has the valve's own");
+  for (const auto& [option, points] : {std::pair("MapExtent.travels", travels), std::pair("MapExtent.flows", flows)})
+    require_setting(points >= 3 && points % 2 == 1, option, fmt::format("{} points do not meet zero", points),
+                    "give an odd number, 3 or more");
+}
+
 std::vector<MapPoint> ValveMaps::points(const std::string& model, const MapExtent& extent) const {
+  extent.validate();
   const MapInfo* info = find_map(model);
-  door::require_setting(info, "--model", "there is no map '" + model + "'", "'servodx list models' has them");
+  require_setting(info, "--model", "there is no map '" + model + "'", "'servodx list models' has them");
   return grid(info->make(inside_->numbers, inside_->reference), extent.travel, extent.travels, extent.flow,
               extent.flows, extent.supply);
 }

@@ -30,6 +30,7 @@ const Log& worst_of(const std::vector<Log>& logs, const TuneResult& result) {
 
 std::optional<Verdict::Beyond> likeliest_miss(const std::vector<Log>& logs, const Tuned& tuned, const Rig& rig,
                                               const ExplainOptions& options) {
+  options.validate();
   if (!tuned.whole || tuned.whole->unfollowed.empty() || options.watch.stopped()) return {};
   const Explanation e = explain({worst_of(logs, *tuned.whole)}, tuned, rig, options);
   if (e.interrupted) return {};

@@ -2,7 +2,7 @@
 #include <cmath>
 #include <memory>
 
-#include "door/require_setting.h"
+#include "base/require_setting.h"
 #include "fit/log_data.h"
 #include "prognose/checks.h"
 #include "prognose/monitor.h"
@@ -24,9 +24,9 @@ struct LogMonitor::Inside {
 
 void MonitorOptions::validate() const {
   require_pressure_law(model);
-  door::require_setting(!loop_gain || (std::isfinite(*loop_gain) && *loop_gain > 0), "--loop-gain",
-                        "a loop's gain lies above nought",
-                        "give it such as \"1.8 mA/mm\", or leave it away: the measured current drives the monitor");
+  require_setting(!loop_gain || (std::isfinite(*loop_gain) && *loop_gain > 0), "--loop-gain",
+                  "a loop's gain lies above nought",
+                  "give it such as \"1.8 mA/mm\", or leave it away: the measured current drives the monitor");
 }
 
 LogMonitor::LogMonitor(const Log& log, const Table& table, const Rig& rig, const MonitorOptions& options) {
@@ -35,9 +35,9 @@ LogMonitor::LogMonitor(const Log& log, const Table& table, const Rig& rig, const
   const Supply at = supply_of(in.data, table);
   in.parameters = monitor_parameters(table, at);
   in.law = pressure_law(options.model, table, at);
-  door::require_setting(!in.closed || log.has(Signal::setpoint), "--loop-gain",
-                        "the log has no 'setpoint' to close the loop on",
-                        "leave it away: the measured current drives the monitor");
+  require_setting(!in.closed || log.has(Signal::setpoint), "--loop-gain",
+                  "the log has no 'setpoint' to close the loop on",
+                  "leave it away: the measured current drives the monitor");
   if (in.closed) in.parameters.control_gain = *options.loop_gain;
   inside_ = std::make_shared<Inside>(std::move(in));
 }

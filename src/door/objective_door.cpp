@@ -6,8 +6,8 @@
 #include <memory>
 #include <utility>
 
+#include "base/require_setting.h"
 #include "door/require_samples.h"
-#include "door/require_setting.h"
 #include "fit/chart.h"
 #include "fit/error_model.h"
 #include "fit/free_values.h"
@@ -128,14 +128,14 @@ struct Objective::Inside {
 };
 
 void ObjectiveOptions::validate() const {
-  door::require_threads(threads);
+  require_threads(threads);
   TuneOptions to;
   to.effects = effects;
   to.validate();
 }
 
 void Objective::Budget::validate() const {
-  door::require_setting(iterations >= 1, "Budget.iterations", "must be at least 1", "12 is the default");
+  require_setting(iterations >= 1, "Budget.iterations", "must be at least 1", "12 is the default");
   TuneOptions to;
   to.population = population, to.generations = generations;
   to.validate();

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "door/require_setting.h"
+#include "base/require_setting.h"
 #include "plan/plan.h"
 #include "servodx/baseline.h"
 #include "servodx/log.h"
@@ -19,8 +19,8 @@ namespace servodx {
 namespace {
 
 void require_limit(const std::optional<double>& limit, const char* option) {
-  door::require_setting(!limit || *limit > 0, option, "must lie above nought",
-                        "give how far the test may go, or leave it out");
+  require_setting(!limit || *limit > 0, option, "must lie above nought",
+                  "give how far the test may go, or leave it out");
 }
 
 void write(const std::string& path, const PlannedTest& test, const std::vector<double>& command, bool with_setpoint,
@@ -33,7 +33,6 @@ void write(const std::string& path, const PlannedTest& test, const std::vector<d
 }  // namespace
 
 void PlanOptions::validate() const {
-  using door::require_setting;
   const int goals = !faults.empty() + !between.empty() + !rows.empty();
   require_setting(goals <= 1, "--faults, --between, --rows", "ask for different tests", "give one of them");
   require_setting(between.empty() || between.size() == 2, "--between",
@@ -50,7 +49,7 @@ void PlanOptions::validate() const {
   require_setting(!loop_gain || *loop_gain > 0, "--closed-loop", "a loop's gain lies above nought",
                   "give it in mA/mm, or leave it out for an open loop");
   require_setting(rounds >= 0 && rounds <= 100, "--rounds", "must lie between 0 and 100", "6 is usual");
-  door::require_threads(threads);
+  require_threads(threads);
 }
 
 PlannedTest plan_test(const Tuned& tuned, const Rig& rig, const PlanOptions& options, const Baseline* baseline,

@@ -6,7 +6,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include "door/require_setting.h"
+#include "base/require_setting.h"
 #include "fit/candidate_of.h"
 #include "fit/log_data.h"
 #include "servodx/data_sheet.h"
@@ -38,13 +38,14 @@ SimulateOptions how_to(const SimulationOptions& options) {
 }  // namespace
 
 void SimulationOptions::validate() const {
-  door::require_setting(!step || (*step > 0 && *step <= 0.1), "--step", "must lie between 0 and 0.1 s",
-                        "give it in seconds: 1e-4");
-  door::require_setting(!step || !reference, "--reference", "sets the step, as --step does", "give one of them");
-  door::require_threads(threads);
+  require_setting(!step || (*step > 0 && *step <= 0.1), "--step", "must lie between 0 and 0.1 s",
+                  "give it in seconds: 1e-4");
+  require_setting(!step || !reference, "--reference", "sets the step, as --step does", "give one of them");
+  require_threads(threads);
 }
 
 SimulationSteps steps_of(const SimulationOptions& options) {
+  options.validate();
   const SimulateOptions how = how_to(options);
   return {how.step, how.impact_step};
 }

@@ -2,12 +2,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <memory>
 #include <utility>
 
+#include "base/require_setting.h"
 #include "base/units.h"
-#include "door/require_setting.h"
 #include "parameters/list.h"
 #include "prognose/check_name.h"
 #include "prognose/life.h"
@@ -51,13 +52,12 @@ std::optional<Trend::Remaining> remaining_of(const std::optional<Remaining>& r) 
 
 void require_level(const FailureLevel& level) {
   const CheckName name = level.check;
-  door::require_setting(level.value > 0, "--failure", fmt::format("the level of {} is not above 0", level.check),
-                        "give a level in the check's unit");
-  door::require_setting(level.kind != FailureLevel::Kind::current || name.row() == row::spool_friction, "--failure",
-                        "a current is a level of the spool's friction alone", "name parameter:14");
-  door::require_setting(!level.spread || *level.spread > 0, "--failure",
-                        fmt::format("the spread of {} is not above 0", level.check),
-                        "leave it out where it is not known");
+  require_setting(level.value > 0, "--failure", fmt::format("the level of {} is not above 0", level.check),
+                  "give a level in the check's unit");
+  require_setting(level.kind != FailureLevel::Kind::current || name.row() == row::spool_friction, "--failure",
+                  "a current is a level of the spool's friction alone", "name parameter:14");
+  require_setting(!level.spread || *level.spread > 0, "--failure",
+                  fmt::format("the spread of {} is not above 0", level.check), "leave it out where it is not known");
 }
 
 bool is_check(const CheckName& name) {
@@ -105,17 +105,20 @@ TrendSettings settings_of(const TrendOptions& options) {
 }  // namespace
 
 void TrendOptions::validate() const {
-  using door::require_setting;
   require_setting(false_alarm > 0 && false_alarm < 0.5, "--false-alarm", "is a rate between 0 and 0.5",
                   "0.01 is one healthy valve in a hundred");
   require_setting(healthy >= 5, "--healthy", "needs at least 5 checks", "levels rest on them");
   require_setting(coverage > 0 && coverage < 1, "--coverage", "is between 0 and 1", "0.9");
-  door::require_threads(threads);
+  require_threads(threads);
   for (const FailureLevel& level : failures) require_level(level);
+  for (const FailureLevel& level : limits)
+    require_setting(is_check(level.check) && std::isfinite(level.value) && (!level.spread || *level.spread > 0),
+                    "TrendOptions.limits", "'" + level.check + "' is no check, or its level no number",
+                    "take what failure_levels() gives");
 }
 
 void require_check(const std::string& name) {
-  door::require_setting(
+  require_setting(
       is_check(name), "--failure", "'" + name + "' is no check",
       fmt::format("use mean_error, fidelity, correlation@5Hz or parameter:1 to parameter:{}", n_parameters));
 }
@@ -133,7 +136,7 @@ FailureLevel failure_level(const std::string& words) {
   const bool current = level.ends_with('A');
   if (current) level.pop_back();
   const std::optional<double> value = parse_number(level);
-  door::require_setting(
+  require_setting(
       value && *value > 0 && equals > 0 && (tilde == std::string::npos || (out.spread && *out.spread > 0)) &&
           !((times || current) && below) && !(current && CheckName(out.check).row() != row::spool_friction),
       "--failure", "'" + words + "' is not NAME=VALUE above 0",
@@ -150,7 +153,9 @@ FailureLevel failure_level(const std::string& words) {
 
 std::vector<FailureLevel> failure_levels(const std::vector<std::string>& limits, const Tuned& tuned, double loop) {
   TrendSettings set;
-  for (const std::string& text : limits) add_limit(read_limit(text), tuned.table, loop, set);
+  std::vector<PerformanceLimit> read;
+  for (const std::string& text : limits) read.push_back(read_limit(text));
+  for (const PerformanceLimit& limit : read) add_limit(limit, tuned.table, loop, set);
   std::vector<FailureLevel> out;
   for (const auto& [name, levels] : set.failure) {
     if (levels.first) out.push_back({name.text(), FailureLevel::Kind::below, *levels.first, {}});

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <vector>
 
+#include "base/present.h"
+#include "base/two_pi.h"
 #include "evidence/constants.h"
 
 namespace servodx {
@@ -11,45 +13,39 @@ namespace {
 
 using namespace evidence_constants;
 
-// Frequency of the sine that decorrelates as fast as the series: found as the stride at which the mean square
-// difference reaches `decorrelated` of the variance; its end value is twice the variance.
+double variance(const std::vector<double>& x) {
+  const double middle = mean_of_present(x);
+  return mean_of_present(0, x.size(), [&](std::size_t k) { return (x[k] - middle) * (x[k] - middle); });
+}
+
+// Mean square of what a series changes by over so many samples.
+double square_change(const std::vector<double>& x, std::size_t stride) {
+  return mean_of_present(stride, x.size(),
+                         [&](std::size_t k) { return (x[k] - x[k - stride]) * (x[k] - x[k - stride]); });
+}
+
+// How far a sine turns until its mean square change, 2 (1 - cos) of the variance, is that: at most pi. [rad]
+double turn_at(double change_over_variance) { return std::acos(std::clamp(1 - 0.5 * change_over_variance, -1.0, 1.0)); }
+
+// Frequency of the sine that decorrelates as fast as the series. Between two strides the turn goes in a line, which it
+// does for a sine: so neither how the strides grow nor how few samples a period has matters.
 double band_of(const std::vector<double>& t, const std::vector<double>& x) {
-  double mean = 0, square = 0;
-  std::size_t n = 0;
-  for (const double v : x)
-    if (std::isfinite(v)) mean += v, ++n;
-  if (n < fewest_of_drive) return 0;
-  mean /= static_cast<double>(n);
-  for (const double v : x)
-    if (std::isfinite(v)) square += (v - mean) * (v - mean);
-  square /= static_cast<double>(n);
-  if (square <= 0) return 0;
+  const auto there = std::count_if(x.begin(), x.end(), [](double v) { return std::isfinite(v); });
+  const double whole = variance(x);
+  if (static_cast<std::size_t>(there) < fewest_of_drive || whole <= 0) return 0;
+  const double sought = turn_at(decorrelated);
+  double shorter = 0, turned = 0;  // [samples] [rad] of the stride before
   for (std::size_t stride = 1; stride < x.size() / 2; stride = std::max(stride + 1, stride * 5 / 4)) {
-    double difference = 0;
-    std::size_t pairs = 0;
-    for (std::size_t k = stride; k < x.size(); ++k)
-      if (std::isfinite(x[k]) && std::isfinite(x[k - stride]))
-        difference += (x[k] - x[k - stride]) * (x[k] - x[k - stride]), ++pairs;
-    if (pairs > 0 && difference / static_cast<double>(pairs) >= decorrelated * square)
-      return decorrelated_after /
-             (static_cast<double>(stride) * (t.back() - t.front()) / static_cast<double>(t.size() - 1));
+    const double change = square_change(x, stride);
+    if (!std::isfinite(change)) continue;
+    const double turn = turn_at(change / whole), longer = static_cast<double>(stride);
+    if (turn >= sought) {
+      const double samples = shorter + (longer - shorter) * (sought - turned) / (turn - turned);
+      return sought / two_pi / (samples * (t.back() - t.front()) / static_cast<double>(t.size() - 1));
+    }
+    shorter = longer, turned = turn;
   }
   return 0;
-}
-
-double mean(const std::vector<double>& x) {
-  double sum = 0;
-  std::size_t n = 0;
-  for (const double v : x)
-    if (std::isfinite(v)) sum += v, ++n;
-  return n > 0 ? sum / static_cast<double>(n) : std::nan("");
-}
-
-double deviation(const std::vector<double>& x) {
-  const double middle = mean(x);
-  std::vector<double> square;
-  for (const double v : x) square.push_back((v - middle) * (v - middle));
-  return std::sqrt(mean(square));
 }
 
 // Of two positive numbers, in powers of `like`; of a drive that stands still against one that moves: far.
@@ -75,10 +71,10 @@ TestConditions conditions_of(const Log& log) {
   for (const double v : drive)
     if (std::isfinite(v)) lowest = std::min(lowest, v), highest = std::max(highest, v);
   c.drive_span = std::max(0.0, highest - lowest);
-  c.drive_rms = deviation(drive);
+  c.drive_rms = std::sqrt(variance(drive));
   c.drive_band = band_of(log.time, drive);
   if (log.has(Signal::oil_temperature))
-    if (const double t = mean(log[Signal::oil_temperature]); std::isfinite(t)) c.temperature = t;
+    if (const double t = mean_of_present(log[Signal::oil_temperature]); std::isfinite(t)) c.temperature = t;
   return c;
 }
 

@@ -14,11 +14,9 @@ inline constexpr double like_temperature = 15.0;           // [K]
 // A loop that closes over sensor noise changes a drive's numbers by some per cent from run to run.
 inline constexpr double same_size = 1.15, same_band = 1.3;  // ratios
 
-// The frequency of a drive is that of the sine that decorrelates as fast: whose mean square difference reaches this
-// part of the variance, a tenth of its end value, after this part of its period. A sine is there after 0.072 of it, and
-// strides of samples, which grow by a quarter, meet that a little later. So a slow sine reads a quarter too high; what
-// decides are ratios. By hand.
-inline constexpr double decorrelated = 0.2, decorrelated_after = 0.1;
+// The frequency of a drive is that of the sine that decorrelates as fast: whose mean square change reaches this part of
+// the variance, a tenth of its end value. A sine is there after 0.072 of its period. By hand.
+inline constexpr double decorrelated = 0.2;
 inline constexpr std::size_t fewest_of_drive = 8;  // samples
 // Programmes from which on logs show how the model's error changes from test to test: fewer have no scatter. By
 // definition; no other number was tried.

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "base/median.h"
+#include "base/present.h"
 #include "evidence/constants.h"
 #include "servodx/log.h"
 #include "servodx/rig.h"
@@ -16,13 +17,6 @@ namespace servodx {
 namespace {
 
 using namespace evidence_constants;
-
-std::vector<double> present(const std::vector<double>& x) {
-  std::vector<double> out;
-  for (const double v : x)
-    if (std::isfinite(v)) out.push_back(v);
-  return out;
-}
 
 std::optional<double> median_of(const Log& log, Signal s) {
   if (!log.has(s)) return {};

@@ -48,7 +48,7 @@ ExplainedCause described_of_drive(const Inquiry& q, const Answer& answer, const 
   const double sample = answer.drive->sample_period();
   double error = std::hypot(r.std_error[0], healthy_spread(*answer.drive, *q.test(), r.cause, 0, r.std_error[0]));
   if (r.cause == DriveSubject::by_delay) error = std::hypot(error, answer.drive->time_error());
-  out.parameters.push_back({n.name, n.unit, r.value[0], error, n.off});
+  out.parameters.push_back(sized(n, r.value[0], error));
   // A delay and a lag within one sample look alike.
   const bool within_sample = answer.drive->time_beyond_usual(r.cause, r.value[0]) < sample;
   for (int other = 0; other < static_cast<int>(answer.drive->causes().size()); ++other) {

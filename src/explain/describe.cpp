@@ -1,9 +1,11 @@
 #include "explain/describe.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <string_view>
 
+#include "base/normal.h"
 #include "effects/registry.h"
 #include "effects/row_effects.h"
 #include "explain/fit_causes.h"
@@ -37,6 +39,19 @@ std::string meaning_of(const Cause& c) {
   for (const EffectInfo& e : effect_list())
     if (e.name == c.effect) return e.meaning;
   return {};
+}
+
+ExplainedParameter sized(const Number& n, double value, double std_error, double factor) {
+  ExplainedParameter out{n.name, n.unit, factor * value, factor * std_error, factor * n.off};
+  const double lower = value - normal_95_one_sided * std_error, upper = value + normal_95_one_sided * std_error;
+  out.lower = factor * std::max(lower, n.lower), out.upper = factor * std::min(upper, n.upper);
+  if (!std::isfinite(std_error)) {
+    out.lower = out.upper = std::nan("");
+    out.told = SizeTold::at_bound;
+  } else if (lower <= n.lower && upper >= n.upper) {
+    out.told = SizeTold::not_told;
+  }
+  return out;
 }
 
 namespace {
@@ -79,8 +94,7 @@ ExplainedCause described(const Inquiry& q, const Subject& told_by, const CauseRe
       factor = q.subject().candidate(fit.causes, fit.point, 0)[static_cast<std::size_t>(values[j].at)] / r.value[j];
     const double scatter = q.test() ? healthy_spread(told_by, *q.test(), r.cause, j, r.std_error[j], factor) : 0.0;
     const double error = std::hypot(r.std_error[j], scatter);
-    out.parameters.push_back(
-        {c.numbers[j].name, c.numbers[j].unit, factor * r.value[j], factor * error, factor * c.numbers[j].off});
+    out.parameters.push_back(sized(c.numbers[j], r.value[j], error, factor));
   }
   out.confusable_with = confusable_with(q, r);
   return out;

@@ -22,6 +22,9 @@ ExplainedCause described(const Inquiry& inquiry, const Subject& told_by, const C
 // One that was told between command and coil current (explain/ask_drive.cpp).
 ExplainedCause described_of_drive(const Inquiry& inquiry, const Answer& answer, const CauseResult& cause);
 std::string meaning_of(const Cause& cause);
+// A number as a size: its interval ends where the number may not go, and tells nothing where it covers all of that.
+// value, std_error: of the number. `factor`: [unit of the size] per unit of the number.
+ExplainedParameter sized(const Number& number, double value, double std_error, double factor = 1);
 // How a number of a cause scatters over healthy logs. [its unit] 0 where that is not known. `of`: what it is a factor
 // on.
 double healthy_spread(const Subject& subject, const HealthyTest& test, int cause, std::size_t number, double std_error,

@@ -30,6 +30,8 @@ struct ExplainedChannel {
 struct ExplainedParameter {
   std::string name, unit;
   double value = 0, std_error = 0, before = 0;  // [unit]
+  double lower = 0, upper = 0;                  // [unit] 90 %, within what is physical; NaN at a bound
+  SizeTold told = SizeTold::interval;
 };
 struct ExplainedCause {
   std::string effect, where, test;

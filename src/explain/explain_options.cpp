@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "base/error.h"
 #include "base/nearest.h"
+#include "base/require_setting.h"
 #include "effects/registry.h"
 #include "effects/row_effects.h"
 #include "servodx/explain.h"
@@ -15,19 +15,16 @@
 namespace servodx {
 
 void ExplainOptions::validate() const {
-  const auto require = [](bool holds, const char* option, const std::string& rule, const std::string& mend) {
-    if (!holds) throw InputError({.file = option}, rule, mend);
-  };
-  require(threads >= 0, "--threads", fmt::format("{} threads cannot run", threads),
-          "give 0 for all cores, or how many");
-  require(level > 0 && level < 1, "ExplainOptions.level", fmt::format("{} is not a rate", level),
-          "give a number between 0 and 1, such as 0.01");
+  require_threads(threads);
+  require_setting(level > 0 && level < 1, "ExplainOptions.level", fmt::format("{} is not a rate", level),
+                  "give a number between 0 and 1, such as 0.01");
   std::vector<std::string> known;
   for (const EffectInfo& effect : effect_list()) known.push_back(effect.name);
   for (const RowEffect& effect : row_effects()) known.emplace_back(effect.name);
   for (const std::string& name : without)
-    require(std::find(known.begin(), known.end(), name) != known.end(), "--without", "unknown effect '" + name + "'",
-            did_you_mean(name, known) + fmt::format("use one of {}", fmt::join(known, ", ")));
+    require_setting(std::find(known.begin(), known.end(), name) != known.end(), "--without",
+                    "unknown effect '" + name + "'",
+                    did_you_mean(name, known) + fmt::format("use one of {}", fmt::join(known, ", ")));
 }
 
 }  // namespace servodx

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/present.h"
 #include "effects/registry.h"
 #include "effects/unexplained.h"
 #include "explain/blocks.h"
@@ -44,13 +45,6 @@ constexpr int likely[][3] = {
 // Where a knot stands. [scale]
 double reach(int knot) { return curve::node[knot] / std::sqrt(1 - curve::node[knot] * curve::node[knot]); }
 
-double rms(const std::vector<double>& v) {
-  double sum = 0, n = 0;
-  for (double x : v)
-    if (std::isfinite(x)) sum += x * x, ++n;
-  return n > 0 ? std::sqrt(sum / n) : 0;
-}
-
 double scale_of(const ValveSubject& subject, int variable) {
   double largest = 0;
   for (const LogData& log : subject.logs()) {
@@ -68,15 +62,15 @@ double scale_of(const ValveSubject& subject, int variable) {
     const auto *piston = channel(Signal::piston_position), *spool = channel(Signal::spool_position),
                *a = channel(Signal::pressure_a), *b = channel(Signal::pressure_b);
     double now = 0;
-    if (variable == U::piston_position && piston) now = rms(*piston);
-    if (variable == U::piston_velocity && piston) now = rms(rate(*piston));
-    if (variable == U::spool_position && spool) now = rms(*spool);
-    if (variable == U::spool_velocity && spool) now = rms(rate(*spool));
-    if (variable == U::coil_current) now = rms(log.scenario.command);
+    if (variable == U::piston_position && piston) now = rms_of_present(*piston);
+    if (variable == U::piston_velocity && piston) now = rms_of_present(rate(*piston));
+    if (variable == U::spool_position && spool) now = rms_of_present(*spool);
+    if (variable == U::spool_velocity && spool) now = rms_of_present(rate(*spool));
+    if (variable == U::coil_current) now = rms_of_present(log.scenario.command);
     if (variable == U::load_pressure && a && b) {
       std::vector<double> d;
       for (std::size_t k = 0; k < a->size(); ++k) d.push_back((*a)[k] - (*b)[k]);
-      now = rms(d);
+      now = rms_of_present(d);
     }
     largest = std::max(largest, now);
   }

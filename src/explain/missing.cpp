@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <optional>
 
+#include "base/two_pi.h"
 #include "effects/unexplained.h"
 #include "explain/constants.h"
 #include "explain/smoother.h"
@@ -106,7 +106,7 @@ Eigen::MatrixXd step_with_filters(const Eigen::MatrixXd& from, const std::vector
   to.topRightCorner(own, n_missing_places) = from.topRightCorner(own, n_missing_places);
   for (long f = 0; f < extra; ++f) {
     const Filtered& by = filtered[static_cast<std::size_t>(f)];
-    const double z = 2 * std::numbers::pi * by.corner * dt, passes = -std::expm1(-z) / z;
+    const double z = two_pi * by.corner * dt, passes = -std::expm1(-z) / z;
     to.row(own + f).head(own) = passes * (by.shows.transpose() * from.topLeftCorner(own, own) - by.shows.transpose());
     to.row(own + f).tail(n_missing_places) = passes * by.shows.transpose() * from.topRightCorner(own, n_missing_places);
     to(own + f, own + f) = std::exp(-z);

@@ -35,4 +35,11 @@ enum class ToldBy {
   currents,  // command and coil current beside each other, ahead of the simulation: the same
 };
 
+// What the logs tell of a size.
+enum class SizeTold {
+  interval,
+  at_bound,  // it stands at an end of where it may be, and curvature says nothing of how well it is known
+  not_told,  // any size that may be is as likely
+};
+
 }  // namespace servodx

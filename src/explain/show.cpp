@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <complex>
-#include <numbers>
 #include <numeric>
 
 #include "base/tiny.h"
+#include "base/two_pi.h"
 #include "explain/constants.h"
 #include "fit/error_model.h"
 #include "fit/log_data.h"
@@ -66,10 +66,10 @@ struct Welch {
     for (std::size_t first = 0; first + length <= x.size(); first += length / 2, ++windows)
       for (int f = 0; f < length / 2; ++f) {
         std::complex<double> a, b;
-        const std::complex<double> turn = std::polar(1.0, -2 * std::numbers::pi * f / length);
+        const std::complex<double> turn = std::polar(1.0, -two_pi * f / length);
         std::complex<double> w = 1;
         for (int k = 0; k < length; ++k, w *= turn) {
-          const double hann = 0.5 - 0.5 * std::cos(2 * std::numbers::pi * (k + 0.5) / length);
+          const double hann = 0.5 - 0.5 * std::cos(two_pi * (k + 0.5) / length);
           a += hann * x[first + static_cast<std::size_t>(k)] * w;
           b += hann * y[first + static_cast<std::size_t>(k)] * w;
         }

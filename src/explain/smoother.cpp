@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
 #include <optional>
 
 #include "base/normal.h"
+#include "base/two_pi.h"
 #include "explain/constants.h"
 #include "fit/error_model.h"
 
@@ -160,7 +160,7 @@ class KalmanFilter {
       for (Index l = 0; l < surprise.size(); ++l)
         for (Index c = 0; c < surprise[l].size(); ++c)
           sum -= 0.5 * (counts ? (*counts)[l][c] : 1.0) *
-                 (surprise[l][c] + square[l][c] + samples[l][c] * std::log(2 * std::numbers::pi));
+                 (surprise[l][c] + square[l][c] + samples[l][c] * std::log(two_pi));
       return sum;
     }
     // News as large as they come out: where the likelihood has no slope against them.

@@ -7,7 +7,9 @@
 #include "base/error.h"
 #include "base/normal.h"
 #include "base/random.h"
+#include "base/require_setting.h"
 #include "base/tiny.h"
+#include "base/wilson.h"
 #include "fit/candidate_of.h"
 #include "fit/chart.h"
 #include "fit/constants.h"
@@ -194,20 +196,17 @@ void add_coverage(SelftestResult& out) {
   for (const SelftestRow& row : out.rows) out.covered += row.covered, out.counted += row.counted;
   if (out.counted == 0) return;
   const double p = static_cast<double>(out.covered) / static_cast<double>(out.counted);
-  const double m = std::max(1, out.repeats - out.failed), z = normal_95;
-  const double centre = (p + z * z / (2 * m)) / (1 + z * z / m);
-  const double half = z / (1 + z * z / m) * std::sqrt(p * (1 - p) / m + z * z / (4 * m * m));
-  out.coverage_lower = std::max(0.0, centre - half), out.coverage_upper = std::min(1.0, centre + half);
+  const double m = std::max(1, out.repeats - out.failed);
+  const RateInterval interval = wilson_95(p * m, m);
+  out.coverage_lower = interval.lower, out.coverage_upper = interval.upper;
 }
 
 }  // namespace
 
 void SelftestOptions::validate() const {
-  const auto require = [](bool holds, const char* option, const char* rule, const char* mend) {
-    if (!holds) throw InputError({option, 0, ""}, rule, mend);
-  };
-  require(repeats >= 2, "--repeats", "must be at least 2", "20 tell a coverage to about 10 %");
-  require(spread > 0 && spread <= 0.25, "--spread", "must lie between 0 and 0.25", "0.05 of a row's interval");
+  require_setting(repeats >= 2, "--repeats", "must be at least 2", "20 tell a coverage to about 10 %");
+  require_setting(spread > 0 && spread <= 0.25, "--spread", "must lie between 0 and 0.25", "0.05 of a row's interval");
+  require_threads(threads);
 }
 
 SelftestResult selftest(const Log& log, const Table& table, const RigFile& rig, const SelftestOptions& options) {

@@ -6,8 +6,8 @@
 #include <complex>
 #include <limits>
 #include <map>
-#include <numbers>
 
+#include "base/two_pi.h"
 #include "fit/candidate_of.h"
 #include "fit/chart.h"
 #include "fit/constants.h"
@@ -27,7 +27,6 @@ namespace {
 
 using namespace fit_constants;
 
-constexpr double two_pi = 2 * std::numbers::pi;
 constexpr std::array fitted_rows = {row::flapper_stiffness, row::torque_motor_frequency, row::hydraulic_amplifier_gain,
                                     row::fixed_orifice_diameter, row::driver_bandwidth};
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/present.h"
 #include "base/tiny.h"
 #include "fit/ports_of.h"
 #include "fit/recorder.h"
@@ -19,10 +20,7 @@ namespace {
 
 // Mean of what is present in [from, to).
 double mean_of(const std::vector<double>& x, std::size_t from, std::size_t to) {
-  double sum = 0, n = 0;
-  for (std::size_t k = from; k < to; ++k)
-    if (!std::isnan(x[k])) sum += x[k], n += 1;
-  return n > 0 ? sum / n : std::nan("");
+  return mean_of_present(from, to, [&](std::size_t k) { return x[k]; });
 }
 
 // Fastest change of the command, as means of neighbouring half seconds tell it: readings that toggle between two steps

@@ -2,12 +2,12 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <string_view>
 #include <system_error>
 #include <utility>
 
 #include "base/error.h"
+#include "base/small_letters.h"
 
 namespace servodx {
 namespace {
@@ -16,8 +16,7 @@ namespace fs = std::filesystem;
 
 bool is_log(const fs::path& path) {
   constexpr std::array<std::string_view, 5> endings = {".csv", ".txt", ".tsv", ".dat", ".mat"};
-  std::string ending = path.extension().string();
-  for (char& c : ending) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  const std::string ending = in_small_letters(path.extension().string());
   return path.filename().string().front() != '.' && std::find(endings.begin(), endings.end(), ending) != endings.end();
 }
 

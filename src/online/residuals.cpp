@@ -4,9 +4,9 @@
 #include <cmath>
 #include <limits>
 #include <nlohmann/json.hpp>
-#include <numbers>
 #include <string>
 
+#include "base/two_pi.h"
 #include "fit/error_model.h"
 #include "fit/log_data.h"
 #include "fit/log_gaps.h"
@@ -158,7 +158,7 @@ double Residuals::sigma_of(std::size_t channel, double shown, double dt) {
 }
 
 double Residuals::driver_residual(const Sample& sample, double dt) {
-  const double rate = 2 * std::numbers::pi * model_.base[row::driver_bandwidth];
+  const double rate = two_pi * model_.base[row::driver_bandwidth];
   driver_current_ += (1 - std::exp(-rate * dt)) * (last_command_ - driver_current_);
   const std::size_t channel = channels_.size() - 1;
   return (sample[Signal::coil_current] - driver_current_) / sigma_of(channel, driver_current_, dt);
@@ -173,7 +173,7 @@ void Residuals::draw_rod(std::span<const Sample> part, double seconds) {
   for (std::size_t i = 0; i < part.size() && i < shown.size(); ++i)
     if (const double x = part[i][Signal::piston_position]; !std::isnan(x)) sum += x - shown[i], ++n;
   if (n == 0) return;
-  const double share = 1 - std::exp(-2 * std::numbers::pi * piston_high_pass * seconds);
+  const double share = 1 - std::exp(-two_pi * piston_high_pass * seconds);
   stepper_->shift_rod(share * sum / n / model_.base[row::position_sensor_gain]);
 }
 

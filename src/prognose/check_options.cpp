@@ -1,7 +1,7 @@
 // What is asked of `check`, before any work.
 #include <fmt/format.h>
 
-#include "base/error.h"
+#include "base/require_setting.h"
 #include "prognose/monitor.h"
 #include "prognose/track.h"
 #include "servodx/trend.h"
@@ -10,13 +10,11 @@ namespace servodx {
 
 void CheckOptions::validate() const {
   require_pressure_law(model);
-  if (threads < 0)
-    throw InputError({.file = "--threads"}, fmt::format("{} threads cannot run", threads),
-                     "give 0 for all cores, or how many");
-  if (const std::size_t wanted = progressive_faults().size(); !last.empty() && last.size() != wanted)
-    throw InputError({.file = "CheckOptions.last"},
-                     fmt::format("{} values where {} parameters are tracked", last.size(), wanted),
-                     "take them from History::tracked(), or none");
+  require_threads(threads);
+  const std::size_t wanted = progressive_faults().size();
+  require_setting(last.empty() || last.size() == wanted, "CheckOptions.last",
+                  fmt::format("{} values where {} parameters are tracked", last.size(), wanted),
+                  "take them from History::tracked(), or none");
 }
 
 }  // namespace servodx

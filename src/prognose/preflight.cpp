@@ -6,6 +6,7 @@
 #include <numbers>
 #include <utility>
 
+#include "base/two_pi.h"
 #include "prognose/constants.h"
 
 namespace servodx {
@@ -83,7 +84,7 @@ std::optional<Preflight::Sine> sine_of(const std::vector<double>& t, const std::
   const double amplitude = std::hypot(fit.sine, fit.cosine);
   if (!fit.ok || fit.residual > purity * amplitude / std::numbers::sqrt2) return {};
   // First rising zero of the sinusoid at or after `from`, a few samples of grace.
-  double start = t[from] - std::atan2(fit.cosine, fit.sine) / (2 * std::numbers::pi * f);
+  double start = t[from] - std::atan2(fit.cosine, fit.sine) / (two_pi * f);
   while (start < t[from] - period_grace / f) start += 1 / f;
   const double end = std::min(t.back(), last_turn + quarter + period_grace / f);
   const int cycles = static_cast<int>(std::floor((end - start) * f + period_grace));
@@ -99,7 +100,7 @@ SineFit fit_sine(const std::vector<double>& time, const std::vector<double>& y, 
   Eigen::Vector4d right = Eigen::Vector4d::Zero();
   double square = 0;
   long n = 0;
-  const double w = 2 * std::numbers::pi * frequency;
+  const double w = two_pi * frequency;
   for (std::size_t k = from; k < to; ++k) {
     if (std::isnan(y[k])) continue;
     const double s = time[k] - t0;

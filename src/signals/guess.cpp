@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/small_letters.h"
 #include "base/trimmed.h"
 #include "base/units.h"
 #include "servodx/log.h"
@@ -18,11 +19,6 @@
 
 namespace servodx {
 namespace {
-
-std::string small(std::string text) {
-  for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return text;
-}
 
 // Umlauts as they are written without, "Oeltemperatur", and letters without their accents, "presion".
 std::string without_accents(std::string text) {
@@ -248,7 +244,7 @@ bool split_brackets(ColumnGuess& g) {
 }
 
 const ForeignUnit* foreign_unit(const std::string& written) {
-  std::string low = small(written);
+  std::string low = in_small_letters(written);
   std::erase(low, ' ');
   for (const ForeignUnit& unit : foreign_units())
     if (unit.word == low) return &unit;
@@ -370,7 +366,7 @@ bool is_transmitters(const std::string& unit, Signal signal) {
 
 std::string unit_meant(const std::string& written) {
   if (find_unit(written)) return written;
-  const std::string low = small(written);
+  const std::string low = in_small_letters(written);
   for (const UnitWord& known : unit_words())
     if (low == known.word) return std::string(known.unit);
   return find_unit(low) ? low : "";

@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "base/error.h"
+#include "base/small_letters.h"
 #include "base/trimmed.h"
 #include "base/trouble.h"
 #include "base/units.h"
@@ -47,11 +48,6 @@ bool is_number(std::string cell) {
 }
 
 bool is_sample(const std::string& cell) { return is_number(cell) || parse_time_stamp(cell) || is_date(cell); }
-
-std::string in_small_letters(std::string text) {
-  for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return text;
-}
 
 struct NumbersRow {
   char separator;

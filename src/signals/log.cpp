@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <limits>
 #include <string>
@@ -11,15 +10,14 @@
 
 #include "base/error.h"
 #include "base/sha256.h"
+#include "base/small_letters.h"
 #include "servodx/rig.h"
 #include "signals/log_formats.h"
 
 namespace servodx {
 
 bool is_mat_file(const std::string& path) {
-  std::string ending = path.substr(path.size() - std::min<std::size_t>(4, path.size()));
-  for (char& c : ending) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return ending == ".mat";
+  return in_small_letters(path.substr(path.size() - std::min<std::size_t>(4, path.size()))) == ".mat";
 }
 
 void ReadOptions::validate() const {

@@ -4,11 +4,11 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <cmath>
 #include <limits>
 
 #include "base/nearest.h"
+#include "base/small_letters.h"
 #include "base/trimmed.h"
 #include "base/trouble.h"
 #include "base/units.h"
@@ -26,11 +26,6 @@ struct NameAndUnit {
   std::string unit;
   bool has_unit = false;
 };
-
-std::string in_small_letters(std::string text) {
-  for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return text;
-}
 
 NameAndUnit parse_name(const std::string& cell) {
   const auto open = cell.rfind('[');

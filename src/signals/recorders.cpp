@@ -7,6 +7,7 @@
 #include <unsupported/Eigen/FFT>
 
 #include "base/error.h"
+#include "base/require_setting.h"
 #include "base/tiny.h"
 #include "servodx/join.h"
 #include "servodx/log.h"
@@ -289,14 +290,13 @@ bool is_demand(Signal s) { return s == Signal::command || s == Signal::setpoint;
 }  // namespace
 
 void JoinOptions::validate() const {
-  const auto require = [](bool holds, const char* option, const std::string& rule, const std::string& mend) {
-    if (!holds) throw InputError({.file = option}, rule, mend);
-  };
-  require(by != Signal::time, "--by", "each recorder has a time of its own", "name another signal that both recorded");
-  require(std::isfinite(near.value_or(0)), "--near", fmt::format("{} s is no offset", near.value_or(0)),
-          "give it in seconds: 1.5");
-  require(std::isfinite(near_within) && near_within > 0, "JoinOptions.near_within",
-          fmt::format("{} s is no distance", near_within), fmt::format("{} is the default", JoinOptions{}.near_within));
+  require_setting(by != Signal::time, "--by", "each recorder has a time of its own",
+                  "name another signal that both recorded");
+  require_setting(std::isfinite(near.value_or(0)), "--near", fmt::format("{} s is no offset", near.value_or(0)),
+                  "give it in seconds: 1.5");
+  require_setting(std::isfinite(near_within) && near_within > 0, "JoinOptions.near_within",
+                  fmt::format("{} s is no distance", near_within),
+                  fmt::format("{} is the default", JoinOptions{}.near_within));
 }
 
 Log join_recorders(const Log& first, const Log& second, const JoinOptions& options, ClockFit& clock) {

@@ -16,6 +16,7 @@
 #include "base/sha256.h"
 #include "base/toml_text.h"
 #include "base/trouble.h"
+#include "base/two_pi.h"
 #include "servodx/error.h"
 #include "servodx/log.h"
 #include "signals/fittings.h"
@@ -44,9 +45,9 @@ constexpr Preset presets[] = {
 
 // Ends of what a sheet may state of the dynamics: amplifiers end at 1.5 times rated current; beyond 40 dB and a whole
 // turn nothing of a valve can be read.
-constexpr double most_amplitude = 1.5;             // [fraction of rated current]
-constexpr double most_decibels = 40;               // [dB]
-constexpr double most_lag = 2 * std::numbers::pi;  // [rad]
+constexpr double most_amplitude = 1.5;  // [fraction of rated current]
+constexpr double most_decibels = 40;    // [dB]
+constexpr double most_lag = two_pi;     // [rad]
 
 std::string listed(std::initializer_list<std::string_view> words) {
   std::string list;

@@ -17,11 +17,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-double number_or_nan(const Json& object, const char* key) {
-  const auto at = object.find(key);
-  return at != object.end() && at->is_number() ? at->get<double>() : std::nan("");
-}
-
 const Json& array_or_empty(const Json& object, const char* key) {
   static const Json none = Json::array();
   const auto at = object.find(key);

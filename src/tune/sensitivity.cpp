@@ -5,6 +5,7 @@
 #include <span>
 
 #include "base/error.h"
+#include "base/require_setting.h"
 #include "effects/registry.h"
 #include "fit/candidate_of.h"
 #include "fit/chart.h"
@@ -122,6 +123,7 @@ double DrivenRow::largest() const { return std::fmax(ends[0].effect, ends[1].eff
 
 Sensitivity drive_rows(const std::vector<Log>& logs, const Table& table, const RigFile& rig, int threads,
                        const Watch& watch) {
+  require_threads(threads);
   Sensitivity out;
   const std::vector<FreeValue> free = every_row(table);
   for (const FreeValue& f : free) {

@@ -10,6 +10,7 @@
 
 #include "base/error.h"
 #include "base/nearest.h"
+#include "base/require_setting.h"
 #include "base/stopwatch.h"
 #include "effects/effect.h"
 #include "effects/registry.h"
@@ -99,24 +100,22 @@ void require_known(const std::vector<std::string>& effects) {
 }  // namespace
 
 void TuneOptions::validate() const {
-  const auto require = [](bool holds, const char* option, const std::string& rule, const std::string& mend) {
-    if (!holds) throw InputError({.file = option}, rule, mend);
-  };
-  require(!resume || !checkpoint.empty(), "--resume", "there is nothing to resume from", "add --checkpoint FILE");
-  require(!resume || std::filesystem::exists(checkpoint), "--checkpoint",
-          "'" + checkpoint + "' is not there to resume from", "leave out --resume to begin");
-  require(population >= 24, "--population", "must be at least 24", "four starts of a healthy valve, six each");
-  require(generations >= 0, "--generations", "must not be negative", "0 leaves the genetic search out");
-  require(rounds >= 1, "--rounds", "must be at least 1", fmt::format("{} is the default", TuneOptions{}.rounds));
-  require(heldout >= 0 && heldout < 1, "--heldout", "is a part of each log, from 0 to below 1",
-          fmt::format("{} is the default", TuneOptions{}.heldout));
-  require(moving_average >= 1 && moving_average % 2 == 1, "--moving-average",
-          fmt::format("{} is not an odd number of samples", moving_average), "give 1 for none, or 3, 5, ...");
-  require(threads >= 0, "--threads", fmt::format("{} threads cannot run", threads),
-          "give 0 for all cores, or how many");
+  require_setting(!resume || !checkpoint.empty(), "--resume", "there is nothing to resume from",
+                  "add --checkpoint FILE");
+  require_setting(!resume || std::filesystem::exists(checkpoint), "--checkpoint",
+                  "'" + checkpoint + "' is not there to resume from", "leave out --resume to begin");
+  require_setting(population >= 24, "--population", "must be at least 24", "four starts of a healthy valve, six each");
+  require_setting(generations >= 0, "--generations", "must not be negative", "0 leaves the genetic search out");
+  require_setting(rounds >= 1, "--rounds", "must be at least 1",
+                  fmt::format("{} is the default", TuneOptions{}.rounds));
+  require_setting(heldout >= 0 && heldout < 1, "--heldout", "is a part of each log, from 0 to below 1",
+                  fmt::format("{} is the default", TuneOptions{}.heldout));
+  require_setting(moving_average >= 1 && moving_average % 2 == 1, "--moving-average",
+                  fmt::format("{} is not an odd number of samples", moving_average), "give 1 for none, or 3, 5, ...");
+  require_threads(threads);
   for (const auto& [name, sd] : priors)
-    require(sd > 0 && std::isfinite(sd), "--prior", fmt::format("'{}={}' is not NAME=SD", name, sd),
-            "a standard deviation about the table's nominal, above 0, in the table's unit");
+    require_setting(sd > 0 && std::isfinite(sd), "--prior", fmt::format("'{}={}' is not NAME=SD", name, sd),
+                    "a standard deviation about the table's nominal, above 0, in the table's unit");
   if (effects) require_known(*effects);
   require_row_names(*this);
 }

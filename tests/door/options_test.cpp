@@ -47,6 +47,9 @@ TEST(Options, OfTheOtherCallsAreRefusedByName) {
   EXPECT_EQ(refused<BaselineOptions>([](auto& o) { o.false_alarm = 0; }), "--false-alarm");
   EXPECT_EQ(refused<BaselineOptions>([](auto& o) { o.threads = -1; }), "--threads");
   EXPECT_EQ(refused<DiagnoseOptions>([](auto& o) { o.threads = -1; }), "DiagnoseOptions.threads");
+  EXPECT_EQ(refused<DiagnoseOptions>([](auto& o) { o.population = 1; }), "DiagnoseOptions.population");
+  EXPECT_EQ(refused<DiagnoseOptions>([](auto& o) { o.actions.erase("unknown"); }), "DiagnoseOptions.actions");
+  EXPECT_EQ(refused<SelftestOptions>([](auto& o) { o.threads = -1; }), "--threads");
   EXPECT_EQ(refused<ExplainOptions>([](auto& o) { o.threads = -1; }), "--threads");
   EXPECT_EQ(refused<ExplainOptions>([](auto& o) { o.level = 1; }), "ExplainOptions.level");
   EXPECT_EQ(refused<ExplainOptions>([](auto& o) { o.without = {"no_such_effect"}; }), "--without");
@@ -57,6 +60,9 @@ TEST(Options, OfTheOtherCallsAreRefusedByName) {
   EXPECT_EQ(refused<TrendOptions>([](auto& o) { o.healthy = 4; }), "--healthy");
   EXPECT_EQ(refused<TrendOptions>([](auto& o) { o.coverage = 1; }), "--coverage");
   EXPECT_EQ(refused<TrendOptions>([](auto& o) { o.failures = {{"no_such_check"}}; }), "--failure");
+  EXPECT_EQ(refused<TrendOptions>([](auto& o) { o.limits = {{"no_such_check"}}; }), "TrendOptions.limits");
+  EXPECT_EQ(refused<TrendOptions>([](auto& o) { o.limits = {{.check = "fidelity", .value = std::nan("")}}; }),
+            "TrendOptions.limits");
   EXPECT_EQ(refused<SimulationOptions>([](auto& o) { o.step = 0; }), "--step");
   EXPECT_EQ(refused<SimulationOptions>([](auto& o) { o.step = 1e-4, o.reference = true; }), "--reference");
   EXPECT_EQ(refused<MonitorOptions>([](auto& o) { o.model = "no_such_model"; }), "--model");
@@ -105,6 +111,32 @@ TEST(Options, AreLookedAtBeforeTheLogs) {
   EXPECT_EQ(refused_at([&] { join_recorders({}, {}, {.near_within = 0}, clock); }), "JoinOptions.near_within");
   EXPECT_EQ(refused_at([] { read_log("nowhere.csv", {}, {.minimum_rows = 0}); }), "ReadOptions.minimum_rows");
   EXPECT_EQ(refused_at([] { make_log("nothing", {}, {}, {.minimum_rows = 0}); }), "ReadOptions.minimum_rows");
+  EXPECT_EQ(refused_at([] { diagnose_each({}, {}, {}, {}, {.threads = -1}); }), "DiagnoseOptions.threads");
+  EXPECT_EQ(refused_at([] { likeliest_miss({}, {}, {}, {.threads = -1}); }), "--threads");
+  EXPECT_EQ(refused_at([] { steps_of({.step = 0}); }), "--step");
+  EXPECT_EQ(refused_at([] { selftest({}, {}, {}, {.threads = -1}); }), "--threads");
+  EXPECT_EQ(refused_at([] { drive_rows({}, {}, {}, -1); }), "--threads");
+  EXPECT_EQ(refused_at([] { promise_of({}, {}, {}, -1); }), "--threads");
+  EXPECT_EQ(refused_at([] { failure_levels({"gain=0.5", "no_such_limit=1"}, {}); }), "--limit");
+  EXPECT_EQ(refused_at([] { MapExtent{.travel = 1e-4, .flow = 1e-4, .travels = 4}.validate(); }), "MapExtent.travels");
+  EXPECT_EQ(refused_at([] { MapExtent{.travel = 0, .flow = 1e-4}.validate(); }), "--travel");
+}
+
+// A log that no fit can learn from is refused too, and after the options.
+TEST(Options, AreLookedAtBeforeTheSamplesOfACheck) {
+  Log slow;
+  slow.time = {0, 1, 2};
+  for (const Signal s : {Signal::command, Signal::piston_position}) slow.channels[index(s)].value = {0, 0, 0};
+  const auto refused_at = [&](const CheckOptions& options) -> std::string {
+    try {
+      check(slow, {}, {}, options);
+    } catch (const InputError& error) {
+      return error.where.file + error.where.column;
+    }
+    return "";
+  };
+  EXPECT_EQ(refused_at({}), "time");
+  EXPECT_EQ(refused_at({.threads = -1}), "--threads");
 }
 
 }  // namespace

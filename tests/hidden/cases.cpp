@@ -312,8 +312,8 @@ Score score(const Truth& truth, const ExplainResult& answer) {
     out.heldout_gain = answer.heldout_gain.value;
     if (first.effect == truth.effect && !truth.parameter.empty())
       for (const ExplainedParameter& p : first.parameters)
-        if (p.name == truth.parameter && std::isfinite(p.std_error))
-          out.size_inside = std::abs(p.value - p.before - truth.change) <= 1.645 * p.std_error;
+        if (p.name == truth.parameter && p.told == SizeTold::interval)
+          out.size_inside = p.lower <= p.before + truth.change && p.before + truth.change <= p.upper;
   }
   if (truth.effect.starts_with("unlisted:")) out.named = answer.verdict == ExplainVerdict::unexplained;
   const auto one_of = [](const std::vector<std::string>& list, const std::string& name) {

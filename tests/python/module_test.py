@@ -43,6 +43,17 @@ class Module(unittest.TestCase):
         self.assertIn("nothing", explained.probabilities)
         self.assertIsInstance(explained.kind, sx.Explanation.Kind)
 
+    def test_results_say_what_they_cost_and_what_they_rest_on(self):
+        for result in (tuned(), baseline(), verdict(), tuned().explain([suspect()], baseline(), keep_worse=True)):
+            self.assertGreater(result.simulations, 0, type(result).__name__)
+            self.assertGreaterEqual(result.failed_simulations, 0)
+        self.assertFalse(baseline().interrupted)
+        self.assertIsNone(verdict().friction)  # the rig file does not state the land's length
+        self.assertTrue(tuned().table.has_std_error)
+        self.assertFalse(params().has_std_error)
+        with self.assertRaises(sx.InputError):  # it is one of the own logs
+            tuned().baseline([excerpt(name, 300) for name in HEALTHY], false_alarm=0.3, others=[excerpt(HEALTHY[0], 300)])
+
     def test_a_note_has_a_kind_and_the_programs_words(self):
         time = [k * 1e-3 for k in range(30)] + [0.05]
         log = sx.make_log("bench", {"time [s]": time, "command [mA]": [k % 7 for k in range(31)],

@@ -82,6 +82,17 @@ class Pickles(unittest.TestCase):
             pickle.loads(pickle.dumps(baseline())).save(desk / "u.json")
             self.assertEqual((desk / "u.json").read_bytes(), (desk / "t.json").read_bytes())
 
+    def test_a_sheet_keeps_the_uncertainty_of_its_figures(self):
+        time = 0.01 * numpy.arange(5001)
+        turn = time / 40 + 0.25
+        current = 20.4 * (1 - 4 * abs(turn - numpy.floor(turn) - 0.5))
+        flow = 0.7 * current + numpy.random.default_rng(1).normal(0, 0.02, len(time))
+        stand = sx.Rig({"ports": "free", "valve": {"rated_current": "20 mA"}})
+        log = sx.Log({"time [s]": time, "command [mA]": current, "control_flow [l/min]": flow}, rig=stand)
+        sheet = sx.curves(log, stand)
+        self.assertTrue((sheet.figures["uncertainty"] > 0).any())
+        self.same(sheet)
+
     def test_an_objective_is_made_again_where_it_comes(self):
         objective = tuned().objective([suspect()])
         again = pickle.loads(pickle.dumps(objective))

@@ -192,7 +192,7 @@ ExplainResult some_explanation() {
   r.causes = {{"valve_glitch",
                "first_stage",
                "small sines",
-               {{"valve_glitch", "m", 20.3e-6, 0.2e-6, 0}},
+               {{"valve_glitch", "m", 20.3e-6, 0.2e-6, 0, 19.97e-6, 20.63e-6}},
                {0.98, 0.97, 0.99},
                {},
                0,
@@ -240,6 +240,29 @@ TEST(ExplainPage, TheHeadIsShortAndInTheLogsUnits) {
   EXPECT_NE(html.find(">or else<"), std::string::npos);
   for (ExplainedCause& c : r.causes) c.confusable_with.clear();
   EXPECT_EQ(explain_page({}, r, {}).html().find(">or else<"), std::string::npos) << "an empty column";
+}
+
+// A mass that may be anything from nothing to the most that it could be, and one that a bound holds.
+TEST(ExplainPage, ASizeThatTheLogsDoNotTellHasNoInterval) {
+  ExplainResult r = some_explanation();
+  r.verdict = ExplainVerdict::sufficient;
+  r.causes.front().parameters = {
+      {"mount_mass", "kg", 148, 65169, 0, 0, 200, SizeTold::not_told},
+      {"mount_compliance", "m/N", 1e-6, std::nan(""), 0, std::nan(""), std::nan(""), SizeTold::at_bound}};
+  r.standing = std::move(r.causes);
+  r.suspicion.emplace().size = r.standing.front().parameters.front();
+  const std::string text = text_of(r, {}), html = explain_page({}, r, {}).html();
+  EXPECT_NE(text.find("    mount_mass 148 kg, not told by these logs, before 0 kg\n"), std::string::npos) << text;
+  EXPECT_NE(text.find(", mount_mass 148 kg, not told by these logs: it removes"), std::string::npos) << text;
+  EXPECT_NE(text.find("1000 um/kN, at a bound, before 0"), std::string::npos) << text;
+  for (const char* shown : {">not told by these logs<", ">at a bound<"})
+    EXPECT_NE(html.find(shown), std::string::npos) << shown;
+  const Json json = explain_json(r), mass = json["standing"][0]["parameters"]["mount_mass"];
+  EXPECT_EQ(mass["told"], "not_told");
+  EXPECT_EQ(mass["lower"], 0);
+  EXPECT_EQ(mass["upper"], 200);
+  EXPECT_EQ(json["suspicion"]["severity"]["told"], "not_told");
+  EXPECT_TRUE(json["standing"][0]["parameters"]["mount_compliance"]["upper"].is_null());
 }
 
 ExplainedCandidate candidate(const char* effect, Fate fate) {

@@ -18,11 +18,6 @@
 namespace servodx::report {
 namespace {
 
-template <class C>
-std::string size_of(const C& check, double value) {
-  return size_of_check(check.unit, check.cause, value);
-}
-
 // Of the way from the tuned table to the fault's own level of failure; NaN of the paper's checks.
 double way(const Check& c, double value) { return (value - c.tuned) / (c.failed - c.tuned); }
 double way_error(const Check& c) { return std::abs(c.std_error / (c.failed - c.tuned)); }
@@ -45,10 +40,11 @@ void add_ways(Page& page, const CheckResult& r) {
   Bars bars{"From the tuned table to failure", "wear", "of the way", {}, Mark{1.0, "failed"}, 1.15};
   for (const Check& c : r.checks)
     if (std::isfinite(way(c, c.value)))
-      bars.rows.push_back({words(c.cause), std::max(0.0, way(c, c.value)), percent(way(c, c.value)),
-                           fmt::format("+- {}; {}, tuned {}, failed at {}", percent(way_error(c)), size_of(c, c.value),
-                                       size_of(c, c.tuned), size_of(c, c.failed)),
-                           &c == worn(r) ? Tone::doubt : Tone::plain, ""});
+      bars.rows.push_back(
+          {words(c.cause), std::max(0.0, way(c, c.value)), percent(way(c, c.value)),
+           fmt::format("+- {}; {}, tuned {}, failed at {}", percent(way_error(c)), size_of_check(c, c.value),
+                       size_of_check(c, c.tuned), size_of_check(c, c.failed)),
+           &c == worn(r) ? Tone::doubt : Tone::plain, ""});
   if (bars.rows.empty()) return;
   std::stable_sort(bars.rows.begin(), bars.rows.end(), [](const auto& a, const auto& b) { return a.value > b.value; });
   page.section("How far each wear has come",
@@ -65,7 +61,7 @@ Page check_page(const Header& header, const CheckResult& r, const std::vector<do
   v.tone = r.no_response ? Tone::bad : Tone::plain;
   v.headline = r.no_response ? "The spool did not follow the step"
                : most        ? capital(fmt::format("{} reads {} of the way to failure: {}", words(most->cause),
-                                                   percent(way(*most, most->value)), size_of(*most, most->value)))
+                                                   percent(way(*most, most->value)), size_of_check(*most, most->value)))
                : std::any_of(r.checks.begin(), r.checks.end(), [](const Check& c) { return !c.cause.empty(); })
                    ? "No wear reads a quarter of the way to failure or more"
                    : fmt::format("{} checks; wear was not estimated", r.checks.size());
@@ -87,9 +83,9 @@ Page check_page(const Header& header, const CheckResult& r, const std::vector<do
   TablePart table{
       "Checks", "lrrrr", {"check", "measured", "model: here over at 40 degC", "corrected", "standard error"}, {}, 0};
   for (const Check& c : r.checks)
-    table.rows.push_back({name_of_check(c.name, c.cause), Cell(size_of(c, c.measured), c.measured),
+    table.rows.push_back({name_of_check(c.name, c.cause), Cell(size_of_check(c, c.measured), c.measured),
                           c.cause.empty() ? Cell(digits(c.expected), c.expected) : Cell(""),
-                          Cell(size_of(c, c.value), c.value), Cell(size_of(c, c.std_error), c.std_error)});
+                          Cell(size_of_check(c, c.value), c.value), Cell(size_of_check(c, c.std_error), c.std_error)});
   page.add(table);
   if (r.mean_error.running.size() == time.size() && !time.empty()) {
     Plot plot{.title = "running mean of |e| [um]", .x_label = "time [s]", .x = time};

@@ -31,11 +31,6 @@ std::string shown(const Json& value) {
   return value.is_null() ? "-" : value.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 
-double number(const Json& object, const char* key) {
-  const auto found = object.find(key);
-  return found != object.end() && found->is_number() ? found->get<double>() : std::nan("");
-}
-
 std::string relative_change(double a, double b) {
   if (!std::isfinite(a) || !std::isfinite(b) || a == 0) return "";
   return fmt::format("{}{} %", b > a ? "+" : "", digits(100 * (b - a) / std::abs(a), 2));
@@ -68,12 +63,12 @@ class Comparing {
   }
 
   void parameter(const std::string& name, const Json& a, const Json& b) {
-    const double from = number(a, "estimate"), to = number(b, "estimate");
+    const double from = number_or_nan(a, "estimate"), to = number_or_nan(b, "estimate");
     if (is_rounding(from, to)) {
       ++to_.same;
       return;
     }
-    const double error = std::hypot(number(a, "std_error"), number(b, "std_error"));
+    const double error = std::hypot(number_or_nan(a, "std_error"), number_or_nan(b, "std_error"));
     const double sigmas = error > 0 ? (to - from) / error : std::nan("");
     const std::string unit = text_or_empty(a, "unit");
     to_.differences.push_back({name, handy(from, unit), handy(to, unit), relative_change(from, to), sigmas,

@@ -32,15 +32,6 @@ std::string of_misfit(const Interval& g) {
 // For the head of a page: what a fit loses there is no gain, and its minus would have to be explained.
 std::string gain_in_words(const Interval& g) { return g.value > 0 ? of_misfit(g) : "nothing"; }
 
-// "20.3 um (19.9 to 20.6, 90 %)"
-std::string size_of(const ExplainedParameter& p) {
-  const HandyUnit unit = handy_unit(p.unit, p.value);
-  const double half = normal_95_one_sided * p.std_error * unit.factor, value = p.value * unit.factor;
-  std::string text = digits(value) + (unit.name.empty() ? "" : " " + unit.name);
-  if (std::isfinite(half)) text += fmt::format(" ({} to {}, 90 %)", digits(value - half), digits(value + half));
-  return text;
-}
-
 std::string headline(const ExplainResult& r) {
   if (r.verdict == ExplainVerdict::sufficient) return "The simulation misses nothing that healthy logs do not show";
   if (r.causes.empty())
@@ -59,8 +50,8 @@ std::string size_of_first(const ExplainResult& r) {
   if (best.parameters.size() == 1) {
     const ExplainedParameter& p = best.parameters.front();
     const HandyUnit unit = handy_unit(p.unit, p.value);
-    text = fmt::format("{}, tuned {}{}{}", size_of(p), digits(p.before * unit.factor), unit.name.empty() ? "" : " ",
-                       unit.name);
+    text = fmt::format("{}, tuned {}{}{}", size_in_words(p), digits(p.before * unit.factor),
+                       unit.name.empty() ? "" : " ", unit.name);
   }
   return text;
 }
@@ -128,6 +119,12 @@ std::vector<std::string> reasons(const ExplainResult& r) {
   return why;
 }
 
+// Behind the words stands half of the interval. [unit of the size]
+Cell interval_cell(const ExplainedParameter& p, double factor) {
+  const std::string ends = fmt::format("{} to {}", digits(p.lower * factor), digits(p.upper * factor));
+  return {p.told == SizeTold::interval ? ends : words_of(p.told), 0.5 * (p.upper - p.lower)};
+}
+
 TablePart causes_table(const std::string& title, const std::vector<ExplainedCause>& causes) {
   TablePart table{
       title, "lllrrrll", {"cause", "where", "number", "tuned", "value", "90 %", "unit", "gain held out"}, {}, 0};
@@ -139,13 +136,12 @@ TablePart causes_table(const std::string& title, const std::vector<ExplainedCaus
     for (const std::string& o : c.confusable_with) others.push_back(words(o));
     for (const ExplainedParameter& p : c.parameters) {
       const HandyUnit unit = handy_unit(p.unit, p.value);
-      const double half = normal_95_one_sided * p.std_error;
       table.rows.push_back({words(c.effect),
                             words(c.where),
                             p.name == c.effect ? std::string() : words(p.name),
                             {digits(p.before * unit.factor), p.before},
                             {digits(p.value * unit.factor), p.value},
-                            {std::isfinite(half) ? "+-" + digits(half * unit.factor, 2) : "at a bound", half},
+                            interval_cell(p, unit.factor),
                             unit.name,
                             {of_misfit(c.heldout_gain), c.heldout_gain.value}});
       if (rivals) table.rows.back().push_back(join(others));

@@ -6,7 +6,6 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "base/normal.h"
 #include "evidence/conditions.h"
 #include "evidence/heldout_gain.h"
 #include "explain/blocks.h"
@@ -32,11 +31,17 @@ Json to_json(const Interval& i) {
   return {{"value", number(i.value)}, {"lower", number(i.lower)}, {"upper", number(i.upper)}};
 }
 
+Json to_json(const ExplainedParameter& p) {
+  return {{"value", number(p.value)}, {"std_error", number(p.std_error)}, {"lower", number(p.lower)},
+          {"upper", number(p.upper)}, {"told", word_of(p.told)},          {"unit", p.unit}};
+}
+
 Json to_json(const ExplainedCause& c) {
   Json parameters = Json::object();
-  for (const ExplainedParameter& p : c.parameters)
-    parameters[p.name] = {
-        {"value", number(p.value)}, {"std_error", number(p.std_error)}, {"unit", p.unit}, {"before", number(p.before)}};
+  for (const ExplainedParameter& p : c.parameters) {
+    parameters[p.name] = to_json(p);
+    parameters[p.name]["before"] = number(p.before);
+  }
   return {{"effect", c.effect},
           {"where", c.where},
           {"told_by", word_of(c.told_by)},
@@ -170,12 +175,7 @@ void add_causes(std::string& text, const std::vector<ExplainedCause>& causes) {
                         words_of_share(c.told_by));
     for (const ExplainedParameter& p : c.parameters) {
       if (c.curve) break;  // its numbers stand as a curve below
-      const double half = normal_95_one_sided * p.std_error;
-      text += fmt::format("    {} {}, before {}\n", p.name,
-                          std::isfinite(half) ? handy(p.value, p.unit) + " (" + handy(p.value - half, p.unit) + " to " +
-                                                    handy(p.value + half, p.unit) + ", 90 %)"
-                                              : handy(p.value, p.unit),
-                          handy(p.before, p.unit));
+      text += fmt::format("    {} {}, before {}\n", p.name, size_in_words(p), handy(p.before, p.unit));
     }
     if (!c.confusable_with.empty()) text += "    or else " + join(c.confusable_with) + "\n";
     if (!c.test.empty()) text += "    to separate: " + c.test + "\n";
@@ -184,11 +184,10 @@ void add_causes(std::string& text, const std::vector<ExplainedCause>& causes) {
 
 Json to_json(const ExplainSuspicion& s) {
   Json size = nullptr;
-  if (s.size)
-    size = {{"name", s.size->name},
-            {"value", number(s.size->value)},
-            {"std_error", number(s.size->std_error)},
-            {"unit", s.size->unit}};
+  if (s.size) {
+    size = to_json(*s.size);
+    size["name"] = s.size->name;
+  }
   return {{"name", s.effect},
           {"where", s.where},
           {"severity", size},
@@ -221,6 +220,11 @@ std::string logs_words(int logs_needed) {
 
 }  // namespace
 
+std::string size_in_words(const ExplainedParameter& p) {
+  if (p.told == SizeTold::interval) return handy_interval(p.value, p.lower, p.upper, p.unit, 90);
+  return handy(p.value, p.unit) + ", " + words_of(p.told);
+}
+
 std::string rate_in_words(const ExplainedFalseAlarm& f) {
   std::string text = fmt::format("a healthy log is called wrong at a rate of {}, {} {} healthy logs can promise",
                                  percent(f.promised), f.alike ? "that" : "as for tests like their own", f.logs);
@@ -231,7 +235,7 @@ std::string rate_in_words(const ExplainedFalseAlarm& f) {
 
 std::string suspicion_in_words(const ExplainSuspicion& s) {
   std::string size;
-  if (s.size) size = fmt::format(", {} {}", s.size->name, handy(s.size->value, s.size->unit));
+  if (s.size) size = fmt::format(", {} {}", s.size->name, size_in_words(*s.size));
   return fmt::format(
       "first stands {} at {}{}: it removes {} of the held-out misfit{}, not beyond what {} healthy logs can exclude; "
       "it "

@@ -111,4 +111,28 @@ std::string words_of(const ExcessPlace& place) {
   return "";
 }
 
+const char* word_of(SizeTold told) {
+  switch (told) {
+    case SizeTold::interval:
+      return "interval";
+    case SizeTold::at_bound:
+      return "at_bound";
+    case SizeTold::not_told:
+      return "not_told";
+  }
+  return "";
+}
+
+const char* words_of(SizeTold told) {
+  switch (told) {
+    case SizeTold::interval:
+      return "";
+    case SizeTold::at_bound:
+      return "at a bound";
+    case SizeTold::not_told:
+      return "not told by these logs";
+  }
+  return "";
+}
+
 }  // namespace servodx::report

@@ -14,5 +14,7 @@ const char* words_of_share(ToldBy told_by);    // after the share that a cause r
 const char* words_of(Fate fate);               // why a candidate was not taken, or that it was
 // "78 % of the excess sits within 30 ms of a reversal (21 % of the time)"
 std::string words_of(const ExcessPlace& place);
+const char* word_of(SizeTold told);            // as JSON says it
+const char* words_of(SizeTold told);           // in place of an interval; "" where there is one
 
 }  // namespace servodx::report

@@ -82,11 +82,11 @@ std::string handy(double value, const std::string& unit) {
   return in.name.empty() ? number : number + " " + in.name;
 }
 
-std::string handy_interval(double value, double lower, double upper, const std::string& unit) {
+std::string handy_interval(double value, double lower, double upper, const std::string& unit, int confidence) {
   std::string text = handy(value, unit);
   if (!std::isfinite(lower) || !std::isfinite(upper)) return text;
   const double factor = handy_unit(unit, value).factor;
-  return text + fmt::format(" ({} to {}, 95 %)", digits(lower * factor), digits(upper * factor));
+  return text + fmt::format(" ({} to {}, {} %)", digits(lower * factor), digits(upper * factor), confidence);
 }
 
 std::string percent(double fraction) { return digits(100.0 * fraction, fraction < 0.1 ? 2 : 3) + " %"; }

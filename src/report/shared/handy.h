@@ -21,7 +21,7 @@ HandyUnit handy_unit(const std::string& unit, double magnitude);
 
 std::string handy(double value, const std::string& unit);  // "12 um"
 // "12 um (9 to 15, 95 %)"; the interval is left out where it is not finite.
-std::string handy_interval(double value, double lower, double upper, const std::string& unit);
+std::string handy_interval(double value, double lower, double upper, const std::string& unit, int confidence = 95);
 
 std::string plural(long n, const std::string& thing);  // "1 log", "2 logs"
 std::string percent(double fraction);                  // "41 %", "0.03 %"

@@ -6,6 +6,7 @@
 #include <cctype>
 #include <cmath>
 
+#include "base/present.h"
 #include "base/units.h"
 #include "fit/log_data.h"
 #include "report/shared/handy.h"
@@ -36,20 +37,12 @@ std::vector<double> scaled(std::vector<double> v, double factor) {
   return v;
 }
 
-double rms(const std::vector<double>& v) {
-  double sum = 0;
-  long n = 0;
-  for (const double x : v)
-    if (std::isfinite(x)) sum += x * x, ++n;
-  return n ? std::sqrt(sum / static_cast<double>(n)) : 0;
-}
-
 // How far the first explanation misses the channel, in sigmas.
 double whitened_rms(const ReplayedChannel& channel) {
   if (channel.simulated.empty() || channel.sigma.empty()) return 0;
   std::vector<double> w = channel.simulated.front().residual;
   for (std::size_t k = 0; k < w.size(); ++k) w[k] /= channel.sigma[k];
-  return rms(w);
+  return rms_of_present(w);
 }
 
 Role role_of(std::size_t place) { return place == 0 ? Role::reference : place == 1 ? Role::named : Role::other; }
@@ -111,14 +104,14 @@ void add_replay(Page& page, const Replay& replay, const ReplayView& view) {
     page.add(trace);
 
     double size = 0;
-    for (const auto* s : shown) size = std::max(size, rms(s->residual));
+    for (const auto* s : shown) size = std::max(size, rms_of_present(s->residual));
     // In the trace's own unit where that reads well: who logs psi thinks in psi.
     const bool reads_well = size * unit.factor >= 0.1 && size * unit.factor < 1000;
     const HandyUnit small = reads_well ? unit : handy_unit(std::string(info(channel.signal).si_unit), size);
     std::string figures;
     for (const auto* s : shown)
-      figures +=
-          fmt::format("{}{} {}", figures.empty() ? "" : ", ", words(s->name), digits(rms(s->residual) * small.factor));
+      figures += fmt::format("{}{} {}", figures.empty() ? "" : ", ", words(s->name),
+                             digits(rms_of_present(s->residual) * small.factor));
     const std::string filtered = channel.signal == Signal::piston_position
                                      ? fmt::format(", drift below {:g} Hz left out", piston_high_pass)
                                      : "";

@@ -24,13 +24,6 @@
 namespace servodx::report {
 namespace {
 
-template <class C>
-std::string size_of(const C& check, double value) {
-  return size_of_check(check.unit, check.cause, value);
-}
-
-std::string in_hours(double h) { return std::isfinite(h) ? digits(h) + " h" : "never"; }
-
 Tone tone_of(TrendState state) {
   if (state == TrendState::failed || state == TrendState::warning) return Tone::bad;
   return state == TrendState::healthy ? Tone::good : Tone::doubt;
@@ -105,10 +98,11 @@ TablePart table_of(const ValveTrend& v, double coverage) {
   for (const CheckTrend& t : v.trends) {
     Cell state = word_of(t.state);
     state.tone = tone_of(t.state);
-    table.rows.push_back({name_of_check(t.name, t.cause), state, Cell(size_of(t, t.healthy), t.healthy),
-                          t.points.empty() ? Cell("-") : Cell(size_of(t, t.points.back().value), t.points.back().value),
-                          std::isfinite(t.now) ? Cell(size_of(t, t.now), t.now) : Cell("-"), growth(t),
-                          moves_away(t) ? "not towards failure" : left(t.remaining, coverage)});
+    table.rows.push_back(
+        {name_of_check(t.name, t.cause), state, Cell(size_of_check(t, t.healthy), t.healthy),
+         t.points.empty() ? Cell("-") : Cell(size_of_check(t, t.points.back().value), t.points.back().value),
+         std::isfinite(t.now) ? Cell(size_of_check(t, t.now), t.now) : Cell("-"), growth(t),
+         moves_away(t) ? "not towards failure" : left(t.remaining, coverage)});
   }
   return table;
 }

@@ -57,8 +57,6 @@ Json to_json(const CheckTrend& t) {
           {"points", points}};
 }
 
-std::string in_hours(double h) { return std::isfinite(h) ? digits(h) + " h" : "never"; }
-
 std::string life_text(const Remaining& r) {
   return fmt::format("{} ({} to {})", in_hours(r.median), in_hours(r.lower), in_hours(r.upper));
 }

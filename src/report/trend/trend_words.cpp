@@ -1,6 +1,12 @@
 #include "report/trend/trend_words.h"
 
+#include <cmath>
+
+#include "report/shared/handy.h"
+
 namespace servodx::report {
+
+std::string in_hours(double hours) { return std::isfinite(hours) ? digits(hours) + " h" : "never"; }
 
 const char* word_of(TrendState state) {
   switch (state) {
