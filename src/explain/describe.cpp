@@ -6,6 +6,7 @@
 
 #include "effects/registry.h"
 #include "effects/row_effects.h"
+#include "explain/beside_healthy.h"
 #include "explain/fit_causes.h"
 #include "explain/healthy.h"
 #include "explain/outcome.h"
