@@ -28,6 +28,7 @@
 #include "fit/tuned_state.h"
 #include "parameters/table.h"
 #include "report/diagnose/diagnosis_words.h"
+#include "report/diagnose/verdict_words.h"
 #include "servodx/diagnose.h"
 #include "servodx/rig.h"
 #include "servodx/tune.h"

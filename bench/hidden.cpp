@@ -15,6 +15,7 @@
 #include "explain/explain.h"
 #include "explain/healthy.h"
 #include "explain/outcome.h"
+#include "explain/score_healthy.h"
 #include "hidden/cases.h"
 #include "parameters/table.h"
 #include "report/explain/explain_report.h"

@@ -14,7 +14,6 @@
 #include "rig/rig_run.h"
 #include "servodx/log.h"
 #include "servodx/rig.h"
-#include "signals/rig_file.h"
 #include "store/history.h"
 
 namespace servodx::study {

@@ -10,7 +10,7 @@
 #include "parameters/table.h"
 #include "ratios/measure.h"
 #include "ratios/rows.h"
-#include "report/diagnose/diagnosis_words.h"
+#include "report/diagnose/verdict_words.h"
 #include "rig/rig_faults.h"
 #include "rig/rig_model.h"
 #include "rig/rig_run.h"

@@ -5,11 +5,12 @@
 #include <string>
 #include <vector>
 
+#include "diagnose/broken_sensors.h"
 #include "diagnose/hypotheses.h"
 #include "diagnose/judgeable.h"
 #include "diagnose/moved.h"
 #include "diagnose/reading.h"
-#include "diagnose/records.h"
+#include "diagnose/record_figures.h"
 #include "diagnose/visible.h"
 #include "evidence/conditions.h"
 #include "faults/fault.h"

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "diagnose/assessment.h"
-#include "diagnose/records.h"
+#include "diagnose/record_figures.h"
 #include "evidence/conditions.h"
 #include "faults/fault.h"
 #include "servodx/operating_point.h"

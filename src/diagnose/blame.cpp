@@ -1,5 +1,6 @@
 #include "diagnose/blame.h"
 
+#include "diagnose/broken_sensors.h"
 #include "diagnose/decide.h"
 #include "diagnose/judge.h"
 #include "diagnose/judgeable.h"

@@ -9,7 +9,7 @@
 #pragma once
 #include <optional>
 
-#include "diagnose/records.h"
+#include "diagnose/broken_sensors.h"
 
 namespace servodx {
 

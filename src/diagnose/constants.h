@@ -115,8 +115,9 @@ inline constexpr double lag_step = 2e-3;             // [s] a spool's lag is som
 inline constexpr double longest_lag = 0.5;           // [s] two recorders without a common trigger
 inline constexpr double worth_a_lag = 10e-3;         // [s] a valve that is slow by less is known as slow
 
-// The records (diagnose/records.cpp, record_law.cpp). Chosen by what such parts do; the shipped logs hold neither a
-// supply that sags nor a coil current, so that halving and doubling them changes nothing there.
+// The records (diagnose/record_figures.cpp, broken_sensors.cpp, record_law.cpp). Chosen by what such parts do; the
+// shipped logs hold neither a supply that sags nor a coil current, so that halving and doubling them changes nothing
+// there.
 //
 // Of the rate of false alarms, for all figures together: they seldom err, as they compare like with like.
 inline constexpr double share_of_records = 0.05;
@@ -158,7 +159,8 @@ inline constexpr double change_gain = 30.0;         // of ln(likelihood); far be
 inline constexpr double onset_gain = 25.0;          // of misfit: a second set of nuisances and a time must pay
 inline constexpr double gain_before_part = 0.1;     // of the gain after: what gained more before was there before
 
-// The hypotheses (diagnose/hypotheses.cpp, hypothesis_fit.cpp, severity.cpp). Not examined: they act in the fits.
+// The hypotheses (diagnose/health_fit.cpp, fault_starts.cpp, fault_fits.cpp, pair_fits.cpp, hypothesis_fit.cpp,
+// severity.cpp). Not examined: they act in the fits.
 inline constexpr double inside_prior = 0.25;    // of a tolerance's range, one standard deviation; health lies inside it
 inline constexpr double end_prior = 0.5;        // the same where health is an end: nothing is cleaner than clean
 inline constexpr double shape_prior = 0.5;      // of a shape's range, one standard deviation: any is likely

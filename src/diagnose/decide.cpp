@@ -26,7 +26,7 @@ bool shown_by(const Fault* fault, GrossFinding finding) {
   return finding != GrossFinding::none && fault && fault->seen_outright && fault->seen_outright->finding == finding;
 }
 
-std::optional<std::size_t> seen_outright(const Evidence& e) {
+std::optional<std::size_t> place_seen_outright(const Evidence& e) {
   for (std::size_t i = 0; i < e.hypotheses.size(); ++i)
     if (shown_by(e.hypotheses[i].fault, e.gross)) return i;
   return {};
@@ -96,7 +96,7 @@ Decision decide_on_valve(const Evidence& e) {
   Decision d;
   for (const HypothesisEvidence& h : e.hypotheses) d.probabilities.push_back(h.probability);
   if (e.error <= e.threshold) return call_healthy(std::move(d), e);
-  if (const auto outright = seen_outright(e)) return name_outright(std::move(d), *outright);
+  if (const auto outright = place_seen_outright(e)) return name_outright(std::move(d), *outright);
   if (e.pair && is_pair(*e.pair, e)) return name_pair(std::move(d), *e.pair);
   const std::size_t best = most_probable(e.hypotheses);
   const HypothesisEvidence& h = e.hypotheses[best];

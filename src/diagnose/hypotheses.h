@@ -87,13 +87,4 @@ std::size_t best_fit(const HypothesisFits& fits);
 HypothesisFits fit_hypotheses(const std::vector<const LogData*>& logs, const ParameterVector& base,
                               const ErrorModel& error, const HypothesisSettings& settings);
 
-// Whitened rms of the worst channel under health, fitted to the log; none where the fit fails. `name`: of the stage.
-std::optional<double> healthy_adequacy(const LogData& log, const std::string& name, const ParameterVector& base,
-                                       const ErrorModel& error, const HypothesisSettings& settings, FitWork& work);
-
-// The log's squared residual, a sample, under health as fitted to its beginning alone, the samples before `end`: what a
-// whole log's fit cannot show where a fault that steps in drags the nuisances along. Empty where the fit fails.
-std::vector<double> square_beyond_beginning(const LogData& log, std::size_t end, const ParameterVector& base,
-                                            const ErrorModel& error, const HypothesisSettings& settings, FitWork& work);
-
 }  // namespace servodx

@@ -203,6 +203,13 @@ std::vector<FreeValue> free_of(const Attempt& a, const HypothesisData& data) {
 
 }  // namespace
 
+void take_better(Attempt& attempt, Attempt other) {
+  FitWork work = attempt.work;
+  work.add(other.work);
+  if (other.fit.ok && other.fit.misfit < attempt.fit.misfit) attempt = std::move(other);
+  attempt.work = work;
+}
+
 FitProblem problem_of(Attempt& a, const HypothesisData& data, int threads) {
   a.fit.fault = a.fault;
   a.fit.free = free_of(a, data);

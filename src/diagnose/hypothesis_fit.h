@@ -47,6 +47,9 @@ struct Attempt {
   FitWork work = {};
 };
 
+// The better of an attempt and of one begun elsewhere, with the work of both.
+void take_better(Attempt& attempt, Attempt other);
+
 // The attempt's own problem, over so many threads; and where it begins: health's end, or what `from` came to.
 FitProblem problem_of(Attempt& attempt, const HypothesisData& data, int threads = 1);
 Point start_of(const Attempt& attempt, const FitProblem& problem, const HypothesisFit* from);

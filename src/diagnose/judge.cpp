@@ -11,7 +11,7 @@
 #include "diagnose/healthy_law.h"
 #include "diagnose/naming.h"
 #include "diagnose/reading.h"
-#include "diagnose/records.h"
+#include "diagnose/record_figures.h"
 #include "diagnose/visible.h"
 #include "evidence/conditions.h"
 #include "evidence/constants.h"

@@ -4,6 +4,7 @@
 // By the samples alone: no fit, no hypothesis; the table gives sizes. Only what no valve and no fault of one can do
 // counts; a jam or a dead supply leaves the sensors' noise and is judged.
 #pragma once
+#include "diagnose/ready_logs.h"
 #include "fit/log_data.h"
 #include "servodx/operating_point.h"
 #include "simulate/scenario.h"
@@ -32,5 +33,7 @@ bool asks_too_much(const Scenario& in);
 Unjudgeable unjudgeable(const LogData& log, const ParameterVector& base);
 // By where it was recorded.
 Unjudgeable unjudgeable(const OperatingPoint& point);
+// By either, of several logs of the first that is; `point`: of the first log.
+Unjudgeable unjudgeable(const ReadyLogs& logs, const ParameterVector& base, const OperatingPoint& point);
 
 }  // namespace servodx

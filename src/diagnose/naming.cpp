@@ -23,7 +23,7 @@ double nothing_by(double chance, double rate) {
 }
 double sure_of(double chance, double rate) { return 1 - nothing_by(chance, rate); }
 
-NamedFault seen_outright(const HypothesisResult& h) {  // the worst, up to the mildest that the finding leaves open
+NamedFault named_outright(const HypothesisResult& h) {  // the worst, up to the mildest that the finding leaves open
   const double worst = h.fault->worst, mildest = h.fault->seen_outright->mildest;
   return {h.fault,
           1.0,
@@ -50,7 +50,7 @@ std::vector<double> beside_health(const Named& of) {
 
 void name_valve(const Named& of, std::vector<NamedFault>& out) {
   const HypothesisResult& told = of.assessment.hypotheses[of.decision.hypothesis];
-  if (of.decision.severity == SeveritySource::seen_outright) return out.push_back(seen_outright(told));
+  if (of.decision.severity == SeveritySource::seen_outright) return out.push_back(named_outright(told));
   if (!of.decision.beside)
     return out.push_back({told.fault,
                           beside_health(of)[of.decision.hypothesis],

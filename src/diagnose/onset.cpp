@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "diagnose/constants.h"
+#include "diagnose/health_fit.h"
 #include "evidence/probabilities.h"
 #include "fit/error_model.h"
 #include "fit/log_data.h"

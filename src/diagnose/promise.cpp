@@ -29,7 +29,7 @@
 namespace servodx {
 namespace {
 
-void whiten(FitProblem& problem, const ErrorModel& error, const Point& x) {
+void whiten_about(FitProblem& problem, const ErrorModel& error, const Point& x) {
   if (!error.channels.empty()) return apply_error_model(problem, error, x);
   const LogData& log = *problem.logs().front();
   const double effective = effective_of(nullptr, log.scenario.time);
@@ -117,7 +117,7 @@ std::vector<Visible> visible_faults(const LogData& data, const ParameterVector& 
   std::vector<FaultSizes> sizes;
   for (const Fault* fault : faults) sizes.push_back(sizes_of(*fault, base.data()));
   FitProblem problem({&data}, base, with_faults(nuisances, base, faults), options);
-  whiten(problem, error, problem.start());
+  whiten_about(problem, error, problem.start());
   const std::vector<Evaluation> runs = problem.evaluate(points_of_faults(problem, nuisances.size(), sizes));
   simulations += problem.simulations();
   const long n = problem.data_rows();
@@ -155,7 +155,7 @@ Promise promise_of(const Log& log, const Table& table, const RigFile& rig, int t
   free.insert(free.end(), nuisances.begin(), nuisances.end());
   FitProblem problem({&data}, base, free, options);
   const Point x = problem.start();
-  whiten(problem, error, x);
+  whiten_about(problem, error, x);
   Evaluation at = problem.evaluate(std::span(&x, 1)).front();
   Eigen::MatrixXd jacobian;
   if (!at.ok || !problem.jacobian(x, at.residual, jacobian))

@@ -4,7 +4,9 @@
 #include <cmath>
 
 #include "base/student.h"
+#include "diagnose/broken_sensors.h"
 #include "diagnose/constants.h"
+#include "diagnose/record_figures.h"
 #include "evidence/log_scatter.h"
 #include "faults/record.h"
 #include "faults/registry.h"

@@ -7,7 +7,8 @@
 #include <optional>
 #include <vector>
 
-#include "diagnose/records.h"
+#include "diagnose/broken_sensors.h"
+#include "diagnose/record_figures.h"
 #include "faults/fault.h"
 #include "servodx/log.h"
 

@@ -1,65 +1,28 @@
-// What the records of a log say without the model: is the supply what it was, does the driver pass on what the command
-// asks, does each sensor scatter as it did, does it move at all.
-//
-// A figure is positive and 1 or so in health; healthy logs' logarithms of it scatter. It is compared with theirs and
-// with nothing of the model's, so that a fault of an input or of a sensor is not taken for one of the valve.
+// What the records of a valve's logs say by themselves, all logs together: the figures of each (record_figures.h), and
+// the sensors that no healthy valve can explain (broken_sensors.h).
 #pragma once
-#include <optional>
 #include <vector>
 
-#include "diagnose/flow_into_chambers.h"
-#include "faults/record.h"
-#include "fit/log_data.h"
+#include "diagnose/broken_sensors.h"
+#include "diagnose/ready_logs.h"
+#include "diagnose/record_figures.h"
 #include "parameters/table.h"
+#include "servodx/rig.h"
 #include "signals/log.h"
-#include "signals/signal.h"
 #include "simulate/scenario.h"
 
 namespace servodx {
 
-enum class FigureKind {
-  supply_level,   // [Pa] supply pressure at no flow, of the first part of the log
-  supply_step,    // of that level: the level at the end, from the time on at which it parts most
-  supply_left,    // of that level: what is left of it at the flow of the widest opening
-  driver_gain,    // current over command
-  driver_offset,  // 1 + mean current at no command, of rated current
-  driver_left,    // current that the command does not account for, over the command, in the worst eighth of the log
-  sensor_noise,   // [SI] of the signal, in the noisier half of the log
+// Of several logs each log's; the worst stands out among all.
+struct RecordsOfLogs {
+  std::vector<RecordFigure> figures;
+  std::vector<BrokenSensor> broken;
+  bool current_recorded = true;  // in every log
 };
-inline constexpr int n_figure_kinds = 7;
-
-struct RecordFigure {
-  FigureKind kind = FigureKind::supply_level;
-  Signal signal = Signal::supply_pressure;
-  double value = 1;
-  std::optional<double> since = {};  // [s] of a step: when
-  double error = 0;                  // of its logarithm, one standard deviation: what the log itself leaves open
-};
-
-// Of what the log records, in the order of the kinds; what it cannot tell is left out.
-std::vector<RecordFigure> record_figures(const Log& log, const LogData& data, const ParameterVector& base);
-// Of the driver alone: they need nothing of the valve.
-std::vector<RecordFigure> driver_figures(const Log& log, const LogData& data);
-
-// What no healthy sensor does, seen without other logs.
-enum class SensorFinding {
-  frozen,         // it shows one value while the command moves and the simulation's sensor would
-  turned,         // it moves against the simulation
-  swapped_ports,  // each pressure follows the other's simulation
-  clipped,        // it stays at one limit while the simulation goes on
-};
-struct BrokenSensor {
-  SensorFinding finding = SensorFinding::frozen;
-  Signal signal = Signal::spool_position;
-};
-// `healthy`: the simulation at the tuned values, with the log's channels.
-std::vector<BrokenSensor> broken_sensors(const LogData& data, const Trajectory& healthy);
-
-bool names_exchanged_ports(const std::vector<BrokenSensor>& found);
-// Pressures that follow the other port's simulation are exchanged, unless the flow into the chambers says that they
-// stand as they should: a load with its sign turned does the same.
-std::vector<BrokenSensor> beside_flow(std::vector<BrokenSensor> found, Chambers by_flow);
-
-Record record_of(FigureKind kind);
+// `logs` and `ready` are the same logs in the same order.
+RecordsOfLogs look_at_records(const std::vector<Log>& logs, const ReadyLogs& ready, const ParameterVector& base,
+                              const RigFile& rig, int threads);
+// The figures of the driver alone, of logs in which nothing else can be judged.
+std::vector<RecordFigure> driver_figures(const std::vector<Log>& logs, const ReadyLogs& ready);
 
 }  // namespace servodx

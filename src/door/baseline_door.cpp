@@ -21,6 +21,7 @@
 #include "diagnose/baseline.h"
 #include "diagnose/diagnose.h"
 #include "explain/healthy.h"
+#include "explain/score_healthy.h"
 #include "parameters/table_text.h"
 #include "report/baseline/baseline_json.h"
 #include "report/explain/explain_report.h"

@@ -23,6 +23,8 @@
 #include "fit/tuned_state.h"
 #include "report/diagnose/diagnosis_json.h"
 #include "report/diagnose/diagnosis_words.h"
+#include "report/diagnose/next_calls.h"
+#include "report/diagnose/verdict_words.h"
 #include "report/shared/json.h"
 #include "servodx/baseline.h"
 #include "servodx/diagnose.h"

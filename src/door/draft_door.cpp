@@ -15,7 +15,7 @@
 #include "signals/column_questions.h"
 #include "signals/guess.h"
 #include "signals/log_header.h"
-#include "signals/rig_file.h"
+#include "signals/rig_keys.h"
 #include "signals/signal.h"
 
 namespace servodx {

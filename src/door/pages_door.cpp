@@ -11,6 +11,7 @@
 #include "fit/log_data.h"
 #include "fit/replay.h"
 #include "report/diagnose/diagnosis_words.h"
+#include "report/diagnose/verdict_words.h"
 #include "servodx/baseline.h"
 #include "servodx/bode.h"
 #include "servodx/diagnose.h"

@@ -6,6 +6,7 @@
 
 #include "explain/answer.h"
 #include "explain/block_replay.h"
+#include "explain/cause_sizes.h"
 #include "explain/constants.h"
 #include "explain/engine.h"
 #include "explain/fit_causes.h"

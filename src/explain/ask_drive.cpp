@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "explain/answer.h"
+#include "explain/beside_healthy.h"
 #include "explain/constants.h"
 #include "explain/describe.h"
 #include "explain/drive.h"

@@ -62,7 +62,7 @@ inline constexpr double most_of_it = 0.5;     // of the held-out misfit: a name 
 
 inline constexpr double questions = 3;  // size, share, and what is left, by Bonferroni. By definition
 
-// What healthy logs show of a cause's size (explain/healthy.cpp).
+// What healthy logs show of a cause's size (explain/beside_healthy.cpp).
 inline constexpr double all_but = 1e-9;  // of a misfit: nothing removes all
 inline constexpr double law_logs = 10;   // the normal law of sizes counts as much as so many logs
 
@@ -145,7 +145,7 @@ inline constexpr double least_told = 0.25;    // of the excess: a place that hol
 inline constexpr double least_lift = 0.2;  // share ln(share / part of the time): below it the excess is spread evenly
 }  // namespace shown
 
-// The walk of a missing input (explain/smoother.cpp).
+// The walk of a missing input (explain/smoother.cpp, kalman_filter.h).
 namespace smoother {
 inline constexpr std::size_t blocks = 16;            // of time, of each run
 inline constexpr std::size_t search_samples = 1500;  // of all runs: the intensity is searched for on so many

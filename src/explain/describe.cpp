@@ -8,6 +8,7 @@
 #include "base/normal.h"
 #include "effects/registry.h"
 #include "effects/row_effects.h"
+#include "explain/beside_healthy.h"
 #include "explain/fit_causes.h"
 #include "explain/healthy.h"
 #include "explain/outcome.h"

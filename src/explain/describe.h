@@ -3,10 +3,10 @@
 #include <string>
 
 #include "explain/answer.h"
+#include "explain/beside_healthy.h"
 #include "explain/engine.h"
 #include "explain/explain.h"
 #include "explain/fit_causes.h"
-#include "explain/healthy.h"
 #include "explain/inquiry.h"
 #include "explain/subject.h"
 

@@ -17,7 +17,6 @@
 #include "servodx/note.h"
 #include "servodx/rig.h"
 #include "signals/log.h"
-#include "signals/rig_file.h"
 #include "simulate/scenario.h"
 
 namespace servodx {

@@ -52,7 +52,8 @@ struct CauseRows {
   std::vector<FreeValue> values;
   std::vector<ExplainedParameter> parameters;
 };
-CauseRows rows_of(const ValveSubject& subject, int cause, const ExplainedCause& about, const ParameterVector& fitted) {
+CauseRows rows_of_cause(const ValveSubject& subject, int cause, const ExplainedCause& about,
+                        const ParameterVector& fitted) {
   CauseRows out{subject.values(cause), about.parameters};
   if (!subject.causes()[static_cast<std::size_t>(cause)].curve) return out;
   for (int j = 0; j < Unexplained::n_parameters - Unexplained::knots; ++j) {
@@ -87,7 +88,7 @@ Table extended_table(const ValveSubject& subject, const FoundCauses& found, cons
   const ParameterVector fitted = subject.candidate(found.after.causes, found.after.point, 0);
   write_retuned_rows(fitted, subject.logs().size() > 1, table);
   for (std::size_t k = 0; k < causes.size(); ++k)
-    write_cause(rows_of(subject, found.causes[k].cause, causes[k], fitted), causes[k].effect, table);
+    write_cause(rows_of_cause(subject, found.causes[k].cause, causes[k], fitted), causes[k].effect, table);
   return table;
 }
 

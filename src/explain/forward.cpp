@@ -142,8 +142,8 @@ std::vector<Trial> fit_best(const Subject& subject, const EngineOptions& options
 }
 
 // In full, on data that it has not seen, and on top of re-tuning.
-void measure(const Subject& subject, const EngineOptions& options, const Round& round, const Selected& so_far,
-             double degrees, Trial& t) {
+void measure_trial(const Subject& subject, const EngineOptions& options, const Round& round, const Selected& so_far,
+                   double degrees, Trial& t) {
   ExplainedFit whole = fit_causes(subject, t.fit.causes, &t.fit, nullptr, full_iterations, false);
   if (whole.ok && whole.deviance < t.fit.deviance) t.fit = std::move(whole);
   t.delta_bic = delta_bic(so_far.fit, t.fit, degrees);
@@ -171,7 +171,7 @@ void measure_best(const Subject& subject, const EngineOptions& options, const Ro
     if (budget.takes(fitted_evidence(round, t))) best.push_back(&t);
   const auto measure_one = [&](std::size_t i) {
     Trial t = *best[i];
-    measure(subject, options, round, so_far, degrees, t);
+    measure_trial(subject, options, round, so_far, degrees, t);
     t.measured = true;
     *best[i] = std::move(t);
   };
@@ -184,7 +184,7 @@ void measure_best(const Subject& subject, const EngineOptions& options, const Ro
 bool is_named(const Cause& c) { return !c.curve && !is_rare(c); }
 
 // Healthy data are asked the same of the causes that have a name.
-bool is_news_by_share(const Subject& subject, const EngineOptions& options, const Round& round, const Trial& t) {
+bool share_is_news(const Subject& subject, const EngineOptions& options, const Round& round, const Trial& t) {
   return options.p_share && is_named(subject.causes()[at(t.cause())]) &&
          is_news_by_share(options.p_share(subject.causes()[at(t.cause())], t.share.value), round.whole);
 }
@@ -192,7 +192,7 @@ bool is_news_by_share(const Subject& subject, const EngineOptions& options, cons
 JudgedEvidence judged_evidence(const Subject& subject, const EngineOptions& options, const Round& round,
                                const Selected& so_far, const Trial& t) {
   const FittedEvidence f = fitted_evidence(round, t);
-  const bool by_share = is_news_by_share(subject, options, round, t);
+  const bool by_share = share_is_news(subject, options, round, t);
   JudgedEvidence j;
   j.curve = subject.causes()[at(t.cause())].curve;
   j.is_new = f.is_new || by_share, j.news_by_itself = f.news_by_itself || by_share;
@@ -264,7 +264,8 @@ Rivals rivals(const EngineOptions& options, const Round& round, const Selected& 
 }
 
 // The best of what is new; null: none stands.
-Trial* best_of(const EngineOptions& options, const Round& round, const Selected& so_far, std::vector<Trial>& trials) {
+Trial* best_trial(const EngineOptions& options, const Round& round, const Selected& so_far,
+                  std::vector<Trial>& trials) {
   Trial* best = nullptr;
   for (Trial& t : trials)
     if (t.stands && t.is_new)
@@ -308,7 +309,7 @@ bool accept_one_more(const Subject& subject, const EngineOptions& options, bool 
       out.candidates[at(t.cause())].fate = Fate::not_beyond_healthy;
       out.standing.push_back(result_of(subject, so_far, t, false));
     }
-  Trial* best = best_of(options, round, so_far, trials);
+  Trial* best = best_trial(options, round, so_far, trials);
   if (!best) return false;
   CauseResult accepted = result_of(subject, so_far, *best, true);
   accepted.confusable_with = in_place_of(subject, options, *best, trials);

@@ -35,7 +35,7 @@ std::vector<Block> blocks_of(const Subject& subject, int wanted) {
   return out;
 }
 
-std::pair<long, long> rows_of(const Series& s, const Block& b) {
+std::pair<long, long> rows_in_block(const Series& s, const Block& b) {
   const auto n = static_cast<double>(s.count);
   const long from = std::lround(b.from * n), to = std::lround(b.to * n);
   return {s.first + from, to - from};
@@ -48,7 +48,7 @@ Eigen::VectorXd without_fold(const Subject& subject, const std::vector<Block>& b
     if (static_cast<int>(b) % folds != fold) continue;
     for (const Series& s : subject.series())
       if (s.log == blocks[b].log) {
-        const auto [at, n] = rows_of(s, blocks[b]);
+        const auto [at, n] = rows_in_block(s, blocks[b]);
         mask.segment(at, n).setZero();
       }
   }
@@ -131,7 +131,7 @@ void cross_validate(const Subject& subject, ExplainedFit& fit, const Folds& fold
           fit.heldout[b][i] = 0;
           continue;
         }
-        const auto [at, n] = rows_of(series[i], blocks[b]);
+        const auto [at, n] = rows_in_block(series[i], blocks[b]);
         fit.heldout[b][i] = e.ok ? e.residual.segment(at, n).squaredNorm() : failed_square;
         fit.heldout_residual.segment(at, n) = physical.segment(at, n);
       }

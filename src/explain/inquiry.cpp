@@ -7,6 +7,8 @@
 #include "base/stages.h"
 #include "evidence/conditions.h"
 #include "evidence/tail_law.h"
+#include "explain/beside_healthy.h"
+#include "explain/cause_sizes.h"
 #include "explain/constants.h"
 #include "explain/kept.h"
 #include "explain/score.h"
@@ -27,8 +29,8 @@ std::optional<KnownRig> known_of(const HealthyReference* healthy) {
   return healthy ? std::optional<KnownRig>(healthy->known()) : std::nullopt;
 }
 
-Stages stages_of(const std::vector<Log>& logs, const Table& tuned, const RigFile& rig,
-                 const std::optional<KnownRig>& known, const ExplainOptions& options) {
+Stages stages_of_inquiry(const std::vector<Log>& logs, const Table& tuned, const RigFile& rig,
+                         const std::optional<KnownRig>& known, const ExplainOptions& options) {
   if (!options.watch.checkpoint) return {};
   std::vector<std::string> content;
   for (const Log& log : logs) content.push_back(content_hash(log));
@@ -53,7 +55,7 @@ Inquiry::Inquiry(const std::vector<Log>& logs, const Table& tuned, const RigFile
       known_(known_of(healthy)),
       subject_(logs, tuned, rig, options.threads, known_),
       sizes_(logs.size()) {
-  subject_.stages = stages_of(logs, tuned, rig, known_, options);
+  subject_.stages = stages_of_inquiry(logs, tuned, rig, known_, options);
   if (healthy && logs.size() > 1)
     for (const Log& log : logs) lone_.emplace_back(log, tuned, rig, options.threads, known_, subject_.stages);
   if (healthy) {

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "base/stages.h"
+#include "explain/beside_healthy.h"
 #include "explain/blocks.h"
 #include "explain/cause_score.h"
 #include "explain/engine.h"
@@ -16,6 +17,7 @@
 #include "explain/hold_out.h"
 #include "explain/kin.h"
 #include "explain/learnt_curves.h"
+#include "explain/score_healthy.h"
 #include "explain/subject.h"
 #include "explain/valve.h"
 #include "parameters/table.h"

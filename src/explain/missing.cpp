@@ -7,6 +7,7 @@
 #include "base/two_pi.h"
 #include "effects/unexplained.h"
 #include "explain/constants.h"
+#include "explain/linear_run.h"
 #include "explain/smoother.h"
 #include "fit/log_data.h"
 #include "fit/log_start.h"
@@ -115,8 +116,8 @@ Eigen::MatrixXd step_with_filters(const Eigen::MatrixXd& from, const std::vector
 }
 
 // A channel's residual and what is known of its noise: as healthy logs have it, or the sensor's.
-LinearChannel weighed(const ValveSubject& subject, std::size_t series, const std::vector<double>& residual,
-                      double noise, int stride) {
+LinearChannel weighed_channel(const ValveSubject& subject, std::size_t series, const std::vector<double>& residual,
+                              double noise, int stride) {
   LinearChannel out;
   out.residual = every(residual, stride);
   if (!subject.holds()) {
@@ -145,7 +146,8 @@ LinearRun linear_run(const ValveSubject& subject, const FitProblem& problem, con
     Eigen::VectorXd shows = shown(channel.signal, static_cast<int>(own), p);
     if (shows.size() == 0) continue;
     const std::vector<double> residual = problem.raw_residual(log, static_cast<int>(c), run);
-    LinearChannel& to = out.channels.emplace_back(weighed(subject, series + c, residual, channel.noise, stride));
+    LinearChannel& to =
+        out.channels.emplace_back(weighed_channel(subject, series + c, residual, channel.noise, stride));
     if (channel.filter.drift > 0) {
       filtered.push_back({std::move(shows), channel.filter.drift, channel.noise});
       shows =
@@ -244,7 +246,8 @@ std::optional<LinearLogs> linear_logs(const ValveSubject& subject, const Point& 
 }
 
 // What a place misses, how large it is over the logs, and the variable that it follows most closely.
-MissingInput described(const SmoothedInput& from, const MissingPlace& place, double cost, const LinearLogs& logs) {
+MissingInput described_input(const SmoothedInput& from, const MissingPlace& place, double cost,
+                             const LinearLogs& logs) {
   MissingInput to{place.where, place.quantity, place.unit};
   to.gain = from.gain - cost;
   to.value = from.value, to.error = from.std_error;
@@ -284,7 +287,7 @@ MissingInputs missing_inputs(const ValveSubject& subject, const Point& point, co
   const SmootherResult smoothed = smooth(logs->runs, typical, told);
   const double cost = 0.5 * std::log(std::max(2.0, smoothed.independent));
   for (std::size_t i = 0; i < smoothed.places.size(); ++i)
-    out.places.push_back(described(smoothed.places[i], missing_places[i], cost, *logs));
+    out.places.push_back(described_input(smoothed.places[i], missing_places[i], cost, *logs));
   mark_likely(smoothed.places, out.places);
   std::stable_sort(out.places.begin(), out.places.end(), [](const auto& a, const auto& b) { return a.gain > b.gain; });
   return out;

@@ -1,13 +1,13 @@
 #include "explain/smoother.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <optional>
+#include <type_traits>
+#include <utility>
 
 #include "base/normal.h"
-#include "base/two_pi.h"
 #include "explain/constants.h"
+#include "explain/kalman_filter.h"
 #include "fit/error_model.h"
 
 namespace servodx {
@@ -16,311 +16,10 @@ namespace {
 using Index = std::size_t;
 using namespace explain_constants::smoother;
 
-Index states_of(const std::vector<LinearRun>& runs) { return static_cast<Index>(runs.front().start.size()); }
-Index samples_of(const std::vector<LinearRun>& runs) {
-  Index n = 0;
-  for (const LinearRun& r : runs) n += r.time.size();
-  return n;
-}
-
-// Without the states that no input, and nothing unknown at the start, ever reaches, or that no channel ever shows.
-std::vector<LinearRun> pruned(const std::vector<LinearRun>& runs) {
-  const auto n = static_cast<long>(states_of(runs)), m = runs.front().transition.front().cols() - n;
-  Eigen::MatrixXd any = Eigen::MatrixXd::Zero(n, n + m);
-  Eigen::VectorXd reached = Eigen::VectorXd::Zero(n), seen = reached;
-  for (const LinearRun& r : runs) {
-    for (const Eigen::MatrixXd& t : r.transition) any += (t.array() != 0).cast<double>().matrix();
-    reached += r.start.cwiseAbs();
-    for (const LinearChannel& c : r.channels) seen += c.shows.cwiseAbs();
-  }
-  const Eigen::MatrixXd among = any.leftCols(n);
-  reached += any.rightCols(m).rowwise().sum();
-  const auto ones = [](const Eigen::VectorXd& v) -> Eigen::VectorXd { return (v.array() != 0).cast<double>(); };
-  for (long k = 0; k < n; ++k) {
-    reached = ones(reached + among * ones(reached));
-    seen = ones(seen + among.transpose() * ones(seen));
-  }
-  std::vector<long> kept;
-  for (long i = 0; i < n; ++i)
-    if (reached[i] != 0 && seen[i] != 0) kept.push_back(i);
-  std::vector<long> columns = kept;
-  for (long p = 0; p < m; ++p) columns.push_back(n + p);
-  std::vector<LinearRun> out;
-  for (const LinearRun& r : runs) {
-    LinearRun& to = out.emplace_back(LinearRun{r.time, {}, r.start(kept), {}});
-    for (const Eigen::MatrixXd& t : r.transition) to.transition.push_back(t(kept, columns));
-    for (const LinearChannel& c : r.channels) to.channels.push_back({c.shows(kept), c.residual, c.sigma, c.memory});
-  }
-  return out;
-}
-
-// out = b a^T, columns one after another: nearly all of the time. What is zero in a costs nothing.
-template <int N>
-inline __attribute__((always_inline)) void product(const double* a, const double* b, double* out) {
-  typedef double V __attribute__((vector_size(32), aligned(8), may_alias));
-  constexpr int width = 4;
-  static_assert(N % width == 0);
-  for (int j = 0; j < N; ++j) {
-    V sum[N / width] = {};
-    for (int k = 0; k < N; ++k) {
-      const double f = a[k * N + j];
-      if (f == 0) continue;
-      const V* column = reinterpret_cast<const V*>(b + k * N);
-      for (int i = 0; i < N / width; ++i) sum[i] += f * column[i];
-    }
-    for (int i = 0; i < N / width; ++i) reinterpret_cast<V*>(out + j * N)[i] = sum[i];
-  }
-}
-template <int N>
-void product_anywhere(const double* a, const double* b, double* out) {
-  product<N>(a, b, out);
-}
-#if defined(__x86_64__)
-template <int N>
-__attribute__((target("avx2"))) void product_avx2(const double* a, const double* b, double* out) {
-  product<N>(a, b, out);
-}
-#endif
-template <int N>
-auto best_product() {
-#if defined(__x86_64__)
-  if (__builtin_cpu_supports("avx2")) return &product_avx2<N>;
-#endif
-  return &product_anywhere<N>;
-}
-
-// A sample of a channel is present, and it follows one: what the one before leaves is then differenced away.
-bool is_present(const LinearChannel& c, Index k) { return std::isfinite(c.residual[k]); }
-bool follows(const LinearChannel& c, Index k) { return k > 0 && is_present(c, k - 1); }
-
-// Filter and smoother of N states at most, two of them the missing input and its slope, the last.
-template <int N>
-class KalmanFilter {
- public:
-  using Vector = Eigen::Matrix<double, N, 1>;
-  using Matrix = Eigen::Matrix<double, N, N>;
-  static constexpr int w = N - 2, slope = N - 1;
-
-  explicit KalmanFilter(const std::vector<LinearRun>& runs) : runs_(runs) {
-    const auto n = static_cast<long>(states_of(runs));
-    for (const LinearRun& r : runs) {
-      auto& matrices = transition_.emplace_back();
-      auto& rows = lagged_.emplace_back();
-      for (const Eigen::MatrixXd& t : r.transition) {
-        Matrix& a = matrices.emplace_back(Matrix::Identity());
-        a.topLeftCorner(n, n) = t.leftCols(n);
-        for (const LinearChannel& c : r.channels) {
-          Vector& row = rows.emplace_back(Vector::Zero());
-          row.head(n) = t.leftCols(n).transpose() * c.shows - c.memory * c.shows;
-        }
-      }
-    }
-  }
-  // What is missing enters here from now on; negative: nowhere. It is a walk, or its slope is.
-  void choose(int place, bool by_slope) {
-    const auto n = static_cast<long>(states_of(runs_));
-    for (Index l = 0; l < runs_.size(); ++l) {
-      const LinearRun& r = runs_[l];
-      for (Index k = 0; k < r.transition.size(); ++k) {
-        Eigen::VectorXd b = Eigen::VectorXd::Zero(n);
-        if (place >= 0) b = r.transition[k].col(n + place);
-        transition_[l][k].col(w).head(n) = b;
-        transition_[l][k](w, slope) = by_slope ? r.time[k + 1] - r.time[k] : 0.0;
-        for (Index c = 0; c < r.channels.size(); ++c)
-          lagged_[l][k * r.channels.size() + c][w] = r.channels[c].shows.dot(b);
-      }
-    }
-  }
-
-  struct Walk {
-    bool by_slope = false;                   // the slope walks
-    double variance = 0;                     // [unit2/s], or of the slope [unit2/s3]
-    double start = 0, slope_start = 0;       // [unit2], [unit2/s2] variance at the first sample
-    std::vector<std::vector<double>> noise;  // [run][channel] factor on the variance of the news
-  };
-  struct Pass {
-    std::vector<std::vector<double>> surprise, square, samples;     // [run][channel] sums of ln F, of e2/F, of 1
-    std::vector<std::vector<double>> own, own_square;               // the last two by the noise's share of F
-    std::vector<std::vector<std::array<double, blocks>>> by_block;  // [run][channel] log likelihood but for a constant
-    std::vector<std::vector<std::vector<double>>> innovations;      // [run][channel][sample], over their sigma
-    std::vector<std::vector<double>> value, variance;               // [run][sample] of w; empty unless smoothed
-    void open_run(Index channels) {
-      for (auto* sums : {&surprise, &square, &samples, &own, &own_square}) sums->emplace_back(channels, 0.0);
-      innovations.emplace_back(channels), by_block.emplace_back(channels);
-    }
-    // An innovation of variance f, of which `noise` is the channel's own.
-    void add(Index l, Index c, Index block, double innovation, double f, double noise) {
-      const double e2 = innovation * innovation / f, share = noise / f, log_f = std::log(f);
-      by_block[l][c][block] -= 0.5 * (log_f + e2);
-      surprise[l][c] += log_f, square[l][c] += e2, samples[l][c] += 1;
-      own[l][c] += share, own_square[l][c] += share * e2;
-    }
-    double log_likelihood(const std::vector<std::vector<double>>* counts = nullptr) const {
-      double sum = 0;
-      for (Index l = 0; l < surprise.size(); ++l)
-        for (Index c = 0; c < surprise[l].size(); ++c)
-          sum -= 0.5 * (counts ? (*counts)[l][c] : 1.0) *
-                 (surprise[l][c] + square[l][c] + samples[l][c] * std::log(two_pi));
-      return sum;
-    }
-    // News as large as they come out: where the likelihood has no slope against them.
-    std::vector<std::vector<double>> noise(std::vector<std::vector<double>> now) const {
-      for (Index l = 0; l < now.size(); ++l)
-        for (Index c = 0; c < now[l].size(); ++c)
-          if (own[l][c] > 0) now[l][c] = std::max(1.0, now[l][c] * own_square[l][c] / own[l][c]);
-      return now;
-    }
-  };
-  enum class Keep { sums, innovations, smoothed };
-
-  Pass operator()(const Walk& walk, Keep keep) const {
-    Pass out;
-    for (Index l = 0; l < runs_.size(); ++l) run(l, walk, keep, out);
-    return out;
-  }
-
- private:
-  struct Belief {
-    Vector x;
-    Matrix p;  // its covariance
-  };
-  struct Reading {  // value = row x + noise of that variance
-    const Vector* row;
-    double value, variance;
-  };
-  struct Update {  // by one reading
-    const Vector* row;
-    Vector gain;
-    double weighed, precision;  // innovation over its variance, 1 over its variance
-  };
-  struct Kept {
-    Vector covariance;  // of all with w
-    double w;
-    Index lagged, fresh;  // updates up to here: before the step that led here, and after it
-  };
-  struct History {  // what the smoother needs of a run
-    std::vector<Update> updates;
-    std::vector<Kept> kept;  // [sample]
-  };
-  struct Adjoint {  // what later samples say of the state
-    Vector value = Vector::Zero();
-    Matrix information = Matrix::Zero();
-  };
-
-  void run(Index l, const Walk& walk, Keep keep, Pass& out) const {
-    const LinearRun& r = runs_[l];
-    const Index samples = r.time.size(), channels = r.channels.size();
-    const std::vector<Vector> shows = shown_by(r);
-    History history;
-    if (keep == Keep::smoothed) history.updates.reserve(samples * channels), history.kept.reserve(samples);
-    out.open_run(channels);
-    Belief now = before(r, walk);
-    const auto take = [&](Index c, Index k, const Reading& reading) {
-      const Vector ph = now.p * *reading.row;
-      const double f = reading.row->dot(ph) + reading.variance, e = reading.value - reading.row->dot(now.x);
-      const Vector gain = ph / f;
-      now.x += gain * e;
-      now.p.noalias() -= gain * ph.transpose();
-      out.add(l, c, k * blocks / samples, e, f, reading.variance);
-      if (keep != Keep::sums) out.innovations[l][c].push_back(e / std::sqrt(f));
-      if (keep == Keep::smoothed) history.updates.push_back({reading.row, gain, e / f, 1 / f});
-    };
-    for (Index k = 0; k < samples; ++k) {
-      for (Index c = 0; c < channels; ++c)
-        if (is_present(r.channels[c], k) && follows(r.channels[c], k)) take(c, k, lagged_reading(l, c, k, walk));
-      const Index lagged = history.updates.size();
-      if (k > 0) step(l, k, walk, now);
-      for (Index c = 0; c < channels; ++c)
-        if (is_present(r.channels[c], k) && !follows(r.channels[c], k))
-          take(c, k, fresh_reading(l, c, k, walk, shows[c]));
-      if (keep == Keep::smoothed) history.kept.push_back({now.p.col(w), now.x[w], lagged, history.updates.size()});
-    }
-    if (keep == Keep::smoothed) smooth(l, history, out);
-  }
-
-  static std::vector<Vector> shown_by(const LinearRun& r) {
-    std::vector<Vector> out;
-    for (const LinearChannel& c : r.channels) out.emplace_back(Vector::Zero()).head(c.shows.size()) = c.shows;
-    return out;
-  }
-  // Of the first sample, before it is read.
-  static Belief before(const LinearRun& r, const Walk& walk) {
-    Belief out{Vector::Zero(), Matrix::Zero()};
-    out.p.diagonal().head(r.start.size()) = r.start.cwiseAbs2();
-    out.p(w, w) = walk.start, out.p(slope, slope) = walk.slope_start;
-    return out;
-  }
-  // What a sample says beyond the one before, of the state there.
-  Reading lagged_reading(Index l, Index c, Index k, const Walk& walk) const {
-    const LinearChannel& of = runs_[l].channels[c];
-    return {&lagged_[l][(k - 1) * runs_[l].channels.size() + c], of.residual[k] - of.memory * of.residual[k - 1],
-            walk.noise[l][c] * of.sigma[k] * of.sigma[k]};
-  }
-  // What a sample says by itself: noise that nothing is known of before has its whole variance.
-  Reading fresh_reading(Index l, Index c, Index k, const Walk& walk, const Vector& shows) const {
-    const LinearChannel& of = runs_[l].channels[c];
-    return {&shows, of.residual[k], walk.noise[l][c] * of.sigma[k] * of.sigma[k] / (1 - of.memory * of.memory)};
-  }
-  // From the sample before to the k-th.
-  void step(Index l, Index k, const Walk& walk, Belief& now) const {
-    const Matrix& a = transition_[l][k - 1];
-    const std::vector<double>& time = runs_[l].time;
-    const int walks = walk.by_slope ? slope : w;
-    now.x = a * now.x;
-    now.p = times(a, times(a, now.p).transpose());
-    now.p(walks, walks) += walk.variance * (time[k] - time[k - 1]);
-  }
-
-  // Backwards through the updates and steps of a run.
-  void smooth(Index l, const History& history, Pass& out) const {
-    const Index samples = history.kept.size();
-    auto& value = out.value.emplace_back(samples);
-    auto& variance = out.variance.emplace_back(samples);
-    Adjoint later;
-    for (Index k = samples; k-- > 0;) {
-      const Kept& at = history.kept[k];
-      value[k] = at.w + at.covariance.dot(later.value);
-      variance[k] = std::max(0.0, at.covariance[w] - at.covariance.dot(later.information * at.covariance));
-      undo(history, at.lagged, at.fresh, later);
-      if (k == 0) break;
-      const Matrix& a = transition_[l][k - 1];
-      const Matrix turned = a.transpose();
-      later.value = a.transpose() * later.value;
-      later.information = times(turned, times(turned, later.information).transpose());
-      undo(history, history.kept[k - 1].fresh, at.lagged, later);
-    }
-  }
-  static void undo(const History& history, Index from, Index to, Adjoint& later) {
-    while (to > from) {
-      const Update& u = history.updates[--to];
-      const Vector by = later.information * u.gain;
-      const Vector half = by - 0.5 * (u.gain.dot(by) + u.precision) * *u.row;
-      later.value += *u.row * (u.weighed - u.gain.dot(later.value));
-      later.information -= *u.row * half.transpose() + half * u.row->transpose();
-    }
-  }
-  static Matrix times(const Matrix& a, const Matrix& b) {
-    static const auto best = best_product<N>();
-    Matrix out;
-    best(a.data(), b.data(), out.data());
-    return out;
-  }
-
-  const std::vector<LinearRun>& runs_;
-  std::vector<std::vector<Matrix>> transition_;  // [run][sample]
-  std::vector<std::vector<Vector>> lagged_;      // [run][sample, channel] what the next sample's news show of a state
-};
-
 std::vector<std::vector<double>> ones(const std::vector<LinearRun>& runs) {
   std::vector<std::vector<double>> out;
   for (const LinearRun& r : runs) out.emplace_back(r.channels.size(), 1.0);
   return out;
-}
-
-double duration_of(const std::vector<LinearRun>& runs) {
-  double longest_run = 0;
-  for (const LinearRun& r : runs) longest_run = std::max(longest_run, r.time.back() - r.time.front());
-  return longest_run;
 }
 
 template <int N>
@@ -331,7 +30,7 @@ class Search {
       : fine_(runs),
         coarse_(coarse),
         coarse_runs_(coarse),
-        duration_(duration_of(runs)),
+        duration_(longest_of(runs)),
         nothing_(),
         noise_(ones(runs)) {}
 
@@ -480,33 +179,6 @@ bool preferred(const SmoothedInput& place, const SmoothedInput& to) {
     square += std::pow(place.by_block[b] - to.by_block[b] - mean, 2) / (n - 1);
   return n * mean > std::log(explain_constants::odds_of_a_place) &&
          n * mean > normal_95_one_sided * std::sqrt(n * square);
-}
-
-LinearRun thinned(const LinearRun& run, int stride) {
-  if (stride <= 1) return run;
-  const auto s = static_cast<Index>(stride);
-  const long n = run.start.size(), m = run.transition.front().cols() - n;
-  LinearRun out{{}, {}, run.start, {}};
-  for (const LinearChannel& c : run.channels) {
-    const double a = std::pow(c.memory, stride);
-    LinearChannel& to = out.channels.emplace_back(LinearChannel{c.shows, {}, {}, a});
-    // News of several samples, the older ones remembered.
-    const double grown = c.memory > 0 ? std::sqrt((1 - a * a) / (1 - c.memory * c.memory)) : 1.0;
-    for (Index k = 0; k < run.time.size(); k += s)
-      to.residual.push_back(c.residual[k]), to.sigma.push_back(grown * c.sigma[k]);
-  }
-  for (Index k = 0; k < run.time.size(); k += s) {
-    out.time.push_back(run.time[k]);
-    if (k + s >= run.time.size()) break;
-    Eigen::MatrixXd whole = run.transition[k];
-    for (Index j = k + 1; j < k + s; ++j) {
-      const Eigen::MatrixXd& next = run.transition[j];
-      whole = (next.leftCols(n) * whole).eval();
-      whole.rightCols(m) += next.rightCols(m);
-    }
-    out.transition.push_back(std::move(whole));
-  }
-  return out;
 }
 
 SmootherResult smooth(const std::vector<LinearRun>& runs, const std::vector<double>& typical,

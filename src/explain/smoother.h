@@ -11,26 +11,12 @@
 // differenced away (Bryson & Henrikson 1968). Leaves out: two places at once; deviations so large that the model is not
 // linear over them.
 #pragma once
-#include <Eigen/Core>
 #include <functional>
-#include <string>
 #include <vector>
 
-namespace servodx {
+#include "explain/linear_run.h"
 
-// A channel's residual along a run; n states.
-struct LinearChannel {
-  Eigen::VectorXd shows;         // [n] of a deviation; what is missing shows from the next sample on
-  std::vector<double> residual;  // [SI] measured less simulated, a sample each; NaN where missing
-  std::vector<double> sigma;     // [SI] of the news, at least; a sample each
-  double memory = 0;             // of the noise from sample to sample, below 1
-};
-struct LinearRun {
-  std::vector<double> time;                 // [s]
-  std::vector<Eigen::MatrixXd> transition;  // [sample] to the next: n x (n + m), A and a column b for each place
-  Eigen::VectorXd start;                    // [n] standard deviation of x at the first sample
-  std::vector<LinearChannel> channels;
-};
+namespace servodx {
 
 struct SmoothedInput {
   double intensity = 0;                               // [unit/sqrt(s)] of the walk, or of its slope's [unit/s/sqrt(s)]
@@ -58,8 +44,5 @@ SmootherResult smooth(const std::vector<LinearRun>& runs, const std::vector<doub
 // One place with its intensity given, the walk `start` [unit] wide at the first sample, every sample counted in full
 // and the news as large as said: for tests against exact answers.
 SmoothedInput smooth_at(const std::vector<LinearRun>& runs, int place, double intensity, double start);
-
-// Every `stride`-th sample of a run.
-LinearRun thinned(const LinearRun& run, int stride);
 
 }  // namespace servodx

@@ -14,7 +14,7 @@ struct TieRow {
   std::vector<double> weights;
 };
 
-std::vector<TieRow> rows_of(const SubjectFit& fit, const std::vector<Cause>& all, const std::vector<int>& causes) {
+std::vector<TieRow> tie_rows_of(const SubjectFit& fit, const std::vector<Cause>& all, const std::vector<int>& causes) {
   std::vector<TieRow> rows;
   std::size_t at = fit.numbers.size();
   for (int c : causes) at -= all[static_cast<std::size_t>(c)].numbers.size();
@@ -29,7 +29,7 @@ std::vector<TieRow> rows_of(const SubjectFit& fit, const std::vector<Cause>& all
 }  // namespace
 
 void tie(SubjectFit& fit, const std::vector<Cause>& all, const std::vector<int>& causes) {
-  const std::vector<TieRow> rows = rows_of(fit, all, causes);
+  const std::vector<TieRow> rows = tie_rows_of(fit, all, causes);
   if (rows.empty()) return;
   const auto m = static_cast<long>(rows.size());
   fit.problem.evaluate = [plain = fit.problem.evaluate, numbers = fit.numbers, rows, m](std::span<const Point> points) {

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <utility>
 
-#include "base/error.h"
 #include "base/student.h"
 #include "explain/constants.h"
 #include "explain/sought_cause.h"
@@ -49,10 +48,7 @@ void limit(FreeValue& own, const std::vector<double>& healthy) {
 
 ValveSubject::ValveSubject(const std::vector<Log>& logs, const Table& tuned, const RigFile& rig, int threads,
                            std::optional<KnownRig> known)
-    : table_(tuned), base_(candidate_of(tuned)), error_(error_model_of(tuned)), known_(std::move(known)) {
-  if (error_.channels.empty())
-    throw InputError({.file = tuned.path}, "the table does not say how wrong its model is",
-                     "make it with 'servodx tune'; the file then carries lines '#% ...' ahead of its header");
+    : table_(tuned), base_(candidate_of(tuned)), error_(required_error_model(tuned)), known_(std::move(known)) {
   options_.threads = threads;
   options_.creep_step = creep_step_of(logs, rig);
   prepare_logs(logs, rig);

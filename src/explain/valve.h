@@ -27,7 +27,6 @@
 #include "parameters/table.h"
 #include "servodx/log.h"
 #include "servodx/rig.h"
-#include "signals/rig_file.h"
 #include "simulate/scenario.h"
 
 namespace servodx {

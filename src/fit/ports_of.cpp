@@ -8,7 +8,6 @@
 #include "servodx/log.h"
 #include "servodx/note.h"
 #include "servodx/rig.h"
-#include "signals/rig_file.h"
 #include "simulate/scenario.h"
 
 namespace servodx {

@@ -128,6 +128,14 @@ TunedState tuned_state(const Table& table) {
   return table.state.empty() ? of_comments(table.comments) : of_section(table);
 }
 
+ErrorModel required_error_model(const Table& tuned) {
+  ErrorModel error = error_model_of(tuned);
+  if (error.channels.empty())
+    throw InputError({.file = tuned.path}, "the table does not say how wrong its model is",
+                     "make it with 'servodx tune'; the file then carries lines '#% ...' ahead of its header");
+  return error;
+}
+
 void set_tuned_state(Table& table, const TunedState& state) {
   table.comments = without_tunings(table.comments);
   std::string& out = table.state;

@@ -37,6 +37,8 @@ TunedState tuned_state(const Table& table);
 void set_tuned_state(Table& table, const TunedState& state);
 // Parts of it, where one is all that is asked for.
 inline ErrorModel error_model_of(const Table& table) { return tuned_state(table).error; }
+// Throws InputError where the table has none: it was not tuned.
+ErrorModel required_error_model(const Table& tuned);
 inline Recorder recorder_of(const Table& table) { return tuned_state(table).recorder; }
 // The table's state stands in comments, as earlier versions wrote it.
 bool has_old_state(const Table& table);

@@ -23,7 +23,6 @@
 #include "servodx/rig.h"
 #include "servodx/trend.h"
 #include "signals/log.h"
-#include "signals/rig_file.h"
 
 namespace servodx {
 

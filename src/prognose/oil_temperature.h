@@ -10,7 +10,6 @@
 #include "fit/log_data.h"
 #include "parameters/table.h"
 #include "servodx/rig.h"
-#include "signals/rig_file.h"
 
 namespace servodx {
 

@@ -14,6 +14,10 @@
 #include "base/random.h"
 #include "base/reading_limits.h"
 #include "base/toml_text.h"
+#include "base/units.h"
+#include "servodx/error.h"
+#include "servodx/log.h"
+#include "servodx/rig.h"
 
 namespace servodx::rig {
 namespace {
@@ -260,11 +264,7 @@ const std::vector<ParameterInfo>& rig_parameters() {
   static const std::vector<ParameterInfo> list{
 #define RIG_PARAMETER(group, name, unit, low, high, meaning) \
   {#group, #name, unit, low, high, meaning, &RigModel::group##_##name},
-#include "base/units.h"
 #include "rig/parameters.inc"
-#include "servodx/error.h"
-#include "servodx/log.h"
-#include "servodx/rig.h"
 #undef RIG_PARAMETER
   };
   return list;

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "signals/rig_file.h"
+#include "servodx/rig.h"
 
 namespace servodx::rig {
 
@@ -33,7 +33,6 @@ struct RigModel {
   Ports ports = Ports::actuator;
 #define RIG_PARAMETER(group, name, unit, low, high, meaning) double group##_##name = 0.0;
 #include "rig/parameters.inc"
-#include "servodx/rig.h"
 #undef RIG_PARAMETER
   std::vector<double> spread;        // [SI] of each parameter, in the order of rig_parameters(); 0: all valves alike
   std::vector<Sensor> sensors;       // in the order of the log's columns

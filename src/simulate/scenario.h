@@ -10,7 +10,6 @@
 #include "model/state.h"
 #include "servodx/log.h"
 #include "servodx/rig.h"
-#include "signals/rig_file.h"
 #include "signals/signal.h"
 #include "simulate/fast_command.h"
 #include "simulate/nuisance.h"

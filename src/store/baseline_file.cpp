@@ -12,7 +12,7 @@
 #include "base/result_schema.h"
 #include "base/sha256.h"
 #include "diagnose/baseline.h"
-#include "diagnose/records.h"
+#include "diagnose/record_figures.h"
 #include "evidence/conditions.h"
 #include "faults/fault.h"
 #include "faults/registry.h"

@@ -3,6 +3,8 @@
 #include <array>
 #include <cstddef>
 
+#include "diagnose/record_figures.h"
+
 namespace servodx::store {
 
 std::string key_of(Condition condition) {

@@ -2,7 +2,7 @@
 #pragma once
 #include <string>
 
-#include "diagnose/records.h"
+#include "diagnose/record_figures.h"
 #include "servodx/operating_point.h"
 
 namespace servodx::store {

@@ -19,7 +19,6 @@
 #include "servodx/rig.h"
 #include "servodx/tune.h"
 #include "signals/log.h"
-#include "signals/rig_file.h"
 #include "simulate/scenario.h"
 
 namespace servodx {

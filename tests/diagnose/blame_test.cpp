@@ -2,12 +2,12 @@
 
 #include <gtest/gtest.h>
 
+#include "diagnose/broken_sensors.h"
 #include "diagnose/decide.h"
 #include "diagnose/judge.h"
 #include "diagnose/judgeable.h"
 #include "diagnose/naming.h"
 #include "diagnose/record_law.h"
-#include "diagnose/records.h"
 #include "faults/registry.h"
 
 namespace servodx {

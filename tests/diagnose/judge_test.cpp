@@ -9,12 +9,12 @@
 
 #include "diagnose/assessment.h"
 #include "diagnose/baseline.h"
+#include "diagnose/broken_sensors.h"
 #include "diagnose/decide.h"
 #include "diagnose/diagnose.h"
 #include "diagnose/healthy_law.h"
 #include "diagnose/moved.h"
 #include "diagnose/naming.h"
-#include "diagnose/records.h"
 #include "evidence/conditions.h"
 #include "faults/fault.h"
 #include "faults/gross_finding.h"
@@ -145,7 +145,8 @@ TEST(Judge, AFaultThatIsWholeAtItsEndIsNamedThereAsInsideItsRange) {
   EXPECT_EQ(at_end("clogged_filter", "null_shift", 700).fault, find_fault("null_shift"));
 }
 
-// A motor that is all but gone and a null of a fifth: both put the spool on its stop, and no simulation follows it there.
+// A motor that is all but gone and a null of a fifth: both put the spool on its stop, and no simulation follows it
+// there.
 TEST(Judge, WhereTheBestLeavesMoreThanAFaultMayOneThatLeavesNearlyAsMuchIsNamedBesideIt) {
   const auto beside = [](double adequacy, double left_by_other) {
     Assessment a = with_misfits(100'000, {"torque_motor_loss", 5000}, {"null_shift", left_by_other});

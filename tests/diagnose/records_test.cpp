@@ -1,6 +1,4 @@
 // What the records tell without the model: laws on records made by hand.
-#include "diagnose/records.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -8,7 +6,9 @@
 #include <numbers>
 #include <random>
 
+#include "diagnose/broken_sensors.h"
 #include "diagnose/flow_into_chambers.h"
+#include "diagnose/record_figures.h"
 #include "diagnose/record_law.h"
 #include "faults/registry.h"
 #include "fit/candidate_of.h"

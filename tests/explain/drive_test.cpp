@@ -10,7 +10,9 @@
 #include <vector>
 
 #include "base/random.h"
+#include "explain/beside_healthy.h"
 #include "explain/cause_score.h"
+#include "explain/cause_sizes.h"
 #include "explain/engine.h"
 #include "explain/fit_causes.h"
 #include "explain/healthy.h"

@@ -9,6 +9,7 @@
 #include "base/random.h"
 #include "base/student.h"
 #include "evidence/tail_law.h"
+#include "explain/beside_healthy.h"
 #include "explain/constants.h"
 
 namespace servodx {

@@ -9,6 +9,7 @@
 #include <numbers>
 
 #include "base/random.h"
+#include "explain/linear_run.h"
 
 namespace servodx {
 namespace {

@@ -8,6 +8,7 @@
 #include "explain/healthy.h"
 #include "explain/learnt_curves.h"
 #include "explain/score.h"
+#include "explain/score_healthy.h"
 #include "explain/valve.h"
 #include "hidden/cases.h"
 #include "parameters/table.h"

@@ -12,7 +12,6 @@
 #include "parameters/table.h"
 #include "servodx/rig.h"
 #include "signals/log.h"
-#include "signals/rig_file.h"
 #include "simulate/scenario.h"
 
 namespace servodx {

@@ -161,7 +161,7 @@ def mend(path):
     owed = {include_of(min(have)) for _, have in owes(path).values() if len(have) == 1}
     if not owed:
         return
-    own = [i for i, line in enumerate(lines) if re.match(r'#include "', line)]
+    own = [i for i, line in enumerate(lines) if re.match(r'#include "[^"]+\.h"', line)]
     any_one = [i for i, line in enumerate(lines) if re.match(r"#include |#pragma once", line)]
     at = (own or any_one)[-1] + 1
     first = lines[own[0]].split('"')[1] if own else ""

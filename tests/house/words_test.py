@@ -43,6 +43,7 @@ READERS = {
     "src/signals/header.cpp": "reads what loggers write above a table",
     "src/signals/log.cpp": "ending of a file's name",
     "src/signals/log_columns.cpp": "reads units of columns",
+    "src/signals/rig_columns.cpp": "reads the columns of a rig file",
     "src/signals/rig_file.cpp": "reads a rig file",
     "src/store/baseline_file.cpp": "reads a baseline",
     "src/store/certificate_file.cpp": "reads a certificate sheet",

@@ -1,5 +1,3 @@
-#include "signals/rig_file.h"
-
 #include <gtest/gtest.h>
 
 #include <numbers>

@@ -2,10 +2,11 @@
 
 #include <nlohmann/json.hpp>
 
+#include "diagnose/record_figures.h"
 #include "diagnose/record_law.h"
-#include "diagnose/records.h"
 #include "evidence/conditions.h"
 #include "report/diagnose/diagnosis_words.h"
+#include "report/diagnose/verdict_words.h"
 #include "report/explain/explain_report.h"
 #include "servodx/log.h"
 #include "servodx/operating_point.h"

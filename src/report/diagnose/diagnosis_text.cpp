@@ -15,6 +15,8 @@
 #include "diagnose/record_law.h"
 #include "parameters/list.h"
 #include "report/diagnose/diagnosis_words.h"
+#include "report/diagnose/next_calls.h"
+#include "report/diagnose/verdict_words.h"
 #include "report/shared/columns.h"
 #include "report/shared/conditions.h"
 #include "report/shared/handy.h"

@@ -7,47 +7,21 @@
 
 #include "diagnose/assessment.h"
 #include "diagnose/baseline.h"
-#include "diagnose/blame.h"
-#include "diagnose/decide.h"
-#include "diagnose/diagnose.h"
 #include "diagnose/judge.h"
-#include "diagnose/judgeable.h"
 #include "diagnose/moved.h"
 #include "diagnose/naming.h"
-#include "diagnose/reading.h"
 #include "diagnose/record_law.h"
-#include "diagnose/records.h"
 #include "evidence/conditions.h"
 #include "faults/fault.h"
-#include "faults/gross_finding.h"
 #include "fit/replay.h"
-#include "report/shared/call_names.h"
 
 namespace servodx::report {
 
-std::string word_of(VerdictKind verdict);  // healthy | fault | unknown
-bool of_log(const Diagnosis& d);           // the log or the rig file is to be mended, not the valve
-std::string headword(const Diagnosis& d);  // HEALTHY | FAULT | MISREAD, of columns or wiring | UNKNOWN
 // What of rig file, channels and the log itself makes a verdict by this baseline doubtful.
 std::vector<std::string> doubts_beside_baseline(const Diagnosis& d);
-std::string word_of(Blame blame);            // none | component | physics | surroundings | log | test
-std::string words_of(Blame blame);           // "a component failed"; "" of none
-std::string word_of(GrossFinding finding);   // as JSON names it; "" of none
-std::string words_of(GrossFinding finding);  // "" of none
-std::string word_of(Misreading kind);
-std::string word_of(Unjudgeable reason);    // one word, of no and of an unknown log alike what JSON says
-std::string reason_of(const Diagnosis& d);  // one word: why it is unknown; "" where it is not
-std::string words_of(const Reading& reading);
-std::string words_of_doubt(const Diagnosis& d);   // why it is unknown, and what to look at; "" where it is not
-std::string words_of(Unjudgeable reason);         // why there is nothing to judge, and what to look at; "" of no
-std::string label_of(const Fault* hypothesis);    // its name; of null "healthy"
-std::string name_of(const Diagnosis& d);          // the fault named, else the verdict
-std::string action_label_of(const Diagnosis& d);  // by which the table of actions is asked
 // Of a sensor that the rig file or the wiring turns about: "the columns 'pressure_a' and 'pressure_b' are exchanged";
 // "" of any other verdict.
 std::string mistake_in_words(const Diagnosis& d);
-std::string meaning_of(const Fault* hypothesis);
-std::string unit_of(const Fault* hypothesis);  // of its severity; "" of health
 
 // Standard error of the log's null, of rated current; none where it is not known.
 std::optional<double> error_of_null(const Diagnosis& d);
@@ -60,8 +34,6 @@ double probability_of(const Diagnosis& d, const Fault* hypothesis);
 std::map<std::string, double> labelled_probabilities(const Diagnosis& d);
 std::vector<const Fault*> ambiguous_by_label(const Diagnosis& d);
 std::vector<std::string> ambiguous_labels(const Diagnosis& d);
-// The input that would separate the fault named from what it is ambiguous with. "" where none.
-std::string separating_test_of(const Diagnosis& d, const CallNames& names = {});
 
 // What the hypotheses say the log should be, under their labels.
 std::vector<Candidate> candidates_of(const std::vector<HypothesisPrediction>& explanations);
@@ -99,8 +71,6 @@ std::string test_words(const TestConditions& test);
 // Empty where a log of the baseline is of such a test.
 std::string unlike_words(const Diagnosis& d);
 std::string compared_words(const Diagnosis& d);  // empty: it was compared with all of the baseline's own logs
-// Of a verdict that names nothing: what to run next.
-std::vector<std::string> next_calls(const Diagnosis& d, const CallNames& names = {});
 
 // The rows that the fault moved; those of health's own, each farthest first.
 struct MovedParts {

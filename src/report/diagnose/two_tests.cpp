@@ -12,7 +12,7 @@
 #include "base/celsius.h"
 #include "diagnose/test_change.h"
 #include "fit/row_meaning.h"
-#include "report/diagnose/diagnosis_words.h"
+#include "report/diagnose/verdict_words.h"
 #include "report/shared/columns.h"
 #include "report/shared/handy.h"
 #include "report/shared/replay_part.h"

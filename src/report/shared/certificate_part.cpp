@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include "report/diagnose/diagnosis_words.h"
 #include "report/shared/handy.h"
 #include "report/shared/json.h"
 #include "report/shared/page.h"
@@ -10,6 +9,7 @@
 #include "report/shared/parts.h"
 #include "report/shared/replay_part.h"
 #include "servodx/certificate.h"
+#include "servodx/log.h"
 
 namespace servodx::report {
 

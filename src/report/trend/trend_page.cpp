@@ -9,7 +9,6 @@
 #include "prognose/life.h"
 #include "prognose/trend.h"
 #include "prognose/trend_state.h"
-#include "report/diagnose/diagnosis_words.h"
 #include "report/shared/check_words.h"
 #include "report/shared/handy.h"
 #include "report/shared/json.h"

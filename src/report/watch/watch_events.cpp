@@ -8,7 +8,7 @@
 #include "online/constants.h"
 #include "report/diagnose/diagnosis_json.h"
 #include "report/diagnose/diagnosis_text.h"
-#include "report/diagnose/diagnosis_words.h"
+#include "report/diagnose/verdict_words.h"
 #include "report/shared/text_options.h"
 #include "servodx/log.h"
 
