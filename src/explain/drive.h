@@ -2,8 +2,8 @@
 // to be told, and the valve's simulation, which the measured current drives, shows nothing of it.
 //
 // Felt = gain times the command as it was a delay ago, behind a first-order lag, and an offset. The command goes in a
-// line from sample to sample. Gain and offset are free in every log: `diagnose` judges them (diagnose/record_figures.h).
-// Leaves out: clipping, dead zones, a lag of second order.
+// line from sample to sample. Gain and offset are free in every log: `diagnose` judges them
+// (diagnose/record_figures.h). Leaves out: clipping, dead zones, a lag of second order.
 #pragma once
 #include <cstddef>
 #include <optional>
