@@ -33,7 +33,8 @@ SizeScatter scatter_about(const std::vector<SizeOnLog>& sizes, bool line) {
   pool(sizes, line, alike);
   double q = 0, w = 0, w2 = 0, w2xx = 0;  // Cochran's, and what it would be without scatter
   for (const SizeOnLog& z : sizes) {
-    const double v = z.square + tiny, off = z.size - alike.at(z.thickness), x = z.thickness - alike.middle;
+    const double v = z.square + tiny, off = z.size - alike.at(z.thickness);
+    const double x = line ? z.thickness - alike.middle : 0.0;  // a mean asks for no thickness, which may be unknown
     q += off * off / v, w += 1 / v, w2 += 1 / (v * v), w2xx += x * x / (v * v);
   }
   const double taken = w2 / w + w2xx * alike.slope_variance;

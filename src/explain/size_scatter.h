@@ -5,9 +5,6 @@
 // 1932). The likelier of the two is taken. Where the model's answer to the oil's temperature is off, sizes follow the
 // oil: a line in the logarithm of its viscosity is taken where it is worth its number (Schwarz 1978), and the sizes
 // scatter about that.
-//
-// Limits: where the thickness of a log's oil is not known, scatter alike on all logs comes out as none, and what lies
-// beyond the standard errors is taken to be in proportion to them.
 #pragma once
 #include <cmath>
 #include <vector>

@@ -42,6 +42,17 @@ TEST(SizeScatter, ScatterAlikeOnAllLogsIsTakenAsSuch) {
   EXPECT_LT(s.tau2, 8);
 }
 
+TEST(SizeScatter, AnOilThatIsNotKnownChangesNothingButTheLine) {
+  std::vector<SizeOnLog> made;
+  for (int i = 0; i < 8; ++i) made.push_back({5.0 + (i % 2 ? 2 : -2), std::pow(10.0, -2 - i / 2), 0});
+  const SizeScatter in_one_oil = scatter_of(made);
+  for (SizeOnLog& z : made) z.thickness = std::numeric_limits<double>::quiet_NaN();
+  const SizeScatter unknown = scatter_of(made);
+  EXPECT_DOUBLE_EQ(unknown.tau2, in_one_oil.tau2);
+  EXPECT_DOUBLE_EQ(unknown.phi2, in_one_oil.phi2);
+  EXPECT_DOUBLE_EQ(unknown.log_likelihood, in_one_oil.log_likelihood);
+}
+
 TEST(SizeScatter, ALineThroughTheOilIsTakenWhereItIsWorthItsNumber) {
   std::vector<SizeOnLog> made;
   for (int i = 0; i < 12; ++i) made.push_back({3 * 0.1 * i + (i % 2 ? 0.01 : -0.01), 1e-4, 0.1 * i});
