@@ -1,4 +1,5 @@
-# `cmake --install`: the program, its manual page and completions, the tables, and the library with its headers for
+# `cmake --install`: the program, its manual page and completions, the tables, the pages with their pictures and the logs of
+# the tutorial, and the library with its headers for
 # find_package(servodx): the front door alone, include/servodx. The Python package goes where Debian's Python looks. `cpack`
 # makes Debian packages of the same: servodx, libservodx-dev and python3-servodx.
 include(GNUInstallDirs)
@@ -9,7 +10,9 @@ install(DIRECTORY params DESTINATION ${CMAKE_INSTALL_DATADIR}/servodx COMPONENT 
 install(FILES README.md CHANGELOG.md DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT program)
 install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR} RENAME copyright COMPONENT program)
 install(FILES third_party/uplot/LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR} RENAME copyright.uplot COMPONENT program)
-install(DIRECTORY docs DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT program FILES_MATCHING PATTERN "*.md" PATTERN "*.schema.json")
+install(DIRECTORY docs DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT program FILES_MATCHING
+        PATTERN "*.md" PATTERN "*.schema.json" PATTERN "*.png" PATTERN "*.svg")
+install(DIRECTORY data/tutorial DESTINATION ${CMAKE_INSTALL_DOCDIR}/data COMPONENT program)  # as the page calls them
 
 # Manual and completions come from the program itself, made with it: the target servodx is enough to install.
 set(manual ${CMAKE_BINARY_DIR}/manual)

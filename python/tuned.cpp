@@ -145,7 +145,8 @@ void define_calls(py::class_<TunedOnRig>& tuned) {
            py::arg("max_stroke") = py::none(), py::arg("max_speed") = py::none(), py::arg("max_pressure") = py::none(),
            py::arg("loop_gain") = py::none(), py::arg("rounds") = PlanOptions{}.rounds,
            py::arg("baseline") = py::none(), py::arg("like") = py::none(), seed, threads, progress,
-           "The excitation that tells most. faults: names, or name -> severity; seconds [s]; rate [Hz]; max_current "
+           "The excitation that is most informative. faults: names, or name -> severity; seconds [s]; rate [Hz]; "
+           "max_current "
            "[1 of rated current]; max_stroke [m]; max_speed [m/s]; max_pressure [Pa]; loop_gain [A/m].");
 }
 

@@ -12,7 +12,8 @@ void define_parts(py::class_<VerdictText>& verdict) {
       .value("healthy", V::Kind::healthy)
       .value("fault", V::Kind::fault)
       .value("unknown", V::Kind::unknown);
-  py::class_<V::Suspicion>(verdict, "Suspicion", "What stands first in a log that cannot be told from healthy ones.")
+  py::class_<V::Suspicion>(verdict, "Suspicion",
+                           "What stands first in a log that cannot be distinguished from healthy ones.")
       .def_readonly("name", &V::Suspicion::name)
       .def_readonly("severity", &V::Suspicion::severity)
       .def_readonly("rate", &V::Suspicion::rate, "of false alarms at which it would be said")

@@ -182,18 +182,15 @@ Listing excitations(const Options&, Invocation&) {
 
 Listing errors(const Options&, Invocation&) {
   Listing out;
-  Columns table("llll");
-  table.row({"code", "kind", "meaning", "what to do"});
   for (int i = 0; i < n_troubles; ++i) {
     const auto trouble = static_cast<Trouble>(i);
     const char* kind = report::is_refusal(trouble) ? "refusal" : "warning";
-    table.row({code_of(trouble), kind, report::meaning_of(trouble), report::remedy_of(trouble)});
     out.items.push_back({{"code", code_of(trouble)},
                          {"kind", kind},
                          {"meaning", report::meaning_of(trouble)},
                          {"remedy", report::remedy_of(trouble)}});
   }
-  out.text = table.text();
+  out.text = report::table_of_troubles();
   return out;
 }
 

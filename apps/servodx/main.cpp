@@ -13,6 +13,7 @@
 #include "build.h"
 #include "commands.h"
 #include "invocation.h"
+#include "report/list/trouble_words.h"
 #include "rig_command.h"
 
 namespace {
@@ -99,6 +100,7 @@ int main(int argc, char** argv) {
     return app.exit(call) == 0 ? ran : refused;
   } catch (const InputError& input) {
     std::fprintf(stderr, "servodx: %s\n", told(input).c_str());
+    if (const auto trouble = trouble_of(input)) std::fprintf(stderr, "%s\n", report::where_to_read(*trouble).c_str());
     return refused;
   } catch (const std::exception& failure) {
     std::fprintf(stderr, "servodx: failed inside: %s\n", failure.what());

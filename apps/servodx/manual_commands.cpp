@@ -12,6 +12,7 @@
 #include "commands.h"
 #include "examples.h"
 #include "invocation.h"
+#include "report/list/trouble_words.h"
 
 namespace servodx {
 namespace {
@@ -268,8 +269,20 @@ const CLI::App& command_at(const CLI::App& app, const std::vector<std::string>& 
   return *at;
 }
 
+// The section of docs/errors.md that a code stands for; of `errors` the codes; of all else nothing.
+std::string help_of_code(const std::vector<std::string>& words) {
+  if (words.size() != 1) return "";
+  if (words[0] == "errors") return report::table_of_troubles();
+  if (const auto trouble = report::trouble_called(words[0])) return report::section_of(*trouble);
+  if (report::looks_like_code(words[0]))
+    throw InputError({}, "no refusal and no warning has the code '" + words[0] + "'",
+                     "there are " + report::codes_of_troubles() + "; 'servodx help errors' says what they mean");
+  return "";
+}
+
 // As --help prints it. The app's own help() would be that of the command `help`, which was called.
 std::string help(const CLI::App& app, const std::vector<std::string>& words) {
+  if (const std::string told = help_of_code(words); !told.empty()) return told;
   const CLI::App& command = command_at(app, words);
   const std::string called = words.empty() ? app.get_name() : app.get_name() + " " + joined(words, " ");
   return command.get_formatter()->make_help(&command, called, CLI::AppFormatMode::Normal);
@@ -282,8 +295,10 @@ void print(const std::string& text) { std::fwrite(text.data(), 1, text.size(), s
 void add_manual_commands(CLI::App& app) {
   give_examples(app);
   auto words = std::make_shared<std::vector<std::string>>();
-  CLI::App* helped = app.add_subcommand("help", "What there is, or the help of a command");
-  helped->add_option("COMMAND", *words, "a command, and its own one where it has some");
+  CLI::App* helped =
+      app.add_subcommand("help", "What there is, the help of a command, or what a code such as E02 means");
+  helped->add_option("COMMAND", *words,
+                     "a command, and its own one where it has some; or a code such as E02, or errors");
   helped->callback([words, &app] { print(help(app, *words)); });
   auto shell = std::make_shared<std::string>();
   CLI::App* completion = app.add_subcommand("completion", "Print a completion script: bash, zsh or fish");

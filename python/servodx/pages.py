@@ -50,7 +50,7 @@ def _verdict(self):
 
 def _told_size(p):
     interval = f" ({p.lower:.4g} to {p.upper:.4g}, 90 %)" if p.told.name == "interval" else ""
-    told = {"interval": "", "at_bound": ", at a bound", "not_told": ", not told by these logs"}[p.told.name]
+    told = {"interval": "", "at_bound": ", at a bound", "not_told": ", not determined by these logs"}[p.told.name]
     return f"{p.value:.4g}{interval} {p.unit}".rstrip() + told
 
 

@@ -36,7 +36,8 @@ void PlanOptions::validate() const {
   const int goals = !faults.empty() + !between.empty() + !rows.empty();
   require_setting(goals <= 1, "--faults, --between, --rows", "ask for different tests", "give one of them");
   require_setting(between.empty() || between.size() == 2, "--between",
-                  fmt::format("{} faults cannot be told apart as two", between.size()), "name two faults: A,B");
+                  fmt::format("takes two faults to distinguish, and {} are named", between.size()),
+                  "name two faults: A,B");
   require_setting(seconds >= 0.3 && seconds <= 30, "--seconds", "must lie between 0.3 and 30 s",
                   "give it in seconds: 2");
   require_setting(rate >= 200 && rate <= 20000, "--rate", "must lie between 200 and 20000 Hz",

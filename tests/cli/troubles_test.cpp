@@ -16,11 +16,15 @@ struct Bench : Desk {
     write("table.csv", shipped_table());
     write("rig.toml", "[valve]\nrated_current = \"20 mA\"\n");
   }
-  // Standard error of a call that is refused, without its line end.
+  // First line of standard error of a call that is refused. A second one says where its code is explained.
   std::string refusal(const std::string& call) const {
     const Ended ended = run(call);
     EXPECT_EQ(ended.code, 2) << call << "\n" << ended.err;
-    return ended.err.substr(0, ended.err.find_last_not_of('\n') + 1);
+    const std::string first = ended.err.substr(0, ended.err.find('\n'));
+    std::string wanted = first + "\n";
+    if (first.ends_with("]")) wanted += "'servodx help " + first.substr(first.size() - 4, 3) + "' says what to do\n";
+    EXPECT_EQ(ended.err, wanted) << call;
+    return first;
   }
 };
 
@@ -73,6 +77,34 @@ TEST(Troubles, EachCodeIsListedAndHasASectionOfItsOwn) {
     EXPECT_FALSE(list[i].at("remedy").get<std::string>().empty()) << code;
     EXPECT_NE(page.find("\n## " + code + "\n"), std::string::npos) << code;
   }
+}
+
+TEST(Troubles, HelpPrintsTheSectionOfACode) {
+  const Desk desk;
+  const std::string page = bytes_of(std::filesystem::path(SERVODX_SOURCE_DIR) / "docs" / "errors.md");
+  for (int i = 0; i < n_troubles; ++i) {
+    const std::string code = code_of(static_cast<Trouble>(i));
+    const Ended ended = desk.run("help " + code);
+    EXPECT_EQ(ended.code, 0) << ended.err;
+    EXPECT_TRUE(ended.out.starts_with(code + ": ")) << ended.out;
+    for (const char* mark : {"**", "](", "\n## "}) EXPECT_EQ(ended.out.find(mark), std::string::npos) << ended.out;
+    const std::string last = ended.out.substr(ended.out.rfind("\n", ended.out.size() - 2) + 1);
+    const auto at = page.find(last);
+    const auto next = page.find("\n## ", page.find("\n## " + code + "\n") + 1);
+    if (!last.starts_with(code)) EXPECT_TRUE(at != std::string::npos && at < next) << "not the whole section: " << last;
+    EXPECT_EQ(desk.run("help '[" + code + "]'").out, ended.out);
+  }
+  EXPECT_NE(desk.run("help e02").out.find("servodx init LOG -o rig.toml"), std::string::npos);
+}
+
+TEST(Troubles, HelpListsTheCodesAndRefusesOthers) {
+  const Desk desk;
+  EXPECT_EQ(desk.run("help errors").out, desk.run("list errors").out);
+  const Ended unknown = desk.run("help E99");
+  EXPECT_EQ(unknown.code, 2);
+  EXPECT_EQ(unknown.out, "");
+  EXPECT_NE(unknown.err.find("'E99'; there are E01, E02, "), std::string::npos) << unknown.err;
+  EXPECT_NE(unknown.err.find("W05; 'servodx help errors'"), std::string::npos) << unknown.err;
 }
 
 TEST(Troubles, ARefusalKeepsItsPageWhereItIsSaidAgain) {

@@ -17,7 +17,7 @@ SHORT = re.compile(r"\b(e\.g|i\.e|cf|vs|Fig|Figs|Eq|Eqs|No|Nos|Sec|p|pp|approx|e
 
 
 def prose_pages():
-    return [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md"))]
+    return [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md")), *sorted((ROOT / "docs/derivations").glob("*.md"))]
 
 
 def all_pages():
@@ -93,6 +93,11 @@ class Sentences(unittest.TestCase):
     def test_links_lead_somewhere(self):
         said = [why for page in all_pages() for why in dead_links(page, page.read_text())]
         self.assertFalse(said, "\n" + "\n".join(said))
+
+    def test_each_page_leads_to_the_glossary(self):
+        without = [page.relative_to(ROOT).as_posix() for page in prose_pages()
+                   if page.name != "glossary.md" and not re.search(r"\]\([^)]*glossary\.md[)#]", page.read_text())]
+        self.assertFalse(without)
 
     def test_what_is_wrong_is_told(self):
         long = "word " * 61

@@ -102,7 +102,7 @@ TEST(ForwardRules, TheCommonerIsJudgedFirstAndEachKindHasItsShare) {
   EXPECT_EQ(order_of_judging(rare, 2), (std::vector<int>{1, 0, 3, 2})) << "of the rare one leads";
   JudgingBudget budget(2, 2);
   EXPECT_TRUE(budget.takes(fitted[3]));
-  EXPECT_FALSE(budget.takes({1, true, true, 0})) << "not worth its numbers";
+  EXPECT_FALSE(budget.takes({1, true, true, 0})) << "its gain is not worth its added parameters";
   EXPECT_TRUE(budget.takes(fitted[2]));
   EXPECT_FALSE(budget.takes(fitted[1])) << "two were judged";
   EXPECT_FALSE(budget.takes({1, false, false, 1})) << "what stands takes a place, as a healthy log's causes do";

@@ -16,6 +16,31 @@ foreach(file bin/servodx share/man/man1/servodx.1 share/bash-completion/completi
     message(FATAL_ERROR "${file} is not installed")
   endif()
 endforeach()
+# Pictures that the pages show are beside them, and the tutorial's logs read where they lie.
+set(pages ${work}/prefix/share/doc/servodx)
+file(GLOB_RECURSE installed ${pages}/*.md)
+set(shown 0)
+foreach(page ${installed})
+  file(READ ${page} text)
+  string(REGEX MATCHALL "\\([^() :]*\\.(png|svg)\\)" pictures "${text}")  # targets of links
+  cmake_path(GET page PARENT_PATH folder)
+  foreach(picture ${pictures})
+    string(REGEX REPLACE "[()]" "" picture "${picture}")
+    if(NOT EXISTS ${folder}/${picture})
+      message(FATAL_ERROR "${page} shows ${picture}, which is not installed")
+    endif()
+    math(EXPR shown "${shown} + 1")
+  endforeach()
+endforeach()
+if(shown LESS 10)
+  message(FATAL_ERROR "the installed pages show ${shown} pictures; the docs show more")
+endif()
+step(${CMAKE_COMMAND} -E chdir ${pages} ${work}/prefix/bin/servodx check-log data/tutorial/good_1.csv
+     --rig data/tutorial/bench.toml)
+if(NOT output MATCHES "nothing suspicious")
+  message(FATAL_ERROR "the tutorial's check-log printed: ${output}")
+endif()
+
 # The front door is all that is installed, under one root, and each header of it needs nothing but the standard library.
 file(GLOB_RECURSE headers RELATIVE ${work}/prefix/include ${work}/prefix/include/*)
 file(GLOB wanted RELATIVE ${SOURCE}/include ${SOURCE}/include/servodx/*.h)
@@ -90,7 +115,8 @@ if(DPKG_DEB AND SHLIBDEPS)
     endforeach()
   endif()
   foreach(file servodx/usr/share/man/man1/servodx.1 servodx/usr/share/servodx/params/borello2009.csv
-               servodx/usr/share/doc/servodx/docs/tutorial.md servodx/usr/share/doc/servodx/copyright
+               servodx/usr/share/doc/servodx/docs/tutorial.md servodx/usr/share/doc/servodx/docs/pictures/fault.png
+               servodx/usr/share/doc/servodx/data/tutorial/suspect.csv servodx/usr/share/doc/servodx/copyright
                libservodx-dev/usr/include/servodx/servodx.h)
     file(GLOB found ${work}/${file} ${work}/${file}.gz)
     if(NOT found)

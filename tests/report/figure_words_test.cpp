@@ -21,13 +21,14 @@ TEST(FigureWords, AreTheSameToTheCharacter) {
   } cases[] = {
       {{}, ""},
       {{Kind::too_fast, 1.333},
-       "cannot be told: the command sweeps 1.3 times rated current a second, at most 1 is slow enough"},
-      {{Kind::one_way}, "cannot be told: the command sweeps one way only"},
-      {{Kind::coarse_readings, 0.01234}, "cannot be told: the readings resolve 1.2 % of rated current"},
+       "cannot be determined: the command sweeps 1.3 times rated current a second, at most 1 is slow enough"},
+      {{Kind::one_way}, "cannot be determined: the command sweeps one way only"},
+      {{Kind::coarse_readings, 0.01234}, "cannot be determined: the readings resolve 1.2 % of rated current"},
       {{Kind::short_command, -80.04, 91.26}, "the command reaches -80 to 91.3 % of rated"},
       {{Kind::coarse_command, 0.512, 0.4321},
-       "cannot be told: the command's steps are 0.51 % of rated, and the gain is at least 43.2 % of supply per 1 %"},
-      {{Kind::not_reached, 123.4}, "not reached: the log tells up to 123 Hz"},
+       "cannot be determined: the command's steps are 0.51 % of rated, and the gain is at least 43.2 % of supply per 1 "
+       "%"},
+      {{Kind::not_reached, 123.4}, "not reached: the log shows up to 123 Hz"},
       {{Kind::mean_of_reversals, 12, 0.00456}, "mean of 12 reversals, resolved to 0.46 % of rated"},
       {{Kind::brought_to_rated_drop, 6.9876e6, 7e6}, "from a drop of 69.88 bar to the rated 70 bar"},
       {{Kind::of_largest_pressure}, "supply unknown: of the largest load pressure"},
@@ -50,7 +51,7 @@ TEST(FigureWords, StandInResultAndText) {
                     .value = std::nan(""),
                     .unit = "-",
                     .remark = {curves::Remark::Kind::one_way}}};
-  EXPECT_EQ(curves_json(sheet)["figures"][0]["note"], "cannot be told: the command sweeps one way only");
+  EXPECT_EQ(curves_json(sheet)["figures"][0]["note"], "cannot be determined: the command sweeps one way only");
   EXPECT_NE(text_of(sheet, "log.csv", false).find("sweeps one way only"), std::string::npos);
 }
 

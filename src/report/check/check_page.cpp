@@ -48,7 +48,7 @@ void add_ways(Page& page, const CheckResult& r) {
   if (bars.rows.empty()) return;
   std::stable_sort(bars.rows.begin(), bars.rows.end(), [](const auto& a, const auto& b) { return a.value > b.value; });
   page.section("How far each wear has come",
-               "The fault's own level of failure. An error as long as its bar: this log does not tell.");
+               "The fault's own level of failure. An error as long as its bar: this log does not determine the wear.");
   page.add(bars);
 }
 

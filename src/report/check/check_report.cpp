@@ -53,7 +53,8 @@ namespace {
 std::string untold(const Check& c) {
   if (c.told) return "";
   const bool apart = std::abs(c.value - c.tuned) > 2 * c.whole_error;
-  return fmt::format(": {}not told from the tuned {}", apart ? "by the drop over it " : "", handy(c.tuned, c.unit));
+  return fmt::format(": {}not distinguished from the tuned {}", apart ? "by the drop over it " : "",
+                     handy(c.tuned, c.unit));
 }
 
 }  // namespace

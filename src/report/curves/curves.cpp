@@ -96,21 +96,22 @@ std::string words_of(const Remark& remark) {
       return "";
     case Remark::Kind::too_fast:
       return fmt::format(
-          "cannot be told: the command sweeps {:.2g} times rated current a second, at most {:.2g} is slow enough",
+          "cannot be determined: the command sweeps {:.2g} times rated current a second, at most {:.2g} is slow enough",
           remark.first, curves_constants::fastest);
     case Remark::Kind::one_way:
-      return "cannot be told: the command sweeps one way only";
+      return "cannot be determined: the command sweeps one way only";
     case Remark::Kind::coarse_readings:
-      return fmt::format("cannot be told: the readings resolve {:.2g} % of rated current", 100 * remark.first);
+      return fmt::format("cannot be determined: the readings resolve {:.2g} % of rated current", 100 * remark.first);
     case Remark::Kind::short_command:
       return fmt::format("the command reaches {:.3g} to {:.3g} % of rated", remark.first, remark.second);
     case Remark::Kind::coarse_command:
       return fmt::format(
-          "cannot be told: the command's steps are {:.2g} % of rated, and the gain is at least {:.3g} % of supply per "
+          "cannot be determined: the command's steps are {:.2g} % of rated, and the gain is at least {:.3g} % of "
+          "supply per "
           "1 %",
           remark.first, 100 * remark.second);
     case Remark::Kind::not_reached:
-      return fmt::format("not reached: the log tells up to {:.3g} Hz", remark.first);
+      return fmt::format("not reached: the log shows up to {:.3g} Hz", remark.first);
     case Remark::Kind::mean_of_reversals:
       return fmt::format("mean of {:.0f} reversals, resolved to {:.2g} % of rated", remark.first, 100 * remark.second);
     case Remark::Kind::brought_to_rated_drop:

@@ -59,7 +59,7 @@ const HypothesisResult* nearest_fault(const Diagnosis& d) {
 
 std::string headline(const Diagnosis& d) {
   if (d.verdict == VerdictKind::healthy)
-    return file_name(d.log) + (d.suspicion ? " cannot be told from the fault-free logs"
+    return file_name(d.log) + (d.suspicion ? " cannot be distinguished from the fault-free logs"
                                : d.unlike  ? " is like the fault-free logs, though of another test"
                                            : " is like the fault-free logs");
   if (d.doubt == Doubt::unjudgeable || d.doubt == Doubt::misread || d.doubt == Doubt::unrelated)
@@ -103,7 +103,7 @@ std::vector<std::string> reasons(const Diagnosis& d, const DetectionBaseline& ba
     std::vector<std::string> others;
     for (const Fault* other : ambiguous_by_label(d))  // a twin is not fitted, and has no probability of its own
       others.push_back(words(label_of(other)) + (result_of(d, other) ? " " + chance(probability_of(d, other)) : ""));
-    why.push_back(fmt::format("It cannot be told for certain from {}. To separate them: {}.", join(others),
+    why.push_back(fmt::format("It cannot be distinguished for certain from {}. To separate them: {}.", join(others),
                               separating_test_of(d, call)));
   } else if (d.fault && !seen_outright) {
     const HypothesisResult* next = nullptr;
@@ -203,7 +203,7 @@ void add_detectable(Page& page, const Diagnosis& d) {
   page.add(table);
 }
 
-// Beside health: what is named and what cannot be told from it, or what comes nearest. Of a misread log health alone.
+// Beside health: what is named and what cannot be distinguished from it, or what comes nearest. Of a misread log health alone.
 std::vector<std::string> drawn_hypotheses(const Diagnosis& d) {
   std::vector<std::string> out = {label_of(nullptr)};
   if (of_log(d)) return out;
@@ -249,7 +249,7 @@ void add_details(Page& page, const Diagnosis& d, const std::vector<Replay>& repl
   if (r != replays.end()) add_traces(page, d, *r, drawn);
   if (!in_health.empty()) {
     Moves wander = moves_of({in_health.begin(), in_health.end()},
-                            "Let wander as on a healthy valve: tolerances, and this log's own null and air");
+                            "Moved in every hypothesis, healthy included: tolerances, and this log's own null and air");
     wander.shown = 4;
     page.add(wander);
   }

@@ -119,7 +119,7 @@ std::string text_of(const Diagnosis& d, const TextOptions& options) {
   if (!by_fault.empty())
     text += fmt::format("  {}\n", d.fault ? "moved by the fault" : "moved by the nearest, " + label_of(d.nearest)) +
             moves_table(by_fault, most);
-  if (!in_health.empty()) text += "  let wander, as in health\n" + moves_table(in_health, most);
+  if (!in_health.empty()) text += "  moved in every hypothesis, healthy included\n" + moves_table(in_health, most);
   return text;
 }
 

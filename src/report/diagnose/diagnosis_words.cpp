@@ -194,8 +194,8 @@ std::string second_in_words(const NamedFault& f) {
 }
 
 std::string suspicion_in_words(const Suspicion& s) {
-  const std::string more = s.logs_needed > 0 ? fmt::format("{} healthy logs like these would tell", s.logs_needed)
-                                             : "more healthy logs like these would not tell";
+  const std::string more = s.logs_needed > 0 ? fmt::format("{} healthy logs like these would decide it", s.logs_needed)
+                                             : "more healthy logs like these would not decide it";
   return fmt::format(
       "first stands {}, {}, not beyond what {} fault-free logs can exclude: it would be said at a rate of {} false "
       "alarms; {}",

@@ -57,7 +57,7 @@ std::string of_channel(const Diagnosis& d);  // " of pressure_a", where the faul
 // "cylinder_leakage, 1.2e-12 m3/s/Pa (...), 98 %" of a second fault beside the first.
 std::string second_in_words(const NamedFault& fault);
 
-// What stands first in a log that cannot be told from healthy ones.
+// What stands first in a log that cannot be distinguished from healthy ones.
 std::string suspicion_in_words(const Suspicion& suspicion);
 // What `explain` makes of a log that no fault explains.
 std::string beyond_in_words(const BeyondFaults& beyond);

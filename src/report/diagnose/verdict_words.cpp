@@ -69,7 +69,7 @@ std::string words_of(Blame blame) {
     case Blame::log:
       return "the log or the rig file is to be mended: of the valve it says nothing until then";
     case Blame::test:
-      return "this log does not tell: run another test";
+      return "this log does not decide it: run another test";
   }
   return "";
 }

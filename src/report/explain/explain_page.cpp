@@ -33,9 +33,10 @@ std::string of_misfit(const Interval& g) {
 std::string gain_in_words(const Interval& g) { return g.value > 0 ? of_misfit(g) : "nothing"; }
 
 std::string headline(const ExplainResult& r) {
-  if (r.verdict == ExplainVerdict::sufficient) return "The simulation misses nothing that healthy logs do not show";
+  if (r.verdict == ExplainVerdict::sufficient) return "The simulation is no more wrong than on healthy logs";
   if (r.causes.empty())
-    return "Something is missing that no cause in the list mends" + (r.where.empty() ? "" : ", near " + words(r.where));
+    return "Something is missing that no cause in the list explains" +
+           (r.where.empty() ? "" : ", near " + words(r.where));
   const ExplainedCause& best = r.causes.front();
   const std::string more = r.causes.size() > 1 ? fmt::format(" and {} more", r.causes.size() - 1) : "";
   const std::string name = words(best.effect) + " at " + words(best.where) + more;
@@ -104,13 +105,13 @@ std::vector<std::string> reasons(const ExplainResult& r) {
     for (const std::string& o : c.confusable_with) others.push_back(words(o));
     if (c.told_by == ToldBy::currents)
       why.push_back(
-          sentence(fmt::format("{} was told between the command and the coil current, where it removes {} of what is "
-                               "missed; the simulation is driven by the measured current, and knows nothing of it",
+          sentence(fmt::format("{} was found between the command and the coil current, where it removes {} of the "
+                               "error; the simulation is driven by the measured current, so it does not show there",
                                words(c.effect), percent(c.heldout_gain.value))));
     if (c.told_by == ToldBy::blocks)
       why.push_back(
-          sentence(fmt::format("{} was told by the blocks with measured signals between them, where it removes {} of "
-                               "what they miss; the simulation alone does not settle it",
+          sentence(fmt::format("{} was found by the block replay, with measured signals between the blocks, where it "
+                               "removes {} of their error; the free run alone does not decide it",
                                words(c.effect), percent(c.heldout_gain.value))));
     if (!others.empty())
       why.push_back(fmt::format("In place of {} it may be {}.", words(c.effect), join(others, " or ")));
@@ -232,7 +233,7 @@ Verdict verdict_of(const ExplainResult& r) {
   if (!r.causes.empty())
     if (const std::string size = size_of_first(r); !size.empty())
       v.facts.push_back({words(r.causes.front().effect), size});
-  if (r.curve) v.detail = "Nothing in the list mends it; a curve learnt from the logs does.";
+  if (r.curve) v.detail = "No cause in the list explains it; a curve learnt from the logs does.";
   if (r.suspicion) v.detail = "Not beyond healthy logs: " + suspicion_in_words(*r.suspicion) + ".";
   if (!r.depends_on.empty()) v.facts.push_back({"It follows", words(r.depends_on)});
   if (!r.causes.empty()) v.facts.push_back({"Mending it removes, of the misfit", gain_in_words(r.heldout_gain)});
@@ -340,7 +341,7 @@ Page explain_page(const Header& header, const ExplainResult& r, const std::vecto
   page.section("What was tried",
                "By the misfit that each would remove, as the slope of the residual predicts; the best were fitted.");
   page.add(candidates_of(r));
-  if (!r.standing.empty()) page.add(causes_table("Standing: healthy logs show it too", r.standing));
+  if (!r.standing.empty()) page.add(causes_table("Found on healthy logs too", r.standing));
   return page;
 }
 

@@ -214,8 +214,8 @@ Json to_json(const ExplainedProbabilities& p) {
 
 // More logs, or why these do not help.
 std::string logs_words(int logs_needed) {
-  if (logs_needed > 0) return fmt::format("{} healthy logs like these would tell", logs_needed);
-  return "more healthy logs like these would not tell";
+  if (logs_needed > 0) return fmt::format("{} healthy logs like these would decide it", logs_needed);
+  return "more healthy logs like these would not decide it";
 }
 
 }  // namespace
@@ -291,23 +291,23 @@ std::string missing_in_words(const ExplainResult& r) {
   if (r.verdict == ExplainVerdict::sufficient || m.places.empty() || !m.places.front().likely) return {};
   const MissingInput& p = m.places.front();
   std::string text =
-      fmt::format("missing at {}: {} rms, give or take {}", named(p), handy(p.rms, p.unit), handy(p.std_error, p.unit));
+      fmt::format("missing at {}: {} rms +- {}", named(p), handy(p.rms, p.unit), handy(p.std_error, p.unit));
   if (p.share > follows) text += fmt::format(", {} of its square in line with {}", percent(p.share), p.variable);
   std::vector<std::string> others;
   for (std::size_t k = 1; k < m.places.size(); ++k)
     if (m.places[k].likely)
       others.push_back(fmt::format("{} at {}", handy(m.places[k].rms, m.places[k].unit), named(m.places[k])));
-  if (!others.empty()) text += "; these channels do not tell it from " + join(others, " or ");
+  if (!others.empty()) text += "; these channels do not distinguish it from " + join(others, " or ");
   return text;
 }
 
 std::string text_of(const ExplainResult& r, const TextOptions& options) {
   std::string text = word_of(r.verdict);
   if (r.verdict == ExplainVerdict::sufficient)
-    text += ": nothing is wrong that healthy logs do not show or that a cause in the list would mend";
+    text += ": nothing is wrong that healthy logs do not show or that a cause in the list explains";
   if (r.verdict == ExplainVerdict::unexplained)
-    text += r.curve ? ": no cause in the list mends it; a learnt curve does"
-                    : ": something is wrong, and no cause in the list mends it";
+    text += r.curve ? ": no cause in the list explains it; a learnt curve does"
+                    : ": something is wrong, and no cause in the list explains it";
   if (!r.curve && !r.depends_on.empty()) text += "; at " + r.where + " it follows " + r.depends_on;
   if (r.verdict == ExplainVerdict::extended) {
     text += ": ";
@@ -353,7 +353,7 @@ std::string text_of(const ExplainResult& r, const TextOptions& options) {
     if (r.where != r.curve->where)
       text += "    rather at " + r.where + ": a name there that leaves the logs abnormal does better than the curve\n";
   }
-  if (!r.standing.empty()) text += "  standing, healthy logs show it too:\n";
+  if (!r.standing.empty()) text += "  found on healthy logs too:\n";
   add_causes(text, r.standing);
   Columns tried("llrrl", 2);
   tried.row({"tried", "where", "predicted gain", "p", "why not"});

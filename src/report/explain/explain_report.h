@@ -14,7 +14,7 @@ namespace servodx::report {
 Json explain_json(const ExplainResult& result);
 // `replays`: of some of the logs, as tuned and with the causes.
 Page explain_page(const Header& header, const ExplainResult& result, const std::vector<Replay>& replays);
-// "20.3 um (19.9 to 20.6, 90 %)", "148 kg, not told by these logs".
+// "20.3 um (19.9 to 20.6, 90 %)", "148 kg, not determined by these logs".
 std::string size_in_words(const ExplainedParameter& size);
 // What stands first though the simulation suffices.
 std::string suspicion_in_words(const ExplainSuspicion& suspicion);

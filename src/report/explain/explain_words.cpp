@@ -47,9 +47,9 @@ const char* words_of_share(ToldBy told_by) {
     case ToldBy::simulation:
       return "";
     case ToldBy::blocks:
-      return ", of what the blocks miss with measured signals between them";
+      return ", of the blocks' error in the block replay";
     case ToldBy::currents:
-      return ", of what lies between the command and the coil current; the measured current drives the simulation";
+      return ", of the error between the command and the coil current; the measured current drives the simulation";
   }
   return "";
 }
@@ -59,13 +59,13 @@ const char* words_of(Fate fate) {
     case Fate::not_looked_at:
       return "";
     case Fate::score_too_small:
-      return "its score predicts too little";
+      return "its predicted gain is too small";
     case Fate::not_worth_its_numbers:
-      return "not worth its numbers";
+      return "its gain is not worth its added parameters";
     case Fate::others_fit_better:
       return "others fit better";
     case Fate::abnormal_with_it:
-      return "no news by itself, and the data stay abnormal with it";
+      return "no larger than on healthy logs, and the data stay abnormal with it";
     case Fate::retuning_does_as_well:
       return "re-tuning alone does as well on held-out data";
     case Fate::no_heldout_gain:
@@ -75,15 +75,15 @@ const char* words_of(Fate fate) {
     case Fate::not_beyond_healthy:
       return "not beyond what healthy logs show";
     case Fate::not_missed_later:
-      return "not missed once the others were in";
+      return "not needed once the other causes were in";
     case Fate::curve_does_better:
-      return "a curve without a name does better";
+      return "a learnt curve does better";
     case Fate::blocks_tell_another:
-      return "the replay of the blocks tells another";
+      return "the block replay finds another cause";
     case Fate::taken:
       return "taken";
     case Fate::taken_by_blocks:
-      return "taken: the replay of the blocks tells it";
+      return "taken: the block replay finds it";
   }
   return "";
 }
@@ -130,7 +130,7 @@ const char* words_of(SizeTold told) {
     case SizeTold::at_bound:
       return "at a bound";
     case SizeTold::not_told:
-      return "not told by these logs";
+      return "not determined by these logs";
   }
   return "";
 }

@@ -1,5 +1,12 @@
 #include "report/list/trouble_words.h"
 
+#include <algorithm>
+#include <cctype>
+#include <string_view>
+
+#include "report/shared/assets.h"
+#include "report/shared/columns.h"
+
 namespace servodx::report {
 namespace {
 
@@ -49,10 +56,64 @@ Words words_of(Trouble trouble) {
   return {"", ""};
 }
 
+// As it stands in a message or as it is typed: "[E02]", "e02".
+std::string bare_code(const std::string& word) {
+  std::string code;
+  for (const char c : word)
+    if (c != '[' && c != ']') code += static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
+  return code;
+}
+
 }  // namespace
 
 bool is_refusal(Trouble trouble) { return trouble <= Trouble::other_table; }
 std::string meaning_of(Trouble trouble) { return words_of(trouble).meaning; }
 std::string remedy_of(Trouble trouble) { return words_of(trouble).remedy; }
+
+std::string table_of_troubles() {
+  Columns table("llll");
+  table.row({"code", "kind", "meaning", "what to do"});
+  for (int i = 0; i < n_troubles; ++i) {
+    const auto trouble = static_cast<Trouble>(i);
+    table.row({code_of(trouble), is_refusal(trouble) ? "refusal" : "warning", meaning_of(trouble), remedy_of(trouble)});
+  }
+  return table.text() + "'servodx help CODE' says more\n";
+}
+
+std::string section_of(Trouble trouble) {
+  const std::string_view page = assets::errors_page;
+  const std::string head = std::string("\n## ") + code_of(trouble) + "\n";
+  const auto at = page.find(head);
+  if (at == std::string_view::npos) return "";
+  const auto from = at + head.size(), to = page.find("\n## ", from);
+  std::string text = std::string(code_of(trouble)) + ": " + std::string(page.substr(from, to - from));
+  for (auto mark = text.find("**"); mark != std::string::npos; mark = text.find("**")) text.erase(mark, 2);
+  text.erase(text.find_last_not_of('\n') + 1);
+  return text + "\n";
+}
+
+std::string where_to_read(Trouble trouble) {
+  return std::string("'servodx help ") + code_of(trouble) + "' says what to do";
+}
+
+bool looks_like_code(const std::string& word) {
+  const std::string code = bare_code(word);
+  return code.size() > 1 && (code[0] == 'E' || code[0] == 'W') &&
+         std::all_of(code.begin() + 1, code.end(), [](unsigned char c) { return std::isdigit(c) != 0; });
+}
+
+std::optional<Trouble> trouble_called(const std::string& word) {
+  const std::string code = bare_code(word);
+  for (int i = 0; i < n_troubles; ++i)
+    if (const auto trouble = static_cast<Trouble>(i); code_of(trouble) == code) return trouble;
+  return std::nullopt;
+}
+
+std::string codes_of_troubles() {
+  std::string codes;
+  for (int i = 0; i < n_troubles; ++i)
+    codes += (codes.empty() ? "" : ", ") + std::string(code_of(static_cast<Trouble>(i)));
+  return codes;
+}
 
 }  // namespace servodx::report

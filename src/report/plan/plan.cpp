@@ -31,9 +31,9 @@ std::string headline_of(const PlannedTest& test) {
   const GoalKind kind = test.whole ? test.whole->kind : GoalKind::find;
   switch (kind) {
     case GoalKind::part:
-      return p.pairs.empty()
-                 ? ""
-                 : fmt::format("{} told from {}: {}", p.pairs[0].first, p.pairs[0].second, chance(p.pairs[0].told));
+      return p.pairs.empty() ? ""
+                             : fmt::format("{} distinguished from {}: {}", p.pairs[0].first, p.pairs[0].second,
+                                           chance(p.pairs[0].told));
     case GoalKind::estimate:
       return p.rows.empty() ? ""
                             : fmt::format("{}: {} of its error is left", p.rows[0].name,
@@ -77,7 +77,7 @@ std::string shown_text(const PlannedTest& test) {
   constexpr std::size_t few = 3;  // of all faults there are too many pairs to read
   if (p.faults.size() <= few)
     for (std::size_t i = 0; i < p.pairs.size(); ++i)
-      text += fmt::format("  {} told from {}: {}; by a random test {}\n", p.pairs[i].first, p.pairs[i].second,
+      text += fmt::format("  {} distinguished from {}: {}; by a random test {}\n", p.pairs[i].first, p.pairs[i].second,
                           chance(p.pairs[i].told), chance(test.random.pairs[i].told));
   if (!p.rows.empty()) {
     Columns table("lrrr", 2);
@@ -210,7 +210,7 @@ Page plan_page(const Header& header, const PlannedTest& test) {
   }
   if (!faults.rows.empty()) page.add(faults);
   TablePart pairs{
-      .title = "Told apart", .alignment = "llrr", .head = {"fault", "from", "planned", "random"}, .rows = {}};
+      .title = "Distinguished", .alignment = "llrr", .head = {"fault", "from", "planned", "random"}, .rows = {}};
   for (std::size_t i = 0; i < test.planned.pairs.size(); ++i) {
     const PlannedTest::Pair &p = test.planned.pairs[i], &r = test.random.pairs[i];
     pairs.rows.push_back({p.first, p.second, {chance(p.told), p.told}, {chance(r.told), r.told}});

@@ -67,7 +67,7 @@ std::string text_of(const SelftestResult& r) {
               fmt::format("{} of {}", row.covered, row.counted), unit.name});
   }
   text += rows.text();
-  if (!r.held.empty()) text += "  held, as this log cannot tell: " + join(r.held) + "\n";
+  if (!r.held.empty()) text += "  held, as this log does not show them: " + join(r.held) + "\n";
   return text + "  the data were made by the model itself: this tests the input and the fit, not the model\n";
 }
 
@@ -130,7 +130,7 @@ Page selftest_page(const Header& header, const SelftestResult& r) {
   }
   page.add(table);
   page.add(bars);
-  if (!r.held.empty()) page.text("Held at the table's value, as this log cannot tell them: " + join(r.held) + ".");
+  if (!r.held.empty()) page.text("Held at the table's value, as this log does not show them: " + join(r.held) + ".");
   return page;
 }
 

@@ -164,7 +164,7 @@ Page tune_page(const Header& header, const TuneResult& result, const GoodEnough&
                          logs == 1 ? "" : "s", enough.errors);
   v.facts = {{"Known with an error", std::to_string(known)},
              {"At an end of their range", std::to_string(at_end.size())},
-             {"Held: the logs cannot tell", std::to_string(held)},
+             {"Held: the logs do not show it", std::to_string(held)},
              {"Starts that agree", fmt::format("{} of {}", result.reached_best(), result.starts.size())}};
   for (const std::string& part : praise_of(enough)) v.reasons.push_back(sentence(words(part)));
   for (const std::string& reason : enough.reasons) v.reasons.push_back(sentence(words(reason)));
