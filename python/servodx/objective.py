@@ -81,7 +81,7 @@ class Objective:
         return self._inside.costs(x)
 
     def jac(self, x):
-        """(m, n), all columns in one batch: by forward differences, from 25 columns of a log on by followers of its run."""
+        """(m, n), all columns in one batch: forward differences; from 25 columns of a log on, followers of its run."""
         return self._inside.jacobian(x)[0]
 
     def values(self, x):
