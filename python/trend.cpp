@@ -16,11 +16,14 @@ TrendWithChart trend_of(const History& history, const std::string& valve, double
                    .threads = threads_here(threads)};
   for (const auto& [check, level] : failures)
     how.failures.push_back({.check = py::cast<std::string>(check), .value = py::cast<double>(level)});
-  const py::gil_scoped_release free;
-  TrendWithChart out;
-  static_cast<Trend&>(out) = trend(history, valve, how);
-  out.chart = chart_of(out);
-  return out;
+  Call call{py::none()};
+  return call.run([&](Watch watch) {
+    how.watch = std::move(watch);
+    TrendWithChart out;
+    static_cast<Trend&>(out) = trend(history, valve, how);
+    out.chart = chart_of(out);
+    return out;
+  });
 }
 
 py::object range_of(const TrendChart::Range& r) { return py::make_tuple(r.lower, r.upper); }

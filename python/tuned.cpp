@@ -60,10 +60,12 @@ ExplanationText explanation_of(const TunedOnRig& self, const std::vector<Log>& l
 TunedOnRig tuned_on(const std::vector<Log>& logs, const Table& params, const Rig& rig, std::uint64_t seed, int threads,
                     int generations, int rounds, int population, double heldout,
                     std::optional<std::vector<std::string>> effects, std::vector<std::string> profile,
-                    std::map<std::string, double> priors, int moving_average, py::object progress) {
+                    std::map<std::string, double> priors, int moving_average, const std::optional<Path>& checkpoint,
+                    bool resume, py::object progress) {
   Call call(std::move(progress));
-  return call.run([&, how_many = threads_here(threads)](Watch watch) {
+  return call.run_for_best([&, how_many = threads_here(threads)](Watch watch) {
     TuneOptions how;
+    how.checkpoint = checkpoint ? checkpoint->string() : "", how.resume = resume;
     how.seed = seed, how.threads = how_many, how.generations = generations, how.rounds = rounds;
     how.population = population, how.heldout = heldout;
     how.effects = std::move(effects), how.profile = std::move(profile);
@@ -74,11 +76,17 @@ TunedOnRig tuned_on(const std::vector<Log>& logs, const Table& params, const Rig
 }
 
 Checked checked_of(const TunedOnRig& self, const Log& log, const std::string& model, bool track, bool correct,
-                   std::vector<double> last, int threads) {
-  const CheckOptions how{
-      .model = model, .threads = threads_here(threads), .track = track, .correct = correct, .last = std::move(last)};
-  const py::gil_scoped_release free;
-  return check(log, self.tuned, self.rig, how);
+                   std::vector<double> last, int threads, py::object progress) {
+  Call call(std::move(progress));
+  return call.run([&, how_many = threads_here(threads)](Watch watch) {
+    const CheckOptions how{.model = model,
+                           .threads = how_many,
+                           .track = track,
+                           .correct = correct,
+                           .last = std::move(last),
+                           .watch = std::move(watch)};
+    return check(log, self.tuned, self.rig, how);
+  });
 }
 
 std::vector<PlanFault> faults_of(const py::object& faults) {
@@ -138,7 +146,7 @@ void define_calls(py::class_<TunedOnRig>& tuned) {
            "where it follows held-out data worse.")
       .def("check", &checked_of, py::arg("log"), py::kw_only(), py::arg("model") = CheckOptions{}.model,
            py::arg("track") = true, py::arg("correct") = true, py::arg("last") = std::vector<double>(), threads,
-           "The prognostic checks of one log; History.record keeps them.")
+           progress, "The prognostic checks of one log; History.record keeps them.")
       .def("plan", &plan_of, py::kw_only(), py::arg("faults") = py::tuple(), py::arg("between") = py::tuple(),
            py::arg("rows") = std::vector<std::string>(), py::arg("seconds") = PlanOptions{}.seconds,
            py::arg("rate") = PlanOptions{}.rate, py::arg("max_current") = PlanLimits{}.current,
@@ -200,14 +208,18 @@ void define_tuned(py::module_& m) {
       .def("__repr__", [](const TunedOnRig& t) { return "<Tuned " + t.tuned.table.sha256.substr(0, 12) + ">"; })
       .def(pickled<TunedOnRig>());
   define_calls(tuned);
-  m.def("tune", &tuned_on, py::arg("logs"), py::kw_only(), py::arg("params"), py::arg("rig") = Rig{},
-        py::arg("seed") = 1, py::arg("threads") = 0, py::arg("generations") = TuneOptions{}.generations,
-        py::arg("rounds") = TuneOptions{}.rounds, py::arg("population") = TuneOptions{}.population,
-        py::arg("heldout") = TuneOptions{}.heldout, py::arg("effects") = py::none(),
-        py::arg("profile") = std::vector<std::string>(), py::arg("priors") = std::map<std::string, double>(),
-        py::arg("moving_average") = TuneOptions{}.moving_average, py::arg("progress") = true,
-        "Nominal parameters from fault-free logs, pooled. profile: rows whose interval is checked, or ['all']. priors: "
-        "row -> [its unit] standard deviation about the table's value. moving_average: [samples] odd.");
+  m.def(
+      "tune", &tuned_on, py::arg("logs"), py::kw_only(), py::arg("params"), py::arg("rig") = Rig{}, py::arg("seed") = 1,
+      py::arg("threads") = 0, py::arg("generations") = TuneOptions{}.generations,
+      py::arg("rounds") = TuneOptions{}.rounds, py::arg("population") = TuneOptions{}.population,
+      py::arg("heldout") = TuneOptions{}.heldout, py::arg("effects") = py::none(),
+      py::arg("profile") = std::vector<std::string>(), py::arg("priors") = std::map<std::string, double>(),
+      py::arg("moving_average") = TuneOptions{}.moving_average, py::arg("checkpoint") = py::none(),
+      py::arg("resume") = false, py::arg("progress") = true,
+      "Nominal parameters from fault-free logs, pooled. profile: rows whose interval is checked, or ['all']. priors: "
+      "row -> [its unit] standard deviation about the table's value. moving_average: [samples] odd. "
+      "checkpoint: file that keeps what is finished; resume: go on from it, to the same bits. What ends the call early "
+      "(KeyboardInterrupt, what progress raises) carries the best so far as its attribute `best`.");
 }
 
 }  // namespace servodx::python

@@ -49,18 +49,33 @@ class Call {
   // Runs `work` without the interpreter's lock; raises afterwards what Ctrl-C or the callable has raised.
   template <class Work>
   auto run(const Work& work) {
-    auto result = [&] {
-      pybind11::gil_scoped_release free;
-      return work(watch());
-    }();
+    auto result = freely(work);
     if (raised_) throw pybind11::error_already_set(std::move(*raised_));
-    if (pybind11::hasattr(progress_, "close")) progress_.attr("close")();
     return result;
+  }
+
+  // The same of work that ends with its best so far: that goes with the exception, as its attribute `best`.
+  template <class Work>
+  auto run_for_best(const Work& work) {
+    auto result = freely(work);
+    if (!raised_) return result;
+    raised_->value().attr("best") = std::move(result);
+    throw pybind11::error_already_set(std::move(*raised_));
   }
 
  private:
   using Clock = std::chrono::steady_clock;
   static constexpr std::chrono::milliseconds pause{50};  // quick to a hand, and no cost to a fit
+
+  template <class Work>
+  auto freely(const Work& work) {
+    auto result = [&] {
+      pybind11::gil_scoped_release free;
+      return work(watch());
+    }();
+    if (!raised_ && pybind11::hasattr(progress_, "close")) progress_.attr("close")();
+    return result;
+  }
 
   // Signals come to the interpreter's main thread alone; other threads find nothing.
   bool interrupted() {

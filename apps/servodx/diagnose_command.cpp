@@ -15,6 +15,7 @@
 #include "baseline_beside.h"
 #include "commands.h"
 #include "diagnose_list.h"
+#include "fleet_judge.h"
 #include "invocation.h"
 #include "report/diagnose/diagnose_page.h"
 #include "report/diagnose/diagnosis_json.h"
@@ -95,18 +96,26 @@ report::TwoTests since(const std::string& last_path, const store::StoredVerdict&
   return report::two_tests(last_path, last, store::verdict_of(whole));
 }
 
+// What a list would pass over in silence is refused.
+void require_of_a_list(const Options& options) {
+  require_option(!options.genetic(), "--search", "is of logs that are named one by one",
+                 "name the logs in place of --list");
+  require_option(options.population == Options().population, "--population", "is of '--search genetic'",
+                 "leave it out, or name the logs in place of --list");
+  require_option(!options.pool, "--pool", "makes one verdict, and a list one of each log",
+                 "name the logs in place of --list, or leave it out");
+  require_option(options.certificate.empty(), "--certificate", "certifies one verdict",
+                 "name one log in place of --list");
+  require_option(options.against.empty(), "--against", "is of one verdict", "name one log in place of --list");
+  require_option(options.run.checkpoint.empty(), "--checkpoint", "is of logs that are named one by one",
+                 "leave it out: the same call with --list goes on by itself");
+}
+
 void require_consistent(const Options& options) {
   require_option(options.logs.empty() != options.list.list.empty(), options.logs.empty() ? "LOG" : "--list",
                  options.logs.empty() ? "no log is named" : "logs are named one by one too",
                  "name the logs, or a file that lists them with --list FILE --out DIR");
-  require_option(options.list.list.empty() || !options.genetic(), "--search", "is of logs that are named one by one",
-                 "name the logs in place of --list");
-  require_option(options.list.list.empty() || options.certificate.empty(), "--certificate", "certifies one verdict",
-                 "name one log in place of --list");
-  require_option(options.list.list.empty() || options.against.empty(), "--against", "is of one verdict",
-                 "name one log in place of --list");
-  require_option(options.list.list.empty() || options.run.checkpoint.empty(), "--checkpoint",
-                 "is of logs that are named one by one", "leave it out: the same call with --list goes on by itself");
+  if (!options.list.list.empty()) require_of_a_list(options);
   const bool one = options.logs.size() == 1 || options.pool || !options.list.list.empty();
   require_option(options.certificate.empty() || one, "--certificate", "certifies one verdict",
                  "name one log, or add --pool");
@@ -116,6 +125,16 @@ void require_consistent(const Options& options) {
 std::vector<std::string> truths_beside(const std::vector<Log>& logs) {
   std::vector<std::string> out;
   for (const Log& log : logs) out.push_back(truth_beside(log));
+  return out;
+}
+
+// Beside the rate what was asked for otherwise than usual.
+report::Json settings_of(const Options& options, const Baseline& baseline) {
+  report::Json out = {{"false_alarm", baseline.asked}};
+  if (!options.list.explain_unknown) out["explain_unknown"] = false;
+  if (options.pool) out["pool"] = true;
+  if (!options.against.empty()) out["against"] = options.against;
+  if (options.genetic()) out.update({{"search", "genetic"}, {"population", options.population}});
   return out;
 }
 
@@ -151,9 +170,7 @@ int run(const Options& options) {
   std::vector<std::string> truths = invocation.wants_report() ? truths_beside(logs) : std::vector<std::string>{};
 
   const Actions actions = actions_of(options.list.actions);
-  *header.settings = {{"false_alarm", baseline.asked}};
-  if (last) header.settings->update({{"against", options.against}});
-  if (options.genetic()) header.settings->update({{"search", "genetic"}, {"population", options.population}});
+  *header.settings = settings_of(options, baseline);
   invocation.tell_of_long_fits(logs);
   if (invocation.dry_run()) return ran;
 
@@ -221,6 +238,7 @@ void add_diagnose_command(CLI::App& app, int& exit_code) {
       ->type_name("I/N")
       ->needs(list)
       ->capture_default_str();
+  command->add_flag("--pages", options->list.pages, "with --list: also a page a log beside its result")->needs(list);
   add_certificate_option(*command, options->certificate);
   command
       ->add_option("--against", options->against,
@@ -255,8 +273,9 @@ void add_diagnose_command(CLI::App& app, int& exit_code) {
   add_run_options(*command, options->run);
   add_common_options(*command, options->common);
   command->footer(
-      "With --list a result that is there for the same log, table, baseline, rig, seed and version is kept; a log\n"
-      "that is refused leaves its reason in DIR and the rest goes on: exit code 3, where neither 10 nor 11 is due.");
+      "With --list a result that is there is kept where log, table, baseline, rig file, actions, options and program\n"
+      "are the same; a log that is refused leaves its reason in DIR and the rest goes on: exit code 3, where neither\n"
+      "10 nor 11 is due.");
   command->callback([options, &exit_code] { exit_code = run(*options); });
 }
 

@@ -28,11 +28,8 @@ FleetRun judge_all(const std::vector<std::string>& logs, FleetJudge& judge, cons
   const std::atomic<bool>& stop = stop_on_interrupt(true);
   FleetRun run;
   run.out = list.out, run.logs = logs.size();
-  DiagnoseOptions options{.seed = common.seed,
-                          .threads = common.threads,
-                          .watch = {.stop = [&stop] { return stop.load(); }},
-                          .actions = actions_of(list.actions),
-                          .explain_unknown = list.explain_unknown};
+  DiagnoseOptions options{
+      .seed = common.seed, .threads = common.threads, .watch = {.stop = [&stop] { return stop.load(); }}};
   run_list("diagnose", run, common.quiet, [&](std::size_t place, Progress& progress, const Tell& tell) {
     options.watch.progress = [&tell](const WorkDone&) { tell(); };
     const FleetJudge::Outcome outcome = judge.judge(logs[place], result_name(logs[place]), options);
@@ -45,21 +42,23 @@ FleetRun judge_all(const std::vector<std::string>& logs, FleetJudge& judge, cons
 
 int diagnose_list(const CommonOptions& common, const RunOptions& run_options, const ListOptions& options,
                   const std::string& params, const std::string& baseline) {
-  require_option(common.report.empty(), "--report", "a list has no page of its own",
+  require_option(common.report.empty() && common.pdf.empty(), common.report.empty() ? "--pdf" : "--report",
+                 "a list has no page of its own",
                  "'servodx gather " + (options.out.empty() ? "DIR" : options.out) + " --report FILE.html' makes it");
   require_folder("--out", options.out);
   Invocation invocation("diagnose", common, run_options);
   std::vector<std::string> inputs = {params, baseline};
+  if (!options.actions.empty()) inputs.push_back(options.actions);
   if (!is_standard_input(options.list)) inputs.push_back(options.list);
   invocation.check_files(inputs, {});
   const Chunk chunk = read_chunk(options.chunk);
-  const Judging judging = read_judging(invocation, params, baseline);
+  const Judging judging = read_judging(invocation, {params, baseline, options.actions}, options.explain_unknown);
   const std::vector<std::string> logs = read_log_list(options.list, chunk);
-  actions_of(options.actions);  // refused before the first log
   report::Header& header = invocation.header();
   if (common.dry_run) rehearse_list(logs, judging.rig, header);
   if (invocation.dry_run()) return ran;
   FleetJudge judge(invocation, judging, options.out);
+  judge.pages = options.pages;
   // What can be read but once has no hash.
   std::error_code ignored;
   if (std::filesystem::is_regular_file(options.list, ignored))

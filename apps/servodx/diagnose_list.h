@@ -3,7 +3,6 @@
 #include <string>
 
 #include "invocation.h"
-#include "servodx/actions.h"
 
 namespace servodx {
 
@@ -12,10 +11,8 @@ struct ListOptions {
   bool exit_code = false;       // end with 10 for a fault, 11 for unknown
   std::string actions;          // file of actions by label; empty: the program's
   bool explain_unknown = true;  // ask what stands first where no fault explains a log
+  bool pages = false;           // a page a log beside its result
 };
-
-// The program's where no file is named.
-inline Actions actions_of(const std::string& file) { return file.empty() ? default_actions() : read_actions(file); }
 
 // The exit code.
 int diagnose_list(const CommonOptions& common, const RunOptions& run, const ListOptions& options,

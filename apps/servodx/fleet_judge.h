@@ -2,9 +2,9 @@
 //
 // The result is what `diagnose LOG --json` writes, whole or absent. A log that is refused leaves its reason instead.
 #pragma once
-#include <functional>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "base/progress.h"
 #include "fleet/fleet_verdict.h"
@@ -13,6 +13,7 @@
 #include "invocation.h"
 #include "report/shared/json.h"
 #include "result_folder.h"
+#include "servodx/actions.h"
 #include "servodx/baseline.h"
 #include "servodx/diagnose.h"
 #include "servodx/error.h"
@@ -27,9 +28,21 @@ struct Judging {
   RigFile rig;
   Tuned tuned;
   Baseline baseline;
+  Actions actions = default_actions();
+  bool explain_unknown = true;
+  // Of the call's inputs, the last: those that a result names behind its log.
+  std::vector<report::InputFile> behind_log = {};
 };
-// Notes the files among the inputs of the call, and refuses a baseline of another table.
-Judging read_judging(Invocation& invocation, const std::string& params, const std::string& baseline);
+struct JudgingFiles {
+  std::string params, baseline;
+  std::string actions = {};  // empty: the program's
+};
+// Notes the files among the inputs of the call and what was asked for among its settings, and refuses a baseline of
+// another table.
+Judging read_judging(Invocation& invocation, const JudgingFiles& files, bool explain_unknown = true);
+
+// The program's where no file is named.
+inline Actions actions_of(const std::string& file) { return file.empty() ? default_actions() : read_actions(file); }
 
 class FleetJudge {
  public:
@@ -41,24 +54,23 @@ class FleetJudge {
     std::optional<SetAside> refusal = {};       // set aside
     std::optional<Verdict> judged = {};         // made
   };
-  // `name`: of its files in the folder, without ending. Throws only where a result cannot be written.
-  Outcome judge(const std::string& log, const std::string& name, const DiagnoseOptions& options);
-  // Called with what a log gave just before its result is written.
-  std::function<void(const std::string& name, const Verdict& verdict, const Log& log)> beside = {};
+  // `name`: of its files in the folder, without ending. Actions and `explain_unknown` are those of the judging. Throws
+  // only where a result cannot be written.
+  Outcome judge(const std::string& log, const std::string& name, DiagnoseOptions options);
+  bool pages = false;  // a page a log beside its result; a result without it does not stand
   // The header of a judged log's result.
   const report::Header& header() const { return header_; }
-  const ResultFolder& folder() const { return folder_; }
 
  private:
   void begin(const std::string& log);
   void complete_header(const Verdict& verdict);
   bool stands(const std::string& name, Outcome& outcome) const;
+  void write_page(const std::string& name, const Verdict& verdict, const Log& log) const;
   Outcome set_aside(const std::string& log, const std::string& name, const InputError& error);
 
   const Judging& judging_;
   report::Header of_call_, header_;
   ResultFolder folder_;
-  report::InputFile baseline_;
 };
 
 // Counts an outcome; says which log was set aside, and adds a judged one's simulations to the call's.

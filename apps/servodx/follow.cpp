@@ -382,7 +382,7 @@ int follow(const FollowOptions& options, const CommonOptions& common) {
   if (!options.state.empty()) outputs.push_back(options.state);
   if (!options.events.empty() && !is_standard_stream(options.events)) outputs.push_back(options.events);
   invocation.check_files(inputs, outputs);
-  const Judging judging = read_judging(invocation, options.params, options.baseline);
+  const Judging judging = read_judging(invocation, {options.params, options.baseline});
   report::Header& header = invocation.header();
   header.settings->update({{"source", options.source},
                            {"alarms_per_hour", options.alarms_per_hour},

@@ -1,8 +1,11 @@
 // `servodx gather DIR`: the results of many logs as one table, and, with the truth, what they are worth.
 #include <CLI/CLI.hpp>
+#include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <string>
+#include <system_error>
 
 #include "base/atomic_file.h"
 #include "commands.h"
@@ -24,6 +27,14 @@ void note_counts(Invocation& invocation, const FleetCounts& counts) {
     invocation.note({std::to_string(counts.without_truth) + " results have no truth and are not in its counts"});
   if (counts.without_result > 0)
     invocation.note({std::to_string(counts.without_result) + " rows of the truth have no result"});
+}
+
+// The folder from where the page stands; empty: the page is on paper alone.
+std::string seen_from(const std::string& page, const std::string& folder) {
+  if (page.empty()) return "";
+  namespace fs = std::filesystem;
+  std::error_code ignored;
+  return fs::proximate(folder, fs::absolute(page).parent_path(), ignored).generic_string();
 }
 
 int run(const Options& options) {
@@ -48,7 +59,9 @@ int run(const Options& options) {
                      " results carry no schema, as earlier versions wrote them; they are read as far as they go"});
   if (!options.output.empty()) write_file(options.output, fleet.csv);
   const FleetCounts* counts = found ? &*found : nullptr;
-  if (invocation.wants_report()) invocation.write_report(report::fleet_page(header, fleet, counts));
+  if (invocation.wants_report())
+    invocation.write_report(
+        report::fleet_page(header, fleet, counts, seen_from(options.common.report, options.folder)));
   invocation.finish(report::text_of(fleet, counts), report::fleet_json(fleet, counts));
   return fleet.unread.empty() ? ran : some_set_aside;
 }

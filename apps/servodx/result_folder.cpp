@@ -50,4 +50,14 @@ void ResultFolder::drop_refusal(const std::string& name) const {
   fs::remove(refusal_path(name), ignored);
 }
 
+bool ResultFolder::has_page(const std::string& name) const {
+  std::error_code ignored;
+  return fs::is_regular_file(page_path(name), ignored);
+}
+
+void ResultFolder::drop_page(const std::string& name) const {
+  std::error_code ignored;
+  fs::remove(page_path(name), ignored);
+}
+
 }  // namespace servodx

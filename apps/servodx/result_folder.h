@@ -19,6 +19,8 @@ class ResultFolder {
   void write_result(const std::string& name, const std::string& text) const;
   void write_refusal(const std::string& name, const std::string& text) const;
   void drop_refusal(const std::string& name) const;
+  bool has_page(const std::string& name) const;
+  void drop_page(const std::string& name) const;
 
  private:
   std::string path_;

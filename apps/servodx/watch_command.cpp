@@ -21,15 +21,12 @@
 #include "fleet_judge.h"
 #include "follow.h"
 #include "invocation.h"
-#include "report/diagnose/diagnose_page.h"
 #include "report/diagnose/diagnosis_text.h"
 #include "report/fleet/fleet.h"
 #include "report/shared/json.h"
 #include "report/shared/text_options.h"
 #include "result_folder.h"
 #include "servodx/diagnose.h"
-#include "servodx/log.h"
-#include "servodx/pages.h"
 
 namespace servodx {
 namespace {
@@ -42,14 +39,6 @@ struct Options {
   bool once = false, pages = false, exit_code = false;
 };
 
-// A page a log, there before its result is: so a result that stands has its page.
-void write_page(const Judging& judging, const std::string& path, const Verdict& verdict, const Log& log,
-                const report::Header& header) {
-  const std::vector verdicts = {verdict};
-  const auto replays = replays_of(verdicts, {log}, judging.tuned, judging.rig, 1);
-  write_file(path, report::diagnose_page(header, verdicts, judging.baseline, replays).html());
-}
-
 class Watching {
  public:
   Watching(const Options& options, const Judging& judging, Invocation& invocation)
@@ -59,10 +48,7 @@ class Watching {
         invocation_(invocation),
         progress_("watch", {.quiet = options.common.quiet}) {
     run_.out = options.out;
-    if (options.pages)
-      judge_.beside = [this, &judging](const std::string& name, const Verdict& verdict, const Log& log) {
-        write_page(judging, judge_.folder().page_path(name), verdict, log, judge_.header());
-      };
+    judge_.pages = options.pages;
     if (!options.prometheus.empty()) gauges_.take_results(options.out);
   }
 
@@ -141,7 +127,7 @@ int run_folder(const Options& options) {
   std::vector<std::string> outputs;
   if (!options.prometheus.empty()) outputs.push_back(options.prometheus);
   invocation.check_files({options.params, options.baseline}, outputs);
-  const Judging judging = read_judging(invocation, options.params, options.baseline);
+  const Judging judging = read_judging(invocation, {options.params, options.baseline});
   report::Header& header = invocation.header();
   if (options.common.dry_run) (*header.settings)["logs"] = logs_in(options.folder).size();
   if (invocation.dry_run()) return ran;

@@ -27,7 +27,7 @@ struct CheckOptions {
   bool track = true;              // fit the parameters that wear moves
   bool correct = true;            // to oil at 40 degC and the table's supply
   std::vector<double> last = {};  // History::tracked() of the valve: another start of the fit; may be empty
-  Watch watch = {};               // its progress alone: a check is whole or not at all
+  Watch watch = {};               // stopped: what comes back says `interrupted` and nothing else
 
   // Throws InputError naming the option.
   void validate() const;
@@ -44,6 +44,7 @@ struct Checked {
   double temperature = 0;  // [K] of the oil: the log's, or estimated
   std::vector<Note> notes;
   long simulations = 0, failed_simulations = 0;
+  bool interrupted = false;
   std::shared_ptr<const CheckResult> whole;  // for the program's pages
 };
 
@@ -115,7 +116,8 @@ struct TrendOptions {
   std::vector<FailureLevel> failures = {};        // the user's, of checks that the library makes or the history holds
   std::shared_ptr<const SeededTest> seeded = {};  // parameters are taken to the wear at which these read the same
   std::uint64_t seed = 1;
-  int threads = 0;  // 0: all cores; the result does not depend on it
+  int threads = 0;   // 0: all cores; the result does not depend on it
+  Watch watch = {};  // stopped: no check is told, and a note says so; it has no progress
 
   // Throws InputError that names the option, as the program calls it.
   void validate() const;

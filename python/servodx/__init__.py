@@ -8,8 +8,8 @@
 
 Values are SI; a table is a DataFrame with the units of its columns in `attrs["units"]`. Calls leave the interpreter free
 and Ctrl-C ends them. `progress` is True for a bar where a person looks on, False for none, or called as progress(work,
-part, simulations). A bad input raises InputError with file, line, column, rule and mend. Start worker processes by
-"spawn": one that was forked works on one thread.
+part, simulations). A bad input raises InputError with file, line, column, rule, mend and code. Start worker processes
+by "spawn": one that was forked works on one thread.
 """
 import os
 

@@ -81,7 +81,7 @@ class Objective:
         return self._inside.costs(x)
 
     def jac(self, x):
-        """(m, n) by forward differences, all columns in one batch."""
+        """(m, n), all columns in one batch: forward differences; from 25 columns of a log on, followers of its run."""
         return self._inside.jacobian(x)[0]
 
     def values(self, x):

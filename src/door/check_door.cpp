@@ -39,6 +39,8 @@ Checked check(const Log& log, const Tuned& tuned, const Rig& rig, const CheckOpt
   auto result = std::make_shared<CheckResult>(check(log, tuned.table, rig, options));
   Checked out;
   out.log = result->log, out.sha256 = result->sha256;
+  out.interrupted = result->interrupted;
+  if (out.interrupted) return out;
   for (const Check& c : result->checks) out.figures.push_back({c.name.text(), c.value, c.std_error, c.unit});
   out.temperature = result->temperature.value;
   out.notes = result->notes;

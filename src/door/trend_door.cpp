@@ -95,7 +95,7 @@ void add_level(const FailureLevel& level, TrendSettings& to) {
 TrendSettings settings_of(const TrendOptions& options) {
   TrendSettings to;
   to.false_alarm = options.false_alarm, to.healthy = options.healthy, to.coverage = options.coverage;
-  to.seed = options.seed, to.threads = options.threads;
+  to.seed = options.seed, to.threads = options.threads, to.stop = options.watch.stop;
   for (const FailureLevel& level : options.limits) add_level(level, to);
   for (const FailureLevel& level : options.failures) add_level(level, to);
   if (options.seeded) to.seeded = options.seeded->readings;

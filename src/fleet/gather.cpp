@@ -79,6 +79,13 @@ SetAside refusal_of(const Json& file) {
   return log;
 }
 
+// The log's own page beside its result; empty where there is none.
+std::string page_beside(const std::string& result) {
+  std::error_code ignored;
+  const fs::path page = fs::path(result).replace_extension(page_ending);
+  return fs::is_regular_file(page, ignored) ? page.filename().string() : "";
+}
+
 void read_into(FleetTable& table, const std::string& path, const std::string& name) {
   const Json file = json_or_discarded<Json>(read_file(path));
   if (!file.is_object()) throw Unfit{"is no whole JSON", make_again};
@@ -91,7 +98,8 @@ void read_into(FleetTable& table, const std::string& path, const std::string& na
   const Json& results = at(file, "results");
   if (!results.is_array() || results.empty()) throw Unfit{"'results' is no list of results", make_again};
   std::vector<FleetRow> rows;  // of a damaged file none counts
-  for (const Json& result : results) rows.push_back(row_of(result, name));
+  const std::string page = page_beside(path);
+  for (const Json& result : results) rows.push_back(row_of(result, name)), rows.back().page = page;
   table.rows.insert(table.rows.end(), rows.begin(), rows.end());
 }
 

@@ -15,6 +15,7 @@ namespace servodx {
 
 struct FleetRow {
   std::string file;  // in the folder
+  std::string page;  // of the log, in the folder too; empty: none stands there
   std::string log;   // its path as the result says
   FleetVerdict verdict = FleetVerdict::none;
   std::string fault;                                            // label; empty where none is named

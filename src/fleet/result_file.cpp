@@ -32,7 +32,10 @@ std::vector<std::string> hashes_of(const Json& result) {
 }
 
 bool rests_on(const Json& result, const ResultBasis& basis) {
-  if (!is_text(result, "command", "diagnose") || !is_text(result, "version", basis.version)) return false;
+  if (!is_text(result, "command", "diagnose")) return false;
+  if (!is_text(result, "version", basis.version) || !is_text(result, "commit", basis.commit)) return false;
+  const auto settings = result.find("settings");
+  if (settings == result.end() || *settings != json_or_discarded<Json>(basis.settings)) return false;
   const auto seed = result.find("seed");
   if (seed == result.end() || !seed->is_number_unsigned() || seed->get<std::uint64_t>() != basis.seed) return false;
   std::vector<std::string> there = hashes_of(result), wanted = basis.inputs;

@@ -18,8 +18,9 @@ std::string result_name(const std::string& log, const std::string& use = "");
 
 // What a result rests on; one that rests on the same needs not be made again.
 struct ResultBasis {
-  std::string version;
+  std::string version, commit = {};  // of the program
   std::uint64_t seed = 1;
+  std::string settings = "{}";      // JSON: the options in effect
   std::vector<std::string> inputs;  // SHA-256 of all files read, in any order
 };
 

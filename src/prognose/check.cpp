@@ -60,9 +60,9 @@ void take_oil(CheckResult& out, LogData& data, const Log& log, const Table& tune
   } else if (rig.oil_temperature) {
     out.temperature = {*rig.oil_temperature, 0.0, OilSource::given};
   } else if (options.correct) {
-    out.temperature = estimate_temperature(data, tuned, rig, options.threads, &out.simulations, [&](double part) {
-      options.watch.tell("check", until_oil * part, out.simulations);
-    });
+    out.temperature = estimate_temperature(
+        data, tuned, rig, options.threads, &out.simulations,
+        [&](double part) { options.watch.tell("check", until_oil * part, out.simulations); }, options.watch.stop);
     data.scenario.oil = oil_of(rig.fluid, out.temperature.value);
     data.scenario.oil_known = true;
     out.notes.push_back(
@@ -103,8 +103,12 @@ Track tracked(CheckResult& out, const LogData& data, const Table& tuned, const R
   const auto told = [&](double part, long simulations) {
     options.watch.tell("check", from + (until_track - from) * part, before + simulations);
   };
-  track = track_parameters(
-      data, tuned, {.null_limit = rig.null_limit, .threads = options.threads, .last = options.last, .told = told});
+  track = track_parameters(data, tuned,
+                           {.null_limit = rig.null_limit,
+                            .threads = options.threads,
+                            .last = options.last,
+                            .told = told,
+                            .stop = options.watch.stop});
   out.simulations += track.simulations;
   out.failed_simulations += track.failed;
   out.adequacy = track.adequacy;
@@ -189,6 +193,13 @@ void add_parameters(CheckResult& out, const std::vector<TrackedParameter>& param
                           std::string(p.fault->name), p.tuned, p.failed, p.whole_error, p.told});
 }
 
+CheckResult stopped(const Log& log) {
+  CheckResult out;
+  out.log = log.path, out.sha256 = log.sha256;
+  out.interrupted = true;
+  return out;
+}
+
 }  // namespace
 
 CheckResult check(const Log& log, const Table& tuned, const RigFile& rig, const CheckOptions& options) {
@@ -201,6 +212,7 @@ CheckResult check(const Log& log, const Table& tuned, const RigFile& rig, const 
   out.sha256 = log.sha256;
   out.notes = log.notes;
   take_oil(out, fitted, log, tuned, rig, options);
+  if (options.watch.stopped()) return stopped(log);
   data.scenario.oil = fitted.scenario.oil, data.scenario.oil_known = fitted.scenario.oil_known;
   for (const Note& note : fitted.notes)
     if (note.kind == Note::Kind::resampled) out.notes.push_back(note);
@@ -211,6 +223,7 @@ CheckResult check(const Log& log, const Table& tuned, const RigFile& rig, const 
   const FitChannel* spool = channel_of(data, Signal::spool_position);
   if (test.step && spool) out.offset = offset_at_rest(test, *spool, beside.monitor, data.scenario.rated_current);
   const Track track = tracked(out, fitted, tuned, rig, options);
+  if (options.watch.stopped()) return stopped(log);
 
   options.watch.tell("check", until_track, out.simulations);
   if (test.step || !test.sines.empty()) {

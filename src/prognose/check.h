@@ -50,6 +50,7 @@ struct CheckResult {
   MeanError mean_error;  // with its running curve
   std::vector<Note> notes;
   long simulations = 0, failed_simulations = 0;
+  bool interrupted = false;  // nothing else is told then
 };
 
 CheckResult check(const Log& log, const Table& tuned, const RigFile& rig, const CheckOptions& options);

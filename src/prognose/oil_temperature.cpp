@@ -44,7 +44,8 @@ double misfit_at(const LogData& log, const Table& tuned, const ErrorModel& error
 }  // namespace
 
 OilTemperature estimate_temperature(const LogData& log, const Table& tuned, const RigFile& rig, int threads,
-                                    long* simulations, const std::function<void(double part)>& told) {
+                                    long* simulations, const std::function<void(double part)>& told,
+                                    const std::function<bool()>& stop) {
   const ErrorModel error = error_model_of(tuned);
   std::vector<double> kelvin, misfit;
   for (double celsius = coldest_celsius; celsius <= hottest_celsius; celsius += celsius_step) {
@@ -54,6 +55,7 @@ OilTemperature estimate_temperature(const LogData& log, const Table& tuned, cons
     at.scenario.oil_known = true;
     misfit.push_back(misfit_at(at, tuned, error, threads, simulations));
     if (told) told((celsius - coldest_celsius + celsius_step) / (hottest_celsius - coldest_celsius + celsius_step));
+    if (stop && stop()) break;
   }
   const double least = *std::min_element(misfit.begin(), misfit.end());
   double sum = 0, first = 0, second = 0;

@@ -21,8 +21,9 @@ struct OilTemperature {
   OilSource source = OilSource::given;
 };
 
-// `simulations` counts on. `told`: what part is done.
+// `simulations` counts on. `told`: what part is done. `stop`: true, and what comes back is of no use.
 OilTemperature estimate_temperature(const LogData& log, const Table& tuned, const RigFile& rig, int threads,
-                                    long* simulations, const std::function<void(double part)>& told = {});
+                                    long* simulations, const std::function<void(double part)>& told = {},
+                                    const std::function<bool()>& stop = {});
 
 }  // namespace servodx

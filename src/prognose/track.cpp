@@ -127,12 +127,13 @@ std::vector<Point> likeliest(FitProblem& problem, const std::vector<Point>& star
 std::optional<LeastSquaresResult> fit_from(FitProblem& problem, const std::vector<Point>& starts,
                                            const TrackOptions& options) {
   constexpr double all = static_cast<double>(starts_followed) * first_iterations + last_iterations;
+  const auto stopped = [&] { return options.stop && options.stop(); };
   double done = 0, furthest = 0;  // iterations: those that a fit did not need are done at its end
   LeastSquaresOptions o;
   o.progress = [&](const LeastSquaresProgress& now) {
     furthest = std::max(furthest, done + std::min(now.iteration, o.max_iterations));
     if (options.told) options.told(furthest / all, problem.simulations());
-    return true;
+    return !stopped();
   };
   o.difference = Difference::forward;
   o.cost_tolerance = track_cost_tolerance;
@@ -141,11 +142,12 @@ std::optional<LeastSquaresResult> fit_from(FitProblem& problem, const std::vecto
   LeastSquaresResult best;
   best.cost = no_cost;
   for (const Point& start : likeliest(problem, starts)) {
+    if (stopped()) return {};
     LeastSquaresResult r = minimise_locally(least, start, o).end;
     if (r.reason != StopReason::start_failed && r.cost < best.cost) best = std::move(r);
     done += first_iterations;
   }
-  if (!(best.cost < no_cost)) return {};
+  if (!(best.cost < no_cost) || stopped()) return {};
   o.max_iterations = last_iterations;
   LeastSquaresResult r = minimise_locally(least, best.point, o).end;
   if (r.reason != StopReason::start_failed) best = std::move(r);

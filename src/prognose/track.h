@@ -45,6 +45,7 @@ struct TrackOptions {
   int threads = 0;
   std::vector<double> last;  // values of the last check, in the order of progressive_faults(): another start
   std::function<void(double part, long simulations)> told = {};  // what is done
+  std::function<bool()> stop = {};                               // true: what comes back is of no use
 };
 
 // Those of the registry that grow with use, and the row that each moves first.

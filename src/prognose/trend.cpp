@@ -18,13 +18,16 @@ using namespace prognose_constants;
 
 namespace {
 
+bool stopped(const TrendSettings& options) { return options.stop && options.stop(); }
+
 std::vector<CheckTrend> trends_of(const std::vector<CheckSeries>& checks, const TrendSettings& options) {
   std::vector<CheckTrend> out(checks.size());
   const auto n = static_cast<long>(checks.size());
   const int threads = options.threads > 0 ? options.threads : omp_get_max_threads();
 #pragma omp parallel for schedule(dynamic, 1) num_threads(threads)
   for (long k = 0; k < n; ++k)
-    out[static_cast<std::size_t>(k)] = trend_of(checks[static_cast<std::size_t>(k)], options, checks.size());
+    if (!stopped(options))
+      out[static_cast<std::size_t>(k)] = trend_of(checks[static_cast<std::size_t>(k)], options, checks.size());
   return out;
 }
 
@@ -109,6 +112,11 @@ ValveTrend trend(const ValveHistory& history, const TrendSettings& options) {
   for (CheckSeries& s : series.checks)
     take_seeded(s, options.seeded), take_clean(s, static_cast<std::size_t>(options.healthy));
   out.trends = trends_of(series.checks, options);
+  if (stopped(options)) {
+    out.trends.clear();
+    out.notes.push_back({Note::Kind::interrupted, "interrupted: no check was told"});
+    return out;
+  }
   note_levels(out, series.checks, options);
   take_state(out);
   take_cause_and_life(out, options.coverage);

@@ -1,6 +1,7 @@
 // What a user asks of a trend.
 #pragma once
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <optional>
 #include <utility>
@@ -28,7 +29,8 @@ struct TrendSettings {
   std::vector<SeededReading> seeded;
   double coverage = 0.9;  // of the interval of the life left
   std::uint64_t seed = 1;
-  int threads = 0;  // 0: all; the result does not depend on it
+  int threads = 0;                  // 0: all; the result does not depend on it
+  std::function<bool()> stop = {};  // true: no check is told, and a note says so
 };
 
 }  // namespace servodx

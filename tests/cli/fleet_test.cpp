@@ -5,6 +5,7 @@
 #include <sys/stat.h>
 
 #include <cstdlib>
+#include <filesystem>
 
 #include "cli/program.h"
 
@@ -28,7 +29,9 @@ TEST(Fleet, AListGivesTheResultsOfTheLogsOneByOne) {
     const Ended alone = desk.run("diagnose " + log + FleetDesk::judged_with + "--threads 1 --json -");
     Json wanted = Json::parse(alone.out);
     wanted.erase("seconds");
-    EXPECT_EQ(result, wanted) << log;
+    Json found = result;
+    EXPECT_EQ(found.erase("commit"), 1u) << "by which a later run knows it";
+    EXPECT_EQ(found, wanted) << log;
   }
 }
 
@@ -51,6 +54,55 @@ TEST(Fleet, ASecondRunKeepsWhatStandsAndMakesTheRestAnew) {
   desk.write("b/log.csv", FleetDesk::excerpt("healthy/h04_multisine.csv", 100));
   EXPECT_EQ(summary(desk.list("list.txt --out res --json -"))["judged"], 1);
   EXPECT_EQ(summary(desk.list("list.txt --out res --json - --seed 2"))["judged"], 2);
+}
+
+// Whatever changes a result: what a fault asks for, and what is asked of an unknown log.
+TEST(Fleet, ASecondRunWithOtherActionsOrQuestionsJudgesAnew) {
+  const FleetDesk desk;
+  desk.write("list.txt", "b/log.csv\n");
+  const auto judged = [&](const std::string& more) {
+    const Ended ended = desk.list("list.txt --out res --json - " + more);
+    EXPECT_EQ(ended.code, 0) << ended.err;
+    return ended.code == 0 ? summary(ended)["judged"].get<int>() : -1;
+  };
+  desk.write("act.toml", "clogged_filter = \"abnormal: flush\"\n");
+  EXPECT_EQ(judged("--no-explain"), 1);
+  EXPECT_EQ(judged("--no-explain"), 0);
+  EXPECT_EQ(judged("--no-explain --actions act.toml"), 1);
+  EXPECT_EQ(judged("--no-explain --actions act.toml"), 0);
+  const Json result = desk.results("res").at("b/log.csv");
+  EXPECT_EQ(result["inputs"].back()["path"], "act.toml");
+  EXPECT_EQ(result["settings"]["explain_unknown"], false);
+  desk.write("act.toml", "clogged_filter = \"critical: stop\"\n");
+  EXPECT_EQ(judged("--no-explain --actions act.toml"), 1);
+  EXPECT_EQ(judged("--actions act.toml"), 1);
+  EXPECT_EQ(judged("--actions act.toml"), 0);
+}
+
+TEST(Fleet, APageALogStandsBesideItsResultAndTheTableLeadsToIt) {
+  const FleetDesk desk;
+  desk.write("list.txt", "b/log.csv\n");
+  const auto page = [&] {
+    std::string name;
+    for (const auto& entry : std::filesystem::directory_iterator(desk.path / "res"))
+      if (entry.path().extension() == ".html") name = entry.path().filename().string();
+    return name;
+  };
+  ASSERT_EQ(desk.list("list.txt --out res --no-explain").code, 0);
+  EXPECT_EQ(page(), "");
+  const Ended made = desk.list("list.txt --out res --no-explain --pages --json -");
+  EXPECT_EQ(summary(made)["judged"], 1) << "a result without its page does not stand: " << made.err;
+  ASSERT_NE(page(), "");
+  EXPECT_EQ(summary(desk.list("list.txt --out res --no-explain --pages --json -"))["stood"], 1);
+  const auto leads_to = [&](const std::string& report, const std::string& address) {
+    EXPECT_EQ(desk.run("gather res --quiet --report " + report).code, 0);
+    return bytes_of(desk / report).find("<a href=\"" + address + page() + "\">b/log.csv</a>") != std::string::npos;
+  };
+  EXPECT_TRUE(leads_to("t.html", "res/"));
+  EXPECT_TRUE(leads_to("a/t.html", "../res/"));
+  // Judged anew without a page: the old one would show another verdict.
+  EXPECT_EQ(desk.list("list.txt --out res --no-explain --seed 2").code, 0);
+  EXPECT_EQ(page(), "");
 }
 
 TEST(Fleet, ABadLogIsSetAsideWithItsReasonAndTheRestIsJudged) {
@@ -140,7 +192,9 @@ TEST(Fleet, CallsThatCannotBeAreRefusedBeforeTheWork) {
   const auto before = desk.contents();
   for (const char* call :
        {"list.txt", "list.txt --out list.txt", "list.txt --out no/where", "gone.txt --out res", "empty.txt --out res",
-        "list.txt --out res --chunk 3/2", "list.txt --out res b/log.csv", "list.txt --out res --report page.html"}) {
+        "list.txt --out res --chunk 3/2", "list.txt --out res b/log.csv", "list.txt --out res --report page.html",
+        "list.txt --out res --pdf page.pdf", "list.txt --out res --pool", "list.txt --out res --population 60",
+        "list.txt --out res --search genetic"}) {
     const Ended ended = desk.list(call);
     EXPECT_EQ(ended.code, 2) << call << ": " << ended.err;
     EXPECT_NE(ended.err.find("; "), std::string::npos) << ended.err;

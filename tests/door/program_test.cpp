@@ -150,6 +150,12 @@ TEST_F(Door, ChecksAndTrendsAsTheProgramDoes) {
   EXPECT_GT(parts.size(), 3u) << "a call of seconds shows that it works";
   EXPECT_TRUE(std::is_sorted(parts.begin(), parts.end()));
   EXPECT_EQ(parts.back(), 1);
+  CheckOptions ended;
+  ended.watch.stop = [] { return true; };
+  const Checked stopped = check(read_log("s.csv", rig()), tuned, rig(), ended);
+  EXPECT_TRUE(stopped.interrupted && stopped.figures.empty());
+  EXPECT_FALSE(checked.interrupted);
+  EXPECT_THROW(History::open_or_make("stopped.db").record("V", {.at = 100}, stopped, tuned), InputError);
   const Json of_program = Json::parse(bytes_of("check.json")).at("checks");
   ASSERT_EQ(checked.figures.size(), of_program.size());
   for (std::size_t i = 0; i < checked.figures.size(); ++i) {
@@ -170,6 +176,13 @@ TEST_F(Door, ChecksAndTrendsAsTheProgramDoes) {
   const Trend found = trend(History::open("door.db"), "V");
   EXPECT_EQ(name_of(found.state), Json::parse(bytes_of("trend.json")).at("state"));
   EXPECT_EQ(found.checks, 1u);
+  EXPECT_FALSE(found.trends.empty());
+  TrendOptions at_once;
+  at_once.watch.stop = [] { return true; };
+  const Trend none = trend(History::open("door.db"), "V", at_once);
+  EXPECT_TRUE(none.trends.empty());
+  ASSERT_FALSE(none.notes.empty());
+  EXPECT_EQ(none.notes.back().kind, Note::Kind::interrupted);
   EXPECT_THROW(trend(history, "W"), InputError);
 }
 

@@ -43,6 +43,13 @@ struct Fleet : TemporaryFolder {
   }
 };
 
+TEST(Gather, ARowKnowsThePageThatStandsBesideItsResult) {
+  const Fleet fleet;
+  fleet.write("2.html", "<html>");
+  for (const FleetRow& row : gather(fleet.path.string(), never).rows)
+    EXPECT_EQ(row.page, row.file == "2.json" ? "2.html" : "") << row.file;
+}
+
 TEST(Gather, RowsAreTheResultsWorstFirst) {
   const Fleet fleet;
   const FleetTable table = gather(fleet.path.string(), never);

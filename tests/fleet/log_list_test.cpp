@@ -63,8 +63,9 @@ TEST(ResultName, IsAPlainFileNameWhateverThePath) {
   }
 }
 
-const ResultBasis basis{"1.0", 7, {"aa", "bb"}};
-const std::string result = R"({"version": "1.0", "command": "diagnose", "seed": 7,
+const ResultBasis basis{"1.0", "c0ffee", 7, R"({"false_alarm": 0.1, "explain_unknown": false})", {"aa", "bb"}};
+const std::string result = R"({"version": "1.0", "commit": "c0ffee", "command": "diagnose", "seed": 7,
+  "settings": {"false_alarm": 0.1, "explain_unknown": false},
   "inputs": [{"path": "x", "sha256": "bb"}, {"path": "y", "sha256": "aa"}], "results": [{"verdict": "fault"}]})";
 
 std::string with(const std::string& what, const std::string& by) {
@@ -72,7 +73,7 @@ std::string with(const std::string& what, const std::string& by) {
   return text.replace(text.find(what), what.size(), by);
 }
 
-TEST(StandingVerdict, AResultStandsForTheSameInputsVersionAndSeedAlone) {
+TEST(StandingVerdict, AResultStandsForTheSameInputsSettingsProgramAndSeedAlone) {
   const TemporaryFolder folder;
   const auto verdict = [&](const std::string& text) { return standing_verdict(folder.write("r.json", text), basis); };
   EXPECT_EQ(verdict(result), FleetVerdict::fault);
@@ -81,6 +82,12 @@ TEST(StandingVerdict, AResultStandsForTheSameInputsVersionAndSeedAlone) {
   EXPECT_EQ(verdict(with("\"aa\"", "\"cc\"")), FleetVerdict::none);
   EXPECT_EQ(verdict(with("\"1.0\"", "\"1.1\"")), FleetVerdict::none);
   EXPECT_EQ(verdict(with("7", "8")), FleetVerdict::none);
+  EXPECT_EQ(verdict(with("c0ffee", "c0ffee-changed")), FleetVerdict::none);
+  EXPECT_EQ(verdict(with("\"commit\": \"c0ffee\", ", "")), FleetVerdict::none) << "of an earlier program";
+  EXPECT_EQ(verdict(with(", \"explain_unknown\": false", "")), FleetVerdict::none);
+  EXPECT_EQ(verdict(with("\"explain_unknown\": false", "\"explain_unknown\": false, \"pool\": true")),
+            FleetVerdict::none);
+  EXPECT_EQ(verdict(with("0.1", "0.2")), FleetVerdict::none);
   EXPECT_EQ(verdict(with(R"(, {"path": "y", "sha256": "aa"})", "")), FleetVerdict::none);
   EXPECT_EQ(verdict(with("diagnose", "tune")), FleetVerdict::none);
   EXPECT_EQ(verdict(with("fault", "perhaps")), FleetVerdict::none);

@@ -17,9 +17,12 @@ class Module(unittest.TestCase):
         self.assertEqual((error.file, error.line), (str(path), 7))
         self.assertIn("spool_position", error.column)
         self.assertTrue(error.rule and error.mend)
+        self.assertEqual(error.code, "E04")
+        self.assertTrue(str(error).endswith("[E04]"), error)
         with self.assertRaises(sx.InputError) as caught:
             sx.tune([], **{**quick(), "rounds": 0})
         self.assertEqual(caught.exception.file, "--rounds")
+        self.assertIsNone(caught.exception.code)
 
     def test_the_whole_job_gives_the_programs_verdict(self):
         told = []
@@ -86,6 +89,38 @@ class Module(unittest.TestCase):
         threading.Timer(0.5, _thread.interrupt_main).start()
         with self.assertRaises(KeyboardInterrupt):  # the timer's thread runs: the interpreter is free meanwhile
             sx.tune([log], **{**quick(), "generations": 1_000_000})
+
+    def test_a_tune_that_is_ended_leaves_its_best(self):
+        log = excerpt(TUNED_ON, 700)
+        threading.Timer(0.5, _thread.interrupt_main).start()
+        with self.assertRaises(KeyboardInterrupt) as caught:
+            sx.tune([log], **{**quick(), "generations": 1_000_000})
+        self.assertIsInstance(caught.exception.best, sx.Tuned)
+        self.assertTrue(caught.exception.best.interrupted)
+
+    def test_a_tune_goes_on_from_its_checkpoint(self):
+        log = excerpt(TUNED_ON, 700)
+        with Desk() as desk:
+            kept = desk / "kept"
+            with self.assertRaises(sx.InputError):
+                sx.tune([log], checkpoint=kept, resume=True, **quick())
+            sx.tune([log], checkpoint=kept, **quick())
+            again = sx.tune([log], checkpoint=kept, resume=True, **quick())
+        self.assertEqual(again.table.sha256, tuned().table.sha256)
+
+    def test_ctrl_c_ends_a_check(self):
+        log = sx.read_log(SOURCE / "data/healthy/h09_preflight_hot.csv", rig())
+        tuned()
+
+        def interrupt(*_):
+            _thread.interrupt_main()  # once the check is under way
+        began = time.monotonic()
+        with self.assertRaises(KeyboardInterrupt):
+            tuned().check(log, progress=interrupt)
+        ended = time.monotonic() - began
+        began = time.monotonic()
+        tuned().check(log)
+        self.assertLess(ended, 0.7 * (time.monotonic() - began))
 
     def test_a_signal_ends_a_script_as_python_ends_it(self):
         script = (f"import sys; sys.argv = {sys.argv[:4]!r}; sys.path.insert(0, {str(pathlib.Path(__file__).parent)!r})\n"

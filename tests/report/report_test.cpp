@@ -525,6 +525,18 @@ TEST(FleetPage, OnlyAFaultHasAProbability) {
   }
 }
 
+// The folder may be called anything: an address is no markup and no scheme.
+TEST(FleetPage, ARowLeadsToItsLogsPageWhereOneStands) {
+  FleetTable table;
+  FleetRow with, without;
+  with.log = "a.csv", with.page = "a.12.html", without.log = "b.csv";
+  table.rows = {with, without};
+  const std::string page = fleet_page({}, table, {}, "../r s:\"#").html();
+  EXPECT_NE(page.find("<a href=\"../r%20s%3A%22%23/a.12.html\">a.csv</a>"), std::string::npos);
+  EXPECT_EQ(page.find(">b.csv</a>"), std::string::npos);
+  EXPECT_EQ(fleet_page({}, table, {}).html().find(">a.csv</a>"), std::string::npos) << "no folder is known";
+}
+
 TEST(Words, APortsLetterIsACapital) {
   EXPECT_EQ(words("pressure_a"), "pressure A");
   EXPECT_EQ(words("lap_pb"), "lap pb");

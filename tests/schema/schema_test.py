@@ -119,6 +119,8 @@ class Schemas(unittest.TestCase):
         run("diagnose", "--list", "logs.txt", "--out", "results", *judged, codes=(3,))
         refusal = next((cls.folder / "results").glob("*.refused.json"))
         cls.read("refused", refusal.relative_to(cls.folder))
+        judged_one = next(p for p in (cls.folder / "results").glob("*.json") if not p.name.endswith(".refused.json"))
+        cls.read("diagnose", judged_one.relative_to(cls.folder))
         put("truth.csv", "log,class\nc.csv,healthy\n")
         keep("gather", "results", "--truth", "truth.csv", codes=(0, 3))
         (cls.folder / "incoming").mkdir()

@@ -114,7 +114,7 @@ class Comparing {
 };
 
 void compare_conditions(const Json& a, const Json& b, Comparison& to) {
-  for (const char* key : {"version", "seed"})
+  for (const char* key : {"version", "commit", "seed"})
     if (a.value(key, Json()) != b.value(key, Json()))
       to.conditions.push_back(
           fmt::format("{}: {} and {}", key, shown(a.value(key, Json())), shown(b.value(key, Json()))));
@@ -147,8 +147,8 @@ Comparison compare(const std::string& path_a, Json a, const std::string& path_b,
   if (store::holds_one_verdict(a) && store::holds_one_verdict(b))
     c.tests = two_tests(path_a, store::verdict_of(a), store::verdict_of(b));
   for (Json* json : {&a, &b})
-    for (const char* key : {"tool", "version", "schema", "command", "seed", "settings", "inputs", "seconds", "notes",
-                            "simulations", "failed_simulations", "output"})
+    for (const char* key : {"tool", "version", "commit", "schema", "command", "seed", "settings", "inputs", "seconds",
+                            "notes", "simulations", "failed_simulations", "output"})
       json->erase(key);
   // One log against another: diagnoses of one log each compare though the logs differ.
   if (c.tests) a = a["results"][0], b = b["results"][0];

@@ -189,8 +189,8 @@ std::optional<Confusion> whole_of(const FleetCounts* counts) {
 
 std::string text_of(const Fleet& fleet, const FleetCounts* counts) { return text_of(*fleet.whole, whole_of(counts)); }
 Json fleet_json(const Fleet& fleet, const FleetCounts* counts) { return fleet_json(*fleet.whole, whole_of(counts)); }
-Page fleet_page(const Header& header, const Fleet& fleet, const FleetCounts* counts) {
-  return fleet_page(header, *fleet.whole, whole_of(counts));
+Page fleet_page(const Header& header, const Fleet& fleet, const FleetCounts* counts, const std::string& results) {
+  return fleet_page(header, *fleet.whole, whole_of(counts), results);
 }
 
 }  // namespace servodx::report

@@ -25,11 +25,13 @@ Json refusal_json(const std::string& log, const InputError& error);
 
 std::string text_of(const FleetTable& table, const std::optional<Confusion>& confusion);
 Json fleet_json(const FleetTable& table, const std::optional<Confusion>& confusion);
-Page fleet_page(const Header& header, const FleetTable& table, const std::optional<Confusion>& confusion);
+// `results`: the folder as seen from where the page will stand; a row leads to its log's page there. Empty: no links.
+Page fleet_page(const Header& header, const FleetTable& table, const std::optional<Confusion>& confusion,
+                const std::string& results = "");
 
 // The same of what gather_results() and count_fleet() made; null: no truth.
 std::string text_of(const Fleet& fleet, const FleetCounts* counts);
 Json fleet_json(const Fleet& fleet, const FleetCounts* counts);
-Page fleet_page(const Header& header, const Fleet& fleet, const FleetCounts* counts);
+Page fleet_page(const Header& header, const Fleet& fleet, const FleetCounts* counts, const std::string& results = "");
 
 }  // namespace servodx::report

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <string_view>
 
 #include "base/wilson.h"
 #include "fleet/confusion.h"
@@ -52,7 +53,24 @@ void add_names(Page& page, const FleetTable& table) {
   if (!bars.rows.empty()) page.add(bars);
 }
 
-void add_rows(Page& page, const FleetTable& table) {
+// A path as an address: what is no plain character stands as its bytes (RFC 3986).
+std::string address_of(const std::string& path) {
+  std::string out;
+  for (const char c : path) {
+    const bool plain = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
+                       std::string_view("-._~/").find(c) != std::string_view::npos;
+    out += plain ? std::string(1, c) : fmt::format("%{:02X}", static_cast<unsigned char>(c));
+  }
+  return out;
+}
+
+Cell log_cell(const FleetRow& row, const std::string& results) {
+  Cell cell(row.log);
+  if (!row.page.empty() && !results.empty()) cell.link = address_of(results + "/" + row.page);
+  return cell;
+}
+
+void add_rows(Page& page, const FleetTable& table, const std::string& results) {
   const std::size_t rows = std::min(table.rows.size(), most_logs);
   TablePart part{
       rows == table.rows.size() ? "Logs, worst first" : fmt::format("The worst {} of {} logs", rows, table.rows.size()),
@@ -65,7 +83,8 @@ void add_rows(Page& page, const FleetTable& table) {
     Cell verdict(word_of(row.verdict));
     verdict.tone = row.is_healthy() ? Tone::good : row.verdict == FleetVerdict::fault ? Tone::bad : Tone::doubt;
     const std::string size = severity_words(row);
-    part.rows.push_back({row.log, verdict, words(row.fault), size.empty() ? Cell("") : Cell(size, row.severity),
+    part.rows.push_back({log_cell(row, results), verdict, words(row.fault),
+                         size.empty() ? Cell("") : Cell(size, row.severity),
                          Cell(probability_words(row), row.probability), Cell(digits(row.excess()), row.excess())});
   }
   page.add(part);
@@ -145,7 +164,8 @@ long count_of(const Confusion& confusion, const std::string& label, const std::s
   return cell == row->second.end() ? 0 : cell->second;
 }
 
-Page fleet_page(const Header& header, const FleetTable& table, const std::optional<Confusion>& confusion) {
+Page fleet_page(const Header& header, const FleetTable& table, const std::optional<Confusion>& confusion,
+                const std::string& results) {
   Page page(header, "Fleet");
   const VerdictCounts n = counts_of(table);
   Verdict v;
@@ -154,7 +174,7 @@ Page fleet_page(const Header& header, const FleetTable& table, const std::option
   page.verdict(v);
   page.section("Logs");
   add_names(page, table);
-  add_rows(page, table);
+  add_rows(page, table, results);
   add_set_aside(page, "Logs that were set aside", table.refused);
   add_set_aside(page, "Files of the folder that are no results", table.unread);
   if (confusion) add_confusion(page, *confusion);

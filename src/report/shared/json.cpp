@@ -23,17 +23,18 @@ Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nul
 Json to_json(const Header& header) {
   Json inputs = Json::array();
   for (const InputFile& file : header.inputs) inputs.push_back({{"path", file.path}, {"sha256", file.sha256}});
-  return {{"tool", "servodx"},
-          {"version", header.version},
-          {"schema", result_schema},
-          {"command", header.command},
-          {"seed", header.seed},
-          {"settings", *header.settings},
-          {"inputs", inputs},
-          {"seconds", number(header.seconds)},
-          {"simulations", header.simulations},
-          {"failed_simulations", header.failed_simulations},
-          {"notes", header.notes}};
+  Json out = {{"tool", "servodx"}, {"version", header.version}};
+  if (!header.commit.empty()) out["commit"] = header.commit;
+  out.update({{"schema", result_schema},
+              {"command", header.command},
+              {"seed", header.seed},
+              {"settings", *header.settings},
+              {"inputs", inputs},
+              {"seconds", number(header.seconds)},
+              {"simulations", header.simulations},
+              {"failed_simulations", header.failed_simulations},
+              {"notes", header.notes}});
+  return out;
 }
 
 Json to_json(const ParameterResult& p) {

@@ -24,6 +24,7 @@ struct InputFile {
 // What every result file begins with.
 struct Header {
   std::string version, command;
+  std::string commit = {};  // of the program's sources, where a result is kept while it is the same; else empty
   std::uint64_t seed = 1;
   HeldJson settings;  // the options in effect that a result depends on; the number of threads is none
   std::vector<InputFile> inputs;

@@ -54,7 +54,7 @@ struct Cell {
   std::string text;
   std::optional<double> value = {};
   Tone tone = Tone::plain;
-  std::string link = {};  // "#id" on the page
+  std::string link = {};  // "#id" on the page, or another page
 };
 
 struct TablePart {
