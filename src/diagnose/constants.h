@@ -171,8 +171,8 @@ inline constexpr int starts_kept = 2;           // of a fault, after screening
 inline constexpr int first_iterations = 5;      // of every start where health failed; the better one goes on
 inline constexpr int approach_iterations = 10;  // the same by health's derivatives, a few runs each
 inline constexpr int iterations = 20;  // of a fit to its end; a leader that still promises more gets as many again
-// The genetic search over sub-groups (diagnose/sub_groups.cpp). The paper's 50 individuals; generations until the best
-// of a sub-group improves by less than the local refinement gains in one step (docs/diagnosis.md has the table).
+// The genetic search over sub-groups (diagnose/sub_groups.cpp), of the paper's 50 individuals. It has to find the valley
+// alone, as the local refinement goes on from there. By hand; not examined.
 inline constexpr int generations = 15;
 inline constexpr int least_population = 8;    // a pack of doubles
 inline constexpr int most_population = 2000;  // beyond it memory is the limit
