@@ -758,6 +758,30 @@ TEST(DiagnosePage, AHealthyHeadSaysWhatTheLogCannotShow) {
   EXPECT_EQ(head().find("Blind to"), std::string::npos) << head();
 }
 
+// Health has 20.7 % among hypotheses of which none holds: no bar of it beside "is not healthy".
+TEST(DiagnosePage, AnUnknownStateHasNoShareForHealth) {
+  Diagnosis d = some_diagnosis();
+  d.verdict = VerdictKind::unknown, d.fault = nullptr, d.onset.reset(), d.ambiguous_with.clear();
+  d.assessment.hypotheses = {{nullptr, 900, 0, 0.207, 0, 0, 0, 8.1, {}},
+                             {find_fault("sticky_spool"), 880, 10, 0.793, 4, 3, 5, 7.9, {}}};
+  const std::string html = diagnose_page({}, {d}, some_baseline(), {}).html();
+  EXPECT_EQ(html.find(">20.7 %<"), std::string::npos);
+  EXPECT_EQ(html.find("<tr data-tone=\"good\""), std::string::npos);
+  EXPECT_NE(html.find(">79.3 %<"), std::string::npos);
+}
+
+TEST(DiagnosePage, OfAHealthyLogWhatStandsFirstAloneHasASize) {
+  Diagnosis d = some_diagnosis();
+  d.verdict = VerdictKind::healthy, d.fault = nullptr, d.onset.reset(), d.ambiguous_with.clear();
+  const Fault* filter = find_fault("clogged_filter");
+  d.assessment.hypotheses = {{nullptr, 90, 0, 0.9, 0, 0, 0, 1.1, {}},
+                             {filter, 90, 0, 0.1, 0.606, 0.199, 0.98, 1.1, {}}};
+  const auto page_of = [&] { return diagnose_page({}, {d}, some_baseline(), {}).html(); };
+  EXPECT_EQ(page_of().find("60.6 "), std::string::npos);
+  d.suspicion = Suspicion{.fault = filter, .severity = 0.606, .lower = 0.199, .upper = 0.98};
+  EXPECT_NE(page_of().find("60.6 "), std::string::npos);
+}
+
 TEST(KindOfVerdict, IsSaidInTextJsonAndPage) {
   Diagnosis d = some_diagnosis();
   const auto page_of = [](const Diagnosis& of) { return diagnose_page({}, {of}, some_baseline(), {}).html(); };
