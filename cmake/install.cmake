@@ -62,6 +62,13 @@ if(TARGET servodx_python)
   install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DATAROOTDIR}/doc/python3-servodx RENAME copyright COMPONENT python)
 endif()
 
+# What is installed, and no test: scripts/package builds this.
+add_custom_target(servodx_installed)
+add_dependencies(servodx_installed servodx ${folders})
+if(TARGET servodx_python)
+  add_dependencies(servodx_installed servodx_python)
+endif()
+
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_VENDOR servodx)
 set(CPACK_PACKAGE_CONTACT "servodx maintainers <servodx@localhost>")

@@ -60,7 +60,8 @@ void define_curves(py::module_& m) {
   py::enum_<S::Kind>(sheet, "Kind")
       .value("passed", S::Kind::pass)
       .value("failed", S::Kind::fail)
-      .value("not_judged", S::Kind::not_judged);
+      .value("not_judged", S::Kind::not_judged)
+      .value("incomplete", S::Kind::incomplete);
   sheet.def_readonly("kind", &S::kind, "by the rig file's [limits]")
       .def_property_readonly("curves", &curves_of, "signal -> current [A], up, down, mean [SI]: (points,) each")
       .def_readonly("response_signal", &S::response_signal)

@@ -1,5 +1,6 @@
-// The certificate sheet: what a test certificate says beside the result, as ISO/IEC 17025 (7.8) asks for it: customer,
-// test, instruments with their calibration, and the rule by which conformity is stated. Read from a TOML file.
+// The certificate sheet: what a test certificate says beside the result, of what ISO/IEC 17025 (7.8) asks for:
+// laboratory, customer, test, method, instruments with their calibration, the rule by which conformity is stated, and
+// who authorised it. Read from a TOML file. docs/results.md says what of 7.8 is left to the laboratory.
 #pragma once
 #include <optional>
 #include <string>
@@ -22,7 +23,9 @@ struct Instrument {
 struct Certificate {
   std::string path, sha256;
   std::string number, date, customer, order, valve, place, person;
-  double guard = 1.0;  // guard band, in expanded uncertainties; 0: simple acceptance
+  std::string issued;                             // a date; empty: not said
+  std::string laboratory, method, authorised_by;  // name and address; by what rule it was tested; who answers for it
+  double guard = 1.0;                             // guard band, in expanded uncertainties; 0: simple acceptance
   std::vector<Instrument> instruments;
 
   std::vector<InstrumentError> errors() const;

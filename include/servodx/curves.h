@@ -34,7 +34,9 @@ struct SheetOptions {
 };
 
 struct AcceptanceSheet {
-  enum class Kind { pass, fail, not_judged };
+  // incomplete: what is judged passes, and the log does not show the figure of some limit. not_judged: of all, or there
+  // are none.
+  enum class Kind { pass, fail, not_judged, incomplete };
   struct Figure {
     std::string name, signal;  // what it was read from
     double value = 0;          // [unit]

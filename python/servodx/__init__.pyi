@@ -598,6 +598,7 @@ class Curves:
         passed: ClassVar[Curves.Kind]
         failed: ClassVar[Curves.Kind]
         not_judged: ClassVar[Curves.Kind]
+        incomplete: ClassVar[Curves.Kind]
     @property
     def kind(self) -> Curves.Kind: ...
     @property

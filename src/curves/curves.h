@@ -49,6 +49,7 @@ struct Remark {
     short_command,    // `first`, `second`: [% of rated] lowest and highest
     coarse_command,   // `first`: [% of rated] its steps; `second`: [1/%] the least that the gain is
     not_reached,      // `first`: [Hz] up to where the log tells the response
+    not_shown,        // nothing in the log is of it
     // How it was read.
     mean_of_reversals,      // `first`: how many; `second`: [1 of rated current] resolved
     brought_to_rated_drop,  // `first`: [Pa] drop that it was taken at; `second`: [Pa] rated
@@ -95,8 +96,11 @@ Sheet read_figures(const Log& log, const RigFile& rig);
 // Expanded uncertainty of each figure: what noise and resolution do to it, by drawing them again (JCGM 101, propagation
 // of distributions), and each error of an instrument. The valve's own scatter from test to test is not in it.
 void add_uncertainty(Sheet& sheet, const Log& log, const RigFile& rig, const std::vector<InstrumentError>& instruments);
+// Figures that have a limit and are not in the log are added as such.
 void judge(Sheet& sheet, const RigFile& rig, double guard);
-// One figure that does not pass fails the sheet; of those that are not judged it says nothing.
+// One figure that does not pass fails the sheet; it passes only where each limit is judged.
 AcceptanceSheet::Kind verdict_of(const std::vector<Figure>& figures);
+// Limits of which no figure is judged, by name.
+std::vector<std::string> unjudged_limits(const std::vector<Figure>& figures);
 
 }  // namespace servodx::curves

@@ -2,11 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
+#include <set>
 
 #include "curves/curves.h"
 #include "servodx/curves.h"
 #include "servodx/note.h"
 #include "servodx/rig.h"
+#include "signals/rig_keys.h"
 
 namespace servodx::curves {
 namespace {
@@ -20,6 +23,17 @@ Judgement judged(const Figure& f, const Limit& limit, double guard) {
   return inside ? Judgement::pass : Judgement::too_near;
 }
 
+Figure not_shown(const std::string& name, const Limit& limit) {
+  Figure f;
+  f.name = name;
+  f.value = std::nan("");
+  f.remark = {Remark::Kind::not_shown};
+  f.limit = limit;
+  for (const LimitInfo& known : limit_list())
+    if (known.figure == name) f.unit = known.unit;
+  return f;
+}
+
 }  // namespace
 
 AcceptanceSheet::Kind verdict_of(const std::vector<Figure>& figures) {
@@ -27,7 +41,17 @@ AcceptanceSheet::Kind verdict_of(const std::vector<Figure>& figures) {
     return std::any_of(figures.begin(), figures.end(), [&](const Figure& f) { return f.pass() == pass; });
   };
   if (any(false)) return AcceptanceSheet::Kind::fail;
-  return any(true) ? AcceptanceSheet::Kind::pass : AcceptanceSheet::Kind::not_judged;
+  if (!any(true)) return AcceptanceSheet::Kind::not_judged;
+  return unjudged_limits(figures).empty() ? AcceptanceSheet::Kind::pass : AcceptanceSheet::Kind::incomplete;
+}
+
+std::vector<std::string> unjudged_limits(const std::vector<Figure>& figures) {
+  std::set<std::string> limited, judged;
+  for (const Figure& f : figures)
+    if (f.limit) (f.pass() ? judged : limited).insert(f.name);
+  std::vector<std::string> out;
+  std::set_difference(limited.begin(), limited.end(), judged.begin(), judged.end(), std::back_inserter(out));
+  return out;
 }
 
 void judge(Sheet& sheet, const RigFile& rig, double guard) {
@@ -37,13 +61,14 @@ void judge(Sheet& sheet, const RigFile& rig, double guard) {
     f.limit = limit->second;
     f.judgement = judged(f, limit->second, guard);
   }
-  sheet.verdict = verdict_of(sheet.figures);
   for (const auto& [name, limit] : rig.limits)
-    if (std::none_of(sheet.figures.begin(), sheet.figures.end(), [&name = name](const Figure& f) {
-          return f.name == name && f.judgement != Judgement::not_judged;
-        }))
-      sheet.notes.push_back(
-          {Note::Kind::unjudged_limit, "limit '" + name + "' is not judged: the log does not show the figure"});
+    if (std::none_of(sheet.figures.begin(), sheet.figures.end(),
+                     [&name = name](const Figure& f) { return f.name == name; }))
+      sheet.figures.push_back(not_shown(name, limit));
+  sheet.verdict = verdict_of(sheet.figures);
+  for (const std::string& name : unjudged_limits(sheet.figures))
+    sheet.notes.push_back(
+        {Note::Kind::unjudged_limit, "limit '" + name + "' is not judged: the log does not show the figure"});
 }
 
 }  // namespace servodx::curves

@@ -53,18 +53,18 @@ const std::vector<RigFact>& rig_facts() {
 
 const std::vector<LimitInfo>& limit_list() {
   static const std::vector<LimitInfo> list = {
-      {"rated_flow", flow, false},
-      {"null_bias", fraction, true},
-      {"hysteresis", fraction, true},
-      {"threshold", fraction, true},
-      {"linearity", fraction, true},
-      {"symmetry", fraction, true},
-      {"lap", fraction, true},
-      {"pressure_gain", fraction, false},
-      {"null_leakage", flow, true},
-      {"pilot_leakage", flow, true},
-      {"phase_lag_90_frequency", frequency, false},
-      {"amplitude_3db_frequency", frequency, false},
+      {"rated_flow", flow, false, "m3/s"},
+      {"null_bias", fraction, true, "-"},
+      {"hysteresis", fraction, true, "-"},
+      {"threshold", fraction, true, "-"},
+      {"linearity", fraction, true, "-"},
+      {"symmetry", fraction, true, "-"},
+      {"lap", fraction, true, "-"},
+      {"pressure_gain", fraction, false, "1/%"},
+      {"null_leakage", flow, true, "m3/s"},
+      {"pilot_leakage", flow, true, "m3/s"},
+      {"phase_lag_90_frequency", frequency, false, "Hz"},
+      {"amplitude_3db_frequency", frequency, false, "Hz"},
   };
   return list;
 }

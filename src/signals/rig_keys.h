@@ -15,7 +15,8 @@ inline constexpr std::string_view asks_of_column = "  # ? ";
 struct LimitInfo {
   std::string_view figure;
   Dimension dimension;
-  bool upper;  // the usual side of a single value
+  bool upper;             // the usual side of a single value
+  std::string_view unit;  // of the figure on a sheet
 };
 const std::vector<LimitInfo>& limit_list();
 

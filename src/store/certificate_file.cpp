@@ -44,6 +44,8 @@ class CertificateReader {
     if (out_.date.empty())
       throw key_error({out_.path, 0, "date"}, "is missing: whether an instrument was calibrated depends on it",
                       "add date = \"2026-11-25\"");
+    if (!out_.issued.empty() && out_.issued < out_.date)
+      throw key_error(issued_at_, "is before the test of " + out_.date, "give the day on which it is issued");
     return std::move(out_);
   }
 
@@ -70,12 +72,15 @@ class CertificateReader {
   }
 
   void read_key(const std::string& key, const toml::node& node) {
-    const std::array<std::pair<const char*, std::string*>, 6> words = {{{"number", &out_.number},
+    const std::array<std::pair<const char*, std::string*>, 9> words = {{{"number", &out_.number},
+                                                                        {"laboratory", &out_.laboratory},
                                                                         {"customer", &out_.customer},
                                                                         {"order", &out_.order},
                                                                         {"valve", &out_.valve},
                                                                         {"place", &out_.place},
-                                                                        {"operator", &out_.person}}};
+                                                                        {"method", &out_.method},
+                                                                        {"operator", &out_.person},
+                                                                        {"authorised_by", &out_.authorised_by}}};
     for (const auto& [name, value] : words)
       if (key == name) {
         *value = word(node, key);
@@ -83,6 +88,9 @@ class CertificateReader {
       }
     if (key == "date") {
       out_.date = date(node, key);
+    } else if (key == "issued") {
+      out_.issued = date(node, key);
+      issued_at_ = at(node, key);
     } else if (key == "decision") {
       read_decision(node);
     } else if (key == "instrument") {
@@ -91,7 +99,8 @@ class CertificateReader {
       for (const toml::node& one : *all) out_.instruments.push_back(instrument(one));
     } else {
       refuse_key(node, key, key,
-                 {"number", "date", "customer", "order", "valve", "place", "operator", "[decision]", "[[instrument]]"});
+                 {"number", "date", "issued", "laboratory", "customer", "order", "valve", "place", "method", "operator",
+                  "authorised_by", "[decision]", "[[instrument]]"});
     }
   }
 
@@ -156,6 +165,7 @@ class CertificateReader {
   }
 
   Certificate out_;
+  Place issued_at_;
 };
 
 }  // namespace

@@ -61,6 +61,28 @@ TEST(Certificate, StatesCustomerInstrumentsRuleHashesAndTheCallThatMakesItAgain)
   EXPECT_EQ(again.code, 0) << again.out << again.err;
 }
 
+TEST(Certificate, LaboratoryMethodIssueAndWhoAuthorisedItStandInTheHeadWhereTheyAreGiven) {
+  const Stand stand;
+  const auto head = [&] {
+    const Ended ended = stand.run(call);
+    EXPECT_EQ(ended.code, 0) << ended.err;
+    const std::string page = bytes_of(stand / "page.html");
+    return page.substr(0, page.find("<section"));
+  };
+  for (const char* name : {"Issued", "Laboratory", "Method", "Authorised by"})
+    EXPECT_EQ(head().find("<dt>" + std::string(name) + "</dt>"), std::string::npos) << name;
+  stand.write("sheet.toml", R"(issued = "2026-11-27"
+laboratory = "Weser Test Lab, Dock 4, Bremen"
+method = "SAE ARP490F"
+authorised_by = "M. Ahlers"
+)" + sheet);
+  for (const char* fact :
+       {"<dt>Issued</dt><dd>2026-11-27</dd>", "<dt>Method</dt><dd>SAE ARP490F</dd>",
+        "<dt>Laboratory</dt><dd>Weser Test Lab, Dock 4, Bremen</dd>", "<dt>Authorised by</dt><dd>M. Ahlers</dd>"})
+    EXPECT_NE(head().find(fact), std::string::npos) << fact;
+  EXPECT_NE(bytes_of(stand / "page.html").find("counter(pages)"), std::string::npos);
+}
+
 // 14 l/min against at least 13.9: told by the log alone, not by a meter that is known to 2 %.
 TEST(Certificate, TheInstrumentsUncertaintyDecides) {
   const Stand stand;
@@ -94,6 +116,7 @@ TEST(Certificate, SheetsAreRefusedByLineAndKey) {
        "sheet.toml:3: key 'custommer': unknown key; did you mean 'customer'?"},
       {replaced(sheet, "2026-11-25", "25.11.2026"), "sheet.toml:2: key 'date': '25.11.2026' is no date"},
       {replaced(sheet, "date = \"2026-11-25\"\n", ""), "sheet.toml: key 'date': is missing"},
+      {"issued = \"2026-11-24\"\n" + sheet, "sheet.toml:1: key 'issued': is before the test of 2026-11-25"},
       {replaced(sheet, "2 %", "2 bar"), "sheet.toml:12: key 'instrument.uncertainty': 'bar' is a unit of pressure"},
       {replaced(sheet, "control_flow", "flow"), "sheet.toml:11: key 'instrument.signal': unknown signal 'flow'"},
       {replaced(sheet, "guard_band = 1", "guard_band = -1"), "sheet.toml:7: key 'decision.guard_band': is no number"},

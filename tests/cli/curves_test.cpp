@@ -62,6 +62,32 @@ TEST(Curves, AFigureBeyondItsLimitFails) {
   EXPECT_NE(ended.out.find("FAIL"), std::string::npos) << ended.out;
 }
 
+TEST(Curves, LimitsThatTheLogDoesNotShowStandInTheHeadlineAndTheTables) {
+  const Stand stand(
+      "[limits]\nrated_flow = \"13 l/min\"\nnull_bias = \"2 %\"\npressure_gain = \"30 %\"\nnull_leakage = \"1 "
+      "l/min\"\n");
+  stand.write("sheet.toml", "date = \"2026-11-25\"\n");
+  const Ended ended =
+      stand.run("curves flow.csv --rig rig.toml --json sheet.json --report page.html --certificate sheet.toml");
+  ASSERT_EQ(ended.code, 0) << ended.err;
+  const std::string page = bytes_of(stand / "page.html");
+  for (const std::string& text : {ended.out, page}) {
+    EXPECT_NE(text.find("INCOMPLETE"), std::string::npos) << ended.out;
+    EXPECT_NE(text.find("2 of 4 limits kept; 2 not shown by this log"), std::string::npos) << ended.out;
+    EXPECT_NE(text.find("not judged"), std::string::npos) << ended.out;
+  }
+  EXPECT_EQ(ended.out.find("PASS"), std::string::npos) << ended.out;
+  const auto json = nlohmann::json::parse(bytes_of(stand / "sheet.json"));
+  EXPECT_EQ(json["verdict"], "incomplete");
+  int hidden = 0;
+  for (const auto& f : json["figures"])
+    if (!f["limit"].is_null() && f["judgement"] == "not_judged") {
+      ++hidden;
+      EXPECT_TRUE(f["value"].is_null() && f["pass"].is_null()) << f;
+    }
+  EXPECT_EQ(hidden, 2);
+}
+
 TEST(Curves, RefusesUnknownLimitsAndLogsWithoutFigures) {
   for (const char* limits :
        {"[limits]\nhysterese = \"4 %\"\n", "[limits]\nhysteresis = \"4 bar\"\n",

@@ -110,7 +110,11 @@ TEST(Curves, LimitsPassAndFailOnTheirSide) {
   rig.limits["rated_flow"].min = 1e-4;
   rig.limits["pressure_gain"].min = 0.3;  // this log cannot say
   Sheet sheet = read_curves(log, rig);
-  EXPECT_EQ(sheet.verdict, AcceptanceSheet::Kind::pass);
+  EXPECT_EQ(sheet.verdict, AcceptanceSheet::Kind::incomplete);
+  EXPECT_EQ(unjudged_limits(sheet.figures), std::vector<std::string>{"pressure_gain"});
+  ASSERT_NE(find(sheet, "pressure_gain"), nullptr);
+  EXPECT_EQ(find(sheet, "pressure_gain")->remark.kind, Remark::Kind::not_shown);
+  EXPECT_EQ(find(sheet, "pressure_gain")->judgement, Judgement::not_judged);
   EXPECT_TRUE(std::any_of(sheet.notes.begin(), sheet.notes.end(), [](const Note& n) {
     return n.kind == Note::Kind::unjudged_limit && n.text.find("pressure_gain") != std::string::npos;
   }));
@@ -119,6 +123,11 @@ TEST(Curves, LimitsPassAndFailOnTheirSide) {
   EXPECT_EQ(sheet.verdict, AcceptanceSheet::Kind::fail);
   EXPECT_EQ(find(sheet, "hysteresis")->pass(), false);
   EXPECT_EQ(find(sheet, "rated_flow")->pass(), true);
+  rig.limits.erase("pressure_gain");
+  rig.limits["hysteresis"].max = 0.04;
+  EXPECT_EQ(read_curves(log, rig).verdict, AcceptanceSheet::Kind::pass);
+  rig.limits = {{"pressure_gain", {0.3, {}}}};
+  EXPECT_EQ(read_curves(log, rig).verdict, AcceptanceSheet::Kind::not_judged);
   EXPECT_EQ(read_curves(log, rig_with()).verdict, AcceptanceSheet::Kind::not_judged);
 }
 
@@ -258,6 +267,22 @@ TEST(Curves, ALogWithoutAFigureIsRefused) {
   EXPECT_THROW(read_curves(log, rig_with()), InputError);
   const Log good = swept(rated, 10, Signal::control_flow, 0, [](double i) { return i; });
   EXPECT_THROW(read_curves(good, RigFile{}), InputError);  // no rated current
+}
+
+TEST(Judgement, ALimitThatNoFigureAnswersLeavesTheSheetIncomplete) {
+  const Limit limit = {0.3, {}};
+  const auto figure = [&](const char* name, Judgement judgement) {
+    Figure f;
+    f.name = name, f.limit = limit, f.judgement = judgement;
+    return f;
+  };
+  const Figure kept = figure("lap", Judgement::pass), hidden = figure("threshold", Judgement::not_judged);
+  EXPECT_EQ(verdict_of({kept}), AcceptanceSheet::Kind::pass);
+  EXPECT_EQ(verdict_of({kept, hidden}), AcceptanceSheet::Kind::incomplete);
+  EXPECT_EQ(verdict_of({hidden}), AcceptanceSheet::Kind::not_judged);
+  EXPECT_EQ(verdict_of({figure("lap", Judgement::fail), hidden}), AcceptanceSheet::Kind::fail);
+  // One sweep shows what another does not.
+  EXPECT_EQ(verdict_of({hidden, figure("threshold", Judgement::pass)}), AcceptanceSheet::Kind::pass);
 }
 
 }  // namespace

@@ -41,6 +41,19 @@ if(NOT output MATCHES "nothing suspicious")
   message(FATAL_ERROR "the tutorial's check-log printed: ${output}")
 endif()
 
+# The installed program finds the models of `rig` from any folder; a call names them as the sources do.
+set(away ${work}/away)
+file(MAKE_DIRECTORY ${away})
+function(rig program)
+  step(${CMAKE_COMMAND} -E chdir ${away} ${program} rig --rig-model params/rigs/bench.toml --excitation mixed
+       --duration 0.5 --rate 1000 --temperature 40 -o log.csv --quiet)
+  if(NOT EXISTS ${away}/log.csv OR NOT EXISTS ${away}/log.truth.json)
+    message(FATAL_ERROR "${program} rig wrote no log: ${output}")
+  endif()
+  file(REMOVE_RECURSE ${away})
+  file(MAKE_DIRECTORY ${away})
+endfunction()
+rig(${work}/prefix/bin/servodx)
 # The front door is all that is installed, under one root, and each header of it needs nothing but the standard library.
 file(GLOB_RECURSE headers RELATIVE ${work}/prefix/include ${work}/prefix/include/*)
 file(GLOB wanted RELATIVE ${SOURCE}/include ${SOURCE}/include/servodx/*.h)
@@ -98,6 +111,7 @@ if(DPKG_DEB AND SHLIBDEPS)
   deb(libservodx-dev libceres-dev libeigen3-dev libfmt-dev libmatio libnlopt-cxx-dev libseccomp-dev libsqlitecpp-dev libssl-dev
       libtomlplusplus-dev nlohmann-json3-dev pkg-config)
   step(${work}/servodx/usr/bin/servodx list faults)
+  rig(${work}/servodx/usr/bin/servodx)
   if(EXISTS ${BUILD}/python/servodx)
     deb(python3-servodx python3 python3-numpy python3-pandas libc6 libmatio libnlopt)
     # Nothing of the build is in reach.

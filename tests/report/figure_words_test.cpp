@@ -29,6 +29,7 @@ TEST(FigureWords, AreTheSameToTheCharacter) {
        "cannot be determined: the command's steps are 0.51 % of rated, and the gain is at least 43.2 % of supply per 1 "
        "%"},
       {{Kind::not_reached, 123.4}, "not reached: the log shows up to 123 Hz"},
+      {{Kind::not_shown}, "not shown by this log"},
       {{Kind::mean_of_reversals, 12, 0.00456}, "mean of 12 reversals, resolved to 0.46 % of rated"},
       {{Kind::brought_to_rated_drop, 6.9876e6, 7e6}, "from a drop of 69.88 bar to the rated 70 bar"},
       {{Kind::of_largest_pressure}, "supply unknown: of the largest load pressure"},

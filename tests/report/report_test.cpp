@@ -42,6 +42,7 @@
 #include "report/fleet/fleet.h"
 #include "report/selftest/selftest.h"
 #include "report/shared/call_names.h"
+#include "report/shared/certificate_part.h"
 #include "report/shared/columns.h"
 #include "report/shared/handy.h"
 #include "report/shared/html.h"
@@ -54,6 +55,7 @@
 #include "report/tune/tune_text.h"
 #include "report/tune/tune_words.h"
 #include "servodx/actions.h"
+#include "servodx/certificate.h"
 #include "servodx/check_log.h"
 #include "servodx/error.h"
 #include "servodx/log.h"
@@ -768,6 +770,50 @@ TEST(DiagnosePage, AHealthyHeadSaysWhatTheLogCannotShow) {
   EXPECT_EQ(head().find("clogged filter"), std::string::npos) << head();
   d.detectable.erase(d.detectable.begin());
   EXPECT_EQ(head().find("Blind to"), std::string::npos) << head();
+}
+
+// Health has 20.7 % among hypotheses of which none holds: no bar of it beside "is not healthy".
+TEST(DiagnosePage, AnUnknownStateHasNoShareForHealth) {
+  Diagnosis d = some_diagnosis();
+  d.verdict = VerdictKind::unknown, d.fault = nullptr, d.onset.reset(), d.ambiguous_with.clear();
+  d.assessment.hypotheses = {{nullptr, 900, 0, 0.207, 0, 0, 0, 8.1, {}},
+                             {find_fault("sticky_spool"), 880, 10, 0.793, 4, 3, 5, 7.9, {}}};
+  const std::string html = diagnose_page({}, {d}, some_baseline(), {}).html();
+  EXPECT_EQ(html.find(">20.7 %<"), std::string::npos);
+  EXPECT_EQ(html.find("<tr data-tone=\"good\""), std::string::npos);
+  EXPECT_NE(html.find(">79.3 %<"), std::string::npos);
+}
+
+TEST(DiagnosePage, OfAHealthyLogWhatStandsFirstAloneHasASize) {
+  Diagnosis d = some_diagnosis();
+  d.verdict = VerdictKind::healthy, d.fault = nullptr, d.onset.reset(), d.ambiguous_with.clear();
+  const Fault* filter = find_fault("clogged_filter");
+  d.assessment.hypotheses = {{nullptr, 90, 0, 0.9, 0, 0, 0, 1.1, {}},
+                             {filter, 90, 0, 0.1, 0.606, 0.199, 0.98, 1.1, {}}};
+  const auto page_of = [&] { return diagnose_page({}, {d}, some_baseline(), {}).html(); };
+  EXPECT_EQ(page_of().find("60.6 "), std::string::npos);
+  d.suspicion = Suspicion{.fault = filter, .severity = 0.606, .lower = 0.199, .upper = 0.98};
+  EXPECT_NE(page_of().find("60.6 "), std::string::npos);
+}
+
+TEST(DiagnosePage, ACertificateStatesVerdictNullRuleInstrumentsAndWhoAnswersForIt) {
+  Certificate sheet;
+  sheet.number = "2026-114", sheet.date = "2026-11-25", sheet.issued = "2026-11-27";
+  sheet.laboratory = "Weser Test Lab", sheet.method = "WI-114", sheet.authorised_by = "M. Ahlers";
+  Instrument gauge;
+  gauge.name = "pressure sensor A", gauge.calibrated = "2026-05-02", gauge.due = "2026-11-01";
+  sheet.instruments = {gauge};
+  Header header;
+  header.inputs = {{"suspect.csv", std::string(64, 'c')}};
+  add_to_head(header.head, sheet);
+  const std::string html =
+      diagnose_page(header, {some_diagnosis()}, some_baseline(), {}, {}, {&sheet, "out.manifest.json"}).html();
+  for (const std::string& words :
+       {std::string("2026-114"), std::string("<dt>Issued</dt><dd>2026-11-27</dd>"), std::string("Weser Test Lab"),
+        std::string("WI-114"), std::string("<dt>Authorised by</dt><dd>M. Ahlers</dd>"),
+        std::string("pressure sensor A"), std::string("2026-11-01, overdue"), std::string("Decision rule"),
+        std::string(64, 'c'), std::string("servodx rerun out.manifest.json")})
+    EXPECT_NE(html.find(words), std::string::npos) << words;
 }
 
 TEST(KindOfVerdict, IsSaidInTextJsonAndPage) {

@@ -40,6 +40,8 @@ const char* key_of(AcceptanceSheet::Kind verdict) {
       return "fail";
     case AcceptanceSheet::Kind::not_judged:
       return "not_judged";
+    case AcceptanceSheet::Kind::incomplete:
+      return "incomplete";
   }
   return "";
 }
@@ -90,6 +92,42 @@ std::string word_of(Judgement judgement) {
   return "";
 }
 
+std::string judgement_of(const Figure& f) {
+  return f.limit && f.judgement == Judgement::not_judged ? "not judged" : word_of(f.judgement);
+}
+
+std::string word_of(AcceptanceSheet::Kind verdict) {
+  switch (verdict) {
+    case AcceptanceSheet::Kind::pass:
+      return "PASS";
+    case AcceptanceSheet::Kind::fail:
+      return "FAIL";
+    case AcceptanceSheet::Kind::not_judged:
+      return "NOT JUDGED";
+    case AcceptanceSheet::Kind::incomplete:
+      return "INCOMPLETE";
+  }
+  return "";
+}
+
+std::string limits_in_words(const Sheet& sheet) {
+  const auto count = [&](Judgement judgement) {
+    return static_cast<std::size_t>(std::count_if(sheet.figures.begin(), sheet.figures.end(),
+                                                  [&](const Figure& f) { return f.judgement == judgement; }));
+  };
+  const std::size_t failed = count(Judgement::fail), near = count(Judgement::too_near), kept = count(Judgement::pass);
+  const std::size_t hidden = curves::unjudged_limits(sheet.figures).size(), limits = failed + near + kept + hidden;
+  const std::string rest = hidden > 0 ? fmt::format("; {} not shown by this log", hidden) : "";
+  if (limits == 0) return "the rig file gives no limit for its figures";
+  if (failed > 0) return fmt::format("{} of {} limits {} broken", failed, limits, failed == 1 ? "is" : "are") + rest;
+  if (near > 0)
+    return fmt::format("{} of {} figures {} nearer to the limit than the guard band", near, limits,
+                       near == 1 ? "is" : "are") +
+           rest;
+  if (hidden > 0) return fmt::format("{} of {} limits kept", kept, limits) + rest;
+  return fmt::format("All {} limits are kept", limits);
+}
+
 std::string words_of(const Remark& remark) {
   switch (remark.kind) {
     case Remark::Kind::none:
@@ -107,11 +145,12 @@ std::string words_of(const Remark& remark) {
     case Remark::Kind::coarse_command:
       return fmt::format(
           "cannot be determined: the command's steps are {:.2g} % of rated, and the gain is at least {:.3g} % of "
-          "supply per "
-          "1 %",
+          "supply per 1 %",
           remark.first, 100 * remark.second);
     case Remark::Kind::not_reached:
       return fmt::format("not reached: the log shows up to {:.3g} Hz", remark.first);
+    case Remark::Kind::not_shown:
+      return "not shown by this log";
     case Remark::Kind::mean_of_reversals:
       return fmt::format("mean of {:.0f} reversals, resolved to {:.2g} % of rated", remark.first, 100 * remark.second);
     case Remark::Kind::brought_to_rated_drop:
@@ -143,14 +182,18 @@ std::string guard_words(double guard) {
 }
 
 std::string text_of(const Sheet& sheet, const std::string& log, bool colour) {
-  const bool pass = sheet.verdict == AcceptanceSheet::Kind::pass, fail = sheet.verdict == AcceptanceSheet::Kind::fail;
-  std::string verdict = pass ? "PASS" : fail ? "FAIL" : "no limits given";
-  if (colour && (pass || fail)) verdict = fmt::format("\033[1;{}m{}\033[0m", pass ? "32" : "31", verdict);
+  using Kind = AcceptanceSheet::Kind;
+  const bool pass = sheet.verdict == Kind::pass, judged = sheet.verdict != Kind::not_judged;
+  const bool hidden = !curves::unjudged_limits(sheet.figures).empty();
+  std::string verdict = judged || hidden ? word_of(sheet.verdict) : "no limits given";
+  if (colour && judged)
+    verdict = fmt::format("\033[1;{}m{}\033[0m", pass ? "32" : sheet.verdict == Kind::fail ? "31" : "33", verdict);
+  if (hidden) verdict += ", " + limits_in_words(sheet);
   Columns table("lllllll", 2);
   table.row({"figure", "value", "+- (k = 2)", "limit", "", "from", ""});
   for (const Figure& f : sheet.figures)
-    table.row({f.name, value_text(f), uncertainty_text(f), limit_text(f), word_of(f.judgement), f.signal,
-               words_of(f.remark)});
+    table.row(
+        {f.name, value_text(f), uncertainty_text(f), limit_text(f), judgement_of(f), f.signal, words_of(f.remark)});
   return log + ": " + verdict + "\n" + table.text();
 }
 

@@ -47,16 +47,30 @@ std::vector<double> drawn_through(std::vector<double> y, const std::vector<doubl
   return y;
 }
 
-Tone tone_of(Judgement judgement) {
-  switch (judgement) {
+Tone tone_of(const Figure& f) {
+  switch (f.judgement) {
     case Judgement::not_judged:
-      return Tone::plain;
+      return f.limit ? Tone::doubt : Tone::plain;
     case Judgement::pass:
       return Tone::good;
     case Judgement::too_near:
       return Tone::doubt;
     case Judgement::fail:
       return Tone::bad;
+  }
+  return Tone::plain;
+}
+
+Tone tone_of(AcceptanceSheet::Kind verdict) {
+  switch (verdict) {
+    case AcceptanceSheet::Kind::pass:
+      return Tone::good;
+    case AcceptanceSheet::Kind::fail:
+      return Tone::bad;
+    case AcceptanceSheet::Kind::not_judged:
+      return Tone::plain;
+    case AcceptanceSheet::Kind::incomplete:
+      return Tone::doubt;
   }
   return Tone::plain;
 }
@@ -127,42 +141,34 @@ Page curves_page(const Header& header, const Sheet& sheet, const std::string& lo
                  const CertificateOf& certificate, const SheetFit* stated) {
   Page page(header, "Acceptance sheet of " + file_name(log));
   Verdict v;
-  const bool pass = sheet.verdict == AcceptanceSheet::Kind::pass, fail = sheet.verdict == AcceptanceSheet::Kind::fail;
-  v.tone = pass ? Tone::good : fail ? Tone::bad : Tone::plain;
-  v.word = pass ? "PASS" : fail ? "FAIL" : "NOT JUDGED";
-  const auto count = [&](Judgement judgement) {
-    return std::count_if(sheet.figures.begin(), sheet.figures.end(),
-                         [&](const Figure& f) { return f.judgement == judgement; });
-  };
-  const auto failed = count(Judgement::fail), near = count(Judgement::too_near);
-  const auto judged = failed + near + count(Judgement::pass);
-  v.headline = judged == 0  ? file_name(log) + ": the rig file gives no limit for its figures"
-               : failed > 0 ? fmt::format("{} of {} limits {} broken", failed, judged, failed == 1 ? "is" : "are")
-               : near > 0   ? fmt::format("{} of {} figures {} nearer to the limit than the guard band", near, judged,
-                                        near == 1 ? "is" : "are")
-                            : fmt::format("All {} limits are kept", judged);
-  if (judged == 0) v.detail = "Limits go under [limits] of the rig file; the figures stand below.";
+  v.tone = tone_of(sheet.verdict);
+  v.word = word_of(sheet.verdict);
+  const bool judged = sheet.verdict != AcceptanceSheet::Kind::not_judged;
+  const std::vector<std::string> hidden = curves::unjudged_limits(sheet.figures);
+  v.headline = (judged ? "" : file_name(log) + ": ") + limits_in_words(sheet);
+  if (!judged && hidden.empty()) v.detail = "Limits go under [limits] of the rig file; the figures stand below.";
   v.facts = first_facts(sheet);
   for (const Figure& f : sheet.figures)
     if (f.judgement == Judgement::fail || f.judgement == Judgement::too_near)
       v.reasons.push_back(words(f.name) + ": " + with_uncertainty(f) + ", " + limit_text(f) +
                           (f.judgement == Judgement::too_near ? "; too near to pass" : ""));
-  if (judged > 0) v.detail = sentence(guard_words(guard));
+  for (const std::string& name : hidden) v.reasons.push_back(words(name) + ": not judged, this log does not show it");
+  if (judged) v.detail = sentence(guard_words(guard));
   page.verdict(v);
   if (certificate.sheet) {
     std::vector<CertifiedFigure> certified;
     for (const Figure& f : sheet.figures)
-      if (std::isfinite(f.value))
-        certified.push_back({words(f.name), value_text(f), uncertainty_text(f), limit_text(f), word_of(f.judgement),
-                             tone_of(f.judgement)});
+      if (std::isfinite(f.value) || f.limit)
+        certified.push_back(
+            {words(f.name), value_text(f), uncertainty_text(f), limit_text(f), judgement_of(f), tone_of(f)});
     add_certificate(page, certificate, header, certified, guard_words(guard) + ".");
   }
 
   page.section("Figures", "As SAE ARP490 defines them. Percentages are of rated current.");
   TablePart table{"Figures", "lrrllll", {"figure", "value", "+- (k = 2)", "limit", "", "from", "note"}, {}, 0};
   for (const Figure& f : sheet.figures) {
-    Cell judgement = word_of(f.judgement);
-    judgement.tone = tone_of(f.judgement);
+    Cell judgement = judgement_of(f);
+    judgement.tone = tone_of(f);
     table.rows.push_back({words(f.name), std::isfinite(f.value) ? Cell(value_text(f), f.value) : Cell("-"),
                           std::isfinite(f.uncertainty) ? Cell(uncertainty_text(f), f.uncertainty) : Cell(""),
                           limit_text(f), judgement, words(f.signal), words_of(f.remark)});

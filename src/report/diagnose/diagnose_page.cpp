@@ -149,7 +149,8 @@ Verdict verdict_of(const Diagnosis& d, const DetectionBaseline& baseline, const 
 }
 
 // Of a healthy log: what was tried beside health, and that it gained nothing. A bar of its probability would promise
-// more than the rate of false alarms that the baseline can.
+// more than the rate of false alarms that the baseline can. A size is said of what stands first alone, as the verdict
+// does: of the others it is where the fit of a fault that is not there came to rest.
 void add_tried(Page& page, const Diagnosis& d) {
   TablePart table{"Faults that were tried: none gains more than on fault-free logs",
                   "lll",
@@ -158,7 +159,8 @@ void add_tried(Page& page, const Diagnosis& d) {
                   4};
   for (const HypothesisResult& h : d.assessment.hypotheses)
     if (h.fault)
-      table.rows.push_back({words(label_of(h.fault)), size_words(h),
+      table.rows.push_back({words(label_of(h.fault)),
+                            d.suspicion && d.suspicion->fault == h.fault ? size_words(h) : "-",
                             fmt::format("worst channel {} times its usual error", digits(h.adequacy, 2))});
   if (!table.rows.empty()) page.add(table);
 }
@@ -172,22 +174,23 @@ void add_ranking(Page& page, const Diagnosis& d) {
   bars.full = 1.0;
   bars.shown = 4;
   auto order = d.assessment.hypotheses;
-  const auto p_of = [&](const HypothesisResult& h) {  // of an unknown the verdict's probabilities say only that
-    return d.verdict == VerdictKind::unknown ? h.probability : probability_of(d, h.fault);
+  const bool unknown = d.verdict == VerdictKind::unknown;
+  const auto p_of = [&](const HypothesisResult& h) {    // of an unknown the verdict's probabilities say only that
+    if (unknown) return h.fault ? h.probability : 0.0;  // it is not healthy: that is no matter of rank
+    return probability_of(d, h.fault);
   };
   std::stable_sort(order.begin(), order.end(), [&](const auto& a, const auto& b) { return p_of(a) > p_of(b); });
   for (const HypothesisResult& h : order) {
     std::string note = h.fault ? size_words(h) + "; " : "";
     note += fmt::format("worst channel {} times its usual error", digits(h.adequacy, 2));
-    bars.rows.push_back({words(label_of(h.fault)), p_of(h), chance(p_of(h)), note,
-                         !h.fault             ? Tone::good
+    bars.rows.push_back({words(label_of(h.fault)), p_of(h), unknown && !h.fault ? "-" : chance(p_of(h)), note,
+                         !h.fault && !unknown ? Tone::good
                          : d.fault == h.fault ? Tone::bad
                                               : Tone::plain,
                          ""});
   }
   page.add(bars);
-  if (d.verdict == VerdictKind::unknown)
-    page.text("None of them fits well enough to be named: the bars only rank them among each other.");
+  if (unknown) page.text("None of them fits well enough to be named: the bars only rank them among each other.");
 }
 
 void add_detectable(Page& page, const Diagnosis& d) {

@@ -15,12 +15,16 @@ namespace servodx::report {
 
 void add_to_head(PageHead& head, const Certificate& c) {
   head.say("Certificate", c.number);
+  head.say("Issued", c.issued);
+  head.say("Laboratory", c.laboratory);
   if (!c.customer.empty()) head.say("Customer", c.customer);
   head.say("Order", c.order);
   head.say("Valve", c.valve);
   if (!c.person.empty()) head.say("Operator", c.person);
   head.say("Place", c.place);
   head.say("Date", c.date);
+  head.say("Method", c.method);
+  head.say("Authorised by", c.authorised_by);
 }
 
 void add_certificate(Page& page, const CertificateOf& of, const Header& header,

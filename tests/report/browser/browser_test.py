@@ -11,8 +11,9 @@ from selenium.webdriver.common.keys import Keys
 
 # A log may have any name.
 HOSTILE = "<script>alert('log')<_script><img src=x onerror=alert(1)>.csv"
-MADE_UP = ["diagnose", "many", "baseline", "tune"]
-REAL = ["explain", "check", "trend", "map", "curves", "check-log", "check-logs", "simulate", "compare"]
+MADE_UP = ["diagnose", "many", "baseline", "tune", "gather"]  # watch writes pages of diagnose
+REAL = ["explain", "check", "trend", "map", "curves", "check-log", "check-logs", "simulate", "compare", "certificate",
+        "sensitivity", "selftest", "plan"]
 PAGES = MADE_UP + REAL
 
 # Relative luminance and contrast as WCAG 2 defines them, of every element that holds text of its own.
@@ -91,6 +92,9 @@ class Pages(unittest.TestCase):
             (far / name).write_text(rows("healthy/h12_mixed.csv", seconds))
         servodx("check-log", *(f"{far.name}/{name}" for name in (HOSTILE, "two.csv")), page="check-logs")
         servodx("simulate", HOSTILE, *given, "-o", "simulated.csv")
+        servodx("sensitivity", HOSTILE, *given)
+        servodx("selftest", HOSTILE, *given, "--repeats", "2")
+        servodx("plan", *given, "--faults", "sticky_spool,null_shift", "--seconds", "0.5", "--rounds", "1", "-o", "plan.csv")
         servodx("explain", HOSTILE, *given, "-o", "extended.csv", "--json", HOSTILE + ".json")
         # The same result but for a name, a size and a verdict.
         other = json.loads((desk / (HOSTILE + ".json")).read_text())
@@ -101,6 +105,21 @@ class Pages(unittest.TestCase):
         servodx("compare", HOSTILE + ".json", "other.json")
         log.write_text(rows("healthy/h07_triangle.csv", 4))
         servodx("curves", HOSTILE, "--rig", str(SOURCE / "data/rig.toml"))
+        said = json.dumps(HOSTILE.replace("_", "/"))
+        (desk / "sheet.toml").write_text(f"""number = {said}
+date = "2026-11-25"
+issued = "2026-11-27"
+laboratory = {said}
+customer = {said}
+method = {said}
+authorised_by = {said}
+[[instrument]]
+name = {said}
+signal = "spool_position"
+uncertainty = "0.5 %"
+due = "2026-11-01"
+""")
+        servodx("curves", HOSTILE, "--rig", str(SOURCE / "data/rig.toml"), "--certificate", "sheet.toml", page="certificate")
         log.write_text(rows("healthy/h09_preflight_hot.csv", 2.4))
         servodx("check", HOSTILE, *given, "--history", "one.db", "--valve", HOSTILE, "--at", "10")
         servodx("map", "--model", "C3", "--params", str(SOURCE / "params/borello2009.csv"), "-o", "map.csv")
@@ -191,7 +210,7 @@ class Pages(unittest.TestCase):
             self.open(name)
             self.assertEqual(self.run("return document.querySelectorAll('img').length"), 0, name)
             self.assertEqual(self.run("return document.scripts.length"), 3, name)  # data, uPlot, the page's own
-            if name not in ("diagnose", "map"):  # these have no file of a hostile name
+            if name not in ("diagnose", "map", "plan"):  # these have no file of a hostile name
                 self.assertIn("<script>alert('log')<", self.run("return document.body.innerText"), name)
         self.assertIn("script-src 'sha256-", (self.folder / "many.html").read_text())
 

@@ -16,8 +16,11 @@
 #include "faults/fault.h"
 #include "faults/registry.h"
 #include "fit/identifiability.h"
+#include "fleet/fleet_verdict.h"
+#include "fleet/gather.h"
 #include "report/baseline/baseline_page.h"
 #include "report/diagnose/diagnose_page.h"
+#include "report/fleet/fleet.h"
 #include "report/shared/json.h"
 #include "report/shared/page.h"
 #include "report/tune/tune_page.h"
@@ -185,5 +188,12 @@ int main(int argc, char** argv) {
         baseline_page(some_header("baseline", hostile), some_baseline(), {some_replay(hostile, 1500, {"healthy"})}));
   write("tune", tune_page(some_header("tune", hostile), some_tuning(), good_enough(some_tuning(), {some_promise()}),
                           {some_replay(hostile, 1500, {"tuned"})}));
+  FleetTable fleet;
+  FleetRow fault, unknown, healthy;
+  fault.log = hostile, fault.verdict = FleetVerdict::fault, fault.fault = "sticky_spool", fault.probability = 0.87;
+  unknown.log = "u.csv", unknown.verdict = FleetVerdict::unknown;
+  healthy.log = "h.csv", healthy.verdict = FleetVerdict::healthy;
+  fleet.rows = {fault, unknown, healthy};
+  write("gather", fleet_page(some_header("gather", hostile), fleet, {}));
   return 0;
 }
