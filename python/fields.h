@@ -98,8 +98,8 @@ inline auto fields(Verdict::Detectable& d) {
   return std::tie(value, unit);
 }
 inline auto fields(Verdict::Beyond& b) {
-  auto& [first, where, depends_on, share, taken] = b;
-  return std::tie(first, where, depends_on, share, taken);
+  auto& [first, where, depends_on, share, taken, outside] = b;
+  return std::tie(first, where, depends_on, share, taken, outside);
 }
 inline auto fields(Verdict::Friction& f) {
   auto& [friction, largest] = f;

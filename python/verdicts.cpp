@@ -35,6 +35,7 @@ void define_parts(py::class_<VerdictText>& verdict) {
       .def_readonly("depends_on", &V::Beyond::depends_on)
       .def_readonly("share", &V::Beyond::share, "of the held-out misfit that it removes")
       .def_readonly("taken", &V::Beyond::taken)
+      .def_readonly("outside", &V::Beyond::outside, "of a sensor or the driver: nothing of the valve")
       .def(pickled<V::Beyond>());
   py::class_<V::Friction>(verdict, "Friction", "Of a spool, beside what leakage can press a land onto its sleeve with.")
       .def_readonly("friction", &V::Friction::friction, "[N] of the spool, sliding and breaking away")

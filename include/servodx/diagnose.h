@@ -65,6 +65,7 @@ struct Verdict {
     std::string first, where, depends_on;  // effect; place; of a curve without a name the variable it follows
     double share = 0;                      // of the held-out misfit that it removes
     bool taken = false;                    // beyond what healthy logs show
+    bool outside = false;                  // of a sensor, or between command and coil: nothing of the valve
   };
   // Of a spool, beside what leakage can press one of its lands onto the sleeve with (Merritt 1967).
   struct Friction {

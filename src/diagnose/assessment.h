@@ -70,7 +70,7 @@ struct Assessment {
   std::optional<double> onset;                     // [s] change point where one stands out
   std::vector<HypothesisPrediction> explanations;  // of each hypothesis that could be fitted
   TestConditions test;
-  OperatingPoint point = {}, sheet = {};  // where the first log was recorded; what the rig file says
+  OperatingPoint point = {}, sheet = {};  // where recorded, of several logs farthest from the sheet; the rig file's
   std::vector<RecordFigure> figures;      // of the records alone
   std::vector<BrokenSensor> broken;
   double others_left = 0;  // of the motion of the sensors that are not broken, by the tuned valve

@@ -40,7 +40,8 @@ Blame blame_of_fault(const Diagnosis& d) {
 
 Blame blame_of_unknown(const Diagnosis& d) {
   if (d.doubt == Doubt::misread || is_of_columns(d.assessment.unjudgeable)) return Blame::log;
-  return d.beyond && d.beyond->taken ? Blame::physics : Blame::test;
+  if (!d.beyond || !d.beyond->taken) return Blame::test;
+  return d.beyond->outside ? Blame::surroundings : Blame::physics;
 }
 
 }  // namespace

@@ -4,8 +4,8 @@
 // A sensor whose sign is turned, two chambers exchanged and a log that was read wrongly are mended in the rig file or
 // at the plugs, and so is a log whose columns no valve could have made: of the valve it says nothing until then.
 // A fault that a record of the log tells by itself is of the sensor, the supply or the driver; every other is a
-// component's. A state that no fault explains is missing physics where the search for it found a cause beyond what
-// healthy logs show. Else the log does not tell, and another one may.
+// component's. A state that no fault explains is what the search for missing physics found beyond healthy logs: of the
+// model, or of a sensor or the driver. Else the log does not tell, and another one may.
 #pragma once
 #include <optional>
 

@@ -1,7 +1,11 @@
 #include "diagnose/diagnose.h"
 
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
 #include <optional>
 #include <utility>
+#include <vector>
 
 #include "diagnose/constants.h"
 #include "diagnose/gross.h"
@@ -29,8 +33,29 @@
 namespace servodx {
 namespace {
 
-// Which logs they are, and where the first was recorded.
-Assessment opened(const std::vector<Log>& logs, const ReadyLogs& ready, const RigFile& rig) {
+// One order whatever the logs were given in, so that nothing hangs on which came first.
+std::vector<Log> in_order_of_content(std::vector<Log> logs) {
+  if (logs.size() > 1)
+    std::stable_sort(logs.begin(), logs.end(),
+                     [](const Log& a, const Log& b) { return content_hash(a) < content_hash(b); });
+  return logs;
+}
+
+// Of each condition the value that is farthest from the sheet's; of what the sheet does not say, the largest.
+OperatingPoint farthest_point(const std::vector<Log>& logs, const OperatingPoint& sheet) {
+  OperatingPoint out = {};
+  for (const Log& log : logs) {
+    const OperatingPoint point = operating_point_of(log);
+    for (std::size_t c = 0; c < point.size(); ++c) {
+      const auto off = [&](double value) { return std::abs(value - sheet[c].value_or(0)); };
+      if (point[c] && (!out[c] || off(*point[c]) > off(*out[c]))) out[c] = point[c];
+    }
+  }
+  return out;
+}
+
+// Which logs they are, and where they were recorded.
+Assessment opened(const std::vector<Log>& logs, const Log& first, const ReadyLogs& ready, const RigFile& rig) {
   Assessment out;
   for (const Log& log : logs) {
     out.log += (out.log.empty() ? "" : " + ") + log.path;
@@ -38,9 +63,9 @@ Assessment opened(const std::vector<Log>& logs, const ReadyLogs& ready, const Ri
     out.logs.push_back(log.path);
   }
   out.notes = ready.notes;
-  out.test = conditions_of(logs.front());
-  out.point = operating_point_of(logs.front());
+  out.test = conditions_of(first);
   out.sheet = sheet_point(rig);
+  out.point = farthest_point(logs, out.sheet);
   return out;
 }
 
@@ -88,15 +113,16 @@ void add_motion(const MotionByHypothesis& motion, Assessment& out) {
 
 }  // namespace
 
-Assessment assess_pool(const std::vector<Log>& logs, const Table& tuned, const RigFile& rig,
+Assessment assess_pool(const std::vector<Log>& given, const Table& tuned, const RigFile& rig,
                        const DiagnoseOptions& options) {
   options.validate();
+  const std::vector<Log> logs = in_order_of_content(given);
   const ErrorModel error = required_error_model(tuned);
   const ReadyLogs ready = make_ready(logs, tuned, rig, error);
   const ParameterVector base = candidate_of(tuned);
   const HypothesisSettings settings = hypothesis_settings(logs, tuned, rig, options);
   const ReadingTrial trial{tuned, rig, error, options.threads};
-  Assessment out = opened(logs, ready, rig);
+  Assessment out = opened(given, logs.front(), ready, rig);
   out.unjudgeable = unjudgeable(ready, base, out.point);
   if (out.unjudgeable != Unjudgeable::no) return without_fit(std::move(out), logs, ready, trial);
 
@@ -105,14 +131,14 @@ Assessment assess_pool(const std::vector<Log>& logs, const Table& tuned, const R
   if (!options.watch.stopped()) {
     const bool one = logs.size() == 1;
     const LogData& first = ready.data.front();
-    out.gross = gross_finding(ready.every_sample(0), base);
+    out.gross = gross_finding(ready, base);
     add_records(look_at_records(logs, ready, base, rig, options.threads), out);
     out.channels = channels_under(whole.fits.front(), logs, ready);
     out.visible = visible_beside_error(whole);
     const std::optional<Onset> onset = one ? find_onset(first, base, error, settings, whole, work) : std::nullopt;
     if (onset) out.onset = first.scenario.time[onset->at];
     add_results(onset ? onset->after : whole, base, tuned, onset, out);
-    add_motion(motion_by_hypothesis(first, base, out.explanations, out.broken, options.threads), out);
+    add_motion(motion_by_hypothesis(ready.data, base, out.explanations, out.broken, options.threads), out);
     if (one) out.reading = other_reading(logs.front(), base, trial, settings, out.hypotheses, work);
   }
   out.simulations = work.simulations, out.failed_simulations = work.failed;

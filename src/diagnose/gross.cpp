@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 
 #include "diagnose/constants.h"
 #include "parameters/list.h"
@@ -59,6 +60,16 @@ GrossFinding gross_finding(const LogData& log, const ParameterVector& base) {
   if (asked > k::least_asked * base[row::spool_stop] && look.spool.width() < k::response_missing * asked)
     return GrossFinding::no_response;
   return GrossFinding::none;
+}
+
+GrossFinding gross_finding(const ReadyLogs& logs, const ParameterVector& base) {
+  GrossFinding plainest = GrossFinding::none;
+  for (std::size_t l = 0; l < logs.data.size(); ++l) {
+    const GrossFinding found = gross_finding(logs.every_sample(l), base);
+    if (found == GrossFinding::none) continue;
+    plainest = plainest == GrossFinding::none ? found : std::min(plainest, found);
+  }
+  return plainest;
 }
 
 }  // namespace servodx

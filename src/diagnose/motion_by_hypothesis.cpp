@@ -42,4 +42,19 @@ MotionByHypothesis motion_by_hypothesis(const LogData& data, const ParameterVect
   return out;
 }
 
+MotionByHypothesis motion_by_hypothesis(const std::vector<LogData>& data, const ParameterVector& base,
+                                        const std::vector<HypothesisPrediction>& predictions,
+                                        const std::vector<BrokenSensor>& broken, int threads) {
+  MotionByHypothesis out = motion_by_hypothesis(data.front(), base, predictions, broken, threads);
+  for (std::size_t l = 1; l < data.size(); ++l) {
+    const MotionByHypothesis of_log = motion_by_hypothesis(data[l], base, predictions, broken, threads);
+    for (std::size_t i = 0; i < out.left.size(); ++i) out.left[i].part += of_log.left[i].part;
+    out.others += of_log.others;
+  }
+  const auto n = static_cast<double>(data.size());
+  for (MotionByHypothesis::Left& left : out.left) left.part /= n;
+  out.others /= n;
+  return out;
+}
+
 }  // namespace servodx

@@ -22,5 +22,9 @@ struct MotionByHypothesis {
 MotionByHypothesis motion_by_hypothesis(const LogData& data, const ParameterVector& base,
                                         const std::vector<HypothesisPrediction>& predictions,
                                         const std::vector<BrokenSensor>& broken, int threads);
+// Of several logs of one state: the mean over them.
+MotionByHypothesis motion_by_hypothesis(const std::vector<LogData>& data, const ParameterVector& base,
+                                        const std::vector<HypothesisPrediction>& predictions,
+                                        const std::vector<BrokenSensor>& broken, int threads);
 
 }  // namespace servodx

@@ -173,8 +173,11 @@ void add_driver(const Log& log, const LogData& data, std::vector<RecordFigure>& 
     if (l.gain < least.gain) least = l;
     if (l.gain > best.gain) best = l;
   }
-  out.push_back({FigureKind::driver_gain, Signal::coil_current, std::max(k::least_left, least.gain),
-                 driver_since(command, current, best)});
+  out.push_back({.kind = FigureKind::driver_gain,
+                 .signal = Signal::coil_current,
+                 .value = std::max(k::least_left, least.gain),
+                 .since = driver_since(command, current, best),
+                 .before = std::max(k::least_left, best.gain)});
   out.push_back({FigureKind::driver_offset, Signal::coil_current,
                  std::max(k::least_left, 1 + whole.offset / data.scenario.rated_current)});
   out.push_back({FigureKind::driver_left, Signal::coil_current, std::max(k::least_residue, whole.left / whole.drive)});

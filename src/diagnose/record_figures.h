@@ -31,8 +31,9 @@ struct RecordFigure {
   FigureKind kind = FigureKind::supply_level;
   Signal signal = Signal::supply_pressure;
   double value = 1;
-  std::optional<double> since = {};  // [s] of a step: when
-  double error = 0;                  // of its logarithm, one standard deviation: what the log itself leaves open
+  std::optional<double> since = {};   // [s] of a step: when
+  double error = 0;                   // of its logarithm, one standard deviation: what the log itself leaves open
+  std::optional<double> before = {};  // what it was ahead of `since`
 };
 
 // Of what the log records, in the order of the kinds; what it cannot tell is left out.

@@ -59,11 +59,25 @@ const RecordFigure* same(const RecordFigure& of, const std::vector<RecordFigure>
   return nullptr;
 }
 
-std::optional<RecordFinding> compare(const RecordFigure& figure,
-                                     const std::vector<std::vector<RecordFigure>>& healthy) {
-  std::vector<double> values;
+std::vector<double> healthy_values(const RecordFigure& of, const std::vector<std::vector<RecordFigure>>& healthy) {
+  std::vector<double> out;
   for (const auto& log : healthy)
-    if (const RecordFigure* f = same(figure, log)) values.push_back(f->value);
+    if (const RecordFigure* f = same(of, log)) out.push_back(f->value);
+  return out;
+}
+
+// A fault steps in where the figure was a healthy one before: what was wrong from the first sample on has no onset.
+bool was_healthy_before(const RecordFigure& figure, const std::vector<std::vector<RecordFigure>>& healthy,
+                        double rate) {
+  if (!figure.before) return true;
+  const Deviate d = deviate_of(*figure.before, healthy_values(figure, healthy),
+                               {usual_spread(figure.kind), k::usual_logs}, figure.error);
+  return 0.5 * student_tail(d.t, d.degrees) > rate;
+}
+
+std::optional<RecordFinding> compare(const RecordFigure& figure, const std::vector<std::vector<RecordFigure>>& healthy,
+                                     double rate) {
+  const std::vector<double> values = healthy_values(figure, healthy);
   const Deviate d = deviate_of(figure.value, values, {usual_spread(figure.kind), k::usual_logs}, figure.error);
   if (d.t == 0 || !is_fault_on(figure.kind, d.t > 0)) return {};
   double mean = 0;
@@ -77,7 +91,7 @@ std::optional<RecordFinding> compare(const RecordFigure& figure,
   out.severity = is_size(figure.kind) ? out.value / out.usual : std::nan("");
   out.lower = out.severity / factor, out.upper = out.severity * factor;
   out.chance = 0.5 * student_tail(d.t, d.degrees);
-  out.since = figure.since;
+  if (was_healthy_before(figure, healthy, rate)) out.since = figure.since;
   return out;
 }
 
@@ -95,7 +109,7 @@ std::vector<RecordFinding> record_findings(const std::vector<RecordFigure>& figu
   }
   const double each = figures.empty() ? rate : rate / static_cast<double>(figures.size());
   for (const RecordFigure& figure : figures)
-    if (const auto f = compare(figure, healthy); f && f->chance <= each) out.push_back(*f);
+    if (const auto f = compare(figure, healthy, each); f && f->chance <= each) out.push_back(*f);
   std::stable_sort(out.begin(), out.end(), [](const auto& a, const auto& b) { return a.chance < b.chance; });
   return out;
 }

@@ -87,7 +87,7 @@ ExplainedCause described(const Inquiry& q, const Subject& told_by, const CauseRe
   ExplainedCause out;
   out.effect = c.effect, out.where = place_of(c, r), out.test = c.test, out.meaning = meaning_of(c);
   out.heldout_gain = r.heldout_gain, out.beyond_retuning = r.beyond_retuning, out.delta_bic = r.delta_bic;
-  out.told_by = by_simulation ? ToldBy::simulation : ToldBy::blocks, out.curve = c.curve;
+  out.told_by = by_simulation ? ToldBy::simulation : ToldBy::blocks, out.curve = c.curve, out.of_sensor = is_of_sensor(c);
   const auto& values = q.subject().values(r.cause);
   for (std::size_t j = 0; j < c.numbers.size(); ++j) {
     double factor = 1;

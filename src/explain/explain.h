@@ -40,6 +40,7 @@ struct ExplainedCause {
   std::vector<std::string> confusable_with;
   ToldBy told_by = ToldBy::simulation;
   bool curve = false;        // learnt: its numbers are the knots
+  bool of_sensor = false;    // it is the sensor's that recorded a channel
   std::string meaning = {};  // as the lists of effects and of rows say it; empty where they do not
 };
 struct ExplainedCandidate {

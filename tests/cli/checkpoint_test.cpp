@@ -138,6 +138,18 @@ INSTANTIATE_TEST_SUITE_P(
 
 using GoingOnFrom = GoingOn;
 
+// Of a pool: one state, seen in several logs.
+TEST_F(GoingOnFrom, TheOrderOfAPoolsLogsChangesNoVerdict) {
+  const auto judged_in = [&](const std::string& logs, const std::string& result) {
+    EXPECT_EQ(desk().run("diagnose " + logs + " --pool " + judged + "--quiet --json " + result).code, 0);
+    Json out = Json::parse(bytes_of(desk() / result));
+    for (const char* of_order : {"seconds", "log", "logs", "sha256", "inputs", "notes", "beyond"}) out.erase(of_order);
+    return out;
+  };
+  const Json given = judged_in("s1.csv s2.csv", "given.json"), turned = judged_in("s2.csv s1.csv", "turned.json");
+  for (const auto& [key, value] : given.items()) EXPECT_EQ(value.dump(), turned.value(key, Json()).dump()) << key;
+}
+
 TEST_F(GoingOnFrom, AnotherCallsCheckpointMakesAllAnew) {
   const std::string diagnose = "diagnose s1.csv " + judged + "--checkpoint other ";
   ASSERT_EQ(desk().run(diagnose).code, 0);

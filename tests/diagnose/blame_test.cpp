@@ -45,6 +45,8 @@ TEST(Blame, AnUnknownStateIsPhysicsOnlyWhereACauseWasTaken) {
   EXPECT_EQ(blame_of(d), Blame::test) << "healthy logs show it too";
   d.beyond->taken = true;
   EXPECT_EQ(blame_of(d), Blame::physics);
+  d.beyond->outside = true;
+  EXPECT_EQ(blame_of(d), Blame::surroundings) << "a cause of a sensor or of the driver is no physics of the valve";
 }
 
 TEST(Blame, WhatTheRigFileOrTheWiringMendsIsOfTheLog) {

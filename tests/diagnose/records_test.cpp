@@ -131,6 +131,8 @@ TEST(Records, ADriverThatPassesOnLessIsFoundFromTheStartAndFromMidLog) {
       if (from > 0) {
         ASSERT_TRUE(found.front().since) << gain;
         EXPECT_NEAR(*found.front().since, from, 0.1);
+      } else {
+        EXPECT_FALSE(found.front().since) << gain << ": it was wrong from the first sample on";
       }
     }
 }
