@@ -1,5 +1,7 @@
 #include "door/stands_first.h"
 
+#include "explain/outcome.h"
+
 namespace servodx {
 
 BeyondFaults stands_first(const ExplainResult& r) {
