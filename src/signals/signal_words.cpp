@@ -188,6 +188,7 @@ constexpr SignalWords names[] = {
     {Signal::piston_position, "ram"},
     {Signal::piston_position, "actuator position"},
     {Signal::piston_position, "actuator pos"},
+    {Signal::piston_position, "attuatore"},
     {Signal::piston_position, "pos fb"},
     {Signal::piston_position, "position"},
     {Signal::piston_position, "pos"},
@@ -711,6 +712,33 @@ constexpr OtherWords others[] = {
     {"err"},
     {"ambiante", Dimension::temperature},
     {"\xE3\x83\xA2\xE3\x83\xBC\xE3\x82\xBF", Dimension::current},
+    // What a signal may reach, and what is computed of it.
+    {"min", {}, "l"},
+    {"max"},
+    {"minimum"},
+    {"maximum"},
+    {"limit"},
+    {"grenze"},
+    {"grenzwert"},
+    {"limite"},
+    {"setting"},
+    {"einstellung"},
+    {"ripple"},
+    {"average"},
+    {"avg"},
+    {"mittelwert"},
+    {"media"},
+    {"moyenne"},
+    {"spring"},
+    {"feder"},
+    {"federkraft"},
+    {"friction"},
+    {"reibung"},
+    {"reibkraft"},
+    {"clutch"},
+    {"kupplung"},
+    {"leakage", Dimension::current},
+    {"accumulator", Dimension::length},
 };
 
 // What is asked for, and not what is.
@@ -736,6 +764,24 @@ constexpr std::string_view demands[] = {"setpoint",
 constexpr std::string_view machines[] = {"valve",   "servovalve", "ventil", "servoventil", "valvola",  "vanne",
                                          "valvula", "cylinder",   "cyl",    "zylinder",    "actuator", "axis",
                                          "achse",   "station",    "bench",  "channel",     "unit"};
+
+// The valve, also where a word ends so, "Regelventil": what moves in it is its spool. Last the alphabets without
+// blanks.
+constexpr std::string_view valves[] = {
+    "valve", "ventil", "valvola",    "vanne", "valvula", "zawor",        "zaworu",
+    "klep",  "servo",  "hauptstufe", "stufe", "stage",   "\xE9\x98\x80", "\xEB\xB0\xB8\xEB\xB8\x8C"};
+
+// Words of many things beside the valve and its cylinder: with a word that nobody knows beside them, who knows?
+constexpr std::string_view generics[] = {
+    "position", "pos",    "pos fb", "posizione", "current", "strom", "corrente",       "courant", "corriente",
+    "prad",     "stroem", "stroom", "i",         "u",       "force", "load",           "kraft",   "last",
+    "forza",    "carico", "effort", "fuerza",    "forca",   "drive", "control voltage"};
+
+// Beside those they say nothing: of measuring, of recorders and their trees, and what joins words.
+constexpr std::string_view neutrals[] = {
+    "act",  "actual", "ist",   "istwert", "meas",     "measured", "mess",   "messwert", "mesure", "misura", "value",
+    "wert", "val",    "ctrl",  "control", "commande", "signal",   "sensor", "cell",     "axial",  "axis",   "achse",
+    "main", "test",   "model", "root",    "gvl",      "the",      "der",    "des",      "del",    "della",  "platform"};
 
 // A pressure from one place to another.
 constexpr std::string_view differences[] = {"dp", "drop", "druckdifferenz", "differenzdruck", "druckabfall"};
@@ -779,6 +825,9 @@ std::span<const OtherWords> other_words() { return others; }
 std::span<const std::string_view> demand_words() { return demands; }
 std::span<const std::string_view> difference_words() { return differences; }
 std::span<const std::string_view> machine_words() { return machines; }
+std::span<const std::string_view> valve_words() { return valves; }
+std::span<const std::string_view> generic_words() { return generics; }
+std::span<const std::string_view> neutral_words() { return neutrals; }
 std::span<const UnitWord> unit_words() { return meant; }
 std::span<const ForeignUnit> foreign_units() { return beyond; }
 

@@ -31,6 +31,9 @@ std::span<const OtherWords> other_words();
 std::span<const std::string_view> demand_words();      // of what is asked for, and not measured
 std::span<const std::string_view> difference_words();  // of a pressure from one place to another
 std::span<const std::string_view> machine_words();     // that a letter behind them tells apart: "valve A"
+std::span<const std::string_view> valve_words();       // ends of words, or parts in an alphabet without blanks
+std::span<const std::string_view> generic_words();     // words of signals that name many other things too
+std::span<const std::string_view> neutral_words();     // that change nothing of what a generic one means
 
 // How else people write units of the table, in small letters.
 struct UnitWord {
