@@ -121,7 +121,8 @@ Above look_ahead(const CsvCursor& csv) {
 }
 
 // "Name  x  Name  y": each signal with a time of its own, as TwinCAT's Scope writes it.
-bool are_pairs(const std::vector<std::string>& cells) {
+bool are_pairs(std::vector<std::string> cells) {
+  if (ends_with_comment(cells)) cells.pop_back();
   if (cells.size() < 4 || cells.size() % 2 != 0 || cells[0].empty()) return false;
   for (std::size_t k = 2; k < cells.size(); k += 2)
     if (cells[k] != cells[0]) return false;
@@ -277,7 +278,7 @@ void require_names(const CsvCursor& csv, const std::string& path) {
 long pass_lines_above_header(CsvCursor& csv, const std::string& path) {
   if (is_row_of_numbers(csv.header_text())) csv.header_from_comment();
   const Above above = look_ahead(csv);
-  if (!above.numbers || above.lines.empty()) return 0;
+  if (!above.numbers) return 0;
   const auto [separator, width] = *above.numbers;
   const auto fits = [width = width](const std::vector<std::string>& cells) {
     return cells.size() == width || (cells.size() == width + 1 && ends_with_comment(cells));
@@ -285,11 +286,12 @@ long pass_lines_above_header(CsvCursor& csv, const std::string& path) {
   std::vector<std::vector<std::string>> rows = {csv.header()};
   for (const Above::Line& line : above.lines) rows.push_back(cells_of(line.text, separator));
   for (const auto& cells : rows)
-    if (cells.size() == width && are_pairs(cells))
+    if (fits(cells) && are_pairs(cells))
       throw InputError({path, above.numbers_line, ""},
                        "its columns go in pairs, a time and a value each: every signal has a time of its own",
                        "export with one time column for all signals, or delete all but the first time column and "
                        "write a row of 'name [unit]' above the numbers");
+  if (above.lines.empty()) return 0;
   std::size_t best = fits(rows.front()) ? 0 : rows.size() - 1;
   if (!fits(rows[best])) return 0;
   if (best > 1 && fits(rows[best - 1]) && !as_units(rows[best]).empty()) --best;

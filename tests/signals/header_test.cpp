@@ -140,6 +140,10 @@ TEST(Header, OfPairsOfTimeAndValueIsRefused) {
       "0.0\t0.02\t0.0\t-0.16\n1.0\t0.02\t1.0\t-0.15\n");
   EXPECT_TRUE(said.starts_with("log.csv:5: its columns go in pairs")) << said;
   EXPECT_NE(said.find("; export with one time column"), std::string::npos) << said;
+  for (const std::string header : {"Name\trCur\tName\trPos", "X_Value\tA\tX_Value\tB\tComment"}) {
+    const std::string right_above = refusal(header + "\n0.0\t0.02\t0.0\t-0.16\n1.0\t0.02\t1.0\t-0.15\n");
+    EXPECT_TRUE(right_above.starts_with("log.csv:2: its columns go in pairs")) << header << ": " << right_above;
+  }
 }
 
 TEST(Header, BelowAQuotedLineThatIsNoneIsFound) {
