@@ -287,9 +287,18 @@ bool split_brackets(ColumnGuess& g) {
   return false;
 }
 
-const ForeignUnit* foreign_unit(const std::string& written) {
+std::string small_without_blanks(const std::string& written) {
   std::string low = in_small_letters(written);
   std::erase(low, ' ');
+  return low;
+}
+
+bool is_unit_of_no_signal(const std::string& written) {
+  return is_one_of(units_of_no_signal(), small_without_blanks(written));
+}
+
+const ForeignUnit* foreign_unit(const std::string& written) {
+  const std::string low = small_without_blanks(written);
   for (const ForeignUnit& unit : foreign_units())
     if (unit.word == low) return &unit;
   return nullptr;
@@ -322,9 +331,22 @@ void split_capitals(ColumnGuess& g) {
   g.name.resize(at);
 }
 
+// "Leckage ml/min", "speed/mm/s": a ratio that is no unit of the table is a unit as a whole.
+bool split_ratio(ColumnGuess& g) {
+  const auto stroke = g.name.rfind('/');
+  const auto at = stroke == std::string::npos || stroke == 0 ? stroke : g.name.find_last_of("_ /", stroke - 1);
+  if (stroke == std::string::npos || at == std::string::npos || at == 0) return false;
+  const std::string word = g.name.substr(at + 1);
+  if (find_unit(word) || !(foreign_unit(word) || is_unit_of_no_signal(word))) return false;
+  g.written_unit = word;
+  g.name = std::string(trimmed(std::string_view(g.name).substr(0, at)));
+  return true;
+}
+
 // "pressure_bar", "Q l/min": the last word is a unit; "p/bar": what follows the stroke is. A subscript is none: "p_A"
 // is no p in amperes, "u_in" no u in inches.
 void split_last_word(ColumnGuess& g) {
+  if (split_ratio(g)) return;
   const std::vector<Match> whole = matches_of(g.name, "", 0);
   for (const char* marks : {"_ ", "/"}) {
     const auto at = g.name.find_last_of(marks);
@@ -421,6 +443,10 @@ std::vector<ColumnGuess> guess_columns(const std::vector<std::string>& header, c
   std::vector<Match> matches;
   for (std::size_t i = 0; i < header.size(); ++i) {
     ColumnGuess g = split(header[i], i < units.size() ? &units[i] : nullptr);
+    if (is_unit_of_no_signal(g.written_unit)) {
+      guesses.push_back(std::move(g));
+      continue;
+    }
     const std::string unit = unit_to_match(g);
     // "command [mm]" is no command: the unit decides.
     if (const auto own = find_signal(g.name); own && unit_fits(unit, *own)) {
@@ -452,7 +478,7 @@ std::vector<ColumnGuess> guess_columns(const std::vector<std::string>& header, c
     const Unit* unit = find_unit(g.unit);
     bool& oil = taken[static_cast<std::size_t>(index(Signal::oil_temperature))];
     if (!g.signal && !oil && !is_other(words_of(g.name), Signal::oil_temperature) &&
-        (unit ? unit->dimension == Dimension::temperature : g.name == "T")) {
+        (unit ? unit->dimension == Dimension::temperature : g.name == "T" && !is_unit_of_no_signal(g.written_unit))) {
       g.signal = Signal::oil_temperature;
       g.weak = oil = true;
     }

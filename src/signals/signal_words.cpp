@@ -816,7 +816,17 @@ constexpr ForeignUnit beyond[] = {
     {"ns", "us", "0.001", ""},
     {"100ns", "us", "0.1", ""},
     {"ticks", "us", "0.1", ""},
+    {"ml/min", "l/min", "0.001", ""},
+    {"cc/min", "l/min", "0.001", ""},
+    {"ccm/min", "l/min", "0.001", ""},
+    {"cm3/min", "l/min", "0.001", ""},
 };
+
+constexpr std::string_view of_no_signal[] = {
+    "mm/s",        "cm/s", "m/s",  "um/s",  "in/s", "mm/min", "m/min", "mm/s2", "m/s2",  "mm/s\xC2\xB2",
+    "m/s\xC2\xB2", "g",    "rpm",  "1/min", "1/s",  "u/min",  "min-1", "upm",   "n/mm",  "n/m",
+    "n/um",        "nm",   "knm",  "w",     "kw",   "hz",     "khz",   "deg/s", "rad/s", "bar/s",
+    "mpa/s",       "a/s",  "ma/s", "kn/s",  "n/s",  "kg",     "kg/m3"};
 
 }  // namespace
 
@@ -829,6 +839,7 @@ std::span<const std::string_view> valve_words() { return valves; }
 std::span<const std::string_view> generic_words() { return generics; }
 std::span<const std::string_view> neutral_words() { return neutrals; }
 std::span<const UnitWord> unit_words() { return meant; }
+std::span<const std::string_view> units_of_no_signal() { return of_no_signal; }
 std::span<const ForeignUnit> foreign_units() { return beyond; }
 
 }  // namespace servodx

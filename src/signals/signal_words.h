@@ -41,6 +41,9 @@ struct UnitWord {
 };
 std::span<const UnitWord> unit_words();
 
+// Units of what is no signal, such as a speed, in small letters and without blanks.
+std::span<const std::string_view> units_of_no_signal();
+
 // Units beyond the table, in small letters and without blanks, and what would make them one of it.
 struct ForeignUnit {
   std::string_view word;
