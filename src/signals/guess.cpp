@@ -438,6 +438,10 @@ std::string unit_meant(const std::string& written) {
   return find_unit(low) ? low : "";
 }
 
+bool is_unit_as_written(const std::string& written) {
+  return !unit_meant(written).empty() || foreign_unit(written) || is_unit_of_no_signal(written);
+}
+
 std::vector<ColumnGuess> guess_columns(const std::vector<std::string>& header, const std::vector<std::string>& units) {
   std::vector<ColumnGuess> guesses;
   std::vector<Match> matches;

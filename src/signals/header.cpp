@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <cmath>
 #include <cstddef>
 #include <iterator>
 #include <optional>
@@ -21,8 +22,10 @@
 namespace servodx {
 namespace {
 
-constexpr std::size_t most_lines = 200;  // above a header
-constexpr std::size_t most_judged = 20;  // rows above the numbers that may be the header, and cells of each
+constexpr std::size_t most_lines = 200;     // above a header
+constexpr std::size_t fewest_numbered = 4;  // columns: three samples in a row may count up by chance
+constexpr double leap_over_step = 10;       // from the row of channel numbers to the first sample, per step after it
+constexpr std::size_t most_judged = 20;     // rows above the numbers that may be the header, and cells of each
 
 constexpr std::string_view blanks = " \t\r";
 
@@ -45,6 +48,11 @@ std::vector<std::string> cells_of(std::string_view line, char separator) {
 bool is_number(std::string cell) {
   std::replace(cell.begin(), cell.end(), ',', '.');
   return parse_number(cell).has_value();
+}
+
+std::optional<double> number_of(std::string cell) {
+  std::replace(cell.begin(), cell.end(), ',', '.');
+  return parse_number(cell);
 }
 
 bool is_sample(const std::string& cell) { return is_number(cell) || parse_time_stamp(cell) || is_date(cell); }
@@ -75,18 +83,20 @@ bool is_one_of(const std::array<std::string_view, n>& words, const std::string& 
   return std::find(words.begin(), words.end(), in_small_letters(cell)) != words.end();
 }
 
-// The cells without their brackets, where one at least is a unit and none a number.
+// The cells without their brackets, where none is a number and more than half of those that are filled are units: an
+// "A" alone is no ampere, but a chamber.
 std::vector<std::string> as_units(std::vector<std::string> units) {
-  bool any = false;
+  long known = 0, filled = 0;
   for (std::string& cell : units) {
     if (is_number(cell)) return {};
     const std::size_t n = cell.size();
     if (n > 1 && ((cell[0] == '[' && cell[n - 1] == ']') || (cell[0] == '(' && cell[n - 1] == ')')))
       cell = trimmed(std::string_view(cell).substr(1, n - 2), blanks);
     if (is_one_of(labels_of_units, cell)) cell.clear();
-    any = any || !unit_meant(cell).empty();
+    known += is_unit_as_written(cell);
+    filled += !cell.empty();
   }
-  return any ? units : std::vector<std::string>{};
+  return 2 * known > filled ? units : std::vector<std::string>{};
 }
 
 // Rows above the first of numbers, not blank and no comments; the first is the one that the cursor took.
@@ -168,7 +178,53 @@ bool is_row_of_scales(const std::vector<std::string>& cells, long line, const st
   return true;
 }
 
+// The numbers of the next rows, NaN where a cell is none.
+std::vector<std::vector<double>> numbers_ahead(const CsvCursor& csv, std::size_t rows) {
+  std::vector<std::vector<double>> numbers;
+  const std::string_view text = csv.ahead();
+  for (std::size_t at = 0; at < text.size() && numbers.size() < rows;) {
+    const std::size_t end = std::min(text.find('\n', at), text.size());
+    numbers.emplace_back();
+    for (const std::string& cell : cells_of(text.substr(at, end - at), csv.separator()))
+      numbers.back().push_back(number_of(cell).value_or(std::nan("")));
+    at = end + 1;
+  }
+  return numbers;
+}
+
+// "0; 1; 2; 3" or "1; 2; 3; 4".
+bool counts_up(const std::vector<double>& row) {
+  if (row.size() < fewest_numbered || !(row[0] == 0 || row[0] == 1)) return false;
+  for (std::size_t c = 1; c < row.size(); ++c)
+    if (row[c] != row[0] + static_cast<double>(c)) return false;
+  return true;
+}
+
+// "0; 0; 0; 0", beside the time: but a log may begin at rest, and so most columns must leap from there, and stay.
+bool leaps_from_one_value(const std::vector<std::vector<double>>& rows, std::size_t time) {
+  std::size_t leaps = 0, others = 0;
+  double value = -1;
+  for (std::size_t c = 0; c < rows[0].size(); ++c) {
+    if (c == time) continue;
+    if (others == 0) value = rows[0][c];
+    if (rows[0][c] != value || !(value == 0 || value == 1)) return false;
+    ++others;
+    leaps += std::abs(rows[1][c] - rows[0][c]) > leap_over_step * std::abs(rows[2][c] - rows[1][c]);
+  }
+  return leaps > 1 && 2 * leaps > others;
+}
+
 }  // namespace
+
+bool begins_with_channel_numbers(const CsvCursor& csv, std::size_t time, const std::string& path) {
+  const auto rows = numbers_ahead(csv, 3);
+  if (rows.size() < 3 || rows[0].size() != rows[1].size() || rows[1].size() != rows[2].size()) return false;
+  if (!(counts_up(rows[0]) && rows[1] != rows[0]) && !leaps_from_one_value(rows, time)) return false;
+  if (time < rows[0].size() && rows[1][time] <= rows[0][time])
+    throw InputError({path, csv.line(), ""}, "the first row of numbers is no sample: it numbers the channels",
+                     "delete it");
+  return true;
+}
 
 bool ends_with_comment(const std::vector<std::string>& header) {
   return header.size() > 2 && is_one_of(names_of_comments, header.back());

@@ -33,6 +33,11 @@ struct RowsBelow {
 // `csv`: at the header. Throws InputError where a row holds offsets or factors that change the numbers.
 RowsBelow pass_rows_below_header(CsvCursor& csv, const std::string& path);
 
+// The first row of numbers, at which the cursor stands, numbers the channels, "0; 1; 2; 3", or is one value throughout,
+// "0; 0; 0", from which the rows below it leap: no sample. `time`: its column. Throws InputError where time does not
+// increase from it.
+bool begins_with_channel_numbers(const CsvCursor& csv, std::size_t time, const std::string& path);
+
 // Throws InputError where the first row of samples, at which the cursor stands, has more cells than the header: with
 // commas between cells that may be a decimal comma.
 void require_as_many_cells(const CsvCursor& csv, const std::vector<std::string>& row, const std::string& path);

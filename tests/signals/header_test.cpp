@@ -146,6 +146,30 @@ TEST(Header, OfPairsOfTimeAndValueIsRefused) {
   }
 }
 
+TEST(Header, OfNamesWithALetterThatIsAUnitIsNoRowOfUnits) {
+  CsvCursor csv("a;b;c;d;e;f\nZeit;Strom;Weg;Weg;A;B\n0;1;2;3;4;5\n", "log.csv");
+  ASSERT_TRUE(csv.next_row());
+  EXPECT_TRUE(units_row(csv).empty());
+  const std::string text = "a;b;c;d\ns;mA;rpm;kp/cm2\n0;1;2;3\n";
+  CsvCursor with_others(std::string_view(text), "log.csv");
+  ASSERT_TRUE(with_others.next_row());
+  EXPECT_EQ(units_row(with_others).size(), 4);
+}
+
+TEST(Header, ARowOfChannelNumbersBelowItIsNoSample) {
+  const auto begins = [](const std::string& rows) {
+    const std::string text = "t;i;x;p\n" + rows;
+    CsvCursor csv(std::string_view(text), "log.csv");
+    EXPECT_TRUE(csv.next_row());
+    return begins_with_channel_numbers(csv, 0, "log.csv");
+  };
+  EXPECT_TRUE(begins("0;1;2;3\n0,1;0,3;0,1;104\n0,2;0,3;0,1;104,1\n"));
+  EXPECT_TRUE(begins("0;0;0;0\n0,1;9;0,1;104\n0,2;9,1;0,1;104,1\n"));
+  EXPECT_FALSE(begins("0;0;0;0\n0,1;0;0,1;0,2\n0,2;0,1;0,2;0,3\n"));  // begins at rest
+  EXPECT_FALSE(begins("0;0;0;104\n0,1;9;0,1;104\n0,2;9;0,1;104\n"));
+  EXPECT_THROW(begins("0;1;2;3\n0;0,3;0,1;104\n0,2;0,3;0,1;104,1\n"), InputError);
+}
+
 TEST(Header, BelowAQuotedLineThatIsNoneIsFound) {
   const std::string text = "run\n\"a\" b, c\nt,x,y\n0,1,2\n";
   CsvCursor csv(text, "log.csv");
