@@ -319,6 +319,33 @@ bool are_parted_by_blanks(const CsvCursor& csv) {
          std::any_of(rows.begin(), rows.end(), [](const auto& row) { return are_numbers_between_blanks(row.text); });
 }
 
+// "A [bar]" is a port of the pressures that the row above speaks of.
+bool is_port(const std::string& name) {
+  const std::string_view bare = trimmed(std::string_view(name).substr(0, name.find_first_of("[(")), blanks);
+  return bare == "A" || bare == "B" || bare == "P";
+}
+
+// "Weg; Weg" below "Ventil; Kolben", or "Weg; Weg; Kraft" below "Ventil; Kolben; ": a name that stands over several
+// columns, and a port, has the name of its group before it, which holds up to the next. As they are where that does not
+// tell all apart.
+std::vector<std::string> with_groups(const std::vector<std::string>& names, const std::vector<std::string>& groups) {
+  const auto repeats = [](const std::vector<std::string>& all, const std::string& name) {
+    return !name.empty() && std::count(all.begin(), all.end(), name) > 1;
+  };
+  const auto any_repeats = [&](const std::vector<std::string>& all) {
+    return std::any_of(all.begin(), all.end(), [&](const std::string& name) { return repeats(all, name); });
+  };
+  if (names.size() != groups.size() || names.size() > most_judged || !any_repeats(names)) return names;
+  if (!is_row_of_words(groups) || !as_units(groups).empty()) return names;
+  std::vector<std::string> named = names;
+  std::string group;
+  for (std::size_t c = 0; c < names.size(); ++c) {
+    if (!groups[c].empty()) group = groups[c];
+    if (!group.empty() && (repeats(names, names[c]) || is_port(names[c]))) named[c] = group + " " + names[c];
+  }
+  return any_repeats(named) ? names : named;
+}
+
 }  // namespace
 
 void require_names(const CsvCursor& csv, const std::string& path) {
@@ -357,6 +384,7 @@ long pass_lines_above_header(CsvCursor& csv, const std::string& path) {
       best = k, most = known_names(rows[k]);
   if (best == 0) return 0;
   csv.header_at(above.lines[best - 1].at, separator);
+  csv.name_columns(with_groups(csv.header(), rows[best - 1]));
   return static_cast<long>(best);
 }
 

@@ -4,7 +4,8 @@
 // most names that a person would know; where that does not tell, the first row of the file, or the last that is not of
 // units. Rows of text below it are passed, and one of units is taken. Where no row has as many cells, the first row of
 // the file is taken, and its reader refuses it. A last column of comments (LabVIEW's) may lack its cells. Names behind
-// a '#' right above the numbers are a header too.
+// a '#' right above the numbers are a header too. Names that stand over several columns take the names of groups in the
+// row above, "Valve Position" and "Cylinder Position".
 #pragma once
 #include <cstddef>
 #include <string>

@@ -156,6 +156,22 @@ TEST(Header, OfNamesWithALetterThatIsAUnitIsNoRowOfUnits) {
   EXPECT_EQ(units_row(with_others).size(), 4);
 }
 
+TEST(Header, NamesOverSeveralColumnsTakeTheirGroups) {
+  const auto names = [](const std::string& text) {
+    CsvCursor csv(std::string_view(text), "log.csv");
+    pass_lines_above_header(csv, "log.csv");
+    return csv.header();
+  };
+  using Names = std::vector<std::string>;
+  EXPECT_EQ(
+      names(";Ventil;;Kolben;Druecke;\nZeit [s];Strom [mA];Weg [mm];Weg [mm];A [bar];B [bar]\n0;1;2;3;4;5\n"),
+      (Names{"Zeit [s]", "Strom [mA]", "Ventil Weg [mm]", "Kolben Weg [mm]", "Druecke A [bar]", "Druecke B [bar]"}));
+  EXPECT_EQ(names(",Valve,,Cylinder,Pressures,\nTime,Current,Position,Position,A,B\ns,mA,mm,mm,bar,bar\n0,1,2,3,4,5\n"),
+            (Names{"Time", "Current", "Valve Position", "Cylinder Position", "Pressures A", "Pressures B"}));
+  EXPECT_EQ(names("a;b;c;d\ntime;command;x;y\n0;1;2;3\n"), (Names{"time", "command", "x", "y"}));  // none repeats
+  EXPECT_EQ(names("run;;;\ntime;command;x;x\n0;1;2;3\n"), (Names{"time", "command", "x", "x"}));   // tells none apart
+}
+
 TEST(Header, ARowOfChannelNumbersBelowItIsNoSample) {
   const auto begins = [](const std::string& rows) {
     const std::string text = "t;i;x;p\n" + rows;
