@@ -24,7 +24,7 @@ namespace {
 
 constexpr std::size_t most_lines = 200;     // above a header
 constexpr std::size_t fewest_numbered = 4;  // columns: three samples in a row may count up by chance
-constexpr double leap_over_step = 10;       // from the row of channel numbers to the first sample, per step after it
+constexpr double leap_over_step = 10;       // from channel numbers to the first sample, per step after it: its noise
 constexpr std::size_t most_judged = 20;     // rows above the numbers that may be the header, and cells of each
 
 constexpr std::string_view blanks = " \t\r";
