@@ -291,8 +291,9 @@ std::vector<std::string> units_above(std::string_view text, const CsvCursor& csv
   const std::size_t at = text.find(label);
   if (at == text.npos || std::count(text.begin(), text.begin() + static_cast<long>(at), '\n') > csv.header_line())
     return {};
-  std::vector<std::string> units =
-      as_units(cells_of(text.substr(at + 1, text.find('\n', at + 1) - at - 1), csv.separator()));
+  std::vector<std::string> cells = cells_of(text.substr(at + 1, text.find('\n', at + 1) - at - 1), csv.separator());
+  cells.front().clear();  // the label
+  std::vector<std::string> units = as_units(cells);
   if (ends_with_comment(csv.header()) && units.size() + 1 == csv.header().size()) units.emplace_back();
   if (units.size() != csv.header().size()) return {};
   units.front() = std::string("s");
