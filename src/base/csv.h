@@ -15,6 +15,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "base/decimal.h"
@@ -48,6 +49,8 @@ class CsvCursor {
   bool decimal_comma() const { return point_ == ','; }
   // Takes the row that begins so many bytes ahead as the header in place of this one; its cells part at `separator`.
   void header_at(std::size_t bytes_ahead, char separator);
+  // Other names for its columns, as many.
+  void name_columns(std::vector<std::string> names) { header_ = std::move(names); }
   // The line of the header, empty where it is no longer in memory.
   std::string_view header_text() const;
   // Takes the last comment as the header, and the row taken for it as one to be read, where both have as many cells:

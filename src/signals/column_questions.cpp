@@ -322,10 +322,16 @@ void sort_numbered_pressures(std::vector<ColumnGuess>& columns, const std::vecto
   }
 }
 
-// A column that only rises may be the time, where no name says so.
+// Where no name says which is the time, the first column of time stamps is; a column that only rises may be, and is
+// asked.
 void look_for_time(std::vector<ColumnGuess>& columns, const std::vector<ColumnNumbers>& numbers) {
   if (std::any_of(columns.begin(), columns.end(), [](const ColumnGuess& g) { return g.signal == Signal::time; }))
     return;
+  for (std::size_t c = 0; c < columns.size(); ++c)
+    if (numbers[c].stamps && !columns[c].signal) {
+      columns[c].signal = Signal::time;
+      return;
+    }
   for (std::size_t c = 0; c < columns.size(); ++c) {
     ColumnGuess& g = columns[c];
     const Unit* const unit = find_unit(g.unit);

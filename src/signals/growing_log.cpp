@@ -43,6 +43,18 @@ bool number_of(std::string_view cell, char point, double& value) {
   return true;
 }
 
+// The line of the header; with the names of groups where it took some from the row above it.
+std::string head_of(const CsvCursor& csv, const std::string& line) {
+  const std::string text = line + "\n";
+  if (CsvCursor(std::string_view(text), "").header() == csv.header()) return text;
+  std::string head;
+  for (std::size_t c = 0; c < csv.header().size(); ++c) {
+    if (c > 0) head += csv.separator();
+    append_cell(head, csv.header()[c]);
+  }
+  return head + "\n";
+}
+
 }  // namespace
 
 GrowingLog::GrowingLog(std::string name, const RigFile& rig) : name_(std::move(name)), rig_(&rig) {}
@@ -129,7 +141,7 @@ bool GrowingLog::begins_with(std::string_view text) {
   all += first;
   CsvCursor csv(std::string_view(all), name_);
   const auto above = static_cast<std::size_t>(pass_lines_above_header(csv, name_));
-  head_ = above_[above] + "\n";
+  head_ = head_of(csv, above_[above]);
   const RowsBelow below = pass_rows_below_header(csv, name_);
   if (below.units_at >= 0) head_ += above_[above + 1 + static_cast<std::size_t>(below.units_at)] + "\n";
   const std::size_t taken = above + 1 + static_cast<std::size_t>(below.passed);

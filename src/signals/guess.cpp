@@ -136,6 +136,10 @@ bool is_other(const std::vector<std::string>& name, Signal signal) {
   });
 }
 
+bool is_one_of(std::span<const std::string_view> words, std::string_view word) {
+  return std::find(words.begin(), words.end(), word) != words.end();
+}
+
 bool holds_any(const std::vector<std::string>& name, std::span<const std::string_view> words) {
   return std::any_of(words.begin(), words.end(), [&](std::string_view word) { return match(name, word) > 0; });
 }
@@ -185,25 +189,65 @@ struct Match {
   bool weak = false;
 };
 
+bool names_valve(std::string_view word) {
+  return std::any_of(valve_words().begin(), valve_words().end(), [&](std::string_view valve) {
+    return is_ascii(valve) ? word.ends_with(valve) : word.find(valve) != word.npos;
+  });
+}
+
+// "Door position": a word that no pattern of the signal knows, and that does not say how it is measured. Of two letters
+// and with digits they number channels.
+bool has_word_left(const std::vector<std::string>& name, Signal signal) {
+  constexpr std::size_t shortest = 3;
+  const auto is_of_signal = [&](const std::string& word) {
+    return std::any_of(signal_words().begin(), signal_words().end(), [&](const SignalWords& known) {
+      return known.signal == signal && (" " + std::string(known.words) + " ").find(" " + word + " ") != word.npos;
+    });
+  };
+  return std::any_of(name.begin(), name.end(), [&](const std::string& word) {
+    return word.size() >= shortest && is_ascii(word) && word.find_first_of("0123456789") == word.npos &&
+           !names_valve(word) && !is_of_signal(word) && !is_one_of(neutral_words(), word);
+  });
+}
+
+// A position of the valve is its spool's.
+void take_spool_of_valve(std::vector<Match>& matches, const std::string& unit, std::size_t column, bool demand) {
+  int points = 0;
+  std::erase_if(matches, [&](const Match& m) {
+    const bool stroke = m.signal == Signal::piston_position || m.signal == Signal::setpoint;
+    points = std::max(points, stroke ? m.points : 0);
+    return stroke;
+  });
+  const bool has_spool =
+      std::any_of(matches.begin(), matches.end(), [](const Match& m) { return m.signal == Signal::spool_position; });
+  if (points > 0 && !demand && !has_spool && unit_fits(unit, Signal::spool_position))
+    matches.push_back({points, column, Signal::spool_position, true});
+}
+
 // The signals that a name may stand for with this unit.
 std::vector<Match> matches_of(const std::string& name, const std::string& unit, std::size_t column) {
   std::vector<Match> matches;
   const std::vector<std::string> words = without_letter_of_machine(words_of(name));
   const bool demand = holds_any(words, demand_words());
   const bool difference = holds_any(words, difference_words()) || names_two_ports(name, words);
-  bool of_spool = false, of_current = false;
+  bool of_spool = false, of_current = false, of_cylinder = false;
   for (const SignalWords& known : signal_words()) {
     const int points = match(words, known.words);
     if (points == 0) continue;
     of_spool = of_spool || known.signal == Signal::spool_position;
     of_current = of_current || info(known.signal).dimension == Dimension::current;
+    const bool generic = is_one_of(generic_words(), known.words);
+    of_cylinder = of_cylinder || (known.signal == Signal::piston_position && !known.weak && !generic);
     const bool of_transmitter = is_transmitters(unit, known.signal);
     if (!(unit_fits(unit, known.signal) || of_transmitter) || is_other(words, known.signal)) continue;
     if (demand && is_measured(known.signal)) continue;
     if (difference && info(known.signal).dimension == Dimension::pressure && known.signal != Signal::load_pressure)
       continue;
-    matches.push_back({points, column, known.signal, known.weak || of_transmitter});
+    const bool vague = generic && has_word_left(words, known.signal);
+    matches.push_back({points, column, known.signal, known.weak || of_transmitter || vague});
   }
+  if (!of_cylinder && std::any_of(words.begin(), words.end(), names_valve))
+    take_spool_of_valve(matches, unit, column, demand);
   // A name that speaks of a current means one.
   if (of_current) std::erase_if(matches, [&](const Match& m) { return is_transmitters(unit, m.signal); });
   // What the spool's own loop is asked for is not where the piston shall go.
@@ -243,9 +287,18 @@ bool split_brackets(ColumnGuess& g) {
   return false;
 }
 
-const ForeignUnit* foreign_unit(const std::string& written) {
+std::string small_without_blanks(const std::string& written) {
   std::string low = in_small_letters(written);
   std::erase(low, ' ');
+  return low;
+}
+
+bool is_unit_of_no_signal(const std::string& written) {
+  return is_one_of(units_of_no_signal(), small_without_blanks(written));
+}
+
+const ForeignUnit* foreign_unit(const std::string& written) {
+  const std::string low = small_without_blanks(written);
   for (const ForeignUnit& unit : foreign_units())
     if (unit.word == low) return &unit;
   return nullptr;
@@ -278,9 +331,22 @@ void split_capitals(ColumnGuess& g) {
   g.name.resize(at);
 }
 
+// "Leckage ml/min", "speed/mm/s": a ratio that is no unit of the table is a unit as a whole.
+bool split_ratio(ColumnGuess& g) {
+  const auto stroke = g.name.rfind('/');
+  const auto at = stroke == std::string::npos || stroke == 0 ? stroke : g.name.find_last_of("_ /", stroke - 1);
+  if (stroke == std::string::npos || at == std::string::npos || at == 0) return false;
+  const std::string word = g.name.substr(at + 1);
+  if (find_unit(word) || !(foreign_unit(word) || is_unit_of_no_signal(word))) return false;
+  g.written_unit = word;
+  g.name = std::string(trimmed(std::string_view(g.name).substr(0, at)));
+  return true;
+}
+
 // "pressure_bar", "Q l/min": the last word is a unit; "p/bar": what follows the stroke is. A subscript is none: "p_A"
 // is no p in amperes, "u_in" no u in inches.
 void split_last_word(ColumnGuess& g) {
+  if (split_ratio(g)) return;
   const std::vector<Match> whole = matches_of(g.name, "", 0);
   for (const char* marks : {"_ ", "/"}) {
     const auto at = g.name.find_last_of(marks);
@@ -372,11 +438,19 @@ std::string unit_meant(const std::string& written) {
   return find_unit(low) ? low : "";
 }
 
+bool is_unit_as_written(const std::string& written) {
+  return !unit_meant(written).empty() || foreign_unit(written) || is_unit_of_no_signal(written);
+}
+
 std::vector<ColumnGuess> guess_columns(const std::vector<std::string>& header, const std::vector<std::string>& units) {
   std::vector<ColumnGuess> guesses;
   std::vector<Match> matches;
   for (std::size_t i = 0; i < header.size(); ++i) {
     ColumnGuess g = split(header[i], i < units.size() ? &units[i] : nullptr);
+    if (is_unit_of_no_signal(g.written_unit)) {
+      guesses.push_back(std::move(g));
+      continue;
+    }
     const std::string unit = unit_to_match(g);
     // "command [mm]" is no command: the unit decides.
     if (const auto own = find_signal(g.name); own && unit_fits(unit, *own)) {
@@ -408,7 +482,7 @@ std::vector<ColumnGuess> guess_columns(const std::vector<std::string>& header, c
     const Unit* unit = find_unit(g.unit);
     bool& oil = taken[static_cast<std::size_t>(index(Signal::oil_temperature))];
     if (!g.signal && !oil && !is_other(words_of(g.name), Signal::oil_temperature) &&
-        (unit ? unit->dimension == Dimension::temperature : g.name == "T")) {
+        (unit ? unit->dimension == Dimension::temperature : g.name == "T" && !is_unit_of_no_signal(g.written_unit))) {
       g.signal = Signal::oil_temperature;
       g.weak = oil = true;
     }

@@ -36,6 +36,9 @@ struct ColumnGuess {
 // The unit of the closed table that people mean by a word: "PSI", "deg C", "lpm"; empty: none.
 std::string unit_meant(const std::string& written);
 
+// Whether people write a unit so, one beyond the table or of no signal included: "kp/cm2", "rpm".
+bool is_unit_as_written(const std::string& written);
+
 // Milliamperes of what is no current: a transmitter's 4 to 20.
 bool is_transmitters(const std::string& unit, Signal signal);
 

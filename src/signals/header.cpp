@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <cmath>
 #include <cstddef>
 #include <iterator>
 #include <optional>
@@ -21,8 +22,10 @@
 namespace servodx {
 namespace {
 
-constexpr std::size_t most_lines = 200;  // above a header
-constexpr std::size_t most_judged = 20;  // rows above the numbers that may be the header, and cells of each
+constexpr std::size_t most_lines = 200;     // above a header
+constexpr std::size_t fewest_numbered = 4;  // columns: three samples in a row may count up by chance
+constexpr double leap_over_step = 10;       // from channel numbers to the first sample, per step after it: its noise
+constexpr std::size_t most_judged = 20;     // rows above the numbers that may be the header, and cells of each
 
 constexpr std::string_view blanks = " \t\r";
 
@@ -45,6 +48,11 @@ std::vector<std::string> cells_of(std::string_view line, char separator) {
 bool is_number(std::string cell) {
   std::replace(cell.begin(), cell.end(), ',', '.');
   return parse_number(cell).has_value();
+}
+
+std::optional<double> number_of(std::string cell) {
+  std::replace(cell.begin(), cell.end(), ',', '.');
+  return parse_number(cell);
 }
 
 bool is_sample(const std::string& cell) { return is_number(cell) || parse_time_stamp(cell) || is_date(cell); }
@@ -75,18 +83,20 @@ bool is_one_of(const std::array<std::string_view, n>& words, const std::string& 
   return std::find(words.begin(), words.end(), in_small_letters(cell)) != words.end();
 }
 
-// The cells without their brackets, where one at least is a unit and none a number.
+// The cells without their brackets, where none is a number and more than half of those that are filled are units: an
+// "A" alone is no ampere, but a chamber.
 std::vector<std::string> as_units(std::vector<std::string> units) {
-  bool any = false;
+  long known = 0, filled = 0;
   for (std::string& cell : units) {
     if (is_number(cell)) return {};
     const std::size_t n = cell.size();
     if (n > 1 && ((cell[0] == '[' && cell[n - 1] == ']') || (cell[0] == '(' && cell[n - 1] == ')')))
       cell = trimmed(std::string_view(cell).substr(1, n - 2), blanks);
     if (is_one_of(labels_of_units, cell)) cell.clear();
-    any = any || !unit_meant(cell).empty();
+    known += is_unit_as_written(cell);
+    filled += !cell.empty();
   }
-  return any ? units : std::vector<std::string>{};
+  return 2 * known > filled ? units : std::vector<std::string>{};
 }
 
 // Rows above the first of numbers, not blank and no comments; the first is the one that the cursor took.
@@ -121,7 +131,8 @@ Above look_ahead(const CsvCursor& csv) {
 }
 
 // "Name  x  Name  y": each signal with a time of its own, as TwinCAT's Scope writes it.
-bool are_pairs(const std::vector<std::string>& cells) {
+bool are_pairs(std::vector<std::string> cells) {
+  if (ends_with_comment(cells)) cells.pop_back();
   if (cells.size() < 4 || cells.size() % 2 != 0 || cells[0].empty()) return false;
   for (std::size_t k = 2; k < cells.size(); k += 2)
     if (cells[k] != cells[0]) return false;
@@ -167,7 +178,53 @@ bool is_row_of_scales(const std::vector<std::string>& cells, long line, const st
   return true;
 }
 
+// The numbers of the next rows, NaN where a cell is none.
+std::vector<std::vector<double>> numbers_ahead(const CsvCursor& csv, std::size_t rows) {
+  std::vector<std::vector<double>> numbers;
+  const std::string_view text = csv.ahead();
+  for (std::size_t at = 0; at < text.size() && numbers.size() < rows;) {
+    const std::size_t end = std::min(text.find('\n', at), text.size());
+    numbers.emplace_back();
+    for (const std::string& cell : cells_of(text.substr(at, end - at), csv.separator()))
+      numbers.back().push_back(number_of(cell).value_or(std::nan("")));
+    at = end + 1;
+  }
+  return numbers;
+}
+
+// "0; 1; 2; 3" or "1; 2; 3; 4".
+bool counts_up(const std::vector<double>& row) {
+  if (row.size() < fewest_numbered || !(row[0] == 0 || row[0] == 1)) return false;
+  for (std::size_t c = 1; c < row.size(); ++c)
+    if (row[c] != row[0] + static_cast<double>(c)) return false;
+  return true;
+}
+
+// "0; 0; 0; 0", beside the time: but a log may begin at rest, and so most columns must leap from there, and stay.
+bool leaps_from_one_value(const std::vector<std::vector<double>>& rows, std::size_t time) {
+  std::size_t leaps = 0, others = 0;
+  double value = -1;
+  for (std::size_t c = 0; c < rows[0].size(); ++c) {
+    if (c == time) continue;
+    if (others == 0) value = rows[0][c];
+    if (rows[0][c] != value || !(value == 0 || value == 1)) return false;
+    ++others;
+    leaps += std::abs(rows[1][c] - rows[0][c]) > leap_over_step * std::abs(rows[2][c] - rows[1][c]);
+  }
+  return leaps > 1 && 2 * leaps > others;
+}
+
 }  // namespace
+
+bool begins_with_channel_numbers(const CsvCursor& csv, std::size_t time, const std::string& path) {
+  const auto rows = numbers_ahead(csv, 3);
+  if (rows.size() < 3 || rows[0].size() != rows[1].size() || rows[1].size() != rows[2].size()) return false;
+  if (!(counts_up(rows[0]) && rows[1] != rows[0]) && !leaps_from_one_value(rows, time)) return false;
+  if (time < rows[0].size() && rows[1][time] <= rows[0][time])
+    throw InputError({path, csv.line(), ""}, "the first row of numbers is no sample: it numbers the channels",
+                     "delete it");
+  return true;
+}
 
 bool ends_with_comment(const std::vector<std::string>& header) {
   return header.size() > 2 && is_one_of(names_of_comments, header.back());
@@ -234,8 +291,9 @@ std::vector<std::string> units_above(std::string_view text, const CsvCursor& csv
   const std::size_t at = text.find(label);
   if (at == text.npos || std::count(text.begin(), text.begin() + static_cast<long>(at), '\n') > csv.header_line())
     return {};
-  std::vector<std::string> units =
-      as_units(cells_of(text.substr(at + 1, text.find('\n', at + 1) - at - 1), csv.separator()));
+  std::vector<std::string> cells = cells_of(text.substr(at + 1, text.find('\n', at + 1) - at - 1), csv.separator());
+  cells.front().clear();  // the label
+  std::vector<std::string> units = as_units(cells);
   if (ends_with_comment(csv.header()) && units.size() + 1 == csv.header().size()) units.emplace_back();
   if (units.size() != csv.header().size()) return {};
   units.front() = std::string("s");
@@ -262,6 +320,33 @@ bool are_parted_by_blanks(const CsvCursor& csv) {
          std::any_of(rows.begin(), rows.end(), [](const auto& row) { return are_numbers_between_blanks(row.text); });
 }
 
+// "A [bar]" is a port of the pressures that the row above speaks of.
+bool is_port(const std::string& name) {
+  const std::string_view bare = trimmed(std::string_view(name).substr(0, name.find_first_of("[(")), blanks);
+  return bare == "A" || bare == "B" || bare == "P";
+}
+
+// "Weg; Weg" below "Ventil; Kolben", or "Weg; Weg; Kraft" below "Ventil; Kolben; ": a name that stands over several
+// columns, and a port, has the name of its group before it, which holds up to the next. As they are where that does not
+// tell all apart.
+std::vector<std::string> with_groups(const std::vector<std::string>& names, const std::vector<std::string>& groups) {
+  const auto repeats = [](const std::vector<std::string>& all, const std::string& name) {
+    return !name.empty() && std::count(all.begin(), all.end(), name) > 1;
+  };
+  const auto any_repeats = [&](const std::vector<std::string>& all) {
+    return std::any_of(all.begin(), all.end(), [&](const std::string& name) { return repeats(all, name); });
+  };
+  if (names.size() != groups.size() || names.size() > most_judged || !any_repeats(names)) return names;
+  if (!is_row_of_words(groups) || !as_units(groups).empty()) return names;
+  std::vector<std::string> named = names;
+  std::string group;
+  for (std::size_t c = 0; c < names.size(); ++c) {
+    if (!groups[c].empty()) group = groups[c];
+    if (!group.empty() && (repeats(names, names[c]) || is_port(names[c]))) named[c] = group + " " + names[c];
+  }
+  return any_repeats(named) ? names : named;
+}
+
 }  // namespace
 
 void require_names(const CsvCursor& csv, const std::string& path) {
@@ -277,7 +362,7 @@ void require_names(const CsvCursor& csv, const std::string& path) {
 long pass_lines_above_header(CsvCursor& csv, const std::string& path) {
   if (is_row_of_numbers(csv.header_text())) csv.header_from_comment();
   const Above above = look_ahead(csv);
-  if (!above.numbers || above.lines.empty()) return 0;
+  if (!above.numbers) return 0;
   const auto [separator, width] = *above.numbers;
   const auto fits = [width = width](const std::vector<std::string>& cells) {
     return cells.size() == width || (cells.size() == width + 1 && ends_with_comment(cells));
@@ -285,11 +370,12 @@ long pass_lines_above_header(CsvCursor& csv, const std::string& path) {
   std::vector<std::vector<std::string>> rows = {csv.header()};
   for (const Above::Line& line : above.lines) rows.push_back(cells_of(line.text, separator));
   for (const auto& cells : rows)
-    if (cells.size() == width && are_pairs(cells))
+    if (fits(cells) && are_pairs(cells))
       throw InputError({path, above.numbers_line, ""},
                        "its columns go in pairs, a time and a value each: every signal has a time of its own",
                        "export with one time column for all signals, or delete all but the first time column and "
                        "write a row of 'name [unit]' above the numbers");
+  if (above.lines.empty()) return 0;
   std::size_t best = fits(rows.front()) ? 0 : rows.size() - 1;
   if (!fits(rows[best])) return 0;
   if (best > 1 && fits(rows[best - 1]) && !as_units(rows[best]).empty()) --best;
@@ -299,6 +385,7 @@ long pass_lines_above_header(CsvCursor& csv, const std::string& path) {
       best = k, most = known_names(rows[k]);
   if (best == 0) return 0;
   csv.header_at(above.lines[best - 1].at, separator);
+  csv.name_columns(with_groups(csv.header(), rows[best - 1]));
   return static_cast<long>(best);
 }
 

@@ -4,7 +4,8 @@
 // most names that a person would know; where that does not tell, the first row of the file, or the last that is not of
 // units. Rows of text below it are passed, and one of units is taken. Where no row has as many cells, the first row of
 // the file is taken, and its reader refuses it. A last column of comments (LabVIEW's) may lack its cells. Names behind
-// a '#' right above the numbers are a header too.
+// a '#' right above the numbers are a header too. Names that stand over several columns take the names of groups in the
+// row above, "Valve Position" and "Cylinder Position".
 #pragma once
 #include <cstddef>
 #include <string>
@@ -32,6 +33,11 @@ struct RowsBelow {
 };
 // `csv`: at the header. Throws InputError where a row holds offsets or factors that change the numbers.
 RowsBelow pass_rows_below_header(CsvCursor& csv, const std::string& path);
+
+// The first row of numbers, at which the cursor stands, numbers the channels, "0; 1; 2; 3", or is one value throughout,
+// "0; 0; 0", from which the rows below it leap: no sample. `time`: its column. Throws InputError where time does not
+// increase from it.
+bool begins_with_channel_numbers(const CsvCursor& csv, std::size_t time, const std::string& path);
 
 // Throws InputError where the first row of samples, at which the cursor stands, has more cells than the header: with
 // commas between cells that may be a decimal comma.

@@ -198,8 +198,11 @@ void LogColumns::refuse_missing(Signal signal, const std::string& rule) const {
                             : ", or map one of yours in [columns] of the rig file";
   if (format_.has_lines) mend += " ('servodx init LOG' begins one)";
   if (!ignored_.empty()) mend += "; not known: " + in_quotes(ignored_);
-  std::string near = nearest_word(name, ignored_);
-  for (const std::string& ignored : ignored_)
+  // A recorder's column of comments is no command.
+  std::vector<std::string> meant = ignored_;
+  std::erase_if(meant, [](const std::string& ignored) { return in_small_letters(ignored).starts_with("comment"); });
+  std::string near = nearest_word(name, meant);
+  for (const std::string& ignored : meant)
     if (in_small_letters(ignored) == name) near = ignored;
   if (!near.empty()) mend += fmt::format("; did you mean '{}' by '{}'?", name, near);
   refuse_as(Trouble::signal, format_.has_lines ? header_line_ : 0, name, rule, mend);

@@ -57,9 +57,19 @@ class CsvReader {
         stamps_.emplace(*stamp), stamped_ = target_.back();
     }
     if (log_.size() == 0) require_names(csv_, path_);
+    note_channel_numbers();
     log_.require_signals();
     may_lack_last_ = ends_with_comment(csv_.header()) && target_.back() < 0;
     if (may_lack_last_ && first.size() + 1 == target_.size()) target_.pop_back();
+  }
+
+  void note_channel_numbers() {
+    std::size_t time = 0;
+    while (time < target_.size() && !(target_[time] >= 0 && log_.signal(target_[time]) == Signal::time)) ++time;
+    if (in_row_ && begins_with_channel_numbers(csv_, time, path_))
+      log_.note(Note::Kind::preamble,
+                fmt::format("{}:{}: the first row is unlike those below it: if it numbers the channels, delete it",
+                            path_, csv_.line()));
   }
 
   void read_rows() {

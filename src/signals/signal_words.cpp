@@ -188,6 +188,7 @@ constexpr SignalWords names[] = {
     {Signal::piston_position, "ram"},
     {Signal::piston_position, "actuator position"},
     {Signal::piston_position, "actuator pos"},
+    {Signal::piston_position, "attuatore"},
     {Signal::piston_position, "pos fb"},
     {Signal::piston_position, "position"},
     {Signal::piston_position, "pos"},
@@ -250,6 +251,10 @@ constexpr SignalWords names[] = {
     {Signal::piston_position, "\xE6\xB2\xB9\xE7\xBC\xB8\xE8\xA1\x8C\xE7\xA8\x8B"},
     {Signal::pressure_a, "pressure a"},
     {Signal::pressure_a, "press a"},
+    {Signal::pressure_a, "pressures a"},
+    {Signal::pressure_a, "druecke a"},
+    {Signal::pressure_a, "pressioni a"},
+    {Signal::pressure_a, "pressions a"},
     {Signal::pressure_a, "druck a"},
     {Signal::pressure_a, "kammerdruck a"},
     {Signal::pressure_a, "zylinderdruck a"},
@@ -309,6 +314,10 @@ constexpr SignalWords names[] = {
     {Signal::pressure_a, "\xE5\xA4\xA7\xE8\x85\x94", true},
     {Signal::pressure_b, "pressure b"},
     {Signal::pressure_b, "press b"},
+    {Signal::pressure_b, "pressures b"},
+    {Signal::pressure_b, "druecke b"},
+    {Signal::pressure_b, "pressioni b"},
+    {Signal::pressure_b, "pressions b"},
     {Signal::pressure_b, "druck b"},
     {Signal::pressure_b, "kammerdruck b"},
     {Signal::pressure_b, "zylinderdruck b"},
@@ -375,6 +384,8 @@ constexpr SignalWords names[] = {
     {Signal::supply_pressure, "p sys"},
     {Signal::supply_pressure, "system pressure"},
     {Signal::supply_pressure, "pressure p"},
+    {Signal::supply_pressure, "pressures p"},
+    {Signal::supply_pressure, "druecke p"},
     {Signal::supply_pressure, "versorgungsdruck"},
     {Signal::supply_pressure, "systemdruck"},
     {Signal::supply_pressure, "pumpendruck"},
@@ -711,6 +722,33 @@ constexpr OtherWords others[] = {
     {"err"},
     {"ambiante", Dimension::temperature},
     {"\xE3\x83\xA2\xE3\x83\xBC\xE3\x82\xBF", Dimension::current},
+    // What a signal may reach, and what is computed of it.
+    {"min", {}, "l"},
+    {"max"},
+    {"minimum"},
+    {"maximum"},
+    {"limit"},
+    {"grenze"},
+    {"grenzwert"},
+    {"limite"},
+    {"setting"},
+    {"einstellung"},
+    {"ripple"},
+    {"average"},
+    {"avg"},
+    {"mittelwert"},
+    {"media"},
+    {"moyenne"},
+    {"spring"},
+    {"feder"},
+    {"federkraft"},
+    {"friction"},
+    {"reibung"},
+    {"reibkraft"},
+    {"clutch"},
+    {"kupplung"},
+    {"leakage", Dimension::current},
+    {"accumulator", Dimension::length},
 };
 
 // What is asked for, and not what is.
@@ -736,6 +774,24 @@ constexpr std::string_view demands[] = {"setpoint",
 constexpr std::string_view machines[] = {"valve",   "servovalve", "ventil", "servoventil", "valvola",  "vanne",
                                          "valvula", "cylinder",   "cyl",    "zylinder",    "actuator", "axis",
                                          "achse",   "station",    "bench",  "channel",     "unit"};
+
+// The valve, also where a word ends so, "Regelventil": what moves in it is its spool. Last the alphabets without
+// blanks.
+constexpr std::string_view valves[] = {
+    "valve", "ventil", "valvola",    "vanne", "valvula", "zawor",        "zaworu",
+    "klep",  "servo",  "hauptstufe", "stufe", "stage",   "\xE9\x98\x80", "\xEB\xB0\xB8\xEB\xB8\x8C"};
+
+// Words of many things beside the valve and its cylinder: with a word that nobody knows beside them, who knows?
+constexpr std::string_view generics[] = {
+    "position", "pos",    "pos fb", "posizione", "current", "strom", "corrente",       "courant", "corriente",
+    "prad",     "stroem", "stroom", "i",         "u",       "force", "load",           "kraft",   "last",
+    "forza",    "carico", "effort", "fuerza",    "forca",   "drive", "control voltage"};
+
+// Beside those they say nothing: of measuring, of recorders and their trees, and what joins words.
+constexpr std::string_view neutrals[] = {
+    "act",  "actual", "ist",   "istwert", "meas",     "measured", "mess",   "messwert", "mesure", "misura", "value",
+    "wert", "val",    "ctrl",  "control", "commande", "signal",   "sensor", "cell",     "axial",  "axis",   "achse",
+    "main", "test",   "model", "root",    "gvl",      "the",      "der",    "des",      "del",    "della",  "platform"};
 
 // A pressure from one place to another.
 constexpr std::string_view differences[] = {"dp", "drop", "druckdifferenz", "differenzdruck", "druckabfall"};
@@ -770,7 +826,17 @@ constexpr ForeignUnit beyond[] = {
     {"ns", "us", "0.001", ""},
     {"100ns", "us", "0.1", ""},
     {"ticks", "us", "0.1", ""},
+    {"ml/min", "l/min", "0.001", ""},
+    {"cc/min", "l/min", "0.001", ""},
+    {"ccm/min", "l/min", "0.001", ""},
+    {"cm3/min", "l/min", "0.001", ""},
 };
+
+constexpr std::string_view of_no_signal[] = {
+    "mm/s",        "cm/s", "m/s",  "um/s",  "in/s", "mm/min", "m/min", "mm/s2", "m/s2",  "mm/s\xC2\xB2",
+    "m/s\xC2\xB2", "g",    "rpm",  "1/min", "1/s",  "u/min",  "min-1", "upm",   "n/mm",  "n/m",
+    "n/um",        "nm",   "knm",  "w",     "kw",   "hz",     "khz",   "deg/s", "rad/s", "bar/s",
+    "mpa/s",       "a/s",  "ma/s", "kn/s",  "n/s",  "kg",     "kg/m3"};
 
 }  // namespace
 
@@ -779,7 +845,11 @@ std::span<const OtherWords> other_words() { return others; }
 std::span<const std::string_view> demand_words() { return demands; }
 std::span<const std::string_view> difference_words() { return differences; }
 std::span<const std::string_view> machine_words() { return machines; }
+std::span<const std::string_view> valve_words() { return valves; }
+std::span<const std::string_view> generic_words() { return generics; }
+std::span<const std::string_view> neutral_words() { return neutrals; }
 std::span<const UnitWord> unit_words() { return meant; }
+std::span<const std::string_view> units_of_no_signal() { return of_no_signal; }
 std::span<const ForeignUnit> foreign_units() { return beyond; }
 
 }  // namespace servodx

@@ -31,12 +31,18 @@ std::span<const OtherWords> other_words();
 std::span<const std::string_view> demand_words();      // of what is asked for, and not measured
 std::span<const std::string_view> difference_words();  // of a pressure from one place to another
 std::span<const std::string_view> machine_words();     // that a letter behind them tells apart: "valve A"
+std::span<const std::string_view> valve_words();       // ends of words, or parts in an alphabet without blanks
+std::span<const std::string_view> generic_words();     // words of signals that name many other things too
+std::span<const std::string_view> neutral_words();     // that change nothing of what a generic one means
 
 // How else people write units of the table, in small letters.
 struct UnitWord {
   std::string_view word, unit;
 };
 std::span<const UnitWord> unit_words();
+
+// Units of what is no signal, such as a speed, in small letters and without blanks.
+std::span<const std::string_view> units_of_no_signal();
 
 // Units beyond the table, in small letters and without blanks, and what would make them one of it.
 struct ForeignUnit {

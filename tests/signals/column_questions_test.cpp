@@ -138,6 +138,24 @@ TEST(ColumnQuestions, AColumnThatOnlyRisesMayBeTheTimeAndIsAsked) {
   EXPECT_FALSE(asked({{"Name", 0, 0.01}, {"t [s]", 0, 0.01}})[0].signal);
 }
 
+TEST(ColumnQuestions, TheFirstStampsAreTheTimeWhereNoNameSaysSo) {
+  const auto with_stamps = [](const std::vector<std::string>& header) {
+    std::vector<ColumnGuess> guesses = guess_columns(header);
+    std::vector<ColumnNumbers> numbers(header.size());
+    for (std::size_t c = 0; c < 2; ++c) numbers[c].stamps = true;
+    ask_by_numbers(guesses, numbers);
+    return guesses;
+  };
+  for (const char* name : {"Datum Uhrzeit", "Data e ora", "Horodatage", "Fecha y hora"}) {
+    const auto g = with_stamps({name, "Uhrzeit", "spool [mm]"});
+    EXPECT_EQ(g[0].signal, Signal::time) << name;
+    EXPECT_EQ(g[0].unit, "s");
+    EXPECT_EQ(g[0].question, "") << g[0].question;
+    EXPECT_FALSE(g[1].signal);
+  }
+  EXPECT_EQ(with_stamps({"Datum", "Zeit"})[1].signal, Signal::time);
+}
+
 // 12 mil are 0.3 mm, and less than the piston moves.
 TEST(ColumnQuestions, AUnitBeyondTheTableCountsWithItsGain) {
   const auto g = asked({{"spool [mil]", -12, 12}, {"piston [mm]", -50, 50}});

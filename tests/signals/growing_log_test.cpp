@@ -112,6 +112,16 @@ TEST(GrowingLog, LinesAboveTheHeaderAreNoSamples) {
   EXPECT_DOUBLE_EQ(taken.samples[1][Signal::spool_position], 0.6e-3);
 }
 
+TEST(GrowingLog, NamesTakeTheirGroupsFromTheRowAbove) {
+  RigFile rig;
+  rig.columns["Valve Weg"].signal = "spool_position";
+  rig.columns["Valve Weg"].column_unit = "mm";
+  const std::string text = ";Valve;Valve;Piston\ntime [s];command [mA];Weg;Weg\n0;1;0,5;2\n0,001;2;0,6;3\n";
+  const Taken taken = take(text, 9, rig);
+  ASSERT_EQ(taken.samples.size(), 2u);
+  EXPECT_DOUBLE_EQ(taken.samples[1][Signal::spool_position], 0.6e-3);
+}
+
 TEST(GrowingLog, TimeStampsCountFromTheFirstRowAfterARestartToo) {
   const std::string text =
       "command [mA],time,spool_position [mm]\n1,2021-03-04 10:11:12.000,2\n1,2021-03-04 10:11:12.001,2\n";

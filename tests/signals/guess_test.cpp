@@ -148,6 +148,22 @@ TEST(Guess, AUnitBeyondTheTableIsCalledUnknown) {
   EXPECT_EQ(taken({"spool [micron]"}), "spool_position in um");
 }
 
+TEST(Guess, AUnitOfNoSignalGivesNone) {
+  for (const char* cell : {"Spool velocity [m/s]", "Pump speed [rpm]", "Piston (mm/s)", "Piston mm/s", "Kolben/mm/s"})
+    EXPECT_FALSE(guess_columns({cell})[0].signal) << cell;
+}
+
+TEST(Guess, ARatioIsAUnitAsAWhole) {
+  for (const char* cell : {"Leckage ml/min", "Leckage_cc/min", "Leckage [ml/min]"}) {
+    const ColumnGuess g = guess_columns({cell})[0];
+    EXPECT_EQ(g.name, "Leckage") << cell;
+    EXPECT_EQ(g.signal, Signal::leakage_flow) << cell;
+    EXPECT_EQ(g.unit, "l/min") << cell;
+    EXPECT_EQ(g.gain, "0.001") << cell;
+    EXPECT_FALSE(g.question.empty()) << cell;
+  }
+}
+
 TEST(Guess, CapitalsBehindAWordAreAUnit) {
   EXPECT_EQ(taken({"TankPSI"}), "return_pressure in psi");
   EXPECT_EQ(taken({"OilF"}), "oil_temperature in degF");

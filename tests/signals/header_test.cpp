@@ -140,6 +140,50 @@ TEST(Header, OfPairsOfTimeAndValueIsRefused) {
       "0.0\t0.02\t0.0\t-0.16\n1.0\t0.02\t1.0\t-0.15\n");
   EXPECT_TRUE(said.starts_with("log.csv:5: its columns go in pairs")) << said;
   EXPECT_NE(said.find("; export with one time column"), std::string::npos) << said;
+  for (const std::string header : {"Name\trCur\tName\trPos", "X_Value\tA\tX_Value\tB\tComment"}) {
+    const std::string right_above = refusal(header + "\n0.0\t0.02\t0.0\t-0.16\n1.0\t0.02\t1.0\t-0.15\n");
+    EXPECT_TRUE(right_above.starts_with("log.csv:2: its columns go in pairs")) << header << ": " << right_above;
+  }
+}
+
+TEST(Header, OfNamesWithALetterThatIsAUnitIsNoRowOfUnits) {
+  CsvCursor csv("a;b;c;d;e;f\nZeit;Strom;Weg;Weg;A;B\n0;1;2;3;4;5\n", "log.csv");
+  ASSERT_TRUE(csv.next_row());
+  EXPECT_TRUE(units_row(csv).empty());
+  const std::string text = "a;b;c;d\ns;mA;rpm;kp/cm2\n0;1;2;3\n";
+  CsvCursor with_others(std::string_view(text), "log.csv");
+  ASSERT_TRUE(with_others.next_row());
+  EXPECT_EQ(units_row(with_others).size(), 4);
+}
+
+TEST(Header, NamesOverSeveralColumnsTakeTheirGroups) {
+  const auto names = [](const std::string& text) {
+    CsvCursor csv(std::string_view(text), "log.csv");
+    pass_lines_above_header(csv, "log.csv");
+    return csv.header();
+  };
+  using Names = std::vector<std::string>;
+  EXPECT_EQ(
+      names(";Ventil;;Kolben;Druecke;\nZeit [s];Strom [mA];Weg [mm];Weg [mm];A [bar];B [bar]\n0;1;2;3;4;5\n"),
+      (Names{"Zeit [s]", "Strom [mA]", "Ventil Weg [mm]", "Kolben Weg [mm]", "Druecke A [bar]", "Druecke B [bar]"}));
+  EXPECT_EQ(names(",Valve,,Cylinder,Pressures,\nTime,Current,Position,Position,A,B\ns,mA,mm,mm,bar,bar\n0,1,2,3,4,5\n"),
+            (Names{"Time", "Current", "Valve Position", "Cylinder Position", "Pressures A", "Pressures B"}));
+  EXPECT_EQ(names("a;b;c;d\ntime;command;x;y\n0;1;2;3\n"), (Names{"time", "command", "x", "y"}));  // none repeats
+  EXPECT_EQ(names("run;;;\ntime;command;x;x\n0;1;2;3\n"), (Names{"time", "command", "x", "x"}));   // tells none apart
+}
+
+TEST(Header, ARowOfChannelNumbersBelowItIsNoSample) {
+  const auto begins = [](const std::string& rows) {
+    const std::string text = "t;i;x;p\n" + rows;
+    CsvCursor csv(std::string_view(text), "log.csv");
+    EXPECT_TRUE(csv.next_row());
+    return begins_with_channel_numbers(csv, 0, "log.csv");
+  };
+  EXPECT_TRUE(begins("0;1;2;3\n0,1;0,3;0,1;104\n0,2;0,3;0,1;104,1\n"));
+  EXPECT_TRUE(begins("0;0;0;0\n0,1;9;0,1;104\n0,2;9,1;0,1;104,1\n"));
+  EXPECT_FALSE(begins("0;0;0;0\n0,1;0;0,1;0,2\n0,2;0,1;0,2;0,3\n"));  // begins at rest
+  EXPECT_FALSE(begins("0;0;0;104\n0,1;9;0,1;104\n0,2;9;0,1;104\n"));
+  EXPECT_THROW(begins("0;1;2;3\n0;0,3;0,1;104\n0,2;0,3;0,1;104,1\n"), InputError);
 }
 
 TEST(Header, BelowAQuotedLineThatIsNoneIsFound) {

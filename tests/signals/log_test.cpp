@@ -185,6 +185,7 @@ TEST(Log, AFileWithoutAHeaderOrTextIsToldSo) {
             "log.csv:1: there is no header row: the first row is numbers; write a row of 'name [unit]' above it");
   EXPECT_TRUE(refusal(std::string("TDSm") + std::string(500, '\0')).starts_with("log.csv: is a LabVIEW recording"));
   EXPECT_NE(refusal("TIME [s],COMMAND [mA]\n0,1\n").find("did you mean 'time' by 'TIME'?"), std::string::npos);
+  EXPECT_EQ(refusal("time [s],Comment\n0,1\n").find("did you mean"), std::string::npos);
 }
 
 TEST(Log, DecimalCommasBetweenCommasAreToldInTheFirstRow) {
