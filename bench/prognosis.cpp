@@ -6,8 +6,8 @@
 //   servodx_prognosis lives   TUNED RIG.toml RIG_MODEL.toml OUT_DIR [UNITS [CHECKS [FIRST [DEGRADATION...]]]]   of each
 //   servodx_prognosis series  TUNED RIG.toml OUT_DIR SERIES_DIR...                       t01.csv, t02.csv, ...
 //   servodx_prognosis store   FILE ROWS
-//   servodx_prognosis predictor UNITS                                                   lives with the truth for a
-//   reading servodx_prognosis speed   TUNED RIG.toml RIG_MODEL.toml                               of the monitor
+//   servodx_prognosis predictor UNITS              of lives whose readings are the truth
+//   servodx_prognosis speed   TUNED RIG.toml RIG_MODEL.toml     of the monitor
 #include <algorithm>
 #include <cstdio>
 

@@ -4,8 +4,8 @@
 #include <system_error>
 
 #include "base/atomic_file.h"
-#include "base/csv.h"
 #include "base/json_text.h"
+#include "base/reading_limits.h"
 #include "servodx/error.h"
 
 namespace servodx {
@@ -53,7 +53,7 @@ std::optional<FollowState> read_follow_state(const std::string& path, const Foll
   const auto refusal = [&](const std::string& rule) {
     return InputError({.file = path}, rule, "remove the file to begin anew, or name another");
   };
-  const auto json = json_or_discarded<nlohmann::json>(read_file(path));
+  const auto json = json_or_discarded<nlohmann::json>(read_file_within(path, largest_json));
   if (!has_schema(json, state_schema)) throw refusal("is no state of a watch");
   try {
     if (json.at("source") != by.source) throw refusal("is the state of a watch of another log");

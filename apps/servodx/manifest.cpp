@@ -4,8 +4,8 @@
 #include <nlohmann/json.hpp>
 #include <system_error>
 
-#include "base/csv.h"
 #include "base/json_text.h"
+#include "base/reading_limits.h"
 #include "base/sha256.h"
 
 namespace servodx {
@@ -29,7 +29,7 @@ std::vector<std::string> inputs_of_manifest(const std::string& path) {
   std::vector<std::string> out;
   std::error_code absent;
   if (!fs::is_regular_file(path, absent)) return out;
-  const auto manifest = json_or_discarded<nlohmann::ordered_json>(read_file(path));
+  const auto manifest = json_or_discarded<nlohmann::ordered_json>(read_file_within(path, largest_json));
   if (!manifest.is_object() || !manifest.contains("inputs") || !manifest["inputs"].is_array()) return out;
   if (!manifest.contains("directory") || !manifest["directory"].is_string()) return out;
   const fs::path from = fs::path(path).parent_path() / manifest["directory"].get<std::string>();

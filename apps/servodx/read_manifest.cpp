@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
-#include "base/csv.h"
 #include "base/error.h"
 #include "base/json_text.h"
+#include "base/reading_limits.h"
 
 namespace servodx {
 namespace {
@@ -29,7 +29,7 @@ bool has_the_types(const report::Json& m) {
 }  // namespace
 
 report::Json read_manifest(const std::string& path) {
-  const auto m = json_or_discarded<report::Json>(read_file(path));
+  const auto m = json_or_discarded<report::Json>(read_file_within(path, largest_json));
   const auto refuse = [&](const std::string& rule) {
     throw InputError({path, 0, ""}, rule, "name the file FILE.manifest.json beside a result of servodx");
   };

@@ -23,6 +23,7 @@
 #include "base/csv.h"
 #include "base/error.h"
 #include "base/json_text.h"
+#include "base/reading_limits.h"
 #include "base/sha256.h"
 #include "commands.h"
 #include "invocation.h"
@@ -118,7 +119,7 @@ std::vector<std::string> outputs_of(const std::vector<std::string>& arguments) {
   if (made < 0) throw std::runtime_error("no temporary file can be made");
   ::close(made);
   run_again(rehearsal, told);
-  const auto json = json_or_discarded<report::Json>(read_file(told));
+  const auto json = json_or_discarded<report::Json>(read_file_within(told, largest_json));
   fs::remove(told);
   if (json.is_object() && json.contains("outputs"))
     for (const std::string& output : texts(json["outputs"])) outputs.push_back(output);

@@ -146,7 +146,7 @@ std::string read_file(const std::string& path) {
 }
 
 CsvCursor::CsvCursor(std::string_view text, std::string path)
-    : path_(std::move(path)), whole_(text.data() + text.size()), p_(text.data()), end_(whole_) {
+    : path_(std::move(path)), begin_(text.data()), whole_(text.data() + text.size()), p_(text.data()), end_(whole_) {
   read_header();
 }
 
@@ -240,6 +240,22 @@ void CsvCursor::header_from_comment() {
   in_row_ = more_ = false;
 }
 
+std::string_view CsvCursor::from_beginning() const {
+  return dropped_ > 0 ? std::string_view{} : std::string_view(begin_, static_cast<std::size_t>(end_ - begin_));
+}
+
+void CsvCursor::refuse_long_row(long line) const {
+  throw InputError({path_, line, ""}, "the row is longer than " + std::to_string(longest_row >> 20) + " MB",
+                   "end each row with a line end, and close quotes");
+}
+
+// Of a text in memory; a file's rows are held to it as they come.
+void CsvCursor::refuse_row_without_end() const {
+  if (file_) return;
+  const auto most = longest_row - std::min(longest_row, static_cast<std::size_t>(p_ - row_));
+  if (static_cast<std::size_t>(end_ - p_) > most && std::find(p_, p_ + most, '\n') == p_ + most) refuse_long_row(line_);
+}
+
 // Keeps what is unused, from the cell being read on.
 bool CsvCursor::refill() {
   if (!file_) return false;
@@ -250,14 +266,12 @@ bool CsvCursor::refill() {
   }
   const auto used = p_ ? static_cast<std::size_t>((cell_ ? cell_ : p_) - buffer_.data()) : 0;
   const auto at = p_ ? static_cast<std::size_t>(p_ - buffer_.data()) - used : 0;
-  if (buffer_.size() - used > longest_row)
-    throw InputError({path_, next_line_, ""}, "the row is longer than " + std::to_string(longest_row >> 20) + " MB",
-                     "end each row with a line end, and close quotes");
+  if (buffer_.size() - used > longest_row) refuse_long_row(next_line_);
   header_row_ = nullptr;
   buffer_.erase(0, used);
   dropped_ += used;
   buffer_ += more;
-  const char* const begin = buffer_.data();
+  const char* const begin = begin_ = buffer_.data();
   if (cell_) cell_ = begin;
   p_ = begin + at;
   end_ = begin + buffer_.size();
@@ -281,6 +295,8 @@ bool CsvCursor::next_row() {
     if (*q != '\n') {
       line_ = next_line_;
       in_row_ = more_ = true;
+      row_ = p_;
+      refuse_row_without_end();
       return true;
     }
     p_ = q + 1;
@@ -323,6 +339,7 @@ bool CsvCursor::next_cell(std::string& text) {
     text.clear();
     for (++p_;; ++p_) {
       const char* quote = std::find(p_, end_, '"');
+      if (!file_ && static_cast<std::size_t>(quote - row_) > longest_row) refuse_long_row(line_);
       text.append(p_, quote);
       count_line_ends(p_, quote);
       p_ = quote;
@@ -339,6 +356,7 @@ bool CsvCursor::next_cell(std::string& text) {
     // The row goes on behind a line end in quotes.
     while (!row_is_whole() && refill()) {
     }
+    refuse_row_without_end();
     cell_end_ = p_;
     while (p_ != end_ && is_blank(*p_)) ++p_;
     if (!at_row_end() && *p_ != separator_)

@@ -59,6 +59,9 @@ class CsvCursor {
   // What is read of the file and not yet passed; all of a text in memory.
   std::string_view ahead() const { return {p_, static_cast<std::size_t>(end_ - p_)}; }
 
+  // All in memory from the first byte on, empty where that is passed and gone.
+  std::string_view from_beginning() const;
+
   bool next_row();                       // to the next line that is not blank; skips what is left of this one
   std::vector<std::string> row_ahead();  // cells of the row just begun, which stays to be read
   bool next_cell(std::string& text);     // false: the row has no further cell
@@ -117,14 +120,18 @@ class CsvCursor {
   bool is_blank(char c) const { return c == ' ' || (c == '\t' && separator_ != '\t'); }
   void finish_cell();
   void count_line_ends(const char* from, const char* to);
+  [[noreturn]] void refuse_long_row(long line) const;
+  void refuse_row_without_end() const;  // as far as a row may go on
 
   std::string path_;
   BlockReader* file_ = nullptr;
   std::string buffer_;           // of a file: what is not used up
   std::size_t dropped_ = 0;      // of a file: bytes before the buffer
+  const char* begin_ = nullptr;  // of the text, or of the buffer
   const char* whole_ = nullptr;  // of a file: after the last line end in the buffer
   const char* p_ = nullptr;
   const char* end_ = nullptr;
+  const char* row_ = nullptr;       // of a text in memory: where the row began
   const char* cell_ = nullptr;      // start of the cell just read
   const char* cell_end_ = nullptr;  // its end
   bool in_row_ = false;

@@ -6,31 +6,49 @@
 #include <string>
 #include <string_view>
 
+#include "base/reading_limits.h"
+
 namespace servodx {
 
 inline constexpr int deepest_json = 100;  // levels; what servodx writes has fewer than ten
 
-// Whether its brackets, those within texts left out, nest no deeper than that.
-inline bool is_shallow_json(std::string_view text) {
-  int depth = 0;
+// Whether `holds` is true of each character outside its texts, in their order.
+template <class Holds>
+bool holds_outside_texts(std::string_view text, const Holds& holds) {
   bool quoted = false;
   for (std::size_t i = 0; i < text.size(); ++i) {
     const char c = text[i];
     if (c == '"') quoted = !quoted;
     if (quoted && c == '\\') ++i;
-    if (quoted) continue;
-    if (c == '{' || c == '[') ++depth;
-    if (c == '}' || c == ']') --depth;
-    if (depth > deepest_json) return false;
+    if (!quoted && !holds(c)) return false;
   }
   return true;
 }
 
-// Discarded (and so neither object nor array) where it is no JSON, nests too deep, or holds a number beyond all
-// doubles.
+// Whether its brackets nest no deeper than that.
+inline bool is_shallow_json(std::string_view text) {
+  int depth = 0;
+  return holds_outside_texts(text, [&](char c) {
+    depth += (c == '{' || c == '[') - (c == '}' || c == ']');
+    return depth <= deepest_json;
+  });
+}
+
+// Whether its brackets and commas, one at least before each value but the first, are no more than most_json_values.
+inline bool has_few_values(std::string_view text) {
+  long values = 0;
+  return holds_outside_texts(text, [&](char c) {
+    values += c == '{' || c == '[' || c == ',';
+    return values <= most_json_values;
+  });
+}
+
+// Discarded (and so neither object nor array) where it is no JSON, goes beyond these limits, or holds a number
+// beyond all doubles.
 template <class Json>
 Json json_or_discarded(const std::string& text) {
-  return is_shallow_json(text) ? Json::parse(text, nullptr, false) : Json(Json::value_t::discarded);
+  return is_shallow_json(text) && has_few_values(text) ? Json::parse(text, nullptr, false)
+                                                       : Json(Json::value_t::discarded);
 }
 
 // Whether it is an object whose `schema` is this number. (`value()` throws where the key is there with another type.)

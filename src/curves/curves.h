@@ -71,7 +71,7 @@ struct Figure {
   std::string unit;    // SI; "-" for a fraction
   Remark remark = {};
   double uncertainty = std::numeric_limits<double>::quiet_NaN();  // [unit] expanded, k = 2; NaN: not known
-  std::optional<Limit> limit;
+  std::optional<Limit> limit = {};
   Judgement judgement = Judgement::not_judged;  // also where the log cannot tell
 
   std::optional<bool> pass() const {

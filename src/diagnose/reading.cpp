@@ -41,6 +41,7 @@ Signal drive_of(const Log& log) { return log.has(Signal::coil_current) ? Signal:
 // One of them, or all: a recorder's unit is a column's or everyone's.
 std::vector<std::vector<Signal>> each_and_all(const std::vector<Signal>& of) {
   std::vector<std::vector<Signal>> out;
+  out.reserve(of.size() + 1);
   for (const Signal s : of) out.push_back({s});
   if (of.size() > 1) out.push_back(of);
   return out;
@@ -73,6 +74,7 @@ void add_exchanges(const Log& log, std::vector<Reading>& out) {
 
 std::vector<Reading> of_time(const Log&) {
   std::vector<Reading> out;
+  out.reserve(k::time_factors.size());
   for (const double factor : k::time_factors) out.push_back({Misreading::time_scale, factor});
   return out;
 }

@@ -44,7 +44,7 @@ bool find_return_above_supply(const Log& log, std::vector<Finding>& found) {
 void find_order(const Log& log, std::vector<Finding>& found) {
   if (find_return_above_supply(log, found)) return;
   struct Pair {
-    Signal upper, lower;
+    Signal upper = Signal::supply_pressure, lower = Signal::pressure_a;
     double part = 0;
   };
   // Of two chambers beyond the supply or the return, the one that is so the longer stands in its column.

@@ -6,8 +6,8 @@
 #include <nlohmann/json.hpp>
 #include <system_error>
 
-#include "base/csv.h"
 #include "base/json_text.h"
+#include "base/reading_limits.h"
 #include "base/sha256.h"
 
 namespace servodx {
@@ -69,7 +69,7 @@ std::string result_name(const std::string& log, const std::string& use) {
 FleetVerdict standing_verdict(const std::string& result_path, const ResultBasis& basis) {
   std::error_code ignored;
   if (!fs::is_regular_file(result_path, ignored)) return FleetVerdict::none;
-  const Json result = json_or_discarded<Json>(read_file(result_path));
+  const Json result = json_or_discarded<Json>(read_file_within(result_path, largest_json));
   return result.is_object() && rests_on(result, basis) ? verdict_of(result) : FleetVerdict::none;
 }
 

@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <map>
 
+#include "base/block_reader.h"
 #include "base/csv.h"
 #include "servodx/error.h"
 #include "signals/header.h"
@@ -23,6 +24,7 @@ std::vector<ColumnNumbers> numbers_of_rows(CsvCursor& csv, bool in_row, const st
   std::vector<bool> words(collectors.size(), false), stamps = words;
   const std::size_t most = collectors.size() + ends_with_comment(csv.header());
   for (; in_row; in_row = csv.next_row()) {
+    bool is_header = false, new_words = false;
     for (std::size_t c = 0; c < collectors.size(); ++c) {
       double value = 0;
       const Cell kind = csv.next_number(value);
@@ -30,12 +32,15 @@ std::vector<ColumnNumbers> numbers_of_rows(CsvCursor& csv, bool in_row, const st
       if (kind == Cell::text && !words[c]) {
         words[c] = true;
         stamps[c] = parse_time_stamp(csv.last_text()).has_value();
-        if (!stamps[c]) refuse_second_header(csv, csv.last_text() == csv.header()[c], path);
+        new_words = new_words || !stamps[c];
+        is_header = is_header || (!stamps[c] && csv.last_text() == csv.header()[c]);
       }
       collectors[c].take(kind == Cell::number ? value : std::nan(""));
     }
     std::size_t cells = collectors.size();
     while (csv.skip_cell()) ++cells;
+    // Once a row: it looks at 200 lines, and a row may have 10,000 words.
+    if (new_words) refuse_second_header(csv, is_header, path);
     if (cells > most) refuse_ragged(csv, cells, path);
   }
   std::vector<ColumnNumbers> numbers;
@@ -47,13 +52,14 @@ std::vector<ColumnNumbers> numbers_of_rows(CsvCursor& csv, bool in_row, const st
 }
 
 LogHeader read_csv_header(const std::string& path) {
-  const std::string bytes = read_file(path);
-  CsvCursor csv(bytes, path);
+  BlockReader file(path);
+  CsvCursor csv(file, path);
   pass_lines_above_header(csv, path);
   require_names(csv, path);
+  std::vector<std::string> above = units_above(csv.from_beginning(), csv);  // which the rows below may drop
   const RowsBelow below = pass_rows_below_header(csv, path);
+  if (!below.units.empty()) above.clear();
   if (below.in_row) require_as_many_cells(csv, csv.row_ahead(), path);
-  const std::vector<std::string> above = below.units.empty() ? units_above(bytes, csv) : std::vector<std::string>{};
   LogHeader header{guess_columns(csv.header(), below.units.empty() ? above : below.units),
                    numbers_of_rows(csv, below.in_row, path)};
   if (!above.empty())

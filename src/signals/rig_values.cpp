@@ -30,7 +30,10 @@ std::string RigValues::lines(const toml::node& node, const std::string& key) con
   std::string all;
   const toml::array* texts = node.as_array();
   if (!texts) throw InputError(place(key), "is not a list", "write [\"first line\", \"second line\"]");
-  for (const toml::node& text : *texts) all += (all.empty() ? "" : "\n") + word(text, key);
+  for (const toml::node& text : *texts) {
+    if (!all.empty()) all += '\n';
+    all += word(text, key);
+  }
   return all;
 }
 

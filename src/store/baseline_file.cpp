@@ -6,9 +6,9 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "base/csv.h"
 #include "base/json_text.h"
 #include "base/key_error.h"
+#include "base/reading_limits.h"
 #include "base/result_schema.h"
 #include "base/sha256.h"
 #include "diagnose/baseline.h"
@@ -36,6 +36,8 @@ class Reader {
   Json parse(const std::string& text) const {
     if (!is_shallow_json(text))
       throw InputError({path_, 0, ""}, fmt::format("nests deeper than {} levels", deepest_json), make_again);
+    if (!has_few_values(text))
+      throw InputError({path_, 0, ""}, fmt::format("holds more than {} values", most_json_values), make_again);
     try {
       return Json::parse(text);
     } catch (const Json::parse_error& error) {
@@ -172,7 +174,7 @@ std::optional<BaselineOf> read_made_of(const Reader& read, const Json& file) {
 }  // namespace
 
 BaselineFile read_baseline(const std::string& path) {
-  const std::string bytes = read_file(path);
+  const std::string bytes = read_file_within(path, largest_json);
   const Reader read(path);
   const Json file = read.parse(bytes);
   if (!file.is_object()) throw InputError({path, 0, ""}, "is no object", make_again);

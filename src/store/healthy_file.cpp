@@ -3,9 +3,9 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "base/csv.h"
 #include "base/error.h"
 #include "base/json_text.h"
+#include "base/reading_limits.h"
 #include "evidence/conditions.h"
 
 namespace servodx::store {
@@ -21,7 +21,7 @@ HealthyReference read_healthy(const std::string& path) {
   };
   HealthyReference out;
   try {
-    const Json file = json_or_discarded<Json>(read_file(path));
+    const Json file = json_or_discarded<Json>(read_file_within(path, largest_json));
     if (!file.contains("explain")) refuse("explain", "says nothing of what healthy logs show of each cause");
     const auto value = [](const Json& j) { return j.is_number() ? j.get<double>() : std::nan(""); };
     for (const Json& l : file.at("explain").at("logs")) {

@@ -2,8 +2,8 @@
 
 #include <nlohmann/json.hpp>
 
-#include "base/csv.h"
 #include "base/json_text.h"
+#include "base/reading_limits.h"
 #include "servodx/error.h"
 
 namespace servodx::store {
@@ -19,7 +19,7 @@ bool is_result(const Json& json) {
 }  // namespace
 
 Json read_result(const std::string& path) {
-  Json json = json_or_discarded<Json>(read_file(path));
+  Json json = json_or_discarded<Json>(read_file_within(path, largest_json));
   if (!is_result(json))
     throw InputError({path, 0, ""}, "is no result of servodx", "name a file that --json wrote, or a baseline");
   return json;

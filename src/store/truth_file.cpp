@@ -5,9 +5,9 @@
 #include <string>
 #include <system_error>
 
-#include "base/csv.h"
 #include "base/json_text.h"
 #include "base/key_error.h"
+#include "base/reading_limits.h"
 
 namespace servodx::store {
 
@@ -15,7 +15,7 @@ std::string truth_beside(const std::string& log, const std::string& sha256) {
   const std::string path = log.substr(0, log.rfind('.')) + ".truth.json";
   std::error_code ignored;
   if (!std::filesystem::is_regular_file(path, ignored)) return "";
-  const auto truth = json_or_discarded<nlohmann::ordered_json>(read_file(path));
+  const auto truth = json_or_discarded<nlohmann::ordered_json>(read_file_within(path, largest_json));
   const auto text = [&](const char* key) -> std::string {
     if (!truth.is_object() || !truth.contains(key)) return "";
     if (!truth[key].is_string())

@@ -244,6 +244,39 @@ TEST(Csv, RowsAndHeadersBeyondTheLimitsAreRefusedWhereTheyPassThem) {
             std::string::npos);
 }
 
+TEST(Csv, ARowOfATextInMemoryIsHeldToTheSameLength) {
+  const std::string much(std::size_t{20} << 20, 'x'), row(std::size_t{9} << 20, 'x');
+  const auto refusal = [](const std::string& text) -> std::string {
+    try {
+      rows_of(text);
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "accepted";
+  };
+  const std::string long_row = "the row is longer than 16 MB; end each row with a line end, and close quotes";
+  EXPECT_EQ(refusal(much), "t.csv:1: " + long_row);
+  EXPECT_EQ(refusal("a,b\n1,2\n" + much), "t.csv:3: " + long_row);
+  EXPECT_EQ(refusal("a,b\n1,2\n" + std::string(much.size(), ',') + "\n"), "t.csv:3: " + long_row);
+  EXPECT_EQ(refusal("a,b\n1,\"" + much + "\"\n"), "t.csv:2: " + long_row);
+  EXPECT_EQ(refusal("a,b\n\"" + row + "\n\"," + row + "\n"), "t.csv:2: " + long_row);
+  EXPECT_EQ(refusal("a,b\n1,\"" + row + "\"\n2,\"" + row + "\"\n"), "accepted");
+}
+
+TEST(Csv, TheBeginningIsGivenWhileItIsInMemory) {
+  const std::string text = "first\nsecond\n";
+  EXPECT_EQ(CsvCursor(text, "t.csv").from_beginning(), text);
+  const TemporaryFolder folder;
+  std::string long_text = "a,b\n";
+  while (long_text.size() < 1u << 20) long_text += "1,2\n";
+  BlockReader file(folder.write("t.csv", long_text));
+  CsvCursor csv(file, "t.csv");
+  EXPECT_TRUE(csv.from_beginning().starts_with("a,b\n1,2\n"));
+  while (csv.next_row()) {
+  }
+  EXPECT_EQ(csv.from_beginning(), "");
+}
+
 TEST(Csv, EachRefusalSaysRuleAndMend) {
   const auto refusal = [](std::string_view text) -> std::string {
     try {
