@@ -84,6 +84,7 @@ inline constexpr double nothing_asked = 1e-3;   // of rated current
 inline constexpr double nothing_driven = 0.02;  // of supply, of stall force: sensors' noise and drift are below
 inline constexpr double still_part = 0.995;     // of the samples: a dropped one may be filled in otherwise
 inline constexpr double no_memory = 0.3;        // correlation of neighbours; a valve at 500 Hz has more than 0.8
+inline constexpr double no_relation = 0.3;      // correlation with the command; noise of 200 samples has 0.2 at most
 inline constexpr double large_noise = 0.05;     // of stop, stroke and supply: no sensor is so noisy
 inline constexpr double pressure_beyond = 2.0;  // of the supply, half of the time: a load may intensify it for a while
 inline constexpr double travel_beyond = 2.0;    // of the stops' travel, a tenth of the time: no gain is so wrong

@@ -7,6 +7,7 @@
 #include "base/median.h"
 #include "base/present.h"
 #include "diagnose/constants.h"
+#include "diagnose/motion.h"
 #include "diagnose/part_below.h"
 #include "model/state.h"
 #include "parameters/list.h"
@@ -96,6 +97,17 @@ bool asked_of(const LogData& log, const ParameterVector& base) {
   const bool driven =
       drives(in.supply_pressure, pressure) || drives(in.load_force, pressure * base[row::piston_area_a]);
   return driven && !all_channels(log, is_noise);
+}
+
+// A jammed valve leaves every sensor its noise beside a command that knows its last sample. One sensor that scatters
+// far beyond that, and not with the command, is none of a jam: the pressures of a valve that works move little.
+bool is_noise_alone(const LogData& log, const ParameterVector& base) {
+  if (!all_channels(log, is_noise)) return false;
+  const std::vector<double>& command = log.scenario.command;
+  if (memory_of(command) < k::no_memory) return true;  // rows out of order
+  return std::any_of(log.channels.begin(), log.channels.end(), [&](const FitChannel& c) {
+    return is_large(c, base) && std::abs(correlation(command, c.measured)) < k::no_relation;
+  });
 }
 
 // A chamber lies between return and supply but for moments. One that is shut in may be above a supply that is off; it
@@ -206,10 +218,7 @@ Unjudgeable unjudgeable(const LogData& log, const ParameterVector& base) {
   if (!asked_of(log, base)) return Unjudgeable::nothing_asked;
   if (!commands_something(in) && spool_moves(log, base)) return Unjudgeable::command_missing;
   if (all_channels(log, shows_one_value)) return Unjudgeable::sensors_still;
-  // A jammed valve leaves its sensors' noise beside a command that knows its last sample.
-  const bool shuffled = memory_of(in.command) < k::no_memory;
-  if (all_channels(log, [&](const FitChannel& c) { return is_noise(c) && (shuffled || is_large(c, base)); }))
-    return Unjudgeable::noise_alone;
+  if (is_noise_alone(log, base)) return Unjudgeable::noise_alone;
   return unjudgeable_channels(log, base);
 }
 

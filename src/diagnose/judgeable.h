@@ -16,7 +16,7 @@ enum class Unjudgeable {
   nothing_asked,           // the command, and what else drives the valve, stands still
   sensors_still,           // every compared channel shows one value while the command moves
   command_missing,         // the spool moves, though the command asks for nothing
-  noise_alone,             // no channel knows its own last sample, far beyond the sensors' noise
+  noise_alone,             // no channel knows its own last sample, one of them far beyond a sensor's noise
   command_too_large,       // most of the time a multiple of what the valve is made for
   pressure_beyond_supply,  // chambers far above any supply
   position_beyond_travel,  // spool or piston far beyond where its stops let it go

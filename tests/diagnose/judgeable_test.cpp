@@ -95,6 +95,45 @@ TEST(Judgeable, NotWhereNoiseIsAll) {
   EXPECT_EQ(look(log), Unjudgeable::noise_alone);
 }
 
+// As large as the healthy log's own scatter: 1.4 bar of the pressures.
+void answer_with_noise(FitChannel& c, std::uint64_t seed) {
+  double mean = 0, square = 0;
+  for (const double x : c.measured) mean += x / static_cast<double>(c.measured.size());
+  for (const double x : c.measured) square += (x - mean) * (x - mean) / static_cast<double>(c.measured.size());
+  Random random(seed);
+  for (double& x : c.measured) x = mean + std::sqrt(square) * random.normal();
+}
+
+TEST(Judgeable, NotWhereNoiseAnswersTheTrueCommandButWhereOneSensorMoves) {
+  for (const std::uint64_t seed : {1u, 2u, 3u}) {
+    LogData log = usual();
+    for (FitChannel& c : log.channels) answer_with_noise(c, seed + 10 * static_cast<std::uint64_t>(c.signal));
+    EXPECT_EQ(look(log), Unjudgeable::noise_alone);
+  }
+  for (const Signal moves : {Signal::spool_position, Signal::piston_position, Signal::pressure_a}) {
+    LogData log = usual();
+    for (FitChannel& c : log.channels)
+      if (c.signal != moves) answer_with_noise(c, 4);
+    EXPECT_NE(look(log), Unjudgeable::noise_alone);
+  }
+}
+
+// A noisy sensor shows the command all the same.
+TEST(Judgeable, ASpoolThatFollowsTheCommandUnderMuchNoiseIs) {
+  LogData log = usual();
+  for (FitChannel& c : log.channels) answer_with_noise(c, 5);
+  Random random(6);
+  FitChannel& spool = *std::find_if(log.channels.begin(), log.channels.end(),
+                                    [](const FitChannel& c) { return c.signal == Signal::spool_position; });
+  FitChannel& piston = *std::find_if(log.channels.begin(), log.channels.end(),
+                                     [](const FitChannel& c) { return c.signal == Signal::piston_position; });
+  for (double& x : piston.measured) x = piston.noise * random.normal();
+  const double per_rated = 0.5e-3 / log.scenario.rated_current;
+  for (std::size_t i = 0; i < spool.measured.size(); ++i)
+    spool.measured[i] = per_rated * log.scenario.command[i] + 2e-4 * random.normal();
+  EXPECT_EQ(look(log), Unjudgeable::no);
+}
+
 TEST(Judgeable, NotWhereTheRowsAreShuffled) {
   LogData log = usual();
   Random random(6);
