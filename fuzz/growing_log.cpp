@@ -5,6 +5,8 @@
 #include <cstddef>
 
 #include "harness.h"
+#include "servodx/rig.h"
+#include "signals/sample.h"
 
 namespace servodx::fuzz {
 
