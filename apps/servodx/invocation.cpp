@@ -43,12 +43,17 @@ namespace fs = std::filesystem;
 namespace {
 
 std::vector<std::string> call;
-std::atomic<bool> stop{false}, out_of_time{false};
+std::atomic<bool> stop{false}, out_of_time{false}, told_to_end{false};
 static_assert(std::atomic<bool>::is_always_lock_free, "a signal handler may store it");
 
 void on_interrupt(int signal) {
   stop.store(true);
   std::signal(signal, SIG_DFL);
+}
+
+void on_termination(int signal) {
+  told_to_end.store(true);
+  on_interrupt(signal);
 }
 
 void on_time_limit(int) {
@@ -200,6 +205,8 @@ const std::atomic<bool>& stop_on_interrupt(bool or_on_termination) {
   if (or_on_termination) std::signal(SIGTERM, on_interrupt);
   return stop;
 }
+
+int as_ended(int exit_code) { return exit_code == interrupted && told_to_end ? terminated : exit_code; }
 
 std::string shipped_path(const std::string& path) {
   std::error_code ignored;
@@ -374,6 +381,8 @@ struct Invocation::Shown {
 
 Watch Invocation::watch() {
   Watch watch;
+  // A run over a list has its own answer, and keeps it.
+  if (std::signal(SIGTERM, on_termination) == on_interrupt) std::signal(SIGTERM, on_interrupt);
   watch.stop = [&asked = stop_on_interrupt()] { return asked.load(); };
   if (!run_.checkpoint.empty() && !checkpoint_)
     checkpoint_ = open_checkpoint(run_.checkpoint, run_.resume ? CheckpointUse::go_on : CheckpointUse::begin);

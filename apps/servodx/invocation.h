@@ -37,7 +37,8 @@ enum ExitCode {
   asks_abuse = 12,  // of --exit-by-action
   asks_abnormal = 13,
   asks_critical = 14,
-  interrupted = 130
+  interrupted = 130,
+  terminated = 143  // by SIGTERM, where no list says 130
 };
 
 struct CommonOptions {
@@ -72,6 +73,8 @@ void remember_call(int argc, char** argv);
 // Set by the first SIGINT from now on, and by SIGTERM where asked; a second one ends the program at once. A limit of
 // time sets it too.
 const std::atomic<bool>& stop_on_interrupt(bool or_on_termination = false);
+// What the program ends with: of a call that was interrupted, by which signal.
+int as_ended(int exit_code);
 
 class Invocation {
  public:
@@ -98,8 +101,8 @@ class Invocation {
   Table table(const std::string& path);  // as the file says
   Tuned tuned(const std::string& path);  // refuses one that is not tuned
 
-  // Progress on standard error, unless quiet, the first SIGINT or the limit of time as a wish to end, and the
-  // checkpoint, which is opened at the first call. The line goes at the next kind of work and at finish().
+  // Progress on standard error, unless quiet, the first SIGINT or SIGTERM or the limit of time as a wish to end,
+  // and the checkpoint, which is opened at the first call. The line goes at the next kind of work and at finish().
   Watch watch();
   // For the end of a result that was cut short.
   void note_how_to_go_on();

@@ -95,7 +95,7 @@ int main(int argc, char** argv) {
   remember_call(argc, argv);
   try {
     app.parse(argc, argv);
-    return exit_code;
+    return as_ended(exit_code);
   } catch (const CLI::Error& call) {  // --help and --version come this way too
     return app.exit(call) == 0 ? ran : refused;
   } catch (const InputError& input) {

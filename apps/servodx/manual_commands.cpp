@@ -247,7 +247,7 @@ std::string man(const CLI::App& app) {
       "refused; nothing is written\n.TP\n3\nof many inputs some were set aside with the reason, the others are "
       "done\n.TP\n10, 11\nwith \\fBdiagnose \\-\\-exit\\-code\\fR: a fault; "
       "unknown\n.TP\n130\ninterrupted; "
-      "the best so far is written\n";
+      "the best so far is written\n.TP\n143\nthe same, by SIGTERM\n";
   return text;
 }
 

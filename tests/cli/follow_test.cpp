@@ -88,14 +88,15 @@ int begin(const FollowDesk& desk, const std::string& arguments) {
   return pid;
 }
 
-// Until the state has judged so many bytes; false after a minute.
-bool judged(const FollowDesk& desk, std::size_t bytes) {
-  for (int k = 0; k < 1200; ++k) {
+// The state's `key` once `holds` says so, however long that takes; null where the program has ended.
+template <class Holds>
+Json wait_for(const FollowDesk& desk, int pid, const std::string& key, const Holds& holds) {
+  while (is_alive(pid)) {
     const Json state = Json::parse(bytes_of(desk.path / "state.json"), nullptr, false);
-    if (state.is_object() && state["judged_until"] >= bytes) return true;
+    if (state.is_object() && holds(state[key])) return state[key];
     std::this_thread::sleep_for(std::chrono::milliseconds(50));
   }
-  return false;
+  return {};
 }
 
 TEST(Follow, AKilledWatchGoesOnFromItsState) {
@@ -106,7 +107,7 @@ TEST(Follow, AKilledWatchGoesOnFromItsState) {
   desk.write("log.csv", whole.substr(0, cut));
   const int pid = begin(desk, "watch --follow log.csv" + FollowDesk::with("--state state.json --events one.jsonl"));
   ASSERT_GT(pid, 0);
-  ASSERT_TRUE(judged(desk, cut * 9 / 10));
+  ASSERT_FALSE(wait_for(desk, pid, "judged_until", [&](const Json& bytes) { return bytes >= cut * 9 / 10; }).is_null());
   kill(pid, SIGKILL);
   std::ofstream(desk / "log.csv", std::ios::app) << whole.substr(cut);
   const Ended second =
@@ -121,12 +122,7 @@ TEST(Follow, ADiagnosisThatIsDueIsMadeAfterAKill) {
   desk.write("whole.csv", excerpt("sudden/s01_wire_fractures.csv", 3700));
   const int pid = begin(desk, "watch --follow whole.csv" + FollowDesk::with("--state state.json --events one.jsonl"));
   ASSERT_GT(pid, 0);
-  Json due;
-  for (int k = 0; k < 1200 && due.empty(); ++k) {
-    std::this_thread::sleep_for(std::chrono::milliseconds(50));
-    const Json state = Json::parse(bytes_of(desk.path / "state.json"), nullptr, false);
-    if (state.is_object()) due = state["due"];
-  }
+  const Json due = wait_for(desk, pid, "due", [](const Json& made) { return !made.empty(); });
   kill(pid, SIGKILL);
   ASSERT_EQ(due.size(), 1u);
   ASSERT_EQ(bytes_of(desk.path / "one.jsonl").find("diagnosis"), std::string::npos);
@@ -171,10 +167,11 @@ TEST(Follow, StandardInputWithoutALogIsRefused) {
 
 TEST(Follow, AnInterruptEndsWith130AndItsStateWritten) {
   const FollowDesk desk;
-  const int code =
-      std::system(("cd '" + desk.path.string() + "' && { timeout --preserve-status -s INT 3 '" + SERVODX_PROGRAM +
-                   "' watch --follow whole.csv" + FollowDesk::with("--state state.json") + ">/dev/null 2>&1; }")
-                      .c_str());
+  desk.write("interrupt", "cd '" + desk.path.string() + "'\nset -m\n'" + SERVODX_PROGRAM +
+                              "' watch --follow whole.csv" + FollowDesk::with("--state state.json") +
+                              " >words 2>&1 &\nwhile kill -0 $! && ! grep -Eq '\"judged_until\": ?[1-9]' state.json; " +
+                              "do sleep 0.05; done 2>alive\nkill -INT $!\nwait $!\n");
+  const int code = std::system(("bash '" + (desk / "interrupt") + "'").c_str());
   EXPECT_EQ(WEXITSTATUS(code), 130);
   EXPECT_GT(Json::parse(bytes_of(desk.path / "state.json"))["judged_until"], 0);
 }

@@ -87,21 +87,26 @@ TEST_F(MainJob, APriorAskedForHoldsARowToTheTablesNominal) {
   EXPECT_GT(moved(json("tuned.json")), 1e-2);
 }
 
-TEST_F(MainJob, AnInterruptedTuneWritesTheBestSoFar) {
-  // On a busy machine half a second may pass before there is anything to interrupt.
-  const TemporaryFolder streams;
-  for (const char* seconds : {"0.5", "2", "8"}) {
-    const std::string call =
-        "cd '" + desk().path.string() + "' && timeout --preserve-status -s INT " + seconds + " '" + SERVODX_PROGRAM +
-        "' tune t1.csv t2.csv --params table.csv --population 100 --generations 100000 -o part.csv >'" +
-        (streams / "out") + "' 2>&1";
-    const int status = std::system(call.c_str());
-    ASSERT_TRUE(WIFEXITED(status));
-    EXPECT_EQ(WEXITSTATUS(status), 130) << bytes_of(streams / "out");
-    if (std::filesystem::exists(desk() / "part.csv")) break;
+// Begins a search without end and sends it `signal` once it has opened its checkpoint, however long that takes.
+Ended stopped_search(const Desk& desk, const std::string& signal, const std::string& out) {
+  desk.write("search", "cd '" + desk.path.string() + "'\nset -m\n'" + SERVODX_PROGRAM +
+                           "' tune t1.csv t2.csv --params table.csv --population 100 --generations 100000 --checkpoint "
+                           "kept -o " +
+                           out + " >words 2>&1 &\nwhile kill -0 $! && ! test -s kept; do sleep 0.05; done 2>alive\n" +
+                           "kill -" + signal + " $!\nwait $!\n");
+  const int status = std::system(("bash '" + (desk / "search") + "'").c_str());
+  return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, bytes_of(desk / "words"), ""};
+}
+
+TEST_F(MainJob, ATuneThatIsToldToEndWritesTheBestSoFar) {
+  for (const auto& [signal, code] : {std::pair("INT", 130), std::pair("TERM", 143)}) {
+    const std::string out = std::string("part_") + signal + ".csv";
+    std::filesystem::remove(desk() / "kept");
+    const Ended ended = stopped_search(desk(), signal, out);
+    EXPECT_EQ(ended.code, code) << ended.out;
+    EXPECT_NE(ended.out.find("interrupted"), std::string::npos) << ended.out;
+    EXPECT_EQ(desk().run("list params --params " + out).code, 0);
   }
-  EXPECT_EQ(desk().run("list params --params part.csv").code, 0);
-  EXPECT_NE(bytes_of(streams / "out").find("interrupted"), std::string::npos);
 }
 
 // A longer search begins with what a shorter one has kept.

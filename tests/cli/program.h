@@ -25,6 +25,13 @@ inline std::string bytes_of(const std::filesystem::path& path) {
   return {std::istreambuf_iterator<char>(file), {}};
 }
 
+// A process that runs; one that has ended may stay in the list of them. What a test waits for comes while it does.
+inline bool is_alive(int pid) {
+  const std::string told = bytes_of("/proc/" + std::to_string(pid) + "/stat");
+  const std::size_t name_ends = told.rfind(") ");
+  return name_ends != std::string::npos && told[name_ends + 2] != 'Z' && told[name_ends + 2] != 'X';
+}
+
 // A folder to work in: the program runs there, so that its messages hold relative paths.
 struct Desk : TemporaryFolder {
   // `arguments` as typed at a shell.
@@ -32,8 +39,8 @@ struct Desk : TemporaryFolder {
   // `environment`: "NAME=value ..." ahead of the call.
   Ended run_with(const std::string& environment, const std::string& arguments) const {
     const TemporaryFolder streams;
-    const std::string call = "cd '" + path.string() + "' && " + environment + " '" + SERVODX_PROGRAM + "' " + arguments +
-                             " >'" + (streams / "out") + "' 2>'" + (streams / "err") + "'";
+    const std::string call = "cd '" + path.string() + "' && " + environment + " '" + SERVODX_PROGRAM + "' " +
+                             arguments + " >'" + (streams / "out") + "' 2>'" + (streams / "err") + "'";
     const int status = std::system(call.c_str());
     return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, bytes_of(streams / "out"), bytes_of(streams / "err")};
   }
