@@ -883,9 +883,9 @@ TEST(DiagnoseText, TheFaultsRowsComeBeforeWhatHealthyValvesVaryBy) {
   const std::string text = text_of(d, {});
   const auto at = [&](const char* word) { return text.find(word); };
   EXPECT_LT(at("moved by the fault"), at("valve_glitch")) << text;
-  EXPECT_LT(at("valve_glitch"), at(", as in health")) << text;
-  EXPECT_LT(at(", as in health"), at("torque_motor_gain")) << text;
-  EXPECT_LT(at(", as in health"), at("air_fraction")) << text;
+  EXPECT_LT(at("valve_glitch"), at("moved in every hypothesis")) << text;
+  EXPECT_LT(at("moved in every hypothesis"), at("torque_motor_gain")) << text;
+  EXPECT_LT(at("moved in every hypothesis"), at("air_fraction")) << text;
 }
 
 TEST(DiagnoseText, ATestThatTheBaselineHasNoneOfIsSaid) {
