@@ -59,8 +59,14 @@ TEST(Hidden, ScoreKnowsRightFromWrong) {
   ExplainResult answer;
   answer.verdict = ExplainVerdict::extended;
   answer.where = "drive";
-  answer.causes.push_back(
-      {"transport_delay", "drive", "", {{"transport_delay", "s", 2.1e-3, 1e-4, 0.0}}, {}, {}, 0, {"sensor_lag"}});
+  answer.causes.push_back({"transport_delay",
+                           "drive",
+                           "",
+                           {{"transport_delay", "s", 2.1e-3, 1e-4, 0.0, 1.9e-3, 2.3e-3}},
+                           {},
+                           {},
+                           0,
+                           {"sensor_lag"}});
   const Truth truth{"transport_delay", {"drive"}, "transport_delay", 2e-3, ""};
   const Score right = score(truth, answer);
   EXPECT_TRUE(right.named && right.placed && right.accused && right.size_inside.value_or(false));
