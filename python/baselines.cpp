@@ -31,11 +31,11 @@ py::tuple state_of_baseline(const Baseline& baseline) {
   std::stringstream text;
   text << std::ifstream(file.path, std::ios::binary).rdbuf();
   return py::make_tuple(baseline.path, py::bytes(text.str()), state_of(baseline.notes), baseline.simulations,
-                        baseline.failed_simulations, baseline.interrupted);
+                        baseline.failed_simulations, baseline.interrupted, baseline.rig_file);
 }
 
 Baseline baseline_of_state(const py::tuple& state) {
-  if (state.size() != 6) throw py::value_error("pickled by another version of servodx: make it again");
+  if (state.size() != 7) throw py::value_error("pickled by another version of servodx: make it again");
   const Passing file;
   std::ofstream(file.path, std::ios::binary) << py::cast<std::string>(state[1]);
   Baseline out = read_baseline(file.path);
@@ -43,6 +43,7 @@ Baseline baseline_of_state(const py::tuple& state) {
   take_state(out.notes, state[2]);
   out.simulations = py::cast<long>(state[3]), out.failed_simulations = py::cast<long>(state[4]);
   out.interrupted = py::cast<bool>(state[5]);
+  out.rig_file = py::cast<std::string>(state[6]);  // of one made in memory none, though its file names the rig's
   return out;
 }
 
