@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstddef>
 #include <optional>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -34,11 +35,14 @@ namespace servodx {
 namespace {
 
 // One order whatever the logs were given in, so that nothing hangs on which came first.
-std::vector<Log> in_order_of_content(std::vector<Log> logs) {
-  if (logs.size() > 1)
-    std::stable_sort(logs.begin(), logs.end(),
-                     [](const Log& a, const Log& b) { return content_hash(a) < content_hash(b); });
-  return logs;
+std::vector<Log> in_order_of_content(const std::vector<Log>& logs) {
+  std::vector<std::pair<std::string, const Log*>> by_content;
+  for (const Log& log : logs) by_content.emplace_back(content_hash(log), &log);
+  std::stable_sort(by_content.begin(), by_content.end(),
+                   [](const auto& a, const auto& b) { return a.first < b.first; });
+  std::vector<Log> out;
+  for (const auto& [content, log] : by_content) out.push_back(*log);
+  return out;
 }
 
 // Of each condition the value that is farthest from the sheet's; of what the sheet does not say, the largest.
@@ -116,7 +120,8 @@ void add_motion(const MotionByHypothesis& motion, Assessment& out) {
 Assessment assess_pool(const std::vector<Log>& given, const Table& tuned, const RigFile& rig,
                        const DiagnoseOptions& options) {
   options.validate();
-  const std::vector<Log> logs = in_order_of_content(given);
+  const std::vector<Log> ordered = given.size() > 1 ? in_order_of_content(given) : std::vector<Log>();
+  const std::vector<Log>& logs = given.size() > 1 ? ordered : given;
   const ErrorModel error = required_error_model(tuned);
   const ReadyLogs ready = make_ready(logs, tuned, rig, error);
   const ParameterVector base = candidate_of(tuned);
