@@ -381,8 +381,7 @@ struct Invocation::Shown {
 
 Watch Invocation::watch() {
   Watch watch;
-  // A run over a list has its own answer, and keeps it.
-  if (std::signal(SIGTERM, on_termination) == on_interrupt) std::signal(SIGTERM, on_interrupt);
+  std::signal(SIGTERM, on_termination);
   watch.stop = [&asked = stop_on_interrupt()] { return asked.load(); };
   if (!run_.checkpoint.empty() && !checkpoint_)
     checkpoint_ = open_checkpoint(run_.checkpoint, run_.resume ? CheckpointUse::go_on : CheckpointUse::begin);

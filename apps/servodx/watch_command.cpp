@@ -61,7 +61,7 @@ class Watching {
       rest(options_.once ? std::min(options_.interval, std::max(0.0, left)) : options_.interval);
       if (!stop_) look();
     }
-    run_.interrupted = run_.interrupted || (options_.once && stop_);
+    run_.interrupted = options_.once && stop_;  // a watch without an end has come to it when it is told to stop
   }
   const FleetRun& run() const { return run_; }
   std::size_t unsettled() const { return settling_.unsettled(); }

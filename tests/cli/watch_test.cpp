@@ -116,5 +116,20 @@ TEST(Watch, AKilledWatchGoesOnFromItsResultsAndEndsCleanlyWhenTold) {
   EXPECT_EQ(desk.results("res").size(), static_cast<std::size_t>(logs + 1));
 }
 
+// A folder has no end of its own: to be told is how its watch ends, also in the middle of a judgement.
+TEST(Watch, OfAFolderEndsCleanlyWhenToldWhileALogIsInWork) {
+  const WatchDesk desk;
+  constexpr int logs = 12;
+  for (int k = 0; k < logs; ++k)
+    desk.write("in/l" + std::to_string(k) + ".csv", FleetDesk::excerpt("healthy/h04_multisine.csv", 30 + k));
+  desk.write("once", "cd '" + desk.path.string() + "'\nset -m\n'" + SERVODX_PROGRAM +
+                         "' watch in --out res --settle 0 --interval 0.05" + FleetDesk::judged_with +
+                         ">out 2>&1 &\nuntil test $(ls res 2>ls.err | grep -c 'json$') -ge 1; do sleep 0.01; done\n"
+                         "kill -TERM $!\nwait $!\n");
+  const int status = std::system(("bash '" + (desk / "once") + "'").c_str());
+  EXPECT_EQ(WEXITSTATUS(status), 0) << bytes_of(desk / "out");
+  EXPECT_LT(desk.results("res").size(), static_cast<std::size_t>(logs)) << "it ended before all were judged";
+}
+
 }  // namespace
 }  // namespace servodx

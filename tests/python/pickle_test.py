@@ -92,6 +92,8 @@ class Pickles(unittest.TestCase):
         sheet = sx.curves(log, stand)
         self.assertTrue((sheet.figures["uncertainty"] > 0).any())
         self.same(sheet)
+        coarse = sx.curves(log, stand, instruments={"control_flow": (1e-5, 0)}).figures["uncertainty"].fillna(0)
+        self.assertTrue((coarse > sheet.figures["uncertainty"].fillna(0)).any(), "a coarse meter makes figures less sure")
 
     def test_an_objective_is_made_again_where_it_comes(self):
         objective = tuned().objective([suspect()])

@@ -114,10 +114,13 @@ class Comparing {
 };
 
 void compare_conditions(const Json& a, const Json& b, Comparison& to) {
-  for (const char* key : {"version", "commit", "seed"})
-    if (a.value(key, Json()) != b.value(key, Json()))
-      to.conditions.push_back(
-          fmt::format("{}: {} and {}", key, shown(a.value(key, Json())), shown(b.value(key, Json()))));
+  const auto ask = [&](const char* key) {
+    const Json of_a = a.value(key, Json()), of_b = b.value(key, Json());
+    if (of_a != of_b) to.conditions.push_back(fmt::format("{}: {} and {}", key, shown(of_a), shown(of_b)));
+  };
+  ask("version");
+  if (a.contains("commit") && b.contains("commit")) ask("commit");  // results of lists alone state it
+  ask("seed");
   const Json sa = a.value("settings", Json::object()), sb = b.value("settings", Json::object());
   for (const auto& [key, item] : sa.items())
     if (!sb.contains(key) || sb[key] != item)

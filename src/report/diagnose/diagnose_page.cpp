@@ -206,7 +206,8 @@ void add_detectable(Page& page, const Diagnosis& d) {
   page.add(table);
 }
 
-// Beside health: what is named and what cannot be distinguished from it, or what comes nearest. Of a misread log health alone.
+// Beside health: what is named and what cannot be distinguished from it, or what comes nearest. Of a misread log health
+// alone.
 std::vector<std::string> drawn_hypotheses(const Diagnosis& d) {
   std::vector<std::string> out = {label_of(nullptr)};
   if (of_log(d)) return out;

@@ -120,7 +120,7 @@ std::vector<std::string> reasons(const ExplainResult& r) {
   return why;
 }
 
-// Behind the words stands half of the interval. [unit of the size]
+// Sorted by half of the interval's width. [unit of the size]
 Cell interval_cell(const ExplainedParameter& p, double factor) {
   const std::string ends = fmt::format("{} to {}", digits(p.lower * factor), digits(p.upper * factor));
   return {p.told == SizeTold::interval ? ends : words_of(p.told), 0.5 * (p.upper - p.lower)};
