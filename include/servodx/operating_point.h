@@ -30,8 +30,9 @@ struct ConditionRow {
   std::optional<double> tuned_lowest = {}, tuned_highest = {};  // of the logs that tuned the table
 };
 
-// The conditions that the log or the sheet knows, in the order of `Condition`.
-std::vector<ConditionRow> conditions_beside(const OperatingPoint& log, const OperatingPoint& sheet,
+// The conditions that a log or the sheet knows, in the order of `Condition`. Of several logs of one state the first,
+// but where another is beyond what the fault-free logs show.
+std::vector<ConditionRow> conditions_beside(const std::vector<OperatingPoint>& logs, const OperatingPoint& sheet,
                                             const std::vector<OperatingPoint>& healthy);
 // Adds what the logs that tuned the table show, where they are known.
 void set_beside_tuning(std::vector<ConditionRow>& rows, const std::vector<OperatingPoint>& tuning);

@@ -69,8 +69,10 @@ struct Assessment {
   std::optional<Reading> reading;                  // of one log: what would leave least of its motion, read so
   std::optional<double> onset;                     // [s] change point where one stands out
   std::vector<HypothesisPrediction> explanations;  // of each hypothesis that could be fitted
-  TestConditions test;
-  OperatingPoint point = {}, sheet = {};  // where recorded, of several logs farthest from the sheet; the rig file's
+  std::vector<TestConditions> tests;   // of each log
+  TestConditions test;                 // that judges: of several logs, by `judge`, the one least like the baseline's
+  std::vector<OperatingPoint> points;  // where each log was recorded
+  OperatingPoint sheet = {};           // what the rig file says of it
   std::vector<RecordFigure> figures;      // of the records alone
   std::vector<BrokenSensor> broken;
   double others_left = 0;  // of the motion of the sensors that are not broken, by the tuned valve

@@ -59,7 +59,7 @@ DetectionBaseline::Score unscored(const Assessment& a) {
                              .adequacy = a.hypotheses.front().adequacy,
                              .test = a.test,
                              .figures = a.figures,
-                             .point = a.point,
+                             .point = a.points.empty() ? OperatingPoint{} : a.points.front(),
                              .content = a.content};
   if (!a.explanations.empty()) s.healthy = a.explanations.front();
   s.gains = gains_of(a);

@@ -84,7 +84,7 @@ inline constexpr double nothing_asked = 1e-3;   // of rated current
 inline constexpr double nothing_driven = 0.02;  // of supply, of stall force: sensors' noise and drift are below
 inline constexpr double still_part = 0.995;     // of the samples: a dropped one may be filled in otherwise
 inline constexpr double no_memory = 0.3;        // correlation of neighbours; a valve at 500 Hz has more than 0.8
-inline constexpr double no_relation = 0.3;      // correlation with the command; noise of 200 samples has 0.2 at most
+inline constexpr double no_relation = 0.3;      // correlation with the command: four deviations of 200 samples of noise
 inline constexpr double large_noise = 0.05;     // of stop, stroke and supply: no sensor is so noisy
 inline constexpr double pressure_beyond = 2.0;  // of the supply, half of the time: a load may intensify it for a while
 inline constexpr double travel_beyond = 2.0;    // of the stops' travel, a tenth of the time: no gain is so wrong
@@ -172,8 +172,8 @@ inline constexpr int starts_kept = 2;           // of a fault, after screening
 inline constexpr int first_iterations = 5;      // of every start where health failed; the better one goes on
 inline constexpr int approach_iterations = 10;  // the same by health's derivatives, a few runs each
 inline constexpr int iterations = 20;  // of a fit to its end; a leader that still promises more gets as many again
-// The genetic search over sub-groups (diagnose/sub_groups.cpp), of the paper's 50 individuals. It has to find the valley
-// alone, as the local refinement goes on from there. By hand; not examined.
+// The genetic search over sub-groups (diagnose/sub_groups.cpp), of the paper's 50 individuals. It has to find the
+// valley alone, as the local refinement goes on from there. By hand; not examined.
 inline constexpr int generations = 15;
 inline constexpr int least_population = 8;    // a pack of doubles
 inline constexpr int most_population = 2000;  // beyond it memory is the limit

@@ -1,7 +1,6 @@
 #include "diagnose/diagnose.h"
 
 #include <algorithm>
-#include <cmath>
 #include <cstddef>
 #include <optional>
 #include <string>
@@ -45,31 +44,22 @@ std::vector<Log> in_order_of_content(const std::vector<Log>& logs) {
   return out;
 }
 
-// Of each condition the value that is farthest from the sheet's; of what the sheet does not say, the largest.
-OperatingPoint farthest_point(const std::vector<Log>& logs, const OperatingPoint& sheet) {
-  OperatingPoint out = {};
-  for (const Log& log : logs) {
-    const OperatingPoint point = operating_point_of(log);
-    for (std::size_t c = 0; c < point.size(); ++c) {
-      const auto off = [&](double value) { return std::abs(value - sheet[c].value_or(0)); };
-      if (point[c] && (!out[c] || off(*point[c]) > off(*out[c]))) out[c] = point[c];
-    }
-  }
-  return out;
-}
-
 // Which logs they are, and where they were recorded.
-Assessment opened(const std::vector<Log>& logs, const Log& first, const ReadyLogs& ready, const RigFile& rig) {
+Assessment opened(const std::vector<Log>& given, const std::vector<Log>& logs, const ReadyLogs& ready,
+                  const RigFile& rig) {
   Assessment out;
-  for (const Log& log : logs) {
+  for (const Log& log : given) {
     out.log += (out.log.empty() ? "" : " + ") + log.path;
     out.sha256 += log.sha256, out.content += content_hash(log);
     out.logs.push_back(log.path);
   }
   out.notes = ready.notes;
-  out.test = conditions_of(first);
+  for (const Log& log : logs) {
+    out.tests.push_back(conditions_of(log));
+    out.points.push_back(operating_point_of(log));
+  }
+  out.test = out.tests.front();
   out.sheet = sheet_point(rig);
-  out.point = farthest_point(logs, out.sheet);
   return out;
 }
 
@@ -127,8 +117,8 @@ Assessment assess_pool(const std::vector<Log>& given, const Table& tuned, const 
   const ParameterVector base = candidate_of(tuned);
   const HypothesisSettings settings = hypothesis_settings(logs, tuned, rig, options);
   const ReadingTrial trial{tuned, rig, error, options.threads};
-  Assessment out = opened(given, logs.front(), ready, rig);
-  out.unjudgeable = unjudgeable(ready, base, out.point);
+  Assessment out = opened(given, logs, ready, rig);
+  out.unjudgeable = unjudgeable(ready, base, out.points);
   if (out.unjudgeable != Unjudgeable::no) return without_fit(std::move(out), logs, ready, trial);
 
   const HypothesisFits whole = fit_whole(ready, base, error, settings, options);

@@ -36,7 +36,22 @@ std::optional<Diagnosis::Unlike> unlike_all(const TestConditions& test, const De
 std::vector<ConditionRow> conditions_of(const Assessment& a, const DetectionBaseline& baseline) {
   std::vector<OperatingPoint> healthy;
   for (const DetectionBaseline::Score& s : baseline.scores) healthy.push_back(s.point);
-  return conditions_beside(a.point, a.sheet, healthy);
+  return conditions_beside(a.points, a.sheet, healthy);
+}
+
+// Of several logs of one state the test that is least like the baseline's: what it knows of the others says little of
+// that one.
+TestConditions least_known_test(const Assessment& a, const DetectionBaseline& baseline) {
+  const auto from_nearest = [&](const TestConditions& test) {
+    double nearest = HUGE_VAL;
+    for (const DetectionBaseline::Score& s : baseline.scores)
+      if (s.test) nearest = std::min(nearest, distance(test, *s.test));
+    return nearest;
+  };
+  if (a.tests.empty()) return a.test;
+  return *std::max_element(a.tests.begin(), a.tests.end(), [&](const TestConditions& x, const TestConditions& y) {
+    return from_nearest(x) < from_nearest(y);
+  });
 }
 
 double p_value_of(double error, const DetectionBaseline& baseline, const HealthyLaw& law) {
@@ -238,6 +253,7 @@ Evidence evidence_of(const Assessment& a, const DetectionBaseline& baseline, con
 }
 
 Diagnosis judge(Assessment a, const DetectionBaseline& whole) {
+  a.test = least_known_test(a, whole);
   const DetectionBaseline baseline = baseline_for(a.test, whole);
   weigh_beside_usual(a, usual_gains_of(a, baseline), baseline.adequacy_limit);
   const SuspectLog suspect = suspect_of(a);

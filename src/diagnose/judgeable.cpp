@@ -222,8 +222,9 @@ Unjudgeable unjudgeable(const LogData& log, const ParameterVector& base) {
   return unjudgeable_channels(log, base);
 }
 
-Unjudgeable unjudgeable(const ReadyLogs& logs, const ParameterVector& base, const OperatingPoint& point) {
-  if (const Unjudgeable why = unjudgeable(point); why != Unjudgeable::no) return why;
+Unjudgeable unjudgeable(const ReadyLogs& logs, const ParameterVector& base, const std::vector<OperatingPoint>& points) {
+  for (const OperatingPoint& point : points)
+    if (const Unjudgeable why = unjudgeable(point); why != Unjudgeable::no) return why;
   for (std::size_t l = 0; l < logs.data.size(); ++l)
     if (const Unjudgeable why = unjudgeable(logs.every_sample(l), base); why != Unjudgeable::no) return why;
   return Unjudgeable::no;

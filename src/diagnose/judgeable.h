@@ -33,7 +33,7 @@ bool asks_too_much(const Scenario& in);
 Unjudgeable unjudgeable(const LogData& log, const ParameterVector& base);
 // By where it was recorded.
 Unjudgeable unjudgeable(const OperatingPoint& point);
-// By either, of several logs of the first that is; `point`: of the first log.
-Unjudgeable unjudgeable(const ReadyLogs& logs, const ParameterVector& base, const OperatingPoint& point);
+// By either, of several logs of the first that is; `points`: of each log.
+Unjudgeable unjudgeable(const ReadyLogs& logs, const ParameterVector& base, const std::vector<OperatingPoint>& points);
 
 }  // namespace servodx

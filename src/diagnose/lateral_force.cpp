@@ -44,8 +44,10 @@ std::optional<FrictionBesideForce> friction_beside_force(const Diagnosis& d, con
   ParameterVector moved = base;
   d.fault->apply(moved.data(), d.fault->worst);
   if (friction_of(moved) == friction_of(base)) return {};
-  const double drop = worth(d.assessment.point, Condition::supply, base[row::supply_pressure]) -
-                      worth(d.assessment.point, Condition::return_pressure, base[row::return_pressure]);
+  const std::vector<OperatingPoint>& points = d.assessment.points;
+  const OperatingPoint point = points.empty() ? OperatingPoint{} : points.front();
+  const double drop = worth(point, Condition::supply, base[row::supply_pressure]) -
+                      worth(point, Condition::return_pressure, base[row::return_pressure]);
   for (const HypothesisPrediction& h : d.assessment.explanations)
     if (h.fault == d.fault && !h.candidate.empty())
       return FrictionBesideForce{friction_of(h.candidate),

@@ -156,7 +156,8 @@ std::optional<double> driver_since(const Blocks& command, const Blocks& current,
     const double cost = m * std::log(before / m + tiny) + (n - m) * std::log(after / (n - m) + tiny);
     if (after / (n - m) > k::variance_step * before / m && cost < least) least = cost, change = i;
   }
-  return change > 0 ? std::optional<double>(command.time[at[change]]) : std::nullopt;
+  const double gain = (n * std::log(all / n + tiny) - least) / k::fall_to_gain;
+  return change > 0 && gain > k::change_gain ? std::optional<double>(command.time[at[change]]) : std::nullopt;
 }
 
 void add_driver(const Log& log, const LogData& data, std::vector<RecordFigure>& out) {

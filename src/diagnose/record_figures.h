@@ -33,7 +33,7 @@ struct RecordFigure {
   double value = 1;
   std::optional<double> since = {};   // [s] of a step: when
   double error = 0;                   // of its logarithm, one standard deviation: what the log itself leaves open
-  std::optional<double> before = {};  // what it was ahead of `since`
+  std::optional<double> before = {};  // the best that a part of the log has: what it was ahead of `since`
 };
 
 // Of what the log records, in the order of the kinds; what it cannot tell is left out.

@@ -246,7 +246,7 @@ LogSurvey survey(const Log& log, const RigFile& rig) {
   s.closed_loop = log.has(Signal::setpoint);
   const TestConditions test = conditions_of(log);
   s.temperature = test.temperature, s.drive_span = test.drive_span, s.drive_band = test.drive_band;
-  s.conditions = conditions_beside(operating_point_of(log), sheet_point(rig), {});
+  s.conditions = conditions_beside({operating_point_of(log)}, sheet_point(rig), {});
   for (const SignalInfo& signal : signal_list)
     if (signal.signal != Signal::time && log.has(signal.signal))
       s.channels.push_back(survey_channel(log, signal.signal));

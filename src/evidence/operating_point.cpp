@@ -84,14 +84,20 @@ OperatingPoint sheet_point(const RigFile& rig) {
           rig.fact("valve.rated_current")};
 }
 
-std::vector<ConditionRow> conditions_beside(const OperatingPoint& log, const OperatingPoint& sheet,
+std::vector<ConditionRow> conditions_beside(const std::vector<OperatingPoint>& logs, const OperatingPoint& sheet,
                                             const std::vector<OperatingPoint>& healthy) {
   std::vector<ConditionRow> out;
   for (int i = 0; i < n_conditions; ++i) {
     const auto at = static_cast<std::size_t>(i);
-    ConditionRow row{static_cast<Condition>(i), log[at], sheet[at], {}, {}, false};
+    ConditionRow row{static_cast<Condition>(i), {}, sheet[at], {}, {}, false};
     widen(row.lowest, row.highest, healthy, row.of);
-    row.beyond = is_beyond(row);
+    for (const OperatingPoint& log : logs) {
+      if (row.beyond || !log[at]) continue;
+      ConditionRow of_log = row;
+      of_log.value = log[at];
+      of_log.beyond = is_beyond(of_log);
+      if (!row.value || of_log.beyond) row = of_log;
+    }
     if (row.value || row.sheet) out.push_back(row);
   }
   return out;

@@ -391,11 +391,12 @@ SearchStop::How how_of(CeresEnd end) {
       return SearchStop::How::ceres_interrupted;
     case CeresEnd::failure:
       return SearchStop::How::ceres_failure;
-    case CeresEnd::not_run:
     case CeresEnd::no_convergence:
+      return SearchStop::How::ceres_no_convergence;
+    case CeresEnd::not_run:
       break;
   }
-  return SearchStop::How::ceres_no_convergence;
+  return SearchStop::How::not_run;
 }
 
 int let_go(const std::vector<int>& before, const std::vector<int>& after) {
@@ -441,6 +442,7 @@ LeastSquaresResult minimise_by_ceres(const LeastSquaresProblem& problem, const P
   Evaluation first = std::move(evaluated(problem, {end.point}, end, summary).front());
   if (!first.ok) {
     end.cost = end.misfit = end.start_cost = std::numeric_limits<double>::infinity();
+    end.stop = stop_of(end.reason, options);
     if (told) *told = summary;
     return end;
   }

@@ -7,6 +7,7 @@ namespace servodx {
 
 struct SearchStop {
   enum class How {
+    not_run,  // nothing was searched
     // Our bounded search, and Ceres where it went on from there.
     start_failed,  // could not be evaluated
     converged,
@@ -36,7 +37,7 @@ struct SearchStop {
     bool operator==(const Figures&) const = default;
   };
 
-  How how = How::start_failed;
+  How how = How::not_run;
   long count = 0;                  // iterations or evaluations, where `how` speaks of some
   std::optional<Figures> at = {};  // where it stopped; none: nothing was measured there
   int missing_columns = 0;         // of the Jacobian that it stalled by

@@ -355,6 +355,19 @@ TEST(Judge, RowsAndNullAreOfTheHypothesisThatTheVerdictIsOf) {
   EXPECT_EQ(judge(a, baseline()).moved.front().name, "air");
 }
 
+TEST(Judge, AmongSeveralLogsTheTestThatIsLeastKnownJudges) {
+  DetectionBaseline b = baseline();
+  const TestConditions known{0.020, 6.0, 313.0}, unknown{0.045, 6.0, 270.0};
+  for (DetectionBaseline::Score& s : b.scores) s.test = known;
+  Assessment a = assessment(1, {hypothesis("", 0.9), hypothesis("clogged_filter", 0.1)});
+  for (const auto& tests : {std::vector{known, unknown}, std::vector{unknown, known}}) {
+    a.tests = tests, a.test = tests.front();
+    EXPECT_TRUE(judge(a, b).unlike);
+  }
+  a.tests = {known, known}, a.test = known;
+  EXPECT_FALSE(judge(a, b).unlike);
+}
+
 TEST(Judge, ATestUnlikeEveryLogOfTheBaselineIsSaidWithTheNearest) {
   DetectionBaseline b = baseline();
   const TestConditions warm{0.020, 6.0, 313.0}, cold{0.020, 6.0, 270.0}, large{0.045, 6.0, 313.0};

@@ -137,6 +137,14 @@ TEST(Records, ADriverThatPassesOnLessIsFoundFromTheStartAndFromMidLog) {
     }
 }
 
+TEST(Records, NoiseAloneGivesADriverNoOnset) {
+  for (unsigned seed = 200; seed < 230; ++seed)
+    for (const RecordFigure& f : figures_of(made(seed, 1.0)))
+      if (f.kind == FigureKind::driver_gain) {
+        EXPECT_FALSE(f.since) << seed;
+      }
+}
+
 TEST(Records, AnAmplifierThatSaturatesIsADriverFault) {
   Made m = made(54, 1.0);
   for (double& i : m.current) i = std::clamp(i, -2e-3, 2e-3);

@@ -36,7 +36,7 @@ const Rig rig = make_rig("sheet",
 std::vector<ConditionRow> beside(const Log& log, const std::vector<Log>& healthy) {
   std::vector<OperatingPoint> points;
   for (const Log& h : healthy) points.push_back(operating_point_of(h));
-  return conditions_beside(operating_point_of(log), sheet_point(rig), points);
+  return conditions_beside({operating_point_of(log)}, sheet_point(rig), points);
 }
 
 TEST(OperatingPoint, IsReadFromTheLogAndASpikeIsNoSupply) {
@@ -53,6 +53,20 @@ TEST(OperatingPoint, ASupplyBesideItsSheetIsBeyondAndOneOfAFewPerCentIsNot) {
   EXPECT_TRUE(row_of(beside(recorded(140e5, 313, 10e-3), {}), Condition::supply)->beyond);
   EXPECT_TRUE(row_of(beside(recorded(240e5, 313, 10e-3), {}), Condition::supply)->beyond);
   EXPECT_FALSE(row_of(beside(recorded(200e5, 313, 10e-3), {}), Condition::supply)->beyond);
+}
+
+TEST(OperatingPoint, OfSeveralLogsTheOneThatIsBeyondIsSaidWhereverItStands) {
+  const std::vector<OperatingPoint> healthy = {operating_point_of(recorded(207e5, 313, 1e-3))};
+  const OperatingPoint inside = operating_point_of(recorded(207e5, 313, 1e-3)),
+                       beyond = operating_point_of(recorded(207e5, 253, 17e-3));
+  for (const auto& logs : {std::vector{inside, beyond}, std::vector{beyond, inside}}) {
+    const auto rows = conditions_beside(logs, sheet_point(rig), healthy);
+    EXPECT_TRUE(row_of(rows, Condition::oil)->beyond);
+    EXPECT_EQ(row_of(rows, Condition::oil)->value, 253.0);
+    EXPECT_TRUE(row_of(rows, Condition::drive)->beyond);
+    EXPECT_EQ(row_of(rows, Condition::drive)->value, 17e-3);
+    EXPECT_FALSE(row_of(rows, Condition::supply)->beyond);
+  }
 }
 
 TEST(OperatingPoint, WhatFaultFreeLogsShowGoesBeforeTheSheet) {

@@ -10,6 +10,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/random.h"
+#include "base/wilson.h"
 #include "report/explain/explain_words.h"
 #include "rig/excitations.h"
 #include "rig/rig_model.h"
@@ -312,7 +313,7 @@ Score score(const Truth& truth, const ExplainResult& answer) {
     out.heldout_gain = answer.heldout_gain.value;
     if (first.effect == truth.effect && !truth.parameter.empty())
       for (const ExplainedParameter& p : first.parameters)
-        if (p.name == truth.parameter && p.told == SizeTold::interval)
+        if (p.name == truth.parameter && p.told != SizeTold::at_bound)
           out.size_inside = p.lower <= p.before + truth.change && p.before + truth.change <= p.upper;
   }
   if (truth.effect.starts_with("unlisted:")) out.named = answer.verdict == ExplainVerdict::unexplained;
@@ -336,14 +337,11 @@ Score score(const Truth& truth, const ExplainResult& answer) {
 
 namespace {
 
-// "12 of 14 (86 %, 60 to 96)": Wilson 1927, 95 %.
+// "12 of 14 (86 %, 60 to 96)"
 std::string share(int k, int n) {
   if (n == 0) return "0 of 0";
-  constexpr double z2 = 1.96 * 1.96;
-  const double p = static_cast<double>(k) / n, middle = (p + z2 / (2 * n)) / (1 + z2 / n),
-               reach = std::sqrt(z2 * (p * (1 - p) / n + z2 / (4.0 * n * n))) / (1 + z2 / n);
-  return fmt::format("{} of {} ({:.0f} %, {:.0f} to {:.0f})", k, n, 100 * p, 100 * (middle - reach),
-                     100 * (middle + reach));
+  const RateInterval rate = wilson_95(k, n);
+  return fmt::format("{} of {} ({:.0f} %, {:.0f} to {:.0f})", k, n, 100.0 * k / n, 100 * rate.lower, 100 * rate.upper);
 }
 
 }  // namespace

@@ -198,7 +198,7 @@ TEST(BoxLeastSquares, FailedStartIsSaid) {
   const LeastSquaresResult result = minimise_least_squares(problem, {0.5, 0.5});
   EXPECT_EQ(result.reason, StopReason::start_failed);
   EXPECT_EQ(result.failed_evaluations, 1);
-  EXPECT_EQ(result.stop, SearchStop{});
+  EXPECT_EQ(result.stop, SearchStop{SearchStop::How::start_failed});
 }
 
 TEST(BoxLeastSquares, StallOnARoughCostIsSaidWithItsGradient) {

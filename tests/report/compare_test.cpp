@@ -5,6 +5,8 @@
 
 #include <string>
 
+#include "report/shared/json.h"
+
 namespace servodx::report {
 namespace {
 

@@ -10,6 +10,8 @@ std::string how_in_words(const SearchStop& stop) {
   const auto ceres = [](CeresEnd end) { return "Ceres: " + word_of(end); };
   const auto bobyqa = [&](const char* why) { return fmt::format("BOBYQA: {} after {} evaluations", why, stop.count); };
   switch (stop.how) {
+    case How::not_run:
+      return ceres(CeresEnd::not_run);
     case How::start_failed:
       return "the start point itself could not be evaluated";
     case How::converged:
