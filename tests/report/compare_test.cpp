@@ -24,7 +24,8 @@ Json result(const Json& more) {
 }
 
 TEST(Compare, CommitsAreACauseOnlyWhereBothResultsStateOne) {
-  const Json plain = result({}), of_one = result({{"commit", "aaaa"}}), of_another = result({{"commit", "bbbb"}});
+  const Json plain = result(Json::object()), of_one = result({{"commit", "aaaa"}}),
+             of_another = result({{"commit", "bbbb"}});
   EXPECT_TRUE(compare("a", of_one, "b", plain).conditions.empty());
   EXPECT_TRUE(compare("a", of_one, "b", of_one).conditions.empty());
   const auto differ = compare("a", of_one, "b", of_another).conditions;
@@ -33,8 +34,8 @@ TEST(Compare, CommitsAreACauseOnlyWhereBothResultsStateOne) {
 }
 
 TEST(Compare, VersionsAndSeedsThatDifferAreConditions) {
-  EXPECT_EQ(compare("a", result({}), "b", result({{"seed", 2}})).conditions.size(), 1u);
-  EXPECT_EQ(compare("a", result({}), "b", result({{"version", "1.0.1"}})).conditions.size(), 1u);
+  EXPECT_EQ(compare("a", result(Json::object()), "b", result({{"seed", 2}})).conditions.size(), 1u);
+  EXPECT_EQ(compare("a", result(Json::object()), "b", result({{"version", "1.0.1"}})).conditions.size(), 1u);
 }
 
 }  // namespace

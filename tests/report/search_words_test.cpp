@@ -31,6 +31,7 @@ TEST(SearchWords, AreTheSameToTheCharacter) {
     SearchStop stop;
     const char* words;
   } cases[] = {
+      {{How::not_run}, "Ceres: not_run"},
       {{How::start_failed}, "the start point itself could not be evaluated"},
       {{How::converged}, "converged"},
       {{How::converged_to_rounding}, "converged to the rounding of the cost"},
