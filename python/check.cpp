@@ -26,7 +26,7 @@ It does not pickle: record it where it was made. Several processes may write one
       .def_readonly("notes", &Checked::notes)
       .def_readonly("simulations", &Checked::simulations)
       .def_readonly("failed_simulations", &Checked::failed_simulations)
-      .def_readonly("interrupted", &Checked::interrupted, "no figure was told")
+      .def_readonly("interrupted", &Checked::interrupted, "no figure was determined")
       .def_property_readonly("_figures", &checked_figures)
       .def("__repr__", [](const Checked& c) { return "<Checked " + c.log + ">"; });
 }

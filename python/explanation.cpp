@@ -26,7 +26,7 @@ void define_parts(py::class_<ExplanationText>& explanation) {
       .def_readonly("std_error", &E::Parameter::std_error, "[unit]")
       .def_readonly("lower", &E::Parameter::lower, "[unit] 90 %, within what is physical; NaN at a bound")
       .def_readonly("upper", &E::Parameter::upper, "[unit] 90 %, within what is physical; NaN at a bound")
-      .def_readonly("told", &E::Parameter::told, "what the logs tell of it")
+      .def_readonly("told", &E::Parameter::told, "what the logs show of it")
       .def_readonly("unit", &E::Parameter::unit)
       .def(pickled<E::Parameter>());
   py::class_<E::Cause>(explanation, "Cause", "What explains the misfit.")
@@ -34,7 +34,7 @@ void define_parts(py::class_<ExplanationText>& explanation) {
       .def_readonly("where", &E::Cause::where)
       .def_readonly("parameters", &E::Cause::parameters)
       .def_readonly("heldout_gain", &E::Cause::heldout_gain)
-      .def_readonly("delta_bic", &E::Cause::delta_bic, "positive: worth its numbers")
+      .def_readonly("delta_bic", &E::Cause::delta_bic, "positive: it explains more than its parameters cost")
       .def_readonly("confusable_with", &E::Cause::confusable_with)
       .def("__repr__", [](const E::Cause& c) { return "<Cause " + c.effect + " at " + c.where + ">"; })
       .def(pickled<E::Cause>());

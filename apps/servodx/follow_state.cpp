@@ -5,7 +5,6 @@
 
 #include "base/atomic_file.h"
 #include "base/json_text.h"
-#include "base/reading_limits.h"
 #include "servodx/error.h"
 
 namespace servodx {
@@ -50,10 +49,9 @@ void write_follow_state(const std::string& path, const FollowedBy& by, const Fol
 std::optional<FollowState> read_follow_state(const std::string& path, const FollowedBy& by) {
   std::error_code ignored;
   if (!std::filesystem::exists(path, ignored)) return {};
-  const auto refusal = [&](const std::string& rule) {
-    return InputError({.file = path}, rule, "remove the file to begin anew, or name another");
-  };
-  const auto json = json_or_discarded<nlohmann::json>(read_file_within(path, largest_json));
+  constexpr const char* mend = "remove the file to begin anew, or name another";
+  const auto refusal = [&](const std::string& rule) { return InputError({.file = path}, rule, mend); };
+  const auto json = json_in_file<nlohmann::json>(path, mend);
   if (!has_schema(json, state_schema)) throw refusal("is no state of a watch");
   try {
     if (json.at("source") != by.source) throw refusal("is the state of a watch of another log");

@@ -152,7 +152,7 @@ void add_plan_command(CLI::App& app, int& exit_code) {
   command->add_option("--faults", options->faults, "to be found and named: NAME or NAME=SEVERITY; without: all")
       ->delimiter(',')
       ->type_name("A,B");
-  command->add_option("--between", options->between, "two faults, to be told apart: NAME or NAME=SEVERITY")
+  command->add_option("--between", options->between, "two faults, to be distinguished: NAME or NAME=SEVERITY")
       ->delimiter(',')
       ->type_name("A,B");
   command->add_option("--rows", options->plan.rows, "rows of the table, to be estimated")

@@ -7,7 +7,6 @@
 
 #include "base/error.h"
 #include "base/json_text.h"
-#include "base/reading_limits.h"
 
 namespace servodx {
 namespace {
@@ -29,10 +28,9 @@ bool has_the_types(const report::Json& m) {
 }  // namespace
 
 report::Json read_manifest(const std::string& path) {
-  const auto m = json_or_discarded<report::Json>(read_file_within(path, largest_json));
-  const auto refuse = [&](const std::string& rule) {
-    throw InputError({path, 0, ""}, rule, "name the file FILE.manifest.json beside a result of servodx");
-  };
+  constexpr const char* mend = "name the file FILE.manifest.json beside a result of servodx";
+  const auto m = json_in_file<report::Json>(path, mend);
+  const auto refuse = [&](const std::string& rule) { throw InputError({path, 0, ""}, rule, mend); };
   if (!m.is_object() || !m.contains("manifest")) refuse("is no manifest");
   for (const char* key : {"command", "directory", "arguments", "inputs", "outputs", "version", "interrupted"})
     if (!m.contains(key)) refuse(fmt::format("has no '{}'", key));

@@ -47,7 +47,7 @@ def of_signals(signals, time):
 
 
 def of_records(rows, columns, units=None, index=None):
-    """One row a record. A unit written as {column} is told by that column, row by row."""
+    """One row a record. A unit written as {column} stands in that column, row by row."""
     import pandas
     frame = pandas.DataFrame(list(rows), columns=None if rows else columns)
     if index and len(frame):

@@ -249,11 +249,12 @@ void CsvCursor::refuse_long_row(long line) const {
                    "end each row with a line end, and close quotes");
 }
 
-// Of a text in memory; a file's rows are held to it as they come.
-void CsvCursor::refuse_row_without_end() const {
-  if (file_) return;
-  const auto most = longest_row - std::min(longest_row, static_cast<std::size_t>(p_ - row_));
-  if (static_cast<std::size_t>(end_ - p_) > most && std::find(p_, p_ + most, '\n') == p_ + most) refuse_long_row(line_);
+// Of a text in memory; a file's rows are held to it as they come. It looks again only behind a line end in quotes.
+void CsvCursor::refuse_row_without_end() {
+  if (file_ || (line_end_ && p_ <= line_end_)) return;
+  const char* const most = row_ + std::min(longest_row, static_cast<std::size_t>(end_ - row_));
+  line_end_ = std::find(std::min(p_, most), most, '\n');
+  if (line_end_ == most && most != end_) refuse_long_row(line_);
 }
 
 // Keeps what is unused, from the cell being read on.
@@ -296,6 +297,7 @@ bool CsvCursor::next_row() {
       line_ = next_line_;
       in_row_ = more_ = true;
       row_ = p_;
+      line_end_ = nullptr;
       refuse_row_without_end();
       return true;
     }

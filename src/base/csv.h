@@ -121,7 +121,7 @@ class CsvCursor {
   void finish_cell();
   void count_line_ends(const char* from, const char* to);
   [[noreturn]] void refuse_long_row(long line) const;
-  void refuse_row_without_end() const;  // as far as a row may go on
+  void refuse_row_without_end();  // as far as a row may go on
 
   std::string path_;
   BlockReader* file_ = nullptr;
@@ -132,6 +132,7 @@ class CsvCursor {
   const char* p_ = nullptr;
   const char* end_ = nullptr;
   const char* row_ = nullptr;       // of a text in memory: where the row began
+  const char* line_end_ = nullptr;  // of a text in memory: the row's first line end not yet passed, where looked for
   const char* cell_ = nullptr;      // start of the cell just read
   const char* cell_end_ = nullptr;  // its end
   bool in_row_ = false;

@@ -6,6 +6,7 @@
 #include <string>
 #include <string_view>
 
+#include "base/error.h"
 #include "base/reading_limits.h"
 
 namespace servodx {
@@ -41,6 +42,23 @@ inline bool has_few_values(std::string_view text) {
     values += c == '{' || c == '[' || c == ',';
     return values <= most_json_values;
   });
+}
+
+// Throws InputError that names the limit.
+inline void refuse_beyond_limits(std::string_view text, const std::string& path, const std::string& mend) {
+  if (!is_shallow_json(text))
+    throw InputError({path, 0, ""}, "nests deeper than " + std::to_string(deepest_json) + " levels", mend);
+  if (!has_few_values(text))
+    throw InputError({path, 0, ""}, "holds more than " + std::to_string(most_json_values) + " values", mend);
+}
+
+// Of a file from outside; discarded where it is no JSON, or holds a number beyond all doubles. Throws InputError where
+// it goes beyond the limits, of size too.
+template <class Json>
+Json json_in_file(const std::string& path, const std::string& mend) {
+  const std::string text = read_file_within(path, largest_json);
+  refuse_beyond_limits(text, path, mend);
+  return Json::parse(text, nullptr, false);
 }
 
 // Discarded (and so neither object nor array) where it is no JSON, goes beyond these limits, or holds a number

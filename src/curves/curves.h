@@ -1,8 +1,10 @@
 // The standard figures of a servovalve from a log of a test stand, as SAE ARP490 defines them: an acceptance sheet.
 //
 // Slow sweeps of the command give the flow, pressure and leakage curves, branch by branch; sine sweeps and noise give
-// the frequency response. Percentages are of rated current, of all sweeps of the log. A log holds some of the curves:
-// what it cannot show is not reported.
+// the frequency response. Currents among the figures are parts of rated current. A branch is the mean of all
+// sweeps that way, from three reversals on without the first sweep, which comes from rest. Of a curve that the log
+// lacks, only figures with a limit are reported, as not shown; of one that it has, some that cannot be read are
+// reported with the reason.
 //   rated_flow     mean size of the no-load flow at plus and minus rated current
 //   null_bias      current at which the mean of both branches is zero
 //   hysteresis     largest difference in current between the branches at one output

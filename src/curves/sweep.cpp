@@ -6,6 +6,7 @@
 
 #include "curves/constants.h"
 #include "servodx/log.h"
+#include "signals/drive_of.h"
 
 namespace servodx::curves {
 namespace {
@@ -17,7 +18,7 @@ constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 }  // namespace
 
 std::optional<Sweeps> sweeps_of(const Log& log, double rated) {
-  const Signal drive = log.has(Signal::coil_current) ? Signal::coil_current : Signal::command;
+  const Signal drive = drive_of(log);
   Sweeps s;
   s.current = log[drive];
   double last = nan;

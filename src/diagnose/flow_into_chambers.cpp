@@ -8,6 +8,7 @@
 
 #include "diagnose/constants.h"
 #include "servodx/log.h"
+#include "signals/drive_of.h"
 #include "signals/signal.h"
 
 namespace servodx {
@@ -78,9 +79,7 @@ std::optional<double> left_by(const Recorded& r, const std::vector<double>& a, c
 std::optional<LeftOfMoves> left_by_flow(const Log& log, const RigFile& rig, double rate) {
   for (const Signal s : {Signal::pressure_a, Signal::pressure_b, Signal::piston_position})
     if (!log.has(s)) return {};
-  const Signal opening = log.has(Signal::spool_position) ? Signal::spool_position
-                         : log.has(Signal::coil_current) ? Signal::coil_current
-                                                         : Signal::command;
+  const Signal opening = log.has(Signal::spool_position) ? Signal::spool_position : drive_of(log);
   const std::optional<double> stated = rig.fact("supply.pressure");
   if (!log.has(Signal::supply_pressure) && !stated) return {};
   const Recorded r{log[opening], log[Signal::piston_position],

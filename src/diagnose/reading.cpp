@@ -13,6 +13,7 @@
 #include "fit/fast_log.h"
 #include "fit/log_data.h"
 #include "fit/tuned_state.h"
+#include "signals/drive_of.h"
 #include "simulate/side_by_side.h"
 #include "simulate/simulate.h"
 
@@ -35,8 +36,6 @@ std::vector<Signal> held(const Log& log, const std::array<Signal, n>& of) {
     if (log.has(s)) out.push_back(s);
   return out;
 }
-
-Signal drive_of(const Log& log) { return log.has(Signal::coil_current) ? Signal::coil_current : Signal::command; }
 
 // One of them, or all: a recorder's unit is a column's or everyone's.
 std::vector<std::vector<Signal>> each_and_all(const std::vector<Signal>& of) {

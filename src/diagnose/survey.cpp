@@ -16,6 +16,7 @@
 #include "servodx/note.h"
 #include "servodx/operating_point.h"
 #include "servodx/rig.h"
+#include "signals/drive_of.h"
 #include "signals/noise.h"
 #include "signals/signal.h"
 #include "signals/usual_step.h"
@@ -116,7 +117,7 @@ std::pair<double, double> correlations(const std::vector<double>& x, const std::
 
 // Spool and piston speed follow the drive, within their lag. One that runs against it has a sign turned.
 void find_turned(const Log& log, LogSurvey& s) {
-  const std::vector<double>& drive = log[log.has(Signal::coil_current) ? Signal::coil_current : Signal::command];
+  const std::vector<double>& drive = log[drive_of(log)];
   const auto samples = [&](double time) { return static_cast<std::size_t>(std::lround(time * s.rate)); };
   const auto turned = [&](Signal signal, const std::vector<double>& answer, double lag) {
     const auto [least, greatest] = correlations(drive, answer, samples(lag));

@@ -7,6 +7,7 @@
 #include "base/present.h"
 #include "base/two_pi.h"
 #include "evidence/constants.h"
+#include "signals/drive_of.h"
 
 namespace servodx {
 namespace {
@@ -66,7 +67,7 @@ bool same_programme(const TestConditions& a, const TestConditions& b) {
 
 TestConditions conditions_of(const Log& log) {
   TestConditions c;
-  const std::vector<double>& drive = log[log.has(Signal::coil_current) ? Signal::coil_current : Signal::command];
+  const std::vector<double>& drive = log[drive_of(log)];
   double lowest = HUGE_VAL, highest = -HUGE_VAL;
   for (const double v : drive)
     if (std::isfinite(v)) lowest = std::min(lowest, v), highest = std::max(highest, v);

@@ -11,6 +11,7 @@
 #include "evidence/constants.h"
 #include "servodx/log.h"
 #include "servodx/rig.h"
+#include "signals/drive_of.h"
 #include "signals/signal.h"
 
 namespace servodx {
@@ -72,8 +73,7 @@ void widen(std::optional<double>& lowest, std::optional<double>& highest, const 
 
 OperatingPoint operating_point_of(const Log& log) {
   return {median_of(log, Signal::supply_pressure), median_of(log, Signal::return_pressure),
-          median_of(log, Signal::oil_temperature), largest_of(log, Signal::load_force),
-          largest_of(log, log.has(Signal::coil_current) ? Signal::coil_current : Signal::command)};
+          median_of(log, Signal::oil_temperature), largest_of(log, Signal::load_force), largest_of(log, drive_of(log))};
 }
 
 OperatingPoint sheet_point(const RigFile& rig) {

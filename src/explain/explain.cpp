@@ -108,7 +108,7 @@ void measure(const Inquiry& q, const Answer& answer, ExplainResult& out) {
   if (answer.told_by_blocks && out.heldout_gain.lower <= 0)
     out.notes.push_back(
         {Note::Kind::told_by_blocks,
-         fmt::format("{} is told by the blocks with measured signals between them. The simulation by itself does not "
+         fmt::format("{} is found by the blocks with measured signals between them. The simulation by itself does not "
                      "follow better with it: held out it gains {:.0f} % ({:.0f} to {:.0f}).",
                      out.causes.front().effect, 100 * out.heldout_gain.value, 100 * out.heldout_gain.lower,
                      100 * out.heldout_gain.upper)});

@@ -15,6 +15,7 @@
 #include "parameters/list.h"
 #include "servodx/note.h"
 #include "servodx/rig.h"
+#include "signals/drive_of.h"
 #include "signals/noise.h"
 #include "signals/without_noise.h"
 
@@ -60,7 +61,7 @@ LogData prepare(const Log& log, const RigFile& rig, const Recorder& recorder) {
   Scenario& s = out.scenario;
   s.time = log.time;
   s.current_measured = log.has(Signal::coil_current);
-  s.command = bridged(log.time, log[s.current_measured ? Signal::coil_current : Signal::command]);
+  s.command = bridged(log.time, log[drive_of(log)]);
   const auto input = [&](Signal which) {
     return log.has(which) ? without_noise(bridged(log.time, log[which])) : std::vector<double>{};
   };

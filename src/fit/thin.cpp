@@ -12,6 +12,7 @@
 #include "servodx/log.h"
 #include "servodx/note.h"
 #include "servodx/rig.h"
+#include "signals/drive_of.h"
 #include "signals/usual_step.h"
 #include "simulate/scenario.h"
 
@@ -38,7 +39,7 @@ double fastest(const std::vector<double>& t, const std::vector<double>& command,
 
 // [s] over which the command of a stand's log moves by `thin_travel` at most; 0: not of a stand, or too short.
 double creeping_time(const Log& log, const RigFile& rig) {
-  const Signal drive = log.has(Signal::coil_current) ? Signal::coil_current : Signal::command;
+  const Signal drive = drive_of(log);
   if (ports_of(log, rig) == Ports::actuator || log.samples() < 3 || !log.has(drive)) return 0;
   const double travel = thin_travel * rig.fact("valve.rated_current").value_or(0.02);
   return std::min(thin_time, travel / std::max(fastest(log.time, log[drive], usual_step(log.time)), tiny));

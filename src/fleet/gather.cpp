@@ -11,7 +11,6 @@
 #include "base/csv.h"
 #include "base/error.h"
 #include "base/json_text.h"
-#include "base/reading_limits.h"
 #include "base/result_schema.h"
 #include "fleet/result_file.h"
 
@@ -88,7 +87,7 @@ std::string page_beside(const std::string& result) {
 }
 
 void read_into(FleetTable& table, const std::string& path, const std::string& name) {
-  const Json file = json_or_discarded<Json>(read_file_within(path, largest_json));
+  const Json file = json_in_file<Json>(path, make_again);
   if (!file.is_object()) throw Unfit{"is no whole JSON", make_again};
   const std::string command = file.contains("command") ? text_at(file, "command") : "";
   if (command != "diagnose")

@@ -114,7 +114,7 @@ ValveTrend trend(const ValveHistory& history, const TrendSettings& options) {
   out.trends = trends_of(series.checks, options);
   if (stopped(options)) {
     out.trends.clear();
-    out.notes.push_back({Note::Kind::interrupted, "interrupted: no check was told"});
+    out.notes.push_back({Note::Kind::interrupted, "interrupted: no check was judged"});
     return out;
   }
   note_levels(out, series.checks, options);

@@ -8,7 +8,9 @@
 #include <cmath>
 #include <cstddef>
 #include <iterator>
+#include <map>
 #include <optional>
+#include <set>
 #include <utility>
 
 #include "base/error.h"
@@ -45,15 +47,12 @@ std::vector<std::string> cells_of(std::string_view line, char separator) {
   return cells;
 }
 
-bool is_number(std::string cell) {
-  std::replace(cell.begin(), cell.end(), ',', '.');
-  return parse_number(cell).has_value();
-}
-
 std::optional<double> number_of(std::string cell) {
   std::replace(cell.begin(), cell.end(), ',', '.');
   return parse_number(cell);
 }
+
+bool is_number(const std::string& cell) { return number_of(cell).has_value(); }
 
 bool is_sample(const std::string& cell) { return is_number(cell) || parse_time_stamp(cell) || is_date(cell); }
 
@@ -83,8 +82,13 @@ bool is_one_of(const std::array<std::string_view, n>& words, const std::string& 
   return std::find(words.begin(), words.end(), in_small_letters(cell)) != words.end();
 }
 
+bool is_unit_of_time(const std::string& cell) {
+  const Unit* const unit = find_unit(unit_meant(cell));
+  return unit && unit->dimension == Dimension::time;
+}
+
 // The cells without their brackets, where none is a number and more than half of those that are filled are units: an
-// "A" alone is no ampere, but a chamber.
+// "A" alone is no ampere, but a chamber. Behind a unit of time two more are enough.
 std::vector<std::string> as_units(std::vector<std::string> units) {
   long known = 0, filled = 0;
   for (std::string& cell : units) {
@@ -96,7 +100,8 @@ std::vector<std::string> as_units(std::vector<std::string> units) {
     known += is_unit_as_written(cell);
     filled += !cell.empty();
   }
-  return 2 * known > filled ? units : std::vector<std::string>{};
+  const bool behind_time = !units.empty() && is_unit_of_time(units.front());
+  return 2 * known > filled || (behind_time && known > 2) ? units : std::vector<std::string>{};
 }
 
 // Rows above the first of numbers, not blank and no comments; the first is the one that the cursor took.
@@ -166,15 +171,13 @@ bool is_row_of_scales(const std::vector<std::string>& cells, long line, const st
   const auto known =
       std::find_if(std::begin(labels), std::end(labels), [&](const auto& l) { return l.first == first; });
   if (known == std::end(labels)) return false;
-  for (std::string cell : cells) {
-    std::replace(cell.begin(), cell.end(), ',', '.');
-    if (const auto number = parse_number(cell); number && *number != known->second)
+  for (const std::string& cell : cells)
+    if (const auto number = number_of(cell); number && *number != known->second)
       throw InputError(
           {path, line, ""},
           fmt::format("the row '{}' below the header is not {} for all columns", cells.front(), known->second),
           "write it as gain or offset of these columns in the rig file, where the numbers are without it, "
           "and delete the row");
-  }
   return true;
 }
 
@@ -226,8 +229,10 @@ bool begins_with_channel_numbers(const CsvCursor& csv, std::size_t time, const s
   return true;
 }
 
+bool is_name_of_comments(const std::string& name) { return is_one_of(names_of_comments, name); }
+
 bool ends_with_comment(const std::vector<std::string>& header) {
-  return header.size() > 2 && is_one_of(names_of_comments, header.back());
+  return header.size() > 2 && is_name_of_comments(header.back());
 }
 
 bool is_row_of_numbers(std::string_view line) { return numbers_of(line).has_value(); }
@@ -326,25 +331,29 @@ bool is_port(const std::string& name) {
   return bare == "A" || bare == "B" || bare == "P";
 }
 
+// Names that stand over several columns.
+std::set<std::string> repeated(const std::vector<std::string>& names) {
+  std::map<std::string, long> columns;
+  std::set<std::string> repeated;
+  for (const std::string& name : names)
+    if (!name.empty() && ++columns[name] > 1) repeated.insert(name);
+  return repeated;
+}
+
 // "Weg; Weg" below "Ventil; Kolben", or "Weg; Weg; Kraft" below "Ventil; Kolben; ": a name that stands over several
 // columns, and a port, has the name of its group before it, which holds up to the next. As they are where that does not
 // tell all apart.
 std::vector<std::string> with_groups(const std::vector<std::string>& names, const std::vector<std::string>& groups) {
-  const auto repeats = [](const std::vector<std::string>& all, const std::string& name) {
-    return !name.empty() && std::count(all.begin(), all.end(), name) > 1;
-  };
-  const auto any_repeats = [&](const std::vector<std::string>& all) {
-    return std::any_of(all.begin(), all.end(), [&](const std::string& name) { return repeats(all, name); });
-  };
-  if (names.size() != groups.size() || names.size() > most_judged || !any_repeats(names)) return names;
+  const std::set<std::string> several = repeated(names);
+  if (names.size() != groups.size() || several.empty()) return names;
   if (!is_row_of_words(groups) || !as_units(groups).empty()) return names;
   std::vector<std::string> named = names;
   std::string group;
   for (std::size_t c = 0; c < names.size(); ++c) {
     if (!groups[c].empty()) group = groups[c];
-    if (!group.empty() && (repeats(names, names[c]) || is_port(names[c]))) named[c] = group + " " + names[c];
+    if (!group.empty() && (several.contains(names[c]) || is_port(names[c]))) named[c] = group + " " + names[c];
   }
-  return any_repeats(named) ? names : named;
+  return repeated(named).empty() ? named : names;
 }
 
 }  // namespace

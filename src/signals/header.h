@@ -61,7 +61,9 @@ std::vector<std::string> units_above(std::string_view text, const CsvCursor& csv
 // Two numbers or time stamps at least, and nothing else.
 bool is_row_of_numbers(std::string_view line);
 
-// "Comment" at the end of a header: its cells may be absent.
+// "Comment", "Kommentar".
+bool is_name_of_comments(const std::string& name);
+// Such a name at the end of a header: its cells may be absent.
 bool ends_with_comment(const std::vector<std::string>& header);
 
 }  // namespace servodx

@@ -14,6 +14,7 @@
 #include "base/units.h"
 #include "servodx/note.h"
 #include "servodx/rig.h"
+#include "signals/header.h"
 #include "signals/plausible.h"
 
 namespace servodx {
@@ -200,7 +201,7 @@ void LogColumns::refuse_missing(Signal signal, const std::string& rule) const {
   if (!ignored_.empty()) mend += "; not known: " + in_quotes(ignored_);
   // A recorder's column of comments is no command.
   std::vector<std::string> meant = ignored_;
-  std::erase_if(meant, [](const std::string& ignored) { return in_small_letters(ignored).starts_with("comment"); });
+  std::erase_if(meant, is_name_of_comments);
   std::string near = nearest_word(name, meant);
   for (const std::string& ignored : meant)
     if (in_small_letters(ignored) == name) near = ignored;

@@ -13,6 +13,7 @@
 #include "servodx/note.h"
 #include "servodx/rig.h"
 #include "signals/constants.h"
+#include "signals/drive_of.h"
 #include "signals/usual_step.h"
 
 namespace servodx {
@@ -30,7 +31,7 @@ class Watch {
       : log_(log),
         rig_(rig),
         sweeps_(sweeps),
-        drive_(log.has(Signal::coil_current) ? Signal::coil_current : Signal::command),
+        drive_(drive_of(log)),
         drive_range_(sweeps[index(drive_)].high - sweeps[index(drive_)].low) {}
 
   // Of the log as a whole.

@@ -34,10 +34,7 @@ class Reader {
   explicit Reader(const std::string& path) : path_(path) {}
 
   Json parse(const std::string& text) const {
-    if (!is_shallow_json(text))
-      throw InputError({path_, 0, ""}, fmt::format("nests deeper than {} levels", deepest_json), make_again);
-    if (!has_few_values(text))
-      throw InputError({path_, 0, ""}, fmt::format("holds more than {} values", most_json_values), make_again);
+    refuse_beyond_limits(text, path_, make_again);
     try {
       return Json::parse(text);
     } catch (const Json::parse_error& error) {

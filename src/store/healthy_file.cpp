@@ -5,7 +5,6 @@
 
 #include "base/error.h"
 #include "base/json_text.h"
-#include "base/reading_limits.h"
 #include "evidence/conditions.h"
 
 namespace servodx::store {
@@ -16,12 +15,11 @@ using Json = nlohmann::ordered_json;
 }  // namespace
 
 HealthyReference read_healthy(const std::string& path) {
-  const auto refuse = [&](const char* key, const char* rule) {
-    throw InputError({path, 0, key}, rule, "make it again with 'servodx baseline'");
-  };
+  constexpr const char* make_again = "make it again with 'servodx baseline'";
+  const auto refuse = [&](const char* key, const char* rule) { throw InputError({path, 0, key}, rule, make_again); };
   HealthyReference out;
   try {
-    const Json file = json_or_discarded<Json>(read_file_within(path, largest_json));
+    const Json file = json_in_file<Json>(path, make_again);
     if (!file.contains("explain")) refuse("explain", "says nothing of what healthy logs show of each cause");
     const auto value = [](const Json& j) { return j.is_number() ? j.get<double>() : std::nan(""); };
     for (const Json& l : file.at("explain").at("logs")) {

@@ -3,7 +3,6 @@
 #include <nlohmann/json.hpp>
 
 #include "base/json_text.h"
-#include "base/reading_limits.h"
 #include "servodx/error.h"
 
 namespace servodx::store {
@@ -19,9 +18,9 @@ bool is_result(const Json& json) {
 }  // namespace
 
 Json read_result(const std::string& path) {
-  Json json = json_or_discarded<Json>(read_file_within(path, largest_json));
-  if (!is_result(json))
-    throw InputError({path, 0, ""}, "is no result of servodx", "name a file that --json wrote, or a baseline");
+  constexpr const char* name_another = "name a file that --json wrote, or a baseline";
+  Json json = json_in_file<Json>(path, name_another);
+  if (!is_result(json)) throw InputError({path, 0, ""}, "is no result of servodx", name_another);
   return json;
 }
 

@@ -59,7 +59,7 @@ void keep_width_without_spool(TuneScope& scope) {
     f.prior_sd = width_tolerance / std::log(f.upper / f.lower);
     scope.notes.push_back(
         {Note::Kind::no_spool,
-         "no log holds the spool's position, so the logs tell only the product of its travel and the ports' width: "
+         "no log holds the spool's position, so the logs show only the product of its travel and the ports' width: "
          "the width is kept near the data sheet's; '--prior port_width=SD' sets how near"});
   }
 }

@@ -263,6 +263,21 @@ TEST(Csv, ARowOfATextInMemoryIsHeldToTheSameLength) {
   EXPECT_EQ(refusal("a,b\n1,\"" + row + "\"\n2,\"" + row + "\"\n"), "accepted");
 }
 
+// Were the line end looked for behind each quoted cell, this row would take minutes.
+TEST(Csv, ALongRowOfQuotedCellsIsReadInTimeLinearInIt) {
+  constexpr long cells = 1'000'000;  // 3 MB
+  std::string text = "a,b\n";
+  for (long k = 0; k < cells; ++k) text += "\"\",";
+  text += "\"\n\"\n1,2\n";
+  CsvCursor csv(text, "t.csv");
+  ASSERT_TRUE(csv.next_row());
+  long read = 0;
+  for (std::string cell; csv.next_cell(cell);) ++read;
+  EXPECT_EQ(read, cells + 1);
+  ASSERT_TRUE(csv.next_row());
+  EXPECT_EQ(csv.line(), 4);
+}
+
 TEST(Csv, TheBeginningIsGivenWhileItIsInMemory) {
   const std::string text = "first\nsecond\n";
   EXPECT_EQ(CsvCursor(text, "t.csv").from_beginning(), text);

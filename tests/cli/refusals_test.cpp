@@ -152,7 +152,7 @@ const std::vector<Refusal>& refusals() {
          d.write("b.json", bytes_of(d / "a.json"));
        },
        "compare a.json b.json",
-       {"a.json: ", "is no result of servodx", "; "}},
+       {"a.json: ", "nests deeper than 100 levels", "; "}},
       {"ResultOfANewerSchema",
        [](const Desk& d) {
          d.write("a.json", R"({"tool": "servodx", "command": "x", "schema": 99})");

@@ -1,5 +1,5 @@
-"""scripts/setup says what it installs while it works: apt's own progress on a terminal, a line a package elsewhere. With
-stand-ins for apt and dpkg: nothing is installed. Called by ctest."""
+"""scripts/setup says what it installs while it works: all that apt says on a terminal; elsewhere what is fetched, the
+room it takes and a line a package. With stand-ins for apt and dpkg: nothing is installed. Called by ctest."""
 import os, pathlib, subprocess, tempfile, unittest
 
 import source
@@ -36,7 +36,7 @@ class Setup(unittest.TestCase):
     def test_a_log_has_a_line_a_package_and_the_room_it_takes(self):
         code, out, err = setup()
         self.assertEqual(code, 0, err)
-        self.assertRegex(out, r"setup: installing \d+ packages and what they need, some minutes: g\+\+ cmake")
+        self.assertRegex(out, r"setup: installing \d+ packages with what they need, which takes some minutes: g\+\+ cmake")
         self.assertRegex(out, r"setup: installed \d+ packages in \d+ s\n")
         self.assertEqual(err.splitlines(), [
             "setup: reading the lists of packages", "setup: Need to get 61.5 MB of archives.",

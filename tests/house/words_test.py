@@ -280,8 +280,8 @@ def house_words(text):
 
 
 def texts_for_readers():
-    """(place, text): sentences of src/report, adjoining literals as one; lines of the list of fields and of the pages."""
-    for path in source.files("src/report"):
+    """(place, text): sentences of the sources, adjoining literals as one; lines of the list of fields and of the pages."""
+    for path in source.files("src", "apps", "python"):
         whole, last = "", 0
         for kind, text, line in (*source.tokens(path), ("op", "", 0)):
             if kind == "string":

@@ -255,6 +255,14 @@ TEST(Genetic, AStateThatCannotGoOnIsRefusedNotResumed) {
   EXPECT_THROW(genetic_state_from_json(std::string(100000, '[')), InputError);
 }
 
+// The limits of a file from outside are not its own.
+TEST(Genetic, AStateOfAMillionNumbersIsReadBack) {
+  GeneticState state;
+  state.n = 1000;
+  state.archive.assign(1001, {Point(1000, 0.5), 1.0});
+  EXPECT_EQ(genetic_state_from_json(to_json(state)).archive.size(), 1001u);
+}
+
 TEST(Genetic, FailedPointsAreCountedAndSurvived) {
   constexpr int n = 5;
   const Function function = sphere(n);

@@ -14,7 +14,9 @@
 #include "diagnose/judgeable.h"
 #include "diagnose/moved.h"
 #include "diagnose/record_law.h"
+#include "explain/cause_score.h"
 #include "explain/explain.h"
+#include "explain/healthy.h"
 #include "explain/missing.h"
 #include "explain/outcome.h"
 #include "faults/registry.h"
@@ -64,6 +66,8 @@
 #include "servodx/table.h"
 #include "servodx/tune.h"
 #include "store/baseline_file.h"
+#include "store/baseline_parts.h"
+#include "store/healthy_file.h"
 #include "store/truth_file.h"
 #include "temporary_folder.h"
 #include "tune/trust.h"
@@ -630,6 +634,36 @@ TEST(BaselineFile, RefusalsNameFileKeyAndMend) {
       edited([](Json& j) { j["command"] = "tune"; }),
       "base.json: key 'command': is the result of 'tune', not of 'baseline'; name the file that 'servodx baseline "
       "-o' wrote");
+}
+
+// Each log with as many figures as a bench's has.
+BaselineParts baseline_of_logs(std::size_t logs) {
+  BaselineParts parts;
+  parts.detection = some_baseline();
+  const DetectionBaseline::Score score = parts.detection.scores.front();
+  parts.detection.scores.assign(logs, score);
+  HealthyLog log;
+  log.log = "bench/healthy.csv", log.sha256 = std::string(64, 'a'), log.has_shares = true;
+  const std::vector<ProbeScore> sizes(4, ProbeScore{1.0 / 3.0, 1.0 / 7.0});
+  for (int k = 0; k < 150; ++k) log.scores.push_back({"effect_of_a_valve", fmt::format("row_{}", k), sizes, 1.0 / 3.0});
+  for (int k = 0; k < 15; ++k) log.misses.push_back({fmt::format("part {}", k), 1.0 / 3.0});
+  for (int k = 0; k < 8; ++k) {
+    log.shares.push_back({"effect_of_a_valve", fmt::format("row_{}", k), 1.0 / 3.0, 1.0 / 7.0});
+    log.errors.push_back({"spool_position", 1.0 / 3.0});
+  }
+  parts.causes.emplace().logs.assign(logs, log);
+  return parts;
+}
+
+TEST(BaselineFile, OfAHundredLogsIsWithinTheLimits) {
+  const TemporaryFolder folder;
+  Header header;
+  header.command = "baseline";
+  const std::string text = dump(header, baseline_json(baseline_of_logs(100)));
+  EXPECT_GT(text.size(), 9'000'000u);  // 90 kB a log
+  const std::string path = folder.write("base.json", text);
+  EXPECT_EQ(store::read_baseline(path).baseline.scores.size(), 100u);
+  EXPECT_EQ(store::read_healthy(path).logs.size(), 100u);
 }
 
 TEST(DiagnoseJson, HasTheContractsKeys) {

@@ -156,6 +156,32 @@ TEST(Header, OfNamesWithALetterThatIsAUnitIsNoRowOfUnits) {
   EXPECT_EQ(units_row(with_others).size(), 4);
 }
 
+TEST(Header, BehindAUnitOfTimeTwoOtherUnitsAreARowOfUnits) {
+  const auto units_below = [](const std::string& row) {
+    const std::string text = "time;command;spool_position;n;on;mode\n" + row + "\n0;1;2;3;1;7\n";
+    CsvCursor csv(std::string_view(text), "log.csv");
+    return pass_rows_below_header(csv, "log.csv").units;
+  };
+  EXPECT_EQ(units_below("s;mA;mm;inc;bool;digits"),
+            (std::vector<std::string>{"s", "mA", "mm", "inc", "bool", "digits"}));
+  EXPECT_EQ(units_below("[ms];[mA];[mm];inc;bool;digits").size(), 6u);
+  EXPECT_TRUE(units_below("s;mA;on;inc;bool;digits").empty());
+  EXPECT_TRUE(units_below("clock;mA;mm;bar;bool;digits").empty());
+}
+
+// Wider than what is judged of a row.
+TEST(Header, NamesOverManyColumnsTakeTheirGroups) {
+  std::string groups = ";Ventil;;Kolben", names = "Zeit [s];Strom [mA];Weg [mm];Weg [mm]", numbers = "0;1;2;3";
+  for (int k = 5; k <= 24; ++k) groups += ";", names += ";K" + std::to_string(k), numbers += ";0,5";
+  const std::string text = groups + "\n" + names + "\n" + numbers + "\n";
+  CsvCursor csv(std::string_view(text), "log.csv");
+  EXPECT_EQ(pass_lines_above_header(csv, "log.csv"), 1);
+  ASSERT_EQ(csv.header().size(), 24u);
+  EXPECT_EQ(csv.header()[2], "Ventil Weg [mm]");
+  EXPECT_EQ(csv.header()[3], "Kolben Weg [mm]");
+  EXPECT_EQ(csv.header()[23], "K24");
+}
+
 TEST(Header, NamesOverSeveralColumnsTakeTheirGroups) {
   const auto names = [](const std::string& text) {
     CsvCursor csv(std::string_view(text), "log.csv");
