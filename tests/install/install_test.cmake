@@ -130,6 +130,7 @@ if(DPKG_DEB AND SHLIBDEPS)
   endif()
   foreach(file servodx/usr/share/man/man1/servodx.1 servodx/usr/share/servodx/params/borello2009.csv
                servodx/usr/share/doc/servodx/docs/tutorial.md servodx/usr/share/doc/servodx/docs/pictures/fault.png
+               servodx/usr/share/doc/servodx/docs/figures/model.svg
                servodx/usr/share/doc/servodx/data/tutorial/suspect.csv servodx/usr/share/doc/servodx/copyright
                libservodx-dev/usr/include/servodx/servodx.h)
     file(GLOB found ${work}/${file} ${work}/${file}.gz)
