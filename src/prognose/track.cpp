@@ -19,6 +19,7 @@
 #include "optimise/unit_cube.h"
 #include "parameters/list.h"
 #include "prognose/constants.h"
+#include "prognose/held_back.h"
 #include "prognose/reading_scale.h"
 #include "simulate/nuisance.h"
 #include "simulate/scenario.h"
@@ -165,10 +166,13 @@ double adequacy_of(const FitProblem& problem, const LogData& log, const LeastSqu
   return worst;
 }
 
+// The inverse of J'J.
+Eigen::MatrixXd covariance_at(const LeastSquaresResult& fit) {
+  return covariance_of(fit.jacobian, std::vector<char>(static_cast<std::size_t>(fit.jacobian.cols()), 1));
+}
+
 // [of the unit interval] of each number, widened where the fit is worse than on the tuning logs.
-std::vector<double> errors_of(const LeastSquaresResult& fit, double adequacy) {
-  const auto n = static_cast<std::size_t>(fit.jacobian.cols());
-  const Eigen::MatrixXd covariance = covariance_of(fit.jacobian, std::vector<char>(n, 1));
+std::vector<double> errors_of(const LeastSquaresResult& fit, const Eigen::MatrixXd& covariance, double adequacy) {
   std::vector<double> errors;
   for (long j = 0; j < fit.jacobian.cols(); ++j) {
     const double se = std::sqrt(std::max(0.0, covariance(j, j)));
@@ -177,14 +181,21 @@ std::vector<double> errors_of(const LeastSquaresResult& fit, double adequacy) {
   return errors;
 }
 
-// The same where samples in a row share the model's error: each channel counts for its independent samples alone.
+// The same where samples in a row share the model's error: each channel counts for its independent samples alone. And
+// no less than what bounds hold back: a number at its bound, repeated, stays there, but that is not what is true of it.
 std::vector<double> whole_errors_of(const FitProblem& problem, const LogData& log, const ErrorModel& error,
                                     LeastSquaresResult fit, double adequacy) {
   for (std::size_t c = 0; c < log.channels.size(); ++c) {
     const auto [first, n] = problem.rows(0, static_cast<int>(c));
-    fit.jacobian.middleRows(first, n) *= std::sqrt(effective_of(error.find(log.channels[c].signal), log.scenario.time));
+    const double root = std::sqrt(effective_of(error.find(log.channels[c].signal), log.scenario.time));
+    fit.jacobian.middleRows(first, n) *= root;
+    fit.residual.segment(first, n) *= root;
   }
-  return errors_of(fit, adequacy);
+  const Eigen::MatrixXd covariance = covariance_at(fit);
+  const Eigen::VectorXd further = held_back(fit.point, fit.residual, fit.jacobian, covariance);
+  std::vector<double> errors = errors_of(fit, covariance, adequacy);
+  for (std::size_t j = 0; j < errors.size(); ++j) errors[j] = std::max(errors[j], further[static_cast<long>(j)]);
+  return errors;
 }
 
 // One wearing parameter in the unit of its row, at `u` of its severity's unit interval.
@@ -219,7 +230,7 @@ void take_fit(Track& out, const FitProblem& problem, const LogData& log, const E
               const LeastSquaresResult& fit) {
   const auto& faults = progressive_faults();
   out.adequacy = adequacy_of(problem, log, fit);
-  const std::vector<double> errors = errors_of(fit, out.adequacy),
+  const std::vector<double> errors = errors_of(fit, covariance_at(fit), out.adequacy),
                             whole = whole_errors_of(problem, log, error, fit, out.adequacy);
   Point nuisances = fit.point;
   for (std::size_t j = 0; j < faults.size(); ++j) nuisances[j] = health[j];
