@@ -93,6 +93,7 @@ std::vector<Replayed> replayed(const Assessment& a, const Log& log, const Table&
 std::string label_of(const std::string& word) {
   if (word == "sensor_gain_drift_position") return "sensor_fault";
   if (word == "cylinder_internal_leakage") return "cylinder_leakage";
+  if (word == "edge_wear") return "radial_clearance_wear";
   return word;
 }
 

@@ -252,7 +252,7 @@ std::string names() {
   std::string text = "Excitations:\n";
   for (const auto& e : rig::excitations()) text += "  " + e.name + ": " + e.description + "\n";
   text += "Faults (severity: mild, medium, severe or a value):\n";
-  for (const auto& f : rig::rig_faults()) text += "  " + rig::label_of(f.name) + ": " + f.description + "\n";
+  for (const auto& f : rig::rig_faults()) text += "  " + rig::word_of(f) + ": " + f.description + "\n";
   return text;
 }
 

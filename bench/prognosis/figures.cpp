@@ -71,6 +71,7 @@ const std::array<Theory, std::size(degradations)> theories = {{{"theory: pilot p
                                                                {"theory: 1/g", of_torque},
                                                                {"theory: at most", of_backlash},
                                                                {"theory: at most", of_friction},
+                                                               {"theory: no lap left", of_clearance},
                                                                {"theory: no lap left", of_clearance}}};
 
 rig::RigRun test_of(const Degradation& d, std::uint64_t seed) {

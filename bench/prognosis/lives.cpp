@@ -58,18 +58,26 @@ double spread_of(const std::vector<double>& looks) {
   return student * std::sqrt(square / (n - 1) * (1 + 1 / n));
 }
 
+// To a check some degradations are one fault, and wear of either reads its own way.
+bool is_a_fault(const Degradation& d) { return std::string_view(d.name) == d.fault; }
+
+std::string seeded_file(const Degradation& d, const std::string& folder) {
+  return folder + (is_a_fault(d) ? "/seeded.csv" : fmt::format("/seeded-{}.csv", d.name));
+}
+
 // What the seeded-fault test read of the degradations whose parameter is stated as it is, as `servodx trend --seeded`
-// takes it.
-std::string seeded_csv(const Bench& b, const std::string& folder) {
+// takes it: of those that are one fault, valves that wear as the one that is asked for.
+std::string seeded_csv(const Bench& b, const Degradation& asked, const std::string& folder) {
   std::string csv = "valve,name,truth,value,oil_temperature [degC]\n";
   for (const Degradation& d : degradations) {
-    if (d.stated != Stated::value) continue;
+    const bool one_fault = std::string_view(d.fault) == asked.fault;
+    if (d.stated != Stated::value || (one_fault ? &d != &asked : !is_a_fault(d))) continue;
     for (int v = 0; v < seeded_valves; ++v)
       for (const Degradation* fault : {static_cast<const Degradation*>(nullptr), &d}) {
         const rig::RigModel valve = seeded_valve(b, v);
         for (const Recording& r : seeded_looks(b, v, fault, folder).recordings)
           for (const Check& c : r.checks)
-            if (caused_by(c.name) == d.name)
+            if (caused_by(c.name) == d.fault)
               csv += fmt::format("{},{},{:.6g},{:.6g},{:.1f}\n", v, c.name.text(),
                                  truth_of(d, valve, severity_at(end_of(d, b.model, valve), fault ? seeded_part(r) : 0)),
                                  c.value, r.temperature - zero_celsius);
@@ -88,25 +96,25 @@ TrendSettings seeded_fault(const Bench& b, const Degradation& d, const std::stri
       for (const Check& c : r.checks) {
         if ((whole_way && seeded_part(r) < 1) || r.temperature < warm) continue;
         double value = c.value;
-        if (caused_by(c.name) == d.name && d.stated == Stated::current) value *= friction_current(h.tuned);
-        if (caused_by(c.name) == d.name && d.stated == Stated::multiple) value /= h.tuned[row_of(c.name)];
+        if (caused_by(c.name) == d.fault && d.stated == Stated::current) value *= friction_current(h.tuned);
+        if (caused_by(c.name) == d.fault && d.stated == Stated::multiple) value /= h.tuned[row_of(c.name)];
         to[c.name].push_back(value);
       }
   };
   for (int v = 0; v < seeded_valves; ++v)
     add(seeded_looks(b, v, nullptr, folder), false, healthy), add(seeded_looks(b, v, &d, folder), true, failed);
   TrendSettings options;
-  options.seeded = read_seeded_csv(folder + "/seeded.csv");
+  options.seeded = read_seeded_csv(seeded_file(d, folder));
   for (const auto& [name, values] : healthy) {
     if (failed[name].empty()) continue;
     const auto [low, high] = std::minmax_element(values.begin(), values.end());
     const double h = median(values), f = median(failed[name]);
     const std::string cause = caused_by(name);
-    if (cause == d.name && d.stated == Stated::value) {
+    if (cause == d.fault && d.stated == Stated::value) {
       const rig::RigModel& type = b.model;
       const double end = truth_of(d, type, d.failed);
       (end > truth_of(d, type, d.healthy) ? options.failure[name].second : options.failure[name].first) = end;
-    } else if (cause == d.name) {
+    } else if (cause == d.fault) {
       const double level = mean_of(failed[name]);
       options.failure_spread[name] = spread_of(failed[name]);
       (d.stated == Stated::multiple ? options.failure_ratio : options.failure_current)[name] = level;
@@ -126,7 +134,7 @@ std::string readings_csv(const Bench& b, const std::vector<Unit>& all, const std
     const Degradation end = end_of(*all[i].degradation, b.model, valve);
     for (const Recording& r : histories[i].recordings)
       for (const Check& c : r.checks) {
-        if (caused_by(c.name) != end.name) continue;
+        if (caused_by(c.name) != end.fault) continue;
         const double s = r.at / all[i].life;
         csv += fmt::format("{},{},{:.4f},{:.1f},{:.5g},{:.5g},{:.3g},{:.5g}\n", end.name, all[i].name, s,
                            r.temperature - zero_celsius, truth_of(end, valve, severity_at(end, all[i].progress(s))),
@@ -164,7 +172,7 @@ Judged judge(const Unit& unit, const ValveHistory& h, double lambda, const Trend
   j.met = j.alerted && alpha_lambda(t.life, remaining, 0.2);
   j.covered = j.alerted && covers(t.life, remaining, 0.9);
   j.late = j.alerted && t.remaining->median > remaining;
-  j.named = t.cause == unit.degradation->name;
+  j.named = t.cause == unit.degradation->fault;
   j.ruled = ruled;
   j.rule_met = std::abs(rule - remaining) <= 0.2 * remaining;
   j.rule_crps = std::abs(std::min(rule, horizon) - remaining);
@@ -210,8 +218,10 @@ void lives(const Bench& b, const std::string& out, int units, int checks, int fi
   for_each(std::size(degradations), "seeded faults", [&](int i) {
     for (int v = 0; v < seeded_valves; ++v) seeded_looks(b, v, &degradations[i], out);
   });
-  write_file(out + "/seeded.csv", seeded_csv(b, out));
-  for (const Degradation& d : degradations) seeded.at(d.name) = seeded_fault(b, d, out);
+  for (const Degradation& d : degradations) {
+    write_file(seeded_file(d, out), seeded_csv(b, d, out));
+    seeded.at(d.name) = seeded_fault(b, d, out);
+  }
   for (const auto& [name, o] : seeded) {
     std::fprintf(stderr, "\n%s fails at", name.c_str());
     for (const auto& [check, ratio] : o.failure_ratio) std::fprintf(stderr, " %s x %.3g", check.text().c_str(), ratio);

@@ -29,20 +29,23 @@ struct Bench {
 // tuned to, or as the current that it takes.
 enum class Stated { value, multiple, current };
 
-// The paper's degradations, each to the end of what it studies.
+// The paper's degradations, each to the end of what it studies; the clearance alone and with its corners.
 struct Degradation {
-  const char* name;
+  const char* name;        // to the rig
+  const char* fault;       // that it is to a check
   double healthy, failed;  // severity
   const char* figure;      // of Borello et al. 2009
   const char* check;       // that it shows
   Stated stated;
 };
 inline constexpr Degradation degradations[] = {
-    {"clogged_filter", 0, 0.75, "8", "fidelity", Stated::value},
-    {"torque_motor_loss", 1, 0.2, "9", "fidelity", Stated::multiple},
-    {"feedback_wire_backlash", 0, 20e-6, "10", "mean_error", Stated::value},
-    {"sticky_spool", 1, 20, "11", "mean_error", Stated::current},
-    {"radial_clearance_wear", 1, 10, "12", "correlation@5Hz", Stated::value}};
+    {"clogged_filter", "clogged_filter", 0, 0.75, "8", "fidelity", Stated::value},
+    {"torque_motor_loss", "torque_motor_loss", 1, 0.2, "9", "fidelity", Stated::multiple},
+    {"feedback_wire_backlash", "feedback_wire_backlash", 0, 20e-6, "10", "mean_error", Stated::value},
+    {"sticky_spool", "sticky_spool", 1, 20, "11", "mean_error", Stated::current},
+    {"radial_clearance_wear", "radial_clearance_wear", 1, 10, "12", "correlation@5Hz", Stated::value},
+    {"edge_wear", "radial_clearance_wear", 1, 10, "12", "correlation@5Hz", Stated::value}};
+inline constexpr int of_the_paper = 5;  // the first of them
 inline double severity_at(const Degradation& d, double s) { return d.healthy + (d.failed - d.healthy) * s; }
 
 struct Condition {

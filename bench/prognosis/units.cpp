@@ -43,14 +43,14 @@ Log kept_log(const Bench& b, const std::string& file, const rig::RigModel& valve
 }  // namespace
 
 Degradation end_of(Degradation d, const rig::RigModel& type, const rig::RigModel& valve) {
-  if (std::string_view(d.name) == "radial_clearance_wear") d.failed *= type.edges_clearance / valve.edges_clearance;
+  if (std::string_view(d.fault) == "radial_clearance_wear") d.failed *= type.edges_clearance / valve.edges_clearance;
   return d;
 }
 
 double truth_of(const Degradation& d, const rig::RigModel& valve, double severity) {
-  const std::string_view name = d.name;
-  if (name == "sticky_spool") return severity * valve.spool_breakaway;  // what holds it in small strokes
-  if (name == "radial_clearance_wear") return severity * valve.edges_clearance;
+  const std::string_view fault = d.fault;
+  if (fault == "sticky_spool") return severity * valve.spool_breakaway;  // what holds it in small strokes
+  if (fault == "radial_clearance_wear") return severity * valve.edges_clearance;
   return severity;
 }
 
@@ -93,10 +93,14 @@ std::vector<Unit> plan(int first, int units) {
     unit.life = random.uniform(80, 200);
     all.push_back(unit);
   };
+  constexpr std::uint32_t of_healthy = of_the_paper + 1;  // all valves stay those of older studies
   for (int u = first; u < first + units; ++u) {
     std::uint32_t group = 1;
-    for (const Degradation& d : degradations) add(&d, group++, u);
-    add(nullptr, group, u);
+    for (const Degradation& d : degradations) {
+      add(&d, group, u);
+      if (++group == of_healthy) ++group;
+    }
+    add(nullptr, of_healthy, u);
   }
   return all;
 }

@@ -30,6 +30,15 @@ struct FaultShape {
   void (*apply)(double* candidate, double shape);
 };
 
+// What wears along with a fault that grows: a further number, from nought, that is free where the wear is tracked. It
+// acts on nothing in health, so that the first checks of a valve tell as much as without it.
+struct WornAlong {
+  std::string_view name;  // what the number is
+  double likely, most;    // about which it is sought, and up to where
+  // Moves the rows of a candidate that has the severity; `healthy`: the candidate without it.
+  void (*apply)(double* candidate, const double* healthy, double share);
+};
+
 struct Fault {
   std::string_view name;  // label of the verdict
   std::string_view meaning;
@@ -63,6 +72,7 @@ struct Fault {
   // since the record drives the simulation.
   std::optional<Record> told_by = {};
   std::vector<FaultShape> shapes = {};
+  std::optional<WornAlong> along = {};
   // The row that a size is counted in, where drawings state it too: a size is as sure as the healthy row is.
   std::optional<int> counted_in = {};
   // Stated at 40 degC: the log shows it at its own oil, and the law between the two is assumed.

@@ -190,7 +190,7 @@ void add_parameters(CheckResult& out, const std::vector<TrackedParameter>& param
   for (const TrackedParameter& p : parameters)
     out.checks.push_back({CheckName::of_row(p.id - 1), p.value, p.std_error,
                           std::string(parameter_list[static_cast<std::size_t>(p.id - 1)].unit), p.value, 1.0,
-                          std::string(p.fault->name), p.tuned, p.failed, p.whole_error, p.told});
+                          std::string(p.fault->name), p.tuned, p.failed, p.whole_error, p.told, p.along});
 }
 
 CheckResult stopped(const Log& log) {

@@ -35,7 +35,8 @@ struct Check {
   std::string cause;    // fault label of a parameter; empty for the paper's checks
   double tuned = NAN, failed = NAN;  // of a parameter, not stored: the table's value, and where the fault has failed
   double whole_error = NAN;  // of a parameter, not stored: with the model's own error, which a trend does not see
-  bool told = false;         // from the tuned value, by that error
+  bool told = false;         // from the tuned value, by that error and what else the model leaves open
+  std::optional<TrackedAlong> along = {};  // of a parameter, not stored: what wears with it
 };
 
 struct CheckResult {

@@ -46,12 +46,15 @@ inline constexpr int oil_iterations = 6;                               // of a f
 inline constexpr double oil_null_limit = 0.05;                         // [of rated] of its null
 
 // Parameters, tracked.
-inline constexpr double severity_prior_sd = 0.5;      // [of a severity's range] about health: weak, it only holds what
-                                                      // a log cannot tell
-inline constexpr std::size_t starts_followed = 3;     // those of least misfit
-inline constexpr int first_iterations = 4;            // of each start
-inline constexpr int last_iterations = 16;            // of the best end
-inline constexpr double short_of_half_way = 0.2;      // [of the unit interval] a fault's start from half way, to health
+inline constexpr double severity_prior_sd = 0.5;   // [of a severity's range] about health: weak, it only holds what
+                                                   // a log cannot tell
+inline constexpr double along_prior_sd = 0.25;     // [of its range] about what is likely: worn edges show it to 0.01,
+                                                   // new ones not at all; no other width was run
+inline constexpr double well_worn = 0.5;           // [of its range] where it is sought too, beside what is likely
+inline constexpr std::size_t starts_followed = 3;  // those of least misfit
+inline constexpr int first_iterations = 4;         // of each start
+inline constexpr int last_iterations = 16;         // of the best end
+inline constexpr double short_of_half_way = 0.2;   // [of the unit interval] a fault's start from half way, to health
 inline constexpr double track_cost_tolerance = 1e-4;  // of the cost: a severity's error is far wider
 inline constexpr double difference_step =
     step_through_contacts;              // [of the unit interval] through contacts and frictions

@@ -19,6 +19,7 @@
 #include "optimise/unit_cube.h"
 #include "parameters/list.h"
 #include "prognose/constants.h"
+#include "prognose/held_back.h"
 #include "prognose/reading_scale.h"
 #include "simulate/nuisance.h"
 #include "simulate/scenario.h"
@@ -66,6 +67,18 @@ FreeValue severity_value(const Fault& fault) {
   return f;
 }
 
+// What wears along with a fault, by how far the candidate has come from the base.
+FreeValue along_value(const WornAlong& along, const ParameterVector& base) {
+  FreeValue f;
+  f.name = std::string(along.name);
+  f.apply = [apply = along.apply, base](double* candidate, double share) { apply(candidate, base.data(), share); };
+  f.lower = 0, f.upper = along.most;
+  f.start = along.likely;
+  f.prior_sd = along_prior_sd;
+  f.log = 0;
+  return f;
+}
+
 // Value of the fault's row at a point of the unit interval of its severity; monotone.
 double row_at(const ParameterVector& base, const Progressive& p, const FreeValue& severity, double u) {
   ParameterVector v = base;
@@ -84,15 +97,17 @@ double unit_of(const ParameterVector& base, const Progressive& p, const FreeValu
   return 0.5 * (low + high);
 }
 
-// The severities first, in the order of progressive_faults(), then the log's nuisances.
+// The severities first, in the order of progressive_faults(), then what wears along, then the log's nuisances.
 std::vector<FreeValue> free_values(const LogData& log, const ParameterVector& base, double null_limit) {
   std::vector<FreeValue> free;
   for (const Progressive& p : progressive_faults()) free.push_back(severity_value(*p.fault));
+  for (const Progressive& p : progressive_faults())
+    if (p.fault->along) free.push_back(along_value(*p.fault->along, base));
   for (FreeValue& f : nuisance_values(log, 0, base, null_limit)) free.push_back(std::move(f));
   return free;
 }
 
-// Health, each fault half way, and where the last check ended.
+// Health, each fault half way, those that something wears along with at their end too, and where the last check ended.
 std::vector<Point> starts_from(const Point& health, const ParameterVector& base, const std::vector<FreeValue>& free,
                                const std::vector<double>& last) {
   const auto& faults = progressive_faults();
@@ -100,6 +115,15 @@ std::vector<Point> starts_from(const Point& health, const ParameterVector& base,
   for (std::size_t j = 0; j < faults.size(); ++j) {
     Point x = health;
     x[j] = x[j] < 0.5 ? 0.5 * (1 + x[j]) - short_of_half_way : 0.5 * x[j] + short_of_half_way;
+    starts.push_back(x);
+  }
+  std::size_t along = faults.size();
+  for (std::size_t j = 0; j < faults.size(); ++j) {
+    if (!faults[j].fault->along) continue;
+    Point x = health;
+    x[j] = free[j].to_unit(*faults[j].fault->failed);
+    starts.push_back(x);
+    x[along++] = well_worn;
     starts.push_back(x);
   }
   if (last.size() != faults.size()) return starts;
@@ -165,10 +189,13 @@ double adequacy_of(const FitProblem& problem, const LogData& log, const LeastSqu
   return worst;
 }
 
+// The inverse of J'J.
+Eigen::MatrixXd covariance_at(const LeastSquaresResult& fit) {
+  return covariance_of(fit.jacobian, std::vector<char>(static_cast<std::size_t>(fit.jacobian.cols()), 1));
+}
+
 // [of the unit interval] of each number, widened where the fit is worse than on the tuning logs.
-std::vector<double> errors_of(const LeastSquaresResult& fit, double adequacy) {
-  const auto n = static_cast<std::size_t>(fit.jacobian.cols());
-  const Eigen::MatrixXd covariance = covariance_of(fit.jacobian, std::vector<char>(n, 1));
+std::vector<double> errors_of(const LeastSquaresResult& fit, const Eigen::MatrixXd& covariance, double adequacy) {
   std::vector<double> errors;
   for (long j = 0; j < fit.jacobian.cols(); ++j) {
     const double se = std::sqrt(std::max(0.0, covariance(j, j)));
@@ -177,15 +204,26 @@ std::vector<double> errors_of(const LeastSquaresResult& fit, double adequacy) {
   return errors;
 }
 
-// The same where samples in a row share the model's error: each channel counts for its independent samples alone.
+// The same where samples in a row share the model's error: each channel counts for its independent samples alone. And
+// no less than what bounds hold back: a number at its bound, repeated, stays there, but that is not what is true of it.
 std::vector<double> whole_errors_of(const FitProblem& problem, const LogData& log, const ErrorModel& error,
                                     LeastSquaresResult fit, double adequacy) {
   for (std::size_t c = 0; c < log.channels.size(); ++c) {
     const auto [first, n] = problem.rows(0, static_cast<int>(c));
-    fit.jacobian.middleRows(first, n) *= std::sqrt(effective_of(error.find(log.channels[c].signal), log.scenario.time));
+    const double root = std::sqrt(effective_of(error.find(log.channels[c].signal), log.scenario.time));
+    fit.jacobian.middleRows(first, n) *= root;
+    fit.residual.segment(first, n) *= root;
   }
-  return errors_of(fit, adequacy);
+  const Eigen::MatrixXd covariance = covariance_at(fit);
+  const Eigen::VectorXd further = held_back(fit.point, fit.residual, fit.jacobian, covariance);
+  std::vector<double> errors = errors_of(fit, covariance, adequacy);
+  for (std::size_t j = 0; j < errors.size(); ++j) errors[j] = std::max(errors[j], further[static_cast<long>(j)]);
+  return errors;
 }
+
+// What a log leaves open of a reading beside its error, in the coordinate that tells it: the bores, of a filter's drop;
+// the model's form, of a size that adds to none. One that multiplies has the tuned value to stand on.
+double left_beside(const Fault& fault) { return fault.part_lost ? left_by_bores : fault.log_scale ? 0 : fault.spread; }
 
 // One wearing parameter in the unit of its row, at `u` of its severity's unit interval.
 TrackedParameter parameter_at(const Progressive& p, const ParameterVector& base, const FreeValue& severity, double u,
@@ -207,8 +245,7 @@ TrackedParameter parameter_at(const Progressive& p, const ParameterVector& base,
   // is.
   ReadingScale scale;
   if (p.fault->part_lost) scale.kind = ReadingScale::Kind::drop;
-  const double from_tuned = std::abs(scale.in(out.value) - scale.in(out.tuned)),
-               beside = p.fault->part_lost ? left_by_bores : 0.0;
+  const double from_tuned = std::abs(scale.in(out.value) - scale.in(out.tuned)), beside = left_beside(*p.fault);
   out.told = from_tuned > told_beyond * std::hypot(out.whole_error / scale.stretch(out.value), beside);
   return out;
 }
@@ -219,7 +256,7 @@ void take_fit(Track& out, const FitProblem& problem, const LogData& log, const E
               const LeastSquaresResult& fit) {
   const auto& faults = progressive_faults();
   out.adequacy = adequacy_of(problem, log, fit);
-  const std::vector<double> errors = errors_of(fit, out.adequacy),
+  const std::vector<double> errors = errors_of(fit, covariance_at(fit), out.adequacy),
                             whole = whole_errors_of(problem, log, error, fit, out.adequacy);
   Point nuisances = fit.point;
   for (std::size_t j = 0; j < faults.size(); ++j) nuisances[j] = health[j];
@@ -229,8 +266,15 @@ void take_fit(Track& out, const FitProblem& problem, const LogData& log, const E
       out.null = free[j].from_unit(fit.point[j]);
       out.null_std_error = errors[j] * (free[j].upper - free[j].lower);
     }
-  for (std::size_t j = 0; j < faults.size(); ++j)
+  std::size_t along = faults.size();
+  for (std::size_t j = 0; j < faults.size(); ++j) {
     out.parameters.push_back(parameter_at(faults[j], base, free[j], fit.point[j], errors[j], whole[j]));
+    if (!faults[j].fault->along) continue;
+    const double range = free[along].range();
+    out.parameters.back().along = {free[along].from_unit(fit.point[along]), range * errors[along],
+                                   range * std::max(errors[along], whole[along])};
+    ++along;
+  }
 }
 
 }  // namespace

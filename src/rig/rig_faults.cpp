@@ -17,21 +17,39 @@ struct Label {
   std::string label, name;
 };
 const std::vector<Label>& labels() {
-  static const std::vector<Label> list{{"corner_wear", "corner_radius_wear"}, {"driver_fault", "open_coil"}};
+  static const std::vector<Label> list{{"corner_wear", "corner_radius_wear"},
+                                       {"driver_fault", "open_coil"},
+                                       {"radial_clearance_wear", "edge_wear"}};  // a shape of it
   return list;
 }
 
+// Radius [m] that the corners have lost when the clearance has grown so many times. Spool and sleeve wear both (Borello
+// 2009, degradation 5), by no law that it states: these points give the flight valve the rise of its Fig. 12 (0.5 mA at
+// 5 Hz), E = 0.18, 0.255, 0.57 and 1.05e-9 m2, where the clearance alone lets E fall. Straight between them; the last
+// piece goes on.
+double corners_beside(double clearance) {
+  struct Point {
+    double times, radius;
+  };
+  constexpr Point points[] = {{1, 0}, {3, 4e-6}, {6, 10e-6}, {10, 40e-6}};
+  std::size_t k = 1;
+  while (k + 1 < std::size(points) && clearance > points[k].times) ++k;
+  const Point &from = points[k - 1], &to = points[k];
+  return from.radius + (to.radius - from.radius) * (clearance - from.times) / (to.times - from.times);
+}
+
 const RigFault& find(const std::string& wanted) {
-  std::string name = wanted;
-  for (const Label& l : labels())
-    if (l.label == wanted) name = l.name;
-  std::vector<std::string> names;
+  std::vector<std::string> words;
   for (const auto& fault : rig_faults()) {
-    if (fault.name == name) return fault;
-    names.push_back(label_of(fault.name));
+    words.push_back(word_of(fault));
+    if (wanted == fault.name || wanted == words.back()) return fault;
   }
-  throw InputError({.file = "--fault"}, fmt::format("unknown fault '{}'", name),
-                   fmt::format("{}known are {}", did_you_mean(name, names), fmt::join(names, ", ")));
+  throw InputError({.file = "--fault"}, fmt::format("unknown fault '{}'", wanted),
+                   fmt::format("{}known are {}", did_you_mean(wanted, words), fmt::join(words, ", ")));
+}
+
+bool move_the_same(const RigFault& a, const RigFault& b) {
+  return a.quantity == b.quantity || (a.beside && a.beside == b.quantity) || (b.beside && b.beside == a.quantity);
 }
 
 void check(const RigFault& fault, const FaultCourse& course) {
@@ -66,6 +84,12 @@ std::string label_of(const std::string& name) {
   return name;
 }
 
+std::string word_of(const RigFault& fault) {
+  const std::string label = label_of(fault.name);
+  const bool taken = std::ranges::any_of(rig_faults(), [&](const RigFault& other) { return other.name == label; });
+  return taken ? fault.name : label;
+}
+
 const std::vector<RigFault>& rig_faults() {
   // clang-format off
   static const std::vector<RigFault> list{
@@ -83,6 +107,7 @@ const std::vector<RigFault>& rig_faults() {
       {"supply_fault", "1", "supply pressure left of the pump's cut-off", 1.0, 0.05, 1.0, {0.90, 0.75, 0.50}, &Wear::supply_pressure},
       // further wear and sudden failures
       {"corner_radius_wear", "m", "radius worn on every metering corner", 0.0, 0.0, 1e-4, {5e-6, 10e-6, 20e-6}, &Wear::corner_wear},
+      {"edge_wear", "1", "multiplier of the radial clearance, the metering corners worn along with it", 1.0, 1.0, 20.0, {3.0, 6.0, 10.0}, &Wear::edge_clearance, &Wear::corner_wear, corners_beside},
       {"seal_friction", "1", "multiplier of the actuator's seal friction", 1.0, 1.0, 50.0, {2.0, 4.0, 10.0}, &Wear::seal_friction},
       {"open_coil", "1", "driver voltage that still reaches the coil; of two parallel coils, what one of them conducts", 1.0, 0.0, 1.0, {0.3, 0.1, 0.0}, &Wear::coil_path},
       {"spool_jam", "N", "force by which a chip holds the spool", 0.0, 0.0, 2000.0, {50.0, 200.0, 1000.0}, &Wear::spool_jam},
@@ -102,7 +127,9 @@ Wear wear_of(const FaultSet& faults, double time) {
   for (const auto& [name, course] : faults) {
     const RigFault& fault = find(name);
     check(fault, course);
-    wear.*fault.quantity = course.at(time, fault.healthy);
+    const double severity = course.at(time, fault.healthy);
+    wear.*fault.quantity = severity;
+    if (fault.beside) wear.*fault.beside = fault.beside_at(severity);
   }
   return wear;
 }
@@ -125,6 +152,10 @@ void add_fault(const std::string& text, FaultSet& faults) {
     }
   }
   check(fault, course);
+  for (const auto& [name, other] : faults)
+    if (name != fault.name && move_the_same(fault, find(name)))
+      throw InputError({.file = "--fault"}, fmt::format("{} and {} move the same", word_of(fault), word_of(find(name))),
+                       "give one of them");
   if (!faults.emplace(fault.name, course).second) {
     throw InputError({.file = "--fault"}, fmt::format("{} is given twice", fault.name), "give it once");
   }

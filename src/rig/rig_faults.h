@@ -1,7 +1,7 @@
 // Faults of the virtual rig, by the labels and severity values of the contract, and further degradations and sudden
 // failures. Each is continuous: at `healthy` the rig is bit for bit the healthy one. Each may be there from the start,
 // step in at a time, or grow from one time to another, in proportion to its severity value. A new fault is a quantity
-// in wear.h and one entry in the list.
+// in wear.h and one entry in the list; one that moves two of them is one entry with a law.
 #pragma once
 #include <array>
 #include <limits>
@@ -21,10 +21,15 @@ struct RigFault {
   double low, high;                // allowed range
   std::array<double, 3> severity;  // mild, medium, severe
   double Wear::*quantity;
+  // What wears along with it, and where that stands at a severity; null: nothing does.
+  double Wear::*beside = nullptr;
+  double (*beside_at)(double severity) = nullptr;
 };
 const std::vector<RigFault>& rig_faults();
 // The contract's label of a fault that the rig calls by what it does ("driver_fault" of "open_coil"); else its name.
 std::string label_of(const std::string& name);
+// By which a user sets it: the contract's label, unless another fault has that for its name.
+std::string word_of(const RigFault& fault);
 
 struct FaultCourse {
   double severity = 0.0;  // at its end
@@ -43,8 +48,7 @@ inline constexpr double fully_grown = std::numeric_limits<double>::infinity();
 Wear wear_of(const FaultSet& faults, double time = fully_grown);
 
 // Into the set, by name or label: "clogged_filter=0.5" or "clogged_filter=medium" from the start, "...=0.5@2" stepping
-// in at 2 s,
-// "...=0.5@2..10" growing from 2 to 10 s. Throws InputError.
+// in at 2 s, "...=0.5@2..10" growing from 2 to 10 s. Throws InputError, also where another of the set moves the same.
 void add_fault(const std::string& text, FaultSet& faults);
 
 }  // namespace servodx::rig

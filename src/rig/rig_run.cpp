@@ -101,6 +101,7 @@ nlohmann::json truth_of(const RigModel& model, const RigRun& run, double h) {
                       {"severity", course.severity},
                       {"start", time_or_null(course.start)},
                       {"end", time_or_null(course.end)}});
+    if (name != label_of(name)) faults.back()["name"] = name;
     if (!label.empty()) label += '+';
     label += label_of(name);
     if (course.changes() && (onset < 0.0 || course.start < onset)) onset = course.start;

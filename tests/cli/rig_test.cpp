@@ -27,6 +27,7 @@ TEST(Rig, TakesTheContractsLabelsAndWritesThemIntoTheTruth) {
   const Desk desk;
   for (const auto& [fault, label] : std::map<std::string, std::string>{{"corner_wear=medium", "corner_wear"},
                                                                        {"corner_radius_wear=medium", "corner_wear"},
+                                                                       {"edge_wear=medium", "radial_clearance_wear"},
                                                                        {"driver_fault=medium@0.01", "driver_fault"},
                                                                        {"open_coil=0", "driver_fault"},
                                                                        {"supply_fault=mild", "supply_fault"},
@@ -36,6 +37,9 @@ TEST(Rig, TakesTheContractsLabelsAndWritesThemIntoTheTruth) {
     const auto truth = nlohmann::json::parse(bytes_of(desk / "a.truth.json"));
     EXPECT_EQ(truth.at("label"), label) << fault;
     EXPECT_EQ(truth.at("faults")[0].at("label"), label) << fault;
+    if (fault == "edge_wear=medium") {
+      EXPECT_EQ(truth.at("faults")[0].at("name"), "edge_wear") << "it is not alone to have that label";
+    }
     EXPECT_EQ(truth.at("schema"), 1);
   }
 }

@@ -28,6 +28,7 @@
 #include "parameters/list.h"
 #include "prognose/check.h"
 #include "prognose/life.h"
+#include "prognose/track.h"
 #include "prognose/trend.h"
 #include "prognose/trend_state.h"
 #include "report/baseline/baseline_json.h"
@@ -393,6 +394,21 @@ TEST(CheckText, SaysByWhatAFilterIsNotTold) {
       << text_of(r);
   r.checks.front().value = 0.06;
   EXPECT_NE(text_of(r).find(": not distinguished from the tuned 0"), std::string::npos) << text_of(r);
+}
+
+// Nor may a backlash within what the model's form leaves open; and what wears along is said where the wear is.
+TEST(CheckText, SaysWhatTheModelsFormLeavesOpenAndWhatWearsAlong) {
+  CheckResult r;
+  r.checks.push_back({"parameter:9", 1e-6, 5e-8, "m", 1e-6, 1, "feedback_wire_backlash", 0.0, 2e-5, 1e-7, false});
+  EXPECT_NE(text_of(r).find(": by the model's form not distinguished from the tuned 0"), std::string::npos)
+      << text_of(r);
+  r.checks.front() = {"parameter:22", 1.8e-5, 1e-7, "m", 1.8e-5, 1, "radial_clearance_wear", 3e-6, 3e-5, 5e-7, true};
+  r.checks.front().along = TrackedAlong{1.57, 0.004, 0.02};
+  EXPECT_NE(text_of(r).find("; rounding of the edges, of what the clearance has grown: 1.6 +- 0.02"), std::string::npos)
+      << text_of(r);
+  const nlohmann::json along = to_json(r.checks.front(), 313.15)["along"];
+  EXPECT_EQ(along["value"], 1.57);
+  EXPECT_EQ(along["whole_error"], 0.02);
 }
 
 // The hour behind the state is that of the last check, not of the warning.

@@ -2,6 +2,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <utility>
+#include <vector>
 
 #include "base/error.h"
 #include "rig/excitations.h"
@@ -160,6 +162,36 @@ TEST(RigFaults, AGrowingFaultMovesInProportionToItsTime) {
   EXPECT_EQ(wear_of(faults, 2.9).filter_blocked, 0.0);
   EXPECT_EQ(wear_of(faults, 3.0).filter_blocked, 0.75);
   EXPECT_EQ(wear_of(faults).filter_blocked, 0.75);
+}
+
+// Fig. 12 of the prognostic paper: the clearance wears with its corners.
+TEST(RigFaults, WornEdgesAreAClearanceAndCornersByOneSeverity) {
+  const auto worn = [](double times) { return wear_of({{"edge_wear", {times}}}); };
+  EXPECT_EQ(worn(1).corner_wear, 0.0);
+  const std::vector<std::pair<double, double>> of_the_paper{{3, 4e-6}, {6, 10e-6}, {10, 40e-6}};
+  for (const auto& [times, corners] : of_the_paper) {
+    EXPECT_EQ(worn(times).edge_clearance, times);
+    EXPECT_NEAR(worn(times).corner_wear, corners, 1e-18) << times;
+  }
+  for (double times = 1; times < 20; times += 0.5) EXPECT_GT(worn(times + 0.5).corner_wear, worn(times).corner_wear);
+  EXPECT_NEAR(worn(12).corner_wear, 55e-6, 1e-18) << "beyond the last point its slope goes on";
+  FaultSet growing;
+  add_fault("edge_wear=6@2..12", growing);
+  EXPECT_EQ(wear_of(growing, 1.0).corner_wear, 0.0);
+  EXPECT_DOUBLE_EQ(wear_of(growing, 6.0).edge_clearance, 3.0);
+  EXPECT_NEAR(wear_of(growing, 6.0).corner_wear, 4e-6, 1e-18);
+}
+
+TEST(RigFaults, WornEdgesAreAWornClearanceToADiagnosis) {
+  EXPECT_EQ(label_of("edge_wear"), "radial_clearance_wear");
+  const Wear alone = wear_of({{"radial_clearance_wear", {6.0}}});
+  EXPECT_EQ(alone.edge_clearance, 6.0);
+  EXPECT_EQ(alone.corner_wear, 0.0) << "the label is another fault's name";
+  FaultSet faults;
+  add_fault("edge_wear=medium", faults);
+  for (const char* same : {"radial_clearance_wear=3", "corner_wear=5e-6"})
+    EXPECT_THROW(add_fault(same, faults), InputError) << same;
+  add_fault("null_shift=0.1", faults);
 }
 
 TEST(RigFaults, CombinedFaultsMoveTheSumOfWhatEachMoves) {
