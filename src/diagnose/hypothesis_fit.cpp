@@ -14,6 +14,7 @@
 #include "faults/fault.h"
 #include "faults/sizes.h"
 #include "fit/chart.h"
+#include "fit/constants.h"
 #include "fit/error_model.h"
 #include "fit/fit_work.h"
 #include "fit/identifiability.h"
@@ -144,6 +145,14 @@ double times_by_other_count(const Fault& fault, const HypothesisData& data) {
   return off == data.settings.times_drawing.end() ? 1 : off->second;
 }
 
+// A size at 40 degC where nobody measured the oil: the tune took its logs' mean for 40 degC, so that all sizes of a rig
+// are as open as one log's oil. One standard deviation of the logarithm.
+double open_by_oil(const Fault& fault, const HypothesisData& data) {
+  const bool measured =
+      std::any_of(data.logs.begin(), data.logs.end(), [](const LogData* log) { return log->scenario.oil_known; });
+  return fault.stated_at_40_degrees && !measured ? std::log(fit_constants::freed::usual_factor) : 0.0;
+}
+
 // The curvature at the end, inflated where the model does not fit as well as it should, the fault's own spread, and
 // its other count.
 FaultSize measure_severity(const HypothesisFit& fit, const Fault& fault, std::size_t j, const HypothesisData& data) {
@@ -162,10 +171,22 @@ FaultSize measure_severity(const HypothesisFit& fit, const Fault& fault, std::si
   size.at_worst = std::abs(at - (1 - mild)) < k::at_end_part;
   size.severity_lower = severity.from_unit(std::clamp(at - half, 0.0, 1.0));
   size.severity_upper = severity.from_unit(std::clamp(at + half, 0.0, 1.0));
-  return counted_in_either(size, times_by_other_count(fault, data), severity);
+  return widened(counted_in_either(size, times_by_other_count(fault, data), severity), open_by_oil(fault, data),
+                 severity);
 }
 
 }  // namespace
+
+FaultSize widened(FaultSize size, double log_sd, const FreeValue& searched) {
+  if (!(log_sd > 0 && size.severity > 0)) return size;
+  const auto factor = [&](double end) {
+    return std::exp(std::hypot(std::log(end / size.severity), k::deviates_of_95 * log_sd));
+  };
+  const double lower = size.severity_lower, upper = size.severity_upper;
+  size.severity_lower = std::min(lower, std::max(searched.lower, size.severity / factor(lower)));
+  size.severity_upper = std::max(upper, std::min(searched.upper, size.severity * factor(upper)));
+  return size;
+}
 
 FaultSize counted_in_either(FaultSize size, double times, const FreeValue& searched) {
   const auto [lower, upper] = std::minmax({size.severity_lower, size.severity_upper});

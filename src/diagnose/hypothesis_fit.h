@@ -34,6 +34,9 @@ HypothesisData hypothesis_data(const std::vector<const LogData*>& logs, const Pa
 // The interval of a size that is `times` as large by another count: it holds the size by either, inside the range that
 // was searched. docs/diagnosis.md says which sizes have two counts.
 FaultSize counted_in_either(FaultSize size, double times, const FreeValue& searched);
+// The interval of a size that is open by a factor besides, `log_sd` its logarithm's standard deviation; inside the
+// range that was searched.
+FaultSize widened(FaultSize size, double log_sd, const FreeValue& searched);
 
 struct Attempt {
   const Fault* fault = nullptr;

@@ -8,6 +8,7 @@
 #include "evidence/excess_trend.h"
 #include "evidence/tail_law.h"
 #include "explain/constants.h"
+#include "explain/usual_excess.h"
 
 namespace servodx {
 namespace {
@@ -52,7 +53,7 @@ UsualExcesses::UsualExcesses(const std::vector<Excesses>& healthy)
 
 double UsualExcesses::of(const std::string& effect) const {
   const auto it = sum_.find(effect);
-  return (k::usual_share * k::usual_logs + (it == sum_.end() ? 0.0 : it->second)) / logs_;
+  return (usual_excess(effect) * k::usual_logs + (it == sum_.end() ? 0.0 : it->second)) / logs_;
 }
 
 double UsualExcesses::largest_ratio(const Excesses& one) const {

@@ -1,7 +1,8 @@
 // How large a share of its held-out misfit a cause removes from a healthy log, cause by cause.
 //
 // Some causes gain a little on most healthy logs, as the gain of a sensor does; others on none. So a share is measured
-// against the usual one of its own cause: -ln(1 - share), over its mean on the healthy logs. The largest of these
+// against the usual one of its own cause: -ln(1 - share), over its mean on the healthy logs. Few logs say little of a
+// mean, so it begins from the cause's mean on healthy logs of other valves (usual_excess.h). The largest of these
 // ratios over all causes is what a log is compared by, so the search over many causes is part of the null. A healthy
 // log's own ratios stand beside the means of the others. Ratios follow the tail law of evidence/tail_law.h. Before all
 // this a share stands over the scale of its oil (evidence/excess_trend.h).
@@ -23,7 +24,7 @@ struct SharesOfLog {
 
 using Excesses = std::map<std::string, double>;  // by effect; -ln(1 - share), over the scale of the log's oil [-]
 
-// What is usual of each cause: its mean over the logs and over a few of the usual mean.
+// What is usual of each cause: its mean over the logs, and over a few of its mean on other valves (usual_excess.h).
 class UsualExcesses {
  public:
   explicit UsualExcesses(const std::vector<Excesses>& healthy);

@@ -166,6 +166,39 @@ TEST(HypothesisFit, AnIntervalHoldsTheSizeByEitherCount) {
   EXPECT_EQ(by(9.0).severity_upper, searched.upper);
 }
 
+TEST(HypothesisFit, AnIntervalIsWidenedByAFactorThatIsOpen) {
+  FaultSize size;
+  size.severity = 4, size.severity_lower = 2, size.severity_upper = 8;
+  FreeValue searched;
+  searched.lower = 0.5, searched.upper = 20;
+  EXPECT_EQ(widened(size, 0, searched).severity_lower, 2);
+  const FaultSize wider = widened(size, 0.5, searched);
+  const double half = std::hypot(std::log(2.0), 1.96 * 0.5);
+  EXPECT_NEAR(wider.severity_lower, 4 * std::exp(-half), 1e-3);
+  EXPECT_NEAR(wider.severity_upper, 4 * std::exp(half), 1e-2);
+  EXPECT_EQ(widened(size, 3, searched).severity_lower, 0.5);
+  EXPECT_EQ(widened(size, 3, searched).severity_upper, 20);
+  size.severity_lower = 0;  // of a scale that begins at nought
+  EXPECT_EQ(widened(size, 0.5, searched).severity_lower, 0);
+}
+
+// Its leak goes by the oil's viscosity, and the tune took the mean of its logs for 40 degC.
+TEST(HypothesisFit, ALeakIsWideWhereNobodyMeasuredTheOil) {
+  Stretch of;
+  for (ChannelError& c : of.error.channels) c.floor = 0;
+  const Fault* fault = find_fault("cylinder_leakage");
+  const HypothesisSettings settings;
+  const auto upper = [&](bool oil_known) {
+    LogData log = played(of.log, of.base, fault, 2e-12);
+    log.scenario.oil_known = oil_known;
+    Attempt leak{.fault = fault, .start = 2e-12};
+    run(leak, hypothesis_data({&log}, of.base, of.error, settings), nullptr, settings.iterations);
+    return leak.fit.severity_upper / leak.fit.severity;
+  };
+  EXPECT_LT(upper(true), 2);
+  EXPECT_GT(upper(false), 3);
+}
+
 // A seal that is scored need not leak by the oil's viscosity, as a sound one does.
 TEST(HypothesisFit, ALeakIsSizedAtTheOilOfTheTestToo) {
   Stretch of;
