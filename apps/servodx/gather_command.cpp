@@ -50,7 +50,7 @@ int run(const Options& options) {
   *header.settings = {{"folder", options.folder}};
   const Fleet fleet = gather_results(options.folder, invocation.watch());
   std::optional<FleetCounts> found;
-  if (truth) found = count_fleet(fleet, *truth);
+  if (truth) found = count_fleet(fleet, *truth, options.common.seed);
   if (invocation.dry_run()) return ran;
   if (fleet.interrupted) return interrupted;  // a part of the folder is no table of it
   if (found) note_counts(invocation, *found);

@@ -1,6 +1,7 @@
 // Fleet: a folder of results, one a log, as one table. docs/fleet.md.
 #pragma once
 #include <cstddef>
+#include <cstdint>
 #include <map>
 #include <memory>
 #include <optional>
@@ -64,13 +65,51 @@ struct FleetCounts {
     Rate named;     // by the class's own word
     Rate sized;     // of those named whose truth has a severity: it lies within the interval
   };
+  // The probability that was stated of each fault named first, beside how often that name is the truth.
+  struct Calibration {
+    struct Bin {
+      double from = 0, to = 0;  // of the probabilities in it
+      double stated = 0;        // their mean
+      Rate right;
+    };
+    std::vector<Bin> bins;        // those that hold any, the least probabilities first
+    double stated = 0;            // mean of all; NaN where none was stated
+    Rate right;                   // of all
+    double error = 0;             // expected calibration error, |stated - right| by bins; NaN where none was stated
+    double lower = 0, upper = 1;  // of it, 95 %
+    double by_chance = 0;         // 19 of 20 sets of as many logs lie below, where each probability is the true one
+  };
+  struct Seen {
+    Rate found, named;  // not called healthy; by its own label
+  };
+  // Faults of known size, by how they lie to the least that their logs would have shown (`detectable`).
+  struct BesideBound {
+    Seen below;        // less than it
+    Seen beyond;       // as much or more
+    Seen well_beyond;  // of these, as much as 1.2 times or more
+    Seen unbounded;    // where not even the worst of the fault would have been shown
+  };
+  struct DetectableFound {
+    struct Band {
+      double from = 0, to = 0;  // [true size over the bound] infinite: no end
+      Seen seen;
+    };
+    BesideBound all;
+    std::map<std::string, BesideBound> faults;  // by label, those that occur
+    std::vector<Band> bands;                    // all of them, of the faults whose bound is known
+    double median = 0;                          // [true size over the bound] of those beyond it; NaN where none is
+    long unstated = 0;                          // of known size, whose log states no bound of that fault
+  };
   std::map<std::string, std::map<std::string, long>> counts;  // [class][what the verdict says]
   std::map<std::string, OfClass> rates;                       // by class
+  Calibration calibration;
+  DetectableFound detectable;
   long without_truth = 0, without_result = 0;
   std::shared_ptr<const Confusion> whole;  // for the program's pages
 };
-// Throws InputError where one row of the truth means several logs. `fleet`: as gather_results() made it.
-FleetCounts count_fleet(const Fleet& fleet, const FleetTruth& truth);
+// Throws InputError where one row of the truth means several logs. `fleet`: as gather_results() made it. `seed`: of the
+// logs that are drawn again for the intervals of the calibration.
+FleetCounts count_fleet(const Fleet& fleet, const FleetTruth& truth, std::uint64_t seed = 1);
 // The truth is read before the folder.
 FleetCounts count_fleet(const std::string& folder, const std::string& truth);
 

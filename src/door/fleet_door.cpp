@@ -1,6 +1,7 @@
 // The front door of `gather`.
 #include <atomic>
 #include <cmath>
+#include <cstdint>
 #include <memory>
 #include <utility>
 
@@ -49,8 +50,6 @@ std::shared_ptr<const FleetTable> read(const std::string& folder, const Watch& w
   return std::make_shared<FleetTable>(std::move(table));
 }
 
-FleetCounts::Rate rate_of(const CountedRate& r) { return {r.counted, r.of}; }
-
 }  // namespace
 
 Fleet gather_results(const std::string& folder, const Watch& watch) {
@@ -66,13 +65,14 @@ Fleet gather_results(const std::string& folder, const Watch& watch) {
   return out;
 }
 
-FleetCounts count_fleet(const Fleet& fleet, const FleetTruth& truth) {
+FleetCounts count_fleet(const Fleet& fleet, const FleetTruth& truth, std::uint64_t seed) {
   if (!fleet.whole) throw InputError({}, "the fleet holds no results", "take what gather_results() returned");
-  auto whole = std::make_shared<Confusion>(confusion_of(*fleet.whole, truth));
+  auto whole = std::make_shared<Confusion>(confusion_of(*fleet.whole, truth, seed));
   const Confusion& found = *whole;
   FleetCounts out;
   out.counts = found.counts;
-  for (const auto& [name, r] : found.rates) out.rates[name] = {rate_of(r.detected), rate_of(r.named), rate_of(r.sized)};
+  out.rates = found.rates;
+  out.calibration = found.calibration, out.detectable = found.detectable;
   out.without_truth = found.without_truth, out.without_result = found.without_result;
   out.whole = std::move(whole);
   return out;

@@ -88,6 +88,11 @@ inline double severity_between(const Fault& fault, double from, double to, doubl
   return fault.log_scale ? from * std::pow(to / from, part) : from + part * (to - from);
 }
 
+// How far a severity is from health, on the fault's own scale. NaN: the scale does not hold it.
+inline double way_from_health(const Fault& fault, double severity) {
+  return std::abs(fault.log_scale ? std::log(severity / fault.healthy) : severity - fault.healthy);
+}
+
 inline bool are_twins(const Fault& a, const Fault& b) { return a.twin == &b || b.twin == &a; }
 
 }  // namespace servodx

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <set>
+#include <utility>
 
 #include "base/csv.h"
 #include "base/error.h"
@@ -72,6 +73,18 @@ const FleetTruth::Row* truth_of(const std::string& log, const std::map<std::stri
   }
 }
 
+// What is counted once all rows are there.
+struct Cases {
+  std::vector<Statement> statements;
+  std::vector<BoundCase> sized;
+};
+
+void collect(Cases& cases, const FleetRow& row, const FleetTruth::Row& truth) {
+  if (!row.fault.empty()) cases.statements.push_back({row.probability, row.fault == truth.label});
+  if (!truth.severity) return;
+  if (const auto sized = bound_case_of(row, truth.label, *truth.severity)) cases.sized.push_back(*sized);
+}
+
 void count(Confusion& all, const FleetRow& row, const FleetTruth::Row& truth) {
   ++all.counts[truth.label][row.name()];
   Confusion::OfClass& rates = all.rates[truth.label];
@@ -118,11 +131,12 @@ FleetTruth read_truth(const std::string& path) {
   return truth;
 }
 
-Confusion confusion_of(const FleetTable& table, const FleetTruth& truth) {
+Confusion confusion_of(const FleetTable& table, const FleetTruth& truth, std::uint64_t seed) {
   std::map<std::string, const FleetTruth::Row*> by_path;
   for (const FleetTruth::Row& row : truth.rows) by_path[row.log] = &row;
   std::map<const FleetTruth::Row*, std::string> used;
   Confusion all;
+  Cases cases;
   for (const FleetRow& row : table.rows) {
     const FleetTruth::Row* of = truth_of(row.log, by_path);
     if (!of) {
@@ -135,8 +149,11 @@ Confusion confusion_of(const FleetTable& table, const FleetTruth& truth) {
                        "'" + of->log + "' is " + before->second + " as well as " + row.log,
                        "write more of the path, or gather each log once");
     count(all, row, *of);
+    collect(cases, row, *of);
   }
   all.without_result = static_cast<long>(truth.rows.size() - used.size());
+  all.calibration = calibration_of(std::move(cases.statements), seed);
+  all.detectable = detectable_found_of(cases.sized);
   order(all);
   return all;
 }

@@ -12,6 +12,7 @@
 #include "base/error.h"
 #include "base/json_text.h"
 #include "base/result_schema.h"
+#include "faults/registry.h"
 #include "fleet/result_file.h"
 
 namespace servodx {
@@ -46,6 +47,17 @@ double number_at(const Json& object, const char* key) {
   return value.get<double>();
 }
 
+// Earlier results have none.
+std::vector<LeastShown> detectable_of(const Json& result) {
+  std::vector<LeastShown> out;
+  if (!result.contains("detectable")) return out;
+  const Json& all = at(result, "detectable");
+  if (!all.is_object()) throw Unfit{"'detectable' is no list by fault", make_again};
+  for (const auto& [label, least] : all.items())
+    if (const Fault* fault = find_fault(label)) out.push_back({fault, number_at(least, "value")});
+  return out;
+}
+
 FleetRow row_of(const Json& result, const std::string& file) {
   FleetRow row;
   row.file = file;
@@ -63,6 +75,7 @@ FleetRow row_of(const Json& result, const std::string& file) {
   row.probability = probabilities.contains(row.name()) ? number_at(probabilities, row.name().c_str()) : NAN;
   row.error = number_at(result, "error");
   row.threshold = number_at(result, "threshold");
+  row.detectable = detectable_of(result);
   return row;
 }
 

@@ -9,9 +9,16 @@
 #include <string>
 #include <vector>
 
+#include "faults/fault.h"
 #include "fleet/fleet_verdict.h"
 
 namespace servodx {
+
+// The least of a fault that a log would have shown.
+struct LeastShown {
+  const Fault* fault = nullptr;
+  double severity = 0;  // [the fault's unit] NaN: it would not have shown the worst of it
+};
 
 struct FleetRow {
   std::string file;  // in the folder
@@ -23,6 +30,7 @@ struct FleetRow {
   std::string severity_unit;
   double probability = 0;           // of the fault named, else of the verdict; NaN where none is known
   double error = 0, threshold = 0;  // [deviates] NaN where none is known
+  std::vector<LeastShown> detectable;
 
   bool is_healthy() const { return verdict == FleetVerdict::healthy; }
   std::string name() const { return fault.empty() ? word_of(verdict) : fault; }

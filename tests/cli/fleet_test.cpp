@@ -220,6 +220,12 @@ TEST(Fleet, GatherShowsTheFolderAndSaysWhatIsNoResult) {
   EXPECT_EQ(json["results"].size(), 2u);
   EXPECT_EQ(json["set_aside"].size(), 1u);
   EXPECT_EQ(json["confusion"]["classes"].size(), 2u);
+  EXPECT_EQ(json["calibration"]["right"]["of"],
+            json["logs"].get<long>() - json["verdicts"].value("healthy", 0L) - json["verdicts"].value("unknown", 0L));
+  EXPECT_EQ(json["detectable_found"]["bands"].size(), 6u);
+  EXPECT_NE(ended.out.find("\nFaults of known size beside the least that their logs would have shown\n"),
+            std::string::npos)
+      << ended.out;
   for (const char* file : {"t.html", "t.csv"})
     for (const char* log : {"a/log.csv", "b/log.csv"})
       EXPECT_NE(bytes_of(desk / file).find(log), std::string::npos) << file;

@@ -8,6 +8,7 @@
 
 #include "base/error.h"
 #include "base/wilson.h"
+#include "faults/registry.h"
 #include "fleet/confusion.h"
 #include "servodx/fleet.h"
 #include "temporary_folder.h"
@@ -29,6 +30,11 @@ std::string result(const std::string& log, const std::string& verdict, const std
          R"(", "error": )" + std::to_string(error) + R"(, "threshold": 2, "fault": )" +
          (fault.empty() ? "null" : "\"" + fault + "\"") + R"(, "probabilities": {")" + name +
          R"(": 0.75}, "severity": )" + size + "}]}";
+}
+
+// The same with what the log would have shown.
+std::string shows(std::string result, const std::string& detectable) {
+  return result.insert(result.find(R"("verdict")"), R"("detectable": )" + detectable + ", ");
 }
 
 struct Fleet : TemporaryFolder {
@@ -90,6 +96,26 @@ TEST(Gather, WhatIsNoResultIsNamedWithItsMendAndTheRestCounts) {
                                               "verdict.json"}));
 }
 
+TEST(Gather, ARowHoldsTheLeastThatItsLogWouldHaveShown) {
+  const TemporaryFolder folder;
+  folder.write("a.json", shows(result("a.csv", "healthy", "", 1),
+                               R"({"clogged_filter": {"value": null, "unit": "-"}, "sticky_spool": {"value": 4.5},
+                                   "fault_of_a_later_version": {"value": 2}})"));
+  folder.write("b.json", result("b.csv", "healthy", "", 1));
+  folder.write("c.json", shows(result("c.csv", "healthy", "", 1), R"({"sticky_spool": {"value": "much"}})"));
+  folder.write("d.json", shows(result("d.csv", "healthy", "", 1), "7"));
+  const FleetTable table = gather(folder.path.string(), never);
+  ASSERT_EQ(table.rows.size(), 2u);
+  const std::vector<LeastShown>& shown = table.rows[0].detectable;
+  ASSERT_EQ(shown.size(), 2u);
+  EXPECT_EQ(shown[0].fault, find_fault("clogged_filter"));
+  EXPECT_TRUE(std::isnan(shown[0].severity));
+  EXPECT_EQ(shown[1].fault, find_fault("sticky_spool"));
+  EXPECT_EQ(shown[1].severity, 4.5);
+  EXPECT_TRUE(table.rows[1].detectable.empty());
+  EXPECT_EQ(table.unread.size(), 2u);
+}
+
 TEST(Gather, PagesManifestsAndFilesBeingWrittenArePassedOver) {
   const Fleet fleet;
   for (const char* name : {"2.html", "t.csv.manifest.json", "7.json.servodx-tmp0"}) fleet.write(name, "x");
@@ -140,6 +166,34 @@ TEST(Confusion, CountsAreTheCountsByHand) {
   EXPECT_EQ(clogged.sized.of, 1);
   EXPECT_EQ(all.without_truth, 1);
   EXPECT_EQ(all.without_result, 1);
+}
+
+TEST(Confusion, ProbabilitiesAndBoundsAreCountedBesideTheTruth) {
+  const TemporaryFolder folder, desk;
+  const std::string least = R"({"clogged_filter": {"value": 0.6}, "sticky_spool": {"value": 4}})";
+  folder.write("1.json", shows(result("1.csv", "fault", "clogged_filter", 6), least));
+  folder.write("2.json", shows(result("2.csv", "fault", "sticky_spool", 6), least));
+  folder.write("3.json", shows(result("3.csv", "unknown", "", 6), least));
+  folder.write("4.json", shows(result("4.csv", "healthy", "", 1), least));
+  folder.write("5.json", shows(result("5.csv", "fault", "sticky_spool", 6), least));
+  const std::string truth = desk.write("truth.csv",
+                                       "log,class,severity\n"
+                                       "1.csv,clogged_filter,0.7\n"
+                                       "2.csv,healthy,\n"
+                                       "3.csv,sticky_spool,3\n"
+                                       "4.csv,sticky_spool,20\n"
+                                       "5.csv,sticky_spool,\n");
+  const FleetTable table = gather(folder.path.string(), never);
+  const Confusion all = confusion_of(table, read_truth(truth));
+  EXPECT_EQ(all.calibration.right.counted, 2);  // of logs 1, 2 and 5, which name a fault
+  EXPECT_EQ(all.calibration.right.of, 3);
+  EXPECT_NEAR(all.calibration.error, 0.75 - 2.0 / 3, 1e-12);
+  EXPECT_EQ(all.detectable.all.below.found.counted, 1);
+  EXPECT_EQ(all.detectable.all.below.found.of, 1);
+  EXPECT_EQ(all.detectable.all.beyond.found.counted, 1);
+  EXPECT_EQ(all.detectable.all.beyond.found.of, 2);
+  EXPECT_EQ(all.detectable.all.well_beyond.found.of, 1);
+  EXPECT_EQ(all.detectable.faults.at("sticky_spool").beyond.found.counted, 0);
 }
 
 TEST(Confusion, ATruthOfAFileNameAloneMustMeanOneLog) {

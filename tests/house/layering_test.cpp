@@ -29,7 +29,7 @@ const std::map<std::string, std::set<std::string>> allowed = {
     {"signals", {}},
     {"valve_maps", {}},
     {"curves", {"signals"}},
-    {"fleet", {}},
+    {"fleet", {"faults"}},
     {"simulate", {"parameters", "model", "effects", "faults", "integrate", "signals"}},
     {"rig", {"integrate", "signals"}},
     {"fit", {"parameters", "model", "effects", "simulate", "signals", "optimise"}},

@@ -31,6 +31,7 @@ RARE_TYPES = {
     "watch_event", "supply_limit", "confusion", "true_class", "counted_rate", "settled_error", "block", "place",
     "missing_place", "candidate", "cause_score", "cause_share", "channel_error", "shown", "input_lag", "residual_map",
     "bin", "bode_point", "difference", "plan_pair", "plan_row", "earned", "finding", "identifiable", "visible", "true_fault",
+    "calibration", "calibration_bin", "detectable_found", "beside_bound", "bound_band", "seen_faults",
 }
 
 

@@ -8,8 +8,9 @@
 #include <nlohmann/json.hpp>
 
 #include "base/trouble.h"
-#include "base/wilson.h"
 #include "fleet/fleet_verdict.h"
+#include "report/fleet/calibration_report.h"
+#include "report/fleet/detectable_report.h"
 #include "report/fleet/fleet_words.h"
 #include "report/shared/columns.h"
 #include "report/shared/handy.h"
@@ -26,11 +27,6 @@ Json to_json(const std::vector<SetAside>& files) {
   Json all = Json::array();
   for (const SetAside& file : files) all.push_back(to_json(file));
   return all;
-}
-
-Json to_json(const CountedRate& rate) {
-  const RateInterval interval = wilson_95(static_cast<double>(rate.counted), static_cast<double>(rate.of));
-  return {{"counted", rate.counted}, {"of", rate.of}, {"lower", interval.lower}, {"upper", interval.upper}};
 }
 
 Json to_json(const FleetRow& row) {
@@ -54,8 +50,8 @@ Json to_json(const Confusion& confusion) {
     const Confusion::OfClass& rates = confusion.rates.at(label);
     const bool is_healthy = label == "healthy";
     Json one = {{"class", label}, {"verdicts", confusion.counts.at(label)}};
-    one[is_healthy ? "false_alarms" : "detected"] = to_json(rates.detected);
-    if (!is_healthy) one["named"] = to_json(rates.named), one["sized"] = to_json(rates.sized);
+    one[is_healthy ? "false_alarms" : "detected"] = rate_json(rates.detected);
+    if (!is_healthy) one["named"] = rate_json(rates.named), one["sized"] = rate_json(rates.sized);
     classes.push_back(one);
   }
   return {
@@ -107,7 +103,8 @@ std::string confusion_text(const Confusion& confusion) {
   std::string text = "\nverdicts by truth\n" + counts.text() + "\n";
   if (const auto healthy = confusion.rates.find("healthy"); healthy != confusion.rates.end())
     text += "false alarms: " + rate_words(healthy->second.detected) + "\n";
-  return text + (confusion.rates.size() > confusion.rates.count("healthy") ? rates.text() : "");
+  if (confusion.rates.size() > confusion.rates.count("healthy")) text += rates.text();
+  return text + text_of(confusion.calibration) + text_of(confusion.detectable);
 }
 
 }  // namespace
@@ -176,7 +173,9 @@ Json fleet_json(const FleetTable& table, const std::optional<Confusion>& confusi
           {"results", rows},
           {"set_aside", to_json(table.refused)},
           {"unread", to_json(table.unread)},
-          {"confusion", confusion ? to_json(*confusion) : Json(nullptr)}};
+          {"confusion", confusion ? to_json(*confusion) : Json(nullptr)},
+          {"calibration", confusion ? to_json(confusion->calibration) : Json(nullptr)},
+          {"detectable_found", confusion ? to_json(confusion->detectable) : Json(nullptr)}};
 }
 
 namespace {

@@ -3,12 +3,15 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <nlohmann/json.hpp>
 #include <string_view>
 
 #include "base/wilson.h"
 #include "fleet/confusion.h"
 #include "fleet/fleet_verdict.h"
 #include "fleet/gather.h"
+#include "report/fleet/calibration_report.h"
+#include "report/fleet/detectable_report.h"
 #include "report/fleet/fleet.h"
 #include "report/fleet/fleet_words.h"
 #include "report/shared/handy.h"
@@ -98,11 +101,6 @@ void add_set_aside(Page& page, const std::string& title, const std::vector<SetAs
   page.add(part);
 }
 
-Cell rate_cell(const CountedRate& rate) {
-  if (rate.of == 0) return "";
-  return Cell(rate_words(rate), static_cast<double>(rate.counted) / static_cast<double>(rate.of));
-}
-
 void add_confusion(Page& page, const Confusion& confusion) {
   page.section("Truth", "Rows are what the logs are, columns what was said of them.");
   Matrix m{"Verdicts by truth", "truth", "verdict", {}, {}, {}, "", true};
@@ -127,6 +125,8 @@ void add_confusion(Page& page, const Confusion& confusion) {
       part.rows.push_back({words(label), rate_cell(of.detected), rate_cell(of.named), rate_cell(of.sized), ""});
   }
   page.add(part);
+  add_calibration(page, confusion.calibration);
+  add_detectable_found(page, confusion.detectable);
 }
 
 }  // namespace
@@ -155,6 +155,16 @@ std::string rate_words(const CountedRate& rate) {
   const RateInterval interval = wilson_95(static_cast<double>(rate.counted), of);
   return fmt::format("{} of {}, {} ({} to {})", rate.counted, rate.of, percent(static_cast<double>(rate.counted) / of),
                      percent(interval.lower), percent(interval.upper));
+}
+
+Cell rate_cell(const CountedRate& rate) {
+  if (rate.of == 0) return "";
+  return Cell(rate_words(rate), static_cast<double>(rate.counted) / static_cast<double>(rate.of));
+}
+
+Json rate_json(const CountedRate& rate) {
+  const RateInterval interval = wilson_95(static_cast<double>(rate.counted), static_cast<double>(rate.of));
+  return {{"counted", rate.counted}, {"of", rate.of}, {"lower", interval.lower}, {"upper", interval.upper}};
 }
 
 long count_of(const Confusion& confusion, const std::string& label, const std::string& name) {

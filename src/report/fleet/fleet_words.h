@@ -4,6 +4,8 @@
 
 #include "fleet/confusion.h"
 #include "fleet/gather.h"
+#include "report/shared/json.h"
+#include "report/shared/parts.h"
 
 namespace servodx::report {
 
@@ -12,6 +14,8 @@ std::string severity_words(const FleetRow& row);      // "" where the verdict ha
 // Of a fault alone: of health it would promise more than a baseline can, of an unknown state it says nothing.
 std::string probability_words(const FleetRow& row);
 std::string rate_words(const CountedRate& rate);  // "19 of 20, 95 % (76 % to 99 %)"
+Cell rate_cell(const CountedRate& rate);          // the same; blank where nothing was counted
+Json rate_json(const CountedRate& rate);
 long count_of(const Confusion& confusion, const std::string& label, const std::string& name);
 
 }  // namespace servodx::report
