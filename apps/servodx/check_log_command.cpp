@@ -15,7 +15,6 @@
 #include "servodx/operating_point.h"
 #include "servodx/rig.h"
 #include "servodx/table.h"
-#include "signals/drive_of.h"
 #include "tuning_logs.h"
 
 namespace servodx {
@@ -63,7 +62,8 @@ void run(const Options& options) {
   compare_surveys(surveys);
   std::vector<report::LogCheck> checks;
   for (std::size_t i = 0; i < logs.size(); ++i) {
-    report::LogCheck check{surveys[i], std::nullopt, logs[i].time, logs[i][drive_of(logs[i])]};
+    report::LogCheck check{surveys[i], std::nullopt, logs[i].time,
+                           logs[i][logs[i].has(Signal::coil_current) ? Signal::coil_current : Signal::command]};
     if (table) {
       check.promise = promise_of(logs[i], *table, rig, options.common.threads);
       invocation.header().simulations += check.promise->simulations;

@@ -251,14 +251,14 @@ TEST(Healthy, ALogThatSetsNoShareStillTellsHowSizesScatterAndWhatIsLeft) {
     HealthyLog log;
     log.misses.push_back({"flow", 1 + 0.1 * i});
     log.scores.push_back({"cause", "here", {{0.1 * i, 1}}, 0});
-    log.shares.push_back({"cause", "here", i > 6 ? 0.6 : 0.05, 0, 1}), log.has_shares = true;
+    log.shares.push_back({"cause", "here", i > 6 ? 0.8 : 0.05, 0, 1}), log.has_shares = true;
     reference.logs.push_back(log);
   }
   HealthyReference marked = reference;
   for (HealthyLog& log : marked.logs) log.sets_no_share = log.shares.front().share > 0.5;
   const HealthyTest all(reference), without(marked);
-  EXPECT_GE(all.shares().chance("cause", 0.5), 6.0 / 13);
-  EXPECT_LE(without.shares().chance("cause", 0.5), rate_of_question(0, 12, explain_constants::of_shares));
+  EXPECT_GE(all.shares().chance("cause", 0.7), 6.0 / 13);
+  EXPECT_LE(without.shares().chance("cause", 0.7), rate_of_question(0, 12, explain_constants::of_shares));
   EXPECT_EQ(without.miss({"flow", 3}), all.miss({"flow", 3}));
   const HealthyScore three{"cause", "here", {{3, 1}}, 0};
   EXPECT_EQ(without.alone({three}), all.alone({three}));
