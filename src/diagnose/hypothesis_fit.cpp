@@ -145,8 +145,8 @@ double times_by_other_count(const Fault& fault, const HypothesisData& data) {
   return off == data.settings.times_drawing.end() ? 1 : off->second;
 }
 
-// A size at 40 degC where nobody measured the oil: the tune took its logs' mean for 40 degC, so that all sizes of a rig
-// are as open as one log's oil. One standard deviation of the logarithm.
+// A size at 40 degC by logs whose oil nobody measured. A rig that does not measure it was tuned with its logs' mean
+// taken for 40 degC, so that all its sizes are as open as one log's oil. One standard deviation of the logarithm.
 double open_by_oil(const Fault& fault, const HypothesisData& data) {
   const bool measured =
       std::any_of(data.logs.begin(), data.logs.end(), [](const LogData* log) { return log->scenario.oil_known; });

@@ -39,13 +39,14 @@ std::vector<ConditionRow> conditions_of(const Assessment& a, const DetectionBase
   return conditions_beside(a.points, a.sheet, healthy);
 }
 
-// Of several logs of one state the test that is least like the baseline's: what it knows of the others says little of
-// that one.
+// Of several logs of one state the test that is least like any of the baseline, its logs of other tests included: what
+// it knows of the rest says little of that one.
 TestConditions least_known_test(const Assessment& a, const DetectionBaseline& baseline) {
   const auto from_nearest = [&](const TestConditions& test) {
     double nearest = HUGE_VAL;
-    for (const DetectionBaseline::Score& s : baseline.scores)
-      if (s.test) nearest = std::min(nearest, distance(test, *s.test));
+    for (const auto* logs : {&baseline.scores, &baseline.others})
+      for (const DetectionBaseline::Score& s : *logs)
+        if (s.test) nearest = std::min(nearest, distance(test, *s.test));
     return nearest;
   };
   if (a.tests.empty()) return a.test;

@@ -38,11 +38,16 @@ void add(std::vector<DetectableFound::Band>& bands, const BoundCase& c) {
   add((past == bands.end() ? bands.back() : *past).seen, c);
 }
 
+// From health towards the worst; a fault that goes both ways (a null, a nozzle) has a scale that begins at nought.
+bool is_worn(const Fault& fault, double severity) {
+  return fault.healthy == 0 || (severity - fault.healthy) * (fault.worst - fault.healthy) >= 0;
+}
+
 }  // namespace
 
 std::optional<BoundCase> bound_case_of(const FleetRow& row, const std::string& label, double severity) {
   const Fault* fault = find_fault(label);
-  if (!fault) return {};
+  if (!fault || !is_worn(*fault, severity)) return {};
   const double way = way_from_health(*fault, severity);
   if (std::isnan(way)) return {};
   BoundCase out{label, Bound::unstated, 0, !row.is_healthy(), row.name() == label};

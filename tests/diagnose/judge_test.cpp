@@ -368,6 +368,18 @@ TEST(Judge, AmongSeveralLogsTheTestThatIsLeastKnownJudges) {
   EXPECT_FALSE(judge(a, b).unlike);
 }
 
+// They judge a suspect of their test, so that it is known.
+TEST(Judge, LogsOfOtherTestsCountAmongWhatIsKnownOfSeveralLogs) {
+  DetectionBaseline b = baseline();
+  const TestConditions known{0.020, 6.0, 313.0}, of_others{0.200, 600.0, 313.0}, unknown{0.045, 6.0, 270.0};
+  for (DetectionBaseline::Score& s : b.scores) s.test = known;
+  b.others = b.scores;
+  for (DetectionBaseline::Score& s : b.others) s.test = of_others;
+  Assessment a = assessment(1, {hypothesis("", 0.9), hypothesis("clogged_filter", 0.1)});
+  a.tests = {of_others, unknown}, a.test = of_others;
+  EXPECT_EQ(judge(a, b).assessment.test.drive_span, unknown.drive_span);
+}
+
 TEST(Judge, ATestUnlikeEveryLogOfTheBaselineIsSaidWithTheNearest) {
   DetectionBaseline b = baseline();
   const TestConditions warm{0.020, 6.0, 313.0}, cold{0.020, 6.0, 270.0}, large{0.045, 6.0, 313.0};

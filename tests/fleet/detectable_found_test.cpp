@@ -43,6 +43,13 @@ TEST(DetectableFound, SizesAreCountedFromHealthOnTheFaultsOwnScale) {
   EXPECT_EQ(times_of("torque_motor_loss", 0.8, 0), HUGE_VAL);
 }
 
+TEST(DetectableFound, WhatIsBetterThanHealthIsNoFault) {
+  const FleetRow log = row(FleetVerdict::healthy, "", {{"radial_clearance_wear", 2}, {"torque_motor_loss", 0.8}});
+  EXPECT_FALSE(bound_case_of(log, "radial_clearance_wear", 0.5));
+  EXPECT_FALSE(bound_case_of(log, "torque_motor_loss", 1.5));
+  EXPECT_FALSE(bound_case_of(log, "radial_clearance_wear", -1));
+}
+
 TEST(DetectableFound, WhatNoBoundIsStatedOfIsSetApart) {
   const FleetRow of_filter = row(FleetVerdict::fault, "clogged_filter", {{"clogged_filter", NAN}});
   EXPECT_EQ(bound_case_of(of_filter, "clogged_filter", 0.5)->bound, Bound::none);
