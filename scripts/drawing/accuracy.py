@@ -32,6 +32,7 @@ class Count(typing.NamedTuple):
 
 class Counts(typing.NamedTuple):
     rigs: int
+    diagnosed_rigs: int
     explained_rigs: int
     severe: Count
     medium: Count
@@ -71,17 +72,18 @@ def counts_of(page):
     wrong, faulty, accused, healthy = counts_in(together[column["wrong fault"]], r"(\d+) of (\d+); (\d+) of (\d+)")
     full, third, hidden, controls, clean = counts_in(together[column["`explain`"]],
                                                      r"(\d+), (\d+) of (\d+); (\d+) of (\d+)")
-    return Counts(len(rigs), sum(row[column["`explain`"]] != "-" for row in rigs), Count(severe, cases),
-                  Count(medium, cases), Count(mild, cases), Count(wrong, faulty), Count(accused, healthy),
-                  Count(full, hidden), Count(third, hidden), Count(controls, clean))
+    judged = lambda name: sum(row[column[name]] != "-" for row in rigs)
+    return Counts(len(rigs), judged("severe"), judged("`explain`"), Count(severe, cases), Count(medium, cases),
+                  Count(mild, cases), Count(wrong, faulty), Count(accused, healthy), Count(full, hidden),
+                  Count(third, hidden), Count(controls, clean))
 
 
 def groups_of(c):
     """Heading, style, rows of a label and a count."""
     return [
-        (f"diagnose names the fault: {c.rigs} rigs", "bar",
+        (f"diagnose names the fault: {c.diagnosed_rigs} rigs", "bar",
          [("severe faults", c.severe), ("medium faults", c.medium), ("mild faults", c.mild)]),
-        (f"diagnose is wrong: {c.rigs} rigs", "bar-bad",
+        (f"diagnose is wrong: {c.diagnosed_rigs} rigs", "bar-bad",
          [("faulty valves given a wrong fault", c.wrong), ("healthy logs accused", c.accused)]),
         (f"explain names missing physics: {c.explained_rigs} rigs", "bar",
          [("at full size", c.full), ("at a third of that size", c.third)]),

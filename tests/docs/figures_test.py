@@ -124,6 +124,14 @@ class Accuracy(unittest.TestCase):
         with self.assertRaisesRegex(FIGURES.shapes.Refused, "no row"):
             FIGURES.accuracy.counts_of(self.PAGE.replace("**together**", "**pooled**"))
 
+    def test_a_rig_counts_where_it_was_judged_alone(self):
+        first = next(row for row in FIGURES.accuracy.table_of(self.PAGE) if re.match(r"\d+:", row[0]))
+        line = next(text for text in self.PAGE.splitlines() if text.startswith(f"| {first[0]} "))
+        counts, without = (FIGURES.accuracy.counts_of(page) for page in
+                           (self.PAGE, self.PAGE.replace(line, line.replace(f"| {first[2]} |", "| - |"))))
+        self.assertEqual(without.diagnosed_rigs, counts.diagnosed_rigs - 1)
+        self.assertEqual((without.rigs, without.explained_rigs), (counts.rigs, counts.explained_rigs))
+
 
 if __name__ == "__main__":
     sys.dont_write_bytecode = True
